@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: Apache-2.0
+# Same inputs, same bits: no contraction into FMA on any target, Eigen's own vectorisation off
+# (it issues explicit FMA, and the ABI of its aligned types would change with the flags).
+add_library(tactus_numerics INTERFACE)
+target_compile_options(tactus_numerics INTERFACE -ffp-contract=off)
+# Its index checks would bring assert() into rt_core; fixed-size types do not need them.
+target_compile_definitions(tactus_numerics INTERFACE
+    EIGEN_DONT_VECTORIZE EIGEN_MAX_ALIGN_BYTES=0 EIGEN_NO_DEBUG)
+
+if(TACTUS_SANITIZE)
+    add_compile_options(
+        -fsanitize=${TACTUS_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+    add_link_options(-fsanitize=${TACTUS_SANITIZE})
+endif()
+
+# tactus_library(<name> SOURCES ... HEADERS ... LINK ...)
+# One target per room: explicit files, headers included from the repository root and each compiled
+# alone (CMAKE_VERIFY_INTERFACE_HEADER_SETS).
+function(tactus_library name)
+    cmake_parse_arguments(ARG "" "" "SOURCES;HEADERS;LINK;LINK_PRIVATE" ${ARGN})
+    add_library(${name} STATIC ${ARG_SOURCES})
+    target_sources(${name} PUBLIC
+        FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${ARG_HEADERS})
+    target_link_libraries(${name} PUBLIC tactus_numerics ${ARG_LINK}
+        PRIVATE $<BUILD_INTERFACE:tactus_warnings> ${ARG_LINK_PRIVATE})
+    set_target_properties(${name} PROPERTIES VERIFY_INTERFACE_HEADER_SETS ON)
+endfunction()
+
+# tactus_program(<name> SOURCES ... LINK ...)
+function(tactus_program name)
+    cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
+    add_executable(${name} ${ARG_SOURCES})
+    target_link_libraries(${name} PRIVATE $<BUILD_INTERFACE:tactus_warnings> ${ARG_LINK})
+    target_compile_definitions(${name} PRIVATE TACTUS_VERSION="${PROJECT_VERSION}")
+endfunction()

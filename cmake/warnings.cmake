@@ -1,0 +1,10 @@
+# SPDX-License-Identifier: Apache-2.0
+# One interface target carries the warnings; only our own sources link it, privately.
+add_library(tactus_warnings INTERFACE)
+target_compile_options(tactus_warnings INTERFACE
+    -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wshadow -Wold-style-cast
+    -Wnon-virtual-dtor -Woverloaded-virtual -Wcast-align -Wunused -Wformat=2 -Wdouble-promotion
+    -Wimplicit-fallthrough)
+if(TACTUS_WERROR)
+    target_compile_options(tactus_warnings INTERFACE -Werror)
+endif()

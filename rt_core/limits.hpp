@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+/// Every capacity and tolerance of rt_core: what it bounds, its unit, why this value, what it
+/// costs.
+namespace tactus
+{
+
+// --- The mesh format -----------------------------------------------------------------------------
+
+/// Faces in one record's star, the appearing ones included. Costs 9 B a face in every record;
+/// a cap of 8 costs no quality (design measurements), so larger stars are never collapsed.
+inline constexpr std::uint32_t kMaxStarFaces = 8;
+/// Fan faces of a star: all but A and B (a border star misses one of those, its fan is not longer).
+inline constexpr std::uint32_t kMaxFanFaces = kMaxStarFaces - 2;
+
+/// Largest record count: FaceState keeps the record in 29 bits, all ones meaning the base state.
+inline constexpr std::uint32_t kMaxRecords = (1U << 29U) - 2;
+/// Largest base mesh the controller accepts, in faces. Base faces are resident: about 150 B each.
+inline constexpr std::uint32_t kMaxBaseFaces = 16'384;
+/// Base vertices; a soup of single triangles has three a face.
+inline constexpr std::uint32_t kMaxBaseVertices = 3 * kMaxBaseFaces;
+/// Dependency depth of a record (number of rounds of the encoder; 20 to 60 on real meshes).
+/// It bounds the closure stack: depth x fan.
+inline constexpr std::uint32_t kMaxDepth = 1'024;
+/// Coordinates are integers of at most this many bits times the quantum, so exact in a float.
+inline constexpr std::uint32_t kMinPositionBits = 16;
+inline constexpr std::uint32_t kMaxPositionBits = 24;
+
+/// The quantum is 2^-60 .. 2^20 m: from a micrometre-sized model at 24 bits to 10^6 m at 16.
+inline constexpr std::int32_t kMinQuantumLog2 = -60;
+inline constexpr std::int32_t kMaxQuantumLog2 = 20;
+/// Cells of the regular partition: one bit each in the header, 32 KiB at most.
+inline constexpr std::uint32_t kMaxRegions = 1U << 18U;
+/// Chunks of one model, by kMaxRecords; bounds every chunk count that is read.
+inline constexpr std::uint32_t kMaxChunks = (kMaxRecords + 63) / 64;
+/// One coded chunk: 64 records of at most 130 B in coder version 1, plus frame. A reader may lend
+/// a buffer of this size and need no other.
+inline constexpr std::size_t kMaxCodedChunkBytes = 8'448;
+
+// --- The scene -----------------------------------------------------------------------------------
+
+/// Tools, objects and models of one frame. A pair of tool and object costs about 21 KiB, most of it
+/// its local surface.
+inline constexpr std::uint32_t kMaxTools = 4;
+inline constexpr std::uint32_t kMaxObjects = 8;
+inline constexpr std::uint32_t kMaxModels = 8;
+inline constexpr std::uint32_t kMaxPairs = kMaxTools * kMaxObjects;
+
+/// Exact triangles handed to the force stage for one pair; 76 are usual at 1.1 M faces and a tool
+/// of 1 % of the diagonal. With more, the certified radius shrinks to those kept. 40 B each.
+inline constexpr std::uint32_t kMaxLocalTriangles = 256;
+
+// --- The frame -----------------------------------------------------------------------------------
+
+/// Largest budgets that a caller may give (records/budgets.hpp); scratch memory follows them.
+inline constexpr std::uint32_t kMaxSplitsPerFrame = 256;
+inline constexpr std::uint32_t kMaxMergesPerFrame = 256;
+/// Faces that wait to be split in one frame; 16 B each. Faces beyond it wait for the next frame.
+inline constexpr std::uint32_t kRefineHeap = 1'024;
+/// Records split for a closure that is not complete yet, kept from being merged; 4 B each.
+inline constexpr std::uint32_t kMaxHeldRecords = 1'024;
+/// A traversal's stack: 22 levels of 7 siblings and the 8 of the last node.
+inline constexpr std::uint32_t kTreeStack = 22 * 7 + 8;
+/// Balls that the predictor ranks: now, soon and later for each pair that is near.
+inline constexpr std::uint32_t kMaxRankedRegions = 3 * kMaxPairs;
+/// Index pages kept at once, about 800 B each; larger models fetch them on demand.
+inline constexpr std::uint32_t kMaxResidentIndexPages = 192;
+/// Frames after which an unanswered wish is asked again.
+inline constexpr std::uint32_t kWishTimeoutFrames = 250;
+
+// --- Force ---------------------------------------------------------------------------------------
+
+/// Steps of the proxy in one frame. Each is at most half the tool's radius.
+inline constexpr std::uint32_t kProxySteps = 12;
+/// How far the proxy may sit inside the tool's radius from the surface, relative to that radius.
+inline constexpr double kContactTolerance = 1e-4;
+/// Time in which a frozen force fades to zero, in seconds.
+inline constexpr double kFadeTime_s = 0.05;
+
+// --- Numbers -------------------------------------------------------------------------------------
+
+/// Aspect ratio (longest edge squared / twice the area) beyond which the error law of the
+/// point-triangle kernel grows no further: such a triangle's plane is never the nearest feature by
+/// more than that. Dimensionless.
+inline constexpr double kLargestAspect = 1e8;
+
+// --- Names ---------------------------------------------------------------------------------------
+
+/// A model's or tool's name: at most this many bytes of [A-Za-z0-9._-].
+inline constexpr std::size_t kMaxNameBytes = 63;
+
+} // namespace tactus

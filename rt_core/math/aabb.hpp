@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/math/rounding.hpp"
+#include "rt_core/math/vec3.hpp"
+
+#include <array>
+#include <limits>
+
+namespace tactus
+{
+
+/// Axis-aligned box in single precision, rounded outward. The default box is empty: its union with
+/// any box is that box.
+struct Aabb
+{
+    Vec3f low{kHuge, kHuge, kHuge};
+    Vec3f high{-kHuge, -kHuge, -kHuge};
+
+    static constexpr float kHuge = std::numeric_limits<float>::max();
+
+    constexpr bool operator==(const Aabb&) const noexcept = default;
+
+    constexpr void add(const Vec3f& point) noexcept
+    {
+        for (std::size_t axis = 0; axis < 3; ++axis)
+        {
+            low[axis] = point[axis] < low[axis] ? point[axis] : low[axis];
+            high[axis] = point[axis] > high[axis] ? point[axis] : high[axis];
+        }
+    }
+
+    constexpr void add(const Aabb& box) noexcept
+    {
+        for (std::size_t axis = 0; axis < 3; ++axis)
+        {
+            low[axis] = box.low[axis] < low[axis] ? box.low[axis] : low[axis];
+            high[axis] = box.high[axis] > high[axis] ? box.high[axis] : high[axis];
+        }
+    }
+
+    /// The box grown by `margin` >= 0 on all sides, rounded outward.
+    [[nodiscard]] constexpr Aabb inflated(float margin) const noexcept
+    {
+        Aabb box;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+        {
+            const double wide = static_cast<double>(margin);
+            box.low[axis] = round_down_to_float(static_cast<double>(low[axis]) - wide);
+            box.high[axis] = round_up_to_float(static_cast<double>(high[axis]) + wide);
+        }
+        return box;
+    }
+};
+
+} // namespace tactus

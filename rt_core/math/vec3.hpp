@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include <Eigen/Core>
+
+#include <array>
+
+namespace tactus
+{
+
+#ifndef EIGEN_DONT_VECTORIZE
+#error "Tactus needs EIGEN_DONT_VECTORIZE: Eigen's explicit FMA would change bits between builds."
+#endif
+
+/// Decisions are made in double precision.
+using Vec3 = Eigen::Vector3d;
+using Mat3 = Eigen::Matrix3d;
+
+/// Stored coordinates are single precision and, for mesh vertices, exact.
+using Vec3f = std::array<float, 3>;
+
+[[nodiscard]] inline Vec3 to_vec3(const Vec3f& v) noexcept
+{
+    return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
+}
+
+} // namespace tactus
