@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/spm/header.hpp"
+
+#include <cstdint>
+
+namespace tactus
+{
+
+/// What one transferred piece of a model is.
+enum class ContentKind : std::uint8_t
+{
+    base = 0,
+    index_page = 1,
+    chunk = 2,
+};
+
+/// Names one piece within one model: its index page or chunk number; 0 for the base mesh.
+struct ContentKey
+{
+    ContentKind kind{ContentKind::base};
+    std::uint32_t number{0};
+
+    constexpr bool operator==(const ContentKey&) const noexcept = default;
+};
+
+/// Names one piece anywhere, as it stands in front of every piece on the wire: 28 bytes,
+/// little-endian. `model` is the first 128 bits of the header's root hash.
+struct WireKey
+{
+    ContentHash model{};
+    std::uint32_t revision{0};
+    std::uint32_t kind{0}; ///< ContentKind.
+    std::uint32_t number{0};
+
+    constexpr bool operator==(const WireKey&) const noexcept = default;
+};
+
+static_assert(sizeof(WireKey) == 28);
+
+} // namespace tactus

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "rt_core/spm/header.hpp"
+
+#include "rt_core/base/byte_io.hpp"
+#include "rt_core/base/crc32c.hpp"
+#include "rt_core/math/vec3.hpp"
+
+#include <bit>
+#include <cmath>
+
+namespace tactus
+{
+
+namespace
+{
+
+bool counts_are_in_range(const HeaderFields& fields) noexcept
+{
+    return fields.base_faces >= 1 && fields.base_faces <= kMaxBaseFaces &&
+           fields.base_vertices >= 3 && fields.base_vertices <= kMaxBaseVertices &&
+           fields.records <= kMaxRecords && fields.max_depth <= kMaxDepth &&
+           (fields.records == 0) == (fields.max_depth == 0);
+}
+
+bool is_finite(double value) noexcept
+{
+    return std::abs(value) <= 1e300;
+}
+
+bool geometry_is_in_range(const HeaderFields& fields) noexcept
+{
+    if (fields.position_bits < kMinPositionBits || fields.position_bits > kMaxPositionBits ||
+        fields.quantum_log2 < kMinQuantumLog2 || fields.quantum_log2 > kMaxQuantumLog2)
+    {
+        return false;
+    }
+    bool has_extent = false;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+        if (fields.extent_quanta[axis] >= (1U << fields.position_bits) ||
+            !is_finite(fields.origin_m[axis]))
+        {
+            return false;
+        }
+        has_extent = has_extent || fields.extent_quanta[axis] > 0;
+    }
+    return has_extent && is_finite(fields.quantisation_m) && fields.quantisation_m >= 0.0;
+}
+
+bool regions_are_in_range(const HeaderFields& fields) noexcept
+{
+    std::uint64_t regions = 1;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+        const std::uint64_t cells = fields.region_grid[axis];
+        if (cells == 0 || cells > kMaxRegions ||
+            cells * fields.region_cell_quanta <= fields.extent_quanta[axis])
+        {
+            return false;
+        }
+        regions *= cells;
+    }
+    return std::has_single_bit(fields.region_cell_quanta) && regions <= kMaxRegions &&
+           fields.occupied_regions >= 1 && fields.occupied_regions <= regions;
+}
+
+} // namespace
+
+const char* refusal_text(SpmRefusal refusal) noexcept
+{
+    switch (refusal)
+    {
+    case SpmRefusal::too_short:
+        return "is cut short";
+    case SpmRefusal::wrong_magic:
+        return "is not an SPM model";
+    case SpmRefusal::unknown_version:
+        return "has a format or coder version that this build does not know";
+    case SpmRefusal::wrong_checksum:
+        return "is damaged: its checksum does not match";
+    case SpmRefusal::wrong_size:
+        return "is damaged: a stated size does not match";
+    case SpmRefusal::count_out_of_range:
+        return "states a count outside the supported range";
+    case SpmRefusal::id_out_of_range:
+        return "names an id that the model does not have";
+    case SpmRefusal::value_out_of_range:
+        return "holds a value outside its range";
+    case SpmRefusal::trailing_bytes:
+        return "is followed by bytes that do not belong to it";
+    case SpmRefusal::wrong_identity:
+        return "belongs to another model or place than stated";
+    }
+    return "is damaged";
+}
+
+Result<ModelHeader, SpmRefusal> ModelHeader::parse(std::span<const std::byte> bytes) noexcept
+{
+    ByteReader reader(bytes);
+    ModelHeader header;
+    HeaderFields& fields = header.fields_;
+    fields = reader.read<HeaderFields>();
+    if (reader.failed())
+    {
+        return SpmRefusal::too_short;
+    }
+    if (fields.magic != kSpmMagic)
+    {
+        return SpmRefusal::wrong_magic;
+    }
+    if (fields.format_version != kFormatVersion || fields.coder_version != kCoderVersion)
+    {
+        return SpmRefusal::unknown_version;
+    }
+    if (!counts_are_in_range(fields))
+    {
+        return SpmRefusal::count_out_of_range;
+    }
+    if (!geometry_is_in_range(fields) || !regions_are_in_range(fields))
+    {
+        return SpmRefusal::value_out_of_range;
+    }
+    const std::uint64_t pages = header.counts().index_pages();
+    if (fields.header_bytes != header_bytes(pages, header.region_count()))
+    {
+        return SpmRefusal::wrong_size;
+    }
+    if (bytes.size() != fields.header_bytes)
+    {
+        return bytes.size() < fields.header_bytes ? SpmRefusal::too_short
+                                                  : SpmRefusal::trailing_bytes;
+    }
+    header.index_ = reader.read_bytes(pages * sizeof(IndexPageEntry));
+    header.regions_ = reader.read_bytes((std::size_t{header.region_count()} + 7) / 8);
+    static_cast<void>(reader.read_bytes(kRootHashBytes));
+    if (reader.read<std::uint32_t>() != crc32c(bytes.first(bytes.size() - kChecksumBytes)))
+    {
+        return SpmRefusal::wrong_checksum;
+    }
+    return header;
+}
+
+float ModelHeader::quantum_m() const noexcept
+{
+    return std::bit_cast<float>(static_cast<std::uint32_t>(fields_.quantum_log2 + 127) << 23U);
+}
+
+double ModelHeader::diagonal_m() const noexcept
+{
+    const Vec3 extent(fields_.extent_quanta[0], fields_.extent_quanta[1], fields_.extent_quanta[2]);
+    return static_cast<double>(quantum_m()) * extent.norm();
+}
+
+IndexPageEntry ModelHeader::index_entry(IndexPageId page) const noexcept
+{
+    TACTUS_ASSERT(page.value < counts().index_pages());
+    ByteReader reader(index_.subspan(page.value * sizeof(IndexPageEntry), sizeof(IndexPageEntry)));
+    return reader.read<IndexPageEntry>();
+}
+
+bool ModelHeader::is_occupied(RegionId region) const noexcept
+{
+    TACTUS_ASSERT(region.value < region_count());
+    return ((static_cast<std::uint32_t>(regions_[region.value / 8]) >> (region.value % 8)) & 1U) !=
+           0;
+}
+
+RegionId ModelHeader::region_at(const std::array<double, 3>& point_m) const noexcept
+{
+    const double cell_m =
+        static_cast<double>(fields_.region_cell_quanta) * static_cast<double>(quantum_m());
+    std::uint32_t index = 0;
+    for (std::size_t axis = 3; axis-- > 0;)
+    {
+        const std::uint32_t cells = fields_.region_grid[axis];
+        const double place = point_m[axis] / cell_m;
+        // Compared before the cast: a far or non-finite point must not overflow it.
+        const std::uint32_t cell = !(place > 0.0) ? 0
+                                   : place >= static_cast<double>(cells)
+                                       ? cells - 1
+                                       : static_cast<std::uint32_t>(place);
+        index = index * cells + cell;
+    }
+    return {index};
+}
+
+} // namespace tactus

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/base/result.hpp"
+#include "rt_core/limits.hpp"
+#include "rt_core/spm/ids.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace tactus
+{
+
+/// The first 128 bits of BLAKE2b-256 over a chunk, index page or base mesh in its coded form, or,
+/// for a model, over its header: headers name the hashes of index pages, index pages those of
+/// chunks, so a model's hash covers every byte of it (docs/spm-format.md).
+using ContentHash = std::array<std::uint8_t, 16>;
+
+/// Why bytes were refused. `refusal_text` gives the words for a message.
+enum class SpmRefusal : std::uint8_t
+{
+    too_short,
+    wrong_magic,
+    unknown_version,
+    wrong_checksum,
+    wrong_size,
+    count_out_of_range,
+    id_out_of_range,
+    value_out_of_range,
+    trailing_bytes,
+    wrong_identity, ///< Sound bytes, but of another model, page or chunk than was asked for.
+};
+
+[[nodiscard]] const char* refusal_text(SpmRefusal refusal) noexcept;
+
+inline constexpr std::array<char, 8> kSpmMagic{'T', 'A', 'C', 'T', 'S', 'P', 'M', '\n'};
+inline constexpr std::uint16_t kFormatVersion = 1;
+/// Version 1 writes every field of a record explicitly (rt_core/spm/chunk_coding.hpp).
+inline constexpr std::uint16_t kCoderVersion = 1;
+
+/// The fixed part of a header, as it stands in the file and on the wire (little-endian, no
+/// padding).
+struct HeaderFields
+{
+    std::array<char, 8> magic{kSpmMagic};
+    std::uint16_t format_version{kFormatVersion};
+    std::uint16_t coder_version{kCoderVersion};
+    std::uint32_t header_bytes{0}; ///< All of it, up to and with the closing checksum.
+    std::uint32_t revision{0};     ///< 0 for a model that was never edited.
+    std::uint32_t base_vertices{0};
+    std::uint32_t base_faces{0};
+    std::uint32_t records{0};
+    std::int32_t quantum_log2{0};                 ///< One quantum is 2^this metres.
+    std::uint32_t position_bits{0};               ///< 16 .. 24.
+    std::array<std::uint32_t, 3> extent_quanta{}; ///< Largest coordinate; the smallest is 0.
+    std::uint32_t max_depth{0};                   ///< Largest dependency depth of a record.
+    std::array<double, 3> origin_m{};             ///< Source position of coordinate (0, 0, 0).
+    double quantisation_m{0.0};                   ///< Largest |source - grid| of a vertex.
+    std::uint32_t source_vertices{0};             ///< Of the quantised mesh.
+    std::uint32_t source_faces{0};
+    std::uint32_t rounds{0};             ///< Rounds of collapses.
+    std::uint32_t max_error_quanta{0};   ///< Largest bound of any face state, rounded up.
+    std::uint32_t region_cell_quanta{0}; ///< Edge of a region; a power of two.
+    std::array<std::uint32_t, 3> region_grid{};
+    std::uint32_t occupied_regions{0};
+    std::uint32_t base_bytes{0};
+    std::uint64_t base_offset{0};  ///< In the file.
+    std::uint64_t index_offset{0}; ///< In the file; index pages follow one another.
+    std::uint64_t file_bytes{0};
+    ContentHash base_hash{};
+};
+
+static_assert(sizeof(HeaderFields) == 168);
+
+/// A box in quanta; unlike vertices it may reach below zero and beyond the extent.
+struct QuantumBox
+{
+    std::array<std::int32_t, 3> low{};
+    std::array<std::int32_t, 3> high{};
+
+    constexpr bool operator==(const QuantumBox&) const noexcept = default;
+};
+
+/// Upper level of the influence-box index: one entry for each index page.
+struct IndexPageEntry
+{
+    QuantumBox box;                 ///< Union of the page's influence boxes.
+    std::uint64_t chunks_offset{0}; ///< Of the page's first chunk in the file.
+    ContentHash hash{};             ///< Of the index page.
+};
+
+static_assert(sizeof(IndexPageEntry) == 48);
+
+/// A header that passed every check. `index` and `regions` are views into the parsed bytes: the
+/// bytes must outlive it.
+class ModelHeader
+{
+public:
+    /// Checks everything: magic, versions, sizes (in 64 bits), counts, ranges and the checksum.
+    /// `bytes` is exactly one header. Does not verify hashes (rt_core has no cryptography).
+    [[nodiscard]] static Result<ModelHeader, SpmRefusal>
+    parse(std::span<const std::byte> bytes) noexcept;
+
+    [[nodiscard]] const HeaderFields& fields() const noexcept { return fields_; }
+    [[nodiscard]] ModelCounts counts() const noexcept
+    {
+        return {fields_.base_vertices, fields_.base_faces, fields_.records};
+    }
+    /// Metres in one quantum; a power of two, so products with grid integers are exact floats.
+    [[nodiscard]] float quantum_m() const noexcept;
+    [[nodiscard]] double diagonal_m() const noexcept;
+
+    [[nodiscard]] IndexPageEntry index_entry(IndexPageId page) const noexcept;
+    [[nodiscard]] std::uint32_t region_count() const noexcept
+    {
+        return fields_.region_grid[0] * fields_.region_grid[1] * fields_.region_grid[2];
+    }
+    [[nodiscard]] bool is_occupied(RegionId region) const noexcept;
+    /// The region that holds a point of the model's frame; the nearest one for points outside.
+    [[nodiscard]] RegionId region_at(const std::array<double, 3>& point_m) const noexcept;
+
+private:
+    HeaderFields fields_;
+    std::span<const std::byte> index_;
+    std::span<const std::byte> regions_;
+};
+
+/// Bytes of the parts that follow the fixed fields: index entries, region bits, root hash,
+/// checksum.
+inline constexpr std::size_t kRootHashBytes = 32;
+inline constexpr std::size_t kChecksumBytes = 4;
+[[nodiscard]] constexpr std::uint64_t header_bytes(std::uint64_t index_pages,
+                                                   std::uint64_t regions) noexcept
+{
+    return sizeof(HeaderFields) + index_pages * sizeof(IndexPageEntry) + (regions + 7) / 8 +
+           kRootHashBytes + kChecksumBytes;
+}
+
+} // namespace tactus

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/base/assert.hpp"
+#include "rt_core/base/strong_id.hpp"
+
+#include <cstdint>
+
+namespace tactus
+{
+
+/// One vsplit record; ordered by tier (ratio 4), then Morton code.
+using RecordId = StrongId<struct RecordTag>;
+/// 64 consecutive records.
+using ChunkId = StrongId<struct ChunkTag>;
+/// 64 consecutive chunks of the influence-box index.
+using IndexPageId = StrongId<struct IndexPageTag>;
+/// Base vertices first, then one vertex per record.
+using VertexId = StrongId<struct VertexTag>;
+/// Base faces first, then two per record: 2 x record + side. The same in every run.
+using FaceId = StrongId<struct FaceTag>;
+/// One cell of the header's regular partition.
+using RegionId = StrongId<struct RegionTag>;
+/// A model's place in the controller's list.
+using ModelId = StrongId<struct ModelTag>;
+
+inline constexpr std::uint32_t kRecordsPerChunkLog2 = 6;
+inline constexpr std::uint32_t kRecordsPerChunk = 1U << kRecordsPerChunkLog2;
+inline constexpr std::uint32_t kChunksPerIndexPageLog2 = 6;
+inline constexpr std::uint32_t kChunksPerIndexPage = 1U << kChunksPerIndexPageLog2;
+
+/// How many ids of each kind one model has; the id arithmetic lives here.
+struct ModelCounts
+{
+    std::uint32_t base_vertices{0};
+    std::uint32_t base_faces{0};
+    std::uint32_t records{0};
+
+    [[nodiscard]] constexpr std::uint32_t vertices() const noexcept
+    {
+        return base_vertices + records;
+    }
+    /// Upper end of the FaceId range; a record on a border leaves one of its two ids unused.
+    [[nodiscard]] constexpr std::uint32_t face_ids() const noexcept
+    {
+        return base_faces + 2 * records;
+    }
+    [[nodiscard]] constexpr std::uint32_t chunks() const noexcept
+    {
+        return (records + kRecordsPerChunk - 1) >> kRecordsPerChunkLog2;
+    }
+    [[nodiscard]] constexpr std::uint32_t index_pages() const noexcept
+    {
+        return (chunks() + kChunksPerIndexPage - 1) >> kChunksPerIndexPageLog2;
+    }
+    [[nodiscard]] constexpr bool is_base(VertexId vertex) const noexcept
+    {
+        return vertex.value < base_vertices;
+    }
+    [[nodiscard]] constexpr bool is_base(FaceId face) const noexcept
+    {
+        return face.value < base_faces;
+    }
+    [[nodiscard]] constexpr RecordId record_of(VertexId vertex) const noexcept
+    {
+        TACTUS_ASSERT(!is_base(vertex));
+        return {vertex.value - base_vertices};
+    }
+    [[nodiscard]] constexpr VertexId vertex_of(RecordId record) const noexcept
+    {
+        return {record.value + base_vertices};
+    }
+    /// The face that appears on side 0 (A) or 1 (B) when the record is split.
+    [[nodiscard]] constexpr FaceId face_of(RecordId record, std::uint32_t side) const noexcept
+    {
+        return {base_faces + 2 * record.value + side};
+    }
+};
+
+[[nodiscard]] constexpr ChunkId chunk_of(RecordId record) noexcept
+{
+    return {record.value >> kRecordsPerChunkLog2};
+}
+
+[[nodiscard]] constexpr std::uint32_t place_in_chunk(RecordId record) noexcept
+{
+    return record.value & (kRecordsPerChunk - 1);
+}
+
+} // namespace tactus

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/base/result.hpp"
+#include "rt_core/spm/header.hpp"
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+namespace tactus
+{
+
+/// A chunk's influence box in steps of its index page's box, rounded outward: a ball that misses it
+/// needs no record of the chunk. `low > high` on an axis never occurs.
+struct InfluenceBox
+{
+    std::array<std::uint16_t, 3> low{};
+    std::array<std::uint16_t, 3> high{};
+};
+
+/// Lower level of the influence-box index: the boxes of 64 consecutive chunks.
+struct IndexPage
+{
+    std::array<InfluenceBox, kChunksPerIndexPage> boxes{};
+    std::uint32_t chunks{0}; ///< 1 .. 64; less than 64 only in the last page.
+};
+
+/// What the transport side keeps of a chunk besides its box.
+struct ChunkEntry
+{
+    std::uint16_t coded_bytes{0};
+    ContentHash hash{};
+};
+
+/// Quanta in one step of an index page's boxes along an axis: the least that spans it in 16 bits.
+[[nodiscard]] constexpr std::uint32_t index_step(std::int32_t low, std::int32_t high) noexcept
+{
+    const auto extent = static_cast<std::uint64_t>(static_cast<std::int64_t>(high) -
+                                                   static_cast<std::int64_t>(low));
+    return static_cast<std::uint32_t>(extent / 65'535 + 1);
+}
+
+/// Bytes of one entry in the coded page: box, coded size, hash.
+inline constexpr std::size_t kIndexEntryBytes = 12 + 2 + 16;
+/// Coded index page: page number, the entries, a checksum.
+[[nodiscard]] constexpr std::size_t coded_index_page_bytes(std::uint32_t chunks) noexcept
+{
+    return 4 + chunks * kIndexEntryBytes + kChecksumBytes;
+}
+/// How many chunks an index page holds.
+[[nodiscard]] constexpr std::uint32_t chunks_in_index_page(const ModelCounts& counts,
+                                                           IndexPageId page) noexcept
+{
+    const std::uint32_t left = counts.chunks() - (page.value << kChunksPerIndexPageLog2);
+    return left < kChunksPerIndexPage ? left : kChunksPerIndexPage;
+}
+
+/// Reads the coded index page `id` of a model. `entries` gets one ChunkEntry a chunk and has room
+/// for 64. On refusal the outputs are unspecified.
+[[nodiscard]] Result<Done, SpmRefusal> parse_index_page(std::span<const std::byte> bytes,
+                                                        const ModelCounts& counts, IndexPageId id,
+                                                        IndexPage& page,
+                                                        std::span<ChunkEntry> entries) noexcept;
+
+} // namespace tactus

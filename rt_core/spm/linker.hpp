@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/base/arena.hpp"
+#include "rt_core/base/id_table.hpp"
+#include "rt_core/spm/page_slots.hpp"
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+namespace tactus
+{
+
+/// Links parsed records to the records they depend on, on the transport thread.
+///
+/// A record depends on the records that last changed its fan faces (or on the base mesh). It is
+/// linked once all of those are present and linked: its place is checked against theirs, `next` of
+/// each is set to it, then its linked bit is published with release. Records whose
+/// dependencies are absent wait, parsed, in their page.
+///
+/// A page that comes back after an eviction has all its `next` pending again: records of other
+/// pages that were linked to it set them anew. Which pages to look at is answered by a 256-bit
+/// signature per page of the chunks it refers to.
+///
+/// Refused for good: a state that the owner's star contradicts, a place that another record has
+/// taken, a depth that is not one more than the deepest dependency. The depth rule makes a
+/// dependency cycle impossible.
+class Linker
+{
+public:
+    Linker(Arena& arena, const ModelCounts& counts, PageSlots slots) noexcept;
+
+    /// A page was parsed into `slot`: links what can be linked now, in it and in waiting pages.
+    /// Cost: one signature test per resident page, 64 records in each that refers to it.
+    void link_page(ChunkId chunk, std::uint32_t slot) noexcept;
+
+    /// The haptic thread gave the slot back; its records are gone.
+    void release_page(std::uint32_t slot) noexcept;
+
+    [[nodiscard]] bool is_resident(ChunkId chunk) const noexcept
+    {
+        return slot_of_.find(chunk.value) != IdTable::kAbsent;
+    }
+    /// Records that were refused since the start; each is a fault of the model or of its sender.
+    [[nodiscard]] std::uint64_t records_refused() const noexcept { return refused_count_; }
+    [[nodiscard]] std::uint64_t records_linked() const noexcept { return linked_count_; }
+
+private:
+    struct Signature
+    {
+        std::array<std::uint64_t, 4> bits{};
+
+        void add(ChunkId chunk) noexcept;
+        [[nodiscard]] bool may_hold(ChunkId chunk) const noexcept;
+    };
+    struct Resident
+    {
+        ChunkId chunk{};
+        Signature refers_to;
+        std::uint64_t refused{0}; ///< One bit a record.
+        bool changed{false};      ///< Came in or gained linked records; others must look at it.
+    };
+    enum class Fit : std::uint8_t
+    {
+        fits,
+        waits,
+        refused
+    };
+
+    void sign(std::uint32_t slot) noexcept;
+    void look_again(std::uint32_t slot, ChunkId changed) noexcept;
+    void relink_next(std::uint32_t slot, std::uint32_t place, ChunkId changed) noexcept;
+    void try_link(std::uint32_t slot, std::uint32_t place) noexcept;
+    [[nodiscard]] Fit fit(RecordId id, const VsplitRecord& record) const noexcept;
+    [[nodiscard]] Fit fit_one(RecordId id, const VsplitRecord& record, std::uint32_t fan_place,
+                              std::uint32_t& depth) const noexcept;
+    [[nodiscard]] std::uint32_t* next_of(FaceId face, FaceState state) const noexcept;
+    [[nodiscard]] bool is_linked(std::uint32_t slot, std::uint32_t place) const noexcept;
+
+    ModelCounts counts_;
+    PageSlots slots_;
+    IdTable slot_of_;
+    std::span<Resident> residents_;
+    std::uint32_t slots_in_use_end_{0};
+    std::uint64_t linked_count_{0};
+    std::uint64_t refused_count_{0};
+};
+
+} // namespace tactus

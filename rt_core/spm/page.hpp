@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/limits.hpp"
+#include "rt_core/math/vec3.hpp"
+#include "rt_core/spm/ids.hpp"
+
+#include <array>
+#include <cstdint>
+#include <type_traits>
+
+namespace tactus
+{
+
+/// Which state a face is in: the record that last changed it and the face's place in that record's
+/// star. A base face that no record has changed yet is in its base state.
+struct FaceState
+{
+    static constexpr std::uint32_t kBaseValue = 0xFFFF'FFFFU;
+
+    std::uint32_t value{kBaseValue};
+
+    [[nodiscard]] static constexpr FaceState base() noexcept { return {}; }
+    [[nodiscard]] static constexpr FaceState after(RecordId record, std::uint32_t place) noexcept
+    {
+        return {(record.value << 3U) | place};
+    }
+    [[nodiscard]] constexpr bool is_base() const noexcept { return value == kBaseValue; }
+    [[nodiscard]] constexpr RecordId record() const noexcept { return {value >> 3U}; }
+    [[nodiscard]] constexpr std::uint32_t place() const noexcept { return value & 7U; }
+    constexpr bool operator==(const FaceState&) const noexcept = default;
+};
+
+/// One vsplit record as the forest reads it.
+///
+/// Around the vanished vertex v, joined to its parent u, the star in canonical order is
+///
+///     A = (v, u, w0), fan faces (v, w0, w1) ... (v, wk-1, wk), B = (v, wk, u)
+///
+/// counter-clockwise round v. A and B are the faces that (re)appear with the split; on an open
+/// border one of the two is missing. Before the split the fan is (u, wi, wi+1).
+/// `star[0]` is A and `star[1]` is B (none when missing); the fan follows from `star[2]`, so a fan
+/// face's place in the star is its index here.
+///
+/// Little-endian, fixed by golden bytes: encoder, parse, link and forest all touch it.
+struct VsplitRecord
+{
+    Vec3f position_m{};                       ///< v in the model's frame; exact.
+    VertexId parent{};                        ///< u.
+    std::array<FaceId, kMaxStarFaces> star{}; ///< A, B, fan; none where there is no face.
+    /// The record that splits this face next, after this record: `kNoneValue` when the face is
+    /// exact then, `kNextPending` until that record is here. The transport thread writes it through
+    /// std::atomic_ref, the haptic thread reads it the same way.
+    std::array<std::uint32_t, kMaxStarFaces> next{};
+    std::array<FaceState, kMaxFanFaces> before{};    ///< State of fan face i before this split.
+    std::array<std::uint8_t, kMaxStarFaces> error{}; ///< Error code of each star face after it.
+    std::array<std::uint32_t, 2> bucket{}; ///< rank >> 3 of A and B in the left-full median order.
+    std::uint16_t depth{0};   ///< 1 + the largest depth of its dependencies; 1 on the base mesh.
+    std::uint8_t fan_size{0}; ///< 1 .. kMaxFanFaces.
+    std::uint8_t reach{0};    ///< Error code of the radius round v that holds star, fan and errors.
+    std::uint32_t reserved{0}; ///< Zero; fills the record's two cache lines.
+
+    [[nodiscard]] constexpr bool has_face(std::uint32_t side) const noexcept
+    {
+        return !star[side].is_none();
+    }
+    /// One past the last used place of the star.
+    [[nodiscard]] constexpr std::uint32_t star_end() const noexcept { return 2U + fan_size; }
+};
+
+inline constexpr std::uint32_t kNextExact = 0xFFFF'FFFFU;   ///< No record splits this face.
+inline constexpr std::uint32_t kNextPending = 0xFFFF'FFFEU; ///< One does; it isn't here yet.
+
+static_assert(sizeof(VsplitRecord) == 128 && std::is_trivially_copyable_v<VsplitRecord>);
+
+/// One chunk's records, decoded.
+struct Page
+{
+    std::array<VsplitRecord, kRecordsPerChunk> records;
+};
+
+static_assert(sizeof(Page) == 8192);
+
+} // namespace tactus

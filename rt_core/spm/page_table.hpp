@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/base/arena.hpp"
+#include "rt_core/base/id_table.hpp"
+#include "rt_core/spm/page_slots.hpp"
+
+#include <bit>
+#include <cstdint>
+#include <span>
+
+namespace tactus
+{
+
+/// The haptic thread's view of a model's pages: which chunk is in which slot, which of its records
+/// are refined (split), and when it was last of use. Haptic thread only.
+class PageTable
+{
+public:
+    struct Meta
+    {
+        ChunkId chunk{};          ///< None: the slot is the transport thread's.
+        std::uint32_t touched{0}; ///< Frame number of the last use.
+        std::uint64_t refined{0}; ///< One bit a record. The page is pinned while any is set.
+        std::uint64_t held{0};    ///< Refined for a closure that isn't complete; not to be merged.
+    };
+
+    PageTable(Arena& arena, PageSlots slots) noexcept
+        : slots_(slots)
+        , slot_of_(arena, static_cast<std::uint32_t>(slots.pages.size()))
+        , meta_(arena.take<Meta>(slots.pages.size()))
+    {
+    }
+
+    void adopt(ChunkId chunk, std::uint32_t slot, std::uint32_t frame) noexcept
+    {
+        TACTUS_ASSERT(meta_[slot].chunk.is_none());
+        meta_[slot] = Meta{chunk, frame, 0, 0};
+        const bool inserted = slot_of_.try_insert(chunk.value, slot);
+        TACTUS_ASSERT(inserted);
+    }
+
+    /// Forgets an unpinned page; the slot may go back to the transport thread.
+    void evict(std::uint32_t slot) noexcept
+    {
+        TACTUS_ASSERT(!meta_[slot].chunk.is_none() && meta_[slot].refined == 0);
+        slot_of_.erase(meta_[slot].chunk.value);
+        meta_[slot] = Meta{};
+    }
+
+    /// The chunk's slot, or IdTable::kAbsent.
+    [[nodiscard]] std::uint32_t find(ChunkId chunk) const noexcept
+    {
+        return slot_of_.find(chunk.value);
+    }
+
+    /// The record when its page is adopted and it is linked; otherwise null.
+    [[nodiscard]] VsplitRecord* find_linked(RecordId record) const noexcept
+    {
+        const std::uint32_t slot = find(chunk_of(record));
+        if (slot == IdTable::kAbsent)
+        {
+            return nullptr;
+        }
+        // Pairs with the release in Linker::try_link(): what the record depends on was checked.
+        const std::uint64_t linked = slots_.linked[slot].load(std::memory_order_acquire);
+        const std::uint32_t place = place_in_chunk(record);
+        return ((linked >> place) & 1U) != 0 ? &slots_.pages[slot].records[place] : nullptr;
+    }
+
+    /// A record whose page must be here: refined records pin theirs.
+    [[nodiscard]] VsplitRecord& resident(RecordId record) const noexcept
+    {
+        const std::uint32_t slot = find(chunk_of(record));
+        TACTUS_ASSERT(slot != IdTable::kAbsent);
+        return slots_.pages[slot].records[place_in_chunk(record)];
+    }
+
+    [[nodiscard]] bool is_refined(RecordId record) const noexcept
+    {
+        const std::uint32_t slot = find(chunk_of(record));
+        return slot != IdTable::kAbsent &&
+               ((meta_[slot].refined >> place_in_chunk(record)) & 1U) != 0;
+    }
+    void set_refined(RecordId record, bool refined) noexcept
+    {
+        set_bit(meta_[slot_of_resident(record)].refined, place_in_chunk(record), refined);
+    }
+    [[nodiscard]] bool is_held(RecordId record) const noexcept
+    {
+        const std::uint32_t slot = find(chunk_of(record));
+        return slot != IdTable::kAbsent && ((meta_[slot].held >> place_in_chunk(record)) & 1U) != 0;
+    }
+    void set_held(RecordId record, bool held) noexcept
+    {
+        set_bit(meta_[slot_of_resident(record)].held, place_in_chunk(record), held);
+    }
+
+    void touch(std::uint32_t slot, std::uint32_t frame) noexcept { meta_[slot].touched = frame; }
+    [[nodiscard]] const Meta& meta(std::uint32_t slot) const noexcept { return meta_[slot]; }
+    [[nodiscard]] std::uint32_t capacity() const noexcept
+    {
+        return static_cast<std::uint32_t>(meta_.size());
+    }
+    [[nodiscard]] std::uint32_t used() const noexcept { return slot_of_.size(); }
+    [[nodiscard]] const PageSlots& slots() const noexcept { return slots_; }
+
+private:
+    [[nodiscard]] std::uint32_t slot_of_resident(RecordId record) const noexcept
+    {
+        const std::uint32_t slot = find(chunk_of(record));
+        TACTUS_ASSERT(slot != IdTable::kAbsent);
+        return slot;
+    }
+    static void set_bit(std::uint64_t& bits, std::uint32_t place, bool value) noexcept
+    {
+        const std::uint64_t bit = std::uint64_t{1} << place;
+        bits = value ? bits | bit : bits & ~bit;
+    }
+
+    PageSlots slots_;
+    IdTable slot_of_;
+    std::span<Meta> meta_;
+};
+
+} // namespace tactus
