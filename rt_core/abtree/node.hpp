@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/math/aabb.hpp"
+
+#include <array>
+#include <bit>
+#include <cstdint>
+
+namespace tactus
+{
+
+inline constexpr std::uint32_t kNodeChildren = 8;
+inline constexpr std::uint32_t kNoNode = 0xFFFF'FFFFU;
+
+/// A child of a node or the root of a tree: a node, a block, or nothing.
+struct TreeRef
+{
+    std::uint32_t value{kNoNode};
+
+    [[nodiscard]] static constexpr TreeRef to_node(std::uint32_t node) noexcept
+    {
+        return {node << 1U};
+    }
+    [[nodiscard]] static constexpr TreeRef to_block(std::uint32_t block) noexcept
+    {
+        return {(block << 1U) | 1U};
+    }
+    [[nodiscard]] constexpr bool is_none() const noexcept { return value == kNoNode; }
+    [[nodiscard]] constexpr bool is_block() const noexcept { return (value & 1U) != 0; }
+    [[nodiscard]] constexpr std::uint32_t index() const noexcept { return value >> 1U; }
+    constexpr bool operator==(const TreeRef&) const noexcept = default;
+};
+
+/// An aligned range of 1, 2, 4 or 8 values of a node's digit: a binary cell.
+struct DigitRange
+{
+    std::uint32_t first{0};
+    std::uint32_t width{0};
+};
+
+/// An 8-wide node of the AB-Tree. It stands for one octal digit of the faces' paths, at bit
+/// `shift`; all paths below it agree above that digit. A child is a node (one digit value) or a
+/// block (an aligned range of 1, 2 or 4 digit values: the binary levels are collapsed). 256 B.
+struct alignas(64) AbNode
+{
+    static constexpr std::uint32_t kNoChild = 8;
+    static constexpr std::uint32_t kSeveral = 9; ///< Answer of only_child_in(); never stored.
+
+    std::array<std::array<float, kNodeChildren>, 3> low{}; ///< Boxes of the children, row by axis.
+    std::array<std::array<float, kNodeChildren>, 3> high{};
+    std::array<TreeRef, kNodeChildren> children{};
+    std::uint64_t prefix{0}; ///< Path of any face that was below; its upper bits count.
+    std::uint32_t digit_map{0x8888'8888U}; ///< Child of each digit value, 4 bits each; 8 is none.
+    std::uint32_t parent{kNoNode};
+    std::uint32_t next_dirty{kNoNode}; ///< Refit's list of this node's level.
+    std::uint8_t shift{0};
+    std::uint8_t mask{0};   ///< Children in use.
+    std::uint8_t coarse{0}; ///< Children below which some face is not exact.
+    std::uint8_t child{0};  ///< Which child of the parent.
+    std::uint8_t in_use{0};
+
+    [[nodiscard]] std::uint32_t digit_of(std::uint64_t path) const noexcept
+    {
+        return static_cast<std::uint32_t>(path >> shift) & 7U;
+    }
+    /// Whether the path agrees with the node's above its digit.
+    [[nodiscard]] bool holds(std::uint64_t path) const noexcept
+    {
+        return (((path ^ prefix) >> shift) >> 3U) == 0;
+    }
+    [[nodiscard]] std::uint32_t child_of(std::uint32_t digit) const noexcept
+    {
+        return (digit_map >> (4 * digit)) & 15U;
+    }
+    void assign(DigitRange digits, std::uint32_t child_index) noexcept
+    {
+        for (std::uint32_t digit = digits.first; digit < digits.first + digits.width; ++digit)
+        {
+            digit_map = (digit_map & ~(15U << (4 * digit))) | (child_index << (4 * digit));
+        }
+    }
+    /// The digit values that lead to a child; it has at least one.
+    [[nodiscard]] DigitRange range_of(std::uint32_t child_index) const noexcept
+    {
+        DigitRange range;
+        for (std::uint32_t digit = kNodeChildren; digit-- > 0;)
+        {
+            if (child_of(digit) == child_index)
+            {
+                range = {digit, range.width + 1};
+            }
+        }
+        return range;
+    }
+    /// The one child that the digits lead to: kNoChild when there is none, kSeveral when more.
+    [[nodiscard]] std::uint32_t only_child_in(DigitRange digits) const noexcept
+    {
+        std::uint32_t only = kNoChild;
+        for (std::uint32_t digit = digits.first; digit < digits.first + digits.width; ++digit)
+        {
+            const std::uint32_t found = child_of(digit);
+            if (found != kNoChild && only != kNoChild && found != only)
+            {
+                return kSeveral;
+            }
+            only = found == kNoChild ? only : found;
+        }
+        return only;
+    }
+    [[nodiscard]] std::uint32_t child_count() const noexcept
+    {
+        return static_cast<std::uint32_t>(std::popcount(mask));
+    }
+    [[nodiscard]] Aabb box_of(std::uint32_t index) const noexcept
+    {
+        return {{low[0][index], low[1][index], low[2][index]},
+                {high[0][index], high[1][index], high[2][index]}};
+    }
+    void set_box(std::uint32_t index, const Aabb& box) noexcept
+    {
+        for (std::size_t axis = 0; axis < 3; ++axis)
+        {
+            low[axis][index] = box.low[axis];
+            high[axis][index] = box.high[axis];
+        }
+    }
+    void set_coarse(std::uint32_t index, bool is_coarse) noexcept
+    {
+        const std::uint32_t bit = 1U << index;
+        coarse = static_cast<std::uint8_t>(is_coarse ? coarse | bit : coarse & ~bit);
+    }
+};
+
+static_assert(sizeof(AbNode) == 256);
+
+} // namespace tactus

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/math/vec3.hpp"
+#include "rt_core/spm/ids.hpp"
+
+#include <cstdint>
+
+namespace tactus
+{
+
+/// One tool as its device reports it at the start of a frame. World frame, SI.
+struct ToolState
+{
+    Vec3 position_m{0.0, 0.0, 0.0};   ///< Centre of the tool as the hand holds it (the goal).
+    std::int64_t sample_time_ns{0};   ///< Monotonic time of the sample.
+    std::uint32_t elapsed_periods{1}; ///< Whole periods since the last frame; more after a stall.
+    bool valid{true};                 ///< False: no sample; the frame keeps the last one.
+};
+
+/// A tool's shape and what its device allows; fixed when the frame is made.
+struct ToolSpec
+{
+    double radius_m{0.0};            ///< Sphere.
+    double stiffness_n_per_m{500.0}; ///< Of the virtual wall.
+    double force_max_n{8.0};         ///< The force's norm is clamped to it.
+    double speed_max_m_per_s{1.0};   ///< Faster goals are followed at this speed in contact.
+};
+
+/// Where an object stands: world = translation + scale x rotation x model-frame point.
+struct ObjectPose
+{
+    Mat3 rotation{Mat3::Identity()};
+    Vec3 translation_m{0.0, 0.0, 0.0};
+    double scale{1.0};
+    std::int64_t stamp_ns{0};
+    std::int64_t age_ns{0};    ///< Beyond `Scene` limits the answers are called stale.
+    std::uint32_t revision{0}; ///< Of the model that the pose was made for.
+};
+
+/// Which model an object shows; fixed when the frame is made.
+struct ObjectSpec
+{
+    ModelId model{};
+};
+
+[[nodiscard]] inline Vec3 to_model(const ObjectPose& pose, const Vec3& world_m) noexcept
+{
+    const Vec3 relative = world_m - pose.translation_m;
+    return (pose.rotation.transpose() * relative) / pose.scale;
+}
+
+[[nodiscard]] inline Vec3 to_world(const ObjectPose& pose, const Vec3& model_m) noexcept
+{
+    return pose.translation_m + pose.scale * (pose.rotation * model_m);
+}
+
+/// What one frame may do at most. Inputs of the frame, chosen outside and recorded, so a replay is
+/// exact. Counts are per model and frame, but `nodes` and `triangles` per pair and traversal.
+struct Budgets
+{
+    std::uint32_t splits{64};       ///< K, at most kMaxSplitsPerFrame.
+    std::uint32_t merges{64};       ///< K, at most kMaxMergesPerFrame.
+    std::uint32_t scanned{512};     ///< S, refined records looked at for merging.
+    std::uint32_t nodes{2'048};     ///< N, tree nodes and blocks visited.
+    std::uint32_t triangles{8'192}; ///< P, triangles tested.
+    std::uint32_t pages{8};         ///< A, arrivals adopted.
+    std::uint32_t requests{32};     ///< Q, wishes sent.
+    std::uint32_t regions{8}; ///< G, index pages searched for chunks that ranked regions need.
+};
+
+/// The frame's stages, in order; times are named after them.
+enum class Stage : std::uint8_t
+{
+    load,   ///< adopt, predict, request: T_L
+    refine, ///< coarsen, refine: T_R
+    refit,  ///< T_B
+    query,  ///< T_Q
+    force,
+};
+inline constexpr std::uint32_t kStages = 5;
+
+/// Called at the end of each stage, so that the caller can take the time; the frame reads no clock.
+struct StageMark
+{
+    using Function = void (*)(void* context, Stage stage) noexcept;
+
+    Function function{nullptr};
+    void* context{nullptr};
+
+    void operator()(Stage stage) const noexcept
+    {
+        if (function != nullptr)
+        {
+            function(context, stage);
+        }
+    }
+};
+
+} // namespace tactus

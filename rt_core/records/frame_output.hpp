@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/math/vec3.hpp"
+#include "rt_core/records/local_surface.hpp"
+#include "rt_core/records/work_counters.hpp"
+
+#include <cstdint>
+#include <span>
+
+namespace tactus
+{
+
+/// What one tool got. World frame, SI.
+struct ToolOutput
+{
+    Vec3 force_n{0.0, 0.0, 0.0};
+    Vec3 proxy_m{0.0, 0.0, 0.0}; ///< Centre of the tool as the surface lets it be.
+    bool in_contact{false};
+    bool frozen{false}; ///< The proxy waits for data; the force fades.
+};
+
+/// What one pair of tool and object got. World frame, metres: the model's distances times the
+/// scale.
+struct PairOutput
+{
+    std::uint32_t tool{0};
+    std::uint32_t object{0};
+    AnswerKind kind{AnswerKind::bracket};
+    double lower_m{0.0};
+    double upper_m{0.0};
+    double certified_radius_m{0.0};
+    FaceId nearest_face{};
+    Vec3 nearest_point_m{0.0, 0.0, 0.0};
+    bool skipped{false}; ///< Answered from the last distance and the motion since.
+};
+
+/// Use of one pool now.
+struct PoolUse
+{
+    std::uint32_t used{0};
+    std::uint32_t used_max{0};
+    std::uint32_t capacity{0};
+};
+
+/// One model's state after the frame.
+struct ModelOutput
+{
+    PoolUse pages;
+    PoolUse index_pages;
+    PoolUse faces;
+    PoolUse blocks;
+    PoolUse nodes;
+    std::uint32_t refined_records{0};
+    std::uint64_t state_hash{0};
+};
+
+/// What a frame returns: spans into the frame's own memory, valid until the next run.
+struct FrameOutput
+{
+    std::span<const ToolOutput> tools;
+    std::span<const PairOutput> pairs; ///< Tool by tool, in each the objects in order.
+    std::span<const ModelOutput> models;
+    WorkCounters work;
+    FrameFault faults{FrameFault::none};
+};
+
+} // namespace tactus

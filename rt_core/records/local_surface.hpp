@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/limits.hpp"
+#include "rt_core/math/triangle.hpp"
+#include "rt_core/math/vec3.hpp"
+#include "rt_core/spm/ids.hpp"
+
+#include <array>
+#include <cstdint>
+#include <limits>
+
+namespace tactus
+{
+
+/// An exact triangle near a tool, in the model's frame. 40 B.
+struct LocalTriangle
+{
+    FaceId face{};
+    std::array<Vec3f, 3> corners_m{};
+};
+
+/// What an answer is called (docs/accuracy.md).
+enum class AnswerKind : std::uint8_t
+{
+    exact,   ///< L and U come from exact faces and differ by the kernel's error law only.
+    decided, ///< L is above the tool's reach: there is no contact, proven without refining.
+    bracket, ///< L < U and the question is open.
+    stale,   ///< Of an older revision or pose than allowed; L and U hold for that one only.
+};
+
+/// The distance from a point to a model, in the model's frame and metres.
+struct DistanceAnswer
+{
+    AnswerKind kind{AnswerKind::bracket};
+    double lower_m{0.0};                                     ///< L: no original surface is nearer.
+    double upper_m{std::numeric_limits<double>::infinity()}; ///< U: some is within this.
+    /// All original faces within this radius of the point are active and exact.
+    double certified_radius_m{0.0};
+    FaceId nearest_face{}; ///< Of the nearest exact face; none when there is none in reach.
+    Vec3 nearest_point_m{0.0, 0.0, 0.0};
+    TriangleFeature nearest_feature{TriangleFeature::interior};
+};
+
+/// Everything the force stage needs of one pair: the exact triangles in the certified ball round
+/// the proxy. In order of the traversal; the force does not depend on it.
+struct LocalSurface
+{
+    Vec3 center_m{0.0, 0.0, 0.0}; ///< The proxy, in the model's frame.
+    DistanceAnswer answer;
+    std::array<LocalTriangle, kMaxLocalTriangles> triangles{};
+    std::uint32_t count{0};
+    bool truncated{false}; ///< More triangles were in reach; the certified radius says how far.
+};
+
+} // namespace tactus

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/base/static_vector.hpp"
+#include "rt_core/limits.hpp"
+#include "rt_core/math/vec3.hpp"
+#include "rt_core/spm/ids.hpp"
+
+#include <cstdint>
+
+namespace tactus
+{
+
+/// A ball of a model that a tool may touch: now, or after `lead_ns` at its present velocity.
+/// Model frame, metres.
+struct RankedRegion
+{
+    ModelId model{};
+    Vec3 center_m{0.0, 0.0, 0.0};
+    double radius_m{0.0};
+    std::int64_t lead_ns{0};
+};
+
+/// The regions of one frame, most urgent first.
+using RegionRanking = StaticVector<RankedRegion, kMaxRankedRegions>;
+
+} // namespace tactus

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include <cstdint>
+
+namespace tactus
+{
+
+/// What a frame did, in the units of its budgets. Sums over models and pairs.
+struct WorkCounters
+{
+    std::uint32_t splits{0};
+    std::uint32_t merges{0};
+    std::uint32_t scanned{0};
+    std::uint32_t nodes_visited{0};
+    std::uint32_t triangles_tested{0};
+    std::uint32_t pages_adopted{0};
+    std::uint32_t requests{0};
+    std::uint32_t regions_searched{0};
+    std::uint32_t nodes_refitted{0};
+    std::uint32_t blocks_refitted{0};
+    std::uint32_t evictions{0};
+    std::uint32_t cache_hits{0};   ///< Wanted chunks found resident.
+    std::uint32_t cache_misses{0}; ///< Wanted chunks found absent.
+};
+
+/// What a frame had to give up. Each flag names the limit to raise.
+enum class FrameFault : std::uint32_t
+{
+    none = 0,
+    split_budget_spent = 1U << 0U, ///< Faces in reach stay coarse. Raise `Budgets::splits`.
+    forest_full = 1U << 1U,        ///< A split was refused. Give more `--pool-mib`.
+    tree_full = 1U << 2U,          ///< No block or node for a face. Give more `--pool-mib`.
+    chunk_late = 1U << 3U,         ///< A needed record isn't here. Look further ahead.
+    cache_full = 1U << 4U,         ///< All pages are in use. Give more `--cache-mib`.
+    node_budget_spent = 1U << 5U,  ///< A traversal was cut short. Raise `nodes` or `triangles`.
+    surface_truncated = 1U << 6U,  ///< More triangles in reach than kMaxLocalTriangles.
+    model_inconsistent = 1U << 7U, ///< A record contradicts the mesh: rebuild the model.
+    tool_invalid = 1U << 8U,       ///< A device sample was not usable.
+    proxy_frozen = 1U << 9U,       ///< Contact without a certified surface; the force fades.
+};
+
+[[nodiscard]] constexpr FrameFault operator|(FrameFault a, FrameFault b) noexcept
+{
+    return static_cast<FrameFault>(static_cast<std::uint32_t>(a) | static_cast<std::uint32_t>(b));
+}
+constexpr FrameFault& operator|=(FrameFault& a, FrameFault b) noexcept
+{
+    return a = a | b;
+}
+[[nodiscard]] constexpr bool has_fault(FrameFault set, FrameFault one) noexcept
+{
+    return (static_cast<std::uint32_t>(set) & static_cast<std::uint32_t>(one)) != 0;
+}
+
+} // namespace tactus
