@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "rt_core/cache/chunk_cache.hpp"
+
+#include <algorithm>
+
+namespace tactus
+{
+
+ChunkCache::ChunkCache(Arena& arena, const ModelHeader& header, PageSlots slots, PageTable& pages,
+                       ChunkInbox& inbox) noexcept
+    : header_(header)
+    , slots_(slots)
+    , pages_(&pages)
+    , inbox_(&inbox)
+    , index_slot_of_(arena, static_cast<std::uint32_t>(slots.index_pages.size()) + 1)
+    , index_meta_(arena.take<IndexMeta>(slots.index_pages.size()))
+    , chunk_wishes_(arena, static_cast<std::uint32_t>(slots.pages.size()))
+    , index_wishes_(arena, static_cast<std::uint32_t>(slots.index_pages.size()))
+{
+}
+
+void ChunkCache::adopt_arrivals(std::uint32_t budget, std::uint32_t frame,
+                                WorkCounters& work) noexcept
+{
+    ChunkInbox::Arrival arrival;
+    for (std::uint32_t i = 0; i < budget && inbox_->arrived.try_pop(arrival); ++i)
+    {
+        ++work.pages_adopted;
+        if (arrival.key.kind == ContentKind::chunk)
+        {
+            pages_->adopt({arrival.key.number}, arrival.slot, frame);
+            chunk_wishes_.arrive(arrival.key.number);
+            ++loads_;
+            continue;
+        }
+        index_meta_[arrival.slot] = {IndexPageId{arrival.key.number}, frame};
+        const bool inserted = index_slot_of_.try_insert(arrival.key.number, arrival.slot);
+        TACTUS_ASSERT(inserted);
+        index_wishes_.arrive(arrival.key.number);
+    }
+}
+
+void ChunkCache::request_missing(std::span<const RankedRegion> regions, const Budgets& budgets,
+                                 std::uint32_t frame, WorkCounters& work,
+                                 FrameFault& faults) noexcept
+{
+    frame_ = frame;
+    chunk_wishes_.expire_one(frame);
+    index_wishes_.expire_one(frame);
+    const RankedBalls balls = to_quanta(regions);
+    const std::uint32_t pages = header_.counts().index_pages();
+    std::uint32_t searched = 0;
+    // The upper level is cheap to look at: sixteen entries count as much as one page.
+    for (std::uint32_t looked = 0; looked < pages && searched < budgets.regions; ++looked)
+    {
+        if (looked / 16 >= budgets.regions)
+        {
+            break;
+        }
+        const IndexPageId page{cursor_};
+        cursor_ = cursor_ + 1 >= pages ? 0 : cursor_ + 1;
+        if (cursor_ == 0)
+        {
+            last_round_began_ = round_began_;
+            round_began_ = frame;
+        }
+        const QuantumBox box = header_.index_entry(page).box;
+        const std::array<double, 3> low{double(box.low[0]), double(box.low[1]), double(box.low[2])};
+        const std::array<double, 3> high{double(box.high[0]), double(box.high[1]),
+                                         double(box.high[2])};
+        if (meets(balls.present, low, high) || meets(balls.ahead, low, high))
+        {
+            ++searched;
+            search_page(page, balls, budgets, frame, work, faults);
+        }
+    }
+    work.regions_searched += searched;
+}
+
+ChunkCache::RankedBalls ChunkCache::to_quanta(std::span<const RankedRegion> regions) const noexcept
+{
+    const double per_metre = 1.0 / static_cast<double>(header_.quantum_m());
+    RankedBalls balls;
+    for (const RankedRegion& region : regions)
+    {
+        const Vec3 center = region.center_m * per_metre;
+        const double radius = region.radius_m * per_metre;
+        (region.lead_ns == 0 ? balls.present : balls.ahead)
+            .push_back({{center.x(), center.y(), center.z()}, radius * radius});
+    }
+    return balls;
+}
+
+bool ChunkCache::meets(const Balls& balls, const std::array<double, 3>& low,
+                       const std::array<double, 3>& high) noexcept
+{
+    for (const Ball& ball : balls)
+    {
+        double distance_sq = 0.0;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+        {
+            const double gap =
+                std::max({low[axis] - ball.center[axis], ball.center[axis] - high[axis], 0.0});
+            distance_sq += gap * gap;
+        }
+        if (distance_sq <= ball.radius_sq)
+        {
+            return true;
+        }
+    }
+    return false;
+}
+
+void ChunkCache::search_page(IndexPageId page, const RankedBalls& balls, const Budgets& budgets,
+                             std::uint32_t frame, WorkCounters& work, FrameFault& faults) noexcept
+{
+    const std::uint32_t slot = index_slot_of_.find(page.value);
+    if (slot == IdTable::kAbsent)
+    {
+        want_index_page(page, frame, work);
+        return;
+    }
+    index_meta_[slot].touched = frame;
+    const IndexPage& index = slots_.index_pages[slot];
+    const QuantumBox box = header_.index_entry(page).box;
+    std::array<double, 3> step{};
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+        step[axis] = static_cast<double>(index_step(box.low[axis], box.high[axis]));
+    }
+    for (std::uint32_t i = 0; i < index.chunks; ++i)
+    {
+        std::array<double, 3> low{};
+        std::array<double, 3> high{};
+        for (std::size_t axis = 0; axis < 3; ++axis)
+        {
+            low[axis] = static_cast<double>(box.low[axis]) +
+                        step[axis] * static_cast<double>(index.boxes[i].low[axis]);
+            high[axis] = static_cast<double>(box.low[axis]) +
+                         step[axis] * static_cast<double>(index.boxes[i].high[axis]);
+        }
+        const ChunkId chunk{(page.value << kChunksPerIndexPageLog2) + i};
+        if (meets(balls.present, low, high))
+        {
+            want_chunk(chunk, {frame, last_round_began_}, budgets, work, faults);
+        }
+        else if (meets(balls.ahead, low, high))
+        {
+            want_chunk(chunk, {frame - kAheadAge, last_round_began_ - kAheadAge}, budgets, work,
+                       faults);
+        }
+    }
+}
+
+void ChunkCache::want_chunk(ChunkId chunk, const Urgency& urgency, const Budgets& budgets,
+                            WorkCounters& work, FrameFault& faults) noexcept
+{
+    if (const std::uint32_t slot = pages_->find(chunk); slot != IdTable::kAbsent)
+    {
+        pages_->touch(slot, std::max(pages_->meta(slot).touched, urgency.touch));
+        ++work.cache_hits;
+        return;
+    }
+    if (chunk_wishes_.is_under_way(chunk.value) || work.requests >= budgets.requests)
+    {
+        return;
+    }
+    if (!chunk_wishes_.has_credit() && !try_evict_page(urgency.evict_before, work))
+    {
+        faults |= FrameFault::cache_full;
+        return;
+    }
+    if (inbox_->wanted.try_push({{ContentKind::chunk, chunk.value}, frame_}))
+    {
+        chunk_wishes_.ask(chunk.value, frame_);
+        ++work.requests;
+        ++work.cache_misses;
+    }
+}
+
+void ChunkCache::want_index_page(IndexPageId page, std::uint32_t frame, WorkCounters& work) noexcept
+{
+    if (index_wishes_.is_under_way(page.value) ||
+        (!index_wishes_.has_credit() && !try_evict_index_page()))
+    {
+        return;
+    }
+    if (inbox_->wanted.try_push({{ContentKind::index_page, page.value}, frame}))
+    {
+        index_wishes_.ask(page.value, frame);
+        ++work.requests;
+    }
+}
+
+/// Gives the least recently touched page back that is not pinned and was last touched before the
+/// frame given. One look at each page.
+bool ChunkCache::try_evict_page(std::uint32_t touched_before, WorkCounters& work) noexcept
+{
+    std::uint32_t oldest = pages_->capacity();
+    for (std::uint32_t slot = 0; slot < pages_->capacity(); ++slot)
+    {
+        const PageTable::Meta& meta = pages_->meta(slot);
+        if (!meta.chunk.is_none() && meta.refined == 0 && meta.touched < touched_before &&
+            (oldest == pages_->capacity() || meta.touched < pages_->meta(oldest).touched))
+        {
+            oldest = slot;
+        }
+    }
+    if (oldest == pages_->capacity())
+    {
+        return false;
+    }
+    pages_->evict(oldest);
+    const bool freed = inbox_->freed.try_push({ContentKind::chunk, oldest});
+    TACTUS_ASSERT(freed);
+    chunk_wishes_.give_back_slot();
+    ++work.evictions;
+    ++evictions_;
+    return true;
+}
+
+bool ChunkCache::try_evict_index_page() noexcept
+{
+    std::uint32_t oldest = static_cast<std::uint32_t>(index_meta_.size());
+    for (std::uint32_t slot = 0; slot < index_meta_.size(); ++slot)
+    {
+        const IndexMeta& meta = index_meta_[slot];
+        if (!meta.page.is_none() && meta.touched < last_round_began_ &&
+            (oldest == index_meta_.size() || meta.touched < index_meta_[oldest].touched))
+        {
+            oldest = slot;
+        }
+    }
+    if (oldest == index_meta_.size())
+    {
+        return false;
+    }
+    index_slot_of_.erase(index_meta_[oldest].page.value);
+    index_meta_[oldest] = IndexMeta{};
+    const bool freed = inbox_->freed.try_push({ContentKind::index_page, oldest});
+    TACTUS_ASSERT(freed);
+    index_wishes_.give_back_slot();
+    return true;
+}
+
+} // namespace tactus

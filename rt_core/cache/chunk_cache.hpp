@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/cache/chunk_inbox.hpp"
+#include "rt_core/cache/wish_list.hpp"
+#include "rt_core/records/frame_input.hpp"
+#include "rt_core/records/region_ranking.hpp"
+#include "rt_core/records/work_counters.hpp"
+#include "rt_core/spm/page_table.hpp"
+
+#include <cstdint>
+#include <span>
+
+namespace tactus
+{
+
+/// Which of a model's chunks and index pages are here, and what to ask for.
+///
+/// Every frame it searches some index pages, round and round, for chunks whose influence box meets
+/// a ranked ball. Such a chunk is touched when it is here and asked for when it isn't. A page goes
+/// back when its slot is needed, no record of it is refined, and it was not touched in the last
+/// two rounds, the least recently touched first. What a present ball needs counts as touched
+/// kAheadAge frames after what only a predicted one does: prefetching never evicts what is of
+/// use, while present need may take the place of what was prefetched.
+///
+/// Haptic thread; the other end of the inbox is the courier.
+class ChunkCache
+{
+public:
+    ChunkCache(Arena& arena, const ModelHeader& header, PageSlots slots, PageTable& pages,
+               ChunkInbox& inbox) noexcept;
+
+    /// Takes over what arrived, at most `budget` slots.
+    void adopt_arrivals(std::uint32_t budget, std::uint32_t frame, WorkCounters& work) noexcept;
+
+    /// Asks for what `regions` (of this model, most urgent first) lack.
+    void request_missing(std::span<const RankedRegion> regions, const Budgets& budgets,
+                         std::uint32_t frame, WorkCounters& work, FrameFault& faults) noexcept;
+
+    /// Frame numbers start here, so that ages can be subtracted.
+    static constexpr std::uint32_t kFirstFrame = 4'096;
+
+    [[nodiscard]] std::uint64_t loads() const noexcept { return loads_; }
+    [[nodiscard]] std::uint64_t evictions() const noexcept { return evictions_; }
+    [[nodiscard]] std::uint32_t index_pages_used() const noexcept { return index_slot_of_.size(); }
+
+private:
+    struct IndexMeta
+    {
+        IndexPageId page{};
+        std::uint32_t touched{0};
+    };
+    /// A ball in quanta, so that it compares with boxes.
+    struct Ball
+    {
+        std::array<double, 3> center{};
+        double radius_sq{0.0};
+    };
+    using Balls = StaticVector<Ball, kMaxRankedRegions>;
+    struct RankedBalls
+    {
+        Balls present;
+        Balls ahead; ///< Where the proxy may be after a lead time.
+    };
+    /// How a chunk is wanted: what counts as its last use, and whose place it may take.
+    struct Urgency
+    {
+        std::uint32_t touch{0};
+        std::uint32_t evict_before{0};
+    };
+
+    [[nodiscard]] RankedBalls to_quanta(std::span<const RankedRegion> regions) const noexcept;
+    [[nodiscard]] static bool meets(const Balls& balls, const std::array<double, 3>& low,
+                                    const std::array<double, 3>& high) noexcept;
+    void search_page(IndexPageId page, const RankedBalls& balls, const Budgets& budgets,
+                     std::uint32_t frame, WorkCounters& work, FrameFault& faults) noexcept;
+    void want_chunk(ChunkId chunk, const Urgency& urgency, const Budgets& budgets,
+                    WorkCounters& work, FrameFault& faults) noexcept;
+    void want_index_page(IndexPageId page, std::uint32_t frame, WorkCounters& work) noexcept;
+    [[nodiscard]] bool try_evict_page(std::uint32_t touched_before, WorkCounters& work) noexcept;
+    [[nodiscard]] bool try_evict_index_page() noexcept;
+
+    static constexpr std::uint32_t kAheadAge = 1'024;
+
+    ModelHeader header_;
+    PageSlots slots_;
+    PageTable* pages_;
+    ChunkInbox* inbox_;
+    IdTable index_slot_of_;
+    std::span<IndexMeta> index_meta_;
+    WishList chunk_wishes_;
+    WishList index_wishes_;
+    std::uint32_t cursor_{0}; ///< Next index page to look at.
+    std::uint32_t frame_{kFirstFrame};
+    std::uint32_t round_began_{kFirstFrame};      ///< Frame in which the cursor last passed zero,
+    std::uint32_t last_round_began_{kFirstFrame}; ///< and the time before.
+    std::uint64_t loads_{0};
+    std::uint64_t evictions_{0};
+};
+
+} // namespace tactus

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/base/arena.hpp"
+#include "rt_core/base/id_table.hpp"
+#include "rt_core/limits.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+
+namespace tactus
+{
+
+/// Book-keeping of wishes for one kind of slot: how many slots the transport thread has free, and
+/// which pieces are under way. Never more pieces are asked for than it has slots.
+class WishList
+{
+public:
+    /// The transport thread has all `slots` at first.
+    WishList(Arena& arena, std::uint32_t slots) noexcept
+        : under_way_(arena, slots)
+        , asked_(arena.take<std::uint32_t>(slots))
+        , numbers_(arena.take<std::uint32_t>(slots))
+        , slots_at_transport_(slots)
+    {
+        if (!arena.is_measuring())
+        {
+            std::fill(numbers_.begin(), numbers_.end(), IdTable::kAbsent);
+        }
+    }
+
+    [[nodiscard]] bool is_under_way(std::uint32_t number) const noexcept
+    {
+        return under_way_.find(number) != IdTable::kAbsent;
+    }
+    /// Whether one more piece may be asked for.
+    [[nodiscard]] bool has_credit() const noexcept
+    {
+        return under_way_.size() < slots_at_transport_;
+    }
+    void ask(std::uint32_t number, std::uint32_t frame) noexcept
+    {
+        // One place of the ring is free: fewer are under way than there are slots.
+        while (numbers_[cursor_] != IdTable::kAbsent)
+        {
+            advance_cursor();
+        }
+        numbers_[cursor_] = number;
+        asked_[cursor_] = frame;
+        const bool inserted = under_way_.try_insert(number, cursor_);
+        TACTUS_ASSERT(inserted);
+    }
+    /// The piece has come, in a slot that is no longer the transport thread's.
+    void arrive(std::uint32_t number) noexcept
+    {
+        forget(number);
+        TACTUS_ASSERT(slots_at_transport_ > 0);
+        --slots_at_transport_;
+    }
+    void give_back_slot() noexcept { ++slots_at_transport_; }
+
+    /// Forgets one wish that went unanswered for too long, so that it may be asked again. Looks at
+    /// one wish a call.
+    void expire_one(std::uint32_t frame) noexcept
+    {
+        advance_cursor();
+        const std::uint32_t number = numbers_[cursor_];
+        if (number != IdTable::kAbsent && frame - asked_[cursor_] > kWishTimeoutFrames)
+        {
+            forget(number);
+        }
+    }
+
+private:
+    void forget(std::uint32_t number) noexcept
+    {
+        const std::uint32_t place = under_way_.find(number);
+        if (place != IdTable::kAbsent)
+        {
+            numbers_[place] = IdTable::kAbsent;
+            under_way_.erase(number);
+        }
+    }
+    void advance_cursor() noexcept { cursor_ = cursor_ + 1 == numbers_.size() ? 0 : cursor_ + 1; }
+
+    IdTable under_way_;
+    std::span<std::uint32_t> asked_;
+    std::span<std::uint32_t> numbers_;
+    std::uint32_t slots_at_transport_;
+    std::uint32_t cursor_{0};
+};
+
+} // namespace tactus

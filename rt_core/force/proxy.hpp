@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/records/frame_input.hpp"
+#include "rt_core/records/frame_output.hpp"
+#include "rt_core/records/local_surface.hpp"
+
+#include <cstdint>
+#include <span>
+
+namespace tactus
+{
+
+/// One object's surface near a tool, as the force stage sees it.
+struct PlacedSurface
+{
+    const ObjectPose* pose{nullptr};
+    const LocalSurface* surface{nullptr};
+};
+
+/// The virtual proxy of one spherical tool (Ruspini et al. 1997; god-object: Zilles and Salisbury
+/// 1995), with one constraint at a time.
+///
+/// The proxy is the tool's centre as the surface lets it be. It stays at least the radius away from
+/// every triangle. Each of its steps is shorter than its distance to the nearest triangle, so the
+/// path of the centre can't cross the surface. It moves only where the surfaces are certified:
+/// within (certified radius - tool radius), or (L - tool radius), of where they were
+/// queried. The device's force is stiffness x (proxy - goal), clamped; never a penalty on a coarse
+/// distance.
+///
+/// Without a certified surface the proxy is frozen: the force along the last normal never pulls
+/// and fades to zero within kFadeTime_s.
+///
+/// Haptic thread. Cost: at most kProxySteps x 5 distance tests over the local triangles.
+class Proxy
+{
+public:
+    Proxy() noexcept = default;
+    explicit Proxy(const ToolSpec& spec) noexcept : spec_(spec) {}
+
+    /// Where the proxy is; before the first frame the first goal.
+    [[nodiscard]] const Vec3& position_m() const noexcept { return position_; }
+    void start_at(const Vec3& position_m) noexcept { position_ = position_m; }
+
+    /// Moves towards `goal_m` and returns the force. `surfaces` were queried at position_m().
+    [[nodiscard]] ToolOutput respond(const Vec3& goal_m, std::span<const PlacedSurface> surfaces,
+                                     double elapsed_s) noexcept;
+
+private:
+    struct Nearest
+    {
+        double distance{0.0};
+        Vec3 normal{0.0, 0.0, 0.0}; ///< From the surface to the point.
+    };
+
+    [[nodiscard]] double free_travel(std::span<const PlacedSurface> surfaces) const noexcept;
+    [[nodiscard]] Nearest nearest(const Vec3& point,
+                                  std::span<const PlacedSurface> surfaces) const noexcept;
+    void follow(const Vec3& goal, double travel, std::span<const PlacedSurface> surfaces) noexcept;
+    [[nodiscard]] bool try_slide(const Vec3& step, double clearance, const Vec3& goal,
+                                 std::span<const PlacedSurface> surfaces) noexcept;
+    [[nodiscard]] Vec3 force_towards(const Vec3& goal) const noexcept;
+    [[nodiscard]] Vec3 fading_force(const Vec3& goal) const noexcept;
+    [[nodiscard]] Vec3 clamped(const Vec3& force) const noexcept;
+
+    ToolSpec spec_;
+    Vec3 position_{0.0, 0.0, 0.0};
+    Vec3 anchor_{0.0, 0.0, 0.0}; ///< Where this frame's surfaces were queried.
+    Vec3 normal_{0.0, 0.0, 0.0}; ///< Of the last contact.
+    double frozen_s_{0.0};
+    bool in_contact_{false};
+    bool held_back_{false}; ///< The certified ball ended the motion, not the surface.
+};
+
+} // namespace tactus

@@ -1,0 +1,359 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "rt_core/frame/frame.hpp"
+
+#include "rt_core/query/surface_query.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace tactus
+{
+
+namespace
+{
+
+/// The ball is wider than the proxy's possible motion by this share of the tool's radius, so that
+/// a front that lags by a frame or two still holds what the proxy needs.
+constexpr double kReachMargin = 0.1;
+
+bool is_usable(const Vec3& point) noexcept
+{
+    // Comparisons are false for NaN; the limit is far beyond any device and any model.
+    return std::abs(point.x()) < 1e6 && std::abs(point.y()) < 1e6 && std::abs(point.z()) < 1e6;
+}
+
+} // namespace
+
+const char* refusal_text(FrameRefusal refusal) noexcept
+{
+    switch (refusal)
+    {
+    case FrameRefusal::too_many:
+        return "there are too many tools, objects or models, or none";
+    case FrameRefusal::unknown_model:
+        return "an object names a model that is not loaded";
+    case FrameRefusal::header_refused:
+        return "a model's header is damaged";
+    case FrameRefusal::base_refused:
+        return "a model's base mesh is damaged";
+    case FrameRefusal::memory_too_small:
+        return "the pools are too small for the models";
+    }
+    return "the frame can't be made";
+}
+
+Result<Done, FrameRefusal> Frame::start(std::optional<Frame>& frame, Arena& arena,
+                                        const FrameSetup& setup) noexcept
+{
+    if (const std::optional<FrameRefusal> refusal = check(setup))
+    {
+        return *refusal;
+    }
+    if (!arena.is_measuring() && arena.left() < required_bytes(setup))
+    {
+        return FrameRefusal::memory_too_small;
+    }
+    frame.emplace(PassKey{}, arena, setup);
+    if (frame->model_count_ != setup.models.size())
+    {
+        frame.reset();
+        return FrameRefusal::base_refused;
+    }
+    return Done{};
+}
+
+std::size_t Frame::required_bytes(const FrameSetup& setup) noexcept
+{
+    Arena arena = Arena::measuring();
+    const Frame measured(PassKey{}, arena, setup);
+    return arena.used();
+}
+
+std::optional<FrameRefusal> Frame::check(const FrameSetup& setup) noexcept
+{
+    if (setup.tools.empty() || setup.tools.size() > kMaxTools || setup.objects.empty() ||
+        setup.objects.size() > kMaxObjects || setup.models.empty() ||
+        setup.models.size() > kMaxModels)
+    {
+        return FrameRefusal::too_many;
+    }
+    for (const ObjectSpec& object : setup.objects)
+    {
+        if (object.model.value >= setup.models.size())
+        {
+            return FrameRefusal::unknown_model;
+        }
+    }
+    for (const ModelSource& source : setup.models)
+    {
+        if (!ModelHeader::parse(source.header))
+        {
+            return FrameRefusal::header_refused;
+        }
+    }
+    return std::nullopt;
+}
+
+Frame::Frame(PassKey /*key*/, Arena& arena, const FrameSetup& setup) noexcept
+    : scene_(setup.tools, setup.objects)
+    , period_ns_(setup.period_ns)
+    , pose_age_max_ns_(setup.pose_age_max_ns)
+    , surfaces_(arena.take<LocalSurface>(scene_.pairs().size() + 1))
+{
+    for (const ToolSpec& tool : setup.tools)
+    {
+        proxies_.push_back(Proxy(tool));
+    }
+    goals_.fill(Vec3(0.0, 0.0, 0.0));
+    for (const ModelSource& source : setup.models)
+    {
+        const std::span<std::byte> header_bytes = arena.take<std::byte>(source.header.size());
+        std::span<const std::byte> kept = source.header;
+        if (!arena.is_measuring())
+        {
+            std::memcpy(header_bytes.data(), source.header.data(), source.header.size());
+            kept = header_bytes;
+        }
+        const ModelHeader header = ModelHeader::parse(kept).value();
+        const PageSlots slots = PageSlots::take(arena, header.counts(), source.capacities.pages,
+                                                source.capacities.index_pages);
+        if (!arena.is_measuring() && !parse_base_mesh(source.base, header, slots.base))
+        {
+            return; // start() sees that a model is missing.
+        }
+        models_[model_count_].emplace(arena, header, slots, source.capacities);
+        ++model_count_;
+    }
+    if (!arena.is_measuring())
+    {
+        for (std::uint32_t i = 0; i < model_count_; ++i)
+        {
+            models_[i]->refit(work_, faults_); // The base mesh enters the tree.
+        }
+    }
+}
+
+FrameOutput Frame::run(std::span<const ToolState> tools, std::span<const ObjectPose> poses,
+                       const Budgets& budgets, StageMark mark) noexcept
+{
+    TACTUS_ASSERT(tools.size() == scene_.tools().size());
+    TACTUS_ASSERT(poses.size() == scene_.objects().size());
+    ++frame_;
+    work_ = WorkCounters{};
+    faults_ = FrameFault::none;
+    last_budgets_ = budgets;
+    read_tools(tools);
+    place_pairs(poses);
+    load(budgets);
+    mark(Stage::load);
+    refine(budgets);
+    mark(Stage::refine);
+    for (std::uint32_t i = 0; i < model_count_; ++i)
+    {
+        models_[i]->refit(work_, faults_);
+    }
+    mark(Stage::refit);
+    query(poses, budgets);
+    mark(Stage::query);
+    respond(poses);
+    report(poses);
+    mark(Stage::force);
+    return finish();
+}
+
+void Frame::rehearse() noexcept
+{
+    for (const ScenePair& pair : scene_.pairs())
+    {
+        if (pair.has_known && !pair.is_asleep)
+        {
+            WalkBudget budget{last_budgets_.nodes, last_budgets_.triangles};
+            gather_surface(models_[model_of(pair).value]->tree, pair.center_m, pair.reach_m, budget,
+                           surfaces_.back());
+        }
+    }
+}
+
+void Frame::read_tools(std::span<const ToolState> tools) noexcept
+{
+    for (std::size_t i = 0; i < tools.size(); ++i)
+    {
+        elapsed_s_[i] = static_cast<double>(period_ns_) * 1e-9 *
+                        static_cast<double>(std::max(tools[i].elapsed_periods, 1U));
+        if (!tools[i].valid || !is_usable(tools[i].position_m))
+        {
+            faults_ |= FrameFault::tool_invalid;
+            continue;
+        }
+        goals_[i] = tools[i].position_m;
+        if (!has_started_)
+        {
+            proxies_[i].start_at(goals_[i]);
+        }
+    }
+    has_started_ = true;
+}
+
+/// How far round its proxy a tool asks for exact faces: its radius, and as far as it may move.
+double Frame::reach_of(std::uint32_t tool) const noexcept
+{
+    const ToolSpec& spec = scene_.tools()[tool];
+    const double way = (goals_[tool] - proxies_[tool].position_m()).norm();
+    const double most = spec.speed_max_m_per_s * elapsed_s_[tool];
+    return spec.radius_m * (1.0 + kReachMargin) + std::min(way, most);
+}
+
+ModelId Frame::model_of(const ScenePair& pair) const noexcept
+{
+    return scene_.objects()[pair.object].model;
+}
+
+void Frame::place_pairs(std::span<const ObjectPose> poses) noexcept
+{
+    for (ScenePair& pair : scene_.pairs())
+    {
+        Scene::place(pair, poses[pair.object], proxies_[pair.tool].position_m(),
+                     reach_of(pair.tool));
+    }
+}
+
+void Frame::load(const Budgets& budgets) noexcept
+{
+    RegionRanking ranking;
+    for (std::uint32_t i = 0; i < scene_.pairs().size(); ++i)
+    {
+        const ScenePair& pair = scene_.pairs()[i];
+        predictors_[i].observe(pair.center_m, elapsed_s_[pair.tool]);
+        predictors_[i].rank(model_of(pair), Scene::kKeepFactor * pair.reach_m, ranking);
+    }
+    for (std::uint32_t i = 0; i < model_count_; ++i)
+    {
+        Model& model = *models_[i];
+        model.cache.adopt_arrivals(budgets.pages, frame_, work_);
+        model.pages_used_max = std::max(model.pages_used_max, model.pages.used());
+        RegionRanking regions;
+        for (const RankedRegion& region : ranking)
+        {
+            if (region.model.value == i)
+            {
+                regions.push_back(region);
+            }
+        }
+        model.cache.request_missing(regions.view(), budgets, frame_, work_, faults_);
+    }
+}
+
+void Frame::refine(const Budgets& budgets) noexcept
+{
+    std::array<StaticVector<RefineQuestion, kMaxPairs>, kMaxModels> questions;
+    for (const ScenePair& pair : scene_.pairs())
+    {
+        if (!pair.is_asleep)
+        {
+            questions[model_of(pair).value].push_back(
+                {pair.center_m, pair.reach_m, Scene::kKeepFactor * pair.reach_m});
+        }
+    }
+    for (std::uint32_t i = 0; i < model_count_; ++i)
+    {
+        models_[i]->refiner.coarsen(questions[i].view(), budgets, work_);
+    }
+    for (std::uint32_t i = 0; i < model_count_; ++i)
+    {
+        models_[i]->refiner.refine(questions[i].view(), budgets, frame_, work_, faults_);
+    }
+}
+
+void Frame::query(std::span<const ObjectPose> poses, const Budgets& budgets) noexcept
+{
+    for (std::uint32_t i = 0; i < scene_.pairs().size(); ++i)
+    {
+        ScenePair& pair = scene_.pairs()[i];
+        LocalSurface& surface = surfaces_[i];
+        if (pair.is_asleep)
+        {
+            surface.answer = Scene::from_motion(pair);
+            surface.count = 0;
+        }
+        else
+        {
+            WalkBudget budget{budgets.nodes, budgets.triangles};
+            gather_surface(models_[model_of(pair).value]->tree, pair.center_m, pair.reach_m, budget,
+                           surface);
+            work_.nodes_visited += budget.nodes_visited;
+            work_.triangles_tested += budget.triangles_tested;
+            faults_ |= surface.truncated ? FrameFault::surface_truncated : FrameFault::none;
+            Scene::remember(pair, surface.answer);
+        }
+        const ObjectPose& pose = poses[pair.object];
+        const std::uint32_t revision = models_[model_of(pair).value]->header.fields().revision;
+        if (pose.age_ns > pose_age_max_ns_ || pose.revision != revision)
+        {
+            surface.answer.kind = AnswerKind::stale;
+        }
+    }
+}
+
+void Frame::respond(std::span<const ObjectPose> poses) noexcept
+{
+    for (std::uint32_t tool = 0; tool < proxies_.size(); ++tool)
+    {
+        StaticVector<PlacedSurface, kMaxObjects> placed;
+        for (std::uint32_t i = 0; i < scene_.pairs().size(); ++i)
+        {
+            const ScenePair& pair = scene_.pairs()[i];
+            if (pair.tool == tool)
+            {
+                placed.push_back({&poses[pair.object], &surfaces_[i]});
+            }
+        }
+        tool_outputs_[tool] = proxies_[tool].respond(goals_[tool], placed.view(), elapsed_s_[tool]);
+        faults_ |= tool_outputs_[tool].frozen ? FrameFault::proxy_frozen : FrameFault::none;
+    }
+}
+
+void Frame::report(std::span<const ObjectPose> poses) noexcept
+{
+    for (std::uint32_t i = 0; i < scene_.pairs().size(); ++i)
+    {
+        const ScenePair& pair = scene_.pairs()[i];
+        const DistanceAnswer& answer = surfaces_[i].answer;
+        const ObjectPose& pose = poses[pair.object];
+        pair_outputs_[i] = {pair.tool,
+                            pair.object,
+                            answer.kind,
+                            answer.lower_m * pose.scale,
+                            answer.upper_m * pose.scale,
+                            answer.certified_radius_m * pose.scale,
+                            answer.nearest_face,
+                            to_world(pose, answer.nearest_point_m),
+                            pair.is_asleep};
+    }
+    for (std::uint32_t i = 0; i < model_count_; ++i)
+    {
+        const Model& model = *models_[i];
+        const AbTree::Capacities& tree = model.tree.capacities();
+        const std::uint32_t index_pages = model.cache.index_pages_used();
+        model_outputs_[i] = {
+            {model.pages.used(), model.pages_used_max, model.pages.capacity()},
+            {index_pages, index_pages, model.capacities.index_pages},
+            {model.forest.active_faces(), model.forest.active_faces_max(), model.forest.capacity()},
+            {model.tree.blocks_used(), model.tree.blocks_used_max(), tree.blocks},
+            {model.tree.nodes_used(), model.tree.nodes_used_max(), tree.nodes},
+            model.forest.refined_records(),
+            model.forest.state_hash()};
+    }
+}
+
+FrameOutput Frame::finish() const noexcept
+{
+    return {{tool_outputs_.data(), proxies_.size()},
+            {pair_outputs_.data(), scene_.tools().size() * scene_.objects().size()},
+            {model_outputs_.data(), model_count_},
+            work_,
+            faults_};
+}
+
+} // namespace tactus

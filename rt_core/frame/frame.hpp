@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/base/result.hpp"
+#include "rt_core/force/proxy.hpp"
+#include "rt_core/frame/model.hpp"
+#include "rt_core/predict/region_predictor.hpp"
+#include "rt_core/records/frame_input.hpp"
+#include "rt_core/records/frame_output.hpp"
+#include "rt_core/scene/scene.hpp"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+namespace tactus
+{
+
+/// One model as it comes through the door: bytes of its header and base mesh, and its pool sizes.
+struct ModelSource
+{
+    std::span<const std::byte> header; ///< Copied.
+    std::span<const std::byte> base;   ///< Read once.
+    ModelCapacities capacities;
+};
+
+/// What a frame is made of. `models[object.model]` must exist for every object.
+struct FrameSetup
+{
+    std::span<const ModelSource> models;
+    std::span<const ObjectSpec> objects;
+    std::span<const ToolSpec> tools;
+    std::int64_t period_ns{1'000'000};
+    std::int64_t pose_age_max_ns{100'000'000}; ///< Older poses make answers stale.
+};
+
+/// Why there is no frame.
+enum class FrameRefusal : std::uint8_t
+{
+    too_many,         ///< More tools, objects or models than limits.hpp allows, or none.
+    unknown_model,    ///< An object names a model that isn't there.
+    header_refused,   ///< A model's header did not pass its checks.
+    base_refused,     ///< A model's base mesh did not pass its checks.
+    memory_too_small, ///< The lent memory is less than required_bytes().
+};
+
+[[nodiscard]] const char* refusal_text(FrameRefusal refusal) noexcept;
+
+/// The controller's frame: all stages in order, every period, on the haptic thread.
+///
+/// Takes all its memory from the arena at start. `run` makes no allocation, lock, system call,
+/// log or exception, reads no clock, and every loop in it is bounded by the budgets and by
+/// limits.hpp. The same inputs, arrivals included, give the same bits.
+class Frame
+{
+public:
+    /// Reads headers and base meshes and lays out all pools. Not on the haptic thread.
+    [[nodiscard]] static Result<Done, FrameRefusal> start(std::optional<Frame>& frame, Arena& arena,
+                                                          const FrameSetup& setup) noexcept;
+    /// Bytes that start() takes from the arena for headers that parse.
+    [[nodiscard]] static std::size_t required_bytes(const FrameSetup& setup) noexcept;
+
+    Frame(const Frame&) = delete;
+    Frame& operator=(const Frame&) = delete;
+
+    /// One period: `tools` and `poses` as many as at start. The output is valid until the next run.
+    [[nodiscard]] FrameOutput run(std::span<const ToolState> tools,
+                                  std::span<const ObjectPose> poses, const Budgets& budgets,
+                                  StageMark mark) noexcept;
+
+    /// Runs last frame's queries again, into scratch memory, with the same machine code: called in
+    /// the wait before the deadline it brings code and data back into the caches. No effect on any
+    /// result.
+    void rehearse() noexcept;
+
+    /// The transport thread's parts of a model: its inbox, linker and slots.
+    [[nodiscard]] Model& model(ModelId id) noexcept { return *models_[id.value]; }
+    [[nodiscard]] std::uint32_t model_count() const noexcept { return model_count_; }
+
+    struct PassKey
+    {
+    private:
+        friend class Frame;
+        PassKey() = default;
+    };
+    Frame(PassKey key, Arena& arena, const FrameSetup& setup) noexcept;
+
+private:
+    [[nodiscard]] static std::optional<FrameRefusal> check(const FrameSetup& setup) noexcept;
+
+    void read_tools(std::span<const ToolState> tools) noexcept;
+    void place_pairs(std::span<const ObjectPose> poses) noexcept;
+    void load(const Budgets& budgets) noexcept;
+    void refine(const Budgets& budgets) noexcept;
+    void query(std::span<const ObjectPose> poses, const Budgets& budgets) noexcept;
+    void respond(std::span<const ObjectPose> poses) noexcept;
+    void report(std::span<const ObjectPose> poses) noexcept;
+    [[nodiscard]] double reach_of(std::uint32_t tool) const noexcept;
+    [[nodiscard]] ModelId model_of(const ScenePair& pair) const noexcept;
+    [[nodiscard]] FrameOutput finish() const noexcept;
+
+    Scene scene_;
+    std::int64_t period_ns_;
+    std::int64_t pose_age_max_ns_;
+    std::array<std::optional<Model>, kMaxModels> models_;
+    std::uint32_t model_count_{0};
+    std::uint32_t frame_{ChunkCache::kFirstFrame};
+
+    StaticVector<Proxy, kMaxTools> proxies_;
+    std::array<Vec3, kMaxTools> goals_{};
+    std::array<double, kMaxTools> elapsed_s_{};
+    bool has_started_{false};
+    std::array<RegionPredictor, kMaxPairs> predictors_{};
+    std::span<LocalSurface> surfaces_; ///< One a pair, and one for the rehearsal.
+    Budgets last_budgets_;
+
+    std::array<ToolOutput, kMaxTools> tool_outputs_{};
+    std::array<PairOutput, kMaxPairs> pair_outputs_{};
+    std::array<ModelOutput, kMaxModels> model_outputs_{};
+    WorkCounters work_;
+    FrameFault faults_{FrameFault::none};
+};
+
+} // namespace tactus

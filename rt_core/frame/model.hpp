@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/abtree/ab_tree.hpp"
+#include "rt_core/base/arena.hpp"
+#include "rt_core/base/result.hpp"
+#include "rt_core/cache/chunk_cache.hpp"
+#include "rt_core/cache/chunk_inbox.hpp"
+#include "rt_core/forest/vertex_forest.hpp"
+#include "rt_core/refine/refiner.hpp"
+#include "rt_core/spm/linker.hpp"
+#include "rt_core/spm/page_table.hpp"
+
+#include <cstdint>
+#include <span>
+
+namespace tactus
+{
+
+/// How much of each pool one model gets.
+struct ModelCapacities
+{
+    std::uint32_t pages{0};       ///< Of 64 records, 8 KiB and some tables each.
+    std::uint32_t index_pages{0}; ///< Of 64 influence boxes.
+    std::uint32_t faces{0};       ///< Active faces.
+    std::uint32_t blocks{0};      ///< Leaves of the AB-Tree.
+    std::uint32_t nodes{0};       ///< Inner nodes of the AB-Tree.
+};
+
+/// Bytes that a model of these capacities takes from the arena, tables and inbox included.
+[[nodiscard]] std::size_t required_bytes(const ModelHeader& header,
+                                         const ModelCapacities& capacities) noexcept;
+
+/// The capacities that fit into `bytes`: `cache_bytes` of them for pages (0: the usual share), the
+/// rest for active faces and the tree. No more than the whole model needs. With less than the base
+/// mesh and a few pages need, `pages` is 0 and nothing else counts.
+[[nodiscard]] ModelCapacities plan_capacities(const ModelHeader& header, std::size_t bytes,
+                                              std::size_t cache_bytes) noexcept;
+
+/// One model's forest, tree, cache and front, in the model's frame, refined for the union of what
+/// its objects' tools need. Everything is the haptic thread's but `linker` (the transport
+/// thread's) and `inbox` (between both). Does not move: its parts point at one another.
+struct Model
+{
+    /// `header` views bytes that outlive the model; `base` was parsed for it into `slots`.
+    Model(Arena& arena, const ModelHeader& model_header, PageSlots model_slots,
+          const ModelCapacities& model_capacities) noexcept;
+    Model(const Model&) = delete;
+    Model& operator=(const Model&) = delete;
+
+    /// Hands this frame's changes, and faces that found no place before, to the tree and refits it.
+    void refit(WorkCounters& work, FrameFault& faults) noexcept;
+
+    ModelHeader header;
+    ModelCapacities capacities;
+    PageSlots slots;
+    ChunkInbox inbox;
+    Linker linker;
+    PageTable pages;
+    ChunkCache cache;
+    VertexForest forest;
+    AbTree tree;
+    Refiner refiner;
+    std::uint32_t pages_used_max{0};
+};
+
+} // namespace tactus

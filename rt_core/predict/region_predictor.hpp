@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/records/region_ranking.hpp"
+
+#include <array>
+#include <cstdint>
+
+namespace tactus
+{
+
+/// Contact-region prediction by linear extrapolation: where will this pair's proxy be after the
+/// time that loading takes? One instance per pair of tool and object; haptic thread.
+class RegionPredictor
+{
+public:
+    /// The proxy's place in the model's frame in this frame, `elapsed_s` > 0 after the one before.
+    void observe(const Vec3& center_m, double elapsed_s) noexcept;
+
+    /// Adds this pair's balls to the ranking: the present one with `radius_m`, then one for each
+    /// lead time, widened by a tenth of the way there (the velocity is an estimate).
+    void rank(ModelId model, double radius_m, RegionRanking& ranking) const noexcept;
+
+    [[nodiscard]] const Vec3& velocity_m_per_s() const noexcept { return velocity_; }
+
+    /// Lead times: one round trip with a chunk on a local network, and a slower one.
+    static constexpr std::array<std::int64_t, 2> kLeads_ns{15'000'000, 40'000'000};
+
+private:
+    /// Time constant of the velocity's smoothing: slower than hand tremor, faster than a turn.
+    static constexpr double kSmoothing_s = 0.01;
+
+    Vec3 center_{0.0, 0.0, 0.0};
+    Vec3 velocity_{0.0, 0.0, 0.0};
+    bool has_center_{false};
+};
+
+} // namespace tactus

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "rt_core/scene/scene.hpp"
+
+#include <algorithm>
+
+namespace tactus
+{
+
+Scene::Scene(std::span<const ToolSpec> tools, std::span<const ObjectSpec> objects) noexcept
+{
+    for (const ToolSpec& tool : tools)
+    {
+        tools_.push_back(tool);
+    }
+    for (const ObjectSpec& object : objects)
+    {
+        objects_.push_back(object);
+    }
+    for (std::uint32_t tool = 0; tool < tools_.size(); ++tool)
+    {
+        for (std::uint32_t object = 0; object < objects_.size(); ++object)
+        {
+            ScenePair pair;
+            pair.tool = tool;
+            pair.object = object;
+            pairs_.push_back(pair);
+        }
+    }
+}
+
+void Scene::place(ScenePair& pair, const ObjectPose& pose, const Vec3& proxy_world_m,
+                  double reach_world_m) noexcept
+{
+    pair.center_m = to_model(pose, proxy_world_m);
+    pair.reach_m = reach_world_m / pose.scale;
+    pair.is_asleep =
+        pair.has_known && pair.known.lower_m - pair.motion_m() > kKeepFactor * pair.reach_m;
+}
+
+void Scene::remember(ScenePair& pair, const DistanceAnswer& answer) noexcept
+{
+    pair.known = answer;
+    pair.known_center_m = pair.center_m;
+    pair.has_known = true;
+}
+
+DistanceAnswer Scene::from_motion(const ScenePair& pair) noexcept
+{
+    // The motion's own rounding: a few units in the last place of coordinates near the model.
+    const double motion = pair.motion_m() * (1.0 + 1e-12);
+    DistanceAnswer answer;
+    answer.lower_m = std::max(0.0, pair.known.lower_m - motion);
+    answer.upper_m = pair.known.upper_m + motion;
+    answer.kind = answer.lower_m > pair.reach_m ? AnswerKind::decided : AnswerKind::bracket;
+    answer.certified_radius_m = 0.0;
+    return answer;
+}
+
+} // namespace tactus

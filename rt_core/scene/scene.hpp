@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/base/static_vector.hpp"
+#include "rt_core/records/frame_input.hpp"
+#include "rt_core/records/local_surface.hpp"
+
+#include <cstdint>
+#include <span>
+
+namespace tactus
+{
+
+/// One pair of tool and object and what is known of its distance from frame to frame. The distance
+/// from a point to a surface changes by no more than the point moves, so a proven L stays of
+/// use: while L minus the motion is beyond what the tool asks for, nothing has to be looked at.
+struct ScenePair
+{
+    std::uint32_t tool{0};
+    std::uint32_t object{0};
+    Vec3 center_m{0.0, 0.0, 0.0}; ///< The proxy now, in the model's frame.
+    double reach_m{0.0};          ///< What the tool asks for now, in the model's frame.
+    bool is_asleep{false};        ///< Proven out of reach; no stage needs to look.
+
+    Vec3 known_center_m{0.0, 0.0, 0.0}; ///< Where `known` was taken.
+    DistanceAnswer known;
+    bool has_known{false};
+
+    [[nodiscard]] double motion_m() const noexcept { return (center_m - known_center_m).norm(); }
+};
+
+/// Tools, objects, and the pairs they make. Haptic thread.
+class Scene
+{
+public:
+    /// At most kMaxTools and kMaxObjects.
+    Scene(std::span<const ToolSpec> tools, std::span<const ObjectSpec> objects) noexcept;
+
+    /// Records are merged when they are this much farther than the reach: between the two, nothing
+    /// changes when a tool goes back and forth.
+    static constexpr double kKeepFactor = 1.25;
+
+    /// Places a pair for this frame: the proxy, and how far the tool asks from there.
+    static void place(ScenePair& pair, const ObjectPose& pose, const Vec3& proxy_world_m,
+                      double reach_world_m) noexcept;
+    /// Keeps what a query found at the pair's present place.
+    static void remember(ScenePair& pair, const DistanceAnswer& answer) noexcept;
+    /// What `remember`ed knowledge says of the present place, without looking: a valid bracket.
+    [[nodiscard]] static DistanceAnswer from_motion(const ScenePair& pair) noexcept;
+
+    [[nodiscard]] std::span<const ToolSpec> tools() const noexcept { return tools_.view(); }
+    [[nodiscard]] std::span<const ObjectSpec> objects() const noexcept { return objects_.view(); }
+    [[nodiscard]] std::span<ScenePair> pairs() noexcept { return {pairs_.begin(), pairs_.size()}; }
+
+private:
+    StaticVector<ToolSpec, kMaxTools> tools_;
+    StaticVector<ObjectSpec, kMaxObjects> objects_;
+    StaticVector<ScenePair, kMaxPairs> pairs_;
+};
+
+} // namespace tactus
