@@ -168,7 +168,8 @@ void ChunkCache::want_chunk(ChunkId chunk, const Urgency& urgency, const Budgets
     }
     if (!chunk_wishes_.has_credit() && !try_evict_page(urgency.evict_before, work))
     {
-        faults |= FrameFault::cache_full;
+        // What is only predicted may go without: it was worth asking for, no more.
+        faults |= urgency.touch == frame_ ? FrameFault::cache_full : FrameFault::none;
         return;
     }
     if (inbox_->wanted.try_push({{ContentKind::chunk, chunk.value}, frame_}))

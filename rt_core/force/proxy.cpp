@@ -14,8 +14,8 @@ namespace
 
 /// Push-outs after one slide; each at least halves what is left on a smooth surface.
 constexpr int kPushOuts = 4;
-/// Below this share of the tool's radius a motion isn't worth a step.
-constexpr double kLeastStep = 1e-6;
+/// Below this share of the tool's radius a motion isn't worth a step: 0.1 mN at 500 N/m and 2 mm.
+constexpr double kLeastStep = 1e-4;
 
 } // namespace
 

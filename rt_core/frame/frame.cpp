@@ -16,7 +16,7 @@ namespace
 
 /// The ball is wider than the proxy's possible motion by this share of the tool's radius, so that
 /// a front that lags by a frame or two still holds what the proxy needs.
-constexpr double kReachMargin = 0.1;
+constexpr double kReachMargin = 0.05;
 
 bool is_usable(const Vec3& point) noexcept
 {

@@ -77,6 +77,7 @@ public:
 
     /// The transport thread's parts of a model: its inbox, linker and slots.
     [[nodiscard]] Model& model(ModelId id) noexcept { return *models_[id.value]; }
+    [[nodiscard]] const Model& model(ModelId id) const noexcept { return *models_[id.value]; }
     [[nodiscard]] std::uint32_t model_count() const noexcept { return model_count_; }
 
     struct PassKey

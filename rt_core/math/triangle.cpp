@@ -4,6 +4,8 @@
 
 #include "rt_core/limits.hpp"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <cmath>
 

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/hrtc/controller.hpp"
+
+#include "platform/simulated/scripted_hand.hpp"
+#include "platform/simulated/simulated_device.hpp"
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numbers>
+
+namespace tactus::hrtc
+{
+
+namespace
+{
+
+constexpr double kBytesPerMib = 1024.0 * 1024.0;
+/// A tool when none is named, as a share of the first model's diagonal.
+constexpr double kDefaultToolShare = 0.01;
+/// Goals faster than this many diagonals a second are followed at this speed in contact.
+constexpr double kSpeedMax_diag = 1.0;
+
+ObjectPose pose_of(const Placement& placement, const ModelHeader& header)
+{
+    const double angle_deg = placement.rotation_deg.norm();
+    ObjectPose pose;
+    if (angle_deg > 0.0)
+    {
+        pose.rotation = Eigen::AngleAxisd(angle_deg * std::numbers::pi / 180.0,
+                                          placement.rotation_deg / angle_deg)
+                            .toRotationMatrix();
+    }
+    const auto& origin = header.fields().origin_m;
+    const Vec3 origin_m(origin[0], origin[1], origin[2]);
+    pose.scale = placement.scale;
+    pose.translation_m = placement.translation_m + pose.scale * (pose.rotation * origin_m);
+    pose.revision = header.fields().revision;
+    return pose;
+}
+
+} // namespace
+
+Result<std::unique_ptr<Controller>, ControllerError>
+Controller::create(const Options& options, std::vector<ServedModel> models, const Log& log)
+{
+    std::unique_ptr<Controller> controller(new Controller(options, std::move(models)));
+    controller->make_poses(options);
+    controller->make_tools(options);
+    if (std::optional<ControllerError> error = controller->lay_out_pools(options))
+    {
+        return *error;
+    }
+    controller->make_couriers(log);
+    if (std::optional<ControllerError> error = controller->make_devices(options))
+    {
+        return *error;
+    }
+    return controller;
+}
+
+Controller::Controller(const Options& options, std::vector<ServedModel> models)
+    : models_(std::move(models))
+    , memory_(static_cast<std::size_t>(options.pool_mib * kBytesPerMib) - sizeof(Frame))
+    , arena_(memory_.span())
+{
+    for (const ServedModel& model : models_)
+    {
+        headers_.push_back(ModelHeader::parse(model.header).value());
+    }
+    budgets_.splits = options.splits;
+    budgets_.merges = options.splits;
+}
+
+double Controller::diagonal_world_m() const noexcept
+{
+    return headers_.front().diagonal_m() * poses_.front().scale;
+}
+
+void Controller::make_poses(const Options& options)
+{
+    for (std::size_t i = 0; i < models_.size(); ++i)
+    {
+        poses_.push_back(pose_of(options.placements[i], headers_[i]));
+    }
+}
+
+void Controller::make_tools(const Options& options)
+{
+    std::vector<double> radii_m = options.tool_radii_m;
+    if (radii_m.empty())
+    {
+        radii_m.push_back(kDefaultToolShare * diagonal_world_m());
+    }
+    for (const double radius_m : radii_m)
+    {
+        tools_.push_back({radius_m, options.stiffness_n_per_m, SimulatedDeviceOptions{}.force_max_n,
+                          kSpeedMax_diag * diagonal_world_m()});
+    }
+}
+
+/// Every model gets the same share of the memory; what belongs to no model comes off first.
+std::optional<ControllerError> Controller::lay_out_pools(const Options& options)
+{
+    std::vector<ObjectSpec> objects;
+    std::vector<ModelSource> sources;
+    for (std::size_t i = 0; i < models_.size(); ++i)
+    {
+        objects.push_back({ModelId{static_cast<std::uint32_t>(i)}});
+    }
+    FrameSetup setup;
+    setup.objects = objects;
+    setup.tools = tools_;
+    setup.period_ns = 1'000'000'000 / options.rate_hz;
+    std::size_t shared = Frame::required_bytes(setup);
+    for (const ServedModel& model : models_)
+    {
+        shared += Arena::round_up(model.header.size());
+    }
+    const std::size_t total = memory_.span().size();
+    const std::size_t share = total > shared ? (total - shared) / models_.size() : 0;
+    const auto cache = static_cast<std::size_t>(options.cache_mib * kBytesPerMib) / models_.size();
+    for (std::size_t i = 0; i < models_.size(); ++i)
+    {
+        // Planned twice: what the courier needs follows from the number of pages.
+        ModelCapacities capacities = plan_capacities(headers_[i], share, cache);
+        const std::size_t courier =
+            Courier::required_bytes(capacities.pages, capacities.index_pages);
+        capacities = courier < share ? plan_capacities(headers_[i], share - courier, cache)
+                                     : ModelCapacities{};
+        if (capacities.pages == 0)
+        {
+            return ControllerError{fmt::format(
+                "--pool-mib: {} MiB is too small for model '{}' (its base mesh has {} faces); "
+                "give more, or less --cache-mib",
+                options.pool_mib, models_[i].name, headers_[i].counts().base_faces)};
+        }
+        sources.push_back({models_[i].header, models_[i].base, capacities});
+    }
+    setup.models = sources;
+    if (const auto started = Frame::start(frame_, arena_, setup); !started)
+    {
+        return ControllerError{
+            fmt::format("--pool-mib: {} MiB: {}", options.pool_mib, refusal_text(started.error()))};
+    }
+    return std::nullopt;
+}
+
+void Controller::make_couriers(const Log& log)
+{
+    for (std::uint32_t i = 0; i < models_.size(); ++i)
+    {
+        Model& model = frame_->model({i});
+        couriers_.push_back(std::make_unique<Courier>(arena_, model.header, model.slots,
+                                                      model.linker, model.inbox, *models_[i].link,
+                                                      models_[i].name, log));
+    }
+}
+
+std::optional<ControllerError> Controller::make_devices(const Options& options)
+{
+    const std::vector<Vec3> anchors = anchors_world_m();
+    for (const ToolSpec& tool : tools_)
+    {
+        HandScene scene;
+        scene.anchors_world_m = anchors;
+        scene.diagonal_m = diagonal_world_m();
+        scene.tool_radius_m = tool.radius_m;
+        scene.period = nanoseconds(1'000'000'000 / options.rate_hz);
+        scene.frames_total =
+            static_cast<std::uint64_t>(options.duration_s * static_cast<double>(options.rate_hz));
+        auto hand = ScriptedHand::create(scene);
+        if (!hand)
+        {
+            return ControllerError{"--tool: " + hand.error().message};
+        }
+        SimulatedDeviceOptions device_options;
+        device_options.rate_hz = options.rate_hz;
+        device_options.workspace_centre_world_m = hand.value()->centre_world_m();
+        device_options.workspace_radius_m = hand.value()->reach_m();
+        auto device = SimulatedDevice::create(device_options, std::move(hand).value());
+        if (!device)
+        {
+            return ControllerError{"--device: " + device.error().message};
+        }
+        devices_.push_back(std::move(device).value());
+    }
+    return std::nullopt;
+}
+
+/// The first model's base vertices: original vertices, so they lie on its surface.
+std::vector<Vec3> Controller::anchors_world_m() const
+{
+    std::vector<Vec3> anchors;
+    for (const Vec3f& position_m : frame_->model({0}).slots.base.positions_m)
+    {
+        anchors.push_back(to_world(poses_.front(), to_vec3(position_m)));
+    }
+    return anchors;
+}
+
+} // namespace tactus::hrtc

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "platform/haptic_device.hpp"
+#include "platform/hrtc/options.hpp"
+#include "platform/hrtc/pool_memory.hpp"
+#include "rt_core/frame/frame.hpp"
+#include "transport/courier.hpp"
+#include "transport/served_model.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tactus::hrtc
+{
+
+/// Why the controller can't start: one line.
+struct ControllerError
+{
+    std::string text;
+};
+
+/// Everything between the transport and the devices: the pools, the frame in them, a courier for
+/// each model, the objects' poses and the devices. Assembled before any thread starts.
+class Controller
+{
+public:
+    /// Lays out all pools inside options.pool_mib, makes the frame and a simulated device for each
+    /// tool. Refused when the pools are too small, with the size that would do for a start.
+    [[nodiscard]] static Result<std::unique_ptr<Controller>, ControllerError>
+    create(const Options& options, std::vector<ServedModel> models, const Log& log);
+
+    [[nodiscard]] Frame& frame() noexcept { return *frame_; }
+    [[nodiscard]] std::vector<std::unique_ptr<Courier>>& couriers() noexcept { return couriers_; }
+    [[nodiscard]] const std::vector<std::unique_ptr<Courier>>& couriers() const noexcept
+    {
+        return couriers_;
+    }
+    [[nodiscard]] const std::vector<std::unique_ptr<HapticDevice>>& devices() const noexcept
+    {
+        return devices_;
+    }
+    [[nodiscard]] const std::vector<ObjectPose>& poses() const noexcept { return poses_; }
+    [[nodiscard]] const std::vector<ServedModel>& models() const noexcept { return models_; }
+    [[nodiscard]] const std::vector<ToolSpec>& tools() const noexcept { return tools_; }
+    [[nodiscard]] const Budgets& budgets() const noexcept { return budgets_; }
+    /// The frame itself, its pools and tables, and the transport's side of them.
+    [[nodiscard]] std::size_t pool_bytes() const noexcept { return arena_.used() + sizeof(Frame); }
+    /// Of the first model, placed: widths are reported in it.
+    [[nodiscard]] double diagonal_world_m() const noexcept;
+
+private:
+    Controller(const Options& options, std::vector<ServedModel> models);
+
+    [[nodiscard]] std::optional<ControllerError> lay_out_pools(const Options& options);
+    void make_poses(const Options& options);
+    void make_tools(const Options& options);
+    void make_couriers(const Log& log);
+    [[nodiscard]] std::optional<ControllerError> make_devices(const Options& options);
+    [[nodiscard]] std::vector<Vec3> anchors_world_m() const;
+
+    std::vector<ServedModel> models_;
+    std::vector<ModelHeader> headers_; ///< Views into models_.
+    std::vector<ObjectPose> poses_;
+    std::vector<ToolSpec> tools_;
+    Budgets budgets_;
+    PoolMemory memory_;
+    Arena arena_;
+    std::optional<Frame> frame_;
+    std::vector<std::unique_ptr<Courier>> couriers_;
+    std::vector<std::unique_ptr<HapticDevice>> devices_;
+};
+
+} // namespace tactus::hrtc

@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+
+/// hrtc, the haptic real-time controller: finds models, lays out the pools, runs the loop on its
+/// real-time thread, and reports.
+
+#include "host_tools/cli/command_line.hpp"
+#include "host_tools/cli/progress.hpp"
+#include "platform/hrtc/controller.hpp"
+#include "platform/hrtc/haptic_loop.hpp"
+#include "platform/hrtc/options.hpp"
+#include "platform/hrtc/report.hpp"
+#include "platform/hrtc/transport_thread.hpp"
+#include "platform/posix/posix_clock.hpp"
+#include "platform/posix/posix_periodic_timer.hpp"
+#include "transport/dds/dds_client.hpp"
+#include "transport/store/store_link.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <filesystem>
+#include <thread>
+
+namespace tactus::hrtc
+{
+namespace
+{
+
+/// How long before the deadline the loop wakes to rehearse its queries.
+constexpr Duration kMarginMost = microseconds(100);
+
+std::atomic<bool> interrupted{false};
+std::atomic<HapticLoop*> running_loop{nullptr};
+
+void on_signal(int /*signal*/)
+{
+    interrupted.store(true);
+}
+
+/// On the haptic thread: brake, note it, and never return; the main thread ends the process.
+void on_assertion(const char* condition, const char* file, int line) noexcept
+{
+    std::fprintf(stderr, "hrtc: internal error: %s (%s:%d)\n", condition, file, line);
+    if (HapticLoop* loop = running_loop.load(); loop != nullptr)
+    {
+        loop->fail();
+        for (;;)
+        {
+            std::this_thread::sleep_for(std::chrono::seconds(1));
+        }
+    }
+    std::_Exit(kExitFailed);
+}
+
+void log_line(const std::string& line)
+{
+    fmt::print(stderr, "hrtc: {}\n", line);
+}
+
+int fail(const std::string& text)
+{
+    log_line(text);
+    return kExitFailed;
+}
+
+/// The models by file or network. The client must live as long as their links.
+struct Found
+{
+    std::unique_ptr<dds::DdsClient> client;
+    std::vector<ServedModel> models;
+    std::string error;
+};
+
+Found find_in_files(const Options& options)
+{
+    Found found;
+    for (const std::string& path : options.models)
+    {
+        const std::string name = std::filesystem::path(path).stem().string();
+        auto model = serve_from_file(path, is_valid_name(name) ? name : "model", log_line);
+        if (!model)
+        {
+            found.error = model.error().text;
+            return found;
+        }
+        found.models.push_back(std::move(model).value());
+    }
+    return found;
+}
+
+Found find_published(const Options& options)
+{
+    Found found;
+    auto client =
+        dds::DdsClient::create(options.domain, fmt::format("hrtc-{}", getpid()), log_line);
+    if (!client)
+    {
+        found.error = client.error().text;
+        return found;
+    }
+    found.client = std::move(client).value();
+    const auto wait = std::chrono::milliseconds(static_cast<std::int64_t>(options.wait_s * 1e3));
+    for (const std::string& text : options.models)
+    {
+        auto model = found.client->find(parse_selector(text).value(), wait,
+                                        [] { return !interrupted.load(); });
+        if (!model)
+        {
+            found.error = model.error().text;
+            return found;
+        }
+        found.models.push_back(std::move(model).value());
+    }
+    return found;
+}
+
+void install_signal_handlers()
+{
+    struct sigaction action
+    {
+    };
+    action.sa_handler = on_signal;
+    sigaction(SIGINT, &action, nullptr);
+    sigaction(SIGTERM, &action, nullptr);
+}
+
+/// Waits for the loop's end, telling how far it is.
+void wait_for_end(HapticLoop& loop, std::uint64_t frames)
+{
+    Progress progress("touch", "frames");
+    while (!loop.is_done() && !loop.has_failed())
+    {
+        if (interrupted.load())
+        {
+            loop.stop();
+        }
+        progress.update(loop.frames_done(), frames);
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+}
+
+int run(const Options& options, Controller& controller)
+{
+    const Duration period = nanoseconds(1'000'000'000 / options.rate_hz);
+    const auto frames =
+        static_cast<std::uint64_t>(options.duration_s * static_cast<double>(options.rate_hz));
+    RunStatistics statistics(controller.tools().size(),
+                             controller.tools().size() * controller.poses().size(),
+                             controller.models().size(), controller.budgets(), period);
+    const PosixClock clock;
+    PosixPeriodicTimer timer;
+    HapticLoop loop({&controller.frame(), controller.devices(), controller.poses(), &timer, &clock,
+                     controller.budgets(), frames},
+                    statistics);
+    TransportThread transport(controller.couriers(), controller.models(), log_line);
+    running_loop.store(&loop);
+    const Duration margin = std::min(kMarginMost, nanoseconds(period.ns / 5));
+    auto thread =
+        RtThread::start(options.thread,
+                        [&]
+                        {
+                            if (const auto started = timer.start(period, margin); !started)
+                            {
+                                log_line(started.error().message);
+                                loop.fail();
+                                return;
+                            }
+                            loop.run();
+                        });
+    if (!thread)
+    {
+        return fail(thread.error().message);
+    }
+    wait_for_end(loop, frames);
+    if (loop.has_failed())
+    {
+        std::fflush(nullptr);
+        std::_Exit(kExitFailed);
+    }
+    thread.value().join();
+    running_loop.store(nullptr);
+    transport.stop();
+    for (const std::string& line : thread.value().report().refused)
+    {
+        log_line("without " + line);
+    }
+    const nlohmann::ordered_json report =
+        make_report({controller, statistics, thread.value().report(), timer.counts(), period,
+                     transport.host_was_lost()});
+    fmt::print("{}", make_summary(report));
+    if (!options.report_path.empty())
+    {
+        if (const auto error = write_report(report, options.report_path))
+        {
+            return fail(*error);
+        }
+        fmt::print("report      {}\n", options.report_path);
+    }
+    return kExitDone;
+}
+
+int main_with(const Options& options)
+{
+    install_signal_handlers();
+    set_assert_handler(on_assertion);
+    const auto refused = probe_realtime(options.thread);
+    if (!refused)
+    {
+        log_line(refused.error().message);
+        return refused.error().kind == PlatformErrorKind::bad_option ? kExitUsage : kExitFailed;
+    }
+    if (!refused.value().empty() && !options.thread.allow_no_rt)
+    {
+        for (const std::string& line : refused.value())
+        {
+            log_line(line);
+        }
+        return fail("not run; --allow-no-rt runs it without");
+    }
+    Found found =
+        options.transport == TransportKind::file ? find_in_files(options) : find_published(options);
+    if (!found.error.empty())
+    {
+        return fail(found.error);
+    }
+    auto controller = Controller::create(options, std::move(found.models), log_line);
+    if (!controller)
+    {
+        return fail(controller.error().text);
+    }
+    return run(options, *controller.value());
+}
+
+} // namespace
+} // namespace tactus::hrtc
+
+int main(int argc, char** argv)
+{
+    try
+    {
+        const auto parsed = tactus::hrtc::parse_options(argc, argv);
+        if (const int* code = std::get_if<int>(&parsed))
+        {
+            return *code;
+        }
+        return tactus::hrtc::main_with(std::get<tactus::hrtc::Options>(parsed));
+    }
+    catch (const std::exception& error)
+    {
+        std::fprintf(stderr, "hrtc: %s\n", error.what());
+        return tactus::kExitFailed;
+    }
+}

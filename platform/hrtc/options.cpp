@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/hrtc/options.hpp"
+
+#include "host_tools/cli/command_line.hpp"
+#include "platform/simulated/simulated_device.hpp"
+#include "rt_core/limits.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <charconv>
+#include <map>
+
+namespace tactus::hrtc
+{
+
+namespace
+{
+
+constexpr double kLargestPool_mib = 4'096.0;
+
+/// Reads all of `text` as a finite number.
+std::optional<double> parse_number(std::string_view text)
+{
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    const bool is_whole = error == std::errc{} && end == text.data() + text.size();
+    return is_whole && std::abs(value) < 1e300 ? std::optional(value) : std::nullopt;
+}
+
+std::optional<std::vector<double>> parse_numbers(std::string_view text)
+{
+    std::vector<double> numbers;
+    for (std::size_t at = 0; at <= text.size();)
+    {
+        const std::size_t comma = std::min(text.find(',', at), text.size());
+        const std::optional<double> number = parse_number(text.substr(at, comma - at));
+        if (!number)
+        {
+            return std::nullopt;
+        }
+        numbers.push_back(*number);
+        at = comma + 1;
+    }
+    return numbers;
+}
+
+std::optional<Placement> parse_placement(const std::string& text)
+{
+    const std::optional<std::vector<double>> numbers = parse_numbers(text);
+    if (!numbers || (numbers->size() != 3 && numbers->size() != 6 && numbers->size() != 7))
+    {
+        return std::nullopt;
+    }
+    const std::vector<double>& n = *numbers;
+    Placement placement;
+    placement.translation_m = Vec3(n[0], n[1], n[2]);
+    if (n.size() >= 6)
+    {
+        placement.rotation_deg = Vec3(n[3], n[4], n[5]);
+    }
+    placement.scale = n.size() == 7 ? n[6] : 1.0;
+    const bool in_range = placement.translation_m.cwiseAbs().maxCoeff() <= 1e4 &&
+                          placement.rotation_deg.norm() <= 360.0 && placement.scale >= 1e-3 &&
+                          placement.scale <= 1e3;
+    return in_range ? std::optional(placement) : std::nullopt;
+}
+
+/// "sphere:RADIUS_M".
+std::optional<double> parse_tool(std::string_view text)
+{
+    constexpr std::string_view kSphere = "sphere:";
+    if (!text.starts_with(kSphere))
+    {
+        return std::nullopt;
+    }
+    const std::optional<double> radius = parse_number(text.substr(kSphere.size()));
+    return radius && *radius >= 1e-5 && *radius <= 1.0 ? radius : std::nullopt;
+}
+
+/// What CLI11 fills before it is checked as a whole.
+struct RawOptions
+{
+    std::vector<std::string> places;
+    std::vector<std::string> tools;
+    std::string device{"sim"};
+    int cpu{-1};
+};
+
+void declare(CLI::App& app, Options& options, RawOptions& raw)
+{
+    static const std::map<std::string, TransportKind> kTransports{{"dds", TransportKind::dds},
+                                                                  {"file", TransportKind::file}};
+    app.add_option("--model", options.models,
+                   "Model to touch: NAME or NAME@HASH as published, or with --transport file a "
+                   "path; repeatable")
+        ->required()
+        ->expected(1)
+        ->take_all();
+    app.add_option("--place", raw.places,
+                   "Where the model stands, one for each --model in order: X,Y,Z in m "
+                   "[,RX,RY,RZ rotation vector in degrees [,SCALE]]")
+        ->expected(1)
+        ->take_all();
+    app.add_option("--tool", raw.tools,
+                   "Tool: sphere:RADIUS_M, 1e-5 to 1 m; repeatable [one sphere of 1 % of the first "
+                   "model's diagonal]")
+        ->expected(1)
+        ->take_all();
+    app.add_option("--device", raw.device, "Device: sim")->check(CLI::IsMember({"sim"}));
+    app.add_option("--rate", options.rate_hz, "Frames a second")
+        ->check(
+            number_between(SimulatedDeviceOptions::kRateMinHz, SimulatedDeviceOptions::kRateMaxHz))
+        ->capture_default_str();
+    app.add_option("--duration", options.duration_s, "Seconds to run")
+        ->check(number_between(0.1, 86'400.0))
+        ->capture_default_str();
+    app.add_option("--report", options.report_path, "Write the report as JSON to this file");
+    app.add_option("--pool-mib", options.pool_mib,
+                   "Memory for all pools of all models, in MiB, everything counted")
+        ->check(number_between(0.25, kLargestPool_mib))
+        ->capture_default_str();
+    app.add_option("--cache-mib", options.cache_mib,
+                   "Share of it for pages of records, in MiB [about six tenths]")
+        ->check(number_between(0.05, kLargestPool_mib));
+    app.add_option("--splits", options.splits, "Splits and merges in one frame at most")
+        ->check(number_between(1, kMaxSplitsPerFrame))
+        ->capture_default_str();
+    app.add_option("--stiffness", options.stiffness_n_per_m, "Of the virtual wall, in N/m")
+        ->check(number_between(1.0, 3'000.0))
+        ->capture_default_str();
+    app.add_option("--transport", options.transport, "Where models come from: dds or file")
+        ->transform(CLI::CheckedTransformer(kTransports, CLI::ignore_case));
+    app.add_option("--domain", options.domain, "DDS domain id")
+        ->check(number_between(0, 232))
+        ->capture_default_str();
+    app.add_option("--wait", options.wait_s, "Seconds to wait for a model to be published")
+        ->check(number_between(0.1, 3'600.0))
+        ->capture_default_str();
+    app.add_option("--priority", options.thread.priority,
+                   "SCHED_FIFO priority of the haptic thread")
+        ->check(number_between(RtThreadOptions::kPriorityMin, RtThreadOptions::kPriorityMax))
+        ->capture_default_str();
+    app.add_option("--cpu", raw.cpu, "Processor of the haptic thread [left to the system]")
+        ->check(number_between(0, 1'023));
+    app.add_flag("--allow-no-rt", options.thread.allow_no_rt,
+                 "Run without SCHED_FIFO or locked memory when they are refused");
+}
+
+/// What one option alone can't tell. Empty when all is well.
+std::string check_together(const CLI::App& app, Options& options, const RawOptions& raw)
+{
+    if (options.models.size() > kMaxObjects)
+    {
+        return fmt::format("--model: at most {} models", kMaxObjects);
+    }
+    if (raw.places.size() > options.models.size())
+    {
+        return fmt::format("--place: {} given for {} models", raw.places.size(),
+                           options.models.size());
+    }
+    if (raw.tools.size() > kMaxTools)
+    {
+        return fmt::format("--tool: at most {} tools", kMaxTools);
+    }
+    for (const std::string& text : raw.places)
+    {
+        const std::optional<Placement> placement = parse_placement(text);
+        if (!placement)
+        {
+            return fmt::format("--place: '{}' is not X,Y,Z[,RX,RY,RZ[,SCALE]] with at most 1e4 m, "
+                               "360 degrees and a scale of 1e-3 to 1e3",
+                               printable(text));
+        }
+        options.placements.push_back(*placement);
+    }
+    options.placements.resize(options.models.size());
+    for (const std::string& text : raw.tools)
+    {
+        const std::optional<double> radius = parse_tool(text);
+        if (!radius)
+        {
+            return fmt::format("--tool: '{}' is not sphere:RADIUS_M with 1e-5 to 1 m",
+                               printable(text));
+        }
+        options.tool_radii_m.push_back(*radius);
+    }
+    if (app.count("--cache-mib") > 0 && options.cache_mib >= options.pool_mib)
+    {
+        return "--cache-mib: must be less than --pool-mib";
+    }
+    if (options.transport == TransportKind::dds)
+    {
+        for (const std::string& model : options.models)
+        {
+            if (const auto selector = parse_selector(model); !selector)
+            {
+                return "--model: " + selector.error().text;
+            }
+        }
+    }
+    return {};
+}
+
+} // namespace
+
+std::variant<Options, int> parse_options(int argc, char** argv)
+{
+    CLI::App app("Haptic real-time controller: touches models that a host publishes, every period, "
+                 "exactly or with a proven bound.",
+                 "hrtc");
+    Options options;
+    RawOptions raw;
+    declare(app, options, raw);
+    if (const std::optional<int> code = parse_command_line(app, argc, argv))
+    {
+        return *code;
+    }
+    if (const std::string fault = check_together(app, options, raw); !fault.empty())
+    {
+        return fail(app, fault, kExitUsage);
+    }
+    if (raw.cpu >= 0)
+    {
+        options.thread.cpu = raw.cpu;
+    }
+    return options;
+}
+
+} // namespace tactus::hrtc

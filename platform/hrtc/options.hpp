@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "platform/rt_thread.hpp"
+#include "rt_core/math/vec3.hpp"
+#include "transport/model_name.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace tactus::hrtc
+{
+
+/// Where an object stands: world = translation + scale x rotation x source point, where source
+/// points are those of the mesh file in metres.
+struct Placement
+{
+    Vec3 translation_m{0.0, 0.0, 0.0};
+    Vec3 rotation_deg{0.0, 0.0, 0.0}; ///< Rotation vector: axis times angle.
+    double scale{1.0};
+};
+
+enum class TransportKind : std::uint8_t
+{
+    dds,
+    file,
+};
+
+/// Everything that the command line says; checked, in SI.
+struct Options
+{
+    std::vector<std::string> models;   ///< NAME[@HASH], or paths with the file transport.
+    std::vector<Placement> placements; ///< One a model.
+    std::vector<double> tool_radii_m;  ///< Empty: one tool of 1 % of the first model's diagonal.
+    TransportKind transport{TransportKind::dds};
+    std::uint32_t domain{0};
+    double wait_s{10.0}; ///< For a model that nobody publishes yet.
+    std::int64_t rate_hz{1'000};
+    double duration_s{10.0};
+    std::string report_path; ///< Empty: no file.
+    double pool_mib{2.0};
+    double cache_mib{0.0}; ///< 0: the usual share of the pool.
+    std::uint32_t splits{64};
+    double stiffness_n_per_m{500.0};
+    RtThreadOptions thread;
+};
+
+/// Reads the command line. Returns the exit code instead when the program should leave: after
+/// --help, --version, or wrong usage, which gets one line on stderr.
+[[nodiscard]] std::variant<Options, int> parse_options(int argc, char** argv);
+
+} // namespace tactus::hrtc

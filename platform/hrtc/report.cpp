@@ -1,0 +1,310 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/hrtc/report.hpp"
+
+#include "platform/allocation_counter.hpp"
+#include "platform/hrtc/machine.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+namespace tactus::hrtc
+{
+
+namespace
+{
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::array<const char*, kStages> kStageNames{"load", "refine", "refit", "query", "force"};
+
+/// In the order of FrameFault's bits.
+constexpr std::array<const char*, 10> kFaultNames{
+    "split_budget_spent", "forest_full",       "tree_full",         "chunk_late",
+    "cache_full",         "node_budget_spent", "surface_truncated", "model_inconsistent",
+    "tool_invalid",       "proxy_frozen"};
+
+double to_us(Duration duration)
+{
+    return static_cast<double>(duration.ns) * 1e-3;
+}
+
+Json times_of(const LatencyHistogram& histogram)
+{
+    return {{"mean", histogram.mean_ns() * 1e-3},       {"p50", to_us(histogram.quantile(0.5))},
+            {"p90", to_us(histogram.quantile(0.9))},    {"p99", to_us(histogram.quantile(0.99))},
+            {"p999", to_us(histogram.quantile(0.999))}, {"max", to_us(histogram.max())}};
+}
+
+Json answers_of(const AnswerCounts& answers, double diagonal_m)
+{
+    return {{"exact", answers.exact},
+            {"decided", answers.decided},
+            {"bracket", answers.bracket},
+            {"stale", answers.stale},
+            {"longest_inexact_run", answers.longest_inexact_run},
+            {"width_max_diag", answers.width_max_m / diagonal_m}};
+}
+
+Json pool_of(const PoolUse& use, std::size_t bytes_each)
+{
+    return {{"used_max", use.used_max},
+            {"capacity", use.capacity},
+            {"bytes", use.capacity * bytes_each}};
+}
+
+PoolUse sum_of(const std::vector<ModelOutput>& models, PoolUse ModelOutput::*pool)
+{
+    PoolUse sum;
+    for (const ModelOutput& model : models)
+    {
+        sum.used_max += (model.*pool).used_max;
+        sum.capacity += (model.*pool).capacity;
+    }
+    return sum;
+}
+
+/// Sums over the models. `bytes` is each pool's own; tables and the transport's side are what
+/// total_bytes holds besides.
+Json pools_of(const RunRecord& record)
+{
+    constexpr std::size_t kFaceBytes =
+        sizeof(VertexForest::ActiveFace) + 2 * sizeof(IdTable::Entry);
+    const std::vector<ModelOutput>& models = record.statistics.models;
+    return {{"pages", pool_of(sum_of(models, &ModelOutput::pages), sizeof(Page))},
+            {"index_pages", pool_of(sum_of(models, &ModelOutput::index_pages), sizeof(IndexPage))},
+            {"faces", pool_of(sum_of(models, &ModelOutput::faces), kFaceBytes)},
+            {"blocks", pool_of(sum_of(models, &ModelOutput::blocks),
+                               sizeof(BlockGeometry) + sizeof(BlockSide))},
+            {"nodes", pool_of(sum_of(models, &ModelOutput::nodes), sizeof(AbNode))},
+            {"total_bytes", record.controller.pool_bytes()}};
+}
+
+Json models_of(const RunRecord& record)
+{
+    Json list = Json::array();
+    for (std::size_t i = 0; i < record.controller.models().size(); ++i)
+    {
+        const ServedModel& served = record.controller.models()[i];
+        const ModelHeader header = ModelHeader::parse(served.header).value();
+        const ModelOutput& output = record.statistics.models[i];
+        const CourierCounters& courier = record.controller.couriers()[i]->counters();
+        list.push_back({{"name", served.name},
+                        {"hash", hash_text(served.hash)},
+                        {"faces", header.fields().source_faces},
+                        {"diagonal_m", header.diagonal_m()},
+                        {"pages_used_max", output.pages.used_max},
+                        {"faces_used_max", output.faces.used_max},
+                        {"refined_records", output.refined_records},
+                        {"bytes_received", served.link->bytes_received()},
+                        {"pieces_refused", courier.refused()},
+                        {"host_connected", served.link->state() == LinkState::connected}});
+    }
+    return list;
+}
+
+Json tools_of(const RunRecord& record)
+{
+    Json list = Json::array();
+    const double frames = static_cast<double>(std::max<std::uint64_t>(record.statistics.frames, 1));
+    for (std::size_t i = 0; i < record.controller.tools().size(); ++i)
+    {
+        const ForceCounts& force = record.statistics.tools[i];
+        list.push_back({{"shape", "sphere"},
+                        {"radius_m", record.controller.tools()[i].radius_m},
+                        {"force_max_n", force.max_n},
+                        {"force_max_step_n", force.max_step_n},
+                        {"contact_share", static_cast<double>(force.contact_frames) / frames},
+                        {"frozen_frames", force.frozen_frames}});
+    }
+    return list;
+}
+
+Json pairs_of(const RunRecord& record)
+{
+    Json list = Json::array();
+    const std::size_t objects = record.controller.poses().size();
+    for (std::size_t i = 0; i < record.statistics.pairs.size(); ++i)
+    {
+        list.push_back({{"tool", i / objects},
+                        {"model", record.controller.models()[i % objects].name},
+                        {"answers", answers_of(record.statistics.pairs[i],
+                                               record.controller.diagonal_world_m())}});
+    }
+    return list;
+}
+
+Json force_of(const RunStatistics& statistics)
+{
+    ForceCounts worst;
+    for (const ForceCounts& tool : statistics.tools)
+    {
+        worst.max_n = std::max(worst.max_n, tool.max_n);
+        worst.max_step_n = std::max(worst.max_step_n, tool.max_step_n);
+    }
+    const double frames = static_cast<double>(std::max<std::uint64_t>(statistics.frames, 1));
+    return {{"max_n", worst.max_n},
+            {"max_step_n", worst.max_step_n},
+            {"contact_share", static_cast<double>(statistics.contact_frames) / frames}};
+}
+
+Json machine_of(const RunRecord& record)
+{
+    const Machine machine = describe_machine();
+    return {{"kernel", machine.kernel},
+            {"preemption", machine.preemption},
+            {"processor", machine.processor},
+            {"processors", machine.processors},
+            {"load_average", machine.load_average},
+            {"date_utc", machine.date_utc},
+            {"fifo", record.thread.fifo},
+            {"memory_locked", record.thread.memory_locked},
+            {"float_control_was_default", record.thread.float_control_was_default},
+            {"refused", record.thread.refused}};
+}
+
+Json faults_of(const RunStatistics& statistics)
+{
+    Json faults = Json::object();
+    for (std::size_t bit = 0; bit < kFaultNames.size(); ++bit)
+    {
+        faults[kFaultNames[bit]] = statistics.faults[bit];
+    }
+    return faults;
+}
+
+} // namespace
+
+Json make_report(const RunRecord& record)
+{
+    const RunStatistics& statistics = record.statistics;
+    Json times = Json::object();
+    for (std::size_t i = 0; i < kStages; ++i)
+    {
+        times[kStageNames[i]] = times_of(statistics.stages[i]);
+    }
+    times["frame"] = times_of(statistics.frame);
+    times["wake"] = times_of(statistics.wake);
+    std::uint64_t bytes_received = 0;
+    std::uint64_t loads = 0;
+    for (std::size_t i = 0; i < record.controller.models().size(); ++i)
+    {
+        bytes_received += record.controller.models()[i].link->bytes_received();
+        loads += record.controller.couriers()[i]->counters().delivered;
+    }
+    return {{"schema", 1},
+            {"frames", statistics.frames},
+            {"period_ns", record.period.ns},
+            {"times_us", times},
+            {"answers", answers_of(statistics.answers, record.controller.diagonal_world_m())},
+            {"work",
+             {{"splits", statistics.splits},
+              {"merges", statistics.merges},
+              {"nodes_visited", statistics.nodes_visited},
+              {"pages_adopted", statistics.pages_adopted}}},
+            {"pools", pools_of(record)},
+            {"cache",
+             {{"hits", statistics.cache_hits},
+              {"misses", statistics.cache_misses},
+              {"loads", loads},
+              {"evictions", statistics.evictions}}},
+            {"wire", {{"bytes_received", bytes_received}, {"host_lost", record.host_was_lost}}},
+            {"deadline",
+             {{"missed", statistics.deadlines_missed},
+              {"own_fault", statistics.own_faults},
+              {"machine_late", statistics.machine_late},
+              {"missed_periods", record.timer.missed_periods},
+              {"episodes", record.timer.episodes},
+              {"extra_switches", statistics.extra_switches},
+              {"over_budget", statistics.over_budget}}},
+            {"realtime",
+             {{"allocations", statistics.allocations},
+              {"allocations_counted", allocation_counter::available()},
+              {"page_faults", statistics.page_faults}}},
+            {"force", force_of(statistics)},
+            {"faults", faults_of(statistics)},
+            {"machine", machine_of(record)},
+            {"models", models_of(record)},
+            {"tools", tools_of(record)},
+            {"pairs", pairs_of(record)}};
+}
+
+std::string make_summary(const Json& report)
+{
+    const double frames = std::max(report["frames"].get<double>(), 1.0);
+    const auto share = [&](const char* kind)
+    { return 100.0 * report["answers"][kind].get<double>() / frames; };
+    std::string text = fmt::format(
+        "frames      {} at {:.0f} Hz, in contact {:.1f} %\n"
+        "answers     exact {:.2f} %, decided {:.2f} %, bracket {:.2f} %, stale {:.2f} %; longest "
+        "inexact run {} frames\n",
+        report["frames"].get<std::uint64_t>(), 1e9 / report["period_ns"].get<double>(),
+        100.0 * report["force"]["contact_share"].get<double>(), share("exact"), share("decided"),
+        share("bracket"), share("stale"),
+        report["answers"]["longest_inexact_run"].get<std::uint64_t>());
+    text += fmt::format("force       at most {:.2f} N, largest step {:.3f} N\n",
+                        report["force"]["max_n"].get<double>(),
+                        report["force"]["max_step_n"].get<double>());
+    text += "times us        mean     p50     p99   p99.9     max\n";
+    for (const auto& [name, times] : report["times_us"].items())
+    {
+        text += fmt::format("  {:<10}{:>8.1f}{:>8.1f}{:>8.1f}{:>8.1f}{:>8.1f}\n", name,
+                            times["mean"].get<double>(), times["p50"].get<double>(),
+                            times["p99"].get<double>(), times["p999"].get<double>(),
+                            times["max"].get<double>());
+    }
+    text +=
+        fmt::format("memory      {:.2f} MiB of pools; {} of {} pages, {} of {} faces at the peak\n",
+                    report["pools"]["total_bytes"].get<double>() / (1024.0 * 1024.0),
+                    report["pools"]["pages"]["used_max"].get<std::uint64_t>(),
+                    report["pools"]["pages"]["capacity"].get<std::uint64_t>(),
+                    report["pools"]["faces"]["used_max"].get<std::uint64_t>(),
+                    report["pools"]["faces"]["capacity"].get<std::uint64_t>());
+    text += fmt::format("streaming   {:.1f} KB received, {} pages loaded, {} evicted{}\n",
+                        report["wire"]["bytes_received"].get<double>() / 1e3,
+                        report["cache"]["loads"].get<std::uint64_t>(),
+                        report["cache"]["evictions"].get<std::uint64_t>(),
+                        report["wire"]["host_lost"].get<bool>() ? "; the host went away" : "");
+    text += fmt::format(
+        "deadlines   {} missed: {} own faults, {} machine late; {} allocations, {} page faults\n",
+        report["deadline"]["missed"].get<std::uint64_t>(),
+        report["deadline"]["own_fault"].get<std::uint64_t>(),
+        report["deadline"]["machine_late"].get<std::uint64_t>(),
+        report["realtime"]["allocations"].get<std::uint64_t>(),
+        report["realtime"]["page_faults"].get<std::uint64_t>());
+    return text;
+}
+
+std::optional<std::string> write_report(const Json& report, const std::string& path)
+{
+    const std::string temporary = path + ".partial";
+    {
+        std::ofstream file(temporary, std::ios::trunc);
+        file << report.dump(2) << '\n';
+        file.close();
+        if (!file)
+        {
+            const std::string reason = std::strerror(errno);
+            std::error_code ignored;
+            std::filesystem::remove(temporary, ignored);
+            return path + ": can't be written: " + reason;
+        }
+    }
+    std::error_code error;
+    std::filesystem::rename(temporary, path, error);
+    if (error)
+    {
+        std::error_code ignored;
+        std::filesystem::remove(temporary, ignored);
+        return path + ": can't be written: " + error.message();
+    }
+    return std::nullopt;
+}
+
+} // namespace tactus::hrtc

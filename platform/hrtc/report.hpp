@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "platform/hrtc/controller.hpp"
+#include "platform/hrtc/run_statistics.hpp"
+#include "platform/rt_thread.hpp"
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tactus::hrtc
+{
+
+/// What a report is made of, once the run has ended.
+struct RunRecord
+{
+    const Controller& controller;
+    const RunStatistics& statistics;
+    const RtThreadReport& thread;
+    const TimerCounts& timer;
+    Duration period;
+    bool host_was_lost{false}; ///< Some model's host went away during the run.
+};
+
+/// The report, schema 1 (docs/report.md). Later versions add keys and never rename any.
+[[nodiscard]] nlohmann::ordered_json make_report(const RunRecord& record);
+
+/// The same for a person: a few lines.
+[[nodiscard]] std::string make_summary(const nlohmann::ordered_json& report);
+
+/// Writes the report whole or not at all; returns why not.
+[[nodiscard]] std::optional<std::string> write_report(const nlohmann::ordered_json& report,
+                                                      const std::string& path);
+
+} // namespace tactus::hrtc

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/hrtc/run_statistics.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tactus::hrtc
+{
+
+namespace
+{
+
+/// How bad an answer is; a frame is as bad as its worst pair.
+int badness(AnswerKind kind) noexcept
+{
+    switch (kind)
+    {
+    case AnswerKind::decided:
+        return 0;
+    case AnswerKind::exact:
+        return 1;
+    case AnswerKind::bracket:
+        return 2;
+    case AnswerKind::stale:
+        return 3;
+    }
+    return 3;
+}
+
+} // namespace
+
+void AnswerCounts::add(AnswerKind kind, double width_m) noexcept
+{
+    const bool is_inexact = kind == AnswerKind::bracket || kind == AnswerKind::stale;
+    exact += kind == AnswerKind::exact ? 1 : 0;
+    decided += kind == AnswerKind::decided ? 1 : 0;
+    bracket += kind == AnswerKind::bracket ? 1 : 0;
+    stale += kind == AnswerKind::stale ? 1 : 0;
+    inexact_run_ = is_inexact ? inexact_run_ + 1 : 0;
+    longest_inexact_run = std::max(longest_inexact_run, inexact_run_);
+    width_max_m = is_inexact ? std::max(width_max_m, width_m) : width_max_m;
+}
+
+void ForceCounts::add(const ToolOutput& output) noexcept
+{
+    max_n = std::max(max_n, output.force_n.norm());
+    max_step_n = std::max(max_step_n, (output.force_n - last_n_).norm());
+    last_n_ = output.force_n;
+    contact_frames += output.in_contact ? 1 : 0;
+    frozen_frames += output.frozen ? 1 : 0;
+}
+
+RunStatistics::RunStatistics(std::size_t tool_count, std::size_t pair_count,
+                             std::size_t model_count, const Budgets& budgets, Duration period)
+    : pairs(pair_count), tools(tool_count), models(model_count), budgets_(budgets), period_(period)
+{
+}
+
+void RunStatistics::add(const FrameOutput& output, const CycleMeasures& measures) noexcept
+{
+    ++frames;
+    for (std::size_t i = 0; i < kStages; ++i)
+    {
+        stages[i].record(measures.stage[i]);
+    }
+    frame.record(measures.frame);
+    wake.record(measures.cycle.wake_lateness);
+    add_answers(output);
+    add_work(output);
+    judge_deadline(output, measures);
+    bool any_contact = false;
+    for (std::size_t i = 0; i < tools.size(); ++i)
+    {
+        tools[i].add(output.tools[i]);
+        any_contact = any_contact || output.tools[i].in_contact;
+    }
+    contact_frames += any_contact ? 1 : 0;
+    std::copy(output.models.begin(), output.models.end(), models.begin());
+}
+
+void RunStatistics::add_answers(const FrameOutput& output) noexcept
+{
+    AnswerKind worst = AnswerKind::decided;
+    double widest_m = 0.0;
+    for (std::size_t i = 0; i < pairs.size(); ++i)
+    {
+        const PairOutput& pair = output.pairs[i];
+        const double width_m = pair.upper_m - pair.lower_m;
+        pairs[i].add(pair.kind, width_m);
+        if (badness(pair.kind) > badness(worst))
+        {
+            worst = pair.kind;
+        }
+        if (badness(pair.kind) > badness(AnswerKind::exact))
+        {
+            widest_m = std::max(widest_m, width_m);
+        }
+    }
+    answers.add(worst, widest_m);
+}
+
+void RunStatistics::add_work(const FrameOutput& output) noexcept
+{
+    splits += output.work.splits;
+    merges += output.work.merges;
+    nodes_visited += output.work.nodes_visited;
+    pages_adopted += output.work.pages_adopted;
+    cache_hits += output.work.cache_hits;
+    cache_misses += output.work.cache_misses;
+    evictions += output.work.evictions;
+    for (std::size_t bit = 0; bit < faults.size(); ++bit)
+    {
+        faults[bit] += (static_cast<std::uint32_t>(output.faults) >> bit) & 1U;
+    }
+}
+
+/// A cycle is our own fault when the thread did what it must not do, whether or not the deadline
+/// was met; a missed deadline without one is the machine's lateness. Processor time is not judged:
+/// on a shared machine it includes what other guests take.
+void RunStatistics::judge_deadline(const FrameOutput& output,
+                                   const CycleMeasures& measures) noexcept
+{
+    const auto cycle_faults =
+        static_cast<std::uint64_t>(measures.usage.minor_faults + measures.usage.major_faults);
+    // The loop's own sleep is one switch; after a stall it sleeps once more, to the new grid.
+    const std::int64_t sleeps = measures.cycle.periods > 1 ? 2 : 1;
+    const bool switched = measures.usage.voluntary_switches > sleeps;
+    const bool over = is_over_budget(output.work);
+    allocations += measures.allocations;
+    page_faults += cycle_faults;
+    extra_switches += switched ? 1 : 0;
+    over_budget += over ? 1 : 0;
+    const bool own = cycle_faults > 0 || measures.allocations > 0 || switched || over;
+    const bool missed = measures.lateness_of_end > period_ || measures.cycle.periods > 1;
+    own_faults += own ? 1 : 0;
+    deadlines_missed += missed ? 1 : 0;
+    machine_late += missed && !own ? 1 : 0;
+}
+
+bool RunStatistics::is_over_budget(const WorkCounters& work) const noexcept
+{
+    const auto models_count = static_cast<std::uint32_t>(models.size());
+    // Each pair is walked twice: to refine and to answer.
+    const auto walks = static_cast<std::uint32_t>(2 * pairs.size());
+    return work.splits > budgets_.splits || work.merges > budgets_.merges ||
+           work.scanned > budgets_.scanned || work.nodes_visited > walks * budgets_.nodes ||
+           work.triangles_tested > walks * budgets_.triangles ||
+           work.pages_adopted > models_count * budgets_.pages ||
+           work.requests > budgets_.requests + budgets_.regions * models_count ||
+           work.regions_searched > models_count * budgets_.regions;
+}
+
+} // namespace tactus::hrtc

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "platform/latency_histogram.hpp"
+#include "platform/periodic_timer.hpp"
+#include "platform/thread_usage.hpp"
+#include "rt_core/records/frame_input.hpp"
+#include "rt_core/records/frame_output.hpp"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace tactus::hrtc
+{
+
+/// Answers of frames or of one pair.
+struct AnswerCounts
+{
+    std::uint64_t exact{0};
+    std::uint64_t decided{0};
+    std::uint64_t bracket{0};
+    std::uint64_t stale{0};
+    std::uint64_t longest_inexact_run{0};
+    double width_max_m{0.0}; ///< Widest bracket of a frame that was neither exact nor decided.
+
+    void add(AnswerKind kind, double width_m) noexcept;
+
+private:
+    std::uint64_t inexact_run_{0};
+};
+
+/// One tool's forces over the run.
+struct ForceCounts
+{
+    double max_n{0.0};
+    double max_step_n{0.0}; ///< Largest |F(k) - F(k - 1)|.
+    std::uint64_t contact_frames{0};
+    std::uint64_t frozen_frames{0};
+
+    void add(const ToolOutput& output) noexcept;
+
+private:
+    Vec3 last_n_{0.0, 0.0, 0.0};
+};
+
+/// What one cycle of the loop measured besides the frame's own output.
+struct CycleMeasures
+{
+    Cycle cycle;
+    std::array<Duration, kStages> stage;
+    Duration frame;               ///< From the start of the frame to the force written.
+    Duration lateness_of_end;     ///< End of the frame after its deadline; late when > one period.
+    ThreadUsage usage;            ///< Since the last cycle.
+    std::uint64_t allocations{0}; ///< Since the last cycle.
+};
+
+/// Everything a run's report is made of. Filled by the haptic thread without allocating; read by
+/// others once the loop has ended.
+class RunStatistics
+{
+public:
+    RunStatistics(std::size_t tools, std::size_t pairs, std::size_t models, const Budgets& budgets,
+                  Duration period);
+
+    void add(const FrameOutput& output, const CycleMeasures& measures) noexcept;
+
+    std::uint64_t frames{0};
+    std::array<LatencyHistogram, kStages> stages;
+    LatencyHistogram frame;
+    LatencyHistogram wake;
+    AnswerCounts answers; ///< By each frame's worst pair.
+    std::vector<AnswerCounts> pairs;
+    std::vector<ForceCounts> tools;
+    std::vector<ModelOutput> models; ///< Of the last frame; `used_max` covers the run.
+
+    std::uint64_t contact_frames{0}; ///< Frames with some tool in contact.
+    std::uint64_t splits{0};
+    std::uint64_t merges{0};
+    std::uint64_t nodes_visited{0};
+    std::uint64_t pages_adopted{0};
+    std::uint64_t cache_hits{0};
+    std::uint64_t cache_misses{0};
+    std::uint64_t evictions{0};
+    std::array<std::uint64_t, 32> faults{}; ///< Frames with each FrameFault bit.
+
+    std::uint64_t deadlines_missed{0};
+    std::uint64_t own_faults{0};
+    std::uint64_t machine_late{0};
+    std::uint64_t allocations{0};
+    std::uint64_t page_faults{0};
+    std::uint64_t extra_switches{0};
+    std::uint64_t over_budget{0}; ///< Frames whose work counters exceeded a cap.
+
+private:
+    void add_answers(const FrameOutput& output) noexcept;
+    void add_work(const FrameOutput& output) noexcept;
+    void judge_deadline(const FrameOutput& output, const CycleMeasures& measures) noexcept;
+    [[nodiscard]] bool is_over_budget(const WorkCounters& work) const noexcept;
+
+    Budgets budgets_;
+    Duration period_;
+};
+
+} // namespace tactus::hrtc

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/hrtc/transport_thread.hpp"
+
+#include "platform/posix/posix_clock.hpp"
+
+#include <chrono>
+
+namespace tactus::hrtc
+{
+
+namespace
+{
+
+/// Pause between two rounds: a wish waits this long at most before it leaves.
+constexpr std::chrono::microseconds kPause{300};
+
+} // namespace
+
+TransportThread::TransportThread(std::vector<std::unique_ptr<Courier>>& couriers,
+                                 const std::vector<ServedModel>& models, Log log)
+    : couriers_(couriers)
+    , models_(models)
+    , log_(std::move(log))
+    , states_(models.size(), LinkState::connected)
+    , thread_([this] { run(); })
+{
+}
+
+void TransportThread::stop()
+{
+    stopped_.store(true);
+    if (thread_.joinable())
+    {
+        thread_.join();
+    }
+}
+
+void TransportThread::run()
+{
+    const PosixClock clock;
+    while (!stopped_.load())
+    {
+        for (const std::unique_ptr<Courier>& courier : couriers_)
+        {
+            courier->step(clock.now().ns);
+        }
+        watch_hosts();
+        std::this_thread::sleep_for(kPause);
+    }
+}
+
+void TransportThread::watch_hosts()
+{
+    for (std::size_t i = 0; i < models_.size(); ++i)
+    {
+        const LinkState state = models_[i].link->state();
+        if (state == states_[i])
+        {
+            continue;
+        }
+        states_[i] = state;
+        if (state == LinkState::host_gone)
+        {
+            host_was_lost_.store(true);
+            log_("model '" + models_[i].name +
+                 "': the host went away; going on with what is resident");
+        }
+        else
+        {
+            log_("model '" + models_[i].name + "': a host is back");
+        }
+    }
+}
+
+} // namespace tactus::hrtc

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "transport/courier.hpp"
+#include "transport/served_model.hpp"
+
+#include <atomic>
+#include <memory>
+#include <thread>
+#include <vector>
+
+namespace tactus::hrtc
+{
+
+/// Runs the couriers of all models on one thread of ordinary priority, a few thousand rounds a
+/// second. Start it before the haptic thread: threads inherit policy and processor. A host that
+/// goes away or comes back gets one line; the loop goes on with what is resident.
+class TransportThread
+{
+public:
+    /// Couriers and models must outlive the thread; nobody else touches them or the models' links
+    /// while it runs.
+    TransportThread(std::vector<std::unique_ptr<Courier>>& couriers,
+                    const std::vector<ServedModel>& models, Log log);
+    TransportThread(const TransportThread&) = delete;
+    TransportThread& operator=(const TransportThread&) = delete;
+    ~TransportThread() { stop(); }
+
+    /// Waits for the present round to end. No effect the second time.
+    void stop();
+
+    /// Any thread: whether some model's host went away since the start.
+    [[nodiscard]] bool host_was_lost() const noexcept { return host_was_lost_.load(); }
+
+private:
+    void run();
+    void watch_hosts();
+
+    std::vector<std::unique_ptr<Courier>>& couriers_;
+    const std::vector<ServedModel>& models_;
+    Log log_;
+    std::vector<LinkState> states_;
+    std::atomic<bool> host_was_lost_{false};
+    std::atomic<bool> stopped_{false};
+    std::thread thread_;
+};
+
+} // namespace tactus::hrtc
