@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: Apache-2.0
+# The floors of the house as data: which room may include which. cmake/checks/check_floors.cmake
+# reads this file and fails on every #include that breaks it.
+#
+# A room is a folder (or one file). A file belongs to the room with the longest matching path. A
+# room may always include itself; an allowed name also allows the rooms below it ("rt_core" means
+# every room of rt_core); "*" allows everything.
+
+# tactus_room(<path> <allowed room>...)
+macro(tactus_room path)
+    list(APPEND TACTUS_ROOMS ${path})
+    set(TACTUS_MAY_INCLUDE_${path} ${ARGN})
+endmacro()
+
+# tactus_outside(<first part of the include's path> <room>...): a library's headers and the only
+# rooms (with the rooms below them) that may include them.
+macro(tactus_outside prefix)
+    list(APPEND TACTUS_OUTSIDE ${prefix})
+    set(TACTUS_USED_IN_${prefix} ${ARGN})
+endmacro()
+
+# --- rt_core: stages are siblings and never include one another; they meet in query, refine, frame.
+set(stage_floor rt_core/base rt_core/math rt_core/limits.hpp rt_core/records rt_core/spm)
+
+tactus_room(rt_core/base)
+tactus_room(rt_core/math rt_core/base)
+tactus_room(rt_core/limits.hpp rt_core/base)
+tactus_room(rt_core/spm rt_core/base rt_core/math rt_core/limits.hpp)
+tactus_room(rt_core/records rt_core/base rt_core/math rt_core/limits.hpp rt_core/spm)
+tactus_room(rt_core/cache ${stage_floor})
+tactus_room(rt_core/forest ${stage_floor})
+tactus_room(rt_core/abtree ${stage_floor})
+tactus_room(rt_core/predict ${stage_floor})
+tactus_room(rt_core/force ${stage_floor})
+tactus_room(rt_core/scene ${stage_floor})
+tactus_room(rt_core/query ${stage_floor} rt_core/abtree)
+tactus_room(rt_core/refine ${stage_floor} rt_core/abtree rt_core/forest rt_core/cache rt_core/query)
+tactus_room(rt_core/frame rt_core)
+
+# --- platform: only the controller program sees core, transport and device; nothing includes it.
+tactus_room(platform rt_core/base rt_core/math rt_core/records rt_core/limits.hpp)
+tactus_room(platform/hrtc rt_core transport platform)
+
+# --- transport: parse and link live in spm; of the cache it knows inbox and page slots.
+tactus_room(transport ${stage_floor} rt_core/cache)
+
+# --- host_tools: downward only; nothing includes a program.
+set(host_floor rt_core transport)
+
+tactus_room(host_tools/mesh ${host_floor})
+tactus_room(host_tools/shapes ${host_floor} host_tools/mesh)
+tactus_room(host_tools/simplify ${host_floor} host_tools/mesh)
+tactus_room(host_tools/encode ${host_floor} host_tools/mesh host_tools/simplify)
+tactus_room(host_tools/spm_build ${host_floor}
+    host_tools/mesh host_tools/shapes host_tools/simplify host_tools/encode)
+tactus_room(host_tools/spm_inspect ${host_floor} host_tools/mesh host_tools/encode)
+tactus_room(host_tools/spm_publish ${host_floor})
+
+tactus_room(tests *)
+
+# --- Libraries of others.
+tactus_outside(dds transport/dds tests)
+tactus_outside(ccd rt_core/query tests)
+tactus_outside(Eigen rt_core platform transport host_tools tests)
+tactus_outside(CLI platform/hrtc host_tools tests)
+tactus_outside(nlohmann platform/hrtc host_tools tests)
+tactus_outside(fmt platform/hrtc transport host_tools tests)
+tactus_outside(assimp host_tools/mesh tests)
+tactus_outside(tbb host_tools tests)
+tactus_outside(oneapi host_tools tests)
+tactus_outside(gtest tests)
+tactus_outside(rapidcheck tests)
+# libsodium's one header; rt_core must not hash with it, since it may allocate.
+tactus_outside(sodium.h transport host_tools platform/hrtc tests)
+
+# --- Standard headers of rt_core: nothing that brings a heap, a clock, a thread, a file or a throw.
+set(TACTUS_RT_CORE_STANDARD_HEADERS
+    algorithm array atomic bit climits cmath compare concepts cstddef cstdint cstring
+    initializer_list iterator limits new numbers numeric optional span string_view tuple
+    type_traits utility variant immintrin.h)

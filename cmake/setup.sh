@@ -1,0 +1,245 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# One command from a fresh Debian 12 machine to a build, the tests or the demo; see --help.
+set -euo pipefail
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+readonly root
+readonly build="$root/build/release"
+readonly demo="$root/build/demo"
+
+usage() {
+    cat <<'TEXT'
+Usage: bash cmake/setup.sh COMMAND [OPTIONS] [-- CTEST-OPTIONS]
+
+Commands:
+  build     install the packages that are missing and build everything into build/release
+  test      build, then run every test; CTEST-OPTIONS after -- go to ctest, e.g. -- -R Arena
+  demo      build the programs, make a model, publish it over DDS on this machine and touch it
+            for 10 s at 1 kHz; the report is written to build/demo/report.json
+  packages  only install the packages that are missing
+
+Options:
+  --ci          packages: the packages of .ci/run (cmake/packages-ci.txt) as well
+  --seconds N   demo: touch for N seconds, 1 to 3600 (default 10)
+  --domain N    demo: use DDS domain N, 0 to 232 (default: the programs' own)
+  --help        this text
+
+Environment: CXX names the compiler (default g++). ccache is used when it is there.
+Exit codes: 0 done, 1 a test failed or the demo missed a criterion, 2 failed at run time,
+3 wrong usage.
+TEXT
+}
+
+fail() { # fail CODE TEXT: one clear line, then the end.
+    printf 'setup.sh: %s\n' "$2" >&2
+    exit "$1"
+}
+
+# --- packages ------------------------------------------------------------------------------------
+
+# The names in the lists given, without comments.
+packages_in() { sed -e 's/#.*//' -e 's/[[:space:]]//g' -e '/^$/d' "$@"; }
+
+# The packages of the lists given that dpkg does not know as installed.
+missing_packages() {
+    local wanted known
+    mapfile -t wanted < <(packages_in "$@")
+    # It fails when it does not know one of the names; the lines that it prints are right even so.
+    known=$(dpkg-query -W -f '${db:Status-Status} ${Package}\n' "${wanted[@]}" 2>/dev/null) || true
+    comm -23 <(printf '%s\n' "${wanted[@]}" | LC_ALL=C sort -u) \
+        <(sed -n 's/^installed //p' <<<"$known" | LC_ALL=C sort -u)
+}
+
+install_packages() { # install_packages LIST...: calls apt-get only when something is missing.
+    if ! command -v dpkg-query >/dev/null; then
+        echo "setup.sh: no dpkg here; going on with what is installed (names: cmake/packages.txt)"
+        return
+    fi
+    local missing as_root=()
+    mapfile -t missing < <(missing_packages "$@")
+    if ((${#missing[@]} == 0)); then
+        return
+    fi
+    if ((EUID != 0)); then
+        sudo -n true 2>/dev/null || fail 2 "missing packages and no root; run: apt-get install\
+ --no-install-recommends ${missing[*]}"
+        as_root=(sudo -n)
+    fi
+    echo "Installing: ${missing[*]}"
+    local apt=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -qq)
+    "${apt[@]}" update || fail 2 "apt-get update failed; still missing: ${missing[*]}"
+    "${apt[@]}" install -y --no-install-recommends "${missing[@]}" \
+        || fail 2 "apt-get install failed; still missing: ${missing[*]}"
+}
+
+# --- build ---------------------------------------------------------------------------------------
+
+# Compile jobs: one per core, but 2 GB each, which the heaviest sources with Eigen need.
+job_count() {
+    local cores memory_kb by_memory
+    cores=$(nproc)
+    memory_kb=$(sed -n 's/^MemAvailable: *\([0-9]*\) kB/\1/p' /proc/meminfo)
+    by_memory=$((${memory_kb:-0} / 2000000))
+    ((by_memory >= 1)) || by_memory=1
+    echo $((cores < by_memory ? cores : by_memory))
+}
+
+build_targets() { # build_targets TARGET...
+    local compiler options
+    compiler=$(command -v "${CXX:-g++}") || fail 2 "CXX names '${CXX:-g++}', which is not here"
+    options=("-DCMAKE_CXX_COMPILER=$compiler")
+    # CMake drops the other settings when the compiler of a configured folder changes.
+    if ! grep -qs "^CMAKE_CXX_COMPILER:.*=$compiler\$" "$build/CMakeCache.txt"; then
+        options+=(--fresh)
+    fi
+    if command -v ccache >/dev/null; then
+        options+=(-DCMAKE_C_COMPILER_LAUNCHER=ccache -DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+    fi
+    (cd "$root" && cmake --preset release "${options[@]}") || fail 2 "configuring $build failed"
+    cmake --build "$build" --parallel "$(job_count)" --target "$@" || fail 2 "the build failed"
+}
+
+# --- test ----------------------------------------------------------------------------------------
+
+# Names of the tests that ctest did not run, one per line, from its JUnit file.
+skipped_tests() {
+    sed -n 's/^.*<testcase name="\([^"]*\)".* status="notrun".*$/\1/p' "$1" \
+        | sed -e 's/&lt;/</g' -e 's/&gt;/>/g' -e 's/&quot;/"/g' -e "s/&apos;/'/g" -e 's/&amp;/\&/g'
+}
+
+run_tests() { # run_tests CTEST-OPTION...
+    local code=0 junit="$build/tests.xml"
+    rm -f "$junit"
+    ctest --test-dir "$build" --output-on-failure --no-tests=error --parallel "$(nproc)" \
+        --output-junit "$junit" "$@" || code=1
+    if [[ -f "$junit" ]]; then
+        skipped_tests "$junit" >"$build/skipped_tests.txt"
+    fi
+    return "$code"
+}
+
+# --- demo ----------------------------------------------------------------------------------------
+
+# Whether this user may lock memory and run a thread at a real-time priority, as hrtc will ask.
+may_run_realtime() {
+    local capabilities
+    chrt -f 80 true 2>/dev/null || return 1
+    [[ $(ulimit -l) == unlimited ]] && return 0
+    capabilities=$(sed -n 's/^CapEff:[[:space:]]*//p' /proc/self/status)
+    (((0x$capabilities >> 14) & 1)) # CAP_IPC_LOCK
+}
+
+publisher=
+stop_publisher() {
+    [[ -n "$publisher" ]] || return 0
+    kill -TERM "$publisher" 2>/dev/null || true
+    for _ in {1..50}; do
+        if ! kill -0 "$publisher" 2>/dev/null; then
+            publisher=
+            return 0
+        fi
+        sleep 0.1
+    done
+    kill -KILL "$publisher" 2>/dev/null || true
+    publisher=
+}
+
+start_publisher() { # start_publisher OPTION...
+    local log="$demo/spm_publish.log"
+    "$build/bin/spm_publish" "$demo/bumpy.spm" "$@" >"$log" 2>&1 &
+    publisher=$!
+    trap stop_publisher EXIT
+    trap 'exit 2' INT TERM
+    sleep 0.5 # Long enough for a wrong file or network set-up to show.
+    if ! kill -0 "$publisher" 2>/dev/null; then
+        cat "$log" >&2
+        fail 2 "spm_publish ended at once; its last words are above"
+    fi
+}
+
+run_demo() { # run_demo SECONDS [DOMAIN]
+    local code=0 network=() realtime=() report="$demo/report.json"
+    if [[ -n "${2:-}" ]]; then
+        network=(--domain "$2")
+    fi
+    mkdir -p "$demo"
+    rm -f "$report"
+    "$build/bin/spm_build" --shape bumpy-sphere --faces 200000 -o "$demo/bumpy.spm" \
+        || fail 2 "spm_build could not make $demo/bumpy.spm"
+    if ! may_run_realtime; then
+        echo "No right to SCHED_FIFO or locked memory here: running with --allow-no-rt, so the" \
+            "times below are those of an ordinary thread."
+        realtime=(--allow-no-rt)
+    fi
+    start_publisher "${network[@]}"
+    "$build/bin/hrtc" --model bumpy --device sim --rate 1000 --duration "$1" --report "$report" \
+        "${realtime[@]}" "${network[@]}" || code=$?
+    stop_publisher
+    if [[ -f "$report" ]]; then
+        echo "Report: $report"
+    fi
+    return "$code"
+}
+
+# --- command line --------------------------------------------------------------------------------
+
+number_in() { # number_in OPTION VALUE LOW HIGH
+    if [[ ! "$2" =~ ^[0-9]{1,6}$ ]] || ((10#$2 < $3 || 10#$2 > $4)); then
+        fail 3 "$1 '$2': not a whole number from $3 to $4"
+    fi
+}
+
+main() {
+    local command='' seconds=10 domain='' lists=("$root/cmake/packages.txt") ctest_options=()
+    while (($# > 0)); do
+        case "$1" in
+            build | test | demo | packages)
+                [[ -z "$command" ]] || fail 3 "two commands given: '$command' and '$1'"
+                command=$1
+                ;;
+            --ci) lists+=("$root/cmake/packages-ci.txt") ;;
+            --seconds)
+                number_in "$1" "${2:-}" 1 3600
+                seconds=$2
+                shift
+                ;;
+            --domain)
+                number_in "$1" "${2:-}" 0 232
+                domain=$2
+                shift
+                ;;
+            --help | -h)
+                usage
+                exit 0
+                ;;
+            --)
+                shift
+                ctest_options=("$@")
+                break
+                ;;
+            *) fail 3 "unknown argument '$1'; --help lists what there is" ;;
+        esac
+        shift
+    done
+    case "$command" in
+        '') fail 3 "no command given; use build, test, demo or --help" ;;
+        packages) install_packages "${lists[@]}" ;;
+        build)
+            install_packages "${lists[@]}"
+            build_targets all
+            ;;
+        test)
+            install_packages "${lists[@]}"
+            build_targets all
+            run_tests "${ctest_options[@]}"
+            ;;
+        demo)
+            install_packages "${lists[@]}"
+            build_targets spm_build spm_publish hrtc
+            run_demo "$seconds" "$domain"
+            ;;
+    esac
+}
+
+main "$@"

@@ -1,0 +1,113 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# planted_faults.sh CHECKOUT SCRATCH CMAKE CXX: every guard must pass on a small clean house and
+# must name file and line of a fault planted in it.
+set -euo pipefail
+readonly checks="$1/cmake/checks" house=$2 cmake=$3 cxx=$4
+failures=0
+
+begin_house() {
+    rm -rf "$house"
+    mkdir -p "$house"/rt_core/{base,math,forest,abtree} "$house"/{transport,tests/unit}
+    printf '# SPDX-License-Identifier: Apache-2.0\nadd_subdirectory(rt_core)\n%s\n' \
+        'add_subdirectory(tests)' >"$house/CMakeLists.txt"
+    printf '# SPDX-License-Identifier: Apache-2.0\nadd_library(core base/good.hpp)\n' \
+        >"$house/rt_core/CMakeLists.txt"
+    printf '# SPDX-License-Identifier: Apache-2.0\nadd_executable(t unit/test_good.cpp)\n' \
+        >"$house/tests/CMakeLists.txt"
+    source_file rt_core/base/good.hpp '#include <array>'
+    source_file tests/unit/test_good.cpp '#include "rt_core/base/good.hpp"'
+}
+
+source_file() { # source_file PATH LINE: the LINE becomes line 4.
+    printf '// SPDX-License-Identifier: Apache-2.0\n// Copyright the Tactus authors.\n\n%s\n' "$2" \
+        >"$house/$1"
+}
+
+run_guard() {
+    case "$1" in
+        floors) "$cmake" "-DROOT=$house" -P "$checks/check_floors.cmake" 2>&1 ;;
+        *) bash "$checks/check_text.sh" "$1" "$house" 2>&1 ;;
+    esac
+}
+
+expect_clean() { # expect_clean GUARD
+    local output
+    if ! output=$(run_guard "$1"); then
+        printf '%s refuses a clean house:\n%s\n' "$1" "$output"
+        failures=$((failures + 1))
+    fi
+}
+
+expect_refusal() { # expect_refusal GUARD TEXT: fails, and the output has TEXT.
+    local output code=0
+    output=$(run_guard "$1") || code=$?
+    if ((code == 0)) || [[ "$output" != *"$2"* ]]; then
+        printf '%s: expected a refusal with "%s"; exit %d and:\n%s\n' "$1" "$2" "$code" "$output"
+        failures=$((failures + 1))
+    fi
+    begin_house
+}
+
+begin_house
+for guard in floors line_length no_leftovers machine_paths licence files_listed; do
+    expect_clean "$guard"
+done
+
+source_file rt_core/base/good.hpp '#include "rt_core/math/vec3.hpp"'
+expect_refusal floors "rt_core/base/good.hpp:4: includes 'rt_core/math/vec3.hpp'; rt_core/base may"
+source_file rt_core/forest/forest.hpp '#include "rt_core/abtree/ab_tree.hpp"'
+expect_refusal floors "rt_core/forest/forest.hpp:4: includes 'rt_core/abtree/ab_tree.hpp'"
+source_file rt_core/math/box.hpp '  #  include <vector>'
+expect_refusal floors "rt_core/math/box.hpp:4: includes 'vector'; rt_core may include: algorithm"
+source_file transport/link.hpp '#include <dds/dds.h>'
+expect_refusal floors "transport/link.hpp:4: includes 'dds/dds.h'; only these may include dds"
+source_file transport/link.hpp '#include "chunks.h"'
+expect_refusal floors "transport/link.hpp:4: includes 'chunks.h'; not a path of a room"
+mkdir -p "$house/transport/dds"
+source_file transport/dds/link.cpp '#include "chunks.h"'
+expect_clean floors
+mkdir -p "$house/host_tools/attic"
+source_file host_tools/attic/old.hpp ''
+expect_refusal floors 'host_tools/attic/old.hpp: in no room'
+mkdir -p "$house"/platform/{posix,hrtc}
+source_file platform/hrtc/main.cpp '#include "transport/link.hpp"'
+expect_clean floors
+source_file platform/posix/clock.cpp '#include "platform/hrtc/loop.hpp"'
+expect_refusal floors "platform/posix/clock.cpp:4: includes 'platform/hrtc/loop.hpp'; platform may"
+
+source_file rt_core/base/good.hpp "// $(printf 'x%.0s' {1..98})"
+expect_refusal line_length 'rt_core/base/good.hpp:4:'
+source_file rt_core/base/good.hpp "// $(printf '\303\251%.0s' {1..97})" # 100 columns, 197 bytes
+expect_clean line_length
+source_file rt_core/base/good.hpp '// TO''DO: later.'
+expect_refusal no_leftovers 'rt_core/base/good.hpp:4:'
+source_file rt_core/base/good.hpp '// see /ho''me/me/notes.txt'
+expect_refusal machine_paths 'rt_core/base/good.hpp:4:'
+echo '#pragma once' >"$house/rt_core/base/good.hpp"
+expect_refusal licence 'rt_core/base/good.hpp:1:'
+echo 'add_library(core base/good.hpp)' >"$house/rt_core/CMakeLists.txt"
+expect_refusal licence 'rt_core/CMakeLists.txt:1:'
+source_file tests/unit/test_lost.cpp ''
+expect_refusal files_listed 'tests/unit/test_lost.cpp:1:'
+source_file rt_core/base/lost.hpp ''
+expect_refusal files_listed 'rt_core/base/lost.hpp:1:'
+echo '# add_executable(t unit/test_good.cpp)' >"$house/tests/CMakeLists.txt"
+expect_refusal files_listed 'tests/unit/test_good.cpp:1:'
+
+# An archive whose one object takes memory from the heap.
+printf 'int* make() { return new int(1); }\n' >"$house/heap.cpp"
+"$cxx" -c "$house/heap.cpp" -o "$house/heap.o"
+ar rcs "$house/libheap.a" "$house/heap.o"
+output=$(bash "$checks/check_rt_core_symbols.sh" "$house/libheap.a" "$checks/rt_core_symbols.txt") \
+    && code=0 || code=$?
+if ((code != 1)) || [[ "$output" != *'operator new(unsigned long) in heap.o'* ]]; then
+    printf 'symbols: expected operator new in heap.o; exit %d and:\n%s\n' "$code" "$output"
+    failures=$((failures + 1))
+fi
+
+if ((failures > 0)); then
+    echo "$failures guards do not see what they are for"
+    exit 1
+fi
+rm -rf "$house"

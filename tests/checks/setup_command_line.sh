@@ -1,0 +1,45 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# setup_command_line.sh SETUP: cmake/setup.sh refuses wrong usage with exit 3 and one line that
+# names the fault, explains itself with exit 0, and names the packages that it could not install.
+set -euo pipefail
+readonly setup=$1
+failures=0
+
+expect() { # expect CODE TEXT ARGUMENT...
+    local code=0 output wanted=$1 text=$2
+    shift 2
+    output=$(bash "$setup" "$@" 2>&1) || code=$?
+    if ((code != wanted)) || [[ "$output" != *"$text"* ]] \
+        || { ((wanted == 3)) && [[ "$output" == *$'\n'* ]]; }; then
+        printf 'setup.sh %s: expected exit %d and "%s"; exit %d and:\n%s\n' \
+            "$*" "$wanted" "$text" "$code" "$output"
+        failures=$((failures + 1))
+    fi
+}
+
+cd / # From any folder.
+expect 0 'Usage: bash cmake/setup.sh' --help
+expect 3 'no command'
+expect 3 "unknown argument 'bild'" bild
+expect 3 "unknown argument '--fast'" build --fast
+expect 3 "'build' and 'test'" build test
+expect 3 "--seconds 'ten'" demo --seconds ten
+expect 3 "--seconds '0'" demo --seconds 0
+expect 3 "--seconds ''" demo --seconds
+expect 3 "--domain '233'" demo --domain 233
+
+# A dpkg that knows nothing and a sudo that refuses stand in for a user without packages and root.
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+printf '#!/bin/sh\nexit 1\n' | tee "$scratch/dpkg-query" "$scratch/sudo" >"$scratch/apt-get"
+chmod +x "$scratch"/*
+if ((EUID != 0)); then
+    PATH="$scratch:$PATH" expect 2 'apt-get install --no-install-recommends binutils cmake' packages
+else
+    PATH="$scratch:$PATH" expect 2 'apt-get update failed; still missing: binutils cmake' packages
+fi
+
+if ((failures > 0)); then
+    exit 1
+fi
