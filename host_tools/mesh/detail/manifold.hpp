@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace tactus::detail
+{
+
+struct ManifoldSplit
+{
+    std::size_t cut_edges{0};
+    /// For each vertex that was added, in order, the one that it is a copy of.
+    std::vector<std::uint32_t> copy_of;
+};
+
+/// Renumbers face corners until every edge has at most two faces, in opposite directions, and every
+/// vertex one fan. New vertices are numbered from `vertex_count` on. Faces must have three
+/// different vertices each and no two may be equal up to rotation. Linear apart from a sort round
+/// each vertex.
+[[nodiscard]] ManifoldSplit split_into_manifold(std::vector<std::array<std::uint32_t, 3>>& faces,
+                                                std::uint32_t vertex_count);
+
+} // namespace tactus::detail

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "host_tools/mesh/mesh_error.hpp"
+#include "rt_core/base/result.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tactus::detail
+{
+
+enum class PlyFormat
+{
+    ascii,
+    little_endian,
+    big_endian,
+};
+
+enum class PlyType
+{
+    int8,
+    uint8,
+    int16,
+    uint16,
+    int32,
+    uint32,
+    float32,
+    float64,
+};
+
+[[nodiscard]] std::size_t size_of(PlyType type);
+
+struct PlyProperty
+{
+    std::string name;
+    PlyType type{};
+    std::optional<PlyType> count_type; ///< Present for a list.
+};
+
+struct PlyElement
+{
+    std::string name;
+    std::uint64_t count{0};
+    std::vector<PlyProperty> properties;
+};
+
+struct PlyHeader
+{
+    PlyFormat format{};
+    std::vector<PlyElement> elements;
+    std::size_t bytes{0}; ///< Where the data starts.
+    std::size_t lines{0};
+};
+
+/// Reads up to and including "end_header"; the words are those of the 1994 PLY description, with
+/// the sized type names (int8 .. float64) beside the C ones.
+[[nodiscard]] Result<PlyHeader, MeshError> read_ply_header(std::string_view bytes);
+
+} // namespace tactus::detail

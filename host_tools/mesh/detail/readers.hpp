@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "host_tools/mesh/read_mesh.hpp"
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+/// One reader per format: bytes in, mesh out. Errors say where in the file; read_mesh_file() puts
+/// the file's name in front and checks what is common to all formats.
+namespace tactus::detail
+{
+
+[[nodiscard]] Result<MeshFile, MeshError> read_ply(std::string_view bytes);
+[[nodiscard]] Result<MeshFile, MeshError> read_obj(std::string_view text);
+[[nodiscard]] Result<MeshFile, MeshError> read_stl(std::string_view bytes);
+[[nodiscard]] Result<MeshFile, MeshError> read_off(std::string_view text);
+
+/// Cuts polygons into fans and counts what a user should hear about.
+class PolygonSink
+{
+public:
+    explicit PolygonSink(TriangleMesh& mesh) : mesh_(mesh) {}
+
+    void add(std::span<const std::uint32_t> corners);
+    void add_notes(std::vector<std::string>& notes) const;
+
+private:
+    TriangleMesh& mesh_;
+    std::uint64_t larger_{0};  ///< More than three corners.
+    std::uint64_t smaller_{0}; ///< Fewer than three.
+};
+
+/// Text formats end in a line end; one that doesn't may have lost digits of its last number.
+void note_missing_line_end(std::string_view text, std::vector<std::string>& notes);
+
+} // namespace tactus::detail

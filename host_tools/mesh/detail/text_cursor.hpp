@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "host_tools/mesh/mesh_error.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace tactus::detail
+{
+
+/// Walks over text by tokens or by lines and knows the line number, from 1. Lines end in LF;
+/// a CR before it counts as a blank. Nothing depends on the locale.
+class TextCursor
+{
+public:
+    explicit TextCursor(std::string_view text, std::size_t first_line = 1)
+        : text_(text), line_(first_line)
+    {
+    }
+
+    /// The next run of characters without blanks, on this line or a later one; empty at the end.
+    std::string_view next_token();
+    /// The next token of this line only; empty at its end.
+    std::string_view next_token_in_line();
+    /// Goes to the start of the next line. False when there was no further character.
+    bool skip_line();
+
+    [[nodiscard]] bool at_end() const { return at_ == text_.size(); }
+    [[nodiscard]] std::size_t position() const { return at_; }
+    [[nodiscard]] std::size_t remaining() const { return text_.size() - at_; }
+    [[nodiscard]] std::size_t line() const { return line_; }
+    /// The error with the current line in front.
+    [[nodiscard]] MeshError error(const std::string& what) const;
+
+private:
+    std::string_view text_;
+    std::size_t at_{0};
+    std::size_t line_;
+};
+
+/// The whole token as a number; a leading plus is allowed. Too small is 0, too large is infinite
+/// (and refused later, with all that is not finite).
+[[nodiscard]] std::optional<double> parse_number(std::string_view token);
+[[nodiscard]] std::optional<std::int64_t> parse_integer(std::string_view token);
+
+/// The token as it can stand in a message: quoted, short, printable.
+[[nodiscard]] std::string quote(std::string_view token);
+
+} // namespace tactus::detail

@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "host_tools/mesh/prepare.hpp"
+
+#include "host_tools/mesh/detail/clean.hpp"
+#include "host_tools/mesh/detail/manifold.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tactus
+{
+
+namespace
+{
+
+using Point = std::array<double, 3>;
+
+struct Box
+{
+    Point low{};
+    Point high{};
+
+    [[nodiscard]] double extent(std::size_t axis) const { return high[axis] - low[axis]; }
+    [[nodiscard]] double largest_extent() const
+    {
+        return std::max({extent(0), extent(1), extent(2)});
+    }
+    /// Scaled by the largest extent first: squares of tiny or huge lengths would under- or
+    /// overflow.
+    [[nodiscard]] double diagonal() const
+    {
+        const double largest = largest_extent();
+        if (largest == 0.0 || !std::isfinite(largest))
+        {
+            return largest;
+        }
+        const double x = extent(0) / largest;
+        const double y = extent(1) / largest;
+        const double z = extent(2) / largest;
+        return largest * std::sqrt(x * x + y * y + z * z);
+    }
+};
+
+Box box_of(const std::vector<Point>& positions)
+{
+    Box box{positions.front(), positions.front()};
+    for (const Point& p : positions)
+    {
+        for (std::size_t axis = 0; axis < 3; ++axis)
+        {
+            box.low[axis] = std::min(box.low[axis], p[axis]);
+            box.high[axis] = std::max(box.high[axis], p[axis]);
+        }
+    }
+    return box;
+}
+
+std::optional<MeshError> find_bad_option(const PrepareOptions& options)
+{
+    if (!(options.metres_per_unit > 0.0) || !std::isfinite(options.metres_per_unit))
+    {
+        return MeshError{fmt::format("metres per unit is {}; must be positive and finite",
+                                     options.metres_per_unit)};
+    }
+    if (options.fit_diagonal_m && !(*options.fit_diagonal_m >= kMinFitDiagonal_m &&
+                                    *options.fit_diagonal_m <= kMaxFitDiagonal_m))
+    {
+        return MeshError{fmt::format("fit diagonal is {} m; must be {} .. {} m",
+                                     *options.fit_diagonal_m, kMinFitDiagonal_m,
+                                     kMaxFitDiagonal_m)};
+    }
+    if (options.position_bits < kMinPositionBits || options.position_bits > kMaxPositionBits)
+    {
+        return MeshError{fmt::format("position bits is {}; must be {} .. {}", options.position_bits,
+                                     kMinPositionBits, kMaxPositionBits)};
+    }
+    return std::nullopt;
+}
+
+std::optional<MeshError> find_bad_source(const TriangleMesh& source)
+{
+    for (std::size_t f = 0; f < source.faces.size(); ++f)
+    {
+        for (const std::uint32_t v : source.faces[f])
+        {
+            if (v >= source.positions.size())
+            {
+                return MeshError{fmt::format("face {} names vertex {}; must be below {}", f, v,
+                                             source.positions.size())};
+            }
+            const Point& p = source.positions[v];
+            if (!std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2]))
+            {
+                return MeshError{
+                    fmt::format("vertex {} is ({}, {}, {}); must be finite", v, p[0], p[1], p[2])};
+            }
+        }
+    }
+    return std::nullopt;
+}
+
+TriangleMesh clean_up(TriangleMesh mesh, PreparedMesh& out)
+{
+    out.welded_vertices = detail::weld_equal_positions(mesh);
+    out.degenerate_faces = detail::drop_degenerate_faces(mesh.faces);
+    out.duplicate_faces = detail::drop_duplicate_faces(mesh.faces);
+    // The vertices that welding has left unused are not isolated in the source.
+    out.isolated_vertices = detail::drop_isolated_vertices(mesh) - out.welded_vertices;
+    return mesh;
+}
+
+/// Metres per source unit, after fitting; sets the diagonal.
+Result<double, MeshError> choose_scale(const Box& box, const PrepareOptions& options,
+                                       PreparedMesh& out)
+{
+    const double source_diagonal = box.diagonal();
+    double scale = options.metres_per_unit;
+    out.diagonal_m = source_diagonal * scale;
+    if (options.fit_diagonal_m)
+    {
+        scale = *options.fit_diagonal_m / source_diagonal;
+        out.diagonal_m = *options.fit_diagonal_m;
+    }
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+        out.origin_m[axis] = box.low[axis] * scale;
+        if (!std::isfinite(out.origin_m[axis]) || !std::isfinite(box.extent(axis) * scale))
+        {
+            return MeshError{
+                fmt::format("coordinates are not finite any more after scaling by {}", scale)};
+        }
+    }
+    if (!(out.diagonal_m >= kMinDiagonal_m && out.diagonal_m <= kMaxDiagonal_m))
+    {
+        return MeshError{fmt::format("the model's diagonal is {} m; must be {} .. {} m (check the "
+                                     "unit, or fit it to a diagonal)",
+                                     out.diagonal_m, kMinDiagonal_m, kMaxDiagonal_m)};
+    }
+    return scale;
+}
+
+/// The least power of two whose multiples up to 2^bits - 1 reach over the extent.
+double choose_quantum(double extent_m, unsigned bits)
+{
+    const double steps = std::ldexp(1.0, static_cast<int>(bits)) - 1.0;
+    double quantum = std::ldexp(1.0, std::ilogb(extent_m / steps));
+    while (quantum * steps < extent_m)
+    {
+        quantum *= 2.0;
+    }
+    while (quantum * 0.5 * steps >= extent_m)
+    {
+        quantum *= 0.5;
+    }
+    return quantum;
+}
+
+/// Distances are taken from the box's least corner before scaling: far from the origin the
+/// difference is exact where the coordinates themselves have few digits left.
+void put_on_grid(const TriangleMesh& mesh, const Box& box, double scale, PreparedMesh& out)
+{
+    double worst = 0.0;
+    out.mesh.positions.reserve(mesh.positions.size());
+    for (const Point& p : mesh.positions)
+    {
+        std::array<std::int32_t, 3> place{};
+        double off = 0.0;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+        {
+            const double quanta = (p[axis] - box.low[axis]) * scale / out.quantum_m;
+            const double nearest = std::floor(quanta + 0.5);
+            off += (quanta - nearest) * (quanta - nearest);
+            place[axis] = static_cast<std::int32_t>(nearest);
+        }
+        worst = std::max(worst, off);
+        out.mesh.positions.push_back(place);
+    }
+    out.quantisation_m = std::sqrt(worst) * out.quantum_m;
+}
+
+void make_manifold(PreparedMesh& out)
+{
+    auto& positions = out.mesh.positions;
+    const auto split =
+        detail::split_into_manifold(out.mesh.faces, static_cast<std::uint32_t>(positions.size()));
+    positions.reserve(positions.size() + split.copy_of.size());
+    for (const std::uint32_t vertex : split.copy_of)
+    {
+        positions.push_back(positions[vertex]);
+    }
+    out.cut_edges = split.cut_edges;
+    out.added_vertices = split.copy_of.size();
+}
+
+/// Products of differences of at most 24 bits fit in 64 bits.
+bool is_flat(const QuantisedMesh& mesh, const std::array<std::uint32_t, 3>& face)
+{
+    const auto& a = mesh.positions[face[0]];
+    std::array<std::int64_t, 3> ab{};
+    std::array<std::int64_t, 3> ac{};
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+        ab[axis] = mesh.positions[face[1]][axis] - a[axis];
+        ac[axis] = mesh.positions[face[2]][axis] - a[axis];
+    }
+    return ab[1] * ac[2] == ab[2] * ac[1] && ab[2] * ac[0] == ab[0] * ac[2] &&
+           ab[0] * ac[1] == ab[1] * ac[0];
+}
+
+void write_notes(PreparedMesh& out)
+{
+    const auto note = [&out](std::size_t count, std::string_view what)
+    {
+        if (count > 0)
+        {
+            out.notes.push_back(fmt::format("{} {}", count, what));
+        }
+    };
+    note(out.welded_vertices, "vertices welded to one with the same position");
+    note(out.isolated_vertices, "vertices dropped that no face uses");
+    note(out.degenerate_faces, "degenerate faces dropped (two corners in one place)");
+    note(out.duplicate_faces, "duplicate faces dropped");
+    note(out.cut_edges, "edges cut open (more than two faces, or two with the same direction)");
+    note(out.added_vertices, "vertices added where several fans of faces met");
+    note(out.flat_faces, "faces kept without area on the grid");
+}
+
+} // namespace
+
+std::optional<double> metres_per_unit(std::string_view unit)
+{
+    if (unit == "mm")
+    {
+        return 0.001;
+    }
+    if (unit == "cm")
+    {
+        return 0.01;
+    }
+    if (unit == "m")
+    {
+        return 1.0;
+    }
+    return unit == "in" ? std::optional(0.0254) : std::nullopt;
+}
+
+Result<PreparedMesh, MeshError> prepare_mesh(const TriangleMesh& source,
+                                             const PrepareOptions& options)
+{
+    if (auto error = find_bad_option(options))
+    {
+        return *error;
+    }
+    if (auto error = find_bad_source(source))
+    {
+        return *error;
+    }
+    PreparedMesh out;
+    TriangleMesh mesh = clean_up(source, out);
+    if (mesh.faces.empty())
+    {
+        return MeshError{fmt::format("no face is left of {}: {} are degenerate; at least 1 is "
+                                     "needed",
+                                     source.faces.size(), out.degenerate_faces)};
+    }
+    const Box box = box_of(mesh.positions);
+    const auto scale = choose_scale(box, options, out);
+    if (!scale)
+    {
+        return scale.error();
+    }
+    out.quantum_m = choose_quantum(box.largest_extent() * scale.value(), options.position_bits);
+    put_on_grid(mesh, box, scale.value(), out);
+    out.mesh.faces = std::move(mesh.faces);
+    mesh = {};
+    make_manifold(out);
+    out.flat_faces = static_cast<std::size_t>(
+        std::count_if(out.mesh.faces.begin(), out.mesh.faces.end(),
+                      [&out](const auto& face) { return is_flat(out.mesh, face); }));
+    write_notes(out);
+    return out;
+}
+
+} // namespace tactus

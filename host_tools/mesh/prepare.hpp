@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "host_tools/mesh/mesh_error.hpp"
+#include "host_tools/mesh/triangle_mesh.hpp"
+#include "host_tools/simplify/simplify.hpp"
+#include "rt_core/base/result.hpp"
+#include "rt_core/limits.hpp"
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tactus
+{
+
+/// The bounding-box diagonals that a model may have, and those one may ask for.
+inline constexpr double kMinDiagonal_m = 1e-6;
+inline constexpr double kMaxDiagonal_m = 1e6;
+inline constexpr double kMinFitDiagonal_m = 1e-4;
+inline constexpr double kMaxFitDiagonal_m = 1e3;
+
+/// Metres per unit for the unit names that a user may give: mm, cm, m, in. None for other names.
+[[nodiscard]] std::optional<double> metres_per_unit(std::string_view unit);
+
+struct PrepareOptions
+{
+    double metres_per_unit{1.0}; ///< Of the source; positive and finite.
+    std::optional<double>
+        fit_diagonal_m{}; ///< Scales the model to this diagonal, whatever its unit.
+    unsigned position_bits{kMinPositionBits}; ///< kMinPositionBits .. kMaxPositionBits.
+};
+
+/// A mesh on the integer grid and where the grid lies: source_m = origin_m + quantum_m x integer.
+struct PreparedMesh
+{
+    QuantisedMesh mesh;
+    double quantum_m{0.0};            ///< A power of two.
+    std::array<double, 3> origin_m{}; ///< Least corner of the source's box, in the source's frame.
+    double quantisation_m{0.0};       ///< Largest distance between a source vertex and its place.
+    double diagonal_m{0.0};           ///< Of the source's box, scaled, before quantisation.
+
+    std::size_t welded_vertices{0};   ///< Dropped for an equal position before them.
+    std::size_t isolated_vertices{0}; ///< Dropped since no face uses them.
+    std::size_t degenerate_faces{0};  ///< Dropped: two corners in one place.
+    std::size_t duplicate_faces{0};   ///< Dropped: the same corners in the same order before.
+    std::size_t cut_edges{0};         ///< Opened: not two faces in opposite directions.
+    std::size_t added_vertices{0};    ///< Copies that give each fan a vertex of its own.
+    std::size_t flat_faces{0};        ///< Kept, though their corners lie on one line of the grid.
+    std::vector<std::string> notes;   ///< One line for each of these that is not zero.
+};
+
+/// Scales, welds equal positions, drops what is degenerate or there twice, puts the mesh on the
+/// grid and cuts it into 2-manifold pieces. The same input gives the same result on every machine;
+/// vertices and faces keep their order, copies of vertices come last. A face's opposite is kept:
+/// together they are a two-sided sheet and part into two.
+/// Nearly linear in the mesh: 4 M faces take 4 s and, with the source, 70 B a face at the peak.
+[[nodiscard]] Result<PreparedMesh, MeshError> prepare_mesh(const TriangleMesh& source,
+                                                           const PrepareOptions& options);
+
+} // namespace tactus

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "host_tools/mesh/read_mesh.hpp"
+
+#include "host_tools/mesh/detail/readers.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <new>
+#include <optional>
+
+namespace tactus
+{
+
+namespace
+{
+
+/// Indices are 32-bit and the largest value is kept free to mean "none".
+constexpr std::size_t kMaxVertices = 0xFFFF'FFFE;
+
+using Reader = Result<MeshFile, MeshError> (*)(std::string_view);
+
+std::optional<Reader> reader_for(const std::filesystem::path& path)
+{
+    std::string extension = path.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+    if (extension == ".ply")
+    {
+        return detail::read_ply;
+    }
+    if (extension == ".obj")
+    {
+        return detail::read_obj;
+    }
+    if (extension == ".stl")
+    {
+        return detail::read_stl;
+    }
+    if (extension == ".off")
+    {
+        return detail::read_off;
+    }
+    return std::nullopt;
+}
+
+/// What keeps the path from being read; empty when nothing does.
+std::string why_not_a_file(const std::filesystem::path& path)
+{
+    std::error_code code;
+    const auto status = std::filesystem::status(path, code);
+    if (status.type() == std::filesystem::file_type::not_found)
+    {
+        return "no such file";
+    }
+    if (status.type() == std::filesystem::file_type::none)
+    {
+        return code.message();
+    }
+    if (status.type() == std::filesystem::file_type::directory)
+    {
+        return "is a directory, not a mesh file";
+    }
+    if (status.type() != std::filesystem::file_type::regular)
+    {
+        return "is not a regular file";
+    }
+    return {};
+}
+
+Result<std::string, MeshError> read_all_bytes(const std::filesystem::path& path)
+{
+    std::error_code code;
+    const std::uintmax_t size = std::filesystem::file_size(path, code);
+    std::ifstream file(path, std::ios::binary);
+    if (code || !file)
+    {
+        return MeshError{fmt::format("can't be opened: {}", std::strerror(errno))};
+    }
+    if (size == 0)
+    {
+        return MeshError{"is empty"};
+    }
+    std::string bytes(size, '\0');
+    file.read(bytes.data(), static_cast<std::streamsize>(size));
+    if (static_cast<std::uintmax_t>(file.gcount()) != size)
+    {
+        return MeshError{fmt::format("only {} of {} bytes could be read", file.gcount(), size)};
+    }
+    return bytes;
+}
+
+/// What every format owes: finite coordinates, indices in range, some faces but not too many.
+std::optional<MeshError> find_fault(const TriangleMesh& mesh)
+{
+    if (mesh.faces.empty())
+    {
+        return MeshError{fmt::format("holds no faces ({} vertices); at least 1 is needed",
+                                     mesh.positions.size())};
+    }
+    if (mesh.faces.size() > kMaxFaces)
+    {
+        return MeshError{
+            fmt::format("holds {} faces; at most {} (2^29)", mesh.faces.size(), kMaxFaces)};
+    }
+    if (mesh.positions.size() > kMaxVertices)
+    {
+        return MeshError{fmt::format("holds {} vertices; at most {} (2^32 - 2)",
+                                     mesh.positions.size(), kMaxVertices)};
+    }
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v)
+    {
+        for (std::size_t axis = 0; axis < 3; ++axis)
+        {
+            if (!std::isfinite(mesh.positions[v][axis]))
+            {
+                return MeshError{fmt::format("vertex {} (from 0): {} is {}; must be finite", v,
+                                             "xyz"[axis], mesh.positions[v][axis])};
+            }
+        }
+    }
+    for (const auto& face : mesh.faces)
+    {
+        TACTUS_ASSERT(std::max({face[0], face[1], face[2]}) < mesh.positions.size());
+    }
+    return std::nullopt;
+}
+
+Result<MeshFile, MeshError> read_without_name(const std::filesystem::path& path)
+{
+    if (const std::string reason = why_not_a_file(path); !reason.empty())
+    {
+        return MeshError{reason};
+    }
+    const auto reader = reader_for(path);
+    if (!reader)
+    {
+        return MeshError{"unknown kind of mesh file; must end in .ply, .obj, .stl or .off"};
+    }
+    const auto bytes = read_all_bytes(path);
+    if (!bytes)
+    {
+        return bytes.error();
+    }
+    auto file = (*reader)(bytes.value());
+    if (!file)
+    {
+        return file;
+    }
+    if (auto fault = find_fault(file.value().mesh))
+    {
+        return *fault;
+    }
+    return file;
+}
+
+} // namespace
+
+Result<MeshFile, MeshError> read_mesh_file(const std::filesystem::path& path)
+{
+    try
+    {
+        auto file = read_without_name(path);
+        if (!file)
+        {
+            return MeshError{fmt::format("{}: {}", path.string(), file.error().text)};
+        }
+        return file;
+    }
+    catch (const std::bad_alloc&)
+    {
+        return MeshError{fmt::format("{}: there is not enough memory to read it", path.string())};
+    }
+}
+
+Result<TriangleMesh, MeshError> read_mesh(const std::filesystem::path& path)
+{
+    auto file = read_mesh_file(path);
+    if (!file)
+    {
+        return file.error();
+    }
+    return std::move(file.value().mesh);
+}
+
+namespace detail
+{
+
+void PolygonSink::add(std::span<const std::uint32_t> corners)
+{
+    smaller_ += corners.size() < 3 ? 1U : 0U;
+    larger_ += corners.size() > 3 ? 1U : 0U;
+    for (std::size_t i = 2; i < corners.size(); ++i)
+    {
+        mesh_.faces.push_back({corners[0], corners[i - 1], corners[i]});
+    }
+}
+
+void PolygonSink::add_notes(std::vector<std::string>& notes) const
+{
+    if (larger_ > 0)
+    {
+        notes.push_back(fmt::format("{} polygons with more than 3 corners cut into fans", larger_));
+    }
+    if (smaller_ > 0)
+    {
+        notes.push_back(fmt::format("{} polygons with fewer than 3 corners dropped", smaller_));
+    }
+}
+
+void note_missing_line_end(std::string_view text, std::vector<std::string>& notes)
+{
+    if (!text.empty() && text.back() != '\n')
+    {
+        notes.emplace_back("the last line has no line end; the file may have been cut there");
+    }
+}
+
+} // namespace detail
+
+} // namespace tactus

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "host_tools/mesh/mesh_error.hpp"
+#include "host_tools/mesh/triangle_mesh.hpp"
+#include "rt_core/base/result.hpp"
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace tactus
+{
+
+/// More faces than this are refused: each costs one FaceId, and half of those a record id.
+inline constexpr std::size_t kMaxFaces = std::size_t{1} << 29U;
+
+/// What a mesh file holds, and what was changed or could not be told while it was read.
+struct MeshFile
+{
+    TriangleMesh mesh;
+    std::vector<std::string> notes; ///< One line each, without the file's name.
+};
+
+/// Reads a .ply (ASCII or binary, polygons and triangle strips), .obj, .stl (ASCII or binary) or
+/// .off file; the extension decides, in either case of letters. Polygons become fans. Text keeps
+/// double precision. Vertices and faces keep the file's order; nothing is welded or repaired.
+/// Guarantees: every coordinate is finite, every index names a vertex, there are 1 .. kMaxFaces
+/// faces. A file that is shorter than it says is refused; where the format can't say (OBJ, a last
+/// number without line end) there is a note.
+/// Costs the file's bytes plus the mesh in memory; a count in a header allocates nothing that the
+/// file's size doesn't support.
+[[nodiscard]] Result<MeshFile, MeshError> read_mesh_file(const std::filesystem::path& path);
+
+/// The same for callers that don't show notes.
+[[nodiscard]] Result<TriangleMesh, MeshError> read_mesh(const std::filesystem::path& path);
+
+} // namespace tactus

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace tactus
+{
+
+/// An indexed triangle mesh as read from a file or made by a generator. Lengths in whatever unit
+/// the source used until `import` has scaled them; metres after that. Faces are counter-clockwise
+/// seen from outside where the source has an outside.
+struct TriangleMesh
+{
+    std::vector<std::array<double, 3>> positions;
+    std::vector<std::array<std::uint32_t, 3>> faces;
+};
+
+} // namespace tactus

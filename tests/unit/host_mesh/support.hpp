@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "host_tools/mesh/prepare.hpp"
+#include "host_tools/mesh/read_mesh.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <set>
+#include <string>
+#include <string_view>
+#include <unistd.h>
+#include <vector>
+
+namespace tactus::test
+{
+
+using Face = std::array<std::uint32_t, 3>;
+using Point = std::array<double, 3>;
+
+/// A directory of its own for one test, removed with all that is in it.
+class TempDirectory
+{
+public:
+    TempDirectory()
+    {
+        std::string name = (std::filesystem::temp_directory_path() / "host_mesh-XXXXXX").string();
+        path_ = ::mkdtemp(name.data());
+    }
+    ~TempDirectory()
+    {
+        std::error_code ignored;
+        std::filesystem::remove_all(path_, ignored);
+    }
+    TempDirectory(const TempDirectory&) = delete;
+    TempDirectory& operator=(const TempDirectory&) = delete;
+
+    [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+    std::filesystem::path write(const std::string& name, std::string_view bytes) const
+    {
+        // A new file each time: overwriting one makes some file systems wait for the disk.
+        std::filesystem::remove(path_ / name);
+        std::ofstream file(path_ / name, std::ios::binary);
+        file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+        return path_ / name;
+    }
+
+    [[nodiscard]] std::size_t files() const
+    {
+        std::size_t count = 0;
+        for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(path_))
+        {
+            ++count;
+        }
+        return count;
+    }
+
+private:
+    std::filesystem::path path_;
+};
+
+inline Result<MeshFile, MeshError> read_bytes(const std::string& name, std::string_view bytes)
+{
+    const TempDirectory directory;
+    return read_mesh_file(directory.write(name, bytes));
+}
+
+/// The error's text; fails when there is none or when it is not one line.
+inline std::string refusal(const Result<MeshFile, MeshError>& result)
+{
+    if (result)
+    {
+        ADD_FAILURE() << "was accepted";
+        return {};
+    }
+    EXPECT_EQ(result.error().text.find('\n'), std::string::npos) << result.error().text;
+    return result.error().text;
+}
+
+/// A tetrahedron whose apex needs every digit of a double.
+inline TriangleMesh tetrahedron()
+{
+    return {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.1234567890123456, 0.25, 1}},
+            {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}};
+}
+
+/// Independent of the library: counts faces per directed edge with a map and walks fans with sets.
+template <typename Faces>
+inline bool is_manifold_with_borders(const Faces& faces, std::size_t vertices)
+{
+    std::set<std::pair<std::uint32_t, std::uint32_t>> directed;
+    std::map<std::uint32_t, std::vector<std::pair<std::uint32_t, std::uint32_t>>> links;
+    for (const Face& f : faces)
+    {
+        for (std::size_t k = 0; k < 3; ++k)
+        {
+            const auto a = f[k];
+            const auto b = f[(k + 1) % 3];
+            if (a == b || a >= vertices || !directed.insert({a, b}).second)
+            {
+                return false;
+            }
+            links[a].push_back({b, f[(k + 2) % 3]});
+        }
+    }
+    if (links.size() != vertices)
+    {
+        return false; // A vertex without a face.
+    }
+    for (const auto& [vertex, arcs] : links)
+    {
+        // The link of a vertex must be one path or one cycle: each arc leads on, all get visited.
+        std::map<std::uint32_t, std::uint32_t> next;
+        std::set<std::uint32_t> entered;
+        for (const auto& [from, to] : arcs)
+        {
+            next[from] = to;
+            entered.insert(to);
+        }
+        std::uint32_t at = arcs.front().first;
+        for (const auto& [from, to] : arcs)
+        {
+            at = entered.count(from) == 0 ? from : at;
+        }
+        const std::uint32_t start = at;
+        std::size_t steps = 0;
+        do
+        {
+            const auto arc = next.find(at);
+            if (arc == next.end())
+            {
+                break;
+            }
+            at = arc->second;
+            ++steps;
+        } while (at != start);
+        if (next.size() != arcs.size() || entered.size() != arcs.size() || steps != arcs.size())
+        {
+            return false;
+        }
+    }
+    return true;
+}
+
+inline bool is_manifold_with_borders(const QuantisedMesh& mesh)
+{
+    return is_manifold_with_borders(mesh.faces, mesh.positions.size());
+}
+
+/// Edges without a face on the other side.
+template <typename Faces>
+inline std::size_t border_edges(const Faces& faces)
+{
+    std::set<std::pair<std::uint32_t, std::uint32_t>> directed;
+    for (const Face& f : faces)
+    {
+        for (std::size_t k = 0; k < 3; ++k)
+        {
+            directed.insert({f[k], f[(k + 1) % 3]});
+        }
+    }
+    std::size_t count = 0;
+    for (const auto& [a, b] : directed)
+    {
+        count += directed.count({b, a}) == 0 ? 1U : 0U;
+    }
+    return count;
+}
+
+/// Vertices - edges + faces.
+template <typename Faces>
+inline std::int64_t euler_characteristic(const Faces& faces, std::size_t vertices)
+{
+    std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
+    for (const Face& f : faces)
+    {
+        for (std::size_t k = 0; k < 3; ++k)
+        {
+            edges.insert(std::minmax(f[k], f[(k + 1) % 3]));
+        }
+    }
+    return static_cast<std::int64_t>(vertices) - static_cast<std::int64_t>(edges.size()) +
+           static_cast<std::int64_t>(faces.size());
+}
+
+/// Positive when a closed mesh's faces are counter-clockwise from outside.
+inline double signed_volume(const TriangleMesh& mesh)
+{
+    double six_volumes = 0.0;
+    for (const Face& f : mesh.faces)
+    {
+        const Point& a = mesh.positions[f[0]];
+        const Point& b = mesh.positions[f[1]];
+        const Point& c = mesh.positions[f[2]];
+        six_volumes += a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
+                       a[2] * (b[0] * c[1] - b[1] * c[0]);
+    }
+    return six_volumes / 6.0;
+}
+
+} // namespace tactus::test

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "host_tools/mesh/atomic_file.hpp"
+#include "tests/unit/host_mesh/support.hpp"
+
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <optional>
+#include <span>
+#include <string>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <vector>
+
+namespace tactus::test
+{
+
+namespace
+{
+
+std::span<const std::byte> bytes_of(std::string_view text)
+{
+    return std::as_bytes(std::span(text.data(), text.size()));
+}
+
+std::string content_of(const std::filesystem::path& path)
+{
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+TEST(AtomicFile, appears_with_its_content_at_commit_and_not_before)
+{
+    const TempDirectory directory;
+    const auto path = directory.path() / "a.bin";
+    auto sut = AtomicFile::create(path);
+    ASSERT_TRUE(sut) << sut.error().text;
+    ASSERT_TRUE(sut.value().write(bytes_of("hello ")));
+    ASSERT_TRUE(sut.value().write(bytes_of("world")));
+    ASSERT_TRUE(sut.value().write_at(0, bytes_of("J")));
+    ASSERT_TRUE(sut.value().write(bytes_of("!")));
+    EXPECT_FALSE(std::filesystem::exists(path));
+    ASSERT_TRUE(sut.value().commit());
+    EXPECT_EQ(content_of(path), "Jello world!");
+    EXPECT_EQ(directory.files(), 1U);
+}
+
+TEST(AtomicFile, leaves_nothing_behind_without_commit)
+{
+    const TempDirectory directory;
+    {
+        auto sut = AtomicFile::create(directory.path() / "a.bin");
+        ASSERT_TRUE(sut);
+        ASSERT_TRUE(sut.value().write(bytes_of("half")));
+        EXPECT_EQ(directory.files(), 1U);
+    }
+    EXPECT_EQ(directory.files(), 0U);
+}
+
+TEST(AtomicFile, leaves_the_old_file_alone_until_commit_and_keeps_the_umask)
+{
+    const TempDirectory directory;
+    const auto path = directory.write("a.bin", "old");
+    {
+        auto sut = AtomicFile::create(path);
+        ASSERT_TRUE(sut);
+        ASSERT_TRUE(sut.value().write(bytes_of("new")));
+    }
+    EXPECT_EQ(content_of(path), "old");
+    const mode_t before = ::umask(027);
+    auto sut = AtomicFile::create(path);
+    ::umask(before);
+    ASSERT_TRUE(sut);
+    ASSERT_TRUE(sut.value().write(bytes_of("new")));
+    ASSERT_TRUE(sut.value().commit());
+    EXPECT_EQ(content_of(path), "new");
+    struct stat status
+    {
+    };
+    ASSERT_EQ(::stat(path.c_str(), &status), 0);
+    EXPECT_EQ(status.st_mode & 0777U, 0640U);
+}
+
+TEST(AtomicFile, moves_its_temporary_along)
+{
+    const TempDirectory directory;
+    auto first = AtomicFile::create(directory.path() / "a.bin");
+    auto second = AtomicFile::create(directory.path() / "b.bin");
+    ASSERT_TRUE(first && second);
+    EXPECT_EQ(directory.files(), 2U);
+    first.value() = std::move(second.value());
+    EXPECT_EQ(directory.files(), 1U);
+    ASSERT_TRUE(first.value().commit());
+    EXPECT_TRUE(std::filesystem::exists(directory.path() / "b.bin"));
+}
+
+TEST(AtomicFile, refuses_places_where_no_file_can_be_made)
+{
+    const TempDirectory directory;
+    const std::vector<std::filesystem::path> places{directory.path(),
+                                                    directory.path() / "no" / "a.bin",
+                                                    "/dev/null",
+                                                    "",
+                                                    directory.path() / "",
+                                                    directory.path() / std::string(300, 'x'),
+                                                    directory.write("file", "x") / "a.bin"};
+    for (const auto& place : places)
+    {
+        const auto sut = AtomicFile::create(place);
+        ASSERT_FALSE(sut) << place;
+        EXPECT_EQ(sut.error().text.find('\n'), std::string::npos) << sut.error().text;
+    }
+    EXPECT_EQ(directory.files(), 1U);
+}
+
+TEST(AtomicFile, refuses_one_too_many_and_takes_one_more_after_a_release)
+{
+    const TempDirectory directory;
+    std::vector<AtomicFile> open;
+    for (std::size_t i = 0; i < AtomicFile::kMaxPending; ++i)
+    {
+        auto sut = AtomicFile::create(directory.path() / "a.bin");
+        ASSERT_TRUE(sut) << sut.error().text;
+        open.push_back(std::move(sut).value());
+    }
+    EXPECT_FALSE(AtomicFile::create(directory.path() / "a.bin"));
+    open.pop_back();
+    EXPECT_TRUE(AtomicFile::create(directory.path() / "a.bin"));
+    open.clear();
+    EXPECT_EQ(directory.files(), 0U);
+}
+
+/// Runs in a child process: what it does to limits and signals ends with it.
+template <typename Body>
+int status_of_child(Body body)
+{
+    const pid_t child = ::fork();
+    if (child == 0)
+    {
+        ::_exit(body());
+    }
+    int status = 0;
+    EXPECT_EQ(::waitpid(child, &status, 0), child);
+    return status;
+}
+
+TEST(AtomicFile, reports_a_full_disk_and_leaves_nothing_behind)
+{
+    const TempDirectory directory;
+    const int status = status_of_child(
+        [&]
+        {
+            const rlimit limit{1000, 1000}; // Writing beyond is EFBIG, with the signal ignored.
+            ::setrlimit(RLIMIT_FSIZE, &limit);
+            ::signal(SIGXFSZ, SIG_IGN);
+            auto sut = AtomicFile::create(directory.path() / "a.bin");
+            const std::string much(5000, 'x');
+            const bool refused = sut && !sut.value().write(bytes_of(much));
+            return refused ? 0 : 1;
+        });
+    EXPECT_TRUE(WIFEXITED(status));
+    EXPECT_EQ(WEXITSTATUS(status), 0);
+}
+
+TEST(AtomicFile, removes_its_temporaries_when_a_signal_ends_the_process)
+{
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP})
+    {
+        const TempDirectory directory;
+        directory.write("old.bin", "old");
+        const int status = status_of_child(
+            [&]
+            {
+                ::signal(signal, SIG_DFL);
+                AtomicFile::remove_pending_on_signal();
+                auto first = AtomicFile::create(directory.path() / "a.bin");
+                auto second = AtomicFile::create(directory.path() / "old.bin");
+                auto third = AtomicFile::create(directory.path() / "kept.bin");
+                if (!first || !second || !third || !third.value().commit())
+                {
+                    return 1;
+                }
+                ::raise(signal);
+                return 2;
+            });
+        EXPECT_TRUE(WIFSIGNALED(status));
+        EXPECT_EQ(WTERMSIG(status), signal);
+        EXPECT_EQ(directory.files(), 2U);
+        EXPECT_EQ(content_of(directory.path() / "old.bin"), "old");
+    }
+}
+
+TEST(AtomicFile, leaves_an_ignored_signal_ignored)
+{
+    const TempDirectory directory;
+    const int status = status_of_child(
+        [&]
+        {
+            ::signal(SIGHUP, SIG_IGN);
+            AtomicFile::remove_pending_on_signal();
+            ::raise(SIGHUP);
+            return 7;
+        });
+    EXPECT_TRUE(WIFEXITED(status));
+    EXPECT_EQ(WEXITSTATUS(status), 7);
+}
+
+} // namespace
+
+} // namespace tactus::test

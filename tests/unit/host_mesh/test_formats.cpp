@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "tests/unit/host_mesh/samples.hpp"
+#include "tests/unit/host_mesh/support.hpp"
+
+#include <gtest/gtest.h>
+
+/// What only one of the formats has.
+namespace tactus::test
+{
+
+namespace
+{
+
+std::vector<Face> faces_of(const std::string& name, const std::string& text)
+{
+    const auto sut = read_bytes(name, text);
+    EXPECT_TRUE(sut) << sut.error().text;
+    return sut ? sut.value().mesh.faces : std::vector<Face>{};
+}
+
+const std::string kObjSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+
+TEST(ReadObj, cuts_polygons_into_fans_and_says_so)
+{
+    const auto sut = read_bytes("a.obj", kObjSquare + "f 1 2 3 4\n");
+    ASSERT_TRUE(sut);
+    EXPECT_EQ(sut.value().mesh.faces, (std::vector<Face>{{0, 1, 2}, {0, 2, 3}}));
+    EXPECT_EQ(sut.value().notes,
+              std::vector<std::string>{"1 polygons with more than 3 corners cut into fans"});
+}
+
+TEST(ReadObj, reads_negative_and_later_indices)
+{
+    EXPECT_EQ(faces_of("a.obj", kObjSquare + "f -4 -3 -2\n"), (std::vector<Face>{{0, 1, 2}}));
+    EXPECT_EQ(faces_of("a.obj", "f 1 2 3\n" + kObjSquare), (std::vector<Face>{{0, 1, 2}}));
+    // Counted from the vertices so far, not from all of the file.
+    EXPECT_EQ(faces_of("a.obj", kObjSquare + "f -4 -3 -2\nv 9 9 9\n"),
+              (std::vector<Face>{{0, 1, 2}}));
+}
+
+TEST(ReadObj, passes_over_texture_coordinates_normals_groups_and_materials)
+{
+    const std::string extras =
+        "mtllib x.mtl\no thing\ng a b\ns off\nusemtl red\nvt 0 0\nvn 0 0 1\n";
+    const std::vector<Face> one{{0, 1, 2}};
+    EXPECT_EQ(faces_of("a.obj", extras + kObjSquare + "f 1/1 2/1 3/1\n"), one);
+    EXPECT_EQ(faces_of("a.obj", extras + kObjSquare + "f 1//1 2//1 3//1 # a face\n"), one);
+    EXPECT_EQ(faces_of("a.obj", extras + kObjSquare + "f 1/1/1 2/1/1 3/1/1\n"), one);
+    EXPECT_EQ(faces_of("a.obj", kObjSquare + "f 1 2 \\\n 3\n"), one);
+}
+
+TEST(ReadObj, notes_points_lines_and_free_forms_that_it_leaves_out)
+{
+    const auto sut =
+        read_bytes("a.obj", kObjSquare + "l 1 2\np 1\nsurf 0 1 0 1 1 2 3 4\nf 1 2 3\n");
+    ASSERT_TRUE(sut);
+    EXPECT_EQ(sut.value().notes.size(), 1U);
+}
+
+TEST(ReadObj, refuses_a_face_of_two_corners_and_a_vertex_of_two_coordinates)
+{
+    EXPECT_NE(refusal(read_bytes("a.obj", kObjSquare + "f 1 2\n")).find("line 5"),
+              std::string::npos);
+    EXPECT_NE(refusal(read_bytes("a.obj", "v 1 2\nv 1 2 3\nf 1 1 1\n")).find("line 1"),
+              std::string::npos);
+    EXPECT_NE(refusal(read_bytes("a.obj", kObjSquare + "f 1 2 x\n")).find("'x'"),
+              std::string::npos);
+}
+
+TEST(ReadOff, passes_over_comments_blank_lines_and_colours)
+{
+    const std::string text =
+        "# first\n\nOFF # keyword\n# counts\n 4 2 0 # v f e\n\n0 0 0\n1 0 0 # x\n"
+        "1 1 0 255 0 0\n0 1 0\n# faces\n3 0 1 2 0.5 0.5 0.5\n\n3 0 2 3#end\n";
+    EXPECT_EQ(faces_of("a.off", text), (std::vector<Face>{{0, 1, 2}, {0, 2, 3}}));
+}
+
+TEST(ReadOff, takes_counts_on_the_keyword_line_and_polygons)
+{
+    EXPECT_EQ(faces_of("a.off", "COFF 4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n"),
+              (std::vector<Face>{{0, 1, 2}, {0, 2, 3}}));
+}
+
+TEST(ReadOff, refuses_kinds_with_other_coordinates)
+{
+    for (const std::string keyword : {"4OFF", "nOFF", "OFF BINARY", "PLY"})
+    {
+        refusal(read_bytes("a.off", keyword + "\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"));
+    }
+    refusal(read_bytes("a.off", "OFF\n-3 1 0\n0 0 0\n"));
+    refusal(read_bytes("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n-3 0 1 2\n"));
+    refusal(read_bytes("a.off", "OFF\n3 1 0\n0 0 0\n1 0\n0 1 0\n3 0 1 2\n"));
+    refusal(read_bytes("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n9999999999 0 1 2\n"));
+}
+
+TEST(ReadStl, joins_several_solids_and_ignores_letter_case)
+{
+    const std::string one = as_ascii_stl(tetrahedron());
+    std::string capital = one;
+    std::transform(capital.begin(), capital.end(), capital.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+    EXPECT_EQ(faces_of("a.stl", one + capital).size(), 8U);
+}
+
+TEST(ReadStl, does_not_mind_normals_that_are_not_numbers)
+{
+    std::string text = as_ascii_stl(tetrahedron());
+    text.replace(text.find("0 0 0"), 5, "nan nan nan");
+    EXPECT_EQ(faces_of("a.stl", text).size(), 4U);
+}
+
+TEST(ReadStl, refuses_a_facet_of_two_corners)
+{
+    refusal(read_bytes("a.stl", "solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n"
+                                "vertex 1 0 0\nendloop\nendfacet\nendsolid x\n"));
+}
+
+std::string strip_ply(const std::string& list)
+{
+    return "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\n"
+           "property float z\nelement tristrips 1\nproperty list int int vertex_indices\n"
+           "end_header\n0 0 0\n0 1 0\n1 0 0\n1 1 0\n2 0 0\n2 1 0\n" +
+           list + "\n";
+}
+
+TEST(ReadPly, turns_every_second_face_of_a_strip)
+{
+    EXPECT_EQ(faces_of("a.ply", strip_ply("5 1 0 3 2 5")),
+              (std::vector<Face>{{1, 0, 3}, {3, 0, 2}, {3, 2, 5}}));
+}
+
+TEST(ReadPly, starts_strips_anew_after_minus_one)
+{
+    EXPECT_EQ(faces_of("a.ply", strip_ply("8 1 0 3 2 -1 3 2 5")),
+              (std::vector<Face>{{1, 0, 3}, {3, 0, 2}, {3, 2, 5}}));
+    EXPECT_EQ(faces_of("a.ply", strip_ply("9 -1 -1 1 0 3 -1 3 2 5")),
+              (std::vector<Face>{{1, 0, 3}, {3, 2, 5}}));
+}
+
+TEST(ReadPly, drops_faces_that_only_steer_a_strip_but_counts_them)
+{
+    EXPECT_EQ(faces_of("a.ply", strip_ply("7 1 0 3 3 2 5 4")),
+              (std::vector<Face>{{1, 0, 3}, {2, 3, 5}, {2, 5, 4}}));
+}
+
+TEST(ReadPly, refuses_other_negative_indices_in_a_strip)
+{
+    refusal(read_bytes("a.ply", strip_ply("3 -2 0 1")));
+    refusal(read_bytes("a.ply", strip_ply("3 6 0 1")));
+}
+
+TEST(ReadPly, reads_every_property_type_and_passes_over_the_rest)
+{
+    std::string bytes =
+        "ply\nformat binary_big_endian 1.0\nobj_info x\nelement vertex 3\n"
+        "property uchar red\nproperty float32 x\nproperty int16 y\n"
+        "property uint8 z\nproperty list uchar ushort junk\nelement blob 2\n"
+        "property double w\nelement face 1\nproperty list ushort uint vertex_index\n"
+        "property list uchar float texcoord\nend_header\n";
+    for (std::uint8_t v = 0; v < 3; ++v)
+    {
+        append(bytes, std::uint8_t{7});
+        append(bytes, 0.5F * static_cast<float>(v), true);
+        append(bytes, static_cast<std::int16_t>(v == 1 ? -300 : 0), true);
+        append(bytes, static_cast<std::uint8_t>(v * 100));
+        append(bytes, std::uint8_t{2});
+        append(bytes, std::uint32_t{0});
+    }
+    bytes.append(16, '\x01');
+    append(bytes, std::uint16_t{3}, true);
+    for (const std::uint32_t v : {2U, 0U, 1U})
+    {
+        append(bytes, v, true);
+    }
+    append(bytes, std::uint8_t{1});
+    append(bytes, 1.0F, true);
+    const auto sut = read_bytes("a.ply", bytes);
+    ASSERT_TRUE(sut) << sut.error().text;
+    EXPECT_EQ(sut.value().mesh.positions,
+              (std::vector<Point>{{0.0, 0.0, 0.0}, {0.5, -300.0, 100.0}, {1.0, 0.0, 200.0}}));
+    EXPECT_EQ(sut.value().mesh.faces, (std::vector<Face>{{2, 0, 1}}));
+}
+
+TEST(ReadPly, cuts_polygons_into_fans_and_drops_lines)
+{
+    std::string text = as_ascii_ply(tetrahedron());
+    const auto at = text.find("3 0 2 1\n3 0 1 3");
+    ASSERT_NE(at, std::string::npos);
+    text.replace(at, 15, "4 0 2 1 3\n2 0 1");
+    const auto sut = read_bytes("a.ply", text);
+    ASSERT_TRUE(sut) << sut.error().text;
+    EXPECT_EQ(sut.value().mesh.faces,
+              (std::vector<Face>{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}));
+    EXPECT_EQ(sut.value().notes.size(), 2U);
+}
+
+TEST(ReadPly, refuses_broken_headers)
+{
+    const std::string good = as_ascii_ply(tetrahedron());
+    const std::vector<std::pair<std::string, std::string>> changes{
+        {"format ascii 1.0\n", ""},
+        {"format ascii", "format weird"},
+        {"element vertex 4", "element vertex"},
+        {"element vertex 4", "element vertex -4"},
+        {"property double x\n", ""},
+        {"property double x", "property double y"},
+        {"property double x", "property quad x"},
+        {"property double x", "property double"},
+        {"list uchar int", "list float int"},
+        {"element vertex 4\n", ""},
+        {"element vertex 4", "element vertices 4"},
+        {"comment", "commment"},
+        {"end_header\n", ""},
+    };
+    for (const auto& [from, to] : changes)
+    {
+        std::string text = good;
+        const auto at = text.find(from);
+        ASSERT_NE(at, std::string::npos) << from;
+        EXPECT_FALSE(refusal(read_bytes("a.ply", text.replace(at, from.size(), to))).empty())
+            << from << " -> " << to;
+    }
+}
+
+TEST(ReadPly, refuses_list_lengths_that_are_negative_or_broken)
+{
+    for (const std::string length : {"-3", "2.5", "nan", "1e300"})
+    {
+        std::string text = as_ascii_ply(tetrahedron());
+        text.replace(text.find("3 0 2 1"), 1, length);
+        EXPECT_FALSE(refusal(read_bytes("a.ply", text)).empty()) << length;
+    }
+}
+
+} // namespace
+
+} // namespace tactus::test

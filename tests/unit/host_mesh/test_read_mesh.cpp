@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "host_tools/mesh/read_mesh.hpp"
+#include "tests/unit/host_mesh/samples.hpp"
+#include "tests/unit/host_mesh/support.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <sys/stat.h>
+
+namespace tactus::test
+{
+
+namespace
+{
+
+bool contains(const std::string& text, std::string_view part)
+{
+    return text.find(part) != std::string::npos;
+}
+
+std::string replaced(std::string text, std::string_view from, std::string_view to)
+{
+    const auto at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    return text.replace(at, from.size(), to);
+}
+
+TriangleMesh with_float_positions(TriangleMesh mesh)
+{
+    for (auto& p : mesh.positions)
+    {
+        for (double& c : p)
+        {
+            c = static_cast<double>(static_cast<float>(c));
+        }
+    }
+    return mesh;
+}
+
+TEST(ReadMesh, returns_the_same_faces_from_every_format)
+{
+    const auto mesh = tetrahedron();
+    for (const auto& [name, bytes] : in_all_formats(mesh))
+    {
+        const bool is_float = name == "binary.stl" || name == "solid.stl";
+        const auto sut = read_bytes(name, bytes);
+        ASSERT_TRUE(sut) << sut.error().text;
+        EXPECT_EQ(corners_of(sut.value().mesh),
+                  corners_of(is_float ? with_float_positions(mesh) : mesh))
+            << name;
+        EXPECT_TRUE(sut.value().notes.empty()) << name << ": " << sut.value().notes.front();
+    }
+}
+
+TEST(ReadMesh, keeps_the_order_of_vertices_of_indexed_formats)
+{
+    const auto mesh = tetrahedron();
+    for (const auto& [name, bytes] : in_all_formats(mesh))
+    {
+        const auto sut = read_bytes(name, bytes);
+        ASSERT_TRUE(sut) << sut.error().text;
+        if (!contains(name, ".stl"))
+        {
+            EXPECT_EQ(sut.value().mesh.positions, mesh.positions) << name;
+            EXPECT_EQ(sut.value().mesh.faces, mesh.faces) << name;
+        }
+    }
+}
+
+/// The oracle is the format: with a cut file there is an error, or nothing is missing, or a note
+/// says that something may be. OBJ cut at a line end is a complete shorter file.
+TEST(ReadMesh, never_takes_a_cut_file_for_a_smaller_mesh)
+{
+    const auto mesh = tetrahedron();
+    const TempDirectory directory;
+    for (const auto& [name, bytes] : in_all_formats(mesh))
+    {
+        const auto whole = read_bytes(name, bytes);
+        ASSERT_TRUE(whole);
+        std::size_t refused = 0;
+        for (std::size_t length = 0; length < bytes.size(); ++length)
+        {
+            const auto part = std::string_view(bytes).substr(0, length);
+            const auto sut = read_mesh_file(directory.write(name, part));
+            const bool at_line_end = length > 0 && bytes[length - 1] == '\n';
+            if (!sut)
+            {
+                ++refused;
+                continue;
+            }
+            const bool is_whole = sut.value().mesh.faces == whole.value().mesh.faces &&
+                                  sut.value().mesh.positions == whole.value().mesh.positions;
+            EXPECT_TRUE(is_whole || !sut.value().notes.empty() ||
+                        (name == "text.obj" && at_line_end))
+                << name << " cut at " << length;
+        }
+        EXPECT_GT(refused, bytes.size() / 2) << name;
+    }
+}
+
+TEST(ReadMesh, survives_every_changed_byte)
+{
+    const TempDirectory directory;
+    for (const auto& [name, bytes] : in_all_formats(tetrahedron()))
+    {
+        for (std::size_t at = 0; at < bytes.size(); ++at)
+        {
+            for (const char value : {'\0', '\xFF', '9', '-'})
+            {
+                std::string changed = bytes;
+                changed[at] = value;
+                const auto sut = read_mesh_file(directory.write(name, changed));
+                if (sut)
+                {
+                    for (const auto& f : sut.value().mesh.faces)
+                    {
+                        ASSERT_LT(std::max({f[0], f[1], f[2]}), sut.value().mesh.positions.size());
+                    }
+                }
+            }
+        }
+    }
+}
+
+TEST(ReadMesh, refuses_what_is_not_a_file)
+{
+    const TempDirectory directory;
+    EXPECT_TRUE(contains(refusal(read_mesh_file(directory.path() / "no.obj")), "no such file"));
+    EXPECT_TRUE(contains(refusal(read_mesh_file(directory.path())), "is a directory"));
+    const auto pipe = directory.path() / "pipe.obj";
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    EXPECT_TRUE(contains(refusal(read_mesh_file(pipe)), "not a regular file"));
+    EXPECT_TRUE(contains(refusal(read_mesh_file("")), "no such file"));
+}
+
+TEST(ReadMesh, refuses_an_unknown_extension_and_takes_capital_ones)
+{
+    EXPECT_TRUE(contains(refusal(read_bytes("a.xyz", "x")), ".ply, .obj, .stl or .off"));
+    EXPECT_TRUE(contains(refusal(read_bytes("noextension", "x")), "unknown kind"));
+    EXPECT_TRUE(read_bytes("A.OBJ", as_obj(tetrahedron())));
+}
+
+TEST(ReadMesh, refuses_empty_files_and_prose_in_every_format)
+{
+    for (const std::string name : {"a.ply", "a.obj", "a.stl", "a.off"})
+    {
+        EXPECT_TRUE(contains(refusal(read_bytes(name, "")), "is empty")) << name;
+        EXPECT_TRUE(contains(refusal(read_bytes(name, "hello world, how are you\n")), name));
+        EXPECT_FALSE(refusal(read_bytes(name, std::string(1000, '\0'))).empty());
+        EXPECT_FALSE(refusal(read_bytes(name, std::string(1000, '\xFF'))).empty());
+    }
+}
+
+TEST(ReadMesh, refuses_coordinates_that_are_not_finite)
+{
+    for (const double bad :
+         {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
+          -std::numeric_limits<double>::infinity()})
+    {
+        auto mesh = tetrahedron();
+        mesh.positions[2][1] = bad;
+        for (const auto& [name, bytes] : in_all_formats(mesh))
+        {
+            EXPECT_TRUE(contains(refusal(read_bytes(name, bytes)), "must be finite"))
+                << name << ' ' << bad;
+        }
+    }
+    const std::string huge = replaced(as_obj(tetrahedron()), "v 1 0 0", "v 1 -1e999 0");
+    EXPECT_TRUE(contains(refusal(read_bytes("a.obj", huge)), "vertex 1 (from 0): y is inf"));
+}
+
+TEST(ReadMesh, takes_numbers_too_small_for_a_double_as_zero)
+{
+    const auto sut = read_bytes("a.obj", "v 1e-999 0 0\nv +1 0 0\nv 0 1 0\nf 1 2 3\n");
+    ASSERT_TRUE(sut) << sut.error().text;
+    EXPECT_EQ(sut.value().mesh.positions[0][0], 0.0);
+    EXPECT_EQ(sut.value().mesh.positions[1][0], 1.0);
+}
+
+TEST(ReadMesh, refuses_an_index_out_of_range_and_says_where)
+{
+    auto mesh = tetrahedron();
+    mesh.faces[3] = {0, 1, 99};
+    EXPECT_TRUE(contains(refusal(read_bytes("a.obj", as_obj(mesh))),
+                         "line 9: vertex index 100 is out of range; the file has 4 vertices"));
+    EXPECT_TRUE(contains(refusal(read_bytes("a.off", as_off(mesh))),
+                         "line 10: face 3 of 4: vertex index '99' is not in 0..3"));
+    EXPECT_TRUE(contains(refusal(read_bytes("a.ply", as_ascii_ply(mesh))),
+                         "line 18: face 3 of 4 (from 0): vertex index 99 is not in 0..3"));
+    for (const bool big : {false, true})
+    {
+        EXPECT_TRUE(contains(refusal(read_bytes("a.ply", as_binary_ply(mesh, big))),
+                             "face 3 of 4 (from 0): vertex index 99 is not in 0..3"));
+    }
+    EXPECT_TRUE(contains(refusal(read_bytes("a.obj", as_obj(tetrahedron()) + "f 0 1 2\n")),
+                         "'0' names no vertex"));
+    EXPECT_TRUE(contains(refusal(read_bytes("a.obj", as_obj(tetrahedron()) + "f -5 1 2\n")),
+                         "'-5' names no vertex"));
+    EXPECT_TRUE(contains(
+        refusal(read_bytes("a.ply", replaced(as_ascii_ply(tetrahedron()), "3 0 2 1", "3 0 2 -1"))),
+        "vertex index -1"));
+}
+
+TEST(ReadMesh, refuses_a_file_without_faces)
+{
+    auto mesh = tetrahedron();
+    mesh.faces.clear();
+    for (const auto& [name, bytes] : in_all_formats(mesh))
+    {
+        EXPECT_TRUE(contains(refusal(read_bytes(name, bytes)), "holds no faces")) << name;
+    }
+}
+
+TEST(ReadMesh, refuses_counts_that_the_file_is_too_small_for)
+{
+    for (const std::string count : {"500000000", "4294967295", "9000000000000000000"})
+    {
+        for (const auto& [name, bytes] : in_all_formats(tetrahedron()))
+        {
+            if (contains(name, ".ply"))
+            {
+                const auto vertices = replaced(bytes, "vertex 4", "vertex " + count);
+                EXPECT_TRUE(contains(refusal(read_bytes(name, vertices)), "are left")) << name;
+                const auto faces = replaced(bytes, "face 4", "face " + count);
+                EXPECT_TRUE(contains(refusal(read_bytes(name, faces)), "are left")) << name;
+            }
+            if (contains(name, ".off"))
+            {
+                const auto vertices = replaced(bytes, "4 4 0", count + " 4 0");
+                EXPECT_TRUE(contains(refusal(read_bytes(name, vertices)), "bytes follow"));
+                const auto faces = replaced(bytes, "4 4 0", "4 " + count + " 0");
+                EXPECT_TRUE(contains(refusal(read_bytes(name, faces)), "bytes follow"));
+            }
+        }
+    }
+    std::string stl = as_binary_stl(tetrahedron(), "any");
+    stl[83] = '\x7F';
+    EXPECT_TRUE(contains(refusal(read_bytes("a.stl", stl)), "declares"));
+}
+
+TEST(ReadMesh, refuses_data_behind_the_declared_end)
+{
+    for (const auto& [name, bytes] : in_all_formats(tetrahedron()))
+    {
+        if (!contains(name, ".obj"))
+        {
+            EXPECT_FALSE(refusal(read_bytes(name, bytes + "3 0 1 2\n")).empty()) << name;
+        }
+    }
+}
+
+TEST(ReadMesh, reads_carriage_returns_before_line_ends)
+{
+    for (const auto& [name, bytes] : in_all_formats(tetrahedron()))
+    {
+        if (name == "ascii.ply" || contains(name, "text") || name == "ascii.stl")
+        {
+            std::string dos;
+            for (const char c : bytes)
+            {
+                dos += c == '\n' ? "\r\n" : std::string(1, c);
+            }
+            const auto sut = read_bytes(name, dos);
+            ASSERT_TRUE(sut) << sut.error().text;
+            EXPECT_EQ(corners_of(sut.value().mesh), corners_of(tetrahedron())) << name;
+        }
+    }
+}
+
+} // namespace
+
+} // namespace tactus::test
