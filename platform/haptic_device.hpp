@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "platform/time.hpp"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace tactus
+{
+
+/// What a device can do. SI units, right-handed world frame; the device-to-world transform is
+/// applied inside the device, so nobody else ever sees device coordinates.
+struct DeviceInfo
+{
+    std::string name;
+    double force_max_n{0.0};           ///< Norm; a device clamps longer forces by itself.
+    double stiffness_max_n_per_m{0.0}; ///< Stiffest wall it can render at its best rate.
+    double damping_n_s_per_m{0.0};     ///< Its own; bounds the stiffness that stays passive.
+    std::array<double, 3> workspace_centre_world_m{};
+    double workspace_radius_m{0.0}; ///< It reaches no point farther from that centre.
+    std::int64_t rate_min_hz{0};
+    std::int64_t rate_max_hz{0};
+};
+
+/// One reading. `position_world_m` is where the hand has moved the device, which may be deep inside
+/// a model while the proxy stays on the surface.
+struct DeviceSample
+{
+    std::array<double, 3> position_world_m{};
+    /// None when the device does not measure it.
+    std::optional<std::array<double, 3>> velocity_world_m_per_s;
+    /// When the position was taken; a simulated device counts frames x period from zero.
+    MonotonicTime time;
+    /// Counts the readings, from 0. A simulated device's motion depends on it and nothing else.
+    std::uint64_t frame{0};
+    /// False when the device had no trustworthy position; the others are then the last good ones.
+    bool valid{false};
+};
+
+enum class DeviceState
+{
+    idle,  ///< No force was written yet.
+    force, ///< The last written force is held until the next write.
+    brake  ///< Writes are ignored; the device damps its motion.
+};
+
+struct DeviceStatus
+{
+    DeviceState state{DeviceState::idle};
+    std::uint64_t frames{0};
+    std::uint64_t forces_clamped{0}; ///< Writes beyond force_max_n.
+    std::uint64_t forces_refused{0}; ///< Writes that were not finite; zero was written instead.
+};
+
+/// A device that is read and written once a period by the haptic thread. read(), write(),
+/// release_brake() and status() belong to that thread; they never block, allocate or throw.
+/// brake() may be called from any thread at any time.
+class HapticDevice
+{
+public:
+    virtual ~HapticDevice() = default;
+
+    /// Constant over the device's life; any thread.
+    [[nodiscard]] virtual const DeviceInfo& info() const noexcept = 0;
+
+    [[nodiscard]] virtual DeviceSample read() noexcept = 0;
+
+    /// The force on the hand, in newtons along the world's axes, held until the next write.
+    virtual void write(const std::array<double, 3>& force_world_n) noexcept = 0;
+
+    /// Takes the force away at once and damps the motion, whatever the haptic thread is doing or
+    /// failing to do. It latches until release_brake().
+    virtual void brake() noexcept = 0;
+
+    /// The next write counts again; until it comes the force is zero.
+    virtual void release_brake() noexcept = 0;
+
+    [[nodiscard]] virtual DeviceStatus status() const noexcept = 0;
+
+protected:
+    HapticDevice() = default;
+    HapticDevice(const HapticDevice&) = default;
+    HapticDevice& operator=(const HapticDevice&) = default;
+};
+
+} // namespace tactus

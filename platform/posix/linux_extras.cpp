@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/posix/linux_extras.hpp"
+
+#include "platform/posix/posix_error.hpp"
+#include "rt_core/base/assert.hpp"
+
+#include <cerrno>
+#include <pthread.h>
+#include <sched.h>
+#include <sys/resource.h>
+
+namespace tactus::linux_extras
+{
+
+namespace
+{
+
+std::string describe_rtprio_limit(const rlimit& limit)
+{
+    return limit.rlim_cur == RLIM_INFINITY ? "unlimited" : std::to_string(limit.rlim_cur);
+}
+
+} // namespace
+
+int pin_calling_thread(int cpu) noexcept
+{
+    if (cpu < 0 || cpu >= CPU_SETSIZE)
+    {
+        return EINVAL;
+    }
+    cpu_set_t set;
+    CPU_ZERO(&set);
+    CPU_SET(static_cast<std::size_t>(cpu), &set);
+    return pthread_setaffinity_np(pthread_self(), sizeof(set), &set);
+}
+
+std::string allowed_cpus()
+{
+    cpu_set_t set;
+    CPU_ZERO(&set);
+    if (sched_getaffinity(0, sizeof(set), &set) != 0)
+    {
+        return "unknown";
+    }
+    std::string list;
+    for (int cpu = 0; cpu < CPU_SETSIZE; ++cpu)
+    {
+        const int first = cpu;
+        while (cpu < CPU_SETSIZE && CPU_ISSET(static_cast<std::size_t>(cpu), &set))
+        {
+            ++cpu;
+        }
+        if (cpu == first)
+        {
+            continue;
+        }
+        list += (list.empty() ? "" : ",") + std::to_string(first);
+        list += cpu - first > 1 ? "-" + std::to_string(cpu - 1) : "";
+    }
+    return list;
+}
+
+std::string explain_fifo_refusal(int priority, int error)
+{
+    std::string line = "SCHED_FIFO " + std::to_string(priority) + " refused (" +
+                       posix::name_of_error(error) + "): ";
+    rlimit limit{};
+    const bool known = getrlimit(RLIMIT_RTPRIO, &limit) == 0;
+    if (known && limit.rlim_cur >= static_cast<rlim_t>(priority))
+    {
+        return line + "RLIMIT_RTPRIO is " + describe_rtprio_limit(limit) +
+               " and would allow it, so the control group has no real-time share; give it one "
+               "(cpu.rt_runtime_us) or start the process in the root cpu group";
+    }
+    return line + "RLIMIT_RTPRIO is " + (known ? describe_rtprio_limit(limit) : "unknown") +
+           "; add '" + posix::user_name() +
+           " - rtprio 98' to /etc/security/limits.conf and log in again, or give CAP_SYS_NICE "
+           "(container: --cap-add=SYS_NICE)";
+}
+
+void read_fault_and_switch_counts(ThreadUsage& usage) noexcept
+{
+    rusage found{};
+    const int failed = getrusage(RUSAGE_THREAD, &found);
+    TACTUS_ASSERT(failed == 0);
+    usage.minor_faults = found.ru_minflt;
+    usage.major_faults = found.ru_majflt;
+    usage.voluntary_switches = found.ru_nvcsw;
+    usage.involuntary_switches = found.ru_nivcsw;
+}
+
+} // namespace tactus::linux_extras

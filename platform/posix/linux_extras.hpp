@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "platform/thread_usage.hpp"
+
+#include <cstddef>
+#include <string>
+
+/// The only calls that Linux has and other POSIX systems do not, or have in another form. A port
+/// replaces linux_extras.cpp and nothing else.
+namespace tactus::linux_extras
+{
+
+/// Returns 0 or the errno of the refusal; EINVAL when this process may not run on `cpu`.
+[[nodiscard]] int pin_calling_thread(int cpu) noexcept;
+
+/// The processors this process may use, as "0-1,3"; for messages.
+[[nodiscard]] std::string allowed_cpus();
+
+/// The line that tells why SCHED_FIFO was refused and what would grant it.
+[[nodiscard]] std::string explain_fifo_refusal(int priority, int error);
+
+/// Faults and context switches of the calling thread; leaves cpu_time alone.
+void read_fault_and_switch_counts(ThreadUsage& usage) noexcept;
+
+} // namespace tactus::linux_extras

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+namespace tactus::posix
+{
+
+/// Memory for one thread's stack, every page touched, with a page without access below it so that
+/// an overflow stops the process instead of writing elsewhere.
+class ThreadStack
+{
+public:
+    /// Rounds up to whole pages. Check memory(): it is empty when the system has none left.
+    explicit ThreadStack(std::size_t bytes) noexcept;
+    ThreadStack(const ThreadStack&) = delete;
+    ThreadStack& operator=(const ThreadStack&) = delete;
+    ~ThreadStack();
+
+    [[nodiscard]] std::span<std::byte> memory() const noexcept { return memory_; }
+
+private:
+    std::span<std::byte> mapped_;
+    std::span<std::byte> memory_;
+};
+
+} // namespace tactus::posix

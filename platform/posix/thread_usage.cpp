@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/thread_usage.hpp"
+
+#include "platform/posix/linux_extras.hpp"
+#include "rt_core/base/assert.hpp"
+
+#include <ctime>
+
+namespace tactus
+{
+
+ThreadUsage read_thread_usage() noexcept
+{
+    ThreadUsage usage;
+    linux_extras::read_fault_and_switch_counts(usage);
+    timespec time{};
+    const int failed = clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+    TACTUS_ASSERT(failed == 0);
+    usage.cpu_time = {std::int64_t{time.tv_sec} * 1'000'000'000 + std::int64_t{time.tv_nsec}};
+    return usage;
+}
+
+} // namespace tactus

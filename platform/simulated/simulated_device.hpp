@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "platform/haptic_device.hpp"
+#include "platform/platform_error.hpp"
+#include "platform/simulated/hand_motion.hpp"
+#include "rt_core/base/result.hpp"
+#include "rt_core/math/vec3.hpp"
+
+#include <atomic>
+#include <memory>
+
+namespace tactus
+{
+
+/// A hand holding a small desktop device. The values are those of a relaxed grip; all must be
+/// finite, positive where not said otherwise.
+struct SimulatedDeviceOptions
+{
+    static constexpr std::int64_t kRateMinHz = 100;
+    static constexpr std::int64_t kRateMaxHz = 10'000;
+
+    std::int64_t rate_hz{1'000};
+    double mass_kg{0.1};                  ///< Device and the part of the hand that moves along.
+    double device_damping_n_s_per_m{1.0}; ///< Against the ground; zero is allowed.
+    double hand_stiffness_n_per_m{200.0};
+    double hand_damping_n_s_per_m{6.0};   ///< Against the moving hand; zero is allowed.
+    double brake_damping_n_s_per_m{10.0}; ///< Added while the brake is on.
+    double force_max_n{8.0};
+    double stiffness_max_n_per_m{3'000.0};
+    Vec3 workspace_centre_world_m{Vec3::Zero()};
+    double workspace_radius_m{1.0};
+};
+
+/// A point mass on the hand's spring and damper that feels the written force. Each reading
+/// integrates one period in equal sub-steps of at most 1/8 ms (semi-implicit Euler), by frame index
+/// and never by wall time: the same hand and the same forces give the same positions, bit for bit,
+/// however late the readings come.
+///
+///     hand  --[ spring, damper ]--  mass  <--  written force
+///                                    |
+///                              device damper
+class SimulatedDevice final : public HapticDevice
+{
+public:
+    /// Refuses a rate out of [kRateMinHz, kRateMaxHz], other values out of range, a hand that
+    /// starts outside the workspace, and springs or dampers too stiff for the sub-step.
+    [[nodiscard]] static Result<std::unique_ptr<SimulatedDevice>, PlatformError>
+    create(const SimulatedDeviceOptions& options, std::unique_ptr<HandMotion> hand);
+
+    [[nodiscard]] const DeviceInfo& info() const noexcept override { return info_; }
+    /// The first reading is the hand's start; each later one is a period on.
+    [[nodiscard]] DeviceSample read() noexcept override;
+    void write(const std::array<double, 3>& force_world_n) noexcept override;
+    void brake() noexcept override;
+    void release_brake() noexcept override;
+    [[nodiscard]] DeviceStatus status() const noexcept override;
+
+private:
+    SimulatedDevice(const SimulatedDeviceOptions& options, std::unique_ptr<HandMotion> hand);
+
+    void integrate_one_period() noexcept;
+    void stay_in_workspace() noexcept;
+
+    SimulatedDeviceOptions options_;
+    DeviceInfo info_;
+    std::unique_ptr<HandMotion> hand_;
+    Vec3 hand_world_m_;
+    Vec3 position_world_m_;
+    Vec3 velocity_world_m_per_s_{Vec3::Zero()};
+    Vec3 force_world_n_{Vec3::Zero()};
+    DeviceStatus status_;
+    /// The one field that other threads write. Sequentially consistent: it is rare and orders
+    /// nothing else.
+    std::atomic<bool> braked_{false};
+};
+
+} // namespace tactus

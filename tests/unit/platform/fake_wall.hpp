@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/math/vec3.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <vector>
+
+/// A stand-in for the controller's force: analytic shapes and a god-object of its own, so that the
+/// device and the hand can be tested before and apart from everything that knows meshes.
+namespace tactus::test
+{
+
+/// Signed distance, negative inside.
+using Shape = std::function<double(const Vec3&)>;
+
+inline Shape sphere(double radius_m)
+{
+    return [=](const Vec3& p) { return p.norm() - radius_m; };
+}
+
+inline Shape torus(double ring_m, double tube_m)
+{
+    return [=](const Vec3& p)
+    { return std::hypot(std::hypot(p.x(), p.y()) - ring_m, p.z()) - tube_m; };
+}
+
+inline Shape box(const Vec3& centre, const Vec3& half)
+{
+    return [=](const Vec3& p)
+    {
+        const Vec3 q = (p - centre).cwiseAbs() - half;
+        return q.cwiseMax(0.0).norm() + std::min(q.maxCoeff(), 0.0);
+    };
+}
+
+/// The outside distance stays exact; that is all a god-object outside needs.
+inline Shape join(Shape a, Shape b)
+{
+    return [=](const Vec3& p) { return std::min(a(p), b(p)); };
+}
+
+/// A ball on a spring: it follows the device, but never into the shape.
+class FakeWall
+{
+public:
+    FakeWall(Shape shape, double stiffness_n_per_m, double tool_radius_m, const Vec3& start)
+        : shape_(std::move(shape))
+        , stiffness_(stiffness_n_per_m)
+        , radius_m_(tool_radius_m)
+        , proxy_(start)
+    {
+    }
+
+    Vec3 respond(const Vec3& device)
+    {
+        follow(device);
+        const Vec3 pull = proxy_ - device;
+        return pull.norm() > 1e-9 ? Vec3(pull * stiffness_) : Vec3(Vec3::Zero());
+    }
+
+    [[nodiscard]] const Vec3& proxy() const { return proxy_; }
+
+private:
+    /// In steps no longer than the free distance; at the surface only along it.
+    void follow(const Vec3& device)
+    {
+        for (int step = 0; step < 64; ++step)
+        {
+            Vec3 left = device - proxy_;
+            const double gap = shape_(proxy_) - radius_m_;
+            if (gap < 1e-7)
+            {
+                const Vec3 normal = gradient(proxy_);
+                left -= normal * std::min(0.0, left.dot(normal));
+            }
+            if (left.norm() < 1e-10)
+            {
+                return;
+            }
+            const double longest = std::max(gap, 0.1 * radius_m_);
+            proxy_ += left * std::min(1.0, longest / left.norm());
+            push_out();
+        }
+    }
+
+    void push_out()
+    {
+        for (int step = 0; step < 4; ++step)
+        {
+            const double depth = radius_m_ - shape_(proxy_);
+            if (depth <= 0.0)
+            {
+                return;
+            }
+            proxy_ += gradient(proxy_) * depth;
+        }
+    }
+
+    [[nodiscard]] Vec3 gradient(const Vec3& p) const
+    {
+        const double h = 1e-3 * radius_m_;
+        Vec3 g;
+        for (int axis = 0; axis < 3; ++axis)
+        {
+            const Vec3 step = Vec3::Unit(axis) * h;
+            g[axis] = shape_(p + step) - shape_(p - step);
+        }
+        return g.normalized();
+    }
+
+    Shape shape_;
+    double stiffness_;
+    double radius_m_;
+    Vec3 proxy_;
+};
+
+} // namespace tactus::test

@@ -1,0 +1,353 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/float_control.hpp"
+#include "platform/posix/memory_lock.hpp"
+#include "platform/rt_thread.hpp"
+#include "platform/thread_usage.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <pthread.h>
+#include <sched.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace tactus
+{
+
+namespace
+{
+
+/// What a body finds out about the thread it runs on.
+struct Seen
+{
+    bool ran{false};
+    int policy{-1};
+    int priority{-1};
+    int cpu{-1};
+    bool term_blocked{false};
+};
+
+void look_around(Seen& seen)
+{
+    sched_param parameter{};
+    seen.ran = true;
+    EXPECT_EQ(pthread_getschedparam(pthread_self(), &seen.policy, &parameter), 0);
+    seen.priority = parameter.sched_priority;
+    seen.cpu = sched_getcpu();
+    sigset_t blocked;
+    EXPECT_EQ(pthread_sigmask(SIG_BLOCK, nullptr, &blocked), 0);
+    seen.term_blocked = sigismember(&blocked, SIGTERM) == 1;
+}
+
+RtThreadOptions without_lock()
+{
+    RtThreadOptions options;
+    options.lock_memory = false;
+    return options;
+}
+
+std::string why_no_fifo()
+{
+    const auto refused = probe_realtime(without_lock());
+    return refused.value().empty() ? std::string() : refused.value().front();
+}
+
+/// Runs `check` as an ordinary user with the given limits; the answer is its exit status, 77 when
+/// this user cannot become another. The child makes no other thread.
+template <typename Check>
+int exit_status_without_privilege(rlim_t rtprio, rlim_t memlock, const Check& check)
+{
+    const pid_t child = fork();
+    if (child == 0)
+    {
+        const rlimit priority_limit{rtprio, rtprio};
+        const rlimit memory_limit{memlock, memlock};
+        if (setrlimit(RLIMIT_RTPRIO, &priority_limit) != 0 ||
+            setrlimit(RLIMIT_MEMLOCK, &memory_limit) != 0 || setgid(65'534) != 0 ||
+            setuid(65'534) != 0)
+        {
+            _exit(77);
+        }
+        _exit(check());
+    }
+    int status = 0;
+    EXPECT_EQ(waitpid(child, &status, 0), child);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 255;
+}
+
+/// These sanitizers answer mlockall themselves: it never refuses, and locks nothing.
+constexpr bool mlockall_is_replaced()
+{
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    return true;
+#elif defined(__has_feature)
+    return __has_feature(address_sanitizer) || __has_feature(thread_sanitizer) ||
+           __has_feature(memory_sanitizer);
+#else
+    return false;
+#endif
+}
+
+bool contains(const std::string& text, const std::string& part)
+{
+    return text.find(part) != std::string::npos;
+}
+
+TEST(RtThread, runs_its_body_with_fifo_at_the_priority_asked_for)
+{
+    if (const std::string why = why_no_fifo(); !why.empty())
+    {
+        GTEST_SKIP() << why;
+    }
+    RtThreadOptions options = without_lock();
+    options.priority = 42;
+    Seen seen;
+    auto started = RtThread::start(options, [&] { look_around(seen); });
+    ASSERT_TRUE(started) << started.error().message;
+    started.value().join();
+    EXPECT_EQ(seen.policy, SCHED_FIFO);
+    EXPECT_EQ(seen.priority, 42);
+    EXPECT_TRUE(started.value().report().fifo);
+    EXPECT_TRUE(started.value().report().refused.empty());
+}
+
+TEST(RtThread, does_not_pass_the_starters_policy_on_where_fifo_is_not_wanted_by_it)
+{
+    RtThreadOptions options = without_lock();
+    options.allow_no_rt = true;
+    Seen seen;
+    auto started = RtThread::start(options, [&] { look_around(seen); });
+    ASSERT_TRUE(started) << started.error().message;
+    started.value().join();
+    EXPECT_EQ(seen.policy, started.value().report().fifo ? SCHED_FIFO : SCHED_OTHER);
+    EXPECT_EQ(started.value().report().refused.empty(), started.value().report().fifo);
+}
+
+TEST(RtThread, pins_the_body_to_the_processor_asked_for)
+{
+    RtThreadOptions options = without_lock();
+    options.allow_no_rt = true;
+    cpu_set_t allowed;
+    ASSERT_EQ(sched_getaffinity(0, sizeof(allowed), &allowed), 0);
+    int last = -1;
+    for (int cpu = 0; cpu < CPU_SETSIZE; ++cpu)
+    {
+        last = CPU_ISSET(static_cast<std::size_t>(cpu), &allowed) ? cpu : last;
+    }
+    options.cpu = last;
+    Seen seen;
+    auto started = RtThread::start(options, [&] { look_around(seen); });
+    ASSERT_TRUE(started) << started.error().message;
+    started.value().join();
+    EXPECT_EQ(seen.cpu, last);
+    EXPECT_TRUE(started.value().report().pinned);
+}
+
+TEST(RtThread, refuses_a_processor_that_does_not_exist_and_names_those_that_do)
+{
+    for (const int cpu : {-1, 1'000, 1'000'000})
+    {
+        RtThreadOptions options = without_lock();
+        options.allow_no_rt = true;
+        options.cpu = cpu;
+        bool ran = false;
+        const auto refused = RtThread::start(options, [&] { ran = true; });
+        ASSERT_FALSE(refused);
+        EXPECT_EQ(refused.error().kind, PlatformErrorKind::bad_option);
+        EXPECT_TRUE(contains(refused.error().message, "processor " + std::to_string(cpu)));
+        EXPECT_TRUE(contains(refused.error().message, "may use 0"));
+        EXPECT_FALSE(ran);
+    }
+}
+
+TEST(RtThread, refuses_priorities_and_stacks_out_of_range)
+{
+    for (const int priority : {-1, 0, 99, 100})
+    {
+        RtThreadOptions options = without_lock();
+        options.priority = priority;
+        const auto refused = RtThread::start(options, [] {});
+        ASSERT_FALSE(refused);
+        EXPECT_EQ(refused.error().kind, PlatformErrorKind::bad_option);
+        EXPECT_TRUE(contains(refused.error().message, "1..98"));
+        EXPECT_FALSE(probe_realtime(options));
+    }
+    for (const std::size_t bytes : {std::size_t{0}, std::size_t{65'535}, std::size_t{67'108'865}})
+    {
+        RtThreadOptions options = without_lock();
+        options.stack_bytes = bytes;
+        const auto refused = RtThread::start(options, [] {});
+        ASSERT_FALSE(refused);
+        EXPECT_TRUE(contains(refused.error().message, "65536..67108864 bytes"));
+    }
+}
+
+TEST(RtThread, blocks_signals_in_the_body_and_leaves_the_starters_alone)
+{
+    RtThreadOptions options = without_lock();
+    options.allow_no_rt = true;
+    Seen here_before;
+    look_around(here_before);
+    Seen seen;
+    auto started = RtThread::start(options, [&] { look_around(seen); });
+    ASSERT_TRUE(started);
+    started.value().join();
+    Seen here_after;
+    look_around(here_after);
+    EXPECT_TRUE(seen.term_blocked);
+    EXPECT_EQ(here_after.term_blocked, here_before.term_blocked);
+}
+
+TEST(RtThread, has_its_stack_in_memory_before_the_body_runs)
+{
+    RtThreadOptions options = without_lock();
+    options.allow_no_rt = true;
+    options.stack_bytes = 2048 * 1024;
+    std::int64_t faults = -1;
+    const auto touch_deep = [&]
+    {
+        const ThreadUsage before = read_thread_usage();
+        std::array<volatile char, 768 * 1024> deep;
+        for (std::size_t i = 0; i < deep.size(); i += 4'096)
+        {
+            deep[i] = 1;
+        }
+        faults = (read_thread_usage() - before).minor_faults;
+    };
+    auto started = RtThread::start(options, touch_deep);
+    ASSERT_TRUE(started);
+    started.value().join();
+    // 192 if each page came in by itself; code pages and sanitizers may add some of their own.
+    EXPECT_LT(faults, 96);
+}
+
+TEST(RtThread, joins_once_and_on_destruction)
+{
+    RtThreadOptions options = without_lock();
+    options.allow_no_rt = true;
+    bool ran = false;
+    {
+        auto started = RtThread::start(options, [&] { ran = true; });
+        ASSERT_TRUE(started);
+        RtThread moved = std::move(started).value();
+    }
+    EXPECT_TRUE(ran);
+    auto started = RtThread::start(options, [] {});
+    ASSERT_TRUE(started);
+    started.value().join();
+    started.value().join();
+}
+
+TEST(RtThread, locks_the_memory_of_the_process)
+{
+    RtThreadOptions options;
+    const auto probed = probe_realtime(options);
+    ASSERT_TRUE(probed);
+    if (!probed.value().empty())
+    {
+        GTEST_SKIP() << probed.value().front();
+    }
+    auto started = RtThread::start(options, [] {});
+    ASSERT_TRUE(started) << started.error().message;
+    EXPECT_TRUE(started.value().report().memory_locked);
+    started.value().join();
+    posix::unlock_all_memory();
+}
+
+TEST(RtThread, says_what_is_missing_for_fifo_to_an_ordinary_user)
+{
+    const int status = exit_status_without_privilege(
+        0, 0,
+        []
+        {
+            bool ran = false;
+            const auto refused = RtThread::start(without_lock(), [&] { ran = true; });
+            if (refused || ran || refused.error().kind != PlatformErrorKind::not_permitted)
+            {
+                return 1;
+            }
+            const std::string& line = refused.error().message;
+            return contains(line, "SCHED_FIFO 80 refused (EPERM): RLIMIT_RTPRIO is 0; add '") &&
+                           contains(line, " - rtprio 98' to /etc/security/limits.conf") &&
+                           contains(line, "CAP_SYS_NICE") && !contains(line, "\n")
+                       ? 0
+                       : 2;
+        });
+    if (status == 77)
+    {
+        GTEST_SKIP() << "needs to start as root to try the refusals of an ordinary user";
+    }
+    EXPECT_EQ(status, 0);
+}
+
+TEST(RtThread, says_what_is_missing_for_locked_memory)
+{
+    if (mlockall_is_replaced())
+    {
+        GTEST_SKIP() << "mlockall: replaced by the sanitizer";
+    }
+    for (const rlim_t limit : {rlim_t{0}, rlim_t{64 * 1024}})
+    {
+        const int status = exit_status_without_privilege(
+            0, limit,
+            [limit]
+            {
+                const auto line = posix::lock_all_memory();
+                const std::string amount = "RLIMIT_MEMLOCK is " + std::to_string(limit) + " bytes";
+                return line && contains(*line, "mlockall refused (") && contains(*line, amount) &&
+                               contains(*line, " - memlock unlimited' to /etc/security") &&
+                               contains(*line, "CAP_IPC_LOCK")
+                           ? 0
+                           : 1;
+            });
+        if (status == 77)
+        {
+            GTEST_SKIP() << "needs to start as root to try the refusals of an ordinary user";
+        }
+        EXPECT_EQ(status, 0) << "limit " << limit;
+    }
+}
+
+TEST(RtThread, runs_without_privilege_when_allowed_and_lists_both_refusals)
+{
+    if (mlockall_is_replaced())
+    {
+        GTEST_SKIP() << "mlockall: replaced by the sanitizer";
+    }
+    const int status = exit_status_without_privilege(
+        0, 0,
+        []
+        {
+            RtThreadOptions options;
+            options.allow_no_rt = true;
+            Seen seen;
+            auto started = RtThread::start(options, [&] { look_around(seen); });
+            if (!started)
+            {
+                return 1;
+            }
+            started.value().join();
+            const RtThreadReport& report = started.value().report();
+            const auto probed = probe_realtime(RtThreadOptions{});
+            return seen.ran && seen.policy == SCHED_OTHER && !report.fifo &&
+                           !report.memory_locked && report.refused.size() == 2 && probed &&
+                           probed.value() == report.refused
+                       ? 0
+                       : 2;
+        });
+    if (status == 77)
+    {
+        GTEST_SKIP() << "needs to start as root to try the refusals of an ordinary user";
+    }
+    EXPECT_EQ(status, 0);
+}
+
+} // namespace
+
+} // namespace tactus

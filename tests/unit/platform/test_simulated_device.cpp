@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/simulated/simulated_device.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace tactus
+{
+
+namespace
+{
+
+/// Rests at the origin, jumps to `target` in the first frame and stays there.
+class HandThatJumps final : public HandMotion
+{
+public:
+    explicit HandThatJumps(const Vec3& target) : target_(target) {}
+    [[nodiscard]] Vec3 start_world_m() const noexcept override { return Vec3::Zero(); }
+    [[nodiscard]] Vec3 next_world_m(const HandSense&) noexcept override { return target_; }
+
+private:
+    Vec3 target_;
+};
+
+/// Moves at constant speed along x.
+class HandThatPulls final : public HandMotion
+{
+public:
+    explicit HandThatPulls(double step_m) : step_m_(step_m) {}
+    [[nodiscard]] Vec3 start_world_m() const noexcept override { return Vec3::Zero(); }
+    [[nodiscard]] Vec3 next_world_m(const HandSense& sense) noexcept override
+    {
+        return Vec3::UnitX() * (step_m_ * static_cast<double>(sense.frame));
+    }
+
+private:
+    double step_m_;
+};
+
+std::unique_ptr<SimulatedDevice> make(const SimulatedDeviceOptions& options,
+                                      std::unique_ptr<HandMotion> hand)
+{
+    return std::move(SimulatedDevice::create(options, std::move(hand))).value();
+}
+
+std::string refusal(const SimulatedDeviceOptions& options)
+{
+    const auto made =
+        SimulatedDevice::create(options, std::make_unique<HandThatJumps>(Vec3::Zero()));
+    return made ? std::string() : made.error().message;
+}
+
+TEST(SimulatedDevice, settles_where_spring_and_force_balance)
+{
+    SimulatedDeviceOptions options;
+    auto sut = make(options, std::make_unique<HandThatJumps>(Vec3(0.01, 0.02, -0.03)));
+    DeviceSample sample;
+    for (int i = 0; i < 3'000; ++i)
+    {
+        sample = sut->read();
+        sut->write({1.0, 0.0, -2.0});
+    }
+    EXPECT_NEAR(sample.position_world_m[0], 0.01 + 1.0 / 200.0, 1e-9);
+    EXPECT_NEAR(sample.position_world_m[1], 0.02, 1e-9);
+    EXPECT_NEAR(sample.position_world_m[2], -0.03 - 2.0 / 200.0, 1e-9);
+}
+
+TEST(SimulatedDevice, swings_as_the_damped_oscillator_of_the_text_book)
+{
+    SimulatedDeviceOptions options;
+    options.rate_hz = 10'000;
+    options.hand_damping_n_s_per_m = 0.0;
+    auto sut = make(options, std::make_unique<HandThatJumps>(Vec3::Zero()));
+    static_cast<void>(sut->read());
+    // A step of force F: x(t) = F/k (1 - e^-at (cos wt + a/w sin wt)), a = b/2m, w^2 = k/m - a^2.
+    const double a = 1.0 / (2.0 * 0.1);
+    const double w = std::sqrt(200.0 / 0.1 - a * a);
+    for (int i = 1; i <= 2'000; ++i)
+    {
+        sut->write({1.0, 0.0, 0.0});
+        const double t = 1e-4 * i;
+        const double decay = std::exp(-a * t) * (std::cos(w * t) + a / w * std::sin(w * t));
+        EXPECT_NEAR(sut->read().position_world_m[0], (1.0 - decay) / 200.0, 2e-5);
+    }
+}
+
+TEST(SimulatedDevice, trails_a_moving_hand_by_its_own_drag)
+{
+    SimulatedDeviceOptions options;
+    auto sut = make(options, std::make_unique<HandThatPulls>(1e-4)); // 0.1 m/s.
+    DeviceSample sample;
+    for (int i = 0; i <= 3'000; ++i)
+    {
+        sample = sut->read();
+    }
+    EXPECT_NEAR(sample.position_world_m[0], 0.3 - 0.1 * 1.0 / 200.0, 1e-6);
+    ASSERT_TRUE(sample.velocity_world_m_per_s.has_value());
+    EXPECT_NEAR((*sample.velocity_world_m_per_s)[0], 0.1, 1e-6);
+}
+
+TEST(SimulatedDevice, repeats_bit_for_bit_and_takes_its_time_from_the_frame)
+{
+    SimulatedDeviceOptions options;
+    options.rate_hz = 3'000; // No whole number of nanoseconds a period.
+    auto one = make(options, std::make_unique<HandThatPulls>(1e-5));
+    auto two = make(options, std::make_unique<HandThatPulls>(1e-5));
+    for (std::int64_t i = 0; i <= 3'000; ++i)
+    {
+        const DeviceSample a = one->read();
+        const DeviceSample b = two->read();
+        ASSERT_EQ(a.position_world_m, b.position_world_m);
+        ASSERT_EQ(*a.velocity_world_m_per_s, *b.velocity_world_m_per_s);
+        EXPECT_EQ(a.time.ns, i * 1'000'000'000 / 3'000);
+        one->write({0.3, 0.1 * std::sqrt(static_cast<double>(i)), 0.0});
+        two->write({0.3, 0.1 * std::sqrt(static_cast<double>(i)), 0.0});
+    }
+}
+
+TEST(SimulatedDevice, reaches_the_end_of_its_workspace_and_no_farther)
+{
+    SimulatedDeviceOptions options;
+    options.workspace_radius_m = 0.05;
+    auto sut = make(options, std::make_unique<HandThatJumps>(Vec3(0.03, 0.04, 0.0) * 3.0));
+    DeviceSample sample;
+    for (int i = 0; i < 1'000; ++i)
+    {
+        sample = sut->read();
+        const auto& p = sample.position_world_m;
+        EXPECT_LE(std::hypot(p[0], p[1], p[2]), 0.05 * (1.0 + 1e-15));
+    }
+    EXPECT_NEAR(sample.position_world_m[0], 0.03, 1e-9);
+    EXPECT_NEAR(sample.position_world_m[1], 0.04, 1e-9);
+}
+
+TEST(SimulatedDevice, comes_to_rest_sooner_with_the_brake)
+{
+    const auto swing_m = [](bool braked)
+    {
+        SimulatedDeviceOptions options;
+        options.hand_damping_n_s_per_m = 0.0;
+        auto sut = make(options, std::make_unique<HandThatJumps>(Vec3(0.01, 0.0, 0.0)));
+        if (braked)
+        {
+            sut->brake();
+        }
+        double farthest = 0.0;
+        for (int i = 0; i < 500; ++i)
+        {
+            farthest = std::max(farthest, sut->read().position_world_m[0]);
+        }
+        return farthest - 0.01;
+    };
+    EXPECT_LT(swing_m(true), 0.5 * swing_m(false));
+}
+
+TEST(SimulatedDevice, accepts_both_ends_of_its_rates_and_refuses_what_lies_beyond)
+{
+    SimulatedDeviceOptions options;
+    for (const std::int64_t rate : {100, 10'000})
+    {
+        options.rate_hz = rate;
+        EXPECT_EQ(refusal(options), "");
+    }
+    for (const std::int64_t rate : {-1, 0, 99, 10'001})
+    {
+        options.rate_hz = rate;
+        EXPECT_NE(refusal(options).find("100..10000 Hz"), std::string::npos);
+    }
+}
+
+TEST(SimulatedDevice, refuses_values_that_make_no_device)
+{
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    for (double SimulatedDeviceOptions::*member :
+         {&SimulatedDeviceOptions::mass_kg, &SimulatedDeviceOptions::hand_stiffness_n_per_m,
+          &SimulatedDeviceOptions::force_max_n, &SimulatedDeviceOptions::workspace_radius_m,
+          &SimulatedDeviceOptions::stiffness_max_n_per_m})
+    {
+        for (const double bad : {0.0, -1.0, nan})
+        {
+            SimulatedDeviceOptions options;
+            options.*member = bad;
+            EXPECT_NE(refusal(options).find("above zero"), std::string::npos);
+        }
+    }
+    SimulatedDeviceOptions options;
+    options.hand_damping_n_s_per_m = -1.0;
+    EXPECT_NE(refusal(options).find("not negative"), std::string::npos);
+}
+
+TEST(SimulatedDevice, refuses_springs_that_its_step_cannot_follow)
+{
+    SimulatedDeviceOptions options;
+    options.mass_kg = 1e-5;
+    EXPECT_NE(refusal(options).find("too large for the mass"), std::string::npos);
+}
+
+TEST(SimulatedDevice, refuses_a_hand_that_starts_outside_the_workspace)
+{
+    SimulatedDeviceOptions options;
+    options.workspace_centre_world_m = Vec3(2.0, 0.0, 0.0);
+    EXPECT_NE(refusal(options).find("outside its radius of 1.0"), std::string::npos);
+}
+
+} // namespace
+
+} // namespace tactus
