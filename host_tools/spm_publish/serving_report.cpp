@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "host_tools/spm_publish/serving_report.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <unistd.h>
+
+namespace tactus
+{
+
+namespace
+{
+
+constexpr auto kTerminalPeriod = std::chrono::milliseconds(250);
+constexpr auto kPlainPeriod = std::chrono::seconds(5);
+
+} // namespace
+
+ServingReport::ServingReport() : is_terminal_(::isatty(STDOUT_FILENO) == 1) {}
+
+ServingReport::~ServingReport()
+{
+    clear_line();
+}
+
+void ServingReport::print_line(const std::string& line)
+{
+    clear_line();
+    fmt::print("{}\n", line);
+    std::fflush(stdout); // Read by scripts as it comes.
+}
+
+void ServingReport::update(const dds::DdsHost& host)
+{
+    const auto now = Clock::now();
+    const std::chrono::duration<double> passed = now - last_;
+    if (passed < (is_terminal_ ? std::chrono::nanoseconds(kTerminalPeriod) : kPlainPeriod))
+    {
+        return;
+    }
+    const auto counters = host.counters();
+    const bool has_sent = counters.pieces_sent != shown_.pieces_sent;
+    const std::string line = rates(host, passed.count());
+    last_ = now;
+    shown_ = counters;
+    if (is_terminal_)
+    {
+        clear_line();
+        fmt::print("{}", line);
+        std::fflush(stdout);
+        line_length_ = line.size();
+    }
+    else if (has_sent)
+    {
+        print_line(line);
+    }
+}
+
+std::string ServingReport::rates(const dds::DdsHost& host, double seconds) const
+{
+    const auto counters = host.counters();
+    const auto pieces = static_cast<double>(counters.pieces_sent - shown_.pieces_sent);
+    const auto bytes = static_cast<double>(counters.bytes_sent - shown_.bytes_sent);
+    return fmt::format("{} subscribed, {:.0f} chunks/s, {:.1f} KB/s, {} chunks in all",
+                       host.subscribers().size(), pieces / seconds, bytes / seconds / 1e3,
+                       counters.pieces_sent);
+}
+
+void ServingReport::clear_line()
+{
+    if (line_length_ > 0)
+    {
+        fmt::print("\r{:{}}\r", "", line_length_);
+        std::fflush(stdout);
+        line_length_ = 0;
+    }
+}
+
+} // namespace tactus

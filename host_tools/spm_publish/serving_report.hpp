@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "transport/dds/dds_host.hpp"
+
+#include <chrono>
+#include <cstddef>
+#include <string>
+
+namespace tactus
+{
+
+/// Shows on stdout what a host serves at present: on a terminal one line that is written over, a
+/// few times a second; elsewhere a plain line every few seconds while something is sent.
+class ServingReport
+{
+public:
+    ServingReport();
+    /// Ends the line on a terminal.
+    ~ServingReport();
+    ServingReport(const ServingReport&) = delete;
+    ServingReport& operator=(const ServingReport&) = delete;
+
+    /// Prints a line of its own, above the one that is written over.
+    void print_line(const std::string& line);
+    /// Call it often; it prints when it is due.
+    void update(const dds::DdsHost& host);
+
+private:
+    using Clock = std::chrono::steady_clock;
+
+    [[nodiscard]] std::string rates(const dds::DdsHost& host, double seconds) const;
+    void clear_line();
+
+    bool is_terminal_;
+    std::size_t line_length_{0};
+    Clock::time_point last_{Clock::now()};
+    dds::DdsHost::Counters shown_;
+};
+
+} // namespace tactus

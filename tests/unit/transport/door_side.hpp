@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/base/arena.hpp"
+#include "rt_core/cache/chunk_inbox.hpp"
+#include "rt_core/spm/linker.hpp"
+#include "rt_core/spm/page_slots.hpp"
+#include "tests/unit/transport/tiny_model.hpp"
+#include "transport/served_model.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <map>
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace tactus::test
+{
+
+struct FreeDeleter
+{
+    void operator()(std::byte* bytes) const
+    {
+        std::free(bytes);
+    } // NOLINT: aligned_alloc's partner.
+};
+
+/// What a controller has for one model, small, and the haptic thread's side of the door: which
+/// slots it owns, checked at every hand-over against what the model's pages must hold.
+class DoorSide
+{
+public:
+    DoorSide(const TinyModel& model, std::uint32_t pages, std::uint32_t index_pages,
+             std::uint32_t wishes)
+        : model_(model)
+        , memory_(static_cast<std::byte*>(std::aligned_alloc(Arena::kAlignment, kBytes)))
+        , arena({memory_.get(), kBytes})
+        , header(parse_trusted_header(model.header).value())
+        , slots(PageSlots::take(arena, model.counts, pages, index_pages))
+        , linker(arena, model.counts, slots)
+        , inbox(arena, pages, index_pages, wishes)
+    {
+        const auto loaded = load_base_mesh(model.base, header, slots.base);
+        EXPECT_TRUE(loaded.has_value());
+    }
+
+    [[nodiscard]] bool wish(ContentKey key, std::uint32_t generation = 0)
+    {
+        return inbox.wanted.try_push({key, generation});
+    }
+
+    /// Adopts all arrivals; returns how many.
+    std::size_t adopt()
+    {
+        std::size_t adopted = 0;
+        ChunkInbox::Arrival arrival;
+        while (inbox.arrived.try_pop(arrival))
+        {
+            ++adopted;
+            EXPECT_FALSE(owns(arrival.key)) << "piece " << arrival.key.number << " came twice";
+            for (const auto& [key, slot] : owned_)
+            {
+                const bool is_same = (key.first == arrival.key.kind) && slot == arrival.slot;
+                EXPECT_FALSE(is_same) << "slot " << slot << " is owned already";
+            }
+            owned_[{arrival.key.kind, arrival.key.number}] = arrival.slot;
+            if (expects_sound_content)
+            {
+                check_content(arrival);
+            }
+        }
+        return adopted;
+    }
+
+    [[nodiscard]] bool owns(ContentKey key) const
+    {
+        return owned_.contains({key.kind, key.number});
+    }
+    [[nodiscard]] std::size_t owned(ContentKind kind) const
+    {
+        std::size_t count = 0;
+        for (const auto& [key, slot] : owned_)
+        {
+            count += key.first == kind ? 1U : 0U;
+        }
+        return count;
+    }
+    [[nodiscard]] std::uint32_t slot_of(ContentKey key) const
+    {
+        return owned_.at({key.kind, key.number});
+    }
+
+    void give_back(ContentKey key)
+    {
+        const auto at = owned_.find({key.kind, key.number});
+        ASSERT_NE(at, owned_.end());
+        ASSERT_TRUE(inbox.freed.try_push({key.kind, at->second}));
+        owned_.erase(at);
+    }
+
+    /// Every record that is owned and linked has exactly the links of the whole model, as far as
+    /// the records they name are here and linked.
+    void check_links()
+    {
+        for (const auto& [key, slot] : owned_)
+        {
+            for (std::uint32_t place = 0; key.first == ContentKind::chunk && place < 64; ++place)
+            {
+                const std::size_t id = std::size_t{key.second} * 64 + place;
+                for (std::uint32_t i = 0; id < model_.records.size() && i < kMaxStarFaces; ++i)
+                {
+                    const std::uint32_t expected = model_.records[id].next[i];
+                    const std::uint32_t next = load_next(slots.pages[slot].records[place].next[i]);
+                    const bool is_here = expected == kNextExact || is_linked(expected);
+                    EXPECT_TRUE(next == expected || (next == kNextPending && !is_here))
+                        << "record " << id << ", star face " << i << ": next " << next << ", not "
+                        << expected;
+                }
+            }
+        }
+    }
+
+    [[nodiscard]] bool is_linked(std::uint32_t record) const
+    {
+        const auto at = owned_.find({ContentKind::chunk, record / 64});
+        return at != owned_.end() &&
+               ((slots.linked[at->second].load(std::memory_order_acquire) >> (record % 64)) & 1U) !=
+                   0;
+    }
+
+private:
+    static constexpr std::size_t kBytes = std::size_t{4} << 20U;
+
+    void check_content(const ChunkInbox::Arrival& arrival)
+    {
+        for (std::size_t place = 0; arrival.key.kind == ContentKind::chunk && place < 64; ++place)
+        {
+            const std::size_t id = std::size_t{arrival.key.number} * 64 + place;
+            if (id < model_.records.size())
+            {
+                const VsplitRecord& got = slots.pages[arrival.slot].records[place];
+                EXPECT_EQ(got.star, model_.records[id].star) << "record " << id;
+                EXPECT_EQ(got.position_m, model_.records[id].position_m) << "record " << id;
+            }
+        }
+    }
+
+    const TinyModel& model_;
+    std::unique_ptr<std::byte, FreeDeleter> memory_;
+    std::map<std::pair<ContentKind, std::uint32_t>, std::uint32_t> owned_;
+
+public:
+    bool expects_sound_content{true};
+    Arena arena;
+    ModelHeader header;
+    PageSlots slots;
+    Linker linker;
+    ChunkInbox inbox;
+};
+
+} // namespace tactus::test

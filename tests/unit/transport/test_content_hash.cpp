@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "transport/content_hash.hpp"
+#include "transport/model_name.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace tactus
+{
+namespace
+{
+
+TEST(ContentHash, is_the_first_half_of_blake2b_256)
+{
+    // b2sum -l 256 of nothing, and of the three letters.
+    EXPECT_EQ(hash_text(content_hash({})), "0e5751c026e543b2e8ab2eb06099daa1");
+    const std::string abc = "abc";
+    EXPECT_EQ(hash_text(content_hash(std::as_bytes(std::span(abc)))),
+              "bddd813c634239723171ef3fee98579b");
+}
+
+TEST(ContentHash, text_is_read_back_and_anything_else_is_refused)
+{
+    const ContentHash hash = content_hash({});
+    EXPECT_EQ(parse_hash(hash_text(hash)), hash);
+    EXPECT_EQ(parse_hash("0E5751C026E543B2E8AB2EB06099DAA1"), hash);
+    EXPECT_FALSE(parse_hash(""));
+    EXPECT_FALSE(parse_hash("0e5751c026e543b2e8ab2eb06099daa"));
+    EXPECT_FALSE(parse_hash("0e5751c026e543b2e8ab2eb06099daa12"));
+    EXPECT_FALSE(parse_hash("0e5751c026e543b2e8ab2eb06099daag"));
+}
+
+TEST(ModelName, allows_1_to_63_plain_characters)
+{
+    EXPECT_TRUE(is_valid_name("a"));
+    EXPECT_TRUE(is_valid_name("Stanford-Bunny_2.1"));
+    EXPECT_TRUE(is_valid_name(std::string(63, 'x')));
+    EXPECT_FALSE(is_valid_name(""));
+    EXPECT_FALSE(is_valid_name(std::string(64, 'x')));
+    for (const char* name : {"a b", "a/b", "a\nb", "a\x1b[31m", "caf\xc3\xa9", "a@b", "*"})
+    {
+        EXPECT_FALSE(is_valid_name(name)) << printable(name);
+    }
+}
+
+TEST(ModelName, a_selector_is_a_name_and_perhaps_a_hash)
+{
+    const auto plain = parse_selector("bunny");
+    ASSERT_TRUE(plain);
+    EXPECT_EQ(plain.value().name, "bunny");
+    EXPECT_FALSE(plain.value().hash);
+    const auto pinned = parse_selector("bunny@0e5751c026e543b2e8ab2eb06099daa1");
+    ASSERT_TRUE(pinned);
+    EXPECT_EQ(pinned.value().hash, content_hash({}));
+    EXPECT_EQ(parse_selector("bunny@12").error().text, "hash '12' is not 32 hexadecimal digits");
+    EXPECT_EQ(parse_selector("b\tnny").error().text,
+              "name 'b?nny' is not 1 to 63 characters of A-Z a-z 0-9 . _ -");
+    EXPECT_FALSE(parse_selector("@0e5751c026e543b2e8ab2eb06099daa1"));
+}
+
+} // namespace
+} // namespace tactus

@@ -1,0 +1,364 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "tests/unit/transport/door_side.hpp"
+#include "tests/unit/transport/tiny_model.hpp"
+#include "transport/courier.hpp"
+#include "transport/loopback/loopback_link.hpp"
+#include "transport/store/store_link.hpp"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <atomic>
+#include <memory>
+#include <random>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace tactus
+{
+namespace
+{
+
+using test::DoorSide;
+using test::make_tiny_model;
+using test::TemporaryFolder;
+using test::TinyModel;
+
+constexpr ContentKey chunk_key(std::uint32_t number)
+{
+    return {ContentKind::chunk, number};
+}
+constexpr ContentKey index_key(std::uint32_t number)
+{
+    return {ContentKind::index_page, number};
+}
+
+constexpr std::int64_t kStepNs = 1'000'000;
+
+/// A file, a link that fails as told, a courier, and the haptic thread's side of the door.
+struct Road
+{
+    explicit Road(const TinyModel& model, const LoopbackFaults& faults = {},
+                  std::uint32_t pages = 16, std::uint32_t index_pages = 2,
+                  const CourierOptions& options = {})
+        : store(ModelStore::open(folder.write("road.spm", model.file)).value(), {})
+        , link(store, faults)
+        , side(model, pages, index_pages, 64)
+        , sut(
+              side.arena, side.header, side.slots, side.linker, side.inbox, link, "road",
+              [this](const std::string& line) { lines.push_back(line); }, options)
+    {
+    }
+
+    void step()
+    {
+        now_ns += kStepNs;
+        sut.step(now_ns);
+    }
+    /// Steps until the piece came, at most `steps` times.
+    [[nodiscard]] bool comes(ContentKey key, int steps = 1)
+    {
+        for (int i = 0; i < steps && !side.owns(key); ++i)
+        {
+            step();
+            side.adopt();
+        }
+        return side.owns(key);
+    }
+
+    TemporaryFolder folder;
+    StoreLink store;
+    LoopbackLink link;
+    DoorSide side;
+    std::vector<std::string> lines;
+    std::int64_t now_ns{0};
+    Courier sut;
+};
+
+TEST(Courier, brings_an_index_page_and_then_its_chunks)
+{
+    const TinyModel model = make_tiny_model({.records = 300});
+    Road road(model);
+    ASSERT_TRUE(road.side.wish(index_key(0)));
+    ASSERT_TRUE(road.comes(index_key(0)));
+    for (std::uint32_t chunk = 0; chunk < 5; ++chunk)
+    {
+        ASSERT_TRUE(road.side.wish(chunk_key(chunk)));
+    }
+    road.step();
+    EXPECT_EQ(road.side.adopt(), 5U);
+    for (std::uint32_t record = 0; record < 300; ++record)
+    {
+        EXPECT_TRUE(road.side.is_linked(record)) << record;
+    }
+    EXPECT_EQ(road.sut.counters().delivered, 6U);
+    EXPECT_EQ(road.sut.open_wishes(), 0U);
+    EXPECT_EQ(road.sut.free_pages(), 11U);
+    EXPECT_TRUE(road.lines.empty());
+}
+
+TEST(Courier, drops_a_chunk_whose_index_page_is_not_here)
+{
+    const TinyModel model = make_tiny_model({});
+    Road road(model);
+    ASSERT_TRUE(road.side.wish(chunk_key(0)));
+    EXPECT_FALSE(road.comes(chunk_key(0), 3));
+    EXPECT_EQ(road.sut.counters().dropped_no_index, 1U);
+    EXPECT_EQ(road.sut.free_pages(), 16U);
+}
+
+TEST(Courier, brings_a_piece_once_however_often_it_is_wished_for)
+{
+    const TinyModel model = make_tiny_model({});
+    Road road(model, {.delay_polls_min = 3, .delay_polls_max = 3});
+    for (int i = 0; i < 6; ++i)
+    {
+        ASSERT_TRUE(road.side.wish(index_key(0)));
+        road.step();
+    }
+    EXPECT_EQ(road.side.adopt(), 1U);
+    EXPECT_EQ(road.sut.counters().pieces, 1U);
+}
+
+TEST(Courier, drops_what_finds_no_free_slot_and_brings_it_when_one_is_freed)
+{
+    const TinyModel model = make_tiny_model({.records = 200});
+    Road road(model, {}, 2, 1);
+    ASSERT_TRUE(road.side.wish(index_key(0)));
+    ASSERT_TRUE(road.comes(index_key(0)));
+    for (const std::uint32_t chunk : {0U, 1U, 2U})
+    {
+        ASSERT_TRUE(road.side.wish(chunk_key(chunk)));
+    }
+    EXPECT_FALSE(road.comes(chunk_key(2), 3));
+    EXPECT_EQ(road.sut.counters().dropped_no_slot, 1U);
+    EXPECT_EQ(road.side.owned(ContentKind::chunk), 2U);
+    road.side.give_back(chunk_key(0));
+    ASSERT_TRUE(road.side.wish(chunk_key(2)));
+    EXPECT_TRUE(road.comes(chunk_key(2)));
+}
+
+TEST(Courier, a_page_freed_and_wished_for_again_in_one_frame_comes_back)
+{
+    const TinyModel model = make_tiny_model({});
+    Road road(model);
+    for (const ContentKey key : {index_key(0), chunk_key(1)})
+    {
+        ASSERT_TRUE(road.side.wish(key));
+        ASSERT_TRUE(road.comes(key));
+        road.side.give_back(key);
+        ASSERT_TRUE(road.side.wish(key));
+        EXPECT_TRUE(road.comes(key));
+    }
+}
+
+TEST(Courier, refuses_a_damaged_piece_with_nothing_changed_and_asks_again)
+{
+    const TinyModel model = make_tiny_model({});
+    Road road(model, {.damage = 1.0});
+    ASSERT_TRUE(road.side.wish(index_key(0)));
+    EXPECT_FALSE(road.comes(index_key(0), 250));
+    EXPECT_EQ(road.sut.counters().refused_hash, 2U);
+    EXPECT_EQ(road.sut.counters().asked_again, 1U);
+    EXPECT_EQ(road.sut.free_index_pages(), 2U);
+    ASSERT_FALSE(road.lines.empty());
+    EXPECT_EQ(road.lines[0], "model 'road': index page 0 does not have the hash that the header "
+                             "names; refused, nothing changed");
+}
+
+TEST(Courier, refuses_a_sound_piece_under_another_one_s_key)
+{
+    const TinyModel model = make_tiny_model({.records = 200});
+    /// Answers every request for a chunk with chunk 1, whichever was asked for.
+    class Liar final : public ChunkLink
+    {
+    public:
+        explicit Liar(const TinyModel& model) : model_(model) {}
+        void request(std::span<const ContentKey> keys, std::uint32_t /*generation*/) override
+        {
+            keys_.assign(keys.begin(), keys.end());
+        }
+        void poll(PieceSink& sink) override
+        {
+            for (const ContentKey key : keys_)
+            {
+                sink.receive(key,
+                             key.kind == ContentKind::chunk ? model_.chunks[1] : model_.piece(key));
+            }
+            keys_.clear();
+        }
+        [[nodiscard]] LinkState state() const override { return LinkState::connected; }
+        [[nodiscard]] std::uint64_t session() const override { return 1; }
+        [[nodiscard]] std::uint64_t bytes_received() const override { return 0; }
+
+    private:
+        const TinyModel& model_;
+        std::vector<ContentKey> keys_;
+    } liar(model);
+    DoorSide side(model, 4, 1, 8);
+    Courier sut(side.arena, side.header, side.slots, side.linker, side.inbox, liar, "liar", {});
+    ASSERT_TRUE(side.wish(index_key(0)));
+    sut.step(1);
+    ASSERT_EQ(side.adopt(), 1U);
+    ASSERT_TRUE(side.wish(chunk_key(0)));
+    ASSERT_TRUE(side.wish(chunk_key(1)));
+    sut.step(2);
+    EXPECT_EQ(side.adopt(), 1U);
+    EXPECT_TRUE(side.owns(chunk_key(1)));
+    EXPECT_EQ(sut.counters().refused_hash, 1U);
+    EXPECT_EQ(sut.free_pages(), 3U);
+}
+
+TEST(Courier, drops_what_nobody_asked_for)
+{
+    const TinyModel model = make_tiny_model({.records = 200});
+    Road road(model);
+    const std::vector<ContentKey> keys{index_key(0), chunk_key(0), {ContentKind::base, 0}};
+    road.store.request(keys, 0);
+    road.step();
+    EXPECT_EQ(road.side.adopt(), 0U);
+    EXPECT_EQ(road.sut.counters().dropped_unasked, 3U);
+}
+
+TEST(Courier, forgets_the_oldest_generation_when_too_much_is_wished_for)
+{
+    const TinyModel model = make_tiny_model({.records = 64 * 6});
+    Road road(model, {.delay_polls_min = 1, .delay_polls_max = 1}, 16, 2, {.open_wishes = 4});
+    ASSERT_TRUE(road.side.wish(index_key(0)));
+    ASSERT_TRUE(road.comes(index_key(0), 2));
+    for (std::uint32_t chunk = 0; chunk < 6; ++chunk)
+    {
+        ASSERT_TRUE(road.side.wish(chunk_key(chunk), 10 + chunk));
+    }
+    EXPECT_TRUE(road.comes(chunk_key(5), 3));
+    EXPECT_FALSE(road.side.owns(chunk_key(0)));
+    EXPECT_FALSE(road.side.owns(chunk_key(1)));
+    EXPECT_TRUE(road.side.owns(chunk_key(2)));
+    EXPECT_EQ(road.sut.counters().forgotten, 2U);
+}
+
+TEST(Courier, gives_up_a_wish_that_is_never_answered)
+{
+    const TinyModel model = make_tiny_model({});
+    Road road(model, {.loss = 1.0});
+    ASSERT_TRUE(road.side.wish(index_key(0)));
+    EXPECT_FALSE(road.comes(index_key(0), 5'010));
+    EXPECT_EQ(road.sut.counters().forgotten, 1U);
+    EXPECT_EQ(road.sut.counters().asked_again, 24U);
+    EXPECT_EQ(road.sut.open_wishes(), 0U);
+}
+
+TEST(Courier, keeps_wishes_while_the_host_is_gone_and_asks_the_next_one_at_once)
+{
+    const TinyModel model = make_tiny_model({});
+    Road road(model, {.delay_polls_min = 1, .delay_polls_max = 1});
+    ASSERT_TRUE(road.side.wish(index_key(0)));
+    road.step();
+    road.link.lose_host();
+    EXPECT_FALSE(road.comes(index_key(0), 10'000));
+    EXPECT_EQ(road.sut.counters().asked_again, 0U);
+    road.link.regain_host();
+    EXPECT_TRUE(road.comes(index_key(0), 2));
+}
+
+/// Whatever the link does, every wish is fulfilled in the end, pages hold what the file holds, and
+/// no slot is lost or owned twice.
+RC_GTEST_PROP(Courier, fulfils_every_wish_over_a_bad_link_and_leaks_no_slot, (std::uint32_t seed))
+{
+    const TinyModel model =
+        make_tiny_model({.seed = seed, .records = 64 * 10, .shuffled_ids = seed % 2 == 0});
+    std::mt19937 random(seed);
+    constexpr std::uint32_t pages = 6;
+    constexpr std::uint32_t index_pages = 1;
+    Road road(model,
+              {.seed = seed,
+               .loss = 0.2,
+               .duplicates = 0.2,
+               .damage = 0.1,
+               .mix_ups = 0.1,
+               .delay_polls_min = 0,
+               .delay_polls_max = 12},
+              pages, index_pages, {.open_wishes = 8, .retry_ns = 30 * kStepNs});
+    ASSERT_TRUE(road.side.wish(index_key(0)));
+    ASSERT_TRUE(road.comes(index_key(0), 3'000));
+    for (int round = 0; round < 30; ++round)
+    {
+        const ContentKey wanted = chunk_key(static_cast<std::uint32_t>(random() % 10));
+        if (road.side.owns(wanted))
+        {
+            continue;
+        }
+        if (road.side.owned(ContentKind::chunk) == pages)
+        {
+            std::uint32_t victim = 0;
+            while (!road.side.owns(chunk_key(victim)))
+            {
+                ++victim;
+            }
+            road.side.give_back(chunk_key(victim));
+        }
+        ASSERT_TRUE(road.side.wish(wanted, static_cast<std::uint32_t>(round)));
+        ASSERT_TRUE(road.comes(wanted, 3'000)) << "chunk " << wanted.number;
+        road.side.check_links();
+    }
+    road.step();
+    ASSERT_EQ(road.sut.free_pages() + road.side.owned(ContentKind::chunk), pages);
+    ASSERT_EQ(road.sut.open_wishes(), 0U);
+    ASSERT_EQ(road.side.linker.records_refused(), 0U);
+}
+
+/// The two threads of a controller, for the thread sanitizer and for what it cannot see.
+TEST(Courier, works_beside_a_haptic_thread)
+{
+    const TinyModel model = make_tiny_model({.records = 64 * 12, .shuffled_ids = true});
+    Road road(model, {.delay_polls_min = 0, .delay_polls_max = 3}, 5, 1, {.retry_ns = 100'000'000});
+    std::atomic<bool> stop{false};
+    std::thread transport(
+        [&]
+        {
+            for (std::int64_t now_ns = 1; !stop.load(); now_ns += kStepNs)
+            {
+                road.sut.step(now_ns);
+            }
+        });
+    std::mt19937 random(7);
+    std::size_t adopted = 0;
+    const auto bring = [&](ContentKey key)
+    {
+        while (!road.side.owns(key))
+        {
+            // Wishes may be forgotten on purpose (no slot, no index): the cache asks again.
+            static_cast<void>(road.side.wish(key));
+            std::this_thread::yield();
+            adopted += road.side.adopt();
+        }
+    };
+    bring(index_key(0));
+    while (adopted < 150)
+    {
+        const ContentKey wanted = chunk_key(static_cast<std::uint32_t>(random() % 12));
+        while (road.side.owned(ContentKind::chunk) >= 5 && !road.side.owns(wanted))
+        {
+            const ContentKey victim = chunk_key(static_cast<std::uint32_t>(random() % 12));
+            if (road.side.owns(victim))
+            {
+                road.side.give_back(victim);
+            }
+        }
+        bring(wanted);
+        road.side.check_links();
+        if (adopted % 20 == 0 && road.side.owns(index_key(0)))
+        {
+            road.side.give_back(index_key(0));
+            bring(index_key(0));
+        }
+    }
+    stop = true;
+    transport.join();
+    EXPECT_EQ(road.sut.counters().refused(), 0U);
+}
+
+} // namespace
+} // namespace tactus

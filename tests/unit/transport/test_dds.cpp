@@ -1,0 +1,606 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "tests/unit/transport/door_side.hpp"
+#include "tests/unit/transport/tiny_model.hpp"
+#include "transport/content_hash.hpp"
+#include "transport/courier.hpp"
+#include "transport/dds/dds_client.hpp"
+#include "transport/dds/dds_host.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <fcntl.h>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <sys/wait.h>
+#include <thread>
+#include <unistd.h>
+#include <vector>
+
+namespace tactus::dds
+{
+namespace
+{
+
+using namespace std::chrono_literals;
+using test::DoorSide;
+using test::make_tiny_model;
+using test::TemporaryFolder;
+using test::TinyModel;
+
+/// Far beyond what anything here takes; only a broken build waits this long.
+constexpr auto kPatience = 60s;
+
+/// Lines from any thread.
+class Lines
+{
+public:
+    Log log()
+    {
+        return [this](const std::string& line)
+        {
+            const std::lock_guard lock(mutex_);
+            text_ += line + "\n";
+        };
+    }
+    [[nodiscard]] std::string text()
+    {
+        const std::lock_guard lock(mutex_);
+        return text_;
+    }
+    [[nodiscard]] bool has(const std::string& part)
+    {
+        return text().find(part) != std::string::npos;
+    }
+
+private:
+    std::mutex mutex_;
+    std::string text_;
+};
+
+/// A host with a thread of its own, in a DDS domain of its own that meets the client's on the
+/// network: samples take the way over loopback sockets, as between processes.
+class HostThread
+{
+public:
+    HostThread(std::uint32_t domain, std::vector<PublishedModel> models, Log log)
+    {
+        auto created = DdsHost::create(domain, std::move(models), std::move(log));
+        if (!created)
+        {
+            ADD_FAILURE() << created.error().text;
+            return;
+        }
+        host_ = std::move(created).value();
+        thread_ = std::thread(
+            [this]
+            {
+                while (!stop_)
+                {
+                    host_->wait(10ms);
+                    host_->step();
+                    const std::lock_guard lock(mutex_);
+                    counters_ = host_->counters();
+                    subscribers_ = host_->subscribers();
+                }
+            });
+    }
+    ~HostThread()
+    {
+        stop_ = true;
+        if (thread_.joinable())
+        {
+            thread_.join();
+        }
+    }
+    HostThread(const HostThread&) = delete;
+    HostThread& operator=(const HostThread&) = delete;
+
+    [[nodiscard]] DdsHost::Counters counters()
+    {
+        const std::lock_guard lock(mutex_);
+        return counters_;
+    }
+    [[nodiscard]] std::vector<DdsHost::Subscriber> subscribers()
+    {
+        const std::lock_guard lock(mutex_);
+        return subscribers_;
+    }
+
+private:
+    std::unique_ptr<DdsHost> host_;
+    std::mutex mutex_;
+    DdsHost::Counters counters_;
+    std::vector<DdsHost::Subscriber> subscribers_;
+    std::atomic<bool> stop_{false};
+    std::thread thread_;
+};
+
+/// Keeps every piece that comes, and how often.
+class Collector final : public PieceSink
+{
+public:
+    void receive(ContentKey key, std::span<const std::byte> bytes) override
+    {
+        pieces[{key.kind, key.number}].assign(bytes.begin(), bytes.end());
+        ++count;
+    }
+    std::map<std::pair<ContentKind, std::uint32_t>, std::vector<std::byte>> pieces;
+    std::size_t count{0};
+};
+
+class Dds : public ::testing::Test
+{
+protected:
+    static constexpr std::uint32_t kHostDomain = 1; // Within this process; see SetUp.
+    static constexpr std::uint32_t kOtherHostDomain = 2;
+    static constexpr std::uint32_t kClientDomain = 3;
+    static constexpr std::uint32_t kOtherClientDomain = 4;
+
+    void SetUp() override
+    {
+        static int tests = 0;
+        const auto wire =
+            (static_cast<unsigned>(::getpid()) * 7U + static_cast<unsigned>(tests++)) % 230U;
+        const std::string uri =
+            "<CycloneDDS><Domain id=\"any\"><General><Interfaces><NetworkInterface name=\"lo\" "
+            "multicast=\"false\"/></Interfaces><AllowMulticast>false</AllowMulticast></General>"
+            "<Discovery><ExternalDomainId>" +
+            std::to_string(wire) +
+            "</ExternalDomainId><ParticipantIndex>auto</ParticipantIndex><LeaseDuration>1 "
+            "s</LeaseDuration><Peers><Peer address=\"127.0.0.1\"/></Peers></Discovery>"
+            "<Internal><HeartbeatInterval min=\"2 ms\" minsched=\"2 ms\" max=\"20 ms\">5 ms"
+            "</HeartbeatInterval><NackDelay>1 ms</NackDelay></Internal></Domain></CycloneDDS>";
+        ::setenv("CYCLONEDDS_URI", uri.c_str(), 1);
+    }
+
+    PublishedModel published(const std::string& name, const TinyModel& model)
+    {
+        const auto path = folder.write((name + std::to_string(files_++)).c_str(), model.file);
+        return {name, ModelStore::open(path).value()};
+    }
+    std::unique_ptr<HostThread> host_of(const std::string& name, const TinyModel& model,
+                                        std::uint32_t domain = kHostDomain)
+    {
+        std::vector<PublishedModel> models;
+        models.push_back(published(name, model));
+        return std::make_unique<HostThread>(domain, std::move(models), host_lines.log());
+    }
+    std::unique_ptr<DdsClient> client(std::uint32_t domain = kClientDomain)
+    {
+        auto created = DdsClient::create(domain, "test-" + std::to_string(domain), lines.log());
+        EXPECT_TRUE(created) << created.error().text;
+        return std::move(created).value();
+    }
+
+    static bool eventually(const std::function<bool()>& is_so)
+    {
+        const auto start = std::chrono::steady_clock::now();
+        while (!is_so())
+        {
+            if (std::chrono::steady_clock::now() - start > kPatience)
+            {
+                return false;
+            }
+            std::this_thread::sleep_for(1ms);
+        }
+        return true;
+    }
+    static bool polled_until(ChunkLink& link, PieceSink& sink, const std::function<bool()>& is_so)
+    {
+        return eventually(
+            [&]
+            {
+                link.poll(sink);
+                return is_so();
+            });
+    }
+
+    TemporaryFolder folder;
+    Lines lines;
+    Lines host_lines;
+
+private:
+    int files_{0};
+};
+
+std::vector<ContentKey> all_pieces(const TinyModel& model)
+{
+    std::vector<ContentKey> keys;
+    for (std::uint32_t page = 0; page < model.index_pages.size(); ++page)
+    {
+        keys.push_back({ContentKind::index_page, page});
+    }
+    for (std::uint32_t chunk = 0; chunk < model.chunks.size(); ++chunk)
+    {
+        keys.push_back({ContentKind::chunk, chunk});
+    }
+    return keys;
+}
+
+void expect_whole_model(const Collector& got, const TinyModel& model)
+{
+    for (const ContentKey key : all_pieces(model))
+    {
+        const auto at = got.pieces.find({key.kind, key.number});
+        ASSERT_NE(at, got.pieces.end()) << key.number;
+        EXPECT_TRUE(std::ranges::equal(at->second, model.piece(key))) << key.number;
+    }
+}
+
+TEST_F(Dds, a_late_joiner_gets_the_model_s_start_and_every_piece_that_it_asks_for)
+{
+    const TinyModel model = make_tiny_model({.records = 64 * 100});
+    const auto host = host_of("tiny", model);
+    const auto sut = client();
+    auto found = sut->find({"tiny", std::nullopt}, kPatience);
+    ASSERT_TRUE(found) << found.error().text;
+    EXPECT_TRUE(std::ranges::equal(found.value().header, model.header));
+    EXPECT_TRUE(std::ranges::equal(found.value().base, model.base));
+    EXPECT_EQ(found.value().hash, model_hash(model.header));
+    Collector got;
+    const auto keys = all_pieces(model);
+    found.value().link->request(keys, 1);
+    EXPECT_TRUE(
+        polled_until(*found.value().link, got, [&] { return got.pieces.size() == keys.size(); }));
+    expect_whole_model(got, model);
+    EXPECT_EQ(got.count, keys.size());
+    EXPECT_GT(found.value().link->bytes_received(), model.file.size() / 2);
+}
+
+TEST_F(Dds, a_courier_fills_the_door_over_dds)
+{
+    const TinyModel model = make_tiny_model({.records = 64 * 8});
+    const auto host = host_of("tiny", model);
+    const auto found_client = client();
+    auto found = found_client->find({"tiny", model_hash(model.header)}, kPatience);
+    ASSERT_TRUE(found) << found.error().text;
+    DoorSide side(model, 8, 1, 32);
+    Courier sut(side.arena, side.header, side.slots, side.linker, side.inbox, *found.value().link,
+                "tiny", lines.log());
+    std::int64_t now_ns = 0;
+    const auto comes = [&](std::size_t count)
+    {
+        std::size_t adopted = 0;
+        return eventually(
+            [&]
+            {
+                sut.step(now_ns += 1'000'000);
+                adopted += side.adopt();
+                return adopted == count;
+            });
+    };
+    ASSERT_TRUE(side.wish({ContentKind::index_page, 0}));
+    ASSERT_TRUE(comes(1));
+    for (std::uint32_t chunk = 0; chunk < 8; ++chunk)
+    {
+        ASSERT_TRUE(side.wish({ContentKind::chunk, chunk}));
+    }
+    ASSERT_TRUE(comes(8));
+    side.check_links();
+    EXPECT_EQ(side.linker.records_linked(), model.records.size());
+    EXPECT_EQ(sut.counters().refused(), 0U);
+}
+
+TEST_F(Dds, two_controllers_get_what_each_asked_for_and_nothing_else)
+{
+    const TinyModel model = make_tiny_model({.records = 64 * 40});
+    const auto host = host_of("tiny", model);
+    const auto first = client(kClientDomain);
+    const auto second = client(kOtherClientDomain);
+    auto one = first->find({"tiny", std::nullopt}, kPatience);
+    auto two = second->find({"tiny", std::nullopt}, kPatience);
+    ASSERT_TRUE(one && two);
+    EXPECT_TRUE(eventually([&] { return host->subscribers().size() == 2; }));
+    std::vector<ContentKey> even;
+    std::vector<ContentKey> odd;
+    for (std::uint32_t chunk = 0; chunk < 40; ++chunk)
+    {
+        (chunk % 2 == 0 ? even : odd).push_back({ContentKind::chunk, chunk});
+    }
+    Collector got_one;
+    Collector got_two;
+    one.value().link->request(even, 1);
+    two.value().link->request(odd, 1);
+    EXPECT_TRUE(polled_until(*one.value().link, got_one, [&] { return got_one.count >= 20; }));
+    EXPECT_TRUE(polled_until(*two.value().link, got_two, [&] { return got_two.count >= 20; }));
+    EXPECT_EQ(got_one.pieces.size(), 20U);
+    EXPECT_EQ(got_two.pieces.size(), 20U);
+    for (const ContentKey key : even)
+    {
+        EXPECT_TRUE(got_one.pieces.contains({key.kind, key.number}));
+        EXPECT_FALSE(got_two.pieces.contains({key.kind, key.number}));
+    }
+}
+
+TEST_F(Dds, a_restarted_host_with_the_same_file_is_adopted_under_its_new_epoch)
+{
+    const TinyModel model = make_tiny_model({.records = 64 * 4});
+    auto host = host_of("tiny", model);
+    const auto found_client = client();
+    auto found = found_client->find({"tiny", std::nullopt}, kPatience);
+    ASSERT_TRUE(found) << found.error().text;
+    ChunkLink& sut = *found.value().link;
+    Collector got;
+    host.reset();
+    ASSERT_TRUE(polled_until(sut, got, [&] { return sut.state() == LinkState::host_gone; }));
+    EXPECT_TRUE(lines.has("host of model 'tiny' is gone"));
+    const std::uint64_t session = sut.session();
+    host = host_of("tiny", model);
+    ASSERT_TRUE(polled_until(sut, got, [&] { return sut.state() == LinkState::connected; }));
+    EXPECT_GT(sut.session(), session);
+    EXPECT_TRUE(lines.has("model 'tiny' is served again"));
+    // The new host may not know us yet; whoever asks, asks again.
+    const auto keys = all_pieces(model);
+    EXPECT_TRUE(eventually(
+        [&]
+        {
+            sut.request(keys, 1);
+            for (int i = 0; i < 50; ++i)
+            {
+                sut.poll(got);
+                std::this_thread::sleep_for(1ms);
+            }
+            return got.pieces.size() == keys.size();
+        }));
+    expect_whole_model(got, model);
+}
+
+TEST_F(Dds, a_changed_file_under_the_same_name_does_not_replace_the_resident_one)
+{
+    const TinyModel model = make_tiny_model({});
+    auto host = host_of("tiny", model);
+    const auto found_client = client();
+    auto found = found_client->find({"tiny", std::nullopt}, kPatience);
+    ASSERT_TRUE(found) << found.error().text;
+    ChunkLink& sut = *found.value().link;
+    Collector got;
+    host.reset();
+    host = host_of("tiny", make_tiny_model({.seed = 99}));
+    EXPECT_TRUE(polled_until(sut, got, [&] { return lines.has("with another hash"); }));
+    EXPECT_EQ(sut.state(), LinkState::host_gone);
+    EXPECT_EQ(got.count, 0U);
+}
+
+TEST_F(Dds, a_model_that_nobody_publishes_is_named_with_what_is_there)
+{
+    const auto host = host_of("present", make_tiny_model({}));
+    const auto sut = client();
+    ASSERT_TRUE(sut->find({"present", std::nullopt}, kPatience));
+    const auto found = sut->find({"absent", std::nullopt}, 200ms);
+    ASSERT_FALSE(found);
+    EXPECT_EQ(
+        found.error().text.rfind("model 'absent' is not published on domain 3 (waited 0.2", 0), 0U)
+        << found.error().text;
+    EXPECT_NE(found.error().text.find("published there: present)"), std::string::npos);
+}
+
+TEST_F(Dds, a_pin_that_does_not_fit_is_refused_with_the_hash_that_is_there)
+{
+    const TinyModel model = make_tiny_model({});
+    const auto host = host_of("tiny", model);
+    const auto sut = client();
+    ASSERT_TRUE(sut->find({"tiny", model_hash(model.header)}, kPatience));
+    const auto found = sut->find({"tiny", ContentHash{1}}, 100ms);
+    ASSERT_FALSE(found);
+    EXPECT_NE(found.error().text.find("published there: tiny, with hash " +
+                                      hash_text(model_hash(model.header))),
+              std::string::npos)
+        << found.error().text;
+}
+
+TEST_F(Dds, waiting_for_a_model_ends_when_the_caller_says_so)
+{
+    const auto sut = client();
+    int asked = 0;
+    EXPECT_FALSE(sut->find({"absent", std::nullopt}, kPatience, [&] { return ++asked < 3; }));
+    EXPECT_EQ(asked, 3);
+}
+
+TEST_F(Dds, two_hashes_under_one_name_are_warned_about_and_the_first_seen_is_used)
+{
+    const TinyModel first = make_tiny_model({});
+    const TinyModel second = make_tiny_model({.seed = 2});
+    const auto host = host_of("tiny", first, kHostDomain);
+    const auto sut = client();
+    ASSERT_TRUE(sut->find({"tiny", std::nullopt}, kPatience));
+    const auto other = host_of("tiny", second, kOtherHostDomain);
+    auto pinned = sut->find({"tiny", model_hash(second.header)}, kPatience);
+    ASSERT_TRUE(pinned) << pinned.error().text;
+    EXPECT_TRUE(std::ranges::equal(pinned.value().header, second.header));
+    const auto unpinned = sut->find({"tiny", std::nullopt}, kPatience);
+    ASSERT_TRUE(unpinned);
+    EXPECT_EQ(unpinned.value().hash, model_hash(first.header));
+    EXPECT_TRUE(lines.has("warning: model 'tiny' is published with two hashes"));
+}
+
+TEST_F(Dds, a_controller_that_leaves_is_removed)
+{
+    const auto host = host_of("tiny", make_tiny_model({}));
+    auto leaving = client();
+    auto found = leaving->find({"tiny", std::nullopt}, kPatience);
+    ASSERT_TRUE(found) << found.error().text;
+    ASSERT_TRUE(eventually([&] { return host->subscribers().size() == 1; }));
+    EXPECT_EQ(host->subscribers()[0].controller, "test-3");
+    EXPECT_EQ(host->subscribers()[0].model, "tiny");
+    found.value().link.reset();
+    EXPECT_TRUE(eventually([&] { return host->subscribers().empty(); }));
+    EXPECT_TRUE(host_lines.has("controller test-3 subscribed to model 'tiny'"));
+    EXPECT_TRUE(host_lines.has("controller test-3 left model 'tiny'"));
+}
+
+TEST_F(Dds, what_the_model_does_not_have_is_refused_and_the_rest_is_served)
+{
+    const TinyModel model = make_tiny_model({});
+    const auto host = host_of("tiny", model);
+    const auto found_client = client();
+    auto found = found_client->find({"tiny", std::nullopt}, kPatience);
+    ASSERT_TRUE(found) << found.error().text;
+    const std::vector<ContentKey> keys{{ContentKind::chunk, 9'999},
+                                       {ContentKind::base, 0},
+                                       {static_cast<ContentKind>(77), 0},
+                                       {ContentKind::chunk, 1}};
+    found.value().link->request(keys, 1);
+    Collector got;
+    EXPECT_TRUE(polled_until(*found.value().link, got, [&] { return got.count == 1; }));
+    EXPECT_TRUE(got.pieces.contains({ContentKind::chunk, 1}));
+    EXPECT_TRUE(eventually([&] { return host->counters().requests_refused == 3; }));
+}
+
+TEST_F(Dds, a_file_cut_while_it_is_served_costs_its_end_and_not_the_host)
+{
+    const TinyModel model = make_tiny_model({});
+    const auto path = folder.write("cut.spm", model.file);
+    std::vector<PublishedModel> models;
+    models.push_back({"cut", ModelStore::open(path).value()});
+    HostThread host(kHostDomain, std::move(models), host_lines.log());
+    const auto found_client = client();
+    auto found = found_client->find({"cut", std::nullopt}, kPatience);
+    ASSERT_TRUE(found) << found.error().text;
+    std::filesystem::resize_file(path, model.file.size() - 5);
+    const std::vector<ContentKey> keys{{ContentKind::chunk, 3}, {ContentKind::chunk, 0}};
+    found.value().link->request(keys, 1);
+    Collector got;
+    EXPECT_TRUE(polled_until(*found.value().link, got, [&] { return got.count == 1; }));
+    EXPECT_TRUE(got.pieces.contains({ContentKind::chunk, 0}));
+    EXPECT_TRUE(host_lines.has("cut.spm: chunk 3 at offset "));
+}
+
+TEST_F(Dds, a_domain_that_cannot_be_joined_is_refused_in_one_line)
+{
+    EXPECT_EQ(Domain::join(233).error().text, "DDS domain 233 is not in 0 to 232");
+    ::setenv("CYCLONEDDS_URI", "<CycloneDDS><Domain><Nonsense/></Domain></CycloneDDS>", 1);
+    const auto refused = Domain::join(5);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().text.find('\n'), std::string::npos);
+    EXPECT_NE(refused.error().text.find("DDS domain 5 cannot be joined: "), std::string::npos);
+    EXPECT_NE(refused.error().text.find("Nonsense"), std::string::npos) << refused.error().text;
+}
+
+TEST_F(Dds, without_a_configuration_of_the_user_the_built_in_one_works)
+{
+    ::unsetenv("CYCLONEDDS_URI");
+    const auto first = Domain::join(231);
+    const auto second = Domain::join(231);
+    EXPECT_TRUE(first) << first.error().text;
+    EXPECT_TRUE(second) << second.error().text;
+}
+
+/// The program itself, so that it can be killed as a process.
+class Program
+{
+public:
+    explicit Program(std::vector<std::string> arguments)
+    {
+        arguments.insert(arguments.begin(), TACTUS_SPM_PUBLISH);
+        std::vector<char*> pointers;
+        for (std::string& argument : arguments)
+        {
+            pointers.push_back(argument.data());
+        }
+        pointers.push_back(nullptr);
+        EXPECT_EQ(::pipe2(pipe_, O_CLOEXEC), 0);
+        pid_ = ::fork();
+        if (pid_ == 0)
+        {
+            ::dup2(pipe_[1], STDOUT_FILENO);
+            ::dup2(pipe_[1], STDERR_FILENO);
+            ::execv(pointers[0], pointers.data());
+            ::_exit(127);
+        }
+        ::close(pipe_[1]);
+    }
+    ~Program()
+    {
+        if (pid_ > 0)
+        {
+            static_cast<void>(end(SIGKILL));
+        }
+        ::close(pipe_[0]);
+    }
+    Program(const Program&) = delete;
+    Program& operator=(const Program&) = delete;
+
+    /// Sends a signal if there is one and waits; the exit code, or minus the signal that killed it.
+    int end(int signal = 0)
+    {
+        if (signal != 0)
+        {
+            ::kill(pid_, signal);
+        }
+        int status = 0;
+        ::waitpid(pid_, &status, 0);
+        pid_ = 0;
+        return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+    }
+    /// All that it printed until it ended.
+    std::string output()
+    {
+        std::string text;
+        char buffer[512];
+        for (ssize_t count = 1; count > 0;)
+        {
+            count = ::read(pipe_[0], buffer, sizeof(buffer));
+            text.append(buffer, count > 0 ? static_cast<std::size_t>(count) : 0);
+        }
+        return text;
+    }
+
+private:
+    int pipe_[2]{-1, -1};
+    pid_t pid_{0};
+};
+
+TEST_F(Dds, a_host_that_is_killed_is_noticed_and_its_successor_adopted)
+{
+    const TinyModel model = make_tiny_model({});
+    const std::string path = folder.write("tiny.spm", model.file).string();
+    const auto program = [&] { return std::make_unique<Program>(std::vector<std::string>{path}); };
+    auto host = program();
+    const auto found_client = client();
+    auto found = found_client->find({"tiny", std::nullopt}, kPatience);
+    ASSERT_TRUE(found) << found.error().text;
+    ChunkLink& sut = *found.value().link;
+    Collector got;
+    EXPECT_EQ(host->end(SIGKILL), -SIGKILL);
+    ASSERT_TRUE(polled_until(sut, got, [&] { return sut.state() == LinkState::host_gone; }));
+    host = program();
+    ASSERT_TRUE(polled_until(sut, got, [&] { return sut.state() == LinkState::connected; }));
+    EXPECT_EQ(host->end(SIGTERM), 0);
+    const std::string output = host->output();
+    EXPECT_NE(output.find("serving 'tiny' hash " + hash_text(model_hash(model.header))),
+              std::string::npos)
+        << output;
+    EXPECT_NE(output.find("ended; "), std::string::npos) << output;
+}
+
+TEST_F(Dds, spm_publish_refuses_wrong_files_and_names_with_one_line)
+{
+    const std::string good = folder.write("good.spm", make_tiny_model({}).file).string();
+    const std::string bad = folder.write("bad.spm", std::vector<std::byte>(3)).string();
+    const auto expect = [](std::vector<std::string> arguments, int code, const std::string& part)
+    {
+        Program sut(std::move(arguments));
+        EXPECT_EQ(sut.end(), code);
+        const std::string output = sut.output();
+        EXPECT_NE(output.find(part), std::string::npos) << output;
+        EXPECT_EQ(std::ranges::count(output, '\n'), 1) << output;
+    };
+    expect({good, bad}, 2, "bad.spm: is not an SPM model");
+    expect({good, good}, 3, "would both be published as 'good'");
+    expect({good, "--name", "a b"}, 3, "--name 'a b' is not 1 to 63 characters");
+    expect({good, "--name", "a", "--name", "b"}, 3, "--name is given 2 times for 1 files");
+    expect({good, "--domain", "233"}, 3, "--domain");
+    expect({folder.path() / "none.spm"}, 2, "none.spm: cannot be opened: No such file");
+}
+
+} // namespace
+} // namespace tactus::dds

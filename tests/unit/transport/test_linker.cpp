@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "rt_core/spm/chunk_coding.hpp"
+#include "rt_core/spm/linker.hpp"
+#include "tests/unit/transport/door_side.hpp"
+#include "tests/unit/transport/tiny_model.hpp"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+#include <random>
+#include <vector>
+
+namespace tactus
+{
+namespace
+{
+
+using test::DoorSide;
+using test::make_tiny_model;
+using test::TinyModel;
+
+/// Parses and links chunks without a courier.
+struct Bench
+{
+    explicit Bench(const TinyModel& tiny)
+        : model(tiny), side(tiny, static_cast<std::uint32_t>(tiny.chunks.size()), 1, 1)
+    {
+    }
+
+    void bring(std::uint32_t chunk, std::uint32_t slot)
+    {
+        bring_bytes(chunk, slot, model.chunks[chunk]);
+    }
+    /// What the model does not hold, but parse accepts.
+    void bring_forged(std::uint32_t chunk, std::uint32_t slot, std::span<const std::byte> bytes)
+    {
+        side.expects_sound_content = false;
+        bring_bytes(chunk, slot, bytes);
+    }
+    void bring_bytes(std::uint32_t chunk, std::uint32_t slot, std::span<const std::byte> bytes)
+    {
+        ASSERT_TRUE(parse_chunk(bytes, side.header, {chunk}, side.slots.pages[slot]).has_value());
+        side.linker.link_page({chunk}, slot);
+        ASSERT_TRUE(side.inbox.arrived.try_push({{ContentKind::chunk, chunk}, slot}));
+        side.adopt();
+    }
+    void drop(std::uint32_t chunk)
+    {
+        const ContentKey key{ContentKind::chunk, chunk};
+        side.linker.release_page(side.slot_of(key));
+        side.give_back(key);
+        ChunkInbox::Freed freed;
+        ASSERT_TRUE(side.inbox.freed.try_pop(freed));
+    }
+    [[nodiscard]] std::size_t linked() const
+    {
+        std::size_t count = 0;
+        for (std::uint32_t record = 0; record < model.records.size(); ++record)
+        {
+            count += side.is_linked(record) ? 1U : 0U;
+        }
+        return count;
+    }
+
+    const TinyModel& model;
+    DoorSide side;
+};
+
+RC_GTEST_PROP(Linker, links_everything_in_any_order_of_arrival, (std::uint32_t seed, bool shuffled))
+{
+    const TinyModel model =
+        make_tiny_model({.seed = seed, .records = 500, .shuffled_ids = shuffled});
+    Bench bench(model);
+    std::vector<std::uint32_t> order(model.chunks.size());
+    std::iota(order.begin(), order.end(), 0U);
+    std::shuffle(order.begin(), order.end(), std::mt19937(seed));
+    for (std::uint32_t slot = 0; slot < order.size(); ++slot)
+    {
+        bench.bring(order[slot], slot);
+        bench.side.check_links();
+    }
+    RC_ASSERT(bench.linked() == model.records.size());
+    RC_ASSERT(bench.side.linker.records_refused() == 0U);
+    RC_ASSERT(std::ranges::equal(bench.side.slots.base.next, model.base_next));
+    for (std::uint32_t id = 0; id < model.records.size(); ++id)
+    {
+        const std::uint32_t slot = bench.side.slot_of({ContentKind::chunk, id / 64});
+        RC_ASSERT(bench.side.slots.pages[slot].records[id % 64].next == model.records[id].next);
+    }
+}
+
+RC_GTEST_PROP(Linker, a_page_that_returns_gets_all_its_links_back, (std::uint32_t seed))
+{
+    const TinyModel model = make_tiny_model({.seed = seed, .records = 400, .shuffled_ids = true});
+    Bench bench(model);
+    std::mt19937 random(seed);
+    std::vector<std::uint32_t> free_slots;
+    for (std::uint32_t chunk = 0; chunk < model.chunks.size(); ++chunk)
+    {
+        bench.bring(chunk, chunk);
+    }
+    for (int round = 0; round < 6; ++round)
+    {
+        std::vector<std::uint32_t> gone;
+        for (std::uint32_t chunk = 0; chunk < model.chunks.size(); ++chunk)
+        {
+            if (random() % 2 == 0)
+            {
+                gone.push_back(chunk);
+                free_slots.push_back(bench.side.slot_of({ContentKind::chunk, chunk}));
+                bench.drop(chunk);
+            }
+        }
+        bench.side.check_links();
+        std::shuffle(gone.begin(), gone.end(), random);
+        std::shuffle(free_slots.begin(), free_slots.end(), random);
+        for (const std::uint32_t chunk : gone)
+        {
+            bench.bring(chunk, free_slots.back());
+            free_slots.pop_back();
+            bench.side.check_links();
+        }
+        RC_ASSERT(bench.linked() == model.records.size());
+        RC_ASSERT(bench.side.linker.records_refused() == 0U);
+    }
+}
+
+TEST(Linker, records_wait_while_a_dependency_is_absent)
+{
+    const TinyModel model = make_tiny_model({.records = 130});
+    Bench bench(model);
+    bench.bring(1, 0);
+    bench.bring(2, 1);
+    for (std::uint32_t id = 64; id < 130; ++id)
+    {
+        bool depends_on_absent = false;
+        for (std::uint32_t i = 0; i < model.records[id].fan_size; ++i)
+        {
+            const FaceState before = model.records[id].before[i];
+            depends_on_absent |= !before.is_base() && before.record().value < 64;
+        }
+        EXPECT_FALSE(depends_on_absent && bench.side.is_linked(id)) << "record " << id;
+    }
+    EXPECT_EQ(bench.side.linker.records_refused(), 0U);
+}
+
+/// A chunk of the model in which one record was changed.
+std::vector<std::byte> forge(const TinyModel& model, std::uint32_t record, auto&& change)
+{
+    auto records = model.records;
+    change(records[record]);
+    const std::uint32_t chunk = record / 64;
+    const std::size_t first = std::size_t{chunk} * 64;
+    return test::write_chunk(
+        {chunk},
+        std::span(records).subspan(first, std::min<std::size_t>(64, records.size() - first)));
+}
+
+/// The first record whose first fan face was last changed by another record of the same chunk.
+std::uint32_t record_with_dependency(const TinyModel& model)
+{
+    for (std::uint32_t id = 0; id < 64; ++id)
+    {
+        if (!model.records[id].before[0].is_base())
+        {
+            return id;
+        }
+    }
+    return 64;
+}
+
+TEST(Linker, refuses_a_state_that_the_owner_s_star_contradicts)
+{
+    const TinyModel model = make_tiny_model({.records = 64});
+    const std::uint32_t id = record_with_dependency(model);
+    ASSERT_LT(id, 64U);
+    Bench bench(model);
+    bench.bring_forged(0, 0, forge(model, id, [](VsplitRecord& record) { record.star[2] = {0}; }));
+    EXPECT_FALSE(bench.side.is_linked(id));
+    EXPECT_GE(bench.side.linker.records_refused(), 1U);
+}
+
+TEST(Linker, refuses_a_place_that_another_record_has_taken)
+{
+    const TinyModel model = make_tiny_model({.base_faces = 1, .records = 64});
+    // Record 0 splits base face 0; now another one claims the same.
+    ASSERT_EQ(model.base_next[0], 0U);
+    Bench bench(model);
+    bench.bring_forged(0, 0,
+                       forge(model, 9,
+                             [](VsplitRecord& record)
+                             {
+                                 record.fan_size = 1;
+                                 record.star[2] = {0};
+                                 record.before[0] = FaceState::base();
+                                 record.depth = 1;
+                             }));
+    EXPECT_TRUE(bench.side.is_linked(0));
+    EXPECT_FALSE(bench.side.is_linked(9));
+    EXPECT_GE(bench.side.linker.records_refused(), 1U);
+    EXPECT_EQ(load_next(bench.side.slots.base.next[0]), 0U);
+}
+
+TEST(Linker, refuses_a_split_of_a_face_that_is_exact)
+{
+    const TinyModel model = make_tiny_model({.records = 64});
+    const std::uint32_t id = record_with_dependency(model);
+    const FaceState before = model.records[id].before[0];
+    Bench bench(model);
+    bench.bring_forged(0, 0,
+                       forge(model, before.record().value,
+                             [&](VsplitRecord& record) { record.error[before.place()] = 0; }));
+    EXPECT_FALSE(bench.side.is_linked(id));
+    EXPECT_GE(bench.side.linker.records_refused(), 1U);
+}
+
+TEST(Linker, refuses_a_depth_that_does_not_follow_from_the_dependencies)
+{
+    const TinyModel model = make_tiny_model({.records = 64});
+    const std::uint32_t id = record_with_dependency(model);
+    for (const int wrong_by : {-1, 1})
+    {
+        Bench bench(model);
+        bench.bring_forged(0, 0,
+                           forge(model, id,
+                                 [&](VsplitRecord& record) {
+                                     record.depth =
+                                         static_cast<std::uint16_t>(record.depth + wrong_by);
+                                 }));
+        EXPECT_FALSE(bench.side.is_linked(id));
+        EXPECT_GE(bench.side.linker.records_refused(), 1U);
+    }
+}
+
+TEST(Linker, never_links_a_cycle_of_two_records)
+{
+    const TinyModel model = make_tiny_model({.records = 128});
+    auto records = model.records;
+    // Records 0 and 64 name each other as the last to change a face of theirs.
+    for (const auto& [id, other] : {std::pair{0U, 64U}, std::pair{64U, 0U}})
+    {
+        records[id].fan_size = 1;
+        records[id].before[0] = FaceState::after({other}, 2);
+        records[id].star[2] = {0};
+        records[id].depth = static_cast<std::uint16_t>(id == 0 ? 1 : 2);
+        records[id].error[2] = 20;
+    }
+    Bench bench(model);
+    bench.bring_forged(0, 0, test::write_chunk({0}, std::span(records).first(64)));
+    bench.bring_forged(1, 1, test::write_chunk({1}, std::span(records).last(64)));
+    EXPECT_FALSE(bench.side.is_linked(0));
+    EXPECT_FALSE(bench.side.is_linked(64));
+}
+
+TEST(Linker, a_foreign_id_does_not_get_past_parse)
+{
+    const TinyModel model = make_tiny_model({.records = 64});
+    Bench bench(model);
+    Page page;
+    const auto parse = [&](auto&& change)
+    { return parse_chunk(forge(model, 5, change), bench.side.header, {0}, page).has_value(); };
+    EXPECT_TRUE(parse([](VsplitRecord&) {}));
+    EXPECT_FALSE(parse([&](VsplitRecord& r) { r.star[2] = {model.counts.face_ids()}; }));
+    EXPECT_FALSE(parse([&](VsplitRecord& r) { r.parent = {model.counts.vertices()}; }));
+    EXPECT_FALSE(
+        parse([&](VsplitRecord& r) { r.before[0] = FaceState::after({model.counts.records}, 0); }));
+    EXPECT_FALSE(parse([](VsplitRecord& r) { r.before[0] = FaceState::after({5}, 0); }));
+    EXPECT_FALSE(parse([](VsplitRecord& r) { r.depth = 0; }));
+}
+
+} // namespace
+} // namespace tactus

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "tests/unit/transport/tiny_model.hpp"
+#include "transport/content_hash.hpp"
+#include "transport/store/model_store.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+namespace tactus
+{
+namespace
+{
+
+using test::make_tiny_model;
+using test::TemporaryFolder;
+using test::TinyModel;
+
+std::string refusal_of(const std::filesystem::path& path)
+{
+    const auto store = ModelStore::open(path);
+    return store ? "" : store.error().text;
+}
+
+/// What every refusal must be: one line that begins with the file's name.
+void expect_one_clear_line(const std::string& text, const std::filesystem::path& path)
+{
+    EXPECT_EQ(text.rfind(path.string() + ": ", 0), 0U) << text;
+    EXPECT_EQ(text.find('\n'), std::string::npos) << text;
+    EXPECT_GT(text.size(), path.string().size() + 8) << text;
+}
+
+TEST(ModelStore, reads_every_piece_as_it_was_written)
+{
+    const TinyModel model = make_tiny_model({.records = 64 * 70 + 3});
+    const TemporaryFolder folder;
+    const auto opened = ModelStore::open(folder.write("a.spm", model.file));
+    ASSERT_TRUE(opened) << opened.error().text;
+    const ModelStore& sut = opened.value();
+    ASSERT_EQ(model.index_pages.size(), 2U);
+    std::vector<std::byte> bytes;
+    const auto check = [&](ContentKey key)
+    {
+        ASSERT_TRUE(sut.read(key, bytes).has_value());
+        EXPECT_TRUE(std::ranges::equal(bytes, model.piece(key))) << key.number;
+        EXPECT_EQ(sut.coded_bytes(key), bytes.size());
+    };
+    check({ContentKind::base, 0});
+    for (std::uint32_t page = 0; page < 2; ++page)
+    {
+        check({ContentKind::index_page, page});
+    }
+    for (std::uint32_t chunk = 0; chunk < model.chunks.size(); ++chunk)
+    {
+        check({ContentKind::chunk, chunk});
+    }
+    EXPECT_TRUE(std::ranges::equal(sut.header_bytes(), model.header));
+    EXPECT_EQ(sut.hash(), content_hash(std::span(model.header).first(model.header.size() - 36)));
+}
+
+TEST(ModelStore, serves_a_model_without_records)
+{
+    const TemporaryFolder folder;
+    const auto sut = ModelStore::open(folder.write("a.spm", make_tiny_model({.records = 0}).file));
+    ASSERT_TRUE(sut) << sut.error().text;
+    EXPECT_FALSE(sut.value().has({ContentKind::chunk, 0}));
+    EXPECT_TRUE(sut.value().has({ContentKind::base, 0}));
+}
+
+TEST(ModelStore, refuses_a_piece_that_the_model_does_not_have)
+{
+    const TemporaryFolder folder;
+    const auto sut = ModelStore::open(folder.write("a.spm", make_tiny_model({}).file));
+    ASSERT_TRUE(sut);
+    std::vector<std::byte> bytes;
+    EXPECT_FALSE(sut.value().read({ContentKind::chunk, 4}, bytes));
+    EXPECT_FALSE(sut.value().read({ContentKind::index_page, 1}, bytes));
+    EXPECT_FALSE(sut.value().read({ContentKind::base, 1}, bytes));
+    EXPECT_FALSE(sut.value().read({static_cast<ContentKind>(9), 0}, bytes));
+}
+
+TEST(ModelStore, refuses_a_file_cut_at_any_length)
+{
+    const TinyModel model = make_tiny_model({.records = 70});
+    const TemporaryFolder folder;
+    const auto path = folder.write("cut.spm", model.file);
+    for (std::size_t length = model.file.size(); length-- > 0;)
+    {
+        std::filesystem::resize_file(path, length);
+        const std::string text = refusal_of(path);
+        ASSERT_FALSE(text.empty()) << "cut at " << length << " of " << model.file.size();
+        expect_one_clear_line(text, path);
+    }
+}
+
+TEST(ModelStore, finds_any_flipped_bit_at_open_or_when_the_chunk_is_read)
+{
+    const TinyModel model = make_tiny_model({.records = 70});
+    const TemporaryFolder folder;
+    std::vector<std::byte> bytes;
+    const auto path = folder.write("bit.spm", model.file);
+    std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
+    const auto flip = [&](std::size_t i)
+    {
+        const auto flipped =
+            static_cast<char>(file.seekg(static_cast<std::streamoff>(i)).get() ^ (1 << (i % 8)));
+        file.seekp(static_cast<std::streamoff>(i)).put(flipped).flush();
+    };
+    for (std::size_t i = 0; i < model.file.size(); ++i)
+    {
+        flip(i);
+        const auto sut = ModelStore::open(path);
+        std::size_t faults = sut ? 0 : 1;
+        for (std::uint32_t chunk = 0; sut && chunk < model.chunks.size(); ++chunk)
+        {
+            const auto done = sut.value().read({ContentKind::chunk, chunk}, bytes);
+            faults += done ? 0U : 1U;
+            if (!done)
+            {
+                expect_one_clear_line(done.error().text, path);
+                EXPECT_NE(done.error().text.find("chunk " + std::to_string(chunk) + " at offset "),
+                          std::string::npos);
+            }
+        }
+        ASSERT_EQ(faults, 1U) << "byte " << i << " of " << model.file.size();
+        flip(i);
+    }
+}
+
+TEST(ModelStore, says_what_is_wrong_with_files_that_are_no_model)
+{
+    const TemporaryFolder folder;
+    const std::string png =
+        "\x89PNG\r\n\x1a\n and much more text, longer than a header would be...";
+    const auto foreign = folder.write("foreign.spm", std::as_bytes(std::span(png)));
+    const auto empty = folder.write("empty.spm", {});
+    auto newer = make_tiny_model({}).file;
+    newer[8] = std::byte{2};
+    auto longer = make_tiny_model({}).file;
+    longer.push_back(std::byte{0});
+    EXPECT_NE(refusal_of(foreign).find("is not an SPM model"), std::string::npos);
+    EXPECT_EQ(refusal_of(empty), empty.string() + ": is empty");
+    EXPECT_NE(refusal_of(folder.path() / "none.spm").find("No such file"), std::string::npos);
+    EXPECT_NE(refusal_of(folder.path()).find("is not a file"), std::string::npos);
+    EXPECT_NE(refusal_of(folder.write("newer.spm", newer)).find("has format version 2"),
+              std::string::npos);
+    EXPECT_NE(refusal_of(folder.write("longer.spm", longer)).find("followed by other bytes"),
+              std::string::npos);
+    EXPECT_NE(refusal_of("/dev/null").find("is not a file"), std::string::npos);
+}
+
+TEST(ModelStore, names_the_chunk_when_the_file_is_cut_while_it_is_served)
+{
+    const TinyModel model = make_tiny_model({.records = 200});
+    const TemporaryFolder folder;
+    const auto path = folder.write("served.spm", model.file);
+    const auto sut = ModelStore::open(path);
+    ASSERT_TRUE(sut);
+    std::filesystem::resize_file(path, model.file.size() - 10);
+    std::vector<std::byte> bytes;
+    EXPECT_TRUE(sut.value().read({ContentKind::chunk, 0}, bytes));
+    const auto last = sut.value().read({ContentKind::chunk, 3}, bytes);
+    ASSERT_FALSE(last);
+    expect_one_clear_line(last.error().text, path);
+    EXPECT_NE(last.error().text.find("chunk 3 at offset "), std::string::npos);
+    EXPECT_NE(last.error().text.find("cut short"), std::string::npos);
+}
+
+TEST(ModelStore, can_be_moved_and_assigned)
+{
+    const TemporaryFolder folder;
+    const TinyModel model = make_tiny_model({});
+    auto first = ModelStore::open(folder.write("a.spm", model.file));
+    auto second = ModelStore::open(folder.write("b.spm", make_tiny_model({.seed = 2}).file));
+    ASSERT_TRUE(first && second);
+    second.value() = std::move(first).value();
+    const ModelStore sut(std::move(second).value());
+    std::vector<std::byte> bytes;
+    ASSERT_TRUE(sut.read({ContentKind::chunk, 1}, bytes));
+    EXPECT_TRUE(std::ranges::equal(bytes, model.chunks[1]));
+}
+
+} // namespace
+} // namespace tactus

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "transport/dds/credit.hpp"
+#include "transport/dds/piece_frame.hpp"
+#include "transport/dds/wish_queue.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace tactus::dds
+{
+namespace
+{
+
+std::vector<std::byte> two_pieces()
+{
+    std::vector<std::byte> payload;
+    const std::string first = "first piece";
+    const std::string second = "2nd";
+    append_piece(payload, {{1, 2, 3}, 7, 2, 40}, std::as_bytes(std::span(first)));
+    append_piece(payload, {{1, 2, 3}, 7, 1, 41}, std::as_bytes(std::span(second)));
+    return payload;
+}
+
+TEST(PieceFrame, reads_back_what_was_appended)
+{
+    const auto payload = two_pieces();
+    EXPECT_EQ(payload.size(), 2 * 32 + 11 + 3U);
+    PieceReader sut(payload);
+    const auto first = sut.next();
+    ASSERT_TRUE(first);
+    EXPECT_EQ(first->key, (WireKey{{1, 2, 3}, 7, 2, 40}));
+    EXPECT_EQ(first->bytes.size(), 11U);
+    const auto second = sut.next();
+    ASSERT_TRUE(second);
+    EXPECT_EQ(second->key.number, 41U);
+    EXPECT_EQ(static_cast<char>(second->bytes[2]), 'd');
+    EXPECT_FALSE(sut.next());
+    EXPECT_FALSE(sut.is_broken());
+}
+
+TEST(PieceFrame, notices_a_payload_cut_at_any_length)
+{
+    const auto payload = two_pieces();
+    for (std::size_t length = 0; length < payload.size(); ++length)
+    {
+        const std::span<const std::byte> whole(payload);
+        PieceReader sut(whole.first(length));
+        std::size_t pieces = 0;
+        while (sut.next())
+        {
+            ++pieces;
+        }
+        EXPECT_EQ(pieces, length >= 43 ? 1U : 0U) << length;
+        EXPECT_EQ(sut.is_broken(), length != 0 && length != 43) << length;
+    }
+}
+
+TEST(PieceFrame, a_length_beyond_the_payload_is_broken)
+{
+    auto payload = two_pieces();
+    std::fill_n(payload.begin() + 28, 4, std::byte{0xFF});
+    PieceReader sut(payload);
+    EXPECT_FALSE(sut.next());
+    EXPECT_TRUE(sut.is_broken());
+}
+
+TEST(CreditWindow, grants_a_window_beyond_what_was_seen_and_survives_loss)
+{
+    CreditWindow sut(10);
+    EXPECT_EQ(sut.granted(), 10U);
+    sut.on_sample(4, 4);
+    EXPECT_EQ(sut.granted(), 14U);
+    sut.on_sample(9, 2); // Three pieces before it were lost; the count shows it.
+    EXPECT_EQ(sut.granted(), 19U);
+    EXPECT_EQ(sut.received(), 6U);
+    sut.on_sample(7, 3); // Late, out of order: nothing is taken back.
+    EXPECT_EQ(sut.granted(), 19U);
+    sut.write_off();
+    EXPECT_EQ(sut.granted(), 29U);
+    sut.restart();
+    EXPECT_EQ(sut.granted(), 10U);
+    EXPECT_EQ(sut.received(), 0U);
+}
+
+TEST(WishQueue, puts_the_newest_generation_first_and_keeps_its_order)
+{
+    WishQueue sut(8);
+    const auto add = [&](std::uint32_t number, std::uint32_t generation) {
+        sut.add({ContentKind::chunk, number}, generation);
+    };
+    add(1, 5);
+    add(2, 5);
+    add(3, 6);
+    add(4, 6);
+    add(5, 4);
+    add(1, 6); // Wished for again, newer.
+    std::vector<std::uint32_t> order;
+    for (; !sut.empty(); sut.pop_front())
+    {
+        order.push_back(sut.front().number);
+    }
+    EXPECT_EQ(order, (std::vector<std::uint32_t>{3, 4, 1, 2, 5}));
+}
+
+TEST(WishQueue, forgets_the_oldest_generation_when_full_and_generations_may_wrap)
+{
+    WishQueue sut(2);
+    sut.add({ContentKind::chunk, 1}, 0xFFFF'FFFFU);
+    sut.add({ContentKind::chunk, 2}, 0);
+    sut.add({ContentKind::chunk, 3}, 1);
+    EXPECT_EQ(sut.size(), 2U);
+    EXPECT_EQ(sut.forgotten(), 1U);
+    EXPECT_EQ(sut.front().number, 3U);
+    sut.pop_front();
+    EXPECT_EQ(sut.front().number, 2U);
+}
+
+} // namespace
+} // namespace tactus::dds

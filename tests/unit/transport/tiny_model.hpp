@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/spm/content_key.hpp"
+#include "rt_core/spm/header.hpp"
+#include "rt_core/spm/page.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <vector>
+
+namespace tactus::test
+{
+
+/// How large a made-up model is and which one.
+struct TinyModelSpec
+{
+    std::uint32_t seed{1};
+    std::uint32_t base_faces{8};
+    std::uint32_t records{200};
+    bool shuffled_ids{false}; ///< Dependencies may then have larger ids than their dependents.
+};
+
+/// A made-up model whose records depend on one another as real ones do (each fan face was last
+/// changed by the record that is named), but whose geometry is random. Written with code of its
+/// own, so that reader and writer check each other. `records[i].next` is what the whole model's
+/// links must be.
+struct TinyModel
+{
+    ModelCounts counts;
+    std::vector<std::byte> header;
+    std::vector<std::byte> base;
+    std::vector<std::vector<std::byte>> index_pages;
+    std::vector<std::vector<std::byte>> chunks;
+    std::vector<std::byte> file;
+    std::vector<VsplitRecord> records;
+    std::vector<std::uint32_t> base_next;
+
+    [[nodiscard]] std::span<const std::byte> piece(ContentKey key) const;
+};
+
+[[nodiscard]] TinyModel make_tiny_model(const TinyModelSpec& spec);
+
+/// One chunk in coder version 1.
+[[nodiscard]] std::vector<std::byte> write_chunk(ChunkId id, std::span<const VsplitRecord> records);
+
+/// A folder of its own for one test's files; removed at the end.
+class TemporaryFolder
+{
+public:
+    TemporaryFolder();
+    ~TemporaryFolder();
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+    [[nodiscard]] std::filesystem::path write(const char* name,
+                                              std::span<const std::byte> bytes) const;
+    [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
+
+private:
+    std::filesystem::path path_;
+};
+
+} // namespace tactus::test

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "transport/dds/domain.hpp"
+#include "transport/dds/topics.hpp"
+#include "transport/log.hpp"
+#include "transport/model_name.hpp"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace tactus::dds
+{
+
+/// What a controller sees of the models that are published on its domain at present.
+class Catalogue
+{
+public:
+    struct Offer
+    {
+        std::string name;
+        ContentHash hash{};
+        std::uint64_t host_epoch{0};
+        std::uint32_t revision{0};
+        std::uint32_t protocol_version{0};
+        std::uint32_t faces{0};
+    };
+
+    [[nodiscard]] static Result<Catalogue, DdsError> create(const Domain& domain, Log log);
+
+    /// Takes news from DDS: new offers, hosts that left or fell silent. Cheap when there are none.
+    void refresh();
+
+    /// The offer first seen of those that are there now; null when there is none. With a hash in
+    /// the selector only that one counts. Offers of another protocol version are passed over.
+    [[nodiscard]] const Offer* find(const ModelSelector& selector) const;
+    /// The offer of one run of one host; null when that is gone.
+    [[nodiscard]] const Offer* find(const ContentHash& hash, std::uint64_t host_epoch) const;
+
+    /// In the order in which they were first seen.
+    [[nodiscard]] const std::vector<Offer>& offers() const noexcept { return offers_; }
+    /// Their names for a message, "none" without any; a long list is cut.
+    [[nodiscard]] std::string names() const;
+
+private:
+    Catalogue(Endpoint reader, Log log);
+
+    void add(const Offer& offer);
+    void remove(const std::string& name, std::uint64_t host_epoch);
+
+    Endpoint reader_;
+    RateLimitedLog log_;
+    std::vector<Offer> offers_;
+};
+
+} // namespace tactus::dds

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/base/result.hpp"
+#include "transport/dds/entity.hpp"
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+namespace tactus::dds
+{
+
+/// Why DDS refused, in one line.
+struct DdsError
+{
+    std::string text;
+};
+
+/// Domain ids of the DDS port mapping.
+inline constexpr std::uint32_t kMaxDomain = 232;
+
+/// One participant in one DDS domain.
+///
+/// Configuration is always explicit: the user's CYCLONEDDS_URI when it is set, else loopback,
+/// unicast, a lease of one second, fast recovery from loss and small thread stacks (the process may
+/// lock its memory). Nothing multicasts or leaves the machine unless the user says so.
+///
+/// Cyclone's threads inherit policy, priority and affinity of the thread that joins: join before a
+/// real-time thread exists, from an ordinary one. Its messages go to stderr at a limited rate.
+class Domain
+{
+public:
+    /// `id` is 0 .. 232. Refused with Cyclone's own reason, e.g. for an unknown element in
+    /// CYCLONEDDS_URI or when no network interface fits.
+    [[nodiscard]] static Result<Domain, DdsError> join(std::uint32_t id);
+
+    [[nodiscard]] std::uint32_t id() const noexcept { return id_; }
+    [[nodiscard]] std::int32_t participant() const noexcept { return participant_.get(); }
+
+private:
+    std::uint32_t id_{0};
+    std::shared_ptr<Entity> configuration_; ///< Ours, shared by the process; outlives participants.
+    Entity participant_;
+};
+
+} // namespace tactus::dds

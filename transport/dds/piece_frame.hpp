@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/base/byte_io.hpp"
+#include "rt_core/spm/content_key.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace tactus::dds
+{
+
+/// Bytes in front of each piece in a payload: its WireKey and its length.
+inline constexpr std::size_t kFrameBytes = sizeof(WireKey) + sizeof(std::uint32_t);
+
+/// Appends one piece to a payload. No allocation while the payload's capacity suffices.
+void append_piece(std::vector<std::byte>& payload, const WireKey& key,
+                  std::span<const std::byte> bytes);
+
+/// Reads a payload from outside, piece by piece.
+class PieceReader
+{
+public:
+    struct Piece
+    {
+        WireKey key;
+        std::span<const std::byte> bytes;
+    };
+
+    explicit PieceReader(std::span<const std::byte> payload) noexcept : reader_(payload) {}
+
+    /// The next piece; nothing at the end and where the framing is broken.
+    [[nodiscard]] std::optional<Piece> next() noexcept;
+
+    /// Whether the payload did not end with a whole piece.
+    [[nodiscard]] bool is_broken() const noexcept { return reader_.failed(); }
+
+private:
+    ByteReader reader_;
+};
+
+} // namespace tactus::dds

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "transport/dds/domain.hpp"
+#include "transport/dds/topics.hpp"
+#include "transport/dds/wish_queue.hpp"
+#include "transport/log.hpp"
+#include "transport/store/model_store.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace tactus::dds
+{
+
+/// One controller's subscription to one model, on the host: its wishes, its credit, and a writer of
+/// its own in a partition of its own, so that no other controller waits for it.
+class Subscription
+{
+public:
+    /// What a request says about the credit.
+    struct Credit
+    {
+        std::uint64_t seen{0};
+        std::uint64_t granted{0};
+        std::uint64_t received{0};
+    };
+
+    /// `store` must outlive the subscription. The first request's `seen` is where counting starts:
+    /// a controller that was thought dead and speaks again goes on counting.
+    [[nodiscard]] static Result<Subscription, DdsError>
+    create(const Domain& domain, const ModelStore& store, const ControllerId& controller,
+           std::string controller_name, std::uint64_t seen);
+
+    [[nodiscard]] const ControllerId& controller() const noexcept { return controller_; }
+    [[nodiscard]] const std::string& controller_name() const noexcept { return controller_name_; }
+    [[nodiscard]] const ModelStore& store() const noexcept { return *store_; }
+
+    void wish(ContentKey key, std::uint32_t generation) { wishes_.add(key, generation); }
+    void set_credit(const Credit& credit) noexcept { credit_ = credit; }
+
+    /// Whether send_one() would find something to do, were the controller's reader there.
+    [[nodiscard]] bool has_work() const noexcept
+    {
+        return !wishes_.empty() && sent_ < credit_.granted;
+    }
+    /// Sends one sample of as many wished pieces as credit and payload allow, read from the store.
+    /// A piece that can't be read is skipped and named in the log. False when nothing was sent.
+    bool send_one(std::uint64_t host_epoch, std::vector<std::byte>& payload,
+                  std::vector<std::byte>& piece, RateLimitedLog& log);
+
+    [[nodiscard]] std::uint64_t pieces_sent() const noexcept { return pieces_sent_; }
+    [[nodiscard]] std::uint64_t bytes_sent() const noexcept { return bytes_sent_; }
+    /// Pieces that wait to be sent.
+    [[nodiscard]] std::size_t wishes() const noexcept { return wishes_.size(); }
+
+private:
+    explicit Subscription(const ModelStore& store) : store_(&store), wishes_(kMaxWishes) {}
+
+    [[nodiscard]] std::uint64_t fill(std::vector<std::byte>& payload, std::vector<std::byte>& piece,
+                                     RateLimitedLog& log);
+
+    const ModelStore* store_;
+    ControllerId controller_{};
+    std::string controller_name_;
+    Endpoint writer_;
+    WishQueue wishes_;
+    Credit credit_;
+    std::uint64_t sent_{0};
+    std::uint64_t pieces_sent_{0};
+    std::uint64_t bytes_sent_{0};
+};
+
+} // namespace tactus::dds

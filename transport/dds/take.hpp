@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include <dds/dds.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace tactus::dds
+{
+
+/// Takes up to `samples_max` samples and calls `visit(const Sample&, const dds_sample_info_t&)` for
+/// each. The samples are Cyclone's own, on loan: a buffer of ours would be silently truncated to
+/// or, with `_release` set, freed by Cyclone. In a sample without valid_data only key fields are
+/// set.
+template <typename Sample, typename Visit>
+void take_each(std::int32_t reader, std::size_t samples_max, Visit&& visit)
+{
+    constexpr std::uint32_t batch = 16;
+    for (std::size_t taken = 0; taken < samples_max; taken += batch)
+    {
+        std::array<void*, batch> samples{}; // All null: asks for a loan.
+        std::array<dds_sample_info_t, batch> infos{};
+        const std::int32_t count =
+            dds_take(reader, samples.data(), infos.data(), samples.size(), batch);
+        for (std::size_t i = 0; count > 0 && i < static_cast<std::size_t>(count); ++i)
+        {
+            visit(*static_cast<const Sample*>(samples[i]), infos[i]);
+        }
+        if (count > 0)
+        {
+            dds_return_loan(reader, samples.data(), count);
+        }
+        if (count < static_cast<std::int32_t>(batch))
+        {
+            return;
+        }
+    }
+}
+
+} // namespace tactus::dds

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <utility>
+
+namespace tactus
+{
+
+/// Takes one line of text, without its newline. Called on the transport thread, never on the haptic
+/// thread.
+using Log = std::function<void(const std::string&)>;
+
+/// Lets through a few lines a second and says how many it held back: a fault that repeats a
+/// thousand times a second must not flood the terminal or stall its thread.
+class RateLimitedLog
+{
+public:
+    static constexpr std::uint32_t kLinesPerSecond = 5;
+
+    explicit RateLimitedLog(Log log) : log_(std::move(log)) {}
+
+    /// True when one more line may be written now; build the line only then.
+    [[nodiscard]] bool try_begin()
+    {
+        const auto now = std::chrono::steady_clock::now();
+        if (now - second_start_ >= std::chrono::seconds(1))
+        {
+            second_start_ = now;
+            lines_ = 0;
+            if (held_back_ > 0 && log_)
+            {
+                log_(std::to_string(held_back_) + " more lines like the last ones");
+            }
+            held_back_ = 0;
+        }
+        if (lines_ >= kLinesPerSecond)
+        {
+            ++held_back_;
+            return false;
+        }
+        ++lines_;
+        return true;
+    }
+
+    /// Writes a line after try_begin() allowed it.
+    void write_now(const std::string& line)
+    {
+        if (log_)
+        {
+            log_(line);
+        }
+    }
+
+    void write(const std::string& line)
+    {
+        if (try_begin())
+        {
+            write_now(line);
+        }
+    }
+
+private:
+    Log log_;
+    std::chrono::steady_clock::time_point second_start_{};
+    std::uint32_t lines_{0};
+    std::uint64_t held_back_{0};
+};
+
+} // namespace tactus

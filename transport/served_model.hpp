@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/base/result.hpp"
+#include "rt_core/spm/base_mesh.hpp"
+#include "rt_core/spm/header.hpp"
+#include "transport/chunk_link.hpp"
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace tactus
+{
+
+/// Everything that a controller needs to start on a model, whatever it comes through: `header` has
+/// passed ModelHeader::parse, its root hash and `base`'s hash were verified.
+struct ServedModel
+{
+    std::string name;
+    ContentHash hash{};
+    std::vector<std::byte> header;
+    std::vector<std::byte> base; ///< Coded.
+    std::unique_ptr<ChunkLink> link;
+};
+
+/// Verifies the base mesh's hash against the header, then parses it into `mesh`, whose spans have
+/// the header's counts (PageSlots::take). On refusal the content of `mesh` is unspecified.
+[[nodiscard]] Result<Done, SpmRefusal> load_base_mesh(std::span<const std::byte> bytes,
+                                                      const ModelHeader& header,
+                                                      const BaseMesh& mesh) noexcept;
+
+/// Checks one header from outside as far as a reader can: parse, then root hash.
+[[nodiscard]] Result<ModelHeader, SpmRefusal>
+parse_trusted_header(std::span<const std::byte> bytes) noexcept;
+
+} // namespace tactus

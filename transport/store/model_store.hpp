@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/base/result.hpp"
+#include "rt_core/spm/content_key.hpp"
+#include "rt_core/spm/header.hpp"
+#include "rt_core/spm/index_page.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace tactus
+{
+
+/// One line that names the file, what is wrong with it, and where.
+struct StoreError
+{
+    std::string text;
+};
+
+/// Read-only access to one .spm file. Reads with pread, never mmap: a file that is truncated while
+/// it is served gives an error instead of SIGBUS.
+///
+/// Memory: the header and 18 B a chunk (sizes and hashes); chunks are read when asked for.
+class ModelStore
+{
+public:
+    /// Checks everything but the chunks' content: size, header, root hash, base mesh, index pages,
+    /// and that all extents lie within the file. Cost: reads header, base and index.
+    [[nodiscard]] static Result<ModelStore, StoreError> open(const std::filesystem::path& path);
+
+    ModelStore(ModelStore&& other) noexcept;
+    ModelStore& operator=(ModelStore&& other) noexcept;
+    ModelStore(const ModelStore&) = delete;
+    ModelStore& operator=(const ModelStore&) = delete;
+    ~ModelStore();
+
+    [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
+    [[nodiscard]] const ModelHeader& header() const noexcept { return header_; }
+    [[nodiscard]] std::span<const std::byte> header_bytes() const noexcept { return bytes_; }
+    [[nodiscard]] const ContentHash& hash() const noexcept { return hash_; }
+    [[nodiscard]] std::uint32_t revision() const noexcept { return header_.fields().revision; }
+
+    /// Whether the model has a piece of this name.
+    [[nodiscard]] bool has(ContentKey key) const noexcept;
+    /// Bytes of a piece's coded form. The key must be one that the model has.
+    [[nodiscard]] std::size_t coded_bytes(ContentKey key) const noexcept;
+
+    /// Reads a piece in its coded form into `out` (resized; no allocation once it is large enough)
+    /// and verifies its hash. Refuses a key that the model doesn't have.
+    [[nodiscard]] Result<Done, StoreError> read(ContentKey key, std::vector<std::byte>& out) const;
+
+private:
+    struct Extent
+    {
+        std::uint64_t offset{0};
+        std::size_t bytes{0};
+        ContentHash hash{};
+    };
+
+    ModelStore() = default;
+
+    [[nodiscard]] Result<Done, StoreError> open_file(const std::filesystem::path& path);
+    [[nodiscard]] Result<Done, StoreError> read_header();
+    [[nodiscard]] Result<Done, StoreError> check_base() const;
+    [[nodiscard]] Result<Done, StoreError> read_index();
+    [[nodiscard]] Result<Done, StoreError> check_chunk_extents(IndexPageId page) const;
+    [[nodiscard]] Extent extent_of(ContentKey key) const noexcept;
+    [[nodiscard]] Result<Done, StoreError> read_at(std::uint64_t offset, std::span<std::byte> out,
+                                                   const std::string& what) const;
+    [[nodiscard]] StoreError error(const std::string& what) const;
+
+    std::filesystem::path path_;
+    int file_{-1};
+    std::uint64_t file_bytes_{0};
+    std::vector<std::byte> bytes_; ///< The header; header_ looks into it.
+    ModelHeader header_;
+    ContentHash hash_{};
+    std::vector<ChunkEntry> chunks_;
+};
+
+} // namespace tactus

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "transport/store/store_link.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace tactus
+{
+
+namespace
+{
+
+/// Wishes that wait for one poll; beyond it the oldest are forgotten, as a host would do.
+constexpr std::size_t kWaitingMax = 1'024;
+
+} // namespace
+
+StoreLink::StoreLink(ModelStore store, Log log) : store_(std::move(store)), log_(std::move(log))
+{
+    waiting_.reserve(2 * kWaitingMax);
+    piece_.reserve(kMaxCodedChunkBytes);
+}
+
+void StoreLink::request(std::span<const ContentKey> keys, std::uint32_t /*generation*/)
+{
+    keys = keys.first(std::min(keys.size(), kWaitingMax));
+    for (auto key = keys.rbegin(); key != keys.rend(); ++key)
+    {
+        waiting_.push_back(*key);
+    }
+    if (waiting_.size() > kWaitingMax)
+    {
+        waiting_.erase(waiting_.begin(), waiting_.end() - static_cast<std::ptrdiff_t>(kWaitingMax));
+    }
+}
+
+void StoreLink::poll(PieceSink& sink)
+{
+    while (!waiting_.empty())
+    {
+        const ContentKey key = waiting_.back();
+        waiting_.pop_back();
+        if (auto done = store_.read(key, piece_); !done)
+        {
+            log_.write(done.error().text);
+            continue;
+        }
+        bytes_received_ += piece_.size();
+        sink.receive(key, piece_);
+    }
+}
+
+Result<ServedModel, StoreError> serve_from_file(const std::filesystem::path& path,
+                                                const std::string& name, Log log)
+{
+    auto store = ModelStore::open(path);
+    if (!store)
+    {
+        return store.error();
+    }
+    ServedModel model;
+    model.name = name;
+    model.hash = store.value().hash();
+    const auto header = store.value().header_bytes();
+    model.header.assign(header.begin(), header.end());
+    if (auto done = store.value().read({ContentKind::base, 0}, model.base); !done)
+    {
+        return done.error();
+    }
+    model.link = std::make_unique<StoreLink>(std::move(store).value(), std::move(log));
+    return model;
+}
+
+} // namespace tactus

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "transport/chunk_link.hpp"
+#include "transport/log.hpp"
+#include "transport/served_model.hpp"
+#include "transport/store/model_store.hpp"
+
+#include <vector>
+
+namespace tactus
+{
+
+/// Serves a model from a local file through the same door as a host would (`--transport file`).
+class StoreLink final : public ChunkLink
+{
+public:
+    /// `log` gets a line for each kind of piece that can't be read, at a limited rate.
+    StoreLink(ModelStore store, Log log);
+
+    void request(std::span<const ContentKey> keys, std::uint32_t generation) override;
+    void poll(PieceSink& sink) override;
+    [[nodiscard]] LinkState state() const override { return LinkState::connected; }
+    [[nodiscard]] std::uint64_t session() const override { return 1; }
+    [[nodiscard]] std::uint64_t bytes_received() const override { return bytes_received_; }
+
+    [[nodiscard]] const ModelStore& store() const noexcept { return store_; }
+
+private:
+    ModelStore store_;
+    RateLimitedLog log_;
+    std::vector<ContentKey> waiting_; ///< Most urgent last.
+    std::vector<std::byte> piece_;
+    std::uint64_t bytes_received_{0};
+};
+
+/// Opens a file as the model `name`, which the caller has checked.
+[[nodiscard]] Result<ServedModel, StoreError> serve_from_file(const std::filesystem::path& path,
+                                                              const std::string& name, Log log);
+
+} // namespace tactus
