@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "host_tools/cli/command_line.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+
+namespace tactus
+{
+
+namespace
+{
+
+std::string printable(std::string text)
+{
+    std::replace_if(
+        text.begin(), text.end(),
+        [](char c)
+        {
+            const auto code = static_cast<unsigned char>(c);
+            return code < 0x20U || code == 0x7FU;
+        },
+        '?');
+    return text;
+}
+
+/// The library ends some messages with a line end and uses several lines for lists.
+std::string on_one_line(std::string text)
+{
+    while (!text.empty() && text.back() == '\n')
+    {
+        text.pop_back();
+    }
+    std::replace(text.begin(), text.end(), '\n', ' ');
+    return text;
+}
+
+} // namespace
+
+std::optional<int> parse_command_line(CLI::App& app, int argc, char** argv)
+{
+    try
+    {
+        app.parse(argc, argv);
+        return std::nullopt;
+    }
+    catch (const CLI::ParseError& error)
+    {
+        if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success))
+        {
+            return app.exit(error); // Prints the help or the version.
+        }
+        return fail(app, on_one_line(error.what()) + "; see --help", kExitUsage);
+    }
+}
+
+CLI::Validator number_between(double least, double most)
+{
+    const std::string range = fmt::format("{} .. {}", least, most);
+    return CLI::Validator(
+        [=](std::string& text)
+        {
+            double number = 0.0;
+            const bool fits =
+                CLI::detail::lexical_cast(text, number) && number >= least && number <= most;
+            return fits ? std::string() : fmt::format("'{}' is not a number in {}", text, range);
+        },
+        range);
+}
+
+int fail(const CLI::App& app, const std::string& text, int code)
+{
+    fmt::print(stderr, "{}: {}\n", app.get_name(), printable(text));
+    return code;
+}
+
+} // namespace tactus

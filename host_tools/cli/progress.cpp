@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "host_tools/cli/progress.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <unistd.h>
+#include <utility>
+
+namespace tactus
+{
+
+namespace
+{
+
+constexpr std::chrono::seconds kQuiet{2};
+constexpr std::chrono::seconds kPlainPeriod{10};
+constexpr std::chrono::milliseconds kTerminalPeriod{200};
+
+} // namespace
+
+Progress::Progress(std::string what, std::string items)
+    : what_(std::move(what))
+    , items_(std::move(items))
+    , is_terminal_(::isatty(STDERR_FILENO) == 1)
+    , start_(Clock::now())
+    , last_(start_)
+{
+}
+
+Progress::~Progress()
+{
+    if (has_line_ && is_terminal_)
+    {
+        fmt::print(stderr, "\r\x1b[K");
+        std::fflush(stderr);
+    }
+}
+
+void Progress::update(std::size_t done, std::size_t total)
+{
+    const Clock::time_point now = Clock::now();
+    if (done == 0 || total < done || !is_due(now))
+    {
+        return;
+    }
+    last_ = now;
+    has_line_ = true;
+    const double seconds = std::chrono::duration<double>(now - start_).count();
+    const double rate = static_cast<double>(done) / seconds;
+    const std::string line =
+        fmt::format("{}: {:.0f} %, {:.0f} {} per second, {:.0f} s left", what_,
+                    100.0 * static_cast<double>(done) / static_cast<double>(total), rate, items_,
+                    static_cast<double>(total - done) / rate);
+    fmt::print(stderr, "{}{}{}", is_terminal_ ? "\r" : "", line, is_terminal_ ? "\x1b[K" : "\n");
+    std::fflush(stderr);
+}
+
+bool Progress::is_due(Clock::time_point now) const
+{
+    if (now - start_ < kQuiet)
+    {
+        return false;
+    }
+    return !has_line_ ||
+           (is_terminal_ ? now - last_ >= kTerminalPeriod : now - last_ >= kPlainPeriod);
+}
+
+} // namespace tactus

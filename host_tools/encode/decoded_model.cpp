@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "host_tools/encode/decoded_model.hpp"
+
+#include "rt_core/base/arena.hpp"
+#include "rt_core/spm/chunk_coding.hpp"
+#include "rt_core/spm/linker.hpp"
+
+#include <fmt/format.h>
+
+#include <atomic>
+
+namespace tactus
+{
+
+DecodedModel::DecodedModel(const ModelHeader& header)
+    : header_(header)
+    , pages_(header.counts().chunks())
+    , base_positions_m_(header.counts().base_vertices)
+    , base_faces_(header.counts().base_faces)
+    , base_next_(header.counts().base_faces)
+{
+}
+
+DecodedModel DecodedModel::decode(const ModelStore& store, std::vector<std::string>& damage)
+{
+    DecodedModel model(store.header());
+    model.parse_pieces(store, damage);
+    return model;
+}
+
+void DecodedModel::parse_pieces(const ModelStore& store, std::vector<std::string>& damage)
+{
+    std::vector<std::byte> coded;
+    const auto take = [&](ContentKey key, const std::string& name, auto&& parse)
+    {
+        if (const auto read = store.read(key, coded); !read)
+        {
+            damage.push_back(read.error().text);
+        }
+        else if (const Result<Done, SpmRefusal> parsed = parse(); !parsed)
+        {
+            damage.push_back(fmt::format("{}: {} {}", store.path().string(), name,
+                                         refusal_text(parsed.error())));
+        }
+    };
+    take({ContentKind::base, 0}, "the base mesh",
+         [&] {
+             return parse_base_mesh(coded, header_, {base_positions_m_, base_faces_, base_next_});
+         });
+    for (std::uint32_t chunk = 0; chunk < pages_.size(); ++chunk)
+    {
+        take({ContentKind::chunk, chunk}, fmt::format("chunk {}", chunk),
+             [&] { return parse_chunk(coded, header_, {chunk}, pages_[chunk]); });
+        chunk_bytes_ += coded.size();
+    }
+}
+
+std::uint64_t DecodedModel::link_all()
+{
+    const ModelCounts counts = header_.counts();
+    if (counts.records == 0)
+    {
+        return 0;
+    }
+    struct alignas(Arena::kAlignment) Line
+    {
+        std::array<std::byte, Arena::kAlignment> bytes;
+    };
+    std::vector<std::atomic<std::uint64_t>> linked(pages_.size());
+    const PageSlots slots{pages_, linked, {}, {base_positions_m_, base_faces_, base_next_}};
+    Arena measure = Arena::measuring();
+    static_cast<void>(Linker(measure, counts, slots));
+    std::vector<Line> memory(measure.used() / sizeof(Line));
+    Arena arena(std::as_writable_bytes(std::span(memory)));
+    Linker linker(arena, counts, slots);
+    for (std::uint32_t chunk = 0; chunk < pages_.size(); ++chunk)
+    {
+        linker.link_page({chunk}, chunk);
+    }
+    return counts.records - linker.records_linked();
+}
+
+} // namespace tactus

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "host_tools/encode/numbering.hpp"
+#include "host_tools/simplify/simplify.hpp"
+#include "rt_core/spm/error_code.hpp"
+#include "rt_core/spm/page.hpp"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace tactus
+{
+
+/// What one record says of its star's faces before and after its split.
+struct StarHistory
+{
+    std::array<FaceState, kMaxFanFaces> before{};
+    std::array<ErrorCode, kMaxFanFaces> error_before{};
+    std::array<ErrorCode, kMaxStarFaces> error_after{}; ///< 0 only for a face of the source.
+    std::uint32_t depth{0};
+};
+
+/// The states that every face goes through between base and source.
+struct FaceHistory
+{
+    std::vector<StarHistory> stars;    ///< By RecordId.
+    std::vector<ErrorCode> base_error; ///< By FaceId of the base.
+    std::uint32_t max_depth{0};
+    ErrorCode max_error{0};
+};
+
+/// Undoes the collapses in thought, coarsest first, and notes who changed each face last. Linear;
+/// 44 B a record.
+[[nodiscard]] FaceHistory trace_faces(const QuantisedMesh& mesh,
+                                      const Simplification& simplification,
+                                      const Numbering& numbering);
+
+} // namespace tactus

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "host_tools/encode/influence.hpp"
+
+#include "rt_core/base/assert.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tactus
+{
+
+namespace
+{
+
+using GridPoint = std::array<std::int32_t, 3>;
+using Corners = std::array<std::uint32_t, 3>;
+
+constexpr QuantumBox kEmptyBox{
+    {std::numeric_limits<std::int32_t>::max(), std::numeric_limits<std::int32_t>::max(),
+     std::numeric_limits<std::int32_t>::max()},
+    {std::numeric_limits<std::int32_t>::min(), std::numeric_limits<std::int32_t>::min(),
+     std::numeric_limits<std::int32_t>::min()}};
+
+void join(QuantumBox& box, const QuantumBox& other)
+{
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+        box.low[axis] = std::min(box.low[axis], other.low[axis]);
+        box.high[axis] = std::max(box.high[axis], other.high[axis]);
+    }
+}
+
+/// The bound as whole quanta, with one more for the rounding of whoever tests a ball against the
+/// box. No bound of a real mesh comes near the cap; it only keeps boxes inside 32 bits.
+std::int32_t margin_of(ErrorCode error)
+{
+    const double quanta = std::ceil(static_cast<double>(error_in_quanta(error))) + 1.0;
+    return static_cast<std::int32_t>(std::min(quanta, 0x1p28));
+}
+
+double distance(const GridPoint& a, const GridPoint& b)
+{
+    double squared = 0.0;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+        const double d = static_cast<double>(a[axis]) - static_cast<double>(b[axis]);
+        squared += d * d;
+    }
+    return std::sqrt(squared);
+}
+
+/// Plays the collapses on a copy of the mesh and measures each star as it goes by.
+class Sweep
+{
+public:
+    Sweep(const QuantisedMesh& mesh, const Simplification& simplification,
+          const Numbering& numbering, const FaceHistory& history)
+        : mesh_(mesh)
+        , simplification_(simplification)
+        , numbering_(numbering)
+        , history_(history)
+        , corners_(mesh.faces)
+        , boxes_(numbering.counts.records, kEmptyBox)
+        , reach_(numbering.counts.records)
+    {
+    }
+
+    Influence run()
+    {
+        for (const Collapse& collapse : simplification_.collapses)
+        {
+            const RecordId record = numbering_.record_of(collapse);
+            measure_star_after_split(collapse, record);
+            collapse_fan(collapse);
+            measure_fan_before_split(collapse, record);
+            pass_on_to_dependencies(collapse, record);
+        }
+        return {chunk_boxes(), std::move(reach_)};
+    }
+
+private:
+    /// Grows box and reach of a record by one state of one face.
+    void include(RecordId record, const GridPoint& vertex, std::uint32_t face, ErrorCode error)
+    {
+        const std::int32_t margin = margin_of(error);
+        QuantumBox& box = boxes_[record.value];
+        double farthest = 0.0;
+        for (const std::uint32_t corner : corners_[face])
+        {
+            const GridPoint& point = mesh_.positions[corner];
+            for (std::size_t axis = 0; axis < 3; ++axis)
+            {
+                box.low[axis] = std::min(box.low[axis], point[axis] - margin);
+                box.high[axis] = std::max(box.high[axis], point[axis] + margin);
+            }
+            farthest = std::max(farthest, distance(vertex, point));
+        }
+        // The factor covers the rounding of the sums and of the root, a few units in the last
+        // place.
+        const double radius =
+            (farthest + static_cast<double>(error_in_quanta(error))) * (1.0 + 1e-14);
+        reach_[record.value] = std::max(reach_[record.value], encode_error(radius));
+    }
+
+    void measure_star_after_split(const Collapse& collapse, RecordId record)
+    {
+        const StarHistory& star = history_.stars[record.value];
+        for (std::uint32_t place = 0; place < 2 + collapse.fan_size; ++place)
+        {
+            if (collapse.star[place] != Collapse::kNoFace)
+            {
+                include(record, mesh_.positions[collapse.vertex], collapse.star[place],
+                        star.error_after[place]);
+            }
+        }
+    }
+
+    void collapse_fan(const Collapse& collapse)
+    {
+        for (std::uint32_t i = 0; i < collapse.fan_size; ++i)
+        {
+            Corners& corners = corners_[collapse.star[2 + i]];
+            const auto at = std::find(corners.begin(), corners.end(), collapse.vertex);
+            TACTUS_ASSERT(at != corners.end());
+            *at = collapse.parent;
+        }
+    }
+
+    void measure_fan_before_split(const Collapse& collapse, RecordId record)
+    {
+        const StarHistory& star = history_.stars[record.value];
+        for (std::uint32_t i = 0; i < collapse.fan_size; ++i)
+        {
+            include(record, mesh_.positions[collapse.vertex], collapse.star[2 + i],
+                    star.error_before[i]);
+        }
+    }
+
+    void pass_on_to_dependencies(const Collapse& collapse, RecordId record)
+    {
+        const StarHistory& star = history_.stars[record.value];
+        for (std::uint32_t i = 0; i < collapse.fan_size; ++i)
+        {
+            if (!star.before[i].is_base())
+            {
+                join(boxes_[star.before[i].record().value], boxes_[record.value]);
+            }
+        }
+    }
+
+    [[nodiscard]] std::vector<QuantumBox> chunk_boxes() const
+    {
+        std::vector<QuantumBox> chunks(numbering_.counts.chunks(), kEmptyBox);
+        for (std::uint32_t record = 0; record < boxes_.size(); ++record)
+        {
+            join(chunks[chunk_of({record}).value], boxes_[record]);
+        }
+        return chunks;
+    }
+
+    const QuantisedMesh& mesh_;
+    const Simplification& simplification_;
+    const Numbering& numbering_;
+    const FaceHistory& history_;
+    std::vector<Corners> corners_;
+    std::vector<QuantumBox> boxes_;
+    std::vector<ErrorCode> reach_;
+};
+
+} // namespace
+
+Influence find_influence(const QuantisedMesh& mesh, const Simplification& simplification,
+                         const Numbering& numbering, const FaceHistory& history)
+{
+    return Sweep(mesh, simplification, numbering, history).run();
+}
+
+QuantumBox union_of(std::span<const QuantumBox> boxes)
+{
+    TACTUS_ASSERT(!boxes.empty());
+    QuantumBox all = kEmptyBox;
+    for (const QuantumBox& box : boxes)
+    {
+        join(all, box);
+    }
+    return all;
+}
+
+InfluenceBox relative_to(const QuantumBox& page, const QuantumBox& box)
+{
+    InfluenceBox relative;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+        const std::int64_t step = index_step(page.low[axis], page.high[axis]);
+        const std::int64_t origin = page.low[axis];
+        relative.low[axis] = static_cast<std::uint16_t>((box.low[axis] - origin) / step);
+        relative.high[axis] =
+            static_cast<std::uint16_t>((box.high[axis] - origin + step - 1) / step);
+    }
+    return relative;
+}
+
+} // namespace tactus

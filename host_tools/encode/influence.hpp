@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "host_tools/encode/face_history.hpp"
+#include "host_tools/encode/numbering.hpp"
+#include "host_tools/simplify/simplify.hpp"
+#include "rt_core/spm/header.hpp"
+#include "rt_core/spm/index_page.hpp"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace tactus
+{
+
+/// Where records matter.
+struct Influence
+{
+    std::vector<QuantumBox> chunks; ///< By ChunkId: a ball that misses it needs none of the chunk.
+    std::vector<ErrorCode> reach;   ///< By RecordId, see VsplitRecord::reach.
+};
+
+/// One sweep over the collapses in their order, finest first.
+///
+/// A controller splits a record when a face of its fan, inflated by the face's bound, meets the
+/// ball; or because something that depends on the record is split. So a record's box is that of
+/// its inflated fan and of its star after the split, joined with the boxes of all that depends on
+/// it. Those were collapsed earlier, so their boxes are complete when the sweep comes to it.
+/// Linear; 25 B a record and a copy of the mesh's faces.
+[[nodiscard]] Influence find_influence(const QuantisedMesh& mesh,
+                                       const Simplification& simplification,
+                                       const Numbering& numbering, const FaceHistory& history);
+
+/// The least box that holds all of `boxes`, which are at least one.
+[[nodiscard]] QuantumBox union_of(std::span<const QuantumBox> boxes);
+
+/// A box as an index page stores it: in steps of the page's box, rounded outward.
+[[nodiscard]] InfluenceBox relative_to(const QuantumBox& page, const QuantumBox& box);
+
+} // namespace tactus

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "host_tools/encode/byte_writer.hpp"
+#include "rt_core/spm/base_mesh.hpp"
+#include "rt_core/spm/header.hpp"
+#include "rt_core/spm/index_page.hpp"
+#include "rt_core/spm/page.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+/// The writing side of rt_core's parse functions: what one of these returns, the parse function of
+/// that piece reads back to the same content.
+namespace tactus
+{
+
+/// A vertex on the integer grid, in quanta.
+using GridPosition = std::array<std::int32_t, 3>;
+
+/// `positions` and `faces` in the order of their ids; inverse of parse_base_mesh().
+[[nodiscard]] std::vector<std::byte> encode_base_mesh(std::span<const GridPosition> positions,
+                                                      std::span<const BaseFace> faces);
+
+/// The records of one chunk, 1 .. 64, in coder version 1; inverse of parse_chunk(). Positions must
+/// be whole multiples of the quantum; `next` is not written.
+[[nodiscard]] std::vector<std::byte> encode_chunk(ChunkId id, std::span<const VsplitRecord> records,
+                                                  float quantum_m);
+
+/// One box and one entry for each chunk of the page, 1 .. 64; inverse of parse_index_page().
+[[nodiscard]] std::vector<std::byte> encode_index_page(IndexPageId id,
+                                                       std::span<const InfluenceBox> boxes,
+                                                       std::span<const ChunkEntry> entries);
+
+/// Closes with root hash and checksum; inverse of ModelHeader::parse(). The sizes in `fields` must
+/// be those of the spans.
+[[nodiscard]] std::vector<std::byte> encode_header(const HeaderFields& fields,
+                                                   std::span<const IndexPageEntry> index,
+                                                   std::span<const std::byte> region_bits);
+
+} // namespace tactus

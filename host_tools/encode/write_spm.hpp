@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "host_tools/mesh/prepare.hpp"
+#include "host_tools/simplify/simplify.hpp"
+#include "rt_core/base/result.hpp"
+#include "rt_core/spm/header.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace tactus
+{
+
+struct EncodeOptions
+{
+    std::uint32_t position_bits{kMinPositionBits}; ///< As the mesh was prepared with.
+    std::uint32_t base_faces{500}; ///< A larger base is refused, unless it has at most 500 faces.
+    /// Edge of a region, rounded down to a power of two quanta; without it the longest axis gets
+    /// at most 16 regions.
+    std::optional<double> region_size_m;
+};
+
+/// Why there is no file: one line that begins with the file's name.
+struct EncodeError
+{
+    std::string text;
+};
+
+/// Writes a model's file: header, base mesh, index pages, chunks. The file appears under its name
+/// only when it is whole; after a refusal there is nothing new on the disk. Returns the header's
+/// fields. The same arguments give the same bytes. Linear memory, about 100 B a face beside the
+/// arguments; chunks go to the disk one by one.
+[[nodiscard]] Result<HeaderFields, EncodeError> write_spm(const std::filesystem::path& path,
+                                                          const PreparedMesh& prepared,
+                                                          const Simplification& simplification,
+                                                          const EncodeOptions& options);
+
+} // namespace tactus

@@ -1,0 +1,292 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "host_tools/cli/command_line.hpp"
+#include "host_tools/cli/progress.hpp"
+#include "host_tools/encode/write_spm.hpp"
+#include "host_tools/mesh/atomic_file.hpp"
+#include "host_tools/mesh/prepare.hpp"
+#include "host_tools/mesh/read_mesh.hpp"
+#include "host_tools/shapes/shapes.hpp"
+#include "host_tools/simplify/simplify.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <filesystem>
+#include <limits>
+#include <new>
+#include <optional>
+#include <string>
+#include <sys/resource.h>
+#include <thread>
+#include <vector>
+
+namespace tactus
+{
+
+namespace
+{
+
+struct Options
+{
+    std::string input;
+    std::string output;
+    std::string shape;
+    std::uint32_t shape_faces{0};
+    std::string unit{"m"};
+    std::optional<double> fit_diagonal_m;
+    std::optional<double> region_size_m;
+    unsigned position_bits{kMinPositionBits};
+    std::uint32_t base_faces{500};
+    unsigned threads{std::max(1U, std::thread::hardware_concurrency())};
+    bool json{false};
+
+    /// What the model is made of, as messages name it.
+    [[nodiscard]] std::string source() const { return shape.empty() ? input : "--shape " + shape; }
+};
+
+/// A failure on the way: one line for the user.
+struct Failure
+{
+    std::string text;
+};
+
+/// What was made, for the summary.
+struct Outcome
+{
+    HeaderFields fields;
+    double diagonal_m{0.0};
+    double seconds{0.0};
+    std::uint64_t peak_bytes{0};
+};
+
+void declare_options(CLI::App& app, Options& options)
+{
+    app.set_version_flag("--version", std::string("spm_build ") + TACTUS_VERSION);
+    auto* input = app.add_option("IN", options.input, "Mesh to read: .ply, .obj, .stl or .off");
+    app.add_option("-o,--output", options.output, "Model to write (.spm)")->required();
+    const std::vector<std::string_view> names = shape_names();
+    auto* shape = app.add_option("--shape", options.shape, "Make a shape instead of reading a mesh")
+                      ->check(CLI::IsMember(std::vector<std::string>(names.begin(), names.end())))
+                      ->excludes(input);
+    auto* faces = app.add_option("--faces", options.shape_faces, "Faces of the shape")
+                      ->check(number_between(kMinShapeFaces, kMaxShapeFaces))
+                      ->needs(shape);
+    shape->needs(faces);
+    app.add_option("--unit", options.unit, "Unit of the mesh's coordinates")
+        ->check(CLI::IsMember({"mm", "cm", "m", "in"}))
+        ->capture_default_str();
+    app.add_option("--fit-diag", options.fit_diagonal_m,
+                   "Scale the model to this bounding-box diagonal, in metres")
+        ->check(number_between(kMinFitDiagonal_m, kMaxFitDiagonal_m));
+    app.add_option("--position-bits", options.position_bits, "Bits of a coordinate")
+        ->check(number_between(kMinPositionBits, kMaxPositionBits))
+        ->capture_default_str();
+    app.add_option("--base-faces", options.base_faces, "Faces of the coarsest mesh, at most")
+        ->check(number_between(1, kMaxBaseFaces))
+        ->capture_default_str();
+    app.add_option("--region-size", options.region_size_m,
+                   "Edge of a region in metres, rounded down to a power of two quanta")
+        ->check(number_between(1e-12, 1e6));
+    app.add_option("--threads", options.threads, "Threads to work with")
+        ->check(number_between(1, 1024))
+        ->capture_default_str();
+    app.add_flag("--json", options.json, "Print the figures as one JSON object");
+}
+
+Result<TriangleMesh, Failure> load_source(const Options& options, std::vector<std::string>& notes)
+{
+    if (options.shape.empty())
+    {
+        auto file = read_mesh_file(options.input);
+        if (!file)
+        {
+            return Failure{file.error().text};
+        }
+        notes = file.value().notes;
+        return std::move(file.value().mesh);
+    }
+    auto mesh = make_shape(*parse_shape(options.shape), options.shape_faces);
+    if (!mesh)
+    {
+        return Failure{mesh.error().text};
+    }
+    if (mesh.value().faces.size() != options.shape_faces)
+    {
+        notes.push_back(fmt::format("{} faces were asked for; the shape has {}",
+                                    options.shape_faces, mesh.value().faces.size()));
+    }
+    return std::move(mesh).value();
+}
+
+Result<PreparedMesh, Failure> prepare_source(const Options& options,
+                                             std::vector<std::string>& notes)
+{
+    const auto source = load_source(options, notes);
+    if (!source)
+    {
+        return source.error();
+    }
+    auto prepared = prepare_mesh(source.value(), {*metres_per_unit(options.unit),
+                                                  options.fit_diagonal_m, options.position_bits});
+    if (!prepared)
+    {
+        return Failure{options.source() + ": " + prepared.error().text};
+    }
+    notes.insert(notes.end(), prepared.value().notes.begin(), prepared.value().notes.end());
+    return std::move(prepared).value();
+}
+
+Result<Simplification, Failure> simplify_source(const Options& options, const QuantisedMesh& mesh)
+{
+    Progress progress("simplify", "faces");
+    SimplifyOptions simplify_options;
+    simplify_options.base_faces = options.base_faces;
+    simplify_options.threads = options.threads;
+    simplify_options.progress = [&](std::size_t left, std::size_t total)
+    {
+        progress.update(total - left, total);
+        return true;
+    };
+    auto simplification = simplify(mesh, simplify_options);
+    if (!simplification)
+    {
+        return Failure{options.source() + ": " + simplification.error().text};
+    }
+    return std::move(simplification).value();
+}
+
+std::uint64_t peak_memory_bytes()
+{
+    rusage usage{};
+    ::getrusage(RUSAGE_SELF, &usage);
+    return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+Result<Outcome, Failure> build(const Options& options, std::vector<std::string>& notes)
+{
+    const auto start = std::chrono::steady_clock::now();
+    // Refuses a place that can't be written before minutes of work; the file itself comes last.
+    if (const auto probe = AtomicFile::create(options.output); !probe)
+    {
+        return Failure{probe.error().text};
+    }
+    const auto prepared = prepare_source(options, notes);
+    if (!prepared)
+    {
+        return prepared.error();
+    }
+    const auto simplification = simplify_source(options, prepared.value().mesh);
+    if (!simplification)
+    {
+        return simplification.error();
+    }
+    const auto written =
+        write_spm(options.output, prepared.value(), simplification.value(),
+                  {options.position_bits, options.base_faces, options.region_size_m});
+    if (!written)
+    {
+        return Failure{written.error().text};
+    }
+    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
+    return Outcome{written.value(), prepared.value().diagonal_m, spent.count(),
+                   peak_memory_bytes()};
+}
+
+nlohmann::json figures_of(const Outcome& outcome)
+{
+    const HeaderFields& fields = outcome.fields;
+    const double quantum_m = std::ldexp(1.0, fields.quantum_log2);
+    const ModelCounts counts{fields.base_vertices, fields.base_faces, fields.records};
+    const double faces = fields.source_faces;
+    return {
+        {"faces", fields.source_faces},
+        {"vertices", fields.source_vertices},
+        {"records", fields.records},
+        {"rounds", fields.rounds},
+        {"base_faces", fields.base_faces},
+        {"seconds", outcome.seconds},
+        {"faces_per_second", faces / outcome.seconds},
+        {"peak_bytes", outcome.peak_bytes},
+        {"file_bytes", fields.file_bytes},
+        {"bytes_per_face", static_cast<double>(fields.file_bytes) / faces},
+        {"quantisation_diag", fields.quantisation_m / outcome.diagonal_m},
+        {"e_max_diag", fields.max_error_quanta * quantum_m / outcome.diagonal_m},
+        {"regions", fields.occupied_regions},
+        {"chunks", counts.chunks()},
+    };
+}
+
+void print_summary(const Options& options, const Outcome& outcome)
+{
+    const nlohmann::json figures = figures_of(outcome);
+    if (options.json)
+    {
+        fmt::print("{}\n", figures.dump());
+        return;
+    }
+    const HeaderFields& fields = outcome.fields;
+    fmt::print("{}: {} faces, {} vertices; {} records in {} rounds on a base of {} faces\n",
+               options.output, fields.source_faces, fields.source_vertices, fields.records,
+               fields.rounds, fields.base_faces);
+    fmt::print("{} bytes, {:.2f} per face, in {} chunks; {} occupied regions\n", fields.file_bytes,
+               figures["bytes_per_face"].get<double>(), figures["chunks"].get<std::uint32_t>(),
+               fields.occupied_regions);
+    fmt::print("diagonal {:.6g} m; quantisation {:.2e} and largest error bound {:.2e} of it\n",
+               outcome.diagonal_m, figures["quantisation_diag"].get<double>(),
+               figures["e_max_diag"].get<double>());
+    fmt::print("{:.1f} s, {:.0f} faces per second, {} MiB at the peak\n", outcome.seconds,
+               figures["faces_per_second"].get<double>(), outcome.peak_bytes >> 20U);
+}
+
+int run(int argc, char** argv)
+{
+    CLI::App app("Turns a triangle mesh into an SPM model.", "spm_build");
+    Options options;
+    declare_options(app, options);
+    if (const auto code = parse_command_line(app, argc, argv))
+    {
+        return *code;
+    }
+    if (options.input.empty() && options.shape.empty())
+    {
+        return fail(app, "give a mesh to read, or --shape and --faces; see --help", kExitUsage);
+    }
+    AtomicFile::remove_pending_on_signal();
+    std::vector<std::string> notes;
+    const auto outcome = build(options, notes);
+    if (!outcome)
+    {
+        return fail(app, outcome.error().text);
+    }
+    for (const std::string& note : notes)
+    {
+        fmt::print(stderr, "note: {}\n", note);
+    }
+    print_summary(options, outcome.value());
+    return kExitDone;
+}
+
+} // namespace
+
+} // namespace tactus
+
+int main(int argc, char** argv)
+{
+    try
+    {
+        return tactus::run(argc, argv);
+    }
+    catch (const std::bad_alloc&)
+    {
+        fmt::print(stderr, "spm_build: not enough memory; about 500 bytes a face are needed\n");
+    }
+    catch (const std::exception& error)
+    {
+        fmt::print(stderr, "spm_build: {}\n", error.what());
+    }
+    return tactus::kExitFailed;
+}

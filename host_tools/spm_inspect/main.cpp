@@ -1,0 +1,310 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "host_tools/cli/command_line.hpp"
+#include "host_tools/cli/progress.hpp"
+#include "host_tools/encode/decoded_model.hpp"
+#include "host_tools/encode/replay.hpp"
+#include "host_tools/mesh/write_mesh.hpp"
+#include "transport/content_hash.hpp"
+#include "transport/store/model_store.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <exception>
+#include <limits>
+#include <new>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tactus
+{
+
+namespace
+{
+
+struct Options
+{
+    std::string file;
+    bool json{false};
+    bool regions{false};
+    bool extract{false};
+    std::uint32_t faces{0};
+    std::string output;
+};
+
+void declare_options(CLI::App& app, Options& options)
+{
+    app.set_version_flag("--version", std::string("spm_inspect ") + TACTUS_VERSION);
+    app.add_option("FILE", options.file, "Model to look at (.spm)")->required();
+    app.add_flag("--json", options.json, "Print as one JSON object");
+    app.add_flag("--regions", options.regions, "List the occupied regions");
+    auto* extract =
+        app.add_flag("--extract", options.extract, "Write the mesh at a chosen resolution");
+    auto* faces = app.add_option("--faces", options.faces, "Faces of the extracted mesh, at most")
+                      ->check(number_between(1, std::numeric_limits<std::uint32_t>::max()))
+                      ->needs(extract);
+    auto* output =
+        app.add_option("-o,--output", options.output, "Mesh to write (.ply)")->needs(extract);
+    extract->needs(faces)->needs(output);
+}
+
+/// The least and largest corner of the model in the source's frame.
+struct Bounds
+{
+    std::array<double, 3> low_m{};
+    std::array<double, 3> high_m{};
+};
+
+Bounds bounds_of(const ModelHeader& header)
+{
+    const HeaderFields& fields = header.fields();
+    Bounds bounds{fields.origin_m, fields.origin_m};
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+        bounds.high_m[axis] += fields.extent_quanta[axis] * static_cast<double>(header.quantum_m());
+    }
+    return bounds;
+}
+
+/// Refines the whole model and returns what contradicts itself, in words. A replay checks all that
+/// the controller's linker does; a model of a size that the linker is made for goes through it too.
+std::optional<std::string> find_contradiction(DecodedModel& model)
+{
+    const ModelCounts counts = model.header().counts();
+    Replay replay(model);
+    Progress progress("check", "records");
+    for (std::size_t done = 0; const RecordId record : in_dependency_order(model))
+    {
+        if (auto fault = replay.split(record))
+        {
+            return fault;
+        }
+        progress.update(++done, counts.records);
+    }
+    const std::uint64_t unlinked =
+        counts.chunks() <= DecodedModel::kLinkedChunks ? model.link_all() : 0;
+    if (unlinked > 0)
+    {
+        return fmt::format("{} of {} records can't be linked to those they depend on", unlinked,
+                           counts.records);
+    }
+    if (replay.face_count() != model.header().fields().source_faces)
+    {
+        return fmt::format("it refines to {} faces, its header states {}", replay.face_count(),
+                           model.header().fields().source_faces);
+    }
+    return std::nullopt;
+}
+
+nlohmann::json regions_of(const ModelHeader& header)
+{
+    const auto& grid = header.fields().region_grid;
+    nlohmann::json occupied = nlohmann::json::array();
+    for (std::uint32_t region = 0; region < header.region_count(); ++region)
+    {
+        if (header.is_occupied({region}))
+        {
+            occupied.push_back(
+                {{"id", region},
+                 {"cell",
+                  {region % grid[0], region / grid[0] % grid[1], region / grid[0] / grid[1]}}});
+        }
+    }
+    return occupied;
+}
+
+nlohmann::json describe(const ModelStore& store, const DecodedModel& model, bool with_regions)
+{
+    const ModelHeader& header = store.header();
+    const HeaderFields& fields = header.fields();
+    const double quantum_m = static_cast<double>(header.quantum_m());
+    const Bounds bounds = bounds_of(header);
+    nlohmann::json all{
+        {"file", store.path().string()},
+        {"hash", hash_text(store.hash())},
+        {"format_version", fields.format_version},
+        {"coder_version", fields.coder_version},
+        {"revision", fields.revision},
+        {"faces", fields.source_faces},
+        {"vertices", fields.source_vertices},
+        {"base_faces", fields.base_faces},
+        {"base_vertices", fields.base_vertices},
+        {"records", fields.records},
+        {"rounds", fields.rounds},
+        {"depth", fields.max_depth},
+        {"bounds_m", {{"low", bounds.low_m}, {"high", bounds.high_m}}},
+        {"diagonal_m", header.diagonal_m()},
+        {"quantum_m", quantum_m},
+        {"position_bits", fields.position_bits},
+        {"quantisation_m", fields.quantisation_m},
+        {"error_max_m", fields.max_error_quanta * quantum_m},
+        {"regions",
+         {{"grid", fields.region_grid},
+          {"cell_m", fields.region_cell_quanta * quantum_m},
+          {"occupied", fields.occupied_regions}}},
+        {"bytes",
+         {{"file", fields.file_bytes},
+          {"header", fields.header_bytes},
+          {"base", fields.base_bytes},
+          {"chunks", model.chunk_bytes()},
+          {"index",
+           fields.file_bytes - fields.header_bytes - fields.base_bytes - model.chunk_bytes()}}},
+        {"bytes_per_face", static_cast<double>(fields.file_bytes) / fields.source_faces},
+        {"chunks", header.counts().chunks()},
+    };
+    if (with_regions)
+    {
+        all["regions"]["list"] = regions_of(header);
+    }
+    return all;
+}
+
+void print_text(const nlohmann::json& all)
+{
+    const auto number = [&](const char* pointer)
+    { return all.at(nlohmann::json::json_pointer(pointer)).get<double>(); };
+    const auto count = [&](const char* pointer)
+    { return all.at(nlohmann::json::json_pointer(pointer)).get<std::uint64_t>(); };
+    fmt::print("{}: SPM format {}, coder {}, revision {}\n", all["file"].get<std::string>(),
+               count("/format_version"), count("/coder_version"), count("/revision"));
+    fmt::print("hash          {}\n", all["hash"].get<std::string>());
+    fmt::print("mesh          {} faces, {} vertices\n", count("/faces"), count("/vertices"));
+    fmt::print("base          {} faces, {} vertices\n", count("/base_faces"),
+               count("/base_vertices"));
+    fmt::print("records       {} from {} rounds, depth {}\n", count("/records"), count("/rounds"),
+               count("/depth"));
+    for (const char* axis : {"0", "1", "2"})
+    {
+        fmt::print("bounds {}      {:.6g} .. {:.6g} m\n", "xyz"[*axis - '0'],
+                   number((std::string("/bounds_m/low/") + axis).c_str()),
+                   number((std::string("/bounds_m/high/") + axis).c_str()));
+    }
+    const double diagonal_m = number("/diagonal_m");
+    fmt::print("diagonal      {:.6g} m\n", diagonal_m);
+    fmt::print("quantum       {:.6g} m, {} bits\n", number("/quantum_m"), count("/position_bits"));
+    fmt::print("quantisation  {:.3g} m, {:.2e} of the diagonal\n", number("/quantisation_m"),
+               number("/quantisation_m") / diagonal_m);
+    fmt::print("error bound   {:.3g} m at most, {:.2e} of the diagonal\n", number("/error_max_m"),
+               number("/error_max_m") / diagonal_m);
+    fmt::print("regions       {} x {} x {} of {:.6g} m, {} occupied\n", count("/regions/grid/0"),
+               count("/regions/grid/1"), count("/regions/grid/2"), number("/regions/cell_m"),
+               count("/regions/occupied"));
+    fmt::print("bytes         {}, {:.2f} per face: header {}, base {}, index {}, chunks {}\n",
+               count("/bytes/file"), number("/bytes_per_face"), count("/bytes/header"),
+               count("/bytes/base"), count("/bytes/index"), count("/bytes/chunks"));
+    fmt::print("all {} chunks sound, all {} records linked\n", count("/chunks"), count("/records"));
+    if (all["regions"].contains("list"))
+    {
+        for (const nlohmann::json& region : all["regions"]["list"])
+        {
+            fmt::print("region {}: cell {} {} {}\n", region["id"].get<std::uint32_t>(),
+                       region["cell"][0].get<std::uint32_t>(),
+                       region["cell"][1].get<std::uint32_t>(),
+                       region["cell"][2].get<std::uint32_t>());
+        }
+    }
+}
+
+/// Splits the records that matter most while the mesh stays within `faces`.
+std::optional<std::string> extract(const DecodedModel& model, const Options& options)
+{
+    Replay replay(model);
+    for (const RecordId record : coarsest_first(model))
+    {
+        const std::uint32_t more = (model.record(record).has_face(0) ? 1U : 0U) +
+                                   (model.record(record).has_face(1) ? 1U : 0U);
+        if (replay.face_count() + more > options.faces)
+        {
+            break;
+        }
+        const auto fault = replay.split(record);
+        TACTUS_ASSERT(!fault); // The whole model has been refined before.
+    }
+    if (const auto written = write_mesh(options.output, replay.mesh()); !written)
+    {
+        return written.error().text;
+    }
+    fmt::print(stderr, "{}: {} faces\n", options.output, replay.face_count());
+    return std::nullopt;
+}
+
+int report_damage(const CLI::App& app, const std::vector<std::string>& damage)
+{
+    constexpr std::size_t kShown = 20;
+    for (std::size_t i = 0; i < std::min(damage.size(), kShown); ++i)
+    {
+        fail(app, damage[i]);
+    }
+    if (damage.size() > kShown)
+    {
+        fail(app, fmt::format("and {} more damaged pieces", damage.size() - kShown));
+    }
+    return kExitFailed;
+}
+
+int run(int argc, char** argv)
+{
+    CLI::App app("Shows and checks an SPM model.", "spm_inspect");
+    Options options;
+    declare_options(app, options);
+    if (const auto code = parse_command_line(app, argc, argv))
+    {
+        return *code;
+    }
+    const auto store = ModelStore::open(options.file);
+    if (!store)
+    {
+        return fail(app, store.error().text);
+    }
+    std::vector<std::string> damage;
+    DecodedModel model = DecodedModel::decode(store.value(), damage);
+    if (!damage.empty())
+    {
+        return report_damage(app, damage);
+    }
+    if (const auto fault = find_contradiction(model))
+    {
+        return fail(app, fmt::format("{}: contradicts itself: {}", options.file, *fault));
+    }
+    if (options.extract)
+    {
+        if (const auto fault = extract(model, options))
+        {
+            return fail(app, *fault);
+        }
+    }
+    const nlohmann::json all = describe(store.value(), model, options.regions);
+    if (options.json)
+    {
+        fmt::print("{}\n", all.dump(2));
+    }
+    else
+    {
+        print_text(all);
+    }
+    return kExitDone;
+}
+
+} // namespace
+
+} // namespace tactus
+
+int main(int argc, char** argv)
+{
+    try
+    {
+        return tactus::run(argc, argv);
+    }
+    catch (const std::bad_alloc&)
+    {
+        fmt::print(stderr, "spm_inspect: not enough memory; about 100 bytes a face are needed\n");
+    }
+    catch (const std::exception& error)
+    {
+        fmt::print(stderr, "spm_inspect: {}\n", error.what());
+    }
+    return tactus::kExitFailed;
+}

@@ -1,0 +1,110 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# bad_input.sh SPM_BUILD SPM_INSPECT: every kind of bad input gives the right exit code and exactly
+# one line that begins with the program's name and says what is wrong; no file is left behind.
+set -euo pipefail
+readonly build=$1 inspect=$2
+scratch=$(mktemp -d)
+trap 'chmod -R u+w "$scratch"; rm -rf "$scratch"' EXIT
+cd "$scratch"
+mkdir in out
+failures=0
+
+# expect CODE TEXT PROGRAM ARGUMENT...: the one line holds TEXT, and out/ stays as it was.
+expect() {
+    local code=0 wanted=$1 text=$2 output before
+    shift 2
+    before=$(ls -A out)
+    output=$("$@" 2>&1) || code=$?
+    if ((code != wanted)) || [[ "$output" != "$(basename "$1"): "*"$text"* ]] \
+        || [[ "$output" == *$'\n'* ]] || [[ "$(ls -A out)" != "$before" ]]; then
+        printf '%s\n  expected exit %d, one line with "%s" and no new file\n' "$*" "$wanted" "$text"
+        printf '  got exit %d, files "%s" and:\n%s\n' "$code" "$(ls -A out)" "$output"
+        failures=$((failures + 1))
+    fi
+}
+
+# refuse_mesh TEXT NAME: in/NAME is refused by its name, with exit 2.
+refuse_mesh() { expect 2 "$1" "$build" "in/$2" -o out/a.spm; }
+
+readonly vertices='v 0 0 0
+v 1 0 0
+v 0 1 0'
+: >in/empty.obj
+printf 'hello\nthis is prose\n' >in/prose.ply
+printf '%s\n' "$vertices" >in/no_faces.obj
+printf '%s\nf 1 2 4\n' "$vertices" >in/beyond.obj
+printf 'v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >in/nan.obj
+printf 'v 0 0 inf\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >in/inf.obj
+printf 'v 0 0 0\nv 0 0 0\nv 0 0 0\nf 1 2 3\n' >in/point.obj
+printf 'OFF\n3 1 0\n0 0 0\n1 0 0\n' >in/short.off
+printf 'ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\n' >in/short.ply
+printf '%s\nf 1 2 3\n' "$vertices" >in/mesh.obj
+printf '%s\nf 1 2 3\n' "$vertices" >in/mesh.xyz
+
+refuse_mesh in/missing.obj missing.obj
+refuse_mesh in/empty.obj empty.obj
+refuse_mesh in/prose.ply prose.ply
+refuse_mesh in/no_faces.obj no_faces.obj
+refuse_mesh in/beyond.obj beyond.obj
+refuse_mesh in/nan.obj nan.obj
+refuse_mesh in/inf.obj inf.obj
+refuse_mesh in/point.obj point.obj
+refuse_mesh in/short.off short.off
+refuse_mesh in/short.ply short.ply
+refuse_mesh in/mesh.xyz mesh.xyz
+refuse_mesh in .
+
+expect 2 nowhere/a.spm "$build" in/mesh.obj -o nowhere/a.spm
+expect 2 out "$build" in/mesh.obj -o out
+if ((EUID != 0)); then # Root may write anywhere.
+    chmod u-w out
+    expect 2 out/a.spm "$build" in/mesh.obj -o out/a.spm
+    chmod u+w out
+fi
+# A soup of 600 loose triangles can't vanish into a base of 500.
+for ((i = 0; i < 600; ++i)); do
+    printf 'v %d 0 0\nv %d 1 0\nv %d 0 1\nf -3 -2 -1\n' $((2 * i)) $((2 * i)) $((2 * i))
+done >in/soup.obj
+expect 2 '--base-faces 600' "$build" in/soup.obj -o out/a.spm
+expect 2 --region-size "$build" in/mesh.obj --region-size 1e-9 -o out/a.spm
+
+expect 3 --output "$build" in/mesh.obj
+expect 3 'a mesh to read' "$build" -o out/a.spm
+expect 3 --unit "$build" in/mesh.obj -o out/a.spm --unit furlong
+expect 3 --fit-diag "$build" in/mesh.obj -o out/a.spm --fit-diag 0
+expect 3 --fit-diag "$build" in/mesh.obj -o out/a.spm --fit-diag -1
+expect 3 --fit-diag "$build" in/mesh.obj -o out/a.spm --fit-diag nan
+expect 3 --fit-diag "$build" in/mesh.obj -o out/a.spm --fit-diag wide
+expect 3 --position-bits "$build" in/mesh.obj -o out/a.spm --position-bits 15
+expect 3 --position-bits "$build" in/mesh.obj -o out/a.spm --position-bits 25
+expect 3 --base-faces "$build" in/mesh.obj -o out/a.spm --base-faces 0
+expect 3 --base-faces "$build" in/mesh.obj -o out/a.spm --base-faces 1000000
+expect 3 --region-size "$build" in/mesh.obj -o out/a.spm --region-size 0
+expect 3 --threads "$build" in/mesh.obj -o out/a.spm --threads 0
+expect 3 --shape "$build" --shape cube --faces 1000 -o out/a.spm
+expect 3 --faces "$build" --shape sphere -o out/a.spm
+expect 3 --faces "$build" --shape sphere --faces 3 -o out/a.spm
+expect 3 --shape "$build" in/mesh.obj --faces 1000 -o out/a.spm
+expect 3 --shape "$build" in/mesh.obj --shape sphere --faces 1000 -o out/a.spm
+expect 3 --fast "$build" in/mesh.obj -o out/a.spm --fast
+expect 3 FILE "$inspect"
+expect 3 --faces "$inspect" in/mesh.obj --extract -o out/a.ply
+expect 3 --output "$inspect" in/mesh.obj --extract --faces 100
+expect 3 --extract "$inspect" in/mesh.obj --faces 100
+
+expect 2 in/missing.spm "$inspect" in/missing.spm
+expect 2 in/empty.obj "$inspect" in/empty.obj
+expect 2 in/mesh.obj "$inspect" in/mesh.obj
+expect 2 'in: ' "$inspect" in
+"$build" --shape sphere --faces 2000 -o out/sphere.spm >/dev/null 2>&1
+readonly bytes=$(stat -c %s out/sphere.spm)
+head -c $((bytes - 1)) out/sphere.spm >in/cut.spm
+expect 2 in/cut.spm "$inspect" in/cut.spm
+cp out/sphere.spm in/bent.spm
+printf '\xff' | dd of=in/bent.spm bs=1 seek=$((bytes - 100)) conv=notrunc status=none
+expect 2 'in/bent.spm: chunk' "$inspect" in/bent.spm
+expect 2 nowhere/a.ply "$inspect" out/sphere.spm --json --extract --faces 100 -o nowhere/a.ply
+expect 2 out/a.stl "$inspect" out/sphere.spm --json --extract --faces 100 -o out/a.stl
+
+((failures == 0)) || { printf '%d faults\n' "$failures"; exit 1; }

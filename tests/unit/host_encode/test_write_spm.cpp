@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "host_tools/encode/write_spm.hpp"
+#include "tests/golden/golden_model.hpp"
+#include "tests/unit/host_encode/encoded_model.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iterator>
+
+namespace tactus
+{
+
+namespace
+{
+
+std::string content_of(const std::filesystem::path& path)
+{
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// What a reader says of a file; empty when it finds nothing wrong.
+std::string read_back(const std::filesystem::path& path)
+{
+    const auto store = ModelStore::open(path);
+    if (!store)
+    {
+        return store.error().text;
+    }
+    std::vector<std::string> damage;
+    static_cast<void>(DecodedModel::decode(store.value(), damage));
+    return damage.empty() ? "" : damage.front();
+}
+
+/// Overwrites one byte of an open file in its place.
+void put_byte(std::fstream& file, std::size_t at, char byte)
+{
+    file.seekp(static_cast<std::streamoff>(at));
+    file.put(byte);
+    file.flush();
+}
+
+TEST(WriteSpm, the_same_input_gives_the_same_bytes)
+{
+    const EncodedModel& model = *sample_models()[1];
+    const std::string first = content_of(model.path());
+    const ScratchFolder folder;
+    ASSERT_TRUE(write_spm(folder.path() / "again.spm", model.prepared, model.simplification, {}));
+    EXPECT_EQ(content_of(folder.path() / "again.spm"), first);
+    EXPECT_EQ(first.size(), model.fields.file_bytes);
+}
+
+TEST(WriteSpm, the_header_describes_the_mesh)
+{
+    for (const auto& model : sample_models())
+    {
+        const HeaderFields& fields = model->store->header().fields();
+        EXPECT_EQ(fields.source_faces, model->prepared.mesh.faces.size()) << model->name;
+        EXPECT_EQ(fields.source_vertices, model->prepared.mesh.positions.size()) << model->name;
+        EXPECT_EQ(fields.origin_m, model->prepared.origin_m) << model->name;
+        EXPECT_EQ(fields.rounds, model->simplification.rounds) << model->name;
+        EXPECT_EQ(static_cast<double>(model->store->header().quantum_m()),
+                  model->prepared.quantum_m)
+            << model->name;
+    }
+}
+
+TEST(WriteSpm, a_mesh_that_is_all_base_has_no_chunks)
+{
+    PreparedMesh prepared;
+    prepared.mesh = {{{0, 0, 0}, {60'000, 0, 0}, {0, 50'000, 0}}, {{0, 1, 2}}};
+    prepared.quantum_m = 0x1p-20;
+    const Simplification nothing{{}, 0, {0}, {{0, 1, 2}}, {0.0}};
+    const ScratchFolder folder;
+    ASSERT_TRUE(write_spm(folder.path() / "one.spm", prepared, nothing, {}));
+    EXPECT_EQ(read_back(folder.path() / "one.spm"), "");
+}
+
+TEST(WriteSpm, every_truncation_is_refused_in_words)
+{
+    const ScratchFolder folder;
+    const std::filesystem::path path = folder.path() / "cut.spm";
+    std::filesystem::copy_file(sample_models()[0]->path(), path);
+    ASSERT_EQ(read_back(path), "");
+    for (std::uintmax_t length = std::filesystem::file_size(path); length-- > 0;)
+    {
+        std::filesystem::resize_file(path, length);
+        const std::string said = read_back(path);
+        ASSERT_NE(said.find("cut.spm"), std::string::npos) << "cut at " << length;
+    }
+}
+
+TEST(WriteSpm, a_byte_too_many_is_refused)
+{
+    const ScratchFolder folder;
+    const std::filesystem::path path = folder.path() / "long.spm";
+    std::filesystem::copy_file(sample_models()[0]->path(), path);
+    std::ofstream(path, std::ios::binary | std::ios::app) << 'x';
+    EXPECT_NE(read_back(path).find("followed by other bytes"), std::string::npos);
+}
+
+TEST(WriteSpm, every_flipped_bit_is_found_and_named)
+{
+    const ScratchFolder folder;
+    const std::filesystem::path path = folder.path() / "bent.spm";
+    std::filesystem::copy_file(sample_models()[0]->path(), path);
+    const std::string whole = content_of(path);
+    std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
+    for (std::size_t bit = 0; bit < whole.size() * 8; bit += 3) // Every byte, bits in turn.
+    {
+        const char byte = whole[bit / 8];
+        put_byte(file, bit / 8, static_cast<char>(byte ^ (1 << (bit % 8))));
+        ASSERT_NE(read_back(path).find("bent.spm"), std::string::npos) << "bit " << bit;
+        put_byte(file, bit / 8, byte);
+    }
+    EXPECT_EQ(read_back(path), "");
+}
+
+TEST(WriteSpm, refuses_a_base_that_is_larger_than_allowed)
+{
+    PreparedMesh prepared = make_golden_mesh();
+    const Simplification none = collapse_plainly(prepared.mesh, prepared.mesh.faces.size());
+    ASSERT_EQ(none.base_faces.size(), 512U);
+    const ScratchFolder folder;
+    EncodeOptions options;
+    const auto refused = write_spm(folder.path() / "a.spm", prepared, none, options);
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.error().text.find("--base-faces 512"), std::string::npos)
+        << refused.error().text;
+    EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+    options.base_faces = 512;
+    EXPECT_TRUE(write_spm(folder.path() / "a.spm", prepared, none, options));
+}
+
+TEST(WriteSpm, refuses_more_regions_than_a_header_holds)
+{
+    const EncodedModel& model = *sample_models()[0];
+    const ScratchFolder folder;
+    EncodeOptions options;
+    options.region_size_m = 1e-6;
+    const auto refused =
+        write_spm(folder.path() / "a.spm", model.prepared, model.simplification, options);
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.error().text.find("--region-size"), std::string::npos);
+    EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
+TEST(WriteSpm, rounds_the_region_size_down_to_a_power_of_two_quanta)
+{
+    const EncodedModel& model = *sample_models()[0];
+    const ScratchFolder folder;
+    EncodeOptions options;
+    options.region_size_m = model.prepared.quantum_m * 9'000;
+    const auto written =
+        write_spm(folder.path() / "a.spm", model.prepared, model.simplification, options);
+    ASSERT_TRUE(written);
+    EXPECT_EQ(written.value().region_cell_quanta, 8'192U);
+}
+
+TEST(WriteSpm, refuses_a_folder_that_is_not_there)
+{
+    const EncodedModel& model = *sample_models()[0];
+    const ScratchFolder folder;
+    const auto refused =
+        write_spm(folder.path() / "none" / "a.spm", model.prepared, model.simplification, {});
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.error().text.find("a.spm"), std::string::npos);
+}
+
+} // namespace
+
+} // namespace tactus
