@@ -12,6 +12,10 @@ namespace tactus
 namespace
 {
 
+/// How far beyond the tool's radius triangles are listed, as a share of the radius, and how many
+/// lists one frame may make: together a slide of a third of the radius a frame.
+constexpr double kWindow = 0.12;
+constexpr int kVicinities = 3;
 /// Push-outs after one slide; each at least halves what is left on a smooth surface.
 constexpr int kPushOuts = 4;
 /// Below this share of the tool's radius a motion isn't worth a step: 0.1 mN at 500 N/m and 2 mm.
@@ -23,14 +27,10 @@ ToolOutput Proxy::respond(const Vec3& goal_m, std::span<const PlacedSurface> sur
                           double elapsed_s) noexcept
 {
     anchor_ = position_;
-    held_back_ = false;
     const double travel = free_travel(surfaces);
     const bool frozen = !(travel > 0.0);
-    if (frozen)
-    {
-        held_back_ = true;
-    }
-    else
+    held_back_ = frozen;
+    if (!frozen)
     {
         follow(goal_m, travel, surfaces);
     }
@@ -59,102 +59,109 @@ double Proxy::free_travel(std::span<const PlacedSurface> surfaces) const noexcep
     return travel;
 }
 
-Proxy::Nearest Proxy::nearest(const Vec3& point,
-                              std::span<const PlacedSurface> surfaces) const noexcept
-{
-    Nearest best{std::numeric_limits<double>::infinity(), normal_};
-    for (const PlacedSurface& placed : surfaces)
-    {
-        const Vec3 local = to_model(*placed.pose, point);
-        double least_sq = std::numeric_limits<double>::infinity();
-        Vec3 foot = local;
-        for (std::uint32_t i = 0; i < placed.surface->count; ++i)
-        {
-            const ClosestPoint closest = closest_point_on_triangle(
-                local, to_triangle(placed.surface->triangles[i].corners_m));
-            if (closest.distance_sq < least_sq)
-            {
-                least_sq = closest.distance_sq;
-                foot = closest.point;
-            }
-        }
-        const double distance = std::sqrt(least_sq) * placed.pose->scale;
-        if (distance < best.distance)
-        {
-            const Vec3 away = point - to_world(*placed.pose, foot);
-            const double length = away.norm();
-            best = {distance, length > 0.0 ? Vec3(away / length) : normal_};
-        }
-    }
-    return best;
-}
-
+/// First straight on as far as nothing is in the way, then step by step among the triangles in
+/// reach; where those end, among those in reach of there.
 void Proxy::follow(const Vec3& goal, double travel,
                    std::span<const PlacedSurface> surfaces) noexcept
 {
-    const double radius = spec_.radius_m;
-    const double tolerance = kContactTolerance * radius;
     in_contact_ = false;
-    for (std::uint32_t i = 0; i < kProxySteps; ++i)
+    const double clear = std::min(travel, clearance(surfaces) - spec_.radius_m);
+    const Vec3 way = goal - position_;
+    const double length = way.norm();
+    if (clear > kContactTolerance * spec_.radius_m && length > 0.0)
+    {
+        position_ += way * std::min(1.0, clear / length);
+    }
+    std::uint32_t steps = kProxySteps;
+    Motion motion = Motion::ran_out;
+    for (int round = 0; round < kVicinities && motion == Motion::ran_out; ++round)
+    {
+        const double left = travel - (position_ - anchor_).norm();
+        const double window = std::min(left, kWindow * spec_.radius_m);
+        const Vicinity vicinity(surfaces, position_, spec_.radius_m + window, position_ == anchor_);
+        motion = follow_within(vicinity, goal, left, steps);
+    }
+    held_back_ = motion == Motion::held_back;
+}
+
+/// To the nearest triangle from where the surfaces were queried.
+double Proxy::clearance(std::span<const PlacedSurface> surfaces) noexcept
+{
+    double least = std::numeric_limits<double>::infinity();
+    for (const PlacedSurface& placed : surfaces)
+    {
+        const auto& distances = placed.surface->distances_m;
+        for (std::uint32_t i = 0; i < placed.surface->count; ++i)
+        {
+            least = std::min(least, distances[i] * placed.pose->scale);
+        }
+    }
+    return least;
+}
+
+Proxy::Motion Proxy::follow_within(const Vicinity& vicinity, const Vec3& goal, double travel,
+                                   std::uint32_t& steps) noexcept
+{
+    const double radius = spec_.radius_m;
+    const double least_step = kLeastStep * radius;
+    const Vec3 center = position_;
+    for (; steps > 0; --steps)
     {
         const Vec3 way = goal - position_;
-        const double length = way.norm();
-        // Surfaces outside the certified ball are at least this far away.
-        const double unseen = travel + radius - (position_ - anchor_).norm();
-        const Nearest near = nearest(position_, surfaces);
-        const double clearance = std::min(near.distance, unseen);
+        const double moved = (position_ - center).norm();
+        const NearestSurface near = vicinity.nearest(position_, normal_);
+        const bool touches = near.distance_m <= radius + kContactTolerance * radius;
         const double inward = -way.dot(near.normal);
-        const bool touches = near.distance <= radius + tolerance;
-        if (length <= kLeastStep * radius)
-        {
-            in_contact_ = in_contact_ || (touches && inward > 0.0);
-            return;
-        }
-        const double most = touches ? std::min(0.5 * radius, unseen - radius) : clearance - radius;
-        if (touches && inward > 0.0)
+        const bool is_held = touches && inward > 0.0;
+        if (is_held)
         {
             in_contact_ = true;
             normal_ = near.normal;
         }
-        const Vec3 wanted = touches && inward > 0.0 ? Vec3(way + inward * near.normal) : way;
+        const Vec3 wanted = is_held ? Vec3(way + inward * near.normal) : way;
         const double wanted_length = wanted.norm();
-        if (wanted_length <= kLeastStep * radius)
+        if (wanted_length <= least_step)
         {
-            return; // At rest on the surface.
+            return Motion::at_rest;
         }
-        if (most <= kLeastStep * radius)
+        // What is not in the vicinity, or not certified, is at least this far away.
+        const double unlisted = vicinity.reach_m() - moved - radius;
+        const double uncertified = travel - moved;
+        const double open = touches ? 0.5 * radius : near.distance_m - radius;
+        const double most = std::min({open, unlisted, uncertified});
+        if (most <= least_step)
         {
-            held_back_ = true;
-            return;
+            return uncertified <= least_step ? Motion::held_back : Motion::ran_out;
         }
         const Vec3 step = wanted * std::min(1.0, most / wanted_length);
         if (!touches)
         {
             position_ += step;
         }
-        else if (!try_slide(step, clearance, goal, surfaces) &&
-                 !try_slide(0.25 * step, clearance, goal, surfaces))
+        else if (!try_slide(step, near.distance_m, goal, vicinity) &&
+                 !try_slide(0.25 * step, near.distance_m, goal, vicinity))
         {
-            return; // A concave corner: no step along this constraint leads nearer to the goal.
+            return Motion::at_rest; // A concave corner: this constraint leads no nearer.
         }
     }
+    return Motion::out_of_steps;
 }
 
 /// One step along the surface, pushed out to the radius again. Taken only when it ends outside the
 /// surface, nearer to the goal and within the ball that is known to be free.
 bool Proxy::try_slide(const Vec3& step, double clearance, const Vec3& goal,
-                      std::span<const PlacedSurface> surfaces) noexcept
+                      const Vicinity& vicinity) noexcept
 {
     const double radius = spec_.radius_m;
     const double least = radius - kContactTolerance * radius;
     Vec3 candidate = position_ + step;
-    Nearest near = nearest(candidate, surfaces);
-    for (int i = 0; i < kPushOuts && near.distance < radius; ++i)
+    NearestSurface near = vicinity.nearest(candidate, normal_);
+    for (int i = 0; i < kPushOuts && near.distance_m < radius; ++i)
     {
-        candidate += near.normal * (radius - near.distance);
-        near = nearest(candidate, surfaces);
+        candidate += near.normal * (radius - near.distance_m);
+        near = vicinity.nearest(candidate, normal_);
     }
-    if (near.distance < least || (candidate - position_).norm() >= clearance ||
+    if (near.distance_m < least || (candidate - position_).norm() >= clearance ||
         (candidate - goal).squaredNorm() >= (position_ - goal).squaredNorm())
     {
         return false;

@@ -2,22 +2,15 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "rt_core/force/vicinity.hpp"
 #include "rt_core/records/frame_input.hpp"
 #include "rt_core/records/frame_output.hpp"
-#include "rt_core/records/local_surface.hpp"
 
 #include <cstdint>
 #include <span>
 
 namespace tactus
 {
-
-/// One object's surface near a tool, as the force stage sees it.
-struct PlacedSurface
-{
-    const ObjectPose* pose{nullptr};
-    const LocalSurface* surface{nullptr};
-};
 
 /// The virtual proxy of one spherical tool (Ruspini et al. 1997; god-object: Zilles and Salisbury
 /// 1995), with one constraint at a time.
@@ -32,7 +25,8 @@ struct PlacedSurface
 /// Without a certified surface the proxy is frozen: the force along the last normal never pulls
 /// and fades to zero within kFadeTime_s.
 ///
-/// Haptic thread. Cost: at most kProxySteps x 5 distance tests over the local triangles.
+/// Haptic thread. Cost: kProxySteps steps at most, each of up to 12 distance tests over the few
+/// triangles in reach of the tool.
 class Proxy
 {
 public:
@@ -48,18 +42,21 @@ public:
                                      double elapsed_s) noexcept;
 
 private:
-    struct Nearest
+    enum class Motion : std::uint8_t
     {
-        double distance{0.0};
-        Vec3 normal{0.0, 0.0, 0.0}; ///< From the surface to the point.
+        at_rest,   ///< At the goal, or held by the surface.
+        ran_out,   ///< The vicinity ends here; there may be more behind it.
+        held_back, ///< The certified ball ends here.
+        out_of_steps,
     };
 
     [[nodiscard]] double free_travel(std::span<const PlacedSurface> surfaces) const noexcept;
-    [[nodiscard]] Nearest nearest(const Vec3& point,
-                                  std::span<const PlacedSurface> surfaces) const noexcept;
+    [[nodiscard]] static double clearance(std::span<const PlacedSurface> surfaces) noexcept;
     void follow(const Vec3& goal, double travel, std::span<const PlacedSurface> surfaces) noexcept;
+    [[nodiscard]] Motion follow_within(const Vicinity& vicinity, const Vec3& goal, double travel,
+                                       std::uint32_t& steps) noexcept;
     [[nodiscard]] bool try_slide(const Vec3& step, double clearance, const Vec3& goal,
-                                 std::span<const PlacedSurface> surfaces) noexcept;
+                                 const Vicinity& vicinity) noexcept;
     [[nodiscard]] Vec3 force_towards(const Vec3& goal) const noexcept;
     [[nodiscard]] Vec3 fading_force(const Vec3& goal) const noexcept;
     [[nodiscard]] Vec3 clamped(const Vec3& force) const noexcept;

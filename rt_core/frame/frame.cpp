@@ -324,6 +324,7 @@ void Frame::report(std::span<const ObjectPose> poses) noexcept
         pair_outputs_[i] = {pair.tool,
                             pair.object,
                             answer.kind,
+                            to_world(pose, pair.center_m),
                             answer.lower_m * pose.scale,
                             answer.upper_m * pose.scale,
                             answer.certified_radius_m * pose.scale,

@@ -116,18 +116,18 @@ private:
     {
         if (surface_.count < kMaxLocalTriangles)
         {
-            distances_[surface_.count] = distance;
+            surface_.distances_m[surface_.count] = distance;
             surface_.triangles[surface_.count++] = {face, corners};
             return;
         }
         surface_.truncated = true;
+        auto& distances = surface_.distances_m;
         const auto farthest = static_cast<std::size_t>(
-            std::max_element(distances_.begin(), distances_.end()) - distances_.begin());
-        dropped_ = std::min(dropped_, std::max(distance, distances_[farthest]));
-        if (distance < distances_[farthest])
+            std::max_element(distances.begin(), distances.end()) - distances.begin());
+        dropped_ = std::min(dropped_, std::max(distance, distances[farthest]));
+        if (distance < distances[farthest])
         {
-            dropped_ = std::min(dropped_, distances_[farthest]);
-            distances_[farthest] = distance;
+            distances[farthest] = distance;
             surface_.triangles[farthest] = {face, corners};
         }
     }
@@ -143,7 +143,6 @@ private:
     double unproven_{kInfinity}; ///< Least distance at which something is not known exactly.
     double dropped_{kInfinity};
     double nearest_sq_{kInfinity};
-    std::array<double, kMaxLocalTriangles> distances_{};
 };
 
 } // namespace

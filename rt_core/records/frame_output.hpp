@@ -28,6 +28,7 @@ struct PairOutput
     std::uint32_t tool{0};
     std::uint32_t object{0};
     AnswerKind kind{AnswerKind::bracket};
+    Vec3 point_m{0.0, 0.0, 0.0}; ///< From where: the proxy at the start of the frame.
     double lower_m{0.0};
     double upper_m{0.0};
     double certified_radius_m{0.0};

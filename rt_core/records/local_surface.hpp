@@ -50,6 +50,7 @@ struct LocalSurface
     Vec3 center_m{0.0, 0.0, 0.0}; ///< The proxy, in the model's frame.
     DistanceAnswer answer;
     std::array<LocalTriangle, kMaxLocalTriangles> triangles{};
+    std::array<double, kMaxLocalTriangles> distances_m{}; ///< Lower bounds, from `center_m`.
     std::uint32_t count{0};
     bool truncated{false}; ///< More triangles were in reach; the certified radius says how far.
 };

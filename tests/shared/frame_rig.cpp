@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "tests/shared/frame_rig.hpp"
+
+#include <cstdio>
+#include <cstdlib>
+
+namespace tactus::test
+{
+
+namespace
+{
+
+[[noreturn]] void give_up(const std::string& reason)
+{
+    std::fprintf(stderr, "frame rig: %s\n", reason.c_str());
+    std::exit(2);
+}
+
+std::span<std::byte> aligned(std::vector<std::byte>& memory)
+{
+    const auto address = reinterpret_cast<std::uintptr_t>(memory.data());
+    const std::size_t skip = (Arena::kAlignment - address % Arena::kAlignment) % Arena::kAlignment;
+    return std::span(memory).subspan(skip);
+}
+
+} // namespace
+
+FrameRig::FrameRig(const TestModel& model, const RigOptions& options)
+    : memory_(options.pool_bytes + Arena::kAlignment)
+    , courier_steps_(options.courier_steps_per_frame)
+{
+    auto served = serve_from_file(model.path, model.name, {});
+    if (!served)
+    {
+        give_up(served.error().text);
+    }
+    served_ = std::move(served).value();
+    link_ = std::make_unique<LoopbackLink>(*served_.link, options.faults);
+    arena_.emplace(aligned(memory_).first(options.pool_bytes));
+    const ModelHeader header = ModelHeader::parse(served_.header).value();
+    const std::vector<ToolSpec> tools =
+        options.tools.empty() ? std::vector<ToolSpec>{{0.01 * model.diagonal_m, 500.0, 8.0, 1.0}}
+                              : options.tools;
+    const std::array<ObjectSpec, 1> objects{ObjectSpec{ModelId{0}}};
+    FrameSetup setup;
+    setup.tools = tools;
+    setup.objects = objects;
+    const std::size_t shared =
+        Frame::required_bytes(setup) + Arena::round_up(served_.header.size());
+    const ModelCounts counts = header.counts();
+    const std::size_t courier = Courier::required_bytes(counts.chunks(), counts.index_pages());
+    const ModelCapacities capacities =
+        options.pool_bytes > shared + courier
+            ? plan_capacities(header, options.pool_bytes - shared - courier, options.cache_bytes)
+            : ModelCapacities{};
+    const std::array<ModelSource, 1> sources{ModelSource{served_.header, served_.base, capacities}};
+    setup.models = sources;
+    if (capacities.pages == 0)
+    {
+        give_up("the pools are too small");
+    }
+    if (const auto started = Frame::start(frame_, *arena_, setup); !started)
+    {
+        give_up(refusal_text(started.error()));
+    }
+    Model& parts = frame_->model({0});
+    courier_ = std::make_unique<Courier>(*arena_, parts.header, parts.slots, parts.linker,
+                                         parts.inbox, *link_, model.name, Log{});
+    poses_.resize(1);
+}
+
+FrameOutput FrameRig::step(const std::vector<Vec3>& goals_m, const Budgets& budgets, StageMark mark)
+{
+    deliver();
+    return step_without_delivery(goals_m, budgets, mark);
+}
+
+FrameOutput FrameRig::step_without_delivery(const std::vector<Vec3>& goals_m,
+                                            const Budgets& budgets, StageMark mark)
+{
+    tools_.resize(goals_m.size());
+    for (std::size_t i = 0; i < goals_m.size(); ++i)
+    {
+        tools_[i].position_m = goals_m[i];
+    }
+    return frame_->run(tools_, poses_, budgets, mark);
+}
+
+void FrameRig::deliver()
+{
+    for (std::uint32_t i = 0; i < courier_steps_; ++i)
+    {
+        now_ns_ += 1'000'000 / courier_steps_;
+        courier_->step(now_ns_);
+    }
+}
+
+std::uint32_t FrameRig::settle(const Vec3& goal_m, const Budgets& budgets, std::uint32_t frames)
+{
+    for (std::uint32_t i = 0; i < frames; ++i)
+    {
+        const FrameOutput output = step(goal_m, budgets);
+        const bool quiet = output.work.splits == 0 && output.work.requests == 0 &&
+                           output.work.pages_adopted == 0 && courier_->open_wishes() == 0 &&
+                           output.faults == FrameFault::none;
+        if (quiet && i > 10)
+        {
+            return i;
+        }
+    }
+    return frames;
+}
+
+void load_everything(FrameRig& rig)
+{
+    Model& model = rig.model();
+    const std::uint32_t chunks = model.header.counts().chunks();
+    const RankedRegion everywhere{ModelId{0}, Vec3(0.0, 0.0, 0.0), 1e3, 0};
+    Budgets budgets;
+    budgets.requests = 64;
+    budgets.regions = 64;
+    WorkCounters work;
+    FrameFault faults = FrameFault::none;
+    for (std::uint32_t frame = 1; frame < 10'000 && model.pages.used() < chunks; ++frame)
+    {
+        work = WorkCounters{};
+        model.cache.adopt_arrivals(1'000, ChunkCache::kFirstFrame + frame, work);
+        model.cache.request_missing({&everywhere, 1}, budgets, ChunkCache::kFirstFrame + frame,
+                                    work, faults);
+        rig.deliver();
+    }
+    if (model.pages.used() != chunks)
+    {
+        give_up("not every chunk came");
+    }
+}
+
+} // namespace tactus::test

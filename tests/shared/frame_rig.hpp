@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/frame/frame.hpp"
+#include "tests/shared/test_model.hpp"
+#include "transport/courier.hpp"
+#include "transport/loopback/loopback_link.hpp"
+#include "transport/store/store_link.hpp"
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace tactus::test
+{
+
+struct RigOptions
+{
+    std::size_t pool_bytes{std::size_t{8} << 20U};
+    std::size_t cache_bytes{0};
+    std::vector<ToolSpec> tools;
+    LoopbackFaults faults;
+    std::uint32_t courier_steps_per_frame{4};
+};
+
+/// The controller without clocks, threads and devices: a frame, and the courier of one model read
+/// from its file through a link that may lose and delay. Steps both in turn.
+class FrameRig
+{
+public:
+    FrameRig(const TestModel& model, const RigOptions& options);
+
+    /// One frame with the tools at these places of the model's frame.
+    FrameOutput step(const std::vector<Vec3>& goals_m, const Budgets& budgets, StageMark mark = {});
+    FrameOutput step(const Vec3& goal_m, const Budgets& budgets = {})
+    {
+        return step(std::vector<Vec3>{goal_m}, budgets);
+    }
+    /// The same, without letting the transport side work first.
+    FrameOutput step_without_delivery(const std::vector<Vec3>& goals_m, const Budgets& budgets,
+                                      StageMark mark);
+    /// Lets the transport side work without a frame.
+    void deliver();
+    /// Steps with a still tool until the model is resident as far as the ball needs, at most
+    /// `frames`; returns how many it took.
+    std::uint32_t settle(const Vec3& goal_m, const Budgets& budgets, std::uint32_t frames);
+
+    [[nodiscard]] Frame& frame() { return *frame_; }
+    [[nodiscard]] Model& model() { return frame_->model({0}); }
+    [[nodiscard]] Courier& courier() { return *courier_; }
+    [[nodiscard]] LoopbackLink& link() { return *link_; }
+
+private:
+    ServedModel served_;
+    std::unique_ptr<LoopbackLink> link_;
+    std::vector<std::byte> memory_;
+    std::optional<Arena> arena_;
+    std::optional<Frame> frame_;
+    std::unique_ptr<Courier> courier_;
+    std::uint32_t courier_steps_;
+    std::int64_t now_ns_{0};
+    std::vector<ObjectPose> poses_;
+    std::vector<ToolState> tools_;
+};
+
+/// Loads every chunk of a rig's model; its pools must hold them all.
+void load_everything(FrameRig& rig);
+
+} // namespace tactus::test

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "tests/shared/test_model.hpp"
+
+#include "host_tools/encode/write_spm.hpp"
+#include "host_tools/mesh/prepare.hpp"
+#include "host_tools/shapes/shapes.hpp"
+#include "host_tools/simplify/simplify.hpp"
+
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+#include <memory>
+#include <unistd.h>
+
+namespace tactus::test
+{
+
+namespace
+{
+
+[[noreturn]] void give_up(const std::string& name, const std::string& reason)
+{
+    std::fprintf(stderr, "test model %s: %s\n", name.c_str(), reason.c_str());
+    std::exit(2);
+}
+
+/// Removed with everything in it when the process ends.
+struct TemporaryFolder
+{
+    std::filesystem::path path =
+        std::filesystem::temp_directory_path() / ("tactus-models-" + std::to_string(getpid()));
+
+    TemporaryFolder() { std::filesystem::create_directories(path); }
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+    ~TemporaryFolder()
+    {
+        std::error_code ignored;
+        std::filesystem::remove_all(path, ignored);
+    }
+};
+
+TestModel make(const std::string& name, const TriangleMesh& mesh, std::uint32_t base_faces)
+{
+    static const TemporaryFolder folder;
+    const auto prepared = prepare_mesh(mesh, {});
+    if (!prepared)
+    {
+        give_up(name, prepared.error().text);
+    }
+    SimplifyOptions options;
+    options.base_faces = base_faces;
+    const auto simplified = simplify(prepared.value().mesh, options);
+    if (!simplified)
+    {
+        give_up(name, simplified.error().text);
+    }
+    TestModel model;
+    model.name = name;
+    model.path = folder.path / (name + ".spm");
+    const auto written = write_spm(model.path, prepared.value(), simplified.value(), {});
+    if (!written)
+    {
+        give_up(name, written.error().text);
+    }
+    const QuantisedMesh& source = prepared.value().mesh;
+    const auto quantum = static_cast<float>(prepared.value().quantum_m);
+    for (const auto& corners : source.faces)
+    {
+        Face face{};
+        for (std::size_t i = 0; i < 3; ++i)
+        {
+            for (std::size_t axis = 0; axis < 3; ++axis)
+            {
+                face[i][axis] = static_cast<float>(source.positions[corners[i]][axis]) * quantum;
+            }
+        }
+        model.faces.push_back(face);
+    }
+    model.diagonal_m = prepared.value().diagonal_m;
+    model.origin_m = prepared.value().origin_m;
+    return model;
+}
+
+const TestModel& shape_model(Shape shape, std::uint32_t faces)
+{
+    const std::string name(shape_names()[static_cast<std::size_t>(shape)]);
+    return test_model(name, make_shape(shape, faces).value());
+}
+
+} // namespace
+
+const TestModel& test_model(const std::string& name, const TriangleMesh& mesh,
+                            std::uint32_t base_faces)
+{
+    static std::map<std::string, std::unique_ptr<TestModel>> models;
+    std::unique_ptr<TestModel>& model = models[name];
+    if (!model)
+    {
+        model = std::make_unique<TestModel>(make(name, mesh, base_faces));
+    }
+    return *model;
+}
+
+std::vector<const TestModel*> small_models()
+{
+    return {&shape_model(Shape::bumpy_sphere, 4'000),
+            &shape_model(Shape::torus, 3'000),
+            &shape_model(Shape::terrain, 3'000),
+            &shape_model(Shape::gear, 3'000),
+            &test_model("thin-plate", make_thin_plate(25, 2e-5).value()),
+            &test_model("needles", make_uv_sphere(10, 200).value())};
+}
+
+} // namespace tactus::test

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "host_tools/mesh/triangle_mesh.hpp"
+#include "tests/shared/brute_force.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace tactus::test
+{
+
+/// A model on disk, made by the encoder, and its source mesh as the truth to compare with.
+struct TestModel
+{
+    std::string name;
+    std::filesystem::path path;
+    std::vector<Face> faces; ///< Of the quantised source, in the model's frame.
+    double diagonal_m{0.0};
+    std::array<double, 3> origin_m{}; ///< Of the model's frame in the source's.
+};
+
+/// Prepares, simplifies and encodes a mesh into a file of the test's temporary folder; made once a
+/// name and process. Ends the test program with a line when a step refuses.
+[[nodiscard]] const TestModel& test_model(const std::string& name, const TriangleMesh& mesh,
+                                          std::uint32_t base_faces = 200);
+
+/// Models that cover smooth, sharp, open, thin and needle shapes; a few thousand faces each.
+[[nodiscard]] std::vector<const TestModel*> small_models();
+
+} // namespace tactus::test
