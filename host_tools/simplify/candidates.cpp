@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "host_tools/simplify/candidates.hpp"
+
+#include "host_tools/simplify/grid_point.hpp"
+#include "host_tools/simplify/plane_quadric.hpp"
+#include "rt_core/base/static_vector.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <span>
+
+namespace tactus
+{
+
+namespace
+{
+
+/// Times |uv|^4: decides between equals, on flat regions above all.
+constexpr double kLengthWeight = 1e-6;
+/// Share of the quadric in the measured cost: keeps sheets from being bridged where the samples
+/// can't see it.
+constexpr double kQuadricShare = 0.1;
+constexpr std::size_t kMeasuredMax = 6; ///< Neighbours measured; more gain nothing.
+constexpr std::size_t kSamplesMax = 48; ///< Original triangles per star; more gain nothing.
+
+struct Choice
+{
+    double quadric{0};
+    double upkeep{0}; ///< Boundary and length terms.
+    std::uint32_t place{0};
+    Spoils spoils{Spoils::nothing};
+
+    [[nodiscard]] double cost() const noexcept { return quadric + upkeep; }
+};
+
+using Choices = StaticVector<Choice, kMaxStarFaces>;
+
+/// All neighbours, cheapest first; equal costs stay in ring order.
+Choices rank_neighbours(const CandidateInput& input, const VertexRing& ring)
+{
+    const PlaneQuadric quadric(input.mesh, ring);
+    const Vec3 vertex = grid_point(input.mesh, ring.vertex);
+    Choices choices;
+    for (std::uint32_t place = 0; place < ring.place_count(); ++place)
+    {
+        const Vec3 parent = grid_point(input.mesh, ring.parent_at(place));
+        const double squared_length = (parent - vertex).squaredNorm();
+        const double upkeep = input.boundary.at(ring.vertex, parent) +
+                              kLengthWeight * squared_length * squared_length;
+        choices.push_back({quadric.at(parent), upkeep, place, Spoils::nothing});
+        for (std::size_t i = choices.size() - 1; i > 0 && choices[i].cost() < choices[i - 1].cost();
+             --i)
+        {
+            std::swap(choices[i], choices[i - 1]);
+        }
+    }
+    return choices;
+}
+
+/// The legal ones among the least spoiling, at most `count_max`, cheapest first.
+Choices keep_least_spoiling(const CandidateInput& input, const VertexRing& ring,
+                            const Choices& ranked, std::size_t count_max)
+{
+    Choices kept;
+    for (Choice choice : ranked)
+    {
+        const Star star = star_at(ring, choice.place);
+        if (!input.current.is_legal(star))
+        {
+            continue;
+        }
+        choice.spoils = spoils(input.mesh, star);
+        if (!kept.empty() && choice.spoils < kept[0].spoils)
+        {
+            kept.clear();
+        }
+        if (kept.size() < count_max && (kept.empty() || choice.spoils == kept[0].spoils))
+        {
+            kept.push_back(choice);
+        }
+        if (kept.size() == count_max && kept[0].spoils == Spoils::nothing)
+        {
+            break;
+        }
+    }
+    return kept;
+}
+
+/// Area-weighted squared distance of the sampled original surface to the new fan. Stops early, with
+/// some value above the limit, once it is above the limit.
+double measure(const CandidateInput& input, const Star& star, double limit,
+               CandidateScratch& scratch)
+{
+    const SurfaceSample& sample = scratch.sample;
+    scratch.nearest.assign(sample.points.size(), std::numeric_limits<double>::max());
+    scratch.squared.resize(sample.points.size());
+    const Vec3 parent = grid_point(input.mesh, star.parent);
+    for (std::uint32_t i = 0; i < star.fan_size; ++i)
+    {
+        const DistanceTriangle face(parent, grid_point(input.mesh, star.rim[i]),
+                                    grid_point(input.mesh, star.rim[i + 1]));
+        face.squared_distances(sample.points, 0, scratch.squared.data());
+        for (std::size_t p = 0; p < scratch.nearest.size(); ++p)
+        {
+            scratch.nearest[p] = std::min(scratch.nearest[p], scratch.squared[p]);
+        }
+    }
+    double sum = 0;
+    for (std::size_t p = 0; p < scratch.nearest.size() && sum <= limit; ++p)
+    {
+        sum += sample.areas[p] * scratch.nearest[p];
+    }
+    return sum;
+}
+
+Candidate take_least_measured(const CandidateInput& input, const VertexRing& ring,
+                              const Choices& choices, CandidateScratch& scratch)
+{
+    input.certificate.sample(std::span{ring.faces}.first(ring.face_count), kSamplesMax,
+                             scratch.sample);
+    Candidate best{std::numeric_limits<double>::max(), ring.vertex, Candidate::kNone,
+                   choices[0].spoils};
+    for (const Choice& choice : choices)
+    {
+        const double known = kQuadricShare * choice.quadric + choice.upkeep;
+        if (known >= best.cost)
+        {
+            continue;
+        }
+        const Star star = star_at(ring, choice.place);
+        const double cost = known + measure(input, star, best.cost - known, scratch);
+        if (cost < best.cost)
+        {
+            best.cost = cost;
+            best.parent = star.parent;
+        }
+    }
+    return best;
+}
+
+} // namespace
+
+Candidate find_candidate(const CandidateInput& input, std::uint32_t vertex,
+                         CandidateScratch& scratch)
+{
+    VertexRing ring;
+    const Candidate none{0, vertex, Candidate::kNone, Spoils::nothing};
+    if (!input.current.gather_ring(vertex, ring))
+    {
+        return none;
+    }
+    const bool measured = input.priority == Priority::measured;
+    const Choices choices =
+        keep_least_spoiling(input, ring, rank_neighbours(input, ring), measured ? kMeasuredMax : 1);
+    if (choices.empty())
+    {
+        return none;
+    }
+    if (measured)
+    {
+        return take_least_measured(input, ring, choices, scratch);
+    }
+    return {choices[0].cost(), vertex, ring.parent_at(choices[0].place), choices[0].spoils};
+}
+
+} // namespace tactus

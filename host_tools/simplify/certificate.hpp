@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "host_tools/simplify/collapse_mesh.hpp"
+#include "host_tools/simplify/fragment_pool.hpp"
+#include "host_tools/simplify/index_map.hpp"
+#include "host_tools/simplify/piece_settler.hpp"
+#include "host_tools/simplify/point_triangle.hpp"
+#include "host_tools/simplify/simplify.hpp"
+#include "host_tools/simplify/triangle_cut.hpp"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace tactus
+{
+
+/// Points that stand for the original surface near a vertex, and the area each stands for.
+struct SurfaceSample
+{
+    PointColumns points;
+    std::vector<double> areas;            ///< In quanta^2.
+    std::vector<std::uint32_t> triangles; ///< Scratch: all pieces, of which few are picked.
+    std::vector<std::uint32_t> fragments;
+};
+
+/// The proof of how far the original surface is from each face.
+///
+/// Every point of the original surface stands with exactly one present face, in pieces: whole
+/// original triangles or fragments of them. A collapse takes all pieces of its star and gives each
+/// to one face of the new fan. A face is a convex set, so the distance to it is a convex function
+/// and a piece's largest distance is at a corner: e(face) = max over its pieces of max over
+/// corners. A point's way through the faces depends only on the collapses of stars it was in, so
+/// the bound of a face state holds in every dependency-closed cut that has the face in this state.
+///
+/// Which piece goes to which face, and where it is cut, matters for tightness alone:
+///   1. a triangle whose fragments are all in the star becomes whole again;
+///   2. its corners' distances to the new faces are measured once per vertex;
+///   3. no assignment does better than the lower bound, the largest distance of a measured point
+///      to its nearest face; a piece goes to its best face uncut if that is nearly as good;
+///   4. otherwise it is cut along the new edges and each part goes to its best face.
+///
+/// Cut points are rounded (see TrianglePoint), so parts leave gaps; each cut adds the width of its
+/// gap to the bound of its parts.
+class Certificate
+{
+public:
+    Certificate(const QuantisedMesh& mesh, unsigned workers);
+
+    /// The bound in quanta: 0 while the face is original, above 0 afterwards.
+    [[nodiscard]] double error(std::uint32_t face) const noexcept { return errors_[face]; }
+
+    /// Hands the pieces of a star to the faces that its collapse leaves. Stars without a common
+    /// face may be done in any order or at once, each worker with its own number.
+    void reassign(const Star& star, unsigned worker);
+
+    /// Fills `sample` with at most `count_max` evenly picked pieces of the faces' surface.
+    void sample(std::span<const std::uint32_t> faces, std::size_t count_max,
+                SurfaceSample& sample) const;
+
+private:
+    /// What one re-assignment works on; kept per worker so that its memory is.
+    struct Scratch
+    {
+        std::vector<std::uint32_t> triangles;
+        std::vector<std::uint32_t> fragments;
+        std::vector<Part> parts; ///< The triangles, then the fragments.
+        std::vector<std::uint32_t> counts;
+        IndexMap map;
+        PieceSettler settler;
+        std::array<double, kMaxFanFaces> bound{};
+    };
+
+    void collect_pieces(std::span<const std::uint32_t> faces, std::vector<std::uint32_t>& triangles,
+                        std::vector<std::uint32_t>& fragments) const;
+    void take_pieces(const Star& star, Scratch& scratch);
+    void merge_back(Scratch& scratch, unsigned worker);
+    void place_corners(Scratch& scratch) const;
+    void give_triangle(std::uint32_t triangle, const Part& part, const Star& star, unsigned worker);
+    void give_fragment(std::uint32_t fragment, const Part& part, const Star& star, unsigned worker);
+    void add_fragment(std::uint32_t fragment, std::uint32_t triangle, const Assignment& given,
+                      const Star& star, Scratch& scratch);
+    void add_sample(std::uint32_t triangle, const std::array<TrianglePoint, 3>& corners,
+                    double weight, SurfaceSample& sample) const;
+
+    const QuantisedMesh& mesh_;
+    double diagonal_{0};
+    std::vector<double> errors_;                ///< Of each face.
+    std::vector<std::uint32_t> first_whole_;    ///< Of each face: its list of whole triangles.
+    std::vector<std::uint32_t> next_whole_;     ///< Of each triangle.
+    std::vector<std::uint32_t> first_fragment_; ///< Of each face: its list of fragments.
+    std::vector<std::uint32_t> fragment_count_; ///< Of each triangle; 0 when whole.
+    FragmentPool pool_;
+    std::vector<Scratch> scratch_;
+};
+
+} // namespace tactus

@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "host_tools/simplify/collapse_mesh.hpp"
+
+#include "rt_core/base/assert.hpp"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+namespace tactus
+{
+
+namespace
+{
+
+constexpr std::uint32_t kNoFace = Collapse::kNoFace;
+
+constexpr std::uint32_t next_corner(std::uint32_t corner) noexcept
+{
+    return corner == 2 ? 0 : corner + 1;
+}
+
+constexpr std::uint32_t previous_corner(std::uint32_t corner) noexcept
+{
+    return corner == 0 ? 2 : corner - 1;
+}
+
+} // namespace
+
+Star star_at(const VertexRing& ring, std::uint32_t place) noexcept
+{
+    const std::uint32_t count = ring.face_count;
+    Star star{ring.vertex, ring.parent_at(place), 0, {kNoFace, kNoFace}, {}};
+    const bool last_of_border = ring.open && place == 1;
+    const bool first_of_border = ring.open && place == 0;
+    if (!last_of_border)
+    {
+        star.faces[0] = ring.faces[place];
+    }
+    if (!first_of_border)
+    {
+        star.faces[1] = ring.faces[last_of_border ? count - 1 : (place + count - 1) % count];
+    }
+    const std::uint32_t fan_start = last_of_border ? 0 : place + 1;
+    star.fan_size = count - (ring.open ? 1U : 2U);
+    for (std::uint32_t i = 0; i < star.fan_size; ++i)
+    {
+        star.faces[2 + i] = ring.faces[(fan_start + i) % count];
+        star.rim[i] = ring.neighbours[(fan_start + i) % count];
+    }
+    star.rim[star.fan_size] = ring.neighbours[ring.open ? fan_start + star.fan_size
+                                                        : (fan_start + star.fan_size) % count];
+    return star;
+}
+
+Result<CollapseMesh, SimplifyError> CollapseMesh::create(const QuantisedMesh& mesh)
+{
+    auto neighbours = match_edges(mesh);
+    if (!neighbours)
+    {
+        return neighbours.error();
+    }
+    CollapseMesh result(mesh, std::move(neighbours).value());
+    for (std::uint32_t v = 0; v < result.vertex_count(); ++v)
+    {
+        if (result.degree_[v] == 0)
+        {
+            return SimplifyError{"vertex " + std::to_string(v) + " belongs to no face"};
+        }
+        if (result.walk_degree(v) != result.degree_[v])
+        {
+            return SimplifyError{"the faces of vertex " + std::to_string(v) +
+                                 " form more than one fan"};
+        }
+    }
+    return result;
+}
+
+CollapseMesh::CollapseMesh(const QuantisedMesh& mesh, FaceNeighbours neighbours)
+    : corners_(mesh.faces)
+    , neighbours_(std::move(neighbours))
+    , first_face_(mesh.positions.size(), kNoFace)
+    , degree_(mesh.positions.size(), 0)
+    , faces_left_(static_cast<std::uint32_t>(mesh.faces.size()))
+    , vertices_left_(static_cast<std::uint32_t>(mesh.positions.size()))
+{
+    find_first_faces();
+}
+
+void CollapseMesh::find_first_faces() noexcept
+{
+    for (std::uint32_t f = 0; f < corners_.size(); ++f)
+    {
+        for (std::uint32_t corner = 0; corner < 3; ++corner)
+        {
+            const std::uint32_t v = corners_[f][corner];
+            ++degree_[v];
+            if (first_face_[v] == kNoFace || neighbours_[f][corner] == kNoFace)
+            {
+                first_face_[v] = f;
+            }
+        }
+    }
+}
+
+std::uint32_t CollapseMesh::corner_of(std::uint32_t face, std::uint32_t vertex) const noexcept
+{
+    const auto& corners = corners_[face];
+    return corners[0] == vertex ? 0 : (corners[1] == vertex ? 1 : 2);
+}
+
+/// The face after `face` counter-clockwise round the vertex; kNoFace at a border.
+std::uint32_t CollapseMesh::next_round(std::uint32_t vertex, std::uint32_t face) const noexcept
+{
+    return neighbours_[face][previous_corner(corner_of(face, vertex))];
+}
+
+std::uint32_t CollapseMesh::walk_degree(std::uint32_t vertex) const noexcept
+{
+    std::uint32_t count = 0;
+    std::uint32_t face = first_face_[vertex];
+    do
+    {
+        ++count;
+        face = next_round(vertex, face);
+    } while (face != kNoFace && face != first_face_[vertex]);
+    return count;
+}
+
+bool CollapseMesh::gather_ring(std::uint32_t vertex, VertexRing& ring) const noexcept
+{
+    const std::uint32_t first = first_face_[vertex];
+    const std::uint32_t degree = degree_[vertex];
+    if (degree == 0 || degree > kMaxStarFaces)
+    {
+        return false;
+    }
+    ring.vertex = vertex;
+    ring.face_count = degree;
+    ring.open = neighbours_[first][corner_of(first, vertex)] == kNoFace;
+    const std::uint32_t removed = ring.open ? 1 : 2;
+    if (degree <= removed || degree - removed > kMaxFanFaces)
+    {
+        return false;
+    }
+    std::uint32_t face = first;
+    for (std::uint32_t i = 0; i < degree; ++i)
+    {
+        const std::uint32_t corner = corner_of(face, vertex);
+        ring.faces[i] = face;
+        ring.neighbours[i] = corners_[face][next_corner(corner)];
+        ring.neighbours[i + 1] = corners_[face][previous_corner(corner)];
+        face = neighbours_[face][previous_corner(corner)];
+    }
+    return true;
+}
+
+bool CollapseMesh::are_joined(std::uint32_t a, std::uint32_t b) const noexcept
+{
+    const std::uint32_t centre = degree_[a] <= degree_[b] ? a : b;
+    const std::uint32_t other = centre == a ? b : a;
+    std::uint32_t face = first_face_[centre];
+    do
+    {
+        const auto& corners = corners_[face];
+        if (corners[0] == other || corners[1] == other || corners[2] == other)
+        {
+            return true;
+        }
+        face = next_round(centre, face);
+    } while (face != kNoFace && face != first_face_[centre]);
+    return false;
+}
+
+bool CollapseMesh::is_legal(const Star& star) const noexcept
+{
+    const std::uint32_t removed = (star.has_face(0) ? 1U : 0U) + (star.has_face(1) ? 1U : 0U);
+    const std::uint32_t before = degree_[star.parent];
+    if (before + star.fan_size > std::max(kMaxDegree, before) + removed)
+    {
+        return false;
+    }
+    const std::uint32_t first = star.has_face(0) ? 1 : 0;
+    const std::uint32_t end = star.fan_size + (star.has_face(1) ? 0 : 1);
+    for (std::uint32_t i = first; i < end; ++i)
+    {
+        if (are_joined(star.rim[i], star.parent))
+        {
+            return false;
+        }
+    }
+    if (removed == 2 && star.fan_size == 1)
+    {
+        const std::uint32_t a = star.faces[0];
+        const std::uint32_t beyond = neighbours_[a][corner_of(a, star.parent)];
+        return beyond == kNoFace || corners_[beyond][corner_of(beyond, star.rim[1])] != star.rim[1];
+    }
+    return true;
+}
+
+/// Joins the fan's end face to the face beyond A (or B), which is removed:
+///
+///     A = (v, u, w0), beyond it the face with edge w0 -> u; the fan's first face has edge v -> w0.
+///     B = (v, wk, u), beyond it the face with edge u -> wk; the fan's last face has edge wk -> v.
+void CollapseMesh::bypass(std::uint32_t removed, std::uint32_t vertex, const Star& star,
+                          bool side_a) noexcept
+{
+    const std::uint32_t rim = side_a ? star.rim[0] : star.rim[star.fan_size];
+    const std::uint32_t fan = side_a ? star.faces[2] : star.faces[1 + star.fan_size];
+    const std::uint32_t beyond =
+        neighbours_[removed][corner_of(removed, side_a ? star.parent : rim)];
+    neighbours_[fan][corner_of(fan, side_a ? vertex : rim)] = beyond;
+    if (beyond != kNoFace)
+    {
+        neighbours_[beyond][corner_of(beyond, side_a ? rim : star.parent)] = fan;
+    }
+    if (first_face_[rim] == removed)
+    {
+        first_face_[rim] = fan;
+    }
+    if (first_face_[star.parent] == removed)
+    {
+        first_face_[star.parent] = star.faces[2];
+    }
+    --degree_[rim];
+    --degree_[star.parent];
+    --faces_left_;
+}
+
+void CollapseMesh::collapse(const Star& star) noexcept
+{
+    TACTUS_ASSERT(star.fan_size >= 1 && star.fan_size <= kMaxFanFaces);
+    for (const std::uint32_t side : {0U, 1U})
+    {
+        if (star.has_face(side))
+        {
+            bypass(star.faces[side], star.vertex, star, side == 0);
+            corners_[star.faces[side]].fill(kNoFace);
+        }
+    }
+    for (std::uint32_t i = 0; i < star.fan_size; ++i)
+    {
+        const std::uint32_t face = star.faces[2 + i];
+        corners_[face][corner_of(face, star.vertex)] = star.parent;
+    }
+    degree_[star.parent] += star.fan_size;
+    degree_[star.vertex] = 0;
+    --vertices_left_;
+}
+
+} // namespace tactus

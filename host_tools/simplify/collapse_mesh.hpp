@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "host_tools/simplify/edge_match.hpp"
+#include "host_tools/simplify/simplify.hpp"
+#include "rt_core/base/result.hpp"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace tactus
+{
+
+/// No vertex gets more faces than this by a collapse unless it had more before: it keeps stars
+/// within kMaxStarFaces and costs no quality.
+inline constexpr std::uint32_t kMaxDegree = 10;
+
+/// The faces round one vertex, counter-clockwise. Face i is (vertex, neighbours[i],
+/// neighbours[i + 1]); when the ring is closed, neighbours[face_count] repeats neighbours[0].
+struct VertexRing
+{
+    std::uint32_t vertex{0};
+    std::uint32_t face_count{0};
+    bool open{false}; ///< The vertex is on a border, the first and last neighbour too.
+    std::array<std::uint32_t, kMaxStarFaces> faces{};
+    std::array<std::uint32_t, kMaxStarFaces + 1> neighbours{};
+
+    /// How many collapses of the vertex there are to look at; place p of 0 .. count - 1.
+    [[nodiscard]] std::uint32_t place_count() const noexcept { return open ? 2 : face_count; }
+    /// The neighbour that place p collapses onto; on a border only its two border neighbours.
+    [[nodiscard]] std::uint32_t parent_at(std::uint32_t place) const noexcept
+    {
+        return neighbours[open && place == 1 ? face_count : place];
+    }
+};
+
+/// A possible collapse of `vertex` onto `parent`, in the canonical order of rt_core/spm/page.hpp.
+struct Star
+{
+    std::uint32_t vertex{0};
+    std::uint32_t parent{0};
+    std::uint32_t fan_size{0};
+    std::array<std::uint32_t, kMaxStarFaces> faces{};  ///< A, B (or kNoFace), then the fan.
+    std::array<std::uint32_t, kMaxFanFaces + 1> rim{}; ///< w0 .. wk, k = fan_size.
+
+    [[nodiscard]] bool has_face(std::uint32_t side) const noexcept
+    {
+        return faces[side] != Collapse::kNoFace;
+    }
+};
+
+/// The star of a ring's collapse at one place.
+[[nodiscard]] Star star_at(const VertexRing& ring, std::uint32_t place) noexcept;
+
+/// The mesh while it shrinks: corners, the face across each edge, and of each vertex its first face
+/// and degree. 26 bytes a face. Faces and vertices keep their numbers; removed ones stay in place.
+///
+/// Only collapses that keep the mesh 2-manifold with borders are legal. By the link condition the
+/// ends of the edge have no common neighbour but the one or two across the edge (a border counts as
+/// joined to a vertex at infinity, so a border vertex moves along its border only), and a vertex
+/// with three faces isn't removed where its fourth face exists already: a tetrahedron stays.
+class CollapseMesh
+{
+public:
+    /// Refuses, naming the place, what match_edges() refuses, and a vertex without faces or with
+    /// more than one fan.
+    [[nodiscard]] static Result<CollapseMesh, SimplifyError> create(const QuantisedMesh& mesh);
+
+    [[nodiscard]] std::uint32_t vertex_count() const noexcept
+    {
+        return static_cast<std::uint32_t>(degree_.size());
+    }
+    [[nodiscard]] std::uint32_t faces_left() const noexcept { return faces_left_; }
+    [[nodiscard]] std::uint32_t vertices_left() const noexcept { return vertices_left_; }
+    [[nodiscard]] bool is_removed(std::uint32_t vertex) const noexcept
+    {
+        return degree_[vertex] == 0;
+    }
+    [[nodiscard]] bool is_removed_face(std::uint32_t face) const noexcept
+    {
+        return corners_[face][0] == Collapse::kNoFace;
+    }
+    [[nodiscard]] const std::array<std::uint32_t, 3>& corners(std::uint32_t face) const noexcept
+    {
+        return corners_[face];
+    }
+    [[nodiscard]] std::uint32_t neighbour(std::uint32_t face, std::uint32_t edge) const noexcept
+    {
+        return neighbours_[face][edge];
+    }
+
+    /// Fills `ring`; false when the vertex is removed or no star of it fits the star cap.
+    [[nodiscard]] bool gather_ring(std::uint32_t vertex, VertexRing& ring) const noexcept;
+
+    /// True when the collapse keeps the mesh manifold and the parent's degree within kMaxDegree.
+    /// Costs a walk round a few neighbours; of two vertices the one of smaller degree.
+    [[nodiscard]] bool is_legal(const Star& star) const noexcept;
+
+    /// Replaces the vertex by the parent in the fan and removes A and B. `star` must be legal.
+    void collapse(const Star& star) noexcept;
+
+private:
+    CollapseMesh(const QuantisedMesh& mesh, FaceNeighbours neighbours);
+
+    [[nodiscard]] std::uint32_t corner_of(std::uint32_t face, std::uint32_t vertex) const noexcept;
+    [[nodiscard]] std::uint32_t next_round(std::uint32_t vertex, std::uint32_t face) const noexcept;
+    [[nodiscard]] std::uint32_t walk_degree(std::uint32_t vertex) const noexcept;
+    [[nodiscard]] bool are_joined(std::uint32_t a, std::uint32_t b) const noexcept;
+    void find_first_faces() noexcept;
+    void bypass(std::uint32_t removed, std::uint32_t vertex, const Star& star,
+                bool side_a) noexcept;
+
+    std::vector<std::array<std::uint32_t, 3>> corners_;
+    FaceNeighbours neighbours_;
+    /// Any face of a vertex inside, the first of the fan on a border: a walk from it sees all.
+    std::vector<std::uint32_t> first_face_;
+    std::vector<std::uint32_t> degree_; ///< Faces of the vertex; 0 when removed.
+    std::uint32_t faces_left_{0};
+    std::uint32_t vertices_left_{0};
+};
+
+} // namespace tactus

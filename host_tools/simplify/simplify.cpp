@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "host_tools/simplify/simplify.hpp"
+
+#include "host_tools/simplify/boundary_quadrics.hpp"
+#include "host_tools/simplify/candidates.hpp"
+#include "host_tools/simplify/certificate.hpp"
+#include "host_tools/simplify/collapse_mesh.hpp"
+#include "host_tools/simplify/parallel_blocks.hpp"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <string>
+#include <utility>
+
+namespace tactus
+{
+
+namespace
+{
+
+/// Of a round's candidates only the best are taken; smaller rounds give a better base and a deeper
+/// forest (30 % gives 26 to 38 rounds to 1 %).
+constexpr double kTakenShare = 0.3;
+/// A round starves with less than one candidate to this many vertices; it then also takes
+/// candidates that spoil faces more.
+constexpr std::size_t kStarvedShare = 64;
+/// Below this share of the faces the measured error ranks the candidates.
+constexpr double kMeasuredShare = 0.3;
+
+constexpr unsigned kMaxThreads = 256;
+constexpr std::size_t kVertexBlock = 256;
+constexpr std::size_t kStarBlock = 32;
+
+/// Rounds of collapses with disjoint stars.
+///
+/// A round finds each vertex's best collapse in the mesh as it stands, sorts the best of them and
+/// executes them one after another, skipping each whose star was touched in this round or whose
+/// legality was lost by an earlier one. So the result *is* a sequential execution. Costs depend on
+/// the star alone and therefore still hold; only the link condition and the degree look farther.
+/// Disjoint stars commute, so any dependency-closed cut is again a legal sequential execution.
+/// Finding candidates and re-assigning pieces run in parallel; both read nothing that another
+/// vertex or star of the same phase writes, and order is by cost and vertex.
+class Simplifier
+{
+public:
+    Simplifier(const QuantisedMesh& mesh, const SimplifyOptions& options, CollapseMesh current)
+        : mesh_(mesh)
+        , options_(options)
+        , current_(std::move(current))
+        , boundary_(mesh, current_)
+        , certificate_(mesh, options.threads)
+        , candidates_(mesh.positions.size())
+        , stale_(mesh.positions.size(), 1)
+        , touched_(mesh.faces.size(), 0)
+        , scratch_(options.threads)
+    {
+        result_.collapses.reserve(mesh.positions.size());
+    }
+
+    Result<Simplification, SimplifyError> run();
+
+private:
+    void find_candidates();
+    void pick_candidates();
+    void collapse_disjoint();
+    [[nodiscard]] bool is_untouched(const VertexRing& ring) const noexcept;
+    void execute(const Star& star);
+    void certify_round();
+    void collect_base();
+
+    const QuantisedMesh& mesh_;
+    const SimplifyOptions& options_;
+    CollapseMesh current_;
+    BoundaryQuadrics boundary_;
+    Certificate certificate_;
+    std::vector<Candidate> candidates_; ///< Of each vertex.
+    std::vector<std::uint8_t> stale_;   ///< Of each vertex: its candidate must be found again.
+    std::vector<Candidate> picked_;     ///< Of this round.
+    Priority priority_{Priority::quadric};
+    std::vector<std::uint8_t> touched_; ///< Of each face: in this round.
+    std::vector<Star> round_;           ///< Stars of this round.
+    std::vector<CandidateScratch> scratch_;
+    Simplification result_;
+};
+
+Result<Simplification, SimplifyError> Simplifier::run()
+{
+    while (current_.faces_left() > options_.base_faces && result_.rounds < kMaxDepth)
+    {
+        if (options_.progress && !options_.progress(current_.faces_left(), mesh_.faces.size()))
+        {
+            return SimplifyError{"cancelled with " + std::to_string(current_.faces_left()) +
+                                 " of " + std::to_string(mesh_.faces.size()) + " faces left"};
+        }
+        find_candidates();
+        pick_candidates();
+        if (picked_.empty())
+        {
+            break;
+        }
+        collapse_disjoint();
+        certify_round();
+        result_.rounds += round_.empty() ? 0U : 1U;
+    }
+    collect_base();
+    return std::move(result_);
+}
+
+/// A candidate is found again when its star has changed, and when there was none: the link
+/// condition looks farther than the star.
+void Simplifier::find_candidates()
+{
+    const bool few_faces = static_cast<double>(current_.faces_left()) <
+                           kMeasuredShare * static_cast<double>(mesh_.faces.size());
+    if (few_faces && priority_ == Priority::quadric)
+    {
+        priority_ = Priority::measured;
+        std::ranges::fill(stale_, std::uint8_t{1});
+    }
+    const CandidateInput input{mesh_, current_, boundary_, certificate_, priority_};
+    const auto find_block = [&](unsigned worker, std::size_t begin, std::size_t end)
+    {
+        for (std::size_t v = begin; v < end; ++v)
+        {
+            if (stale_[v] != 0 || candidates_[v].parent == Candidate::kNone)
+            {
+                candidates_[v] =
+                    find_candidate(input, static_cast<std::uint32_t>(v), scratch_[worker]);
+                stale_[v] = 0;
+            }
+        }
+    };
+    parallel_blocks(options_.threads, candidates_.size(), kVertexBlock, find_block);
+}
+
+/// The best share of the candidates, sorted, of the least level that doesn't starve the round.
+void Simplifier::pick_candidates()
+{
+    picked_.clear();
+    std::array<std::size_t, kSpoilLevels> count{};
+    for (const Candidate& candidate : candidates_)
+    {
+        if (candidate.parent != Candidate::kNone)
+        {
+            picked_.push_back(candidate);
+            ++count[static_cast<std::size_t>(candidate.spoils)];
+        }
+    }
+    const std::size_t enough = 1 + current_.vertices_left() / kStarvedShare;
+    std::size_t available = 0;
+    for (std::size_t level = 0; level < kSpoilLevels && available < enough; ++level)
+    {
+        available += count[level];
+    }
+    const auto taken = static_cast<std::size_t>(kTakenShare * static_cast<double>(available));
+    const std::size_t size = std::min(available, taken + 1);
+    const auto end = picked_.begin() + static_cast<std::ptrdiff_t>(size);
+    std::nth_element(picked_.begin(), end, picked_.end());
+    std::sort(picked_.begin(), end);
+    picked_.resize(size);
+}
+
+/// When an earlier collapse, of this round or before, has made a candidate illegal, the vertex gets
+/// a new one for the next round: the first candidate that is skipped so is either found again or
+/// has none, so a round without collapses can't repeat itself for ever.
+void Simplifier::collapse_disjoint()
+{
+    std::ranges::fill(touched_, std::uint8_t{0});
+    round_.clear();
+    for (const Candidate& candidate : picked_)
+    {
+        if (current_.faces_left() <= options_.base_faces)
+        {
+            return;
+        }
+        VertexRing ring;
+        if (!current_.gather_ring(candidate.vertex, ring) || !is_untouched(ring))
+        {
+            continue;
+        }
+        std::uint32_t place = 0;
+        while (ring.parent_at(place) != candidate.parent)
+        {
+            ++place;
+        }
+        const Star star = star_at(ring, place);
+        if (current_.is_legal(star))
+        {
+            execute(star);
+        }
+        else
+        {
+            stale_[candidate.vertex] = 1;
+        }
+    }
+}
+
+bool Simplifier::is_untouched(const VertexRing& ring) const noexcept
+{
+    return std::none_of(ring.faces.begin(), ring.faces.begin() + ring.face_count,
+                        [&](std::uint32_t face) { return touched_[face] != 0; });
+}
+
+void Simplifier::execute(const Star& star)
+{
+    current_.collapse(star);
+    boundary_.collapse(star.vertex, star.parent);
+    round_.push_back(star);
+    candidates_[star.vertex].parent = Candidate::kNone;
+    for (std::uint32_t i = 0; i <= star.fan_size; ++i)
+    {
+        stale_[star.rim[i]] = 1;
+    }
+    stale_[star.parent] = 1;
+    Collapse collapse{star.vertex, star.parent, result_.rounds, star.fan_size, {}, {}};
+    collapse.star.fill(Collapse::kNoFace);
+    for (std::uint32_t place = 0; place < 2 + star.fan_size; ++place)
+    {
+        const std::uint32_t face = star.faces[place];
+        collapse.star[place] = face;
+        if (face != Collapse::kNoFace)
+        {
+            touched_[face] = 1;
+            collapse.error[place] = certificate_.error(face);
+        }
+    }
+    result_.collapses.push_back(collapse);
+}
+
+void Simplifier::certify_round()
+{
+    parallel_blocks(options_.threads, round_.size(), kStarBlock,
+                    [&](unsigned worker, std::size_t begin, std::size_t end)
+                    {
+                        for (std::size_t i = begin; i < end; ++i)
+                        {
+                            certificate_.reassign(round_[i], worker);
+                        }
+                    });
+}
+
+void Simplifier::collect_base()
+{
+    for (std::uint32_t face = 0; face < mesh_.faces.size(); ++face)
+    {
+        if (!current_.is_removed_face(face))
+        {
+            result_.base_faces.push_back(face);
+            result_.base_corners.push_back(current_.corners(face));
+            result_.base_error.push_back(certificate_.error(face));
+        }
+    }
+}
+
+std::optional<SimplifyError> find_bad_option(const SimplifyOptions& options)
+{
+    if (options.base_faces == 0)
+    {
+        return SimplifyError{"base_faces is 0; it must be 1 or more"};
+    }
+    if (options.threads == 0 || options.threads > kMaxThreads)
+    {
+        return SimplifyError{"threads is " + std::to_string(options.threads) +
+                             "; allowed are 1 to " + std::to_string(kMaxThreads)};
+    }
+    return std::nullopt;
+}
+
+} // namespace
+
+Result<Simplification, SimplifyError> simplify(const QuantisedMesh& mesh,
+                                               const SimplifyOptions& options)
+{
+    if (auto bad = find_bad_option(options))
+    {
+        return std::move(*bad);
+    }
+    auto current = CollapseMesh::create(mesh);
+    if (!current)
+    {
+        return current.error();
+    }
+    return Simplifier(mesh, options, std::move(current).value()).run();
+}
+
+} // namespace tactus

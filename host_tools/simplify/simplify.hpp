@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "host_tools/mesh/quantised_mesh.hpp"
+#include "rt_core/base/result.hpp"
+#include "rt_core/limits.hpp"
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace tactus
+{
+
+/// One half-edge collapse v -> u and what its inverse, the vsplit record, needs.
+/// Star order as in rt_core/spm/page.hpp: star[0] = A, star[1] = B (kNoFace when missing), then the
+/// fan.
+struct Collapse
+{
+    static constexpr std::uint32_t kNoFace = 0xFFFF'FFFFU;
+
+    std::uint32_t vertex{0}; ///< v, an index into the mesh.
+    std::uint32_t parent{0}; ///< u.
+    std::uint32_t round{0};  ///< Stars of one round are disjoint; rounds count from 0.
+    std::uint32_t fan_size{0};
+    std::array<std::uint32_t, kMaxStarFaces> star{}; ///< Faces of the mesh.
+    /// Certified bound, in quanta, of each star face as it was *before* this collapse, that is
+    /// after the split: every original surface point that the face stands for is within it. 0 when
+    /// the face was still original.
+    std::array<double, kMaxStarFaces> error{};
+};
+
+/// The whole simplification: undoing `collapses` backwards from the base gives the mesh exactly.
+struct Simplification
+{
+    std::vector<Collapse> collapses; ///< In order of execution; rounds ascend.
+    std::uint32_t rounds{0};
+    std::vector<std::uint32_t> base_faces;                  ///< Faces of the mesh that remain.
+    std::vector<std::array<std::uint32_t, 3>> base_corners; ///< Their corners now, mesh vertices.
+    std::vector<double> base_error;                         ///< Their certified bounds, in quanta.
+};
+
+struct SimplifyOptions
+{
+    std::uint32_t base_faces{500}; ///< Stop at or below this many faces.
+    unsigned threads{1};           ///< The result does not depend on it.
+    /// Called between rounds with faces left and faces at the start; return false to cancel.
+    std::function<bool(std::size_t faces_left, std::size_t faces_total)> progress;
+};
+
+/// Why there is no simplification.
+struct SimplifyError
+{
+    std::string text; ///< One line for the user.
+};
+
+/// Collapses edges in rounds until at most `base_faces` faces are left, or until no collapse is
+/// legal: fewer than asked for only the caller can refuse. The certificate holds in every
+/// dependency-closed cut: each original surface point is within the error of one of its faces.
+/// Same input, same result, for any number of threads. Costs 10 to 20 us and about 300 B a face.
+/// Refuses, by name and place, a mesh that breaks the contract of QuantisedMesh (unused vertices
+/// and coordinates beyond 24 bits included), an option out of range, and a cancelled run.
+[[nodiscard]] Result<Simplification, SimplifyError> simplify(const QuantisedMesh& mesh,
+                                                             const SimplifyOptions& options);
+
+} // namespace tactus

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "host_tools/simplify/fragment_pool.hpp"
+#include "host_tools/simplify/point_triangle.hpp"
+#include "host_tools/simplify/simplify.hpp"
+#include "rt_core/base/static_vector.hpp"
+#include "rt_core/math/vec3.hpp"
+
+#include <array>
+#include <cstdint>
+
+namespace tactus
+{
+
+/// An original triangle by one corner and two sides.
+struct TriangleFrame
+{
+    Vec3 origin;
+    Vec3 side_x;
+    Vec3 side_y;
+
+    [[nodiscard]] Vec3 point(const TrianglePoint& at) const noexcept;
+    /// How far one cut's rounding can move a point, in quanta.
+    [[nodiscard]] double rounding() const noexcept;
+};
+
+[[nodiscard]] TriangleFrame frame_of(const QuantisedMesh& mesh, std::uint32_t triangle) noexcept;
+
+/// Part of an original triangle during one re-assignment; `points` index the star's point columns.
+struct Part
+{
+    std::array<TrianglePoint, 3> at{};
+    std::array<std::uint32_t, 3> points{};
+    std::uint32_t generation{0};
+};
+
+/// Half of a plane: it starts at `start` and holds the points on the side of `along`.
+struct CutPlane
+{
+    Vec3 start;
+    Vec3 along;
+    Vec3 normal;
+};
+
+/// A triangle cut by a plane makes at most three.
+using CutParts = StaticVector<Part, 3>;
+
+/// Cuts the part, appends the cut points to `points` and returns the parts; none when the half
+/// plane doesn't cross it. The parts cover the part but for gaps of at most rounding(): their
+/// generation says how many cuts' gaps their bound has to allow for.
+[[nodiscard]] CutParts cut(const Part& part, const TriangleFrame& frame, const CutPlane& plane,
+                           PointColumns& points);
+
+} // namespace tactus

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "host_tools/simplify/simplify.hpp"
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace tactus::test
+{
+
+/// Closed; 20 x 4^levels faces; radial noise as a share of the radius.
+[[nodiscard]] QuantisedMesh make_icosphere(unsigned levels, double noise);
+
+/// Closed, with two poles of valence `sectors`; (rings - 1) x sectors x 2 faces.
+[[nodiscard]] QuantisedMesh make_uv_sphere(unsigned rings, unsigned sectors);
+
+/// Open; a height field over columns x rows squares.
+[[nodiscard]] QuantisedMesh make_grid(unsigned columns, unsigned rows,
+                                      const std::function<double(double, double)>& height);
+
+/// Closed, genus 1; around x across x 2 faces.
+[[nodiscard]] QuantisedMesh make_torus(unsigned around, unsigned across);
+
+/// Open; an apex of valence `sectors` over `rings` rings.
+[[nodiscard]] QuantisedMesh make_cone(unsigned rings, unsigned sectors);
+
+/// Both meshes, the second moved along x.
+[[nodiscard]] QuantisedMesh join(const QuantisedMesh& a, const QuantisedMesh& b,
+                                 std::int32_t shift);
+
+struct NamedMesh
+{
+    std::string name;
+    QuantisedMesh mesh;
+};
+
+/// One of each kind, small: closed, open, with holes, high valence, coincident vertices, faces
+/// without area, several components.
+[[nodiscard]] const std::vector<NamedMesh>& all_small_meshes();
+
+/// For meshes that must be accepted: throws the refusal.
+[[nodiscard]] Simplification simplified(const QuantisedMesh& mesh, std::uint32_t base_faces = 40,
+                                        unsigned threads = 1);
+
+} // namespace tactus::test

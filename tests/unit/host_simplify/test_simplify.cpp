@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "host_tools/simplify/simplify.hpp"
+#include "tests/unit/host_simplify/forest_replay.hpp"
+#include "tests/unit/host_simplify/small_meshes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <cstdlib>
+#include <vector>
+
+namespace tactus::test
+{
+
+namespace
+{
+
+void expect_equal(const Simplification& a, const Simplification& b)
+{
+    ASSERT_EQ(a.collapses.size(), b.collapses.size());
+    for (std::size_t i = 0; i < a.collapses.size(); ++i)
+    {
+        ASSERT_EQ(a.collapses[i].vertex, b.collapses[i].vertex);
+        ASSERT_EQ(a.collapses[i].parent, b.collapses[i].parent);
+        ASSERT_EQ(a.collapses[i].round, b.collapses[i].round);
+        ASSERT_EQ(a.collapses[i].star, b.collapses[i].star);
+        ASSERT_EQ(a.collapses[i].error, b.collapses[i].error);
+    }
+    ASSERT_EQ(a.base_faces, b.base_faces);
+    ASSERT_EQ(a.base_corners, b.base_corners);
+    ASSERT_EQ(a.base_error, b.base_error);
+}
+
+} // namespace
+
+TEST(Simplify, reaches_the_base_size_and_not_much_less)
+{
+    for (const auto& [name, mesh] : all_small_meshes())
+    {
+        SCOPED_TRACE(name);
+        const Simplification sut = simplified(mesh, 60);
+        EXPECT_LE(sut.base_faces.size(), 60U);
+        EXPECT_GE(sut.base_faces.size(), 59U);
+        EXPECT_EQ(sut.base_corners.size(), sut.base_faces.size());
+        EXPECT_EQ(sut.base_error.size(), sut.base_faces.size());
+    }
+}
+
+TEST(Simplify, does_nothing_to_a_mesh_that_is_small_enough)
+{
+    const QuantisedMesh mesh = make_icosphere(1, 0);
+    const Simplification sut = simplified(mesh, 80);
+    EXPECT_TRUE(sut.collapses.empty());
+    EXPECT_EQ(sut.rounds, 0U);
+    EXPECT_EQ(sut.base_corners, mesh.faces);
+}
+
+TEST(Simplify, stops_a_closed_component_at_a_tetrahedron)
+{
+    EXPECT_EQ(simplified(make_icosphere(2, 0.05), 1).base_faces.size(), 4U);
+    EXPECT_EQ(simplified(make_uv_sphere(6, 40), 1).base_faces.size(), 4U);
+}
+
+TEST(Simplify, brings_an_open_component_down_to_one_face)
+{
+    const auto height = [](double x, double y) { return 0.1 * x * y; };
+    EXPECT_EQ(simplified(make_grid(9, 7, height), 1).base_faces.size(), 1U);
+    EXPECT_EQ(simplified(make_cone(3, 50), 1).base_faces.size(), 1U);
+}
+
+TEST(Simplify, keeps_the_genus)
+{
+    const Simplification sut = simplified(make_torus(30, 12), 1);
+    // No torus has fewer than 14 faces; the degree and star caps may end it earlier.
+    EXPECT_GE(sut.base_faces.size(), 14U);
+    EXPECT_LE(sut.base_faces.size(), 30U);
+}
+
+TEST(Simplify, keeps_every_component)
+{
+    const QuantisedMesh pair = join(make_icosphere(1, 0), make_icosphere(2, 0), 70'000);
+    const Simplification sut = simplified(join(pair, make_icosphere(0, 0), 140'000), 1);
+    EXPECT_EQ(sut.base_faces.size(), 12U);
+}
+
+TEST(Simplify, leaves_what_has_no_collapse)
+{
+    const QuantisedMesh triangle{{{0, 0, 0}, {9, 0, 0}, {0, 9, 0}}, {{0, 1, 2}}};
+    EXPECT_EQ(simplified(triangle, 1).base_faces.size(), 1U);
+    const QuantisedMesh pillow{{{0, 0, 0}, {9, 0, 0}, {0, 9, 0}}, {{0, 1, 2}, {2, 1, 0}}};
+    EXPECT_EQ(simplified(pillow, 1).base_faces.size(), 2U);
+}
+
+TEST(Simplify, collapses_needles_and_poles_of_high_valence)
+{
+    // The strict guard against thin faces alone would stop far above.
+    EXPECT_LE(simplified(make_uv_sphere(10, 800), 500).base_faces.size(), 500U);
+    EXPECT_LE(simplified(make_uv_sphere(3, 1500), 100).base_faces.size(), 100U);
+}
+
+TEST(Simplify, collapses_a_mesh_whose_vertices_share_one_place)
+{
+    QuantisedMesh mesh = make_icosphere(2, 0);
+    mesh.positions.assign(mesh.positions.size(), {5, 6, 7});
+    EXPECT_LE(simplified(mesh, 20).base_faces.size(), 20U);
+}
+
+TEST(Simplify, needs_few_rounds)
+{
+    EXPECT_LE(simplified(make_icosphere(5, 0.02), 200).rounds, 45U);
+}
+
+TEST(Simplify, gives_the_same_for_any_number_of_threads)
+{
+    for (const QuantisedMesh& mesh : {make_icosphere(4, 0.05), make_uv_sphere(20, 150)})
+    {
+        const Simplification one = simplified(mesh, 100, 1);
+        for (const unsigned threads : {2U, 3U, 8U})
+        {
+            expect_equal(one, simplified(mesh, 100, threads));
+        }
+    }
+}
+
+TEST(Simplify, reports_progress_and_can_be_cancelled)
+{
+    const QuantisedMesh mesh = make_icosphere(3, 0);
+    std::vector<std::size_t> left;
+    SimplifyOptions options;
+    options.base_faces = 100;
+    options.progress = [&](std::size_t faces_left, std::size_t faces_total)
+    {
+        EXPECT_EQ(faces_total, mesh.faces.size());
+        left.push_back(faces_left);
+        return left.size() < 4;
+    };
+    const auto sut = simplify(mesh, options);
+    ASSERT_FALSE(sut.has_value());
+    EXPECT_EQ(sut.error().text.find("cancelled with "), 0U);
+    ASSERT_EQ(left.size(), 4U);
+    EXPECT_EQ(left[0], mesh.faces.size());
+    EXPECT_GT(left[0], left[1]);
+    EXPECT_GT(left[1], left[2]);
+}
+
+TEST(Simplify, refuses_options_out_of_range)
+{
+    const QuantisedMesh mesh = make_icosphere(0, 0);
+    SimplifyOptions options;
+    options.base_faces = 0;
+    EXPECT_EQ(simplify(mesh, options).error().text, "base_faces is 0; it must be 1 or more");
+    options.base_faces = 1;
+    options.threads = 0;
+    EXPECT_EQ(simplify(mesh, options).error().text, "threads is 0; allowed are 1 to 256");
+    options.threads = 257;
+    EXPECT_FALSE(simplify(mesh, options).has_value());
+}
+
+} // namespace tactus::test
