@@ -39,7 +39,8 @@ tactus_room(rt_core/frame rt_core)
 
 # --- platform: only the controller program sees core, transport and device; nothing includes it.
 tactus_room(platform rt_core/base rt_core/math rt_core/records rt_core/limits.hpp)
-tactus_room(platform/hrtc rt_core transport platform)
+# Its command line is read like every other program's: docs/decisions/0003-command-line-room.md.
+tactus_room(platform/hrtc rt_core transport platform host_tools/cli)
 
 # --- transport: parse and link live in spm; of the cache it knows inbox and page slots.
 tactus_room(transport ${stage_floor} rt_core/cache)
@@ -47,14 +48,15 @@ tactus_room(transport ${stage_floor} rt_core/cache)
 # --- host_tools: downward only; nothing includes a program.
 set(host_floor rt_core transport)
 
+tactus_room(host_tools/cli)
 tactus_room(host_tools/mesh ${host_floor})
 tactus_room(host_tools/shapes ${host_floor} host_tools/mesh)
 tactus_room(host_tools/simplify ${host_floor} host_tools/mesh)
 tactus_room(host_tools/encode ${host_floor} host_tools/mesh host_tools/simplify)
 tactus_room(host_tools/spm_build ${host_floor}
-    host_tools/mesh host_tools/shapes host_tools/simplify host_tools/encode)
-tactus_room(host_tools/spm_inspect ${host_floor} host_tools/mesh host_tools/encode)
-tactus_room(host_tools/spm_publish ${host_floor})
+    host_tools/cli host_tools/mesh host_tools/shapes host_tools/simplify host_tools/encode)
+tactus_room(host_tools/spm_inspect ${host_floor} host_tools/cli host_tools/mesh host_tools/encode)
+tactus_room(host_tools/spm_publish ${host_floor} host_tools/cli)
 
 tactus_room(tests *)
 

@@ -5,8 +5,8 @@ set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 readonly root
-readonly build="$root/build/release"
-readonly demo="$root/build/demo"
+readonly build=${TACTUS_BUILD_DIR:-$root/build/release}
+readonly demo=${TACTUS_BUILD_DIR:-$root/build}/demo
 
 usage() {
     cat <<'TEXT'
@@ -26,6 +26,8 @@ Options:
   --help        this text
 
 Environment: CXX names the compiler (default g++). ccache is used when it is there.
+TACTUS_BUILD_DIR names a finished build folder: the demo then uses its programs, installs and
+builds nothing, and writes into its folder demo; the other commands refuse it.
 Exit codes: 0 done, 1 a test failed or the demo missed a criterion, 2 failed at run time,
 3 wrong usage.
 TEXT
@@ -222,6 +224,9 @@ main() {
         esac
         shift
     done
+    if [[ -n "${TACTUS_BUILD_DIR:-}" && "$command" == @(build|test) ]]; then
+        fail 3 "TACTUS_BUILD_DIR is for the demo only; unset it for '$command'"
+    fi
     case "$command" in
         '') fail 3 "no command given; use build, test, demo or --help" ;;
         packages) install_packages "${lists[@]}" ;;
@@ -235,8 +240,10 @@ main() {
             run_tests "${ctest_options[@]}"
             ;;
         demo)
-            install_packages "${lists[@]}"
-            build_targets spm_build spm_publish hrtc
+            if [[ -z "${TACTUS_BUILD_DIR:-}" ]]; then
+                install_packages "${lists[@]}"
+                build_targets spm_build spm_publish hrtc
+            fi
             run_demo "$seconds" "$domain"
             ;;
     esac

@@ -82,13 +82,6 @@ inline constexpr double kContactTolerance = 1e-4;
 /// Time in which a frozen force fades to zero, in seconds.
 inline constexpr double kFadeTime_s = 0.05;
 
-// --- Numbers -------------------------------------------------------------------------------------
-
-/// Aspect ratio (longest edge squared / twice the area) beyond which the error law of the
-/// point-triangle kernel grows no further: such a triangle's plane is never the nearest feature by
-/// more than that. Dimensionless.
-inline constexpr double kLargestAspect = 1e8;
-
 // --- Names ---------------------------------------------------------------------------------------
 
 /// A model's or tool's name: at most this many bytes of [A-Za-z0-9._-].

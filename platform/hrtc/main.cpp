@@ -19,6 +19,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <csignal>
@@ -59,8 +60,12 @@ void on_assertion(const char* condition, const char* file, int line) noexcept
     std::_Exit(kExitFailed);
 }
 
-void log_line(const std::string& line)
+/// One line whatever is in it: file names may hold control characters.
+void log_line(std::string line)
 {
+    std::replace_if(
+        line.begin(), line.end(),
+        [](char c) { return static_cast<unsigned char>(c) < 0x20U || c == 0x7F; }, '?');
     fmt::print(stderr, "hrtc: {}\n", line);
 }
 
@@ -213,8 +218,10 @@ int main_with(const Options& options)
     const auto refused = probe_realtime(options.thread);
     if (!refused)
     {
-        log_line(refused.error().message);
-        return refused.error().kind == PlatformErrorKind::bad_option ? kExitUsage : kExitFailed;
+        // The processor is the one option that only the system can judge.
+        const bool is_usage = refused.error().kind == PlatformErrorKind::bad_option;
+        log_line((is_usage ? "--cpu: " : "") + refused.error().message);
+        return is_usage ? kExitUsage : kExitFailed;
     }
     if (!refused.value().empty() && !options.thread.allow_no_rt)
     {
@@ -223,6 +230,10 @@ int main_with(const Options& options)
             log_line(line);
         }
         return fail("not run; --allow-no-rt runs it without");
+    }
+    if (const auto error = probe_report(options.report_path))
+    {
+        return fail(*error);
     }
     Found found =
         options.transport == TransportKind::file ? find_in_files(options) : find_published(options);

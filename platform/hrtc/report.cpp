@@ -179,6 +179,17 @@ Json faults_of(const RunStatistics& statistics)
     return faults;
 }
 
+/// Where a report is written before it takes its place.
+std::string partial_of(const std::string& path)
+{
+    return path + ".partial";
+}
+
+std::string refusal(const std::string& path, const std::string& reason)
+{
+    return "--report: " + path + ": can't be written: " + reason;
+}
+
 } // namespace
 
 Json make_report(const RunRecord& record)
@@ -281,9 +292,34 @@ std::string make_summary(const Json& report)
     return text;
 }
 
+std::optional<std::string> probe_report(const std::string& path)
+{
+    if (path.empty())
+    {
+        return std::nullopt;
+    }
+    std::error_code ignored;
+    if (std::filesystem::is_directory(path, ignored))
+    {
+        return refusal(path, "it is a directory");
+    }
+    const std::string temporary = partial_of(path);
+    const bool is_new = !std::filesystem::exists(temporary, ignored);
+    if (!std::ofstream(temporary, std::ios::app))
+    {
+        return refusal(path, std::strerror(errno));
+    }
+    if (is_new)
+    {
+        std::filesystem::remove(temporary, ignored);
+    }
+    return std::nullopt;
+}
+
 std::optional<std::string> write_report(const Json& report, const std::string& path)
 {
-    const std::string temporary = path + ".partial";
+    const std::string temporary = partial_of(path);
+    std::error_code ignored;
     {
         std::ofstream file(temporary, std::ios::trunc);
         file << report.dump(2) << '\n';
@@ -291,18 +327,16 @@ std::optional<std::string> write_report(const Json& report, const std::string& p
         if (!file)
         {
             const std::string reason = std::strerror(errno);
-            std::error_code ignored;
             std::filesystem::remove(temporary, ignored);
-            return path + ": can't be written: " + reason;
+            return refusal(path, reason);
         }
     }
     std::error_code error;
     std::filesystem::rename(temporary, path, error);
     if (error)
     {
-        std::error_code ignored;
         std::filesystem::remove(temporary, ignored);
-        return path + ": can't be written: " + error.message();
+        return refusal(path, error.message());
     }
     return std::nullopt;
 }

@@ -32,6 +32,10 @@ struct RunRecord
 /// The same for a person: a few lines.
 [[nodiscard]] std::string make_summary(const nlohmann::ordered_json& report);
 
+/// Finds out before a run whether its report can be written, and leaves nothing behind; returns why
+/// not. An empty path is no report.
+[[nodiscard]] std::optional<std::string> probe_report(const std::string& path);
+
 /// Writes the report whole or not at all; returns why not.
 [[nodiscard]] std::optional<std::string> write_report(const nlohmann::ordered_json& report,
                                                       const std::string& path);

@@ -605,7 +605,7 @@ void AbTree::pass_up(std::uint32_t parent, std::uint32_t child, const Aabb& box,
         return;
     }
     AbNode& node = nodes_[parent];
-    const bool was_coarse = ((node.coarse >> child) & 1U) != 0;
+    const bool was_coarse = ((std::uint32_t{node.coarse} >> child) & 1U) != 0;
     if (node.box_of(child) == box && was_coarse == coarse)
     {
         return;

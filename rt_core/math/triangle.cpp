@@ -2,10 +2,6 @@
 // Copyright the Tactus authors.
 #include "rt_core/math/triangle.hpp"
 
-#include "rt_core/limits.hpp"
-
-#include <Eigen/Geometry>
-
 #include <algorithm>
 #include <cmath>
 

@@ -29,6 +29,10 @@ enum class TriangleFeature : std::uint8_t
     interior,
 };
 
+/// Aspect ratio (longest edge squared / twice the area) beyond which the error law below grows no
+/// further: such a triangle's plane is never the nearest feature by more than that.
+inline constexpr double kLargestAspect = 1e8;
+
 struct ClosestPoint
 {
     Vec3 point{0.0, 0.0, 0.0};

@@ -5,6 +5,8 @@
 #include "rt_core/base/byte_io.hpp"
 #include "rt_core/base/crc32c.hpp"
 
+#include <algorithm>
+
 namespace tactus
 {
 
@@ -77,7 +79,9 @@ private:
             }
             record.star[2 + i] = face;
             record.before[i] = before == 0 ? FaceState::base() : FaceState{before - 1};
-            if (!state_is_possible(id, face, record.before[i]))
+            const std::span<const FaceId> earlier = std::span(record.star).subspan(2, i);
+            if (!state_is_possible(id, face, record.before[i]) ||
+                std::find(earlier.begin(), earlier.end(), face) != earlier.end())
             {
                 return false;
             }

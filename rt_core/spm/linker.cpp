@@ -4,6 +4,8 @@
 
 #include "rt_core/spm/chunk_coding.hpp"
 
+#include <bit>
+
 namespace tactus
 {
 
@@ -54,6 +56,15 @@ void Linker::release_page(std::uint32_t slot) noexcept
     TACTUS_ASSERT(slot < residents_.size() && !residents_[slot].chunk.is_none());
     slot_of_.erase(residents_[slot].chunk.value);
     residents_[slot] = Resident{};
+    any_released_ = true;
+}
+
+bool Linker::has_waiting_records(std::uint32_t slot) const noexcept
+{
+    const std::uint64_t settled = slots_.linked[slot].load(std::memory_order_relaxed) |
+                                  residents_[slot].refused; // Relaxed: only this thread writes it.
+    return static_cast<std::uint32_t>(std::popcount(settled)) <
+           records_in_chunk(counts_, residents_[slot].chunk);
 }
 
 void Linker::sign(std::uint32_t slot) noexcept
@@ -80,6 +91,11 @@ void Linker::look_again(std::uint32_t slot, ChunkId changed) noexcept
     {
         return;
     }
+    // A page whose records are all linked only has something to mend when one came back.
+    if (!any_released_ && !has_waiting_records(slot))
+    {
+        return;
+    }
     for (std::uint32_t place = 0; place < records_in_chunk(counts_, resident.chunk); ++place)
     {
         if (is_linked(slot, place))
@@ -103,8 +119,11 @@ void Linker::relink_next(std::uint32_t slot, std::uint32_t place, ChunkId change
         if (!state.is_base() && chunk_of(state.record()) == changed)
         {
             std::uint32_t* next = next_of(record.star[2 + i], state);
-            // Pairs with nothing: see load_next(); the linked bit orders the record itself.
-            std::atomic_ref<std::uint32_t>(*next).store(id, std::memory_order_relaxed);
+            if (*next == kNextPending) // Otherwise taken, by this record or a rival of it.
+            {
+                // Pairs with nothing: see load_next(); the linked bit orders the record itself.
+                std::atomic_ref<std::uint32_t>(*next).store(id, std::memory_order_relaxed);
+            }
         }
     }
 }

@@ -25,8 +25,8 @@ namespace tactus
 /// signature per page of the chunks it refers to.
 ///
 /// Refused for good: a state that the owner's star contradicts, a place that another record has
-/// taken, a depth that is not one more than the deepest dependency. The depth rule makes a
-/// dependency cycle impossible.
+/// taken (the first one keeps it), a depth that is not one more than the deepest dependency. The
+/// depth rule makes a dependency cycle impossible.
 class Linker
 {
 public:
@@ -77,6 +77,7 @@ private:
     [[nodiscard]] Fit fit_one(RecordId id, const VsplitRecord& record, std::uint32_t fan_place,
                               std::uint32_t& depth) const noexcept;
     [[nodiscard]] std::uint32_t* next_of(FaceId face, FaceState state) const noexcept;
+    [[nodiscard]] bool has_waiting_records(std::uint32_t slot) const noexcept;
     [[nodiscard]] bool is_linked(std::uint32_t slot, std::uint32_t place) const noexcept;
 
     ModelCounts counts_;
@@ -84,6 +85,7 @@ private:
     IdTable slot_of_;
     std::span<Resident> residents_;
     std::uint32_t slots_in_use_end_{0};
+    bool any_released_{false};
     std::uint64_t linked_count_{0};
     std::uint64_t refused_count_{0};
 };

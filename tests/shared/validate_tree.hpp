@@ -312,8 +312,7 @@ private:
 };
 
 /// The first few faults as one text; empty when the tree is sound.
-[[nodiscard]] inline std::string tree_faults(const AbTree& tree,
-                                             std::span<const ChangedFace> faces)
+[[nodiscard]] inline std::string tree_faults(const AbTree& tree, std::span<const ChangedFace> faces)
 {
     const std::vector<std::string> faults = TreeValidator::faults(tree, faces);
     std::string text;
