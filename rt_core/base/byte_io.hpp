@@ -47,6 +47,10 @@ public:
             value |= static_cast<std::uint64_t>(byte & 0x7FU) << shift;
             if ((byte & 0x80U) == 0)
             {
+                if (failed_)
+                {
+                    return 0;
+                }
                 if (value > 0xFFFF'FFFFU)
                 {
                     fail();

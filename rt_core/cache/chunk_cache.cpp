@@ -118,7 +118,7 @@ void ChunkCache::search_page(IndexPageId page, const RankedBalls& balls, const B
     const std::uint32_t slot = index_slot_of_.find(page.value);
     if (slot == IdTable::kAbsent)
     {
-        want_index_page(page, frame, work);
+        want_index_page(page, frame, work, faults);
         return;
     }
     index_meta_[slot].touched = frame;
@@ -166,7 +166,12 @@ void ChunkCache::want_chunk(ChunkId chunk, const Urgency& urgency, const Budgets
     {
         return;
     }
-    if (!chunk_wishes_.has_credit() && !try_evict_page(urgency.evict_before, work))
+    if (!chunk_wishes_.has_credit())
+    {
+        static_cast<void>(try_evict_page(urgency.evict_before, work));
+    }
+    // One page may not be enough when late answers to expired wishes took slots meanwhile.
+    if (!chunk_wishes_.has_credit())
     {
         // What is only predicted may go without: it was worth asking for, no more.
         faults |= urgency.touch == frame_ ? FrameFault::cache_full : FrameFault::none;
@@ -180,11 +185,20 @@ void ChunkCache::want_chunk(ChunkId chunk, const Urgency& urgency, const Budgets
     }
 }
 
-void ChunkCache::want_index_page(IndexPageId page, std::uint32_t frame, WorkCounters& work) noexcept
+void ChunkCache::want_index_page(IndexPageId page, std::uint32_t frame, WorkCounters& work,
+                                 FrameFault& faults) noexcept
 {
-    if (index_wishes_.is_under_way(page.value) ||
-        (!index_wishes_.has_credit() && !try_evict_index_page()))
+    if (index_wishes_.is_under_way(page.value))
     {
+        return;
+    }
+    if (!index_wishes_.has_credit())
+    {
+        static_cast<void>(try_evict_index_page());
+    }
+    if (!index_wishes_.has_credit())
+    {
+        faults |= FrameFault::cache_full;
         return;
     }
     if (inbox_->wanted.try_push({{ContentKind::index_page, page.value}, frame}))

@@ -77,7 +77,8 @@ private:
                      std::uint32_t frame, WorkCounters& work, FrameFault& faults) noexcept;
     void want_chunk(ChunkId chunk, const Urgency& urgency, const Budgets& budgets,
                     WorkCounters& work, FrameFault& faults) noexcept;
-    void want_index_page(IndexPageId page, std::uint32_t frame, WorkCounters& work) noexcept;
+    void want_index_page(IndexPageId page, std::uint32_t frame, WorkCounters& work,
+                         FrameFault& faults) noexcept;
     [[nodiscard]] bool try_evict_page(std::uint32_t touched_before, WorkCounters& work) noexcept;
     [[nodiscard]] bool try_evict_index_page() noexcept;
 

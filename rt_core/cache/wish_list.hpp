@@ -42,6 +42,7 @@ public:
     }
     void ask(std::uint32_t number, std::uint32_t frame) noexcept
     {
+        TACTUS_ASSERT(has_credit());
         // One place of the ring is free: fewer are under way than there are slots.
         while (numbers_[cursor_] != IdTable::kAbsent)
         {

@@ -35,6 +35,7 @@ public:
 
     /// Where the proxy is; before the first frame the first goal.
     [[nodiscard]] const Vec3& position_m() const noexcept { return position_; }
+    [[nodiscard]] bool is_in_contact() const noexcept { return in_contact_; }
     void start_at(const Vec3& position_m) noexcept { position_ = position_m; }
 
     /// Moves towards `goal_m` and returns the force. `surfaces` were queried at position_m().

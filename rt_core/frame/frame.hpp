@@ -112,6 +112,7 @@ private:
     StaticVector<Proxy, kMaxTools> proxies_;
     std::array<Vec3, kMaxTools> goals_{};
     std::array<double, kMaxTools> elapsed_s_{};
+    std::array<double, kMaxTools> goal_speeds_m_per_s_{};
     bool has_started_{false};
     std::array<RegionPredictor, kMaxPairs> predictors_{};
     std::span<LocalSurface> surfaces_; ///< One a pair, and one for the rehearsal.

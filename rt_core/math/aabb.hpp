@@ -40,7 +40,9 @@ struct Aabb
         }
     }
 
-    /// The box grown by `margin` >= 0 on all sides, rounded outward.
+    /// The box grown by `margin` >= 0 on all sides, rounded outward. The sums are exact in double
+    /// as long as the smallest bit of one is less than 2^53 below the largest of the other, which
+    /// grid coordinates of 24 bits and error bounds up to 2^27 quanta keep.
     [[nodiscard]] constexpr Aabb inflated(float margin) const noexcept
     {
         Aabb box;

@@ -79,10 +79,13 @@ ClosestPoint closest_point_on_triangle(const Vec3& query, const Triangle& triang
     double aspect = kLargestAspect;
     if (normal_sq > 0.0)
     {
-        aspect = std::min(kLargestAspect, longest_sq / std::sqrt(normal_sq));
+        // Of a thinner triangle the normal may be rounding noise; its plane is nearer than its
+        // edges by less than the law allows.
+        const double true_aspect = longest_sq / std::sqrt(normal_sq);
+        aspect = std::min(kLargestAspect, true_aspect);
         const double height = corner[0].dot(normal);
         const double plane_sq = height * height / normal_sq;
-        if (over_interior && plane_sq < result.distance_sq)
+        if (over_interior && true_aspect < kLargestAspect && plane_sq < result.distance_sq)
         {
             result.distance_sq = plane_sq;
             nearest = normal * (height / normal_sq);

@@ -132,6 +132,10 @@ Result<ModelHeader, SpmRefusal> ModelHeader::parse(std::span<const std::byte> by
                                                   : SpmRefusal::trailing_bytes;
     }
     header.index_ = reader.read_bytes(pages * sizeof(IndexPageEntry));
+    if (!header.index_boxes_are_in_order())
+    {
+        return SpmRefusal::value_out_of_range;
+    }
     header.regions_ = reader.read_bytes((std::size_t{header.region_count()} + 7) / 8);
     static_cast<void>(reader.read_bytes(kRootHashBytes));
     if (reader.read<std::uint32_t>() != crc32c(bytes.first(bytes.size() - kChecksumBytes)))
@@ -139,6 +143,22 @@ Result<ModelHeader, SpmRefusal> ModelHeader::parse(std::span<const std::byte> by
         return SpmRefusal::wrong_checksum;
     }
     return header;
+}
+
+bool ModelHeader::index_boxes_are_in_order() const noexcept
+{
+    for (std::uint32_t page = 0; page < counts().index_pages(); ++page)
+    {
+        const QuantumBox box = index_entry({page}).box;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+        {
+            if (box.low[axis] > box.high[axis])
+            {
+                return false;
+            }
+        }
+    }
+    return true;
 }
 
 float ModelHeader::quantum_m() const noexcept

@@ -123,6 +123,8 @@ public:
     [[nodiscard]] RegionId region_at(const std::array<double, 3>& point_m) const noexcept;
 
 private:
+    [[nodiscard]] bool index_boxes_are_in_order() const noexcept;
+
     HeaderFields fields_;
     std::span<const std::byte> index_;
     std::span<const std::byte> regions_;

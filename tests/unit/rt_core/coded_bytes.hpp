@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/spm/header.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace tactus::test
+{
+
+/// CRC-32C bit by bit, without a table: the writer's side shares no code with the reader's.
+[[nodiscard]] inline std::uint32_t bitwise_crc32c(std::span<const std::byte> bytes)
+{
+    std::uint32_t state = 0xFFFF'FFFFU;
+    for (const std::byte byte : bytes)
+    {
+        for (unsigned bit = 0; bit < 8; ++bit)
+        {
+            const std::uint32_t in = (static_cast<std::uint32_t>(byte) >> bit) & 1U;
+            const bool feeds_back = ((state ^ in) & 1U) != 0;
+            state = (state >> 1U) ^ (feeds_back ? 0x82F6'3B78U : 0U);
+        }
+    }
+    return ~state;
+}
+
+/// Bytes written one value after the other.
+class CodedBytes
+{
+public:
+    template <typename T>
+    CodedBytes& put(const T& value)
+    {
+        const auto bytes = std::as_bytes(std::span(&value, 1));
+        bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
+        return *this;
+    }
+    CodedBytes& varint(std::uint32_t value)
+    {
+        for (; value >= 0x80U; value /= 0x80U)
+        {
+            put(static_cast<std::uint8_t>(0x80U + value % 0x80U));
+        }
+        return put(static_cast<std::uint8_t>(value));
+    }
+    CodedBytes& zigzag(std::int32_t value)
+    {
+        const std::int64_t wide = value;
+        return varint(static_cast<std::uint32_t>(wide >= 0 ? 2 * wide : -2 * wide - 1));
+    }
+    CodedBytes& zeros(std::size_t count)
+    {
+        bytes_.resize(bytes_.size() + count);
+        return *this;
+    }
+    [[nodiscard]] const std::vector<std::byte>& bytes() const { return bytes_; }
+    [[nodiscard]] std::vector<std::byte> with_checksum() const
+    {
+        CodedBytes closed = *this;
+        closed.put(bitwise_crc32c(bytes_));
+        return closed.bytes_;
+    }
+
+private:
+    std::vector<std::byte> bytes_;
+};
+
+inline void flip_bit(std::vector<std::byte>& bytes, std::size_t bit)
+{
+    bytes[bit / 8] ^= std::byte{1} << (bit % 8);
+}
+
+/// What a test varies of a header: the fixed fields, one box an index page, region bits.
+struct HeaderParts
+{
+    HeaderFields fields;
+    std::vector<IndexPageEntry> entries;
+    std::vector<std::uint8_t> region_bits;
+
+    /// Fills `header_bytes` in and writes the parts down.
+    [[nodiscard]] std::vector<std::byte> write()
+    {
+        fields.header_bytes =
+            static_cast<std::uint32_t>(168 + 48 * entries.size() + region_bits.size() + 32 + 4);
+        return write_as_is();
+    }
+    [[nodiscard]] std::vector<std::byte> write_as_is() const
+    {
+        CodedBytes bytes;
+        bytes.put(fields);
+        for (const IndexPageEntry& entry : entries)
+        {
+            bytes.put(entry);
+        }
+        for (const std::uint8_t bits : region_bits)
+        {
+            bytes.put(bits);
+        }
+        return bytes.zeros(32).with_checksum();
+    }
+};
+
+/// A sound header for `records` records over 4 base vertices and 4 base faces: 16 bits, quanta of
+/// 2^-10 m, extents 1000 x 2000 x 3000, regions of 1024 quanta in a grid of 1 x 2 x 3.
+[[nodiscard]] inline HeaderParts sound_header(std::uint32_t records)
+{
+    HeaderParts parts;
+    HeaderFields& fields = parts.fields;
+    fields.base_vertices = 4;
+    fields.base_faces = 4;
+    fields.records = records;
+    fields.max_depth = records == 0 ? 0 : 9;
+    fields.quantum_log2 = -10;
+    fields.position_bits = 16;
+    fields.extent_quanta = {1'000, 2'000, 3'000};
+    fields.origin_m = {0.5, -0.25, 100.0};
+    fields.quantisation_m = 1e-4;
+    fields.region_cell_quanta = 1'024;
+    fields.region_grid = {1, 2, 3};
+    fields.occupied_regions = 3;
+    parts.region_bits = {0b0010'1001};
+    const std::uint32_t chunks = (records + 63) / 64;
+    parts.entries.resize((chunks + 63) / 64);
+    for (IndexPageEntry& entry : parts.entries)
+    {
+        entry.box = {{0, 0, 0}, {1'000, 2'000, 3'000}};
+    }
+    return parts;
+}
+
+/// Parses what must be sound.
+[[nodiscard]] inline ModelHeader parsed(std::span<const std::byte> bytes)
+{
+    return ModelHeader::parse(bytes).value();
+}
+
+} // namespace tactus::test

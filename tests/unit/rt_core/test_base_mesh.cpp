@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "rt_core/spm/base_mesh.hpp"
+#include "rt_core/spm/page.hpp"
+#include "tests/unit/rt_core/coded_bytes.hpp"
+
+#include <gtest/gtest.h>
+
+namespace tactus::test
+{
+
+namespace
+{
+
+struct CodedFace
+{
+    std::array<std::uint32_t, 3> corners{};
+    std::uint32_t bucket{0};
+    std::uint8_t error{0};
+};
+
+/// A tetrahedron that fills the header's extent.
+struct CodedBase
+{
+    std::array<std::array<std::uint32_t, 3>, 4> vertices{
+        {{0, 0, 0}, {1'000, 0, 0}, {0, 2'000, 0}, {0, 0, 3'000}}};
+    std::array<CodedFace, 4> faces{
+        {{{0, 2, 1}, 7, 0}, {{0, 1, 3}, 8, 200}, {{0, 3, 2}, 9, 1}, {{1, 2, 3}, 10, 255}}};
+
+    [[nodiscard]] std::vector<std::byte> write() const
+    {
+        CodedBytes bytes;
+        for (const auto& vertex : vertices)
+        {
+            bytes.put(vertex);
+        }
+        for (const CodedFace& face : faces)
+        {
+            bytes.put(face.corners).put(face.bucket).put(face.error);
+        }
+        return bytes.with_checksum();
+    }
+};
+
+class BaseMeshTest : public ::testing::Test
+{
+protected:
+    Result<Done, SpmRefusal> parse(std::span<const std::byte> bytes)
+    {
+        return parse_base_mesh(bytes, header_, {positions_, faces_, next_});
+    }
+
+    std::vector<std::byte> header_bytes_{sound_header(0).write()};
+    ModelHeader header_{parsed(header_bytes_)};
+    std::array<Vec3f, 4> positions_{};
+    std::array<BaseFace, 4> faces_{};
+    std::array<std::uint32_t, 4> next_{};
+};
+
+} // namespace
+
+TEST_F(BaseMeshTest, a_sound_mesh_gives_its_content_back)
+{
+    ASSERT_TRUE(parse(CodedBase().write()).has_value());
+
+    EXPECT_EQ(positions_[3], (Vec3f{0.0F, 0.0F, 3'000.0F / 1'024.0F}));
+    EXPECT_EQ(faces_[1].corners, (std::array<VertexId, 3>{{{0}, {1}, {3}}}));
+    EXPECT_EQ(faces_[2].bucket, 9U);
+    EXPECT_EQ(faces_[3].error, 255);
+    EXPECT_EQ(next_,
+              (std::array<std::uint32_t, 4>{kNextExact, kNextPending, kNextPending, kNextPending}));
+}
+
+TEST_F(BaseMeshTest, every_truncation_and_an_extra_byte_is_refused)
+{
+    auto bytes = CodedBase().write();
+    ASSERT_EQ(bytes.size(), coded_base_bytes(header_.counts()));
+    for (std::size_t length = 0; length < bytes.size(); ++length)
+    {
+        const auto result = parse(std::span(bytes).first(length));
+        ASSERT_FALSE(result.has_value()) << length;
+        ASSERT_EQ(result.error(), SpmRefusal::too_short);
+    }
+    bytes.push_back(std::byte{0});
+    EXPECT_EQ(parse(bytes).error(), SpmRefusal::trailing_bytes);
+}
+
+TEST_F(BaseMeshTest, every_single_bit_flip_is_refused)
+{
+    auto bytes = CodedBase().write();
+    for (std::size_t bit = 0; bit < 8 * bytes.size(); ++bit)
+    {
+        flip_bit(bytes, bit);
+        ASSERT_FALSE(parse(bytes).has_value()) << "bit " << bit;
+        flip_bit(bytes, bit);
+    }
+}
+
+TEST_F(BaseMeshTest, a_vertex_outside_the_extent_is_refused)
+{
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+        for (const std::uint32_t beyond : {3'001U, 0xFFFF'FFFFU})
+        {
+            CodedBase base;
+            base.vertices[2][axis] = beyond;
+            EXPECT_EQ(parse(base.write()).error(), SpmRefusal::value_out_of_range);
+        }
+    }
+}
+
+TEST_F(BaseMeshTest, a_face_over_a_missing_or_repeated_vertex_is_refused)
+{
+    for (const std::array<std::uint32_t, 3>& corners : {std::array<std::uint32_t, 3>{0, 1, 4},
+                                                        {0, 0xFFFF'FFFFU, 1},
+                                                        {1, 1, 2},
+                                                        {1, 2, 2},
+                                                        {2, 1, 2}})
+    {
+        CodedBase base;
+        base.faces[3].corners = corners;
+        EXPECT_EQ(parse(base.write()).error(), SpmRefusal::id_out_of_range);
+    }
+}
+
+} // namespace tactus::test

@@ -1,0 +1,413 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "rt_core/cache/chunk_cache.hpp"
+#include "tests/unit/rt_core/coded_bytes.hpp"
+#include "tests/unit/rt_core/support.hpp"
+
+#include <gtest/gtest.h>
+
+#include <deque>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+
+namespace tactus::test
+{
+
+namespace
+{
+
+/// Eight chunks in a row along x: chunk i's influence box is 100 i .. 100 i + 50 quanta in x and
+/// 0 .. 50 in y and z. The index page's box starts at -10, so its steps are of one quantum.
+constexpr std::uint32_t kChunks = 8;
+constexpr double kQuantum = 0x1p-10;
+
+/// A ball round a place on the row, in quanta.
+RankedRegion ball(double x, double radius, std::int64_t lead_ns = 0)
+{
+    return {ModelId{0}, Vec3(x, 25.0, 25.0) * kQuantum, radius * kQuantum, lead_ns};
+}
+
+/// A cache with its table and inbox, and the transport thread's part played by the test.
+class CacheRig
+{
+public:
+    /// A second index page's row of chunks begins here, in quanta.
+    static constexpr std::int32_t kPageDistance = 100'000;
+
+    CacheRig(std::uint32_t pages, std::uint32_t index_pages, std::uint32_t records)
+        : parts_(sound_header(records))
+    {
+        for (std::size_t page = 0; page < parts_.entries.size(); ++page)
+        {
+            const auto start = static_cast<std::int32_t>(page) * kPageDistance;
+            parts_.entries[page].box = {{start - 10, -10, -10}, {start + 900, 100, 100}};
+        }
+        bytes_ = parts_.write();
+        const ModelHeader header = parsed(bytes_);
+        slots_ = PageSlots::take(arena_, header.counts(), pages, index_pages);
+        table_.emplace(arena_, slots_);
+        inbox_ = std::make_unique<ChunkInbox>(arena_, pages, index_pages, 64);
+        sut.emplace(arena_, header, slots_, *table_, *inbox_);
+        for (std::uint32_t slot = 0; slot < pages; ++slot)
+        {
+            free_pages_.push_back(slot);
+        }
+        for (std::uint32_t slot = 0; slot < index_pages; ++slot)
+        {
+            free_index_.push_back(slot);
+        }
+    }
+
+    /// One frame; returns the pieces asked for, in order.
+    std::vector<ContentKey> ask(std::initializer_list<RankedRegion> regions)
+    {
+        faults = FrameFault::none;
+        sut->adopt_arrivals(budgets.pages, frame, work);
+        sut->request_missing({regions.begin(), regions.size()}, budgets, frame, work, faults);
+        ++frame;
+        collect_freed();
+        std::vector<ContentKey> keys;
+        ChunkInbox::Wish wish;
+        while (inbox_->wanted.try_pop(wish))
+        {
+            keys.push_back(wish.key);
+        }
+        return keys;
+    }
+    std::set<std::uint32_t> ask_chunks(std::initializer_list<RankedRegion> regions)
+    {
+        std::set<std::uint32_t> chunks;
+        for (const ContentKey& key : ask(regions))
+        {
+            EXPECT_EQ(key.kind, ContentKind::chunk);
+            EXPECT_TRUE(chunks.insert(key.number).second) << "asked twice";
+        }
+        return chunks;
+    }
+
+    void deliver_chunk(std::uint32_t chunk)
+    {
+        ASSERT_FALSE(free_pages_.empty()) << "more was asked for than there are slots";
+        slot_of[chunk] = free_pages_.front();
+        free_pages_.pop_front();
+        ASSERT_TRUE(inbox_->arrived.try_push({{ContentKind::chunk, chunk}, slot_of[chunk]}));
+    }
+    void deliver_index_page(std::uint32_t page)
+    {
+        ASSERT_FALSE(free_index_.empty());
+        const std::uint32_t slot = free_index_.front();
+        free_index_.pop_front();
+        IndexPage& index = slots_.index_pages[slot];
+        index.chunks = kChunks;
+        for (std::uint16_t i = 0; i < kChunks; ++i)
+        {
+            const auto low = static_cast<std::uint16_t>(100 * i + 10);
+            index.boxes[i] = {{low, 10, 10}, {static_cast<std::uint16_t>(low + 50), 60, 60}};
+        }
+        ASSERT_TRUE(inbox_->arrived.try_push({{ContentKind::index_page, page}, slot}));
+    }
+    /// Asks and delivers until nothing is asked for any more.
+    void load(std::initializer_list<RankedRegion> regions)
+    {
+        for (auto keys = ask(regions); !keys.empty(); keys = ask(regions))
+        {
+            for (const ContentKey& key : keys)
+            {
+                key.kind == ContentKind::chunk ? deliver_chunk(key.number)
+                                               : deliver_index_page(key.number);
+            }
+        }
+    }
+    [[nodiscard]] bool has(std::uint32_t chunk) const
+    {
+        return table_->find({chunk}) != IdTable::kAbsent;
+    }
+    [[nodiscard]] std::size_t free_pages() const { return free_pages_.size(); }
+    PageTable& table() { return *table_; }
+    [[nodiscard]] bool cache_was_full() const { return has_fault(faults, FrameFault::cache_full); }
+
+private:
+    void collect_freed()
+    {
+        ChunkInbox::Freed freed;
+        while (inbox_->freed.try_pop(freed))
+        {
+            (freed.kind == ContentKind::chunk ? free_pages_ : free_index_).push_back(freed.slot);
+        }
+    }
+
+    HeaderParts parts_;
+    std::vector<std::byte> bytes_;
+    ArenaMemory memory_{1U << 18U};
+    Arena arena_{memory_.bytes()};
+    PageSlots slots_;
+    std::optional<PageTable> table_;
+    std::unique_ptr<ChunkInbox> inbox_;
+    std::deque<std::uint32_t> free_pages_;
+    std::deque<std::uint32_t> free_index_;
+
+public:
+    std::optional<ChunkCache> sut;
+    Budgets budgets;
+    WorkCounters work;
+    FrameFault faults{FrameFault::none};
+    std::uint32_t frame{ChunkCache::kFirstFrame};
+    std::map<std::uint32_t, std::uint32_t> slot_of;
+};
+
+CacheRig one_index_page(std::uint32_t pages)
+{
+    return CacheRig(pages, 1, kChunks * 64);
+}
+
+using Chunks = std::set<std::uint32_t>;
+
+} // namespace
+
+TEST(ChunkCache, asks_for_the_index_page_first_and_only_once)
+{
+    CacheRig rig = one_index_page(4);
+
+    const auto first = rig.ask({ball(25, 10)});
+
+    ASSERT_EQ(first.size(), 1U);
+    EXPECT_EQ(first[0], (ContentKey{ContentKind::index_page, 0}));
+    EXPECT_TRUE(rig.ask({ball(25, 10)}).empty());
+}
+
+TEST(ChunkCache, asks_for_nothing_when_no_ball_is_near)
+{
+    CacheRig rig = one_index_page(4);
+
+    EXPECT_TRUE(rig.ask({}).empty());
+    EXPECT_TRUE(rig.ask({ball(5'000, 10)}).empty());
+}
+
+TEST(ChunkCache, asks_for_exactly_the_chunks_whose_boxes_meet_a_ball)
+{
+    Random random(20);
+    for (int round = 0; round < 300; ++round)
+    {
+        CacheRig fresh = one_index_page(kChunks);
+        fresh.ask({ball(25, 10)});
+        fresh.deliver_index_page(0);
+        const double x = random.between(-100.0, 1'000.0);
+        const double radius = random.between(0.0, 200.0);
+        Chunks expected;
+        for (std::uint32_t i = 0; i < kChunks; ++i)
+        {
+            const double nearest = std::clamp(x, 100.0 * i, 100.0 * i + 50.0);
+            if (std::abs(x - nearest) <= radius)
+            {
+                expected.insert(i);
+            }
+        }
+        ASSERT_EQ(fresh.ask_chunks({ball(x, radius)}), expected) << x << " " << radius;
+        ASSERT_TRUE(fresh.ask({ball(x, radius)}).empty()) << "all are under way";
+    }
+}
+
+TEST(ChunkCache, a_chunk_that_is_here_is_not_asked_for_again)
+{
+    CacheRig rig = one_index_page(kChunks);
+    rig.load({ball(25, 10)});
+
+    EXPECT_TRUE(rig.has(0));
+    EXPECT_TRUE(rig.ask({ball(25, 10)}).empty());
+    EXPECT_EQ(rig.sut->loads(), 1U);
+    EXPECT_GT(rig.work.cache_hits, 0U);
+}
+
+TEST(ChunkCache, sends_no_more_wishes_than_the_budget)
+{
+    CacheRig other = one_index_page(kChunks);
+    other.ask({ball(400, 5'000)});
+    other.deliver_index_page(0);
+    other.budgets.requests = 3;
+    other.work = {};
+
+    EXPECT_EQ(other.ask_chunks({ball(400, 5'000)}).size(), 3U);
+}
+
+TEST(ChunkCache, asks_for_no_more_chunks_than_the_transport_has_slots)
+{
+    CacheRig rig = one_index_page(2);
+    rig.ask({ball(25, 10)});
+    rig.deliver_index_page(0);
+
+    EXPECT_EQ(rig.ask_chunks({ball(400, 5'000)}).size(), 2U);
+    EXPECT_TRUE(rig.cache_was_full());
+}
+
+TEST(ChunkCache, never_evicts_what_this_rounds_balls_need_and_says_that_it_is_full)
+{
+    CacheRig rig = one_index_page(2);
+    rig.load({ball(75, 40)});
+    ASSERT_TRUE(rig.has(0) && rig.has(1));
+    ASSERT_FALSE(rig.cache_was_full());
+
+    for (int i = 0; i < 20; ++i)
+    {
+        EXPECT_TRUE(rig.ask({ball(125, 140)}).empty());
+        EXPECT_TRUE(rig.cache_was_full());
+    }
+
+    EXPECT_TRUE(rig.has(0) && rig.has(1));
+    EXPECT_EQ(rig.sut->evictions(), 0U);
+}
+
+TEST(ChunkCache, never_evicts_a_pinned_page)
+{
+    CacheRig rig = one_index_page(2);
+    rig.load({ball(75, 40)});
+    rig.table().set_refined({0}, true);
+    rig.table().set_refined({64 + 5}, true);
+
+    for (int i = 0; i < 20; ++i)
+    {
+        EXPECT_TRUE(rig.ask({ball(725, 10)}).empty());
+        EXPECT_TRUE(rig.cache_was_full());
+    }
+    EXPECT_TRUE(rig.has(0) && rig.has(1));
+    rig.table().set_refined({64 + 5}, false);
+
+    EXPECT_EQ(rig.ask_chunks({ball(725, 10)}), Chunks{7});
+    EXPECT_TRUE(rig.has(0));
+    EXPECT_FALSE(rig.has(1));
+    EXPECT_FALSE(rig.cache_was_full());
+}
+
+TEST(ChunkCache, gives_back_the_least_recently_touched_page)
+{
+    CacheRig rig = one_index_page(2);
+    rig.load({ball(25, 10)});
+    rig.load({ball(225, 10)});
+    ASSERT_TRUE(rig.has(0) && rig.has(2));
+    for (int i = 0; i < 5; ++i)
+    {
+        rig.ask({ball(25, 10)});
+    }
+    rig.ask({});
+    rig.ask({});
+
+    EXPECT_EQ(rig.ask_chunks({ball(425, 10)}), Chunks{4});
+    EXPECT_TRUE(rig.has(0));
+    EXPECT_FALSE(rig.has(2));
+    EXPECT_EQ(rig.work.evictions, 1U);
+}
+
+TEST(ChunkCache, what_is_only_predicted_never_evicts_what_is_of_use)
+{
+    CacheRig rig = one_index_page(2);
+    rig.load({ball(75, 40)});
+
+    for (int i = 0; i < 20; ++i)
+    {
+        EXPECT_TRUE(rig.ask({ball(75, 40), ball(725, 10, 15'000'000)}).empty());
+        EXPECT_FALSE(rig.cache_was_full()) << "a prediction that finds no room is no fault";
+    }
+    EXPECT_TRUE(rig.has(0) && rig.has(1));
+}
+
+TEST(ChunkCache, present_need_takes_the_place_of_what_was_only_predicted)
+{
+    CacheRig rig = one_index_page(2);
+    rig.load({ball(25, 10), ball(725, 10, 15'000'000)});
+    ASSERT_TRUE(rig.has(0) && rig.has(7));
+    // Adoption counts as a use; after as many frames only the present counts.
+    rig.frame += 2'000;
+
+    Chunks asked;
+    for (int i = 0; i < 4; ++i)
+    {
+        asked.merge(rig.ask_chunks({ball(75, 40), ball(725, 10, 15'000'000)}));
+    }
+
+    EXPECT_EQ(asked, Chunks{1});
+    EXPECT_TRUE(rig.has(0));
+    EXPECT_FALSE(rig.has(7));
+}
+
+TEST(ChunkCache, asks_again_for_what_was_not_answered_in_time)
+{
+    CacheRig lost = one_index_page(2);
+    lost.ask({ball(25, 5)});
+    lost.deliver_index_page(0);
+    ASSERT_EQ(lost.ask_chunks({ball(25, 5)}), Chunks{0});
+    const std::uint32_t asked = lost.frame - 1;
+
+    while (lost.ask_chunks({ball(25, 5)}).empty())
+    {
+        ASSERT_LT(lost.frame, asked + 2 * kWishTimeoutFrames);
+    }
+
+    EXPECT_GT(lost.frame - 1, asked + kWishTimeoutFrames);
+}
+
+TEST(ChunkCache, late_arrivals_never_let_more_be_asked_for_than_there_are_slots)
+{
+    CacheRig rig = one_index_page(3);
+    rig.ask({ball(25, 10)});
+    rig.deliver_index_page(0);
+    ASSERT_EQ(rig.ask_chunks({ball(125, 120)}), (Chunks{0, 1, 2}));
+    // The network stalls until all three wishes have run out; then two others are wanted.
+    rig.frame += kWishTimeoutFrames + 1;
+    for (int i = 0; i < 4; ++i)
+    {
+        ASSERT_TRUE(rig.ask({}).empty());
+    }
+    ASSERT_EQ(rig.ask_chunks({ball(575, 50)}), (Chunks{5, 6}));
+    // Two of the first three come after all: one slot is left for two wishes.
+    rig.deliver_chunk(0);
+    rig.deliver_chunk(1);
+    rig.ask({});
+    rig.ask({});
+    rig.ask({});
+
+    const Chunks asked = rig.ask_chunks({ball(325, 10)});
+
+    const std::size_t under_way = 2 + asked.size();
+    EXPECT_TRUE(asked.empty() || under_way <= rig.free_pages())
+        << under_way << " wishes under way for " << rig.free_pages() << " free slots";
+}
+
+TEST(ChunkCache, an_index_page_gives_way_when_the_balls_have_moved_on)
+{
+    CacheRig rig(2, 1, 64 * 64 * 2);
+    rig.load({ball(75, 1)});
+    ASSERT_EQ(rig.sut->index_pages_used(), 1U);
+
+    std::vector<ContentKey> asked;
+    for (int i = 0; i < 10 && asked.empty(); ++i)
+    {
+        asked = rig.ask({ball(CacheRig::kPageDistance + 75, 1)});
+    }
+
+    ASSERT_EQ(asked.size(), 1U);
+    EXPECT_EQ(asked[0], (ContentKey{ContentKind::index_page, 1}));
+    EXPECT_EQ(rig.sut->index_pages_used(), 0U);
+    rig.deliver_index_page(1);
+    EXPECT_TRUE(rig.ask({ball(CacheRig::kPageDistance + 75, 1)}).empty()) << "between two boxes";
+    EXPECT_EQ(rig.ask_chunks({ball(CacheRig::kPageDistance + 125, 1)}), Chunks{64 + 1});
+}
+
+TEST(ChunkCache, adopts_no_more_arrivals_than_the_budget)
+{
+    CacheRig rig = one_index_page(kChunks);
+    rig.ask({ball(25, 10)});
+    rig.deliver_index_page(0);
+    for (const std::uint32_t chunk : rig.ask_chunks({ball(400, 5'000)}))
+    {
+        rig.deliver_chunk(chunk);
+    }
+    rig.budgets.pages = 3;
+
+    rig.ask({});
+    EXPECT_EQ(rig.table().used(), 3U);
+    rig.ask({});
+    EXPECT_EQ(rig.table().used(), 6U);
+}
+
+} // namespace tactus::test

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "rt_core/base/id_table.hpp"
+#include "tests/unit/rt_core/support.hpp"
+
+#include <gtest/gtest.h>
+
+#include <unordered_map>
+
+namespace tactus::test
+{
+
+namespace
+{
+
+/// The id whose mixed bits are `mixed`: chosen so that ids collide or sit at the table's end.
+std::uint32_t id_mixed_to(std::uint32_t mixed)
+{
+    std::uint32_t inverse = 0x9E37'79B9U; // Newton's iteration doubles the right bits.
+    for (int i = 0; i < 5; ++i)
+    {
+        inverse *= 2U - 0x9E37'79B9U * inverse;
+    }
+    return mixed * inverse;
+}
+
+class IdTableTest : public ::testing::Test
+{
+protected:
+    IdTable make(std::uint32_t capacity)
+    {
+        Arena arena(memory_.bytes());
+        return IdTable(arena, capacity);
+    }
+
+    ArenaMemory memory_{1U << 16U};
+};
+
+void expect_same(const IdTable& sut,
+                 const std::unordered_map<std::uint32_t, std::uint32_t>& expected,
+                 std::span<const std::uint32_t> ids)
+{
+    ASSERT_EQ(sut.size(), expected.size());
+    for (const std::uint32_t id : ids)
+    {
+        const auto found = expected.find(id);
+        ASSERT_EQ(sut.find(id), found == expected.end() ? IdTable::kAbsent : found->second) << id;
+    }
+}
+
+} // namespace
+
+TEST_F(IdTableTest, an_empty_table_finds_nothing)
+{
+    const IdTable sut = make(4);
+
+    EXPECT_EQ(sut.size(), 0U);
+    EXPECT_EQ(sut.capacity(), 4U);
+    EXPECT_EQ(sut.find(0), IdTable::kAbsent);
+    EXPECT_EQ(sut.find(0xFFFF'FFFEU), IdTable::kAbsent);
+    EXPECT_EQ(sut.find(IdTable::kAbsent), IdTable::kAbsent);
+}
+
+TEST_F(IdTableTest, a_table_of_one_takes_one_and_refuses_the_second)
+{
+    IdTable sut = make(1);
+
+    EXPECT_TRUE(sut.try_insert(5, 50));
+    EXPECT_FALSE(sut.try_insert(6, 60));
+    EXPECT_EQ(sut.find(5), 50U);
+    EXPECT_EQ(sut.find(6), IdTable::kAbsent);
+    sut.erase(5);
+    EXPECT_EQ(sut.size(), 0U);
+    EXPECT_TRUE(sut.try_insert(6, 60));
+    EXPECT_EQ(sut.find(5), IdTable::kAbsent);
+}
+
+TEST_F(IdTableTest, random_operations_match_a_map)
+{
+    Random random(1);
+    for (const std::uint32_t capacity : {1U, 2U, 3U, 7U, 64U, 100U})
+    {
+        IdTable sut = make(capacity);
+        std::unordered_map<std::uint32_t, std::uint32_t> expected;
+        std::vector<std::uint32_t> ids;
+        for (std::uint32_t i = 0; i < 3 * capacity; ++i)
+        {
+            // A third each: anywhere, all at home in the first slot, all in the last.
+            ids.push_back(i % 3 == 0   ? static_cast<std::uint32_t>(random.bits() >> 33U)
+                          : i % 3 == 1 ? id_mixed_to(i)
+                                       : id_mixed_to(0xFFFF'FFFFU - i));
+        }
+        for (int step = 0; step < 1'000; ++step)
+        {
+            const std::uint32_t id = ids[random.below(static_cast<std::uint32_t>(ids.size()))];
+            if (expected.count(id) != 0)
+            {
+                sut.erase(id);
+                expected.erase(id);
+            }
+            else
+            {
+                const bool has_room = expected.size() < capacity;
+                const std::uint32_t value = random.below(1'000);
+                ASSERT_EQ(sut.try_insert(id, value), has_room);
+                if (has_room)
+                {
+                    expected[id] = value;
+                }
+            }
+            ASSERT_NO_FATAL_FAILURE(expect_same(sut, expected, ids)) << capacity << " " << step;
+        }
+    }
+}
+
+TEST_F(IdTableTest, colliding_ids_survive_each_others_removal_across_the_end)
+{
+    constexpr std::uint32_t kCount = 8;
+    for (std::uint32_t removed = 0; removed < kCount; ++removed)
+    {
+        IdTable sut = make(kCount);
+        std::unordered_map<std::uint32_t, std::uint32_t> expected;
+        std::vector<std::uint32_t> ids;
+        for (std::uint32_t i = 0; i < kCount; ++i)
+        {
+            // Half at home in the last slot, so that the run wraps; half in the first.
+            ids.push_back(id_mixed_to(i % 2 == 0 ? 0xFFFF'FFF0U + i : i));
+            ASSERT_TRUE(sut.try_insert(ids.back(), i));
+            expected[ids.back()] = i;
+        }
+
+        sut.erase(ids[removed]);
+
+        expected.erase(ids[removed]);
+        expect_same(sut, expected, ids);
+    }
+}
+
+TEST_F(IdTableTest, misuse_is_a_bug)
+{
+    IdTable sut = make(2);
+    ASSERT_TRUE(sut.try_insert(1, 1));
+
+    EXPECT_DEATH(static_cast<void>(sut.try_insert(1, 2)), "");
+    EXPECT_DEATH(static_cast<void>(sut.try_insert(IdTable::kAbsent, 2)), "");
+    EXPECT_DEATH(sut.erase(2), "");
+    EXPECT_DEATH(static_cast<void>(make(0)), "");
+}
+
+} // namespace tactus::test

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "rt_core/spm/index_page.hpp"
+#include "tests/unit/rt_core/coded_bytes.hpp"
+
+#include <gtest/gtest.h>
+
+namespace tactus::test
+{
+
+namespace
+{
+
+constexpr ModelCounts kCounts{4, 4, 64 * 64 + 3 * 64};
+constexpr IndexPageId kLastPage{1};
+
+struct Entry
+{
+    InfluenceBox box{{1, 2, 3}, {4, 5, 6}};
+    std::uint16_t coded_bytes{500};
+    std::uint8_t hash{0};
+};
+
+/// The second index page, which holds three chunks.
+std::vector<std::byte> write_page(std::uint32_t number, std::span<const Entry> entries)
+{
+    CodedBytes bytes;
+    bytes.put(number);
+    for (const Entry& entry : entries)
+    {
+        bytes.put(entry.box).put(entry.coded_bytes);
+        for (int i = 0; i < 16; ++i)
+        {
+            bytes.put(entry.hash);
+        }
+    }
+    return bytes.with_checksum();
+}
+
+std::array<Entry, 3> sound_entries()
+{
+    std::array<Entry, 3> entries;
+    entries[1].box = {{0, 0, 0}, {65'535, 0, 1}};
+    entries[1].coded_bytes = kMaxCodedChunkBytes;
+    entries[2].coded_bytes = 1;
+    entries[2].hash = 0xAB;
+    return entries;
+}
+
+class IndexPageTest : public ::testing::Test
+{
+protected:
+    Result<Done, SpmRefusal> parse(std::span<const std::byte> bytes)
+    {
+        return parse_index_page(bytes, kCounts, kLastPage, page_, entries_);
+    }
+
+    IndexPage page_;
+    std::array<ChunkEntry, kChunksPerIndexPage> entries_;
+};
+
+} // namespace
+
+TEST_F(IndexPageTest, a_sound_page_gives_its_entries_back)
+{
+    const auto bytes = write_page(1, sound_entries());
+
+    ASSERT_TRUE(parse(bytes).has_value());
+
+    EXPECT_EQ(bytes.size(), coded_index_page_bytes(3));
+    EXPECT_EQ(page_.chunks, 3U);
+    EXPECT_EQ(page_.boxes[0].low, (std::array<std::uint16_t, 3>{1, 2, 3}));
+    EXPECT_EQ(page_.boxes[1].high, (std::array<std::uint16_t, 3>{65'535, 0, 1}));
+    EXPECT_EQ(entries_[1].coded_bytes, kMaxCodedChunkBytes);
+    EXPECT_EQ(entries_[2].hash[15], 0xAB);
+}
+
+TEST_F(IndexPageTest, every_truncation_and_an_extra_byte_is_refused)
+{
+    auto bytes = write_page(1, sound_entries());
+    for (std::size_t length = 0; length < bytes.size(); ++length)
+    {
+        const auto result = parse(std::span(bytes).first(length));
+        ASSERT_FALSE(result.has_value()) << length;
+        ASSERT_EQ(result.error(), SpmRefusal::too_short);
+    }
+    bytes.push_back(std::byte{0});
+    EXPECT_EQ(parse(bytes).error(), SpmRefusal::trailing_bytes);
+}
+
+TEST_F(IndexPageTest, every_single_bit_flip_is_refused)
+{
+    auto bytes = write_page(1, sound_entries());
+    for (std::size_t bit = 0; bit < 8 * bytes.size(); ++bit)
+    {
+        flip_bit(bytes, bit);
+        ASSERT_FALSE(parse(bytes).has_value()) << "bit " << bit;
+        flip_bit(bytes, bit);
+    }
+}
+
+TEST_F(IndexPageTest, another_pages_bytes_are_refused)
+{
+    EXPECT_EQ(parse(write_page(0, sound_entries())).error(), SpmRefusal::wrong_identity);
+}
+
+TEST_F(IndexPageTest, a_box_inside_out_or_an_impossible_size_is_refused)
+{
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+        auto entries = sound_entries();
+        entries[2].box.low[axis] = 7;
+        EXPECT_EQ(parse(write_page(1, entries)).error(), SpmRefusal::value_out_of_range);
+    }
+    auto entries = sound_entries();
+    entries[0].coded_bytes = 0;
+    EXPECT_EQ(parse(write_page(1, entries)).error(), SpmRefusal::value_out_of_range);
+    entries[0].coded_bytes = kMaxCodedChunkBytes + 1;
+    EXPECT_EQ(parse(write_page(1, entries)).error(), SpmRefusal::value_out_of_range);
+}
+
+} // namespace tactus::test

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "rt_core/spm/page_table.hpp"
+#include "tests/unit/rt_core/support.hpp"
+
+#include <gtest/gtest.h>
+
+namespace tactus::test
+{
+
+namespace
+{
+
+constexpr std::uint32_t kPages = 3;
+
+class PageTableTest : public ::testing::Test
+{
+protected:
+    ArenaMemory memory_{1U << 17U};
+    Arena arena_{memory_.bytes()};
+    PageSlots slots_{PageSlots::take(arena_, {4, 4, 1'000}, kPages, 1)};
+    PageTable sut_{arena_, slots_};
+};
+
+} // namespace
+
+TEST_F(PageTableTest, an_empty_table_has_nothing)
+{
+    EXPECT_EQ(sut_.used(), 0U);
+    EXPECT_EQ(sut_.capacity(), kPages);
+    EXPECT_EQ(sut_.find({0}), IdTable::kAbsent);
+    EXPECT_EQ(sut_.find_linked({5}), nullptr);
+    EXPECT_FALSE(sut_.is_refined({5}));
+    EXPECT_FALSE(sut_.is_held({5}));
+    EXPECT_TRUE(sut_.meta(0).chunk.is_none());
+}
+
+TEST_F(PageTableTest, an_adopted_page_is_found_until_it_is_evicted)
+{
+    sut_.adopt({7}, 2, 99);
+
+    EXPECT_EQ(sut_.find({7}), 2U);
+    EXPECT_EQ(sut_.used(), 1U);
+    EXPECT_EQ(sut_.meta(2).chunk, ChunkId{7});
+    EXPECT_EQ(sut_.meta(2).touched, 99U);
+    sut_.touch(2, 120);
+    EXPECT_EQ(sut_.meta(2).touched, 120U);
+    sut_.evict(2);
+    EXPECT_EQ(sut_.find({7}), IdTable::kAbsent);
+    EXPECT_TRUE(sut_.meta(2).chunk.is_none());
+    sut_.adopt({8}, 2, 121);
+    EXPECT_EQ(sut_.find({8}), 2U);
+    EXPECT_EQ(sut_.find({7}), IdTable::kAbsent);
+}
+
+TEST_F(PageTableTest, only_linked_records_count)
+{
+    sut_.adopt({7}, 1, 0);
+    EXPECT_EQ(sut_.find_linked({7 * 64 + 63}), nullptr);
+
+    slots_.linked[1].store(std::uint64_t{1} << 63U);
+
+    EXPECT_EQ(sut_.find_linked({7 * 64 + 63}), &slots_.pages[1].records[63]);
+    EXPECT_EQ(sut_.find_linked({7 * 64 + 62}), nullptr);
+    EXPECT_EQ(&sut_.resident({7 * 64 + 62}), &slots_.pages[1].records[62]);
+}
+
+TEST_F(PageTableTest, refined_and_held_are_kept_apart_for_each_record)
+{
+    sut_.adopt({7}, 1, 0);
+
+    sut_.set_refined({7 * 64}, true);
+    sut_.set_refined({7 * 64 + 63}, true);
+    sut_.set_held({7 * 64 + 1}, true);
+
+    EXPECT_TRUE(sut_.is_refined({7 * 64}));
+    EXPECT_FALSE(sut_.is_refined({7 * 64 + 1}));
+    EXPECT_TRUE(sut_.is_held({7 * 64 + 1}));
+    EXPECT_FALSE(sut_.is_held({7 * 64}));
+    sut_.set_refined({7 * 64}, false);
+    sut_.set_refined({7 * 64}, false);
+    EXPECT_FALSE(sut_.is_refined({7 * 64}));
+    EXPECT_TRUE(sut_.is_refined({7 * 64 + 63}));
+    EXPECT_EQ(sut_.meta(1).refined, std::uint64_t{1} << 63U);
+}
+
+TEST_F(PageTableTest, all_slots_can_be_used)
+{
+    for (std::uint32_t slot = 0; slot < kPages; ++slot)
+    {
+        sut_.adopt({10 + slot}, slot, 0);
+    }
+    EXPECT_EQ(sut_.used(), kPages);
+    for (std::uint32_t slot = 0; slot < kPages; ++slot)
+    {
+        EXPECT_EQ(sut_.find({10 + slot}), slot);
+    }
+}
+
+TEST_F(PageTableTest, misuse_is_a_bug)
+{
+    sut_.adopt({7}, 1, 0);
+    EXPECT_DEATH(sut_.adopt({8}, 1, 0), "") << "a slot in use";
+    EXPECT_DEATH(sut_.adopt({7}, 2, 0), "") << "a chunk twice";
+    EXPECT_DEATH(sut_.evict(0), "") << "an empty slot";
+    EXPECT_DEATH(sut_.set_refined({3}, true), "") << "an absent page";
+    EXPECT_DEATH(static_cast<void>(sut_.resident({3})), "");
+    sut_.set_refined({7 * 64}, true);
+    EXPECT_DEATH(sut_.evict(1), "") << "a pinned page";
+}
+
+} // namespace tactus::test

@@ -1,0 +1,337 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "rt_core/limits.hpp"
+#include "tests/unit/rt_core/surface_support.hpp"
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace tactus::test
+{
+
+namespace
+{
+
+constexpr double kRadius = 0.01;
+constexpr double kStiffness = 500.0;
+constexpr double kPeriod_s = 0.001;
+/// What the proxy leaves between itself and the goal it could reach, relative to the radius.
+constexpr double kRest = 3e-3;
+
+ToolSpec ball_tool()
+{
+    ToolSpec spec;
+    spec.radius_m = kRadius;
+    spec.stiffness_n_per_m = kStiffness;
+    spec.force_max_n = 8.0;
+    return spec;
+}
+
+/// A proxy over one object whose surface is certified as far as `certified` (model frame).
+class ProxyRig
+{
+public:
+    ProxyRig(TriangleList list, const Vec3& start, const ObjectPose& object_pose = {})
+        : triangles(std::move(list)), pose(object_pose), sut(ball_tool())
+    {
+        sut.start_at(start);
+    }
+
+    ToolOutput step(const Vec3& goal)
+    {
+        const auto surface = surface_of(triangles, to_model(pose, sut.position_m()), certified);
+        const PlacedSurface placed{&pose, surface.get()};
+        return sut.respond(goal, {&placed, 1}, kPeriod_s);
+    }
+    ToolOutput settle(const Vec3& goal, int frames = 200)
+    {
+        ToolOutput output;
+        for (int i = 0; i < frames; ++i)
+        {
+            output = step(goal);
+        }
+        return output;
+    }
+    [[nodiscard]] double clearance() const
+    {
+        return distance_to(triangles, to_model(pose, sut.position_m())) * pose.scale;
+    }
+
+    TriangleList triangles;
+    ObjectPose pose;
+    Proxy sut;
+    double certified{0.05};
+};
+
+void expect_vector(const Vec3& is, const Vec3& should, double tolerance)
+{
+    EXPECT_NEAR((is - should).norm(), 0.0, tolerance)
+        << is.transpose() << " instead of " << should.transpose();
+}
+
+/// A room's corner: three planes that meet at the origin, free where all coordinates are positive.
+TriangleList room_corner()
+{
+    TriangleList list;
+    add_square(list, {0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0});
+    add_square(list, {0, 0, 0}, {0, 1, 0}, {0, 1, 1}, {0, 0, 1});
+    add_square(list, {0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {1, 0, 0});
+    return list;
+}
+
+} // namespace
+
+TEST(Proxy, follows_its_goal_in_free_flight_without_a_force)
+{
+    Random random(70);
+    Proxy sut(ball_tool());
+    for (int i = 0; i < 100; ++i)
+    {
+        const Vec3 goal = random.in_cube(1.0);
+        const ToolOutput output = sut.respond(goal, {}, kPeriod_s);
+        ASSERT_EQ(output.force_n, Vec3(0, 0, 0));
+        ASSERT_FALSE(output.in_contact);
+        ASSERT_FALSE(output.frozen);
+        ASSERT_NEAR((output.proxy_m - goal).norm(), 0.0, kRest * kRadius);
+    }
+}
+
+TEST(Proxy, moves_in_free_flight_only_where_it_is_proven_free)
+{
+    ProxyRig rig(plane(), Vec3(0, 0, 0.5));
+    rig.certified = 0.03;
+
+    const ToolOutput output = rig.step(Vec3(0, 0, 0.3));
+
+    EXPECT_FALSE(output.in_contact);
+    EXPECT_FALSE(output.frozen);
+    EXPECT_NEAR(output.proxy_m.z(), 0.5 - (0.03 - kRadius), 1e-5);
+}
+
+TEST(Proxy, on_a_plane_pushes_back_with_stiffness_times_depth)
+{
+    for (const double depth : {0.0005, 0.002, 0.01, 0.015})
+    {
+        ProxyRig rig(plane(), Vec3(0.1, 0.2, 0.02));
+
+        const ToolOutput output = rig.settle(Vec3(0.1, 0.2, kRadius - depth));
+
+        EXPECT_TRUE(output.in_contact);
+        EXPECT_FALSE(output.frozen);
+        expect_vector(output.proxy_m, Vec3(0.1, 0.2, kRadius), kRest * kRadius);
+        expect_vector(output.force_n, Vec3(0, 0, kStiffness * depth), kStiffness * kRest * kRadius);
+    }
+}
+
+TEST(Proxy, slides_without_friction_to_above_its_goal)
+{
+    ProxyRig rig(plane(), Vec3(0, 0, 0.02));
+    rig.settle(Vec3(0, 0, 0.005), 20);
+
+    const ToolOutput output = rig.settle(Vec3(0.08, -0.05, 0.004));
+
+    expect_vector(output.proxy_m, Vec3(0.08, -0.05, kRadius), 2.0 * kRest * kRadius);
+    expect_vector(output.force_n, Vec3(0, 0, kStiffness * 0.006), 0.05);
+}
+
+TEST(Proxy, leaves_the_surface_without_being_held)
+{
+    ProxyRig rig(plane(), Vec3(0, 0, 0.02));
+    ASSERT_TRUE(rig.settle(Vec3(0, 0, 0.0)).in_contact);
+
+    const ToolOutput output = rig.settle(Vec3(0, 0, 0.03), 3);
+
+    EXPECT_FALSE(output.in_contact);
+    EXPECT_EQ(output.force_n, Vec3(0, 0, 0));
+    EXPECT_NEAR(output.proxy_m.z(), 0.03, kRest * kRadius);
+}
+
+TEST(Proxy, never_passes_a_plane_however_fast_or_deep_the_goal_is)
+{
+    Random random(71);
+    ProxyRig rig(plane(), Vec3(0, 0, 0.03));
+    for (int i = 0; i < 3'000; ++i)
+    {
+        rig.step({random.between(-0.5, 0.5), random.between(-0.5, 0.5), random.between(-0.3, 0.1)});
+        ASSERT_GE(rig.sut.position_m().z(), kRadius * (1.0 - 2e-4)) << i;
+    }
+}
+
+TEST(Proxy, goes_round_a_convex_edge_and_never_into_the_cube)
+{
+    Random random(72);
+    ProxyRig rig(cube(0.05), Vec3(0.0, 0.0, 0.08));
+    Vec3 goal(0, 0, 0.08);
+    for (int i = 0; i < 6'000; ++i)
+    {
+        // A wandering hand that often goes through the cube.
+        goal = i % 500 == 0 ? random.in_cube(0.09) : Vec3(goal + random.in_cube(0.004));
+        goal = goal.cwiseMax(-0.1).cwiseMin(0.1);
+        const ToolOutput output = rig.step(goal);
+        ASSERT_GE(rig.clearance(), kRadius * (1.0 - 2e-4)) << "frame " << i;
+        ASSERT_GT(rig.sut.position_m().cwiseAbs().maxCoeff(), 0.05) << "inside at frame " << i;
+        ASSERT_LE(output.force_n.norm(), 8.0 + 1e-9);
+        ASSERT_TRUE(output.force_n.allFinite());
+    }
+}
+
+TEST(Proxy, the_force_over_an_edge_points_from_the_goal_to_the_proxy)
+{
+    ProxyRig rig(cube(0.05), Vec3(0.07, 0.0, 0.07));
+
+    const ToolOutput output = rig.settle(Vec3(0.052, 0.0, 0.052));
+
+    EXPECT_TRUE(output.in_contact);
+    const double rest = 0.05 + kRadius / std::sqrt(2.0);
+    expect_vector(output.proxy_m, Vec3(rest, 0, rest), 0.02 * kRadius);
+    expect_vector(output.force_n, kStiffness * Vec3(rest - 0.052, 0, rest - 0.052), 0.1);
+}
+
+TEST(Proxy, does_not_pass_a_concave_corner)
+{
+    Random random(73);
+    ProxyRig rig(room_corner(), Vec3(0.05, 0.05, 0.05));
+    for (int i = 0; i < 4'000; ++i)
+    {
+        const Vec3 goal = Vec3(0.02, 0.02, 0.02) + random.in_cube(i % 100 == 0 ? 0.3 : 0.06);
+        rig.step(goal);
+        ASSERT_GE(rig.sut.position_m().minCoeff(), kRadius * (1.0 - 2e-4)) << "frame " << i;
+    }
+}
+
+TEST(Proxy, comes_to_rest_in_a_concave_corner)
+{
+    ProxyRig rig(room_corner(), Vec3(0.05, 0.04, 0.06));
+
+    const ToolOutput output = rig.settle(Vec3(0.002, 0.003, 0.001), 500);
+
+    EXPECT_TRUE(output.in_contact);
+    EXPECT_LT((output.proxy_m - Vec3(kRadius, kRadius, kRadius)).norm(), 0.1 * kRadius);
+    EXPECT_GT(output.force_n.minCoeff(), 0.0);
+}
+
+TEST(Proxy, is_clamped_to_the_largest_force)
+{
+    ProxyRig rig(plane(), Vec3(0, 0, 0.02));
+
+    const ToolOutput output = rig.settle(Vec3(0, 0, -1.0));
+
+    EXPECT_NEAR(output.force_n.norm(), 8.0, 1e-9);
+    EXPECT_NEAR(output.force_n.z(), 8.0, 1e-6);
+}
+
+TEST(Proxy, frozen_in_contact_fades_within_fifty_milliseconds_and_never_pulls)
+{
+    ProxyRig rig(plane(), Vec3(0, 0, 0.02));
+    const Vec3 goal(0, 0, 0.002);
+    const double full = rig.settle(goal).force_n.norm();
+    ASSERT_NEAR(full, kStiffness * 0.008, 0.05);
+    const Vec3 held = rig.sut.position_m();
+    rig.certified = 0.0;
+
+    double before = full + 1e-9;
+    for (int frame = 1; frame <= 60; ++frame)
+    {
+        const ToolOutput output = rig.step(goal);
+        ASSERT_TRUE(output.frozen);
+        ASSERT_EQ(output.proxy_m, held);
+        ASSERT_LE(output.force_n.norm(), before) << frame;
+        ASSERT_GE(output.force_n.z(), 0.0);
+        const double share = std::max(0.0, 1.0 - frame * kPeriod_s / kFadeTime_s);
+        ASSERT_NEAR(output.force_n.z(), full * share, 0.05) << frame;
+        before = output.force_n.norm();
+    }
+    EXPECT_EQ(before, 0.0);
+}
+
+TEST(Proxy, frozen_with_the_goal_outside_does_not_pull)
+{
+    ProxyRig rig(plane(), Vec3(0, 0, 0.02));
+    ASSERT_TRUE(rig.settle(Vec3(0, 0, 0.002)).in_contact);
+    rig.certified = 0.0;
+
+    const ToolOutput output = rig.step(Vec3(0, 0, 0.5));
+
+    EXPECT_TRUE(output.frozen);
+    EXPECT_EQ(output.force_n, Vec3(0, 0, 0));
+}
+
+TEST(Proxy, frozen_in_free_flight_has_no_force)
+{
+    ProxyRig rig(plane(), Vec3(0, 0, 0.5));
+    rig.certified = 0.0;
+
+    const ToolOutput output = rig.step(Vec3(0, 0, -0.5));
+
+    EXPECT_TRUE(output.frozen);
+    EXPECT_FALSE(output.in_contact);
+    EXPECT_EQ(output.force_n, Vec3(0, 0, 0));
+    EXPECT_EQ(output.proxy_m, Vec3(0, 0, 0.5));
+}
+
+TEST(Proxy, comes_back_to_life_when_the_surface_is_certified_again)
+{
+    ProxyRig rig(plane(), Vec3(0, 0, 0.02));
+    const Vec3 goal(0, 0, 0.002);
+    rig.settle(goal);
+    rig.certified = 0.0;
+    rig.settle(goal, 100);
+    rig.certified = 0.05;
+
+    const ToolOutput output = rig.step(goal);
+
+    EXPECT_FALSE(output.frozen);
+    EXPECT_NEAR(output.force_n.z(), kStiffness * 0.008, 0.05);
+}
+
+TEST(Proxy, the_same_scene_under_any_pose_and_scale_gives_the_same_force)
+{
+    ObjectPose pose;
+    pose.rotation = (Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized())).toRotationMatrix();
+    pose.translation_m = Vec3(3, -2, 1);
+    pose.scale = 4.0;
+    TriangleList shrunk = cube(0.05 / pose.scale);
+    ObjectPose upright;
+    ProxyRig rig(cube(0.05), Vec3(0.02, 0.01, 0.08), upright);
+    const auto to_turned = [&pose](const Vec3& v)
+    { return Vec3(pose.translation_m + pose.rotation * v); };
+    ProxyRig turned(shrunk, to_turned(Vec3(0.02, 0.01, 0.08)), pose);
+    turned.certified = rig.certified / pose.scale;
+    Random random(74);
+    Vec3 goal(0.02, 0.01, 0.08);
+    for (int i = 0; i < 200; ++i)
+    {
+        goal += Vec3(0.0001, 0.0, -0.0004);
+        const ToolOutput expected = rig.step(goal);
+        const ToolOutput output = turned.step(to_turned(goal));
+        ASSERT_EQ(output.in_contact, expected.in_contact) << i;
+        ASSERT_NEAR((output.force_n - pose.rotation * expected.force_n).norm(), 0.0, 1e-3) << i;
+        ASSERT_NEAR((output.proxy_m - to_turned(expected.proxy_m)).norm(), 0.0, 2e-6) << i;
+    }
+    EXPECT_GT(rig.step(goal).force_n.norm(), 1.0);
+}
+
+TEST(Proxy, two_objects_hold_it_together)
+{
+    TriangleList floor = plane();
+    TriangleList wall;
+    add_square(wall, {0, -1, -1}, {0, 1, -1}, {0, 1, 1}, {0, -1, 1});
+    const ObjectPose pose;
+    Proxy sut(ball_tool());
+    sut.start_at(Vec3(0.05, 0, 0.05));
+    ToolOutput output;
+    for (int i = 0; i < 300; ++i)
+    {
+        const auto a = surface_of(floor, sut.position_m(), 0.06);
+        const auto b = surface_of(wall, sut.position_m(), 0.06);
+        const std::array<PlacedSurface, 2> placed{{{&pose, a.get()}, {&pose, b.get()}}};
+        output = sut.respond(Vec3(0.004, 0, 0.006), placed, kPeriod_s);
+        ASSERT_GE(sut.position_m().x(), kRadius * (1.0 - 2e-4));
+        ASSERT_GE(sut.position_m().z(), kRadius * (1.0 - 2e-4));
+    }
+    EXPECT_LT((output.proxy_m - Vec3(kRadius, 0, kRadius)).norm(), 0.1 * kRadius);
+}
+
+} // namespace tactus::test

@@ -1,0 +1,357 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "rt_core/query/surface_query.hpp"
+#include "tests/unit/rt_core/distance_oracle.hpp"
+#include "tests/unit/rt_core/tree_support.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <set>
+
+namespace tactus::test
+{
+
+namespace
+{
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+/// The error law of the worst triangle here: no area at all (aspect 1e8), 10 m away.
+constexpr double kSlack = 1e-7;
+
+/// The answer by looking at every face.
+struct BruteForce
+{
+    double lower{kInfinity};        ///< Least d - e.
+    double upper{kInfinity};        ///< Least exact d or coarse corner's distance.
+    double coarse_lower{kInfinity}; ///< Least d - e of coarse faces.
+    std::vector<double> exact; ///< Exact faces' distances, by place in the list; else infinite.
+    FaceId nearest{};          ///< Lowest id of the nearest exact faces, in the kernel's bits.
+
+    BruteForce(std::span<const ChangedFace> faces, const Vec3& center)
+    {
+        double least_sq = kInfinity;
+        for (const ChangedFace& face : faces)
+        {
+            const Triangle triangle = to_triangle(face.corners_m);
+            const auto d = static_cast<double>(DistanceOracle::distance(center, triangle));
+            exact.push_back(face.error == 0 ? d : kInfinity);
+            if (face.error == 0)
+            {
+                lower = std::min(lower, d);
+                upper = std::min(upper, d);
+                const double sq = closest_point_on_triangle(center, triangle).distance_sq;
+                if (sq < least_sq || (sq == least_sq && face.face < nearest))
+                {
+                    least_sq = sq;
+                    nearest = face.face;
+                }
+                continue;
+            }
+            const double e = static_cast<double>(error_in_quanta(face.error)) *
+                             static_cast<double>(kTreeQuantum);
+            coarse_lower = std::min(coarse_lower, d - e);
+            for (const Vec3& corner : triangle)
+            {
+                upper = std::min(upper, (corner - center).norm());
+            }
+        }
+        lower = std::max(0.0, std::min(lower, coarse_lower));
+    }
+};
+
+struct Asked
+{
+    std::unique_ptr<LocalSurface> surface{std::make_unique<LocalSurface>()};
+    WalkBudget budget;
+};
+
+Asked ask(const AbTree& tree, const Vec3& center, double reach, std::uint32_t nodes = 1'000'000,
+          std::uint32_t triangles = 1'000'000)
+{
+    Asked asked;
+    asked.budget.nodes = nodes;
+    asked.budget.triangles = triangles;
+    gather_surface(tree, center, reach, asked.budget, *asked.surface);
+    return asked;
+}
+
+std::set<std::uint32_t> faces_of(const LocalSurface& surface)
+{
+    std::set<std::uint32_t> faces;
+    for (std::uint32_t i = 0; i < surface.count; ++i)
+    {
+        EXPECT_TRUE(faces.insert(surface.triangles[i].face.value).second) << "listed twice";
+    }
+    return faces;
+}
+
+/// Everything exact within the certified radius is listed, and nothing coarse reaches into it.
+void expect_certified(const LocalSurface& surface, std::span<const ChangedFace> faces,
+                      const BruteForce& truth)
+{
+    const double radius = surface.answer.certified_radius_m;
+    ASSERT_GE(radius, 0.0);
+    if (radius > 0.0)
+    {
+        ASSERT_LE(radius, std::max(0.0, truth.coarse_lower) + kSlack);
+    }
+    const auto listed = faces_of(surface);
+    for (std::size_t i = 0; i < faces.size(); ++i)
+    {
+        if (truth.exact[i] < radius - kSlack)
+        {
+            ASSERT_EQ(listed.count(faces[i].face.value), 1U) << faces[i].face.value;
+        }
+    }
+}
+
+void fill(TreeRig& rig, Random& random, const FaceStyle& style, std::uint32_t count,
+          bool exact_only)
+{
+    for (std::uint32_t prim = 0; prim < count; ++prim)
+    {
+        ChangedFace face = random_face(random, style, prim, (prim * 37) % count);
+        face.error = exact_only ? 0 : face.error;
+        rig.put(face);
+    }
+    rig.sut->refit();
+}
+
+Vec3 random_center(Random& random)
+{
+    return {random.between(-2.5, 2.5), random.between(-1.0, 1.5), random.between(-1.0, 1.5)};
+}
+
+} // namespace
+
+TEST(SurfaceQuery, an_empty_tree_is_free_space)
+{
+    TreeRig rig({4, 64, 64});
+
+    const Asked asked = ask(*rig.sut, Vec3(0, 0, 0), 1.0);
+
+    EXPECT_EQ(asked.surface->answer.kind, AnswerKind::decided);
+    EXPECT_EQ(asked.surface->count, 0U);
+    EXPECT_EQ(asked.surface->answer.certified_radius_m, 1.0);
+    EXPECT_TRUE(asked.surface->answer.nearest_face.is_none());
+}
+
+TEST(SurfaceQuery, equals_brute_force_in_every_style)
+{
+    Random random(40);
+    for (const FaceStyle& style : face_styles())
+    {
+        for (const bool exact_only : {false, true})
+        {
+            TreeRig rig({300, 400, 400});
+            fill(rig, random, style, 300, exact_only);
+            const auto faces = rig.present();
+            for (int i = 0; i < 150; ++i)
+            {
+                const Vec3 center = random_center(random);
+                const double reach = random.between(0.0, 0.4);
+                const BruteForce truth(faces, center);
+                const Asked asked = ask(*rig.sut, center, reach);
+                const DistanceAnswer& answer = asked.surface->answer;
+                ASSERT_NEAR(answer.lower_m, truth.lower, kSlack) << style.name << " " << i;
+                ASSERT_NEAR(answer.upper_m, truth.upper, kSlack) << style.name << " " << i;
+                ASSERT_LE(answer.lower_m, truth.lower);
+                ASSERT_GE(answer.upper_m, truth.upper);
+                ASSERT_NO_FATAL_FAILURE(expect_certified(*asked.surface, faces, truth));
+                if (exact_only)
+                {
+                    ASSERT_EQ(answer.nearest_face, truth.nearest) << style.name << " " << i;
+                    ASSERT_EQ(answer.kind,
+                              truth.lower > reach ? AnswerKind::decided : AnswerKind::exact);
+                    ASSERT_NEAR((answer.nearest_point_m - center).norm(), truth.upper, kSlack);
+                    ASSERT_EQ(answer.certified_radius_m,
+                              asked.surface->truncated ? answer.certified_radius_m : reach);
+                }
+            }
+        }
+    }
+}
+
+TEST(SurfaceQuery, a_nearest_exact_face_is_given_its_lowest_id_among_equals)
+{
+    TreeRig rig({20, 64, 64});
+    for (std::uint32_t prim = 0; prim < 20; ++prim)
+    {
+        // All the same triangle; ids fall as prims rise, buckets are far apart.
+        rig.put({PrimId{prim},
+                 FaceId{100 - prim},
+                 prim << 27U,
+                 0,
+                 {{{0.0F, 0.0F, 0.0F}, {1.0F, 0.0F, 0.0F}, {0.0F, 1.0F, 0.0F}}}});
+    }
+    rig.sut->refit();
+
+    const Asked asked = ask(*rig.sut, Vec3(0.2, 0.2, 0.5), 1.0);
+
+    EXPECT_EQ(asked.surface->answer.nearest_face, FaceId{81});
+    EXPECT_EQ(asked.surface->count, 20U);
+    EXPECT_EQ(asked.surface->answer.kind, AnswerKind::exact);
+}
+
+TEST(SurfaceQuery, any_budget_leaves_a_valid_bracket)
+{
+    Random random(41);
+    for (const FaceStyle& style : face_styles())
+    {
+        TreeRig rig({300, 400, 400});
+        fill(rig, random, style, 300, false);
+        const auto faces = rig.present();
+        for (int i = 0; i < 200; ++i)
+        {
+            const Vec3 center = random_center(random);
+            const double reach = random.between(0.0, 0.5);
+            const BruteForce truth(faces, center);
+            const std::uint32_t nodes = random.below(12);
+            const std::uint32_t triangles = random.one_in(2) ? random.below(40) : 1'000;
+            const Asked asked = ask(*rig.sut, center, reach, nodes, triangles);
+            ASSERT_LE(asked.budget.nodes_visited, nodes);
+            ASSERT_LE(asked.budget.triangles_tested, triangles);
+            ASSERT_LE(asked.surface->answer.lower_m, truth.lower) << style.name << " " << i;
+            ASSERT_GE(asked.surface->answer.upper_m, truth.upper) << style.name << " " << i;
+            ASSERT_NO_FATAL_FAILURE(expect_certified(*asked.surface, faces, truth));
+            if (asked.surface->answer.kind == AnswerKind::decided)
+            {
+                ASSERT_GT(truth.lower, reach);
+            }
+        }
+    }
+}
+
+TEST(SurfaceQuery, no_budget_at_all_proves_nothing)
+{
+    Random random(42);
+    TreeRig rig({100, 200, 200});
+    fill(rig, random, face_styles()[0], 100, true);
+
+    for (const auto& [nodes, triangles] : {std::pair{0U, 100U}, std::pair{100U, 0U}})
+    {
+        const Asked asked = ask(*rig.sut, Vec3(0, 3, 0), 0.5, nodes, triangles);
+        EXPECT_EQ(asked.surface->count, 0U);
+        EXPECT_EQ(asked.surface->answer.lower_m, 0.0);
+        EXPECT_EQ(asked.surface->answer.certified_radius_m, 0.0);
+        EXPECT_EQ(asked.surface->answer.kind, AnswerKind::bracket);
+    }
+}
+
+TEST(SurfaceQuery, an_incomplete_tree_proves_nothing)
+{
+    TreeRig rig({300, 30, 30});
+    Random random(43);
+    fill(rig, random, face_styles()[4], 300, true);
+    ASSERT_FALSE(rig.sut->is_complete());
+
+    const Asked asked = ask(*rig.sut, Vec3(0, 0, 0), 0.5);
+
+    EXPECT_EQ(asked.surface->answer.lower_m, 0.0);
+    EXPECT_EQ(asked.surface->answer.certified_radius_m, 0.0);
+    EXPECT_NE(asked.surface->answer.kind, AnswerKind::decided);
+}
+
+TEST(SurfaceQuery, more_triangles_than_fit_keep_the_nearest_and_shrink_the_certified_radius)
+{
+    Random random(44);
+    for (int round = 0; round < 20; ++round)
+    {
+        const std::uint32_t count = kMaxLocalTriangles + (round == 0 ? 1U : random.below(300));
+        TreeRig rig({600, 800, 800});
+        fill(rig, random, face_styles()[3], count, true);
+        const auto faces = rig.present();
+        const Vec3 center = random_center(random);
+        const BruteForce truth(faces, center);
+        std::vector<double> sorted = truth.exact;
+        std::sort(sorted.begin(), sorted.end());
+
+        const Asked asked = ask(*rig.sut, center, 100.0);
+
+        const LocalSurface& surface = *asked.surface;
+        const bool overflows = count > kMaxLocalTriangles;
+        ASSERT_EQ(surface.truncated, overflows);
+        ASSERT_EQ(surface.count, std::min(count, kMaxLocalTriangles));
+        if (overflows)
+        {
+            ASSERT_NEAR(surface.answer.certified_radius_m, sorted[kMaxLocalTriangles], kSlack);
+        }
+        const auto listed = faces_of(surface);
+        for (std::size_t i = 0; i < faces.size(); ++i)
+        {
+            const bool is_near = truth.exact[i] < sorted[surface.count - 1] + kSlack;
+            ASSERT_TRUE(is_near || listed.count(faces[i].face.value) == 0);
+        }
+        for (std::uint32_t i = 0; i < surface.count; ++i)
+        {
+            const auto d = static_cast<double>(
+                DistanceOracle::distance(center, to_triangle(surface.triangles[i].corners_m)));
+            ASSERT_NEAR(surface.distances_m[i], d, kSlack);
+            ASSERT_LE(surface.distances_m[i], d);
+        }
+    }
+}
+
+TEST(TreeWalk, visits_exactly_the_coarse_blocks_when_asked_for_coarse_ones)
+{
+    Random random(45);
+    TreeRig rig({300, 400, 400});
+    fill(rig, random, face_styles()[0], 300, false);
+    ASSERT_FALSE(rig.sut->root().is_block());
+    std::set<std::uint32_t> expected;
+    for (const ChangedFace& face : rig.present())
+    {
+        if (face.error != 0)
+        {
+            expected.insert(rig.sut->leaf_of(face.prim) / kBlockFaces);
+        }
+    }
+    WalkBudget budget;
+    budget.nodes = 10'000;
+    TreeWalk sut(*rig.sut, Vec3(0, 0, 0), budget);
+
+    std::set<std::uint32_t> visited;
+    for (std::uint32_t block = sut.next_block(kInfinity, true); block != kNoNode;
+         block = sut.next_block(kInfinity, true))
+    {
+        EXPECT_TRUE(visited.insert(block).second);
+    }
+
+    EXPECT_EQ(visited, expected);
+    EXPECT_TRUE(sut.left().empty());
+}
+
+TEST(TreeWalk, leaves_out_only_blocks_beyond_the_bound)
+{
+    Random random(46);
+    TreeRig rig({300, 400, 400});
+    fill(rig, random, face_styles()[3], 300, true);
+    const auto faces = rig.present();
+    for (int i = 0; i < 100; ++i)
+    {
+        const Vec3 center = random_center(random);
+        const double bound = random.between(0.0, 1.0);
+        WalkBudget budget;
+        budget.nodes = 10'000;
+        TreeWalk sut(*rig.sut, center, budget);
+        std::set<std::uint32_t> visited;
+        for (std::uint32_t block = sut.next_block(bound * bound, false); block != kNoNode;
+             block = sut.next_block(bound * bound, false))
+        {
+            visited.insert(block);
+        }
+        for (const ChangedFace& face : faces)
+        {
+            const auto d =
+                static_cast<double>(DistanceOracle::distance(center, to_triangle(face.corners_m)));
+            if (d < bound)
+            {
+                ASSERT_EQ(visited.count(rig.sut->leaf_of(face.prim) / kBlockFaces), 1U);
+            }
+        }
+    }
+}
+
+} // namespace tactus::test

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "rt_core/cache/chunk_inbox.hpp"
+#include "rt_core/cache/wish_list.hpp"
+#include "tests/unit/rt_core/support.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+namespace tactus::test
+{
+
+namespace
+{
+
+class WishListTest : public ::testing::Test
+{
+protected:
+    WishList make(std::uint32_t slots)
+    {
+        Arena arena(memory_.bytes());
+        return WishList(arena, slots);
+    }
+
+    ArenaMemory memory_{1U << 14U};
+};
+
+/// As often as it takes to look at each wish once.
+void expire_all(WishList& sut, std::uint32_t slots, std::uint32_t frame)
+{
+    for (std::uint32_t i = 0; i < slots; ++i)
+    {
+        sut.expire_one(frame);
+    }
+}
+
+} // namespace
+
+TEST_F(WishListTest, has_credit_for_as_many_pieces_as_there_are_slots)
+{
+    for (const std::uint32_t slots : {1U, 2U, 5U})
+    {
+        WishList sut = make(slots);
+        for (std::uint32_t number = 0; number < slots; ++number)
+        {
+            EXPECT_TRUE(sut.has_credit());
+            EXPECT_FALSE(sut.is_under_way(number));
+            sut.ask(number, 0);
+            EXPECT_TRUE(sut.is_under_way(number));
+        }
+        EXPECT_FALSE(sut.has_credit());
+    }
+}
+
+TEST_F(WishListTest, an_arrival_takes_its_slot_along_until_it_is_given_back)
+{
+    WishList sut = make(2);
+    sut.ask(7, 0);
+    sut.ask(8, 0);
+
+    sut.arrive(7);
+
+    EXPECT_FALSE(sut.is_under_way(7));
+    EXPECT_TRUE(sut.is_under_way(8));
+    EXPECT_FALSE(sut.has_credit());
+    sut.give_back_slot();
+    EXPECT_TRUE(sut.has_credit());
+    sut.ask(9, 1);
+    EXPECT_FALSE(sut.has_credit());
+}
+
+TEST_F(WishListTest, a_wish_expires_only_after_its_time)
+{
+    WishList sut = make(3);
+    sut.ask(7, 100);
+
+    expire_all(sut, 3, 100 + kWishTimeoutFrames);
+    EXPECT_TRUE(sut.is_under_way(7));
+    expire_all(sut, 3, 100 + kWishTimeoutFrames + 1);
+
+    EXPECT_FALSE(sut.is_under_way(7));
+    sut.ask(7, 400);
+    EXPECT_TRUE(sut.is_under_way(7));
+}
+
+TEST_F(WishListTest, the_frame_counter_may_wrap)
+{
+    WishList sut = make(1);
+    sut.ask(7, 0xFFFF'FFF0U);
+
+    expire_all(sut, 1, 5);
+    EXPECT_TRUE(sut.is_under_way(7));
+    expire_all(sut, 1, kWishTimeoutFrames);
+    EXPECT_FALSE(sut.is_under_way(7));
+}
+
+TEST_F(WishListTest, what_arrives_after_it_expired_takes_a_slot_all_the_same)
+{
+    WishList sut = make(2);
+    sut.ask(7, 0);
+    expire_all(sut, 2, kWishTimeoutFrames + 1);
+    ASSERT_FALSE(sut.is_under_way(7));
+
+    sut.arrive(7);
+
+    sut.ask(8, 300);
+    EXPECT_FALSE(sut.has_credit());
+}
+
+TEST_F(WishListTest, more_arrivals_than_slots_are_a_bug)
+{
+    WishList sut = make(1);
+    sut.arrive(3);
+
+    EXPECT_DEATH(sut.arrive(4), "");
+}
+
+TEST_F(WishListTest, random_use_never_asks_for_more_than_the_slots)
+{
+    Random random(19);
+    constexpr std::uint32_t kSlots = 6;
+    WishList sut = make(kSlots);
+    std::set<std::uint32_t> under_way;
+    std::uint32_t free_slots = kSlots;
+    for (std::uint32_t frame = 0; frame < 20'000; ++frame)
+    {
+        const std::uint32_t number = random.below(30);
+        ASSERT_EQ(sut.is_under_way(number), under_way.count(number) != 0);
+        ASSERT_EQ(sut.has_credit(), under_way.size() < free_slots);
+        if (sut.has_credit() && !sut.is_under_way(number))
+        {
+            sut.ask(number, frame);
+            under_way.insert(number);
+        }
+        if (!under_way.empty() && random.one_in(3))
+        {
+            sut.arrive(*under_way.begin());
+            under_way.erase(under_way.begin());
+            --free_slots;
+        }
+        if (free_slots < kSlots && random.one_in(3))
+        {
+            sut.give_back_slot();
+            ++free_slots;
+        }
+    }
+}
+
+TEST(ChunkInbox, has_room_for_every_slot_and_for_the_wishes_it_was_made_for)
+{
+    ArenaMemory memory(1U << 14U);
+    Arena arena(memory.bytes());
+    ChunkInbox sut(arena, 3, 2, 4);
+
+    for (std::uint32_t slot = 0; slot < 5; ++slot)
+    {
+        EXPECT_TRUE(sut.arrived.try_push({{ContentKind::chunk, slot}, slot}));
+        EXPECT_TRUE(sut.freed.try_push({ContentKind::chunk, slot}));
+    }
+    for (std::uint32_t wish = 0; wish < 4; ++wish)
+    {
+        EXPECT_TRUE(sut.wanted.try_push({{ContentKind::chunk, wish}, 0}));
+    }
+    EXPECT_FALSE(sut.arrived.try_push({}));
+    EXPECT_FALSE(sut.freed.try_push({}));
+    EXPECT_FALSE(sut.wanted.try_push({}));
+}
+
+} // namespace tactus::test

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/abtree/ab_tree.hpp"
+#include "tests/shared/validate_tree.hpp"
+#include "tests/unit/rt_core/support.hpp"
+
+#include <optional>
+#include <vector>
+
+namespace tactus::test
+{
+
+inline constexpr float kTreeQuantum = 0x1p-10F;
+
+/// An AB-Tree and the faces that should be in it, by prim.
+class TreeRig
+{
+public:
+    explicit TreeRig(const AbTree::Capacities& capacities)
+        : memory_(required(capacities)), faces_(capacities.prims)
+    {
+        Arena arena(memory_.bytes());
+        sut.emplace(arena, capacities, kTreeQuantum);
+    }
+
+    void put(const ChangedFace& face)
+    {
+        faces_[face.prim.value] = face;
+        sut->apply(face);
+    }
+    void remove(std::uint32_t prim) { put(ChangedFace{PrimId{prim}, FaceId{}, 0, 0, {}}); }
+    /// What the caller does each frame with faces that found no place.
+    void offer_again()
+    {
+        for (std::size_t i = sut->unplaced().size(); i-- > 0;)
+        {
+            sut->apply(faces_[sut->unplaced()[i].value]);
+        }
+    }
+    [[nodiscard]] const ChangedFace& face(std::uint32_t prim) const { return faces_[prim]; }
+    [[nodiscard]] std::vector<ChangedFace> present() const
+    {
+        std::vector<ChangedFace> faces;
+        for (const ChangedFace& face : faces_)
+        {
+            if (!face.face.is_none())
+            {
+                faces.push_back(face);
+            }
+        }
+        return faces;
+    }
+    [[nodiscard]] std::string faults() const { return tree_faults(*sut, present()); }
+
+private:
+    static std::size_t required(const AbTree::Capacities& capacities)
+    {
+        Arena arena = Arena::measuring();
+        const AbTree tree(arena, capacities, kTreeQuantum);
+        return arena.used();
+    }
+
+    ArenaMemory memory_;
+    std::vector<ChangedFace> faces_;
+
+public:
+    std::optional<AbTree> sut;
+};
+
+/// How a test's faces lie in path space and in space.
+struct FaceStyle
+{
+    const char* name;
+    std::uint32_t (*bucket)(std::uint32_t face);
+    bool shares_vertices; ///< Corners on a small grid, so that blocks fill with faces.
+};
+
+inline const std::array<FaceStyle, 5>& face_styles()
+{
+    static const std::array<FaceStyle, 5> styles{
+        {{"spread", [](std::uint32_t face) { return face * 2'654'435'761U; }, true},
+         {"clustered", [](std::uint32_t face) { return face / 8; }, true},
+         {"all_equal", [](std::uint32_t) { return 7U; }, true},
+         {"unshared", [](std::uint32_t face) { return face / 8; }, false},
+         {"two_far_clusters",
+          [](std::uint32_t face) { return (face % 2 == 0 ? 0xFFFF'FF00U : 0U) + face / 16; },
+          false}}};
+    return styles;
+}
+
+/// A small random triangle near the face's place along a line, in a cube of about 4 m.
+[[nodiscard]] inline ChangedFace random_face(Random& random, const FaceStyle& style,
+                                             std::uint32_t prim, std::uint32_t face)
+{
+    ChangedFace changed{PrimId{prim}, FaceId{face}, style.bucket(face), 0, {}};
+    const double along = 0.01 * static_cast<double>(face % 400) - 2.0;
+    for (Vec3f& corner : changed.corners_m)
+    {
+        corner = style.shares_vertices
+                     ? Vec3f{static_cast<float>(0.0625 * std::floor(along * 16.0) +
+                                                0.0625 * random.below(2)),
+                             0.5F * static_cast<float>(random.below(2)),
+                             0.5F * static_cast<float>(random.below(2))}
+                     : to_float(Vec3(along, 0.0, 0.0) + random.in_cube(0.05));
+    }
+    if (random.one_in(3))
+    {
+        changed.error = static_cast<ErrorCode>(1 + random.below(60));
+    }
+    return changed;
+}
+
+} // namespace tactus::test
