@@ -3,8 +3,8 @@
 #pragma once
 
 #include "host_tools/mesh/mesh_error.hpp"
-#include "host_tools/mesh/triangle_mesh.hpp"
 #include "host_tools/mesh/quantised_mesh.hpp"
+#include "host_tools/mesh/triangle_mesh.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/limits.hpp"
 

@@ -53,7 +53,7 @@ void declare_options(CLI::App& app, Options& options)
         ->expected(1)
         ->take_all();
     app.add_option("--domain", options.domain, "DDS domain")
-        ->check(number_between(0, dds::kMaxDomain))
+        ->check(CLI::Range(std::uint32_t{0}, dds::kMaxDomain))
         ->capture_default_str();
     app.add_option("--seconds", options.seconds, "End by itself after this long")
         ->check(number_between(0.1, 1e9));

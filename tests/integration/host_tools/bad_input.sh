@@ -98,7 +98,8 @@ expect 2 in/empty.obj "$inspect" in/empty.obj
 expect 2 in/mesh.obj "$inspect" in/mesh.obj
 expect 2 'in: ' "$inspect" in
 "$build" --shape sphere --faces 2000 -o out/sphere.spm >/dev/null 2>&1
-readonly bytes=$(stat -c %s out/sphere.spm)
+bytes=$(stat -c %s out/sphere.spm)
+readonly bytes
 head -c $((bytes - 1)) out/sphere.spm >in/cut.spm
 expect 2 in/cut.spm "$inspect" in/cut.spm
 cp out/sphere.spm in/bent.spm

@@ -36,7 +36,9 @@ grep -q 'chunks sound' text.txt || fail 'the text says nothing of sound chunks'
 grep -q '^region [0-9]*: cell' text.txt || fail '--regions'
 
 # At, below and above what the model has, and between.
-readonly faces=$(figure faces <built.json) base=$(figure base_faces <built.json)
+faces=$(figure faces <built.json)
+base=$(figure base_faces <built.json)
+readonly faces base
 for wanted in 1 "$base" 1000 "$faces" 99999; do
     "$inspect" torus.spm --json --extract --faces "$wanted" -o out.ply >/dev/null 2>said.txt
     has=$(sed -n 's/^out.ply: \([0-9]*\) faces$/\1/p' said.txt)
