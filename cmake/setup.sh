@@ -161,7 +161,10 @@ start_publisher() { # start_publisher OPTION...
 }
 
 run_demo() { # run_demo SECONDS [DOMAIN]
-    local code=0 network=() realtime=() report="$demo/report.json"
+    local code=0 network=() realtime=() report="$demo/report.json" program
+    for program in spm_build spm_publish hrtc; do
+        [[ -x "$build/bin/$program" ]] || fail 2 "$build/bin/$program is not built"
+    done
     if [[ -n "${2:-}" ]]; then
         network=(--domain "$2")
     fi

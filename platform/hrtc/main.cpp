@@ -164,7 +164,7 @@ int run(const Options& options, Controller& controller)
     HapticLoop loop({&controller.frame(), controller.devices(), controller.poses(), &timer, &clock,
                      controller.budgets(), frames},
                     statistics);
-    TransportThread transport(controller.couriers(), controller.models(), log_line);
+    TransportThread transport(controller.couriers(), controller.models());
     running_loop.store(&loop);
     const Duration margin = std::min(kMarginMost, nanoseconds(period.ns / 5));
     auto thread =

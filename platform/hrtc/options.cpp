@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 
 #include <charconv>
-#include <map>
 
 namespace tactus::hrtc
 {
@@ -79,37 +78,18 @@ std::optional<double> parse_tool(std::string_view text)
     return radius && *radius >= 1e-5 && *radius <= 1.0 ? radius : std::nullopt;
 }
 
-/// As number_between, but refuses fractions, which would only fail later and without the range.
-CLI::Validator whole_number_between(std::int64_t least, std::int64_t most)
-{
-    const std::string range = fmt::format("{} .. {}", least, most);
-    return CLI::Validator(
-        [=](std::string& text)
-        {
-            std::int64_t number = 0;
-            const auto [end, error] =
-                std::from_chars(text.data(), text.data() + text.size(), number);
-            const bool fits = error == std::errc{} && end == text.data() + text.size() &&
-                              number >= least && number <= most;
-            return fits ? std::string()
-                        : fmt::format("'{}' is not a whole number in {}", printable(text), range);
-        },
-        range);
-}
-
 /// What CLI11 fills before it is checked as a whole.
 struct RawOptions
 {
     std::vector<std::string> places;
     std::vector<std::string> tools;
     std::string device{"sim"};
+    std::string transport{"dds"};
     int cpu{-1};
 };
 
 void declare(CLI::App& app, Options& options, RawOptions& raw)
 {
-    static const std::map<std::string, TransportKind> kTransports{{"dds", TransportKind::dds},
-                                                                  {"file", TransportKind::file}};
     app.set_version_flag("--version", std::string("hrtc ") + TACTUS_VERSION);
     app.add_option("--model", options.models,
                    "Model to touch: NAME or NAME@HASH as published, or with --transport file a "
@@ -129,8 +109,7 @@ void declare(CLI::App& app, Options& options, RawOptions& raw)
         ->take_all();
     app.add_option("--device", raw.device, "Device: sim")->check(CLI::IsMember({"sim"}));
     app.add_option("--rate", options.rate_hz, "Frames a second")
-        ->check(whole_number_between(SimulatedDeviceOptions::kRateMinHz,
-                                     SimulatedDeviceOptions::kRateMaxHz))
+        ->check(CLI::Range(SimulatedDeviceOptions::kRateMinHz, SimulatedDeviceOptions::kRateMaxHz))
         ->capture_default_str();
     app.add_option("--duration", options.duration_s, "Seconds to run")
         ->check(number_between(0.1, 86'400.0))
@@ -144,25 +123,26 @@ void declare(CLI::App& app, Options& options, RawOptions& raw)
                    "Share of it for pages of records, in MiB [about six tenths]")
         ->check(number_between(0.05, kLargestPool_mib));
     app.add_option("--splits", options.splits, "Splits and merges in one frame at most")
-        ->check(whole_number_between(1, kMaxSplitsPerFrame))
+        ->check(CLI::Range(std::uint32_t{1}, kMaxSplitsPerFrame))
         ->capture_default_str();
     app.add_option("--stiffness", options.stiffness_n_per_m, "Of the virtual wall, in N/m")
         ->check(number_between(1.0, 3'000.0))
         ->capture_default_str();
-    app.add_option("--transport", options.transport, "Where models come from: dds or file")
-        ->transform(CLI::CheckedTransformer(kTransports, CLI::ignore_case));
+    app.add_option("--transport", raw.transport, "Where models come from")
+        ->check(CLI::IsMember({"dds", "file"}))
+        ->capture_default_str();
     app.add_option("--domain", options.domain, "DDS domain id")
-        ->check(whole_number_between(0, 232))
+        ->check(CLI::Range(0, 232))
         ->capture_default_str();
     app.add_option("--wait", options.wait_s, "Seconds to wait for a model to be published")
         ->check(number_between(0.1, 3'600.0))
         ->capture_default_str();
     app.add_option("--priority", options.thread.priority,
                    "SCHED_FIFO priority of the haptic thread")
-        ->check(whole_number_between(RtThreadOptions::kPriorityMin, RtThreadOptions::kPriorityMax))
+        ->check(CLI::Range(RtThreadOptions::kPriorityMin, RtThreadOptions::kPriorityMax))
         ->capture_default_str();
     app.add_option("--cpu", raw.cpu, "Processor of the haptic thread [left to the system]")
-        ->check(whole_number_between(0, 1'023));
+        ->check(CLI::Range(0, 1'023));
     app.add_flag("--allow-no-rt", options.thread.allow_no_rt,
                  "Run without SCHED_FIFO or locked memory when they are refused");
 }
@@ -209,6 +189,7 @@ std::string check_together(const CLI::App& app, Options& options, const RawOptio
     {
         return "--cache-mib: must be less than --pool-mib";
     }
+    options.transport = raw.transport == "file" ? TransportKind::file : TransportKind::dds;
     if (options.transport == TransportKind::dds)
     {
         for (const std::string& model : options.models)

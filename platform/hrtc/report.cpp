@@ -299,9 +299,10 @@ std::optional<std::string> probe_report(const std::string& path)
         return std::nullopt;
     }
     std::error_code ignored;
-    if (std::filesystem::is_directory(path, ignored))
+    // Taking the place of a device or pipe would be no service to anybody.
+    if (std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored))
     {
-        return refusal(path, "it is a directory");
+        return refusal(path, "it is a directory, device or pipe");
     }
     const std::string temporary = partial_of(path);
     const bool is_new = !std::filesystem::exists(temporary, ignored);

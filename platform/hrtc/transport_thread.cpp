@@ -18,12 +18,8 @@ constexpr std::chrono::microseconds kPause{300};
 } // namespace
 
 TransportThread::TransportThread(std::vector<std::unique_ptr<Courier>>& couriers,
-                                 const std::vector<ServedModel>& models, Log log)
-    : couriers_(couriers)
-    , models_(models)
-    , log_(std::move(log))
-    , states_(models.size(), LinkState::connected)
-    , thread_([this] { run(); })
+                                 const std::vector<ServedModel>& models)
+    : couriers_(couriers), models_(models), thread_([this] { run(); })
 {
 }
 
@@ -52,23 +48,11 @@ void TransportThread::run()
 
 void TransportThread::watch_hosts()
 {
-    for (std::size_t i = 0; i < models_.size(); ++i)
+    for (const ServedModel& model : models_)
     {
-        const LinkState state = models_[i].link->state();
-        if (state == states_[i])
-        {
-            continue;
-        }
-        states_[i] = state;
-        if (state == LinkState::host_gone)
+        if (model.link->state() == LinkState::host_gone)
         {
             host_was_lost_.store(true);
-            log_("model '" + models_[i].name +
-                 "': the host went away; going on with what is resident");
-        }
-        else
-        {
-            log_("model '" + models_[i].name + "': a host is back");
         }
     }
 }

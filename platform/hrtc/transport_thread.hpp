@@ -14,15 +14,15 @@ namespace tactus::hrtc
 {
 
 /// Runs the couriers of all models on one thread of ordinary priority, a few thousand rounds a
-/// second. Start it before the haptic thread: threads inherit policy and processor. A host that
-/// goes away or comes back gets one line; the loop goes on with what is resident.
+/// second. Start it before the haptic thread: threads inherit policy and processor. When a host
+/// goes away or comes back, the model's link says so; the loop goes on with what is resident.
 class TransportThread
 {
 public:
     /// Couriers and models must outlive the thread; nobody else touches them or the models' links
     /// while it runs.
     TransportThread(std::vector<std::unique_ptr<Courier>>& couriers,
-                    const std::vector<ServedModel>& models, Log log);
+                    const std::vector<ServedModel>& models);
     TransportThread(const TransportThread&) = delete;
     TransportThread& operator=(const TransportThread&) = delete;
     ~TransportThread() { stop(); }
@@ -39,8 +39,6 @@ private:
 
     std::vector<std::unique_ptr<Courier>>& couriers_;
     const std::vector<ServedModel>& models_;
-    Log log_;
-    std::vector<LinkState> states_;
     std::atomic<bool> host_was_lost_{false};
     std::atomic<bool> stopped_{false};
     std::thread thread_;

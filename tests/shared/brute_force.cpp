@@ -27,7 +27,7 @@ Real dot(const Point& a, const Point& b)
 
 Point widen(const Vec3f& v)
 {
-    return {v[0], v[1], v[2]};
+    return {static_cast<Real>(v[0]), static_cast<Real>(v[1]), static_cast<Real>(v[2])};
 }
 
 Real distance_to_segment(const Point& p, const Point& a, const Point& b)
@@ -44,7 +44,8 @@ Real distance_to_segment(const Point& p, const Point& a, const Point& b)
 
 long double brute_distance(const Vec3& point, const Face& face)
 {
-    const Point p{point.x(), point.y(), point.z()};
+    const Point p{static_cast<Real>(point.x()), static_cast<Real>(point.y()),
+                  static_cast<Real>(point.z())};
     const Point a = widen(face[0]);
     const Point b = widen(face[1]);
     const Point c = widen(face[2]);
