@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <cstddef>
 
 namespace tactus::test
@@ -91,7 +92,7 @@ private:
         const Real base = length[longest];
         if (base == 0)
         {
-            return INFINITY;
+            return std::numeric_limits<Real>::infinity();
         }
         const Point edge = along(corner[1], -1, corner[0]);
         const Point u{edge[0] / base, edge[1] / base, edge[2] / base};
@@ -102,7 +103,7 @@ private:
         const Real height = norm(v);
         if (height == 0)
         {
-            return INFINITY;
+            return std::numeric_limits<Real>::infinity();
         }
         v = {v[0] / height, v[1] / height, v[2] / height};
         // The foot's coordinates: x along the longest edge, y towards the third corner.
@@ -112,7 +113,7 @@ private:
         const Real right = base - (base - apex) * y / height;
         if (y < 0 || y > height || x < left || x > right)
         {
-            return INFINITY;
+            return std::numeric_limits<Real>::infinity();
         }
         return norm(along(along(corner[0], x, u), y, v));
     }
