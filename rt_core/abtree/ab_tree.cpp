@@ -42,11 +42,11 @@ AbTree::AbTree(Arena& arena, const Capacities& capacities, float quantum_m) noex
     {
         return;
     }
-    for (std::uint32_t i = static_cast<std::uint32_t>(free_blocks_.size()); i-- > 0;)
+    for (auto i = static_cast<std::uint32_t>(free_blocks_.size()); i-- > 0;)
     {
         free_blocks_[free_block_count_++] = i;
     }
-    for (std::uint32_t i = static_cast<std::uint32_t>(free_nodes_.size()); i-- > 0;)
+    for (auto i = static_cast<std::uint32_t>(free_nodes_.size()); i-- > 0;)
     {
         free_nodes_[free_node_count_++] = i;
     }
@@ -147,7 +147,8 @@ std::uint64_t AbTree::path_of(FaceId face, std::uint32_t bucket) noexcept
 {
     // Multiplying by an odd number is a bijection, so paths of different faces differ; it spreads
     // neighbouring ids over the upper bits, which are looked at first.
-    return (std::uint64_t{bucket} << 32U) | (face.value * 0x9E37'79B9U);
+    const std::uint32_t mixed = face.value * 0x9E37'79B9U;
+    return (std::uint64_t{bucket} << 32U) | mixed;
 }
 
 void AbTree::insert(const ChangedFace& face) noexcept

@@ -134,7 +134,7 @@ private:
 
     [[nodiscard]] bool try_add(std::uint32_t block, const ChangedFace& face) noexcept;
     void split_block(std::uint32_t block, const ChangedFace& face) noexcept;
-    void distribute(std::span<const Keyed> faces, Cell cell) noexcept;
+    void distribute(std::span<const Keyed> faces, Cell first) noexcept;
     [[nodiscard]] bool try_build_block(std::span<const Keyed> faces, const Cell& cell) noexcept;
     void merge_upward(std::uint32_t block) noexcept;
     [[nodiscard]] bool try_absorb(std::uint32_t block, std::uint32_t other) noexcept;
@@ -151,7 +151,7 @@ private:
     void free_block(std::uint32_t block) noexcept;
     void free_node(std::uint32_t node) noexcept;
     void mark(TreeRef ref) noexcept;
-    void enqueue(std::uint32_t node) noexcept;
+    void enqueue(std::uint32_t index) noexcept;
     void pass_up(std::uint32_t parent, std::uint32_t child, const Aabb& box, bool coarse) noexcept;
     void keep_unplaced(PrimId prim) noexcept;
     void drop_unplaced(PrimId prim) noexcept;

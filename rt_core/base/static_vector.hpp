@@ -57,10 +57,10 @@ public:
         return items_[index];
     }
 
-    constexpr T* begin() noexcept { return items_.data(); }
-    constexpr T* end() noexcept { return items_.data() + size_; }
-    constexpr const T* begin() const noexcept { return items_.data(); }
-    constexpr const T* end() const noexcept { return items_.data() + size_; }
+    [[nodiscard]] constexpr T* begin() noexcept { return items_.data(); }
+    [[nodiscard]] constexpr T* end() noexcept { return items_.data() + size_; }
+    [[nodiscard]] constexpr const T* begin() const noexcept { return items_.data(); }
+    [[nodiscard]] constexpr const T* end() const noexcept { return items_.data() + size_; }
     [[nodiscard]] constexpr std::span<const T> view() const noexcept
     {
         return {items_.data(), size_};

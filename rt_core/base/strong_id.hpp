@@ -18,6 +18,7 @@ struct StrongId
     std::uint32_t value{kNoneValue};
 
     [[nodiscard]] constexpr bool is_none() const noexcept { return value == kNoneValue; }
+    // NOLINTNEXTLINE(modernize-use-nullptr): the check takes the comparison's zero for a pointer.
     constexpr auto operator<=>(const StrongId&) const noexcept = default;
 };
 

@@ -237,7 +237,7 @@ bool ChunkCache::try_evict_page(std::uint32_t touched_before, WorkCounters& work
 
 bool ChunkCache::try_evict_index_page() noexcept
 {
-    std::uint32_t oldest = static_cast<std::uint32_t>(index_meta_.size());
+    auto oldest = static_cast<std::uint32_t>(index_meta_.size());
     for (std::uint32_t slot = 0; slot < index_meta_.size(); ++slot)
     {
         const IndexMeta& meta = index_meta_[slot];

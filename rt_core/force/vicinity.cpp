@@ -41,9 +41,10 @@ NearestSurface Vicinity::nearest(const Vec3& point_m, const Vec3& fallback) cons
     Vec3 foot = point_m;
     for (const Entry& entry : entries_)
     {
-        if (entry.pose != pose)
+        if (pose == nullptr || entry.pose != pose)
         {
             pose = entry.pose;
+            TACTUS_ASSERT(pose != nullptr);
             local = to_model(*pose, point_m);
         }
         const ClosestPoint closest =

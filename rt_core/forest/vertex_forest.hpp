@@ -48,10 +48,10 @@ public:
 
     /// Undoes the record's collapse. The record is linked and not refined, and every record it
     /// depends on is refined (see missing_dependency()).
-    [[nodiscard]] SplitOutcome split(RecordId record) noexcept;
+    [[nodiscard]] SplitOutcome split(RecordId id) noexcept;
 
     /// Redoes the record's collapse; false when a star face has been refined further.
-    [[nodiscard]] bool try_merge(RecordId record) noexcept;
+    [[nodiscard]] bool try_merge(RecordId id) noexcept;
 
     /// The first record that must be split before this one; none when there is none.
     [[nodiscard]] RecordId missing_dependency(const VsplitRecord& record) const noexcept;

@@ -64,6 +64,9 @@ public:
 
     Frame(const Frame&) = delete;
     Frame& operator=(const Frame&) = delete;
+    Frame(Frame&&) = delete;
+    Frame& operator=(Frame&&) = delete;
+    ~Frame() = default;
 
     /// One period: `tools` and `poses` as many as at start. The output is valid until the next run.
     [[nodiscard]] FrameOutput run(std::span<const ToolState> tools,

@@ -48,6 +48,9 @@ struct Model
           const ModelCapacities& model_capacities) noexcept;
     Model(const Model&) = delete;
     Model& operator=(const Model&) = delete;
+    Model(Model&&) = delete;
+    Model& operator=(Model&&) = delete;
+    ~Model() = default;
 
     /// Hands this frame's changes, and faces that found no place before, to the tree and refits it.
     void refit(WorkCounters& work, FrameFault& faults) noexcept;

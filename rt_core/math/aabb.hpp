@@ -48,7 +48,7 @@ struct Aabb
         Aabb box;
         for (std::size_t axis = 0; axis < 3; ++axis)
         {
-            const double wide = static_cast<double>(margin);
+            const auto wide = static_cast<double>(margin);
             box.low[axis] = round_down_to_float(static_cast<double>(low[axis]) - wide);
             box.high[axis] = round_up_to_float(static_cast<double>(high[axis]) + wide);
         }

@@ -167,7 +167,7 @@ void Refiner::scan_slot(std::span<const RefineQuestion> questions, const Budgets
 bool Refiner::is_left_behind(const VsplitRecord& record,
                              std::span<const RefineQuestion> questions) const noexcept
 {
-    const double reach = static_cast<double>(error_in_quanta(record.reach) * quantum_m_);
+    const auto reach = static_cast<double>(error_in_quanta(record.reach) * quantum_m_);
     const Vec3 vertex = to_vec3(record.position_m);
     return std::all_of(questions.begin(), questions.end(),
                        [&](const RefineQuestion& question)
@@ -232,7 +232,7 @@ double Refiner::key_of(PrimId prim, std::span<const RefineQuestion> questions) c
     {
         return kInfinity;
     }
-    const double error = static_cast<double>(error_in_quanta(code) * quantum_m_);
+    const auto error = static_cast<double>(error_in_quanta(code) * quantum_m_);
     const Triangle triangle = to_triangle(forest_->corners_of(prim));
     double key = kInfinity;
     for (const RefineQuestion& question : questions)

@@ -82,7 +82,7 @@ private:
     [[nodiscard]] ClosureOutcome split_with_closure(RecordId target, std::uint32_t frame,
                                                     const Budgets& budgets, WorkCounters& work,
                                                     FrameFault& faults) noexcept;
-    void consider_star(RecordId record, std::span<const RefineQuestion> questions) noexcept;
+    void consider_star(RecordId id, std::span<const RefineQuestion> questions) noexcept;
     void hold(RecordId record) noexcept;
     void release_held() noexcept;
 
