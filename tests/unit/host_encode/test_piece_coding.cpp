@@ -35,6 +35,7 @@ VsplitRecord arbitrary_record(RecordId id, const ModelHeader& header)
     record.fan_size = static_cast<std::uint8_t>(1 + below(kMaxFanFaces));
     record.reach = static_cast<std::uint8_t>(1 + below(255));
     const std::uint32_t sides = 1 + below(3);
+    const std::uint32_t first_fan_face = below(counts.base_faces - kMaxStarFaces);
     for (std::uint32_t place = 0; place < record.star_end(); ++place)
     {
         const bool is_there = place >= 2 || (sides >> place & 1U) != 0;
@@ -42,8 +43,7 @@ VsplitRecord arbitrary_record(RecordId id, const ModelHeader& header)
         {
             continue;
         }
-        record.star[place] =
-            place < 2 ? counts.face_of(id, place) : FaceId{below(counts.base_faces)};
+        record.star[place] = place < 2 ? counts.face_of(id, place) : FaceId{first_fan_face + place};
         record.error[place] = static_cast<std::uint8_t>(below(256));
         record.next[place] = record.error[place] == 0 ? kNextExact : kNextPending;
         if (place < 2)

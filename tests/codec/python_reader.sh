@@ -1,0 +1,65 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# python_reader.sh SPM_BUILD: a second reader, written from docs/spm-format.md, must find in the
+# files of spm_build what they were made from, and refuse them when one byte is another.
+set -euo pipefail
+readonly build=$1
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+readonly reader="$here/read_spm.py"
+command -v python3 >/dev/null || {
+    echo 'skipped: no python3 here'
+    exit 77
+}
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+cd "$scratch"
+
+fail() { printf 'FAULT: %s\n' "$*"; exit 1; }
+# figure NAME FILE: a number of a flat JSON object.
+figure() { sed -n "s/.*\"$1\": *\(-\{0,1\}[0-9]*\).*/\1/p" "$2"; }
+
+# agrees SHAPE FACES EULER: what the reader finds is what spm_build says; Euler's number too.
+agrees() {
+    local name wanted
+    "$build" --shape "$1" --faces "$2" -o "$1.spm" --json >built.json 2>/dev/null
+    python3 "$reader" "$1.spm" >read.json || fail "$1 is refused"
+    for name in faces vertices records base_faces; do
+        wanted=$(figure $name built.json)
+        [[ -n "$wanted" && $(figure $name read.json) == "$wanted" ]] \
+            || fail "$1: $name is $(figure $name read.json), not $wanted"
+    done
+    [[ $(figure euler read.json) == "$3" ]] || fail "$1: Euler's number $(figure euler read.json)"
+}
+
+agrees torus 2000 0
+[[ $(figure faces read.json) == 2000 ]] || fail "a torus of $(figure faces read.json) faces"
+[[ $(figure border_edges read.json) == 0 ]] || fail 'the torus has a border'
+agrees terrain 2000 1
+(($(figure border_edges read.json) > 0)) || fail 'the terrain has no border'
+
+# refuses FILE WHAT: with exit code 1 and one line of its own, not a trace.
+refuses() {
+    local code=0
+    python3 "$reader" "$1" >out.txt 2>said.txt || code=$?
+    if ((code != 1)) || [[ -s out.txt || $(wc -l <said.txt) != 1 ||
+        $(<said.txt) != "read_spm.py: $1: "* ]]; then
+        fail "$2: exit $code, $(<said.txt)"
+    fi
+}
+
+size=$(stat -c %s torus.spm)
+readonly size
+# A prime step, so that header, base, index and chunks are hit at all alignments.
+for ((at = 0; at < size; at += 2503)); do
+    cp torus.spm other.spm
+    byte=$(od -An -tu1 -j "$at" -N 1 torus.spm)
+    printf '%b' "\\x$(printf '%02x' $((byte ^ 64)))" \
+        | dd of=other.spm bs=1 seek="$at" conv=notrunc status=none
+    refuses other.spm "byte $at changed"
+done
+head -c $((size - 1)) torus.spm >other.spm
+refuses other.spm 'one byte cut off'
+head -c 100 torus.spm >other.spm
+refuses other.spm 'cut in the header'
+{ cat torus.spm; printf x; } >other.spm
+refuses other.spm 'one byte more'

@@ -1,0 +1,35 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# demo_shortened.sh SETUP BUILD_DIR: the README's demo with the programs of this build, for 3 s:
+# it ends well, prints the summary, names the report, and leaves no process behind.
+set -euo pipefail
+readonly setup=$1
+export TACTUS_BUILD_DIR=$2
+unset CYCLONEDDS_URI
+
+fail() {
+    printf 'FAULT: %s\n' "$*"
+    exit 1
+}
+
+output=$(mktemp)
+trap 'rm -f "$output"' EXIT
+# A session of its own tells the demo's processes from all others.
+code=0
+setsid --wait bash -c 'echo $$ >"$1"; shift; exec bash "$@"' demo "$output.session" \
+    "$setup" demo --seconds 3 --domain $(($$ % 231)) >"$output" 2>&1 || code=$?
+session=$(cat "$output.session")
+rm -f "$output.session"
+cat "$output"
+((code == 0)) || fail "the demo ended with $code"
+for text in 'frames      3000 at 1000 Hz' 'answers     exact' 'times us' 'memory      ' \
+    'deadlines   '; do
+    grep -qF -- "$text" "$output" || fail "no '$text' in what the demo printed"
+done
+report=$(sed -n 's/^Report: //p' "$output")
+[[ -s "$report" ]] || fail "no report at '$report'"
+for stat in /proc/[0-9]*/stat; do
+    # Behind the name, which is in brackets: state, parent, group, session.
+    read -r _ _ _ of_session _ 2>/dev/null < <(sed 's/.*) //' "$stat" 2>/dev/null) || continue
+    [[ "$of_session" != "$session" ]] || fail "left running: $(cat "$stat")"
+done

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "rt_core/frame/frame.hpp"
+#include "transport/courier.hpp"
+#include "transport/store/store_link.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <optional>
+
+using namespace tactus;
+
+// All memory of the frame, lent once. Too little is refused, nothing grows.
+alignas(Arena::kAlignment) static std::array<std::byte, std::size_t{4} << 20U> memory;
+
+int main(int argc, char** argv)
+{
+    // A model of a local file; DdsClient::find() gives the same record of a published one.
+    const auto served = serve_from_file(argc > 1 ? argv[1] : "torus.spm", "hello", {});
+    if (!served)
+    {
+        std::fprintf(stderr, "hello: %s\n", served.error().text.c_str());
+        return 2;
+    }
+    const ServedModel& model = served.value();
+    const ModelHeader header = ModelHeader::parse(model.header).value();
+
+    // One ball of 1 % of the model's size, one object, half of the memory for the model's pools.
+    const double radius_m = 0.01 * header.diagonal_m();
+    const std::array<ToolSpec, 1> tools{ToolSpec{radius_m, 500.0, 8.0, 1.0}};
+    const std::array<ObjectSpec, 1> objects{ObjectSpec{ModelId{0}}};
+    const ModelCapacities capacities = plan_capacities(header, memory.size() / 2, 0);
+    if (capacities.pages == 0)
+    {
+        std::fprintf(stderr, "hello: the model needs more memory\n");
+        return 2;
+    }
+    const std::array<ModelSource, 1> sources{ModelSource{model.header, model.base, capacities}};
+    FrameSetup setup;
+    setup.tools = tools;
+    setup.objects = objects;
+    setup.models = sources;
+    Arena arena(memory);
+    std::optional<Frame> frame;
+    if (const auto started = Frame::start(frame, arena, setup); !started)
+    {
+        std::fprintf(stderr, "hello: %s\n", refusal_text(started.error()));
+        return 2;
+    }
+
+    // What the transport thread does in hrtc. Here both take turns on one thread.
+    Model& parts = frame->model({0});
+    Courier courier(arena, parts.header, parts.slots, parts.linker, parts.inbox, *model.link,
+                    model.name, {});
+
+    // Base vertices lie on the surface. Down to the highest one and 0.5 mm into it, in 0.5 s.
+    const auto vertices = parts.slots.base.positions_m;
+    const Vec3 top =
+        to_vec3(*std::max_element(vertices.begin(), vertices.end(),
+                                  [](const Vec3f& a, const Vec3f& b) { return a[2] < b[2]; }));
+    const std::array<ObjectPose, 1> poses{};
+    std::array<ToolState, 1> states{};
+    FrameOutput output;
+    for (int i = 0; i <= 500; ++i)
+    {
+        const double height_m = 3.0 * radius_m - (3.0 * radius_m + 0.0005) * i / 500.0;
+        states[0].position_m = top + Vec3(0.0, 0.0, height_m);
+        courier.step(i * setup.period_ns);
+        output = frame->run(states, poses, Budgets{}, StageMark{});
+    }
+
+    const ToolOutput& tool = output.tools[0];
+    const PairOutput& pair = output.pairs[0];
+    std::printf("%s, distance %.3f to %.3f mm, force %.3f %.3f %.3f N\n",
+                pair.kind == AnswerKind::exact ? "exact" : "not exact", pair.lower_m * 1e3,
+                pair.upper_m * 1e3, tool.force_n.x(), tool.force_n.y(), tool.force_n.z());
+    return tool.in_contact ? 0 : 1;
+}

@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: Apache-2.0
+# shellcheck shell=bash disable=SC2034 # The scripts use what is set here.
+# What the scripts of this folder share; sourced with "$@" being BIN CHECK_REPORT [SANITIZER]: the
+# folder of the programs, the report checker, and what -fsanitize= the build had. It enters a fresh
+# folder that vanishes at the end together with every process that was started here.
+set -euo pipefail
+readonly build=$1/spm_build inspect=$1/spm_inspect publish=$1/spm_publish hrtc=$1/hrtc
+readonly check_report=$2 sanitizer=${3:-}
+# Our own domain, our own loopback: nobody else's models, and none of ours on a real interface.
+readonly domain=$(($$ % 231))
+unset CYCLONEDDS_URI
+
+scratch=$(mktemp -d)
+started=() # Ids of the background processes.
+leave() {
+    local id
+    for id in "${started[@]}"; do
+        kill -KILL "$id" 2>/dev/null || true
+        wait "$id" 2>/dev/null || true # Without it bash tells of the kill.
+    done
+    rm -rf "$scratch"
+}
+trap leave EXIT
+cd "$scratch"
+
+failures=0
+fault() {
+    printf 'FAULT: %s\n' "$*"
+    failures=$((failures + 1))
+}
+fail() {
+    fault "$@"
+    exit 1
+}
+finish() { ((failures == 0)) || fail "$failures faults in all"; }
+
+# expect CODE PATTERN PROGRAM ARGUMENT...: that exit code, and exactly one line, which begins with
+# the program's name and holds what matches PATTERN.
+expect() {
+    local code=0 wanted=$1 pattern=$2 output
+    shift 2
+    output=$("$@" 2>&1) || code=$?
+    if ((code != wanted)) || [[ "$output" != "$(basename "$1"): "*$pattern* ]] \
+        || [[ "$output" == *$'\n'* ]] || [[ "$output" == *[$'\x01'-$'\x1f']* ]]; then
+        printf '%q ' "${@:1:30}"
+        printf '\n  expected exit %d and one line with "%s"\n  got exit %d and:\n%s\n' \
+            "$wanted" "$pattern" "$code" "${output:0:2000}"
+        failures=$((failures + 1))
+    fi
+}
+
+# wait_for_line FILE TEXT SECONDS
+wait_for_line() {
+    local i
+    for ((i = 0; i < $3 * 20; ++i)); do
+        grep -qsF -- "$2" "$1" && return
+        sleep 0.05
+    done
+    cat "$1" || true
+    fail "no '$2' in $1 after $3 s"
+}
+
+# start_publisher ARGUMENT...: returns when it is ready; its id is in $publisher, its words in
+# publish.log.
+start_publisher() {
+    : >publish.log
+    "$publish" --domain "$domain" "$@" >publish.log 2>&1 &
+    publisher=$!
+    started+=("$publisher")
+    wait_for_line publish.log 'ready on DDS domain' 10
+}
+
+# stop SIGNAL ID: waits until the process is gone; its exit code is in $stopped_with.
+stop() {
+    stopped_with=0
+    kill -"$1" "$2" || fail "process $2 had ended before it was stopped"
+    wait "$2" 2>/dev/null || stopped_with=$?
+}
+
+# start_hrtc ARGUMENT...: in the background; its id is in $controller, its words in hrtc.log.
+start_hrtc() {
+    "$hrtc" --allow-no-rt --domain "$domain" "$@" >hrtc.log 2>&1 &
+    controller=$!
+    started+=("$controller")
+}
+
+# run_hrtc ARGUMENT...: to its end, which must be a good one; its words in hrtc.log.
+run_hrtc() {
+    local code=0
+    "$hrtc" --allow-no-rt --domain "$domain" --report report.json "$@" >hrtc.log 2>&1 || code=$?
+    cat hrtc.log
+    ((code == 0)) || fail "hrtc $* ended with $code"
+}
+
+# check FILE [LEFT OP RIGHT]...: see check_report.cpp.
+check() {
+    "$check_report" "$@" || fault "$1, see above"
+}
+
+# check_clean FILE: what holds for every run. Under a sanitizer, which allocates and faults on its
+# own account, only that the keys are there.
+check_clean() {
+    check "$1" schema == 1 realtime.allocations '>=' 0 realtime.page_faults '>=' 0 \
+        deadline.own_fault '>=' 0
+    if [[ -z "$sanitizer" ]]; then
+        check "$1" realtime.allocations_counted == 1 realtime.allocations == 0
+    fi
+    if [[ -z "$sanitizer" ]] && is_realtime "$1"; then
+        check "$1" deadline.own_fault == 0
+    fi
+}
+
+# is_realtime FILE: whether that run had SCHED_FIFO and locked memory.
+is_realtime() { "$check_report" "$1" machine.fifo == 1 machine.memory_locked == 1 >/dev/null; }
+
+# check_answers FILE: the figures that a run with a live host has to reach.
+check_answers() {
+    check "$1" answers.exact+answers.decided '>' '0.99*frames' force.contact_share '>' 0.6 \
+        answers.exact+answers.decided+answers.bracket+answers.stale == '1*frames'
+}

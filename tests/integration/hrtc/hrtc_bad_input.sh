@@ -1,0 +1,121 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# hrtc_bad_input.sh: whatever is wrong with options, models, files or the report's path gives the
+# right exit code and one line that names it; nothing is left half-written.
+source "$(dirname "$0")/common.sh"
+"$build" --shape bumpy-sphere --faces 5000 -o good.spm >build.log 2>&1
+mkdir out
+
+refuse() { expect "$1" "$2" "$hrtc" --allow-no-rt "${@:3}"; }
+refuse_option() { # refuse_option OPTION VALUE ALLOWED: the line names the option and what it takes.
+    refuse 3 "$1: *$3" --model bumpy "$1" "$2"
+}
+run_file() { timeout 30 "$hrtc" --allow-no-rt --transport file --model good.spm "$@"; }
+
+# The command line.
+[[ $("$hrtc" --version) == 'hrtc '* ]] || fault 'hrtc --version'
+"$hrtc" --help >help.txt
+grep -q -- --pool-mib help.txt || fault 'hrtc --help'
+! LC_ALL=C grep -q '[^[:print:]]' help.txt || fault 'hrtc --help prints more than text'
+refuse 3 --model
+refuse 3 --fast --model bumpy --fast
+readonly rates='100 to 10000'
+for value in 0 -1 99 10001 1e300 nan fast 1000.5 ''; do
+    refuse_option --rate "$value" "$rates"
+done
+for value in 0 -1 86401 inf nan long; do
+    refuse_option --duration "$value" '0.1 .. 86400'
+done
+for value in 0 0.2 4097 nan big; do
+    refuse_option --pool-mib "$value" '0.25 .. 4096'
+done
+refuse_option --cache-mib 0 '0.05 .. 4096'
+refuse_option --cache-mib 2 'less than --pool-mib'
+for value in 0 -1 1000000 1.5 many; do
+    refuse_option --splits "$value" '1 to 256'
+done
+refuse_option --stiffness 0 '1 .. 3000'
+refuse_option --stiffness 3001 '1 .. 3000'
+refuse_option --domain -1 '0 to 232'
+refuse_option --domain 233 '0 to 232'
+refuse_option --domain 1.5 '0 to 232'
+refuse_option --wait 0 '0.1 .. 3600'
+refuse_option --priority 0 '1 to 98'
+refuse_option --priority 99 '1 to 98'
+refuse_option --cpu -1 '0 to 1023'
+refuse_option --cpu 1024 '0 to 1023'
+(($(nproc --all) > 1023)) || refuse_option --cpu 1023 'it may use'
+refuse_option --device phantom sim
+refuse_option --transport smtp '{dds,file}'
+for value in cube sphere: sphere:0 sphere:1.1 sphere:nan sphere:1mm $'sphere:\e[2J'; do
+    refuse_option --tool "$value" '1e-5 to 1 m'
+done
+for value in 1 1,2 1,2,3,4 1,2,x 1,2,3,400,0,0 1,2,3,0,0,0,0 nan,0,0 2e4,0,0 ''; do
+    refuse_option --place "$value" X,Y,Z
+done
+refuse 3 --place --model bumpy --place 0,0,0 --place 0,0,0
+
+# A model's name, which is checked before anything is asked for.
+readonly letters='A-Z a-z 0-9 . _ -'
+for name in '' 'a b' 'a/b' ä $'a\nb' $'\e[31mred' "$(printf 'n%.0s' {1..64})"; do
+    refuse 3 "--model: *$letters" --model "$name"
+done
+refuse 3 'hexadecimal' --model bumpy@12
+refuse 3 'hexadecimal' --model "bumpy@$(printf 'g%.0s' {1..32})"
+refuse 2 "'bumpy' is not published on domain $domain" --model bumpy --domain "$domain" --wait 1
+
+# Files.
+bytes=$(stat -c %s good.spm)
+: >empty.spm
+printf 'solid of some other program\n' >foreign.spm
+head -c 5 good.spm >five.spm
+head -c 100 good.spm >header.spm
+head -c $((bytes - 1)) good.spm >cut.spm
+{ cat good.spm; printf x; } >long.spm
+cp good.spm bent.spm
+printf '\xff\xfe' | dd of=bent.spm bs=1 seek=64 conv=notrunc status=none
+refuse_file() { refuse 2 "$1: $2" --transport file --model "$1"; }
+refuse_file missing.spm 'cannot be opened'
+refuse_file out 'is not a file but a directory'
+refuse_file empty.spm 'is empty'
+refuse_file foreign.spm 'is not an SPM model'
+refuse_file five.spm 'is not an SPM model'
+refuse_file header.spm 'is cut short: the file ends at byte 100'
+refuse_file cut.spm "has $((bytes - 1)) bytes where its header states $bytes: it is cut short"
+refuse_file long.spm "has $((bytes + 1)) bytes where its header states $bytes: it is followed"
+refuse_file bent.spm 'the header (bytes 0 to '
+refuse 2 'no?where.spm: cannot be opened' --transport file --model $'no\nwhere.spm'
+refuse 2 --pool-mib --transport file --model good.spm --pool-mib 0.25
+
+# A report that can't be written is known before the run.
+start=$SECONDS
+mkfifo pipe
+for path in nowhere/report.json out good.spm/report.json pipe; do
+    refuse 2 "$path" --transport file --model good.spm --duration 60 --report "$path"
+done
+((SECONDS - start < 30)) || fault 'it ran before it found out that it could not report'
+[[ -z $(ls -A out) && -p pipe && -z $(ls -A . | grep partial) ]] \
+    || fault "left behind: $(ls -A . out)"
+
+# A chunk that is damaged is refused when it comes; the run goes on with what is sound.
+"$inspect" good.spm --json >/dev/null
+cp good.spm chunk.spm
+printf '\xff\xfe\xfd' | dd of=chunk.spm bs=1 seek=$((bytes - 50)) conv=notrunc status=none
+code=0
+timeout 30 "$hrtc" --allow-no-rt --transport file --model chunk.spm --duration 3 \
+    --report out/report.json >hrtc.log 2>&1 || code=$?
+((code == 0)) || { cat hrtc.log; fault "a damaged chunk ended the run with $code"; }
+check out/report.json frames == 3000
+rm -f out/report.json
+
+# An interrupted run ends early and reports.
+"$hrtc" --allow-no-rt --transport file --model good.spm --duration 60 --report out/report.json \
+    >hrtc.log 2>&1 &
+controller=$!
+started+=("$controller")
+sleep 2
+stop INT "$controller"
+((stopped_with == 0)) || fault "the interrupted run ended with $stopped_with"
+check out/report.json frames '>' 0 frames '<' 10000
+[[ $(ls -A out) == report.json ]] || fault "left behind: $(ls -A out)"
+finish

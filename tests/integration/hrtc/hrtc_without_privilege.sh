@@ -1,0 +1,47 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# hrtc_without_privilege.sh: without the right to SCHED_FIFO or to lock memory the controller says
+# what is missing and does not run; --allow-no-rt runs and says it too. Skipped (77) where the right
+# can't be given up.
+source "$(dirname "$0")/common.sh"
+"$build" --shape bumpy-sphere --faces 5000 -o good.spm >build.log 2>&1
+
+# unprivileged COMMAND...: no capabilities, no real-time priority, 64 KiB of locked memory.
+if ((EUID == 0)); then
+    setpriv --reuid=65534 --regid=65534 --clear-groups true 2>setpriv.log \
+        || { printf 'skipped: root may not change user: %s\n' "$(cat setpriv.log)"; exit 77; }
+    # The other user must be able to read and report here, but may not see the build's folder.
+    chmod 777 "$scratch"
+    chmod 644 good.spm
+    unprivileged() {
+        (ulimit -r 0 && ulimit -l 64 \
+            && exec setpriv --reuid=65534 --regid=65534 --clear-groups --bounding-set=-all \
+                --inh-caps=-all "$@")
+    }
+else
+    unprivileged() { (ulimit -r 0 && ulimit -l 64 && exec "$@"); }
+fi
+cp "$hrtc" hrtc
+unprivileged ./hrtc --version >version.txt 2>&1 \
+    || { printf 'skipped: another user can not run %s\n' "$scratch/hrtc"; exit 77; }
+if unprivileged chrt -f 1 true 2>/dev/null; then
+    printf 'skipped: SCHED_FIFO can not be given up here\n'
+    exit 77
+fi
+
+code=0
+output=$(unprivileged ./hrtc --transport file --model good.spm --duration 60 2>&1) || code=$?
+((code == 2)) || fault "without privilege it ended with $code"
+[[ "$output" == *SCHED_FIFO*CAP_SYS_NICE* ]] || fault "no word about SCHED_FIFO: $output"
+[[ "$output" == *mlockall*RLIMIT_MEMLOCK* ]] || fault "no word about locked memory: $output"
+[[ "$output" == *--allow-no-rt* ]] || fault "no word about --allow-no-rt: $output"
+
+code=0
+output=$(unprivileged ./hrtc --transport file --model good.spm --duration 1 --allow-no-rt \
+    --report report.json 2>&1) || code=$?
+printf '%s\n' "$output"
+((code == 0)) || fault "with --allow-no-rt it ended with $code"
+[[ "$output" == *SCHED_FIFO* ]] || fault 'with --allow-no-rt it does not say what is missing'
+check report.json frames == 1000 machine.fifo == 0 machine.memory_locked == 0 \
+    machine.refused == 2
+finish

@@ -1,0 +1,27 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# two_models_two_tools.sh: every pair of a tool and a model is answered, and reported. The ring is
+# put upright through the ball, so that the hand, which feels its way over the ball, meets both.
+source "$(dirname "$0")/common.sh"
+
+"$build" --shape bumpy-sphere --faces 20000 -o first.spm >build.log 2>&1
+"$build" --shape torus --faces 10000 -o second.spm >build.log 2>&1
+start_publisher first.spm second.spm
+[[ $(grep -c '^serving ' publish.log) == 2 ]] || fault "not two models: $(cat publish.log)"
+run_hrtc --model first --model second --place 0,0,0 --place 0.02,0,0,0,90,0,0.7 \
+    --tool sphere:0.002 --tool sphere:0.004 --duration 3 --pool-mib 4
+check report.json frames == 3000 models == 2 tools == 2 pairs == 4 \
+    tools.0.radius_m == 0.002 tools.1.radius_m == 0.004 pools.total_bytes '<=' 4194304 \
+    pairs.0.tool+pairs.1.tool+pairs.2.tool+pairs.3.tool == 2
+for i in 0 1 2 3; do
+    pair=pairs.$i.answers
+    check report.json $pair.exact '>' 0 $pair.exact+$pair.decided '>' '0.99*frames' \
+        $pair.exact+$pair.decided+$pair.bracket+$pair.stale == '1*frames'
+done
+for i in 0 1; do
+    check report.json models.$i.pieces_refused == 0 models.$i.bytes_received '>' 0 \
+        tools.$i.force_max_n '>' 0 tools.$i.contact_share '>' 0.5
+done
+check_answers report.json
+check_clean report.json
+finish
