@@ -16,6 +16,7 @@ output=$(mktemp)
 trap 'rm -f "$output"' EXIT
 # A session of its own tells the demo's processes from all others.
 code=0
+# shellcheck disable=SC2016 # The inner shell expands them.
 setsid --wait bash -c 'echo $$ >"$1"; shift; exec bash "$@"' demo "$output.session" \
     "$setup" demo --seconds 3 --domain $(($$ % 231)) >"$output" 2>&1 || code=$?
 session=$(cat "$output.session")

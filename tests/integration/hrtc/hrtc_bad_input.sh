@@ -94,7 +94,7 @@ for path in nowhere/report.json out good.spm/report.json pipe; do
     refuse 2 "$path" --transport file --model good.spm --duration 60 --report "$path"
 done
 ((SECONDS - start < 30)) || fault 'it ran before it found out that it could not report'
-[[ -z $(ls -A out) && -p pipe && -z $(ls -A . | grep partial) ]] \
+[[ -z $(ls -A out) && -p pipe && -z $(compgen -G '*partial*') ]] \
     || fault "left behind: $(ls -A . out)"
 
 # A chunk that is damaged is refused when it comes; the run goes on with what is sound.
