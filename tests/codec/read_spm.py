@@ -1,6 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""read_spm.py FILE: a second reader of SPM models, written from docs/spm-format.md alone.
+"""read_spm.py FILE: a second reader of SPM models, in the order of docs/spm-format.md.
+
+It shares no code with the C++ reader, but its author knew that one: it guards page and files
+against slips, not against one misreading in both.
 
 Makes every check of that page, replays all records to full resolution and prints the figures of
 the mesh as one JSON object. Exit codes: 0 sound, 1 refused with one line on stderr, 3 wrong usage.
