@@ -22,7 +22,7 @@ struct WorkCounters
     std::uint32_t blocks_refitted{0};
     std::uint32_t evictions{0};
     std::uint32_t cache_hits{0};   ///< Wanted chunks found resident.
-    std::uint32_t cache_misses{0}; ///< Wanted chunks found absent.
+    std::uint32_t cache_misses{0}; ///< Wanted chunks absent and asked for.
 };
 
 /// What a frame had to give up. Each flag names the limit to raise.

@@ -49,7 +49,7 @@ struct VsplitRecord
     Vec3f position_m{};                       ///< v in the model's frame; exact.
     VertexId parent{};                        ///< u.
     std::array<FaceId, kMaxStarFaces> star{}; ///< A, B, fan; none where there is no face.
-    /// The record that splits this face next, after this record: `kNoneValue` when the face is
+    /// The record that splits this face next, after this record: `kNextExact` when the face is
     /// exact then, `kNextPending` until that record is here. The transport thread writes it through
     /// std::atomic_ref, the haptic thread reads it the same way.
     std::array<std::uint32_t, kMaxStarFaces> next{};
