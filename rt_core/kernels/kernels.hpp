@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+namespace tactus
+{
+
+/// The point of a query as the kernels see it: in single precision, split so that a coordinate's
+/// difference from it is right to a few units in the last place.
+struct KernelProbe
+{
+    float high[3]; ///< The point rounded to float, in metres.
+    float low[3];  ///< What the rounding left.
+    float scale;   ///< 1 / quantum, a power of two: kernels work and answer in quanta.
+    float slack;   ///< What `high` and `low` leave of the point, in quanta; in every bound.
+};
+
+/// Bounds on the distances from the probe to the 16 faces of a block, in quanta: one lane a face;
+/// lanes without a face hold values of no meaning.
+struct FaceBounds
+{
+    alignas(64) float lower[16];
+    alignas(64) float corner[16]; ///< Upper bounds on the distance to the nearest corner.
+};
+
+/// The inner loops of query and refit, in one set for each instruction set.
+///
+/// They filter, they do not decide: bounds are conservative by a stated margin, and what lies
+/// within it is decided in double precision elsewhere. Every set does the same IEEE operations in
+/// the same order on each lane, without FMA or estimated reciprocals, so all give the same bits.
+struct Kernels
+{
+    const char* name;
+
+    /// Lower bounds on the distances to the boxes of a node's eight children: `boxes` is AbNode's
+    /// six rows. Returns the children in `mask` whose bound is not above `bound`.
+    std::uint32_t (*child_gaps)(const float* boxes, const KernelProbe& probe, std::uint32_t mask,
+                                float bound, float* gaps);
+
+    /// Bounds on the distances to the faces in `mask` of a block: `coordinates` and `corners` are
+    /// BlockGeometry's rows. The least upper bound of those that are also in `exact` lowers
+    /// `limit`; returns the faces whose lower bound is not above the larger of `floor` and the new
+    /// `limit`.
+    ///
+    /// A lower bound is less than the distance by at most 2 kFaceMargin x the local length (the
+    /// longest of edges and distances to the corners); for faces of an aspect above kThinAspect by
+    /// another 1/kThinAspect x the longest edge.
+    std::uint32_t (*face_bounds)(const float* coordinates, const std::uint8_t* corners,
+                                 const KernelProbe& probe, std::uint32_t mask, std::uint32_t exact,
+                                 float floor, float& limit, FaceBounds& bounds);
+
+    /// Box of the vertices in `mask` of a block: low x, y, z, high x, y, z. Exact.
+    void (*block_box)(const float* coordinates, std::uint32_t mask, float* box);
+
+    /// Union of the boxes of the children in `mask`. Exact.
+    void (*node_box)(const float* boxes, std::uint32_t mask, float* box);
+};
+
+/// Faces with a larger (longest edge squared / twice the area) are bounded by their edges alone.
+inline constexpr float kThinAspect = 128.0F;
+inline constexpr float kFaceMargin = 4e-5F;
+
+/// Runs everywhere.
+[[nodiscard]] const Kernels& portable_kernels() noexcept;
+/// The sets that this processor runs, the fastest last. Looks at the processor: for start-up.
+[[nodiscard]] std::span<const Kernels> available_kernels() noexcept;
+[[nodiscard]] inline const Kernels& best_kernels() noexcept
+{
+    return available_kernels().back();
+}
+
+} // namespace tactus
