@@ -5,11 +5,14 @@
 #include "rt_core/abtree/block.hpp"
 #include "rt_core/abtree/node.hpp"
 #include "rt_core/base/arena.hpp"
+#include "rt_core/kernels/kernels.hpp"
 #include "rt_core/records/changed_face.hpp"
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 
 namespace tactus
 {
@@ -23,6 +26,13 @@ enum class NodeStatus : std::uint8_t
     deformed,
 };
 
+struct TreeCapacities
+{
+    std::uint32_t prims{0};
+    std::uint32_t blocks{0};
+    std::uint32_t nodes{0};
+};
+
 /// The Active Bounding Tree over one model's active faces.
 ///
 /// It is a path-compressed radix tree. A face's path is its bucket (the upper bits of its rank in
@@ -31,7 +41,7 @@ enum class NodeStatus : std::uint8_t
 /// of the path space that hold at most 16 active faces over at most 16 vertices. Binary levels
 /// are collapsed into 8-wide nodes. Nodes and blocks exist only where faces are active.
 ///
-/// Changes are applied face by face; boxes are right again after refit(), which visits deformed
+/// Changes go in face by face; boxes are right again after refit(), which visits deformed
 /// blocks and nodes only, level by level from below, and stops where a box did not change. A box
 /// holds its faces inflated by their error bounds, so a face's distance minus its error is never
 /// less than the distance of any box around it.
@@ -39,42 +49,76 @@ enum class NodeStatus : std::uint8_t
 /// When a pool is full a face stays *unplaced*: the tree is then incomplete() and a query may prove
 /// nothing; unplaced faces are offered again by the caller in later frames.
 ///
+/// The bounding volume is a policy (AabbVolume in volume.hpp ships). Memory: 352 B a block, 256 B a
+/// node with boxes, 12 B a face.
+///
 /// Haptic thread only.
-class AbTree
+template <typename VolumePolicy>
+class BasicAbTree
 {
 public:
-    struct Capacities
-    {
-        std::uint32_t prims{0};
-        std::uint32_t blocks{0};
-        std::uint32_t nodes{0};
-    };
+    using Volume = VolumePolicy;
+    using Capacities = TreeCapacities;
+    using Node = BasicAbNode<Volume>;
+    using Box = typename Volume::Box;
+
     struct RefitWork
     {
         std::uint32_t blocks{0};
         std::uint32_t nodes{0};
     };
 
-    AbTree(Arena& arena, const Capacities& capacities, float quantum_m) noexcept;
+    /// `kernels` must outlive the tree.
+    BasicAbTree(Arena& arena, const Capacities& capacities, float quantum_m,
+                const Kernels& kernels = best_kernels()) noexcept;
 
     /// Takes over one face as it is now: new, changed, or (face none) gone.
     void apply(const ChangedFace& change) noexcept;
+
+    /// Adds a face; its prim has none so far.
+    void insert(const ChangedFace& face) noexcept;
+
+    /// One corner (0 .. 2) of the face has moved, and its error changed: what a split or a merge
+    /// does to a fan face, for much less than apply(). Without effect on an unplaced face.
+    void move_corner(PrimId prim, std::uint32_t corner, const Vec3f& position_m,
+                     ErrorCode error) noexcept;
+
+    /// Removes the prim's face, placed or not.
+    void remove(PrimId prim) noexcept;
+
+    /// A vertex of a block (leaf_of() / 16) has moved: all its faces there follow. For meshes that
+    /// deform; a vertex has a row in each block whose faces it is a corner of.
+    void move_vertex(std::uint32_t block, std::uint32_t row, const Vec3f& position_m) noexcept;
 
     /// Makes all boxes right again. At most one visit for each dirty block and for each node on a
     /// path from one to the root.
     RefitWork refit() noexcept;
 
-    [[nodiscard]] bool is_complete() const noexcept { return unplaced_count_ == 0; }
-    [[nodiscard]] std::span<const PrimId> unplaced() const noexcept
+    [[nodiscard]] bool is_complete() const noexcept { return first_unplaced_ == kLastUnplaced; }
+    [[nodiscard]] bool is_unplaced(PrimId prim) const noexcept
     {
-        return unplaced_.first(unplaced_count_);
+        const std::uint32_t leaf = prims_[prim.value].leaf;
+        return (leaf & kUnplaced) != 0 && leaf != kNoLeaf;
+    }
+    /// Offers each unplaced face once more; `describe(prim)` tells the face as it is now.
+    template <typename Describe>
+    void offer_unplaced(const Describe& describe) noexcept
+    {
+        std::uint32_t index = std::exchange(first_unplaced_, kLastUnplaced);
+        while (index != kLastUnplaced)
+        {
+            const std::uint32_t next = prims_[index].leaf & ~kUnplaced;
+            prims_[index].leaf = kNoLeaf;
+            insert(describe(PrimId{index}));
+            index = next;
+        }
     }
     /// Blocks and nodes that one more changed face may need at worst.
     static constexpr std::uint32_t kReserve = kBlockFaces + 1;
     [[nodiscard]] bool has_room_for(std::uint32_t changed_faces) const noexcept;
 
     [[nodiscard]] TreeRef root() const noexcept { return root_; }
-    [[nodiscard]] const AbNode& node(std::uint32_t index) const noexcept { return nodes_[index]; }
+    [[nodiscard]] const Node& node(std::uint32_t index) const noexcept { return nodes_[index]; }
     [[nodiscard]] const BlockGeometry& block(std::uint32_t index) const noexcept
     {
         return blocks_[index];
@@ -83,30 +127,61 @@ public:
     {
         return sides_[index];
     }
+    [[nodiscard]] bool is_block_in_use(std::uint32_t index) const noexcept
+    {
+        return index < sides_.size() && sides_[index].in_use;
+    }
+    /// Brings a node or a block on its way into the cache.
+    void prefetch(TreeRef ref) const noexcept
+    {
+        const void* first = ref.is_block() ? static_cast<const void*>(&blocks_[ref.index()])
+                                           : static_cast<const void*>(&nodes_[ref.index()]);
+        for (std::size_t line = 0; line < 4; ++line)
+        {
+            __builtin_prefetch(static_cast<const std::byte*>(first) + 64 * line);
+        }
+        if (ref.is_block())
+        {
+            __builtin_prefetch(&sides_[ref.index()].coarse);
+        }
+    }
+    /// Volume of the whole tree; empty when the tree is.
+    [[nodiscard]] Box box() const noexcept;
     /// The face that a prim stands for; its lasting name, used for ties and answers.
     [[nodiscard]] FaceId face_of(PrimId prim) const noexcept { return prims_[prim.value].face; }
     /// Block x 16 + lane of a prim, or kNoLeaf. With `parent` of blocks and nodes: the way up.
     static constexpr std::uint32_t kNoLeaf = 0xFFFF'FFFFU;
     [[nodiscard]] std::uint32_t leaf_of(PrimId prim) const noexcept
     {
-        return prims_[prim.value].leaf;
+        const std::uint32_t leaf = prims_[prim.value].leaf;
+        return (leaf & kUnplaced) != 0 ? kNoLeaf : leaf;
     }
     [[nodiscard]] NodeStatus status(TreeRef ref) const noexcept;
 
-    [[nodiscard]] std::uint32_t blocks_used() const noexcept { return blocks_used_; }
+    [[nodiscard]] std::uint32_t blocks_used() const noexcept
+    {
+        return capacities_.blocks - free_block_count_;
+    }
     [[nodiscard]] std::uint32_t blocks_used_max() const noexcept { return blocks_used_max_; }
-    [[nodiscard]] std::uint32_t nodes_used() const noexcept { return nodes_used_; }
+    [[nodiscard]] std::uint32_t nodes_used() const noexcept
+    {
+        return capacities_.nodes - free_node_count_;
+    }
     [[nodiscard]] std::uint32_t nodes_used_max() const noexcept { return nodes_used_max_; }
     [[nodiscard]] const Capacities& capacities() const noexcept { return capacities_; }
     [[nodiscard]] float quantum_m() const noexcept { return quantum_m_; }
+    [[nodiscard]] const Kernels& kernels() const noexcept { return *kernels_; }
 
 private:
     struct Prim
     {
         FaceId face{};
         std::uint32_t bucket{0};
+        /// Block x 16 + lane; kNoLeaf; or kUnplaced with the next unplaced prim.
         std::uint32_t leaf{kNoLeaf};
     };
+    static constexpr std::uint32_t kUnplaced = 0x8000'0000U;
+    static constexpr std::uint32_t kLastUnplaced = 0x7FFF'FFFEU;
     struct Keyed
     {
         std::uint64_t path{0};
@@ -123,14 +198,20 @@ private:
 
     [[nodiscard]] static std::uint64_t path_of(FaceId face, std::uint32_t bucket) noexcept;
 
-    void insert(const ChangedFace& face) noexcept;
+    void place(const ChangedFace& face) noexcept;
     void insert_below(TreeRef ref, const ChangedFace& face, std::uint64_t path) noexcept;
     void insert_beside(std::uint32_t node, const ChangedFace& face, std::uint64_t path) noexcept;
     void insert_at_free_digit(std::uint32_t node, const ChangedFace& face,
                               std::uint32_t digit) noexcept;
     void insert_into_block(std::uint32_t block, const ChangedFace& face) noexcept;
     void update(const ChangedFace& face) noexcept;
-    void remove(PrimId prim) noexcept;
+    void reinsert(std::uint32_t block, const ChangedFace& face) noexcept;
+    void take_out(PrimId prim) noexcept;
+    void drop_empty(std::uint32_t block) noexcept;
+    [[nodiscard]] bool has_reserve() const noexcept
+    {
+        return free_block_count_ >= kReserve && free_node_count_ >= kReserve;
+    }
 
     [[nodiscard]] bool try_add(std::uint32_t block, const ChangedFace& face) noexcept;
     void split_block(std::uint32_t block, const ChangedFace& face) noexcept;
@@ -144,7 +225,7 @@ private:
     void detach(std::uint32_t node, std::uint32_t child) noexcept;
     void replace(TreeRef old_ref, TreeRef new_ref) noexcept;
     void set_link(TreeRef ref, std::uint32_t parent, std::uint32_t child) noexcept;
-    [[nodiscard]] ChangedFace face_in(std::uint32_t block, std::uint32_t lane) const noexcept;
+    [[nodiscard]] ChangedFace describe(std::uint32_t block, std::uint32_t lane) const noexcept;
 
     [[nodiscard]] std::uint32_t take_block() noexcept;
     [[nodiscard]] std::uint32_t take_node(std::uint32_t shift, std::uint64_t prefix) noexcept;
@@ -152,7 +233,8 @@ private:
     void free_node(std::uint32_t node) noexcept;
     void mark(TreeRef ref) noexcept;
     void enqueue(std::uint32_t index) noexcept;
-    void pass_up(std::uint32_t parent, std::uint32_t child, const Aabb& box, bool coarse) noexcept;
+    [[nodiscard]] Box refitted_box(std::uint32_t block) noexcept;
+    void pass_up(std::uint32_t parent, std::uint32_t child, const Box& box, bool coarse) noexcept;
     void keep_unplaced(PrimId prim) noexcept;
     void drop_unplaced(PrimId prim) noexcept;
 
@@ -160,26 +242,25 @@ private:
 
     Capacities capacities_;
     float quantum_m_;
+    const Kernels* kernels_;
     std::span<BlockGeometry> blocks_;
     std::span<BlockSide> sides_;
-    std::span<AbNode> nodes_;
+    std::span<Node> nodes_;
     std::span<Prim> prims_;
-    std::span<std::uint32_t> free_blocks_;
-    std::span<std::uint32_t> free_nodes_;
-    std::span<PrimId> unplaced_;
-    std::span<TreeRef> marked_;           ///< Blocks and nodes that wait for refit.
-    std::span<std::uint8_t> block_marks_; ///< Whether a block is in `marked_`, even once freed.
-    std::span<std::uint8_t> node_marks_;
     std::array<std::uint32_t, kLevels> dirty_heads_{};
     TreeRef root_;
+    std::uint32_t free_block_{kNoNode}; ///< First of its list, as the three below.
+    std::uint32_t free_node_{kNoNode};
+    std::uint32_t marked_block_{kNoNode};
+    std::uint32_t marked_node_{kNoNode};
+    std::uint32_t first_unplaced_{kLastUnplaced};
     std::uint32_t free_block_count_{0};
     std::uint32_t free_node_count_{0};
-    std::uint32_t unplaced_count_{0};
-    std::uint32_t marked_count_{0};
-    std::uint32_t blocks_used_{0};
     std::uint32_t blocks_used_max_{0};
-    std::uint32_t nodes_used_{0};
     std::uint32_t nodes_used_max_{0};
 };
+
+using AbTree = BasicAbTree<AabbVolume>;
+extern template class BasicAbTree<AabbVolume>;
 
 } // namespace tactus

@@ -3,7 +3,6 @@
 #pragma once
 
 #include "rt_core/limits.hpp"
-#include "rt_core/math/aabb.hpp"
 #include "rt_core/records/changed_face.hpp"
 
 #include <array>
@@ -23,7 +22,8 @@ struct alignas(64) BlockGeometry
     std::array<std::array<float, kBlockVertices>, 3> coordinates{}; ///< Rows x, y, z, in metres.
     std::array<std::array<std::uint8_t, kBlockFaces>, 3> corners{}; ///< Vertex of corner 0, 1, 2.
     std::uint16_t faces{0};                                         ///< Active lanes.
-    std::uint16_t vertices{0};                                      ///< Used vertices.
+    /// Rows that may be in use; exact after drop_unused_vertices(), which refit calls.
+    std::uint16_t vertices{0};
 };
 
 static_assert(sizeof(BlockGeometry) == 256);
@@ -34,27 +34,47 @@ struct BlockSide
     std::array<PrimId, kBlockFaces> prims{};
     std::array<ErrorCode, kBlockFaces> errors{};
     std::uint32_t parent{0xFFFF'FFFFU}; ///< Node; none for a root block.
+    std::uint32_t link{0xFFFF'FFFFU};   ///< In a list: of free blocks or of marked ones.
     std::uint16_t coarse{0};            ///< Lanes whose error is not 0.
     std::uint8_t child{0};              ///< Which child of the parent.
-    std::uint8_t in_use{0};
-    std::array<std::uint32_t, 2> reserved{};
+    bool in_use{false};
+    bool is_marked{false}; ///< In the list of marked blocks, even once freed.
+    std::array<std::uint8_t, 3> reserved{};
 };
 
 static_assert(sizeof(BlockSide) == 96);
 
 /// Adds the face's corners to free vertex rows and takes a free lane. Returns the lane, or
-/// kBlockFaces with the block unchanged when faces or vertices do not fit.
+/// kBlockFaces with the faces unchanged when faces or vertices do not fit.
 [[nodiscard]] std::uint32_t add_to_block(BlockGeometry& block, BlockSide& side,
                                          const ChangedFace& face) noexcept;
 
+/// Moves one corner of a face to another position and gives it another error; false, with the face
+/// unchanged, when the block has no row for the position.
+[[nodiscard]] bool move_corner_in_block(BlockGeometry& block, BlockSide& side, std::uint32_t lane,
+                                        std::uint32_t corner, const Vec3f& position_m,
+                                        ErrorCode error) noexcept;
+
+/// Its vertices stay until drop_unused_vertices().
 void remove_from_block(BlockGeometry& block, BlockSide& side, std::uint32_t lane) noexcept;
 
-[[nodiscard]] std::array<Vec3f, 3> block_triangle(const BlockGeometry& block,
-                                                  std::uint32_t lane) noexcept;
+void drop_unused_vertices(BlockGeometry& block) noexcept;
 
-/// Box of all faces, inflated by the block's largest error (in metres: code x quantum).
-[[nodiscard]] Aabb block_box(const BlockGeometry& block, const BlockSide& side,
-                             float quantum_m) noexcept;
+[[nodiscard]] inline std::array<Vec3f, 3> block_triangle(const BlockGeometry& block,
+                                                         std::uint32_t lane) noexcept
+{
+    std::array<Vec3f, 3> corners{};
+    for (std::size_t corner = 0; corner < 3; ++corner)
+    {
+        const std::size_t row = block.corners[corner][lane];
+        corners[corner] = {block.coordinates[0][row], block.coordinates[1][row],
+                           block.coordinates[2][row]};
+    }
+    return corners;
+}
+
+/// The largest error of the block's faces, in quanta.
+[[nodiscard]] float largest_error_quanta(const BlockSide& side) noexcept;
 
 [[nodiscard]] inline std::uint32_t face_count(const BlockGeometry& block) noexcept
 {

@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "rt_core/math/aabb.hpp"
+#include "rt_core/abtree/volume.hpp"
 
 #include <array>
 #include <bit>
@@ -11,7 +11,6 @@
 namespace tactus
 {
 
-inline constexpr std::uint32_t kNodeChildren = 8;
 inline constexpr std::uint32_t kNoNode = 0xFFFF'FFFFU;
 
 /// A child of a node or the root of a tree: a node, a block, or nothing.
@@ -40,26 +39,29 @@ struct DigitRange
     std::uint32_t width{0};
 };
 
-/// An 8-wide node of the AB-Tree. It stands for one octal digit of the faces' paths, at bit
-/// `shift`; all paths below it agree above that digit. A child is a node (one digit value) or a
-/// block (an aligned range of 1, 2 or 4 digit values: the binary levels are collapsed). 256 B.
-struct alignas(64) AbNode
+/// An 8-wide node of the AB-Tree over a bounding volume. It stands for one octal digit of the
+/// faces' paths, at bit `shift`; all paths below it agree above that digit. A child is a node (one
+/// digit value) or a block (an aligned range of 1, 2 or 4 digit values: the binary levels are
+/// collapsed). 256 B with boxes.
+template <typename Volume>
+struct alignas(64) BasicAbNode
 {
     static constexpr std::uint32_t kNoChild = 8;
     static constexpr std::uint32_t kSeveral = 9; ///< Answer of only_child_in(); never stored.
 
-    std::array<std::array<float, kNodeChildren>, 3> low{}; ///< Boxes of the children, row by axis.
-    std::array<std::array<float, kNodeChildren>, 3> high{};
+    typename Volume::Rows volumes{}; ///< Of the children.
     std::array<TreeRef, kNodeChildren> children{};
     std::uint64_t prefix{0}; ///< Path of any face that was below; its upper bits count.
     std::uint32_t digit_map{0x8888'8888U}; ///< Child of each digit value, 4 bits each; 8 is none.
     std::uint32_t parent{kNoNode};
-    std::uint32_t next_dirty{kNoNode}; ///< Refit's list of this node's level.
+    std::uint32_t link{kNoNode}; ///< In a list: of free nodes, of marked ones, of refit's level.
     std::uint8_t shift{0};
     std::uint8_t mask{0};   ///< Children in use.
     std::uint8_t coarse{0}; ///< Children below which some face is not exact.
     std::uint8_t child{0};  ///< Which child of the parent.
-    std::uint8_t in_use{0};
+    bool in_use{false};
+    bool is_marked{false}; ///< In the list of marked nodes, even once freed.
+    bool is_queued{false}; ///< In refit's list of its level.
 
     [[nodiscard]] std::uint32_t digit_of(std::uint64_t path) const noexcept
     {
@@ -113,18 +115,9 @@ struct alignas(64) AbNode
     {
         return static_cast<std::uint32_t>(std::popcount(mask));
     }
-    [[nodiscard]] Aabb box_of(std::uint32_t index) const noexcept
+    [[nodiscard]] typename Volume::Box box_of(std::uint32_t index) const noexcept
     {
-        return {{low[0][index], low[1][index], low[2][index]},
-                {high[0][index], high[1][index], high[2][index]}};
-    }
-    void set_box(std::uint32_t index, const Aabb& box) noexcept
-    {
-        for (std::size_t axis = 0; axis < 3; ++axis)
-        {
-            low[axis][index] = box.low[axis];
-            high[axis][index] = box.high[axis];
-        }
+        return volumes.get(index);
     }
     void set_coarse(std::uint32_t index, bool is_coarse) noexcept
     {
@@ -132,6 +125,8 @@ struct alignas(64) AbNode
         coarse = static_cast<std::uint8_t>(is_coarse ? coarse | bit : coarse & ~bit);
     }
 };
+
+using AbNode = BasicAbNode<AabbVolume>;
 
 static_assert(sizeof(AbNode) == 256);
 

@@ -6,68 +6,97 @@
 
 #include <array>
 #include <cstddef>
+#include <memory>
+#include <new>
 #include <span>
+#include <type_traits>
 
 namespace tactus
 {
 
-/// At most `Capacity` values in place. For small lists on the stack or inside records.
+/// At most `Capacity` values in place. For small lists on the stack or inside records. Costs
+/// nothing to make: room that isn't used is not initialised.
 template <typename T, std::size_t Capacity>
 class StaticVector
 {
+    static_assert(std::is_trivially_destructible_v<T>);
+
 public:
+    StaticVector() noexcept {} // NOLINT(modernize-use-equals-default): `= default` would zero it.
+    StaticVector(const StaticVector& other) noexcept { assign(other); }
+    StaticVector& operator=(const StaticVector& other) noexcept
+    {
+        if (this != &other)
+        {
+            assign(other);
+        }
+        return *this;
+    }
+    ~StaticVector() = default;
+
     /// Appends; returns false and changes nothing when full.
-    [[nodiscard]] constexpr bool try_push_back(const T& value) noexcept
+    [[nodiscard]] bool try_push_back(const T& value) noexcept
     {
         if (size_ == Capacity)
         {
             return false;
         }
-        items_[size_++] = value;
+        std::construct_at(begin() + size_, value);
+        ++size_;
         return true;
     }
 
     /// Appends where the caller knows that there is room; a bug when there is none.
-    constexpr void push_back(const T& value) noexcept
+    void push_back(const T& value) noexcept
     {
         const bool pushed = try_push_back(value);
         TACTUS_ASSERT(pushed);
     }
 
-    constexpr T pop_back() noexcept
+    T pop_back() noexcept
     {
         TACTUS_ASSERT(size_ > 0);
-        return items_[--size_];
+        return begin()[--size_];
     }
 
-    constexpr void clear() noexcept { size_ = 0; }
-    [[nodiscard]] constexpr std::size_t size() const noexcept { return size_; }
+    void clear() noexcept { size_ = 0; }
+    [[nodiscard]] std::size_t size() const noexcept { return size_; }
     [[nodiscard]] static constexpr std::size_t capacity() noexcept { return Capacity; }
-    [[nodiscard]] constexpr bool empty() const noexcept { return size_ == 0; }
-    [[nodiscard]] constexpr bool full() const noexcept { return size_ == Capacity; }
+    [[nodiscard]] bool empty() const noexcept { return size_ == 0; }
+    [[nodiscard]] bool full() const noexcept { return size_ == Capacity; }
 
-    constexpr T& operator[](std::size_t index) noexcept
+    T& operator[](std::size_t index) noexcept
     {
         TACTUS_ASSERT(index < size_);
-        return items_[index];
+        return begin()[index];
     }
-    constexpr const T& operator[](std::size_t index) const noexcept
+    const T& operator[](std::size_t index) const noexcept
     {
         TACTUS_ASSERT(index < size_);
-        return items_[index];
+        return begin()[index];
     }
 
-    [[nodiscard]] constexpr T* begin() noexcept { return items_.data(); }
-    [[nodiscard]] constexpr T* end() noexcept { return items_.data() + size_; }
-    [[nodiscard]] constexpr const T* begin() const noexcept { return items_.data(); }
-    [[nodiscard]] constexpr const T* end() const noexcept { return items_.data() + size_; }
-    [[nodiscard]] constexpr std::span<const T> view() const noexcept
+    [[nodiscard]] T* begin() noexcept { return std::launder(reinterpret_cast<T*>(bytes_.data())); }
+    [[nodiscard]] T* end() noexcept { return begin() + size_; }
+    [[nodiscard]] const T* begin() const noexcept
     {
-        return {items_.data(), size_};
+        return std::launder(reinterpret_cast<const T*>(bytes_.data()));
     }
+    [[nodiscard]] const T* end() const noexcept { return begin() + size_; }
+    [[nodiscard]] std::span<const T> view() const noexcept { return {begin(), size_}; }
 
 private:
-    std::array<T, Capacity> items_{};
+    void assign(const StaticVector& other) noexcept
+    {
+        size_ = 0;
+        for (const T& item : other)
+        {
+            push_back(item);
+        }
+    }
+
+    alignas(T)
+        std::array<std::byte, Capacity * sizeof(T)> bytes_; ///< Only the first `size_` are objects.
     std::size_t size_{0};
 };
 

@@ -2,15 +2,23 @@
 // Copyright the Tactus authors.
 #include "rt_core/forest/vertex_forest.hpp"
 
+#include <bit>
+
 namespace tactus
 {
 
 namespace
 {
 
-/// Finalizer of a 64-bit mixing function (SplitMix64 constants).
-std::uint64_t mix(std::uint64_t value) noexcept
+/// Odd multipliers spread the ids over the word; the finalizer is SplitMix64's.
+std::uint64_t hash_of(const VertexForest::ActiveFace& face, ErrorCode error) noexcept
 {
+    const std::uint64_t name = (std::uint64_t{face.id.value} << 8U) | error;
+    const std::uint64_t edge =
+        (std::uint64_t{face.corners[0].value} << 32U) | face.corners[1].value;
+    std::uint64_t value = name * 0x9E37'79B9'7F4A'7C15ULL +
+                          std::rotl(edge * 0xD6E8'FEB8'6659'FD93ULL, 23) +
+                          std::rotl(face.corners[2].value * 0xA076'1D64'78BD'642FULL, 47);
     value = (value ^ (value >> 30U)) * 0xBF58'476D'1CE4'E5B9ULL;
     value = (value ^ (value >> 27U)) * 0x94D0'49BB'1331'11EBULL;
     return value ^ (value >> 31U);
@@ -18,95 +26,137 @@ std::uint64_t mix(std::uint64_t value) noexcept
 
 std::uint32_t corner_place(const std::array<VertexId, 3>& corners, VertexId vertex) noexcept
 {
-    for (std::uint32_t place = 0; place < 3; ++place)
+    return corners[0] == vertex ? 0U : corners[1] == vertex ? 1U : corners[2] == vertex ? 2U : 3U;
+}
+
+/// A = (v, u, w0), B = (v, wk, u), fan face i = (v, wi, wi+1).
+void lay_out(BlockGeometry& star, const VsplitRecord& record) noexcept
+{
+    star.corners[0].fill(0);
+    star.corners[1] = {1, static_cast<std::uint8_t>(2 + record.fan_size), 2, 3, 4, 5, 6, 7};
+    star.corners[2] = {2, 1, 3, 4, 5, 6, 7, 8};
+    const std::uint32_t fan = ((1U << record.fan_size) - 1U) << 2U;
+    star.faces = static_cast<std::uint16_t>(fan | (record.has_face(0) ? 1U : 0U) |
+                                            (record.has_face(1) ? 2U : 0U));
+}
+
+void set_row(BlockGeometry& star, std::uint32_t row, const Vec3f& position_m) noexcept
+{
+    for (std::size_t axis = 0; axis < 3; ++axis)
     {
-        if (corners[place] == vertex)
-        {
-            return place;
-        }
+        star.coordinates[axis][row] = position_m[axis];
     }
-    return 3;
+}
+
+std::uint32_t next_corner(std::uint32_t place, std::uint32_t by) noexcept
+{
+    return place + by < 3 ? place + by : place + by - 3;
 }
 
 } // namespace
 
 VertexForest::VertexForest(Arena& arena, const ModelCounts& counts, PageSlots slots,
-                           PageTable& pages, std::uint32_t face_capacity,
-                           std::uint32_t change_capacity) noexcept
+                           PageTable& pages, AbTree& tree, std::uint32_t face_capacity) noexcept
     : counts_(counts)
     , slots_(slots)
     , pages_(&pages)
+    , tree_(&tree)
     , faces_(arena.take<ActiveFace>(face_capacity))
     , index_list_(arena, face_capacity)
-    , free_prims_(arena.take<std::uint32_t>(face_capacity))
-    , changed_(arena.take<PrimId>(change_capacity))
-    , change_marks_(arena.take<std::uint8_t>(face_capacity))
 {
     if (arena.is_measuring())
     {
         return;
     }
-    TACTUS_ASSERT(face_capacity >= counts.base_faces && change_capacity >= counts.base_faces);
+    TACTUS_ASSERT(face_capacity >= counts.base_faces);
+    TACTUS_ASSERT(tree.capacities().prims >= face_capacity);
     for (std::uint32_t i = 0; i < face_capacity; ++i)
     {
-        free_prims_[free_count_++] = face_capacity - 1 - i;
+        faces_[i].corners[0] = VertexId{i + 1};
     }
     for (std::uint32_t i = 0; i < counts.base_faces; ++i)
     {
-        add_face({FaceId{i}, slots_.base.faces[i].corners, FaceState::base()});
+        const BaseFace& face = slots_.base.faces[i];
+        static_cast<void>(add_face({FaceId{i}, face.corners, FaceState::base()}, face.error,
+                                   face.bucket,
+                                   {position_of(face.corners[0]), position_of(face.corners[1]),
+                                    position_of(face.corners[2])}));
     }
+    tree.refit();
 }
 
-VertexForest::SplitOutcome VertexForest::split(RecordId id) noexcept
+VertexForest::SplitOutcome VertexForest::split(RecordId id, const VsplitRecord& record,
+                                               StarGeometry& star) noexcept
 {
-    const VsplitRecord& record = pages_->resident(id);
-    TACTUS_ASSERT(has_room_for_changes());
-    Star star;
-    if (!find_fan(record, star))
+    Fan fan;
+    if (!find_fan(record, fan))
     {
         return SplitOutcome::inconsistent;
     }
-    if (free_count_ < 2)
+    if (capacity() - active_faces() < 2)
     {
         return SplitOutcome::full;
     }
     const VertexId vertex = counts_.vertex_of(id);
-    for (std::uint32_t i = 0; i < record.fan_size; ++i)
+    const std::uint32_t count = record.fan_size;
+    const FanFace& begin = fan.faces[0];
+    const FanFace& end = fan.faces[count - 1U];
+    lay_out(star.geometry, record);
+    set_row(star.geometry, 0, record.position_m);
+    set_row(star.geometry, 1, corner_position(begin.prim, begin.place));
+    for (std::uint32_t i = 0; i < count; ++i)
     {
-        replace_corner(star.fan[i], record.parent, vertex, FaceState::after(id, 2 + i));
+        const FanFace& face = fan.faces[i];
+        set_row(star.geometry, 2 + i, corner_position(face.prim, next_corner(face.place, 1)));
     }
-    pages_->set_refined(id, true); // The new faces' errors are read through the record.
-    ++refined_count_;
+    set_row(star.geometry, 2 + count, corner_position(end.prim, next_corner(end.place, 2)));
+    for (std::uint32_t i = 0; i < count; ++i)
+    {
+        star.prims[2 + i] = fan.faces[i].prim;
+        move_corner(fan.faces[i], vertex, record.position_m, FaceState::after(id, 2 + i),
+                    record.error[2 + i]);
+    }
     if (record.has_face(0))
     {
-        add_face({record.star[0], {vertex, record.parent, star.first}, FaceState::after(id, 0)});
+        star.prims[0] =
+            add_face({record.star[0], {vertex, record.parent, fan.first}, FaceState::after(id, 0)},
+                     record.error[0], record.bucket[0], block_triangle(star.geometry, 0));
     }
     if (record.has_face(1))
     {
-        add_face({record.star[1], {vertex, star.last, record.parent}, FaceState::after(id, 1)});
+        star.prims[1] =
+            add_face({record.star[1], {vertex, fan.last, record.parent}, FaceState::after(id, 1)},
+                     record.error[1], record.bucket[1], block_triangle(star.geometry, 1));
     }
+    pages_->set_refined(id, true);
+    ++refined_count_;
     return SplitOutcome::done;
 }
 
 bool VertexForest::try_merge(RecordId id) noexcept
 {
     const VsplitRecord& record = pages_->resident(id);
-    TACTUS_ASSERT(has_room_for_changes());
-    if (!star_is_intact(id, record))
+    std::array<PrimId, kMaxStarFaces> star{};
+    if (!find_star(id, record, star))
     {
         return false;
     }
+    // A = (v, u, w0), B = (v, wk, u).
+    const Vec3f parent_at =
+        record.has_face(0) ? corner_position(star[0], 1) : corner_position(star[1], 2);
     for (std::uint32_t side = 0; side < 2; ++side)
     {
         if (record.has_face(side))
         {
-            remove_face(record.star[side]);
+            remove_face(star[side]);
         }
     }
+    const VertexId vertex = counts_.vertex_of(id);
     for (std::uint32_t i = 0; i < record.fan_size; ++i)
     {
-        replace_corner(find(record.star[2 + i]), counts_.vertex_of(id), record.parent,
-                       record.before[i]);
+        const PrimId prim = star[2 + i];
+        move_corner({prim, corner_place(faces_[prim.value].corners, vertex)}, record.parent,
+                    parent_at, record.before[i], error_in(record.star[2 + i], record.before[i]));
     }
     pages_->set_refined(id, false);
     --refined_count_;
@@ -137,10 +187,16 @@ std::uint32_t VertexForest::next_of(PrimId prim) const noexcept
 
 ErrorCode VertexForest::error_of(PrimId prim) const noexcept
 {
-    const ActiveFace& active = faces_[prim.value];
-    return active.state.is_base()
-               ? slots_.base.faces[active.id.value].error
-               : pages_->resident(active.state.record()).error[active.state.place()];
+    const std::uint32_t leaf = tree_->leaf_of(prim);
+    return leaf != AbTree::kNoLeaf ? tree_->side(leaf / kBlockFaces).errors[leaf % kBlockFaces]
+                                   : error_in(faces_[prim.value].id, faces_[prim.value].state);
+}
+
+/// As the face's state says it, wherever the face is.
+ErrorCode VertexForest::error_in(FaceId face, FaceState state) const noexcept
+{
+    return state.is_base() ? slots_.base.faces[face.value].error
+                           : pages_->resident(state.record()).error[state.place()];
 }
 
 Vec3f VertexForest::position_of(VertexId vertex) const noexcept
@@ -151,8 +207,20 @@ Vec3f VertexForest::position_of(VertexId vertex) const noexcept
 
 std::array<Vec3f, 3> VertexForest::corners_of(PrimId prim) const noexcept
 {
-    const std::array<VertexId, 3>& corners = faces_[prim.value].corners;
-    return {position_of(corners[0]), position_of(corners[1]), position_of(corners[2])};
+    return {corner_position(prim, 0), corner_position(prim, 1), corner_position(prim, 2)};
+}
+
+/// The tree has it at hand for a placed face; else it is in the records.
+Vec3f VertexForest::corner_position(PrimId prim, std::uint32_t place) const noexcept
+{
+    const std::uint32_t leaf = tree_->leaf_of(prim);
+    if (leaf == AbTree::kNoLeaf)
+    {
+        return position_of(faces_[prim.value].corners[place]);
+    }
+    const BlockGeometry& block = tree_->block(leaf / kBlockFaces);
+    const std::size_t row = block.corners[place][leaf % kBlockFaces];
+    return {block.coordinates[0][row], block.coordinates[1][row], block.coordinates[2][row]};
 }
 
 ChangedFace VertexForest::describe(PrimId prim) const noexcept
@@ -179,46 +247,40 @@ ChangedFace VertexForest::describe(PrimId prim) const noexcept
     return change;
 }
 
-void VertexForest::clear_changes() noexcept
-{
-    for (const PrimId prim : changed_prims())
-    {
-        change_marks_[prim.value] = 0;
-    }
-    changed_count_ = 0;
-}
-
 /// Finds the fan faces in the states the record expects and the chain w0 .. wk round its parent.
-bool VertexForest::find_fan(const VsplitRecord& record, Star& star) const noexcept
+bool VertexForest::find_fan(const VsplitRecord& record, Fan& fan) const noexcept
 {
     for (std::uint32_t i = 0; i < record.fan_size; ++i)
     {
-        star.fan[i] = find(record.star[2 + i]);
-        if (star.fan[i].is_none() || faces_[star.fan[i].value].state != record.before[i])
+        const PrimId prim = find(record.star[2 + i]);
+        if (prim.is_none() || faces_[prim.value].state != record.before[i])
         {
             return false;
         }
-        const std::array<VertexId, 3>& corners = faces_[star.fan[i].value].corners;
+        const std::array<VertexId, 3>& corners = faces_[prim.value].corners;
         const std::uint32_t place = corner_place(corners, record.parent);
         if (place == 3)
         {
             return false;
         }
-        const VertexId near = corners[(place + 1) % 3];
+        const VertexId near = corners[next_corner(place, 1)];
         if (i == 0)
         {
-            star.first = near;
+            fan.first = near;
         }
-        else if (near != star.last)
+        else if (near != fan.last)
         {
             return false;
         }
-        star.last = corners[(place + 2) % 3];
+        fan.last = corners[next_corner(place, 2)];
+        fan.faces[i] = {prim, place};
     }
     return true;
 }
 
-bool VertexForest::star_is_intact(RecordId id, const VsplitRecord& record) const noexcept
+/// Finds the star in the states that the record gave it.
+bool VertexForest::find_star(RecordId id, const VsplitRecord& record,
+                             std::array<PrimId, kMaxStarFaces>& star) const noexcept
 {
     for (std::uint32_t place = 0; place < record.star_end(); ++place)
     {
@@ -226,8 +288,8 @@ bool VertexForest::star_is_intact(RecordId id, const VsplitRecord& record) const
         {
             continue;
         }
-        const PrimId prim = find(record.star[place]);
-        if (prim.is_none() || faces_[prim.value].state != FaceState::after(id, place))
+        star[place] = find(record.star[place]);
+        if (star[place].is_none() || faces_[star[place].value].state != FaceState::after(id, place))
         {
             return false;
         }
@@ -235,58 +297,41 @@ bool VertexForest::star_is_intact(RecordId id, const VsplitRecord& record) const
     return true;
 }
 
-void VertexForest::add_face(const ActiveFace& face) noexcept
+PrimId VertexForest::add_face(const ActiveFace& face, ErrorCode error, std::uint32_t bucket,
+                              const std::array<Vec3f, 3>& corners_m) noexcept
 {
-    TACTUS_ASSERT(free_count_ > 0);
-    const PrimId prim{free_prims_[--free_count_]};
+    TACTUS_ASSERT(first_free_ < faces_.size());
+    const PrimId prim{first_free_};
+    first_free_ = faces_[prim.value].corners[0].value;
     faces_[prim.value] = face;
     const bool inserted = index_list_.try_insert(face.id.value, prim.value);
     TACTUS_ASSERT(inserted);
     active_max_ = active_faces() > active_max_ ? active_faces() : active_max_;
-    hash_ += hash_of(prim);
-    mark_changed(prim);
+    hash_ += hash_of(face, error);
+    tree_->insert({prim, face.id, bucket, error, corners_m});
+    return prim;
 }
 
-void VertexForest::remove_face(FaceId face) noexcept
+void VertexForest::remove_face(PrimId prim) noexcept
 {
-    const PrimId prim = find(face);
-    hash_ -= hash_of(prim);
-    index_list_.erase(face.value);
-    faces_[prim.value] = ActiveFace{};
-    free_prims_[free_count_++] = prim.value;
-    mark_changed(prim);
+    ActiveFace& face = faces_[prim.value];
+    hash_ -= hash_of(face, error_of(prim));
+    index_list_.erase(face.id.value);
+    tree_->remove(prim);
+    face = ActiveFace{};
+    face.corners[0] = VertexId{first_free_};
+    first_free_ = prim.value;
 }
 
-void VertexForest::replace_corner(PrimId prim, VertexId from, VertexId to, FaceState state) noexcept
+void VertexForest::move_corner(FanFace fan, VertexId to, const Vec3f& position_m, FaceState state,
+                               ErrorCode error) noexcept
 {
-    ActiveFace& active = faces_[prim.value];
-    hash_ -= hash_of(prim);
-    const std::uint32_t place = corner_place(active.corners, from);
-    TACTUS_ASSERT(place < 3);
-    active.corners[place] = to;
-    active.state = state;
-    hash_ += hash_of(prim);
-    mark_changed(prim);
-}
-
-void VertexForest::mark_changed(PrimId prim) noexcept
-{
-    if (change_marks_[prim.value] == 0)
-    {
-        change_marks_[prim.value] = 1;
-        changed_[changed_count_++] = prim;
-    }
-}
-
-std::uint64_t VertexForest::hash_of(PrimId prim) const noexcept
-{
-    const ActiveFace& active = faces_[prim.value];
-    std::uint64_t value = mix((std::uint64_t{active.id.value} << 8U) | error_of(prim));
-    for (const VertexId corner : active.corners)
-    {
-        value = mix(value + corner.value);
-    }
-    return value;
+    ActiveFace& face = faces_[fan.prim.value];
+    hash_ -= hash_of(face, error_of(fan.prim));
+    face.corners[fan.place] = to;
+    face.state = state;
+    hash_ += hash_of(face, error);
+    tree_->move_corner(fan.prim, fan.place, position_m, error);
 }
 
 } // namespace tactus

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "rt_core/abtree/ab_tree.hpp"
 #include "rt_core/base/arena.hpp"
 #include "rt_core/base/id_table.hpp"
 #include "rt_core/records/changed_face.hpp"
@@ -15,13 +16,15 @@ namespace tactus
 {
 
 /// The vertex forest of one model: which faces are active now, and the two operations that change
-/// that. A split or a merge is a table write over one star; there is no adjacency structure.
+/// that. A split or a merge is a table write over one star; there is no adjacency structure. Each
+/// change goes straight to the AB-Tree, whose boxes are right again after its refit().
 ///
 /// The cut it holds is dependency-closed: a record is split only when each fan face is in the state
 /// that the record expects, and merged only when each star face is in the state that the
 /// record gave it. Both refuse, with nothing changed, when that does not hold.
 ///
-/// Haptic thread only. Cost: about 8 table look-ups a split or merge.
+/// Haptic thread only. Cost: one look-up in the index list and one small write to the tree for each
+/// face of the star.
 class VertexForest
 {
 public:
@@ -33,6 +36,14 @@ public:
         FaceState state;
     };
 
+    /// The star of a record that was just split, laid out as a block is: lane i is the face at
+    /// place i of the star, row 0 is v, row 1 is u, and w0 .. wk follow.
+    struct StarGeometry
+    {
+        BlockGeometry geometry;
+        std::array<PrimId, kMaxStarFaces> prims{};
+    };
+
     enum class SplitOutcome : std::uint8_t
     {
         done,
@@ -41,14 +52,20 @@ public:
     };
 
     /// Memory for at most `face_capacity` active faces, at least the base mesh's, which must be
-    /// in `slots.base` already. `change_capacity` bounds changed_faces() between two
-    /// clear_changes().
+    /// in `slots.base` already and enters the tree. `tree` is empty and has as many prims.
     VertexForest(Arena& arena, const ModelCounts& counts, PageSlots slots, PageTable& pages,
-                 std::uint32_t face_capacity, std::uint32_t change_capacity) noexcept;
+                 AbTree& tree, std::uint32_t face_capacity) noexcept;
 
     /// Undoes the record's collapse. The record is linked and not refined, and every record it
     /// depends on is refined (see missing_dependency()).
-    [[nodiscard]] SplitOutcome split(RecordId id) noexcept;
+    [[nodiscard]] SplitOutcome split(RecordId id) noexcept
+    {
+        StarGeometry star;
+        return split(id, pages_->resident(id), star);
+    }
+    /// The same for a record at hand; `star` is written when it is done.
+    [[nodiscard]] SplitOutcome split(RecordId id, const VsplitRecord& record,
+                                     StarGeometry& star) noexcept;
 
     /// Redoes the record's collapse; false when a star face has been refined further.
     [[nodiscard]] bool try_merge(RecordId id) noexcept;
@@ -64,22 +81,8 @@ public:
     [[nodiscard]] Vec3f position_of(VertexId vertex) const noexcept;
     [[nodiscard]] std::array<Vec3f, 3> corners_of(PrimId prim) const noexcept;
 
-    /// Slots changed since clear_changes(), each once, in order of first change.
-    [[nodiscard]] std::span<const PrimId> changed_prims() const noexcept
-    {
-        return changed_.first(changed_count_);
-    }
-    [[nodiscard]] bool is_changed(PrimId prim) const noexcept
-    {
-        return change_marks_[prim.value] != 0;
-    }
+    /// The face as it is now, for a tree that has no place for it yet.
     [[nodiscard]] ChangedFace describe(PrimId prim) const noexcept;
-    void clear_changes() noexcept;
-    /// Whether one more split or merge could be recorded.
-    [[nodiscard]] bool has_room_for_changes() const noexcept
-    {
-        return changed_.size() - changed_count_ >= kMaxStarFaces;
-    }
 
     [[nodiscard]] std::uint32_t active_faces() const noexcept { return index_list_.size(); }
     [[nodiscard]] std::uint32_t active_faces_max() const noexcept { return active_max_; }
@@ -94,31 +97,36 @@ public:
     [[nodiscard]] std::uint64_t state_hash() const noexcept { return hash_; }
 
 private:
-    struct Star
+    struct FanFace
     {
-        std::array<PrimId, kMaxFanFaces> fan{};
+        PrimId prim{};
+        std::uint32_t place{0}; ///< Of the corner that changes.
+    };
+    struct Fan
+    {
+        std::array<FanFace, kMaxFanFaces> faces{};
         VertexId first{}; ///< w0
         VertexId last{};  ///< wk
     };
 
-    [[nodiscard]] bool find_fan(const VsplitRecord& record, Star& star) const noexcept;
-    [[nodiscard]] bool star_is_intact(RecordId id, const VsplitRecord& record) const noexcept;
-    void add_face(const ActiveFace& face) noexcept;
-    void remove_face(FaceId face) noexcept;
-    void replace_corner(PrimId prim, VertexId from, VertexId to, FaceState state) noexcept;
-    void mark_changed(PrimId prim) noexcept;
-    [[nodiscard]] std::uint64_t hash_of(PrimId prim) const noexcept;
+    [[nodiscard]] bool find_fan(const VsplitRecord& record, Fan& fan) const noexcept;
+    [[nodiscard]] bool find_star(RecordId id, const VsplitRecord& record,
+                                 std::array<PrimId, kMaxStarFaces>& star) const noexcept;
+    [[nodiscard]] ErrorCode error_in(FaceId face, FaceState state) const noexcept;
+    [[nodiscard]] Vec3f corner_position(PrimId prim, std::uint32_t place) const noexcept;
+    [[nodiscard]] PrimId add_face(const ActiveFace& face, ErrorCode error, std::uint32_t bucket,
+                                  const std::array<Vec3f, 3>& corners_m) noexcept;
+    void remove_face(PrimId prim) noexcept;
+    void move_corner(FanFace fan, VertexId to, const Vec3f& position_m, FaceState state,
+                     ErrorCode error) noexcept;
 
     ModelCounts counts_;
     PageSlots slots_;
     PageTable* pages_;
-    std::span<ActiveFace> faces_;
+    AbTree* tree_;
+    std::span<ActiveFace> faces_; ///< A free slot holds the next free one in its first corner.
     IdTable index_list_;
-    std::span<std::uint32_t> free_prims_;
-    std::uint32_t free_count_{0};
-    std::span<PrimId> changed_;
-    std::span<std::uint8_t> change_marks_;
-    std::uint32_t changed_count_{0};
+    std::uint32_t first_free_{0};
     std::uint32_t refined_count_{0};
     std::uint32_t active_max_{0};
     std::uint64_t hash_{0};

@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #include "rt_core/query/surface_query.hpp"
 
+#include "rt_core/query/probe.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -11,161 +13,337 @@ namespace tactus
 namespace
 {
 
-class SurfaceGatherer
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr float kInfiniteQuanta = std::numeric_limits<float>::infinity();
+
+/// One query: filters in single precision and quanta, decides in double precision and metres.
+class SurfaceSearch
 {
 public:
-    SurfaceGatherer(const AbTree& tree, const Vec3& center_m, double reach_m,
-                    LocalSurface& surface) noexcept
-        : tree_(tree), center_(center_m), reach_(reach_m), surface_(surface)
+    /// `surface` is null when only the distance is asked for; then nothing is collected.
+    SurfaceSearch(const AbTree& tree, const Vec3& center_m, double reach_m, double band_m,
+                  WalkBudget& budget, LocalSurface* surface) noexcept
+        : tree_(tree)
+        , center_(center_m)
+        , quantum_(static_cast<double>(tree.quantum_m()))
+        , reach_(reach_m)
+        , budget_(budget)
+        , surface_(surface)
+        , probe_(make_probe(center_m, tree.quantum_m()))
+        , floor_(surface == nullptr ? 0.0F : to_quanta(reach_m))
+        , limit_(to_quanta(band_m))
     {
-        surface.center_m = center_m;
-        surface.answer = DistanceAnswer{};
-        surface.count = 0;
-        surface.truncated = false;
     }
 
-    /// Beyond this nothing changes the answer.
-    [[nodiscard]] double bound_sq() const noexcept
+    void run(QueryMemory& memory) noexcept
     {
-        const double bound = std::max(reach_, upper_);
-        return bound * bound;
-    }
-
-    void test_block(std::uint32_t block_index) noexcept
-    {
-        const BlockGeometry& block = tree_.block(block_index);
-        const BlockSide& side = tree_.side(block_index);
-        for (std::uint32_t lanes = block.faces; lanes != 0; lanes &= lanes - 1)
+        warm_ = tree_.is_block_in_use(memory.block) && budget_.take_node() ? memory.block : kNoNode;
+        nearest_block_ = warm_;
+        TreeWalk walk(tree_, probe_, budget_);
+        if (warm_ == kNoNode || test_block(warm_))
         {
-            const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
-            const std::array<Vec3f, 3> corners = block_triangle(block, lane);
-            const Triangle triangle = to_triangle(corners);
-            const ClosestPoint closest = closest_point_on_triangle(center_, triangle);
-            if (side.errors[lane] == 0)
+            for (std::uint32_t block = walk.next_block(bound(), false); block != kNoNode;
+                 block = walk.next_block(bound(), false))
             {
-                add_exact(tree_.face_of(side.prims[lane]), corners, closest);
-            }
-            else
-            {
-                add_coarse(
-                    triangle, closest,
-                    static_cast<double>(error_in_quanta(side.errors[lane]) * tree_.quantum_m()));
+                if (block != warm_ && !test_block(block))
+                {
+                    break;
+                }
             }
         }
+        for (const WalkItem& item : walk.left())
+        {
+            unproven_ = std::min(unproven_, static_cast<double>(item.gap));
+        }
+        decide();
+        memory.block = nearest_block_;
     }
 
-    void add_unvisited(std::span<const WalkItem> items) noexcept
+    [[nodiscard]] DistanceAnswer answer() const noexcept
     {
-        for (const WalkItem& item : items)
+        DistanceAnswer answer;
+        const double open = tree_.is_complete() ? unproven_ * quantum_ : 0.0;
+        const double pruned = limit_ > floor_ ? to_metres(bound()) : kInfinity;
+        answer.upper_m =
+            std::min(upper_, corner_ < kInfiniteQuanta ? to_metres(corner_) : kInfinity);
+        answer.lower_m = std::max(0.0, std::min({exact_lower_, open, pruned}));
+        answer.certified_radius_m = std::max(0.0, std::min({reach_, open, to_metres(dropped_)}));
+        if (exact_lower_ <= open && exact_lower_ <= pruned && !nearest_face_.is_none())
         {
-            unproven_ = std::min(unproven_, std::sqrt(item.distance_sq) * kBoxDistanceSlack);
+            answer.nearest_face = nearest_face_;
+            answer.nearest_point_m = nearest_.point;
+            answer.nearest_feature = nearest_.feature;
         }
-    }
-
-    void finish() noexcept
-    {
-        if (!tree_.is_complete())
-        {
-            unproven_ = 0.0;
-        }
-        DistanceAnswer& answer = surface_.answer;
-        answer.upper_m = upper_;
-        answer.lower_m = std::max(0.0, std::min(exact_lower_, unproven_));
-        answer.certified_radius_m = std::max(0.0, std::min({reach_, unproven_, dropped_}));
-        const bool is_exact = exact_lower_ <= unproven_ && !answer.nearest_face.is_none();
-        answer.kind = answer.lower_m > reach_ ? AnswerKind::decided
-                      : is_exact              ? AnswerKind::exact
-                                              : AnswerKind::bracket;
+        answer.kind = answer.lower_m > reach_          ? AnswerKind::decided
+                      : !answer.nearest_face.is_none() ? AnswerKind::exact
+                      : answer.lower_m == reach_       ? AnswerKind::decided
+                                                       : AnswerKind::bracket;
+        return answer;
     }
 
 private:
-    void add_exact(FaceId face, const std::array<Vec3f, 3>& corners,
-                   const ClosestPoint& closest) noexcept
+    struct Candidate
     {
-        const double distance = std::sqrt(closest.distance_sq);
-        exact_lower_ = std::min(exact_lower_, distance - closest.distance_error);
-        upper_ = std::min(upper_, distance + closest.distance_error);
-        DistanceAnswer& answer = surface_.answer;
-        // Ties go to the lowest face id, whatever the order of traversal.
-        if (closest.distance_sq < nearest_sq_ ||
-            (closest.distance_sq == nearest_sq_ && face < answer.nearest_face))
+        std::uint32_t block;
+        std::uint32_t lane;
+        float lower;
+    };
+
+    [[nodiscard]] float to_quanta(double metres) const noexcept
+    {
+        return metres < kFarQuanta * quantum_ ? round_up_to_float(metres / quantum_)
+                                              : kInfiniteQuanta;
+    }
+    [[nodiscard]] double to_metres(float quanta) const noexcept
+    {
+        return static_cast<double>(quanta) * quantum_;
+    }
+
+    /// Beyond this nothing changes the answer.
+    [[nodiscard]] float bound() const noexcept
+    {
+        const float proof = surface_ != nullptr ? kProofShare * limit_ : 0.0F;
+        return proof > floor_ ? proof : std::max(floor_, limit_);
+    }
+
+    /// False when the budget is spent.
+    [[nodiscard]] bool test_block(std::uint32_t index) noexcept
+    {
+        const BlockGeometry& block = tree_.block(index);
+        if (!budget_.take_triangles(face_count(block)))
         {
-            nearest_sq_ = closest.distance_sq;
-            answer.nearest_face = face;
-            answer.nearest_point_m = closest.point;
-            answer.nearest_feature = closest.feature;
+            unproven_ = 0.0; // Its parent's bound may have gone with it.
+            return false;
         }
-        if (distance - closest.distance_error <= reach_)
+        const std::uint32_t coarse = tree_.side(index).coarse;
+        const float limit_before = limit_;
+        FaceBounds bounds;
+        std::uint32_t near = tree_.kernels().face_bounds(
+            block.coordinates.front().data(), block.corners.front().data(), probe_, block.faces,
+            block.faces & ~coarse, floor_, limit_, bounds);
+        if (coarse != 0)
         {
-            collect(face, corners, distance - closest.distance_error);
+            add_coarse(index, coarse, bounds);
+            near &= ~coarse;
+        }
+        if (limit_ < limit_before)
+        {
+            nearest_block_ = index;
+        }
+        for (; near != 0; near &= near - 1)
+        {
+            const auto lane = static_cast<std::uint32_t>(std::countr_zero(near));
+            add_exact({index, lane, bounds.lower[lane]});
+        }
+        return true;
+    }
+
+    void add_coarse(std::uint32_t index, std::uint32_t lanes, const FaceBounds& bounds) noexcept
+    {
+        const BlockSide& side = tree_.side(index);
+        for (; lanes != 0; lanes &= lanes - 1)
+        {
+            const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
+            const float error = error_in_quanta(side.errors[lane]);
+            corner_ = std::min(corner_, bounds.corner[lane]);
+            limit_ = std::min(limit_, corner_);
+            // Rounded towards zero by less than the kernel's margin is wide.
+            const float lower = bounds.lower[lane] - error;
+            if (static_cast<double>(lower) < unproven_)
+            {
+                unproven_ = lower < bound() ? std::min(unproven_, coarse_gap(index, lane, error))
+                                            : static_cast<double>(lower);
+            }
         }
     }
 
-    void add_coarse(const Triangle& triangle, const ClosestPoint& closest, double error_m) noexcept
+    /// In double precision: the margin of single precision is wide on thin faces, and an answer
+    /// must not be open for it.
+    [[nodiscard]] double coarse_gap(std::uint32_t index, std::uint32_t lane,
+                                    float error) const noexcept
     {
-        const double distance = std::sqrt(closest.distance_sq);
-        unproven_ = std::min(unproven_, distance - closest.distance_error - error_m);
-        for (const Vec3& corner : triangle)
-        {
-            upper_ = std::min(upper_, (corner - center_).norm() * (1.0 + 4e-16));
-        }
+        const ClosestPoint closest = closest_point_on_triangle(
+            center_, to_triangle(block_triangle(tree_.block(index), lane)));
+        return (std::sqrt(closest.distance_sq) - closest.distance_error) / quantum_ -
+               static_cast<double>(error);
     }
 
-    /// Keeps the nearest kMaxLocalTriangles; the nearest dropped one ends the certified radius.
-    void collect(FaceId face, const std::array<Vec3f, 3>& corners, double distance) noexcept
+    void add_exact(const Candidate& candidate) noexcept
     {
-        if (surface_.count < kMaxLocalTriangles)
+        if (surface_ != nullptr && candidate.lower <= floor_)
         {
-            surface_.distances_m[surface_.count] = distance;
-            surface_.triangles[surface_.count++] = {face, corners};
+            collect(candidate);
+        }
+        if (candidate.lower > limit_)
+        {
             return;
         }
-        surface_.truncated = true;
-        auto& distances = surface_.distances_m;
-        const auto farthest = static_cast<std::size_t>(
-            std::max_element(distances.begin(), distances.end()) - distances.begin());
-        dropped_ = std::min(dropped_, std::max(distance, distances[farthest]));
-        if (distance < distances[farthest])
+        if (!candidates_.try_push_back(candidate))
         {
-            distances[farthest] = distance;
-            surface_.triangles[farthest] = {face, corners};
+            decide();
+            candidates_.push_back(candidate);
         }
     }
 
-    static constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    /// In double precision: the nearest of the faces that single precision cannot tell apart. Ties
+    /// go to the lowest face id, whatever the order of traversal.
+    void decide() noexcept
+    {
+        for (const Candidate& candidate : candidates_)
+        {
+            if (candidate.lower > limit_)
+            {
+                continue;
+            }
+            const Triangle triangle =
+                to_triangle(block_triangle(tree_.block(candidate.block), candidate.lane));
+            const ClosestPoint closest = closest_point_on_triangle(center_, triangle);
+            const double distance = std::sqrt(closest.distance_sq);
+            exact_lower_ = std::min(exact_lower_, distance - closest.distance_error);
+            upper_ = std::min(upper_, distance + closest.distance_error);
+            const FaceId face = tree_.face_of(tree_.side(candidate.block).prims[candidate.lane]);
+            if (nearest_face_.is_none() || closest.distance_sq < nearest_.distance_sq ||
+                (closest.distance_sq == nearest_.distance_sq && face < nearest_face_))
+            {
+                nearest_ = closest;
+                nearest_face_ = face;
+                nearest_block_ = candidate.block;
+            }
+        }
+        candidates_.clear();
+    }
+
+    /// Keeps the nearest kMaxLocalTriangles, as a heap once there are that many; the nearest that
+    /// was dropped ends the certified radius.
+    void collect(const Candidate& candidate) noexcept
+    {
+        LocalSurface& surface = *surface_;
+        const LocalTriangle triangle{tree_.side(candidate.block).prims[candidate.lane],
+                                     block_triangle(tree_.block(candidate.block), candidate.lane)};
+        const double distance = std::max(0.0, to_metres(candidate.lower));
+        if (surface.count < kMaxLocalTriangles)
+        {
+            surface.distances_m[surface.count] = distance;
+            surface.triangles[surface.count++] = triangle;
+            return;
+        }
+        if (!surface.truncated)
+        {
+            surface.truncated = true;
+            for (std::uint32_t i = kMaxLocalTriangles / 2; i-- > 0;)
+            {
+                sift_down(i);
+            }
+        }
+        const double farthest = surface.distances_m[0];
+        dropped_ = std::min(dropped_, static_cast<float>(std::max(distance, farthest) / quantum_));
+        if (distance < farthest)
+        {
+            surface.distances_m[0] = distance;
+            surface.triangles[0] = triangle;
+            sift_down(0);
+        }
+    }
+
+    void sift_down(std::uint32_t at) noexcept
+    {
+        LocalSurface& surface = *surface_;
+        for (;;)
+        {
+            std::uint32_t largest = at;
+            for (const std::uint32_t child : {2 * at + 1, 2 * at + 2})
+            {
+                if (child < surface.count &&
+                    surface.distances_m[child] > surface.distances_m[largest])
+                {
+                    largest = child;
+                }
+            }
+            if (largest == at)
+            {
+                return;
+            }
+            std::swap(surface.distances_m[at], surface.distances_m[largest]);
+            std::swap(surface.triangles[at], surface.triangles[largest]);
+            at = largest;
+        }
+    }
+
+    static constexpr std::size_t kCandidates = 64;
 
     const AbTree& tree_;
     Vec3 center_;
+    double quantum_;
     double reach_;
-    LocalSurface& surface_;
+    WalkBudget& budget_;
+    LocalSurface* surface_;
+    KernelProbe probe_;
+    float floor_; ///< Faces this near are looked at whatever else is found; in quanta, as are:
+    float limit_; ///< something of the surface is not farther than this, or the band;
+    float corner_{kInfiniteQuanta};  ///< the nearest corner of a coarse face;
+    float dropped_{kInfiniteQuanta}; ///< exact triangles in reach that were not kept are so far;
+    double unproven_{kInfinity};     ///< what is not known exactly is at least this far away.
+    StaticVector<Candidate, kCandidates> candidates_;
     double exact_lower_{kInfinity};
     double upper_{kInfinity};
-    double unproven_{kInfinity}; ///< Least distance at which something is not known exactly.
-    double dropped_{kInfinity};
-    double nearest_sq_{kInfinity};
+    ClosestPoint nearest_;
+    FaceId nearest_face_{};
+    std::uint32_t warm_{kNoNode};
+    std::uint32_t nearest_block_{kNoNode};
 };
+
+/// From where single precision does not reach: the box of everything says how far it is.
+DistanceAnswer answer_from_afar(const AbTree& tree, const Vec3& center_m, double reach_m) noexcept
+{
+    const Aabb box = tree.box();
+    DistanceAnswer answer;
+    double near_sq = 0.0;
+    double far_sq = 0.0;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+        const double at = center_m[static_cast<Eigen::Index>(axis)];
+        const double below = static_cast<double>(box.low[axis]) - at;
+        const double above = at - static_cast<double>(box.high[axis]);
+        const double gap = std::max({below, above, 0.0});
+        const double span = std::max(std::abs(below), std::abs(above));
+        near_sq += gap * gap;
+        far_sq += span * span;
+    }
+    answer.lower_m = tree.is_complete() ? std::sqrt(near_sq) * (1.0 - 1e-15) : 0.0;
+    answer.upper_m = std::sqrt(far_sq) * (1.0 + 1e-15);
+    answer.kind = answer.lower_m > reach_m ? AnswerKind::decided : AnswerKind::bracket;
+    return answer;
+}
+
+/// Not inlined: a rehearsal must run the same machine code as the query.
+[[gnu::noinline]] DistanceAnswer search(const AbTree& tree, const Vec3& center_m, double reach_m,
+                                        double band_m, QueryMemory& memory, WalkBudget& budget,
+                                        LocalSurface* surface) noexcept
+{
+    if (is_beyond_kernels(center_m, tree.quantum_m()))
+    {
+        return answer_from_afar(tree, center_m, reach_m);
+    }
+    SurfaceSearch search(tree, center_m, reach_m, band_m, budget, surface);
+    search.run(memory);
+    return search.answer();
+}
 
 } // namespace
 
-[[gnu::noinline]] void gather_surface(const AbTree& tree, const Vec3& center_m, double reach_m,
-                                      WalkBudget& budget, LocalSurface& surface) noexcept
+void gather_surface(const AbTree& tree, const Vec3& center_m, double reach_m, QueryMemory& memory,
+                    WalkBudget& budget, LocalSurface& surface) noexcept
 {
-    SurfaceGatherer gatherer(tree, center_m, reach_m, surface);
-    TreeWalk walk(tree, center_m, budget);
-    for (std::uint32_t block = walk.next_block(gatherer.bound_sq(), false); block != kNoNode;
-         block = walk.next_block(gatherer.bound_sq(), false))
-    {
-        if (!budget.take_triangles(face_count(tree.block(block))))
-        {
-            // The block itself was taken off the stack: its parent's bound covers it.
-            const WalkItem unread{TreeRef::to_block(block), 0.0};
-            gatherer.add_unvisited({&unread, 1});
-            break;
-        }
-        gatherer.test_block(block);
-    }
-    gatherer.add_unvisited(walk.left());
-    gatherer.finish();
+    surface.center_m = center_m;
+    surface.count = 0;
+    surface.truncated = false;
+    surface.answer = search(tree, center_m, reach_m, kInfinity, memory, budget, &surface);
+}
+
+DistanceAnswer query_distance(const AbTree& tree, const Vec3& center_m, double band_m,
+                              QueryMemory& memory, WalkBudget& budget) noexcept
+{
+    return search(tree, center_m, 0.0, band_m, memory, budget, nullptr);
 }
 
 } // namespace tactus

@@ -4,11 +4,13 @@
 
 #include "rt_core/abtree/ab_tree.hpp"
 #include "rt_core/base/static_vector.hpp"
+#include "rt_core/kernels/kernels.hpp"
 #include "rt_core/limits.hpp"
-#include "rt_core/math/vec3.hpp"
 
-#include <array>
+#include <bit>
 #include <cstdint>
+#include <span>
+#include <utility>
 
 namespace tactus
 {
@@ -20,11 +22,13 @@ struct WalkBudget
     std::uint32_t triangles{0}; ///< Triangles that may still be tested.
     std::uint32_t nodes_visited{0};
     std::uint32_t triangles_tested{0};
+    bool is_spent{false}; ///< Something was refused.
 
     [[nodiscard]] bool take_node() noexcept
     {
         if (nodes_visited == nodes)
         {
+            is_spent = true;
             return false;
         }
         ++nodes_visited;
@@ -34,6 +38,7 @@ struct WalkBudget
     {
         if (triangles - triangles_tested < count)
         {
+            is_spent = true;
             return false;
         }
         triangles_tested += count;
@@ -41,37 +46,36 @@ struct WalkBudget
     }
 };
 
-/// A box's squared distance is a sum of three rounded squares: never more than this too large.
-inline constexpr double kBoxDistanceSlack = 1.0 - 1e-15;
-
-/// Something still to be visited and a lower bound on its distance, squared.
+/// Something still to be visited and a lower bound on its distance, in quanta.
 struct WalkItem
 {
     TreeRef ref;
-    double distance_sq{0.0};
+    float gap{0.0F};
 };
 
-/// A depth-first traversal of the blocks near a point. The nearest child is entered first.
+/// A depth-first traversal of the blocks near a point, in a BasicAbTree of any volume. The nearest
+/// child is entered first.
+template <typename Tree>
 class TreeWalk
 {
 public:
-    TreeWalk(const AbTree& tree, const Vec3& center_m, WalkBudget& budget) noexcept
-        : tree_(tree), center_{center_m.x(), center_m.y(), center_m.z()}, budget_(budget)
+    TreeWalk(const Tree& tree, const KernelProbe& probe, WalkBudget& budget) noexcept
+        : tree_(tree), probe_(probe), budget_(budget)
     {
         if (!tree.root().is_none())
         {
-            stack_.push_back({tree.root(), 0.0});
+            stack_.push_back({tree.root(), 0.0F});
         }
     }
 
-    /// The next block whose box may hold something nearer than sqrt(bound_sq), or kNoNode when
+    /// The next block whose box may hold something not farther than `bound` quanta, or kNoNode when
     /// there is none or the budget is spent. With `coarse_only`, exact subtrees are left out.
-    [[nodiscard]] std::uint32_t next_block(double bound_sq, bool coarse_only) noexcept
+    [[nodiscard]] std::uint32_t next_block(float bound, bool coarse_only) noexcept
     {
         while (!stack_.empty())
         {
             const WalkItem item = stack_[stack_.size() - 1];
-            if (item.distance_sq * kBoxDistanceSlack > bound_sq)
+            if (item.gap > bound)
             {
                 stack_.pop_back();
                 continue;
@@ -85,58 +89,43 @@ public:
             {
                 return item.ref.index();
             }
-            push_children(tree_.node(item.ref.index()), bound_sq, coarse_only);
+            push_children(tree_.node(item.ref.index()), bound, coarse_only);
         }
         return kNoNode;
     }
 
     /// What was not visited when the budget was spent; empty after a complete traversal. Each
-    /// item's bound is a lower bound for everything in it.
+    /// item's gap is a lower bound for everything in it.
     [[nodiscard]] std::span<const WalkItem> left() const noexcept { return stack_.view(); }
 
 private:
-    void push_children(const AbNode& node, double bound_sq, bool coarse_only) noexcept
+    void push_children(const typename Tree::Node& node, float bound, bool coarse_only) noexcept
     {
-        std::array<double, kNodeChildren> distance_sq{};
-        for (std::size_t axis = 0; axis < 3; ++axis)
-        {
-            for (std::size_t i = 0; i < kNodeChildren; ++i)
-            {
-                const double below = static_cast<double>(node.low[axis][i]) - center_[axis];
-                const double above = center_[axis] - static_cast<double>(node.high[axis][i]);
-                const double outside = below > above ? below : above;
-                const double gap = outside > 0.0 ? outside : 0.0;
-                distance_sq[i] += gap * gap;
-            }
-        }
+        alignas(32) std::array<float, kNodeChildren> gaps; // NOLINT: the kernel fills it.
         const std::uint32_t wanted = coarse_only ? node.mask & node.coarse : node.mask;
-        std::uint32_t nearest = kNodeChildren;
-        for (std::uint32_t used = wanted; used != 0; used &= used - 1)
+        std::uint32_t near = Tree::Volume::child_gaps(tree_.kernels(), node.volumes, probe_, wanted,
+                                                      bound, gaps.data());
+        const std::size_t first = stack_.size();
+        for (std::size_t nearest = first; near != 0; near &= near - 1)
         {
-            const auto i = static_cast<std::uint32_t>(std::countr_zero(used));
-            if (distance_sq[i] * kBoxDistanceSlack > bound_sq)
+            const auto child = static_cast<std::uint32_t>(std::countr_zero(near));
+            const TreeRef ref = node.children[child];
+            tree_.prefetch(ref);
+            stack_.push_back({ref, gaps[child]});
+            const std::size_t top = stack_.size() - 1;
+            if (top == first || gaps[child] < stack_[nearest].gap)
             {
-                continue;
+                nearest = top;
             }
-            if (nearest == kNodeChildren || distance_sq[i] < distance_sq[nearest])
+            if ((near & (near - 1)) == 0)
             {
-                if (nearest != kNodeChildren)
-                {
-                    stack_.push_back({node.children[nearest], distance_sq[nearest]});
-                }
-                nearest = i;
-                continue;
+                std::swap(stack_[nearest], stack_[top]);
             }
-            stack_.push_back({node.children[i], distance_sq[i]});
-        }
-        if (nearest != kNodeChildren)
-        {
-            stack_.push_back({node.children[nearest], distance_sq[nearest]});
         }
     }
 
-    const AbTree& tree_;
-    std::array<double, 3> center_;
+    const Tree& tree_;
+    const KernelProbe& probe_;
     WalkBudget& budget_;
     StaticVector<WalkItem, kTreeStack> stack_;
 };

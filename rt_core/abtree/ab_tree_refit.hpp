@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/abtree/ab_tree.hpp"
+
+/// Refit of the AB-Tree: included where the tree is instantiated for a volume.
+namespace tactus
+{
+
+template <typename Volume>
+typename BasicAbTree<Volume>::RefitWork BasicAbTree<Volume>::refit() noexcept
+{
+    RefitWork work;
+    // Nodes first: their list shares its links with those of the levels.
+    while (marked_node_ != kNoNode)
+    {
+        const std::uint32_t index = marked_node_;
+        marked_node_ = nodes_[index].link;
+        nodes_[index].is_marked = false;
+        if (nodes_[index].in_use)
+        {
+            enqueue(index);
+        }
+    }
+    while (marked_block_ != kNoNode)
+    {
+        const std::uint32_t index = marked_block_;
+        BlockSide& side = sides_[index];
+        marked_block_ = side.link;
+        side.is_marked = false;
+        if (side.in_use)
+        {
+            ++work.blocks;
+            pass_up(side.parent, side.child, refitted_box(index), side.coarse != 0);
+        }
+    }
+    for (std::uint32_t& head : dirty_heads_)
+    {
+        // A parent's level is higher than its children's, so it is reached after all of them.
+        while (head != kNoNode)
+        {
+            Node& node = nodes_[head];
+            head = node.link;
+            node.is_queued = false;
+            ++work.nodes;
+            if (node.parent != kNoNode)
+            {
+                pass_up(node.parent, node.child,
+                        Volume::of_children(*kernels_, node.volumes, node.mask), node.coarse != 0);
+            }
+        }
+    }
+    return work;
+}
+
+template <typename Volume>
+typename Volume::Box BasicAbTree<Volume>::refitted_box(std::uint32_t index) noexcept
+{
+    BlockGeometry& block = blocks_[index];
+    drop_unused_vertices(block);
+    const Box box =
+        Volume::of_vertices(*kernels_, block.coordinates.front().data(), block.vertices);
+    const BlockSide& side = sides_[index];
+    return side.coarse == 0 ? box : box.inflated(largest_error_quanta(side) * quantum_m_);
+}
+
+template <typename Volume>
+void BasicAbTree<Volume>::pass_up(std::uint32_t parent, std::uint32_t child, const Box& box,
+                                  bool coarse) noexcept
+{
+    if (parent == kNoNode)
+    {
+        return;
+    }
+    Node& node = nodes_[parent];
+    const bool was_coarse = ((std::uint32_t{node.coarse} >> child) & 1U) != 0;
+    if (node.box_of(child) == box && was_coarse == coarse)
+    {
+        return;
+    }
+    node.volumes.set(child, box);
+    node.set_coarse(child, coarse);
+    enqueue(parent);
+}
+
+/// Into the list of what waits for refit, unless it is there.
+template <typename Volume>
+void BasicAbTree<Volume>::mark(TreeRef ref) noexcept
+{
+    const std::uint32_t index = ref.index();
+    if (ref.is_block())
+    {
+        BlockSide& side = sides_[index];
+        if (!side.is_marked)
+        {
+            side.is_marked = true;
+            side.link = std::exchange(marked_block_, index);
+        }
+        return;
+    }
+    Node& node = nodes_[index];
+    if (!node.is_marked)
+    {
+        node.is_marked = true;
+        node.link = std::exchange(marked_node_, index);
+    }
+}
+
+/// Into refit's list of the node's level, unless it is there.
+template <typename Volume>
+void BasicAbTree<Volume>::enqueue(std::uint32_t index) noexcept
+{
+    Node& node = nodes_[index];
+    if (!node.is_queued)
+    {
+        node.is_queued = true;
+        node.link = std::exchange(dirty_heads_[node.shift / 3U], index);
+    }
+}
+
+template <typename Volume>
+typename Volume::Box BasicAbTree<Volume>::box() const noexcept
+{
+    if (root_.is_none())
+    {
+        return Box{};
+    }
+    const std::uint32_t index = root_.index();
+    if (!root_.is_block())
+    {
+        return Volume::of_children(*kernels_, nodes_[index].volumes, nodes_[index].mask);
+    }
+    const BlockGeometry& block = blocks_[index];
+    const Box box =
+        Volume::of_vertices(*kernels_, block.coordinates.front().data(), block.vertices);
+    return box.inflated(largest_error_quanta(sides_[index]) * quantum_m_);
+}
+
+template <typename Volume>
+NodeStatus BasicAbTree<Volume>::status(TreeRef ref) const noexcept
+{
+    const std::uint32_t index = ref.index();
+    const bool in_use = ref.is_block() ? sides_[index].in_use : nodes_[index].in_use;
+    if (!in_use)
+    {
+        return NodeStatus::inactive;
+    }
+    const bool marked = ref.is_block() ? sides_[index].is_marked : nodes_[index].is_marked;
+    return marked ? NodeStatus::deformed : NodeStatus::active;
+}
+
+} // namespace tactus

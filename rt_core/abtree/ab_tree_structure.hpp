@@ -1,0 +1,647 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/abtree/ab_tree.hpp"
+#include "rt_core/base/static_vector.hpp"
+
+/// How the AB-Tree grows and shrinks: included where the tree is instantiated for a volume.
+namespace tactus
+{
+
+namespace detail
+{
+
+/// Sibling cells with at most this many faces together become one block again; the gap to the 16
+/// at which a block splits keeps a face that comes and goes from splitting it each time.
+inline constexpr std::uint32_t kMergeFaces = 10;
+
+/// The highest octal digit in which two different paths differ, as its shift.
+inline std::uint32_t digit_shift(std::uint64_t a, std::uint64_t b) noexcept
+{
+    const auto bit = static_cast<std::uint32_t>(63 - std::countl_zero(a ^ b));
+    return bit / 3 * 3;
+}
+
+} // namespace detail
+
+template <typename Volume>
+BasicAbTree<Volume>::BasicAbTree(Arena& arena, const Capacities& capacities, float quantum_m,
+                                 const Kernels& kernels) noexcept
+    : capacities_(capacities)
+    , quantum_m_(quantum_m)
+    , kernels_(&kernels)
+    , blocks_(arena.take<BlockGeometry>(capacities.blocks))
+    , sides_(arena.take<BlockSide>(capacities.blocks))
+    , nodes_(arena.take<Node>(capacities.nodes))
+    , prims_(arena.take<Prim>(capacities.prims))
+{
+    dirty_heads_.fill(kNoNode);
+    if (arena.is_measuring())
+    {
+        return;
+    }
+    for (std::uint32_t i = capacities.blocks; i-- > 0;)
+    {
+        free_block(i);
+    }
+    for (std::uint32_t i = capacities.nodes; i-- > 0;)
+    {
+        free_node(i);
+    }
+}
+
+template <typename Volume>
+void BasicAbTree<Volume>::apply(const ChangedFace& change) noexcept
+{
+    const Prim& prim = prims_[change.prim.value];
+    if (leaf_of(change.prim) != kNoLeaf && prim.face == change.face)
+    {
+        update(change);
+        return;
+    }
+    if (!prim.face.is_none())
+    {
+        remove(change.prim);
+    }
+    if (!change.face.is_none())
+    {
+        insert(change);
+    }
+}
+
+template <typename Volume>
+void BasicAbTree<Volume>::insert(const ChangedFace& face) noexcept
+{
+    TACTUS_ASSERT(prims_[face.prim.value].leaf == kNoLeaf);
+    prims_[face.prim.value] = Prim{face.face, face.bucket, kNoLeaf};
+    if (has_reserve())
+    {
+        place(face);
+    }
+    else
+    {
+        keep_unplaced(face.prim);
+    }
+}
+
+template <typename Volume>
+void BasicAbTree<Volume>::move_corner(PrimId prim, std::uint32_t corner, const Vec3f& position_m,
+                                      ErrorCode error) noexcept
+{
+    const std::uint32_t leaf = leaf_of(prim);
+    if (leaf == kNoLeaf)
+    {
+        return;
+    }
+    const std::uint32_t block = leaf / kBlockFaces;
+    const std::uint32_t lane = leaf % kBlockFaces;
+    if (move_corner_in_block(blocks_[block], sides_[block], lane, corner, position_m, error))
+    {
+        mark(TreeRef::to_block(block));
+        return;
+    }
+    ChangedFace face = describe(block, lane);
+    face.corners_m[corner] = position_m;
+    face.error = error;
+    remove_from_block(blocks_[block], sides_[block], lane);
+    reinsert(block, face);
+}
+
+template <typename Volume>
+void BasicAbTree<Volume>::remove(PrimId prim) noexcept
+{
+    if (leaf_of(prim) == kNoLeaf)
+    {
+        drop_unplaced(prim);
+    }
+    else
+    {
+        take_out(prim);
+    }
+    prims_[prim.value] = Prim{};
+}
+
+template <typename Volume>
+void BasicAbTree<Volume>::move_vertex(std::uint32_t block, std::uint32_t row,
+                                      const Vec3f& position_m) noexcept
+{
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+        blocks_[block].coordinates[axis][row] = position_m[axis];
+    }
+    mark(TreeRef::to_block(block));
+}
+
+template <typename Volume>
+void BasicAbTree<Volume>::place(const ChangedFace& face) noexcept
+{
+    if (root_.is_none())
+    {
+        const std::uint32_t block = take_block();
+        root_ = TreeRef::to_block(block);
+        const bool added = try_add(block, face);
+        TACTUS_ASSERT(added);
+        return;
+    }
+    insert_below(root_, face, path_of(face.face, face.bucket));
+}
+
+template <typename Volume>
+void BasicAbTree<Volume>::insert_below(TreeRef ref, const ChangedFace& face,
+                                       std::uint64_t path) noexcept
+{
+    for (std::uint32_t level = 0; level <= kLevels; ++level)
+    {
+        if (ref.is_block())
+        {
+            insert_into_block(ref.index(), face);
+            return;
+        }
+        const Node& node = nodes_[ref.index()];
+        if (!node.holds(path))
+        {
+            insert_beside(ref.index(), face, path);
+            return;
+        }
+        const std::uint32_t child = node.child_of(node.digit_of(path));
+        if (child == Node::kNoChild)
+        {
+            insert_at_free_digit(ref.index(), face, node.digit_of(path));
+            return;
+        }
+        ref = node.children[child];
+    }
+    TACTUS_ASSERT(false && "a path has no more digits than levels");
+}
+
+/// The path leaves the tree above `node`: a new node takes both.
+template <typename Volume>
+void BasicAbTree<Volume>::insert_beside(std::uint32_t node, const ChangedFace& face,
+                                        std::uint64_t path) noexcept
+{
+    const std::uint64_t prefix = nodes_[node].prefix;
+    const std::uint32_t above = take_node(detail::digit_shift(path, prefix), path);
+    const std::uint32_t block = take_block();
+    replace(TreeRef::to_node(node), TreeRef::to_node(above));
+    attach(above, {nodes_[above].digit_of(prefix), 1}, TreeRef::to_node(node));
+    attach(above, {nodes_[above].digit_of(path), 1}, TreeRef::to_block(block));
+    const bool added = try_add(block, face);
+    TACTUS_ASSERT(added);
+}
+
+/// Prefers to widen a block beside the free digit to the binary cell that holds both.
+template <typename Volume>
+void BasicAbTree<Volume>::insert_at_free_digit(std::uint32_t node_index, const ChangedFace& face,
+                                               std::uint32_t digit) noexcept
+{
+    Node& node = nodes_[node_index];
+    for (std::uint32_t width = 2; width <= kNodeChildren; width *= 2)
+    {
+        const DigitRange cell{digit & ~(width - 1), width};
+        const std::uint32_t beside = node.only_child_in(cell);
+        if (beside == Node::kNoChild)
+        {
+            continue;
+        }
+        const bool is_block = beside != Node::kSeveral && node.children[beside].is_block();
+        if (!is_block || !try_add(node.children[beside].index(), face))
+        {
+            break;
+        }
+        node.assign(cell, beside);
+        return;
+    }
+    const std::uint32_t block = take_block();
+    attach(node_index, {digit, 1}, TreeRef::to_block(block));
+    const bool added = try_add(block, face);
+    TACTUS_ASSERT(added);
+}
+
+template <typename Volume>
+void BasicAbTree<Volume>::insert_into_block(std::uint32_t block, const ChangedFace& face) noexcept
+{
+    if (!try_add(block, face))
+    {
+        split_block(block, face);
+    }
+}
+
+template <typename Volume>
+void BasicAbTree<Volume>::update(const ChangedFace& face) noexcept
+{
+    const std::uint32_t leaf = prims_[face.prim.value].leaf;
+    const std::uint32_t block = leaf / kBlockFaces;
+    remove_from_block(blocks_[block], sides_[block], leaf % kBlockFaces);
+    if (!try_add(block, face))
+    {
+        reinsert(block, face);
+    }
+}
+
+/// The face has left its lane of `block`, where there are not enough rows for it now.
+template <typename Volume>
+void BasicAbTree<Volume>::reinsert(std::uint32_t block, const ChangedFace& face) noexcept
+{
+    prims_[face.prim.value].leaf = kNoLeaf;
+    mark(TreeRef::to_block(block));
+    if (has_reserve())
+    {
+        split_block(block, face);
+        return;
+    }
+    keep_unplaced(face.prim);
+    if (blocks_[block].faces == 0)
+    {
+        drop_empty(block);
+    }
+}
+
+template <typename Volume>
+void BasicAbTree<Volume>::take_out(PrimId prim) noexcept
+{
+    const std::uint32_t leaf = prims_[prim.value].leaf;
+    const std::uint32_t block = leaf / kBlockFaces;
+    remove_from_block(blocks_[block], sides_[block], leaf % kBlockFaces);
+    if (blocks_[block].faces != 0)
+    {
+        mark(TreeRef::to_block(block));
+        merge_upward(block);
+        return;
+    }
+    drop_empty(block);
+}
+
+template <typename Volume>
+void BasicAbTree<Volume>::drop_empty(std::uint32_t block) noexcept
+{
+    const std::uint32_t parent = sides_[block].parent;
+    const std::uint32_t child = sides_[block].child;
+    free_block(block);
+    if (parent == kNoNode)
+    {
+        root_ = TreeRef{};
+        return;
+    }
+    detach(parent, child);
+    if (nodes_[parent].child_count() == 1)
+    {
+        hoist_only_child(parent);
+    }
+}
+
+template <typename Volume>
+bool BasicAbTree<Volume>::try_add(std::uint32_t block, const ChangedFace& face) noexcept
+{
+    const std::uint32_t lane = add_to_block(blocks_[block], sides_[block], face);
+    if (lane == kBlockFaces)
+    {
+        return false;
+    }
+    prims_[face.prim.value].leaf = block * kBlockFaces + lane;
+    mark(TreeRef::to_block(block));
+    return true;
+}
+
+/// The block's faces and one more, which do not fit together, go into smaller binary cells.
+template <typename Volume>
+void BasicAbTree<Volume>::split_block(std::uint32_t block, const ChangedFace& face) noexcept
+{
+    std::array<Keyed, kBlockFaces + 1> faces{};
+    std::uint32_t count = 0;
+    const auto add_sorted = [&](const ChangedFace& added)
+    {
+        const std::uint64_t path = path_of(added.face, added.bucket);
+        std::uint32_t at = count++;
+        for (; at > 0 && faces[at - 1].path > path; --at)
+        {
+            faces[at] = faces[at - 1];
+        }
+        faces[at] = {path, added};
+    };
+    for (std::uint32_t lanes = blocks_[block].faces; lanes != 0; lanes &= lanes - 1)
+    {
+        add_sorted(describe(block, static_cast<std::uint32_t>(std::countr_zero(lanes))));
+    }
+    add_sorted(face);
+    const std::uint32_t parent = sides_[block].parent;
+    const std::uint32_t child = sides_[block].child;
+    free_block(block);
+    if (parent == kNoNode)
+    {
+        root_ = TreeRef{};
+    }
+    else
+    {
+        detach(parent, child);
+    }
+    distribute({faces.data(), count}, {0, count, parent, kNodeChildren});
+}
+
+/// Places sorted faces below `cell.parent`, halving by the highest bit in which they differ until
+/// each part fits a block. Every halving makes two smaller parts, so at most 16 are on the stack.
+template <typename Volume>
+void BasicAbTree<Volume>::distribute(std::span<const Keyed> faces, Cell first) noexcept
+{
+    StaticVector<Cell, kBlockFaces + 1> stack;
+    stack.push_back(first);
+    while (!stack.empty())
+    {
+        Cell cell = stack.pop_back();
+        const std::uint32_t count = cell.end - cell.begin;
+        if (cell.width < kNodeChildren && try_build_block(faces.subspan(cell.begin, count), cell))
+        {
+            continue;
+        }
+        const std::uint64_t low = faces[cell.begin].path;
+        const auto bit =
+            static_cast<std::uint32_t>(63 - std::countl_zero(low ^ faces[cell.end - 1].path));
+        const std::uint32_t shift = bit / 3 * 3;
+        if (cell.parent == kNoNode || nodes_[cell.parent].shift != shift)
+        {
+            const std::uint32_t node = take_node(shift, low);
+            if (cell.parent == kNoNode)
+            {
+                root_ = TreeRef::to_node(node);
+            }
+            else
+            {
+                attach(cell.parent, {nodes_[cell.parent].digit_of(low), 1}, TreeRef::to_node(node));
+            }
+            cell.parent = node;
+        }
+        std::uint32_t middle = cell.begin;
+        while (((faces[middle].path >> bit) & 1U) == 0)
+        {
+            ++middle;
+        }
+        const std::uint32_t width = 1U << (bit - shift);
+        stack.push_back({middle, cell.end, cell.parent, width});
+        stack.push_back({cell.begin, middle, cell.parent, width});
+    }
+}
+
+template <typename Volume>
+bool BasicAbTree<Volume>::try_build_block(std::span<const Keyed> faces, const Cell& cell) noexcept
+{
+    if (faces.size() > kBlockFaces)
+    {
+        return false;
+    }
+    const std::uint32_t block = take_block();
+    for (const Keyed& keyed : faces)
+    {
+        if (!try_add(block, keyed.face))
+        {
+            free_block(block);
+            return false;
+        }
+    }
+    const std::uint32_t digit = nodes_[cell.parent].digit_of(faces.front().path);
+    attach(cell.parent, {digit & ~(cell.width - 1), cell.width}, TreeRef::to_block(block));
+    return true;
+}
+
+/// A block that lost a face takes in its sibling cell while both fit into kMergeFaces.
+template <typename Volume>
+void BasicAbTree<Volume>::merge_upward(std::uint32_t block) noexcept
+{
+    while (sides_[block].parent != kNoNode && face_count(blocks_[block]) <= detail::kMergeFaces)
+    {
+        const std::uint32_t parent = sides_[block].parent;
+        Node& node = nodes_[parent];
+        const DigitRange own = node.range_of(sides_[block].child);
+        const DigitRange sibling{own.first ^ own.width, own.width};
+        const std::uint32_t other = node.only_child_in(sibling);
+        if (other == Node::kSeveral)
+        {
+            return;
+        }
+        if (other != Node::kNoChild)
+        {
+            const TreeRef ref = node.children[other];
+            if (!ref.is_block() || !try_absorb(block, ref.index()))
+            {
+                return;
+            }
+            detach(parent, other);
+        }
+        node.assign(sibling, sides_[block].child);
+        if (node.child_count() == 1)
+        {
+            hoist_only_child(parent);
+        }
+    }
+}
+
+/// Moves all faces of `other` into `block` and frees it; nothing changes when they do not fit.
+template <typename Volume>
+bool BasicAbTree<Volume>::try_absorb(std::uint32_t block, std::uint32_t other) noexcept
+{
+    if (face_count(blocks_[block]) + face_count(blocks_[other]) > detail::kMergeFaces)
+    {
+        return false;
+    }
+    BlockGeometry geometry = blocks_[block];
+    BlockSide side = sides_[block];
+    std::array<std::uint32_t, kBlockFaces> lanes{};
+    for (std::uint32_t used = blocks_[other].faces; used != 0; used &= used - 1)
+    {
+        const auto lane = static_cast<std::uint32_t>(std::countr_zero(used));
+        lanes[lane] = add_to_block(geometry, side, describe(other, lane));
+        if (lanes[lane] == kBlockFaces)
+        {
+            return false;
+        }
+    }
+    for (std::uint32_t used = blocks_[other].faces; used != 0; used &= used - 1)
+    {
+        const auto lane = static_cast<std::uint32_t>(std::countr_zero(used));
+        prims_[sides_[other].prims[lane].value].leaf = block * kBlockFaces + lanes[lane];
+    }
+    blocks_[block] = geometry;
+    sides_[block] = side;
+    mark(TreeRef::to_block(block));
+    free_block(other);
+    return true;
+}
+
+template <typename Volume>
+void BasicAbTree<Volume>::hoist_only_child(std::uint32_t node) noexcept
+{
+    const auto child = static_cast<std::uint32_t>(std::countr_zero(nodes_[node].mask));
+    const TreeRef ref = nodes_[node].children[child];
+    replace(TreeRef::to_node(node), ref);
+    free_node(node);
+    mark(ref);
+}
+
+template <typename Volume>
+void BasicAbTree<Volume>::attach(std::uint32_t node_index, DigitRange digits, TreeRef ref) noexcept
+{
+    Node& node = nodes_[node_index];
+    const auto child = static_cast<std::uint32_t>(std::countr_one(node.mask));
+    TACTUS_ASSERT(child < kNodeChildren);
+    node.mask = static_cast<std::uint8_t>(node.mask | (1U << child));
+    node.children[child] = ref;
+    node.volumes.set(child, Box{});
+    node.set_coarse(child, false);
+    TACTUS_ASSERT(node.only_child_in(digits) == Node::kNoChild);
+    node.assign(digits, child);
+    set_link(ref, node_index, child);
+    mark(ref);
+    mark(TreeRef::to_node(node_index));
+}
+
+template <typename Volume>
+void BasicAbTree<Volume>::detach(std::uint32_t node_index, std::uint32_t child) noexcept
+{
+    Node& node = nodes_[node_index];
+    node.mask = static_cast<std::uint8_t>(node.mask & ~(1U << child));
+    node.children[child] = TreeRef{};
+    node.set_coarse(child, false);
+    node.assign(node.range_of(child), Node::kNoChild);
+    mark(TreeRef::to_node(node_index));
+}
+
+/// Puts `new_ref` where `old_ref` hangs: below the same child of the same parent, or at the root.
+template <typename Volume>
+void BasicAbTree<Volume>::replace(TreeRef old_ref, TreeRef new_ref) noexcept
+{
+    const std::uint32_t parent = nodes_[old_ref.index()].parent;
+    const std::uint32_t child = nodes_[old_ref.index()].child;
+    set_link(new_ref, parent, child);
+    if (parent == kNoNode)
+    {
+        root_ = new_ref;
+        return;
+    }
+    nodes_[parent].children[child] = new_ref;
+    mark(TreeRef::to_node(parent));
+}
+
+template <typename Volume>
+void BasicAbTree<Volume>::set_link(TreeRef ref, std::uint32_t parent, std::uint32_t child) noexcept
+{
+    const auto child_byte = static_cast<std::uint8_t>(child);
+    if (ref.is_block())
+    {
+        sides_[ref.index()].parent = parent;
+        sides_[ref.index()].child = child_byte;
+    }
+    else
+    {
+        nodes_[ref.index()].parent = parent;
+        nodes_[ref.index()].child = child_byte;
+    }
+}
+
+template <typename Volume>
+ChangedFace BasicAbTree<Volume>::describe(std::uint32_t block, std::uint32_t lane) const noexcept
+{
+    const PrimId prim = sides_[block].prims[lane];
+    const Prim& known = prims_[prim.value];
+    return {prim, known.face, known.bucket, sides_[block].errors[lane],
+            block_triangle(blocks_[block], lane)};
+}
+
+template <typename Volume>
+std::uint64_t BasicAbTree<Volume>::path_of(FaceId face, std::uint32_t bucket) noexcept
+{
+    // Multiplying by an odd number is a bijection, so paths of different faces differ; it spreads
+    // neighbouring ids over the upper bits, which are looked at first.
+    const std::uint32_t mixed = face.value * 0x9E37'79B9U;
+    // The bucket begins on a digit: else its lowest bit would share one with the id's, and every
+    // second node would be half empty.
+    return (std::uint64_t{bucket} << 33U) | (std::uint64_t{mixed} << 1U);
+}
+
+template <typename Volume>
+bool BasicAbTree<Volume>::has_room_for(std::uint32_t changed_faces) const noexcept
+{
+    // One changed face splits one block in the ordinary case; the reserve covers the worst one.
+    return free_block_count_ >= changed_faces + kReserve &&
+           free_node_count_ >= changed_faces + kReserve;
+}
+
+template <typename Volume>
+std::uint32_t BasicAbTree<Volume>::take_block() noexcept
+{
+    TACTUS_ASSERT(free_block_count_ > 0);
+    const std::uint32_t block = free_block_;
+    BlockSide& side = sides_[block];
+    free_block_ = side.parent;
+    --free_block_count_;
+    blocks_[block].faces = 0;
+    blocks_[block].vertices = 0;
+    const std::uint32_t link = side.link;
+    const bool is_marked = side.is_marked;
+    side = BlockSide{};
+    side.in_use = true;
+    side.link = link;
+    side.is_marked = is_marked;
+    blocks_used_max_ = blocks_used() > blocks_used_max_ ? blocks_used() : blocks_used_max_;
+    return block;
+}
+
+template <typename Volume>
+std::uint32_t BasicAbTree<Volume>::take_node(std::uint32_t shift, std::uint64_t prefix) noexcept
+{
+    TACTUS_ASSERT(free_node_count_ > 0);
+    const std::uint32_t index = free_node_;
+    Node& node = nodes_[index];
+    free_node_ = node.parent;
+    --free_node_count_;
+    const std::uint32_t link = node.link;
+    const bool is_marked = node.is_marked;
+    node = Node{};
+    node.shift = static_cast<std::uint8_t>(shift);
+    node.prefix = prefix;
+    node.in_use = true;
+    node.link = link;
+    node.is_marked = is_marked;
+    nodes_used_max_ = nodes_used() > nodes_used_max_ ? nodes_used() : nodes_used_max_;
+    return index;
+}
+
+template <typename Volume>
+void BasicAbTree<Volume>::free_block(std::uint32_t block) noexcept
+{
+    sides_[block].in_use = false;
+    blocks_[block].faces = 0;
+    sides_[block].parent = std::exchange(free_block_, block);
+    ++free_block_count_;
+}
+
+template <typename Volume>
+void BasicAbTree<Volume>::free_node(std::uint32_t node) noexcept
+{
+    nodes_[node].in_use = false;
+    nodes_[node].parent = std::exchange(free_node_, node);
+    ++free_node_count_;
+}
+
+template <typename Volume>
+void BasicAbTree<Volume>::keep_unplaced(PrimId prim) noexcept
+{
+    prims_[prim.value].leaf = kUnplaced | std::exchange(first_unplaced_, prim.value);
+}
+
+template <typename Volume>
+void BasicAbTree<Volume>::drop_unplaced(PrimId prim) noexcept
+{
+    const std::uint32_t after = prims_[prim.value].leaf & ~kUnplaced;
+    if (first_unplaced_ == prim.value)
+    {
+        first_unplaced_ = after;
+        return;
+    }
+    std::uint32_t before = first_unplaced_;
+    while ((prims_[before].leaf & ~kUnplaced) != prim.value)
+    {
+        before = prims_[before].leaf & ~kUnplaced;
+    }
+    prims_[before].leaf = kUnplaced | after;
+}
+
+} // namespace tactus

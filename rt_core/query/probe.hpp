@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/kernels/kernels.hpp"
+#include "rt_core/math/rounding.hpp"
+#include "rt_core/math/vec3.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tactus
+{
+
+/// A point farther than this from the origin, in quanta, is beyond the kernels: their squares would
+/// leave single precision. A model has at most 2^24 quanta a side.
+inline constexpr double kFarQuanta = 0x1p36;
+
+[[nodiscard]] inline bool is_beyond_kernels(const Vec3& point_m, float quantum_m) noexcept
+{
+    // Written so that NaN is beyond, too.
+    return !(point_m.cwiseAbs().maxCoeff() < kFarQuanta * static_cast<double>(quantum_m));
+}
+
+/// `point_m` in the model's frame, not is_beyond_kernels().
+[[nodiscard]] inline KernelProbe make_probe(const Vec3& point_m, float quantum_m) noexcept
+{
+    KernelProbe probe{};
+    double largest = 0.0;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        const double value = point_m[axis];
+        const auto high = static_cast<float>(value);
+        probe.high[axis] = high;
+        probe.low[axis] = static_cast<float>(value - static_cast<double>(high));
+        largest = std::max(largest, std::abs(value));
+    }
+    probe.scale = 1.0F / quantum_m;
+    // Two roundings leave less than 2^-48 of each coordinate.
+    probe.slack = round_up_to_float(largest * static_cast<double>(probe.scale) * 0x1p-46 + 0x1p-40);
+    return probe;
+}
+
+} // namespace tactus
