@@ -73,6 +73,12 @@ inline constexpr std::uint32_t kMaxResidentIndexPages = 192;
 /// Frames after which an unanswered wish is asked again.
 inline constexpr std::uint32_t kWishTimeoutFrames = 250;
 
+/// Arrivals taken from a model's door in one frame, whatever Budgets::pages says, and updates of
+/// linked records; what a frame took is kept for recordings, 32 B each. An arrival brings few
+/// updates, each one word to write; more wait for the next frame.
+inline constexpr std::uint32_t kMaxArrivalsPerFrame = 64;
+inline constexpr std::uint32_t kMaxLinkUpdatesPerFrame = 64;
+
 // --- Force ---------------------------------------------------------------------------------------
 
 /// Steps of the proxy in one frame. Each is at most half the tool's radius.

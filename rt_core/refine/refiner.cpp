@@ -3,6 +3,7 @@
 #include "rt_core/refine/refiner.hpp"
 
 #include "rt_core/math/triangle.hpp"
+#include "rt_core/query/probe.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -16,6 +17,62 @@ namespace
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+/// Most urgent first; among equals the lower slot, so that the order is the same in every run.
+template <typename Candidate>
+bool comes_later(const Candidate& a, const Candidate& b) noexcept
+{
+    return a.excess_m != b.excess_m ? a.excess_m > b.excess_m : a.prim > b.prim;
+}
+
+/// A record may stay while a tool goes this much farther than it has to, as a share of the keep
+/// distance, so that a page has not to be looked at for each of its records.
+constexpr double kPatience = 0.1;
+
+/// What is only looked ahead for gets this part of the splits, so that it comes bit by bit.
+constexpr std::uint32_t kAheadShare = 16;
+
+double target_of(const RefineQuestion& question) noexcept
+{
+    return question.reach_m * (1.0 + Refiner::kLookAhead);
+}
+
+/// A coarse face whose distance minus its error is `lower` stays as it is for now.
+void leave(const RefineQuestion& question, double lower_m) noexcept
+{
+    question.memory->certified_m = std::min(question.memory->certified_m, lower_m);
+}
+
+/// One of that excess over the reach of some question does.
+void leave_at(std::span<const RefineQuestion> questions, double excess_m) noexcept
+{
+    for (const RefineQuestion& question : questions)
+    {
+        leave(question, question.reach_m + excess_m);
+    }
+}
+
+bool is_wanting(const RefineQuestion& question) noexcept
+{
+    return question.memory->certified_m < question.reach_m;
+}
+
+/// Distance to the triangle's box: a cheap lower bound on the distance to the triangle.
+double box_distance_sq(const Vec3& point, const Triangle& triangle) noexcept
+{
+    double sum = 0.0;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        const double a = triangle[0][axis];
+        const double b = triangle[1][axis];
+        const double c = triangle[2][axis];
+        const double below = std::min({a, b, c}) - point[axis];
+        const double above = point[axis] - std::max({a, b, c});
+        const double gap = std::max({below, above, 0.0});
+        sum += gap * gap;
+    }
+    return sum;
+}
+
 } // namespace
 
 Refiner::Refiner(Arena& arena, VertexForest& forest, PageTable& pages, const AbTree& tree,
@@ -23,247 +80,532 @@ Refiner::Refiner(Arena& arena, VertexForest& forest, PageTable& pages, const AbT
     : forest_(&forest)
     , pages_(&pages)
     , tree_(&tree)
-    , quantum_m_(quantum_m)
+    , quantum_m_(static_cast<double>(quantum_m))
     , heap_(arena.take<Candidate>(kRefineHeap))
     , held_(arena.take<RecordId>(kMaxHeldRecords))
     , stack_(arena.take<RecordId>(kMaxDepth))
     , done_(arena.take<RecordId>(kMaxSplitsPerFrame))
+    , look_at_(arena.take<double>(pages.capacity()))
+    , needed_(arena.take<std::uint64_t>(pages.capacity()))
 {
+}
+
+void Refiner::run(std::span<const RefineQuestion> questions, const Budgets& budgets,
+                  std::uint32_t frame, WorkCounters& work, FrameFault& faults) noexcept
+{
+    follow(questions);
+    heap_size_ = 0;
+    for (const RefineQuestion& question : questions)
+    {
+        if (is_wanting(question))
+        {
+            gather(question, budgets, work, faults);
+        }
+    }
+    const std::uint32_t merges_before = work.merges;
+    coarsen(questions, budgets, work);
+    if (work.merges != merges_before)
+    {
+        // What was merged is beyond every question's keep distance, but no farther.
+        for (const RefineQuestion& question : questions)
+        {
+            leave(question, question.keep_m);
+        }
+    }
+    split_wanted(questions, budgets, frame, work, faults);
+}
+
+/// A certificate loses what its question moved, and records are left behind by as much.
+void Refiner::follow(std::span<const RefineQuestion> questions) noexcept
+{
+    double farthest = 0.0;
+    bool is_same = questions.size() == question_count_;
+    question_count_ = questions.size();
+    for (const RefineQuestion& question : questions)
+    {
+        RefineMemory& memory = *question.memory;
+        memory.probe = make_probe(question.center_m, tree_->quantum_m());
+        if (!memory.is_known)
+        {
+            memory.center_m = question.center_m;
+            memory.keep_m = question.keep_m;
+            memory.certified_m = 0.0;
+            memory.is_known = true;
+            is_same = false;
+            continue;
+        }
+        const double moved = (question.center_m - memory.center_m).norm() * (1.0 + 1e-12);
+        farthest = std::max(farthest, moved + std::max(0.0, memory.keep_m - question.keep_m));
+        memory.certified_m = tree_->is_complete() ? memory.certified_m - moved : 0.0;
+        memory.center_m = question.center_m;
+        memory.keep_m = question.keep_m;
+    }
+    travel_ += farthest;
+    if (!is_same)
+    {
+        std::fill(look_at_.begin(), look_at_.end(), travel_);
+        next_look_ = travel_;
+    }
+}
+
+/// Finds the coarse faces within the target; the certificate reaches as far as was looked.
+void Refiner::gather(const RefineQuestion& question, const Budgets& budgets, WorkCounters& work,
+                     FrameFault& faults) noexcept
+{
+    const double target = target_of(question);
+    question.memory->certified_m = tree_->is_complete() ? target : 0.0;
+    const float bound = round_up_to_float(target / quantum_m_);
+    WalkBudget budget{budgets.nodes, budgets.triangles};
+    TreeWalk walk(*tree_, question.memory->probe, budget);
+    for (std::uint32_t block = walk.next_block(bound, true); block != kNoNode;
+         block = walk.next_block(bound, true))
+    {
+        if (!budget.take_triangles(
+                static_cast<std::uint32_t>(std::popcount(tree_->side(block).coarse))))
+        {
+            leave(question, 0.0);
+            break;
+        }
+        gather_block(block, question);
+    }
+    for (const WalkItem& item : walk.left())
+    {
+        leave(question, static_cast<double>(item.gap) * quantum_m_);
+    }
+    faults |= budget.is_spent ? FrameFault::node_budget_spent : FrameFault::none;
+    work.nodes_visited += budget.nodes_visited;
+    work.triangles_tested += budget.triangles_tested;
+}
+
+void Refiner::gather_block(std::uint32_t index, const RefineQuestion& question) noexcept
+{
+    const BlockGeometry& block = tree_->block(index);
+    const BlockSide& side = tree_->side(index);
+    FaceBounds bounds;
+    bound_faces(block, side.coarse, question, bounds);
+    const double target = target_of(question);
+    for (std::uint32_t lanes = side.coarse; lanes != 0; lanes &= lanes - 1)
+    {
+        const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
+        const double key =
+            static_cast<double>(bounds.lower[lane] - error_in_quanta(side.errors[lane])) *
+            quantum_m_;
+        if (key <= target)
+        {
+            const PrimId prim = side.prims[lane];
+            push({key - question.reach_m, prim, forest_->face(prim).state}, {&question, 1});
+        }
+        else
+        {
+            leave(question, key);
+        }
+    }
 }
 
 void Refiner::coarsen(std::span<const RefineQuestion> questions, const Budgets& budgets,
                       WorkCounters& work) noexcept
 {
-    const std::uint32_t refined = forest_->refined_records();
-    const std::uint32_t scanned_before = work.scanned;
-    // One round over the pages at most; a page with nothing refined costs one look.
-    for (std::uint32_t looked = 0; looked <= pages_->capacity() && refined > 0; ++looked)
+    if (travel_ < next_look_)
     {
-        if (work.scanned - scanned_before >= std::min(budgets.scanned, refined) ||
-            work.merges >= budgets.merges || !forest_->has_room_for_changes())
+        return;
+    }
+    // One round over the pages at most. Most are not due: a comparison each.
+    double next = kInfinity;
+    for (std::uint32_t looked = 0; looked < pages_->capacity(); ++looked)
+    {
+        if (look_at_[scan_slot_] <= travel_)
         {
+            if (work.scanned >= budgets.scanned || work.merges >= budgets.merges)
+            {
+                return;
+            }
+            scan_page(scan_slot_, questions, budgets, work);
+        }
+        next = std::min(next, look_at_[scan_slot_]);
+        scan_slot_ = scan_slot_ == 0 ? pages_->capacity() - 1 : scan_slot_ - 1;
+    }
+    next_look_ = std::max(next, travel_);
+}
+
+/// Looks at the refined records of one page, finest last in first. Unless the budget ends it, the
+/// page is not due again before the tools have come far enough to leave one of them behind.
+void Refiner::scan_page(std::uint32_t slot, std::span<const RefineQuestion> questions,
+                        const Budgets& budgets, WorkCounters& work) noexcept
+{
+    const PageTable::Meta& meta = pages_->meta(slot);
+    look_at_[slot] = kInfinity;
+    needed_[slot] &= meta.refined;
+    std::uint64_t left = meta.refined & ~meta.held & ~needed_[slot];
+    const Page& page = pages_->slots().pages[slot];
+    while (left != 0)
+    {
+        const auto place = static_cast<std::uint32_t>(63 - std::countl_zero(left));
+        left &= ~(std::uint64_t{1} << place);
+        if (work.scanned >= budgets.scanned)
+        {
+            look_at_[slot] = travel_;
             return;
         }
-        scan_slot(questions, budgets, work);
+        const double slack = slack_of(page.records[place], questions);
+        if (slack > 0.0)
+        {
+            ++work.scanned;
+            look_at_[slot] = std::min(look_at_[slot], travel_ + slack);
+            continue;
+        }
+        if (!merge_back({(meta.chunk.value << kRecordsPerChunkLog2) + place}, questions, budgets,
+                        work))
+        {
+            look_at_[slot] = travel_;
+            return;
+        }
+        left &= meta.refined;
     }
 }
 
-void Refiner::refine(std::span<const RefineQuestion> questions, const Budgets& budgets,
-                     std::uint32_t frame, WorkCounters& work, FrameFault& faults) noexcept
+/// Merges a record that was left behind, then those that it was the last to depend on. False when
+/// the budget is spent.
+bool Refiner::merge_back(RecordId first, std::span<const RefineQuestion> questions,
+                         const Budgets& budgets, WorkCounters& work) noexcept
 {
-    gather(questions, budgets, work, faults);
-    if (!pending_.is_none())
+    std::uint32_t depth = 0;
+    stack_[depth++] = first;
+    while (depth > 0)
     {
-        if (!pending_is_wanted(questions))
+        const RecordId id = stack_[--depth];
+        if (work.scanned >= budgets.scanned || work.merges >= budgets.merges)
         {
-            release_held();
+            look_soon(id);
+            for (const RecordId waiting : stack_.first(depth))
+            {
+                look_soon(waiting);
+            }
+            return false;
         }
-        else if (!advance(pending_, questions, budgets, frame, work, faults))
+        ++work.scanned;
+        const std::uint32_t slot = pages_->find(chunk_of(id));
+        const VsplitRecord& record = pages_->slots().pages[slot].records[place_in_chunk(id)];
+        const std::uint64_t bit = std::uint64_t{1} << place_in_chunk(id);
+        needed_[slot] &= ~bit;
+        if (const double slack = slack_of(record, questions); slack > 0.0)
         {
-            return;
-        }
-    }
-    while (heap_size_ > 0)
-    {
-        const Candidate candidate = pop();
-        if (!is_current(candidate))
-        {
+            look_at_[slot] = std::min(look_at_[slot], travel_ + slack);
             continue;
         }
-        const std::uint32_t next = forest_->next_of(candidate.prim);
-        if (next >= kNextPending)
+        if (!forest_->try_merge(id))
         {
-            faults |= FrameFault::chunk_late;
+            needed_[slot] |= bit; // Asked again when the record that needs it is merged.
             continue;
         }
-        if (!advance({next}, questions, budgets, frame, work, faults))
+        ++work.merges;
+        for (std::uint32_t i = 0; i < record.fan_size; ++i)
         {
-            return;
+            const FaceState state = record.before[i];
+            if (state.is_base() || !pages_->is_refined(state.record()))
+            {
+                continue;
+            }
+            if (depth < stack_.size() && !pages_->is_held(state.record()))
+            {
+                stack_[depth++] = state.record();
+            }
+            else
+            {
+                look_soon(state.record());
+            }
         }
     }
+    return true;
 }
 
-/// Whether the face for which the pending closure was begun still waits and is still in reach.
-bool Refiner::pending_is_wanted(std::span<const RefineQuestion> questions) const noexcept
+/// The record's page is due, and the record may be asked again.
+void Refiner::look_soon(RecordId record) noexcept
 {
-    const VsplitRecord* record = pages_->find_linked(pending_);
-    if (record == nullptr)
+    const std::uint32_t slot = pages_->find(chunk_of(record));
+    needed_[slot] &= ~(std::uint64_t{1} << place_in_chunk(record));
+    look_at_[slot] = travel_;
+    next_look_ = travel_;
+}
+
+/// How much farther the tools have to go before the record is left behind by all of them.
+double Refiner::slack_of(const VsplitRecord& record,
+                         std::span<const RefineQuestion> questions) const noexcept
+{
+    const double reach = static_cast<double>(error_in_quanta(record.reach)) * quantum_m_;
+    const Vec3 vertex = to_vec3(record.position_m);
+    double slack = 0.0;
+    for (const RefineQuestion& question : questions)
     {
-        return false;
+        const double keep = question.keep_m + reach;
+        const double distance_sq = (vertex - question.center_m).squaredNorm();
+        if (distance_sq <= keep * keep)
+        {
+            slack = std::max(slack, keep - std::sqrt(distance_sq) + kPatience * question.keep_m);
+        }
     }
-    for (std::uint32_t i = 0; i < record->fan_size; ++i)
+    return slack;
+}
+
+void Refiner::split_wanted(std::span<const RefineQuestion> questions, const Budgets& budgets,
+                           std::uint32_t frame, WorkCounters& work, FrameFault& faults) noexcept
+{
+    const std::uint32_t most = std::min(budgets.splits, kMaxSplitsPerFrame);
+    const std::uint32_t most_ahead = std::max(most / kAheadShare, 1U);
+    FrameFault found = FrameFault::none;
+    double pending_excess = excess_of_pending(questions);
+    if (!(pending_excess < kInfinity))
+    {
+        release_held();
+    }
+    bool can_go_on = true;
+    while (can_go_on && (heap_size_ > 0 || pending_excess < kInfinity))
+    {
+        Wanted wanted{pending_, pending_excess};
+        if (heap_size_ > 0 && heap_[0].excess_m < pending_excess)
+        {
+            const Candidate candidate = pop();
+            if (!is_current(candidate))
+            {
+                continue;
+            }
+            wanted = {RecordId{forest_->next_of(candidate.prim)}, candidate.excess_m};
+        }
+        else
+        {
+            pending_excess = kInfinity;
+            if (pages_->is_refined(wanted.record))
+            {
+                release_held(); // Split for a nearer face meanwhile.
+                continue;
+            }
+        }
+        if (wanted.record.value >= kNextPending)
+        {
+            found |= FrameFault::chunk_late;
+            leave_at(questions, wanted.excess_m);
+            continue;
+        }
+        const std::uint32_t limit = wanted.excess_m <= 0.0 ? most : most_ahead;
+        can_go_on = try_advance(wanted, limit, questions, frame, work, found);
+    }
+    // The nearest of those that were not come to.
+    leave_at(questions, std::min(pending_excess, heap_size_ > 0 ? heap_[0].excess_m : kInfinity));
+    // What is only looked ahead for may wait.
+    const bool is_late = std::any_of(questions.begin(), questions.end(), is_wanting);
+    faults |= is_late ? found : found & FrameFault::model_inconsistent;
+}
+
+/// The least excess of a face for which the pending closure was begun; infinity when none of them
+/// waits within the target any more.
+double Refiner::excess_of_pending(std::span<const RefineQuestion> questions) const noexcept
+{
+    const VsplitRecord* record = pending_.is_none() ? nullptr : pages_->find_linked(pending_);
+    double excess = kInfinity;
+    for (std::uint32_t i = 0; record != nullptr && i < record->fan_size; ++i)
     {
         const PrimId prim = forest_->find(record->star[2 + i]);
-        if (!prim.is_none() && forest_->face(prim).state == record->before[i] &&
-            key_of(prim, questions) < kInfinity)
+        if (prim.is_none() || forest_->face(prim).state != record->before[i])
         {
-            return true;
+            continue;
+        }
+        for (const RefineQuestion& question : questions)
+        {
+            const double lower = lower_bound(prim, question);
+            excess =
+                lower <= target_of(question) ? std::min(excess, lower - question.reach_m) : excess;
         }
     }
-    return false;
+    return excess;
 }
 
-/// Splits towards `target`; false when nothing more can be split in this frame.
-bool Refiner::advance(RecordId target, std::span<const RefineQuestion> questions,
-                      const Budgets& budgets, std::uint32_t frame, WorkCounters& work,
-                      FrameFault& faults) noexcept
+/// Splits towards a wanted record; false when nothing more can be split in this frame.
+bool Refiner::try_advance(const Wanted& wanted, std::uint32_t limit,
+                          std::span<const RefineQuestion> questions, std::uint32_t frame,
+                          WorkCounters& work, FrameFault& found) noexcept
 {
-    done_count_ = 0;
-    const ClosureOutcome outcome = split_with_closure(target, frame, budgets, work, faults);
-    for (std::uint32_t i = 0; i < done_count_; ++i)
+    const ClosureOutcome outcome =
+        split_with_closure(wanted.record, limit, questions, frame, work, found);
+    if (outcome != ClosureOutcome::complete)
     {
-        consider_star(done_[i], questions);
+        leave_at(questions, wanted.excess_m);
     }
     if (outcome == ClosureOutcome::complete || outcome == ClosureOutcome::blocked)
     {
-        if (target == pending_)
+        if (wanted.record == pending_)
         {
             release_held();
         }
         return true;
     }
-    pending_ = target;
+    pending_ = wanted.record;
     for (std::uint32_t i = 0; i < done_count_; ++i)
     {
         hold(done_[i]);
     }
-    faults |=
+    found |=
         outcome == ClosureOutcome::full ? FrameFault::forest_full : FrameFault::split_budget_spent;
     return false;
 }
 
-/// Looks at the refined records of one page, finest last in first, within the scan budget.
-void Refiner::scan_slot(std::span<const RefineQuestion> questions, const Budgets& budgets,
-                        WorkCounters& work) noexcept
+/// Depth-first over the records that must be split before `target`; the stack is never deeper than
+/// the deepest record.
+Refiner::ClosureOutcome Refiner::split_with_closure(RecordId target, std::uint32_t limit,
+                                                    std::span<const RefineQuestion> questions,
+                                                    std::uint32_t frame, WorkCounters& work,
+                                                    FrameFault& faults) noexcept
 {
-    const PageTable::Meta& meta = pages_->meta(scan_slot_);
-    while (scan_place_ > 0 && work.scanned < budgets.scanned && work.merges < budgets.merges &&
-           forest_->has_room_for_changes())
+    done_count_ = 0;
+    std::uint32_t depth = 0;
+    stack_[depth++] = target;
+    while (depth > 0)
     {
-        const std::uint64_t below = scan_place_ >= kRecordsPerChunk
-                                        ? ~std::uint64_t{0}
-                                        : (std::uint64_t{1} << scan_place_) - 1;
-        const std::uint64_t left = meta.refined & ~meta.held & below;
-        if (left == 0)
+        const RecordId id = stack_[depth - 1];
+        const std::uint32_t slot = pages_->find(chunk_of(id));
+        const VsplitRecord* record =
+            slot == IdTable::kAbsent ? nullptr : pages_->find_linked(id, slot);
+        if (record == nullptr)
         {
-            scan_place_ = 0;
-            break;
+            faults |= FrameFault::chunk_late;
+            return ClosureOutcome::blocked;
         }
-        scan_place_ = static_cast<std::uint32_t>(63 - std::countl_zero(left));
-        const RecordId id{(meta.chunk.value << kRecordsPerChunkLog2) + scan_place_};
-        ++work.scanned;
-        if (is_left_behind(pages_->resident(id), questions) && forest_->try_merge(id))
+        pages_->touch(slot, frame);
+        if (const RecordId missing = forest_->missing_dependency(*record); !missing.is_none())
         {
-            ++work.merges;
+            TACTUS_ASSERT(depth < stack_.size());
+            stack_[depth++] = missing;
+            continue;
+        }
+        if (work.splits >= limit)
+        {
+            return ClosureOutcome::budget_spent;
+        }
+        if (!tree_->has_room_for(kMaxStarFaces))
+        {
+            return ClosureOutcome::full;
+        }
+        VertexForest::StarGeometry star;
+        switch (forest_->split(id, *record, star))
+        {
+        case VertexForest::SplitOutcome::full:
+            return ClosureOutcome::full;
+        case VertexForest::SplitOutcome::inconsistent:
+            faults |= FrameFault::model_inconsistent;
+            return ClosureOutcome::blocked;
+        case VertexForest::SplitOutcome::done:
+            ++work.splits;
+            done_[done_count_++] = id;
+            --depth;
+            look_at_[slot] = travel_;
+            next_look_ = travel_;
+            consider_star(id, *record, star, questions);
         }
     }
-    if (scan_place_ == 0)
+    return ClosureOutcome::complete;
+}
+
+Refiner::Progress Refiner::refine_everything(std::uint32_t records, const Budgets& budgets,
+                                             std::uint32_t frame, WorkCounters& work,
+                                             FrameFault& faults) noexcept
+{
+    const std::uint32_t most = std::min(budgets.splits, kMaxSplitsPerFrame);
+    while (next_record_ < records && work.splits < most)
     {
-        scan_slot_ = scan_slot_ == 0 ? pages_->capacity() - 1 : scan_slot_ - 1;
-        scan_place_ = kRecordsPerChunk;
+        if (!pages_->is_refined({next_record_}))
+        {
+            FrameFault found = FrameFault::none; // That a chunk is on its way is no fault here.
+            const ClosureOutcome outcome =
+                split_with_closure({next_record_}, most, {}, frame, work, found);
+            faults |= found & FrameFault::model_inconsistent;
+            if (outcome != ClosureOutcome::complete)
+            {
+                return outcome == ClosureOutcome::full ? Progress::full : Progress::under_way;
+            }
+        }
+        ++next_record_;
     }
+    return next_record_ == records ? Progress::complete : Progress::under_way;
 }
 
-bool Refiner::is_left_behind(const VsplitRecord& record,
-                             std::span<const RefineQuestion> questions) const noexcept
+/// The faces that a split changed may be wanted themselves.
+void Refiner::consider_star(RecordId id, const VsplitRecord& record,
+                            const VertexForest::StarGeometry& star,
+                            std::span<const RefineQuestion> questions) noexcept
 {
-    const auto reach = static_cast<double>(error_in_quanta(record.reach) * quantum_m_);
-    const Vec3 vertex = to_vec3(record.position_m);
-    return std::all_of(questions.begin(), questions.end(),
-                       [&](const RefineQuestion& question)
-                       { return (vertex - question.center_m).norm() - reach > question.keep_m; });
-}
-
-/// Finds the coarse faces in reach: in the tree, and among the faces that coarsening changed.
-void Refiner::gather(std::span<const RefineQuestion> questions, const Budgets& budgets,
-                     WorkCounters& work, FrameFault& faults) noexcept
-{
-    heap_size_ = 0;
+    std::uint32_t coarse = 0;
+    for (std::uint32_t place = 0; place < kMaxStarFaces; ++place)
+    {
+        coarse |= record.error[place] != 0 ? 1U << place : 0U;
+    }
+    coarse &= star.geometry.faces;
+    if (coarse == 0)
+    {
+        return;
+    }
+    std::array<double, kMaxStarFaces> excess{};
+    excess.fill(kInfinity);
     for (const RefineQuestion& question : questions)
     {
-        WalkBudget budget{budgets.nodes, budgets.triangles};
-        TreeWalk walk(*tree_, question.center_m, budget);
-        const double reach_sq = question.reach_m * question.reach_m;
-        for (std::uint32_t block = walk.next_block(reach_sq, true); block != kNoNode;
-             block = walk.next_block(reach_sq, true))
+        FaceBounds bounds;
+        bound_faces(star.geometry, coarse, question, bounds);
+        for (std::uint32_t lanes = coarse; lanes != 0; lanes &= lanes - 1)
         {
-            const BlockSide& side = tree_->side(block);
-            if (!budget.take_triangles(static_cast<std::uint32_t>(std::popcount(side.coarse))))
+            const auto place = static_cast<std::size_t>(std::countr_zero(lanes));
+            const double key =
+                static_cast<double>(bounds.lower[place] - error_in_quanta(record.error[place])) *
+                quantum_m_;
+            if (key <= target_of(question))
             {
-                faults |= FrameFault::node_budget_spent;
-                break;
+                excess[place] = std::min(excess[place], key - question.reach_m);
             }
-            for (std::uint32_t lanes = side.coarse; lanes != 0; lanes &= lanes - 1)
+            else
             {
-                const PrimId prim = side.prims[static_cast<std::size_t>(std::countr_zero(lanes))];
-                if (!forest_->is_changed(prim))
-                {
-                    consider(prim, {&question, 1});
-                }
+                leave(question, key);
             }
         }
-        faults |= walk.left().empty() ? FrameFault::none : FrameFault::node_budget_spent;
-        work.nodes_visited += budget.nodes_visited;
-        work.triangles_tested += budget.triangles_tested;
     }
-    for (const PrimId prim : forest_->changed_prims())
+    for (std::uint32_t place = 0; place < kMaxStarFaces; ++place)
     {
-        if (!forest_->face(prim).id.is_none())
+        if (excess[place] < kInfinity)
         {
-            consider(prim, questions);
+            push({excess[place], star.prims[place], FaceState::after(id, place)}, questions);
         }
     }
 }
 
-void Refiner::consider(PrimId prim, std::span<const RefineQuestion> questions) noexcept
+void Refiner::bound_faces(const BlockGeometry& block, std::uint32_t lanes,
+                          const RefineQuestion& question, FaceBounds& bounds) const noexcept
 {
-    const double key = key_of(prim, questions);
-    if (key < kInfinity)
-    {
-        push({key, prim, forest_->face(prim).state});
-    }
+    float unlimited = std::numeric_limits<float>::infinity();
+    static_cast<void>(
+        tree_->kernels().face_bounds(block.coordinates.front().data(), block.corners.front().data(),
+                                     question.memory->probe, lanes, 0, 0.0F, unlimited, bounds));
 }
 
-/// Distance minus error of a coarse face that is in some question's reach, else infinity.
-double Refiner::key_of(PrimId prim, std::span<const RefineQuestion> questions) const noexcept
+/// Distance minus error of a coarse face, or a lower bound on it that is beyond the target.
+double Refiner::lower_bound(PrimId prim, const RefineQuestion& question) const noexcept
 {
-    const ErrorCode code = forest_->error_of(prim);
-    if (code == 0)
-    {
-        return kInfinity;
-    }
-    const auto error = static_cast<double>(error_in_quanta(code) * quantum_m_);
+    const double error = static_cast<double>(error_in_quanta(forest_->error_of(prim))) * quantum_m_;
     const Triangle triangle = to_triangle(forest_->corners_of(prim));
-    double key = kInfinity;
-    for (const RefineQuestion& question : questions)
+    const double box_lower =
+        std::sqrt(box_distance_sq(question.center_m, triangle)) * (1.0 - 1e-15) - error;
+    if (box_lower > target_of(question))
     {
-        const ClosestPoint closest = closest_point_on_triangle(question.center_m, triangle);
-        const double lower = std::sqrt(closest.distance_sq) - closest.distance_error - error;
-        key = lower <= question.reach_m ? std::min(key, lower) : key;
+        return box_lower;
     }
-    return key;
+    const ClosestPoint closest = closest_point_on_triangle(question.center_m, triangle);
+    return std::sqrt(closest.distance_sq) - closest.distance_error - error;
 }
-
-namespace
-{
-
-/// Nearest first; among equals the lower slot, so that the order is the same in every run.
-template <typename Candidate>
-bool comes_later(const Candidate& a, const Candidate& b) noexcept
-{
-    return a.key != b.key ? a.key > b.key : a.prim > b.prim;
-}
-
-} // namespace
 
 /// Full: the face waits for the next frame, when nearer ones are done.
-void Refiner::push(const Candidate& candidate) noexcept
+void Refiner::push(const Candidate& candidate, std::span<const RefineQuestion> questions) noexcept
 {
-    if (heap_size_ < heap_.size())
+    if (heap_size_ == heap_.size())
     {
-        heap_[heap_size_++] = candidate;
-        std::push_heap(heap_.data(), heap_.data() + heap_size_, comes_later<Candidate>);
+        leave_at(questions, candidate.excess_m);
+        return;
     }
+    heap_[heap_size_++] = candidate;
+    std::push_heap(heap_.data(), heap_.data() + heap_size_, comes_later<Candidate>);
 }
 
 Refiner::Candidate Refiner::pop() noexcept
@@ -276,73 +618,6 @@ bool Refiner::is_current(const Candidate& candidate) const noexcept
 {
     const VertexForest::ActiveFace& face = forest_->face(candidate.prim);
     return !face.id.is_none() && face.state == candidate.state;
-}
-
-/// Depth-first over the records that must be split before `target`; the stack is never deeper than
-/// the deepest record.
-Refiner::ClosureOutcome Refiner::split_with_closure(RecordId target, std::uint32_t frame,
-                                                    const Budgets& budgets, WorkCounters& work,
-                                                    FrameFault& faults) noexcept
-{
-    std::uint32_t depth = 0;
-    stack_[depth++] = target;
-    while (depth > 0)
-    {
-        const RecordId id = stack_[depth - 1];
-        const VsplitRecord* record = pages_->find_linked(id);
-        if (record == nullptr)
-        {
-            faults |= FrameFault::chunk_late;
-            return ClosureOutcome::blocked;
-        }
-        pages_->touch(pages_->find(chunk_of(id)), frame);
-        if (const RecordId missing = forest_->missing_dependency(*record); !missing.is_none())
-        {
-            TACTUS_ASSERT(depth < stack_.size());
-            stack_[depth++] = missing;
-            continue;
-        }
-        if (work.splits >= std::min(budgets.splits, kMaxSplitsPerFrame))
-        {
-            return ClosureOutcome::budget_spent;
-        }
-        const auto changed = static_cast<std::uint32_t>(forest_->changed_prims().size());
-        if (!forest_->has_room_for_changes() || !tree_->has_room_for(changed + kMaxStarFaces))
-        {
-            return ClosureOutcome::full;
-        }
-        switch (forest_->split(id))
-        {
-        case VertexForest::SplitOutcome::full:
-            return ClosureOutcome::full;
-        case VertexForest::SplitOutcome::inconsistent:
-            faults |= FrameFault::model_inconsistent;
-            return ClosureOutcome::blocked;
-        case VertexForest::SplitOutcome::done:
-            ++work.splits;
-            done_[done_count_++] = id;
-            --depth;
-        }
-    }
-    return ClosureOutcome::complete;
-}
-
-/// The faces that a split changed may be wanted themselves.
-void Refiner::consider_star(RecordId id, std::span<const RefineQuestion> questions) noexcept
-{
-    const VsplitRecord& record = pages_->resident(id);
-    for (std::uint32_t place = 0; place < record.star_end(); ++place)
-    {
-        if (record.star[place].is_none())
-        {
-            continue;
-        }
-        const PrimId prim = forest_->find(record.star[place]);
-        if (!prim.is_none() && forest_->face(prim).state == FaceState::after(id, place))
-        {
-            consider(prim, questions);
-        }
-    }
 }
 
 void Refiner::hold(RecordId record) noexcept
@@ -359,6 +634,7 @@ void Refiner::release_held() noexcept
     for (std::uint32_t i = 0; i < held_count_; ++i)
     {
         pages_->set_held(held_[i], false);
+        look_soon(held_[i]);
     }
     held_count_ = 0;
     pending_ = RecordId{};

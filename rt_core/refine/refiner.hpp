@@ -15,22 +15,36 @@
 namespace tactus
 {
 
+/// What is known of a question from frame to frame.
+struct RefineMemory
+{
+    Vec3 center_m{0.0, 0.0, 0.0};
+    double keep_m{0.0};
+    /// No coarse face's distance from the centre minus its error is below this. While it is not
+    /// below the reach there is nothing to split, and nobody needs to look.
+    double certified_m{0.0};
+    bool is_known{false};
+    KernelProbe probe{}; ///< Of this frame's centre.
+};
+
 /// What one pair asks of a model: every original face within `reach_m` of the point, exactly.
-/// Model frame, metres.
+/// Model frame, metres; the centre is not is_beyond_kernels().
 struct RefineQuestion
 {
     Vec3 center_m{0.0, 0.0, 0.0};
     double reach_m{0.0};
     double keep_m{0.0}; ///< Records farther than this may be merged; 1.25 x reach (hysteresis).
+    RefineMemory* memory{nullptr};
 };
 
 /// Moves one model's refined front to what the questions need: first merges what was left behind,
 /// then splits what they lack, nearest first, until the certificate holds or the budget is spent.
 ///
 /// A face is split while it is coarse and its distance minus its error is within a question's
-/// reach. When none is left every original face in reach is active: the ball is certified.
-/// Records split for a closure that the budget cut short are held: not merged until the closure
-/// is complete or nobody wants it, so a small budget makes progress in every frame.
+/// reach. When none is left every original face in reach is active: the ball is certified. It is
+/// refined a little beyond the reach (kLookAhead), so that a slow tool has frames without any work
+/// here. Records split for a closure that the budget cut short are held: not merged until the
+/// closure is complete or nobody wants it, so a small budget makes progress in every frame.
 ///
 /// Haptic thread. Every loop is bounded by the budgets and by limits.hpp.
 class Refiner
@@ -39,21 +53,41 @@ public:
     Refiner(Arena& arena, VertexForest& forest, PageTable& pages, const AbTree& tree,
             float quantum_m) noexcept;
 
-    /// Looks at up to `budgets.scanned` refined records and merges up to `budgets.merges`.
-    void coarsen(std::span<const RefineQuestion> questions, const Budgets& budgets,
-                 WorkCounters& work) noexcept;
+    /// One frame: looks at up to `budgets.scanned` refined records, merges up to `budgets.merges`
+    /// and splits up to `budgets.splits`. The tree's boxes are those of the last refit. Pages whose
+    /// records a closure needs are touched.
+    void run(std::span<const RefineQuestion> questions, const Budgets& budgets, std::uint32_t frame,
+             WorkCounters& work, FrameFault& faults) noexcept;
 
-    /// Splits up to `budgets.splits` records. Pages whose records a closure needs are touched.
-    void refine(std::span<const RefineQuestion> questions, const Budgets& budgets,
-                std::uint32_t frame, WorkCounters& work, FrameFault& faults) noexcept;
+    enum class Progress : std::uint8_t
+    {
+        under_way,
+        full,     ///< A pool has no room.
+        complete, ///< All records are refined.
+    };
+    /// Splits records one after the other with what run() left of the budget.
+    [[nodiscard]] Progress refine_everything(std::uint32_t records, const Budgets& budgets,
+                                             std::uint32_t frame, WorkCounters& work,
+                                             FrameFault& faults) noexcept;
+
+    /// How far beyond the reach is refined, as a share of it.
+    static constexpr double kLookAhead = 0.05;
 
 private:
     /// A coarse face that is wanted, and the state in which it was looked at.
     struct Candidate
     {
-        double key{0.0}; ///< Distance minus error, the least over the questions.
+        /// Distance minus error minus reach, the least over the questions; above zero it is only
+        /// looked ahead for.
+        double excess_m{0.0};
         PrimId prim{};
         FaceState state;
+    };
+    /// A record whose split a face of that excess waits for.
+    struct Wanted
+    {
+        RecordId record{};
+        double excess_m{0.0};
     };
     enum class ClosureOutcome : std::uint8_t
     {
@@ -63,33 +97,46 @@ private:
         blocked, ///< A record isn't here yet, or is refused.
     };
 
-    [[nodiscard]] bool is_left_behind(const VsplitRecord& record,
-                                      std::span<const RefineQuestion> questions) const noexcept;
-    [[nodiscard]] bool pending_is_wanted(std::span<const RefineQuestion> questions) const noexcept;
-    [[nodiscard]] bool advance(RecordId target, std::span<const RefineQuestion> questions,
-                               const Budgets& budgets, std::uint32_t frame, WorkCounters& work,
-                               FrameFault& faults) noexcept;
-    void scan_slot(std::span<const RefineQuestion> questions, const Budgets& budgets,
-                   WorkCounters& work) noexcept;
-    void gather(std::span<const RefineQuestion> questions, const Budgets& budgets,
-                WorkCounters& work, FrameFault& faults) noexcept;
-    void consider(PrimId prim, std::span<const RefineQuestion> questions) noexcept;
-    void push(const Candidate& candidate) noexcept;
+    void follow(std::span<const RefineQuestion> questions) noexcept;
+    void gather(const RefineQuestion& question, const Budgets& budgets, WorkCounters& work,
+                FrameFault& faults) noexcept;
+    void gather_block(std::uint32_t block, const RefineQuestion& question) noexcept;
+    void bound_faces(const BlockGeometry& block, std::uint32_t lanes,
+                     const RefineQuestion& question, FaceBounds& bounds) const noexcept;
+    void coarsen(std::span<const RefineQuestion> questions, const Budgets& budgets,
+                 WorkCounters& work) noexcept;
+    void scan_page(std::uint32_t slot, std::span<const RefineQuestion> questions,
+                   const Budgets& budgets, WorkCounters& work) noexcept;
+    [[nodiscard]] bool merge_back(RecordId first, std::span<const RefineQuestion> questions,
+                                  const Budgets& budgets, WorkCounters& work) noexcept;
+    void look_soon(RecordId record) noexcept;
+    [[nodiscard]] double slack_of(const VsplitRecord& record,
+                                  std::span<const RefineQuestion> questions) const noexcept;
+    void split_wanted(std::span<const RefineQuestion> questions, const Budgets& budgets,
+                      std::uint32_t frame, WorkCounters& work, FrameFault& faults) noexcept;
+    [[nodiscard]] double
+    excess_of_pending(std::span<const RefineQuestion> questions) const noexcept;
+    [[nodiscard]] double lower_bound(PrimId prim, const RefineQuestion& question) const noexcept;
+    [[nodiscard]] bool try_advance(const Wanted& wanted, std::uint32_t limit,
+                                   std::span<const RefineQuestion> questions, std::uint32_t frame,
+                                   WorkCounters& work, FrameFault& found) noexcept;
+    void push(const Candidate& candidate, std::span<const RefineQuestion> questions) noexcept;
     [[nodiscard]] Candidate pop() noexcept;
     [[nodiscard]] bool is_current(const Candidate& candidate) const noexcept;
-    [[nodiscard]] double key_of(PrimId prim,
-                                std::span<const RefineQuestion> questions) const noexcept;
-    [[nodiscard]] ClosureOutcome split_with_closure(RecordId target, std::uint32_t frame,
-                                                    const Budgets& budgets, WorkCounters& work,
+    [[nodiscard]] ClosureOutcome split_with_closure(RecordId target, std::uint32_t limit,
+                                                    std::span<const RefineQuestion> questions,
+                                                    std::uint32_t frame, WorkCounters& work,
                                                     FrameFault& faults) noexcept;
-    void consider_star(RecordId id, std::span<const RefineQuestion> questions) noexcept;
+    void consider_star(RecordId id, const VsplitRecord& record,
+                       const VertexForest::StarGeometry& star,
+                       std::span<const RefineQuestion> questions) noexcept;
     void hold(RecordId record) noexcept;
     void release_held() noexcept;
 
     VertexForest* forest_;
     PageTable* pages_;
     const AbTree* tree_;
-    float quantum_m_;
+    double quantum_m_;
     std::span<Candidate> heap_;
     std::span<RecordId> held_;
     std::span<RecordId> stack_;
@@ -98,8 +145,15 @@ private:
     std::uint32_t held_count_{0};
     std::uint32_t done_count_{0};
     RecordId pending_{}; ///< Whose closure the held records were split for.
+    /// By page slot: the travel from which on some record in it may be left behind.
+    std::span<double> look_at_;
+    /// By page slot, one bit a record: left behind, but another refined record depends on it.
+    std::span<std::uint64_t> needed_;
+    double next_look_{0.0}; ///< The least of them, or less.
+    double travel_{0.0};    ///< How far the questions have gone, in metres, since the start.
+    std::size_t question_count_{0};
     std::uint32_t scan_slot_{0};
-    std::uint32_t scan_place_{kRecordsPerChunk};
+    std::uint32_t next_record_{0}; ///< refine_everything() has done those before.
 };
 
 } // namespace tactus
