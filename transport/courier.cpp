@@ -59,6 +59,7 @@ void Courier::step(std::int64_t now_ns)
     ask_new();
     ask_again();
     link_.poll(*this);
+    push_link_updates();
 }
 
 void Courier::take_back_freed()
@@ -66,6 +67,7 @@ void Courier::take_back_freed()
     ChunkInbox::Freed freed;
     while (inbox_.freed.try_pop(freed))
     {
+        ++freed_taken_;
         const bool is_page = freed.kind == ContentKind::chunk;
         Slots& free = is_page ? free_pages_ : free_index_;
         TACTUS_ASSERT(free.count < free.stack.size() && freed.slot < free.stack.size());
@@ -233,7 +235,7 @@ void Courier::adopt_index_page(IndexPageId page, std::span<const std::byte> byte
     index_[slot].page = page;
     const bool inserted = index_slot_of_.try_insert(page.value, slot);
     TACTUS_ASSERT(inserted);
-    hand_over(key, slot);
+    hand_over(key, slot, 0, bytes);
 }
 
 void Courier::adopt_chunk(ChunkId chunk, std::span<const std::byte> bytes)
@@ -267,17 +269,37 @@ void Courier::adopt_chunk(ChunkId chunk, std::span<const std::byte> bytes)
     }
     --free_pages_.count;
     linker_.link_page(chunk, slot);
-    hand_over(key, slot);
+    hand_over(key, slot, linker_.tell_linked(slot), bytes);
 }
 
-void Courier::hand_over(ContentKey key, std::uint32_t slot)
+void Courier::hand_over(ContentKey key, std::uint32_t slot, std::uint64_t linked,
+                        std::span<const std::byte> bytes)
 {
+    if (copies_ != nullptr)
+    {
+        copies_->receive(key, bytes);
+    }
     const bool was_open = close_wish(key);
     TACTUS_ASSERT(was_open);
     // Room for every slot: a slot is in at most one queue.
-    const bool pushed = inbox_.arrived.try_push({key, slot});
+    const bool pushed = inbox_.arrived.try_push({key, slot, freed_taken_, linked});
     TACTUS_ASSERT(pushed);
     ++counters_.delivered;
+}
+
+/// After the arrivals that linked them, so that the door's order is that of linking.
+void Courier::push_link_updates()
+{
+    Linker::Update update;
+    while (inbox_.has_room_for_update() && linker_.try_take_update(update))
+    {
+        const bool pushed = inbox_.arrived.try_push({{ContentKind::chunk, update.chunk.value},
+                                                     update.slot,
+                                                     freed_taken_,
+                                                     update.linked,
+                                                     DoorEventKind::link_update});
+        TACTUS_ASSERT(pushed);
+    }
 }
 
 void Courier::refuse(std::uint64_t& counter, ContentKey key, const char* reason)

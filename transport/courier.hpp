@@ -53,6 +53,9 @@ struct CourierOptions
 /// index page, so nothing that the header's author did not write reaches a slot. A refused piece
 /// changes nothing but counters; the slot it would have had stays free.
 ///
+/// What a record waited for may come with a later page: the door is told then which records of
+/// pages already handed over are linked, the latest state of a page, once there is room.
+///
 /// Nothing is allocated after construction (the link and the log are their own matter).
 class Courier final : private PieceSink
 {
@@ -67,8 +70,12 @@ public:
     [[nodiscard]] static std::size_t required_bytes(std::size_t pages, std::size_t index_pages,
                                                     const CourierOptions& options = {}) noexcept;
 
-    /// One round: freed slots, wishes, repeats, arrivals. `now_ns` is monotonic.
+    /// One round: freed slots, wishes, repeats, arrivals, link updates. `now_ns` is monotonic.
     void step(std::int64_t now_ns);
+
+    /// From now on `copies` gets every piece that is handed over, in its coded form and right
+    /// before; null ends it. It must outlive the courier.
+    void copy_pieces_to(PieceSink* copies) noexcept { copies_ = copies; }
 
     [[nodiscard]] const CourierCounters& counters() const noexcept { return counters_; }
     [[nodiscard]] std::size_t open_wishes() const noexcept { return open_count_; }
@@ -104,7 +111,9 @@ private:
     void send_batch();
     void adopt_index_page(IndexPageId page, std::span<const std::byte> bytes);
     void adopt_chunk(ChunkId chunk, std::span<const std::byte> bytes);
-    void hand_over(ContentKey key, std::uint32_t slot);
+    void hand_over(ContentKey key, std::uint32_t slot, std::uint64_t linked,
+                   std::span<const std::byte> bytes);
+    void push_link_updates();
     void refuse(std::uint64_t& counter, ContentKey key, const char* reason);
     [[nodiscard]] bool close_wish(ContentKey key) noexcept;
     [[nodiscard]] bool is_resident(ContentKey key) const noexcept;
@@ -132,6 +141,8 @@ private:
     std::uint32_t newest_generation_{0};
     std::uint64_t session_{0};
     std::int64_t now_ns_{0};
+    std::uint32_t freed_taken_{0}; ///< Modulo 2^32, as in DoorEvent.
+    PieceSink* copies_{nullptr};
     CourierCounters counters_;
 };
 

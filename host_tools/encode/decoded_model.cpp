@@ -8,8 +8,6 @@
 
 #include <fmt/format.h>
 
-#include <atomic>
-
 namespace tactus
 {
 
@@ -67,8 +65,7 @@ std::uint64_t DecodedModel::link_all()
     {
         std::array<std::byte, Arena::kAlignment> bytes;
     };
-    std::vector<std::atomic<std::uint64_t>> linked(pages_.size());
-    const PageSlots slots{pages_, linked, {}, {base_positions_m_, base_faces_, base_next_}};
+    const PageSlots slots{pages_, {}, {base_positions_m_, base_faces_, base_next_}};
     Arena measure = Arena::measuring();
     static_cast<void>(Linker(measure, counts, slots));
     std::vector<Line> memory(measure.used() / sizeof(Line));

@@ -17,28 +17,64 @@ ChunkCache::ChunkCache(Arena& arena, const ModelHeader& header, PageSlots slots,
     , index_meta_(arena.take<IndexMeta>(slots.index_pages.size()))
     , chunk_wishes_(arena, static_cast<std::uint32_t>(slots.pages.size()))
     , index_wishes_(arena, static_cast<std::uint32_t>(slots.index_pages.size()))
+    , taken_(arena.take<DoorEvent>(kMaxArrivalsPerFrame + kMaxLinkUpdatesPerFrame))
 {
 }
 
 void ChunkCache::adopt_arrivals(std::uint32_t budget, std::uint32_t frame,
                                 WorkCounters& work) noexcept
 {
-    ChunkInbox::Arrival arrival;
-    for (std::uint32_t i = 0; i < budget && inbox_->arrived.try_pop(arrival); ++i)
+    // Looked at once a frame: the other side makes room at any time, and how many wishes leave must
+    // not depend on when.
+    wish_room_ = static_cast<std::uint32_t>(inbox_->wanted.capacity() - inbox_->wanted.size());
+    wish_room_at_start_ = wish_room_;
+    taken_count_ = 0;
+    const std::uint32_t arrivals_end = std::min(budget, kMaxArrivalsPerFrame);
+    std::uint32_t arrivals = 0;
+    std::uint32_t updates = 0;
+    DoorEvent event;
+    while (arrivals < arrivals_end && updates < kMaxLinkUpdatesPerFrame &&
+           inbox_->arrived.try_pop(event))
     {
-        ++work.pages_adopted;
-        if (arrival.key.kind == ContentKind::chunk)
+        taken_[taken_count_++] = event;
+        if (event.kind == DoorEventKind::link_update)
         {
-            pages_->adopt({arrival.key.number}, arrival.slot, frame);
-            chunk_wishes_.arrive(arrival.key.number);
-            ++loads_;
+            pages_->update_linked({event.key.number}, event.slot, event.linked);
+            ++updates;
             continue;
         }
-        index_meta_[arrival.slot] = {IndexPageId{arrival.key.number}, frame};
-        const bool inserted = index_slot_of_.try_insert(arrival.key.number, arrival.slot);
-        TACTUS_ASSERT(inserted);
-        index_wishes_.arrive(arrival.key.number);
+        adopt(event, frame);
+        ++arrivals;
     }
+    work.pages_adopted += arrivals;
+}
+
+void ChunkCache::adopt(const DoorEvent& arrival, std::uint32_t frame) noexcept
+{
+    if (arrival.key.kind == ContentKind::chunk)
+    {
+        pages_->adopt({arrival.key.number}, arrival.slot, frame, arrival.linked);
+        chunk_wishes_.arrive(arrival.key.number);
+        ++loads_;
+        return;
+    }
+    index_meta_[arrival.slot] = {IndexPageId{arrival.key.number}, frame};
+    const bool inserted = index_slot_of_.try_insert(arrival.key.number, arrival.slot);
+    TACTUS_ASSERT(inserted);
+    index_wishes_.arrive(arrival.key.number);
+}
+
+/// False when the door had no room for one more wish at the start of the frame.
+bool ChunkCache::try_wish(ContentKey key, std::uint32_t generation) noexcept
+{
+    if (wish_room_ == 0)
+    {
+        return false;
+    }
+    --wish_room_;
+    const bool pushed = inbox_->wanted.try_push({key, generation});
+    TACTUS_ASSERT(pushed);
+    return true;
 }
 
 void ChunkCache::request_missing(std::span<const RankedRegion> regions, const Budgets& budgets,
@@ -76,6 +112,26 @@ void ChunkCache::request_missing(std::span<const RankedRegion> regions, const Bu
         }
     }
     work.regions_searched += searched;
+}
+
+void ChunkCache::request_everything(const Budgets& budgets, WorkCounters& work,
+                                    FrameFault& faults) noexcept
+{
+    const std::uint32_t chunks = header_.counts().chunks();
+    for (std::uint32_t looked = 0; looked < std::min(chunks, kChunksPerIndexPage) &&
+                                   work.requests < budgets.requests && pages_->used() < chunks;
+         ++looked)
+    {
+        const ChunkId chunk{fill_cursor_};
+        const IndexPageId page{chunk.value >> kChunksPerIndexPageLog2};
+        if (index_slot_of_.find(page.value) == IdTable::kAbsent)
+        {
+            want_index_page(page, frame_, work, faults); // What verifies the chunk comes first.
+            return;
+        }
+        want_chunk(chunk, {frame_, last_round_began_}, budgets, work, faults);
+        fill_cursor_ = fill_cursor_ + 1 == chunks ? 0 : fill_cursor_ + 1;
+    }
 }
 
 ChunkCache::RankedBalls ChunkCache::to_quanta(std::span<const RankedRegion> regions) const noexcept
@@ -177,7 +233,7 @@ void ChunkCache::want_chunk(ChunkId chunk, const Urgency& urgency, const Budgets
         faults |= urgency.touch == frame_ ? FrameFault::cache_full : FrameFault::none;
         return;
     }
-    if (inbox_->wanted.try_push({{ContentKind::chunk, chunk.value}, frame_}))
+    if (try_wish({ContentKind::chunk, chunk.value}, frame_))
     {
         chunk_wishes_.ask(chunk.value, frame_);
         ++work.requests;
@@ -201,7 +257,7 @@ void ChunkCache::want_index_page(IndexPageId page, std::uint32_t frame, WorkCoun
         faults |= FrameFault::cache_full;
         return;
     }
-    if (inbox_->wanted.try_push({{ContentKind::index_page, page.value}, frame}))
+    if (try_wish({ContentKind::index_page, page.value}, frame))
     {
         index_wishes_.ask(page.value, frame);
         ++work.requests;
@@ -226,13 +282,30 @@ bool ChunkCache::try_evict_page(std::uint32_t touched_before, WorkCounters& work
     {
         return false;
     }
-    pages_->evict(oldest);
-    const bool freed = inbox_->freed.try_push({ContentKind::chunk, oldest});
+    evict(oldest, work);
+    return true;
+}
+
+void ChunkCache::evict_unpinned(WorkCounters& work) noexcept
+{
+    for (std::uint32_t slot = 0; slot < pages_->capacity(); ++slot)
+    {
+        const PageTable::Meta& meta = pages_->meta(slot);
+        if (!meta.chunk.is_none() && meta.refined == 0)
+        {
+            evict(slot, work);
+        }
+    }
+}
+
+void ChunkCache::evict(std::uint32_t slot, WorkCounters& work) noexcept
+{
+    pages_->evict(slot);
+    const bool freed = inbox_->freed.try_push({ContentKind::chunk, slot});
     TACTUS_ASSERT(freed);
     chunk_wishes_.give_back_slot();
     ++work.evictions;
     ++evictions_;
-    return true;
 }
 
 bool ChunkCache::try_evict_index_page() noexcept

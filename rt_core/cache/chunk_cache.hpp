@@ -31,12 +31,28 @@ public:
     ChunkCache(Arena& arena, const ModelHeader& header, PageSlots slots, PageTable& pages,
                ChunkInbox& inbox) noexcept;
 
-    /// Takes over what arrived, at most `budget` slots.
+    /// Takes over what arrived, at most `budget` slots, and link updates on the way. Each is taken
+    /// in its order; what is beyond kMaxArrivalsPerFrame or kMaxLinkUpdatesPerFrame waits.
     void adopt_arrivals(std::uint32_t budget, std::uint32_t frame, WorkCounters& work) noexcept;
+
+    /// What the last adopt_arrivals() took. With the frame's arguments this is all that decides
+    /// what the frame does. Valid until the next call.
+    [[nodiscard]] DoorTake taken() const noexcept
+    {
+        return {taken_.first(taken_count_), wish_room_at_start_};
+    }
 
     /// Asks for what `regions` (of this model, most urgent first) lack.
     void request_missing(std::span<const RankedRegion> regions, const Budgets& budgets,
                          std::uint32_t frame, WorkCounters& work, FrameFault& faults) noexcept;
+
+    /// Gives every page back in which no record is refined; for models whose cache is off. One look
+    /// at each page.
+    void evict_unpinned(WorkCounters& work) noexcept;
+
+    /// Asks for chunks in order until all of the model is here, after request_missing().
+    void request_everything(const Budgets& budgets, WorkCounters& work,
+                            FrameFault& faults) noexcept;
 
     /// Frame numbers start here, so that ages can be subtracted.
     static constexpr std::uint32_t kFirstFrame = 4'096;
@@ -70,6 +86,8 @@ private:
         std::uint32_t evict_before{0};
     };
 
+    void adopt(const DoorEvent& arrival, std::uint32_t frame) noexcept;
+    [[nodiscard]] bool try_wish(ContentKey key, std::uint32_t generation) noexcept;
     [[nodiscard]] RankedBalls to_quanta(std::span<const RankedRegion> regions) const noexcept;
     [[nodiscard]] static bool meets(const Balls& balls, const std::array<double, 3>& low,
                                     const std::array<double, 3>& high) noexcept;
@@ -80,6 +98,7 @@ private:
     void want_index_page(IndexPageId page, std::uint32_t frame, WorkCounters& work,
                          FrameFault& faults) noexcept;
     [[nodiscard]] bool try_evict_page(std::uint32_t touched_before, WorkCounters& work) noexcept;
+    void evict(std::uint32_t slot, WorkCounters& work) noexcept;
     [[nodiscard]] bool try_evict_index_page() noexcept;
 
     static constexpr std::uint32_t kAheadAge = 1'024;
@@ -92,7 +111,12 @@ private:
     std::span<IndexMeta> index_meta_;
     WishList chunk_wishes_;
     WishList index_wishes_;
-    std::uint32_t cursor_{0}; ///< Next index page to look at.
+    std::span<DoorEvent> taken_; ///< The first `taken_count_` are of this frame.
+    std::uint32_t taken_count_{0};
+    std::uint32_t wish_room_at_start_{0};
+    std::uint32_t wish_room_{0};
+    std::uint32_t cursor_{0};      ///< Next index page to look at.
+    std::uint32_t fill_cursor_{0}; ///< Next chunk of request_everything().
     std::uint32_t frame_{kFirstFrame};
     std::uint32_t round_began_{kFirstFrame};      ///< Frame in which the cursor last passed zero,
     std::uint32_t last_round_began_{kFirstFrame}; ///< and the time before.

@@ -4,7 +4,8 @@
 
 #include "rt_core/base/arena.hpp"
 #include "rt_core/base/spsc_queue.hpp"
-#include "rt_core/spm/content_key.hpp"
+#include "rt_core/limits.hpp"
+#include "rt_core/records/door_event.hpp"
 
 #include <cstdint>
 
@@ -18,16 +19,12 @@ namespace tactus
 ///     transport: loan (parse into it) -> fill -> hand over (`arrived`)
 ///     haptic:    adopt -> use -> evict -> free (`freed`) -> the transport's again
 ///
-/// At start every slot is the transport's. Nothing else crosses, in either direction, but wishes.
+/// At start every slot is the transport's. Besides slots, wishes and words of linked bits cross,
+/// and nothing else. `arrived` keeps arrivals and link updates in one order, so what a frame learns
+/// is what it popped, however the threads ran.
 class ChunkInbox
 {
 public:
-    /// A filled slot, handed over to the haptic thread.
-    struct Arrival
-    {
-        ContentKey key;
-        std::uint32_t slot{0};
-    };
     /// A slot that the haptic thread has no more use for. Kind base never occurs.
     struct Freed
     {
@@ -41,18 +38,27 @@ public:
         std::uint32_t generation{0};
     };
 
-    /// Room for every slot in both slot queues, so those never refuse, and for `wishes` wishes.
+    /// Room for every slot in both slot queues, so those never refuse, for `wishes` wishes, and for
+    /// link updates while those leave arrivals their room (has_room_for_update()).
     ChunkInbox(Arena& arena, std::uint32_t page_capacity, std::uint32_t index_capacity,
                std::uint32_t wishes) noexcept
-        : arrived(arena.take<Arrival>(std::size_t{page_capacity} + index_capacity))
+        : arrived(arena.take<DoorEvent>(std::size_t{page_capacity} + index_capacity +
+                                        kMaxLinkUpdatesPerFrame))
         , freed(arena.take<Freed>(std::size_t{page_capacity} + index_capacity))
         , wanted(arena.take<Wish>(wishes))
     {
     }
 
-    SpscQueue<Arrival> arrived; ///< Transport -> haptic.
-    SpscQueue<Freed> freed;     ///< Haptic -> transport.
-    SpscQueue<Wish> wanted;     ///< Haptic -> transport.
+    /// Whether a link update may be pushed: with fewer than kMaxLinkUpdatesPerFrame events waiting
+    /// no more than that many updates are ever among them, and every arrival finds room.
+    [[nodiscard]] bool has_room_for_update() const noexcept
+    {
+        return arrived.size() < kMaxLinkUpdatesPerFrame;
+    }
+
+    SpscQueue<DoorEvent> arrived; ///< Transport -> haptic.
+    SpscQueue<Freed> freed;       ///< Haptic -> transport.
+    SpscQueue<Wish> wanted;       ///< Haptic -> transport.
 };
 
 } // namespace tactus

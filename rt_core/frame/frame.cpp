@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "rt_core/frame/frame.hpp"
 
+#include "rt_core/query/probe.hpp"
 #include "rt_core/query/surface_query.hpp"
 
 #include <algorithm>
@@ -18,9 +19,11 @@ namespace
 /// a front that lags by a frame or two still holds what the proxy needs.
 constexpr double kReachMargin = 0.05;
 
-/// Before contact the ball reaches this far ahead in time, so that the front is there when the tool
-/// is: a contact needs some 600 splits at 1 M faces, ten frames of 64.
+/// Before contact a second ball is refined this far ahead in time, so that the front is there when
+/// the tool is: a contact needs some 600 splits at 1 M faces, ten frames of 64.
 constexpr double kApproachTime_s = 0.01;
+/// Not worth a second ball: a share of the reach.
+constexpr double kLeastAhead = 0.1;
 
 bool is_usable(const Vec3& point) noexcept
 {
@@ -111,6 +114,7 @@ Frame::Frame(PassKey /*key*/, Arena& arena, const FrameSetup& setup) noexcept
         proxies_.push_back(Proxy(tool));
     }
     goals_.fill(Vec3(0.0, 0.0, 0.0));
+    goal_velocities_m_per_s_.fill(Vec3(0.0, 0.0, 0.0));
     for (const ModelSource& source : setup.models)
     {
         const std::span<std::byte> header_bytes = arena.take<std::byte>(source.header.size());
@@ -127,15 +131,14 @@ Frame::Frame(PassKey /*key*/, Arena& arena, const FrameSetup& setup) noexcept
         {
             return; // start() sees that a model is missing.
         }
-        models_[model_count_].emplace(arena, header, slots, source.capacities);
-        ++model_count_;
-    }
-    if (!arena.is_measuring())
-    {
-        for (std::uint32_t i = 0; i < model_count_; ++i)
+        const Kernels& kernels = setup.kernels != nullptr ? *setup.kernels : best_kernels();
+        Model& model =
+            models_[model_count_].emplace(arena, header, slots, source.capacities, kernels);
+        if (setup.static_when_it_fits && model.fits())
         {
-            models_[i]->refit(work_, faults_); // The base mesh enters the tree.
+            model.residence = Residence::filling;
         }
+        ++model_count_;
     }
 }
 
@@ -156,7 +159,7 @@ FrameOutput Frame::run(std::span<const ToolState> tools, std::span<const ObjectP
     mark(Stage::refine);
     for (std::uint32_t i = 0; i < model_count_; ++i)
     {
-        models_[i]->refit(work_, faults_);
+        models_[i]->refit(faults_);
     }
     mark(Stage::refit);
     query(poses, budgets);
@@ -169,13 +172,15 @@ FrameOutput Frame::run(std::span<const ToolState> tools, std::span<const ObjectP
 
 void Frame::rehearse() noexcept
 {
-    for (const ScenePair& pair : scene_.pairs())
+    for (std::uint32_t i = 0; i < scene_.pairs().size(); ++i)
     {
+        const ScenePair& pair = scene_.pairs()[i];
         if (pair.has_known && !pair.is_asleep)
         {
             WalkBudget budget{last_budgets_.nodes, last_budgets_.triangles};
-            gather_surface(models_[model_of(pair).value]->tree, pair.center_m, pair.reach_m, budget,
-                           surfaces_.back());
+            QueryMemory memory = query_memories_[i];
+            gather_surface(models_[model_of(pair).value]->tree, pair.center_m, pair.reach_m, memory,
+                           budget, surfaces_.back());
         }
     }
 }
@@ -193,7 +198,7 @@ void Frame::read_tools(std::span<const ToolState> tools) noexcept
         }
         if (has_started_)
         {
-            goal_speeds_m_per_s_[i] = (tools[i].position_m - goals_[i]).norm() / elapsed_s_[i];
+            goal_velocities_m_per_s_[i] = (tools[i].position_m - goals_[i]) / elapsed_s_[i];
         }
         goals_[i] = tools[i].position_m;
         if (!has_started_)
@@ -210,9 +215,14 @@ double Frame::reach_of(std::uint32_t tool) const noexcept
     const ToolSpec& spec = scene_.tools()[tool];
     const double way = (goals_[tool] - proxies_[tool].position_m()).norm();
     const double most = spec.speed_max_m_per_s * elapsed_s_[tool];
-    const double ahead =
-        proxies_[tool].is_in_contact() ? 0.0 : kApproachTime_s * goal_speeds_m_per_s_[tool];
-    return spec.radius_m * (1.0 + kReachMargin) + std::max(std::min(way, most), ahead);
+    return spec.radius_m * (1.0 + kReachMargin) + std::min(way, most);
+}
+
+/// How far a tool without contact comes in kApproachTime_s.
+Vec3 Frame::ahead_of(std::uint32_t tool) const noexcept
+{
+    return proxies_[tool].is_in_contact() ? Vec3(0.0, 0.0, 0.0)
+                                          : Vec3(kApproachTime_s * goal_velocities_m_per_s_[tool]);
 }
 
 ModelId Frame::model_of(const ScenePair& pair) const noexcept
@@ -225,7 +235,7 @@ void Frame::place_pairs(std::span<const ObjectPose> poses) noexcept
     for (ScenePair& pair : scene_.pairs())
     {
         Scene::place(pair, poses[pair.object], proxies_[pair.tool].position_m(),
-                     reach_of(pair.tool));
+                     reach_of(pair.tool), ahead_of(pair.tool));
     }
 }
 
@@ -235,45 +245,76 @@ void Frame::load(const Budgets& budgets) noexcept
     for (std::uint32_t i = 0; i < scene_.pairs().size(); ++i)
     {
         const ScenePair& pair = scene_.pairs()[i];
+        if (models_[model_of(pair).value]->residence == Residence::complete)
+        {
+            continue;
+        }
         predictors_[i].observe(pair.center_m, elapsed_s_[pair.tool]);
         predictors_[i].rank(model_of(pair), Scene::kKeepFactor * pair.reach_m, ranking);
     }
     for (std::uint32_t i = 0; i < model_count_; ++i)
     {
         Model& model = *models_[i];
-        model.cache.adopt_arrivals(budgets.pages, frame_, work_);
+        model.work = WorkCounters{};
+        model.cache.adopt_arrivals(budgets.pages, frame_, model.work);
+        door_takes_[i] = model.cache.taken();
         model.pages_used_max = std::max(model.pages_used_max, model.pages.used());
         RegionRanking regions;
         for (const RankedRegion& region : ranking)
         {
-            if (region.model.value == i)
+            if (region.model.value == i && model.may_ask_for(region))
             {
                 regions.push_back(region);
             }
         }
-        model.cache.request_missing(regions.view(), budgets, frame_, work_, faults_);
+        if (model.residence != Residence::complete)
+        {
+            model.cache.request_missing(regions.view(), budgets, frame_, model.work, faults_);
+        }
+        if (model.residence == Residence::filling)
+        {
+            model.cache.request_everything(budgets, model.work, faults_);
+        }
     }
 }
 
 void Frame::refine(const Budgets& budgets) noexcept
 {
-    std::array<StaticVector<RefineQuestion, kMaxPairs>, kMaxModels> questions;
-    for (const ScenePair& pair : scene_.pairs())
+    for (std::uint32_t i = 0; i < model_count_; ++i)
     {
-        if (!pair.is_asleep)
+        models_[i]->refine(questions_about(i).view(), budgets, frame_, faults_);
+    }
+}
+
+/// What the pairs that are awake ask of a model: where they are and, coming nearer, where they will
+/// be. Certificates of questions that are not asked are forgotten: the model may coarsen there.
+Frame::RefineQuestions Frame::questions_about(std::uint32_t model) noexcept
+{
+    RefineQuestions questions;
+    const auto ask = [&](bool is_asked, const Vec3& center_m, double reach_m, RefineMemory& memory)
+    {
+        // From beyond the kernels' range nothing of a model is in reach.
+        if (!is_asked || is_beyond_kernels(center_m, models_[model]->header.quantum_m()))
         {
-            questions[model_of(pair).value].push_back(
-                {pair.center_m, pair.reach_m, Scene::kKeepFactor * pair.reach_m});
+            memory.is_known = false;
+            return;
         }
-    }
-    for (std::uint32_t i = 0; i < model_count_; ++i)
+        questions.push_back({center_m, reach_m, Scene::kKeepFactor * reach_m, &memory});
+    };
+    for (std::uint32_t i = 0; i < scene_.pairs().size(); ++i)
     {
-        models_[i]->refiner.coarsen(questions[i].view(), budgets, work_);
+        const ScenePair& pair = scene_.pairs()[i];
+        if (model_of(pair).value != model)
+        {
+            continue;
+        }
+        const double ahead = pair.ahead_m.norm();
+        const bool is_far_ahead = ahead > kLeastAhead * pair.reach_m;
+        const Vec3 there = pair.center_m + pair.ahead_m;
+        ask(!pair.is_asleep, pair.center_m, pair.reach_m, refine_memories_[2U * i]);
+        ask(!pair.is_asleep && is_far_ahead, there, pair.reach_m, refine_memories_[2U * i + 1U]);
     }
-    for (std::uint32_t i = 0; i < model_count_; ++i)
-    {
-        models_[i]->refiner.refine(questions[i].view(), budgets, frame_, work_, faults_);
-    }
+    return questions;
 }
 
 void Frame::query(std::span<const ObjectPose> poses, const Budgets& budgets) noexcept
@@ -290,10 +331,11 @@ void Frame::query(std::span<const ObjectPose> poses, const Budgets& budgets) noe
         else
         {
             WalkBudget budget{budgets.nodes, budgets.triangles};
-            gather_surface(models_[model_of(pair).value]->tree, pair.center_m, pair.reach_m, budget,
-                           surface);
+            gather_surface(models_[model_of(pair).value]->tree, pair.center_m, pair.reach_m,
+                           query_memories_[i], budget, surface);
             work_.nodes_visited += budget.nodes_visited;
             work_.triangles_tested += budget.triangles_tested;
+            faults_ |= budget.is_spent ? FrameFault::node_budget_spent : FrameFault::none;
             faults_ |= surface.truncated ? FrameFault::surface_truncated : FrameFault::none;
             Scene::remember(pair, surface.answer);
         }
@@ -345,6 +387,7 @@ void Frame::report(std::span<const ObjectPose> poses) noexcept
     for (std::uint32_t i = 0; i < model_count_; ++i)
     {
         const Model& model = *models_[i];
+        work_ += model.work;
         const AbTree::Capacities& tree = model.tree.capacities();
         const std::uint32_t index_pages = model.cache.index_pages_used();
         model_outputs_[i] = {
@@ -354,7 +397,8 @@ void Frame::report(std::span<const ObjectPose> poses) noexcept
             {model.tree.blocks_used(), model.tree.blocks_used_max(), tree.blocks},
             {model.tree.nodes_used(), model.tree.nodes_used_max(), tree.nodes},
             model.forest.refined_records(),
-            model.forest.state_hash()};
+            model.forest.state_hash(),
+            model.residence == Residence::complete};
     }
 }
 
@@ -364,7 +408,8 @@ FrameOutput Frame::finish() const noexcept
             {pair_outputs_.data(), scene_.tools().size() * scene_.objects().size()},
             {model_outputs_.data(), model_count_},
             work_,
-            faults_};
+            faults_,
+            {door_takes_.data(), model_count_}};
 }
 
 } // namespace tactus

@@ -2,10 +2,12 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "rt_core/base/realtime.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/force/proxy.hpp"
 #include "rt_core/frame/model.hpp"
 #include "rt_core/predict/region_predictor.hpp"
+#include "rt_core/query/surface_query.hpp"
 #include "rt_core/records/frame_input.hpp"
 #include "rt_core/records/frame_output.hpp"
 #include "rt_core/scene/scene.hpp"
@@ -34,6 +36,9 @@ struct FrameSetup
     std::span<const ToolSpec> tools;
     std::int64_t period_ns{1'000'000};
     std::int64_t pose_age_max_ns{100'000'000}; ///< Older poses make answers stale.
+    /// A model that fits its pools is loaded and refined fully, once (static mode).
+    bool static_when_it_fits{false};
+    const Kernels* kernels{nullptr}; ///< Null: best_kernels().
 };
 
 /// Why there is no frame.
@@ -71,12 +76,12 @@ public:
     /// One period: `tools` and `poses` as many as at start. The output is valid until the next run.
     [[nodiscard]] FrameOutput run(std::span<const ToolState> tools,
                                   std::span<const ObjectPose> poses, const Budgets& budgets,
-                                  StageMark mark) noexcept;
+                                  StageMark mark) noexcept TACTUS_NONBLOCKING;
 
     /// Runs last frame's queries again, into scratch memory, with the same machine code: called in
     /// the wait before the deadline it brings code and data back into the caches. No effect on any
     /// result.
-    void rehearse() noexcept;
+    void rehearse() noexcept TACTUS_NONBLOCKING;
 
     /// The transport thread's parts of a model: its inbox, linker and slots.
     [[nodiscard]] Model& model(ModelId id) noexcept { return *models_[id.value]; }
@@ -92,6 +97,8 @@ public:
     Frame(PassKey key, Arena& arena, const FrameSetup& setup) noexcept;
 
 private:
+    using RefineQuestions = StaticVector<RefineQuestion, 2U * kMaxPairs>;
+
     [[nodiscard]] static std::optional<FrameRefusal> check(const FrameSetup& setup) noexcept;
 
     void read_tools(std::span<const ToolState> tools) noexcept;
@@ -101,7 +108,9 @@ private:
     void query(std::span<const ObjectPose> poses, const Budgets& budgets) noexcept;
     void respond(std::span<const ObjectPose> poses) noexcept;
     void report(std::span<const ObjectPose> poses) noexcept;
+    [[nodiscard]] RefineQuestions questions_about(std::uint32_t model) noexcept;
     [[nodiscard]] double reach_of(std::uint32_t tool) const noexcept;
+    [[nodiscard]] Vec3 ahead_of(std::uint32_t tool) const noexcept;
     [[nodiscard]] ModelId model_of(const ScenePair& pair) const noexcept;
     [[nodiscard]] FrameOutput finish() const noexcept;
 
@@ -115,15 +124,18 @@ private:
     StaticVector<Proxy, kMaxTools> proxies_;
     std::array<Vec3, kMaxTools> goals_{};
     std::array<double, kMaxTools> elapsed_s_{};
-    std::array<double, kMaxTools> goal_speeds_m_per_s_{};
+    std::array<Vec3, kMaxTools> goal_velocities_m_per_s_{};
     bool has_started_{false};
     std::array<RegionPredictor, kMaxPairs> predictors_{};
+    std::array<RefineMemory, std::size_t{2} * kMaxPairs> refine_memories_{};
+    std::array<QueryMemory, kMaxPairs> query_memories_{};
     std::span<LocalSurface> surfaces_; ///< One a pair, and one for the rehearsal.
     Budgets last_budgets_;
 
     std::array<ToolOutput, kMaxTools> tool_outputs_{};
     std::array<PairOutput, kMaxPairs> pair_outputs_{};
     std::array<ModelOutput, kMaxModels> model_outputs_{};
+    std::array<DoorTake, kMaxModels> door_takes_{};
     WorkCounters work_;
     FrameFault faults_{FrameFault::none};
 };

@@ -10,13 +10,6 @@ namespace tactus
 namespace
 {
 
-/// Room for a frame's splits and merges and, at the start, for the base mesh.
-std::uint32_t change_capacity(const ModelCounts& counts) noexcept
-{
-    const std::uint32_t per_frame = kMaxStarFaces * (kMaxSplitsPerFrame + kMaxMergesPerFrame);
-    return std::max(per_frame, counts.base_faces);
-}
-
 std::uint32_t wish_capacity(const ModelCapacities& capacities) noexcept
 {
     return capacities.pages + capacities.index_pages;
@@ -50,7 +43,7 @@ std::size_t required_bytes(const ModelHeader& header, const ModelCapacities& cap
     Arena arena = Arena::measuring();
     const PageSlots slots =
         PageSlots::take(arena, header.counts(), capacities.pages, capacities.index_pages);
-    const Model model(arena, header, slots, capacities);
+    const Model model(arena, header, slots, capacities, portable_kernels());
     return arena.used();
 }
 
@@ -82,7 +75,7 @@ ModelCapacities plan_capacities(const ModelHeader& header, std::size_t bytes,
 }
 
 Model::Model(Arena& arena, const ModelHeader& model_header, PageSlots model_slots,
-             const ModelCapacities& model_capacities) noexcept
+             const ModelCapacities& model_capacities, const Kernels& kernels) noexcept
     : header(model_header)
     , capacities(model_capacities)
     , slots(model_slots)
@@ -90,28 +83,61 @@ Model::Model(Arena& arena, const ModelHeader& model_header, PageSlots model_slot
     , linker(arena, header.counts(), slots)
     , pages(arena, slots)
     , cache(arena, header, slots, pages, inbox)
-    , forest(arena, header.counts(), slots, pages, capacities.faces,
-             change_capacity(header.counts()))
-    , tree(arena, {capacities.faces, capacities.blocks, capacities.nodes}, header.quantum_m())
+    , tree(arena, {capacities.faces, capacities.blocks, capacities.nodes}, header.quantum_m(),
+           kernels)
+    , forest(arena, header.counts(), slots, pages, tree, capacities.faces)
     , refiner(arena, forest, pages, tree, header.quantum_m())
 {
 }
 
-void Model::refit(WorkCounters& work, FrameFault& faults) noexcept
+bool Model::may_ask_for(const RankedRegion& region) const noexcept
 {
-    // Backwards: a face that finds its place leaves the list.
-    for (std::size_t i = tree.unplaced().size(); i-- > 0;)
+    return !capacities.cache_off || (region.lead_ns == 0 && !is_refined);
+}
+
+bool Model::fits() const noexcept
+{
+    const ModelCounts counts = header.counts();
+    return capacities.pages >= counts.chunks() && capacities.index_pages >= counts.index_pages() &&
+           capacities.faces >= counts.face_ids();
+}
+
+void Model::refine(std::span<const RefineQuestion> questions, const Budgets& budgets,
+                   std::uint32_t frame, FrameFault& faults) noexcept
+{
+    if (residence == Residence::complete)
     {
-        if (const PrimId prim = tree.unplaced()[i]; !forest.is_changed(prim))
+        return;
+    }
+    Budgets own = budgets;
+    own.scanned = residence == Residence::filling ? 0 : budgets.scanned;
+    FrameFault found = FrameFault::none;
+    refiner.run(questions, own, frame, work, found);
+    faults |= found;
+    if (residence == Residence::filling)
+    {
+        switch (refiner.refine_everything(header.counts().records, budgets, frame, work, faults))
         {
-            tree.apply(forest.describe(prim));
+        case Refiner::Progress::complete:
+            residence = Residence::complete;
+            break;
+        case Refiner::Progress::full:
+            residence = Residence::partial;
+            break;
+        case Refiner::Progress::under_way:
+            break;
         }
     }
-    for (const PrimId prim : forest.changed_prims())
+    is_refined = found == FrameFault::none;
+    if (capacities.cache_off && is_refined)
     {
-        tree.apply(forest.describe(prim));
+        cache.evict_unpinned(work);
     }
-    forest.clear_changes();
+}
+
+void Model::refit(FrameFault& faults) noexcept
+{
+    tree.offer_unplaced([&](PrimId prim) { return forest.describe(prim); });
     const AbTree::RefitWork refitted = tree.refit();
     work.blocks_refitted += refitted.blocks;
     work.nodes_refitted += refitted.nodes;

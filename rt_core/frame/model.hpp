@@ -26,6 +26,10 @@ struct ModelCapacities
     std::uint32_t faces{0};       ///< Active faces.
     std::uint32_t blocks{0};      ///< Leaves of the AB-Tree.
     std::uint32_t nodes{0};       ///< Inner nodes of the AB-Tree.
+    /// Pages are asked for only while the refinement waits for records, never ahead of need, and go
+    /// back as soon as it waits for none and no record in them is refined: then the refined and the
+    /// loaded front agree to a page (the paper's figure 5). For measuring what a cache is worth.
+    bool cache_off{false};
 };
 
 /// Bytes that a model of these capacities takes from the arena, tables and inbox included.
@@ -38,6 +42,15 @@ struct ModelCapacities
 [[nodiscard]] ModelCapacities plan_capacities(const ModelHeader& header, std::size_t bytes,
                                               std::size_t cache_bytes) noexcept;
 
+/// How much of a model is here.
+enum class Residence : std::uint8_t
+{
+    partial,  ///< What the tools need.
+    filling,  ///< On its way to:
+    complete, ///< Everything, refined fully: nothing is left to load, refine or refit (static
+              ///< mode).
+};
+
 /// One model's forest, tree, cache and front, in the model's frame, refined for the union of what
 /// its objects' tools need. Everything is the haptic thread's but `linker` (the transport
 /// thread's) and `inbox` (between both). Does not move: its parts point at one another.
@@ -45,7 +58,7 @@ struct Model
 {
     /// `header` views bytes that outlive the model; `base` was parsed for it into `slots`.
     Model(Arena& arena, const ModelHeader& model_header, PageSlots model_slots,
-          const ModelCapacities& model_capacities) noexcept;
+          const ModelCapacities& model_capacities, const Kernels& kernels) noexcept;
     Model(const Model&) = delete;
     Model& operator=(const Model&) = delete;
     Model(Model&&) = delete;
@@ -53,7 +66,16 @@ struct Model
     ~Model() = default;
 
     /// Hands this frame's changes, and faces that found no place before, to the tree and refits it.
-    void refit(WorkCounters& work, FrameFault& faults) noexcept;
+    void refit(FrameFault& faults) noexcept;
+
+    /// Whether this frame may ask for what the region lacks.
+    [[nodiscard]] bool may_ask_for(const RankedRegion& region) const noexcept;
+    /// Whether all of the model has room at once.
+    [[nodiscard]] bool fits() const noexcept;
+    /// Moves the refined front to what the questions need; with the cache off, gives unused pages
+    /// back.
+    void refine(std::span<const RefineQuestion> questions, const Budgets& budgets,
+                std::uint32_t frame, FrameFault& faults) noexcept;
 
     ModelHeader header;
     ModelCapacities capacities;
@@ -62,10 +84,13 @@ struct Model
     Linker linker;
     PageTable pages;
     ChunkCache cache;
-    VertexForest forest;
     AbTree tree;
+    VertexForest forest;
     Refiner refiner;
     std::uint32_t pages_used_max{0};
+    WorkCounters work; ///< Of this frame; budgets are per model.
+    Residence residence{Residence::partial};
+    bool is_refined{false}; ///< The last refinement left nothing to do.
 };
 
 } // namespace tactus

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "rt_core/math/vec3.hpp"
+#include "rt_core/records/door_event.hpp"
 #include "rt_core/records/local_surface.hpp"
 #include "rt_core/records/work_counters.hpp"
 
@@ -55,6 +56,7 @@ struct ModelOutput
     PoolUse nodes;
     std::uint32_t refined_records{0};
     std::uint64_t state_hash{0};
+    bool is_static{false}; ///< Refined fully: nothing is left to load, refine or refit.
 };
 
 /// What a frame returns: spans into the frame's own memory, valid until the next run.
@@ -65,6 +67,7 @@ struct FrameOutput
     std::span<const ModelOutput> models;
     WorkCounters work;
     FrameFault faults{FrameFault::none};
+    std::span<const DoorTake> door; ///< One a model: an input of the frame, kept for recordings.
 };
 
 } // namespace tactus

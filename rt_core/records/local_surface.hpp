@@ -5,6 +5,7 @@
 #include "rt_core/limits.hpp"
 #include "rt_core/math/triangle.hpp"
 #include "rt_core/math/vec3.hpp"
+#include "rt_core/records/changed_face.hpp"
 #include "rt_core/spm/ids.hpp"
 
 #include <array>
@@ -17,7 +18,7 @@ namespace tactus
 /// An exact triangle near a tool, in the model's frame. 40 B.
 struct LocalTriangle
 {
-    FaceId face{};
+    PrimId prim{}; ///< Until the next frame; AbTree::face_of() knows its lasting name.
     std::array<Vec3f, 3> corners_m{};
 };
 

@@ -23,6 +23,24 @@ struct WorkCounters
     std::uint32_t evictions{0};
     std::uint32_t cache_hits{0};   ///< Wanted chunks found resident.
     std::uint32_t cache_misses{0}; ///< Wanted chunks absent and asked for.
+
+    WorkCounters& operator+=(const WorkCounters& other) noexcept
+    {
+        splits += other.splits;
+        merges += other.merges;
+        scanned += other.scanned;
+        nodes_visited += other.nodes_visited;
+        triangles_tested += other.triangles_tested;
+        pages_adopted += other.pages_adopted;
+        requests += other.requests;
+        regions_searched += other.regions_searched;
+        nodes_refitted += other.nodes_refitted;
+        blocks_refitted += other.blocks_refitted;
+        evictions += other.evictions;
+        cache_hits += other.cache_hits;
+        cache_misses += other.cache_misses;
+        return *this;
+    }
 };
 
 /// What a frame had to give up. Each flag names the limit to raise.
@@ -44,6 +62,10 @@ enum class FrameFault : std::uint32_t
 [[nodiscard]] constexpr FrameFault operator|(FrameFault a, FrameFault b) noexcept
 {
     return static_cast<FrameFault>(static_cast<std::uint32_t>(a) | static_cast<std::uint32_t>(b));
+}
+[[nodiscard]] constexpr FrameFault operator&(FrameFault a, FrameFault b) noexcept
+{
+    return static_cast<FrameFault>(static_cast<std::uint32_t>(a) & static_cast<std::uint32_t>(b));
 }
 constexpr FrameFault& operator|=(FrameFault& a, FrameFault b) noexcept
 {

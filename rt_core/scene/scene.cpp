@@ -30,12 +30,13 @@ Scene::Scene(std::span<const ToolSpec> tools, std::span<const ObjectSpec> object
 }
 
 void Scene::place(ScenePair& pair, const ObjectPose& pose, const Vec3& proxy_world_m,
-                  double reach_world_m) noexcept
+                  double reach_world_m, const Vec3& ahead_world_m) noexcept
 {
     pair.center_m = to_model(pose, proxy_world_m);
     pair.reach_m = reach_world_m / pose.scale;
-    pair.is_asleep =
-        pair.has_known && pair.known.lower_m - pair.motion_m() > kKeepFactor * pair.reach_m;
+    pair.ahead_m = (pose.rotation.transpose() * ahead_world_m) / pose.scale;
+    const double awake_m = kKeepFactor * pair.reach_m + pair.ahead_m.norm();
+    pair.is_asleep = pair.has_known && pair.known.lower_m - pair.motion_m() > awake_m;
 }
 
 void Scene::remember(ScenePair& pair, const DistanceAnswer& answer) noexcept

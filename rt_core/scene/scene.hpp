@@ -21,6 +21,7 @@ struct ScenePair
     std::uint32_t object{0};
     Vec3 center_m{0.0, 0.0, 0.0}; ///< The proxy now, in the model's frame.
     double reach_m{0.0};          ///< What the tool asks for now, in the model's frame.
+    Vec3 ahead_m{0.0, 0.0, 0.0};  ///< How far the tool comes before a contact can be refined.
     bool is_asleep{false};        ///< Proven out of reach; no stage needs to look.
 
     Vec3 known_center_m{0.0, 0.0, 0.0}; ///< Where `known` was taken.
@@ -41,9 +42,10 @@ public:
     /// changes when a tool goes back and forth.
     static constexpr double kKeepFactor = 1.25;
 
-    /// Places a pair for this frame: the proxy, and how far the tool asks from there.
+    /// Places a pair for this frame: the proxy, how far the tool asks from there, and how far it
+    /// looks ahead.
     static void place(ScenePair& pair, const ObjectPose& pose, const Vec3& proxy_world_m,
-                      double reach_world_m) noexcept;
+                      double reach_world_m, const Vec3& ahead_world_m) noexcept;
     /// Keeps what a query found at the pair's present place.
     static void remember(ScenePair& pair, const DistanceAnswer& answer) noexcept;
     /// What `remember`ed knowledge says of the present place, without looking: a valid bracket.

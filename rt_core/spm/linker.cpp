@@ -4,6 +4,7 @@
 
 #include "rt_core/spm/chunk_coding.hpp"
 
+#include <atomic>
 #include <bit>
 
 namespace tactus
@@ -20,9 +21,8 @@ Linker::Linker(Arena& arena, const ModelCounts& counts, PageSlots slots) noexcep
 void Linker::link_page(ChunkId chunk, std::uint32_t slot) noexcept
 {
     TACTUS_ASSERT(slot < residents_.size() && residents_[slot].chunk.is_none());
-    residents_[slot] = Resident{chunk, {}, 0, true};
-    // Relaxed: the slot reaches the haptic thread only later, through the inbox queue.
-    slots_.linked[slot].store(0, std::memory_order_relaxed);
+    residents_[slot] = Resident{chunk, {}, 0, 0, 0, true};
+    update_cursor_ = 0;
     const bool inserted = slot_of_.try_insert(chunk.value, slot);
     TACTUS_ASSERT(inserted);
     slots_in_use_end_ = slot + 1 > slots_in_use_end_ ? slot + 1 : slots_in_use_end_;
@@ -59,10 +59,29 @@ void Linker::release_page(std::uint32_t slot) noexcept
     any_released_ = true;
 }
 
+std::uint64_t Linker::tell_linked(std::uint32_t slot) noexcept
+{
+    residents_[slot].told = residents_[slot].linked;
+    return residents_[slot].linked;
+}
+
+bool Linker::try_take_update(Update& update) noexcept
+{
+    for (; update_cursor_ < slots_in_use_end_; ++update_cursor_)
+    {
+        const Resident& resident = residents_[update_cursor_];
+        if (resident.linked != resident.told)
+        {
+            update = {resident.chunk, update_cursor_, tell_linked(update_cursor_)};
+            return true;
+        }
+    }
+    return false;
+}
+
 bool Linker::has_waiting_records(std::uint32_t slot) const noexcept
 {
-    const std::uint64_t settled = slots_.linked[slot].load(std::memory_order_relaxed) |
-                                  residents_[slot].refused; // Relaxed: only this thread writes it.
+    const std::uint64_t settled = residents_[slot].linked | residents_[slot].refused;
     return static_cast<std::uint32_t>(std::popcount(settled)) <
            records_in_chunk(counts_, residents_[slot].chunk);
 }
@@ -121,7 +140,7 @@ void Linker::relink_next(std::uint32_t slot, std::uint32_t place, ChunkId change
             std::uint32_t* next = next_of(record.star[2 + i], state);
             if (*next == kNextPending) // Otherwise taken, by this record or a rival of it.
             {
-                // Pairs with nothing: see load_next(); the linked bit orders the record itself.
+                // Relaxed, pairs with nothing: see load_next().
                 std::atomic_ref<std::uint32_t>(*next).store(id, std::memory_order_relaxed);
             }
         }
@@ -151,10 +170,10 @@ void Linker::try_link(std::uint32_t slot, std::uint32_t place) noexcept
     for (std::uint32_t i = 0; i < record.fan_size; ++i)
     {
         std::uint32_t* next = next_of(record.star[2 + i], record.before[i]);
+        // Relaxed: see load_next(). The inbox publishes it together with the linked bit.
         std::atomic_ref<std::uint32_t>(*next).store(id.value, std::memory_order_relaxed);
     }
-    // Pairs with the acquire in PageTable::find_linked(): the record and what it needs are there.
-    slots_.linked[slot].fetch_or(bit, std::memory_order_release);
+    resident.linked |= bit;
     resident.changed = true;
     ++linked_count_;
 }
@@ -216,8 +235,7 @@ std::uint32_t* Linker::next_of(FaceId face, FaceState state) const noexcept
 
 bool Linker::is_linked(std::uint32_t slot, std::uint32_t place) const noexcept
 {
-    // Relaxed: only this thread writes it.
-    return ((slots_.linked[slot].load(std::memory_order_relaxed) >> place) & 1U) != 0;
+    return ((residents_[slot].linked >> place) & 1U) != 0;
 }
 
 void Linker::Signature::add(ChunkId chunk) noexcept

@@ -16,9 +16,10 @@ namespace tactus
 /// Links parsed records to the records they depend on, on the transport thread.
 ///
 /// A record depends on the records that last changed its fan faces (or on the base mesh). It is
-/// linked once all of those are present and linked: its place is checked against theirs, `next` of
-/// each is set to it, then its linked bit is published with release. Records whose
-/// dependencies are absent wait, parsed, in their page.
+/// linked once all of those are present and linked: its place is checked against theirs and `next`
+/// of each is set to it. Records whose dependencies are absent wait, parsed, in their page. Which
+/// records are linked reaches the haptic thread through the inbox only: with the page's arrival,
+/// and by updates afterwards (try_take_update()).
 ///
 /// A page that comes back after an eviction has all its `next` pending again: records of other
 /// pages that were linked to it set them anew. Which pages to look at is answered by a 256-bit
@@ -38,6 +39,24 @@ public:
 
     /// The haptic thread gave the slot back; its records are gone.
     void release_page(std::uint32_t slot) noexcept;
+
+    /// A page of which more records are linked than the haptic thread has been told.
+    struct Update
+    {
+        ChunkId chunk{};
+        std::uint32_t slot{0};
+        std::uint64_t linked{0};
+    };
+
+    /// The page's linked records, told with its arrival. Later ones are owed as updates.
+    [[nodiscard]] std::uint64_t tell_linked(std::uint32_t slot) noexcept;
+    /// Takes one update that is owed; false when none is. Only for pages that were handed over:
+    /// call tell_linked() for a page right after link_page().
+    [[nodiscard]] bool try_take_update(Update& update) noexcept;
+    [[nodiscard]] std::uint64_t linked(std::uint32_t slot) const noexcept
+    {
+        return residents_[slot].linked;
+    }
 
     [[nodiscard]] bool is_resident(ChunkId chunk) const noexcept
     {
@@ -59,6 +78,8 @@ private:
     {
         ChunkId chunk{};
         Signature refers_to;
+        std::uint64_t linked{0};  ///< One bit a record.
+        std::uint64_t told{0};    ///< Of `linked`, what the haptic thread was told.
         std::uint64_t refused{0}; ///< One bit a record.
         bool changed{false};      ///< Came in or gained linked records; others must look at it.
     };
@@ -85,6 +106,7 @@ private:
     IdTable slot_of_;
     std::span<Resident> residents_;
     std::uint32_t slots_in_use_end_{0};
+    std::uint32_t update_cursor_{0}; ///< No slot before it owes an update.
     bool any_released_{false};
     std::uint64_t linked_count_{0};
     std::uint64_t refused_count_{0};

@@ -17,13 +17,12 @@ namespace tactus
 /// The memory in which a model's pages live, seen by both threads.
 ///
 /// The transport thread alone writes it: a page's content while the slot is on loan to it, and
-/// later only `next` (through std::atomic_ref) and the linked bits. The haptic thread reads slots
-/// that were handed over through the inbox. A record counts for the haptic thread once its linked
-/// bit, loaded with acquire, is set.
+/// later only `next` (through std::atomic_ref). The haptic thread reads slots that were handed over
+/// through the inbox. A record counts for it once an event from the inbox has told that it is
+/// linked; it keeps those bits in its PageTable.
 struct PageSlots
 {
     std::span<Page> pages;
-    std::span<std::atomic<std::uint64_t>> linked; ///< One bit a record of the page in the slot.
     std::span<IndexPage> index_pages;
     BaseMesh base;
 
@@ -33,7 +32,6 @@ struct PageSlots
     {
         PageSlots slots;
         slots.pages = arena.take<Page>(page_capacity);
-        slots.linked = arena.take<std::atomic<std::uint64_t>>(page_capacity);
         slots.index_pages = arena.take<IndexPage>(index_capacity);
         slots.base.positions_m = arena.take<Vec3f>(counts.base_vertices);
         slots.base.faces = arena.take<BaseFace>(counts.base_faces);
@@ -42,8 +40,11 @@ struct PageSlots
     }
 };
 
-/// Reads a `next` that the other thread may be writing. Relaxed: the record it names is only used
-/// after its linked bit was loaded with acquire.
+/// Reads a `next` that the other thread may be writing, which is the one thing that changes while a
+/// frame runs, and still no result depends on when. A `next` goes once from kNextPending to the id
+/// of one record, and that is written before the record's linked bit is pushed into the inbox. So
+/// whoever has taken that bit reads the id; whoever hasn't finds that the id isn't linked
+/// (PageTable::find_linked), and that means the same as kNextPending. Hence relaxed, too.
 [[nodiscard]] inline std::uint32_t load_next(std::uint32_t& next) noexcept
 {
     return std::atomic_ref<std::uint32_t>(next).load(std::memory_order_relaxed);

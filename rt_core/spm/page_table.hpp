@@ -24,6 +24,7 @@ public:
         std::uint32_t touched{0}; ///< Frame number of the last use.
         std::uint64_t refined{0}; ///< One bit a record. The page is pinned while any is set.
         std::uint64_t held{0};    ///< Refined for a closure that isn't complete; not to be merged.
+        std::uint64_t linked{0};  ///< As the inbox has told so far; the linker may know of more.
     };
 
     PageTable(Arena& arena, PageSlots slots) noexcept
@@ -33,12 +34,24 @@ public:
     {
     }
 
-    void adopt(ChunkId chunk, std::uint32_t slot, std::uint32_t frame) noexcept
+    /// `linked` has a bit for each record that find_linked() may return.
+    void adopt(ChunkId chunk, std::uint32_t slot, std::uint32_t frame,
+               std::uint64_t linked = 0) noexcept
     {
         TACTUS_ASSERT(meta_[slot].chunk.is_none());
-        meta_[slot] = Meta{chunk, frame, 0, 0};
+        meta_[slot] = Meta{chunk, frame, 0, 0, linked};
         const bool inserted = slot_of_.try_insert(chunk.value, slot);
         TACTUS_ASSERT(inserted);
+    }
+
+    /// More records of the chunk are linked. No effect when the slot does not hold it any more: the
+    /// update was on its way when the page was evicted.
+    void update_linked(ChunkId chunk, std::uint32_t slot, std::uint64_t linked) noexcept
+    {
+        if (meta_[slot].chunk == chunk)
+        {
+            meta_[slot].linked = linked;
+        }
     }
 
     /// Forgets an unpinned page; the slot may go back to the transport thread.
@@ -59,14 +72,14 @@ public:
     [[nodiscard]] VsplitRecord* find_linked(RecordId record) const noexcept
     {
         const std::uint32_t slot = find(chunk_of(record));
-        if (slot == IdTable::kAbsent)
-        {
-            return nullptr;
-        }
-        // Pairs with the release in Linker::try_link(): what the record depends on was checked.
-        const std::uint64_t linked = slots_.linked[slot].load(std::memory_order_acquire);
+        return slot == IdTable::kAbsent ? nullptr : find_linked(record, slot);
+    }
+    /// The same for a record whose chunk is in `slot`.
+    [[nodiscard]] VsplitRecord* find_linked(RecordId record, std::uint32_t slot) const noexcept
+    {
         const std::uint32_t place = place_in_chunk(record);
-        return ((linked >> place) & 1U) != 0 ? &slots_.pages[slot].records[place] : nullptr;
+        const bool is_linked = ((meta_[slot].linked >> place) & 1U) != 0;
+        return is_linked ? &slots_.pages[slot].records[place] : nullptr;
     }
 
     /// A record whose page must be here: refined records pin theirs.

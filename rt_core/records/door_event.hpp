@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/spm/content_key.hpp"
+
+#include <cstdint>
+#include <span>
+#include <type_traits>
+
+namespace tactus
+{
+
+enum class DoorEventKind : std::uint8_t
+{
+    arrival,     ///< A filled slot, handed over.
+    link_update, ///< More records of a page that was handed over before are linked now.
+};
+
+/// What the transport thread tells the haptic thread about one slot, in order. Together these are
+/// all that a frame learns from outside besides its arguments, so a recording keeps them.
+struct DoorEvent
+{
+    ContentKey key;
+    std::uint32_t slot{0};
+    /// For an arrival: slots that the transport thread had taken back in all when it linked the
+    /// page (modulo 2^32). Linking depends on it, so a replay waits for the same number.
+    std::uint32_t freed_taken{0};
+    std::uint64_t linked{0}; ///< One bit a record of the chunk; none for an index page.
+    DoorEventKind kind{DoorEventKind::arrival};
+};
+
+static_assert(sizeof(DoorEvent) == 32 && std::is_trivially_copyable_v<DoorEvent>);
+
+/// What one model's frame took from the door.
+struct DoorTake
+{
+    std::span<const DoorEvent> events; ///< In the order in which they were taken.
+    std::uint32_t wish_room{0};        ///< How many wishes the door had room for.
+};
+
+} // namespace tactus
