@@ -50,10 +50,11 @@ FrameRig::FrameRig(const TestModel& model, const RigOptions& options)
         Frame::required_bytes(setup) + Arena::round_up(served_.header.size());
     const ModelCounts counts = header.counts();
     const std::size_t courier = Courier::required_bytes(counts.chunks(), counts.index_pages());
-    const ModelCapacities capacities =
+    ModelCapacities capacities =
         options.pool_bytes > shared + courier
             ? plan_capacities(header, options.pool_bytes - shared - courier, options.cache_bytes)
             : ModelCapacities{};
+    capacities.cache_off = options.cache_off;
     const std::array<ModelSource, 1> sources{ModelSource{served_.header, served_.base, capacities}};
     setup.models = sources;
     if (capacities.pages == 0)
@@ -68,6 +69,10 @@ FrameRig::FrameRig(const TestModel& model, const RigOptions& options)
     courier_ = std::make_unique<Courier>(*arena_, parts.header, parts.slots, parts.linker,
                                          parts.inbox, *link_, model.name, Log{});
     poses_.resize(1);
+    if (options.record)
+    {
+        recorder_ = std::make_unique<RigRecorder>(setup, *courier_);
+    }
 }
 
 FrameOutput FrameRig::step(const std::vector<Vec3>& goals_m, const Budgets& budgets, StageMark mark)
@@ -84,7 +89,12 @@ FrameOutput FrameRig::step_without_delivery(const std::vector<Vec3>& goals_m,
     {
         tools_[i].position_m = goals_m[i];
     }
-    return frame_->run(tools_, poses_, budgets, mark);
+    const FrameOutput output = frame_->run(tools_, poses_, budgets, mark);
+    if (recorder_ != nullptr)
+    {
+        recorder_->add(tools_, poses_, budgets, output);
+    }
+    return output;
 }
 
 void FrameRig::deliver()
@@ -133,6 +143,12 @@ void load_everything(FrameRig& rig)
     if (model.pages.used() != chunks)
     {
         give_up("not every chunk came");
+    }
+    // What was linked after its page had been handed over.
+    for (std::uint32_t round = 0; round <= chunks / kMaxLinkUpdatesPerFrame + 1; ++round)
+    {
+        rig.deliver();
+        model.cache.adopt_arrivals(1'000, ChunkCache::kFirstFrame + 10'000, work);
     }
 }
 

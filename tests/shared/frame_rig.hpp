@@ -3,6 +3,7 @@
 #pragma once
 
 #include "rt_core/frame/frame.hpp"
+#include "tests/shared/rig_recorder.hpp"
 #include "tests/shared/test_model.hpp"
 #include "transport/courier.hpp"
 #include "transport/loopback/loopback_link.hpp"
@@ -22,6 +23,8 @@ struct RigOptions
     std::vector<ToolSpec> tools;
     LoopbackFaults faults;
     std::uint32_t courier_steps_per_frame{4};
+    bool cache_off{false};
+    bool record{false}; ///< Keep a recording; frames must then run through step() only.
 };
 
 /// The controller without clocks, threads and devices: a frame, and the courier of one model read
@@ -50,6 +53,8 @@ public:
     [[nodiscard]] Model& model() { return frame_->model({0}); }
     [[nodiscard]] Courier& courier() { return *courier_; }
     [[nodiscard]] LoopbackLink& link() { return *link_; }
+    /// The recording of all frames so far; once, at the end, and only with RigOptions::record.
+    [[nodiscard]] std::vector<std::byte> finish_recording() { return recorder_->finish(); }
 
 private:
     ServedModel served_;
@@ -58,6 +63,7 @@ private:
     std::optional<Arena> arena_;
     std::optional<Frame> frame_;
     std::unique_ptr<Courier> courier_;
+    std::unique_ptr<RigRecorder> recorder_; ///< Null unless it records.
     std::uint32_t courier_steps_;
     std::int64_t now_ns_{0};
     std::vector<ObjectPose> poses_;

@@ -59,7 +59,9 @@ TestModel make(const std::string& name, const TriangleMesh& mesh, std::uint32_t 
     TestModel model;
     model.name = name;
     model.path = folder.path / (name + ".spm");
-    const auto written = write_spm(model.path, prepared.value(), simplified.value(), {});
+    EncodeOptions encoding;
+    encoding.base_faces = base_faces;
+    const auto written = write_spm(model.path, prepared.value(), simplified.value(), encoding);
     if (!written)
     {
         give_up(name, written.error().text);

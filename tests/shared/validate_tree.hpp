@@ -82,12 +82,14 @@ private:
     void check_unplaced()
     {
         std::set<std::uint32_t> unplaced;
-        for (const PrimId prim : tree_.unplaced())
+        for (const auto& [prim, face] : faces_)
         {
-            check(unplaced.insert(prim.value).second, "prim ", prim.value, " is unplaced twice");
-            check(faces_.count(prim.value) != 0, "unplaced prim ", prim.value, " is gone");
-            check(tree_.leaf_of(prim) == AbTree::kNoLeaf, "unplaced prim ", prim.value,
-                  " has a leaf");
+            if (tree_.is_unplaced({prim}))
+            {
+                unplaced.insert(prim);
+                check(tree_.leaf_of({prim}) == AbTree::kNoLeaf, "unplaced prim ", prim,
+                      " has a leaf");
+            }
         }
         check(tree_.is_complete() == unplaced.empty(), "is_complete is wrong");
         for (const auto& [prim, face] : faces_)
@@ -243,8 +245,8 @@ private:
     /// The digits on the way down are those of the face's path.
     void check_path(const ChangedFace& face)
     {
-        const std::uint64_t path =
-            (std::uint64_t{face.bucket} << 32U) | (face.face.value * 0x9E37'79B9U);
+        const std::uint64_t path = (std::uint64_t{face.bucket} << 33U) |
+                                   (std::uint64_t{face.face.value * 0x9E37'79B9U} << 1U);
         for (const auto& [index, child] : path_)
         {
             const AbNode& node = tree_.node(index);

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "platform/recording/frame_coding.hpp"
+#include "platform/recording/recording_format.hpp"
+#include "rt_core/base/spsc_queue.hpp"
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace tactus
+{
+
+/// Carries coded frames from the haptic thread to whoever writes them, through a queue of fixed
+/// size. The haptic thread never waits: a frame that finds no room is lost, and with it all later
+/// ones, since a replay can't go past a gap.
+class FrameTap
+{
+public:
+    /// Room for `cells` of 64 B; a frame of one tool and model takes 3 to 5, an arrival a third.
+    explicit FrameTap(std::size_t cells = kUsualCells);
+
+    /// A second or more of usual frames: 1 MiB.
+    static constexpr std::size_t kUsualCells = 16'384;
+
+    /// Haptic thread. Allocates nothing.
+    void record(std::span<const ToolState> tools, std::span<const ObjectPose> poses,
+                const Budgets& budgets, const FrameOutput& output) noexcept;
+
+    /// The other thread: the next coded frame into `frame`; false when none waits.
+    [[nodiscard]] bool try_take(std::vector<std::byte>& frame);
+
+    /// Any thread: the first frame that was lost, from 0, or kNoFrame.
+    [[nodiscard]] std::uint64_t lost_from() const noexcept
+    {
+        return lost_from_.load(std::memory_order_relaxed); // A number to show; orders nothing.
+    }
+
+private:
+    using Cell = std::array<std::byte, 64>;
+
+    FrameEncoder encoder_;
+    std::vector<Cell> cells_;
+    SpscQueue<Cell> queue_;
+    std::uint64_t frames_{0};
+    std::atomic<std::uint64_t> lost_from_{kNoFrame};
+};
+
+} // namespace tactus

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/recording/output_hash.hpp"
+
+#include <bit>
+
+namespace tactus
+{
+
+namespace
+{
+
+// A field that is added to one of these has to be hashed below.
+static_assert(sizeof(ToolOutput) == 56);
+static_assert(sizeof(PairOutput) == 104);
+static_assert(sizeof(ModelOutput) == 80);
+static_assert(sizeof(WorkCounters) == 52);
+
+class Hash
+{
+public:
+    void add(std::uint64_t value) noexcept
+    {
+        // The finalizer of SplitMix64: every bit of the input reaches every bit of the state.
+        state_ = (state_ ^ value) + 0x9E37'79B9'7F4A'7C15ULL;
+        state_ = (state_ ^ (state_ >> 30U)) * 0xBF58'476D'1CE4'E5B9ULL;
+        state_ = (state_ ^ (state_ >> 27U)) * 0x94D0'49BB'1331'11EBULL;
+        state_ ^= state_ >> 31U;
+    }
+    void add(double value) noexcept { add(std::bit_cast<std::uint64_t>(value)); }
+    void add(const Vec3& value) noexcept
+    {
+        add(value.x());
+        add(value.y());
+        add(value.z());
+    }
+    void add(const PoolUse& use) noexcept
+    {
+        add(std::uint64_t{use.used});
+        add(std::uint64_t{use.used_max});
+        add(std::uint64_t{use.capacity});
+    }
+    [[nodiscard]] std::uint64_t value() const noexcept { return state_; }
+
+private:
+    std::uint64_t state_{0};
+};
+
+std::uint64_t hash_tools(std::span<const ToolOutput> tools) noexcept
+{
+    Hash hash;
+    for (const ToolOutput& tool : tools)
+    {
+        hash.add(tool.force_n);
+        hash.add(tool.proxy_m);
+        hash.add(std::uint64_t{tool.in_contact});
+        hash.add(std::uint64_t{tool.frozen});
+    }
+    return hash.value();
+}
+
+std::uint64_t hash_pairs(std::span<const PairOutput> pairs) noexcept
+{
+    Hash hash;
+    for (const PairOutput& pair : pairs)
+    {
+        hash.add((std::uint64_t{pair.tool} << 32U) | pair.object);
+        hash.add(static_cast<std::uint64_t>(pair.kind));
+        hash.add(pair.point_m);
+        hash.add(pair.lower_m);
+        hash.add(pair.upper_m);
+        hash.add(pair.certified_radius_m);
+        hash.add(std::uint64_t{pair.nearest_face.value});
+        hash.add(pair.nearest_point_m);
+        hash.add(std::uint64_t{pair.skipped});
+    }
+    return hash.value();
+}
+
+std::uint64_t hash_models(std::span<const ModelOutput> models) noexcept
+{
+    Hash hash;
+    for (const ModelOutput& model : models)
+    {
+        hash.add(model.pages);
+        hash.add(model.index_pages);
+        hash.add(model.faces);
+        hash.add(model.blocks);
+        hash.add(model.nodes);
+        hash.add(std::uint64_t{model.refined_records});
+        hash.add(model.state_hash);
+        hash.add(std::uint64_t{model.is_static});
+    }
+    return hash.value();
+}
+
+std::uint64_t hash_work(const WorkCounters& work, FrameFault faults) noexcept
+{
+    Hash hash;
+    for (const std::uint32_t count :
+         {work.splits, work.merges, work.scanned, work.nodes_visited, work.triangles_tested,
+          work.pages_adopted, work.requests, work.regions_searched, work.nodes_refitted,
+          work.blocks_refitted, work.evictions, work.cache_hits, work.cache_misses})
+    {
+        hash.add(std::uint64_t{count});
+    }
+    hash.add(static_cast<std::uint64_t>(faults));
+    return hash.value();
+}
+
+} // namespace
+
+OutputHashes hash_output(const FrameOutput& output) noexcept
+{
+    return {hash_tools(output.tools), hash_pairs(output.pairs), hash_models(output.models),
+            hash_work(output.work, output.faults)};
+}
+
+} // namespace tactus

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/records/frame_output.hpp"
+
+#include <cstdint>
+
+namespace tactus
+{
+
+/// 64-bit hashes of the parts of a FrameOutput, field by field: every value takes part with all its
+/// bits, padding with none. Two frames that agree in these have given the same bytes.
+struct OutputHashes
+{
+    std::uint64_t tools{0};
+    std::uint64_t pairs{0};
+    std::uint64_t models{0}; ///< Pools, refined records and state hash of each model.
+    std::uint64_t work{0};   ///< Work counters and faults.
+
+    bool operator==(const OutputHashes&) const noexcept = default;
+};
+
+/// About 60 multiplications for one tool and one object. `output.door` is an input and left out.
+[[nodiscard]] OutputHashes hash_output(const FrameOutput& output) noexcept;
+
+} // namespace tactus

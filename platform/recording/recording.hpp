@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "platform/recording/frame_coding.hpp"
+#include "platform/recording/recording_format.hpp"
+#include "rt_core/base/result.hpp"
+#include "rt_core/spm/content_key.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+#include <tuple>
+#include <vector>
+
+namespace tactus
+{
+
+/// Why a recording was refused: one line with the file's name, the byte where it is wrong, what is
+/// wrong there and what is allowed.
+struct RecordingError
+{
+    std::string text;
+};
+
+/// A recording in memory, checked as a whole: every section's checksum, every count and range, and
+/// that each piece that a frame takes from the door is there before it.
+class Recording
+{
+public:
+    /// Reads a file, whole; it takes as much memory as the file has bytes.
+    [[nodiscard]] static Result<Recording, RecordingError> read(const std::string& path);
+    /// The same for bytes in memory; `name` stands for the file's in messages.
+    [[nodiscard]] static Result<Recording, RecordingError> parse(std::span<const std::byte> bytes,
+                                                                 const std::string& name);
+
+    [[nodiscard]] const RecordedSetup& setup() const noexcept { return setup_; }
+    [[nodiscard]] FrameShape shape() const noexcept
+    {
+        return {setup_.tools.size(), setup_.objects.size(), setup_.models.size()};
+    }
+    /// The coded piece; empty when the recording has none under this key.
+    [[nodiscard]] std::span<const std::byte> piece(std::uint32_t model,
+                                                   ContentKey key) const noexcept;
+    /// All frames as FrameEncoder coded them, for a FrameDecoder.
+    [[nodiscard]] std::span<const std::byte> frames() const noexcept { return frames_; }
+    [[nodiscard]] std::uint64_t frame_count() const noexcept { return frame_count_; }
+    /// The first frame that the recorder lost; kNoFrame when it lost none.
+    [[nodiscard]] std::uint64_t lost_from() const noexcept { return lost_from_; }
+
+private:
+    friend class RecordingParser;
+    using PieceKey = std::tuple<std::uint32_t, ContentKind, std::uint32_t>;
+
+    RecordedSetup setup_;
+    std::map<PieceKey, std::vector<std::byte>> pieces_;
+    std::vector<std::byte> frames_;
+    std::uint64_t frame_count_{0};
+    std::uint64_t lost_from_{kNoFrame};
+};
+
+} // namespace tactus

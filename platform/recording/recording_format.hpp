@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/frame/frame.hpp"
+#include "rt_core/limits.hpp"
+#include "rt_core/records/frame_input.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace tactus
+{
+
+/// docs/recording.md describes the file.
+inline constexpr std::array<char, 8> kRecordingMagic{'T', 'A', 'C', 'T', 'R', 'E', 'C', '\n'};
+inline constexpr std::uint32_t kRecordingVersion = 1;
+inline constexpr std::size_t kRecordingPrologueBytes = 12;
+
+enum class SectionKind : std::uint32_t
+{
+    setup = 1,
+    model = 2,
+    piece = 3,
+    frames = 4,
+    end = 5,
+};
+
+/// In front of every section: kind, payload bytes, CRC-32C of those two and the payload.
+inline constexpr std::size_t kSectionHeaderBytes = 12;
+/// A longer frames section is never written, so a damaged length is seen as such.
+inline constexpr std::uint32_t kMaxFramesSectionBytes = 1U << 20U;
+
+/// A model as it was when the frame was made.
+struct RecordedModel
+{
+    ModelCapacities capacities;
+    std::vector<std::byte> header; ///< Coded, as ModelSource takes them.
+    std::vector<std::byte> base;
+};
+
+/// What the frame was made of.
+struct RecordedSetup
+{
+    std::int64_t period_ns{1'000'000};
+    std::int64_t pose_age_max_ns{100'000'000};
+    bool static_when_it_fits{false};
+    std::vector<ToolSpec> tools;
+    std::vector<ObjectSpec> objects;
+    std::vector<RecordedModel> models;
+    /// For the reader of a difference: how the program that recorded was built, and the kernels it
+    /// ran. At most kMaxRecordedNameBytes each.
+    std::string compiler;
+    std::string architecture;
+    std::string kernels;
+};
+
+inline constexpr std::size_t kMaxRecordedNameBytes = 63;
+
+/// No frame was lost.
+inline constexpr std::uint64_t kNoFrame = std::numeric_limits<std::uint64_t>::max();
+
+/// The setup of a frame that this program makes, as a recording keeps it.
+[[nodiscard]] RecordedSetup to_recorded(const FrameSetup& setup);
+
+} // namespace tactus

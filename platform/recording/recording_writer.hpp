@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "platform/recording/recording_format.hpp"
+#include "rt_core/spm/content_key.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <set>
+#include <span>
+#include <tuple>
+#include <vector>
+
+namespace tactus
+{
+
+/// Lays out a recording's bytes in the order in which they are given; whoever owns it takes them
+/// away and stores them. A piece must be added before the frame that takes it from the door.
+/// Not for the haptic thread.
+class RecordingWriter
+{
+public:
+    explicit RecordingWriter(const RecordedSetup& setup);
+
+    /// A coded chunk or index page; a second one under the same key is the same and left out.
+    void add_piece(std::uint32_t model, ContentKey key, std::span<const std::byte> bytes);
+
+    /// One frame as FrameEncoder coded it.
+    void add_frame(std::span<const std::byte> coded);
+
+    /// Closes the recording. `lost_from`: the first frame that is not in it, else kNoFrame.
+    void finish(std::uint64_t lost_from);
+
+    [[nodiscard]] std::uint64_t frames() const noexcept { return frames_; }
+    /// Everything laid out since the last call.
+    [[nodiscard]] std::vector<std::byte> take_bytes();
+
+private:
+    void close_frames();
+    void append_section(SectionKind kind, std::span<const std::byte> payload);
+
+    std::vector<std::byte> bytes_;
+    std::vector<std::byte> open_frames_; ///< Of the section that is not full yet.
+    std::set<std::tuple<std::uint32_t, ContentKind, std::uint32_t>> pieces_;
+    std::uint64_t frames_{0};
+};
+
+} // namespace tactus

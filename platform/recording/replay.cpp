@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/recording/replay.hpp"
+
+#include "platform/recording/replay_door.hpp"
+#include "rt_core/frame/frame.hpp"
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <utility>
+
+namespace tactus
+{
+
+namespace
+{
+
+struct alignas(Arena::kAlignment) CacheLine
+{
+    std::array<std::byte, Arena::kAlignment> bytes;
+};
+
+/// A frame made from a recording's setup, with the memory it lives in.
+class ReplayedFrame
+{
+public:
+    [[nodiscard]] static Result<std::unique_ptr<ReplayedFrame>, ReplayError>
+    create(const Recording& recording, const Kernels* kernels)
+    {
+        std::unique_ptr<ReplayedFrame> replayed(new ReplayedFrame(recording, kernels));
+        if (const auto started =
+                Frame::start(replayed->frame_, *replayed->arena_, replayed->setup_);
+            !started)
+        {
+            return ReplayError{std::string("no frame can be made of the recording's setup: ") +
+                               refusal_text(started.error())};
+        }
+        for (std::uint32_t i = 0; i < replayed->frame_->model_count(); ++i)
+        {
+            replayed->doors_.emplace_back(recording, i, replayed->frame_->model({i}));
+        }
+        return replayed;
+    }
+
+    /// What differs in this frame, if anything.
+    [[nodiscard]] std::optional<std::string> step(const RecordedFrame& recorded)
+    {
+        for (std::size_t i = 0; i < doors_.size(); ++i)
+        {
+            if (const auto fault = doors_[i].open(recorded.doors[i]))
+            {
+                return "model " + std::to_string(i) + ": " + *fault;
+            }
+        }
+        return compare(frame_->run(recorded.tools, recorded.poses, recorded.budgets, {}), recorded);
+    }
+
+private:
+    ReplayedFrame(const Recording& recording, const Kernels* kernels)
+    {
+        const RecordedSetup& setup = recording.setup();
+        for (const RecordedModel& model : setup.models)
+        {
+            sources_.push_back({model.header, model.base, model.capacities});
+        }
+        setup_.models = sources_;
+        setup_.objects = setup.objects;
+        setup_.tools = setup.tools;
+        setup_.period_ns = setup.period_ns;
+        setup_.pose_age_max_ns = setup.pose_age_max_ns;
+        setup_.static_when_it_fits = setup.static_when_it_fits;
+        setup_.kernels = kernels;
+        memory_.resize(Frame::required_bytes(setup_) / sizeof(CacheLine) + 1);
+        arena_.emplace(std::as_writable_bytes(std::span(memory_)));
+    }
+
+    [[nodiscard]] static std::optional<std::string> compare(const FrameOutput& output,
+                                                            const RecordedFrame& recorded)
+    {
+        for (std::size_t i = 0; i < recorded.doors.size(); ++i)
+        {
+            const std::string model = "model " + std::to_string(i);
+            if (output.door[i].events.size() != recorded.doors[i].events.size())
+            {
+                return model + ": " + std::to_string(output.door[i].events.size()) + " of " +
+                       std::to_string(recorded.doors[i].events.size()) +
+                       " events were taken from the door";
+            }
+            if (output.models[i].state_hash != recorded.state_hashes[i])
+            {
+                return model + ": other faces are active (state hash)";
+            }
+        }
+        const OutputHashes hashes = hash_output(output);
+        const std::array<std::pair<bool, const char*>, 4> parts{
+            {{hashes.tools == recorded.output.tools, "forces or proxies of the tools"},
+             {hashes.pairs == recorded.output.pairs, "answers of the pairs"},
+             {hashes.models == recorded.output.models, "pools of the models"},
+             {hashes.work == recorded.output.work, "work counters or faults"}}};
+        const auto* const part =
+            std::find_if(parts.begin(), parts.end(), [](const auto& one) { return !one.first; });
+        return part == parts.end() ? std::nullopt
+                                   : std::optional(std::string("other ") + part->second);
+    }
+
+    std::vector<ModelSource> sources_;
+    FrameSetup setup_;
+    std::vector<CacheLine> memory_;
+    std::optional<Arena> arena_;
+    std::optional<Frame> frame_;
+    std::vector<ReplayDoor> doors_;
+};
+
+} // namespace
+
+Result<ReplayReport, ReplayError> replay(const Recording& recording, const Kernels* kernels)
+{
+    auto replayed = ReplayedFrame::create(recording, kernels);
+    if (!replayed)
+    {
+        return replayed.error();
+    }
+    ReplayReport report;
+    FrameDecoder decoder(recording.shape());
+    for (ByteReader reader(recording.frames()); !reader.at_end();)
+    {
+        const char* fault = decoder.decode(reader);
+        TACTUS_ASSERT(fault == nullptr); // The recording was checked as a whole.
+        const std::uint64_t frame = report.frames++;
+        if (auto difference = replayed.value()->step(decoder.frame()))
+        {
+            report.difference = {frame, std::move(*difference)};
+            break;
+        }
+    }
+    return report;
+}
+
+} // namespace tactus

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "platform/recording/recording.hpp"
+#include "rt_core/kernels/kernels.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace tactus
+{
+
+/// Where a replay first went another way than the recording.
+struct ReplayDifference
+{
+    std::uint64_t frame{0}; ///< From 0.
+    std::string text;       ///< What differs, in words that follow "frame N: ".
+};
+
+struct ReplayReport
+{
+    std::uint64_t frames{0}; ///< Replayed, the one that differs included.
+    std::optional<ReplayDifference> difference;
+};
+
+/// Why a sound recording can't be replayed: no frame can be made of its setup.
+struct ReplayError
+{
+    std::string text;
+};
+
+/// Makes a frame as the recorded one was made, gives it the recorded inputs, arrivals and link
+/// updates of every frame, and compares what comes out with the recorded hashes. Stops at the first
+/// difference. Needs no device, network, timer or thread; takes the pools' memory.
+///
+/// Pages are linked here anew, by the same Linker in the recorded order, and compared, too.
+/// `kernels` run the queries, null the best of this processor; it makes no difference.
+[[nodiscard]] Result<ReplayReport, ReplayError> replay(const Recording& recording,
+                                                       const Kernels* kernels = nullptr);
+
+} // namespace tactus

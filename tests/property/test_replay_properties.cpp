@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+
+/// Any run of the frame, whatever ran out, replays bit for bit from its recording, and a replay
+/// with one bit changed is noticed.
+
+#include "platform/recording/replay.hpp"
+#include "tests/property/random.hpp"
+#include "tests/shared/frame_rig.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+
+namespace tactus::test
+{
+namespace
+{
+
+struct Hardship
+{
+    const char* name;
+    Budgets budgets;
+    std::size_t pool_bytes;
+    LoopbackFaults faults;
+    std::uint32_t courier_steps;
+};
+
+std::vector<Hardship> hardships()
+{
+    Budgets starved;
+    starved.splits = 4;
+    starved.merges = 4;
+    starved.nodes = 12;
+    starved.triangles = 60;
+    starved.pages = 1;
+    starved.requests = 2;
+    starved.regions = 1;
+    LoopbackFaults bad;
+    bad.loss = 0.2;
+    bad.duplicates = 0.1;
+    bad.damage = 0.05;
+    bad.mix_ups = 0.05;
+    bad.delay_polls_max = 200;
+    LoopbackFaults uneven;
+    uneven.delay_polls_max = 40;
+    return {{"usual", {}, std::size_t{8} << 20U, {}, 4},
+            {"starved", starved, std::size_t{8} << 20U, uneven, 1},
+            {"tiny-pools", {}, std::size_t{400} << 10U, uneven, 2},
+            {"bad-link", {}, std::size_t{600} << 10U, bad, 3}};
+}
+
+/// A goal that slides, leaps and rests, and a sample that is invalid now and then.
+class Wander
+{
+public:
+    Wander(const TestModel& model, Random& random) : model_(model), random_(random) { leap(); }
+
+    Vec3 next()
+    {
+        const double dice = random_.between(0.0, 1.0);
+        if (dice < 0.02)
+        {
+            leap();
+        }
+        place_ += dice < 0.7 ? velocity_ : Vec3(0.0, 0.0, 0.0);
+        return place_;
+    }
+
+private:
+    void leap()
+    {
+        const Face& face = model_.faces[random_.below(model_.faces.size())];
+        place_ = to_vec3(face[0]) + random_.in_cube(0.01 * model_.diagonal_m);
+        velocity_ = random_.in_cube(0.004 * model_.diagonal_m);
+    }
+
+    const TestModel& model_;
+    Random& random_;
+    Vec3 place_{0.0, 0.0, 0.0};
+    Vec3 velocity_{0.0, 0.0, 0.0};
+};
+
+constexpr int kFrames = 400;
+
+std::vector<std::byte> record_run(const TestModel& model, const Hardship& hardship,
+                                  std::uint64_t seed)
+{
+    Random random(seed);
+    Wander wander(model, random);
+    RigOptions options;
+    options.pool_bytes = hardship.pool_bytes;
+    options.faults = hardship.faults;
+    options.faults.seed = seed;
+    options.courier_steps_per_frame = hardship.courier_steps;
+    options.record = true;
+    FrameRig rig(model, options);
+    Budgets budgets = hardship.budgets;
+    for (int frame = 0; frame < kFrames; ++frame)
+    {
+        // Budgets follow what frames cost in a real run, so they change here, too.
+        budgets.splits = frame % 50 == 49 ? 1U : hardship.budgets.splits;
+        static_cast<void>(rig.step(wander.next(), budgets));
+        for (std::size_t more = random.below(3); more > 0; --more)
+        {
+            rig.deliver();
+        }
+    }
+    return rig.finish_recording();
+}
+
+class Replay : public testing::TestWithParam<std::tuple<std::size_t, std::size_t>>
+{
+protected:
+    [[nodiscard]] static std::size_t model_index() { return std::get<0>(GetParam()); }
+    [[nodiscard]] static Hardship hardship() { return hardships()[std::get<1>(GetParam())]; }
+};
+
+TEST_P(Replay, gives_every_frame_again_bit_for_bit)
+{
+    const TestModel& model = *small_models()[model_index()];
+    const std::uint64_t seed = seed_of(500 + 10 * model_index() + std::get<1>(GetParam()));
+    SCOPED_TRACE(model.name + " " + hardship().name + " seed " + std::to_string(seed));
+    const auto recording = Recording::parse(record_run(model, hardship(), seed), "rig");
+    ASSERT_TRUE(recording) << recording.error().text;
+    EXPECT_EQ(recording.value().frame_count(), std::uint64_t{kFrames});
+
+    const auto replayed = replay(recording.value());
+
+    ASSERT_TRUE(replayed) << replayed.error().text;
+    EXPECT_EQ(replayed.value().frames, std::uint64_t{kFrames});
+    if (const auto& difference = replayed.value().difference)
+    {
+        FAIL() << "frame " << difference->frame << ": " << difference->text;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Runs, Replay,
+                         testing::Combine(testing::Values(std::size_t{0}, std::size_t{2},
+                                                          std::size_t{3}, std::size_t{5}),
+                                          testing::Range(std::size_t{0}, hardships().size())));
+
+/// A recording of the same frames in which `change` touched one of them.
+template <typename Change>
+std::vector<std::byte> altered(const Recording& recording, std::uint64_t frame, Change&& change)
+{
+    RecordingWriter writer(recording.setup());
+    for (std::uint32_t number = 0; number < 10'000; ++number)
+    {
+        for (const ContentKind kind : {ContentKind::index_page, ContentKind::chunk})
+        {
+            if (const auto piece = recording.piece(0, {kind, number}); !piece.empty())
+            {
+                writer.add_piece(0, {kind, number}, piece);
+            }
+        }
+    }
+    ByteReader reader(recording.frames());
+    for (std::uint64_t i = 0; !reader.at_end(); ++i)
+    {
+        const auto size = reader.read<std::uint32_t>();
+        const auto body = reader.read_bytes(size);
+        std::vector<std::byte> coded(sizeof(size));
+        std::memcpy(coded.data(), &size, sizeof(size));
+        coded.insert(coded.end(), body.begin(), body.end());
+        if (i == frame)
+        {
+            change(coded);
+        }
+        writer.add_frame(coded);
+    }
+    writer.finish(kNoFrame);
+    return writer.take_bytes();
+}
+
+/// Offsets in a coded frame of one tool: behind its size and flags.
+constexpr std::size_t kToolAt = 5;
+
+void expect_noticed(const std::vector<std::byte>& bytes, std::uint64_t frame)
+{
+    const auto recording = Recording::parse(bytes, "altered");
+    ASSERT_TRUE(recording) << recording.error().text;
+    const auto replayed = replay(recording.value());
+    ASSERT_TRUE(replayed) << replayed.error().text;
+    ASSERT_TRUE(replayed.value().difference.has_value());
+    EXPECT_EQ(replayed.value().difference->frame, frame) << replayed.value().difference->text;
+    EXPECT_EQ(replayed.value().frames, frame + 1);
+}
+
+TEST(ReplayOfAnAlteredRecording, is_noticed_in_the_frame_that_was_altered)
+{
+    const TestModel& model = *small_models()[0];
+    const auto recording = Recording::parse(record_run(model, hardships()[0], 900), "rig");
+    ASSERT_TRUE(recording) << recording.error().text;
+    const auto halve_or_double = [](std::size_t at)
+    { return [at](std::vector<std::byte>& coded) { coded[at + 6] ^= std::byte{0x10}; }; };
+    const auto flip_from_end = [](std::size_t bytes) {
+        return [bytes](std::vector<std::byte>& coded)
+        { coded[coded.size() - bytes] ^= std::byte{1}; };
+    };
+    for (const std::uint64_t frame : {0U, 57U, 399U})
+    {
+        SCOPED_TRACE("frame " + std::to_string(frame));
+        // The goal's x; a bit of the state hash; one of the last output hash.
+        expect_noticed(altered(recording.value(), frame, halve_or_double(kToolAt)), frame);
+        expect_noticed(altered(recording.value(), frame, flip_from_end(40)), frame);
+        expect_noticed(altered(recording.value(), frame, flip_from_end(1)), frame);
+    }
+}
+
+TEST(ReplayOfAnAlteredRecording, notices_another_budget_once_it_is_spent)
+{
+    const TestModel& model = *small_models()[0];
+    const auto recording = Recording::parse(record_run(model, hardships()[0], 900), "rig");
+    ASSERT_TRUE(recording) << recording.error().text;
+    const auto no_splits = [](std::vector<std::byte>& coded)
+    { coded[kToolAt + kToolStateBytes + kObjectPoseBytes] = std::byte{0}; };
+    const auto parsed = Recording::parse(altered(recording.value(), 0, no_splits), "altered");
+    ASSERT_TRUE(parsed) << parsed.error().text;
+
+    const auto replayed = replay(parsed.value());
+
+    ASSERT_TRUE(replayed) << replayed.error().text;
+    EXPECT_TRUE(replayed.value().difference.has_value());
+}
+
+} // namespace
+} // namespace tactus::test

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "tests/shared/worst_shapes.hpp"
+
+#include "host_tools/shapes/shapes.hpp"
+
+#include <cmath>
+
+namespace tactus::test
+{
+
+namespace
+{
+
+constexpr double kSide_m = 0.1;
+
+/// A square grid of (cells + 1)^2 vertices over [low, low + side]^2 at height z; returns its first
+/// vertex. Vertex (column, row) is first + row * (cells + 1) + column.
+std::uint32_t add_square(TriangleMesh& mesh, std::uint32_t cells, double low, double side, double z)
+{
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    const double step = side / static_cast<double>(cells);
+    for (std::uint32_t row = 0; row <= cells; ++row)
+    {
+        for (std::uint32_t column = 0; column <= cells; ++column)
+        {
+            // Not flat, so that nothing collapses for free.
+            const double bump = 0.05 * step * ((7 * row + 3 * column) % 4);
+            mesh.positions.push_back({low + step * column, low + step * row, z + bump});
+        }
+    }
+    for (std::uint32_t row = 0; row < cells; ++row)
+    {
+        for (std::uint32_t column = 0; column < cells; ++column)
+        {
+            const std::uint32_t a = first + row * (cells + 1) + column;
+            const std::uint32_t above = a + cells + 1;
+            mesh.faces.push_back({a, a + 1, above + 1});
+            mesh.faces.push_back({a, above + 1, above});
+        }
+    }
+    return first;
+}
+
+} // namespace
+
+TriangleMesh make_spiky_sphere()
+{
+    TriangleMesh mesh = make_shape(Shape::sphere, 2'000).value();
+    for (std::size_t i = 0; i < mesh.positions.size(); i += 40)
+    {
+        for (double& coordinate : mesh.positions[i])
+        {
+            coordinate *= 3.0;
+        }
+    }
+    return mesh;
+}
+
+TriangleMesh make_close_sheets(std::uint32_t cells)
+{
+    TriangleMesh mesh;
+    const double gap = 1e-4 * kSide_m * std::sqrt(2.0);
+    for (int sheet = 0; sheet < 3; ++sheet)
+    {
+        add_square(mesh, cells, 0.0, kSide_m, sheet * gap);
+    }
+    return mesh;
+}
+
+TriangleMesh make_patch_in_huge_faces(std::uint32_t cells)
+{
+    TriangleMesh mesh;
+    constexpr double kPatch_m = 0.001;
+    const std::uint32_t first = add_square(mesh, cells, (kSide_m - kPatch_m) / 2.0, kPatch_m, 0.0);
+    const auto outer = static_cast<std::uint32_t>(mesh.positions.size());
+    mesh.positions.insert(
+        mesh.positions.end(),
+        {{0.0, 0.0, 0.0}, {kSide_m, 0.0, 0.0}, {kSide_m, kSide_m, 0.0}, {0.0, kSide_m, 0.0}});
+    // Side s of the patch runs from its corner s to corner s + 1, counter-clockwise.
+    const auto border = [&](std::uint32_t side, std::uint32_t i)
+    {
+        const std::uint32_t column = side == 0 ? i : side == 1 ? cells : side == 2 ? cells - i : 0;
+        const std::uint32_t row = side == 0 ? 0 : side == 1 ? i : side == 2 ? cells : cells - i;
+        return first + row * (cells + 1) + column;
+    };
+    for (std::uint32_t side = 0; side < 4; ++side)
+    {
+        const std::uint32_t corner = outer + side;
+        const std::uint32_t next_corner = outer + (side + 1) % 4;
+        for (std::uint32_t i = 0; i < cells; ++i)
+        {
+            mesh.faces.push_back({corner, border(side, i + 1), border(side, i)});
+        }
+        mesh.faces.push_back({corner, next_corner, border(side, cells)});
+    }
+    return mesh;
+}
+
+TriangleMesh make_broken_sphere()
+{
+    TriangleMesh mesh = make_shape(Shape::bumpy_sphere, 2'000).value();
+    const std::size_t sound = mesh.faces.size();
+    for (std::size_t f = 0; f < sound; f += 50)
+    {
+        const auto [a, b, c] = mesh.faces[f];
+        const std::array<double, 3> at = mesh.positions[a];
+        const auto tip = static_cast<std::uint32_t>(mesh.positions.size());
+        mesh.positions.push_back({1.2 * at[0], 1.2 * at[1], 1.2 * at[2]});
+        mesh.faces.push_back({a, b, tip}); // A third face at an edge.
+        mesh.faces.push_back({a, b, c});   // There already.
+        mesh.faces.push_back({a, a, b});   // Two corners in one place.
+        const auto middle = static_cast<std::uint32_t>(mesh.positions.size());
+        const std::array<double, 3> to = mesh.positions[tip];
+        mesh.positions.push_back(
+            {(at[0] + to[0]) / 2.0, (at[1] + to[1]) / 2.0, (at[2] + to[2]) / 2.0});
+        mesh.faces.push_back({a, tip, middle}); // No area.
+    }
+    return mesh;
+}
+
+TriangleMesh make_loose_spheres(std::uint32_t per_side)
+{
+    const TriangleMesh sphere = make_uv_sphere(6, 8).value(); // 0.1 m across.
+    TriangleMesh mesh;
+    const double scale = 0.6 / static_cast<double>(per_side);
+    const double pitch = kSide_m / static_cast<double>(per_side);
+    for (std::uint32_t i = 0; i < per_side * per_side * per_side; ++i)
+    {
+        const std::array<double, 3> at{pitch * (i % per_side), pitch * (i / per_side % per_side),
+                                       pitch * (i / per_side / per_side)};
+        const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+        for (const std::array<double, 3>& p : sphere.positions)
+        {
+            mesh.positions.push_back(
+                {at[0] + scale * p[0], at[1] + scale * p[1], at[2] + scale * p[2]});
+        }
+        for (const auto& [a, b, c] : sphere.faces)
+        {
+            mesh.faces.push_back({first + a, first + b, first + c});
+        }
+    }
+    return mesh;
+}
+
+} // namespace tactus::test

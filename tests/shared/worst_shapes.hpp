@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "host_tools/mesh/triangle_mesh.hpp"
+
+#include <cstdint>
+
+/// Meshes that are hard on the frame and of no use outside tests. About 0.1 m across.
+namespace tactus::test
+{
+
+/// A sphere of about 2,000 faces on which every 40th vertex stands out by twice the radius.
+[[nodiscard]] TriangleMesh make_spiky_sphere();
+
+/// Three open square sheets of cells x cells squares, one over the other, 1e-4 of the diagonal
+/// apart.
+[[nodiscard]] TriangleMesh make_close_sheets(std::uint32_t cells);
+
+/// A patch of 1 mm in cells x cells squares, in the middle of a square of 100 mm that a few huge
+/// faces and a fan of long needles fill.
+[[nodiscard]] TriangleMesh make_patch_in_huge_faces(std::uint32_t cells);
+
+/// A sphere of about 2,000 faces with fins on some of its edges, so that three faces meet there,
+/// and with duplicate, degenerate and flat faces.
+[[nodiscard]] TriangleMesh make_broken_sphere();
+
+/// Spheres of 80 faces, loose on a cubic lattice of per_side^3.
+[[nodiscard]] TriangleMesh make_loose_spheres(std::uint32_t per_side);
+
+} // namespace tactus::test
