@@ -39,6 +39,8 @@ tactus_room(rt_core/frame rt_core)
 
 # --- platform: only the controller program sees core, transport and device; nothing includes it.
 tactus_room(platform rt_core/base rt_core/math rt_core/records rt_core/limits.hpp)
+# Frames and what they were given; of the machine it knows nothing.
+tactus_room(platform/recording rt_core)
 # Its command line is read like every other program's: docs/decisions/0003-command-line-room.md.
 tactus_room(platform/hrtc rt_core transport platform host_tools/cli)
 

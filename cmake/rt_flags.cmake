@@ -12,6 +12,9 @@ if(TACTUS_SANITIZE)
         -fsanitize=${TACTUS_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
     add_link_options(-fsanitize=${TACTUS_SANITIZE})
 endif()
+if(TACTUS_FUNCTION_EFFECTS)
+    add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-Werror=function-effects>)
+endif()
 
 # tactus_library(<name> SOURCES ... HEADERS ... LINK ...)
 # One target per room: explicit files, headers included from the repository root and each compiled
@@ -27,9 +30,12 @@ function(tactus_library name)
 endfunction()
 
 # tactus_program(<name> SOURCES ... LINK ...)
+# Calls into shared libraries are bound at start: bound lazily, the first memcpy of a frame would
+# run the dynamic linker, locks included.
 function(tactus_program name)
     cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
     add_executable(${name} ${ARG_SOURCES})
     target_link_libraries(${name} PRIVATE $<BUILD_INTERFACE:tactus_warnings> ${ARG_LINK})
+    target_link_options(${name} PRIVATE LINKER:-z,now)
     target_compile_definitions(${name} PRIVATE TACTUS_VERSION="${PROJECT_VERSION}")
 endfunction()

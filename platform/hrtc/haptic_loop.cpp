@@ -3,6 +3,7 @@
 #include "platform/hrtc/haptic_loop.hpp"
 
 #include "platform/allocation_counter.hpp"
+#include "platform/system_call_trap.hpp"
 
 namespace tactus::hrtc
 {
@@ -10,6 +11,7 @@ namespace tactus::hrtc
 HapticLoop::HapticLoop(const LoopParts& parts, RunStatistics& statistics)
     : parts_(parts), statistics_(statistics), states_(parts.devices.size())
 {
+    measures_.budgets = parts.governor != nullptr ? parts.governor->budgets() : parts.budgets;
 }
 
 void HapticLoop::run() noexcept
@@ -20,13 +22,12 @@ void HapticLoop::run() noexcept
     for (std::uint64_t i = 0; i < parts_.frames && !stopped_.load(std::memory_order_relaxed); ++i)
     {
         parts_.timer->sleep_until_margin();
-        parts_.frame->rehearse();
+        rehearse();
         measures_.cycle = parts_.timer->spin_until_deadline();
         const MonotonicTime start = parts_.clock->now();
         stage_start_ = start;
         read_devices(measures_.cycle.periods);
-        const FrameOutput output =
-            parts_.frame->run(states_, parts_.poses, parts_.budgets, {&mark_stage, this});
+        const FrameOutput output = run_frame();
         write_devices(output.tools);
         const MonotonicTime end = parts_.clock->now();
         measures_.frame = end - start;
@@ -36,7 +37,9 @@ void HapticLoop::run() noexcept
         usage = now;
         measures_.allocations = allocation_counter::of_this_thread().allocations - allocations;
         allocations += measures_.allocations;
+        measures_.calls = system_call_trap::of_this_thread();
         statistics_.add(output, measures_);
+        choose_budgets(output);
         frames_done_.store(i + 1, std::memory_order_relaxed);
     }
     for (const std::unique_ptr<HapticDevice>& device : parts_.devices)
@@ -45,6 +48,37 @@ void HapticLoop::run() noexcept
     }
     allocation_counter::mark_this_thread(false);
     done_.store(true);
+}
+
+/// Rehearsal and frame are what must make no system call.
+void HapticLoop::rehearse() noexcept
+{
+    system_call_trap::mark_frame(true);
+    parts_.frame->rehearse();
+    system_call_trap::mark_frame(false);
+}
+
+FrameOutput HapticLoop::run_frame() noexcept
+{
+    system_call_trap::mark_frame(true);
+    const FrameOutput output =
+        parts_.frame->run(states_, parts_.poses, measures_.budgets, {&mark_stage, this});
+    system_call_trap::mark_frame(false);
+    return output;
+}
+
+/// Between frames, so that the frame that follows takes its budgets as an input like any other.
+void HapticLoop::choose_budgets(const FrameOutput& output) noexcept
+{
+    if (parts_.governor != nullptr)
+    {
+        const auto stage = [this](Stage s) { return measures_.stage[static_cast<std::size_t>(s)]; };
+        parts_.governor->observe({measures_.frame,
+                                  stage(Stage::refine) + stage(Stage::refit) + stage(Stage::query),
+                                  output.work});
+        measures_.budgets = parts_.governor->budgets();
+        measures_.budgets_at_floor = parts_.governor->is_at_floor();
+    }
 }
 
 void HapticLoop::fail() noexcept

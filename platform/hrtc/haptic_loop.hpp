@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "platform/budget_governor.hpp"
 #include "platform/clock.hpp"
 #include "platform/haptic_device.hpp"
 #include "platform/hrtc/run_statistics.hpp"
@@ -25,8 +26,9 @@ struct LoopParts
     std::span<const ObjectPose> poses;
     PeriodicTimer* timer{nullptr};
     const Clock* clock{nullptr};
-    Budgets budgets;
-    std::uint64_t frames{0}; ///< How many to run.
+    Budgets budgets;                   ///< Of every frame, when there is no governor.
+    BudgetGovernor* governor{nullptr}; ///< Chooses each frame's budgets; may be none.
+    std::uint64_t frames{0};           ///< How many to run.
 };
 
 /// The haptic thread's work: every period read the devices, run the frame, write the forces, keep
@@ -53,6 +55,9 @@ public:
     void fail() noexcept;
 
 private:
+    void rehearse() noexcept;
+    [[nodiscard]] FrameOutput run_frame() noexcept;
+    void choose_budgets(const FrameOutput& output) noexcept;
     void read_devices(std::uint32_t periods) noexcept;
     void write_devices(std::span<const ToolOutput> outputs) noexcept;
     static void mark_stage(void* context, Stage stage) noexcept;

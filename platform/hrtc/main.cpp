@@ -13,6 +13,7 @@
 #include "platform/hrtc/transport_thread.hpp"
 #include "platform/posix/posix_clock.hpp"
 #include "platform/posix/posix_periodic_timer.hpp"
+#include "platform/system_call_trap.hpp"
 #include "transport/dds/dds_client.hpp"
 #include "transport/store/store_link.hpp"
 
@@ -151,6 +152,30 @@ void wait_for_end(HapticLoop& loop, std::uint64_t frames)
     }
 }
 
+/// None when the budgets are to stay as they are.
+std::optional<BudgetGovernor> make_governor(const Options& options, const Controller& controller)
+{
+    if (!options.frame_budget_us)
+    {
+        return std::nullopt;
+    }
+    const auto budget_ns = static_cast<std::int64_t>(*options.frame_budget_us * 1e3);
+    const std::size_t pairs = controller.tools().size() * controller.poses().size();
+    return BudgetGovernor(nanoseconds(budget_ns), controller.budgets(),
+                          static_cast<std::uint32_t>(2 * pairs));
+}
+
+/// On the haptic thread; returns why the option can't be had.
+std::optional<std::string> trap_calls(const Options& options)
+{
+    if (!options.trap_system_calls)
+    {
+        return std::nullopt;
+    }
+    const auto set = system_call_trap::set_on_this_thread();
+    return set ? std::nullopt : std::optional("--trap-system-calls: " + set.error().message);
+}
+
 int run(const Options& options, Controller& controller)
 {
     const Duration period = nanoseconds(1'000'000'000 / options.rate_hz);
@@ -158,11 +183,12 @@ int run(const Options& options, Controller& controller)
         static_cast<std::uint64_t>(options.duration_s * static_cast<double>(options.rate_hz));
     RunStatistics statistics(controller.tools().size(),
                              controller.tools().size() * controller.poses().size(),
-                             controller.models().size(), controller.budgets(), period);
+                             controller.models().size(), period);
     const PosixClock clock;
     PosixPeriodicTimer timer;
+    std::optional<BudgetGovernor> governor = make_governor(options, controller);
     HapticLoop loop({&controller.frame(), controller.devices(), controller.poses(), &timer, &clock,
-                     controller.budgets(), frames},
+                     controller.budgets(), governor ? &*governor : nullptr, frames},
                     statistics);
     TransportThread transport(controller.couriers(), controller.models());
     running_loop.store(&loop);
@@ -171,6 +197,12 @@ int run(const Options& options, Controller& controller)
         RtThread::start(options.thread,
                         [&]
                         {
+                            if (const auto error = trap_calls(options))
+                            {
+                                log_line(*error);
+                                loop.fail();
+                                return;
+                            }
                             if (const auto started = timer.start(period, margin); !started)
                             {
                                 log_line(started.error().message);
@@ -196,9 +228,9 @@ int run(const Options& options, Controller& controller)
     {
         log_line("without " + line);
     }
-    const nlohmann::ordered_json report =
-        make_report({controller, statistics, thread.value().report(), timer.counts(), period,
-                     transport.host_was_lost()});
+    const nlohmann::ordered_json report = make_report(
+        {controller, statistics, thread.value().report(), timer.counts(), period,
+         transport.host_was_lost(), options.frame_budget_us, options.trap_system_calls});
     fmt::print("{}", make_summary(report));
     if (!options.report_path.empty())
     {

@@ -18,6 +18,8 @@ namespace
 {
 
 constexpr double kLargestPool_mib = 4'096.0;
+constexpr double kFrameBudgetMin_us = 10.0;
+constexpr double kFrameBudgetMax_us = 10'000.0;
 
 /// Reads all of `text` as a finite number.
 std::optional<double> parse_number(std::string_view text)
@@ -125,6 +127,10 @@ void declare(CLI::App& app, Options& options, RawOptions& raw)
     app.add_option("--splits", options.splits, "Splits and merges in one frame at most")
         ->check(CLI::Range(std::uint32_t{1}, kMaxSplitsPerFrame))
         ->capture_default_str();
+    app.add_option("--frame-budget-us", options.frame_budget_us,
+                   "Microseconds that a frame may take: its budgets follow what frames cost, "
+                   "--splits being the most [budgets fixed]")
+        ->check(number_between(kFrameBudgetMin_us, kFrameBudgetMax_us));
     app.add_option("--stiffness", options.stiffness_n_per_m, "Of the virtual wall, in N/m")
         ->check(number_between(1.0, 3'000.0))
         ->capture_default_str();
@@ -145,6 +151,9 @@ void declare(CLI::App& app, Options& options, RawOptions& raw)
         ->check(CLI::Range(0, 1'023));
     app.add_flag("--allow-no-rt", options.thread.allow_no_rt,
                  "Run without SCHED_FIFO or locked memory when they are refused");
+    app.add_flag("--trap-system-calls", options.trap_system_calls,
+                 "For tests: count the system calls that frames make, which must be none; every "
+                 "call of the haptic thread costs some 3 us more");
 }
 
 /// What one option alone can't tell. Empty when all is well.
@@ -188,6 +197,15 @@ std::string check_together(const CLI::App& app, Options& options, const RawOptio
     if (app.count("--cache-mib") > 0 && options.cache_mib >= options.pool_mib)
     {
         return "--cache-mib: must be less than --pool-mib";
+    }
+    const double period_us = 1e6 / static_cast<double>(options.rate_hz);
+    if (options.frame_budget_us && *options.frame_budget_us >= period_us)
+    {
+        return fmt::format("--frame-budget-us: must be less than the period of {} us", period_us);
+    }
+    if (options.frame_budget_us && app.count("--splits") == 0)
+    {
+        options.splits = kMaxSplitsPerFrame;
     }
     options.transport = raw.transport == "file" ? TransportKind::file : TransportKind::dds;
     if (options.transport == TransportKind::dds)

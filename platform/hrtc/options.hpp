@@ -43,9 +43,11 @@ struct Options
     double duration_s{10.0};
     std::string report_path; ///< Empty: no file.
     double pool_mib{2.0};
-    double cache_mib{0.0}; ///< 0: the usual share of the pool.
-    std::uint32_t splits{64};
+    double cache_mib{0.0};                 ///< 0: the usual share of the pool.
+    std::uint32_t splits{64};              ///< At most, when there is a frame budget.
+    std::optional<double> frame_budget_us; ///< None: budgets are fixed.
     double stiffness_n_per_m{500.0};
+    bool trap_system_calls{false};
     RtThreadOptions thread;
 };
 

@@ -169,6 +169,39 @@ Json machine_of(const RunRecord& record)
             {"refused", record.thread.refused}};
 }
 
+Json budgets_of(const RunRecord& record)
+{
+    constexpr std::array<const char*, kGovernedBudgets.size()> kNames{"splits", "merges", "scanned",
+                                                                      "nodes", "triangles"};
+    Json budgets{{"frame_us", nullptr}, {"at_floor", record.statistics.budgets_at_floor}};
+    if (record.frame_budget_us)
+    {
+        budgets["frame_us"] = *record.frame_budget_us;
+    }
+    const double frames = static_cast<double>(std::max<std::uint64_t>(record.statistics.frames, 1));
+    for (std::size_t i = 0; i < kNames.size(); ++i)
+    {
+        const BudgetRange& range = record.statistics.budgets[i];
+        budgets[kNames[i]] = {{"min", range.min},
+                              {"mean", static_cast<double>(range.sum) / frames},
+                              {"max", range.max}};
+    }
+    return budgets;
+}
+
+std::string budgets_line(const Json& budgets)
+{
+    const auto range = [&](const char* name)
+    {
+        return fmt::format(
+            "{} {} to {}, mean {:.1f}", name, budgets[name]["min"].get<std::uint32_t>(),
+            budgets[name]["max"].get<std::uint32_t>(), budgets[name]["mean"].get<double>());
+    };
+    return fmt::format("budgets     for {} us a frame: {}; {}; {} frames at the least\n",
+                       budgets["frame_us"].get<double>(), range("splits"), range("nodes"),
+                       budgets["at_floor"].get<std::uint64_t>());
+}
+
 Json faults_of(const RunStatistics& statistics)
 {
     Json faults = Json::object();
@@ -219,6 +252,7 @@ Json make_report(const RunRecord& record)
               {"merges", statistics.merges},
               {"nodes_visited", statistics.nodes_visited},
               {"pages_adopted", statistics.pages_adopted}}},
+            {"budgets", budgets_of(record)},
             {"pools", pools_of(record)},
             {"cache",
              {{"hits", statistics.cache_hits},
@@ -237,7 +271,10 @@ Json make_report(const RunRecord& record)
             {"realtime",
              {{"allocations", statistics.allocations},
               {"allocations_counted", allocation_counter::available()},
-              {"page_faults", statistics.page_faults}}},
+              {"page_faults", statistics.page_faults},
+              {"system_calls_trapped", record.calls_were_trapped},
+              {"system_calls_in_frame", statistics.calls.in_frame},
+              {"system_calls_outside", statistics.calls.outside}}},
             {"force", force_of(statistics)},
             {"faults", faults_of(statistics)},
             {"machine", machine_of(record)},
@@ -270,6 +307,10 @@ std::string make_summary(const Json& report)
                             times["p99"].get<double>(), times["p999"].get<double>(),
                             times["max"].get<double>());
     }
+    if (!report["budgets"]["frame_us"].is_null())
+    {
+        text += budgets_line(report["budgets"]);
+    }
     text +=
         fmt::format("memory      {:.2f} MiB of pools; {} of {} pages, {} of {} faces at the peak\n",
                     report["pools"]["total_bytes"].get<double>() / (1024.0 * 1024.0),
@@ -289,6 +330,12 @@ std::string make_summary(const Json& report)
         report["deadline"]["machine_late"].get<std::uint64_t>(),
         report["realtime"]["allocations"].get<std::uint64_t>(),
         report["realtime"]["page_faults"].get<std::uint64_t>());
+    if (report["realtime"]["system_calls_trapped"].get<bool>())
+    {
+        text += fmt::format("calls       {} system calls in frames, {} of the loop between them\n",
+                            report["realtime"]["system_calls_in_frame"].get<std::uint64_t>(),
+                            report["realtime"]["system_calls_outside"].get<std::uint64_t>());
+    }
     return text;
 }
 

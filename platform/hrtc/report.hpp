@@ -23,7 +23,9 @@ struct RunRecord
     const RtThreadReport& thread;
     const TimerCounts& timer;
     Duration period;
-    bool host_was_lost{false}; ///< Some model's host went away during the run.
+    bool host_was_lost{false};             ///< Some model's host went away during the run.
+    std::optional<double> frame_budget_us; ///< None: the budgets were fixed.
+    bool calls_were_trapped{false};        ///< System calls of the haptic thread.
 };
 
 /// The report, schema 1 (docs/report.md). Later versions add keys and never rename any.

@@ -51,9 +51,16 @@ void ForceCounts::add(const ToolOutput& output) noexcept
     frozen_frames += output.frozen ? 1 : 0;
 }
 
+void BudgetRange::add(std::uint32_t budget, bool is_first) noexcept
+{
+    min = is_first ? budget : std::min(min, budget);
+    max = std::max(max, budget);
+    sum += budget;
+}
+
 RunStatistics::RunStatistics(std::size_t tool_count, std::size_t pair_count,
-                             std::size_t model_count, const Budgets& budgets, Duration period)
-    : pairs(pair_count), tools(tool_count), models(model_count), budgets_(budgets), period_(period)
+                             std::size_t model_count, Duration period)
+    : pairs(pair_count), tools(tool_count), models(model_count), period_(period)
 {
 }
 
@@ -68,6 +75,7 @@ void RunStatistics::add(const FrameOutput& output, const CycleMeasures& measures
     wake.record(measures.cycle.wake_lateness);
     add_answers(output);
     add_work(output);
+    add_budgets(measures);
     judge_deadline(output, measures);
     bool any_contact = false;
     for (std::size_t i = 0; i < tools.size(); ++i)
@@ -115,6 +123,15 @@ void RunStatistics::add_work(const FrameOutput& output) noexcept
     }
 }
 
+void RunStatistics::add_budgets(const CycleMeasures& measures) noexcept
+{
+    for (std::size_t i = 0; i < budgets.size(); ++i)
+    {
+        budgets[i].add(measures.budgets.*kGovernedBudgets[i], frames == 1);
+    }
+    budgets_at_floor += measures.budgets_at_floor ? 1 : 0;
+}
+
 /// A cycle is our own fault when the thread did what it must not do, whether or not the deadline
 /// was met; a missed deadline without one is the machine's lateness. Processor time is not judged:
 /// on a shared machine it includes what other guests take.
@@ -126,29 +143,31 @@ void RunStatistics::judge_deadline(const FrameOutput& output,
     // The loop's own sleep is one switch; after a stall it sleeps once more, to the new grid.
     const std::int64_t sleeps = measures.cycle.periods > 1 ? 2 : 1;
     const bool switched = measures.usage.voluntary_switches > sleeps;
-    const bool over = is_over_budget(output.work);
+    const bool over = is_over_budget(output.work, measures.budgets);
+    const bool called = measures.calls.in_frame > calls.in_frame;
     allocations += measures.allocations;
     page_faults += cycle_faults;
     extra_switches += switched ? 1 : 0;
     over_budget += over ? 1 : 0;
-    const bool own = cycle_faults > 0 || measures.allocations > 0 || switched || over;
+    calls = measures.calls;
+    const bool own = cycle_faults > 0 || measures.allocations > 0 || switched || over || called;
     const bool missed = measures.lateness_of_end > period_ || measures.cycle.periods > 1;
     own_faults += own ? 1 : 0;
     deadlines_missed += missed ? 1 : 0;
     machine_late += missed && !own ? 1 : 0;
 }
 
-bool RunStatistics::is_over_budget(const WorkCounters& work) const noexcept
+bool RunStatistics::is_over_budget(const WorkCounters& work, const Budgets& limits) const noexcept
 {
     const auto models_count = static_cast<std::uint32_t>(models.size());
     // Each pair is walked twice: to refine and to answer.
     const auto walks = static_cast<std::uint32_t>(2 * pairs.size());
-    return work.splits > budgets_.splits || work.merges > budgets_.merges ||
-           work.scanned > budgets_.scanned || work.nodes_visited > walks * budgets_.nodes ||
-           work.triangles_tested > walks * budgets_.triangles ||
-           work.pages_adopted > models_count * budgets_.pages ||
-           work.requests > budgets_.requests + budgets_.regions * models_count ||
-           work.regions_searched > models_count * budgets_.regions;
+    return work.splits > limits.splits || work.merges > limits.merges ||
+           work.scanned > limits.scanned || work.nodes_visited > walks * limits.nodes ||
+           work.triangles_tested > walks * limits.triangles ||
+           work.pages_adopted > models_count * limits.pages ||
+           work.requests > limits.requests + limits.regions * models_count ||
+           work.regions_searched > models_count * limits.regions;
 }
 
 } // namespace tactus::hrtc

@@ -4,6 +4,7 @@
 
 #include "platform/latency_histogram.hpp"
 #include "platform/periodic_timer.hpp"
+#include "platform/system_call_trap.hpp"
 #include "platform/thread_usage.hpp"
 #include "rt_core/records/frame_input.hpp"
 #include "rt_core/records/frame_output.hpp"
@@ -45,15 +46,32 @@ private:
     Vec3 last_n_{0.0, 0.0, 0.0};
 };
 
+/// One budget over the run.
+struct BudgetRange
+{
+    std::uint32_t min{0};
+    std::uint32_t max{0};
+    std::uint64_t sum{0};
+
+    void add(std::uint32_t budget, bool is_first) noexcept;
+};
+
+/// The budgets that follow a frame's cost, in the order of kGovernedBudgets.
+inline constexpr std::array kGovernedBudgets{&Budgets::splits, &Budgets::merges, &Budgets::scanned,
+                                             &Budgets::nodes, &Budgets::triangles};
+
 /// What one cycle of the loop measured besides the frame's own output.
 struct CycleMeasures
 {
     Cycle cycle;
+    Budgets budgets;              ///< That the frame had.
+    bool budgets_at_floor{false}; ///< Whether less was not to be had.
     std::array<Duration, kStages> stage;
     Duration frame;               ///< From the start of the frame to the force written.
     Duration lateness_of_end;     ///< End of the frame after its deadline; late when > one period.
     ThreadUsage usage;            ///< Since the last cycle.
     std::uint64_t allocations{0}; ///< Since the last cycle.
+    system_call_trap::TrappedCalls calls; ///< Since the loop began.
 };
 
 /// Everything a run's report is made of. Filled by the haptic thread without allocating; read by
@@ -61,8 +79,7 @@ struct CycleMeasures
 class RunStatistics
 {
 public:
-    RunStatistics(std::size_t tools, std::size_t pairs, std::size_t models, const Budgets& budgets,
-                  Duration period);
+    RunStatistics(std::size_t tools, std::size_t pairs, std::size_t models, Duration period);
 
     void add(const FrameOutput& output, const CycleMeasures& measures) noexcept;
 
@@ -92,14 +109,18 @@ public:
     std::uint64_t page_faults{0};
     std::uint64_t extra_switches{0};
     std::uint64_t over_budget{0}; ///< Frames whose work counters exceeded a cap.
+    system_call_trap::TrappedCalls calls;
+    std::array<BudgetRange, kGovernedBudgets.size()> budgets;
+    std::uint64_t budgets_at_floor{0}; ///< Frames with the least budgets there are.
 
 private:
     void add_answers(const FrameOutput& output) noexcept;
     void add_work(const FrameOutput& output) noexcept;
+    void add_budgets(const CycleMeasures& measures) noexcept;
     void judge_deadline(const FrameOutput& output, const CycleMeasures& measures) noexcept;
-    [[nodiscard]] bool is_over_budget(const WorkCounters& work) const noexcept;
+    [[nodiscard]] bool is_over_budget(const WorkCounters& work,
+                                      const Budgets& limits) const noexcept;
 
-    Budgets budgets_;
     Duration period_;
 };
 
