@@ -21,26 +21,38 @@ struct Row
     std::string scene;
     std::uint64_t seed{0};
     std::uint64_t frames{0};
-    std::uint64_t hash{0}; ///< State hash summed over the frames: the same work was measured.
+    std::uint64_t hash{0};      ///< Over the frames: the same work was measured.
+    std::optional<double> goal; ///< The value is to be this at most.
     std::optional<std::string> peer;
     double peer_value{0.0};
+
+    /// True without a goal; false for a value that is not a number.
+    [[nodiscard]] bool is_met() const { return !goal || value <= *goal; }
 };
 
 using Rows = std::vector<Row>;
 
-struct BenchOptions
+/// What all rows of one case have in common, and the way to add them.
+class CaseRows
 {
-    bool quick{false}; ///< Fewer frames and repeats; the same cases.
+public:
+    CaseRows(Rows& rows, Row common) : rows_(rows), common_(std::move(common)) {}
+
+    /// The reference is valid until the next row is added.
+    Row& add(const std::string& metric, double value, const std::string& unit,
+             std::optional<double> goal = std::nullopt);
+
+private:
+    Rows& rows_;
+    Row common_;
 };
 
-/// A suite adds its rows. Returns a line when it could not be run.
-using Suite = std::optional<std::string> (*)(const BenchOptions& options, Rows& rows);
-
-std::optional<std::string> run_frame_suite(const BenchOptions& options, Rows& rows);
-
-/// The rows as a table for a terminal, a line for each scene, case and metric.
-[[nodiscard]] std::string to_table(const Rows& rows);
-/// {"schema":1,"commit","machine","compiler","rows":[...]}.
-[[nodiscard]] std::string to_json(const Rows& rows);
+/// How many rows have a goal, and how many of those hold it.
+struct GoalCount
+{
+    std::size_t goals{0};
+    std::size_t met{0};
+};
+[[nodiscard]] GoalCount count_goals(const Rows& rows);
 
 } // namespace tactus::bench

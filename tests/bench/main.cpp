@@ -5,13 +5,15 @@
 
 #include "host_tools/cli/command_line.hpp"
 #include "host_tools/mesh/atomic_file.hpp"
-#include "tests/bench/bench_row.hpp"
+#include "tests/bench/bench_report.hpp"
+#include "tests/bench/measuring.hpp"
+#include "tests/bench/suites.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <exception>
-#include <map>
 #include <span>
 
 namespace tactus::bench
@@ -19,51 +21,111 @@ namespace tactus::bench
 namespace
 {
 
-int run(int argc, char** argv)
+struct CommandLine
 {
-    static const std::map<std::string, Suite> kSuites{{"frame", run_frame_suite}};
-    CLI::App app("Measures Tactus. Times are per-frame least values of repeated replays.",
-                 "tactus_bench");
     std::string suite;
     std::string json_path;
+    bool all{false};
+    bool check{false};
     BenchOptions options;
-    app.add_option("SUITE", suite, "Suite to run: frame")->required();
-    app.add_flag("--quick", options.quick, "Fewer frames and repeats, the same cases");
-    app.add_option("--json", json_path, "Write the rows to this file as JSON");
+};
+
+void declare_options(CLI::App& app, CommandLine& line)
+{
+    BenchOptions& options = line.options;
     app.set_version_flag("--version", std::string("tactus_bench ") + TACTUS_VERSION);
+    app.add_option("SUITE", line.suite, "Suite to run: frame")->required();
+    app.add_flag(
+        "--quick", options.quick,
+        "Fewer frames and repeats; without the cases of 4 M faces unless --only names them");
+    app.add_option("--only", options.only, "Run this case; may be given several times")->take_all();
+    app.add_option("--cache", options.cache,
+                   "Folder that keeps encoded models from run to run; without it they are encoded "
+                   "each time")
+        ->check(CLI::ExistingDirectory);
+    app.add_option("--frames", options.frames, "Frames of each motion, instead of the usual number")
+        ->check(number_between(kMinFrames, kMaxFrames));
+    app.add_option("--passes", options.passes, "Warm replays, instead of the usual number")
+        ->check(number_between(1, kMaxPasses));
+    app.add_option("--core", options.core, "Core to measure on (default: the last one)");
+    app.add_flag("--count", options.count,
+                 "One warm pass, nothing evicted and no peers: for counting instructions");
+    app.add_flag("--all", line.all, "Print every row, not only those with a goal");
+    app.add_flag("--check", line.check, "Leave with code 1 when a goal is not met");
+    app.add_option("--json", line.json_path, "Write the rows to this file as JSON");
+}
+
+/// Why the command line makes no sense; nothing when it does.
+std::optional<std::string> wrong_usage(const CommandLine& line)
+{
+    if (line.suite != "frame")
+    {
+        return "SUITE: there is no suite '" + line.suite + "'; there is: frame";
+    }
+    const std::vector<std::string> names = frame_case_names();
+    for (const std::string& name : line.options.only)
+    {
+        if (std::find(names.begin(), names.end(), name) == names.end())
+        {
+            return fmt::format("--only: there is no case '{}'; there are: {}", name,
+                               fmt::join(names, ", "));
+        }
+    }
+    if (line.options.core != -1 && !may_use_core(line.options.core))
+    {
+        return fmt::format("--core {}: this process may not run there", line.options.core);
+    }
+    return std::nullopt;
+}
+
+/// Returns why the file could not be written.
+std::optional<std::string> write_text(const std::string& path, const std::string& text)
+{
+    auto file = AtomicFile::create(path);
+    if (!file)
+    {
+        return file.error().text;
+    }
+    if (const auto written = file.value().write(std::as_bytes(std::span(text))); !written)
+    {
+        return written.error().text;
+    }
+    const auto done = file.value().commit();
+    return done ? std::nullopt : std::optional(done.error().text);
+}
+
+int run(int argc, char** argv)
+{
+    CLI::App app("Measures Tactus. Times are per-frame least values of repeated replays.",
+                 "tactus_bench");
+    CommandLine line;
+    declare_options(app, line);
     if (const std::optional<int> code = parse_command_line(app, argc, argv))
     {
         return *code;
     }
-    const auto found = kSuites.find(suite);
-    if (found == kSuites.end())
+    if (const auto reason = wrong_usage(line))
     {
-        return fail(app, "SUITE: there is no suite '" + suite + "'; there is: frame", kExitUsage);
+        return fail(app, *reason, kExitUsage);
     }
+    const RunFacts facts{PinnedCore(line.options.core).core(), line.options.quick};
     Rows rows;
-    if (const auto failure = found->second(options, rows))
+    if (const auto failure = run_frame_suite(line.options, rows))
     {
         return fail(app, *failure, kExitCriterionNotMet);
     }
-    fmt::print("{}", to_table(rows));
-    if (!json_path.empty())
+    fmt::print("{}", line.all ? to_table(rows) : to_goal_table(rows));
+    fmt::print("{}\n", facts.core < 0 ? std::string("not held to one core: the system refuses")
+                                      : fmt::format("measured on core {}", facts.core));
+    if (!line.json_path.empty())
     {
-        const std::string json = to_json(rows);
-        auto file = AtomicFile::create(json_path);
-        if (!file)
+        if (const auto failure = write_text(line.json_path, to_json(rows, facts)))
         {
-            return fail(app, file.error().text);
-        }
-        if (const auto written = file.value().write(std::as_bytes(std::span(json))); !written)
-        {
-            return fail(app, written.error().text);
-        }
-        if (const auto done = file.value().commit(); !done)
-        {
-            return fail(app, done.error().text);
+            return fail(app, *failure);
         }
     }
-    return kExitDone;
+    const GoalCount count = count_goals(rows);
+    return line.check && count.met < count.goals ? kExitCriterionNotMet : kExitDone;
 }
 
 } // namespace

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tactus::bench
+{
+
+/// The ranges of the options.
+inline constexpr std::uint32_t kMinFrames = 100;
+inline constexpr std::uint32_t kMaxFrames = 1'000'000;
+inline constexpr std::uint32_t kMaxPasses = 100;
+
+struct BenchOptions
+{
+    bool quick{false};                   ///< Fewer frames and repeats; no case of 4 M faces.
+    bool count{false};                   ///< One warm pass, nothing else: for instruction counts.
+    std::vector<std::string> only;       ///< Names of cases; empty: all.
+    std::filesystem::path cache;         ///< Keeps encoded models; empty: none are kept.
+    std::optional<std::uint32_t> frames; ///< Instead of the suite's own numbers.
+    std::optional<std::uint32_t> passes;
+    int core{-1}; ///< To measure on; -1: the last one that the process may use.
+
+    [[nodiscard]] std::uint32_t frames_or(std::uint32_t usual, std::uint32_t quick_ones) const
+    {
+        return frames.value_or(quick ? quick_ones : usual);
+    }
+    [[nodiscard]] std::uint32_t passes_or(std::uint32_t usual, std::uint32_t quick_ones) const
+    {
+        return count ? 1 : passes.value_or(quick ? quick_ones : usual);
+    }
+};
+
+} // namespace tactus::bench

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "tests/bench/bench_options.hpp"
+#include "tests/bench/bench_row.hpp"
+#include "tests/bench/scenes.hpp"
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+
+namespace tactus::bench
+{
+
+/// No goal for this figure.
+inline constexpr double kNoGoal = std::numeric_limits<double>::infinity();
+[[nodiscard]] inline std::optional<double> goal_if(double goal)
+{
+    return goal < kNoGoal ? std::optional(goal) : std::nullopt;
+}
+
+/// What every case gets, and where its rows go. Each returns a line when it could not be run or
+/// gave wrong answers; goals that are not met are rows, not failures.
+struct CaseContext
+{
+    const char* name;
+    const BenchOptions& options;
+    SceneStore& scenes;
+    Rows& rows;
+};
+using CaseFailure = std::optional<std::string>;
+
+/// Goals in microseconds.
+struct FrameCase
+{
+    SceneSource scene;
+    double speed_diag_per_s;
+    std::uint32_t splits;   ///< K, for splits and merges alike.
+    std::size_t pool_bytes; ///< Tables, inbox and the courier's copies included.
+    double p50, p99, max;
+    double cold_max{kNoGoal};
+};
+/// A tool slides over a model that streams; all of T_R + T_B + T_Q, warm, cold and rehearsed.
+[[nodiscard]] CaseFailure run_frame_case(const CaseContext& context, const FrameCase& test_case);
+
+/// Goal in MiB.
+struct MemoryCase
+{
+    SceneSource scene;
+    double speed_diag_per_s;
+    std::uint32_t splits;
+    double pool_mib;
+};
+/// The smallest pools, of some that are tried in turn, with which a slide has an exact answer in
+/// every frame in contact.
+[[nodiscard]] CaseFailure run_memory_case(const CaseContext& context, const MemoryCase& test_case);
+
+/// Goals as shares of the peer's time.
+struct StaticCase
+{
+    SceneSource scene;
+    double near_p50{kNoGoal}, near_p99{kNoGoal};
+    double flight_p99{kNoGoal};
+    double rehearsed_p99{kNoGoal}; ///< As a share of our own warm p99.
+};
+/// The touching motion's queries against a fully refined model, beside the peers.
+[[nodiscard]] CaseFailure run_static_case(const CaseContext& context, const StaticCase& test_case);
+
+struct GrowthCase
+{
+    double growth; ///< Goal: p50 with the most faces by that with the fewest.
+};
+/// The same near queries on four sizes of one surface, the bumpy sphere.
+[[nodiscard]] CaseFailure run_growth_case(const CaseContext& context, const GrowthCase& test_case);
+
+/// Goals in microseconds.
+struct RefitCase
+{
+    SceneSource scene;
+    double clustered{kNoGoal};
+    double moved_median{kNoGoal}, moved_worst{kNoGoal};
+};
+/// Refit after a local change, at a hundred places of a fully refined model.
+[[nodiscard]] CaseFailure run_refit_case(const CaseContext& context, const RefitCase& test_case);
+
+} // namespace tactus::bench

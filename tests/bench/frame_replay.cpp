@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "tests/bench/frame_replay.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace tactus::bench
+{
+
+namespace
+{
+
+/// How much faster than the slide the proxy may follow its goal.
+constexpr double kFollow = 1.5;
+
+/// Takes the time at the end of each stage.
+class StageTimer
+{
+public:
+    void begin() { last_ = BenchClock::now(); }
+    [[nodiscard]] StageMark mark()
+    {
+        return {[](void* context, Stage stage) noexcept
+                { static_cast<StageTimer*>(context)->end(stage); },
+                this};
+    }
+    [[nodiscard]] double us(Stage stage) const { return us_[static_cast<std::size_t>(stage)]; }
+
+private:
+    void end(Stage stage) noexcept
+    {
+        const BenchClock::time_point now = BenchClock::now();
+        us_[static_cast<std::size_t>(stage)] = microseconds(last_, now);
+        last_ = now;
+    }
+
+    std::array<double, kStages> us_{};
+    BenchClock::time_point last_;
+};
+
+} // namespace
+
+FrameRun make_slide(const Scene& scene, double speed_diag_per_s, std::uint32_t splits,
+                    std::size_t pool_bytes, std::uint32_t frames)
+{
+    FrameRun run{
+        scene, slide_motion(scene.touch(), speed_diag_per_s, frames), kApproachFrames, {}, {}};
+    ToolSpec tool;
+    tool.radius_m = kRadius_diag * scene.model.diagonal_m;
+    tool.speed_max_m_per_s = kFollow * speed_diag_per_s * scene.model.diagonal_m;
+    run.rig.tools = {tool};
+    run.rig.pool_bytes = pool_bytes;
+    run.budgets.splits = splits;
+    run.budgets.merges = splits;
+    return run;
+}
+
+FrameReplay::FrameReplay(const FrameRun& run) : run_(run)
+{
+    sum_us_.fill(LeastTimes(run.counted()));
+    stage_us_.fill(LeastTimes(run.counted()));
+}
+
+void FrameReplay::prepare(test::FrameRig& rig, CacheState caches)
+{
+    rig.deliver();
+    if (caches != CacheState::warm)
+    {
+        evictor_.evict();
+    }
+    if (caches != CacheState::cold)
+    {
+        rig.frame().rehearse();
+    }
+}
+
+std::optional<std::string> FrameReplay::run_once(CacheState caches, std::size_t frames)
+{
+    test::FrameRig rig(run_.scene.model, run_.rig);
+    StageTimer timer;
+    for (std::size_t i = 0; i < std::min(run_.lead_in + frames, run_.goals_m.size()); ++i)
+    {
+        const bool is_counted = i >= run_.lead_in;
+        const std::vector<Vec3> goals{run_.goals_m[i]};
+        prepare(rig, is_counted ? caches : CacheState::warm);
+        timer.begin();
+        const FrameOutput output = rig.step_without_delivery(goals, run_.budgets, timer.mark());
+        if (i == hashes_.size())
+        {
+            hashes_.push_back(output.models[0].state_hash);
+            count(output, i);
+        }
+        if (hashes_[i] != output.models[0].state_hash)
+        {
+            return fmt::format("frame {}: a replay of the same goals gave state {:016x}, not "
+                               "{:016x}",
+                               i, output.models[0].state_hash, hashes_[i]);
+        }
+        if (!is_counted)
+        {
+            continue;
+        }
+        const std::size_t place = i - run_.lead_in;
+        sum_us_[index(caches)].keep(place, timer.us(Stage::refine) + timer.us(Stage::refit) +
+                                               timer.us(Stage::query));
+        for (std::size_t stage = 0; caches == CacheState::warm && stage < kStages; ++stage)
+        {
+            stage_us_[stage].keep(place, timer.us(static_cast<Stage>(stage)));
+        }
+    }
+    return std::nullopt;
+}
+
+void FrameReplay::count(const FrameOutput& output, std::size_t frame)
+{
+    if (frame < run_.lead_in)
+    {
+        return;
+    }
+    const AnswerKind kind = output.pairs[0].kind;
+    const bool is_in_contact = output.tools[0].in_contact;
+    splits_.push_back(output.work.splits);
+    ++work_.frames;
+    work_.splits += output.work.splits;
+    work_.nodes += output.work.nodes_visited;
+    work_.triangles += output.work.triangles_tested;
+    work_.contacts += is_in_contact ? 1 : 0;
+    work_.uncertified += is_in_contact && kind != AnswerKind::exact ? 1 : 0;
+    work_.open += kind == AnswerKind::exact || kind == AnswerKind::decided ? 0 : 1;
+    work_.pages = output.models[0].pages;
+    work_.faces = output.models[0].faces;
+}
+
+double FrameReplay::split_us() const
+{
+    double time_us = 0.0;
+    double splits = 0.0;
+    for (std::size_t i = 0; i < splits_.size(); ++i)
+    {
+        if (splits_[i] >= kBusySplits)
+        {
+            time_us += stage_us(Stage::refine).least()[i] + stage_us(Stage::refit).least()[i];
+            splits += splits_[i];
+        }
+    }
+    return splits > 0.0 ? time_us / splits : std::numeric_limits<double>::quiet_NaN();
+}
+
+std::uint64_t FrameReplay::hash() const
+{
+    std::uint64_t sum = 0;
+    for (std::size_t i = 0; i < hashes_.size(); ++i)
+    {
+        sum += hashes_[i] * (2 * i + 1);
+    }
+    return sum;
+}
+
+} // namespace tactus::bench

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/records/frame_input.hpp"
+#include "tests/bench/least_times.hpp"
+#include "tests/bench/measuring.hpp"
+#include "tests/bench/scenes.hpp"
+#include "tests/shared/frame_rig.hpp"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tactus::bench
+{
+
+/// What the caches hold when a frame starts.
+enum class CacheState : std::uint8_t
+{
+    warm,      ///< What the last frame and the rehearsal left, as in a loop that runs on its own.
+    cold,      ///< Nothing of ours: driven out before the frame, not rehearsed.
+    rehearsed, ///< Driven out, then rehearsed, as a loop does in the wait before its deadline.
+};
+
+/// One tool's way over one model, and what the frames may do.
+struct FrameRun
+{
+    const Scene& scene;
+    std::vector<Vec3> goals_m;
+    std::size_t lead_in{0}; ///< Frames at the start that are run and not counted.
+    test::RigOptions rig;
+    Budgets budgets;
+
+    [[nodiscard]] std::size_t counted() const { return goals_m.size() - lead_in; }
+};
+
+/// A slide over the scene: see slide_motion(). The tool has the motions' radius; its proxy follows
+/// the goal at up to 1.5 times the slide's speed, which leaves room for the swing in depth, so the
+/// reach R is the tool's radius and what that allows in a period.
+[[nodiscard]] FrameRun make_slide(const Scene& scene, double speed_diag_per_s, std::uint32_t splits,
+                                  std::size_t pool_bytes, std::uint32_t frames);
+
+/// What frames did, over the counted ones of one replay.
+struct FrameWork
+{
+    std::uint64_t frames{0};
+    std::uint64_t splits{0};
+    std::uint64_t nodes{0};
+    std::uint64_t triangles{0};
+    std::uint64_t contacts{0};    ///< Frames in contact.
+    std::uint64_t uncertified{0}; ///< Of those, without an exact answer.
+    std::uint64_t open{0};        ///< Frames with neither an exact nor a decided answer.
+    PoolUse pages;
+    PoolUse faces;
+};
+
+/// Runs the same frames from the start again and again.
+class FrameReplay
+{
+public:
+    explicit FrameReplay(const FrameRun& run);
+
+    /// One replay. Returns a line when a frame's state differs from that of earlier replays.
+    [[nodiscard]] std::optional<std::string> run_once(CacheState caches, std::size_t frames);
+
+    /// T_R + T_B + T_Q, in microseconds, of the counted frames.
+    [[nodiscard]] const LeastTimes& sum_us(CacheState caches) const
+    {
+        return sum_us_[index(caches)];
+    }
+    /// Warm ones only.
+    [[nodiscard]] const LeastTimes& stage_us(Stage stage) const
+    {
+        return stage_us_[static_cast<std::size_t>(stage)];
+    }
+    /// T_R + T_B of a split, in frames that split at least kBusySplits; NaN when there is none.
+    [[nodiscard]] double split_us() const;
+    [[nodiscard]] const FrameWork& work() const { return work_; }
+    [[nodiscard]] std::uint64_t hash() const;
+
+    static constexpr std::uint32_t kBusySplits = 16;
+
+private:
+    [[nodiscard]] static std::size_t index(CacheState caches)
+    {
+        return static_cast<std::size_t>(caches);
+    }
+    void prepare(test::FrameRig& rig, CacheState caches);
+    void count(const FrameOutput& output, std::size_t frame);
+
+    const FrameRun& run_;
+    CacheEvictor evictor_;
+    std::array<LeastTimes, 3> sum_us_;
+    std::array<LeastTimes, kStages> stage_us_;
+    std::vector<std::uint64_t> hashes_; ///< Of each frame's state, by the first replay.
+    std::vector<std::uint32_t> splits_; ///< Of each counted frame, likewise.
+    FrameWork work_;
+};
+
+} // namespace tactus::bench

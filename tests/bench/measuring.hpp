@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <sched.h>
+#include <vector>
+
+namespace tactus::bench
+{
+
+/// The clock of every time in a suite, ours and the peers' alike.
+using BenchClock = std::chrono::steady_clock;
+
+[[nodiscard]] inline double microseconds(BenchClock::time_point from, BenchClock::time_point to)
+{
+    return std::chrono::duration<double, std::micro>(to - from).count();
+}
+
+/// What two readings with nothing in between say, in microseconds: part of every time below.
+[[nodiscard]] double clock_cost_us();
+
+/// Keeps the calling thread on one core while it lives.
+class PinnedCore
+{
+public:
+    /// `core` -1: the last one that the thread may use. When the system refuses, core() is -1.
+    explicit PinnedCore(int core);
+    PinnedCore(const PinnedCore&) = delete;
+    PinnedCore& operator=(const PinnedCore&) = delete;
+    ~PinnedCore();
+
+    [[nodiscard]] int core() const { return core_; }
+
+private:
+    cpu_set_t before_{};
+    int core_{-1};
+};
+
+/// Whether the calling thread may run on this core.
+[[nodiscard]] bool may_use_core(int core);
+
+/// Drives the caches' contents out by writing one word of each line of 64 MB: more than a core's
+/// own caches hold, code included, and more than the rest of a 1 ms period can touch. A shared
+/// last-level cache that is larger keeps some. About 5 ms a call.
+class CacheEvictor
+{
+public:
+    void evict();
+
+private:
+    std::vector<unsigned char> bytes_ = std::vector<unsigned char>(std::size_t{64} << 20U);
+};
+
+} // namespace tactus::bench

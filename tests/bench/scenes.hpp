@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/base/result.hpp"
+#include "tests/bench/bench_options.hpp"
+#include "tests/bench/face_tree.hpp"
+#include "tests/bench/touch_motion.hpp"
+#include "tests/shared/test_model.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+
+namespace tactus::bench
+{
+
+/// Where a scene's mesh comes from.
+struct SceneSource
+{
+    const char* name;
+    const char* mesh_file;        ///< In TACTUS_MESHES; null: always the stand-in.
+    std::uint32_t subdivisions;   ///< Each face into four, so often; then noise, when not 0.
+    std::uint32_t stand_in_faces; ///< Of the bumpy sphere that stands in for it.
+};
+
+inline constexpr SceneSource kTiny{"tiny", nullptr, 0, 4'000};
+inline constexpr SceneSource kBunny{"bunny-69k", "stanford-bunny.obj", 0, 69'000};
+inline constexpr SceneSource kFineBunny{"bunny-1.1M", "stanford-bunny.obj", 2, 1'100'000};
+inline constexpr SceneSource kFineIgea{"igea-4.3M", "igea.ply", 2, 4'300'000};
+
+/// Noise of a subdivided mesh: uniform, up to this share of the mean edge length at the vertex.
+inline constexpr double kNoiseShare = 0.05;
+
+/// A model on disk and the true mesh that it was made of.
+struct Scene
+{
+    test::TestModel model;
+    std::unique_ptr<FaceTree> tree;
+
+    [[nodiscard]] TouchScene touch() const { return {*tree, model.diagonal_m}; }
+};
+
+/// Why there is no scene: one line that names the file or the step.
+struct SceneError
+{
+    std::string text;
+};
+
+/// Makes scenes when they are first asked for and keeps them. Encoded models go into the cache
+/// folder, under a name made of the mesh and of the encoder's sources, or into a folder that goes
+/// when the store goes. Encoding takes about 20 us a face on all cores.
+class SceneStore
+{
+public:
+    explicit SceneStore(std::filesystem::path cache);
+    SceneStore(const SceneStore&) = delete;
+    SceneStore& operator=(const SceneStore&) = delete;
+    ~SceneStore();
+
+    [[nodiscard]] Result<const Scene*, SceneError> get(const SceneSource& source);
+
+private:
+    std::filesystem::path folder_;
+    bool is_temporary_;
+    std::map<std::string, std::unique_ptr<Scene>> scenes_;
+};
+
+} // namespace tactus::bench

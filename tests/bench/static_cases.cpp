@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+
+/// The queries of a static model: one probe in the touching motion, beside the peers, over trees
+/// that hold the whole mesh.
+
+#include "tests/bench/cases.hpp"
+#include "tests/bench/measuring.hpp"
+#include "tests/bench/random.hpp"
+#include "tests/bench/static_model.hpp"
+#include "tests/bench/timed_queries.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+namespace tactus::bench
+{
+
+namespace
+{
+
+constexpr double kNear_diag = 2.0 * kRadius_diag;
+/// Ours is exact to rounding; the peers work in float on coordinates of about a diagonal.
+constexpr double kOurTolerance_diag = 1e-9;
+constexpr double kPeerTolerance_diag = 2e-6;
+constexpr std::uint32_t kColdFrames = 1'000;
+
+Row common_row(const CaseContext& context, const Scene& scene, std::size_t frames,
+               std::uint64_t hash)
+{
+    Row row;
+    row.suite = "frame";
+    row.test_case = context.name;
+    row.scene = scene.model.name;
+    row.seed = kSeed;
+    row.frames = frames;
+    row.hash = hash;
+    return row;
+}
+
+Questions touch_questions(const CaseContext& context, const Scene& scene)
+{
+    const std::uint32_t frames = context.options.frames_or(4 * kCycleFrames, kCycleFrames);
+    return ask(scene, touch_motion(scene.touch(), frames));
+}
+
+/// Ours and the peers' times for the same questions; ours first.
+Result<std::vector<QueryTimes>, SceneError>
+time_all(const CaseContext& context, TactusQuery& ours,
+         const std::vector<std::unique_ptr<PointQuery>>& peers, const Scene& scene,
+         const Questions& questions, double band_m)
+{
+    const std::uint32_t passes = context.options.passes_or(5, 3);
+    std::vector<QueryTimes> all;
+    auto mine =
+        time_queries(ours, questions, band_m, kOurTolerance_diag * scene.model.diagonal_m, passes);
+    if (!mine)
+    {
+        return mine.error();
+    }
+    all.push_back(std::move(mine).value());
+    for (const std::unique_ptr<PointQuery>& peer : peers)
+    {
+        auto theirs = time_queries(*peer, questions, band_m,
+                                   kPeerTolerance_diag * scene.model.diagonal_m, passes);
+        if (!theirs)
+        {
+            return theirs.error();
+        }
+        all.push_back(std::move(theirs).value());
+    }
+    return all;
+}
+
+/// A line of rows: our quantiles beside the first peer's, whose share is the goal; the other peers
+/// get rows of their own.
+void add_against_peers(CaseRows& rows, const std::string& figure,
+                       const std::vector<QueryTimes>& times,
+                       const std::vector<std::unique_ptr<PointQuery>>& peers,
+                       const std::vector<bool>& choice, double p50_share, double p99_share)
+{
+    const Spread ours = spread_of(chosen(times[0].us.least(), choice));
+    std::optional<Spread> peer;
+    if (!peers.empty())
+    {
+        peer = spread_of(chosen(times[1].us.least(), choice));
+    }
+    const auto add = [&](const char* quantile, double Spread::*part, double share)
+    {
+        const auto goal = peer ? goal_if(share * peer.value().*part) : std::nullopt;
+        Row& row = rows.add(figure + quantile, ours.*part, "us", goal);
+        if (peer)
+        {
+            row.peer = peers[0]->name();
+            row.peer_value = peer.value().*part;
+        }
+    };
+    add(".p50", &Spread::p50, p50_share);
+    add(".p99", &Spread::p99, p99_share);
+    add(".max", &Spread::max, kNoGoal);
+    rows.add(figure + ".raw_max", times[0].us.raw_max(), "us");
+}
+
+/// Near questions with the caches driven out before each; rehearsed or not.
+Spread cold_spread(TactusQuery& ours, const Questions& questions, const std::vector<bool>& near,
+                   double band_m, bool rehearsed)
+{
+    CacheEvictor evictor;
+    std::vector<double> times_us;
+    double sum_m = 0.0;
+    for (std::size_t i = 0; i < near.size() && times_us.size() < kColdFrames; ++i)
+    {
+        if (!near[i])
+        {
+            continue;
+        }
+        sum_m += ours.distance_m(questions.points_m[i > 0 ? i - 1 : 0], band_m);
+        evictor.evict();
+        if (rehearsed)
+        {
+            ours.rehearse();
+        }
+        const BenchClock::time_point start = BenchClock::now();
+        sum_m += ours.distance_m(questions.points_m[i], band_m);
+        times_us.push_back(microseconds(start, BenchClock::now()));
+    }
+    const volatile double used = sum_m;
+    static_cast<void>(used);
+    return spread_of(times_us);
+}
+
+void add_spread(CaseRows& rows, const std::string& figure, const Spread& spread, double p99_goal)
+{
+    rows.add(figure + ".p50", spread.p50, "us");
+    rows.add(figure + ".p99", spread.p99, "us", goal_if(p99_goal));
+    rows.add(figure + ".max", spread.max, "us");
+}
+
+} // namespace
+
+CaseFailure run_static_case(const CaseContext& context, const StaticCase& test_case)
+{
+    const auto scene = context.scenes.get(test_case.scene);
+    if (!scene)
+    {
+        return scene.error().text;
+    }
+    const PinnedCore pinned(context.options.core);
+    const Scene& touched = *scene.value();
+    auto model = StaticModel::make(touched);
+    if (!model)
+    {
+        return model.error().text;
+    }
+    const auto peers = context.options.count ? std::vector<std::unique_ptr<PointQuery>>{}
+                                             : make_peers(touched.model.faces);
+    const Questions questions = touch_questions(context, touched);
+    const double band_m = kNear_diag * touched.model.diagonal_m;
+    const std::vector<bool> near = questions.nearer_than(band_m);
+    TactusQuery ours(model.value()->tree());
+    const auto banded = time_all(context, ours, peers, touched, questions, band_m);
+    const auto unbounded =
+        time_all(context, ours, peers, touched, questions, std::numeric_limits<double>::infinity());
+    if (!banded || !unbounded)
+    {
+        return banded ? unbounded.error().text : banded.error().text;
+    }
+    const std::uint64_t hash = banded.value()[0].hash + 3 * unbounded.value()[0].hash;
+    CaseRows rows(context.rows, common_row(context, touched, questions.points_m.size(), hash));
+    add_against_peers(rows, "T_Q near", banded.value(), peers, near, test_case.near_p50,
+                      test_case.near_p99);
+    add_against_peers(rows, "T_Q exact flight", unbounded.value(), peers,
+                      std::vector<bool>(near.size(), true), kNoGoal, test_case.flight_p99);
+    if (!context.options.count)
+    {
+        const double warm_p99 = quantile(chosen(banded.value()[0].us.least(), near), 0.99);
+        add_spread(rows, "T_Q near, rehearsed", cold_spread(ours, questions, near, band_m, true),
+                   test_case.rehearsed_p99 * warm_p99);
+        add_spread(rows, "T_Q near, cold", cold_spread(ours, questions, near, band_m, false),
+                   kNoGoal);
+    }
+    return std::nullopt;
+}
+
+CaseFailure run_growth_case(const CaseContext& context, const GrowthCase& test_case)
+{
+    static constexpr std::array<SceneSource, 4> kSizes{
+        SceneSource{"growth-4k", nullptr, 0, 4'000}, SceneSource{"growth-40k", nullptr, 0, 40'000},
+        SceneSource{"growth-400k", nullptr, 0, 400'000},
+        SceneSource{"growth-4M", nullptr, 0, 4'000'000}};
+    std::vector<double> p50_us;
+    for (const SceneSource& size : kSizes)
+    {
+        const auto scene = context.scenes.get(size);
+        if (!scene)
+        {
+            return scene.error().text;
+        }
+        const PinnedCore pinned(context.options.core);
+        const Scene& touched = *scene.value();
+        auto model = StaticModel::make(touched);
+        if (!model)
+        {
+            return model.error().text;
+        }
+        const auto peers = make_peers(touched.model.faces);
+        const Questions questions = touch_questions(context, touched);
+        const double band_m = kNear_diag * touched.model.diagonal_m;
+        TactusQuery ours(model.value()->tree());
+        const auto times = time_all(context, ours, peers, touched, questions, band_m);
+        if (!times)
+        {
+            return times.error().text;
+        }
+        const std::vector<bool> near = questions.nearer_than(band_m);
+        CaseRows rows(context.rows,
+                      common_row(context, touched, near.size(), times.value()[0].hash));
+        add_against_peers(rows, "T_Q near", times.value(), peers, near, kNoGoal, kNoGoal);
+        p50_us.push_back(quantile(chosen(times.value()[0].us.least(), near), 0.5));
+        if (&size == &kSizes.back())
+        {
+            rows.add("growth 4 k to 4 M", p50_us.back() / p50_us.front(), "x", test_case.growth);
+        }
+    }
+    return std::nullopt;
+}
+
+} // namespace tactus::bench

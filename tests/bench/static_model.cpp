@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "tests/bench/static_model.hpp"
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace tactus::bench
+{
+
+namespace
+{
+
+/// Far beyond what any query here needs: nothing is to be cut short.
+constexpr std::uint32_t kUnlimited = std::numeric_limits<std::uint32_t>::max();
+/// Memory for a whole model: pages 100, faces and tree 110, tables and the usual shares the rest.
+constexpr std::size_t kBytesPerFace = 400;
+
+test::RigOptions room_for_all(const Scene& scene)
+{
+    test::RigOptions options;
+    options.pool_bytes = (std::size_t{16} << 20U) + kBytesPerFace * scene.model.faces.size();
+    options.courier_steps_per_frame = 32;
+    return options;
+}
+
+} // namespace
+
+StaticModel::StaticModel(const Scene& scene) : rig_(scene.model, room_for_all(scene)) {}
+
+Result<std::unique_ptr<StaticModel>, SceneError> StaticModel::make(const Scene& scene)
+{
+    std::unique_ptr<StaticModel> made(new StaticModel(scene));
+    load_everything(made->rig_);
+    if (!made->refine_fully() || made->model().forest.active_faces() != scene.model.faces.size() ||
+        !made->tree().is_complete())
+    {
+        return SceneError{scene.model.name + ": could not be refined to the source mesh"};
+    }
+    return made;
+}
+
+/// Splits every record, what it depends on first.
+bool StaticModel::refine_fully()
+{
+    std::vector<RecordId> open;
+    for (std::uint32_t i = 0; i < model().header.counts().records; ++i)
+    {
+        open.push_back({i});
+        while (!open.empty())
+        {
+            const RecordId id = open.back();
+            if (model().pages.is_refined(id))
+            {
+                open.pop_back();
+                continue;
+            }
+            const VsplitRecord* record = model().pages.find_linked(id);
+            if (record == nullptr)
+            {
+                return false;
+            }
+            if (const RecordId first = model().forest.missing_dependency(*record); !first.is_none())
+            {
+                open.push_back(first);
+                continue;
+            }
+            if (model().forest.split(id) != VertexForest::SplitOutcome::done)
+            {
+                return false;
+            }
+        }
+    }
+    WorkCounters work;
+    FrameFault faults = FrameFault::none;
+    model().refit(faults);
+    return faults == FrameFault::none;
+}
+
+double TactusQuery::distance_m(const Vec3& point_m, double band_m)
+{
+    last_point_m_ = point_m;
+    last_band_m_ = band_m;
+    WalkBudget budget{kUnlimited, kUnlimited};
+    const DistanceAnswer answer = query_distance(tree_, point_m, band_m, memory_, budget);
+    const bool is_beyond = std::isinf(answer.upper_m) && answer.lower_m >= band_m;
+    const bool is_exact = answer.upper_m - answer.lower_m <= 1e-12 + 1e-12 * answer.upper_m;
+    return is_beyond || is_exact ? answer.upper_m : std::numeric_limits<double>::quiet_NaN();
+}
+
+void TactusQuery::rehearse()
+{
+    const QueryMemory memory = memory_;
+    rehearsed_m_ += distance_m(last_point_m_, last_band_m_);
+    memory_ = memory;
+}
+
+} // namespace tactus::bench

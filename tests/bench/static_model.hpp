@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/base/result.hpp"
+#include "rt_core/query/surface_query.hpp"
+#include "tests/bench/peers/point_query.hpp"
+#include "tests/bench/scenes.hpp"
+#include "tests/shared/frame_rig.hpp"
+
+#include <memory>
+#include <string>
+
+namespace tactus::bench
+{
+
+/// A model whose pools hold all of it, refined to the source mesh: the tree that every query of a
+/// static model sees.
+class StaticModel
+{
+public:
+    [[nodiscard]] static Result<std::unique_ptr<StaticModel>, SceneError> make(const Scene& scene);
+
+    [[nodiscard]] AbTree& tree() { return rig_.model().tree; }
+    [[nodiscard]] Model& model() { return rig_.model(); }
+
+private:
+    explicit StaticModel(const Scene& scene);
+
+    [[nodiscard]] bool refine_fully();
+
+    test::FrameRig rig_;
+};
+
+/// The controller's distance query over a static model, as a contestant. One probe: it keeps where
+/// the last answer was found.
+class TactusQuery final : public PointQuery
+{
+public:
+    explicit TactusQuery(const AbTree& tree) : tree_(tree) {}
+
+    [[nodiscard]] std::string name() const override { return "Tactus"; }
+    /// NaN when the answer is not proven to rounding.
+    [[nodiscard]] double distance_m(const Vec3& point_m, double band_m) override;
+
+    /// The last question once more, into scratch memory and by the same machine code: what a loop
+    /// does in the wait before its deadline.
+    void rehearse();
+
+private:
+    const AbTree& tree_;
+    QueryMemory memory_;
+    Vec3 last_point_m_{0.0, 0.0, 0.0};
+    double last_band_m_{0.0};
+    double rehearsed_m_{0.0};
+};
+
+} // namespace tactus::bench

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/math/vec3.hpp"
+#include "tests/bench/face_tree.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace tactus::bench
+{
+
+/// A probe and a mesh; all lengths of the motions are shares of the diagonal.
+struct TouchScene
+{
+    const FaceTree& tree;
+    double diagonal_m{0.0};
+};
+
+inline constexpr double kPeriod_s = 1e-3;
+/// The probe's radius, as a share of the diagonal.
+inline constexpr double kRadius_diag = 0.01;
+/// Frames in which a slide comes down onto the surface before it counts.
+inline constexpr std::uint32_t kApproachFrames = 300;
+/// One cycle of the touching motion: flight, approach, slide, retreat.
+inline constexpr std::uint32_t kFlightFrames = 400;
+inline constexpr std::uint32_t kTouchFrames = 1'500;
+inline constexpr std::uint32_t kRetreatFrames = 300;
+inline constexpr std::uint32_t kCycleFrames =
+    kFlightFrames + kApproachFrames + kTouchFrames + kRetreatFrames;
+
+/// Centres of a probe that comes down onto the highest point for kApproachFrames and then slides
+/// for `frames` at a speed along the true surface: each step goes along a heading that turns by up
+/// to 3 rad/s, then to the wanted distance from the surface's nearest point. The wanted distance is
+/// the radius plus a depth that swings between -0.3 % and +0.2 % of the diagonal once a second.
+/// Computed from the mesh alone; nothing that is measured takes part.
+[[nodiscard]] std::vector<Vec3> slide_motion(const TouchScene& scene, double speed_diag_per_s,
+                                             std::uint32_t frames);
+
+/// `frames` centres in cycles of 2.5 s: flight round the object at 2 diag/s and 0.62 diag from its
+/// centre, approach to the nearest point, slide at 0.1 diag/s, retreat.
+[[nodiscard]] std::vector<Vec3> touch_motion(const TouchScene& scene, std::uint32_t frames);
+
+} // namespace tactus::bench
