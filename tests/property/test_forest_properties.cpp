@@ -45,7 +45,6 @@ public:
                 continue;
             }
             ASSERT_EQ(forest().split(stack.back()), VertexForest::SplitOutcome::done);
-            forest().clear_changes();
             stack.pop_back();
         }
     }
@@ -168,7 +167,6 @@ TEST_P(ForestProperties, splits_and_merges_undone_in_any_legal_order_return_the_
         else
         {
             static_cast<void>(sut.forest().try_merge(record));
-            sut.forest().clear_changes();
         }
         if (step % 1'000 == 999)
         {
@@ -185,7 +183,6 @@ TEST_P(ForestProperties, splits_and_merges_undone_in_any_legal_order_return_the_
             const RecordId record{(i + shift) % sut.counts().records};
             if (sut.pages().is_refined(record) && sut.forest().try_merge(record))
             {
-                sut.forest().clear_changes();
                 any = true;
             }
         }

@@ -80,7 +80,7 @@ surface_of(const TriangleList& list, const Vec3& center_m, double certified_m)
             static_cast<double>(DistanceOracle::distance(center_m, to_triangle(list[i])));
         if (d <= certified_m)
         {
-            surface->triangles[surface->count] = {FaceId{i}, list[i]};
+            surface->triangles[surface->count] = {PrimId{i}, list[i]};
             surface->distances_m[surface->count++] = std::max(0.0, d * (1.0 - 1e-14));
         }
     }

@@ -215,7 +215,7 @@ TEST(AbTree, pools_below_the_reserve_place_nothing_and_say_so)
     rig.sut->refit();
 
     EXPECT_FALSE(rig.sut->is_complete());
-    EXPECT_EQ(rig.sut->unplaced().size(), 1U);
+    EXPECT_TRUE(rig.sut->is_unplaced({0}));
     EXPECT_TRUE(rig.sut->root().is_none());
     EXPECT_FALSE(rig.sut->has_room_for(0));
     EXPECT_EQ(rig.faults(), "");

@@ -58,7 +58,7 @@ TEST_F(PageTableTest, only_linked_records_count)
     sut_.adopt({7}, 1, 0);
     EXPECT_EQ(sut_.find_linked({7 * 64 + 63}), nullptr);
 
-    slots_.linked[1].store(std::uint64_t{1} << 63U);
+    sut_.update_linked({7}, 1, std::uint64_t{1} << 63U);
 
     EXPECT_EQ(sut_.find_linked({7 * 64 + 63}), &slots_.pages[1].records[63]);
     EXPECT_EQ(sut_.find_linked({7 * 64 + 62}), nullptr);

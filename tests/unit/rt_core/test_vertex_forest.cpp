@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "rt_core/forest/vertex_forest.hpp"
+#include "tests/shared/validate_tree.hpp"
 #include "tests/unit/rt_core/support.hpp"
 
 #include <gtest/gtest.h>
@@ -73,14 +74,31 @@ protected:
         page(0).next[2] = 1;
         page(1) = make_record(1, 4, {{0, FaceState::after({0}, 2)}});
         page(2) = make_record(2, 3, {{1, FaceState::base()}, {3, FaceState::base()}});
-        table_.adopt({0}, 0, 0);
-        slots_.linked[0].store(7);
-        sut_.emplace(make_forest(kFaces, 64));
+        table_.adopt({0}, 0, 0, 7);
+        make_forest(kFaces);
     }
 
-    VertexForest make_forest(std::uint32_t faces, std::uint32_t changes)
+    void make_forest(std::uint32_t faces)
     {
-        return VertexForest(arena_, kCounts, slots_, table_, faces, changes);
+        tree_.emplace(arena_, TreeCapacities{faces, 64, 64}, 0x1p-10F);
+        sut_.emplace(arena_, kCounts, slots_, table_, *tree_, faces);
+    }
+    /// The tree holds what the forest says, face by face.
+    void expect_tree_follows()
+    {
+        tree_->refit();
+        std::vector<ChangedFace> faces;
+        for (const auto& [face, corners] : mesh())
+        {
+            faces.push_back(sut_->describe(sut_->find({face})));
+            // Not by way of the tree:
+            const VertexForest::ActiveFace& active = sut_->face(faces.back().prim);
+            for (std::size_t i = 0; i < 3; ++i)
+            {
+                EXPECT_EQ(faces.back().corners_m[i], sut_->position_of(active.corners[i])) << face;
+            }
+        }
+        EXPECT_EQ(tree_faults(*tree_, faces), "");
     }
     VsplitRecord& page(std::uint32_t record) { return slots_.pages[0].records[record]; }
 
@@ -132,6 +150,7 @@ protected:
     Arena arena_{memory_.bytes()};
     PageSlots slots_{PageSlots::take(arena_, kCounts, 1, 1)};
     PageTable table_{arena_, slots_};
+    std::optional<AbTree> tree_;
     std::optional<VertexForest> sut_;
 };
 
@@ -141,7 +160,7 @@ TEST_F(VertexForestTest, starts_with_the_base_mesh)
 {
     EXPECT_EQ(sut_->active_faces(), 4U);
     EXPECT_EQ(sut_->refined_records(), 0U);
-    EXPECT_EQ(sut_->changed_prims().size(), 4U);
+    expect_tree_follows();
     expect_closed_manifold();
     const PrimId prim = sut_->find({0});
     EXPECT_EQ(sut_->next_of(prim), 0U);
@@ -153,8 +172,6 @@ TEST_F(VertexForestTest, starts_with_the_base_mesh)
 
 TEST_F(VertexForestTest, a_split_writes_the_star_as_the_record_says)
 {
-    sut_->clear_changes();
-
     ASSERT_EQ(sut_->split({0}), VertexForest::SplitOutcome::done);
 
     const std::map<std::uint32_t, CornerIds> expected{{0, {1, 2, 4}}, {1, {0, 2, 3}},
@@ -163,7 +180,7 @@ TEST_F(VertexForestTest, a_split_writes_the_star_as_the_record_says)
     EXPECT_EQ(mesh(), expected);
     expect_closed_manifold();
     EXPECT_TRUE(table_.is_refined({0}));
-    EXPECT_EQ(sut_->changed_prims().size(), 3U);
+    expect_tree_follows();
     const ChangedFace fan = sut_->describe(sut_->find({0}));
     EXPECT_EQ(fan.error, 1);
     EXPECT_EQ(fan.bucket, 40U);
@@ -230,7 +247,7 @@ TEST_F(VertexForestTest, every_legal_order_gives_the_same_cut_for_the_same_recor
         const auto [entry, is_new] = known.insert({refined, {sut_->state_hash(), mesh()}});
         ASSERT_EQ(entry->second.first, sut_->state_hash()) << refined;
         ASSERT_EQ(entry->second.second, mesh()) << refined;
-        sut_->clear_changes();
+        ASSERT_NO_FATAL_FAILURE(expect_tree_follows());
     }
     EXPECT_EQ(known.size(), 6U);
     std::set<std::uint64_t> hashes;
@@ -254,12 +271,11 @@ TEST_F(VertexForestTest, refuses_a_merge_while_a_later_record_is_split)
     ASSERT_EQ(sut_->split({0}), VertexForest::SplitOutcome::done);
     ASSERT_EQ(sut_->split({1}), VertexForest::SplitOutcome::done);
     const std::uint64_t hash = sut_->state_hash();
-    sut_->clear_changes();
 
     EXPECT_FALSE(sut_->try_merge({0}));
 
     EXPECT_EQ(sut_->state_hash(), hash);
-    EXPECT_TRUE(sut_->changed_prims().empty());
+    expect_tree_follows();
     EXPECT_TRUE(table_.is_refined({0}));
 }
 
@@ -275,21 +291,20 @@ TEST_F(VertexForestTest, an_inconsistent_record_changes_nothing)
     };
     const std::uint64_t hash = sut_->state_hash();
     const auto before = mesh();
-    sut_->clear_changes();
     for (std::size_t i = 0; i < wrong.size(); ++i)
     {
         page(2) = wrong[i];
         EXPECT_EQ(sut_->split({2}), VertexForest::SplitOutcome::inconsistent) << i;
         EXPECT_EQ(sut_->state_hash(), hash) << i;
         EXPECT_EQ(mesh(), before) << i;
-        EXPECT_TRUE(sut_->changed_prims().empty()) << i;
+        expect_tree_follows();
         EXPECT_FALSE(table_.is_refined({2})) << i;
     }
 }
 
 TEST_F(VertexForestTest, a_full_pool_refuses_and_changes_nothing)
 {
-    sut_.emplace(make_forest(5, 64)); // One free slot; a split wants two.
+    make_forest(5); // One free slot; a split wants two.
     const std::uint64_t hash = sut_->state_hash();
 
     EXPECT_EQ(sut_->split({0}), VertexForest::SplitOutcome::full);
@@ -297,7 +312,7 @@ TEST_F(VertexForestTest, a_full_pool_refuses_and_changes_nothing)
     EXPECT_EQ(sut_->state_hash(), hash);
     EXPECT_EQ(sut_->active_faces(), 4U);
     EXPECT_FALSE(table_.is_refined({0}));
-    sut_.emplace(make_forest(6, 64));
+    make_forest(6);
     EXPECT_EQ(sut_->split({0}), VertexForest::SplitOutcome::done);
     EXPECT_EQ(sut_->split({2}), VertexForest::SplitOutcome::full);
     EXPECT_TRUE(sut_->try_merge({0}));
@@ -306,7 +321,7 @@ TEST_F(VertexForestTest, a_full_pool_refuses_and_changes_nothing)
 
 TEST_F(VertexForestTest, an_unlinked_or_absent_record_is_not_found)
 {
-    slots_.linked[0].store(0b101);
+    table_.update_linked({0}, 0, 0b101);
     EXPECT_NE(table_.find_linked({0}), nullptr);
     EXPECT_EQ(table_.find_linked({1}), nullptr);
     EXPECT_EQ(table_.find_linked({64}), nullptr);
@@ -325,34 +340,20 @@ TEST_F(VertexForestTest, a_border_record_adds_one_face_only)
     EXPECT_EQ(sut_->active_faces(), 4U);
 }
 
-TEST_F(VertexForestTest, each_changed_slot_is_listed_once_and_a_gone_face_is_none)
+TEST_F(VertexForestTest, faces_without_a_place_in_the_tree_are_split_and_merged_all_the_same)
 {
-    ASSERT_EQ(sut_->split({0}), VertexForest::SplitOutcome::done);
-    const PrimId gone = sut_->find({4});
-    sut_->clear_changes();
-    EXPECT_FALSE(sut_->is_changed(gone));
+    tree_.emplace(arena_, TreeCapacities{kFaces, 4, 4}, 0x1p-10F); // Below its reserve.
+    sut_.emplace(arena_, kCounts, slots_, table_, *tree_, kFaces);
+    const auto before = mesh();
+    const std::uint64_t hash = sut_->state_hash();
 
-    ASSERT_TRUE(sut_->try_merge({0}));
     ASSERT_EQ(sut_->split({0}), VertexForest::SplitOutcome::done);
-    ASSERT_TRUE(sut_->try_merge({0}));
 
-    std::set<std::uint32_t> prims;
-    for (const PrimId prim : sut_->changed_prims())
-    {
-        EXPECT_TRUE(prims.insert(prim.value).second);
-    }
-    EXPECT_EQ(prims.size(), 3U);
-    EXPECT_TRUE(sut_->describe(gone).face.is_none());
-}
-
-TEST_F(VertexForestTest, says_when_no_more_changes_can_be_recorded)
-{
-    sut_.emplace(make_forest(kFaces, 4 + kMaxStarFaces));
-    EXPECT_TRUE(sut_->has_room_for_changes());
-    ASSERT_EQ(sut_->split({0}), VertexForest::SplitOutcome::done);
-    EXPECT_FALSE(sut_->has_room_for_changes());
-    sut_->clear_changes();
-    EXPECT_TRUE(sut_->has_room_for_changes());
+    EXPECT_FALSE(tree_->is_complete());
+    expect_tree_follows();
+    EXPECT_TRUE(sut_->try_merge({0}));
+    EXPECT_EQ(mesh(), before);
+    EXPECT_EQ(sut_->state_hash(), hash);
 }
 
 } // namespace tactus::test

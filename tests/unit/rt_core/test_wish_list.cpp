@@ -147,12 +147,20 @@ TEST_F(WishListTest, random_use_never_asks_for_more_than_the_slots)
     }
 }
 
-TEST(ChunkInbox, has_room_for_every_slot_and_for_the_wishes_it_was_made_for)
+TEST(ChunkInbox, has_room_for_every_slot_the_wishes_it_was_made_for_and_link_updates)
 {
     ArenaMemory memory(1U << 14U);
     Arena arena(memory.bytes());
     ChunkInbox sut(arena, 3, 2, 4);
 
+    // Updates as many as may be pushed, then every slot still finds room.
+    for (std::uint32_t i = 0; i < kMaxLinkUpdatesPerFrame; ++i)
+    {
+        ASSERT_TRUE(sut.has_room_for_update());
+        ASSERT_TRUE(
+            sut.arrived.try_push({{ContentKind::chunk, 0}, 0, 0, i, DoorEventKind::link_update}));
+    }
+    EXPECT_FALSE(sut.has_room_for_update());
     for (std::uint32_t slot = 0; slot < 5; ++slot)
     {
         EXPECT_TRUE(sut.arrived.try_push({{ContentKind::chunk, slot}, slot}));

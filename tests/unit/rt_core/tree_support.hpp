@@ -34,10 +34,7 @@ public:
     /// What the caller does each frame with faces that found no place.
     void offer_again()
     {
-        for (std::size_t i = sut->unplaced().size(); i-- > 0;)
-        {
-            sut->apply(faces_[sut->unplaced()[i].value]);
-        }
+        sut->offer_unplaced([this](PrimId prim) { return faces_[prim.value]; });
     }
     [[nodiscard]] const ChangedFace& face(std::uint32_t prim) const { return faces_[prim]; }
     [[nodiscard]] std::vector<ChangedFace> present() const

@@ -58,9 +58,14 @@ public:
     std::size_t adopt()
     {
         std::size_t adopted = 0;
-        ChunkInbox::Arrival arrival;
+        DoorEvent arrival;
         while (inbox.arrived.try_pop(arrival))
         {
+            if (arrival.kind == DoorEventKind::link_update)
+            {
+                update_linked(arrival);
+                continue;
+            }
             ++adopted;
             EXPECT_FALSE(owns(arrival.key)) << "piece " << arrival.key.number << " came twice";
             for (const auto& [key, slot] : owned_)
@@ -69,6 +74,10 @@ public:
                 EXPECT_FALSE(is_same) << "slot " << slot << " is owned already";
             }
             owned_[{arrival.key.kind, arrival.key.number}] = arrival.slot;
+            if (arrival.key.kind == ContentKind::chunk)
+            {
+                linked_[arrival.slot] = arrival.linked;
+            }
             if (expects_sound_content)
             {
                 check_content(arrival);
@@ -125,18 +134,17 @@ public:
         }
     }
 
+    /// As far as the door has told.
     [[nodiscard]] bool is_linked(std::uint32_t record) const
     {
         const auto at = owned_.find({ContentKind::chunk, record / 64});
-        return at != owned_.end() &&
-               ((slots.linked[at->second].load(std::memory_order_acquire) >> (record % 64)) & 1U) !=
-                   0;
+        return at != owned_.end() && ((linked_.at(at->second) >> (record % 64)) & 1U) != 0;
     }
 
 private:
     static constexpr std::size_t kBytes = std::size_t{4} << 20U;
 
-    void check_content(const ChunkInbox::Arrival& arrival)
+    void check_content(const DoorEvent& arrival)
     {
         for (std::size_t place = 0; arrival.key.kind == ContentKind::chunk && place < 64; ++place)
         {
@@ -150,8 +158,21 @@ private:
         }
     }
 
+    void update_linked(const DoorEvent& update)
+    {
+        EXPECT_EQ(update.key.kind, ContentKind::chunk);
+        const auto at = owned_.find({ContentKind::chunk, update.key.number});
+        if (at != owned_.end()) // Otherwise it was given back while the update was on its way.
+        {
+            EXPECT_EQ(at->second, update.slot);
+            EXPECT_EQ(linked_[update.slot] & ~update.linked, 0U) << "a record is unlinked";
+            linked_[update.slot] = update.linked;
+        }
+    }
+
     const TinyModel& model_;
     std::unique_ptr<std::byte, FreeDeleter> memory_;
+    std::map<std::uint32_t, std::uint64_t> linked_; ///< By slot.
     std::map<std::pair<ContentKind, std::uint32_t>, std::uint32_t> owned_;
 
 public:

@@ -44,7 +44,18 @@ struct Bench
     {
         ASSERT_TRUE(parse_chunk(bytes, side.header, {chunk}, side.slots.pages[slot]).has_value());
         side.linker.link_page({chunk}, slot);
-        ASSERT_TRUE(side.inbox.arrived.try_push({{ContentKind::chunk, chunk}, slot}));
+        ASSERT_TRUE(side.inbox.arrived.try_push(
+            {{ContentKind::chunk, chunk}, slot, 0, side.linker.tell_linked(slot)}));
+        for (Linker::Update update; side.linker.try_take_update(update);)
+        {
+            ASSERT_NE(update.chunk.value, chunk) << "was told with its arrival";
+            ASSERT_TRUE(side.inbox.arrived.try_push({{ContentKind::chunk, update.chunk.value},
+                                                     update.slot,
+                                                     0,
+                                                     update.linked,
+                                                     DoorEventKind::link_update}));
+            side.adopt();
+        }
         side.adopt();
     }
     void drop(std::uint32_t chunk)

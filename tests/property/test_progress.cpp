@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+
+/// No livelock: the smallest budget still gets there, and what can't be had is not tried again and
+/// again.
+
+#include "tests/property/frame_checks.hpp"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+namespace tactus::test
+{
+namespace
+{
+
+/// A tool that reaches a little farther than the surface and does not touch it, so that a still
+/// goal is a still proxy.
+struct NearbyTool
+{
+    ToolSpec spec;
+    Vec3 goal;
+};
+
+NearbyTool nearby_tool(const TestModel& model, Random& random, double radius_diag)
+{
+    const double radius_m = radius_diag * model.diagonal_m;
+    return {{radius_m, 500.0, 8.0, 1.0}, place_at_distance(model, random, 1.02 * radius_m)};
+}
+
+Budgets with_splits(std::uint32_t splits)
+{
+    Budgets budgets;
+    budgets.splits = splits;
+    budgets.merges = splits;
+    budgets.nodes = 100'000;
+    budgets.triangles = 1'000'000;
+    return budgets;
+}
+
+struct Effort
+{
+    std::uint32_t frames{0};
+    std::uint32_t splits{0};
+    bool exact{false};
+};
+
+/// Frames until the answer is exact, everything loaded before.
+Effort run_until_exact(const TestModel& model, const NearbyTool& tool, std::uint32_t splits,
+                       std::uint32_t frames_max)
+{
+    RigOptions options;
+    options.tools = {tool.spec};
+    FrameRig rig(model, options);
+    load_everything(rig);
+    Effort run;
+    while (!run.exact && run.frames < frames_max)
+    {
+        const FrameOutput output = rig.step(tool.goal, with_splits(splits));
+        ++run.frames;
+        run.splits += output.work.splits;
+        run.exact = output.pairs[0].kind == AnswerKind::exact;
+    }
+    return run;
+}
+
+class Progress : public testing::TestWithParam<std::size_t>
+{
+protected:
+    const TestModel& model_ = *small_models()[GetParam()];
+    const std::uint64_t seed_ = seed_of(700 + GetParam());
+    Random random_{seed_};
+};
+
+TEST_P(Progress, one_split_a_frame_is_exact_after_as_many_frames_as_the_closure_has_records)
+{
+    SCOPED_TRACE(model_.name + " seed " + std::to_string(seed_));
+    std::uint32_t closure_max = 0;
+    for (int trial = 0; trial < 6; ++trial)
+    {
+        const NearbyTool tool = nearby_tool(model_, random_, 0.03);
+        const Effort unlimited = run_until_exact(model_, tool, kMaxSplitsPerFrame, 50);
+        ASSERT_TRUE(unlimited.exact) << "trial " << trial;
+        const Effort single = run_until_exact(model_, tool, 1, 4'000);
+        EXPECT_TRUE(single.exact) << "trial " << trial;
+        // One frame more, since a frame without any split may be the one that answers. The records
+        // may be taken in another order, which may need a few that the other did not.
+        EXPECT_LE(single.frames, unlimited.splits + unlimited.splits / 16 + 1)
+            << "trial " << trial << ", closure of " << unlimited.splits;
+        EXPECT_LE(single.splits, single.frames);
+        closure_max = std::max(closure_max, unlimited.splits);
+    }
+    EXPECT_GT(closure_max, 10U);
+}
+
+TEST_P(Progress, the_depth_of_every_closure_is_within_what_the_header_says)
+{
+    FrameRig rig(model_, {std::size_t{64} << 20U, std::size_t{16} << 20U, {}, {}, 4});
+    load_everything(rig);
+    const Model& model = rig.model();
+    const HeaderFields& fields = model.header.fields();
+    EXPECT_LE(fields.max_depth, kMaxDepth);
+    std::vector<std::uint32_t> depth(fields.records, 0);
+    std::uint32_t deepest = 0;
+    // Dependencies have higher or lower ids, so the walk has a stack of its own.
+    for (std::uint32_t i = 0; i < fields.records; ++i)
+    {
+        std::vector<std::uint32_t> stack{i};
+        while (!stack.empty())
+        {
+            const VsplitRecord& record = model.pages.resident(RecordId{stack.back()});
+            std::uint32_t below = 0;
+            bool waits = false;
+            for (std::uint32_t f = 0; f < record.fan_size && !waits; ++f)
+            {
+                if (const FaceState before = record.before[f]; !before.is_base())
+                {
+                    const std::uint32_t dependency = before.record().value;
+                    waits = depth[dependency] == 0;
+                    below = std::max(below, depth[dependency]);
+                    if (waits)
+                    {
+                        stack.push_back(dependency);
+                        ASSERT_LE(stack.size(), std::size_t{fields.max_depth})
+                            << "record " << i << " has a deeper closure";
+                    }
+                }
+            }
+            if (!waits)
+            {
+                depth[stack.back()] = below + 1;
+                EXPECT_EQ(record.depth, below + 1) << "record " << stack.back();
+                deepest = std::max(deepest, below + 1);
+                stack.pop_back();
+            }
+        }
+    }
+    EXPECT_EQ(deepest, fields.max_depth);
+}
+
+/// Whether nothing at all is moved: no page, no record, no wish.
+bool is_at_rest(const WorkCounters& work)
+{
+    return work.splits == 0 && work.merges == 0 && work.pages_adopted == 0 && work.requests == 0 &&
+           work.evictions == 0;
+}
+
+TEST_P(Progress, a_cache_full_of_pinned_pages_leaves_a_stable_bracket_and_no_thrash)
+{
+    SCOPED_TRACE(model_.name + " seed " + std::to_string(seed_));
+    int open = 0;
+    for (std::uint32_t pages = 1; pages <= 12; ++pages)
+    {
+        const NearbyTool tool = nearby_tool(model_, random_, pages % 2 == 0 ? 0.05 : 0.2);
+        RigOptions options;
+        options.tools = {tool.spec};
+        options.cache_bytes = pages * sizeof(Page);
+        FrameRig rig(model_, options);
+        FrameOutput output;
+        // Unanswered wishes are asked again after kWishTimeoutFrames; none may be left by then.
+        for (std::uint32_t frame = 0; frame < 3 * kWishTimeoutFrames; ++frame)
+        {
+            output = rig.step(tool.goal);
+        }
+        const PairOutput settled = output.pairs[0];
+        const std::uint64_t hash = output.models[0].state_hash;
+        for (std::uint32_t frame = 0; frame < 60; ++frame)
+        {
+            output = rig.step(tool.goal);
+            ASSERT_TRUE(is_at_rest(output.work))
+                << pages << " pages, frame " << frame << ": splits " << output.work.splits
+                << ", merges " << output.work.merges << ", adopted " << output.work.pages_adopted
+                << ", requests " << output.work.requests << ", evictions " << output.work.evictions;
+            EXPECT_EQ(output.pairs[0].lower_m, settled.lower_m);
+            EXPECT_EQ(output.pairs[0].upper_m, settled.upper_m);
+            EXPECT_EQ(output.models[0].state_hash, hash);
+        }
+        ASSERT_TRUE(answer_is_sound(model_, output));
+        if (settled.kind == AnswerKind::bracket)
+        {
+            ++open;
+            EXPECT_TRUE(has_fault(output.faults, FrameFault::cache_full)) << pages << " pages";
+        }
+    }
+    EXPECT_GT(open, 3) << "of 12 caches";
+}
+
+/// Records split for a closure that is not complete.
+std::vector<std::uint32_t> held_records(const Model& model)
+{
+    std::vector<std::uint32_t> held;
+    for (std::uint32_t slot = 0; slot < model.pages.capacity(); ++slot)
+    {
+        const PageTable::Meta& meta = model.pages.meta(slot);
+        for (std::uint64_t left = meta.held; left != 0; left &= left - 1)
+        {
+            held.push_back((meta.chunk.value << kRecordsPerChunkLog2) +
+                           static_cast<std::uint32_t>(std::countr_zero(left)));
+        }
+    }
+    return held;
+}
+
+TEST_P(Progress, a_record_of_a_pending_closure_is_neither_merged_nor_evicted)
+{
+    SCOPED_TRACE(model_.name + " seed " + std::to_string(seed_));
+    RigOptions options;
+    options.tools = {{0.03 * model_.diagonal_m, 500.0, 8.0, 1.0}};
+    FrameRig rig(model_, options);
+    Budgets one = with_splits(1);
+    one.merges = kMaxMergesPerFrame;
+    std::set<std::uint32_t> ever_held;
+    std::uint32_t merges = 0;
+    Vec3 goal(0.0, 0.0, 0.0);
+    for (int frame = 0; frame < 900; ++frame)
+    {
+        if (frame % 90 == 0)
+        {
+            goal = place_at_distance(model_, random_, 0.0306 * model_.diagonal_m);
+        }
+        goal += random_.in_cube(5e-4 * model_.diagonal_m);
+        const std::vector<std::uint32_t> held = held_records(rig.model());
+        merges += rig.step(goal, one).work.merges;
+        for (const std::uint32_t record : held)
+        {
+            EXPECT_TRUE(rig.model().pages.is_refined(RecordId{record}))
+                << "frame " << frame << ", record " << record;
+        }
+        ever_held.insert(held.begin(), held.end());
+    }
+    EXPECT_GT(ever_held.size(), 5U);
+    EXPECT_GT(merges, 5U) << "merging must have been at work beside it";
+}
+
+INSTANTIATE_TEST_SUITE_P(small_models, Progress, testing::Range<std::size_t>(0, 6));
+
+} // namespace
+} // namespace tactus::test

@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+
+/// The frame as the haptic thread runs it, streaming and in want of everything, while its heap
+/// calls and system calls are counted: there must be none. In a build with the realtime sanitizer
+/// that one watches, too, and ends the program at the first breach.
+
+#include "host_tools/shapes/shapes.hpp"
+#include "platform/allocation_counter.hpp"
+#include "platform/system_call_trap.hpp"
+#include "tests/property/random.hpp"
+#include "tests/shared/frame_rig.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+#include <sys/syscall.h>
+#include <thread>
+#include <unistd.h>
+
+namespace tactus::test
+{
+namespace
+{
+
+#if defined(__has_feature)
+#if __has_feature(realtime_sanitizer)
+constexpr bool kHasRealtimeSanitizer = true;
+#else
+constexpr bool kHasRealtimeSanitizer = false;
+#endif
+#else
+constexpr bool kHasRealtimeSanitizer = false;
+#endif
+
+/// What frames did that they must not do, and that they did something at all.
+struct Watched
+{
+    std::uint64_t heap_calls{0};
+    std::uint64_t system_calls{0};
+    WorkCounters work;
+    std::string not_trapped; ///< Why system calls could not be counted; empty when they were.
+};
+
+/// Where a tool goes: it hops from one random corner of the model to the next, round its middle, so
+/// that it lands on new ground each time and is never caught inside.
+class Wander
+{
+public:
+    Wander(const TestModel& model, std::uint32_t leg_frames, Random& random)
+        : model_(model), leg_frames_(leg_frames), random_(random), to_(random_corner())
+    {
+        for (const Face& face : model.faces)
+        {
+            middle_ += to_vec3(face[0]) / static_cast<double>(model.faces.size());
+        }
+    }
+
+    Vec3 next()
+    {
+        if (step_ % leg_frames_ == 0)
+        {
+            from_ = to_;
+            to_ = random_corner();
+        }
+        const double share = static_cast<double>(step_++ % leg_frames_) / leg_frames_;
+        const Vec3 from = from_ - middle_;
+        const Vec3 to = to_ - middle_;
+        const Vec3 direction = ((1.0 - share) * from + share * to).normalized();
+        const double height = (1.0 - share) * from.norm() + share * to.norm();
+        return middle_ + (1.0 + 2.0 * share * (1.0 - share)) * height * direction;
+    }
+
+private:
+    Vec3 random_corner() { return to_vec3(model_.faces[random_.below(model_.faces.size())][0]); }
+
+    const TestModel& model_;
+    std::uint32_t leg_frames_;
+    Random& random_; ///< Shared, so that no two go the same way.
+    Vec3 middle_{0.0, 0.0, 0.0};
+    Vec3 from_{0.0, 0.0, 0.0};
+    Vec3 to_;
+    std::uint32_t step_{0};
+};
+
+struct Touch
+{
+    RigOptions options;
+    Budgets budgets;
+    StageMark mark;
+    std::uint32_t leg_frames{200};
+    std::uint32_t frames{3'000};
+};
+
+const TestModel& model_to_touch()
+{
+    return test_model("realtime", make_shape(Shape::bumpy_sphere, 20'000).value());
+}
+
+void add_work(WorkCounters& sum, const WorkCounters& work)
+{
+    sum.splits += work.splits;
+    sum.merges += work.merges;
+    sum.pages_adopted += work.pages_adopted;
+    sum.evictions += work.evictions;
+}
+
+std::uint64_t heap_calls()
+{
+    const allocation_counter::HeapCalls calls = allocation_counter::of_this_thread();
+    return calls.allocations + calls.frees;
+}
+
+/// Every frame with its rehearsal, alone under watch; what the transport side does is not.
+void watch_frames(FrameRig& rig, const Touch& touch, Random& random, Watched& watched)
+{
+    const std::size_t tool_count = std::max<std::size_t>(touch.options.tools.size(), 1);
+    std::vector<Wander> wanders(tool_count, Wander(model_to_touch(), touch.leg_frames, random));
+    std::vector<ToolState> tools(tool_count);
+    const std::vector<ObjectPose> poses(1);
+    for (std::uint32_t i = 0; i < touch.frames; ++i)
+    {
+        rig.deliver();
+        for (std::size_t tool = 0; tool < tool_count; ++tool)
+        {
+            tools[tool].position_m = wanders[tool].next();
+        }
+        allocation_counter::mark_this_thread(true);
+        system_call_trap::mark_frame(true);
+        rig.frame().rehearse();
+        const FrameOutput output = rig.frame().run(tools, poses, touch.budgets, touch.mark);
+        system_call_trap::mark_frame(false);
+        allocation_counter::mark_this_thread(false);
+        add_work(watched.work, output.work);
+    }
+    watched.heap_calls = heap_calls();
+    watched.system_calls = system_call_trap::of_this_thread().in_frame;
+}
+
+/// On a thread of its own, since a trap is for good.
+Watched watch(const Touch& touch)
+{
+    const std::uint64_t seed = seed_of(1);
+    std::printf("TACTUS_SEED=%llu\n", static_cast<unsigned long long>(seed));
+    Random random(seed);
+    FrameRig rig(model_to_touch(), touch.options);
+    Watched watched;
+    std::thread thread(
+        [&]
+        {
+            if (const auto set = system_call_trap::set_on_this_thread(); !set)
+            {
+                watched.not_trapped = set.error().message;
+            }
+            watch_frames(rig, touch, random, watched);
+        });
+    thread.join();
+    return watched;
+}
+
+void expect_clean(const Watched& watched)
+{
+    EXPECT_EQ(watched.heap_calls, 0U);
+    EXPECT_EQ(watched.system_calls, 0U);
+    EXPECT_GT(watched.work.splits, 100U) << "the frames had next to nothing to do";
+    EXPECT_GT(watched.work.pages_adopted, 50U);
+    if (!watched.not_trapped.empty())
+    {
+        GTEST_SKIP() << watched.not_trapped;
+    }
+}
+
+TEST(FrameRealtime, neither_allocates_nor_calls_the_system_while_it_streams)
+{
+    expect_clean(watch({}));
+}
+
+TEST(FrameRealtime, nor_while_pools_are_full_and_pages_go)
+{
+    Touch touch;
+    touch.options.pool_bytes = std::size_t{700} << 10U;
+    touch.options.cache_bytes = std::size_t{300} << 10U;
+    touch.leg_frames = 100;
+    const Watched watched = watch(touch);
+    EXPECT_GT(watched.work.evictions, 0U);
+    expect_clean(watched);
+}
+
+TEST(FrameRealtime, nor_with_all_tools_and_the_largest_budgets)
+{
+    const double radius_m = 0.01 * model_to_touch().diagonal_m;
+    Touch touch;
+    touch.options.tools.assign(kMaxTools, ToolSpec{radius_m, 500.0, 8.0, 1.0});
+    touch.budgets.splits = kMaxSplitsPerFrame;
+    touch.budgets.merges = kMaxMergesPerFrame;
+    touch.leg_frames = 100;
+    touch.frames = 500;
+    expect_clean(watch(touch));
+}
+
+TEST(FrameRealtime, nor_over_a_link_that_loses_and_damages)
+{
+    Touch touch;
+    touch.options.faults.loss = 0.2;
+    touch.options.faults.damage = 0.1;
+    touch.options.faults.delay_polls_max = 40;
+    touch.leg_frames = 100;
+    expect_clean(watch(touch));
+}
+
+/// A hook runs inside the frame, so what it does wrong is the frame's: the watch must see it.
+Touch with_hook(StageMark::Function hook)
+{
+    Touch touch;
+    touch.mark = {hook, nullptr};
+    touch.frames = 10;
+    return touch;
+}
+
+TEST(FrameRealtime, is_seen_to_allocate_when_its_hook_does)
+{
+    const Touch touch = with_hook(
+        [](void* /*context*/, Stage /*stage*/) noexcept
+        {
+            // NOLINTNEXTLINE(cppcoreguidelines-no-malloc): what the watch has to see.
+            auto* block = static_cast<volatile char*>(std::malloc(16));
+            block[0] = 1;
+            std::free(const_cast<char*>(block)); // NOLINT(cppcoreguidelines-no-malloc)
+        });
+    if (kHasRealtimeSanitizer)
+    {
+        EXPECT_DEATH(static_cast<void>(watch(touch)), "malloc");
+    }
+    else if (allocation_counter::available())
+    {
+        EXPECT_EQ(watch(touch).heap_calls, 10U * kStages * 2U);
+    }
+    else
+    {
+        GTEST_SKIP() << "no allocation counter under this sanitizer";
+    }
+}
+
+TEST(FrameRealtime, is_seen_to_call_the_system_when_its_hook_does)
+{
+    const Touch touch = with_hook([](void* /*context*/, Stage /*stage*/) noexcept
+                                  { static_cast<void>(getppid()); });
+    const Watched watched = watch(touch);
+    if (!watched.not_trapped.empty())
+    {
+        GTEST_SKIP() << watched.not_trapped;
+    }
+    EXPECT_EQ(watched.system_calls, 10U * kStages);
+}
+
+} // namespace
+} // namespace tactus::test
