@@ -5,6 +5,7 @@
 #include "rt_core/abtree/block.hpp"
 #include "rt_core/abtree/node.hpp"
 #include "rt_core/base/arena.hpp"
+#include "rt_core/base/realtime.hpp"
 #include "rt_core/kernels/kernels.hpp"
 #include "rt_core/records/changed_face.hpp"
 
@@ -73,26 +74,27 @@ public:
                 const Kernels& kernels = best_kernels()) noexcept;
 
     /// Takes over one face as it is now: new, changed, or (face none) gone.
-    void apply(const ChangedFace& change) noexcept;
+    void apply(const ChangedFace& change) noexcept TACTUS_NONBLOCKING;
 
     /// Adds a face; its prim has none so far.
-    void insert(const ChangedFace& face) noexcept;
+    void insert(const ChangedFace& face) noexcept TACTUS_NONBLOCKING;
 
     /// One corner (0 .. 2) of the face has moved, and its error changed: what a split or a merge
     /// does to a fan face, for much less than apply(). Without effect on an unplaced face.
     void move_corner(PrimId prim, std::uint32_t corner, const Vec3f& position_m,
-                     ErrorCode error) noexcept;
+                     ErrorCode error) noexcept TACTUS_NONBLOCKING;
 
     /// Removes the prim's face, placed or not.
-    void remove(PrimId prim) noexcept;
+    void remove(PrimId prim) noexcept TACTUS_NONBLOCKING;
 
     /// A vertex of a block (leaf_of() / 16) has moved: all its faces there follow. For meshes that
     /// deform; a vertex has a row in each block whose faces it is a corner of.
-    void move_vertex(std::uint32_t block, std::uint32_t row, const Vec3f& position_m) noexcept;
+    void move_vertex(std::uint32_t block, std::uint32_t row,
+                     const Vec3f& position_m) noexcept TACTUS_NONBLOCKING;
 
     /// Makes all boxes right again. At most one visit for each dirty block and for each node on a
     /// path from one to the root.
-    RefitWork refit() noexcept;
+    RefitWork refit() noexcept TACTUS_NONBLOCKING;
 
     [[nodiscard]] bool is_complete() const noexcept { return first_unplaced_ == kLastUnplaced; }
     [[nodiscard]] bool is_unplaced(PrimId prim) const noexcept
@@ -115,7 +117,7 @@ public:
     }
     /// Blocks and nodes that one more changed face may need at worst.
     static constexpr std::uint32_t kReserve = kBlockFaces + 1;
-    [[nodiscard]] bool has_room_for(std::uint32_t changed_faces) const noexcept;
+    [[nodiscard]] bool has_room_for(std::uint32_t changed_faces) const noexcept TACTUS_NONBLOCKING;
 
     [[nodiscard]] TreeRef root() const noexcept { return root_; }
     [[nodiscard]] const Node& node(std::uint32_t index) const noexcept { return nodes_[index]; }
@@ -146,7 +148,7 @@ public:
         }
     }
     /// Volume of the whole tree; empty when the tree is.
-    [[nodiscard]] Box box() const noexcept;
+    [[nodiscard]] Box box() const noexcept TACTUS_NONBLOCKING;
     /// The face that a prim stands for; its lasting name, used for ties and answers.
     [[nodiscard]] FaceId face_of(PrimId prim) const noexcept { return prims_[prim.value].face; }
     /// Block x 16 + lane of a prim, or kNoLeaf. With `parent` of blocks and nodes: the way up.
@@ -156,7 +158,7 @@ public:
         const std::uint32_t leaf = prims_[prim.value].leaf;
         return (leaf & kUnplaced) != 0 ? kNoLeaf : leaf;
     }
-    [[nodiscard]] NodeStatus status(TreeRef ref) const noexcept;
+    [[nodiscard]] NodeStatus status(TreeRef ref) const noexcept TACTUS_NONBLOCKING;
 
     [[nodiscard]] std::uint32_t blocks_used() const noexcept
     {
@@ -182,19 +184,6 @@ private:
     };
     static constexpr std::uint32_t kUnplaced = 0x8000'0000U;
     static constexpr std::uint32_t kLastUnplaced = 0x7FFF'FFFEU;
-    struct Keyed
-    {
-        std::uint64_t path{0};
-        ChangedFace face;
-    };
-    /// A run of sorted faces that belongs into `width` digit values of a node, or at the root.
-    struct Cell
-    {
-        std::uint32_t begin{0};
-        std::uint32_t end{0};
-        std::uint32_t parent{kNoNode};
-        std::uint32_t width{kNodeChildren};
-    };
 
     [[nodiscard]] static std::uint64_t path_of(FaceId face, std::uint32_t bucket) noexcept;
 
@@ -215,8 +204,10 @@ private:
 
     [[nodiscard]] bool try_add(std::uint32_t block, const ChangedFace& face) noexcept;
     void split_block(std::uint32_t block, const ChangedFace& face) noexcept;
-    void distribute(std::span<const Keyed> faces, Cell first) noexcept;
-    [[nodiscard]] bool try_build_block(std::span<const Keyed> faces, const Cell& cell) noexcept;
+    [[nodiscard]] std::uint32_t part(std::uint32_t block, std::uint32_t bit, std::uint64_t path,
+                                     std::uint32_t apart) noexcept;
+    [[nodiscard]] std::uint32_t node_above(std::uint32_t block, std::uint32_t shift,
+                                           std::uint64_t path) noexcept;
     void merge_upward(std::uint32_t block) noexcept;
     [[nodiscard]] bool try_absorb(std::uint32_t block, std::uint32_t other) noexcept;
     void hoist_only_child(std::uint32_t node) noexcept;

@@ -57,8 +57,7 @@ typename BasicAbTree<Volume>::RefitWork BasicAbTree<Volume>::refit() noexcept
 template <typename Volume>
 typename Volume::Box BasicAbTree<Volume>::refitted_box(std::uint32_t index) noexcept
 {
-    BlockGeometry& block = blocks_[index];
-    drop_unused_vertices(block);
+    const BlockGeometry& block = blocks_[index];
     const Box box =
         Volume::of_vertices(*kernels_, block.coordinates.front().data(), block.vertices);
     const BlockSide& side = sides_[index];

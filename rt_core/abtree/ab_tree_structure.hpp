@@ -104,8 +104,7 @@ void BasicAbTree<Volume>::move_corner(PrimId prim, std::uint32_t corner, const V
     ChangedFace face = describe(block, lane);
     face.corners_m[corner] = position_m;
     face.error = error;
-    remove_from_block(blocks_[block], sides_[block], lane);
-    reinsert(block, face);
+    update(face);
 }
 
 template <typename Volume>
@@ -303,103 +302,97 @@ bool BasicAbTree<Volume>::try_add(std::uint32_t block, const ChangedFace& face) 
     return true;
 }
 
-/// The block's faces and one more, which do not fit together, go into smaller binary cells.
+/// Parts the block into smaller binary cells until the face finds room in its own. Each round parts
+/// at least one face off, so there are at most as many as faces.
 template <typename Volume>
 void BasicAbTree<Volume>::split_block(std::uint32_t block, const ChangedFace& face) noexcept
 {
-    std::array<Keyed, kBlockFaces + 1> faces{};
-    std::uint32_t count = 0;
-    const auto add_sorted = [&](const ChangedFace& added)
+    const std::uint64_t path = path_of(face.face, face.bucket);
+    for (std::uint32_t round = 0; round <= kBlockFaces; ++round)
     {
-        const std::uint64_t path = path_of(added.face, added.bucket);
-        std::uint32_t at = count++;
-        for (; at > 0 && faces[at - 1].path > path; --at)
+        std::array<std::uint64_t, kBlockFaces> paths; // NOLINT: written where it is read.
+        std::uint64_t differing = 0;
+        for (std::uint32_t lanes = blocks_[block].faces; lanes != 0; lanes &= lanes - 1)
         {
-            faces[at] = faces[at - 1];
+            const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
+            const Prim& prim = prims_[sides_[block].prims[lane].value];
+            paths[lane] = path_of(prim.face, prim.bucket);
+            differing |= paths[lane] ^ path;
         }
-        faces[at] = {path, added};
-    };
-    for (std::uint32_t lanes = blocks_[block].faces; lanes != 0; lanes &= lanes - 1)
-    {
-        add_sorted(describe(block, static_cast<std::uint32_t>(std::countr_zero(lanes))));
+        const auto bit = static_cast<std::uint32_t>(63 - std::countl_zero(differing));
+        std::uint32_t apart = 0;
+        for (std::uint32_t lanes = blocks_[block].faces; lanes != 0; lanes &= lanes - 1)
+        {
+            const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
+            apart |= (((paths[lane] ^ path) >> bit) & 1U) != 0 ? 1U << lane : 0U;
+        }
+        block = part(block, bit, path, apart);
+        if (try_add(block, face))
+        {
+            return;
+        }
     }
-    add_sorted(face);
-    const std::uint32_t parent = sides_[block].parent;
+    TACTUS_ASSERT(false && "a face alone fits a block");
+}
+
+/// Halves the block's cell by a bit of the paths, above which they all agree with `path`; the lanes
+/// `apart` differ from it in that bit. Returns the block of the half with `path`.
+template <typename Volume>
+std::uint32_t BasicAbTree<Volume>::part(std::uint32_t block, std::uint32_t bit, std::uint64_t path,
+                                        std::uint32_t apart) noexcept
+{
+    const std::uint32_t shift = bit / 3 * 3;
+    const std::uint32_t width = 1U << (bit - shift);
+    const std::uint32_t parent = node_above(block, shift, path);
+    const std::uint32_t digit = nodes_[parent].digit_of(path) & ~(width - 1);
+    const DigitRange near{digit, width};
+    const DigitRange far{digit ^ width, width};
+    const std::uint32_t together = blocks_[block].faces & ~apart;
+    const bool stays = std::popcount(apart) <= std::popcount(together);
+    const std::uint32_t moved = stays ? apart : together;
+    const std::uint32_t other = take_block();
+    halve_block(blocks_[block], sides_[block], moved, blocks_[other], sides_[other]);
+    for (std::uint32_t lanes = moved; lanes != 0; lanes &= lanes - 1)
+    {
+        const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
+        prims_[sides_[other].prims[lane].value].leaf = other * kBlockFaces + lane;
+    }
     const std::uint32_t child = sides_[block].child;
-    free_block(block);
+    nodes_[parent].assign(nodes_[parent].range_of(child), Node::kNoChild);
+    nodes_[parent].assign(stays ? near : far, child);
+    mark(TreeRef::to_block(block));
+    attach(parent, stays ? far : near, TreeRef::to_block(other));
+    return stays ? block : other;
+}
+
+/// The node of that digit above a block whose paths all agree with `path` above the digit: its
+/// parent, or a new node in between.
+template <typename Volume>
+std::uint32_t BasicAbTree<Volume>::node_above(std::uint32_t block, std::uint32_t shift,
+                                              std::uint64_t path) noexcept
+{
+    const std::uint32_t parent = sides_[block].parent;
+    if (parent != kNoNode && nodes_[parent].shift == shift)
+    {
+        return parent;
+    }
+    const std::uint32_t child = sides_[block].child;
+    const std::uint32_t above = take_node(shift, path);
     if (parent == kNoNode)
     {
-        root_ = TreeRef{};
+        root_ = TreeRef::to_node(above);
     }
     else
     {
-        detach(parent, child);
+        Node& node = nodes_[parent];
+        node.assign(node.range_of(child), Node::kNoChild);
+        node.assign({node.digit_of(path), 1}, child);
+        node.children[child] = TreeRef::to_node(above);
+        set_link(TreeRef::to_node(above), parent, child);
+        mark(TreeRef::to_node(parent));
     }
-    distribute({faces.data(), count}, {0, count, parent, kNodeChildren});
-}
-
-/// Places sorted faces below `cell.parent`, halving by the highest bit in which they differ until
-/// each part fits a block. Every halving makes two smaller parts, so at most 16 are on the stack.
-template <typename Volume>
-void BasicAbTree<Volume>::distribute(std::span<const Keyed> faces, Cell first) noexcept
-{
-    StaticVector<Cell, kBlockFaces + 1> stack;
-    stack.push_back(first);
-    while (!stack.empty())
-    {
-        Cell cell = stack.pop_back();
-        const std::uint32_t count = cell.end - cell.begin;
-        if (cell.width < kNodeChildren && try_build_block(faces.subspan(cell.begin, count), cell))
-        {
-            continue;
-        }
-        const std::uint64_t low = faces[cell.begin].path;
-        const auto bit =
-            static_cast<std::uint32_t>(63 - std::countl_zero(low ^ faces[cell.end - 1].path));
-        const std::uint32_t shift = bit / 3 * 3;
-        if (cell.parent == kNoNode || nodes_[cell.parent].shift != shift)
-        {
-            const std::uint32_t node = take_node(shift, low);
-            if (cell.parent == kNoNode)
-            {
-                root_ = TreeRef::to_node(node);
-            }
-            else
-            {
-                attach(cell.parent, {nodes_[cell.parent].digit_of(low), 1}, TreeRef::to_node(node));
-            }
-            cell.parent = node;
-        }
-        std::uint32_t middle = cell.begin;
-        while (((faces[middle].path >> bit) & 1U) == 0)
-        {
-            ++middle;
-        }
-        const std::uint32_t width = 1U << (bit - shift);
-        stack.push_back({middle, cell.end, cell.parent, width});
-        stack.push_back({cell.begin, middle, cell.parent, width});
-    }
-}
-
-template <typename Volume>
-bool BasicAbTree<Volume>::try_build_block(std::span<const Keyed> faces, const Cell& cell) noexcept
-{
-    if (faces.size() > kBlockFaces)
-    {
-        return false;
-    }
-    const std::uint32_t block = take_block();
-    for (const Keyed& keyed : faces)
-    {
-        if (!try_add(block, keyed.face))
-        {
-            free_block(block);
-            return false;
-        }
-    }
-    const std::uint32_t digit = nodes_[cell.parent].digit_of(faces.front().path);
-    attach(cell.parent, {digit & ~(cell.width - 1), cell.width}, TreeRef::to_block(block));
-    return true;
+    attach(above, {nodes_[above].digit_of(path), 1}, TreeRef::to_block(block));
+    return above;
 }
 
 /// A block that lost a face takes in its sibling cell while both fit into kMergeFaces.

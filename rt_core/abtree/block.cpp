@@ -3,6 +3,7 @@
 #include "rt_core/abtree/block.hpp"
 
 #include <cstring>
+#include <utility>
 
 #if defined(__SSE2__)
 #include <emmintrin.h>
@@ -17,8 +18,8 @@ namespace
 constexpr std::uint32_t kNoVertex = kBlockVertices;
 
 using FourFloats = float __attribute__((vector_size(16)));
-
 using FourInts = std::int32_t __attribute__((vector_size(16)));
+using Bytes = std::uint8_t __attribute__((vector_size(kBlockFaces)));
 
 /// One bit a lane, of lanes that are all ones or all zeros.
 std::uint32_t bits_of(FourInts lanes) noexcept
@@ -28,6 +29,20 @@ std::uint32_t bits_of(FourInts lanes) noexcept
 #else
     return static_cast<std::uint32_t>((lanes[0] & 1) | (lanes[1] & 2) | (lanes[2] & 4) |
                                       (lanes[3] & 8));
+#endif
+}
+
+std::uint32_t bits_of(Bytes lanes) noexcept
+{
+#if defined(__SSE2__)
+    return static_cast<std::uint32_t>(_mm_movemask_epi8(reinterpret_cast<__m128i>(lanes)));
+#else
+    std::uint32_t bits = 0;
+    for (std::uint32_t i = 0; i < kBlockFaces; ++i)
+    {
+        bits |= (lanes[i] & 1U) << i;
+    }
+    return bits;
 #endif
 }
 
@@ -67,6 +82,22 @@ std::uint32_t find_or_add_vertex(BlockGeometry& block, const Vec3f& position_m) 
     return row;
 }
 
+/// Frees the row unless an active lane still has a corner there.
+void drop_unless_used(BlockGeometry& block, std::uint8_t row) noexcept
+{
+    std::uint32_t lanes = 0;
+    for (const std::array<std::uint8_t, kBlockFaces>& corners : block.corners)
+    {
+        Bytes rows;
+        std::memcpy(&rows, corners.data(), sizeof rows);
+        lanes |= bits_of(reinterpret_cast<Bytes>(rows == row));
+    }
+    if ((lanes & block.faces) == 0)
+    {
+        block.vertices = static_cast<std::uint16_t>(block.vertices & ~(1U << row));
+    }
+}
+
 void set_error(BlockSide& side, std::uint32_t lane, ErrorCode error) noexcept
 {
     const std::uint32_t bit = 1U << lane;
@@ -74,20 +105,23 @@ void set_error(BlockSide& side, std::uint32_t lane, ErrorCode error) noexcept
     side.coarse = static_cast<std::uint16_t>(error == 0 ? side.coarse & ~bit : side.coarse | bit);
 }
 
-/// Rows for the corners; false when there are not enough.
-bool try_place(BlockGeometry& block, const std::array<Vec3f, 3>& corners_m,
-               std::array<std::uint8_t, 3>& rows) noexcept
+/// Of `block` and `side`, keeps the faces in `lanes`.
+void keep_lanes(BlockGeometry& block, BlockSide& side, std::uint32_t lanes) noexcept
 {
-    for (std::size_t corner = 0; corner < 3; ++corner)
+    for (std::uint32_t gone = block.faces & ~lanes; gone != 0; gone &= gone - 1)
     {
-        const std::uint32_t row = find_or_add_vertex(block, corners_m[corner]);
-        if (row == kNoVertex)
-        {
-            return false;
-        }
-        rows[corner] = static_cast<std::uint8_t>(row);
+        side.prims[static_cast<std::size_t>(std::countr_zero(gone))] = PrimId{};
     }
-    return true;
+    block.faces = static_cast<std::uint16_t>(block.faces & lanes);
+    side.coarse = static_cast<std::uint16_t>(side.coarse & lanes);
+    std::uint32_t used = 0;
+    for (std::uint32_t left = lanes; left != 0; left &= left - 1)
+    {
+        const auto lane = static_cast<std::size_t>(std::countr_zero(left));
+        used |= (1U << block.corners[0][lane]) | (1U << block.corners[1][lane]) |
+                (1U << block.corners[2][lane]);
+    }
+    block.vertices = static_cast<std::uint16_t>(used);
 }
 
 } // namespace
@@ -99,15 +133,17 @@ std::uint32_t add_to_block(BlockGeometry& block, BlockSide& side, const ChangedF
     {
         return kBlockFaces;
     }
+    const std::uint16_t vertices_before = block.vertices;
     std::array<std::uint8_t, 3> rows{};
-    if (!try_place(block, face.corners_m, rows))
+    for (std::size_t corner = 0; corner < 3; ++corner)
     {
-        drop_unused_vertices(block);
-        if (!try_place(block, face.corners_m, rows))
+        const std::uint32_t row = find_or_add_vertex(block, face.corners_m[corner]);
+        if (row == kNoVertex)
         {
-            drop_unused_vertices(block);
+            block.vertices = vertices_before;
             return kBlockFaces;
         }
+        rows[corner] = static_cast<std::uint8_t>(row);
     }
     for (std::size_t corner = 0; corner < 3; ++corner)
     {
@@ -122,17 +158,14 @@ std::uint32_t add_to_block(BlockGeometry& block, BlockSide& side, const ChangedF
 bool move_corner_in_block(BlockGeometry& block, BlockSide& side, std::uint32_t lane,
                           std::uint32_t corner, const Vec3f& position_m, ErrorCode error) noexcept
 {
-    std::uint32_t row = find_or_add_vertex(block, position_m);
+    const std::uint32_t row = find_or_add_vertex(block, position_m);
     if (row == kNoVertex)
     {
-        drop_unused_vertices(block);
-        row = find_or_add_vertex(block, position_m);
-        if (row == kNoVertex)
-        {
-            return false;
-        }
+        return false;
     }
-    block.corners[corner][lane] = static_cast<std::uint8_t>(row);
+    const std::uint8_t left =
+        std::exchange(block.corners[corner][lane], static_cast<std::uint8_t>(row));
+    drop_unless_used(block, left);
     set_error(side, lane, error);
     return true;
 }
@@ -144,18 +177,22 @@ void remove_from_block(BlockGeometry& block, BlockSide& side, std::uint32_t lane
     block.faces = static_cast<std::uint16_t>(block.faces & ~bit);
     side.coarse = static_cast<std::uint16_t>(side.coarse & ~bit);
     side.prims[lane] = PrimId{};
+    for (std::size_t corner = 0; corner < 3; ++corner)
+    {
+        drop_unless_used(block, block.corners[corner][lane]);
+    }
 }
 
-void drop_unused_vertices(BlockGeometry& block) noexcept
+void halve_block(BlockGeometry& block, BlockSide& side, std::uint32_t moved, BlockGeometry& other,
+                 BlockSide& other_side) noexcept
 {
-    std::uint32_t used = 0;
-    for (std::uint32_t lanes = block.faces; lanes != 0; lanes &= lanes - 1)
-    {
-        const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
-        used |= (1U << block.corners[0][lane]) | (1U << block.corners[1][lane]) |
-                (1U << block.corners[2][lane]);
-    }
-    block.vertices = static_cast<std::uint16_t>(used);
+    TACTUS_ASSERT((moved & ~std::uint32_t{block.faces}) == 0);
+    other = block;
+    other_side.prims = side.prims;
+    other_side.errors = side.errors;
+    other_side.coarse = side.coarse;
+    keep_lanes(block, side, block.faces & ~moved);
+    keep_lanes(other, other_side, moved);
 }
 
 float largest_error_quanta(const BlockSide& side) noexcept

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "rt_core/base/realtime.hpp"
 #include "rt_core/limits.hpp"
 #include "rt_core/records/changed_face.hpp"
 
@@ -22,8 +23,7 @@ struct alignas(64) BlockGeometry
     std::array<std::array<float, kBlockVertices>, 3> coordinates{}; ///< Rows x, y, z, in metres.
     std::array<std::array<std::uint8_t, kBlockFaces>, 3> corners{}; ///< Vertex of corner 0, 1, 2.
     std::uint16_t faces{0};                                         ///< Active lanes.
-    /// Rows that may be in use; exact after drop_unused_vertices(), which refit calls.
-    std::uint16_t vertices{0};
+    std::uint16_t vertices{0};                                      ///< Rows that they use.
 };
 
 static_assert(sizeof(BlockGeometry) == 256);
@@ -47,18 +47,20 @@ static_assert(sizeof(BlockSide) == 96);
 /// Adds the face's corners to free vertex rows and takes a free lane. Returns the lane, or
 /// kBlockFaces with the faces unchanged when faces or vertices do not fit.
 [[nodiscard]] std::uint32_t add_to_block(BlockGeometry& block, BlockSide& side,
-                                         const ChangedFace& face) noexcept;
+                                         const ChangedFace& face) noexcept TACTUS_NONBLOCKING;
 
 /// Moves one corner of a face to another position and gives it another error; false, with the face
 /// unchanged, when the block has no row for the position.
 [[nodiscard]] bool move_corner_in_block(BlockGeometry& block, BlockSide& side, std::uint32_t lane,
                                         std::uint32_t corner, const Vec3f& position_m,
-                                        ErrorCode error) noexcept;
+                                        ErrorCode error) noexcept TACTUS_NONBLOCKING;
 
-/// Its vertices stay until drop_unused_vertices().
+/// Takes an active face out, with the rows that only it used.
 void remove_from_block(BlockGeometry& block, BlockSide& side, std::uint32_t lane) noexcept;
 
-void drop_unused_vertices(BlockGeometry& block) noexcept;
+/// Moves the faces in `moved` to an unused block, where they keep their lanes.
+void halve_block(BlockGeometry& block, BlockSide& side, std::uint32_t moved, BlockGeometry& other,
+                 BlockSide& other_side) noexcept;
 
 [[nodiscard]] inline std::array<Vec3f, 3> block_triangle(const BlockGeometry& block,
                                                          std::uint32_t lane) noexcept
@@ -74,7 +76,7 @@ void drop_unused_vertices(BlockGeometry& block) noexcept;
 }
 
 /// The largest error of the block's faces, in quanta.
-[[nodiscard]] float largest_error_quanta(const BlockSide& side) noexcept;
+[[nodiscard]] float largest_error_quanta(const BlockSide& side) noexcept TACTUS_NONBLOCKING;
 
 [[nodiscard]] inline std::uint32_t face_count(const BlockGeometry& block) noexcept
 {
