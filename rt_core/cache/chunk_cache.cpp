@@ -3,6 +3,7 @@
 #include "rt_core/cache/chunk_cache.hpp"
 
 #include <algorithm>
+#include <bit>
 
 namespace tactus
 {
@@ -102,10 +103,7 @@ void ChunkCache::request_missing(std::span<const RankedRegion> regions, const Bu
             round_began_ = frame;
         }
         const QuantumBox box = header_.index_entry(page).box;
-        const std::array<double, 3> low{double(box.low[0]), double(box.low[1]), double(box.low[2])};
-        const std::array<double, 3> high{double(box.high[0]), double(box.high[1]),
-                                         double(box.high[2])};
-        if (meets(balls.present, low, high) || meets(balls.ahead, low, high))
+        if (meets(balls.present, box) || meets(balls.ahead, box))
         {
             ++searched;
             search_page(page, balls, budgets, frame, work, faults);
@@ -143,24 +141,24 @@ ChunkCache::RankedBalls ChunkCache::to_quanta(std::span<const RankedRegion> regi
         const Vec3 center = region.center_m * per_metre;
         const double radius = region.radius_m * per_metre;
         (region.lead_ns == 0 ? balls.present : balls.ahead)
-            .push_back({{center.x(), center.y(), center.z()}, radius * radius});
+            .push_back({{center.x(), center.y(), center.z()}, radius});
     }
     return balls;
 }
 
-bool ChunkCache::meets(const Balls& balls, const std::array<double, 3>& low,
-                       const std::array<double, 3>& high) noexcept
+bool ChunkCache::meets(const Balls& balls, const QuantumBox& box) noexcept
 {
-    for (const Ball& ball : balls)
+    for (const QuantumBall& ball : balls)
     {
         double distance_sq = 0.0;
         for (std::size_t axis = 0; axis < 3; ++axis)
         {
             const double gap =
-                std::max({low[axis] - ball.center[axis], ball.center[axis] - high[axis], 0.0});
+                std::max({static_cast<double>(box.low[axis]) - ball.center[axis],
+                          ball.center[axis] - static_cast<double>(box.high[axis]), 0.0});
             distance_sq += gap * gap;
         }
-        if (distance_sq <= ball.radius_sq)
+        if (distance_sq <= ball.radius * ball.radius)
         {
             return true;
         }
@@ -180,32 +178,23 @@ void ChunkCache::search_page(IndexPageId page, const RankedBalls& balls, const B
     index_meta_[slot].touched = frame;
     const IndexPage& index = slots_.index_pages[slot];
     const QuantumBox box = header_.index_entry(page).box;
-    std::array<double, 3> step{};
-    for (std::size_t axis = 0; axis < 3; ++axis)
+    const auto meeting = [&](const Balls& some)
     {
-        step[axis] = static_cast<double>(index_step(box.low[axis], box.high[axis]));
-    }
-    for (std::uint32_t i = 0; i < index.chunks; ++i)
-    {
-        std::array<double, 3> low{};
-        std::array<double, 3> high{};
-        for (std::size_t axis = 0; axis < 3; ++axis)
+        std::uint64_t chunks = 0;
+        for (const QuantumBall& ball : some)
         {
-            low[axis] = static_cast<double>(box.low[axis]) +
-                        step[axis] * static_cast<double>(index.boxes[i].low[axis]);
-            high[axis] = static_cast<double>(box.low[axis]) +
-                         step[axis] * static_cast<double>(index.boxes[i].high[axis]);
+            chunks |= chunks_meeting(index, box, ball);
         }
+        return chunks;
+    };
+    const std::uint64_t present = meeting(balls.present);
+    const Urgency now{frame, last_round_began_};
+    const Urgency later{frame - kAheadAge, last_round_began_ - kAheadAge};
+    for (std::uint64_t left = present | meeting(balls.ahead); left != 0; left &= left - 1)
+    {
+        const auto i = static_cast<std::uint32_t>(std::countr_zero(left));
         const ChunkId chunk{(page.value << kChunksPerIndexPageLog2) + i};
-        if (meets(balls.present, low, high))
-        {
-            want_chunk(chunk, {frame, last_round_began_}, budgets, work, faults);
-        }
-        else if (meets(balls.ahead, low, high))
-        {
-            want_chunk(chunk, {frame - kAheadAge, last_round_began_ - kAheadAge}, budgets, work,
-                       faults);
-        }
+        want_chunk(chunk, ((present >> i) & 1U) != 0 ? now : later, budgets, work, faults);
     }
 }
 

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "rt_core/base/realtime.hpp"
 #include "rt_core/cache/chunk_inbox.hpp"
 #include "rt_core/cache/wish_list.hpp"
 #include "rt_core/records/frame_input.hpp"
@@ -33,7 +34,8 @@ public:
 
     /// Takes over what arrived, at most `budget` slots, and link updates on the way. Each is taken
     /// in its order; what is beyond kMaxArrivalsPerFrame or kMaxLinkUpdatesPerFrame waits.
-    void adopt_arrivals(std::uint32_t budget, std::uint32_t frame, WorkCounters& work) noexcept;
+    void adopt_arrivals(std::uint32_t budget, std::uint32_t frame,
+                        WorkCounters& work) noexcept TACTUS_NONBLOCKING;
 
     /// What the last adopt_arrivals() took. With the frame's arguments this is all that decides
     /// what the frame does. Valid until the next call.
@@ -44,15 +46,16 @@ public:
 
     /// Asks for what `regions` (of this model, most urgent first) lack.
     void request_missing(std::span<const RankedRegion> regions, const Budgets& budgets,
-                         std::uint32_t frame, WorkCounters& work, FrameFault& faults) noexcept;
+                         std::uint32_t frame, WorkCounters& work,
+                         FrameFault& faults) noexcept TACTUS_NONBLOCKING;
 
     /// Gives every page back in which no record is refined; for models whose cache is off. One look
     /// at each page.
-    void evict_unpinned(WorkCounters& work) noexcept;
+    void evict_unpinned(WorkCounters& work) noexcept TACTUS_NONBLOCKING;
 
     /// Asks for chunks in order until all of the model is here, after request_missing().
     void request_everything(const Budgets& budgets, WorkCounters& work,
-                            FrameFault& faults) noexcept;
+                            FrameFault& faults) noexcept TACTUS_NONBLOCKING;
 
     /// Frame numbers start here, so that ages can be subtracted.
     static constexpr std::uint32_t kFirstFrame = 4'096;
@@ -67,13 +70,7 @@ private:
         IndexPageId page{};
         std::uint32_t touched{0};
     };
-    /// A ball in quanta, so that it compares with boxes.
-    struct Ball
-    {
-        std::array<double, 3> center{};
-        double radius_sq{0.0};
-    };
-    using Balls = StaticVector<Ball, kMaxRankedRegions>;
+    using Balls = StaticVector<QuantumBall, kMaxRankedRegions>;
     struct RankedBalls
     {
         Balls present;
@@ -89,8 +86,7 @@ private:
     void adopt(const DoorEvent& arrival, std::uint32_t frame) noexcept;
     [[nodiscard]] bool try_wish(ContentKey key, std::uint32_t generation) noexcept;
     [[nodiscard]] RankedBalls to_quanta(std::span<const RankedRegion> regions) const noexcept;
-    [[nodiscard]] static bool meets(const Balls& balls, const std::array<double, 3>& low,
-                                    const std::array<double, 3>& high) noexcept;
+    [[nodiscard]] static bool meets(const Balls& balls, const QuantumBox& box) noexcept;
     void search_page(IndexPageId page, const RankedBalls& balls, const Budgets& budgets,
                      std::uint32_t frame, WorkCounters& work, FrameFault& faults) noexcept;
     void want_chunk(ChunkId chunk, const Urgency& urgency, const Budgets& budgets,

@@ -17,12 +17,10 @@ namespace
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Most urgent first; among equals the lower slot, so that the order is the same in every run.
-template <typename Candidate>
-bool comes_later(const Candidate& a, const Candidate& b) noexcept
-{
-    return a.excess_m != b.excess_m ? a.excess_m > b.excess_m : a.prim > b.prim;
-}
+/// Most urgent first; among equals the lower slot, so that the order is the same in every run. An
+/// object, since a function would be called through a pointer.
+constexpr auto comes_later = [](const auto& a, const auto& b) noexcept
+{ return a.excess_m != b.excess_m ? a.excess_m > b.excess_m : a.prim > b.prim; };
 
 /// A record may stay while a tool goes this much farther than it has to, as a share of the keep
 /// distance, so that a page has not to be looked at for each of its records.
@@ -391,7 +389,9 @@ void Refiner::split_wanted(std::span<const RefineQuestion> questions, const Budg
     // The nearest of those that were not come to.
     leave_at(questions, std::min(pending_excess, heap_size_ > 0 ? heap_[0].excess_m : kInfinity));
     // What is only looked ahead for may wait.
-    const bool is_late = std::any_of(questions.begin(), questions.end(), is_wanting);
+    const bool is_late =
+        std::any_of(questions.begin(), questions.end(),
+                    [](const RefineQuestion& question) { return is_wanting(question); });
     faults |= is_late ? found : found & FrameFault::model_inconsistent;
 }
 
@@ -543,8 +543,16 @@ void Refiner::consider_star(RecordId id, const VsplitRecord& record,
     }
     std::array<double, kMaxStarFaces> excess{};
     excess.fill(kInfinity);
+    const double reach = static_cast<double>(error_in_quanta(record.reach)) * quantum_m_;
     for (const RefineQuestion& question : questions)
     {
+        const double nearest =
+            (to_vec3(record.position_m) - question.center_m).norm() * (1.0 - 1e-15) - reach;
+        if (nearest > target_of(question))
+        {
+            leave(question, nearest);
+            continue;
+        }
         FaceBounds bounds;
         bound_faces(star.geometry, coarse, question, bounds);
         for (std::uint32_t lanes = coarse; lanes != 0; lanes &= lanes - 1)
@@ -605,12 +613,12 @@ void Refiner::push(const Candidate& candidate, std::span<const RefineQuestion> q
         return;
     }
     heap_[heap_size_++] = candidate;
-    std::push_heap(heap_.data(), heap_.data() + heap_size_, comes_later<Candidate>);
+    std::push_heap(heap_.data(), heap_.data() + heap_size_, comes_later);
 }
 
 Refiner::Candidate Refiner::pop() noexcept
 {
-    std::pop_heap(heap_.data(), heap_.data() + heap_size_, comes_later<Candidate>);
+    std::pop_heap(heap_.data(), heap_.data() + heap_size_, comes_later);
     return heap_[--heap_size_];
 }
 

@@ -4,6 +4,7 @@
 
 #include "rt_core/abtree/ab_tree.hpp"
 #include "rt_core/base/arena.hpp"
+#include "rt_core/base/realtime.hpp"
 #include "rt_core/forest/vertex_forest.hpp"
 #include "rt_core/query/tree_walk.hpp"
 #include "rt_core/records/frame_input.hpp"
@@ -57,7 +58,7 @@ public:
     /// and splits up to `budgets.splits`. The tree's boxes are those of the last refit. Pages whose
     /// records a closure needs are touched.
     void run(std::span<const RefineQuestion> questions, const Budgets& budgets, std::uint32_t frame,
-             WorkCounters& work, FrameFault& faults) noexcept;
+             WorkCounters& work, FrameFault& faults) noexcept TACTUS_NONBLOCKING;
 
     enum class Progress : std::uint8_t
     {
@@ -68,7 +69,7 @@ public:
     /// Splits records one after the other with what run() left of the budget.
     [[nodiscard]] Progress refine_everything(std::uint32_t records, const Budgets& budgets,
                                              std::uint32_t frame, WorkCounters& work,
-                                             FrameFault& faults) noexcept;
+                                             FrameFault& faults) noexcept TACTUS_NONBLOCKING;
 
     /// How far beyond the reach is refined, as a share of it.
     static constexpr double kLookAhead = 0.05;

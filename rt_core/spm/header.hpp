@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "rt_core/base/realtime.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/limits.hpp"
 #include "rt_core/spm/ids.hpp"
@@ -110,10 +111,10 @@ public:
         return {fields_.base_vertices, fields_.base_faces, fields_.records};
     }
     /// Metres in one quantum; a power of two, so products with grid integers are exact floats.
-    [[nodiscard]] float quantum_m() const noexcept;
+    [[nodiscard]] float quantum_m() const noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] double diagonal_m() const noexcept;
 
-    [[nodiscard]] IndexPageEntry index_entry(IndexPageId page) const noexcept;
+    [[nodiscard]] IndexPageEntry index_entry(IndexPageId page) const noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] std::uint32_t region_count() const noexcept
     {
         return fields_.region_grid[0] * fields_.region_grid[1] * fields_.region_grid[2];

@@ -5,6 +5,10 @@
 #include "rt_core/base/byte_io.hpp"
 #include "rt_core/base/crc32c.hpp"
 
+#include <algorithm>
+#include <array>
+#include <bit>
+
 namespace tactus
 {
 
@@ -39,7 +43,9 @@ Result<Done, SpmRefusal> parse_index_page(std::span<const std::byte> bytes,
     bool in_range = true;
     for (std::uint32_t i = 0; i < page.chunks; ++i)
     {
-        in_range = read_entry(reader, page.boxes[i], entries[i]) && in_range;
+        InfluenceBox box;
+        in_range = read_entry(reader, box, entries[i]) && in_range;
+        page.set_box(i, box);
     }
     if (reader.read<std::uint32_t>() != crc32c(bytes.first(bytes.size() - kChecksumBytes)))
     {
@@ -54,6 +60,52 @@ Result<Done, SpmRefusal> parse_index_page(std::span<const std::byte> bytes,
         return SpmRefusal::value_out_of_range;
     }
     return Done{};
+}
+
+std::uint64_t chunks_meeting(const IndexPage& page, const QuantumBox& page_box,
+                             const QuantumBall& ball) noexcept
+{
+    std::array<double, 3> step{};
+    std::array<double, 3> at{};
+    std::array<float, kChunksPerIndexPage> about_sq{};
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+        step[axis] = static_cast<double>(index_step(page_box.low[axis], page_box.high[axis]));
+        at[axis] = ball.center[axis] - static_cast<double>(page_box.low[axis]);
+        const auto step_about = static_cast<float>(step[axis]);
+        const auto at_about = static_cast<float>(at[axis]);
+        for (std::size_t i = 0; i < kChunksPerIndexPage; ++i)
+        {
+            const float below = static_cast<float>(page.low[axis][i]) * step_about - at_about;
+            const float above = at_about - static_cast<float>(page.high[axis][i]) * step_about;
+            const float outside = below > above ? below : above;
+            const float gap = outside > 0.0F ? outside : 0.0F;
+            about_sq[i] += gap * gap;
+        }
+    }
+    // A position in the page is right to a quantum, and one far outside to 1e-7 of its distance.
+    const auto reach = static_cast<float>(ball.radius * (1.0 + 1e-6) + 4.0);
+    const float reach_sq = reach * reach;
+    std::uint64_t near = 0;
+    for (std::size_t i = 0; i < page.chunks; ++i)
+    {
+        near |= std::uint64_t{about_sq[i] <= reach_sq ? 1U : 0U} << i;
+    }
+    std::uint64_t meeting = 0;
+    for (; near != 0; near &= near - 1)
+    {
+        const auto i = static_cast<std::size_t>(std::countr_zero(near));
+        double distance_sq = 0.0;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+        {
+            const double below = static_cast<double>(page.low[axis][i]) * step[axis] - at[axis];
+            const double above = at[axis] - static_cast<double>(page.high[axis][i]) * step[axis];
+            const double gap = std::max({below, above, 0.0});
+            distance_sq += gap * gap;
+        }
+        meeting |= distance_sq <= ball.radius * ball.radius ? std::uint64_t{1} << i : 0U;
+    }
+    return meeting;
 }
 
 } // namespace tactus

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "rt_core/base/realtime.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/spm/header.hpp"
 
@@ -20,12 +21,41 @@ struct InfluenceBox
     std::array<std::uint16_t, 3> high{};
 };
 
-/// Lower level of the influence-box index: the boxes of 64 consecutive chunks.
+/// Lower level of the influence-box index: the boxes of 64 consecutive chunks, as rows.
 struct IndexPage
 {
-    std::array<InfluenceBox, kChunksPerIndexPage> boxes{};
+    using Row = std::array<std::uint16_t, kChunksPerIndexPage>;
+
+    std::array<Row, 3> low{};
+    std::array<Row, 3> high{};
     std::uint32_t chunks{0}; ///< 1 .. 64; less than 64 only in the last page.
+
+    [[nodiscard]] InfluenceBox box(std::size_t chunk) const noexcept
+    {
+        return {{low[0][chunk], low[1][chunk], low[2][chunk]},
+                {high[0][chunk], high[1][chunk], high[2][chunk]}};
+    }
+    void set_box(std::size_t chunk, const InfluenceBox& box) noexcept
+    {
+        for (std::size_t axis = 0; axis < 3; ++axis)
+        {
+            low[axis][chunk] = box.low[axis];
+            high[axis][chunk] = box.high[axis];
+        }
+    }
 };
+
+/// A ball in the quanta of a model.
+struct QuantumBall
+{
+    std::array<double, 3> center{};
+    double radius{0.0};
+};
+
+/// One bit for each chunk whose influence box the ball meets; `page_box` is the page's own. Filters
+/// in single precision and decides in double. About 1,000 instructions.
+[[nodiscard]] std::uint64_t chunks_meeting(const IndexPage& page, const QuantumBox& page_box,
+                                           const QuantumBall& ball) noexcept TACTUS_NONBLOCKING;
 
 /// What the transport side keeps of a chunk besides its box.
 struct ChunkEntry

@@ -131,8 +131,8 @@ std::vector<Eigen::AlignedBox3d> read_chunk_boxes(const ModelStore& store)
             {
                 const double step = index_step(outer.low[axis], outer.high[axis]);
                 const auto at = static_cast<Eigen::Index>(axis);
-                box.min()[at] = (outer.low[axis] + index.boxes[i].low[axis] * step) * quantum_m;
-                box.max()[at] = (outer.low[axis] + index.boxes[i].high[axis] * step) * quantum_m;
+                box.min()[at] = (outer.low[axis] + index.low[axis][i] * step) * quantum_m;
+                box.max()[at] = (outer.low[axis] + index.high[axis][i] * step) * quantum_m;
             }
         }
     }

@@ -104,7 +104,7 @@ public:
         for (std::uint16_t i = 0; i < kChunks; ++i)
         {
             const auto low = static_cast<std::uint16_t>(100 * i + 10);
-            index.boxes[i] = {{low, 10, 10}, {static_cast<std::uint16_t>(low + 50), 60, 60}};
+            index.set_box(i, {{low, 10, 10}, {static_cast<std::uint16_t>(low + 50), 60, 60}});
         }
         ASSERT_TRUE(inbox_->arrived.try_push({{ContentKind::index_page, page}, slot}));
     }

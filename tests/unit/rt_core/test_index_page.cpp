@@ -5,6 +5,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <random>
+
 namespace tactus::test
 {
 
@@ -69,8 +73,8 @@ TEST_F(IndexPageTest, a_sound_page_gives_its_entries_back)
 
     EXPECT_EQ(bytes.size(), coded_index_page_bytes(3));
     EXPECT_EQ(page_.chunks, 3U);
-    EXPECT_EQ(page_.boxes[0].low, (std::array<std::uint16_t, 3>{1, 2, 3}));
-    EXPECT_EQ(page_.boxes[1].high, (std::array<std::uint16_t, 3>{65'535, 0, 1}));
+    EXPECT_EQ(page_.box(0).low, (std::array<std::uint16_t, 3>{1, 2, 3}));
+    EXPECT_EQ(page_.box(1).high, (std::array<std::uint16_t, 3>{65'535, 0, 1}));
     EXPECT_EQ(entries_[1].coded_bytes, kMaxCodedChunkBytes);
     EXPECT_EQ(entries_[2].hash[15], 0xAB);
 }
@@ -117,6 +121,75 @@ TEST_F(IndexPageTest, a_box_inside_out_or_an_impossible_size_is_refused)
     EXPECT_EQ(parse(write_page(1, entries)).error(), SpmRefusal::value_out_of_range);
     entries[0].coded_bytes = kMaxCodedChunkBytes + 1;
     EXPECT_EQ(parse(write_page(1, entries)).error(), SpmRefusal::value_out_of_range);
+}
+
+/// In doubles, which hold all of it exactly enough.
+double gap_of(const QuantumBox& page, const InfluenceBox& box, const QuantumBall& ball)
+{
+    double sum = 0.0;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+        const double step = index_step(page.low[axis], page.high[axis]);
+        const double low = page.low[axis] + step * box.low[axis];
+        const double high = page.low[axis] + step * box.high[axis];
+        const double gap = std::max({low - ball.center[axis], ball.center[axis] - high, 0.0});
+        sum += gap * gap;
+    }
+    return std::sqrt(sum);
+}
+
+TEST(ChunksMeeting, names_the_boxes_that_the_ball_meets)
+{
+    std::mt19937_64 random(7); // NOLINT: the same every time.
+    const auto below = [&](std::int64_t end)
+    { return static_cast<std::int64_t>(random() % static_cast<std::uint64_t>(end)); };
+    std::uint32_t met = 0;
+    std::uint32_t missed = 0;
+    for (int round = 0; round < 2'000; ++round)
+    {
+        QuantumBox page_box;
+        IndexPage page;
+        page.chunks = static_cast<std::uint32_t>(1 + below(kChunksPerIndexPage));
+        const std::int64_t side = std::int64_t{1} << (1 + below(24));
+        for (std::size_t axis = 0; axis < 3; ++axis)
+        {
+            page_box.low[axis] = static_cast<std::int32_t>(below(1 << 24) - (1 << 23));
+            page_box.high[axis] = page_box.low[axis] + static_cast<std::int32_t>(below(side));
+        }
+        for (std::uint32_t i = 0; i < page.chunks; ++i)
+        {
+            InfluenceBox box;
+            for (std::size_t axis = 0; axis < 3; ++axis)
+            {
+                const std::int64_t at = below(65'536);
+                box.low[axis] = static_cast<std::uint16_t>(at);
+                box.high[axis] = static_cast<std::uint16_t>(at + below(65'536 - at) / 16);
+            }
+            page.set_box(i, box);
+        }
+        QuantumBall ball;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+        {
+            ball.center[axis] = static_cast<double>(page_box.low[axis]) +
+                                0.001 * static_cast<double>(below(1'500 * side) - 250 * side);
+        }
+        ball.radius = 0.001 * static_cast<double>(below(1'000 * side));
+
+        const std::uint64_t named = chunks_meeting(page, page_box, ball);
+
+        ASSERT_EQ(page.chunks == 64 ? 0 : named >> page.chunks, 0U);
+        for (std::uint32_t i = 0; i < page.chunks; ++i)
+        {
+            const double gap = gap_of(page_box, page.box(i), ball);
+            const bool is_named = ((named >> i) & 1U) != 0;
+            const double slack = 1e-12 * (gap + ball.radius);
+            ASSERT_TRUE(is_named ? gap <= ball.radius + slack : gap > ball.radius - slack)
+                << "round " << round << " chunk " << i;
+            ++(is_named ? met : missed);
+        }
+    }
+    EXPECT_GT(met, 10'000U);
+    EXPECT_GT(missed, 10'000U);
 }
 
 } // namespace tactus::test

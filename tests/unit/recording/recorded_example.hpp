@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "platform/recording/frame_decoder.hpp"
+#include "platform/recording/frame_encoder.hpp"
+#include "platform/recording/recording_writer.hpp"
+#include "tests/unit/transport/tiny_model.hpp"
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+namespace tactus::test
+{
+
+/// Arguments and output of a frame of one tool, one object and one model, no value like another.
+struct ExampleFrame
+{
+    std::array<ToolState, 1> tools{ToolState{Vec3(0.5, -0.25, 2.0), 77, 3, true}};
+    std::array<ObjectPose, 1> poses{};
+    Budgets budgets{11, 12, 13, 14, 15, 16, 17, 18};
+    std::array<DoorEvent, 2> events{
+        DoorEvent{{ContentKind::chunk, 1}, 2, 5, 0xF0F0, DoorEventKind::arrival},
+        DoorEvent{{ContentKind::chunk, 1}, 2, 6, 0xFFF0, DoorEventKind::link_update}};
+    std::array<DoorTake, 1> door{DoorTake{events, 9}};
+    std::array<ToolOutput, 1> tool_outputs{};
+    std::array<PairOutput, 1> pair_outputs{};
+    std::array<ModelOutput, 1> model_outputs{};
+
+    ExampleFrame()
+    {
+        poses[0].translation_m = Vec3(0.125, 4.0, -8.0);
+        poses[0].scale = 1.5;
+        poses[0].revision = 21;
+        model_outputs[0].state_hash = 0x1234'5678'9ABC'DEF0ULL;
+        tool_outputs[0].force_n = Vec3(0.0, 0.0, 1.0);
+    }
+    ExampleFrame(const ExampleFrame&) = delete;
+    ExampleFrame& operator=(const ExampleFrame&) = delete;
+
+    [[nodiscard]] FrameOutput output() const
+    {
+        return {tool_outputs, pair_outputs, model_outputs, {}, FrameFault::none, door};
+    }
+    /// Coded by `encoder`, in memory of its own.
+    [[nodiscard]] std::vector<std::byte> code(FrameEncoder& encoder) const
+    {
+        const auto coded = encoder.encode(tools, poses, budgets, output());
+        return {coded.begin(), coded.end()};
+    }
+};
+
+inline constexpr FrameShape kExampleShape{1, 1, 1};
+
+/// One tool, one object, and a tiny model with pools of a few slots.
+inline RecordedSetup example_setup(const TinyModel& model)
+{
+    RecordedSetup setup;
+    setup.tools = {{0.01, 500.0, 8.0, 1.0}};
+    setup.objects = {{ModelId{0}}};
+    setup.models = {{{4, 1, 400, 60, 40, false}, model.header, model.base}};
+    setup.static_when_it_fits = true;
+    setup.compiler = "some compiler";
+    setup.architecture = "some processor";
+    setup.kernels = "some kernels";
+    return setup;
+}
+
+} // namespace tactus::test

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/recording/output_hash.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <functional>
+#include <set>
+#include <vector>
+
+namespace tactus::test
+{
+namespace
+{
+
+struct Outputs
+{
+    std::array<ToolOutput, 1> tools{};
+    std::array<PairOutput, 1> pairs{};
+    std::array<ModelOutput, 1> models{};
+    WorkCounters work;
+    FrameFault faults{FrameFault::none};
+
+    [[nodiscard]] OutputHashes hashes() const
+    {
+        return hash_output({tools, pairs, models, work, faults, {}});
+    }
+};
+
+/// A part of the output and changes of it, one for each field that a frame sets.
+struct Part
+{
+    std::uint64_t OutputHashes::*hash;
+    std::vector<std::function<void(Outputs&)>> changes;
+};
+
+std::vector<Part> parts()
+{
+    using O = Outputs;
+    const auto tool = [](auto change) { return [change](O& o) { change(o.tools[0]); }; };
+    const auto pair = [](auto change) { return [change](O& o) { change(o.pairs[0]); }; };
+    const auto model = [](auto change) { return [change](O& o) { change(o.models[0]); }; };
+    const auto work = [](auto member) { return [member](O& o) { o.work.*member = 1; }; };
+    return {
+        {&OutputHashes::tools,
+         {tool([](auto& t) { t.force_n.x() = 1.0; }), tool([](auto& t) { t.force_n.z() = -0.0; }),
+          tool([](auto& t) { t.proxy_m.y() = 1.0; }), tool([](auto& t) { t.in_contact = true; }),
+          tool([](auto& t) { t.frozen = true; })}},
+        {&OutputHashes::pairs,
+         {pair([](auto& p) { p.tool = 1; }), pair([](auto& p) { p.object = 1; }),
+          pair([](auto& p) { p.kind = AnswerKind::stale; }),
+          pair([](auto& p) { p.point_m.x() = 1.0; }), pair([](auto& p) { p.lower_m = 1.0; }),
+          pair([](auto& p) { p.upper_m = 1.0; }), pair([](auto& p) { p.certified_radius_m = 1.0; }),
+          pair([](auto& p) { p.nearest_face = FaceId{1}; }),
+          pair([](auto& p) { p.nearest_point_m.x() = 1.0; }),
+          pair([](auto& p) { p.skipped = true; })}},
+        {&OutputHashes::models,
+         {model([](auto& m) { m.pages.used = 1; }), model([](auto& m) { m.pages.used_max = 1; }),
+          model([](auto& m) { m.pages.capacity = 1; }),
+          model([](auto& m) { m.index_pages.used = 1; }), model([](auto& m) { m.faces.used = 1; }),
+          model([](auto& m) { m.blocks.used = 1; }), model([](auto& m) { m.nodes.used = 1; }),
+          model([](auto& m) { m.refined_records = 1; }), model([](auto& m) { m.state_hash = 1; }),
+          model([](auto& m) { m.is_static = true; })}},
+        {&OutputHashes::work,
+         {work(&WorkCounters::splits), work(&WorkCounters::merges), work(&WorkCounters::scanned),
+          work(&WorkCounters::nodes_visited), work(&WorkCounters::triangles_tested),
+          work(&WorkCounters::pages_adopted), work(&WorkCounters::requests),
+          work(&WorkCounters::regions_searched), work(&WorkCounters::nodes_refitted),
+          work(&WorkCounters::blocks_refitted), work(&WorkCounters::evictions),
+          work(&WorkCounters::cache_hits), work(&WorkCounters::cache_misses),
+          [](O& o) { o.faults = FrameFault::cache_full; }}}};
+}
+
+TEST(OutputHash, sees_every_field_in_its_part_and_tells_them_apart)
+{
+    const OutputHashes plain = Outputs{}.hashes();
+    for (const Part& part : parts())
+    {
+        std::set<std::uint64_t> seen{plain.*part.hash};
+        for (std::size_t i = 0; i < part.changes.size(); ++i)
+        {
+            Outputs changed;
+            part.changes[i](changed);
+            OutputHashes hashes = changed.hashes();
+            EXPECT_TRUE(seen.insert(hashes.*part.hash).second) << i;
+            hashes.*part.hash = plain.*part.hash;
+            EXPECT_EQ(hashes, plain) << i; // The other parts are as they were.
+        }
+    }
+}
+
+/// The definition, once more: SplitMix64's finalizer over one value after the other.
+TEST(OutputHash, is_what_the_format_page_says)
+{
+    std::uint64_t state = 0;
+    for (int value = 0; value < 14; ++value) // 13 counters and the faults, all zero.
+    {
+        state += 0x9E3779B97F4A7C15U;
+        state = (state ^ (state >> 30)) * 0xBF58476D1CE4E5B9U;
+        state = (state ^ (state >> 27)) * 0x94D049BB133111EBU;
+        state ^= state >> 31;
+    }
+    EXPECT_EQ(Outputs{}.hashes().work, state);
+}
+
+TEST(OutputHash, depends_on_how_many_there_are)
+{
+    const std::array<ToolOutput, 2> tools{};
+    FrameOutput one;
+    one.tools = std::span(tools).first(1);
+    FrameOutput two;
+    two.tools = tools;
+    EXPECT_NE(hash_output(one).tools, hash_output(two).tools);
+}
+
+} // namespace
+} // namespace tactus::test

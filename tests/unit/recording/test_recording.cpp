@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/recording/recording.hpp"
+#include "rt_core/base/crc32c.hpp"
+#include "tests/unit/recording/recorded_example.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+namespace tactus::test
+{
+namespace
+{
+
+constexpr ContentKey kChunk{ContentKind::chunk, 1};
+
+const TinyModel& model()
+{
+    static const TinyModel made = make_tiny_model({});
+    return made;
+}
+
+/// Three frames, the first of which takes a chunk from the door.
+std::vector<std::byte> example(std::uint64_t lost_from = kNoFrame)
+{
+    RecordingWriter writer(example_setup(model()));
+    FrameEncoder encoder;
+    ExampleFrame frame;
+    writer.add_piece(0, kChunk, model().piece(kChunk));
+    writer.add_piece(0, kChunk, model().piece(kChunk)); // Evicted and here again.
+    for (int i = 0; i < 3; ++i)
+    {
+        writer.add_frame(frame.code(encoder));
+        frame.door[0].events = {};
+    }
+    writer.finish(lost_from);
+    return writer.take_bytes();
+}
+
+std::string refusal_of(std::span<const std::byte> bytes)
+{
+    const auto recording = Recording::parse(bytes, "run.rec");
+    return recording ? "" : recording.error().text;
+}
+
+void expect_refusal(std::span<const std::byte> bytes, const std::string& said)
+{
+    const std::string text = refusal_of(bytes);
+    EXPECT_EQ(text.rfind("run.rec: at byte ", 0), 0U) << text;
+    EXPECT_NE(text.find(said), std::string::npos) << text << "\nwithout: " << said;
+    EXPECT_EQ(text.find('\n'), std::string::npos);
+}
+
+/// Where each section begins.
+std::vector<std::size_t> sections_of(std::span<const std::byte> bytes)
+{
+    std::vector<std::size_t> starts;
+    for (std::size_t at = kRecordingPrologueBytes; at < bytes.size();)
+    {
+        starts.push_back(at);
+        std::uint32_t size = 0;
+        std::memcpy(&size, bytes.data() + at + 4, sizeof(size));
+        at += kSectionHeaderBytes + size;
+    }
+    return starts;
+}
+
+/// Another content of one section, under a checksum that fits.
+template <typename Change>
+std::vector<std::byte> with_section(std::size_t index, Change&& change)
+{
+    const std::vector<std::byte> bytes = example();
+    const std::vector<std::size_t> starts = sections_of(bytes);
+    const auto at = static_cast<std::ptrdiff_t>(starts[index]);
+    const auto end = index + 1 < starts.size() ? static_cast<std::ptrdiff_t>(starts[index + 1])
+                                               : static_cast<std::ptrdiff_t>(bytes.size());
+    std::vector<std::byte> payload(bytes.begin() + at + 12, bytes.begin() + end);
+    change(payload);
+    std::vector<std::byte> covered(bytes.begin() + at, bytes.begin() + at + 8);
+    const auto size = static_cast<std::uint32_t>(payload.size());
+    std::memcpy(covered.data() + 4, &size, sizeof(size));
+    covered.insert(covered.end(), payload.begin(), payload.end());
+    const std::uint32_t checksum = crc32c(covered);
+    std::vector<std::byte> made(bytes.begin(), bytes.begin() + at);
+    made.insert(made.end(), covered.begin(), covered.begin() + 8);
+    const auto* first = reinterpret_cast<const std::byte*>(&checksum);
+    made.insert(made.end(), first, first + sizeof(checksum));
+    made.insert(made.end(), payload.begin(), payload.end());
+    made.insert(made.end(), bytes.begin() + end, bytes.end());
+    return made;
+}
+
+/// The same, with `values` at a place of the section's content.
+std::vector<std::byte> with_bytes(std::size_t index, std::size_t at, std::vector<unsigned> values)
+{
+    return with_section(index,
+                        [&](std::vector<std::byte>& payload)
+                        {
+                            for (std::size_t i = 0; i < values.size(); ++i)
+                            {
+                                payload[at + i] = static_cast<std::byte>(values[i]);
+                            }
+                        });
+}
+
+constexpr std::size_t kSetup = 0;
+constexpr std::size_t kModel = 1;
+constexpr std::size_t kPiece = 2;
+constexpr std::size_t kFrames = 3;
+constexpr std::size_t kEnd = 4;
+
+TEST(RecordingFile, gives_back_what_was_written)
+{
+    const auto sut = Recording::parse(example(), "run.rec");
+
+    ASSERT_TRUE(sut) << sut.error().text;
+    const RecordedSetup& setup = sut.value().setup();
+    EXPECT_EQ(setup.tools[0].stiffness_n_per_m, 500.0);
+    EXPECT_EQ(setup.objects[0].model.value, 0U);
+    EXPECT_EQ(setup.models[0].header, model().header);
+    EXPECT_EQ(setup.models[0].base, model().base);
+    EXPECT_EQ(setup.models[0].capacities.pages, 4U);
+    EXPECT_EQ(setup.models[0].capacities.nodes, 40U);
+    EXPECT_TRUE(setup.static_when_it_fits);
+    EXPECT_EQ(setup.kernels, "some kernels");
+    EXPECT_EQ(sut.value().frame_count(), 3U);
+    EXPECT_EQ(sut.value().lost_from(), kNoFrame);
+    const auto piece = sut.value().piece(0, kChunk);
+    const auto original = model().piece(kChunk);
+    EXPECT_TRUE(std::equal(piece.begin(), piece.end(), original.begin(), original.end()));
+    EXPECT_TRUE(sut.value().piece(0, {ContentKind::chunk, 0}).empty());
+}
+
+TEST(RecordingFile, begins_with_its_magic_and_version)
+{
+    const std::vector<std::byte> bytes = example();
+    EXPECT_EQ(std::memcmp(bytes.data(), "TACTREC\n\x01\0\0\0", 12), 0);
+}
+
+TEST(RecordingFile, tells_from_where_frames_were_lost)
+{
+    const auto sut = Recording::parse(example(3), "run.rec");
+    ASSERT_TRUE(sut) << sut.error().text;
+    EXPECT_EQ(sut.value().lost_from(), 3U);
+    expect_refusal(example(2), "the first lost frame is 2; after 3 frames only that number");
+}
+
+TEST(RecordingFile, is_refused_when_it_is_cut_at_any_byte)
+{
+    const std::vector<std::byte> bytes = example();
+    expect_refusal({}, "at byte 0: the file is empty");
+    for (std::size_t size = 1; size < bytes.size(); ++size)
+    {
+        expect_refusal(std::span(bytes).first(size), "the file is cut short: ");
+    }
+}
+
+TEST(RecordingFile, is_refused_when_any_byte_is_another)
+{
+    std::vector<std::byte> bytes = example();
+    for (std::byte& byte : bytes)
+    {
+        byte ^= std::byte{0x41};
+        EXPECT_NE(refusal_of(bytes), "") << &byte - bytes.data();
+        byte ^= std::byte{0x41};
+    }
+    EXPECT_EQ(refusal_of(bytes), "");
+}
+
+TEST(RecordingFile, is_refused_when_something_follows_it)
+{
+    std::vector<std::byte> bytes = example();
+    bytes.push_back(std::byte{0});
+    expect_refusal(bytes, "the end section is followed by 1 bytes; nothing may follow it");
+}
+
+TEST(RecordingFile, is_refused_when_it_is_of_another_kind_or_version)
+{
+    std::vector<std::byte> bytes = example();
+    bytes[8] = std::byte{2};
+    expect_refusal(bytes, "at byte 8: format version 2 is unknown; this program reads 1");
+    bytes[3] = std::byte{'X'};
+    expect_refusal(bytes, "is not a Tactus recording");
+    bytes = example();
+    bytes[kRecordingPrologueBytes] = std::byte{6};
+    expect_refusal(bytes, "section kind 6 is unknown; 1 to 5 are allowed");
+}
+
+TEST(RecordingFile, is_refused_when_sections_are_out_of_order)
+{
+    const std::vector<std::byte> bytes = example();
+    const std::vector<std::size_t> starts = sections_of(bytes);
+    const auto section = [&](std::size_t index)
+    {
+        const std::size_t end = index + 1 < starts.size() ? starts[index + 1] : bytes.size();
+        return std::span(bytes).subspan(starts[index], end - starts[index]);
+    };
+    const auto joined = [&](const std::vector<std::size_t>& order)
+    {
+        std::vector<std::byte> made(bytes.begin(), bytes.begin() + kRecordingPrologueBytes);
+        for (const std::size_t index : order)
+        {
+            made.insert(made.end(), section(index).begin(), section(index).end());
+        }
+        return made;
+    };
+    EXPECT_EQ(refusal_of(joined({kSetup, kModel, kPiece, kFrames, kEnd})), "");
+    expect_refusal(joined({kModel, kSetup}), "out of order");
+    expect_refusal(joined({kSetup, kPiece}), "out of order");
+    expect_refusal(joined({kSetup, kSetup}), "out of order");
+    expect_refusal(joined({kSetup, kModel, kModel}), "out of order");
+    expect_refusal(joined({kSetup, kModel, kFrames, kPiece, kEnd}),
+                   "frame 0 takes piece 1 from the door, which is not in the recording before it");
+    expect_refusal(joined({kSetup, kModel, kPiece, kPiece}), "a piece is in the recording twice");
+    expect_refusal(joined({kSetup, kModel, kPiece, kEnd}),
+                   "the end states 3 frames and 1 pieces, but 0 and 1 came before");
+}
+
+TEST(RecordingFile, is_refused_when_a_value_is_out_of_its_range)
+{
+    // What the checksums vouch for is checked all the same.
+    constexpr std::size_t kTool = 20;
+    constexpr std::size_t kObject = kTool + 32;
+    expect_refusal(with_bytes(kSetup, 0, {0, 0, 0, 0, 0, 0, 0, 0}), "the period is 0 ns; 1 to");
+    expect_refusal(with_bytes(kSetup, 16, {2}), "the static mode is 2; 0 and 1 are allowed");
+    expect_refusal(with_bytes(kSetup, 17, {0}), "0 tools, 1 objects and 1 models; 1 to 4");
+    expect_refusal(with_bytes(kSetup, 17, {5}), "5 tools");
+    expect_refusal(with_bytes(kSetup, 18, {9}), "9 objects");
+    expect_refusal(with_bytes(kSetup, 19, {9}), "9 models");
+    expect_refusal(with_bytes(kSetup, kTool + 6, {0xF8, 0x7F}), "tool 0 is not within"); // NaN.
+    expect_refusal(with_bytes(kSetup, kObject, {1}), "object 0 names model 1 of 1");
+    expect_refusal(with_section(kSetup,
+                                [](auto& payload)
+                                {
+                                    payload[kObject + 4] = std::byte{64};
+                                    payload.resize(payload.size() + 100, std::byte{'x'});
+                                }),
+                   "63 printable characters");
+    expect_refusal(with_bytes(kSetup, kObject + 5, {0x1B}), "63 printable characters");
+    expect_refusal(with_bytes(kModel, 0, {0}), "a pool has 0 slots; 1 to");
+    expect_refusal(with_bytes(kModel, 0, {0, 0, 0, 0x20}), "slots; 1 to");
+    expect_refusal(with_bytes(kModel, 0, {0, 0, 0, 0x02}), "more than 4096 MiB");
+    expect_refusal(with_bytes(kModel, 8, {1, 0}), "room for 1 faces; the base mesh alone has 8");
+    expect_refusal(with_bytes(kModel, 20, {2}), "the cache's switch is 2; 0 and 1 are allowed");
+    expect_refusal(with_bytes(kModel, 21, {0xFF, 0xFF, 0xFF}), "the model section has another");
+    expect_refusal(with_bytes(kModel, 25, {0}), "the model's header is damaged");
+    expect_refusal(with_bytes(kPiece, 0, {1}), "a piece is not a chunk or index page of one");
+    expect_refusal(with_bytes(kPiece, 2, {0xFF}), "a piece is not a chunk or index page of one");
+    expect_refusal(with_section(kPiece, [](auto& payload) { payload.resize(6); }),
+                   "a piece has 0 bytes; 1 to 8448 are allowed");
+    expect_refusal(with_section(kPiece, [](auto& payload) { payload.resize(9'000); }),
+                   "a piece has 8994 bytes");
+    expect_refusal(with_section(kFrames, [](auto& payload) { payload.clear(); }),
+                   "a frames section has 0 bytes");
+    expect_refusal(with_section(kFrames, [](auto& payload) { payload.resize((1U << 20U) + 1); }),
+                   "a frames section has 1048577 bytes; 1 to 1048576 are allowed");
+    expect_refusal(with_section(kFrames, [](auto& payload) { payload.pop_back(); }),
+                   "frame 2 is cut short by the end of its section");
+    constexpr std::size_t kSlot = 4 + 1 + kToolStateBytes + kObjectPoseBytes + kBudgetsBytes + 12;
+    expect_refusal(with_bytes(kFrames, kSlot, {4}), "frame 0 names slot 4 of 4");
+    expect_refusal(with_bytes(kEnd, 0, {2}), "the end states 2 frames and 1 pieces, but 3 and 1");
+    expect_refusal(with_section(kEnd, [](auto& payload) { payload.push_back({}); }),
+                   "the end section has another size than its content");
+}
+
+TEST(RecordingFile, that_is_missing_or_a_folder_is_refused)
+{
+    const TemporaryFolder folder;
+    const std::string missing = (folder.path() / "missing.rec").string();
+    const auto absent = Recording::read(missing);
+    ASSERT_FALSE(absent);
+    EXPECT_EQ(absent.error().text.rfind(missing + ": cannot be opened: ", 0), 0U);
+    const auto directory = Recording::read(folder.path().string());
+    ASSERT_FALSE(directory);
+    EXPECT_NE(directory.error().text.find("is not a file but a directory"), std::string::npos);
+    const auto whole = Recording::read(folder.write("run.rec", example()).string());
+    EXPECT_TRUE(whole) << whole.error().text;
+}
+
+} // namespace
+} // namespace tactus::test
