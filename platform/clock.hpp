@@ -3,6 +3,7 @@
 #pragma once
 
 #include "platform/time.hpp"
+#include "rt_core/base/realtime.hpp"
 
 namespace tactus
 {
@@ -15,7 +16,7 @@ public:
     virtual ~Clock() = default;
 
     /// Never goes back between two calls on one thread.
-    [[nodiscard]] virtual MonotonicTime now() const noexcept = 0;
+    [[nodiscard]] virtual MonotonicTime now() const noexcept TACTUS_NONBLOCKING = 0;
     [[nodiscard]] virtual WallTime wall_now() const noexcept = 0;
 
 protected:

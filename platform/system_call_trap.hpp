@@ -7,9 +7,6 @@
 
 #include <cstdint>
 
-namespace tactus
-{
-
 /// Proof that a frame makes no system call. Once set, every call of the thread traps: the kernel
 /// raises SIGSYS instead of serving it, and the handler counts the call, then makes it on the
 /// thread's behalf.
@@ -26,7 +23,7 @@ namespace tactus
 /// A clock that the kernel serves through the vDSO is read without a system call: such reads,
 /// those of the stage hook for instance, neither trap nor count. On a machine whose clock source
 /// does not allow it they are system calls, and count.
-namespace system_call_trap
+namespace tactus::system_call_trap
 {
 
 /// Calls that trapped on the calling thread.
@@ -49,6 +46,4 @@ void mark_frame(bool is_running) noexcept;
 /// About 1 ns.
 [[nodiscard]] TrappedCalls of_this_thread() noexcept;
 
-} // namespace system_call_trap
-
-} // namespace tactus
+} // namespace tactus::system_call_trap

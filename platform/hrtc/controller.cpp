@@ -104,17 +104,14 @@ void Controller::make_tools(const Options& options)
 /// Every model gets the same share of the memory; what belongs to no model comes off first.
 std::optional<ControllerError> Controller::lay_out_pools(const Options& options)
 {
-    std::vector<ObjectSpec> objects;
-    std::vector<ModelSource> sources;
     for (std::size_t i = 0; i < models_.size(); ++i)
     {
-        objects.push_back({ModelId{static_cast<std::uint32_t>(i)}});
+        objects_.push_back({ModelId{static_cast<std::uint32_t>(i)}});
     }
-    FrameSetup setup;
-    setup.objects = objects;
-    setup.tools = tools_;
-    setup.period_ns = 1'000'000'000 / options.rate_hz;
-    std::size_t shared = Frame::required_bytes(setup);
+    setup_.objects = objects_;
+    setup_.tools = tools_;
+    setup_.period_ns = 1'000'000'000 / options.rate_hz;
+    std::size_t shared = Frame::required_bytes(setup_);
     for (const ServedModel& model : models_)
     {
         shared += Arena::round_up(model.header.size());
@@ -137,10 +134,10 @@ std::optional<ControllerError> Controller::lay_out_pools(const Options& options)
                 "give more, or less --cache-mib",
                 options.pool_mib, models_[i].name, headers_[i].counts().base_faces)};
         }
-        sources.push_back({models_[i].header, models_[i].base, capacities});
+        sources_.push_back({models_[i].header, models_[i].base, capacities});
     }
-    setup.models = sources;
-    if (const auto started = Frame::start(frame_, arena_, setup); !started)
+    setup_.models = sources_;
+    if (const auto started = Frame::start(frame_, arena_, setup_); !started)
     {
         return ControllerError{
             fmt::format("--pool-mib: {} MiB: {}", options.pool_mib, refusal_text(started.error()))};

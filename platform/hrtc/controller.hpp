@@ -49,6 +49,8 @@ public:
     [[nodiscard]] const std::vector<ServedModel>& models() const noexcept { return models_; }
     [[nodiscard]] const std::vector<ToolSpec>& tools() const noexcept { return tools_; }
     [[nodiscard]] const Budgets& budgets() const noexcept { return budgets_; }
+    /// What the frame was made of.
+    [[nodiscard]] const FrameSetup& setup() const noexcept { return setup_; }
     /// The frame itself, its pools and tables, and the transport's side of them.
     [[nodiscard]] std::size_t pool_bytes() const noexcept { return arena_.used() + sizeof(Frame); }
     /// Of the first model, placed: widths are reported in it.
@@ -68,6 +70,9 @@ private:
     std::vector<ModelHeader> headers_; ///< Views into models_.
     std::vector<ObjectPose> poses_;
     std::vector<ToolSpec> tools_;
+    std::vector<ObjectSpec> objects_;
+    std::vector<ModelSource> sources_; ///< Views into models_.
+    FrameSetup setup_;                 ///< Views into the above.
     Budgets budgets_;
     PoolMemory memory_;
     Arena arena_;

@@ -30,6 +30,7 @@ void HapticLoop::run() noexcept
         const FrameOutput output = run_frame();
         write_devices(output.tools);
         const MonotonicTime end = parts_.clock->now();
+        record(output);
         measures_.frame = end - start;
         measures_.lateness_of_end = end - measures_.cycle.deadline;
         const ThreadUsage now = read_thread_usage();
@@ -65,6 +66,15 @@ FrameOutput HapticLoop::run_frame() noexcept
         parts_.frame->run(states_, parts_.poses, measures_.budgets, {&mark_stage, this});
     system_call_trap::mark_frame(false);
     return output;
+}
+
+/// After the forces have gone out and the frame's time was taken.
+void HapticLoop::record(const FrameOutput& output) noexcept
+{
+    if (parts_.tap != nullptr)
+    {
+        parts_.tap->record(states_, parts_.poses, measures_.budgets, output);
+    }
 }
 
 /// Between frames, so that the frame that follows takes its budgets as an input like any other.

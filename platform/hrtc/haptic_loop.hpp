@@ -7,6 +7,7 @@
 #include "platform/haptic_device.hpp"
 #include "platform/hrtc/run_statistics.hpp"
 #include "platform/periodic_timer.hpp"
+#include "platform/recording/frame_tap.hpp"
 #include "rt_core/frame/frame.hpp"
 
 #include <atomic>
@@ -28,6 +29,7 @@ struct LoopParts
     const Clock* clock{nullptr};
     Budgets budgets;                   ///< Of every frame, when there is no governor.
     BudgetGovernor* governor{nullptr}; ///< Chooses each frame's budgets; may be none.
+    FrameTap* tap{nullptr};            ///< Takes every frame for a recording; may be none.
     std::uint64_t frames{0};           ///< How many to run.
 };
 
@@ -57,10 +59,11 @@ public:
 private:
     void rehearse() noexcept;
     [[nodiscard]] FrameOutput run_frame() noexcept;
+    void record(const FrameOutput& output) noexcept;
     void choose_budgets(const FrameOutput& output) noexcept;
     void read_devices(std::uint32_t periods) noexcept;
     void write_devices(std::span<const ToolOutput> outputs) noexcept;
-    static void mark_stage(void* context, Stage stage) noexcept;
+    static void mark_stage(void* context, Stage stage) noexcept TACTUS_NONBLOCKING;
 
     LoopParts parts_;
     RunStatistics& statistics_;

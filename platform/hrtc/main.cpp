@@ -9,6 +9,9 @@
 #include "platform/hrtc/controller.hpp"
 #include "platform/hrtc/haptic_loop.hpp"
 #include "platform/hrtc/options.hpp"
+#include "platform/hrtc/output_file.hpp"
+#include "platform/hrtc/recorder.hpp"
+#include "platform/hrtc/replay_file.hpp"
 #include "platform/hrtc/report.hpp"
 #include "platform/hrtc/transport_thread.hpp"
 #include "platform/posix/posix_clock.hpp"
@@ -165,6 +168,39 @@ std::optional<BudgetGovernor> make_governor(const Options& options, const Contro
                           static_cast<std::uint32_t>(2 * pairs));
 }
 
+/// No recorder when none is wanted; returns why it can't be had.
+std::optional<std::string> start_recorder(const Options& options, Controller& controller,
+                                          std::optional<Recorder>& recorder)
+{
+    if (options.record_path.empty())
+    {
+        return std::nullopt;
+    }
+    auto file = OutputFile::create(options.record_path);
+    if (!file)
+    {
+        return "--record: " + file.error().text;
+    }
+    recorder.emplace(std::move(file).value(), controller.setup(), controller.couriers());
+    return std::nullopt;
+}
+
+/// The recording of a run that ended well or not; a refusal is logged.
+std::optional<RecordingResult> finish_recording(std::optional<Recorder>& recorder)
+{
+    if (!recorder)
+    {
+        return std::nullopt;
+    }
+    const auto recording = recorder->finish();
+    if (!recording)
+    {
+        log_line("--record: " + recording.error().text);
+        return std::nullopt;
+    }
+    return recording.value();
+}
+
 /// On the haptic thread; returns why the option can't be had.
 std::optional<std::string> trap_calls(const Options& options)
 {
@@ -187,8 +223,14 @@ int run(const Options& options, Controller& controller)
     const PosixClock clock;
     PosixPeriodicTimer timer;
     std::optional<BudgetGovernor> governor = make_governor(options, controller);
+    std::optional<Recorder> recorder;
+    if (const auto error = start_recorder(options, controller, recorder))
+    {
+        return fail(*error);
+    }
     HapticLoop loop({&controller.frame(), controller.devices(), controller.poses(), &timer, &clock,
-                     controller.budgets(), governor ? &*governor : nullptr, frames},
+                     controller.budgets(), governor ? &*governor : nullptr,
+                     recorder ? &recorder->tap() : nullptr, frames},
                     statistics);
     TransportThread transport(controller.couriers(), controller.models());
     running_loop.store(&loop);
@@ -218,35 +260,41 @@ int run(const Options& options, Controller& controller)
     wait_for_end(loop, frames);
     if (loop.has_failed())
     {
+        finish_recording(recorder); // Up to the frame that failed.
         std::fflush(nullptr);
         std::_Exit(kExitFailed);
     }
     thread.value().join();
     running_loop.store(nullptr);
     transport.stop();
+    const std::optional<RecordingResult> recording = finish_recording(recorder);
     for (const std::string& line : thread.value().report().refused)
     {
         log_line("without " + line);
     }
     const nlohmann::ordered_json report = make_report(
         {controller, statistics, thread.value().report(), timer.counts(), period,
-         transport.host_was_lost(), options.frame_budget_us, options.trap_system_calls});
+         transport.host_was_lost(), options.frame_budget_us, options.trap_system_calls, recording});
     fmt::print("{}", make_summary(report));
     if (!options.report_path.empty())
     {
         if (const auto error = write_report(report, options.report_path))
         {
-            return fail(*error);
+            return fail("--report: " + error->text);
         }
         fmt::print("report      {}\n", options.report_path);
     }
-    return kExitDone;
+    return recorder && !recording ? kExitFailed : kExitDone;
 }
 
 int main_with(const Options& options)
 {
     install_signal_handlers();
     set_assert_handler(on_assertion);
+    if (!options.replay_path.empty())
+    {
+        return replay_file(options.replay_path, log_line);
+    }
     const auto refused = probe_realtime(options.thread);
     if (!refused)
     {
@@ -263,9 +311,13 @@ int main_with(const Options& options)
         }
         return fail("not run; --allow-no-rt runs it without");
     }
-    if (const auto error = probe_report(options.report_path))
+    for (const auto& [option, path] : {std::pair("--report: ", &options.report_path),
+                                       std::pair("--record: ", &options.record_path)})
     {
-        return fail(*error);
+        if (const auto error = probe_output(*path))
+        {
+            return fail(option + error->text);
+        }
     }
     Found found =
         options.transport == TransportKind::file ? find_in_files(options) : find_published(options);

@@ -96,7 +96,6 @@ void declare(CLI::App& app, Options& options, RawOptions& raw)
     app.add_option("--model", options.models,
                    "Model to touch: NAME or NAME@HASH as published, or with --transport file a "
                    "path; repeatable")
-        ->required()
         ->expected(1)
         ->take_all();
     app.add_option("--place", raw.places,
@@ -117,6 +116,12 @@ void declare(CLI::App& app, Options& options, RawOptions& raw)
         ->check(number_between(0.1, 86'400.0))
         ->capture_default_str();
     app.add_option("--report", options.report_path, "Write the report as JSON to this file");
+    app.add_option("--record", options.record_path,
+                   "Record all that goes into every frame, and hashes of what comes out, into this "
+                   "file");
+    app.add_option("--replay", options.replay_path,
+                   "Instead of a run: give the frames of a recording the same again; exit code 1 "
+                   "when one comes out otherwise. Takes no other option");
     app.add_option("--pool-mib", options.pool_mib,
                    "Memory for all pools of all models, in MiB, everything counted")
         ->check(number_between(0.25, kLargestPool_mib))
@@ -156,9 +161,49 @@ void declare(CLI::App& app, Options& options, RawOptions& raw)
                  "call of the haptic thread costs some 3 us more");
 }
 
+/// Everything that a run could be told is in the recording. Empty when all is well.
+std::string check_replay(const CLI::App& app)
+{
+    for (const CLI::Option* option : app.get_options())
+    {
+        if (option->count() > 0 && option->get_name() != "--replay")
+        {
+            return "--replay: takes no other option; " + option->get_name() + " was given";
+        }
+    }
+    return {};
+}
+
+std::string check_files(const CLI::App& app, const Options& options)
+{
+    for (const auto& [name, path] :
+         {std::pair("--record", &options.record_path), std::pair("--replay", &options.replay_path)})
+    {
+        if (app.count(name) > 0 && path->empty())
+        {
+            return std::string(name) + ": a file's name is needed";
+        }
+    }
+    return !options.record_path.empty() && options.record_path == options.report_path
+               ? "--record: must be another file than --report"
+               : "";
+}
+
 /// What one option alone can't tell. Empty when all is well.
 std::string check_together(const CLI::App& app, Options& options, const RawOptions& raw)
 {
+    if (const std::string fault = check_files(app, options); !fault.empty())
+    {
+        return fault;
+    }
+    if (!options.replay_path.empty())
+    {
+        return check_replay(app);
+    }
+    if (options.models.empty())
+    {
+        return "--model is required";
+    }
     if (options.models.size() > kMaxObjects)
     {
         return fmt::format("--model: at most {} models", kMaxObjects);

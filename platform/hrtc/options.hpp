@@ -42,6 +42,8 @@ struct Options
     std::int64_t rate_hz{1'000};
     double duration_s{10.0};
     std::string report_path; ///< Empty: no file.
+    std::string record_path; ///< Empty: no recording.
+    std::string replay_path; ///< Not empty: replay this recording; nothing else is set then.
     double pool_mib{2.0};
     double cache_mib{0.0};                 ///< 0: the usual share of the pool.
     std::uint32_t splits{64};              ///< At most, when there is a frame budget.

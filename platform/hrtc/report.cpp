@@ -8,11 +8,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
+#include <span>
 
 namespace tactus::hrtc
 {
@@ -212,15 +208,29 @@ Json faults_of(const RunStatistics& statistics)
     return faults;
 }
 
-/// Where a report is written before it takes its place.
-std::string partial_of(const std::string& path)
+Json recording_of(const std::optional<RecordingResult>& recording)
 {
-    return path + ".partial";
+    if (!recording)
+    {
+        return nullptr;
+    }
+    Json json{{"frames", recording->frames}, {"bytes", recording->bytes}, {"lost_from", nullptr}};
+    if (recording->lost_from != kNoFrame)
+    {
+        json["lost_from"] = recording->lost_from;
+    }
+    return json;
 }
 
-std::string refusal(const std::string& path, const std::string& reason)
+std::string recording_line(const Json& recording)
 {
-    return "--report: " + path + ": can't be written: " + reason;
+    const Json& lost_from = recording["lost_from"];
+    return fmt::format(
+        "recording   {} frames, {:.1f} KB{}\n", recording["frames"].get<std::uint64_t>(),
+        recording["bytes"].get<double>() / 1e3,
+        lost_from.is_null() ? ""
+                            : fmt::format("; incomplete: frame {} and all later ones are lost",
+                                          lost_from.get<std::uint64_t>()));
 }
 
 } // namespace
@@ -275,6 +285,7 @@ Json make_report(const RunRecord& record)
               {"system_calls_trapped", record.calls_were_trapped},
               {"system_calls_in_frame", statistics.calls.in_frame},
               {"system_calls_outside", statistics.calls.outside}}},
+            {"recording", recording_of(record.recording)},
             {"force", force_of(statistics)},
             {"faults", faults_of(statistics)},
             {"machine", machine_of(record)},
@@ -336,57 +347,26 @@ std::string make_summary(const Json& report)
                             report["realtime"]["system_calls_in_frame"].get<std::uint64_t>(),
                             report["realtime"]["system_calls_outside"].get<std::uint64_t>());
     }
+    if (!report["recording"].is_null())
+    {
+        text += recording_line(report["recording"]);
+    }
     return text;
 }
 
-std::optional<std::string> probe_report(const std::string& path)
+std::optional<OutputFileError> write_report(const Json& report, const std::string& path)
 {
-    if (path.empty())
+    auto file = OutputFile::create(path);
+    if (!file)
     {
-        return std::nullopt;
+        return file.error();
     }
-    std::error_code ignored;
-    // Taking the place of a device or pipe would be no service to anybody.
-    if (std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored))
+    const std::string text = report.dump(2) + '\n';
+    if (auto error = file.value().write(std::as_bytes(std::span(text))))
     {
-        return refusal(path, "it is a directory, device or pipe");
+        return error;
     }
-    const std::string temporary = partial_of(path);
-    const bool is_new = !std::filesystem::exists(temporary, ignored);
-    if (!std::ofstream(temporary, std::ios::app))
-    {
-        return refusal(path, std::strerror(errno));
-    }
-    if (is_new)
-    {
-        std::filesystem::remove(temporary, ignored);
-    }
-    return std::nullopt;
-}
-
-std::optional<std::string> write_report(const Json& report, const std::string& path)
-{
-    const std::string temporary = partial_of(path);
-    std::error_code ignored;
-    {
-        std::ofstream file(temporary, std::ios::trunc);
-        file << report.dump(2) << '\n';
-        file.close();
-        if (!file)
-        {
-            const std::string reason = std::strerror(errno);
-            std::filesystem::remove(temporary, ignored);
-            return refusal(path, reason);
-        }
-    }
-    std::error_code error;
-    std::filesystem::rename(temporary, path, error);
-    if (error)
-    {
-        std::filesystem::remove(temporary, ignored);
-        return refusal(path, error.message());
-    }
-    return std::nullopt;
+    return file.value().commit();
 }
 
 } // namespace tactus::hrtc

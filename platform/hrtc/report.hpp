@@ -3,6 +3,8 @@
 #pragma once
 
 #include "platform/hrtc/controller.hpp"
+#include "platform/hrtc/output_file.hpp"
+#include "platform/hrtc/recorder.hpp"
 #include "platform/hrtc/run_statistics.hpp"
 #include "platform/rt_thread.hpp"
 
@@ -26,6 +28,7 @@ struct RunRecord
     bool host_was_lost{false};             ///< Some model's host went away during the run.
     std::optional<double> frame_budget_us; ///< None: the budgets were fixed.
     bool calls_were_trapped{false};        ///< System calls of the haptic thread.
+    std::optional<RecordingResult> recording;
 };
 
 /// The report, schema 1 (docs/report.md). Later versions add keys and never rename any.
@@ -34,12 +37,8 @@ struct RunRecord
 /// The same for a person: a few lines.
 [[nodiscard]] std::string make_summary(const nlohmann::ordered_json& report);
 
-/// Finds out before a run whether its report can be written, and leaves nothing behind; returns why
-/// not. An empty path is no report.
-[[nodiscard]] std::optional<std::string> probe_report(const std::string& path);
-
 /// Writes the report whole or not at all; returns why not.
-[[nodiscard]] std::optional<std::string> write_report(const nlohmann::ordered_json& report,
-                                                      const std::string& path);
+[[nodiscard]] std::optional<OutputFileError> write_report(const nlohmann::ordered_json& report,
+                                                          const std::string& path);
 
 } // namespace tactus::hrtc

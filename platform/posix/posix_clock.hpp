@@ -12,7 +12,7 @@ namespace tactus
 class PosixClock final : public Clock
 {
 public:
-    [[nodiscard]] MonotonicTime now() const noexcept override;
+    [[nodiscard]] MonotonicTime now() const noexcept TACTUS_NONBLOCKING override;
     [[nodiscard]] WallTime wall_now() const noexcept override;
 };
 

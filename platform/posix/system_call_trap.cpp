@@ -42,9 +42,11 @@ namespace
 {
 
 // Constant-initialised and in the program's own static storage: the handler's first access neither
-// allocates nor calls.
+// allocates nor calls. A handler is given nothing of the program's, so global they must be.
+// NOLINTBEGIN(cppcoreguidelines-avoid-non-const-global-variables)
 constinit thread_local TrappedCalls thread_calls{};
 constinit thread_local bool thread_runs_a_frame = false;
+// NOLINTEND(cppcoreguidelines-avoid-non-const-global-variables)
 
 } // namespace
 
@@ -74,7 +76,7 @@ extern "C"
     /// Makes the call and returns what the kernel returns: an error as its negative number.
     long tactus_make_call(const TactusSystemCall* call) noexcept;
     /// Right behind the one instruction that the filter lets through.
-    extern const char tactus_behind_call;
+    extern const char tactus_behind_call; // NOLINT(readability-identifier-naming): a label.
 }
 
 #if defined(__x86_64__)
@@ -231,6 +233,7 @@ int install_filter(std::uint64_t behind_call) noexcept
     const sock_fprog program{static_cast<unsigned short>(filter.size()), filter.data()};
     // Without TSYNC it is this thread's alone; without SPEC_ALLOW it would also slow the thread.
     const long failed =
+        // NOLINTNEXTLINE(cppcoreguidelines-pro-type-vararg): the C library has no other.
         syscall(__NR_seccomp, SECCOMP_SET_MODE_FILTER, SECCOMP_FILTER_FLAG_SPEC_ALLOW, &program);
     return failed == 0 ? 0 : errno;
 }
@@ -246,6 +249,7 @@ Result<Done, PlatformError> set_on_this_thread()
         return std::move(*error);
     }
     // Without it only the privileged may install a filter; it is this thread's, too.
+    // NOLINTNEXTLINE(cppcoreguidelines-pro-type-vararg): the C library has no other.
     if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0)
     {
         return refusal("no_new_privs can't be set", errno);

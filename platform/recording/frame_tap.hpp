@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/recording/frame_coding.hpp"
+#include "platform/recording/frame_encoder.hpp"
 #include "platform/recording/recording_format.hpp"
 #include "rt_core/base/spsc_queue.hpp"
 

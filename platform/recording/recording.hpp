@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/recording/frame_coding.hpp"
+#include "platform/recording/frame_decoder.hpp"
 #include "platform/recording/recording_format.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/spm/content_key.hpp"

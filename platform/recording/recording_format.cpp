@@ -39,6 +39,11 @@ std::string this_architecture()
 
 } // namespace
 
+std::string this_build()
+{
+    return this_compiler() + ", " + this_architecture();
+}
+
 RecordedSetup to_recorded(const FrameSetup& setup)
 {
     RecordedSetup recorded;

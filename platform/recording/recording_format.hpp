@@ -60,9 +60,14 @@ struct RecordedSetup
 };
 
 inline constexpr std::size_t kMaxRecordedNameBytes = 63;
+/// As much as `hrtc --pool-mib` can be; a recording that needs more was never made.
+inline constexpr std::size_t kMaxRecordedPoolBytes = std::size_t{4'096} << 20U;
 
 /// No frame was lost.
 inline constexpr std::uint64_t kNoFrame = std::numeric_limits<std::uint64_t>::max();
+
+/// How this program was built: compiler and whether it optimised, processor.
+[[nodiscard]] std::string this_build();
 
 /// The setup of a frame that this program makes, as a recording keeps it.
 [[nodiscard]] RecordedSetup to_recorded(const FrameSetup& setup);

@@ -137,4 +137,21 @@ Result<ReplayReport, ReplayError> replay(const Recording& recording, const Kerne
     return report;
 }
 
+std::string replay_line(const Recording& recording, const ReplayReport& report)
+{
+    const RecordedSetup& setup = recording.setup();
+    std::string line = report.difference
+                           ? "frame " + std::to_string(report.difference->frame) +
+                                 " differs: " + report.difference->text
+                           : std::to_string(report.frames) + " frames agree bit for bit";
+    line += "; recorded by " + setup.compiler + ", " + setup.architecture + ", kernels " +
+            setup.kernels;
+    if (recording.lost_from() != kNoFrame)
+    {
+        line += "; the recorder lost frame " + std::to_string(recording.lost_from()) +
+                " and all later ones";
+    }
+    return line;
+}
+
 } // namespace tactus

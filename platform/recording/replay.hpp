@@ -40,4 +40,8 @@ struct ReplayError
 [[nodiscard]] Result<ReplayReport, ReplayError> replay(const Recording& recording,
                                                        const Kernels* kernels = nullptr);
 
+/// The outcome in one line without an end: how many frames agree, or the first that differs; what
+/// recorded them; and whether the recorder lost some.
+[[nodiscard]] std::string replay_line(const Recording& recording, const ReplayReport& report);
+
 } // namespace tactus

@@ -15,7 +15,7 @@ class SimulatedClock final : public Clock
 public:
     explicit SimulatedClock(MonotonicTime start = {}) noexcept : now_(start), start_(start) {}
 
-    [[nodiscard]] MonotonicTime now() const noexcept override { return now_; }
+    [[nodiscard]] MonotonicTime now() const noexcept TACTUS_NONBLOCKING override { return now_; }
     /// 2000-01-01 UTC plus what has passed.
     [[nodiscard]] WallTime wall_now() const noexcept override
     {

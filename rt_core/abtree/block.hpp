@@ -56,11 +56,12 @@ static_assert(sizeof(BlockSide) == 96);
                                         ErrorCode error) noexcept TACTUS_NONBLOCKING;
 
 /// Takes an active face out, with the rows that only it used.
-void remove_from_block(BlockGeometry& block, BlockSide& side, std::uint32_t lane) noexcept;
+void remove_from_block(BlockGeometry& block, BlockSide& side,
+                       std::uint32_t lane) noexcept TACTUS_NONBLOCKING;
 
 /// Moves the faces in `moved` to an unused block, where they keep their lanes.
 void halve_block(BlockGeometry& block, BlockSide& side, std::uint32_t moved, BlockGeometry& other,
-                 BlockSide& other_side) noexcept;
+                 BlockSide& other_side) noexcept TACTUS_NONBLOCKING;
 
 [[nodiscard]] inline std::array<Vec3f, 3> block_triangle(const BlockGeometry& block,
                                                          std::uint32_t lane) noexcept

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "rt_core/base/realtime.hpp"
 #include "rt_core/force/vicinity.hpp"
 #include "rt_core/records/frame_input.hpp"
 #include "rt_core/records/frame_output.hpp"
@@ -40,7 +41,7 @@ public:
 
     /// Moves towards `goal_m` and returns the force. `surfaces` were queried at position_m().
     [[nodiscard]] ToolOutput respond(const Vec3& goal_m, std::span<const PlacedSurface> surfaces,
-                                     double elapsed_s) noexcept;
+                                     double elapsed_s) noexcept TACTUS_NONBLOCKING;
 
 private:
     enum class Motion : std::uint8_t

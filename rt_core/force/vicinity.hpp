@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "rt_core/base/realtime.hpp"
 #include "rt_core/base/static_vector.hpp"
 #include "rt_core/records/frame_input.hpp"
 #include "rt_core/records/local_surface.hpp"
@@ -34,13 +35,14 @@ public:
     /// reach_m() is less than asked for. `is_query_center` says that the surfaces were queried
     /// here, so their distances need not be computed again.
     Vicinity(std::span<const PlacedSurface> surfaces, const Vec3& center_m, double reach_m,
-             bool is_query_center) noexcept;
+             bool is_query_center) noexcept TACTUS_NONBLOCKING;
 
     /// Every triangle that isn't in the list is at least this far from the centre.
     [[nodiscard]] double reach_m() const noexcept { return reach_m_; }
 
     /// Of the listed triangles; infinitely far, with `fallback` for a normal, when there is none.
-    [[nodiscard]] NearestSurface nearest(const Vec3& point_m, const Vec3& fallback) const noexcept;
+    [[nodiscard]] NearestSurface nearest(const Vec3& point_m,
+                                         const Vec3& fallback) const noexcept TACTUS_NONBLOCKING;
 
 private:
     struct Entry

@@ -5,6 +5,7 @@
 #include "rt_core/abtree/ab_tree.hpp"
 #include "rt_core/base/arena.hpp"
 #include "rt_core/base/id_table.hpp"
+#include "rt_core/base/realtime.hpp"
 #include "rt_core/records/changed_face.hpp"
 #include "rt_core/spm/page_table.hpp"
 
@@ -65,24 +66,25 @@ public:
     }
     /// The same for a record at hand; `star` is written when it is done.
     [[nodiscard]] SplitOutcome split(RecordId id, const VsplitRecord& record,
-                                     StarGeometry& star) noexcept;
+                                     StarGeometry& star) noexcept TACTUS_NONBLOCKING;
 
     /// Redoes the record's collapse; false when a star face has been refined further.
-    [[nodiscard]] bool try_merge(RecordId id) noexcept;
+    [[nodiscard]] bool try_merge(RecordId id) noexcept TACTUS_NONBLOCKING;
 
     /// The first record that must be split before this one; none when there is none.
-    [[nodiscard]] RecordId missing_dependency(const VsplitRecord& record) const noexcept;
+    [[nodiscard]] RecordId
+    missing_dependency(const VsplitRecord& record) const noexcept TACTUS_NONBLOCKING;
 
     [[nodiscard]] const ActiveFace& face(PrimId prim) const noexcept { return faces_[prim.value]; }
     [[nodiscard]] PrimId find(FaceId face) const noexcept { return {index_list_.find(face.value)}; }
     /// kNextExact, kNextPending, or the id of the record that splits the face next.
-    [[nodiscard]] std::uint32_t next_of(PrimId prim) const noexcept;
-    [[nodiscard]] ErrorCode error_of(PrimId prim) const noexcept;
-    [[nodiscard]] Vec3f position_of(VertexId vertex) const noexcept;
-    [[nodiscard]] std::array<Vec3f, 3> corners_of(PrimId prim) const noexcept;
+    [[nodiscard]] std::uint32_t next_of(PrimId prim) const noexcept TACTUS_NONBLOCKING;
+    [[nodiscard]] ErrorCode error_of(PrimId prim) const noexcept TACTUS_NONBLOCKING;
+    [[nodiscard]] Vec3f position_of(VertexId vertex) const noexcept TACTUS_NONBLOCKING;
+    [[nodiscard]] std::array<Vec3f, 3> corners_of(PrimId prim) const noexcept TACTUS_NONBLOCKING;
 
     /// The face as it is now, for a tree that has no place for it yet.
-    [[nodiscard]] ChangedFace describe(PrimId prim) const noexcept;
+    [[nodiscard]] ChangedFace describe(PrimId prim) const noexcept TACTUS_NONBLOCKING;
 
     [[nodiscard]] std::uint32_t active_faces() const noexcept { return index_list_.size(); }
     [[nodiscard]] std::uint32_t active_faces_max() const noexcept { return active_max_; }

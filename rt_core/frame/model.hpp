@@ -4,6 +4,7 @@
 
 #include "rt_core/abtree/ab_tree.hpp"
 #include "rt_core/base/arena.hpp"
+#include "rt_core/base/realtime.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/cache/chunk_cache.hpp"
 #include "rt_core/cache/chunk_inbox.hpp"
@@ -66,16 +67,16 @@ struct Model
     ~Model() = default;
 
     /// Hands this frame's changes, and faces that found no place before, to the tree and refits it.
-    void refit(FrameFault& faults) noexcept;
+    void refit(FrameFault& faults) noexcept TACTUS_NONBLOCKING;
 
     /// Whether this frame may ask for what the region lacks.
-    [[nodiscard]] bool may_ask_for(const RankedRegion& region) const noexcept;
+    [[nodiscard]] bool may_ask_for(const RankedRegion& region) const noexcept TACTUS_NONBLOCKING;
     /// Whether all of the model has room at once.
     [[nodiscard]] bool fits() const noexcept;
     /// Moves the refined front to what the questions need; with the cache off, gives unused pages
     /// back.
     void refine(std::span<const RefineQuestion> questions, const Budgets& budgets,
-                std::uint32_t frame, FrameFault& faults) noexcept;
+                std::uint32_t frame, FrameFault& faults) noexcept TACTUS_NONBLOCKING;
 
     ModelHeader header;
     ModelCapacities capacities;

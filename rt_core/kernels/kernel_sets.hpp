@@ -7,8 +7,9 @@
 namespace tactus
 {
 
-/// What the sources that are compiled for more than the base instruction set offer to kernels.cpp.
-/// To be called on processors that have it.
-[[nodiscard]] const Kernels& avx2_kernels() noexcept;
+/// What the sources that are compiled once for each instruction set offer to kernels.cpp: data
+/// alone, since even a function that returns them would be compiled for that set.
+extern const Kernels kPortableKernels;
+extern const Kernels kAvx2Kernels; ///< Only with TACTUS_HAS_X86_KERNELS.
 
 } // namespace tactus

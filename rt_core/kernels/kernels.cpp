@@ -2,26 +2,33 @@
 // Copyright the Tactus authors.
 #include "rt_core/kernels/kernels.hpp"
 
-#if defined(TACTUS_HAS_X86_KERNELS)
 #include "rt_core/kernels/kernel_sets.hpp"
-#endif
+
+#include <array>
 
 namespace tactus
 {
 
+const Kernels& portable_kernels() noexcept
+{
+    return kPortableKernels;
+}
+
 #if defined(TACTUS_HAS_X86_KERNELS)
 
-std::span<const Kernels> available_kernels() noexcept
+std::span<const Kernels* const> available_kernels() noexcept
 {
-    static const std::array<Kernels, 2> kAll{portable_kernels(), avx2_kernels()};
-    return std::span(kAll).first(__builtin_cpu_supports("avx2") != 0 ? 2 : 1);
+    static constexpr std::array<const Kernels*, 2> kAll{&kPortableKernels, &kAvx2Kernels};
+    const bool has_avx2 = static_cast<bool>(__builtin_cpu_supports("avx2")); // GCC: int.
+    return std::span(kAll).first(has_avx2 ? 2 : 1);
 }
 
 #else
 
-std::span<const Kernels> available_kernels() noexcept
+std::span<const Kernels* const> available_kernels() noexcept
 {
-    return {&portable_kernels(), 1};
+    static constexpr std::array<const Kernels*, 1> kAll{&kPortableKernels};
+    return kAll;
 }
 
 #endif

@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "rt_core/base/realtime.hpp"
+
 #include <array>
 #include <cstdint>
 #include <span>
@@ -39,7 +41,7 @@ struct Kernels
     /// Lower bounds on the distances to the boxes of a node's eight children: `boxes` is AbNode's
     /// six rows. Returns the children in `mask` whose bound is not above `bound`.
     std::uint32_t (*child_gaps)(const float* boxes, const KernelProbe& probe, std::uint32_t mask,
-                                float bound, float* gaps);
+                                float bound, float* gaps) noexcept TACTUS_NONBLOCKING;
 
     /// Bounds on the distances to the faces in `mask` of a block: `coordinates` and `corners` are
     /// BlockGeometry's rows. The least upper bound of those that are also in `exact` lowers
@@ -51,13 +53,16 @@ struct Kernels
     /// another 1/kThinAspect x the longest edge.
     std::uint32_t (*face_bounds)(const float* coordinates, const std::uint8_t* corners,
                                  const KernelProbe& probe, std::uint32_t mask, std::uint32_t exact,
-                                 float floor, float& limit, FaceBounds& bounds);
+                                 float floor, float& limit,
+                                 FaceBounds& bounds) noexcept TACTUS_NONBLOCKING;
 
     /// Box of the vertices in `mask` of a block: low x, y, z, high x, y, z. Exact.
-    void (*block_box)(const float* coordinates, std::uint32_t mask, float* box);
+    void (*block_box)(const float* coordinates, std::uint32_t mask,
+                      float* box) noexcept TACTUS_NONBLOCKING;
 
     /// Union of the boxes of the children in `mask`. Exact.
-    void (*node_box)(const float* boxes, std::uint32_t mask, float* box);
+    void (*node_box)(const float* boxes, std::uint32_t mask,
+                     float* box) noexcept TACTUS_NONBLOCKING;
 };
 
 /// Faces with a larger (longest edge squared / twice the area) are bounded by their edges alone.
@@ -67,10 +72,10 @@ inline constexpr float kFaceMargin = 4e-5F;
 /// Runs everywhere.
 [[nodiscard]] const Kernels& portable_kernels() noexcept;
 /// The sets that this processor runs, the fastest last. Looks at the processor: for start-up.
-[[nodiscard]] std::span<const Kernels> available_kernels() noexcept;
+[[nodiscard]] std::span<const Kernels* const> available_kernels() noexcept;
 [[nodiscard]] inline const Kernels& best_kernels() noexcept
 {
-    return available_kernels().back();
+    return *available_kernels().back();
 }
 
 } // namespace tactus

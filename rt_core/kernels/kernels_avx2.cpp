@@ -9,9 +9,6 @@
 namespace tactus
 {
 
-const Kernels& avx2_kernels() noexcept
-{
-    return kKernels;
-}
+constinit const Kernels kAvx2Kernels = kKernels;
 
 } // namespace tactus

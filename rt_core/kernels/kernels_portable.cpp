@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #define TACTUS_KERNEL_SET "portable"
+#include "rt_core/kernels/kernel_sets.hpp"
 #include "rt_core/kernels/kernel_source.inc"
 
 namespace tactus
 {
 
-const Kernels& portable_kernels() noexcept
-{
-    return kKernels;
-}
+constinit const Kernels kPortableKernels = kKernels;
 
 } // namespace tactus

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "rt_core/base/realtime.hpp"
 #include "rt_core/math/vec3.hpp"
 
 #include <array>
@@ -50,7 +51,7 @@ struct ClosestPoint
 /// distances, and the plane's only when all three edge tests agree. A triangle with two or three
 /// equal corners is a segment or a point and no NaN arises for finite input. About 60
 /// multiplications, one square root.
-[[nodiscard]] ClosestPoint closest_point_on_triangle(const Vec3& query,
-                                                     const Triangle& triangle) noexcept;
+[[nodiscard]] ClosestPoint
+closest_point_on_triangle(const Vec3& query, const Triangle& triangle) noexcept TACTUS_NONBLOCKING;
 
 } // namespace tactus

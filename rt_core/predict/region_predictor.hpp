@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "rt_core/base/realtime.hpp"
 #include "rt_core/records/region_ranking.hpp"
 
 #include <array>
@@ -16,11 +17,12 @@ class RegionPredictor
 {
 public:
     /// The proxy's place in the model's frame in this frame, `elapsed_s` > 0 after the one before.
-    void observe(const Vec3& center_m, double elapsed_s) noexcept;
+    void observe(const Vec3& center_m, double elapsed_s) noexcept TACTUS_NONBLOCKING;
 
     /// Adds this pair's balls to the ranking: the present one with `radius_m`, then one for each
     /// lead time, widened by a tenth of the way there (the velocity is an estimate).
-    void rank(ModelId model, double radius_m, RegionRanking& ranking) const noexcept;
+    void rank(ModelId model, double radius_m,
+              RegionRanking& ranking) const noexcept TACTUS_NONBLOCKING;
 
     [[nodiscard]] const Vec3& velocity_m_per_s() const noexcept { return velocity_; }
 

@@ -18,8 +18,11 @@ inline constexpr double kFarQuanta = 0x1p36;
 
 [[nodiscard]] inline bool is_beyond_kernels(const Vec3& point_m, float quantum_m) noexcept
 {
-    // Written so that NaN is beyond, too.
-    return !(point_m.cwiseAbs().maxCoeff() < kFarQuanta * static_cast<double>(quantum_m));
+    const double limit_m = kFarQuanta * static_cast<double>(quantum_m);
+    // Written so that NaN is beyond, too. Not by maxCoeff(): that calls through a pointer, and lets
+    // NaN pass or not as the order of the coordinates has it.
+    return !(std::abs(point_m.x()) < limit_m && std::abs(point_m.y()) < limit_m &&
+             std::abs(point_m.z()) < limit_m);
 }
 
 /// `point_m` in the model's frame, not is_beyond_kernels().

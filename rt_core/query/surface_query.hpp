@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "rt_core/base/realtime.hpp"
 #include "rt_core/query/tree_walk.hpp"
 #include "rt_core/records/local_surface.hpp"
 
@@ -27,12 +28,13 @@ struct QueryMemory
 /// Writes `surface` completely. Haptic thread; cost: the nodes near the ball, about 5 ns a triangle
 /// in it.
 void gather_surface(const AbTree& tree, const Vec3& center_m, double reach_m, QueryMemory& memory,
-                    WalkBudget& budget, LocalSurface& surface) noexcept;
+                    WalkBudget& budget, LocalSurface& surface) noexcept TACTUS_NONBLOCKING;
 
 /// The distance question alone, within `band_m` (infinity for no band): beyond it L is the band and
 /// U is infinite.
 [[nodiscard]] DistanceAnswer query_distance(const AbTree& tree, const Vec3& center_m, double band_m,
-                                            QueryMemory& memory, WalkBudget& budget) noexcept;
+                                            QueryMemory& memory,
+                                            WalkBudget& budget) noexcept TACTUS_NONBLOCKING;
 
 /// How much of the best distance is proven when no exact face is in reach: the rest of the search
 /// would not change what is decided, and the proof lasts while the tool moves by less.

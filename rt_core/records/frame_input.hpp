@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "rt_core/base/realtime.hpp"
 #include "rt_core/math/vec3.hpp"
 #include "rt_core/spm/ids.hpp"
 
@@ -84,7 +85,7 @@ inline constexpr std::uint32_t kStages = 5;
 /// Called at the end of each stage, so that the caller can take the time; the frame reads no clock.
 struct StageMark
 {
-    using Function = void (*)(void* context, Stage stage) noexcept;
+    using Function = void (*)(void* context, Stage stage) noexcept TACTUS_NONBLOCKING;
 
     Function function{nullptr};
     void* context{nullptr};

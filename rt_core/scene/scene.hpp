@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "rt_core/base/realtime.hpp"
 #include "rt_core/base/static_vector.hpp"
 #include "rt_core/records/frame_input.hpp"
 #include "rt_core/records/local_surface.hpp"
@@ -45,11 +46,12 @@ public:
     /// Places a pair for this frame: the proxy, how far the tool asks from there, and how far it
     /// looks ahead.
     static void place(ScenePair& pair, const ObjectPose& pose, const Vec3& proxy_world_m,
-                      double reach_world_m, const Vec3& ahead_world_m) noexcept;
+                      double reach_world_m, const Vec3& ahead_world_m) noexcept TACTUS_NONBLOCKING;
     /// Keeps what a query found at the pair's present place.
-    static void remember(ScenePair& pair, const DistanceAnswer& answer) noexcept;
+    static void remember(ScenePair& pair, const DistanceAnswer& answer) noexcept TACTUS_NONBLOCKING;
     /// What `remember`ed knowledge says of the present place, without looking: a valid bracket.
-    [[nodiscard]] static DistanceAnswer from_motion(const ScenePair& pair) noexcept;
+    [[nodiscard]] static DistanceAnswer
+    from_motion(const ScenePair& pair) noexcept TACTUS_NONBLOCKING;
 
     [[nodiscard]] std::span<const ToolSpec> tools() const noexcept { return tools_.view(); }
     [[nodiscard]] std::span<const ObjectSpec> objects() const noexcept { return objects_.view(); }

@@ -4,14 +4,15 @@
 /// Any run of the frame, whatever ran out, replays bit for bit from its recording, and a replay
 /// with one bit changed is noticed.
 
+#include "platform/recording/frame_encoder.hpp"
 #include "platform/recording/replay.hpp"
 #include "tests/property/random.hpp"
+#include "tests/shared/altered_recording.hpp"
 #include "tests/shared/frame_rig.hpp"
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cstring>
+#include <cstdint>
 
 namespace tactus::test
 {
@@ -25,6 +26,7 @@ struct Hardship
     std::size_t pool_bytes;
     LoopbackFaults faults;
     std::uint32_t courier_steps;
+    bool static_when_it_fits{false};
 };
 
 std::vector<Hardship> hardships()
@@ -48,7 +50,8 @@ std::vector<Hardship> hardships()
     return {{"usual", {}, std::size_t{8} << 20U, {}, 4},
             {"starved", starved, std::size_t{8} << 20U, uneven, 1},
             {"tiny-pools", {}, std::size_t{400} << 10U, uneven, 2},
-            {"bad-link", {}, std::size_t{600} << 10U, bad, 3}};
+            {"bad-link", {}, std::size_t{600} << 10U, bad, 3},
+            {"static", {}, std::size_t{8} << 20U, uneven, 2, true}};
 }
 
 /// A goal that slides, leaps and rests, and a sample that is invalid now and then.
@@ -95,6 +98,7 @@ std::vector<std::byte> record_run(const TestModel& model, const Hardship& hardsh
     options.faults.seed = seed;
     options.courier_steps_per_frame = hardship.courier_steps;
     options.record = true;
+    options.static_when_it_fits = hardship.static_when_it_fits;
     FrameRig rig(model, options);
     Budgets budgets = hardship.budgets;
     for (int frame = 0; frame < kFrames; ++frame)
@@ -141,42 +145,6 @@ INSTANTIATE_TEST_SUITE_P(Runs, Replay,
                                                           std::size_t{3}, std::size_t{5}),
                                           testing::Range(std::size_t{0}, hardships().size())));
 
-/// A recording of the same frames in which `change` touched one of them.
-template <typename Change>
-std::vector<std::byte> altered(const Recording& recording, std::uint64_t frame, Change&& change)
-{
-    RecordingWriter writer(recording.setup());
-    for (std::uint32_t number = 0; number < 10'000; ++number)
-    {
-        for (const ContentKind kind : {ContentKind::index_page, ContentKind::chunk})
-        {
-            if (const auto piece = recording.piece(0, {kind, number}); !piece.empty())
-            {
-                writer.add_piece(0, {kind, number}, piece);
-            }
-        }
-    }
-    ByteReader reader(recording.frames());
-    for (std::uint64_t i = 0; !reader.at_end(); ++i)
-    {
-        const auto size = reader.read<std::uint32_t>();
-        const auto body = reader.read_bytes(size);
-        std::vector<std::byte> coded(sizeof(size));
-        std::memcpy(coded.data(), &size, sizeof(size));
-        coded.insert(coded.end(), body.begin(), body.end());
-        if (i == frame)
-        {
-            change(coded);
-        }
-        writer.add_frame(coded);
-    }
-    writer.finish(kNoFrame);
-    return writer.take_bytes();
-}
-
-/// Offsets in a coded frame of one tool: behind its size and flags.
-constexpr std::size_t kToolAt = 5;
-
 void expect_noticed(const std::vector<std::byte>& bytes, std::uint64_t frame)
 {
     const auto recording = Recording::parse(bytes, "altered");
@@ -193,19 +161,16 @@ TEST(ReplayOfAnAlteredRecording, is_noticed_in_the_frame_that_was_altered)
     const TestModel& model = *small_models()[0];
     const auto recording = Recording::parse(record_run(model, hardships()[0], 900), "rig");
     ASSERT_TRUE(recording) << recording.error().text;
-    const auto halve_or_double = [](std::size_t at)
-    { return [at](std::vector<std::byte>& coded) { coded[at + 6] ^= std::byte{0x10}; }; };
     const auto flip_from_end = [](std::size_t bytes) {
-        return [bytes](std::vector<std::byte>& coded)
-        { coded[coded.size() - bytes] ^= std::byte{1}; };
+        return [bytes](std::span<std::byte> coded) { coded[coded.size() - bytes] ^= std::byte{1}; };
     };
     for (const std::uint64_t frame : {0U, 57U, 399U})
     {
         SCOPED_TRACE("frame " + std::to_string(frame));
         // The goal's x; a bit of the state hash; one of the last output hash.
-        expect_noticed(altered(recording.value(), frame, halve_or_double(kToolAt)), frame);
-        expect_noticed(altered(recording.value(), frame, flip_from_end(40)), frame);
-        expect_noticed(altered(recording.value(), frame, flip_from_end(1)), frame);
+        expect_noticed(alter_frame(recording.value(), frame, change_goal), frame);
+        expect_noticed(alter_frame(recording.value(), frame, flip_from_end(40)), frame);
+        expect_noticed(alter_frame(recording.value(), frame, flip_from_end(1)), frame);
     }
 }
 
@@ -214,15 +179,47 @@ TEST(ReplayOfAnAlteredRecording, notices_another_budget_once_it_is_spent)
     const TestModel& model = *small_models()[0];
     const auto recording = Recording::parse(record_run(model, hardships()[0], 900), "rig");
     ASSERT_TRUE(recording) << recording.error().text;
-    const auto no_splits = [](std::vector<std::byte>& coded)
-    { coded[kToolAt + kToolStateBytes + kObjectPoseBytes] = std::byte{0}; };
-    const auto parsed = Recording::parse(altered(recording.value(), 0, no_splits), "altered");
+    const auto no_splits = [](std::span<std::byte> coded)
+    { coded[4 + 1 + kToolStateBytes + kObjectPoseBytes] = std::byte{0}; };
+    const auto parsed = Recording::parse(alter_frame(recording.value(), 0, no_splits), "altered");
     ASSERT_TRUE(parsed) << parsed.error().text;
 
     const auto replayed = replay(parsed.value());
 
     ASSERT_TRUE(replayed) << replayed.error().text;
     EXPECT_TRUE(replayed.value().difference.has_value());
+}
+
+TEST(ReplayOfAnAlteredRecording, ends_whatever_its_frames_say)
+{
+    const TestModel& model = *small_models()[0];
+    const auto recording = Recording::parse(record_run(model, hardships()[3], 900), "rig");
+    ASSERT_TRUE(recording) << recording.error().text;
+    const std::uint64_t seed = seed_of(901);
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    int replayed_count = 0;
+    for (int i = 0; i < 300; ++i)
+    {
+        const auto scribble = [&](std::span<std::byte> coded)
+        {
+            for (std::size_t more = random.below(4) + 1; more > 0; --more)
+            {
+                coded[4 + random.below(coded.size() - 4)] =
+                    static_cast<std::byte>(random.below(256));
+            }
+        };
+        const auto altered = Recording::parse(
+            alter_frame(recording.value(), random.below(kFrames), scribble), "altered");
+        if (altered)
+        {
+            const auto replayed = replay(altered.value());
+            ASSERT_TRUE(replayed) << replayed.error().text;
+            EXPECT_TRUE(replayed.value().difference || replayed.value().frames == kFrames);
+            ++replayed_count;
+        }
+    }
+    EXPECT_GT(replayed_count, 100);
 }
 
 } // namespace

@@ -46,6 +46,7 @@ FrameRig::FrameRig(const TestModel& model, const RigOptions& options)
     FrameSetup setup;
     setup.tools = tools;
     setup.objects = objects;
+    setup.static_when_it_fits = options.static_when_it_fits;
     const std::size_t shared =
         Frame::required_bytes(setup) + Arena::round_up(served_.header.size());
     const ModelCounts counts = header.counts();

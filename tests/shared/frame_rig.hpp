@@ -24,6 +24,7 @@ struct RigOptions
     LoopbackFaults faults;
     std::uint32_t courier_steps_per_frame{4};
     bool cache_off{false};
+    bool static_when_it_fits{false};
     bool record{false}; ///< Keep a recording; frames must then run through step() only.
 };
 

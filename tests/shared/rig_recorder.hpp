@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/recording/frame_coding.hpp"
+#include "platform/recording/frame_encoder.hpp"
 #include "platform/recording/recording_writer.hpp"
 #include "rt_core/frame/frame.hpp"
 #include "transport/courier.hpp"
