@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #include "rt_core/abtree/block.hpp"
 
+#include "rt_core/math/four_lanes.hpp"
+
 #include <cstring>
 #include <utility>
 
@@ -17,22 +19,10 @@ namespace
 
 constexpr std::uint32_t kNoVertex = kBlockVertices;
 
-using FourFloats = float __attribute__((vector_size(16)));
-using FourInts = std::int32_t __attribute__((vector_size(16)));
 using Bytes = std::uint8_t __attribute__((vector_size(kBlockFaces)));
 
-/// One bit a lane, of lanes that are all ones or all zeros.
-std::uint32_t bits_of(FourInts lanes) noexcept
-{
-#if defined(__SSE2__)
-    return static_cast<std::uint32_t>(_mm_movemask_ps(reinterpret_cast<__m128>(lanes)));
-#else
-    return static_cast<std::uint32_t>((lanes[0] & 1) | (lanes[1] & 2) | (lanes[2] & 4) |
-                                      (lanes[3] & 8));
-#endif
-}
-
-std::uint32_t bits_of(Bytes lanes) noexcept
+/// One bit a lane, as bits_of() of four lanes.
+std::uint32_t bits_of_bytes(Bytes lanes) noexcept
 {
 #if defined(__SSE2__)
     return static_cast<std::uint32_t>(_mm_movemask_epi8(reinterpret_cast<__m128i>(lanes)));
@@ -90,7 +80,7 @@ void drop_unless_used(BlockGeometry& block, std::uint8_t row) noexcept
     {
         Bytes rows;
         std::memcpy(&rows, corners.data(), sizeof rows);
-        lanes |= bits_of(reinterpret_cast<Bytes>(rows == row));
+        lanes |= bits_of_bytes(reinterpret_cast<Bytes>(rows == row));
     }
     if ((lanes & block.faces) == 0)
     {

@@ -4,10 +4,12 @@
 
 #include "rt_core/base/byte_io.hpp"
 #include "rt_core/base/crc32c.hpp"
+#include "rt_core/math/four_lanes.hpp"
 
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cstring>
 
 namespace tactus
 {
@@ -22,6 +24,13 @@ bool read_entry(ByteReader& reader, InfluenceBox& box, ChunkEntry& entry) noexce
     entry.hash = reader.read<ContentHash>();
     return box.low[0] <= box.high[0] && box.low[1] <= box.high[1] && box.low[2] <= box.high[2] &&
            entry.coded_bytes > 0 && entry.coded_bytes <= kMaxCodedChunkBytes;
+}
+
+FourFloats to_floats(const std::uint16_t* from) noexcept
+{
+    std::uint16_t __attribute__((vector_size(8))) shorts;
+    std::memcpy(&shorts, from, sizeof shorts);
+    return __builtin_convertvector(__builtin_convertvector(shorts, FourInts), FourFloats);
 }
 
 } // namespace
@@ -67,30 +76,30 @@ std::uint64_t chunks_meeting(const IndexPage& page, const QuantumBox& page_box,
 {
     std::array<double, 3> step{};
     std::array<double, 3> at{};
-    std::array<float, kChunksPerIndexPage> about_sq{};
     for (std::size_t axis = 0; axis < 3; ++axis)
     {
         step[axis] = static_cast<double>(index_step(page_box.low[axis], page_box.high[axis]));
         at[axis] = ball.center[axis] - static_cast<double>(page_box.low[axis]);
-        const auto step_about = static_cast<float>(step[axis]);
-        const auto at_about = static_cast<float>(at[axis]);
-        for (std::size_t i = 0; i < kChunksPerIndexPage; ++i)
-        {
-            const float below = static_cast<float>(page.low[axis][i]) * step_about - at_about;
-            const float above = at_about - static_cast<float>(page.high[axis][i]) * step_about;
-            const float outside = below > above ? below : above;
-            const float gap = outside > 0.0F ? outside : 0.0F;
-            about_sq[i] += gap * gap;
-        }
     }
     // A position in the page is right to a quantum, and one far outside to 1e-7 of its distance.
     const auto reach = static_cast<float>(ball.radius * (1.0 + 1e-6) + 4.0);
-    const float reach_sq = reach * reach;
     std::uint64_t near = 0;
-    for (std::size_t i = 0; i < page.chunks; ++i)
+    for (std::size_t first = 0; first < page.chunks; first += 4)
     {
-        near |= std::uint64_t{about_sq[i] <= reach_sq ? 1U : 0U} << i;
+        FourFloats about_sq{};
+        for (std::size_t axis = 0; axis < 3; ++axis)
+        {
+            const auto step_about = static_cast<float>(step[axis]);
+            const auto at_about = static_cast<float>(at[axis]);
+            const FourFloats below = to_floats(&page.low[axis][first]) * step_about - at_about;
+            const FourFloats above = at_about - to_floats(&page.high[axis][first]) * step_about;
+            const FourFloats outside = below > above ? below : above;
+            const FourFloats gap = outside > FourFloats{} ? outside : FourFloats{};
+            about_sq += gap * gap;
+        }
+        near |= std::uint64_t{bits_of(about_sq <= reach * reach)} << first;
     }
+    near &= ~std::uint64_t{0} >> (kChunksPerIndexPage - page.chunks);
     std::uint64_t meeting = 0;
     for (; near != 0; near &= near - 1)
     {
