@@ -48,6 +48,7 @@ struct Options
     double cache_mib{0.0};                 ///< 0: the usual share of the pool.
     std::uint32_t splits{64};              ///< At most, when there is a frame budget.
     std::optional<double> frame_budget_us; ///< None: budgets are fixed.
+    bool static_when_it_fits{true};
     double stiffness_n_per_m{500.0};
     bool trap_system_calls{false};
     RtThreadOptions thread;

@@ -98,6 +98,7 @@ Json models_of(const RunRecord& record)
                         {"pages_used_max", output.pages.used_max},
                         {"faces_used_max", output.faces.used_max},
                         {"refined_records", output.refined_records},
+                        {"static", output.is_static},
                         {"bytes_received", served.link->bytes_received()},
                         {"pieces_refused", courier.refused()},
                         {"host_connected", served.link->state() == LinkState::connected}});
@@ -329,6 +330,15 @@ std::string make_summary(const Json& report)
                     report["pools"]["pages"]["capacity"].get<std::uint64_t>(),
                     report["pools"]["faces"]["used_max"].get<std::uint64_t>(),
                     report["pools"]["faces"]["capacity"].get<std::uint64_t>());
+    for (const Json& model : report["models"])
+    {
+        if (model["static"].get<bool>())
+        {
+            text += fmt::format("static      {}: all of it is here and refined, nothing is left to "
+                                "load, refine or refit\n",
+                                model["name"].get<std::string>());
+        }
+    }
     text += fmt::format("streaming   {:.1f} KB received, {} pages loaded, {} evicted{}\n",
                         report["wire"]["bytes_received"].get<double>() / 1e3,
                         report["cache"]["loads"].get<std::uint64_t>(),

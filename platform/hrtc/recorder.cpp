@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/hrtc/recorder.hpp"
+
+#include <chrono>
+#include <utility>
+
+namespace tactus::hrtc
+{
+
+namespace
+{
+
+/// Pause between two rounds; the tap holds some 300 ms at the highest rate.
+constexpr std::chrono::milliseconds kPause{5};
+
+} // namespace
+
+Recorder::Recorder(OutputFile file, const FrameSetup& setup,
+                   std::vector<std::unique_ptr<Courier>>& couriers)
+    : file_(std::move(file)), couriers_(couriers), writer_(to_recorded(setup))
+{
+    for (std::uint32_t model = 0; model < couriers_.size(); ++model)
+    {
+        sinks_.push_back(std::make_unique<Sink>(*this, model));
+        couriers_[model]->copy_pieces_to(sinks_.back().get());
+    }
+    thread_ = std::thread([this] { run(); });
+}
+
+Recorder::~Recorder()
+{
+    stop();
+    for (const std::unique_ptr<Courier>& courier : couriers_)
+    {
+        courier->copy_pieces_to(nullptr);
+    }
+}
+
+Result<RecordingResult, OutputFileError> Recorder::finish()
+{
+    stop();
+    const std::uint64_t lost_from = tap_.lost_from();
+    writer_.finish(lost_from);
+    store();
+    if (!error_)
+    {
+        error_ = file_.commit();
+    }
+    if (error_)
+    {
+        return *error_;
+    }
+    return RecordingResult{writer_.frames(), file_.bytes(), lost_from};
+}
+
+void Recorder::stop()
+{
+    stopped_.store(true);
+    if (thread_.joinable())
+    {
+        thread_.join();
+        take_frames();
+    }
+}
+
+void Recorder::run()
+{
+    while (!stopped_.load())
+    {
+        take_frames();
+        store();
+        std::this_thread::sleep_for(kPause);
+    }
+}
+
+/// A piece is copied before it goes through the door, so those of a frame that has run are here.
+void Recorder::take_frames()
+{
+    std::vector<std::byte> coded;
+    while (tap_.try_take(coded))
+    {
+        take_pieces();
+        writer_.add_frame(coded);
+    }
+}
+
+void Recorder::take_pieces()
+{
+    std::vector<Piece> pieces;
+    {
+        const std::lock_guard lock(mutex_);
+        pieces = std::exchange(pieces_, {});
+    }
+    for (const Piece& piece : pieces)
+    {
+        writer_.add_piece(piece.model, piece.key, piece.bytes);
+    }
+}
+
+/// After an error the rest is dropped, so that it needs no memory.
+void Recorder::store()
+{
+    const std::vector<std::byte> bytes = writer_.take_bytes();
+    if (!error_)
+    {
+        error_ = file_.write(bytes);
+    }
+}
+
+void Recorder::Sink::receive(ContentKey key, std::span<const std::byte> bytes)
+{
+    const std::lock_guard lock(recorder_.mutex_);
+    recorder_.pieces_.push_back({model_, key, {bytes.begin(), bytes.end()}});
+}
+
+} // namespace tactus::hrtc

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "platform/hrtc/output_file.hpp"
+#include "platform/recording/frame_tap.hpp"
+#include "platform/recording/recording_writer.hpp"
+#include "transport/courier.hpp"
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <vector>
+
+namespace tactus::hrtc
+{
+
+/// What became of a recording, for the report.
+struct RecordingResult
+{
+    std::uint64_t frames{0};
+    std::uint64_t bytes{0};
+    std::uint64_t lost_from{kNoFrame}; ///< First frame that is missing; kNoFrame: none is.
+};
+
+/// Writes a run's recording on a thread of its own, of ordinary priority. Frames come from the
+/// haptic thread through a FrameTap, which never waits; pieces from the transport thread.
+class Recorder
+{
+public:
+    /// Starts the thread, so before the haptic thread: threads inherit policy and processor. The
+    /// couriers must outlive the recorder, and nobody may run them while it is made or destroyed.
+    Recorder(OutputFile file, const FrameSetup& setup,
+             std::vector<std::unique_ptr<Courier>>& couriers);
+    Recorder(const Recorder&) = delete;
+    Recorder& operator=(const Recorder&) = delete;
+    ~Recorder();
+
+    /// What the haptic thread records through.
+    [[nodiscard]] FrameTap& tap() noexcept { return tap_; }
+
+    /// Writes what waits, ends the recording and gives the file its name. Once, when no frame runs
+    /// any more.
+    [[nodiscard]] Result<RecordingResult, OutputFileError> finish();
+
+private:
+    struct Piece
+    {
+        std::uint32_t model{0};
+        ContentKey key;
+        std::vector<std::byte> bytes;
+    };
+    /// One model's pieces, on the transport thread.
+    class Sink final : public PieceSink
+    {
+    public:
+        Sink(Recorder& recorder, std::uint32_t model) : recorder_(recorder), model_(model) {}
+        void receive(ContentKey key, std::span<const std::byte> bytes) override;
+
+    private:
+        Recorder& recorder_;
+        std::uint32_t model_;
+    };
+
+    void run();
+    void stop();
+    void take_frames();
+    void take_pieces();
+    void store();
+
+    OutputFile file_;
+    std::vector<std::unique_ptr<Courier>>& couriers_;
+    std::vector<std::unique_ptr<Sink>> sinks_;
+    FrameTap tap_;
+    RecordingWriter writer_;
+    std::mutex mutex_;
+    std::vector<Piece> pieces_; ///< Not yet in the writer; under the mutex.
+    std::optional<OutputFileError> error_;
+    std::atomic<bool> stopped_{false};
+    std::thread thread_; ///< Last: it uses the others.
+};
+
+} // namespace tactus::hrtc

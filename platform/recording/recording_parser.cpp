@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/recording/recording.hpp"
+#include "platform/recording/setup_coding.hpp"
+#include "rt_core/base/crc32c.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <optional>
+#include <utility>
+
+namespace tactus
+{
+
+namespace
+{
+
+constexpr const char* kNotARecording = "is not a Tactus recording: it doesn't begin with TACTREC";
+
+} // namespace
+
+/// Goes through the sections once. Every parse_ function returns what is wrong, or nothing.
+class RecordingParser
+{
+public:
+    RecordingParser(std::span<const std::byte> bytes, std::string name)
+        : bytes_(bytes), name_(std::move(name))
+    {
+    }
+
+    [[nodiscard]] Result<Recording, RecordingError> parse()
+    {
+        std::optional<std::string> fault = parse_prologue();
+        while (!fault && !has_end_)
+        {
+            fault = parse_section();
+        }
+        if (!fault && at_ != bytes_.size())
+        {
+            fault = "the end section is followed by " + std::to_string(bytes_.size() - at_) +
+                    " bytes; nothing may follow it";
+        }
+        if (fault)
+        {
+            return RecordingError{name_ + ": at byte " + std::to_string(at_) + ": " + *fault};
+        }
+        return std::move(recording_);
+    }
+
+private:
+    using Fault = std::optional<std::string>;
+
+    Fault parse_prologue()
+    {
+        const std::size_t magic_bytes = std::min(bytes_.size(), kRecordingMagic.size());
+        if (magic_bytes == 0)
+        {
+            return "the file is empty";
+        }
+        if (std::memcmp(bytes_.data(), kRecordingMagic.data(), magic_bytes) != 0)
+        {
+            return kNotARecording;
+        }
+        if (bytes_.size() < kRecordingPrologueBytes)
+        {
+            return cut_short(kRecordingPrologueBytes);
+        }
+        ByteReader reader(bytes_.subspan(kRecordingMagic.size()));
+        const auto version = reader.read<std::uint32_t>();
+        if (version != kRecordingVersion)
+        {
+            at_ = kRecordingMagic.size();
+            return "format version " + std::to_string(version) +
+                   " is unknown; this program reads " + std::to_string(kRecordingVersion);
+        }
+        at_ = kRecordingPrologueBytes;
+        return std::nullopt;
+    }
+
+    [[nodiscard]] std::string cut_short(std::size_t needed) const
+    {
+        return "the file is cut short: " + std::to_string(needed) + " bytes are needed here and " +
+               std::to_string(bytes_.size() - at_) + " are left";
+    }
+
+    Fault parse_section()
+    {
+        const std::span<const std::byte> rest = bytes_.subspan(at_);
+        if (rest.size() < kSectionHeaderBytes)
+        {
+            return cut_short(kSectionHeaderBytes);
+        }
+        ByteReader reader(rest);
+        const auto kind = reader.read<std::uint32_t>();
+        const auto size = reader.read<std::uint32_t>();
+        const auto checksum = reader.read<std::uint32_t>();
+        if (kind < static_cast<std::uint32_t>(SectionKind::setup) ||
+            kind > static_cast<std::uint32_t>(SectionKind::end))
+        {
+            return "section kind " + std::to_string(kind) + " is unknown; 1 to 5 are allowed";
+        }
+        if (size > reader.remaining())
+        {
+            return cut_short(kSectionHeaderBytes + std::size_t{size});
+        }
+        std::vector<std::byte> covered(rest.begin(), rest.begin() + 8);
+        const std::span<const std::byte> payload = reader.read_bytes(size);
+        covered.insert(covered.end(), payload.begin(), payload.end());
+        if (crc32c(covered) != checksum)
+        {
+            return "section of kind " + std::to_string(kind) + " and " + std::to_string(size) +
+                   " bytes is damaged: its checksum does not fit";
+        }
+        if (Fault fault = parse_payload(static_cast<SectionKind>(kind), payload))
+        {
+            return fault;
+        }
+        at_ += kSectionHeaderBytes + size;
+        return std::nullopt;
+    }
+
+    Fault parse_payload(SectionKind kind, std::span<const std::byte> payload)
+    {
+        const bool wants_setup = !has_setup_;
+        const bool wants_model = has_setup_ && recording_.setup_.models.size() < model_count_;
+        if (wants_setup != (kind == SectionKind::setup) ||
+            (!wants_setup && wants_model != (kind == SectionKind::model)))
+        {
+            return "a section is out of order: the setup comes first, then " +
+                   std::to_string(model_count_) + " models, then pieces and frames";
+        }
+        switch (kind)
+        {
+        case SectionKind::setup:
+            has_setup_ = true;
+            return parse_setup(payload, recording_.setup_, model_count_);
+        case SectionKind::model:
+            return add_model(payload);
+        case SectionKind::piece:
+            return parse_piece(payload);
+        case SectionKind::frames:
+            return parse_frames(payload);
+        case SectionKind::end:
+            return parse_end(payload);
+        }
+        return std::nullopt;
+    }
+
+    Fault add_model(std::span<const std::byte> payload)
+    {
+        RecordedModel model;
+        ModelCounts counts;
+        if (Fault fault = parse_model(payload, model, counts, pool_bytes_left_))
+        {
+            return fault;
+        }
+        counts_.push_back(counts);
+        recording_.setup_.models.push_back(std::move(model));
+        if (recording_.setup_.models.size() == model_count_)
+        {
+            decoder_.emplace(recording_.shape());
+        }
+        return std::nullopt;
+    }
+
+    Fault parse_piece(std::span<const std::byte> payload)
+    {
+        ByteReader reader(payload);
+        const auto model = reader.read<std::uint8_t>();
+        const auto kind = static_cast<ContentKind>(reader.read<std::uint8_t>());
+        const auto number = reader.read<std::uint32_t>();
+        const auto bytes = reader.read_bytes(reader.remaining());
+        const bool is_chunk = kind == ContentKind::chunk;
+        const bool is_known =
+            !reader.failed() && model < model_count_ &&
+            (is_chunk ? number < counts_[model].chunks()
+                      : kind == ContentKind::index_page && number < counts_[model].index_pages());
+        if (!is_known)
+        {
+            return "a piece is not a chunk or index page of one of the recording's models";
+        }
+        if (bytes.empty() || bytes.size() > kMaxCodedChunkBytes)
+        {
+            return "a piece has " + std::to_string(bytes.size()) + " bytes; 1 to " +
+                   std::to_string(kMaxCodedChunkBytes) + " are allowed";
+        }
+        const bool is_new = recording_.pieces_
+                                .try_emplace({model, kind, number},
+                                             std::vector<std::byte>(bytes.begin(), bytes.end()))
+                                .second;
+        return is_new ? std::nullopt : Fault("a piece is in the recording twice");
+    }
+
+    Fault parse_frames(std::span<const std::byte> payload)
+    {
+        if (payload.empty() || payload.size() > kMaxFramesSectionBytes)
+        {
+            return "a frames section has " + std::to_string(payload.size()) + " bytes; 1 to " +
+                   std::to_string(kMaxFramesSectionBytes) + " are allowed";
+        }
+        for (ByteReader reader(payload); !reader.at_end(); ++recording_.frame_count_)
+        {
+            Fault fault;
+            if (const char* text = decoder_->decode(reader))
+            {
+                fault = text;
+            }
+            else
+            {
+                fault = check_pieces(decoder_->frame());
+            }
+            if (fault)
+            {
+                return "frame " + std::to_string(recording_.frame_count_) + " " + *fault;
+            }
+        }
+        recording_.frames_.insert(recording_.frames_.end(), payload.begin(), payload.end());
+        return std::nullopt;
+    }
+
+    /// What arrives must have been recorded before.
+    Fault check_pieces(const RecordedFrame& frame) const
+    {
+        for (std::uint32_t model = 0; model < frame.doors.size(); ++model)
+        {
+            const ModelCapacities& capacities = recording_.setup_.models[model].capacities;
+            for (const DoorEvent& event : frame.doors[model].events)
+            {
+                const std::uint32_t slots = event.key.kind == ContentKind::chunk
+                                                ? capacities.pages
+                                                : capacities.index_pages;
+                if (event.slot >= slots)
+                {
+                    return "names slot " + std::to_string(event.slot) + " of " +
+                           std::to_string(slots);
+                }
+                if (recording_.piece(model, event.key).empty())
+                {
+                    return "takes piece " + std::to_string(event.key.number) +
+                           " from the door, which is not in the recording before it";
+                }
+            }
+        }
+        return std::nullopt;
+    }
+
+    Fault parse_end(std::span<const std::byte> payload)
+    {
+        ByteReader reader(payload);
+        const auto frames = reader.read<std::uint64_t>();
+        recording_.lost_from_ = reader.read<std::uint64_t>();
+        const auto pieces = reader.read<std::uint64_t>();
+        if (Fault fault = unless_whole(reader, "end"))
+        {
+            return fault;
+        }
+        if (frames != recording_.frame_count_ || pieces != recording_.pieces_.size())
+        {
+            return "the end states " + std::to_string(frames) + " frames and " +
+                   std::to_string(pieces) + " pieces, but " +
+                   std::to_string(recording_.frame_count_) + " and " +
+                   std::to_string(recording_.pieces_.size()) + " came before";
+        }
+        if (recording_.lost_from_ != kNoFrame && recording_.lost_from_ != frames)
+        {
+            return "the first lost frame is " + std::to_string(recording_.lost_from_) + "; after " +
+                   std::to_string(frames) + " frames only that number is allowed";
+        }
+        has_end_ = true;
+        return std::nullopt;
+    }
+
+    std::span<const std::byte> bytes_;
+    std::string name_;
+    std::size_t at_{0};
+    Recording recording_;
+    std::uint32_t model_count_{0};
+    bool has_setup_{false};
+    bool has_end_{false};
+    std::size_t pool_bytes_left_{kMaxRecordedPoolBytes};
+    std::vector<ModelCounts> counts_;
+    std::optional<FrameDecoder> decoder_;
+};
+
+Result<Recording, RecordingError> Recording::parse(std::span<const std::byte> bytes,
+                                                   const std::string& name)
+{
+    return RecordingParser(bytes, name).parse();
+}
+
+} // namespace tactus

@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/recording/setup_coding.hpp"
+
+#include "platform/recording/byte_append.hpp"
+#include "rt_core/frame/frame.hpp"
+
+#include <algorithm>
+
+namespace tactus
+{
+
+namespace
+{
+
+using Fault = std::optional<std::string>;
+
+/// A slot of the smallest pool has 16 bytes, so no pool of 4 GiB has more; far from where sums of
+/// 32 bits would wrap.
+constexpr std::uint32_t kMaxCapacity = 1U << 28U;
+
+void append_name(std::vector<std::byte>& bytes, const std::string& name)
+{
+    const std::string_view kept = std::string_view(name).substr(0, kMaxRecordedNameBytes);
+    append(bytes, static_cast<std::uint8_t>(kept.size()));
+    append_bytes(bytes, std::as_bytes(std::span(kept)));
+}
+
+std::string read_name(ByteReader& reader)
+{
+    const auto bytes = reader.read_bytes(reader.read<std::uint8_t>());
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+/// Names are printed; a recording must not move the terminal's cursor.
+bool is_sound(const std::string& name)
+{
+    return name.size() <= kMaxRecordedNameBytes &&
+           std::all_of(name.begin(), name.end(), [](char c) { return c >= ' ' && c <= '~'; });
+}
+
+bool is_within(double value, double least, double most)
+{
+    return value >= least && value <= most; // False for NaN.
+}
+
+bool is_sound(const ToolSpec& tool)
+{
+    return is_within(tool.radius_m, 1e-9, 1e6) && is_within(tool.stiffness_n_per_m, 0.0, 1e9) &&
+           is_within(tool.force_max_n, 0.0, 1e9) && is_within(tool.speed_max_m_per_s, 0.0, 1e9);
+}
+
+Fault parse_tools(ByteReader& reader, std::uint32_t tools, RecordedSetup& setup)
+{
+    for (std::uint32_t i = 0; i < tools; ++i)
+    {
+        ToolSpec tool;
+        tool.radius_m = reader.read<double>();
+        tool.stiffness_n_per_m = reader.read<double>();
+        tool.force_max_n = reader.read<double>();
+        tool.speed_max_m_per_s = reader.read<double>();
+        if (!is_sound(tool))
+        {
+            return "tool " + std::to_string(i) +
+                   " is not within 1e-9 to 1e6 m, 0 to 1e9 N/m, 0 to 1e9 N, 0 to 1e9 m/s";
+        }
+        setup.tools.push_back(tool);
+    }
+    return std::nullopt;
+}
+
+Fault parse_objects(ByteReader& reader, std::uint32_t objects, std::uint32_t models,
+                    RecordedSetup& setup)
+{
+    for (std::uint32_t i = 0; i < objects; ++i)
+    {
+        setup.objects.push_back({ModelId{reader.read<std::uint32_t>()}});
+        if (setup.objects.back().model.value >= models)
+        {
+            return "object " + std::to_string(i) + " names model " +
+                   std::to_string(setup.objects.back().model.value) + " of " +
+                   std::to_string(models);
+        }
+    }
+    return std::nullopt;
+}
+
+Fault check(const ModelCapacities& capacities, std::uint32_t base_faces)
+{
+    const auto [least, most] = std::minmax(
+        {capacities.pages, capacities.index_pages, capacities.blocks, capacities.nodes});
+    if (least < 1 || most > kMaxCapacity || capacities.faces > kMaxCapacity)
+    {
+        return "a pool has " +
+               std::to_string(least < 1 ? least : std::max(most, capacities.faces)) +
+               " slots; 1 to " + std::to_string(kMaxCapacity) + " are allowed";
+    }
+    if (capacities.faces < base_faces)
+    {
+        return "there is room for " + std::to_string(capacities.faces) +
+               " faces; the base mesh alone has " + std::to_string(base_faces);
+    }
+    return std::nullopt;
+}
+
+} // namespace
+
+std::vector<std::byte> code_setup(const RecordedSetup& setup)
+{
+    std::vector<std::byte> bytes;
+    append(bytes, setup.period_ns);
+    append(bytes, setup.pose_age_max_ns);
+    append(bytes, static_cast<std::uint8_t>(setup.static_when_it_fits));
+    append(bytes, static_cast<std::uint8_t>(setup.tools.size()));
+    append(bytes, static_cast<std::uint8_t>(setup.objects.size()));
+    append(bytes, static_cast<std::uint8_t>(setup.models.size()));
+    for (const ToolSpec& tool : setup.tools)
+    {
+        append(bytes, tool.radius_m);
+        append(bytes, tool.stiffness_n_per_m);
+        append(bytes, tool.force_max_n);
+        append(bytes, tool.speed_max_m_per_s);
+    }
+    for (const ObjectSpec& object : setup.objects)
+    {
+        append(bytes, object.model.value);
+    }
+    append_name(bytes, setup.compiler);
+    append_name(bytes, setup.architecture);
+    append_name(bytes, setup.kernels);
+    return bytes;
+}
+
+std::vector<std::byte> code_model(const RecordedModel& model)
+{
+    std::vector<std::byte> bytes;
+    const ModelCapacities& capacities = model.capacities;
+    for (const std::uint32_t capacity : {capacities.pages, capacities.index_pages, capacities.faces,
+                                         capacities.blocks, capacities.nodes})
+    {
+        append(bytes, capacity);
+    }
+    append(bytes, static_cast<std::uint8_t>(capacities.cache_off));
+    append(bytes, static_cast<std::uint32_t>(model.header.size()));
+    append_bytes(bytes, model.header);
+    append_bytes(bytes, model.base);
+    return bytes;
+}
+
+std::optional<std::string> parse_setup(std::span<const std::byte> payload, RecordedSetup& setup,
+                                       std::uint32_t& models)
+{
+    ByteReader reader(payload);
+    setup.period_ns = reader.read<std::int64_t>();
+    setup.pose_age_max_ns = reader.read<std::int64_t>();
+    const auto is_static = reader.read<std::uint8_t>();
+    setup.static_when_it_fits = is_static != 0;
+    const auto tools = reader.read<std::uint8_t>();
+    const auto objects = reader.read<std::uint8_t>();
+    models = reader.read<std::uint8_t>();
+    if (tools < 1 || tools > kMaxTools || objects < 1 || objects > kMaxObjects || models < 1 ||
+        models > kMaxModels)
+    {
+        return "the setup has " + std::to_string(tools) + " tools, " + std::to_string(objects) +
+               " objects and " + std::to_string(models) +
+               " models; 1 to 4, 1 to 8 and 1 to 8 are allowed";
+    }
+    if (is_static > 1)
+    {
+        return "the static mode is " + std::to_string(is_static) + "; 0 and 1 are allowed";
+    }
+    if (setup.period_ns < 1 || setup.period_ns > 1'000'000'000)
+    {
+        return "the period is " + std::to_string(setup.period_ns) +
+               " ns; 1 to 1000000000 are allowed";
+    }
+    if (Fault fault = parse_tools(reader, tools, setup))
+    {
+        return fault;
+    }
+    if (Fault fault = parse_objects(reader, objects, models, setup))
+    {
+        return fault;
+    }
+    for (std::string* name : {&setup.compiler, &setup.architecture, &setup.kernels})
+    {
+        *name = read_name(reader);
+        if (!is_sound(*name))
+        {
+            return "a name in the setup is not of at most 63 printable characters";
+        }
+    }
+    return unless_whole(reader, "setup");
+}
+
+std::optional<std::string> parse_model(std::span<const std::byte> payload, RecordedModel& model,
+                                       ModelCounts& counts, std::size_t& bytes_left)
+{
+    ByteReader reader(payload);
+    ModelCapacities& capacities = model.capacities;
+    for (std::uint32_t* capacity : {&capacities.pages, &capacities.index_pages, &capacities.faces,
+                                    &capacities.blocks, &capacities.nodes})
+    {
+        *capacity = reader.read<std::uint32_t>();
+    }
+    const auto cache_off = reader.read<std::uint8_t>();
+    capacities.cache_off = cache_off != 0;
+    const auto header = reader.read_bytes(reader.read<std::uint32_t>());
+    const auto base = reader.read_bytes(reader.remaining());
+    model.header.assign(header.begin(), header.end());
+    model.base.assign(base.begin(), base.end());
+    if (Fault fault = unless_whole(reader, "model"))
+    {
+        return fault;
+    }
+    const auto parsed = ModelHeader::parse(model.header);
+    if (!parsed)
+    {
+        return std::string("the model's header is damaged: ") + refusal_text(parsed.error());
+    }
+    counts = parsed.value().counts();
+    if (cache_off > 1)
+    {
+        return "the cache's switch is " + std::to_string(cache_off) + "; 0 and 1 are allowed";
+    }
+    if (Fault fault = check(capacities, counts.base_faces))
+    {
+        return fault;
+    }
+    const std::size_t needed = required_bytes(parsed.value(), capacities);
+    if (needed > bytes_left)
+    {
+        return "the pools of all models need more than " +
+               std::to_string(kMaxRecordedPoolBytes >> 20U) + " MiB, which is the most allowed";
+    }
+    bytes_left -= needed;
+    return std::nullopt;
+}
+
+std::optional<std::string> unless_whole(const ByteReader& reader, const char* section)
+{
+    return reader.failed() || !reader.at_end()
+               ? Fault(std::string("the ") + section + " section has another size than its content")
+               : std::nullopt;
+}
+
+} // namespace tactus

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "platform/recording/recording_format.hpp"
+#include "rt_core/base/byte_io.hpp"
+#include "rt_core/spm/header.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace tactus
+{
+
+/// Content of the setup section: everything but the models, of which it holds the number.
+[[nodiscard]] std::vector<std::byte> code_setup(const RecordedSetup& setup);
+/// Content of one model section.
+[[nodiscard]] std::vector<std::byte> code_model(const RecordedModel& model);
+
+/// Reads a setup section and how many models follow. Returns what is wrong, or nothing.
+[[nodiscard]] std::optional<std::string> parse_setup(std::span<const std::byte> payload,
+                                                     RecordedSetup& setup, std::uint32_t& models);
+/// Reads a model section. `bytes_left` is what all pools may still need, and is lowered by this
+/// model's. Returns what is wrong, or nothing.
+[[nodiscard]] std::optional<std::string> parse_model(std::span<const std::byte> payload,
+                                                     RecordedModel& model, ModelCounts& counts,
+                                                     std::size_t& bytes_left);
+
+/// What is wrong when a section's content ends before or after its payload does.
+[[nodiscard]] std::optional<std::string> unless_whole(const ByteReader& reader,
+                                                      const char* section);
+
+} // namespace tactus

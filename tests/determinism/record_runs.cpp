@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+
+/// record_runs FOLDER: makes shapes, touches them in several ways and writes a recording of each
+/// run into the folder. What other builds must replay bit for bit.
+
+#include "tests/shared/frame_rig.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <numbers>
+
+namespace tactus::test
+{
+namespace
+{
+
+constexpr std::uint32_t kFrames = 500;
+
+/// The middle of the face that lies farthest in a direction.
+Vec3 place_on(const TestModel& model, const Vec3& direction)
+{
+    Vec3 place(0.0, 0.0, 0.0);
+    double farthest = -1e300;
+    for (const Face& face : model.faces)
+    {
+        const Vec3 middle = (to_vec3(face[0]) + to_vec3(face[1]) + to_vec3(face[2])) / 3.0;
+        if (middle.dot(direction) > farthest)
+        {
+            farthest = middle.dot(direction);
+            place = middle;
+        }
+    }
+    return place;
+}
+
+Vec3 direction_at(double turns)
+{
+    const double angle = 2.0 * std::numbers::pi * turns;
+    return {std::cos(angle), std::sin(angle), 0.4 * std::sin(3.0 * angle)};
+}
+
+/// Down to the surface, then along it, pressed a little into it.
+Vec3 slide(const TestModel& model, std::uint32_t frame)
+{
+    const Vec3 direction = direction_at(frame / 800.0);
+    const double height = frame < 60 ? 0.05 * (1.0 - frame / 60.0) : 0.0;
+    return place_on(model, direction) + (height - 0.004) * model.diagonal_m * direction;
+}
+
+/// Up and down over five places.
+Vec3 tap(const TestModel& model, std::uint32_t frame)
+{
+    const Vec3 direction = direction_at((frame / 100) / 5.0);
+    const double height = 0.05 * std::cos(2.0 * std::numbers::pi * frame / 100.0) + 0.04;
+    return place_on(model, direction) + height * model.diagonal_m * direction;
+}
+
+/// From one side to another every 25 frames.
+Vec3 teleport(const TestModel& model, std::uint32_t frame)
+{
+    return place_on(model, direction_at(0.381966 * (frame / 25)));
+}
+
+struct Run
+{
+    const char* name;
+    const TestModel* model;
+    std::function<Vec3(const TestModel&, std::uint32_t)> motion;
+    RigOptions options;
+    Budgets budgets;
+};
+
+std::vector<Run> runs()
+{
+    const std::vector<const TestModel*> models = small_models();
+    RigOptions usual;
+    usual.record = true;
+    usual.faults.delay_polls_max = 20;
+    RigOptions starved = usual;
+    starved.pool_bytes = std::size_t{400} << 10U;
+    starved.faults.loss = 0.1;
+    starved.faults.duplicates = 0.1;
+    starved.faults.delay_polls_max = 40;
+    RigOptions fixed = usual;
+    fixed.static_when_it_fits = true;
+    Budgets few;
+    few.splits = 6;
+    few.merges = 4;
+    few.nodes = 64;
+    few.triangles = 200;
+    few.pages = 1;
+    few.requests = 2;
+    return {{"slide", models[0], slide, usual, {}},
+            {"tap", models[3], tap, usual, {}},
+            {"teleport", models[2], teleport, usual, {}},
+            {"starvation", models[0], slide, starved, few},
+            {"needles", models[5], slide, usual, {}},
+            {"static", models[1], slide, fixed, {}}};
+}
+
+/// False when the file can't be written.
+bool record(const Run& run, const std::filesystem::path& folder)
+{
+    FrameRig rig(*run.model, run.options);
+    std::uint64_t faces = 0;
+    std::uint32_t contacts = 0;
+    std::uint32_t static_frames = 0;
+    for (std::uint32_t frame = 0; frame < kFrames; ++frame)
+    {
+        const FrameOutput output = rig.step(run.motion(*run.model, frame), run.budgets);
+        faces += output.work.splits;
+        contacts += output.tools[0].in_contact ? 1U : 0U;
+        static_frames += output.models[0].is_static ? 1U : 0U;
+    }
+    const std::vector<std::byte> bytes = rig.finish_recording();
+    std::ofstream file(folder / (std::string(run.name) + ".rec"), std::ios::binary);
+    file.write(reinterpret_cast<const char*>(bytes.data()),
+               static_cast<std::streamsize>(bytes.size()));
+    std::printf("%s: %u frames, %u in contact, %u static, %llu splits, %zu bytes\n", run.name,
+                kFrames, contacts, static_frames, static_cast<unsigned long long>(faces),
+                bytes.size());
+    return static_cast<bool>(file.flush());
+}
+
+} // namespace
+} // namespace tactus::test
+
+int main(int argc, char** argv)
+{
+    if (argc != 2)
+    {
+        std::printf("usage: record_runs FOLDER\n");
+        return 3;
+    }
+    std::filesystem::create_directories(argv[1]);
+    bool is_written = true;
+    for (const tactus::test::Run& run : tactus::test::runs())
+    {
+        is_written = tactus::test::record(run, argv[1]) && is_written;
+    }
+    return is_written ? 0 : 2;
+}

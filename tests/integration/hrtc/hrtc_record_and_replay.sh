@@ -1,0 +1,95 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# hrtc_record_and_replay.sh: a run over DDS with governed budgets is recorded and replays bit for
+# bit without DDS; another input is told by its frame; damaged and foreign files, and options that
+# exclude each other, are refused in one line. $4 is the program that alters a recording.
+source "$(dirname "$0")/common.sh"
+readonly alter=$4
+
+# The command line, before anything runs.
+refuse() { expect "$1" "$2" "$hrtc" "${@:3}"; }
+"$hrtc" --help >help.txt
+for option in --record --replay; do
+    grep -q -- "$option " help.txt || fault "hrtc --help does not tell of $option"
+    refuse 3 "$option: *name is needed" --model bumpy "$option" ''
+done
+refuse 3 '--model is required' --record run.rec
+for option in --model --record --duration --rate --frame-budget-us --splits --report; do
+    refuse 3 "--replay: takes no other option; $option was given" --replay run.rec "$option" 100
+done
+refuse 3 '--replay: takes no other option; --allow-no-rt' --replay run.rec --allow-no-rt
+refuse 3 '--record: must be another file than --report' --model bumpy --record a --report a
+mkdir folder
+for path in nowhere/run.rec folder; do
+    refuse 2 "--record: $path: can't be written" --allow-no-rt --model bumpy --record "$path"
+done
+
+# Two tools, two models, streaming into small pools.
+"$build" --shape bumpy-sphere --faces 60000 -o bumpy.spm >build.log 2>&1
+"$build" --shape torus --faces 20000 -o torus.spm >build.log 2>&1
+start_publisher bumpy.spm torus.spm
+run_hrtc --model bumpy --model torus --place 0,0,0 --place 0.3,0,0,0,30,0,2 --tool sphere:0.002 \
+    --tool sphere:0.004 --duration 2 --pool-mib 1 --frame-budget-us 300 --record run.rec
+check_clean report.json
+check report.json frames == 2000 recording.frames == 2000 recording.bytes '>' 100000
+grep -q '^recording   2000 frames, ' hrtc.log || fault 'the summary has no recording'
+! grep -q 'incomplete' hrtc.log || fault 'frames of the recording are lost'
+[[ -z $(compgen -G '*.partial') ]] || fault 'left behind: a partial file'
+stop TERM "$publisher"
+
+said=$("$hrtc" --replay run.rec) || fail "the replay ended with $?: $said"
+[[ "$said" == 'run.rec: 2000 frames agree bit for bit; recorded by '* ]] || fault "it says: $said"
+
+# One bit of one input.
+for frame in 0 1234; do
+    "$alter" run.rec altered.rec "$frame"
+    refuse 1 "altered.rec: frame $frame differs: " --replay altered.rec
+done
+
+# What is no recording, or not a whole one. The line names file, byte and what is allowed.
+bytes=$(stat -c %s run.rec)
+: >empty.rec
+head -c 5 run.rec >five.rec
+head -c 4000 run.rec >start.rec
+head -c $((bytes - 1)) run.rec >cut.rec
+{ cat run.rec; printf x; } >long.rec
+cp run.rec bent.rec
+printf '\xff\xfe' | dd of=bent.rec bs=1 seek=3000 conv=notrunc status=none # In the first model.
+cp run.rec newer.rec
+printf '\x02' | dd of=newer.rec bs=1 seek=8 conv=notrunc status=none
+refuse_file() { refuse 2 "$1: $2" --replay "$1"; }
+refuse_file missing.rec 'cannot be opened'
+refuse_file folder 'is not a file but a directory'
+refuse_file empty.rec 'at byte 0: the file is empty'
+refuse_file bumpy.spm 'at byte 0: is not a Tactus recording'
+refuse_file five.rec 'at byte 0: the file is cut short: 12 bytes are needed here and 5 are left'
+refuse_file start.rec 'at byte *: the file is cut short: '
+refuse_file cut.rec 'at byte *: the file is cut short: 36 bytes are needed here and 35 are left'
+refuse_file long.rec 'at byte *: the end section is followed by 1 bytes; nothing may follow it'
+refuse_file bent.rec 'at byte *: section of kind 2 and * bytes is damaged: its checksum'
+refuse_file newer.rec 'at byte 8: format version 2 is unknown; this program reads 1'
+refuse 2 'no?where.rec: cannot be opened' --replay $'no\nwhere.rec'
+
+# A recording that can't be stored does not disturb the run, and is told at its end.
+code=0
+( # Files of at most 64 KiB; without the signal that would end the program.
+    trap '' XFSZ
+    ulimit -f 64
+    exec "$hrtc" --allow-no-rt --transport file --model bumpy.spm --duration 1 --report full.json \
+        --record folder/run.rec
+) >hrtc.log 2>&1 || code=$?
+((code == 2)) || fault "a recording that could not be stored ended the run with $code"
+grep -q "^hrtc: --record: folder/run.rec: can't be written: File too large" hrtc.log \
+    || fault 'a recording that could not be stored is not told'
+[[ -z $(ls -A folder) ]] || fault "left behind: $(ls -A folder)"
+check full.json frames == 1000
+
+# An interrupted run has recorded its frames so far.
+start_hrtc --transport file --model bumpy.spm --duration 60 --record short.rec
+wait_for_line hrtc.log 'touch: ' 20
+sleep 1
+stop INT "$controller"
+((stopped_with == 0)) || fault "the interrupted run ended with $stopped_with"
+"$hrtc" --replay short.rec >said.txt || fault 'the interrupted run does not replay'
+cat said.txt
+finish
