@@ -20,6 +20,7 @@ macro(tactus_outside prefix)
 endmacro()
 
 # --- rt_core: stages are siblings and never include one another; they meet in query, refine, frame.
+# Except that the forest hands each change straight to the tree (docs/decisions/0005-the-frame.md).
 set(stage_floor rt_core/base rt_core/math rt_core/limits.hpp rt_core/records rt_core/spm)
 
 tactus_room(rt_core/base)
@@ -28,13 +29,15 @@ tactus_room(rt_core/limits.hpp rt_core/base)
 tactus_room(rt_core/spm rt_core/base rt_core/math rt_core/limits.hpp)
 tactus_room(rt_core/records rt_core/base rt_core/math rt_core/limits.hpp rt_core/spm)
 tactus_room(rt_core/cache ${stage_floor})
-tactus_room(rt_core/forest ${stage_floor})
-tactus_room(rt_core/abtree ${stage_floor})
+tactus_room(rt_core/kernels rt_core/base)
+tactus_room(rt_core/abtree ${stage_floor} rt_core/kernels)
+tactus_room(rt_core/forest ${stage_floor} rt_core/abtree rt_core/kernels)
 tactus_room(rt_core/predict ${stage_floor})
 tactus_room(rt_core/force ${stage_floor})
 tactus_room(rt_core/scene ${stage_floor})
-tactus_room(rt_core/query ${stage_floor} rt_core/abtree)
-tactus_room(rt_core/refine ${stage_floor} rt_core/abtree rt_core/forest rt_core/cache rt_core/query)
+tactus_room(rt_core/query ${stage_floor} rt_core/abtree rt_core/kernels)
+tactus_room(rt_core/refine ${stage_floor}
+    rt_core/abtree rt_core/forest rt_core/kernels rt_core/cache rt_core/query)
 tactus_room(rt_core/frame rt_core)
 
 # --- platform: only the controller program sees core, transport and device; nothing includes it.

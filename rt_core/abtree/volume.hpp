@@ -39,7 +39,7 @@ struct AabbVolume
             }
         }
     };
-    static_assert(sizeof(Rows) == 6 * kNodeChildren * sizeof(float));
+    static_assert(sizeof(Rows) == sizeof(float) * 6 * kNodeChildren);
 
     /// Box of the vertices in `mask`; `coordinates` are three rows of 16.
     [[nodiscard]] static Aabb of_vertices(const Kernels& kernels, const float* coordinates,

@@ -6,7 +6,6 @@
 
 #include <array>
 #include <cstddef>
-#include <memory>
 #include <new>
 #include <span>
 #include <type_traits>
@@ -17,7 +16,7 @@ namespace tactus
 /// At most `Capacity` values in place. For small lists on the stack or inside records. Costs
 /// nothing to make: room that isn't used is not initialised.
 template <typename T, std::size_t Capacity>
-class StaticVector
+class StaticVector // NOLINT(cppcoreguidelines-special-member-functions): moving is copying.
 {
     static_assert(std::is_trivially_destructible_v<T>);
 
@@ -41,7 +40,7 @@ public:
         {
             return false;
         }
-        std::construct_at(begin() + size_, value);
+        ::new (static_cast<void*>(begin() + size_)) T(value);
         ++size_;
         return true;
     }

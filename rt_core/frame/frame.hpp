@@ -97,7 +97,7 @@ public:
     Frame(PassKey key, Arena& arena, const FrameSetup& setup) noexcept;
 
 private:
-    using RefineQuestions = StaticVector<RefineQuestion, 2U * kMaxPairs>;
+    using RefineQuestions = StaticVector<RefineQuestion, std::size_t{2} * kMaxPairs>;
 
     [[nodiscard]] static std::optional<FrameRefusal> check(const FrameSetup& setup) noexcept;
 

@@ -15,18 +15,22 @@ namespace tactus
 /// difference from it is right to a few units in the last place.
 struct KernelProbe
 {
+    // NOLINTBEGIN(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays): kernel_source.inc.
     float high[3]; ///< The point rounded to float, in metres.
     float low[3];  ///< What the rounding left.
-    float scale;   ///< 1 / quantum, a power of two: kernels work and answer in quanta.
-    float slack;   ///< What `high` and `low` leave of the point, in quanta; in every bound.
+    // NOLINTEND(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays)
+    float scale; ///< 1 / quantum, a power of two: kernels work and answer in quanta.
+    float slack; ///< What `high` and `low` leave of the point, in quanta; in every bound.
 };
 
 /// Bounds on the distances from the probe to the 16 faces of a block, in quanta: one lane a face;
 /// lanes without a face hold values of no meaning.
 struct FaceBounds
 {
+    // NOLINTBEGIN(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays): kernel_source.inc.
     alignas(64) float lower[16];
     alignas(64) float corner[16]; ///< Upper bounds on the distance to the nearest corner.
+    // NOLINTEND(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays)
 };
 
 /// The inner loops of query and refit, in one set for each instruction set.
