@@ -72,7 +72,6 @@ bool StaticModel::refine_fully()
             }
         }
     }
-    WorkCounters work;
     FrameFault faults = FrameFault::none;
     model().refit(faults);
     return faults == FrameFault::none;

@@ -164,11 +164,12 @@ TEST(SurfaceQuery, equals_brute_force_in_every_style)
                 // Beyond the reach, and of coarse faces, single precision's bounds will do.
                 const bool is_exact = answer.kind == AnswerKind::exact;
                 const double slack = is_exact ? kSlack : kFilterSlack;
-                const double proven =
-                    truth.upper > reach ? double{kProofShare} * truth.upper : kInfinity;
+                const double proven = truth.upper > reach
+                                          ? static_cast<double>(kProofShare) * truth.upper
+                                          : kInfinity;
                 ASSERT_GE(answer.lower_m, std::min(truth.lower, proven) - slack)
                     << style.name << " " << i;
-                ASSERT_LE(answer.upper_m * (is_exact ? 1.0 : double{kProofShare}),
+                ASSERT_LE(answer.upper_m * (is_exact ? 1.0 : static_cast<double>(kProofShare)),
                           truth.upper + slack)
                     << style.name << " " << i;
                 ASSERT_LE(answer.lower_m, truth.lower);

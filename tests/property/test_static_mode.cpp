@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+
+/// A model that fits the pools ends up refined as a whole, and then frames only query.
+
+#include "tests/property/frame_checks.hpp"
+
+#include <algorithm>
+
+namespace tactus::test
+{
+namespace
+{
+
+class StaticMode : public testing::TestWithParam<std::size_t>
+{
+protected:
+    static constexpr std::uint32_t kFramesMax = 4'000;
+
+    static RigOptions static_options()
+    {
+        RigOptions options;
+        options.pool_bytes = std::size_t{32} << 20U;
+        options.static_when_it_fits = true;
+        return options;
+    }
+    /// A random place up to a tenth of the diagonal from a vertex.
+    Vec3 random_place()
+    {
+        const Face& face = model_.faces[random_.below(model_.faces.size())];
+        return to_vec3(face[random_.below(3)]) + random_.in_cube(0.1 * model_.diagonal_m);
+    }
+    /// Steps with a moving tool; every answer on the way holds.
+    std::uint32_t frames_until_static(FrameRig& rig, const Budgets& budgets)
+    {
+        std::uint32_t frames = 0;
+        Vec3 goal = random_place();
+        for (bool is_static = false; !is_static && frames < kFramesMax; ++frames)
+        {
+            goal += random_.in_cube(0.002 * model_.diagonal_m);
+            const FrameOutput output = rig.step(goal, budgets);
+            EXPECT_TRUE(answer_is_sound(model_, output)) << "frame " << frames;
+            is_static = output.models[0].is_static;
+        }
+        return frames;
+    }
+
+    const TestModel& model_ = *small_models()[GetParam()];
+    const std::uint64_t seed_ = seed_of(1'200 + GetParam());
+    Random random_{seed_};
+};
+
+TEST_P(StaticMode, a_model_that_fits_ends_refined_and_frames_only_query)
+{
+    SCOPED_TRACE(model_.name + " seed " + std::to_string(seed_));
+    FrameRig sut(model_, static_options());
+    if (frames_until_static(sut, {}) == kFramesMax)
+    {
+        // Needles: so few faces share their vertices that the blocks run out before the faces.
+        const PoolUse blocks = sut.step(random_place()).models[0].blocks;
+        EXPECT_GT(blocks.used_max + AbTree::kReserve + kMaxStarFaces, blocks.capacity);
+        EXPECT_EQ(sut.model().residence, Residence::partial);
+        return;
+    }
+    EXPECT_EQ(sut.model().forest.active_faces(), model_.faces.size());
+    EXPECT_EQ(sut.model().forest.refined_records(), sut.model().header.counts().records);
+
+    for (int frame = 0; frame < 100; ++frame)
+    {
+        const FrameOutput output = sut.step(random_place());
+        const WorkCounters& work = output.work;
+        EXPECT_TRUE(output.models[0].is_static);
+        EXPECT_EQ(work.splits + work.merges + work.scanned, 0U);
+        EXPECT_EQ(work.blocks_refitted + work.nodes_refitted, 0U);
+        EXPECT_EQ(work.pages_adopted + work.requests + work.regions_searched, 0U);
+        const PairOutput& pair = output.pairs[0];
+        EXPECT_NE(pair.kind, AnswerKind::bracket);
+        EXPECT_TRUE(answer_is_sound(model_, output));
+        if (pair.kind == AnswerKind::exact)
+        {
+            EXPECT_NEAR(pair.lower_m, pair.upper_m, 1e-12 * model_.diagonal_m);
+        }
+    }
+}
+
+TEST_P(StaticMode, comes_to_it_with_one_split_a_frame_and_a_link_that_loses)
+{
+    SCOPED_TRACE(model_.name + " seed " + std::to_string(seed_));
+    RigOptions options = static_options();
+    options.faults.loss = 0.2;
+    options.faults.seed = seed_;
+    FrameRig sut(model_, options);
+    Budgets few;
+    few.splits = 1;
+    few.requests = 2;
+    const std::uint32_t records = sut.model().header.counts().records;
+    Vec3 goal = random_place();
+    std::uint32_t refined = 0;
+    for (std::uint32_t frame = 0; frame < kFramesMax; ++frame)
+    {
+        goal += random_.in_cube(0.002 * model_.diagonal_m);
+        const FrameOutput output = sut.step(goal, few);
+        ASSERT_LE(output.work.splits, 1U);
+        refined = std::max(refined, output.models[0].refined_records);
+        if (output.models[0].is_static)
+        {
+            break;
+        }
+    }
+    // As many as there was time for: what is behind the tool may be merged and split again.
+    EXPECT_GE(refined, std::min(records, kFramesMax / 4));
+}
+
+INSTANTIATE_TEST_SUITE_P(small_models, StaticMode,
+                         testing::Range<std::size_t>(0, small_models().size()));
+
+TEST(StaticModeIsLeftAlone, when_the_pages_or_the_faces_do_not_fit)
+{
+    const TestModel& model = *small_models()[0];
+    Random random(seed_of(1'210));
+    for (const bool few_pages : {false, true})
+    {
+        RigOptions options;
+        options.static_when_it_fits = true;
+        if (few_pages)
+        {
+            options.cache_bytes = 5 * sizeof(Page);
+        }
+        else
+        {
+            options.pool_bytes = std::size_t{500} << 10U;
+        }
+        FrameRig sut(model, options);
+        ASSERT_FALSE(sut.model().fits());
+        for (int frame = 0; frame < 300; ++frame)
+        {
+            const Face& face = model.faces[random.below(model.faces.size())];
+            const FrameOutput output = sut.step(to_vec3(face[0]));
+            EXPECT_FALSE(output.models[0].is_static);
+            EXPECT_TRUE(answer_is_sound(model, output)) << "frame " << frame;
+        }
+    }
+}
+
+} // namespace
+} // namespace tactus::test
