@@ -21,6 +21,7 @@ Commands:
 
 Options:
   --ci          packages: the packages of .ci/run (cmake/packages-ci.txt) as well
+  --bench       packages: the peers of tactus_bench (cmake/packages-bench.txt) as well
   --seconds N   demo: touch for N seconds, 1 to 3600 (default 10)
   --domain N    demo: use DDS domain N, 0 to 232 (default: the programs' own)
   --help        this text
@@ -203,7 +204,7 @@ main() {
                 [[ -z "$command" ]] || fail 3 "two commands given: '$command' and '$1'"
                 command=$1
                 ;;
-            --ci) lists+=("$root/cmake/packages-ci.txt") ;;
+            --ci | --bench) lists+=("$root/cmake/packages-${1#--}.txt") ;;
             --seconds)
                 number_in "$1" "${2:-}" 1 3600
                 seconds=$2

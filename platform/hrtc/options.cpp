@@ -136,8 +136,9 @@ void declare(CLI::App& app, Options& options, RawOptions& raw)
                    "Microseconds that a frame may take: its budgets follow what frames cost, "
                    "--splits being the most [budgets fixed]")
         ->check(number_between(kFrameBudgetMin_us, kFrameBudgetMax_us));
-    app.add_flag("!--no-static", options.static_when_it_fits,
-                 "Refine locally also a model that fits the pools as a whole");
+    app.add_flag_callback(
+        "--no-static", [&options] { options.static_when_it_fits = false; },
+        "Refine locally also a model that fits the pools as a whole");
     app.add_option("--stiffness", options.stiffness_n_per_m, "Of the virtual wall, in N/m")
         ->check(number_between(1.0, 3'000.0))
         ->capture_default_str();
