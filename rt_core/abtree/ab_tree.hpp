@@ -224,7 +224,7 @@ private:
     void free_node(std::uint32_t node) noexcept;
     void mark(TreeRef ref) noexcept;
     void enqueue(std::uint32_t index) noexcept;
-    [[nodiscard]] Box refitted_box(std::uint32_t block) noexcept;
+    [[nodiscard]] Box refitted_box(std::uint32_t index) noexcept;
     void pass_up(std::uint32_t parent, std::uint32_t child, const Box& box, bool coarse) noexcept;
     void keep_unplaced(PrimId prim) noexcept;
     void drop_unplaced(PrimId prim) noexcept;

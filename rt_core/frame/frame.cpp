@@ -308,11 +308,12 @@ Frame::RefineQuestions Frame::questions_about(std::uint32_t model) noexcept
         {
             continue;
         }
+        const std::size_t memory = std::size_t{2} * i;
         const double ahead = pair.ahead_m.norm();
         const bool is_far_ahead = ahead > kLeastAhead * pair.reach_m;
         const Vec3 there = pair.center_m + pair.ahead_m;
-        ask(!pair.is_asleep, pair.center_m, pair.reach_m, refine_memories_[2U * i]);
-        ask(!pair.is_asleep && is_far_ahead, there, pair.reach_m, refine_memories_[2U * i + 1U]);
+        ask(!pair.is_asleep, pair.center_m, pair.reach_m, refine_memories_[memory]);
+        ask(!pair.is_asleep && is_far_ahead, there, pair.reach_m, refine_memories_[memory + 1]);
     }
     return questions;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#define TACTUS_KERNEL_SET "portable"
+#define TACTUS_KERNEL_SET                                                                          \
+    "portable" // NOLINT(cppcoreguidelines-macro-usage): read by the source below.
 #include "rt_core/kernels/kernel_sets.hpp"
 #include "rt_core/kernels/kernel_source.inc"
 

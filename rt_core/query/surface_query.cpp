@@ -64,8 +64,7 @@ public:
         DistanceAnswer answer;
         const double open = tree_.is_complete() ? unproven_ * quantum_ : 0.0;
         const double pruned = limit_ > floor_ ? to_metres(bound()) : kInfinity;
-        answer.upper_m =
-            std::min(upper_, corner_ < kInfiniteQuanta ? to_metres(corner_) : kInfinity);
+        answer.upper_m = corner_ < kInfiniteQuanta ? std::min(upper_, to_metres(corner_)) : upper_;
         answer.lower_m = std::max(0.0, std::min({exact_lower_, open, pruned}));
         answer.certified_radius_m = std::max(0.0, std::min({reach_, open, to_metres(dropped_)}));
         if (exact_lower_ <= open && exact_lower_ <= pruned && !nearest_face_.is_none())
@@ -117,7 +116,7 @@ private:
         }
         const std::uint32_t coarse = tree_.side(index).coarse;
         const float limit_before = limit_;
-        FaceBounds bounds;
+        FaceBounds bounds; // NOLINT(cppcoreguidelines-pro-type-member-init): the kernel fills it.
         std::uint32_t near = tree_.kernels().face_bounds(
             block.coordinates.front().data(), block.corners.front().data(), probe_, block.faces,
             block.faces & ~coarse, floor_, limit_, bounds);

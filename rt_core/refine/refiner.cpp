@@ -179,7 +179,7 @@ void Refiner::gather_block(std::uint32_t index, const RefineQuestion& question) 
 {
     const BlockGeometry& block = tree_->block(index);
     const BlockSide& side = tree_->side(index);
-    FaceBounds bounds;
+    FaceBounds bounds; // NOLINT(cppcoreguidelines-pro-type-member-init): the kernel fills it.
     bound_faces(block, side.coarse, question, bounds);
     const double target = target_of(question);
     for (std::uint32_t lanes = side.coarse; lanes != 0; lanes &= lanes - 1)
@@ -553,7 +553,7 @@ void Refiner::consider_star(RecordId id, const VsplitRecord& record,
             leave(question, nearest);
             continue;
         }
-        FaceBounds bounds;
+        FaceBounds bounds; // NOLINT(cppcoreguidelines-pro-type-member-init): the kernel fills it.
         bound_faces(star.geometry, coarse, question, bounds);
         for (std::uint32_t lanes = coarse; lanes != 0; lanes &= lanes - 1)
         {

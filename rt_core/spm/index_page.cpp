@@ -99,11 +99,14 @@ std::uint64_t chunks_meeting(const IndexPage& page, const QuantumBox& page_box,
         }
         near |= std::uint64_t{bits_of(about_sq <= reach * reach)} << first;
     }
-    near &= ~std::uint64_t{0} >> (kChunksPerIndexPage - page.chunks);
     std::uint64_t meeting = 0;
     for (; near != 0; near &= near - 1)
     {
         const auto i = static_cast<std::size_t>(std::countr_zero(near));
+        if (i >= page.chunks)
+        {
+            break;
+        }
         double distance_sq = 0.0;
         for (std::size_t axis = 0; axis < 3; ++axis)
         {
