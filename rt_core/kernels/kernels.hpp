@@ -37,7 +37,8 @@ struct FaceBounds
 ///
 /// They filter, they do not decide: bounds are conservative by a stated margin, and what lies
 /// within it is decided in double precision elsewhere. Every set does the same IEEE operations in
-/// the same order on each lane, without FMA or estimated reciprocals, so all give the same bits.
+/// the same order on each lane, without FMA or estimated reciprocals, so all give the same bits (of
+/// a box bound that is zero, but for its sign).
 struct Kernels
 {
     const char* name;

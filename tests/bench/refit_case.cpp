@@ -6,13 +6,13 @@
 
 #include "tests/bench/cases.hpp"
 #include "tests/bench/least_times.hpp"
+#include "tests/bench/local_changes.hpp"
 #include "tests/bench/measuring.hpp"
 #include "tests/bench/random.hpp"
 #include "tests/bench/static_model.hpp"
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <map>
 
 namespace tactus::bench
@@ -21,13 +21,9 @@ namespace tactus::bench
 namespace
 {
 
-constexpr std::size_t kPlaces = 100;
-constexpr std::uint32_t kClusteredFaces = 64;
 constexpr std::size_t kMovedVertices = 180;
 /// Vertices move by this much, there and back: a fraction of an edge.
 constexpr double kMove_diag = 1e-4;
-/// Faces change their error from none to this code and back: their boxes grow and shrink.
-constexpr ErrorCode kChangedError = 8;
 
 /// A row of a block that a vertex has there.
 struct VertexRow
@@ -59,64 +55,6 @@ VertexRows vertex_rows(const AbTree& tree)
     return rows;
 }
 
-/// The `count` items nearest to a point, by what `place_of` says of them.
-template <typename Item, typename PlaceOf>
-std::vector<Item> nearest_items(const std::vector<Item>& items, const Vec3& point_m,
-                                std::size_t count, const PlaceOf& place_of)
-{
-    std::vector<std::pair<double, std::size_t>> ranked;
-    for (std::size_t i = 0; i < items.size(); ++i)
-    {
-        ranked.emplace_back((place_of(items[i]) - point_m).squaredNorm(), i);
-    }
-    count = std::min(count, ranked.size());
-    std::nth_element(ranked.begin(), ranked.begin() + static_cast<std::ptrdiff_t>(count) - 1,
-                     ranked.end());
-    std::vector<Item> nearest;
-    for (std::size_t i = 0; i < count; ++i)
-    {
-        nearest.push_back(items[ranked[i].second]);
-    }
-    return nearest;
-}
-
-/// Times `change(there)` and the refit after it, there and back, `passes` times.
-struct ChangeTimes
-{
-    LeastTimes refit_us{kPlaces};
-    LeastTimes all_us{kPlaces};
-    std::uint64_t nodes{0}; ///< Blocks and nodes refitted, over everything.
-};
-
-template <typename Change>
-void time_change(AbTree& tree, std::size_t place, std::uint32_t passes, ChangeTimes& times,
-                 const Change& change)
-{
-    for (std::uint32_t i = 0; i < 2 * passes; ++i)
-    {
-        const BenchClock::time_point start = BenchClock::now();
-        change(i % 2 == 0);
-        const BenchClock::time_point changed = BenchClock::now();
-        const AbTree::RefitWork work = tree.refit();
-        const BenchClock::time_point end = BenchClock::now();
-        times.refit_us.keep(place, microseconds(changed, end));
-        times.all_us.keep(place, microseconds(start, end));
-        times.nodes += work.blocks + work.nodes;
-    }
-}
-
-/// Points of the surface, spread evenly over its faces' order.
-std::vector<Vec3> places_on(const Scene& scene)
-{
-    std::vector<Vec3> places;
-    for (std::size_t i = 0; i < kPlaces; ++i)
-    {
-        const std::size_t face = mixed(kSeed, i) % scene.model.faces.size();
-        places.push_back(to_vec3(scene.model.faces[face][0]));
-    }
-    return places;
-}
-
 ChangeTimes time_faces(Model& model, const std::vector<Vec3>& places, std::uint32_t passes)
 {
     std::vector<PrimId> prims;
@@ -127,27 +65,8 @@ ChangeTimes time_faces(Model& model, const std::vector<Vec3>& places, std::uint3
             prims.push_back(prim);
         }
     }
-    ChangeTimes times;
-    for (std::size_t place = 0; place < places.size(); ++place)
-    {
-        const auto cluster =
-            nearest_items(prims, places[place], kClusteredFaces,
-                          [&](PrimId prim) { return to_vec3(model.forest.corners_of(prim)[0]); });
-        std::vector<Vec3f> corners;
-        for (const PrimId prim : cluster)
-        {
-            corners.push_back(model.forest.corners_of(prim)[0]);
-        }
-        const auto change = [&](bool there)
-        {
-            for (std::size_t i = 0; i < cluster.size(); ++i)
-            {
-                model.tree.move_corner(cluster[i], 0, corners[i], there ? kChangedError : 0);
-            }
-        };
-        time_change(model.tree, place, passes, times, change);
-    }
-    return times;
+    return time_clustered_faces(model.tree, prims, places, passes,
+                                [&](PrimId prim) { return model.forest.corners_of(prim)[0]; });
 }
 
 ChangeTimes time_vertices(AbTree& tree, const std::vector<Vec3>& places, float move_m,

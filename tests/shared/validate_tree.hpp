@@ -3,11 +3,12 @@
 #pragma once
 
 #include "rt_core/abtree/ab_tree.hpp"
+#include "tests/shared/volume_oracle.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <array>
+#include <bit>
 #include <cstdint>
-#include <limits>
 #include <map>
 #include <set>
 #include <span>
@@ -22,11 +23,12 @@ namespace tactus::test
 ///
 /// Boxes are computed again from the faces, bottom-up and with arithmetic of its own, and must be
 /// equal bit for bit: so the tree equals one that was refitted from scratch (invariant I6).
+template <typename Tree>
 class TreeValidator
 {
 public:
     /// `faces` are all faces that were handed to the tree and not removed since.
-    [[nodiscard]] static std::vector<std::string> faults(const AbTree& tree,
+    [[nodiscard]] static std::vector<std::string> faults(const Tree& tree,
                                                          std::span<const ChangedFace> faces)
     {
         TreeValidator validator(tree, faces);
@@ -35,13 +37,17 @@ public:
     }
 
 private:
+    using Box = typename Tree::Box;
+    using Node = typename Tree::Node;
+    using Oracle = VolumeOracle<typename Tree::Volume>;
+
     struct Subtree
     {
-        Aabb box;
+        Box box;
         bool coarse{false};
     };
 
-    TreeValidator(const AbTree& tree, std::span<const ChangedFace> faces) : tree_(tree)
+    TreeValidator(const Tree& tree, std::span<const ChangedFace> faces) : tree_(tree)
     {
         for (const ChangedFace& face : faces)
         {
@@ -87,7 +93,7 @@ private:
             if (tree_.is_unplaced({prim}))
             {
                 unplaced.insert(prim);
-                check(tree_.leaf_of({prim}) == AbTree::kNoLeaf, "unplaced prim ", prim,
+                check(tree_.leaf_of({prim}) == Tree::kNoLeaf, "unplaced prim ", prim,
                       " has a leaf");
             }
         }
@@ -111,7 +117,7 @@ private:
                       std::uint32_t shift_above)
     {
         ++nodes_seen_;
-        const AbNode& node = tree_.node(index);
+        const Node& node = tree_.node(index);
         check(node.parent == parent, "node ", index, " has parent ", node.parent, ", not ", parent);
         check(parent == kNoNode || node.child == child, "node ", index, " has a wrong child place");
         check(node.shift % 3 == 0 && node.shift < shift_above, "node ", index, " has shift ",
@@ -137,23 +143,23 @@ private:
             check((((node.coarse >> i) & 1U) != 0) == below.coarse, "node ", index, " child ", i,
                   " has a wrong coarse bit");
             subtree.coarse = subtree.coarse || below.coarse;
-            unite(subtree.box, below.box);
+            Oracle::unite(subtree.box, below.box);
         }
         return subtree;
     }
 
     /// Each child has one aligned range, a power of two wide; a node's is one digit.
-    void check_digits(std::uint32_t index, const AbNode& node)
+    void check_digits(std::uint32_t index, const Node& node)
     {
         std::array<std::vector<std::uint32_t>, kNodeChildren> digits;
         for (std::uint32_t digit = 0; digit < kNodeChildren; ++digit)
         {
             const std::uint32_t child = node.child_of(digit);
-            if (child == AbNode::kNoChild)
+            if (child == Node::kNoChild)
             {
                 continue;
             }
-            if (child > AbNode::kNoChild || ((node.mask >> child) & 1U) == 0)
+            if (child > Node::kNoChild || ((node.mask >> child) & 1U) == 0)
             {
                 fault("node ", index, " digit ", digit, " leads to absent child ", child);
                 continue;
@@ -207,11 +213,16 @@ private:
         check(block.vertices == used_rows, "block ", index, " keeps vertices that no face uses");
         check(side.coarse == coarse, "block ", index, " has wrong coarse bits");
         subtree.coarse = coarse != 0;
-        subtree.box = grown(subtree.box, largest);
+        if (largest != 0)
+        {
+            subtree.box =
+                Oracle::grown(subtree.box, static_cast<long double>(error_in_quanta(largest)) *
+                                               static_cast<long double>(tree_.quantum_m()));
+        }
         return subtree;
     }
 
-    void check_lane(std::uint32_t index, std::uint32_t lane, Aabb& box)
+    void check_lane(std::uint32_t index, std::uint32_t lane, Box& box)
     {
         const BlockSide& side = tree_.side(index);
         const std::uint32_t prim = side.prims[lane].value;
@@ -235,9 +246,8 @@ private:
                 const float at = face.corners_m[corner][axis];
                 check(block.coordinates[axis][row] == at, "prim ", prim, " corner ", corner,
                       " has moved");
-                box.low[axis] = std::min(box.low[axis], at);
-                box.high[axis] = std::max(box.high[axis], at);
             }
+            Oracle::widen(box, face.corners_m[corner]);
         }
         check_path(face);
     }
@@ -249,47 +259,11 @@ private:
                                    (std::uint64_t{face.face.value * 0x9E37'79B9U} << 1U);
         for (const auto& [index, child] : path_)
         {
-            const AbNode& node = tree_.node(index);
+            const Node& node = tree_.node(index);
             check(node.holds(path), "face ", face.face.value, " is below foreign node ", index);
             check(node.child_of((path >> node.shift) & 7U) == child, "face ", face.face.value,
                   " is below a wrong child of node ", index);
         }
-    }
-
-    static void unite(Aabb& box, const Aabb& other)
-    {
-        for (std::size_t axis = 0; axis < 3; ++axis)
-        {
-            box.low[axis] = std::min(box.low[axis], other.low[axis]);
-            box.high[axis] = std::max(box.high[axis], other.high[axis]);
-        }
-    }
-
-    /// The least floats outside the exact bound.
-    [[nodiscard]] Aabb grown(Aabb box, ErrorCode error) const
-    {
-        if (error == 0)
-        {
-            return box;
-        }
-        const long double margin = static_cast<long double>(error_in_quanta(error)) *
-                                   static_cast<long double>(tree_.quantum_m());
-        for (std::size_t axis = 0; axis < 3; ++axis)
-        {
-            const long double low = static_cast<long double>(box.low[axis]) - margin;
-            const long double high = static_cast<long double>(box.high[axis]) + margin;
-            box.low[axis] = static_cast<float>(low);
-            if (static_cast<long double>(box.low[axis]) > low)
-            {
-                box.low[axis] = std::nextafter(box.low[axis], -kInfinity);
-            }
-            box.high[axis] = static_cast<float>(high);
-            if (static_cast<long double>(box.high[axis]) < high)
-            {
-                box.high[axis] = std::nextafter(box.high[axis], kInfinity);
-            }
-        }
-        return box;
     }
 
     static std::string name(TreeRef ref)
@@ -302,9 +276,8 @@ private:
         std::uint32_t node{0};
         std::uint32_t child{0};
     };
-    static constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-    const AbTree& tree_;
+    const Tree& tree_;
     std::map<std::uint32_t, const ChangedFace*> faces_;
     std::set<std::uint32_t> seen_;
     std::vector<Step> path_;
@@ -314,9 +287,10 @@ private:
 };
 
 /// The first few faults as one text; empty when the tree is sound.
-[[nodiscard]] inline std::string tree_faults(const AbTree& tree, std::span<const ChangedFace> faces)
+template <typename Tree>
+[[nodiscard]] std::string tree_faults(const Tree& tree, std::span<const ChangedFace> faces)
 {
-    const std::vector<std::string> faults = TreeValidator::faults(tree, faces);
+    const std::vector<std::string> faults = TreeValidator<Tree>::faults(tree, faces);
     std::string text;
     for (std::size_t i = 0; i < std::min<std::size_t>(faults.size(), 8); ++i)
     {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "tests/unit/rt_core/tree_support.hpp"
+#include "tests/unit/rt_core/tree_volumes.hpp"
 
 #include <gtest/gtest.h>
 
@@ -24,11 +25,12 @@ ChangedFace unit_face(std::uint32_t prim, std::uint32_t bucket, std::uint32_t ve
 
 /// Random inserts, updates, removals and replacements in batches, a refit and a full check after
 /// each.
-void run_random_changes(const FaceStyle& style, const AbTree::Capacities& capacities,
+template <typename Tree>
+void run_random_changes(const FaceStyle& style, const TreeCapacities& capacities,
                         std::uint64_t own_seed, int batches)
 {
     Random random(own_seed);
-    TreeRig rig(capacities);
+    BasicTreeRig<Tree> rig(capacities);
     std::uint32_t next_face = 0;
     std::uint32_t fullness = 50;
     for (int batch = 0; batch < batches; ++batch)
@@ -59,13 +61,20 @@ void run_random_changes(const FaceStyle& style, const AbTree::Capacities& capaci
     }
 }
 
+template <typename Tree>
+class AbTreeOfAnyVolume : public testing::Test
+{
+};
+
+TYPED_TEST_SUITE(AbTreeOfAnyVolume, TreesOfAllVolumes, VolumeNames);
+
 } // namespace
 
-TEST(AbTree, an_empty_tree_has_no_root_and_needs_no_refit)
+TYPED_TEST(AbTreeOfAnyVolume, an_empty_tree_has_no_root_and_needs_no_refit)
 {
-    TreeRig rig({4, 64, 64});
+    BasicTreeRig<TypeParam> rig({4, 64, 64});
 
-    const AbTree::RefitWork work = rig.sut->refit();
+    const typename TypeParam::RefitWork work = rig.sut->refit();
 
     EXPECT_TRUE(rig.sut->root().is_none());
     EXPECT_TRUE(rig.sut->is_complete());
@@ -73,9 +82,9 @@ TEST(AbTree, an_empty_tree_has_no_root_and_needs_no_refit)
     EXPECT_EQ(rig.faults(), "");
 }
 
-TEST(AbTree, one_face_is_one_block_and_leaves_nothing_behind)
+TYPED_TEST(AbTreeOfAnyVolume, one_face_is_one_block_and_leaves_nothing_behind)
 {
-    TreeRig rig({4, 64, 64});
+    BasicTreeRig<TypeParam> rig({4, 64, 64});
 
     rig.put(unit_face(2, 5, 0));
     EXPECT_EQ(rig.sut->status(rig.sut->root()), NodeStatus::deformed);
@@ -94,9 +103,10 @@ TEST(AbTree, one_face_is_one_block_and_leaves_nothing_behind)
     EXPECT_EQ(rig.sut->blocks_used_max(), 1U);
 }
 
-TEST(AbTree, sixteen_faces_over_few_vertices_are_one_block_and_the_seventeenth_splits_it)
+TYPED_TEST(AbTreeOfAnyVolume,
+           sixteen_faces_over_few_vertices_are_one_block_and_the_seventeenth_splits_it)
 {
-    TreeRig rig({32, 64, 64});
+    BasicTreeRig<TypeParam> rig({32, 64, 64});
     for (std::uint32_t prim = 0; prim < 16; ++prim)
     {
         rig.put(unit_face(prim, 1, prim % 4));
@@ -114,9 +124,9 @@ TEST(AbTree, sixteen_faces_over_few_vertices_are_one_block_and_the_seventeenth_s
     EXPECT_GE(rig.sut->nodes_used(), 1U);
 }
 
-TEST(AbTree, sixteen_faces_over_48_vertices_are_spread_over_blocks)
+TYPED_TEST(AbTreeOfAnyVolume, sixteen_faces_over_48_vertices_are_spread_over_blocks)
 {
-    TreeRig rig({32, 64, 64});
+    BasicTreeRig<TypeParam> rig({32, 64, 64});
     for (std::uint32_t prim = 0; prim < 16; ++prim)
     {
         rig.put(unit_face(prim, 1, prim));
@@ -127,25 +137,25 @@ TEST(AbTree, sixteen_faces_over_48_vertices_are_spread_over_blocks)
     EXPECT_GE(rig.sut->blocks_used(), 4U) << "a block holds 16 vertices, so 5 such faces";
 }
 
-TEST(AbTree, refit_visits_nothing_when_nothing_changed)
+TYPED_TEST(AbTreeOfAnyVolume, refit_visits_nothing_when_nothing_changed)
 {
     Random random(30);
-    TreeRig rig({300, 400, 400});
+    BasicTreeRig<TypeParam> rig({300, 400, 400});
     for (std::uint32_t prim = 0; prim < 300; ++prim)
     {
         rig.put(random_face(random, face_styles()[0], prim, prim));
     }
     rig.sut->refit();
 
-    const AbTree::RefitWork work = rig.sut->refit();
+    const typename TypeParam::RefitWork work = rig.sut->refit();
 
     EXPECT_EQ(work.blocks + work.nodes, 0U);
 }
 
-TEST(AbTree, refit_of_one_unchanged_box_stops_at_its_block)
+TYPED_TEST(AbTreeOfAnyVolume, refit_of_one_unchanged_box_stops_at_its_block)
 {
     Random random(31);
-    TreeRig rig({300, 400, 400});
+    BasicTreeRig<TypeParam> rig({300, 400, 400});
     for (std::uint32_t prim = 0; prim < 300; ++prim)
     {
         rig.put(random_face(random, face_styles()[1], prim, prim));
@@ -153,17 +163,17 @@ TEST(AbTree, refit_of_one_unchanged_box_stops_at_its_block)
     rig.sut->refit();
     rig.put(rig.face(17));
 
-    const AbTree::RefitWork work = rig.sut->refit();
+    const typename TypeParam::RefitWork work = rig.sut->refit();
 
     EXPECT_EQ(work.blocks, 1U);
     EXPECT_EQ(work.nodes, 0U);
     EXPECT_EQ(rig.faults(), "");
 }
 
-TEST(AbTree, refit_leaves_unmarked_nodes_untouched)
+TYPED_TEST(AbTreeOfAnyVolume, refit_leaves_unmarked_nodes_untouched)
 {
     Random random(32);
-    TreeRig rig({300, 400, 400});
+    BasicTreeRig<TypeParam> rig({300, 400, 400});
     for (std::uint32_t prim = 0; prim < 300; ++prim)
     {
         rig.put(random_face(random, face_styles()[0], prim, prim));
@@ -174,7 +184,7 @@ TEST(AbTree, refit_leaves_unmarked_nodes_untouched)
     moved.corners_m[0][1] += 50.0F;
     rig.put(moved);
 
-    const AbTree::RefitWork work = rig.sut->refit();
+    const typename TypeParam::RefitWork work = rig.sut->refit();
 
     std::uint32_t depth = 0;
     const std::uint32_t leaf = rig.sut->leaf_of({17});
@@ -189,27 +199,27 @@ TEST(AbTree, refit_leaves_unmarked_nodes_untouched)
     EXPECT_EQ(rig.faults(), "");
 }
 
-TEST(AbTree, random_changes_keep_it_sound_in_every_style)
+TYPED_TEST(AbTreeOfAnyVolume, random_changes_keep_it_sound_in_every_style)
 {
     for (const FaceStyle& style : face_styles())
     {
-        run_random_changes(style, {400, 600, 600}, 33, 120);
+        run_random_changes<TypeParam>(style, {400, 600, 600}, 33, 120);
     }
 }
 
-TEST(AbTree, random_changes_keep_it_sound_while_pools_run_out)
+TYPED_TEST(AbTreeOfAnyVolume, random_changes_keep_it_sound_while_pools_run_out)
 {
     for (const FaceStyle& style : face_styles())
     {
-        run_random_changes(style, {300, 40, 30}, 34, 150);
-        run_random_changes(style, {300, 24, 200}, 35, 100);
-        run_random_changes(style, {300, 200, 22}, 36, 100);
+        run_random_changes<TypeParam>(style, {300, 40, 30}, 34, 150);
+        run_random_changes<TypeParam>(style, {300, 24, 200}, 35, 100);
+        run_random_changes<TypeParam>(style, {300, 200, 22}, 36, 100);
     }
 }
 
-TEST(AbTree, pools_below_the_reserve_place_nothing_and_say_so)
+TYPED_TEST(AbTreeOfAnyVolume, pools_below_the_reserve_place_nothing_and_say_so)
 {
-    TreeRig rig({4, AbTree::kReserve - 1, 64});
+    BasicTreeRig<TypeParam> rig({4, TypeParam::kReserve - 1, 64});
 
     rig.put(unit_face(0, 1, 0));
     rig.sut->refit();
@@ -221,9 +231,9 @@ TEST(AbTree, pools_below_the_reserve_place_nothing_and_say_so)
     EXPECT_EQ(rig.faults(), "");
 }
 
-TEST(AbTree, faces_without_a_place_find_one_when_others_have_left)
+TYPED_TEST(AbTreeOfAnyVolume, faces_without_a_place_find_one_when_others_have_left)
 {
-    TreeRig rig({300, 30, 30});
+    BasicTreeRig<TypeParam> rig({300, 30, 30});
     for (std::uint32_t prim = 0; prim < 300; ++prim)
     {
         rig.put(unit_face(prim, prim * 0x0100'0193U, prim));
@@ -243,12 +253,12 @@ TEST(AbTree, faces_without_a_place_find_one_when_others_have_left)
     EXPECT_EQ(rig.faults(), "");
 }
 
-TEST(AbTree, removing_all_faces_gives_every_block_and_node_back)
+TYPED_TEST(AbTreeOfAnyVolume, removing_all_faces_gives_every_block_and_node_back)
 {
     for (const FaceStyle& style : face_styles())
     {
         Random random(37);
-        TreeRig rig({500, 700, 700});
+        BasicTreeRig<TypeParam> rig({500, 700, 700});
         for (std::uint32_t prim = 0; prim < 500; ++prim)
         {
             rig.put(random_face(random, style, prim, prim));
@@ -263,12 +273,12 @@ TEST(AbTree, removing_all_faces_gives_every_block_and_node_back)
         EXPECT_EQ(rig.sut->blocks_used(), 0U) << style.name;
         EXPECT_EQ(rig.sut->nodes_used(), 0U) << style.name;
         EXPECT_TRUE(rig.sut->root().is_none()) << style.name;
-        EXPECT_TRUE(rig.sut->has_room_for(700 - AbTree::kReserve)) << style.name;
-        EXPECT_FALSE(rig.sut->has_room_for(700 - AbTree::kReserve + 1)) << style.name;
+        EXPECT_TRUE(rig.sut->has_room_for(700 - TypeParam::kReserve)) << style.name;
+        EXPECT_FALSE(rig.sut->has_room_for(700 - TypeParam::kReserve + 1)) << style.name;
     }
 }
 
-TEST(AbTree, faces_whose_paths_differ_only_in_the_last_bit_are_told_apart)
+TYPED_TEST(AbTreeOfAnyVolume, faces_whose_paths_differ_only_in_the_last_bit_are_told_apart)
 {
     // Odd multiplier: ids 2^31 apart differ in the highest mixed bit only, ids picked by the
     // inverse differ in the lowest only.
@@ -277,7 +287,7 @@ TEST(AbTree, faces_whose_paths_differ_only_in_the_last_bit_are_told_apart)
     {
         inverse *= 2U - 0x9E37'79B9U * inverse;
     }
-    TreeRig rig({64, 128, 128});
+    BasicTreeRig<TypeParam> rig({64, 128, 128});
     for (std::uint32_t prim = 0; prim < 40; ++prim)
     {
         ChangedFace face = unit_face(prim, 3, prim);
@@ -289,11 +299,11 @@ TEST(AbTree, faces_whose_paths_differ_only_in_the_last_bit_are_told_apart)
     EXPECT_TRUE(rig.sut->is_complete());
 }
 
-TEST(AbTree, the_order_of_insertion_does_not_change_the_roots_box)
+TYPED_TEST(AbTreeOfAnyVolume, the_order_of_insertion_does_not_change_the_roots_box)
 {
     Random random(38);
-    TreeRig forward({200, 400, 400});
-    TreeRig backward({200, 400, 400});
+    BasicTreeRig<TypeParam> forward({200, 400, 400});
+    BasicTreeRig<TypeParam> backward({200, 400, 400});
     for (std::uint32_t prim = 0; prim < 200; ++prim)
     {
         forward.put(random_face(random, face_styles()[1], prim, prim));
@@ -305,18 +315,8 @@ TEST(AbTree, the_order_of_insertion_does_not_change_the_roots_box)
     forward.sut->refit();
     backward.sut->refit();
 
-    const auto whole = [](const AbTree& tree)
-    {
-        Aabb box;
-        const AbNode& root = tree.node(tree.root().index());
-        for (std::uint32_t i = 0; i < kNodeChildren; ++i)
-        {
-            box.add(((root.mask >> i) & 1U) != 0 ? root.box_of(i) : Aabb{});
-        }
-        return box;
-    };
     ASSERT_FALSE(forward.sut->root().is_block());
-    EXPECT_EQ(whole(*forward.sut), whole(*backward.sut));
+    EXPECT_EQ(forward.sut->box(), backward.sut->box());
 }
 
 } // namespace tactus::test

@@ -14,11 +14,12 @@ namespace tactus::test
 
 inline constexpr float kTreeQuantum = 0x1p-10F;
 
-/// An AB-Tree and the faces that should be in it, by prim.
-class TreeRig
+/// An AB-Tree over any volume and the faces that should be in it, by prim.
+template <typename Tree>
+class BasicTreeRig
 {
 public:
-    explicit TreeRig(const AbTree::Capacities& capacities)
+    explicit BasicTreeRig(const TreeCapacities& capacities)
         : memory_(required(capacities)), faces_(capacities.prims)
     {
         Arena arena(memory_.bytes());
@@ -52,10 +53,10 @@ public:
     [[nodiscard]] std::string faults() const { return tree_faults(*sut, present()); }
 
 private:
-    static std::size_t required(const AbTree::Capacities& capacities)
+    static std::size_t required(const TreeCapacities& capacities)
     {
         Arena arena = Arena::measuring();
-        const AbTree tree(arena, capacities, kTreeQuantum);
+        const Tree tree(arena, capacities, kTreeQuantum);
         return arena.used();
     }
 
@@ -63,8 +64,10 @@ private:
     std::vector<ChangedFace> faces_;
 
 public:
-    std::optional<AbTree> sut;
+    std::optional<Tree> sut;
 };
+
+using TreeRig = BasicTreeRig<AbTree>;
 
 /// How a test's faces lie in path space and in space.
 struct FaceStyle

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/base/static_vector.hpp"
+#include "rt_core/math/triangle.hpp"
+#include "rt_core/query/probe.hpp"
+#include "rt_core/query/tree_walk.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+namespace tactus::test
+{
+
+/// The lower bound of a distance query, for a tree of any volume: the least over all faces of
+/// distance minus error. On exact faces that is the distance. It does what the controller's query
+/// does on such faces (filter in float, decide in double, begin where the last answer was) and
+/// nothing else, so that volumes can be compared. Budget: none.
+template <typename Tree>
+class NearestWalk
+{
+public:
+    /// `tree` is refitted and complete whenever something is asked, and not deeper than the walk's
+    /// stack allows; it must outlive the walk.
+    explicit NearestWalk(const Tree& tree) noexcept : tree_(tree) {}
+
+    /// Infinity when nothing is within `band_m`, which may be infinite. `point_m` is not
+    /// is_beyond_kernels().
+    [[nodiscard]] double least_m(const Vec3& point_m, double band_m) noexcept
+    {
+        begin(point_m, band_m);
+        WalkBudget budget{kUnlimited, kUnlimited};
+        TreeWalk walk(tree_, probe_, budget);
+        const std::uint32_t warm = tree_.is_block_in_use(nearest_block_) ? nearest_block_ : kNoNode;
+        if (warm != kNoNode)
+        {
+            test_block(warm);
+        }
+        for (std::uint32_t block = walk.next_block(limit_, false); block != kNoNode;
+             block = walk.next_block(limit_, false))
+        {
+            if (block != warm)
+            {
+                test_block(block);
+            }
+        }
+        decide();
+        visits_ += budget.nodes_visited;
+        return least_m_ <= band_m ? least_m_ : kInfinity;
+    }
+
+    /// Nodes and blocks visited by all questions so far.
+    [[nodiscard]] std::uint64_t visits() const noexcept { return visits_; }
+
+private:
+    struct Candidate
+    {
+        std::uint32_t block;
+        std::uint32_t lane;
+        float lower; ///< Of its distance minus its error, in quanta.
+    };
+
+    void begin(const Vec3& point_m, double band_m) noexcept
+    {
+        const auto quantum = static_cast<double>(tree_.quantum_m());
+        point_m_ = point_m;
+        probe_ = make_probe(point_m, tree_.quantum_m());
+        limit_ = band_m < kFarQuanta * quantum ? round_up_to_float(band_m / quantum)
+                                               : std::numeric_limits<float>::infinity();
+        least_m_ = kInfinity;
+    }
+
+    void test_block(std::uint32_t index) noexcept
+    {
+        const BlockGeometry& block = tree_.block(index);
+        const BlockSide& side = tree_.side(index);
+        const float limit_before = limit_;
+        FaceBounds bounds;
+        // Coarse faces can be nearer than their bounds by their error, so none is left out here.
+        const std::uint32_t near = tree_.kernels().face_bounds(
+            block.coordinates.front().data(), block.corners.front().data(), probe_, block.faces,
+            block.faces & ~std::uint32_t{side.coarse}, 0.0F, limit_, bounds);
+        for (std::uint32_t lanes = near | side.coarse; lanes != 0; lanes &= lanes - 1)
+        {
+            const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
+            add({index, lane, bounds.lower[lane] - error_in_quanta(side.errors[lane])});
+        }
+        nearest_block_ = limit_ < limit_before ? index : nearest_block_;
+    }
+
+    void add(const Candidate& candidate) noexcept
+    {
+        // A difference of floats is right to 2^-24 of the error, which the kernel's margin exceeds
+        // where it could matter.
+        if (candidate.lower > limit_)
+        {
+            return;
+        }
+        if (!candidates_.try_push_back(candidate))
+        {
+            decide();
+            candidates_.push_back(candidate);
+        }
+    }
+
+    void decide() noexcept
+    {
+        for (const Candidate& candidate : candidates_)
+        {
+            if (candidate.lower > limit_)
+            {
+                continue;
+            }
+            const Triangle triangle =
+                to_triangle(block_triangle(tree_.block(candidate.block), candidate.lane));
+            const ErrorCode error = tree_.side(candidate.block).errors[candidate.lane];
+            least_m_ = std::min(
+                least_m_, std::sqrt(closest_point_on_triangle(point_m_, triangle).distance_sq) -
+                              static_cast<double>(error_in_quanta(error)) *
+                                  static_cast<double>(tree_.quantum_m()));
+        }
+        candidates_.clear();
+    }
+
+    static constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    static constexpr std::uint32_t kUnlimited = std::numeric_limits<std::uint32_t>::max();
+    static constexpr std::size_t kCandidates = 64;
+
+    const Tree& tree_;
+    Vec3 point_m_{0.0, 0.0, 0.0};
+    KernelProbe probe_{};
+    float limit_{0.0F}; ///< In quanta: something exact is not farther than this, or the band.
+    double least_m_{0.0};
+    std::uint32_t nearest_block_{kNoNode};
+    std::uint64_t visits_{0};
+    StaticVector<Candidate, kCandidates> candidates_;
+};
+
+} // namespace tactus::test
