@@ -352,10 +352,12 @@ std::uint32_t BasicAbTree<Volume>::part(std::uint32_t block, std::uint32_t bit, 
     const std::uint32_t moved = stays ? apart : together;
     const std::uint32_t other = take_block();
     halve_block(blocks_[block], sides_[block], moved, blocks_[other], sides_[other]);
-    for (std::uint32_t lanes = moved; lanes != 0; lanes &= lanes - 1)
+    for (const std::uint32_t half : {block, other})
     {
-        const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
-        prims_[sides_[other].prims[lane].value].leaf = other * kBlockFaces + lane;
+        for (std::uint32_t lane = 0; lane < face_count(blocks_[half]); ++lane)
+        {
+            prims_[sides_[half].prims[lane].value].leaf = half * kBlockFaces + lane;
+        }
     }
     const std::uint32_t child = sides_[block].child;
     nodes_[parent].assign(nodes_[parent].range_of(child), Node::kNoChild);

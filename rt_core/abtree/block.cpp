@@ -4,6 +4,8 @@
 
 #include "rt_core/math/four_lanes.hpp"
 
+#include <algorithm>
+#include <cstddef>
 #include <cstring>
 #include <utility>
 
@@ -91,23 +93,29 @@ void set_error(BlockSide& side, std::uint32_t lane, ErrorCode error) noexcept
     side.coarse = static_cast<std::uint16_t>(error == 0 ? side.coarse & ~bit : side.coarse | bit);
 }
 
-/// Of `block` and `side`, keeps the faces in `lanes`.
+/// Of `block` and `side`, keeps the faces in `lanes` and moves them to the first ones: a kernel
+/// leaves out a half without faces.
 void keep_lanes(BlockGeometry& block, BlockSide& side, std::uint32_t lanes) noexcept
 {
-    for (std::uint32_t gone = block.faces & ~lanes; gone != 0; gone &= gone - 1)
-    {
-        side.prims[static_cast<std::size_t>(std::countr_zero(gone))] = PrimId{};
-    }
-    block.faces = static_cast<std::uint16_t>(block.faces & lanes);
-    side.coarse = static_cast<std::uint16_t>(side.coarse & lanes);
+    std::size_t to = 0;
     std::uint32_t used = 0;
-    for (std::uint32_t left = lanes; left != 0; left &= left - 1)
+    std::uint32_t coarse = 0;
+    for (std::uint32_t left = lanes; left != 0; left &= left - 1, ++to)
     {
-        const auto lane = static_cast<std::size_t>(std::countr_zero(left));
-        used |= (1U << block.corners[0][lane]) | (1U << block.corners[1][lane]) |
-                (1U << block.corners[2][lane]);
+        const auto from = static_cast<std::size_t>(std::countr_zero(left));
+        for (std::array<std::uint8_t, kBlockFaces>& corners : block.corners)
+        {
+            corners[to] = corners[from];
+            used |= 1U << corners[to];
+        }
+        coarse |= ((std::uint32_t{side.coarse} >> from) & 1U) << to;
+        side.errors[to] = side.errors[from];
+        side.prims[to] = side.prims[from];
     }
+    std::fill(side.prims.begin() + static_cast<std::ptrdiff_t>(to), side.prims.end(), PrimId{});
+    block.faces = static_cast<std::uint16_t>((1U << to) - 1U);
     block.vertices = static_cast<std::uint16_t>(used);
+    side.coarse = static_cast<std::uint16_t>(coarse);
 }
 
 } // namespace

@@ -59,7 +59,7 @@ static_assert(sizeof(BlockSide) == 96);
 void remove_from_block(BlockGeometry& block, BlockSide& side,
                        std::uint32_t lane) noexcept TACTUS_NONBLOCKING;
 
-/// Moves the faces in `moved` to an unused block, where they keep their lanes.
+/// Moves the faces in `moved` to an unused block. All get new lanes, the first ones.
 void halve_block(BlockGeometry& block, BlockSide& side, std::uint32_t moved, BlockGeometry& other,
                  BlockSide& other_side) noexcept TACTUS_NONBLOCKING;
 
