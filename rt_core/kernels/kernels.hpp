@@ -29,7 +29,8 @@ struct FaceBounds
 {
     // NOLINTBEGIN(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays): kernel_source.inc.
     alignas(64) float lower[16];
-    alignas(64) float corner[16]; ///< Upper bounds on the distance to the nearest corner.
+    /// Upper bounds on the distance to the nearest corner; only of faces that are not exact.
+    alignas(64) float corner[16];
     // NOLINTEND(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays)
 };
 

@@ -81,7 +81,8 @@ struct LaneAnswer
     float corner{0.0F};
 };
 
-/// Asks for one face alone: its upper bound is then the new limit.
+/// Asks for one face alone: its upper bound is then the new limit. Its corner's bound it gets only
+/// as a coarse face.
 [[nodiscard]] inline LaneAnswer ask_lane(const Kernels& kernels, const KernelScene& scene,
                                          std::uint32_t lane)
 {
@@ -89,7 +90,11 @@ struct LaneAnswer
     float limit = std::numeric_limits<float>::infinity();
     kernels.face_bounds(scene.coordinates(), scene.corners(), scene.probe, 1U << lane, 1U << lane,
                         0.0F, limit, bounds);
-    return {bounds.lower[lane], limit, bounds.corner[lane]};
+    const float lower = bounds.lower[lane];
+    float unchanged = limit;
+    kernels.face_bounds(scene.coordinates(), scene.corners(), scene.probe, 1U << lane, 0, 0.0F,
+                        unchanged, bounds);
+    return {lower, limit, bounds.corner[lane]};
 }
 
 /// What the answer breaks of kernels.hpp's law, or nothing: bounds are on their side of the truth

@@ -41,7 +41,10 @@ struct FacesAnswer
         {
             const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
             bits.push_back(bits_of(bounds.lower[lane]));
-            bits.push_back(bits_of(bounds.corner[lane]));
+            if (((exact >> lane) & 1U) == 0)
+            {
+                bits.push_back(bits_of(bounds.corner[lane]));
+            }
         }
     }
 };
