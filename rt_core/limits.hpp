@@ -68,8 +68,8 @@ inline constexpr std::uint32_t kMaxHeldRecords = 1'024;
 inline constexpr std::uint32_t kTreeStack = 22 * 7 + 8;
 /// Balls that the predictor ranks: now, soon and later for each pair that is near.
 inline constexpr std::uint32_t kMaxRankedRegions = 3 * kMaxPairs;
-/// Index pages kept at once, about 800 B each; larger models fetch them on demand.
-inline constexpr std::uint32_t kMaxResidentIndexPages = 192;
+/// A model with more index pages, about 800 B each, keeps this many, or more where there is memory.
+inline constexpr std::uint32_t kLeastResidentIndexPages = 192;
 /// Frames after which an unanswered wish is asked again.
 inline constexpr std::uint32_t kWishTimeoutFrames = 250;
 

@@ -18,6 +18,8 @@ std::uint32_t wish_capacity(const ModelCapacities& capacities) noexcept
 /// Share of the memory that goes to pages unless the caller says how much, in percent: a page is
 /// mostly prefetched, an active face costs a tenth of a record's page.
 constexpr std::size_t kPageShare = 62;
+/// Index pages beyond the least number get this part of the memory at most.
+constexpr std::size_t kIndexPageShare = 64;
 /// The least number of active faces beyond the base mesh that is worth starting with.
 constexpr std::uint32_t kMinFaces = 256;
 
@@ -52,7 +54,10 @@ ModelCapacities plan_capacities(const ModelHeader& header, std::size_t bytes,
 {
     const ModelCounts counts = header.counts();
     ModelCapacities capacities;
-    capacities.index_pages = std::clamp(counts.index_pages(), 1U, kMaxResidentIndexPages);
+    const auto index_pages_max = std::max<std::size_t>(kLeastResidentIndexPages,
+                                                       bytes / kIndexPageShare / sizeof(IndexPage));
+    capacities.index_pages = static_cast<std::uint32_t>(
+        std::clamp<std::size_t>(counts.index_pages(), 1, index_pages_max));
     const std::size_t page_share = cache_bytes > 0 ? cache_bytes : bytes / 100 * kPageShare;
     capacities.pages = static_cast<std::uint32_t>(
         std::min<std::size_t>(std::max(counts.chunks(), 1U), page_share / sizeof(Page)));
