@@ -2,7 +2,8 @@
 // Copyright the Tactus authors.
 
 // Compiled for AVX2. Only the kernels_*.cpp are compiled for more than the base instruction set.
-#define TACTUS_KERNEL_SET "avx2" // NOLINT(cppcoreguidelines-macro-usage): read by the source below.
+// NOLINTNEXTLINE(cppcoreguidelines-macro-usage): read by the source below.
+#define TACTUS_KERNEL_SET "avx2"
 #include "rt_core/kernels/kernel_sets.hpp"
 #include "rt_core/kernels/kernel_source.inc"
 
