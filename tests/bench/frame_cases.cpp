@@ -186,7 +186,7 @@ CaseFailure run_frame_case(const CaseContext& context, const FrameCase& test_cas
 
 CaseFailure run_memory_case(const CaseContext& context, const MemoryCase& test_case)
 {
-    static constexpr std::array<double, 9> kTried_mib{1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 6.0, 8.0, 16.0};
+    static constexpr std::array<double, 7> kTried_mib{2.5, 3.0, 3.5, 4.0, 6.0, 8.0, 16.0};
     const auto scene = context.scenes.get(test_case.scene);
     if (!scene)
     {
