@@ -56,8 +56,8 @@ done
 
 source_file rt_core/base/good.hpp '#include "rt_core/math/vec3.hpp"'
 expect_refusal floors "rt_core/base/good.hpp:4: includes 'rt_core/math/vec3.hpp'; rt_core/base may"
-source_file rt_core/forest/forest.hpp '#include "rt_core/abtree/ab_tree.hpp"'
-expect_refusal floors "rt_core/forest/forest.hpp:4: includes 'rt_core/abtree/ab_tree.hpp'"
+source_file rt_core/abtree/ab_tree.hpp '#include "rt_core/forest/forest.hpp"'
+expect_refusal floors "rt_core/abtree/ab_tree.hpp:4: includes 'rt_core/forest/forest.hpp'"
 source_file rt_core/math/box.hpp '  #  include <vector>'
 expect_refusal floors "rt_core/math/box.hpp:4: includes 'vector'; rt_core may include: algorithm"
 source_file transport/link.hpp '#include <dds/dds.h>'
