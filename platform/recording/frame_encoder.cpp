@@ -4,6 +4,7 @@
 
 #include "rt_core/base/assert.hpp"
 
+#include <algorithm>
 #include <cstring>
 #include <type_traits>
 
@@ -30,7 +31,7 @@ public:
     void write_bytes(std::span<const std::byte> bytes) noexcept
     {
         TACTUS_ASSERT(bytes_.size() - at_ >= bytes.size());
-        std::memcpy(bytes_.data() + at_, bytes.data(), bytes.size());
+        std::copy(bytes.begin(), bytes.end(), bytes_.begin() + static_cast<std::ptrdiff_t>(at_));
         at_ += bytes.size();
     }
     void write_vector(const Vec3& value) noexcept
@@ -99,7 +100,7 @@ bool try_update(std::span<const std::byte> now, std::span<std::byte> last) noexc
     {
         return false;
     }
-    std::memcpy(last.data(), now.data(), now.size());
+    std::copy(now.begin(), now.end(), last.begin());
     return true;
 }
 
