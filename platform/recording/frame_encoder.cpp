@@ -96,7 +96,7 @@ void write_door(FixedWriter& writer, const DoorTake& door) noexcept
 /// Copies `now` over `last`; whether they differed.
 bool try_update(std::span<const std::byte> now, std::span<std::byte> last) noexcept
 {
-    if (std::memcmp(now.data(), last.data(), now.size()) == 0)
+    if (std::equal(now.begin(), now.end(), last.begin()))
     {
         return false;
     }
