@@ -95,8 +95,9 @@ ExactSum<Float> exact_sum(Float a, Float b) noexcept
 /// The next float below where `step_down`; a sum with a rest is never zero.
 FourFloats stepped_down(FourFloats value, FourInts step_down) noexcept
 {
-    const auto bits = reinterpret_cast<FourInts>(value);
-    const FourInts below = value > splat(0.0F) ? bits - 1 : bits + 1;
+    using FourWords = std::uint32_t __attribute__((vector_size(16)));
+    const auto bits = reinterpret_cast<FourWords>(value); // Lanes that don't count may wrap.
+    const FourWords below = value > splat(0.0F) ? bits - 1U : bits + 1U;
     return reinterpret_cast<FourFloats>(step_down ? below : bits);
 }
 
