@@ -47,9 +47,7 @@ public:
     [[nodiscard]] std::uint64_t chunk_bytes() const noexcept { return chunk_bytes_; }
 
     /// Links every record the way the controller does, with memory for all pages; the number that
-    /// could not be linked. Call it once, on a model without damage. The linker is made for
-    /// hundreds of pages and takes time with their square: about a second for kLinkedChunks.
-    static constexpr std::uint32_t kLinkedChunks = 2'048;
+    /// could not be linked. Call it once, on a model without damage.
     [[nodiscard]] std::uint64_t link_all();
 
 private:

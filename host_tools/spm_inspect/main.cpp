@@ -70,7 +70,7 @@ Bounds bounds_of(const ModelHeader& header)
 }
 
 /// Refines the whole model and returns what contradicts itself, in words. A replay checks all that
-/// the controller's linker does; a model of a size that the linker is made for goes through it too.
+/// the controller's linker does; then the linker itself goes through the model.
 std::optional<std::string> find_contradiction(DecodedModel& model)
 {
     const ModelCounts counts = model.header().counts();
@@ -84,9 +84,7 @@ std::optional<std::string> find_contradiction(DecodedModel& model)
         }
         progress.update(++done, counts.records);
     }
-    const std::uint64_t unlinked =
-        counts.chunks() <= DecodedModel::kLinkedChunks ? model.link_all() : 0;
-    if (unlinked > 0)
+    if (const std::uint64_t unlinked = model.link_all(); unlinked > 0)
     {
         return fmt::format("{} of {} records can't be linked to those they depend on", unlinked,
                            counts.records);

@@ -4,7 +4,7 @@
 
 #include "platform/haptic_device.hpp"
 #include "platform/hrtc/options.hpp"
-#include "platform/hrtc/pool_memory.hpp"
+#include "platform/pool_memory.hpp"
 #include "rt_core/frame/frame.hpp"
 #include "transport/courier.hpp"
 #include "transport/served_model.hpp"

@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <pthread.h>
 #include <sched.h>
+#include <sys/mman.h>
 #include <sys/resource.h>
 
 namespace tactus::linux_extras
@@ -88,6 +89,12 @@ void read_fault_and_switch_counts(ThreadUsage& usage) noexcept
     usage.major_faults = found.ru_majflt;
     usage.voluntary_switches = found.ru_nvcsw;
     usage.involuntary_switches = found.ru_nivcsw;
+}
+
+void ask_for_huge_pages(std::span<std::byte> memory) noexcept
+{
+    // Refused where the kernel has no such pages: then the memory has small ones.
+    static_cast<void>(madvise(memory.data(), memory.size(), MADV_HUGEPAGE));
 }
 
 } // namespace tactus::linux_extras

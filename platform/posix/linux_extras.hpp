@@ -5,6 +5,7 @@
 #include "platform/thread_usage.hpp"
 
 #include <cstddef>
+#include <span>
 #include <string>
 
 /// The only calls that Linux has and other POSIX systems do not, or have in another form. A port
@@ -23,5 +24,8 @@ namespace tactus::linux_extras
 
 /// Faults and context switches of the calling thread; leaves cpu_time alone.
 void read_fault_and_switch_counts(ThreadUsage& usage) noexcept;
+
+/// Lets the system back this memory with huge pages; it may as well not. `memory` starts on a page.
+void ask_for_huge_pages(std::span<std::byte> memory) noexcept;
 
 } // namespace tactus::linux_extras

@@ -4,59 +4,68 @@
 
 #include "rt_core/spm/chunk_coding.hpp"
 
+#include <algorithm>
 #include <atomic>
-#include <bit>
 
 namespace tactus
 {
+
+namespace
+{
+
+constexpr std::size_t kListsPerPage = 16; ///< A quarter of the records that may wait at most.
+
+/// Relaxed: see load_next(). The inbox publishes it together with the linked bit.
+void store_next(std::uint32_t& next, RecordId id) noexcept
+{
+    std::atomic_ref<std::uint32_t>(next).store(id.value, std::memory_order_relaxed);
+}
+
+} // namespace
 
 Linker::Linker(Arena& arena, const ModelCounts& counts, PageSlots slots) noexcept
     : counts_(counts)
     , slots_(slots)
     , slot_of_(arena, static_cast<std::uint32_t>(slots.pages.size()) + 1)
     , residents_(arena.take<Resident>(slots.pages.size()))
+    , waiting_(arena.take<Waiting>(slots.pages.size() * kRecordsPerChunk))
+    , lists_(arena.take<Seat>(slots.pages.size() * kListsPerPage))
+    , owing_{.behind = arena.take<std::uint32_t>(slots.pages.size())}
 {
+    if (!arena.is_measuring())
+    {
+        TACTUS_ASSERT(waiting_.size() < kNoSeat);
+        std::ranges::fill(lists_, kNoSeat);
+        std::ranges::fill(owing_.behind, kNotOwing);
+    }
 }
 
 void Linker::link_page(ChunkId chunk, std::uint32_t slot) noexcept
 {
     TACTUS_ASSERT(slot < residents_.size() && residents_[slot].chunk.is_none());
-    residents_[slot] = Resident{chunk, {}, 0, 0, 0, true};
-    update_cursor_ = 0;
+    residents_[slot] = Resident{chunk, 0, 0, 0};
     const bool inserted = slot_of_.try_insert(chunk.value, slot);
     TACTUS_ASSERT(inserted);
-    slots_in_use_end_ = slot + 1 > slots_in_use_end_ ? slot + 1 : slots_in_use_end_;
-    sign(slot);
     for (std::uint32_t place = 0; place < records_in_chunk(counts_, chunk); ++place)
     {
-        try_link(slot, place);
-    }
-    // Every pass that goes on has linked at least one more record, so this ends.
-    for (bool any = true; any;)
-    {
-        any = false;
-        for (std::uint32_t source = 0; source < slots_in_use_end_; ++source)
-        {
-            if (!residents_[source].changed)
-            {
-                continue;
-            }
-            residents_[source].changed = false;
-            any = true;
-            for (std::uint32_t other = 0; other < slots_in_use_end_; ++other)
-            {
-                look_again(other, residents_[source].chunk);
-            }
-        }
+        settle((slot << kRecordsPerChunkLog2) + place);
     }
 }
 
 void Linker::release_page(std::uint32_t slot) noexcept
 {
     TACTUS_ASSERT(slot < residents_.size() && !residents_[slot].chunk.is_none());
-    slot_of_.erase(residents_[slot].chunk.value);
+    const ChunkId chunk = residents_[slot].chunk;
+    for (std::uint32_t place = 0; place < records_in_chunk(counts_, chunk); ++place)
+    {
+        stop_waiting((slot << kRecordsPerChunkLog2) + place);
+    }
+    slot_of_.erase(chunk.value); // From here on no dependent is found in this page itself.
+    for (std::uint32_t place = 0; place < records_in_chunk(counts_, chunk); ++place)
+    {
+        let_dependents_wait((slot << kRecordsPerChunkLog2) + place);
+    }
     residents_[slot] = Resident{};
-    any_released_ = true;
 }
 
 std::uint64_t Linker::tell_linked(std::uint32_t slot) noexcept
@@ -67,187 +76,276 @@ std::uint64_t Linker::tell_linked(std::uint32_t slot) noexcept
 
 bool Linker::try_take_update(Update& update) noexcept
 {
-    for (; update_cursor_ < slots_in_use_end_; ++update_cursor_)
+    while (!owing_.is_empty)
     {
-        const Resident& resident = residents_[update_cursor_];
-        if (resident.linked != resident.told)
+        const std::uint32_t slot = owing_.first;
+        owing_.is_empty = slot == owing_.last;
+        owing_.first = owing_.behind[slot];
+        owing_.behind[slot] = kNotOwing;
+        // Told with its arrival, or given back meanwhile: then it owes nothing any more.
+        if (residents_[slot].linked != residents_[slot].told)
         {
-            update = {resident.chunk, update_cursor_, tell_linked(update_cursor_)};
+            update = {residents_[slot].chunk, slot, tell_linked(slot)};
             return true;
         }
     }
     return false;
 }
 
-bool Linker::has_waiting_records(std::uint32_t slot) const noexcept
+void Linker::owe_update(std::uint32_t slot) noexcept
 {
-    const std::uint64_t settled = residents_[slot].linked | residents_[slot].refused;
-    return static_cast<std::uint32_t>(std::popcount(settled)) <
-           records_in_chunk(counts_, residents_[slot].chunk);
-}
-
-void Linker::sign(std::uint32_t slot) noexcept
-{
-    Resident& resident = residents_[slot];
-    for (std::uint32_t place = 0; place < records_in_chunk(counts_, resident.chunk); ++place)
-    {
-        const VsplitRecord& record = slots_.pages[slot].records[place];
-        for (std::uint32_t i = 0; i < record.fan_size; ++i)
-        {
-            if (!record.before[i].is_base())
-            {
-                resident.refers_to.add(chunk_of(record.before[i].record()));
-            }
-        }
-    }
-}
-
-/// `changed` has come in or has more linked records: what in this page waited for that?
-void Linker::look_again(std::uint32_t slot, ChunkId changed) noexcept
-{
-    const Resident& resident = residents_[slot];
-    if (resident.chunk.is_none() || !resident.refers_to.may_hold(changed))
+    if (owing_.behind[slot] != kNotOwing)
     {
         return;
     }
-    // A page whose records are all linked only has something to mend when one came back.
-    if (!any_released_ && !has_waiting_records(slot))
+    owing_.behind[slot] = slot;
+    if (owing_.is_empty)
     {
-        return;
+        owing_.first = slot;
     }
-    for (std::uint32_t place = 0; place < records_in_chunk(counts_, resident.chunk); ++place)
+    else
     {
-        if (is_linked(slot, place))
+        owing_.behind[owing_.last] = slot;
+    }
+    owing_.last = slot;
+    owing_.is_empty = false;
+}
+
+/// Links the record if nothing is missing, then those that waited for it, and so on. Every turn
+/// takes a record off a list and puts it back for a later dependency at most, so this ends.
+void Linker::settle(Seat seat) noexcept
+{
+    waiting_[seat].value = kNoSeat << 3U;
+    ready_ = seat;
+    while (ready_ != kNoSeat)
+    {
+        const Seat now = ready_;
+        ready_ = waiting_[now].behind();
+        waiting_[now] = {};
+        ++looks_;
+        if (is_linked(now))
         {
-            relink_next(slot, place, changed);
+            mend_next(now);
         }
-        else
+        else if (try_link(now))
         {
-            try_link(slot, place);
+            wake_waiting(id_of(now));
         }
     }
 }
 
-void Linker::relink_next(std::uint32_t slot, std::uint32_t place, ChunkId changed) noexcept
+bool Linker::try_link(Seat seat) noexcept
 {
-    const VsplitRecord& record = slots_.pages[slot].records[place];
-    const std::uint32_t id = (residents_[slot].chunk.value << kRecordsPerChunkLog2) + place;
+    const VsplitRecord& record = record_at(seat);
+    const RecordId id = id_of(seat);
+    std::uint32_t depth = 0;
+    std::uint32_t missing = record.fan_size;
     for (std::uint32_t i = 0; i < record.fan_size; ++i)
     {
         const FaceState state = record.before[i];
-        if (!state.is_base() && chunk_of(state.record()) == changed)
+        if (!state.is_base() && !owner_is_linked(state))
         {
-            std::uint32_t* next = next_of(record.star[2 + i], state);
-            if (*next == kNextPending) // Otherwise taken, by this record or a rival of it.
-            {
-                // Relaxed, pairs with nothing: see load_next().
-                std::atomic_ref<std::uint32_t>(*next).store(id, std::memory_order_relaxed);
-            }
+            missing = std::min(missing, i);
+            continue;
         }
+        if (!is_possible(id, record, i))
+        {
+            refuse(seat);
+            return false;
+        }
+        depth = state.is_base() ? depth : std::max<std::uint32_t>(depth, owner(state).depth);
     }
-}
-
-void Linker::try_link(std::uint32_t slot, std::uint32_t place) noexcept
-{
-    Resident& resident = residents_[slot];
-    const std::uint64_t bit = std::uint64_t{1} << place;
-    if ((resident.refused & bit) != 0 || is_linked(slot, place))
+    if (missing < record.fan_size)
     {
-        return;
+        wait_for_owner(seat, missing);
+        return false;
     }
-    const RecordId id{(resident.chunk.value << kRecordsPerChunkLog2) + place};
-    const VsplitRecord& record = slots_.pages[slot].records[place];
-    const Fit result = fit(id, record);
-    if (result == Fit::refused)
+    if (record.depth != depth + 1)
     {
-        resident.refused |= bit;
-        ++refused_count_;
-    }
-    if (result != Fit::fits)
-    {
-        return;
+        refuse(seat);
+        return false;
     }
     for (std::uint32_t i = 0; i < record.fan_size; ++i)
     {
-        std::uint32_t* next = next_of(record.star[2 + i], record.before[i]);
-        // Relaxed: see load_next(). The inbox publishes it together with the linked bit.
-        std::atomic_ref<std::uint32_t>(*next).store(id.value, std::memory_order_relaxed);
+        store_next(next_of(record.star[2 + i], record.before[i]), id);
     }
-    resident.linked |= bit;
-    resident.changed = true;
+    const std::uint32_t slot = seat >> kRecordsPerChunkLog2;
+    residents_[slot].linked |= std::uint64_t{1} << (seat % kRecordsPerChunk);
+    owe_update(slot);
     ++linked_count_;
+    return true;
 }
 
-Linker::Fit Linker::fit(RecordId id, const VsplitRecord& record) const noexcept
-{
-    bool waits = false;
-    std::uint32_t depth = 0;
-    for (std::uint32_t i = 0; i < record.fan_size; ++i)
-    {
-        const Fit one = fit_one(id, record, i, depth);
-        if (one == Fit::refused)
-        {
-            return Fit::refused;
-        }
-        waits = waits || one == Fit::waits;
-    }
-    if (waits)
-    {
-        return Fit::waits;
-    }
-    return record.depth == depth + 1 ? Fit::fits : Fit::refused;
-}
-
-Linker::Fit Linker::fit_one(RecordId id, const VsplitRecord& record, std::uint32_t fan_place,
-                            std::uint32_t& depth) const noexcept
+/// May this record split the fan face, as far as the face's owner tells? Exact faces are never
+/// split, taken ones not by a second record.
+bool Linker::is_possible(RecordId id, const VsplitRecord& record,
+                         std::uint32_t fan_place) const noexcept
 {
     const FaceId face = record.star[2 + fan_place];
     const FaceState state = record.before[fan_place];
-    if (!state.is_base())
+    if (!state.is_base() && owner(state).star[state.place()] != face)
     {
-        const std::uint32_t slot = slot_of_.find(chunk_of(state.record()).value);
-        if (slot == IdTable::kAbsent || !is_linked(slot, place_in_chunk(state.record())))
-        {
-            return Fit::waits;
-        }
-        const VsplitRecord& owner = slots_.pages[slot].records[place_in_chunk(state.record())];
-        if (owner.star[state.place()] != face)
-        {
-            return Fit::refused;
-        }
-        depth = owner.depth > depth ? owner.depth : depth;
+        return false;
     }
-    // The owner is here, so `next` is: exact faces are never split, taken ones not by a second.
-    const std::uint32_t next = *next_of(face, state);
-    return next == kNextPending || next == id.value ? Fit::fits : Fit::refused;
+    const std::uint32_t next = next_of(face, state);
+    return next == kNextPending || next == id.value;
 }
 
-std::uint32_t* Linker::next_of(FaceId face, FaceState state) const noexcept
+void Linker::refuse(Seat seat) noexcept
 {
-    if (state.is_base())
+    residents_[seat >> kRecordsPerChunkLog2].refused |= std::uint64_t{1}
+                                                        << (seat % kRecordsPerChunk);
+    ++refused_count_;
+}
+
+/// A linked record of which an owner came back: sets what isn't set any more, and waits for the
+/// next owner that is away.
+void Linker::mend_next(Seat seat) noexcept
+{
+    const VsplitRecord& record = record_at(seat);
+    std::uint32_t missing = record.fan_size;
+    for (std::uint32_t i = 0; i < record.fan_size; ++i)
     {
-        return &slots_.base.next[face.value];
+        const FaceState state = record.before[i];
+        if (state.is_base())
+        {
+            continue;
+        }
+        if (!owner_is_linked(state))
+        {
+            missing = std::min(missing, i);
+        }
+        else if (std::uint32_t& next = next_of(record.star[2 + i], state); next == kNextPending)
+        {
+            store_next(next, id_of(seat)); // Otherwise taken, by this record or a rival of it.
+        }
     }
-    const std::uint32_t slot = slot_of_.find(chunk_of(state.record()).value);
-    TACTUS_ASSERT(slot != IdTable::kAbsent);
-    return &slots_.pages[slot].records[place_in_chunk(state.record())].next[state.place()];
+    if (missing < record.fan_size)
+    {
+        wait_for_owner(seat, missing);
+    }
 }
 
-bool Linker::is_linked(std::uint32_t slot, std::uint32_t place) const noexcept
+void Linker::wait_for_owner(Seat seat, std::uint32_t fan_place) noexcept
 {
-    return ((residents_[slot].linked >> place) & 1U) != 0;
+    Seat& first = list_of(record_at(seat).before[fan_place].record());
+    waiting_[seat].value = first << 3U | fan_place;
+    first = seat;
 }
 
-void Linker::Signature::add(ChunkId chunk) noexcept
+void Linker::wake_waiting(RecordId linked) noexcept
 {
-    const std::uint32_t hash = (chunk.value * 0x9E37'79B9U) >> 24U;
-    bits[hash / 64] |= std::uint64_t{1} << (hash % 64);
+    Seat kept = kNoSeat;
+    for (Seat seat = list_of(linked); seat != kNoSeat;)
+    {
+        const Seat behind = waiting_[seat].behind();
+        const std::uint32_t fan_place = waiting_[seat].fan_place();
+        const bool is_ready = record_at(seat).before[fan_place].record() == linked;
+        Seat& list = is_ready ? ready_ : kept;
+        waiting_[seat].value = list << 3U | fan_place;
+        list = seat;
+        seat = behind;
+    }
+    list_of(linked) = kept;
 }
 
-bool Linker::Signature::may_hold(ChunkId chunk) const noexcept
+void Linker::stop_waiting(Seat seat) noexcept
 {
-    const std::uint32_t hash = (chunk.value * 0x9E37'79B9U) >> 24U;
-    return ((bits[hash / 64] >> (hash % 64)) & 1U) != 0;
+    if (!waiting_[seat].is_in_list())
+    {
+        return;
+    }
+    const std::uint32_t fan_place = waiting_[seat].fan_place();
+    Seat& first = list_of(record_at(seat).before[fan_place].record());
+    const Seat behind = waiting_[seat].behind();
+    if (first == seat)
+    {
+        first = behind;
+    }
+    else
+    {
+        Seat before = first;
+        while (waiting_[before].behind() != seat)
+        {
+            before = waiting_[before].behind();
+        }
+        waiting_[before].value = behind << 3U | waiting_[before].fan_place();
+    }
+    waiting_[seat] = {};
+}
+
+/// The linked records that stand in the `next` of one that leaves have to set them anew when it
+/// comes back.
+void Linker::let_dependents_wait(Seat leaving) noexcept
+{
+    const RecordId id = id_of(leaving);
+    const VsplitRecord& record = record_at(leaving);
+    for (std::uint32_t place = 0; place < record.star_end(); ++place)
+    {
+        const std::uint32_t next = record.next[place];
+        if (record.star[place].is_none() || next == kNextExact || next == kNextPending)
+        {
+            continue;
+        }
+        const Seat dependent = seat_of({next});
+        if (dependent == kNoSeat || !is_linked(dependent) || waiting_[dependent].is_in_list())
+        {
+            continue; // Away, or it looks at all its owners when the one it waits for comes back.
+        }
+        const auto& before = record_at(dependent).before;
+        const auto found = std::ranges::find(before, FaceState::after(id, place));
+        TACTUS_ASSERT(found != before.end());
+        wait_for_owner(dependent, static_cast<std::uint32_t>(found - before.begin()));
+    }
+}
+
+bool Linker::owner_is_linked(FaceState state) const noexcept
+{
+    const Seat seat = seat_of(state.record());
+    return seat != kNoSeat && is_linked(seat);
+}
+
+VsplitRecord& Linker::owner(FaceState state) const noexcept
+{
+    const Seat seat = seat_of(state.record());
+    TACTUS_ASSERT(seat != kNoSeat);
+    return record_at(seat);
+}
+
+std::uint32_t& Linker::next_of(FaceId face, FaceState state) const noexcept
+{
+    return state.is_base() ? slots_.base.next[face.value] : owner(state).next[state.place()];
+}
+
+/// kNoSeat when the record's page is away.
+Linker::Seat Linker::seat_of(RecordId record) const noexcept
+{
+    const std::uint32_t slot = slot_of_.find(chunk_of(record).value);
+    return slot == IdTable::kAbsent ? kNoSeat
+                                    : (slot << kRecordsPerChunkLog2) + place_in_chunk(record);
+}
+
+RecordId Linker::id_of(Seat seat) const noexcept
+{
+    const ChunkId chunk = residents_[seat >> kRecordsPerChunkLog2].chunk;
+    return {(chunk.value << kRecordsPerChunkLog2) + seat % kRecordsPerChunk};
+}
+
+VsplitRecord& Linker::record_at(Seat seat) const noexcept
+{
+    return slots_.pages[seat >> kRecordsPerChunkLog2].records[seat % kRecordsPerChunk];
+}
+
+bool Linker::is_linked(Seat seat) const noexcept
+{
+    const std::uint64_t linked = residents_[seat >> kRecordsPerChunkLog2].linked;
+    return ((linked >> (seat % kRecordsPerChunk)) & 1U) != 0;
+}
+
+Linker::Seat& Linker::list_of(RecordId awaited) noexcept
+{
+    const std::uint32_t mixed = awaited.value * 0x9E37'79B9U;
+    return lists_[(std::uint64_t{mixed} * lists_.size()) >> 32U];
 }
 
 } // namespace tactus

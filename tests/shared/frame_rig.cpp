@@ -17,17 +17,10 @@ namespace
     std::exit(2);
 }
 
-std::span<std::byte> aligned(std::vector<std::byte>& memory)
-{
-    const auto address = reinterpret_cast<std::uintptr_t>(memory.data());
-    const std::size_t skip = (Arena::kAlignment - address % Arena::kAlignment) % Arena::kAlignment;
-    return std::span(memory).subspan(skip);
-}
-
 } // namespace
 
 FrameRig::FrameRig(const TestModel& model, const RigOptions& options)
-    : memory_(options.pool_bytes + Arena::kAlignment)
+    : memory_(options.pool_bytes)
     , courier_steps_(options.courier_steps_per_frame)
 {
     auto served = serve_from_file(model.path, model.name, {});
@@ -37,7 +30,7 @@ FrameRig::FrameRig(const TestModel& model, const RigOptions& options)
     }
     served_ = std::move(served).value();
     link_ = std::make_unique<LoopbackLink>(*served_.link, options.faults);
-    arena_.emplace(aligned(memory_).first(options.pool_bytes));
+    arena_.emplace(memory_.span());
     const ModelHeader header = ModelHeader::parse(served_.header).value();
     const std::vector<ToolSpec> tools =
         options.tools.empty() ? std::vector<ToolSpec>{{0.01 * model.diagonal_m, 500.0, 8.0, 1.0}}

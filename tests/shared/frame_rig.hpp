@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "platform/pool_memory.hpp"
 #include "rt_core/frame/frame.hpp"
 #include "tests/shared/rig_recorder.hpp"
 #include "tests/shared/test_model.hpp"
@@ -60,7 +61,7 @@ public:
 private:
     ServedModel served_;
     std::unique_ptr<LoopbackLink> link_;
-    std::vector<std::byte> memory_;
+    PoolMemory memory_;
     std::optional<Arena> arena_;
     std::optional<Frame> frame_;
     std::unique_ptr<Courier> courier_;

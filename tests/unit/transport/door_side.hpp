@@ -112,8 +112,8 @@ public:
         owned_.erase(at);
     }
 
-    /// Every record that is owned and linked has exactly the links of the whole model, as far as
-    /// the records they name are here and linked.
+    /// Every record that is owned has exactly the links of the whole model, as far as the records
+    /// they name are linked and so is all that those depend on.
     void check_links()
     {
         for (const auto& [key, slot] : owned_)
@@ -125,7 +125,7 @@ public:
                 {
                     const std::uint32_t expected = model_.records[id].next[i];
                     const std::uint32_t next = load_next(slots.pages[slot].records[place].next[i]);
-                    const bool is_here = expected == kNextExact || is_linked(expected);
+                    const bool is_here = expected == kNextExact || has_all_it_needs(expected);
                     EXPECT_TRUE(next == expected || (next == kNextPending && !is_here))
                         << "record " << id << ", star face " << i << ": next " << next << ", not "
                         << expected;
@@ -143,6 +143,16 @@ public:
 
 private:
     static constexpr std::size_t kBytes = std::size_t{4} << 20U;
+
+    [[nodiscard]] bool has_all_it_needs(std::uint32_t record) const
+    {
+        bool all = is_linked(record);
+        for (const FaceState state : model_.records[record].before)
+        {
+            all = all && (state.is_base() || is_linked(state.record().value));
+        }
+        return all;
+    }
 
     void check_content(const DoorEvent& arrival)
     {

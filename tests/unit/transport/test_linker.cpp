@@ -139,6 +139,26 @@ RC_GTEST_PROP(Linker, a_page_that_returns_gets_all_its_links_back, (std::uint32_
     }
 }
 
+RC_GTEST_PROP(Linker, looks_at_a_record_once_for_each_of_its_dependencies, (std::uint32_t seed))
+{
+    const TinyModel model =
+        make_tiny_model({.seed = seed, .records = 1'000, .shuffled_ids = seed % 2 == 0});
+    Bench bench(model);
+    std::uint64_t allowed = 0;
+    for (const VsplitRecord& record : model.records)
+    {
+        allowed += 1U + record.fan_size;
+    }
+    // Last chunks first: nearly every record has to wait.
+    for (auto chunk = static_cast<std::uint32_t>(model.chunks.size()); chunk-- > 0;)
+    {
+        bench.bring(chunk, chunk);
+    }
+    RC_ASSERT(bench.linked() == model.records.size());
+    RC_ASSERT(bench.side.linker.looks() <= allowed);
+    RC_ASSERT(bench.side.linker.looks() > model.records.size()); // Some did wait.
+}
+
 TEST(Linker, records_wait_while_a_dependency_is_absent)
 {
     const TinyModel model = make_tiny_model({.records = 130});

@@ -2,30 +2,26 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "rt_core/base/arena.hpp"
-
 #include <cstddef>
-#include <cstring>
-#include <new>
 #include <span>
 
-namespace tactus::hrtc
+namespace tactus
 {
 
 /// The memory that all pools are made of: one allocation at start-up, touched, on a cache line.
+///
+/// On huge pages where the system grants them: a walk through pools of many megabytes otherwise
+/// misses the translation cache at nearly every block, and a frame with cold caches walks the page
+/// tables too. The system may take up to kHugePage - 1 bytes more than asked for.
 class PoolMemory
 {
 public:
-    explicit PoolMemory(std::size_t bytes)
-        : bytes_(Arena::round_up(bytes))
-        , memory_(
-              static_cast<std::byte*>(::operator new (bytes_, std::align_val_t{Arena::kAlignment})))
-    {
-        std::memset(memory_, 0, bytes_);
-    }
+    static constexpr std::size_t kHugePage = std::size_t{2} << 20U;
+
+    explicit PoolMemory(std::size_t bytes);
     PoolMemory(const PoolMemory&) = delete;
     PoolMemory& operator=(const PoolMemory&) = delete;
-    ~PoolMemory() { ::operator delete (memory_, std::align_val_t{Arena::kAlignment}); }
+    ~PoolMemory();
 
     [[nodiscard]] std::span<std::byte> span() const noexcept { return {memory_, bytes_}; }
 
@@ -34,4 +30,4 @@ private:
     std::byte* memory_;
 };
 
-} // namespace tactus::hrtc
+} // namespace tactus
