@@ -73,14 +73,12 @@ public:
     BasicAbTree(Arena& arena, const Capacities& capacities, float quantum_m,
                 const Kernels& kernels = best_kernels()) noexcept;
 
-    /// Takes over one face as it is now: new, changed, or (face none) gone.
-    void apply(const ChangedFace& change) noexcept TACTUS_NONBLOCKING;
-
     /// Adds a face; its prim has none so far.
     void insert(const ChangedFace& face) noexcept TACTUS_NONBLOCKING;
 
     /// One corner (0 .. 2) of the face has moved, and its error changed: what a split or a merge
-    /// does to a fan face, for much less than apply(). Without effect on an unplaced face.
+    /// does to a fan face, for much less than removing and inserting it. Without effect on an
+    /// unplaced face.
     void move_corner(PrimId prim, std::uint32_t corner, const Vec3f& position_m,
                      ErrorCode error) noexcept TACTUS_NONBLOCKING;
 

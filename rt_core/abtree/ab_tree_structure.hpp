@@ -52,25 +52,6 @@ BasicAbTree<Volume>::BasicAbTree(Arena& arena, const Capacities& capacities, flo
 }
 
 template <typename Volume>
-void BasicAbTree<Volume>::apply(const ChangedFace& change) noexcept
-{
-    const Prim& prim = prims_[change.prim.value];
-    if (leaf_of(change.prim) != kNoLeaf && prim.face == change.face)
-    {
-        update(change);
-        return;
-    }
-    if (!prim.face.is_none())
-    {
-        remove(change.prim);
-    }
-    if (!change.face.is_none())
-    {
-        insert(change);
-    }
-}
-
-template <typename Volume>
 void BasicAbTree<Volume>::insert(const ChangedFace& face) noexcept
 {
     TACTUS_ASSERT(prims_[face.prim.value].leaf == kNoLeaf);

@@ -66,7 +66,7 @@ struct Model
     Model& operator=(Model&&) = delete;
     ~Model() = default;
 
-    /// Hands this frame's changes, and faces that found no place before, to the tree and refits it.
+    /// Offers the tree the faces that found no place in it before, and refits it.
     void refit(FrameFault& faults) noexcept TACTUS_NONBLOCKING;
 
     /// Whether this frame may ask for what the region lacks.

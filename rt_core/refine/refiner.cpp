@@ -22,10 +22,6 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr auto comes_later = [](const auto& a, const auto& b) noexcept
 { return a.excess_m != b.excess_m ? a.excess_m > b.excess_m : a.prim > b.prim; };
 
-/// A record may stay while a tool goes this much farther than it has to, as a share of the keep
-/// distance, so that a page has not to be looked at for each of its records.
-constexpr double kPatience = 0.1;
-
 /// What is only looked ahead for gets this part of the splits, so that it comes bit by bit.
 constexpr std::uint32_t kAheadShare = 16;
 
@@ -78,13 +74,12 @@ Refiner::Refiner(Arena& arena, VertexForest& forest, PageTable& pages, const AbT
     : forest_(&forest)
     , pages_(&pages)
     , tree_(&tree)
+    , coarsener_(arena, forest, pages, quantum_m)
     , quantum_m_(static_cast<double>(quantum_m))
     , heap_(arena.take<Candidate>(kRefineHeap))
     , held_(arena.take<RecordId>(kMaxHeldRecords))
     , stack_(arena.take<RecordId>(kMaxDepth))
     , done_(arena.take<RecordId>(kMaxSplitsPerFrame))
-    , look_at_(arena.take<double>(pages.capacity()))
-    , needed_(arena.take<std::uint64_t>(pages.capacity()))
 {
 }
 
@@ -101,7 +96,7 @@ void Refiner::run(std::span<const RefineQuestion> questions, const Budgets& budg
         }
     }
     const std::uint32_t merges_before = work.merges;
-    coarsen(questions, budgets, work);
+    coarsener_.run(questions, budgets, work);
     if (work.merges != merges_before)
     {
         // What was merged is beyond every question's keep distance, but no farther.
@@ -138,11 +133,10 @@ void Refiner::follow(std::span<const RefineQuestion> questions) noexcept
         memory.center_m = question.center_m;
         memory.keep_m = question.keep_m;
     }
-    travel_ += farthest;
+    coarsener_.follow(farthest);
     if (!is_same)
     {
-        std::fill(look_at_.begin(), look_at_.end(), travel_);
-        next_look_ = travel_;
+        coarsener_.look_at_all();
     }
 }
 
@@ -198,150 +192,6 @@ void Refiner::gather_block(std::uint32_t index, const RefineQuestion& question) 
             leave(question, key);
         }
     }
-}
-
-void Refiner::coarsen(std::span<const RefineQuestion> questions, const Budgets& budgets,
-                      WorkCounters& work) noexcept
-{
-    if (travel_ < next_look_)
-    {
-        return;
-    }
-    // One round over the pages at most. Most are not due: a comparison each.
-    double next = kInfinity;
-    for (std::uint32_t looked = 0; looked < pages_->capacity(); ++looked)
-    {
-        if (look_at_[scan_slot_] <= travel_)
-        {
-            if (work.scanned >= budgets.scanned || work.merges >= budgets.merges)
-            {
-                return;
-            }
-            scan_page(scan_slot_, questions, budgets, work);
-        }
-        next = std::min(next, look_at_[scan_slot_]);
-        scan_slot_ = scan_slot_ == 0 ? pages_->capacity() - 1 : scan_slot_ - 1;
-    }
-    next_look_ = std::max(next, travel_);
-}
-
-/// Looks at the refined records of one page, finest last in first. Unless the budget ends it, the
-/// page is not due again before the tools have come far enough to leave one of them behind.
-void Refiner::scan_page(std::uint32_t slot, std::span<const RefineQuestion> questions,
-                        const Budgets& budgets, WorkCounters& work) noexcept
-{
-    const PageTable::Meta& meta = pages_->meta(slot);
-    look_at_[slot] = kInfinity;
-    needed_[slot] &= meta.refined;
-    std::uint64_t left = meta.refined & ~meta.held & ~needed_[slot];
-    const Page& page = pages_->slots().pages[slot];
-    while (left != 0)
-    {
-        const auto place = static_cast<std::uint32_t>(63 - std::countl_zero(left));
-        left &= ~(std::uint64_t{1} << place);
-        if (work.scanned >= budgets.scanned)
-        {
-            look_at_[slot] = travel_;
-            return;
-        }
-        const double slack = slack_of(page.records[place], questions);
-        if (slack > 0.0)
-        {
-            ++work.scanned;
-            look_at_[slot] = std::min(look_at_[slot], travel_ + slack);
-            continue;
-        }
-        if (!merge_back({(meta.chunk.value << kRecordsPerChunkLog2) + place}, questions, budgets,
-                        work))
-        {
-            look_at_[slot] = travel_;
-            return;
-        }
-        left &= meta.refined;
-    }
-}
-
-/// Merges a record that was left behind, then those that it was the last to depend on. False when
-/// the budget is spent.
-bool Refiner::merge_back(RecordId first, std::span<const RefineQuestion> questions,
-                         const Budgets& budgets, WorkCounters& work) noexcept
-{
-    std::uint32_t depth = 0;
-    stack_[depth++] = first;
-    while (depth > 0)
-    {
-        const RecordId id = stack_[--depth];
-        if (work.scanned >= budgets.scanned || work.merges >= budgets.merges)
-        {
-            look_soon(id);
-            for (const RecordId waiting : stack_.first(depth))
-            {
-                look_soon(waiting);
-            }
-            return false;
-        }
-        ++work.scanned;
-        const std::uint32_t slot = pages_->find(chunk_of(id));
-        const VsplitRecord& record = pages_->slots().pages[slot].records[place_in_chunk(id)];
-        const std::uint64_t bit = std::uint64_t{1} << place_in_chunk(id);
-        needed_[slot] &= ~bit;
-        if (const double slack = slack_of(record, questions); slack > 0.0)
-        {
-            look_at_[slot] = std::min(look_at_[slot], travel_ + slack);
-            continue;
-        }
-        if (!forest_->try_merge(id))
-        {
-            needed_[slot] |= bit; // Asked again when the record that needs it is merged.
-            continue;
-        }
-        ++work.merges;
-        for (std::uint32_t i = 0; i < record.fan_size; ++i)
-        {
-            const FaceState state = record.before[i];
-            if (state.is_base() || !pages_->is_refined(state.record()))
-            {
-                continue;
-            }
-            if (depth < stack_.size() && !pages_->is_held(state.record()))
-            {
-                stack_[depth++] = state.record();
-            }
-            else
-            {
-                look_soon(state.record());
-            }
-        }
-    }
-    return true;
-}
-
-/// The record's page is due, and the record may be asked again.
-void Refiner::look_soon(RecordId record) noexcept
-{
-    const std::uint32_t slot = pages_->find(chunk_of(record));
-    needed_[slot] &= ~(std::uint64_t{1} << place_in_chunk(record));
-    look_at_[slot] = travel_;
-    next_look_ = travel_;
-}
-
-/// How much farther the tools have to go before the record is left behind by all of them.
-double Refiner::slack_of(const VsplitRecord& record,
-                         std::span<const RefineQuestion> questions) const noexcept
-{
-    const double reach = static_cast<double>(error_in_quanta(record.reach)) * quantum_m_;
-    const Vec3 vertex = to_vec3(record.position_m);
-    double slack = 0.0;
-    for (const RefineQuestion& question : questions)
-    {
-        const double keep = question.keep_m + reach;
-        const double distance_sq = (vertex - question.center_m).squaredNorm();
-        if (distance_sq <= keep * keep)
-        {
-            slack = std::max(slack, keep - std::sqrt(distance_sq) + kPatience * question.keep_m);
-        }
-    }
-    return slack;
 }
 
 void Refiner::split_wanted(std::span<const RefineQuestion> questions, const Budgets& budgets,
@@ -495,8 +345,7 @@ Refiner::ClosureOutcome Refiner::split_with_closure(RecordId target, std::uint32
             ++work.splits;
             done_[done_count_++] = id;
             --depth;
-            look_at_[slot] = travel_;
-            next_look_ = travel_;
+            coarsener_.look_when_left(slot, *record, questions);
             consider_star(id, *record, star, questions);
         }
     }
@@ -642,7 +491,7 @@ void Refiner::release_held() noexcept
     for (std::uint32_t i = 0; i < held_count_; ++i)
     {
         pages_->set_held(held_[i], false);
-        look_soon(held_[i]);
+        coarsener_.look_soon(held_[i]);
     }
     held_count_ = 0;
     pending_ = RecordId{};

@@ -9,6 +9,8 @@
 #include "rt_core/query/tree_walk.hpp"
 #include "rt_core/records/frame_input.hpp"
 #include "rt_core/records/work_counters.hpp"
+#include "rt_core/refine/coarsener.hpp"
+#include "rt_core/refine/refine_question.hpp"
 
 #include <cstdint>
 #include <span>
@@ -16,30 +18,9 @@
 namespace tactus
 {
 
-/// What is known of a question from frame to frame.
-struct RefineMemory
-{
-    Vec3 center_m{0.0, 0.0, 0.0};
-    double keep_m{0.0};
-    /// No coarse face's distance from the centre minus its error is below this. While it is not
-    /// below the reach there is nothing to split, and nobody needs to look.
-    double certified_m{0.0};
-    bool is_known{false};
-    KernelProbe probe{}; ///< Of this frame's centre.
-};
-
-/// What one pair asks of a model: every original face within `reach_m` of the point, exactly.
-/// Model frame, metres; the centre is not is_beyond_kernels().
-struct RefineQuestion
-{
-    Vec3 center_m{0.0, 0.0, 0.0};
-    double reach_m{0.0};
-    double keep_m{0.0}; ///< Records farther than this may be merged; 1.25 x reach (hysteresis).
-    RefineMemory* memory{nullptr};
-};
-
-/// Moves one model's refined front to what the questions need: first merges what was left behind,
-/// then splits what they lack, nearest first, until the certificate holds or the budget is spent.
+/// Moves one model's refined front to what the questions need: first merges what was left behind
+/// (Coarsener), then splits what they lack, nearest first, until the certificate holds or the
+/// budget is spent.
 ///
 /// A face is split while it is coarse and its distance minus its error is within a question's
 /// reach. When none is left every original face in reach is active: the ball is certified. It is
@@ -104,15 +85,6 @@ private:
     void gather_block(std::uint32_t index, const RefineQuestion& question) noexcept;
     void bound_faces(const BlockGeometry& block, std::uint32_t lanes,
                      const RefineQuestion& question, FaceBounds& bounds) const noexcept;
-    void coarsen(std::span<const RefineQuestion> questions, const Budgets& budgets,
-                 WorkCounters& work) noexcept;
-    void scan_page(std::uint32_t slot, std::span<const RefineQuestion> questions,
-                   const Budgets& budgets, WorkCounters& work) noexcept;
-    [[nodiscard]] bool merge_back(RecordId first, std::span<const RefineQuestion> questions,
-                                  const Budgets& budgets, WorkCounters& work) noexcept;
-    void look_soon(RecordId record) noexcept;
-    [[nodiscard]] double slack_of(const VsplitRecord& record,
-                                  std::span<const RefineQuestion> questions) const noexcept;
     void split_wanted(std::span<const RefineQuestion> questions, const Budgets& budgets,
                       std::uint32_t frame, WorkCounters& work, FrameFault& faults) noexcept;
     [[nodiscard]] double
@@ -137,6 +109,7 @@ private:
     VertexForest* forest_;
     PageTable* pages_;
     const AbTree* tree_;
+    Coarsener coarsener_;
     double quantum_m_;
     std::span<Candidate> heap_;
     std::span<RecordId> held_;
@@ -146,14 +119,7 @@ private:
     std::uint32_t held_count_{0};
     std::uint32_t done_count_{0};
     RecordId pending_{}; ///< Whose closure the held records were split for.
-    /// By page slot: the travel from which on some record in it may be left behind.
-    std::span<double> look_at_;
-    /// By page slot, one bit a record: left behind, but another refined record depends on it.
-    std::span<std::uint64_t> needed_;
-    double next_look_{0.0}; ///< The least of them, or less.
-    double travel_{0.0};    ///< How far the questions have gone, in metres, since the start.
     std::size_t question_count_{0};
-    std::uint32_t scan_slot_{0};
     std::uint32_t next_record_{0}; ///< refine_everything() has done those before.
 };
 

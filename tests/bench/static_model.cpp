@@ -83,6 +83,8 @@ double TactusQuery::distance_m(const Vec3& point_m, double band_m)
     last_band_m_ = band_m;
     WalkBudget budget{kUnlimited, kUnlimited};
     const DistanceAnswer answer = query_distance(tree_, point_m, band_m, memory_, budget);
+    nodes_visited_ += budget.nodes_visited;
+    triangles_tested_ += budget.triangles_tested;
     const bool is_beyond = std::isinf(answer.upper_m) && answer.lower_m >= band_m;
     const bool is_exact = answer.upper_m - answer.lower_m <= 1e-12 + 1e-12 * answer.upper_m;
     return is_beyond || is_exact ? answer.upper_m : std::numeric_limits<double>::quiet_NaN();

@@ -8,6 +8,7 @@
 #include "tests/bench/scenes.hpp"
 #include "tests/shared/frame_rig.hpp"
 
+#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -47,12 +48,18 @@ public:
     /// does in the wait before its deadline.
     void rehearse();
 
+    /// Of all questions so far.
+    [[nodiscard]] std::uint64_t nodes_visited() const { return nodes_visited_; }
+    [[nodiscard]] std::uint64_t triangles_tested() const { return triangles_tested_; }
+
 private:
     const AbTree& tree_;
     QueryMemory memory_;
     Vec3 last_point_m_{0.0, 0.0, 0.0};
     double last_band_m_{0.0};
     double rehearsed_m_{0.0};
+    std::uint64_t nodes_visited_{0};
+    std::uint64_t triangles_tested_{0};
 };
 
 } // namespace tactus::bench

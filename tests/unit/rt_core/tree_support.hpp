@@ -26,10 +26,29 @@ public:
         sut.emplace(arena, capacities, kTreeQuantum);
     }
 
+    /// Takes over one face as it is now: new, changed corner by corner, or (face none) gone.
     void put(const ChangedFace& face)
     {
-        faces_[face.prim.value] = face;
-        sut->apply(face);
+        ChangedFace& held = faces_[face.prim.value];
+        if (!face.face.is_none() && held.face == face.face && held.bucket == face.bucket)
+        {
+            for (std::uint32_t corner = 0; corner < 3; ++corner)
+            {
+                sut->move_corner(face.prim, corner, face.corners_m[corner], face.error);
+            }
+        }
+        else
+        {
+            if (!held.face.is_none())
+            {
+                sut->remove(face.prim);
+            }
+            if (!face.face.is_none())
+            {
+                sut->insert(face);
+            }
+        }
+        held = face;
     }
     void remove(std::uint32_t prim) { put(ChangedFace{PrimId{prim}, FaceId{}, 0, 0, {}}); }
     /// What the caller does each frame with faces that found no place.

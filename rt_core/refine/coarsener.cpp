@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "rt_core/refine/coarsener.hpp"
+
+#include "rt_core/spm/error_code.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+namespace tactus
+{
+
+namespace
+{
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// A record may stay while a tool goes this much farther than it has to, as a share of the keep
+/// distance, so that a page has not to be looked at for each of its records.
+constexpr double kPatience = 0.1;
+
+} // namespace
+
+Coarsener::Coarsener(Arena& arena, VertexForest& forest, PageTable& pages, float quantum_m) noexcept
+    : forest_(&forest)
+    , pages_(&pages)
+    , quantum_m_(static_cast<double>(quantum_m))
+    , stack_(arena.take<RecordId>(kMaxDepth))
+    , look_at_(arena.take<double>(pages.capacity()))
+    , needed_(arena.take<std::uint64_t>(pages.capacity()))
+{
+}
+
+void Coarsener::follow(double farthest_m) noexcept
+{
+    travel_ += farthest_m;
+}
+
+void Coarsener::look_at_all() noexcept
+{
+    std::fill(look_at_.begin(), look_at_.end(), travel_);
+    next_look_ = travel_;
+}
+
+void Coarsener::look_when_left(std::uint32_t slot, const VsplitRecord& record,
+                               std::span<const RefineQuestion> questions) noexcept
+{
+    look_at_[slot] = std::min(look_at_[slot], travel_ + slack_of(record, questions));
+    next_look_ = std::min(next_look_, look_at_[slot]);
+}
+
+void Coarsener::run(std::span<const RefineQuestion> questions, const Budgets& budgets,
+                    WorkCounters& work) noexcept
+{
+    if (travel_ < next_look_)
+    {
+        return;
+    }
+    // One round over the pages at most. Most are not due: a comparison each.
+    double next = kInfinity;
+    for (std::uint32_t looked = 0; looked < pages_->capacity(); ++looked)
+    {
+        if (look_at_[scan_slot_] <= travel_)
+        {
+            if (work.scanned >= budgets.scanned || work.merges >= budgets.merges)
+            {
+                return;
+            }
+            scan_page(scan_slot_, questions, budgets, work);
+        }
+        next = std::min(next, look_at_[scan_slot_]);
+        scan_slot_ = scan_slot_ == 0 ? pages_->capacity() - 1 : scan_slot_ - 1;
+    }
+    next_look_ = std::max(next, travel_);
+}
+
+/// Looks at the refined records of one page, finest last in first. Unless the budget ends it, the
+/// page is not due again before the tools have come far enough to leave one of them behind.
+void Coarsener::scan_page(std::uint32_t slot, std::span<const RefineQuestion> questions,
+                          const Budgets& budgets, WorkCounters& work) noexcept
+{
+    const PageTable::Meta& meta = pages_->meta(slot);
+    look_at_[slot] = kInfinity;
+    needed_[slot] &= meta.refined;
+    std::uint64_t left = meta.refined & ~meta.held & ~needed_[slot];
+    const Page& page = pages_->slots().pages[slot];
+    while (left != 0)
+    {
+        const auto place = static_cast<std::uint32_t>(63 - std::countl_zero(left));
+        left &= ~(std::uint64_t{1} << place);
+        if (work.scanned >= budgets.scanned)
+        {
+            look_at_[slot] = travel_;
+            return;
+        }
+        const double slack = slack_of(page.records[place], questions);
+        if (slack > 0.0)
+        {
+            ++work.scanned;
+            look_at_[slot] = std::min(look_at_[slot], travel_ + slack);
+            continue;
+        }
+        if (!merge_back({(meta.chunk.value << kRecordsPerChunkLog2) + place}, questions, budgets,
+                        work))
+        {
+            look_at_[slot] = travel_;
+            return;
+        }
+        left &= meta.refined;
+    }
+}
+
+/// Merges a record that was left behind, then those that it was the last to depend on. False when
+/// the budget is spent.
+bool Coarsener::merge_back(RecordId first, std::span<const RefineQuestion> questions,
+                           const Budgets& budgets, WorkCounters& work) noexcept
+{
+    std::uint32_t depth = 0;
+    stack_[depth++] = first;
+    while (depth > 0)
+    {
+        const RecordId id = stack_[--depth];
+        if (work.scanned >= budgets.scanned || work.merges >= budgets.merges)
+        {
+            look_soon(id);
+            for (const RecordId waiting : stack_.first(depth))
+            {
+                look_soon(waiting);
+            }
+            return false;
+        }
+        ++work.scanned;
+        const std::uint32_t slot = pages_->find(chunk_of(id));
+        const VsplitRecord& record = pages_->slots().pages[slot].records[place_in_chunk(id)];
+        const std::uint64_t bit = std::uint64_t{1} << place_in_chunk(id);
+        needed_[slot] &= ~bit;
+        if (const double slack = slack_of(record, questions); slack > 0.0)
+        {
+            look_at_[slot] = std::min(look_at_[slot], travel_ + slack);
+            continue;
+        }
+        if (!forest_->try_merge(id))
+        {
+            needed_[slot] |= bit; // Asked again when the record that needs it is merged.
+            continue;
+        }
+        ++work.merges;
+        for (std::uint32_t i = 0; i < record.fan_size; ++i)
+        {
+            const FaceState state = record.before[i];
+            if (state.is_base() || !pages_->is_refined(state.record()))
+            {
+                continue;
+            }
+            if (depth < stack_.size() && !pages_->is_held(state.record()))
+            {
+                stack_[depth++] = state.record();
+            }
+            else
+            {
+                look_soon(state.record());
+            }
+        }
+    }
+    return true;
+}
+
+void Coarsener::look_soon(RecordId record) noexcept
+{
+    const std::uint32_t slot = pages_->find(chunk_of(record));
+    needed_[slot] &= ~(std::uint64_t{1} << place_in_chunk(record));
+    look_at_[slot] = travel_;
+    next_look_ = travel_;
+}
+
+/// How much farther the tools have to go before the record is left behind by all of them.
+double Coarsener::slack_of(const VsplitRecord& record,
+                           std::span<const RefineQuestion> questions) const noexcept
+{
+    const double reach = static_cast<double>(error_in_quanta(record.reach)) * quantum_m_;
+    const Vec3 vertex = to_vec3(record.position_m);
+    double slack = 0.0;
+    for (const RefineQuestion& question : questions)
+    {
+        const double keep = question.keep_m + reach;
+        const double distance_sq = (vertex - question.center_m).squaredNorm();
+        if (distance_sq <= keep * keep)
+        {
+            slack = std::max(slack, keep - std::sqrt(distance_sq) + kPatience * question.keep_m);
+        }
+    }
+    return slack;
+}
+
+} // namespace tactus
