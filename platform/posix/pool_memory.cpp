@@ -25,7 +25,7 @@ std::size_t whole_huge_pages(std::size_t bytes)
 
 PoolMemory::PoolMemory(std::size_t bytes)
     : bytes_(Arena::round_up(bytes))
-    , memory_(static_cast<std::byte*>(::operator new (whole_huge_pages(bytes_), kAlignment)))
+    , memory_(static_cast<std::byte*>(::operator new(whole_huge_pages(bytes_), kAlignment)))
 {
     linux_extras::ask_for_huge_pages({memory_, whole_huge_pages(bytes_)});
     std::memset(memory_, 0, bytes_);
@@ -33,7 +33,7 @@ PoolMemory::PoolMemory(std::size_t bytes)
 
 PoolMemory::~PoolMemory()
 {
-    ::operator delete (memory_, kAlignment);
+    ::operator delete(memory_, kAlignment);
 }
 
 } // namespace tactus

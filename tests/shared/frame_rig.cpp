@@ -20,8 +20,7 @@ namespace
 } // namespace
 
 FrameRig::FrameRig(const TestModel& model, const RigOptions& options)
-    : memory_(options.pool_bytes)
-    , courier_steps_(options.courier_steps_per_frame)
+    : memory_(options.pool_bytes), courier_steps_(options.courier_steps_per_frame)
 {
     auto served = serve_from_file(model.path, model.name, {});
     if (!served)
