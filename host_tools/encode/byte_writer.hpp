@@ -31,22 +31,18 @@ public:
         bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
     }
 
-    /// LEB128: seven bits a byte, low ones first.
-    void write_varint(std::uint32_t value)
+    /// A field of up to 32 bits, lowest first; the writing side of BitReader.
+    void write_bits(std::uint32_t bits, std::uint32_t value)
     {
-        for (; value >= 0x80U; value >>= 7U)
+        window_ |= std::uint64_t{value} << held_;
+        for (held_ += bits; held_ >= 8; held_ -= 8)
         {
-            bytes_.push_back(static_cast<std::byte>((value & 0x7FU) | 0x80U));
+            bytes_.push_back(static_cast<std::byte>(window_ & 0xFFU));
+            window_ >>= 8U;
         }
-        bytes_.push_back(static_cast<std::byte>(value));
     }
-
-    /// Zig-zag coded, so that small magnitudes of either sign are short.
-    void write_signed_varint(std::int32_t value)
-    {
-        const auto bits = static_cast<std::uint32_t>(value);
-        write_varint((bits << 1U) ^ (value < 0 ? 0xFFFF'FFFFU : 0U));
-    }
+    /// Fills the last byte up with zeros.
+    void end_bits() { write_bits((8 - held_) % 8, 0); }
 
     /// Closes a piece: the CRC-32C of all that was written so far.
     void write_checksum() { write(crc32c(bytes_)); }
@@ -56,6 +52,8 @@ public:
 
 private:
     std::vector<std::byte> bytes_;
+    std::uint64_t window_{0}; ///< Bits that don't fill a byte yet.
+    std::uint32_t held_{0};
 };
 
 } // namespace tactus

@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include <bit>
+
 namespace tactus
 {
 
@@ -24,6 +26,10 @@ DecodedModel DecodedModel::decode(const ModelStore& store, std::vector<std::stri
 {
     DecodedModel model(store.header());
     model.parse_pieces(store, damage);
+    if (damage.empty() && model.header_.counts().records > 0)
+    {
+        model.link_all(store, damage);
+    }
     return model;
 }
 
@@ -54,28 +60,35 @@ void DecodedModel::parse_pieces(const ModelStore& store, std::vector<std::string
     }
 }
 
-std::uint64_t DecodedModel::link_all()
+/// With memory for all pages nothing waits for long: a record is linked, or it can't be.
+void DecodedModel::link_all(const ModelStore& store, std::vector<std::string>& damage)
 {
     const ModelCounts counts = header_.counts();
-    if (counts.records == 0)
-    {
-        return 0;
-    }
     struct alignas(Arena::kAlignment) Line
     {
         std::array<std::byte, Arena::kAlignment> bytes;
     };
     const PageSlots slots{pages_, {}, {base_positions_m_, base_faces_, base_next_}};
     Arena measure = Arena::measuring();
-    static_cast<void>(Linker(measure, counts, slots));
+    static_cast<void>(Linker(measure, header_, slots));
     std::vector<Line> memory(measure.used() / sizeof(Line));
     Arena arena(std::as_writable_bytes(std::span(memory)));
-    Linker linker(arena, counts, slots);
+    Linker linker(arena, header_, slots);
     for (std::uint32_t chunk = 0; chunk < pages_.size(); ++chunk)
     {
         linker.link_page({chunk}, chunk);
     }
-    return counts.records - linker.records_linked();
+    for (std::uint32_t chunk = 0; chunk < pages_.size(); ++chunk)
+    {
+        const auto linked = static_cast<std::uint32_t>(std::popcount(linker.linked(chunk)));
+        if (linked < records_in_chunk(counts, {chunk}))
+        {
+            damage.push_back(fmt::format("{}: chunk {}: {} of its records don't fit those that "
+                                         "they depend on",
+                                         store.path().string(), chunk,
+                                         records_in_chunk(counts, {chunk}) - linked));
+        }
+    }
 }
 
 } // namespace tactus

@@ -46,14 +46,11 @@ public:
     }
     [[nodiscard]] std::uint64_t chunk_bytes() const noexcept { return chunk_bytes_; }
 
-    /// Links every record the way the controller does, with memory for all pages; the number that
-    /// could not be linked. Call it once, on a model without damage.
-    [[nodiscard]] std::uint64_t link_all();
-
 private:
     explicit DecodedModel(const ModelHeader& header);
 
     void parse_pieces(const ModelStore& store, std::vector<std::string>& damage);
+    void link_all(const ModelStore& store, std::vector<std::string>& damage);
 
     ModelHeader header_;
     std::vector<Page> pages_;

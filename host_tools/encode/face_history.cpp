@@ -3,6 +3,7 @@
 #include "host_tools/encode/face_history.hpp"
 
 #include "rt_core/base/assert.hpp"
+#include "rt_core/spm/chunk_grammar.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -100,10 +101,18 @@ private:
             {
                 continue;
             }
-            const ErrorCode error = code_of(first_change_[face] == index, collapse.error[place]);
-            star.error_after[place] = error;
-            history_.max_error = std::max(history_.max_error, error);
-            now_[face] = {FaceState::after(record, place), error};
+            star.error_after[place] = code_of(first_change_[face] == index, collapse.error[place]);
+        }
+        const ErrorCode largest = *std::ranges::max_element(star.error_after);
+        history_.max_error = std::max(history_.max_error, largest);
+        for (std::uint32_t place = 0; place < 2 + collapse.fan_size; ++place)
+        {
+            ErrorCode& error = star.error_after[place];
+            error = rounded_error(error, largest);
+            if (collapse.star[place] != Collapse::kNoFace)
+            {
+                now_[collapse.star[place]] = {FaceState::after(record, place), error};
+            }
         }
     }
 

@@ -40,17 +40,6 @@ std::int32_t margin_of(ErrorCode error)
     return static_cast<std::int32_t>(std::min(quanta, 0x1p28));
 }
 
-double distance(const GridPoint& a, const GridPoint& b)
-{
-    double squared = 0.0;
-    for (std::size_t axis = 0; axis < 3; ++axis)
-    {
-        const double d = static_cast<double>(a[axis]) - static_cast<double>(b[axis]);
-        squared += d * d;
-    }
-    return std::sqrt(squared);
-}
-
 /// Plays the collapses on a copy of the mesh and measures each star as it goes by.
 class Sweep
 {
@@ -63,7 +52,7 @@ public:
         , history_(history)
         , corners_(mesh.faces)
         , boxes_(numbering.counts.records, kEmptyBox)
-        , reach_(numbering.counts.records)
+        , rings_(numbering.counts.records)
     {
     }
 
@@ -72,21 +61,21 @@ public:
         for (const Collapse& collapse : simplification_.collapses)
         {
             const RecordId record = numbering_.record_of(collapse);
+            note_ring(collapse, record);
             measure_star_after_split(collapse, record);
             collapse_fan(collapse);
             measure_fan_before_split(collapse, record);
             pass_on_to_dependencies(collapse, record);
         }
-        return {chunk_boxes(), std::move(reach_)};
+        return {chunk_boxes(), std::move(rings_)};
     }
 
 private:
-    /// Grows box and reach of a record by one state of one face.
-    void include(RecordId record, const GridPoint& vertex, std::uint32_t face, ErrorCode error)
+    /// Grows the box of a record by one state of one face.
+    void include(RecordId record, std::uint32_t face, ErrorCode error)
     {
         const std::int32_t margin = margin_of(error);
         QuantumBox& box = boxes_[record.value];
-        double farthest = 0.0;
         for (const std::uint32_t corner : corners_[face])
         {
             const GridPoint& point = mesh_.positions[corner];
@@ -95,13 +84,19 @@ private:
                 box.low[axis] = std::min(box.low[axis], point[axis] - margin);
                 box.high[axis] = std::max(box.high[axis], point[axis] + margin);
             }
-            farthest = std::max(farthest, distance(vertex, point));
         }
-        // The factor covers the rounding of the sums and of the root, a few units in the last
-        // place.
-        const double radius =
-            (farthest + static_cast<double>(error_in_quanta(error))) * (1.0 + 1e-14);
-        reach_[record.value] = std::max(reach_[record.value], encode_error(radius));
+    }
+
+    /// The vertices round v, from the fan faces (v, wi, wi+1).
+    void note_ring(const Collapse& collapse, RecordId record)
+    {
+        for (std::uint32_t i = 0; i < collapse.fan_size; ++i)
+        {
+            Corners corners = corners_[collapse.star[2 + i]];
+            std::ranges::rotate(corners, std::ranges::find(corners, collapse.vertex));
+            rings_[record.value].w[i] = numbering_.vertex_ids[corners[1]];
+            rings_[record.value].w[i + 1] = numbering_.vertex_ids[corners[2]];
+        }
     }
 
     void measure_star_after_split(const Collapse& collapse, RecordId record)
@@ -111,8 +106,7 @@ private:
         {
             if (collapse.star[place] != Collapse::kNoFace)
             {
-                include(record, mesh_.positions[collapse.vertex], collapse.star[place],
-                        star.error_after[place]);
+                include(record, collapse.star[place], star.error_after[place]);
             }
         }
     }
@@ -133,8 +127,7 @@ private:
         const StarHistory& star = history_.stars[record.value];
         for (std::uint32_t i = 0; i < collapse.fan_size; ++i)
         {
-            include(record, mesh_.positions[collapse.vertex], collapse.star[2 + i],
-                    star.error_before[i]);
+            include(record, collapse.star[2 + i], star.error_before[i]);
         }
     }
 
@@ -166,7 +159,7 @@ private:
     const FaceHistory& history_;
     std::vector<Corners> corners_;
     std::vector<QuantumBox> boxes_;
-    std::vector<ErrorCode> reach_;
+    std::vector<StarRing> rings_;
 };
 
 } // namespace

@@ -7,6 +7,7 @@
 #include "host_tools/simplify/simplify.hpp"
 #include "rt_core/spm/header.hpp"
 #include "rt_core/spm/index_page.hpp"
+#include "rt_core/spm/star_resolver.hpp"
 
 #include <cstdint>
 #include <span>
@@ -15,11 +16,11 @@
 namespace tactus
 {
 
-/// Where records matter.
+/// Where records matter, and the vertices round each.
 struct Influence
 {
     std::vector<QuantumBox> chunks; ///< By ChunkId: a ball that misses it needs none of the chunk.
-    std::vector<ErrorCode> reach;   ///< By RecordId, see VsplitRecord::reach.
+    std::vector<StarRing> rings;    ///< By RecordId.
 };
 
 /// One sweep over the collapses in their order, finest first.
@@ -28,7 +29,7 @@ struct Influence
 /// ball; or because something that depends on the record is split. So a record's box is that of
 /// its inflated fan and of its star after the split, joined with the boxes of all that depends on
 /// it. Those were collapsed earlier, so their boxes are complete when the sweep comes to it.
-/// Linear; 25 B a record and a copy of the mesh's faces.
+/// Linear; 52 B a record and a copy of the mesh's faces.
 [[nodiscard]] Influence find_influence(const QuantisedMesh& mesh,
                                        const Simplification& simplification,
                                        const Numbering& numbering, const FaceHistory& history);

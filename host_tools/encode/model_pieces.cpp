@@ -4,10 +4,34 @@
 
 #include "host_tools/encode/left_full_order.hpp"
 #include "host_tools/encode/piece_coding.hpp"
+#include "host_tools/encode/record_coder.hpp"
 #include "rt_core/spm/chunk_coding.hpp"
+
+#include <algorithm>
 
 namespace tactus
 {
+
+namespace
+{
+
+Vec3f to_metres(const GridPosition& position, double quantum_m)
+{
+    Vec3f metres;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+        metres[axis] = static_cast<float>(position[axis]) * static_cast<float>(quantum_m);
+    }
+    return metres;
+}
+
+ErrorCode largest_error(const StarHistory& star)
+{
+    return std::max(*std::ranges::max_element(star.error_before),
+                    *std::ranges::max_element(star.error_after));
+}
+
+} // namespace
 
 ModelPieces::ModelPieces(const PreparedMesh& prepared, const Simplification& simplification)
     : prepared_(prepared)
@@ -17,25 +41,33 @@ ModelPieces::ModelPieces(const PreparedMesh& prepared, const Simplification& sim
     , influence_(find_influence(prepared.mesh, simplification, numbering_, history_))
     , buckets_(left_full_buckets(prepared.mesh))
 {
+    records_.reserve(counts().records);
+    for (std::uint32_t id = 0; id < counts().records; ++id)
+    {
+        records_.push_back(make_record({id}));
+    }
+    for (const std::uint32_t vertex : numbering_.base_vertices)
+    {
+        base_positions_m_.push_back(to_metres(prepared.mesh.positions[vertex], prepared.quantum_m));
+    }
+    for (std::uint32_t id = 0; id < counts().base_faces; ++id)
+    {
+        base_faces_.push_back(base_face({id}));
+    }
 }
 
-VsplitRecord ModelPieces::record(RecordId id) const
+VsplitRecord ModelPieces::make_record(RecordId id) const
 {
     const Collapse& collapse = simplification_.collapses[numbering_.collapse_of_record[id.value]];
     const StarHistory& star = history_.stars[id.value];
     VsplitRecord record;
-    for (std::size_t axis = 0; axis < 3; ++axis)
-    {
-        record.position_m[axis] =
-            static_cast<float>(prepared_.mesh.positions[collapse.vertex][axis]) *
-            static_cast<float>(prepared_.quantum_m);
-    }
+    const GridPosition& v = prepared_.mesh.positions[collapse.vertex];
+    record.position_m = to_metres(v, prepared_.quantum_m);
     record.parent = numbering_.vertex_ids[collapse.parent];
     record.before = star.before;
     record.error = star.error_after;
     record.depth = static_cast<std::uint16_t>(star.depth);
     record.fan_size = static_cast<std::uint8_t>(collapse.fan_size);
-    record.reach = influence_.reach[id.value];
     for (std::uint32_t place = 0; place < record.star_end(); ++place)
     {
         const std::uint32_t face = collapse.star[place];
@@ -50,22 +82,53 @@ VsplitRecord ModelPieces::record(RecordId id) const
             record.bucket[place] = buckets_[face];
         }
     }
+    record.reach = star_reach(v, ring_positions(id, record), largest_error(star));
     return record;
+}
+
+std::vector<GridPosition> ModelPieces::ring_positions(RecordId id, const VsplitRecord& record) const
+{
+    std::vector<GridPosition> ring{position_of(record.parent)};
+    for (std::uint32_t i = 0; i <= record.fan_size; ++i)
+    {
+        ring.push_back(position_of(influence_.rings[id.value].w[i]));
+    }
+    return ring;
+}
+
+GridPosition ModelPieces::position_of(VertexId vertex) const
+{
+    const std::uint32_t source =
+        counts().is_base(vertex)
+            ? numbering_.base_vertices[vertex.value]
+            : simplification_
+                  .collapses[numbering_.collapse_of_record[counts().record_of(vertex).value]]
+                  .vertex;
+    return prepared_.mesh.positions[source];
+}
+
+std::vector<CodedRecord> ModelPieces::chunk_records(ChunkId id) const
+{
+    const AllStars stars{records_, influence_.rings};
+    const BaseView base{base_positions_m_, base_faces_};
+    HeaderFields fields;
+    fields.extent_quanta.fill((1U << kMaxPositionBits) - 1);
+    fields.max_depth = max_depth();
+    RecordCoder coder(stars, counts(), base, fields, static_cast<float>(prepared_.quantum_m));
+    std::vector<CodedRecord> records;
+    for (std::uint32_t place = 0; place < records_in_chunk(counts(), id); ++place)
+    {
+        records.push_back(coder.code({(id.value << kRecordsPerChunkLog2) + place}));
+    }
+    return records;
 }
 
 std::vector<std::byte> ModelPieces::coded_chunk(ChunkId id) const
 {
-    std::array<VsplitRecord, kRecordsPerChunk> records;
-    const std::uint32_t count = records_in_chunk(counts(), id);
-    for (std::uint32_t place = 0; place < count; ++place)
-    {
-        records[place] = record({(id.value << kRecordsPerChunkLog2) + place});
-    }
-    return encode_chunk(id, std::span(records).first(count),
-                        static_cast<float>(prepared_.quantum_m));
+    return encode_chunk(id, counts(), chunk_records(id));
 }
 
-std::vector<std::byte> ModelPieces::coded_base() const
+std::vector<std::byte> ModelPieces::coded_base(const BaseLayout& layout) const
 {
     std::vector<GridPosition> positions;
     positions.reserve(counts().base_vertices);
@@ -73,13 +136,7 @@ std::vector<std::byte> ModelPieces::coded_base() const
     {
         positions.push_back(prepared_.mesh.positions[vertex]);
     }
-    std::vector<BaseFace> faces;
-    faces.reserve(counts().base_faces);
-    for (std::uint32_t id = 0; id < counts().base_faces; ++id)
-    {
-        faces.push_back(base_face({id}));
-    }
-    return encode_base_mesh(positions, faces);
+    return encode_base_mesh(positions, base_faces_, layout);
 }
 
 BaseFace ModelPieces::base_face(FaceId id) const

@@ -8,7 +8,9 @@
 #include "host_tools/mesh/prepare.hpp"
 #include "host_tools/simplify/simplify.hpp"
 #include "rt_core/spm/base_mesh.hpp"
+#include "rt_core/spm/coded_record.hpp"
 #include "rt_core/spm/page.hpp"
+#include "rt_core/spm/ring_prediction.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -19,7 +21,7 @@ namespace tactus
 {
 
 /// A whole model in the numbers of the file, from which each piece can be coded by itself. About
-/// 100 B a face, besides the mesh and the simplification, which must outlive it.
+/// 180 B a face, besides the mesh and the simplification, which must outlive it.
 class ModelPieces
 {
 public:
@@ -35,12 +37,18 @@ public:
         return influence_.chunks;
     }
 
-    [[nodiscard]] VsplitRecord record(RecordId id) const;
+    [[nodiscard]] const VsplitRecord& record(RecordId id) const { return records_[id.value]; }
+    /// The records of a chunk as the file says them.
+    [[nodiscard]] std::vector<CodedRecord> chunk_records(ChunkId id) const;
     [[nodiscard]] std::vector<std::byte> coded_chunk(ChunkId id) const;
-    [[nodiscard]] std::vector<std::byte> coded_base() const;
+    [[nodiscard]] std::vector<std::byte> coded_base(const BaseLayout& layout) const;
 
 private:
+    [[nodiscard]] VsplitRecord make_record(RecordId id) const;
     [[nodiscard]] BaseFace base_face(FaceId id) const;
+    [[nodiscard]] GridPosition position_of(VertexId vertex) const;
+    [[nodiscard]] std::vector<GridPosition> ring_positions(RecordId id,
+                                                           const VsplitRecord& record) const;
 
     const PreparedMesh& prepared_;
     const Simplification& simplification_;
@@ -48,6 +56,9 @@ private:
     FaceHistory history_;
     Influence influence_;
     std::vector<std::uint32_t> buckets_; ///< By face of the mesh.
+    std::vector<VsplitRecord> records_;
+    std::vector<Vec3f> base_positions_m_;
+    std::vector<BaseFace> base_faces_;
 };
 
 } // namespace tactus

@@ -2,104 +2,56 @@
 // Copyright the Tactus authors.
 #include "host_tools/encode/piece_coding.hpp"
 
+#include "host_tools/encode/range_encoder.hpp"
 #include "rt_core/base/assert.hpp"
+#include "rt_core/spm/chunk_coding.hpp"
+#include "rt_core/spm/chunk_grammar.hpp"
 #include "transport/content_hash.hpp"
 
 namespace tactus
 {
 
-namespace
-{
-
-/// Writes the records of one chunk, each position relative to the one before.
-class RecordWriter
-{
-public:
-    RecordWriter(ByteWriter& writer, float quantum_m) : writer_(writer), quantum_m_(quantum_m) {}
-
-    void write(const VsplitRecord& record)
-    {
-        writer_.write_varint(record.depth);
-        writer_.write(static_cast<std::uint8_t>(record.fan_size | (record.has_face(0) ? 8U : 0U) |
-                                                (record.has_face(1) ? 16U : 0U)));
-        write_position(record);
-        writer_.write_varint(record.parent.value);
-        for (std::uint32_t i = 0; i < record.fan_size; ++i)
-        {
-            const FaceState before = record.before[i];
-            writer_.write_varint(record.star[2 + i].value);
-            writer_.write_varint(before.is_base() ? 0 : before.value + 1);
-        }
-        for (std::uint32_t place = 0; place < record.star_end(); ++place)
-        {
-            if (place >= 2 || record.has_face(place))
-            {
-                writer_.write(record.error[place]);
-            }
-        }
-        for (std::uint32_t side = 0; side < 2; ++side)
-        {
-            if (record.has_face(side))
-            {
-                writer_.write_varint(record.bucket[side]);
-            }
-        }
-        writer_.write(record.reach);
-    }
-
-private:
-    void write_position(const VsplitRecord& record)
-    {
-        for (std::size_t axis = 0; axis < 3; ++axis)
-        {
-            // Exact: the quantum is a power of two and the multiple has at most 24 bits.
-            const auto quanta = static_cast<std::int32_t>(record.position_m[axis] / quantum_m_);
-            writer_.write_signed_varint(quanta - position_[axis]);
-            position_[axis] = quanta;
-        }
-    }
-
-    ByteWriter& writer_;
-    float quantum_m_;
-    GridPosition position_{};
-};
-
-} // namespace
-
 std::vector<std::byte> encode_base_mesh(std::span<const GridPosition> positions,
-                                        std::span<const BaseFace> faces)
+                                        std::span<const BaseFace> faces, const BaseLayout& layout)
 {
     ByteWriter writer;
     for (const GridPosition& position : positions)
     {
-        writer.write(position);
+        for (std::size_t axis = 0; axis < 3; ++axis)
+        {
+            writer.write_bits(layout.axis_bits[axis], static_cast<std::uint32_t>(position[axis]));
+        }
     }
     for (const BaseFace& face : faces)
     {
         for (const VertexId corner : face.corners)
         {
-            writer.write(corner.value);
+            writer.write_bits(layout.vertex_bits, corner.value);
         }
-        writer.write(face.bucket);
-        writer.write(face.error);
+        writer.write_bits(layout.bucket_bits, face.bucket);
+        writer.write_bits(8, face.error);
     }
+    writer.end_bits();
     writer.write_checksum();
     return writer.take();
 }
 
-std::vector<std::byte> encode_chunk(ChunkId id, std::span<const VsplitRecord> records,
-                                    float quantum_m)
+std::vector<std::byte> encode_chunk(ChunkId id, const ModelCounts& counts,
+                                    std::span<const CodedRecord> records)
 {
-    TACTUS_ASSERT(!records.empty() && records.size() <= kRecordsPerChunk);
-    ByteWriter writer;
-    writer.write(id.value);
-    writer.write(static_cast<std::uint8_t>(records.size()));
-    RecordWriter record_writer(writer, quantum_m);
-    for (const VsplitRecord& record : records)
+    TACTUS_ASSERT(!records.empty() && records.size() == records_in_chunk(counts, id));
+    RangeEncoder encoder;
+    ChunkGrammar grammar(encoder, counts, id);
+    for (std::uint32_t place = 0; place < records.size(); ++place)
     {
-        record_writer.write(record);
+        CodedRecord record = records[place];
+        grammar.code({(id.value << kRecordsPerChunkLog2) + place}, record);
+        TACTUS_ASSERT(record == records[place]);
     }
-    writer.write_checksum();
+    ByteWriter writer;
+    const std::vector<std::byte> code = encoder.finish();
+    writer.write_bytes(code);
+    writer.write(chunk_checksum(code, id));
     TACTUS_ASSERT(writer.bytes().size() <= kMaxCodedChunkBytes);
     return writer.take();
 }

@@ -4,9 +4,10 @@
 
 #include "host_tools/encode/byte_writer.hpp"
 #include "rt_core/spm/base_mesh.hpp"
+#include "rt_core/spm/coded_record.hpp"
 #include "rt_core/spm/header.hpp"
 #include "rt_core/spm/index_page.hpp"
-#include "rt_core/spm/page.hpp"
+#include "rt_core/spm/ring_prediction.hpp"
 
 #include <array>
 #include <cstddef>
@@ -19,17 +20,14 @@
 namespace tactus
 {
 
-/// A vertex on the integer grid, in quanta.
-using GridPosition = std::array<std::int32_t, 3>;
-
 /// `positions` and `faces` in the order of their ids; inverse of parse_base_mesh().
 [[nodiscard]] std::vector<std::byte> encode_base_mesh(std::span<const GridPosition> positions,
-                                                      std::span<const BaseFace> faces);
+                                                      std::span<const BaseFace> faces,
+                                                      const BaseLayout& layout);
 
-/// The records of one chunk, 1 .. 64, in coder version 1; inverse of parse_chunk(). Positions must
-/// be whole multiples of the quantum; `next` is not written.
-[[nodiscard]] std::vector<std::byte> encode_chunk(ChunkId id, std::span<const VsplitRecord> records,
-                                                  float quantum_m);
+/// The records of one chunk, 1 .. 64, in coder version 2; inverse of parse_chunk().
+[[nodiscard]] std::vector<std::byte> encode_chunk(ChunkId id, const ModelCounts& counts,
+                                                  std::span<const CodedRecord> records);
 
 /// One box and one entry for each chunk of the page, 1 .. 64; inverse of parse_index_page().
 [[nodiscard]] std::vector<std::byte> encode_index_page(IndexPageId id,

@@ -119,7 +119,7 @@ void place_parts(HeaderFields& fields, const ModelCounts& counts, std::uint64_t 
     const std::uint64_t header = header_bytes(counts.index_pages(), regions);
     fields.header_bytes = static_cast<std::uint32_t>(header);
     fields.base_offset = header;
-    fields.base_bytes = static_cast<std::uint32_t>(coded_base_bytes(counts));
+    fields.base_bytes = static_cast<std::uint32_t>(coded_base_bytes(fields));
     fields.index_offset = fields.base_offset + fields.base_bytes;
 }
 
@@ -162,7 +162,7 @@ std::vector<std::byte> code_index_page(IndexPageId id, const ModelPieces& pieces
 std::vector<std::byte> code_front(HeaderFields& fields, const ModelPieces& pieces,
                                   std::span<const ChunkEntry> entries, const RegionGrid& grid)
 {
-    const std::vector<std::byte> base = pieces.coded_base();
+    const std::vector<std::byte> base = pieces.coded_base(BaseLayout(fields));
     fields.base_hash = content_hash(base);
     std::uint64_t offset = first_chunk_offset(fields, pieces.counts());
     std::vector<IndexPageEntry> pages(pieces.counts().index_pages());

@@ -69,9 +69,8 @@ Bounds bounds_of(const ModelHeader& header)
     return bounds;
 }
 
-/// Refines the whole model and returns what contradicts itself, in words. A replay checks all that
-/// the controller's linker does; then the linker itself goes through the model.
-std::optional<std::string> find_contradiction(DecodedModel& model)
+/// Refines the whole model and returns what contradicts itself, in words.
+std::optional<std::string> find_contradiction(const DecodedModel& model)
 {
     const ModelCounts counts = model.header().counts();
     Replay replay(model);
@@ -83,11 +82,6 @@ std::optional<std::string> find_contradiction(DecodedModel& model)
             return fault;
         }
         progress.update(++done, counts.records);
-    }
-    if (const std::uint64_t unlinked = model.link_all(); unlinked > 0)
-    {
-        return fmt::format("{} of {} records can't be linked to those they depend on", unlinked,
-                           counts.records);
     }
     if (replay.face_count() != model.header().fields().source_faces)
     {

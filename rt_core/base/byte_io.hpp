@@ -37,39 +37,6 @@ public:
         return value;
     }
 
-    /// LEB128, at most 5 bytes; a value beyond 32 bits fails.
-    [[nodiscard]] std::uint32_t read_varint() noexcept
-    {
-        std::uint64_t value = 0;
-        for (unsigned shift = 0; shift < 35; shift += 7)
-        {
-            const auto byte = read<std::uint8_t>();
-            value |= static_cast<std::uint64_t>(byte & 0x7FU) << shift;
-            if ((byte & 0x80U) == 0)
-            {
-                if (failed_)
-                {
-                    return 0;
-                }
-                if (value > 0xFFFF'FFFFU)
-                {
-                    fail();
-                    return 0;
-                }
-                return static_cast<std::uint32_t>(value);
-            }
-        }
-        fail();
-        return 0;
-    }
-
-    /// Zig-zag coded LEB128: small magnitudes of either sign are short.
-    [[nodiscard]] std::int32_t read_signed_varint() noexcept
-    {
-        const std::uint32_t coded = read_varint();
-        return static_cast<std::int32_t>((coded >> 1U) ^ (~(coded & 1U) + 1U));
-    }
-
     /// The next `count` bytes themselves; empty and failed when there are fewer.
     [[nodiscard]] std::span<const std::byte> read_bytes(std::size_t count) noexcept
     {
@@ -98,6 +65,33 @@ private:
     std::span<const std::byte> bytes_;
     std::size_t at_{0};
     bool failed_{false};
+};
+
+/// Reads fields of bits, lowest first, from a span that must hold them all.
+class BitReader
+{
+public:
+    explicit BitReader(std::span<const std::byte> bytes) noexcept : bytes_(bytes) {}
+
+    /// The next field, of up to 32 bits.
+    [[nodiscard]] std::uint32_t read(std::uint32_t bits) noexcept
+    {
+        while (held_ < bits)
+        {
+            window_ |= std::to_integer<std::uint64_t>(bytes_[next_++]) << held_;
+            held_ += 8;
+        }
+        const auto value = static_cast<std::uint32_t>(window_ & ((std::uint64_t{1} << bits) - 1));
+        window_ >>= bits;
+        held_ -= bits;
+        return value;
+    }
+
+private:
+    std::span<const std::byte> bytes_;
+    std::size_t next_{0};
+    std::uint64_t window_{0};
+    std::uint32_t held_{0};
 };
 
 } // namespace tactus

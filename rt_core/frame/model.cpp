@@ -85,7 +85,7 @@ Model::Model(Arena& arena, const ModelHeader& model_header, PageSlots model_slot
     , capacities(model_capacities)
     , slots(model_slots)
     , inbox(arena, capacities.pages, capacities.index_pages, wish_capacity(capacities))
-    , linker(arena, header.counts(), slots)
+    , linker(arena, header, slots)
     , pages(arena, slots)
     , cache(arena, header, slots, pages, inbox)
     , tree(arena, {capacities.faces, capacities.blocks, capacities.nodes}, header.quantum_m(),

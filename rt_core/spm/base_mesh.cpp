@@ -12,11 +12,12 @@ namespace tactus
 namespace
 {
 
-bool read_position(ByteReader& reader, const ModelHeader& header, Vec3f& position_m) noexcept
+bool read_position(BitReader& reader, const ModelHeader& header, const BaseLayout& layout,
+                   Vec3f& position_m) noexcept
 {
     for (std::size_t axis = 0; axis < 3; ++axis)
     {
-        const auto quanta = reader.read<std::uint32_t>();
+        const std::uint32_t quanta = reader.read(layout.axis_bits[axis]);
         if (quanta > header.fields().extent_quanta[axis])
         {
             return false;
@@ -26,18 +27,19 @@ bool read_position(ByteReader& reader, const ModelHeader& header, Vec3f& positio
     return true;
 }
 
-bool read_face(ByteReader& reader, std::uint32_t vertices, BaseFace& face) noexcept
+bool read_face(BitReader& reader, std::uint32_t vertices, const BaseLayout& layout,
+               BaseFace& face) noexcept
 {
     for (VertexId& corner : face.corners)
     {
-        corner = {reader.read<std::uint32_t>()};
+        corner = {reader.read(layout.vertex_bits)};
         if (corner.value >= vertices)
         {
             return false;
         }
     }
-    face.bucket = reader.read<std::uint32_t>();
-    face.error = reader.read<ErrorCode>();
+    face.bucket = reader.read(layout.bucket_bits);
+    face.error = static_cast<ErrorCode>(reader.read(8));
     return face.corners[0] != face.corners[1] && face.corners[1] != face.corners[2] &&
            face.corners[2] != face.corners[0];
 }
@@ -50,30 +52,32 @@ Result<Done, SpmRefusal> parse_base_mesh(std::span<const std::byte> bytes,
     const ModelCounts counts = header.counts();
     TACTUS_ASSERT(mesh.positions_m.size() == counts.base_vertices);
     TACTUS_ASSERT(mesh.faces.size() == counts.base_faces && mesh.next.size() == counts.base_faces);
-    if (bytes.size() != coded_base_bytes(counts))
+    const std::uint64_t size = coded_base_bytes(header.fields());
+    if (bytes.size() != size)
     {
-        return bytes.size() < coded_base_bytes(counts) ? SpmRefusal::too_short
-                                                       : SpmRefusal::trailing_bytes;
+        return bytes.size() < size ? SpmRefusal::too_short : SpmRefusal::trailing_bytes;
     }
-    ByteReader reader(bytes);
+    const BaseLayout layout(header.fields());
+    const auto content = bytes.first(bytes.size() - kChecksumBytes);
+    if (ByteReader(bytes.last(kChecksumBytes)).read<std::uint32_t>() != crc32c(content))
+    {
+        return SpmRefusal::wrong_checksum;
+    }
+    BitReader reader(content);
     for (Vec3f& position_m : mesh.positions_m)
     {
-        if (!read_position(reader, header, position_m))
+        if (!read_position(reader, header, layout, position_m))
         {
             return SpmRefusal::value_out_of_range;
         }
     }
     for (std::size_t i = 0; i < mesh.faces.size(); ++i)
     {
-        if (!read_face(reader, counts.base_vertices, mesh.faces[i]))
+        if (!read_face(reader, counts.base_vertices, layout, mesh.faces[i]))
         {
             return SpmRefusal::id_out_of_range;
         }
         mesh.next[i] = mesh.faces[i].error == 0 ? kNextExact : kNextPending;
-    }
-    if (reader.read<std::uint32_t>() != crc32c(bytes.first(bytes.size() - kChecksumBytes)))
-    {
-        return SpmRefusal::wrong_checksum;
     }
     return Done{};
 }

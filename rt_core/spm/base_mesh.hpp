@@ -8,7 +8,7 @@
 #include "rt_core/spm/header.hpp"
 
 #include <array>
-#include <atomic>
+#include <bit>
 #include <cstdint>
 #include <span>
 
@@ -23,6 +23,13 @@ struct BaseFace
     ErrorCode error{0};
 };
 
+/// The base mesh as a reader sees it.
+struct BaseView
+{
+    std::span<const Vec3f> positions_m;
+    std::span<const BaseFace> faces;
+};
+
 /// The base mesh in memory lent by the caller, sized by the header's counts.
 struct BaseMesh
 {
@@ -30,12 +37,37 @@ struct BaseMesh
     std::span<BaseFace> faces;
     /// Per face: which record splits it first, as VsplitRecord::next.
     std::span<std::uint32_t> next;
+
+    [[nodiscard]] BaseView view() const noexcept { return {positions_m, faces}; }
 };
 
-/// Bytes of the coded base mesh: 12 a vertex, 17 a face, a checksum.
-[[nodiscard]] constexpr std::uint64_t coded_base_bytes(const ModelCounts& counts) noexcept
+/// How many bits each field of a coded base mesh takes: as many as its largest value.
+struct BaseLayout
 {
-    return 12ULL * counts.base_vertices + 17ULL * counts.base_faces + kChecksumBytes;
+    std::array<std::uint32_t, 3> axis_bits{};
+    std::uint32_t vertex_bits{0};
+    std::uint32_t bucket_bits{0};
+
+    explicit constexpr BaseLayout(const HeaderFields& fields) noexcept
+        : vertex_bits(static_cast<std::uint32_t>(std::bit_width(fields.base_vertices - 1)))
+        , bucket_bits(static_cast<std::uint32_t>(
+              std::bit_width(fields.source_faces > 0 ? (fields.source_faces - 1) / 8 : 0)))
+    {
+        for (std::size_t axis = 0; axis < 3; ++axis)
+        {
+            axis_bits[axis] =
+                static_cast<std::uint32_t>(std::bit_width(fields.extent_quanta[axis]));
+        }
+    }
+};
+
+/// Bytes of the coded base mesh: the bits of all fields, a checksum.
+[[nodiscard]] constexpr std::uint64_t coded_base_bytes(const HeaderFields& fields) noexcept
+{
+    const BaseLayout layout(fields);
+    const std::uint64_t vertex = layout.axis_bits[0] + layout.axis_bits[1] + layout.axis_bits[2];
+    const std::uint64_t face = 3ULL * layout.vertex_bits + layout.bucket_bits + 8;
+    return (fields.base_vertices * vertex + fields.base_faces * face + 7) / 8 + kChecksumBytes;
 }
 
 /// Reads a coded base mesh into `mesh`, whose spans have the header's counts. On refusal the

@@ -23,18 +23,20 @@ void store_next(std::uint32_t& next, RecordId id) noexcept
 
 } // namespace
 
-Linker::Linker(Arena& arena, const ModelCounts& counts, PageSlots slots) noexcept
-    : counts_(counts)
+Linker::Linker(Arena& arena, const ModelHeader& header, PageSlots slots) noexcept
+    : header_(header)
+    , counts_(header.counts())
     , slots_(slots)
     , slot_of_(arena, static_cast<std::uint32_t>(slots.pages.size()) + 1)
     , residents_(arena.take<Resident>(slots.pages.size()))
+    , rings_(arena.take<StarRing>(slots.pages.size() * kRecordsPerChunk))
     , waiting_(arena.take<Waiting>(slots.pages.size() * kRecordsPerChunk))
     , lists_(arena.take<Seat>(slots.pages.size() * kListsPerPage))
     , owing_{.behind = arena.take<std::uint32_t>(slots.pages.size())}
 {
     if (!arena.is_measuring())
     {
-        TACTUS_ASSERT(waiting_.size() < kNoSeat);
+        TACTUS_ASSERT(waiting_.size() < kNowhere);
         std::ranges::fill(lists_, kNoSeat);
         std::ranges::fill(owing_.behind, kNotOwing);
     }
@@ -115,15 +117,15 @@ void Linker::owe_update(std::uint32_t slot) noexcept
 /// takes a record off a list and puts it back for a later dependency at most, so this ends.
 void Linker::settle(Seat seat) noexcept
 {
-    waiting_[seat].value = kNoSeat << 3U;
+    waiting_[seat].behind = kNoSeat;
     ready_ = seat;
     while (ready_ != kNoSeat)
     {
         const Seat now = ready_;
-        ready_ = waiting_[now].behind();
+        ready_ = waiting_[now].behind;
         waiting_[now] = {};
         ++looks_;
-        if (is_linked(now))
+        if (is_linked_at(now))
         {
             mend_next(now);
         }
@@ -136,59 +138,54 @@ void Linker::settle(Seat seat) noexcept
 
 bool Linker::try_link(Seat seat) noexcept
 {
-    const VsplitRecord& record = record_at(seat);
+    using Resolver = StarResolver<Linker>;
     const RecordId id = id_of(seat);
-    std::uint32_t depth = 0;
-    std::uint32_t missing = record.fan_size;
+    Resolver resolver(*this, counts_, slots_.base.view(), header_.fields(), header_.quantum_m());
+    switch (resolver.resolve(id, coded_form(record_at(seat))))
+    {
+    case Resolver::Outcome::waits:
+        wait_for(seat, resolver.missing());
+        return false;
+    case Resolver::Outcome::resolved:
+        if (is_free_for(id, resolver.record()))
+        {
+            link(seat, resolver.record(), resolver.ring());
+            return true;
+        }
+        break;
+    case Resolver::Outcome::refused:
+        break;
+    }
+    refuse(seat);
+    return false;
+}
+
+void Linker::link(Seat seat, const VsplitRecord& record, const StarRing& ring) noexcept
+{
+    record_at(seat) = record;
+    rings_[seat] = ring;
     for (std::uint32_t i = 0; i < record.fan_size; ++i)
     {
-        const FaceState state = record.before[i];
-        if (!state.is_base() && !owner_is_linked(state))
-        {
-            missing = std::min(missing, i);
-            continue;
-        }
-        if (!is_possible(id, record, i))
-        {
-            refuse(seat);
-            return false;
-        }
-        depth = state.is_base() ? depth : std::max<std::uint32_t>(depth, owner(state).depth);
-    }
-    if (missing < record.fan_size)
-    {
-        wait_for_owner(seat, missing);
-        return false;
-    }
-    if (record.depth != depth + 1)
-    {
-        refuse(seat);
-        return false;
-    }
-    for (std::uint32_t i = 0; i < record.fan_size; ++i)
-    {
-        store_next(next_of(record.star[2 + i], record.before[i]), id);
+        store_next(next_of(record.star[2 + i], record.before[i]), id_of(seat));
     }
     const std::uint32_t slot = seat >> kRecordsPerChunkLog2;
     residents_[slot].linked |= std::uint64_t{1} << (seat % kRecordsPerChunk);
     owe_update(slot);
     ++linked_count_;
-    return true;
 }
 
-/// May this record split the fan face, as far as the face's owner tells? Exact faces are never
-/// split, taken ones not by a second record.
-bool Linker::is_possible(RecordId id, const VsplitRecord& record,
-                         std::uint32_t fan_place) const noexcept
+/// Exact faces are never split, taken ones not by a second record.
+bool Linker::is_free_for(RecordId id, const VsplitRecord& record) const noexcept
 {
-    const FaceId face = record.star[2 + fan_place];
-    const FaceState state = record.before[fan_place];
-    if (!state.is_base() && owner(state).star[state.place()] != face)
+    for (std::uint32_t i = 0; i < record.fan_size; ++i)
     {
-        return false;
+        const std::uint32_t next = next_of(record.star[2 + i], record.before[i]);
+        if (next != kNextPending && next != id.value)
+        {
+            return false;
+        }
     }
-    const std::uint32_t next = next_of(face, state);
-    return next == kNextPending || next == id.value;
+    return true;
 }
 
 void Linker::refuse(Seat seat) noexcept
@@ -203,7 +200,7 @@ void Linker::refuse(Seat seat) noexcept
 void Linker::mend_next(Seat seat) noexcept
 {
     const VsplitRecord& record = record_at(seat);
-    std::uint32_t missing = record.fan_size;
+    RecordId missing{};
     for (std::uint32_t i = 0; i < record.fan_size; ++i)
     {
         const FaceState state = record.before[i];
@@ -211,25 +208,25 @@ void Linker::mend_next(Seat seat) noexcept
         {
             continue;
         }
-        if (!owner_is_linked(state))
+        if (!is_linked(state.record()))
         {
-            missing = std::min(missing, i);
+            missing = missing.is_none() ? state.record() : missing;
         }
         else if (std::uint32_t& next = next_of(record.star[2 + i], state); next == kNextPending)
         {
             store_next(next, id_of(seat)); // Otherwise taken, by this record or a rival of it.
         }
     }
-    if (missing < record.fan_size)
+    if (!missing.is_none())
     {
-        wait_for_owner(seat, missing);
+        wait_for(seat, missing);
     }
 }
 
-void Linker::wait_for_owner(Seat seat, std::uint32_t fan_place) noexcept
+void Linker::wait_for(Seat seat, RecordId awaited) noexcept
 {
-    Seat& first = list_of(record_at(seat).before[fan_place].record());
-    waiting_[seat].value = first << 3U | fan_place;
+    Seat& first = list_of(awaited);
+    waiting_[seat] = {awaited, first};
     first = seat;
 }
 
@@ -238,11 +235,9 @@ void Linker::wake_waiting(RecordId linked) noexcept
     Seat kept = kNoSeat;
     for (Seat seat = list_of(linked); seat != kNoSeat;)
     {
-        const Seat behind = waiting_[seat].behind();
-        const std::uint32_t fan_place = waiting_[seat].fan_place();
-        const bool is_ready = record_at(seat).before[fan_place].record() == linked;
-        Seat& list = is_ready ? ready_ : kept;
-        waiting_[seat].value = list << 3U | fan_place;
+        const Seat behind = waiting_[seat].behind;
+        Seat& list = waiting_[seat].awaited == linked ? ready_ : kept;
+        waiting_[seat].behind = list;
         list = seat;
         seat = behind;
     }
@@ -255,22 +250,12 @@ void Linker::stop_waiting(Seat seat) noexcept
     {
         return;
     }
-    const std::uint32_t fan_place = waiting_[seat].fan_place();
-    Seat& first = list_of(record_at(seat).before[fan_place].record());
-    const Seat behind = waiting_[seat].behind();
-    if (first == seat)
+    Seat* link = &list_of(waiting_[seat].awaited);
+    while (*link != seat)
     {
-        first = behind;
+        link = &waiting_[*link].behind;
     }
-    else
-    {
-        Seat before = first;
-        while (waiting_[before].behind() != seat)
-        {
-            before = waiting_[before].behind();
-        }
-        waiting_[before].value = behind << 3U | waiting_[before].fan_place();
-    }
+    *link = waiting_[seat].behind;
     waiting_[seat] = {};
 }
 
@@ -278,6 +263,10 @@ void Linker::stop_waiting(Seat seat) noexcept
 /// comes back.
 void Linker::let_dependents_wait(Seat leaving) noexcept
 {
+    if (!is_linked_at(leaving))
+    {
+        return;
+    }
     const RecordId id = id_of(leaving);
     const VsplitRecord& record = record_at(leaving);
     for (std::uint32_t place = 0; place < record.star_end(); ++place)
@@ -288,33 +277,31 @@ void Linker::let_dependents_wait(Seat leaving) noexcept
             continue;
         }
         const Seat dependent = seat_of({next});
-        if (dependent == kNoSeat || !is_linked(dependent) || waiting_[dependent].is_in_list())
+        if (dependent == kNoSeat || !is_linked_at(dependent) || waiting_[dependent].is_in_list())
         {
             continue; // Away, or it looks at all its owners when the one it waits for comes back.
         }
-        const auto& before = record_at(dependent).before;
-        const auto found = std::ranges::find(before, FaceState::after(id, place));
-        TACTUS_ASSERT(found != before.end());
-        wait_for_owner(dependent, static_cast<std::uint32_t>(found - before.begin()));
+        wait_for(dependent, id);
     }
 }
 
-bool Linker::owner_is_linked(FaceState state) const noexcept
+LinkedStar Linker::find(RecordId id) const noexcept
 {
-    const Seat seat = seat_of(state.record());
-    return seat != kNoSeat && is_linked(seat);
+    const Seat seat = seat_of(id);
+    return seat != kNoSeat && is_linked_at(seat) ? LinkedStar{&record_at(seat), &rings_[seat], id}
+                                                 : LinkedStar{};
 }
 
-VsplitRecord& Linker::owner(FaceState state) const noexcept
+bool Linker::is_linked(RecordId record) const noexcept
 {
-    const Seat seat = seat_of(state.record());
-    TACTUS_ASSERT(seat != kNoSeat);
-    return record_at(seat);
+    const Seat seat = seat_of(record);
+    return seat != kNoSeat && is_linked_at(seat);
 }
 
 std::uint32_t& Linker::next_of(FaceId face, FaceState state) const noexcept
 {
-    return state.is_base() ? slots_.base.next[face.value] : owner(state).next[state.place()];
+    return state.is_base() ? slots_.base.next[face.value]
+                           : record_at(seat_of(state.record())).next[state.place()];
 }
 
 /// kNoSeat when the record's page is away.
@@ -336,7 +323,7 @@ VsplitRecord& Linker::record_at(Seat seat) const noexcept
     return slots_.pages[seat >> kRecordsPerChunkLog2].records[seat % kRecordsPerChunk];
 }
 
-bool Linker::is_linked(Seat seat) const noexcept
+bool Linker::is_linked_at(Seat seat) const noexcept
 {
     const std::uint64_t linked = residents_[seat >> kRecordsPerChunkLog2].linked;
     return ((linked >> (seat % kRecordsPerChunk)) & 1U) != 0;

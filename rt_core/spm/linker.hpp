@@ -4,22 +4,24 @@
 
 #include "rt_core/base/arena.hpp"
 #include "rt_core/base/id_table.hpp"
+#include "rt_core/spm/header.hpp"
 #include "rt_core/spm/page_slots.hpp"
+#include "rt_core/spm/star_resolver.hpp"
 
-#include <array>
 #include <cstdint>
 #include <span>
 
 namespace tactus
 {
 
-/// Links parsed records to the records they depend on, on the transport thread.
+/// Resolves parsed records against the records they depend on, and links them, on the transport
+/// thread.
 ///
-/// A record depends on the records that last changed its fan faces (or on the base mesh). It is
-/// linked once all of those are present and linked: its place is checked against theirs and `next`
-/// of each is set to it. Records whose dependencies are absent wait, parsed, in their page. Which
-/// records are linked reaches the haptic thread through the inbox only: with the page's arrival,
-/// and by updates afterwards (try_take_update()).
+/// A record says what it is in terms of records that last changed its fan faces, and of those that
+/// brought its vertices. When these are linked it is resolved (StarResolver) and `next` of each
+/// fan face's owner is set to it. Records whose dependencies are absent wait, parsed, in their
+/// page. Which records are linked reaches the haptic thread through the inbox only: with the page's
+/// arrival, and by updates afterwards (try_take_update()).
 ///
 /// A waiting record stands in a list of those that wait for one and the same record, the first of
 /// its dependencies that isn't linked; when that one is, they are looked at again. So a record is
@@ -29,13 +31,14 @@ namespace tactus
 /// other pages that stood there wait from the eviction on, and set them anew: at the latest when
 /// all that they depend on is back, which is what they need to be split.
 ///
-/// Refused for good: a state that the owner's star contradicts, a place that another record has
-/// taken (the first one keeps it), a depth that is not one more than the deepest dependency. The
-/// depth rule makes a dependency cycle impossible.
+/// Refused for good: a walk that finds no face, a vertex off the grid, a fan face that is exact or
+/// that another record splits (the first one keeps it). Whatever is linked names only what was
+/// linked before, so a dependency cycle never is.
 class Linker
 {
 public:
-    Linker(Arena& arena, const ModelCounts& counts, PageSlots slots) noexcept;
+    /// `header` must outlive the linker.
+    Linker(Arena& arena, const ModelHeader& header, PageSlots slots) noexcept;
 
     /// A page was parsed into `slot`: links what can be linked now, in it and in waiting pages.
     /// Cost: per record, and per waiting record that one of them was the last thing missing for.
@@ -69,25 +72,25 @@ public:
     /// Records that were refused since the start; each is a fault of the model or of its sender.
     [[nodiscard]] std::uint64_t records_refused() const noexcept { return refused_count_; }
     [[nodiscard]] std::uint64_t records_linked() const noexcept { return linked_count_; }
-    /// Looks at a record since the start: 1 + its dependencies at most a stay in the pools.
+    /// Looks at a record since the start: 1 + what it waited for at most a stay in the pools.
     [[nodiscard]] std::uint64_t looks() const noexcept { return looks_; }
+
+    /// A record that is linked, for StarResolver.
+    [[nodiscard]] LinkedStar find(RecordId id) const noexcept;
 
 private:
     /// A record by its place in the page slots: slot * 64 + place.
     using Seat = std::uint32_t;
-    static constexpr Seat kNoSeat = (1U << 29U) - 1;
+    static constexpr Seat kNoSeat = 0xFFFF'FFFFU;
+    static constexpr Seat kNowhere = 0xFFFF'FFFEU;
 
-    /// Why a record is in a list, and who is behind it there.
+    /// A record in a list: for which record it waits, and who is behind it there.
     struct Waiting
     {
-        static constexpr std::uint32_t kNowhere = 0xFFFF'FFFFU;
+        RecordId awaited{};
+        Seat behind{kNowhere};
 
-        /// 29 bits of the next seat, 3 bits of the fan place whose owner is waited for.
-        std::uint32_t value{kNowhere};
-
-        [[nodiscard]] bool is_in_list() const noexcept { return value != kNowhere; }
-        [[nodiscard]] Seat behind() const noexcept { return value >> 3U; }
-        [[nodiscard]] std::uint32_t fan_place() const noexcept { return value & 7U; }
+        [[nodiscard]] bool is_in_list() const noexcept { return behind != kNowhere; }
     };
     struct Resident
     {
@@ -108,29 +111,29 @@ private:
 
     void settle(Seat seat) noexcept;
     [[nodiscard]] bool try_link(Seat seat) noexcept;
+    void link(Seat seat, const VsplitRecord& record, const StarRing& ring) noexcept;
     void refuse(Seat seat) noexcept;
     void mend_next(Seat seat) noexcept;
-    void wait_for_owner(Seat seat, std::uint32_t fan_place) noexcept;
+    void wait_for(Seat seat, RecordId awaited) noexcept;
     void wake_waiting(RecordId linked) noexcept;
     void stop_waiting(Seat seat) noexcept;
     void let_dependents_wait(Seat leaving) noexcept;
     void owe_update(std::uint32_t slot) noexcept;
-    [[nodiscard]] bool is_possible(RecordId id, const VsplitRecord& record,
-                                   std::uint32_t fan_place) const noexcept;
-    [[nodiscard]] bool owner_is_linked(FaceState state) const noexcept;
-    /// The owner of a state whose page is resident.
-    [[nodiscard]] VsplitRecord& owner(FaceState state) const noexcept;
+    [[nodiscard]] bool is_free_for(RecordId id, const VsplitRecord& record) const noexcept;
+    [[nodiscard]] bool is_linked(RecordId record) const noexcept;
     [[nodiscard]] std::uint32_t& next_of(FaceId face, FaceState state) const noexcept;
     [[nodiscard]] Seat seat_of(RecordId record) const noexcept;
     [[nodiscard]] RecordId id_of(Seat seat) const noexcept;
     [[nodiscard]] VsplitRecord& record_at(Seat seat) const noexcept;
-    [[nodiscard]] bool is_linked(Seat seat) const noexcept;
+    [[nodiscard]] bool is_linked_at(Seat seat) const noexcept;
     [[nodiscard]] Seat& list_of(RecordId awaited) noexcept;
 
+    const ModelHeader& header_;
     ModelCounts counts_;
     PageSlots slots_;
     IdTable slot_of_;
     std::span<Resident> residents_;
+    std::span<StarRing> rings_;  ///< Per seat; of linked records.
     std::span<Waiting> waiting_; ///< Per seat.
     std::span<Seat> lists_;      ///< First waiting, by a hash of the record that is waited for.
     Seat ready_{kNoSeat};        ///< Records to look at, a list of the same kind.

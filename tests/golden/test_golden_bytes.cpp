@@ -92,9 +92,8 @@ TEST_F(GoldenBytes, a_page_is_what_it_was_after_parse_and_link)
     const auto store = ModelStore::open(path_);
     ASSERT_TRUE(store) << store.error().text;
     std::vector<std::string> damage;
-    DecodedModel model = DecodedModel::decode(store.value(), damage);
+    const DecodedModel model = DecodedModel::decode(store.value(), damage);
     ASSERT_TRUE(damage.empty());
-    ASSERT_EQ(model.link_all(), 0U);
     expect_golden("page.hex", std::as_bytes(std::span(&model.page(kGoldenChunk), 1)));
 }
 

@@ -214,10 +214,10 @@ Result<Done, StoreError> ModelStore::read_header()
 Result<Done, StoreError> ModelStore::check_base() const
 {
     const HeaderFields& fields = header_.fields();
-    if (fields.base_bytes != coded_base_bytes(header_.counts()))
+    if (fields.base_bytes != coded_base_bytes(fields))
     {
         return error(fmt::format("the header states a base mesh of {} bytes, its counts need {}",
-                                 fields.base_bytes, coded_base_bytes(header_.counts())));
+                                 fields.base_bytes, coded_base_bytes(fields)));
     }
     std::vector<std::byte> coded;
     if (auto done = read({ContentKind::base, 0}, coded); !done)

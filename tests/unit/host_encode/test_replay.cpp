@@ -151,16 +151,6 @@ TEST(Replay, every_cut_of_the_coarsest_first_order_is_manifold)
     }
 }
 
-TEST(DecodedModel, the_controllers_linker_links_every_record)
-{
-    for (const auto& model : sample_models())
-    {
-        std::vector<std::string> damage;
-        DecodedModel sut = DecodedModel::decode(*model->store, damage);
-        EXPECT_EQ(sut.link_all(), 0U) << model->name;
-    }
-}
-
 } // namespace
 
 } // namespace tactus

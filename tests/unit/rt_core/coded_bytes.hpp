@@ -42,18 +42,18 @@ public:
         bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
         return *this;
     }
-    CodedBytes& varint(std::uint32_t value)
+    /// A field of bits, lowest first, behind the field before.
+    CodedBytes& bits(std::uint32_t count, std::uint32_t value)
     {
-        for (; value >= 0x80U; value /= 0x80U)
+        for (std::uint32_t i = 0; i < count; ++i, ++bit_)
         {
-            put(static_cast<std::uint8_t>(0x80U + value % 0x80U));
+            if (bit_ % 8 == 0)
+            {
+                bytes_.push_back(std::byte{0});
+            }
+            bytes_.back() |= static_cast<std::byte>(((value >> i) & 1U) << (bit_ % 8));
         }
-        return put(static_cast<std::uint8_t>(value));
-    }
-    CodedBytes& zigzag(std::int32_t value)
-    {
-        const std::int64_t wide = value;
-        return varint(static_cast<std::uint32_t>(wide >= 0 ? 2 * wide : -2 * wide - 1));
+        return *this;
     }
     CodedBytes& zeros(std::size_t count)
     {
@@ -70,6 +70,7 @@ public:
 
 private:
     std::vector<std::byte> bytes_;
+    std::size_t bit_{0};
 };
 
 inline void flip_bit(std::vector<std::byte>& bytes, std::size_t bit)
@@ -122,6 +123,7 @@ struct HeaderParts
     fields.extent_quanta = {1'000, 2'000, 3'000};
     fields.origin_m = {0.5, -0.25, 100.0};
     fields.quantisation_m = 1e-4;
+    fields.source_faces = 100;
     fields.region_cell_quanta = 1'024;
     fields.region_grid = {1, 2, 3};
     fields.occupied_regions = 3;

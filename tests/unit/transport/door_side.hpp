@@ -42,7 +42,7 @@ public:
         , arena({memory_.get(), kBytes})
         , header(parse_trusted_header(model.header).value())
         , slots(PageSlots::take(arena, model.counts, pages, index_pages))
-        , linker(arena, model.counts, slots)
+        , linker(arena, header, slots)
         , inbox(arena, pages, index_pages, wishes)
     {
         const auto loaded = load_base_mesh(model.base, header, slots.base);
@@ -78,10 +78,7 @@ public:
             {
                 linked_[arrival.slot] = arrival.linked;
             }
-            if (expects_sound_content)
-            {
-                check_content(arrival);
-            }
+            check_content(arrival, arrival.linked);
         }
         return adopted;
     }
@@ -112,7 +109,7 @@ public:
         owned_.erase(at);
     }
 
-    /// Every record that is owned has exactly the links of the whole model, as far as the records
+    /// Every record that is linked has exactly the links of the whole model, as far as the records
     /// they name are linked and so is all that those depend on.
     void check_links()
     {
@@ -121,8 +118,13 @@ public:
             for (std::uint32_t place = 0; key.first == ContentKind::chunk && place < 64; ++place)
             {
                 const std::size_t id = std::size_t{key.second} * 64 + place;
-                for (std::uint32_t i = 0; id < model_.records.size() && i < kMaxStarFaces; ++i)
+                for (std::uint32_t i = 0; i < kMaxStarFaces; ++i)
                 {
+                    if (!is_linked(static_cast<std::uint32_t>(id)) ||
+                        model_.records[id].star[i].is_none())
+                    {
+                        continue;
+                    }
                     const std::uint32_t expected = model_.records[id].next[i];
                     const std::uint32_t next = load_next(slots.pages[slot].records[place].next[i]);
                     const bool is_here = expected == kNextExact || has_all_it_needs(expected);
@@ -154,16 +156,24 @@ private:
         return all;
     }
 
-    void check_content(const DoorEvent& arrival)
+    /// Records that were told to be linked are what the model has.
+    void check_content(const DoorEvent& event, std::uint64_t linked) const
     {
-        for (std::size_t place = 0; arrival.key.kind == ContentKind::chunk && place < 64; ++place)
+        for (std::size_t place = 0; event.key.kind == ContentKind::chunk && place < 64; ++place)
         {
-            const std::size_t id = std::size_t{arrival.key.number} * 64 + place;
-            if (id < model_.records.size())
+            const std::size_t id = std::size_t{event.key.number} * 64 + place;
+            if (expects_sound_content && ((linked >> place) & 1U) != 0)
             {
-                const VsplitRecord& got = slots.pages[arrival.slot].records[place];
-                EXPECT_EQ(got.star, model_.records[id].star) << "record " << id;
-                EXPECT_EQ(got.position_m, model_.records[id].position_m) << "record " << id;
+                const VsplitRecord& got = slots.pages[event.slot].records[place];
+                const VsplitRecord& expected = model_.records.at(id);
+                EXPECT_EQ(got.star, expected.star) << "record " << id;
+                EXPECT_EQ(got.before, expected.before) << "record " << id;
+                EXPECT_EQ(got.position_m, expected.position_m) << "record " << id;
+                EXPECT_EQ(got.parent, expected.parent) << "record " << id;
+                EXPECT_EQ(got.error, expected.error) << "record " << id;
+                EXPECT_EQ(got.bucket, expected.bucket) << "record " << id;
+                EXPECT_EQ(got.depth, expected.depth) << "record " << id;
+                EXPECT_EQ(got.reach, expected.reach) << "record " << id;
             }
         }
     }
@@ -176,6 +186,7 @@ private:
         {
             EXPECT_EQ(at->second, update.slot);
             EXPECT_EQ(linked_[update.slot] & ~update.linked, 0U) << "a record is unlinked";
+            check_content(update, update.linked & ~linked_[update.slot]);
             linked_[update.slot] = update.linked;
         }
     }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
+#include "host_tools/encode/record_coder.hpp"
 #include "rt_core/spm/chunk_coding.hpp"
 #include "rt_core/spm/linker.hpp"
 #include "tests/unit/transport/door_side.hpp"
@@ -139,15 +140,16 @@ RC_GTEST_PROP(Linker, a_page_that_returns_gets_all_its_links_back, (std::uint32_
     }
 }
 
-RC_GTEST_PROP(Linker, looks_at_a_record_once_for_each_of_its_dependencies, (std::uint32_t seed))
+RC_GTEST_PROP(Linker, looks_at_a_record_once_for_each_that_it_names, (std::uint32_t seed))
 {
     const TinyModel model =
         make_tiny_model({.seed = seed, .records = 1'000, .shuffled_ids = seed % 2 == 0});
     Bench bench(model);
+    // Its fan's owners, its ring's vertices, and who brought the anchor's face.
     std::uint64_t allowed = 0;
     for (const VsplitRecord& record : model.records)
     {
-        allowed += 1U + record.fan_size;
+        allowed += 4U + 2U * record.fan_size;
     }
     // Last chunks first: nearly every record has to wait.
     for (auto chunk = static_cast<std::uint32_t>(model.chunks.size()); chunk-- > 0;)
@@ -178,24 +180,20 @@ TEST(Linker, records_wait_while_a_dependency_is_absent)
     EXPECT_EQ(bench.side.linker.records_refused(), 0U);
 }
 
-/// A chunk of the model in which one record was changed.
+/// The chunk of a record that says something else of it.
 std::vector<std::byte> forge(const TinyModel& model, std::uint32_t record, auto&& change)
 {
-    auto records = model.records;
-    change(records[record]);
-    const std::uint32_t chunk = record / 64;
-    const std::size_t first = std::size_t{chunk} * 64;
-    return test::write_chunk(
-        {chunk},
-        std::span(records).subspan(first, std::min<std::size_t>(64, records.size() - first)));
+    auto coded = model.coded;
+    change(coded[record]);
+    return model.chunk_of({record / 64}, coded);
 }
 
-/// The first record whose first fan face was last changed by another record of the same chunk.
+/// The first record whose anchor was last changed by another record.
 std::uint32_t record_with_dependency(const TinyModel& model)
 {
     for (std::uint32_t id = 0; id < 64; ++id)
     {
-        if (!model.records[id].before[0].is_base())
+        if (model.coded[id].anchor.kind == CodedRecord::Owner::Kind::record)
         {
             return id;
         }
@@ -203,15 +201,44 @@ std::uint32_t record_with_dependency(const TinyModel& model)
     return 64;
 }
 
-TEST(Linker, refuses_a_state_that_the_owner_s_star_contradicts)
+void expect_refused(const TinyModel& model, std::uint32_t record, std::span<const std::byte> chunk)
+{
+    Bench bench(model);
+    bench.bring_forged(0, 0, chunk);
+    EXPECT_FALSE(bench.side.is_linked(record));
+    EXPECT_GE(bench.side.linker.records_refused(), 1U);
+}
+
+TEST(Linker, refuses_an_anchor_that_the_owner_s_star_does_not_have)
 {
     const TinyModel model = make_tiny_model({.records = 64});
     const std::uint32_t id = record_with_dependency(model);
     ASSERT_LT(id, 64U);
-    Bench bench(model);
-    bench.bring_forged(0, 0, forge(model, id, [](VsplitRecord& record) { record.star[2] = {0}; }));
-    EXPECT_FALSE(bench.side.is_linked(id));
-    EXPECT_GE(bench.side.linker.records_refused(), 1U);
+    expect_refused(model, id, forge(model, id, [](CodedRecord& coded) { coded.place = 7; }));
+}
+
+TEST(Linker, refuses_a_fan_that_has_no_next_face)
+{
+    const TinyModel model = make_tiny_model({.base_faces = 1, .records = 64});
+    // One face in a base of one face: nothing lies beyond its edges.
+    expect_refused(model, 0,
+                   forge(model, 0,
+                         [](CodedRecord& coded)
+                         {
+                             coded.right = 1;
+                             coded.others[0] = {0, CodedRecord::Owner::Kind::base, {}};
+                         }));
+    expect_refused(model, 0, forge(model, 0, [](CodedRecord& coded) { coded.left = 1; }));
+}
+
+TEST(Linker, refuses_a_vertex_off_the_grid)
+{
+    const TinyModel model = make_tiny_model({.records = 64});
+    for (const std::int32_t residual : {-2'000, 2'000})
+    {
+        expect_refused(model, 0,
+                       forge(model, 0, [&](CodedRecord& coded) { coded.residual.fill(residual); }));
+    }
 }
 
 TEST(Linker, refuses_a_place_that_another_record_has_taken)
@@ -220,15 +247,7 @@ TEST(Linker, refuses_a_place_that_another_record_has_taken)
     // Record 0 splits base face 0; now another one claims the same.
     ASSERT_EQ(model.base_next[0], 0U);
     Bench bench(model);
-    bench.bring_forged(0, 0,
-                       forge(model, 9,
-                             [](VsplitRecord& record)
-                             {
-                                 record.fan_size = 1;
-                                 record.star[2] = {0};
-                                 record.before[0] = FaceState::base();
-                                 record.depth = 1;
-                             }));
+    bench.bring_forged(0, 0, forge(model, 9, [&](CodedRecord& coded) { coded = model.coded[0]; }));
     EXPECT_TRUE(bench.side.is_linked(0));
     EXPECT_FALSE(bench.side.is_linked(9));
     EXPECT_GE(bench.side.linker.records_refused(), 1U);
@@ -239,67 +258,82 @@ TEST(Linker, refuses_a_split_of_a_face_that_is_exact)
 {
     const TinyModel model = make_tiny_model({.records = 64});
     const std::uint32_t id = record_with_dependency(model);
-    const FaceState before = model.records[id].before[0];
-    Bench bench(model);
-    bench.bring_forged(0, 0,
-                       forge(model, before.record().value,
-                             [&](VsplitRecord& record) { record.error[before.place()] = 0; }));
-    EXPECT_FALSE(bench.side.is_linked(id));
-    EXPECT_GE(bench.side.linker.records_refused(), 1U);
+    const FaceState before = model.records[id].before[model.coded[id].left];
+    expect_refused(model, id,
+                   forge(model, before.record().value,
+                         [&](CodedRecord& coded) { coded.error[before.place()] = 0; }));
 }
 
-TEST(Linker, refuses_a_depth_that_does_not_follow_from_the_dependencies)
+TEST(Linker, refuses_a_record_deeper_than_the_header_states)
 {
     const TinyModel model = make_tiny_model({.records = 64});
-    const std::uint32_t id = record_with_dependency(model);
-    for (const int wrong_by : {-1, 1})
+    const AllStars stars{model.records, model.rings};
+    HeaderFields fields;
+    fields.extent_quanta.fill(1'000);
+    for (std::uint32_t id = 0; id < 64; ++id)
     {
-        Bench bench(model);
-        bench.bring_forged(0, 0,
-                           forge(model, id,
-                                 [&](VsplitRecord& record) {
-                                     record.depth =
-                                         static_cast<std::uint16_t>(record.depth + wrong_by);
-                                 }));
-        EXPECT_FALSE(bench.side.is_linked(id));
-        EXPECT_GE(bench.side.linker.records_refused(), 1U);
+        for (const std::uint32_t spare : {0U, 1U})
+        {
+            fields.max_depth = model.records[id].depth - 1U + spare;
+            StarResolver<AllStars> sut(
+                stars, model.counts, {model.base_positions_m, model.base_faces}, fields, 0x1p-20F);
+            EXPECT_EQ(sut.resolve({id}, model.coded[id]) ==
+                          StarResolver<AllStars>::Outcome::resolved,
+                      spare == 1);
+        }
     }
 }
 
 TEST(Linker, never_links_a_cycle_of_two_records)
 {
-    const TinyModel model = make_tiny_model({.records = 128});
-    auto records = model.records;
-    // Records 0 and 64 name each other as the last to change a face of theirs.
-    for (const auto& [id, other] : {std::pair{0U, 64U}, std::pair{64U, 0U}})
+    const TinyModel model = make_tiny_model({.records = 192});
+    auto coded = model.coded;
+    // Records 64 and 128 name each other as the last to change a face of theirs.
+    for (const auto& [id, other] : {std::pair{64U, 128U}, std::pair{128U, 64U}})
     {
-        records[id].fan_size = 1;
-        records[id].before[0] = FaceState::after({other}, 2);
-        records[id].star[2] = {0};
-        records[id].depth = static_cast<std::uint16_t>(id == 0 ? 1 : 2);
-        records[id].error[2] = 20;
+        coded[id].left = coded[id].right = 0;
+        coded[id].others = {};
+        coded[id].anchor = {other, CodedRecord::Owner::Kind::record, {}};
+        coded[id].place = 2;
+        coded[id].sides = 3;
+        coded[id].error = {20, 20, 20};
     }
     Bench bench(model);
-    bench.bring_forged(0, 0, test::write_chunk({0}, std::span(records).first(64)));
-    bench.bring_forged(1, 1, test::write_chunk({1}, std::span(records).last(64)));
-    EXPECT_FALSE(bench.side.is_linked(0));
+    for (std::uint32_t chunk = 0; chunk < 3; ++chunk)
+    {
+        bench.bring_forged(chunk, chunk, model.chunk_of({chunk}, coded));
+    }
+    EXPECT_TRUE(bench.side.is_linked(0));
     EXPECT_FALSE(bench.side.is_linked(64));
+    EXPECT_FALSE(bench.side.is_linked(128));
 }
 
 TEST(Linker, a_foreign_id_does_not_get_past_parse)
 {
-    const TinyModel model = make_tiny_model({.records = 64});
+    const TinyModel model = make_tiny_model({.base_faces = 6, .records = 130});
     Bench bench(model);
     Page page;
     const auto parse = [&](auto&& change)
-    { return parse_chunk(forge(model, 5, change), bench.side.header, {0}, page).has_value(); };
-    EXPECT_TRUE(parse([](VsplitRecord&) {}));
-    EXPECT_FALSE(parse([&](VsplitRecord& r) { r.star[2] = {model.counts.face_ids()}; }));
-    EXPECT_FALSE(parse([&](VsplitRecord& r) { r.parent = {model.counts.vertices()}; }));
-    EXPECT_FALSE(
-        parse([&](VsplitRecord& r) { r.before[0] = FaceState::after({model.counts.records}, 0); }));
-    EXPECT_FALSE(parse([](VsplitRecord& r) { r.before[0] = FaceState::after({5}, 0); }));
-    EXPECT_FALSE(parse([](VsplitRecord& r) { r.depth = 0; }));
+    { return parse_chunk(forge(model, 70, change), bench.side.header, {1}, page).has_value(); };
+    const auto anchor_at = [&](std::uint32_t record)
+    {
+        return parse(
+            [&](CodedRecord& c) {
+                c.anchor = {record, CodedRecord::Owner::Kind::record, {}};
+            });
+    };
+    EXPECT_TRUE(parse([](CodedRecord&) {}));
+    EXPECT_TRUE(anchor_at(129));
+    EXPECT_FALSE(anchor_at(130));
+    EXPECT_FALSE(anchor_at(319)); // The last of its tier in a larger model.
+    EXPECT_FALSE(anchor_at(70));  // Itself.
+    EXPECT_FALSE(parse([](CodedRecord& c) { c.corner = 3; }));
+    EXPECT_FALSE(parse([](CodedRecord& c) { c.left = c.right = 3; }));
+    EXPECT_FALSE(parse([](CodedRecord& c) { c.residual[1] = 1 << 28; }));
+    EXPECT_FALSE(parse(
+        [](CodedRecord& c) {
+            c.anchor = {6, CodedRecord::Owner::Kind::base, {}};
+        }));
 }
 
 } // namespace

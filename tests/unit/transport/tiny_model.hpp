@@ -4,7 +4,7 @@
 
 #include "rt_core/spm/content_key.hpp"
 #include "rt_core/spm/header.hpp"
-#include "rt_core/spm/page.hpp"
+#include "rt_core/spm/star_resolver.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -21,13 +21,12 @@ struct TinyModelSpec
     std::uint32_t seed{1};
     std::uint32_t base_faces{8};
     std::uint32_t records{200};
-    bool shuffled_ids{false}; ///< Dependencies may then have larger ids than their dependents.
+    bool shuffled_ids{false}; ///< Dependencies may have larger ids than their dependents.
 };
 
-/// A made-up model whose records depend on one another as real ones do (each fan face was last
-/// changed by the record that is named), but whose geometry is random. Written with code of its
-/// own, so that reader and writer check each other. `records[i].next` is what the whole model's
-/// links must be.
+/// A made-up model: a mesh of random vertices that grows by random splits, with borders. Header,
+/// base and index are written with code of its own, so that reader and writer check each other;
+/// chunks by the product's coder. `records[i].next` is what the whole model's links must be.
 struct TinyModel
 {
     ModelCounts counts;
@@ -36,16 +35,20 @@ struct TinyModel
     std::vector<std::vector<std::byte>> index_pages;
     std::vector<std::vector<std::byte>> chunks;
     std::vector<std::byte> file;
+    std::vector<Vec3f> base_positions_m;
+    std::vector<BaseFace> base_faces;
     std::vector<VsplitRecord> records;
+    std::vector<StarRing> rings;
+    std::vector<CodedRecord> coded;
     std::vector<std::uint32_t> base_next;
 
     [[nodiscard]] std::span<const std::byte> piece(ContentKey key) const;
+    /// One chunk of a model that says this of all its records.
+    [[nodiscard]] std::vector<std::byte> chunk_of(ChunkId id,
+                                                  std::span<const CodedRecord> all) const;
 };
 
 [[nodiscard]] TinyModel make_tiny_model(const TinyModelSpec& spec);
-
-/// One chunk in coder version 1.
-[[nodiscard]] std::vector<std::byte> write_chunk(ChunkId id, std::span<const VsplitRecord> records);
 
 /// A folder of its own for one test's files; removed at the end.
 class TemporaryFolder

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/spm/base_mesh.hpp"
+#include "rt_core/spm/coded_record.hpp"
+#include "rt_core/spm/header.hpp"
+#include "rt_core/spm/star_resolver.hpp"
+
+#include <span>
+
+namespace tactus
+{
+
+/// All records of a model, as StarResolver looks them up: everything is here.
+struct AllStars
+{
+    std::span<const VsplitRecord> records;
+    std::span<const StarRing> rings;
+
+    [[nodiscard]] LinkedStar find(RecordId id) const noexcept
+    {
+        return {&records[id.value], &rings[id.value], id};
+    }
+};
+
+/// Says records in terms of others: the inverse of StarResolver.
+///
+/// Any fan face may be the anchor; the one that looks cheapest is taken. Of the fields only
+/// `extent_quanta` and `max_depth` matter. What it views must outlive it. One thread at a time.
+class RecordCoder
+{
+public:
+    RecordCoder(const AllStars& stars, const ModelCounts& counts, const BaseView& base,
+                const HeaderFields& fields, float quantum_m);
+
+    /// Resolves to the same record again; that is checked.
+    [[nodiscard]] CodedRecord code(RecordId id);
+
+private:
+    [[nodiscard]] CodedRecord fan_from(RecordId id, std::uint32_t anchor);
+    [[nodiscard]] CodedRecord::Owner other_owner(RecordId id, std::uint32_t fan_place,
+                                                 VertexId from, VertexId to);
+    void add_numbers(RecordId id, CodedRecord& coded);
+
+    const AllStars& stars_;
+    ModelCounts counts_;
+    BaseView base_;
+    StarResolver<AllStars> resolver_;
+};
+
+} // namespace tactus

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/spm/chunk_grammar.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace tactus
+{
+
+/// Binary range decoder with adaptive probabilities (Martin 1979; 12-bit probabilities and 32-bit
+/// range as in LZMA). Behind the last byte it reads zeros: an encoder leaves trailing ones out.
+class RangeDecoder
+{
+public:
+    explicit RangeDecoder(std::span<const std::byte> bytes) noexcept : bytes_(bytes)
+    {
+        for (int i = 0; i < 4; ++i)
+        {
+            code_ = code_ << 8U | next_byte();
+        }
+    }
+
+    /// The argument says nothing here; it lets one grammar serve encoder and decoder.
+    std::uint32_t code_bit(Probability& zero, std::uint32_t /*value*/ = 0) noexcept
+    {
+        const std::uint32_t bound = (range_ >> kProbabilityBits) * zero;
+        const std::uint32_t bit = code_ < bound ? 0U : 1U;
+        code_ -= bit != 0 ? bound : 0U;
+        range_ = bit != 0 ? range_ - bound : bound;
+        adapt(zero, bit);
+        refill();
+        return bit;
+    }
+    std::uint32_t code_raw(std::uint32_t bits, std::uint32_t /*value*/ = 0) noexcept
+    {
+        std::uint32_t value = 0;
+        for (; bits > 0; --bits)
+        {
+            range_ >>= 1U;
+            const std::uint32_t bit = code_ < range_ ? 0U : 1U;
+            code_ -= bit != 0 ? range_ : 0U;
+            value = value << 1U | bit;
+            refill();
+        }
+        return value;
+    }
+
+    /// Bytes that no symbol has come near to are left over.
+    [[nodiscard]] bool has_surplus() const noexcept { return read_ < bytes_.size(); }
+
+private:
+    void refill() noexcept
+    {
+        while (range_ < kRangeLeast)
+        {
+            range_ <<= 8U;
+            code_ = code_ << 8U | next_byte();
+        }
+    }
+    std::uint32_t next_byte() noexcept
+    {
+        return read_ < bytes_.size() ? std::to_integer<std::uint32_t>(bytes_[read_++]) : 0U;
+    }
+
+    std::span<const std::byte> bytes_;
+    std::size_t read_{0};
+    std::uint32_t range_{0xFFFF'FFFFU};
+    std::uint32_t code_{0};
+};
+
+} // namespace tactus

@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "host_tools/encode/piece_coding.hpp"
+#include "host_tools/encode/range_encoder.hpp"
+#include "rt_core/spm/chunk_coding.hpp"
+#include "rt_core/spm/range_decoder.hpp"
+#include "tests/unit/host_encode/encoded_model.hpp"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <limits>
+#include <memory>
+#include <random>
+
+namespace tactus
+{
+
+namespace
+{
+
+using Owner = CodedRecord::Owner;
+
+std::uint32_t below(std::uint32_t end)
+{
+    return *rc::gen::inRange<std::uint32_t>(0, end);
+}
+
+std::uint64_t end_of_tier(RecordId id)
+{
+    std::uint64_t end = 64;
+    while (id.value >= end)
+    {
+        end *= 5;
+    }
+    return end;
+}
+
+Owner arbitrary_owner(RecordId id, const ModelCounts& counts, bool may_be_derived)
+{
+    const std::uint32_t kind = below(may_be_derived ? 3 : 2);
+    if (kind == 2)
+    {
+        return {};
+    }
+    const auto end =
+        static_cast<std::uint32_t>(std::min<std::uint64_t>(end_of_tier(id), counts.records));
+    const std::uint32_t record = below(end);
+    return kind == 0 || record == id.value ? Owner{below(counts.base_faces), Owner::Kind::base, {}}
+                                           : Owner{record, Owner::Kind::record, {}};
+}
+
+std::int32_t arbitrary_number(std::int32_t most)
+{
+    const std::int32_t number = *rc::gen::inRange(-most, most);
+    return *rc::gen::element(0, 1, -1, most, -most, number, number / 1'000, number / 1'000'000);
+}
+
+/// Any record that a chunk can tell, edges of the ranges included.
+CodedRecord arbitrary_record(RecordId id, const ModelCounts& counts)
+{
+    CodedRecord record;
+    record.anchor = arbitrary_owner(id, counts, false);
+    record.place =
+        static_cast<std::uint8_t>(record.anchor.kind == Owner::Kind::base ? 0 : below(8));
+    record.corner = static_cast<std::uint8_t>(below(3));
+    record.left = static_cast<std::uint8_t>(below(kMaxFanFaces));
+    record.right = static_cast<std::uint8_t>(below(kMaxFanFaces - record.left));
+    record.sides = static_cast<std::uint8_t>(1 + below(3));
+    for (std::uint32_t i = 0; i + 1 < record.fan_size(); ++i)
+    {
+        record.others[i] = arbitrary_owner(id, counts, true);
+    }
+    for (std::int32_t& residual : record.residual)
+    {
+        residual = arbitrary_number(1 << 27);
+    }
+    const auto largest = static_cast<ErrorCode>(below(256));
+    for (std::uint32_t place = 0; place < 2 + record.fan_size(); ++place)
+    {
+        if (place >= 2 || record.has_face(place))
+        {
+            record.error[place] =
+                place == 2 || largest == 0 ? largest : error_below(largest, below(16));
+        }
+    }
+    for (std::uint32_t side = 0; side < 2; ++side)
+    {
+        record.bucket_step[side] =
+            record.has_face(side) ? arbitrary_number(std::numeric_limits<std::int32_t>::max()) : 0;
+    }
+    return record;
+}
+
+std::vector<CodedRecord> arbitrary_chunk(ChunkId id, const ModelCounts& counts)
+{
+    std::vector<CodedRecord> records;
+    for (std::uint32_t place = 0; place < records_in_chunk(counts, id); ++place)
+    {
+        records.push_back(arbitrary_record({(id.value << kRecordsPerChunkLog2) + place}, counts));
+    }
+    return records;
+}
+
+const ModelHeader& some_header()
+{
+    return sample_models()[1]->store->header();
+}
+
+std::vector<std::byte> some_chunk(ChunkId id)
+{
+    std::vector<std::byte> coded;
+    EXPECT_TRUE(sample_models()[1]->store->read({ContentKind::chunk, id.value}, coded));
+    return coded;
+}
+
+Result<Done, SpmRefusal> parse(std::span<const std::byte> bytes, ChunkId id, Page& page)
+{
+    return parse_chunk(bytes, some_header(), id, page);
+}
+
+std::vector<std::byte> with_right_checksum(std::vector<std::byte> code, ChunkId id)
+{
+    const std::uint32_t checksum = chunk_checksum(code, id);
+    const auto bytes = std::as_bytes(std::span(&checksum, 1));
+    code.insert(code.end(), bytes.begin(), bytes.end());
+    return code;
+}
+
+RC_GTEST_PROP(ChunkCoding, parse_gives_back_what_encode_wrote, ())
+{
+    const ModelHeader& header = some_header();
+    const ChunkId id{below(header.counts().chunks())};
+    const std::vector<CodedRecord> written = arbitrary_chunk(id, header.counts());
+    const auto coded = encode_chunk(id, header.counts(), written);
+    auto page = std::make_unique<Page>();
+    RC_ASSERT(coded.size() <= kMaxCodedChunkBytes);
+    RC_ASSERT(parse(coded, id, *page).has_value());
+    for (std::size_t place = 0; place < written.size(); ++place)
+    {
+        RC_ASSERT(coded_form(page->records[place]) == written[place]);
+    }
+    for (std::size_t place = written.size(); place < kRecordsPerChunk; ++place)
+    {
+        RC_ASSERT(page->records[place].fan_size == 0);
+    }
+}
+
+TEST(ChunkCoding, every_truncation_every_flipped_bit_and_an_extra_byte_is_refused)
+{
+    const auto page = std::make_unique<Page>();
+    std::vector<std::byte> bytes = some_chunk({1});
+    ASSERT_TRUE(parse(bytes, {1}, *page).has_value());
+    for (std::size_t length = 0; length < bytes.size(); ++length)
+    {
+        ASSERT_FALSE(parse(std::span(bytes).first(length), {1}, *page).has_value()) << length;
+    }
+    for (std::size_t bit = 0; bit < 8 * bytes.size(); ++bit)
+    {
+        bytes[bit / 8] ^= static_cast<std::byte>(1U << (bit % 8));
+        ASSERT_FALSE(parse(bytes, {1}, *page).has_value()) << "bit " << bit;
+        bytes[bit / 8] ^= static_cast<std::byte>(1U << (bit % 8));
+    }
+    bytes.push_back(std::byte{0});
+    EXPECT_FALSE(parse(bytes, {1}, *page).has_value());
+}
+
+TEST(ChunkCoding, bytes_behind_the_code_are_refused_under_a_right_checksum)
+{
+    const auto page = std::make_unique<Page>();
+    std::vector<std::byte> code = some_chunk({1});
+    code.resize(code.size() - kChecksumBytes);
+    ASSERT_TRUE(parse(with_right_checksum(code, {1}), {1}, *page).has_value());
+    // A decoder is up to four bytes ahead of what it has decoded.
+    code.resize(code.size() + 5, std::byte{1});
+    EXPECT_EQ(parse(with_right_checksum(code, {1}), {1}, *page).error(),
+              SpmRefusal::trailing_bytes);
+}
+
+TEST(ChunkCoding, the_chunk_of_another_number_is_refused)
+{
+    const auto page = std::make_unique<Page>();
+    EXPECT_EQ(parse(some_chunk({1}), {2}, *page).error(), SpmRefusal::wrong_checksum);
+}
+
+TEST(ChunkCoding, noise_under_a_right_checksum_never_names_what_the_model_does_not_have)
+{
+    const ModelCounts counts = some_header().counts();
+    const auto page = std::make_unique<Page>();
+    std::mt19937 random(7);
+    std::size_t parsed = 0;
+    for (int round = 0; round < 3'000; ++round)
+    {
+        std::vector<std::byte> code = some_chunk({1});
+        code.resize(code.size() - kChecksumBytes);
+        const std::size_t bit = random() % (8 * code.size());
+        code[bit / 8] ^= static_cast<std::byte>(1U << (bit % 8));
+        if (!parse(with_right_checksum(code, {1}), {1}, *page))
+        {
+            continue;
+        }
+        ++parsed;
+        for (std::uint32_t place = 0; place < kRecordsPerChunk; ++place)
+        {
+            const CodedRecord record = coded_form(page->records[place]);
+            ASSERT_LE(record.fan_size(), kMaxFanFaces);
+            ASSERT_LT(record.corner, 3);
+            ASSERT_NE(record.anchor.kind, Owner::Kind::derived);
+            ASSERT_LT(record.anchor.value,
+                      record.anchor.kind == Owner::Kind::base ? counts.base_faces : counts.records);
+        }
+    }
+    EXPECT_GT(parsed, 10U); // Else the checks above are idle.
+}
+
+RC_GTEST_PROP(RangeCoder, gives_back_bits_of_any_probability, (std::uint32_t seed))
+{
+    std::mt19937 random(seed);
+    constexpr std::uint32_t kBits = 3'000;
+    const bool is_carrying = seed % 2 == 0; // Long runs of unlikely bits push carries far back.
+    std::vector<Probability> start;
+    std::vector<std::uint32_t> bits;
+    for (std::uint32_t i = 0; i < kBits; ++i)
+    {
+        start.push_back(static_cast<Probability>(is_carrying ? 4'065 : 31 + random() % 4'035));
+        bits.push_back(is_carrying ? 1U : random() % 2);
+    }
+    RangeEncoder encoder;
+    for (std::uint32_t i = 0; i < kBits; ++i)
+    {
+        Probability zero = start[i];
+        encoder.code_bit(zero, bits[i]);
+        encoder.code_raw(i % 9, i & ((1U << i % 9) - 1));
+    }
+    const std::vector<std::byte> code = encoder.finish();
+    RangeDecoder decoder(code);
+    for (std::uint32_t i = 0; i < kBits; ++i)
+    {
+        Probability zero = start[i];
+        RC_ASSERT(decoder.code_bit(zero) == bits[i]);
+        RC_ASSERT(decoder.code_raw(i % 9) == (i & ((1U << i % 9) - 1)));
+    }
+    RC_ASSERT(!decoder.has_surplus());
+}
+
+TEST(RangeCoder, an_empty_code_is_all_zeros)
+{
+    RangeEncoder encoder;
+    EXPECT_TRUE(encoder.finish().empty());
+    RangeDecoder decoder({});
+    EXPECT_EQ(decoder.code_raw(20), 0U);
+}
+
+TEST(ChunkErrors, are_never_rounded_down_and_exact_only_when_they_were)
+{
+    for (std::uint32_t largest = 1; largest < 256; ++largest)
+    {
+        for (std::uint32_t error = 0; error <= largest; ++error)
+        {
+            const ErrorCode rounded =
+                rounded_error(static_cast<ErrorCode>(error), static_cast<ErrorCode>(largest));
+            EXPECT_GE(rounded, error);
+            EXPECT_LE(rounded, largest);
+            EXPECT_EQ(rounded == 0, error == 0);
+            EXPECT_TRUE(error + 28 < largest || rounded <= error + 1);
+        }
+    }
+}
+
+} // namespace
+
+} // namespace tactus
