@@ -11,9 +11,17 @@
 namespace tactus
 {
 
-/// Writes a binary little-endian PLY that reads back bit for bit: coordinates as float when every
-/// one is exact as such, as double otherwise. The file appears whole or not at all. Refused when
-/// the path doesn't end in .ply or can't be written.
+/// Whether the name ends in .ply, .obj or .stl, in either case of letters.
+[[nodiscard]] bool has_mesh_extension(const std::filesystem::path& path);
+
+/// Writes a mesh in the format that the path's extension names; the file appears whole or not at
+/// all.
+/// .ply: binary, little-endian; coordinates as float when every one is exact as such, as double
+/// otherwise. Reads back bit for bit.
+/// .obj: text with as many digits as it takes; reads back bit for bit.
+/// .stl: binary, loose triangles; coordinates are rounded to float. Refused when that would put two
+/// vertices of different positions into one place.
+/// Refused when the path ends otherwise or can't be written.
 [[nodiscard]] Result<Done, MeshError> write_mesh(const std::filesystem::path& path,
                                                  const TriangleMesh& mesh);
 

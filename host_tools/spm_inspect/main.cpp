@@ -4,7 +4,7 @@
 #include "host_tools/cli/progress.hpp"
 #include "host_tools/encode/decoded_model.hpp"
 #include "host_tools/encode/replay.hpp"
-#include "host_tools/mesh/write_mesh.hpp"
+#include "host_tools/spm_inspect/extraction.hpp"
 #include "transport/content_hash.hpp"
 #include "transport/store/model_store.hpp"
 
@@ -13,7 +13,6 @@
 
 #include <algorithm>
 #include <exception>
-#include <limits>
 #include <new>
 #include <optional>
 #include <string>
@@ -30,9 +29,7 @@ struct Options
     std::string file;
     bool json{false};
     bool regions{false};
-    bool extract{false};
-    std::uint32_t faces{0};
-    std::string output;
+    Extractor extractor;
 };
 
 void declare_options(CLI::App& app, Options& options)
@@ -41,14 +38,7 @@ void declare_options(CLI::App& app, Options& options)
     app.add_option("FILE", options.file, "Model to look at (.spm)")->required();
     app.add_flag("--json", options.json, "Print as one JSON object");
     app.add_flag("--regions", options.regions, "List the occupied regions");
-    auto* extract =
-        app.add_flag("--extract", options.extract, "Write the mesh at a chosen resolution");
-    auto* faces = app.add_option("--faces", options.faces, "Faces of the extracted mesh, at most")
-                      ->check(number_between(1, std::numeric_limits<std::uint32_t>::max()))
-                      ->needs(extract);
-    auto* output =
-        app.add_option("-o,--output", options.output, "Mesh to write (.ply)")->needs(extract);
-    extract->needs(faces)->needs(output);
+    options.extractor.declare_options(app);
 }
 
 /// The least and largest corner of the model in the source's frame.
@@ -200,29 +190,6 @@ void print_text(const nlohmann::json& all)
     }
 }
 
-/// Splits the records that matter most while the mesh stays within `faces`.
-std::optional<std::string> extract(const DecodedModel& model, const Options& options)
-{
-    Replay replay(model);
-    for (const RecordId record : coarsest_first(model))
-    {
-        const std::uint32_t more = (model.record(record).has_face(0) ? 1U : 0U) +
-                                   (model.record(record).has_face(1) ? 1U : 0U);
-        if (replay.face_count() + more > options.faces)
-        {
-            break;
-        }
-        const auto fault = replay.split(record);
-        TACTUS_ASSERT(!fault); // The whole model has been refined before.
-    }
-    if (const auto written = write_mesh(options.output, replay.mesh()); !written)
-    {
-        return written.error().text;
-    }
-    fmt::print(stderr, "{}: {} faces\n", options.output, replay.face_count());
-    return std::nullopt;
-}
-
 int report_damage(const CLI::App& app, const std::vector<std::string>& damage)
 {
     constexpr std::size_t kShown = 20;
@@ -246,6 +213,10 @@ int run(int argc, char** argv)
     {
         return *code;
     }
+    if (const auto reason = options.extractor.wrong_usage())
+    {
+        return fail(app, *reason, kExitUsage);
+    }
     const auto store = ModelStore::open(options.file);
     if (!store)
     {
@@ -261,9 +232,9 @@ int run(int argc, char** argv)
     {
         return fail(app, fmt::format("{}: contradicts itself: {}", options.file, *fault));
     }
-    if (options.extract)
+    if (options.extractor.is_wanted())
     {
-        if (const auto fault = extract(model, options))
+        if (const auto fault = options.extractor.run(model))
         {
             return fail(app, *fault);
         }
