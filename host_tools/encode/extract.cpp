@@ -76,27 +76,20 @@ private:
 class Cut
 {
 public:
-    explicit Cut(const DecodedModel& model)
+    /// With a limit no state with a larger bound stays active, now and after every require().
+    Cut(const DecodedModel& model, std::optional<double> limit_m)
         : model_(model)
         , is_split_(model.header().counts().records)
         , face_count_(model.header().counts().base_faces)
     {
+        if (limit_m)
+        {
+            limit_error(*limit_m);
+        }
     }
 
     [[nodiscard]] bool has(RecordId id) const { return is_split_[id.value]; }
     [[nodiscard]] std::uint32_t face_count() const { return face_count_; }
-
-    /// From now on no state with a larger bound stays active.
-    void limit_error(double error_m)
-    {
-        next_.emplace(model_);
-        limit_m_ = error_m;
-        for (std::uint32_t face = 0; face < model_.header().counts().base_faces; ++face)
-        {
-            leave_if_coarse({face}, FaceState::base());
-        }
-        follow_demands();
-    }
 
     void require(RecordId id)
     {
@@ -119,6 +112,17 @@ public:
     }
 
 private:
+    void limit_error(double error_m)
+    {
+        next_.emplace(model_);
+        limit_m_ = error_m;
+        for (std::uint32_t face = 0; face < model_.header().counts().base_faces; ++face)
+        {
+            leave_if_coarse({face}, FaceState::base());
+        }
+        follow_demands();
+    }
+
     void follow_demands()
     {
         while (!open_.empty())
@@ -241,14 +245,10 @@ double largest_bound_m(const DecodedModel& model, const Replay& replay)
 Extraction extract(const DecodedModel& model, const ExtractRequest& request)
 {
     Extraction extraction;
-    Cut cut(model);
+    Cut cut(model, request.error_m);
     if (request.zone)
     {
         extraction.zone_faces = require_zone(model, *request.zone, cut);
-    }
-    if (request.error_m)
-    {
-        cut.limit_error(*request.error_m);
     }
     if (request.faces)
     {

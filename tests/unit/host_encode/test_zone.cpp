@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "host_tools/encode/zone.hpp"
+#include "tests/unit/host_simplify/distance_oracle.hpp"
+#include "tests/unit/rt_core/support.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace tactus
+{
+
+namespace
+{
+
+using test::LongPoint;
+using test::Random;
+
+/// Whether anything is left of the triangle when all that lies outside the box is cut off.
+bool oracle_touches(const BoxZone& box, const Triangle& triangle)
+{
+    std::vector<LongPoint> polygon{test::to_long(triangle[0]), test::to_long(triangle[1]),
+                                   test::to_long(triangle[2])};
+    const LongPoint low = test::to_long(box.low_m);
+    const LongPoint high = test::to_long(box.high_m);
+    for (std::size_t side = 0; side < 6; ++side)
+    {
+        const std::size_t axis = side / 2;
+        const auto depth = [&](const LongPoint& p)
+        { return side % 2 == 0 ? p[axis] - low[axis] : high[axis] - p[axis]; };
+        std::vector<LongPoint> left;
+        for (std::size_t i = 0; i < polygon.size(); ++i)
+        {
+            const LongPoint& here = polygon[i];
+            const LongPoint& next = polygon[(i + 1) % polygon.size()];
+            const long double here_depth = depth(here);
+            const long double next_depth = depth(next);
+            if (here_depth >= 0)
+            {
+                left.push_back(here);
+            }
+            if ((here_depth >= 0) != (next_depth >= 0))
+            {
+                LongPoint& crossing = left.emplace_back();
+                const long double share = here_depth / (here_depth - next_depth);
+                for (std::size_t k = 0; k < 3; ++k)
+                {
+                    crossing[k] = here[k] + share * (next[k] - here[k]);
+                }
+            }
+        }
+        polygon = left;
+    }
+    return !polygon.empty();
+}
+
+bool oracle_touches(const BallZone& ball, const Triangle& triangle)
+{
+    return test::oracle_distance(test::to_long(ball.center_m),
+                                 {test::to_long(triangle[0]), test::to_long(triangle[1]),
+                                  test::to_long(triangle[2])}) <=
+           static_cast<long double>(ball.radius_m);
+}
+
+/// Needles and specks among them.
+Triangle random_triangle(Random& random)
+{
+    const Vec3 center = random.in_cube(2.0);
+    const double size = random.one_in(4) ? 1e-3 : 2.0;
+    Triangle triangle{center + random.in_cube(size), center + random.in_cube(size),
+                      center + random.in_cube(size)};
+    if (random.one_in(4))
+    {
+        triangle[2] = triangle[1] + random.in_cube(1e-4);
+    }
+    return triangle;
+}
+
+/// Compares where a slightly larger and a slightly smaller zone agree, so that rounding can't
+/// matter.
+template <typename OneZone, typename Make>
+void expect_oracles_answers(std::uint64_t own, const Make& make)
+{
+    constexpr int kQuestions = 20'000;
+    Random random(own);
+    int touched = 0;
+    int compared = 0;
+    for (int i = 0; i < kQuestions; ++i)
+    {
+        const OneZone zone = make(random);
+        const Triangle triangle = random_triangle(random);
+        const auto nudged = [&](double margin)
+        { return std::get<OneZone>(moved_and_grown(zone, Vec3::Zero(), margin)); };
+        const bool expected = oracle_touches(zone, triangle);
+        if (oracle_touches(nudged(1e-9), triangle) == oracle_touches(nudged(-1e-9), triangle))
+        {
+            EXPECT_EQ(touches(zone, triangle), expected) << "question " << i;
+            ++compared;
+            touched += expected ? 1 : 0;
+        }
+    }
+    EXPECT_GT(compared, kQuestions * 99 / 100);
+    EXPECT_GT(touched, kQuestions / 20);
+    EXPECT_LT(touched, kQuestions * 19 / 20);
+}
+
+TEST(Zone, a_ball_touches_what_the_oracle_says)
+{
+    expect_oracles_answers<BallZone>(
+        1,
+        [](Random& random) {
+            return BallZone{random.in_cube(1.0), random.between(0.01, 1.5)};
+        });
+}
+
+TEST(Zone, a_box_touches_what_the_oracle_says)
+{
+    expect_oracles_answers<BoxZone>(2,
+                                    [](Random& random)
+                                    {
+                                        const Vec3 low = random.in_cube(1.0);
+                                        return BoxZone{low, low + Vec3(random.between(0.01, 2.0),
+                                                                       random.between(0.01, 2.0),
+                                                                       random.between(0.01, 2.0))};
+                                    });
+}
+
+TEST(Zone, its_boundary_belongs_to_it)
+{
+    const Triangle triangle{Vec3(1, 0, 0), Vec3(2, 0, 0), Vec3(2, 1, 0)};
+    EXPECT_TRUE(touches(BallZone{Vec3(0, 0, 0), 1.0}, triangle));
+    EXPECT_TRUE(touches(BoxZone{Vec3(-1, -1, -1), Vec3(1, 1, 1)}, triangle));
+    EXPECT_TRUE(touches(BoxZone{Vec3(1, 0, 0), Vec3(1, 0, 0)}, triangle)); // A point.
+    EXPECT_FALSE(touches(BoxZone{Vec3(1, 0.5, 0), Vec3(1, 0.5, 0)}, triangle));
+}
+
+TEST(Zone, a_triangle_without_area_is_its_edges)
+{
+    const Triangle segment{Vec3(-2, 0, 0), Vec3(2, 0, 0), Vec3(1, 0, 0)};
+    EXPECT_TRUE(touches(BallZone{Vec3(0, 0.5, 0), 0.6}, segment));
+    EXPECT_FALSE(touches(BallZone{Vec3(0, 0.5, 0), 0.4}, segment));
+    EXPECT_TRUE(touches(BoxZone{Vec3(-0.1, -0.1, -0.1), Vec3(0.1, 0.1, 0.1)}, segment));
+    EXPECT_FALSE(touches(BoxZone{Vec3(-0.1, 0.1, -0.1), Vec3(0.1, 0.2, 0.1)}, segment));
+}
+
+TEST(Zone, moves_and_grows)
+{
+    const auto ball =
+        std::get<BallZone>(moved_and_grown(BallZone{Vec3(1, 2, 3), 0.5}, Vec3(1, 1, 1), 0.25));
+    EXPECT_EQ(ball.center_m, Vec3(0, 1, 2));
+    EXPECT_EQ(ball.radius_m, 0.75);
+    const auto box = std::get<BoxZone>(
+        moved_and_grown(BoxZone{Vec3(1, 2, 3), Vec3(2, 3, 4)}, Vec3(1, 1, 1), 0.25));
+    EXPECT_EQ(box.low_m, Vec3(-0.25, 0.75, 1.75));
+    EXPECT_EQ(box.high_m, Vec3(1.25, 2.25, 3.25));
+}
+
+} // namespace
+
+} // namespace tactus
