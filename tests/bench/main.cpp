@@ -30,11 +30,38 @@ struct CommandLine
     BenchOptions options;
 };
 
+std::vector<Suite> all_suites()
+{
+    return {frame_suite(), table1_suite()};
+}
+
+std::string suite_names()
+{
+    std::string names;
+    for (const Suite& suite : all_suites())
+    {
+        names += (names.empty() ? "" : ", ") + std::string(suite.name);
+    }
+    return names;
+}
+
+std::optional<Suite> find_suite(const std::string& name)
+{
+    for (const Suite& suite : all_suites())
+    {
+        if (suite.name == name)
+        {
+            return suite;
+        }
+    }
+    return std::nullopt;
+}
+
 void declare_options(CLI::App& app, CommandLine& line)
 {
     BenchOptions& options = line.options;
     app.set_version_flag("--version", std::string("tactus_bench ") + TACTUS_VERSION);
-    app.add_option("SUITE", line.suite, "Suite to run: frame")->required();
+    app.add_option("SUITE", line.suite, "Suite to run: " + suite_names())->required();
     app.add_flag(
         "--quick", options.quick,
         "Fewer frames and repeats; without the cases of 4 M faces unless --only names them");
@@ -58,11 +85,12 @@ void declare_options(CLI::App& app, CommandLine& line)
 /// Why the command line makes no sense; nothing when it does.
 std::optional<std::string> wrong_usage(const CommandLine& line)
 {
-    if (line.suite != "frame")
+    const std::optional<Suite> suite = find_suite(line.suite);
+    if (!suite)
     {
-        return "SUITE: there is no suite '" + line.suite + "'; there is: frame";
+        return "SUITE: there is no suite '" + line.suite + "'; there are: " + suite_names();
     }
-    const std::vector<std::string> names = frame_case_names();
+    const std::vector<std::string> names = suite->case_names();
     for (const std::string& name : line.options.only)
     {
         if (std::find(names.begin(), names.end(), name) == names.end())
@@ -109,12 +137,13 @@ int run(int argc, char** argv)
         return fail(app, *reason, kExitUsage);
     }
     const RunFacts facts{PinnedCore(line.options.core).core(), line.options.quick};
+    const Suite suite = *find_suite(line.suite);
     Rows rows;
-    if (const auto failure = run_frame_suite(line.options, rows))
+    if (const auto failure = suite.run(line.options, rows))
     {
         return fail(app, *failure, kExitCriterionNotMet);
     }
-    fmt::print("{}", line.all ? to_table(rows) : to_goal_table(rows));
+    fmt::print("{}", line.all ? to_table(rows) : suite.to_table(rows));
     fmt::print("{}\n", facts.core < 0 ? std::string("not held to one core: the system refuses")
                                       : fmt::format("measured on core {}", facts.core));
     if (!line.json_path.empty())

@@ -28,38 +28,6 @@ namespace
 
 constexpr std::uint32_t kBaseFaces = 500;
 
-struct NamedMesh
-{
-    std::string name;
-    TriangleMesh mesh;
-};
-
-/// The well-known mesh where it is at hand, a generated stand-in of its size elsewhere.
-Result<NamedMesh, SceneError> source_mesh(const SceneSource& source)
-{
-    const char* folder = std::getenv("TACTUS_MESHES");
-    if (source.mesh_file == nullptr || folder == nullptr)
-    {
-        return NamedMesh{fmt::format("bumpy-sphere-{}", source.stand_in_faces),
-                         make_shape(Shape::bumpy_sphere, source.stand_in_faces).value()};
-    }
-    auto mesh = read_mesh(std::filesystem::path(folder) / source.mesh_file);
-    if (!mesh)
-    {
-        return SceneError{"TACTUS_MESHES: " + mesh.error().text};
-    }
-    TriangleMesh fine = std::move(mesh).value();
-    for (std::uint32_t i = 0; i < source.subdivisions; ++i)
-    {
-        fine = subdivided(fine);
-    }
-    if (source.subdivisions > 0)
-    {
-        fine = with_normal_noise(fine, kNoiseShare, kSeed);
-    }
-    return NamedMesh{source.name, std::move(fine)};
-}
-
 test::TestModel described(const std::string& name, const PreparedMesh& prepared)
 {
     test::TestModel model;
@@ -116,6 +84,31 @@ std::optional<SceneError> encode(const test::TestModel& model, const PreparedMes
 }
 
 } // namespace
+
+Result<NamedMesh, SceneError> source_mesh(const SceneSource& source)
+{
+    const char* folder = std::getenv("TACTUS_MESHES");
+    if (source.mesh_file == nullptr || folder == nullptr)
+    {
+        return NamedMesh{fmt::format("bumpy-sphere-{}", source.stand_in_faces),
+                         make_shape(Shape::bumpy_sphere, source.stand_in_faces).value()};
+    }
+    auto mesh = read_mesh(std::filesystem::path(folder) / source.mesh_file);
+    if (!mesh)
+    {
+        return SceneError{"TACTUS_MESHES: " + mesh.error().text};
+    }
+    TriangleMesh fine = std::move(mesh).value();
+    for (std::uint32_t i = 0; i < source.subdivisions; ++i)
+    {
+        fine = subdivided(fine);
+    }
+    if (source.subdivisions > 0)
+    {
+        fine = with_normal_noise(fine, kNoiseShare, kSeed);
+    }
+    return NamedMesh{source.name, std::move(fine)};
+}
 
 SceneStore::SceneStore(std::filesystem::path cache)
     : folder_(std::move(cache)), is_temporary_(folder_.empty())

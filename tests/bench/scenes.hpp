@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "host_tools/mesh/triangle_mesh.hpp"
 #include "rt_core/base/result.hpp"
 #include "tests/bench/bench_options.hpp"
 #include "tests/bench/face_tree.hpp"
@@ -48,6 +49,16 @@ struct SceneError
 {
     std::string text;
 };
+
+struct NamedMesh
+{
+    std::string name;
+    TriangleMesh mesh;
+};
+
+/// The well-known mesh where it is at hand, a generated stand-in of about its size elsewhere, which
+/// its name says.
+[[nodiscard]] Result<NamedMesh, SceneError> source_mesh(const SceneSource& source);
 
 /// Makes scenes when they are first asked for and keeps them. Encoded models go into the cache
 /// folder, under a name made of the mesh and of the encoder's sources, or into a folder that goes

@@ -4,6 +4,7 @@
 /// The suite `frame`: the goals' table. What each case is, and its goals; how they are measured is
 /// in the cases' own files.
 
+#include "tests/bench/bench_report.hpp"
 #include "tests/bench/cases.hpp"
 #include "tests/bench/measuring.hpp"
 #include "tests/bench/random.hpp"
@@ -97,8 +98,6 @@ void add_clock(Rows& rows)
     rows.push_back(row);
 }
 
-} // namespace
-
 std::vector<std::string> frame_case_names()
 {
     std::vector<std::string> names;
@@ -126,6 +125,13 @@ std::optional<std::string> run_frame_suite(const BenchOptions& options, Rows& ro
         }
     }
     return std::nullopt;
+}
+
+} // namespace
+
+Suite frame_suite()
+{
+    return {"frame", frame_case_names, run_frame_suite, to_goal_table};
 }
 
 } // namespace tactus::bench

@@ -12,12 +12,20 @@
 namespace tactus::bench
 {
 
-/// The cases of the suite `frame`, in the order of its table; those that only run when named
-/// included.
-[[nodiscard]] std::vector<std::string> frame_case_names();
+/// A set of cases that make one table.
+struct Suite
+{
+    const char* name;
+    /// In the order of the table; those that only run when named included.
+    std::vector<std::string> (*case_names)();
+    /// Runs the chosen cases, each on one core, and adds their rows. Returns a line when a case
+    /// could not be run or gave wrong answers.
+    std::optional<std::string> (*run)(const BenchOptions& options, Rows& rows);
+    /// What is printed unless every row is asked for.
+    std::string (*to_table)(const Rows& rows);
+};
 
-/// Runs the chosen cases, each measured on one core, and adds their rows. Returns a line when a
-/// case could not be run or gave wrong answers.
-[[nodiscard]] std::optional<std::string> run_frame_suite(const BenchOptions& options, Rows& rows);
+[[nodiscard]] Suite frame_suite();
+[[nodiscard]] Suite table1_suite();
 
 } // namespace tactus::bench

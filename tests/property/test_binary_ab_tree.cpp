@@ -27,9 +27,8 @@ public:
         : rig_(model, {std::size_t{64} << 20U, std::size_t{16} << 20U, {}, {}, 4})
         , random_(random)
         , diagonal_m_(model.diagonal_m)
-        , binary_(faces_by_path(rig_), rig_.model().header.quantum_m())
+        , binary_(loaded_faces(), rig_.model().header.quantum_m())
     {
-        load_everything(rig_);
         adopt_changes();
     }
 
@@ -127,37 +126,12 @@ public:
 
 private:
     [[nodiscard]] Model& parts() { return rig_.model(); }
-    [[nodiscard]] ModelCounts counts() { return rig_.model().header.counts(); }
-
-    /// Every face of the finest mesh, read from the base and the records.
-    static std::vector<FaceId> faces_by_path(FrameRig& rig)
+    [[nodiscard]] std::vector<FaceId> loaded_faces()
     {
-        load_everything(rig);
-        Model& model = rig.model();
-        std::vector<std::pair<std::uint32_t, std::uint32_t>> keyed;
-        for (std::uint32_t i = 0; i < model.header.counts().base_faces; ++i)
-        {
-            keyed.emplace_back(model.slots.base.faces[i].bucket, i);
-        }
-        for (std::uint32_t i = 0; i < model.header.counts().records; ++i)
-        {
-            const VsplitRecord& record = model.pages.resident(RecordId{i});
-            for (std::uint32_t side = 0; side < 2; ++side)
-            {
-                if (record.has_face(side))
-                {
-                    keyed.emplace_back(record.bucket[side], record.star[side].value);
-                }
-            }
-        }
-        std::sort(keyed.begin(), keyed.end());
-        std::vector<FaceId> faces;
-        for (const auto& [bucket, face] : keyed)
-        {
-            faces.push_back(FaceId{face});
-        }
-        return faces;
+        load_everything(rig_);
+        return faces_by_path(rig_.model());
     }
+    [[nodiscard]] ModelCounts counts() { return rig_.model().header.counts(); }
 
     void compare(const Vec3& center, double reach_m)
     {

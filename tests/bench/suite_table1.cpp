@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+
+/// The suite `table1`: the models of the paper's Table 1, encoded by us, and how high the AB-Tree
+/// over each is when it is fully refined.
+
+#include "host_tools/encode/extract.hpp"
+#include "host_tools/shapes/shapes.hpp"
+#include "tests/bench/scenes.hpp"
+#include "tests/bench/static_model.hpp"
+#include "tests/bench/suites.hpp"
+#include "tests/shared/binary_ab_tree.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+namespace tactus::bench
+{
+
+namespace
+{
+
+constexpr SceneSource kCow{"cow", "cow.obj", 0, 5'804};
+constexpr std::uint32_t kSmallBunnyFaces = 37'576;
+
+struct Table1Case
+{
+    const char* name;
+    std::uint32_t base_faces;
+    Result<NamedMesh, SceneError> (*mesh)();
+};
+
+Result<NamedMesh, SceneError> sphere()
+{
+    return NamedMesh{"uv-sphere-4096", make_uv_sphere(33, 64).value()};
+}
+
+Result<NamedMesh, SceneError> cow()
+{
+    return source_mesh(kCow);
+}
+
+Result<NamedMesh, SceneError> bunny()
+{
+    return source_mesh(kBunny);
+}
+
+/// The finest mesh of so many faces that our own encoder makes of the public scan.
+Result<NamedMesh, SceneError> small_bunny()
+{
+    auto named = bunny();
+    if (!named)
+    {
+        return named.error();
+    }
+    const std::string name = fmt::format("{}-of-{}", kSmallBunnyFaces, named.value().name);
+    const test::TestModel& scan = test::test_model("for-" + name, named.value().mesh, 500);
+    const auto store = ModelStore::open(scan.path);
+    if (!store)
+    {
+        return SceneError{store.error().text};
+    }
+    std::vector<std::string> damage;
+    const DecodedModel decoded = DecodedModel::decode(store.value(), damage);
+    if (!damage.empty())
+    {
+        return SceneError{damage.front()};
+    }
+    return NamedMesh{name, extract(decoded, {kSmallBunnyFaces, {}, {}}).mesh};
+}
+
+constexpr std::array<Table1Case, 4> kCases{{{"sphere", 50, sphere},
+                                            {"cow", 704, cow},
+                                            {"bunny-37k", 500, small_bunny},
+                                            {"bunny-69k", 500, bunny}}};
+
+/// Edges from here down to the lowest block.
+std::uint32_t height_below(const AbTree& tree, TreeRef ref)
+{
+    if (ref.is_block())
+    {
+        return 0;
+    }
+    std::uint32_t highest = 0;
+    const AbNode& node = tree.node(ref.index());
+    for (std::uint32_t child = 0; child < kNodeChildren; ++child)
+    {
+        if (((node.mask >> child) & 1U) != 0)
+        {
+            highest = std::max(highest, height_below(tree, node.children[child]));
+        }
+    }
+    return highest + 1;
+}
+
+/// Edges from the root down to the lowest face of the paper's binary tree, which must be active
+/// from each face up to the root; nothing when it isn't.
+std::optional<std::uint32_t> binary_height(Model& model)
+{
+    const std::vector<FaceId> order = test::faces_by_path(model);
+    test::BinaryAbTree tree(order, model.header.quantum_m());
+    for (std::uint32_t i = 0; i < model.forest.capacity(); ++i)
+    {
+        const PrimId prim{i};
+        if (const FaceId face = model.forest.face(prim).id; !face.is_none())
+        {
+            tree.set({prim, face, 0, model.forest.error_of(prim), model.forest.corners_of(prim)});
+        }
+    }
+    tree.refit();
+    std::uint32_t highest = 0;
+    for (const FaceId face : order)
+    {
+        std::uint32_t depth = 0;
+        std::uint32_t node = tree.leaf_of(face);
+        for (; tree.parent(node) != test::BinaryAbTree::kNone; node = tree.parent(node))
+        {
+            if (tree.status(node) != test::BinaryAbTree::Status::active)
+            {
+                return std::nullopt;
+            }
+            ++depth;
+        }
+        highest = std::max(highest, depth);
+    }
+    return highest;
+}
+
+std::optional<std::string> run_case(const Table1Case& test_case, Rows& rows)
+{
+    const auto named = test_case.mesh();
+    if (!named)
+    {
+        return named.error().text;
+    }
+    const Scene scene{
+        test::test_model(named.value().name, named.value().mesh, test_case.base_faces), nullptr};
+    auto refined = StaticModel::make(scene);
+    if (!refined)
+    {
+        return refined.error().text;
+    }
+    Model& model = refined.value()->model();
+    const auto binary = binary_height(model);
+    if (!binary)
+    {
+        return scene.model.name + ": the binary tree has a face below an inactive node";
+    }
+    Row common;
+    common.suite = "table1";
+    common.test_case = test_case.name;
+    common.scene = scene.model.name;
+    CaseRows table(rows, common);
+    const HeaderFields& fields = model.header.fields();
+    table.add("faces", fields.source_faces, "");
+    table.add("vertices", fields.source_vertices, "");
+    table.add("records", fields.records, "");
+    table.add("base faces", fields.base_faces, "", test_case.base_faces);
+    table.add("base vertices", fields.base_vertices, "");
+    table.add("height, 8-wide",
+              height_below(refined.value()->tree(), refined.value()->tree().root()), "");
+    table.add("height, binary", *binary, "");
+    return std::nullopt;
+}
+
+std::vector<std::string> case_names()
+{
+    std::vector<std::string> names;
+    std::transform(kCases.begin(), kCases.end(), std::back_inserter(names),
+                   [](const Table1Case& one) { return one.name; });
+    return names;
+}
+
+std::optional<std::string> run_table1(const BenchOptions& options, Rows& rows)
+{
+    for (const Table1Case& one : kCases)
+    {
+        const std::vector<std::string>& only = options.only;
+        if (!only.empty() && std::find(only.begin(), only.end(), one.name) == only.end())
+        {
+            continue;
+        }
+        fmt::print(stderr, "{}\n", one.name);
+        if (const auto failure = run_case(one, rows))
+        {
+            return fmt::format("table1 {}: {}", one.name, *failure);
+        }
+    }
+    return std::nullopt;
+}
+
+/// A line for each case, a column for each metric, as Markdown.
+std::string to_columns(const Rows& rows)
+{
+    std::string heading = "| model |";
+    std::string rule = "| --- |";
+    std::string body;
+    for (std::size_t i = 0; i < rows.size(); ++i)
+    {
+        const bool begins = i == 0 || rows[i].test_case != rows[i - 1].test_case;
+        if (rows[i].test_case == rows.front().test_case)
+        {
+            heading += " " + rows[i].metric + " |";
+            rule += " --- |";
+        }
+        if (begins)
+        {
+            body += fmt::format("\n| {} ({}) |", rows[i].test_case, rows[i].scene);
+        }
+        body += fmt::format(" {:.0f} |", rows[i].value);
+    }
+    return heading + "\n" + rule + body + "\n";
+}
+
+} // namespace
+
+Suite table1_suite()
+{
+    return {"table1", case_names, run_table1, to_columns};
+}
+
+} // namespace tactus::bench
