@@ -25,10 +25,18 @@ for name in faces vertices records rounds base_faces chunks; do
     [[ -n $(figure $name <built.json) ]] || fail "no $name in spm_build's figures"
     [[ $(figure $name <built.json) == $(seen $name) ]] || fail "$name differs"
 done
-for name in seconds faces_per_second peak_bytes file_bytes bytes_per_face quantisation_diag \
-    e_max_diag regions; do
-    [[ -n $(figure $name <built.json) ]] || fail "no $name in spm_build's figures"
+keys=$(grep -o '"[a-z_]*":' built.json | tr -d '":' | sort | paste -sd ' ')
+[[ $keys == 'base_faces bytes_per_face chunks e_max_diag faces faces_per_second file_bytes'\
+' hausdorff_diag_sampled peak_bytes quantisation_diag records regions rounds seconds vertices' ]] \
+    || fail "the figures are: $keys"
+for name in $keys; do
+    [[ -n $(figure "$name" <built.json) ]] || fail "$name is no number"
 done
+# What was sampled can't be beyond what is certified; and the base mesh of a torus is not exact.
+awk -v sampled="$(figure hausdorff_diag_sampled <built.json)" \
+    -v bound="$(figure e_max_diag <built.json)" \
+    'BEGIN { exit !(0 < sampled && sampled <= bound && bound < 10 * sampled) }' \
+    || fail 'the sampled distance and the certified bound'
 [[ $(figure file_bytes <built.json) == $(stat -c %s torus.spm) ]] || fail 'file_bytes'
 # Through a file: grep -q would end the pipe, and so the program, too early.
 "$inspect" torus.spm --regions >text.txt
@@ -48,6 +56,42 @@ for wanted in 1 "$base" 1000 "$faces" 99999; do
     "$build" out.ply -o again.spm --json --base-faces 16384 >again.json 2>/dev/null
     [[ $(figure faces <again.json) == "$has" ]] || fail "out.ply does not have $has faces"
 done
+
+# extract NAME ARGUMENT...: the mesh NAME, said to have as many faces as can be read back.
+extract() {
+    "$inspect" torus.spm --extract "${@:2}" -o "$1" >/dev/null 2>said.txt
+    has=$(sed -n "s/^$1: \([0-9]*\) faces$/\1/p" said.txt)
+    "$build" "$1" -o again.spm --json --base-faces 16384 >again.json 2>/dev/null
+    [[ $(figure faces <again.json) == "$has" ]] || fail "$1 does not have $has faces"
+}
+# bound: the largest error bound of what was extracted last, in metres.
+bound() { sed -n 's/^error bound *\([^ ]*\) m at most$/\1/p' said.txt; }
+
+# The formats hold the same mesh; an error bound is kept; no error is the whole model.
+extract some.ply --error 5e-4
+some=$has
+((some > base && some < faces)) || fail "--error 5e-4 gave $some faces"
+awk -v bound="$(bound)" 'BEGIN { exit !(0 < bound && bound <= 5e-4) }' || fail "--error 5e-4: $(bound)"
+for suffix in obj stl OBJ; do
+    extract "some.$suffix" --error 5e-4
+    [[ $has == "$some" ]] || fail "some.$suffix has $has faces, some.ply $some"
+done
+extract all.stl --error 0
+[[ $has == "$faces" && $(bound) == 0 ]] || fail "--error 0 gave $has faces, bound $(bound)"
+
+# A region: fine inside, with the outside as it is asked for.
+extract ball.ply --region sphere:0.05,0,0,0.02
+ball=$has
+inside=$(sed -n 's/^region *\([0-9]*\) faces of the source$/\1/p' said.txt)
+((inside > 50 && inside < ball && ball < faces)) || fail "a ball: $inside inside, $ball faces"
+extract filled.ply --region sphere:0.05,0,0,0.02 --faces $((ball + 500))
+((has > ball + 498 && has <= ball + 500)) || fail "a ball and $((ball + 500)) faces: $has"
+extract few.ply --region sphere:0.05,0,0,0.02 --faces 1
+cmp ball.ply few.ply || fail 'a ball and too few faces'
+extract close.ply --region box:0,-1,-1,1,1,1 --error 5e-4
+((has > some && has < faces)) || fail "a box and an error: $has faces"
+extract beside.ply --region sphere:9,0,0,1
+((has == base)) || fail "a region beside the model: $has faces"
 
 # The same input gives the same file, whatever the threads; an old file is replaced.
 printf 'old' >one.spm
