@@ -263,7 +263,7 @@ int main(int argc, char** argv)
     }
     catch (const std::bad_alloc&)
     {
-        fmt::print(stderr, "spm_inspect: not enough memory; about 100 bytes a face are needed\n");
+        fmt::print(stderr, "spm_inspect: not enough memory; about 150 bytes a face are needed\n");
     }
     catch (const std::exception& error)
     {

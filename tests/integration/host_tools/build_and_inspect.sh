@@ -71,7 +71,8 @@ bound() { sed -n 's/^error bound *\([^ ]*\) m at most$/\1/p' said.txt; }
 extract some.ply --error 5e-4
 some=$has
 ((some > base && some < faces)) || fail "--error 5e-4 gave $some faces"
-awk -v bound="$(bound)" 'BEGIN { exit !(0 < bound && bound <= 5e-4) }' || fail "--error 5e-4: $(bound)"
+awk -v bound="$(bound)" 'BEGIN { exit !(0 < bound && bound <= 5e-4) }' \
+    || fail "--error 5e-4 gave a bound of $(bound)"
 for suffix in obj stl OBJ; do
     extract "some.$suffix" --error 5e-4
     [[ $has == "$some" ]] || fail "some.$suffix has $has faces, some.ply $some"

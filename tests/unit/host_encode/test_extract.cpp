@@ -6,7 +6,7 @@
 #include "host_tools/encode/extract.hpp"
 #include "host_tools/mesh/read_mesh.hpp"
 #include "tests/unit/host_encode/encoded_model.hpp"
-#include "tests/unit/host_simplify/distance_oracle.hpp"
+#include "tests/unit/host_encode/mesh_oracles.hpp"
 #include "tests/unit/rt_core/support.hpp"
 
 #include <gtest/gtest.h>
@@ -23,10 +23,7 @@ namespace tactus
 namespace
 {
 
-using test::LongPoint;
 using test::Random;
-using Point = std::array<double, 3>;
-using PlainFace = std::array<Point, 3>;
 
 std::unique_ptr<EncodedModel> encode(const std::string& name, const TriangleMesh& mesh)
 {
@@ -78,143 +75,6 @@ const std::vector<const EncodedModel*>& models()
     return all;
 }
 
-PlainFace turned(PlainFace face)
-{
-    std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
-    return face;
-}
-
-std::vector<PlainFace> faces_of(const TriangleMesh& mesh)
-{
-    std::vector<PlainFace> faces;
-    for (const auto& [a, b, c] : mesh.faces)
-    {
-        faces.push_back(turned({mesh.positions[a], mesh.positions[b], mesh.positions[c]}));
-    }
-    return faces;
-}
-
-/// The faces of the source on its grid, in the source's frame.
-std::vector<PlainFace> source_faces(const EncodedModel& model)
-{
-    TriangleMesh mesh;
-    mesh.faces = model.prepared.mesh.faces;
-    for (const auto& position : model.prepared.mesh.positions)
-    {
-        Point& p = mesh.positions.emplace_back(model.prepared.origin_m);
-        for (std::size_t axis = 0; axis < 3; ++axis)
-        {
-            p[axis] += position[axis] * model.prepared.quantum_m;
-        }
-    }
-    return faces_of(mesh);
-}
-
-/// The faces round a vertex as directed edges opposite to it; empty where they aren't one fan.
-bool is_one_fan(std::vector<std::pair<std::uint32_t, std::uint32_t>> opposite)
-{
-    // From a corner that no other face ends at, or from anywhere when the fan is closed.
-    const auto begins = std::find_if(
-        opposite.begin(), opposite.end(),
-        [&](const auto& edge)
-        {
-            return std::none_of(opposite.begin(), opposite.end(),
-                                [&](const auto& other) { return other.second == edge.first; });
-        });
-    auto here = begins == opposite.end() ? opposite.begin() : begins;
-    for (std::size_t left = opposite.size(); left > 1; --left)
-    {
-        const std::uint32_t corner = here->second;
-        opposite.erase(here);
-        here = std::find_if(opposite.begin(), opposite.end(),
-                            [&](const auto& edge) { return edge.first == corner; });
-        if (here == opposite.end())
-        {
-            return false;
-        }
-    }
-    return true;
-}
-
-/// Why the mesh isn't 2-manifold with borders; empty when it is.
-std::string manifold_fault(const TriangleMesh& mesh)
-{
-    std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
-    std::vector<std::vector<std::pair<std::uint32_t, std::uint32_t>>> opposite(
-        mesh.positions.size());
-    for (const auto& face : mesh.faces)
-    {
-        for (std::size_t i = 0; i < 3; ++i)
-        {
-            const std::uint32_t next = face[(i + 1) % 3];
-            if (face[i] == next || !edges.emplace(face[i], next).second)
-            {
-                return "edge " + std::to_string(face[i]) + " " + std::to_string(next);
-            }
-            opposite[face[i]].emplace_back(next, face[(i + 2) % 3]);
-        }
-    }
-    for (std::size_t vertex = 0; vertex < opposite.size(); ++vertex)
-    {
-        if (opposite[vertex].empty() || !is_one_fan(opposite[vertex]))
-        {
-            return "vertex " + std::to_string(vertex);
-        }
-    }
-    return {};
-}
-
-Point point_on(const PlainFace& face, double s, double t)
-{
-    Point p{};
-    for (std::size_t axis = 0; axis < 3; ++axis)
-    {
-        p[axis] = (1.0 - s - t) * face[0][axis] + s * face[1][axis] + t * face[2][axis];
-    }
-    return p;
-}
-
-LongPoint to_long(const Point& p)
-{
-    return {static_cast<long double>(p[0]), static_cast<long double>(p[1]),
-            static_cast<long double>(p[2])};
-}
-
-long double distance_to(const std::vector<PlainFace>& faces, const Point& point)
-{
-    long double least = std::numeric_limits<long double>::infinity();
-    for (const PlainFace& face : faces)
-    {
-        least = std::min(
-            least, test::oracle_distance(to_long(point),
-                                         {to_long(face[0]), to_long(face[1]), to_long(face[2])}));
-    }
-    return least;
-}
-
-/// The largest distance of points of the source, corners and others, to the mesh.
-long double sampled_distance(const EncodedModel& model, const TriangleMesh& mesh, int samples,
-                             Random& random)
-{
-    const std::vector<PlainFace> source = source_faces(model);
-    const std::vector<PlainFace> faces = faces_of(mesh);
-    long double largest = 0.0L;
-    for (int i = 0; i < samples; ++i)
-    {
-        const PlainFace& face = source[random.below(static_cast<std::uint32_t>(source.size()))];
-        const double s = random.between(0.0, 1.0);
-        const Point point =
-            random.one_in(2) ? face[0] : point_on(face, s, random.between(0.0, 1.0 - s));
-        largest = std::max(largest, distance_to(faces, point));
-    }
-    return largest;
-}
-
-Vec3 to_vec(const Point& p)
-{
-    return {p[0], p[1], p[2]};
-}
-
 /// Round a corner of the source, so that it never misses, from a few faces to a third of it.
 Zone random_zone(const EncodedModel& model, Random& random)
 {
@@ -228,34 +88,6 @@ Zone random_zone(const EncodedModel& model, Random& random)
     }
     return BoxZone{center - Vec3::Constant(size) + random.in_cube(0.5 * size),
                    center + Vec3::Constant(size) + random.in_cube(0.5 * size)};
-}
-
-bool holds(const Zone& zone, const Point& point)
-{
-    const Vec3 p = to_vec(point);
-    if (const auto* ball = std::get_if<BallZone>(&zone))
-    {
-        return (p - ball->center_m).norm() <= ball->radius_m;
-    }
-    const auto& box = std::get<BoxZone>(zone);
-    return (p.array() >= box.low_m.array()).all() && (p.array() <= box.high_m.array()).all();
-}
-
-/// Whether some point of a fine raster on the face lies in the zone.
-bool reaches_into(const Zone& zone, const PlainFace& face)
-{
-    constexpr int kSteps = 8;
-    for (int i = 0; i <= kSteps; ++i)
-    {
-        for (int k = 0; k <= kSteps - i; ++k)
-        {
-            if (holds(zone, point_on(face, i / double{kSteps}, k / double{kSteps})))
-            {
-                return true;
-            }
-        }
-    }
-    return false;
 }
 
 /// Every source face with a point in the zone is in the mesh, as often as in the source; returns

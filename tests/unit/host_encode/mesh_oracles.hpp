@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "host_tools/encode/zone.hpp"
+#include "host_tools/mesh/triangle_mesh.hpp"
+#include "tests/unit/host_encode/encoded_model.hpp"
+#include "tests/unit/rt_core/support.hpp"
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace tactus
+{
+
+using Point = std::array<double, 3>;
+/// A face as the positions of its corners, the least first: independent of ids.
+using PlainFace = std::array<Point, 3>;
+
+[[nodiscard]] inline Vec3 to_vec(const Point& p)
+{
+    return {p[0], p[1], p[2]};
+}
+
+[[nodiscard]] std::vector<PlainFace> faces_of(const TriangleMesh& mesh);
+
+/// The faces of the source on its grid, in the source's frame.
+[[nodiscard]] std::vector<PlainFace> source_faces(const EncodedModel& model);
+
+/// Why the mesh isn't 2-manifold with borders, or has a vertex that no face uses; empty when it is.
+[[nodiscard]] std::string manifold_fault(const TriangleMesh& mesh);
+
+/// The largest distance of points of the source, corners and others, to the mesh, by brute force.
+[[nodiscard]] long double sampled_distance(const EncodedModel& model, const TriangleMesh& mesh,
+                                           int samples, test::Random& random);
+
+/// Whether some point of a fine raster on the face lies in the zone.
+[[nodiscard]] bool reaches_into(const Zone& zone, const PlainFace& face);
+
+} // namespace tactus
