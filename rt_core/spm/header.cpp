@@ -137,6 +137,10 @@ Result<ModelHeader, SpmRefusal> ModelHeader::parse(std::span<const std::byte> by
         return SpmRefusal::value_out_of_range;
     }
     header.regions_ = reader.read_bytes((std::size_t{header.region_count()} + 7) / 8);
+    if (header.count_occupied() != fields.occupied_regions)
+    {
+        return SpmRefusal::value_out_of_range;
+    }
     static_cast<void>(reader.read_bytes(kRootHashBytes));
     if (reader.read<std::uint32_t>() != crc32c(bytes.first(bytes.size() - kChecksumBytes)))
     {
@@ -159,6 +163,16 @@ bool ModelHeader::index_boxes_are_in_order() const noexcept
         }
     }
     return true;
+}
+
+std::uint32_t ModelHeader::count_occupied() const noexcept
+{
+    std::uint32_t count = 0;
+    for (RegionId region{0}; region.value < region_count(); ++region.value)
+    {
+        count += is_occupied(region) ? 1U : 0U;
+    }
+    return count;
 }
 
 float ModelHeader::quantum_m() const noexcept

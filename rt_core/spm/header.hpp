@@ -125,6 +125,7 @@ public:
 
 private:
     [[nodiscard]] bool index_boxes_are_in_order() const noexcept;
+    [[nodiscard]] std::uint32_t count_occupied() const noexcept;
 
     HeaderFields fields_;
     std::span<const std::byte> index_;

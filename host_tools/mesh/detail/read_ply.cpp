@@ -200,9 +200,10 @@ private:
         }
         if (element.count > values_.remaining() / least)
         {
-            return MeshError{fmt::format("the header declares {} x '{}' of at least {} bytes each, "
+            return MeshError{fmt::format("the header declares {} x {} of at least {} bytes each, "
                                          "but only {} bytes are left",
-                                         element.count, element.name, least, values_.remaining())};
+                                         element.count, quote(element.name), least,
+                                         values_.remaining())};
         }
         if (element.name == "vertex")
         {
@@ -213,7 +214,7 @@ private:
             if (auto error = read_item(element, roles))
             {
                 return MeshError{fmt::format("{}{} {} of {} (from 0): {}", values_.where(),
-                                             element.name, item, element.count, *error)};
+                                             printable(element.name), item, element.count, *error)};
             }
         }
         return std::nullopt;
@@ -258,7 +259,7 @@ private:
         const auto count = values_.read(*property.count_type);
         if (!count || !(*count >= 0.0) || *count != std::floor(*count))
         {
-            return count ? fmt::format("list '{}' has the length {}", property.name, *count)
+            return count ? fmt::format("list {} has the length {}", quote(property.name), *count)
                          : cut_at(property);
         }
         corners_.clear();
@@ -326,7 +327,7 @@ private:
 
     static std::string cut_at(const PlyProperty& property)
     {
-        return fmt::format("the file ends or is no number at '{}'", property.name);
+        return "the file ends or is no number at " + quote(property.name);
     }
 
     const PlyHeader& header_;

@@ -99,15 +99,20 @@ std::optional<std::int64_t> parse_integer(std::string_view token)
     return value;
 }
 
-std::string quote(std::string_view token)
+std::string printable(std::string_view token)
 {
     constexpr std::size_t kLongest = 24;
-    std::string text = "'";
+    std::string text;
     for (const char c : token.substr(0, kLongest))
     {
         text += c >= ' ' && c <= '~' ? c : '?';
     }
-    return text + (token.size() > kLongest ? "...'" : "'");
+    return text + (token.size() > kLongest ? "..." : "");
+}
+
+std::string quote(std::string_view token)
+{
+    return "'" + printable(token) + "'";
 }
 
 } // namespace tactus::detail

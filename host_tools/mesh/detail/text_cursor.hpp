@@ -48,7 +48,10 @@ private:
 [[nodiscard]] std::optional<double> parse_number(std::string_view token);
 [[nodiscard]] std::optional<std::int64_t> parse_integer(std::string_view token);
 
-/// The token as it can stand in a message: quoted, short, printable.
+/// The token as it can stand in a message, whatever bytes it holds: short, '?' for what a terminal
+/// would not print or would obey.
+[[nodiscard]] std::string printable(std::string_view token);
+/// The same in quotes.
 [[nodiscard]] std::string quote(std::string_view token);
 
 } // namespace tactus::detail

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <sys/stat.h>
 
@@ -238,6 +239,21 @@ TEST(ReadMesh, refuses_counts_that_the_file_is_too_small_for)
     std::string stl = as_binary_stl(tetrahedron(), "any");
     stl[83] = '\x7F';
     EXPECT_TRUE(contains(refusal(read_bytes("a.stl", stl)), "declares"));
+}
+
+TEST(ReadMesh, shows_no_byte_of_the_file_that_a_terminal_would_obey)
+{
+    const std::string start = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\n"
+                              "property float y\nproperty float z\nproperty float \x1b[2J\n"
+                              "element fa\x07\x1b]0;ce 1\nproperty list int int \xff\n"
+                              "end_header\n";
+    for (const std::string body : {"", "0 0 0 0\n", "0 0 0 no\n1 0\n", "0 0 0 0\n-1 0\n",
+                                   "0 0 0 0\n1 no\n", "0 0 0 0\n9 0\n"})
+    {
+        const std::string text = refusal(read_bytes("a.ply", start + body));
+        EXPECT_FALSE(text.empty()) << body;
+        EXPECT_TRUE(std::ranges::all_of(text, [](char c) { return c >= ' ' && c <= '~'; })) << body;
+    }
 }
 
 TEST(ReadMesh, refuses_data_behind_the_declared_end)

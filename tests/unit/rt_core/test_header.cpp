@@ -149,6 +149,7 @@ TEST(ModelHeader, values_out_of_range_are_refused)
         [](HeaderFields& f) { f.region_cell_quanta = 1'025; },
         [](HeaderFields& f) { f.occupied_regions = 0; },
         [](HeaderFields& f) { f.occupied_regions = 7; },
+        [](HeaderFields& f) { f.occupied_regions ^= 1U; }, // Not what the bits say.
     };
     for (std::size_t i = 0; i < changes.size(); ++i)
     {

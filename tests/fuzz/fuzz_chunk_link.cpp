@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+/// An input is a script: which model; edits of its chunks; then steps that bring and take away
+/// chunks in any order. Bytes past the end are 0.
+///
+///     model     1 byte: its lowest bit chooses the Lump
+///     edits     1 byte: how many, modulo 8
+///     edit      chunk, kind, two bytes of a place, value
+///     step      1 byte: kind modulo 4 (bring, bring, take away, take updates), chunk or count
+///
+/// Edited bytes get a new checksum, or they would not be parsed at all.
+#include "rt_core/spm/chunk_coding.hpp"
+#include "tests/fuzz/coded_model.hpp"
+#include "tests/fuzz/law.hpp"
+#include "tests/fuzz/link_desk.hpp"
+#include "tests/fuzz/model_laws.hpp"
+#include "tests/fuzz/seal_model.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <map>
+#include <optional>
+#include <vector>
+
+namespace tactus::fuzz
+{
+
+namespace
+{
+
+constexpr std::uint32_t kUpdatesInAll = 0xFFFF'FFFFU;
+
+class Script
+{
+public:
+    explicit Script(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
+
+    [[nodiscard]] bool at_end() const { return at_ == bytes_.size(); }
+    std::uint32_t byte() { return at_end() ? 0 : bytes_[at_++]; }
+    std::uint32_t two_bytes()
+    {
+        const std::uint32_t low = byte();
+        return low + 256 * byte();
+    }
+
+private:
+    std::span<const std::uint8_t> bytes_;
+    std::size_t at_{0};
+};
+
+struct Edit
+{
+    enum Kind : std::uint32_t
+    {
+        set_byte,
+        flip_bit,
+        cut,
+        insert_byte,
+        set_depth,
+        set_state,
+        set_face,
+        set_error,
+        kinds
+    };
+
+    std::uint32_t chunk{0};
+    Kind kind{set_byte};
+    std::uint32_t place{0};
+    std::uint32_t value{0};
+};
+
+Edit read_edit(Script& script, std::uint32_t chunks)
+{
+    Edit edit;
+    edit.chunk = script.byte() % chunks;
+    edit.kind = static_cast<Edit::Kind>(script.byte() % Edit::kinds);
+    edit.place = script.two_bytes();
+    edit.value = script.byte();
+    return edit;
+}
+
+void edit_bytes(const Edit& edit, std::vector<std::byte>& bytes)
+{
+    const auto at = bytes.begin() + static_cast<std::ptrdiff_t>(edit.place % bytes.size());
+    switch (edit.kind)
+    {
+    case Edit::set_byte:
+        *at = static_cast<std::byte>(edit.value);
+        break;
+    case Edit::flip_bit:
+        *at ^= static_cast<std::byte>(1U << (edit.value % 8));
+        break;
+    case Edit::cut:
+        bytes.erase(at + 1, bytes.end()); // One byte stays, for the edits that follow.
+        break;
+    case Edit::insert_byte:
+        bytes.insert(at, static_cast<std::byte>(edit.value));
+        break;
+    default:
+        break;
+    }
+}
+
+/// Changes one record of a parsed page, as another chunk could say it: that reaches states which
+/// random bytes of a chunk hardly ever spell.
+void edit_record(const Edit& edit, const ModelCounts& counts, VsplitRecord& record)
+{
+    const std::uint32_t place = edit.value % 8;
+    const std::uint32_t fan = place % record.fan_size;
+    switch (edit.kind)
+    {
+    case Edit::set_depth:
+        record.depth = static_cast<std::uint16_t>(edit.value);
+        break;
+    case Edit::set_state:
+        record.before[fan] =
+            FaceState::after({(edit.place + edit.value) % counts.records}, edit.value >> 5U);
+        break;
+    case Edit::set_face:
+        record.star[2 + fan] = {(edit.place * 8 + edit.value) % counts.face_ids()};
+        break;
+    case Edit::set_error:
+        record.error[place] = static_cast<std::uint8_t>(edit.value >> 3U);
+        record.next[place] = record.error[place] == 0 ? kNextExact : kNextPending;
+        break;
+    default:
+        break;
+    }
+}
+
+/// The chunks that this input serves; each is the same whenever it is asked for.
+class ServedChunks
+{
+public:
+    ServedChunks(const CodedModel& model, std::vector<Edit> edits)
+        : model_(model), edits_(std::move(edits))
+    {
+    }
+
+    /// Null for a chunk that is refused.
+    const Page* page(ChunkId chunk)
+    {
+        const auto [at, is_new] = pages_.try_emplace(chunk.value);
+        if (is_new)
+        {
+            at->second = parse(chunk);
+        }
+        return at->second ? &*at->second : nullptr;
+    }
+    [[nodiscard]] bool are_sound() const { return edits_.empty(); }
+
+private:
+    std::optional<Page> parse(ChunkId chunk) const
+    {
+        std::vector<std::byte> bytes = model_.chunks[chunk.value];
+        for (const Edit& edit : edits_)
+        {
+            if (edit.chunk == chunk.value)
+            {
+                edit_bytes(edit, bytes);
+            }
+        }
+        bytes.shrink_to_fit(); // So that a read beyond the end is seen.
+        seal_piece(bytes);
+        std::optional<Page> page(std::in_place);
+        Page other;
+        std::memset(static_cast<void*>(&other), 0xA5, sizeof(other));
+        const auto parsed = parse_chunk(bytes, model_.header, chunk, *page);
+        require(parse_chunk(bytes, model_.header, chunk, other).has_value() == parsed.has_value(),
+                "a chunk is accepted or refused whatever the page held before");
+        require(parsed || !are_sound(), "the model's own chunks are accepted");
+        if (!parsed)
+        {
+            return std::nullopt;
+        }
+        require(std::memcmp(&other, &*page, sizeof(other)) == 0,
+                "a parsed page holds nothing of what was there before");
+        require(is_lawful_page(model_.header, chunk, *page), "an accepted chunk is in its ranges");
+        edit_records(chunk, *page);
+        return page;
+    }
+
+    void edit_records(ChunkId chunk, Page& page) const
+    {
+        const std::uint32_t records = records_in_chunk(model_.header.counts(), chunk);
+        for (const Edit& edit : edits_)
+        {
+            if (edit.chunk != chunk.value)
+            {
+                continue;
+            }
+            VsplitRecord& record = page.records[edit.place % records];
+            const VsplitRecord before = record;
+            edit_record(edit, model_.header.counts(), record);
+            if (!is_lawful_page(model_.header, chunk, page))
+            {
+                record = before; // No parser gives that to the linker.
+            }
+        }
+    }
+
+    const CodedModel& model_;
+    std::vector<Edit> edits_;
+    std::map<std::uint32_t, std::optional<Page>> pages_;
+};
+
+void bring(LinkDesk& desk, ServedChunks& served, ChunkId chunk)
+{
+    if (const Page* page = served.page(chunk))
+    {
+        desk.bring(chunk, *page);
+    }
+}
+
+void take_step(std::uint32_t step, LinkDesk& desk, ServedChunks& served)
+{
+    const std::uint32_t operand = step / 4;
+    const ChunkId chunk{operand % desk.chunks()};
+    switch (step % 4)
+    {
+    case 2:
+        desk.take_away(chunk);
+        break;
+    case 3:
+        desk.take_updates(1 + operand);
+        break;
+    default:
+        bring(desk, served, chunk);
+        break;
+    }
+}
+
+void run(Script script)
+{
+    const CodedModel& model = coded_model(static_cast<Lump>(script.byte() % 2));
+    LinkDesk desk(model);
+    std::vector<Edit> edits(script.byte() % 8);
+    for (Edit& edit : edits)
+    {
+        edit = read_edit(script, desk.chunks());
+    }
+    ServedChunks served(model, std::move(edits));
+    while (!script.at_end())
+    {
+        take_step(script.byte(), desk, served);
+    }
+    for (ChunkId chunk{0}; chunk.value < desk.chunks(); ++chunk.value)
+    {
+        bring(desk, served, chunk);
+    }
+    desk.take_updates(kUpdatesInAll);
+    desk.check_told();
+    if (served.are_sound())
+    {
+        require(desk.records_linked_now() == model.header.counts().records &&
+                    desk.records_refused() == 0,
+                "a sound model is linked whole, whatever the order of its chunks");
+    }
+}
+
+} // namespace
+
+} // namespace tactus::fuzz
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
+{
+    constexpr std::size_t longest = 256; // Steps repeat; a longer script tells nothing new.
+    tactus::fuzz::run(tactus::fuzz::Script({data, std::min(size, longest)}));
+    return 0;
+}

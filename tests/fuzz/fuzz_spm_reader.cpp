@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+/// An input is a model's file. It is read twice: as it is, and sealed (seal_model.hpp), so that
+/// what the hashes would have refused meets every later check.
+#include "host_tools/encode/decoded_model.hpp"
+#include "host_tools/encode/replay.hpp"
+#include "tests/fuzz/law.hpp"
+#include "tests/fuzz/model_laws.hpp"
+#include "tests/fuzz/scratch_file.hpp"
+#include "tests/fuzz/seal_model.hpp"
+#include "transport/store/model_store.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <string>
+#include <vector>
+
+namespace tactus::fuzz
+{
+
+namespace
+{
+
+using Bytes = std::vector<std::byte>;
+
+/// Memory of its own, so that a read beyond the part is seen; short where the file ends.
+Bytes copy_part(std::span<const std::byte> file, std::uint64_t offset, std::uint64_t bytes)
+{
+    const std::uint64_t start = std::min<std::uint64_t>(offset, file.size());
+    const auto part = file.subspan(start, std::min<std::uint64_t>(bytes, file.size() - start));
+    return {part.begin(), part.end()};
+}
+
+void parse_base(std::span<const std::byte> file, const ModelHeader& header)
+{
+    const HeaderFields& fields = header.fields();
+    std::vector<Vec3f> positions_m(fields.base_vertices);
+    std::vector<BaseFace> faces(fields.base_faces);
+    std::vector<std::uint32_t> next(fields.base_faces);
+    const BaseMesh mesh{positions_m, faces, next};
+    if (parse_base_mesh(copy_part(file, fields.base_offset, fields.base_bytes), header, mesh))
+    {
+        require(is_lawful_base(header, mesh), "an accepted base mesh is in its ranges");
+    }
+}
+
+/// Past the first page that the file doesn't hold there is nothing more to find.
+void parse_index(std::span<const std::byte> file, const ModelHeader& header)
+{
+    const ModelCounts counts = header.counts();
+    for (IndexPageId id{0}; id.value < counts.index_pages(); ++id.value)
+    {
+        const std::size_t bytes = coded_index_page_bytes(chunks_in_index_page(counts, id));
+        IndexPage page;
+        std::vector<ChunkEntry> entries(kChunksPerIndexPage);
+        const std::uint64_t offset = header.fields().index_offset + std::uint64_t{id.value} * 1'928;
+        if (!parse_index_page(copy_part(file, offset, bytes), counts, id, page, entries))
+        {
+            return;
+        }
+        require(is_lawful_index_page(counts, id, page, entries),
+                "an accepted index page is in its ranges");
+        const QuantumBox box = header.index_entry(id).box;
+        static_cast<void>(chunks_meeting(page, box, {{0.0, 0.0, 0.0}, 1e300}));
+    }
+}
+
+void parse_parts(std::span<const std::byte> file)
+{
+    HeaderFields fields;
+    if (file.size() >= sizeof(fields))
+    {
+        std::memcpy(&fields, file.data(), sizeof(fields));
+    }
+    const Bytes bytes = copy_part(file, 0, fields.header_bytes);
+    const auto header = ModelHeader::parse(bytes);
+    if (!header)
+    {
+        return;
+    }
+    require(is_lawful_header(header.value(), bytes), "an accepted header is in its ranges");
+    for (const double place : {-1e300, 0.0, 1e-9, 1e300})
+    {
+        const RegionId region = header.value().region_at({place, -place, 0.5 * place});
+        require(region.value < header.value().region_count(), "a point's region exists");
+    }
+    parse_base(file, header.value());
+    parse_index(file, header.value());
+}
+
+/// Links and splits what a sound file can hold at worst; refusals are as good as splits.
+void play(DecodedModel& model)
+{
+    for (ChunkId chunk{0}; chunk.value < model.header().counts().chunks(); ++chunk.value)
+    {
+        require(is_lawful_page(model.header(), chunk, model.page(chunk)),
+                "an accepted chunk is in its ranges");
+    }
+    Replay replay(model);
+    for (const RecordId record : in_dependency_order(model))
+    {
+        const std::uint32_t faces = replay.face_count();
+        const auto refusal = replay.split(record);
+        require(refusal.has_value() == (faces == replay.face_count()),
+                "a split adds faces and a refused one changes nothing");
+    }
+    require(replay.mesh().faces.size() == replay.face_count(), "the replayed mesh has its faces");
+    const std::uint64_t records = model.header().counts().records;
+    require(model.link_all() <= records, "no more records are linked than there are");
+}
+
+void require_message(const std::string& text, const std::filesystem::path& path)
+{
+    require(is_clear_refusal(text, path.string()),
+            "a refusal is one clear line that begins with the file's name");
+}
+
+void open_file(std::span<const std::byte> file)
+{
+    static ScratchFile scratch("model.spm");
+    scratch.replace(file);
+    const auto store = ModelStore::open(scratch.path());
+    if (!store)
+    {
+        require_message(store.error().text, scratch.path());
+        return;
+    }
+    require(is_lawful_header(store.value().header(), store.value().header_bytes()),
+            "an opened model's header is in its ranges");
+    std::vector<std::string> damage;
+    DecodedModel model = DecodedModel::decode(store.value(), damage);
+    for (const std::string& line : damage)
+    {
+        require_message(line, scratch.path());
+    }
+    if (damage.empty())
+    {
+        play(model);
+    }
+}
+
+void read_whole(std::span<const std::byte> file)
+{
+    parse_parts(file);
+    open_file(file);
+}
+
+} // namespace
+
+} // namespace tactus::fuzz
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
+{
+    const auto input = std::as_bytes(std::span(data, size));
+    std::vector<std::byte> file(input.begin(), input.end());
+    tactus::fuzz::read_whole(file);
+    tactus::fuzz::seal_model(file);
+    tactus::fuzz::read_whole(file);
+    return 0;
+}

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <string_view>
+
+/// What libFuzzer calls with each input; the plain build calls it from run_corpus.cpp.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
+
+namespace tactus::fuzz
+{
+
+/// Ends the program when a law that every input must leave standing is broken. `law` says what
+/// holds otherwise.
+inline void require(bool holds, const char* law)
+{
+    if (!holds)
+    {
+        std::fprintf(stderr, "broken law: %s\n", law);
+        std::abort();
+    }
+}
+
+/// Whether a message is one line that a terminal can show, whatever bytes it quotes.
+[[nodiscard]] inline bool is_one_clear_line(std::string_view text)
+{
+    for (const char c : text)
+    {
+        if (c < ' ' || c > '~')
+        {
+            return false;
+        }
+    }
+    return !text.empty();
+}
+
+/// Whether a refusal of a file begins with its name and goes on in one clear line.
+[[nodiscard]] inline bool is_clear_refusal(std::string_view text, std::string_view file)
+{
+    return text.starts_with(file) && is_one_clear_line(text.substr(file.size()));
+}
+
+} // namespace tactus::fuzz

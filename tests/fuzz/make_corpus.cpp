@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+/// make_corpus FOLDER: writes the seeds of every fuzz target anew, from generated shapes and with
+/// this build's writers. The same build gives the same bytes.
+#include "host_tools/mesh/write_mesh.hpp"
+#include "host_tools/shapes/shapes.hpp"
+#include "tests/fuzz/law.hpp"
+#include "tests/shared/test_model.hpp"
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <initializer_list>
+#include <string>
+
+namespace tactus::fuzz
+{
+
+namespace
+{
+
+namespace fs = std::filesystem;
+
+void write(const fs::path& path, const std::string& content)
+{
+    fs::create_directories(path.parent_path());
+    std::ofstream file(path, std::ios::binary | std::ios::trunc);
+    file << content;
+    require(file.good(), "the seed can be written");
+}
+
+TriangleMesh shape(Shape kind, std::uint32_t faces)
+{
+    return make_shape(kind, faces).value();
+}
+
+/// Models of one chunk, of two with a border, and without records. No extension: what ends in .spm
+/// is a product and not kept.
+void write_models(const fs::path& folder)
+{
+    fs::create_directories(folder);
+    const auto add = [&](const char* name, const TriangleMesh& mesh, std::uint32_t base_faces)
+    {
+        fs::copy_file(test::test_model(name, mesh, base_faces).path, folder / name,
+                      fs::copy_options::overwrite_existing);
+    };
+    add("one_chunk", shape(Shape::sphere, 100), 16);
+    add("two_chunks", shape(Shape::terrain, 200), 24);
+    add("no_records", make_thin_plate(2, 0.01).value(), 500);
+}
+
+/// Scripts of fuzz_chunk_link.cpp.
+class ScriptWriter
+{
+public:
+    explicit ScriptWriter(std::uint32_t lump) { byte(lump); }
+
+    ScriptWriter& edits(std::uint32_t count) { return byte(count); }
+    ScriptWriter& edit(std::uint32_t chunk, std::uint32_t kind, std::uint32_t place,
+                       std::uint32_t value)
+    {
+        return byte(chunk).byte(kind).byte(place & 255U).byte(place >> 8U).byte(value);
+    }
+    ScriptWriter& bring(std::initializer_list<std::uint32_t> chunks) { return steps(0, chunks); }
+    ScriptWriter& take_away(std::initializer_list<std::uint32_t> chunks)
+    {
+        return steps(2, chunks);
+    }
+    ScriptWriter& take_updates(std::uint32_t count) { return steps(3, {count}); }
+    [[nodiscard]] const std::string& text() const { return text_; }
+
+private:
+    ScriptWriter& byte(std::uint32_t value)
+    {
+        text_ += static_cast<char>(value);
+        return *this;
+    }
+    ScriptWriter& steps(std::uint32_t kind, std::initializer_list<std::uint32_t> operands)
+    {
+        for (const std::uint32_t operand : operands)
+        {
+            byte(4 * operand + kind);
+        }
+        return *this;
+    }
+
+    std::string text_;
+};
+
+void write_scripts(const fs::path& folder)
+{
+    write(folder / "in_order",
+          ScriptWriter(0).edits(0).bring({0, 1, 2, 3, 4, 5}).take_updates(9).text());
+    write(folder / "backwards",
+          ScriptWriter(1).edits(0).bring({5, 4, 3, 2, 1}).take_updates(2).bring({0}).text());
+    write(folder / "come_and_go", ScriptWriter(0)
+                                      .edits(0)
+                                      .bring({0, 1, 2})
+                                      .take_away({0})
+                                      .bring({4, 3})
+                                      .take_updates(3)
+                                      .take_away({2, 1})
+                                      .bring({0, 2, 1})
+                                      .take_away({4})
+                                      .text());
+    // The kinds are those of Edit in fuzz_chunk_link.cpp: four of bytes, four of parsed records.
+    write(folder / "changed_bytes", ScriptWriter(0)
+                                        .edits(4)
+                                        .edit(1, 0, 40, 7)
+                                        .edit(2, 1, 300, 3)
+                                        .edit(3, 2, 100, 0)
+                                        .edit(4, 3, 9, 1)
+                                        .bring({0, 1, 2, 3, 4})
+                                        .text());
+    write(folder / "changed_records", ScriptWriter(1)
+                                          .edits(5)
+                                          .edit(1, 4, 3, 2)
+                                          .edit(1, 5, 20, 70)
+                                          .edit(2, 5, 64, 34)
+                                          .edit(0, 6, 12, 1)
+                                          .edit(0, 7, 30, 2)
+                                          .bring({3, 1, 0})
+                                          .take_away({0})
+                                          .bring({2, 0})
+                                          .take_away({1, 2})
+                                          .bring({2, 1})
+                                          .text());
+}
+
+/// One line for each vertex and face; `first` is the number of the first vertex.
+std::string text_of(const TriangleMesh& mesh, const char* vertex, const char* face,
+                    std::uint32_t first)
+{
+    std::string text;
+    for (const auto& [x, y, z] : mesh.positions)
+    {
+        text += fmt::format("{}{:.4} {:.4} {:.4}\n", vertex, x, y, z);
+    }
+    for (const auto& [a, b, c] : mesh.faces)
+    {
+        text += fmt::format("{}{} {} {}\n", face, a + first, b + first, c + first);
+    }
+    return text;
+}
+
+std::string bytes_of(float value, bool big_endian)
+{
+    auto bits = std::bit_cast<std::uint32_t>(value);
+    bits = big_endian ? __builtin_bswap32(bits) : bits;
+    std::string bytes(sizeof(bits), '\0');
+    std::memcpy(bytes.data(), &bits, sizeof(bits));
+    return bytes;
+}
+
+void write_plys(const fs::path& folder, const TriangleMesh& mesh)
+{
+    fs::create_directories(folder);
+    require(write_mesh(folder / "little_endian.ply", mesh).has_value(), "a PLY can be written");
+    write(folder / "text.ply",
+          fmt::format("ply\nformat ascii 1.0\ncomment a comment\nelement vertex {}\n"
+                      "property double x\nproperty double y\nproperty double z\n"
+                      "element face {}\nproperty list uchar int vertex_indices\nend_header\n{}",
+                      mesh.positions.size(), mesh.faces.size(), text_of(mesh, "", "3 ", 0)));
+    std::string strip = "ply\nformat binary_big_endian 1.0\nelement vertex 4\nproperty float x\n"
+                        "property float y\nproperty float z\nproperty uchar red\n"
+                        "element extra 2\nproperty list ushort short numbers\n"
+                        "element tristrips 1\nproperty list uchar char vertex_indices\n"
+                        "end_header\n";
+    for (std::uint32_t corner = 0; corner < 4; ++corner)
+    {
+        strip += bytes_of(static_cast<float>(corner % 2), true) +
+                 bytes_of(static_cast<float>(corner / 2), true) + bytes_of(0.5F, true) + '\x7F';
+    }
+    strip += std::string("\0\0\0\1\0\7", 6) + std::string("\6\0\1\2\3\xFF\0", 7);
+    write(folder / "big_endian_strip.ply", strip);
+}
+
+void write_objs(const fs::path& folder, const TriangleMesh& mesh)
+{
+    write(folder / "shape.obj", "# a shape\no shape\n" + text_of(mesh, "v ", "f ", 1));
+    write(folder / "polygons.obj",
+          "v 0 0 0\nv 1 0 0 1.0\nv 1 1 0\nv 0 1 +1e-3\nvn 0 0 1\nvt 0 0\ng a\nusemtl b\n"
+          "f 1/1/1 2//1 3/1 \\\n 4\nf -4 -3 -1 # a comment\np 1\nl 1 2\n");
+}
+
+void write_stls(const fs::path& folder, const TriangleMesh& mesh)
+{
+    std::string text = "solid shape\n";
+    std::string binary(80, ' ');
+    const auto count = static_cast<std::uint32_t>(mesh.faces.size());
+    binary += bytes_of(std::bit_cast<float>(count), false);
+    for (const auto& face : mesh.faces)
+    {
+        text += "facet normal 0 0 0\nouter loop\n";
+        binary += std::string(12, '\0');
+        for (const std::uint32_t corner : face)
+        {
+            const auto& [x, y, z] = mesh.positions[corner];
+            text += fmt::format("vertex {:.4} {:.4} {:.4}\n", x, y, z);
+            for (const double c : {x, y, z})
+            {
+                binary += bytes_of(static_cast<float>(c), false);
+            }
+        }
+        text += "endloop\nendfacet\n";
+        binary += std::string(2, '\0');
+    }
+    write(folder / "text.stl", text + "endsolid shape\n");
+    write(folder / "binary.stl", binary);
+}
+
+void write_offs(const fs::path& folder, const TriangleMesh& mesh)
+{
+    write(folder / "shape.off", fmt::format("OFF\n# a shape\n{} {} 0\n{}", mesh.positions.size(),
+                                            mesh.faces.size(), text_of(mesh, "", "3 ", 0)));
+    write(folder / "colours.off", "COFF 4 2 0\n0 0 0 255 0 0 255\n1 0 0 1 1 1 1\n1 1 0 # bare\n"
+                                  "0 1 1e-3 0 0 0 0\n4 0 1 2 3 0.5 0.5 0.5\n3 0 2 3\n");
+}
+
+} // namespace
+
+} // namespace tactus::fuzz
+
+int main(int argc, char** argv)
+{
+    if (argc != 2)
+    {
+        std::fputs("usage: make_corpus FOLDER\n", stderr);
+        return 3;
+    }
+    using namespace tactus;
+    const std::filesystem::path folder = argv[1];
+    const TriangleMesh lump = make_uv_sphere(3, 4).value();
+    fuzz::write_models(folder / "spm_reader");
+    fuzz::write_scripts(folder / "chunk_link");
+    fuzz::write_plys(folder / "read_ply", lump);
+    fuzz::write_objs(folder / "read_obj", lump);
+    fuzz::write_stls(folder / "read_stl", lump);
+    fuzz::write_offs(folder / "read_off", lump);
+    return 0;
+}
