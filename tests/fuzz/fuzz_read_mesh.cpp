@@ -89,6 +89,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                       "a refusal is one clear line that begins with the file's name");
         return 0;
     }
+    ++fuzz::accepted_inputs;
     fuzz::check_read(file.value());
     fuzz::prepare(file.value().mesh, {.position_bits = 16});
     fuzz::prepare(file.value().mesh, {.fit_diagonal_m = 1.0, .position_bits = 24});

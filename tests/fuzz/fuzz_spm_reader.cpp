@@ -135,6 +135,7 @@ void open_file(std::span<const std::byte> file)
     }
     if (damage.empty())
     {
+        ++accepted_inputs;
         play(model);
     }
 }

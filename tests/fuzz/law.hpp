@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -12,6 +13,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 
 namespace tactus::fuzz
 {
+
+/// Counts the inputs that were accepted, by each target for itself: seeds that are all refused lead
+/// nowhere, and the fixed run tells.
+// NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): one target per program.
+inline std::size_t accepted_inputs = 0;
 
 /// Ends the program when a law that every input must leave standing is broken. `law` says what
 /// holds otherwise.

@@ -3,7 +3,7 @@
 /// run_corpus MOST PATH...: the fixed part of fuzzing, for builds without libFuzzer. Runs each file
 /// of the folders (or a file by itself) as it is, cut at every byte, with every single bit flipped,
 /// and with a byte more; at most MOST of these for each file, evenly chosen. No chance is involved.
-/// Prints which input it was when one ends the program.
+/// Prints which input it was when one ends the program. Exit 1 when no file is accepted as it is.
 #include "rt_core/base/assert.hpp"
 #include "tests/fuzz/law.hpp"
 
@@ -149,7 +149,14 @@ std::vector<std::filesystem::path> files_in(const std::filesystem::path& path)
     return files;
 }
 
-std::size_t run_file(const std::filesystem::path& path, std::size_t most)
+struct Tally
+{
+    std::size_t files{0};
+    std::size_t inputs{0};
+    std::size_t accepted_files{0}; ///< As they are.
+};
+
+void run_file(const std::filesystem::path& path, std::size_t most, Tally& tally)
 {
     std::ifstream file(path, std::ios::binary);
     require(file.is_open(), "the corpus can be read");
@@ -162,25 +169,28 @@ std::size_t run_file(const std::filesystem::path& path, std::size_t most)
     {
         current.variant = run * all / runs; // 0, the file itself, is always among them.
         const Input variant = changed(input, variant_of(current.variant, input.size()));
+        const std::size_t accepted = accepted_inputs;
         LLVMFuzzerTestOneInput(variant.data(), variant.size());
+        tally.accepted_files += run == 0 && accepted_inputs > accepted ? 1U : 0U;
     }
-    return runs;
+    ++tally.files;
+    tally.inputs += runs;
 }
 
+/// An error when no file is accepted as it is: the seeds are too old then, or there are none.
 int run(std::size_t most, const std::vector<std::filesystem::path>& paths)
 {
-    std::size_t files = 0;
-    std::size_t runs = 0;
+    Tally tally;
     for (const auto& folder : paths)
     {
         for (const auto& path : files_in(folder))
         {
-            ++files;
-            runs += run_file(path, most);
+            run_file(path, most, tally);
         }
     }
-    std::printf("%zu files, %zu inputs\n", files, runs);
-    return files > 0 ? 0 : 1; // An empty corpus proves nothing.
+    std::printf("%zu files (%zu accepted), %zu inputs (accepted %zu times)\n", tally.files,
+                tally.accepted_files, tally.inputs, accepted_inputs);
+    return tally.accepted_files > 0 ? 0 : 1;
 }
 
 } // namespace

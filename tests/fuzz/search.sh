@@ -15,7 +15,7 @@ mkdir -p "$build/learnt/$name" "$build/found"
 options=(-max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -malloc_limit_mb=256
     -artifact_prefix="$build/found/$name-" -print_final_stats=1)
 case "$name" in
-    chunk_link) options+=(-max_len=256) ;;
+    chunk_link) options+=(-max_len=96) ;;
     *) options+=(-max_len=8192) ;;
 esac
 if [[ -f "$folder/words/$name.txt" ]]; then
