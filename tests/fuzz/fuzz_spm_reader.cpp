@@ -132,6 +132,8 @@ void open_file(std::span<const std::byte> file)
     for (const std::string& line : damage)
     {
         require_message(line, scratch.path());
+        require(line.find("the file was cut short") == std::string::npos,
+                "an opened file holds all its pieces");
     }
     if (damage.empty())
     {

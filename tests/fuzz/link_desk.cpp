@@ -123,7 +123,8 @@ void LinkDesk::check_links() const
         {
             const RecordId id{chunk_in_[slot].value * 64 + place};
             check_record(id, slots_.pages[slot].records[place]);
-            stuck += is_linked(id) || !is_stuck(slots_.pages[slot].records[place]) ? 0U : 1U;
+            stuck +=
+                is_linked(id) || !owners_are_linked(slots_.pages[slot].records[place]) ? 0U : 1U;
         }
     }
     require(stuck <= linker_->records_refused(),
@@ -153,6 +154,8 @@ void LinkDesk::check_record(RecordId id, const VsplitRecord& record) const
             require(state.is_base() || is_linked(state.record()), "owners are linked first");
             require(next_of(face, state) == id.value, "one record alone splits a face's state");
         }
+        require(!owners_are_linked(record) || next_of(face, state) != kNextPending,
+                "a linked record whose owners are back stands in their next, or a rival does");
     }
     require(!is_linked(id) || record.depth == depth || (!sees_all && record.depth > depth),
             "a linked record's depth is one more than its deepest dependency's");
@@ -167,7 +170,7 @@ void LinkDesk::check_record(RecordId id, const VsplitRecord& record) const
     }
 }
 
-bool LinkDesk::is_stuck(const VsplitRecord& record) const
+bool LinkDesk::owners_are_linked(const VsplitRecord& record) const
 {
     const auto before = std::span(record.before).first(record.fan_size);
     return std::ranges::all_of(before, [this](FaceState state)

@@ -46,7 +46,7 @@ private:
 
     void check_links() const;
     void check_record(RecordId id, const VsplitRecord& record) const;
-    [[nodiscard]] bool is_stuck(const VsplitRecord& record) const;
+    [[nodiscard]] bool owners_are_linked(const VsplitRecord& record) const;
     [[nodiscard]] bool is_linked(RecordId id) const;
     /// Null when its chunk is away.
     [[nodiscard]] const VsplitRecord* find(RecordId id) const;

@@ -24,6 +24,9 @@ namespace
 
 namespace fs = std::filesystem;
 
+/// One bit from not being finite.
+constexpr float kHugeFloat = 3e38F;
+
 void write(const fs::path& path, const std::string& content)
 {
     fs::create_directories(path.parent_path());
@@ -172,7 +175,8 @@ void write_plys(const fs::path& folder, const TriangleMesh& mesh)
     for (std::uint32_t corner = 0; corner < 4; ++corner)
     {
         strip += bytes_of(static_cast<float>(corner % 2), true) +
-                 bytes_of(static_cast<float>(corner / 2), true) + bytes_of(0.5F, true) + '\x7F';
+                 bytes_of(static_cast<float>(corner / 2), true) +
+                 bytes_of(corner == 3 ? kHugeFloat : 0.5F, true) + '\x7F';
     }
     strip += std::string("\0\0\0\1\0\7", 6) + std::string("\6\0\1\2\3\xFF\0", 7);
     write(folder / "big_endian_strip.ply", strip);
@@ -181,6 +185,7 @@ void write_plys(const fs::path& folder, const TriangleMesh& mesh)
 void write_objs(const fs::path& folder, const TriangleMesh& mesh)
 {
     write(folder / "shape.obj", "# a shape\no shape\n" + text_of(mesh, "v ", "f ", 1));
+    write(folder / "huge.obj", "v 0 0 0\nv 1e308 0 0\nv 0 1e+300 0\nf 1 2 3\n");
     write(folder / "polygons.obj",
           "v 0 0 0\nv 1 0 0 1.0\nv 1 1 0\nv 0 1 +1e-3\nvn 0 0 1\nvt 0 0\ng a\nusemtl b\n"
           "f 1/1/1 2//1 3/1 \\\n 4\nf -4 -3 -1 # a comment\np 1\nl 1 2\n");
@@ -210,12 +215,16 @@ void write_stls(const fs::path& folder, const TriangleMesh& mesh)
     }
     write(folder / "text.stl", text + "endsolid shape\n");
     write(folder / "binary.stl", binary);
+    const std::string huge = bytes_of(kHugeFloat, false);
+    write(folder / "huge.stl", std::string(80, ' ') + std::string("\1\0\0\0", 4) +
+                                   std::string(20, '\0') + huge + huge + std::string(22, '\0'));
 }
 
 void write_offs(const fs::path& folder, const TriangleMesh& mesh)
 {
     write(folder / "shape.off", fmt::format("OFF\n# a shape\n{} {} 0\n{}", mesh.positions.size(),
                                             mesh.faces.size(), text_of(mesh, "", "3 ", 0)));
+    write(folder / "huge.off", "OFF\n3 1 0\n0 0 0\n1e308 0 0\n0 -1e308 0\n3 0 1 2\n");
     write(folder / "colours.off", "COFF 4 2 0\n0 0 0 255 0 0 255\n1 0 0 1 1 1 1\n1 1 0 # bare\n"
                                   "0 1 1e-3 0 0 0 0\n4 0 1 2 3 0.5 0.5 0.5\n3 0 2 3\n");
 }
