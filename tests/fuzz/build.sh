@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # build.sh SOURCE BUILD: builds the fuzz targets with clang's libFuzzer and the address and
-# undefined-behaviour sanitizers (preset fuzz) into BUILD. Skips (77) without clang or its libFuzzer.
+# undefined-behaviour sanitizers (preset fuzz) into BUILD. Skips (77) without clang or libFuzzer.
 set -euo pipefail
 readonly source=$1 build=$2
 

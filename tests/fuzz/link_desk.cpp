@@ -122,43 +122,55 @@ void LinkDesk::check_links() const
         for (std::uint32_t place = 0; place < records; ++place)
         {
             const RecordId id{chunk_in_[slot].value * 64 + place};
-            check_record(id, slots_.pages[slot].records[place]);
-            stuck +=
-                is_linked(id) || !owners_are_linked(slots_.pages[slot].records[place]) ? 0U : 1U;
+            const VsplitRecord& record = slots_.pages[slot].records[place];
+            check_next(record);
+            if (is_linked(id))
+            {
+                check_linked(id, record);
+            }
+            else
+            {
+                stuck += owners_are_linked(record) ? 1U : 0U;
+            }
         }
     }
     require(stuck <= linker_->records_refused(),
             "a record whose dependencies are all linked is linked or refused");
 }
 
-/// A linked record fits its resident owners and is one deeper than the deepest; until something was
-/// taken away, it is what splits each of its fan faces next, so no other record is.
-void LinkDesk::check_record(RecordId id, const VsplitRecord& record) const
+/// A linked record fits its resident owners and is one deeper than the deepest. Until something was
+/// taken away, it alone splits its fan faces; afterwards a rival may have come first.
+void LinkDesk::check_linked(RecordId id, const VsplitRecord& record) const
 {
+    const bool has_owners = owners_are_linked(record);
+    require(has_owners || has_taken_away_, "owners are linked first");
     std::uint32_t depth = 1;
     bool sees_all = true;
-    for (std::uint32_t i = 0; i < record.fan_size && is_linked(id); ++i)
+    for (std::uint32_t i = 0; i < record.fan_size; ++i)
     {
         const FaceState state = record.before[i];
-        const FaceId face = record.star[2 + i];
         const VsplitRecord* owner = state.is_base() ? nullptr : find(state.record());
         if (owner != nullptr)
         {
-            require(owner->star[state.place()] == face && owner->error[state.place()] != 0,
+            require(owner->star[state.place()] == record.star[2 + i] &&
+                        owner->error[state.place()] != 0,
                     "a linked record's state is one that its owner gives the face");
             depth = std::max(depth, owner->depth + 1U);
         }
         sees_all = sees_all && (state.is_base() || owner != nullptr);
-        if (!has_taken_away_)
+        if (has_owners)
         {
-            require(state.is_base() || is_linked(state.record()), "owners are linked first");
-            require(next_of(face, state) == id.value, "one record alone splits a face's state");
+            const std::uint32_t next = next_of(record.star[2 + i], state);
+            require(next == id.value || (has_taken_away_ && next < counts_.records),
+                    "a linked record is what splits its fan next");
         }
-        require(!owners_are_linked(record) || next_of(face, state) != kNextPending,
-                "a linked record whose owners are back stands in their next, or a rival does");
     }
-    require(!is_linked(id) || record.depth == depth || (!sees_all && record.depth > depth),
+    require(record.depth == depth || (!sees_all && record.depth > depth),
             "a linked record's depth is one more than its deepest dependency's");
+}
+
+void LinkDesk::check_next(const VsplitRecord& record) const
+{
     for (std::uint32_t place = 0; place < record.star_end(); ++place)
     {
         const std::uint32_t next = record.next[place];

@@ -45,7 +45,8 @@ private:
     };
 
     void check_links() const;
-    void check_record(RecordId id, const VsplitRecord& record) const;
+    void check_linked(RecordId id, const VsplitRecord& record) const;
+    void check_next(const VsplitRecord& record) const;
     [[nodiscard]] bool owners_are_linked(const VsplitRecord& record) const;
     [[nodiscard]] bool is_linked(RecordId id) const;
     /// Null when its chunk is away.

@@ -3,7 +3,8 @@
 /// run_corpus MOST PATH...: the fixed part of fuzzing, for builds without libFuzzer. Runs each file
 /// of the folders (or a file by itself) as it is, cut at every byte, with every single bit flipped,
 /// and with a byte more; at most MOST of these for each file, evenly chosen. No chance is involved.
-/// Prints which input it was when one ends the program. Exit 1 when no file is accepted as it is.
+/// Prints which input it was when one ends the program. Exit 1 when a file is refused as it is,
+/// unless its name begins with refused_: make the seeds anew (README.md).
 #include "rt_core/base/assert.hpp"
 #include "tests/fuzz/law.hpp"
 
@@ -153,7 +154,7 @@ struct Tally
 {
     std::size_t files{0};
     std::size_t inputs{0};
-    std::size_t accepted_files{0}; ///< As they are.
+    std::size_t useless_files{0}; ///< Refused as they are, though their names don't say so.
 };
 
 void run_file(const std::filesystem::path& path, std::size_t most, Tally& tally)
@@ -171,13 +172,18 @@ void run_file(const std::filesystem::path& path, std::size_t most, Tally& tally)
         const Input variant = changed(input, variant_of(current.variant, input.size()));
         const std::size_t accepted = accepted_inputs;
         LLVMFuzzerTestOneInput(variant.data(), variant.size());
-        tally.accepted_files += run == 0 && accepted_inputs > accepted ? 1U : 0U;
+        if (run == 0 && accepted_inputs == accepted &&
+            !path.filename().string().starts_with("refused_"))
+        {
+            ++tally.useless_files;
+            std::fprintf(stderr, "%s: is refused as it is\n", path.c_str());
+        }
     }
     ++tally.files;
     tally.inputs += runs;
 }
 
-/// An error when no file is accepted as it is: the seeds are too old then, or there are none.
+/// An error when a seed is refused, since it leads nowhere then, or when there is none.
 int run(std::size_t most, const std::vector<std::filesystem::path>& paths)
 {
     Tally tally;
@@ -188,9 +194,9 @@ int run(std::size_t most, const std::vector<std::filesystem::path>& paths)
             run_file(path, most, tally);
         }
     }
-    std::printf("%zu files (%zu accepted), %zu inputs (accepted %zu times)\n", tally.files,
-                tally.accepted_files, tally.inputs, accepted_inputs);
-    return tally.accepted_files > 0 ? 0 : 1;
+    std::printf("%zu files, %zu inputs, accepted %zu times\n", tally.files, tally.inputs,
+                accepted_inputs);
+    return tally.files > 0 && tally.useless_files == 0 ? 0 : 1;
 }
 
 } // namespace
