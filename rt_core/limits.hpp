@@ -38,8 +38,8 @@ inline constexpr std::int32_t kMaxQuantumLog2 = 20;
 inline constexpr std::uint32_t kMaxRegions = 1U << 18U;
 /// Chunks of one model, by kMaxRecords; bounds every chunk count that is read.
 inline constexpr std::uint32_t kMaxChunks = (kMaxRecords + 63) / 64;
-/// One coded chunk: 64 records of at most 99 B in coder version 1, plus frame. A reader may lend
-/// a buffer of this size and need no other.
+/// One coded chunk; about 550 B are usual. A reader may lend a buffer of this size and need no
+/// other.
 inline constexpr std::size_t kMaxCodedChunkBytes = 8'448;
 
 // --- The scene -----------------------------------------------------------------------------------

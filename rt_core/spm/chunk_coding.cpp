@@ -72,7 +72,7 @@ Result<Done, SpmRefusal> parse_chunk(std::span<const std::byte> bytes, const Mod
         const RecordId record{(id.value << kRecordsPerChunkLog2) + place};
         CodedRecord coded;
         grammar.code(record, coded);
-        if (!is_possible(coded, record, counts))
+        if (!grammar.is_sound() || !is_possible(coded, record, counts))
         {
             return SpmRefusal::value_out_of_range;
         }
