@@ -33,8 +33,8 @@ inline constexpr std::array<std::uint32_t, 256> kCrc32cTable = make_crc32c_table
 
 } // namespace detail
 
-/// CRC-32C (Castagnoli) of the bytes: guards against noise, not against forgery. `before` is that of
-/// bytes in front of them.
+/// CRC-32C (Castagnoli) of the bytes: guards against noise, not against forgery. `before` is that
+/// of bytes in front of them.
 [[nodiscard]] constexpr std::uint32_t crc32c(std::span<const std::byte> bytes,
                                              std::uint32_t before = 0) noexcept
 {

@@ -59,8 +59,8 @@ ModelCapacities plan_capacities(const ModelHeader& header, std::size_t bytes,
     capacities.index_pages = static_cast<std::uint32_t>(
         std::clamp<std::size_t>(counts.index_pages(), 1, index_pages_max));
     const std::size_t page_share = cache_bytes > 0 ? cache_bytes : bytes / 100 * kPageShare;
-    capacities.pages = static_cast<std::uint32_t>(
-        std::min<std::size_t>(std::max(counts.chunks(), 1U), page_share / sizeof(Page)));
+    capacities.pages = static_cast<std::uint32_t>(std::min<std::size_t>(
+        std::max(counts.chunks(), 1U), page_share / (sizeof(Page) + Linker::bytes_per_page())));
     // Faces beyond the whole model are of no use; below the base mesh there is no model.
     const std::uint32_t all_faces = std::max(counts.face_ids(), kMinFaces);
     const std::uint32_t least_faces = counts.base_faces + kMinFaces;

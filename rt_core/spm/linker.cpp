@@ -13,8 +13,6 @@ namespace tactus
 namespace
 {
 
-constexpr std::size_t kListsPerPage = 16; ///< A quarter of the records that may wait at most.
-
 /// Relaxed: see load_next(). The inbox publishes it together with the linked bit.
 void store_next(std::uint32_t& next, RecordId id) noexcept
 {

@@ -37,6 +37,14 @@ namespace tactus
 class Linker
 {
 public:
+    /// What it keeps beside each page: about 2.4 KB.
+    [[nodiscard]] static constexpr std::size_t bytes_per_page() noexcept
+    {
+        return kRecordsPerChunk * (sizeof(StarRing) + sizeof(Waiting)) +
+               kListsPerPage * sizeof(Seat) + sizeof(Resident) + sizeof(std::uint32_t) +
+               2 * sizeof(IdTable::Entry);
+    }
+
     /// `header` must outlive the linker.
     Linker(Arena& arena, const ModelHeader& header, PageSlots slots) noexcept;
 
@@ -82,6 +90,8 @@ private:
     /// A record by its place in the page slots: slot * 64 + place.
     using Seat = std::uint32_t;
     static constexpr Seat kNoSeat = 0xFFFF'FFFFU;
+    /// A quarter of the records that may wait at most.
+    static constexpr std::size_t kListsPerPage = 16;
     static constexpr Seat kNowhere = 0xFFFF'FFFEU;
 
     /// A record in a list: for which record it waits, and who is behind it there.

@@ -81,7 +81,9 @@ CodedRecord arbitrary_record(RecordId id, const ModelCounts& counts)
         if (place >= 2 || record.has_face(place))
         {
             record.error[place] =
-                place == 2 || largest == 0 ? largest : error_below(largest, below(16));
+                place == 2 || largest == 0
+                    ? largest
+                    : rounded_error(static_cast<ErrorCode>(below(largest + 1U)), largest);
         }
     }
     for (std::uint32_t side = 0; side < 2; ++side)
