@@ -93,7 +93,8 @@ private:
         for (std::uint32_t i = 0; i < collapse.fan_size; ++i)
         {
             Corners corners = corners_[collapse.star[2 + i]];
-            std::ranges::rotate(corners, std::ranges::find(corners, collapse.vertex));
+            std::rotate(corners.begin(), std::ranges::find(corners, collapse.vertex),
+                        corners.end());
             rings_[record.value].w[i] = numbering_.vertex_ids[corners[1]];
             rings_[record.value].w[i + 1] = numbering_.vertex_ids[corners[2]];
         }

@@ -15,9 +15,9 @@ std::uint32_t wish_capacity(const ModelCapacities& capacities) noexcept
     return capacities.pages + capacities.index_pages;
 }
 
-/// Share of the memory that goes to pages unless the caller says how much, in percent: a page is
-/// mostly prefetched, an active face costs a tenth of a record's page.
-constexpr std::size_t kPageShare = 62;
+/// Share of the memory that goes to pages, with what linking keeps of each, unless the caller says
+/// how much, in percent: a page is mostly prefetched, an active face costs two thirds of a record.
+constexpr std::size_t kPageShare = 70;
 /// Index pages beyond the least number get this part of the memory at most.
 constexpr std::size_t kIndexPageShare = 64;
 /// The least number of active faces beyond the base mesh that is worth starting with.

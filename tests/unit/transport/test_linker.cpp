@@ -330,10 +330,7 @@ TEST(Linker, a_foreign_id_does_not_get_past_parse)
     EXPECT_FALSE(parse([](CodedRecord& c) { c.corner = 3; }));
     EXPECT_FALSE(parse([](CodedRecord& c) { c.left = c.right = 3; }));
     EXPECT_FALSE(parse([](CodedRecord& c) { c.residual[1] = 1 << 28; }));
-    EXPECT_FALSE(parse(
-        [](CodedRecord& c) {
-            c.anchor = {6, CodedRecord::Owner::Kind::base, {}};
-        }));
+    EXPECT_FALSE(parse([](CodedRecord& c) { c.anchor = {6, CodedRecord::Owner::Kind::base, {}}; }));
 }
 
 } // namespace
