@@ -5,7 +5,8 @@
 ///
 ///     model     1 byte: its lowest bit chooses the Lump
 ///     edits     1 byte: how many, modulo 8
-///     edit      chunk, kind, two bytes of a place, value
+///     edit      chunk, kind, two bytes of a place, value; kinds 0 .. 3 change a byte of the
+///               chunk, the others the parsed record place % 64, by the number place / 64
 ///     step      1 byte: kind modulo 4 (bring, bring, take away, take updates), chunk or count
 ///
 /// Edited bytes get a new checksum, or they would not be parsed at all.
@@ -56,10 +57,13 @@ struct Edit
         flip_bit,
         cut,
         insert_byte,
-        set_depth,
-        set_state,
-        set_face,
+        set_anchor,
+        set_place,
+        set_fan,
+        set_other,
+        set_residual,
         set_error,
+        set_bucket,
         kinds
     };
 
@@ -101,31 +105,79 @@ void edit_bytes(const Edit& edit, std::vector<std::byte>& bytes)
     }
 }
 
-/// Changes one record of a parsed page, as another chunk could say it: that reaches states which
-/// random bytes of a chunk hardly ever spell.
-void edit_record(const Edit& edit, const ModelCounts& counts, VsplitRecord& record)
+/// A derived owner, a base face or a record, by the lowest bits of the edit's value.
+CodedRecord::Owner owner_of(const Edit& edit, std::uint32_t number, const ModelCounts& counts)
 {
-    const std::uint32_t place = edit.value % 8;
-    const std::uint32_t fan = place % record.fan_size;
+    switch (edit.value % 4)
+    {
+    case 0:
+        return {};
+    case 1:
+        return {number % counts.base_faces, CodedRecord::Owner::Kind::base, {}};
+    default:
+        return {number % counts.records, CodedRecord::Owner::Kind::record, {}};
+    }
+}
+
+/// One of the errors that can be told beside the record's largest one.
+ErrorCode error_beside(const CodedRecord& record, const Edit& edit)
+{
+    const ErrorCode largest = std::max(ErrorCode{1}, std::ranges::max(record.error));
+    const std::uint32_t below = 2 * (edit.value / 8 % 16);
+    return static_cast<ErrorCode>(below == 30 ? 0U : largest > below ? largest - below : 1U);
+}
+
+/// Clears what a chunk doesn't tell of a record with this fan and these sides.
+void clear_the_rest(CodedRecord& record)
+{
+    const std::uint32_t fan = record.fan_size();
+    std::fill(record.others.begin() + (fan - 1), record.others.end(), CodedRecord::Owner{});
+    std::fill(record.error.begin() + (2 + fan), record.error.end(), ErrorCode{0});
+    for (std::uint32_t side = 0; side < 2; ++side)
+    {
+        record.error[side] = record.has_face(side) ? record.error[side] : ErrorCode{0};
+        record.bucket_step[side] = record.has_face(side) ? record.bucket_step[side] : 0;
+    }
+}
+
+/// Changes one record of a parsed page, as another chunk could say it: that reaches records which
+/// random bytes of a chunk hardly ever spell. `number` is below 1024.
+void edit_record(const Edit& edit, std::uint32_t number, const ModelCounts& counts,
+                 CodedRecord& record)
+{
+    const std::uint32_t value = edit.value;
+    const std::int32_t step = static_cast<std::int32_t>(number) - 512;
     switch (edit.kind)
     {
-    case Edit::set_depth:
-        record.depth = static_cast<std::uint16_t>(edit.value);
+    case Edit::set_anchor:
+        record.anchor = owner_of(edit, number, counts);
+        record.place = value % 4 == 1 ? std::uint8_t{0} : record.place;
         break;
-    case Edit::set_state:
-        record.before[fan] =
-            FaceState::after({(edit.place + edit.value) % counts.records}, edit.value >> 5U);
+    case Edit::set_place:
+        record.place = static_cast<std::uint8_t>(value % 8);
+        record.corner = static_cast<std::uint8_t>(value / 8 % 3);
         break;
-    case Edit::set_face:
-        record.star[2 + fan] = {(edit.place * 8 + edit.value) % counts.face_ids()};
+    case Edit::set_fan:
+        record.left = static_cast<std::uint8_t>(value % 6);
+        record.right = static_cast<std::uint8_t>(value / 6 % (6U - record.left));
+        record.sides = static_cast<std::uint8_t>(1 + value / 36 % 3);
+        break;
+    case Edit::set_other:
+        record.others[value / 4 % 5] = owner_of(edit, number, counts);
+        break;
+    case Edit::set_residual:
+        record.residual[value % 3] = step * (1 << (value / 3 % 19));
         break;
     case Edit::set_error:
-        record.error[place] = static_cast<std::uint8_t>(edit.value >> 3U);
-        record.next[place] = record.error[place] == 0 ? kNextExact : kNextPending;
+        record.error[value % 8] = error_beside(record, edit);
+        break;
+    case Edit::set_bucket:
+        record.bucket_step[value % 2] = step * (1 << (value / 2 % 22));
         break;
     default:
         break;
     }
+    clear_the_rest(record);
 }
 
 /// The chunks that this input serves; each is the same whenever it is asked for.
@@ -161,7 +213,7 @@ private:
             }
         }
         bytes.shrink_to_fit(); // So that a read beyond the end is seen.
-        seal_piece(bytes);
+        seal_chunk(bytes, chunk);
         std::optional<Page> page(std::in_place);
         Page other;
         std::memset(static_cast<void*>(&other), 0xA5, sizeof(other));
@@ -175,7 +227,8 @@ private:
         }
         require(std::memcmp(&other, &*page, sizeof(other)) == 0,
                 "a parsed page holds nothing of what was there before");
-        require(is_lawful_page(model_.header, chunk, *page), "an accepted chunk is in its ranges");
+        require(is_lawful_parsed_page(model_.header, chunk, *page),
+                "an accepted chunk is in its ranges");
         edit_records(chunk, *page);
         return page;
     }
@@ -189,10 +242,12 @@ private:
             {
                 continue;
             }
-            VsplitRecord& record = page.records[edit.place % records];
+            VsplitRecord& record = page.records[edit.place % 64 % records];
             const VsplitRecord before = record;
-            edit_record(edit, model_.header.counts(), record);
-            if (!is_lawful_page(model_.header, chunk, page))
+            CodedRecord coded = coded_form(record);
+            edit_record(edit, edit.place / 64, model_.header.counts(), coded);
+            record = waiting_form(coded);
+            if (!is_lawful_parsed_page(model_.header, chunk, page))
             {
                 record = before; // No parser gives that to the linker.
             }

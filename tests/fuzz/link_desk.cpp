@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstring>
 
 namespace tactus::fuzz
 {
@@ -17,6 +18,41 @@ namespace
 
 constexpr std::uint32_t kAway = 0xFFFF'FFFFU;
 
+/// Whether the face is in the state that its owner stands for; derived ones may be in any of a
+/// record.
+bool is_of(FaceId face, FaceState state, const CodedRecord::Owner& owner)
+{
+    switch (owner.kind)
+    {
+    case CodedRecord::Owner::Kind::derived:
+        return !state.is_base();
+    case CodedRecord::Owner::Kind::record:
+        return !state.is_base() && state.record().value == owner.value;
+    case CodedRecord::Owner::Kind::base:
+        return state.is_base() && face.value == owner.value;
+    }
+    return false;
+}
+
+/// Whether a linked record has the fan, the sides and the errors that its chunk tells.
+bool says(const VsplitRecord& record, const CodedRecord& coded)
+{
+    const std::uint32_t left = coded.left;
+    const auto is_right_at = [&](std::uint32_t fan, const CodedRecord::Owner& owner)
+    { return is_of(record.star[2 + fan], record.before[fan], owner); };
+    bool all = record.fan_size == left + 1 + coded.right && record.error == coded.error &&
+               record.has_face(0) == coded.has_face(0) && record.has_face(1) == coded.has_face(1) &&
+               is_right_at(left, coded.anchor) &&
+               (record.before[left].is_base() || record.before[left].place() == coded.place);
+    for (std::uint32_t i = 0; all && i + 1 < record.fan_size; ++i)
+    {
+        const bool is_right = i < coded.right;
+        const std::uint32_t fan = is_right ? left + 1 + i : left - 1 - (i - coded.right);
+        all = is_right_at(fan, coded.others[i]);
+    }
+    return all;
+}
+
 } // namespace
 
 LinkDesk::LinkDesk(const CodedModel& model)
@@ -25,14 +61,17 @@ LinkDesk::LinkDesk(const CodedModel& model)
     , slot_of_(counts_.chunks(), kAway)
     , chunk_in_(counts_.chunks())
     , told_(counts_.chunks())
+    , parsed_(counts_.chunks())
+    , became_(counts_.records)
+    , is_stuck_(counts_.records)
 {
     Arena measure = Arena::measuring();
     static_cast<void>(
-        Linker(measure, counts_, PageSlots::take(measure, counts_, counts_.chunks(), 1)));
+        Linker(measure, model.header, PageSlots::take(measure, counts_, counts_.chunks(), 1)));
     memory_.resize(measure.used() / sizeof(Line));
     Arena arena(std::as_writable_bytes(std::span(memory_)));
     slots_ = PageSlots::take(arena, counts_, counts_.chunks(), 1);
-    linker_ = std::make_unique<Linker>(arena, counts_, slots_);
+    linker_ = std::make_unique<Linker>(arena, model.header, slots_);
     require(parse_base_mesh(model.base, model.header, slots_.base).has_value() &&
                 is_lawful_base(model.header, slots_.base),
             "the model's own base mesh is accepted");
@@ -54,6 +93,7 @@ void LinkDesk::bring(ChunkId chunk, const Page& page)
     slot_of_[chunk.value] = slot;
     chunk_in_[slot] = chunk;
     slots_.pages[slot] = page;
+    parsed_[slot] = page;
     linker_->link_page(chunk, slot);
     told_[slot] = linker_->tell_linked(slot);
     require(linker_->is_resident(chunk), "a page that was linked is resident");
@@ -71,6 +111,10 @@ void LinkDesk::take_away(ChunkId chunk)
     slot_of_[chunk.value] = kAway;
     chunk_in_[slot] = {};
     has_taken_away_ = true;
+    for (std::uint32_t place = 0; place < records_in_chunk(counts_, chunk); ++place)
+    {
+        is_stuck_[chunk.value * 64 + place] = false;
+    }
     require(!linker_->is_resident(chunk) && linker_->linked(slot) == 0,
             "of a page that was released nothing is linked");
     check_links();
@@ -110,9 +154,9 @@ std::uint64_t LinkDesk::records_linked_now() const
     return count;
 }
 
-void LinkDesk::check_links() const
+void LinkDesk::check_links()
 {
-    std::uint64_t stuck = 0;
+    std::vector<Whole> whole(counts_.records, Whole::unknown);
     for (std::uint32_t slot = 0; slot < chunk_in_.size(); ++slot)
     {
         const std::uint32_t records =
@@ -123,29 +167,44 @@ void LinkDesk::check_links() const
         {
             const RecordId id{chunk_in_[slot].value * 64 + place};
             const VsplitRecord& record = slots_.pages[slot].records[place];
-            check_next(record);
+            const VsplitRecord& parsed = parsed_[slot].records[place];
             if (is_linked(id))
             {
-                check_linked(id, record);
+                check_linked(id, record, coded_form(parsed));
+                continue;
             }
-            else
-            {
-                stuck += owners_are_linked(record) ? 1U : 0U;
-            }
+            require(std::memcmp(&record, &parsed, sizeof(record)) == 0,
+                    "a record that isn't linked waits as it was parsed");
+            check_unlinked(id, whole);
         }
     }
-    require(stuck <= linker_->records_refused(),
+    require(found_refused_ <= linker_->records_refused(),
             "a record whose dependencies are all linked is linked or refused");
+}
+
+void LinkDesk::check_linked(RecordId id, const VsplitRecord& record, const CodedRecord& coded)
+{
+    require(is_lawful_linked(model_.header, id, record), "a linked record is in its ranges");
+    require(says(record, coded), "a linked record is what its chunk says");
+    VsplitRecord now = record;
+    now.next = {};
+    if (!became_[id.value])
+    {
+        became_[id.value] = now;
+    }
+    require(std::memcmp(&now, &*became_[id.value], sizeof(now)) == 0,
+            "a record becomes the same whenever it is linked");
+    require(!is_stuck_[id.value], "a refused record stays so while it is here");
+    check_owners(id, record);
 }
 
 /// A linked record fits its resident owners and is one deeper than the deepest. Until something was
 /// taken away, it alone splits its fan faces; afterwards a rival may have come first.
-void LinkDesk::check_linked(RecordId id, const VsplitRecord& record) const
+void LinkDesk::check_owners(RecordId id, const VsplitRecord& record) const
 {
     const bool has_owners = owners_are_linked(record);
     require(has_owners || has_taken_away_, "owners are linked first");
     std::uint32_t depth = 1;
-    bool sees_all = true;
     for (std::uint32_t i = 0; i < record.fan_size; ++i)
     {
         const FaceState state = record.before[i];
@@ -157,7 +216,6 @@ void LinkDesk::check_linked(RecordId id, const VsplitRecord& record) const
                     "a linked record's state is one that its owner gives the face");
             depth = std::max(depth, owner->depth + 1U);
         }
-        sees_all = sees_all && (state.is_base() || owner != nullptr);
         if (has_owners)
         {
             const std::uint32_t next = next_of(record.star[2 + i], state);
@@ -165,21 +223,41 @@ void LinkDesk::check_linked(RecordId id, const VsplitRecord& record) const
                     "a linked record is what splits its fan next");
         }
     }
-    require(record.depth == depth || (!sees_all && record.depth > depth),
+    require(record.depth == depth || (!has_owners && record.depth > depth),
             "a linked record's depth is one more than its deepest dependency's");
 }
 
-void LinkDesk::check_next(const VsplitRecord& record) const
+/// Beside what a record names it depends on nothing but what the named ones depend on in turn: on
+/// what brought the corners of their faces, and on faces round these. So when these are all linked
+/// there is nothing left to wait for.
+void LinkDesk::check_unlinked(RecordId id, std::vector<Whole>& whole)
 {
-    for (std::uint32_t place = 0; place < record.star_end(); ++place)
+    const std::uint32_t slot = slot_of_[id.value / 64];
+    const CodedRecord coded = coded_form(parsed_[slot].records[id.value % 64]);
+    const auto is_there = [&](const CodedRecord::Owner& owner)
+    { return owner.kind != CodedRecord::Owner::Kind::record || is_whole({owner.value}, whole); };
+    if (!is_stuck_[id.value] && is_there(coded.anchor) &&
+        std::ranges::all_of(coded.others, is_there))
     {
-        const std::uint32_t next = record.next[place];
-        const bool is_exact = record.error[place] == 0;
-        require(record.star[place].is_none() || is_exact == (next == kNextExact),
-                "exact faces and only those have no next record");
-        require(next == kNextExact || next == kNextPending || next < counts_.records,
-                "next is exact, pending or a record");
+        is_stuck_[id.value] = true;
+        ++found_refused_;
     }
+}
+
+/// Ends: owners of a linked record are less deep.
+bool LinkDesk::is_whole(RecordId id, std::vector<Whole>& whole) const
+{
+    if (whole[id.value] == Whole::unknown)
+    {
+        const VsplitRecord* record = find(id);
+        const auto is_there = [&](FaceState state)
+        { return state.is_base() || is_whole(state.record(), whole); };
+        const bool is =
+            record != nullptr &&
+            std::ranges::all_of(std::span(record->before).first(record->fan_size), is_there);
+        whole[id.value] = is ? Whole::yes : Whole::no;
+    }
+    return whole[id.value] == Whole::yes;
 }
 
 bool LinkDesk::owners_are_linked(const VsplitRecord& record) const
@@ -197,8 +275,7 @@ bool LinkDesk::is_linked(RecordId id) const
 
 const VsplitRecord* LinkDesk::find(RecordId id) const
 {
-    const std::uint32_t slot = slot_of_[id.value / 64];
-    return slot == kAway ? nullptr : &slots_.pages[slot].records[id.value % 64];
+    return is_linked(id) ? &slots_.pages[slot_of_[id.value / 64]].records[id.value % 64] : nullptr;
 }
 
 std::uint32_t LinkDesk::next_of(FaceId face, FaceState state) const

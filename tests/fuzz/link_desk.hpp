@@ -8,6 +8,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -44,12 +45,22 @@ private:
         alignas(Arena::kAlignment) std::array<std::byte, Arena::kAlignment> bytes;
     };
 
-    void check_links() const;
-    void check_linked(RecordId id, const VsplitRecord& record) const;
-    void check_next(const VsplitRecord& record) const;
+    /// Whether a record and all that it depends on are linked.
+    enum class Whole : std::uint8_t
+    {
+        unknown,
+        no,
+        yes
+    };
+
+    void check_links();
+    void check_linked(RecordId id, const VsplitRecord& record, const CodedRecord& coded);
+    void check_owners(RecordId id, const VsplitRecord& record) const;
+    void check_unlinked(RecordId id, std::vector<Whole>& whole);
+    [[nodiscard]] bool is_whole(RecordId id, std::vector<Whole>& whole) const;
     [[nodiscard]] bool owners_are_linked(const VsplitRecord& record) const;
     [[nodiscard]] bool is_linked(RecordId id) const;
-    /// Null when its chunk is away.
+    /// Null when it isn't linked.
     [[nodiscard]] const VsplitRecord* find(RecordId id) const;
     [[nodiscard]] std::uint32_t next_of(FaceId face, FaceState state) const;
 
@@ -61,6 +72,11 @@ private:
     std::vector<std::uint32_t> slot_of_; ///< By chunk; kAway when it isn't here.
     std::vector<ChunkId> chunk_in_;      ///< By slot; none when it is free.
     std::vector<std::uint64_t> told_;    ///< By slot.
+    std::vector<Page> parsed_;           ///< By slot: the page as it came.
+    /// By record: what it became when it was linked first, without `next`.
+    std::vector<std::optional<VsplitRecord>> became_;
+    std::vector<bool> is_stuck_; ///< By record: found refused since its chunk came.
+    std::uint64_t found_refused_{0};
     bool has_taken_away_{false};
 };
 

@@ -10,8 +10,8 @@
 #include <cstddef>
 #include <span>
 
-/// What holds of every piece that a parser accepts: docs/spm-format.md, sections 2 and 8, written
-/// down a second time, with the numbers of that page.
+/// What holds of every piece that a parser accepts: docs/spm-format.md, sections 2, 6 and 8,
+/// written down a second time, with the numbers of that page.
 namespace tactus::fuzz
 {
 
@@ -23,7 +23,11 @@ namespace tactus::fuzz
 [[nodiscard]] bool is_lawful_index_page(const ModelCounts& counts, IndexPageId id,
                                         const IndexPage& page, std::span<const ChunkEntry> entries);
 
-/// A page as parse leaves it, before anything is linked.
-[[nodiscard]] bool is_lawful_page(const ModelHeader& header, ChunkId id, const Page& page);
+/// A page as parse leaves it, its records waiting.
+[[nodiscard]] bool is_lawful_parsed_page(const ModelHeader& header, ChunkId id, const Page& page);
+
+/// A record as the linker leaves it.
+[[nodiscard]] bool is_lawful_linked(const ModelHeader& header, RecordId id,
+                                    const VsplitRecord& record);
 
 } // namespace tactus::fuzz

@@ -3,6 +3,7 @@
 #include "tests/fuzz/seal_model.hpp"
 
 #include "rt_core/base/crc32c.hpp"
+#include "rt_core/spm/chunk_coding.hpp"
 #include "rt_core/spm/header.hpp"
 #include "transport/content_hash.hpp"
 
@@ -53,14 +54,17 @@ ContentHash seal_and_hash(Bytes piece)
     return content_hash(piece);
 }
 
-/// The chunks of one index page and then the page itself; returns the page's hash.
-ContentHash seal_index_page(Bytes file, Bytes page, std::uint64_t chunks_offset)
+/// The chunks of one index page, `chunk` and those behind it, and then the page itself; returns the
+/// page's hash.
+ContentHash seal_index_page(Bytes file, Bytes page, std::uint64_t chunks_offset, ChunkId chunk)
 {
     for (std::size_t at = 4; at + kChunkEntryBytes + kChecksumBytes <= page.size();
-         at += kChunkEntryBytes)
+         at += kChunkEntryBytes, ++chunk.value)
     {
         const auto size = get<std::uint16_t>(page, at + kSizeInChunkEntry);
-        put(page, at + kHashInChunkEntry, seal_and_hash(part(file, chunks_offset, size)));
+        const Bytes coded = part(file, chunks_offset, size);
+        seal_chunk(coded, chunk);
+        put(page, at + kHashInChunkEntry, content_hash(coded));
         chunks_offset += size;
     }
     return seal_and_hash(page);
@@ -80,7 +84,8 @@ void seal_index(Bytes file, const HeaderFields& fields)
             return;
         }
         auto fixed = get<IndexPageEntry>(entry, 0);
-        fixed.hash = seal_index_page(file, coded, fixed.chunks_offset);
+        const ChunkId first{static_cast<std::uint32_t>(page * 64)};
+        fixed.hash = seal_index_page(file, coded, fixed.chunks_offset, first);
         put(entry, 0, fixed);
     }
 }
@@ -93,6 +98,15 @@ void seal_piece(Bytes piece)
     {
         const std::size_t at = piece.size() - kChecksumBytes;
         put(piece, at, crc32c(piece.first(at)));
+    }
+}
+
+void seal_chunk(Bytes chunk, ChunkId id)
+{
+    if (chunk.size() >= kChecksumBytes)
+    {
+        const std::size_t at = chunk.size() - kChecksumBytes;
+        put(chunk, at, chunk_checksum(chunk.first(at), id));
     }
 }
 

@@ -2,9 +2,10 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "rt_core/spm/ids.hpp"
+
 #include <cstddef>
 #include <span>
-#include <vector>
 
 namespace tactus::fuzz
 {
@@ -16,5 +17,8 @@ void seal_model(std::span<std::byte> file);
 
 /// The last four bytes become the checksum of what stands before them; no effect on fewer.
 void seal_piece(std::span<std::byte> piece);
+
+/// The same for a coded chunk, whose checksum covers its number, too.
+void seal_chunk(std::span<std::byte> chunk, ChunkId id);
 
 } // namespace tactus::fuzz
