@@ -5,6 +5,7 @@
 #include "rt_core/spm/chunk_coding.hpp"
 #include "tests/fuzz/law.hpp"
 #include "tests/fuzz/model_laws.hpp"
+#include "tests/fuzz/record_laws.hpp"
 
 #include <algorithm>
 #include <bit>

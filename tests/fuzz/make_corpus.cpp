@@ -118,6 +118,18 @@ void write_scripts(const fs::path& folder)
                                         .edit(4, 3, 9, 1)
                                         .bring({0, 1, 2, 3, 4})
                                         .text());
+    // Fans as long as they may be, one of them round a whole vertex.
+    write(folder / "changed_fans", ScriptWriter(0)
+                                       .edits(7)
+                                       .edit(2, 6, 33, 5)
+                                       .edit(4, 6, 26, 25)
+                                       .edit(1, 6, 31, 20)
+                                       .edit(6, 6, 35, 20)
+                                       .edit(3, 6, 11, 30)
+                                       .edit(5, 6, 39, 25)
+                                       .edit(4, 6, 8, 12)
+                                       .bring({0, 1, 2, 3, 4, 5})
+                                       .text());
     write(folder / "changed_records", ScriptWriter(1)
                                           .edits(7)
                                           .edit(1, 4, 3 + 64 * 70, 2)

@@ -5,7 +5,6 @@
 #include "rt_core/spm/base_mesh.hpp"
 #include "rt_core/spm/header.hpp"
 #include "rt_core/spm/index_page.hpp"
-#include "rt_core/spm/page.hpp"
 
 #include <cstddef>
 #include <span>
@@ -23,11 +22,7 @@ namespace tactus::fuzz
 [[nodiscard]] bool is_lawful_index_page(const ModelCounts& counts, IndexPageId id,
                                         const IndexPage& page, std::span<const ChunkEntry> entries);
 
-/// A page as parse leaves it, its records waiting.
-[[nodiscard]] bool is_lawful_parsed_page(const ModelHeader& header, ChunkId id, const Page& page);
-
-/// A record as the linker leaves it.
-[[nodiscard]] bool is_lawful_linked(const ModelHeader& header, RecordId id,
-                                    const VsplitRecord& record);
+/// Whole quanta, 0 .. extent.
+[[nodiscard]] bool is_on_grid(const ModelHeader& header, const Vec3f& position_m);
 
 } // namespace tactus::fuzz
