@@ -20,6 +20,8 @@ std::uint32_t wish_capacity(const ModelCapacities& capacities) noexcept
 constexpr std::size_t kPageShare = 70;
 /// Index pages beyond the least number get this part of the memory at most.
 constexpr std::size_t kIndexPageShare = 64;
+/// Fewer pages are not worth starting with unless the caller says so.
+constexpr std::uint32_t kMinPages = 16;
 /// The least number of active faces beyond the base mesh that is worth starting with.
 constexpr std::uint32_t kMinFaces = 256;
 
@@ -58,14 +60,21 @@ ModelCapacities plan_capacities(const ModelHeader& header, std::size_t bytes,
                                                        bytes / kIndexPageShare / sizeof(IndexPage));
     capacities.index_pages = static_cast<std::uint32_t>(
         std::clamp<std::size_t>(counts.index_pages(), 1, index_pages_max));
-    const std::size_t page_share = cache_bytes > 0 ? cache_bytes : bytes / 100 * kPageShare;
-    capacities.pages = static_cast<std::uint32_t>(std::min<std::size_t>(
-        std::max(counts.chunks(), 1U), page_share / (sizeof(Page) + Linker::bytes_per_page())));
+    const std::size_t fitting =
+        cache_bytes > 0 ? cache_bytes / sizeof(Page)
+                        : bytes / 100 * kPageShare / (sizeof(Page) + Linker::bytes_per_page());
+    capacities.pages =
+        static_cast<std::uint32_t>(std::min<std::size_t>(std::max(counts.chunks(), 1U), fitting));
     // Faces beyond the whole model are of no use; below the base mesh there is no model.
     const std::uint32_t all_faces = std::max(counts.face_ids(), kMinFaces);
     const std::uint32_t least_faces = counts.base_faces + kMinFaces;
-    if (capacities.pages == 0 ||
-        required_bytes(header, with_faces(capacities, least_faces)) > bytes)
+    const auto leaves_too_little = [&]
+    { return required_bytes(header, with_faces(capacities, least_faces)) > bytes; };
+    while (cache_bytes == 0 && capacities.pages > kMinPages && leaves_too_little())
+    {
+        --capacities.pages;
+    }
+    if (capacities.pages == 0 || leaves_too_little())
     {
         return {};
     }
