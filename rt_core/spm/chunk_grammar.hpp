@@ -189,7 +189,7 @@ private:
         {
             node = node << 1U | coder_.code_bit(tree[node], (value >> i) & 1U);
         }
-        return node - kSize;
+        return node & (kSize - 1);
     }
 
     /// The bits below the first one of a number that is `width` bits wide.

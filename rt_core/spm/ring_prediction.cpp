@@ -84,7 +84,7 @@ GridPosition RingPrediction::position_of(const std::array<std::int32_t, 3>& resi
     v[(axis_ + 1) % 3] = mean_[(axis_ + 1) % 3] + residual[0];
     v[(axis_ + 2) % 3] = mean_[(axis_ + 2) % 3] + residual[1];
     v[axis_] = static_cast<std::int32_t>(mean_[axis_] + height_at(residual[0], residual[1]) +
-                                         outward_ * residual[2]);
+                                         std::int64_t{outward_} * residual[2]);
     return v;
 }
 
