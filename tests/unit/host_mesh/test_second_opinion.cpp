@@ -10,9 +10,11 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <ostream>
 
 /// Our readers against Assimp's, in Assimp's single precision, and against known facts of meshes
 /// that are well known.
+
 namespace tactus::test
 {
 
@@ -87,6 +89,11 @@ struct KnownMesh
     std::size_t vertices;
     std::size_t faces;
     bool in_assimp; ///< Assimp doesn't know triangle strips.
+
+    friend std::ostream& operator<<(std::ostream& out, const KnownMesh& mesh)
+    {
+        return out << mesh.name;
+    }
 };
 
 class KnownMeshes : public testing::TestWithParam<KnownMesh>
