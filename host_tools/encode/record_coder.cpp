@@ -89,7 +89,7 @@ CodedRecord RecordCoder::fan_from(RecordId id, std::uint32_t anchor)
     coded.sides =
         static_cast<std::uint8_t>((record.has_face(0) ? 1U : 0U) | (record.has_face(1) ? 2U : 0U));
     resolver_.begin_fan();
-    resolver_.meet(state);
+    meet(state);
     std::size_t next = 0;
     for (std::uint32_t place = anchor + 1; place < record.fan_size; ++place)
     {
@@ -108,8 +108,16 @@ CodedRecord::Owner RecordCoder::other_owner(RecordId id, std::uint32_t fan_place
     const VsplitRecord& record = stars_.records[id.value];
     const FaceState state = record.before[fan_place];
     const bool is_derived = !state.is_base() && resolver_.derive(from, to) == state;
-    resolver_.meet(state);
+    meet(state);
     return is_derived ? Owner{} : owner_of(record.star[2 + fan_place], state);
+}
+
+void RecordCoder::meet(FaceState state)
+{
+    if (!state.is_base())
+    {
+        resolver_.meet(stars_.find(state.record()));
+    }
 }
 
 void RecordCoder::add_numbers(RecordId id, CodedRecord& coded)

@@ -41,6 +41,7 @@ private:
     [[nodiscard]] CodedRecord fan_from(RecordId id, std::uint32_t anchor);
     [[nodiscard]] CodedRecord::Owner other_owner(RecordId id, std::uint32_t fan_place,
                                                  VertexId from, VertexId to);
+    void meet(FaceState state);
     void add_numbers(RecordId id, CodedRecord& coded);
 
     const AllStars& stars_;

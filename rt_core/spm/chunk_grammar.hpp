@@ -21,11 +21,14 @@ inline constexpr std::uint32_t kAdaptShift = 5;
 /// The coder's range never stays below this.
 inline constexpr std::uint32_t kRangeLeast = 1U << 24U;
 
+/// Never leaves 31 .. 4065.
 constexpr void adapt(Probability& zero, std::uint32_t bit) noexcept
 {
-    zero = static_cast<Probability>(
-        bit != 0 ? zero - (zero >> kAdaptShift)
-                 : zero + (((1U << kProbabilityBits) - zero) >> kAdaptShift));
+    constexpr std::uint32_t kOne = 1U << kProbabilityBits;
+    const std::uint32_t if_one = 0U - bit;
+    const std::uint32_t less = (zero >> kAdaptShift) & if_one;
+    const std::uint32_t more = ((kOne - zero) >> kAdaptShift) & ~if_one;
+    zero = static_cast<Probability>(zero + more - less);
 }
 
 /// Adaptive model of a whole number: how many bits it has, then its two bits below the first one;

@@ -49,9 +49,14 @@ inline constexpr std::array<float, 256> kErrorQuanta = make_error_quanta();
 [[nodiscard]] constexpr ErrorCode encode_error(double quanta) noexcept
 {
     std::uint32_t code = 1;
-    while (code < 255 && static_cast<double>(detail::kErrorQuanta[code]) < quanta)
+    for (std::uint32_t step = 128; step > 0; step /= 2)
     {
-        ++code;
+        // Below `code + step` all bounds are too small; 255 is taken as it is.
+        if (code + step <= 255 &&
+            static_cast<double>(detail::kErrorQuanta[code + step - 1]) < quanta)
+        {
+            code += step;
+        }
     }
     return static_cast<ErrorCode>(code);
 }

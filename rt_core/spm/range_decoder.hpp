@@ -28,9 +28,11 @@ public:
     std::uint32_t code_bit(Probability& zero, std::uint32_t /*value*/ = 0) noexcept
     {
         const std::uint32_t bound = (range_ >> kProbabilityBits) * zero;
+        // Without a branch: what a bit is can't be foreseen.
         const std::uint32_t bit = code_ < bound ? 0U : 1U;
-        code_ -= bit != 0 ? bound : 0U;
-        range_ = bit != 0 ? range_ - bound : bound;
+        const std::uint32_t if_one = 0U - bit;
+        code_ -= bound & if_one;
+        range_ = bound + ((range_ - 2 * bound) & if_one);
         adapt(zero, bit);
         refill();
         return bit;
@@ -42,7 +44,7 @@ public:
         {
             range_ >>= 1U;
             const std::uint32_t bit = code_ < range_ ? 0U : 1U;
-            code_ -= bit != 0 ? range_ : 0U;
+            code_ -= range_ & (0U - bit);
             value = value << 1U | bit;
             refill();
         }
@@ -53,9 +55,10 @@ public:
     [[nodiscard]] bool has_surplus() const noexcept { return read_ < bytes_.size(); }
 
 private:
+    /// No bit makes the range smaller by more than 2^-8.
     void refill() noexcept
     {
-        while (range_ < kRangeLeast)
+        if (range_ < kRangeLeast)
         {
             range_ <<= 8U;
             code_ = code_ << 8U | next_byte();

@@ -87,11 +87,26 @@ public:
     [[nodiscard]] std::uint32_t place_with_edge(const LinkedStar& star, VertexId from,
                                                 VertexId to) const noexcept
     {
-        for (std::uint32_t place = 0; place < star.record->star_end(); ++place)
+        const VsplitRecord& record = *star.record;
+        const auto& w = star.ring->w;
+        const VertexId v = counts_.vertex_of(star.id);
+        const VertexId u = record.parent;
+        if (record.has_face(0) && has_edge({v, u, w[0]}, from, to))
         {
-            if (has_face(star, place) && has_edge(corners(star, place), from, to))
+            return 0;
+        }
+        if (record.has_face(1) && has_edge({v, w[record.fan_size], u}, from, to))
+        {
+            return 1;
+        }
+        for (std::uint32_t i = 0; i < record.fan_size; ++i)
+        {
+            const bool is_here = from == v ? to == w[i]
+                                 : to == v ? from == w[i + 1]
+                                           : from == w[i] && to == w[i + 1];
+            if (is_here)
             {
-                return place;
+                return 2 + i;
             }
         }
         return kNoPlace;
@@ -151,26 +166,21 @@ public:
         owner_count_ = 0;
         missing_ = RecordId{};
     }
-    void meet(FaceState state) noexcept
-    {
-        if (!state.is_base())
-        {
-            owners_[owner_count_++] = state.record();
-        }
-    }
+    void meet(const LinkedStar& owner) noexcept { owners_[owner_count_++] = owner; }
     /// The state of the face with the directed edge as the walk derives it; base when it can't.
     [[nodiscard]] FaceState derive(VertexId from, VertexId to) noexcept
     {
         FaceState best = FaceState::base();
         std::uint32_t best_depth = 0;
-        const auto consider = [&](RecordId id)
+        const auto consider = [&](const LinkedStar& star)
         {
-            const LinkedStar star = find(id);
-            const std::uint32_t place =
-                star.record == nullptr ? kNoPlace : place_with_edge(star, from, to);
-            if (place != kNoPlace && star.record->depth > best_depth)
+            if (star.record == nullptr || star.record->depth <= best_depth)
             {
-                best = FaceState::after(id, place);
+                return;
+            }
+            if (const std::uint32_t place = place_with_edge(star, from, to); place != kNoPlace)
+            {
+                best = FaceState::after(star.id, place);
                 best_depth = star.record->depth;
             }
         };
@@ -178,7 +188,7 @@ public:
         {
             if (!counts_.is_base(end))
             {
-                consider(counts_.record_of(end));
+                consider(find(counts_.record_of(end)));
             }
         }
         for (std::uint32_t i = 0; i < owner_count_; ++i)
@@ -219,12 +229,20 @@ private:
         return third == corners.end() ? VertexId{} : *third;
     }
 
-    /// Puts a face into the fan and remembers its owner.
-    void take(std::uint32_t fan_place, FaceId face, FaceState state) noexcept
+    /// Puts a base face in its base state into the fan.
+    void take(std::uint32_t fan_place, FaceId face) noexcept
     {
         record_.star[2 + fan_place] = face;
-        record_.before[fan_place] = state;
-        meet(state);
+        record_.before[fan_place] = FaceState::base();
+        fan_owners_[fan_place] = LinkedStar{};
+    }
+    /// Puts the face at a place of its owner's star into the fan.
+    void take(std::uint32_t fan_place, const LinkedStar& owner, std::uint32_t place) noexcept
+    {
+        record_.star[2 + fan_place] = owner.record->star[place];
+        record_.before[fan_place] = FaceState::after(owner.id, place);
+        fan_owners_[fan_place] = owner;
+        meet(owner);
     }
 
     [[nodiscard]] bool place_anchor(const CodedRecord& coded) noexcept
@@ -234,7 +252,7 @@ private:
         if (coded.anchor.kind == Owner::Kind::base)
         {
             anchor = base_.faces[coded.anchor.value].corners;
-            take(coded.left, {coded.anchor.value}, FaceState::base());
+            take(coded.left, FaceId{coded.anchor.value});
         }
         else
         {
@@ -244,8 +262,7 @@ private:
                 return false;
             }
             anchor = corners(star, coded.place);
-            take(coded.left, star.record->star[coded.place],
-                 FaceState::after(star.id, coded.place));
+            take(coded.left, star, coded.place);
         }
         record_.parent = anchor[coded.corner];
         ring_.w[coded.left] = anchor[(coded.corner + 1U) % 3];
@@ -285,7 +302,7 @@ private:
             {
                 return false;
             }
-            take(fan_place, {owner.value}, FaceState::base());
+            take(fan_place, FaceId{owner.value});
             third = opposite(corners, from, to);
             return true;
         }
@@ -304,7 +321,7 @@ private:
             return false;
         }
         const LinkedStar star = find(state.record());
-        take(fan_place, star.record->star[state.place()], state);
+        take(fan_place, star, state.place());
         third = opposite(corners(star, state.place()), from, to);
         return true;
     }
@@ -319,9 +336,8 @@ private:
             {
                 return false;
             }
-            const FaceState before = record_.before[i];
-            depth = std::max<std::uint32_t>(
-                depth, before.is_base() ? 0U : find(before.record()).record->depth);
+            const VsplitRecord* owner = fan_owners_[i].record;
+            depth = std::max<std::uint32_t>(depth, owner == nullptr ? 0U : owner->depth);
         }
         if (depth + 1 > fields_.max_depth)
         {
@@ -374,10 +390,10 @@ private:
         ErrorCode largest = *std::max_element(record_.error.begin(), record_.error.end());
         for (std::uint32_t i = 0; i < record_.fan_size; ++i)
         {
-            const FaceState before = record_.before[i];
-            largest = std::max(largest, before.is_base()
-                                            ? base_.faces[record_.star[2 + i].value].error
-                                            : find(before.record()).record->error[before.place()]);
+            const VsplitRecord* owner = fan_owners_[i].record;
+            largest =
+                std::max(largest, owner == nullptr ? base_.faces[record_.star[2 + i].value].error
+                                                   : owner->error[record_.before[i].place()]);
         }
         return largest;
     }
@@ -408,7 +424,8 @@ private:
     VsplitRecord record_;
     StarRing ring_;
     std::array<GridPosition, kMaxFanFaces + 2> ring_positions_{};
-    std::array<RecordId, kMaxFanFaces> owners_{};
+    std::array<LinkedStar, kMaxFanFaces> owners_{};     ///< Met so far; of base faces none.
+    std::array<LinkedStar, kMaxFanFaces> fan_owners_{}; ///< By fan place.
     std::uint32_t owner_count_{0};
     RecordId missing_{};
 };
