@@ -5,6 +5,7 @@
 #include "host_tools/encode/left_full_order.hpp"
 #include "host_tools/encode/piece_coding.hpp"
 #include "host_tools/encode/record_coder.hpp"
+#include "host_tools/simplify/parallel_blocks.hpp"
 #include "rt_core/spm/chunk_coding.hpp"
 
 #include <algorithm>
@@ -14,6 +15,8 @@ namespace tactus
 
 namespace
 {
+
+constexpr std::size_t kRecordBlock = 1024;
 
 Vec3f to_metres(const GridPosition& position, double quantum_m)
 {
@@ -33,7 +36,8 @@ ErrorCode largest_error(const StarHistory& star)
 
 } // namespace
 
-ModelPieces::ModelPieces(const PreparedMesh& prepared, const Simplification& simplification)
+ModelPieces::ModelPieces(const PreparedMesh& prepared, const Simplification& simplification,
+                         unsigned threads)
     : prepared_(prepared)
     , simplification_(simplification)
     , numbering_(number_model(prepared.mesh, simplification))
@@ -41,11 +45,15 @@ ModelPieces::ModelPieces(const PreparedMesh& prepared, const Simplification& sim
     , influence_(find_influence(prepared.mesh, simplification, numbering_, history_))
     , buckets_(left_full_buckets(prepared.mesh))
 {
-    records_.reserve(counts().records);
-    for (std::uint32_t id = 0; id < counts().records; ++id)
-    {
-        records_.push_back(make_record({id}));
-    }
+    records_.resize(counts().records);
+    parallel_blocks(threads, records_.size(), kRecordBlock,
+                    [&](unsigned, std::size_t begin, std::size_t end)
+                    {
+                        for (std::size_t id = begin; id < end; ++id)
+                        {
+                            records_[id] = make_record({static_cast<std::uint32_t>(id)});
+                        }
+                    });
     for (const std::uint32_t vertex : numbering_.base_vertices)
     {
         base_positions_m_.push_back(to_metres(prepared.mesh.positions[vertex], prepared.quantum_m));

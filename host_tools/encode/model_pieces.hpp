@@ -25,7 +25,8 @@ namespace tactus
 class ModelPieces
 {
 public:
-    ModelPieces(const PreparedMesh& prepared, const Simplification& simplification);
+    ModelPieces(const PreparedMesh& prepared, const Simplification& simplification,
+                unsigned threads);
 
     [[nodiscard]] const ModelCounts& counts() const noexcept { return numbering_.counts; }
     [[nodiscard]] const Numbering& numbering() const noexcept { return numbering_; }

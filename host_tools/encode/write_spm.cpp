@@ -6,6 +6,7 @@
 #include "host_tools/encode/piece_coding.hpp"
 #include "host_tools/encode/region_grid.hpp"
 #include "host_tools/mesh/atomic_file.hpp"
+#include "host_tools/simplify/parallel_blocks.hpp"
 #include "rt_core/base/assert.hpp"
 #include "rt_core/spm/index_page.hpp"
 #include "transport/content_hash.hpp"
@@ -179,20 +180,42 @@ std::vector<std::byte> code_front(HeaderFields& fields, const ModelPieces& piece
     return front.take();
 }
 
+/// Codes the chunks of `batch`, the first of which is `first`, and what the index says of them.
+void code_chunks(const ModelPieces& pieces, std::uint32_t first,
+                 std::span<std::vector<std::byte>> batch, std::span<ChunkEntry> entries,
+                 unsigned threads)
+{
+    parallel_blocks(
+        threads, batch.size(), 1,
+        [&](unsigned, std::size_t begin, std::size_t end)
+        {
+            for (std::size_t i = begin; i < end; ++i)
+            {
+                const ChunkId id{first + static_cast<std::uint32_t>(i)};
+                batch[i] = pieces.coded_chunk(id);
+                entries[i] = {static_cast<std::uint16_t>(batch[i].size()), content_hash(batch[i])};
+            }
+        });
+}
+
 /// Chunks go behind a gap of the front's size, which is filled last.
 Result<Done, FileError> write_pieces(AtomicFile& file, HeaderFields& fields,
-                                     const ModelPieces& pieces, const RegionGrid& grid)
+                                     const ModelPieces& pieces, const RegionGrid& grid,
+                                     unsigned threads)
 {
+    constexpr std::uint32_t kBatch = 256;
     const ModelCounts& counts = pieces.counts();
     const std::vector<std::byte> gap(first_chunk_offset(fields, counts));
     auto written = file.write(gap);
-    std::vector<ChunkEntry> entries;
-    entries.reserve(counts.chunks());
-    for (std::uint32_t chunk = 0; written && chunk < counts.chunks(); ++chunk)
+    std::vector<ChunkEntry> entries(counts.chunks());
+    for (std::uint32_t first = 0; written && first < counts.chunks(); first += kBatch)
     {
-        const std::vector<std::byte> coded = pieces.coded_chunk({chunk});
-        entries.push_back({static_cast<std::uint16_t>(coded.size()), content_hash(coded)});
-        written = file.write(coded);
+        std::vector<std::vector<std::byte>> batch(std::min(kBatch, counts.chunks() - first));
+        code_chunks(pieces, first, batch, std::span{entries}.subspan(first), threads);
+        for (std::size_t i = 0; written && i < batch.size(); ++i)
+        {
+            written = file.write(batch[i]);
+        }
     }
     if (!written)
     {
@@ -229,7 +252,7 @@ Result<HeaderFields, EncodeError> write_spm(const std::filesystem::path& path,
     {
         return refuse(*refusal);
     }
-    const ModelPieces pieces(prepared, simplification);
+    const ModelPieces pieces(prepared, simplification, options.threads);
     if (const Refusal refusal = check_pieces(pieces))
     {
         return refuse(*refusal);
@@ -242,7 +265,8 @@ Result<HeaderFields, EncodeError> write_spm(const std::filesystem::path& path,
     {
         return EncodeError{file.error().text};
     }
-    if (const auto written = write_pieces(file.value(), fields, pieces, grid); !written)
+    if (const auto written = write_pieces(file.value(), fields, pieces, grid, options.threads);
+        !written)
     {
         return EncodeError{written.error().text};
     }

@@ -22,6 +22,7 @@ struct EncodeOptions
     /// Edge of a region, rounded down to a power of two quanta; without it the longest axis gets
     /// at most 16 regions.
     std::optional<double> region_size_m;
+    unsigned threads{1}; ///< The file does not depend on it.
 };
 
 /// Why there is no file: one line that begins with the file's name.
@@ -33,7 +34,7 @@ struct EncodeError
 /// Writes a model's file: header, base mesh, index pages, chunks. The file appears under its name
 /// only when it is whole; after a refusal there is nothing new on the disk. Returns the header's
 /// fields. The same arguments give the same bytes. Linear memory, about 100 B a face beside the
-/// arguments; chunks go to the disk one by one.
+/// arguments; chunks are coded side by side and go to the disk batch by batch.
 [[nodiscard]] Result<HeaderFields, EncodeError> write_spm(const std::filesystem::path& path,
                                                           const PreparedMesh& prepared,
                                                           const Simplification& simplification,

@@ -190,9 +190,9 @@ Result<Outcome, Failure> build(const Options& options, std::vector<std::string>&
     {
         return simplification.error();
     }
-    const auto written =
-        write_spm(options.output, prepared.value(), simplification.value(),
-                  {options.position_bits, options.base_faces, options.region_size_m});
+    const auto written = write_spm(
+        options.output, prepared.value(), simplification.value(),
+        {options.position_bits, options.base_faces, options.region_size_m, options.threads});
     if (!written)
     {
         return Failure{written.error().text};

@@ -79,6 +79,7 @@ std::optional<SceneError> encode(const test::TestModel& model, const PreparedMes
     }
     EncodeOptions encode_options;
     encode_options.base_faces = kBaseFaces;
+    encode_options.threads = options.threads;
     const auto written = write_spm(model.path, prepared, simplified.value(), encode_options);
     return written ? std::nullopt : std::optional(SceneError{written.error().text});
 }

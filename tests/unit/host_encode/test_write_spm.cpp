@@ -52,6 +52,17 @@ TEST(WriteSpm, the_same_input_gives_the_same_bytes)
     EXPECT_EQ(first.size(), model.fields.file_bytes);
 }
 
+TEST(WriteSpm, the_file_does_not_depend_on_the_threads)
+{
+    const EncodedModel& model = *sample_models()[2];
+    const ScratchFolder folder;
+    EncodeOptions options;
+    options.threads = 5;
+    const auto path = folder.path() / "threads.spm";
+    ASSERT_TRUE(write_spm(path, model.prepared, model.simplification, options));
+    EXPECT_EQ(content_of(path), content_of(model.path()));
+}
+
 TEST(WriteSpm, the_header_describes_the_mesh)
 {
     for (const auto& model : sample_models())
