@@ -22,7 +22,6 @@ constexpr double kLengthWeight = 1e-6;
 /// can't see it.
 constexpr double kQuadricShare = 0.1;
 constexpr std::size_t kMeasuredMax = 6; ///< Neighbours measured; more gain nothing.
-constexpr std::size_t kSamplesMax = 48; ///< Original triangles per star; more gain nothing.
 
 struct Choice
 {
@@ -92,7 +91,7 @@ Choices keep_least_spoiling(const CandidateInput& input, const VertexRing& ring,
 double measure(const CandidateInput& input, const Star& star, double limit,
                CandidateScratch& scratch)
 {
-    const SurfaceSample& sample = scratch.sample;
+    const StarSamples& sample = scratch.samples;
     scratch.nearest.assign(sample.points.size(), std::numeric_limits<double>::max());
     scratch.squared.resize(sample.points.size());
     const Vec3 parent = grid_point(input.mesh, star.parent);
@@ -117,8 +116,7 @@ double measure(const CandidateInput& input, const Star& star, double limit,
 Candidate take_least_measured(const CandidateInput& input, const VertexRing& ring,
                               const Choices& choices, CandidateScratch& scratch)
 {
-    input.certificate.sample(std::span{ring.faces}.first(ring.face_count), kSamplesMax,
-                             scratch.sample);
+    input.samples.gather(std::span{ring.faces}.first(ring.face_count), scratch.samples);
     Candidate best{std::numeric_limits<double>::max(), ring.vertex, Candidate::kNone,
                    choices[0].spoils};
     for (const Choice& choice : choices)

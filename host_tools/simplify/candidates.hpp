@@ -3,10 +3,10 @@
 #pragma once
 
 #include "host_tools/simplify/boundary_quadrics.hpp"
-#include "host_tools/simplify/certificate.hpp"
 #include "host_tools/simplify/collapse_mesh.hpp"
 #include "host_tools/simplify/shape_guard.hpp"
 #include "host_tools/simplify/simplify.hpp"
+#include "host_tools/simplify/surface_samples.hpp"
 
 #include <array>
 #include <cstdint>
@@ -36,7 +36,7 @@ struct Candidate
 /// Scratch of one worker.
 struct CandidateScratch
 {
-    SurfaceSample sample;
+    StarSamples samples;
     std::vector<double> nearest;
     std::vector<double> squared;
 };
@@ -54,7 +54,7 @@ struct CandidateInput
     const QuantisedMesh& mesh;
     const CollapseMesh& current;
     const BoundaryQuadrics& boundary;
-    const Certificate& certificate;
+    const SurfaceSamples& samples; ///< Read when errors are measured.
     Priority priority{Priority::quadric};
 };
 

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace tactus
@@ -41,6 +42,14 @@ double diagonal_of(const QuantisedMesh& mesh)
         high = high.cwiseMax(grid_point(mesh, v));
     }
     return (high - low).norm();
+}
+
+float float_not_below(double value) noexcept
+{
+    const auto nearest = static_cast<float>(value);
+    return static_cast<double>(nearest) < value
+               ? std::nextafter(nearest, std::numeric_limits<float>::infinity())
+               : nearest;
 }
 
 /// Visits the items of all lists, one of each in turn: the walks are chains of cache misses, and
@@ -100,7 +109,8 @@ void Certificate::reassign(const Star& star, unsigned worker)
     }
     for (std::uint32_t i = 0; i < star.fan_size; ++i)
     {
-        errors_[star.faces[2 + i]] = scratch.bound[i] * kSlackFactor + kSlackQuanta;
+        errors_[star.faces[2 + i]] =
+            float_not_below(scratch.bound[i] * kSlackFactor + kSlackQuanta);
     }
 }
 
@@ -255,33 +265,33 @@ void Certificate::add_fragment(std::uint32_t fragment, std::uint32_t triangle,
     bound = std::max(bound, std::sqrt(given.squared) + gaps);
 }
 
-void Certificate::sample(std::span<const std::uint32_t> faces, std::size_t count_max,
-                         SurfaceSample& sample) const
+FaceSamples Certificate::sample(std::uint32_t face, unsigned worker)
 {
-    sample.points.clear();
-    sample.areas.clear();
-    collect_pieces(faces, sample.triangles, sample.fragments);
-    const std::size_t whole = sample.triangles.size();
-    const std::size_t count = whole + sample.fragments.size();
-    const std::size_t step = std::max<std::size_t>(1, (count + count_max - 1) / count_max);
+    Scratch& scratch = scratch_[worker];
+    collect_pieces(std::span{&face, 1}, scratch.triangles, scratch.fragments);
+    const std::size_t whole = scratch.triangles.size();
+    const std::size_t count = whole + scratch.fragments.size();
+    const std::size_t step =
+        std::max<std::size_t>(1, (count + FaceSamples::capacity() - 1) / FaceSamples::capacity());
     const auto weight = static_cast<double>(step);
+    FaceSamples samples;
     for (std::size_t i = step / 2; i < count; i += step)
     {
         if (i < whole)
         {
-            add_sample(sample.triangles[i], kWholeTriangle, weight, sample);
+            samples.push_back(middle_of(scratch.triangles[i], kWholeTriangle, weight));
+            continue;
         }
-        else
-        {
-            const Fragment& fragment = pool_[sample.fragments[i - whole]];
-            add_sample(fragment.triangle, fragment.corners, weight, sample);
-        }
+        const Fragment& fragment = pool_[scratch.fragments[i - whole]];
+        samples.push_back(middle_of(fragment.triangle, fragment.corners, weight));
     }
+    return samples;
 }
 
 /// The middle of a piece and its area.
-void Certificate::add_sample(std::uint32_t triangle, const std::array<TrianglePoint, 3>& corners,
-                             double weight, SurfaceSample& sample) const
+SurfacePoint Certificate::middle_of(std::uint32_t triangle,
+                                    const std::array<TrianglePoint, 3>& corners,
+                                    double weight) const
 {
     const TriangleFrame frame = frame_of(mesh_, triangle);
     std::array<double, 3> x{};
@@ -292,10 +302,11 @@ void Certificate::add_sample(std::uint32_t triangle, const std::array<TrianglePo
         y[i] = corners[i].y * (1.0 / TrianglePoint::kOne);
     }
     const double share = (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0]);
-    sample.points.push_back(frame.origin + (x[0] + x[1] + x[2]) / 3 * frame.side_x +
-                            (y[0] + y[1] + y[2]) / 3 * frame.side_y);
-    sample.areas.push_back(0.5 * weight * std::abs(share) *
-                           frame.side_x.cross(frame.side_y).norm());
+    const double area = 0.5 * weight * std::abs(share) * frame.side_x.cross(frame.side_y).norm();
+    const Vec3 middle = frame.origin + (x[0] + x[1] + x[2]) / 3 * frame.side_x +
+                        (y[0] + y[1] + y[2]) / 3 * frame.side_y;
+    return {static_cast<float>(middle.x()), static_cast<float>(middle.y()),
+            static_cast<float>(middle.z()), static_cast<float>(area)};
 }
 
 } // namespace tactus

@@ -6,8 +6,8 @@
 #include "host_tools/simplify/fragment_pool.hpp"
 #include "host_tools/simplify/index_map.hpp"
 #include "host_tools/simplify/piece_settler.hpp"
-#include "host_tools/simplify/point_triangle.hpp"
 #include "host_tools/simplify/simplify.hpp"
+#include "host_tools/simplify/surface_samples.hpp"
 #include "host_tools/simplify/triangle_cut.hpp"
 
 #include <array>
@@ -17,15 +17,6 @@
 
 namespace tactus
 {
-
-/// Points that stand for the original surface near a vertex, and the area each stands for.
-struct SurfaceSample
-{
-    PointColumns points;
-    std::vector<double> areas;            ///< In quanta^2.
-    std::vector<std::uint32_t> triangles; ///< Scratch: all pieces, of which few are picked.
-    std::vector<std::uint32_t> fragments;
-};
 
 /// The proof of how far the original surface is from each face.
 ///
@@ -51,15 +42,15 @@ public:
     Certificate(const QuantisedMesh& mesh, unsigned workers);
 
     /// The bound in quanta: 0 while the face is original, above 0 afterwards.
-    [[nodiscard]] double error(std::uint32_t face) const noexcept { return errors_[face]; }
+    [[nodiscard]] float error(std::uint32_t face) const noexcept { return errors_[face]; }
 
     /// Hands the pieces of a star to the faces that its collapse leaves. Stars without a common
     /// face may be done in any order or at once, each worker with its own number.
     void reassign(const Star& star, unsigned worker);
 
-    /// Fills `sample` with at most `count_max` evenly picked pieces of the faces' surface.
-    void sample(std::span<const std::uint32_t> faces, std::size_t count_max,
-                SurfaceSample& sample) const;
+    /// Evenly picked pieces of the surface that stands with the face. For faces that no other
+    /// worker re-assigns.
+    [[nodiscard]] FaceSamples sample(std::uint32_t face, unsigned worker);
 
 private:
     /// What one re-assignment works on; kept per worker so that its memory is.
@@ -83,12 +74,13 @@ private:
     void give_fragment(std::uint32_t fragment, const Part& part, const Star& star, unsigned worker);
     void add_fragment(std::uint32_t fragment, std::uint32_t triangle, const Assignment& given,
                       const Star& star, Scratch& scratch);
-    void add_sample(std::uint32_t triangle, const std::array<TrianglePoint, 3>& corners,
-                    double weight, SurfaceSample& sample) const;
+    [[nodiscard]] SurfacePoint middle_of(std::uint32_t triangle,
+                                         const std::array<TrianglePoint, 3>& corners,
+                                         double weight) const;
 
     const QuantisedMesh& mesh_;
     double diagonal_{0};
-    std::vector<double> errors_;                ///< Of each face.
+    std::vector<float> errors_;                 ///< Of each face.
     std::vector<std::uint32_t> first_whole_;    ///< Of each face: its list of whole triangles.
     std::vector<std::uint32_t> next_whole_;     ///< Of each triangle.
     std::vector<std::uint32_t> first_fragment_; ///< Of each face: its list of fragments.

@@ -5,6 +5,7 @@
 #include "rt_core/base/assert.hpp"
 
 #include <algorithm>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -104,6 +105,20 @@ void CollapseMesh::find_first_faces() noexcept
     }
 }
 
+std::vector<std::uint32_t> CollapseMesh::present_faces() const
+{
+    std::vector<std::uint32_t> present;
+    present.reserve(faces_left_);
+    for (std::uint32_t face = 0; face < corners_.size(); ++face)
+    {
+        if (!is_removed_face(face))
+        {
+            present.push_back(face);
+        }
+    }
+    return present;
+}
+
 std::uint32_t CollapseMesh::corner_of(std::uint32_t face, std::uint32_t vertex) const noexcept
 {
     const auto& corners = corners_[face];
@@ -156,21 +171,38 @@ bool CollapseMesh::gather_ring(std::uint32_t vertex, VertexRing& ring) const noe
     return true;
 }
 
-bool CollapseMesh::are_joined(std::uint32_t a, std::uint32_t b) const noexcept
+bool CollapseMesh::has_neighbour(std::uint32_t vertex,
+                                 std::span<const std::uint32_t> among) const noexcept
 {
-    const std::uint32_t centre = degree_[a] <= degree_[b] ? a : b;
-    const std::uint32_t other = centre == a ? b : a;
-    std::uint32_t face = first_face_[centre];
+    const auto is_among = [&](std::uint32_t other)
+    { return std::find(among.begin(), among.end(), other) != among.end(); };
+    std::uint32_t face = first_face_[vertex];
     do
     {
-        const auto& corners = corners_[face];
-        if (corners[0] == other || corners[1] == other || corners[2] == other)
+        const std::uint32_t corner = corner_of(face, vertex);
+        const std::uint32_t next = neighbours_[face][previous_corner(corner)];
+        // The corner before is the next face's corner after, but for a border's last face.
+        if (is_among(corners_[face][next_corner(corner)]) ||
+            (next == kNoFace && is_among(corners_[face][previous_corner(corner)])))
         {
             return true;
         }
-        face = next_round(centre, face);
-    } while (face != kNoFace && face != first_face_[centre]);
+        face = next;
+    } while (face != kNoFace && face != first_face_[vertex]);
     return false;
+}
+
+/// Walks round the parent unless that has more faces than the vertices on the rim together can.
+bool CollapseMesh::joins_rim(const Star& star, std::span<const std::uint32_t> rim) const noexcept
+{
+    if (degree_[star.parent] <= kMaxDegree)
+    {
+        return has_neighbour(star.parent, rim);
+    }
+    return std::any_of(rim.begin(), rim.end(),
+                       [&](std::uint32_t w) {
+                           return has_neighbour(w, std::span{&star.parent, 1});
+                       });
 }
 
 bool CollapseMesh::is_legal(const Star& star) const noexcept
@@ -183,12 +215,9 @@ bool CollapseMesh::is_legal(const Star& star) const noexcept
     }
     const std::uint32_t first = star.has_face(0) ? 1 : 0;
     const std::uint32_t end = star.fan_size + (star.has_face(1) ? 0 : 1);
-    for (std::uint32_t i = first; i < end; ++i)
+    if (joins_rim(star, std::span{star.rim}.subspan(first, end - first)))
     {
-        if (are_joined(star.rim[i], star.parent))
-        {
-            return false;
-        }
+        return false;
     }
     if (removed == 2 && star.fan_size == 1)
     {

@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace tactus
@@ -86,6 +87,8 @@ public:
     {
         return corners_[face];
     }
+    /// Those that aren't removed; ascending.
+    [[nodiscard]] std::vector<std::uint32_t> present_faces() const;
     [[nodiscard]] std::uint32_t neighbour(std::uint32_t face, std::uint32_t edge) const noexcept
     {
         return neighbours_[face][edge];
@@ -107,7 +110,10 @@ private:
     [[nodiscard]] std::uint32_t corner_of(std::uint32_t face, std::uint32_t vertex) const noexcept;
     [[nodiscard]] std::uint32_t next_round(std::uint32_t vertex, std::uint32_t face) const noexcept;
     [[nodiscard]] std::uint32_t walk_degree(std::uint32_t vertex) const noexcept;
-    [[nodiscard]] bool are_joined(std::uint32_t a, std::uint32_t b) const noexcept;
+    [[nodiscard]] bool has_neighbour(std::uint32_t vertex,
+                                     std::span<const std::uint32_t> among) const noexcept;
+    [[nodiscard]] bool joins_rim(const Star& star,
+                                 std::span<const std::uint32_t> rim) const noexcept;
     void find_first_faces() noexcept;
     void bypass(std::uint32_t removed, std::uint32_t vertex, const Star& star,
                 bool side_a) noexcept;

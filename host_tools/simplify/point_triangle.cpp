@@ -4,6 +4,8 @@
 
 #include <Eigen/Geometry>
 
+#include <array>
+
 namespace tactus
 {
 
@@ -28,81 +30,47 @@ void PointColumns::truncate(std::size_t size)
     z.resize(size);
 }
 
-DistanceTriangle::DistanceTriangle(const Vec3& a, const Vec3& b, const Vec3& c) noexcept
-    : normal_((b - a).cross(c - a))
-{
-    ab_ = side_of(a, b, normal_);
-    bc_ = side_of(b, c, normal_);
-    ca_ = side_of(c, a, normal_);
-    const double squared = normal_.squaredNorm();
-    inverse_squared_normal_ = squared > 0 ? 1 / squared : 0;
-}
-
-DistanceTriangle::Side DistanceTriangle::side_of(const Vec3& from, const Vec3& to,
-                                                 const Vec3& normal) noexcept
-{
-    const Vec3 along = to - from;
-    const double squared = along.squaredNorm();
-    return {from, along, normal.cross(along), squared > 0 ? 1 / squared : 0};
-}
-
 namespace
 {
 
-/// Plain scalars, so that the loop over points vectorises.
-struct SideDistance
+KernelSide side_of(const Vec3& from, const Vec3& to, const Vec3& normal) noexcept
 {
-    double squared;
-    double inward;
-};
+    const Vec3 along = to - from;
+    const Vec3 inward = normal.cross(along);
+    const double squared = along.squaredNorm();
+    return {{from.x(), from.y(), from.z()},
+            {along.x(), along.y(), along.z()},
+            {inward.x(), inward.y(), inward.z()},
+            squared > 0 ? 1 / squared : 0};
+}
 
 } // namespace
+
+std::span<const SquaredDistances> available_distance_kernels() noexcept
+{
+#if defined(TACTUS_HAS_X86_KERNELS)
+    static const std::array all{kPortableSquaredDistances, kAvx2SquaredDistances};
+    const bool has_avx2 = static_cast<bool>(__builtin_cpu_supports("avx2")); // GCC: int.
+    return std::span(all).first(has_avx2 ? 2 : 1);
+#else
+    return {&kPortableSquaredDistances, 1};
+#endif
+}
+
+DistanceTriangle::DistanceTriangle(const Vec3& a, const Vec3& b, const Vec3& c) noexcept
+{
+    const Vec3 normal = (b - a).cross(c - a);
+    const double squared = normal.squaredNorm();
+    triangle_ = {{side_of(a, b, normal), side_of(b, c, normal), side_of(c, a, normal)},
+                 {normal.x(), normal.y(), normal.z()},
+                 squared > 0 ? 1 / squared : 0};
+}
 
 void DistanceTriangle::squared_distances(const PointColumns& points, std::size_t begin,
                                          double* out) const noexcept
 {
-    const auto measure = [](const Side& side, double x, double y, double z) -> SideDistance
-    {
-        const double px = x - side.start.x();
-        const double py = y - side.start.y();
-        const double pz = z - side.start.z();
-        const double dot = px * side.along.x() + py * side.along.y() + pz * side.along.z();
-        double t = dot * side.inverse_squared_length;
-        t = t > 0 ? t : 0;
-        t = t < 1 ? t : 1;
-        const double dx = px - t * side.along.x();
-        const double dy = py - t * side.along.y();
-        const double dz = pz - t * side.along.z();
-        return {dx * dx + dy * dy + dz * dz,
-                px * side.inward.x() + py * side.inward.y() + pz * side.inward.z()};
-    };
-    const double* xs = points.x.data();
-    const double* ys = points.y.data();
-    const double* zs = points.z.data();
-    const std::size_t end = points.size();
-    // Locals, because `out` could alias the members otherwise.
-    const Side ab = ab_;
-    const Side bc = bc_;
-    const Side ca = ca_;
-    const Vec3 normal = normal_;
-    const double inverse_squared_normal = inverse_squared_normal_;
-    for (std::size_t i = begin; i < end; ++i)
-    {
-        const double x = xs[i];
-        const double y = ys[i];
-        const double z = zs[i];
-        const SideDistance at_ab = measure(ab, x, y, z);
-        const SideDistance at_bc = measure(bc, x, y, z);
-        const SideDistance at_ca = measure(ca, x, y, z);
-        const double first = at_ab.squared < at_bc.squared ? at_ab.squared : at_bc.squared;
-        const double sides = first < at_ca.squared ? first : at_ca.squared;
-        const double height = (x - ab.start.x()) * normal.x() + (y - ab.start.y()) * normal.y() +
-                              (z - ab.start.z()) * normal.z();
-        const double plane = height * height * inverse_squared_normal;
-        const double inner = at_ab.inward < at_bc.inward ? at_ab.inward : at_bc.inward;
-        const double inside = inner < at_ca.inward ? inner : at_ca.inward;
-        out[i] = inside > 0 ? plane : sides;
-    }
+    static const SquaredDistances kernel = available_distance_kernels().back();
+    kernel(triangle_, points.x.data(), points.y.data(), points.z.data(), begin, points.size(), out);
 }
 
 } // namespace tactus

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "host_tools/simplify/distance_kernel.hpp"
 #include "rt_core/math/vec3.hpp"
 
 #include <cstddef>
@@ -41,25 +42,13 @@ public:
     void squared_distances(const PointColumns& points, std::size_t begin,
                            double* out) const noexcept;
 
-    [[nodiscard]] const Vec3& normal() const noexcept { return normal_; }
+    [[nodiscard]] Vec3 normal() const noexcept
+    {
+        return {triangle_.normal[0], triangle_.normal[1], triangle_.normal[2]};
+    }
 
 private:
-    struct Side
-    {
-        Vec3 start;
-        Vec3 along;
-        Vec3 inward; ///< In the plane, pointing to the third corner; zero without area.
-        double inverse_squared_length{0};
-    };
-
-    [[nodiscard]] static Side side_of(const Vec3& from, const Vec3& to,
-                                      const Vec3& normal) noexcept;
-
-    Side ab_;
-    Side bc_;
-    Side ca_;
-    Vec3 normal_{0, 0, 0};
-    double inverse_squared_normal_{0};
+    KernelTriangle triangle_{};
 };
 
 } // namespace tactus

@@ -7,10 +7,12 @@
 #include "host_tools/simplify/certificate.hpp"
 #include "host_tools/simplify/collapse_mesh.hpp"
 #include "host_tools/simplify/parallel_blocks.hpp"
+#include "host_tools/simplify/surface_samples.hpp"
 
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -62,12 +64,14 @@ public:
     Result<Simplification, SimplifyError> run();
 
 private:
+    void measure_from_now_on();
     void find_candidates();
     void pick_candidates();
     void collapse_disjoint();
     [[nodiscard]] bool is_untouched(const VertexRing& ring) const noexcept;
     void execute(const Star& star);
     void certify_round();
+    void certify(const Star& star, unsigned worker);
     void collect_base();
 
     const QuantisedMesh& mesh_;
@@ -75,6 +79,7 @@ private:
     CollapseMesh current_;
     BoundaryQuadrics boundary_;
     Certificate certificate_;
+    SurfaceSamples samples_;            ///< Kept once the measured error ranks the candidates.
     std::vector<Candidate> candidates_; ///< Of each vertex.
     std::vector<std::uint8_t> stale_;   ///< Of each vertex: its candidate must be found again.
     std::vector<Candidate> picked_;     ///< Of this round.
@@ -108,6 +113,22 @@ Result<Simplification, SimplifyError> Simplifier::run()
     return std::move(result_);
 }
 
+void Simplifier::measure_from_now_on()
+{
+    priority_ = Priority::measured;
+    std::ranges::fill(stale_, std::uint8_t{1});
+    const std::vector<std::uint32_t> present = current_.present_faces();
+    samples_.start(present, mesh_.faces.size());
+    parallel_blocks(options_.threads, present.size(), kVertexBlock,
+                    [&](unsigned worker, std::size_t begin, std::size_t end)
+                    {
+                        for (std::size_t i = begin; i < end; ++i)
+                        {
+                            samples_.set(present[i], certificate_.sample(present[i], worker));
+                        }
+                    });
+}
+
 /// A candidate is found again when its star has changed, and when there was none: the link
 /// condition looks farther than the star.
 void Simplifier::find_candidates()
@@ -116,10 +137,9 @@ void Simplifier::find_candidates()
                            kMeasuredShare * static_cast<double>(mesh_.faces.size());
     if (few_faces && priority_ == Priority::quadric)
     {
-        priority_ = Priority::measured;
-        std::ranges::fill(stale_, std::uint8_t{1});
+        measure_from_now_on();
     }
-    const CandidateInput input{mesh_, current_, boundary_, certificate_, priority_};
+    const CandidateInput input{mesh_, current_, boundary_, samples_, priority_};
     const auto find_block = [&](unsigned worker, std::size_t begin, std::size_t end)
     {
         for (std::size_t v = begin; v < end; ++v)
@@ -236,21 +256,30 @@ void Simplifier::certify_round()
                     {
                         for (std::size_t i = begin; i < end; ++i)
                         {
-                            certificate_.reassign(round_[i], worker);
+                            certify(round_[i], worker);
                         }
                     });
 }
 
+void Simplifier::certify(const Star& star, unsigned worker)
+{
+    certificate_.reassign(star, worker);
+    if (priority_ == Priority::measured)
+    {
+        for (const std::uint32_t face : std::span{star.faces}.subspan(2, star.fan_size))
+        {
+            samples_.set(face, certificate_.sample(face, worker));
+        }
+    }
+}
+
 void Simplifier::collect_base()
 {
-    for (std::uint32_t face = 0; face < mesh_.faces.size(); ++face)
+    result_.base_faces = current_.present_faces();
+    for (const std::uint32_t face : result_.base_faces)
     {
-        if (!current_.is_removed_face(face))
-        {
-            result_.base_faces.push_back(face);
-            result_.base_corners.push_back(current_.corners(face));
-            result_.base_error.push_back(certificate_.error(face));
-        }
+        result_.base_corners.push_back(current_.corners(face));
+        result_.base_error.push_back(certificate_.error(face));
     }
 }
 

@@ -30,7 +30,7 @@ struct Collapse
     /// Certified bound, in quanta, of each star face as it was *before* this collapse, that is
     /// after the split: every original surface point that the face stands for is within it. 0 when
     /// the face was still original.
-    std::array<double, kMaxStarFaces> error{};
+    std::array<float, kMaxStarFaces> error{};
 };
 
 /// The whole simplification: undoing `collapses` backwards from the base gives the mesh exactly.
@@ -40,7 +40,7 @@ struct Simplification
     std::uint32_t rounds{0};
     std::vector<std::uint32_t> base_faces;                  ///< Faces of the mesh that remain.
     std::vector<std::array<std::uint32_t, 3>> base_corners; ///< Their corners now, mesh vertices.
-    std::vector<double> base_error;                         ///< Their certified bounds, in quanta.
+    std::vector<float> base_error;                          ///< Their certified bounds, in quanta.
 };
 
 struct SimplifyOptions

@@ -107,7 +107,7 @@ public:
             {
                 result_.base_faces.push_back(face);
                 result_.base_corners.push_back(corners_[face]);
-                result_.base_error.push_back(error_[face]);
+                result_.base_error.push_back(static_cast<float>(error_[face]));
             }
         }
         return std::move(result_);
@@ -191,8 +191,9 @@ private:
         double bound = 0.0;
         for (std::size_t place = 0; place < 2 + collapse.fan_size; ++place)
         {
-            collapse.error[place] = error_[collapse.star[place]];
-            bound = std::max(bound, collapse.error[place]);
+            const double error = error_[collapse.star[place]];
+            collapse.error[place] = static_cast<float>(error);
+            bound = std::max(bound, error);
         }
         bound += distance(positions_[vertex], positions_[parent]);
         corners_[collapse.star[0]] = corners_[collapse.star[1]] = {0, 0, 0};

@@ -85,7 +85,7 @@ TEST(FaceHistory, only_faces_of_the_source_have_error_zero)
             const bool is_changed = changed.count(model->simplification.base_faces[at]) != 0;
             EXPECT_EQ(sut.base_error[id] != 0, is_changed) << model->name << ", base face " << id;
             EXPECT_GE(static_cast<double>(error_in_quanta(sut.base_error[id])),
-                      model->simplification.base_error[at] * (is_changed ? 1.0 : 0.0));
+                      model->simplification.base_error[at] * (is_changed ? 1.0F : 0.0F));
         }
     }
 }

@@ -5,7 +5,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstring>
 #include <random>
 #include <vector>
 
@@ -77,6 +80,34 @@ TEST(DistanceTriangle, agrees_with_extended_precision_on_needles)
         const std::array<Vec3, 3> cap{a, b, rounded + nudge};
         expect_oracle(needle, random_points(random, 16'777'215, needle));
         expect_oracle(cap, random_points(random, 16'777'215, cap));
+    }
+}
+
+TEST(DistanceTriangle, every_instruction_set_gives_the_same_bits)
+{
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> draw(-1e6, 1e6);
+    KernelTriangle triangle{};
+    std::vector<double> numbers(sizeof(KernelTriangle) / sizeof(double));
+    for (int run = 0; run < 200; ++run)
+    {
+        std::ranges::generate(numbers, [&] { return draw(random); });
+        std::memcpy(&triangle, numbers.data(), sizeof triangle);
+        std::array<std::vector<double>, 3> at;
+        for (auto& axis : at)
+        {
+            axis.resize(67); // No multiple of any number of lanes.
+            std::ranges::generate(axis, [&] { return draw(random); });
+        }
+        std::vector<double> expected(67);
+        kPortableSquaredDistances(triangle, at[0].data(), at[1].data(), at[2].data(), 1, 67,
+                                  expected.data());
+        for (const SquaredDistances kernel : available_distance_kernels())
+        {
+            std::vector<double> squared(67);
+            kernel(triangle, at[0].data(), at[1].data(), at[2].data(), 1, 67, squared.data());
+            ASSERT_EQ(std::memcmp(squared.data(), expected.data(), 67 * sizeof(double)), 0);
+        }
     }
 }
 

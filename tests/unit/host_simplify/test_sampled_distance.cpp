@@ -84,10 +84,8 @@ TEST(SampledDistance, is_below_the_certificate_and_not_below_a_smaller_sample_by
         const QuantisedMesh& mesh = named.mesh;
         const Simplification simplification = simplified(mesh);
         const double sut = sampled_distance_to_base(mesh, simplification, kSamples, 1);
-        EXPECT_LE(sut, *std::max_element(simplification.base_error.begin(),
-                                         simplification.base_error.end()) +
-                           1e-6)
-            << named.name;
+        const float bound = *std::ranges::max_element(simplification.base_error);
+        EXPECT_LE(sut, static_cast<double>(bound) + 1e-6) << named.name;
         const auto corner = [&](std::uint32_t vertex)
         {
             const auto& p = mesh.positions[vertex];
