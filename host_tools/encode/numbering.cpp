@@ -3,6 +3,7 @@
 #include "host_tools/encode/numbering.hpp"
 
 #include "rt_core/base/assert.hpp"
+#include "rt_core/spm/tiers.hpp"
 
 #include <algorithm>
 #include <bit>

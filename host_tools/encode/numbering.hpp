@@ -14,9 +14,9 @@ namespace tactus
 /// The numbers that vertices, faces and collapses of a simplification get in the file.
 ///
 /// Vertices and faces of the base come first, in their source order. Records are sorted into tiers,
-/// coarsest first: 64 records, then in each tier four times as many as in all before it. Inside a
-/// tier they follow the Morton code of their vertex, so that a chunk covers one small area. What a
-/// record depends on was collapsed after it, so it is in the same tier or a coarser one.
+/// coarsest first (rt_core/spm/tiers.hpp). Inside a tier they follow the Morton code of their
+/// vertex, so that a chunk covers one small area. What a record depends on was collapsed after it,
+/// so it is in the same tier or a coarser one.
 struct Numbering
 {
     ModelCounts counts;
@@ -36,11 +36,5 @@ struct Numbering
 /// `simplification` must be one of `mesh`, with fewer than kMaxRecords collapses.
 [[nodiscard]] Numbering number_model(const QuantisedMesh& mesh,
                                      const Simplification& simplification);
-
-/// One past the last record of the tier that starts at `first`.
-[[nodiscard]] constexpr std::uint64_t tier_end(std::uint64_t first) noexcept
-{
-    return first == 0 ? 64 : 5 * first;
-}
 
 } // namespace tactus

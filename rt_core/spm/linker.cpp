@@ -43,7 +43,7 @@ Linker::Linker(Arena& arena, const ModelHeader& header, PageSlots slots) noexcep
 void Linker::link_page(ChunkId chunk, std::uint32_t slot) noexcept
 {
     TACTUS_ASSERT(slot < residents_.size() && residents_[slot].chunk.is_none());
-    residents_[slot] = Resident{chunk, 0, 0, 0};
+    residents_[slot] = Resident{chunk, 0, 0};
     const bool inserted = slot_of_.try_insert(chunk.value, slot);
     TACTUS_ASSERT(inserted);
     for (std::uint32_t place = 0; place < records_in_chunk(counts_, chunk); ++place)
@@ -154,7 +154,7 @@ bool Linker::try_link(Seat seat) noexcept
     case Resolver::Outcome::refused:
         break;
     }
-    refuse(seat);
+    ++refused_count_;
     return false;
 }
 
@@ -184,13 +184,6 @@ bool Linker::is_free_for(RecordId id, const VsplitRecord& record) const noexcept
         }
     }
     return true;
-}
-
-void Linker::refuse(Seat seat) noexcept
-{
-    residents_[seat >> kRecordsPerChunkLog2].refused |= std::uint64_t{1}
-                                                        << (seat % kRecordsPerChunk);
-    ++refused_count_;
 }
 
 /// A linked record of which an owner came back: sets what isn't set any more, and waits for the

@@ -105,9 +105,8 @@ private:
     struct Resident
     {
         ChunkId chunk{};
-        std::uint64_t linked{0};  ///< One bit a record.
-        std::uint64_t told{0};    ///< Of `linked`, what the haptic thread was told.
-        std::uint64_t refused{0}; ///< One bit a record.
+        std::uint64_t linked{0}; ///< One bit a record.
+        std::uint64_t told{0};   ///< Of `linked`, what the haptic thread was told.
     };
     /// Slots that may owe an update, in the order in which they came to owe it.
     struct Owing
@@ -122,7 +121,6 @@ private:
     void settle(Seat seat) noexcept;
     [[nodiscard]] bool try_link(Seat seat) noexcept;
     void link(Seat seat, const VsplitRecord& record, const StarRing& ring) noexcept;
-    void refuse(Seat seat) noexcept;
     void mend_next(Seat seat) noexcept;
     void wait_for(Seat seat, RecordId awaited) noexcept;
     void wake_waiting(RecordId linked) noexcept;
