@@ -25,7 +25,7 @@ namespace tactus
                                                       std::span<const BaseFace> faces,
                                                       const BaseLayout& layout);
 
-/// The records of one chunk, 1 .. 64, in coder version 2; inverse of parse_chunk().
+/// The records of one chunk, 1 .. 64, in coder version 3; inverse of parse_chunk().
 [[nodiscard]] std::vector<std::byte> encode_chunk(ChunkId id, const ModelCounts& counts,
                                                   std::span<const CodedRecord> records);
 

@@ -108,4 +108,12 @@ void BoundaryQuadrics::collapse(std::uint32_t vertex, std::uint32_t parent) noex
     add_plane(parent, moved);
 }
 
+void BoundaryQuadrics::replace(std::uint32_t vertex, std::uint32_t parent) noexcept
+{
+    if (!slot_plus_one_.empty())
+    {
+        slot_plus_one_[parent] = slot_plus_one_[vertex];
+    }
+}
+
 } // namespace tactus

@@ -28,6 +28,9 @@ public:
     /// The parent takes over the planes of the vertex that moved onto it.
     void collapse(std::uint32_t vertex, std::uint32_t parent) noexcept;
 
+    /// The parent gets the vertex's planes for its own, as in an Absorption.
+    void replace(std::uint32_t vertex, std::uint32_t parent) noexcept;
+
 private:
     /// Upper triangle of the symmetric 4x4 matrix sum of w p p^T, p = (normal, offset).
     using Quadric = std::array<double, 10>;

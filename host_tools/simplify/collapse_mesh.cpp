@@ -143,24 +143,14 @@ std::uint32_t CollapseMesh::walk_degree(std::uint32_t vertex) const noexcept
     return count;
 }
 
-bool CollapseMesh::gather_ring(std::uint32_t vertex, VertexRing& ring) const noexcept
+void CollapseMesh::walk_ring(std::uint32_t vertex, VertexRing& ring) const noexcept
 {
-    const std::uint32_t first = first_face_[vertex];
-    const std::uint32_t degree = degree_[vertex];
-    if (degree == 0 || degree > kMaxStarFaces)
-    {
-        return false;
-    }
+    std::uint32_t face = first_face_[vertex];
     ring.vertex = vertex;
-    ring.face_count = degree;
-    ring.open = neighbours_[first][corner_of(first, vertex)] == kNoFace;
-    const std::uint32_t removed = ring.open ? 1 : 2;
-    if (degree <= removed || degree - removed > kMaxFanFaces)
-    {
-        return false;
-    }
-    std::uint32_t face = first;
-    for (std::uint32_t i = 0; i < degree; ++i)
+    ring.face_count = degree_[vertex];
+    ring.open = neighbours_[face][corner_of(face, vertex)] == kNoFace;
+    TACTUS_ASSERT(ring.face_count <= kMaxStarFaces);
+    for (std::uint32_t i = 0; i < ring.face_count; ++i)
     {
         const std::uint32_t corner = corner_of(face, vertex);
         ring.faces[i] = face;
@@ -168,7 +158,18 @@ bool CollapseMesh::gather_ring(std::uint32_t vertex, VertexRing& ring) const noe
         ring.neighbours[i + 1] = corners_[face][previous_corner(corner)];
         face = neighbours_[face][previous_corner(corner)];
     }
-    return true;
+}
+
+bool CollapseMesh::gather_ring(std::uint32_t vertex, VertexRing& ring) const noexcept
+{
+    const std::uint32_t degree = degree_[vertex];
+    if (degree == 0 || degree > kMaxStarFaces)
+    {
+        return false;
+    }
+    walk_ring(vertex, ring);
+    const std::uint32_t removed = ring.open ? 1 : 2;
+    return degree > removed && degree - removed <= kMaxFanFaces;
 }
 
 bool CollapseMesh::has_neighbour(std::uint32_t vertex,
@@ -274,6 +275,33 @@ void CollapseMesh::collapse(const Star& star) noexcept
         corners_[face][corner_of(face, star.vertex)] = star.parent;
     }
     degree_[star.parent] += star.fan_size;
+    degree_[star.vertex] = 0;
+    --vertices_left_;
+}
+
+void CollapseMesh::absorb(const Star& star) noexcept
+{
+    for (const std::uint32_t side : {0U, 1U})
+    {
+        if (!star.has_face(side))
+        {
+            continue;
+        }
+        for (const std::uint32_t corner : corners_[star.faces[side]])
+        {
+            vertices_left_ -= degree_[corner] != 0 && corner != star.parent ? 1U : 0U;
+            degree_[corner] = corner == star.parent ? degree_[corner] : 0;
+        }
+        corners_[star.faces[side]].fill(kNoFace);
+        --faces_left_;
+    }
+    for (std::uint32_t i = 0; i < star.fan_size; ++i)
+    {
+        const std::uint32_t face = star.faces[2 + i];
+        corners_[face][corner_of(face, star.vertex)] = star.parent;
+    }
+    first_face_[star.parent] = first_face_[star.vertex];
+    degree_[star.parent] = degree_[star.vertex];
     degree_[star.vertex] = 0;
     --vertices_left_;
 }

@@ -75,6 +75,14 @@ public:
     }
     [[nodiscard]] std::uint32_t faces_left() const noexcept { return faces_left_; }
     [[nodiscard]] std::uint32_t vertices_left() const noexcept { return vertices_left_; }
+    [[nodiscard]] std::uint32_t face_count() const noexcept
+    {
+        return static_cast<std::uint32_t>(corners_.size());
+    }
+    [[nodiscard]] std::uint32_t degree(std::uint32_t vertex) const noexcept
+    {
+        return degree_[vertex];
+    }
     [[nodiscard]] bool is_removed(std::uint32_t vertex) const noexcept
     {
         return degree_[vertex] == 0;
@@ -94,6 +102,9 @@ public:
         return neighbours_[face][edge];
     }
 
+    /// Fills the ring of a present vertex with at most kMaxStarFaces faces.
+    void walk_ring(std::uint32_t vertex, VertexRing& ring) const noexcept;
+
     /// Fills `ring`; false when the vertex is removed or no star of it fits the star cap.
     [[nodiscard]] bool gather_ring(std::uint32_t vertex, VertexRing& ring) const noexcept;
 
@@ -103,6 +114,11 @@ public:
 
     /// Replaces the vertex by the parent in the fan and removes A and B. `star` must be legal.
     void collapse(const Star& star) noexcept;
+
+    /// The last step of an Absorption, with those between the first and it: removes A and B, which
+    /// are all of their component, with the corners that aren't the parent, and puts the parent in
+    /// the vertex's place.
+    void absorb(const Star& star) noexcept;
 
 private:
     CollapseMesh(const QuantisedMesh& mesh, FaceNeighbours neighbours);

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "host_tools/simplify/simplify.hpp"
 
+#include "host_tools/simplify/absorption.hpp"
 #include "host_tools/simplify/boundary_quadrics.hpp"
 #include "host_tools/simplify/candidates.hpp"
 #include "host_tools/simplify/certificate.hpp"
@@ -11,6 +12,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -56,6 +58,7 @@ public:
         , candidates_(mesh.positions.size())
         , stale_(mesh.positions.size(), 1)
         , touched_(mesh.faces.size(), 0)
+        , components_(count_components(current_))
         , scratch_(options.threads)
     {
         result_.collapses.reserve(mesh.positions.size());
@@ -69,8 +72,13 @@ private:
     void pick_candidates();
     void collapse_disjoint();
     [[nodiscard]] bool is_untouched(const VertexRing& ring) const noexcept;
+    bool absorb_components();
+    [[nodiscard]] double allowed_absorption_cost();
+    void finish(const Absorption& absorption);
     void execute(const Star& star);
-    void certify_round();
+    void mark_stale(const Star& star);
+    void note(const Star& star);
+    void end_round();
     void certify(const Star& star, unsigned worker);
     void collect_base();
 
@@ -86,6 +94,9 @@ private:
     Priority priority_{Priority::quadric};
     std::vector<std::uint8_t> touched_; ///< Of each face: in this round.
     std::vector<Star> round_;           ///< Stars of this round.
+    std::size_t components_;
+    std::size_t stuck_faces_{0};    ///< In components that can't shrink, at the round before.
+    double cheapest_absorption_{0}; ///< Of what was left of them.
     std::vector<CandidateScratch> scratch_;
     Simplification result_;
 };
@@ -101,13 +112,16 @@ Result<Simplification, SimplifyError> Simplifier::run()
         }
         find_candidates();
         pick_candidates();
+        if (components_ > 1 && absorb_components())
+        {
+            continue;
+        }
         if (picked_.empty())
         {
             break;
         }
         collapse_disjoint();
-        certify_round();
-        result_.rounds += round_.empty() ? 0U : 1U;
+        end_round();
     }
     collect_base();
     return std::move(result_);
@@ -223,17 +237,92 @@ bool Simplifier::is_untouched(const VertexRing& ring) const noexcept
                         [&](std::uint32_t face) { return touched_[face] != 0; });
 }
 
+/// What the round's worst collapse costs an absorption may cost too; and components that can't
+/// shrink must neither crowd out the others nor hold the mesh above its base. Negative when none
+/// can be as cheap.
+double Simplifier::allowed_absorption_cost()
+{
+    const std::size_t stuck = count_stuck_faces(current_);
+    const bool has_new = stuck > std::exchange(stuck_faces_, stuck);
+    if (stuck > 0 && (picked_.empty() || 2 * stuck >= current_.faces_left()))
+    {
+        return std::numeric_limits<double>::infinity();
+    }
+    const bool is_worth_a_look =
+        stuck > 0 && (has_new || picked_.back().cost >= cheapest_absorption_);
+    return is_worth_a_look ? picked_.back().cost : -1;
+}
+
+/// Each step is a round of its own; false when nothing was absorbed.
+bool Simplifier::absorb_components()
+{
+    const double cost_max = allowed_absorption_cost();
+    if (cost_max < 0 || result_.rounds + Absorption::kStepsMax > kMaxDepth)
+    {
+        return false;
+    }
+    const AbsorptionPlan plan = plan_absorptions(
+        mesh_, current_, current_.faces_left() - options_.base_faces, cost_max, options_.threads);
+    const std::vector<Absorption>& absorptions = plan.absorptions;
+    cheapest_absorption_ = plan.cost_left;
+    for (std::size_t step = 0; step < Absorption::kStepsMax; ++step)
+    {
+        round_.clear();
+        for (const Absorption& absorption : absorptions)
+        {
+            if (step < absorption.steps.size())
+            {
+                note(absorption.steps[step]);
+            }
+        }
+        end_round();
+    }
+    for (const Absorption& absorption : absorptions)
+    {
+        finish(absorption);
+    }
+    components_ -= absorptions.size();
+    return !absorptions.empty();
+}
+
+void Simplifier::finish(const Absorption& absorption)
+{
+    if (absorption.steps.size() == Absorption::kStepsMax)
+    {
+        current_.collapse(absorption.steps[0]);
+    }
+    const Star& last = absorption.steps[absorption.steps.size() - 1];
+    current_.absorb(last);
+    boundary_.replace(last.vertex, last.parent);
+    for (const Star& star : absorption.steps)
+    {
+        candidates_[star.vertex].parent = Candidate::kNone;
+    }
+    mark_stale(last);
+}
+
 void Simplifier::execute(const Star& star)
 {
+    note(star);
     current_.collapse(star);
     boundary_.collapse(star.vertex, star.parent);
-    round_.push_back(star);
     candidates_[star.vertex].parent = Candidate::kNone;
+    mark_stale(star);
+}
+
+void Simplifier::mark_stale(const Star& star)
+{
     for (std::uint32_t i = 0; i <= star.fan_size; ++i)
     {
         stale_[star.rim[i]] = 1;
     }
     stale_[star.parent] = 1;
+}
+
+/// Adds the star to the round and to the result.
+void Simplifier::note(const Star& star)
+{
+    round_.push_back(star);
     Collapse collapse{star.vertex, star.parent, result_.rounds, star.fan_size, {}, {}};
     collapse.star.fill(Collapse::kNoFace);
     for (std::uint32_t place = 0; place < 2 + star.fan_size; ++place)
@@ -249,7 +338,7 @@ void Simplifier::execute(const Star& star)
     result_.collapses.push_back(collapse);
 }
 
-void Simplifier::certify_round()
+void Simplifier::end_round()
 {
     parallel_blocks(options_.threads, round_.size(), kStarBlock,
                     [&](unsigned worker, std::size_t begin, std::size_t end)
@@ -259,6 +348,7 @@ void Simplifier::certify_round()
                             certify(round_[i], worker);
                         }
                     });
+    result_.rounds += round_.empty() ? 0U : 1U;
 }
 
 void Simplifier::certify(const Star& star, unsigned worker)

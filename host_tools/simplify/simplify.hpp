@@ -57,9 +57,10 @@ struct SimplifyError
     std::string text; ///< One line for the user.
 };
 
-/// Collapses edges in rounds until at most `base_faces` faces are left, or until no collapse is
-/// legal: fewer than asked for only the caller can refuse. The certificate holds in every
-/// dependency-closed cut: each original surface point is within the error of one of its faces.
+/// Collapses edges in rounds, and lets components that can't shrink vanish into others, until at
+/// most `base_faces` faces are left or nothing is legal: more than asked for only the caller can
+/// refuse. The certificate holds in every dependency-closed cut: each original surface point is
+/// within the error of one of its faces.
 /// Same input, same result, for any number of threads. Costs 10 to 20 us and about 300 B a face.
 /// Refuses, by name and place, a mesh that breaks the contract of QuantisedMesh (unused vertices
 /// and coordinates beyond 24 bits included), an option out of range, and a cancelled run.

@@ -141,9 +141,10 @@ bool VertexForest::try_merge(RecordId id) noexcept
     {
         return false;
     }
-    // A = (v, u, w0), B = (v, wk, u).
-    const Vec3f parent_at =
-        record.has_face(0) ? corner_position(star[0], 1) : corner_position(star[1], 2);
+    // A = (v, u, w0), B = (v, wk, u); a pair contraction has neither.
+    const Vec3f parent_at = record.has_face(0)   ? corner_position(star[0], 1)
+                            : record.has_face(1) ? corner_position(star[1], 2)
+                                                 : position_of(record.parent);
     for (std::uint32_t side = 0; side < 2; ++side)
     {
         if (record.has_face(side))

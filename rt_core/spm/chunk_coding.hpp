@@ -11,7 +11,7 @@
 namespace tactus
 {
 
-/// Coder version 2: CodedRecords in a range code (rt_core/spm/chunk_grammar.hpp), then a checksum.
+/// Coder version 3: CodedRecords in a range code (rt_core/spm/chunk_grammar.hpp), then a checksum.
 /// The chunk's number and its count of records are known to whoever asked for it.
 
 /// Reads the coded chunk `id`: each record of `page` is then the waiting_form() of what the chunk

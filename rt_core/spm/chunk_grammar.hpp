@@ -3,6 +3,7 @@
 #pragma once
 
 #include "rt_core/spm/coded_record.hpp"
+#include "rt_core/spm/tiers.hpp"
 
 #include <algorithm>
 #include <array>
@@ -72,6 +73,7 @@ struct ChunkModel
     /// By what the face before had: none, exact, or some error; of A and B, of fan faces.
     std::array<std::array<std::array<Probability, 16>, 3>, 2> error_below;
     std::array<SignedModel, 2> bucket_step;
+    Probability has_none; ///< Of records without both sides.
 };
 
 inline constexpr std::size_t kChunkProbabilities = sizeof(ChunkModel) / sizeof(Probability);
@@ -152,14 +154,13 @@ private:
         kOther
     };
 
-    /// Tiers of a model: 64 records, then four times as many as in all before.
     static constexpr std::array<Tier, kTiers> make_tiers() noexcept
     {
         std::array<Tier, kTiers> tiers{};
         std::uint64_t end = 0;
         for (std::uint32_t number = 0; number < kTiers; ++number)
         {
-            tiers[number] = {number, end, end == 0 ? 64 : 5 * end};
+            tiers[number] = {number, end, tier_end(end)};
             end = tiers[number].end;
         }
         return tiers;
@@ -260,14 +261,23 @@ private:
         record.right = code_small(model_.right[record.left], record.right);
         const std::uint32_t both =
             coder_.code_bit(model_.has_both_sides, record.sides != 3 ? 1 : 0);
-        record.sides = static_cast<std::uint8_t>(
-            both == 0 ? 3U
-                      : 1U + coder_.code_bit(model_.has_only_second, record.sides == 2 ? 1 : 0));
+        record.sides = both == 0 ? std::uint8_t{3} : code_side(record.sides);
         for (std::uint32_t i = 0; i + 1 < record.fan_size() && i < record.others.size(); ++i)
         {
             const bool is_left = i >= record.right;
             code_other(id, is_left ? 1 : 0, is_left ? i - record.right : i, record.others[i]);
         }
+    }
+
+    /// Less than both: none of them, A or B.
+    std::uint8_t code_side(std::uint32_t sides) noexcept
+    {
+        if (coder_.code_bit(model_.has_none, sides == 0 ? 1 : 0) != 0)
+        {
+            return 0;
+        }
+        return static_cast<std::uint8_t>(
+            1U + coder_.code_bit(model_.has_only_second, sides == 2 ? 1 : 0));
     }
 
     template <std::size_t Size>

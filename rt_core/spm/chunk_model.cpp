@@ -10,7 +10,7 @@ namespace tactus
 namespace
 {
 
-/// Part of coder version 2: learnt from a few models once (train_chunk_model), never changed since.
+/// Part of coder version 3: learnt from a few models once (train_chunk_model), never changed since.
 constexpr std::array<Probability, kChunkProbabilities> kLearnt{
 #include "rt_core/spm/chunk_model.inc"
 };

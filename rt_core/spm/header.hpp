@@ -39,8 +39,9 @@ enum class SpmRefusal : std::uint8_t
 
 inline constexpr std::array<char, 8> kSpmMagic{'T', 'A', 'C', 'T', 'S', 'P', 'M', '\n'};
 inline constexpr std::uint16_t kFormatVersion = 1;
-/// Version 1 wrote every field of a record explicitly; docs/decisions/0006-chunk-coder.md.
-inline constexpr std::uint16_t kCoderVersion = 2;
+/// Version 1 wrote every field of a record explicitly, version 2 had no pair contractions;
+/// docs/decisions/0006-chunk-coder.md.
+inline constexpr std::uint16_t kCoderVersion = 3;
 
 /// The fixed part of a header, as it stands in the file and on the wire (little-endian, no
 /// padding).

@@ -39,7 +39,8 @@ struct FaceState
 ///     A = (v, u, w0), fan faces (v, w0, w1) ... (v, wk-1, wk), B = (v, wk, u)
 ///
 /// counter-clockwise round v. A and B are the faces that (re)appear with the split; on an open
-/// border one of the two is missing. Before the split the fan is (u, wi, wi+1).
+/// border one of the two is missing, and both where v and u have no common edge (a pair
+/// contraction). Before the split the fan is (u, wi, wi+1).
 /// `star[0]` is A and `star[1]` is B (none when missing); the fan follows from `star[2]`, so a fan
 /// face's place in the star is its index here.
 ///

@@ -83,7 +83,8 @@ public:
                           : std::array{v, w[place - 2], w[place - 1]};
     }
 
-    /// The place in the star of the face with the directed edge, or kNoPlace.
+    /// The place in the star of the face with the directed edge, or kNoPlace. Where the fan closes,
+    /// w0 = wk, its edges come before those of A and B.
     [[nodiscard]] std::uint32_t place_with_edge(const LinkedStar& star, VertexId from,
                                                 VertexId to) const noexcept
     {
@@ -91,14 +92,6 @@ public:
         const auto& w = star.ring->w;
         const VertexId v = counts_.vertex_of(star.id);
         const VertexId u = record.parent;
-        if (record.has_face(0) && has_edge({v, u, w[0]}, from, to))
-        {
-            return 0;
-        }
-        if (record.has_face(1) && has_edge({v, w[record.fan_size], u}, from, to))
-        {
-            return 1;
-        }
         for (std::uint32_t i = 0; i < record.fan_size; ++i)
         {
             const bool is_here = from == v ? to == w[i]
@@ -108,6 +101,14 @@ public:
             {
                 return 2 + i;
             }
+        }
+        if (record.has_face(0) && has_edge({v, u, w[0]}, from, to))
+        {
+            return 0;
+        }
+        if (record.has_face(1) && has_edge({v, w[record.fan_size], u}, from, to))
+        {
+            return 1;
         }
         return kNoPlace;
     }

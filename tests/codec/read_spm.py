@@ -104,7 +104,7 @@ SIZES = {"tier_step": 2 * 3 * 16, "owner_step": 2 * 2 * SIGNED, "place": 2 * 8, 
          "left": 8, "right": 8 * 8, "has_one_side": 1, "has_only_b": 1, "is_named": 2 * 4,
          "residual_width": 2 * 12 * 32, "residual_bits": 2 * 32 * 4, "residual_sign": 2,
          "is_exact": 4, "largest_error": SIGNED, "error_below": 2 * 3 * 16,
-         "bucket_step": 2 * SIGNED}
+         "bucket_step": 2 * SIGNED, "has_no_side": 1}
 AT = dict(zip(SIZES, accumulate(SIZES.values(), initial=0)))
 MODEL_SIZE = sum(SIZES.values())
 
@@ -174,7 +174,7 @@ def read_header(data):
     require(data[:8] == b"TACTSPM\n", "header: wrong magic")
     require(len(data) >= HEADER.size, "header: cut short")
     header = Header(*HEADER.unpack_from(data))
-    require((header.format, header.coder) == (1, 2), "header: unknown version")
+    require((header.format, header.coder) == (1, 3), "header: unknown version")
     require(header.file_bytes == len(data), "header: the file has another size")
     require(1 <= header.base_faces <= 16384, "header: base faces")
     require(3 <= header.base_vertices <= 3 * 16384, "header: base vertices")
@@ -310,7 +310,10 @@ class ChunkReader:
         require(left + 1 + right <= 6, f"record {own}: fan size")
         sides = (True, True)
         if coder.bit(AT["has_one_side"]):
-            sides = (False, True) if coder.bit(AT["has_only_b"]) else (True, False)
+            if coder.bit(AT["has_no_side"]):
+                sides = (False, False)
+            else:
+                sides = (False, True) if coder.bit(AT["has_only_b"]) else (True, False)
         others = []
         for side, count in enumerate((right, left)):
             for number in range(count):
@@ -444,8 +447,10 @@ class Resolver:
         return v, record.ring[place - 2], record.ring[place - 1]
 
     def place_at(self, own, edge):
-        """The lowest place in the star whose face has the edge, and the face's third corner."""
-        for place, face in enumerate(self.known(own).star):
+        """The place in the star, fan first, whose face has the edge, and the face's third corner."""
+        star = self.known(own).star
+        for place in (*range(2, len(star)), 0, 1):
+            face = star[place]
             third = third_corner(self.corners(own, place), edge) if face is not None else None
             if third is not None:
                 return place, third

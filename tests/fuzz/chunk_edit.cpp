@@ -87,7 +87,7 @@ void edit_record(const Edit& edit, const ModelCounts& counts, CodedRecord& recor
     case Edit::set_fan:
         record.left = static_cast<std::uint8_t>(value % 6);
         record.right = static_cast<std::uint8_t>(value / 6 % (6U - record.left));
-        record.sides = static_cast<std::uint8_t>(1 + value / 36 % 3);
+        record.sides = static_cast<std::uint8_t>(value / 36 % 4);
         break;
     case Edit::set_other:
         record.others[value / 4 % 5] = owner_of(edit, number, counts);

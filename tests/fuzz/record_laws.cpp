@@ -30,7 +30,7 @@ bool has_lawful_star(const ModelCounts& counts, RecordId id, const VsplitRecord&
             return false;
         }
     }
-    if (record.fan_size < 1 || record.fan_size > 6 || !(record.has_face(0) || record.has_face(1)))
+    if (record.fan_size < 1 || record.fan_size > 6)
     {
         return false;
     }
@@ -137,7 +137,7 @@ bool is_lawful_coded(const ModelCounts& counts, RecordId id, const CodedRecord& 
            is_lawful_owner(counts, id, record.anchor) &&
            std::ranges::all_of(record.others, [&](const CodedRecord::Owner& owner)
                                { return is_lawful_owner(counts, id, owner); }) &&
-           record.place <= 7 && record.corner <= 2 && is_in(record.sides, 1, 3) &&
+           record.place <= 7 && record.corner <= 2 && is_in(record.sides, 0, 3) &&
            std::ranges::all_of(record.residual, [](std::int32_t residual)
                                { return is_in(residual, -134'217'728, 134'217'728); }) &&
            has_lawful_errors(record) && has_nothing_else(record);

@@ -85,6 +85,31 @@ TestModel make(const std::string& name, const TriangleMesh& mesh, std::uint32_t 
     return model;
 }
 
+/// Loose triangles and small closed solids, most of which the base mesh has no room for.
+TriangleMesh make_crumbs()
+{
+    TriangleMesh crumbs = make_triangle_soup(400, 9).value();
+    const TriangleMesh solid = make_uv_sphere(2, 4).value();
+    for (std::uint32_t i = 0; i < 60; ++i)
+    {
+        const auto first = static_cast<std::uint32_t>(crumbs.positions.size());
+        const std::array<double, 3> middle = crumbs.positions[3 * std::size_t{i}];
+        for (std::array<double, 3> position : solid.positions)
+        {
+            for (std::size_t axis = 0; axis < 3; ++axis)
+            {
+                position[axis] = middle[axis] + 0.05 * position[axis];
+            }
+            crumbs.positions.push_back(position);
+        }
+        for (const auto& [a, b, c] : solid.faces)
+        {
+            crumbs.faces.push_back({first + a, first + b, first + c});
+        }
+    }
+    return crumbs;
+}
+
 const TestModel& shape_model(Shape shape, std::uint32_t faces)
 {
     const std::string name(shape_names()[static_cast<std::size_t>(shape)]);
@@ -112,7 +137,8 @@ std::vector<const TestModel*> small_models()
             &shape_model(Shape::terrain, 3'000),
             &shape_model(Shape::gear, 3'000),
             &test_model("thin-plate", make_thin_plate(25, 2e-5).value()),
-            &test_model("needles", make_uv_sphere(10, 200).value())};
+            &test_model("needles", make_uv_sphere(10, 200).value()),
+            &test_model("crumbs", make_crumbs())};
 }
 
 } // namespace tactus::test

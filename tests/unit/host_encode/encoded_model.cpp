@@ -13,10 +13,10 @@ namespace tactus
 namespace
 {
 
-std::unique_ptr<EncodedModel> encode_shape(const std::string& name, std::uint32_t faces,
-                                           unsigned position_bits)
+std::unique_ptr<EncodedModel> encode_source(const std::string& name,
+                                            const Result<TriangleMesh, MeshError>& mesh,
+                                            unsigned position_bits)
 {
-    auto mesh = make_shape(*parse_shape(name), faces);
     if (!mesh)
     {
         throw std::runtime_error(mesh.error().text);
@@ -35,6 +35,12 @@ std::unique_ptr<EncodedModel> encode_shape(const std::string& name, std::uint32_
     }
     return encode_mesh(name, std::move(prepared).value(), std::move(simplification).value(),
                        position_bits);
+}
+
+std::unique_ptr<EncodedModel> encode_shape(const std::string& name, std::uint32_t faces,
+                                           unsigned position_bits)
+{
+    return encode_source(name, make_shape(*parse_shape(name), faces), position_bits);
 }
 
 } // namespace
@@ -95,6 +101,7 @@ const std::vector<std::unique_ptr<EncodedModel>>& sample_models()
         made.push_back(encode_shape("bumpy-sphere", 3'000, 16));
         made.push_back(encode_shape("terrain", 4'000, 16));
         made.push_back(encode_shape("gear", 2'000, 20));
+        made.push_back(encode_source("soup", make_triangle_soup(700, 1), 16));
         return made;
     }();
     return models;

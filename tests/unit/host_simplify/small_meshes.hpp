@@ -28,6 +28,10 @@ namespace tactus::test
 /// Open; an apex of valence `sectors` over `rings` rings.
 [[nodiscard]] QuantisedMesh make_cone(unsigned rings, unsigned sectors);
 
+/// Components that can't shrink, anywhere: loose triangles, and as many tetrahedra as pairs of
+/// faces back to back.
+[[nodiscard]] QuantisedMesh make_crumbs(std::uint32_t triangles, std::uint32_t solids);
+
 /// Both meshes, the second moved along x.
 [[nodiscard]] QuantisedMesh join(const QuantisedMesh& a, const QuantisedMesh& b,
                                  std::int32_t shift);

@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
+#include "host_tools/simplify/grid_point.hpp"
 #include "host_tools/simplify/sampled_distance.hpp"
 #include "tests/unit/host_simplify/distance_oracle.hpp"
 #include "tests/unit/host_simplify/small_meshes.hpp"
 
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
+#include <vector>
 
 namespace tactus::test
 {
@@ -93,10 +96,18 @@ TEST(SampledDistance, is_below_the_certificate_and_not_below_a_smaller_sample_by
                              static_cast<long double>(p[2])};
         };
         std::mt19937_64 random(7);
+        std::vector<double> areas;
+        for (const auto& [a, b, c] : mesh.faces)
+        {
+            const Vec3 origin = grid_point(mesh, a);
+            areas.push_back(
+                (grid_point(mesh, b) - origin).cross(grid_point(mesh, c) - origin).norm());
+        }
+        std::discrete_distribution<std::size_t> by_area(areas.begin(), areas.end());
         long double largest = 0.0L;
         for (int i = 0; i < kBruteSamples; ++i)
         {
-            const auto& face = mesh.faces[random() % mesh.faces.size()];
+            const auto& face = mesh.faces[by_area(random)];
             const long double s = static_cast<long double>(random() % 1'000) / 1'000;
             const long double t = (1 - s) * static_cast<long double>(random() % 1'000) / 1'000;
             LongPoint point{};

@@ -41,7 +41,7 @@ TEST(Simplify, reaches_the_base_size_and_not_much_less)
         SCOPED_TRACE(name);
         const Simplification sut = simplified(mesh, 60);
         EXPECT_LE(sut.base_faces.size(), 60U);
-        EXPECT_GE(sut.base_faces.size(), 59U);
+        EXPECT_GE(sut.base_faces.size(), 57U); // A tetrahedron vanishes whole.
         EXPECT_EQ(sut.base_corners.size(), sut.base_faces.size());
         EXPECT_EQ(sut.base_error.size(), sut.base_faces.size());
     }
@@ -77,11 +77,34 @@ TEST(Simplify, keeps_the_genus)
     EXPECT_LE(sut.base_faces.size(), 30U);
 }
 
-TEST(Simplify, keeps_every_component)
+TEST(Simplify, lets_components_vanish_where_they_can_not_shrink)
 {
     const QuantisedMesh pair = join(make_icosphere(1, 0), make_icosphere(2, 0), 70'000);
-    const Simplification sut = simplified(join(pair, make_icosphere(0, 0), 140'000), 1);
-    EXPECT_EQ(sut.base_faces.size(), 12U);
+    const QuantisedMesh spheres = join(pair, make_icosphere(0, 0), 140'000);
+    EXPECT_EQ(simplified(spheres, 12).base_faces.size(), 12U);
+    EXPECT_EQ(simplified(spheres, 11).base_faces.size(), 8U);
+    EXPECT_EQ(simplified(spheres, 1).base_faces.size(), 4U);
+    EXPECT_EQ(simplified(make_crumbs(300, 0), 1).base_faces.size(), 1U);
+    EXPECT_LE(simplified(make_crumbs(0, 50), 1).base_faces.size(), 4U);
+    EXPECT_LE(simplified(make_crumbs(50, 50), 1).base_faces.size(), 4U);
+}
+
+TEST(Simplify, lets_a_component_vanish_into_the_nearest)
+{
+    // A crumb over a plate goes while the plate is still fine, so the plate keeps its corners.
+    const auto flat = [](double, double) { return 0.0; };
+    const QuantisedMesh plate = make_grid(8, 8, flat);
+    QuantisedMesh crumb{{{0, 0, 0}, {40, 0, 0}, {0, 40, 0}}, {{0, 1, 2}}};
+    for (auto& position : crumb.positions)
+    {
+        position = {plate.positions[40][0] + position[0], plate.positions[40][1] + position[1],
+                    plate.positions[40][2] + 300};
+    }
+    const QuantisedMesh scene = join(plate, crumb, 0);
+    const Simplification sut = simplified(scene, 2);
+    EXPECT_LE(sut.base_faces.size(), 2U);
+    EXPECT_GE(*std::ranges::max_element(sut.base_error), 299.0F);
+    EXPECT_LE(*std::ranges::max_element(sut.base_error), 2'000.0F);
 }
 
 TEST(Simplify, leaves_what_has_no_collapse)

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "host_tools/simplify/collapse_mesh.hpp"
+#include "host_tools/simplify/simplify.hpp"
+#include "rt_core/base/static_vector.hpp"
+
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+namespace tactus
+{
+
+/// How a component that can't shrink any more, a triangle or a tetrahedron, vanishes into the edge
+/// (x, y) of another: a tetrahedron becomes two faces back to back, two of its three vertices move
+/// onto x and y by pair contraction, and then x moves onto the third, d, which takes the faces with
+/// it:
+///
+///          d                     d
+///         / \                  / |                  the ring
+///        s---t      ->        y--x         ->     y--d  round x
+///        y---x  (another)                           is round d
+///
+/// Each step is a collapse of the common form, and afterwards the rest is as manifold as before.
+/// In between the component hangs on the edge. d is its vertex nearest to x.
+struct Absorption
+{
+    static constexpr std::size_t kStepsMax = 4;
+
+    StaticVector<Star, kStepsMax>
+        steps; ///< The last one is x -> d; a tetrahedron's first is extra.
+};
+
+struct AbsorptionPlan
+{
+    std::vector<Absorption> absorptions; ///< Without a common face, cheapest first.
+    /// Of the cheapest one that is left, in quanta^4.
+    double cost_left{std::numeric_limits<double>::infinity()};
+};
+
+/// Absorptions up to a cost, which compares with a Candidate's, until together they remove
+/// `faces_wanted` faces. Reads the mesh as it stands. The same for any number of threads. Costs a
+/// search tree over the vertices.
+[[nodiscard]] AbsorptionPlan plan_absorptions(const QuantisedMesh& mesh,
+                                              const CollapseMesh& current, std::size_t faces_wanted,
+                                              double cost_max, unsigned threads);
+
+/// Faces in components that can't shrink any more.
+[[nodiscard]] std::size_t count_stuck_faces(const CollapseMesh& current);
+
+[[nodiscard]] std::size_t count_components(const CollapseMesh& current);
+
+} // namespace tactus
