@@ -18,7 +18,6 @@
 #include <cstdlib>
 #include <span>
 #include <thread>
-#include <unistd.h>
 
 namespace tactus::bench
 {
@@ -111,23 +110,11 @@ Result<NamedMesh, SceneError> source_mesh(const SceneSource& source)
     return NamedMesh{source.name, std::move(fine)};
 }
 
-SceneStore::SceneStore(std::filesystem::path cache)
-    : folder_(std::move(cache)), is_temporary_(folder_.empty())
+SceneStore::SceneStore(std::filesystem::path cache) : folder_(std::move(cache))
 {
-    if (is_temporary_)
+    if (folder_.empty())
     {
-        folder_ =
-            std::filesystem::temp_directory_path() / fmt::format("tactus-bench-{}", ::getpid());
-        std::filesystem::create_directories(folder_);
-    }
-}
-
-SceneStore::~SceneStore()
-{
-    if (is_temporary_)
-    {
-        std::error_code ignored;
-        std::filesystem::remove_all(folder_, ignored);
+        folder_ = own_folder_.emplace("bench").path();
     }
 }
 

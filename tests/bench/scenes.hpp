@@ -7,12 +7,14 @@
 #include "tests/bench/bench_options.hpp"
 #include "tests/bench/face_tree.hpp"
 #include "tests/bench/touch_motion.hpp"
+#include "tests/shared/temporary_folder.hpp"
 #include "tests/shared/test_model.hpp"
 
 #include <cstdint>
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace tactus::bench
@@ -67,15 +69,12 @@ class SceneStore
 {
 public:
     explicit SceneStore(std::filesystem::path cache);
-    SceneStore(const SceneStore&) = delete;
-    SceneStore& operator=(const SceneStore&) = delete;
-    ~SceneStore();
 
     [[nodiscard]] Result<const Scene*, SceneError> get(const SceneSource& source);
 
 private:
+    std::optional<test::TemporaryFolder> own_folder_; ///< Without a cache.
     std::filesystem::path folder_;
-    bool is_temporary_;
     std::map<std::string, std::unique_ptr<Scene>> scenes_;
 };
 

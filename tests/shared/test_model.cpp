@@ -6,12 +6,12 @@
 #include "host_tools/mesh/prepare.hpp"
 #include "host_tools/shapes/shapes.hpp"
 #include "host_tools/simplify/simplify.hpp"
+#include "tests/shared/temporary_folder.hpp"
 
 #include <cstdio>
 #include <cstdlib>
 #include <map>
 #include <memory>
-#include <unistd.h>
 
 namespace tactus::test
 {
@@ -25,25 +25,9 @@ namespace
     std::exit(2);
 }
 
-/// Removed with everything in it when the process ends.
-struct TemporaryFolder
-{
-    std::filesystem::path path =
-        std::filesystem::temp_directory_path() / ("tactus-models-" + std::to_string(getpid()));
-
-    TemporaryFolder() { std::filesystem::create_directories(path); }
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-    ~TemporaryFolder()
-    {
-        std::error_code ignored;
-        std::filesystem::remove_all(path, ignored);
-    }
-};
-
 TestModel make(const std::string& name, const TriangleMesh& mesh, std::uint32_t base_faces)
 {
-    static const TemporaryFolder folder;
+    static const TemporaryFolder folder("models");
     const auto prepared = prepare_mesh(mesh, {});
     if (!prepared)
     {
@@ -58,7 +42,7 @@ TestModel make(const std::string& name, const TriangleMesh& mesh, std::uint32_t 
     }
     TestModel model;
     model.name = name;
-    model.path = folder.path / (name + ".spm");
+    model.path = folder.path() / (name + ".spm");
     EncodeOptions encoding;
     encoding.base_faces = base_faces;
     const auto written = write_spm(model.path, prepared.value(), simplified.value(), encoding);
