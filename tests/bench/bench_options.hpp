@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -35,5 +36,22 @@ struct BenchOptions
         return count ? 1 : passes.value_or(quick ? quick_ones : usual);
     }
 };
+
+/// In which runs a case takes part.
+enum class When : std::uint8_t
+{
+    always,
+    full_only, ///< Left out of quick runs unless named.
+    named_only,
+};
+
+[[nodiscard]] inline bool is_chosen(const BenchOptions& options, const std::string& name, When when)
+{
+    if (!options.only.empty())
+    {
+        return std::find(options.only.begin(), options.only.end(), name) != options.only.end();
+    }
+    return when == When::always || (when == When::full_only && !options.quick);
+}
 
 } // namespace tactus::bench

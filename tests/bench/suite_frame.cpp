@@ -12,7 +12,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <functional>
 
@@ -21,13 +20,6 @@ namespace tactus::bench
 
 namespace
 {
-
-enum class When : std::uint8_t
-{
-    always,
-    full_only, ///< Left out of quick runs unless named.
-    named_only,
-};
 
 struct Case
 {
@@ -76,15 +68,6 @@ std::vector<Case> all_cases()
     };
 }
 
-bool is_chosen(const Case& one, const BenchOptions& options)
-{
-    if (!options.only.empty())
-    {
-        return std::find(options.only.begin(), options.only.end(), one.name) != options.only.end();
-    }
-    return one.when == When::always || (one.when == When::full_only && !options.quick);
-}
-
 void add_clock(Rows& rows)
 {
     Row row;
@@ -114,7 +97,7 @@ std::optional<std::string> run_frame_suite(const BenchOptions& options, Rows& ro
     add_clock(rows);
     for (const Case& one : all_cases())
     {
-        if (!is_chosen(one, options))
+        if (!is_chosen(options, one.name, one.when))
         {
             continue;
         }
