@@ -18,6 +18,11 @@ using BenchClock = std::chrono::steady_clock;
     return std::chrono::duration<double, std::micro>(to - from).count();
 }
 
+[[nodiscard]] inline double seconds(BenchClock::time_point from, BenchClock::time_point to)
+{
+    return std::chrono::duration<double>(to - from).count();
+}
+
 /// What two readings with nothing in between say, in microseconds: part of every time below.
 [[nodiscard]] double clock_cost_us();
 

@@ -1,9 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
+#include "tests/bench/peers/mesh_simplifier.hpp"
 #include "tests/bench/peers/point_query.hpp"
 
+#ifdef TACTUS_BENCH_CGAL
+#include "tests/bench/peers/cgal_simplifiers.hpp"
+#endif
 #ifdef TACTUS_BENCH_EMBREE
 #include "tests/bench/peers/embree_query.hpp"
+#endif
+#ifdef TACTUS_BENCH_MESHOPTIMIZER
+#include "tests/bench/peers/meshopt_simplifier.hpp"
+#endif
+#ifdef TACTUS_BENCH_OPENMESH
+#include "tests/bench/peers/openmesh_simplifier.hpp"
 #endif
 
 namespace tactus::bench
@@ -17,6 +27,23 @@ make_peers([[maybe_unused]] const std::vector<test::Face>& faces)
     peers.push_back(make_embree_query(faces));
 #endif
     return peers;
+}
+
+std::vector<MeshSimplifier> mesh_simplifiers()
+{
+    return {
+#ifdef TACTUS_BENCH_CGAL
+        {kGarlandHeckbert, simplify_by_garland_heckbert},
+        {"CGAL Garland-Heckbert, bounded normals", simplify_by_bounded_garland_heckbert},
+        {"CGAL Lindstrom-Turk", simplify_by_lindstrom_turk},
+#endif
+#ifdef TACTUS_BENCH_OPENMESH
+        {"OpenMesh", simplify_by_openmesh},
+#endif
+#ifdef TACTUS_BENCH_MESHOPTIMIZER
+        {kMeshoptimizer, simplify_by_meshoptimizer},
+#endif
+    };
 }
 
 } // namespace tactus::bench

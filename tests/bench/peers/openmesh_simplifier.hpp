@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "tests/bench/peers/mesh_simplifier.hpp"
+
+namespace tactus::bench
+{
+
+/// OpenMesh's decimater with its quadric module alone, over its default triangle mesh, in float:
+/// half-edge collapses, no bound on the error.
+[[nodiscard]] SimplifiedMesh simplify_by_openmesh(const QuantisedMesh& mesh, std::uint32_t faces);
+
+} // namespace tactus::bench
