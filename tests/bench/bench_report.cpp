@@ -101,11 +101,18 @@ std::string detail_line(const Row& row)
 
 nlohmann::ordered_json to_json(const Row& row)
 {
-    nlohmann::ordered_json entry{{"suite", row.suite},
-                                 {"case", row.test_case},
-                                 {"metric", row.metric},
-                                 {"value", row.value},
-                                 {"unit", row.unit}};
+    nlohmann::ordered_json entry{{"suite", row.suite}, {"case", row.test_case}};
+    if (!row.part.empty())
+    {
+        entry["part"] = row.part;
+    }
+    if (!row.by.empty())
+    {
+        entry["by"] = row.by;
+    }
+    entry["metric"] = row.metric;
+    entry["value"] = row.value;
+    entry["unit"] = row.unit;
     if (row.goal)
     {
         entry["goal"] = *row.goal;
@@ -148,7 +155,9 @@ std::string to_table(const Rows& rows)
     std::string heading;
     for (const Row& row : rows)
     {
-        const std::string now = fmt::format("{} / {}", row.scene, row.test_case);
+        std::string now = fmt::format("{} / {}", row.scene, row.test_case);
+        now += row.part.empty() ? "" : " / " + row.part;
+        now += row.by.empty() ? "" : " / " + row.by;
         if (now != heading)
         {
             heading = now;

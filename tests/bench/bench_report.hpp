@@ -19,6 +19,9 @@ struct RunFacts
 /// The goals: a line for each case and figure that has one, its p50, p99 and maximum beside the
 /// goals and the peer of the same run.
 [[nodiscard]] std::string to_goal_table(const Rows& rows);
+/// Markdown: for each part a table with a line for each case and whoever did it, a column for each
+/// metric. Goals in brackets behind the figure, which is bold when it isn't met.
+[[nodiscard]] std::string to_columns(const Rows& rows);
 /// Every row, a line for each scene, case and metric.
 [[nodiscard]] std::string to_table(const Rows& rows);
 /// {"schema":2,"commit","machine","core","quick","compiler","rows":[...]}.

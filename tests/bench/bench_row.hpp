@@ -14,7 +14,9 @@ namespace tactus::bench
 struct Row
 {
     std::string suite;
+    std::string part; ///< Of the suite; empty when it has only one.
     std::string test_case;
+    std::string by; ///< Whose figure it is; empty when all are ours.
     std::string metric;
     double value{0.0};
     std::string unit;

@@ -6,6 +6,7 @@
 
 #include "host_tools/encode/extract.hpp"
 #include "host_tools/shapes/shapes.hpp"
+#include "tests/bench/bench_report.hpp"
 #include "tests/bench/scenes.hpp"
 #include "tests/bench/static_model.hpp"
 #include "tests/bench/suites.hpp"
@@ -177,8 +178,7 @@ std::optional<std::string> run_table1(const BenchOptions& options, Rows& rows)
 {
     for (const Table1Case& one : kCases)
     {
-        const std::vector<std::string>& only = options.only;
-        if (!only.empty() && std::find(only.begin(), only.end(), one.name) == only.end())
+        if (!is_chosen(options, one.name, When::always))
         {
             continue;
         }
@@ -189,29 +189,6 @@ std::optional<std::string> run_table1(const BenchOptions& options, Rows& rows)
         }
     }
     return std::nullopt;
-}
-
-/// A line for each case, a column for each metric, as Markdown.
-std::string to_columns(const Rows& rows)
-{
-    std::string heading = "| model |";
-    std::string rule = "| --- |";
-    std::string body;
-    for (std::size_t i = 0; i < rows.size(); ++i)
-    {
-        const bool begins = i == 0 || rows[i].test_case != rows[i - 1].test_case;
-        if (rows[i].test_case == rows.front().test_case)
-        {
-            heading += " " + rows[i].metric + " |";
-            rule += " --- |";
-        }
-        if (begins)
-        {
-            body += fmt::format("\n| {} ({}) |", rows[i].test_case, rows[i].scene);
-        }
-        body += fmt::format(" {:.0f} |", rows[i].value);
-    }
-    return heading + "\n" + rule + body + "\n";
 }
 
 } // namespace
