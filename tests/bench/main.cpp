@@ -32,7 +32,7 @@ struct CommandLine
 
 std::vector<Suite> all_suites()
 {
-    return {frame_suite(), table1_suite()};
+    return {frame_suite(), encoder_suite(), table1_suite()};
 }
 
 std::string suite_names()

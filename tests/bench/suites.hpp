@@ -25,6 +25,7 @@ struct Suite
     std::string (*to_table)(const Rows& rows);
 };
 
+[[nodiscard]] Suite encoder_suite();
 [[nodiscard]] Suite frame_suite();
 [[nodiscard]] Suite table1_suite();
 

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "tests/bench/bench_options.hpp"
+#include "tests/bench/bench_row.hpp"
+#include "tests/bench/scenes.hpp"
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+
+namespace tactus::bench
+{
+
+/// Lines of a mesh that a simplifier should keep.
+enum class Feature : std::uint8_t
+{
+    none,
+    borders,
+    sharp_edges,
+};
+
+/// What the encoder has to reach on one mesh; without a value no goal.
+struct EncoderGoals
+{
+    std::optional<double> rms_to_garland_heckbert; ///< Ours by theirs.
+    std::optional<double> max_to_garland_heckbert;
+    std::optional<double> rms_to_meshoptimizer;
+    std::optional<double> us_per_face; ///< On one core.
+    std::optional<double> us_per_face_on_two;
+    std::optional<double> seconds; ///< On one core.
+    std::optional<double> peak_bytes_per_face;
+    std::optional<double> file_bytes_per_face;      ///< At 16 bits, hashes not counted.
+    std::optional<double> fine_file_bytes_per_face; ///< At 20 bits.
+    std::optional<double> read_ns_per_record;       ///< Parsed and linked on one core.
+    std::optional<double> base_faces;
+};
+
+struct EncoderMesh
+{
+    const char* name;
+    When when;
+    std::function<Result<NamedMesh, SceneError>()> make;
+    EncoderGoals goals{};
+    Feature feature{Feature::none};
+    bool is_compared{true}; ///< Simplified beside the peers.
+};
+
+/// What a part of the suite gets. Each returns a line when it could not be run or gave wrong
+/// results; goals that are not met are rows, not failures.
+struct EncoderContext
+{
+    const EncoderMesh& mesh;
+    const BenchOptions& options;
+    Rows& rows;
+
+    /// What all rows of this mesh in one part of the suite have in common.
+    [[nodiscard]] Row common_row(const char* part, const std::string& scene) const;
+};
+using EncoderFailure = std::optional<std::string>;
+
+/// Our simplifier and the peers' on one mesh: faces reached, error of the surface and of its
+/// features, time. On one thread; ours on two as well, with the same result.
+[[nodiscard]] EncoderFailure compare_simplifiers(const EncoderContext& context);
+
+/// The whole encoder, from a mesh in memory to a file, each run in a process of its own: time,
+/// memory, and what the file holds and how fast it is read. The same bytes from one thread and two.
+[[nodiscard]] EncoderFailure measure_files(const EncoderContext& context);
+
+} // namespace tactus::bench

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+
+/// The suite `encoder`: our encoder on well-known and on nasty meshes, beside the peers that
+/// simplify. Which meshes, and what is to be reached on each.
+
+#include "host_tools/shapes/shapes.hpp"
+#include "tests/bench/bench_report.hpp"
+#include "tests/bench/encoder_cases.hpp"
+#include "tests/bench/random.hpp"
+#include "tests/bench/suites.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cstdlib>
+#include <utility>
+
+namespace tactus::bench
+{
+
+namespace
+{
+
+/// 1.3 million records a second.
+constexpr double kReadGoal_ns = 1e3 / 1.3;
+
+using MakeMesh = std::function<Result<NamedMesh, SceneError>()>;
+
+MakeMesh from(const SceneSource& source)
+{
+    return [source] { return source_mesh(source); };
+}
+
+MakeMesh shape(Shape shape, std::uint32_t faces)
+{
+    return [shape, faces]
+    {
+        const std::string name(shape_names()[static_cast<std::size_t>(shape)]);
+        return Result<NamedMesh, SceneError>(
+            NamedMesh{fmt::format("{}-{}", name, faces), make_shape(shape, faces).value()});
+    };
+}
+
+MakeMesh uv_sphere(std::uint32_t rings, std::uint32_t segments)
+{
+    return [rings, segments]
+    {
+        return Result<NamedMesh, SceneError>(
+            NamedMesh{fmt::format("uv-sphere-{}x{}", rings, segments),
+                      make_uv_sphere(rings, segments).value()});
+    };
+}
+
+/// What is asked of every mesh.
+EncoderGoals usual_goals()
+{
+    EncoderGoals goals;
+    goals.us_per_face = 18.0;
+    goals.us_per_face_on_two = 10.0;
+    goals.read_ns_per_record = kReadGoal_ns;
+    goals.base_faces = 500.0;
+    return goals;
+}
+
+/// What is asked of the well-known meshes besides; nothing of those that stand in for them.
+EncoderGoals known_goals()
+{
+    EncoderGoals goals = usual_goals();
+    if (std::getenv("TACTUS_MESHES") != nullptr)
+    {
+        goals.rms_to_garland_heckbert = 1.15;
+        goals.max_to_garland_heckbert = 1.0;
+        goals.rms_to_meshoptimizer = 0.75;
+    }
+    return goals;
+}
+
+EncoderGoals with_size(EncoderGoals goals, double bytes_per_face, double fine_bytes_per_face)
+{
+    goals.file_bytes_per_face = bytes_per_face;
+    goals.fine_file_bytes_per_face = fine_bytes_per_face;
+    return goals;
+}
+
+/// From a million faces on: what is fixed no longer hides what grows.
+EncoderGoals large_goals()
+{
+    EncoderGoals goals = with_size(usual_goals(), 4.3, 5.1);
+    goals.peak_bytes_per_face = 350.0;
+    return goals;
+}
+
+EncoderGoals largest_goals()
+{
+    EncoderGoals goals = large_goals();
+    goals.seconds = 90.0;
+    return goals;
+}
+
+std::vector<EncoderMesh> all_meshes()
+{
+    constexpr SceneSource kCow{"cow", "cow.obj", 0, 5'804};
+    constexpr SceneSource kTeapot{"teapot", "teapot.obj", 0, 6'320};
+    constexpr SceneSource kFandisk{"fandisk", "fandisk.obj", 0, 12'946};
+    constexpr SceneSource kIgea{"igea", "igea.ply", 0, 268'686};
+    const EncoderGoals known = known_goals();
+    const EncoderGoals usual = usual_goals();
+    const EncoderGoals scanned = with_size(known, 4.6, 5.4);
+    const EncoderGoals large = large_goals();
+    using enum When;
+    return {
+        {"cow", always, from(kCow), known},
+        {"teapot", always, from(kTeapot), known},
+        {"fandisk", always, from(kFandisk), known, Feature::sharp_edges},
+        {"bunny", always, from(kBunny), scanned, Feature::borders},
+        {"igea", always, from(kIgea), scanned},
+        {"sphere", always, shape(Shape::sphere, 81'920), usual},
+        {"needles", always, uv_sphere(20, 4'000), usual, Feature::none, false},
+        {"poles", always, uv_sphere(3, 4'000), usual, Feature::none, false},
+        {"bumpy-1.1M", full_only, shape(Shape::bumpy_sphere, 1'100'000), large},
+        {"bunny-1.1M", full_only, from(kFineBunny), large, Feature::borders},
+        {"igea-4.3M", named_only, from(kFineIgea), largest_goals()},
+        {"tiny-gear", named_only, shape(Shape::gear, 4'000), {}, Feature::sharp_edges},
+        {"tiny-terrain", named_only, shape(Shape::terrain, 4'000), {}, Feature::borders},
+    };
+}
+
+/// The parts of the suite in the order in which they run. Files first: the processes that measure
+/// memory begin with what this one has.
+constexpr std::array kParts{measure_files, compare_simplifiers};
+
+std::vector<std::string> mesh_names()
+{
+    std::vector<std::string> names;
+    for (const EncoderMesh& mesh : all_meshes())
+    {
+        names.emplace_back(mesh.name);
+    }
+    return names;
+}
+
+std::optional<std::string> run_encoder_suite(const BenchOptions& options, Rows& rows)
+{
+    for (const EncoderMesh& mesh : all_meshes())
+    {
+        if (!is_chosen(options, mesh.name, mesh.when))
+        {
+            continue;
+        }
+        fmt::print(stderr, "{}\n", mesh.name);
+        for (const auto& run_part : kParts)
+        {
+            if (const EncoderFailure failure = run_part({mesh, options, rows}))
+            {
+                return fmt::format("encoder {}: {}", mesh.name, *failure);
+            }
+        }
+    }
+    return std::nullopt;
+}
+
+} // namespace
+
+Row EncoderContext::common_row(const char* part, const std::string& scene) const
+{
+    Row common;
+    common.suite = "encoder";
+    common.part = part;
+    common.test_case = mesh.name;
+    common.scene = scene;
+    common.seed = kSeed;
+    return common;
+}
+
+Suite encoder_suite()
+{
+    return {"encoder", mesh_names, run_encoder_suite, to_columns};
+}
+
+} // namespace tactus::bench
