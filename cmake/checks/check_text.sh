@@ -73,8 +73,9 @@ is_listed() { # is_listed PATH
             name=${1#"$folder"/}
         fi
         pattern="(^|[[:space:](\"/])${name//./\\.}([[:space:])\"]|\$)"
+        # No pipe: grep leaves at the first match, and sed would fail on what it still has to write.
         if [[ -f "$folder/CMakeLists.txt" ]] \
-            && sed 's/#.*//' "$folder/CMakeLists.txt" | grep -qE "$pattern"; then
+            && grep -qE "$pattern" < <(sed 's/#.*//' "$folder/CMakeLists.txt"); then
             return 0
         fi
         [[ "$folder" != . ]] || return 1
