@@ -11,8 +11,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <ctime>
 #include <optional>
 #include <sstream>
+#include <utility>
 
 namespace tactus::bench
 {
@@ -22,8 +24,56 @@ namespace
 
 constexpr std::uint32_t kBaseFaces = 500;
 
+/// Seconds since it was made or last asked.
+class Laps
+{
+public:
+    double next()
+    {
+        const BenchClock::time_point before = std::exchange(last_, BenchClock::now());
+        return seconds(before, last_);
+    }
+
+private:
+    BenchClock::time_point last_ = BenchClock::now();
+};
+
 /// One run, in the child: its times in seconds, then the scene's name.
-Result<std::string, SceneError> encode(const EncoderContext& context, const EncodeJob& job)
+Result<std::string, SceneError> encode(NamedMesh source, const EncodeJob& job)
+{
+    const std::clock_t processor_start = std::clock();
+    Laps laps;
+    PrepareOptions prepare_options;
+    prepare_options.position_bits = job.position_bits;
+    const auto prepared = prepare_mesh(source.mesh, prepare_options);
+    source.mesh = {};
+    if (!prepared)
+    {
+        return SceneError{prepared.error().text};
+    }
+    const double prepare_s = laps.next();
+    SimplifyOptions options;
+    options.base_faces = kBaseFaces;
+    options.threads = job.threads;
+    const auto simplified = simplify(prepared.value().mesh, options);
+    if (!simplified)
+    {
+        return SceneError{simplified.error().text};
+    }
+    const double simplify_s = laps.next();
+    const auto written = write_spm(job.path, prepared.value(), simplified.value(),
+                                   {job.position_bits, kMaxBaseFaces, std::nullopt});
+    if (!written)
+    {
+        return SceneError{written.error().text};
+    }
+    const double write_s = laps.next();
+    const auto processor_s =
+        static_cast<double>(std::clock() - processor_start) / static_cast<double>(CLOCKS_PER_SEC);
+    return fmt::format("{} {} {} {} {}", prepare_s, simplify_s, write_s, processor_s, source.name);
+}
+
+Result<std::string, SceneError> make_and_encode(const EncoderContext& context, const EncodeJob& job)
 {
     std::optional<PinnedCore> pinned;
     if (job.threads == 1)
@@ -35,34 +85,7 @@ Result<std::string, SceneError> encode(const EncoderContext& context, const Enco
     {
         return source.error();
     }
-    const BenchClock::time_point start = BenchClock::now();
-    PrepareOptions prepare_options;
-    prepare_options.position_bits = job.position_bits;
-    const auto prepared = prepare_mesh(source.value().mesh, prepare_options);
-    source.value().mesh = {};
-    if (!prepared)
-    {
-        return SceneError{prepared.error().text};
-    }
-    const BenchClock::time_point ready = BenchClock::now();
-    SimplifyOptions options;
-    options.base_faces = kBaseFaces;
-    options.threads = job.threads;
-    const auto simplified = simplify(prepared.value().mesh, options);
-    if (!simplified)
-    {
-        return SceneError{simplified.error().text};
-    }
-    const BenchClock::time_point simple = BenchClock::now();
-    const auto written = write_spm(job.path, prepared.value(), simplified.value(),
-                                   {job.position_bits, kMaxBaseFaces, std::nullopt});
-    if (!written)
-    {
-        return SceneError{written.error().text};
-    }
-    const BenchClock::time_point end = BenchClock::now();
-    return fmt::format("{} {} {} {}", seconds(start, ready), seconds(ready, simple),
-                       seconds(simple, end), source.value().name);
+    return encode(std::move(source).value(), job);
 }
 
 } // namespace
@@ -72,14 +95,14 @@ Result<EncodeRun, SceneError> encode_in_child(const EncoderContext& context, con
     EncodeRun best;
     for (std::uint32_t pass = 0; pass < job.passes; ++pass)
     {
-        const auto outcome = run_in_child([&] { return encode(context, job); });
+        const auto outcome = run_in_child([&] { return make_and_encode(context, job); });
         if (!outcome)
         {
             return outcome.error();
         }
         EncodeRun run;
         std::istringstream(outcome.value().text) >> run.prepare_s >> run.simplify_s >>
-            run.write_s >> run.scene;
+            run.write_s >> run.processor_s >> run.scene;
         const std::uint64_t peak_bytes = std::max(outcome.value().peak_bytes, best.peak_bytes);
         if (pass == 0 || run.total_s() < best.total_s())
         {

@@ -60,6 +60,7 @@ void add_cost(CaseRows& rows, const EncodeRun& on_one, const EncodeRun& on_two,
     add("of it prepare", on_one.prepare_s, std::nullopt);
     add("simplify", on_one.simplify_s, std::nullopt);
     add("write", on_one.write_s, std::nullopt);
+    add("processor", on_one.processor_s, std::nullopt);
     add("two threads", on_two.total_s(), goals.us_per_face_on_two);
     const std::uint64_t peak_bytes = std::max(on_one.peak_bytes, on_two.peak_bytes);
     rows.add("peak", static_cast<double>(peak_bytes) / faces, "B a face",
