@@ -145,7 +145,7 @@ Result<const Scene*, SceneError> SceneStore::get(const SceneSource& source)
             return *failure;
         }
     }
-    made->tree = std::make_unique<FaceTree>(made->model.faces);
+    made->tree = std::make_unique<test::FaceTree>(made->model.faces);
     scene = std::move(made);
     return scene.get();
 }

@@ -5,8 +5,8 @@
 #include "host_tools/mesh/triangle_mesh.hpp"
 #include "rt_core/base/result.hpp"
 #include "tests/bench/bench_options.hpp"
-#include "tests/bench/face_tree.hpp"
 #include "tests/bench/touch_motion.hpp"
+#include "tests/shared/face_tree.hpp"
 #include "tests/shared/temporary_folder.hpp"
 #include "tests/shared/test_model.hpp"
 
@@ -41,7 +41,7 @@ inline constexpr double kNoiseShare = 0.05;
 struct Scene
 {
     test::TestModel model;
-    std::unique_ptr<FaceTree> tree;
+    std::unique_ptr<test::FaceTree> tree;
 
     [[nodiscard]] TouchScene touch() const { return {*tree, model.diagonal_m}; }
 };

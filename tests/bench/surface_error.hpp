@@ -4,7 +4,7 @@
 
 #include "host_tools/mesh/triangle_mesh.hpp"
 #include "rt_core/math/vec3.hpp"
-#include "tests/bench/face_tree.hpp"
+#include "tests/shared/face_tree.hpp"
 #include "tests/shared/brute_force.hpp"
 
 #include <cstdint>

@@ -55,7 +55,7 @@ void move(std::vector<Vec3>& path, const Vec3& from, const Vec3& to, std::uint32
 /// Where a slide begins that is reached from `from`.
 Vec3 slide_start(const TouchScene& scene, const Vec3& from)
 {
-    const FaceTree::Nearest nearest = scene.tree.nearest(from);
+    const test::FaceTree::Nearest nearest = scene.tree.nearest(from);
     const Vec3 normal = (from - nearest.point_m).normalized();
     return nearest.point_m + wanted_distance_diag(0) * scene.diagonal_m * normal;
 }

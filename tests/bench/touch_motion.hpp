@@ -3,7 +3,7 @@
 #pragma once
 
 #include "rt_core/math/vec3.hpp"
-#include "tests/bench/face_tree.hpp"
+#include "tests/shared/face_tree.hpp"
 
 #include <cstdint>
 #include <vector>
@@ -14,7 +14,7 @@ namespace tactus::bench
 /// A probe and a mesh; all lengths of the motions are shares of the diagonal.
 struct TouchScene
 {
-    const FaceTree& tree;
+    const test::FaceTree& tree;
     double diagonal_m{0.0};
 };
 

@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #include "tests/bench/peers/embree_query.hpp"
 
-#include "tests/bench/closest_point.hpp"
+#include "tests/shared/closest_point.hpp"
 
 #include <cmath>
 #include <embree3/rtcore.h>
@@ -83,10 +83,10 @@ bool EmbreeQuery::visit(RTCPointQueryFunctionArguments* arguments)
     Search& search = *static_cast<Search*>(arguments->userPtr);
     RTCPointQuery& query = *arguments->query;
     const test::Face& face = search.faces[arguments->primID];
-    const Point<float> point{query.x, query.y, query.z};
-    const Point<float> gap =
-        difference(point, closest_on_triangle(point, face[0], face[1], face[2]));
-    const float distance = std::sqrt(dot(gap, gap));
+    const test::Point<float> point{query.x, query.y, query.z};
+    const test::Point<float> gap =
+        test::difference(point, test::closest_on_triangle(point, face[0], face[1], face[2]));
+    const float distance = std::sqrt(test::dot(gap, gap));
     if (!(distance < query.radius))
     {
         return false;

@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-namespace tactus::bench
+namespace tactus::test
 {
 
 template <typename Real>
@@ -84,4 +84,4 @@ template <typename Real>
     return best;
 }
 
-} // namespace tactus::bench
+} // namespace tactus::test

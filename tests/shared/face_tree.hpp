@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/math/vec3.hpp"
+#include "tests/shared/brute_force.hpp"
+
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+namespace tactus::test
+{
+
+/// A plain binary box tree over all faces of a mesh, in double precision: makes motions and knows
+/// true distances without any code of what is tested or measured.
+class FaceTree
+{
+public:
+    struct Nearest
+    {
+        double distance_m{std::numeric_limits<double>::infinity()};
+        Vec3 point_m{0.0, 0.0, 0.0};
+        std::uint32_t face{0};
+    };
+
+    /// `faces`, at least one, and `bounds_m`, one a face or none at all, must outlive the tree.
+    /// n log n; 4 M faces take some seconds.
+    explicit FaceTree(const std::vector<Face>& faces, std::span<const double> bounds_m = {});
+
+    [[nodiscard]] Nearest nearest(const Vec3& point_m) const;
+    /// The least over the faces of distance - bound, or the first that is found to be at most
+    /// `enough_m`.
+    [[nodiscard]] double least_excess(const Vec3& point_m, double enough_m) const;
+
+    [[nodiscard]] Vec3 low_m() const { return nodes_.front().low; }
+    [[nodiscard]] Vec3 high_m() const { return nodes_.front().high; }
+
+private:
+    static constexpr std::uint32_t kLeafFaces = 8;
+
+    /// A leaf when `right` is 0; its left child is otherwise the next node.
+    struct Node
+    {
+        Vec3 low{0.0, 0.0, 0.0};
+        Vec3 high{0.0, 0.0, 0.0};
+        double bound{0.0}; ///< The largest of its faces.
+        std::uint32_t right{0};
+        std::uint32_t first{0};
+        std::uint32_t count{0};
+    };
+    /// For the least distance, or distance - bound; it ends as soon as that is `enough`.
+    struct Search
+    {
+        Vec3 point_m;
+        bool subtracts_bounds{false};
+        double enough{-std::numeric_limits<double>::infinity()};
+        double least{std::numeric_limits<double>::infinity()};
+        Nearest best{};
+    };
+
+    void build(std::uint32_t first, std::uint32_t count);
+    void find_box(Node& node) const;
+    void search(std::uint32_t index, Search& sought) const;
+    void search_leaf(const Node& node, Search& sought) const;
+    [[nodiscard]] double lower_bound(std::uint32_t index, const Search& sought) const;
+    [[nodiscard]] double bound_of(std::uint32_t face) const
+    {
+        return bounds_m_.empty() ? 0.0 : bounds_m_[face];
+    }
+
+    const std::vector<Face>& faces_;
+    std::span<const double> bounds_m_;
+    std::vector<std::uint32_t> order_;
+    std::vector<Node> nodes_;
+};
+
+} // namespace tactus::test
