@@ -33,20 +33,7 @@ test::TestModel described(const std::string& name, const PreparedMesh& prepared)
     model.name = name;
     model.diagonal_m = prepared.diagonal_m;
     model.origin_m = prepared.origin_m;
-    model.faces.reserve(prepared.mesh.faces.size());
-    const auto quantum = static_cast<float>(prepared.quantum_m);
-    for (const auto& corners : prepared.mesh.faces)
-    {
-        test::Face& face = model.faces.emplace_back();
-        for (std::size_t i = 0; i < 3; ++i)
-        {
-            for (std::size_t axis = 0; axis < 3; ++axis)
-            {
-                const std::int32_t place = prepared.mesh.positions[corners[i]][axis];
-                face[i][axis] = static_cast<float>(place) * quantum;
-            }
-        }
-    }
+    model.faces = test::faces_on_grid(prepared);
     return model;
 }
 

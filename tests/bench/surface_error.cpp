@@ -67,7 +67,7 @@ std::vector<test::Face> faces_of(const TriangleMesh& mesh)
 }
 
 /// Adds what the distances of points to a surface amount to.
-void add_distances(const std::vector<Vec3>& points, const FaceTree& tree, SurfaceError& sum)
+void add_distances(const std::vector<Vec3>& points, const test::FaceTree& tree, SurfaceError& sum)
 {
     for (const Vec3& point : points)
     {
@@ -118,7 +118,7 @@ SurfaceError SurfaceReference::error_of(const TriangleMesh& other) const
     const std::vector<Vec3> others = surface_samples(other, count, kSeed + 1);
     const std::vector<test::Face> faces = faces_of(other);
     SurfaceError error;
-    add_distances(samples_, FaceTree(faces), error);
+    add_distances(samples_, test::FaceTree(faces), error);
     add_distances(others, tree_, error);
     error.rms = std::sqrt(error.rms / static_cast<double>(samples_.size() + others.size()));
     return error;

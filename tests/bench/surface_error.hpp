@@ -40,7 +40,7 @@ public:
 private:
     std::vector<Vec3> samples_;
     std::vector<test::Face> faces_;
-    FaceTree tree_;
+    test::FaceTree tree_;
 };
 
 } // namespace tactus::bench

@@ -3,7 +3,6 @@
 #include "tests/shared/test_model.hpp"
 
 #include "host_tools/encode/write_spm.hpp"
-#include "host_tools/mesh/prepare.hpp"
 #include "host_tools/shapes/shapes.hpp"
 #include "host_tools/simplify/simplify.hpp"
 #include "tests/shared/temporary_folder.hpp"
@@ -50,20 +49,7 @@ TestModel make(const std::string& name, const TriangleMesh& mesh, std::uint32_t 
     {
         give_up(name, written.error().text);
     }
-    const QuantisedMesh& source = prepared.value().mesh;
-    const auto quantum = static_cast<float>(prepared.value().quantum_m);
-    for (const auto& corners : source.faces)
-    {
-        Face face{};
-        for (std::size_t i = 0; i < 3; ++i)
-        {
-            for (std::size_t axis = 0; axis < 3; ++axis)
-            {
-                face[i][axis] = static_cast<float>(source.positions[corners[i]][axis]) * quantum;
-            }
-        }
-        model.faces.push_back(face);
-    }
+    model.faces = faces_on_grid(prepared.value());
     model.diagonal_m = prepared.value().diagonal_m;
     model.origin_m = prepared.value().origin_m;
     return model;
@@ -101,6 +87,26 @@ const TestModel& shape_model(Shape shape, std::uint32_t faces)
 }
 
 } // namespace
+
+std::vector<Face> faces_on_grid(const PreparedMesh& prepared)
+{
+    const auto quantum = static_cast<float>(prepared.quantum_m);
+    std::vector<Face> faces;
+    faces.reserve(prepared.mesh.faces.size());
+    for (const auto& corners : prepared.mesh.faces)
+    {
+        Face& face = faces.emplace_back();
+        for (std::size_t i = 0; i < 3; ++i)
+        {
+            for (std::size_t axis = 0; axis < 3; ++axis)
+            {
+                const std::int32_t place = prepared.mesh.positions[corners[i]][axis];
+                face[i][axis] = static_cast<float>(place) * quantum;
+            }
+        }
+    }
+    return faces;
+}
 
 const TestModel& test_model(const std::string& name, const TriangleMesh& mesh,
                             std::uint32_t base_faces)

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "host_tools/mesh/prepare.hpp"
 #include "host_tools/mesh/triangle_mesh.hpp"
 #include "tests/shared/brute_force.hpp"
 
@@ -22,6 +23,9 @@ struct TestModel
     double diagonal_m{0.0};
     std::array<double, 3> origin_m{}; ///< Of the model's frame in the source's.
 };
+
+/// The faces of a mesh on its grid, in metres of the model's frame; exact.
+[[nodiscard]] std::vector<Face> faces_on_grid(const PreparedMesh& prepared);
 
 /// Prepares, simplifies and encodes a mesh into a file of the test's temporary folder; made once a
 /// name and process. Ends the test program with a line when a step refuses.
