@@ -21,20 +21,7 @@ std::unique_ptr<EncodedModel> encode_source(const std::string& name,
     {
         throw std::runtime_error(mesh.error().text);
     }
-    PrepareOptions options;
-    options.position_bits = position_bits;
-    auto prepared = prepare_mesh(mesh.value(), options);
-    if (!prepared)
-    {
-        throw std::runtime_error(prepared.error().text);
-    }
-    auto simplification = simplify(prepared.value().mesh, {100, 1, {}});
-    if (!simplification)
-    {
-        throw std::runtime_error(simplification.error().text);
-    }
-    return encode_mesh(name, std::move(prepared).value(), std::move(simplification).value(),
-                       position_bits);
+    return encode_source(name, mesh.value(), 100, position_bits);
 }
 
 std::unique_ptr<EncodedModel> encode_shape(const std::string& name, std::uint32_t faces,
@@ -59,6 +46,25 @@ ScratchFolder::~ScratchFolder()
 {
     std::error_code ignored;
     std::filesystem::remove_all(path_, ignored);
+}
+
+std::unique_ptr<EncodedModel> encode_source(std::string name, const TriangleMesh& mesh,
+                                            std::uint32_t base_faces, unsigned position_bits)
+{
+    PrepareOptions options;
+    options.position_bits = position_bits;
+    auto prepared = prepare_mesh(mesh, options);
+    if (!prepared)
+    {
+        throw std::runtime_error(prepared.error().text);
+    }
+    auto simplification = simplify(prepared.value().mesh, {base_faces, 1, {}});
+    if (!simplification)
+    {
+        throw std::runtime_error(simplification.error().text);
+    }
+    return encode_mesh(std::move(name), std::move(prepared).value(),
+                       std::move(simplification).value(), position_bits);
 }
 
 std::unique_ptr<EncodedModel> encode_mesh(std::string name, PreparedMesh prepared,

@@ -46,6 +46,11 @@ struct EncodedModel
     [[nodiscard]] std::filesystem::path path() const { return folder.path() / "model.spm"; }
 };
 
+/// Prepares and simplifies a mesh, then the same as encode_mesh().
+[[nodiscard]] std::unique_ptr<EncodedModel>
+encode_source(std::string name, const TriangleMesh& mesh, std::uint32_t base_faces,
+              unsigned position_bits = kMinPositionBits);
+
 /// Writes a model and reads it back; throws in words when any step is refused.
 [[nodiscard]] std::unique_ptr<EncodedModel> encode_mesh(std::string name, PreparedMesh prepared,
                                                         Simplification simplification,

@@ -27,9 +27,7 @@ using test::Random;
 
 std::unique_ptr<EncodedModel> encode(const std::string& name, const TriangleMesh& mesh)
 {
-    auto prepared = prepare_mesh(mesh, {}).value();
-    auto simplification = simplify(prepared.mesh, {60, 1, {}}).value();
-    return encode_mesh(name, std::move(prepared), std::move(simplification), kMinPositionBits);
+    return encode_source(name, mesh, 60);
 }
 
 /// Smooth, sharp, open, of genus 1, with needles and poles, of two components, far from the origin.

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "tests/shared/certificate_refinement.hpp"
+
+#include "tests/shared/closed_cut.hpp"
+#include "tests/shared/closest_point.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <queue>
+
+namespace tactus::test
+{
+
+/// One question: the cut so far, and its faces by their lower bounds.
+class CertificateRefinement::Run
+{
+public:
+    Run(const CertificateRefinement& owner, const Vec3& point_m)
+        : owner_(owner)
+        , model_(owner.model_)
+        , point_m_{point_m.x(), point_m.y(), point_m.z()}
+        , cut_(model_)
+    {
+        for (std::uint32_t face = 0; face < model_.header().counts().base_faces; ++face)
+        {
+            push({face});
+        }
+    }
+
+    /// With a radius until all faces within it are exact, without until the nearest face is.
+    [[nodiscard]] Answer finish(std::optional<double> radius_m)
+    {
+        Answer answer{std::numeric_limits<double>::infinity(), {}};
+        while (!candidates_.empty() && !(candidates_.top().lower_m > radius_m.value_or(kNoLimit)))
+        {
+            const Candidate top = candidates_.top();
+            candidates_.pop();
+            if (cut_.replay().state(top.face) != top.state)
+            {
+                continue; // Split since.
+            }
+            if (model_.error_of(top.face, top.state) != 0)
+            {
+                split(top, answer);
+                continue;
+            }
+            answer.distance_m = std::min(answer.distance_m, top.lower_m);
+            if (!radius_m)
+            {
+                break;
+            }
+        }
+        return answer;
+    }
+
+private:
+    static constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+
+    struct Candidate
+    {
+        double lower_m{0.0};
+        FaceId face{};
+        FaceState state{};
+
+        /// Of equals the lower id comes first.
+        [[nodiscard]] bool operator<(const Candidate& other) const
+        {
+            return lower_m != other.lower_m ? lower_m > other.lower_m : face > other.face;
+        }
+    };
+
+    void push(FaceId face)
+    {
+        const FaceState state = cut_.replay().state(face);
+        const double bound_m = static_cast<double>(error_in_quanta(model_.error_of(face, state))) *
+                               static_cast<double>(model_.header().quantum_m());
+        candidates_.push({distance_to(face) - bound_m, face, state});
+    }
+
+    [[nodiscard]] double distance_to(FaceId face) const
+    {
+        std::array<Point<double>, 3> corners{};
+        for (std::size_t i = 0; i < 3; ++i)
+        {
+            const Vec3f& at_m = model_.position_m(cut_.replay().corners(face)[i]);
+            corners[i] = {static_cast<double>(at_m[0]), static_cast<double>(at_m[1]),
+                          static_cast<double>(at_m[2])};
+        }
+        const Point<double> gap =
+            difference(point_m_, closest_on_triangle(point_m_, corners[0], corners[1], corners[2]));
+        return std::sqrt(dot(gap, gap));
+    }
+
+    void split(const Candidate& face, Answer& answer)
+    {
+        const RecordId next =
+            face.state.is_base()
+                ? owner_.first_splits_[face.face.value]
+                : RecordId{model_.record(face.state.record()).next[face.state.place()]};
+        for (const RecordId done : cut_.split_with_closure(next))
+        {
+            answer.splits.push_back(done);
+            const VsplitRecord& record = model_.record(done);
+            for (std::uint32_t place = 0; place < record.star_end(); ++place)
+            {
+                if (!record.star[place].is_none() &&
+                    cut_.replay().state(record.star[place]) == FaceState::after(done, place))
+                {
+                    push(record.star[place]);
+                }
+            }
+        }
+    }
+
+    const CertificateRefinement& owner_;
+    const DecodedModel& model_;
+    Point<double> point_m_;
+    ClosedCut cut_;
+    std::priority_queue<Candidate> candidates_;
+};
+
+CertificateRefinement::CertificateRefinement(const DecodedModel& model)
+    : model_(model), first_splits_(model.header().counts().base_faces)
+{
+    for (std::uint32_t id = 0; id < model.header().counts().records; ++id)
+    {
+        const VsplitRecord& record = model.record({id});
+        for (std::uint32_t i = 0; i < record.fan_size; ++i)
+        {
+            if (record.before[i].is_base())
+            {
+                first_splits_[record.star[2 + i].value] = {id};
+            }
+        }
+    }
+}
+
+CertificateRefinement::Answer CertificateRefinement::find_distance(const Vec3& point_m) const
+{
+    return Run(*this, point_m).finish(std::nullopt);
+}
+
+CertificateRefinement::Answer CertificateRefinement::certify_ball(const Vec3& center_m,
+                                                                  double radius_m) const
+{
+    return Run(*this, center_m).finish(radius_m);
+}
+
+} // namespace tactus::test

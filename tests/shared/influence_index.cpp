@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "tests/shared/influence_index.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <stdexcept>
+
+namespace tactus::test
+{
+
+namespace
+{
+
+/// A zone in quanta, and how it meets boxes.
+struct BallInQuanta
+{
+    QuantumBall ball;
+
+    [[nodiscard]] bool meets(const QuantumBox& box) const
+    {
+        double distance_sq = 0.0;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+        {
+            const double nearest = std::clamp(ball.center[axis], static_cast<double>(box.low[axis]),
+                                              static_cast<double>(box.high[axis]));
+            distance_sq += (ball.center[axis] - nearest) * (ball.center[axis] - nearest);
+        }
+        return distance_sq <= ball.radius * ball.radius;
+    }
+
+    [[nodiscard]] std::uint64_t chunks_of(const IndexPage& page, const QuantumBox& page_box) const
+    {
+        return chunks_meeting(page, page_box, ball);
+    }
+};
+
+struct BoxInQuanta
+{
+    std::array<double, 3> low{};
+    std::array<double, 3> high{};
+
+    [[nodiscard]] bool meets(const QuantumBox& box) const
+    {
+        bool overlaps = true;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+        {
+            overlaps = overlaps && low[axis] <= static_cast<double>(box.high[axis]) &&
+                       high[axis] >= static_cast<double>(box.low[axis]);
+        }
+        return overlaps;
+    }
+
+    [[nodiscard]] std::uint64_t chunks_of(const IndexPage& page, const QuantumBox& page_box) const
+    {
+        std::uint64_t chunks = 0;
+        for (std::uint32_t i = 0; i < page.chunks; ++i)
+        {
+            QuantumBox box;
+            for (std::size_t axis = 0; axis < 3; ++axis)
+            {
+                const auto step =
+                    static_cast<std::int32_t>(index_step(page_box.low[axis], page_box.high[axis]));
+                box.low[axis] = page_box.low[axis] + step * page.low[axis][i];
+                box.high[axis] = page_box.low[axis] + step * page.high[axis][i];
+            }
+            chunks |= meets(box) ? std::uint64_t{1} << i : 0U;
+        }
+        return chunks;
+    }
+};
+
+BallInQuanta in_quanta(const BallZone& zone, double per_metre)
+{
+    const Vec3 center = zone.center_m * per_metre;
+    return {{{center.x(), center.y(), center.z()}, zone.radius_m * per_metre}};
+}
+
+BoxInQuanta in_quanta(const BoxZone& zone, double per_metre)
+{
+    const Vec3 low = zone.low_m * per_metre;
+    const Vec3 high = zone.high_m * per_metre;
+    return {{low.x(), low.y(), low.z()}, {high.x(), high.y(), high.z()}};
+}
+
+template <typename ZoneInQuanta>
+InfluenceIndex::Named find_named(const ModelHeader& header, const std::vector<IndexPage>& pages,
+                                 const ZoneInQuanta& zone)
+{
+    InfluenceIndex::Named named;
+    for (std::uint32_t page = 0; page < pages.size(); ++page)
+    {
+        const QuantumBox box = header.index_entry({page}).box;
+        if (!zone.meets(box))
+        {
+            continue;
+        }
+        named.pages.push_back({page});
+        for (std::uint64_t left = zone.chunks_of(pages[page], box); left != 0; left &= left - 1)
+        {
+            const auto i = static_cast<std::uint32_t>(std::countr_zero(left));
+            named.chunks.push_back({(page << kChunksPerIndexPageLog2) + i});
+        }
+    }
+    return named;
+}
+
+} // namespace
+
+InfluenceIndex::InfluenceIndex(const ModelStore& store)
+    : header_(store.header()), pages_(store.header().counts().index_pages())
+{
+    std::vector<std::byte> coded;
+    std::array<ChunkEntry, kChunksPerIndexPage> entries{};
+    for (std::uint32_t page = 0; page < pages_.size(); ++page)
+    {
+        if (!store.read({ContentKind::index_page, page}, coded) ||
+            !parse_index_page(coded, header_.counts(), {page}, pages_[page], entries))
+        {
+            throw std::runtime_error("an index page can't be read");
+        }
+    }
+}
+
+InfluenceIndex::Named InfluenceIndex::named_by(const Zone& zone_m) const
+{
+    const double per_metre = 1.0 / static_cast<double>(header_.quantum_m());
+    return std::visit([&](const auto& zone)
+                      { return find_named(header_, pages_, in_quanta(zone, per_metre)); },
+                      zone_m);
+}
+
+} // namespace tactus::test
