@@ -115,33 +115,48 @@ std::uint32_t FrameRig::settle(const Vec3& goal_m, const Budgets& budgets, std::
     return frames;
 }
 
-void load_everything(FrameRig& rig)
+void load_region(FrameRig& rig, const RankedRegion& region)
 {
     Model& model = rig.model();
-    const std::uint32_t chunks = model.header.counts().chunks();
-    const RankedRegion everywhere{ModelId{0}, Vec3(0.0, 0.0, 0.0), 1e3, 0};
     Budgets budgets;
     budgets.requests = 64;
     budgets.regions = 64;
-    WorkCounters work;
     FrameFault faults = FrameFault::none;
-    for (std::uint32_t frame = 1; frame < 10'000 && model.pages.used() < chunks; ++frame)
+    const std::uint32_t frames_a_round = model.header.counts().index_pages() / budgets.regions + 1;
+    // Quiet for two rounds of the index: in the first, pages that came with the last chunks.
+    std::uint32_t quiet = 0;
+    std::uint32_t frame = 1;
+    for (; frame < 10'000 && quiet <= 2 * frames_a_round; ++frame)
     {
-        work = WorkCounters{};
+        WorkCounters work;
         model.cache.adopt_arrivals(1'000, ChunkCache::kFirstFrame + frame, work);
-        model.cache.request_missing({&everywhere, 1}, budgets, ChunkCache::kFirstFrame + frame,
-                                    work, faults);
+        model.cache.request_missing({&region, 1}, budgets, ChunkCache::kFirstFrame + frame, work,
+                                    faults);
         rig.deliver();
+        const bool is_quiet =
+            work.requests == 0 && work.pages_adopted == 0 && rig.courier().open_wishes() == 0;
+        quiet = is_quiet ? quiet + 1 : 0;
     }
-    if (model.pages.used() != chunks)
+    if (frame == 10'000 || (faults & FrameFault::cache_full) != FrameFault::none)
     {
         give_up("not every chunk came");
     }
     // What was linked after its page had been handed over.
+    const std::uint32_t chunks = model.header.counts().chunks();
     for (std::uint32_t round = 0; round <= chunks / kMaxLinkUpdatesPerFrame + 1; ++round)
     {
+        WorkCounters work;
         rig.deliver();
         model.cache.adopt_arrivals(1'000, ChunkCache::kFirstFrame + 10'000, work);
+    }
+}
+
+void load_everything(FrameRig& rig)
+{
+    load_region(rig, {ModelId{0}, Vec3(0.0, 0.0, 0.0), 1e3, 0});
+    if (rig.model().pages.used() != rig.model().header.counts().chunks())
+    {
+        give_up("not every chunk came");
     }
 }
 

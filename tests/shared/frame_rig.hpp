@@ -72,6 +72,10 @@ private:
     std::vector<ToolState> tools_;
 };
 
+/// Loads what a region asks for, without a frame: everything that the cache wishes for it, until it
+/// has nothing left to wish for. The pools must hold that.
+void load_region(FrameRig& rig, const RankedRegion& region);
+
 /// Loads every chunk of a rig's model; its pools must hold them all.
 void load_everything(FrameRig& rig);
 

@@ -42,7 +42,7 @@ std::unique_ptr<EncodedModel> SampleMesh::encode() const
 
 std::vector<SampleMesh> generated_meshes()
 {
-    return {{"bumpy_sphere", nullptr, shaped<Shape::bumpy_sphere, 4'000>, 100},
+    return {{"bumpy_sphere", nullptr, shaped<Shape::bumpy_sphere, 20'000>, 100},
             {"torus", nullptr, shaped<Shape::torus, 3'000>, 100},
             {"terrain", nullptr, shaped<Shape::terrain, 3'000>, 100},
             {"gear", nullptr, shaped<Shape::gear, 3'000>, 100},

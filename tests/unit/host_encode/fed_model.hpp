@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "platform/pool_memory.hpp"
+#include "rt_core/frame/model.hpp"
+#include "transport/store/model_store.hpp"
+
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace tactus::test
+{
+
+/// The controller's model, with base mesh and a choice of chunks put in by hand and nothing else.
+class FedModel
+{
+public:
+    /// Parses and links the chunks. The store must outlive it.
+    FedModel(const ModelStore& store, std::span<const ChunkId> chunks);
+
+    /// Splits every record that is linked.
+    void split_linked();
+
+    [[nodiscard]] std::uint32_t linked_records() const;
+    /// Whether the face is active in this state and no record splits it further.
+    [[nodiscard]] bool is_exact(FaceId face, FaceState state) const;
+
+private:
+    void make_model(std::uint32_t chunks);
+    void feed(ChunkId chunk, std::uint32_t slot);
+
+    const ModelStore& store_;
+    std::optional<PoolMemory> memory_;
+    std::optional<Arena> arena_;
+    std::optional<Model> model_;
+    std::vector<ChunkId> chunks_;
+};
+
+} // namespace tactus::test

@@ -1,0 +1,297 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+
+/// Regions at full resolution: with the chunks that the two-level index names for a zone, and none
+/// besides, the controller's linker and forest bring back every source face that the zone touches.
+
+#include "host_tools/encode/replay.hpp"
+#include "tests/shared/frame_rig.hpp"
+#include "tests/shared/influence_index.hpp"
+#include "tests/unit/host_encode/fed_model.hpp"
+#include "tests/unit/host_encode/sample_meshes.hpp"
+#include "tests/unit/rt_core/support.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <memory>
+#include <optional>
+#include <set>
+#include <sstream>
+#include <stdexcept>
+
+namespace tactus::test
+{
+
+namespace
+{
+
+constexpr int kZones = 40;
+
+/// A face as full refinement leaves it.
+struct SourceFace
+{
+    FaceId id;
+    FaceState state;
+    Face corners_m;
+};
+
+std::vector<SourceFace> source_faces(const DecodedModel& model)
+{
+    Replay replay(model);
+    for (const RecordId id : in_dependency_order(model))
+    {
+        if (const auto fault = replay.split(id))
+        {
+            throw std::runtime_error(*fault);
+        }
+    }
+    std::vector<SourceFace> faces;
+    for (std::uint32_t i = 0; i < model.header().counts().face_ids(); ++i)
+    {
+        if (replay.is_active({i}))
+        {
+            SourceFace& face = faces.emplace_back(SourceFace{{i}, replay.state({i}), {}});
+            for (std::size_t corner = 0; corner < 3; ++corner)
+            {
+                face.corners_m[corner] = model.position_m(replay.corners({i})[corner]);
+            }
+        }
+    }
+    return faces;
+}
+
+/// What is left of a polygon on the side of an axis-aligned plane where sign x coordinate is at
+/// most sign x limit.
+std::vector<Vec3> clipped(const std::vector<Vec3>& polygon, Eigen::Index axis, double limit,
+                          double sign)
+{
+    std::vector<Vec3> left;
+    for (std::size_t i = 0; i < polygon.size(); ++i)
+    {
+        const Vec3& a = polygon[i];
+        const Vec3& b = polygon[(i + 1) % polygon.size()];
+        const double beyond_a = sign * (a[axis] - limit);
+        const double beyond_b = sign * (b[axis] - limit);
+        if (beyond_a <= 0.0)
+        {
+            left.push_back(a);
+        }
+        if (beyond_a * beyond_b < 0.0)
+        {
+            left.push_back(a + beyond_a / (beyond_a - beyond_b) * (b - a));
+        }
+    }
+    return left;
+}
+
+/// Not host_tools/encode's decision: brute force in extended precision, or cutting.
+bool is_touched(const Zone& zone, const Face& face)
+{
+    if (const auto* ball = std::get_if<BallZone>(&zone))
+    {
+        return brute_distance(ball->center_m, face) <= static_cast<long double>(ball->radius_m);
+    }
+    const auto& box = std::get<BoxZone>(zone);
+    std::vector<Vec3> polygon{to_vec3(face[0]), to_vec3(face[1]), to_vec3(face[2])};
+    for (Eigen::Index axis = 0; axis < 3; ++axis)
+    {
+        polygon = clipped(polygon, axis, box.high_m[axis], 1.0);
+        polygon = clipped(polygon, axis, box.low_m[axis], -1.0);
+    }
+    return !polygon.empty();
+}
+
+/// A corner of the source, the middle of an edge, a corner of the model's box or of one of the
+/// header's regions, or a place beside a corner of the source.
+Vec3 random_center(const ModelHeader& header, const std::vector<SourceFace>& faces, Random& random)
+{
+    const Face& face = faces[random.below(static_cast<std::uint32_t>(faces.size()))].corners_m;
+    const double quantum_m = static_cast<double>(header.quantum_m());
+    Vec3 place;
+    switch (random.below(5))
+    {
+    case 0:
+        return to_vec3(face[0]);
+    case 1:
+        return 0.5 * (to_vec3(face[0]) + to_vec3(face[1]));
+    case 2:
+        for (Eigen::Index axis = 0; axis < 3; ++axis)
+        {
+            const auto at = static_cast<std::size_t>(axis);
+            place[axis] = random.one_in(2) ? 0.0 : header.fields().extent_quanta[at] * quantum_m;
+        }
+        return place;
+    case 3:
+        place = to_vec3(face[0]) / (header.fields().region_cell_quanta * quantum_m);
+        return place.array().round().matrix() * (header.fields().region_cell_quanta * quantum_m);
+    default:
+        return to_vec3(face[0]) + random.in_cube(0.05 * header.diagonal_m());
+    }
+}
+
+/// From less than a face to the whole model; a box may be a slab, a rod or a point.
+Zone random_zone(const ModelHeader& header, const std::vector<SourceFace>& faces, Random& random)
+{
+    const Vec3 center_m = random_center(header, faces, random);
+    const auto any_size = [&]
+    { return header.diagonal_m() * std::pow(10.0, random.between(-4, 0)); };
+    if (random.one_in(2))
+    {
+        return BallZone{center_m, any_size()};
+    }
+    const Vec3 half_m(random.one_in(8) ? 0.0 : any_size(), any_size(), any_size());
+    return BoxZone{center_m - half_m, center_m + half_m};
+}
+
+std::string name_of(const Zone& zone)
+{
+    std::ostringstream text;
+    if (const auto* ball = std::get_if<BallZone>(&zone))
+    {
+        text << "ball at " << ball->center_m.transpose() << ", radius " << ball->radius_m;
+    }
+    else
+    {
+        const auto& box = std::get<BoxZone>(zone);
+        text << "box from " << box.low_m.transpose() << " to " << box.high_m.transpose();
+    }
+    return text.str();
+}
+
+/// A model, its index and the faces that it must give back.
+struct Subject
+{
+    explicit Subject(std::unique_ptr<EncodedModel> encoded)
+        : model(std::move(encoded)), index(*model->store), faces(source_faces(*model->decoded))
+    {
+    }
+
+    [[nodiscard]] std::vector<SourceFace> touched_by(const Zone& zone) const
+    {
+        std::vector<SourceFace> touched;
+        std::copy_if(faces.begin(), faces.end(), std::back_inserter(touched),
+                     [&](const SourceFace& face) { return is_touched(zone, face.corners_m); });
+        return touched;
+    }
+
+    /// How many of the faces aren't there when all that links of these chunks is split.
+    [[nodiscard]] std::size_t missing(const std::vector<SourceFace>& wanted,
+                                      std::span<const ChunkId> chunks) const
+    {
+        FedModel fed(*model->store, chunks);
+        fed.split_linked();
+        return static_cast<std::size_t>(std::count_if(
+            wanted.begin(), wanted.end(),
+            [&](const SourceFace& face) { return !fed.is_exact(face.id, face.state); }));
+    }
+
+    std::unique_ptr<EncodedModel> model;
+    InfluenceIndex index;
+    std::vector<SourceFace> faces;
+};
+
+class Regions : public testing::TestWithParam<SampleMesh>
+{
+protected:
+    void SetUp() override
+    {
+        auto model = GetParam().encode();
+        if (model == nullptr)
+        {
+            GTEST_SKIP() << "TACTUS_MESHES is not set";
+        }
+        subject_.emplace(std::move(model));
+    }
+
+    [[nodiscard]] const ModelHeader& header() const { return subject_->model->store->header(); }
+
+    std::optional<Subject> subject_;
+    Random random_{77};
+};
+
+TEST_P(Regions, come_back_whole_from_the_chunks_that_the_index_names_and_no_other)
+{
+    std::size_t touched_sum = 0;
+    std::size_t spared_sum = 0;
+    for (int i = 0; i < kZones; ++i)
+    {
+        const Zone zone = random_zone(header(), subject_->faces, random_);
+        const std::vector<SourceFace> touched = subject_->touched_by(zone);
+        const std::vector<ChunkId> chunks = subject_->index.named_by(zone).chunks;
+        EXPECT_EQ(subject_->missing(touched, chunks), 0U)
+            << "of " << touched.size() << ", zone " << i << ": " << name_of(zone);
+        touched_sum += touched.size();
+        spared_sum += header().counts().chunks() - chunks.size();
+    }
+    EXPECT_GT(touched_sum, 0U);
+    EXPECT_GT(spared_sum, 0U); // An index that names everything would miss nothing either.
+}
+
+TEST_P(Regions, lack_a_face_when_the_chunk_that_brings_it_is_left_out)
+{
+    std::size_t tried = 0;
+    for (int i = 0; i < kZones; ++i)
+    {
+        const Zone zone = random_zone(header(), subject_->faces, random_);
+        const std::vector<SourceFace> touched = subject_->touched_by(zone);
+        const auto split_face =
+            std::find_if(touched.begin(), touched.end(),
+                         [](const SourceFace& face) { return !face.state.is_base(); });
+        if (split_face == touched.end())
+        {
+            continue;
+        }
+        std::vector<ChunkId> chunks = subject_->index.named_by(zone).chunks;
+        ASSERT_EQ(std::erase(chunks, chunk_of(split_face->state.record())), 1U) << name_of(zone);
+        EXPECT_GT(subject_->missing(touched, chunks), 0U) << name_of(zone);
+        ++tried;
+    }
+    EXPECT_GT(tried, 0U);
+}
+
+TEST_P(Regions, are_asked_for_by_the_controller_as_the_index_names_them)
+{
+    TestModel model;
+    model.name = "model";
+    model.path = subject_->model->path();
+    model.diagonal_m = header().diagonal_m();
+    for (int i = 0; i < 5; ++i)
+    {
+        FrameRig rig(model, {std::size_t{64} << 20U, std::size_t{16} << 20U, {}, {}, 4});
+        const BallZone ball{random_center(header(), subject_->faces, random_),
+                            header().diagonal_m() * std::pow(10.0, random_.between(-3, -0.5))};
+        load_region(rig, {ModelId{0}, ball.center_m, ball.radius_m, 0});
+        std::set<ChunkId> here;
+        for (std::uint32_t chunk = 0; chunk < header().counts().chunks(); ++chunk)
+        {
+            if (rig.model().pages.find({chunk}) != IdTable::kAbsent)
+            {
+                here.insert({chunk});
+            }
+        }
+        const auto named = subject_->index.named_by(ball).chunks;
+        EXPECT_EQ(here, std::set<ChunkId>(named.begin(), named.end())) << name_of(ball);
+    }
+}
+
+std::vector<SampleMesh> smaller_known_meshes()
+{
+    std::vector<SampleMesh> meshes = known_meshes();
+    meshes.pop_back();
+    return meshes;
+}
+
+std::string mesh_name(const testing::TestParamInfo<SampleMesh>& mesh)
+{
+    return mesh.param.name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Generated, Regions, testing::ValuesIn(generated_meshes()), mesh_name);
+INSTANTIATE_TEST_SUITE_P(WellKnown, Regions, testing::ValuesIn(smaller_known_meshes()), mesh_name);
+
+} // namespace
+
+} // namespace tactus::test
