@@ -18,11 +18,11 @@ namespace
 
 constexpr double kFlat_quanta = 0.25;
 
-/// Of a raster with about 3 million points, between 4 and 16.
-std::uint32_t fineness_for(std::size_t faces)
+/// Of a raster with about so many points, between 4 and 16.
+std::uint32_t fineness_for(std::size_t faces, std::size_t points)
 {
     std::uint32_t fineness = 16;
-    while (fineness > 4 && faces * (fineness + 1) * (fineness + 2) / 2 > 3'000'000)
+    while (fineness > 4 && faces * (fineness + 1) * (fineness + 2) / 2 > points)
     {
         --fineness;
     }
@@ -31,11 +31,12 @@ std::uint32_t fineness_for(std::size_t faces)
 
 /// By face: the largest distance of a point of the source that is nearest to it; below 0 when there
 /// is no such point.
-std::vector<double> true_errors(const std::vector<Face>& source, const std::vector<Face>& cut)
+std::vector<double> true_errors(const std::vector<Face>& source, const std::vector<Face>& cut,
+                                std::size_t points)
 {
     const FaceTree tree(cut);
     std::vector<double> errors_m(cut.size(), -1.0);
-    visit_raster(source, fineness_for(source.size()),
+    visit_raster(source, fineness_for(source.size(), points),
                  [&](const Vec3& point_m)
                  {
                      const FaceTree::Nearest nearest = tree.nearest(point_m);
@@ -53,10 +54,11 @@ double area_of(const Face& face)
 } // namespace
 
 CertificateFigures measure_certificate(const PreparedMesh& prepared,
-                                       const Simplification& simplification, std::size_t faces)
+                                       const Simplification& simplification, std::size_t faces,
+                                       std::size_t points)
 {
     const CertifiedCut cut = cut_on_the_way(prepared, simplification, faces);
-    const std::vector<double> true_m = true_errors(faces_on_grid(prepared), cut.faces);
+    const std::vector<double> true_m = true_errors(faces_on_grid(prepared), cut.faces, points);
     CertificateFigures figures;
     figures.flat_m = kFlat_quanta * prepared.quantum_m;
     figures.faces = cut.faces.size();

@@ -39,10 +39,11 @@ struct CertificateFigures
 };
 
 /// The figures of the finest cut with at most `faces` faces that the simplification went through.
-/// Shares no code with the certificate. The raster has about 3 million points, and at least 15 a
+/// Shares no code with the certificate. The raster has about `points` points, and 15 to 153 a
 /// source face; each takes about a microsecond.
 [[nodiscard]] CertificateFigures measure_certificate(const PreparedMesh& prepared,
                                                      const Simplification& simplification,
-                                                     std::size_t faces);
+                                                     std::size_t faces,
+                                                     std::size_t points = 1'000'000);
 
 } // namespace tactus::test

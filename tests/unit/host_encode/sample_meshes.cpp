@@ -52,11 +52,17 @@ std::vector<SampleMesh> generated_meshes()
 
 std::vector<SampleMesh> known_meshes()
 {
+    std::vector<SampleMesh> meshes = smaller_known_meshes();
+    meshes.push_back({"igea", "igea.ply", nullptr, 500});
+    return meshes;
+}
+
+std::vector<SampleMesh> smaller_known_meshes()
+{
     return {{"cow", "cow.obj", nullptr, 100},
             {"teapot", "teapot.obj", nullptr, 100},
             {"fandisk", "fandisk.obj", nullptr, 100},
-            {"bunny", "stanford-bunny.obj", nullptr, 500},
-            {"igea", "igea.ply", nullptr, 500}};
+            {"bunny", "stanford-bunny.obj", nullptr, 500}};
 }
 
 } // namespace tactus

@@ -4,8 +4,12 @@
 
 #include "tests/unit/host_encode/encoded_model.hpp"
 
+#include <gtest/gtest.h>
+
 #include <memory>
 #include <ostream>
+#include <string>
+#include <vector>
 
 namespace tactus
 {
@@ -29,7 +33,14 @@ inline std::ostream& operator<<(std::ostream& out, const SampleMesh& mesh)
 
 /// Smooth, of genus 1, open, sharp, thin and with needles.
 [[nodiscard]] std::vector<SampleMesh> generated_meshes();
-/// The well-known ones, igea, the largest by far, last.
+/// The well-known ones; the smaller are all but igea, the largest by far.
 [[nodiscard]] std::vector<SampleMesh> known_meshes();
+[[nodiscard]] std::vector<SampleMesh> smaller_known_meshes();
+
+/// Names the cases of a test over meshes.
+[[nodiscard]] inline std::string mesh_name(const testing::TestParamInfo<SampleMesh>& mesh)
+{
+    return mesh.param.name;
+}
 
 } // namespace tactus

@@ -33,13 +33,9 @@ TEST_P(CertifiedCuts, cover_the_source_and_would_not_with_a_fifth_less)
     expect_sound_bounds(*model, kCuts, kPoints, 20'261'121 + Random::seed());
 }
 
-std::string name_of(const testing::TestParamInfo<SampleMesh>& mesh)
-{
-    return mesh.param.name;
-}
-
-INSTANTIATE_TEST_SUITE_P(Generated, CertifiedCuts, testing::ValuesIn(generated_meshes()), name_of);
-INSTANTIATE_TEST_SUITE_P(WellKnown, CertifiedCuts, testing::ValuesIn(known_meshes()), name_of);
+INSTANTIATE_TEST_SUITE_P(Generated, CertifiedCuts, testing::ValuesIn(generated_meshes()),
+                         mesh_name);
+INSTANTIATE_TEST_SUITE_P(WellKnown, CertifiedCuts, testing::ValuesIn(known_meshes()), mesh_name);
 
 } // namespace
 

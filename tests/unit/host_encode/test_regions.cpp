@@ -277,18 +277,6 @@ TEST_P(Regions, are_asked_for_by_the_controller_as_the_index_names_them)
     }
 }
 
-std::vector<SampleMesh> smaller_known_meshes()
-{
-    std::vector<SampleMesh> meshes = known_meshes();
-    meshes.pop_back();
-    return meshes;
-}
-
-std::string mesh_name(const testing::TestParamInfo<SampleMesh>& mesh)
-{
-    return mesh.param.name;
-}
-
 INSTANTIATE_TEST_SUITE_P(Generated, Regions, testing::ValuesIn(generated_meshes()), mesh_name);
 INSTANTIATE_TEST_SUITE_P(WellKnown, Regions, testing::ValuesIn(smaller_known_meshes()), mesh_name);
 
