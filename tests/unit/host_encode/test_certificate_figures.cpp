@@ -24,11 +24,11 @@ constexpr double kSixthRatio = 1.5;
 constexpr double kTwoThirdsRatio = 3.5;
 constexpr std::size_t kPoints = 200'000;
 
-class CertificateFiguresOf : public testing::TestWithParam<SampleMesh>
+class CertificateFiguresOfMesh : public testing::TestWithParam<SampleMesh>
 {
 };
 
-TEST_P(CertificateFiguresOf, a_mesh_are_sound_and_tight)
+TEST_P(CertificateFiguresOfMesh, are_sound_and_tight)
 {
     const auto model = GetParam().encode();
     if (model == nullptr)
@@ -53,10 +53,10 @@ TEST_P(CertificateFiguresOf, a_mesh_are_sound_and_tight)
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Generated, CertificateFiguresOf, testing::ValuesIn(generated_meshes()),
+INSTANTIATE_TEST_SUITE_P(Generated, CertificateFiguresOfMesh, testing::ValuesIn(generated_meshes()),
                          mesh_name);
-INSTANTIATE_TEST_SUITE_P(WellKnown, CertificateFiguresOf, testing::ValuesIn(smaller_known_meshes()),
-                         mesh_name);
+INSTANTIATE_TEST_SUITE_P(WellKnown, CertificateFiguresOfMesh,
+                         testing::ValuesIn(smaller_known_meshes()), mesh_name);
 
 /// Changes every bound of a simplification.
 template <typename Change>
