@@ -27,8 +27,9 @@ public:
     {
         for (std::size_t i = 0; i < count_; ++i)
         {
-            present_[simplification.base_faces[i]] = {true, simplification.base_corners[i],
-                                                      simplification.base_error[i]};
+            present_[simplification.base_faces[i]] = {
+                true, simplification.base_corners[i],
+                static_cast<double>(simplification.base_error[i])};
         }
     }
 
@@ -50,7 +51,7 @@ public:
             ends = {i == 0 ? rim[1] : ends[0], rim[2]};
             std::replace(face.corners.begin(), face.corners.end(), collapse.parent,
                          collapse.vertex);
-            face.bound_quanta = collapse.error[2 + i];
+            face.bound_quanta = static_cast<double>(collapse.error[2 + i]);
         }
         const std::array<Corners, 2> appearing{Corners{collapse.vertex, collapse.parent, ends[0]},
                                                Corners{collapse.vertex, ends[1], collapse.parent}};
@@ -58,7 +59,8 @@ public:
         {
             if (collapse.star[side] != kNoFace)
             {
-                present_[collapse.star[side]] = {true, appearing[side], collapse.error[side]};
+                present_[collapse.star[side]] = {true, appearing[side],
+                                                 static_cast<double>(collapse.error[side])};
             }
         }
         count_ += faces_added_by(collapse);

@@ -12,6 +12,9 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <type_traits>
+#include <utility>
+#include <vector>
 
 namespace tactus::test
 {
@@ -62,13 +65,18 @@ INSTANTIATE_TEST_SUITE_P(WellKnown, CertificateFiguresOfMesh,
 template <typename Change>
 Simplification with_bounds(Simplification simplification, const Change& change)
 {
+    const auto change_all = [&](auto& bounds)
+    {
+        for (auto& bound : bounds)
+        {
+            bound = static_cast<std::decay_t<decltype(bound)>>(change(static_cast<double>(bound)));
+        }
+    };
     for (Collapse& collapse : simplification.collapses)
     {
-        std::transform(collapse.error.begin(), collapse.error.end(), collapse.error.begin(),
-                       change);
+        change_all(collapse.error);
     }
-    std::transform(simplification.base_error.begin(), simplification.base_error.end(),
-                   simplification.base_error.begin(), change);
+    change_all(simplification.base_error);
     return simplification;
 }
 
@@ -82,7 +90,7 @@ TEST(CertificateFigures, one_large_bound_for_all_faces_shows_in_the_means)
     const double largest = honest.bound_max_m / model->prepared.quantum_m;
     const CertificateFigures sut =
         figures(with_bounds(model->simplification, [=](double) { return largest; }));
-    EXPECT_NEAR(sut.max_ratio(), honest.max_ratio(), 1e-9);
+    EXPECT_NEAR(sut.max_ratio(), honest.max_ratio(), 1e-6);
     EXPECT_GT(sut.mean_ratio(), 1.5 * honest.mean_ratio());
     EXPECT_GT(sut.face_ratio_mean, 1.5 * honest.face_ratio_mean);
 }
