@@ -4,8 +4,8 @@
 
 #include "host_tools/mesh/triangle_mesh.hpp"
 #include "rt_core/math/vec3.hpp"
-#include "tests/shared/face_tree.hpp"
 #include "tests/shared/brute_force.hpp"
+#include "tests/shared/face_tree.hpp"
 
 #include <cstdint>
 #include <vector>
