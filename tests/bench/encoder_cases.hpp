@@ -36,6 +36,11 @@ struct EncoderGoals
     std::optional<double> fine_file_bytes_per_face; ///< At 20 bits.
     std::optional<double> read_ns_per_record;       ///< Parsed and linked on one core.
     std::optional<double> base_faces;
+    std::optional<double> bound_at_sixth; ///< Largest bound by largest true error, at n/6 faces.
+    std::optional<double> bound_at_two_thirds;
+    std::optional<double> exact_splits;
+    std::optional<double> contact_kb; ///< Until the first exact contact, hashes not counted.
+    std::optional<double> hashed_contact_kb;
 };
 
 struct EncoderMesh
@@ -68,5 +73,9 @@ using EncoderFailure = std::optional<std::string>;
 /// The whole encoder, from a mesh in memory to a file, each run in a process of its own: time,
 /// memory, and what the file holds and how fast it is read. The same bytes from one thread and two.
 [[nodiscard]] EncoderFailure measure_files(const EncoderContext& context);
+
+/// How much larger bounds are than what they bound, how many splits a distance takes until it is
+/// exact, and how many bytes a first contact. With a tool's radius of 1 % of the diagonal.
+[[nodiscard]] EncoderFailure measure_bounds(const EncoderContext& context);
 
 } // namespace tactus::bench

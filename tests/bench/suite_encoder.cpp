@@ -60,6 +60,8 @@ EncoderGoals usual_goals()
     goals.us_per_face_on_two = 10.0;
     goals.read_ns_per_record = kReadGoal_ns;
     goals.base_faces = 500.0;
+    goals.bound_at_sixth = 1.4;
+    goals.bound_at_two_thirds = 3.5;
     return goals;
 }
 
@@ -88,6 +90,7 @@ EncoderGoals large_goals()
 {
     EncoderGoals goals = with_size(usual_goals(), 4.3, 5.1);
     goals.peak_bytes_per_face = 350.0;
+    goals.exact_splits = 250.0;
     return goals;
 }
 
@@ -95,6 +98,8 @@ EncoderGoals largest_goals()
 {
     EncoderGoals goals = large_goals();
     goals.seconds = 90.0;
+    goals.contact_kb = 80.0;
+    goals.hashed_contact_kb = 110.0;
     return goals;
 }
 
@@ -128,7 +133,7 @@ std::vector<EncoderMesh> all_meshes()
 
 /// The parts of the suite in the order in which they run. Files first: the processes that measure
 /// memory begin with what this one has.
-constexpr std::array kParts{measure_files, compare_simplifiers};
+constexpr std::array kParts{measure_files, compare_simplifiers, measure_bounds};
 
 std::vector<std::string> mesh_names()
 {
