@@ -31,10 +31,10 @@ void add_tightness(CaseRows& rows, const PreparedMesh& prepared,
     const std::size_t faces = prepared.mesh.faces.size();
     const auto coarse = test::measure_certificate(prepared, simplification, faces / 6, points);
     const auto fine = test::measure_certificate(prepared, simplification, 2 * faces / 3, points);
-    rows.add("largest at n/6, x true", coarse.max_ratio(), "", context.mesh.goals.bound_at_sixth);
-    rows.add("at 2n/3", fine.max_ratio(), "", context.mesh.goals.bound_at_two_thirds);
-    rows.add("mean of a face's at n/6", coarse.face_ratio_mean, "");
-    rows.add("mean at 2n/3", fine.face_ratio_mean, "");
+    rows.add("largest at n/6", coarse.max_ratio(), "x true", context.mesh.goals.bound_at_sixth);
+    rows.add("largest at 2n/3", fine.max_ratio(), "x true", context.mesh.goals.bound_at_two_thirds);
+    rows.add("mean at n/6", coarse.face_ratio_mean, "x true");
+    rows.add("mean at 2n/3", fine.face_ratio_mean, "x true");
 }
 
 void add_splits(CaseRows& rows, const DecodedModel& model, const std::vector<test::Face>& source,
@@ -44,8 +44,8 @@ void add_splits(CaseRows& rows, const DecodedModel& model, const std::vector<tes
                                                    context.options.quick ? 100 : 500, kSeed);
     rows.add("splits to an exact distance, median", exact.splits.p50, "",
              context.mesh.goals.exact_splits);
-    rows.add("90 %", exact.splits.p90, "");
-    rows.add("most", exact.splits.max, "");
+    rows.add("splits, 90 %", exact.splits.p90, "");
+    rows.add("most splits", exact.splits.max, "");
 }
 
 void add_contact(CaseRows& rows, const ModelStore& store, const DecodedModel& model,
@@ -63,7 +63,7 @@ void add_contact(CaseRows& rows, const ModelStore& store, const DecodedModel& mo
     rows.add("header", contact.header_bytes / 1e3, "KB");
     rows.add("index", contact.index_bytes.p50 / 1e3, "KB");
     rows.add("chunks", contact.chunk_bytes.p50 / 1e3, "KB");
-    rows.add("so many", contact.chunks.p50, "");
+    rows.add("number of chunks", contact.chunks.p50, "");
 }
 
 } // namespace
