@@ -35,6 +35,7 @@ Result<Done, PlatformError> PeriodicTimer::start(Duration period, Duration margi
     deadline_ = now() + period;
     wake_lateness_ = {};
     periods_ = 1;
+    sleeps_ = 0;
     in_episode_ = false;
     counts_ = {};
     return Done{};
@@ -51,6 +52,7 @@ void PeriodicTimer::sleep_until_margin() noexcept
         return;
     }
     sleep_until(wake);
+    ++sleeps_;
     wake_lateness_ = std::max(wake_lateness_, now() - wake);
 }
 
@@ -63,7 +65,7 @@ Cycle PeriodicTimer::spin_until_deadline() noexcept
         sleep_until_margin();
         time = spin_until(deadline_);
     }
-    const Cycle cycle{deadline_, wake_lateness_, time - deadline_, periods_};
+    const Cycle cycle{deadline_, wake_lateness_, time - deadline_, periods_, sleeps_};
     count_cycle();
     return cycle;
 }
@@ -92,6 +94,7 @@ void PeriodicTimer::count_cycle() noexcept
     deadline_ = deadline_ + period_;
     wake_lateness_ = {};
     periods_ = 1;
+    sleeps_ = 0;
 }
 
 } // namespace tactus

@@ -140,9 +140,8 @@ void RunStatistics::judge_deadline(const FrameOutput& output,
 {
     const auto cycle_faults =
         static_cast<std::uint64_t>(measures.usage.minor_faults + measures.usage.major_faults);
-    // The loop's own sleep is one switch; after a stall it sleeps once more, to the new grid.
-    const std::int64_t sleeps = measures.cycle.periods > 1 ? 2 : 1;
-    const bool switched = measures.usage.voluntary_switches > sleeps;
+    // The timer's own sleeps are switches as well.
+    const bool switched = measures.usage.voluntary_switches > measures.cycle.sleeps;
     const bool over = is_over_budget(output.work, measures.budgets);
     const bool called = measures.calls.in_frame > calls.in_frame;
     allocations += measures.allocations;

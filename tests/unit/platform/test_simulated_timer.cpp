@@ -86,6 +86,20 @@ TEST(SimulatedPeriodicTimer, counts_stalls_in_a_row_as_one_episode)
     EXPECT_EQ(sut.counts().episodes, 2U);
 }
 
+TEST(SimulatedPeriodicTimer, tells_how_often_it_slept)
+{
+    SimulatedClock clock;
+    // The second cycle's sleep ends late, and so does the one to the new grid point.
+    const std::array script{LateWake{1, microseconds(5'300)}, LateWake{2, microseconds(7'300)}};
+    SimulatedPeriodicTimer sut(clock, script);
+    ASSERT_TRUE(sut.start(kPeriod, kMargin));
+    EXPECT_EQ(next(sut).sleeps, 1U);
+    EXPECT_EQ(next(sut).sleeps, 3U);
+    EXPECT_EQ(next(sut).sleeps, 1U);
+    clock.advance(microseconds(1'500)); // Past the margin: no time to sleep.
+    EXPECT_EQ(next(sut).sleeps, 0U);
+}
+
 TEST(SimulatedPeriodicTimer, does_not_blame_the_machine_for_a_long_frame)
 {
     SimulatedClock clock;
