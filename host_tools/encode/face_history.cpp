@@ -36,10 +36,10 @@ std::vector<std::uint32_t> find_first_changes(std::size_t faces,
     return first;
 }
 
-ErrorCode code_of(bool original, double quanta)
+ErrorCode code_of(bool original, float quanta)
 {
-    TACTUS_ASSERT(std::isfinite(quanta) && quanta >= 0.0);
-    return original ? ErrorCode{0} : encode_error(quanta);
+    TACTUS_ASSERT(std::isfinite(quanta) && quanta >= 0.0F);
+    return original ? ErrorCode{0} : encode_error(static_cast<double>(quanta));
 }
 
 /// A face's state and bound at one moment of the undoing.
