@@ -235,7 +235,7 @@ long double worst_violation(const QuantisedMesh& mesh, const std::vector<ForestR
             continue;
         }
         Convex c{};
-        c.bound = static_cast<long double>(factor * face.error);
+        c.bound = static_cast<long double>(factor * static_cast<double>(face.error));
         for (std::size_t i = 0; i < 3; ++i)
         {
             const auto& p = mesh.positions[face.corners[i]];

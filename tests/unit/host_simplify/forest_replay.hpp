@@ -28,7 +28,7 @@ public:
     {
         bool active{false};
         Corners corners{};
-        double error{0};
+        float error{0.0F};
     };
 
     [[nodiscard]] const std::vector<Face>& faces() const { return faces_; }

@@ -82,7 +82,7 @@ TEST(Certificate, bounds_the_base_nearly_as_tightly_as_samples_allow)
     const QuantisedMesh mesh = make_icosphere(4, 0.02);
     const Simplification forest = simplified(mesh, 5120 / 6);
     const ForestReplay base(forest, mesh.faces.size());
-    const double largest = std::ranges::max(forest.base_error);
+    const float largest = std::ranges::max(forest.base_error);
     const auto points = sample_surface(mesh, 2, random);
     // Some sampled point is farther than largest / 1.4 from every face.
     auto faces = base.faces();
