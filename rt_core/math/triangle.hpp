@@ -6,6 +6,7 @@
 #include "rt_core/math/vec3.hpp"
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 namespace tactus
@@ -30,17 +31,13 @@ enum class TriangleFeature : std::uint8_t
     interior,
 };
 
-/// Aspect ratio (longest edge squared / twice the area) beyond which the error law below grows no
-/// further: such a triangle's plane is never the nearest feature by more than that.
-inline constexpr double kLargestAspect = 1e8;
-
 struct ClosestPoint
 {
     Vec3 point{0.0, 0.0, 0.0};
+    /// From the query point to `point`, free of the rounding that large coordinates bring.
+    Vec3 gap{0.0, 0.0, 0.0};
     double distance_sq{0.0};
-    /// Bound on |computed - true| of the distance: (4e-16 + 1e-16 x aspect) x local length, with
-    /// aspect = longest edge squared / twice the area, and local length the largest of the edges
-    /// and the distances from the query point to the corners.
+    /// Bound on |computed - true| of the distance: kernel_error, at most 1.2e-15 x local length.
     double distance_error{0.0};
     TriangleFeature feature{TriangleFeature::interior};
 };
@@ -48,10 +45,26 @@ struct ClosestPoint
 /// The point of the triangle nearest to `query`.
 ///
 /// In double precision, translated to the query point: the least of three clamped segment
-/// distances, and the plane's only when all three edge tests agree. A triangle with two or three
-/// equal corners is a segment or a point and no NaN arises for finite input. About 60
-/// multiplications, one square root.
+/// distances, and the plane's only when all three edge tests agree. The normal of a thin triangle
+/// comes from double-double. A triangle with two or three equal corners is a segment or a point.
+///
+/// Coordinates up to 1e150 give finite answers. The error law is held where the local length is at
+/// least 1e-40 of the largest coordinate. About 50 ns, 80 ns for a thin triangle.
 [[nodiscard]] ClosestPoint
 closest_point_on_triangle(const Vec3& query, const Triangle& triangle) noexcept TACTUS_NONBLOCKING;
+
+/// (b - a) x (c - b) of the corners, each coordinate right to the last place however thin the
+/// triangle; zero when it is thinner than 2^-50 of its longest edge (whose square is given), and
+/// then its edges stand for it within half of that. About 80 ns.
+[[nodiscard]] Vec3 exact_normal(const Triangle& triangle,
+                                double longest_sq) noexcept TACTUS_NONBLOCKING;
+
+/// The feature at `parameter` (0 to 1) of an edge: one of its corners at the ends.
+[[nodiscard]] constexpr TriangleFeature feature_of_edge(std::size_t edge, double parameter) noexcept
+{
+    const bool is_end = parameter == 0.0 || parameter == 1.0;
+    const std::size_t corner = parameter == 0.0 ? edge : (edge + 1) % 3;
+    return static_cast<TriangleFeature>(is_end ? corner : 3 + edge);
+}
 
 } // namespace tactus

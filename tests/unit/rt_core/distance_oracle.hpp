@@ -13,26 +13,36 @@
 namespace tactus::test
 {
 
-/// Point-triangle distance in extended precision and by another way than the kernel's: the triangle
+/// Right to the last bit but one, also of a number wider than long double.
+template <typename Real>
+[[nodiscard]] Real square_root(Real value)
+{
+    const auto start = static_cast<Real>(std::sqrt(static_cast<long double>(value)));
+    return start > 0 ? (start + value / start) / 2 : start;
+}
+
+/// Point-triangle distance in a wider precision and by another way than the kernel's: the triangle
 /// is turned into its own plane by orthogonalising its edges (longest edge first, twice), where
-/// inside is a matter of two coordinates. Its error is the kernel's law with 2^-64 for 2^-53.
-class DistanceOracle
+/// inside is a matter of two coordinates. Its error is a few 2^-64 x aspect x local length in
+/// long double.
+template <typename RealNumber>
+class BasicDistanceOracle
 {
 public:
-    using Real = long double;
+    using Real = RealNumber;
     using Point = std::array<Real, 3>;
+    static constexpr auto kInfinity =
+        static_cast<Real>(std::numeric_limits<long double>::infinity());
 
     [[nodiscard]] static Real distance(const Vec3& query, const Triangle& triangle)
     {
-        std::array<Point, 3> corner{};
-        for (std::size_t i = 0; i < 3; ++i)
-        {
-            for (std::size_t axis = 0; axis < 3; ++axis)
-            {
-                const auto at = static_cast<Eigen::Index>(axis);
-                corner[i][axis] = static_cast<Real>(triangle[i][at]) - static_cast<Real>(query[at]);
-            }
-        }
+        return distance({difference(triangle[0], query), difference(triangle[1], query),
+                         difference(triangle[2], query)});
+    }
+
+    /// From the origin.
+    [[nodiscard]] static Real distance(const std::array<Point, 3>& corner)
+    {
         const Real edges =
             std::min({to_segment(corner[0], corner[1]), to_segment(corner[1], corner[2]),
                       to_segment(corner[2], corner[0])});
@@ -42,24 +52,6 @@ public:
     [[nodiscard]] static Real to_segment(const Vec3& query, const Vec3& from, const Vec3& to)
     {
         return to_segment(difference(from, query), difference(to, query));
-    }
-
-private:
-    static Point difference(const Vec3& a, const Vec3& b)
-    {
-        return {static_cast<Real>(a.x()) - static_cast<Real>(b.x()),
-                static_cast<Real>(a.y()) - static_cast<Real>(b.y()),
-                static_cast<Real>(a.z()) - static_cast<Real>(b.z())};
-    }
-    static Real dot(const Point& a, const Point& b)
-    {
-        return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-    }
-    static Real norm(const Point& a) { return std::sqrt(dot(a, a)); }
-    /// a + factor x b
-    static Point along(const Point& a, Real factor, const Point& b)
-    {
-        return {a[0] + factor * b[0], a[1] + factor * b[1], a[2] + factor * b[2]};
     }
 
     /// From the origin, by the sign of the two end angles.
@@ -77,6 +69,24 @@ private:
         return norm(along(from, -dot(from, edge) / dot(edge, edge), edge));
     }
 
+private:
+    static Point difference(const Vec3& a, const Vec3& b)
+    {
+        return {static_cast<Real>(a.x()) - static_cast<Real>(b.x()),
+                static_cast<Real>(a.y()) - static_cast<Real>(b.y()),
+                static_cast<Real>(a.z()) - static_cast<Real>(b.z())};
+    }
+    static Real dot(const Point& a, const Point& b)
+    {
+        return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    }
+    static Real norm(const Point& a) { return square_root(dot(a, a)); }
+    /// a + factor x b
+    static Point along(const Point& a, Real factor, const Point& b)
+    {
+        return {a[0] + factor * b[0], a[1] + factor * b[1], a[2] + factor * b[2]};
+    }
+
     /// Height over the plane when the foot is inside, else infinite.
     static Real to_interior(std::array<Point, 3> corner)
     {
@@ -92,7 +102,7 @@ private:
         const Real base = length[longest];
         if (base == 0)
         {
-            return std::numeric_limits<Real>::infinity();
+            return kInfinity;
         }
         const Point edge = along(corner[1], -1, corner[0]);
         const Point u{edge[0] / base, edge[1] / base, edge[2] / base};
@@ -103,7 +113,7 @@ private:
         const Real height = norm(v);
         if (height == 0)
         {
-            return std::numeric_limits<Real>::infinity();
+            return kInfinity;
         }
         v = {v[0] / height, v[1] / height, v[2] / height};
         // The foot's coordinates: x along the longest edge, y towards the third corner.
@@ -113,10 +123,20 @@ private:
         const Real right = base - (base - apex) * y / height;
         if (y < 0 || y > height || x < left || x > right)
         {
-            return std::numeric_limits<Real>::infinity();
+            return kInfinity;
         }
         return norm(along(along(corner[0], x, u), y, v));
     }
 };
+
+using DistanceOracle = BasicDistanceOracle<long double>;
+
+/// Wider than long double, where the machine has it.
+#if defined(__SIZEOF_FLOAT128__)
+__extension__ using Quad = __float128;
+#else
+using Quad = long double;
+#endif
+using QuadDistanceOracle = BasicDistanceOracle<Quad>;
 
 } // namespace tactus::test

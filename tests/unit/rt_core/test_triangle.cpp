@@ -68,7 +68,7 @@ Pose needle(Random& random)
 {
     const Vec3 tip = random.in_cube(1.0);
     const Vec3 end = random.in_cube(1.0);
-    const double width = std::exp2(random.between(-26.6, -3.0));
+    const double width = std::exp2(random.between(-27.0, -3.0));
     return with_query(random, {tip, end, end + random.in_cube(width)}, 1.0);
 }
 
@@ -175,6 +175,20 @@ double off_feature(const Pose& pose, const ClosestPoint& answer)
     return static_cast<double>(DistanceOracle::distance(answer.point, pose.triangle));
 }
 
+/// Of a distance from the true one. Long double can't tell on thin triangles; then wider numbers
+/// do.
+double deviation(const Pose& pose, double distance, double allowed)
+{
+    const auto off = static_cast<double>(std::abs(
+        DistanceOracle::distance(pose.query, pose.triangle) - static_cast<long double>(distance)));
+    if (off <= 0.5 * allowed)
+    {
+        return off;
+    }
+    return std::abs(static_cast<double>(QuadDistanceOracle::distance(pose.query, pose.triangle) -
+                                        static_cast<Quad>(distance)));
+}
+
 class ClosestPointTest : public ::testing::TestWithParam<ShapeClass>
 {
 };
@@ -196,9 +210,7 @@ TEST_P(ClosestPointTest, keeps_its_error_law_and_reports_a_point_of_the_triangle
         ASSERT_TRUE(std::isfinite(answer.distance_error)) << "case " << i;
 
         const double distance = std::sqrt(answer.distance_sq);
-        const auto off =
-            static_cast<double>(std::abs(DistanceOracle::distance(pose.query, pose.triangle) -
-                                         static_cast<long double>(distance)));
+        const double off = deviation(pose, distance, answer.distance_error);
         ASSERT_LE(off, answer.distance_error) << "case " << i;
         // The point is rounded to doubles of the query's size besides.
         const double slack = answer.distance_error + 4e-16 * magnitude(pose);

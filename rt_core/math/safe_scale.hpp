@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/math/triangle.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <span>
+
+namespace tactus
+{
+
+/// 1 when the largest coordinate is 0 or between 2^-60 and 2^60, so that products of four or six of
+/// them neither overflow nor vanish; else the power of two that brings it near 1. Multiplying by it
+/// changes no bit of a coordinate that isn't 1e-280 times smaller.
+[[nodiscard]] inline double safe_scale(double largest) noexcept
+{
+    if (largest == 0.0 || (largest >= 0x1p-60 && largest <= 0x1p60))
+    {
+        return 1.0;
+    }
+    const std::uint64_t exponent = std::bit_cast<std::uint64_t>(largest) >> 52U;
+    // So far from the ends that its inverse is an ordinary double, too.
+    const std::uint64_t inverse =
+        std::clamp<std::uint64_t>(2046 - std::min<std::uint64_t>(exponent, 2045), 1, 2045);
+    return std::bit_cast<double>(inverse << 52U);
+}
+
+[[nodiscard]] inline double largest_coordinate(std::span<const Vec3> points) noexcept
+{
+    double largest = 0.0;
+    for (const Vec3& point : points)
+    {
+        largest =
+            std::max({largest, std::abs(point.x()), std::abs(point.y()), std::abs(point.z())});
+    }
+    return largest;
+}
+
+[[nodiscard]] inline Triangle scaled(const Triangle& triangle, double factor) noexcept
+{
+    return {triangle[0] * factor, triangle[1] * factor, triangle[2] * factor};
+}
+
+} // namespace tactus
