@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/math/safe_scale.hpp"
+#include "rt_core/math/triangle.hpp"
+
+#include <array>
+
+namespace tactus
+{
+
+/// Two points, one on each of a shape and a triangle, than which none are nearer.
+struct ClosestPoints
+{
+    Vec3 on_shape{0.0, 0.0, 0.0};
+    Vec3 on_triangle{0.0, 0.0, 0.0};
+    /// From the first to the second, free of the rounding that large coordinates bring: its
+    /// direction is good where the points themselves round to one.
+    Vec3 gap{0.0, 0.0, 0.0};
+    /// Zero where they meet; of round shapes less, down to minus the radius.
+    double distance{0.0};
+    /// Bound on |computed - true| of the distance: kernel_error.
+    double distance_error{0.0};
+    /// Whether they share a point: decided exactly but for round shapes, which compare `distance`.
+    bool meet{false};
+    /// Where on the triangle.
+    TriangleFeature feature{TriangleFeature::interior};
+    /// Where on the shape, if it is a triangle or a segment (corner_0, corner_1 or edge_0).
+    TriangleFeature shape_feature{TriangleFeature::interior};
+};
+
+/// The answer of shapes that meet in a point.
+[[nodiscard]] inline ClosestPoints meeting_at(const Vec3& point, TriangleFeature shape_feature,
+                                              TriangleFeature feature) noexcept
+{
+    ClosestPoints result;
+    result.on_shape = point;
+    result.on_triangle = point;
+    result.meet = true;
+    result.shape_feature = shape_feature;
+    result.feature = feature;
+    return result;
+}
+
+/// `solve`(points), the points being multiplied by a power of two where products of their
+/// coordinates would not be doubles, and the answer divided by it.
+template <std::size_t N, typename Solve>
+[[nodiscard]] ClosestPoints solve_in_range(const std::array<Vec3, N>& points, Solve solve) noexcept
+{
+    const double scale = safe_scale(largest_coordinate(points));
+    if (scale == 1.0)
+    {
+        return solve(points);
+    }
+    std::array<Vec3, N> near = points;
+    for (Vec3& point : near)
+    {
+        point *= scale;
+    }
+    ClosestPoints result = solve(near);
+    const double inverse = 1.0 / scale;
+    result.on_shape *= inverse;
+    result.on_triangle *= inverse;
+    result.gap *= inverse;
+    result.distance *= inverse;
+    result.distance_error *= inverse;
+    return result;
+}
+
+} // namespace tactus

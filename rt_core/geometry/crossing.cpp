@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "rt_core/geometry/crossing.hpp"
+
+#include "rt_core/math/orientation.hpp"
+
+#include <algorithm>
+#include <span>
+
+namespace tactus
+{
+
+// A closed triangle meets another exactly if an edge of one meets the other, also when one is a
+// segment or a point. So all comes down to a segment p q and a triangle, and that to dimensions:
+//
+//   p, q not both in the plane   the line p q pierces it once; inside or not: three volumes
+//   both in the plane            seen along an axis that keeps the triangle's area: in the plane,
+//                                p in the triangle, or p q meets an edge
+//   the triangle has no area     p q meets one of its edges; in space two segments meet only if
+//                                they lie in one plane, and then the same along an axis; and if
+//                                all four ends are on one line, if their boxes overlap.
+
+namespace
+{
+
+std::array<int, 3> sides_of_plane(const Triangle& triangle, const Triangle& points) noexcept
+{
+    std::array<int, 3> sides{};
+    std::transform(points.begin(), points.end(), sides.begin(),
+                   [&triangle](const Vec3& point)
+                   { return side_of_plane(triangle[0], triangle[1], triangle[2], point); });
+    return sides;
+}
+
+bool are_all_on_one_side(const std::array<int, 3>& sides) noexcept
+{
+    return sides[0] != 0 && sides[0] == sides[1] && sides[0] == sides[2];
+}
+
+/// Neither positive and negative ones.
+bool do_not_differ(const std::array<int, 3>& sides) noexcept
+{
+    const auto [least, most] = std::minmax({sides[0], sides[1], sides[2]});
+    return least * most >= 0;
+}
+
+bool do_boxes_overlap(std::span<const Vec3> first, std::span<const Vec3> second) noexcept
+{
+    for (Eigen::Index axis = 0; axis < 3; ++axis)
+    {
+        const auto less = [axis](const Vec3& a, const Vec3& b) { return a[axis] < b[axis]; };
+        const auto [low, high] = std::minmax_element(first.begin(), first.end(), less);
+        const auto [other_low, other_high] =
+            std::minmax_element(second.begin(), second.end(), less);
+        if ((*high)[axis] < (*other_low)[axis] || (*other_high)[axis] < (*low)[axis])
+        {
+            return false;
+        }
+    }
+    return true;
+}
+
+/// Sides of the ends of two segments, each seen from the other.
+struct SegmentSides
+{
+    std::array<int, 2> of_second;
+    std::array<int, 2> of_first;
+
+    [[nodiscard]] bool are_all_zero() const noexcept
+    {
+        return of_second[0] == 0 && of_second[1] == 0 && of_first[0] == 0 && of_first[1] == 0;
+    }
+    [[nodiscard]] bool cross() const noexcept
+    {
+        return of_second[0] * of_second[1] <= 0 && of_first[0] * of_first[1] <= 0;
+    }
+};
+
+SegmentSides see_along(std::size_t axis, const Segment& first, const Segment& second) noexcept
+{
+    const Vec2 p = seen_along(axis, first.from);
+    const Vec2 q = seen_along(axis, first.to);
+    const Vec2 a = seen_along(axis, second.from);
+    const Vec2 b = seen_along(axis, second.to);
+    return {{side_of_line(p, q, a), side_of_line(p, q, b)},
+            {side_of_line(a, b, p), side_of_line(a, b, q)}};
+}
+
+/// Segments in one plane, along an axis that keeps areas in it; any axis if all is on one line.
+bool do_segments_meet_along(std::size_t axis, const Segment& first, const Segment& second) noexcept
+{
+    const SegmentSides sides = see_along(axis, first, second);
+    return sides.are_all_zero() ? do_boxes_overlap(std::array{first.from, first.to},
+                                                   std::array{second.from, second.to})
+                                : sides.cross();
+}
+
+bool do_segments_meet(const Segment& first, const Segment& second) noexcept
+{
+    if (side_of_plane(first.from, first.to, second.from, second.to) != 0)
+    {
+        return false;
+    }
+    std::size_t axis = 0;
+    while (axis < 2 && see_along(axis, first, second).are_all_zero())
+    {
+        ++axis;
+    }
+    return do_segments_meet_along(axis, first, second);
+}
+
+template <typename SegmentsMeet>
+bool meets_an_edge(const Segment& segment, const Triangle& triangle,
+                   SegmentsMeet segments_meet) noexcept
+{
+    return segments_meet(segment, Segment{triangle[0], triangle[1]}) ||
+           segments_meet(segment, Segment{triangle[1], triangle[2]}) ||
+           segments_meet(segment, Segment{triangle[2], triangle[0]});
+}
+
+/// Seen along an axis that keeps its area.
+bool is_inside_along(std::size_t axis, const Vec3& point, const Triangle& triangle) noexcept
+{
+    const Vec2 p = seen_along(axis, point);
+    const std::array<Vec2, 3> corner{seen_along(axis, triangle[0]), seen_along(axis, triangle[1]),
+                                     seen_along(axis, triangle[2])};
+    return do_not_differ({side_of_line(corner[0], corner[1], p),
+                          side_of_line(corner[1], corner[2], p),
+                          side_of_line(corner[2], corner[0], p)});
+}
+
+bool meet_in_plane(const Segment& segment, const Triangle& triangle) noexcept
+{
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+        if (area_sign_along(axis, triangle) != 0)
+        {
+            return is_inside_along(axis, segment.from, triangle) ||
+                   meets_an_edge(segment, triangle,
+                                 [axis](const Segment& a, const Segment& b)
+                                 { return do_segments_meet_along(axis, a, b); });
+        }
+    }
+    return meets_an_edge(segment, triangle,
+                         [](const Segment& a, const Segment& b) { return do_segments_meet(a, b); });
+}
+
+/// On which side of each edge the line through the segment passes.
+std::array<int, 3> sides_of_edges(const Segment& segment, const Triangle& triangle) noexcept
+{
+    return {side_of_plane(segment.from, segment.to, triangle[0], triangle[1]),
+            side_of_plane(segment.from, segment.to, triangle[1], triangle[2]),
+            side_of_plane(segment.from, segment.to, triangle[2], triangle[0])};
+}
+
+/// `from` and `to`: on which sides of the triangle's plane the ends lie.
+bool meets_from_sides(const Segment& segment, int from, int to, const Triangle& triangle) noexcept
+{
+    if (from * to > 0)
+    {
+        return false;
+    }
+    return from == 0 && to == 0 ? meet_in_plane(segment, triangle)
+                                : do_not_differ(sides_of_edges(segment, triangle));
+}
+
+/// `sides`: of the triangle's corners, seen from the other's plane.
+bool does_an_edge_meet(const Triangle& triangle, const std::array<int, 3>& sides,
+                       const Triangle& other) noexcept
+{
+    for (std::size_t i = 0; i < 3; ++i)
+    {
+        const std::size_t next = (i + 1) % 3;
+        if (meets_from_sides({triangle[i], triangle[next]}, sides[i], sides[next], other))
+        {
+            return true;
+        }
+    }
+    return false;
+}
+
+/// Of a point in the triangle, by the edges that it lies on.
+TriangleFeature feature_of_zeros(const std::array<int, 3>& sides) noexcept
+{
+    for (std::size_t i = 0; i < 3; ++i)
+    {
+        if (sides[i] == 0)
+        {
+            // Corner i is on edges i - 1 and i.
+            return sides[(i + 1) % 3] == 0   ? static_cast<TriangleFeature>((i + 1) % 3)
+                   : sides[(i + 2) % 3] == 0 ? static_cast<TriangleFeature>(i)
+                                             : static_cast<TriangleFeature>(3 + i);
+        }
+    }
+    return TriangleFeature::interior;
+}
+
+} // namespace
+
+bool meet(const Segment& segment, const Triangle& triangle) noexcept
+{
+    if (!do_boxes_overlap(std::array{segment.from, segment.to}, triangle))
+    {
+        return false;
+    }
+    return meets_from_sides(
+        segment, side_of_plane(triangle[0], triangle[1], triangle[2], segment.from),
+        side_of_plane(triangle[0], triangle[1], triangle[2], segment.to), triangle);
+}
+
+bool meet(const Triangle& first, const Triangle& second) noexcept
+{
+    if (!do_boxes_overlap(first, second))
+    {
+        return false;
+    }
+    const std::array<int, 3> first_sides = sides_of_plane(second, first);
+    if (are_all_on_one_side(first_sides))
+    {
+        return false;
+    }
+    const std::array<int, 3> second_sides = sides_of_plane(first, second);
+    return !are_all_on_one_side(second_sides) && (does_an_edge_meet(first, first_sides, second) ||
+                                                  does_an_edge_meet(second, second_sides, first));
+}
+
+std::optional<Piercing> find_piercing(const Segment& segment, const Triangle& triangle) noexcept
+{
+    const int from_side = side_of_plane(triangle[0], triangle[1], triangle[2], segment.from);
+    const int to_side = side_of_plane(triangle[0], triangle[1], triangle[2], segment.to);
+    if (from_side * to_side > 0 || (from_side == 0 && to_side == 0))
+    {
+        return std::nullopt;
+    }
+    const std::array<int, 3> sides = sides_of_edges(segment, triangle);
+    if (!do_not_differ(sides))
+    {
+        return std::nullopt;
+    }
+    const double from = volume(triangle[0], triangle[1], triangle[2], segment.from);
+    const double to = volume(triangle[0], triangle[1], triangle[2], segment.to);
+    // Out of range both may vanish.
+    return Piercing{from == to ? 0.0 : from / (from - to), feature_of_zeros(sides)};
+}
+
+} // namespace tactus

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/math/triangle.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+namespace tactus
+{
+
+/// What double rounds in one comparison of a filter, in local lengths; several times the most seen.
+inline constexpr double kFilterMargin = 64.0 * 0x1p-53;
+
+/// How high points are over a triangle, in double: what may be over it is said to be.
+class FaceFilter
+{
+public:
+    /// Of points up to `length` away from the corners.
+    FaceFilter(const Triangle& triangle, double length) noexcept : corner_(triangle)
+    {
+        const std::array<Vec3, 3> edge{triangle[1] - triangle[0], triangle[2] - triangle[1],
+                                       triangle[0] - triangle[2]};
+        const double longest_sq =
+            std::max({edge[0].squaredNorm(), edge[1].squaredNorm(), edge[2].squaredNorm()});
+        const Vec3 normal = exact_normal(triangle, longest_sq);
+        const double size = normal.norm();
+        has_plane_ = size > 0.0;
+        if (has_plane_)
+        {
+            unit_normal_ = normal / size;
+            for (std::size_t i = 0; i < 3; ++i)
+            {
+                outward_[i] = edge[i].cross(unit_normal_);
+                slack_[i] = kFilterMargin * edge[i].norm() * length;
+            }
+        }
+    }
+
+    /// Zero of a triangle so thin that its edges stand for it.
+    [[nodiscard]] const Vec3& unit_normal() const noexcept { return unit_normal_; }
+
+    /// Within kFilterMargin; infinite where the point is not over the triangle.
+    [[nodiscard]] double height_of(const Vec3& point) const noexcept
+    {
+        for (std::size_t i = 0; i < 3; ++i)
+        {
+            if (!has_plane_ || outward_[i].dot(corner_[i] - point) < -slack_[i])
+            {
+                return std::numeric_limits<double>::infinity();
+            }
+        }
+        return std::abs(unit_normal_.dot(corner_[0] - point));
+    }
+
+private:
+    Triangle corner_;
+    std::array<Vec3, 3> outward_{}; ///< In the plane, across the edges; of their lengths.
+    std::array<double, 3> slack_{}; ///< How much rounding there may be in outward x way.
+    Vec3 unit_normal_{0.0, 0.0, 0.0};
+    bool has_plane_{false};
+};
+
+} // namespace tactus

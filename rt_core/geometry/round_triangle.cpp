@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "rt_core/geometry/round_triangle.hpp"
+
+#include "rt_core/geometry/segment_triangle.hpp"
+
+#include <cmath>
+
+namespace tactus
+{
+
+namespace
+{
+
+ClosestPoints grown(const ClosestPoints& core, double radius) noexcept
+{
+    ClosestPoints result = core;
+    result.distance = core.distance - radius;
+    result.distance_error = core.distance_error + 1.2e-16 * radius;
+    result.meet = result.distance <= 0.0;
+    if (core.distance > 0.0)
+    {
+        const Vec3 direction = core.gap / core.distance;
+        result.on_shape = core.on_shape + radius * direction;
+        result.gap = result.distance * direction;
+    }
+    return result;
+}
+
+} // namespace
+
+ClosestPoints closest_points(const Sphere& sphere, const Triangle& triangle) noexcept
+{
+    const ClosestPoint closest = closest_point_on_triangle(sphere.center, triangle);
+    ClosestPoints core;
+    core.on_shape = sphere.center;
+    core.on_triangle = closest.point;
+    core.gap = closest.gap;
+    core.distance = std::sqrt(closest.distance_sq);
+    core.distance_error = closest.distance_error;
+    core.feature = closest.feature;
+    return grown(core, sphere.radius);
+}
+
+ClosestPoints closest_points(const Capsule& capsule, const Triangle& triangle) noexcept
+{
+    return grown(closest_points(capsule.core, triangle), capsule.radius);
+}
+
+} // namespace tactus

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/math/vec3.hpp"
+
+namespace tactus
+{
+
+// Shapes that meet triangles, closed and in the triangle's frame. Any of them may be flat: a
+// segment a point, a box a rectangle, a radius zero.
+
+struct Segment
+{
+    Vec3 from{0.0, 0.0, 0.0};
+    Vec3 to{0.0, 0.0, 0.0};
+};
+
+/// Rounded from the nearer end, so that the ends come out as they are.
+[[nodiscard]] inline Vec3 point_at(const Segment& segment, double parameter) noexcept
+{
+    return parameter <= 0.5 ? Vec3(segment.from + parameter * (segment.to - segment.from))
+                            : Vec3(segment.to - (1.0 - parameter) * (segment.to - segment.from));
+}
+
+/// Centred at the origin and parallel to the axes: the triangle is to be given in the box's frame.
+struct Box
+{
+    Vec3 half{0.0, 0.0, 0.0}; ///< Half of each extent, none of them negative.
+};
+
+struct Sphere
+{
+    Vec3 center{0.0, 0.0, 0.0};
+    double radius{0.0};
+};
+
+struct Capsule
+{
+    Segment core;
+    double radius{0.0};
+};
+
+} // namespace tactus
