@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "rt_core/geometry/box_triangle.hpp"
+#include "rt_core/geometry/crossing.hpp"
+#include "tests/unit/geometry/integer_oracle.hpp"
+#include "tests/unit/geometry/shape_scenes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace tactus::test
+{
+
+namespace
+{
+
+/// Corners on a grid of so few points that they often coincide, line up or lie in one plane; and
+/// how the grid lies in space: nothing changes when it is scaled by a power of two, its axes are
+/// sheared by whole steps, or all of it is moved by so much that differences just fit.
+class Grid
+{
+public:
+    explicit Grid(Random& random)
+        : random_(random)
+        , steps_(2 + random.below(6))
+        , scale_(std::ldexp(1.0, static_cast<int>(random.below(60)) - 30))
+        , offset_(random.one_in(2) ? 0 : std::int64_t{1} << (20 + random.below(31)))
+        , shear_(random.one_in(2) ? 0 : 1 + random.below(1000))
+    {
+    }
+
+    [[nodiscard]] GridPoint point()
+    {
+        return {random_.below(steps_), random_.below(steps_), random_.below(steps_)};
+    }
+    [[nodiscard]] GridTriangle triangle() { return {point(), point(), point()}; }
+
+    [[nodiscard]] Vec3 placed(const GridPoint& p) const
+    {
+        return Vec3(static_cast<double>(offset_ + p[0] + shear_ * p[1]),
+                    static_cast<double>(offset_ + p[1] + shear_ * p[2]),
+                    static_cast<double>(offset_ - p[2])) *
+               scale_;
+    }
+    [[nodiscard]] Triangle placed(const GridTriangle& t) const
+    {
+        return {placed(t[0]), placed(t[1]), placed(t[2])};
+    }
+
+private:
+    Random& random_;
+    std::uint32_t steps_;
+    double scale_;
+    std::int64_t offset_;
+    std::int64_t shear_;
+};
+
+constexpr int kClasses = 15;
+
+/// Both answers are to be common.
+struct Tally
+{
+    int cases{0};
+    int meetings{0};
+
+    void add(bool meets)
+    {
+        ++cases;
+        meetings += meets ? 1 : 0;
+    }
+    void expect_both() const
+    {
+        EXPECT_GT(meetings, cases / 20);
+        EXPECT_LT(meetings, cases * 19 / 20);
+    }
+};
+
+} // namespace
+
+TEST(Meet, of_triangles_is_what_exact_linear_algebra_says)
+{
+    Random random(50);
+    Tally tally;
+    for (int i = 0; i < kClasses * cases_per_class() / 4; ++i)
+    {
+        Grid grid(random);
+        const GridTriangle a = grid.triangle();
+        const GridTriangle b = grid.triangle();
+        const bool expected = share_a_point({a[0], a[1], a[2]}, b);
+        tally.add(expected);
+        ASSERT_EQ(meet(grid.placed(a), grid.placed(b)), expected) << "case " << i;
+        ASSERT_EQ(meet(grid.placed(b), grid.placed(a)), expected) << "case " << i;
+    }
+    tally.expect_both();
+}
+
+TEST(Meet, of_a_segment_and_a_triangle_is_what_exact_linear_algebra_says)
+{
+    Random random(51);
+    Tally tally;
+    for (int i = 0; i < kClasses * cases_per_class() / 2; ++i)
+    {
+        Grid grid(random);
+        const GridPoint from = grid.point();
+        const GridPoint to = grid.point();
+        const GridTriangle triangle = grid.triangle();
+        const bool expected = share_a_point({from, to}, triangle);
+        tally.add(expected);
+        const Segment segment{grid.placed(from), grid.placed(to)};
+        ASSERT_EQ(meet(segment, grid.placed(triangle)), expected) << "case " << i;
+        const auto piercing = find_piercing(segment, grid.placed(triangle));
+        ASSERT_TRUE(expected || !piercing) << "case " << i;
+    }
+    tally.expect_both();
+}
+
+TEST(Meet, of_a_box_and_a_triangle_is_what_exact_linear_algebra_says)
+{
+    Random random(52);
+    Tally tally;
+    const auto vec = [](const GridPoint& p) {
+        return Vec3(static_cast<double>(p[0]), static_cast<double>(p[1]),
+                    static_cast<double>(p[2]));
+    };
+    for (int i = 0; i < kClasses * cases_per_class() / 4; ++i)
+    {
+        const std::uint32_t steps = 2 + random.below(8);
+        const auto point = [&]() -> GridPoint
+        {
+            const auto coordinate = [&]
+            { return std::int64_t{random.below(2 * steps + 1)} - std::int64_t{steps}; };
+            return {coordinate(), coordinate(), coordinate()};
+        };
+        const GridPoint half{random.below(steps), random.below(steps), random.below(steps)};
+        const GridTriangle triangle{point(), point(), point()};
+        const bool expected = box_shares_a_point(half, triangle);
+        tally.add(expected);
+        const double scale = std::ldexp(1.0, static_cast<int>(random.below(60)) - 30);
+        const Triangle placed{vec(triangle[0]) * scale, vec(triangle[1]) * scale,
+                              vec(triangle[2]) * scale};
+        ASSERT_EQ(meet(Box{vec(half) * scale}, placed), expected) << "case " << i;
+    }
+    tally.expect_both();
+}
+
+TEST(Meet, tells_touching_from_missing_by_one_bit)
+{
+    const Triangle floor{Vec3(0.1, 0.1, 0.1), Vec3(1.1, 0.1, 0.1), Vec3(0.1, 1.1, 0.1)};
+    const auto standing = [](double height) {
+        return Triangle{Vec3(0.3, 0.3, height), Vec3(0.3, 0.4, 2.0), Vec3(0.4, 0.3, 2.0)};
+    };
+
+    EXPECT_TRUE(meet(floor, standing(0.1)));
+    EXPECT_FALSE(meet(floor, standing(std::nextafter(0.1, 1.0))));
+    EXPECT_FALSE(meet(Box{Vec3(0.1, 0.1, 0.1)}, standing(std::nextafter(0.1, 1.0))));
+    EXPECT_TRUE(meet(Box{Vec3(0.3, 0.3, 0.1)}, standing(0.1)));
+    EXPECT_FALSE(meet(Box{Vec3(std::nextafter(0.3, 0.0), 0.3, 0.1)}, standing(0.1)));
+}
+
+} // namespace tactus::test
