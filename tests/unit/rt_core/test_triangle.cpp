@@ -201,7 +201,7 @@ TEST_P(ClosestPointTest, keeps_its_error_law_and_reports_a_point_of_the_triangle
     double worst_law = 0.0;
     double worst_place = 0.0;
     double worst_reach = 0.0;
-    for (int i = 0; i < 100'000; ++i)
+    for (int i = 0; i < 120'000; ++i)
     {
         const Pose pose = GetParam().make(random);
         const ClosestPoint answer = closest_point_on_triangle(pose.query, pose.triangle);
