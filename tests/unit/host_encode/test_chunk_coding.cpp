@@ -3,6 +3,7 @@
 #include "host_tools/encode/piece_coding.hpp"
 #include "host_tools/encode/range_encoder.hpp"
 #include "rt_core/spm/chunk_coding.hpp"
+#include "rt_core/spm/chunk_grammar.hpp"
 #include "rt_core/spm/range_decoder.hpp"
 #include "tests/unit/host_encode/encoded_model.hpp"
 
@@ -66,7 +67,7 @@ CodedRecord arbitrary_record(RecordId id, const ModelCounts& counts)
     record.corner = static_cast<std::uint8_t>(below(3));
     record.left = static_cast<std::uint8_t>(below(kMaxFanFaces));
     record.right = static_cast<std::uint8_t>(below(kMaxFanFaces - record.left));
-    record.sides = static_cast<std::uint8_t>(1 + below(3));
+    record.sides = static_cast<std::uint8_t>(below(4));
     for (std::uint32_t i = 0; i + 1 < record.fan_size(); ++i)
     {
         record.others[i] = arbitrary_owner(id, counts, true);
@@ -183,6 +184,77 @@ TEST(ChunkCoding, the_chunk_of_another_number_is_refused)
 {
     const auto page = std::make_unique<Page>();
     EXPECT_EQ(parse(some_chunk({1}), {2}, *page).error(), SpmRefusal::wrong_checksum);
+}
+
+/// Writes what it is told but for one bit, and goes on as if it had been told that.
+class BendingEncoder
+{
+public:
+    explicit BendingEncoder(std::size_t bent) : bent_(bent) {}
+
+    std::uint32_t code_bit(Probability& zero, std::uint32_t bit)
+    {
+        return encoder_.code_bit(zero, count_++ == bent_ ? bit ^ 1U : bit);
+    }
+    std::uint32_t code_raw(std::uint32_t bits, std::uint32_t value)
+    {
+        return encoder_.code_raw(bits, value);
+    }
+    [[nodiscard]] std::size_t count() const { return count_; }
+    [[nodiscard]] std::vector<std::byte> finish() { return encoder_.finish(); }
+
+private:
+    RangeEncoder encoder_;
+    std::size_t bent_;
+    std::size_t count_{0};
+};
+
+TEST(ChunkCoding, a_bent_bit_of_a_record_is_read_as_bent_or_refused)
+{
+    const ChunkId id{1};
+    const ModelCounts counts = some_header().counts();
+    const auto page = std::make_unique<Page>();
+    ASSERT_TRUE(parse(some_chunk(id), id, *page).has_value());
+    std::vector<CodedRecord> records(records_in_chunk(counts, id));
+    for (std::size_t place = 0; place < records.size(); ++place)
+    {
+        records[place] = coded_form(page->records[place]);
+    }
+    std::size_t unsound = 0;
+    std::size_t read = 0;
+    bool is_past_end = false;
+    for (std::size_t bent = 0; !is_past_end; ++bent)
+    {
+        BendingEncoder encoder(bent);
+        ChunkGrammar grammar(encoder, counts, id);
+        std::vector<CodedRecord> written = records;
+        for (std::uint32_t place = 0; place < written.size(); ++place)
+        {
+            grammar.code({(id.value << kRecordsPerChunkLog2) + place}, written[place]);
+        }
+        is_past_end = bent >= encoder.count();
+        const auto parsed = parse(with_right_checksum(encoder.finish(), id), id, *page);
+        unsound += grammar.is_sound() ? 0U : 1U;
+        read += parsed.has_value() ? 1U : 0U;
+        if (!parsed)
+        {
+            ASSERT_EQ(parsed.error(), SpmRefusal::value_out_of_range) << "bit " << bent;
+            continue;
+        }
+        ASSERT_TRUE(grammar.is_sound()) << "bit " << bent;
+        for (std::size_t place = 0; place < written.size(); ++place)
+        {
+            // What a smaller fan or another kind of anchor leaves unsaid.
+            const std::size_t named = written[place].fan_size() - 1;
+            std::fill(written[place].others.begin() + static_cast<std::ptrdiff_t>(named),
+                      written[place].others.end(), Owner{});
+            const bool is_base = written[place].anchor.kind == Owner::Kind::base;
+            written[place].place = is_base ? std::uint8_t{0} : written[place].place;
+            ASSERT_EQ(coded_form(page->records[place]), written[place]) << "bit " << bent;
+        }
+    }
+    EXPECT_GT(unsound, 10U);
+    EXPECT_GT(read, 1'000U);
 }
 
 TEST(ChunkCoding, noise_under_a_right_checksum_never_names_what_the_model_does_not_have)
