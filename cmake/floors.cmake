@@ -21,28 +21,31 @@ endmacro()
 
 # --- rt_core: stages are siblings and never include one another; they meet in query, refine, frame.
 # Except that the forest hands each change straight to the tree (docs/decisions/0005-the-frame.md).
-set(stage_floor rt_core/base rt_core/math rt_core/limits.hpp rt_core/records rt_core/spm)
+set(stage_floor
+    rt_core/base rt_core/math rt_core/limits.hpp rt_core/geometry rt_core/records rt_core/spm)
 
 tactus_room(rt_core/base)
 tactus_room(rt_core/math rt_core/base)
-tactus_room(rt_core/geometry rt_core/base rt_core/math)
+tactus_room(rt_core/geometry rt_core/base rt_core/math rt_core/limits.hpp)
 tactus_room(rt_core/limits.hpp rt_core/base)
 tactus_room(rt_core/spm rt_core/base rt_core/math rt_core/limits.hpp)
-tactus_room(rt_core/records rt_core/base rt_core/math rt_core/limits.hpp rt_core/spm)
+tactus_room(rt_core/records
+    rt_core/base rt_core/math rt_core/limits.hpp rt_core/geometry rt_core/spm)
 tactus_room(rt_core/cache ${stage_floor})
 tactus_room(rt_core/kernels rt_core/base)
 tactus_room(rt_core/abtree ${stage_floor} rt_core/kernels)
 tactus_room(rt_core/forest ${stage_floor} rt_core/abtree rt_core/kernels)
 tactus_room(rt_core/predict ${stage_floor})
-tactus_room(rt_core/force ${stage_floor} rt_core/geometry)
+tactus_room(rt_core/force ${stage_floor})
 tactus_room(rt_core/scene ${stage_floor})
-tactus_room(rt_core/query ${stage_floor} rt_core/abtree rt_core/geometry rt_core/kernels)
+tactus_room(rt_core/query ${stage_floor} rt_core/abtree rt_core/kernels)
 tactus_room(rt_core/refine ${stage_floor}
-    rt_core/abtree rt_core/forest rt_core/geometry rt_core/kernels rt_core/cache rt_core/query)
+    rt_core/abtree rt_core/forest rt_core/kernels rt_core/cache rt_core/query)
 tactus_room(rt_core/frame rt_core)
 
 # --- platform: only the controller program sees core, transport and device; nothing includes it.
-tactus_room(platform rt_core/base rt_core/math rt_core/records rt_core/limits.hpp)
+tactus_room(platform
+    rt_core/base rt_core/math rt_core/geometry rt_core/records rt_core/limits.hpp)
 # Frames and what they were given; of the machine it knows nothing.
 tactus_room(platform/recording rt_core)
 # Its command line is read like every other program's: docs/decisions/0003-command-line-room.md.

@@ -51,9 +51,16 @@ inline constexpr std::uint32_t kMaxObjects = 8;
 inline constexpr std::uint32_t kMaxModels = 8;
 inline constexpr std::uint32_t kMaxPairs = kMaxTools * kMaxObjects;
 
+/// Balls that a tool's core is covered with, each a question to the refinement: a capsule of sixteen
+/// radii is refined no farther than twice its radius from its axis. 100 B each for a pair.
+inline constexpr std::uint32_t kMaxCoverBalls = 8;
+
 /// Exact triangles handed to the force stage for one pair; 76 are usual at 1.1 M faces and a tool
 /// of 1 % of the diagonal. With more, the certified radius shrinks to those kept. 40 B each.
 inline constexpr std::uint32_t kMaxLocalTriangles = 256;
+
+/// Contacts told of one pair: the nearest ones. 128 B each.
+inline constexpr std::uint32_t kMaxContacts = 32;
 
 // --- The frame -----------------------------------------------------------------------------------
 
@@ -66,8 +73,8 @@ inline constexpr std::uint32_t kRefineHeap = 1'024;
 inline constexpr std::uint32_t kMaxHeldRecords = 1'024;
 /// A traversal's stack: 22 levels of 7 siblings and the 8 of the last node.
 inline constexpr std::uint32_t kTreeStack = 22 * 7 + 8;
-/// Balls that the predictor ranks: now, soon and later for each pair that is near.
-inline constexpr std::uint32_t kMaxRankedRegions = 3 * kMaxPairs;
+/// Balls that the predictor ranks: now, soon and later for each ball of a pair that is near.
+inline constexpr std::uint32_t kMaxRankedRegions = 3 * kMaxPairs * kMaxCoverBalls;
 /// A model with more index pages, about 800 B each, keeps this many, or more where there is memory.
 inline constexpr std::uint32_t kLeastResidentIndexPages = 192;
 /// Frames after which an unanswered wish is asked again.

@@ -98,7 +98,8 @@ HeaderFields describe(const PreparedMesh& prepared, const Simplification& simpli
     fields.records = counts.records;
     fields.quantum_log2 = std::ilogb(prepared.quantum_m);
     TACTUS_ASSERT(std::ldexp(1.0, fields.quantum_log2) == prepared.quantum_m);
-    fields.position_bits = position_bits;
+    fields.position_bits = static_cast<std::uint16_t>(position_bits);
+    fields.topology = simplification.is_closed ? kClosedTopology : kOpenTopology;
     fields.extent_quanta = extent_of(prepared.mesh);
     fields.max_depth = pieces.max_depth();
     fields.origin_m = prepared.origin_m;

@@ -105,6 +105,19 @@ void CollapseMesh::find_first_faces() noexcept
     }
 }
 
+bool CollapseMesh::is_closed() const
+{
+    for (std::uint32_t f = 0; f < corners_.size(); ++f)
+    {
+        const auto& across = neighbours_[f];
+        if (!is_removed_face(f) && std::find(across.begin(), across.end(), kNoFace) != across.end())
+        {
+            return false;
+        }
+    }
+    return true;
+}
+
 std::vector<std::uint32_t> CollapseMesh::present_faces() const
 {
     std::vector<std::uint32_t> present;

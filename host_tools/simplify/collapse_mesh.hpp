@@ -95,6 +95,8 @@ public:
     {
         return corners_[face];
     }
+    /// No present face has a border edge.
+    [[nodiscard]] bool is_closed() const;
     /// Those that aren't removed; ascending.
     [[nodiscard]] std::vector<std::uint32_t> present_faces() const;
     [[nodiscard]] std::uint32_t neighbour(std::uint32_t face, std::uint32_t edge) const noexcept

@@ -62,6 +62,7 @@ public:
         , scratch_(options.threads)
     {
         result_.collapses.reserve(mesh.positions.size());
+        result_.is_closed = current_.is_closed();
     }
 
     Result<Simplification, SimplifyError> run();

@@ -112,6 +112,7 @@ nlohmann::json describe(const ModelStore& store, const DecodedModel& model, bool
         {"revision", fields.revision},
         {"faces", fields.source_faces},
         {"vertices", fields.source_vertices},
+        {"is_closed", header.is_closed()},
         {"base_faces", fields.base_faces},
         {"base_vertices", fields.base_vertices},
         {"records", fields.records},
@@ -153,7 +154,8 @@ void print_text(const nlohmann::json& all)
     fmt::print("{}: SPM format {}, coder {}, revision {}\n", all["file"].get<std::string>(),
                count("/format_version"), count("/coder_version"), count("/revision"));
     fmt::print("hash          {}\n", all["hash"].get<std::string>());
-    fmt::print("mesh          {} faces, {} vertices\n", count("/faces"), count("/vertices"));
+    fmt::print("mesh          {} faces, {} vertices, {}\n", count("/faces"), count("/vertices"),
+               all["is_closed"].get<bool>() ? "closed" : "open (distances are unsigned)");
     fmt::print("base          {} faces, {} vertices\n", count("/base_faces"),
                count("/base_vertices"));
     fmt::print("records       {} from {} rounds, depth {}\n", count("/records"), count("/rounds"),

@@ -22,13 +22,20 @@ Vec3 read_vector(ByteReader& reader)
     return value;
 }
 
+Mat3 read_rotation(ByteReader& reader)
+{
+    Mat3 rotation;
+    for (int row = 0; row < 3; ++row)
+    {
+        rotation.row(row) = read_vector(reader).transpose();
+    }
+    return rotation;
+}
+
 ObjectPose read_pose(ByteReader& reader)
 {
     ObjectPose pose;
-    for (int row = 0; row < 3; ++row)
-    {
-        pose.rotation.row(row) = read_vector(reader).transpose();
-    }
+    pose.rotation = read_rotation(reader);
     pose.translation_m = read_vector(reader);
     pose.scale = reader.read<double>();
     pose.stamp_ns = reader.read<std::int64_t>();
@@ -157,9 +164,14 @@ bool FrameDecoder::decode_tools(ByteReader& reader)
         tool.position_m = read_vector(reader);
         tool.sample_time_ns = reader.read<std::int64_t>();
         tool.elapsed_periods = reader.read<std::uint32_t>();
-        const auto valid = reader.read<std::uint8_t>();
-        tool.valid = valid != 0;
-        is_sound = is_sound && valid <= 1;
+        const auto flags = reader.read<std::uint8_t>();
+        tool.valid = (flags & kIsValid) != 0;
+        tool.rotation = Mat3::Identity();
+        if ((flags & kHasRotation) != 0)
+        {
+            tool.rotation = read_rotation(reader);
+        }
+        is_sound = is_sound && flags <= (kIsValid | kHasRotation);
     }
     return is_sound;
 }

@@ -47,20 +47,31 @@ private:
     std::size_t at_{0};
 };
 
+void write_rotation(FixedWriter& writer, const Mat3& rotation) noexcept
+{
+    for (int row = 0; row < 3; ++row)
+    {
+        writer.write_vector(rotation.row(row).transpose());
+    }
+}
+
 void write_tool(FixedWriter& writer, const ToolState& tool) noexcept
 {
     writer.write_vector(tool.position_m);
     writer.write(tool.sample_time_ns);
     writer.write(tool.elapsed_periods);
-    writer.write(static_cast<std::uint8_t>(tool.valid));
+    const bool is_turned = tool.rotation != Mat3::Identity();
+    writer.write(
+        static_cast<std::uint8_t>((tool.valid ? kIsValid : 0U) | (is_turned ? kHasRotation : 0U)));
+    if (is_turned)
+    {
+        write_rotation(writer, tool.rotation);
+    }
 }
 
 void write_pose(FixedWriter& writer, const ObjectPose& pose) noexcept
 {
-    for (int row = 0; row < 3; ++row)
-    {
-        writer.write_vector(pose.rotation.row(row).transpose());
-    }
+    write_rotation(writer, pose.rotation);
     writer.write_vector(pose.translation_m);
     writer.write(pose.scale);
     writer.write(pose.stamp_ns);

@@ -16,7 +16,7 @@ namespace tactus
 {
 
 /// Sizes of the coded parts of a frame, in bytes; docs/recording.md lists the fields.
-inline constexpr std::size_t kToolStateBytes = 37;
+inline constexpr std::size_t kToolStateBytes = 37 + 72;
 inline constexpr std::size_t kObjectPoseBytes = 124;
 inline constexpr std::size_t kBudgetsBytes = 32;
 inline constexpr std::size_t kDoorEventBytes = 22;
@@ -29,6 +29,9 @@ inline constexpr std::size_t kMaxCodedFrameBytes =
 /// A frame's flags: poses or budgets follow, since they differ from the frame before.
 inline constexpr std::uint8_t kHasPoses = 1;
 inline constexpr std::uint8_t kHasBudgets = 2;
+/// A tool's.
+inline constexpr std::uint8_t kIsValid = 1;
+inline constexpr std::uint8_t kHasRotation = 2;
 
 /// Codes frames one after the other. Poses and budgets are written only when they differ from the
 /// frame before. Allocates nothing, so the haptic thread may use it.

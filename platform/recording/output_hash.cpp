@@ -12,7 +12,8 @@ namespace
 
 // A field that is added to one of these has to be hashed below.
 static_assert(sizeof(ToolOutput) == 56);
-static_assert(sizeof(PairOutput) == 104);
+static_assert(sizeof(PairOutput) == 112);
+static_assert(sizeof(Contact) == 88);
 static_assert(sizeof(ModelOutput) == 80);
 static_assert(sizeof(WorkCounters) == 52);
 
@@ -59,6 +60,22 @@ std::uint64_t hash_tools(std::span<const ToolOutput> tools) noexcept
     return hash.value();
 }
 
+void hash_contacts(Hash& hash, const ContactReport& report) noexcept
+{
+    for (const Contact& contact : report.contacts)
+    {
+        hash.add(std::uint64_t{contact.face.value});
+        hash.add(static_cast<std::uint64_t>(contact.feature));
+        hash.add(contact.distance_m);
+        hash.add(contact.on_tool_m);
+        hash.add(contact.on_surface_m);
+        hash.add(contact.normal);
+    }
+    hash.add(std::uint64_t{report.is_complete});
+    hash.add(report.normal);
+    hash.add(static_cast<std::uint64_t>(report.side));
+}
+
 std::uint64_t hash_pairs(std::span<const PairOutput> pairs) noexcept
 {
     Hash hash;
@@ -73,6 +90,11 @@ std::uint64_t hash_pairs(std::span<const PairOutput> pairs) noexcept
         hash.add(std::uint64_t{pair.nearest_face.value});
         hash.add(pair.nearest_point_m);
         hash.add(std::uint64_t{pair.skipped});
+        hash.add(static_cast<std::uint64_t>(pair.nearest_feature));
+        if (pair.contacts != nullptr)
+        {
+            hash_contacts(hash, *pair.contacts);
+        }
     }
     return hash.value();
 }

@@ -3,6 +3,7 @@
 #include "platform/recording/setup_coding.hpp"
 
 #include "platform/recording/byte_append.hpp"
+#include "platform/recording/core_coding.hpp"
 #include "rt_core/frame/frame.hpp"
 
 #include <algorithm>
@@ -46,7 +47,7 @@ bool is_within(double value, double least, double most)
 
 bool is_sound(const ToolSpec& tool)
 {
-    return is_within(tool.radius_m, 1e-9, 1e6) && is_within(tool.stiffness_n_per_m, 0.0, 1e9) &&
+    return is_within(tool.radius_m, 0.0, 1e6) && is_within(tool.stiffness_n_per_m, 0.0, 1e9) &&
            is_within(tool.force_max_n, 0.0, 1e9) && is_within(tool.speed_max_m_per_s, 0.0, 1e9);
 }
 
@@ -59,10 +60,18 @@ Fault parse_tools(ByteReader& reader, std::uint32_t tools, RecordedSetup& setup)
         tool.stiffness_n_per_m = reader.read<double>();
         tool.force_max_n = reader.read<double>();
         tool.speed_max_m_per_s = reader.read<double>();
+        const auto wants_contacts = reader.read<std::uint8_t>();
+        tool.wants_contacts = wants_contacts != 0;
+        const std::optional<ToolCore> core = read_core(reader);
+        if (!core || wants_contacts > 1)
+        {
+            return "tool " + std::to_string(i) + " has an unknown core, or one beyond 1e6 m";
+        }
+        tool.core = *core;
         if (!is_sound(tool))
         {
             return "tool " + std::to_string(i) +
-                   " is not within 1e-9 to 1e6 m, 0 to 1e9 N/m, 0 to 1e9 N, 0 to 1e9 m/s";
+                   " is not within 0 to 1e6 m, 0 to 1e9 N/m, 0 to 1e9 N, 0 to 1e9 m/s";
         }
         setup.tools.push_back(tool);
     }
@@ -120,6 +129,8 @@ std::vector<std::byte> code_setup(const RecordedSetup& setup)
         append(bytes, tool.stiffness_n_per_m);
         append(bytes, tool.force_max_n);
         append(bytes, tool.speed_max_m_per_s);
+        append(bytes, static_cast<std::uint8_t>(tool.wants_contacts));
+        append_core(bytes, tool.core);
     }
     for (const ObjectSpec& object : setup.objects)
     {

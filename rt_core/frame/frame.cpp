@@ -2,8 +2,9 @@
 // Copyright the Tactus authors.
 #include "rt_core/frame/frame.hpp"
 
+#include "rt_core/query/contact_report.hpp"
+#include "rt_core/query/core_query.hpp"
 #include "rt_core/query/probe.hpp"
-#include "rt_core/query/surface_query.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -29,6 +30,42 @@ bool is_usable(const Vec3& point) noexcept
 {
     // Comparisons are false for NaN; the limit is far beyond any device and any model.
     return std::abs(point.x()) < 1e6 && std::abs(point.y()) < 1e6 && std::abs(point.z()) < 1e6;
+}
+
+bool is_rotation(const Mat3& matrix) noexcept
+{
+    const Mat3 excess = matrix.transpose() * matrix - Mat3::Identity();
+    bool is_orthonormal = matrix.determinant() > 0.0;
+    for (int i = 0; i < 9; ++i)
+    {
+        is_orthonormal = is_orthonormal && std::abs(excess(i / 3, i % 3)) < 1e-6;
+    }
+    return is_orthonormal;
+}
+
+/// Orthonormal to rounding; an axis that is so already keeps its bits.
+Mat3 orthonormalised(const Mat3& matrix) noexcept
+{
+    Mat3 result;
+    const Vec3 first = matrix.col(0).normalized();
+    const Vec3 across = matrix.col(1) - first.dot(matrix.col(1)) * first;
+    result.col(0) = first;
+    result.col(1) = across.normalized();
+    result.col(2) = first.cross(result.col(1));
+    return result;
+}
+
+/// From the model's frame to the world.
+void place_in_world(const ObjectPose& pose, ContactReport& report) noexcept
+{
+    report.normal = pose.rotation * report.normal;
+    for (Contact& contact : report.contacts)
+    {
+        contact.distance_m *= pose.scale;
+        contact.on_tool_m = to_world(pose, contact.on_tool_m);
+        contact.on_surface_m = to_world(pose, contact.on_surface_m);
+        contact.normal = pose.rotation * contact.normal;
+    }
 }
 
 } // namespace
@@ -107,8 +144,15 @@ Frame::Frame(PassKey /*key*/, Arena& arena, const FrameSetup& setup) noexcept
     : scene_(setup.tools, setup.objects)
     , period_ns_(setup.period_ns)
     , pose_age_max_ns_(setup.pose_age_max_ns)
+    , refine_memories_(arena.take<RefineMemory>(scene_.pairs().size() * kQuestions))
     , surfaces_(arena.take<LocalSurface>(scene_.pairs().size() + 1))
 {
+    if (std::any_of(setup.tools.begin(), setup.tools.end(),
+                    [](const ToolSpec& tool) { return tool.wants_contacts; }))
+    {
+        contacts_ = arena.take<ContactReport>(scene_.pairs().size());
+    }
+    rotations_.fill(Mat3::Identity());
     for (const ToolSpec& tool : setup.tools)
     {
         proxies_.push_back(Proxy(tool));
@@ -179,7 +223,7 @@ void Frame::rehearse() noexcept
         {
             WalkBudget budget{last_budgets_.nodes, last_budgets_.triangles};
             QueryMemory memory = query_memories_[i];
-            gather_surface(models_[model_of(pair).value]->tree, pair.center_m, pair.reach_m, memory,
+            gather_surface(models_[model_of(pair).value]->tree, pair.core, pair.reach_m, memory,
                            budget, surfaces_.back());
         }
     }
@@ -191,16 +235,23 @@ void Frame::read_tools(std::span<const ToolState> tools) noexcept
     {
         elapsed_s_[i] = static_cast<double>(period_ns_) * 1e-9 *
                         static_cast<double>(std::max(tools[i].elapsed_periods, 1U));
-        if (!tools[i].valid || !is_usable(tools[i].position_m))
+        if (!tools[i].valid || !is_usable(tools[i].position_m) || !is_rotation(tools[i].rotation))
         {
+            ways_m_[i] = 0.0;
             faults_ |= FrameFault::tool_invalid;
             continue;
         }
+        const Mat3 rotation = orthonormalised(tools[i].rotation);
         if (has_started_)
         {
-            goal_velocities_m_per_s_[i] = (tools[i].position_m - goals_[i]) / elapsed_s_[i];
+            const Vec3 way = tools[i].position_m - goals_[i];
+            goal_velocities_m_per_s_[i] = way / elapsed_s_[i];
+            const ToolCore& core = scene_.tools()[i].core;
+            ways_m_[i] = PlacedCore(core, {rotation, way})
+                             .motion_since(PlacedCore(core, {rotations_[i], Vec3(0.0, 0.0, 0.0)}));
         }
         goals_[i] = tools[i].position_m;
+        rotations_[i] = rotation;
         if (!has_started_)
         {
             proxies_[i].start_at(goals_[i]);
@@ -209,11 +260,23 @@ void Frame::read_tools(std::span<const ToolState> tools) noexcept
     has_started_ = true;
 }
 
-/// How far round its proxy a tool asks for exact faces: its radius, and as far as it may move.
+/// Only a point's tool is held back by a surface as yet; others are where the hand has them.
+bool Frame::has_proxy(std::uint32_t tool) const noexcept
+{
+    return std::holds_alternative<PointCore>(scene_.tools()[tool].core);
+}
+
+const Vec3& Frame::position_of(std::uint32_t tool) const noexcept
+{
+    return has_proxy(tool) ? proxies_[tool].position_m() : goals_[tool];
+}
+
+/// How far round its core a tool asks for exact faces: its radius, and as far as it may move.
 double Frame::reach_of(std::uint32_t tool) const noexcept
 {
     const ToolSpec& spec = scene_.tools()[tool];
-    const double way = (goals_[tool] - proxies_[tool].position_m()).norm();
+    const double way =
+        has_proxy(tool) ? (goals_[tool] - proxies_[tool].position_m()).norm() : ways_m_[tool];
     const double most = spec.speed_max_m_per_s * elapsed_s_[tool];
     return spec.radius_m * (1.0 + kReachMargin) + std::min(way, most);
 }
@@ -221,7 +284,7 @@ double Frame::reach_of(std::uint32_t tool) const noexcept
 /// How far a tool without contact comes in kApproachTime_s.
 Vec3 Frame::ahead_of(std::uint32_t tool) const noexcept
 {
-    return proxies_[tool].is_in_contact() ? Vec3(0.0, 0.0, 0.0)
+    return tool_outputs_[tool].in_contact ? Vec3(0.0, 0.0, 0.0)
                                           : Vec3(kApproachTime_s * goal_velocities_m_per_s_[tool]);
 }
 
@@ -234,7 +297,7 @@ void Frame::place_pairs(std::span<const ObjectPose> poses) noexcept
 {
     for (ScenePair& pair : scene_.pairs())
     {
-        Scene::place(pair, poses[pair.object], proxies_[pair.tool].position_m(),
+        scene_.place(pair, poses[pair.object], rotations_[pair.tool], position_of(pair.tool),
                      reach_of(pair.tool), ahead_of(pair.tool));
     }
 }
@@ -249,8 +312,8 @@ void Frame::load(const Budgets& budgets) noexcept
         {
             continue;
         }
-        predictors_[i].observe(pair.center_m, elapsed_s_[pair.tool]);
-        predictors_[i].rank(model_of(pair), Scene::kKeepFactor * pair.reach_m, ranking);
+        predictors_[i].observe(pair.core.center(), elapsed_s_[pair.tool]);
+        predictors_[i].rank(model_of(pair), pair.cover, Scene::kKeepFactor * pair.reach_m, ranking);
     }
     for (std::uint32_t i = 0; i < model_count_; ++i)
     {
@@ -308,12 +371,19 @@ Frame::RefineQuestions Frame::questions_about(std::uint32_t model) noexcept
         {
             continue;
         }
-        const std::size_t memory = std::size_t{2} * i;
         const double ahead = pair.ahead_m.norm();
         const bool is_far_ahead = ahead > kLeastAhead * pair.reach_m;
-        const Vec3 there = pair.center_m + pair.ahead_m;
-        ask(!pair.is_asleep, pair.center_m, pair.reach_m, refine_memories_[memory]);
-        ask(!pair.is_asleep && is_far_ahead, there, pair.reach_m, refine_memories_[memory + 1]);
+        const std::span<RefineMemory> memories =
+            refine_memories_.subspan(i * kQuestions, kQuestions);
+        for (std::size_t ball = 0; ball < kMaxCoverBalls; ++ball)
+        {
+            const bool is_asked = !pair.is_asleep && ball < pair.cover.size();
+            const Ball here = ball < pair.cover.size() ? pair.cover[ball] : Ball{};
+            const double reach_m = here.radius + pair.reach_m;
+            ask(is_asked, here.center, reach_m, memories[2 * ball]);
+            ask(is_asked && is_far_ahead, here.center + pair.ahead_m, reach_m,
+                memories[2 * ball + 1]);
+        }
     }
     return questions;
 }
@@ -324,6 +394,7 @@ void Frame::query(std::span<const ObjectPose> poses, const Budgets& budgets) noe
     {
         ScenePair& pair = scene_.pairs()[i];
         LocalSurface& surface = surfaces_[i];
+        const Model& model = *models_[model_of(pair).value];
         if (pair.is_asleep)
         {
             surface.answer = Scene::from_motion(pair);
@@ -332,8 +403,8 @@ void Frame::query(std::span<const ObjectPose> poses, const Budgets& budgets) noe
         else
         {
             WalkBudget budget{budgets.nodes, budgets.triangles};
-            gather_surface(models_[model_of(pair).value]->tree, pair.center_m, pair.reach_m,
-                           query_memories_[i], budget, surface);
+            gather_surface(model.tree, pair.core, pair.reach_m, query_memories_[i], budget,
+                           surface);
             work_.nodes_visited += budget.nodes_visited;
             work_.triangles_tested += budget.triangles_tested;
             faults_ |= budget.is_spent ? FrameFault::node_budget_spent : FrameFault::none;
@@ -341,7 +412,13 @@ void Frame::query(std::span<const ObjectPose> poses, const Budgets& budgets) noe
             Scene::remember(pair, surface.answer);
         }
         const ObjectPose& pose = poses[pair.object];
-        const std::uint32_t revision = models_[model_of(pair).value]->header.fields().revision;
+        if (scene_.tools()[pair.tool].wants_contacts)
+        {
+            report_contacts(pair.core, scene_.tools()[pair.tool].radius_m / pose.scale, model.tree,
+                            surface, model.header.is_closed(), contacts_[i]);
+            place_in_world(pose, contacts_[i]);
+        }
+        const std::uint32_t revision = model.header.fields().revision;
         if (pose.age_ns > pose_age_max_ns_ || pose.revision != revision)
         {
             surface.answer.kind = AnswerKind::stale;
@@ -362,28 +439,49 @@ void Frame::respond(std::span<const ObjectPose> poses) noexcept
                 placed.push_back({&poses[pair.object], &surfaces_[i]});
             }
         }
-        tool_outputs_[tool] = proxies_[tool].respond(goals_[tool], placed.view(), elapsed_s_[tool]);
+        tool_outputs_[tool] =
+            has_proxy(tool) ? proxies_[tool].respond(goals_[tool], placed.view(), elapsed_s_[tool])
+                            : follow(tool, placed.view());
         faults_ |= tool_outputs_[tool].frozen ? FrameFault::proxy_frozen : FrameFault::none;
     }
+}
+
+/// A tool without a proxy: whether it touches is proven where an upper bound says so.
+ToolOutput Frame::follow(std::uint32_t tool, std::span<const PlacedSurface> surfaces) const noexcept
+{
+    ToolOutput output;
+    output.proxy_m = goals_[tool];
+    for (const PlacedSurface& placed : surfaces)
+    {
+        const double upper_m = placed.surface->answer.upper_m * placed.pose->scale;
+        output.in_contact = output.in_contact || upper_m <= scene_.tools()[tool].radius_m;
+    }
+    return output;
+}
+
+void Frame::report_pair(std::uint32_t i, const ObjectPose& pose) noexcept
+{
+    const ScenePair& pair = scene_.pairs()[i];
+    const DistanceAnswer& answer = surfaces_[i].answer;
+    pair_outputs_[i] = {pair.tool,
+                        pair.object,
+                        answer.kind,
+                        to_world(pose, answer.tool_point_m),
+                        answer.lower_m * pose.scale,
+                        answer.upper_m * pose.scale,
+                        answer.certified_radius_m * pose.scale,
+                        answer.nearest_face,
+                        to_world(pose, answer.nearest_point_m),
+                        pair.is_asleep,
+                        answer.nearest_feature,
+                        scene_.tools()[pair.tool].wants_contacts ? &contacts_[i] : nullptr};
 }
 
 void Frame::report(std::span<const ObjectPose> poses) noexcept
 {
     for (std::uint32_t i = 0; i < scene_.pairs().size(); ++i)
     {
-        const ScenePair& pair = scene_.pairs()[i];
-        const DistanceAnswer& answer = surfaces_[i].answer;
-        const ObjectPose& pose = poses[pair.object];
-        pair_outputs_[i] = {pair.tool,
-                            pair.object,
-                            answer.kind,
-                            to_world(pose, pair.center_m),
-                            answer.lower_m * pose.scale,
-                            answer.upper_m * pose.scale,
-                            answer.certified_radius_m * pose.scale,
-                            answer.nearest_face,
-                            to_world(pose, answer.nearest_point_m),
-                            pair.is_asleep};
+        report_pair(i, poses[scene_.pairs()[i].object]);
     }
     for (std::uint32_t i = 0; i < model_count_; ++i)
     {

@@ -97,7 +97,8 @@ public:
     Frame(PassKey key, Arena& arena, const FrameSetup& setup) noexcept;
 
 private:
-    using RefineQuestions = StaticVector<RefineQuestion, std::size_t{2} * kMaxPairs>;
+    static constexpr std::size_t kQuestions = std::size_t{2} * kMaxCoverBalls; ///< Of a pair.
+    using RefineQuestions = StaticVector<RefineQuestion, kQuestions * kMaxPairs>;
 
     [[nodiscard]] static std::optional<FrameRefusal> check(const FrameSetup& setup) noexcept;
 
@@ -109,8 +110,13 @@ private:
     void respond(std::span<const ObjectPose> poses) noexcept;
     void report(std::span<const ObjectPose> poses) noexcept;
     [[nodiscard]] RefineQuestions questions_about(std::uint32_t model) noexcept;
+    void report_pair(std::uint32_t pair, const ObjectPose& pose) noexcept;
+    [[nodiscard]] ToolOutput follow(std::uint32_t tool,
+                                    std::span<const PlacedSurface> surfaces) const noexcept;
     [[nodiscard]] double reach_of(std::uint32_t tool) const noexcept;
     [[nodiscard]] Vec3 ahead_of(std::uint32_t tool) const noexcept;
+    [[nodiscard]] bool has_proxy(std::uint32_t tool) const noexcept;
+    [[nodiscard]] const Vec3& position_of(std::uint32_t tool) const noexcept;
     [[nodiscard]] ModelId model_of(const ScenePair& pair) const noexcept;
     [[nodiscard]] FrameOutput finish() const noexcept;
 
@@ -123,13 +129,17 @@ private:
 
     StaticVector<Proxy, kMaxTools> proxies_;
     std::array<Vec3, kMaxTools> goals_{};
+    std::array<Mat3, kMaxTools> rotations_{};
+    /// How far the tool's farthest point went since the last frame.
+    std::array<double, kMaxTools> ways_m_{};
     std::array<double, kMaxTools> elapsed_s_{};
     std::array<Vec3, kMaxTools> goal_velocities_m_per_s_{};
     bool has_started_{false};
     std::array<RegionPredictor, kMaxPairs> predictors_{};
-    std::array<RefineMemory, std::size_t{2} * kMaxPairs> refine_memories_{};
+    std::span<RefineMemory> refine_memories_; ///< kQuestions a pair.
     std::array<QueryMemory, kMaxPairs> query_memories_{};
-    std::span<LocalSurface> surfaces_; ///< One a pair, and one for the rehearsal.
+    std::span<LocalSurface> surfaces_;  ///< One a pair, and one for the rehearsal.
+    std::span<ContactReport> contacts_; ///< One a pair, if a tool wants them.
     Budgets last_budgets_;
 
     std::array<ToolOutput, kMaxTools> tool_outputs_{};

@@ -17,15 +17,23 @@ void RegionPredictor::observe(const Vec3& center_m, double elapsed_s) noexcept
     has_center_ = true;
 }
 
-void RegionPredictor::rank(ModelId model, double radius_m, RegionRanking& ranking) const noexcept
+void RegionPredictor::rank(ModelId model, const CoreCover& balls, double reach_m,
+                           RegionRanking& ranking) const noexcept
 {
-    // A full ranking leaves the later pairs' balls out: they come on demand.
-    static_cast<void>(ranking.try_push_back({model, center_, radius_m, 0}));
+    const auto add = [&](const Vec3& way, double wider_m, std::int64_t lead_ns)
+    {
+        for (const Ball& ball : balls)
+        {
+            // A full ranking leaves the later pairs' balls out: they come on demand.
+            static_cast<void>(
+                ranking.try_push_back({model, ball.center + way, ball.radius + wider_m, lead_ns}));
+        }
+    };
+    add(Vec3(0.0, 0.0, 0.0), reach_m, 0);
     for (const std::int64_t lead_ns : kLeads_ns)
     {
         const Vec3 way = velocity_ * (static_cast<double>(lead_ns) * 1e-9);
-        const double widened = radius_m + 0.1 * way.norm();
-        static_cast<void>(ranking.try_push_back({model, center_ + way, widened, lead_ns}));
+        add(way, reach_m + 0.1 * way.norm(), lead_ns);
     }
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "rt_core/base/realtime.hpp"
+#include "rt_core/geometry/placed_core.hpp"
 #include "rt_core/records/region_ranking.hpp"
 
 #include <array>
@@ -11,17 +12,18 @@
 namespace tactus
 {
 
-/// Contact-region prediction by linear extrapolation: where will this pair's proxy be after the
-/// time that loading takes? One instance per pair of tool and object; haptic thread.
+/// Contact-region prediction by linear extrapolation: where will this pair's tool be after the time
+/// that loading takes? One instance per pair of tool and object; haptic thread.
 class RegionPredictor
 {
 public:
-    /// The proxy's place in the model's frame in this frame, `elapsed_s` > 0 after the one before.
+    /// The core's centre in the model's frame in this frame, `elapsed_s` > 0 after the one before.
     void observe(const Vec3& center_m, double elapsed_s) noexcept TACTUS_NONBLOCKING;
 
-    /// Adds this pair's balls to the ranking: the present one with `radius_m`, then one for each
-    /// lead time, widened by a tenth of the way there (the velocity is an estimate).
-    void rank(ModelId model, double radius_m,
+    /// Adds the balls to the ranking, each wider by `reach_m`: where they are, and then where they
+    /// go with the core's centre in each lead time, widened by a tenth of the way (the velocity is
+    /// an estimate).
+    void rank(ModelId model, const CoreCover& balls, double reach_m,
               RegionRanking& ranking) const noexcept TACTUS_NONBLOCKING;
 
     [[nodiscard]] const Vec3& velocity_m_per_s() const noexcept { return velocity_; }

@@ -2,10 +2,12 @@
 // Copyright the Tactus authors.
 #include "rt_core/query/surface_query.hpp"
 
+#include "rt_core/query/nearest_triangles.hpp"
 #include "rt_core/query/probe.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace tactus
 {
@@ -28,80 +30,27 @@ public:
         , quantum_(static_cast<double>(tree.quantum_m()))
         , reach_(reach_m)
         , budget_(budget)
-        , surface_(surface)
         , probe_(make_probe(center_m, tree.quantum_m()))
         , floor_(surface == nullptr ? 0.0F : to_quanta(reach_m))
         , limit_(to_quanta(band_m))
     {
+        if (surface != nullptr)
+        {
+            nearest_triangles_.emplace(*surface);
+        }
     }
 
     void run(QueryMemory& memory) noexcept
     {
-        warm_ = tree_.is_block_in_use(memory.block) && budget_.take_node() ? memory.block : kNoNode;
-        nearest_block_ = warm_;
-        TreeWalk walk(tree_, probe_, budget_);
-        if (warm_ == kNoNode || test_block(warm_))
-        {
-            for (std::uint32_t block = walk.next_block(bound(), false); block != kNoNode;
-                 block = walk.next_block(bound(), false))
-            {
-                if (block != warm_ && !test_block(block))
-                {
-                    break;
-                }
-            }
-        }
-        for (const WalkItem& item : walk.left())
-        {
-            unproven_ = std::min(unproven_, static_cast<double>(item.gap));
-        }
+        search_blocks(tree_, probe_, budget_, memory, *this);
         decide();
-        memory.block = nearest_block_;
-    }
-
-    [[nodiscard]] DistanceAnswer answer() const noexcept
-    {
-        DistanceAnswer answer;
-        const double open = tree_.is_complete() ? unproven_ * quantum_ : 0.0;
-        const double pruned = limit_ > floor_ ? to_metres(bound()) : kInfinity;
-        answer.upper_m = corner_ < kInfiniteQuanta ? std::min(upper_, to_metres(corner_)) : upper_;
-        answer.lower_m = std::max(0.0, std::min({exact_lower_, open, pruned}));
-        answer.certified_radius_m = std::max(0.0, std::min({reach_, open, to_metres(dropped_)}));
-        if (exact_lower_ <= open && exact_lower_ <= pruned && !nearest_face_.is_none())
-        {
-            answer.nearest_face = nearest_face_;
-            answer.nearest_point_m = nearest_.point;
-            answer.nearest_feature = nearest_.feature;
-        }
-        answer.kind = answer.lower_m > reach_          ? AnswerKind::decided
-                      : !answer.nearest_face.is_none() ? AnswerKind::exact
-                      : answer.lower_m == reach_       ? AnswerKind::decided
-                                                       : AnswerKind::bracket;
-        return answer;
-    }
-
-private:
-    struct Candidate
-    {
-        std::uint32_t block;
-        std::uint32_t lane;
-        float lower;
-    };
-
-    [[nodiscard]] float to_quanta(double metres) const noexcept
-    {
-        return metres < kFarQuanta * quantum_ ? round_up_to_float(metres / quantum_)
-                                              : kInfiniteQuanta;
-    }
-    [[nodiscard]] double to_metres(float quanta) const noexcept
-    {
-        return static_cast<double>(quanta) * quantum_;
+        memory.block = nearest_block_ == kNoNode ? memory.block : nearest_block_;
     }
 
     /// Beyond this nothing changes the answer.
     [[nodiscard]] float bound() const noexcept
     {
-        const float proof = surface_ != nullptr ? kProofShare * limit_ : 0.0F;
+        const float proof = nearest_triangles_ ? kProofShare * limit_ : 0.0F;
         return proof > floor_ ? proof : std::max(floor_, limit_);
     }
 
@@ -137,6 +86,45 @@ private:
         return true;
     }
 
+    void leave(float gap) noexcept { unproven_ = std::min(unproven_, static_cast<double>(gap)); }
+
+    [[nodiscard]] DistanceAnswer answer() const noexcept
+    {
+        Findings found;
+        found.exact_lower_m = exact_lower_;
+        found.upper_m = corner_ < kInfiniteQuanta ? std::min(upper_, to_metres(corner_)) : upper_;
+        found.open_m = tree_.is_complete() ? unproven_ * quantum_ : 0.0;
+        found.pruned_m = limit_ > floor_ ? to_metres(bound()) : kInfinity;
+        found.dropped_m = nearest_triangles_ ? nearest_triangles_->dropped_m() : kInfinity;
+        DistanceAnswer answer = answer_from(found, reach_);
+        answer.tool_point_m = center_;
+        if (is_nearest_proven(found))
+        {
+            answer.nearest_face = nearest_face_;
+            answer.nearest_point_m = nearest_.point;
+            answer.nearest_feature = nearest_.feature;
+        }
+        return answer;
+    }
+
+private:
+    struct Candidate
+    {
+        std::uint32_t block;
+        std::uint32_t lane;
+        float lower;
+    };
+
+    [[nodiscard]] float to_quanta(double metres) const noexcept
+    {
+        return metres < kFarQuanta * quantum_ ? round_up_to_float(metres / quantum_)
+                                              : kInfiniteQuanta;
+    }
+    [[nodiscard]] double to_metres(float quanta) const noexcept
+    {
+        return static_cast<double>(quanta) * quantum_;
+    }
+
     void add_coarse(std::uint32_t index, std::uint32_t lanes, const FaceBounds& bounds) noexcept
     {
         const BlockSide& side = tree_.side(index);
@@ -169,9 +157,11 @@ private:
 
     void add_exact(const Candidate& candidate) noexcept
     {
-        if (surface_ != nullptr && candidate.lower <= floor_)
+        if (nearest_triangles_ && candidate.lower <= floor_)
         {
-            collect(candidate);
+            nearest_triangles_->add({tree_.side(candidate.block).prims[candidate.lane],
+                                     block_triangle(tree_.block(candidate.block), candidate.lane)},
+                                    std::max(0.0, to_metres(candidate.lower)));
         }
         if (candidate.lower > limit_)
         {
@@ -212,62 +202,6 @@ private:
         candidates_.clear();
     }
 
-    /// Keeps the nearest kMaxLocalTriangles, as a heap once there are that many; the nearest that
-    /// was dropped ends the certified radius.
-    void collect(const Candidate& candidate) noexcept
-    {
-        LocalSurface& surface = *surface_;
-        const LocalTriangle triangle{tree_.side(candidate.block).prims[candidate.lane],
-                                     block_triangle(tree_.block(candidate.block), candidate.lane)};
-        const double distance = std::max(0.0, to_metres(candidate.lower));
-        if (surface.count < kMaxLocalTriangles)
-        {
-            surface.distances_m[surface.count] = distance;
-            surface.triangles[surface.count++] = triangle;
-            return;
-        }
-        if (!surface.truncated)
-        {
-            surface.truncated = true;
-            for (std::uint32_t i = kMaxLocalTriangles / 2; i-- > 0;)
-            {
-                sift_down(i);
-            }
-        }
-        const double farthest = surface.distances_m[0];
-        dropped_ = std::min(dropped_, static_cast<float>(std::max(distance, farthest) / quantum_));
-        if (distance < farthest)
-        {
-            surface.distances_m[0] = distance;
-            surface.triangles[0] = triangle;
-            sift_down(0);
-        }
-    }
-
-    void sift_down(std::uint32_t at) noexcept
-    {
-        LocalSurface& surface = *surface_;
-        for (;;)
-        {
-            std::uint32_t largest = at;
-            for (const std::uint32_t child : {2 * at + 1, 2 * at + 2})
-            {
-                if (child < surface.count &&
-                    surface.distances_m[child] > surface.distances_m[largest])
-                {
-                    largest = child;
-                }
-            }
-            if (largest == at)
-            {
-                return;
-            }
-            std::swap(surface.distances_m[at], surface.distances_m[largest]);
-            std::swap(surface.triangles[at], surface.triangles[largest]);
-            at = largest;
-        }
-    }
-
     static constexpr std::size_t kCandidates = 64;
 
     const AbTree& tree_;
@@ -275,19 +209,17 @@ private:
     double quantum_;
     double reach_;
     WalkBudget& budget_;
-    LocalSurface* surface_;
+    std::optional<NearestTriangles> nearest_triangles_; ///< None when nothing is collected.
     KernelProbe probe_;
     float floor_; ///< Faces this near are looked at whatever else is found; in quanta, as are:
     float limit_; ///< something of the surface is not farther than this, or the band;
-    float corner_{kInfiniteQuanta};  ///< the nearest corner of a coarse face;
-    float dropped_{kInfiniteQuanta}; ///< exact triangles in reach that were not kept are so far;
-    double unproven_{kInfinity};     ///< what is not known exactly is at least this far away.
+    float corner_{kInfiniteQuanta}; ///< the nearest corner of a coarse face;
+    double unproven_{kInfinity};    ///< what is not known exactly is at least this far away.
     StaticVector<Candidate, kCandidates> candidates_;
     double exact_lower_{kInfinity};
     double upper_{kInfinity};
     ClosestPoint nearest_;
     FaceId nearest_face_{};
-    std::uint32_t warm_{kNoNode};
     std::uint32_t nearest_block_{kNoNode};
 };
 
@@ -311,6 +243,7 @@ DistanceAnswer answer_from_afar(const AbTree& tree, const Vec3& center_m, double
     answer.lower_m = tree.is_complete() ? std::sqrt(near_sq) * (1.0 - 1e-15) : 0.0;
     answer.upper_m = std::sqrt(far_sq) * (1.0 + 1e-15);
     answer.kind = answer.lower_m > reach_m ? AnswerKind::decided : AnswerKind::bracket;
+    answer.tool_point_m = center_m;
     return answer;
 }
 

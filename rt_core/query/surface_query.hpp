@@ -3,17 +3,11 @@
 #pragma once
 
 #include "rt_core/base/realtime.hpp"
-#include "rt_core/query/tree_walk.hpp"
+#include "rt_core/query/block_search.hpp"
 #include "rt_core/records/local_surface.hpp"
 
 namespace tactus
 {
-
-/// What a pair of tool and object keeps from one query to the next: where to look first.
-struct QueryMemory
-{
-    std::uint32_t block{kNoNode}; ///< The block of the last nearest face; any value is safe.
-};
 
 /// Answers the distance question for a point and collects the exact triangles within `reach_m` of
 /// it, in one traversal of the tree.

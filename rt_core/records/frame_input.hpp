@@ -3,6 +3,7 @@
 #pragma once
 
 #include "rt_core/base/realtime.hpp"
+#include "rt_core/geometry/tool_core.hpp"
 #include "rt_core/math/vec3.hpp"
 #include "rt_core/spm/ids.hpp"
 
@@ -18,15 +19,18 @@ struct ToolState
     std::int64_t sample_time_ns{0};   ///< Monotonic time of the sample.
     std::uint32_t elapsed_periods{1}; ///< Whole periods since the last frame; more after a stall.
     bool valid{true};                 ///< False: no sample; the frame keeps the last one.
+    Mat3 rotation{Mat3::Identity()};  ///< Of the tool's frame; orthonormal to 1e-6.
 };
 
 /// A tool's shape and what its device allows; fixed when the frame is made.
 struct ToolSpec
 {
-    double radius_m{0.0};            ///< Sphere.
+    double radius_m{0.0};            ///< The tool is everything within it of `core`.
     double stiffness_n_per_m{500.0}; ///< Of the virtual wall.
     double force_max_n{8.0};         ///< The force's norm is clamped to it.
     double speed_max_m_per_s{1.0};   ///< Faster goals are followed at this speed in contact.
+    ToolCore core{};                 ///< A point makes a sphere.
+    bool wants_contacts{false};      ///< Contacts, normals and sides, some microseconds a pair.
 };
 
 /// Where an object stands: world = translation + scale x rotation x model-frame point.
@@ -45,6 +49,15 @@ struct ObjectSpec
 {
     ModelId model{};
 };
+
+/// Where a tool's frame lies in the model's, the tool's in the world.
+[[nodiscard]] inline Placement place_in_model(const ObjectPose& pose, const Mat3& rotation,
+                                              const Vec3& position_m) noexcept
+{
+    return {pose.rotation.transpose() * rotation,
+            (pose.rotation.transpose() * (position_m - pose.translation_m)) / pose.scale,
+            1.0 / pose.scale};
+}
 
 [[nodiscard]] inline Vec3 to_model(const ObjectPose& pose, const Vec3& world_m) noexcept
 {

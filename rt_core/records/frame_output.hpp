@@ -3,6 +3,7 @@
 #pragma once
 
 #include "rt_core/math/vec3.hpp"
+#include "rt_core/records/contact.hpp"
 #include "rt_core/records/door_event.hpp"
 #include "rt_core/records/local_surface.hpp"
 #include "rt_core/records/work_counters.hpp"
@@ -29,13 +30,17 @@ struct PairOutput
     std::uint32_t tool{0};
     std::uint32_t object{0};
     AnswerKind kind{AnswerKind::bracket};
-    Vec3 point_m{0.0, 0.0, 0.0}; ///< From where: the proxy at the start of the frame.
-    double lower_m{0.0};
+    /// From where: of the tool's core, at its proxy at the start of the frame, the point that is
+    /// nearest to the surface, or the centre where that is not known.
+    Vec3 point_m{0.0, 0.0, 0.0};
+    double lower_m{0.0}; ///< From the core; the tool's radius is not taken off.
     double upper_m{0.0};
     double certified_radius_m{0.0};
     FaceId nearest_face{};
     Vec3 nearest_point_m{0.0, 0.0, 0.0};
     bool skipped{false}; ///< Answered from the last distance and the motion since.
+    TriangleFeature nearest_feature{TriangleFeature::interior}; ///< Of the nearest face.
+    const ContactReport* contacts{nullptr}; ///< Null unless the tool wants them.
 };
 
 /// Use of one pool now.

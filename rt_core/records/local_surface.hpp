@@ -31,27 +31,28 @@ enum class AnswerKind : std::uint8_t
     stale,   ///< Of an older revision or pose than allowed; L and U hold for that one only.
 };
 
-/// The distance from a point to a model, in the model's frame and metres.
+/// The distance from a tool's core to a model, in the model's frame and metres.
 struct DistanceAnswer
 {
     AnswerKind kind{AnswerKind::bracket};
     double lower_m{0.0};                                     ///< L: no original surface is nearer.
     double upper_m{std::numeric_limits<double>::infinity()}; ///< U: some is within this.
-    /// All original faces within this radius of the point are active and exact.
+    /// All original faces within this distance of the core are active and exact.
     double certified_radius_m{0.0};
     FaceId nearest_face{}; ///< Of the nearest exact face; none when there is none in reach.
-    Vec3 nearest_point_m{0.0, 0.0, 0.0};
+    Vec3 tool_point_m{0.0, 0.0, 0.0};    ///< Of the core: the nearest one to the surface.
+    Vec3 nearest_point_m{0.0, 0.0, 0.0}; ///< Of the surface.
     TriangleFeature nearest_feature{TriangleFeature::interior};
 };
 
-/// Everything the force stage needs of one pair: the exact triangles in the certified ball round
-/// the proxy. In order of the traversal; the force does not depend on it.
+/// Everything the force stage needs of one pair: the exact triangles within the certified distance
+/// of the tool's core. In order of the traversal; the force does not depend on it.
 struct LocalSurface
 {
-    Vec3 center_m{0.0, 0.0, 0.0}; ///< The proxy, in the model's frame.
+    Vec3 center_m{0.0, 0.0, 0.0}; ///< Of the core, in the model's frame.
     DistanceAnswer answer;
     std::array<LocalTriangle, kMaxLocalTriangles> triangles{};
-    std::array<double, kMaxLocalTriangles> distances_m{}; ///< Lower bounds, from `center_m`.
+    std::array<double, kMaxLocalTriangles> distances_m{}; ///< Lower bounds, from the core.
     std::uint32_t count{0};
     bool truncated{false}; ///< More triangles were in reach; the certified radius says how far.
 };

@@ -29,12 +29,14 @@ Scene::Scene(std::span<const ToolSpec> tools, std::span<const ObjectSpec> object
     }
 }
 
-void Scene::place(ScenePair& pair, const ObjectPose& pose, const Vec3& proxy_world_m,
-                  double reach_world_m, const Vec3& ahead_world_m) noexcept
+void Scene::place(ScenePair& pair, const ObjectPose& pose, const Mat3& rotation,
+                  const Vec3& position_m, double reach_m, const Vec3& ahead_m) const noexcept
 {
-    pair.center_m = to_model(pose, proxy_world_m);
-    pair.reach_m = reach_world_m / pose.scale;
-    pair.ahead_m = (pose.rotation.transpose() * ahead_world_m) / pose.scale;
+    const ToolSpec& tool = tools_[pair.tool];
+    pair.core = PlacedCore(tool.core, place_in_model(pose, rotation, position_m));
+    pair.cover = pair.core.cover(tool.radius_m / pose.scale);
+    pair.reach_m = reach_m / pose.scale;
+    pair.ahead_m = (pose.rotation.transpose() * ahead_m) / pose.scale;
     const double awake_m = kKeepFactor * pair.reach_m + pair.ahead_m.norm();
     pair.is_asleep = pair.has_known && pair.known.lower_m - pair.motion_m() > awake_m;
 }
@@ -42,19 +44,19 @@ void Scene::place(ScenePair& pair, const ObjectPose& pose, const Vec3& proxy_wor
 void Scene::remember(ScenePair& pair, const DistanceAnswer& answer) noexcept
 {
     pair.known = answer;
-    pair.known_center_m = pair.center_m;
+    pair.known_core = pair.core;
     pair.has_known = true;
 }
 
 DistanceAnswer Scene::from_motion(const ScenePair& pair) noexcept
 {
-    // The motion's own rounding: a few units in the last place of coordinates near the model.
-    const double motion = pair.motion_m() * (1.0 + 1e-12);
+    const double motion = pair.motion_m();
     DistanceAnswer answer;
     answer.lower_m = std::max(0.0, pair.known.lower_m - motion);
     answer.upper_m = pair.known.upper_m + motion;
     answer.kind = answer.lower_m > pair.reach_m ? AnswerKind::decided : AnswerKind::bracket;
     answer.certified_radius_m = 0.0;
+    answer.tool_point_m = pair.core.center();
     return answer;
 }
 

@@ -4,6 +4,7 @@
 
 #include "rt_core/base/realtime.hpp"
 #include "rt_core/base/static_vector.hpp"
+#include "rt_core/geometry/placed_core.hpp"
 #include "rt_core/records/frame_input.hpp"
 #include "rt_core/records/local_surface.hpp"
 
@@ -14,22 +15,23 @@ namespace tactus
 {
 
 /// One pair of tool and object and what is known of its distance from frame to frame. The distance
-/// from a point to a surface changes by no more than the point moves, so a proven L stays of
-/// use: while L minus the motion is beyond what the tool asks for, nothing has to be looked at.
+/// from a tool to a surface changes by no more than the tool moves, so a proven L stays of use:
+/// while L minus the motion is beyond what the tool asks for, nothing has to be looked at.
 struct ScenePair
 {
     std::uint32_t tool{0};
     std::uint32_t object{0};
-    Vec3 center_m{0.0, 0.0, 0.0}; ///< The proxy now, in the model's frame.
-    double reach_m{0.0};          ///< What the tool asks for now, in the model's frame.
-    Vec3 ahead_m{0.0, 0.0, 0.0};  ///< How far the tool comes before a contact can be refined.
-    bool is_asleep{false};        ///< Proven out of reach; no stage needs to look.
+    PlacedCore core;             ///< The tool's, at its proxy now; in the model's frame, as all.
+    CoreCover cover;             ///< Of the core.
+    double reach_m{0.0};         ///< From the core, what the tool asks for now.
+    Vec3 ahead_m{0.0, 0.0, 0.0}; ///< How far the tool comes before a contact can be refined.
+    bool is_asleep{false};       ///< Proven out of reach; no stage needs to look.
 
-    Vec3 known_center_m{0.0, 0.0, 0.0}; ///< Where `known` was taken.
+    PlacedCore known_core; ///< Where `known` was taken.
     DistanceAnswer known;
     bool has_known{false};
 
-    [[nodiscard]] double motion_m() const noexcept { return (center_m - known_center_m).norm(); }
+    [[nodiscard]] double motion_m() const noexcept { return core.motion_since(known_core); }
 };
 
 /// Tools, objects, and the pairs they make. Haptic thread.
@@ -43,10 +45,11 @@ public:
     /// changes when a tool goes back and forth.
     static constexpr double kKeepFactor = 1.25;
 
-    /// Places a pair for this frame: the proxy, how far the tool asks from there, and how far it
-    /// looks ahead.
-    static void place(ScenePair& pair, const ObjectPose& pose, const Vec3& proxy_world_m,
-                      double reach_world_m, const Vec3& ahead_world_m) noexcept TACTUS_NONBLOCKING;
+    /// Places a pair's tool for this frame: where its frame lies in the world, how far it asks from
+    /// there, and how far it looks ahead (both in the world).
+    void place(ScenePair& pair, const ObjectPose& pose, const Mat3& rotation,
+               const Vec3& position_m, double reach_m,
+               const Vec3& ahead_m) const noexcept TACTUS_NONBLOCKING;
     /// Keeps what a query found at the pair's present place.
     static void remember(ScenePair& pair, const DistanceAnswer& answer) noexcept TACTUS_NONBLOCKING;
     /// What `remember`ed knowledge says of the present place, without looking: a valid bracket.

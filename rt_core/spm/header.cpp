@@ -31,7 +31,8 @@ bool is_finite(double value) noexcept
 bool geometry_is_in_range(const HeaderFields& fields) noexcept
 {
     if (fields.position_bits < kMinPositionBits || fields.position_bits > kMaxPositionBits ||
-        fields.quantum_log2 < kMinQuantumLog2 || fields.quantum_log2 > kMaxQuantumLog2)
+        fields.topology > kClosedTopology || fields.quantum_log2 < kMinQuantumLog2 ||
+        fields.quantum_log2 > kMaxQuantumLog2)
     {
         return false;
     }

@@ -43,6 +43,10 @@ inline constexpr std::uint16_t kFormatVersion = 1;
 /// docs/decisions/0006-chunk-coder.md.
 inline constexpr std::uint16_t kCoderVersion = 3;
 
+/// Whether every edge of the source has two faces of like winding: then a distance has a sign.
+inline constexpr std::uint16_t kOpenTopology = 0;
+inline constexpr std::uint16_t kClosedTopology = 1;
+
 /// The fixed part of a header, as it stands in the file and on the wire (little-endian, no
 /// padding).
 struct HeaderFields
@@ -56,7 +60,8 @@ struct HeaderFields
     std::uint32_t base_faces{0};
     std::uint32_t records{0};
     std::int32_t quantum_log2{0};                 ///< One quantum is 2^this metres.
-    std::uint32_t position_bits{0};               ///< 16 .. 24.
+    std::uint16_t position_bits{0};               ///< 16 .. 24.
+    std::uint16_t topology{0};                    ///< kOpenTopology or kClosedTopology.
     std::array<std::uint32_t, 3> extent_quanta{}; ///< Largest coordinate; the smallest is 0.
     std::uint32_t max_depth{0};                   ///< Largest dependency depth of a record.
     std::array<double, 3> origin_m{};             ///< Source position of coordinate (0, 0, 0).
@@ -114,6 +119,7 @@ public:
     /// Metres in one quantum; a power of two, so products with grid integers are exact floats.
     [[nodiscard]] float quantum_m() const noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] double diagonal_m() const noexcept;
+    [[nodiscard]] bool is_closed() const noexcept { return fields_.topology == kClosedTopology; }
 
     [[nodiscard]] IndexPageEntry index_entry(IndexPageId page) const noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] std::uint32_t region_count() const noexcept

@@ -24,10 +24,10 @@ TABLE = os.path.join(os.path.dirname(os.path.abspath(__file__)),
                      "../../rt_core/spm/chunk_model.inc")
 
 Header = namedtuple("Header", """magic format coder header_bytes revision base_vertices base_faces
-    records quantum_log2 position_bits ex ey ez max_depth ox oy oz quantisation_m source_vertices
+    records quantum_log2 position_bits topology ex ey ez max_depth ox oy oz quantisation_m source_vertices
     source_faces rounds max_error_quanta cell gx gy gz occupied base_bytes base_offset index_offset
     file_bytes base_hash""")
-HEADER = struct.Struct("<8s2H5IiI3II3ddIIIII3IIIQQQ16s")
+HEADER = struct.Struct("<8s2H5Ii2H3II3ddIIIII3IIIQQQ16s")
 INDEX_ENTRY = struct.Struct("<6iQ16s")
 CHUNK_ENTRY = struct.Struct("<6HH16s")
 
@@ -181,6 +181,7 @@ def read_header(data):
     require(header.records <= 2**29 - 2 and header.max_depth <= 1024, "header: records or depth")
     require((header.records == 0) == (header.max_depth == 0), "header: depth without records")
     require(16 <= header.position_bits <= 24, "header: position bits")
+    require(header.topology <= 1, "header: topology")
     require(-60 <= header.quantum_log2 <= 20, "header: quantum")
     extent = (header.ex, header.ey, header.ez)
     require(max(extent) > 0 and max(extent) < 1 << header.position_bits, "header: extent")

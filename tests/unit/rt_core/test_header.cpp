@@ -123,7 +123,8 @@ TEST(ModelHeader, values_out_of_range_are_refused)
     const std::vector<std::function<void(HeaderFields&)>> changes{
         [](HeaderFields& f) { f.position_bits = 15; },
         [](HeaderFields& f) { f.position_bits = 25; },
-        [](HeaderFields& f) { f.position_bits = 0xFFFF'FFFFU; },
+        [](HeaderFields& f) { f.position_bits = 0xFFFFU; },
+        [](HeaderFields& f) { f.topology = 2; },
         [](HeaderFields& f) { f.quantum_log2 = kMinQuantumLog2 - 1; },
         [](HeaderFields& f) { f.quantum_log2 = kMaxQuantumLog2 + 1; },
         [](HeaderFields& f) {

@@ -7,13 +7,25 @@
 namespace tactus::test
 {
 
+namespace
+{
+
+CoreCover one_ball(const Vec3& center)
+{
+    CoreCover balls;
+    balls.push_back({center, 0.0});
+    return balls;
+}
+
+} // namespace
+
 TEST(RegionPredictor, before_and_after_the_first_observation_stands_still)
 {
     RegionPredictor sut;
     sut.observe(Vec3(1, 2, 3), 0.001);
     RegionRanking ranking;
 
-    sut.rank({5}, 0.02, ranking);
+    sut.rank({5}, one_ball(Vec3(1, 2, 3)), 0.02, ranking);
 
     ASSERT_EQ(ranking.size(), 3U);
     for (const RankedRegion& region : ranking)
@@ -37,7 +49,7 @@ TEST(RegionPredictor, finds_a_constant_velocity_and_the_places_it_leads_to)
     EXPECT_NEAR((sut.velocity_m_per_s() - velocity).norm(), 0.0, 1e-9);
     RegionRanking ranking;
 
-    sut.rank({0}, 0.02, ranking);
+    sut.rank({0}, one_ball(at), 0.02, ranking);
 
     ASSERT_EQ(ranking.size(), 3U);
     std::int64_t last = -1;
@@ -82,7 +94,7 @@ TEST(RegionPredictor, a_full_ranking_keeps_what_it_has)
     {
     }
 
-    sut.rank({0}, 0.02, ranking);
+    sut.rank({0}, one_ball(Vec3(1, 0, 0)), 0.02, ranking);
 
     EXPECT_TRUE(ranking.full());
     EXPECT_EQ(ranking[ranking.size() - 1].model, ModelId{9});

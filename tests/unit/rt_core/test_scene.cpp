@@ -54,17 +54,25 @@ TEST(Scene, more_tools_than_allowed_are_a_bug)
     EXPECT_DEATH(Scene(tools, {}), "");
 }
 
+Scene ball_scene()
+{
+    const std::array<ToolSpec, 1> tools{};
+    const std::array<ObjectSpec, 1> objects{};
+    return {tools, objects};
+}
+
 TEST(Scene, places_the_proxy_and_reach_in_the_models_frame)
 {
     ObjectPose pose;
     pose.rotation = Eigen::AngleAxisd(0.3, Vec3(1, 1, 0).normalized()).toRotationMatrix();
     pose.translation_m = Vec3(5, 6, 7);
     pose.scale = 0.5;
+    const Scene scene = ball_scene();
     ScenePair pair;
 
-    Scene::place(pair, pose, to_world(pose, Vec3(1, 2, 3)), 0.1, Vec3(0, 0, 0));
+    scene.place(pair, pose, Mat3::Identity(), to_world(pose, Vec3(1, 2, 3)), 0.1, Vec3(0, 0, 0));
 
-    EXPECT_NEAR((pair.center_m - Vec3(1, 2, 3)).norm(), 0.0, 1e-12);
+    EXPECT_NEAR((pair.core.center() - Vec3(1, 2, 3)).norm(), 0.0, 1e-12);
     EXPECT_NEAR(pair.reach_m, 0.2, 1e-15);
     EXPECT_FALSE(pair.is_asleep) << "nothing is known yet";
 }
@@ -72,6 +80,7 @@ TEST(Scene, places_the_proxy_and_reach_in_the_models_frame)
 TEST(Scene, a_pair_sleeps_only_while_the_surface_is_proven_out_of_reach)
 {
     Random random(80);
+    const Scene scene = ball_scene();
     const ObjectPose pose;
     int asleep = 0;
     for (int round = 0; round < 200; ++round)
@@ -79,12 +88,12 @@ TEST(Scene, a_pair_sleeps_only_while_the_surface_is_proven_out_of_reach)
         ScenePair pair;
         Vec3 at = random.in_cube(3.0);
         const double reach = random.between(0.01, 0.3);
-        Scene::place(pair, pose, at, reach, Vec3(0, 0, 0));
+        scene.place(pair, pose, Mat3::Identity(), at, reach, Vec3(0, 0, 0));
         Scene::remember(pair, exact_answer(to_sphere(at)));
         for (int step = 0; step < 50; ++step)
         {
             at += random.in_cube(0.1);
-            Scene::place(pair, pose, at, reach, Vec3(0, 0, 0));
+            scene.place(pair, pose, Mat3::Identity(), at, reach, Vec3(0, 0, 0));
             if (pair.is_asleep)
             {
                 ++asleep;
@@ -105,16 +114,17 @@ TEST(Scene, a_pair_sleeps_only_while_the_surface_is_proven_out_of_reach)
 
 TEST(Scene, a_pair_wakes_when_its_proof_is_used_up)
 {
+    const Scene scene = ball_scene();
     const ObjectPose pose;
     ScenePair pair;
-    Scene::place(pair, pose, Vec3(3, 0, 0), 0.1, Vec3(0, 0, 0));
+    scene.place(pair, pose, Mat3::Identity(), Vec3(3, 0, 0), 0.1, Vec3(0, 0, 0));
     Scene::remember(pair, exact_answer(2.0));
 
-    Scene::place(pair, pose, Vec3(1.2, 0, 0), 0.1, Vec3(0, 0, 0));
+    scene.place(pair, pose, Mat3::Identity(), Vec3(1.2, 0, 0), 0.1, Vec3(0, 0, 0));
     EXPECT_TRUE(pair.is_asleep) << "2 - 1.8 is beyond 1.25 x 0.1";
-    Scene::place(pair, pose, Vec3(1.12, 0, 0), 0.1, Vec3(0, 0, 0));
+    scene.place(pair, pose, Mat3::Identity(), Vec3(1.12, 0, 0), 0.1, Vec3(0, 0, 0));
     EXPECT_FALSE(pair.is_asleep);
-    Scene::place(pair, pose, Vec3(3, 0, 0), 1.7, Vec3(0, 0, 0));
+    scene.place(pair, pose, Mat3::Identity(), Vec3(3, 0, 0), 1.7, Vec3(0, 0, 0));
     EXPECT_FALSE(pair.is_asleep) << "a larger reach wakes it too";
 }
 

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "rt_core/geometry/placed_core.hpp"
+
+#include "rt_core/geometry/box_triangle.hpp"
+#include "rt_core/geometry/segment_triangle.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tactus
+{
+
+namespace
+{
+
+Vec3 to_place(const Placement& place, const Vec3& point) noexcept
+{
+    return place.origin + place.scale * (place.rotation * point);
+}
+
+/// An orthonormal frame whose first axis is along `way`; any when that is zero.
+Mat3 frame_along(const Vec3& way) noexcept
+{
+    const double length = way.norm();
+    if (!(length > 0.0))
+    {
+        return Mat3::Identity();
+    }
+    const Vec3 first = way / length;
+    // Across the axis that `way` has least of.
+    const Vec3 size(std::abs(first.x()), std::abs(first.y()), std::abs(first.z()));
+    const int least = size.x() <= size.y() && size.x() <= size.z() ? 0
+                      : size.y() <= size.z()                       ? 1
+                                                                   : 2;
+    Vec3 other(0.0, 0.0, 0.0);
+    other[least] = 1.0;
+    const Vec3 second = first.cross(other).normalized();
+    Mat3 axes;
+    axes.col(0) = first;
+    axes.col(1) = second;
+    axes.col(2) = first.cross(second);
+    return axes;
+}
+
+/// Of products with a rotation, relative to the largest coordinate.
+constexpr double kRotationRounding = 4e-15;
+constexpr double kRoundedUp = 1.0 + 1e-14;
+
+} // namespace
+
+PlacedCore::PlacedCore(const ToolCore& core, const Placement& place) noexcept
+    : core_(core), center_(place.origin), axes_(place.rotation)
+{
+    if (const auto* segment = std::get_if<Segment>(&core))
+    {
+        const Segment placed{to_place(place, segment->from), to_place(place, segment->to)};
+        const Vec3 half_way = 0.5 * (placed.to - placed.from);
+        core_ = placed;
+        center_ = placed.from + half_way;
+        axes_ = frame_along(half_way);
+        half_ = Vec3(half_way.norm(), 0.0, 0.0);
+    }
+    else if (const auto* box = std::get_if<Box>(&core))
+    {
+        half_ = place.scale * box->half;
+        core_ = Box{half_};
+    }
+    radius_ = half_.norm() * kRoundedUp;
+}
+
+ClosestPoints PlacedCore::closest(const Triangle& triangle) const noexcept
+{
+    if (const auto* segment = std::get_if<Segment>(&core_))
+    {
+        return closest_points(*segment, triangle);
+    }
+    if (std::holds_alternative<Box>(core_))
+    {
+        return closest_to_box(triangle);
+    }
+    const ClosestPoint nearest = closest_point_on_triangle(center_, triangle);
+    ClosestPoints result;
+    result.on_shape = center_;
+    result.on_triangle = nearest.point;
+    result.gap = nearest.gap;
+    result.distance = std::sqrt(nearest.distance_sq);
+    result.distance_error = nearest.distance_error;
+    result.meet = nearest.distance_sq == 0.0;
+    result.feature = nearest.feature;
+    return result;
+}
+
+ClosestPoints PlacedCore::closest_to_box(const Triangle& triangle) const noexcept
+{
+    const Triangle near = to_box_frame(triangle);
+    ClosestPoints result = closest_points(Box{half_}, near);
+    result.on_shape = center_ + axes_ * result.on_shape;
+    result.on_triangle = center_ + axes_ * result.on_triangle;
+    result.gap = axes_ * result.gap;
+    // Decided for the turned triangle, so only as well as that is known.
+    result.distance_error += rounding_of(near);
+    return result;
+}
+
+Triangle PlacedCore::to_box_frame(const Triangle& triangle) const noexcept
+{
+    return {axes_.transpose() * (triangle[0] - center_),
+            axes_.transpose() * (triangle[1] - center_),
+            axes_.transpose() * (triangle[2] - center_)};
+}
+
+double PlacedCore::rounding_of(const Triangle& in_box_frame) const noexcept
+{
+    return kRotationRounding * (largest_coordinate(in_box_frame) + half_.maxCoeff());
+}
+
+double PlacedCore::lower_bound(const Triangle& triangle) const noexcept
+{
+    const Triangle near = to_box_frame(triangle);
+    double distance_sq = 0.0;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        const auto [low, high] = std::minmax({near[0][axis], near[1][axis], near[2][axis]});
+        const double gap = std::max({low - half_[axis], -half_[axis] - high, 0.0});
+        distance_sq += gap * gap;
+    }
+    return std::sqrt(distance_sq) / kRoundedUp - rounding_of(near);
+}
+
+CoreCover PlacedCore::cover(double enough) const noexcept
+{
+    std::array<int, 3> count{1, 1, 1};
+    Vec3 cell = half_;
+    while (count[0] * count[1] * count[2] * 2 <= static_cast<int>(kMaxCoverBalls) &&
+           cell.norm() > enough)
+    {
+        const int longest = cell.x() >= cell.y() && cell.x() >= cell.z() ? 0
+                            : cell.y() >= cell.z()                       ? 1
+                                                                         : 2;
+        count[static_cast<std::size_t>(longest)] *= 2;
+        cell[longest] *= 0.5;
+    }
+    CoreCover balls;
+    for (int x = 0; x < count[0]; ++x)
+    {
+        for (int y = 0; y < count[1]; ++y)
+        {
+            for (int z = 0; z < count[2]; ++z)
+            {
+                const Vec3 at(2 * x + 1 - count[0], 2 * y + 1 - count[1], 2 * z + 1 - count[2]);
+                balls.push_back(
+                    {center_ + axes_ * at.cwiseProduct(cell), cell.norm() * kRoundedUp});
+            }
+        }
+    }
+    return balls;
+}
+
+double PlacedCore::motion_since(const PlacedCore& before) const noexcept
+{
+    // A point is the centre and a constant share of each half axis.
+    double motion = (center_ - before.center_).norm();
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        motion +=
+            (half_[axis] * axes_.col(axis) - before.half_[axis] * before.axes_.col(axis)).norm();
+    }
+    return motion * (1.0 + 1e-12);
+}
+
+} // namespace tactus

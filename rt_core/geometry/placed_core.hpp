@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/base/realtime.hpp"
+#include "rt_core/base/static_vector.hpp"
+#include "rt_core/geometry/closest_points.hpp"
+#include "rt_core/geometry/tool_core.hpp"
+#include "rt_core/limits.hpp"
+
+namespace tactus
+{
+
+struct Ball
+{
+    Vec3 center{0.0, 0.0, 0.0};
+    double radius{0.0};
+};
+
+/// Balls that hold a core together. Their order and number don't change when it moves.
+using CoreCover = StaticVector<Ball, kMaxCoverBalls>;
+
+/// A tool's core in a model's frame, from where distances are measured. What is computed from it
+/// takes its placed coordinates, which are rounded once, for exact. 0.3 KiB.
+class PlacedCore
+{
+public:
+    PlacedCore() noexcept = default;
+    PlacedCore(const ToolCore& core, const Placement& place) noexcept;
+
+    [[nodiscard]] bool is_point() const noexcept
+    {
+        return std::holds_alternative<PointCore>(core_);
+    }
+    /// Of a ball that holds the core; of a point, the point.
+    [[nodiscard]] const Vec3& center() const noexcept { return center_; }
+    [[nodiscard]] double radius() const noexcept { return radius_; }
+
+    /// Distance and nearest points of core and triangle, the same bits whatever else is asked.
+    /// 50 ns for a point to 2 us for a box.
+    [[nodiscard]] ClosestPoints closest(const Triangle& triangle) const noexcept TACTUS_NONBLOCKING;
+
+    /// The triangle is at least this far away; about 20 ns. Good to the corners of the oriented box
+    /// round the core.
+    [[nodiscard]] double lower_bound(const Triangle& triangle) const noexcept TACTUS_NONBLOCKING;
+
+    /// As many balls as needed for none to be larger than `enough`, but at most kMaxCoverBalls.
+    [[nodiscard]] CoreCover cover(double enough) const noexcept TACTUS_NONBLOCKING;
+
+    /// No point of the core was farther from where it is now. For the same core placed elsewhere.
+    [[nodiscard]] double motion_since(const PlacedCore& before) const noexcept TACTUS_NONBLOCKING;
+
+private:
+    [[nodiscard]] ClosestPoints closest_to_box(const Triangle& triangle) const noexcept;
+    /// Into the frame of the oriented box, and by how much that rounds at most.
+    [[nodiscard]] Triangle to_box_frame(const Triangle& triangle) const noexcept;
+    [[nodiscard]] double rounding_of(const Triangle& in_box_frame) const noexcept;
+
+    ToolCore core_; ///< A segment is placed; a box has its placed half extents.
+    Vec3 center_{0.0, 0.0, 0.0};
+    double radius_{0.0};
+    // An oriented box round the core: centre, unit axes as columns, half extents.
+    Mat3 axes_{Mat3::Identity()};
+    Vec3 half_{0.0, 0.0, 0.0};
+};
+
+} // namespace tactus

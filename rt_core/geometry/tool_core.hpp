@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/geometry/shapes.hpp"
+
+#include <variant>
+
+namespace tactus
+{
+
+struct PointCore
+{
+};
+
+/// What is left of a tool when its radius is taken off: a tool is everything within its radius of
+/// its core. A sphere is a point with a radius, a capsule a segment with one, a box may have
+/// rounded edges. In the tool's own frame, metres.
+using ToolCore = std::variant<PointCore, Segment, Box>;
+
+/// Where a frame lies in another one: there = origin + scale x rotation x here. The rotation is
+/// orthonormal to rounding.
+struct Placement
+{
+    Mat3 rotation{Mat3::Identity()};
+    Vec3 origin{0.0, 0.0, 0.0};
+    double scale{1.0};
+};
+
+} // namespace tactus

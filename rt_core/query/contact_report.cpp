@@ -1,0 +1,321 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "rt_core/query/contact_report.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace tactus
+{
+
+namespace
+{
+
+/// A face at the nearest point, and the place of one of its corners.
+struct IncidentFace
+{
+    FaceId face{};
+    std::uint32_t triangle{0};
+    std::size_t corner{0};
+};
+
+/// A vertex of more faces has no normal here.
+constexpr std::size_t kMaxIncident = 64;
+using Incident = StaticVector<IncidentFace, kMaxIncident>;
+
+bool comes_before(const Contact& a, const Contact& b) noexcept
+{
+    return a.distance_m < b.distance_m || (a.distance_m == b.distance_m && a.face < b.face);
+}
+
+Vec3 unit_or_zero(const Vec3& v) noexcept
+{
+    const double length = v.norm();
+    return length > 0.0 ? Vec3(v / length) : Vec3(0.0, 0.0, 0.0);
+}
+
+double longest_edge_sq(const Triangle& triangle) noexcept
+{
+    return std::max({(triangle[1] - triangle[0]).squaredNorm(),
+                     (triangle[2] - triangle[1]).squaredNorm(),
+                     (triangle[0] - triangle[2]).squaredNorm()});
+}
+
+Vec3 normal_of(const Triangle& triangle) noexcept
+{
+    return unit_or_zero(exact_normal(triangle, longest_edge_sq(triangle)));
+}
+
+/// Inserts in order; the farthest goes when there are too many, and then it is false.
+bool keep(const Contact& contact, ContactSet& contacts) noexcept
+{
+    const bool is_full = contacts.size() == kMaxContacts;
+    if (is_full && !comes_before(contact, contacts[kMaxContacts - 1]))
+    {
+        return false;
+    }
+    if (is_full)
+    {
+        contacts.pop_back();
+    }
+    contacts.push_back(contact);
+    for (std::size_t i = contacts.size() - 1; i > 0 && comes_before(contacts[i], contacts[i - 1]);
+         --i)
+    {
+        std::swap(contacts[i], contacts[i - 1]);
+    }
+    return !is_full;
+}
+
+/// Of a number that is not negative; right to some 1e-16. By IEEE operations alone: libm's differ
+/// between platforms.
+double arc_tangent(double t) noexcept
+{
+    if (t > 1.0)
+    {
+        return 0.5 * std::numbers::pi - arc_tangent(1.0 / t);
+    }
+    constexpr int kHalvings = 3; // To at most pi / 32, where eight terms are enough.
+    for (int i = 0; i < kHalvings; ++i)
+    {
+        t = t / (1.0 + std::sqrt(1.0 + t * t));
+    }
+    double sum = 0.0;
+    for (int power = 17; power >= 1; power -= 2)
+    {
+        sum = (power % 4 == 1 ? 1.0 : -1.0) / power + t * t * sum;
+    }
+    return (1 << kHalvings) * t * sum;
+}
+
+/// By the half angle, as Kahan has it: good at any angle. Zero when one has no length.
+double angle_between(const Vec3& a, const Vec3& b) noexcept
+{
+    const Vec3 u = unit_or_zero(a);
+    const Vec3 v = unit_or_zero(b);
+    const double apart = (u - v).norm();
+    const double together = (u + v).norm();
+    return together > 0.0 ? 2.0 * arc_tangent(apart / together)
+                          : (apart > 0.0 ? std::numbers::pi : 0.0);
+}
+
+/// Finds normal and side at the nearest point of one surface.
+class NearestFeature
+{
+public:
+    NearestFeature(const AbTree& tree, const LocalSurface& surface) noexcept
+        : tree_(tree), surface_(surface)
+    {
+    }
+
+    /// False where the normal is not known.
+    [[nodiscard]] bool try_find_normal(Vec3& normal) noexcept
+    {
+        const DistanceAnswer& answer = surface_.answer;
+        const std::uint32_t nearest = find(answer.nearest_face);
+        if (answer.kind != AnswerKind::exact || answer.upper_m > answer.certified_radius_m ||
+            nearest == surface_.count)
+        {
+            return false;
+        }
+        switch (answer.nearest_feature)
+        {
+        case TriangleFeature::interior:
+            normal = normal_of(triangle(nearest));
+            is_manifold_ = true;
+            break;
+        case TriangleFeature::edge_0:
+        case TriangleFeature::edge_1:
+        case TriangleFeature::edge_2:
+            normal = of_edge(nearest, static_cast<std::size_t>(answer.nearest_feature) - 3);
+            break;
+        default:
+            normal = of_vertex(nearest, static_cast<std::size_t>(answer.nearest_feature));
+        }
+        return normal != Vec3(0.0, 0.0, 0.0);
+    }
+
+    /// The faces round the nearest point are a disc.
+    [[nodiscard]] bool is_manifold() const noexcept { return is_manifold_; }
+
+private:
+    using Corners = std::array<Vec3f, 3>;
+
+    [[nodiscard]] std::uint32_t find(FaceId face) const noexcept
+    {
+        std::uint32_t i = 0;
+        while (i < surface_.count &&
+               (face.is_none() || tree_.face_of(surface_.triangles[i].prim) != face))
+        {
+            ++i;
+        }
+        return i;
+    }
+    [[nodiscard]] const Corners& corners(std::uint32_t i) const noexcept
+    {
+        return surface_.triangles[i].corners_m;
+    }
+    [[nodiscard]] Triangle triangle(std::uint32_t i) const noexcept
+    {
+        return to_triangle(corners(i));
+    }
+
+    /// Faces with a corner at `at`, in order of their ids, so that sums have the same bits.
+    [[nodiscard]] bool try_gather(const Vec3f& at, Incident& incident) const noexcept
+    {
+        for (std::uint32_t i = 0; i < surface_.count; ++i)
+        {
+            const auto found = std::find(corners(i).begin(), corners(i).end(), at);
+            if (found != corners(i).end() &&
+                !incident.try_push_back({tree_.face_of(surface_.triangles[i].prim), i,
+                                         static_cast<std::size_t>(found - corners(i).begin())}))
+            {
+                return false;
+            }
+        }
+        std::sort(incident.begin(), incident.end(),
+                  [](const IncidentFace& a, const IncidentFace& b) { return a.face < b.face; });
+        return true;
+    }
+
+    [[nodiscard]] Vec3 of_edge(std::uint32_t nearest, std::size_t edge) noexcept
+    {
+        const Vec3f from = corners(nearest)[edge];
+        const Vec3f to = corners(nearest)[(edge + 1) % 3];
+        Incident incident;
+        if (!try_gather(from, incident))
+        {
+            return {0.0, 0.0, 0.0};
+        }
+        Vec3 sum(0.0, 0.0, 0.0);
+        std::uint32_t along = 0;
+        std::uint32_t against = 0;
+        for (const IncidentFace& face : incident)
+        {
+            const bool goes_along = corners(face.triangle)[(face.corner + 1) % 3] == to;
+            const bool goes_against = corners(face.triangle)[(face.corner + 2) % 3] == to;
+            along += goes_along ? 1U : 0U;
+            against += goes_against ? 1U : 0U;
+            if (goes_along || goes_against)
+            {
+                sum += normal_of(triangle(face.triangle));
+            }
+        }
+        is_manifold_ = along == 1 && against == 1;
+        return unit_or_zero(sum);
+    }
+
+    [[nodiscard]] Vec3 of_vertex(std::uint32_t nearest, std::size_t corner) noexcept
+    {
+        const Vec3f at = corners(nearest)[corner];
+        Incident incident;
+        if (!try_gather(at, incident))
+        {
+            return {0.0, 0.0, 0.0};
+        }
+        Vec3 sum(0.0, 0.0, 0.0);
+        for (const IncidentFace& face : incident)
+        {
+            const Triangle here = triangle(face.triangle);
+            const Vec3 first = here[(face.corner + 1) % 3] - here[face.corner];
+            const Vec3 second = here[(face.corner + 2) % 3] - here[face.corner];
+            const double angle = angle_between(first, second);
+            sum += angle * normal_of(here);
+        }
+        is_manifold_ = is_one_fan(incident);
+        return unit_or_zero(sum);
+    }
+
+    /// Whether the faces follow one another round the vertex and close, with none left over.
+    [[nodiscard]] bool is_one_fan(const Incident& incident) const noexcept
+    {
+        std::size_t at = 0;
+        for (std::size_t step = 1; step <= incident.size(); ++step)
+        {
+            const IncidentFace& face = incident[at];
+            const Vec3f& out = corners(face.triangle)[(face.corner + 2) % 3];
+            std::size_t next = incident.size();
+            std::size_t continuing = 0;
+            for (std::size_t i = 0; i < incident.size(); ++i)
+            {
+                if (corners(incident[i].triangle)[(incident[i].corner + 1) % 3] == out)
+                {
+                    next = i;
+                    ++continuing;
+                }
+            }
+            if (continuing != 1)
+            {
+                return false;
+            }
+            at = next;
+            if (at == 0)
+            {
+                return step == incident.size();
+            }
+        }
+        return false;
+    }
+
+    const AbTree& tree_;
+    const LocalSurface& surface_;
+    bool is_manifold_{false};
+};
+
+void add_contacts(const PlacedCore& core, double radius_m, const AbTree& tree,
+                  const LocalSurface& surface, ContactReport& report) noexcept
+{
+    for (std::uint32_t i = 0; i < surface.count; ++i)
+    {
+        if (surface.distances_m[i] > radius_m)
+        {
+            continue;
+        }
+        const Triangle triangle = to_triangle(surface.triangles[i].corners_m);
+        const ClosestPoints closest = core.closest(triangle);
+        if (closest.distance > radius_m)
+        {
+            continue;
+        }
+        Contact contact{tree.face_of(surface.triangles[i].prim),
+                        closest.feature,
+                        closest.distance,
+                        closest.on_shape,
+                        closest.on_triangle,
+                        unit_or_zero(-closest.gap)};
+        if (!(closest.distance > closest.distance_error))
+        {
+            contact.normal = normal_of(triangle);
+        }
+        if (!keep(contact, report.contacts))
+        {
+            report.is_complete = false;
+        }
+    }
+}
+
+} // namespace
+
+void report_contacts(const PlacedCore& core, double radius_m, const AbTree& tree,
+                     const LocalSurface& surface, bool is_closed, ContactReport& report) noexcept
+{
+    report = ContactReport{};
+    const DistanceAnswer& answer = surface.answer;
+    // Nothing unseen may touch: either all is exact that far, or all is farther.
+    report.is_complete = answer.certified_radius_m >= radius_m || answer.lower_m > radius_m;
+    add_contacts(core, radius_m, tree, surface, report);
+    NearestFeature nearest(tree, surface);
+    if (!nearest.try_find_normal(report.normal) || !is_closed || !nearest.is_manifold() ||
+        !(answer.lower_m > 0.0))
+    {
+        return;
+    }
+    const double height = report.normal.dot(answer.tool_point_m - answer.nearest_point_m);
+    report.side = height > 0.0   ? Side::outside
+                  : height < 0.0 ? Side::inside
+                                 : Side::unsigned_distance;
+}
+
+} // namespace tactus

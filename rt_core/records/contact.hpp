@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/base/static_vector.hpp"
+#include "rt_core/limits.hpp"
+#include "rt_core/math/triangle.hpp"
+#include "rt_core/spm/ids.hpp"
+
+#include <cstdint>
+
+namespace tactus
+{
+
+/// A face within a tool's radius of its core. Lengths and frame are those of who has it.
+struct Contact
+{
+    FaceId face{};
+    TriangleFeature feature{TriangleFeature::interior}; ///< Of the face: where it is nearest.
+    double distance_m{0.0};                             ///< From the core.
+    Vec3 on_tool_m{0.0, 0.0, 0.0};                      ///< Of the core.
+    Vec3 on_surface_m{0.0, 0.0, 0.0};
+    /// Unit length, from the surface to the core; where they meet, the face's own. Zero where that
+    /// has no area.
+    Vec3 normal{0.0, 0.0, 0.0};
+};
+
+/// Nearest first, lower face ids first among equals.
+using ContactSet = StaticVector<Contact, kMaxContacts>;
+
+/// On which side of a closed surface a point is.
+enum class Side : std::uint8_t
+{
+    unsigned_distance, ///< The mesh is open, the answer not exact, or the point on the surface.
+    outside,           ///< Where the normals point to.
+    inside,
+};
+
+/// What a tool that wants contacts gets of a pair.
+struct ContactReport
+{
+    ContactSet contacts;
+    bool is_complete{false}; ///< No contact was left out, and none may exist unseen.
+    /// Of the surface at the nearest point: a face's own, of an edge the mean of its faces', of a
+    /// vertex weighted by their angles. Unit length; zero when it is not known.
+    Vec3 normal{0.0, 0.0, 0.0};
+    Side side{Side::unsigned_distance};
+};
+
+} // namespace tactus

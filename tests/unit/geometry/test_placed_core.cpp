@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "rt_core/geometry/placed_core.hpp"
+#include "tests/unit/geometry/shape_oracle.hpp"
+#include "tests/unit/geometry/shape_scenes.hpp"
+
+#include <gtest/gtest.h>
+
+namespace tactus::test
+{
+
+namespace
+{
+
+using Oracle = ShapeOracle<long double>;
+
+Mat3 random_rotation(Random& random)
+{
+    const Vec3 axis = random.in_cube(1.0) + Vec3(1e-3, 0, 0);
+    return Eigen::AngleAxisd(random.between(-4.0, 4.0), axis.normalized()).toRotationMatrix();
+}
+
+Placement random_place(Random& random)
+{
+    return {random_rotation(random), random.in_cube(2.0), random.between(0.2, 3.0)};
+}
+
+/// Flat ones and points of no extent among them.
+ToolCore random_core(Random& random)
+{
+    const double size = random.one_in(8) ? 0.0 : random.between(0.01, 1.0);
+    switch (random.below(3))
+    {
+    case 0:
+        return PointCore{};
+    case 1:
+        return Segment{random.in_cube(size), random.in_cube(size)};
+    default:
+        return Box{{size, random.one_in(3) ? 0.0 : size * random.between(0.01, 1.0),
+                    size * random.between(0.0, 1.0)}};
+    }
+}
+
+/// Points of the core in its own frame, its corners among them.
+std::vector<Vec3> points_of(const ToolCore& core, Random& random)
+{
+    std::vector<Vec3> points;
+    for (int i = 0; i < 12; ++i)
+    {
+        const auto share = [&]
+        { return i < 8 ? 2.0 * random.below(2) - 1.0 : random.between(-1, 1); };
+        const Vec3 shares(share(), share(), share());
+        if (const auto* segment = std::get_if<Segment>(&core))
+        {
+            points.push_back(point_at(*segment, 0.5 + 0.5 * shares.x()));
+        }
+        else if (const auto* box = std::get_if<Box>(&core))
+        {
+            points.push_back(box->half.cwiseProduct(shares));
+        }
+        else
+        {
+            points.emplace_back(0.0, 0.0, 0.0);
+        }
+    }
+    return points;
+}
+
+Vec3 placed(const Placement& place, const Vec3& point)
+{
+    return place.origin + place.scale * (place.rotation * point);
+}
+
+/// The distance by the oracle, of a core placed by its own arithmetic.
+long double true_distance(const ToolCore& core, const Placement& place, const Triangle& triangle)
+{
+    if (const auto* segment = std::get_if<Segment>(&core))
+    {
+        const std::array<Vec3, 2> ends{placed(place, segment->from), placed(place, segment->to)};
+        return Oracle::distance(ends, triangle);
+    }
+    if (const auto* box = std::get_if<Box>(&core))
+    {
+        Triangle near;
+        for (std::size_t i = 0; i < 3; ++i)
+        {
+            near[i] = place.rotation.transpose() * (triangle[i] - place.origin) / place.scale;
+        }
+        return Oracle::distance(*box, near) * static_cast<long double>(place.scale);
+    }
+    return Oracle::Base::distance(place.origin, triangle);
+}
+
+Triangle random_triangle(Random& random)
+{
+    const Vec3 at = random.in_cube(3.0);
+    const double size = random.one_in(4) ? 1e-3 : 1.0;
+    return {at + random.in_cube(size), at + random.in_cube(size), at + random.in_cube(size)};
+}
+
+} // namespace
+
+TEST(PlacedCore, measures_as_the_oracle_does_and_bounds_from_below)
+{
+    Random random(301);
+    int touching = 0;
+    double loosest = 0.0;
+    for (int round = 0; round < 20'000; ++round)
+    {
+        const ToolCore core = random_core(random);
+        const Placement place = random_place(random);
+        const PlacedCore sut(core, place);
+        const Triangle triangle = random_triangle(random);
+        const auto truth = static_cast<double>(true_distance(core, place, triangle));
+
+        const ClosestPoints closest = sut.closest(triangle);
+        const double lower = sut.lower_bound(triangle);
+
+        // The oracle of a box turns the triangle in double, as good as to 1e-15 of its place.
+        const double slack = closest.distance_error + 2e-14;
+        ASSERT_NEAR(closest.distance, truth, slack) << "core " << core.index();
+        ASSERT_LE(lower, truth + 2e-14);
+        ASSERT_GE(closest.distance + slack, (triangle[0] - sut.center()).norm() - sut.radius() -
+                                                (triangle[1] - triangle[0]).norm() -
+                                                (triangle[2] - triangle[0]).norm());
+        ASSERT_NEAR((closest.on_triangle - closest.on_shape).norm(), closest.distance, 1e-13);
+        touching += closest.meet ? 1 : 0;
+        loosest = std::max(loosest, truth - lower);
+    }
+    EXPECT_GT(touching, 100);
+    EXPECT_LT(loosest, 3.0) << "a bound that bounds nothing";
+}
+
+TEST(PlacedCore, is_held_by_its_ball_and_by_its_cover)
+{
+    Random random(302);
+    std::size_t most = 0;
+    for (int round = 0; round < 3'000; ++round)
+    {
+        const ToolCore core = random_core(random);
+        const Placement place = random_place(random);
+        const PlacedCore sut(core, place);
+        const double enough = sut.radius() * random.between(0.0, 1.2);
+
+        const CoreCover cover = sut.cover(enough);
+
+        most = std::max(most, cover.size());
+        ASSERT_LE(cover.size(), kMaxCoverBalls);
+        for (const Vec3& point : points_of(core, random))
+        {
+            const Vec3 there = placed(place, point);
+            ASSERT_LE((there - sut.center()).norm(), sut.radius() * (1.0 + 1e-12) + 1e-14);
+            double nearest = std::numeric_limits<double>::infinity();
+            for (const Ball& ball : cover)
+            {
+                nearest = std::min(nearest, (there - ball.center).norm() - ball.radius);
+                ASSERT_TRUE(ball.radius <= enough || cover.size() == kMaxCoverBalls);
+            }
+            ASSERT_LE(nearest, 1e-14);
+        }
+    }
+    EXPECT_EQ(most, kMaxCoverBalls);
+}
+
+TEST(PlacedCore, a_point_is_covered_by_one_ball_of_no_size)
+{
+    const PlacedCore sut(PointCore{}, {Mat3::Identity(), Vec3(1, 2, 3), 0.5});
+    const CoreCover cover = sut.cover(0.0);
+    ASSERT_EQ(cover.size(), 1U);
+    EXPECT_EQ(cover[0].center, Vec3(1, 2, 3));
+    EXPECT_EQ(cover[0].radius, 0.0);
+    EXPECT_TRUE(sut.is_point());
+}
+
+TEST(PlacedCore, no_point_moved_farther_than_it_says)
+{
+    Random random(303);
+    for (int round = 0; round < 3'000; ++round)
+    {
+        const ToolCore core = random_core(random);
+        const Placement before = random_place(random);
+        Placement after = before;
+        const double much = random.one_in(3) ? 1.0 : 1e-6;
+        after.origin += random.in_cube(much);
+        after.rotation =
+            Eigen::AngleAxisd(much * random.between(-1, 1), random.in_cube(1.0).normalized())
+                .toRotationMatrix() *
+            before.rotation;
+        after.scale *= 1.0 + much * random.between(-0.5, 0.5);
+
+        const double motion = PlacedCore(core, after).motion_since(PlacedCore(core, before));
+
+        double farthest = 0.0;
+        for (const Vec3& point : points_of(core, random))
+        {
+            const double way = (placed(after, point) - placed(before, point)).norm();
+            ASSERT_LE(way, motion + 1e-14);
+            farthest = std::max(farthest, way);
+        }
+        ASSERT_LE(motion, 8.0 * farthest + 1e-9) << "far too much";
+    }
+}
+
+} // namespace tactus::test

@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "rt_core/query/core_query.hpp"
+#include "rt_core/query/surface_query.hpp"
+#include "tests/unit/rt_core/support.hpp"
+#include "tests/unit/rt_core/tree_support.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+#include <set>
+
+namespace tactus::test
+{
+
+namespace
+{
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+PlacedCore random_core(Random& random)
+{
+    const Mat3 rotation = Eigen::AngleAxisd(random.between(-4.0, 4.0),
+                                            (random.in_cube(1.0) + Vec3(2, 0, 0)).normalized())
+                              .toRotationMatrix();
+    const Placement place{
+        rotation,
+        {random.between(-2.5, 2.5), random.between(-0.3, 0.8), random.between(-0.3, 0.8)},
+        random.between(0.5, 2.0)};
+    const double size = random.one_in(6) ? 0.0 : random.between(0.01, 0.8);
+    return random.one_in(2)
+               ? PlacedCore(Segment{random.in_cube(size), random.in_cube(size)}, place)
+               : PlacedCore(Box{{size, size * random.between(0.0, 1.0), 0.3 * size}}, place);
+}
+
+/// The answer by measuring every face, with the kernel that PlacedCore's own tests hold.
+struct BruteForce
+{
+    double lower{kInfinity};
+    double upper{kInfinity};
+    double coarse_lower{kInfinity};
+    FaceId nearest{};
+    double nearest_distance{kInfinity};
+    std::set<std::uint32_t> in_reach;
+
+    BruteForce(std::span<const ChangedFace> faces, const PlacedCore& core, double reach)
+    {
+        for (const ChangedFace& face : faces)
+        {
+            const Triangle triangle = to_triangle(face.corners_m);
+            const ClosestPoints closest = core.closest(triangle);
+            const double low = std::max(0.0, closest.distance - closest.distance_error);
+            if (face.error != 0)
+            {
+                coarse_lower =
+                    std::min(coarse_lower, low - static_cast<double>(error_in_quanta(face.error)) *
+                                                     static_cast<double>(kTreeQuantum));
+                for (const Vec3& corner : triangle)
+                {
+                    upper = std::min(upper, core.closest({corner, corner, corner}).distance);
+                }
+                continue;
+            }
+            lower = std::min(lower, low);
+            upper = std::min(upper, closest.distance);
+            if (low <= reach)
+            {
+                in_reach.insert(face.face.value);
+            }
+            if (closest.distance < nearest_distance ||
+                (closest.distance == nearest_distance && face.face < nearest))
+            {
+                nearest = face.face;
+                nearest_distance = closest.distance;
+            }
+        }
+        lower = std::max(0.0, std::min(lower, coarse_lower));
+    }
+};
+
+struct Asked
+{
+    std::unique_ptr<LocalSurface> surface{std::make_unique<LocalSurface>()};
+    WalkBudget budget;
+
+    [[nodiscard]] const DistanceAnswer& answer() const { return surface->answer; }
+};
+
+Asked ask(const AbTree& tree, const PlacedCore& core, double reach, QueryMemory& memory,
+          std::uint32_t nodes = 1'000'000, std::uint32_t triangles = 1'000'000)
+{
+    Asked asked;
+    asked.budget.nodes = nodes;
+    asked.budget.triangles = triangles;
+    gather_surface(tree, core, reach, memory, asked.budget, *asked.surface);
+    return asked;
+}
+
+std::set<std::uint32_t> faces_of(const AbTree& tree, const LocalSurface& surface)
+{
+    std::set<std::uint32_t> faces;
+    for (std::uint32_t i = 0; i < surface.count; ++i)
+    {
+        EXPECT_TRUE(faces.insert(tree.face_of(surface.triangles[i].prim).value).second);
+    }
+    return faces;
+}
+
+void fill(TreeRig& rig, Random& random, std::uint32_t count, bool exact_only)
+{
+    const FaceStyle& style = face_styles()[random.below(5)];
+    for (std::uint32_t prim = 0; prim < count; ++prim)
+    {
+        ChangedFace face = random_face(random, style, prim, prim);
+        face.error = exact_only ? 0 : face.error;
+        rig.put(face);
+    }
+    rig.sut->refit();
+}
+
+} // namespace
+
+TEST(CoreQuery, brackets_the_distance_and_finds_what_measuring_every_face_finds)
+{
+    Random random(61);
+    int exact = 0;
+    int decided = 0;
+    for (int round = 0; round < 60; ++round)
+    {
+        TreeRig rig({200, 400, 400});
+        fill(rig, random, 1 + random.below(200), round % 2 == 0);
+        const auto faces = rig.present();
+        QueryMemory memory;
+        for (int query = 0; query < 30; ++query)
+        {
+            const PlacedCore core = random_core(random);
+            const double reach = random.between(0.0, 0.4);
+            const BruteForce truth(faces, core, reach);
+
+            const Asked asked = ask(*rig.sut, core, reach, memory);
+
+            const DistanceAnswer& answer = asked.answer();
+            ASSERT_LE(answer.lower_m, truth.upper);
+            ASSERT_GE(answer.upper_m, truth.lower);
+            ASSERT_LE(answer.lower_m, truth.lower + 1e-15);
+            ASSERT_LE(answer.certified_radius_m, reach);
+            ASSERT_LE(answer.certified_radius_m, std::max(0.0, truth.coarse_lower));
+            // Within the certified distance everything is listed; nothing beyond reach is.
+            const auto listed = faces_of(*rig.sut, *asked.surface);
+            ASSERT_TRUE(std::includes(truth.in_reach.begin(), truth.in_reach.end(), listed.begin(),
+                                      listed.end()));
+            if (answer.certified_radius_m == reach)
+            {
+                ASSERT_EQ(listed, truth.in_reach);
+            }
+            exact += answer.kind == AnswerKind::exact ? 1 : 0;
+            decided += answer.kind == AnswerKind::decided ? 1 : 0;
+            if (answer.kind == AnswerKind::exact)
+            {
+                ASSERT_EQ(answer.nearest_face, truth.nearest);
+                ASSERT_NEAR((answer.nearest_point_m - answer.tool_point_m).norm(),
+                            truth.nearest_distance, 1e-13);
+            }
+        }
+    }
+    EXPECT_GT(exact, 300);
+    EXPECT_GT(decided, 300);
+}
+
+TEST(CoreQuery, a_spent_budget_leaves_the_bracket_true)
+{
+    Random random(62);
+    int spent = 0;
+    for (int round = 0; round < 40; ++round)
+    {
+        TreeRig rig({200, 400, 400});
+        fill(rig, random, 200, round % 2 == 0);
+        const auto faces = rig.present();
+        for (int query = 0; query < 20; ++query)
+        {
+            const PlacedCore core = random_core(random);
+            const BruteForce truth(faces, core, 0.3);
+            QueryMemory memory{random.below(400)};
+
+            const Asked asked =
+                ask(*rig.sut, core, 0.3, memory, random.below(30), random.below(200));
+
+            spent += asked.budget.is_spent ? 1 : 0;
+            ASSERT_LE(asked.answer().lower_m, truth.upper);
+            ASSERT_GE(asked.answer().upper_m, truth.lower);
+            ASSERT_LE(asked.budget.nodes_visited, asked.budget.nodes);
+            ASSERT_LE(asked.budget.triangles_tested, asked.budget.triangles);
+        }
+    }
+    EXPECT_GT(spent, 200);
+}
+
+TEST(CoreQuery, a_point_gets_the_answer_of_a_point)
+{
+    Random random(63);
+    TreeRig rig({200, 400, 400});
+    fill(rig, random, 200, false);
+    for (int query = 0; query < 100; ++query)
+    {
+        const Vec3 at = random.in_cube(1.0);
+        QueryMemory memory;
+        const Asked asked =
+            ask(*rig.sut, PlacedCore(PointCore{}, {Mat3::Identity(), at, 2.0}), 0.2, memory);
+        WalkBudget budget{1'000'000, 1'000'000};
+        QueryMemory own;
+        auto surface = std::make_unique<LocalSurface>();
+        gather_surface(*rig.sut, at, 0.2, own, budget, *surface);
+        ASSERT_EQ(asked.answer().lower_m, surface->answer.lower_m);
+        ASSERT_EQ(asked.answer().upper_m, surface->answer.upper_m);
+        ASSERT_EQ(asked.answer().nearest_face, surface->answer.nearest_face);
+        ASSERT_EQ(asked.answer().tool_point_m, at);
+    }
+}
+
+TEST(CoreQuery, from_beyond_the_kernels_the_box_of_everything_answers)
+{
+    Random random(64);
+    TreeRig rig({200, 400, 400});
+    fill(rig, random, 100, true);
+    const double far = 1e12;
+    const PlacedCore core(Segment{Vec3(-1, 0, 0), Vec3(1, 0, 0)},
+                          {Mat3::Identity(), Vec3(far, 0, 0), 10.0});
+    QueryMemory memory;
+    const Asked asked = ask(*rig.sut, core, 1.0, memory);
+    EXPECT_EQ(asked.answer().kind, AnswerKind::decided);
+    EXPECT_LE(asked.answer().lower_m, far - 10.0 + 3.0);
+    EXPECT_GE(asked.answer().upper_m, far - 10.0 - 3.0);
+    EXPECT_EQ(asked.surface->count, 0U);
+}
+
+TEST(CoreQuery, an_empty_tree_has_nothing_near)
+{
+    TreeRig rig({8, 16, 16});
+    rig.sut->refit();
+    QueryMemory memory;
+    const Asked asked = ask(*rig.sut, PlacedCore(Box{{1, 1, 1}}, {}), 1.0, memory);
+    EXPECT_EQ(asked.answer().kind, AnswerKind::decided);
+    EXPECT_EQ(asked.answer().upper_m, kInfinity);
+}
+
+} // namespace tactus::test
