@@ -38,10 +38,10 @@ struct Simplification
 {
     std::vector<Collapse> collapses; ///< In order of execution; rounds ascend.
     std::uint32_t rounds{0};
-    bool is_closed{false};                                  ///< The mesh has no border.
     std::vector<std::uint32_t> base_faces;                  ///< Faces of the mesh that remain.
     std::vector<std::array<std::uint32_t, 3>> base_corners; ///< Their corners now, mesh vertices.
     std::vector<float> base_error;                          ///< Their certified bounds, in quanta.
+    bool is_closed{false};                                  ///< The mesh has no border.
 };
 
 struct SimplifyOptions

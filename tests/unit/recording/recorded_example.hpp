@@ -30,6 +30,7 @@ struct ExampleFrame
 
     ExampleFrame()
     {
+        tools[0].rotation << 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0;
         poses[0].translation_m = Vec3(0.125, 4.0, -8.0);
         poses[0].scale = 1.5;
         poses[0].revision = 21;

@@ -130,7 +130,9 @@ TEST(FrameCoding, repeats_poses_and_budgets_only_when_they_change)
 
 TEST(FrameCoding, holds_the_largest_frame_there_can_be)
 {
-    const std::vector<ToolState> tools(kMaxTools);
+    ToolState turned;
+    turned.rotation = -Mat3::Identity();
+    const std::vector<ToolState> tools(kMaxTools, turned);
     const std::vector<ObjectPose> poses(kMaxObjects);
     const std::vector<DoorEvent> events(kMaxDoorEvents,
                                         DoorEvent{{ContentKind::chunk, 1}, 0, 0, 1});
@@ -171,8 +173,8 @@ TEST(FrameCoding, refuses_a_frame_that_is_cut_at_any_byte)
 TEST(FrameCoding, refuses_values_that_no_frame_can_have)
 {
     constexpr std::size_t kFlags = 4;
-    constexpr std::size_t kValid = kFlags + kToolStateBytes;
-    constexpr std::size_t kPose = kValid + 1;
+    constexpr std::size_t kPose = kFlags + 1 + kToolStateBytes;
+    constexpr std::size_t kValid = kPose - 9 * sizeof(double) - 1;
     constexpr std::size_t kScale = kPose + 12 * sizeof(double);
     constexpr std::size_t kBudgets = kPose + kObjectPoseBytes;
     constexpr std::size_t kEvents = kBudgets + kBudgetsBytes + 4;
@@ -185,7 +187,7 @@ TEST(FrameCoding, refuses_values_that_no_frame_can_have)
     };
     const std::vector<Case> cases{{kFlags, {4}, "flags"},
                                   {kFlags, {2}, "flags"}, // The first frame has both.
-                                  {kValid, {2}, "validity"},
+                                  {kValid, {4}, "validity"},
                                   {kPose + 6, {0xF0, 0x7F}, "pose"}, // Infinity.
                                   {kScale, {0, 0, 0, 0, 0, 0, 0, 0}, "scale"},
                                   {kBudgets, {1, 1}, "256 splits"},

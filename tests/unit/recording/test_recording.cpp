@@ -221,7 +221,8 @@ TEST(RecordingFile, is_refused_when_a_value_is_out_of_its_range)
 {
     // What the checksums vouch for is checked all the same.
     constexpr std::size_t kTool = 20;
-    constexpr std::size_t kObject = kTool + 32;
+    constexpr std::size_t kCore = kTool + 33;
+    constexpr std::size_t kObject = kCore + 1;
     expect_refusal(with_bytes(kSetup, 0, {0, 0, 0, 0, 0, 0, 0, 0}), "the period is 0 ns; 1 to");
     expect_refusal(with_bytes(kSetup, 16, {2}), "the static mode is 2; 0 and 1 are allowed");
     expect_refusal(with_bytes(kSetup, 17, {0}), "0 tools, 1 objects and 1 models; 1 to 4");
@@ -229,6 +230,8 @@ TEST(RecordingFile, is_refused_when_a_value_is_out_of_its_range)
     expect_refusal(with_bytes(kSetup, 18, {9}), "9 objects");
     expect_refusal(with_bytes(kSetup, 19, {9}), "9 models");
     expect_refusal(with_bytes(kSetup, kTool + 6, {0xF8, 0x7F}), "tool 0 is not within"); // NaN.
+    expect_refusal(with_bytes(kSetup, kCore - 1, {2}), "tool 0 has an unknown core");
+    expect_refusal(with_bytes(kSetup, kCore, {9}), "tool 0 has an unknown core");
     expect_refusal(with_bytes(kSetup, kObject, {1}), "object 0 names model 1 of 1");
     expect_refusal(with_section(kSetup,
                                 [](auto& payload)
