@@ -48,7 +48,11 @@ TEST(FrameCoding, writes_the_bytes_that_the_format_page_lists)
     FrameEncoder sut;
     ByHand expected;
     expected.add(std::uint8_t{3});
-    expected.add(0.5).add(-0.25).add(2.0).add(std::int64_t{77}).add(3U).add(std::uint8_t{1});
+    expected.add(0.5).add(-0.25).add(2.0).add(std::int64_t{77}).add(3U).add(std::uint8_t{3});
+    for (const double entry : {0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0})
+    {
+        expected.add(entry);
+    }
     for (int i = 0; i < 9; ++i)
     {
         expected.add(i % 4 == 0 ? 1.0 : 0.0);
@@ -86,6 +90,7 @@ TEST(FrameCoding, gives_every_value_back)
     EXPECT_EQ(read.tools[0].position_m, frame.tools[0].position_m);
     EXPECT_EQ(read.tools[0].sample_time_ns, 77);
     EXPECT_EQ(read.tools[0].elapsed_periods, 3U);
+    EXPECT_EQ(read.tools[0].rotation, frame.tools[0].rotation);
     EXPECT_EQ(read.poses[0].translation_m, frame.poses[0].translation_m);
     EXPECT_EQ(read.poses[0].rotation, frame.poses[0].rotation);
     EXPECT_EQ(read.poses[0].revision, 21U);
