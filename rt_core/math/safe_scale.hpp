@@ -13,20 +13,23 @@
 namespace tactus
 {
 
-/// 1 when the largest coordinate is 0 or between 2^-60 and 2^60, so that products of four or six of
-/// them neither overflow nor vanish; else the power of two that brings it near 1. Multiplying by it
-/// changes no bit of a coordinate that isn't 1e-280 times smaller.
-[[nodiscard]] inline double safe_scale(double largest) noexcept
+/// The power of two that brings a positive number near 1. Multiplying by it changes no bit of a
+/// coordinate that isn't 1e-280 times smaller.
+[[nodiscard]] inline double scale_to_one(double largest) noexcept
 {
-    if (largest == 0.0 || (largest >= 0x1p-60 && largest <= 0x1p60))
-    {
-        return 1.0;
-    }
     const std::uint64_t exponent = std::bit_cast<std::uint64_t>(largest) >> 52U;
     // So far from the ends that its inverse is an ordinary double, too.
     const std::uint64_t inverse =
         std::clamp<std::uint64_t>(2046 - std::min<std::uint64_t>(exponent, 2045), 1, 2045);
     return std::bit_cast<double>(inverse << 52U);
+}
+
+/// 1 when the largest coordinate is 0 or between 2^-60 and 2^60, so that products of four or six of
+/// them neither overflow nor vanish; else scale_to_one.
+[[nodiscard]] inline double safe_scale(double largest) noexcept
+{
+    const bool is_safe = largest == 0.0 || (largest >= 0x1p-60 && largest <= 0x1p60);
+    return is_safe ? 1.0 : scale_to_one(largest);
 }
 
 [[nodiscard]] inline double largest_coordinate(std::span<const Vec3> points) noexcept

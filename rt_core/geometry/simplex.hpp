@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/math/double_double.hpp"
+#include "rt_core/math/triple.hpp"
+
+#include <array>
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <span>
+
+namespace tactus
+{
+
+/// Half a unit in the last place.
+template <typename Real>
+inline constexpr double kRounding = std::same_as<Real, double> ? 0x1p-53 : 0x1p-102;
+
+/// The point of a simplex nearest to the origin.
+template <typename Real>
+struct SimplexFoot
+{
+    /// Of the simplex's points; none negative, zero for those that aren't corners of the feature
+    /// that holds the foot. Their sum is 1.
+    std::array<Real, 4> weights{};
+    /// The foot, as the weighted sum of the points: whatever the weights, it is in the simplex.
+    Triple<Real> foot{};
+    Real distance_sq{0.0};
+    /// From the origin across the feature, of any length: right where the foot is so near that
+    /// little of its own direction is left.
+    Triple<Real> across{};
+    std::size_t corners{0};
+};
+
+/// Where one to four points have their foot: of all features, taken from the largest down, the one
+/// whose foot is nearest. Tetrahedra have none but where the origin is inside.
+///
+/// A face or edge counts where all its weights are positive: these are ratios of areas and lengths,
+/// so they tell much better which feature it is than the distances do, whose squares differ little
+/// beside an edge. So a smaller feature is taken only if it is nearer by more than rounding.
+template <typename Real>
+class SimplexSolver
+{
+public:
+    using Point = Triple<Real>;
+
+    /// `length`: of the numbers from which the points were made; what these were rounded to.
+    SimplexSolver(std::span<const Point> points, double length) noexcept
+        : points_(points)
+        , noise_(8.0 * kRounding<Real> * length)
+        , touching_(8.0 * kRounding<double> * length)
+    {
+    }
+
+    /// Of the features that have the last point as a corner, or of all.
+    [[nodiscard]] SimplexFoot<Real> find(bool with_last_only) noexcept
+    {
+        const std::size_t count = points_.size();
+        const std::size_t last = count - 1;
+        if (count == 4)
+        {
+            try_inside();
+        }
+        for (std::size_t k = with_last_only ? last : 0; k < count; ++k)
+        {
+            for (std::size_t j = 0; j < k; ++j)
+            {
+                for (std::size_t i = 0; i < j; ++i)
+                {
+                    try_face(i, j, k);
+                }
+            }
+        }
+        for (std::size_t k = with_last_only ? last : 0; k < count; ++k)
+        {
+            for (std::size_t j = 0; j < k; ++j)
+            {
+                try_edge(j, k);
+            }
+        }
+        for (std::size_t k = with_last_only ? last : 0; k < count; ++k)
+        {
+            try_corner(k);
+        }
+        return best_;
+    }
+
+private:
+    using Weights = std::array<Real, 4>;
+
+    [[nodiscard]] static bool is_positive(const Real& value) noexcept { return value > Real{0.0}; }
+
+    void try_corner(std::size_t i) noexcept
+    {
+        Weights weights{};
+        weights[i] = Real{1.0};
+        keep_if_nearer(weights, points_[i], points_[i], 1);
+    }
+
+    void try_edge(std::size_t i, std::size_t j) noexcept
+    {
+        const Point edge = points_[j] - points_[i];
+        const Real length_sq = dot(edge, edge);
+        const Real from_i = -dot(points_[i], edge);
+        const Real from_j = dot(points_[j], edge);
+        if (!is_positive(from_i) || !is_positive(from_j) || !is_positive(length_sq))
+        {
+            return;
+        }
+        Weights weights{};
+        weights[j] = from_i / length_sq;
+        weights[i] = Real{1.0} - weights[j];
+        const Point foot = weights[i] * points_[i] + weights[j] * points_[j];
+        keep_if_nearer(weights, foot, foot - (dot(foot, edge) / length_sq) * edge, 2);
+    }
+
+    void try_face(std::size_t i, std::size_t j, std::size_t k) noexcept
+    {
+        const std::array<std::size_t, 3> corner{i, j, k};
+        const std::array<Point, 3> edge{points_[j] - points_[i], points_[k] - points_[j],
+                                        points_[i] - points_[k]};
+        const Point normal = cross(edge[0], edge[1]);
+        // A smaller one has lost bits, and the edges are as near as this is wide.
+        if (!(dot(normal, normal) > Real{1e-240}))
+        {
+            return;
+        }
+        Weights weights{};
+        Real sum{0.0};
+        for (std::size_t side = 0; side < 3; ++side)
+        {
+            // Of the corner across this side: how far the origin is inside of it.
+            const Real inside = dot(cross(edge[side], normal), points_[corner[side]]);
+            if (!is_positive(inside))
+            {
+                return;
+            }
+            weights[corner[(side + 2) % 3]] = inside;
+            sum = sum + inside;
+        }
+        for (const std::size_t at : corner)
+        {
+            weights[at] = weights[at] / sum;
+        }
+        const Point foot =
+            weights[i] * points_[i] + weights[j] * points_[j] + weights[k] * points_[k];
+        const Real height = dot(points_[i], normal);
+        keep_if_nearer(weights, foot, height < Real{0.0} ? -normal : normal, 3);
+    }
+
+    /// Where the origin is inside, that is where the volumes across from the corners have one sign.
+    /// Of flat tetrahedra these are noise, and the sum that should be zero tells.
+    void try_inside() noexcept
+    {
+        const Point front = cross(points_[0], points_[1]);
+        const Point back = cross(points_[2], points_[3]);
+        Weights weights{dot(points_[1], back), -dot(points_[0], back), dot(points_[3], front),
+                        -dot(points_[2], front)};
+        const Real sum = weights[0] + weights[1] + weights[2] + weights[3];
+        for (Real& weight : weights)
+        {
+            weight = is_positive(sum) ? weight : -weight;
+            if (!is_positive(weight))
+            {
+                return;
+            }
+        }
+        const Real size = is_positive(sum) ? sum : -sum;
+        Point foot{};
+        for (std::size_t i = 0; i < 4; ++i)
+        {
+            weights[i] = weights[i] / size;
+            foot = foot + weights[i] * points_[i];
+        }
+        if (to_double(dot(foot, foot)) <= touching_ * touching_)
+        {
+            keep_if_nearer(weights, foot, foot, 4);
+        }
+    }
+
+    void keep_if_nearer(const Weights& weights, const Point& foot, const Point& across,
+                        std::size_t corners) noexcept
+    {
+        const Real distance_sq = dot(foot, foot);
+        if (best_.corners == 0 || distance_sq + Real{tie_} < best_.distance_sq)
+        {
+            best_ = {weights, foot, distance_sq, across, corners};
+            tie_ = noise_ * (std::abs(to_double(foot.x)) + std::abs(to_double(foot.y)) +
+                             std::abs(to_double(foot.z)));
+        }
+    }
+
+    std::span<const Point> points_;
+    double noise_;    ///< What rounding may make of zero.
+    double touching_; ///< As near as makes no difference in double.
+    double tie_{0.0};
+    SimplexFoot<Real> best_{};
+};
+
+} // namespace tactus

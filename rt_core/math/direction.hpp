@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/math/safe_scale.hpp"
+
+namespace tactus
+{
+
+/// Whether a vector points anywhere: not zero, as good as zero, infinite or undefined.
+[[nodiscard]] inline bool has_direction(const Vec3& way) noexcept
+{
+    return way.allFinite() && largest_coordinate({&way, 1}) > 1e-300;
+}
+
+/// Of length 1 within a few roundings, however long the vector, which must have a direction.
+[[nodiscard]] inline Vec3 unit_of(const Vec3& way) noexcept
+{
+    const Vec3 near_one = way / largest_coordinate({&way, 1});
+    return near_one / near_one.norm();
+}
+
+} // namespace tactus
