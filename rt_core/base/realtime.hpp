@@ -14,7 +14,7 @@
 /// by itself. It can't for calls through a pointer: hand algorithms a lambda, not a function.
 ///
 /// TACTUS_TRUSTED_BEGIN and _END stand around a function that calls what has no mark but keeps its
-/// promise, with the reason beside it. rt_core has none.
+/// promise, with the reason beside it. rt_core has one: libccd's answer on convex bodies.
 // NOLINTBEGIN(cppcoreguidelines-macro-usage): attributes and pragmas, which functions can't be.
 #if defined(__has_cpp_attribute) && defined(__clang__)
 #if __has_cpp_attribute(clang::nonblocking)
