@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 
 namespace tactus
 {
@@ -55,8 +56,8 @@ public:
     [[nodiscard]] std::span<const Vec3> vertices() const noexcept { return vertices_; }
 
 private:
-    Hull(std::span<const Vec3> vertices, const Vec3& center, double radius) noexcept
-        : vertices_(vertices), center_(center), radius_(radius)
+    Hull(std::span<const Vec3> vertices, Vec3 center, double radius) noexcept
+        : vertices_(vertices), center_(std::move(center)), radius_(radius)
     {
     }
 

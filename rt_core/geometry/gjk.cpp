@@ -28,21 +28,25 @@ struct SupportPair
     }
 };
 
-/// One question, relative to the body's centre and scaled by a power of two so that products of
+Triangle seen_from(const Vec3& center, const Triangle& triangle) noexcept
+{
+    return {triangle[0] - center, triangle[1] - center, triangle[2] - center};
+}
+
+/// One question, relative to the body's centre and multiplied by a power of two so that products of
 /// coordinates are doubles.
 class Gjk
 {
 public:
-    Gjk(const ConvexBody& body, const Triangle& triangle, double limit) noexcept
+    Gjk(const ConvexBody& body, const Triangle& triangle, double scale, double limit) noexcept
         : body_(body)
-        , triangle_{triangle[0] - body.center, triangle[1] - body.center, triangle[2] - body.center}
-        , scale_(safe_scale(std::max(largest_coordinate(triangle_), body.radius)))
-        , limit_(limit * scale_)
+        , triangle_(scaled(triangle, scale))
+        , scale_(scale)
+        , limit_(limit * scale)
+        , length_(body.radius * scale +
+                  std::max({triangle_[0].norm(), triangle_[1].norm(), triangle_[2].norm()}))
+        , rounding_(kGjkRounding * length_)
     {
-        triangle_ = scaled(triangle_, scale_);
-        length_ = body.radius * scale_ +
-                  std::max({triangle_[0].norm(), triangle_[1].norm(), triangle_[2].norm()});
-        rounding_ = kGjkRounding * length_;
     }
 
     [[nodiscard]] GjkAnswer find(Vec3& direction) noexcept
@@ -230,8 +234,8 @@ private:
     Triangle triangle_;
     double scale_;
     double limit_;
-    double length_{0.0};
-    double rounding_{0.0};
+    double length_; ///< Local length.
+    double rounding_;
     StaticVector<SupportPair, 4> simplex_;
     std::array<double, 4> weights_{};
     Vec3 gap_{0.0, 0.0, 0.0};
@@ -246,7 +250,9 @@ private:
 GjkAnswer gjk_distance(const ConvexBody& body, const Triangle& triangle, Vec3& direction,
                        double limit) noexcept
 {
-    return Gjk(body, triangle, limit).find(direction);
+    const Triangle near = seen_from(body.center, triangle);
+    const double scale = safe_scale(std::max(largest_coordinate(near), body.radius));
+    return Gjk(body, near, scale, limit).find(direction);
 }
 
 } // namespace tactus

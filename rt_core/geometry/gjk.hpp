@@ -44,7 +44,7 @@ struct GjkAnswer
 /// lower <= distance <= upper always, whatever ran out, since neither follows from convergence.
 /// How near they come is the law for hulls, from 5 mm needles to boxes, flat ones and points too:
 ///
-///     upper - lower <= 1e-12 x distance + 1e-14 x local length
+///     upper - lower <= 1e-12 x distance + 1.5e-14 x local length
 ///
 /// with the local length = radius + largest distance of a corner from the centre. For bodies with
 /// curved surfaces it holds where kGjkIterations suffice. Where double ends before that, on needles

@@ -14,8 +14,9 @@ struct ConvexContact
     /// No where `nearest.lower` is above zero; yes where `nearest.upper` is no more than rounding,
     /// so for what touches within 6e-15 local lengths; in between what libccd says.
     bool meet{false};
-    /// libccd was asked and said the opposite of what the bounds prove. To be counted: more than a
-    /// few in a million point at a support function that breaks its promise.
+    /// libccd was asked and said the opposite of what the bounds prove: to be counted. It takes
+    /// what is nearer than some 1e-8 of the size for touching and may take what only touches for
+    /// apart; elsewhere many of these point at a support function that breaks its promise.
     bool is_ccd_overruled{false};
 };
 
