@@ -16,6 +16,9 @@ namespace tactus
 namespace
 {
 
+// What a tetrahedron holds is near enough, so a simplex never grows beyond one.
+static_assert(kGjkRounding > 2.0 * kSimplexTouching);
+
 /// Farthest points of both along one direction; the simplex is made of their differences.
 struct SupportPair
 {

@@ -44,7 +44,7 @@ struct GjkAnswer
 /// lower <= distance <= upper always, whatever ran out, since neither follows from convergence.
 /// How near they come is the law for hulls, from 5 mm needles to boxes, flat ones and points too:
 ///
-///     upper - lower <= 1e-12 x distance + 1.5e-14 x local length
+///     upper - lower <= 1e-12 x distance + 1e-14 x local length
 ///
 /// with the local length = radius + largest distance of a corner from the centre. For bodies with
 /// curved surfaces it holds where kGjkIterations suffice. Where double ends before that, on needles
@@ -57,7 +57,9 @@ struct GjkAnswer
 /// `lower`, of length 1. The same arguments give the same bits; another direction may give other
 /// ones, by the law.
 ///
-/// Any triangle; coordinates up to 1e300. Those below 1e-85 of the largest may count as 0.
+/// Any triangle; coordinates up to 1e300. Those below 1e-85 of the largest may count as 0. A box
+/// takes 0.6 us apart and 0.9 near, a hull of 64 twice that, 0.2 to 0.3 beyond the limit; curved
+/// bodies up to 12 us where near.
 [[nodiscard]] GjkAnswer
 gjk_distance(const ConvexBody& body, const Triangle& triangle, Vec3& direction,
              double limit = std::numeric_limits<double>::infinity()) noexcept TACTUS_NONBLOCKING;

@@ -18,6 +18,10 @@ namespace tactus
 template <typename Real>
 inline constexpr double kRounding = std::same_as<Real, double> ? 0x1p-53 : 0x1p-102;
 
+/// As near as makes no difference in double, in the length of what a simplex's points were made of:
+/// a tetrahedron holds the origin where its weights bring it as near.
+inline constexpr double kSimplexTouching = 8.0 * kRounding<double>;
+
 /// The point of a simplex nearest to the origin.
 template <typename Real>
 struct SimplexFoot
@@ -50,7 +54,7 @@ public:
     SimplexSolver(std::span<const Point> points, double length) noexcept
         : points_(points)
         , noise_(8.0 * kRounding<Real> * length)
-        , touching_(8.0 * kRounding<double> * length)
+        , touching_(kSimplexTouching * length)
     {
     }
 
@@ -194,7 +198,7 @@ private:
 
     std::span<const Point> points_;
     double noise_;    ///< What rounding may make of zero.
-    double touching_; ///< As near as makes no difference in double.
+    double touching_; ///< As near counts as zero.
     double tie_{0.0};
     SimplexFoot<Real> best_{};
 };

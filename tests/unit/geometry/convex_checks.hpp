@@ -17,6 +17,12 @@ namespace tactus::test
 /// How far apart the wider numbers may find what meets, in local lengths, when a shape is thin.
 inline constexpr double kTouching = 1e-17;
 
+/// Of each class of pairs; a million of all, however many the kernels take.
+[[nodiscard]] inline int convex_cases_per_class()
+{
+    return std::min(cases_per_class(), 70'000);
+}
+
 /// The hull of a scene, whose vertices it points at.
 [[nodiscard]] inline Hull hull_of(const std::vector<Vec3>& vertices)
 {
@@ -50,7 +56,7 @@ inline constexpr double kTouching = 1e-17;
 [[nodiscard]] inline double share_of_law(const GjkAnswer& answer, double length)
 {
     const double apart = answer.upper - answer.lower;
-    return apart == 0.0 ? 0.0 : apart / (1e-12 * answer.upper + 1.5e-14 * length);
+    return apart == 0.0 ? 0.0 : apart / (1e-12 * answer.upper + 1e-14 * length);
 }
 
 [[nodiscard]] inline bool is_finite(const GjkAnswer& answer)
