@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <utility>
 
 namespace tactus
 {
@@ -18,6 +19,7 @@ enum class CoreKind : std::uint8_t
     point = 0,
     segment = 1,
     box = 2,
+    hull = 3,
 };
 
 constexpr double kLongest_m = 1e6;
@@ -41,6 +43,22 @@ bool read_vector(ByteReader& reader, Vec3& value)
     return is_sound;
 }
 
+std::optional<ToolCore> read_hull(ByteReader& reader, HullVertices& all)
+{
+    const auto count = reader.read<std::uint8_t>();
+    std::vector<Vec3> vertices(count);
+    for (Vec3& vertex : vertices)
+    {
+        if (!read_vector(reader, vertex))
+        {
+            return std::nullopt;
+        }
+    }
+    all.push_back(std::make_shared<const std::vector<Vec3>>(std::move(vertices)));
+    const auto hull = Hull::create(*all.back());
+    return hull ? std::optional<ToolCore>(hull.value()) : std::nullopt;
+}
+
 } // namespace
 
 void append_core(std::vector<std::byte>& bytes, const ToolCore& core)
@@ -56,13 +74,23 @@ void append_core(std::vector<std::byte>& bytes, const ToolCore& core)
         append(bytes, static_cast<std::uint8_t>(CoreKind::box));
         append_vector(bytes, box->half);
     }
+    else if (const auto* hull = std::get_if<Hull>(&core))
+    {
+        append(bytes, static_cast<std::uint8_t>(CoreKind::hull));
+        append(bytes, static_cast<std::uint8_t>(hull->vertices().size()));
+        for (const Vec3& vertex : hull->vertices())
+        {
+            append_vector(bytes, vertex);
+        }
+    }
     else
     {
+        TACTUS_ASSERT(std::holds_alternative<PointCore>(core));
         append(bytes, static_cast<std::uint8_t>(CoreKind::point));
     }
 }
 
-std::optional<ToolCore> read_core(ByteReader& reader)
+std::optional<ToolCore> read_core(ByteReader& reader, HullVertices& vertices)
 {
     switch (static_cast<CoreKind>(reader.read<std::uint8_t>()))
     {
@@ -80,6 +108,8 @@ std::optional<ToolCore> read_core(ByteReader& reader)
         const bool is_sound = read_vector(reader, box.half) && (box.half.array() >= 0.0).all();
         return is_sound ? std::optional<ToolCore>(box) : std::nullopt;
     }
+    case CoreKind::hull:
+        return read_hull(reader, vertices);
     }
     return std::nullopt;
 }

@@ -6,16 +6,22 @@
 #include "rt_core/geometry/tool_core.hpp"
 
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <vector>
 
 namespace tactus
 {
 
-/// A tool's core in a recording: a byte for its kind and its numbers (docs/recording.md).
+/// Vertices that a recording's hulls refer to; copies share them.
+using HullVertices = std::vector<std::shared_ptr<const std::vector<Vec3>>>;
+
+/// A tool's core in a recording: a byte for its kind and its numbers (docs/recording.md). A body
+/// known by its support function alone has none: it is a program.
 void append_core(std::vector<std::byte>& bytes, const ToolCore& core);
 
-/// None when the kind is unknown or a length is not within -1e6 to 1e6 m.
-[[nodiscard]] std::optional<ToolCore> read_core(ByteReader& reader);
+/// None when the kind is unknown, a length is not within -1e6 to 1e6 m, or a hull has not 1 to
+/// kMaxHullVertices vertices. A hull's are added to `vertices`.
+[[nodiscard]] std::optional<ToolCore> read_core(ByteReader& reader, HullVertices& vertices);
 
 } // namespace tactus

@@ -72,6 +72,7 @@ void hash_contacts(Hash& hash, const ContactReport& report) noexcept
         hash.add(contact.normal);
     }
     hash.add(std::uint64_t{report.is_complete});
+    hash.add(std::uint64_t{report.overruled});
     hash.add(report.normal);
     hash.add(static_cast<std::uint64_t>(report.side));
 }

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "platform/recording/core_coding.hpp"
 #include "rt_core/frame/frame.hpp"
 #include "rt_core/limits.hpp"
 #include "rt_core/records/frame_input.hpp"
@@ -50,6 +51,7 @@ struct RecordedSetup
     std::int64_t pose_age_max_ns{100'000'000};
     bool static_when_it_fits{false};
     std::vector<ToolSpec> tools;
+    HullVertices hull_vertices; ///< Of tools that were read from a recording.
     std::vector<ObjectSpec> objects;
     std::vector<RecordedModel> models;
     /// For the reader of a difference: how the program that recorded was built, and the kernels it

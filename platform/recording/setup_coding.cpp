@@ -62,10 +62,11 @@ Fault parse_tools(ByteReader& reader, std::uint32_t tools, RecordedSetup& setup)
         tool.speed_max_m_per_s = reader.read<double>();
         const auto wants_contacts = reader.read<std::uint8_t>();
         tool.wants_contacts = wants_contacts != 0;
-        const std::optional<ToolCore> core = read_core(reader);
+        const std::optional<ToolCore> core = read_core(reader, setup.hull_vertices);
         if (!core || wants_contacts > 1)
         {
-            return "tool " + std::to_string(i) + " has an unknown core, or one beyond 1e6 m";
+            return "tool " + std::to_string(i) +
+                   " has an unknown core, one beyond 1e6 m or a hull of not 1 to 64 vertices";
         }
         tool.core = *core;
         if (!is_sound(tool))

@@ -50,7 +50,7 @@ constexpr double kRoundedUp = 1.0 + 1e-14;
 } // namespace
 
 PlacedCore::PlacedCore(const ToolCore& core, const Placement& place) noexcept
-    : core_(core), center_(place.origin), axes_(place.rotation)
+    : core_(core), center_(place.origin), axes_(place.rotation), scale_(place.scale)
 {
     if (const auto* segment = std::get_if<Segment>(&core))
     {
@@ -66,7 +66,63 @@ PlacedCore::PlacedCore(const ToolCore& core, const Placement& place) noexcept
         half_ = place.scale * box->half;
         core_ = Box{half_};
     }
+    else if (is_convex_body())
+    {
+        surround(own_body(), place);
+    }
     radius_ = half_.norm() * kRoundedUp;
+    if (is_convex_body())
+    {
+        radius_ = std::min(radius_, body().radius);
+    }
+}
+
+/// A box in the body's own axes, round its centre.
+void PlacedCore::surround(const ConvexBody& body, const Placement& place) noexcept
+{
+    center_ = to_place(place, body.center);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        Vec3 along(0.0, 0.0, 0.0);
+        along[axis] = 1.0;
+        const double above = body.support(body.context, along)[axis];
+        const double below = -body.support(body.context, -along)[axis];
+        half_[axis] = place.scale * (std::max({above, below, 0.0}) + kSupportError * body.radius) *
+                      kRoundedUp;
+    }
+}
+
+/// In its own frame.
+ConvexBody PlacedCore::own_body() const noexcept
+{
+    const auto* hull = std::get_if<Hull>(&core_);
+    return hull != nullptr ? hull->body() : *std::get_if<ConvexBody>(&core_);
+}
+
+ConvexBody PlacedCore::body() const noexcept
+{
+    return {&placed_support, this, center_, own_body().radius * scale_ * kRoundedUp};
+}
+
+Vec3 PlacedCore::placed_support(const void* core, const Vec3& direction) noexcept
+{
+    const auto& placed = *static_cast<const PlacedCore*>(core);
+    const ConvexBody own = placed.own_body();
+    const Vec3 farthest = own.support(own.context, placed.axes_.transpose() * direction);
+    return placed.scale_ * (placed.axes_ * farthest);
+}
+
+ClosestPoints to_closest_points(const GjkAnswer& answer) noexcept
+{
+    ClosestPoints result;
+    result.on_shape = answer.on_body;
+    result.on_triangle = answer.on_triangle;
+    result.gap = answer.gap;
+    result.distance = 0.5 * (answer.lower + answer.upper);
+    result.distance_error = 0.5 * (answer.upper - answer.lower) + 2.5e-16 * answer.upper;
+    result.meet = answer.upper <= 2.0 * answer.rounding && !(answer.lower > 0.0);
+    result.feature = answer.feature;
+    return result;
 }
 
 ClosestPoints PlacedCore::closest(const Triangle& triangle) const noexcept
@@ -78,6 +134,11 @@ ClosestPoints PlacedCore::closest(const Triangle& triangle) const noexcept
     if (std::holds_alternative<Box>(core_))
     {
         return closest_to_box(triangle);
+    }
+    if (is_convex_body())
+    {
+        Vec3 direction(0.0, 0.0, 0.0);
+        return to_closest_points(gjk_distance(body(), triangle, direction));
     }
     const ClosestPoint nearest = closest_point_on_triangle(center_, triangle);
     ClosestPoints result;

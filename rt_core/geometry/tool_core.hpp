@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "rt_core/geometry/convex.hpp"
 #include "rt_core/geometry/shapes.hpp"
 
 #include <variant>
@@ -15,8 +16,8 @@ struct PointCore
 
 /// What is left of a tool when its radius is taken off: a tool is everything within its radius of
 /// its core. A sphere is a point with a radius, a capsule a segment with one, a box may have
-/// rounded edges. In the tool's own frame, metres.
-using ToolCore = std::variant<PointCore, Segment, Box>;
+/// rounded edges. In the tool's own frame, metres. What a hull or body refers to outlives the tool.
+using ToolCore = std::variant<PointCore, Segment, Box, Hull, ConvexBody>;
 
 /// Where a frame lies in another one: there = origin + scale x rotation x here. The rotation is
 /// orthonormal to rounding.

@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #include "rt_core/query/contact_report.hpp"
 
+#include "rt_core/query/convex_contact.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -264,6 +266,22 @@ private:
     bool is_manifold_{false};
 };
 
+/// Of convex bodies libccd says whether they meet the face where the bounds leave that open.
+ClosestPoints closest_of(const PlacedCore& core, const Triangle& triangle,
+                         ContactReport& report) noexcept
+{
+    if (!core.is_convex_body())
+    {
+        return core.closest(triangle);
+    }
+    Vec3 direction(0.0, 0.0, 0.0);
+    const ConvexContact contact = contact_of(core.body(), triangle, direction);
+    report.overruled += contact.is_ccd_overruled ? 1U : 0U;
+    ClosestPoints closest = to_closest_points(contact.nearest);
+    closest.meet = contact.meet;
+    return closest;
+}
+
 void add_contacts(const PlacedCore& core, double radius_m, const AbTree& tree,
                   const LocalSurface& surface, ContactReport& report) noexcept
 {
@@ -274,8 +292,8 @@ void add_contacts(const PlacedCore& core, double radius_m, const AbTree& tree,
             continue;
         }
         const Triangle triangle = to_triangle(surface.triangles[i].corners_m);
-        const ClosestPoints closest = core.closest(triangle);
-        if (closest.distance > radius_m)
+        const ClosestPoints closest = closest_of(core, triangle, report);
+        if (closest.distance > radius_m && !closest.meet)
         {
             continue;
         }

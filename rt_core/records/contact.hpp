@@ -41,6 +41,8 @@ struct ContactReport
 {
     ContactSet contacts;
     bool is_complete{false}; ///< No contact was left out, and none may exist unseen.
+    /// Faces of which libccd said the opposite of what is proven; only convex bodies ask it.
+    std::uint32_t overruled{0};
     /// Of the surface at the nearest point: a face's own, of an edge the mean of its faces', of a
     /// vertex weighted by their angles. Unit length; zero when it is not known.
     Vec3 normal{0.0, 0.0, 0.0};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "rt_core/geometry/placed_core.hpp"
-#include "tests/unit/geometry/shape_oracle.hpp"
+#include "tests/unit/geometry/hull_oracle.hpp"
 #include "tests/unit/geometry/shape_scenes.hpp"
 
 #include <gtest/gtest.h>
@@ -25,10 +25,29 @@ Placement random_place(Random& random)
     return {random_rotation(random), random.in_cube(2.0), random.between(0.2, 3.0)};
 }
 
-/// Flat ones and points of no extent among them.
-ToolCore random_core(Random& random)
+/// A core and the vertices that it may refer to.
+struct OwnedCore
 {
-    const double size = random.one_in(8) ? 0.0 : random.between(0.01, 1.0);
+    std::vector<Vec3> vertices;
+    ToolCore core{};
+};
+
+/// The hull of up to seven vertices, flat ones and doubled vertices among them.
+void make_hull(OwnedCore& owned, double size, Random& random)
+{
+    const std::uint32_t count = 1 + random.below(7);
+    for (std::uint32_t i = 0; i < count; ++i)
+    {
+        Vec3 vertex = random.in_cube(size);
+        vertex.z() *= random.one_in(3) ? 0.0 : 1.0;
+        owned.vertices.push_back(i > 0 && random.one_in(6) ? owned.vertices[0] : vertex);
+    }
+    owned.core = Hull::create(owned.vertices).value();
+}
+
+/// Flat ones and points of no extent among them.
+ToolCore random_solid(double size, Random& random)
+{
     switch (random.below(3))
     {
     case 0:
@@ -39,6 +58,19 @@ ToolCore random_core(Random& random)
         return Box{{size, random.one_in(3) ? 0.0 : size * random.between(0.01, 1.0),
                     size * random.between(0.0, 1.0)}};
     }
+}
+
+OwnedCore random_core(Random& random)
+{
+    const double size = random.one_in(8) ? 0.0 : random.between(0.01, 1.0);
+    OwnedCore owned;
+    if (random.one_in(4))
+    {
+        make_hull(owned, size, random);
+        return owned;
+    }
+    owned.core = random_solid(size, random);
+    return owned;
 }
 
 /// Points of the core in its own frame, its corners among them.
@@ -57,6 +89,13 @@ std::vector<Vec3> points_of(const ToolCore& core, Random& random)
         else if (const auto* box = std::get_if<Box>(&core))
         {
             points.push_back(box->half.cwiseProduct(shares));
+        }
+        else if (const auto* hull = std::get_if<Hull>(&core))
+        {
+            const auto vertices = hull->vertices();
+            const auto any = [&]
+            { return vertices[random.below(static_cast<std::uint32_t>(vertices.size()))]; };
+            points.push_back(0.5 * (1.0 + shares.x()) * any() + 0.5 * (1.0 - shares.x()) * any());
         }
         else
         {
@@ -88,6 +127,15 @@ long double true_distance(const ToolCore& core, const Placement& place, const Tr
         }
         return Oracle::distance(*box, near) * static_cast<long double>(place.scale);
     }
+    if (const auto* hull = std::get_if<Hull>(&core))
+    {
+        std::vector<Vec3> vertices;
+        for (const Vec3& vertex : hull->vertices())
+        {
+            vertices.push_back(placed(place, vertex));
+        }
+        return HullOracle<long double>::distance(vertices, triangle);
+    }
     return Oracle::Base::distance(place.origin, triangle);
 }
 
@@ -107,7 +155,8 @@ TEST(PlacedCore, measures_as_the_oracle_does_and_bounds_from_below)
     double loosest = 0.0;
     for (int round = 0; round < 20'000; ++round)
     {
-        const ToolCore core = random_core(random);
+        const OwnedCore owned = random_core(random);
+        const ToolCore& core = owned.core;
         const Placement place = random_place(random);
         const PlacedCore sut(core, place);
         const Triangle triangle = random_triangle(random);
@@ -117,18 +166,19 @@ TEST(PlacedCore, measures_as_the_oracle_does_and_bounds_from_below)
         const double lower = sut.lower_bound(triangle);
 
         // The oracle of a box turns the triangle in double, as good as to 1e-15 of its place.
-        const double slack = closest.distance_error + 2e-14;
+        const double slack = closest.distance_error + 4e-14;
         ASSERT_NEAR(closest.distance, truth, slack) << "core " << core.index();
         ASSERT_LE(lower, truth + 2e-14);
         ASSERT_GE(closest.distance + slack, (triangle[0] - sut.center()).norm() - sut.radius() -
                                                 (triangle[1] - triangle[0]).norm() -
                                                 (triangle[2] - triangle[0]).norm());
-        ASSERT_NEAR((closest.on_triangle - closest.on_shape).norm(), closest.distance, 1e-13);
+        ASSERT_NEAR((closest.on_triangle - closest.on_shape).norm(), closest.distance,
+                    closest.distance_error + 1e-13);
         touching += closest.meet ? 1 : 0;
         loosest = std::max(loosest, truth - lower);
     }
     EXPECT_GT(touching, 100);
-    EXPECT_LT(loosest, 3.0) << "a bound that bounds nothing";
+    EXPECT_LT(loosest, 5.0) << "a bound that bounds nothing";
 }
 
 TEST(PlacedCore, is_held_by_its_ball_and_by_its_cover)
@@ -137,7 +187,8 @@ TEST(PlacedCore, is_held_by_its_ball_and_by_its_cover)
     std::size_t most = 0;
     for (int round = 0; round < 3'000; ++round)
     {
-        const ToolCore core = random_core(random);
+        const OwnedCore owned = random_core(random);
+        const ToolCore& core = owned.core;
         const Placement place = random_place(random);
         const PlacedCore sut(core, place);
         const double enough = sut.radius() * random.between(0.0, 1.2);
@@ -177,7 +228,8 @@ TEST(PlacedCore, no_point_moved_farther_than_it_says)
     Random random(303);
     for (int round = 0; round < 3'000; ++round)
     {
-        const ToolCore core = random_core(random);
+        const OwnedCore owned = random_core(random);
+        const ToolCore& core = owned.core;
         const Placement before = random_place(random);
         Placement after = before;
         const double much = random.one_in(3) ? 1.0 : 1e-6;

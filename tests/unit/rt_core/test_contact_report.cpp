@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "rt_core/query/contact_report.hpp"
+#include "rt_core/query/convex_contact.hpp"
 #include "rt_core/query/core_query.hpp"
 #include "tests/unit/rt_core/support.hpp"
 #include "tests/unit/rt_core/tree_support.hpp"
@@ -143,6 +144,9 @@ struct Placed
     std::unique_ptr<LocalSurface> surface{std::make_unique<LocalSurface>()};
 };
 
+const std::array<Vec3, 5> kWedge{Vec3(0, 0, 0), Vec3(0.4, 0, 0), Vec3(0, 0.3, 0), Vec3(0, 0, 0.2),
+                                 Vec3(0.2, 0.2, 0.2)};
+
 PlacedCore point_at(const Vec3& at)
 {
     return {PointCore{}, {Mat3::Identity(), at, 1.0}};
@@ -240,11 +244,12 @@ TEST(ContactReport, contacts_are_the_faces_within_the_radius_nearest_first)
     std::size_t most = 0;
     for (int query = 0; query < 200; ++query)
     {
-        const ToolCore core = query % 3 == 0   ? ToolCore(PointCore{})
-                              : query % 3 == 1 ? ToolCore(Segment{{-0.3, 0, 0}, {0.3, 0.1, 0}})
+        const ToolCore core = query % 4 == 0   ? ToolCore(PointCore{})
+                              : query % 4 == 3 ? ToolCore(Hull::create(kWedge).value())
+                              : query % 4 == 1 ? ToolCore(Segment{{-0.3, 0, 0}, {0.3, 0.1, 0}})
                                                : ToolCore(Box{{0.2, 0.1, 0.05}});
         const PlacedCore placed(core, {Mat3::Identity(), random.in_cube(1.5), 1.0});
-        const double radius = random.between(0.0, 0.5);
+        const double radius = query % 8 == 3 ? 0.0 : random.between(0.0, 0.5);
 
         const ContactReport report = sut.report(placed, radius, true);
 
@@ -252,7 +257,10 @@ TEST(ContactReport, contacts_are_the_faces_within_the_radius_nearest_first)
         for (std::uint32_t i = 0; i < mesh.size(); ++i)
         {
             const double distance = placed.closest(to_triangle(mesh[i])).distance;
-            if (distance <= radius)
+            Vec3 direction(0, 0, 0);
+            const bool meets = placed.is_convex_body() &&
+                               contact_of(placed.body(), to_triangle(mesh[i]), direction).meet;
+            if (distance <= radius || meets)
             {
                 expected.emplace_back(distance, i);
             }
@@ -270,7 +278,7 @@ TEST(ContactReport, contacts_are_the_faces_within_the_radius_nearest_first)
             ASSERT_NEAR(
                 (contact.on_tool_m - contact.on_surface_m - contact.distance_m * contact.normal)
                     .norm(),
-                0.0, contact.distance_m > 0.0 ? 1e-12 : 1e-9);
+                0.0, contact.distance_m > 1e-9 ? 1e-11 : 1e-8);
         }
     }
     EXPECT_GT(most, kMaxContacts);
