@@ -51,8 +51,9 @@ inline constexpr std::uint32_t kMaxObjects = 8;
 inline constexpr std::uint32_t kMaxModels = 8;
 inline constexpr std::uint32_t kMaxPairs = kMaxTools * kMaxObjects;
 
-/// Balls that a tool's core is covered with, each a question to the refinement: a capsule of sixteen
-/// radii is refined no farther than twice its radius from its axis. 100 B each for a pair.
+/// Balls that a tool's core is covered with, each a question to the refinement: around a capsule
+/// as long as sixteen radii no farther than 2.5 radii from its axis is refined. 100 B each for a
+/// pair.
 inline constexpr std::uint32_t kMaxCoverBalls = 8;
 
 /// Exact triangles handed to the force stage for one pair; 76 are usual at 1.1 M faces and a tool

@@ -32,8 +32,8 @@ bool has_lawful_counts(const HeaderFields& f)
 
 bool has_lawful_geometry(const HeaderFields& f)
 {
-    bool is_lawful = is_in(f.quantum_log2, -60, 20) && is_in(f.position_bits, 16, 24) && f.topology < 2 &&
-                     is_in(f.quantisation_m, 0.0, 1e300);
+    bool is_lawful = is_in(f.quantum_log2, -60, 20) && is_in(f.position_bits, 16, 24) &&
+                     f.topology < 2 && is_in(f.quantisation_m, 0.0, 1e300);
     std::uint32_t largest = 0;
     for (std::size_t axis = 0; axis < 3 && is_lawful; ++axis)
     {
