@@ -99,7 +99,7 @@ inline constexpr double kFadeTime_s = 0.05;
 // --- Convex tools --------------------------------------------------------------------------------
 
 /// Vertices of a convex hull. Each answer asks for a few farthest points and each looks at all
-/// vertices, 1.5 ns apiece; a rounder tool than 64 vertices make is given by a support function.
+/// vertices, 2 ns apiece; a rounder tool than 64 vertices make is given by a support function.
 inline constexpr std::uint32_t kMaxHullVertices = 64;
 /// Farthest points that one distance of a convex body and a triangle asks for. Hulls need 4 as a
 /// rule and 15 at most in two million cases; curved bodies that nearly touch end here.

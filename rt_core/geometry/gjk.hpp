@@ -42,7 +42,7 @@ struct GjkAnswer
 /// farthest points, whose difference bounds the distance from below and joins the simplex.
 ///
 /// lower <= distance <= upper always, whatever ran out, since neither follows from convergence.
-/// How near they come is the law for hulls, from 5 mm needles to boxes, flat ones and points too:
+/// How near they come is the law, for hulls of any shape, flat ones and points too:
 ///
 ///     upper - lower <= 1e-12 x distance + 1e-14 x local length
 ///
