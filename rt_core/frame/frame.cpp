@@ -345,15 +345,16 @@ void Frame::refine(const Budgets& budgets) noexcept
 {
     for (std::uint32_t i = 0; i < model_count_; ++i)
     {
-        models_[i]->refine(questions_about(i).view(), budgets, frame_, faults_);
+        ask_about(i);
+        models_[i]->refine(questions_.view(), budgets, frame_, faults_);
     }
 }
 
 /// What the pairs that are awake ask of a model: where they are and, coming nearer, where they will
 /// be. Certificates of questions that are not asked are forgotten: the model may coarsen there.
-Frame::RefineQuestions Frame::questions_about(std::uint32_t model) noexcept
+void Frame::ask_about(std::uint32_t model) noexcept
 {
-    RefineQuestions questions;
+    questions_.clear();
     const auto ask = [&](bool is_asked, const Vec3& center_m, double reach_m, RefineMemory& memory)
     {
         // From beyond the kernels' range nothing of a model is in reach.
@@ -362,7 +363,7 @@ Frame::RefineQuestions Frame::questions_about(std::uint32_t model) noexcept
             memory.is_known = false;
             return;
         }
-        questions.push_back({center_m, reach_m, Scene::kKeepFactor * reach_m, &memory});
+        questions_.push_back({center_m, reach_m, Scene::kKeepFactor * reach_m, &memory});
     };
     for (std::uint32_t i = 0; i < scene_.pairs().size(); ++i)
     {
@@ -385,7 +386,6 @@ Frame::RefineQuestions Frame::questions_about(std::uint32_t model) noexcept
                 memories[2 * ball + 1]);
         }
     }
-    return questions;
 }
 
 void Frame::query(std::span<const ObjectPose> poses, const Budgets& budgets) noexcept

@@ -109,7 +109,7 @@ private:
     void query(std::span<const ObjectPose> poses, const Budgets& budgets) noexcept;
     void respond(std::span<const ObjectPose> poses) noexcept;
     void report(std::span<const ObjectPose> poses) noexcept;
-    [[nodiscard]] RefineQuestions questions_about(std::uint32_t model) noexcept;
+    void ask_about(std::uint32_t model) noexcept;
     void report_pair(std::uint32_t pair, const ObjectPose& pose) noexcept;
     [[nodiscard]] ToolOutput follow(std::uint32_t tool,
                                     std::span<const PlacedSurface> surfaces) const noexcept;
@@ -137,6 +137,7 @@ private:
     bool has_started_{false};
     std::array<RegionPredictor, kMaxPairs> predictors_{};
     std::span<RefineMemory> refine_memories_; ///< kQuestions a pair.
+    RefineQuestions questions_;               ///< About the model that is being refined.
     std::array<QueryMemory, kMaxPairs> query_memories_{};
     std::span<LocalSurface> surfaces_;  ///< One a pair, and one for the rehearsal.
     std::span<ContactReport> contacts_; ///< One a pair, if a tool wants them.

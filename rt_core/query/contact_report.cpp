@@ -75,21 +75,20 @@ bool keep(const Contact& contact, ContactSet& contacts) noexcept
 /// between platforms.
 double arc_tangent(double t) noexcept
 {
-    if (t > 1.0)
-    {
-        return 0.5 * std::numbers::pi - arc_tangent(1.0 / t);
-    }
-    constexpr int kHalvings = 3; // To at most pi / 32, where eight terms are enough.
+    const bool is_steep = t > 1.0;
+    double x = is_steep ? 1.0 / t : t;
+    constexpr int kHalvings = 3; // To at most pi / 32, where nine terms are enough.
     for (int i = 0; i < kHalvings; ++i)
     {
-        t = t / (1.0 + std::sqrt(1.0 + t * t));
+        x = x / (1.0 + std::sqrt(1.0 + x * x));
     }
     double sum = 0.0;
     for (int power = 17; power >= 1; power -= 2)
     {
-        sum = (power % 4 == 1 ? 1.0 : -1.0) / power + t * t * sum;
+        sum = (power % 4 == 1 ? 1.0 : -1.0) / power + x * x * sum;
     }
-    return (1 << kHalvings) * t * sum;
+    const double angle = (1 << kHalvings) * x * sum;
+    return is_steep ? 0.5 * std::numbers::pi - angle : angle;
 }
 
 /// By the half angle, as Kahan has it: good at any angle. Zero when one has no length.
@@ -170,15 +169,21 @@ private:
         for (std::uint32_t i = 0; i < surface_.count; ++i)
         {
             const auto found = std::find(corners(i).begin(), corners(i).end(), at);
-            if (found != corners(i).end() &&
-                !incident.try_push_back({tree_.face_of(surface_.triangles[i].prim), i,
+            if (found == corners(i).end())
+            {
+                continue;
+            }
+            if (!incident.try_push_back({tree_.face_of(surface_.triangles[i].prim), i,
                                          static_cast<std::size_t>(found - corners(i).begin())}))
             {
                 return false;
             }
+            for (std::size_t k = incident.size() - 1;
+                 k > 0 && incident[k].face < incident[k - 1].face; --k)
+            {
+                std::swap(incident[k], incident[k - 1]);
+            }
         }
-        std::sort(incident.begin(), incident.end(),
-                  [](const IncidentFace& a, const IncidentFace& b) { return a.face < b.face; });
         return true;
     }
 
