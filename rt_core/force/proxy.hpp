@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 
 namespace tactus
 {
@@ -32,7 +33,7 @@ class Proxy
 {
 public:
     Proxy() noexcept = default;
-    explicit Proxy(const ToolSpec& spec) noexcept : spec_(spec) {}
+    explicit Proxy(ToolSpec spec) noexcept : spec_(std::move(spec)) {}
 
     /// Where the proxy is; before the first frame the first goal.
     [[nodiscard]] const Vec3& position_m() const noexcept { return position_; }

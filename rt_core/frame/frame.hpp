@@ -110,7 +110,7 @@ private:
     void respond(std::span<const ObjectPose> poses) noexcept;
     void report(std::span<const ObjectPose> poses) noexcept;
     void ask_about(std::uint32_t model) noexcept;
-    void report_pair(std::uint32_t pair, const ObjectPose& pose) noexcept;
+    void report_pair(std::uint32_t i, const ObjectPose& pose) noexcept;
     [[nodiscard]] ToolOutput follow(std::uint32_t tool,
                                     std::span<const PlacedSurface> surfaces) const noexcept;
     [[nodiscard]] double reach_of(std::uint32_t tool) const noexcept;

@@ -168,7 +168,7 @@ private:
     {
         for (std::uint32_t i = 0; i < surface_.count; ++i)
         {
-            const auto found = std::find(corners(i).begin(), corners(i).end(), at);
+            const auto* const found = std::find(corners(i).begin(), corners(i).end(), at);
             if (found == corners(i).end())
             {
                 continue;
