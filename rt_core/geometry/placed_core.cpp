@@ -173,7 +173,7 @@ Triangle PlacedCore::to_box_frame(const Triangle& triangle) const noexcept
 
 double PlacedCore::rounding_of(const Triangle& in_box_frame) const noexcept
 {
-    return kRotationRounding * (largest_coordinate(in_box_frame) + half_.maxCoeff());
+    return kRotationRounding * (largest_coordinate(in_box_frame) + half_.norm());
 }
 
 double PlacedCore::lower_bound(const Triangle& triangle) const noexcept

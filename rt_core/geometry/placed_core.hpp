@@ -27,7 +27,7 @@ class PlacedCore
 {
 public:
     PlacedCore() noexcept = default;
-    PlacedCore(const ToolCore& core, const Placement& place) noexcept;
+    PlacedCore(const ToolCore& core, const Placement& place) noexcept TACTUS_NONBLOCKING;
 
     [[nodiscard]] bool is_point() const noexcept
     {
@@ -38,7 +38,7 @@ public:
         return std::holds_alternative<Hull>(core_) || std::holds_alternative<ConvexBody>(core_);
     }
     /// A core that is one, placed. Points at this, which is to stay where it is meanwhile.
-    [[nodiscard]] ConvexBody body() const noexcept;
+    [[nodiscard]] ConvexBody body() const noexcept TACTUS_NONBLOCKING;
 
     /// Of a ball that holds the core; of a point, the point.
     [[nodiscard]] const Vec3& center() const noexcept { return center_; }
@@ -59,13 +59,15 @@ public:
     [[nodiscard]] double motion_since(const PlacedCore& before) const noexcept TACTUS_NONBLOCKING;
 
 private:
-    void surround(const ConvexBody& body, const Placement& place) noexcept;
-    [[nodiscard]] ConvexBody own_body() const noexcept;
+    void surround(const ConvexBody& body, const Placement& place) noexcept TACTUS_NONBLOCKING;
+    [[nodiscard]] ConvexBody own_body() const noexcept TACTUS_NONBLOCKING;
     static Vec3 placed_support(const void* core, const Vec3& direction) noexcept TACTUS_NONBLOCKING;
-    [[nodiscard]] ClosestPoints closest_to_box(const Triangle& triangle) const noexcept;
+    [[nodiscard]] ClosestPoints
+    closest_to_box(const Triangle& triangle) const noexcept TACTUS_NONBLOCKING;
     /// Into the frame of the oriented box, and by how much that rounds at most.
-    [[nodiscard]] Triangle to_box_frame(const Triangle& triangle) const noexcept;
-    [[nodiscard]] double rounding_of(const Triangle& in_box_frame) const noexcept;
+    [[nodiscard]] Triangle to_box_frame(const Triangle& triangle) const noexcept TACTUS_NONBLOCKING;
+    [[nodiscard]] double
+    rounding_of(const Triangle& in_box_frame) const noexcept TACTUS_NONBLOCKING;
 
     ToolCore core_; ///< A segment is placed; a box has its placed half extents; bodies as given.
     Vec3 center_{0.0, 0.0, 0.0};
@@ -77,6 +79,6 @@ private:
 };
 
 /// The middle of both bounds, its error half of what is between them.
-[[nodiscard]] ClosestPoints to_closest_points(const GjkAnswer& answer) noexcept;
+[[nodiscard]] ClosestPoints to_closest_points(const GjkAnswer& answer) noexcept TACTUS_NONBLOCKING;
 
 } // namespace tactus
