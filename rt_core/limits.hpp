@@ -106,6 +106,20 @@ inline constexpr std::uint32_t kMaxHullVertices = 64;
 /// rule and 15 at most in two million cases; curved bodies that nearly touch end here.
 inline constexpr std::uint32_t kGjkIterations = 64;
 
+// --- Samples of the device -----------------------------------------------------------------------
+
+/// Goals are taken up to this coordinate, far beyond any device and any model.
+inline constexpr double kGoalRange_m = 1e6;
+/// How far R^T R of a tool's rotation may be from the identity, in each entry; it is made
+/// orthonormal.
+inline constexpr double kRotationTolerance = 1e-6;
+/// How long the last sample stands in for those that don't come or can't be used. 20 periods of a
+/// loop at 1 kHz; after it the force fades within kFadeTime_s.
+inline constexpr double kSampleHold_s = 0.02;
+/// A goal that is this many times faster than ToolSpec::speed_max_m_per_s, taken for at least
+/// 1 m/s, has jumped: a hand makes 10 m/s at most.
+inline constexpr double kJumpSpeeds = 100.0;
+
 // --- Names ---------------------------------------------------------------------------------------
 
 /// A model's or tool's name: at most this many bytes of [A-Za-z0-9._-].

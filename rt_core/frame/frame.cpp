@@ -7,7 +7,6 @@
 #include "rt_core/query/probe.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 
 namespace tactus
@@ -25,23 +24,6 @@ constexpr double kReachMargin = 0.05;
 constexpr double kApproachTime_s = 0.01;
 /// Not worth a second ball: a share of the reach.
 constexpr double kLeastAhead = 0.1;
-
-bool is_usable(const Vec3& point) noexcept
-{
-    // Comparisons are false for NaN; the limit is far beyond any device and any model.
-    return std::abs(point.x()) < 1e6 && std::abs(point.y()) < 1e6 && std::abs(point.z()) < 1e6;
-}
-
-bool is_rotation(const Mat3& matrix) noexcept
-{
-    const Mat3 excess = matrix.transpose() * matrix - Mat3::Identity();
-    bool is_orthonormal = matrix.determinant() > 0.0;
-    for (int i = 0; i < 9; ++i)
-    {
-        is_orthonormal = is_orthonormal && std::abs(excess(i / 3, i % 3)) < 1e-6;
-    }
-    return is_orthonormal;
-}
 
 /// Orthonormal to rounding; an axis that is so already keeps its bits.
 Mat3 orthonormalised(const Mat3& matrix) noexcept
@@ -235,29 +217,31 @@ void Frame::read_tools(std::span<const ToolState> tools) noexcept
     {
         elapsed_s_[i] = static_cast<double>(period_ns_) * 1e-9 *
                         static_cast<double>(std::max(tools[i].elapsed_periods, 1U));
-        if (!tools[i].valid || !is_usable(tools[i].position_m) || !is_rotation(tools[i].rotation))
+        const SampleWatch::Verdict verdict =
+            sample_watches_[i].judge(tools[i], scene_.tools()[i], goals_[i], elapsed_s_[i]);
+        faults_ |= verdict.fault;
+        ways_m_[i] = 0.0;
+        if (!verdict.is_taken)
         {
-            ways_m_[i] = 0.0;
-            faults_ |= FrameFault::tool_invalid;
             continue;
         }
+        const bool is_continued = !verdict.is_first && verdict.fault == FrameFault::none;
         const Mat3 rotation = orthonormalised(tools[i].rotation);
-        if (has_started_)
+        const Vec3 way = is_continued ? Vec3(tools[i].position_m - goals_[i]) : Vec3(0.0, 0.0, 0.0);
+        goal_velocities_m_per_s_[i] = is_continued ? Vec3(way / verdict.since_s) : way;
+        if (is_continued)
         {
-            const Vec3 way = tools[i].position_m - goals_[i];
-            goal_velocities_m_per_s_[i] = way / elapsed_s_[i];
             const ToolCore& core = scene_.tools()[i].core;
             ways_m_[i] = PlacedCore(core, {rotation, way})
                              .motion_since(PlacedCore(core, {rotations_[i], Vec3(0.0, 0.0, 0.0)}));
         }
         goals_[i] = tools[i].position_m;
         rotations_[i] = rotation;
-        if (!has_started_)
+        if (verdict.is_first)
         {
             proxies_[i].start_at(goals_[i]);
         }
     }
-    has_started_ = true;
 }
 
 /// Only a point's tool is held back by a surface as yet; others are where the hand has them.
@@ -439,10 +423,12 @@ void Frame::respond(std::span<const ObjectPose> poses) noexcept
                 placed.push_back({&poses[pair.object], &surfaces_[i]});
             }
         }
-        tool_outputs_[tool] =
-            has_proxy(tool) ? proxies_[tool].respond(goals_[tool], placed.view(), elapsed_s_[tool])
-                            : follow(tool, placed.view());
-        faults_ |= tool_outputs_[tool].frozen ? FrameFault::proxy_frozen : FrameFault::none;
+        ToolOutput& output = tool_outputs_[tool];
+        output = has_proxy(tool)
+                     ? proxies_[tool].respond(goals_[tool], placed.view(), elapsed_s_[tool])
+                     : follow(tool, placed.view());
+        output.force_n *= sample_watches_[tool].trust(output, scene_.tools()[tool], goals_[tool]);
+        faults_ |= output.frozen ? FrameFault::proxy_frozen : FrameFault::none;
     }
 }
 

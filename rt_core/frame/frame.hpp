@@ -6,6 +6,7 @@
 #include "rt_core/base/result.hpp"
 #include "rt_core/force/proxy.hpp"
 #include "rt_core/frame/model.hpp"
+#include "rt_core/frame/sample_watch.hpp"
 #include "rt_core/predict/region_predictor.hpp"
 #include "rt_core/query/surface_query.hpp"
 #include "rt_core/records/frame_input.hpp"
@@ -134,7 +135,7 @@ private:
     std::array<double, kMaxTools> ways_m_{};
     std::array<double, kMaxTools> elapsed_s_{};
     std::array<Vec3, kMaxTools> goal_velocities_m_per_s_{};
-    bool has_started_{false};
+    std::array<SampleWatch, kMaxTools> sample_watches_{};
     std::array<RegionPredictor, kMaxPairs> predictors_{};
     std::span<RefineMemory> refine_memories_; ///< kQuestions a pair.
     RefineQuestions questions_;               ///< About the model that is being refined.

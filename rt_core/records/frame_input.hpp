@@ -16,7 +16,7 @@ namespace tactus
 struct ToolState
 {
     Vec3 position_m{0.0, 0.0, 0.0};   ///< Centre of the tool as the hand holds it (the goal).
-    std::int64_t sample_time_ns{0};   ///< Monotonic time of the sample.
+    std::int64_t sample_time_ns{0};   ///< Monotonic time of the sample; 0: the device has none.
     std::uint32_t elapsed_periods{1}; ///< Whole periods since the last frame; more after a stall.
     bool valid{true};                 ///< False: no sample; the frame keeps the last one.
     Mat3 rotation{Mat3::Identity()};  ///< Of the tool's frame; orthonormal to 1e-6.

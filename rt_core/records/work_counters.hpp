@@ -57,6 +57,8 @@ enum class FrameFault : std::uint32_t
     model_inconsistent = 1U << 7U, ///< A record contradicts the mesh: rebuild the model.
     tool_invalid = 1U << 8U,       ///< A device sample was not usable.
     proxy_frozen = 1U << 9U,       ///< Contact without a certified surface; the force fades.
+    tool_stuck = 1U << 10U,        ///< A device's time stands still; the force fades.
+    tool_jumped = 1U << 11U,       ///< A goal faster than any hand; no force until it is back.
 };
 
 [[nodiscard]] constexpr FrameFault operator|(FrameFault a, FrameFault b) noexcept

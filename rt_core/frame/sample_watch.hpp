@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/base/realtime.hpp"
+#include "rt_core/records/frame_input.hpp"
+#include "rt_core/records/frame_output.hpp"
+
+#include <cstdint>
+#include <limits>
+
+namespace tactus
+{
+
+/// Stands between one tool's device and the frame: which samples are taken, and how much of the
+/// force is left when they can't be trusted.
+///
+/// A sample that is not finite, out of range, no rotation or older than the one before is not
+/// taken; the goal stays. Neither is one with the time of the one before: a device may be slower
+/// than the frame. The last sample stands in for what doesn't come during kSampleHold_s, and then
+/// the force fades to zero within kFadeTime_s. A goal that jumps farther than any hand moves is
+/// taken, but there is no force until it is so near the proxy that the spring between them is
+/// within the device's range: a device that has lost its place must not pull towards where it was.
+/// Haptic thread.
+class SampleWatch
+{
+public:
+    struct Verdict
+    {
+        bool is_taken{false};
+        bool is_first{false}; ///< Nothing is known from before.
+        double since_s{0.0};  ///< Since the last sample that was taken; unless it is the first.
+        FrameFault fault{FrameFault::none};
+    };
+
+    /// Once a frame and tool. `elapsed_s` since the last frame, `goal_m` of the last taken sample.
+    /// After kSampleHold_s + kFadeTime_s without a sample the clock may have begun anew: then an
+    /// earlier time is taken.
+    [[nodiscard]] Verdict judge(const ToolState& sample, const ToolSpec& spec, const Vec3& goal_m,
+                                double elapsed_s) noexcept TACTUS_NONBLOCKING;
+
+    /// The share of the frame's force that goes out, 0 .. 1; `output` is what the tool would get.
+    [[nodiscard]] double trust(const ToolOutput& output, const ToolSpec& spec,
+                               const Vec3& goal_m) noexcept TACTUS_NONBLOCKING;
+
+private:
+    [[nodiscard]] FrameFault find_fault(const ToolState& sample) const noexcept;
+
+    double blind_s_{std::numeric_limits<double>::infinity()}; ///< Since the last taken sample.
+    std::int64_t time_ns_{0};
+    bool has_lost_place_{false};
+};
+
+} // namespace tactus

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "rt_core/frame/sample_watch.hpp"
+#include "rt_core/limits.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace tactus::test
+{
+
+namespace
+{
+
+constexpr double kFrame_s = 1e-3;
+constexpr double kRounding_s = 1e-9; ///< Of sums of frames.
+
+/// A watch, the goal that it lets through, and a tool that is not in contact.
+class WatchedTool
+{
+public:
+    SampleWatch::Verdict give(const Vec3& position_m, std::int64_t time_ns, bool valid = true)
+    {
+        ToolState sample;
+        sample.position_m = position_m;
+        sample.sample_time_ns = time_ns;
+        sample.valid = valid;
+        const SampleWatch::Verdict verdict = sut.judge(sample, spec, goal_m, kFrame_s);
+        goal_m = verdict.is_taken ? position_m : goal_m;
+        return verdict;
+    }
+    [[nodiscard]] double trust(const Vec3& proxy_m)
+    {
+        ToolOutput output;
+        output.proxy_m = proxy_m;
+        output.in_contact = true;
+        return sut.trust(output, spec, goal_m);
+    }
+
+    SampleWatch sut;
+    ToolSpec spec{0.002, 500.0, 8.0, 1.0};
+    Vec3 goal_m{0.0, 0.0, 0.0};
+};
+
+const Vec3 kHere(0.1, 0.0, 0.0);
+
+TEST(SampleWatch, there_is_no_force_before_the_first_sample)
+{
+    WatchedTool tool;
+    EXPECT_FALSE(tool.give(kHere, 0, false).is_taken);
+    EXPECT_EQ(tool.trust(kHere), 0.0);
+
+    const SampleWatch::Verdict first = tool.give(kHere, 0);
+    EXPECT_TRUE(first.is_taken);
+    EXPECT_TRUE(first.is_first);
+    EXPECT_EQ(first.fault, FrameFault::none);
+    EXPECT_EQ(tool.trust(kHere), 1.0);
+}
+
+TEST(SampleWatch, takes_no_number_that_is_none_or_out_of_range)
+{
+    using Limits = std::numeric_limits<double>;
+    for (const double bad : {Limits::quiet_NaN(), Limits::infinity(), -Limits::infinity(),
+                             Limits::max(), kGoalRange_m, -kGoalRange_m})
+    {
+        for (Eigen::Index axis = 0; axis < 3; ++axis)
+        {
+            WatchedTool tool;
+            ASSERT_TRUE(tool.give(kHere, 0).is_taken);
+            Vec3 place = kHere;
+            place[axis] = bad;
+            const SampleWatch::Verdict verdict = tool.give(place, 0);
+            EXPECT_FALSE(verdict.is_taken) << bad;
+            EXPECT_EQ(verdict.fault, FrameFault::tool_invalid) << bad;
+        }
+    }
+    WatchedTool tool;
+    ASSERT_TRUE(tool.give(kHere, 0).is_taken);
+    EXPECT_TRUE(tool.give(Vec3(0.1, Limits::denorm_min(), -0.0), 0).is_taken);
+}
+
+TEST(SampleWatch, holds_the_force_for_a_while_without_samples_and_then_fades_it)
+{
+    WatchedTool tool;
+    ASSERT_TRUE(tool.give(kHere, 0).is_taken);
+    double last = 1.0;
+    for (int frame = 1; frame <= 80; ++frame)
+    {
+        EXPECT_EQ(tool.give(kHere, 0, false).fault, FrameFault::tool_invalid);
+        const double blind_s = frame * kFrame_s;
+        const double trust = tool.trust(kHere);
+        EXPECT_LE(trust, last);
+        EXPECT_TRUE(blind_s > kSampleHold_s - kRounding_s || trust == 1.0) << frame;
+        EXPECT_TRUE(blind_s < kSampleHold_s + kFadeTime_s + kRounding_s || trust == 0.0) << frame;
+        last = trust;
+    }
+    const SampleWatch::Verdict again = tool.give(kHere, 0);
+    EXPECT_TRUE(again.is_taken);
+    EXPECT_NEAR(again.since_s, 81 * kFrame_s, 1e-12);
+    EXPECT_EQ(tool.trust(kHere), 1.0);
+}
+
+TEST(SampleWatch, a_slow_device_is_not_stuck_and_a_stuck_one_is)
+{
+    WatchedTool tool;
+    std::int64_t time_ns = 1'000;
+    for (int frame = 0; frame < 40; ++frame) // A new sample in every fourth frame.
+    {
+        const SampleWatch::Verdict verdict = tool.give(kHere, time_ns + frame / 4);
+        EXPECT_EQ(verdict.is_taken, frame % 4 == 0);
+        EXPECT_EQ(verdict.fault, FrameFault::none);
+        EXPECT_EQ(tool.trust(kHere), 1.0);
+    }
+    time_ns += 10;
+    ASSERT_TRUE(tool.give(kHere, time_ns).is_taken);
+    for (int frame = 1; frame < 100; ++frame)
+    {
+        const bool is_stuck = has_fault(tool.give(kHere, time_ns).fault, FrameFault::tool_stuck);
+        const double blind_s = frame * kFrame_s;
+        EXPECT_TRUE(is_stuck || blind_s < kSampleHold_s + kRounding_s) << frame;
+        EXPECT_TRUE(!is_stuck || blind_s > kSampleHold_s - kRounding_s) << frame;
+    }
+    EXPECT_EQ(tool.trust(kHere), 0.0);
+}
+
+TEST(SampleWatch, an_older_sample_is_not_taken_unless_the_clock_began_anew)
+{
+    WatchedTool tool;
+    ASSERT_TRUE(tool.give(kHere, 5'000).is_taken);
+    const SampleWatch::Verdict older = tool.give(kHere, 4'999);
+    EXPECT_FALSE(older.is_taken);
+    EXPECT_EQ(older.fault, FrameFault::tool_invalid);
+    EXPECT_TRUE(tool.give(kHere, 5'001).is_taken);
+    int refused = 0;
+    while (refused < 1'000 && !tool.give(kHere, 10).is_taken)
+    {
+        ++refused;
+    }
+    EXPECT_NEAR(refused * kFrame_s, kSampleHold_s + kFadeTime_s, 2.0 * kFrame_s);
+    EXPECT_TRUE(tool.give(kHere, 11).is_taken);
+}
+
+TEST(SampleWatch, after_a_jump_there_is_no_force_until_the_goal_is_near_the_proxy)
+{
+    WatchedTool tool;
+    ASSERT_TRUE(tool.give(kHere, 0).is_taken);
+    const SampleWatch::Verdict jump = tool.give(Vec3(10.0, 0.0, 0.0), 0);
+    EXPECT_TRUE(jump.is_taken);
+    EXPECT_EQ(jump.fault, FrameFault::tool_jumped);
+    EXPECT_EQ(tool.trust(kHere), 0.0);
+    EXPECT_EQ(tool.give(Vec3(9.95, 0.0, 0.0), 0).fault, FrameFault::none);
+    EXPECT_EQ(tool.trust(kHere), 0.0) << "it is still far away";
+    const double spring_m = tool.spec.force_max_n / tool.spec.stiffness_n_per_m;
+    EXPECT_EQ(tool.trust(Vec3(9.95 - 1.01 * spring_m, 0.0, 0.0)), 0.0);
+    EXPECT_EQ(tool.trust(Vec3(9.95 - 0.99 * spring_m, 0.0, 0.0)), 1.0);
+    EXPECT_EQ(tool.trust(kHere), 1.0) << "once it was near, the force is as ever";
+}
+
+TEST(SampleWatch, a_gap_in_the_samples_is_no_jump)
+{
+    WatchedTool tool;
+    ASSERT_TRUE(tool.give(kHere, 0).is_taken);
+    for (int frame = 0; frame < 19; ++frame)
+    {
+        static_cast<void>(tool.give(kHere, 0, false));
+    }
+    // At 50 m/s for 20 frames.
+    EXPECT_EQ(tool.give(kHere + Vec3(1.0, 0.0, 0.0), 0).fault, FrameFault::none);
+    EXPECT_EQ(tool.give(kHere, 0).fault, FrameFault::tool_jumped);
+}
+
+} // namespace
+
+} // namespace tactus::test
