@@ -449,12 +449,14 @@ void Frame::report_pair(std::uint32_t i, const ObjectPose& pose) noexcept
 {
     const ScenePair& pair = scene_.pairs()[i];
     const DistanceAnswer& answer = surfaces_[i].answer;
+    const double rounding_m =
+        pose_rounding_m(pose, to_world(pose, pair.core.center()), pair.core.radius() * pose.scale);
     pair_outputs_[i] = {pair.tool,
                         pair.object,
                         answer.kind,
                         to_world(pose, answer.tool_point_m),
-                        answer.lower_m * pose.scale,
-                        answer.upper_m * pose.scale,
+                        std::max(0.0, answer.lower_m * pose.scale - rounding_m),
+                        answer.upper_m * pose.scale + rounding_m,
                         answer.certified_radius_m * pose.scale,
                         answer.nearest_face,
                         to_world(pose, answer.nearest_point_m),

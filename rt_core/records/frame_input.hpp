@@ -4,6 +4,7 @@
 
 #include "rt_core/base/realtime.hpp"
 #include "rt_core/geometry/tool_core.hpp"
+#include "rt_core/limits.hpp"
 #include "rt_core/math/vec3.hpp"
 #include "rt_core/spm/ids.hpp"
 
@@ -68,6 +69,15 @@ struct ObjectSpec
 [[nodiscard]] inline Vec3 to_world(const ObjectPose& pose, const Vec3& model_m) noexcept
 {
     return pose.translation_m + pose.scale * (pose.rotation * model_m);
+}
+
+/// How far distances from a core of this radius round a place of the world may be off by its way
+/// into the model's frame and back: see kPoseRounding.
+[[nodiscard]] inline double pose_rounding_m(const ObjectPose& pose, const Vec3& world_m,
+                                            double radius_m) noexcept
+{
+    return kPoseRounding *
+           ((world_m - pose.translation_m).norm() + world_m.norm() + 2.0 * radius_m);
 }
 
 /// What one frame may do at most. Inputs of the frame, chosen outside and recorded, so a replay is
