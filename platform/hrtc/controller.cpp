@@ -5,11 +5,9 @@
 #include "platform/simulated/scripted_hand.hpp"
 #include "platform/simulated/simulated_device.hpp"
 
-#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numbers>
 
 namespace tactus::hrtc
 {
@@ -25,14 +23,8 @@ constexpr double kSpeedMax_diag = 1.0;
 
 ObjectPose pose_of(const Placement& placement, const ModelHeader& header)
 {
-    const double angle_deg = placement.rotation_deg.norm();
     ObjectPose pose;
-    if (angle_deg > 0.0)
-    {
-        pose.rotation = Eigen::AngleAxisd(angle_deg * std::numbers::pi / 180.0,
-                                          placement.rotation_deg / angle_deg)
-                            .toRotationMatrix();
-    }
+    pose.rotation = rotation_of(placement);
     const auto& origin = header.fields().origin_m;
     const Vec3 origin_m(origin[0], origin[1], origin[2]);
     pose.scale = placement.scale;

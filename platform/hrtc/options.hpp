@@ -2,8 +2,8 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "platform/hrtc/placement.hpp"
 #include "platform/rt_thread.hpp"
-#include "rt_core/math/vec3.hpp"
 #include "transport/model_name.hpp"
 
 #include <cstdint>
@@ -14,15 +14,6 @@
 
 namespace tactus::hrtc
 {
-
-/// Where an object stands: world = translation + scale x rotation x source point, where source
-/// points are those of the mesh file in metres.
-struct Placement
-{
-    Vec3 translation_m{0.0, 0.0, 0.0};
-    Vec3 rotation_deg{0.0, 0.0, 0.0}; ///< Rotation vector: axis times angle.
-    double scale{1.0};
-};
 
 enum class TransportKind : std::uint8_t
 {
