@@ -34,6 +34,7 @@ test::TestModel described(const std::string& name, const PreparedMesh& prepared)
     model.diagonal_m = prepared.diagonal_m;
     model.origin_m = prepared.origin_m;
     model.faces = test::faces_on_grid(prepared);
+    model.base_faces = kBaseFaces;
     return model;
 }
 

@@ -200,7 +200,7 @@ class BinaryTreeProperties : public testing::TestWithParam<std::size_t>
 
 TEST_P(BinaryTreeProperties, both_trees_answer_like_brute_force_while_records_split_and_merge)
 {
-    const TestModel& model = *small_models()[GetParam()];
+    const TestModel& model = small_model(GetParam());
     Random random(400 + GetParam());
     SCOPED_TRACE(model.name + " seed " + std::to_string(Random::seed()));
     TwoTrees sut(model, random);

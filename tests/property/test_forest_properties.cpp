@@ -4,8 +4,7 @@
 /// The forest's invariants on whole small models, with every chunk loaded: I1 full refinement is
 /// the source, I2 undoing returns the base state, I3 every cut is manifold, I10 the finest corner.
 
-#include "tests/property/random.hpp"
-#include "tests/shared/frame_rig.hpp"
+#include "tests/shared/loaded_forest.hpp"
 
 #include <gtest/gtest.h>
 
@@ -17,74 +16,6 @@ namespace tactus::test
 {
 namespace
 {
-
-/// A model's forest with all records at hand, driven record by record.
-class LoadedForest
-{
-public:
-    explicit LoadedForest(const TestModel& model)
-        : rig_(model, {std::size_t{64} << 20U, std::size_t{16} << 20U, {}, {}, 4})
-    {
-        load_everything(rig_);
-    }
-
-    [[nodiscard]] VertexForest& forest() { return rig_.model().forest; }
-    [[nodiscard]] PageTable& pages() { return rig_.model().pages; }
-    [[nodiscard]] ModelCounts counts() { return rig_.model().header.counts(); }
-
-    void split_with_dependencies(RecordId target)
-    {
-        std::vector<RecordId> stack{target};
-        while (!stack.empty())
-        {
-            const VsplitRecord* record = pages().find_linked(stack.back());
-            ASSERT_NE(record, nullptr);
-            if (const RecordId missing = forest().missing_dependency(*record); !missing.is_none())
-            {
-                stack.push_back(missing);
-                continue;
-            }
-            ASSERT_EQ(forest().split(stack.back()), VertexForest::SplitOutcome::done);
-            stack.pop_back();
-        }
-    }
-
-    [[nodiscard]] std::vector<PrimId> active()
-    {
-        std::vector<PrimId> prims;
-        for (std::uint32_t i = 0; i < forest().capacity(); ++i)
-        {
-            if (!forest().face(PrimId{i}).id.is_none())
-            {
-                prims.push_back(PrimId{i});
-            }
-        }
-        return prims;
-    }
-
-    void split_everything(Random& random)
-    {
-        std::vector<std::uint32_t> order(counts().records);
-        for (std::uint32_t i = 0; i < order.size(); ++i)
-        {
-            order[i] = i;
-        }
-        for (std::size_t i = order.size(); i > 1; --i)
-        {
-            std::swap(order[i - 1], order[random.below(i)]);
-        }
-        for (const std::uint32_t record : order)
-        {
-            if (!pages().is_refined({record}))
-            {
-                split_with_dependencies({record});
-            }
-        }
-    }
-
-private:
-    FrameRig rig_;
-};
 
 /// A face with its corners rotated so that the least comes first: the orientation is kept.
 Face canonical(Face face)
@@ -124,9 +55,9 @@ bool is_manifold(LoadedForest& sut)
 class ForestProperties : public testing::TestWithParam<std::size_t>
 {
 protected:
-    const TestModel& model_ = *small_models()[GetParam()];
+    const TestModel& model_ = small_model(GetParam());
     std::uint64_t seed_ = seed_of(20'261'120 + GetParam());
-    Random random_{seed_};
+    Random random_ = Random::seeded(seed_);
 
     void SetUp() override
     {
@@ -159,7 +90,7 @@ TEST_P(ForestProperties, splits_and_merges_undone_in_any_legal_order_return_the_
     const std::uint32_t base_faces = sut.forest().active_faces();
     for (int step = 0; step < 4'000; ++step)
     {
-        const RecordId record{static_cast<std::uint32_t>(random_.below(sut.counts().records))};
+        const RecordId record = sut.random_record(random_);
         if (!sut.pages().is_refined(record))
         {
             sut.split_with_dependencies(record);
@@ -174,19 +105,7 @@ TEST_P(ForestProperties, splits_and_merges_undone_in_any_legal_order_return_the_
         }
     }
     EXPECT_NE(sut.forest().state_hash(), base_hash);
-    for (bool any = true; any;)
-    {
-        any = false;
-        const std::uint32_t shift = static_cast<std::uint32_t>(random_.below(sut.counts().records));
-        for (std::uint32_t i = 0; i < sut.counts().records; ++i)
-        {
-            const RecordId record{(i + shift) % sut.counts().records};
-            if (sut.pages().is_refined(record) && sut.forest().try_merge(record))
-            {
-                any = true;
-            }
-        }
-    }
+    sut.merge_everything(random_);
     EXPECT_EQ(sut.forest().refined_records(), 0U) << model_.name << " seed " << seed_;
     EXPECT_EQ(sut.forest().active_faces(), base_faces);
     EXPECT_EQ(sut.forest().state_hash(), base_hash) << model_.name << " seed " << seed_;
@@ -223,7 +142,7 @@ TEST_P(ForestProperties, the_record_that_last_changed_a_face_is_its_finest_corne
     LoadedForest sut(model_);
     for (int i = 0; i < 300; ++i)
     {
-        const RecordId record{static_cast<std::uint32_t>(random_.below(sut.counts().records))};
+        const RecordId record = sut.random_record(random_);
         if (!sut.pages().is_refined(record))
         {
             sut.split_with_dependencies(record);

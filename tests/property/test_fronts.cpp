@@ -95,9 +95,9 @@ std::uint32_t idle_pages(const Model& model)
 class Fronts : public testing::TestWithParam<std::size_t>
 {
 protected:
-    const TestModel& model_ = *small_models()[GetParam()];
+    const TestModel& model_ = small_model(GetParam());
     const std::uint64_t seed_ = seed_of(600 + GetParam());
-    Random random_{seed_};
+    Random random_ = Random::seeded(seed_);
     Vec3 goal_{0.0, 0.0, 0.0};
 
     /// Slides, and a jump every 60 frames.
@@ -163,7 +163,7 @@ INSTANTIATE_TEST_SUITE_P(small_models, Fronts, testing::Range<std::size_t>(0, 6)
 
 TEST(FrontLists, are_cut_short_at_the_end_of_the_span_and_say_how_many_there_are)
 {
-    const TestModel& model = *small_models()[0];
+    const TestModel& model = small_model(0);
     FrameRig sut(model, {});
     load_everything(sut);
     for (std::uint32_t region = 0; region < sut.model().header.region_count(); ++region)

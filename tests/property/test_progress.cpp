@@ -68,9 +68,9 @@ Effort run_until_exact(const TestModel& model, const NearbyTool& tool, std::uint
 class Progress : public testing::TestWithParam<std::size_t>
 {
 protected:
-    const TestModel& model_ = *small_models()[GetParam()];
+    const TestModel& model_ = small_model(GetParam());
     const std::uint64_t seed_ = seed_of(700 + GetParam());
-    Random random_{seed_};
+    Random random_ = Random::seeded(seed_);
 };
 
 TEST_P(Progress, one_split_a_frame_is_exact_after_as_many_frames_as_the_closure_has_records)

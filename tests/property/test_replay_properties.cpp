@@ -6,9 +6,9 @@
 
 #include "platform/recording/frame_encoder.hpp"
 #include "platform/recording/replay.hpp"
-#include "tests/property/random.hpp"
 #include "tests/shared/altered_recording.hpp"
 #include "tests/shared/frame_rig.hpp"
+#include "tests/shared/random.hpp"
 
 #include <gtest/gtest.h>
 
@@ -90,7 +90,7 @@ constexpr int kFrames = 400;
 std::vector<std::byte> record_run(const TestModel& model, const Hardship& hardship,
                                   std::uint64_t seed)
 {
-    Random random(seed);
+    Random random = Random::seeded(seed);
     Wander wander(model, random);
     RigOptions options;
     options.pool_bytes = hardship.pool_bytes;
@@ -123,7 +123,7 @@ protected:
 
 TEST_P(Replay, gives_every_frame_again_bit_for_bit)
 {
-    const TestModel& model = *small_models()[model_index()];
+    const TestModel& model = small_model(model_index());
     const std::uint64_t seed = seed_of(500 + 10 * model_index() + std::get<1>(GetParam()));
     SCOPED_TRACE(model.name + " " + hardship().name + " seed " + std::to_string(seed));
     const auto recording = Recording::parse(record_run(model, hardship(), seed), "rig");
@@ -158,7 +158,7 @@ void expect_noticed(const std::vector<std::byte>& bytes, std::uint64_t frame)
 
 TEST(ReplayOfAnAlteredRecording, is_noticed_in_the_frame_that_was_altered)
 {
-    const TestModel& model = *small_models()[0];
+    const TestModel& model = small_model(0);
     const auto recording = Recording::parse(record_run(model, hardships()[0], 900), "rig");
     ASSERT_TRUE(recording) << recording.error().text;
     const auto flip_from_end = [](std::size_t bytes) {
@@ -176,7 +176,7 @@ TEST(ReplayOfAnAlteredRecording, is_noticed_in_the_frame_that_was_altered)
 
 TEST(ReplayOfAnAlteredRecording, notices_another_budget_once_it_is_spent)
 {
-    const TestModel& model = *small_models()[0];
+    const TestModel& model = small_model(0);
     const auto recording = Recording::parse(record_run(model, hardships()[0], 900), "rig");
     ASSERT_TRUE(recording) << recording.error().text;
     const auto no_splits = [](std::span<std::byte> coded)
@@ -192,12 +192,12 @@ TEST(ReplayOfAnAlteredRecording, notices_another_budget_once_it_is_spent)
 
 TEST(ReplayOfAnAlteredRecording, ends_whatever_its_frames_say)
 {
-    const TestModel& model = *small_models()[0];
+    const TestModel& model = small_model(0);
     const auto recording = Recording::parse(record_run(model, hardships()[3], 900), "rig");
     ASSERT_TRUE(recording) << recording.error().text;
     const std::uint64_t seed = seed_of(901);
     SCOPED_TRACE("seed " + std::to_string(seed));
-    Random random(seed);
+    Random random = Random::seeded(seed);
     int replayed_count = 0;
     for (int i = 0; i < 300; ++i)
     {

@@ -90,8 +90,8 @@ Vec3 swinging(const TestModel& model, const Vec3& place, int frame)
 
 TEST(SharedBudgets, one_split_a_frame_refines_both_models)
 {
-    const TestModel& model = *small_models()[0];
-    Random random(seed_of(800));
+    const TestModel& model = small_model(0);
+    Random random = Random::seeded(seed_of(800));
     TwoModels sut(model);
     const Vec3 place = place_at_distance(model, random, 0.0306 * model.diagonal_m);
     Budgets one;
@@ -107,10 +107,10 @@ TEST(SharedBudgets, one_split_a_frame_refines_both_models)
 
 TEST(SharedBudgets, a_model_that_was_left_coarsens_while_another_is_scanned)
 {
-    const TestModel& model = *small_models()[0];
+    const TestModel& model = small_model(0);
     for (std::size_t left = 0; left < 2; ++left)
     {
-        Random random(seed_of(801));
+        Random random = Random::seeded(seed_of(801));
         TwoModels sut(model);
         const Vec3 place = place_at_distance(model, random, 0.0306 * model.diagonal_m);
         Budgets few;

@@ -45,9 +45,9 @@ protected:
         return frames;
     }
 
-    const TestModel& model_ = *small_models()[GetParam()];
+    const TestModel& model_ = small_model(GetParam());
     const std::uint64_t seed_ = seed_of(1'200 + GetParam());
-    Random random_{seed_};
+    Random random_ = Random::seeded(seed_);
 };
 
 TEST_P(StaticMode, a_model_that_fits_ends_refined_and_frames_only_query)
@@ -116,8 +116,8 @@ INSTANTIATE_TEST_SUITE_P(small_models, StaticMode,
 
 TEST(StaticModeIsLeftAlone, when_the_pages_or_the_faces_do_not_fit)
 {
-    const TestModel& model = *small_models()[0];
-    Random random(seed_of(1'210));
+    const TestModel& model = small_model(0);
+    Random random = Random::seeded(seed_of(1'210));
     for (const bool few_pages : {false, true})
     {
         RigOptions options;

@@ -16,7 +16,7 @@ TEST(WorstCasesLarge, needles_keep_the_budgets_and_the_bracket)
     const TestModel& model = test_model("needles-20x4000", make_uv_sphere(20, 4'000).value());
     const std::uint64_t seed = seed_of(990);
     SCOPED_TRACE("seed " + std::to_string(seed));
-    Random random(seed);
+    Random random = Random::seeded(seed);
     Budgets one;
     one.splits = 1;
     one.merges = 1;

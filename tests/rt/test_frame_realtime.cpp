@@ -8,7 +8,7 @@
 #include "host_tools/shapes/shapes.hpp"
 #include "platform/allocation_counter.hpp"
 #include "platform/system_call_trap.hpp"
-#include "tests/property/random.hpp"
+#include "tests/shared/random.hpp"
 #include "tests/shared/frame_rig.hpp"
 
 #include <gtest/gtest.h>
@@ -148,7 +148,7 @@ Watched watch(const Touch& touch)
 {
     const std::uint64_t seed = seed_of(1);
     std::printf("TACTUS_SEED=%llu\n", static_cast<unsigned long long>(seed));
-    Random random(seed);
+    Random random = Random::seeded(seed);
     FrameRig rig(model_to_touch(), touch.options);
     Watched watched;
     std::thread thread(

@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #include "tests/shared/face_tree.hpp"
 
-#include "tests/shared/closest_point.hpp"
+#include "tests/shared/distance_oracle.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -129,6 +129,51 @@ void FaceTree::search_leaf(const Node& node, Search& sought) const
         {
             sought.least = value;
             sought.best = {distance, Vec3(foot[0], foot[1], foot[2]), id};
+        }
+    }
+}
+
+FaceTree::WideNearest FaceTree::wide_nearest(const Point<long double>& point_m) const
+{
+    WideNearest best;
+    const Vec3 rounded(static_cast<double>(point_m[0]), static_cast<double>(point_m[1]),
+                       static_cast<double>(point_m[2]));
+    search_wide(0, point_m, {rounded}, best);
+    return best;
+}
+
+void FaceTree::search_wide(std::uint32_t index, const Point<long double>& point_m,
+                           const Search& sought, WideNearest& best) const
+{
+    // Far above what a box's distance is rounded by.
+    const double slack =
+        1e-14 * (sought.point_m.cwiseAbs().maxCoeff() + (high_m() - low_m()).sum());
+    const auto may_be_nearer = [&](std::uint32_t node)
+    { return static_cast<long double>(lower_bound(node, sought) - slack) < best.distance_m; };
+    const Node& node = nodes_[index];
+    if (node.right == 0)
+    {
+        for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
+        {
+            const long double distance = wide_distance(point_m, faces_[order_[i]]);
+            if (distance < best.distance_m)
+            {
+                best = {distance, order_[i]};
+            }
+        }
+        return;
+    }
+    std::uint32_t near = index + 1;
+    std::uint32_t far = node.right;
+    if (lower_bound(far, sought) < lower_bound(near, sought))
+    {
+        std::swap(near, far);
+    }
+    for (const std::uint32_t child : {near, far})
+    {
+        if (may_be_nearer(child))
+        {
+            search_wide(child, point_m, sought, best);
         }
     }
 }

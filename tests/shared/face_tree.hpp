@@ -4,6 +4,7 @@
 
 #include "rt_core/math/vec3.hpp"
 #include "tests/shared/brute_force.hpp"
+#include "tests/shared/closest_point.hpp"
 
 #include <cstdint>
 #include <limits>
@@ -25,6 +26,12 @@ public:
         std::uint32_t face{0};
     };
 
+    struct WideNearest
+    {
+        long double distance_m{std::numeric_limits<long double>::infinity()};
+        std::uint32_t face{0};
+    };
+
     /// `faces`, at least one, and `bounds_m`, one a face or none at all, must outlive the tree.
     /// n log n; 4 M faces take some seconds.
     explicit FaceTree(const std::vector<Face>& faces, std::span<const double> bounds_m = {});
@@ -33,6 +40,10 @@ public:
     /// The least over the faces of distance - bound, or the first that is found to be at most
     /// `enough_m`.
     [[nodiscard]] double least_excess(const Vec3& point_m, double enough_m) const;
+
+    /// The distance in extended precision, by the way of DistanceOracle, right for needles too: a
+    /// box is passed over only when it is farther by more than double precision can round.
+    [[nodiscard]] WideNearest wide_nearest(const Point<long double>& point_m) const;
 
     [[nodiscard]] Vec3 low_m() const { return nodes_.front().low; }
     [[nodiscard]] Vec3 high_m() const { return nodes_.front().high; }
@@ -63,6 +74,8 @@ private:
     void build(std::uint32_t first, std::uint32_t count);
     void find_box(Node& node) const;
     void search(std::uint32_t index, Search& sought) const;
+    void search_wide(std::uint32_t index, const Point<long double>& point_m, const Search& sought,
+                     WideNearest& best) const;
     void search_leaf(const Node& node, Search& sought) const;
     [[nodiscard]] double lower_bound(std::uint32_t index, const Search& sought) const;
     [[nodiscard]] double bound_of(std::uint32_t face) const

@@ -20,7 +20,9 @@ namespace
 } // namespace
 
 FrameRig::FrameRig(const TestModel& model, const RigOptions& options)
-    : memory_(options.pool_bytes), courier_steps_(options.courier_steps_per_frame)
+    : memory_(options.pool_bytes)
+    , courier_steps_(options.courier_steps_per_frame)
+    , period_ns_(options.period_ns)
 {
     auto served = serve_from_file(model.path, model.name, {});
     if (!served)
@@ -38,6 +40,7 @@ FrameRig::FrameRig(const TestModel& model, const RigOptions& options)
     FrameSetup setup;
     setup.tools = tools;
     setup.objects = objects;
+    setup.period_ns = options.period_ns;
     setup.static_when_it_fits = options.static_when_it_fits;
     const std::size_t shared =
         Frame::required_bytes(setup) + Arena::round_up(served_.header.size());
@@ -74,6 +77,12 @@ FrameOutput FrameRig::step(const std::vector<Vec3>& goals_m, const Budgets& budg
     return step_without_delivery(goals_m, budgets, mark);
 }
 
+FrameOutput FrameRig::step(std::span<const ToolState> tools, const Budgets& budgets)
+{
+    deliver();
+    return run(tools, budgets, {});
+}
+
 FrameOutput FrameRig::step_without_delivery(const std::vector<Vec3>& goals_m,
                                             const Budgets& budgets, StageMark mark)
 {
@@ -82,10 +91,15 @@ FrameOutput FrameRig::step_without_delivery(const std::vector<Vec3>& goals_m,
     {
         tools_[i].position_m = goals_m[i];
     }
-    const FrameOutput output = frame_->run(tools_, poses_, budgets, mark);
+    return run(tools_, budgets, mark);
+}
+
+FrameOutput FrameRig::run(std::span<const ToolState> tools, const Budgets& budgets, StageMark mark)
+{
+    const FrameOutput output = frame_->run(tools, poses_, budgets, mark);
     if (recorder_ != nullptr)
     {
-        recorder_->add(tools_, poses_, budgets, output);
+        recorder_->add(tools, poses_, budgets, output);
     }
     return output;
 }
@@ -94,7 +108,7 @@ void FrameRig::deliver()
 {
     for (std::uint32_t i = 0; i < courier_steps_; ++i)
     {
-        now_ns_ += 1'000'000 / courier_steps_;
+        now_ns_ += period_ns_ / courier_steps_;
         courier_->step(now_ns_);
     }
 }

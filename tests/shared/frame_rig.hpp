@@ -12,6 +12,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace tactus::test
@@ -24,6 +25,7 @@ struct RigOptions
     std::vector<ToolSpec> tools;
     LoopbackFaults faults;
     std::uint32_t courier_steps_per_frame{4};
+    std::int64_t period_ns{1'000'000};
     bool cache_off{false};
     bool static_when_it_fits{false};
     bool record{false}; ///< Keep a recording; frames must then run through step() only.
@@ -42,6 +44,10 @@ public:
     {
         return step(std::vector<Vec3>{goal_m}, budgets);
     }
+    /// One frame with samples as a device gives them.
+    FrameOutput step(std::span<const ToolState> tools, const Budgets& budgets);
+    /// Where the object stands from the next frame on; at first the model's frame is the world's.
+    void place_object(const ObjectPose& pose) { poses_[0] = pose; }
     /// The same, without letting the transport side work first.
     FrameOutput step_without_delivery(const std::vector<Vec3>& goals_m, const Budgets& budgets,
                                       StageMark mark);
@@ -51,6 +57,7 @@ public:
     /// `frames`; returns how many it took.
     std::uint32_t settle(const Vec3& goal_m, const Budgets& budgets, std::uint32_t frames);
 
+    [[nodiscard]] const ObjectPose& pose() const { return poses_[0]; }
     [[nodiscard]] Frame& frame() { return *frame_; }
     [[nodiscard]] Model& model() { return frame_->model({0}); }
     [[nodiscard]] Courier& courier() { return *courier_; }
@@ -59,6 +66,8 @@ public:
     [[nodiscard]] std::vector<std::byte> finish_recording() { return recorder_->finish(); }
 
 private:
+    FrameOutput run(std::span<const ToolState> tools, const Budgets& budgets, StageMark mark);
+
     ServedModel served_;
     std::unique_ptr<LoopbackLink> link_;
     PoolMemory memory_;
@@ -67,6 +76,7 @@ private:
     std::unique_ptr<Courier> courier_;
     std::unique_ptr<RigRecorder> recorder_; ///< Null unless it records.
     std::uint32_t courier_steps_;
+    std::int64_t period_ns_;
     std::int64_t now_ns_{0};
     std::vector<ObjectPose> poses_;
     std::vector<ToolState> tools_;

@@ -24,7 +24,24 @@ namespace
     std::exit(2);
 }
 
-TestModel make(const std::string& name, const TriangleMesh& mesh, std::uint32_t base_faces)
+void scale_errors(Simplification& simplified, double scale)
+{
+    const auto factor = static_cast<float>(scale);
+    for (Collapse& collapse : simplified.collapses)
+    {
+        for (float& error : collapse.error)
+        {
+            error *= factor;
+        }
+    }
+    for (float& error : simplified.base_error)
+    {
+        error *= factor;
+    }
+}
+
+TestModel make(const std::string& name, const TriangleMesh& mesh, std::uint32_t base_faces,
+               double error_scale)
 {
     static const TemporaryFolder folder("models");
     const auto prepared = prepare_mesh(mesh, {});
@@ -34,11 +51,12 @@ TestModel make(const std::string& name, const TriangleMesh& mesh, std::uint32_t 
     }
     SimplifyOptions options;
     options.base_faces = base_faces;
-    const auto simplified = simplify(prepared.value().mesh, options);
+    auto simplified = simplify(prepared.value().mesh, options);
     if (!simplified)
     {
         give_up(name, simplified.error().text);
     }
+    scale_errors(simplified.value(), error_scale);
     TestModel model;
     model.name = name;
     model.path = folder.path() / (name + ".spm");
@@ -51,8 +69,21 @@ TestModel make(const std::string& name, const TriangleMesh& mesh, std::uint32_t 
     }
     model.faces = faces_on_grid(prepared.value());
     model.diagonal_m = prepared.value().diagonal_m;
+    model.base_faces = base_faces;
     model.origin_m = prepared.value().origin_m;
     return model;
+}
+
+const TestModel& kept_model(const std::string& name, const TriangleMesh& mesh,
+                            std::uint32_t base_faces, double error_scale)
+{
+    static std::map<std::string, std::unique_ptr<TestModel>> models;
+    std::unique_ptr<TestModel>& model = models[name];
+    if (!model)
+    {
+        model = std::make_unique<TestModel>(make(name, mesh, base_faces, error_scale));
+    }
+    return *model;
 }
 
 /// Loose triangles and small closed solids, most of which the base mesh has no room for.
@@ -111,24 +142,45 @@ std::vector<Face> faces_on_grid(const PreparedMesh& prepared)
 const TestModel& test_model(const std::string& name, const TriangleMesh& mesh,
                             std::uint32_t base_faces)
 {
-    static std::map<std::string, std::unique_ptr<TestModel>> models;
-    std::unique_ptr<TestModel>& model = models[name];
-    if (!model)
+    return kept_model(name, mesh, base_faces, 1.0);
+}
+
+const TestModel& lying_model(const std::string& name, const TriangleMesh& mesh, double error_scale)
+{
+    return kept_model(name, mesh, 200, error_scale);
+}
+
+const TestModel& small_model(std::size_t index)
+{
+    switch (index)
     {
-        model = std::make_unique<TestModel>(make(name, mesh, base_faces));
+    case 0:
+        return shape_model(Shape::bumpy_sphere, 4'000);
+    case 1:
+        return shape_model(Shape::torus, 3'000);
+    case 2:
+        return shape_model(Shape::terrain, 3'000);
+    case 3:
+        return shape_model(Shape::gear, 3'000);
+    case 4:
+        return test_model("thin-plate", make_thin_plate(25, 2e-5).value());
+    case 5:
+        return test_model("needles", make_uv_sphere(10, 200).value());
+    case 6:
+        return test_model("crumbs", make_crumbs());
+    default:
+        give_up("small", "there is no such one");
     }
-    return *model;
 }
 
 std::vector<const TestModel*> small_models()
 {
-    return {&shape_model(Shape::bumpy_sphere, 4'000),
-            &shape_model(Shape::torus, 3'000),
-            &shape_model(Shape::terrain, 3'000),
-            &shape_model(Shape::gear, 3'000),
-            &test_model("thin-plate", make_thin_plate(25, 2e-5).value()),
-            &test_model("needles", make_uv_sphere(10, 200).value()),
-            &test_model("crumbs", make_crumbs())};
+    std::vector<const TestModel*> models;
+    for (std::size_t i = 0; i < kSmallModels; ++i)
+    {
+        models.push_back(&small_model(i));
+    }
+    return models;
 }
 
 } // namespace tactus::test

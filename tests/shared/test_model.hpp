@@ -21,6 +21,7 @@ struct TestModel
     std::filesystem::path path;
     std::vector<Face> faces; ///< Of the quantised source, in the model's frame.
     double diagonal_m{0.0};
+    std::uint32_t base_faces{0};      ///< Asked for; the base mesh has these at most.
     std::array<double, 3> origin_m{}; ///< Of the model's frame in the source's.
 };
 
@@ -32,7 +33,15 @@ struct TestModel
 [[nodiscard]] const TestModel& test_model(const std::string& name, const TriangleMesh& mesh,
                                           std::uint32_t base_faces = 200);
 
+/// The same with every certified bound multiplied by `error_scale` before it is coded: below 1 a
+/// model that lies, for tests of tests. With 0 all bounds are the least that there is, 1/256 of a
+/// quantum, so that a distance to a coarse face is taken for the true one.
+[[nodiscard]] const TestModel& lying_model(const std::string& name, const TriangleMesh& mesh,
+                                           double error_scale);
+
 /// Models that cover smooth, sharp, open, thin and needle shapes; a few thousand faces each.
+inline constexpr std::size_t kSmallModels = 7;
+[[nodiscard]] const TestModel& small_model(std::size_t index);
 [[nodiscard]] std::vector<const TestModel*> small_models();
 
 } // namespace tactus::test

@@ -5,6 +5,9 @@
 #include "host_tools/shapes/shapes.hpp"
 
 #include <cmath>
+#include <functional>
+#include <string>
+#include <vector>
 
 namespace tactus::test
 {
@@ -13,6 +16,31 @@ namespace
 {
 
 constexpr double kSide_m = 0.1;
+
+struct WorstShape
+{
+    const char* name;
+    std::function<TriangleMesh()> make;
+    std::uint32_t base_faces{200}; ///< More where pieces can't vanish.
+};
+
+const std::vector<WorstShape>& worst_shapes()
+{
+    static const std::vector<WorstShape> shapes{
+        {"needles", [] { return make_uv_sphere(20, 400).value(); }},
+        {"poles-300", [] { return make_uv_sphere(8, 300).value(); }},
+        {"poles-4000", [] { return make_uv_sphere(2, 4'000).value(); }},
+        {"spikes", [] { return make_spiky_sphere(); }},
+        {"thin-plate-1e-4", [] { return make_thin_plate(30, 1.4e-5).value(); }},
+        {"close-sheets", [] { return make_close_sheets(24); }},
+        {"huge-and-tiny", [] { return make_patch_in_huge_faces(48); }},
+        {"border", [] { return make_shape(Shape::terrain, 4'000).value(); }},
+        {"broken", [] { return make_broken_sphere(); }},
+        {"soup", [] { return make_triangle_soup(700, 5).value(); }, 700},
+        {"components", [] { return make_loose_spheres(5); }, 1'500},
+    };
+    return shapes;
+}
 
 /// A square grid of (cells + 1)^2 vertices over [low, low + side]^2 at height z; returns its first
 /// vertex. Vertex (column, row) is first + row * (cells + 1) + column.
@@ -141,6 +169,17 @@ TriangleMesh make_loose_spheres(std::uint32_t per_side)
         }
     }
     return mesh;
+}
+
+std::size_t worst_model_count()
+{
+    return worst_shapes().size();
+}
+
+const TestModel& worst_model(std::size_t index)
+{
+    const WorstShape& shape = worst_shapes()[index];
+    return test_model(std::string("worst-") + shape.name, shape.make(), shape.base_faces);
 }
 
 } // namespace tactus::test

@@ -3,7 +3,9 @@
 #pragma once
 
 #include "host_tools/mesh/triangle_mesh.hpp"
+#include "tests/shared/test_model.hpp"
 
+#include <cstddef>
 #include <cstdint>
 
 /// Meshes that are hard on the frame and of no use outside tests. About 0.1 m across.
@@ -27,5 +29,10 @@ namespace tactus::test
 
 /// Spheres of 80 faces, loose on a cubic lattice of per_side^3.
 [[nodiscard]] TriangleMesh make_loose_spheres(std::uint32_t per_side);
+
+/// Models of these and of other shapes at which a frame is at its worst: needles, poles, spikes,
+/// thin and close sheets, huge faces beside tiny ones, borders, and loose pieces.
+[[nodiscard]] std::size_t worst_model_count();
+[[nodiscard]] const TestModel& worst_model(std::size_t index);
 
 } // namespace tactus::test

@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "tests/unit/geometry/shape_oracle.hpp"
+#include "tests/shared/shape_oracle.hpp"
 
 #include <algorithm>
 #include <vector>

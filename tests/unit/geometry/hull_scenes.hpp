@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "tests/unit/geometry/shape_scenes.hpp"
+#include "tests/shared/shape_scenes.hpp"
 
 #include <vector>
 

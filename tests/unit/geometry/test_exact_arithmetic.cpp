@@ -2,8 +2,8 @@
 // Copyright the Tactus authors.
 #include "rt_core/math/expansion.hpp"
 #include "rt_core/math/orientation.hpp"
+#include "tests/shared/distance_oracle.hpp"
 #include "tests/unit/geometry/integer_oracle.hpp"
-#include "tests/unit/rt_core/distance_oracle.hpp"
 #include "tests/unit/rt_core/support.hpp"
 
 #include <gtest/gtest.h>

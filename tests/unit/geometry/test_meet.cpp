@@ -2,9 +2,9 @@
 // Copyright the Tactus authors.
 #include "rt_core/geometry/box_triangle.hpp"
 #include "rt_core/geometry/crossing.hpp"
+#include "tests/shared/shape_scenes.hpp"
 #include "tests/unit/geometry/grid.hpp"
 #include "tests/unit/geometry/integer_oracle.hpp"
-#include "tests/unit/geometry/shape_scenes.hpp"
 
 #include <gtest/gtest.h>
 

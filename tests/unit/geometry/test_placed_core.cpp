@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "rt_core/geometry/placed_core.hpp"
+#include "tests/shared/shape_scenes.hpp"
 #include "tests/unit/geometry/hull_oracle.hpp"
-#include "tests/unit/geometry/shape_scenes.hpp"
 
 #include <gtest/gtest.h>
 

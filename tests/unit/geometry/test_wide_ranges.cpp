@@ -4,7 +4,7 @@
 #include "rt_core/geometry/round_triangle.hpp"
 #include "rt_core/geometry/segment_triangle.hpp"
 #include "rt_core/geometry/triangle_triangle.hpp"
-#include "tests/unit/geometry/shape_scenes.hpp"
+#include "tests/shared/shape_scenes.hpp"
 
 #include <gtest/gtest.h>
 

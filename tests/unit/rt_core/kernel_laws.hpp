@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "tests/unit/rt_core/distance_oracle.hpp"
+#include "tests/shared/distance_oracle.hpp"
 #include "tests/unit/rt_core/kernel_scenes.hpp"
 
 #include <algorithm>

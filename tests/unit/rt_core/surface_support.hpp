@@ -3,7 +3,7 @@
 #pragma once
 
 #include "rt_core/force/proxy.hpp"
-#include "tests/unit/rt_core/distance_oracle.hpp"
+#include "tests/shared/distance_oracle.hpp"
 #include "tests/unit/rt_core/support.hpp"
 
 #include <algorithm>

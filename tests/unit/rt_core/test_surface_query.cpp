@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #include "rt_core/query/probe.hpp"
 #include "rt_core/query/surface_query.hpp"
-#include "tests/unit/rt_core/distance_oracle.hpp"
+#include "tests/shared/distance_oracle.hpp"
 #include "tests/unit/rt_core/tree_support.hpp"
 
 #include <gtest/gtest.h>

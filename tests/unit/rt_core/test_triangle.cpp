@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #include "rt_core/limits.hpp"
 #include "rt_core/math/triangle.hpp"
-#include "tests/unit/rt_core/distance_oracle.hpp"
+#include "tests/shared/distance_oracle.hpp"
 #include "tests/unit/rt_core/support.hpp"
 
 #include <gtest/gtest.h>

@@ -131,6 +131,21 @@ private:
 
 using DistanceOracle = BasicDistanceOracle<long double>;
 
+/// Of a point and a stored face.
+template <typename Real>
+[[nodiscard]] Real wide_distance(const std::array<Real, 3>& point, const std::array<Vec3f, 3>& face)
+{
+    std::array<std::array<Real, 3>, 3> corners{};
+    for (std::size_t corner = 0; corner < 3; ++corner)
+    {
+        for (std::size_t axis = 0; axis < 3; ++axis)
+        {
+            corners[corner][axis] = static_cast<Real>(face[corner][axis]) - point[axis];
+        }
+    }
+    return BasicDistanceOracle<Real>::distance(corners);
+}
+
 /// Wider than long double, where the machine has it.
 #if defined(__SIZEOF_FLOAT128__)
 __extension__ using Quad = __float128;

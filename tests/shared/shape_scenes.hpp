@@ -4,7 +4,7 @@
 
 #include "rt_core/geometry/shapes.hpp"
 #include "rt_core/math/triangle.hpp"
-#include "tests/unit/rt_core/support.hpp"
+#include "tests/shared/random.hpp"
 
 #include <array>
 #include <ostream>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "tests/unit/geometry/shape_scenes.hpp"
+#include "tests/shared/shape_scenes.hpp"
 
 #include <cmath>
 #include <cstdlib>

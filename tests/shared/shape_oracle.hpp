@@ -3,7 +3,7 @@
 #pragma once
 
 #include "rt_core/geometry/shapes.hpp"
-#include "tests/unit/rt_core/distance_oracle.hpp"
+#include "tests/shared/distance_oracle.hpp"
 
 #include <algorithm>
 #include <array>

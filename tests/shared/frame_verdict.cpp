@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "tests/shared/frame_verdict.hpp"
+
+#include <array>
+
+namespace tactus::test
+{
+
+namespace
+{
+
+Verdict overfull(const PoolUse& use)
+{
+    if (use.used <= use.used_max && use.used_max <= use.capacity)
+    {
+        return std::nullopt;
+    }
+    return "a pool of " + std::to_string(use.capacity) + " had " + std::to_string(use.used) +
+           " in use, at most " + std::to_string(use.used_max);
+}
+
+} // namespace
+
+Verdict broken_budget(const FrameOutput& output, const Budgets& budgets)
+{
+    struct Count
+    {
+        const char* name;
+        std::uint32_t value;
+        std::uint32_t most;
+    };
+    const WorkCounters& work = output.work;
+    const std::array<Count, 8> counts{{
+        {"splits", work.splits, budgets.splits},
+        {"merges", work.merges, budgets.merges},
+        {"scanned", work.scanned, budgets.scanned},
+        {"nodes visited", work.nodes_visited, 3 * budgets.nodes},
+        {"triangles tested", work.triangles_tested, 3 * budgets.triangles},
+        {"pages adopted", work.pages_adopted, budgets.pages},
+        {"requests", work.requests, budgets.requests + budgets.regions}, // And index pages.
+        {"regions searched", work.regions_searched, budgets.regions},
+    }};
+    for (const Count& count : counts)
+    {
+        if (count.value > count.most)
+        {
+            return std::string(count.name) + ": " + std::to_string(count.value) + ", allowed are " +
+                   std::to_string(count.most);
+        }
+    }
+    for (const ModelOutput& model : output.models)
+    {
+        for (const PoolUse& use :
+             {model.pages, model.index_pages, model.faces, model.blocks, model.nodes})
+        {
+            if (const Verdict verdict = overfull(use))
+            {
+                return verdict;
+            }
+        }
+    }
+    return std::nullopt;
+}
+
+Verdict unexplained(const FrameOutput& output)
+{
+    constexpr FrameFault kReasons = FrameFault::split_budget_spent | FrameFault::forest_full |
+                                    FrameFault::tree_full | FrameFault::chunk_late |
+                                    FrameFault::cache_full | FrameFault::node_budget_spent;
+    if (has_fault(output.faults, FrameFault::model_inconsistent))
+    {
+        return "a record is said to contradict the mesh";
+    }
+    const PairOutput& pair = output.pairs[0];
+    if (pair.kind != AnswerKind::bracket || has_fault(output.faults, kReasons))
+    {
+        return std::nullopt;
+    }
+    return "a bracket, and nothing is said to have run out: L " + std::to_string(pair.lower_m) +
+           ", U " + std::to_string(pair.upper_m) + ", certified to " +
+           std::to_string(pair.certified_radius_m) + ", faults " +
+           std::to_string(static_cast<std::uint32_t>(output.faults)) + ", splits " +
+           std::to_string(output.work.splits) + ", nodes " +
+           std::to_string(output.work.nodes_visited) + ", triangles " +
+           std::to_string(output.work.triangles_tested);
+}
+
+} // namespace tactus::test

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/math/vec3.hpp"
+
+#include <concepts>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <random>
+#include <type_traits>
+
+namespace tactus::test
+{
+
+/// The seed of a run that is repeated by its seed alone: fixed, or TACTUS_SEED to repeat or vary
+/// it.
+[[nodiscard]] inline std::uint64_t seed_of(std::uint64_t usual)
+{
+    const char* text = std::getenv("TACTUS_SEED");
+    return text != nullptr ? std::strtoull(text, nullptr, 10) : usual;
+}
+
+/// Random numbers of tests: the same on every machine.
+class Random
+{
+public:
+    /// Of one test among many: `own` keeps it apart from the others under the same TACTUS_SEED,
+    /// which is printed.
+    explicit Random(std::uint64_t own) : engine_(seed() * 1'000 + own)
+    {
+        std::printf("[   seed   ] TACTUS_SEED=%llu\n", static_cast<unsigned long long>(seed()));
+    }
+    /// Of this seed and nothing else; whoever has it says so.
+    [[nodiscard]] static Random seeded(std::uint64_t seed) { return Random(std::mt19937_64(seed)); }
+
+    /// What TACTUS_SEED says, or 1.
+    [[nodiscard]] static std::uint64_t seed() { return seed_of(1); }
+    [[nodiscard]] std::uint64_t bits() { return engine_(); }
+    /// 0 .. count - 1.
+    template <std::integral Count>
+    [[nodiscard]] auto below(Count count)
+    {
+        using Index =
+            std::conditional_t<sizeof(Count) <= sizeof(std::uint32_t), std::uint32_t, std::size_t>;
+        return static_cast<Index>(engine_() % static_cast<std::uint64_t>(count));
+    }
+    [[nodiscard]] bool one_in(std::uint32_t count) { return below(count) == 0; }
+    [[nodiscard]] double between(double low, double high)
+    {
+        return low + (high - low) * (static_cast<double>(engine_() >> 11U) * 0x1p-53);
+    }
+    [[nodiscard]] Vec3 in_cube(double half)
+    {
+        return {between(-half, half), between(-half, half), between(-half, half)};
+    }
+
+private:
+    explicit Random(const std::mt19937_64& engine) : engine_(engine) {}
+
+    std::mt19937_64 engine_;
+};
+
+} // namespace tactus::test

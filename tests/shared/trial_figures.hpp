@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace tactus::test
+{
+
+/// What came of one claim that was tried many times: a line of the table of `tactus_bench
+/// stability`, and what a test asserts.
+struct TrialFigures
+{
+    /// So many violations are kept as text.
+    static constexpr std::size_t kTexts = 5;
+
+    std::string name;
+    std::uint64_t trials{0};
+    double worst{0.0}; ///< Largest error, in what `unit` says.
+    double bound{1.0}; ///< What `worst` may be.
+    std::string unit;
+    std::uint64_t violations{0};
+    std::vector<std::string> texts; ///< Enough to repeat the first violations.
+
+    /// An error that isn't a number counts as infinite.
+    void observe(double error)
+    {
+        worst =
+            std::max(worst, std::isnan(error) ? std::numeric_limits<double>::infinity() : error);
+    }
+    void flag(const std::string& text)
+    {
+        ++violations;
+        if (texts.size() < kTexts)
+        {
+            texts.push_back(text);
+        }
+    }
+    /// The same claim, tried elsewhere.
+    void add(const TrialFigures& other)
+    {
+        trials += other.trials;
+        worst = std::max(worst, other.worst);
+        violations += other.violations;
+        for (const std::string& text : other.texts)
+        {
+            if (texts.size() < kTexts)
+            {
+                texts.push_back(text);
+            }
+        }
+    }
+    [[nodiscard]] bool holds() const { return violations == 0 && worst <= bound; }
+    /// One line, and one more for each text.
+    [[nodiscard]] std::string summary() const
+    {
+        std::string text = name + ": " + std::to_string(trials) + " trials, worst " +
+                           std::to_string(worst) + " of " + std::to_string(bound) + " " + unit +
+                           ", " + std::to_string(violations) + " violations";
+        for (const std::string& one : texts)
+        {
+            text += "\n  " + one;
+        }
+        return text;
+    }
+};
+
+} // namespace tactus::test
