@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "tests/stability/bracket_trial.hpp"
+
+#include "tests/shared/frame_verdict.hpp"
+#include "tests/stability/random_motion.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <string>
+
+namespace tactus::test
+{
+
+namespace
+{
+
+constexpr std::array<double, 3> kScales{1.0, 0.2, 3.0};
+
+/// A place of the world in the model's frame, with no rounding that counts.
+WidePoint wide_place(const ObjectPose& pose, const Vec3& world_m)
+{
+    WidePoint place{0, 0, 0};
+    for (int row = 0; row < 3; ++row)
+    {
+        const auto relative = static_cast<long double>(world_m[row]) -
+                              static_cast<long double>(pose.translation_m[row]);
+        for (std::size_t axis = 0; axis < 3; ++axis)
+        {
+            const double entry = pose.rotation(row, static_cast<Eigen::Index>(axis));
+            place[axis] +=
+                static_cast<long double>(entry) * relative / static_cast<long double>(pose.scale);
+        }
+    }
+    return place;
+}
+
+template <typename Real>
+bool is_between(double lower, Real distance, double upper)
+{
+    return static_cast<Real>(lower) <= distance && distance <= static_cast<Real>(upper);
+}
+
+std::string exactly(double value)
+{
+    std::array<char, 64> text{};
+    std::snprintf(text.data(), text.size(), "%.17g", value);
+    return text.data();
+}
+
+std::string exactly(const Vec3& v)
+{
+    return "(" + exactly(v.x()) + ", " + exactly(v.y()) + ", " + exactly(v.z()) + ")";
+}
+
+/// The frames of one trial and what is to be said of them.
+class Trial
+{
+public:
+    explicit Trial(const BracketTrial& trial)
+        : trial_(trial)
+        , random_(Random::seeded(trial.seed))
+        , scale_(kScales[random_.below(kScales.size())])
+        , radius_m_(trial.hardship.radius_diag * trial.model.diagonal_m)
+        , motion_(trial.model, trial.oracle.tree(), radius_m_, scale_, random_)
+        , rig_(trial.model, with_seed(with_tool(trial.hardship.rig, scale_ * radius_m_)))
+    {
+        figures_.bracket.name = trial.model.name + ", " + trial.hardship.name;
+        figures_.bracket.unit = "of the bracket";
+    }
+
+    [[nodiscard]] BracketFigures run()
+    {
+        for (frame_ = 0; frame_ < trial_.frames; ++frame_)
+        {
+            const Moment moment = motion_.next();
+            rig_.place_object(moment.pose);
+            check(rig_.step(moment.goal_m, trial_.hardship.budgets), moment.pose);
+        }
+        return figures_;
+    }
+
+private:
+    [[nodiscard]] RigOptions with_seed(RigOptions options) const
+    {
+        options.faults.seed = trial_.seed + 1;
+        return options;
+    }
+
+    void check(const FrameOutput& output, const ObjectPose& pose)
+    {
+        const PairOutput& pair = output.pairs[0];
+        ++figures_.bracket.trials;
+        figures_.seen |= output.faults;
+        const bool is_exact = pair.kind == AnswerKind::exact;
+        figures_.exact += is_exact ? 1 : 0;
+        figures_.answered += is_exact || pair.kind == AnswerKind::decided ? 1 : 0;
+        for (const Verdict& verdict :
+             {broken_budget(output, trial_.hardship.budgets), unexplained(output)})
+        {
+            if (verdict)
+            {
+                flag(*verdict);
+            }
+        }
+        const BracketVerdict verdict = judge_bracket(trial_.oracle, pair, pose);
+        if (is_exact || verdict.error > 1.0)
+        {
+            figures_.bracket.observe(verdict.error);
+        }
+        if (verdict.error > 1.0)
+        {
+            flag(verdict.text);
+        }
+        if (frame_ % kCheckedFrames == 0)
+        {
+            check_oracle(wide_place(pose, pair.point_m));
+        }
+    }
+
+    void check_oracle(const WidePoint& place)
+    {
+        if (trial_.oracle.nearest(place).distance_m != trial_.oracle.brute(place))
+        {
+            flag("the oracle's tree and brute force differ");
+        }
+    }
+
+    void flag(const std::string& what)
+    {
+        figures_.bracket.flag(figures_.bracket.name +
+                              ", TACTUS_SEED=" + std::to_string(trial_.seed) + ", frame " +
+                              std::to_string(frame_) + " (" + motion_.activity() + "): " + what);
+    }
+
+    const BracketTrial& trial_;
+    Random random_;
+    double scale_;
+    double radius_m_;
+    RandomMotion motion_;
+    FrameRig rig_;
+    BracketFigures figures_;
+    std::uint32_t frame_{0};
+};
+
+} // namespace
+
+BracketFigures run_bracket_trial(const BracketTrial& trial)
+{
+    return Trial(trial).run();
+}
+
+BracketVerdict judge_bracket(const ToolOracle& oracle, const PairOutput& pair,
+                             const ObjectPose& pose)
+{
+    const WidePoint place = wide_place(pose, pair.point_m);
+    const auto scale = static_cast<long double>(pose.scale);
+    const FaceTree::WideNearest nearest = oracle.nearest(place);
+    long double distance = scale * nearest.distance_m;
+    BracketVerdict verdict;
+    if (!is_between(pair.lower_m, distance, pair.upper_m))
+    {
+        // Where long double might not tell, 113 bits do.
+        const double doubt = 1e-12 * (pair.point_m.norm() + pair.upper_m);
+        const bool is_clear = !is_between(pair.lower_m - doubt, distance, pair.upper_m + doubt);
+        const Quad judged = is_clear ? static_cast<Quad>(distance)
+                                     : static_cast<Quad>(scale) * oracle.judged(place);
+        distance = static_cast<long double>(judged);
+        if (!is_between(pair.lower_m, judged, pair.upper_m))
+        {
+            verdict.text = "face " + std::to_string(nearest.face) + " of the source is " +
+                           exactly(static_cast<double>(distance)) + " from " +
+                           exactly(pair.point_m) + ", not " + exactly(pair.lower_m) + " .. " +
+                           exactly(pair.upper_m) + "; object at " + exactly(pose.translation_m) +
+                           ", scale " + exactly(pose.scale);
+            verdict.error = std::numeric_limits<double>::infinity();
+        }
+    }
+    const long double half =
+        (static_cast<long double>(pair.upper_m) - static_cast<long double>(pair.lower_m)) / 2;
+    const long double off = std::abs(distance - static_cast<long double>(pair.lower_m) - half);
+    if (off > 0)
+    {
+        verdict.error = std::max(verdict.error, static_cast<double>(off / half));
+    }
+    return verdict;
+}
+
+} // namespace tactus::test

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "tests/shared/trial_figures.hpp"
+#include "tests/stability/hardships.hpp"
+#include "tests/stability/tool_oracle.hpp"
+
+#include <cstdint>
+
+namespace tactus::test
+{
+
+/// Frames of one model under one hardship, with a random motion.
+struct BracketTrial
+{
+    const TestModel& model;
+    const CenterOracle& oracle;
+    Hardship hardship;
+    std::uint64_t seed{0};
+    std::uint32_t frames{0};
+};
+
+struct BracketFigures
+{
+    /// L <= d <= U, budgets kept, and open questions explained; the error is that of exact answers,
+    /// as a share of what their bracket allows.
+    TrialFigures bracket;
+    std::uint64_t answered{0}; ///< Exact or decided.
+    std::uint64_t exact{0};
+    FrameFault seen{FrameFault::none};
+};
+
+/// Every frame against the oracle; every kCheckedFrames the oracle's tree against brute force.
+[[nodiscard]] BracketFigures run_bracket_trial(const BracketTrial& trial);
+
+inline constexpr std::uint32_t kCheckedFrames = 500;
+
+/// One answer against the truth, the pair's object at `pose`: how far the true distance is from the
+/// bracket's middle, in half widths; above 1 it is outside. `text` names the face then.
+struct BracketVerdict
+{
+    double error{0.0};
+    std::string text;
+};
+[[nodiscard]] BracketVerdict judge_bracket(const ToolOracle& oracle, const PairOutput& pair,
+                                           const ObjectPose& pose);
+
+} // namespace tactus::test

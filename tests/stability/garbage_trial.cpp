@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "tests/stability/garbage_trial.hpp"
+
+#include "tests/shared/frame_rig.hpp"
+#include "tests/shared/surface_slide.hpp"
+#include "tests/stability/bracket_trial.hpp"
+#include "tests/stability/hardships.hpp"
+
+#include <limits>
+#include <optional>
+
+namespace tactus::test
+{
+
+namespace
+{
+
+constexpr std::int64_t kFrame_ns = 1'000'000;
+constexpr std::uint32_t kHeldFrames = 20; ///< kSampleHold_s.
+constexpr std::uint32_t kGoneFrames = 72; ///< And kFadeTime_s, and one on either side.
+constexpr std::uint32_t kRecoveryFrames = 200;
+constexpr double kForceMax_n = 8.0;
+constexpr double kForceRounding = 1e-15;
+
+Vec3 with_one(const Vec3& place, Random& random, double value)
+{
+    Vec3 spoilt = place;
+    spoilt[random.below(3)] = value;
+    return spoilt;
+}
+
+using Limits = std::numeric_limits<double>;
+
+void spoil_not_a_number(ToolState& sample, const ToolState& /*good*/, Random& random)
+{
+    sample.position_m = with_one(sample.position_m, random, Limits::quiet_NaN());
+}
+void spoil_infinite(ToolState& sample, const ToolState& /*good*/, Random& random)
+{
+    const double sign = random.one_in(2) ? 1.0 : -1.0;
+    sample.position_m = with_one(sample.position_m, random, sign * Limits::infinity());
+}
+void spoil_huge(ToolState& sample, const ToolState& /*good*/, Random& random)
+{
+    sample.position_m = with_one(sample.position_m, random, Limits::max());
+}
+void spoil_invalid(ToolState& sample, const ToolState& /*good*/, Random& /*random*/)
+{
+    sample.valid = false;
+}
+/// Another one in each frame.
+void spoil_jump(ToolState& sample, const ToolState& good, Random& random)
+{
+    sample.position_m = good.position_m + 10.0 * random.in_cube(1.0).normalized();
+}
+void spoil_stuck(ToolState& sample, const ToolState& good, Random& /*random*/)
+{
+    sample = good;
+}
+void spoil_backwards(ToolState& sample, const ToolState& good, Random& random)
+{
+    sample.sample_time_ns =
+        good.sample_time_ns - 1 - static_cast<std::int64_t>(random.below(kFrame_ns));
+}
+void spoil_denormal(ToolState& sample, const ToolState& good, Random& random)
+{
+    sample.position_m = with_one(good.position_m, random, Limits::denorm_min());
+}
+void spoil_all(ToolState& sample, const ToolState& good, Random& random)
+{
+    const std::array spoilers{spoil_not_a_number, spoil_infinite, spoil_huge, spoil_invalid,
+                              spoil_backwards};
+    spoilers[random.below(spoilers.size())](sample, good, random);
+}
+
+/// One tool, its device, and what is known of the episode.
+class Trial
+{
+public:
+    Trial(const TestModel& model, const CenterOracle& oracle, const Garbage& garbage,
+          std::uint64_t seed)
+        : oracle_(oracle)
+        , garbage_(garbage)
+        , seed_(seed)
+        , random_(Random::seeded(seed))
+        , slide_(oracle.tree(), manner_of(model), start_of(oracle.tree(), model))
+        , rig_(model, with_tool({}, 0.01 * model.diagonal_m))
+    {
+        figures_.name = model.name + ", " + garbage.name;
+        figures_.unit = "of the largest force";
+        figures_.bound = 1.0 + kForceRounding;
+    }
+
+    [[nodiscard]] TrialFigures run(std::uint32_t frames)
+    {
+        for (frame_ = 0; frame_ < frames; ++frame_)
+        {
+            ToolState sample;
+            sample.position_m = slide_.next();
+            sample.sample_time_ns = kFrame_ns * (frame_ + 1'000);
+            if (!is_good())
+            {
+                garbage_.spoil(sample, good_, random_);
+            }
+            else
+            {
+                good_ = sample;
+            }
+            check(rig_.step(std::span(&sample, 1), {}));
+        }
+        return figures_;
+    }
+
+private:
+    static SlideManner manner_of(const TestModel& model)
+    {
+        SlideManner manner;
+        manner.diagonal_m = model.diagonal_m;
+        manner.step_m = 0.1e-3 * model.diagonal_m;
+        manner.turn_rate = [](std::uint64_t turn) { return turn % 2 == 0 ? 0.5 : -0.5; };
+        return manner;
+    }
+    static Vec3 start_of(const FaceTree& tree, const TestModel& model)
+    {
+        return tree.nearest(tree.high_m()).point_m + Vec3(0.0, 0.0, 0.01 * model.diagonal_m);
+    }
+
+    /// Episodes of 1 to 100 frames; long good times, in which everything must be well again.
+    [[nodiscard]] bool is_good()
+    {
+        if (frames_left_ == 0)
+        {
+            in_episode_ = frame_ > 0 && !in_episode_;
+            const std::uint32_t longest = random_.one_in(2) ? 5 : 100;
+            frames_left_ = in_episode_ ? 1 + random_.below(longest) : kRecoveryFrames + 50;
+            age_ = 0;
+        }
+        --frames_left_;
+        ++age_;
+        return !in_episode_;
+    }
+
+    void check(const FrameOutput& output)
+    {
+        ++figures_.trials;
+        const ToolOutput& tool = output.tools[0];
+        const double force_n = tool.force_n.norm();
+        figures_.observe(force_n / kForceMax_n);
+        expect(tool.force_n.allFinite() && force_n <= kForceMax_n * (1.0 + kForceRounding),
+               "the force is " + std::to_string(force_n) + " N");
+        expect(tool.proxy_m.allFinite(), "the proxy is nowhere");
+        const BracketVerdict verdict = judge_bracket(oracle_, output.pairs[0], rig_.pose());
+        expect(verdict.error <= 1.0, verdict.text);
+        in_episode_ ? check_episode(output) : check_recovery(output);
+    }
+
+    void check_episode(const FrameOutput& output)
+    {
+        const auto tells = [&](FrameFault fault)
+        { return fault == FrameFault::none || has_fault(output.faults, fault); };
+        expect(age_ > 1 || tells(garbage_.fault), "the first frame tells no fault");
+        expect(age_ <= kHeldFrames || tells(garbage_.lasting_fault), "no fault is told any more");
+        const double force_n = output.tools[0].force_n.norm();
+        expect(!garbage_.fades || age_ < kGoneFrames || force_n == 0.0,
+               "there is force without a sample");
+        const bool has_jumped = has_fault(output.faults, FrameFault::tool_jumped);
+        expect(!has_jumped || force_n < kForceMax_n, "a jump pulls with all force");
+    }
+
+    void check_recovery(const FrameOutput& output)
+    {
+        if (frame_ < kRecoveryFrames || age_ < kRecoveryFrames)
+        {
+            return;
+        }
+        const AnswerKind kind = output.pairs[0].kind;
+        expect(kind == AnswerKind::exact || kind == AnswerKind::decided,
+               "no answer long after the episode");
+        constexpr FrameFault kOfTool =
+            FrameFault::tool_invalid | FrameFault::tool_stuck | FrameFault::tool_jumped;
+        expect(!has_fault(output.faults, kOfTool), "the tool's faults don't end");
+    }
+
+    void expect(bool holds, const std::string& otherwise)
+    {
+        if (!holds)
+        {
+            figures_.flag(figures_.name + ", TACTUS_SEED=" + std::to_string(seed_) + ", frame " +
+                          std::to_string(frame_) + ", " + std::to_string(age_) +
+                          (in_episode_ ? " into an episode: " : " after an episode: ") + otherwise);
+        }
+    }
+
+    const CenterOracle& oracle_;
+    const Garbage& garbage_;
+    std::uint64_t seed_;
+    Random random_;
+    SurfaceSlide slide_;
+    FrameRig rig_;
+    TrialFigures figures_;
+    ToolState good_;
+    std::uint32_t frame_{0};
+    std::uint32_t age_{0}; ///< Frames of this episode, or since it.
+    std::uint32_t frames_left_{0};
+    bool in_episode_{true};
+};
+
+} // namespace
+
+const std::array<Garbage, kGarbageKinds>& garbage_kinds()
+{
+    using enum FrameFault;
+    static const std::array<Garbage, kGarbageKinds> kinds{{
+        {"not a number", spoil_not_a_number, tool_invalid, tool_invalid, true},
+        {"infinite", spoil_infinite, tool_invalid, tool_invalid, true},
+        {"1.8e308 m", spoil_huge, tool_invalid, tool_invalid, true},
+        {"said to be invalid", spoil_invalid, tool_invalid, tool_invalid, true},
+        {"jumps of 10 m", spoil_jump, tool_jumped, tool_jumped},
+        {"stuck", spoil_stuck, none, tool_stuck, true},
+        {"time backwards", spoil_backwards, tool_invalid, none},
+        {"denormals", spoil_denormal, none, none},
+        {"all of it", spoil_all, tool_invalid, none},
+    }};
+    return kinds;
+}
+
+TrialFigures run_garbage_trial(const TestModel& model, const CenterOracle& oracle,
+                               const Garbage& garbage, std::uint32_t frames, std::uint64_t seed)
+{
+    return Trial(model, oracle, garbage, seed).run(frames);
+}
+
+} // namespace tactus::test

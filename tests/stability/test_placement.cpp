@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/hrtc/placement.hpp"
+#include "tests/shared/random.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace tactus::test
+{
+
+namespace
+{
+
+/// How far from orthonormal poses may be for L and U to hold (kPoseRounding).
+constexpr double kOrthonormal = 1e-15;
+
+TEST(Placement, rotations_of_any_angle_are_orthonormal_and_no_mirrors)
+{
+    Random random(600);
+    double worst = 0.0;
+    for (int i = 0; i < 20'000; ++i)
+    {
+        hrtc::Placement placement;
+        const double angle_deg = std::exp2(random.between(-60.0, 8.4)); // To 338 degrees.
+        placement.rotation_deg = angle_deg * random.in_cube(1.0).normalized();
+        const Mat3 sut = rotation_of(placement);
+        const Mat3 off = sut.transpose() * sut - Mat3::Identity();
+        worst = std::max(worst, off.cwiseAbs().maxCoeff());
+        ASSERT_NEAR(sut.determinant(), 1.0, kOrthonormal) << "rotation " << i;
+    }
+    std::printf("worst departure %g\n", worst);
+    EXPECT_LE(worst, kOrthonormal);
+}
+
+TEST(Placement, turns_counter_clockwise_round_its_axis)
+{
+    hrtc::Placement placement;
+    placement.rotation_deg = Vec3(0.0, 0.0, 90.0);
+    const Vec3 turned = rotation_of(placement) * Vec3(1.0, 0.0, 0.0);
+    EXPECT_NEAR((turned - Vec3(0.0, 1.0, 0.0)).norm(), 0.0, 1e-15);
+    EXPECT_EQ(rotation_of(hrtc::Placement{}), Mat3::Identity());
+}
+
+} // namespace
+
+} // namespace tactus::test

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "tests/shared/distance_oracle.hpp"
+#include "tests/shared/face_tree.hpp"
+#include "tests/shared/test_model.hpp"
+
+#include <cstdint>
+
+namespace tactus::test
+{
+
+using WidePoint = Point<long double>;
+
+/// The true distance between a tool at a place of the model's frame and the whole source mesh.
+/// What a frame's bracket is about depends on the tool's shape: this is all that another shape has
+/// to bring.
+class ToolOracle
+{
+public:
+    ToolOracle() = default;
+    ToolOracle(const ToolOracle&) = delete;
+    ToolOracle& operator=(const ToolOracle&) = delete;
+    ToolOracle(ToolOracle&&) = delete;
+    ToolOracle& operator=(ToolOracle&&) = delete;
+    virtual ~ToolOracle() = default;
+
+    /// Fast, in long double.
+    [[nodiscard]] virtual FaceTree::WideNearest nearest(const WidePoint& place_m) const = 0;
+    /// Face by face in long double: what `nearest` is to find.
+    [[nodiscard]] virtual long double brute(const WidePoint& place_m) const = 0;
+    /// Face by face in 113 bits: who is right when `nearest` and the bracket differ.
+    [[nodiscard]] virtual Quad judged(const WidePoint& place_m) const = 0;
+};
+
+/// For points and spheres: their distance is that of the centre.
+class CenterOracle final : public ToolOracle
+{
+public:
+    explicit CenterOracle(const TestModel& model) : faces_(model.faces), tree_(model.faces) {}
+
+    [[nodiscard]] const FaceTree& tree() const { return tree_; }
+    [[nodiscard]] FaceTree::WideNearest nearest(const WidePoint& place_m) const override
+    {
+        return tree_.wide_nearest(place_m);
+    }
+    [[nodiscard]] long double brute(const WidePoint& place_m) const override
+    {
+        return least_over_faces<long double>(place_m);
+    }
+    [[nodiscard]] Quad judged(const WidePoint& place_m) const override
+    {
+        return least_over_faces<Quad>({static_cast<Quad>(place_m[0]), static_cast<Quad>(place_m[1]),
+                                       static_cast<Quad>(place_m[2])});
+    }
+
+private:
+    template <typename Real>
+    [[nodiscard]] Real least_over_faces(const Point<Real>& place_m) const
+    {
+        Real least = BasicDistanceOracle<Real>::kInfinity;
+        for (const Face& face : faces_)
+        {
+            const Real distance = wide_distance(place_m, face);
+            least = distance < least ? distance : least;
+        }
+        return least;
+    }
+
+    const std::vector<Face>& faces_;
+    FaceTree tree_;
+};
+
+} // namespace tactus::test

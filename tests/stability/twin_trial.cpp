@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "tests/stability/twin_trial.hpp"
+
+#include "tests/shared/closest_point.hpp"
+#include "tests/shared/random.hpp"
+#include "tests/shared/surface_slide.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <vector>
+
+namespace tactus::test
+{
+
+namespace
+{
+
+constexpr double kRadius_diag = 0.01;
+constexpr double kSpeed_diag = 0.1e-3;   ///< A frame of 1 ms: 0.1 diag/s.
+constexpr std::uint32_t kSettling = 100; ///< Frames in which the front comes to the tool.
+constexpr std::uint32_t kFillingMax = 20'000;
+
+/// An exact face and where it is.
+struct NearFace
+{
+    std::uint32_t face{0};
+    std::array<Vec3f, 3> corners_m{};
+
+    friend bool operator==(const NearFace&, const NearFace&) = default;
+};
+
+using FaceSet = std::vector<NearFace>;
+
+bool same_bits(double a, double b)
+{
+    return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
+}
+
+bool same_bits(const Vec3& a, const Vec3& b)
+{
+    return same_bits(a.x(), b.x()) && same_bits(a.y(), b.y()) && same_bits(a.z(), b.z());
+}
+
+/// The whole query, with budgets that never end it.
+LocalSurface surface_at(const AbTree& tree, const Vec3& center_m, double reach_m)
+{
+    LocalSurface surface;
+    QueryMemory memory;
+    WalkBudget budget{1'000'000'000, 1'000'000'000};
+    gather_surface(tree, center_m, reach_m, memory, budget, surface);
+    return surface;
+}
+
+/// The faces within the radius by the oracle's distance, in the order of their ids.
+FaceSet faces_within(const AbTree& tree, const LocalSurface& surface, double radius_m)
+{
+    const Vec3& p = surface.center_m;
+    const WidePoint place{static_cast<long double>(p.x()), static_cast<long double>(p.y()),
+                          static_cast<long double>(p.z())};
+    FaceSet faces;
+    for (std::uint32_t i = 0; i < surface.count; ++i)
+    {
+        const LocalTriangle& triangle = surface.triangles[i];
+        if (wide_distance(place, triangle.corners_m) < static_cast<long double>(radius_m))
+        {
+            faces.push_back({tree.face_of(triangle.prim).value, triangle.corners_m});
+        }
+    }
+    std::sort(faces.begin(), faces.end(),
+              [](const NearFace& a, const NearFace& b) { return a.face < b.face; });
+    return faces;
+}
+
+/// What differs between the answers of the refined and of the whole mesh; empty when nothing does.
+std::string difference(const AbTree& refined, const AbTree& whole, const Vec3& center_m,
+                       double radius_m)
+{
+    const LocalSurface ours = surface_at(refined, center_m, radius_m);
+    const LocalSurface full = surface_at(whole, center_m, radius_m);
+    const DistanceAnswer& a = ours.answer;
+    const DistanceAnswer& b = full.answer;
+    const double certified = std::min(a.certified_radius_m, b.certified_radius_m);
+    if (faces_within(refined, ours, certified) != faces_within(whole, full, certified))
+    {
+        return "the faces within " + std::to_string(certified) + " m differ";
+    }
+    const bool is_exact = a.kind == AnswerKind::exact;
+    if (a.kind != b.kind || (is_exact && a.nearest_face != b.nearest_face))
+    {
+        return "answer " + std::to_string(static_cast<int>(a.kind)) + " by face " +
+               std::to_string(a.nearest_face.value) + ", and of the whole mesh " +
+               std::to_string(static_cast<int>(b.kind)) + " by face " +
+               std::to_string(b.nearest_face.value);
+    }
+    if (is_exact && (!same_bits(a.lower_m, b.lower_m) || !same_bits(a.upper_m, b.upper_m)))
+    {
+        return "the distances differ";
+    }
+    if (is_exact && (!same_bits(a.nearest_point_m, b.nearest_point_m) ||
+                     a.nearest_feature != b.nearest_feature))
+    {
+        return "the nearest points differ";
+    }
+    return "";
+}
+
+/// A rig that has refined everything.
+std::unique_ptr<FrameRig> whole_model(const TestModel& model)
+{
+    RigOptions options;
+    options.pool_bytes = (std::size_t{16} << 20U) + 512 * model.faces.size();
+    options.static_when_it_fits = true;
+    options.courier_steps_per_frame = 16;
+    auto rig = std::make_unique<FrameRig>(model, options);
+    Budgets budgets;
+    budgets.splits = kMaxSplitsPerFrame;
+    budgets.pages = kMaxArrivalsPerFrame;
+    budgets.requests = 64;
+    for (std::uint32_t frame = 0; frame < kFillingMax; ++frame)
+    {
+        if (rig->step(to_vec3(model.faces[0][0]), budgets).models[0].is_static)
+        {
+            return rig;
+        }
+    }
+    std::fprintf(stderr, "twin trial: %s is not refined fully after %u frames\n",
+                 model.name.c_str(), kFillingMax);
+    std::exit(2);
+}
+
+SurfaceSlide slide_over(const TwinTrial& trial, Random& random)
+{
+    SlideManner manner;
+    manner.diagonal_m = trial.model.diagonal_m;
+    manner.radius_diag = kRadius_diag;
+    manner.step_m = kSpeed_diag * trial.model.diagonal_m;
+    manner.turn_rate = [seed = random.bits()](std::uint64_t turn)
+    { return Random::seeded(seed + turn).between(-1.0, 1.0); };
+    // From above, where nothing is in the proxy's way.
+    const Vec3 top = trial.tree.high_m() + Vec3(0.0, 0.0, 0.01 * trial.model.diagonal_m);
+    const Vec3 middle = 0.5 * (trial.tree.low_m() + trial.tree.high_m());
+    return {trial.tree, manner, Vec3(middle.x(), middle.y(), top.z())};
+}
+
+} // namespace
+
+TwinFigures run_twin_trial(const TwinTrial& trial)
+{
+    Random random = Random::seeded(trial.seed);
+    const std::unique_ptr<FrameRig> whole = whole_model(trial.model);
+    FrameRig rig(trial.model, {});
+    SurfaceSlide slide = slide_over(trial, random);
+    TwinFigures figures;
+    figures.identity = {trial.model.name + ", identical", 0, 0.0, 0.0, "differences", 0, {}};
+    figures.uncertified = {
+        trial.model.name + ", uncertified", 0, 0.0, kUncertifiedShare, "of the frames", 0, {}};
+    std::uint64_t open = 0;
+    for (std::uint32_t frame = 0; frame < trial.frames + kSettling; ++frame)
+    {
+        const PairOutput pair = rig.step(slide.next()).pairs[0];
+        if (frame < kSettling)
+        {
+            continue;
+        }
+        ++figures.uncertified.trials;
+        if (pair.kind != AnswerKind::exact && pair.kind != AnswerKind::decided)
+        {
+            ++open;
+            continue;
+        }
+        ++figures.identity.trials;
+        const std::string text = difference(rig.model().tree, whole->model().tree, pair.point_m,
+                                            pair.certified_radius_m);
+        if (!text.empty())
+        {
+            figures.identity.flag(figures.identity.name +
+                                  ", TACTUS_SEED=" + std::to_string(trial.seed) + ", frame " +
+                                  std::to_string(frame) + ": " + text);
+            figures.identity.observe(static_cast<double>(figures.identity.violations));
+        }
+    }
+    figures.uncertified.observe(static_cast<double>(open) / trial.frames);
+    return figures;
+}
+
+} // namespace tactus::test
