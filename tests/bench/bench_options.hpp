@@ -20,6 +20,7 @@ inline constexpr std::uint32_t kMaxPasses = 100;
 struct BenchOptions
 {
     bool quick{false};                   ///< Fewer frames and repeats; no case of 4 M faces.
+    bool full{false};                    ///< All trials of a suite that usually tries few.
     bool count{false};                   ///< One warm pass, nothing else: for instruction counts.
     std::vector<std::string> only;       ///< Names of cases; empty: all.
     std::filesystem::path cache;         ///< Keeps encoded models; empty: none are kept.

@@ -23,10 +23,13 @@ struct Suite
     std::optional<std::string> (*run)(const BenchOptions& options, Rows& rows);
     /// What is printed unless every row is asked for.
     std::string (*to_table)(const Rows& rows);
+    /// Its goals are laws: the program leaves with code 1 when one isn't met, asked or not.
+    bool always_checks{false};
 };
 
 [[nodiscard]] Suite encoder_suite();
 [[nodiscard]] Suite frame_suite();
+[[nodiscard]] Suite stability_suite();
 [[nodiscard]] Suite table1_suite();
 
 } // namespace tactus::bench

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+
+/// The suite `stability`: what is claimed to hold always, tried as often as there is time for.
+/// Nothing is measured but errors; a claim that doesn't hold makes the program leave with code 1.
+
+#include "host_tools/shapes/shapes.hpp"
+#include "tests/bench/suites.hpp"
+#include "tests/bench/trial_rows.hpp"
+#include "tests/shared/kernel_trial.hpp"
+#include "tests/stability/bracket_trial.hpp"
+#include "tests/stability/garbage_trial.hpp"
+#include "tests/stability/long_run_trial.hpp"
+#include "tests/stability/trial_models.hpp"
+#include "tests/stability/twin_trial.hpp"
+#include "tests/stability/worst_points.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <functional>
+
+namespace tactus::bench
+{
+
+namespace
+{
+
+using test::TrialFigures;
+using Report = std::function<void(const TrialFigures&)>;
+
+/// How much of everything a run does.
+struct Sizes
+{
+    int kernel_cases;             ///< A class, of 15.
+    std::uint32_t bracket_frames; ///< A model and hardship.
+    std::uint32_t twin_frames;    ///< A model.
+    std::uint64_t operations;     ///< Splits and merges, a model.
+    std::uint32_t touches;        ///< Of test::kTouchFrames frames of 1 ms.
+    std::uint64_t press_frames;
+    std::uint32_t garbage_frames; ///< A kind.
+};
+
+constexpr Sizes kSized{200, 100, 2'000, 100'000, 100, 50'000, 4'000};
+/// A million frames of brackets and cases of each kernel, ten million splits and merges, 24 hours
+/// of touching.
+constexpr Sizes kFull{67'000, 4'000, 25'000, 2'500'000, 43'200, 3'600'000, 100'000};
+
+constexpr std::uint64_t kSeed = 20'261'600;
+
+/// What there is of well-known meshes; the largest in full runs only.
+std::vector<const test::TestModel*> known_models(bool full)
+{
+    std::vector<const test::TestModel*> models;
+    for (const test::KnownMesh& mesh : test::kKnownMeshes)
+    {
+        const bool is_largest = &mesh == std::end(test::kKnownMeshes) - 1;
+        const test::TestModel* model = full || !is_largest ? test::known_model(mesh) : nullptr;
+        if (model != nullptr)
+        {
+            models.push_back(model);
+        }
+    }
+    return models;
+}
+
+std::vector<const test::TestModel*> all_models(bool full)
+{
+    std::vector<const test::TestModel*> models = known_models(full);
+    for (std::size_t i = 0; i < test::generated_model_count(); ++i)
+    {
+        models.push_back(&test::generated_model(i));
+    }
+    return models;
+}
+
+void try_kernels(const Sizes& sizes, bool /*full*/, const Report& report)
+{
+    for (const test::KernelTrial& trial : test::kernel_trials())
+    {
+        TrialFigures all;
+        all.name = std::string("kernel of a ") + trial.name;
+        all.unit = "of the law";
+        test::Random random = test::Random::seeded(test::seed_of(kSeed));
+        for (const test::PairClass& kind : test::pair_classes())
+        {
+            all.add(trial.run(kind, sizes.kernel_cases, random));
+        }
+        report(all);
+    }
+}
+
+void try_brackets(const Sizes& sizes, bool full, const Report& report)
+{
+    std::uint64_t own = kSeed + 100;
+    for (const test::TestModel* model : all_models(full))
+    {
+        const test::CenterOracle oracle(*model);
+        TrialFigures all;
+        all.name = "bracket, " + model->name;
+        all.unit = "of an exact answer's bracket";
+        for (const test::Hardship& hardship : test::hardships(*model))
+        {
+            const std::uint64_t seed = test::seed_of(++own);
+            all.add(
+                run_bracket_trial({*model, oracle, hardship, seed, sizes.bracket_frames}).bracket);
+        }
+        report(all);
+    }
+}
+
+/// That the checks can fail: lying models, of which none may pass.
+void try_liars(const Sizes& sizes, bool /*full*/, const Report& report)
+{
+    using test::lying_model;
+    TrialFigures smaller{"liars not found, bounds a fifth smaller", 0, 0.0, 0.0, "models", 0, {}};
+    TrialFigures without{"liars not found, coarse distance taken", 0, 0.0, 0.0, "models", 0, {}};
+    const auto judge = [](TrialFigures& figures, const TrialFigures& lies)
+    {
+        ++figures.trials;
+        if (lies.violations == 0)
+        {
+            figures.flag(lies.name + " passed");
+        }
+    };
+    for (const Shape shape : {Shape::bumpy_sphere, Shape::torus, Shape::terrain})
+    {
+        const TriangleMesh mesh = make_shape(shape, 4'000).value();
+        const std::string name(shape_names()[static_cast<std::size_t>(shape)]);
+        judge(smaller, query_worst_points(lying_model(name + "-0.8", mesh, 0.8)));
+        const test::TestModel& model = lying_model(name + "-0", mesh, 0.0);
+        const test::CenterOracle oracle(model);
+        judge(without, run_bracket_trial({model, oracle, test::hardships(model)[2],
+                                          test::seed_of(kSeed), 10 * sizes.bracket_frames})
+                           .bracket);
+    }
+    report(smaller);
+    report(without);
+}
+
+void try_twins(const Sizes& sizes, bool full, const Report& report)
+{
+    std::vector<const test::TestModel*> models = known_models(full);
+    for (std::size_t i = 0; i < 4; ++i)
+    {
+        models.push_back(&test::small_model(i));
+    }
+    for (const test::TestModel* model : models)
+    {
+        const test::FaceTree tree(model->faces);
+        const test::TwinFigures figures =
+            run_twin_trial({*model, tree, test::seed_of(kSeed), sizes.twin_frames});
+        report(figures.identity);
+        report(figures.uncertified);
+    }
+}
+
+void try_splits(const Sizes& sizes, bool /*full*/, const Report& report)
+{
+    for (std::size_t i = 0; i < 4; ++i)
+    {
+        report(run_split_merge_trial(test::small_model(i), sizes.operations, test::seed_of(kSeed)));
+    }
+}
+
+void try_day(const Sizes& sizes, bool /*full*/, const Report& report)
+{
+    const test::TestModel& model = test::small_model(0);
+    test::DayFigures day = run_day_trial(model, sizes.touches, test::seed_of(kSeed));
+    day.returns.name += fmt::format(", {:.1f} h", day.simulated_s / 3'600.0);
+    report(day.returns);
+    report(day.creep);
+    TrialFigures press = run_press_trial(model, sizes.press_frames, test::seed_of(kSeed));
+    press.name += ", one press";
+    report(press);
+}
+
+void try_garbage(const Sizes& sizes, bool /*full*/, const Report& report)
+{
+    const test::TestModel& model = test::small_model(0);
+    const test::CenterOracle oracle(model);
+    for (const test::Garbage& garbage : test::garbage_kinds())
+    {
+        TrialFigures figures =
+            run_garbage_trial(model, oracle, garbage, sizes.garbage_frames, test::seed_of(kSeed));
+        figures.name = std::string("device garbage, ") + garbage.name;
+        report(figures);
+    }
+}
+
+struct Part
+{
+    const char* name;
+    void (*run)(const Sizes& sizes, bool full, const Report& report);
+};
+
+constexpr std::array<Part, 7> kParts{{{"kernels", try_kernels},
+                                      {"brackets", try_brackets},
+                                      {"liars", try_liars},
+                                      {"twins", try_twins},
+                                      {"splits", try_splits},
+                                      {"day", try_day},
+                                      {"garbage", try_garbage}}};
+
+std::vector<std::string> part_names()
+{
+    std::vector<std::string> names;
+    for (const Part& part : kParts)
+    {
+        names.emplace_back(part.name);
+    }
+    return names;
+}
+
+std::optional<std::string> run_stability_suite(const BenchOptions& options, Rows& rows)
+{
+    for (const Part& part : kParts)
+    {
+        if (!is_chosen(options, part.name, When::always))
+        {
+            continue;
+        }
+        fmt::print(stderr, "{}\n", part.name);
+        (*part.run)(options.full ? kFull : kSized, options.full,
+                    [&](const TrialFigures& figures)
+                    {
+                        for (const std::string& text : figures.texts)
+                        {
+                            fmt::print(stderr, "violation: {}\n", text);
+                        }
+                        add_trial_rows(figures, part.name, rows);
+                    });
+    }
+    return std::nullopt;
+}
+
+} // namespace
+
+Suite stability_suite()
+{
+    return {"stability", part_names, run_stability_suite, to_trial_table, true};
+}
+
+} // namespace tactus::bench

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "tests/bench/bench_row.hpp"
+#include "tests/shared/trial_figures.hpp"
+
+#include <string>
+
+namespace tactus::bench
+{
+
+/// The figures of one claim as rows: trials, worst error and violations; the latter two with goals
+/// that are met when the claim holds.
+void add_trial_rows(const test::TrialFigures& figures, const std::string& part, Rows& rows);
+
+/// Markdown, a line a claim: case, trials, worst error, bound, violations. What doesn't hold is
+/// bold.
+[[nodiscard]] std::string to_trial_table(const Rows& rows);
+
+} // namespace tactus::bench
