@@ -102,8 +102,8 @@ void try_brackets(const Sizes& sizes, bool full, const Report& report)
         for (const test::Hardship& hardship : test::hardships(*model))
         {
             const std::uint64_t seed = test::seed_of(++own);
-            all.add(
-                run_bracket_trial({*model, oracle, hardship, seed, sizes.bracket_frames}).bracket);
+            all.add(test::run_bracket_trial({*model, oracle, hardship, seed, sizes.bracket_frames})
+                        .bracket);
         }
         report(all);
     }
@@ -127,11 +127,11 @@ void try_liars(const Sizes& sizes, bool /*full*/, const Report& report)
     {
         const TriangleMesh mesh = make_shape(shape, 4'000).value();
         const std::string name(shape_names()[static_cast<std::size_t>(shape)]);
-        judge(smaller, query_worst_points(lying_model(name + "-0.8", mesh, 0.8)));
+        judge(smaller, test::query_worst_points(lying_model(name + "-0.8", mesh, 0.8)));
         const test::TestModel& model = lying_model(name + "-0", mesh, 0.0);
         const test::CenterOracle oracle(model);
-        judge(without, run_bracket_trial({model, oracle, test::hardships(model)[2],
-                                          test::seed_of(kSeed), 10 * sizes.bracket_frames})
+        judge(without, test::run_bracket_trial({model, oracle, test::hardships(model)[2],
+                                                test::seed_of(kSeed), 10 * sizes.bracket_frames})
                            .bracket);
     }
     report(smaller);
@@ -149,7 +149,7 @@ void try_twins(const Sizes& sizes, bool full, const Report& report)
     {
         const test::FaceTree tree(model->faces);
         const test::TwinFigures figures =
-            run_twin_trial({*model, tree, test::seed_of(kSeed), sizes.twin_frames});
+            test::run_twin_trial({*model, tree, test::seed_of(kSeed), sizes.twin_frames});
         report(figures.identity);
         report(figures.uncertified);
     }
@@ -159,18 +159,19 @@ void try_splits(const Sizes& sizes, bool /*full*/, const Report& report)
 {
     for (std::size_t i = 0; i < 4; ++i)
     {
-        report(run_split_merge_trial(test::small_model(i), sizes.operations, test::seed_of(kSeed)));
+        report(test::run_split_merge_trial(test::small_model(i), sizes.operations,
+                                           test::seed_of(kSeed)));
     }
 }
 
 void try_day(const Sizes& sizes, bool /*full*/, const Report& report)
 {
     const test::TestModel& model = test::small_model(0);
-    test::DayFigures day = run_day_trial(model, sizes.touches, test::seed_of(kSeed));
+    test::DayFigures day = test::run_day_trial(model, sizes.touches, test::seed_of(kSeed));
     day.returns.name += fmt::format(", {:.1f} h", day.simulated_s / 3'600.0);
     report(day.returns);
     report(day.creep);
-    TrialFigures press = run_press_trial(model, sizes.press_frames, test::seed_of(kSeed));
+    TrialFigures press = test::run_press_trial(model, sizes.press_frames, test::seed_of(kSeed));
     press.name += ", one press";
     report(press);
 }
@@ -181,8 +182,8 @@ void try_garbage(const Sizes& sizes, bool /*full*/, const Report& report)
     const test::CenterOracle oracle(model);
     for (const test::Garbage& garbage : test::garbage_kinds())
     {
-        TrialFigures figures =
-            run_garbage_trial(model, oracle, garbage, sizes.garbage_frames, test::seed_of(kSeed));
+        TrialFigures figures = test::run_garbage_trial(model, oracle, garbage, sizes.garbage_frames,
+                                                       test::seed_of(kSeed));
         figures.name = std::string("device garbage, ") + garbage.name;
         report(figures);
     }

@@ -20,6 +20,8 @@ constexpr std::int64_t kFrame_ns = 1'000'000;
 constexpr std::uint32_t kHeldFrames = 20; ///< kSampleHold_s.
 constexpr std::uint32_t kGoneFrames = 72; ///< And kFadeTime_s, and one on either side.
 constexpr std::uint32_t kRecoveryFrames = 200;
+constexpr double kRadius_diag = 0.01;
+constexpr double kPressed = 0.7;
 constexpr double kForceMax_n = 8.0;
 constexpr double kForceRounding = 1e-15;
 
@@ -85,7 +87,7 @@ public:
         , seed_(seed)
         , random_(Random::seeded(seed))
         , slide_(oracle.tree(), manner_of(model), start_of(oracle.tree(), model))
-        , rig_(model, with_tool({}, 0.01 * model.diagonal_m))
+        , rig_(model, with_tool({}, kRadius_diag * model.diagonal_m))
     {
         figures_.name = model.name + ", " + garbage.name;
         figures_.unit = "of the largest force";
@@ -117,23 +119,27 @@ private:
     {
         SlideManner manner;
         manner.diagonal_m = model.diagonal_m;
+        manner.radius_diag = kPressed * kRadius_diag; // Always in contact, so that there is force.
         manner.step_m = 0.1e-3 * model.diagonal_m;
         manner.turn_rate = [](std::uint64_t turn) { return turn % 2 == 0 ? 0.5 : -0.5; };
         return manner;
     }
     static Vec3 start_of(const FaceTree& tree, const TestModel& model)
     {
-        return tree.nearest(tree.high_m()).point_m + Vec3(0.0, 0.0, 0.01 * model.diagonal_m);
+        return tree.nearest(tree.high_m()).point_m +
+               Vec3(0.0, 0.0, kRadius_diag * model.diagonal_m);
     }
 
-    /// Episodes of 1 to 100 frames; long good times, in which everything must be well again.
+    /// Some frames, or so many that all force is gone; then long good times, in which everything
+    /// must be well again.
     [[nodiscard]] bool is_good()
     {
         if (frames_left_ == 0)
         {
             in_episode_ = frame_ > 0 && !in_episode_;
-            const std::uint32_t longest = random_.one_in(2) ? 5 : 100;
-            frames_left_ = in_episode_ ? 1 + random_.below(longest) : kRecoveryFrames + 50;
+            const std::uint32_t episode =
+                random_.one_in(2) ? 1 + random_.below(5) : kGoneFrames + 20;
+            frames_left_ = in_episode_ ? episode : kRecoveryFrames + 50;
             age_ = 0;
         }
         --frames_left_;

@@ -28,10 +28,10 @@ struct Garbage
 inline constexpr std::size_t kGarbageKinds = 9;
 [[nodiscard]] const std::array<Garbage, kGarbageKinds>& garbage_kinds();
 
-/// A tool slides over the surface, and again and again its device sends garbage for a while. In
-/// each frame the force must be finite, within the device's range and, without a sample, on its
-/// way to zero; the proxy finite, L <= d <= U; the fault told; and everything as before soon after.
-/// The error is the largest force by the largest allowed one.
+/// A tool slides over the surface, pressed against it, and again and again its device sends garbage
+/// for a while. In each frame the force must be finite, within the device's range and, without a
+/// sample, on its way to zero; the proxy finite, L <= d <= U; the fault told; and everything as
+/// before soon after. The error is the largest force by the largest allowed one.
 [[nodiscard]] TrialFigures run_garbage_trial(const TestModel& model, const CenterOracle& oracle,
                                              const Garbage& garbage, std::uint32_t frames,
                                              std::uint64_t seed);
