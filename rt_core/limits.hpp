@@ -80,8 +80,8 @@ inline constexpr std::uint32_t kMaxRankedRegions = 6 * kMaxPairs;
 /// A model with more index pages, about 800 B each, keeps this many, or more where there is memory.
 inline constexpr std::uint32_t kLeastResidentIndexPages = 192;
 /// What a point's way into a model's frame and back may be off by: a share of its distance from the
-/// object's origin and of its own coordinates. Each way has four products and sums of 1.1e-16, and a
-/// rotation may be as far from an orthonormal one.
+/// object's origin and of its own coordinates. Each way rounds some seven times by 1.1e-16, and
+/// a rotation may be as far from orthonormal.
 inline constexpr double kPoseRounding = 2.5e-15;
 /// Frames after which an unanswered wish is asked again.
 inline constexpr std::uint32_t kWishTimeoutFrames = 250;

@@ -8,8 +8,8 @@
 #include "host_tools/shapes/shapes.hpp"
 #include "platform/allocation_counter.hpp"
 #include "platform/system_call_trap.hpp"
-#include "tests/shared/random.hpp"
 #include "tests/shared/frame_rig.hpp"
+#include "tests/shared/random.hpp"
 
 #include <gtest/gtest.h>
 

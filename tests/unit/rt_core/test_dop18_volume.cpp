@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "tests/shared/nearest_walk.hpp"
 #include "tests/shared/distance_oracle.hpp"
+#include "tests/shared/nearest_walk.hpp"
 #include "tests/unit/rt_core/tree_support.hpp"
 #include "tests/unit/rt_core/tree_volumes.hpp"
 
