@@ -9,8 +9,9 @@
 #include "tests/bench/trial_rows.hpp"
 #include "tests/shared/kernel_trial.hpp"
 #include "tests/stability/bracket_trial.hpp"
+#include "tests/stability/day_trial.hpp"
 #include "tests/stability/garbage_trial.hpp"
-#include "tests/stability/long_run_trial.hpp"
+#include "tests/stability/split_merge_trial.hpp"
 #include "tests/stability/trial_models.hpp"
 #include "tests/stability/twin_trial.hpp"
 #include "tests/stability/worst_points.hpp"
@@ -102,7 +103,8 @@ void try_brackets(const Sizes& sizes, bool full, const Report& report)
         for (const test::Hardship& hardship : test::hardships(*model))
         {
             const std::uint64_t seed = test::seed_of(++own);
-            all.add(test::run_bracket_trial({*model, oracle, hardship, seed, sizes.bracket_frames})
+            all.add(test::run_bracket_trial(
+                        {*model, oracle.tree(), oracle, hardship, seed, sizes.bracket_frames})
                         .bracket);
         }
         report(all);
@@ -130,7 +132,8 @@ void try_liars(const Sizes& sizes, bool /*full*/, const Report& report)
         judge(smaller, test::query_worst_points(lying_model(name + "-0.8", mesh, 0.8)));
         const test::TestModel& model = lying_model(name + "-0", mesh, 0.0);
         const test::CenterOracle oracle(model);
-        judge(without, test::run_bracket_trial({model, oracle, test::hardships(model)[2],
+        judge(without, test::run_bracket_trial({model, oracle.tree(), oracle,
+                                                test::hardship_named(model, "K-1"),
                                                 test::seed_of(kSeed), 10 * sizes.bracket_frames})
                            .bracket);
     }

@@ -65,7 +65,7 @@ public:
         , random_(Random::seeded(trial.seed))
         , scale_(kScales[random_.below(kScales.size())])
         , radius_m_(trial.hardship.radius_diag * trial.model.diagonal_m)
-        , motion_(trial.model, trial.oracle.tree(), radius_m_, scale_, random_)
+        , motion_(trial.model, trial.tree, radius_m_, scale_, random_)
         , rig_(trial.model, with_seed(with_tool(trial.hardship.rig, scale_ * radius_m_)))
     {
         figures_.bracket.name = trial.model.name + ", " + trial.hardship.name;

@@ -15,7 +15,8 @@ namespace tactus::test
 struct BracketTrial
 {
     const TestModel& model;
-    const CenterOracle& oracle;
+    const FaceTree& tree;     ///< Of the model, for the motion.
+    const ToolOracle& oracle; ///< Of the tool.
     Hardship hardship;
     std::uint64_t seed{0};
     std::uint32_t frames{0};

@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #include "tests/stability/hardships.hpp"
 
+#include <cstdlib>
+
 namespace tactus::test
 {
 
@@ -92,6 +94,18 @@ std::vector<Hardship> hardships(const TestModel& model)
             {"late-link", usual, with_link(late_link())},
             {"in-the-tool", usual, with_pools(kAmple, 12), 2.0},
             {"static", usual, kept_whole()}};
+}
+
+Hardship hardship_named(const TestModel& model, std::string_view name)
+{
+    for (const Hardship& hardship : hardships(model))
+    {
+        if (hardship.name == name)
+        {
+            return hardship;
+        }
+    }
+    std::abort();
 }
 
 RigOptions with_tool(RigOptions options, double radius_m)

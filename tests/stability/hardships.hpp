@@ -4,6 +4,7 @@
 
 #include "tests/shared/frame_rig.hpp"
 
+#include <string_view>
 #include <vector>
 
 namespace tactus::test
@@ -22,6 +23,8 @@ struct Hardship
 /// Budgets from K = 1 up, pools too small, chunks lost, damaged, delayed and evicted, tools from a
 /// point to one larger than the model; each by itself. The pools have room for the base mesh.
 [[nodiscard]] std::vector<Hardship> hardships(const TestModel& model);
+/// One of them; a name that there isn't ends the program.
+[[nodiscard]] Hardship hardship_named(const TestModel& model, std::string_view name);
 
 /// The options of a rig for one sphere of this radius; force and speed as usual.
 [[nodiscard]] RigOptions with_tool(RigOptions options, double radius_m);

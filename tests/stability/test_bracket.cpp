@@ -32,7 +32,8 @@ void expect_sound_brackets(const TestModel& model, std::uint64_t own_seed, std::
     {
         own += 100;
         const std::uint64_t seed = seed_of(own);
-        const BracketFigures figures = run_bracket_trial({model, oracle, hardship, seed, frames});
+        const BracketFigures figures =
+            run_bracket_trial({model, oracle.tree(), oracle, hardship, seed, frames});
         std::printf("seed %llu, %s\n", static_cast<unsigned long long>(seed),
                     figures.bracket.summary().c_str());
         EXPECT_TRUE(figures.bracket.holds());
@@ -79,12 +80,9 @@ TrialFigures bracket_with_bounds_times(double factor)
     const TriangleMesh mesh = make_shape(Shape::bumpy_sphere, 4'000).value();
     const TestModel& model = lying_model("bounds-" + std::to_string(factor), mesh, factor);
     const CenterOracle oracle(model);
-    Hardship hardship;
-    for (const Hardship& one : hardships(model))
-    {
-        hardship = std::string_view(one.name) == "K-1" ? one : hardship;
-    }
-    return run_bracket_trial({model, oracle, hardship, seed_of(20'261'290), 1'000}).bracket;
+    const Hardship hardship = hardship_named(model, "K-1");
+    return run_bracket_trial({model, oracle.tree(), oracle, hardship, seed_of(20'261'290), 1'000})
+        .bracket;
 }
 
 TEST(BracketsOfALiar, are_flagged_when_the_plain_coarse_distance_is_taken)

@@ -4,7 +4,8 @@
 /// Nothing drifts: splits and merges, touches and rests return to the same state (I2).
 
 #include "tests/shared/random.hpp"
-#include "tests/stability/long_run_trial.hpp"
+#include "tests/stability/day_trial.hpp"
+#include "tests/stability/split_merge_trial.hpp"
 
 #include <gtest/gtest.h>
 

@@ -10,12 +10,6 @@
 namespace tactus::test
 {
 
-/// Random splits, each with its closure, and merges, in waves between base and source. After each
-/// wave everything is merged: then hash, faces, records and tree must be those of the start. Counts
-/// operations.
-[[nodiscard]] TrialFigures run_split_merge_trial(const TestModel& model, std::uint64_t operations,
-                                                 std::uint64_t seed);
-
 struct DayFigures
 {
     /// Touches, after each of which the tool rests far away: state hash and pools are those of the
