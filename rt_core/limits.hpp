@@ -81,8 +81,8 @@ inline constexpr std::uint32_t kMaxRankedRegions = 6 * kMaxPairs;
 inline constexpr std::uint32_t kLeastResidentIndexPages = 192;
 /// What a point's way into a model's frame and back may be off by: a share of its distance from the
 /// object's origin and of its own coordinates. Each way rounds some seven times by 1.1e-16, and
-/// a rotation may be as far from orthonormal.
-inline constexpr double kPoseRounding = 2.5e-15;
+/// R^T R of a rotation may be 2e-15 from the identity.
+inline constexpr double kPoseRounding = 4e-15;
 /// Frames after which an unanswered wish is asked again.
 inline constexpr std::uint32_t kWishTimeoutFrames = 250;
 

@@ -16,7 +16,7 @@ struct Placement
     double scale{1.0};
 };
 
-/// Orthonormal to a few 1e-16. The only place where the program makes a rotation: once an object,
+/// Orthonormal to 2e-15. The only place where the program makes a rotation: once an object,
 /// and no frame ever composes two, so there is nothing to drift.
 [[nodiscard]] Mat3 rotation_of(const Placement& placement);
 

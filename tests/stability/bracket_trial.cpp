@@ -20,22 +20,17 @@ namespace
 
 constexpr std::array<double, 3> kScales{1.0, 0.2, 3.0};
 
-/// A place of the world in the model's frame, with no rounding that counts.
+/// A place of the world in the model's frame, with no rounding that counts and by the inverse of
+/// the rotation, which its transpose nearly is.
 WidePoint wide_place(const ObjectPose& pose, const Vec3& world_m)
 {
-    WidePoint place{0, 0, 0};
-    for (int row = 0; row < 3; ++row)
-    {
-        const auto relative = static_cast<long double>(world_m[row]) -
-                              static_cast<long double>(pose.translation_m[row]);
-        for (std::size_t axis = 0; axis < 3; ++axis)
-        {
-            const double entry = pose.rotation(row, static_cast<Eigen::Index>(axis));
-            place[axis] +=
-                static_cast<long double>(entry) * relative / static_cast<long double>(pose.scale);
-        }
-    }
-    return place;
+    using WideMatrix = Eigen::Matrix<long double, 3, 3>;
+    using WideVector = Eigen::Matrix<long double, 3, 1>;
+    const WideMatrix rotation = pose.rotation.cast<long double>();
+    const WideVector relative =
+        world_m.cast<long double>() - pose.translation_m.cast<long double>();
+    const WideVector place = rotation.inverse() * relative / static_cast<long double>(pose.scale);
+    return {place.x(), place.y(), place.z()};
 }
 
 template <typename Real>
