@@ -174,6 +174,29 @@ TEST(CoreQuery, brackets_the_distance_and_finds_what_measuring_every_face_finds)
     EXPECT_GT(decided, 300);
 }
 
+TEST(CoreQuery, is_true_when_the_reach_ends_just_before_the_surface)
+{
+    Random random(63);
+    for (int round = 0; round < 40; ++round)
+    {
+        TreeRig rig({200, 400, 400});
+        fill(rig, random, 200, false);
+        const auto faces = rig.present();
+        QueryMemory memory;
+        for (int query = 0; query < 30; ++query)
+        {
+            const PlacedCore core = random_core(random);
+            const BruteForce truth(faces, core, 0.0);
+            const double reach = random.between(0.85, 1.0) * truth.upper;
+
+            const Asked asked = ask(*rig.sut, core, reach, memory);
+
+            ASSERT_LE(asked.answer().lower_m, truth.lower + 1e-14) << round << " " << query;
+            ASSERT_GE(asked.answer().upper_m, truth.lower);
+        }
+    }
+}
+
 TEST(CoreQuery, a_spent_budget_leaves_the_bracket_true)
 {
     Random random(62);

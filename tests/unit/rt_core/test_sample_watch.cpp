@@ -81,6 +81,21 @@ TEST(SampleWatch, takes_no_number_that_is_none_or_out_of_range)
     EXPECT_TRUE(tool.give(Vec3(0.1, Limits::denorm_min(), -0.0), 0).is_taken);
 }
 
+TEST(SampleWatch, takes_no_matrix_that_is_no_rotation)
+{
+    const Mat3 mirror = Vec3(1.0, 1.0, -1.0).asDiagonal();
+    const Mat3 no_number = Mat3::Constant(std::numeric_limits<double>::quiet_NaN());
+    for (const Mat3& bad : {mirror, no_number, Mat3(Mat3::Identity() * 1.001), Mat3(Mat3::Zero())})
+    {
+        SampleWatch sut;
+        ToolState sample;
+        sample.rotation = bad;
+        const SampleWatch::Verdict verdict = sut.judge(sample, {}, Vec3(0.0, 0.0, 0.0), kFrame_s);
+        EXPECT_FALSE(verdict.is_taken);
+        EXPECT_EQ(verdict.fault, FrameFault::tool_invalid);
+    }
+}
+
 TEST(SampleWatch, holds_the_force_for_a_while_without_samples_and_then_fades_it)
 {
     WatchedTool tool;

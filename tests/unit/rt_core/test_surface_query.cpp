@@ -193,6 +193,29 @@ TEST(SurfaceQuery, equals_brute_force_in_every_style)
     }
 }
 
+TEST(SurfaceQuery, is_true_when_the_reach_ends_just_before_the_surface)
+{
+    Random random(47);
+    for (const FaceStyle& style : face_styles())
+    {
+        for (int tree = 0; tree < 20; ++tree)
+        {
+            TreeRig rig({300, 400, 400});
+            fill(rig, random, style, 300, false);
+            const auto faces = rig.present();
+            for (int i = 0; i < 30; ++i)
+            {
+                const Vec3 center = random_center(random);
+                const BruteForce truth(faces, center);
+                const double reach = random.between(0.85, 1.0) * truth.upper;
+                const DistanceAnswer answer = ask(*rig.sut, center, reach).surface->answer;
+                ASSERT_LE(answer.lower_m, truth.lower) << style.name << " " << tree << " " << i;
+                ASSERT_GE(answer.upper_m, truth.upper) << style.name << " " << tree << " " << i;
+            }
+        }
+    }
+}
+
 TEST(SurfaceQuery, a_nearest_exact_face_is_given_its_lowest_id_among_equals)
 {
     TreeRig rig({20, 64, 64});
