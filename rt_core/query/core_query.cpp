@@ -103,11 +103,10 @@ private:
         double error_m;
     };
 
-    /// What is farther changes nothing.
+    /// What is farther changes nothing. Never grows: what was left out stays farther.
     [[nodiscard]] double worth_m() const noexcept
     {
-        const double proof = static_cast<double>(kProofShare) * upper_;
-        return proof > reach_ ? proof : std::max(reach_, upper_);
+        return std::max(reach_, static_cast<double>(kProofShare) * upper_);
     }
 
     /// Both roundings are relative and far below the margin of the kernels.

@@ -47,11 +47,10 @@ public:
         memory.block = nearest_block_ == kNoNode ? memory.block : nearest_block_;
     }
 
-    /// Beyond this nothing changes the answer.
+    /// Beyond this nothing changes the answer. Never grows: what was left out stays beyond it.
     [[nodiscard]] float bound() const noexcept
     {
-        const float proof = nearest_triangles_ ? kProofShare * limit_ : 0.0F;
-        return proof > floor_ ? proof : std::max(floor_, limit_);
+        return nearest_triangles_ ? std::max(floor_, kProofShare * limit_) : limit_;
     }
 
     /// False when the budget is spent.
