@@ -62,6 +62,8 @@ inline constexpr std::uint32_t kMaxLocalTriangles = 256;
 
 /// Contacts told of one pair: the nearest ones. 128 B each.
 inline constexpr std::uint32_t kMaxContacts = 32;
+/// Pairs of faces that meet and are kept, of a tool that is a mesh and an object.
+inline constexpr std::uint32_t kMaxMeetingFaces = 1'024;
 
 // --- The frame -----------------------------------------------------------------------------------
 

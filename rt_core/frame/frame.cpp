@@ -462,7 +462,8 @@ void Frame::report_pair(std::uint32_t i, const ObjectPose& pose) noexcept
                         to_world(pose, answer.nearest_point_m),
                         pair.is_asleep,
                         answer.nearest_feature,
-                        scene_.tools()[pair.tool].wants_contacts ? &contacts_[i] : nullptr};
+                        scene_.tools()[pair.tool].wants_contacts ? &contacts_[i] : nullptr,
+                        nullptr};
 }
 
 void Frame::report(std::span<const ObjectPose> poses) noexcept

@@ -307,7 +307,8 @@ void add_contacts(const PlacedCore& core, double radius_m, const AbTree& tree,
                         closest.distance,
                         closest.on_shape,
                         closest.on_triangle,
-                        unit_or_zero(-closest.gap)};
+                        unit_or_zero(-closest.gap),
+                        FaceId{}};
         if (!(closest.distance > closest.distance_error))
         {
             contact.normal = normal_of(triangle);

@@ -12,7 +12,7 @@
 namespace tactus
 {
 
-/// A face within a tool's radius of its core. Lengths and frame are those of who has it.
+/// A face within a tool's radius of its core, or of one of its faces. Lengths and frame are those of who has it.
 struct Contact
 {
     FaceId face{};
@@ -23,9 +23,10 @@ struct Contact
     /// Unit length, from the surface to the core; where they meet, the face's own. Zero where that
     /// has no area.
     Vec3 normal{0.0, 0.0, 0.0};
+    FaceId tool_face{}; ///< Of a tool that is a mesh.
 };
 
-/// Nearest first, lower face ids first among equals.
+/// Nearest first, lower face ids first among equals, then lower ones of the tool's.
 using ContactSet = StaticVector<Contact, kMaxContacts>;
 
 /// On which side of a closed surface a point is.

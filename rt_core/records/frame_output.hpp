@@ -6,6 +6,7 @@
 #include "rt_core/records/contact.hpp"
 #include "rt_core/records/door_event.hpp"
 #include "rt_core/records/local_surface.hpp"
+#include "rt_core/records/mesh_report.hpp"
 #include "rt_core/records/work_counters.hpp"
 
 #include <cstdint>
@@ -41,6 +42,7 @@ struct PairOutput
     bool skipped{false}; ///< Answered from the last distance and the motion since.
     TriangleFeature nearest_feature{TriangleFeature::interior}; ///< Of the nearest face.
     const ContactReport* contacts{nullptr}; ///< Null unless the tool wants them.
+    const MeshReport* mesh{nullptr};        ///< Null unless the tool is a mesh.
 };
 
 /// Use of one pool now.

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/base/static_vector.hpp"
+#include "rt_core/limits.hpp"
+#include "rt_core/spm/ids.hpp"
+
+#include <compare>
+#include <cstdint>
+
+namespace tactus
+{
+
+/// Two exact faces that share a point.
+struct MeetingFaces
+{
+    FaceId tool_face{}; ///< Of the tool's model.
+    FaceId face{};      ///< Of the object's.
+
+    constexpr auto operator<=>(const MeetingFaces&) const noexcept = default;
+};
+
+/// Whether any two faces of tool and object share a point.
+enum class Intersection : std::uint8_t
+{
+    open,   ///< What is not exact may meet.
+    none,   ///< Proven.
+    proven, ///< Some do.
+};
+
+/// What a tool that is a mesh gets of a pair.
+struct MeshReport
+{
+    Intersection intersection{Intersection::open};
+    /// Of exact faces, lowest ids first: by the tool's and then by the object's.
+    StaticVector<MeetingFaces, kMaxMeetingFaces> meeting;
+    bool is_truncated{false}; ///< More met; those with the lowest ids are kept.
+    bool is_complete{false};  ///< None was left out, and none may exist unseen.
+    /// The tool's face at the nearest point, where the object's is known.
+    FaceId nearest_tool_face{};
+};
+
+} // namespace tactus
