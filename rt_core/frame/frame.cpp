@@ -7,6 +7,7 @@
 #include "rt_core/query/probe.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 namespace tactus
@@ -37,6 +38,25 @@ Mat3 orthonormalised(const Mat3& matrix) noexcept
     return result;
 }
 
+bool is_mesh(const ToolSpec& tool) noexcept
+{
+    return std::holds_alternative<MeshCore>(tool.core);
+}
+
+/// What a tool that is a mesh has to know of its model.
+MeshCore mesh_core(ModelId model, const HeaderFields& header) noexcept
+{
+    const double quantum = std::ldexp(1.0, header.quantum_log2);
+    MeshCore core{model, Vec3(0.0, 0.0, 0.0), Vec3(0.0, 0.0, 0.0)};
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+        const auto row = static_cast<Eigen::Index>(axis);
+        core.origin_m[row] = header.origin_m[axis];
+        core.extent_m[row] = quantum * static_cast<double>(header.extent_quanta[axis]);
+    }
+    return core;
+}
+
 /// From the model's frame to the world.
 void place_in_world(const ObjectPose& pose, ContactReport& report) noexcept
 {
@@ -59,7 +79,9 @@ const char* refusal_text(FrameRefusal refusal) noexcept
     case FrameRefusal::too_many:
         return "there are too many tools, objects or models, or none";
     case FrameRefusal::unknown_model:
-        return "an object names a model that is not loaded";
+        return "an object or a tool names a model that is not loaded";
+    case FrameRefusal::shared_model:
+        return "a tool names a model that an object shows";
     case FrameRefusal::header_refused:
         return "a model's header is damaged";
     case FrameRefusal::base_refused:
@@ -112,6 +134,20 @@ std::optional<FrameRefusal> Frame::check(const FrameSetup& setup) noexcept
             return FrameRefusal::unknown_model;
         }
     }
+    for (const ToolSpec& tool : setup.tools)
+    {
+        const auto* mesh = std::get_if<MeshCore>(&tool.core);
+        if (mesh != nullptr && mesh->model.value >= setup.models.size())
+        {
+            return FrameRefusal::unknown_model;
+        }
+        if (mesh != nullptr &&
+            std::any_of(setup.objects.begin(), setup.objects.end(),
+                        [mesh](const ObjectSpec& object) { return object.model == mesh->model; }))
+        {
+            return FrameRefusal::shared_model;
+        }
+    }
     for (const ModelSource& source : setup.models)
     {
         if (!ModelHeader::parse(source.header))
@@ -129,10 +165,15 @@ Frame::Frame(PassKey /*key*/, Arena& arena, const FrameSetup& setup) noexcept
     , refine_memories_(arena.take<RefineMemory>(scene_.pairs().size() * kQuestions))
     , surfaces_(arena.take<LocalSurface>(scene_.pairs().size() + 1))
 {
-    if (std::any_of(setup.tools.begin(), setup.tools.end(),
-                    [](const ToolSpec& tool) { return tool.wants_contacts; }))
+    const bool has_meshes = std::any_of(setup.tools.begin(), setup.tools.end(), is_mesh);
+    if (has_meshes || std::any_of(setup.tools.begin(), setup.tools.end(),
+                                  [](const ToolSpec& tool) { return tool.wants_contacts; }))
     {
         contacts_ = arena.take<ContactReport>(scene_.pairs().size());
+    }
+    if (has_meshes)
+    {
+        mesh_pairs_ = arena.take<MeshPair>(scene_.pairs().size());
     }
     rotations_.fill(Mat3::Identity());
     for (const ToolSpec& tool : setup.tools)
@@ -164,6 +205,7 @@ Frame::Frame(PassKey /*key*/, Arena& arena, const FrameSetup& setup) noexcept
         {
             model.residence = Residence::filling;
         }
+        scene_.describe_meshes(mesh_core(ModelId{model_count_}, header.fields()));
         ++model_count_;
     }
 }
@@ -178,7 +220,7 @@ FrameOutput Frame::run(std::span<const ToolState> tools, std::span<const ObjectP
     faults_ = FrameFault::none;
     last_budgets_ = budgets;
     read_tools(tools);
-    place_pairs(poses);
+    place_pairs(poses, budgets);
     load(budgets);
     mark(Stage::load);
     refine(budgets);
@@ -201,7 +243,7 @@ void Frame::rehearse() noexcept
     for (std::uint32_t i = 0; i < scene_.pairs().size(); ++i)
     {
         const ScenePair& pair = scene_.pairs()[i];
-        if (pair.has_known && !pair.is_asleep)
+        if (pair.has_known && !pair.is_asleep && !pair.core.is_mesh())
         {
             WalkBudget budget{last_budgets_.nodes, last_budgets_.triangles};
             QueryMemory memory = query_memories_[i];
@@ -277,13 +319,37 @@ ModelId Frame::model_of(const ScenePair& pair) const noexcept
     return scene_.objects()[pair.object].model;
 }
 
-void Frame::place_pairs(std::span<const ObjectPose> poses) noexcept
+void Frame::place_pairs(std::span<const ObjectPose> poses, const Budgets& budgets) noexcept
 {
     for (ScenePair& pair : scene_.pairs())
     {
         scene_.place(pair, poses[pair.object], rotations_[pair.tool], position_of(pair.tool),
                      reach_of(pair.tool), ahead_of(pair.tool));
     }
+    for (std::uint32_t i = 0; i < scene_.pairs().size(); ++i)
+    {
+        if (MeshPair* mesh = mesh_pair(i); mesh != nullptr)
+        {
+            const ScenePair& pair = scene_.pairs()[i];
+            mesh->place(
+                pair, *std::get_if<MeshCore>(&scene_.tools()[pair.tool].core),
+                *models_[tool_model_of(pair).value], *models_[model_of(pair).value],
+                place_in_model(poses[pair.object], rotations_[pair.tool], position_of(pair.tool)),
+                budgets);
+        }
+    }
+}
+
+/// Null unless the pair's tool is a mesh.
+MeshPair* Frame::mesh_pair(std::uint32_t pair) noexcept
+{
+    return scene_.pairs()[pair].core.is_mesh() ? &mesh_pairs_[pair] : nullptr;
+}
+
+ModelId Frame::tool_model_of(const ScenePair& pair) const noexcept
+{
+    const auto* mesh = std::get_if<MeshCore>(&scene_.tools()[pair.tool].core);
+    return mesh == nullptr ? ModelId{} : mesh->model;
 }
 
 void Frame::load(const Budgets& budgets) noexcept
@@ -292,12 +358,19 @@ void Frame::load(const Budgets& budgets) noexcept
     for (std::uint32_t i = 0; i < scene_.pairs().size(); ++i)
     {
         const ScenePair& pair = scene_.pairs()[i];
-        if (models_[model_of(pair).value]->residence == Residence::complete)
+        const ModelId object = model_of(pair);
+        const ModelId tool = tool_model_of(pair);
+        if (is_complete(object) && (tool.is_none() || is_complete(tool)))
         {
             continue;
         }
         predictors_[i].observe(pair.core.center(), elapsed_s_[pair.tool]);
-        predictors_[i].rank(model_of(pair), pair.cover, Scene::kKeepFactor * pair.reach_m, ranking);
+        if (MeshPair* mesh = mesh_pair(i); mesh != nullptr)
+        {
+            mesh->rank(pair, tool, object, predictors_[i], ranking);
+            continue;
+        }
+        predictors_[i].rank(object, pair.cover, Scene::kKeepFactor * pair.reach_m, ranking);
     }
     for (std::uint32_t i = 0; i < model_count_; ++i)
     {
@@ -325,51 +398,94 @@ void Frame::load(const Budgets& budgets) noexcept
     }
 }
 
+bool Frame::is_complete(ModelId model) const noexcept
+{
+    return models_[model.value]->residence == Residence::complete;
+}
+
 void Frame::refine(const Budgets& budgets) noexcept
 {
     for (std::uint32_t i = 0; i < model_count_; ++i)
     {
-        ask_about(i);
+        ask_about(ModelId{i});
         models_[i]->refine(questions_.view(), budgets, frame_, faults_);
+        if (!mesh_pairs_.empty())
+        {
+            models_[i]->refit(faults_); // The next model may ask how near its surface is.
+        }
     }
 }
 
 /// What the pairs that are awake ask of a model: where they are and, coming nearer, where they will
 /// be. Certificates of questions that are not asked are forgotten: the model may coarsen there.
-void Frame::ask_about(std::uint32_t model) noexcept
+void Frame::ask_about(ModelId model) noexcept
 {
     questions_.clear();
-    const auto ask = [&](bool is_asked, const Vec3& center_m, double reach_m, RefineMemory& memory)
-    {
-        // From beyond the kernels' range nothing of a model is in reach.
-        if (!is_asked || is_beyond_kernels(center_m, models_[model]->header.quantum_m()))
-        {
-            memory.is_known = false;
-            return;
-        }
-        questions_.push_back({center_m, reach_m, Scene::kKeepFactor * reach_m, &memory});
-    };
     for (std::uint32_t i = 0; i < scene_.pairs().size(); ++i)
     {
         const ScenePair& pair = scene_.pairs()[i];
-        if (model_of(pair).value != model)
+        if (mesh_pair(i) != nullptr)
         {
-            continue;
+            ask_for_mesh(i, model);
         }
-        const double ahead = pair.ahead_m.norm();
-        const bool is_far_ahead = ahead > kLeastAhead * pair.reach_m;
-        const std::span<RefineMemory> memories =
-            refine_memories_.subspan(i * kQuestions, kQuestions);
-        for (std::size_t ball = 0; ball < kMaxCoverBalls; ++ball)
+        else if (model_of(pair) == model)
         {
-            const bool is_asked = !pair.is_asleep && ball < pair.cover.size();
-            const Ball here = ball < pair.cover.size() ? pair.cover[ball] : Ball{};
-            const double reach_m = here.radius + pair.reach_m;
-            ask(is_asked, here.center, reach_m, memories[2 * ball]);
-            ask(is_asked && is_far_ahead, here.center + pair.ahead_m, reach_m,
-                memories[2 * ball + 1]);
+            ask_for_balls(i);
         }
     }
+}
+
+/// Not far ahead is not worth a second question.
+bool Frame::looks_ahead(const ScenePair& pair) noexcept
+{
+    return !pair.is_asleep && pair.ahead_m.norm() > kLeastAhead * pair.reach_m;
+}
+
+void Frame::ask_for_balls(std::uint32_t i) noexcept
+{
+    const ScenePair& pair = scene_.pairs()[i];
+    const std::span<RefineMemory> memories = refine_memories_.subspan(i * kQuestions, kQuestions);
+    for (std::size_t ball = 0; ball < kMaxCoverBalls; ++ball)
+    {
+        const bool is_there = ball < pair.cover.size();
+        const Ball here = is_there ? pair.cover[ball] : Ball{};
+        const double reach_m = here.radius + pair.reach_m;
+        const double keep_m = Scene::kKeepFactor * reach_m;
+        ask(is_there && !pair.is_asleep, model_of(pair),
+            {here.center, reach_m, keep_m, &memories[2 * ball]});
+        ask(is_there && looks_ahead(pair), model_of(pair),
+            {here.center + pair.ahead_m, reach_m, keep_m, &memories[2 * ball + 1]});
+    }
+}
+
+void Frame::ask_for_mesh(std::uint32_t i, ModelId model) noexcept
+{
+    const ScenePair& pair = scene_.pairs()[i];
+    MeshPair& mesh = *mesh_pair(i);
+    for (std::size_t place = 0; place < MeshPair::kPlaces; ++place)
+    {
+        const bool is_asked = place == 0 ? !pair.is_asleep : looks_ahead(pair);
+        if (model_of(pair) == model)
+        {
+            ask(is_asked, model,
+                mesh.ask_object(place, pair, refine_memories_[i * kQuestions + place]));
+        }
+        if (tool_model_of(pair) == model)
+        {
+            ask(is_asked, model, mesh.ask_tool(place, pair));
+        }
+    }
+}
+
+void Frame::ask(bool is_asked, ModelId model, const RefineQuestion& question) noexcept
+{
+    // From beyond the kernels' range nothing of a model is in reach.
+    if (is_asked && !is_beyond_kernels(question.center_m, models_[model.value]->header.quantum_m()))
+    {
+        questions_.push_back(question);
+        return;
+    }
+    question.memory->is_known = false;
 }
 
 void Frame::query(std::span<const ObjectPose> poses, const Budgets& budgets) noexcept
@@ -378,36 +494,69 @@ void Frame::query(std::span<const ObjectPose> poses, const Budgets& budgets) noe
     {
         ScenePair& pair = scene_.pairs()[i];
         LocalSurface& surface = surfaces_[i];
-        const Model& model = *models_[model_of(pair).value];
+        const ObjectPose& pose = poses[pair.object];
         if (pair.is_asleep)
         {
             surface.answer = Scene::from_motion(pair);
             surface.count = 0;
         }
+        if (mesh_pair(i) != nullptr)
+        {
+            query_mesh(i, pose);
+        }
         else
         {
-            WalkBudget budget{budgets.nodes, budgets.triangles};
-            gather_surface(model.tree, pair.core, pair.reach_m, query_memories_[i], budget,
-                           surface);
-            work_.nodes_visited += budget.nodes_visited;
-            work_.triangles_tested += budget.triangles_tested;
-            faults_ |= budget.is_spent ? FrameFault::node_budget_spent : FrameFault::none;
-            faults_ |= surface.truncated ? FrameFault::surface_truncated : FrameFault::none;
-            Scene::remember(pair, surface.answer);
+            query_core(i, pose, budgets);
         }
-        const ObjectPose& pose = poses[pair.object];
-        if (scene_.tools()[pair.tool].wants_contacts)
-        {
-            report_contacts(pair.core, scene_.tools()[pair.tool].radius_m / pose.scale, model.tree,
-                            surface, model.header.is_closed(), contacts_[i]);
-            place_in_world(pose, contacts_[i]);
-        }
-        const std::uint32_t revision = model.header.fields().revision;
+        const std::uint32_t revision = models_[model_of(pair).value]->header.fields().revision;
         if (pose.age_ns > pose_age_max_ns_ || pose.revision != revision)
         {
             surface.answer.kind = AnswerKind::stale;
         }
     }
+}
+
+void Frame::query_core(std::uint32_t i, const ObjectPose& pose, const Budgets& budgets) noexcept
+{
+    ScenePair& pair = scene_.pairs()[i];
+    LocalSurface& surface = surfaces_[i];
+    const Model& model = *models_[model_of(pair).value];
+    if (!pair.is_asleep)
+    {
+        WalkBudget budget{budgets.nodes, budgets.triangles};
+        gather_surface(model.tree, pair.core, pair.reach_m, query_memories_[i], budget, surface);
+        work_.nodes_visited += budget.nodes_visited;
+        work_.triangles_tested += budget.triangles_tested;
+        faults_ |= budget.is_spent ? FrameFault::node_budget_spent : FrameFault::none;
+        faults_ |= surface.truncated ? FrameFault::surface_truncated : FrameFault::none;
+        Scene::remember(pair, surface.answer);
+    }
+    if (scene_.tools()[pair.tool].wants_contacts)
+    {
+        report_contacts(pair.core, scene_.tools()[pair.tool].radius_m / pose.scale, model.tree,
+                        surface, model.header.is_closed(), contacts_[i]);
+        place_in_world(pose, contacts_[i]);
+    }
+}
+
+void Frame::query_mesh(std::uint32_t i, const ObjectPose& pose) noexcept
+{
+    ScenePair& pair = scene_.pairs()[i];
+    MeshPair& mesh = *mesh_pair(i);
+    const ToolSpec& tool = scene_.tools()[pair.tool];
+    if (pair.is_asleep)
+    {
+        mesh.rest(contacts_[i]);
+    }
+    else
+    {
+        const double contact_m = tool.wants_contacts ? tool.radius_m / pose.scale : -1.0;
+        surfaces_[i].count = 0;
+        mesh.query(pair, contact_m, surfaces_[i].answer, contacts_[i]);
+        Scene::remember(pair, surfaces_[i].answer);
+        place_in_world(pose, contacts_[i]);
+    }
+    mesh.add_work(work_, faults_);
 }
 
 void Frame::respond(std::span<const ObjectPose> poses) noexcept
@@ -449,8 +598,10 @@ void Frame::report_pair(std::uint32_t i, const ObjectPose& pose) noexcept
 {
     const ScenePair& pair = scene_.pairs()[i];
     const DistanceAnswer& answer = surfaces_[i].answer;
-    const double rounding_m =
-        pose_rounding_m(pose, to_world(pose, pair.core.center()), pair.core.radius() * pose.scale);
+    const auto* mesh = std::get_if<MeshCore>(&scene_.tools()[pair.tool].core);
+    const double size_m =
+        pair.core.radius() * pose.scale + (mesh == nullptr ? 0.0 : mesh->origin_m.norm());
+    const double rounding_m = pose_rounding_m(pose, to_world(pose, pair.core.center()), size_m);
     pair_outputs_[i] = {pair.tool,
                         pair.object,
                         answer.kind,
@@ -463,7 +614,7 @@ void Frame::report_pair(std::uint32_t i, const ObjectPose& pose) noexcept
                         pair.is_asleep,
                         answer.nearest_feature,
                         scene_.tools()[pair.tool].wants_contacts ? &contacts_[i] : nullptr,
-                        nullptr};
+                        mesh == nullptr ? nullptr : &mesh_pairs_[i].report()};
 }
 
 void Frame::report(std::span<const ObjectPose> poses) noexcept

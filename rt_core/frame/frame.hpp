@@ -5,6 +5,7 @@
 #include "rt_core/base/realtime.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/force/proxy.hpp"
+#include "rt_core/frame/mesh_pair.hpp"
 #include "rt_core/frame/model.hpp"
 #include "rt_core/frame/sample_watch.hpp"
 #include "rt_core/predict/region_predictor.hpp"
@@ -29,7 +30,8 @@ struct ModelSource
     ModelCapacities capacities;
 };
 
-/// What a frame is made of. `models[object.model]` must exist for every object.
+/// What a frame is made of. `models[object.model]` must exist for every object, and for every tool
+/// that is a mesh one that no object shows.
 struct FrameSetup
 {
     std::span<const ModelSource> models;
@@ -46,7 +48,8 @@ struct FrameSetup
 enum class FrameRefusal : std::uint8_t
 {
     too_many,         ///< More tools, objects or models than limits.hpp allows, or none.
-    unknown_model,    ///< An object names a model that isn't there.
+    unknown_model,    ///< An object or a tool names a model that isn't there.
+    shared_model,     ///< A tool names a model that an object shows.
     header_refused,   ///< A model's header did not pass its checks.
     base_refused,     ///< A model's base mesh did not pass its checks.
     memory_too_small, ///< The lent memory is less than required_bytes().
@@ -104,14 +107,23 @@ private:
     [[nodiscard]] static std::optional<FrameRefusal> check(const FrameSetup& setup) noexcept;
 
     void read_tools(std::span<const ToolState> tools) noexcept;
-    void place_pairs(std::span<const ObjectPose> poses) noexcept;
+    void place_pairs(std::span<const ObjectPose> poses, const Budgets& budgets) noexcept;
     void load(const Budgets& budgets) noexcept;
     void refine(const Budgets& budgets) noexcept;
     void query(std::span<const ObjectPose> poses, const Budgets& budgets) noexcept;
     void respond(std::span<const ObjectPose> poses) noexcept;
     void report(std::span<const ObjectPose> poses) noexcept;
-    void ask_about(std::uint32_t model) noexcept;
+    void ask_about(ModelId model) noexcept;
+    void ask_for_balls(std::uint32_t pair) noexcept;
+    void ask_for_mesh(std::uint32_t pair, ModelId model) noexcept;
+    void ask(bool is_asked, ModelId model, const RefineQuestion& question) noexcept;
+    void query_core(std::uint32_t pair, const ObjectPose& pose, const Budgets& budgets) noexcept;
+    void query_mesh(std::uint32_t pair, const ObjectPose& pose) noexcept;
     void report_pair(std::uint32_t i, const ObjectPose& pose) noexcept;
+    [[nodiscard]] MeshPair* mesh_pair(std::uint32_t pair) noexcept;
+    [[nodiscard]] ModelId tool_model_of(const ScenePair& pair) const noexcept;
+    [[nodiscard]] static bool looks_ahead(const ScenePair& pair) noexcept;
+    [[nodiscard]] bool is_complete(ModelId model) const noexcept;
     [[nodiscard]] ToolOutput follow(std::uint32_t tool,
                                     std::span<const PlacedSurface> surfaces) const noexcept;
     [[nodiscard]] double reach_of(std::uint32_t tool) const noexcept;
@@ -141,7 +153,8 @@ private:
     RefineQuestions questions_;               ///< About the model that is being refined.
     std::array<QueryMemory, kMaxPairs> query_memories_{};
     std::span<LocalSurface> surfaces_;  ///< One a pair, and one for the rehearsal.
-    std::span<ContactReport> contacts_; ///< One a pair, if a tool wants them.
+    std::span<ContactReport> contacts_; ///< One a pair, if a tool wants them or is a mesh.
+    std::span<MeshPair> mesh_pairs_;    ///< One a pair, if a tool is a mesh.
     Budgets last_budgets_;
 
     std::array<ToolOutput, kMaxTools> tool_outputs_{};

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "rt_core/geometry/placed_core.hpp"
 
+#include "rt_core/base/assert.hpp"
 #include "rt_core/geometry/box_triangle.hpp"
 #include "rt_core/geometry/segment_triangle.hpp"
 
@@ -66,6 +67,11 @@ PlacedCore::PlacedCore(const ToolCore& core, const Placement& place) noexcept
         half_ = place.scale * box->half;
         core_ = Box{half_};
     }
+    else if (const auto* mesh = std::get_if<MeshCore>(&core))
+    {
+        center_ = to_place(place, mesh->origin_m + 0.5 * mesh->extent_m);
+        half_ = 0.5 * place.scale * kRoundedUp * mesh->extent_m;
+    }
     else if (is_convex_body())
     {
         surround(own_body(), place);
@@ -127,6 +133,7 @@ ClosestPoints to_closest_points(const GjkAnswer& answer) noexcept
 
 ClosestPoints PlacedCore::closest(const Triangle& triangle) const noexcept
 {
+    TACTUS_ASSERT(!is_mesh());
     if (const auto* segment = std::get_if<Segment>(&core_))
     {
         return closest_points(*segment, triangle);

@@ -22,7 +22,8 @@ struct Ball
 using CoreCover = StaticVector<Ball, kMaxCoverBalls>;
 
 /// A tool's core in a model's frame, from where distances are measured. What is computed from it
-/// takes its placed coordinates, which are rounded once, for exact. 0.3 KiB.
+/// takes its placed coordinates, which are rounded once, for exact. A mesh is here no more than the
+/// oriented box round it. 0.3 KiB.
 class PlacedCore
 {
 public:
@@ -33,6 +34,7 @@ public:
     {
         return std::holds_alternative<PointCore>(core_);
     }
+    [[nodiscard]] bool is_mesh() const noexcept { return std::holds_alternative<MeshCore>(core_); }
     [[nodiscard]] bool is_convex_body() const noexcept
     {
         return std::holds_alternative<Hull>(core_) || std::holds_alternative<ConvexBody>(core_);
@@ -45,7 +47,8 @@ public:
     [[nodiscard]] double radius() const noexcept { return radius_; }
 
     /// Distance and nearest points of core and triangle, the same bits whatever else is asked. Of
-    /// a convex body `meet` says what is proven. 50 ns for a point to some 2 us for a box or body.
+    /// a convex body `meet` says what is proven. Not for a mesh (query_meshes). 50 ns for a point
+    /// to some 2 us for a box or body.
     [[nodiscard]] ClosestPoints closest(const Triangle& triangle) const noexcept TACTUS_NONBLOCKING;
 
     /// The triangle is at least this far away; about 20 ns. Good to the corners of the oriented box

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "rt_core/query/contact_report.hpp"
 
+#include "rt_core/query/contact_set.hpp"
 #include "rt_core/query/convex_contact.hpp"
 
 #include <algorithm>
@@ -26,50 +27,6 @@ struct IncidentFace
 /// A vertex of more faces has no normal here.
 constexpr std::size_t kMaxIncident = 64;
 using Incident = StaticVector<IncidentFace, kMaxIncident>;
-
-bool comes_before(const Contact& a, const Contact& b) noexcept
-{
-    return a.distance_m < b.distance_m || (a.distance_m == b.distance_m && a.face < b.face);
-}
-
-Vec3 unit_or_zero(const Vec3& v) noexcept
-{
-    const double length = v.norm();
-    return length > 0.0 ? Vec3(v / length) : Vec3(0.0, 0.0, 0.0);
-}
-
-double longest_edge_sq(const Triangle& triangle) noexcept
-{
-    return std::max({(triangle[1] - triangle[0]).squaredNorm(),
-                     (triangle[2] - triangle[1]).squaredNorm(),
-                     (triangle[0] - triangle[2]).squaredNorm()});
-}
-
-Vec3 normal_of(const Triangle& triangle) noexcept
-{
-    return unit_or_zero(exact_normal(triangle, longest_edge_sq(triangle)));
-}
-
-/// Inserts in order; the farthest goes when there are too many, and then it is false.
-bool keep(const Contact& contact, ContactSet& contacts) noexcept
-{
-    const bool is_full = contacts.size() == kMaxContacts;
-    if (is_full && !comes_before(contact, contacts[kMaxContacts - 1]))
-    {
-        return false;
-    }
-    if (is_full)
-    {
-        contacts.pop_back();
-    }
-    contacts.push_back(contact);
-    for (std::size_t i = contacts.size() - 1; i > 0 && comes_before(contacts[i], contacts[i - 1]);
-         --i)
-    {
-        std::swap(contacts[i], contacts[i - 1]);
-    }
-    return !is_full;
-}
 
 /// Of a number that is not negative; right to some 1e-16. By IEEE operations alone: libm's differ
 /// between platforms.
@@ -302,18 +259,8 @@ void add_contacts(const PlacedCore& core, double radius_m, const AbTree& tree,
         {
             continue;
         }
-        Contact contact{tree.face_of(surface.triangles[i].prim),
-                        closest.feature,
-                        closest.distance,
-                        closest.on_shape,
-                        closest.on_triangle,
-                        unit_or_zero(-closest.gap),
-                        FaceId{}};
-        if (!(closest.distance > closest.distance_error))
-        {
-            contact.normal = normal_of(triangle);
-        }
-        if (!keep(contact, report.contacts))
+        const FaceId face = tree.face_of(surface.triangles[i].prim);
+        if (!keep_nearest(make_contact(closest, triangle, face), report.contacts))
         {
             report.is_complete = false;
         }

@@ -186,10 +186,16 @@ double Coarsener::slack_of(const VsplitRecord& record,
     {
         const double keep = question.keep_m + reach;
         const double distance_sq = (vertex - question.center_m).squaredNorm();
-        if (distance_sq <= keep * keep)
+        if (distance_sq > keep * keep)
         {
-            slack = std::max(slack, keep - std::sqrt(distance_sq) + kPatience * question.keep_m);
+            continue;
         }
+        const double own_keep = question.keep_m - question.span_m;
+        const double left =
+            question.surface == nullptr
+                ? keep - std::sqrt(distance_sq)
+                : own_keep - question.surface->lower_bound_m({vertex, reach}, own_keep);
+        slack = left >= 0.0 ? std::max(slack, left + kPatience * own_keep) : slack;
     }
     return slack;
 }

@@ -4,6 +4,7 @@
 
 #include "rt_core/kernels/kernels.hpp"
 #include "rt_core/math/vec3.hpp"
+#include "rt_core/query/other_surface.hpp"
 
 namespace tactus
 {
@@ -22,12 +23,19 @@ struct RefineMemory
 
 /// What one pair asks of a model: every original face within `reach_m` of the point, exactly.
 /// Model frame, metres; the centre is not is_beyond_kernels().
+///
+/// With a surface, of those only the faces within reach_m - span_m of it: the ball of `span_m`
+/// holds the surface. Distances, errors taken off, are told as those from the centre all the same,
+/// larger by the span than those from the surface.
 struct RefineQuestion
 {
     Vec3 center_m{0.0, 0.0, 0.0};
     double reach_m{0.0};
-    double keep_m{0.0}; ///< Records farther than this may be merged; 1.25 x reach (hysteresis).
+    double keep_m{0.0}; ///< Records farther than this may be merged (hysteresis).
     RefineMemory* memory{nullptr};
+    OtherSurface* surface{nullptr}; ///< Null for a ball.
+    double span_m{0.0};
+    double moved_m{0.0}; ///< No point of the surface has moved farther since the last frame.
 };
 
 } // namespace tactus

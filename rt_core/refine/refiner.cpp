@@ -27,7 +27,28 @@ constexpr std::uint32_t kAheadShare = 16;
 
 double target_of(const RefineQuestion& question) noexcept
 {
-    return question.reach_m * (1.0 + Refiner::kLookAhead);
+    return question.reach_m + Refiner::kLookAhead * (question.reach_m - question.span_m);
+}
+
+/// The least distance of something, its error taken off, given one from the question's centre: the
+/// surface says it better, if there is one and that matters. `ball_of()` holds the thing.
+template <typename BallOf>
+double sharpened(const RefineQuestion& question, double lower_m, double error_m,
+                 BallOf ball_of) noexcept
+{
+    const double target = target_of(question);
+    if (question.surface == nullptr || lower_m > target)
+    {
+        return lower_m;
+    }
+    const double enough = target - question.span_m + error_m;
+    return std::max(lower_m,
+                    question.surface->lower_bound_m(ball_of(), enough) - error_m + question.span_m);
+}
+
+Ball ball_of_face(const BlockGeometry& block, std::size_t lane) noexcept
+{
+    return ball_round(to_triangle(block_triangle(block, static_cast<std::uint32_t>(lane))));
 }
 
 /// A coarse face whose distance minus its error is `lower` stays as it is for now.
@@ -127,7 +148,9 @@ void Refiner::follow(std::span<const RefineQuestion> questions) noexcept
             is_same = false;
             continue;
         }
-        const double moved = (question.center_m - memory.center_m).norm() * (1.0 + 1e-12);
+        const double moved = question.surface != nullptr
+                                 ? question.moved_m
+                                 : (question.center_m - memory.center_m).norm() * (1.0 + 1e-12);
         farthest = std::max(farthest, moved + std::max(0.0, memory.keep_m - question.keep_m));
         memory.certified_m = tree_->is_complete() ? memory.certified_m - moved : 0.0;
         memory.center_m = question.center_m;
@@ -144,10 +167,22 @@ void Refiner::follow(std::span<const RefineQuestion> questions) noexcept
 void Refiner::gather(const RefineQuestion& question, const Budgets& budgets, WorkCounters& work,
                      FrameFault& faults) noexcept
 {
-    const double target = target_of(question);
-    question.memory->certified_m = tree_->is_complete() ? target : 0.0;
-    const float bound = round_up_to_float(target / quantum_m_);
+    question.memory->certified_m = tree_->is_complete() ? target_of(question) : 0.0;
+    if (question.surface != nullptr)
+    {
+        gather_near_surface(question);
+        return;
+    }
     WalkBudget budget{budgets.nodes, budgets.triangles};
+    gather_near_ball(question, budget);
+    faults |= budget.is_spent ? FrameFault::node_budget_spent : FrameFault::none;
+    work.nodes_visited += budget.nodes_visited;
+    work.triangles_tested += budget.triangles_tested;
+}
+
+void Refiner::gather_near_ball(const RefineQuestion& question, WalkBudget& budget) noexcept
+{
+    const float bound = round_up_to_float(target_of(question) / quantum_m_);
     TreeWalk walk(*tree_, question.memory->probe, budget);
     for (std::uint32_t block = walk.next_block(bound, true); block != kNoNode;
          block = walk.next_block(bound, true))
@@ -164,9 +199,21 @@ void Refiner::gather(const RefineQuestion& question, const Budgets& budgets, Wor
     {
         leave(question, static_cast<double>(item.gap) * quantum_m_);
     }
-    faults |= budget.is_spent ? FrameFault::node_budget_spent : FrameFault::none;
-    work.nodes_visited += budget.nodes_visited;
-    work.triangles_tested += budget.triangles_tested;
+}
+
+void Refiner::gather_near_surface(const RefineQuestion& question) noexcept
+{
+    const double bound_m = target_of(question) - question.span_m;
+    SurfaceWalk walk(*tree_, *question.surface);
+    for (std::uint32_t block = walk.next_block(bound_m, true); block != kNoNode;
+         block = walk.next_block(bound_m, true))
+    {
+        gather_block(block, question);
+    }
+    for (const SurfaceWalk::Item& item : walk.left())
+    {
+        leave(question, item.gap_m + question.span_m);
+    }
 }
 
 void Refiner::gather_block(std::uint32_t index, const RefineQuestion& question) noexcept
@@ -179,9 +226,10 @@ void Refiner::gather_block(std::uint32_t index, const RefineQuestion& question) 
     for (std::uint32_t lanes = side.coarse; lanes != 0; lanes &= lanes - 1)
     {
         const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
+        const double error = static_cast<double>(error_in_quanta(side.errors[lane])) * quantum_m_;
         const double key =
-            static_cast<double>(bounds.lower[lane] - error_in_quanta(side.errors[lane])) *
-            quantum_m_;
+            sharpened(question, static_cast<double>(bounds.lower[lane]) * quantum_m_ - error, error,
+                      [&] { return ball_of_face(block, lane); });
         if (key <= target)
         {
             const PrimId prim = side.prims[lane];
@@ -395,8 +443,12 @@ void Refiner::consider_star(RecordId id, const VsplitRecord& record,
     const double reach = static_cast<double>(error_in_quanta(record.reach)) * quantum_m_;
     for (const RefineQuestion& question : questions)
     {
+        const Vec3 vertex = to_vec3(record.position_m);
         const double nearest =
-            (to_vec3(record.position_m) - question.center_m).norm() * (1.0 - 1e-15) - reach;
+            sharpened(question, (vertex - question.center_m).norm() * (1.0 - 1e-15) - reach, 0.0,
+                      [&] {
+                          return Ball{vertex, reach};
+                      });
         if (nearest > target_of(question))
         {
             leave(question, nearest);
@@ -407,9 +459,11 @@ void Refiner::consider_star(RecordId id, const VsplitRecord& record,
         for (std::uint32_t lanes = coarse; lanes != 0; lanes &= lanes - 1)
         {
             const auto place = static_cast<std::size_t>(std::countr_zero(lanes));
+            const double error =
+                static_cast<double>(error_in_quanta(record.error[place])) * quantum_m_;
             const double key =
-                static_cast<double>(bounds.lower[place] - error_in_quanta(record.error[place])) *
-                quantum_m_;
+                sharpened(question, static_cast<double>(bounds.lower[place]) * quantum_m_ - error,
+                          error, [&] { return ball_of_face(star.geometry, place); });
             if (key <= target_of(question))
             {
                 excess[place] = std::min(excess[place], key - question.reach_m);
@@ -450,7 +504,8 @@ double Refiner::lower_bound(PrimId prim, const RefineQuestion& question) const n
         return box_lower;
     }
     const ClosestPoint closest = closest_point_on_triangle(question.center_m, triangle);
-    return std::sqrt(closest.distance_sq) - closest.distance_error - error;
+    return sharpened(question, std::sqrt(closest.distance_sq) - closest.distance_error - error,
+                     error, [&] { return ball_round(triangle); });
 }
 
 /// Full: the face waits for the next frame, when nearer ones are done.

@@ -82,6 +82,8 @@ private:
     void follow(std::span<const RefineQuestion> questions) noexcept;
     void gather(const RefineQuestion& question, const Budgets& budgets, WorkCounters& work,
                 FrameFault& faults) noexcept;
+    void gather_near_ball(const RefineQuestion& question, WalkBudget& budget) noexcept;
+    void gather_near_surface(const RefineQuestion& question) noexcept;
     void gather_block(std::uint32_t index, const RefineQuestion& question) noexcept;
     void bound_faces(const BlockGeometry& block, std::uint32_t lanes,
                      const RefineQuestion& question, FaceBounds& bounds) const noexcept;

@@ -29,6 +29,18 @@ Scene::Scene(std::span<const ToolSpec> tools, std::span<const ObjectSpec> object
     }
 }
 
+void Scene::describe_meshes(const MeshCore& core) noexcept
+{
+    for (ToolSpec& tool : tools_)
+    {
+        auto* mesh = std::get_if<MeshCore>(&tool.core);
+        if (mesh != nullptr && mesh->model == core.model)
+        {
+            *mesh = core;
+        }
+    }
+}
+
 void Scene::place(ScenePair& pair, const ObjectPose& pose, const Mat3& rotation,
                   const Vec3& position_m, double reach_m, const Vec3& ahead_m) const noexcept
 {

@@ -45,6 +45,9 @@ public:
     /// changes when a tool goes back and forth.
     static constexpr double kKeepFactor = 1.25;
 
+    /// Tells the tools whose mesh is the core's model the rest of it.
+    void describe_meshes(const MeshCore& core) noexcept;
+
     /// Places a pair's tool for this frame: where its frame lies in the world, how far it asks from
     /// there, and how far it looks ahead (both in the world).
     void place(ScenePair& pair, const ObjectPose& pose, const Mat3& rotation,

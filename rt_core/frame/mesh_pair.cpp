@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "rt_core/frame/mesh_pair.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace tactus
+{
+
+namespace
+{
+
+/// A mesh has thousands of faces near an object where another tool is one shape: it may look at
+/// this many times what Budgets says for a pair, in each of its walks.
+constexpr std::uint32_t kMeshBudget = 16;
+/// Faces this near are exact whatever the tool's radius, a share of the tool's: surfaces that slide
+/// along each other part and meet in every frame.
+constexpr double kLeastReach = 0.002;
+/// How far ahead in time faces are asked for, in units of ScenePair::ahead_m.
+constexpr double kPrefetchAhead = 4.0;
+
+WalkBudget budget_of(const Budgets& budgets) noexcept
+{
+    return {kMeshBudget * budgets.nodes, kMeshBudget * budgets.triangles};
+}
+
+/// Grows the ball of the cover that has to grow least.
+void put_in_cover(const Ball& ball, CoreCover& cover) noexcept
+{
+    if (cover.try_push_back(ball))
+    {
+        return;
+    }
+    Ball* best = cover.begin();
+    double least = std::numeric_limits<double>::infinity();
+    for (Ball& candidate : cover)
+    {
+        const double radius = (candidate.center - ball.center).norm() + ball.radius;
+        if (radius - candidate.radius < least)
+        {
+            least = radius - candidate.radius;
+            best = &candidate;
+        }
+    }
+    best->radius += std::max(least, 0.0);
+}
+
+/// Balls of a model's frame that hold all its faces within `near_m` of another surface.
+CoreCover cover_near(const AbTree& tree, OtherSurface& other, double near_m) noexcept
+{
+    CoreCover cover;
+    SurfaceWalk walk(tree, other);
+    while (walk.next_block(near_m, false) != kNoNode)
+    {
+        put_in_cover(walk.ball(), cover);
+    }
+    for (const SurfaceWalk::Item& item : walk.left())
+    {
+        put_in_cover(item.ball, cover);
+    }
+    return cover;
+}
+
+} // namespace
+
+void MeshPair::place(const ScenePair& pair, const MeshCore& core, const Model& tool_model,
+                     const Model& object_model, const Placement& tool,
+                     const Budgets& budgets) noexcept
+{
+    tool_tree_ = &tool_model.tree;
+    object_tree_ = &object_model.tree;
+    own_ball_ = {0.5 * core.extent_m, 0.5 * core.extent_m.norm() * (1.0 + 1e-14)};
+    for (std::size_t i = 0; i < kPlaces; ++i)
+    {
+        Placement placed = tool;
+        placed.origin += static_cast<double>(i) * pair.ahead_m;
+        placements_[i] = {placed, core.origin_m};
+        objects_[i] = OtherSurface(*object_tree_, placements_[i], budget_of(budgets));
+        tools_[i] = OtherSurface(*tool_tree_, placements_[i].inverse(), budget_of(budgets));
+        const PlacedCore now(core, placed);
+        moved_m_[i] = now.motion_since(cores_[i]);
+        cores_[i] = now;
+    }
+}
+
+void MeshPair::rank(const ScenePair& pair, ModelId tool_model, ModelId object_model,
+                    const RegionPredictor& predictor, RegionRanking& ranking) noexcept
+{
+    const double scale = placements_[0].place.scale;
+    const double reach_m = Scene::kKeepFactor * refine_reach_m(pair);
+    const double near_m = reach_m + kPrefetchAhead * pair.ahead_m.norm();
+    const CoreCover of_tool = cover_near(*tool_tree_, objects_[0], near_m / scale);
+    CoreCover of_object;
+    for (const Ball& ball : of_tool)
+    {
+        of_object.push_back({placements_[0].to_there(ball.center), scale * ball.radius});
+    }
+    predictor.rank(object_model, of_object, reach_m, ranking);
+    RegionPredictor().rank(tool_model, of_tool, reach_m / scale, ranking);
+}
+
+double MeshPair::refine_reach_m(const ScenePair& pair) const noexcept
+{
+    return std::max(pair.reach_m, kLeastReach * pair.core.radius());
+}
+
+RefineQuestion MeshPair::ask_object(std::size_t place, const ScenePair& pair,
+                                    RefineMemory& memory) noexcept
+{
+    const double reach_m = refine_reach_m(pair);
+    const double span_m = cores_[place].radius();
+    return {cores_[place].center(),
+            span_m + reach_m,
+            span_m + Scene::kKeepFactor * reach_m,
+            &memory,
+            &tools_[place],
+            span_m,
+            moved_m_[place]};
+}
+
+RefineQuestion MeshPair::ask_tool(std::size_t place, const ScenePair& pair) noexcept
+{
+    const double scale = placements_[place].place.scale;
+    const double reach_m = refine_reach_m(pair) / scale;
+    const double span_m = own_ball_.radius;
+    return {own_ball_.center,       span_m + reach_m, span_m + Scene::kKeepFactor * reach_m,
+            &tool_memories_[place], &objects_[place], span_m,
+            moved_m_[place] / scale};
+}
+
+void MeshPair::query(const ScenePair& pair, double contact_m, DistanceAnswer& answer,
+                     ContactReport& contacts) noexcept
+{
+    const MeshQuestion question{*tool_tree_, *object_tree_, placements_[0], pair.reach_m,
+                                contact_m};
+    query_meshes(question, objects_[0], memory_, answer, report_, contacts);
+    if (answer.nearest_face.is_none())
+    {
+        answer.tool_point_m = pair.core.center();
+    }
+}
+
+void MeshPair::rest(ContactReport& contacts) noexcept
+{
+    report_ = MeshReport{};
+    report_.intersection = Intersection::none;
+    report_.is_complete = true;
+    contacts = ContactReport{};
+    contacts.is_complete = true;
+}
+
+void MeshPair::add_work(WorkCounters& work, FrameFault& faults) noexcept
+{
+    for (std::size_t i = 0; i < kPlaces; ++i)
+    {
+        for (OtherSurface* surface : {&objects_[i], &tools_[i]})
+        {
+            const WalkBudget& budget = surface->budget();
+            work.nodes_visited += budget.nodes_visited;
+            work.triangles_tested += budget.triangles_tested;
+            faults |= budget.is_spent ? FrameFault::node_budget_spent : FrameFault::none;
+        }
+    }
+}
+
+} // namespace tactus

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/base/realtime.hpp"
+#include "rt_core/frame/model.hpp"
+#include "rt_core/predict/region_predictor.hpp"
+#include "rt_core/query/mesh_query.hpp"
+#include "rt_core/records/mesh_report.hpp"
+#include "rt_core/refine/refine_question.hpp"
+#include "rt_core/scene/scene.hpp"
+
+#include <array>
+
+namespace tactus
+{
+
+/// What a pair of a tool that is a mesh and an object needs beyond other pairs: two surfaces, each
+/// refined by how near the other is.
+///
+/// Everything is done for two places of the tool: where it is, and where it will be when a contact
+/// can be refined. Haptic thread. 20 KiB.
+class MeshPair
+{
+public:
+    static constexpr std::size_t kPlaces = 2;
+
+    /// Fits the pair to this frame: both models' boxes must be right, and `tool` is where the tool
+    /// lies in the object's frame.
+    void place(const ScenePair& pair, const MeshCore& core, const Model& tool_model,
+               const Model& object_model, const Placement& tool,
+               const Budgets& budgets) noexcept TACTUS_NONBLOCKING;
+
+    /// Adds what both models need where the surfaces are near.
+    void rank(const ScenePair& pair, ModelId tool_model, ModelId object_model,
+              const RegionPredictor& predictor, RegionRanking& ranking) noexcept TACTUS_NONBLOCKING;
+
+    /// What a place asks of the object, and of the tool.
+    [[nodiscard]] RefineQuestion ask_object(std::size_t place, const ScenePair& pair,
+                                            RefineMemory& memory) noexcept TACTUS_NONBLOCKING;
+    [[nodiscard]] RefineQuestion ask_tool(std::size_t place,
+                                          const ScenePair& pair) noexcept TACTUS_NONBLOCKING;
+    [[nodiscard]] RefineMemory& tool_memory(std::size_t place) noexcept
+    {
+        return tool_memories_[place];
+    }
+
+    /// In the object's frame; contacts within `contact_m`, none when it is negative.
+    void query(const ScenePair& pair, double contact_m, DistanceAnswer& answer,
+               ContactReport& contacts) noexcept TACTUS_NONBLOCKING;
+
+    /// Instead of a query, while the pair is proven to be apart.
+    void rest(ContactReport& contacts) noexcept TACTUS_NONBLOCKING;
+
+    /// What was looked at since place().
+    void add_work(WorkCounters& work, FrameFault& faults) noexcept TACTUS_NONBLOCKING;
+
+    [[nodiscard]] const MeshReport& report() const noexcept { return report_; }
+
+private:
+    [[nodiscard]] double refine_reach_m(const ScenePair& pair) const noexcept;
+
+    const AbTree* tool_tree_{nullptr};
+    const AbTree* object_tree_{nullptr};
+    std::array<MeshPlacement, kPlaces> placements_{}; ///< Of the tool's model in the object's.
+    std::array<PlacedCore, kPlaces> cores_{};
+    std::array<double, kPlaces> moved_m_{};       ///< Since the last frame, in the object's frame.
+    std::array<OtherSurface, kPlaces> objects_{}; ///< As the tool's model sees it.
+    std::array<OtherSurface, kPlaces> tools_{};   ///< As the object's model sees it.
+    std::array<RefineMemory, kPlaces> tool_memories_{};
+    Ball own_ball_; ///< Round the tool's model, in its frame.
+    QueryMemory memory_;
+    MeshReport report_;
+};
+
+} // namespace tactus

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/geometry/closest_points.hpp"
+#include "rt_core/records/contact.hpp"
+
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
+namespace tactus
+{
+
+[[nodiscard]] inline Vec3 unit_or_zero(const Vec3& v) noexcept
+{
+    const double length = v.norm();
+    return length > 0.0 ? Vec3(v / length) : Vec3(0.0, 0.0, 0.0);
+}
+
+/// Unit length; zero for a triangle without area.
+[[nodiscard]] inline Vec3 normal_of(const Triangle& triangle) noexcept
+{
+    const double longest_sq = std::max({(triangle[1] - triangle[0]).squaredNorm(),
+                                        (triangle[2] - triangle[1]).squaredNorm(),
+                                        (triangle[0] - triangle[2]).squaredNorm()});
+    return unit_or_zero(exact_normal(triangle, longest_sq));
+}
+
+[[nodiscard]] inline Contact make_contact(const ClosestPoints& closest, const Triangle& triangle,
+                                          FaceId face, FaceId tool_face = {}) noexcept
+{
+    const bool is_apart = closest.distance > closest.distance_error;
+    return {face,
+            closest.feature,
+            closest.distance,
+            closest.on_shape,
+            closest.on_triangle,
+            is_apart ? unit_or_zero(-closest.gap) : normal_of(triangle),
+            tool_face};
+}
+
+[[nodiscard]] inline bool comes_before(const Contact& a, const Contact& b) noexcept
+{
+    return std::tie(a.distance_m, a.face, a.tool_face) <
+           std::tie(b.distance_m, b.face, b.tool_face);
+}
+
+/// Inserts in order; the farthest goes when there are too many, and then it is false.
+[[nodiscard]] inline bool keep_nearest(const Contact& contact, ContactSet& contacts) noexcept
+{
+    const bool is_full = contacts.size() == kMaxContacts;
+    if (is_full && !comes_before(contact, contacts[kMaxContacts - 1]))
+    {
+        return false;
+    }
+    if (is_full)
+    {
+        contacts.pop_back();
+    }
+    contacts.push_back(contact);
+    for (std::size_t i = contacts.size() - 1; i > 0 && comes_before(contacts[i], contacts[i - 1]);
+         --i)
+    {
+        std::swap(contacts[i], contacts[i - 1]);
+    }
+    return !is_full;
+}
+
+} // namespace tactus

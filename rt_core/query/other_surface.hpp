@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/abtree/ab_tree.hpp"
+#include "rt_core/base/realtime.hpp"
+#include "rt_core/geometry/placed_core.hpp"
+#include "rt_core/query/block_search.hpp"
+#include "rt_core/query/tree_walk.hpp"
+
+namespace tactus
+{
+
+/// How a model's frame lies in another model's: there = origin + scale x rotation x (here +
+/// offset).
+struct MeshPlacement
+{
+    Placement place;
+    Vec3 offset_m{0.0, 0.0, 0.0};
+
+    [[nodiscard]] Vec3 to_there(const Vec3& here_m) const noexcept
+    {
+        return place.origin + place.scale * (place.rotation * (here_m + offset_m));
+    }
+    /// The way back.
+    [[nodiscard]] MeshPlacement inverse() const noexcept TACTUS_NONBLOCKING;
+    /// What `to_there` may be off by, in metres there.
+    [[nodiscard]] double rounding_m(const Vec3& here_m) const noexcept TACTUS_NONBLOCKING;
+};
+
+/// Another model's surface, as it lies in a model's frame: the measure of what a tool that is a
+/// mesh needs of an object, and the object of the tool. All lengths are of the frame here. Good for
+/// one frame; what it may look at in all is in its budget. Haptic thread.
+class OtherSurface
+{
+public:
+    OtherSurface() noexcept = default;
+    /// The other's boxes must be right (AbTree::refit) whenever this is asked.
+    OtherSurface(const AbTree& other, const MeshPlacement& there, const WalkBudget& budget) noexcept
+        : other_(&other), there_(there), budget_(budget)
+    {
+    }
+
+    struct Bounds
+    {
+        double lower_m{0.0};
+        double upper_m{0.0};
+    };
+    /// Of the distance from a point to the other's original surface. Beyond `enough_m` the lower is
+    /// any that is not below it, and the upper may be infinite. Some 0.3 us.
+    [[nodiscard]] Bounds distance(const Vec3& point_m, double enough_m) noexcept TACTUS_NONBLOCKING;
+    /// Less than any distance from a point of the ball, down to minus the ball's radius.
+    [[nodiscard]] double lower_bound_m(const Ball& ball,
+                                       double enough_m) noexcept TACTUS_NONBLOCKING
+    {
+        return distance(ball.center, enough_m + ball.radius).lower_m - ball.radius;
+    }
+
+    [[nodiscard]] WalkBudget& budget() noexcept { return budget_; }
+
+private:
+    const AbTree* other_{nullptr};
+    MeshPlacement there_;
+    WalkBudget budget_;
+    QueryMemory memory_;
+};
+
+/// Walks the blocks of a tree that are near another surface, by balls round their boxes, nearest
+/// first. Each box looked at is a question to the other surface.
+class SurfaceWalk
+{
+public:
+    struct Item
+    {
+        TreeRef ref;
+        double gap_m{0.0}; ///< Everything in it is at least this far from the other surface.
+        Ball ball;         ///< Round its box.
+    };
+
+    SurfaceWalk(const AbTree& tree, OtherSurface& other) noexcept TACTUS_NONBLOCKING;
+
+    /// The next block of which something may be within `bound_m`, or kNoNode when there is none or
+    /// the budget is spent. With `coarse_only`, exact subtrees are left out.
+    [[nodiscard]] std::uint32_t next_block(double bound_m,
+                                           bool coarse_only) noexcept TACTUS_NONBLOCKING;
+
+    /// Round the block that next_block() gave last.
+    [[nodiscard]] const Ball& ball() const noexcept { return ball_; }
+    /// What was not visited when the budget was spent; empty after a complete walk.
+    [[nodiscard]] std::span<const Item> left() const noexcept { return stack_.view(); }
+
+private:
+    void push_children(const AbNode& node, double least_m, double bound_m,
+                       bool coarse_only) noexcept TACTUS_NONBLOCKING;
+
+    const AbTree& tree_;
+    OtherSurface& other_;
+    StaticVector<Item, kTreeStack> stack_;
+    Ball ball_;
+};
+
+/// Round a box, and round a triangle; as small as is found without search.
+[[nodiscard]] Ball ball_round(const Aabb& box) noexcept TACTUS_NONBLOCKING;
+[[nodiscard]] Ball ball_round(const Triangle& triangle) noexcept TACTUS_NONBLOCKING;
+
+} // namespace tactus
