@@ -20,6 +20,7 @@ enum class CoreKind : std::uint8_t
     segment = 1,
     box = 2,
     hull = 3,
+    mesh = 4,
 };
 
 constexpr double kLongest_m = 1e6;
@@ -83,6 +84,11 @@ void append_core(std::vector<std::byte>& bytes, const ToolCore& core)
             append_vector(bytes, vertex);
         }
     }
+    else if (const auto* mesh = std::get_if<MeshCore>(&core))
+    {
+        append(bytes, static_cast<std::uint8_t>(CoreKind::mesh));
+        append(bytes, mesh->model.value);
+    }
     else
     {
         TACTUS_ASSERT(std::holds_alternative<PointCore>(core));
@@ -110,6 +116,12 @@ std::optional<ToolCore> read_core(ByteReader& reader, HullVertices& vertices)
     }
     case CoreKind::hull:
         return read_hull(reader, vertices);
+    case CoreKind::mesh:
+    {
+        MeshCore mesh;
+        mesh.model = ModelId{reader.read<std::uint32_t>()};
+        return mesh;
+    }
     }
     return std::nullopt;
 }

@@ -12,8 +12,9 @@ namespace
 
 // A field that is added to one of these has to be hashed below.
 static_assert(sizeof(ToolOutput) == 56);
-static_assert(sizeof(PairOutput) == 112);
-static_assert(sizeof(Contact) == 88);
+static_assert(sizeof(PairOutput) == 120);
+static_assert(sizeof(Contact) == 96);
+static_assert(sizeof(MeshReport) == 8 * kMaxMeetingFaces + 24);
 static_assert(sizeof(ModelOutput) == 80);
 static_assert(sizeof(WorkCounters) == 52);
 
@@ -70,11 +71,24 @@ void hash_contacts(Hash& hash, const ContactReport& report) noexcept
         hash.add(contact.on_tool_m);
         hash.add(contact.on_surface_m);
         hash.add(contact.normal);
+        hash.add(std::uint64_t{contact.tool_face.value});
     }
     hash.add(std::uint64_t{report.is_complete});
     hash.add(std::uint64_t{report.overruled});
     hash.add(report.normal);
     hash.add(static_cast<std::uint64_t>(report.side));
+}
+
+void hash_mesh(Hash& hash, const MeshReport& report) noexcept
+{
+    hash.add(static_cast<std::uint64_t>(report.intersection));
+    for (const MeetingFaces& faces : report.meeting)
+    {
+        hash.add((std::uint64_t{faces.tool_face.value} << 32U) | faces.face.value);
+    }
+    hash.add(std::uint64_t{report.is_truncated});
+    hash.add(std::uint64_t{report.is_complete});
+    hash.add(std::uint64_t{report.nearest_tool_face.value});
 }
 
 std::uint64_t hash_pairs(std::span<const PairOutput> pairs) noexcept
@@ -95,6 +109,10 @@ std::uint64_t hash_pairs(std::span<const PairOutput> pairs) noexcept
         if (pair.contacts != nullptr)
         {
             hash_contacts(hash, *pair.contacts);
+        }
+        if (pair.mesh != nullptr)
+        {
+            hash_mesh(hash, *pair.mesh);
         }
     }
     return hash.value();

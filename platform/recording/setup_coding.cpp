@@ -51,7 +51,8 @@ bool is_sound(const ToolSpec& tool)
            is_within(tool.force_max_n, 0.0, 1e9) && is_within(tool.speed_max_m_per_s, 0.0, 1e9);
 }
 
-Fault parse_tools(ByteReader& reader, std::uint32_t tools, RecordedSetup& setup)
+Fault parse_tools(ByteReader& reader, std::uint32_t tools, std::uint32_t models,
+                  RecordedSetup& setup)
 {
     for (std::uint32_t i = 0; i < tools; ++i)
     {
@@ -69,6 +70,12 @@ Fault parse_tools(ByteReader& reader, std::uint32_t tools, RecordedSetup& setup)
                    " has an unknown core, one beyond 1e6 m or a hull of not 1 to 64 vertices";
         }
         tool.core = *core;
+        const auto* mesh = std::get_if<MeshCore>(&tool.core);
+        if (mesh != nullptr && mesh->model.value >= models)
+        {
+            return "tool " + std::to_string(i) + " names model " +
+                   std::to_string(mesh->model.value) + " of " + std::to_string(models);
+        }
         if (!is_sound(tool))
         {
             return "tool " + std::to_string(i) +
@@ -186,7 +193,7 @@ std::optional<std::string> parse_setup(std::span<const std::byte> payload, Recor
         return "the period is " + std::to_string(setup.period_ns) +
                " ns; 1 to 1000000000 are allowed";
     }
-    if (Fault fault = parse_tools(reader, tools, setup))
+    if (Fault fault = parse_tools(reader, tools, models, setup))
     {
         return fault;
     }

@@ -234,6 +234,14 @@ TEST(RecordingFile, is_refused_when_a_value_is_out_of_its_range)
     expect_refusal(with_bytes(kSetup, kCore - 1, {2}), "tool 0 has an unknown core");
     expect_refusal(with_bytes(kSetup, kCore, {9}), "tool 0 has an unknown core");
     expect_refusal(with_bytes(kSetup, kObject, {1}), "object 0 names model 1 of 1");
+    expect_refusal(
+        with_section(kSetup,
+                     [](auto& payload)
+                     {
+                         payload[kCore] = std::byte{4};
+                         payload.insert(payload.begin() + kCore + 1, {std::byte{1}, {}, {}, {}});
+                     }),
+        "tool 0 names model 1 of 1");
     expect_refusal(with_section(kSetup,
                                 [](auto& payload)
                                 {
@@ -271,9 +279,10 @@ TEST(RecordingFile, is_refused_when_a_value_is_out_of_its_range)
 TEST(ToolCoreCoding, gives_every_core_back_and_refuses_what_is_cut_or_out_of_range)
 {
     const std::array<Vec3, 4> vertices{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 2, 0), Vec3(0, 0, 3)};
-    const std::array<ToolCore, 4> cores{
+    const std::array<ToolCore, 5> cores{
         ToolCore(PointCore{}), ToolCore(Segment{Vec3(1, 2, 3), Vec3(-4, 5, -6)}),
-        ToolCore(Box{Vec3(0.5, 0.0, 2.0)}), ToolCore(Hull::create(vertices).value())};
+        ToolCore(Box{Vec3(0.5, 0.0, 2.0)}), ToolCore(Hull::create(vertices).value()),
+        ToolCore(MeshCore{ModelId{3}, Vec3(0, 0, 0), Vec3(0, 0, 0)})};
     for (const ToolCore& core : cores)
     {
         std::vector<std::byte> bytes;
@@ -294,7 +303,7 @@ TEST(ToolCoreCoding, gives_every_core_back_and_refuses_what_is_cut_or_out_of_ran
             ByteReader infinite(bytes);
             EXPECT_FALSE(read_core(infinite, kept));
         }
-        bytes[0] = std::byte{4};
+        bytes[0] = std::byte{5};
         ByteReader unknown(bytes);
         EXPECT_FALSE(read_core(unknown, kept));
     }

@@ -1,0 +1,328 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "rt_core/geometry/crossing.hpp"
+#include "rt_core/geometry/triangle_triangle.hpp"
+#include "rt_core/query/mesh_query.hpp"
+#include "tests/unit/rt_core/support.hpp"
+#include "tests/unit/rt_core/tree_support.hpp"
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <set>
+
+namespace tactus::test
+{
+
+namespace
+{
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr WalkBudget kAmple{10'000'000, 100'000'000};
+
+MeshPlacement random_placement(Random& random)
+{
+    const Vec3 axis = (random.in_cube(1.0) + Vec3(2, 0, 0)).normalized();
+    const Mat3 rotation = Eigen::AngleAxisd(random.between(-4.0, 4.0), axis).toRotationMatrix();
+    return {{rotation, random.in_cube(0.6), random.between(0.5, 2.0)}, random.in_cube(0.5)};
+}
+
+/// Faces of a style, of which a third are coarse unless `exact_only`.
+void fill(TreeRig& rig, Random& random, std::uint32_t count, bool exact_only)
+{
+    const FaceStyle& style = face_styles()[random.below(5)];
+    for (std::uint32_t prim = 0; prim < count; ++prim)
+    {
+        ChangedFace face = random_face(random, style, prim, 3 * prim + 1);
+        face.error = exact_only ? 0 : face.error;
+        rig.put(face);
+    }
+    rig.sut->refit();
+}
+
+Triangle placed(const ChangedFace& face, const MeshPlacement& place)
+{
+    Triangle triangle = to_triangle(face.corners_m);
+    for (Vec3& corner : triangle)
+    {
+        corner = place.to_there(corner);
+    }
+    return triangle;
+}
+
+double error_of(const ChangedFace& face)
+{
+    return static_cast<double>(error_in_quanta(face.error)) * static_cast<double>(kTreeQuantum);
+}
+
+/// All pairs, one by one, with the kernels that their own tests hold.
+struct AllPairs
+{
+    double lower{kInfinity};
+    double upper{kInfinity};
+    double coarse_lower{kInfinity};
+    std::set<MeetingFaces> meeting;
+    std::set<MeetingFaces> in_contact;
+
+    AllPairs(std::span<const ChangedFace> tool, std::span<const ChangedFace> object,
+             const MeshPlacement& place, double contact)
+    {
+        for (const ChangedFace& tool_face : tool)
+        {
+            const Triangle first = placed(tool_face, place);
+            for (const ChangedFace& face : object)
+            {
+                add(tool_face, first, face, place.place.scale, contact);
+            }
+        }
+        lower = std::max(0.0, std::min(lower, coarse_lower));
+    }
+
+private:
+    void add(const ChangedFace& tool_face, const Triangle& first, const ChangedFace& face,
+             double scale, double contact)
+    {
+        const Triangle second = to_triangle(face.corners_m);
+        const ClosestPoints closest = closest_points(first, second);
+        if (tool_face.error != 0 || face.error != 0)
+        {
+            coarse_lower = std::min(coarse_lower, closest.distance - closest.distance_error -
+                                                      scale * error_of(tool_face) - error_of(face));
+            return;
+        }
+        lower = std::min(lower, std::max(0.0, closest.distance - closest.distance_error));
+        upper = std::min(upper, closest.distance);
+        if (meet(first, second))
+        {
+            meeting.insert({tool_face.face, face.face});
+        }
+        if (closest.distance <= contact)
+        {
+            in_contact.insert({tool_face.face, face.face});
+        }
+    }
+};
+
+struct Asked
+{
+    DistanceAnswer answer;
+    MeshReport report;
+    ContactReport contacts;
+    WalkBudget budget;
+};
+
+Asked ask(const TreeRig& tool, const TreeRig& object, const MeshPlacement& place, double reach,
+          double contact, QueryMemory& memory, const WalkBudget& budget = kAmple)
+{
+    Asked asked;
+    OtherSurface surface(*object.sut, place, budget);
+    query_meshes({*tool.sut, *object.sut, place, reach, contact}, surface, memory, asked.answer,
+                 asked.report, asked.contacts);
+    asked.budget = surface.budget();
+    return asked;
+}
+
+template <typename Faces>
+std::set<MeetingFaces> as_set(const Faces& faces)
+{
+    return {faces.begin(), faces.end()};
+}
+
+} // namespace
+
+TEST(OtherSurface, is_no_nearer_than_all_of_its_faces_less_their_errors)
+{
+    Random random(71);
+    for (int round = 0; round < 60; ++round)
+    {
+        TreeRig object({200, 400, 400});
+        fill(object, random, 1 + random.below(200), round % 2 == 0);
+        const MeshPlacement place = random_placement(random);
+        OtherSurface sut(*object.sut, place, kAmple);
+        for (int query = 0; query < 30; ++query)
+        {
+            const Vec3 point = random.in_cube(3.0);
+            double truth = kInfinity;
+            for (const ChangedFace& face : object.present())
+            {
+                const ClosestPoint closest =
+                    closest_point_on_triangle(place.to_there(point), to_triangle(face.corners_m));
+                truth = std::min(truth, std::sqrt(closest.distance_sq) - error_of(face));
+            }
+            truth = std::max(0.0, truth) / place.place.scale;
+            const double enough = random.one_in(2) ? kInfinity : random.between(0.0, 1.0);
+
+            const double lower = sut.distance(point, enough).lower_m;
+
+            ASSERT_LE(lower, truth + 1e-15);
+            ASSERT_GE(lower, std::min(truth, enough) * (1.0 - 1e-6) - 1e-3);
+            ASSERT_LE(sut.lower_bound_m({point, 0.25}, enough), truth - 0.25 + 1e-15);
+        }
+    }
+}
+
+TEST(MeshPlacement, has_an_inverse)
+{
+    Random random(72);
+    for (int i = 0; i < 1'000; ++i)
+    {
+        const MeshPlacement place = random_placement(random);
+        const Vec3 point = random.in_cube(2.0);
+        EXPECT_LT((place.inverse().to_there(place.to_there(point)) - point).norm(), 1e-14);
+    }
+}
+
+TEST(MeshQuery, finds_what_measuring_all_pairs_finds)
+{
+    Random random(73);
+    int exact = 0;
+    int decided = 0;
+    int met = 0;
+    for (int round = 0; round < 120; ++round)
+    {
+        TreeRig tool({80, 200, 200});
+        TreeRig object({120, 300, 300});
+        fill(tool, random, 1 + random.below(80), round % 3 != 0);
+        fill(object, random, 1 + random.below(120), round % 4 != 0);
+        const auto tool_faces = tool.present();
+        const auto faces = object.present();
+        QueryMemory memory;
+        for (int query = 0; query < 10; ++query)
+        {
+            MeshPlacement place = random_placement(random);
+            place.place.origin.y() += random.between(0.0, 1.5);
+            const double reach = random.between(0.0, 0.2);
+            const double contact = random.one_in(3) ? -1.0 : reach * random.between(0.0, 1.0);
+            const AllPairs truth(tool_faces, faces, place, contact);
+
+            const Asked asked = ask(tool, object, place, reach, contact, memory);
+
+            const DistanceAnswer& answer = asked.answer;
+            ASSERT_LE(answer.lower_m, truth.lower + 1e-14) << round << " " << query;
+            ASSERT_GE(answer.upper_m, truth.lower) << round << " " << query;
+            ASSERT_LE(answer.lower_m, answer.upper_m);
+            // Meetings are found wherever both faces are exact, whatever else is not.
+            ASSERT_EQ(as_set(asked.report.meeting), truth.meeting) << round << " " << query;
+            ASSERT_TRUE(std::is_sorted(asked.report.meeting.begin(), asked.report.meeting.end()));
+            ASSERT_EQ(asked.report.is_complete, truth.coarse_lower > 0.0);
+            ASSERT_EQ(asked.report.intersection, !truth.meeting.empty()     ? Intersection::proven
+                                                 : truth.coarse_lower > 0.0 ? Intersection::none
+                                                                            : Intersection::open);
+            met += truth.meeting.empty() ? 0 : 1;
+            exact += answer.kind == AnswerKind::exact ? 1 : 0;
+            decided += answer.kind == AnswerKind::decided ? 1 : 0;
+            if (answer.kind == AnswerKind::exact)
+            {
+                const double apart = (answer.nearest_point_m - answer.tool_point_m).norm();
+                ASSERT_LE(apart, answer.upper_m + 1e-13);
+                ASSERT_GE(apart, answer.lower_m - 1e-13);
+                ASSERT_NEAR(truth.upper, answer.upper_m, 1e-13);
+            }
+            if (contact >= 0.0 && truth.in_contact.size() <= kMaxContacts)
+            {
+                std::set<MeetingFaces> found;
+                for (const Contact& touching : asked.contacts.contacts)
+                {
+                    found.insert({touching.tool_face, touching.face});
+                }
+                ASSERT_EQ(found, truth.in_contact) << round << " " << query;
+                ASSERT_EQ(asked.contacts.is_complete, truth.coarse_lower > contact);
+            }
+        }
+    }
+    EXPECT_GT(exact, 60);
+    EXPECT_GT(decided, 100);
+    EXPECT_GT(met, 60);
+}
+
+TEST(MeshQuery, a_spent_budget_leaves_all_that_it_says_true)
+{
+    Random random(74);
+    int spent = 0;
+    for (int round = 0; round < 40; ++round)
+    {
+        TreeRig tool({80, 200, 200});
+        TreeRig object({120, 300, 300});
+        fill(tool, random, 80, true);
+        fill(object, random, 120, true);
+        const MeshPlacement place = random_placement(random);
+        const AllPairs truth(tool.present(), object.present(), place, 0.05);
+        for (std::uint32_t share = 1; share < 3'000; share *= 3)
+        {
+            QueryMemory memory{random.below(10)};
+            const Asked asked =
+                ask(tool, object, place, 0.05, 0.05, memory, {share, random.below(10 * share)});
+            spent += asked.budget.is_spent ? 1 : 0;
+            ASSERT_LE(asked.answer.lower_m, truth.lower + 1e-14);
+            ASSERT_GE(asked.answer.upper_m, truth.lower);
+            const auto found = as_set(asked.report.meeting);
+            ASSERT_TRUE(std::includes(truth.meeting.begin(), truth.meeting.end(), found.begin(),
+                                      found.end()));
+            ASSERT_TRUE(!asked.report.is_complete || found == truth.meeting);
+            ASSERT_TRUE(asked.report.intersection != Intersection::none || truth.meeting.empty());
+        }
+    }
+    EXPECT_GT(spent, 50);
+}
+
+TEST(MeshQuery, keeps_the_lowest_of_too_many_meeting_faces_and_contacts)
+{
+    // Every face of the tool meets every face of the object: 50 x 50 of them.
+    TreeRig tool({50, 100, 100});
+    TreeRig object({50, 100, 100});
+    Random random(75);
+    for (std::uint32_t i = 0; i < 50; ++i)
+    {
+        const float off = 0.001F * static_cast<float>(i);
+        tool.put({PrimId{i},
+                  FaceId{i},
+                  i,
+                  0,
+                  {Vec3f{-1.0F, off, -1.0F}, Vec3f{1.0F, off, -1.0F}, Vec3f{0.0F, off, 1.0F}}});
+        object.put({PrimId{i},
+                    FaceId{i},
+                    i * 2'654'435'761U,
+                    0,
+                    {Vec3f{off, -1.0F, -0.5F}, Vec3f{off, 1.0F, -0.5F}, Vec3f{off, 0.0F, 0.9F}}});
+    }
+    tool.sut->refit();
+    object.sut->refit();
+    const MeshPlacement place;
+    QueryMemory memory;
+
+    const Asked asked = ask(tool, object, place, 0.01, 0.01, memory);
+
+    EXPECT_TRUE(asked.report.is_truncated);
+    EXPECT_FALSE(asked.report.is_complete);
+    EXPECT_EQ(asked.report.intersection, Intersection::proven);
+    ASSERT_EQ(asked.report.meeting.size(), kMaxMeetingFaces);
+    for (std::uint32_t i = 0; i < kMaxMeetingFaces; ++i)
+    {
+        ASSERT_EQ(asked.report.meeting[i], (MeetingFaces{FaceId{i / 50}, FaceId{i % 50}}));
+    }
+    EXPECT_FALSE(asked.contacts.is_complete);
+    ASSERT_EQ(asked.contacts.contacts.size(), kMaxContacts);
+    for (std::uint32_t i = 0; i < kMaxContacts; ++i)
+    {
+        const Contact& contact = asked.contacts.contacts[i];
+        EXPECT_EQ(contact.face, FaceId{0});
+        EXPECT_EQ(contact.tool_face, FaceId{i});
+        EXPECT_EQ(contact.distance_m, 0.0);
+        EXPECT_LT((contact.on_tool_m - contact.on_surface_m).norm(), 1e-15);
+    }
+}
+
+TEST(MeshQuery, an_empty_tree_is_infinitely_far)
+{
+    TreeRig tool({8, 50, 50});
+    TreeRig object({8, 50, 50});
+    QueryMemory memory;
+    const Asked asked = ask(tool, object, MeshPlacement{}, 0.1, 0.1, memory);
+    EXPECT_EQ(asked.answer.kind, AnswerKind::decided);
+    EXPECT_EQ(asked.report.intersection, Intersection::none);
+    EXPECT_TRUE(asked.contacts.contacts.empty());
+}
+
+} // namespace tactus::test
