@@ -4,6 +4,7 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <numeric>
 
 namespace tactus::test
 {
@@ -19,55 +20,99 @@ namespace
 
 } // namespace
 
-FrameRig::FrameRig(const TestModel& model, const RigOptions& options)
+FrameRig::FrameRig(const std::vector<const TestModel*>& models, const RigOptions& options)
     : memory_(options.pool_bytes)
     , courier_steps_(options.courier_steps_per_frame)
     , period_ns_(options.period_ns)
 {
-    auto served = serve_from_file(model.path, model.name, {});
-    if (!served)
-    {
-        give_up(served.error().text);
-    }
-    served_ = std::move(served).value();
-    link_ = std::make_unique<LoopbackLink>(*served_.link, options.faults);
+    serve(models, options.faults);
     arena_.emplace(memory_.span());
-    const ModelHeader header = ModelHeader::parse(served_.header).value();
     const std::vector<ToolSpec> tools =
-        options.tools.empty() ? std::vector<ToolSpec>{{0.01 * model.diagonal_m, 500.0, 8.0, 1.0}}
-                              : options.tools;
+        options.tools.empty()
+            ? std::vector<ToolSpec>{{0.01 * models[0]->diagonal_m, 500.0, 8.0, 1.0}}
+            : options.tools;
     const std::array<ObjectSpec, 1> objects{ObjectSpec{ModelId{0}}};
     FrameSetup setup;
     setup.tools = tools;
     setup.objects = objects;
     setup.period_ns = options.period_ns;
     setup.static_when_it_fits = options.static_when_it_fits;
-    const std::size_t shared =
-        Frame::required_bytes(setup) + Arena::round_up(served_.header.size());
-    const ModelCounts counts = header.counts();
-    const std::size_t courier = Courier::required_bytes(counts.chunks(), counts.index_pages());
-    ModelCapacities capacities =
-        options.pool_bytes > shared + courier
-            ? plan_capacities(header, options.pool_bytes - shared - courier, options.cache_bytes)
-            : ModelCapacities{};
-    capacities.cache_off = options.cache_off;
-    const std::array<ModelSource, 1> sources{ModelSource{served_.header, served_.base, capacities}};
+    const std::vector<ModelSource> sources = share_pools(setup, options);
     setup.models = sources;
-    if (capacities.pages == 0)
-    {
-        give_up("the pools are too small");
-    }
     if (const auto started = Frame::start(frame_, *arena_, setup); !started)
     {
         give_up(refusal_text(started.error()));
     }
-    Model& parts = frame_->model({0});
-    courier_ = std::make_unique<Courier>(*arena_, parts.header, parts.slots, parts.linker,
-                                         parts.inbox, *link_, model.name, Log{});
+    make_couriers();
     poses_.resize(1);
     if (options.record)
     {
-        recorder_ = std::make_unique<RigRecorder>(setup, *courier_);
+        TACTUS_ASSERT(lines_.size() == 1);
+        recorder_ = std::make_unique<RigRecorder>(setup, *lines_[0].courier);
+    }
+}
+
+void FrameRig::serve(const std::vector<const TestModel*>& models, const LoopbackFaults& faults)
+{
+    LoopbackFaults own = faults;
+    for (const TestModel* model : models)
+    {
+        auto served = serve_from_file(model->path, model->name, {});
+        if (!served)
+        {
+            give_up(served.error().text);
+        }
+        Line& line = lines_.emplace_back();
+        line.served = std::move(served).value();
+        line.link = std::make_unique<LoopbackLink>(*line.served.link, own);
+        ++own.seed;
+    }
+}
+
+/// What belongs to no model comes off first, and off each share what its courier takes.
+std::vector<ModelSource> FrameRig::share_pools(const FrameSetup& setup,
+                                               const RigOptions& options) const
+{
+    std::size_t common = Frame::required_bytes(setup);
+    for (const Line& line : lines_)
+    {
+        common += Arena::round_up(line.served.header.size());
+    }
+    const std::vector<double> shares =
+        options.shares.empty() ? std::vector<double>(lines_.size(), 1.0) : options.shares;
+    TACTUS_ASSERT(shares.size() == lines_.size());
+    const double whole = std::accumulate(shares.begin(), shares.end(), 0.0);
+    const auto left =
+        static_cast<double>(options.pool_bytes > common ? options.pool_bytes - common : 0);
+    std::vector<ModelSource> sources;
+    for (std::size_t i = 0; i < lines_.size(); ++i)
+    {
+        const ServedModel& served = lines_[i].served;
+        const ModelHeader header = ModelHeader::parse(served.header).value();
+        const ModelCounts counts = header.counts();
+        const std::size_t courier = Courier::required_bytes(counts.chunks(), counts.index_pages());
+        const auto share = static_cast<std::size_t>(left * (shares[i] / whole));
+        ModelCapacities capacities =
+            share > courier ? plan_capacities(header, share - courier, options.cache_bytes)
+                            : ModelCapacities{};
+        capacities.cache_off = options.cache_off;
+        if (capacities.pages == 0)
+        {
+            give_up("the pools are too small for " + served.name);
+        }
+        sources.push_back({served.header, served.base, capacities});
+    }
+    return sources;
+}
+
+void FrameRig::make_couriers()
+{
+    for (std::uint32_t i = 0; i < lines_.size(); ++i)
+    {
+        Model& model = frame_->model({i});
+        Line& line = lines_[i];
+        line.courier = std::make_unique<Courier>(*arena_, model.header, model.slots, model.linker,
+                                                 model.inbox, *line.link, line.served.name, Log{});
     }
 }
 
@@ -109,8 +154,18 @@ void FrameRig::deliver()
     for (std::uint32_t i = 0; i < courier_steps_; ++i)
     {
         now_ns_ += period_ns_ / courier_steps_;
-        courier_->step(now_ns_);
+        for (Line& line : lines_)
+        {
+            line.courier->step(now_ns_);
+        }
     }
+}
+
+std::size_t FrameRig::open_wishes() const
+{
+    return std::accumulate(lines_.begin(), lines_.end(), std::size_t{0},
+                           [](std::size_t sum, const Line& line)
+                           { return sum + line.courier->open_wishes(); });
 }
 
 std::uint32_t FrameRig::settle(const Vec3& goal_m, const Budgets& budgets, std::uint32_t frames)
@@ -119,7 +174,7 @@ std::uint32_t FrameRig::settle(const Vec3& goal_m, const Budgets& budgets, std::
     {
         const FrameOutput output = step(goal_m, budgets);
         const bool quiet = output.work.splits == 0 && output.work.requests == 0 &&
-                           output.work.pages_adopted == 0 && courier_->open_wishes() == 0 &&
+                           output.work.pages_adopted == 0 && open_wishes() == 0 &&
                            output.faults == FrameFault::none;
         if (quiet && i > 10)
         {
@@ -131,7 +186,7 @@ std::uint32_t FrameRig::settle(const Vec3& goal_m, const Budgets& budgets, std::
 
 void load_region(FrameRig& rig, const RankedRegion& region)
 {
-    Model& model = rig.model();
+    Model& model = rig.model(region.model);
     Budgets budgets;
     budgets.requests = 64;
     budgets.regions = 64;
@@ -147,8 +202,8 @@ void load_region(FrameRig& rig, const RankedRegion& region)
         model.cache.request_missing({&region, 1}, budgets, ChunkCache::kFirstFrame + frame, work,
                                     faults);
         rig.deliver();
-        const bool is_quiet =
-            work.requests == 0 && work.pages_adopted == 0 && rig.courier().open_wishes() == 0;
+        const bool is_quiet = work.requests == 0 && work.pages_adopted == 0 &&
+                              rig.courier(region.model).open_wishes() == 0;
         quiet = is_quiet ? quiet + 1 : 0;
     }
     if (frame == 10'000 || (faults & FrameFault::cache_full) != FrameFault::none)

@@ -20,23 +20,31 @@ namespace tactus::test
 
 struct RigOptions
 {
-    std::size_t pool_bytes{std::size_t{8} << 20U};
-    std::size_t cache_bytes{0};
+    std::size_t pool_bytes{std::size_t{8} << 20U}; ///< Of all models.
+    std::size_t cache_bytes{0};                    ///< Of each model.
+    /// What each model gets of the pools, as parts of the sum; empty: the same for all.
+    std::vector<double> shares;
     std::vector<ToolSpec> tools;
-    LoopbackFaults faults;
+    LoopbackFaults faults; ///< Of every model's link, each with a seed of its own.
     std::uint32_t courier_steps_per_frame{4};
     std::int64_t period_ns{1'000'000};
     bool cache_off{false};
     bool static_when_it_fits{false};
-    bool record{false}; ///< Keep a recording; frames must then run through step() only.
+    /// Keep a recording: of one model only, and frames must run through step().
+    bool record{false};
 };
 
-/// The controller without clocks, threads and devices: a frame, and the courier of one model read
-/// from its file through a link that may lose and delay. Steps both in turn.
+/// The controller without clocks, threads and devices: a frame of one object, and for each model
+/// the courier that reads its file through a link that may lose and delay. Steps all in turn.
 class FrameRig
 {
 public:
-    FrameRig(const TestModel& model, const RigOptions& options);
+    FrameRig(const TestModel& model, const RigOptions& options)
+        : FrameRig(std::vector{&model}, options)
+    {
+    }
+    /// The object shows the first model; the others are for tools that are meshes.
+    FrameRig(const std::vector<const TestModel*>& models, const RigOptions& options);
 
     /// One frame with the tools at these places of the model's frame.
     FrameOutput step(const std::vector<Vec3>& goals_m, const Budgets& budgets, StageMark mark = {});
@@ -53,27 +61,38 @@ public:
                                       StageMark mark);
     /// Lets the transport side work without a frame.
     void deliver();
-    /// Steps with a still tool until the model is resident as far as the ball needs, at most
+    /// Steps with a still tool until the models are resident as far as the ball needs, at most
     /// `frames`; returns how many it took.
     std::uint32_t settle(const Vec3& goal_m, const Budgets& budgets, std::uint32_t frames);
 
     [[nodiscard]] const ObjectPose& pose() const { return poses_[0]; }
     [[nodiscard]] Frame& frame() { return *frame_; }
-    [[nodiscard]] Model& model() { return frame_->model({0}); }
-    [[nodiscard]] Courier& courier() { return *courier_; }
-    [[nodiscard]] LoopbackLink& link() { return *link_; }
+    [[nodiscard]] Model& model(ModelId id = ModelId{0}) { return frame_->model(id); }
+    [[nodiscard]] Courier& courier(ModelId id = ModelId{0}) { return *lines_[id.value].courier; }
+    [[nodiscard]] LoopbackLink& link(ModelId id = ModelId{0}) { return *lines_[id.value].link; }
     /// The recording of all frames so far; once, at the end, and only with RigOptions::record.
     [[nodiscard]] std::vector<std::byte> finish_recording() { return recorder_->finish(); }
 
 private:
+    /// What brings one model.
+    struct Line
+    {
+        ServedModel served;
+        std::unique_ptr<LoopbackLink> link;
+        std::unique_ptr<Courier> courier;
+    };
+
+    void serve(const std::vector<const TestModel*>& models, const LoopbackFaults& faults);
+    [[nodiscard]] std::vector<ModelSource> share_pools(const FrameSetup& setup,
+                                                       const RigOptions& options) const;
+    void make_couriers();
+    [[nodiscard]] std::size_t open_wishes() const;
     FrameOutput run(std::span<const ToolState> tools, const Budgets& budgets, StageMark mark);
 
-    ServedModel served_;
-    std::unique_ptr<LoopbackLink> link_;
+    std::vector<Line> lines_; ///< One a model.
     PoolMemory memory_;
     std::optional<Arena> arena_;
     std::optional<Frame> frame_;
-    std::unique_ptr<Courier> courier_;
     std::unique_ptr<RigRecorder> recorder_; ///< Null unless it records.
     std::uint32_t courier_steps_;
     std::int64_t period_ns_;
