@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace tactus::test
+{
+
+/// An integer of any width, for decisions that no rounding may touch. Slow: it allocates.
+class BigInteger
+{
+public:
+    BigInteger() = default;
+    /// value / 2^unit_log2, which must be an integer.
+    BigInteger(double value, int unit_log2);
+
+    [[nodiscard]] int sign() const
+    {
+        if (digits_.empty())
+        {
+            return 0;
+        }
+        return is_negative_ ? -1 : 1;
+    }
+
+    friend BigInteger operator+(const BigInteger& a, const BigInteger& b)
+    {
+        return sum(a, b, b.is_negative_);
+    }
+    friend BigInteger operator-(const BigInteger& a, const BigInteger& b)
+    {
+        return sum(a, b, !b.is_negative_);
+    }
+    friend BigInteger operator*(const BigInteger& a, const BigInteger& b);
+
+private:
+    using Digits = std::vector<std::uint32_t>; ///< Lowest first; the highest is not 0.
+
+    [[nodiscard]] static BigInteger sum(const BigInteger& a, const BigInteger& b,
+                                        bool is_b_negative);
+    [[nodiscard]] static Digits added(const Digits& a, const Digits& b);
+    [[nodiscard]] static Digits subtracted(const Digits& larger, const Digits& smaller);
+    [[nodiscard]] static bool is_less(const Digits& a, const Digits& b);
+    static void drop_zeros(Digits& digits);
+
+    Digits digits_;
+    bool is_negative_{false};
+};
+
+/// The exponent of the lowest bit of a finite number; the largest int of 0.
+[[nodiscard]] int lowest_bit_log2(double value);
+
+} // namespace tactus::test
