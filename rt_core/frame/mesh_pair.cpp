@@ -17,6 +17,11 @@ constexpr std::uint32_t kMeshBudget = 16;
 /// Faces this near are exact whatever the tool's radius, a share of the tool's: surfaces that slide
 /// along each other part and meet in every frame.
 constexpr double kLeastReach = 0.002;
+/// Beyond the reach is refined by what the tool moves in so many frames, but by no more than the
+/// reach: so long a front is certified without looking.
+constexpr double kFramesAhead = 4.0;
+/// The cover for prefetching is looked for once in so many frames.
+constexpr std::uint32_t kCoverFrames = 8;
 /// How far ahead in time faces are asked for, in units of ScenePair::ahead_m.
 constexpr double kPrefetchAhead = 4.0;
 
@@ -90,17 +95,22 @@ void MeshPair::rank(const ScenePair& pair, ModelId tool_model, ModelId object_mo
     const double scale = placements_[0].place.scale;
     const double reach_m = Scene::kKeepFactor * refine_reach_m(pair);
     const double near_m = reach_m + kPrefetchAhead * pair.ahead_m.norm();
-    const CoreCover of_tool = cover_near(*tool_tree_, objects_[0], near_m / scale);
+    if (frames_until_cover_ == 0)
+    {
+        cover_ = cover_near(*tool_tree_, objects_[0], near_m / scale);
+        frames_until_cover_ = kCoverFrames;
+    }
+    --frames_until_cover_;
     CoreCover of_object;
-    for (const Ball& ball : of_tool)
+    for (const Ball& ball : cover_)
     {
         of_object.push_back({placements_[0].to_there(ball.center), scale * ball.radius});
     }
     predictor.rank(object_model, of_object, reach_m, ranking);
-    RegionPredictor().rank(tool_model, of_tool, reach_m / scale, ranking);
+    RegionPredictor().rank(tool_model, cover_, reach_m / scale, ranking);
 }
 
-double MeshPair::refine_reach_m(const ScenePair& pair) const noexcept
+double MeshPair::refine_reach_m(const ScenePair& pair) noexcept
 {
     return std::max(pair.reach_m, kLeastReach * pair.core.radius());
 }
@@ -108,25 +118,30 @@ double MeshPair::refine_reach_m(const ScenePair& pair) const noexcept
 RefineQuestion MeshPair::ask_object(std::size_t place, const ScenePair& pair,
                                     RefineMemory& memory) noexcept
 {
-    const double reach_m = refine_reach_m(pair);
-    const double span_m = cores_[place].radius();
-    return {cores_[place].center(),
-            span_m + reach_m,
-            span_m + Scene::kKeepFactor * reach_m,
-            &memory,
-            &tools_[place],
-            span_m,
-            moved_m_[place]};
+    return question({cores_[place].center(), cores_[place].radius()}, refine_reach_m(pair),
+                    moved_m_[place], tools_[place], memory);
 }
 
 RefineQuestion MeshPair::ask_tool(std::size_t place, const ScenePair& pair) noexcept
 {
     const double scale = placements_[place].place.scale;
-    const double reach_m = refine_reach_m(pair) / scale;
-    const double span_m = own_ball_.radius;
-    return {own_ball_.center,       span_m + reach_m, span_m + Scene::kKeepFactor * reach_m,
-            &tool_memories_[place], &objects_[place], span_m,
-            moved_m_[place] / scale};
+    return question(own_ball_, refine_reach_m(pair) / scale, moved_m_[place] / scale,
+                    objects_[place], tool_memories_[place]);
+}
+
+/// For the faces within `reach_m` of a surface that is in a ball, in that ball's frame.
+RefineQuestion MeshPair::question(const Ball& ball, double reach_m, double moved_m,
+                                  OtherSurface& surface, RefineMemory& memory) noexcept
+{
+    const double ahead_m = std::min(kFramesAhead * moved_m, reach_m);
+    return {ball.center,
+            ball.radius + reach_m,
+            ball.radius + Scene::kKeepFactor * (reach_m + ahead_m),
+            &memory,
+            &surface,
+            ball.radius,
+            moved_m,
+            ahead_m};
 }
 
 void MeshPair::query(const ScenePair& pair, double contact_m, DistanceAnswer& answer,

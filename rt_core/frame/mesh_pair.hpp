@@ -58,7 +58,10 @@ public:
     [[nodiscard]] const MeshReport& report() const noexcept { return report_; }
 
 private:
-    [[nodiscard]] double refine_reach_m(const ScenePair& pair) const noexcept;
+    [[nodiscard]] static double refine_reach_m(const ScenePair& pair) noexcept;
+    [[nodiscard]] static RefineQuestion question(const Ball& ball, double reach_m, double moved_m,
+                                                 OtherSurface& surface,
+                                                 RefineMemory& memory) noexcept;
 
     const AbTree* tool_tree_{nullptr};
     const AbTree* object_tree_{nullptr};
@@ -68,7 +71,9 @@ private:
     std::array<OtherSurface, kPlaces> objects_{}; ///< As the tool's model sees it.
     std::array<OtherSurface, kPlaces> tools_{};   ///< As the object's model sees it.
     std::array<RefineMemory, kPlaces> tool_memories_{};
-    Ball own_ball_; ///< Round the tool's model, in its frame.
+    Ball own_ball_;   ///< Round the tool's model, in its frame.
+    CoreCover cover_; ///< Of the tool's model near the object, as it was found last.
+    std::uint32_t frames_until_cover_{0};
     QueryMemory memory_;
     MeshReport report_;
 };

@@ -9,6 +9,7 @@
 #include "rt_core/query/surface_query.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <tuple>
@@ -25,29 +26,6 @@ constexpr double kRoundedUp = 1.0 + 1e-14;
 /// Twice the kernel's error law and more.
 constexpr double kSpanError = 4e-15;
 
-/// Of the boxes round two triangles.
-struct BoxGap
-{
-    double distance_m;
-    double span_m; ///< Diagonal of a box round both; the kernel's error goes with it at most.
-};
-
-BoxGap box_gap(const Triangle& a, const Triangle& b) noexcept
-{
-    double gap_sq = 0.0;
-    double span_sq = 0.0;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-        const auto [a_low, a_high] = std::minmax({a[0][axis], a[1][axis], a[2][axis]});
-        const auto [b_low, b_high] = std::minmax({b[0][axis], b[1][axis], b[2][axis]});
-        const double gap = std::max({b_low - a_high, a_low - b_high, 0.0});
-        const double span = std::max(a_high, b_high) - std::min(a_low, b_low);
-        gap_sq += gap * gap;
-        span_sq += span * span;
-    }
-    return {std::sqrt(gap_sq) / kRoundedUp, std::sqrt(span_sq) * kRoundedUp};
-}
-
 /// A face of either model, in the object's frame.
 struct MeshFace
 {
@@ -56,6 +34,104 @@ struct MeshFace
     FaceId id{};
     double error_m{0.0};
     bool is_coarse{false};
+    Vec3 low{0.0, 0.0, 0.0}; ///< Of its box.
+    Vec3 high{0.0, 0.0, 0.0};
+
+    MeshFace(const Triangle& corners, const AbTree& tree, PrimId face, double error,
+             bool coarse) noexcept
+        : triangle(corners)
+        , prim(face)
+        , id(tree.face_of(face))
+        , error_m(error)
+        , is_coarse(coarse)
+        , low(corners[0].cwiseMin(corners[1]).cwiseMin(corners[2]))
+        , high(corners[0].cwiseMax(corners[1]).cwiseMax(corners[2]))
+    {
+    }
+};
+
+/// Of the boxes of two faces.
+struct BoxGap
+{
+    double distance_m;
+    double span_m; ///< Diagonal of a box round both; the kernel's error goes with it at most.
+};
+
+BoxGap box_gap(const MeshFace& a, const MeshFace& b) noexcept
+{
+    double gap_sq = 0.0;
+    double span_sq = 0.0;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        const double gap = std::max({b.low[axis] - a.high[axis], a.low[axis] - b.high[axis], 0.0});
+        const double span =
+            std::max(a.high[axis], b.high[axis]) - std::min(a.low[axis], b.low[axis]);
+        gap_sq += gap * gap;
+        span_sq += span * span;
+    }
+    return {std::sqrt(gap_sq) / kRoundedUp, std::sqrt(span_sq) * kRoundedUp};
+}
+
+/// The faces of one block of the tool, and their boxes row by axis.
+class ToolFaces
+{
+public:
+    void add(const MeshFace& face) noexcept
+    {
+        const std::size_t lane = faces_.size();
+        for (std::size_t axis = 0; axis < 3; ++axis)
+        {
+            low_[axis][lane] = face.low[static_cast<Eigen::Index>(axis)];
+            high_[axis][lane] = face.high[static_cast<Eigen::Index>(axis)];
+        }
+        low_end_ = lane == 0 ? face.low : Vec3(low_end_.cwiseMin(face.low));
+        high_end_ = lane == 0 ? face.high : Vec3(high_end_.cwiseMax(face.high));
+        largest_error_m_ = std::max(largest_error_m_, face.error_m);
+        faces_.push_back(face);
+    }
+
+    /// Holds all of them, errors left out.
+    [[nodiscard]] Ball ball() const noexcept
+    {
+        const Vec3 half = 0.5 * (high_end_ - low_end_);
+        return {low_end_ + half, half.norm() * kRoundedUp};
+    }
+    [[nodiscard]] const MeshFace& face(std::size_t lane) const noexcept { return faces_[lane]; }
+    [[nodiscard]] double largest_error_m() const noexcept { return largest_error_m_; }
+
+    /// Lanes of the faces whose boxes are within `limit_m` of another face's.
+    [[nodiscard]] std::uint32_t near(const MeshFace& other, double limit_m) const noexcept
+    {
+        std::array<double, kBlockFaces> gap_sq{};
+        for (std::size_t axis = 0; axis < 3; ++axis)
+        {
+            const double other_low = other.low[static_cast<Eigen::Index>(axis)];
+            const double other_high = other.high[static_cast<Eigen::Index>(axis)];
+            for (std::size_t lane = 0; lane < kBlockFaces; ++lane)
+            {
+                const double below = other_low - high_[axis][lane];
+                const double above = low_[axis][lane] - other_high;
+                const double larger = below > above ? below : above;
+                const double gap = larger > 0.0 ? larger : 0.0;
+                gap_sq[lane] += gap * gap;
+            }
+        }
+        const double limit_sq = limit_m * limit_m * kRoundedUp;
+        std::uint32_t lanes = 0;
+        for (std::size_t lane = 0; lane < faces_.size(); ++lane)
+        {
+            lanes |= gap_sq[lane] <= limit_sq ? 1U << lane : 0U;
+        }
+        return lanes;
+    }
+
+private:
+    std::array<std::array<double, kBlockFaces>, 3> low_{};
+    std::array<std::array<double, kBlockFaces>, 3> high_{};
+    StaticVector<MeshFace, kBlockFaces> faces_;
+    Vec3 low_end_{0.0, 0.0, 0.0}; ///< Of a box round all.
+    Vec3 high_end_{0.0, 0.0, 0.0};
+    double largest_error_m_{0.0};
 };
 
 /// Exact faces that share a point.
@@ -99,8 +175,7 @@ public:
     void run() noexcept
     {
         const Ball all = ball_round(question_.tool.box());
-        upper_m_ = (object_.distance(all.center, kInfinity).upper_m + all.radius) *
-                   question_.place.place.scale * kRoundedUp;
+        upper_m_ = object_.upper_bound_m(all) * question_.place.place.scale * kRoundedUp;
         const std::uint32_t warm = memory_.block;
         const bool is_warm = question_.tool.is_block_in_use(warm) && budget_.take_node();
         if (is_warm)
@@ -191,28 +266,28 @@ private:
     {
         const BlockSide& side = question_.tool.side(index);
         const double upper_before = upper_m_;
+        ToolFaces faces;
         for (std::uint32_t lanes = question_.tool.block(index).faces; lanes != 0;
              lanes &= lanes - 1)
         {
             const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
-            const PrimId prim = side.prims[lane];
-            test_tool_face({tool_triangle(prim), prim, question_.tool.face_of(prim),
-                            static_cast<double>(error_in_quanta(side.errors[lane])) *
-                                tool_quantum_m_ * kRoundedUp,
-                            (side.coarse >> lane & 1U) != 0});
+            const double error = static_cast<double>(error_in_quanta(side.errors[lane]));
+            faces.add({tool_triangle(side.prims[lane]), question_.tool, side.prims[lane],
+                       error * tool_quantum_m_ * kRoundedUp, (side.coarse >> lane & 1U) != 0});
         }
+        test_tool_faces(faces);
         memory_.block = upper_m_ < upper_before ? index : memory_.block;
     }
 
-    void test_tool_face(const MeshFace& face) noexcept
+    void test_tool_faces(const ToolFaces& faces) noexcept
     {
-        const Ball ball = ball_round(face.triangle);
+        const Ball ball = faces.ball();
         if (is_beyond_kernels(ball.center, question_.object.quantum_m()))
         {
             open_m_ = std::min(open_m_, 0.0);
             return;
         }
-        const double wider_m = ball.radius + face.error_m;
+        const double wider_m = ball.radius + faces.largest_error_m();
         const KernelProbe probe = make_probe(ball.center, question_.object.quantum_m());
         const auto bound = [&]
         {
@@ -229,7 +304,7 @@ private:
                 open_m_ = std::min(open_m_, 0.0); // Its parent's bound may have gone with it.
                 break;
             }
-            test_object_block(block, face, probe, wider_m);
+            test_object_block(block, faces, probe, wider_m);
         }
         for (const WalkItem& item : walk.left())
         {
@@ -237,8 +312,8 @@ private:
         }
     }
 
-    void test_object_block(std::uint32_t index, const MeshFace& tool_face, const KernelProbe& probe,
-                           double wider_m) noexcept
+    void test_object_block(std::uint32_t index, const ToolFaces& tool_faces,
+                           const KernelProbe& probe, double wider_m) noexcept
     {
         const BlockGeometry& block = question_.object.block(index);
         const BlockSide& side = question_.object.side(index);
@@ -252,29 +327,38 @@ private:
             const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
             const double error =
                 static_cast<double>(error_in_quanta(side.errors[lane])) * quantum_m_;
-            const double lower =
-                static_cast<double>(bounds.lower[lane]) * quantum_m_ - wider_m - error;
-            if (lower > worth_m())
+            if (static_cast<double>(bounds.lower[lane]) * quantum_m_ - wider_m - error <= worth_m())
             {
-                continue;
+                test_object_face({to_triangle(block_triangle(block, lane)), question_.object,
+                                  side.prims[lane], error, (side.coarse >> lane & 1U) != 0},
+                                 tool_faces);
             }
-            const PrimId prim = side.prims[lane];
-            test_pair(tool_face,
-                      {to_triangle(block_triangle(block, lane)), prim,
-                       question_.object.face_of(prim), error, (side.coarse >> lane & 1U) != 0});
+        }
+    }
+
+    void test_object_face(const MeshFace& face, const ToolFaces& tool_faces) noexcept
+    {
+        const double limit = worth_m() + tool_faces.largest_error_m() + face.error_m;
+        for (std::uint32_t near = tool_faces.near(face, limit); near != 0; near &= near - 1)
+        {
+            test_pair(tool_faces.face(static_cast<std::size_t>(std::countr_zero(near))), face);
         }
     }
 
     void test_pair(const MeshFace& tool_face, const MeshFace& face) noexcept
     {
-        const BoxGap boxes = box_gap(tool_face.triangle, face.triangle);
-        if (boxes.distance_m - tool_face.error_m - face.error_m > worth_m())
+        const BoxGap boxes = box_gap(tool_face, face);
+        const double lower = boxes.distance_m - tool_face.error_m - face.error_m;
+        if (lower > worth_m())
         {
             return;
         }
         if (tool_face.is_coarse || face.is_coarse)
         {
-            bound_by_coarse(tool_face, face);
+            if (lower < open_m_)
+            {
+                bound_by_coarse(tool_face, face);
+            }
             return;
         }
         const MeetingFaces faces{tool_face.id, face.id};
@@ -282,7 +366,7 @@ private:
         {
             add_meeting({faces, tool_face.prim, face.prim});
         }
-        else if (boxes.distance_m <= std::max(question_.contact_m, nearest_m(boxes.span_m)))
+        else if (boxes.distance_m <= std::max(kept_contact_m(), nearest_m(boxes.span_m)))
         {
             add_apart(faces, face.triangle, closest_points(tool_face.triangle, face.triangle));
         }
@@ -292,6 +376,19 @@ private:
     [[nodiscard]] double nearest_m(double span_m) const noexcept
     {
         return upper_m_ > 0.0 ? upper_m_ + kSpanError * span_m : -1.0;
+    }
+
+    /// Contacts that are farther apart change nothing; negative when none does.
+    [[nodiscard]] double kept_contact_m() const noexcept
+    {
+        if (!has_dropped_)
+        {
+            return question_.contact_m;
+        }
+        const ContactSet& kept = contacts_.contacts;
+        return touching_.size() == kMaxContacts ? -1.0
+               : kept.size() == kMaxContacts    ? kept[kMaxContacts - 1].distance_m
+                                                : question_.contact_m;
     }
 
     /// The corners of coarse faces are original vertices.
@@ -360,7 +457,7 @@ private:
     {
         if (touching_.size() == kMaxContacts)
         {
-            has_dropped_ = true;
+            has_dropped_ = question_.contact_m >= 0.0;
             if (!comes_before(meeting.faces, touching_[kMaxContacts - 1].faces))
             {
                 return;

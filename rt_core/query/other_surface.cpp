@@ -2,10 +2,12 @@
 // Copyright the Tactus authors.
 #include "rt_core/query/other_surface.hpp"
 
+#include "rt_core/query/probe.hpp"
 #include "rt_core/query/surface_query.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace tactus
@@ -14,6 +16,7 @@ namespace tactus
 namespace
 {
 
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kRoundedUp = 1.0 + 1e-14;
 
 } // namespace
@@ -30,15 +33,80 @@ double MeshPlacement::rounding_m(const Vec3& here_m) const noexcept
     return kPoseRounding * (place.origin.norm() + place.scale * (here_m.norm() + offset_m.norm()));
 }
 
-OtherSurface::Bounds OtherSurface::distance(const Vec3& point_m, double enough_m) noexcept
+double OtherSurface::lower_bound_m(const Ball& ball, double enough_m) noexcept
 {
+    const auto quantum = static_cast<double>(other_->quantum_m());
     const double scale = there_.place.scale;
-    const double rounding = there_.rounding_m(point_m);
-    const double band = (enough_m * scale + rounding) * kRoundedUp;
+    const double rounding = there_.rounding_m(ball.center);
+    const Vec3 center = there_.to_there(ball.center);
+    const double enough = ((enough_m + ball.radius) * scale + rounding) / quantum * kRoundedUp;
+    double nearest_m = 0.0;
+    if (is_beyond_kernels(center, other_->quantum_m()))
+    {
+        nearest_m = query_distance(*other_, center, kInfinity, memory_, budget_).lower_m;
+    }
+    else if (other_->is_complete())
+    {
+        const float limit = enough < kFarQuanta ? round_up_to_float(enough)
+                                                : std::numeric_limits<float>::infinity();
+        const KernelProbe probe = make_probe(center, other_->quantum_m());
+        nearest_m = static_cast<double>(nearest_quanta(probe, limit)) * quantum;
+    }
+    return (nearest_m - rounding) / scale / kRoundedUp - ball.radius;
+}
+
+double OtherSurface::upper_bound_m(const Ball& ball) noexcept
+{
     const DistanceAnswer answer =
-        query_distance(*other_, there_.to_there(point_m), band, memory_, budget_);
-    return {(answer.lower_m - rounding) / scale / kRoundedUp,
-            (answer.upper_m + rounding) / scale * kRoundedUp};
+        query_distance(*other_, there_.to_there(ball.center), kInfinity, memory_, budget_);
+    return (answer.upper_m + there_.rounding_m(ball.center)) / there_.place.scale * kRoundedUp +
+           ball.radius;
+}
+
+/// No face less its error is nearer than this, or than `enough`.
+float OtherSurface::nearest_quanta(const KernelProbe& probe, float enough) noexcept
+{
+    float nearest = enough;
+    const std::uint32_t warm =
+        other_->is_block_in_use(memory_.block) && budget_.take_node() ? memory_.block : kNoNode;
+    if (warm != kNoNode)
+    {
+        nearest = std::min(nearest, nearest_in_block(warm, probe));
+    }
+    TreeWalk walk(*other_, probe, budget_);
+    for (std::uint32_t block = walk.next_block(nearest, false); block != kNoNode;
+         block = walk.next_block(nearest, false))
+    {
+        const float found = block == warm ? nearest : nearest_in_block(block, probe);
+        memory_.block = found < nearest ? block : memory_.block;
+        nearest = std::min(nearest, found);
+    }
+    for (const WalkItem& item : walk.left())
+    {
+        nearest = std::min(nearest, item.gap);
+    }
+    return std::max(nearest, 0.0F);
+}
+
+float OtherSurface::nearest_in_block(std::uint32_t block, const KernelProbe& probe) noexcept
+{
+    const BlockGeometry& geometry = other_->block(block);
+    const BlockSide& side = other_->side(block);
+    if (!budget_.take_triangles(face_count(geometry)))
+    {
+        return 0.0F;
+    }
+    FaceBounds bounds; // NOLINT(cppcoreguidelines-pro-type-member-init): the kernel fills it.
+    float limit = std::numeric_limits<float>::infinity();
+    static_cast<void>(other_->kernels().face_bounds(geometry.coordinates.front().data(),
+                                                    geometry.corners.front().data(), probe,
+                                                    geometry.faces, 0, 0.0F, limit, bounds));
+    for (std::uint32_t lanes = geometry.faces; lanes != 0; lanes &= lanes - 1)
+    {
+        const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
+        limit = std::min(limit, bounds.lower[lane] - error_in_quanta(side.errors[lane]));
+    }
+    return limit;
 }
 
 SurfaceWalk::SurfaceWalk(const AbTree& tree, OtherSurface& other) noexcept

@@ -36,6 +36,7 @@ struct RefineQuestion
     OtherSurface* surface{nullptr}; ///< Null for a ball.
     double span_m{0.0};
     double moved_m{0.0}; ///< No point of the surface has moved farther since the last frame.
+    double ahead_m{0.0}; ///< How much farther than usual beyond the reach is refined.
 };
 
 } // namespace tactus

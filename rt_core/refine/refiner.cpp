@@ -27,7 +27,8 @@ constexpr std::uint32_t kAheadShare = 16;
 
 double target_of(const RefineQuestion& question) noexcept
 {
-    return question.reach_m + Refiner::kLookAhead * (question.reach_m - question.span_m);
+    return question.reach_m + Refiner::kLookAhead * (question.reach_m - question.span_m) +
+           question.ahead_m;
 }
 
 /// The least distance of something, its error taken off, given one from the question's centre: the

@@ -154,13 +154,32 @@ TEST(OtherSurface, is_no_nearer_than_all_of_its_faces_less_their_errors)
             truth = std::max(0.0, truth) / place.place.scale;
             const double enough = random.one_in(2) ? kInfinity : random.between(0.0, 1.0);
 
-            const double lower = sut.distance(point, enough).lower_m;
+            const double lower = sut.lower_bound_m({point, 0.0}, enough);
 
-            ASSERT_LE(lower, truth + 1e-15);
-            ASSERT_GE(lower, std::min(truth, enough) * (1.0 - 1e-6) - 1e-3);
-            ASSERT_LE(sut.lower_bound_m({point, 0.25}, enough), truth - 0.25 + 1e-15);
+            ASSERT_LE(lower, truth);
+            ASSERT_GE(lower, std::min(truth, enough) - 0.02); // In single precision.
+            ASSERT_LE(sut.lower_bound_m({point, 0.25}, enough), truth - 0.25);
+            ASSERT_GE(sut.upper_bound_m({point, 0.25}), truth + 0.25);
+            if (round % 2 == 0)
+            {
+                ASSERT_LE(sut.upper_bound_m({point, 0.25}), truth + 0.25 + 1e-12);
+            }
         }
     }
+}
+
+TEST(OtherSurface, says_nothing_when_its_budget_is_spent)
+{
+    Random random(76);
+    TreeRig object({200, 400, 400});
+    fill(object, random, 200, true);
+    OtherSurface sut(*object.sut, MeshPlacement{}, {3, 40});
+    for (int i = 0; i < 10; ++i)
+    {
+        static_cast<void>(sut.lower_bound_m({Vec3(0.0, 0.0, 9.0), 0.5}, kInfinity));
+    }
+    EXPECT_TRUE(sut.budget().is_spent);
+    EXPECT_LE(sut.lower_bound_m({Vec3(0.0, 0.0, 9.0), 0.5}, kInfinity), -0.5);
 }
 
 TEST(MeshPlacement, has_an_inverse)
