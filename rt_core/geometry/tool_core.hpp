@@ -2,9 +2,9 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "rt_core/base/model_id.hpp"
 #include "rt_core/geometry/convex.hpp"
 #include "rt_core/geometry/shapes.hpp"
-#include "rt_core/spm/ids.hpp"
 
 #include <variant>
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "rt_core/base/assert.hpp"
+#include "rt_core/base/model_id.hpp"
 #include "rt_core/base/strong_id.hpp"
 
 #include <cstdint>
@@ -22,8 +23,6 @@ using VertexId = StrongId<struct VertexTag>;
 using FaceId = StrongId<struct FaceTag>;
 /// One cell of the header's regular partition.
 using RegionId = StrongId<struct RegionTag>;
-/// A model's place in the controller's list.
-using ModelId = StrongId<struct ModelTag>;
 
 inline constexpr std::uint32_t kRecordsPerChunkLog2 = 6;
 inline constexpr std::uint32_t kRecordsPerChunk = 1U << kRecordsPerChunkLog2;
