@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry> // cross(); without it a link error tells.
 
+#include <algorithm>
 #include <array>
 
 namespace tactus
@@ -24,6 +25,16 @@ using Vec3f = std::array<float, 3>;
 [[nodiscard]] inline Vec3 to_vec3(const Vec3f& v) noexcept
 {
     return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
+}
+
+/// Coordinate by coordinate. Eigen's own are not marked as what may be called in real time.
+[[nodiscard]] inline Vec3 least_of(const Vec3& a, const Vec3& b) noexcept
+{
+    return {std::min(a.x(), b.x()), std::min(a.y(), b.y()), std::min(a.z(), b.z())};
+}
+[[nodiscard]] inline Vec3 greatest_of(const Vec3& a, const Vec3& b) noexcept
+{
+    return {std::max(a.x(), b.x()), std::max(a.y(), b.y()), std::max(a.z(), b.z())};
 }
 
 } // namespace tactus

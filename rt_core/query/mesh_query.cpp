@@ -44,8 +44,8 @@ struct MeshFace
         , id(tree.face_of(face))
         , error_m(error)
         , is_coarse(coarse)
-        , low(corners[0].cwiseMin(corners[1]).cwiseMin(corners[2]))
-        , high(corners[0].cwiseMax(corners[1]).cwiseMax(corners[2]))
+        , low(least_of(least_of(corners[0], corners[1]), corners[2]))
+        , high(greatest_of(greatest_of(corners[0], corners[1]), corners[2]))
     {
     }
 };
@@ -84,8 +84,8 @@ public:
             low_[axis][lane] = face.low[static_cast<Eigen::Index>(axis)];
             high_[axis][lane] = face.high[static_cast<Eigen::Index>(axis)];
         }
-        low_end_ = lane == 0 ? face.low : Vec3(low_end_.cwiseMin(face.low));
-        high_end_ = lane == 0 ? face.high : Vec3(high_end_.cwiseMax(face.high));
+        low_end_ = lane == 0 ? face.low : least_of(low_end_, face.low);
+        high_end_ = lane == 0 ? face.high : greatest_of(high_end_, face.high);
         largest_error_m_ = std::max(largest_error_m_, face.error_m);
         faces_.push_back(face);
     }

@@ -186,8 +186,9 @@ Ball ball_round(const Aabb& box) noexcept
 Ball ball_round(const Triangle& triangle) noexcept
 {
     Ball ball;
-    ball.center = 0.5 * (triangle[0].cwiseMin(triangle[1]).cwiseMin(triangle[2]) +
-                         triangle[0].cwiseMax(triangle[1]).cwiseMax(triangle[2]));
+    const Vec3 low = least_of(least_of(triangle[0], triangle[1]), triangle[2]);
+    const Vec3 high = greatest_of(greatest_of(triangle[0], triangle[1]), triangle[2]);
+    ball.center = 0.5 * (low + high);
     double radius_sq = 0.0;
     for (const Vec3& corner : triangle)
     {
