@@ -608,7 +608,7 @@ void Frame::report_pair(std::uint32_t i, const ObjectPose& pose) noexcept
                         to_world(pose, answer.tool_point_m),
                         std::max(0.0, answer.lower_m * pose.scale - rounding_m),
                         answer.upper_m * pose.scale + rounding_m,
-                        answer.certified_radius_m * pose.scale,
+                        std::max(0.0, answer.certified_radius_m) * pose.scale,
                         answer.nearest_face,
                         to_world(pose, answer.nearest_point_m),
                         pair.is_asleep,

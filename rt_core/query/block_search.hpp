@@ -69,7 +69,9 @@ struct Findings
     DistanceAnswer answer;
     answer.upper_m = found.upper_m;
     answer.lower_m = std::max(0.0, std::min({found.exact_lower_m, found.open_m, found.pruned_m}));
-    answer.certified_radius_m = std::max(0.0, std::min({reach_m, found.open_m, found.dropped_m}));
+    const double open = std::min(found.open_m, found.dropped_m);
+    // Less than `open`, where what is not exact may begin.
+    answer.certified_radius_m = open > 0.0 ? std::min(reach_m, open * (1.0 - 0x1p-52)) : -1.0;
     answer.kind = answer.lower_m > reach_m    ? AnswerKind::decided
                   : is_nearest_proven(found)  ? AnswerKind::exact
                   : answer.lower_m == reach_m ? AnswerKind::decided

@@ -37,8 +37,9 @@ struct DistanceAnswer
     AnswerKind kind{AnswerKind::bracket};
     double lower_m{0.0};                                     ///< L: no original surface is nearer.
     double upper_m{std::numeric_limits<double>::infinity()}; ///< U: some is within this.
-    /// All original faces within this distance of the core are active and exact.
-    double certified_radius_m{0.0};
+    /// All original faces within this distance of the core are active and exact; negative when not
+    /// even those that touch it are.
+    double certified_radius_m{-1.0};
     FaceId nearest_face{}; ///< Of the nearest exact face; none when there is none in reach.
     Vec3 tool_point_m{0.0, 0.0, 0.0};    ///< Of the core: the nearest one to the surface.
     Vec3 nearest_point_m{0.0, 0.0, 0.0}; ///< Of the surface.

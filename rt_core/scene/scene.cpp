@@ -67,7 +67,6 @@ DistanceAnswer Scene::from_motion(const ScenePair& pair) noexcept
     answer.lower_m = std::max(0.0, pair.known.lower_m - motion);
     answer.upper_m = pair.known.upper_m + motion;
     answer.kind = answer.lower_m > pair.reach_m ? AnswerKind::decided : AnswerKind::bracket;
-    answer.certified_radius_m = 0.0;
     answer.tool_point_m = pair.core.center();
     return answer;
 }

@@ -6,6 +6,9 @@
 
 #include "tests/shared/frame_rig.hpp"
 
+#include <Eigen/Geometry>
+
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -65,17 +68,32 @@ Vec3 teleport(const TestModel& model, std::uint32_t frame)
     return place_on(model, direction_at(0.381966 * (frame / 25)));
 }
 
+/// What a tool that is not a point does at it.
+Mat3 turn(std::uint32_t frame)
+{
+    const Vec3 axis = Vec3(0.3, 0.5, 0.8).normalized();
+    return Eigen::AngleAxisd(0.002 * frame, axis).toRotationMatrix();
+}
+
 struct Run
 {
     const char* name;
-    const TestModel* model;
+    std::vector<const TestModel*> models;
     std::function<Vec3(const TestModel&, std::uint32_t)> motion;
     RigOptions options;
     Budgets budgets;
 };
 
+/// A tool of this core that wants all there is to know.
+RigOptions with_core(RigOptions options, const ToolCore& core)
+{
+    options.tools = {{1e-4, 500.0, 8.0, 1.0, core, true}};
+    return options;
+}
+
 std::vector<Run> runs()
 {
+    const MeshCore mesh{ModelId{1}, Vec3(0.0, 0.0, 0.0), Vec3(0.0, 0.0, 0.0)};
     const std::vector<const TestModel*> models = small_models();
     RigOptions usual;
     usual.record = true;
@@ -94,24 +112,29 @@ std::vector<Run> runs()
     few.triangles = 200;
     few.pages = 1;
     few.requests = 2;
-    return {{"slide", models[0], slide, usual, {}},
-            {"tap", models[3], tap, usual, {}},
-            {"teleport", models[2], teleport, usual, {}},
-            {"starvation", models[0], slide, starved, few},
-            {"needles", models[5], slide, usual, {}},
-            {"static", models[1], slide, fixed, {}}};
+    return {{"slide", {models[0]}, slide, usual, {}},
+            {"tap", {models[3]}, tap, usual, {}},
+            {"teleport", {models[2]}, teleport, usual, {}},
+            {"starvation", {models[0]}, slide, starved, few},
+            {"needles", {models[5]}, slide, usual, {}},
+            {"static", {models[1]}, slide, fixed, {}},
+            {"box", {models[3]}, slide, with_core(usual, Box{Vec3(0.004, 0.002, 0.003)}), {}},
+            {"mesh", {models[0], models[1]}, slide, with_core(usual, mesh), {}}};
 }
 
 /// False when the file can't be written.
 bool record(const Run& run, const std::filesystem::path& folder)
 {
-    FrameRig rig(*run.model, run.options);
+    FrameRig rig(run.models, run.options);
+    std::array<ToolState, 1> tool;
     std::uint64_t faces = 0;
     std::uint32_t contacts = 0;
     std::uint32_t static_frames = 0;
     for (std::uint32_t frame = 0; frame < kFrames; ++frame)
     {
-        const FrameOutput output = rig.step(run.motion(*run.model, frame), run.budgets);
+        tool[0].position_m = run.motion(*run.models[0], frame);
+        tool[0].rotation = turn(frame);
+        const FrameOutput output = rig.step(tool, run.budgets);
         faces += output.work.splits;
         contacts += output.tools[0].in_contact ? 1U : 0U;
         static_frames += output.models[0].is_static ? 1U : 0U;

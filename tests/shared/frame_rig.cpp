@@ -47,8 +47,11 @@ FrameRig::FrameRig(const std::vector<const TestModel*>& models, const RigOptions
     poses_.resize(1);
     if (options.record)
     {
-        TACTUS_ASSERT(lines_.size() == 1);
-        recorder_ = std::make_unique<RigRecorder>(setup, *lines_[0].courier);
+        recorder_ = std::make_unique<RigRecorder>(setup);
+        for (const Line& line : lines_)
+        {
+            recorder_->follow(*line.courier);
+        }
     }
 }
 

@@ -30,8 +30,7 @@ struct RigOptions
     std::int64_t period_ns{1'000'000};
     bool cache_off{false};
     bool static_when_it_fits{false};
-    /// Keep a recording: of one model only, and frames must run through step().
-    bool record{false};
+    bool record{false}; ///< Keep a recording; frames must then run through step() only.
 };
 
 /// The controller without clocks, threads and devices: a frame of one object, and for each model

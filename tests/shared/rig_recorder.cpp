@@ -5,9 +5,11 @@
 namespace tactus::test
 {
 
-RigRecorder::RigRecorder(const FrameSetup& setup, Courier& courier) : writer_(to_recorded(setup))
+void RigRecorder::follow(Courier& courier)
 {
-    courier.copy_pieces_to(this);
+    const auto model = static_cast<std::uint32_t>(lines_.size());
+    lines_.push_back(std::make_unique<Line>(writer_, model));
+    courier.copy_pieces_to(lines_.back().get());
 }
 
 void RigRecorder::add(std::span<const ToolState> tools, std::span<const ObjectPose> poses,
@@ -20,11 +22,6 @@ std::vector<std::byte> RigRecorder::finish()
 {
     writer_.finish(kNoFrame);
     return writer_.take_bytes();
-}
-
-void RigRecorder::receive(ContentKey key, std::span<const std::byte> bytes)
-{
-    writer_.add_piece(0, key, bytes);
 }
 
 } // namespace tactus::test

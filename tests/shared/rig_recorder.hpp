@@ -8,6 +8,8 @@
 #include "transport/courier.hpp"
 
 #include <cstddef>
+#include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -15,12 +17,14 @@ namespace tactus::test
 {
 
 /// Records the frames of one rig, in memory and on its thread.
-class RigRecorder final : private PieceSink
+class RigRecorder
 {
 public:
-    /// Takes a copy of each piece that `courier` hands over from now on; the courier must not be
-    /// used any more once the recorder is gone.
-    RigRecorder(const FrameSetup& setup, Courier& courier);
+    explicit RigRecorder(const FrameSetup& setup) : writer_(to_recorded(setup)) {}
+
+    /// Takes a copy of each piece that `courier` hands over from now on, of the next model; the
+    /// courier must not be used any more once the recorder is gone.
+    void follow(Courier& courier);
 
     void add(std::span<const ToolState> tools, std::span<const ObjectPose> poses,
              const Budgets& budgets, const FrameOutput& output);
@@ -28,10 +32,24 @@ public:
     [[nodiscard]] std::vector<std::byte> finish();
 
 private:
-    void receive(ContentKey key, std::span<const std::byte> bytes) override;
+    /// What comes of one model.
+    class Line final : public PieceSink
+    {
+    public:
+        Line(RecordingWriter& writer, std::uint32_t model) : writer_(writer), model_(model) {}
+        void receive(ContentKey key, std::span<const std::byte> bytes) override
+        {
+            writer_.add_piece(model_, key, bytes);
+        }
+
+    private:
+        RecordingWriter& writer_;
+        std::uint32_t model_;
+    };
 
     RecordingWriter writer_;
     FrameEncoder encoder_;
+    std::vector<std::unique_ptr<Line>> lines_;
 };
 
 } // namespace tactus::test
