@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "tests/shared/mesh_pair_oracle.hpp"
+
+#include "tests/shared/exact_meet.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace tactus::test
+{
+
+namespace
+{
+
+std::vector<Triangle> widened(const std::vector<Face>& faces)
+{
+    std::vector<Triangle> triangles;
+    triangles.reserve(faces.size());
+    for (const Face& face : faces)
+    {
+        triangles.push_back({to_vec3(face[0]), to_vec3(face[1]), to_vec3(face[2])});
+    }
+    return triangles;
+}
+
+/// As the frame makes it of what a device reports.
+Mat3 orthonormal(const Mat3& matrix)
+{
+    Mat3 result;
+    const Vec3 first = matrix.col(0).normalized();
+    const Vec3 second = matrix.col(1) - first.dot(matrix.col(1)) * first;
+    result.col(0) = first;
+    result.col(1) = second.normalized();
+    result.col(2) = first.cross(result.col(1));
+    return result;
+}
+
+template <typename Real>
+Point<Real> difference_of(const Point<Real>& a, const Point<Real>& b)
+{
+    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+
+template <typename Real>
+Real corner_to_face(const Point<Real>& corner, const std::array<Point<Real>, 3>& face)
+{
+    return BasicDistanceOracle<Real>::distance({difference_of(face[0], corner),
+                                                difference_of(face[1], corner),
+                                                difference_of(face[2], corner)});
+}
+
+/// Where both are nearest within their ends; otherwise some corner is nearest.
+template <typename Real>
+Real edge_to_edge(const Point<Real>& p, const Point<Real>& q, const Point<Real>& a,
+                  const Point<Real>& b)
+{
+    const Point<Real> u = difference_of(q, p);
+    const Point<Real> v = difference_of(b, a);
+    const Point<Real> w = difference_of(p, a);
+    const Real uv = dot(u, v);
+    const Real vv = dot(v, v);
+    const Real determinant = dot(u, u) * vv - uv * uv;
+    const Real s = uv * dot(v, w) - vv * dot(u, w);
+    if (!(determinant > 0) || s <= 0 || s >= determinant)
+    {
+        return BasicDistanceOracle<Real>::kInfinity;
+    }
+    const Point<Real> from = combined(p, s / determinant, u, Real{0}, u);
+    return BasicDistanceOracle<Real>::to_segment(difference_of(a, from), difference_of(b, from));
+}
+
+template <typename Real>
+Real distance_of(const std::array<Point<Real>, 3>& a, const std::array<Point<Real>, 3>& b)
+{
+    Real least = BasicDistanceOracle<Real>::kInfinity;
+    for (std::size_t i = 0; i < 3; ++i)
+    {
+        least = std::min({least, corner_to_face(a[i], b), corner_to_face(b[i], a)});
+        for (std::size_t j = 0; j < 3; ++j)
+        {
+            least = std::min(least, edge_to_edge(a[i], a[(i + 1) % 3], b[j], b[(j + 1) % 3]));
+        }
+    }
+    return least;
+}
+
+template <typename Real, typename Corner>
+std::array<Point<Real>, 3> in_precision(const std::array<Corner, 3>& triangle)
+{
+    std::array<Point<Real>, 3> result{};
+    for (std::size_t i = 0; i < 3; ++i)
+    {
+        const Corner& corner = triangle[i];
+        result[i] = {static_cast<Real>(corner[0]), static_cast<Real>(corner[1]),
+                     static_cast<Real>(corner[2])};
+    }
+    return result;
+}
+
+} // namespace
+
+MeshPairOracle::MeshPairOracle(const TestModel& tool, const TestModel& object)
+    : tool_(tool)
+    , tool_faces_(widened(tool.faces))
+    , placed_faces_(tool_faces_)
+    , object_faces_(widened(object.faces))
+    , tool_tree_(tool_faces_)
+    , object_tree_(object_faces_)
+    , origin_m_(tool.origin_m[0], tool.origin_m[1], tool.origin_m[2])
+{
+}
+
+void MeshPairOracle::place(const ObjectPose& pose, const ToolState& tool)
+{
+    const Placement placement = place_in_model(pose, orthonormal(tool.rotation), tool.position_m);
+    double size_m = 0.0;
+    for (std::size_t i = 0; i < tool_faces_.size(); ++i)
+    {
+        for (std::size_t corner = 0; corner < 3; ++corner)
+        {
+            const Vec3 own_m = tool_faces_[i][corner] + origin_m_;
+            placed_faces_[i][corner] =
+                placement.origin + placement.scale * (placement.rotation * own_m);
+            size_m = std::max(size_m, placed_faces_[i][corner].norm() + own_m.norm() / pose.scale);
+        }
+    }
+    tool_tree_.refit(placed_faces_);
+    scale_ = pose.scale;
+    const Vec3 relative_m = tool.position_m - pose.translation_m;
+    margin_m_ = 1e-13 * (size_m + (relative_m.norm() + tool.position_m.norm()) / scale_);
+
+    using WideMatrix = Eigen::Matrix<long double, 3, 3>;
+    const WideMatrix back =
+        pose.rotation.cast<long double>().inverse() / static_cast<long double>(scale_);
+    const WideMatrix turned = back * tool.rotation.cast<long double>();
+    const Eigen::Matrix<long double, 3, 1> origin =
+        back * (tool.position_m.cast<long double>() - pose.translation_m.cast<long double>());
+    for (std::size_t i = 0; i < 3; ++i)
+    {
+        const auto row = static_cast<Eigen::Index>(i);
+        wide_rows_[i] = {turned(row, 0), turned(row, 1), turned(row, 2)};
+        wide_origin_[i] = origin[row];
+    }
+}
+
+MeshPairOracle::WideTriangle MeshPairOracle::ideal_tool_face(std::uint32_t face) const
+{
+    WideTriangle result{};
+    for (std::size_t corner = 0; corner < 3; ++corner)
+    {
+        WidePoint own{};
+        for (std::size_t axis = 0; axis < 3; ++axis)
+        {
+            own[axis] = static_cast<long double>(tool_.faces[face][corner][axis]) +
+                        static_cast<long double>(tool_.origin_m[axis]);
+        }
+        for (std::size_t axis = 0; axis < 3; ++axis)
+        {
+            result[corner][axis] = wide_origin_[axis] + dot(wide_rows_[axis], own);
+        }
+    }
+    return result;
+}
+
+bool MeshPairOracle::do_meet(const FacePair& faces) const
+{
+    return exactly_meet(placed_faces_[faces.tool_face], object_faces_[faces.face]);
+}
+
+template <typename Real>
+Real MeshPairOracle::distance(const FacePair& faces) const
+{
+    if (do_meet(faces))
+    {
+        return 0;
+    }
+    return static_cast<Real>(scale_) *
+           distance_of(in_precision<Real>(ideal_tool_face(faces.tool_face)),
+                       in_precision<Real>(object_faces_[faces.face]));
+}
+
+template long double MeshPairOracle::distance<long double>(const FacePair&) const;
+#if defined(__SIZEOF_FLOAT128__)
+template Quad MeshPairOracle::distance<Quad>(const FacePair&) const;
+#endif
+
+MeshPairOracle::Nearest MeshPairOracle::nearest()
+{
+    Nearest best{distance(last_nearest_), last_nearest_};
+    const auto limit = [&] { return static_cast<double>(best.distance_m) / scale_ + margin_m_; };
+    TriangleTree::visit_pairs(tool_tree_, object_tree_, limit,
+                              [&](std::uint32_t tool_face, std::uint32_t face)
+                              {
+                                  const FacePair faces{tool_face, face};
+                                  const long double found =
+                                      best.distance_m > 0 ? distance(faces) : 1;
+                                  if (found < best.distance_m)
+                                  {
+                                      best = {found, faces};
+                                  }
+                              });
+    last_nearest_ = best.faces;
+    return best;
+}
+
+std::vector<FacePair> MeshPairOracle::meeting() const
+{
+    std::vector<FacePair> pairs;
+    TriangleTree::visit_pairs(
+        tool_tree_, object_tree_, [] { return 0.0; },
+        [&](std::uint32_t tool_face, std::uint32_t face)
+        {
+            if (do_meet({tool_face, face}))
+            {
+                pairs.push_back({tool_face, face});
+            }
+        });
+    std::sort(pairs.begin(), pairs.end());
+    return pairs;
+}
+
+std::vector<FacePair> MeshPairOracle::within(double distance_m, std::size_t enough) const
+{
+    std::vector<FacePair> pairs;
+    const auto limit = [&]
+    { return pairs.size() < enough ? distance_m / scale_ + margin_m_ : -1.0; };
+    TriangleTree::visit_pairs(
+        tool_tree_, object_tree_, limit,
+        [&](std::uint32_t tool_face, std::uint32_t face)
+        {
+            if (distance({tool_face, face}) <= static_cast<long double>(distance_m))
+            {
+                pairs.push_back({tool_face, face});
+            }
+        });
+    return pairs;
+}
+
+long double MeshPairOracle::brute_distance() const
+{
+    long double least = DistanceOracle::kInfinity;
+    for (std::uint32_t tool_face = 0; tool_face < tool_faces_.size(); ++tool_face)
+    {
+        for (std::uint32_t face = 0; face < object_faces_.size(); ++face)
+        {
+            least = std::min(least, distance({tool_face, face}));
+        }
+    }
+    return least;
+}
+
+std::vector<FacePair> MeshPairOracle::brute_meeting() const
+{
+    std::vector<FacePair> pairs;
+    for (std::uint32_t tool_face = 0; tool_face < tool_faces_.size(); ++tool_face)
+    {
+        for (std::uint32_t face = 0; face < object_faces_.size(); ++face)
+        {
+            if (do_meet({tool_face, face}))
+            {
+                pairs.push_back({tool_face, face});
+            }
+        }
+    }
+    return pairs;
+}
+
+} // namespace tactus::test

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "tests/shared/face_names.hpp"
+#include "tests/shared/frame_rig.hpp"
+#include "tests/shared/mesh_pair_oracle.hpp"
+#include "tests/stability/mesh_motion.hpp"
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace tactus::test
+{
+
+/// Judges what a frame says of a tool that is a mesh, and an object, against all faces of both.
+class MeshJudge
+{
+public:
+    /// Both must outlive the judge. The tool's skin is this thick.
+    MeshJudge(const TestModel& tool, const TestModel& object, double radius_m);
+
+    /// What is wrong, a line each. `rig` has just run the frame; the object's model is its first,
+    /// the tool's its second.
+    [[nodiscard]] std::vector<std::string> judge(FrameRig& rig, const MeshMoment& moment,
+                                                 const PairOutput& pair);
+
+    /// Of the last frame: whether any faces meet.
+    [[nodiscard]] bool is_meeting() const { return !meeting_.empty(); }
+    /// The trees of the oracle against pair by pair, where the last frame was.
+    [[nodiscard]] bool is_sure() const;
+
+private:
+    using NamedPairs = std::vector<FacePair>;
+
+    void judge_bracket(const PairOutput& pair);
+    void judge_nearest(const PairOutput& pair);
+    void judge_meeting(const MeshReport& report);
+    void judge_truncated(const MeshReport& report);
+    void judge_intersection(const MeshReport& report);
+    void judge_contacts(const ContactReport& report);
+    void judge_complete_contacts(const NamedPairs& named);
+
+    void flag(const std::string& what) { wrong_.push_back(what); }
+    /// Of active faces that are the source's; flagged if not.
+    [[nodiscard]] FacePair named(FaceId tool_face, FaceId face);
+    [[nodiscard]] NamedPairs sorted_names(const std::vector<FacePair>& pairs) const;
+
+    MeshPairOracle oracle_;
+    FaceNames tool_names_;
+    FaceNames names_;
+    double radius_m_;
+
+    // Of the frame that is being judged.
+    FrameRig* rig_{nullptr};
+    double doubt_m_{0.0}; ///< What distances in double may be off by.
+    MeshPairOracle::Nearest nearest_;
+    NamedPairs meeting_;
+    std::vector<std::string> wrong_;
+};
+
+} // namespace tactus::test

@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "tests/stability/mesh_trial.hpp"
+
+#include "tests/shared/frame_verdict.hpp"
+#include "tests/stability/mesh_judge.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+
+namespace tactus::test
+{
+
+namespace
+{
+
+constexpr std::uint32_t kFillingMax = 20'000;
+
+double skin_m(const MeshTrial& trial)
+{
+    return trial.hardship.radius_diag * trial.tool.diagonal_m;
+}
+
+RigOptions rig_options(const MeshTrial& trial)
+{
+    RigOptions options = trial.hardship.rig;
+    options.pool_bytes *= 2;
+    options.faults.seed = trial.seed + 1;
+    ToolSpec tool;
+    tool.radius_m = skin_m(trial);
+    tool.core = MeshCore{ModelId{1}};
+    tool.wants_contacts = true;
+    options.tools = {tool};
+    return options;
+}
+
+FrameOutput step(FrameRig& rig, const MeshMoment& moment, const Budgets& budgets)
+{
+    rig.place_object(moment.pose);
+    return rig.step(std::span(&moment.tool, 1), budgets);
+}
+
+std::string name_of(const MeshTrial& trial)
+{
+    return trial.tool.name + " on " + trial.object.name + ", " + trial.hardship.name;
+}
+
+std::string where(const MeshTrial& trial, std::uint32_t frame, const char* activity)
+{
+    return name_of(trial) + ", TACTUS_SEED=" + std::to_string(trial.seed) + ", frame " +
+           std::to_string(frame) + " (" + activity + "): ";
+}
+
+bool is_answered(const PairOutput& pair)
+{
+    return pair.kind == AnswerKind::exact || pair.kind == AnswerKind::decided;
+}
+
+/// The frames of one trial and what is to be said of them.
+class Trial
+{
+public:
+    Trial(const MeshTrial& trial, MeshMotion& motion)
+        : trial_(trial)
+        , motion_(motion)
+        , rig_({&trial.object, &trial.tool}, rig_options(trial))
+        , judge_(trial.tool, trial.object, skin_m(trial))
+    {
+        figures_.truth = {name_of(trial), 0, 0.0, 0.0, "frames", 0, {}};
+        figures_.open = {name_of(trial) + ", open", 0, 0.0, kMeshOpenShare, "of the frames", 0, {}};
+    }
+
+    [[nodiscard]] MeshFigures run()
+    {
+        for (frame_ = 0; frame_ < trial_.frames; ++frame_)
+        {
+            const MeshMoment moment = motion_.next();
+            const FrameOutput output = step(rig_, moment, trial_.hardship.budgets);
+            count(output.pairs[0]);
+            check(output, moment);
+        }
+        if (figures_.open.trials > 0)
+        {
+            figures_.open.observe(static_cast<double>(open_) /
+                                  static_cast<double>(figures_.open.trials));
+        }
+        return figures_;
+    }
+
+private:
+    void count(const PairOutput& pair)
+    {
+        const bool is_complete = pair.mesh != nullptr && pair.mesh->is_complete;
+        figures_.exact += pair.kind == AnswerKind::exact ? 1U : 0U;
+        figures_.complete += is_complete ? 1U : 0U;
+        figures_.truncated += pair.mesh != nullptr && pair.mesh->is_truncated ? 1U : 0U;
+        if (frame_ >= kMeshSettling)
+        {
+            ++figures_.open.trials;
+            open_ += is_answered(pair) && is_complete ? 0U : 1U;
+        }
+    }
+
+    void check(const FrameOutput& output, const MeshMoment& moment)
+    {
+        ++figures_.truth.trials;
+        std::vector<std::string> wrong = judge_.judge(rig_, moment, output.pairs[0]);
+        figures_.meeting += judge_.is_meeting() ? 1U : 0U;
+        for (const Verdict& verdict :
+             {broken_budget(output, trial_.hardship.budgets), unexplained(output)})
+        {
+            if (verdict)
+            {
+                wrong.push_back(*verdict);
+            }
+        }
+        for (const std::string& what : wrong)
+        {
+            figures_.truth.flag(where(trial_, frame_, motion_.activity()) + what);
+        }
+        wrong_frames_ += wrong.empty() ? 0 : 1;
+        figures_.truth.observe(wrong_frames_);
+    }
+
+    const MeshTrial& trial_;
+    MeshMotion& motion_;
+    FrameRig rig_;
+    MeshJudge judge_;
+    MeshFigures figures_;
+    std::uint32_t frame_{0};
+    std::uint64_t open_{0};
+    int wrong_frames_{0};
+};
+
+bool same_bits(double a, double b)
+{
+    return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
+}
+
+bool same_bits(const Vec3& a, const Vec3& b)
+{
+    return same_bits(a.x(), b.x()) && same_bits(a.y(), b.y()) && same_bits(a.z(), b.z());
+}
+
+bool same_bits(const Contact& a, const Contact& b)
+{
+    return a.face == b.face && a.tool_face == b.tool_face && a.feature == b.feature &&
+           same_bits(a.distance_m, b.distance_m) && same_bits(a.on_tool_m, b.on_tool_m) &&
+           same_bits(a.on_surface_m, b.on_surface_m) && same_bits(a.normal, b.normal);
+}
+
+/// What differs between two exact answers; empty when nothing does.
+std::string difference(const PairOutput& a, const PairOutput& b)
+{
+    if (!same_bits(a.lower_m, b.lower_m) || !same_bits(a.upper_m, b.upper_m))
+    {
+        return "the distances differ: " + std::to_string(a.lower_m) + ", whole " +
+               std::to_string(b.lower_m);
+    }
+    if (a.mesh->is_complete && b.mesh->is_complete &&
+        !std::equal(a.mesh->meeting.begin(), a.mesh->meeting.end(), b.mesh->meeting.begin(),
+                    b.mesh->meeting.end()))
+    {
+        return "the faces that meet differ";
+    }
+    const auto& ours = a.contacts->contacts;
+    const auto& full = b.contacts->contacts;
+    if (a.contacts->is_complete && b.contacts->is_complete &&
+        !std::equal(ours.begin(), ours.end(), full.begin(), full.end(),
+                    [](const Contact& x, const Contact& y) { return same_bits(x, y); }))
+    {
+        return "the contacts differ";
+    }
+    // Of faces that meet any of them is nearest, and which is known may differ.
+    const bool is_known = a.upper_m > 0.0 || (a.mesh->is_complete && b.mesh->is_complete);
+    if (is_known &&
+        (a.nearest_face != b.nearest_face ||
+         a.mesh->nearest_tool_face != b.mesh->nearest_tool_face ||
+         !same_bits(a.point_m, b.point_m) || !same_bits(a.nearest_point_m, b.nearest_point_m)))
+    {
+        return "the nearest faces or points differ";
+    }
+    return "";
+}
+
+/// A rig that has refined both models fully.
+std::unique_ptr<FrameRig> whole_models(const MeshTrial& trial)
+{
+    MeshTrial ample = trial;
+    ample.hardship = hardship_named(trial.object, "static");
+    ample.hardship.radius_diag = trial.hardship.radius_diag;
+    RigOptions options = rig_options(ample);
+    options.pool_bytes += 512 * (trial.object.faces.size() + trial.tool.faces.size());
+    options.courier_steps_per_frame = 16;
+    auto rig = std::make_unique<FrameRig>(std::vector{&trial.object, &trial.tool}, options);
+    Budgets budgets;
+    budgets.splits = kMaxSplitsPerFrame;
+    budgets.pages = kMaxArrivalsPerFrame;
+    budgets.requests = 64;
+    const MeshMoment moment;
+    for (std::uint32_t frame = 0; frame < kFillingMax; ++frame)
+    {
+        const FrameOutput output = step(*rig, moment, budgets);
+        if (output.models[0].is_static && output.models[1].is_static)
+        {
+            return rig;
+        }
+    }
+    std::fprintf(stderr, "mesh twin: %s is not refined fully after %u frames\n",
+                 name_of(trial).c_str(), kFillingMax);
+    std::exit(2);
+}
+
+} // namespace
+
+MeshFigures run_mesh_trial(const MeshTrial& trial)
+{
+    Random random = Random::seeded(trial.seed);
+    RandomMeshMotion motion(trial.tool, trial.object, trial.tree, trial.scale, random);
+    return Trial(trial, motion).run();
+}
+
+MeshFigures run_mesh_slide(const MeshTrial& trial)
+{
+    Random random = Random::seeded(trial.seed);
+    MeshSlide motion(trial.tool, trial.object, trial.tree, trial.scale, random);
+    return Trial(trial, motion).run();
+}
+
+TrialFigures run_mesh_twin(const MeshTrial& trial)
+{
+    Random random = Random::seeded(trial.seed);
+    RandomMeshMotion motion(trial.tool, trial.object, trial.tree, trial.scale, random);
+    const std::unique_ptr<FrameRig> whole = whole_models(trial);
+    FrameRig rig({&trial.object, &trial.tool}, rig_options(trial));
+    TrialFigures figures{name_of(trial) + ", identical", 0, 0.0, 0.0, "frames", 0, {}};
+    for (std::uint32_t frame = 0; frame < trial.frames; ++frame)
+    {
+        const MeshMoment moment = motion.next();
+        const PairOutput ours = step(rig, moment, trial.hardship.budgets).pairs[0];
+        const PairOutput full = step(*whole, moment, trial.hardship.budgets).pairs[0];
+        if (ours.kind != AnswerKind::exact || full.kind != AnswerKind::exact)
+        {
+            continue;
+        }
+        ++figures.trials;
+        if (const std::string text = difference(ours, full); !text.empty())
+        {
+            figures.flag(where(trial, frame, motion.activity()) + text);
+            figures.observe(static_cast<double>(figures.violations));
+        }
+    }
+    return figures;
+}
+
+} // namespace tactus::test

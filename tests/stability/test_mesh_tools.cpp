@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+
+/// Tools that are meshes: brackets, pairs of faces that meet, contacts, whatever runs out.
+
+#include "host_tools/shapes/shapes.hpp"
+#include "tests/shared/random.hpp"
+#include "tests/stability/mesh_trial.hpp"
+#include "tests/stability/trial_models.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdio>
+
+namespace tactus::test
+{
+
+namespace
+{
+
+constexpr std::array<const char*, 6> kHardships{"usual",       "K-1",        "starved",
+                                                "small-pools", "lossy-link", "static"};
+constexpr std::array<double, 3> kScales{1.0, 3.0, 8.0};
+constexpr std::array<double, 3> kSkins_diag{0.002, 0.0, 0.01}; ///< Of the tool.
+
+/// 300 to 4,000 faces.
+const TestModel& tool_model(std::size_t index)
+{
+    switch (index % 3)
+    {
+    case 0:
+        return test_model("tool-gear", make_shape(Shape::gear, 600).value());
+    case 1:
+        return test_model("tool-torus", make_shape(Shape::torus, 300).value());
+    default:
+        return test_model("tool-bumpy", make_shape(Shape::bumpy_sphere, 4'000).value());
+    }
+}
+
+void print(std::uint64_t seed, const MeshFigures& figures)
+{
+    std::printf(
+        "seed %llu, exact %llu, meeting %llu, complete %llu, truncated %llu, %s\n",
+        static_cast<unsigned long long>(seed), static_cast<unsigned long long>(figures.exact),
+        static_cast<unsigned long long>(figures.meeting),
+        static_cast<unsigned long long>(figures.complete),
+        static_cast<unsigned long long>(figures.truncated), figures.truth.summary().c_str());
+}
+
+Hardship hardship_of(const TestModel& object, std::size_t index)
+{
+    Hardship hardship = hardship_named(object, kHardships[index]);
+    hardship.radius_diag = kSkins_diag[index % kSkins_diag.size()];
+    return hardship;
+}
+
+class MeshTools : public testing::TestWithParam<std::size_t>
+{
+};
+
+TEST_P(MeshTools, agree_with_all_faces_of_both_whatever_runs_out)
+{
+    constexpr std::uint32_t kFrames = 150;
+    const TestModel& object = small_model(GetParam());
+    const FaceTree tree(object.faces);
+    for (std::size_t i = 0; i < kHardships.size(); ++i)
+    {
+        const std::uint64_t seed = seed_of(20'261'400 + 10 * GetParam() + i);
+        const TestModel& tool = tool_model(GetParam() + i);
+        const MeshFigures sut = run_mesh_trial({tool, object, tree, hardship_of(object, i),
+                                                kScales[(GetParam() + i) % 3], seed, kFrames});
+        print(seed, sut);
+        EXPECT_TRUE(sut.truth.holds());
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(small_models, MeshTools, testing::Range<std::size_t>(0, kSmallModels));
+
+class KnownMeshTools : public testing::TestWithParam<KnownMesh>
+{
+};
+
+TEST_P(KnownMeshTools, agree_with_all_faces_of_both_whatever_runs_out)
+{
+    const TestModel* object = known_model(GetParam());
+    if (object == nullptr)
+    {
+        GTEST_SKIP() << "TACTUS_MESHES is not set";
+    }
+    const FaceTree tree(object->faces);
+    for (std::size_t i = 0; i < kHardships.size() - 1; ++i)
+    {
+        const std::uint64_t seed = seed_of(20'261'480 + i);
+        const MeshFigures sut =
+            run_mesh_trial({tool_model(i), *object, tree, hardship_of(*object, i),
+                            0.5 / object->diagonal_m, seed, 100});
+        print(seed, sut);
+        EXPECT_TRUE(sut.truth.holds());
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(meshes, KnownMeshTools, testing::Values(kKnownMeshes[3]),
+                         [](const auto& mesh) { return std::string(mesh.param.name); });
+
+class MeshToolSlides : public testing::TestWithParam<std::size_t>
+{
+};
+
+TEST_P(MeshToolSlides, are_answered_and_reported_completely)
+{
+    const TestModel& object = small_model(GetParam());
+    const FaceTree tree(object.faces);
+    const std::uint64_t seed = seed_of(20'261'490 + GetParam());
+    const MeshFigures sut =
+        run_mesh_slide({tool_model(GetParam()), object, tree, hardship_of(object, 0), 4.0, seed,
+                        kMeshSettling + 500});
+    print(seed, sut);
+    std::printf("%s\n", sut.open.summary().c_str());
+    EXPECT_TRUE(sut.truth.holds());
+    EXPECT_TRUE(sut.open.holds());
+    EXPECT_GT(sut.meeting, 20U);
+}
+
+// Smooth, round, open, sharp.
+INSTANTIATE_TEST_SUITE_P(small_models, MeshToolSlides, testing::Range<std::size_t>(0, 4));
+
+TEST(MeshToolTwins, exact_answers_are_those_of_the_full_meshes_to_the_last_bit)
+{
+    for (std::size_t i = 0; i < 3; ++i)
+    {
+        const TestModel& object = small_model(i);
+        const FaceTree tree(object.faces);
+        const TrialFigures sut = run_mesh_twin({tool_model(i), object, tree, hardship_of(object, 0),
+                                                kScales[i], seed_of(20'261'500 + i), 300});
+        std::printf("%s\n", sut.summary().c_str());
+        EXPECT_GT(sut.trials, 50U);
+        EXPECT_TRUE(sut.holds());
+    }
+}
+
+} // namespace
+
+} // namespace tactus::test
