@@ -24,6 +24,27 @@ std::vector<Triangle> widened(const std::vector<Face>& faces)
     return triangles;
 }
 
+std::vector<Vec3> normals_of(const std::vector<Triangle>& triangles)
+{
+    std::vector<Vec3> normals;
+    normals.reserve(triangles.size());
+    for (const Triangle& t : triangles)
+    {
+        normals.push_back((t[1] - t[0]).cross(t[2] - t[0]).normalized());
+    }
+    return normals;
+}
+
+/// What the shadows of two triangles on a line are apart; below 0 where they overlap.
+double gap_along(const Vec3& direction, const Triangle& a, const Triangle& b)
+{
+    const auto [a_low, a_high] =
+        std::minmax({direction.dot(a[0]), direction.dot(a[1]), direction.dot(a[2])});
+    const auto [b_low, b_high] =
+        std::minmax({direction.dot(b[0]), direction.dot(b[1]), direction.dot(b[2])});
+    return std::max(b_low - a_high, a_low - b_high);
+}
+
 /// As the frame makes it of what a device reports.
 Mat3 orthonormal(const Mat3& matrix)
 {
@@ -105,6 +126,8 @@ MeshPairOracle::MeshPairOracle(const TestModel& tool, const TestModel& object)
     , tool_faces_(widened(tool.faces))
     , placed_faces_(tool_faces_)
     , object_faces_(widened(object.faces))
+    , tool_normals_(normals_of(tool_faces_))
+    , normals_(normals_of(object_faces_))
     , tool_tree_(tool_faces_)
     , object_tree_(object_faces_)
     , origin_m_(tool.origin_m[0], tool.origin_m[1], tool.origin_m[2])
@@ -114,6 +137,7 @@ MeshPairOracle::MeshPairOracle(const TestModel& tool, const TestModel& object)
 void MeshPairOracle::place(const ObjectPose& pose, const ToolState& tool)
 {
     const Placement placement = place_in_model(pose, orthonormal(tool.rotation), tool.position_m);
+    rotation_ = placement.rotation;
     double size_m = 0.0;
     for (std::size_t i = 0; i < tool_faces_.size(); ++i)
     {
@@ -185,16 +209,29 @@ template long double MeshPairOracle::distance<long double>(const FacePair&) cons
 template Quad MeshPairOracle::distance<Quad>(const FacePair&) const;
 #endif
 
+double MeshPairOracle::gap_m(const FacePair& faces) const
+{
+    const Triangle& a = placed_faces_[faces.tool_face];
+    const Triangle& b = object_faces_[faces.face];
+    const Vec3 between = (a[0] + a[1] + a[2] - b[0] - b[1] - b[2]).normalized();
+    return std::max({gap_along(between, a, b), gap_along(normals_[faces.face], a, b),
+                     gap_along(rotation_ * tool_normals_[faces.tool_face], a, b)});
+}
+
 MeshPairOracle::Nearest MeshPairOracle::nearest()
 {
     Nearest best{distance(last_nearest_), last_nearest_};
-    const auto limit = [&] { return static_cast<double>(best.distance_m) / scale_ + margin_m_; };
+    const auto limit = [&]
+    {
+        const auto distance_m = static_cast<double>(best.distance_m);
+        return distance_m > 0.0 ? distance_m / scale_ + margin_m_ : -1.0;
+    };
     TriangleTree::visit_pairs(tool_tree_, object_tree_, limit,
                               [&](std::uint32_t tool_face, std::uint32_t face)
                               {
                                   const FacePair faces{tool_face, face};
                                   const long double found =
-                                      best.distance_m > 0 ? distance(faces) : 1;
+                                      gap_m(faces) > limit() ? best.distance_m : distance(faces);
                                   if (found < best.distance_m)
                                   {
                                       best = {found, faces};

@@ -64,11 +64,16 @@ private:
     using WideTriangle = std::array<WidePoint, 3>;
 
     [[nodiscard]] WideTriangle ideal_tool_face(std::uint32_t face) const;
+    /// What two faces are apart at least along three directions, in the object's frame; cheap.
+    [[nodiscard]] double gap_m(const FacePair& faces) const;
 
     const TestModel& tool_;
     std::vector<Triangle> tool_faces_;   ///< In the tool's frame, but for the origin.
     std::vector<Triangle> placed_faces_; ///< In the object's model's frame.
     std::vector<Triangle> object_faces_;
+    std::vector<Vec3> tool_normals_; ///< In the tool's frame; of about unit length, or zero.
+    std::vector<Vec3> normals_;
+    Mat3 rotation_{Mat3::Identity()}; ///< Of the tool's frame in the object's.
     TriangleTree tool_tree_;
     TriangleTree object_tree_;
     Vec3 origin_m_; ///< Of the tool's model in the tool's frame.

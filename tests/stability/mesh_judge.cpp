@@ -75,12 +75,6 @@ std::vector<std::string> MeshJudge::judge(FrameRig& rig, const MeshMoment& momen
     return wrong_;
 }
 
-bool MeshJudge::is_sure() const
-{
-    return nearest_.distance_m == oracle_.brute_distance() &&
-           meeting_ == sorted_names(oracle_.brute_meeting());
-}
-
 void MeshJudge::judge_bracket(const PairOutput& pair)
 {
     if (is_between(pair.lower_m, nearest_.distance_m, pair.upper_m))

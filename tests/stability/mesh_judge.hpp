@@ -28,8 +28,7 @@ public:
 
     /// Of the last frame: whether any faces meet.
     [[nodiscard]] bool is_meeting() const { return !meeting_.empty(); }
-    /// The trees of the oracle against pair by pair, where the last frame was.
-    [[nodiscard]] bool is_sure() const;
+    [[nodiscard]] double distance_m() const { return static_cast<double>(nearest_.distance_m); }
 
 private:
     using NamedPairs = std::vector<FacePair>;

@@ -15,8 +15,9 @@ constexpr std::uint32_t kLongestGrip = 60;
 constexpr std::array<double, 4> kTurns_rad{0.0, 5e-4, 5e-3, 0.05}; ///< A frame of 1 ms.
 constexpr double kSlideStep_diag = 0.1e-3;
 constexpr double kSlideTurn_rad = 0.5e-3;
-/// Of the ball round a tool: what a slide holds off the surface.
-constexpr double kTouching = 0.93;
+/// Down to the surface, and up from it, in steps of the slide.
+constexpr double kSinking = 10.0;
+constexpr double kRising = 0.5;
 
 /// The tool with this place of its frame at a place of the world.
 ToolState held(const Vec3& grip_m, const Vec3& place_m, const Mat3& rotation)
@@ -91,7 +92,7 @@ MeshMoment RandomMeshMotion::next()
     return {held(grip_m_, moment.goal_m, rotation_.toRotationMatrix()), moment.pose};
 }
 
-/// From deep inside the tool to a little outside of it.
+/// From half inside the tool to outside of it.
 void RandomMeshMotion::change_grip()
 {
     frames_left_ = 5 + random_.below(kLongestGrip);
@@ -107,12 +108,31 @@ void RandomMeshMotion::change_grip()
     }
 }
 
+CoincidentMotion::CoincidentMotion(const TestModel& tool, const TestModel& object)
+    : place_m_(-tool.origin_m[0], -tool.origin_m[1], -tool.origin_m[2])
+    , diagonal_m_(object.diagonal_m)
+{
+}
+
+MeshMoment CoincidentMotion::next()
+{
+    constexpr std::array<double, 6> kOff_diag{0.0, 1e-17, 1e-16, 1e-12, 1e-6, 1e-3};
+    const double off_m = kOff_diag[frame_ / 3 % kOff_diag.size()] * diagonal_m_;
+    MeshMoment moment;
+    moment.tool.position_m = place_m_;
+    moment.tool.position_m[frame_ % 3] += off_m;
+    ++frame_;
+    return moment;
+}
+
 MeshSlide::MeshSlide(const TestModel& tool, const TestModel& object, const FaceTree& tree,
                      double scale, Random& random)
     : ball_(ball_round(tool))
+    , tree_(tree)
+    , step_m_(kSlideStep_diag * object.diagonal_m * scale)
     , pose_(pose_of_scale(scale))
     , axis_(random.in_cube(1.0).normalized())
-    , slide_(tree, slide_manner(object, kTouching * ball_.radius_m / scale, random),
+    , slide_(tree, slide_manner(object, ball_.radius_m / scale, random),
              Vec3(0.0, 0.0, tree.high_m().z()) + 0.5 * (tree.low_m() + tree.high_m()))
 {
 }
@@ -122,7 +142,15 @@ MeshMoment MeshSlide::next()
     ++frame_;
     const Mat3 rotation =
         Eigen::Quaterniond(Eigen::AngleAxisd(kSlideTurn_rad * frame_, axis_)).toRotationMatrix();
-    return {held(ball_.middle_m, to_world(pose_, slide_.next()), rotation), pose_};
+    const Vec3 place_m = slide_.next();
+    const Vec3 up = (place_m - tree_.nearest(place_m).point_m).normalized();
+    return {held(ball_.middle_m, to_world(pose_, place_m) - sunk_m_ * up, rotation), pose_};
+}
+
+void MeshSlide::feel(double distance_m)
+{
+    sunk_m_ +=
+        distance_m > 0.0 ? std::min(0.5 * distance_m, kSinking * step_m_) : -kRising * step_m_;
 }
 
 } // namespace tactus::test

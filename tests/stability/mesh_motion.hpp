@@ -34,6 +34,8 @@ public:
     virtual ~MeshMotion() = default;
 
     [[nodiscard]] virtual MeshMoment next() = 0;
+    /// How far apart the surfaces were in the last frame, for those who feel their way.
+    virtual void feel(double distance_m) { static_cast<void>(distance_m); }
     /// What is being done, for a report.
     [[nodiscard]] virtual const char* activity() const = 0;
 };
@@ -63,7 +65,24 @@ private:
     std::uint32_t frames_left_{0};
 };
 
-/// Slides along the surface at 0.1 diag/s, turning at half a radian a second, just touching.
+/// A tool that is the object's own mesh, where the object is: first exactly, as far as positions
+/// are doubles, then ever farther off, to one side after the other.
+class CoincidentMotion final : public MeshMotion
+{
+public:
+    CoincidentMotion(const TestModel& tool, const TestModel& object);
+
+    [[nodiscard]] MeshMoment next() override;
+    [[nodiscard]] const char* activity() const override { return "coincident"; }
+
+private:
+    Vec3 place_m_; ///< Of the tool's frame.
+    double diagonal_m_;
+    std::uint32_t frame_{0};
+};
+
+/// Slides along the surface at 0.1 diag/s, turning at half a radian a second: down to the surface,
+/// and up a little whenever faces meet.
 class MeshSlide final : public MeshMotion
 {
 public:
@@ -72,11 +91,15 @@ public:
               Random& random);
 
     [[nodiscard]] MeshMoment next() override;
+    void feel(double distance_m) override;
     [[nodiscard]] const char* activity() const override { return "slow slide"; }
 
 private:
     ToolBall ball_;
+    const FaceTree& tree_;
+    double step_m_; ///< Of a frame, in the world.
     ObjectPose pose_;
+    double sunk_m_{0.0}; ///< Below where the ball round the tool touches, in the world.
     Vec3 axis_;
     SurfaceSlide slide_;
     std::uint32_t frame_{0};

@@ -108,6 +108,7 @@ private:
     {
         ++figures_.truth.trials;
         std::vector<std::string> wrong = judge_.judge(rig_, moment, output.pairs[0]);
+        motion_.feel(judge_.distance_m());
         figures_.meeting += judge_.is_meeting() ? 1U : 0U;
         for (const Verdict& verdict :
              {broken_budget(output, trial_.hardship.budgets), unexplained(output)})
@@ -227,6 +228,12 @@ MeshFigures run_mesh_slide(const MeshTrial& trial)
 {
     Random random = Random::seeded(trial.seed);
     MeshSlide motion(trial.tool, trial.object, trial.tree, trial.scale, random);
+    return Trial(trial, motion).run();
+}
+
+MeshFigures run_coincident_meshes(const MeshTrial& trial)
+{
+    CoincidentMotion motion(trial.tool, trial.object);
     return Trial(trial, motion).run();
 }
 

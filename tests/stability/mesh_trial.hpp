@@ -49,6 +49,9 @@ inline constexpr double kMeshOpenShare = 0.05;
 /// A slow slide; `open` is bounded by kMeshOpenShare.
 [[nodiscard]] MeshFigures run_mesh_slide(const MeshTrial& trial);
 
+/// The tool is the object's own mesh and where the object is.
+[[nodiscard]] MeshFigures run_coincident_meshes(const MeshTrial& trial);
+
 /// The same motion with both models streamed and with both refined fully: in frames in which both
 /// answers are exact they are the same to the last bit, and so are complete reports. The error is
 /// the number of frames that differ.

@@ -27,7 +27,7 @@ TEST(MeshPairOracle, finds_what_all_pairs_one_by_one_give)
     Random random(620);
     RandomMeshMotion motion(tool, object, tree, 2.0, random);
     int meetings = 0;
-    for (int i = 0; i < 12; ++i)
+    for (int i = 0; i < 8; ++i)
     {
         MeshMoment moment;
         for (std::uint32_t skipped = random.below(40U) + 1; skipped > 0; --skipped)
@@ -41,8 +41,8 @@ TEST(MeshPairOracle, finds_what_all_pairs_one_by_one_give)
         EXPECT_EQ(sut.meeting().empty(), distance_m > 0) << "place " << i;
         meetings += sut.meeting().empty() ? 0 : 1;
     }
-    EXPECT_GT(meetings, 2);
-    EXPECT_LT(meetings, 11);
+    EXPECT_GT(meetings, 1);
+    EXPECT_LT(meetings, 7);
 }
 
 TEST(MeshPairOracle, knows_the_distance_of_two_spheres_in_the_world)

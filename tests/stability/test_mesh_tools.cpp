@@ -48,10 +48,10 @@ void print(std::uint64_t seed, const MeshFigures& figures)
         static_cast<unsigned long long>(figures.truncated), figures.truth.summary().c_str());
 }
 
-Hardship hardship_of(const TestModel& object, std::size_t index)
+Hardship hardship_of(const TestModel& object, std::size_t index, std::size_t skin)
 {
     Hardship hardship = hardship_named(object, kHardships[index]);
-    hardship.radius_diag = kSkins_diag[index % kSkins_diag.size()];
+    hardship.radius_diag = kSkins_diag[skin % kSkins_diag.size()];
     return hardship;
 }
 
@@ -61,15 +61,16 @@ class MeshTools : public testing::TestWithParam<std::size_t>
 
 TEST_P(MeshTools, agree_with_all_faces_of_both_whatever_runs_out)
 {
-    constexpr std::uint32_t kFrames = 150;
+    constexpr std::uint32_t kFrames = 120;
     const TestModel& object = small_model(GetParam());
     const FaceTree tree(object.faces);
     for (std::size_t i = 0; i < kHardships.size(); ++i)
     {
         const std::uint64_t seed = seed_of(20'261'400 + 10 * GetParam() + i);
         const TestModel& tool = tool_model(GetParam() + i);
-        const MeshFigures sut = run_mesh_trial({tool, object, tree, hardship_of(object, i),
-                                                kScales[(GetParam() + i) % 3], seed, kFrames});
+        const MeshFigures sut =
+            run_mesh_trial({tool, object, tree, hardship_of(object, i, GetParam() + i / 2),
+                            kScales[(GetParam() + i) % 3], seed, kFrames});
         print(seed, sut);
         EXPECT_TRUE(sut.truth.holds());
     }
@@ -93,7 +94,7 @@ TEST_P(KnownMeshTools, agree_with_all_faces_of_both_whatever_runs_out)
     {
         const std::uint64_t seed = seed_of(20'261'480 + i);
         const MeshFigures sut =
-            run_mesh_trial({tool_model(i), *object, tree, hardship_of(*object, i),
+            run_mesh_trial({tool_model(i), *object, tree, hardship_of(*object, i, i),
                             0.5 / object->diagonal_m, seed, 100});
         print(seed, sut);
         EXPECT_TRUE(sut.truth.holds());
@@ -113,8 +114,8 @@ TEST_P(MeshToolSlides, are_answered_and_reported_completely)
     const FaceTree tree(object.faces);
     const std::uint64_t seed = seed_of(20'261'490 + GetParam());
     const MeshFigures sut =
-        run_mesh_slide({tool_model(GetParam()), object, tree, hardship_of(object, 0), 4.0, seed,
-                        kMeshSettling + 500});
+        run_mesh_slide({tool_model(GetParam()), object, tree, hardship_of(object, 0, 0), 4.0, seed,
+                        kMeshSettling + 400});
     print(seed, sut);
     std::printf("%s\n", sut.open.summary().c_str());
     EXPECT_TRUE(sut.truth.holds());
@@ -125,14 +126,31 @@ TEST_P(MeshToolSlides, are_answered_and_reported_completely)
 // Smooth, round, open, sharp.
 INSTANTIATE_TEST_SUITE_P(small_models, MeshToolSlides, testing::Range<std::size_t>(0, 4));
 
+TEST(CoincidentMeshes, share_faces_by_the_exact_decision_and_the_lowest_ids_are_kept)
+{
+    const TriangleMesh mesh = make_shape(Shape::sphere, 180).value();
+    const TestModel& object = test_model("coincident-object", mesh, 100);
+    const TestModel& tool = test_model("coincident-tool", mesh, 100);
+    const FaceTree tree(object.faces);
+    for (const std::size_t hardship : {0U, 5U})
+    {
+        const MeshFigures sut = run_coincident_meshes(
+            {tool, object, tree, hardship_of(object, hardship, hardship), 1.0, 0, 24});
+        print(0, sut);
+        EXPECT_TRUE(sut.truth.holds());
+        EXPECT_GT(sut.truncated, 6U);
+    }
+}
+
 TEST(MeshToolTwins, exact_answers_are_those_of_the_full_meshes_to_the_last_bit)
 {
     for (std::size_t i = 0; i < 3; ++i)
     {
         const TestModel& object = small_model(i);
         const FaceTree tree(object.faces);
-        const TrialFigures sut = run_mesh_twin({tool_model(i), object, tree, hardship_of(object, 0),
-                                                kScales[i], seed_of(20'261'500 + i), 300});
+        const TrialFigures sut =
+            run_mesh_twin({tool_model(i), object, tree, hardship_of(object, 0, i), kScales[i],
+                           seed_of(20'261'500 + i), 400});
         std::printf("%s\n", sut.summary().c_str());
         EXPECT_GT(sut.trials, 50U);
         EXPECT_TRUE(sut.holds());
