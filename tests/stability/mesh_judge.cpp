@@ -65,8 +65,9 @@ std::vector<std::string> MeshJudge::judge(FrameRig& rig, const MeshMoment& momen
     oracle_.place(moment.pose, moment.tool);
     doubt_m_ = 1e-13 * (moment.tool.position_m.norm() + pair.point_m.norm() +
                         moment.pose.translation_m.norm() + moment.pose.scale);
-    nearest_ = oracle_.nearest();
-    meeting_ = sorted_names(oracle_.meeting());
+    const std::vector<FacePair> meeting = oracle_.meeting();
+    nearest_ = meeting.empty() ? oracle_.nearest() : MeshPairOracle::Nearest{0, meeting[0]};
+    meeting_ = sorted_names(meeting);
     judge_bracket(pair);
     judge_nearest(pair);
     judge_meeting(*pair.mesh);

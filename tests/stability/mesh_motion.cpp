@@ -17,6 +17,7 @@ constexpr double kSlideStep_diag = 0.1e-3;
 constexpr double kSlideTurn_rad = 0.5e-3;
 /// Down to the surface, and up from it, in steps of the slide.
 constexpr double kSinking = 10.0;
+constexpr double kPressing = 0.1;
 constexpr double kRising = 0.5;
 
 /// The tool with this place of its frame at a place of the world.
@@ -149,8 +150,8 @@ MeshMoment MeshSlide::next()
 
 void MeshSlide::feel(double distance_m)
 {
-    sunk_m_ +=
-        distance_m > 0.0 ? std::min(0.5 * distance_m, kSinking * step_m_) : -kRising * step_m_;
+    const double sinking_m = std::min(0.5 * distance_m, kSinking * step_m_) + kPressing * step_m_;
+    sunk_m_ += distance_m > 0.0 ? sinking_m : -kRising * step_m_;
 }
 
 } // namespace tactus::test

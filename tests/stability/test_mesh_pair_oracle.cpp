@@ -34,6 +34,7 @@ TEST(MeshPairOracle, finds_what_all_pairs_one_by_one_give)
         {
             moment = motion.next();
         }
+        moment.tool.position_m.x() += i % 2 == 0 ? 0.0 : 0.6; // Beyond the object.
         sut.place(moment.pose, moment.tool);
         const long double distance_m = sut.nearest().distance_m;
         EXPECT_EQ(distance_m, sut.brute_distance()) << "place " << i;
@@ -41,8 +42,8 @@ TEST(MeshPairOracle, finds_what_all_pairs_one_by_one_give)
         EXPECT_EQ(sut.meeting().empty(), distance_m > 0) << "place " << i;
         meetings += sut.meeting().empty() ? 0 : 1;
     }
-    EXPECT_GT(meetings, 1);
-    EXPECT_LT(meetings, 7);
+    EXPECT_GT(meetings, 0);
+    EXPECT_LT(meetings, 5);
 }
 
 TEST(MeshPairOracle, knows_the_distance_of_two_spheres_in_the_world)
