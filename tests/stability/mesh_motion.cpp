@@ -17,8 +17,8 @@ constexpr double kSlideStep_diag = 0.1e-3;
 constexpr double kSlideTurn_rad = 0.5e-3;
 /// Down to the surface, and up from it, in steps of the slide.
 constexpr double kSinking = 10.0;
-constexpr double kPressing = 0.1;
-constexpr double kRising = 0.5;
+constexpr double kPressing = 1.0;
+constexpr double kRising = 1.0;
 
 /// The tool with this place of its frame at a place of the world.
 ToolState held(const Vec3& grip_m, const Vec3& place_m, const Mat3& rotation)

@@ -61,7 +61,7 @@ class MeshTools : public testing::TestWithParam<std::size_t>
 
 TEST_P(MeshTools, agree_with_all_faces_of_both_whatever_runs_out)
 {
-    constexpr std::uint32_t kFrames = 100;
+    constexpr std::uint32_t kFrames = 90;
     const TestModel& object = small_model(GetParam());
     const FaceTree tree(object.faces);
     for (std::size_t i = 0; i < kHardships.size(); ++i)
