@@ -7,7 +7,6 @@
 #include "rt_core/query/probe.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 
 namespace tactus
@@ -44,15 +43,16 @@ bool is_mesh(const ToolSpec& tool) noexcept
 }
 
 /// What a tool that is a mesh has to know of its model.
-MeshCore mesh_core(ModelId model, const HeaderFields& header) noexcept
+MeshCore mesh_core(ModelId model, const ModelHeader& header) noexcept
 {
-    const double quantum = std::ldexp(1.0, header.quantum_log2);
+    const HeaderFields& fields = header.fields();
+    const auto quantum = static_cast<double>(header.quantum_m());
     MeshCore core{model, Vec3(0.0, 0.0, 0.0), Vec3(0.0, 0.0, 0.0)};
     for (std::size_t axis = 0; axis < 3; ++axis)
     {
         const auto row = static_cast<Eigen::Index>(axis);
-        core.origin_m[row] = header.origin_m[axis];
-        core.extent_m[row] = quantum * static_cast<double>(header.extent_quanta[axis]);
+        core.origin_m[row] = fields.origin_m[axis];
+        core.extent_m[row] = quantum * static_cast<double>(fields.extent_quanta[axis]);
     }
     return core;
 }
@@ -205,7 +205,7 @@ Frame::Frame(PassKey /*key*/, Arena& arena, const FrameSetup& setup) noexcept
         {
             model.residence = Residence::filling;
         }
-        scene_.describe_meshes(mesh_core(ModelId{model_count_}, header.fields()));
+        scene_.describe_meshes(mesh_core(ModelId{model_count_}, header));
         ++model_count_;
     }
 }

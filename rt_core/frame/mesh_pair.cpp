@@ -3,7 +3,6 @@
 #include "rt_core/frame/mesh_pair.hpp"
 
 #include <algorithm>
-#include <limits>
 
 namespace tactus
 {
@@ -30,41 +29,50 @@ WalkBudget budget_of(const Budgets& budgets) noexcept
     return {kMeshBudget * budgets.nodes, kMeshBudget * budgets.triangles};
 }
 
-/// Grows the ball of the cover that has to grow least.
-void put_in_cover(const Ball& ball, CoreCover& cover) noexcept
+/// As many balls as a cover may have; when there are too many, one grows.
+class Cover
 {
-    if (cover.try_push_back(ball))
+public:
+    void add(const Ball& ball) noexcept
     {
-        return;
-    }
-    Ball* best = cover.begin();
-    double least = std::numeric_limits<double>::infinity();
-    for (Ball& candidate : cover)
-    {
-        const double radius = (candidate.center - ball.center).norm() + ball.radius;
-        if (radius - candidate.radius < least)
+        if (balls_.size() < kMaxCoverBalls)
         {
-            least = radius - candidate.radius;
-            best = &candidate;
+            balls_.push_back(ball);
+            return;
         }
+        Ball* best = balls_.begin();
+        for (Ball& other : balls_)
+        {
+            best = growth(other, ball) < growth(*best, ball) ? &other : best;
+        }
+        best->radius += std::max(growth(*best, ball), 0.0);
     }
-    best->radius += std::max(least, 0.0);
-}
+    [[nodiscard]] const CoreCover& balls() const noexcept { return balls_; }
+
+private:
+    /// By how much a ball has to grow to hold another one.
+    [[nodiscard]] static double growth(const Ball& ball, const Ball& other) noexcept
+    {
+        return (ball.center - other.center).norm() + other.radius - ball.radius;
+    }
+
+    CoreCover balls_;
+};
 
 /// Balls of a model's frame that hold all its faces within `near_m` of another surface.
 CoreCover cover_near(const AbTree& tree, OtherSurface& other, double near_m) noexcept
 {
-    CoreCover cover;
+    Cover cover;
     SurfaceWalk walk(tree, other);
     while (walk.next_block(near_m, false) != kNoNode)
     {
-        put_in_cover(walk.ball(), cover);
+        cover.add(walk.ball());
     }
     for (const SurfaceWalk::Item& item : walk.left())
     {
-        put_in_cover(item.ball, cover);
+        cover.add(item.ball);
     }
-    return cover;
+    return cover.balls();
 }
 
 } // namespace
@@ -158,10 +166,10 @@ void MeshPair::query(const ScenePair& pair, double contact_m, DistanceAnswer& an
 
 void MeshPair::rest(ContactReport& contacts) noexcept
 {
-    report_ = MeshReport{};
+    report_.clear();
     report_.intersection = Intersection::none;
     report_.is_complete = true;
-    contacts = ContactReport{};
+    contacts.clear();
     contacts.is_complete = true;
 }
 

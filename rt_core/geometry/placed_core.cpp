@@ -51,7 +51,7 @@ constexpr double kRoundedUp = 1.0 + 1e-14;
 } // namespace
 
 PlacedCore::PlacedCore(const ToolCore& core, const Placement& place) noexcept
-    : core_(core), center_(place.origin), axes_(place.rotation), scale_(place.scale)
+    : center_(place.origin), axes_(place.rotation), scale_(place.scale)
 {
     if (const auto* segment = std::get_if<Segment>(&core))
     {
@@ -71,10 +71,18 @@ PlacedCore::PlacedCore(const ToolCore& core, const Placement& place) noexcept
     {
         center_ = to_place(place, mesh->origin_m + 0.5 * mesh->extent_m);
         half_ = 0.5 * place.scale * kRoundedUp * mesh->extent_m;
+        core_ = Box{half_};
+        is_mesh_ = true;
     }
-    else if (is_convex_body())
+    else if (const auto* hull = std::get_if<Hull>(&core))
     {
-        surround(own_body(), place);
+        core_ = *hull;
+        surround(hull->body(), place);
+    }
+    else if (const auto* body = std::get_if<ConvexBody>(&core))
+    {
+        core_ = *body;
+        surround(*body, place);
     }
     radius_ = half_.norm() * kRoundedUp;
     if (is_convex_body())

@@ -34,7 +34,7 @@ public:
     {
         return std::holds_alternative<PointCore>(core_);
     }
-    [[nodiscard]] bool is_mesh() const noexcept { return std::holds_alternative<MeshCore>(core_); }
+    [[nodiscard]] bool is_mesh() const noexcept { return is_mesh_; }
     [[nodiscard]] bool is_convex_body() const noexcept
     {
         return std::holds_alternative<Hull>(core_) || std::holds_alternative<ConvexBody>(core_);
@@ -72,7 +72,10 @@ private:
     [[nodiscard]] double
     rounding_of(const Triangle& in_box_frame) const noexcept TACTUS_NONBLOCKING;
 
-    ToolCore core_; ///< A segment is placed; a box has its placed half extents; bodies as given.
+    /// A segment is placed; a box has its placed half extents, as has what stands for a mesh;
+    /// bodies are as given. Five are as many as are copied without a call through a pointer.
+    std::variant<PointCore, Segment, Box, Hull, ConvexBody> core_;
+    bool is_mesh_{false};
     Vec3 center_{0.0, 0.0, 0.0};
     double radius_{0.0};
     // An oriented box round the core: centre, unit axes as columns, half extents.

@@ -272,7 +272,7 @@ void add_contacts(const PlacedCore& core, double radius_m, const AbTree& tree,
 void report_contacts(const PlacedCore& core, double radius_m, const AbTree& tree,
                      const LocalSurface& surface, bool is_closed, ContactReport& report) noexcept
 {
-    report = ContactReport{};
+    report.clear();
     const DistanceAnswer& answer = surface.answer;
     // Nothing unseen may touch: either all is exact that far, or all is farther.
     report.is_complete = answer.certified_radius_m >= radius_m || answer.lower_m > radius_m;

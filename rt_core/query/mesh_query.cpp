@@ -521,8 +521,8 @@ private:
 void query_meshes(const MeshQuestion& question, OtherSurface& object, QueryMemory& memory,
                   DistanceAnswer& answer, MeshReport& report, ContactReport& contacts) noexcept
 {
-    report = MeshReport{};
-    contacts = ContactReport{};
+    report.clear();
+    contacts.clear();
     MeshSearch search(question, object, memory, report, contacts);
     search.run();
     answer = search.answer();

@@ -12,7 +12,8 @@
 namespace tactus
 {
 
-/// A face within a tool's radius of its core, or of one of its faces. Lengths and frame are those of who has it.
+/// A face within a tool's radius of its core, or of one of its faces. Lengths and frame are those
+/// of who has it.
 struct Contact
 {
     FaceId face{};
@@ -48,6 +49,16 @@ struct ContactReport
     /// vertex weighted by their angles. Unit length; zero when it is not known.
     Vec3 normal{0.0, 0.0, 0.0};
     Side side{Side::unsigned_distance};
+
+    /// As new, without touching what no contact is in.
+    void clear() noexcept
+    {
+        contacts.clear();
+        is_complete = false;
+        overruled = 0;
+        normal = Vec3(0.0, 0.0, 0.0);
+        side = Side::unsigned_distance;
+    }
 };
 
 } // namespace tactus

@@ -39,6 +39,16 @@ struct MeshReport
     bool is_complete{false};  ///< None was left out, and none may exist unseen.
     /// The tool's face at the nearest point, where the object's is known.
     FaceId nearest_tool_face{};
+
+    /// As new, without touching what no pair is in.
+    void clear() noexcept
+    {
+        intersection = Intersection::open;
+        meeting.clear();
+        is_truncated = false;
+        is_complete = false;
+        nearest_tool_face = {};
+    }
 };
 
 } // namespace tactus

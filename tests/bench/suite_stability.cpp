@@ -11,6 +11,7 @@
 #include "tests/stability/bracket_trial.hpp"
 #include "tests/stability/day_trial.hpp"
 #include "tests/stability/garbage_trial.hpp"
+#include "tests/stability/mesh_trial.hpp"
 #include "tests/stability/split_merge_trial.hpp"
 #include "tests/stability/trial_models.hpp"
 #include "tests/stability/twin_trial.hpp"
@@ -39,13 +40,15 @@ struct Sizes
     std::uint64_t operations;     ///< Splits and merges, a model.
     std::uint32_t touches;        ///< Of test::kTouchFrames frames of 1 ms.
     std::uint64_t press_frames;
-    std::uint32_t garbage_frames; ///< A kind.
+    std::uint32_t garbage_frames;   ///< A kind.
+    std::uint32_t mesh_frames;      ///< An object and hardship.
+    std::uint32_t mesh_twin_frames; ///< An object.
 };
 
-constexpr Sizes kSized{200, 100, 2'000, 100'000, 100, 50'000, 4'000};
+constexpr Sizes kSized{200, 100, 2'000, 100'000, 100, 50'000, 4'000, 40, 150};
 /// A million frames of brackets and cases of each kernel, ten million splits and merges, 24 hours
 /// of touching.
-constexpr Sizes kFull{67'000, 4'000, 25'000, 2'500'000, 43'200, 3'600'000, 100'000};
+constexpr Sizes kFull{67'000, 4'000, 25'000, 2'500'000, 43'200, 3'600'000, 100'000, 1'000, 25'000};
 
 constexpr std::uint64_t kSeed = 20'261'600;
 
@@ -154,7 +157,45 @@ void try_twins(const Sizes& sizes, bool full, const Report& report)
         const test::TwinFigures figures =
             test::run_twin_trial({*model, tree, test::seed_of(kSeed), sizes.twin_frames});
         report(figures.identity);
+        report(figures.cores);
         report(figures.uncertified);
+    }
+}
+
+/// Tools that are meshes: torus, gear and bumpy sphere, by turns.
+void try_meshes(const Sizes& sizes, bool full, const Report& report)
+{
+    constexpr std::array<Shape, 3> kTools{Shape::torus, Shape::gear, Shape::bumpy_sphere};
+    std::uint64_t own = kSeed + 500;
+    std::vector<const test::TestModel*> objects = known_models(false);
+    objects.resize(full ? objects.size() : 0);
+    for (std::size_t i = 0; i < 4; ++i)
+    {
+        objects.push_back(&test::small_model(i));
+    }
+    for (std::size_t i = 0; i < objects.size(); ++i)
+    {
+        const test::TestModel& object = *objects[i];
+        const Shape shape = kTools[i % kTools.size()];
+        const std::string name(shape_names()[static_cast<std::size_t>(shape)]);
+        const test::TestModel& tool =
+            test::test_model("mesh-" + name, make_shape(shape, 1'000).value());
+        const test::FaceTree tree(object.faces);
+        TrialFigures truth;
+        truth.name = "mesh tool on " + object.name;
+        truth.bound = 0.0;
+        truth.unit = "wrong frames";
+        const double scale = 2.0 * tool.diagonal_m / object.diagonal_m;
+        for (const char* hardship : {"usual", "K-1", "starved", "small-pools", "lossy-link"})
+        {
+            truth.add(
+                test::run_mesh_trial({tool, object, tree, test::hardship_named(object, hardship),
+                                      scale, test::seed_of(++own), sizes.mesh_frames})
+                    .truth);
+        }
+        report(truth);
+        report(test::run_mesh_twin({tool, object, tree, test::hardship_named(object, "usual"),
+                                    scale, test::seed_of(++own), sizes.mesh_twin_frames}));
     }
 }
 
@@ -198,10 +239,11 @@ struct Part
     void (*run)(const Sizes& sizes, bool full, const Report& report);
 };
 
-constexpr std::array<Part, 7> kParts{{{"kernels", try_kernels},
+constexpr std::array<Part, 8> kParts{{{"kernels", try_kernels},
                                       {"brackets", try_brackets},
                                       {"liars", try_liars},
                                       {"twins", try_twins},
+                                      {"meshes", try_meshes},
                                       {"splits", try_splits},
                                       {"day", try_day},
                                       {"garbage", try_garbage}}};

@@ -4,9 +4,9 @@
 
 #include "tests/shared/frame_verdict.hpp"
 #include "tests/stability/mesh_judge.hpp"
+#include "tests/stability/same_bits.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
@@ -136,23 +136,6 @@ private:
     int wrong_frames_{0};
 };
 
-bool same_bits(double a, double b)
-{
-    return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
-}
-
-bool same_bits(const Vec3& a, const Vec3& b)
-{
-    return same_bits(a.x(), b.x()) && same_bits(a.y(), b.y()) && same_bits(a.z(), b.z());
-}
-
-bool same_bits(const Contact& a, const Contact& b)
-{
-    return a.face == b.face && a.tool_face == b.tool_face && a.feature == b.feature &&
-           same_bits(a.distance_m, b.distance_m) && same_bits(a.on_tool_m, b.on_tool_m) &&
-           same_bits(a.on_surface_m, b.on_surface_m) && same_bits(a.normal, b.normal);
-}
-
 /// What differs between two exact answers; empty when nothing does.
 std::string difference(const PairOutput& a, const PairOutput& b)
 {
@@ -167,11 +150,8 @@ std::string difference(const PairOutput& a, const PairOutput& b)
     {
         return "the faces that meet differ";
     }
-    const auto& ours = a.contacts->contacts;
-    const auto& full = b.contacts->contacts;
     if (a.contacts->is_complete && b.contacts->is_complete &&
-        !std::equal(ours.begin(), ours.end(), full.begin(), full.end(),
-                    [](const Contact& x, const Contact& y) { return same_bits(x, y); }))
+        !same_bits(a.contacts->contacts, b.contacts->contacts))
     {
         return "the contacts differ";
     }

@@ -29,9 +29,12 @@ TEST_P(Twin, certified_answers_are_those_of_the_full_mesh_to_the_last_bit)
     const FaceTree tree(model.faces);
     const TwinFigures sut =
         run_twin_trial({model, tree, seed_of(20'261'300 + GetParam()), kFrames});
-    std::printf("%s\n%s\n", sut.identity.summary().c_str(), sut.uncertified.summary().c_str());
+    std::printf("%s\n%s\n%s\n", sut.identity.summary().c_str(), sut.cores.summary().c_str(),
+                sut.uncertified.summary().c_str());
     EXPECT_GT(sut.identity.trials, kFrames / 2);
     EXPECT_TRUE(sut.identity.holds());
+    EXPECT_GT(sut.cores.trials, kFrames / 4);
+    EXPECT_TRUE(sut.cores.holds());
     EXPECT_TRUE(sut.uncertified.holds());
 }
 
@@ -45,6 +48,7 @@ TEST(TwinOfALiar, is_told_apart_from_the_full_mesh)
     const FaceTree tree(model.faces);
     const TwinFigures sut = run_twin_trial({model, tree, seed_of(20'261'310), 1'500});
     EXPECT_GT(sut.identity.violations, 10U);
+    EXPECT_GT(sut.cores.violations, 10U);
 }
 
 } // namespace

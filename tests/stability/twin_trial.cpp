@@ -5,9 +5,10 @@
 #include "tests/shared/closest_point.hpp"
 #include "tests/shared/random.hpp"
 #include "tests/shared/surface_slide.hpp"
+#include "tests/stability/core_twin.hpp"
+#include "tests/stability/same_bits.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -21,7 +22,10 @@ namespace
 {
 
 constexpr double kRadius_diag = 0.01;
-constexpr double kSpeed_diag = 0.1e-3;   ///< A frame of 1 ms: 0.1 diag/s.
+constexpr double kSpeed_diag = 0.1e-3; ///< A frame of 1 ms: 0.1 diag/s.
+/// Cores are tried where the sphere's ball is certified: in the middle of it, and so far out.
+constexpr double kCoreSize_diag = 0.004;
+constexpr double kCoreReach_diag = 0.0102;
 constexpr std::uint32_t kSettling = 100; ///< Frames in which the front comes to the tool.
 constexpr std::uint32_t kFillingMax = 20'000;
 
@@ -35,16 +39,6 @@ struct NearFace
 };
 
 using FaceSet = std::vector<NearFace>;
-
-bool same_bits(double a, double b)
-{
-    return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
-}
-
-bool same_bits(const Vec3& a, const Vec3& b)
-{
-    return same_bits(a.x(), b.x()) && same_bits(a.y(), b.y()) && same_bits(a.z(), b.z());
-}
 
 /// The whole query, with budgets that never end it.
 LocalSurface surface_at(const AbTree& tree, const Vec3& center_m, double reach_m)
@@ -147,6 +141,18 @@ SurfaceSlide slide_over(const TwinTrial& trial, Random& random)
     return {trial.tree, manner, Vec3(middle.x(), middle.y(), top.z())};
 }
 
+/// Nothing for an empty text.
+void flag(const std::string& text, const TwinTrial& trial, std::uint32_t frame,
+          TrialFigures& figures)
+{
+    if (!text.empty())
+    {
+        figures.flag(figures.name + ", TACTUS_SEED=" + std::to_string(trial.seed) + ", frame " +
+                     std::to_string(frame) + ": " + text);
+        figures.observe(static_cast<double>(figures.violations));
+    }
+}
+
 } // namespace
 
 TwinFigures run_twin_trial(const TwinTrial& trial)
@@ -159,6 +165,7 @@ TwinFigures run_twin_trial(const TwinTrial& trial)
     figures.identity = {trial.model.name + ", identical", 0, 0.0, 0.0, "differences", 0, {}};
     figures.uncertified = {
         trial.model.name + ", uncertified", 0, 0.0, kUncertifiedShare, "of the frames", 0, {}};
+    figures.cores = {trial.model.name + ", contacts", 0, 0.0, 0.0, "differences", 0, {}};
     std::uint64_t open = 0;
     for (std::uint32_t frame = 0; frame < trial.frames + kSettling; ++frame)
     {
@@ -176,12 +183,16 @@ TwinFigures run_twin_trial(const TwinTrial& trial)
         ++figures.identity.trials;
         const std::string text = difference(rig.model().tree, whole->model().tree, pair.point_m,
                                             pair.certified_radius_m);
-        if (!text.empty())
+        flag(text, trial, frame, figures.identity);
+        const double size_m = kCoreSize_diag * trial.model.diagonal_m;
+        const PlacedCore core = twin_core(frame, pair.point_m, size_m, random);
+        if (const auto of_core =
+                core_difference(rig.model().tree, whole->model().tree, core,
+                                kCoreReach_diag * trial.model.diagonal_m - core.radius(),
+                                rig.model().header.is_closed()))
         {
-            figures.identity.flag(figures.identity.name +
-                                  ", TACTUS_SEED=" + std::to_string(trial.seed) + ", frame " +
-                                  std::to_string(frame) + ": " + text);
-            figures.identity.observe(static_cast<double>(figures.identity.violations));
+            ++figures.cores.trials;
+            flag(*of_core, trial, frame, figures.cores);
         }
     }
     figures.uncertified.observe(static_cast<double>(open) / trial.frames);
