@@ -16,9 +16,9 @@ namespace tactus::test
 [[nodiscard]] PlacedCore twin_core(std::uint32_t turn, const Vec3& center_m, double size_m,
                                    Random& random);
 
-/// What differs between what a core finds in a refined and in a whole mesh, of its contacts within
-/// `radius_m`, the normal, the side, and an exact answer; empty when nothing does, none when the
-/// refined mesh does not certify so much.
+/// What differs between what a core finds in a refined and in a whole mesh: its contacts within
+/// `radius_m` and, of an exact answer, nearest points, normal and side. Empty when nothing does,
+/// none when the refined mesh does not certify so much.
 [[nodiscard]] std::optional<std::string> core_difference(const AbTree& refined, const AbTree& whole,
                                                          const PlacedCore& core, double radius_m,
                                                          bool is_closed);

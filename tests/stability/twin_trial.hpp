@@ -25,8 +25,8 @@ struct TwinFigures
     /// Of every certified frame: kind, L, U, nearest face, point and feature, and the set of exact
     /// faces within the certified radius, bit for bit. The error is the number of differences.
     TrialFigures identity;
-    /// In those frames a point, a segment, a box and a hull in turn, in the middle of the ball: of
-    /// exact answers contacts, normal, side and nearest points, bit for bit.
+    /// In those frames a point, a segment, a box and a hull in turn, in the middle of the ball:
+    /// contacts and, of exact answers, normal, side and nearest points, bit for bit.
     TrialFigures cores;
     /// Frames without an exact or decided answer, of those after the tool has come down, with K =
     /// 64 at 0.1 diag/s. The error is their share.
