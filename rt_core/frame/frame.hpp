@@ -114,11 +114,11 @@ private:
     void respond(std::span<const ObjectPose> poses) noexcept;
     void report(std::span<const ObjectPose> poses) noexcept;
     void ask_about(ModelId model) noexcept;
-    void ask_for_balls(std::uint32_t pair) noexcept;
-    void ask_for_mesh(std::uint32_t pair, ModelId model) noexcept;
+    void ask_for_balls(std::uint32_t i) noexcept;
+    void ask_for_mesh(std::uint32_t i, ModelId model) noexcept;
     void ask(bool is_asked, ModelId model, const RefineQuestion& question) noexcept;
-    void query_core(std::uint32_t pair, const ObjectPose& pose, const Budgets& budgets) noexcept;
-    void query_mesh(std::uint32_t pair, const ObjectPose& pose) noexcept;
+    void query_core(std::uint32_t i, const ObjectPose& pose, const Budgets& budgets) noexcept;
+    void query_mesh(std::uint32_t i, const ObjectPose& pose) noexcept;
     void report_pair(std::uint32_t i, const ObjectPose& pose) noexcept;
     [[nodiscard]] MeshPair* mesh_pair(std::uint32_t pair) noexcept;
     [[nodiscard]] ModelId tool_model_of(const ScenePair& pair) const noexcept;

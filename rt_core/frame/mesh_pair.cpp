@@ -51,9 +51,9 @@ public:
 
 private:
     /// By how much a ball has to grow to hold another one.
-    [[nodiscard]] static double growth(const Ball& ball, const Ball& other) noexcept
+    [[nodiscard]] static double growth(const Ball& grown, const Ball& added) noexcept
     {
-        return (ball.center - other.center).norm() + other.radius - ball.radius;
+        return (grown.center - added.center).norm() + added.radius - grown.radius;
     }
 
     CoreCover balls_;

@@ -271,7 +271,7 @@ private:
              lanes &= lanes - 1)
         {
             const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
-            const double error = static_cast<double>(error_in_quanta(side.errors[lane]));
+            const auto error = static_cast<double>(error_in_quanta(side.errors[lane]));
             faces.add({tool_triangle(side.prims[lane]), question_.tool, side.prims[lane],
                        error * tool_quantum_m_ * kRoundedUp, (side.coarse >> lane & 1U) != 0});
         }

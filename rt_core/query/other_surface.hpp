@@ -8,6 +8,8 @@
 #include "rt_core/query/block_search.hpp"
 #include "rt_core/query/tree_walk.hpp"
 
+#include <utility>
+
 namespace tactus
 {
 
@@ -36,8 +38,8 @@ class OtherSurface
 public:
     OtherSurface() noexcept = default;
     /// The other's boxes must be right (AbTree::refit) whenever this is asked.
-    OtherSurface(const AbTree& other, const MeshPlacement& there, const WalkBudget& budget) noexcept
-        : other_(&other), there_(there), budget_(budget)
+    OtherSurface(const AbTree& other, MeshPlacement there, const WalkBudget& budget) noexcept
+        : other_(&other), there_(std::move(there)), budget_(budget)
     {
     }
 

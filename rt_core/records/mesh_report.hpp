@@ -18,6 +18,7 @@ struct MeetingFaces
     FaceId tool_face{}; ///< Of the tool's model.
     FaceId face{};      ///< Of the object's.
 
+    // NOLINTNEXTLINE(modernize-use-nullptr): the check takes the comparison's zero for a pointer.
     constexpr auto operator<=>(const MeetingFaces&) const noexcept = default;
 };
 
