@@ -19,7 +19,7 @@ namespace tactus
 /// refined by how near the other is.
 ///
 /// Everything is done for two places of the tool: where it is, and where it will be when a contact
-/// can be refined. Haptic thread. 20 KiB.
+/// can be refined. Haptic thread. 10 KiB.
 class MeshPair
 {
 public:

@@ -31,7 +31,7 @@ struct MeshQuestion
 ///
 /// `object` is the object's surface as the tool's model sees it; its budget bounds the whole
 /// search, of which what was not come to lowers L. `memory` is of the tool's tree. Haptic thread;
-/// some 2 us a near face of the tool and 0.2 us a near pair.
+/// 0.94 ms where 160 pairs meet and contacts are wanted.
 void query_meshes(const MeshQuestion& question, OtherSurface& object, QueryMemory& memory,
                   DistanceAnswer& answer, MeshReport& report,
                   ContactReport& contacts) noexcept TACTUS_NONBLOCKING;

@@ -44,7 +44,7 @@ public:
     }
 
     /// Less than any distance from a point of the ball, down to minus the ball's radius; beyond
-    /// `enough_m` any that is not below it. In single precision; some 0.2 us.
+    /// `enough_m` any that is not below it. In single precision.
     [[nodiscard]] double lower_bound_m(const Ball& ball,
                                        double enough_m) noexcept TACTUS_NONBLOCKING;
     /// More than the distance from some point of the ball to the other's original surface, if the
