@@ -19,20 +19,12 @@ namespace tactus::test
 namespace
 {
 
-RigOptions ample_pools()
-{
-    RigOptions options;
-    options.pool_bytes = std::size_t{64} << 20U;
-    options.cache_bytes = std::size_t{16} << 20U;
-    return options;
-}
-
 /// One model whose forest is driven at random, and both trees over its faces.
 class TwoTrees
 {
 public:
     TwoTrees(const TestModel& model, Random& random)
-        : rig_(model, ample_pools())
+        : rig_(model, with_room_for_all())
         , random_(random)
         , diagonal_m_(model.diagonal_m)
         , binary_(loaded_faces(), rig_.model().header.quantum_m())

@@ -96,10 +96,7 @@ TEST_P(Progress, one_split_a_frame_is_exact_after_as_many_frames_as_the_closure_
 
 TEST_P(Progress, the_depth_of_every_closure_is_within_what_the_header_says)
 {
-    RigOptions options;
-    options.pool_bytes = std::size_t{64} << 20U;
-    options.cache_bytes = std::size_t{16} << 20U;
-    FrameRig rig(model_, options);
+    FrameRig rig(model_, with_room_for_all());
     load_everything(rig);
     const Model& model = rig.model();
     const HeaderFields& fields = model.header.fields();

@@ -69,7 +69,6 @@ public:
         return norm(along(from, -dot(from, edge) / dot(edge, edge), edge));
     }
 
-private:
     static Point difference(const Vec3& a, const Vec3& b)
     {
         return {static_cast<Real>(a.x()) - static_cast<Real>(b.x()),
@@ -87,6 +86,7 @@ private:
         return {a[0] + factor * b[0], a[1] + factor * b[1], a[2] + factor * b[2]};
     }
 
+private:
     /// Height over the plane when the foot is inside, else infinite.
     static Real to_interior(std::array<Point, 3> corner)
     {

@@ -187,6 +187,14 @@ std::uint32_t FrameRig::settle(const Vec3& goal_m, const Budgets& budgets, std::
     return frames;
 }
 
+RigOptions with_room_for_all()
+{
+    RigOptions options;
+    options.pool_bytes = std::size_t{64} << 20U;
+    options.cache_bytes = std::size_t{16} << 20U;
+    return options;
+}
+
 void load_region(FrameRig& rig, const RankedRegion& region)
 {
     Model& model = rig.model(region.model);

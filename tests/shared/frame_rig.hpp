@@ -100,6 +100,9 @@ private:
     std::vector<ToolState> tools_;
 };
 
+/// Pools in which every chunk of a small model has room at once.
+[[nodiscard]] RigOptions with_room_for_all();
+
 /// Loads what a region asks for, without a frame: everything that the cache wishes for it, until it
 /// has nothing left to wish for. The pools must hold that.
 void load_region(FrameRig& rig, const RankedRegion& region);

@@ -13,14 +13,6 @@ namespace tactus::test
 namespace
 {
 
-RigOptions with_room_for_all()
-{
-    RigOptions options;
-    options.pool_bytes = std::size_t{64} << 20U;
-    options.cache_bytes = std::size_t{16} << 20U;
-    return options;
-}
-
 [[noreturn]] void give_up(RecordId record, const char* reason)
 {
     std::fprintf(stderr, "loaded forest: record %u %s\n", record.value, reason);

@@ -80,21 +80,6 @@ public:
     }
 
 private:
-    static Point difference(const Vec3& a, const Vec3& b)
-    {
-        return {static_cast<Real>(a.x()) - static_cast<Real>(b.x()),
-                static_cast<Real>(a.y()) - static_cast<Real>(b.y()),
-                static_cast<Real>(a.z()) - static_cast<Real>(b.z())};
-    }
-    static Real dot(const Point& a, const Point& b)
-    {
-        return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-    }
-    static Point along(const Point& a, Real factor, const Point& b)
-    {
-        return {a[0] + factor * b[0], a[1] + factor * b[1], a[2] + factor * b[2]};
-    }
-
     static Triangle half_of_side(const Box& box, int axis, double side, double which)
     {
         const int u = (axis + 1) % 3;
@@ -113,22 +98,22 @@ private:
 
     static Real of_segments(const Segment& first, const Segment& second)
     {
-        const Point u = difference(first.to, first.from);
-        const Point v = difference(second.to, second.from);
-        const Point w = difference(first.from, second.from);
+        const Point u = Base::difference(first.to, first.from);
+        const Point v = Base::difference(second.to, second.from);
+        const Point w = Base::difference(first.from, second.from);
         Real least = std::min({to_segment(first.from, second), to_segment(first.to, second),
                                to_segment(second.from, first), to_segment(second.to, first)});
-        const Real uv = dot(u, v);
-        const Real vv = dot(v, v);
-        const Real determinant = dot(u, u) * vv - uv * uv;
+        const Real uv = Base::dot(u, v);
+        const Real vv = Base::dot(v, v);
+        const Real determinant = Base::dot(u, u) * vv - uv * uv;
         if (determinant > 0)
         {
-            const Real s = (uv * dot(v, w) - vv * dot(u, w)) / determinant;
+            const Real s = (uv * Base::dot(v, w) - vv * Base::dot(u, w)) / determinant;
             if (s > 0 && s < 1)
             {
                 // From that point on, since s and t would be rounded apart on parallel lines.
-                const Point from = along({0, 0, 0}, -1, along(w, s, u));
-                least = std::min(least, Base::to_segment(from, along(from, 1, v)));
+                const Point from = Base::along({0, 0, 0}, -1, Base::along(w, s, u));
+                least = std::min(least, Base::to_segment(from, Base::along(from, 1, v)));
             }
         }
         return least;
@@ -137,22 +122,22 @@ private:
     /// Distance from the triangle of the point where the segment passes its plane.
     static Real piercing(const Segment& segment, const Triangle& triangle)
     {
-        const Point u = difference(triangle[1], triangle[0]);
-        const Point v = difference(triangle[2], triangle[0]);
+        const Point u = Base::difference(triangle[1], triangle[0]);
+        const Point v = Base::difference(triangle[2], triangle[0]);
         const Point normal{u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2],
                            u[0] * v[1] - u[1] * v[0]};
-        const Real from = dot(difference(segment.from, triangle[0]), normal);
-        const Real to = dot(difference(segment.to, triangle[0]), normal);
+        const Real from = Base::dot(Base::difference(segment.from, triangle[0]), normal);
+        const Real to = Base::dot(Base::difference(segment.to, triangle[0]), normal);
         if ((from >= 0 && to >= 0) || (from <= 0 && to <= 0))
         {
             return Base::kInfinity;
         }
         const Real share = from / (from - to);
-        const Point way = difference(segment.to, segment.from);
+        const Point way = Base::difference(segment.to, segment.from);
         std::array<Point, 3> corner{};
         for (std::size_t i = 0; i < 3; ++i)
         {
-            corner[i] = along(difference(triangle[i], segment.from), -share, way);
+            corner[i] = Base::along(Base::difference(triangle[i], segment.from), -share, way);
         }
         return Base::distance(corner);
     }

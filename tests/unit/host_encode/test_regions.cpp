@@ -260,10 +260,7 @@ TEST_P(Regions, are_asked_for_by_the_controller_as_the_index_names_them)
     model.diagonal_m = header().diagonal_m();
     for (int i = 0; i < 5; ++i)
     {
-        RigOptions options;
-        options.pool_bytes = std::size_t{64} << 20U;
-        options.cache_bytes = std::size_t{16} << 20U;
-        FrameRig rig(model, options);
+        FrameRig rig(model, with_room_for_all());
         const BallZone ball{random_center(header(), subject_->faces, random_),
                             header().diagonal_m() * std::pow(10.0, random_.between(-3, -0.5))};
         load_region(rig, {ModelId{0}, ball.center_m, ball.radius_m, 0});
