@@ -5,6 +5,7 @@
 #include "rt_core/base/assert.hpp"
 #include "rt_core/geometry/box_triangle.hpp"
 #include "rt_core/geometry/segment_triangle.hpp"
+#include "rt_core/math/rounding.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -46,7 +47,6 @@ Mat3 frame_along(const Vec3& way) noexcept
 
 /// Of products with a rotation, relative to the largest coordinate.
 constexpr double kRotationRounding = 4e-15;
-constexpr double kRoundedUp = 1.0 + 1e-14;
 
 } // namespace
 

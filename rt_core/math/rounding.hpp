@@ -37,4 +37,7 @@ namespace tactus
     return -round_up_to_float(-value);
 }
 
+/// A length of some roundings, multiplied by this, is at least the true one.
+inline constexpr double kRoundedUp = 1.0 + 1e-14;
+
 } // namespace tactus

@@ -60,10 +60,7 @@ public:
         }
         const BlockSide& side = tree_.side(index);
         FaceBounds bounds; // NOLINT(cppcoreguidelines-pro-type-member-init): the kernel fills it.
-        float unlimited = std::numeric_limits<float>::infinity();
-        static_cast<void>(tree_.kernels().face_bounds(block.coordinates.front().data(),
-                                                      block.corners.front().data(), probe_,
-                                                      block.faces, 0, 0.0F, unlimited, bounds));
+        bound_faces(tree_.kernels(), block, block.faces, probe_, bounds);
         for (std::uint32_t lanes = block.faces; lanes != 0; lanes &= lanes - 1)
         {
             const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));

@@ -4,6 +4,7 @@
 
 #include "rt_core/geometry/crossing.hpp"
 #include "rt_core/geometry/triangle_triangle.hpp"
+#include "rt_core/math/rounding.hpp"
 #include "rt_core/query/contact_set.hpp"
 #include "rt_core/query/probe.hpp"
 #include "rt_core/query/surface_query.hpp"
@@ -22,7 +23,6 @@ namespace
 {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kRoundedUp = 1.0 + 1e-14;
 /// Twice the kernel's error law and more.
 constexpr double kSpanError = 4e-15;
 
@@ -224,7 +224,7 @@ public:
     /// After answer(): what meets, sorted, and the contacts in order.
     void report(const DistanceAnswer& answer) noexcept
     {
-        std::sort_heap(report_.meeting.begin(), report_.meeting.end());
+        std::ranges::sort_heap(report_.meeting);
         const bool is_all_seen = is_all_there() && open_m_ > 0.0;
         report_.is_complete = is_all_seen && !report_.is_truncated;
         report_.intersection = !report_.meeting.empty() ? Intersection::proven
@@ -318,10 +318,7 @@ private:
         const BlockGeometry& block = question_.object.block(index);
         const BlockSide& side = question_.object.side(index);
         FaceBounds bounds; // NOLINT(cppcoreguidelines-pro-type-member-init): the kernel fills it.
-        float unlimited = std::numeric_limits<float>::infinity();
-        static_cast<void>(question_.object.kernels().face_bounds(
-            block.coordinates.front().data(), block.corners.front().data(), probe, block.faces, 0,
-            0.0F, unlimited, bounds));
+        bound_faces(question_.object.kernels(), block, block.faces, probe, bounds);
         for (std::uint32_t lanes = block.faces; lanes != 0; lanes &= lanes - 1)
         {
             const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
@@ -445,11 +442,11 @@ private:
             {
                 return;
             }
-            std::pop_heap(report_.meeting.begin(), report_.meeting.end());
+            std::ranges::pop_heap(report_.meeting);
             report_.meeting.pop_back();
         }
         report_.meeting.push_back(faces);
-        std::push_heap(report_.meeting.begin(), report_.meeting.end());
+        std::ranges::push_heap(report_.meeting);
     }
 
     /// Those that come first among contacts: where they meet is asked at the end.

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "rt_core/query/other_surface.hpp"
 
+#include "rt_core/math/rounding.hpp"
 #include "rt_core/query/probe.hpp"
 #include "rt_core/query/surface_query.hpp"
 
@@ -17,7 +18,6 @@ namespace
 {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kRoundedUp = 1.0 + 1e-14;
 
 } // namespace
 
@@ -97,16 +97,14 @@ float OtherSurface::nearest_in_block(std::uint32_t block, const KernelProbe& pro
         return 0.0F;
     }
     FaceBounds bounds; // NOLINT(cppcoreguidelines-pro-type-member-init): the kernel fills it.
-    float limit = std::numeric_limits<float>::infinity();
-    static_cast<void>(other_->kernels().face_bounds(geometry.coordinates.front().data(),
-                                                    geometry.corners.front().data(), probe,
-                                                    geometry.faces, 0, 0.0F, limit, bounds));
+    bound_faces(other_->kernels(), geometry, geometry.faces, probe, bounds);
+    float nearest = std::numeric_limits<float>::infinity();
     for (std::uint32_t lanes = geometry.faces; lanes != 0; lanes &= lanes - 1)
     {
         const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
-        limit = std::min(limit, bounds.lower[lane] - error_in_quanta(side.errors[lane]));
+        nearest = std::min(nearest, bounds.lower[lane] - error_in_quanta(side.errors[lane]));
     }
-    return limit;
+    return nearest;
 }
 
 SurfaceWalk::SurfaceWalk(const AbTree& tree, OtherSurface& other) noexcept

@@ -9,6 +9,7 @@
 
 #include <bit>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <utility>
 
@@ -45,6 +46,16 @@ struct WalkBudget
         return true;
     }
 };
+
+/// Lower bounds on the distances from the probe to the faces in `lanes`, in quanta; of no other.
+inline void bound_faces(const Kernels& kernels, const BlockGeometry& block, std::uint32_t lanes,
+                        const KernelProbe& probe, FaceBounds& bounds) noexcept
+{
+    float unlimited = std::numeric_limits<float>::infinity();
+    static_cast<void>(kernels.face_bounds(block.coordinates.front().data(),
+                                          block.corners.front().data(), probe, lanes, 0, 0.0F,
+                                          unlimited, bounds));
+}
 
 /// Something still to be visited and a lower bound on its distance, in quanta.
 struct WalkItem

@@ -40,7 +40,7 @@ void Coarsener::follow(double farthest_m) noexcept
 
 void Coarsener::look_at_all() noexcept
 {
-    std::fill(look_at_.begin(), look_at_.end(), travel_);
+    std::ranges::fill(look_at_, travel_);
     next_look_ = travel_;
 }
 

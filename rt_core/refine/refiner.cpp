@@ -222,7 +222,7 @@ void Refiner::gather_block(std::uint32_t index, const RefineQuestion& question) 
     const BlockGeometry& block = tree_->block(index);
     const BlockSide& side = tree_->side(index);
     FaceBounds bounds; // NOLINT(cppcoreguidelines-pro-type-member-init): the kernel fills it.
-    bound_faces(block, side.coarse, question, bounds);
+    bound_faces(tree_->kernels(), block, side.coarse, question.memory->probe, bounds);
     const double target = target_of(question);
     for (std::uint32_t lanes = side.coarse; lanes != 0; lanes &= lanes - 1)
     {
@@ -288,9 +288,8 @@ void Refiner::split_wanted(std::span<const RefineQuestion> questions, const Budg
     // The nearest of those that were not come to.
     leave_at(questions, std::min(pending_excess, heap_size_ > 0 ? heap_[0].excess_m : kInfinity));
     // What is only looked ahead for may wait.
-    const bool is_late =
-        std::any_of(questions.begin(), questions.end(),
-                    [](const RefineQuestion& question) { return is_wanting(question); });
+    const bool is_late = std::ranges::any_of(questions, [](const RefineQuestion& question)
+                                             { return is_wanting(question); });
     faults |= is_late ? found : found & FrameFault::model_inconsistent;
 }
 
@@ -456,7 +455,7 @@ void Refiner::consider_star(RecordId id, const VsplitRecord& record,
             continue;
         }
         FaceBounds bounds; // NOLINT(cppcoreguidelines-pro-type-member-init): the kernel fills it.
-        bound_faces(star.geometry, coarse, question, bounds);
+        bound_faces(tree_->kernels(), star.geometry, coarse, question.memory->probe, bounds);
         for (std::uint32_t lanes = coarse; lanes != 0; lanes &= lanes - 1)
         {
             const auto place = static_cast<std::size_t>(std::countr_zero(lanes));
@@ -482,15 +481,6 @@ void Refiner::consider_star(RecordId id, const VsplitRecord& record,
             push({excess[place], star.prims[place], FaceState::after(id, place)}, questions);
         }
     }
-}
-
-void Refiner::bound_faces(const BlockGeometry& block, std::uint32_t lanes,
-                          const RefineQuestion& question, FaceBounds& bounds) const noexcept
-{
-    float unlimited = std::numeric_limits<float>::infinity();
-    static_cast<void>(
-        tree_->kernels().face_bounds(block.coordinates.front().data(), block.corners.front().data(),
-                                     question.memory->probe, lanes, 0, 0.0F, unlimited, bounds));
 }
 
 /// Distance minus error of a coarse face, or a lower bound on it that is beyond the target.

@@ -85,8 +85,6 @@ private:
     void gather_near_ball(const RefineQuestion& question, WalkBudget& budget) noexcept;
     void gather_near_surface(const RefineQuestion& question) noexcept;
     void gather_block(std::uint32_t index, const RefineQuestion& question) noexcept;
-    void bound_faces(const BlockGeometry& block, std::uint32_t lanes,
-                     const RefineQuestion& question, FaceBounds& bounds) const noexcept;
     void split_wanted(std::span<const RefineQuestion> questions, const Budgets& budgets,
                       std::uint32_t frame, WorkCounters& work, FrameFault& faults) noexcept;
     [[nodiscard]] double
