@@ -18,7 +18,7 @@ endif()
 
 # tactus_library(<name> SOURCES ... HEADERS ... LINK ...)
 # One target per room: explicit files, headers included from the repository root and each compiled
-# alone (CMAKE_VERIFY_INTERFACE_HEADER_SETS).
+# alone where CMAKE_VERIFY_INTERFACE_HEADER_SETS is on.
 function(tactus_library name)
     cmake_parse_arguments(ARG "" "" "SOURCES;HEADERS;LINK;LINK_PRIVATE" ${ARGN})
     add_library(${name} STATIC ${ARG_SOURCES})
@@ -26,7 +26,6 @@ function(tactus_library name)
         FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${ARG_HEADERS})
     target_link_libraries(${name} PUBLIC tactus_numerics ${ARG_LINK}
         PRIVATE $<BUILD_INTERFACE:tactus_warnings> ${ARG_LINK_PRIVATE})
-    set_target_properties(${name} PROPERTIES VERIFY_INTERFACE_HEADER_SETS ON)
 endfunction()
 
 # tactus_program(<name> SOURCES ... LINK ...)

@@ -22,7 +22,7 @@ using Bytes = std::uint8_t __attribute__((vector_size(kBlockFaces)));
 /// One bit a lane, as bits_of() of four lanes.
 std::uint32_t bits_of_bytes(Bytes lanes) noexcept
 {
-#if defined(__SSE2__)
+#ifdef __SSE2__
     return static_cast<std::uint32_t>(_mm_movemask_epi8(reinterpret_cast<__m128i>(lanes)));
 #else
     std::uint32_t bits = 0;

@@ -27,7 +27,7 @@ public:
     {
         if (!arena.is_measuring())
         {
-            std::fill(numbers_.begin(), numbers_.end(), IdTable::kAbsent);
+            std::ranges::fill(numbers_, IdTable::kAbsent);
         }
     }
 

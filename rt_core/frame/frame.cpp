@@ -141,9 +141,8 @@ std::optional<FrameRefusal> Frame::check(const FrameSetup& setup) noexcept
         {
             return FrameRefusal::unknown_model;
         }
-        if (mesh != nullptr &&
-            std::any_of(setup.objects.begin(), setup.objects.end(),
-                        [mesh](const ObjectSpec& object) { return object.model == mesh->model; }))
+        if (mesh != nullptr && std::ranges::any_of(setup.objects, [mesh](const ObjectSpec& object)
+                                                   { return object.model == mesh->model; }))
         {
             return FrameRefusal::shared_model;
         }
@@ -165,9 +164,9 @@ Frame::Frame(PassKey /*key*/, Arena& arena, const FrameSetup& setup) noexcept
     , refine_memories_(arena.take<RefineMemory>(scene_.pairs().size() * kQuestions))
     , surfaces_(arena.take<LocalSurface>(scene_.pairs().size() + 1))
 {
-    const bool has_meshes = std::any_of(setup.tools.begin(), setup.tools.end(), is_mesh);
-    if (has_meshes || std::any_of(setup.tools.begin(), setup.tools.end(),
-                                  [](const ToolSpec& tool) { return tool.wants_contacts; }))
+    const bool has_meshes = std::ranges::any_of(setup.tools, is_mesh);
+    if (has_meshes ||
+        std::ranges::any_of(setup.tools, [](const ToolSpec& tool) { return tool.wants_contacts; }))
     {
         contacts_ = arena.take<ContactReport>(scene_.pairs().size());
     }
@@ -492,7 +491,7 @@ void Frame::query(std::span<const ObjectPose> poses, const Budgets& budgets) noe
 {
     for (std::uint32_t i = 0; i < scene_.pairs().size(); ++i)
     {
-        ScenePair& pair = scene_.pairs()[i];
+        const ScenePair& pair = scene_.pairs()[i];
         LocalSurface& surface = surfaces_[i];
         const ObjectPose& pose = poses[pair.object];
         if (pair.is_asleep)

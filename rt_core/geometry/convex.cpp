@@ -56,8 +56,8 @@ Result<Hull, HullError> Hull::create(std::span<const Vec3> vertices) noexcept
     {
         return HullError::too_many_vertices;
     }
-    if (!std::all_of(
-            vertices.begin(), vertices.end(),
+    if (!std::ranges::all_of(
+            vertices,
             [](const Vec3& vertex) noexcept {
                 return vertex.allFinite() && largest_coordinate({&vertex, 1}) <= kLargestCoordinate;
             }))

@@ -26,9 +26,9 @@ namespace
 std::array<int, 3> sides_of_plane(const Triangle& triangle, const Triangle& points) noexcept
 {
     std::array<int, 3> sides{};
-    std::transform(points.begin(), points.end(), sides.begin(),
-                   [&triangle](const Vec3& point)
-                   { return side_of_plane(triangle[0], triangle[1], triangle[2], point); });
+    std::ranges::transform(points, sides.begin(),
+                           [&triangle](const Vec3& point)
+                           { return side_of_plane(triangle[0], triangle[1], triangle[2], point); });
     return sides;
 }
 
@@ -49,9 +49,8 @@ bool do_boxes_overlap(std::span<const Vec3> first, std::span<const Vec3> second)
     for (Eigen::Index axis = 0; axis < 3; ++axis)
     {
         const auto less = [axis](const Vec3& a, const Vec3& b) { return a[axis] < b[axis]; };
-        const auto [low, high] = std::minmax_element(first.begin(), first.end(), less);
-        const auto [other_low, other_high] =
-            std::minmax_element(second.begin(), second.end(), less);
+        const auto [low, high] = std::ranges::minmax_element(first, less);
+        const auto [other_low, other_high] = std::ranges::minmax_element(second, less);
         if ((*high)[axis] < (*other_low)[axis] || (*other_high)[axis] < (*low)[axis])
         {
             return false;

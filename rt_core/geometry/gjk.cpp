@@ -92,8 +92,7 @@ private:
                 return;
             }
             const SupportPair farthest = find_support(unit_of(across));
-            if (is_near_enough() ||
-                std::find(simplex_.begin(), simplex_.end(), farthest) != simplex_.end())
+            if (is_near_enough() || std::ranges::find(simplex_, farthest) != simplex_.end())
             {
                 return;
             }

@@ -14,12 +14,13 @@ const Kernels& portable_kernels() noexcept
     return kPortableKernels;
 }
 
-#if defined(TACTUS_HAS_X86_KERNELS)
+#ifdef TACTUS_HAS_X86_KERNELS
 
 std::span<const Kernels* const> available_kernels() noexcept
 {
     static constexpr std::array<const Kernels*, 2> kAll{&kPortableKernels, &kAvx2Kernels};
-    const bool has_avx2 = static_cast<bool>(__builtin_cpu_supports("avx2")); // GCC: int.
+    // NOLINTNEXTLINE(readability-redundant-casting): an int with g++.
+    const bool has_avx2 = static_cast<bool>(__builtin_cpu_supports("avx2"));
     return std::span(kAll).first(has_avx2 ? 2 : 1);
 }
 

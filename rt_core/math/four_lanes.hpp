@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#if defined(__SSE2__)
+#ifdef __SSE2__
 #include <immintrin.h>
 #endif
 
@@ -18,7 +18,7 @@ using FourInts = std::int32_t __attribute__((vector_size(16)));
 /// One bit a lane, of lanes that are all ones or all zeros.
 [[nodiscard]] inline std::uint32_t bits_of(FourInts lanes) noexcept
 {
-#if defined(__SSE2__)
+#ifdef __SSE2__
     return static_cast<std::uint32_t>(_mm_movemask_ps(reinterpret_cast<__m128>(lanes)));
 #else
     return static_cast<std::uint32_t>((lanes[0] & 1) | (lanes[1] & 2) | (lanes[2] & 4) |

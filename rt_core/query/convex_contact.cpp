@@ -53,9 +53,8 @@ void support_triangle(const void* object, const ccd_vec3_t* direction, ccd_vec3_
 {
     const auto& triangle = *static_cast<const Triangle*>(object);
     const Vec3 way = from(direction);
-    const auto* farthest =
-        std::max_element(triangle.begin(), triangle.end(),
-                         [&way](const Vec3& a, const Vec3& b) { return way.dot(a) < way.dot(b); });
+    const auto* farthest = std::ranges::max_element(triangle, [&way](const Vec3& a, const Vec3& b)
+                                                    { return way.dot(a) < way.dot(b); });
     put(out, *farthest);
 }
 

@@ -30,7 +30,7 @@ struct ToolSpec
     double stiffness_n_per_m{500.0}; ///< Of the virtual wall.
     double force_max_n{8.0};         ///< The force's norm is clamped to it.
     double speed_max_m_per_s{1.0};   ///< Faster goals are followed at this speed in contact.
-    ToolCore core{};                 ///< A point makes a sphere.
+    ToolCore core{PointCore{}};      ///< A point makes a sphere.
     bool wants_contacts{false};      ///< Contacts, normals and sides, some microseconds a pair.
 };
 

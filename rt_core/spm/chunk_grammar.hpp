@@ -148,7 +148,7 @@ private:
         std::uint64_t first{0};
         std::uint64_t end{0};
     };
-    enum Role : std::uint8_t
+    enum Role : std::uint8_t // NOLINT(cppcoreguidelines-use-enum-class): an index.
     {
         kAnchor,
         kOther

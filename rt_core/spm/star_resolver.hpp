@@ -10,6 +10,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <utility>
 
 namespace tactus
 {
@@ -333,7 +334,7 @@ private:
         for (std::uint32_t i = 0; i < record_.fan_size; ++i)
         {
             const std::span<const FaceId> earlier = std::span(record_.star).subspan(2, i);
-            if (std::find(earlier.begin(), earlier.end(), record_.star[2 + i]) != earlier.end())
+            if (std::ranges::find(earlier, record_.star[2 + i]) != earlier.end())
             {
                 return false;
             }
@@ -376,7 +377,7 @@ private:
         const GridPosition v = RingPrediction(ring_positions()).position_of(coded.residual);
         for (std::size_t axis = 0; axis < 3; ++axis)
         {
-            if (v[axis] < 0 || v[axis] > static_cast<std::int64_t>(fields_.extent_quanta[axis]))
+            if (v[axis] < 0 || std::cmp_greater(v[axis], fields_.extent_quanta[axis]))
             {
                 return false;
             }
@@ -388,7 +389,7 @@ private:
 
     [[nodiscard]] ErrorCode largest_error() noexcept
     {
-        ErrorCode largest = *std::max_element(record_.error.begin(), record_.error.end());
+        ErrorCode largest = *std::ranges::max_element(record_.error);
         for (std::uint32_t i = 0; i < record_.fan_size; ++i)
         {
             const VsplitRecord* owner = fan_owners_[i].record;
