@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #include "rt_core/frame/mesh_pair.hpp"
 
+#include "rt_core/math/rounding.hpp"
+
 #include <algorithm>
 
 namespace tactus
@@ -83,7 +85,7 @@ void MeshPair::place(const ScenePair& pair, const MeshCore& core, const Model& t
 {
     tool_tree_ = &tool_model.tree;
     object_tree_ = &object_model.tree;
-    own_ball_ = {0.5 * core.extent_m, 0.5 * core.extent_m.norm() * (1.0 + 1e-14)};
+    own_ball_ = {0.5 * core.extent_m, 0.5 * core.extent_m.norm() * kRoundedUp};
     for (std::size_t i = 0; i < kPlaces; ++i)
     {
         Placement placed = tool;

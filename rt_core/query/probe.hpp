@@ -21,7 +21,7 @@ inline constexpr double kFarQuanta = 0x1p36;
     const double limit_m = kFarQuanta * static_cast<double>(quantum_m);
     // Written so that NaN is beyond, too. Not by maxCoeff(): that calls through a pointer, and lets
     // NaN pass or not as the order of the coordinates has it.
-    // NOLINTNEXTLINE(readability-simplify-boolean-expr)
+    // NOLINTNEXTLINE(readability-simplify-boolean-expr): the simpler one lets NaN pass.
     return !(std::abs(point_m.x()) < limit_m && std::abs(point_m.y()) < limit_m &&
              std::abs(point_m.z()) < limit_m);
 }

@@ -18,7 +18,7 @@ namespace detail
 {
 
 /// 2^(k/4) rounded up to float.
-// NOLINTBEGIN(modernize-use-std-numbers)
+// NOLINTBEGIN(modernize-use-std-numbers): in float the constant is not rounded up.
 inline constexpr std::array<float, 4> kQuarterPowers{1.0F, next_up(1.189207115F),
                                                      next_up(1.414213562F), next_up(1.681792831F)};
 // NOLINTEND(modernize-use-std-numbers)

@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #include "rt_core/spm/ring_prediction.hpp"
 
+#include "rt_core/math/rounding.hpp"
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -105,7 +107,7 @@ ErrorCode star_reach(const GridPosition& v, std::span<const GridPosition> ring,
     // The factor covers the rounding of sum and root.
     return encode_error((std::sqrt(static_cast<double>(farthest_sq)) +
                          static_cast<double>(error_in_quanta(largest_error))) *
-                        (1.0 + 1e-14));
+                        kRoundedUp);
 }
 
 } // namespace tactus
