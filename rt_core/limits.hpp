@@ -44,7 +44,7 @@ inline constexpr std::size_t kMaxCodedChunkBytes = 8'448;
 
 // --- The scene -----------------------------------------------------------------------------------
 
-/// Tools, objects and models of one frame. A pair of tool and object costs about 12 KiB, most of it
+/// Tools, objects and models of one frame. A pair of tool and object costs about 52 KiB, most of it
 /// its local surface.
 inline constexpr std::uint32_t kMaxTools = 4;
 inline constexpr std::uint32_t kMaxObjects = 8;
@@ -57,8 +57,9 @@ inline constexpr std::uint32_t kMaxPairs = kMaxTools * kMaxObjects;
 inline constexpr std::uint32_t kMaxCoverBalls = 8;
 
 /// Exact triangles handed to the force stage for one pair; 76 are usual at 1.1 M faces and a tool
-/// of 1 % of the diagonal. With more, the certified radius shrinks to those kept. 40 B each.
-inline constexpr std::uint32_t kMaxLocalTriangles = 256;
+/// of 1 % of the diagonal, 750 for a ball of eight edges that moves four edges a frame. With more,
+/// the certified radius shrinks to those kept. 48 B each.
+inline constexpr std::uint32_t kMaxLocalTriangles = 1'024;
 
 /// Contacts told of one pair: the nearest ones. 128 B each.
 inline constexpr std::uint32_t kMaxContacts = 32;
@@ -96,15 +97,21 @@ inline constexpr std::uint32_t kMaxLinkUpdatesPerFrame = 64;
 
 // --- Force ---------------------------------------------------------------------------------------
 
-/// Steps of the proxy in one frame. Each is at most half the tool's radius.
-inline constexpr std::uint32_t kProxySteps = 12;
+/// Steps of the proxy in one frame: each ends where another triangle takes over. 2 to 6 are usual.
+inline constexpr std::uint32_t kProxySteps = 24;
+/// Triangles that the proxy moves among, 56 B each on the stack. With more in reach it moves less
+/// far in one go.
+inline constexpr std::uint32_t kMaxNearFaces = 256;
+/// Times that a step is solved again with the triangle that it would enter; 2 or 3 are usual. What
+/// is still entered after it shortens the step.
+inline constexpr std::uint32_t kStepRounds = 16;
 /// How far the proxy may sit inside the tool's radius from the surface, relative to that radius.
-inline constexpr double kContactTolerance = 1e-4;
+inline constexpr double kContactTolerance = 1e-6;
 /// Planes that one motion is held back by; each adds 30 ns to a step of the search.
 inline constexpr std::uint32_t kMaxHalfSpaces = 64;
 /// Steps of a search for the nearest motion, in each of which a plane joins those that hold it or
-/// leaves them. Awkward planes took 72 in the worst of
-/// a million searches; after half of them kSqueezeTolerance is enough.
+/// leaves them. Awkward planes took 72 in the worst of a million searches; after half of them
+/// kSqueezeTolerance is enough.
 inline constexpr std::uint32_t kConstraintRounds = 128;
 /// A motion may be this far beyond a plane, relative to the lengths in the question.
 inline constexpr double kPlaneTolerance = 1e-12;
@@ -113,6 +120,8 @@ inline constexpr double kPlaneTolerance = 1e-12;
 inline constexpr double kParallelPlanes = 1e-7;
 /// Planes squeeze when their gap is too narrow by this share of the lengths; by less they fit.
 inline constexpr double kSqueezeTolerance = 1e-6;
+/// A tool without a radius is a ball of this many quanta, so that it has an outside.
+inline constexpr double kPointSkin = 0.25;
 /// Time in which a frozen force fades to zero, in seconds.
 inline constexpr double kFadeTime_s = 0.05;
 

@@ -12,174 +12,386 @@ namespace tactus
 namespace
 {
 
-/// How far beyond the tool's radius triangles are listed, as a share of the radius, and how many
-/// lists one frame may make: together a slide of a third of the radius a frame.
-constexpr double kWindow = 0.12;
-constexpr int kVicinities = 3;
-/// Push-outs after one slide; each at least halves what is left on a smooth surface.
-constexpr int kPushOuts = 4;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// How far beyond the tool's radius triangles are listed: a share of the radius and this many times
+/// the last frame's way. A list that was too short is made again, four
+/// times as wide.
+constexpr double kWindow = 0.05;
+constexpr double kWindowWays = 1.5;
+constexpr int kVicinities = 4;
 /// Below this share of the tool's radius a motion isn't worth a step: 0.1 mN at 500 N/m and 2 mm.
 constexpr double kLeastStep = 1e-4;
 
+/// The planes of one step, and whose they are.
+struct StepPlanes
+{
+    StaticVector<HalfSpace<3>, kMaxHalfSpaces> planes;
+    StaticVector<std::uint32_t, kMaxHalfSpaces> faces;
+
+    [[nodiscard]] bool has(std::uint32_t face) const noexcept
+    {
+        return std::ranges::find(faces.view(), face) != faces.view().end();
+    }
+    void add(std::uint32_t face, const HalfSpace<3>& plane) noexcept
+    {
+        faces.push_back(face);
+        planes.push_back(plane);
+    }
+    /// Only those that hold.
+    void compact(const NearestMotion<3>& found) noexcept
+    {
+        const StepPlanes before = *this;
+        faces.clear();
+        planes.clear();
+        for (const std::uint32_t i : found.held_by)
+        {
+            add(before.faces[i], before.planes[i]);
+        }
+    }
+    /// The shortest motion out of objects that moved into the tool by more than `least`.
+    [[nodiscard]] Vec3 way_out(double least) const noexcept
+    {
+        const bool is_inside = std::ranges::any_of(planes.view(), [least](const HalfSpace<3>& plane)
+                                                   { return plane.offset > least; });
+        return is_inside ? nearest_motion<3>(planes.view(), Vec3(0.0, 0.0, 0.0)).motion
+                         : Vec3(0.0, 0.0, 0.0);
+    }
+};
+
+/// The motion nearest to `wanted` that enters no triangle. `step` holds its planes then.
+NearestMotion<3> nearest_free_motion(Vicinity& near, const Vec3& wanted, double radius,
+                                     StepPlanes& step) noexcept
+{
+    NearestMotion<3> found = nearest_motion<3>(step.planes.view(), wanted);
+    for (std::uint32_t round = 0; round < kStepRounds && found.is_feasible; ++round)
+    {
+        const std::optional<std::uint32_t> entered = near.find_entered(found.motion, radius);
+        if (!entered || step.has(*entered))
+        {
+            return found;
+        }
+        if (step.planes.full())
+        {
+            step.compact(found);
+        }
+        step.add(*entered, near.half_space(*entered, radius));
+        found = nearest_motion<3>(step.planes.view(), wanted);
+    }
+    if (found.is_feasible)
+    {
+        found.motion *= near.free_share(found.motion, radius);
+    }
+    return found;
+}
+
 } // namespace
 
-ToolOutput Proxy::respond(const Vec3& goal_m, std::span<const PlacedSurface> surfaces,
-                          double elapsed_s) noexcept
+Proxy::Proxy(ToolSpec spec) noexcept : spec_(std::move(spec)), radius_(spec_.radius_m)
+{
+    clearances_m_.fill(kInfinity);
+    object_velocities_.fill(Vec3(0.0, 0.0, 0.0));
+}
+
+ToolOutput Proxy::respond(const ProxyGoal& goal, std::span<const PlacedSurface> surfaces) noexcept
 {
     anchor_ = position_;
+    radius_ = find_radius(surfaces);
+    path_.clear();
+    path_.push_back(position_);
     const double travel = free_travel(surfaces);
     const bool frozen = !(travel > 0.0);
-    held_back_ = frozen;
-    if (!frozen)
+    Motion motion = Motion::held_back;
+    if (frozen)
     {
-        follow(goal_m, travel, surfaces);
+        keep_clearances(surfaces, nullptr);
     }
+    else
+    {
+        motion = follow(goal.position_m, travel, surfaces);
+    }
+    last_way_m_ = (position_ - anchor_).norm();
     ToolOutput output;
     output.proxy_m = position_;
     output.in_contact = in_contact_;
     output.frozen = frozen;
-    frozen_s_ = frozen ? frozen_s_ + elapsed_s : 0.0;
+    output.squeezed = motion == Motion::squeezed || was_overrun_;
+    const bool fades = frozen || output.squeezed;
+    fading_s_ = fades ? fading_s_ + goal.elapsed_s : 0.0;
     if (in_contact_)
     {
-        output.force_n = held_back_ ? fading_force(goal_m) : force_towards(goal_m);
+        output.force_n = fades ? fading_force(goal.position_m) : force(goal);
     }
     return output;
+}
+
+/// A point's is a share of the coarsest model's quantum.
+double Proxy::find_radius(std::span<const PlacedSurface> surfaces) const noexcept
+{
+    double skin = 0.0;
+    for (const PlacedSurface& placed : surfaces)
+    {
+        skin = std::max(skin, kPointSkin * placed.quantum_m * placed.pose->scale);
+    }
+    return std::max(spec_.radius_m, skin);
 }
 
 /// How far the proxy may move with the tool still inside what is proven; <= 0 is not at all.
 double Proxy::free_travel(std::span<const PlacedSurface> surfaces) const noexcept
 {
-    double travel = std::numeric_limits<double>::infinity();
+    double travel = kInfinity;
     for (const PlacedSurface& placed : surfaces)
     {
         const DistanceAnswer& answer = placed.surface->answer;
         const double known = std::max(answer.certified_radius_m, answer.lower_m);
-        travel = std::min(travel, known * placed.pose->scale - spec_.radius_m);
+        travel = std::min(travel, known * placed.pose->scale - radius_);
     }
     return travel;
 }
 
-/// First straight on as far as nothing is in the way, then step by step among the triangles in
-/// reach; where those end, among those in reach of there.
-void Proxy::follow(const Vec3& goal, double travel,
-                   std::span<const PlacedSurface> surfaces) noexcept
+/// First straight on as far as nothing is in the way, then among the triangles in reach; where
+/// those end, among those in reach of there.
+Proxy::Motion Proxy::follow(const Vec3& goal, double travel,
+                            std::span<const PlacedSurface> surfaces) noexcept
 {
     in_contact_ = false;
-    const double clear = std::min(travel, clearance(surfaces) - spec_.radius_m);
-    const Vec3 way = goal - position_;
-    const double length = way.norm();
-    if (clear > kContactTolerance * spec_.radius_m && length > 0.0)
-    {
-        position_ += way * std::min(1.0, clear / length);
-    }
-    std::uint32_t steps = kProxySteps;
-    Motion motion = Motion::ran_out;
-    for (int round = 0; round < kVicinities && motion == Motion::ran_out; ++round)
-    {
-        const double left = travel - (position_ - anchor_).norm();
-        const double window = std::min(left, kWindow * spec_.radius_m);
-        const Vicinity vicinity(surfaces, position_, spec_.radius_m + window, position_ == anchor_);
-        motion = follow_within(vicinity, goal, left, steps);
-    }
-    held_back_ = motion == Motion::held_back;
-}
-
-/// To the nearest triangle from where the surfaces were queried.
-double Proxy::clearance(std::span<const PlacedSurface> surfaces) noexcept
-{
-    double least = std::numeric_limits<double>::infinity();
+    has_slid_ = false;
+    double clear = travel;
     for (const PlacedSurface& placed : surfaces)
     {
-        const auto& distances = placed.surface->distances_m;
         for (std::uint32_t i = 0; i < placed.surface->count; ++i)
         {
-            least = std::min(least, distances[i] * placed.pose->scale);
+            clear = std::min(clear, placed.surface->distances_m[i] * placed.pose->scale - radius_);
         }
     }
-    return least;
+    go_straight_on(goal, clear);
+    double window = kWindow * radius_ + kWindowWays * last_way_m_;
+    std::uint32_t steps = kProxySteps;
+    for (int round = 1;; ++round)
+    {
+        const double left = travel - (position_ - anchor_).norm();
+        Vicinity near(surfaces, anchor_, position_, radius_ + std::min(left, window));
+        const Motion motion = follow_within(near, surfaces, goal, travel, steps);
+        if (motion != Motion::ran_out || round == kVicinities)
+        {
+            in_contact_ = hold_.touches;
+            slides_ = has_slid_ && in_contact_;
+            keep_clearances(surfaces, &near);
+            return motion;
+        }
+        window *= 4.0;
+    }
 }
 
-Proxy::Motion Proxy::follow_within(const Vicinity& vicinity, const Vec3& goal, double travel,
-                                   std::uint32_t& steps) noexcept
+void Proxy::go_straight_on(const Vec3& goal, double clear) noexcept
 {
-    const double radius = spec_.radius_m;
-    const double least_step = kLeastStep * radius;
-    const Vec3 center = position_;
-    for (; steps > 0; --steps)
+    const Vec3 way = goal - position_;
+    const double length = way.norm();
+    if (clear > kLeastStep * radius_ && length > 0.0)
     {
-        const Vec3 way = goal - position_;
-        const double moved = (position_ - center).norm();
-        const NearestSurface near = vicinity.nearest(position_, normal_);
-        const bool touches = near.distance_m <= radius + kContactTolerance * radius;
-        const double inward = -way.dot(near.normal);
-        const bool is_held = touches && inward > 0.0;
-        if (is_held)
+        position_ += way * std::min(1.0, clear / length);
+        path_.push_back(position_);
+    }
+}
+
+Proxy::Motion Proxy::follow_within(Vicinity& near, std::span<const PlacedSurface> surfaces,
+                                   const Vec3& goal, double travel, std::uint32_t& steps) noexcept
+{
+    const double least_step = kLeastStep * radius_;
+    while (true)
+    {
+        near.stand_at(position_ - near.center_m(), normal_);
+        hold_ = hold_at(near, surfaces, goal - position_);
+        const double length = hold_.motion.norm();
+        if (hold_.is_squeezed)
         {
-            in_contact_ = true;
-            normal_ = near.normal;
+            return Motion::squeezed;
         }
-        const Vec3 wanted = is_held ? Vec3(way + inward * near.normal) : way;
-        const double wanted_length = wanted.norm();
-        if (wanted_length <= least_step)
+        if (length <= least_step)
         {
             return Motion::at_rest;
         }
+        if (--steps == 0)
+        {
+            return Motion::out_of_steps;
+        }
         // What is not in the vicinity, or not certified, is at least this far away.
-        const double unlisted = vicinity.reach_m() - moved - radius;
-        const double uncertified = travel - moved;
-        const double open = touches ? 0.5 * radius : near.distance_m - radius;
-        const double most = std::min({open, unlisted, uncertified});
-        if (most <= least_step)
+        const double unlisted = near.reach_m() - (position_ - near.center_m()).norm() - radius_;
+        const double uncertified = travel - (position_ - anchor_).norm();
+        const double room = std::min(unlisted, uncertified);
+        if (room <= least_step)
         {
             return uncertified <= least_step ? Motion::held_back : Motion::ran_out;
         }
-        const Vec3 step = wanted * std::min(1.0, most / wanted_length);
-        if (!touches)
-        {
-            position_ += step;
-        }
-        else if (!try_slide(step, near.distance_m, goal, vicinity) &&
-                 !try_slide(0.25 * step, near.distance_m, goal, vicinity))
-        {
-            return Motion::at_rest; // A concave corner: this constraint leads no nearer.
-        }
+        position_ += hold_.motion * std::min(1.0, room / length);
+        path_.push_back(position_);
     }
-    return Motion::out_of_steps;
 }
 
-/// One step along the surface, pushed out to the radius again. Taken only when it ends outside the
-/// surface, nearer to the goal and within the ball that is known to be free.
-bool Proxy::try_slide(const Vec3& step, double clearance, const Vec3& goal,
-                      const Vicinity& vicinity) noexcept
+Proxy::Hold Proxy::hold_at(Vicinity& near, std::span<const PlacedSurface> surfaces,
+                           const Vec3& wanted) noexcept
 {
-    const double radius = spec_.radius_m;
-    const double least = radius - kContactTolerance * radius;
-    Vec3 candidate = position_ + step;
-    NearestSurface near = vicinity.nearest(candidate, normal_);
-    for (int i = 0; i < kPushOuts && near.distance_m < radius; ++i)
+    StepPlanes touching;
+    for (std::uint32_t face = 0; face < near.size() && !touching.planes.full(); ++face)
     {
-        candidate += near.normal * (radius - near.distance_m);
-        near = vicinity.nearest(candidate, normal_);
+        if (near.is_within(face, radius_ * (1.0 + kLeastStep)))
+        {
+            touching.add(face, near.half_space(face, radius_));
+        }
     }
-    if (near.distance_m < least || (candidate - position_).norm() >= clearance ||
-        (candidate - goal).squaredNorm() >= (position_ - goal).squaredNorm())
+    StepPlanes step = touching;
+    const NearestMotion<3> found = nearest_free_motion(near, wanted, radius_, step);
+    Hold hold;
+    hold.motion = found.motion;
+    hold.is_squeezed = !found.is_feasible;
+    const NearestMotion<3> held = nearest_motion<3>(touching.planes.view(), wanted);
+    for (std::size_t i = 0; i < held.held_by.size(); ++i)
     {
-        return false;
+        const std::uint32_t plane = held.held_by[i];
+        const std::uint32_t object = near.surface_of(touching.faces[plane]);
+        press(hold, *surfaces[object].material, object,
+              held.reactions[i] * touching.planes[plane].normal);
     }
-    position_ = candidate;
-    return true;
+    if (hold.touches)
+    {
+        normal_ = hold.push_n.normalized();
+        const Vec3 kept = rub(hold, held.motion - touching.way_out(kContactTolerance * radius_));
+        if (hold.static_m > 0.0)
+        {
+            hold.motion = nearest_free_motion(near, wanted - kept, radius_, step).motion;
+        }
+        return hold;
+    }
+    if (std::ranges::any_of(surfaces, [](const PlacedSurface& placed)
+                            { return placed.material->static_friction > 0.0; }))
+    {
+        hold.motion = go_to_contact(near, wanted, hold.motion);
+    }
+    return hold;
 }
 
-Vec3 Proxy::force_towards(const Vec3& goal) const noexcept
+/// Adds one plane that touches; `depth` is how far the goal is behind it, along its normal.
+void Proxy::press(Hold& hold, const Material& material, std::uint32_t object,
+                  const Vec3& depth) const noexcept
 {
-    return clamped(spec_.stiffness_n_per_m * (position_ - goal));
+    const double length = depth.norm();
+    const double stiffness = std::min(spec_.stiffness_n_per_m, material.stiffness_n_per_m);
+    hold.object = length >= hold.deepest_m ? object : hold.object;
+    hold.deepest_m = std::max(hold.deepest_m, length);
+    hold.touches = hold.touches || length > 0.0;
+    hold.push_n += stiffness * depth;
+    hold.depth_m += length;
+    hold.stiffness += stiffness * length;
+    hold.static_m += material.static_friction * length;
+    hold.dynamic_m += material.dynamic_friction * length;
+    hold.damping += material.damping_n_s_per_m * length;
+    hold.velocity += object_velocities_[object] * length;
+}
+
+/// Friction begins where the tool touches, so it goes there straight.
+Vec3 Proxy::go_to_contact(Vicinity& near, const Vec3& wanted, const Vec3& motion) const noexcept
+{
+    if (!near.find_entered(wanted, radius_))
+    {
+        return motion;
+    }
+    const Vec3 straight = wanted * near.free_share(wanted, radius_);
+    return straight.norm() > kLeastStep * radius_ ? straight : motion;
+}
+
+/// Coulomb's cone: the tool sticks while what pulls it along, `slip`, is within the static one, and
+/// slides until it is within the dynamic one. Returns the part of it that friction takes.
+Vec3 Proxy::rub(Hold& hold, const Vec3& slip) noexcept
+{
+    const double length = slip.norm();
+    const bool slips = length > (slides_ ? hold.dynamic_m : hold.static_m) + kLeastStep * radius_;
+    slides_ = slides_ || slips;
+    has_slid_ = has_slid_ || slips;
+    const double most = slips || slides_ ? hold.dynamic_m : hold.static_m;
+    const Vec3 kept = length > most ? Vec3(slip * (most / length)) : slip;
+    hold.drag_n = kept * (-hold.stiffness / hold.depth_m);
+    return kept;
+}
+
+/// What the surfaces say of how far the proxy is from each object now.
+void Proxy::keep_clearances(std::span<const PlacedSurface> surfaces, const Vicinity* near) noexcept
+{
+    const double moved = (position_ - anchor_).norm();
+    for (std::uint32_t i = 0; i < surfaces.size(); ++i)
+    {
+        const DistanceAnswer& answer = surfaces[i].surface->answer;
+        const double scale = surfaces[i].pose->scale;
+        clearances_m_[i] = answer.lower_m * scale - moved;
+        if (near != nullptr)
+        {
+            const Vec3 place = position_ - near->center_m();
+            const double known = answer.certified_radius_m * scale - moved;
+            const double listed =
+                std::min(near->reach_m() - place.norm(), near->bound_of_surface(i, place));
+            clearances_m_[i] = std::max(clearances_m_[i], std::min(known, listed));
+        }
+    }
+}
+
+void Proxy::carry(std::span<const ObjectPose> before, std::span<const ObjectPose> now,
+                  double elapsed_s) noexcept
+{
+    const auto along = [&](std::size_t object)
+    { return to_world(now[object], to_model(before[object], position_)); };
+    for (std::size_t i = 0; i < now.size(); ++i)
+    {
+        object_velocities_[i] = (along(i) - position_) / elapsed_s;
+    }
+    const Vec3 stays = position_;
+    Vec3 target = in_contact_ ? along(hold_.object) : stays;
+    was_overrun_ = is_overrun(target, before, now);
+    if (was_overrun_ && !is_overrun(stays, before, now))
+    {
+        target = stays;
+        was_overrun_ = false;
+    }
+    for (std::size_t i = 0; i < now.size() && was_overrun_; ++i)
+    {
+        if (!is_overrun(along(i), before, now))
+        {
+            target = along(i);
+            was_overrun_ = false;
+        }
+    }
+    position_ = target;
+}
+
+/// Whether the proxy could be on the other side of a surface if it goes to `target` while the
+/// objects move.
+bool Proxy::is_overrun(const Vec3& target, std::span<const ObjectPose> before,
+                       std::span<const ObjectPose> now) const noexcept
+{
+    for (std::size_t i = 0; i < now.size(); ++i)
+    {
+        const double way = (to_model(now[i], target) - to_model(before[i], position_)).norm();
+        const double scale = std::max(before[i].scale, now[i].scale);
+        if (way > 0.0 && way * scale * (1.0 + kContactTolerance) >= clearances_m_[i])
+        {
+            return true;
+        }
+    }
+    return false;
+}
+
+/// The spring's, and what damps the motion across the surface; together they never pull.
+Vec3 Proxy::force(const ProxyGoal& goal) const noexcept
+{
+    const double inward = (hold_.velocity / hold_.depth_m - goal.velocity_m_per_s).dot(normal_);
+    const double push = hold_.push_n.norm();
+    const double damped = std::max(-push, hold_.damping / hold_.depth_m * inward);
+    return clamped(hold_.push_n + damped * normal_ + hold_.drag_n);
 }
 
 /// Along the last normal, never pulling, less with every moment without a certified surface.
 Vec3 Proxy::fading_force(const Vec3& goal) const noexcept
 {
     const double push = spec_.stiffness_n_per_m * (position_ - goal).dot(normal_);
-    const double share = std::max(0.0, 1.0 - frozen_s_ / kFadeTime_s);
+    const double share = std::max(0.0, 1.0 - fading_s_ / kFadeTime_s);
     return clamped(normal_ * (std::max(0.0, push) * share));
 }
 

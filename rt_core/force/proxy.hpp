@@ -3,10 +3,12 @@
 #pragma once
 
 #include "rt_core/base/realtime.hpp"
+#include "rt_core/base/static_vector.hpp"
 #include "rt_core/force/vicinity.hpp"
 #include "rt_core/records/frame_input.hpp"
 #include "rt_core/records/frame_output.hpp"
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <utility>
@@ -14,35 +16,59 @@
 namespace tactus
 {
 
-/// The virtual proxy of one spherical tool (Ruspini et al. 1997; god-object: Zilles and Salisbury
-/// 1995), with one constraint at a time.
+/// Where the hand wants the tool to be. World frame.
+struct ProxyGoal
+{
+    Vec3 position_m{0.0, 0.0, 0.0};
+    Vec3 velocity_m_per_s{0.0, 0.0, 0.0};
+    double elapsed_s{0.0}; ///< Since the last frame.
+};
+
+/// The virtual proxy of a tool whose core is a point (god-object: Zilles and Salisbury 1995;
+/// virtual proxy: Ruspini, Kolarov and Khatib 1997; friction cone: Harwin and Melder 2002).
 ///
-/// The proxy is the tool's centre as the surface lets it be. It stays at least the radius away from
-/// every triangle. Each of its steps is shorter than its distance to the nearest triangle, so the
-/// path of the centre can't cross the surface. It moves only where the surfaces are certified:
-/// within (certified radius - tool radius), or (L - tool radius), of where they were
-/// queried. The device's force is stiffness x (proxy - goal), clamped; never a penalty on a coarse
-/// distance.
+/// The proxy is the tool's centre as the surfaces let it be: the place nearest to the goal that can
+/// be reached without entering a triangle, and where friction lets it get. It goes there in
+/// straight steps. Each step is the nearest motion to the goal that stays on the free side of a
+/// plane for every triangle near, so whatever holds it, up to three planes, does so at once; the
+/// planes are found again where it ends. No step enters a triangle, however fast or deep the goal
+/// is. Steps stay where the surfaces are certified: within (certified radius - tool radius), or
+/// (L - tool radius), of where they were queried.
 ///
-/// Without a certified surface the proxy is frozen: the force along the last normal never pulls
-/// and fades to zero within kFadeTime_s.
+/// The force is the spring between goal and proxy, of the softer of tool and object; never a
+/// penalty on a distance. Without a certified surface the proxy is frozen: the force along the last
+/// normal never pulls and fades to zero within kFadeTime_s. So it is where objects leave no room.
 ///
-/// Haptic thread. Cost: kProxySteps steps at most, each of up to 12 distance tests over the few
-/// triangles in reach of the tool.
+/// A tool without a radius is a ball of kPointSkin quanta.
+///
+/// Haptic thread. Cost: a list of the triangles in reach once or twice a frame, 2 to 6 steps as a
+/// rule and kProxySteps at most, each of a few passes over the list.
 class Proxy
 {
 public:
     Proxy() noexcept = default;
-    explicit Proxy(ToolSpec spec) noexcept : spec_(std::move(spec)) {}
+    explicit Proxy(ToolSpec spec) noexcept;
 
     /// Where the proxy is; before the first frame the first goal.
     [[nodiscard]] const Vec3& position_m() const noexcept { return position_; }
+    /// The tool's, or a point's skin.
+    [[nodiscard]] double radius_m() const noexcept { return radius_; }
+    /// The places that it went by in this frame, the first and the last included: straight lines.
+    [[nodiscard]] std::span<const Vec3> path_m() const noexcept { return path_.view(); }
     [[nodiscard]] bool is_in_contact() const noexcept { return in_contact_; }
     void start_at(const Vec3& position_m) noexcept { position_ = position_m; }
 
-    /// Moves towards `goal_m` and returns the force. `surfaces` were queried at position_m().
-    [[nodiscard]] ToolOutput respond(const Vec3& goal_m, std::span<const PlacedSurface> surfaces,
-                                     double elapsed_s) noexcept TACTUS_NONBLOCKING;
+    /// The objects move. The proxy goes along with the one that it touches, or that would run over
+    /// it; else it stays. Where one of them runs over it whatever it does, it is squeezed. As many
+    /// poses as objects; once a frame, before the surfaces are queried.
+    void carry(std::span<const ObjectPose> before, std::span<const ObjectPose> now,
+               double elapsed_s) noexcept TACTUS_NONBLOCKING;
+
+    /// Moves towards the goal and returns the force. `surfaces`, one for each object in order, were
+    /// queried at position_m().
+    [[nodiscard]] ToolOutput
+    respond(const ProxyGoal& goal,
+            std::span<const PlacedSurface> surfaces) noexcept TACTUS_NONBLOCKING;
 
 private:
     enum class Motion : std::uint8_t
@@ -51,26 +77,66 @@ private:
         ran_out,   ///< The vicinity ends here; there may be more behind it.
         held_back, ///< The certified ball ends here.
         out_of_steps,
+        squeezed, ///< No place near is free.
     };
 
+    /// What the surfaces do at one place. Sums are over the planes that touch, each by how deep the
+    /// goal is behind it.
+    struct Hold
+    {
+        Vec3 motion{0.0, 0.0, 0.0}; ///< As far as planes and friction let it go.
+        Vec3 push_n{0.0, 0.0, 0.0}; ///< Of the planes.
+        Vec3 drag_n{0.0, 0.0, 0.0}; ///< Of friction.
+        double depth_m{0.0};
+        double stiffness{0.0}; ///< N/m x m, and so on.
+        double static_m{0.0};
+        double dynamic_m{0.0};
+        double damping{0.0};
+        Vec3 velocity{0.0, 0.0, 0.0}; ///< The objects'.
+        double deepest_m{0.0};
+        std::uint32_t object{0}; ///< Whose plane that is.
+        bool touches{false};
+        bool is_squeezed{false};
+    };
+
+    [[nodiscard]] double find_radius(std::span<const PlacedSurface> surfaces) const noexcept;
     [[nodiscard]] double free_travel(std::span<const PlacedSurface> surfaces) const noexcept;
-    [[nodiscard]] static double clearance(std::span<const PlacedSurface> surfaces) noexcept;
-    void follow(const Vec3& goal, double travel, std::span<const PlacedSurface> surfaces) noexcept;
-    [[nodiscard]] Motion follow_within(const Vicinity& vicinity, const Vec3& goal, double travel,
+    [[nodiscard]] Motion follow(const Vec3& goal, double travel,
+                                std::span<const PlacedSurface> surfaces) noexcept;
+    [[nodiscard]] Motion follow_within(Vicinity& near, std::span<const PlacedSurface> surfaces,
+                                       const Vec3& goal, double travel,
                                        std::uint32_t& steps) noexcept;
-    [[nodiscard]] bool try_slide(const Vec3& step, double clearance, const Vec3& goal,
-                                 const Vicinity& vicinity) noexcept;
-    [[nodiscard]] Vec3 force_towards(const Vec3& goal) const noexcept;
+    void go_straight_on(const Vec3& goal, double clear) noexcept;
+    [[nodiscard]] Hold hold_at(Vicinity& near, std::span<const PlacedSurface> surfaces,
+                               const Vec3& wanted) noexcept;
+    void press(Hold& hold, const Material& material, std::uint32_t object,
+               const Vec3& depth) const noexcept;
+    [[nodiscard]] Vec3 go_to_contact(Vicinity& near, const Vec3& wanted,
+                                     const Vec3& motion) const noexcept;
+    [[nodiscard]] Vec3 rub(Hold& hold, const Vec3& slip) noexcept;
+    void keep_clearances(std::span<const PlacedSurface> surfaces, const Vicinity* near) noexcept;
+    [[nodiscard]] bool is_overrun(const Vec3& target, std::span<const ObjectPose> before,
+                                  std::span<const ObjectPose> now) const noexcept;
+    [[nodiscard]] Vec3 force(const ProxyGoal& goal) const noexcept;
     [[nodiscard]] Vec3 fading_force(const Vec3& goal) const noexcept;
     [[nodiscard]] Vec3 clamped(const Vec3& force) const noexcept;
 
     ToolSpec spec_;
+    double radius_{0.0};
     Vec3 position_{0.0, 0.0, 0.0};
     Vec3 anchor_{0.0, 0.0, 0.0}; ///< Where this frame's surfaces were queried.
-    Vec3 normal_{0.0, 0.0, 0.0}; ///< Of the last contact.
-    double frozen_s_{0.0};
+    Vec3 normal_{0.0, 0.0, 1.0}; ///< Of the last contact.
+    double last_way_m_{0.0};     ///< That it went in the last frame.
+    Hold hold_;
+    double fading_s_{0.0}; ///< Since it froze or was squeezed.
     bool in_contact_{false};
-    bool held_back_{false}; ///< The certified ball ended the motion, not the surface.
+    bool slides_{false};   ///< From the last frame on: the dynamic cone holds.
+    bool has_slid_{false}; ///< In this frame.
+    bool was_overrun_{false};
+    StaticVector<Vec3, kProxySteps + 2> path_;
+    /// The proxy may move by this much before it is on the other side of the object's surface.
+    std::array<double, kMaxObjects> clearances_m_{};
+    std::array<Vec3, kMaxObjects> object_velocities_{}; ///< At the proxy.
 };
 
 } // namespace tactus

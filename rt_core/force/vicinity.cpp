@@ -9,57 +9,164 @@
 namespace tactus
 {
 
-Vicinity::Vicinity(std::span<const PlacedSurface> surfaces, const Vec3& center_m, double reach_m,
-                   bool is_query_center) noexcept
-    : reach_m_(reach_m)
+namespace
 {
+
+/// How often a list that is too short is made again with half the reach beyond the nearest face.
+constexpr int kGatherings = 6;
+
+double nearest_of(std::span<const PlacedSurface> surfaces) noexcept
+{
+    double nearest = std::numeric_limits<double>::infinity();
     for (const PlacedSurface& placed : surfaces)
     {
-        const Vec3 local = to_model(*placed.pose, center_m);
         for (std::uint32_t i = 0; i < placed.surface->count; ++i)
         {
-            const LocalTriangle& triangle = placed.surface->triangles[i];
-            const double distance =
-                placed.pose->scale *
-                (is_query_center
-                     ? placed.surface->distances_m[i]
-                     : std::sqrt(closest_point_on_triangle(local, to_triangle(triangle.corners_m))
-                                     .distance_sq));
-            if (distance <= reach_m && !entries_.try_push_back({placed.pose, &triangle}))
-            {
-                reach_m_ = std::min(reach_m_, distance);
-            }
+            nearest = std::min(nearest, placed.surface->distances_m[i] * placed.pose->scale);
+        }
+    }
+    return nearest;
+}
+
+} // namespace
+
+Vicinity::Vicinity(std::span<const PlacedSurface> surfaces, const Vec3& anchor_m,
+                   const Vec3& center_m, double reach_m) noexcept
+    : surfaces_(surfaces), center_m_(center_m), reach_m_(reach_m)
+{
+    const double moved_m = (center_m - anchor_m).norm();
+    double nearest_m = -1.0;
+    for (int i = 0; !try_gather(moved_m); ++i)
+    {
+        nearest_m = nearest_m < 0.0 ? nearest_of(surfaces) - moved_m : nearest_m;
+        reach_m_ = i < kGatherings ? 0.5 * (reach_m_ + nearest_m) : nearest_m;
+        if (i > kGatherings || !(reach_m_ > 0.0))
+        {
+            faces_.clear();
+            reach_m_ = 0.0; // Nothing may move: there is no telling the faces apart.
+            return;
         }
     }
 }
 
-NearestSurface Vicinity::nearest(const Vec3& point_m, const Vec3& fallback) const noexcept
+/// False when there are more faces within reach_m_ than fit. The surfaces' distances are from a
+/// place `moved_m` away.
+bool Vicinity::try_gather(double moved_m) noexcept
 {
-    NearestSurface best{std::numeric_limits<double>::infinity(), fallback};
-    const ObjectPose* pose = nullptr;
-    Vec3 local = point_m;
-    Vec3 foot = point_m;
-    for (const Entry& entry : entries_)
+    faces_.clear();
+    for (std::uint32_t s = 0; s < surfaces_.size(); ++s)
     {
-        if (pose == nullptr || entry.pose != pose)
+        const LocalSurface& surface = *surfaces_[s].surface;
+        const double scale = surfaces_[s].pose->scale;
+        const double reach = (reach_m_ + moved_m) / scale;
+        for (std::uint32_t i = 0; i < surface.count; ++i)
         {
-            pose = entry.pose;
-            TACTUS_ASSERT(pose != nullptr);
-            local = to_model(*pose, point_m);
-        }
-        const ClosestPoint closest =
-            closest_point_on_triangle(local, to_triangle(entry.triangle->corners_m));
-        const double distance = std::sqrt(closest.distance_sq) * pose->scale;
-        if (distance < best.distance_m)
-        {
-            best.distance_m = distance;
-            foot = to_world(*pose, closest.point);
+            if (!(surface.distances_m[i] <= reach))
+            {
+                continue;
+            }
+            const double distance_m = surface.distances_m[i] * scale - moved_m;
+            if (!faces_.try_push_back(
+                    {&surface.triangles[i], s, 0, Vec3(0.0, 0.0, 0.0), distance_m}))
+            {
+                return false;
+            }
         }
     }
-    const Vec3 away = point_m - foot;
-    const double length = away.norm();
-    best.normal = length > 0.0 ? Vec3(away / length) : fallback;
-    return best;
+    return true;
+}
+
+double Vicinity::bound_of_surface(std::uint32_t surface, const Vec3& place) const noexcept
+{
+    double least = std::numeric_limits<double>::infinity();
+    for (const NearFace& face : faces_)
+    {
+        if (face.surface == surface)
+        {
+            least = std::min(least, bound(face, place));
+        }
+    }
+    return least;
+}
+
+void Vicinity::stand_at(const Vec3& place, const Vec3& fallback) noexcept
+{
+    place_ = place;
+    fallback_ = fallback;
+    ++stand_;
+}
+
+void Vicinity::look_at(NearFace& face) const noexcept
+{
+    if (face.stand == stand_)
+    {
+        return;
+    }
+    const ObjectPose& pose = *surfaces_[face.surface].pose;
+    const ClosestPoint closest = closest_point_on_triangle(
+        to_model(pose, center_m_ + place_), to_triangle(face.triangle->corners_m));
+    const double length = std::sqrt(closest.distance_sq);
+    face.normal = length > 0.0 ? Vec3(pose.rotation * (closest.gap * (-1.0 / length))) : fallback_;
+    face.offset_m = length * pose.scale - face.normal.dot(place_);
+    face.stand = stand_;
+}
+
+bool Vicinity::is_within(std::uint32_t face, double distance_m) noexcept
+{
+    NearFace& near = faces_[face];
+    if (bound(near, place_) > distance_m)
+    {
+        return false;
+    }
+    look_at(near);
+    return bound(near, place_) <= distance_m;
+}
+
+HalfSpace<3> Vicinity::half_space(std::uint32_t face, double radius_m) noexcept
+{
+    NearFace& near = faces_[face];
+    look_at(near);
+    return {near.normal, radius_m - bound(near, place_)};
+}
+
+std::optional<std::uint32_t> Vicinity::find_entered(const Vec3& motion, double radius_m) noexcept
+{
+    const Vec3 place = place_ + motion;
+    const double least = radius_m * (1.0 - kContactTolerance);
+    double deepest = least;
+    std::optional<std::uint32_t> entered;
+    for (std::uint32_t i = 0; i < size(); ++i)
+    {
+        NearFace& face = faces_[i];
+        if (bound(face, place) >= least)
+        {
+            continue;
+        }
+        look_at(face);
+        const double seen = bound(face, place);
+        if (seen < deepest)
+        {
+            deepest = seen;
+            entered = i;
+        }
+    }
+    return entered;
+}
+
+double Vicinity::free_share(const Vec3& motion, double radius_m) const noexcept
+{
+    const double least = radius_m * (1.0 - kContactTolerance);
+    double share = 1.0;
+    for (const NearFace& face : faces_)
+    {
+        const double here = bound(face, place_);
+        const double there = bound(face, place_ + motion);
+        if (there < least && there < here)
+        {
+            share = std::min(share, std::max(0.0, here - radius_m) / (here - there));
+        }
+    }
+    return share;
 }
 
 } // namespace tactus

@@ -219,6 +219,7 @@ FrameOutput Frame::run(std::span<const ToolState> tools, std::span<const ObjectP
     faults_ = FrameFault::none;
     last_budgets_ = budgets;
     read_tools(tools);
+    carry_proxies(poses);
     place_pairs(poses, budgets);
     load(budgets);
     mark(Stage::load);
@@ -285,6 +286,18 @@ void Frame::read_tools(std::span<const ToolState> tools) noexcept
     }
 }
 
+/// Before anything is asked at the proxies' places.
+void Frame::carry_proxies(std::span<const ObjectPose> poses) noexcept
+{
+    const std::span<const ObjectPose> before{last_poses_.data(), poses.size()};
+    for (std::uint32_t tool = 0; tool < proxies_.size() && has_poses_; ++tool)
+    {
+        proxies_[tool].carry(before, poses, elapsed_s_[tool]);
+    }
+    std::ranges::copy(poses, last_poses_.begin());
+    has_poses_ = true;
+}
+
 /// Only a point's tool is held back by a surface as yet; others are where the hand has them.
 bool Frame::has_proxy(std::uint32_t tool) const noexcept
 {
@@ -303,7 +316,7 @@ double Frame::reach_of(std::uint32_t tool) const noexcept
     const double way =
         has_proxy(tool) ? (goals_[tool] - proxies_[tool].position_m()).norm() : ways_m_[tool];
     const double most = spec.speed_max_m_per_s * elapsed_s_[tool];
-    return spec.radius_m * (1.0 + kReachMargin) + std::min(way, most);
+    return proxies_[tool].radius_m() * (1.0 + kReachMargin) + std::min(way, most);
 }
 
 /// How far a tool without contact comes in kApproachTime_s.
@@ -568,15 +581,18 @@ void Frame::respond(std::span<const ObjectPose> poses) noexcept
             const ScenePair& pair = scene_.pairs()[i];
             if (pair.tool == tool)
             {
-                placed.push_back({&poses[pair.object], &surfaces_[i]});
+                placed.push_back(
+                    {&poses[pair.object], &surfaces_[i], &scene_.objects()[pair.object].material,
+                     static_cast<double>(models_[model_of(pair).value]->header.quantum_m())});
             }
         }
         ToolOutput& output = tool_outputs_[tool];
-        output = has_proxy(tool)
-                     ? proxies_[tool].respond(goals_[tool], placed.view(), elapsed_s_[tool])
-                     : follow(tool, placed.view());
+        const ProxyGoal goal{goals_[tool], goal_velocities_m_per_s_[tool], elapsed_s_[tool]};
+        output = has_proxy(tool) ? proxies_[tool].respond(goal, placed.view())
+                                 : follow(tool, placed.view());
         output.force_n *= sample_watches_[tool].trust(output, scene_.tools()[tool], goals_[tool]);
         faults_ |= output.frozen ? FrameFault::proxy_frozen : FrameFault::none;
+        faults_ |= output.squeezed ? FrameFault::proxy_squeezed : FrameFault::none;
     }
 }
 

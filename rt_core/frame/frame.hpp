@@ -87,6 +87,13 @@ public:
     /// result.
     void rehearse() noexcept TACTUS_NONBLOCKING;
 
+    /// The places that a tool's proxy went by in the last frame, in straight lines, the first and
+    /// the last included; until the next run. Empty for a tool without a proxy.
+    [[nodiscard]] std::span<const Vec3> proxy_path_m(std::uint32_t tool) const noexcept
+    {
+        return proxies_[tool].path_m();
+    }
+
     /// The transport thread's parts of a model: its inbox, linker and slots.
     [[nodiscard]] Model& model(ModelId id) noexcept { return *models_[id.value]; }
     [[nodiscard]] const Model& model(ModelId id) const noexcept { return *models_[id.value]; }
@@ -107,6 +114,7 @@ private:
     [[nodiscard]] static std::optional<FrameRefusal> check(const FrameSetup& setup) noexcept;
 
     void read_tools(std::span<const ToolState> tools) noexcept;
+    void carry_proxies(std::span<const ObjectPose> poses) noexcept;
     void place_pairs(std::span<const ObjectPose> poses, const Budgets& budgets) noexcept;
     void load(const Budgets& budgets) noexcept;
     void refine(const Budgets& budgets) noexcept;
@@ -141,6 +149,8 @@ private:
     std::uint32_t frame_{ChunkCache::kFirstFrame};
 
     StaticVector<Proxy, kMaxTools> proxies_;
+    std::array<ObjectPose, kMaxObjects> last_poses_{}; ///< If has_poses_.
+    bool has_poses_{false};
     std::array<Vec3, kMaxTools> goals_{};
     std::array<Mat3, kMaxTools> rotations_{};
     /// How far the tool's farthest point went since the last frame.

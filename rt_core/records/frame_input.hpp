@@ -9,6 +9,7 @@
 #include "rt_core/spm/ids.hpp"
 
 #include <cstdint>
+#include <limits>
 
 namespace tactus
 {
@@ -45,10 +46,21 @@ struct ObjectPose
     std::uint32_t revision{0}; ///< Of the model that the pose was made for.
 };
 
-/// Which model an object shows; fixed when the frame is made.
+/// How an object feels to a tool that touches it.
+struct Material
+{
+    /// The tool's or this, whichever is softer; > 0.
+    double stiffness_n_per_m{std::numeric_limits<double>::infinity()};
+    double static_friction{0.0};   ///< Coulomb's coefficient while the tool sticks; >= 0.
+    double dynamic_friction{0.0};  ///< While it slides; at most the static one.
+    double damping_n_s_per_m{0.0}; ///< Of the motion across the surface, in touch; >= 0.
+};
+
+/// Which model an object shows, and how it feels; fixed when the frame is made.
 struct ObjectSpec
 {
     ModelId model{};
+    Material material{};
 };
 
 /// Where a tool's frame lies in the model's, the tool's in the world.

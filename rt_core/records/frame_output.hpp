@@ -21,7 +21,8 @@ struct ToolOutput
     Vec3 force_n{0.0, 0.0, 0.0};
     Vec3 proxy_m{0.0, 0.0, 0.0}; ///< Centre of the tool as the surface lets it be.
     bool in_contact{false};
-    bool frozen{false}; ///< The proxy waits for data; the force fades.
+    bool frozen{false};   ///< The proxy waits for data; the force fades.
+    bool squeezed{false}; ///< Objects leave the tool no room; the force fades.
 };
 
 /// What one pair of tool and object got. World frame, metres: the model's distances times the

@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
+#include <span>
 
 namespace tactus::test
 {
@@ -33,17 +35,25 @@ ToolSpec ball_tool()
 class ProxyRig
 {
 public:
-    ProxyRig(TriangleList list, const Vec3& start, const ObjectPose& object_pose = {})
-        : triangles(std::move(list)), pose(object_pose), sut(ball_tool())
+    ProxyRig(TriangleList list, const Vec3& start, const ObjectPose& object_pose = {},
+             const ToolSpec& tool = ball_tool())
+        : triangles(std::move(list)), pose(object_pose), sut(tool)
     {
         sut.start_at(start);
     }
 
-    ToolOutput step(const Vec3& goal)
+    ToolOutput step(const Vec3& goal, const Vec3& velocity = Vec3(0, 0, 0))
     {
         const auto surface = surface_of(triangles, to_model(pose, sut.position_m()), certified);
-        const PlacedSurface placed{&pose, surface.get()};
-        return sut.respond(goal, {&placed, 1}, kPeriod_s);
+        const PlacedSurface placed{&pose, surface.get(), &material, quantum};
+        return sut.respond({goal, velocity, kPeriod_s}, {&placed, 1});
+    }
+    /// The object moves first.
+    ToolOutput step(const Vec3& goal, const ObjectPose& now)
+    {
+        sut.carry({&pose, 1}, {&now, 1}, kPeriod_s);
+        pose = now;
+        return step(goal);
     }
     ToolOutput settle(const Vec3& goal, int frames = 200)
     {
@@ -54,6 +64,19 @@ public:
         }
         return output;
     }
+    /// The surface's point that is nearest.
+    [[nodiscard]] Vec3 nearest(const Vec3& point) const
+    {
+        ClosestPoint best;
+        best.distance_sq = std::numeric_limits<double>::infinity();
+        for (const auto& corners : triangles)
+        {
+            const ClosestPoint closest =
+                closest_point_on_triangle(to_model(pose, point), to_triangle(corners));
+            best = closest.distance_sq < best.distance_sq ? closest : best;
+        }
+        return to_world(pose, best.point);
+    }
     [[nodiscard]] double clearance() const
     {
         return distance_to(triangles, to_model(pose, sut.position_m())) * pose.scale;
@@ -62,8 +85,16 @@ public:
     TriangleList triangles;
     ObjectPose pose;
     Proxy sut;
+    Material material;
+    double quantum{1e-6};
     double certified{0.05};
 };
+
+/// The cosine of the angle between two forces.
+double cosine(const Vec3& a, const Vec3& b)
+{
+    return a.dot(b) / (a.norm() * b.norm());
+}
 
 void expect_vector(const Vec3& is, const Vec3& should, double tolerance)
 {
@@ -90,7 +121,7 @@ TEST(Proxy, follows_its_goal_in_free_flight_without_a_force)
     for (int i = 0; i < 100; ++i)
     {
         const Vec3 goal = random.in_cube(1.0);
-        const ToolOutput output = sut.respond(goal, {}, kPeriod_s);
+        const ToolOutput output = sut.respond({goal, Vec3(0, 0, 0), kPeriod_s}, {});
         ASSERT_EQ(output.force_n, Vec3(0, 0, 0));
         ASSERT_FALSE(output.in_contact);
         ASSERT_FALSE(output.frozen);
@@ -155,7 +186,7 @@ TEST(Proxy, never_passes_a_plane_however_fast_or_deep_the_goal_is)
     for (int i = 0; i < 3'000; ++i)
     {
         rig.step({random.between(-0.5, 0.5), random.between(-0.5, 0.5), random.between(-0.3, 0.1)});
-        ASSERT_GE(rig.sut.position_m().z(), kRadius * (1.0 - 2e-4)) << i;
+        ASSERT_GE(rig.sut.position_m().z(), kRadius * (1.0 - 2e-6)) << i;
     }
 }
 
@@ -170,7 +201,7 @@ TEST(Proxy, goes_round_a_convex_edge_and_never_into_the_cube)
         goal = i % 500 == 0 ? random.in_cube(0.09) : Vec3(goal + random.in_cube(0.004));
         goal = goal.cwiseMax(-0.1).cwiseMin(0.1);
         const ToolOutput output = rig.step(goal);
-        ASSERT_GE(rig.clearance(), kRadius * (1.0 - 2e-4)) << "frame " << i;
+        ASSERT_GE(rig.clearance(), kRadius * (1.0 - 2e-6)) << "frame " << i;
         ASSERT_GT(rig.sut.position_m().cwiseAbs().maxCoeff(), 0.05) << "inside at frame " << i;
         ASSERT_LE(output.force_n.norm(), 8.0 + 1e-9);
         ASSERT_TRUE(output.force_n.allFinite());
@@ -197,7 +228,7 @@ TEST(Proxy, does_not_pass_a_concave_corner)
     {
         const Vec3 goal = Vec3(0.02, 0.02, 0.02) + random.in_cube(i % 100 == 0 ? 0.3 : 0.06);
         rig.step(goal);
-        ASSERT_GE(rig.sut.position_m().minCoeff(), kRadius * (1.0 - 2e-4)) << "frame " << i;
+        ASSERT_GE(rig.sut.position_m().minCoeff(), kRadius * (1.0 - 2e-6)) << "frame " << i;
     }
 }
 
@@ -319,6 +350,7 @@ TEST(Proxy, two_objects_hold_it_together)
     TriangleList wall;
     add_square(wall, {0, -1, -1}, {0, 1, -1}, {0, 1, 1}, {0, -1, 1});
     const ObjectPose pose;
+    const Material material;
     Proxy sut(ball_tool());
     sut.start_at(Vec3(0.05, 0, 0.05));
     ToolOutput output;
@@ -326,12 +358,274 @@ TEST(Proxy, two_objects_hold_it_together)
     {
         const auto a = surface_of(floor, sut.position_m(), 0.06);
         const auto b = surface_of(wall, sut.position_m(), 0.06);
-        const std::array<PlacedSurface, 2> placed{{{&pose, a.get()}, {&pose, b.get()}}};
-        output = sut.respond(Vec3(0.004, 0, 0.006), placed, kPeriod_s);
-        ASSERT_GE(sut.position_m().x(), kRadius * (1.0 - 2e-4));
-        ASSERT_GE(sut.position_m().z(), kRadius * (1.0 - 2e-4));
+        const std::array<PlacedSurface, 2> placed{
+            {{&pose, a.get(), &material, 1e-6}, {&pose, b.get(), &material, 1e-6}}};
+        output = sut.respond({Vec3(0.004, 0, 0.006), Vec3(0, 0, 0), kPeriod_s}, placed);
+        ASSERT_GE(sut.position_m().x(), kRadius * (1.0 - 2e-6));
+        ASSERT_GE(sut.position_m().z(), kRadius * (1.0 - 2e-6));
     }
     EXPECT_LT((output.proxy_m - Vec3(kRadius, 0, kRadius)).norm(), 0.1 * kRadius);
+}
+
+TEST(Proxy, rests_in_a_concave_corner_within_one_frame)
+{
+    ProxyRig rig(room_corner(), Vec3(0.03, 0.025, 0.02));
+    const Vec3 goal(0.002, 0.003, 0.001);
+
+    const ToolOutput output = rig.step(goal);
+
+    const Vec3 corner(kRadius, kRadius, kRadius);
+    EXPECT_TRUE(output.in_contact);
+    expect_vector(output.proxy_m, corner, 3e-4 * kRadius);
+    expect_vector(output.force_n, kStiffness * (corner - goal), kStiffness * 3e-4 * kRadius);
+}
+
+TEST(Proxy, leaves_a_corner_along_the_edge_that_still_holds_it)
+{
+    ProxyRig rig(room_corner(), Vec3(0.05, 0.04, 0.06));
+    rig.settle(Vec3(0.002, 0.003, 0.001));
+
+    const ToolOutput output = rig.settle(Vec3(0.002, 0.003, 0.06), 100);
+
+    expect_vector(output.proxy_m, Vec3(kRadius, kRadius, 0.06), 1e-3 * kRadius);
+    EXPECT_NEAR(output.force_n.z(), 0.0, 1e-3);
+    EXPECT_NEAR(output.force_n.x(), kStiffness * 0.008, 1e-2);
+    EXPECT_NEAR(output.force_n.y(), kStiffness * 0.007, 1e-2);
+}
+
+TEST(Proxy, every_step_of_its_path_is_free)
+{
+    Random random(75);
+    ProxyRig rig(cube(0.05), Vec3(0.0, 0.0, 0.08));
+    for (int i = 0; i < 2'000; ++i)
+    {
+        const Vec3 before = rig.sut.position_m();
+        rig.step(random.in_cube(0.09));
+        const std::span<const Vec3> path = rig.sut.path_m();
+        ASSERT_EQ(path.front(), before);
+        ASSERT_EQ(path.back(), rig.sut.position_m());
+        for (std::size_t k = 1; k < path.size(); ++k)
+        {
+            for (int share = 0; share <= 16; ++share)
+            {
+                const Vec3 at = path[k - 1] + (path[k] - path[k - 1]) * (share / 16.0);
+                ASSERT_GE(distance_to(rig.triangles, at), kRadius * (1.0 - 2e-6)) << i;
+            }
+        }
+    }
+}
+
+TEST(Proxy, a_tool_without_a_radius_stays_a_skin_away)
+{
+    Random random(76);
+    ToolSpec point = ball_tool();
+    point.radius_m = 0.0;
+    ProxyRig rig(cube(0.05), Vec3(0.0, 0.0, 0.08), {}, point);
+    rig.quantum = 1e-6;
+    for (int i = 0; i < 2'000; ++i)
+    {
+        rig.step(random.in_cube(0.08));
+        ASSERT_GE(rig.clearance(), kPointSkin * rig.quantum * (1.0 - 1e-4)) << i;
+        ASSERT_GT(rig.sut.position_m().cwiseAbs().maxCoeff(), 0.05) << i;
+    }
+    const ToolOutput output = rig.settle(Vec3(0.0, 0.0, 0.049));
+    ASSERT_TRUE(output.in_contact);
+}
+
+TEST(Proxy, sticks_within_the_static_cone)
+{
+    ProxyRig rig(plane(), Vec3(0, 0, 0.02));
+    rig.material = {kStiffness, 0.5, 0.3, 0.0};
+    rig.settle(Vec3(0, 0, 0.006), 5);
+    const Vec3 stuck = rig.sut.position_m();
+
+    const Vec3 goal(0.0019, 0.0, 0.006); // 4 mm deep: the cone is 2 mm wide there.
+    const ToolOutput output = rig.settle(goal, 50);
+
+    EXPECT_EQ(output.proxy_m, stuck);
+    expect_vector(output.force_n, kStiffness * (stuck - goal), 1e-3);
+}
+
+TEST(Proxy, slides_behind_its_goal_by_the_dynamic_cone_and_sticks_again)
+{
+    ProxyRig rig(plane(), Vec3(0, 0, 0.02));
+    rig.material = {kStiffness, 0.5, 0.3, 0.0};
+    rig.settle(Vec3(0, 0, 0.006), 5);
+    ToolOutput output;
+    for (int i = 0; i <= 100; ++i)
+    {
+        output = rig.step(Vec3(0.0001 * i, 0.0, 0.006));
+    }
+    EXPECT_NEAR(output.proxy_m.x(), 0.01 - 0.3 * 0.004, 2e-3 * kRadius);
+    EXPECT_NEAR(output.force_n.x(), -0.3 * output.force_n.z(), 1e-2);
+    const Vec3 slid = output.proxy_m;
+
+    rig.settle(Vec3(0.01, 0.0, 0.006), 3);
+    EXPECT_NEAR((rig.sut.position_m() - slid).norm(), 0.0, 2e-4 * kRadius);
+    const Vec3 stuck = rig.sut.position_m();
+    output = rig.step(Vec3(0.0105, 0.0, 0.006)); // Within the static cone.
+
+    EXPECT_EQ(output.proxy_m, stuck);
+}
+
+TEST(Proxy, friction_rounds_a_ball_as_well)
+{
+    // A fan of thin faces: the bent top of a cylinder of radius 0.1 along y.
+    TriangleList list;
+    const auto on_top = [](int i, double y)
+    { return Vec3(0.1 * std::sin(0.01 * i), y, 0.1 * std::cos(0.01 * i)); };
+    for (int i = -60; i < 60; ++i)
+    {
+        add_square(list, on_top(i, -0.1), on_top(i + 1, -0.1), on_top(i + 1, 0.1), on_top(i, 0.1));
+    }
+    ProxyRig rig(list, Vec3(0, 0, 0.115));
+    rig.certified = 0.03;
+    rig.material = {kStiffness, 0.4, 0.4, 0.0};
+    rig.settle(Vec3(0, 0, 0.107), 5);
+    double sum = 0.0;
+    for (int i = 0; i <= 300; ++i)
+    {
+        const double angle = 0.001 * i;
+        const ToolOutput output = rig.step(0.107 * Vec3(std::sin(angle), 0.0, std::cos(angle)));
+        const Vec3 normal = (output.proxy_m - rig.nearest(output.proxy_m)).normalized();
+        const double across = output.force_n.dot(normal);
+        const double along = (output.force_n - across * normal).norm();
+        ASSERT_LE(along, 0.4 * across * (1.0 + 1e-9)) << i;
+        sum += i > 100 ? along / across : 0.0;
+    }
+    EXPECT_GT(sum / 200.0, 0.36); // Over an edge it rolls a little farther than on a face.
+}
+
+TEST(Proxy, the_softer_of_tool_and_object_pushes)
+{
+    ProxyRig rig(plane(), Vec3(0, 0, 0.02));
+    rig.material.stiffness_n_per_m = 0.2 * kStiffness;
+
+    EXPECT_NEAR(rig.settle(Vec3(0, 0, 0.006)).force_n.z(), 0.2 * kStiffness * 0.004, 1e-3);
+
+    rig.material.stiffness_n_per_m = 7.0 * kStiffness;
+    EXPECT_NEAR(rig.settle(Vec3(0, 0, 0.006)).force_n.z(), kStiffness * 0.004, 1e-3);
+}
+
+TEST(Proxy, damping_resists_the_way_in_and_never_pulls_on_the_way_out)
+{
+    ProxyRig rig(plane(), Vec3(0, 0, 0.02));
+    rig.material.damping_n_s_per_m = 2.0;
+    const Vec3 goal(0, 0, 0.008);
+    const double still = rig.settle(goal).force_n.z();
+
+    EXPECT_NEAR(rig.step(goal, Vec3(0, 0, -0.1)).force_n.z(), still + 0.2, 1e-9);
+    EXPECT_NEAR(rig.step(goal, Vec3(0.5, 0.2, 0)).force_n.z(), still, 1e-9);
+    EXPECT_NEAR(rig.step(goal, Vec3(0, 0, 0.1)).force_n.z(), still - 0.2, 1e-9);
+    EXPECT_NEAR(rig.step(goal, Vec3(0, 0, 10.0)).force_n.norm(), 0.0, 1e-9);
+}
+
+TEST(Proxy, an_object_that_moves_pushes_it_along)
+{
+    ProxyRig rig(plane(), Vec3(0, 0, 0.02));
+    rig.settle(Vec3(0, 0, 0.005));
+    ObjectPose pose;
+    for (int i = 0; i < 400; ++i)
+    {
+        pose.translation_m.z() += i < 200 ? 0.002 : -0.002; // 2 m/s, up and down again.
+        const ToolOutput output = rig.step(Vec3(0, 0, 0.005), pose);
+        ASSERT_FALSE(output.squeezed);
+        ASSERT_GE(rig.clearance(), kRadius * (1.0 - 1e-5)) << i;
+        ASSERT_GT(to_model(pose, output.proxy_m).z(), 0.0);
+    }
+    EXPECT_NEAR(rig.sut.position_m().z(), kRadius, 1e-3 * kRadius);
+}
+
+TEST(Proxy, an_object_that_would_run_over_it_takes_it_along)
+{
+    for (const double speed : {0.5, 5.0, 50.0})
+    {
+        ProxyRig rig(plane(), Vec3(0, 0, 0.1));
+        rig.certified = 0.2;
+        const Vec3 hand(0, 0, 0.1);
+        rig.step(hand);
+        ObjectPose pose;
+        for (int i = 0; i < 500; ++i)
+        {
+            pose.translation_m.z() += speed * kPeriod_s;
+            const ToolOutput output = rig.step(hand, pose);
+            ASSERT_FALSE(output.squeezed);
+            ASSERT_GE(to_model(pose, output.proxy_m).z(), kRadius * (1.0 - 1e-5))
+                << speed << " m/s, frame " << i;
+        }
+        EXPECT_TRUE(rig.sut.is_in_contact());
+    }
+}
+
+TEST(Proxy, friction_takes_it_along_with_an_object_that_slides)
+{
+    ProxyRig rig(plane(), Vec3(0, 0, 0.02));
+    rig.material = {kStiffness, 0.5, 0.3, 0.0};
+    const Vec3 hand(0, 0, 0.006);
+    rig.settle(hand, 5);
+    ObjectPose pose;
+    ToolOutput output;
+    for (int i = 0; i < 15; ++i)
+    {
+        pose.translation_m.x() += 0.0001;
+        output = rig.step(hand, pose);
+    }
+    EXPECT_NEAR(output.proxy_m.x(), 0.0015, 1e-9); // Within the static cone of 2 mm.
+    for (int i = 0; i < 100; ++i)
+    {
+        pose.translation_m.x() += 0.0001;
+        output = rig.step(hand, pose);
+    }
+    EXPECT_NEAR(output.proxy_m.x(), 0.3 * 0.004, 2e-3 * kRadius);
+    EXPECT_NEAR(output.force_n.x(), 0.3 * output.force_n.z(), 1e-2);
+}
+
+TEST(Proxy, squeezed_between_objects_says_so_and_fades)
+{
+    const TriangleList floor = plane();
+    const Material material;
+    Proxy sut(ball_tool());
+    const Vec3 hand(0, 0, 0.012);
+    sut.start_at(hand);
+    std::array<ObjectPose, 2> poses{};
+    poses[1].translation_m.z() = 0.03;
+    double before = 8.0;
+    int squeezed = 0;
+    for (int i = 0; i < 200; ++i)
+    {
+        std::array<ObjectPose, 2> now = poses;
+        now[1].translation_m.z() -= i < 120 ? 0.0002 : 0.0; // Down to 6 mm over the floor.
+        sut.carry(poses, now, kPeriod_s);
+        poses = now;
+        const auto a = surface_of(floor, to_model(poses[0], sut.position_m()), 0.06);
+        const auto b = surface_of(floor, to_model(poses[1], sut.position_m()), 0.06);
+        const std::array<PlacedSurface, 2> placed{
+            {{poses.data(), a.get(), &material, 1e-6}, {&poses[1], b.get(), &material, 1e-6}}};
+        const ToolOutput output = sut.respond({hand, Vec3(0, 0, 0), kPeriod_s}, placed);
+        ASSERT_TRUE(output.proxy_m.allFinite());
+        ASSERT_EQ(output.squeezed, poses[1].translation_m.z() < 2.0 * kRadius * (1.0 - 1e-5))
+            << "gap " << poses[1].translation_m.z();
+        if (output.squeezed)
+        {
+            ASSERT_LE(output.force_n.norm(), before + 1e-12) << i;
+            before = output.force_n.norm();
+            ++squeezed;
+        }
+    }
+    EXPECT_GT(squeezed, 100);
+    EXPECT_EQ(before, 0.0);
+}
+
+TEST(Proxy, a_pull_across_a_frozen_surface_does_not_turn_the_force)
+{
+    ProxyRig rig(plane(), Vec3(0, 0, 0.02));
+    rig.settle(Vec3(0, 0, 0.002));
+    rig.certified = 0.0;
+
+    const ToolOutput output = rig.step(Vec3(0.05, 0.02, 0.002));
+
+    ASSERT_GT(output.force_n.norm(), 0.1);
+    EXPECT_NEAR(cosine(output.force_n, Vec3(0, 0, 1)), 1.0, 1e-9);
 }
 
 } // namespace tactus::test
