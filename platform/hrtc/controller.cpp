@@ -98,7 +98,7 @@ std::optional<ControllerError> Controller::lay_out_pools(const Options& options)
 {
     for (std::size_t i = 0; i < models_.size(); ++i)
     {
-        objects_.push_back({ModelId{static_cast<std::uint32_t>(i)}});
+        objects_.push_back({ModelId{static_cast<std::uint32_t>(i)}, options.materials[i]});
     }
     setup_.objects = objects_;
     setup_.tools = tools_;

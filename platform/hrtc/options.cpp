@@ -20,6 +20,7 @@ namespace
 constexpr double kLargestPool_mib = 4'096.0;
 constexpr double kFrameBudgetMin_us = 10.0;
 constexpr double kFrameBudgetMax_us = 10'000.0;
+constexpr double kStiffest_n_per_m = 3'000.0;
 
 /// Reads all of `text` as a finite number.
 std::optional<double> parse_number(std::string_view text)
@@ -68,6 +69,30 @@ std::optional<Placement> parse_placement(const std::string& text)
     return in_range ? std::optional(placement) : std::nullopt;
 }
 
+/// "STIFFNESS[,STATIC[,DYNAMIC[,DAMPING]]]".
+std::optional<Material> parse_material(const std::string& text)
+{
+    const std::optional<std::vector<double>> numbers = parse_numbers(text);
+    if (!numbers || numbers->size() > 4)
+    {
+        return std::nullopt;
+    }
+    const auto number = [&numbers](std::size_t i, double otherwise)
+    { return i < numbers->size() ? (*numbers)[i] : otherwise; };
+    Material material;
+    material.stiffness_n_per_m = number(0, 0.0);
+    material.static_friction = number(1, 0.0);
+    material.dynamic_friction = number(2, material.static_friction);
+    material.damping_n_s_per_m = number(3, 0.0);
+    const bool in_range = material.stiffness_n_per_m >= 1.0 &&
+                          material.stiffness_n_per_m <= kStiffest_n_per_m &&
+                          material.dynamic_friction >= 0.0 &&
+                          material.dynamic_friction <= material.static_friction &&
+                          material.static_friction <= 3.0 && material.damping_n_s_per_m >= 0.0 &&
+                          material.damping_n_s_per_m <= 20.0;
+    return in_range ? std::optional(material) : std::nullopt;
+}
+
 /// "sphere:RADIUS_M".
 std::optional<double> parse_tool(std::string_view text)
 {
@@ -84,6 +109,7 @@ std::optional<double> parse_tool(std::string_view text)
 struct RawOptions
 {
     std::vector<std::string> places;
+    std::vector<std::string> materials;
     std::vector<std::string> tools;
     std::string device{"sim"};
     std::string transport{"dds"};
@@ -101,6 +127,12 @@ void declare(CLI::App& app, Options& options, RawOptions& raw)
     app.add_option("--place", raw.places,
                    "Where the model stands, one for each --model in order: X,Y,Z in m "
                    "[,RX,RY,RZ rotation vector in degrees [,SCALE]]")
+        ->expected(1)
+        ->take_all();
+    app.add_option("--material", raw.materials,
+                   "How the model feels, one for each --model in order: STIFFNESS in N/m, 1 to "
+                   "3000, the softer of this and --stiffness counts [,STATIC friction, 0 to 3 "
+                   "[,DYNAMIC friction, at most the static one [,DAMPING in N s/m, 0 to 20]]]")
         ->expected(1)
         ->take_all();
     app.add_option("--tool", raw.tools,
@@ -140,7 +172,7 @@ void declare(CLI::App& app, Options& options, RawOptions& raw)
         "--no-static", [&options] { options.static_when_it_fits = false; },
         "Refine locally also a model that fits the pools as a whole");
     app.add_option("--stiffness", options.stiffness_n_per_m, "Of the virtual wall, in N/m")
-        ->check(number_between(1.0, 3'000.0))
+        ->check(number_between(1.0, kStiffest_n_per_m))
         ->capture_default_str();
     app.add_option("--transport", raw.transport, "Where models come from")
         ->check(CLI::IsMember({"dds", "file"}))
@@ -192,33 +224,25 @@ std::string check_files(const CLI::App& app, const Options& options)
                : "";
 }
 
-/// What one option alone can't tell. Empty when all is well.
-std::string check_together(const CLI::App& app, Options& options, const RawOptions& raw)
+/// The models, and what is given for each of them. Empty when all is well.
+std::string check_objects(Options& options, const RawOptions& raw)
 {
-    if (const std::string fault = check_files(app, options); !fault.empty())
-    {
-        return fault;
-    }
-    if (!options.replay_path.empty())
-    {
-        return check_replay(app);
-    }
-    if (options.models.empty())
+    const std::size_t models = options.models.size();
+    if (models == 0)
     {
         return "--model is required";
     }
-    if (options.models.size() > kMaxObjects)
+    if (models > kMaxObjects)
     {
         return fmt::format("--model: at most {} models", kMaxObjects);
     }
-    if (raw.places.size() > options.models.size())
+    for (const auto& [name, given] : {std::pair("--place", raw.places.size()),
+                                      std::pair("--material", raw.materials.size())})
     {
-        return fmt::format("--place: {} given for {} models", raw.places.size(),
-                           options.models.size());
-    }
-    if (raw.tools.size() > kMaxTools)
-    {
-        return fmt::format("--tool: at most {} tools", kMaxTools);
+        if (given > models)
+        {
+            return fmt::format("{}: {} given for {} models", name, given, models);
+        }
     }
     for (const std::string& text : raw.places)
     {
@@ -231,7 +255,42 @@ std::string check_together(const CLI::App& app, Options& options, const RawOptio
         }
         options.placements.push_back(*placement);
     }
-    options.placements.resize(options.models.size());
+    options.placements.resize(models);
+    for (const std::string& text : raw.materials)
+    {
+        const std::optional<Material> material = parse_material(text);
+        if (!material)
+        {
+            return fmt::format("--material: '{}' is not STIFFNESS[,STATIC[,DYNAMIC[,DAMPING]]] "
+                               "with 1 to 3000 N/m, friction of 0 to 3, the dynamic one at most "
+                               "the static one, and 0 to 20 N s/m",
+                               printable(text));
+        }
+        options.materials.push_back(*material);
+    }
+    options.materials.resize(models);
+    return {};
+}
+
+/// What one option alone can't tell. Empty when all is well.
+std::string check_together(const CLI::App& app, Options& options, const RawOptions& raw)
+{
+    if (const std::string fault = check_files(app, options); !fault.empty())
+    {
+        return fault;
+    }
+    if (!options.replay_path.empty())
+    {
+        return check_replay(app);
+    }
+    if (const std::string fault = check_objects(options, raw); !fault.empty())
+    {
+        return fault;
+    }
+    if (raw.tools.size() > kMaxTools)
+    {
+        return fmt::format("--tool: at most {} tools", kMaxTools);
+    }
     for (const std::string& text : raw.tools)
     {
         const std::optional<double> radius = parse_tool(text);

@@ -4,6 +4,7 @@
 
 #include "platform/hrtc/placement.hpp"
 #include "platform/rt_thread.hpp"
+#include "rt_core/records/frame_input.hpp"
 #include "transport/model_name.hpp"
 
 #include <cstdint>
@@ -26,6 +27,7 @@ struct Options
 {
     std::vector<std::string> models;   ///< NAME[@HASH], or paths with the file transport.
     std::vector<Placement> placements; ///< One a model.
+    std::vector<Material> materials;   ///< One a model.
     std::vector<double> tool_radii_m;  ///< Empty: one tool of 1 % of the first model's diagonal.
     TransportKind transport{TransportKind::dds};
     std::uint32_t domain{0};

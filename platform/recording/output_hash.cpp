@@ -57,6 +57,7 @@ std::uint64_t hash_tools(std::span<const ToolOutput> tools) noexcept
         hash.add(tool.proxy_m);
         hash.add(std::uint64_t{tool.in_contact});
         hash.add(std::uint64_t{tool.frozen});
+        hash.add(std::uint64_t{tool.squeezed});
     }
     return hash.value();
 }

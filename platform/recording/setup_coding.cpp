@@ -7,6 +7,7 @@
 #include "rt_core/frame/frame.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace tactus
 {
@@ -86,18 +87,40 @@ Fault parse_tools(ByteReader& reader, std::uint32_t tools, std::uint32_t models,
     return std::nullopt;
 }
 
+bool is_sound(const Material& material)
+{
+    constexpr double kStiffest = std::numeric_limits<double>::infinity();
+    return material.stiffness_n_per_m > 0.0 && material.stiffness_n_per_m <= kStiffest &&
+           is_within(material.static_friction, 0.0, 1e3) &&
+           is_within(material.dynamic_friction, 0.0, material.static_friction) &&
+           is_within(material.damping_n_s_per_m, 0.0, 1e9);
+}
+
 Fault parse_objects(ByteReader& reader, std::uint32_t objects, std::uint32_t models,
                     RecordedSetup& setup)
 {
     for (std::uint32_t i = 0; i < objects; ++i)
     {
-        setup.objects.push_back({ModelId{reader.read<std::uint32_t>()}});
-        if (setup.objects.back().model.value >= models)
+        ObjectSpec object;
+        object.model = ModelId{reader.read<std::uint32_t>()};
+        Material& material = object.material;
+        for (double* const value : {&material.stiffness_n_per_m, &material.static_friction,
+                                    &material.dynamic_friction, &material.damping_n_s_per_m})
+        {
+            *value = reader.read<double>();
+        }
+        if (object.model.value >= models)
         {
             return "object " + std::to_string(i) + " names model " +
-                   std::to_string(setup.objects.back().model.value) + " of " +
-                   std::to_string(models);
+                   std::to_string(object.model.value) + " of " + std::to_string(models);
         }
+        if (!is_sound(material))
+        {
+            return "object " + std::to_string(i) +
+                   " is not of more than 0 N/m, static friction 0 to 1000, dynamic friction 0 to "
+                   "the static one, damping 0 to 1e9 N s/m";
+        }
+        setup.objects.push_back(object);
     }
     return std::nullopt;
 }
@@ -143,6 +166,10 @@ std::vector<std::byte> code_setup(const RecordedSetup& setup)
     for (const ObjectSpec& object : setup.objects)
     {
         append(bytes, object.model.value);
+        append(bytes, object.material.stiffness_n_per_m);
+        append(bytes, object.material.static_friction);
+        append(bytes, object.material.dynamic_friction);
+        append(bytes, object.material.damping_n_s_per_m);
     }
     append_name(bytes, setup.compiler);
     append_name(bytes, setup.architecture);

@@ -46,7 +46,7 @@ std::vector<Part> parts()
         {&OutputHashes::tools,
          {tool([](auto& t) { t.force_n.x() = 1.0; }), tool([](auto& t) { t.force_n.z() = -0.0; }),
           tool([](auto& t) { t.proxy_m.y() = 1.0; }), tool([](auto& t) { t.in_contact = true; }),
-          tool([](auto& t) { t.frozen = true; })}},
+          tool([](auto& t) { t.frozen = true; }), tool([](auto& t) { t.squeezed = true; })}},
         {&OutputHashes::pairs,
          {pair([](auto& p) { p.tool = 1; }), pair([](auto& p) { p.object = 1; }),
           pair([](auto& p) { p.kind = AnswerKind::stale; }),

@@ -119,6 +119,10 @@ TEST(RecordingFile, gives_back_what_was_written)
     const RecordedSetup& setup = sut.value().setup();
     EXPECT_EQ(setup.tools[0].stiffness_n_per_m, 500.0);
     EXPECT_EQ(setup.objects[0].model.value, 0U);
+    EXPECT_EQ(setup.objects[0].material.stiffness_n_per_m, 250.0);
+    EXPECT_EQ(setup.objects[0].material.static_friction, 0.5);
+    EXPECT_EQ(setup.objects[0].material.dynamic_friction, 0.25);
+    EXPECT_EQ(setup.objects[0].material.damping_n_s_per_m, 1.5);
     EXPECT_EQ(setup.models[0].header, model().header);
     EXPECT_EQ(setup.models[0].base, model().base);
     EXPECT_EQ(setup.models[0].capacities.pages, 4U);
@@ -179,8 +183,8 @@ TEST(RecordingFile, is_refused_when_something_follows_it)
 TEST(RecordingFile, is_refused_when_it_is_of_another_kind_or_version)
 {
     std::vector<std::byte> bytes = example();
-    bytes[8] = std::byte{2};
-    expect_refusal(bytes, "at byte 8: format version 2 is unknown; this program reads 1");
+    bytes[8] = std::byte{3};
+    expect_refusal(bytes, "at byte 8: format version 3 is unknown; this program reads 2");
     bytes[3] = std::byte{'X'};
     expect_refusal(bytes, "is not a Tactus recording");
     bytes = example();
@@ -224,6 +228,7 @@ TEST(RecordingFile, is_refused_when_a_value_is_out_of_its_range)
     constexpr std::size_t kTool = 20;
     constexpr std::size_t kCore = kTool + 33;
     constexpr std::size_t kObject = kCore + 1;
+    constexpr std::size_t kNames = kObject + 36;
     expect_refusal(with_bytes(kSetup, 0, {0, 0, 0, 0, 0, 0, 0, 0}), "the period is 0 ns; 1 to");
     expect_refusal(with_bytes(kSetup, 16, {2}), "the static mode is 2; 0 and 1 are allowed");
     expect_refusal(with_bytes(kSetup, 17, {0}), "0 tools, 1 objects and 1 models; 1 to 4");
@@ -234,6 +239,13 @@ TEST(RecordingFile, is_refused_when_a_value_is_out_of_its_range)
     expect_refusal(with_bytes(kSetup, kCore - 1, {2}), "tool 0 has an unknown core");
     expect_refusal(with_bytes(kSetup, kCore, {9}), "tool 0 has an unknown core");
     expect_refusal(with_bytes(kSetup, kObject, {1}), "object 0 names model 1 of 1");
+    for (const std::size_t value : {4U, 12U, 20U, 28U}) // NaN, then less than nothing.
+    {
+        const std::string refusal = "object 0 is not of more than 0 N/m";
+        expect_refusal(with_bytes(kSetup, kObject + value + 6, {0xF8, 0x7F}), refusal);
+        expect_refusal(with_bytes(kSetup, kObject + value + 6, {0xF0, 0xBF}), refusal);
+    }
+    expect_refusal(with_bytes(kSetup, kObject + 20 + 6, {0xE8, 0x3F}), "0 to the static one");
     expect_refusal(
         with_section(kSetup,
                      [](auto& payload)
@@ -245,11 +257,11 @@ TEST(RecordingFile, is_refused_when_a_value_is_out_of_its_range)
     expect_refusal(with_section(kSetup,
                                 [](auto& payload)
                                 {
-                                    payload[kObject + 4] = std::byte{64};
+                                    payload[kNames] = std::byte{64};
                                     payload.resize(payload.size() + 100, std::byte{'x'});
                                 }),
                    "63 printable characters");
-    expect_refusal(with_bytes(kSetup, kObject + 5, {0x1B}), "63 printable characters");
+    expect_refusal(with_bytes(kSetup, kNames + 1, {0x1B}), "63 printable characters");
     expect_refusal(with_bytes(kModel, 0, {0}), "a pool has 0 slots; 1 to");
     expect_refusal(with_bytes(kModel, 0, {0, 0, 0, 0x20}), "slots; 1 to");
     expect_refusal(with_bytes(kModel, 0, {0, 0, 0, 0x02}), "more than 4096 MiB");
