@@ -301,7 +301,7 @@ TEST(SurfaceQuery, more_triangles_than_fit_keep_the_nearest_and_shrink_the_certi
     for (int round = 0; round < 20; ++round)
     {
         const std::uint32_t count = kMaxLocalTriangles + (round == 0 ? 1U : random.below(300));
-        TreeRig rig({600, 800, 800});
+        TreeRig rig({1'400, 1'800, 1'800});
         fill(rig, random, face_styles()[3], count, true);
         const auto faces = rig.present();
         const Vec3 center = random_center(random);
