@@ -18,22 +18,32 @@ endif()
 
 # tactus_library(<name> SOURCES ... HEADERS ... LINK ...)
 # One target per room: explicit files, headers included from the repository root and each compiled
-# alone where CMAKE_VERIFY_INTERFACE_HEADER_SETS is on.
+# alone where CMAKE_VERIFY_INTERFACE_HEADER_SETS is on. PRECOMPILED headers of its own take the
+# place of the common ones (precompiled.cmake).
 function(tactus_library name)
-    cmake_parse_arguments(ARG "" "" "SOURCES;HEADERS;LINK;LINK_PRIVATE" ${ARGN})
+    cmake_parse_arguments(ARG "" "" "SOURCES;HEADERS;LINK;LINK_PRIVATE;PRECOMPILED" ${ARGN})
     add_library(${name} STATIC ${ARG_SOURCES})
     target_sources(${name} PUBLIC
         FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${ARG_HEADERS})
     target_link_libraries(${name} PUBLIC tactus_numerics ${ARG_LINK}
         PRIVATE $<BUILD_INTERFACE:tactus_warnings> ${ARG_LINK_PRIVATE})
+    if(ARG_PRECOMPILED)
+        target_precompile_headers(${name} PRIVATE ${ARG_PRECOMPILED})
+    else()
+        target_precompile_headers(${name} REUSE_FROM tactus_common_headers)
+    endif()
 endfunction()
 
-# tactus_program(<name> SOURCES ... LINK ...)
+# tactus_program(<name> [PRECOMPILED <target>] SOURCES ... LINK ...)
 # Calls into shared libraries are bound at start: bound lazily, the first memcpy of a frame would
 # run the dynamic linker, locks included.
 function(tactus_program name)
-    cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
+    cmake_parse_arguments(ARG "" "PRECOMPILED" "SOURCES;LINK" ${ARGN})
+    if(NOT ARG_PRECOMPILED)
+        set(ARG_PRECOMPILED tactus_common_headers)
+    endif()
     add_executable(${name} ${ARG_SOURCES})
+    target_precompile_headers(${name} REUSE_FROM ${ARG_PRECOMPILED})
     target_link_libraries(${name} PRIVATE $<BUILD_INTERFACE:tactus_warnings> ${ARG_LINK})
     target_link_options(${name} PRIVATE LINKER:-z,now)
     target_compile_definitions(${name} PRIVATE TACTUS_VERSION="${PROJECT_VERSION}")

@@ -15,7 +15,8 @@ Usage: bash cmake/setup.sh COMMAND [OPTIONS] [-- CTEST-OPTIONS]
 Commands:
   build     install the packages that are missing and build everything into build/release
   test      build, then run the tests; CTEST-OPTIONS after -- go to ctest, e.g. -- -R Arena, or
-            -- -L extended for the long runs, which are left out otherwise
+            -- -L extended for the long runs or -- -L other_builds for replays by other
+            compilers, which are both left out otherwise
   demo      build the programs, make a model, publish it over DDS on this machine and touch it
             for 10 s at 1 kHz; the report is written to build/demo/report.json
   packages  only install the packages that are missing
@@ -112,9 +113,9 @@ skipped_tests() {
         | sed -e 's/&lt;/</g' -e 's/&gt;/>/g' -e 's/&quot;/"/g' -e "s/&apos;/'/g" -e 's/&amp;/\&/g'
 }
 
-run_tests() { # run_tests CTEST-OPTION...: without options all but the long runs.
+run_tests() { # run_tests CTEST-OPTION...: without options all but long runs and other builds.
     local code=0 junit="$build/tests.xml"
-    (($# > 0)) || set -- --label-exclude '^extended$'
+    (($# > 0)) || set -- --label-exclude '^(extended|other_builds)$'
     rm -f "$junit"
     ctest --test-dir "$build" --output-on-failure --no-tests=error --parallel "$(nproc)" \
         --output-junit "$junit" "$@" || code=1
