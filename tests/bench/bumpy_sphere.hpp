@@ -14,7 +14,7 @@
 ///     f(x) = |x| - R (1 + a sin(m u) sin(m v) sin(m w)) = 0,   (u, v, w) = x / |x|,
 ///
 /// R = 50 mm, a = 0.02, m = 8. In metres, the sphere's centre at the origin. Everything holds
-/// within 5 mm of the surface on either side; its smallest radius of curvature is 14 mm.
+/// within 5 mm of the surface on either side; its radii of curvature are 20 mm at least.
 namespace tactus::bench
 {
 

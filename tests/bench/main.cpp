@@ -129,7 +129,9 @@ std::optional<std::string> wrong_trajectory(const CommandLine& line)
     const BenchOptions& options = line.options;
     if (options.trajectory.file.empty())
     {
-        return std::nullopt;
+        return options.trajectory.mesh.empty()
+                   ? std::nullopt
+                   : std::optional<std::string>("--traj: the name of a file must not be empty");
     }
     if (line.suite != "force")
     {
