@@ -139,8 +139,12 @@ Vec3 bumpy_force_n(const Vec3& device_m, double radius_m, double stiffness_n_per
 
 double Faceting::force_error_n(const Touch& touch) const
 {
-    const double turn_rad = normal_rad / (1.0 - curvature_per_m * (touch.radius_m + touch.depth_m));
-    return touch.stiffness_n_per_m * (distance_m + touch.depth_m * turn_rad);
+    return touch.stiffness_n_per_m * (distance_m + touch.depth_m * force_turn_rad(touch));
+}
+
+double Faceting::force_turn_rad(const Touch& touch) const
+{
+    return normal_rad / (1.0 - curvature_per_m * (touch.radius_m + touch.depth_m));
 }
 
 Faceting measure_faceting(const std::vector<test::Face>& faces,

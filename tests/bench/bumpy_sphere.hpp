@@ -67,6 +67,8 @@ struct Faceting
     /// p <= t / (1 - k (r + d)), to first order in t, and the force is off by at most
     /// stiffness x (h + d p).
     [[nodiscard]] double force_error_n(const Touch& touch) const;
+    /// p.
+    [[nodiscard]] double force_turn_rad(const Touch& touch) const;
 };
 /// Measures all faces at their corners, the middles of their edges and their centres; in the mesh's
 /// own frame, whose origin lies at `origin_m` of the surface's. Some 3 us a face.
