@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #include "tests/bench/frame_replay.hpp"
 
+#include "tests/bench/stage_timer.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,30 +17,6 @@ namespace
 
 /// How much faster than the slide the proxy may follow its goal.
 constexpr double kFollow = 1.5;
-
-/// Takes the time at the end of each stage.
-class StageTimer
-{
-public:
-    void begin() { last_ = BenchClock::now(); }
-    [[nodiscard]] StageMark mark() { return {&end_stage, this}; }
-    [[nodiscard]] double us(Stage stage) const { return us_[static_cast<std::size_t>(stage)]; }
-
-private:
-    // Reads a clock, and no more.
-    TACTUS_TRUSTED_BEGIN
-    static void end_stage(void* context, Stage stage) noexcept TACTUS_NONBLOCKING
-    {
-        StageTimer& timer = *static_cast<StageTimer*>(context);
-        const BenchClock::time_point now = BenchClock::now();
-        timer.us_[static_cast<std::size_t>(stage)] = microseconds(timer.last_, now);
-        timer.last_ = now;
-    }
-    TACTUS_TRUSTED_END
-
-    std::array<double, kStages> us_{};
-    BenchClock::time_point last_;
-};
 
 } // namespace
 

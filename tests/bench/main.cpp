@@ -5,7 +5,9 @@
 
 #include "host_tools/cli/command_line.hpp"
 #include "host_tools/mesh/atomic_file.hpp"
+#include "host_tools/mesh/prepare.hpp"
 #include "tests/bench/bench_report.hpp"
+#include "tests/bench/force_trajectory.hpp"
 #include "tests/bench/measuring.hpp"
 #include "tests/bench/suites.hpp"
 
@@ -32,7 +34,7 @@ struct CommandLine
 
 std::vector<Suite> all_suites()
 {
-    return {frame_suite(), encoder_suite(), table1_suite(), stability_suite()};
+    return {frame_suite(), force_suite(), encoder_suite(), table1_suite(), stability_suite()};
 }
 
 std::string suite_names()
@@ -55,6 +57,43 @@ std::optional<Suite> find_suite(const std::string& name)
         }
     }
     return std::nullopt;
+}
+
+/// What a user may call a unit of length.
+CLI::Validator unit_of_length()
+{
+    return CLI::Validator(
+        [](std::string& text)
+        {
+            return metres_per_unit(text) ? std::string()
+                                         : "'" + text + "' is no unit; allowed are mm, cm, m, in";
+        },
+        "mm, cm, m, in");
+}
+
+void declare_trajectory_options(CLI::App& app, TrajectoryOptions& options)
+{
+    CLI::Option* file = app.add_option(
+        "--traj", options.file,
+        "Suite force: replay this recording of positions and forces instead of the cases, and "
+        "compare the forces; with --mesh");
+    CLI::Option* mesh =
+        app.add_option("--mesh", options.mesh, "With --traj: the mesh that was touched");
+    file->needs(mesh);
+    const auto add = [&](const char* name, auto& value, const char* text)
+    { return app.add_option(name, value, text)->needs(file); };
+    mesh->needs(file);
+    add("--traj-unit", options.unit, "Unit of the recorded positions (default: mm)")
+        ->check(unit_of_length());
+    add("--mesh-unit", options.mesh_unit, "Unit of the mesh (default: mm)")
+        ->check(unit_of_length());
+    add("--traj-columns", options.columns,
+        "What the columns are: t, x, y, z, fx, fy, fz or fn for the force's amount alone; _ for "
+        "one to pass over, - before one of the other sign (default: t,x,y,z,fx,fy,fz)");
+    add("--proxy-radius", options.proxy_radius_mm, "With --traj: in mm (default: 0.5)")
+        ->check(number_between(kMinProxyRadius_mm, kMaxProxyRadius_mm));
+    add("--stiffness", options.stiffness_n_per_m, "With --traj: in N/m (default: 500)")
+        ->check(number_between(kMinStiffness_n_per_m, kMaxStiffness_n_per_m));
 }
 
 void declare_options(CLI::App& app, CommandLine& line)
@@ -81,6 +120,30 @@ void declare_options(CLI::App& app, CommandLine& line)
     app.add_flag("--all", line.all, "Print every row, not only those with a goal");
     app.add_flag("--check", line.check, "Leave with code 1 when a goal is not met");
     app.add_option("--json", line.json_path, "Write the rows to this file as JSON");
+    declare_trajectory_options(app, options.trajectory);
+}
+
+/// The same for --traj and what belongs to it.
+std::optional<std::string> wrong_trajectory(const CommandLine& line)
+{
+    const BenchOptions& options = line.options;
+    if (options.trajectory.file.empty())
+    {
+        return options.trajectory.mesh.empty()
+                   ? std::nullopt
+                   : std::optional<std::string>("--traj: the name of a file must not be empty");
+    }
+    if (line.suite != "force")
+    {
+        return "--traj: only the suite force has it";
+    }
+    if (!options.only.empty() || options.frames)
+    {
+        return std::string(options.frames ? "--frames" : "--only") +
+               ": not with --traj, which replays its file and no case";
+    }
+    const auto columns = TrajectoryColumns::parse(options.trajectory.columns);
+    return columns ? std::nullopt : std::optional("--traj-columns: " + columns.error().text);
 }
 
 /// Why the command line makes no sense; nothing when it does.
@@ -108,7 +171,7 @@ std::optional<std::string> wrong_usage(const CommandLine& line)
     {
         return fmt::format("--core {}: this process may not run there", line.options.core);
     }
-    return std::nullopt;
+    return wrong_trajectory(line);
 }
 
 /// Returns why the file could not be written.
@@ -143,12 +206,15 @@ int run(int argc, char** argv)
     }
     const RunFacts facts{PinnedCore(line.options.core).core(), line.options.quick};
     const Suite suite = *find_suite(line.suite);
+    const bool is_recorded = !line.options.trajectory.file.empty();
     Rows rows;
-    if (const auto failure = suite.run(line.options, rows))
+    if (const auto failure =
+            is_recorded ? compare_trajectory(line.options, rows) : suite.run(line.options, rows))
     {
-        return fail(app, *failure, kExitCriterionNotMet);
+        return fail(app, *failure, is_recorded ? kExitFailed : kExitCriterionNotMet);
     }
-    fmt::print("{}", line.all ? to_table(rows) : suite.to_table(rows));
+    const auto table = is_recorded ? to_columns : suite.to_table;
+    fmt::print("{}", line.all ? to_table(rows) : table(rows));
     fmt::print("{}\n", facts.core < 0 ? std::string("not held to one core: the system refuses")
                                       : fmt::format("measured on core {}", facts.core));
     if (!line.json_path.empty())

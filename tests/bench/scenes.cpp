@@ -48,7 +48,8 @@ std::string encoded_name(const std::string& name, const PreparedMesh& prepared)
     return name + '-' + hash_text(content_hash(std::as_bytes(std::span(all)))) + ".spm";
 }
 
-std::optional<SceneError> encode(const test::TestModel& model, const PreparedMesh& prepared)
+std::optional<SceneError> encode(const test::TestModel& model, const PreparedMesh& prepared,
+                                 std::uint32_t position_bits)
 {
     Progress progress("encode " + model.name, "faces");
     SimplifyOptions options;
@@ -65,6 +66,7 @@ std::optional<SceneError> encode(const test::TestModel& model, const PreparedMes
         return SceneError{model.name + ": " + simplified.error().text};
     }
     EncodeOptions encode_options;
+    encode_options.position_bits = position_bits;
     encode_options.base_faces = kBaseFaces;
     encode_options.threads = options.threads;
     const auto written = write_spm(model.path, prepared, simplified.value(), encode_options);
@@ -108,34 +110,60 @@ SceneStore::SceneStore(std::filesystem::path cache) : folder_(std::move(cache))
 
 Result<const Scene*, SceneError> SceneStore::get(const SceneSource& source)
 {
-    std::unique_ptr<Scene>& scene = scenes_[source.name];
-    if (scene)
+    if (const auto found = scenes_.find(source.name); found != scenes_.end())
     {
-        return scene.get();
+        return found->second.get();
     }
     const auto named = source_mesh(source);
     if (!named)
     {
         return named.error();
     }
-    const auto prepared = prepare_mesh(named.value().mesh, {});
+    auto made = make(named.value(), kMinPositionBits);
+    if (!made)
+    {
+        return made.error();
+    }
+    return (scenes_[source.name] = std::move(made).value()).get();
+}
+
+Result<const Scene*, SceneError> SceneStore::get(const NamedMesh& named,
+                                                 std::uint32_t position_bits)
+{
+    if (const auto found = scenes_.find(named.name); found != scenes_.end())
+    {
+        return found->second.get();
+    }
+    auto made = make(named, position_bits);
+    if (!made)
+    {
+        return made.error();
+    }
+    return (scenes_[named.name] = std::move(made).value()).get();
+}
+
+Result<std::unique_ptr<Scene>, SceneError> SceneStore::make(const NamedMesh& named,
+                                                            std::uint32_t position_bits) const
+{
+    PrepareOptions options;
+    options.position_bits = position_bits;
+    const auto prepared = prepare_mesh(named.mesh, options);
     if (!prepared)
     {
-        return SceneError{named.value().name + ": " + prepared.error().text};
+        return SceneError{named.name + ": " + prepared.error().text};
     }
     auto made = std::make_unique<Scene>();
-    made->model = described(named.value().name, prepared.value());
+    made->model = described(named.name, prepared.value());
     made->model.path = folder_ / encoded_name(made->model.name, prepared.value());
     if (!std::filesystem::exists(made->model.path))
     {
-        if (const auto failure = encode(made->model, prepared.value()))
+        if (const auto failure = encode(made->model, prepared.value(), position_bits))
         {
             return *failure;
         }
     }
     made->tree = std::make_unique<test::FaceTree>(made->model.faces);
-    scene = std::move(made);
-    return scene.get();
+    return made;
 }
 
 } // namespace tactus::bench

@@ -71,8 +71,14 @@ public:
     explicit SceneStore(std::filesystem::path cache);
 
     [[nodiscard]] Result<const Scene*, SceneError> get(const SceneSource& source);
+    /// The scene of this mesh, in metres, on a grid of so many bits; its name stands for both.
+    [[nodiscard]] Result<const Scene*, SceneError>
+    get(const NamedMesh& named, std::uint32_t position_bits = kMinPositionBits);
 
 private:
+    [[nodiscard]] Result<std::unique_ptr<Scene>, SceneError>
+    make(const NamedMesh& named, std::uint32_t position_bits) const;
+
     std::optional<test::TemporaryFolder> own_folder_; ///< Without a cache.
     std::filesystem::path folder_;
     std::map<std::string, std::unique_ptr<Scene>> scenes_;

@@ -17,6 +17,8 @@ constexpr std::uint32_t kUnlimited = std::numeric_limits<std::uint32_t>::max();
 /// Memory for a whole model: pages 100, faces and tree 110, tables and the usual shares the rest.
 constexpr std::size_t kBytesPerFace = 400;
 
+} // namespace
+
 test::RigOptions room_for_all(const Scene& scene)
 {
     test::RigOptions options;
@@ -25,15 +27,14 @@ test::RigOptions room_for_all(const Scene& scene)
     return options;
 }
 
-} // namespace
-
 StaticModel::StaticModel(const Scene& scene) : rig_(scene.model, room_for_all(scene)) {}
 
 Result<std::unique_ptr<StaticModel>, SceneError> StaticModel::make(const Scene& scene)
 {
     std::unique_ptr<StaticModel> made(new StaticModel(scene));
     load_everything(made->rig_);
-    if (!made->refine_fully() || made->model().forest.active_faces() != scene.model.faces.size() ||
+    if (!refine_fully(made->model()) ||
+        made->model().forest.active_faces() != scene.model.faces.size() ||
         !made->tree().is_complete())
     {
         return SceneError{scene.model.name + ": could not be refined to the source mesh"};
@@ -41,39 +42,39 @@ Result<std::unique_ptr<StaticModel>, SceneError> StaticModel::make(const Scene& 
     return made;
 }
 
-/// Splits every record, what it depends on first.
-bool StaticModel::refine_fully()
+// What a record depends on is split first.
+bool refine_fully(Model& model)
 {
     std::vector<RecordId> open;
-    for (std::uint32_t i = 0; i < model().header.counts().records; ++i)
+    for (std::uint32_t i = 0; i < model.header.counts().records; ++i)
     {
         open.push_back({i});
         while (!open.empty())
         {
             const RecordId id = open.back();
-            if (model().pages.is_refined(id))
+            if (model.pages.is_refined(id))
             {
                 open.pop_back();
                 continue;
             }
-            const VsplitRecord* record = model().pages.find_linked(id);
+            const VsplitRecord* record = model.pages.find_linked(id);
             if (record == nullptr)
             {
                 return false;
             }
-            if (const RecordId first = model().forest.missing_dependency(*record); !first.is_none())
+            if (const RecordId first = model.forest.missing_dependency(*record); !first.is_none())
             {
                 open.push_back(first);
                 continue;
             }
-            if (model().forest.split(id) != VertexForest::SplitOutcome::done)
+            if (model.forest.split(id) != VertexForest::SplitOutcome::done)
             {
                 return false;
             }
         }
     }
     FrameFault faults = FrameFault::none;
-    model().refit(faults);
+    model.refit(faults);
     return faults == FrameFault::none;
 }
 

@@ -15,6 +15,13 @@
 namespace tactus::bench
 {
 
+/// A rig with pools for all of a scene's model.
+[[nodiscard]] test::RigOptions room_for_all(const Scene& scene);
+
+/// Splits every record of a model whose chunks are all there. False when one can't be split or the
+/// tree has no room.
+[[nodiscard]] bool refine_fully(Model& model);
+
 /// A model whose pools hold all of it, refined to the source mesh: the tree that every query of a
 /// static model sees.
 class StaticModel
@@ -27,8 +34,6 @@ public:
 
 private:
     explicit StaticModel(const Scene& scene);
-
-    [[nodiscard]] bool refine_fully();
 
     test::FrameRig rig_;
 };

@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "tests/bench/force_rows.hpp"
+
+#include "tests/bench/cases.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <utility>
+
+namespace tactus::bench
+{
+
+namespace
+{
+
+constexpr const char* kForceTime50 = "force.p50";
+constexpr const char* kForceTime99 = "force.p99";
+constexpr const char* kFrameTime50 = "frame.p50";
+constexpr const char* kFrameTime99 = "frame.p99";
+constexpr const char* kAllocations = "allocations a call";
+constexpr const char* kError50 = "error.p50";
+constexpr const char* kError99 = "error.p99";
+constexpr const char* kErrorMax = "error.max";
+constexpr const char* kStep = "largest step";
+constexpr const char* kStuck = "stuck frames";
+constexpr const char* kAgainstCoarser = "error p99 by the coarser mesh's";
+
+struct Column
+{
+    const char* name;
+    std::array<const char*, 3> metrics; ///< Null: fewer.
+};
+constexpr std::array<Column, 7> kColumns{
+    {{"force p50 / p99 us", {kForceTime50, kForceTime99, nullptr}},
+     {"frame p50 / p99 us", {kFrameTime50, kFrameTime99, nullptr}},
+     {"allocations a call", {kAllocations, nullptr, nullptr}},
+     {"force error p50 / p99 / max N", {kError50, kError99, kErrorMax}},
+     {"largest force step N", {kStep, nullptr, nullptr}},
+     {"stuck frames", {kStuck, nullptr, nullptr}},
+     {"error p99 by the coarser mesh's", {kAgainstCoarser, nullptr, nullptr}}}};
+
+/// A line of the recorded table; not a number: not told.
+struct Recorded
+{
+    const char* sweep;
+    double p50_us, p99_us;
+    double allocations;
+    double error50_n, error99_n;
+    double step_n;
+};
+constexpr double kNotTold = std::numeric_limits<double>::quiet_NaN();
+constexpr std::array<Recorded, 6> kRecorded{
+    {{"82k, 0.02 m/s, 0.5 mm", 3.4, 6.9, 0.65, 0.070, 0.19, 0.25},
+     {"82k, 0.1 m/s, 0.5 mm", 4.9, 9.4, 0.99, 0.072, 0.28, 0.88},
+     {"82k, 0.3 m/s, 0.5 mm", 6.8, 49.0, 0.99, 0.54, 96.0, 51.0},
+     {"328k, 0.1 m/s, 0.5 mm", 10.0, 18.5, 0.93, 0.275, 0.77, 4.9},
+     {"1.3M, 0.1 m/s, 0.5 mm", 21.5, 50.0, 0.94, 0.201, 0.84, 2.7},
+     {"1.3M, 0.1 m/s, 2 mm", 664.0, 10'383.0, 0.98, kNotTold, kNotTold, 45.0}}};
+
+/// Counts whole, everything else with three digits.
+std::string number(double value)
+{
+    if (!std::isfinite(value))
+    {
+        return "none";
+    }
+    return value == std::round(value) ? fmt::format("{:.0f}", value) : fmt::format("{:.3g}", value);
+}
+
+std::string cell(const Row& row)
+{
+    const std::string text = row.is_met() ? number(row.value) : "**" + number(row.value) + "**";
+    return row.goal ? fmt::format("{} ({})", text, number(*row.goal)) : text;
+}
+
+bool same_line(const Row& a, const Row& b)
+{
+    return a.test_case == b.test_case && a.by == b.by;
+}
+
+std::string to_line(std::span<const Row> line)
+{
+    std::string text = fmt::format("| {} | {} |", line.front().test_case, line.front().by);
+    for (const Column& column : kColumns)
+    {
+        std::string cells;
+        for (const char* metric : column.metrics)
+        {
+            const auto row = std::ranges::find_if(
+                line, [&](const Row& one) { return metric != nullptr && one.metric == metric; });
+            if (row != line.end())
+            {
+                cells += (cells.empty() ? "" : " / ") + cell(*row);
+            }
+        }
+        text += " " + cells + (cells.empty() ? "|" : " |");
+    }
+    return text + "\n";
+}
+
+/// What is not a number is infinitely wrong.
+double length_of(const Vec3& difference)
+{
+    const double length = difference.norm();
+    return std::isfinite(length) ? length : std::numeric_limits<double>::infinity();
+}
+
+} // namespace
+
+ForceFigures measure_forces(const ForceTrace& trace, const std::vector<Vec3>& goals_m,
+                            const std::vector<Vec3>& rests_m, const Touch& touch, double lag_m)
+{
+    ForceFigures figures;
+    std::vector<double> errors_n;
+    for (std::size_t i = 0; i < trace.outputs.size(); ++i)
+    {
+        const ToolOutput& output = trace.outputs[i];
+        const Vec3 truth_n = touch.stiffness_n_per_m * (rests_m[i] - goals_m[i]);
+        errors_n.push_back(length_of(output.force_n - truth_n));
+        const bool is_stuck =
+            output.frozen || !output.in_contact || !((output.proxy_m - rests_m[i]).norm() <= lag_m);
+        figures.stuck += is_stuck ? 1U : 0U;
+        if (i > 0)
+        {
+            const Vec3 step_n = output.force_n - trace.outputs[i - 1].force_n;
+            figures.largest_step_n = std::max(figures.largest_step_n, length_of(step_n));
+        }
+    }
+    figures.error_n = spread_of(errors_n);
+    return figures;
+}
+
+void add_force_rows(CaseRows& rows, const ForceTrace& trace, const ForceFigures& figures,
+                    const ForceGoals& goals, std::optional<double> coarser_p99_n)
+{
+    const std::optional<double> law = goals.has_laws ? std::optional(0.0) : std::nullopt;
+    const Spread force_us = spread_of(trace.force_us.least());
+    const Spread frame_us = spread_of(trace.frame_us.least());
+    rows.add(kForceTime50, force_us.p50, "us");
+    rows.add(kForceTime99, force_us.p99, "us");
+    rows.add(kFrameTime50, frame_us.p50, "us");
+    rows.add(kFrameTime99, frame_us.p99, "us", goal_if(goals.frame_p99_us));
+    if (trace.allocations)
+    {
+        rows.add(kAllocations,
+                 static_cast<double>(*trace.allocations) /
+                     static_cast<double>(trace.outputs.size()),
+                 "", law);
+    }
+    rows.add(kError50, figures.error_n.p50, "N");
+    rows.add(kError99, figures.error_n.p99, "N", goal_if(goals.error_p99_n));
+    rows.add(kErrorMax, figures.error_n.max, "N", goal_if(goals.error_max_n));
+    rows.add(kStep, figures.largest_step_n, "N", goal_if(goals.step_n));
+    rows.add(kStuck, static_cast<double>(figures.stuck), "", law);
+    if (coarser_p99_n)
+    {
+        rows.add(kAgainstCoarser, figures.error_n.p99 / *coarser_p99_n, "x", 1.0);
+    }
+}
+
+void add_recorded_peer(Rows& rows)
+{
+    for (const Recorded& recorded : kRecorded)
+    {
+        Row common;
+        common.suite = "force";
+        common.part = "Sweeps";
+        common.test_case = recorded.sweep;
+        common.by = "CHAI3D 3.3, recorded elsewhere";
+        common.scene = "a bumpy sphere of its own";
+        CaseRows line(rows, common);
+        line.add(kFrameTime50, recorded.p50_us, "us");
+        line.add(kFrameTime99, recorded.p99_us, "us");
+        line.add(kAllocations, recorded.allocations, "");
+        line.add(kError50, recorded.error50_n, "N");
+        line.add(kError99, recorded.error99_n, "N");
+        line.add(kStep, recorded.step_n, "N");
+    }
+}
+
+std::string to_force_table(const Rows& rows)
+{
+    std::string text = "| triangles, tool speed, proxy | by |";
+    std::string rule = "| --- | --- |";
+    for (const Column& column : kColumns)
+    {
+        text += fmt::format(" {} |", column.name);
+        rule += " --- |";
+    }
+    text += "\n" + rule + "\n";
+    for (auto first = rows.begin(); first != rows.end();)
+    {
+        const auto end = std::find_if(first, rows.end(),
+                                      [&](const Row& row) { return !same_line(*first, row); });
+        text += to_line({first, end});
+        first = end;
+    }
+    return text;
+}
+
+} // namespace tactus::bench

@@ -1,0 +1,333 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+
+/// The suite `force`: forces on a surface where they are known, docs/benchmarks.md#force. A device
+/// sweeps round the bumpy sphere, held 1 mm below where the proxy's centre rests.
+
+#include "host_tools/shapes/shapes.hpp"
+#include "tests/bench/bench_report.hpp"
+#include "tests/bench/cases.hpp"
+#include "tests/bench/force_rows.hpp"
+#include "tests/bench/measuring.hpp"
+#include "tests/bench/suites.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <map>
+#include <utility>
+
+namespace tactus::bench
+{
+
+namespace
+{
+
+constexpr double kDepth_m = 1e-3;
+constexpr double kStiffness_n_per_m = 1'000.0;
+constexpr double kPeriod_s = 1e-3;
+/// The device's, for all sweeps alike; beyond the fastest, as the ways over bumps and edges are.
+constexpr double kSpeedMax_m_per_s = 1.5;
+/// So much that nothing is clamped: errors show in full.
+constexpr double kForceMax_n = 1'000.0;
+/// What a force may be off beside the mesh's own error, as a share of it.
+constexpr double kTolerance = 0.02;
+/// Goals in newtons hold up to this speed.
+constexpr double kGoalSpeed_m_per_s = 0.3;
+constexpr double kFrameGoal_us = 20.0; ///< 2 mm on the finest mesh.
+
+constexpr std::array<double, 4> kSpeeds_m_per_s{0.02, 0.1, 0.3, 1.0};
+constexpr std::array<double, 2> kRadii_m{0.5e-3, 2e-3};
+
+struct MeshCase
+{
+    const char* name;
+    When when;
+    std::uint32_t faces;
+    std::uint32_t position_bits;
+    double error_p99_n{kNoGoal};
+    bool has_goals{true};
+};
+/// On a grid of 16 bits, 2 um, the corners' rounding alone turns the faces of the finest mesh by
+/// some 10 mrad; with 20 bits by less than one.
+constexpr std::array<MeshCase, 6> kMeshes{{{"5k", When::always, 5'120, 16},
+                                           {"20k", When::always, 20'480, 16},
+                                           {"82k", When::always, 81'920, 16, 0.1},
+                                           {"328k", When::full_only, 327'680, 16},
+                                           {"1.3M", When::full_only, 1'310'720, 20, 0.03},
+                                           {"tiny", When::named_only, 1'280, 16, kNoGoal, false}}};
+constexpr const char* kFinest = "1.3M";
+constexpr const char* kUnits = "units";
+
+/// Error p99 of the last mesh's sweeps, by speed and radius.
+using CoarserErrors = std::map<std::pair<double, double>, double>;
+
+struct SweepContext
+{
+    const MeshCase& mesh;
+    const BenchOptions& options;
+    const Scene& scene;
+    const Faceting& faceting;
+    Rows& rows;
+    CoarserErrors& coarser;
+};
+
+NamedMesh bumpy_mesh(std::uint32_t faces, std::uint32_t bits, double scale)
+{
+    NamedMesh named{fmt::format("bumpy-sphere-{}", faces),
+                    make_shape(Shape::bumpy_sphere, faces).value()};
+    named.name += bits == kMinPositionBits ? "" : fmt::format("-{}bit", bits);
+    named.name += scale == 1.0 ? "" : fmt::format("-x{:.0f}", scale);
+    for (auto& position : named.mesh.positions)
+    {
+        std::ranges::transform(position, position.begin(), [scale](double x) { return scale * x; });
+    }
+    return named;
+}
+
+/// The points of a sweep in the frame of a scene that is `scale` times as large.
+std::vector<Vec3> in_model(const std::vector<Vec3>& points_m, const Scene& scene, double scale)
+{
+    const auto& origin = scene.model.origin_m;
+    std::vector<Vec3> moved;
+    std::ranges::transform(points_m, std::back_inserter(moved),
+                           [&](const Vec3& point) -> Vec3
+                           { return scale * point - Vec3(origin[0], origin[1], origin[2]); });
+    return moved;
+}
+
+std::vector<Vec3> counted(const std::vector<Vec3>& points_m, std::size_t lead_in)
+{
+    return {points_m.begin() + static_cast<std::ptrdiff_t>(lead_in), points_m.end()};
+}
+
+ForceRun make_run(const Scene& scene, const Sweep& sweep, const Touch& touch, double scale)
+{
+    ForceRun run{scene, {}, in_model(sweep.goals_m, scene, scale), sweep.lead_in};
+    run.tool.radius_m = scale * touch.radius_m;
+    run.tool.stiffness_n_per_m = touch.stiffness_n_per_m / scale;
+    run.tool.force_max_n = kForceMax_n;
+    run.tool.speed_max_m_per_s = scale * kSpeedMax_m_per_s;
+    return run;
+}
+
+ForceGoals goals_of(const SweepContext& context, const Touch& touch, double speed_m_per_s)
+{
+    if (!context.mesh.has_goals)
+    {
+        return {kNoGoal, kNoGoal, kNoGoal, kNoGoal, false};
+    }
+    const bool is_timed = context.mesh.name == std::string(kFinest) && touch.radius_m > 1e-3;
+    const double error_n = context.faceting.force_error_n(touch) + kTolerance * touch.force_n();
+    const double step_n = touch.stiffness_n_per_m * speed_m_per_s * kPeriod_s +
+                          touch.force_n() * context.faceting.dihedral_rad;
+    return {is_timed ? kFrameGoal_us : kNoGoal,
+            speed_m_per_s <= kGoalSpeed_m_per_s ? context.mesh.error_p99_n : kNoGoal, error_n,
+            step_n};
+}
+
+CaseFailure run_sweep(const SweepContext& context, double radius_m, double speed_m_per_s)
+{
+    const Touch touch{radius_m, kDepth_m, kStiffness_n_per_m};
+    const double step_m = speed_m_per_s * kPeriod_s;
+    const Sweep sweep = make_sweep(touch, step_m, context.options.frames_or(10'000, 2'000));
+    const ForceRun run = make_run(context.scene, sweep, touch, 1.0);
+    const auto trace = replay_forces(run, context.options.passes_or(5, 3));
+    if (!trace)
+    {
+        return trace.error().text;
+    }
+    const ForceGoals goals = goals_of(context, touch, speed_m_per_s);
+    // The ball may be one period behind the device, and off by what the mesh is.
+    const double lag_m = step_m + context.faceting.force_error_n(touch) / touch.stiffness_n_per_m +
+                         kTolerance * touch.depth_m;
+    const ForceFigures figures = measure_forces(
+        trace.value(), counted(run.goals_m, run.lead_in),
+        counted(in_model(sweep.rests_m, context.scene, 1.0), run.lead_in), touch, lag_m);
+    Row common;
+    common.suite = "force";
+    common.part = "Sweeps";
+    common.test_case =
+        fmt::format("{}, {} m/s, {} mm", context.mesh.name, speed_m_per_s, 1e3 * radius_m);
+    common.by = "Tactus";
+    common.scene = context.scene.model.name;
+    common.frames = trace.value().outputs.size();
+    common.hash = trace.value().hash;
+    CaseRows rows(context.rows, common);
+    const auto coarser = context.coarser.find({speed_m_per_s, radius_m});
+    const bool is_finer = context.mesh.has_goals && coarser != context.coarser.end();
+    add_force_rows(rows, trace.value(), figures, goals,
+                   is_finer ? std::optional(coarser->second) : std::nullopt);
+    context.coarser[{speed_m_per_s, radius_m}] = figures.error_n.p99;
+    return std::nullopt;
+}
+
+void add_mesh_rows(const SweepContext& context)
+{
+    Row common;
+    common.suite = "force";
+    common.part = "Meshes";
+    common.test_case = context.mesh.name;
+    common.scene = context.scene.model.name;
+    CaseRows rows(context.rows, common);
+    rows.add("faces", static_cast<double>(context.scene.model.faces.size()), "");
+    rows.add("position bits", context.mesh.position_bits, "");
+    rows.add("off the surface", 1e6 * context.faceting.distance_m, "um");
+    rows.add("turned", 1e3 * context.faceting.normal_rad, "mrad");
+    rows.add("largest dihedral", 1e3 * context.faceting.dihedral_rad, "mrad");
+    for (const double radius_m : kRadii_m)
+    {
+        rows.add(fmt::format("force error it allows, {} mm", 1e3 * radius_m),
+                 context.faceting.force_error_n({radius_m, kDepth_m, kStiffness_n_per_m}), "N");
+    }
+}
+
+CaseFailure run_mesh(const MeshCase& mesh, const BenchOptions& options, SceneStore& scenes,
+                     Rows& rows, CoarserErrors& coarser)
+{
+    const auto scene =
+        scenes.get(bumpy_mesh(mesh.faces, mesh.position_bits, 1.0), mesh.position_bits);
+    if (!scene)
+    {
+        return scene.error().text;
+    }
+    const Faceting faceting =
+        measure_faceting(scene.value()->model.faces, scene.value()->model.origin_m);
+    const SweepContext context{mesh, options, *scene.value(), faceting, rows, coarser};
+    add_mesh_rows(context);
+    const PinnedCore pinned(options.core);
+    for (const double radius_m : kRadii_m)
+    {
+        for (const double speed_m_per_s : kSpeeds_m_per_s)
+        {
+            if (const auto failure = run_sweep(context, radius_m, speed_m_per_s))
+            {
+                return failure;
+            }
+        }
+    }
+    return std::nullopt;
+}
+
+/// The forces of one sweep on the coarsest mesh when all lengths are `scale` times as large and the
+/// stiffness as much smaller.
+Result<ForceTrace, SceneError> scaled_forces(SceneStore& scenes, std::uint32_t frames, double scale)
+{
+    const Touch touch{kRadii_m[0], kDepth_m, kStiffness_n_per_m};
+    const auto scene =
+        scenes.get(bumpy_mesh(kMeshes[0].faces, kMaxPositionBits, scale), kMaxPositionBits);
+    if (!scene)
+    {
+        return scene.error();
+    }
+    const Sweep sweep = make_sweep(touch, kSpeeds_m_per_s[1] * kPeriod_s, frames);
+    return replay_forces(make_run(*scene.value(), sweep, touch, scale), 1);
+}
+
+/// A power of two changes no bit. Any other factor rounds differently: corners by a part in 2^24 of
+/// the box, which with what the proxy tolerates stays below a thousandth of the force.
+CaseFailure run_units(const BenchOptions& options, SceneStore& scenes, Rows& rows)
+{
+    const std::uint32_t frames = options.frames_or(10'000, 2'000);
+    const auto metres = scaled_forces(scenes, frames, 1.0);
+    if (!metres)
+    {
+        return metres.error().text;
+    }
+    for (const double scale : {1'024.0, 1'000.0})
+    {
+        const auto scaled = scaled_forces(scenes, frames, scale);
+        if (!scaled)
+        {
+            return scaled.error().text;
+        }
+        double largest_n = 0.0;
+        std::uint64_t others = 0;
+        for (std::size_t i = 0; i < frames; ++i)
+        {
+            const Vec3& here = metres.value().outputs[i].force_n;
+            const Vec3& there = scaled.value().outputs[i].force_n;
+            largest_n = std::max(largest_n, (there - here).norm());
+            others += there == here ? 0U : 1U;
+        }
+        Row common;
+        common.suite = "force";
+        common.part = "Units";
+        common.test_case = fmt::format("all lengths x {:.0f}", scale);
+        common.scene = common.test_case;
+        common.frames = frames;
+        common.hash = scaled.value().hash;
+        CaseRows lines(rows, common);
+        const bool is_exact = std::exp2(std::round(std::log2(scale))) == scale;
+        const double tolerance_n = 1e-3 * kStiffness_n_per_m * kDepth_m;
+        lines.add("frames with another force", static_cast<double>(others), "",
+                  is_exact ? std::optional(0.0) : std::nullopt);
+        lines.add("largest difference", largest_n, "N", is_exact ? 0.0 : tolerance_n);
+    }
+    return std::nullopt;
+}
+
+std::vector<std::string> force_case_names()
+{
+    std::vector<std::string> names;
+    for (const MeshCase& mesh : kMeshes)
+    {
+        names.emplace_back(mesh.name);
+    }
+    names.emplace_back(kUnits);
+    return names;
+}
+
+std::optional<std::string> run_force_suite(const BenchOptions& options, Rows& rows)
+{
+    SceneStore scenes(options.cache);
+    CoarserErrors coarser;
+    for (const MeshCase& mesh : kMeshes)
+    {
+        if (!is_chosen(options, mesh.name, mesh.when))
+        {
+            continue;
+        }
+        fmt::print(stderr, "{}\n", mesh.name);
+        if (const auto failure = run_mesh(mesh, options, scenes, rows, coarser))
+        {
+            return fmt::format("force {}: {}", mesh.name, *failure);
+        }
+    }
+    if (is_chosen(options, kUnits, When::always))
+    {
+        fmt::print(stderr, "{}\n", kUnits);
+        if (const auto failure = run_units(options, scenes, rows))
+        {
+            return fmt::format("force {}: {}", kUnits, *failure);
+        }
+    }
+    add_recorded_peer(rows);
+    return std::nullopt;
+}
+
+/// The sweeps as the recorded table has them, the rest as columns.
+std::string to_force_tables(const Rows& rows)
+{
+    Rows sweeps;
+    Rows others;
+    for (const Row& row : rows)
+    {
+        (row.part == "Sweeps" ? sweeps : others).push_back(row);
+    }
+    const GoalCount count = count_goals(rows);
+    return fmt::format("{}\n{}\nIn all {} of {} goals met.\n", to_force_table(sweeps),
+                       to_columns(others), count.met, count.goals);
+}
+
+} // namespace
+
+Suite force_suite()
+{
+    return {"force", force_case_names, run_force_suite, to_force_tables, true};
+}
+
+} // namespace tactus::bench

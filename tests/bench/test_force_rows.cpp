@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "tests/bench/cases.hpp"
+#include "tests/bench/force_rows.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace tactus::bench
+{
+
+namespace
+{
+
+constexpr Touch kTouch{0.5e-3, 1e-3, 1'000.0};
+
+/// Ten frames on a plane, the ball always where it would rest.
+struct PlaneTouch
+{
+    PlaneTouch()
+    {
+        trace.force_us = LeastTimes(10);
+        for (std::size_t i = 0; i < 10; ++i)
+        {
+            goals_m.emplace_back(0.1e-3 * static_cast<double>(i), 0.0, -0.5e-3);
+            rests_m.emplace_back(0.1e-3 * static_cast<double>(i), 0.0, 0.5e-3);
+            ToolOutput output;
+            output.proxy_m = rests_m.back();
+            output.force_n = Vec3(0.0, 0.0, 1.0);
+            output.in_contact = true;
+            trace.outputs.push_back(output);
+            trace.force_us.keep(i, static_cast<double>(i));
+        }
+        trace.frame_us = trace.force_us;
+        trace.allocations = 0;
+    }
+    [[nodiscard]] ForceFigures measure() const
+    {
+        return measure_forces(trace, goals_m, rests_m, kTouch, 0.2e-3);
+    }
+
+    ForceTrace trace;
+    std::vector<Vec3> goals_m;
+    std::vector<Vec3> rests_m;
+};
+
+TEST(ForceRows, a_ball_that_rests_where_it_should_has_no_error)
+{
+    const ForceFigures figures = PlaneTouch().measure();
+
+    EXPECT_NEAR(figures.error_n.max, 0.0, 1e-12);
+    EXPECT_EQ(figures.largest_step_n, 0.0);
+    EXPECT_EQ(figures.stuck, 0U);
+}
+
+TEST(ForceRows, errors_and_steps_are_vectors_lengths)
+{
+    PlaneTouch sut;
+    sut.trace.outputs[3].force_n = Vec3(0.3, 0.4, 1.0);
+
+    EXPECT_NEAR(sut.measure().error_n.max, 0.5, 1e-12);
+    EXPECT_NEAR(sut.measure().error_n.p50, 0.0, 1e-12);
+    EXPECT_NEAR(sut.measure().largest_step_n, 0.5, 1e-12);
+}
+
+TEST(ForceRows, a_ball_is_stuck_when_it_is_frozen_lost_behind_or_nowhere)
+{
+    PlaneTouch sut;
+    sut.trace.outputs[1].frozen = true;
+    sut.trace.outputs[3].in_contact = false;
+    sut.trace.outputs[5].proxy_m = sut.rests_m[5] - Vec3(0.19e-3, 0.0, 0.0);
+    EXPECT_EQ(sut.measure().stuck, 2U);
+    sut.trace.outputs[5].proxy_m = sut.rests_m[5] - Vec3(0.21e-3, 0.0, 0.0);
+    EXPECT_EQ(sut.measure().stuck, 3U);
+    sut.trace.outputs[7].proxy_m.x() = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_EQ(sut.measure().stuck, 4U);
+}
+
+Rows rows_of(const PlaneTouch& touch, const ForceGoals& goals, std::optional<double> coarser_n)
+{
+    Rows rows;
+    Row common;
+    common.test_case = "5k";
+    common.by = "Tactus";
+    CaseRows lines(rows, common);
+    add_force_rows(lines, touch.trace, touch.measure(), goals, coarser_n);
+    return rows;
+}
+
+TEST(ForceRows, each_law_that_is_broken_misses_its_goal)
+{
+    const ForceGoals goals{9.0, 0.1, 0.1, 0.1};
+    const auto missed = [&](const PlaneTouch& touch)
+    {
+        const GoalCount count = count_goals(rows_of(touch, goals, 1.0));
+        return count.goals - count.met;
+    };
+    PlaneTouch sut;
+    EXPECT_EQ(count_goals(rows_of(sut, goals, 1.0)).goals, 7U);
+    EXPECT_EQ(missed(sut), 0U);
+    sut.trace.allocations = 1;
+    EXPECT_EQ(missed(sut), 1U);
+    sut.trace.outputs[2].frozen = true;
+    EXPECT_EQ(missed(sut), 2U);
+    sut.trace.outputs[9].force_n.x() = 0.2;
+    EXPECT_EQ(missed(sut), 5U); // p99 and maximum of ten, and the step.
+    sut.trace.outputs[9].force_n.x() = 1.1;
+    EXPECT_EQ(missed(sut), 6U); // And it is more than on the coarser mesh.
+    sut.trace.outputs[9].force_n.x() = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_EQ(missed(sut), 6U);
+}
+
+TEST(ForceRows, the_table_has_a_line_a_sweep_and_says_what_is_missed)
+{
+    PlaneTouch touch;
+    touch.trace.outputs[2].frozen = true;
+    const Rows rows = rows_of(touch, {kNoGoal, 0.1, kNoGoal, kNoGoal}, std::nullopt);
+
+    const std::string table = to_force_table(rows);
+    EXPECT_NE(table.find("| 5k | Tactus | 4 / 9 | 4 / 9 | 0 (0) | "), std::string::npos) << table;
+    EXPECT_NE(table.find("(0.1) / "), std::string::npos) << table;
+    EXPECT_NE(table.find("| 0 | **1** (0) | |\n"), std::string::npos) << table;
+}
+
+TEST(ForceRows, what_was_recorded_elsewhere_says_so_and_has_no_goals)
+{
+    Rows rows;
+    add_recorded_peer(rows);
+
+    EXPECT_EQ(count_goals(rows).goals, 0U);
+    const std::string table = to_force_table(rows);
+    EXPECT_NE(table.find("| 82k, 0.3 m/s, 0.5 mm | CHAI3D 3.3, recorded elsewhere | | 6.8 / 49 | "
+                         "0.99 | 0.54 / 96 | 51 | | |\n"),
+              std::string::npos)
+        << table;
+    EXPECT_NE(table.find("none / none | 45 |"), std::string::npos) << table;
+}
+
+} // namespace
+
+} // namespace tactus::bench
