@@ -100,6 +100,19 @@ inline constexpr std::uint32_t kMaxLinkUpdatesPerFrame = 64;
 inline constexpr std::uint32_t kProxySteps = 12;
 /// How far the proxy may sit inside the tool's radius from the surface, relative to that radius.
 inline constexpr double kContactTolerance = 1e-4;
+/// Planes that one motion is held back by; each adds 30 ns to a step of the search.
+inline constexpr std::uint32_t kMaxHalfSpaces = 64;
+/// Steps of a search for the nearest motion, in each of which a plane joins those that hold it or
+/// leaves them. Awkward planes took 72 in the worst of
+/// a million searches; after half of them kSqueezeTolerance is enough.
+inline constexpr std::uint32_t kConstraintRounds = 128;
+/// A motion may be this far beyond a plane, relative to the lengths in the question.
+inline constexpr double kPlaneTolerance = 1e-12;
+/// Planes whose normals are dependent to this sine are taken to be so: what is between two such
+/// planes that face each other is a gap, not a wedge with an edge far away.
+inline constexpr double kParallelPlanes = 1e-7;
+/// Planes squeeze when their gap is too narrow by this share of the lengths; by less they fit.
+inline constexpr double kSqueezeTolerance = 1e-6;
 /// Time in which a frozen force fades to zero, in seconds.
 inline constexpr double kFadeTime_s = 0.05;
 

@@ -1,0 +1,330 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "rt_core/force/half_spaces.hpp"
+
+#include "rt_core/base/assert.hpp"
+#include "rt_core/limits.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tactus
+{
+
+namespace
+{
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// The planes that hold the motion now: independent normals as Q x R, Q orthonormal and R upper
+/// triangular, and a multiplier for each.
+template <int N>
+class HoldingPlanes
+{
+public:
+    /// A normal as the holding ones see it.
+    struct Split
+    {
+        Motion<N> along{Motion<N>::Zero()};  ///< In terms of Q's columns.
+        Motion<N> across{Motion<N>::Zero()}; ///< What is left.
+        Motion<N> shares{Motion<N>::Zero()}; ///< `along` in terms of the holding normals.
+    };
+
+    [[nodiscard]] int size() const noexcept { return size_; }
+    [[nodiscard]] std::uint32_t plane(int i) const noexcept { return planes_[slot(i)]; }
+    [[nodiscard]] double multiplier(int i) const noexcept { return multipliers_[i]; }
+    [[nodiscard]] bool has(std::uint32_t plane) const noexcept
+    {
+        const auto* const end = planes_.begin() + size_;
+        return std::find(planes_.begin(), end, plane) != end;
+    }
+
+    [[nodiscard]] Split split(const Motion<N>& normal) const noexcept
+    {
+        Split result;
+        result.across = normal;
+        // Once leaves what rounding mixed in; twice is enough.
+        for (int pass = 0; pass < 2; ++pass)
+        {
+            for (int i = 0; i < size_; ++i)
+            {
+                const double part = q_[slot(i)].dot(result.across);
+                result.along[i] += part;
+                result.across -= part * q_[slot(i)];
+            }
+        }
+        result.shares = solve_upper(result.along);
+        return result;
+    }
+
+    void add(std::uint32_t plane, const Motion<N>& normal, double multiplier,
+             const Split& normal_split) noexcept
+    {
+        TACTUS_ASSERT(size_ < N);
+        const double length = normal_split.across.norm();
+        planes_[slot(size_)] = plane;
+        normals_[slot(size_)] = normal;
+        multipliers_[size_] = multiplier;
+        q_[slot(size_)] = normal_split.across / length;
+        r_[slot(size_)] = normal_split.along;
+        r_[slot(size_)][size_] = length;
+        ++size_;
+    }
+
+    void drop(int dropped) noexcept
+    {
+        const HoldingPlanes before = *this;
+        size_ = dropped;
+        for (int i = dropped + 1; i < before.size_; ++i)
+        {
+            const Motion<N>& normal = before.normals_[slot(i)];
+            add(before.planes_[slot(i)], normal, before.multipliers_[i], split(normal));
+        }
+    }
+
+    /// The multipliers go down by this share each, never below zero.
+    void lower(const Motion<N>& shares, double step) noexcept
+    {
+        for (int i = 0; i < size_; ++i)
+        {
+            multipliers_[i] = std::max(0.0, multipliers_[i] - step * shares[i]);
+        }
+    }
+
+    /// The motion nearest to `wanted` on all holding planes, and the multipliers that make it.
+    [[nodiscard]] Motion<N> settle(std::span<const HalfSpace<N>> planes,
+                                   const Motion<N>& wanted) noexcept
+    {
+        Motion<N> motion = wanted;
+        Motion<N> steps = Motion<N>::Zero();
+        for (int i = 0; i < size_; ++i)
+        {
+            double left = planes[plane(i)].offset - normals_[slot(i)].dot(wanted);
+            for (int k = 0; k < i; ++k)
+            {
+                left -= r_[slot(i)][k] * steps[k];
+            }
+            steps[i] = left / r_[slot(i)][i];
+            motion += steps[i] * q_[slot(i)];
+        }
+        multipliers_ = solve_upper(steps);
+        for (int i = 0; i < size_; ++i)
+        {
+            multipliers_[i] = std::max(0.0, multipliers_[i]);
+        }
+        return motion;
+    }
+
+private:
+    [[nodiscard]] static constexpr std::size_t slot(int i) noexcept
+    {
+        return static_cast<std::size_t>(i);
+    }
+
+    [[nodiscard]] Motion<N> solve_upper(const Motion<N>& right) const noexcept
+    {
+        Motion<N> result = Motion<N>::Zero();
+        for (int i = size_ - 1; i >= 0; --i)
+        {
+            double left = right[i];
+            for (int k = i + 1; k < size_; ++k)
+            {
+                left -= r_[slot(k)][i] * result[k];
+            }
+            result[i] = left / r_[slot(i)][i];
+        }
+        return result;
+    }
+
+    int size_{0};
+    std::array<std::uint32_t, static_cast<std::size_t>(N)> planes_{};
+    std::array<Motion<N>, static_cast<std::size_t>(N)> normals_{};
+    std::array<Motion<N>, static_cast<std::size_t>(N)> q_{};
+    std::array<Motion<N>, static_cast<std::size_t>(N)> r_{}; ///< By columns.
+    Motion<N> multipliers_{Motion<N>::Zero()};
+};
+
+/// One search for the nearest motion.
+template <int N>
+class Projection
+{
+public:
+    Projection(std::span<const HalfSpace<N>> planes, const Motion<N>& wanted) noexcept
+        : planes_(planes), wanted_(wanted), motion_(wanted)
+    {
+        for (std::size_t i = 0; i < planes.size(); ++i)
+        {
+            lengths_[i] = planes[i].normal.norm();
+            tolerances_[i] = kPlaneTolerance;
+        }
+    }
+
+    /// False when there is none.
+    [[nodiscard]] bool try_find() noexcept
+    {
+        while (rounds_ > 0)
+        {
+            const std::uint32_t worst = most_violated();
+            if (worst == planes_.size())
+            {
+                return true;
+            }
+            const Projection before = *this;
+            if (try_hold(worst))
+            {
+                continue;
+            }
+            const std::uint32_t rounds = rounds_;
+            *this = before;
+            rounds_ = rounds;
+            if (!try_let_pass(worst))
+            {
+                return false;
+            }
+        }
+        return false;
+    }
+
+    [[nodiscard]] NearestMotion<N> result() const noexcept
+    {
+        NearestMotion<N> result;
+        result.motion = motion_;
+        for (int i = 0; i < holding_.size(); ++i)
+        {
+            result.held_by.push_back(holding_.plane(i));
+            result.reactions[static_cast<std::size_t>(i)] = holding_.multiplier(i);
+        }
+        return result;
+    }
+
+private:
+    /// The number of planes when there is none.
+    [[nodiscard]] std::uint32_t most_violated() const noexcept
+    {
+        const double size = wanted_.norm() + motion_.norm();
+        auto worst = static_cast<std::uint32_t>(planes_.size());
+        double most = 0.0;
+        for (std::uint32_t i = 0; i < planes_.size(); ++i)
+        {
+            const double violation = planes_[i].offset - planes_[i].normal.dot(motion_);
+            // What takes so long goes round in a circle, over what dependent normals leave open.
+            const double share =
+                rounds_ < kConstraintRounds / 2 ? kSqueezeTolerance : tolerances_[i];
+            const double rounding = share * (std::abs(planes_[i].offset) + lengths_[i] * size);
+            if (violation > rounding && violation > most * lengths_[i] && !holding_.has(i))
+            {
+                worst = i;
+                most = violation / lengths_[i];
+            }
+        }
+        return worst;
+    }
+
+    /// Pushes the motion out of a plane; planes that hold it no longer are let go on the way.
+    [[nodiscard]] bool try_hold(std::uint32_t plane) noexcept
+    {
+        const Motion<N>& normal = planes_[plane].normal;
+        double multiplier = 0.0;
+        while (rounds_ > 0)
+        {
+            --rounds_;
+            const auto split = holding_.split(normal);
+            const bool is_free =
+                holding_.size() < N && split.across.norm() > kParallelPlanes * lengths_[plane];
+            const double across_sq = split.across.squaredNorm();
+            const double violation = planes_[plane].offset - normal.dot(motion_);
+            const double whole = is_free ? std::max(0.0, violation) / across_sq : kInfinity;
+            const LetGo first = first_to_let_go(split.shares, lengths_[plane]);
+            const double step = std::min(whole, first.step);
+            if (!(step < kInfinity))
+            {
+                return false; // Holding planes and this one exclude each other.
+            }
+            multiplier += step;
+            holding_.lower(split.shares, step);
+            if (whole <= first.step)
+            {
+                holding_.add(plane, normal, multiplier, split);
+                motion_ = holding_.settle(planes_, wanted_);
+                return true;
+            }
+            if (is_free)
+            {
+                motion_ += step * split.across;
+            }
+            holding_.drop(first.index);
+        }
+        return false;
+    }
+
+    /// A plane that excludes those that hold, but only by what dependent normals leave open.
+    [[nodiscard]] bool try_let_pass(std::uint32_t plane) noexcept
+    {
+        const double violation = planes_[plane].offset - planes_[plane].normal.dot(motion_);
+        const double size = wanted_.norm() + motion_.norm();
+        const bool passes = tolerances_[plane] < kSqueezeTolerance &&
+                            violation <= kSqueezeTolerance * (std::abs(planes_[plane].offset) +
+                                                              lengths_[plane] * size);
+        tolerances_[plane] = kSqueezeTolerance;
+        return passes;
+    }
+
+    struct LetGo
+    {
+        double step{kInfinity};
+        int index{0};
+    };
+
+    /// The holding plane whose multiplier is first at zero as the new one's grows.
+    [[nodiscard]] LetGo first_to_let_go(const Motion<N>& shares, double length) const noexcept
+    {
+        LetGo first;
+        for (int i = 0; i < holding_.size(); ++i)
+        {
+            // A share that is rounding only must not be divided by.
+            if (shares[i] * lengths_[holding_.plane(i)] <= kPlaneTolerance * length)
+            {
+                continue;
+            }
+            const double step = holding_.multiplier(i) / shares[i];
+            if (step < first.step)
+            {
+                first = {step, i};
+            }
+        }
+        return first;
+    }
+
+    std::span<const HalfSpace<N>> planes_;
+    Motion<N> wanted_;
+    Motion<N> motion_;
+    HoldingPlanes<N> holding_;
+    std::array<double, kMaxHalfSpaces> lengths_{};
+    std::array<double, kMaxHalfSpaces> tolerances_{};
+    std::uint32_t rounds_{kConstraintRounds};
+};
+
+} // namespace
+
+template <int N>
+NearestMotion<N> nearest_motion(std::span<const HalfSpace<N>> planes,
+                                const Motion<N>& wanted) noexcept
+{
+    TACTUS_ASSERT(planes.size() <= kMaxHalfSpaces);
+    Projection<N> projection(planes, wanted);
+    if (projection.try_find())
+    {
+        return projection.result();
+    }
+    NearestMotion<N> none;
+    none.is_feasible = false;
+    return none;
+}
+
+template NearestMotion<3> nearest_motion<3>(std::span<const HalfSpace<3>>,
+                                            const Motion<3>&) noexcept TACTUS_NONBLOCKING;
+template NearestMotion<6> nearest_motion<6>(std::span<const HalfSpace<6>>,
+                                            const Motion<6>&) noexcept TACTUS_NONBLOCKING;
+
+} // namespace tactus

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/base/realtime.hpp"
+#include "rt_core/base/static_vector.hpp"
+#include "rt_core/math/vec3.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace tactus
+{
+
+/// A motion of N coordinates: 3 of a point; 6 of a body, in whatever metric the caller has.
+template <int N>
+using Motion = Eigen::Matrix<double, N, 1>;
+
+/// The motions x that a plane allows: normal . x >= offset. The normal may have any length but
+/// zero.
+template <int N>
+struct HalfSpace
+{
+    Motion<N> normal{Motion<N>::Zero()};
+    double offset{0.0};
+};
+
+/// motion = wanted + the sum of reactions[i] x normal of held_by[i].
+template <int N>
+struct NearestMotion
+{
+    Motion<N> motion{Motion<N>::Zero()};
+    /// Indices of the planes that hold it back, whose normals are independent.
+    StaticVector<std::uint32_t, static_cast<std::size_t>(N)> held_by;
+    std::array<double, static_cast<std::size_t>(N)> reactions{}; ///< Not negative.
+    /// False: no motion is allowed by all planes; the one above is zero, with nothing holding it.
+    /// Where planes have offsets of at most zero, some motion always is.
+    bool is_feasible{true};
+};
+
+/// The motion nearest to `wanted` that all planes allow, to 1e-12 of the lengths in the question;
+/// it is unique, and the order of the planes changes it by rounding only.
+///
+/// Planes whose normals are dependent to kParallelPlanes count as parallel: the one that holds back
+/// most counts, and opposite ones leave a gap between them or none. Of a gap that is too narrow by
+/// at most kSqueezeTolerance, one side may be violated by as much.
+///
+/// At most kMaxHalfSpaces planes, all finite as is `wanted`. Dual active set method (Goldfarb and
+/// Idnani 1983): the wanted motion is pushed out of the plane that it violates most, until none is.
+/// Haptic thread. Cost: some 30 ns for a plane in each step, with two steps as a rule for each
+/// plane that holds and kConstraintRounds at most.
+template <int N>
+[[nodiscard]] NearestMotion<N> nearest_motion(std::span<const HalfSpace<N>> planes,
+                                              const Motion<N>& wanted) noexcept TACTUS_NONBLOCKING;
+
+extern template NearestMotion<3> nearest_motion<3>(std::span<const HalfSpace<3>>,
+                                                   const Motion<3>&) noexcept TACTUS_NONBLOCKING;
+extern template NearestMotion<6> nearest_motion<6>(std::span<const HalfSpace<6>>,
+                                                   const Motion<6>&) noexcept TACTUS_NONBLOCKING;
+
+} // namespace tactus
