@@ -113,6 +113,11 @@ inline constexpr double kPlaneTolerance = 1e-12;
 inline constexpr double kParallelPlanes = 1e-7;
 /// Planes squeeze when their gap is too narrow by this share of the lengths; by less they fit.
 inline constexpr double kSqueezeTolerance = 1e-6;
+/// Places that a tool was held at and that are remembered while it rests there; a body is held by
+/// six planes at most, and some seek their place. 80 B each.
+inline constexpr std::uint32_t kMaxHolds = 16;
+/// A tool without a radius keeps this share of its core's, so that it can slide.
+inline constexpr double kLeastSkin = 0.002;
 /// Time in which a frozen force fades to zero, in seconds.
 inline constexpr double kFadeTime_s = 0.05;
 

@@ -21,10 +21,10 @@ using Json = nlohmann::ordered_json;
 constexpr std::array<const char*, kStages> kStageNames{"load", "refine", "refit", "query", "force"};
 
 /// In the order of FrameFault's bits.
-constexpr std::array<const char*, 12> kFaultNames{
-    "split_budget_spent", "forest_full",       "tree_full",         "chunk_late",
-    "cache_full",         "node_budget_spent", "surface_truncated", "model_inconsistent",
-    "tool_invalid",       "proxy_frozen",      "tool_stuck",        "tool_jumped"};
+constexpr std::array<const char*, 13> kFaultNames{
+    "split_budget_spent", "forest_full",       "tree_full",          "chunk_late",   "cache_full",
+    "node_budget_spent",  "surface_truncated", "model_inconsistent", "tool_invalid", "proxy_frozen",
+    "tool_stuck",         "tool_jumped",       "proxy_squeezed"};
 
 double to_us(Duration duration)
 {
