@@ -60,6 +60,10 @@ public:
         for (std::size_t i = 0; i < objects.size(); ++i)
         {
             const double lower = look(objects[i], reports[i]);
+            if (!tells_corners)
+            {
+                reports[i].corners.clear();
+            }
             touched.push_back({&objects[i].pose, &reports[i], kind, lower_share * lower});
         }
         return sut.respond(goal, rotation, touched, kPeriod_s);
@@ -88,6 +92,7 @@ public:
     std::vector<Solid> objects;
     AnswerKind kind{AnswerKind::exact};
     double lower_share{1.0}; ///< Of the true distance, as the proxy is told.
+    bool tells_corners{true};
 
 private:
     [[nodiscard]] double look(const Solid& solid, TouchReport& report) const
@@ -185,6 +190,22 @@ TEST(RigidProxy, pressed_flat_stays_flat_and_pushes_by_its_depth)
             << core.index();
         EXPECT_LE(output.torque_nm.norm(), 1e-5) << core.index();
         EXPECT_LE((output.proxy_rotation - Mat3::Identity()).norm(), 1e-5) << core.index();
+    }
+}
+
+TEST(RigidProxy, comes_to_rest_on_what_held_it_where_it_is_told_of_one_point_at_a_time)
+{
+    Rig rig = on_plane(Box{kHalf});
+    rig.tells_corners = false;
+    rig.settle(Vec3(0, 0, 0.05));
+    const Mat3 tilted = turn(Vec3(1, 2, 0), 0.02);
+    rig.settle(Vec3(0, 0, -0.004), tilted, 100);
+    for (int i = 0; i < 100; ++i)
+    {
+        const Vec3 before = rig.sut.position_m();
+        const ToolOutput output = rig.step(Vec3(0, 0, -0.004), tilted);
+        ASSERT_LE((output.proxy_m - before).norm(), 1e-4 * kRadius) << i;
+        ASSERT_NEAR(rig.distance(), kRadius, 0.01 * kRadius) << i;
     }
 }
 
