@@ -230,11 +230,6 @@ int run_hand(const Tool& tool, const TestModel& model, Random& random, std::uint
     return contacts;
 }
 
-TriangleMesh plate()
-{
-    return make_thin_plate(24, 0.01).value();
-}
-
 } // namespace
 
 TEST(RigidTools, never_cross_a_surface_seen_or_not)
@@ -252,9 +247,9 @@ TEST(RigidTools, never_cross_a_surface_seen_or_not)
     }
 }
 
-TEST(RigidTools, pressed_flat_on_a_fine_mesh_push_by_their_depth_and_let_go)
+TEST(RigidTools, pressed_on_a_fine_plate_rest_at_their_radius_and_push_by_their_depth)
 {
-    const TestModel& model = test_model("rigid-plate", plate(), 100);
+    const TestModel& model = test_model("rigid-plate", make_thin_plate(24, 0.01).value(), 100);
     Vec3 low(1e9, 1e9, 1e9);
     Vec3 high = -low;
     for (const Face& face : model.faces)
@@ -265,38 +260,66 @@ TEST(RigidTools, pressed_flat_on_a_fine_mesh_push_by_their_depth_and_let_go)
             high = greatest_of(high, to_vec3(corner));
         }
     }
-    const Vec3 half(0.012, 0.008, 0.004);
-    const Tool box{"box", Box{half}, {}, 0.001};
-    const double rest = high.z() + half.z() + box.radius_m;
+    for (const Tool& tool : tools())
+    {
+        SCOPED_TRACE(tool.name);
+        RigOptions options = options_for(tool);
+        options.tools[0].force_max_n = 100.0;
+        options.tools[0].torque_max_nm = 100.0;
+        FrameRig rig(models_for(tool, model), options);
+        ToolState state;
+        const Vec3 goal(0.5 * (low.x() + high.x()), 0.5 * (low.y() + high.y()), high.z() - 0.002);
+        const Vec3 above = goal + Vec3(0, 0, 0.2);
+        state.position_m = above;
+        rig.step(std::span(&state, 1), {});
+        for (int i = 0; i < 900; ++i)
+        {
+            state.position_m.z() = std::max(goal.z(), state.position_m.z() - 5e-4);
+            rig.step(std::span(&state, 1), {});
+        }
+
+        const FrameOutput output = rig.step(std::span(&state, 1), {});
+        const ToolOutput pressed = output.tools[0];
+        const double distance_m = output.pairs[0].lower_m;
+        state.position_m = above;
+        ToolOutput away;
+        for (int i = 0; i < 100; ++i)
+        {
+            away = rig.step(std::span(&state, 1), {}).tools[0];
+        }
+
+        const double radius_m =
+            std::max(tool.radius_m, kLeastSkin * PlacedCore(tool.core, {}).radius());
+        const double depth_m = pressed.proxy_m.z() - goal.z();
+        EXPECT_TRUE(pressed.in_contact);
+        EXPECT_FALSE(pressed.frozen);
+        EXPECT_NEAR(distance_m, radius_m, 1e-3 * radius_m);
+        EXPECT_LE((pressed.force_n - Vec3(0, 0, 500.0 * depth_m)).norm(), 0.01);
+        EXPECT_GT(depth_m, 0.002);
+        EXPECT_EQ(away.proxy_m, above);
+        EXPECT_EQ(away.force_n, Vec3(0, 0, 0));
+        EXPECT_EQ(away.torque_nm, Vec3(0, 0, 0));
+    }
+}
+
+TEST(RigidTools, a_box_pressed_flat_on_a_fine_plate_is_not_turned)
+{
+    const TestModel& model = test_model("rigid-plate", make_thin_plate(24, 0.01).value(), 100);
+    const Tool box = tools()[0];
     FrameRig rig(models_for(box, model), options_for(box));
     ToolState state;
-    state.position_m = Vec3(0.5 * (low.x() + high.x()), 0.5 * (low.y() + high.y()), rest + 0.02);
-    for (int i = 0; i < 100; ++i)
+    state.position_m = Vec3(0.05, 0.05, 0.1);
+    ToolOutput pressed;
+    for (int i = 0; i < 900; ++i)
     {
-        rig.step(std::span(&state, 1), {});
-    }
-    const Vec3 above = state.position_m;
-    for (int i = 0; i < 600; ++i)
-    {
-        state.position_m.z() = std::max(rest - 0.005, state.position_m.z() - 2e-4);
-        rig.step(std::span(&state, 1), {});
-    }
-
-    const ToolOutput pressed = rig.step(std::span(&state, 1), {}).tools[0];
-    state.position_m = above;
-    ToolOutput away;
-    for (int i = 0; i < 100; ++i)
-    {
-        away = rig.step(std::span(&state, 1), {}).tools[0];
+        state.position_m.z() = std::max(0.01, state.position_m.z() - 5e-4);
+        pressed = rig.step(std::span(&state, 1), {}).tools[0];
     }
 
     EXPECT_TRUE(pressed.in_contact);
-    EXPECT_FALSE(pressed.frozen);
-    EXPECT_NEAR(pressed.proxy_m.z(), rest, 1e-6);
-    EXPECT_LE((pressed.force_n - Vec3(0, 0, 500.0 * 0.005)).norm(), 5e-3);
     EXPECT_LE(pressed.torque_nm.norm(), 1e-4);
-    EXPECT_EQ(away.proxy_m, above);
-    EXPECT_EQ(away.force_n, Vec3(0, 0, 0));
+    EXPECT_LE((pressed.proxy_rotation - Mat3::Identity()).norm(), 1e-4);
+    EXPECT_NEAR(pressed.force_n.z(), 500.0 * (pressed.proxy_m.z() - 0.01), 1e-3);
 }
 
 TEST(RigidTools, replay_bit_for_bit)
