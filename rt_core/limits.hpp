@@ -100,7 +100,7 @@ inline constexpr std::uint32_t kMaxLinkUpdatesPerFrame = 64;
 inline constexpr std::uint32_t kProxySteps = 12;
 /// How far the proxy may sit inside the tool's radius from the surface, relative to that radius.
 inline constexpr double kContactTolerance = 1e-4;
-/// Planes that one motion is held back by; each adds 30 ns to a step of the search.
+/// Planes that one motion is held back by; 5 us in six dimensions with all of them.
 inline constexpr std::uint32_t kMaxHalfSpaces = 64;
 /// Steps of a search for the nearest motion, in each of which a plane joins those that hold it or
 /// leaves them. Awkward planes took 72 in the worst of
