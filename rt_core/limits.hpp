@@ -107,7 +107,7 @@ inline constexpr std::uint32_t kMaxNearFaces = 256;
 inline constexpr std::uint32_t kStepRounds = 16;
 /// How far the proxy may sit inside the tool's radius from the surface, relative to that radius.
 inline constexpr double kContactTolerance = 1e-6;
-/// Planes that one motion is held back by; each adds 30 ns to a step of the search.
+/// Planes that one motion is held back by; 5 us in six dimensions with all of them.
 inline constexpr std::uint32_t kMaxHalfSpaces = 64;
 /// Steps of a search for the nearest motion, in each of which a plane joins those that hold it or
 /// leaves them. Awkward planes took 72 in the worst of a million searches; after half of them
@@ -122,6 +122,11 @@ inline constexpr double kParallelPlanes = 1e-7;
 inline constexpr double kSqueezeTolerance = 1e-6;
 /// A tool without a radius is a ball of this many quanta, so that it has an outside.
 inline constexpr double kPointSkin = 0.25;
+/// Places that a tool was held at and that are remembered while it rests there; a body is held by
+/// six planes at most, and some seek their place. 80 B each.
+inline constexpr std::uint32_t kMaxHolds = 16;
+/// A tool without a radius keeps this share of its core's, so that it can slide.
+inline constexpr double kLeastSkin = 0.002;
 /// Time in which a frozen force fades to zero, in seconds.
 inline constexpr double kFadeTime_s = 0.05;
 

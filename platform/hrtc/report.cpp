@@ -22,10 +22,9 @@ constexpr std::array<const char*, kStages> kStageNames{"load", "refine", "refit"
 
 /// In the order of FrameFault's bits.
 constexpr std::array<const char*, 13> kFaultNames{
-    "split_budget_spent", "forest_full",       "tree_full",         "chunk_late",
-    "cache_full",         "node_budget_spent", "surface_truncated", "model_inconsistent",
-    "tool_invalid",       "proxy_frozen",      "tool_stuck",        "tool_jumped",
-    "proxy_squeezed"};
+    "split_budget_spent", "forest_full",       "tree_full",          "chunk_late",   "cache_full",
+    "node_budget_spent",  "surface_truncated", "model_inconsistent", "tool_invalid", "proxy_frozen",
+    "tool_stuck",         "tool_jumped",       "proxy_squeezed"};
 
 double to_us(Duration duration)
 {

@@ -11,7 +11,7 @@ namespace
 {
 
 // A field that is added to one of these has to be hashed below.
-static_assert(sizeof(ToolOutput) == 56);
+static_assert(sizeof(ToolOutput) == 152);
 static_assert(sizeof(PairOutput) == 120);
 static_assert(sizeof(Contact) == 96);
 static_assert(sizeof(MeshReport) == 8 * kMaxMeetingFaces + 24);
@@ -55,6 +55,11 @@ std::uint64_t hash_tools(std::span<const ToolOutput> tools) noexcept
     {
         hash.add(tool.force_n);
         hash.add(tool.proxy_m);
+        hash.add(tool.torque_nm);
+        for (int row = 0; row < 3; ++row)
+        {
+            hash.add(Vec3(tool.proxy_rotation.row(row)));
+        }
         hash.add(std::uint64_t{tool.in_contact});
         hash.add(std::uint64_t{tool.frozen});
         hash.add(std::uint64_t{tool.squeezed});

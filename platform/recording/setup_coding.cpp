@@ -49,7 +49,8 @@ bool is_within(double value, double least, double most)
 bool is_sound(const ToolSpec& tool)
 {
     return is_within(tool.radius_m, 0.0, 1e6) && is_within(tool.stiffness_n_per_m, 0.0, 1e9) &&
-           is_within(tool.force_max_n, 0.0, 1e9) && is_within(tool.speed_max_m_per_s, 0.0, 1e9);
+           is_within(tool.force_max_n, 0.0, 1e9) && is_within(tool.speed_max_m_per_s, 0.0, 1e9) &&
+           is_within(tool.torque_max_nm, 0.0, 1e9);
 }
 
 Fault parse_tools(ByteReader& reader, std::uint32_t tools, std::uint32_t models,
@@ -64,8 +65,11 @@ Fault parse_tools(ByteReader& reader, std::uint32_t tools, std::uint32_t models,
         tool.speed_max_m_per_s = reader.read<double>();
         const auto wants_contacts = reader.read<std::uint8_t>();
         tool.wants_contacts = wants_contacts != 0;
+        tool.torque_max_nm = reader.read<double>();
+        const auto passes_through = reader.read<std::uint8_t>();
+        tool.passes_through = passes_through != 0;
         const std::optional<ToolCore> core = read_core(reader, setup.hull_vertices);
-        if (!core || wants_contacts > 1)
+        if (!core || wants_contacts > 1 || passes_through > 1)
         {
             return "tool " + std::to_string(i) +
                    " has an unknown core, one beyond 1e6 m or a hull of not 1 to 64 vertices";
@@ -80,7 +84,8 @@ Fault parse_tools(ByteReader& reader, std::uint32_t tools, std::uint32_t models,
         if (!is_sound(tool))
         {
             return "tool " + std::to_string(i) +
-                   " is not within 0 to 1e6 m, 0 to 1e9 N/m, 0 to 1e9 N, 0 to 1e9 m/s";
+                   " is not within 0 to 1e6 m, 0 to 1e9 N/m, 0 to 1e9 N, 0 to 1e9 m/s, 0 to 1e9 N "
+                   "m";
         }
         setup.tools.push_back(tool);
     }
@@ -161,6 +166,8 @@ std::vector<std::byte> code_setup(const RecordedSetup& setup)
         append(bytes, tool.force_max_n);
         append(bytes, tool.speed_max_m_per_s);
         append(bytes, static_cast<std::uint8_t>(tool.wants_contacts));
+        append(bytes, tool.torque_max_nm);
+        append(bytes, static_cast<std::uint8_t>(tool.passes_through));
         append_core(bytes, tool.core);
     }
     for (const ObjectSpec& object : setup.objects)

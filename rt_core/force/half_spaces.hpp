@@ -49,8 +49,8 @@ struct NearestMotion
 ///
 /// At most kMaxHalfSpaces planes, all finite as is `wanted`. Dual active set method (Goldfarb and
 /// Idnani 1983): the wanted motion is pushed out of the plane that it violates most, until none is.
-/// Haptic thread. Cost: some 30 ns for a plane in each step, with two steps as a rule for each
-/// plane that holds and kConstraintRounds at most.
+/// Haptic thread. Cost: 0.4 to 2 us for 8 to 64 planes in three dimensions, 0.7 to 5 us in six; at
+/// most kConstraintRounds steps.
 template <int N>
 [[nodiscard]] NearestMotion<N> nearest_motion(std::span<const HalfSpace<N>> planes,
                                               const Motion<N>& wanted) noexcept TACTUS_NONBLOCKING;

@@ -22,6 +22,12 @@ constexpr double kWindowWays = 1.5;
 constexpr int kVicinities = 4;
 /// Below this share of the tool's radius a motion isn't worth a step: 0.1 mN at 500 N/m and 2 mm.
 constexpr double kLeastStep = 1e-4;
+/// Over a curved surface a press turns into a way along it: this share of it within a frame.
+constexpr double kDipShare = 0.1;
+/// A leap goes this share of the radius along the surface at most, and this share of that above it:
+/// from half-way all triangles are seen below it, on a plane up to 0.8 radii.
+constexpr double kLongestLeap = 0.7;
+constexpr double kLift = 0.1;
 
 /// The planes of one step, and whose they are.
 struct StepPlanes
@@ -125,6 +131,17 @@ ToolOutput Proxy::respond(const ProxyGoal& goal, std::span<const PlacedSurface> 
     return output;
 }
 
+double Proxy::way_to_m(const Vec3& goal_m) const noexcept
+{
+    const Vec3 way = goal_m - position_;
+    const double inward = -way.dot(normal_);
+    if (!in_contact_ || inward <= 0.0)
+    {
+        return way.norm();
+    }
+    return (way + inward * normal_).norm() + kDipShare * inward;
+}
+
 /// A point's is a share of the coarsest model's quantum.
 double Proxy::find_radius(std::span<const PlacedSurface> surfaces) const noexcept
 {
@@ -223,9 +240,36 @@ Proxy::Motion Proxy::follow_within(Vicinity& near, std::span<const PlacedSurface
         {
             return uncertified <= least_step ? Motion::held_back : Motion::ran_out;
         }
-        position_ += hold_.motion * std::min(1.0, room / length);
-        path_.push_back(position_);
+        if (!try_leap(near, room))
+        {
+            position_ += hold_.motion * std::min(1.0, room / length);
+            path_.push_back(position_);
+        }
     }
+}
+
+/// Over many small triangles steps are short: each ends where the next triangle's plane, seen from
+/// far, stands in the way. So a way along the surface is first tried a little above it.
+bool Proxy::try_leap(Vicinity& near, double room) noexcept
+{
+    const double slip = hold_.slip.norm();
+    const double leap = std::min({slip, kLongestLeap * radius_, room / (1.0 + kLift)});
+    if (!hold_.touches || hold_.motion.norm() > 0.5 * leap || path_.size() + 2 > kProxySteps)
+    {
+        return false;
+    }
+    const Vec3 lifted = position_ + normal_ * (kLift * leap);
+    const Vec3 target = lifted + hold_.slip * (leap / slip);
+    const Vec3& center = near.center_m();
+    if (!near.is_free(position_ - center, lifted - center, radius_ * (1.0 - kContactTolerance)) ||
+        !near.is_free(lifted - center, target - center, radius_))
+    {
+        return false;
+    }
+    position_ = target;
+    path_.push_back(lifted);
+    path_.push_back(target);
+    return true;
 }
 
 Proxy::Hold Proxy::hold_at(Vicinity& near, std::span<const PlacedSurface> surfaces,
@@ -255,7 +299,9 @@ Proxy::Hold Proxy::hold_at(Vicinity& near, std::span<const PlacedSurface> surfac
     if (hold.touches)
     {
         normal_ = hold.push_n.normalized();
-        const Vec3 kept = rub(hold, held.motion - touching.way_out(kContactTolerance * radius_));
+        hold.slip = held.motion - touching.way_out(kContactTolerance * radius_);
+        const Vec3 kept = rub(hold, hold.slip);
+        hold.slip -= kept;
         if (hold.static_m > 0.0)
         {
             hold.motion = nearest_free_motion(near, wanted - kept, radius_, step).motion;

@@ -53,6 +53,8 @@ public:
     [[nodiscard]] const Vec3& position_m() const noexcept { return position_; }
     /// The tool's, or a point's skin.
     [[nodiscard]] double radius_m() const noexcept { return radius_; }
+    /// How far it may have to go for this goal: what presses it against what it touches is no way.
+    [[nodiscard]] double way_to_m(const Vec3& goal_m) const noexcept TACTUS_NONBLOCKING;
     /// The places that it went by in this frame, the first and the last included: straight lines.
     [[nodiscard]] std::span<const Vec3> path_m() const noexcept { return path_.view(); }
     [[nodiscard]] bool is_in_contact() const noexcept { return in_contact_; }
@@ -85,6 +87,7 @@ private:
     struct Hold
     {
         Vec3 motion{0.0, 0.0, 0.0}; ///< As far as planes and friction let it go.
+        Vec3 slip{0.0, 0.0, 0.0};   ///< As far as those planes let it go that touch.
         Vec3 push_n{0.0, 0.0, 0.0}; ///< Of the planes.
         Vec3 drag_n{0.0, 0.0, 0.0}; ///< Of friction.
         double depth_m{0.0};
@@ -106,6 +109,7 @@ private:
     [[nodiscard]] Motion follow_within(Vicinity& near, std::span<const PlacedSurface> surfaces,
                                        const Vec3& goal, double travel,
                                        std::uint32_t& steps) noexcept;
+    [[nodiscard]] bool try_leap(Vicinity& near, double room) noexcept;
     void go_straight_on(const Vec3& goal, double clear) noexcept;
     [[nodiscard]] Hold hold_at(Vicinity& near, std::span<const PlacedSurface> surfaces,
                                const Vec3& wanted) noexcept;
@@ -133,7 +137,7 @@ private:
     bool slides_{false};   ///< From the last frame on: the dynamic cone holds.
     bool has_slid_{false}; ///< In this frame.
     bool was_overrun_{false};
-    StaticVector<Vec3, kProxySteps + 2> path_;
+    StaticVector<Vec3, kProxySteps + 3> path_;
     /// The proxy may move by this much before it is on the other side of the object's surface.
     std::array<double, kMaxObjects> clearances_m_{};
     std::array<Vec3, kMaxObjects> object_velocities_{}; ///< At the proxy.

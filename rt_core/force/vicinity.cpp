@@ -153,6 +153,23 @@ std::optional<std::uint32_t> Vicinity::find_entered(const Vec3& motion, double r
     return entered;
 }
 
+bool Vicinity::is_free(const Vec3& from, const Vec3& to, double radius_m) noexcept
+{
+    stand_at(0.5 * (from + to), fallback_);
+    for (NearFace& face : faces_)
+    {
+        if (std::min(bound(face, from), bound(face, to)) < radius_m)
+        {
+            look_at(face);
+            if (std::min(bound(face, from), bound(face, to)) < radius_m)
+            {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
 double Vicinity::free_share(const Vec3& motion, double radius_m) const noexcept
 {
     const double least = radius_m * (1.0 - kContactTolerance);

@@ -74,6 +74,9 @@ public:
     /// to be looked at.
     [[nodiscard]] std::optional<std::uint32_t>
     find_entered(const Vec3& motion, double radius_m) noexcept TACTUS_NONBLOCKING;
+    /// Whether a ball of this radius meets nothing on a straight way. Stands half-way to see.
+    [[nodiscard]] bool is_free(const Vec3& from, const Vec3& to,
+                               double radius_m) noexcept TACTUS_NONBLOCKING;
     /// How much of the motion, 0 .. 1, is free as far as the planes say that are known.
     [[nodiscard]] double free_share(const Vec3& motion,
                                     double radius_m) const noexcept TACTUS_NONBLOCKING;

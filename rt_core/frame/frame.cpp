@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "rt_core/frame/frame.hpp"
 
+#include "rt_core/math/rotation.hpp"
 #include "rt_core/query/contact_report.hpp"
 #include "rt_core/query/core_query.hpp"
 #include "rt_core/query/probe.hpp"
@@ -25,21 +26,15 @@ constexpr double kApproachTime_s = 0.01;
 /// Not worth a second ball: a share of the reach.
 constexpr double kLeastAhead = 0.1;
 
-/// Orthonormal to rounding; an axis that is so already keeps its bits.
-Mat3 orthonormalised(const Mat3& matrix) noexcept
-{
-    Mat3 result;
-    const Vec3 first = matrix.col(0).normalized();
-    const Vec3 across = matrix.col(1) - first.dot(matrix.col(1)) * first;
-    result.col(0) = first;
-    result.col(1) = across.normalized();
-    result.col(2) = first.cross(result.col(1));
-    return result;
-}
-
 bool is_mesh(const ToolSpec& tool) noexcept
 {
     return std::holds_alternative<MeshCore>(tool.core);
+}
+
+/// Held back by surfaces as a body, with a force and a torque.
+bool is_rigid(const ToolSpec& tool) noexcept
+{
+    return !tool.passes_through && !std::holds_alternative<PointCore>(tool.core);
 }
 
 /// What a tool that is a mesh has to know of its model.
@@ -58,16 +53,36 @@ MeshCore mesh_core(ModelId model, const ModelHeader& header) noexcept
 }
 
 /// From the model's frame to the world.
-void place_in_world(const ObjectPose& pose, ContactReport& report) noexcept
+void place_in_world(const ObjectPose& pose, ContactSet& contacts) noexcept
 {
-    report.normal = pose.rotation * report.normal;
-    for (Contact& contact : report.contacts)
+    for (Contact& contact : contacts)
     {
         contact.distance_m *= pose.scale;
         contact.on_tool_m = to_world(pose, contact.on_tool_m);
         contact.on_surface_m = to_world(pose, contact.on_surface_m);
         contact.normal = pose.rotation * contact.normal;
     }
+}
+
+void place_in_world(const ObjectPose& pose, ContactReport& report) noexcept
+{
+    report.normal = pose.rotation * report.normal;
+    place_in_world(pose, report.contacts);
+}
+
+/// Of contacts that were looked for farther away: those within the radius.
+void keep_within(double radius_m, const DistanceAnswer& answer, ContactReport& report) noexcept
+{
+    ContactSet& contacts = report.contacts;
+    const bool has_seen_all = report.is_complete || !contacts.full();
+    bool has_left_out = false;
+    while (!contacts.empty() && contacts[contacts.size() - 1].distance_m > radius_m)
+    {
+        (void)contacts.pop_back();
+        has_left_out = true;
+    }
+    report.is_complete = (has_seen_all || has_left_out) &&
+                         (answer.certified_radius_m >= radius_m || answer.lower_m > radius_m);
 }
 
 } // namespace
@@ -174,6 +189,11 @@ Frame::Frame(PassKey /*key*/, Arena& arena, const FrameSetup& setup) noexcept
     {
         mesh_pairs_ = arena.take<MeshPair>(scene_.pairs().size());
     }
+    if (std::ranges::any_of(setup.tools, is_rigid))
+    {
+        rigid_proxies_ = arena.take<RigidProxy>(setup.tools.size());
+        touches_ = arena.take<TouchReport>(scene_.pairs().size());
+    }
     rotations_.fill(Mat3::Identity());
     for (const ToolSpec& tool : setup.tools)
     {
@@ -206,6 +226,13 @@ Frame::Frame(PassKey /*key*/, Arena& arena, const FrameSetup& setup) noexcept
         }
         scene_.describe_meshes(mesh_core(ModelId{model_count_}, header));
         ++model_count_;
+    }
+    if (!arena.is_measuring())
+    {
+        for (std::size_t i = 0; i < rigid_proxies_.size(); ++i)
+        {
+            rigid_proxies_[i] = RigidProxy(scene_.tools()[i]);
+        }
     }
 }
 
@@ -283,6 +310,10 @@ void Frame::read_tools(std::span<const ToolState> tools) noexcept
         {
             proxies_[i].start_at(goals_[i]);
         }
+        if (RigidProxy* rigid = rigid_proxy(static_cast<std::uint32_t>(i)); rigid != nullptr)
+        {
+            rigid->stay_with(goals_[i], rotations_[i]);
+        }
     }
 }
 
@@ -292,31 +323,58 @@ void Frame::carry_proxies(std::span<const ObjectPose> poses) noexcept
     const std::span<const ObjectPose> before{last_poses_.data(), poses.size()};
     for (std::uint32_t tool = 0; tool < proxies_.size() && has_poses_; ++tool)
     {
-        proxies_[tool].carry(before, poses, elapsed_s_[tool]);
+        if (has_proxy(tool))
+        {
+            proxies_[tool].carry(before, poses, elapsed_s_[tool]);
+        }
     }
     std::ranges::copy(poses, last_poses_.begin());
     has_poses_ = true;
 }
 
-/// Only a point's tool is held back by a surface as yet; others are where the hand has them.
+/// A point that surfaces hold back.
 bool Frame::has_proxy(std::uint32_t tool) const noexcept
 {
-    return std::holds_alternative<PointCore>(scene_.tools()[tool].core);
+    const ToolSpec& spec = scene_.tools()[tool];
+    return !spec.passes_through && std::holds_alternative<PointCore>(spec.core);
+}
+
+/// Null unless surfaces hold the tool back as a body.
+RigidProxy* Frame::rigid_proxy(std::uint32_t tool) noexcept
+{
+    return is_rigid(scene_.tools()[tool]) ? &rigid_proxies_[tool] : nullptr;
+}
+
+const RigidProxy* Frame::rigid_proxy(std::uint32_t tool) const noexcept
+{
+    return is_rigid(scene_.tools()[tool]) ? &rigid_proxies_[tool] : nullptr;
 }
 
 const Vec3& Frame::position_of(std::uint32_t tool) const noexcept
 {
-    return has_proxy(tool) ? proxies_[tool].position_m() : goals_[tool];
+    const RigidProxy* rigid = rigid_proxy(tool);
+    return rigid != nullptr  ? rigid->position_m()
+           : has_proxy(tool) ? proxies_[tool].position_m()
+                             : goals_[tool];
+}
+
+const Mat3& Frame::rotation_of(std::uint32_t tool) const noexcept
+{
+    const RigidProxy* rigid = rigid_proxy(tool);
+    return rigid != nullptr ? rigid->rotation() : rotations_[tool];
 }
 
 /// How far round its core a tool asks for exact faces: its radius, and as far as it may move.
 double Frame::reach_of(std::uint32_t tool) const noexcept
 {
     const ToolSpec& spec = scene_.tools()[tool];
-    const double way =
-        has_proxy(tool) ? (goals_[tool] - proxies_[tool].position_m()).norm() : ways_m_[tool];
+    const RigidProxy* rigid = rigid_proxy(tool);
+    const double way = rigid != nullptr  ? rigid->way_to_m(goals_[tool], rotations_[tool])
+                       : has_proxy(tool) ? proxies_[tool].way_to_m(goals_[tool])
+                                         : ways_m_[tool];
+    const double radius_m = rigid != nullptr ? rigid->radius_m() : proxies_[tool].radius_m();
     const double most = spec.speed_max_m_per_s * elapsed_s_[tool];
-    return proxies_[tool].radius_m() * (1.0 + kReachMargin) + std::min(way, most);
+    return radius_m * (1.0 + kReachMargin) + std::min(way, most);
 }
 
 /// How far a tool without contact comes in kApproachTime_s.
@@ -335,8 +393,14 @@ void Frame::place_pairs(std::span<const ObjectPose> poses, const Budgets& budget
 {
     for (ScenePair& pair : scene_.pairs())
     {
-        scene_.place(pair, poses[pair.object], rotations_[pair.tool], position_of(pair.tool),
+        scene_.place(pair, poses[pair.object], rotation_of(pair.tool), position_of(pair.tool),
                      reach_of(pair.tool), ahead_of(pair.tool));
+        const bool is_reached =
+            pair.has_known && pair.known.lower_m > 0.0 && pair.known.lower_m <= pair.motion_m();
+        if (is_reached && rigid_proxy(pair.tool) != nullptr)
+        {
+            faults_ |= FrameFault::proxy_squeezed; // An object came as far as to its core.
+        }
     }
     for (std::uint32_t i = 0; i < scene_.pairs().size(); ++i)
     {
@@ -346,7 +410,7 @@ void Frame::place_pairs(std::span<const ObjectPose> poses, const Budgets& budget
             mesh->place(
                 pair, *std::get_if<MeshCore>(&scene_.tools()[pair.tool].core),
                 *models_[tool_model_of(pair).value], *models_[model_of(pair).value],
-                place_in_model(poses[pair.object], rotations_[pair.tool], position_of(pair.tool)),
+                place_in_model(poses[pair.object], rotation_of(pair.tool), position_of(pair.tool)),
                 budgets);
         }
     }
@@ -549,6 +613,12 @@ void Frame::query_core(std::uint32_t i, const ObjectPose& pose, const Budgets& b
                         surface, model.header.is_closed(), contacts_[i]);
         place_in_world(pose, contacts_[i]);
     }
+    if (rigid_proxy(pair.tool) != nullptr)
+    {
+        report_touches(pair.core, pair.reach_m, model.tree, surface, touches_[i]);
+        place_in_world(pose, touches_[i].nearest);
+        place_in_world(pose, touches_[i].corners);
+    }
 }
 
 void Frame::query_mesh(std::uint32_t i, const ObjectPose& pose) noexcept
@@ -556,16 +626,28 @@ void Frame::query_mesh(std::uint32_t i, const ObjectPose& pose) noexcept
     ScenePair& pair = scene_.pairs()[i];
     MeshPair& mesh = *mesh_pair(i);
     const ToolSpec& tool = scene_.tools()[pair.tool];
+    const bool is_held = rigid_proxy(pair.tool) != nullptr;
+    if (is_held)
+    {
+        touches_[i].clear();
+    }
     if (pair.is_asleep)
     {
         mesh.rest(contacts_[i]);
     }
     else
     {
-        const double contact_m = tool.wants_contacts ? tool.radius_m / pose.scale : -1.0;
+        const double radius_m = tool.radius_m / pose.scale;
+        const double contact_m = is_held ? pair.reach_m : tool.wants_contacts ? radius_m : -1.0;
         surfaces_[i].count = 0;
         mesh.query(pair, contact_m, surfaces_[i].answer, contacts_[i]);
         Scene::remember(pair, surfaces_[i].answer);
+        if (is_held)
+        {
+            touches_[i].nearest = contacts_[i].contacts;
+            place_in_world(pose, touches_[i].nearest);
+            keep_within(radius_m, surfaces_[i].answer, contacts_[i]);
+        }
         place_in_world(pose, contacts_[i]);
     }
     mesh.add_work(work_, faults_);
@@ -588,12 +670,39 @@ void Frame::respond(std::span<const ObjectPose> poses) noexcept
         }
         ToolOutput& output = tool_outputs_[tool];
         const ProxyGoal goal{goals_[tool], goal_velocities_m_per_s_[tool], elapsed_s_[tool]};
-        output = has_proxy(tool) ? proxies_[tool].respond(goal, placed.view())
-                                 : follow(tool, placed.view());
-        output.force_n *= sample_watches_[tool].trust(output, scene_.tools()[tool], goals_[tool]);
+        output = has_proxy(tool)                ? proxies_[tool].respond(goal, placed.view())
+                 : rigid_proxy(tool) != nullptr ? respond_rigidly(tool, poses)
+                                                : follow(tool, placed.view());
+        if (rigid_proxy(tool) == nullptr)
+        {
+            output.proxy_rotation = rotations_[tool];
+        }
+        const double trust =
+            sample_watches_[tool].trust(output, scene_.tools()[tool], goals_[tool]);
+        output.force_n *= trust;
+        output.torque_nm *= trust;
         faults_ |= output.frozen ? FrameFault::proxy_frozen : FrameFault::none;
         faults_ |= output.squeezed ? FrameFault::proxy_squeezed : FrameFault::none;
     }
+}
+
+ToolOutput Frame::respond_rigidly(std::uint32_t tool, std::span<const ObjectPose> poses) noexcept
+{
+    StaticVector<TouchedObject, kMaxObjects> objects;
+    for (std::uint32_t i = 0; i < scene_.pairs().size(); ++i)
+    {
+        const ScenePair& pair = scene_.pairs()[i];
+        if (pair.tool == tool)
+        {
+            const ObjectPose& pose = poses[pair.object];
+            objects.push_back({&pose, &touches_[i], surfaces_[i].answer.kind, lower_of(i, pose)});
+        }
+    }
+    RigidProxy& rigid = *rigid_proxy(tool);
+    const ToolOutput output =
+        rigid.respond(goals_[tool], rotations_[tool], objects.view(), elapsed_s_[tool]);
+    output.squeezed = rigid.is_squeezed();
+    return output;
 }
 
 /// A tool without a proxy: whether it touches is proven where an upper bound says so.
@@ -609,20 +718,34 @@ ToolOutput Frame::follow(std::uint32_t tool, std::span<const PlacedSurface> surf
     return output;
 }
 
+/// What a pair's distances may be off in the world.
+double Frame::pair_rounding_m(std::uint32_t i, const ObjectPose& pose) noexcept
+{
+    const ScenePair& pair = scene_.pairs()[i];
+    const auto* mesh = std::get_if<MeshCore>(&scene_.tools()[pair.tool].core);
+    const double size_m =
+        pair.core.radius() * pose.scale + (mesh == nullptr ? 0.0 : mesh->origin_m.norm());
+    return pose_rounding_m(pose, to_world(pose, pair.core.center()), size_m);
+}
+
+/// The proven distance of a pair, in the world.
+double Frame::lower_of(std::uint32_t i, const ObjectPose& pose) noexcept
+{
+    const double lower_m = surfaces_[i].answer.lower_m * pose.scale - pair_rounding_m(i, pose);
+    return std::max(0.0, lower_m);
+}
+
 void Frame::report_pair(std::uint32_t i, const ObjectPose& pose) noexcept
 {
     const ScenePair& pair = scene_.pairs()[i];
     const DistanceAnswer& answer = surfaces_[i].answer;
     const auto* mesh = std::get_if<MeshCore>(&scene_.tools()[pair.tool].core);
-    const double size_m =
-        pair.core.radius() * pose.scale + (mesh == nullptr ? 0.0 : mesh->origin_m.norm());
-    const double rounding_m = pose_rounding_m(pose, to_world(pose, pair.core.center()), size_m);
     pair_outputs_[i] = {pair.tool,
                         pair.object,
                         answer.kind,
                         to_world(pose, answer.tool_point_m),
-                        std::max(0.0, answer.lower_m * pose.scale - rounding_m),
-                        answer.upper_m * pose.scale + rounding_m,
+                        lower_of(i, pose),
+                        answer.upper_m * pose.scale + pair_rounding_m(i, pose),
                         std::max(0.0, answer.certified_radius_m) * pose.scale,
                         answer.nearest_face,
                         to_world(pose, answer.nearest_point_m),

@@ -5,6 +5,7 @@
 #include "rt_core/base/realtime.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/force/proxy.hpp"
+#include "rt_core/force/rigid_proxy.hpp"
 #include "rt_core/frame/mesh_pair.hpp"
 #include "rt_core/frame/model.hpp"
 #include "rt_core/frame/sample_watch.hpp"
@@ -137,7 +138,14 @@ private:
     [[nodiscard]] double reach_of(std::uint32_t tool) const noexcept;
     [[nodiscard]] Vec3 ahead_of(std::uint32_t tool) const noexcept;
     [[nodiscard]] bool has_proxy(std::uint32_t tool) const noexcept;
+    [[nodiscard]] RigidProxy* rigid_proxy(std::uint32_t tool) noexcept;
+    [[nodiscard]] const RigidProxy* rigid_proxy(std::uint32_t tool) const noexcept;
     [[nodiscard]] const Vec3& position_of(std::uint32_t tool) const noexcept;
+    [[nodiscard]] const Mat3& rotation_of(std::uint32_t tool) const noexcept;
+    [[nodiscard]] ToolOutput respond_rigidly(std::uint32_t tool,
+                                             std::span<const ObjectPose> poses) noexcept;
+    [[nodiscard]] double lower_of(std::uint32_t i, const ObjectPose& pose) noexcept;
+    [[nodiscard]] double pair_rounding_m(std::uint32_t i, const ObjectPose& pose) noexcept;
     [[nodiscard]] ModelId model_of(const ScenePair& pair) const noexcept;
     [[nodiscard]] FrameOutput finish() const noexcept;
 
@@ -162,9 +170,11 @@ private:
     std::span<RefineMemory> refine_memories_; ///< kQuestions a pair.
     RefineQuestions questions_;               ///< About the model that is being refined.
     std::array<QueryMemory, kMaxPairs> query_memories_{};
-    std::span<LocalSurface> surfaces_;  ///< One a pair, and one for the rehearsal.
-    std::span<ContactReport> contacts_; ///< One a pair, if a tool wants them or is a mesh.
-    std::span<MeshPair> mesh_pairs_;    ///< One a pair, if a tool is a mesh.
+    std::span<LocalSurface> surfaces_;    ///< One a pair, and one for the rehearsal.
+    std::span<ContactReport> contacts_;   ///< One a pair, if a tool wants them or is a mesh.
+    std::span<MeshPair> mesh_pairs_;      ///< One a pair, if a tool is a mesh.
+    std::span<RigidProxy> rigid_proxies_; ///< One a tool, if one has a torque.
+    std::span<TouchReport> touches_;      ///< One a pair, if a tool has a torque.
     Budgets last_budgets_;
 
     std::array<ToolOutput, kMaxTools> tool_outputs_{};

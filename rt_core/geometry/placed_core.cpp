@@ -233,6 +233,36 @@ CoreCover PlacedCore::cover(double enough) const noexcept
     return balls;
 }
 
+CoreCorners PlacedCore::corners() const noexcept
+{
+    CoreCorners corners;
+    if (const auto* segment = std::get_if<Segment>(&core_))
+    {
+        corners.push_back(segment->from);
+        corners.push_back(segment->to);
+    }
+    else if (std::holds_alternative<Box>(core_) && !is_mesh_)
+    {
+        for (const double x : {-half_.x(), half_.x()})
+        {
+            for (const double y : {-half_.y(), half_.y()})
+            {
+                corners.push_back(center_ + axes_ * Vec3(x, y, -half_.z()));
+                corners.push_back(center_ + axes_ * Vec3(x, y, half_.z()));
+            }
+        }
+    }
+    else if (const auto* hull = std::get_if<Hull>(&core_))
+    {
+        const Vec3 middle = hull->body().center;
+        for (const Vec3& vertex : hull->vertices())
+        {
+            corners.push_back(center_ + scale_ * (axes_ * (vertex - middle)));
+        }
+    }
+    return corners;
+}
+
 double PlacedCore::motion_since(const PlacedCore& before) const noexcept
 {
     // A point is the centre and a constant share of each half axis.

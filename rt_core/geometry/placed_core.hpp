@@ -21,6 +21,9 @@ struct Ball
 /// Balls that hold a core together. Their order and number don't change when it moves.
 using CoreCover = StaticVector<Ball, kMaxCoverBalls>;
 
+/// Corners of a core: of a segment, a box or a hull; other cores have none.
+using CoreCorners = StaticVector<Vec3, kMaxHullVertices>;
+
 /// A tool's core in a model's frame, from where distances are measured. What is computed from it
 /// takes its placed coordinates, which are rounded once, for exact. A mesh is here no more than the
 /// oriented box round it. 0.3 KiB.
@@ -57,6 +60,8 @@ public:
 
     /// As many balls as needed for none to be larger than `enough`, but at most kMaxCoverBalls.
     [[nodiscard]] CoreCover cover(double enough) const noexcept TACTUS_NONBLOCKING;
+
+    [[nodiscard]] CoreCorners corners() const noexcept TACTUS_NONBLOCKING;
 
     /// No point of the core was farther from where it is now. For the same core placed elsewhere.
     [[nodiscard]] double motion_since(const PlacedCore& before) const noexcept TACTUS_NONBLOCKING;

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "rt_core/query/contact_report.hpp"
 
+#include "rt_core/math/arc_tangent.hpp"
 #include "rt_core/query/contact_set.hpp"
 #include "rt_core/query/convex_contact.hpp"
 
@@ -27,26 +28,6 @@ struct IncidentFace
 /// A vertex of more faces has no normal here.
 constexpr std::size_t kMaxIncident = 64;
 using Incident = StaticVector<IncidentFace, kMaxIncident>;
-
-/// Of a number that is not negative; right to some 1e-16. By IEEE operations alone: libm's differ
-/// between platforms.
-double arc_tangent(double t) noexcept
-{
-    const bool is_steep = t > 1.0;
-    double x = is_steep ? 1.0 / t : t;
-    constexpr int kHalvings = 3; // To at most pi / 32, where nine terms are enough.
-    for (int i = 0; i < kHalvings; ++i)
-    {
-        x = x / (1.0 + std::sqrt(1.0 + x * x));
-    }
-    double sum = 0.0;
-    for (int power = 17; power >= 1; power -= 2)
-    {
-        sum = (power % 4 == 1 ? 1.0 : -1.0) / power + x * x * sum;
-    }
-    const double angle = (1 << kHalvings) * x * sum;
-    return is_steep ? 0.5 * std::numbers::pi - angle : angle;
-}
 
 /// By the half angle, as Kahan has it: good at any angle. Zero when one has no length.
 double angle_between(const Vec3& a, const Vec3& b) noexcept
@@ -267,7 +248,63 @@ void add_contacts(const PlacedCore& core, double radius_m, const AbTree& tree,
     }
 }
 
+bool is_over(const Vec3& point, const Triangle& triangle, const Vec3& normal) noexcept
+{
+    for (std::size_t i = 0; i < 3; ++i)
+    {
+        const Vec3 edge = triangle[(i + 1) % 3] - triangle[i];
+        if (edge.cross(point - triangle[i]).dot(normal) < 0.0)
+        {
+            return false;
+        }
+    }
+    return true;
+}
+
+/// Corners of the core that stand over a face, on either side.
+void add_corners(const CoreCorners& corners, double reach_m, const Triangle& triangle, FaceId face,
+                 ContactSet& contacts) noexcept
+{
+    const Vec3 normal = normal_of(triangle);
+    for (const Vec3& corner : corners)
+    {
+        const double height = normal.dot(corner - triangle[0]);
+        const double distance = std::abs(height);
+        if (!(distance > 0.0) || distance > reach_m || !is_over(corner, triangle, normal))
+        {
+            continue;
+        }
+        const Contact contact{
+            face,   TriangleFeature::interior, distance,
+            corner, corner - height * normal,  height > 0.0 ? normal : Vec3(-normal),
+            {}};
+        (void)keep_nearest(contact, contacts); // Nearer ones matter more.
+    }
+}
+
 } // namespace
+
+void report_touches(const PlacedCore& core, double reach_m, const AbTree& tree,
+                    const LocalSurface& surface, TouchReport& touches) noexcept
+{
+    touches.clear();
+    const CoreCorners corners = core.corners();
+    for (std::uint32_t i = 0; i < surface.count; ++i)
+    {
+        if (surface.distances_m[i] > reach_m)
+        {
+            continue;
+        }
+        const Triangle triangle = to_triangle(surface.triangles[i].corners_m);
+        const FaceId face = tree.face_of(surface.triangles[i].prim);
+        const ClosestPoints closest = core.closest(triangle);
+        if (closest.distance <= reach_m)
+        {
+            (void)keep_nearest(make_contact(closest, triangle, face), touches.nearest);
+            add_corners(corners, reach_m, triangle, face, touches.corners);
+        }
+    }
+}
 
 void report_contacts(const PlacedCore& core, double radius_m, const AbTree& tree,
                      const LocalSurface& surface, bool is_closed, ContactReport& report) noexcept

@@ -24,4 +24,11 @@ void report_contacts(const PlacedCore& core, double radius_m, const AbTree& tree
                      const LocalSurface& surface, bool is_closed,
                      ContactReport& report) noexcept TACTUS_NONBLOCKING;
 
+/// Where a convex tool with a force may come to touch that surface: nearest points within `reach_m`
+/// of the core, and its corners that stand over a face, without which a box that lies flat on a
+/// large face would be held at one point alone. Which points are nearest among many as near is
+/// left to the kernel.
+void report_touches(const PlacedCore& core, double reach_m, const AbTree& tree,
+                    const LocalSurface& surface, TouchReport& touches) noexcept TACTUS_NONBLOCKING;
+
 } // namespace tactus

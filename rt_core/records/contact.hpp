@@ -30,6 +30,20 @@ struct Contact
 /// Nearest first, lower face ids first among equals, then lower ones of the tool's.
 using ContactSet = StaticVector<Contact, kMaxContacts>;
 
+/// Where a tool with a force and a torque may come to touch an object, for the force stage. 6 KiB.
+struct TouchReport
+{
+    ContactSet nearest; ///< Of each face the nearest point.
+    ContactSet corners; ///< Of a convex core, over a face.
+
+    /// As new, without touching what no contact is in.
+    void clear() noexcept
+    {
+        nearest.clear();
+        corners.clear();
+    }
+};
+
 /// On which side of a closed surface a point is.
 enum class Side : std::uint8_t
 {

@@ -33,6 +33,9 @@ struct ToolSpec
     double speed_max_m_per_s{1.0};   ///< Faster goals are followed at this speed in contact.
     ToolCore core{PointCore{}};      ///< A point makes a sphere.
     bool wants_contacts{false};      ///< Contacts, normals and sides, some microseconds a pair.
+    double torque_max_nm{0.5};       ///< The torque's norm is clamped to it. A sphere has none.
+    /// Follows the hand through surfaces, without a force: a tool that measures.
+    bool passes_through{false};
 };
 
 /// Where an object stands: world = translation + scale x rotation x model-frame point.

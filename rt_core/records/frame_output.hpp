@@ -19,7 +19,9 @@ namespace tactus
 struct ToolOutput
 {
     Vec3 force_n{0.0, 0.0, 0.0};
-    Vec3 proxy_m{0.0, 0.0, 0.0}; ///< Centre of the tool as the surface lets it be.
+    Vec3 proxy_m{0.0, 0.0, 0.0};           ///< Centre of the tool as the surface lets it be.
+    Vec3 torque_nm{0.0, 0.0, 0.0};         ///< About the device's position. Zero for a sphere.
+    Mat3 proxy_rotation{Mat3::Identity()}; ///< Of the tool's frame; a sphere's is the hand's.
     bool in_contact{false};
     bool frozen{false};   ///< The proxy waits for data; the force fades.
     bool squeezed{false}; ///< Objects leave the tool no room; the force fades.

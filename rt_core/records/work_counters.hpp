@@ -59,7 +59,7 @@ enum class FrameFault : std::uint32_t
     proxy_frozen = 1U << 9U,       ///< Contact without a certified surface; the force fades.
     tool_stuck = 1U << 10U,        ///< A device's time stands still; the force fades.
     tool_jumped = 1U << 11U,       ///< A goal faster than any hand; no force until it is back.
-    proxy_squeezed = 1U << 12U,    ///< Objects closed in on a tool; the force fades.
+    proxy_squeezed = 1U << 12U,    ///< Objects leave a proxy no room, or one came over it.
 };
 
 [[nodiscard]] constexpr FrameFault operator|(FrameFault a, FrameFault b) noexcept

@@ -97,6 +97,7 @@ struct Run
 RigOptions with_core(RigOptions options, const ToolCore& core)
 {
     options.tools = {{1e-4, 500.0, 8.0, 1.0, core, true}};
+    options.tools[0].passes_through = std::holds_alternative<MeshCore>(core); // So that faces meet.
     return options;
 }
 

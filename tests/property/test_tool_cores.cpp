@@ -80,6 +80,7 @@ ToolSpec tool_with(const ToolCore& core, double radius_m)
     spec.radius_m = radius_m;
     spec.core = core;
     spec.wants_contacts = true;
+    spec.passes_through = true; // So that answers are asked for everywhere.
     return spec;
 }
 

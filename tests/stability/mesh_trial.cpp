@@ -33,6 +33,7 @@ RigOptions rig_options(const MeshTrial& trial)
     tool.radius_m = skin_m(trial);
     tool.core = MeshCore{ModelId{1}};
     tool.wants_contacts = true;
+    tool.passes_through = true; // Where it is held back nothing meets.
     options.tools = {tool};
     return options;
 }

@@ -58,7 +58,7 @@ inline constexpr FrameShape kExampleShape{1, 1, 1};
 inline RecordedSetup example_setup(const TinyModel& model)
 {
     RecordedSetup setup;
-    setup.tools = {{0.01, 500.0, 8.0, 1.0}};
+    setup.tools = {{0.01, 500.0, 8.0, 1.0, PointCore{}, false, 0.25, true}};
     setup.objects = {{ModelId{0}, {250.0, 0.5, 0.25, 1.5}}};
     setup.models = {{{4, 1, 400, 60, 40, false}, model.header, model.base}};
     setup.static_when_it_fits = true;

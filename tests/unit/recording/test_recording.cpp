@@ -118,6 +118,8 @@ TEST(RecordingFile, gives_back_what_was_written)
     ASSERT_TRUE(sut) << sut.error().text;
     const RecordedSetup& setup = sut.value().setup();
     EXPECT_EQ(setup.tools[0].stiffness_n_per_m, 500.0);
+    EXPECT_EQ(setup.tools[0].torque_max_nm, 0.25);
+    EXPECT_TRUE(setup.tools[0].passes_through);
     EXPECT_EQ(setup.objects[0].model.value, 0U);
     EXPECT_EQ(setup.objects[0].material.stiffness_n_per_m, 250.0);
     EXPECT_EQ(setup.objects[0].material.static_friction, 0.5);
@@ -140,7 +142,7 @@ TEST(RecordingFile, gives_back_what_was_written)
 TEST(RecordingFile, begins_with_its_magic_and_version)
 {
     const std::vector<std::byte> bytes = example();
-    EXPECT_EQ(std::memcmp(bytes.data(), "TACTREC\n\x01\0\0\0", 12), 0);
+    EXPECT_EQ(std::memcmp(bytes.data(), "TACTREC\n\x02\0\0\0", 12), 0);
 }
 
 TEST(RecordingFile, tells_from_where_frames_were_lost)
@@ -183,8 +185,8 @@ TEST(RecordingFile, is_refused_when_something_follows_it)
 TEST(RecordingFile, is_refused_when_it_is_of_another_kind_or_version)
 {
     std::vector<std::byte> bytes = example();
-    bytes[8] = std::byte{3};
-    expect_refusal(bytes, "at byte 8: format version 3 is unknown; this program reads 2");
+    bytes[8] = std::byte{1};
+    expect_refusal(bytes, "at byte 8: format version 1 is unknown; this program reads 2");
     bytes[3] = std::byte{'X'};
     expect_refusal(bytes, "is not a Tactus recording");
     bytes = example();
@@ -226,7 +228,8 @@ TEST(RecordingFile, is_refused_when_a_value_is_out_of_its_range)
 {
     // What the checksums vouch for is checked all the same.
     constexpr std::size_t kTool = 20;
-    constexpr std::size_t kCore = kTool + 33;
+    constexpr std::size_t kTorque = kTool + 33;
+    constexpr std::size_t kCore = kTorque + 9;
     constexpr std::size_t kObject = kCore + 1;
     constexpr std::size_t kNames = kObject + 36;
     expect_refusal(with_bytes(kSetup, 0, {0, 0, 0, 0, 0, 0, 0, 0}), "the period is 0 ns; 1 to");
@@ -236,6 +239,8 @@ TEST(RecordingFile, is_refused_when_a_value_is_out_of_its_range)
     expect_refusal(with_bytes(kSetup, 18, {9}), "9 objects");
     expect_refusal(with_bytes(kSetup, 19, {9}), "9 models");
     expect_refusal(with_bytes(kSetup, kTool + 6, {0xF8, 0x7F}), "tool 0 is not within"); // NaN.
+    expect_refusal(with_bytes(kSetup, kTorque + 6, {0xF8, 0x7F}), "tool 0 is not within");
+    expect_refusal(with_bytes(kSetup, kTorque - 1, {2}), "tool 0 has an unknown core");
     expect_refusal(with_bytes(kSetup, kCore - 1, {2}), "tool 0 has an unknown core");
     expect_refusal(with_bytes(kSetup, kCore, {9}), "tool 0 has an unknown core");
     expect_refusal(with_bytes(kSetup, kObject, {1}), "object 0 names model 1 of 1");

@@ -1,0 +1,311 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "rt_core/force/rigid_proxy.hpp"
+
+#include "rt_core/math/rotation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tactus
+{
+
+namespace
+{
+
+/// Never more of the proven distance than this is gone, and of the radius half is kept: what dips
+/// into it has room to come back.
+constexpr double kMostOfDistance = 0.9;
+constexpr double kKeptOfRadius = 0.5;
+/// Planes this alike are one: a share of the arm. The one that holds back most is kept.
+constexpr double kSamePlane = 1e-3;
+/// A hold is kept until the tool has slid this share of its radius. What it bends a motion round an
+/// edge by is half the square of it.
+constexpr double kHoldSlide = 0.05;
+/// Cosine between the normals of holds that are one.
+constexpr double kSameDirection = 0.999;
+
+Motion<6> to_motion(const Vec3& translation, const Vec3& rotation) noexcept
+{
+    Motion<6> motion;
+    motion.head<3>() = translation;
+    motion.tail<3>() = rotation;
+    return motion;
+}
+
+Vec3 clamped(const Vec3& vector, double most) noexcept
+{
+    const double length = vector.norm();
+    return length > most ? Vec3(vector * (most / length)) : vector;
+}
+
+} // namespace
+
+RigidProxy::RigidProxy(const ToolSpec& spec) noexcept : spec_(spec)
+{
+    const PlacedCore core(spec.core, Placement{});
+    center_m_ = core.center();
+    core_radius_m_ = core.radius();
+    radius_m_ = std::max(spec.radius_m, kLeastSkin * core_radius_m_);
+    arm_m_ = core_radius_m_ + radius_m_;
+}
+
+void RigidProxy::stay_with(const Vec3& goal_m, const Mat3& goal_rotation) noexcept
+{
+    if (!is_joined_)
+    {
+        place_ = {goal_rotation, goal_m, 1.0};
+    }
+}
+
+double RigidProxy::way_to_m(const Vec3& goal_m, const Mat3& goal_rotation) const noexcept
+{
+    return length_of(way_to(goal_m, goal_rotation));
+}
+
+/// No point of the core goes farther, over a way on which its centre goes straight while it turns
+/// round one axis: chords are shorter than arcs.
+double RigidProxy::length_of(const Motion<6>& motion) const noexcept
+{
+    const Vec3 turn = motion.tail<3>() / arm_m_;
+    const Vec3 center = place_.rotation * center_m_;
+    return motion.head<3>().norm() + turn.cross(center).norm() + turn.norm() * core_radius_m_;
+}
+
+Motion<6> RigidProxy::way_to(const Vec3& goal_m, const Mat3& goal_rotation) const noexcept
+{
+    const Vec3 turn = rotation_vector(goal_rotation * place_.rotation.transpose());
+    return to_motion(goal_m - place_.origin, arm_m_ * turn);
+}
+
+ToolOutput RigidProxy::respond(const Vec3& goal_m, const Mat3& goal_rotation,
+                               std::span<const TouchedObject> objects, double elapsed_s) noexcept
+{
+    ToolOutput output;
+    const Room room = find_room(objects);
+    is_squeezed_ = false;
+    is_joined_ = is_joined_ || room.is_clear;
+    if (!is_joined_)
+    {
+        stay_with(goal_m, goal_rotation);
+    }
+    else if (room.free_m > 0.0)
+    {
+        frozen_s_ = 0.0;
+        step(goal_m, goal_rotation, objects, room.free_m, output);
+    }
+    else
+    {
+        frozen_s_ += elapsed_s;
+        freeze(goal_m, goal_rotation, room.is_crossed, output);
+    }
+    output.proxy_m = place_.origin;
+    output.proxy_rotation = place_.rotation;
+    return output;
+}
+
+RigidProxy::Room RigidProxy::find_room(std::span<const TouchedObject> objects) const noexcept
+{
+    Room room{std::numeric_limits<double>::infinity(), true, false};
+    for (const TouchedObject& object : objects)
+    {
+        const bool is_exact = object.kind == AnswerKind::exact;
+        const double lower_m = object.lower_m;
+        const double beyond_m = is_exact ? std::max(lower_m - kKeptOfRadius * radius_m_,
+                                                    (1.0 - kKeptOfRadius) * lower_m)
+                                         : lower_m - radius_m_;
+        room.free_m = std::min({room.free_m, beyond_m, kMostOfDistance * lower_m});
+        room.is_clear = room.is_clear && lower_m > 0.0;
+        room.is_crossed = room.is_crossed || (is_exact && !(lower_m > 0.0));
+    }
+    return room;
+}
+
+void RigidProxy::step(const Vec3& goal_m, const Mat3& goal_rotation,
+                      std::span<const TouchedObject> objects, double free_m,
+                      ToolOutput& output) noexcept
+{
+    const Motion<6> wanted = way_to(goal_m, goal_rotation);
+    gather(objects);
+    const NearestMotion<6> nearest = find_motion(wanted);
+    output.in_contact = !nearest.held_by.empty();
+    add_force(nearest.motion - wanted, 1.0, output);
+    keep_holds(nearest, objects);
+    const double length = length_of(nearest.motion);
+    if (!output.in_contact && length <= free_m)
+    {
+        place_ = {goal_rotation, goal_m, 1.0}; // As the hand has it, to the last bit.
+        return;
+    }
+    const double share = length > free_m ? free_m / length : 1.0;
+    place_.origin += share * nearest.motion.head<3>();
+    place_.rotation = turned_by(nearest.motion.tail<3>() * (share / arm_m_), place_.rotation);
+}
+
+/// Where the proxy is the last planes hold what pushes against them, less with every moment. A core
+/// that an object came over has no way out that is known to be clear: it is given up.
+void RigidProxy::freeze(const Vec3& goal_m, const Mat3& goal_rotation, bool is_crossed,
+                        ToolOutput& output) noexcept
+{
+    planes_.spaces.clear();
+    for (const Motion<6>& normal : last_normals_)
+    {
+        planes_.spaces.push_back({normal, 0.0});
+    }
+    const Motion<6> wanted = way_to(goal_m, goal_rotation);
+    const NearestMotion<6> nearest = nearest_motion<6>(planes_.spaces.view(), wanted);
+    output.frozen = true;
+    output.in_contact = !nearest.held_by.empty();
+    const double share = std::max(0.0, 1.0 - frozen_s_ / kFadeTime_s);
+    add_force(nearest.motion - wanted, share, output);
+    if (is_crossed && !(share > 0.0))
+    {
+        is_joined_ = false;
+        frozen_s_ = 0.0;
+        holds_.clear();
+        last_normals_.clear();
+    }
+}
+
+void RigidProxy::gather(std::span<const TouchedObject> objects) noexcept
+{
+    planes_.spaces.clear();
+    planes_.touches.clear();
+    for (std::uint32_t i = 0; i < objects.size(); ++i)
+    {
+        for (const ContactSet* contacts :
+             {&objects[i].touches->nearest, &objects[i].touches->corners})
+        {
+            for (const Contact& contact : *contacts)
+            {
+                add({i, contact.on_tool_m, contact.on_surface_m, contact.normal});
+            }
+        }
+    }
+    add_holds(objects);
+}
+
+/// When there is no room, what holds back least goes.
+void RigidProxy::add(const Touch& touch) noexcept
+{
+    if (touch.normal == Vec3(0.0, 0.0, 0.0))
+    {
+        return; // Of a face without area: those round it hold.
+    }
+    const Vec3 lever = (touch.on_tool_m - place_.origin) / arm_m_;
+    const HalfSpace<6> space{to_motion(touch.normal, lever.cross(touch.normal)),
+                             radius_m_ - touch.normal.dot(touch.on_tool_m - touch.on_surface_m)};
+    std::size_t least = 0;
+    for (std::size_t i = 0; i < planes_.spaces.size(); ++i)
+    {
+        const HalfSpace<6>& other = planes_.spaces[i];
+        if ((other.normal - space.normal).norm() < kSamePlane)
+        {
+            replace(i, space, touch);
+            return;
+        }
+        least = other.offset < planes_.spaces[least].offset ? i : least;
+    }
+    if (!planes_.spaces.full())
+    {
+        planes_.spaces.push_back(space);
+        planes_.touches.push_back(touch);
+        return;
+    }
+    replace(least, space, touch);
+}
+
+void RigidProxy::replace(std::size_t plane, const HalfSpace<6>& space, const Touch& touch) noexcept
+{
+    if (space.offset > planes_.spaces[plane].offset)
+    {
+        planes_.spaces[plane] = space;
+        planes_.touches[plane] = touch;
+    }
+}
+
+/// Adds what held before, and forgets where the tool is no longer.
+void RigidProxy::add_holds(std::span<const TouchedObject> objects) noexcept
+{
+    std::size_t kept = 0;
+    for (const Hold& hold : holds_)
+    {
+        const ObjectPose& pose = *objects[hold.object].pose;
+        const Touch touch{hold.object, place_.origin + place_.rotation * hold.on_tool_m,
+                          to_world(pose, hold.on_surface_m), pose.rotation * hold.normal};
+        const Vec3 gap = touch.on_tool_m - touch.on_surface_m;
+        const double height = touch.normal.dot(gap);
+        const double slid = (gap - height * touch.normal).norm();
+        if (slid > kHoldSlide * radius_m_ || height > 2.0 * radius_m_)
+        {
+            continue;
+        }
+        add(touch);
+        holds_[kept++] = hold;
+    }
+    while (holds_.size() > kept)
+    {
+        (void)holds_.pop_back();
+    }
+}
+
+/// A gap that is too narrow for the tool holds it where it is.
+NearestMotion<6> RigidProxy::find_motion(const Motion<6>& wanted) noexcept
+{
+    const NearestMotion<6> nearest = nearest_motion<6>(planes_.spaces.view(), wanted);
+    if (nearest.is_feasible)
+    {
+        return nearest;
+    }
+    is_squeezed_ = true;
+    for (HalfSpace<6>& space : planes_.spaces)
+    {
+        space.offset = std::min(space.offset, 0.0);
+    }
+    return nearest_motion<6>(planes_.spaces.view(), wanted);
+}
+
+void RigidProxy::keep_holds(const NearestMotion<6>& nearest,
+                            std::span<const TouchedObject> objects) noexcept
+{
+    last_normals_.clear();
+    for (const std::uint32_t plane : nearest.held_by)
+    {
+        last_normals_.push_back(planes_.spaces[plane].normal);
+        const Touch& touch = planes_.touches[plane];
+        const ObjectPose& pose = *objects[touch.object].pose;
+        keep({touch.object, place_.rotation.transpose() * (touch.on_tool_m - place_.origin),
+              to_model(pose, touch.on_surface_m), pose.rotation.transpose() * touch.normal});
+    }
+}
+
+/// In place of one that is all but the same; else the oldest goes when there is no room.
+void RigidProxy::keep(const Hold& hold) noexcept
+{
+    const auto is_same = [&hold, this](const Hold& other)
+    {
+        return other.object == hold.object && hold.normal.dot(other.normal) > kSameDirection &&
+               (hold.on_tool_m - other.on_tool_m).norm() < kHoldSlide * radius_m_;
+    };
+    auto* old = std::find_if(holds_.begin(), holds_.end(), is_same);
+    if (old == holds_.end() && !holds_.full())
+    {
+        holds_.push_back(hold);
+        return;
+    }
+    old = old == holds_.end() ? holds_.begin() : old;
+    std::move(old + 1, holds_.end(), old);
+    holds_[holds_.size() - 1] = hold;
+}
+
+void RigidProxy::add_force(const Motion<6>& held_back, double share,
+                           ToolOutput& output) const noexcept
+{
+    const double stiffness = spec_.stiffness_n_per_m;
+    output.force_n = share * clamped(stiffness * held_back.head<3>(), spec_.force_max_n);
+    output.torque_nm =
+        share * clamped(stiffness * arm_m_ * held_back.tail<3>(), spec_.torque_max_nm);
+}
+
+} // namespace tactus

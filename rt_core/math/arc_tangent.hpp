@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include <cmath>
+#include <numbers>
+
+namespace tactus
+{
+
+/// Of a number that is not negative; right to some 1e-16. By IEEE operations alone: libm's differ
+/// between platforms.
+[[nodiscard]] inline double arc_tangent(double t) noexcept
+{
+    const bool is_steep = t > 1.0;
+    double x = is_steep ? 1.0 / t : t;
+    constexpr int kHalvings = 3; // To at most pi / 32, where nine terms are enough.
+    for (int i = 0; i < kHalvings; ++i)
+    {
+        x = x / (1.0 + std::sqrt(1.0 + x * x));
+    }
+    double sum = 0.0;
+    for (int power = 17; power >= 1; power -= 2)
+    {
+        sum = (power % 4 == 1 ? 1.0 : -1.0) / power + x * x * sum;
+    }
+    const double angle = (1 << kHalvings) * x * sum;
+    return is_steep ? 0.5 * std::numbers::pi - angle : angle;
+}
+
+} // namespace tactus

@@ -1,0 +1,434 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "rt_core/force/rigid_proxy.hpp"
+#include "tests/unit/rt_core/surface_support.hpp"
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+namespace tactus::test
+{
+
+namespace
+{
+
+constexpr double kRadius = 0.002;
+constexpr double kStiffness = 500.0;
+constexpr double kPeriod_s = 0.001;
+const Vec3 kHalf(0.03, 0.02, 0.01);
+
+Mat3 turn(const Vec3& axis, double angle)
+{
+    return Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix();
+}
+
+ToolSpec tool_of(const ToolCore& core, double radius_m = kRadius)
+{
+    ToolSpec spec;
+    spec.radius_m = radius_m;
+    spec.stiffness_n_per_m = kStiffness;
+    spec.force_max_n = 1e3;
+    spec.torque_max_nm = 1e3;
+    spec.core = core;
+    return spec;
+}
+
+/// An object as triangles, all of them exact.
+struct Solid
+{
+    TriangleList triangles;
+    ObjectPose pose;
+};
+
+/// A proxy among objects; what it is told of them is found by trying all triangles.
+class Rig
+{
+public:
+    Rig(const ToolSpec& spec, std::vector<Solid> solids)
+        : objects(std::move(solids)), spec_(spec), sut(spec)
+    {
+    }
+
+    ToolOutput step(const Vec3& goal, const Mat3& rotation = Mat3::Identity())
+    {
+        sut.stay_with(goal, rotation);
+        std::vector<TouchReport> reports(objects.size());
+        std::vector<TouchedObject> touched;
+        for (std::size_t i = 0; i < objects.size(); ++i)
+        {
+            const double lower = look(objects[i], reports[i]);
+            if (!tells_corners)
+            {
+                reports[i].corners.clear();
+            }
+            touched.push_back({&objects[i].pose, &reports[i], kind, lower_share * lower});
+        }
+        return sut.respond(goal, rotation, touched, kPeriod_s);
+    }
+    ToolOutput settle(const Vec3& goal, const Mat3& rotation = Mat3::Identity(), int frames = 300)
+    {
+        ToolOutput output;
+        for (int i = 0; i < frames; ++i)
+        {
+            output = step(goal, rotation);
+        }
+        return output;
+    }
+    /// Of the core; zero when it meets a triangle.
+    [[nodiscard]] double distance() const
+    {
+        double least = std::numeric_limits<double>::infinity();
+        for (const Solid& solid : objects)
+        {
+            TouchReport unused;
+            least = std::min(least, look(solid, unused));
+        }
+        return least;
+    }
+
+    std::vector<Solid> objects;
+    AnswerKind kind{AnswerKind::exact};
+    double lower_share{1.0}; ///< Of the true distance, as the proxy is told.
+    bool tells_corners{true};
+
+private:
+    [[nodiscard]] double look(const Solid& solid, TouchReport& report) const
+    {
+        const PlacedCore core(spec_.core, {sut.rotation(), sut.position_m(), 1.0});
+        const double reach = sut.radius_m() + 0.002;
+        double least = std::numeric_limits<double>::infinity();
+        for (const auto& corners : solid.triangles)
+        {
+            Triangle triangle = to_triangle(corners);
+            for (Vec3& corner : triangle)
+            {
+                corner = to_world(solid.pose, corner);
+            }
+            const ClosestPoints closest = core.closest(triangle);
+            least = std::min(least, closest.meet ? 0.0 : closest.distance);
+            keep(closest.on_shape, closest.on_triangle, reach, report.nearest);
+            for (const Vec3& corner : core.corners())
+            {
+                keep(corner, closest_point_on_triangle(corner, triangle).point, reach,
+                     report.corners);
+            }
+        }
+        return least;
+    }
+    static void keep(const Vec3& on_tool, const Vec3& on_surface, double reach, ContactSet& set)
+    {
+        const Vec3 gap = on_tool - on_surface;
+        if (gap.norm() > 0.0 && gap.norm() <= reach)
+        {
+            (void)set.try_push_back({FaceId{}, TriangleFeature::interior, gap.norm(), on_tool,
+                                     on_surface, gap.normalized(), FaceId{}});
+        }
+    }
+
+    ToolSpec spec_;
+
+public:
+    RigidProxy sut;
+};
+
+Rig on_plane(const ToolCore& core)
+{
+    return Rig(tool_of(core), {{plane(), {}}});
+}
+
+} // namespace
+
+TEST(RigidProxy, away_from_everything_is_where_the_hand_is_to_the_last_bit_without_a_force)
+{
+    Rig rig = on_plane(Box{kHalf});
+    Random random(1);
+    Vec3 goal(0, 0, 0.2);
+    Mat3 rotation = Mat3::Identity();
+    for (int i = 0; i < 500; ++i)
+    {
+        goal += random.in_cube(0.002);
+        goal.z() = std::max(goal.z(), 0.1);
+        rotation = turn(random.in_cube(1.0), 0.05) * rotation;
+
+        const ToolOutput output = rig.step(goal, rotation);
+
+        ASSERT_EQ(output.proxy_m, goal) << i;
+        ASSERT_EQ(output.proxy_rotation, rotation) << i;
+        ASSERT_EQ(output.force_n, Vec3(0, 0, 0)) << i;
+        ASSERT_EQ(output.torque_nm, Vec3(0, 0, 0)) << i;
+        ASSERT_FALSE(output.in_contact) << i;
+    }
+}
+
+TEST(RigidProxy, pressed_flat_stays_flat_and_pushes_by_its_depth)
+{
+    const std::array<Vec3, 3> corners{Vec3(0.03, 0, 0.01), Vec3(-0.03, 0.02, 0.01),
+                                      Vec3(-0.03, -0.02, 0.01)};
+    std::vector<Vec3> vertices(corners.begin(), corners.end());
+    for (const Vec3& corner : corners)
+    {
+        vertices.push_back(-corner);
+    }
+    const std::array<std::pair<ToolCore, double>, 3> tools{
+        {{Box{kHalf}, 0.01},
+         {Segment{{-0.03, 0, 0}, {0.03, 0, 0}}, 0.0},
+         {Hull::create(vertices).value(), 0.01}}};
+    for (const auto& [core, height] : tools)
+    {
+        Rig rig = on_plane(core);
+        rig.settle(Vec3(0, 0, 0.05));
+
+        const ToolOutput output = rig.settle(Vec3(0, 0, -0.004));
+
+        const double rest = height + kRadius;
+        EXPECT_TRUE(output.in_contact) << core.index();
+        EXPECT_LE((output.proxy_m - Vec3(0, 0, rest)).norm(), 1e-7) << core.index();
+        EXPECT_LE((output.force_n - Vec3(0, 0, kStiffness * (rest + 0.004))).norm(), 1e-3)
+            << core.index();
+        EXPECT_LE(output.torque_nm.norm(), 1e-5) << core.index();
+        EXPECT_LE((output.proxy_rotation - Mat3::Identity()).norm(), 1e-5) << core.index();
+    }
+}
+
+TEST(RigidProxy, comes_to_rest_on_what_held_it_where_it_is_told_of_one_point_at_a_time)
+{
+    Rig rig = on_plane(Box{kHalf});
+    rig.tells_corners = false;
+    rig.settle(Vec3(0, 0, 0.05));
+    const Mat3 tilted = turn(Vec3(1, 2, 0), 0.02);
+    rig.settle(Vec3(0, 0, -0.004), tilted, 100);
+    for (int i = 0; i < 100; ++i)
+    {
+        const Vec3 before = rig.sut.position_m();
+        const ToolOutput output = rig.step(Vec3(0, 0, -0.004), tilted);
+        ASSERT_LE((output.proxy_m - before).norm(), 1e-4 * kRadius) << i;
+        ASSERT_NEAR(rig.distance(), kRadius, 0.01 * kRadius) << i;
+    }
+}
+
+TEST(RigidProxy, pressed_at_an_angle_turns_back_what_the_surface_turns)
+{
+    for (const double angle : {-0.3, -0.02, 0.02, 0.3})
+    {
+        Rig rig = on_plane(Box{kHalf});
+        rig.settle(Vec3(0, 0, 0.1));
+        const Mat3 tilted = turn(Vec3(0, 1, 0), angle);
+
+        const ToolOutput output = rig.settle(Vec3(0, 0, -0.01), tilted);
+
+        // Pushed by points below it only: along z, and with a lever no longer than it is.
+        EXPECT_TRUE(output.in_contact);
+        EXPECT_GT(output.force_n.z(), 0.0);
+        EXPECT_LE(Vec3(output.force_n.x(), output.force_n.y(), 0.0).norm(), 1e-3);
+        EXPECT_LT(output.torque_nm.y() * angle, 0.0) << "back towards where the surface has it";
+        EXPECT_LE(std::abs(output.torque_nm.x()), 1e-4);
+        EXPECT_LE(std::abs(output.torque_nm.y()),
+                  output.force_n.z() * (kHalf.x() + kHalf.z()) + 1e-6);
+        EXPECT_NEAR(rig.distance(), kRadius, 1e-3 * kRadius);
+        // Of the coupling's two springs: torque and force say where the proxy is.
+        const double arm = kHalf.norm() + kRadius;
+        const Eigen::AngleAxisd held(output.proxy_rotation * tilted.transpose());
+        const Vec3 torque = kStiffness * arm * arm * held.angle() * held.axis();
+        EXPECT_LE((output.torque_nm - torque).norm(), 0.02 * torque.norm() + 1e-6) << angle;
+        EXPECT_LE((output.force_n - kStiffness * (output.proxy_m - Vec3(0, 0, -0.01))).norm(),
+                  0.02 * output.force_n.norm());
+    }
+}
+
+TEST(RigidProxy, force_and_torque_are_clamped)
+{
+    ToolSpec spec = tool_of(Box{kHalf});
+    spec.force_max_n = 2.0;
+    spec.torque_max_nm = 0.01;
+    Rig rig(spec, {{plane(), {}}});
+    rig.settle(Vec3(0, 0, 0.1));
+
+    const ToolOutput output = rig.settle(Vec3(0, 0, -0.05), turn(Vec3(0, 1, 0), 0.5));
+
+    EXPECT_NEAR(output.force_n.norm(), 2.0, 1e-12);
+    EXPECT_NEAR(output.torque_nm.norm(), 0.01, 1e-12);
+}
+
+TEST(RigidProxy, is_let_go_at_once)
+{
+    Rig rig = on_plane(Box{kHalf});
+    rig.settle(Vec3(0, 0, 0.05));
+    rig.settle(Vec3(0, 0, -0.004), turn(Vec3(1, 0, 0), 0.05));
+
+    const ToolOutput output = rig.settle(Vec3(0, 0, 0.05), Mat3::Identity(), 100);
+
+    EXPECT_FALSE(output.in_contact);
+    EXPECT_EQ(output.force_n, Vec3(0, 0, 0));
+    EXPECT_EQ(output.torque_nm, Vec3(0, 0, 0));
+    EXPECT_EQ(output.proxy_m, Vec3(0, 0, 0.05));
+}
+
+TEST(RigidProxy, never_pulls_and_its_core_never_crosses_a_surface)
+{
+    const std::vector<Vec3> spike{
+        {0, 0, -0.04}, {0.01, 0, 0.02}, {-0.01, 0.01, 0.02}, {0, -0.01, 0.02}};
+    const std::array<ToolCore, 3> cores{Box{kHalf}, Segment{{-0.03, 0, 0}, {0.03, 0, 0}},
+                                        Hull::create(spike).value()};
+    Random random(2);
+    for (const ToolCore& core : cores)
+    {
+        Rig rig(tool_of(core), {{cube(0.05), {}}, {plane(), {}}});
+        rig.objects[0].pose.translation_m = Vec3(0, 0, 0.07);
+        rig.settle(Vec3(0.2, 0, 0.2));
+        Vec3 goal(0.2, 0, 0.2);
+        Mat3 rotation = Mat3::Identity();
+        Vec3 aim = goal;
+        Vec3 axis(0, 0, 1);
+        int contacts = 0;
+        for (int i = 0; i < 6'000; ++i)
+        {
+            if (random.one_in(50))
+            {
+                aim = Vec3(0, 0, 0.06) + random.in_cube(0.12);
+                axis = random.in_cube(1.0);
+            }
+            goal += 0.05 * (aim - goal);
+            rotation = turn(axis, 0.03) * rotation;
+            const PlacedCore before(core, {rig.sut.rotation(), rig.sut.position_m(), 1.0});
+            const double room = rig.distance();
+
+            const ToolOutput output = rig.step(goal, rotation);
+
+            ASSERT_TRUE(output.force_n.allFinite() && output.torque_nm.allFinite()) << i;
+            ASSERT_GT(rig.distance(), 0.0) << i;
+            const PlacedCore after(core, {output.proxy_rotation, output.proxy_m, 1.0});
+            ASSERT_LE(after.motion_since(before), std::sqrt(3.0) * 0.9 * room) << i;
+            ASSERT_GE(
+                output.force_n.dot(output.proxy_m - goal) +
+                    output.torque_nm.dot(
+                        Eigen::AngleAxisd(output.proxy_rotation * rotation.transpose()).angle() *
+                        Eigen::AngleAxisd(output.proxy_rotation * rotation.transpose()).axis()),
+                -1e-2)
+                << i << ": it gave energy away";
+            contacts += output.in_contact ? 1 : 0;
+        }
+        EXPECT_GT(contacts, 1'000);
+    }
+}
+
+TEST(RigidProxy, frozen_fades_within_fifty_milliseconds_and_never_pulls)
+{
+    Rig rig = on_plane(Box{kHalf});
+    rig.settle(Vec3(0, 0, 0.05));
+    const ToolOutput held = rig.settle(Vec3(0, 0, -0.004));
+    rig.kind = AnswerKind::bracket;
+    rig.lower_share = 0.5;
+
+    double last = held.force_n.z();
+    for (int i = 0; i < 50; ++i)
+    {
+        const ToolOutput output = rig.step(Vec3(0, 0, -0.004));
+        ASSERT_TRUE(output.frozen);
+        ASSERT_LT(output.force_n.z(), last) << i;
+        ASSERT_EQ(output.proxy_m, held.proxy_m);
+        last = output.force_n.z();
+    }
+    EXPECT_EQ(last, 0.0);
+    const ToolOutput pulled = rig.step(Vec3(0, 0, 0.1));
+    EXPECT_EQ(pulled.force_n, Vec3(0, 0, 0));
+    EXPECT_EQ(pulled.proxy_m, held.proxy_m) << "what lies between is not known";
+
+    rig.kind = AnswerKind::exact;
+    rig.lower_share = 1.0;
+    EXPECT_EQ(rig.settle(Vec3(0, 0, 0.1)).proxy_m, Vec3(0, 0, 0.1));
+}
+
+TEST(RigidProxy, between_brackets_goes_no_farther_than_they_allow)
+{
+    Rig rig = on_plane(Box{kHalf});
+    rig.settle(Vec3(0, 0, 0.05));
+    rig.kind = AnswerKind::bracket;
+    rig.lower_share = 0.5;
+    for (int i = 0; i < 100; ++i)
+    {
+        const Vec3 before = rig.sut.position_m();
+        const double room = std::max(0.0, 0.5 * rig.distance() - kRadius);
+        const ToolOutput output = rig.step(Vec3(0, 0, -0.05));
+        ASSERT_LE((output.proxy_m - before).norm(), room + 1e-15) << i;
+    }
+    EXPECT_GT(rig.distance(), kRadius);
+}
+
+TEST(RigidProxy, is_pushed_by_an_object_that_moves)
+{
+    Rig rig = on_plane(Box{kHalf});
+    rig.settle(Vec3(0, 0, 0.012));
+    ToolOutput output;
+    for (int i = 0; i < 100; ++i)
+    {
+        rig.objects[0].pose.translation_m.z() += 1e-4;
+        output = rig.step(Vec3(0, 0, 0.012));
+        ASSERT_GT(rig.distance(), 0.8 * kRadius) << i;
+    }
+    output = rig.settle(Vec3(0, 0, 0.012));
+    EXPECT_NEAR(output.proxy_m.z(), 0.022, 1e-7);
+    EXPECT_NEAR(output.force_n.z(), kStiffness * 0.01, 1e-3);
+}
+
+TEST(RigidProxy, squeezed_between_objects_says_so_and_stays)
+{
+    Rig rig(tool_of(Box{kHalf}), {{plane(), {}}, {plane(), {}}});
+    rig.objects[1].pose.translation_m.z() = 0.03;
+    rig.settle(Vec3(0, 0, 0.014));
+    EXPECT_FALSE(rig.sut.is_squeezed());
+
+    while (rig.objects[1].pose.translation_m.z() > 0.0235)
+    {
+        rig.objects[1].pose.translation_m.z() -= 1e-4;
+        rig.step(Vec3(0, 0, 0.014));
+    }
+    const ToolOutput output = rig.settle(Vec3(0, 0, 0.014));
+
+    EXPECT_TRUE(rig.sut.is_squeezed());
+    EXPECT_GT(rig.distance(), 0.0);
+    EXPECT_TRUE(output.force_n.allFinite());
+}
+
+TEST(RigidProxy, that_starts_across_a_surface_is_where_the_hand_is_until_it_is_clear)
+{
+    Rig rig = on_plane(Box{kHalf});
+    for (const double z : {0.0, 0.002, -0.003})
+    {
+        const ToolOutput output = rig.step(Vec3(0, 0, z));
+        EXPECT_EQ(output.proxy_m, Vec3(0, 0, z));
+        EXPECT_EQ(output.force_n, Vec3(0, 0, 0));
+    }
+    rig.settle(Vec3(0, 0, 0.03));
+    EXPECT_NEAR(rig.settle(Vec3(0, 0, 0.0)).proxy_m.z(), 0.012, 1e-7);
+}
+
+TEST(RigidProxy, that_an_object_came_over_is_given_up_when_its_force_has_faded)
+{
+    Rig rig = on_plane(Box{kHalf});
+    rig.settle(Vec3(0, 0, 0.05));
+    rig.settle(Vec3(0, 0, 0.0));
+    rig.objects[0].pose.translation_m.z() = 0.012;
+
+    EXPECT_TRUE(rig.step(Vec3(0, 0, 0.0)).frozen);
+    const ToolOutput output = rig.settle(Vec3(0, 0, 0.1));
+
+    EXPECT_EQ(output.proxy_m, Vec3(0, 0, 0.1));
+    EXPECT_EQ(output.force_n, Vec3(0, 0, 0));
+}
+
+TEST(RigidProxy, without_a_radius_keeps_a_skin)
+{
+    Rig rig(tool_of(Box{kHalf}, 0.0), {{plane(), {}}});
+    rig.settle(Vec3(0, 0, 0.05));
+
+    const ToolOutput output = rig.settle(Vec3(0, 0, -0.004));
+
+    const double skin = kLeastSkin * kHalf.norm();
+    EXPECT_NEAR(output.proxy_m.z(), kHalf.z() + skin, 0.01 * skin);
+    EXPECT_NEAR(rig.settle(Vec3(0.02, 0, -0.004), Mat3::Identity(), 900).proxy_m.x(), 0.02, 1e-4);
+}
+
+} // namespace tactus::test
