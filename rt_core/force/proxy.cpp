@@ -24,6 +24,8 @@ constexpr int kVicinities = 4;
 constexpr double kLeastStep = 1e-4;
 /// Over a curved surface a press turns into a way along it: this share of it within a frame.
 constexpr double kDipShare = 0.1;
+/// A proxy that runs out of steps feels what it was about to touch, this share of the radius away.
+constexpr double kNearlyTouching = 0.02;
 /// A leap goes this share of the radius along the surface at most, and this share of that above it:
 /// from half-way all triangles are seen below it, on a plane up to 0.8 radii.
 constexpr double kLongestLeap = 0.7;
@@ -218,7 +220,8 @@ Proxy::Motion Proxy::follow_within(Vicinity& near, std::span<const PlacedSurface
     while (true)
     {
         near.stand_at(position_ - near.center_m(), normal_);
-        hold_ = hold_at(near, surfaces, goal - position_);
+        const double gap = steps > 1 ? least_step : kNearlyTouching * radius_;
+        hold_ = hold_at(near, surfaces, goal - position_, gap);
         const double length = hold_.motion.norm();
         if (hold_.is_squeezed)
         {
@@ -254,7 +257,7 @@ bool Proxy::try_leap(Vicinity& near, double room) noexcept
 {
     const double slip = hold_.slip.norm();
     const double leap = std::min({slip, kLongestLeap * radius_, room / (1.0 + kLift)});
-    if (!hold_.touches || hold_.motion.norm() > 0.5 * leap || path_.size() + 2 > kProxySteps)
+    if (!hold_.touches || hold_.motion.norm() > 0.5 * leap)
     {
         return false;
     }
@@ -273,12 +276,12 @@ bool Proxy::try_leap(Vicinity& near, double room) noexcept
 }
 
 Proxy::Hold Proxy::hold_at(Vicinity& near, std::span<const PlacedSurface> surfaces,
-                           const Vec3& wanted) noexcept
+                           const Vec3& wanted, double gap_m) noexcept
 {
     StepPlanes touching;
     for (std::uint32_t face = 0; face < near.size() && !touching.planes.full(); ++face)
     {
-        if (near.is_within(face, radius_ * (1.0 + kLeastStep)))
+        if (near.is_within(face, radius_ + gap_m))
         {
             touching.add(face, near.half_space(face, radius_));
         }

@@ -112,7 +112,7 @@ private:
     [[nodiscard]] bool try_leap(Vicinity& near, double room) noexcept;
     void go_straight_on(const Vec3& goal, double clear) noexcept;
     [[nodiscard]] Hold hold_at(Vicinity& near, std::span<const PlacedSurface> surfaces,
-                               const Vec3& wanted) noexcept;
+                               const Vec3& wanted, double gap_m) noexcept;
     void press(Hold& hold, const Material& material, std::uint32_t object,
                const Vec3& depth) const noexcept;
     [[nodiscard]] Vec3 go_to_contact(Vicinity& near, const Vec3& wanted,
@@ -137,7 +137,7 @@ private:
     bool slides_{false};   ///< From the last frame on: the dynamic cone holds.
     bool has_slid_{false}; ///< In this frame.
     bool was_overrun_{false};
-    StaticVector<Vec3, kProxySteps + 3> path_;
+    StaticVector<Vec3, 2 * kProxySteps + 2> path_; ///< A leap goes by two places.
     /// The proxy may move by this much before it is on the other side of the object's surface.
     std::array<double, kMaxObjects> clearances_m_{};
     std::array<Vec3, kMaxObjects> object_velocities_{}; ///< At the proxy.

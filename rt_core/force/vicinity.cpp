@@ -103,8 +103,8 @@ void Vicinity::look_at(NearFace& face) const noexcept
         return;
     }
     const ObjectPose& pose = *surfaces_[face.surface].pose;
-    const ClosestPoint closest = closest_point_on_triangle(
-        to_model(pose, center_m_ + place_), to_triangle(face.triangle->corners_m));
+    const ClosestPoint closest = closest_point_on_triangle(to_model(pose, center_m_ + place_),
+                                                           to_triangle(face.triangle->corners_m));
     const double length = std::sqrt(closest.distance_sq);
     face.normal = length > 0.0 ? Vec3(pose.rotation * (closest.gap * (-1.0 / length))) : fallback_;
     face.offset_m = length * pose.scale - face.normal.dot(place_);

@@ -63,8 +63,7 @@ public:
     /// length).
     void stand_at(const Vec3& place, const Vec3& fallback) noexcept;
     /// Whether a face is within this distance of here; looks at it if it may be.
-    [[nodiscard]] bool is_within(std::uint32_t face,
-                                 double distance_m) noexcept TACTUS_NONBLOCKING;
+    [[nodiscard]] bool is_within(std::uint32_t face, double distance_m) noexcept TACTUS_NONBLOCKING;
     /// The motions from here that keep a ball of this radius on its side of the face; looks at the
     /// face first. 60 ns.
     [[nodiscard]] HalfSpace<3> half_space(std::uint32_t face,

@@ -699,7 +699,7 @@ ToolOutput Frame::respond_rigidly(std::uint32_t tool, std::span<const ObjectPose
         }
     }
     RigidProxy& rigid = *rigid_proxy(tool);
-    const ToolOutput output =
+    ToolOutput output =
         rigid.respond(goals_[tool], rotations_[tool], objects.view(), elapsed_s_[tool]);
     output.squeezed = rigid.is_squeezed();
     return output;

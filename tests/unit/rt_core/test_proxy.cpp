@@ -628,4 +628,40 @@ TEST(Proxy, a_pull_across_a_frozen_surface_does_not_turn_the_force)
     EXPECT_NEAR(cosine(output.force_n, Vec3(0, 0, 1)), 1.0, 1e-9);
 }
 
+TEST(Proxy, crosses_many_small_triangles_in_one_frame)
+{
+    // A strip of thin faces: the bent top of a cylinder of radius 0.1 along y.
+    TriangleList list;
+    const auto on_top = [](int i, double y)
+    { return Vec3(0.1 * std::sin(0.002 * i), y, 0.1 * std::cos(0.002 * i)); };
+    for (int i = -50; i < 50; ++i)
+    {
+        add_square(list, on_top(i, -0.1), on_top(i + 1, -0.1), on_top(i + 1, 0.1), on_top(i, 0.1));
+    }
+    for (const double way : {0.0005, 0.002, 0.005})
+    {
+        ProxyRig rig(list, Vec3(-0.005, 0, 0.115));
+        rig.certified = 0.03;
+        rig.settle(Vec3(-0.005, 0, 0.108), 3);
+        for (double x = -0.005; x < 0.006; x += way)
+        {
+            const Vec3 goal = 0.108 * Vec3(x, 0, 0.1).normalized();
+            const ToolOutput output = rig.step(goal);
+            ASSERT_GE(rig.clearance(), kRadius * (1.0 - 2e-6));
+            ASSERT_TRUE(output.in_contact) << way << " m at " << x;
+            // Of facets 0.2 mm wide: the arc's sagitta and half an edge's angle.
+            expect_vector(output.force_n, kStiffness * 0.002 * goal.normalized(), 0.02);
+        }
+    }
+}
+
+TEST(Proxy, a_press_is_little_of_a_way_but_a_pull_is)
+{
+    ProxyRig rig(plane(), Vec3(0, 0, 0.02));
+    EXPECT_NEAR(rig.sut.way_to_m(Vec3(0, 0.03, -0.02)), 0.05, 1e-15);
+    rig.settle(Vec3(0, 0, 0.005));
+    EXPECT_NEAR(rig.sut.way_to_m(Vec3(0, 0.003, 0.0)), 0.004, 1e-9);
+    EXPECT_NEAR(rig.sut.way_to_m(Vec3(0, 0.03, kRadius + 0.04)), 0.05, 1e-9);
+}
+
 } // namespace tactus::test

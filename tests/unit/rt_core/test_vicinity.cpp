@@ -106,8 +106,7 @@ TEST(Vicinity, a_bound_is_never_more_than_the_distance_wherever_it_was_seen_from
             for (int k = 0; k < 10; ++k)
             {
                 const Vec3 place = random.in_cube(2.0);
-                const double truth =
-                    pose.scale * distance_to(list, to_model(pose, center + place));
+                const double truth = pose.scale * distance_to(list, to_model(pose, center + place));
                 ASSERT_LE(sut.bound(0, place), truth + 1e-12);
                 ASSERT_LE(sut.bound_of_surface(0, place), truth + 1e-12);
             }
