@@ -124,8 +124,9 @@ Vec3 HandAndDevice::step(const Vec3& force_n, const Vec3& target_m) noexcept
 
 const Vec3& HandAndDevice::force_at(std::uint32_t sub_step) const noexcept
 {
-    const std::uint32_t late =
-        sub_step >= delay_sub_steps_ ? 0 : (delay_sub_steps_ - sub_step + kSubSteps - 1) / kSubSteps;
+    const std::uint32_t late = sub_step >= delay_sub_steps_
+                                   ? 0
+                                   : (delay_sub_steps_ - sub_step + kSubSteps - 1) / kSubSteps;
     return forces_n_[late];
 }
 
@@ -177,8 +178,7 @@ void HandAndDevice::sub_step(const Vec3& force_n, const Vec3& target_mid_m,
     Midway mid = solve(force_n, target_mid_m, target_velocity);
     Vec3 velocity = mid.device_m_per_s * 2.0 - device_m_per_s_;
     // Friction brings to rest and no farther; what it holds still then is the next step's question.
-    const bool stops =
-        options_.device.friction_n > 0.0 && velocity.dot(device_m_per_s_) < 0.0;
+    const bool stops = options_.device.friction_n > 0.0 && velocity.dot(device_m_per_s_) < 0.0;
     if (stops)
     {
         velocity.setZero();
@@ -187,9 +187,9 @@ void HandAndDevice::sub_step(const Vec3& force_n, const Vec3& target_mid_m,
     const Vec3 way = mid.device_m_per_s * dt_s_;
     const Vec3 grip_speed = mid.device_m_per_s - mid.hand_m_per_s;
     const Vec3 arm_speed = mid.hand_m_per_s - target_velocity;
-    const Vec3 arm_n = (target_mid_m - hand_m_ - mid.hand_m_per_s * (0.5 * dt_s_)) *
-                           hand.stiffness_n_per_m -
-                       arm_speed * hand.damping_n_s_per_m;
+    const Vec3 arm_n =
+        (target_mid_m - hand_m_ - mid.hand_m_per_s * (0.5 * dt_s_)) * hand.stiffness_n_per_m -
+        arm_speed * hand.damping_n_s_per_m;
     energy_.force_work_j += force_n.dot(way);
     energy_.target_work_j += arm_n.dot(target_velocity) * dt_s_;
     energy_.viscous_loss_j += options_.device.damping_n_s_per_m * way.dot(mid.device_m_per_s);

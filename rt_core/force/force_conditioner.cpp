@@ -32,8 +32,7 @@ double spring_energy_j(double force_n, double stiffness_n_per_m, double stretch_
 
 ForceConditioner::ForceConditioner(const ConditionerSetup& setup) noexcept
     : setup_(setup)
-    , cap_n_per_m_(
-          stiffness_cap(setup.device, setup.period_s, setup.surface_damping_max_n_s_per_m))
+    , cap_n_per_m_(stiffness_cap(setup.device, setup.period_s, setup.surface_damping_max_n_s_per_m))
     , ramp_(setup.ramp_s, setup.period_s)
     , velocity_(setup.device.quantum_m)
     , sent_(setup.device.delay_s / setup.period_s)
@@ -79,7 +78,8 @@ bool ForceConditioner::observe(const ForceWish& wish) noexcept
     const Vec3 force_n = sent_.mean_since(periods);
     const Vec3 way = wish.position_m - position_m_;
     const double farthest = kDeviceSpeedMax_m_per_s * elapsed_s;
-    const bool is_usable = wish.position_m.allFinite() && (!knows_position_ || way.norm() <= farthest);
+    const bool is_usable =
+        wish.position_m.allFinite() && (!knows_position_ || way.norm() <= farthest);
     if (!is_usable)
     {
         velocity_.clear();

@@ -37,9 +37,9 @@ stiffness_limits(const DeviceLimits& device, double period_s,
                  double surface_damping_n_s_per_m = 0.0) noexcept TACTUS_NONBLOCKING;
 
 /// stiffness_limits().cap_n_per_m: what callers cap a wall's stiffness with.
-[[nodiscard]] double stiffness_cap(const DeviceLimits& device, double period_s,
-                                   double surface_damping_n_s_per_m = 0.0) noexcept
-    TACTUS_NONBLOCKING;
+[[nodiscard]] double
+stiffness_cap(const DeviceLimits& device, double period_s,
+              double surface_damping_n_s_per_m = 0.0) noexcept TACTUS_NONBLOCKING;
 
 /// Null, or one line that names the value of `device` that is out of its range.
 [[nodiscard]] const char* find_fault(const DeviceLimits& device) noexcept TACTUS_NONBLOCKING;
