@@ -130,6 +130,21 @@ inline constexpr double kLeastSkin = 0.002;
 /// Time in which a frozen force fades to zero, in seconds.
 inline constexpr double kFadeTime_s = 0.05;
 
+// --- Stability (docs/stability.md) ---------------------------------------------------------------
+
+/// Share of the predicted limit that a wall's stiffness may reach; no unit. Covers fractions of a
+/// period in the delay (8 %) and a device's damping that is known to 10 %.
+inline constexpr double kStiffnessMargin = 0.9;
+/// Positions that a velocity is found from; 16 at 1 kHz tell 1/16 of a quantum a period. 32 B each.
+inline constexpr std::uint32_t kVelocitySamples = 16;
+/// Forces kept that may still be under way to the device; older ones count as arrived. 32 B each.
+inline constexpr std::uint32_t kForcesUnderWay = 10;
+/// A device that is faster has jumped: its energy is not observed. A hand makes 10 m/s at most.
+inline constexpr double kDeviceSpeedMax_m_per_s = 10.0;
+/// What the start-up ramp takes unless told otherwise, in seconds: slow enough that a hand that
+/// rests in a wall is moved and not struck.
+inline constexpr double kForceRamp_s = 0.25;
+
 // --- Convex tools --------------------------------------------------------------------------------
 
 /// Vertices of a convex hull. Each answer asks for a few farthest points and each looks at all

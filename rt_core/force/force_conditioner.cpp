@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "rt_core/force/force_conditioner.hpp"
+
+#include "rt_core/base/assert.hpp"
+#include "rt_core/force/stiffness_rule.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tactus
+{
+
+namespace
+{
+
+bool is_stiffness(double value) noexcept
+{
+    return value >= 0.0 && value <= std::numeric_limits<double>::max(); // False for NaN.
+}
+
+/// What the spring of a wall gives back when the tool leaves: triangle, or, where the force is cut
+/// at `force_n` short of stiffness x stretch, triangle and rectangle.
+double spring_energy_j(double force_n, double stiffness_n_per_m, double stretch_m) noexcept
+{
+    const double least_stretch = force_n / stiffness_n_per_m;
+    return force_n * (std::max(stretch_m, least_stretch) - 0.5 * least_stretch);
+}
+
+} // namespace
+
+ForceConditioner::ForceConditioner(const ConditionerSetup& setup) noexcept
+    : setup_(setup)
+    , cap_n_per_m_(stiffness_cap(setup.device, setup.period_s, setup.surface_damping_max_n_s_per_m))
+    , ramp_(setup.ramp_s, setup.period_s)
+    , velocity_(setup.device.quantum_m)
+    , sent_(setup.device.delay_s / setup.period_s)
+    , observer_(setup.device, setup.period_s)
+{
+    TACTUS_ASSERT(find_fault(setup.device) == nullptr);
+    TACTUS_ASSERT(setup.period_s > 0.0);
+    TACTUS_ASSERT(setup.ramp_s >= 0.0);
+}
+
+ConditionedForce ForceConditioner::condition(const ForceWish& wish) noexcept
+{
+    ConditionedForce output;
+    if (!observe(wish))
+    {
+        output.actions |= ForceAction::blind;
+    }
+    wall_n_ = limit(wish, output);
+    hold(wish, wall_n_, output.stiffness_n_per_m);
+    output.force_n = setup_.controls_passivity ? damp(wall_n_, output) : wall_n_;
+    output.work_j = observer_.work_j();
+    output.surplus_j = observer_.surplus_j();
+    sent_.send(output.force_n);
+    return output;
+}
+
+void ForceConditioner::restart_ramp() noexcept
+{
+    ramp_.restart();
+    velocity_.clear();
+    sent_.clear();
+    observer_.clear();
+    wall_n_ = Vec3(0.0, 0.0, 0.0);
+    knows_position_ = false;
+}
+
+/// The energy since the last frame. False when the position is of no use for that; then the next
+/// one is a first one.
+bool ForceConditioner::observe(const ForceWish& wish) noexcept
+{
+    const std::uint32_t periods = std::max<std::uint32_t>(wish.elapsed_periods, 1);
+    const double elapsed_s = setup_.period_s * periods;
+    const Vec3 force_n = sent_.mean_since(periods);
+    const Vec3 way = wish.position_m - position_m_;
+    const double farthest = kDeviceSpeedMax_m_per_s * elapsed_s;
+    const bool is_usable =
+        wish.position_m.allFinite() && (!knows_position_ || way.norm() <= farthest);
+    if (!is_usable)
+    {
+        velocity_.clear();
+        observer_.hold_nothing();
+    }
+    else if (knows_position_)
+    {
+        observer_.observe(force_n, way, elapsed_s);
+    }
+    knows_position_ = wish.position_m.allFinite();
+    if (knows_position_)
+    {
+        velocity_.add(wish.position_m, elapsed_s);
+        position_m_ = wish.position_m;
+    }
+    return is_usable;
+}
+
+/// The frame's force within the device's limits, and what acted, in `output`.
+Vec3 ForceConditioner::limit(const ForceWish& wish, ConditionedForce& output) noexcept
+{
+    const double share = ramp_.next_share();
+    if (!wish.force_n.allFinite() || !is_stiffness(wish.stiffness_n_per_m))
+    {
+        output.actions |= ForceAction::refused;
+        return {0.0, 0.0, 0.0};
+    }
+    const bool is_too_stiff = wish.stiffness_n_per_m > cap_n_per_m_;
+    const double scale = is_too_stiff ? cap_n_per_m_ / wish.stiffness_n_per_m : 1.0;
+    const Vec3 capped_n = wish.force_n * scale;
+    const Vec3 clamped_n = clamp_norm(capped_n, setup_.device.force_max_n);
+    const Vec3 wished_n = clamped_n * share;
+    const double step_n = setup_.device.slew_max_n_per_s * setup_.period_s;
+    const Vec3 next_n = limit_growth(wall_n_, wished_n, step_n);
+    output.stiffness_n_per_m = wish.stiffness_n_per_m * scale * share;
+    output.actions |= is_too_stiff ? ForceAction::stiffness_capped : ForceAction::none;
+    output.actions |= clamped_n != capped_n ? ForceAction::clamped : ForceAction::none;
+    output.actions |= share < 1.0 ? ForceAction::ramping : ForceAction::none;
+    output.actions |= next_n != wished_n ? ForceAction::slew_limited : ForceAction::none;
+    return next_n;
+}
+
+void ForceConditioner::hold(const ForceWish& wish, const Vec3& wall_n,
+                            double stiffness_n_per_m) noexcept
+{
+    const double force_n = wall_n.norm();
+    const bool is_wall = wish.stiffness_n_per_m > 0.0 || force_n == 0.0;
+    if (!is_wall)
+    {
+        observer_.hold_nothing();
+        return;
+    }
+    const bool is_stretched = force_n > 0.0 && stiffness_n_per_m > 0.0;
+    const double stretch_m = std::isfinite(wish.stretch_m) ? wish.stretch_m : 0.0;
+    observer_.hold(is_stretched ? spring_energy_j(force_n, stiffness_n_per_m, stretch_m) : 0.0);
+}
+
+/// The wall's force and the damping against the velocity; never a pull.
+Vec3 ForceConditioner::damp(const Vec3& wall_n, ConditionedForce& output) const noexcept
+{
+    const Vec3 velocity = velocity_.velocity_m_per_s();
+    const double damping = observer_.damping_for(velocity.norm());
+    if (!(damping > 0.0) || !(wall_n.norm() > 0.0))
+    {
+        return wall_n;
+    }
+    Vec3 total = wall_n - velocity * damping;
+    const double along = total.dot(wall_n);
+    if (along < 0.0)
+    {
+        total -= wall_n * (along / wall_n.squaredNorm());
+    }
+    output.actions |= ForceAction::damped;
+    output.damping_n_s_per_m = damping;
+    return clamp_norm(total, setup_.device.force_max_n);
+}
+
+} // namespace tactus

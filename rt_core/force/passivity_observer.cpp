@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "rt_core/force/passivity_observer.hpp"
+
+#include <algorithm>
+
+namespace tactus
+{
+
+void SentForces::clear() noexcept
+{
+    sent_.fill({});
+}
+
+void SentForces::send(const Vec3& force_n) noexcept
+{
+    for (std::uint32_t i = kForcesUnderWay - 1; i > 0; --i)
+    {
+        sent_[i] = sent_[i - 1];
+    }
+    sent_[0] = {force_n, 0.0};
+}
+
+/// On a time line that starts when the newest was sent, each force is at the device from `begin`
+/// to `end`, and the question is about 0 .. elapsed:
+///
+///     -- sent[2] --|-- sent[1] --|------- sent[0] -------
+///         0 <- asked about ------+----------> elapsed
+///                                 delay
+Vec3 SentForces::mean_since(std::uint32_t elapsed_periods) noexcept
+{
+    const double elapsed = elapsed_periods;
+    sent_[0].periods = elapsed;
+    double begin = delay_;
+    double end = elapsed;
+    Vec3 sum(0.0, 0.0, 0.0);
+    for (std::uint32_t i = 0; i < kForcesUnderWay; ++i)
+    {
+        const bool is_oldest = i + 1 == kForcesUnderWay;
+        const double from = is_oldest ? 0.0 : std::max(begin, 0.0);
+        sum += sent_[i].force_n * std::max(0.0, end - from);
+        end = std::min(end, from);
+        begin -= is_oldest ? 0.0 : sent_[i + 1].periods;
+    }
+    return sum / elapsed;
+}
+
+PassivityObserver::PassivityObserver(const DeviceLimits& device, double period_s) noexcept
+    : damping_n_s_per_m_(device.damping_n_s_per_m)
+    , friction_n_(device.friction_n)
+    , added_damping_max_n_s_per_m_(device.added_damping_max_n_s_per_m)
+    , period_s_(period_s)
+{
+}
+
+void PassivityObserver::clear() noexcept
+{
+    work_j_ = 0.0;
+    held_j_ = 0.0;
+    surplus_j_ = 0.0;
+}
+
+void PassivityObserver::observe(const Vec3& force_n, const Vec3& displacement_m,
+                                double elapsed_s) noexcept
+{
+    const double work = force_n.dot(displacement_m);
+    // By Cauchy's inequality b v^2 over the time is no less than this, whatever the motion.
+    const double viscous_loss = damping_n_s_per_m_ * displacement_m.squaredNorm() / elapsed_s;
+    work_j_ += work;
+    surplus_j_ += work - viscous_loss - friction_n_ * displacement_m.norm();
+}
+
+void PassivityObserver::hold(double energy_j) noexcept
+{
+    surplus_j_ = std::max(0.0, surplus_j_ + energy_j - held_j_);
+    held_j_ = energy_j;
+}
+
+void PassivityObserver::hold_nothing() noexcept
+{
+    held_j_ = 0.0;
+    surplus_j_ = 0.0;
+}
+
+double PassivityObserver::damping_for(double speed_m_per_s) const noexcept
+{
+    const double lost_by_one = period_s_ * speed_m_per_s * speed_m_per_s;
+    return surplus_j_ < lost_by_one * added_damping_max_n_s_per_m_ ? surplus_j_ / lost_by_one
+           : lost_by_one > 0.0                                     ? added_damping_max_n_s_per_m_
+                                                                   : 0.0;
+}
+
+} // namespace tactus

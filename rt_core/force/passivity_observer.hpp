@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/base/realtime.hpp"
+#include "rt_core/limits.hpp"
+#include "rt_core/math/vec3.hpp"
+#include "rt_core/records/device_limits.hpp"
+
+#include <array>
+#include <cstdint>
+
+namespace tactus
+{
+
+/// The forces that were sent and when, for a device that holds each until the next one arrives,
+/// DeviceLimits::delay_s later.
+class SentForces
+{
+public:
+    /// `delay_periods`: of the device, whole or not.
+    explicit SentForces(double delay_periods) noexcept : delay_(delay_periods) {}
+
+    /// Nothing was sent: the device holds no force.
+    void clear() noexcept;
+    void send(const Vec3& force_n) noexcept TACTUS_NONBLOCKING;
+    /// The mean over time of the force at the device since the newest was sent, `elapsed_periods`
+    /// > 0 ago. Call it once before each send().
+    [[nodiscard]] Vec3 mean_since(std::uint32_t elapsed_periods) noexcept TACTUS_NONBLOCKING;
+
+private:
+    struct Sent
+    {
+        Vec3 force_n{0.0, 0.0, 0.0};
+        double periods{0.0}; ///< Until the next one was sent.
+    };
+
+    double delay_;
+    std::array<Sent, kForcesUnderWay> sent_{}; ///< Newest first.
+};
+
+/// Watches the energy at the port between force and device (time-domain passivity: Hannaford and
+/// Ryu 2002), in contact and across contacts.
+///
+/// A force that is held does F . (x[k] - x[k-1]) of work, exactly, whatever the motion in between.
+/// A passive wall gives back no more than it holds: the energy of its spring. The *surplus* is
+/// what it gave or holds beyond what it was given, less what the device itself has lost meanwhile:
+///
+///     surplus[k] = surplus[k-1] + work + (held[k] - held[k-1]) - b dx^2 / dt - f |dx|, at least 0
+///
+/// Each sampled wall makes some of it: K (v T)^2 / 2 when it is entered between two samples, and
+/// K dx^2 / 2 in each period, which a wall within stiffness_cap() loses in b again. What it grows
+/// beyond, the controller takes out. At least 0, so that energy lost long ago hides nothing;
+/// unlike Hannaford and Ryu's sum, which a long contact makes large.
+///
+/// Work and losses are of measured positions. A position that toggles between two quanta adds the
+/// same square to what the wall makes and what b loses, so it doesn't add up within the cap.
+/// Haptic thread.
+class PassivityObserver
+{
+public:
+    PassivityObserver(const DeviceLimits& device, double period_s) noexcept;
+
+    /// A new start: neither work nor surplus.
+    void clear() noexcept;
+
+    /// What the device did under `force_n`, the mean of the forces that it held meanwhile.
+    /// - `elapsed_s` > 0.
+    void observe(const Vec3& force_n, const Vec3& displacement_m,
+                 double elapsed_s) noexcept TACTUS_NONBLOCKING;
+    /// What the spring holds from now on; called after observe().
+    void hold(double energy_j) noexcept TACTUS_NONBLOCKING;
+    /// The force comes from no wall: there is no surplus.
+    void hold_nothing() noexcept;
+
+    /// Done on hand and device since the start.
+    [[nodiscard]] double work_j() const noexcept { return work_j_; }
+    [[nodiscard]] double surplus_j() const noexcept { return surplus_j_; }
+
+    /// The damping that would lose the surplus in one period at this speed, within the device's
+    /// limit; the passivity controller's, one period late: the surplus is bounded, not zero.
+    /// N s/m; 0 at rest.
+    [[nodiscard]] double damping_for(double speed_m_per_s) const noexcept TACTUS_NONBLOCKING;
+
+private:
+    double damping_n_s_per_m_;
+    double friction_n_;
+    double added_damping_max_n_s_per_m_;
+    double period_s_;
+    double work_j_{0.0};
+    double held_j_{0.0};
+    double surplus_j_{0.0};
+};
+
+} // namespace tactus

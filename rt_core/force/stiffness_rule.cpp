@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "rt_core/force/stiffness_rule.hpp"
+
+#include "rt_core/limits.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tactus
+{
+
+namespace
+{
+
+/// Comparisons are false for NaN.
+bool is_not_negative(double value) noexcept
+{
+    return value >= 0.0 && value <= std::numeric_limits<double>::max();
+}
+
+bool is_positive(double value) noexcept
+{
+    return is_not_negative(value) && value > 0.0;
+}
+
+} // namespace
+
+StiffnessLimits stiffness_limits(const DeviceLimits& device, double period_s,
+                                 double surface_damping_n_s_per_m) noexcept
+{
+    const double damping = std::abs(surface_damping_n_s_per_m);
+    StiffnessLimits limits;
+    limits.sampling_n_per_m = std::max(0.0, 2.0 * (device.damping_n_s_per_m - damping) /
+                                                (period_s + 2.0 * device.delay_s));
+    const double noise_n = damping * device.quantum_m / period_s;
+    limits.quantisation_n_per_m =
+        device.friction_n > 0.0 && device.quantum_m > 0.0
+            ? std::max(0.0, 2.0 * (device.friction_n - noise_n) / device.quantum_m)
+            : std::numeric_limits<double>::infinity();
+    limits.device_n_per_m = device.stiffness_max_n_per_m;
+    const double passive = std::min(limits.sampling_n_per_m, limits.quantisation_n_per_m);
+    limits.cap_n_per_m = std::min(kStiffnessMargin * passive, limits.device_n_per_m);
+    return limits;
+}
+
+double stiffness_cap(const DeviceLimits& device, double period_s,
+                     double surface_damping_n_s_per_m) noexcept
+{
+    return stiffness_limits(device, period_s, surface_damping_n_s_per_m).cap_n_per_m;
+}
+
+const char* find_fault(const DeviceLimits& device) noexcept
+{
+    if (!is_positive(device.mass_kg))
+    {
+        return "device: mass_kg must be finite and > 0";
+    }
+    if (!is_not_negative(device.damping_n_s_per_m))
+    {
+        return "device: damping_n_s_per_m must be finite and >= 0";
+    }
+    if (!is_not_negative(device.friction_n))
+    {
+        return "device: friction_n must be finite and >= 0";
+    }
+    if (!is_not_negative(device.quantum_m))
+    {
+        return "device: quantum_m must be finite and >= 0";
+    }
+    if (!is_not_negative(device.delay_s))
+    {
+        return "device: delay_s must be finite and >= 0";
+    }
+    if (!is_positive(device.force_max_n))
+    {
+        return "device: force_max_n must be finite and > 0";
+    }
+    if (!is_positive(device.slew_max_n_per_s))
+    {
+        return "device: slew_max_n_per_s must be finite and > 0";
+    }
+    if (!is_positive(device.stiffness_max_n_per_m))
+    {
+        return "device: stiffness_max_n_per_m must be finite and > 0";
+    }
+    if (!is_not_negative(device.added_damping_max_n_s_per_m))
+    {
+        return "device: added_damping_max_n_s_per_m must be finite and >= 0";
+    }
+    return nullptr;
+}
+
+} // namespace tactus

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/base/realtime.hpp"
+#include "rt_core/records/device_limits.hpp"
+
+namespace tactus
+{
+
+/// How stiff a wall may be on one device at one rate, and why. N/m.
+struct StiffnessLimits
+{
+    /// 2 (b - B) / (T + 2 t): a sampled wall gives away at most K (T/2 + t) v^2 + B v^2 of power,
+    /// the device loses b v^2 (Colgate and Schenkel 1997; with the delay t Diolaiti et al. 2006).
+    double sampling_n_per_m{0.0};
+    /// 2 (f - B q / T) / q: a position that is wrong by up to half a quantum q gives away at most
+    /// (K q / 2 + B q / T) |v|, the device loses f |v| (Abbott and Okamura 2005, Diolaiti et al.
+    /// 2006). Infinite where friction f or quantum is 0.
+    double quantisation_n_per_m{0.0};
+    double device_n_per_m{0.0}; ///< DeviceLimits::stiffness_max_n_per_m.
+    /// The stiffest wall to ask for: 0.9 x the first two, and no more than the third.
+    double cap_n_per_m{0.0};
+};
+
+/// The rule of docs/stability.md for a wall with stiffness and, per object, surface damping B: its
+/// force is K x depth + B x (difference of two positions) / period. Where B alone is too much, all
+/// are 0: take less B.
+///
+/// The delay's part is exact for whole periods. For fractions the energy may be up to 8 % more than
+/// T/2 + t says, which the factor 0.9 covers.
+/// - `device` has no fault.
+/// - `period_s` > 0: the one that the loop runs at, not the device's best.
+/// - `surface_damping_n_s_per_m` finite; its sign doesn't count.
+[[nodiscard]] StiffnessLimits
+stiffness_limits(const DeviceLimits& device, double period_s,
+                 double surface_damping_n_s_per_m = 0.0) noexcept TACTUS_NONBLOCKING;
+
+/// stiffness_limits().cap_n_per_m: what callers cap a wall's stiffness with.
+[[nodiscard]] double
+stiffness_cap(const DeviceLimits& device, double period_s,
+              double surface_damping_n_s_per_m = 0.0) noexcept TACTUS_NONBLOCKING;
+
+/// Null, or one line that names the value of `device` that is out of its range.
+[[nodiscard]] const char* find_fault(const DeviceLimits& device) noexcept TACTUS_NONBLOCKING;
+
+} // namespace tactus

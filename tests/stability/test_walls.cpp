@@ -1,0 +1,374 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+
+/// The rules of docs/stability.md on the model of hand and device: what they allow doesn't swing
+/// and makes no more energy than they say; what they forbid does. Prints the tables of that page.
+
+#include "platform/allocation_counter.hpp"
+#include "platform/simulated/device_classes.hpp"
+#include "rt_core/force/stiffness_rule.hpp"
+#include "tests/shared/random.hpp"
+#include "tests/stability/wall_trial.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+namespace tactus::test
+{
+
+namespace
+{
+
+struct Class
+{
+    const char* name;
+    DeviceLimits device;
+};
+
+const std::array<Class, 3> kClasses{Class{"touch", kTouchClass}, Class{"omega", kOmegaClass},
+                                    Class{"delta", kDeltaClass}};
+constexpr std::array<double, 2> kPeriods_s{1e-3, 0.25e-3};
+constexpr double kDepth_m = 0.01;
+
+/// A finger that leans on the device without any damping of its own, on a device without Coulomb
+/// friction: nothing but b is left against a limit cycle.
+HandLimb worst_hand()
+{
+    return {0.0, 200.0, 0.0, 1e5, 0.0};
+}
+
+/// `share` of the predicted limit, whatever stiffness the device's maker allows.
+WallTrial pressed(const DeviceLimits& device, double period_s, double share, bool has_friction,
+                  const HandLimb& hand)
+{
+    WallTrial trial;
+    trial.device = device;
+    trial.device.friction_n = has_friction ? device.friction_n : 0.0;
+    trial.device.stiffness_max_n_per_m = 1e6;
+    trial.hand = hand;
+    trial.period_s = period_s;
+    trial.stiffness_n_per_m = share * stiffness_limits(device, period_s).sampling_n_per_m;
+    trial.is_conditioned = false;
+    trial.duration_s = 30.0;
+    trial.target_x_m = press(0.01, kDepth_m);
+    return trial;
+}
+
+/// What quantisation can keep alive: in a swing of amplitude a at w = sqrt(K / m) it feeds at most
+/// 4 a (K q / 2 - f) a cycle, and b - K T / 2 takes pi a^2 w of them. Peak to peak, with the
+/// quantum in which nothing is seen.
+double hum_bound_m(const WallTrial& trial)
+{
+    const double q = trial.device.quantum_m;
+    const double noise_n =
+        std::max(0.0, 0.5 * trial.stiffness_n_per_m * q - trial.device.friction_n);
+    const double left =
+        trial.device.damping_n_s_per_m -
+        0.5 * trial.stiffness_n_per_m * (trial.period_s + 2.0 * trial.device.delay_s);
+    const double w =
+        std::sqrt(trial.stiffness_n_per_m / (trial.device.mass_kg + trial.hand.mass_kg));
+    return q + 8.0 * noise_n / (std::numbers::pi * left * w);
+}
+
+/// A passive trial that taps, and what it says of itself.
+WallTrial random_taps(Random& random)
+{
+    const Class& one = kClasses[random.below(kClasses.size())];
+    WallTrial trial;
+    trial.device = one.device;
+    trial.device.quantum_m *= random.between(0.0, 2.0);
+    trial.device.friction_n *= random.one_in(3) ? 0.0 : random.between(0.2, 1.0);
+    trial.device.stiffness_max_n_per_m = 1e6;
+    trial.device.force_max_n = 100.0; // Cut forces would hide what the wall makes.
+    trial.period_s = kPeriods_s[random.below(kPeriods_s.size())];
+    trial.stiffness_n_per_m =
+        random.between(0.3, 0.9) * stiffness_limits(trial.device, trial.period_s).sampling_n_per_m;
+    trial.is_conditioned = false;
+    trial.hand.mass_kg = random.between(0.0, 0.3);
+    trial.hand.damping_n_s_per_m = random.between(0.0, 6.0);
+    trial.start_m = Vec3(random.between(0.005, 0.02), 0, 0);
+    trial.target_x_m = tap(trial.start_m.x(), random.between(1.0, 6.0));
+    return trial;
+}
+
+} // namespace
+
+TEST(Walls, rest_at_nine_tenths_of_the_limit_and_swing_well_above_it)
+{
+    std::printf("class rate Hz  K at 0.9   swing um / bound um   K at 2   swing um\n");
+    for (const Class& one : kClasses)
+    {
+        for (const double period_s : kPeriods_s)
+        {
+            const WallTrial allowed = pressed(one.device, period_s, 0.9, false, worst_hand());
+            const WallTrial wild = pressed(one.device, period_s, 2.0, false, worst_hand());
+            const WallFigures calm = run_wall_trial(allowed);
+            const WallFigures swings = run_wall_trial(wild);
+            std::printf("%s %7.0f %9.0f %10.0f / %6.0f %10.0f %9.0f\n", one.name, 1.0 / period_s,
+                        allowed.stiffness_n_per_m, 1e6 * calm.swing_m, 1e6 * hum_bound_m(allowed),
+                        wild.stiffness_n_per_m, 1e6 * swings.swing_m);
+            EXPECT_LT(calm.swing_m, hum_bound_m(allowed)) << one.name << " " << period_s;
+            // The bound takes the worst of each rounding; what is left is some quanta.
+            EXPECT_LT(calm.swing_m, 10.0 * one.device.quantum_m) << one.name << " " << period_s;
+            EXPECT_GT(swings.swing_m, 4.0 * calm.swing_m) << one.name << " " << period_s;
+            // Not fading: the motors have worked all the time.
+            EXPECT_GT(swings.work_j, 0.02) << one.name << " " << period_s;
+        }
+    }
+}
+
+TEST(Walls, without_quantisation_rest_completely_at_nine_tenths)
+{
+    for (const Class& one : kClasses)
+    {
+        for (const double period_s : kPeriods_s)
+        {
+            WallTrial trial = pressed(one.device, period_s, 0.9, false, worst_hand());
+            trial.device.quantum_m = 0.0;
+            trial.duration_s = 60.0; // A tenth of b is left: it rings for long.
+            EXPECT_LT(run_wall_trial(trial).swing_m, 1e-6) << one.name << " " << period_s;
+        }
+    }
+}
+
+TEST(Walls, rest_within_a_quantum_when_the_device_has_its_friction_or_a_hand_its_damping)
+{
+    for (const Class& one : kClasses)
+    {
+        for (const double period_s : kPeriods_s)
+        {
+            const double cap = stiffness_cap(one.device, period_s);
+            for (const bool has_friction : {true, false})
+            {
+                WallTrial trial = pressed(one.device, period_s, 0.9, has_friction,
+                                          has_friction ? worst_hand() : HandLimb{});
+                trial.stiffness_n_per_m = cap;
+                const WallFigures figures = run_wall_trial(trial);
+                std::printf("%s %7.0f Hz, cap %5.0f N/m, %s: swing %.2f um\n", one.name,
+                            1.0 / period_s, cap,
+                            has_friction ? "friction, no hand damping" : "hand, no friction",
+                            1e6 * figures.swing_m);
+                EXPECT_LE(figures.swing_m, one.device.quantum_m) << one.name << " " << period_s;
+            }
+        }
+    }
+}
+
+TEST(Walls, of_3000_newtons_a_metre_rest_on_the_omega_class)
+{
+    for (const double period_s : kPeriods_s)
+    {
+        EXPECT_GE(stiffness_cap(kOmegaClass, period_s), 3'000.0);
+        for (const bool is_conditioned : {false, true})
+        {
+            WallTrial trial = pressed(kOmegaClass, period_s, 0.9, true, HandLimb{});
+            trial.device = kOmegaClass;
+            trial.stiffness_n_per_m = 3'000.0;
+            trial.is_conditioned = is_conditioned;
+            trial.target_x_m = press(0.01, 0.03); // 6 N.
+            const WallFigures figures = run_wall_trial(trial);
+            EXPECT_LE(figures.swing_m, kOmegaClass.quantum_m) << period_s;
+            EXPECT_GT(figures.deepest_m, 0.5e-3);
+            EXPECT_EQ(figures.damping_max_n_s_per_m, 0.0); // Nothing to damp.
+        }
+    }
+}
+
+TEST(Walls, rest_with_surface_damping_and_delay_that_the_rule_knows)
+{
+    for (const double delay_periods : {0.35, 1.0, 1.5})
+    {
+        for (const double period_s : kPeriods_s)
+        {
+            DeviceLimits device = kOmegaClass;
+            device.delay_s = delay_periods * period_s;
+            WallTrial trial = pressed(device, period_s, 0.9, false, worst_hand());
+            trial.device.quantum_m = 0.0;
+            trial.duration_s = 8.0;
+            trial.surface_damping_n_s_per_m = 0.4 * device.damping_n_s_per_m;
+            trial.stiffness_n_per_m =
+                stiffness_cap(trial.device, period_s, trial.surface_damping_n_s_per_m);
+            EXPECT_LT(run_wall_trial(trial).swing_m, 1e-6) << delay_periods << " " << period_s;
+            // The same wall on a rule that doesn't know the delay.
+            trial.surface_damping_n_s_per_m = 0.0;
+            trial.stiffness_n_per_m = 1.5 * stiffness_cap(kOmegaClass, period_s);
+            EXPECT_GT(run_wall_trial(trial).swing_m, 5e-5) << delay_periods << " " << period_s;
+        }
+    }
+}
+
+TEST(Walls, make_no_more_energy_in_a_contact_than_they_may)
+{
+    Random random(1);
+    std::uint32_t contacts = 0;
+    double largest = 0.0;
+    for (int i = 0; i < 60; ++i)
+    {
+        const WallFigures figures = run_wall_trial(random_taps(random));
+        EXPECT_LE(figures.worst_excess_j, 1e-12) << "trial " << i;
+        contacts += figures.contacts;
+        largest = std::max(largest, figures.largest_contact_j);
+    }
+    std::printf("%u contacts, largest energy beyond the device's own losses %.3g J\n", contacts,
+                largest);
+    EXPECT_GT(contacts, 500U);
+    EXPECT_GT(largest, 0.0);
+}
+
+TEST(Walls, that_are_too_stiff_make_more_energy_in_a_contact)
+{
+    Random random(1);
+    double worst = -1.0;
+    for (int i = 0; i < 20; ++i)
+    {
+        WallTrial trial = random_taps(random);
+        trial.stiffness_n_per_m *= 4.0;
+        worst = std::max(worst, run_wall_trial(trial).worst_excess_j);
+    }
+    EXPECT_GT(worst, 1e-6);
+}
+
+TEST(PassivityController, holds_the_energy_of_a_wall_that_comes_late)
+{
+    std::printf("class rate Hz, periods late: work J, swing um; with the controller\n");
+    for (const Class& one : {kClasses[1], kClasses[2]})
+    {
+        for (const double period_s : kPeriods_s)
+        {
+            for (const std::uint32_t late : {1U, 2U, 3U})
+            {
+                WallTrial trial = pressed(one.device, period_s, 0.9, true,
+                                          HandLimb{0.05, 200.0, 0.5, 2'000.0, 0.5});
+                trial.is_conditioned = true;
+                trial.wall_delay_periods = late;
+                trial.controls_passivity = false;
+                const WallFigures loose = run_wall_trial(trial);
+                trial.controls_passivity = true;
+                const WallFigures held = run_wall_trial(trial);
+                std::printf("%s %5.0f, %u: %.2g J, %.0f um; %.2g J, %.0f um\n", one.name,
+                            1.0 / period_s, late, loose.largest_work_j, 1e6 * loose.swing_m,
+                            held.largest_work_j, 1e6 * held.swing_m);
+                // One spring at the hand's deepest rest is what the wall may hold at all.
+                EXPECT_LT(held.largest_work_j, 2.5e-3) << one.name << " " << late;
+                EXPECT_LT(held.swing_m, one.device.quantum_m) << one.name << " " << late;
+                EXPECT_LE(held.damping_max_n_s_per_m, one.device.added_damping_max_n_s_per_m);
+                if (late == 3)
+                {
+                    EXPECT_GT(loose.largest_work_j, 40.0 * held.largest_work_j) << one.name;
+                    EXPECT_GT(loose.swing_m, 1e-3) << one.name;
+                }
+            }
+        }
+    }
+}
+
+TEST(PassivityController, holds_the_energy_of_a_wall_that_is_stiffer_than_it_says)
+{
+    for (const double period_s : kPeriods_s)
+    {
+        for (const double times : {2.0, 3.0})
+        {
+            WallTrial trial = pressed(kOmegaClass, period_s, 0.9, false, worst_hand());
+            trial.is_conditioned = true;
+            trial.duration_s = 10.0;
+            trial.claimed_stiffness_n_per_m = trial.stiffness_n_per_m;
+            trial.stiffness_n_per_m *= times;
+            trial.controls_passivity = false;
+            const WallFigures loose = run_wall_trial(trial);
+            trial.controls_passivity = true;
+            const WallFigures held = run_wall_trial(trial);
+            std::printf("omega %5.0f Hz, %.0f times: %.2g J, %.0f um; %.2g J, %.0f um\n",
+                        1.0 / period_s, times, loose.largest_work_j, 1e6 * loose.swing_m,
+                        held.largest_work_j, 1e6 * held.swing_m);
+            EXPECT_GT(loose.swing_m, 5e-4) << period_s << " " << times;
+            EXPECT_LT(held.swing_m, loose.swing_m / 10.0) << period_s << " " << times;
+            EXPECT_LT(held.largest_work_j, loose.largest_work_j / 10.0) << period_s;
+        }
+    }
+}
+
+TEST(PassivityObserver, counts_the_energy_of_the_continuous_motion)
+{
+    for (const double delay_periods : {0.0, 1.0, 3.0})
+    {
+        for (const std::uint32_t late : {0U, 2U})
+        {
+            WallTrial trial = pressed(kOmegaClass, 1e-3, 0.9, true, HandLimb{});
+            trial.device.quantum_m = 0.0;
+            trial.device.delay_s = delay_periods * 1e-3;
+            trial.is_conditioned = true;
+            trial.wall_delay_periods = late;
+            trial.target_x_m = tap(0.01, 4.0);
+            const WallFigures figures = run_wall_trial(trial);
+            EXPECT_GT(std::abs(figures.work_j), 1e-5);
+            EXPECT_LT(figures.observer_error_j, 1e-12) << delay_periods << " " << late;
+        }
+    }
+}
+
+TEST(PassivityObserver, is_off_by_no_more_than_the_quantum_explains)
+{
+    WallTrial trial = pressed(kOmegaClass, 1e-3, 0.9, true, HandLimb{});
+    trial.is_conditioned = true;
+    trial.target_x_m = tap(0.01, 4.0);
+    const WallFigures figures = run_wall_trial(trial);
+    // Sum by parts: half a quantum for each newton that the force goes up or down, eight contacts.
+    const double force_way_n = 2.0 * 12.0 * (figures.contacts + 1.0);
+    EXPECT_LT(figures.observer_error_j, 0.5 * kOmegaClass.quantum_m * force_way_n);
+    EXPECT_GT(figures.observer_error_j, 0.0);
+}
+
+TEST(ForceConditioner, leaves_the_heap_alone)
+{
+    if (!allocation_counter::available())
+    {
+        GTEST_SKIP() << "no allocation counter in this build";
+    }
+    ForceConditioner sut({kOmegaClass, 1e-3, 0.1, 0.0, true});
+    Random random(7);
+    allocation_counter::mark_this_thread(true);
+    const std::uint64_t before = allocation_counter::of_this_thread().allocations;
+    for (int i = 0; i < 1'000; ++i)
+    {
+        ForceWish wish;
+        wish.force_n = random.in_cube(5.0);
+        wish.position_m = random.in_cube(1e-3);
+        wish.stiffness_n_per_m = 1'000.0;
+        static_cast<void>(sut.condition(wish));
+        if (i % 100 == 99)
+        {
+            sut.restart_ramp();
+        }
+    }
+    const std::uint64_t after = allocation_counter::of_this_thread().allocations;
+    allocation_counter::mark_this_thread(false);
+    EXPECT_EQ(after, before);
+}
+
+TEST(DeviceClasses, have_the_caps_of_the_page)
+{
+    std::printf("class: sampling / quantisation / device -> cap, N/m\n");
+    for (const Class& one : kClasses)
+    {
+        ASSERT_EQ(find_fault(one.device), nullptr) << one.name;
+        for (const double period_s : kPeriods_s)
+        {
+            const StiffnessLimits limits = stiffness_limits(one.device, period_s);
+            std::printf("%s %5.0f Hz: %.0f / %.0f / %.0f -> %.0f\n", one.name, 1.0 / period_s,
+                        limits.sampling_n_per_m, limits.quantisation_n_per_m, limits.device_n_per_m,
+                        limits.cap_n_per_m);
+        }
+    }
+    EXPECT_DOUBLE_EQ(stiffness_cap(kTouchClass, 1e-3), 400.0);
+    EXPECT_DOUBLE_EQ(stiffness_cap(kTouchClass, 0.25e-3), 400.0);
+    EXPECT_DOUBLE_EQ(stiffness_cap(kOmegaClass, 1e-3), 3'060.0);
+    EXPECT_DOUBLE_EQ(stiffness_cap(kOmegaClass, 0.25e-3), 5'000.0);
+    EXPECT_DOUBLE_EQ(stiffness_cap(kDeltaClass, 1e-3), 3'060.0);
+    EXPECT_DOUBLE_EQ(stiffness_cap(kDeltaClass, 0.25e-3), 5'000.0);
+}
+
+} // namespace tactus::test

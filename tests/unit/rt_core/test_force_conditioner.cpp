@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "rt_core/force/force_conditioner.hpp"
+#include "rt_core/force/stiffness_rule.hpp"
+#include "tests/shared/random.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace tactus::test
+{
+
+namespace
+{
+
+constexpr double kPeriod_s = 1e-3;
+constexpr double kRounding = 1e-12;
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
+/// No ramp, a slew of 1 N a frame, 10 N at most.
+ConditionerSetup plain_setup()
+{
+    ConditionerSetup setup;
+    setup.device.force_max_n = 10.0;
+    setup.device.slew_max_n_per_s = 1'000.0;
+    setup.device.damping_n_s_per_m = 2.0;
+    setup.device.stiffness_max_n_per_m = 5'000.0;
+    setup.period_s = kPeriod_s;
+    setup.ramp_s = 0.0;
+    return setup;
+}
+
+ForceWish force(double x)
+{
+    ForceWish wish;
+    wish.force_n = Vec3(x, 0, 0);
+    return wish;
+}
+
+} // namespace
+
+TEST(ForceLimiter, clamps_the_norm_and_keeps_the_direction)
+{
+    EXPECT_EQ(clamp_norm(Vec3(3, 4, 0), 5.0), Vec3(3, 4, 0));
+    EXPECT_LT((clamp_norm(Vec3(6, 8, 0), 5.0) - Vec3(3, 4, 0)).norm(), kRounding);
+    EXPECT_NEAR(clamp_norm(Vec3(1e300, -1e300, 1e300), 5.0).norm(), 5.0, kRounding);
+    for (const double bad : {kNan, kInfinite, -kInfinite})
+    {
+        EXPECT_EQ(clamp_norm(Vec3(1, bad, 1), 5.0), Vec3(0, 0, 0));
+    }
+}
+
+TEST(ForceLimiter, grows_by_a_step_and_shrinks_at_once)
+{
+    EXPECT_EQ(limit_growth(Vec3(0, 0, 0), Vec3(5, 0, 0), 1.0), Vec3(1, 0, 0));
+    EXPECT_EQ(limit_growth(Vec3(4.5, 0, 0), Vec3(5, 0, 0), 1.0), Vec3(5, 0, 0));
+    EXPECT_EQ(limit_growth(Vec3(5, 0, 0), Vec3(0, 0, 0), 1.0), Vec3(0, 0, 0));
+    EXPECT_EQ(limit_growth(Vec3(5, 0, 0), Vec3(2, 0, 0), 1.0), Vec3(2, 0, 0));
+    EXPECT_LT(limit_growth(Vec3(5, 0, 0), Vec3(-5, 0, 0), 1.0).norm(), kRounding);
+}
+
+TEST(ForceLimiter, never_lengthens_nor_reverses_a_wish_and_reaches_it)
+{
+    Random random(2);
+    for (int trial = 0; trial < 2'000; ++trial)
+    {
+        Vec3 now = random.in_cube(5.0);
+        const Vec3 wish = random.in_cube(5.0);
+        const double step = random.between(0.01, 2.0);
+        for (int i = 0; i < 2'000 && now != wish; ++i)
+        {
+            const Vec3 next = limit_growth(now, wish, step);
+            ASSERT_LE(next.norm(), wish.norm() * (1.0 + kRounding)) << "trial " << trial;
+            ASSERT_LE(next.norm(), now.norm() + step * (1.0 + kRounding)) << "trial " << trial;
+            ASSERT_GE(next.dot(wish), -kRounding) << "trial " << trial;
+            now = next;
+        }
+        EXPECT_EQ(now, wish) << "trial " << trial;
+    }
+}
+
+TEST(ForceLimiter, gives_more_where_more_is_wished)
+{
+    Random random(3);
+    for (int trial = 0; trial < 2'000; ++trial)
+    {
+        const double before = random.between(-5.0, 5.0);
+        const double less = random.between(0.0, 5.0);
+        const double more = random.between(less, 5.0);
+        const double step = random.between(0.01, 2.0);
+        EXPECT_LE(limit_growth(Vec3(before, 0, 0), Vec3(less, 0, 0), step).x(),
+                  limit_growth(Vec3(before, 0, 0), Vec3(more, 0, 0), step).x() + kRounding)
+            << before << " " << less << " " << more << " " << step;
+    }
+}
+
+TEST(StartRamp, goes_from_nothing_to_all_in_equal_steps_and_again)
+{
+    StartRamp sut(0.01, kPeriod_s);
+    for (int round = 0; round < 2; ++round)
+    {
+        for (int i = 0; i <= 12; ++i)
+        {
+            EXPECT_NEAR(sut.next_share(), std::min(1.0, 0.1 * i), kRounding);
+        }
+        sut.restart();
+    }
+    StartRamp none(0.0, kPeriod_s);
+    EXPECT_EQ(none.next_share(), 1.0);
+    none.restart();
+    EXPECT_EQ(none.next_share(), 1.0);
+}
+
+TEST(ForceConditioner, lets_a_small_steady_force_through_unchanged)
+{
+    ForceConditioner sut(plain_setup());
+    for (int i = 0; i < 5; ++i)
+    {
+        const ConditionedForce out = sut.condition(force(0.5));
+        EXPECT_EQ(out.force_n, Vec3(0.5, 0, 0));
+        EXPECT_EQ(out.actions, ForceAction::none);
+        EXPECT_EQ(out.work_j, 0.0);
+    }
+}
+
+TEST(ForceConditioner, gives_no_force_for_what_is_no_number_and_recovers)
+{
+    for (const double bad : {kNan, kInfinite, -kInfinite})
+    {
+        ForceConditioner sut(plain_setup());
+        static_cast<void>(sut.condition(force(1.0)));
+        ForceWish wish = force(bad);
+        EXPECT_EQ(sut.condition(wish).force_n, Vec3(0, 0, 0));
+        EXPECT_TRUE(has_action(sut.condition(wish).actions, ForceAction::refused));
+        wish = force(1.0);
+        wish.stiffness_n_per_m = bad;
+        EXPECT_EQ(sut.condition(wish).force_n, Vec3(0, 0, 0));
+        wish = force(1.0);
+        wish.position_m.y() = bad;
+        const ConditionedForce blind = sut.condition(wish);
+        EXPECT_EQ(blind.force_n, Vec3(1, 0, 0));
+        EXPECT_TRUE(has_action(blind.actions, ForceAction::blind));
+        wish = force(1.0);
+        wish.stretch_m = bad;
+        wish.stiffness_n_per_m = 100.0;
+        const ConditionedForce last = sut.condition(wish);
+        EXPECT_EQ(last.actions, ForceAction::none);
+        EXPECT_TRUE(std::isfinite(last.work_j) && std::isfinite(last.surplus_j));
+    }
+    ForceConditioner sut(plain_setup());
+    ForceWish pulling = force(1.0);
+    pulling.stiffness_n_per_m = -1.0;
+    EXPECT_EQ(sut.condition(pulling).force_n, Vec3(0, 0, 0));
+}
+
+TEST(ForceConditioner, clamps_to_the_device_and_says_so)
+{
+    ConditionerSetup setup = plain_setup();
+    setup.device.slew_max_n_per_s = 1e9;
+    ForceConditioner sut(setup);
+    const ConditionedForce out = sut.condition(force(25.0));
+    EXPECT_NEAR(out.force_n.x(), 10.0, kRounding);
+    EXPECT_EQ(out.actions, ForceAction::clamped);
+}
+
+TEST(ForceConditioner, scales_a_wall_down_to_the_stiffness_that_the_rule_allows)
+{
+    ForceConditioner sut(plain_setup());
+    EXPECT_DOUBLE_EQ(sut.stiffness_cap_n_per_m(), 3'600.0);
+    ForceWish wish = force(0.72);
+    wish.stiffness_n_per_m = 7'200.0;
+    const ConditionedForce out = sut.condition(wish);
+    EXPECT_NEAR(out.force_n.x(), 0.36, kRounding);
+    EXPECT_EQ(out.actions, ForceAction::stiffness_capped);
+    EXPECT_DOUBLE_EQ(out.stiffness_n_per_m, 3'600.0);
+}
+
+TEST(ForceConditioner, ramps_up_after_start_and_restart_whatever_time_a_stall_took)
+{
+    ConditionerSetup setup = plain_setup();
+    setup.ramp_s = 0.01;
+    ForceConditioner sut(setup);
+    for (int round = 0; round < 2; ++round)
+    {
+        for (int i = 0; i <= 12; ++i)
+        {
+            ForceWish wish = force(1.0);
+            wish.elapsed_periods = i == 3 ? 500 : 1;
+            const ConditionedForce out = sut.condition(wish);
+            EXPECT_NEAR(out.force_n.x(), std::min(1.0, 0.1 * i), kRounding);
+            EXPECT_EQ(has_action(out.actions, ForceAction::ramping), i < 10);
+        }
+        sut.restart_ramp();
+    }
+}
+
+TEST(ForceConditioner, lets_a_force_grow_by_one_step_after_a_stall)
+{
+    ForceConditioner sut(plain_setup());
+    static_cast<void>(sut.condition(force(0.0)));
+    ForceWish wish = force(8.0);
+    wish.elapsed_periods = 100;
+    const ConditionedForce out = sut.condition(wish);
+    EXPECT_NEAR(out.force_n.x(), 1.0, kRounding);
+    EXPECT_EQ(out.actions, ForceAction::slew_limited);
+}
+
+TEST(ForceConditioner, counts_the_work_of_a_force_held_through_a_stall)
+{
+    ForceConditioner sut(plain_setup());
+    static_cast<void>(sut.condition(force(1.0)));
+    ForceWish wish = force(0.5);
+    wish.position_m = Vec3(0.01, 0.02, 0);
+    wish.elapsed_periods = 50;
+    EXPECT_NEAR(sut.condition(wish).work_j, 0.01, kRounding);
+    wish.position_m = Vec3(0.0, 0.02, 0);
+    EXPECT_NEAR(sut.condition(wish).work_j, 0.01 - 0.005, kRounding);
+    wish.elapsed_periods = 0; // Counts as one; 10 m/s is as fast as devices get.
+    wish.position_m = Vec3(0.02, 0.02, 0);
+    EXPECT_EQ(sut.condition(wish).actions, ForceAction::blind);
+    sut.restart_ramp();
+    wish.position_m = Vec3(0.021, 0.02, 0);
+    EXPECT_EQ(sut.condition(wish).work_j, 0.0);
+}
+
+TEST(ForceConditioner, damps_what_came_from_nowhere_and_never_pulls)
+{
+    Random random(4);
+    ConditionerSetup setup = plain_setup();
+    setup.device.damping_n_s_per_m = 0.5;
+    setup.device.slew_max_n_per_s = 1e6;
+    setup.device.quantum_m = 1e-6;
+    ForceConditioner sut(setup);
+    std::uint32_t damped = 0;
+    double speed = 0.0;
+    double x = 0.0;
+    std::array<double, 3> places{}; // A wall that is two frames late gives energy away.
+    for (int i = 0; i < 5'000; ++i)
+    {
+        speed = std::clamp(speed + random.between(-0.02, 0.02) - x, -0.3, 0.3);
+        x += speed * kPeriod_s;
+        places = {x, places[0], places[1]};
+        ForceWish wish = force(std::max(0.0, -800.0 * places[2]));
+        wish.position_m = Vec3(x, 0, 0);
+        wish.stiffness_n_per_m = 800.0;
+        const ConditionedForce out = sut.condition(wish);
+        const double added = (out.force_n - wish.force_n).norm();
+        ASSERT_GE(out.force_n.x(), 0.0) << "frame " << i;
+        ASSERT_LE(out.force_n.norm(), 10.0 * (1.0 + kRounding)) << "frame " << i;
+        ASSERT_LE(out.damping_n_s_per_m, 5.0) << "frame " << i;
+        ASSERT_LE(added, 5.0 * 0.31) << "frame " << i;
+        ASSERT_EQ(has_action(out.actions, ForceAction::damped), out.damping_n_s_per_m > 0.0);
+        ASSERT_TRUE(wish.force_n.x() > 0.0 || added == 0.0) << "frame " << i;
+        damped += out.damping_n_s_per_m > 0.0 ? 1U : 0U;
+    }
+    EXPECT_GT(damped, 10U);
+}
+
+TEST(ForceConditioner, takes_the_same_bits_to_the_same_bits)
+{
+    ForceConditioner one(plain_setup());
+    ForceConditioner other(plain_setup());
+    Random random(5);
+    for (int i = 0; i < 1'000; ++i)
+    {
+        ForceWish wish;
+        wish.force_n = random.in_cube(12.0);
+        wish.position_m = random.in_cube(1e-3);
+        wish.stiffness_n_per_m = random.between(0.0, 6'000.0);
+        EXPECT_EQ(one.condition(wish).force_n, other.condition(wish).force_n);
+    }
+}
+
+} // namespace tactus::test
