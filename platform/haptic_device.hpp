@@ -22,6 +22,7 @@ struct DeviceInfo
     double damping_n_s_per_m{0.0};     ///< Its own; bounds the stiffness that stays passive.
     std::array<double, 3> workspace_centre_world_m{};
     double workspace_radius_m{0.0}; ///< It reaches no point farther from that centre.
+    double speed_max_m_per_s{0.0};  ///< Faster motion means that nobody holds it.
     std::int64_t rate_min_hz{0};
     std::int64_t rate_max_hz{0};
 };
@@ -39,12 +40,15 @@ struct DeviceSample
     std::uint64_t frame{0};
     /// False when the device had no trustworthy position; the others are then the last good ones.
     bool valid{false};
+    bool connected{true};    ///< False: the device does not answer; then nothing is valid.
+    bool deadman_held{true}; ///< False: its switch or sensor says that nobody holds it. Without one
+                             ///< always true.
 };
 
 enum class DeviceState
 {
-    idle,  ///< No force was written yet.
-    force, ///< The last written force is held until the next write.
+    idle,  ///< It makes no force: none was written yet, or its own watchdog ended the last one.
+    force, ///< The last written force is held until the next write, or its own watchdog.
     brake  ///< Writes are ignored; the device damps its motion.
 };
 
@@ -69,11 +73,13 @@ public:
 
     [[nodiscard]] virtual DeviceSample read() noexcept = 0;
 
-    /// The force on the hand, in newtons along the world's axes, held until the next write.
+    /// The force on the hand, in newtons along the world's axes, held until the next write. A
+    /// device with a watchdog of its own ends it when no write comes for too long, and is idle
+    /// then.
     virtual void write(const std::array<double, 3>& force_world_n) noexcept = 0;
 
     /// Takes the force away at once and damps the motion, whatever the haptic thread is doing or
-    /// failing to do. It latches until release_brake().
+    /// failing to do. It latches until release_brake(); braking again changes nothing.
     virtual void brake() noexcept = 0;
 
     /// The next write counts again; until it comes the force is zero.

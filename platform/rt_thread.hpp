@@ -28,6 +28,7 @@ struct RtThreadOptions
     std::size_t stack_bytes{1024 * 1024}; ///< Touched before the body runs; rounded up to pages.
     bool lock_memory{true};               ///< All memory of the process, present and future.
     bool allow_no_rt{false};              ///< Run with what is granted and list what was refused.
+    bool is_supervisor{false};            ///< One above kPriorityMax is in range, too.
 };
 
 /// What the thread really got.

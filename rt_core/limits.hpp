@@ -129,6 +129,17 @@ inline constexpr std::uint32_t kMaxHolds = 16;
 inline constexpr double kLeastSkin = 0.002;
 /// Time in which a frozen force fades to zero, in seconds.
 inline constexpr double kFadeTime_s = 0.05;
+/// Time in which a force that was off comes back, in seconds: slower than it went, so that a cause
+/// that comes and goes leaves little force.
+inline constexpr double kRiseTime_s = 0.1;
+/// A hand that was too fast gets its force back below this share of the limit.
+inline constexpr double kCalmSpeedShare = 0.5;
+/// Most damping while a force fades or comes back, as a share of the device's largest force.
+inline constexpr double kDampingForceShare = 0.25;
+/// Share of a device's own damping that may be added by computing it. A sampled damper of b on a
+/// device with damping B stays passive while b + k T / 2 < B (Colgate and Schenkel 1997), k being
+/// the wall's stiffness and T the period; half leaves the other half to the wall.
+inline constexpr double kDampingShare = 0.5;
 
 // --- Stability (docs/stability.md) ---------------------------------------------------------------
 

@@ -20,6 +20,8 @@ constexpr double kBytesPerMib = 1024.0 * 1024.0;
 constexpr double kDefaultToolShare = 0.01;
 /// Goals faster than this many diagonals a second are followed at this speed in contact.
 constexpr double kSpeedMax_diag = 1.0;
+/// The simulated hand flies at two diagonals a second; its device stands twice that.
+constexpr double kHandSpeed_diag = 4.0;
 
 ObjectPose pose_of(const Placement& placement, const ModelHeader& header)
 {
@@ -170,11 +172,17 @@ std::optional<ControllerError> Controller::make_devices(const Options& options)
         device_options.rate_hz = options.rate_hz;
         device_options.workspace_centre_world_m = hand.value()->centre_world_m();
         device_options.workspace_radius_m = hand.value()->reach_m();
+        device_options.speed_max_m_per_s =
+            std::max(device_options.speed_max_m_per_s, kHandSpeed_diag * diagonal_world_m());
         auto device = SimulatedDevice::create(device_options, std::move(hand).value());
         if (!device)
         {
             return ControllerError{"--device: " + device.error().message};
         }
+        const DeviceInfo& info = device.value()->info();
+        limits_.push_back({options.speed_limit_m_per_s.value_or(info.speed_max_m_per_s),
+                           info.force_max_n, tool.stiffness_n_per_m,
+                           kDampingShare * info.damping_n_s_per_m});
         devices_.push_back(std::move(device).value());
     }
     return std::nullopt;

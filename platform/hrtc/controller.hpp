@@ -5,6 +5,7 @@
 #include "platform/haptic_device.hpp"
 #include "platform/hrtc/options.hpp"
 #include "platform/pool_memory.hpp"
+#include "rt_core/force/safe_state.hpp"
 #include "rt_core/frame/frame.hpp"
 #include "transport/courier.hpp"
 #include "transport/served_model.hpp"
@@ -48,6 +49,8 @@ public:
     [[nodiscard]] const std::vector<ObjectPose>& poses() const noexcept { return poses_; }
     [[nodiscard]] const std::vector<ServedModel>& models() const noexcept { return models_; }
     [[nodiscard]] const std::vector<ToolSpec>& tools() const noexcept { return tools_; }
+    /// What each tool's device allows.
+    [[nodiscard]] const std::vector<SafetyLimits>& limits() const noexcept { return limits_; }
     [[nodiscard]] const Budgets& budgets() const noexcept { return budgets_; }
     /// What the frame was made of.
     [[nodiscard]] const FrameSetup& setup() const noexcept { return setup_; }
@@ -79,6 +82,7 @@ private:
     std::optional<Frame> frame_;
     std::vector<std::unique_ptr<Courier>> couriers_;
     std::vector<std::unique_ptr<HapticDevice>> devices_;
+    std::vector<SafetyLimits> limits_;
 };
 
 } // namespace tactus::hrtc

@@ -5,15 +5,19 @@
 #include "platform/budget_governor.hpp"
 #include "platform/clock.hpp"
 #include "platform/haptic_device.hpp"
+#include "platform/heartbeat.hpp"
 #include "platform/hrtc/run_statistics.hpp"
+#include "platform/hrtc/safety_log.hpp"
 #include "platform/periodic_timer.hpp"
 #include "platform/recording/frame_tap.hpp"
+#include "rt_core/force/safe_state.hpp"
 #include "rt_core/frame/frame.hpp"
 
 #include <atomic>
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <thread>
 #include <vector>
 
 namespace tactus::hrtc
@@ -24,6 +28,7 @@ struct LoopParts
 {
     Frame* frame{nullptr};
     std::span<const std::unique_ptr<HapticDevice>> devices; ///< One a tool.
+    std::span<const SafetyLimits> limits;                   ///< One a tool.
     std::span<const ObjectPose> poses;
     PeriodicTimer* timer{nullptr};
     const Clock* clock{nullptr};
@@ -31,10 +36,16 @@ struct LoopParts
     BudgetGovernor* governor{nullptr}; ///< Chooses each frame's budgets; may be none.
     FrameTap* tap{nullptr};            ///< Takes every frame for a recording; may be none.
     std::uint64_t frames{0};           ///< How many to run.
+    /// One bit a model whose host is gone; may be none.
+    const std::atomic<std::uint32_t>* hosts_gone{nullptr};
 };
 
-/// The haptic thread's work: every period read the devices, run the frame, write the forces, keep
-/// the measures. Nothing else happens on that thread.
+/// The haptic thread's work: every period read the devices, run the frame, see that its forces are
+/// safe, write them, keep the measures. Nothing else happens on that thread.
+///
+/// A tool's forces pass its SafeState. The last frames of a run fade them, whether the run ends as
+/// planned or by stop(). A device that somebody has braked is released at once and its force fades
+/// in from zero.
 class HapticLoop
 {
 public:
@@ -44,7 +55,7 @@ public:
     /// nothing.
     void run() noexcept;
 
-    /// Any thread: ends the loop after the present frame.
+    /// Any thread: ends the loop once the forces have faded.
     void stop() noexcept { stopped_.store(true, std::memory_order_relaxed); }
     /// Any thread: whether the haptic thread has failed an assertion; the devices are braked then.
     [[nodiscard]] bool has_failed() const noexcept { return failed_.load(); }
@@ -53,24 +64,49 @@ public:
     {
         return frames_done_.load(std::memory_order_relaxed);
     }
-    /// Brakes all devices and notes the failure; called by the assertion handler.
+    /// Ends the loop for a bug; called by the assertion handler of the thread that found it. On the
+    /// haptic thread the last forces fade first, with nothing but the timer and the devices' write;
+    /// then, and on any other thread at once, all devices are braked for good.
     void fail() noexcept;
+
+    /// What the supervisor watches.
+    [[nodiscard]] const Heartbeat& heartbeat() const noexcept { return heartbeat_; }
+    /// State changes of the tools; one other thread may take them.
+    [[nodiscard]] SafetyLog& safety_log() noexcept { return log_; }
 
 private:
     void rehearse() noexcept;
     [[nodiscard]] FrameOutput run_frame() noexcept;
     void record(const FrameOutput& output) noexcept;
     void choose_budgets(const FrameOutput& output) noexcept;
+    [[nodiscard]] bool has_to_end() noexcept;
     void read_devices(std::uint32_t periods) noexcept;
-    void write_devices(std::span<const ToolOutput> outputs) noexcept;
+    void make_safe(const FrameOutput& output) noexcept;
+    [[nodiscard]] SafetyInput safety_input(std::size_t tool, const FrameOutput& output) noexcept;
+    [[nodiscard]] ForceOff known_causes(std::size_t tool, const FrameOutput& output) const noexcept;
+    [[nodiscard]] bool lacks_a_host(const FrameOutput& output) const noexcept;
+    [[nodiscard]] bool take_back(std::size_t tool) noexcept;
+    void write_devices() noexcept;
+    void fade_last_forces() noexcept;
+    void note(std::size_t tool, SafetyState state, ForceOff causes) noexcept;
     static void mark_stage(void* context, Stage stage) noexcept TACTUS_NONBLOCKING;
 
     LoopParts parts_;
     RunStatistics& statistics_;
     std::vector<ToolState> states_;
+    std::vector<DeviceSample> samples_;
+    std::vector<SafeState> safe_states_;
+    std::vector<Vec3> forces_n_; ///< That go out, or went out last.
+    std::uint64_t frame_{0};
+    std::uint64_t fade_frames_{0}; ///< That the last forces of a run take.
+    std::uint64_t end_;            ///< Frame that is not run any more.
+    std::atomic<std::thread::id> haptic_thread_{};
+    Heartbeat heartbeat_;
+    SafetyLog log_;
     CycleMeasures measures_;
     MonotonicTime stage_start_{};
     std::atomic<bool> stopped_{false}; ///< Relaxed: it orders nothing else.
+    std::atomic<bool> failing_{false}; ///< Set first: nobody releases a brake any more.
     std::atomic<bool> failed_{false};
     std::atomic<bool> done_{false};
     std::atomic<std::uint64_t> frames_done_{0}; ///< Relaxed: shown, nothing more.

@@ -13,6 +13,8 @@
 #include "platform/hrtc/recorder.hpp"
 #include "platform/hrtc/replay_file.hpp"
 #include "platform/hrtc/report.hpp"
+#include "platform/hrtc/safety_record.hpp"
+#include "platform/hrtc/supervisor.hpp"
 #include "platform/hrtc/transport_thread.hpp"
 #include "platform/posix/posix_clock.hpp"
 #include "platform/posix/posix_periodic_timer.hpp"
@@ -140,8 +142,34 @@ void install_signal_handlers()
     sigaction(SIGTERM, &action, nullptr);
 }
 
+/// Ends the supervisor before its thread is waited for, however a run is left.
+class StopAtEnd
+{
+public:
+    explicit StopAtEnd(Supervisor& supervisor) noexcept : supervisor_(supervisor) {}
+    StopAtEnd(const StopAtEnd&) = delete;
+    StopAtEnd& operator=(const StopAtEnd&) = delete;
+    ~StopAtEnd() { supervisor_.stop(); }
+
+private:
+    Supervisor& supervisor_;
+};
+
+/// What loop and supervisor have noted since the last time.
+void take_events(HapticLoop& loop, Supervisor& supervisor, SafetyRecord& record)
+{
+    std::vector<SafetyEvent> events;
+    loop.safety_log().take_into(events);
+    supervisor.log().take_into(events);
+    for (const SafetyEvent& event : events)
+    {
+        record.add(event);
+    }
+}
+
 /// Waits for the loop's end, telling how far it is.
-void wait_for_end(HapticLoop& loop, std::uint64_t frames)
+void wait_for_end(HapticLoop& loop, std::uint64_t frames, Supervisor& supervisor,
+                  SafetyRecord& record)
 {
     Progress progress("touch", "frames");
     while (!loop.is_done() && !loop.has_failed())
@@ -151,6 +179,7 @@ void wait_for_end(HapticLoop& loop, std::uint64_t frames)
             loop.stop();
         }
         progress.update(loop.frames_done(), frames);
+        take_events(loop, supervisor, record);
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
 }
@@ -228,11 +257,22 @@ int run(const Options& options, Controller& controller)
     {
         return fail(*error);
     }
-    HapticLoop loop({&controller.frame(), controller.devices(), controller.poses(), &timer, &clock,
-                     controller.budgets(), governor ? &*governor : nullptr,
-                     recorder ? &recorder->tap() : nullptr, frames},
-                    statistics);
     TransportThread transport(controller.couriers(), controller.models());
+    HapticLoop loop({&controller.frame(), controller.devices(), controller.limits(),
+                     controller.poses(), &timer, &clock, controller.budgets(),
+                     governor ? &*governor : nullptr, recorder ? &recorder->tap() : nullptr, frames,
+                     &transport.hosts_gone()},
+                    statistics);
+    PosixPeriodicTimer alarm;
+    Supervisor supervisor({controller.devices(), &loop.heartbeat(), &clock, &alarm, period});
+    SafetyRecord safety(controller.tools().size());
+    auto supervising = RtThread::start(Supervisor::thread_beside(options.thread),
+                                       [&supervisor] { supervisor.run(); });
+    if (!supervising)
+    {
+        return fail("supervisor: " + supervising.error().message);
+    }
+    const StopAtEnd stop_supervisor(supervisor);
     running_loop.store(&loop);
     const Duration margin = std::min(kMarginMost, nanoseconds(period.ns / 5));
     auto thread =
@@ -257,7 +297,7 @@ int run(const Options& options, Controller& controller)
     {
         return fail(thread.error().message);
     }
-    wait_for_end(loop, frames);
+    wait_for_end(loop, frames, supervisor, safety);
     if (loop.has_failed())
     {
         finish_recording(recorder); // Up to the frame that failed.
@@ -266,15 +306,20 @@ int run(const Options& options, Controller& controller)
     }
     thread.value().join();
     running_loop.store(nullptr);
+    supervisor.stop();
+    supervising.value().join();
+    take_events(loop, supervisor, safety);
+    safety.finish(supervisor.brakes(), loop.safety_log().lost() + supervisor.log().lost());
     transport.stop();
     const std::optional<RecordingResult> recording = finish_recording(recorder);
     for (const std::string& line : thread.value().report().refused)
     {
         log_line("without " + line);
     }
-    const nlohmann::ordered_json report = make_report(
-        {controller, statistics, thread.value().report(), timer.counts(), period,
-         transport.host_was_lost(), options.frame_budget_us, options.trap_system_calls, recording});
+    const nlohmann::ordered_json report =
+        make_report({controller, statistics, thread.value().report(), timer.counts(), period,
+                     transport.host_was_lost(), options.frame_budget_us, options.trap_system_calls,
+                     recording, safety, supervising.value().report().fifo});
     fmt::print("{}", make_summary(report));
     if (!options.report_path.empty())
     {

@@ -174,6 +174,9 @@ void declare(CLI::App& app, Options& options, RawOptions& raw)
     app.add_option("--stiffness", options.stiffness_n_per_m, "Of the virtual wall, in N/m")
         ->check(number_between(1.0, kStiffest_n_per_m))
         ->capture_default_str();
+    app.add_option("--speed-limit", options.speed_limit_m_per_s,
+                   "Speed of the hand, in m/s, above which its force fades [the device's own]")
+        ->check(number_between(0.01, 100.0));
     app.add_option("--transport", raw.transport, "Where models come from")
         ->check(CLI::IsMember({"dds", "file"}))
         ->capture_default_str();

@@ -43,6 +43,7 @@ struct Options
     std::optional<double> frame_budget_us; ///< None: budgets are fixed.
     bool static_when_it_fits{true};
     double stiffness_n_per_m{500.0};
+    std::optional<double> speed_limit_m_per_s; ///< None: the device's own.
     bool trap_system_calls{false};
     RtThreadOptions thread;
 };

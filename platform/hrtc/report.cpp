@@ -223,6 +223,71 @@ Json recording_of(const std::optional<RecordingResult>& recording)
     return json;
 }
 
+/// The names of what is in a set.
+Json names_of(ForceOff causes)
+{
+    Json names = Json::array();
+    for (std::size_t bit = 0; bit < kForceOffs; ++bit)
+    {
+        if (has_cause(causes, static_cast<ForceOff>(1U << bit)))
+        {
+            names.push_back(kForceOffNames[bit]);
+        }
+    }
+    return names;
+}
+
+Json event_of(const SafetyEvent& event, MonotonicTime start)
+{
+    Json json{{"time_s", to_seconds(event.time - start)},
+              {"frame", event.frame},
+              {"tool", event.tool},
+              {"state", kSafetyStateNames[static_cast<std::size_t>(event.state)]},
+              {"causes", names_of(event.causes)}};
+    if (event.by_supervisor) // It counts no frames.
+    {
+        json["frame"] = nullptr;
+    }
+    return json;
+}
+
+Json safety_of(const RunRecord& record)
+{
+    Json begun = Json::object();
+    for (std::size_t bit = 0; bit < kForceOffs; ++bit)
+    {
+        begun[kForceOffNames[bit]] = record.safety.begun()[bit];
+    }
+    Json events = Json::array();
+    for (const SafetyEvent& event : record.safety.events())
+    {
+        events.push_back(event_of(event, record.safety.events().front().time));
+    }
+    return {{"supervisor_fifo", record.supervisor_fifo},
+            {"supervisor_brakes", record.safety.brakes()},
+            {"begun", begun},
+            {"events", events},
+            {"events_left_out", record.safety.left_out()}};
+}
+
+/// Empty when the force went off for the end of the run alone.
+std::string safety_line(const Json& safety)
+{
+    std::string causes;
+    for (const auto& [name, count] : safety["begun"].items())
+    {
+        if (count.get<std::uint64_t>() > 0 && name != "software")
+        {
+            causes += fmt::format("{}{} {}", causes.empty() ? "" : ", ", name,
+                                  count.get<std::uint64_t>());
+        }
+    }
+    return causes.empty()
+               ? ""
+               : fmt::format("safety      force off for: {}; {} brakes by the supervisor\n", causes,
+                             safety["supervisor_brakes"].get<std::uint64_t>());
+}
+
 std::string recording_line(const Json& recording)
 {
     const Json& lost_from = recording["lost_from"];
@@ -288,6 +353,7 @@ Json make_report(const RunRecord& record)
               {"system_calls_outside", statistics.calls.outside}}},
             {"recording", recording_of(record.recording)},
             {"force", force_of(statistics)},
+            {"safety", safety_of(record)},
             {"faults", faults_of(statistics)},
             {"machine", machine_of(record)},
             {"models", models_of(record)},
@@ -351,6 +417,7 @@ std::string make_summary(const Json& report)
         report["deadline"]["machine_late"].get<std::uint64_t>(),
         report["realtime"]["allocations"].get<std::uint64_t>(),
         report["realtime"]["page_faults"].get<std::uint64_t>());
+    text += safety_line(report["safety"]);
     if (report["realtime"]["system_calls_trapped"].get<bool>())
     {
         text += fmt::format("calls       {} system calls in frames, {} of the loop between them\n",

@@ -6,6 +6,7 @@
 #include "platform/hrtc/output_file.hpp"
 #include "platform/hrtc/recorder.hpp"
 #include "platform/hrtc/run_statistics.hpp"
+#include "platform/hrtc/safety_record.hpp"
 #include "platform/rt_thread.hpp"
 
 #include <nlohmann/json_fwd.hpp>
@@ -29,6 +30,8 @@ struct RunRecord
     std::optional<double> frame_budget_us; ///< None: the budgets were fixed.
     bool calls_were_trapped{false};        ///< System calls of the haptic thread.
     std::optional<RecordingResult> recording;
+    const SafetyRecord& safety;
+    bool supervisor_fifo{false}; ///< The supervisor had SCHED_FIFO.
 };
 
 /// The report, schema 1 (docs/report.md). Later versions add keys and never rename any.

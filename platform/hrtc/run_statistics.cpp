@@ -42,11 +42,11 @@ void AnswerCounts::add(AnswerKind kind, double width_m) noexcept
     width_max_m = is_inexact ? std::max(width_max_m, width_m) : width_max_m;
 }
 
-void ForceCounts::add(const ToolOutput& output) noexcept
+void ForceCounts::add(const ToolOutput& output, const Vec3& sent_n) noexcept
 {
-    max_n = std::max(max_n, output.force_n.norm());
-    max_step_n = std::max(max_step_n, (output.force_n - last_n_).norm());
-    last_n_ = output.force_n;
+    max_n = std::max(max_n, sent_n.norm());
+    max_step_n = std::max(max_step_n, (sent_n - last_n_).norm());
+    last_n_ = sent_n;
     contact_frames += output.in_contact ? 1 : 0;
     frozen_frames += output.frozen ? 1 : 0;
 }
@@ -64,7 +64,8 @@ RunStatistics::RunStatistics(std::size_t tool_count, std::size_t pair_count,
 {
 }
 
-void RunStatistics::add(const FrameOutput& output, const CycleMeasures& measures) noexcept
+void RunStatistics::add(const FrameOutput& output, std::span<const Vec3> sent_n,
+                        const CycleMeasures& measures) noexcept
 {
     ++frames;
     for (std::size_t i = 0; i < kStages; ++i)
@@ -80,7 +81,7 @@ void RunStatistics::add(const FrameOutput& output, const CycleMeasures& measures
     bool any_contact = false;
     for (std::size_t i = 0; i < tools.size(); ++i)
     {
-        tools[i].add(output.tools[i]);
+        tools[i].add(output.tools[i], sent_n[i]);
         any_contact = any_contact || output.tools[i].in_contact;
     }
     contact_frames += any_contact ? 1 : 0;

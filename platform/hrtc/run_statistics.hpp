@@ -11,6 +11,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace tactus::hrtc
@@ -40,7 +41,8 @@ struct ForceCounts
     std::uint64_t contact_frames{0};
     std::uint64_t frozen_frames{0};
 
-    void add(const ToolOutput& output) noexcept;
+    /// `sent_n`: what went to the device.
+    void add(const ToolOutput& output, const Vec3& sent_n) noexcept;
 
 private:
     Vec3 last_n_{0.0, 0.0, 0.0};
@@ -81,7 +83,9 @@ class RunStatistics
 public:
     RunStatistics(std::size_t tools, std::size_t pairs, std::size_t models, Duration period);
 
-    void add(const FrameOutput& output, const CycleMeasures& measures) noexcept;
+    /// `sent_n`: the force that went to each tool's device.
+    void add(const FrameOutput& output, std::span<const Vec3> sent_n,
+             const CycleMeasures& measures) noexcept;
 
     std::uint64_t frames{0};
     std::array<LatencyHistogram, kStages> stages;

@@ -5,6 +5,7 @@
 #include "platform/posix/posix_clock.hpp"
 
 #include <chrono>
+#include <cstddef>
 
 namespace tactus::hrtc
 {
@@ -48,13 +49,13 @@ void TransportThread::run()
 
 void TransportThread::watch_hosts()
 {
-    for (const ServedModel& model : models_)
+    std::uint32_t gone = 0;
+    for (std::size_t i = 0; i < models_.size(); ++i)
     {
-        if (model.link->state() == LinkState::host_gone)
-        {
-            host_was_lost_.store(true);
-        }
+        gone |= models_[i].link->state() == LinkState::host_gone ? 1U << i : 0U;
     }
+    hosts_gone_.store(gone, std::memory_order_relaxed);
+    host_was_lost_.store(host_was_lost_.load() || gone != 0);
 }
 
 } // namespace tactus::hrtc

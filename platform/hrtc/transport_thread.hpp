@@ -6,6 +6,7 @@
 #include "transport/served_model.hpp"
 
 #include <atomic>
+#include <cstdint>
 #include <memory>
 #include <thread>
 #include <vector>
@@ -32,6 +33,11 @@ public:
 
     /// Any thread: whether some model's host went away since the start.
     [[nodiscard]] bool host_was_lost() const noexcept { return host_was_lost_.load(); }
+    /// Any thread: one bit a model, in order, whose host is gone now.
+    [[nodiscard]] const std::atomic<std::uint32_t>& hosts_gone() const noexcept
+    {
+        return hosts_gone_;
+    }
 
 private:
     void run();
@@ -40,6 +46,7 @@ private:
     std::vector<std::unique_ptr<Courier>>& couriers_;
     const std::vector<ServedModel>& models_;
     std::atomic<bool> host_was_lost_{false};
+    std::atomic<std::uint32_t> hosts_gone_{0}; ///< Relaxed: it orders nothing else.
     std::atomic<bool> stopped_{false};
     std::thread thread_;
 };

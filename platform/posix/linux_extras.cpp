@@ -62,6 +62,24 @@ std::string allowed_cpus()
     return list;
 }
 
+std::optional<int> another_cpu(int cpu) noexcept
+{
+    cpu_set_t set;
+    CPU_ZERO(&set);
+    if (sched_getaffinity(0, sizeof(set), &set) != 0)
+    {
+        return std::nullopt;
+    }
+    for (int other = 0; other < CPU_SETSIZE; ++other)
+    {
+        if (other != cpu && CPU_ISSET(static_cast<std::size_t>(other), &set))
+        {
+            return other;
+        }
+    }
+    return std::nullopt;
+}
+
 std::string explain_fifo_refusal(int priority, int error)
 {
     std::string line = "SCHED_FIFO " + std::to_string(priority) + " refused (" +

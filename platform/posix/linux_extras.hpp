@@ -5,6 +5,7 @@
 #include "platform/thread_usage.hpp"
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -18,6 +19,9 @@ namespace tactus::linux_extras
 
 /// The processors this process may use, as "0-1,3"; for messages.
 [[nodiscard]] std::string allowed_cpus();
+
+/// The lowest processor other than `cpu` that this process may use; none when there is none.
+[[nodiscard]] std::optional<int> another_cpu(int cpu) noexcept;
 
 /// The line that tells why SCHED_FIFO was refused and what would grant it.
 [[nodiscard]] std::string explain_fifo_refusal(int priority, int error);

@@ -75,7 +75,8 @@ private:
 std::string find_bad_option(const RtThreadOptions& options)
 {
     using Options = RtThreadOptions;
-    if (options.priority < Options::kPriorityMin || options.priority > Options::kPriorityMax)
+    const int highest = Options::kPriorityMax + (options.is_supervisor ? 1 : 0);
+    if (options.priority < Options::kPriorityMin || options.priority > highest)
     {
         return "real-time priority " + std::to_string(options.priority) +
                " is out of range 1..98 (99 is kept for the supervisor)";

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "platform/simulated/simulated_device.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -62,16 +63,20 @@ std::string find_bad_option(const SimulatedDeviceOptions& options, const Vec3& s
     }
     if (!is_positive(options.mass_kg) || !is_positive(options.hand_stiffness_n_per_m) ||
         !is_positive(options.force_max_n) || !is_positive(options.stiffness_max_n_per_m) ||
-        !is_positive(options.workspace_radius_m))
+        !is_positive(options.workspace_radius_m) || !is_positive(options.speed_max_m_per_s))
     {
-        return "simulated device: mass, stiffnesses, largest force and workspace radius must be "
-               "finite and above zero";
+        return "simulated device: mass, stiffnesses, largest force, workspace radius and largest "
+               "speed must be finite and above zero";
     }
     if (!is_not_negative(options.device_damping_n_s_per_m) ||
         !is_not_negative(options.hand_damping_n_s_per_m) ||
         !is_not_negative(options.brake_damping_n_s_per_m))
     {
         return "simulated device: dampings must be finite and not negative";
+    }
+    if (options.watchdog && (*options.watchdog <= Duration{} || options.clock == nullptr))
+    {
+        return "simulated device: a watchdog needs a time above zero, and a clock";
     }
     if (!is_stable(options))
     {
@@ -110,6 +115,7 @@ SimulatedDevice::SimulatedDevice(const SimulatedDeviceOptions& options,
             options.device_damping_n_s_per_m,
             to_array(options.workspace_centre_world_m),
             options.workspace_radius_m,
+            options.speed_max_m_per_s,
             SimulatedDeviceOptions::kRateMinHz,
             SimulatedDeviceOptions::kRateMaxHz}
     , hand_(std::move(hand))
@@ -120,24 +126,65 @@ SimulatedDevice::SimulatedDevice(const SimulatedDeviceOptions& options,
 
 DeviceSample SimulatedDevice::read() noexcept
 {
-    const std::uint64_t frame = status_.frames;
-    if (frame > 0)
+    start_ = status_.frames == 0 ? now() : start_;
+    for (std::uint64_t due = periods_due(); due > 0; --due)
     {
-        integrate_one_period();
+        const MonotonicTime time = options_.clock == nullptr ? now() : start_ + period_at(periods_);
+        ++periods_;
+        integrate_one_period(time.ns >= braked_at_ns_.load(),
+                             makes_force_at(time) ? force_world_n_ : Vec3(Vec3::Zero()));
     }
-    ++status_.frames;
-    // From the index, not summed up, so that rates without a whole period in ns do not drift.
-    const auto whole_s = static_cast<std::int64_t>(frame) / options_.rate_hz;
-    const auto rest = static_cast<std::int64_t>(frame) % options_.rate_hz;
-    const MonotonicTime time{whole_s * kSecondNs + rest * kSecondNs / options_.rate_hz};
-    return {to_array(position_world_m_), to_array(velocity_world_m_per_s_), time, frame, true};
+    const std::uint64_t frame = status_.frames++;
+    return {to_array(position_world_m_), to_array(velocity_world_m_per_s_),
+            MonotonicTime{period_at(periods_).ns}, frame, true};
 }
 
-void SimulatedDevice::integrate_one_period() noexcept
+std::uint64_t SimulatedDevice::periods_due() const noexcept
 {
-    const bool braked = braked_.load();
-    const Vec3 force_n = braked ? Vec3::Zero().eval() : force_world_n_;
-    const Vec3 hand_end_m = hand_->next_world_m({status_.frames, position_world_m_, force_n});
+    if (status_.frames == 0)
+    {
+        return 0;
+    }
+    if (options_.clock == nullptr)
+    {
+        return 1;
+    }
+    // A reading is at least a period after the last, or its time would stand still; one after a
+    // long pause catches up on a second of it and no more.
+    const std::int64_t since_ns = (now() - start_).ns;
+    const std::int64_t gone = since_ns / kSecondNs * options_.rate_hz +
+                              since_ns % kSecondNs * options_.rate_hz / kSecondNs;
+    const std::int64_t due = gone - static_cast<std::int64_t>(periods_);
+    return static_cast<std::uint64_t>(std::clamp<std::int64_t>(due, 1, options_.rate_hz));
+}
+
+/// From the index, not summed up, so that rates without a whole period in ns do not drift.
+Duration SimulatedDevice::period_at(std::uint64_t index) const noexcept
+{
+    const auto whole_s = static_cast<std::int64_t>(index) / options_.rate_hz;
+    const auto rest = static_cast<std::int64_t>(index) % options_.rate_hz;
+    return {whole_s * kSecondNs + rest * kSecondNs / options_.rate_hz};
+}
+
+MonotonicTime SimulatedDevice::now() const noexcept
+{
+    return options_.clock == nullptr ? MonotonicTime{} : options_.clock->now();
+}
+
+bool SimulatedDevice::makes_force_at(MonotonicTime time) const noexcept
+{
+    const bool watched = options_.watchdog && time - written_ >= *options_.watchdog;
+    return time.ns < braked_at_ns_.load() && !watched;
+}
+
+Vec3 SimulatedDevice::felt_force_world_n() const noexcept
+{
+    return makes_force_at(now()) ? force_world_n_ : Vec3(Vec3::Zero());
+}
+
+void SimulatedDevice::integrate_one_period(bool braked, const Vec3& force_n) noexcept
+{
+    const Vec3 hand_end_m = hand_->next_world_m({periods_, position_world_m_, force_n});
     const std::int64_t steps = sub_steps(options_.rate_hz);
     const double dt = sub_step_s(options_.rate_hz);
     const Vec3 hand_velocity = (hand_end_m - hand_world_m_) / (dt * static_cast<double>(steps));
@@ -178,10 +225,11 @@ void SimulatedDevice::stay_in_workspace() noexcept
 
 void SimulatedDevice::write(const std::array<double, 3>& force_world_n) noexcept
 {
-    if (braked_.load())
+    if (braked_at_ns_.load() != kNever)
     {
         return;
     }
+    written_ = now();
     Vec3 force_n{force_world_n[0], force_world_n[1], force_world_n[2]};
     const double norm_n = force_n.norm();
     if (!std::isfinite(norm_n))
@@ -200,19 +248,28 @@ void SimulatedDevice::write(const std::array<double, 3>& force_world_n) noexcept
 
 void SimulatedDevice::brake() noexcept
 {
-    braked_.store(true);
+    std::int64_t never = kNever;
+    braked_at_ns_.compare_exchange_strong(never, now().ns);
 }
 
 void SimulatedDevice::release_brake() noexcept
 {
     force_world_n_.setZero();
-    braked_.store(false);
+    status_.state = DeviceState::idle;
+    braked_at_ns_.store(kNever);
 }
 
 DeviceStatus SimulatedDevice::status() const noexcept
 {
     DeviceStatus status = status_;
-    status.state = braked_.load() ? DeviceState::brake : status_.state;
+    if (braked_at_ns_.load() != kNever)
+    {
+        status.state = DeviceState::brake;
+    }
+    else if (!makes_force_at(now()))
+    {
+        status.state = DeviceState::idle;
+    }
     return status;
 }
 

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "platform/clock.hpp"
 #include "platform/haptic_device.hpp"
 #include "platform/platform_error.hpp"
 #include "platform/simulated/hand_motion.hpp"
@@ -9,7 +10,10 @@
 #include "rt_core/math/vec3.hpp"
 
 #include <atomic>
+#include <cstdint>
+#include <limits>
 #include <memory>
+#include <optional>
 
 namespace tactus
 {
@@ -31,12 +35,20 @@ struct SimulatedDeviceOptions
     double stiffness_max_n_per_m{3'000.0};
     Vec3 workspace_centre_world_m{Vec3::Zero()};
     double workspace_radius_m{1.0};
+    double speed_max_m_per_s{10.0}; ///< No hand is faster.
+    /// Lent; it outlives the device. Null: a reading is one period, however late it comes. With it
+    /// a reading integrates as many periods as went by, under the force that was held meanwhile.
+    const Clock* clock{nullptr};
+    /// Its own watchdog: so long after a write the force ends. None: the force is held for ever.
+    /// Above zero, and only with a clock.
+    std::optional<Duration> watchdog;
 };
 
 /// A point mass on the hand's spring and damper that feels the written force. Each reading
 /// integrates one period in equal sub-steps of at most 1/8 ms (semi-implicit Euler), by frame index
 /// and never by wall time: the same hand and the same forces give the same positions, bit for bit,
-/// however late the readings come.
+/// however late the readings come. With a clock it lives in that clock's time instead: what it does
+/// when nobody reads or writes for a while can be seen.
 ///
 ///     hand  --[ spring, damper ]--  mass  <--  written force
 ///                                    |
@@ -57,10 +69,20 @@ public:
     void release_brake() noexcept override;
     [[nodiscard]] DeviceStatus status() const noexcept override;
 
+    /// What the hand feels now: the written force, or none after the brake or the watchdog. Haptic
+    /// thread, or another one while that hangs.
+    [[nodiscard]] Vec3 felt_force_world_n() const noexcept;
+
 private:
     SimulatedDevice(const SimulatedDeviceOptions& options, std::unique_ptr<HandMotion> hand);
 
-    void integrate_one_period() noexcept;
+    static constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
+
+    [[nodiscard]] std::uint64_t periods_due() const noexcept;
+    [[nodiscard]] Duration period_at(std::uint64_t index) const noexcept;
+    [[nodiscard]] MonotonicTime now() const noexcept;
+    [[nodiscard]] bool makes_force_at(MonotonicTime time) const noexcept;
+    void integrate_one_period(bool braked, const Vec3& force_n) noexcept;
     void stay_in_workspace() noexcept;
 
     SimulatedDeviceOptions options_;
@@ -71,9 +93,12 @@ private:
     Vec3 velocity_world_m_per_s_{Vec3::Zero()};
     Vec3 force_world_n_{Vec3::Zero()};
     DeviceStatus status_;
-    /// The one field that other threads write. Sequentially consistent: it is rare and orders
-    /// nothing else.
-    std::atomic<bool> braked_{false};
+    std::uint64_t periods_{0}; ///< Integrated so far.
+    MonotonicTime start_;      ///< Of the first reading.
+    MonotonicTime written_;    ///< The last write.
+    /// When the brake came; kNever while it is off. The one field that other threads write.
+    /// Sequentially consistent: it is rare and orders nothing else.
+    std::atomic<std::int64_t> braked_at_ns_{kNever};
 };
 
 } // namespace tactus

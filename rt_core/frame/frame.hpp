@@ -99,6 +99,12 @@ public:
     [[nodiscard]] Model& model(ModelId id) noexcept { return *models_[id.value]; }
     [[nodiscard]] const Model& model(ModelId id) const noexcept { return *models_[id.value]; }
     [[nodiscard]] std::uint32_t model_count() const noexcept { return model_count_; }
+    /// What is wrong with this tool's device after the last frame; the output's faults have those
+    /// of all tools.
+    [[nodiscard]] FrameFault sample_fault(std::uint32_t tool) const noexcept
+    {
+        return sample_watches_[tool].fault();
+    }
 
     struct PassKey
     {

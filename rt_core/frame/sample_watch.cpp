@@ -42,6 +42,14 @@ bool tells_time(const ToolState& sample) noexcept
 SampleWatch::Verdict SampleWatch::judge(const ToolState& sample, const ToolSpec& spec,
                                         const Vec3& goal_m, double elapsed_s) noexcept
 {
+    const Verdict verdict = take(sample, spec, goal_m, elapsed_s);
+    fault_ = verdict.fault;
+    return verdict;
+}
+
+SampleWatch::Verdict SampleWatch::take(const ToolState& sample, const ToolSpec& spec,
+                                       const Vec3& goal_m, double elapsed_s) noexcept
+{
     Verdict verdict;
     verdict.fault = find_fault(sample);
     const bool is_new = !tells_time(sample) || sample.sample_time_ns != time_ns_;

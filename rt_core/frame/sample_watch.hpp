@@ -43,12 +43,22 @@ public:
     [[nodiscard]] double trust(const ToolOutput& output, const ToolSpec& spec,
                                const Vec3& goal_m) noexcept TACTUS_NONBLOCKING;
 
+    /// What is wrong with the device after this frame: the last verdict's fault, and tool_jumped
+    /// until the goal is back where a force may follow it.
+    [[nodiscard]] FrameFault fault() const noexcept TACTUS_NONBLOCKING
+    {
+        return has_lost_place_ ? fault_ | FrameFault::tool_jumped : fault_;
+    }
+
 private:
+    [[nodiscard]] Verdict take(const ToolState& sample, const ToolSpec& spec, const Vec3& goal_m,
+                               double elapsed_s) noexcept;
     [[nodiscard]] FrameFault find_fault(const ToolState& sample) const noexcept;
 
     double blind_s_{std::numeric_limits<double>::infinity()}; ///< Since the last taken sample.
     std::int64_t time_ns_{0};
     bool has_lost_place_{false};
+    FrameFault fault_{FrameFault::none}; ///< Of the last verdict.
 };
 
 } // namespace tactus

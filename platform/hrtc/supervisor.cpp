@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/hrtc/supervisor.hpp"
+
+#include "platform/posix/linux_extras.hpp"
+
+#include <algorithm>
+
+namespace tactus::hrtc
+{
+
+void Supervisor::run() noexcept
+{
+    while (!stopped_.load(std::memory_order_relaxed))
+    {
+        const Duration until = look() - parts_.clock->now();
+        const Duration sleep =
+            std::clamp(until, PeriodicTimer::kPeriodMin, PeriodicTimer::kPeriodMax);
+        static_cast<void>(parts_.timer->start(sleep, Duration{})); // In range, so not refused.
+        parts_.timer->sleep_until_margin();
+    }
+}
+
+MonotonicTime Supervisor::look() noexcept
+{
+    const Duration patience = parts_.period * kSilentPeriods;
+    const std::optional<MonotonicTime> last = parts_.heartbeat->last();
+    const MonotonicTime now = parts_.clock->now(); // After the beat, so that it is never earlier.
+    if (!last)
+    {
+        return now + patience;
+    }
+    if (now - *last < patience)
+    {
+        return *last + patience;
+    }
+    if (noticed_ != last)
+    {
+        noticed_ = last;
+        brake(now);
+    }
+    return now + parts_.period;
+}
+
+void Supervisor::brake(MonotonicTime now) noexcept
+{
+    for (const std::unique_ptr<HapticDevice>& device : parts_.devices)
+    {
+        device->brake();
+    }
+    brakes_.fetch_add(1, std::memory_order_relaxed);
+    for (std::uint32_t tool = 0; tool < parts_.devices.size(); ++tool)
+    {
+        log_.note({now, 0, tool, SafetyState::brake, ForceOff::watchdog, true});
+    }
+}
+
+RtThreadOptions Supervisor::thread_beside(const RtThreadOptions& loop)
+{
+    RtThreadOptions options = loop;
+    options.priority = loop.priority + 1;
+    options.is_supervisor = true;
+    options.lock_memory = false; // The loop's thread locks that of the process.
+    options.cpu = loop.cpu ? linux_extras::another_cpu(*loop.cpu) : std::nullopt;
+    return options;
+}
+
+} // namespace tactus::hrtc

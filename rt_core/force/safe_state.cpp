@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "rt_core/force/safe_state.hpp"
+
+#include "rt_core/base/assert.hpp"
+#include "rt_core/limits.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tactus
+{
+
+namespace
+{
+
+/// Faults of a sample after which neither its position nor the force made of it is used.
+constexpr FrameFault kSampleFaults =
+    FrameFault::tool_invalid | FrameFault::tool_stuck | FrameFault::tool_jumped;
+
+bool is_good(const SafetyInput& input) noexcept
+{
+    return (input.sample_fault & kSampleFaults) == FrameFault::none;
+}
+
+bool is_finite(const Vec3& v) noexcept
+{
+    return std::isfinite(v.x()) && std::isfinite(v.y()) && std::isfinite(v.z());
+}
+
+/// `v`, or as much of it as has this norm.
+Vec3 shortened(const Vec3& v, double norm_max) noexcept
+{
+    const double norm = v.norm();
+    return norm > norm_max ? Vec3(v * (norm_max / norm)) : v;
+}
+
+} // namespace
+
+SafeState::SafeState(const SafetyLimits& limits) noexcept : limits_(limits)
+{
+    TACTUS_ASSERT(limits.force_max_n > 0.0);
+    TACTUS_ASSERT(limits.speed_max_m_per_s >= 0.0);
+    TACTUS_ASSERT(limits.stiffness_n_per_m >= 0.0);
+    TACTUS_ASSERT(limits.damping_n_s_per_m >= 0.0);
+}
+
+SafetyOutput SafeState::step(const SafetyInput& input) noexcept
+{
+    observe_speed(input);
+    const ForceOff causes = find_causes(input);
+    move_gain(input, causes);
+    if (causes == ForceOff::none)
+    {
+        follow(input);
+    }
+    const SafetyState state = next_state(causes);
+    const bool has_changed = state != state_ || causes != causes_;
+    state_ = state;
+    causes_ = causes;
+    return {shaped_force(), state, causes, has_changed};
+}
+
+/// From the device, or from the ways between new samples over the true times between them.
+void SafeState::observe_speed(const SafetyInput& input) noexcept
+{
+    since_sample_s_ += input.elapsed_s;
+    if (!is_good(input) || has_cause(input.causes, ForceOff::disconnect))
+    {
+        velocity_m_per_s_ = Vec3(0.0, 0.0, 0.0);
+        return;
+    }
+    const bool is_new = input.sample_time_ns == 0 || input.sample_time_ns != sample_time_ns_;
+    if (!is_new && has_sample_)
+    {
+        return;
+    }
+    if (input.has_velocity && is_finite(input.velocity_m_per_s))
+    {
+        velocity_m_per_s_ = input.velocity_m_per_s;
+    }
+    else if (has_sample_ && since_sample_s_ > 0.0)
+    {
+        velocity_m_per_s_ = (input.position_m - position_m_) / since_sample_s_;
+    }
+    position_m_ = input.position_m;
+    sample_time_ns_ = input.sample_time_ns;
+    since_sample_s_ = 0.0;
+    has_sample_ = true;
+    const double limit = limits_.speed_max_m_per_s * (is_too_fast_ ? kCalmSpeedShare : 1.0);
+    is_too_fast_ = velocity_m_per_s_.norm() > limit;
+}
+
+ForceOff SafeState::find_causes(const SafetyInput& input) const noexcept
+{
+    const auto when = [](bool is_so, ForceOff cause) { return is_so ? cause : ForceOff::none; };
+    return input.causes | when(is_too_fast_, ForceOff::velocity) |
+           when(input.force_was_lost, ForceOff::watchdog) |
+           when(has_fault(input.sample_fault, FrameFault::tool_stuck), ForceOff::stale) |
+           when(has_fault(input.sample_fault, FrameFault::tool_invalid | FrameFault::tool_jumped) ||
+                    !is_finite(input.force_n),
+                ForceOff::garbage) |
+           when(input.elapsed_periods > 1, ForceOff::stall);
+}
+
+void SafeState::move_gain(const SafetyInput& input, ForceOff causes) noexcept
+{
+    const bool was_off = gain_ <= 0.0;
+    if (input.force_was_lost || !has_sample_)
+    {
+        gain_ = 0.0;
+    }
+    else if (causes != ForceOff::none)
+    {
+        gain_ = std::max(gain_ - input.elapsed_s / kFadeTime_s, 0.0);
+    }
+    else if (!was_off || may_begin(input))
+    {
+        gain_ = std::min(gain_ + input.elapsed_s / kRiseTime_s, 1.0);
+    }
+    // Another device, or the same one after it was moved: what it says first counts anew.
+    has_sample_ = has_sample_ && (gain_ > 0.0 || !has_cause(causes, ForceOff::disconnect));
+    is_following_ = causes == ForceOff::none && (is_following_ || was_off);
+}
+
+/// A hand so deep in a wall that the device couldn't make the spring's force has to come out first.
+bool SafeState::may_begin(const SafetyInput& input) const noexcept
+{
+    const double spring_n = limits_.stiffness_n_per_m * (input.proxy_m - input.position_m).norm();
+    return spring_n <= limits_.force_max_n;
+}
+
+void SafeState::follow(const SafetyInput& input) noexcept
+{
+    const Vec3 target_n = shortened(input.force_n, limits_.force_max_n);
+    const Vec3 way_n = target_n - base_n_;
+    const double step_n = limits_.force_max_n * input.elapsed_s / kRiseTime_s;
+    is_following_ = is_following_ || way_n.norm() <= step_n;
+    base_n_ = is_following_ ? target_n : Vec3(base_n_ + shortened(way_n, step_n));
+}
+
+Vec3 SafeState::shaped_force() const noexcept
+{
+    const double damping = 4.0 * gain_ * (1.0 - gain_) * limits_.damping_n_s_per_m;
+    const Vec3 damping_n =
+        shortened(-damping * velocity_m_per_s_, kDampingForceShare * limits_.force_max_n);
+    return shortened(gain_ * base_n_ + damping_n, limits_.force_max_n);
+}
+
+SafetyState SafeState::next_state(ForceOff causes) const noexcept
+{
+    if (!has_sample_)
+    {
+        return SafetyState::reset;
+    }
+    if (gain_ <= 0.0)
+    {
+        return SafetyState::idle;
+    }
+    return causes == ForceOff::none ? SafetyState::force : SafetyState::brake;
+}
+
+} // namespace tactus

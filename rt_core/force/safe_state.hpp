@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/base/realtime.hpp"
+#include "rt_core/math/vec3.hpp"
+#include "rt_core/records/safety.hpp"
+#include "rt_core/records/work_counters.hpp"
+
+#include <cstdint>
+
+namespace tactus
+{
+
+/// What one tool's device allows; finite and not negative.
+struct SafetyLimits
+{
+    double speed_max_m_per_s{0.0}; ///< Faster hands get no force.
+    double force_max_n{0.0};       ///< Norm; above zero.
+    double stiffness_n_per_m{0.0}; ///< Of the virtual wall.
+    double damping_n_s_per_m{0.0}; ///< Added while a force fades or comes back: see
+                                   ///< kDampingShare.
+};
+
+/// What one frame knows about one tool. World frame, SI.
+struct SafetyInput
+{
+    Vec3 position_m{0.0, 0.0, 0.0}; ///< Of the sample; used only while it has no fault.
+    Vec3 velocity_m_per_s{0.0, 0.0, 0.0};
+    bool has_velocity{false};         ///< False: from the positions.
+    std::int64_t sample_time_ns{0};   ///< 0: the device has none, every sample is new.
+    double elapsed_s{0.0};            ///< Since the last frame, the true one after a stall.
+    std::uint32_t elapsed_periods{1}; ///< The same in whole periods.
+    Vec3 force_n{0.0, 0.0, 0.0};      ///< The frame's.
+    Vec3 proxy_m{0.0, 0.0, 0.0};      ///< The frame's.
+    FrameFault sample_fault{FrameFault::none}; ///< SampleWatch::fault().
+    ForceOff causes{ForceOff::none};           ///< What the caller knows of by itself.
+    bool force_was_lost{false}; ///< The device has dropped the last force: a brake, or its
+                                ///< own watchdog.
+};
+
+/// What goes to the device.
+struct SafetyOutput
+{
+    Vec3 force_n{0.0, 0.0, 0.0};
+    SafetyState state{SafetyState::reset};
+    ForceOff causes{ForceOff::none};
+    bool has_changed{false}; ///< State or causes are others than in the frame before.
+};
+
+/// Stands between the frame and one tool's device and decides how much of the force goes out.
+///
+///     gain  1 |------.                                .------
+///             |       \  kFadeTime_s     kRiseTime_s /
+///           0 |        '-----------------------------'
+///              force    brake      idle              force
+///
+/// While any cause is there the gain falls with the true elapsed time, from the frame on that finds
+/// it, and scales the last force from before: nothing that is computed from bad data goes out. When
+/// all causes are gone the gain rises, and what it scales moves from that last force to the frame's
+/// no faster than the device's largest force in kRiseTime_s; from a gain of zero, where nothing is
+/// felt, it is the frame's at once. From zero the gain rises only once the spring between proxy and
+/// hand is within the device's range. So, with dt the elapsed time and besides the damping, the
+/// force changes by at most force_max x dt / kFadeTime_s in a brake, and by at most
+/// 2 x force_max x dt / kRiseTime_s and the gain's share of the frame's own step on the way back.
+///
+/// The device is in reset until its first good sample, and again when it is gone.
+///
+/// The damping works against the hand's velocity while the gain is between 0 and 1, most at 1/2 and
+/// none at either end, by at most kDampingForceShare of the largest force.
+///
+/// A device that has dropped the force by itself has no ramp left to make: the gain is zero at
+/// once. Haptic thread; some 50 ns.
+class SafeState
+{
+public:
+    SafeState() noexcept = default;
+    explicit SafeState(const SafetyLimits& limits) noexcept;
+
+    /// Once a frame, after the force is computed and before it is written.
+    [[nodiscard]] SafetyOutput step(const SafetyInput& input) noexcept TACTUS_NONBLOCKING;
+
+    [[nodiscard]] SafetyState state() const noexcept { return state_; }
+    /// Share of the force that goes out, 0 .. 1.
+    [[nodiscard]] double gain() const noexcept { return gain_; }
+
+private:
+    [[nodiscard]] ForceOff find_causes(const SafetyInput& input) const noexcept;
+    void observe_speed(const SafetyInput& input) noexcept;
+    void move_gain(const SafetyInput& input, ForceOff causes) noexcept;
+    void follow(const SafetyInput& input) noexcept;
+    [[nodiscard]] bool may_begin(const SafetyInput& input) const noexcept;
+    [[nodiscard]] Vec3 shaped_force() const noexcept;
+    [[nodiscard]] SafetyState next_state(ForceOff causes) const noexcept;
+
+    SafetyLimits limits_;
+    SafetyState state_{SafetyState::reset};
+    ForceOff causes_{ForceOff::none};
+    double gain_{0.0};
+    Vec3 base_n_{0.0, 0.0, 0.0}; ///< What the gain scales.
+    bool is_following_{false};   ///< base_n_ is the frame's force and no longer on its way there.
+    bool has_sample_{false};     ///< Of this device, since it was connected.
+    Vec3 position_m_{0.0, 0.0, 0.0}; ///< Of the last new sample.
+    std::int64_t sample_time_ns_{0};
+    double since_sample_s_{0.0};
+    Vec3 velocity_m_per_s_{0.0, 0.0, 0.0}; ///< Zero when it isn't known.
+    bool is_too_fast_{false};
+};
+
+} // namespace tactus

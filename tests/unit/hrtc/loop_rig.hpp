@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "platform/hrtc/haptic_loop.hpp"
+#include "platform/simulated/simulated_device.hpp"
+#include "platform/simulated/simulated_periodic_timer.hpp"
+#include "tests/shared/frame_rig.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <utility>
+#include <vector>
+
+/// The haptic loop on a simulated device whose hand presses on a model, in virtual time.
+namespace tactus::hrtc::test
+{
+
+inline constexpr Duration kPeriod = milliseconds(1);
+inline constexpr double kPeriod_s = 1e-3;
+/// Deep enough for 1.7 N; without a force the hand sinks to where the spring makes 6 of 8 N.
+inline constexpr double kPress_m = 0.012;
+/// From here on the hand is at rest in the surface and the whole force goes out.
+inline constexpr std::uint64_t kSettled = 1'000;
+/// Of the pressed force, from frame to frame, when nobody interferes.
+inline constexpr double kOwnStep_n = 0.02;
+
+/// Comes down on a place of the surface along its normal, presses and stays.
+class PressingHand final : public HandMotion
+{
+public:
+    PressingHand(const Vec3& place_m, const Vec3& outward, double height_m)
+        : place_m_(place_m), outward_(outward), height_m_(height_m)
+    {
+    }
+    [[nodiscard]] Vec3 start_world_m() const noexcept override
+    {
+        return place_m_ + height_m_ * outward_;
+    }
+    [[nodiscard]] Vec3 next_world_m(const HandSense& sense) noexcept override
+    {
+        const double done = std::min(static_cast<double>(sense.frame) / 500.0, 1.0);
+        return place_m_ + (height_m_ - done * (height_m_ + kPress_m)) * outward_;
+    }
+
+private:
+    Vec3 place_m_;
+    Vec3 outward_;
+    double height_m_;
+};
+
+/// A device as it is, but for what a test does in its readings; keeps what was written.
+class TamperedDevice final : public HapticDevice
+{
+public:
+    using Tamper = std::function<void(std::uint64_t frame, DeviceSample& sample)>;
+
+    TamperedDevice(std::unique_ptr<SimulatedDevice> device, Tamper tamper)
+        : device_(std::move(device)), tamper_(std::move(tamper))
+    {
+    }
+    [[nodiscard]] const DeviceInfo& info() const noexcept override { return device_->info(); }
+    [[nodiscard]] DeviceSample read() noexcept override
+    {
+        DeviceSample sample = device_->read();
+        tamper_(reads_++, sample);
+        return sample;
+    }
+    void write(const std::array<double, 3>& force_world_n) noexcept override
+    {
+        device_->write(force_world_n);
+        written_n.push_back({force_world_n[0], force_world_n[1], force_world_n[2]});
+    }
+    void brake() noexcept override { device_->brake(); }
+    void release_brake() noexcept override { device_->release_brake(); }
+    [[nodiscard]] DeviceStatus status() const noexcept override { return device_->status(); }
+
+    [[nodiscard]] Vec3 felt_n() const noexcept { return device_->felt_force_world_n(); }
+
+    std::vector<Vec3> written_n; ///< One a frame; the last is the zero at the end.
+
+private:
+    std::unique_ptr<SimulatedDevice> device_;
+    Tamper tamper_;
+    std::uint64_t reads_{0};
+};
+
+struct LoopRigOptions
+{
+    TamperedDevice::Tamper tamper = [](std::uint64_t, DeviceSample&) {};
+    std::vector<LateWake> late_wakes;
+    std::optional<Duration> watchdog; ///< The device's own.
+    bool static_model{false};
+    std::uint64_t frames{2'000};
+    double speed_max_m_per_s{10.0};
+    const Clock* clock{nullptr};    ///< Another one than the virtual, with a timer of its own.
+    PeriodicTimer* timer{nullptr};
+};
+
+class LoopRig
+{
+public:
+    explicit LoopRig(LoopRigOptions options)
+        : options_(std::move(options))
+        , model_(tactus::test::small_model(0))
+        , frames_(model_, rig_options(options_))
+        , timer_(clock_, options_.late_wakes)
+        , statistics_(1, 1, 1, kPeriod)
+    {
+        load_everything(frames_);
+        make_device();
+        limits_ = {options_.speed_max_m_per_s, device().info().force_max_n, 500.0,
+                   kDampingShare * device().info().damping_n_s_per_m};
+        LoopParts parts;
+        parts.frame = &frames_.frame();
+        parts.devices = devices_;
+        parts.limits = {&limits_, 1};
+        parts.poses = {&frames_.pose(), 1};
+        parts.timer = options_.timer != nullptr ? options_.timer : &timer_;
+        parts.clock = &clock();
+        parts.frames = options_.frames;
+        parts.hosts_gone = &hosts_gone;
+        parts.budgets.splits = kMaxSplitsPerFrame;
+        loop_.emplace(parts, statistics_);
+        static_cast<void>(parts.timer->start(kPeriod, {}));
+    }
+
+    [[nodiscard]] HapticLoop& loop() { return *loop_; }
+    [[nodiscard]] TamperedDevice& device()
+    {
+        return static_cast<TamperedDevice&>(*devices_.front());
+    }
+    [[nodiscard]] std::span<const std::unique_ptr<HapticDevice>> devices() { return devices_; }
+    [[nodiscard]] SimulatedClock& virtual_clock() { return clock_; }
+    [[nodiscard]] const Clock& clock() const
+    {
+        return options_.clock != nullptr ? *options_.clock : clock_;
+    }
+    [[nodiscard]] const Vec3& written_n(std::uint64_t frame) { return device().written_n[frame]; }
+
+    /// What the loop noted, in order; the log is empty afterwards.
+    [[nodiscard]] std::vector<SafetyEvent> events()
+    {
+        std::vector<SafetyEvent> events;
+        loop_->safety_log().take_into(events);
+        return events;
+    }
+
+    /// The largest step of the force between these frames.
+    [[nodiscard]] double largest_step_n(std::uint64_t from, std::uint64_t to)
+    {
+        double most = 0.0;
+        for (std::uint64_t i = from; i < to; ++i)
+        {
+            most = std::max(most, (written_n(i + 1) - written_n(i)).norm());
+        }
+        return most;
+    }
+
+    std::atomic<std::uint32_t> hosts_gone{0};
+
+private:
+    static tactus::test::RigOptions rig_options(const LoopRigOptions& options)
+    {
+        tactus::test::RigOptions rig = tactus::test::with_room_for_all();
+        rig.static_when_it_fits = options.static_model;
+        rig.tools = {{0.01 * tactus::test::small_model(0).diagonal_m, 500.0, 8.0, 1.0}};
+        return rig;
+    }
+
+    /// Above the face that is farthest out in x.
+    void make_device()
+    {
+        const auto farthest = std::ranges::max_element(
+            model_.faces, {}, [](const auto& face) { return face.a.x() + face.b.x() + face.c.x(); });
+        const Vec3 place = (farthest->a + farthest->b + farthest->c) / 3.0;
+        SimulatedDeviceOptions device;
+        device.clock = &clock();
+        device.watchdog = options_.watchdog;
+        device.workspace_centre_world_m = place;
+        auto hand = std::make_unique<PressingHand>(place, Vec3::UnitX(), 0.05 * model_.diagonal_m);
+        devices_.push_back(std::make_unique<TamperedDevice>(
+            std::move(SimulatedDevice::create(device, std::move(hand))).value(), options_.tamper));
+    }
+
+    LoopRigOptions options_;
+    const tactus::test::TestModel& model_;
+    tactus::test::FrameRig frames_;
+    SimulatedClock clock_{MonotonicTime{1'000'000'000}};
+    SimulatedPeriodicTimer timer_;
+    RunStatistics statistics_;
+    std::vector<std::unique_ptr<HapticDevice>> devices_;
+    SafetyLimits limits_;
+    std::optional<HapticLoop> loop_;
+};
+
+} // namespace tactus::hrtc::test

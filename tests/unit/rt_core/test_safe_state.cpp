@@ -1,0 +1,362 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "rt_core/force/safe_state.hpp"
+#include "rt_core/limits.hpp"
+#include "tests/shared/random.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <ostream>
+#include <string>
+
+namespace tactus::test
+{
+
+namespace
+{
+
+constexpr double kFrame_s = 1e-3;
+constexpr double kForceMax_n = 8.0;
+constexpr double kRounding_n = 1e-9;
+
+/// One tool with a force on it, frame by frame.
+class GuardedTool
+{
+public:
+    GuardedTool() { input.force_n = kForce_n; }
+
+    const SafetyOutput& step(std::uint32_t periods = 1)
+    {
+        input.elapsed_periods = periods;
+        input.elapsed_s = kFrame_s * periods;
+        input.sample_time_ns += 1'000'000;
+        last = sut.step(input);
+        return last;
+    }
+    /// Until the whole force goes out.
+    void warm_up()
+    {
+        for (int i = 0; i < 200; ++i)
+        {
+            step();
+        }
+        ASSERT_EQ(last.state, SafetyState::force);
+        ASSERT_EQ(last.force_n, kForce_n);
+    }
+
+    static inline const Vec3 kForce_n{1.0, -2.0, 3.0};
+    static inline const SafetyLimits kLimits{1.0, kForceMax_n, 500.0, 0.5};
+    SafeState sut{kLimits};
+    SafetyInput input;
+    SafetyOutput last;
+};
+
+/// What goes wrong, how it is called, and how the input says so.
+struct Cause
+{
+    const char* name;
+    ForceOff cause;
+    void (*begin)(SafetyInput& input);
+    void (*end)(SafetyInput& input);
+};
+
+void PrintTo(const Cause& cause, std::ostream* out)
+{
+    *out << cause.name;
+}
+
+template <ForceOff cause>
+constexpr Cause known(const char* name)
+{
+    return {name, cause, [](SafetyInput& input) { input.causes = cause; },
+            [](SafetyInput& input) { input.causes = ForceOff::none; }};
+}
+
+template <FrameFault fault>
+constexpr Cause faulty(const char* name, ForceOff cause)
+{
+    return {name, cause, [](SafetyInput& input) { input.sample_fault = fault; },
+            [](SafetyInput& input) { input.sample_fault = FrameFault::none; }};
+}
+
+/// Causes that last until they are ended; the lost force and the stall have tests of their own.
+const Cause kCauses[] = {
+    known<ForceOff::software>("software"),
+    known<ForceOff::disconnect>("disconnect"),
+    known<ForceOff::deadman>("deadman"),
+    known<ForceOff::stale>("stale"),
+    known<ForceOff::host>("host"),
+    faulty<FrameFault::tool_stuck>("stuck", ForceOff::stale),
+    faulty<FrameFault::tool_invalid>("invalid", ForceOff::garbage),
+    faulty<FrameFault::tool_jumped>("jumped", ForceOff::garbage),
+    {"velocity", ForceOff::velocity,
+     [](SafetyInput& input)
+     {
+         input.has_velocity = true;
+         input.velocity_m_per_s = Vec3(0.0, 1.5, 0.0);
+     },
+     [](SafetyInput& input) { input.velocity_m_per_s = Vec3(0.0, 0.1, 0.0); }},
+    {"no_number", ForceOff::garbage,
+     [](SafetyInput& input) { input.force_n.x() = std::numeric_limits<double>::quiet_NaN(); },
+     [](SafetyInput& input) { input.force_n = GuardedTool::kForce_n; }},
+};
+
+class SafeStateCause : public testing::TestWithParam<Cause>
+{
+protected:
+    /// The most that the damping may make.
+    static double damping_max_n(const SafetyInput& input)
+    {
+        return std::min(GuardedTool::kLimits.damping_n_s_per_m * input.velocity_m_per_s.norm(),
+                        kDampingForceShare * kForceMax_n);
+    }
+    GuardedTool tool;
+};
+
+INSTANTIATE_TEST_SUITE_P(Each, SafeStateCause, testing::ValuesIn(kCauses),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+TEST_P(SafeStateCause, fades_the_last_force_from_the_first_frame_and_names_itself)
+{
+    tool.warm_up();
+    GetParam().begin(tool.input);
+    const double before_n = tool.last.force_n.norm();
+    const double damping_n = damping_max_n(tool.input);
+    double elapsed_s = 0.0;
+    while (elapsed_s < kFadeTime_s - 0.5 * kFrame_s)
+    {
+        const SafetyOutput out = tool.step();
+        elapsed_s += kFrame_s;
+        EXPECT_TRUE(has_cause(out.causes, GetParam().cause));
+        EXPECT_EQ(out.has_changed, elapsed_s < 1.5 * kFrame_s || out.state != SafetyState::brake);
+        const Vec3 ramp_n = GuardedTool::kForce_n * std::max(1.0 - elapsed_s / kFadeTime_s, 0.0);
+        EXPECT_LE((out.force_n - ramp_n).norm(), damping_n + kRounding_n) << elapsed_s;
+        EXPECT_LE(out.force_n.norm(), before_n + damping_n + kRounding_n);
+    }
+    tool.step(); // The last one, but for rounding.
+    EXPECT_EQ(tool.last.force_n.norm(), 0.0);
+    for (int i = 0; i < 100; ++i)
+    {
+        EXPECT_EQ(tool.step().force_n.norm(), 0.0);
+        const bool is_gone = GetParam().cause == ForceOff::disconnect;
+        EXPECT_EQ(tool.last.state, is_gone ? SafetyState::reset : SafetyState::idle);
+    }
+}
+
+TEST_P(SafeStateCause, comes_back_by_the_ramp_after_any_time)
+{
+    for (const int bad_frames : {1, 2, 10, 49, 50, 51, 500})
+    {
+        GuardedTool one;
+        one.warm_up();
+        GetParam().begin(one.input);
+        const double damping_n = damping_max_n(one.input);
+        for (int i = 0; i < bad_frames; ++i)
+        {
+            one.step();
+        }
+        GetParam().end(one.input);
+        const double step_max_n =
+            2.0 * kForceMax_n * kFrame_s / kRiseTime_s + damping_n + kRounding_n;
+        int frames = 0;
+        for (Vec3 last_n = one.last.force_n; one.last.force_n != GuardedTool::kForce_n; ++frames)
+        {
+            one.step();
+            EXPECT_LE((one.last.force_n - last_n).norm(), step_max_n) << bad_frames;
+            EXPECT_EQ(one.last.state, SafetyState::force);
+            last_n = one.last.force_n;
+            ASSERT_LT(frames, 102) << bad_frames;
+        }
+        EXPECT_GE(frames, std::min(2 * bad_frames, 100) - 1);
+    }
+}
+
+TEST(SafeState, makes_no_force_before_the_first_good_sample)
+{
+    GuardedTool tool;
+    tool.input.sample_fault = FrameFault::tool_invalid;
+    for (int i = 0; i < 10; ++i)
+    {
+        EXPECT_EQ(tool.step().state, SafetyState::reset);
+        EXPECT_EQ(tool.last.force_n.norm(), 0.0);
+    }
+    tool.input.sample_fault = FrameFault::none;
+    EXPECT_EQ(tool.step().state, SafetyState::force);
+    EXPECT_NEAR(tool.last.force_n.norm(), GuardedTool::kForce_n.norm() * kFrame_s / kRiseTime_s,
+                kRounding_n);
+}
+
+TEST(SafeState, a_stall_takes_as_much_of_the_force_as_its_true_time_says)
+{
+    for (const std::uint32_t periods : {2U, 3U, 10U, 49U, 50U, 1'000U, 4'000'000'000U})
+    {
+        GuardedTool tool;
+        tool.warm_up();
+        EXPECT_EQ(tool.step(periods).causes, ForceOff::stall);
+        const double gain = std::max(1.0 - periods * kFrame_s / kFadeTime_s, 0.0);
+        EXPECT_NEAR(tool.sut.gain(), gain, 1e-12) << periods;
+        EXPECT_NEAR((tool.last.force_n - gain * GuardedTool::kForce_n).norm(), 0.0, kRounding_n);
+        EXPECT_EQ(tool.step().causes, ForceOff::none);
+        EXPECT_NEAR(tool.sut.gain(), std::min(gain + kFrame_s / kRiseTime_s, 1.0), 1e-12);
+    }
+}
+
+TEST(SafeState, a_force_that_the_device_has_dropped_starts_again_from_zero)
+{
+    GuardedTool tool;
+    tool.warm_up();
+    tool.input.force_was_lost = true;
+    EXPECT_EQ(tool.step().causes, ForceOff::watchdog);
+    EXPECT_EQ(tool.last.state, SafetyState::idle);
+    EXPECT_EQ(tool.last.force_n.norm(), 0.0);
+    tool.input.force_was_lost = false;
+    Vec3 last_n = tool.last.force_n;
+    for (int i = 0; i < 100; ++i)
+    {
+        EXPECT_EQ(tool.step().state, SafetyState::force);
+        EXPECT_LE((tool.last.force_n - last_n).norm(),
+                  GuardedTool::kForce_n.norm() * kFrame_s / kRiseTime_s + kRounding_n);
+        last_n = tool.last.force_n;
+    }
+    EXPECT_NEAR((last_n - GuardedTool::kForce_n).norm(), 0.0, kRounding_n);
+}
+
+TEST(SafeState, does_not_pull_a_hand_that_is_deeper_than_the_device_is_strong)
+{
+    GuardedTool tool;
+    tool.input.proxy_m = Vec3(1.01 * kForceMax_n / 500.0, 0.0, 0.0);
+    for (int i = 0; i < 10; ++i)
+    {
+        EXPECT_EQ(tool.step().state, SafetyState::idle);
+        EXPECT_EQ(tool.last.force_n.norm(), 0.0);
+    }
+    tool.input.proxy_m = Vec3(0.99 * kForceMax_n / 500.0, 0.0, 0.0);
+    EXPECT_EQ(tool.step().state, SafetyState::force);
+    tool.warm_up();
+    tool.input.proxy_m = Vec3(0.5, 0.0, 0.0); // Pressed deeper: the force stays.
+    EXPECT_EQ(tool.step().state, SafetyState::force);
+}
+
+TEST(SafeState, a_fast_hand_is_calm_again_at_half_the_limit)
+{
+    GuardedTool tool;
+    tool.input.has_velocity = true;
+    const auto is_off_at = [&](double speed)
+    {
+        tool.input.velocity_m_per_s = Vec3(0.0, 0.0, speed);
+        return tool.step().causes == ForceOff::velocity;
+    };
+    EXPECT_FALSE(is_off_at(0.99));
+    EXPECT_TRUE(is_off_at(1.01));
+    EXPECT_TRUE(is_off_at(0.51));
+    EXPECT_FALSE(is_off_at(0.49));
+    EXPECT_FALSE(is_off_at(0.99));
+}
+
+TEST(SafeState, finds_the_speed_of_a_device_that_does_not_tell_it)
+{
+    for (const double speed : {0.9, 1.1})
+    {
+        GuardedTool tool;
+        tool.step();
+        for (const std::uint32_t periods : {1U, 4U}) // By the true time after a stall.
+        {
+            tool.input.position_m += Vec3(speed * kFrame_s * periods, 0.0, 0.0);
+            tool.input.proxy_m = tool.input.position_m;
+            EXPECT_EQ(has_cause(tool.step(periods).causes, ForceOff::velocity), speed > 1.0);
+        }
+    }
+    // A slow device repeats its sample: neither standing still nor leaping in between.
+    GuardedTool tool;
+    tool.step();
+    for (int i = 0; i < 12; ++i)
+    {
+        if (i % 4 == 3)
+        {
+            tool.input.position_m += Vec3(0.9 * 4 * kFrame_s, 0.0, 0.0);
+            tool.input.proxy_m = tool.input.position_m;
+        }
+        else
+        {
+            tool.input.sample_time_ns -= 1'000'000;
+        }
+        EXPECT_EQ(tool.step().causes, ForceOff::none) << i;
+    }
+}
+
+TEST(SafeState, damps_the_motion_while_it_fades_and_not_at_either_end)
+{
+    GuardedTool tool;
+    tool.input.force_n.setZero();
+    tool.input.has_velocity = true;
+    tool.input.velocity_m_per_s = Vec3(0.8, 0.0, 0.0);
+    for (int i = 0; i < 200; ++i)
+    {
+        tool.step();
+    }
+    EXPECT_EQ(tool.last.force_n.norm(), 0.0);
+    tool.input.causes = ForceOff::deadman;
+    double most_n = 0.0;
+    for (int i = 0; i < 60; ++i)
+    {
+        EXPECT_LE(tool.step().force_n.x(), 0.0);
+        EXPECT_EQ(tool.last.force_n.tail<2>().norm(), 0.0);
+        most_n = std::max(most_n, -tool.last.force_n.x());
+    }
+    EXPECT_NEAR(most_n, 0.5 * 0.8, 1e-12);
+    EXPECT_EQ(tool.last.force_n.norm(), 0.0);
+}
+
+/// Causes at any time and of any length, stalls among them, and a force that changes by so much a
+/// frame: the law of the header holds in every frame. The hand is still, so nothing is damped.
+TEST(SafeState, never_steps_farther_than_its_law)
+{
+    constexpr double kOwnStep_n = 0.05;
+    Random random(71);
+    GuardedTool tool;
+    const Cause* cause = nullptr;
+    Vec3 frame_n = tool.input.force_n;
+    std::array<int, kSafetyStates> seen{};
+    for (int frame = 0; frame < 200'000; ++frame)
+    {
+        if (random.one_in(40))
+        {
+            if (cause != nullptr)
+            {
+                cause->end(tool.input);
+            }
+            const Cause& next = kCauses[random.below(std::size(kCauses))];
+            cause = next.cause == ForceOff::velocity || random.one_in(2) ? nullptr : &next;
+        }
+        frame_n += random.in_cube(kOwnStep_n / std::sqrt(3.0));
+        tool.input.force_n = frame_n;
+        if (cause != nullptr)
+        {
+            cause->begin(tool.input);
+        }
+        const Vec3 before_n = tool.last.force_n;
+        const std::uint32_t periods = random.one_in(50) ? 1 + random.below(8U) : 1;
+        const SafetyOutput out = tool.step(periods);
+        const double step_n = (out.force_n - before_n).norm();
+        const double elapsed_s = kFrame_s * periods;
+        ++seen[static_cast<std::size_t>(out.state)];
+        ASSERT_LE(out.force_n.norm(), kForceMax_n + kRounding_n) << frame;
+        if (out.causes == ForceOff::none)
+        {
+            ASSERT_LE(step_n, 2.0 * kForceMax_n * elapsed_s / kRiseTime_s + kOwnStep_n) << frame;
+            continue;
+        }
+        ASSERT_LE(step_n, kForceMax_n * elapsed_s / kFadeTime_s + kRounding_n) << frame;
+        ASSERT_LE(out.force_n.norm(), before_n.norm() + kRounding_n) << frame;
+        ASSERT_NEAR(out.force_n.cross(before_n).norm(), 0.0, 1e-6) << frame; // Straight to zero.
+    }
+    EXPECT_TRUE(std::ranges::none_of(seen, [](int count) { return count < 1'000; }));
+}
+
+} // namespace
+
+} // namespace tactus::test
