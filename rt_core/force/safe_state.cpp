@@ -49,10 +49,11 @@ SafetyOutput SafeState::step(const SafetyInput& input) noexcept
 {
     observe_speed(input);
     const ForceOff causes = find_causes(input);
+    const bool was_off = gain_ <= 0.0;
     move_gain(input, causes);
     if (causes == ForceOff::none)
     {
-        follow(input);
+        follow(input, was_off);
     }
     const SafetyState state = next_state(causes);
     const bool has_changed = state != state_ || causes != causes_;
@@ -105,7 +106,6 @@ ForceOff SafeState::find_causes(const SafetyInput& input) const noexcept
 
 void SafeState::move_gain(const SafetyInput& input, ForceOff causes) noexcept
 {
-    const bool was_off = gain_ <= 0.0;
     if (input.force_was_lost || !has_sample_)
     {
         gain_ = 0.0;
@@ -114,13 +114,13 @@ void SafeState::move_gain(const SafetyInput& input, ForceOff causes) noexcept
     {
         gain_ = std::max(gain_ - input.elapsed_s / kFadeTime_s, 0.0);
     }
-    else if (!was_off || may_begin(input))
+    else if (gain_ > 0.0 || may_begin(input))
     {
         gain_ = std::min(gain_ + input.elapsed_s / kRiseTime_s, 1.0);
     }
     // Another device, or the same one after it was moved: what it says first counts anew.
     has_sample_ = has_sample_ && (gain_ > 0.0 || !has_cause(causes, ForceOff::disconnect));
-    is_following_ = causes == ForceOff::none && (is_following_ || was_off);
+    is_following_ = is_following_ && causes == ForceOff::none && gain_ >= 1.0;
 }
 
 /// A hand so deep in a wall that the device couldn't make the spring's force has to come out first.
@@ -130,13 +130,16 @@ bool SafeState::may_begin(const SafetyInput& input) const noexcept
     return spring_n <= limits_.force_max_n;
 }
 
-void SafeState::follow(const SafetyInput& input) noexcept
+/// At its full gain the frame's force goes out as it is, once it has been caught up with. Where
+/// nothing was felt there is no way to go.
+void SafeState::follow(const SafetyInput& input, bool was_off) noexcept
 {
     const Vec3 target_n = shortened(input.force_n, limits_.force_max_n);
     const Vec3 way_n = target_n - base_n_;
     const double step_n = limits_.force_max_n * input.elapsed_s / kRiseTime_s;
-    is_following_ = is_following_ || way_n.norm() <= step_n;
-    base_n_ = is_following_ ? target_n : Vec3(base_n_ + shortened(way_n, step_n));
+    const bool has_arrived = is_following_ || was_off || way_n.norm() <= step_n;
+    base_n_ = has_arrived ? target_n : Vec3(base_n_ + shortened(way_n, step_n));
+    is_following_ = has_arrived && gain_ >= 1.0;
 }
 
 Vec3 SafeState::shaped_force() const noexcept

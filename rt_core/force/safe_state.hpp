@@ -58,11 +58,12 @@ struct SafetyOutput
 /// While any cause is there the gain falls with the true elapsed time, from the frame on that finds
 /// it, and scales the last force from before: nothing that is computed from bad data goes out. When
 /// all causes are gone the gain rises, and what it scales moves from that last force to the frame's
-/// no faster than the device's largest force in kRiseTime_s; from a gain of zero, where nothing is
-/// felt, it is the frame's at once. From zero the gain rises only once the spring between proxy and
-/// hand is within the device's range. So, with dt the elapsed time and besides the damping, the
-/// force changes by at most force_max x dt / kFadeTime_s in a brake, and by at most
-/// 2 x force_max x dt / kRiseTime_s and the gain's share of the frame's own step on the way back.
+/// no faster than the device's largest force in kRiseTime_s, until the gain is full and the frame's
+/// force is caught up with; at a gain of zero, where nothing is felt, it is the frame's at once.
+/// From zero the gain rises only once the spring between proxy and hand is within the device's
+/// range. So, with dt the elapsed time and besides the damping, the force changes by at most
+/// force_max x dt / kFadeTime_s in a brake and 2 x force_max x dt / kRiseTime_s on the way back,
+/// whatever the frame's force does meanwhile.
 ///
 /// The device is in reset until its first good sample, and again when it is gone.
 ///
@@ -88,7 +89,7 @@ private:
     [[nodiscard]] ForceOff find_causes(const SafetyInput& input) const noexcept;
     void observe_speed(const SafetyInput& input) noexcept;
     void move_gain(const SafetyInput& input, ForceOff causes) noexcept;
-    void follow(const SafetyInput& input) noexcept;
+    void follow(const SafetyInput& input, bool was_off) noexcept;
     [[nodiscard]] bool may_begin(const SafetyInput& input) const noexcept;
     [[nodiscard]] Vec3 shaped_force() const noexcept;
     [[nodiscard]] SafetyState next_state(ForceOff causes) const noexcept;

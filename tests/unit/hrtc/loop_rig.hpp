@@ -95,7 +95,7 @@ struct LoopRigOptions
     bool static_model{false};
     std::uint64_t frames{2'000};
     double speed_max_m_per_s{10.0};
-    const Clock* clock{nullptr};    ///< Another one than the virtual, with a timer of its own.
+    const Clock* clock{nullptr}; ///< Another one than the virtual, with a timer of its own.
     PeriodicTimer* timer{nullptr};
 };
 
@@ -173,9 +173,10 @@ private:
     /// Above the face that is farthest out in x.
     void make_device()
     {
-        const auto farthest = std::ranges::max_element(
-            model_.faces, {}, [](const auto& face) { return face.a.x() + face.b.x() + face.c.x(); });
-        const Vec3 place = (farthest->a + farthest->b + farthest->c) / 3.0;
+        const auto middle = [](const tactus::test::Face& face)
+        { return Vec3((to_vec3(face[0]) + to_vec3(face[1]) + to_vec3(face[2])) / 3.0); };
+        const Vec3 place = middle(*std::ranges::max_element(
+            model_.faces, {}, [&](const auto& face) { return middle(face).x(); }));
         SimulatedDeviceOptions device;
         device.clock = &clock();
         device.watchdog = options_.watchdog;

@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "rt_core/base/assert.hpp"
+#include "rt_core/limits.hpp"
+#include "tests/unit/hrtc/loop_rig.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <limits>
+#include <string>
+#include <thread>
+
+namespace tactus::hrtc::test
+{
+
+namespace
+{
+
+constexpr std::uint64_t kFadeFrames = 51; ///< kFadeTime_s, and one for rounding.
+constexpr std::uint64_t kBadFrames = 100; ///< That a cause lasts.
+constexpr double kRounding_n = 1e-9;
+/// Steps of the way back, and what the frame's own force moves meanwhile.
+constexpr double kBackStep_n = 2.0 * 8.0 * kPeriod_s / kRiseTime_s + kOwnStep_n;
+
+bool is_bad(std::uint64_t frame)
+{
+    return frame >= kSettled && frame < kSettled + kBadFrames;
+}
+
+/// What a test does to the device's readings, and how the loop has to call it.
+struct Trouble
+{
+    const char* name;
+    ForceOff cause;
+    std::uint64_t notice; ///< Frames until it can be known.
+    void (*tamper)(std::uint64_t frame, DeviceSample& sample);
+};
+
+void PrintTo(const Trouble& trouble, std::ostream* out)
+{
+    *out << trouble.name;
+}
+
+const Trouble kTroubles[] = {
+    {"disconnected", ForceOff::disconnect, 0,
+     [](std::uint64_t frame, DeviceSample& sample) { sample.connected = !is_bad(frame); }},
+    {"let_go", ForceOff::deadman, 0,
+     [](std::uint64_t frame, DeviceSample& sample) { sample.deadman_held = !is_bad(frame); }},
+    {"invalid", ForceOff::garbage, 0,
+     [](std::uint64_t frame, DeviceSample& sample) { sample.valid = !is_bad(frame); }},
+    {"no_number", ForceOff::garbage, 0,
+     [](std::uint64_t frame, DeviceSample& sample)
+     {
+         sample.position_world_m[1] =
+             is_bad(frame) ? std::numeric_limits<double>::quiet_NaN() : sample.position_world_m[1];
+     }},
+    {"elsewhere", ForceOff::garbage, 0,
+     [](std::uint64_t frame, DeviceSample& sample)
+     { sample.position_world_m[0] += is_bad(frame) ? 3.0 : 0.0; }},
+    {"stuck", ForceOff::stale, 20,
+     [](std::uint64_t frame, DeviceSample& sample)
+     { sample.time.ns = is_bad(frame) ? milliseconds(kSettled - 1).ns : sample.time.ns; }},
+    {"too_fast", ForceOff::velocity, 0,
+     [](std::uint64_t frame, DeviceSample& sample)
+     { (*sample.velocity_world_m_per_s)[1] += is_bad(frame) ? 11.0 : 0.0; }},
+};
+
+class HapticLoopTrouble : public testing::TestWithParam<Trouble>
+{
+};
+
+INSTANTIATE_TEST_SUITE_P(Each, HapticLoopTrouble, testing::ValuesIn(kTroubles),
+                         [](const auto& test) { return std::string(test.param.name); });
+
+TEST_P(HapticLoopTrouble, fades_the_force_within_two_periods_and_brings_it_back_by_the_ramp)
+{
+    LoopRigOptions options;
+    options.tamper = GetParam().tamper;
+    LoopRig rig(options);
+    rig.loop().run();
+    const std::uint64_t known = kSettled + GetParam().notice;
+    const double before_n = rig.written_n(kSettled - 1).norm();
+    ASSERT_GT(before_n, 1.0);
+
+    // The hand that sinks into the wall as the force goes makes no 0.3 m/s.
+    const double damping_n =
+        GetParam().cause == ForceOff::velocity ? 8.0 * kDampingForceShare : 0.5 * 0.3;
+    EXPECT_LT(rig.written_n(known + 1).norm(), 0.97 * before_n + 4.0 * 0.04 * 0.96 * damping_n);
+    for (std::uint64_t frame = known; frame < known + kFadeFrames; ++frame)
+    {
+        const double left = 1.0 - static_cast<double>(frame - known + 1) * kPeriod_s / kFadeTime_s;
+        EXPECT_LE(rig.written_n(frame).norm(),
+                  std::max(left, 0.0) * (before_n + kOwnStep_n) + damping_n + kRounding_n)
+            << frame;
+    }
+    for (std::uint64_t frame = known + kFadeFrames; frame < kSettled + kBadFrames; ++frame)
+    {
+        EXPECT_EQ(rig.written_n(frame).norm(), 0.0) << frame;
+    }
+    EXPECT_LE(rig.largest_step_n(kSettled + kBadFrames, 1'900), kBackStep_n);
+    EXPECT_NEAR(rig.written_n(1'900).norm(), before_n, 0.05 * before_n);
+
+    const std::vector<SafetyEvent> events = rig.events();
+    const auto noted = std::ranges::find_if(events, [](const SafetyEvent& event)
+                                            { return has_cause(event.causes, GetParam().cause); });
+    ASSERT_NE(noted, events.end());
+    EXPECT_LE(noted->frame, known + 1);
+    EXPECT_EQ(noted->state, SafetyState::brake);
+    const SafetyState left =
+        GetParam().cause == ForceOff::disconnect ? SafetyState::reset : SafetyState::idle;
+    EXPECT_TRUE(std::ranges::any_of(events, [&](const SafetyEvent& event)
+                                    { return event.state == left && event.frame > known; }));
+}
+
+TEST(HapticLoop, begins_without_a_force_and_ends_without_one)
+{
+    LoopRig rig({});
+    rig.loop().run();
+    ASSERT_EQ(rig.device().written_n.size(), 2'001U);
+    EXPECT_EQ(rig.written_n(0).norm(), 0.0);
+    EXPECT_GT(rig.written_n(1'900).norm(), 1.0);
+    EXPECT_EQ(rig.written_n(1'999).norm(), 0.0);
+    EXPECT_LE(rig.largest_step_n(1'900, 2'000), 8.0 * kPeriod_s / kFadeTime_s);
+    const std::vector<SafetyEvent> events = rig.events();
+    ASSERT_EQ(events.size(), 3U);
+    EXPECT_EQ(events[0].state, SafetyState::force);
+    EXPECT_EQ(events[1].causes, ForceOff::software);
+    EXPECT_EQ(events[2].state, SafetyState::idle);
+}
+
+TEST(HapticLoop, fades_the_force_before_it_stops)
+{
+    LoopRig* running = nullptr;
+    LoopRigOptions options;
+    options.tamper = [&](std::uint64_t frame, DeviceSample&)
+    {
+        if (frame == kSettled)
+        {
+            running->loop().stop();
+        }
+    };
+    LoopRig rig(options);
+    running = &rig;
+    rig.loop().run();
+    EXPECT_TRUE(rig.loop().is_done());
+    const std::uint64_t frames = rig.loop().frames_done();
+    EXPECT_GE(frames, kSettled + kFadeFrames - 1);
+    EXPECT_LE(frames, kSettled + kFadeFrames + 1);
+    EXPECT_EQ(rig.written_n(frames - 1).norm(), 0.0);
+    EXPECT_LE(rig.largest_step_n(kSettled, frames - 1), 8.0 * kPeriod_s / kFadeTime_s);
+}
+
+TEST(HapticLoop, a_lost_host_ends_the_force_unless_the_model_is_here_as_a_whole)
+{
+    for (const bool is_static : {false, true})
+    {
+        LoopRig* running = nullptr;
+        LoopRigOptions options;
+        options.static_model = is_static;
+        options.tamper = [&](std::uint64_t frame, DeviceSample&)
+        { running->hosts_gone.store(is_bad(frame) ? 1U : 0U); };
+        LoopRig rig(options);
+        running = &rig;
+        rig.loop().run();
+        const double before_n = rig.written_n(kSettled - 1).norm();
+        const double after_n = rig.written_n(kSettled + kFadeFrames).norm();
+        EXPECT_GT(before_n, 1.0);
+        EXPECT_EQ(after_n == 0.0, !is_static);
+        EXPECT_EQ(std::ranges::count(rig.events(), ForceOff::host, &SafetyEvent::causes) > 0,
+                  !is_static);
+        EXPECT_LE(rig.largest_step_n(kSettled, 1'900), 8.0 * kPeriod_s / kFadeTime_s);
+        EXPECT_NEAR(rig.written_n(1'900).norm(), before_n, 0.05 * before_n);
+    }
+}
+
+TEST(HapticLoop, the_first_frame_after_a_stall_counts_its_true_time)
+{
+    for (const std::int64_t lost : {1, 4, 30, 80})
+    {
+        LoopRigOptions options;
+        options.late_wakes = {{kSettled, milliseconds(lost)}};
+        LoopRig rig(options);
+        rig.loop().run();
+        const std::vector<SafetyEvent> events = rig.events();
+        const auto noted = std::ranges::find(events, ForceOff::stall, &SafetyEvent::causes);
+        ASSERT_NE(noted, events.end()) << lost;
+        const double before_n = rig.written_n(noted->frame - 1).norm();
+        // Its own period, those lost, and on to the next point of the timer's grid.
+        const double gain =
+            std::max(1.0 - static_cast<double>(lost + 2) * kPeriod_s / kFadeTime_s, 0.0);
+        EXPECT_NEAR(rig.written_n(noted->frame).norm(), gain * before_n, kOwnStep_n) << lost;
+        EXPECT_LE(rig.largest_step_n(noted->frame, 1'900), kBackStep_n) << lost;
+        EXPECT_NEAR(rig.written_n(1'900).norm(), before_n, 0.05 * before_n) << lost;
+    }
+}
+
+/// As the program's handler does: it never returns.
+HapticLoop* failing_loop = nullptr;
+LoopRig* failing_rig = nullptr;
+
+void report_and_leave(const char* /*condition*/, const char* /*file*/, int /*line*/) noexcept
+{
+    failing_loop->fail();
+    // What went out since the last good frame: a straight line to zero, and then the brake.
+    const std::vector<Vec3>& sent = failing_rig->device().written_n;
+    const double before_n = sent[kSettled - 1].norm();
+    const std::size_t faded = sent.size() - kSettled;
+    bool is_straight = before_n > 1.0 && faded == kFadeFrames;
+    for (std::size_t i = 0; i < faded; ++i)
+    {
+        const double left = 1.0 - static_cast<double>(i + 1) / static_cast<double>(faded);
+        is_straight = is_straight && std::abs(sent[kSettled + i].norm() - left * before_n) < 1e-9;
+    }
+    const bool is_braked = failing_rig->device().status().state == DeviceState::brake;
+    const std::vector<SafetyEvent> events = failing_rig->events();
+    const bool is_noted =
+        std::ranges::count(events, ForceOff::assertion, &SafetyEvent::causes) == 1;
+    std::_Exit((is_straight ? 0 : 1) + (is_braked ? 0 : 2) + (is_noted ? 0 : 4) +
+               (failing_loop->has_failed() ? 0 : 8) + 40);
+}
+
+TEST(HapticLoopDeathTest, an_assertion_on_the_haptic_thread_fades_the_last_force_and_brakes)
+{
+    LoopRigOptions options;
+    options.tamper = [](std::uint64_t frame, DeviceSample&) { TACTUS_ASSERT(frame < kSettled); };
+    LoopRig rig(options);
+    failing_rig = &rig;
+    failing_loop = &rig.loop();
+    set_assert_handler(report_and_leave);
+    EXPECT_EXIT(rig.loop().run(), testing::ExitedWithCode(40), "");
+    set_assert_handler(nullptr);
+}
+
+TEST(HapticLoop, a_bug_of_another_thread_brakes_at_once_and_nobody_releases_it)
+{
+    LoopRig* running = nullptr;
+    LoopRigOptions options;
+    options.tamper = [&](std::uint64_t frame, DeviceSample&)
+    {
+        if (frame == kSettled)
+        {
+            std::thread([&] { running->loop().fail(); }).join();
+        }
+    };
+    LoopRig rig(options);
+    running = &rig;
+    rig.loop().run();
+    EXPECT_TRUE(rig.loop().has_failed());
+    EXPECT_EQ(rig.loop().frames_done(), kSettled + 1);
+    EXPECT_EQ(rig.device().status().state, DeviceState::brake);
+    EXPECT_EQ(rig.device().felt_n().norm(), 0.0);
+}
+
+TEST(HapticLoop, takes_back_a_device_that_somebody_has_braked)
+{
+    LoopRig* running = nullptr;
+    LoopRigOptions options;
+    options.tamper = [&](std::uint64_t frame, DeviceSample&)
+    {
+        if (frame == kSettled)
+        {
+            running->device().brake();
+            running->device().brake(); // The second changes nothing.
+        }
+    };
+    LoopRig rig(options);
+    running = &rig;
+    rig.loop().run();
+    const double before_n = rig.written_n(kSettled - 1).norm();
+    EXPECT_EQ(rig.written_n(kSettled).norm(), 0.0);
+    EXPECT_LE(rig.largest_step_n(kSettled, 1'900), kBackStep_n);
+    EXPECT_NEAR(rig.written_n(1'900).norm(), before_n, 0.05 * before_n);
+    EXPECT_EQ(std::ranges::count(rig.events(), ForceOff::watchdog, &SafetyEvent::causes), 1);
+}
+
+} // namespace
+
+} // namespace tactus::hrtc::test

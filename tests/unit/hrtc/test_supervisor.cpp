@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/hrtc/supervisor.hpp"
+#include "platform/posix/posix_clock.hpp"
+#include "platform/posix/posix_periodic_timer.hpp"
+#include "rt_core/limits.hpp"
+#include "tests/unit/hrtc/loop_rig.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <thread>
+
+namespace tactus::hrtc::test
+{
+
+namespace
+{
+
+constexpr Duration kHang = milliseconds(10);
+/// How late the machine is to wake the supervisor.
+constexpr Duration kLate = microseconds(50);
+constexpr double kBackStep_n = 8.0 * kPeriod_s / kRiseTime_s + kOwnStep_n;
+
+/// What the hand felt while the loop hung in a reading, in steps of 10 us.
+struct Felt
+{
+    Duration after; ///< The last beat.
+    double force_n{0.0};
+};
+
+/// The loop hangs for a while, and the supervisor, if there is one, looks when it wants to.
+class HangingLoop
+{
+public:
+    HangingLoop(std::optional<Duration> own_watchdog, bool is_supervised)
+        : rig_(options(own_watchdog, is_supervised))
+        , supervisor_({rig_.devices(), &rig_.loop().heartbeat(), &rig_.clock(), nullptr, kPeriod})
+    {
+        rig_.loop().run();
+    }
+
+    [[nodiscard]] LoopRig& rig() { return rig_; }
+    [[nodiscard]] Supervisor& supervisor() { return supervisor_; }
+    [[nodiscard]] const std::vector<Felt>& felt() const { return felt_; }
+    /// How long after the last beat the last force was felt.
+    [[nodiscard]] Duration held() const
+    {
+        Duration last{};
+        for (const Felt& felt : felt_)
+        {
+            last = felt.force_n > 0.0 ? felt.after : last;
+        }
+        return last;
+    }
+
+private:
+    LoopRigOptions options(std::optional<Duration> own_watchdog, bool is_supervised)
+    {
+        LoopRigOptions made;
+        made.watchdog = own_watchdog;
+        made.tamper = [this, is_supervised](std::uint64_t frame, DeviceSample&)
+        {
+            if (is_supervised)
+            {
+                static_cast<void>(supervisor_.look()); // It never brakes a loop that comes round.
+            }
+            if (frame == kSettled)
+            {
+                hang(is_supervised);
+            }
+        };
+        return made;
+    }
+
+    void hang(bool is_supervised)
+    {
+        const MonotonicTime beat = *rig_.loop().heartbeat().last();
+        MonotonicTime wake = beat;
+        for (SimulatedClock& clock = rig_.virtual_clock(); clock.now() - beat < kHang;
+             clock.advance(microseconds(10)))
+        {
+            if (is_supervised && clock.now() >= wake + kLate)
+            {
+                wake = supervisor_.look();
+            }
+            felt_.push_back({clock.now() - beat, rig_.device().felt_n().norm()});
+        }
+    }
+
+    LoopRig rig_;
+    Supervisor supervisor_;
+    std::vector<Felt> felt_;
+};
+
+TEST(Supervisor, ends_a_held_force_three_periods_after_the_last_beat)
+{
+    HangingLoop sut(std::nullopt, true);
+    EXPECT_GT(sut.felt().front().force_n, 1.0);
+    EXPECT_GE(sut.held(), kPeriod * 3 - microseconds(10));
+    EXPECT_LE(sut.held(), kPeriod * 3 + kLate + microseconds(10));
+    EXPECT_EQ(sut.felt().back().force_n, 0.0);
+    EXPECT_EQ(sut.supervisor().brakes(), 1U); // Once, however often it looks.
+    std::vector<SafetyEvent> events;
+    sut.supervisor().log().take_into(events);
+    ASSERT_EQ(events.size(), 1U);
+    EXPECT_EQ(events[0].causes, ForceOff::watchdog);
+    EXPECT_TRUE(events[0].by_supervisor);
+}
+
+TEST(Supervisor, without_it_a_device_that_holds_its_force_holds_it_all_the_time)
+{
+    HangingLoop sut(std::nullopt, false);
+    EXPECT_GE(sut.held(), kHang - microseconds(10));
+    EXPECT_GT(sut.felt().back().force_n, 1.0);
+}
+
+TEST(Supervisor, a_device_with_a_watchdog_ends_the_force_by_itself)
+{
+    for (const bool is_supervised : {false, true})
+    {
+        HangingLoop sut(milliseconds(2), is_supervised);
+        EXPECT_GT(sut.felt().front().force_n, 1.0); // The last write was a period before the beat.
+        EXPECT_LE(sut.held(), milliseconds(2) - kPeriod);
+        EXPECT_GE(sut.held(), milliseconds(2) - kPeriod - microseconds(10));
+        EXPECT_EQ(sut.supervisor().brakes(), is_supervised ? 1U : 0U);
+    }
+}
+
+TEST(Supervisor, a_loop_that_comes_back_fades_its_force_in_from_zero)
+{
+    for (const auto& [watchdog, is_supervised] : {std::pair(std::optional<Duration>(), true),
+                                                  std::pair(std::optional(milliseconds(2)), false)})
+    {
+        HangingLoop sut(watchdog, is_supervised);
+        LoopRig& rig = sut.rig();
+        const double before_n = rig.written_n(kSettled - 1).norm();
+        EXPECT_EQ(rig.written_n(kSettled).norm(), 0.0);
+        EXPECT_LE(rig.largest_step_n(kSettled, 1'900), kBackStep_n);
+        EXPECT_NEAR(rig.written_n(1'900).norm(), before_n, 0.05 * before_n);
+        const std::vector<SafetyEvent> events = rig.events();
+        EXPECT_TRUE(std::ranges::any_of(events,
+                                        [](const SafetyEvent& event)
+                                        {
+                                            return event.frame == kSettled &&
+                                                   has_cause(event.causes, ForceOff::watchdog) &&
+                                                   event.state == SafetyState::idle;
+                                        }));
+    }
+}
+
+TEST(Supervisor, looks_when_the_silence_would_be_long_enough)
+{
+    LoopRig rig({});
+    Heartbeat heartbeat;
+    Supervisor sut({rig.devices(), &heartbeat, &rig.clock(), nullptr, kPeriod});
+    SimulatedClock& clock = rig.virtual_clock();
+    EXPECT_EQ(sut.look(), clock.now() + kPeriod * 3); // Not begun.
+    clock.advance(milliseconds(100));
+    EXPECT_EQ(sut.look(), clock.now() + kPeriod * 3);
+    EXPECT_EQ(sut.brakes(), 0U);
+
+    heartbeat.beat(clock.now());
+    const MonotonicTime due = sut.look();
+    EXPECT_EQ(due, clock.now() + kPeriod * 3);
+    clock.advance_to(due - nanoseconds(1));
+    EXPECT_EQ(sut.look(), due);
+    EXPECT_EQ(sut.brakes(), 0U);
+    clock.advance(nanoseconds(1));
+    EXPECT_EQ(sut.look(), due + kPeriod);
+    EXPECT_EQ(sut.brakes(), 1U);
+
+    heartbeat.beat(clock.now()); // Back, and gone again.
+    clock.advance(kPeriod * 3);
+    static_cast<void>(sut.look());
+    EXPECT_EQ(sut.brakes(), 2U);
+    heartbeat.beat(clock.now());
+    heartbeat.rest(); // Ended as it should.
+    clock.advance(kPeriod * 10);
+    static_cast<void>(sut.look());
+    EXPECT_EQ(sut.brakes(), 2U);
+}
+
+TEST(Supervisor, stands_one_above_the_loop_and_beside_it)
+{
+    RtThreadOptions loop;
+    loop.priority = RtThreadOptions::kPriorityMax;
+    const RtThreadOptions free = Supervisor::thread_beside(loop);
+    EXPECT_EQ(free.priority, 99);
+    EXPECT_FALSE(free.cpu);
+    loop.cpu = 0;
+    const RtThreadOptions beside = Supervisor::thread_beside(loop);
+    EXPECT_NE(beside.cpu, std::optional(0));
+}
+
+/// Real threads, real time: nothing is said about how long anything takes.
+TEST(Supervisor, brakes_a_device_whose_reading_hangs_and_lets_the_loop_come_back)
+{
+    const PosixClock clock;
+    PosixPeriodicTimer timer;
+    PosixPeriodicTimer alarm;
+    std::atomic<bool> is_hanging{false};
+    std::atomic<bool> may_go_on{false};
+    std::atomic<std::uint64_t> brakes_seen{0};
+    LoopRigOptions options;
+    options.clock = &clock;
+    options.timer = &timer;
+    options.frames = 1'000'000; // Ended below.
+    options.tamper = [&](std::uint64_t frame, DeviceSample&)
+    {
+        if (frame == 100)
+        {
+            is_hanging.store(true);
+            is_hanging.notify_one();
+            may_go_on.wait(false);
+        }
+    };
+    LoopRig rig(options);
+    Supervisor sut({rig.devices(), &rig.loop().heartbeat(), &clock, &alarm, kPeriod});
+    RtThreadOptions thread;
+    thread.allow_no_rt = true;
+    thread.priority = 10;
+    auto supervising = RtThread::start(Supervisor::thread_beside(thread), [&] { sut.run(); });
+    ASSERT_TRUE(supervising) << supervising.error().message;
+    std::thread looping([&] { rig.loop().run(); });
+
+    is_hanging.wait(false);
+    const std::uint64_t before = sut.brakes(); // A busy machine may have stalled the loop already.
+    while (rig.device().status().state != DeviceState::brake)
+    {
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    EXPECT_EQ(rig.device().felt_n().norm(), 0.0);
+    brakes_seen.store(sut.brakes());
+    may_go_on.store(true);
+    may_go_on.notify_one();
+    const std::uint64_t frames = rig.loop().frames_done();
+    while (rig.loop().frames_done() < frames + 20)
+    {
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    rig.loop().stop();
+    looping.join();
+    sut.stop();
+    supervising.value().join();
+    EXPECT_GE(sut.brakes(), 1U);
+    EXPECT_LE(before, brakes_seen.load());
+    EXPECT_NE(rig.device().status().state, DeviceState::brake); // It was released.
+    EXPECT_TRUE(std::ranges::any_of(
+        rig.events(), [](const SafetyEvent& event)
+        { return event.frame == 100 && has_cause(event.causes, ForceOff::watchdog); }));
+}
+
+} // namespace
+
+} // namespace tactus::hrtc::test
