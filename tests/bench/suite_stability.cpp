@@ -266,10 +266,10 @@ void try_force_twins(const Sizes& sizes, bool full, const Report& report)
             }
             report(all.steps);
             fmt::print(stderr,
-                       "{}: {:.4f} N apart, {} frames of splits, {} of merges, {} of pages, {} "
-                       "fading\n",
+                       "{}: {:.2g} N apart, {} frames of splits, {} of merges, {} of pages; {} "
+                       "fading, {} held back with steps to {:.2g} N\n",
                        all.steps.name, all.apart_n, all.refining, all.coarsening, all.adopting,
-                       all.fading);
+                       all.fading, all.held_back, all.held_back_n);
         }
     }
 }

@@ -21,10 +21,16 @@ constexpr double kSmallest_m = 0.1; ///< Diagonals of objects.
 constexpr double kLargest_m = 0.2;
 /// 4 to 8 mm: hundreds of faces are in reach of it.
 constexpr double kPressedRadius_diag = 0.04;
+/// Proxies in one place: as far as 0.5 mN push a spring.
+constexpr double kTogether_m = 1e-6;
+/// A proxy that ends so near to the end of what is certified was held back by it: more than the
+/// skin of a point, and than what is not worth a step.
+constexpr double kStepEnd_m = 1e-6;
+constexpr double kStepEnd = 1e-3;
 /// Where there are few pages: enough for two such tools, so that others are evicted.
 constexpr std::size_t kCache_bytes = 40 * sizeof(Page);
 
-bool is_certified(const ToolOutput& tool)
+bool touches(const ToolOutput& tool)
 {
     return tool.in_contact && !tool.frozen && !tool.squeezed;
 }
@@ -104,26 +110,45 @@ private:
         return goals;
     }
 
+    /// An answer, and the proxy went as far as it would, not as far as the surface is known.
+    [[nodiscard]] bool is_certified(const FrameRig& rig, const FrameOutput& output,
+                                    std::uint32_t tool) const
+    {
+        const PairOutput& pair = output.pairs[tool];
+        const std::span<const Vec3> path = rig.frame().proxy_path_m(tool);
+        const double end_m = (path.back() - path.front()).norm() + radius_m();
+        const double known_m = std::max(pair.certified_radius_m, pair.lower_m);
+        return (pair.kind == AnswerKind::exact || pair.kind == AnswerKind::decided) &&
+               known_m - end_m > kStepEnd_m + kStepEnd * radius_m();
+    }
+
     void judge(std::uint32_t tool, const FrameOutput& ours, const FrameOutput& full,
                const Vec3& goal_m)
     {
         const ToolOutput& a = ours.tools[tool];
         const ToolOutput& b = full.tools[tool];
         figures_.fading += a.frozen || a.squeezed ? 1 : 0;
-        const std::optional<double> step_n = judges_[tool].judge(a, b);
-        if (!step_n)
+        const bool is_answered = is_certified(rig_, ours, tool) && is_certified(whole_, full, tool);
+        const std::optional<ForceStepJudge::Step> step = judges_[tool].judge(a, b, is_answered);
+        if (!step)
         {
             return;
         }
+        if (!step->is_certified && !trial_.hardship.has_all)
+        {
+            ++figures_.held_back;
+            figures_.held_back_n = std::max(figures_.held_back_n, step->newtons);
+            return;
+        }
         ++figures_.steps.trials;
-        figures_.steps.observe(*step_n);
+        figures_.steps.observe(step->newtons);
         figures_.apart_n = std::max(figures_.apart_n, (a.force_n - b.force_n).norm());
         figures_.refining += ours.work.splits > 0 ? 1 : 0;
         figures_.coarsening += ours.work.merges > 0 ? 1 : 0;
         figures_.adopting += ours.work.pages_adopted > 0 ? 1 : 0;
-        if (*step_n > kForceStep_n)
+        if (step->newtons > kForceStep_n)
         {
-            flag(tool, ours, full, goal_m, *step_n);
+            flag(tool, ours, full, goal_m, step->newtons);
         }
     }
 
@@ -138,6 +163,7 @@ private:
                             ", proxy " + text_of(a.proxy_m) + ", twin's " + text_of(b.proxy_m) +
                             ", force " + text_of(a.force_n) + ", twin's " + text_of(b.force_n) +
                             ", faults " + std::to_string(static_cast<std::uint32_t>(ours.faults)) +
+                            ", answer " + std::to_string(static_cast<int>(ours.pairs[tool].kind)) +
                             ", certified " + std::to_string(ours.pairs[tool].certified_radius_m) +
                             ", twin's " + std::to_string(full.pairs[tool].certified_radius_m));
     }
@@ -155,16 +181,26 @@ private:
 
 } // namespace
 
-std::optional<double> ForceStepJudge::judge(const ToolOutput& ours, const ToolOutput& twins)
+std::optional<ForceStepJudge::Step> ForceStepJudge::judge(const ToolOutput& ours,
+                                                          const ToolOutput& twins, bool is_answered)
 {
     const Vec3 change = ours.force_n - ours_n_;
     const Vec3 twins_change = twins.force_n - twins_n_;
-    const bool are_certified = is_certified(ours) && is_certified(twins);
-    const bool is_judged = were_certified_ && are_certified;
+    const bool are_touching = touches(ours) && touches(twins);
+    const bool are_certified = are_touching && is_answered;
+    std::optional<Step> step;
+    if (were_touching_ && are_touching)
+    {
+        step =
+            Step{(change - twins_change).norm(), were_certified_ && are_certified && !are_apart_};
+    }
+    const bool are_together = (ours.proxy_m - twins.proxy_m).norm() <= kTogether_m;
+    are_apart_ = !are_together && (are_apart_ || !are_certified);
     ours_n_ = ours.force_n;
     twins_n_ = twins.force_n;
+    were_touching_ = are_touching;
     were_certified_ = are_certified;
-    return is_judged ? std::optional((change - twins_change).norm()) : std::nullopt;
+    return step;
 }
 
 std::vector<Hardship> force_hardships(const TestModel& model)

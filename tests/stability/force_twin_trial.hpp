@@ -34,24 +34,41 @@ inline constexpr double kForceStep_n = 0.05;
 class ForceStepJudge
 {
 public:
-    /// Newtons by which the force's change since the last frame, as a vector, differs from the
-    /// twin's; none unless both were in certified contact in this frame and the last one.
-    [[nodiscard]] std::optional<double> judge(const ToolOutput& ours, const ToolOutput& twins);
+    struct Step
+    {
+        /// By which the force's change since the last frame, as a vector, differs from the twin's.
+        double newtons{0.0};
+        /// In both frames both were certified, and they are in one place since: a proxy that waited
+        /// for data may have come to another side of an edge.
+        bool is_certified{false};
+    };
+
+    /// None unless both were in contact in this frame and the last one, and none of them frozen or
+    /// squeezed. `is_answered`: both answers are exact or decided, and no proxy was held back by
+    /// the end of what is certified.
+    [[nodiscard]] std::optional<Step> judge(const ToolOutput& ours, const ToolOutput& twins,
+                                            bool is_answered);
 
 private:
     Vec3 ours_n_{0.0, 0.0, 0.0};
     Vec3 twins_n_{0.0, 0.0, 0.0};
+    bool were_touching_{false};
     bool were_certified_{false};
+    bool are_apart_{false};
 };
 
 struct ForceTwinFigures
 {
-    /// The error is what ForceStepJudge says.
+    /// Certified steps, in newtons; where nothing is scarce all that both made in contact.
     TrialFigures steps;
     double apart_n{0.0};         ///< Largest difference of the forces in those frames.
     std::uint64_t refining{0};   ///< Those frames with splits,
     std::uint64_t coarsening{0}; ///< with merges,
     std::uint64_t adopting{0};   ///< and with pages that came in.
+    /// Other frames in contact: the proxy is held back by what isn't certified yet, or was so and
+    /// came to another place.
+    std::uint64_t held_back{0};
+    double held_back_n{0.0}; ///< Largest step in those.
     /// Frames in which the streamed proxy was frozen or squeezed: its force fades by design.
     std::uint64_t fading{0};
 
@@ -64,6 +81,8 @@ struct ForceTwinFigures
         coarsening += other.coarsening;
         adopting += other.adopting;
         fading += other.fading;
+        held_back += other.held_back;
+        held_back_n = std::max(held_back_n, other.held_back_n);
     }
 };
 

@@ -201,17 +201,14 @@ public:
                 judge_.flag("there is still a force");
             }
         }
-        place_m_ = tool.proxy_m;
         return tool.squeezed;
     }
-    [[nodiscard]] const Vec3& place_m() const { return place_m_; }
 
 private:
     FrameRig rig_;
     Jaws& jaws_;
     PopThroughJudge& judge_;
     double squeezed_s_{0.0};
-    Vec3 place_m_{0.0, 0.0, 0.0};
 };
 
 void close_and_open(ClosingRound& round, double open_m, double speed_m_per_s,
@@ -239,11 +236,11 @@ void close_and_open(ClosingRound& round, double open_m, double speed_m_per_s,
     }
     for (std::uint32_t frame = 0; frame < kRestFrames; ++frame)
     {
-        round.step(open_m, "open again");
+        is_squeezed = round.step(open_m, "open again");
     }
-    if (round.place_m().norm() > 0.0)
+    if (is_squeezed)
     {
-        judge.flag("the tool is not back");
+        judge.flag("there is room again, but not for the tool");
     }
 }
 

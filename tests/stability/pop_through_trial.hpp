@@ -61,8 +61,8 @@ struct ClosingTrial
     std::uint32_t rounds{0};
 };
 
-/// As above. Besides, no force is left after kFadeTime_s of a squeeze, and when the objects are
-/// gone the tool is where the hand has it.
+/// As above. Besides, no force is left after kFadeTime_s of a squeeze, and no squeeze when the
+/// objects are gone. A tool may slip out to a side, and end behind one of them.
 [[nodiscard]] PopThroughFigures run_closing_trial(const ClosingTrial& trial);
 
 } // namespace tactus::test
