@@ -34,12 +34,12 @@ std::string Crossing::text() const
 std::optional<Crossing> find_crossing(const TestModel& model, const FaceTree& tree,
                                       const Vec3& from_m, const Vec3& to_m)
 {
-    const Triangle way{from_m, to_m, to_m};
     for (const std::uint32_t face :
          tree.faces_near_box(from_m.cwiseMin(to_m), from_m.cwiseMax(to_m)))
     {
         const Face& corners = model.faces[face];
-        if (exactly_meet(way, {to_vec3(corners[0]), to_vec3(corners[1]), to_vec3(corners[2])}))
+        const Triangle triangle{to_vec3(corners[0]), to_vec3(corners[1]), to_vec3(corners[2])};
+        if (exactly_meet(from_m, to_m, triangle))
         {
             return Crossing{from_m, to_m, face};
         }
