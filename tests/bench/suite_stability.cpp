@@ -8,10 +8,13 @@
 #include "tests/bench/suites.hpp"
 #include "tests/bench/trial_rows.hpp"
 #include "tests/shared/kernel_trial.hpp"
+#include "tests/shared/worst_shapes.hpp"
 #include "tests/stability/bracket_trial.hpp"
 #include "tests/stability/day_trial.hpp"
+#include "tests/stability/force_twin_trial.hpp"
 #include "tests/stability/garbage_trial.hpp"
 #include "tests/stability/mesh_trial.hpp"
+#include "tests/stability/pop_through_trial.hpp"
 #include "tests/stability/split_merge_trial.hpp"
 #include "tests/stability/trial_models.hpp"
 #include "tests/stability/twin_trial.hpp"
@@ -43,12 +46,16 @@ struct Sizes
     std::uint32_t garbage_frames;   ///< A kind.
     std::uint32_t mesh_frames;      ///< An object and hardship.
     std::uint32_t mesh_twin_frames; ///< An object.
+    std::uint32_t proxy_frames;     ///< A model and hardship.
+    std::uint32_t closing_rounds;
+    std::uint32_t force_frames; ///< A model and hardship.
 };
 
-constexpr Sizes kSized{200, 100, 2'000, 100'000, 100, 50'000, 4'000, 40, 150};
-/// A million frames of brackets and cases of each kernel, ten million splits and merges, 24 hours
-/// of touching.
-constexpr Sizes kFull{67'000, 4'000, 25'000, 2'500'000, 43'200, 3'600'000, 100'000, 1'000, 25'000};
+constexpr Sizes kSized{200, 100, 2'000, 100'000, 100, 50'000, 4'000, 40, 150, 40, 10, 500};
+/// A million frames of brackets, of proxies and cases of each kernel, ten million splits and
+/// merges, 24 hours of touching.
+constexpr Sizes kFull{67'000,  4'000, 25'000, 2'500'000, 43'200, 3'600'000,
+                      100'000, 1'000, 25'000, 3'600,     1'000,  10'000};
 
 constexpr std::uint64_t kSeed = 20'261'600;
 
@@ -199,6 +206,74 @@ void try_meshes(const Sizes& sizes, bool full, const Report& report)
     }
 }
 
+void try_pop_through(const Sizes& sizes, bool full, const Report& report)
+{
+    std::uint64_t own = kSeed + 1'000;
+    std::vector<const test::TestModel*> models = all_models(full);
+    const test::TestModel& notched = test::test_model("notched-cube", test::make_notched_cube(12));
+    models.push_back(&notched);
+    const auto report_both = [&](const test::PopThroughFigures& all)
+    {
+        report(all.crossings);
+        report(all.run_over);
+        fmt::print(stderr, "{}: {} frames in contact, {} frozen, {} squeezed, {} run over\n",
+                   all.crossings.name, all.in_contact, all.frozen, all.squeezed,
+                   all.run_over.trials);
+    };
+    for (const test::TestModel* model : models)
+    {
+        const test::FaceTree tree(model->faces);
+        test::PopThroughFigures all;
+        all.crossings = {"pop-through, " + model->name, 0, 0.0, 0.0, "frames", 0, {}};
+        all.run_over = {"run over and not told, " + model->name, 0, 0.0, 0.0, "frames", 0, {}};
+        for (const test::Hardship& hardship : test::hardships(*model))
+        {
+            all.add(test::run_pop_through_trial(
+                {*model, tree, hardship, test::seed_of(++own), sizes.proxy_frames}));
+        }
+        report_both(all);
+    }
+    const test::FaceTree tree(notched.faces);
+    report_both(
+        test::run_closing_trial({notched, tree, test::seed_of(++own), sizes.closing_rounds}));
+}
+
+void try_force_twins(const Sizes& sizes, bool full, const Report& report)
+{
+    std::uint64_t own = kSeed + 2'000;
+    std::vector<const test::TestModel*> models = known_models(full);
+    for (std::size_t i = 0; i < 4; ++i)
+    {
+        models.push_back(&test::small_model(i));
+    }
+    for (const test::TestModel* model : models)
+    {
+        const test::FaceTree tree(model->faces);
+        for (const std::uint32_t tools : {1U, 2U})
+        {
+            test::ForceTwinFigures all;
+            all.steps = {"force step, " + model->name + (tools > 1 ? ", two tools" : ""),
+                         0,
+                         0.0,
+                         test::kForceStep_n,
+                         "N",
+                         0,
+                         {}};
+            for (const test::Hardship& hardship : test::force_hardships(*model))
+            {
+                all.add(test::run_force_twin_trial(
+                    {*model, tree, hardship, test::seed_of(++own), sizes.force_frames, tools}));
+            }
+            report(all.steps);
+            fmt::print(stderr,
+                       "{}: {:.2g} N apart, {} frames of splits, {} of merges, {} of pages; {} "
+                       "fading, {} held back with steps to {:.2g} N\n",
+                       all.steps.name, all.apart_n, all.refining, all.coarsening, all.adopting,
+                       all.fading, all.held_back, all.held_back_n);
+        }
+    }
+}
+
 void try_splits(const Sizes& sizes, bool /*full*/, const Report& report)
 {
     for (std::size_t i = 0; i < 4; ++i)
@@ -239,14 +314,16 @@ struct Part
     void (*run)(const Sizes& sizes, bool full, const Report& report);
 };
 
-constexpr std::array<Part, 8> kParts{{{"kernels", try_kernels},
-                                      {"brackets", try_brackets},
-                                      {"liars", try_liars},
-                                      {"twins", try_twins},
-                                      {"meshes", try_meshes},
-                                      {"splits", try_splits},
-                                      {"day", try_day},
-                                      {"garbage", try_garbage}}};
+constexpr std::array<Part, 10> kParts{{{"kernels", try_kernels},
+                                       {"brackets", try_brackets},
+                                       {"liars", try_liars},
+                                       {"twins", try_twins},
+                                       {"meshes", try_meshes},
+                                       {"pop-through", try_pop_through},
+                                       {"force-twins", try_force_twins},
+                                       {"splits", try_splits},
+                                       {"day", try_day},
+                                       {"garbage", try_garbage}}};
 
 std::vector<std::string> part_names()
 {

@@ -215,6 +215,20 @@ int exact_volume_sign(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d
         .sign();
 }
 
+bool exactly_meet(const Vec3& from, const Vec3& to, const Triangle& triangle)
+{
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        const auto [low, high] =
+            std::minmax({triangle[0][axis], triangle[1][axis], triangle[2][axis]});
+        if (std::max(from[axis], to[axis]) < low || high < std::min(from[axis], to[axis]))
+        {
+            return false;
+        }
+    }
+    return edge_meets(from, to, triangle);
+}
+
 bool exactly_meet(const Triangle& first, const Triangle& second)
 {
     for (int axis = 0; axis < 3; ++axis)

@@ -178,6 +178,31 @@ void FaceTree::search_wide(std::uint32_t index, const Point<long double>& point_
     }
 }
 
+std::vector<std::uint32_t> FaceTree::faces_near_box(const Vec3& low_m, const Vec3& high_m) const
+{
+    std::vector<std::uint32_t> found;
+    collect(0, low_m, high_m, found);
+    return found;
+}
+
+void FaceTree::collect(std::uint32_t index, const Vec3& low_m, const Vec3& high_m,
+                       std::vector<std::uint32_t>& found) const
+{
+    const Node& node = nodes_[index];
+    if ((node.high.array() < low_m.array()).any() || (node.low.array() > high_m.array()).any())
+    {
+        return;
+    }
+    if (node.right == 0)
+    {
+        const auto first = order_.begin() + static_cast<std::ptrdiff_t>(node.first);
+        found.insert(found.end(), first, first + node.count);
+        return;
+    }
+    collect(index + 1, low_m, high_m, found);
+    collect(node.right, low_m, high_m, found);
+}
+
 double FaceTree::lower_bound(std::uint32_t index, const Search& sought) const
 {
     const Node& node = nodes_[index];

@@ -45,6 +45,10 @@ public:
     /// box is passed over only when it is farther by more than double precision can round.
     [[nodiscard]] WideNearest wide_nearest(const Point<long double>& point_m) const;
 
+    /// Ids of faces, among them all whose boxes meet this closed box; no more than a leaf too many.
+    [[nodiscard]] std::vector<std::uint32_t> faces_near_box(const Vec3& low_m,
+                                                            const Vec3& high_m) const;
+
     [[nodiscard]] Vec3 low_m() const { return nodes_.front().low; }
     [[nodiscard]] Vec3 high_m() const { return nodes_.front().high; }
 
@@ -76,6 +80,8 @@ private:
     void search(std::uint32_t index, Search& sought) const;
     void search_wide(std::uint32_t index, const Point<long double>& point_m, const Search& sought,
                      WideNearest& best) const;
+    void collect(std::uint32_t index, const Vec3& low_m, const Vec3& high_m,
+                 std::vector<std::uint32_t>& found) const;
     void search_leaf(const Node& node, Search& sought) const;
     [[nodiscard]] double lower_bound(std::uint32_t index, const Search& sought) const;
     [[nodiscard]] double bound_of(std::uint32_t face) const

@@ -31,7 +31,8 @@ FrameRig::FrameRig(const std::vector<const TestModel*>& models, const RigOptions
         options.tools.empty()
             ? std::vector<ToolSpec>{{0.01 * models[0]->diagonal_m, 500.0, 8.0, 1.0}}
             : options.tools;
-    const std::array<ObjectSpec, 1> objects{ObjectSpec{ModelId{0}}};
+    const std::vector<ObjectSpec> objects =
+        options.objects.empty() ? std::vector{ObjectSpec{ModelId{0}}} : options.objects;
     FrameSetup setup;
     setup.tools = tools;
     setup.objects = objects;
@@ -44,7 +45,7 @@ FrameRig::FrameRig(const std::vector<const TestModel*>& models, const RigOptions
         give_up(refusal_text(started.error()));
     }
     make_couriers();
-    poses_.resize(1);
+    poses_.resize(objects.size());
     if (options.record)
     {
         recorder_ = std::make_unique<RigRecorder>(setup);

@@ -25,7 +25,8 @@ struct RigOptions
     /// What each model gets of the pools, as parts of the sum; empty: the same for all.
     std::vector<double> shares;
     std::vector<ToolSpec> tools;
-    LoopbackFaults faults; ///< Of every model's link, each with a seed of its own.
+    std::vector<ObjectSpec> objects; ///< Empty: one that shows the first model.
+    LoopbackFaults faults;           ///< Of every model's link, each with a seed of its own.
     std::uint32_t courier_steps_per_frame{4};
     std::int64_t period_ns{1'000'000};
     bool cache_off{false};
@@ -33,8 +34,8 @@ struct RigOptions
     bool record{false}; ///< Keep a recording; frames must then run through step() only.
 };
 
-/// The controller without clocks, threads and devices: a frame of one object, and for each model
-/// the courier that reads its file through a link that may lose and delay. Steps all in turn.
+/// The controller without clocks, threads and devices: a frame, and for each model the courier that
+/// reads its file through a link that may lose and delay. Steps all in turn.
 class FrameRig
 {
 public:
@@ -42,7 +43,7 @@ public:
         : FrameRig(std::vector{&model}, options)
     {
     }
-    /// The object shows the first model; the others are for tools that are meshes.
+    /// Models that no object shows are for tools that are meshes.
     FrameRig(const std::vector<const TestModel*>& models, const RigOptions& options);
 
     /// One frame with the tools at these places of the model's frame.
@@ -53,8 +54,8 @@ public:
     }
     /// One frame with samples as a device gives them.
     FrameOutput step(std::span<const ToolState> tools, const Budgets& budgets);
-    /// Where the object stands from the next frame on; at first the model's frame is the world's.
-    void place_object(const ObjectPose& pose) { poses_[0] = pose; }
+    /// Where an object stands from the next frame on; at first its model's frame is the world's.
+    void place_object(const ObjectPose& pose, std::size_t object = 0) { poses_[object] = pose; }
     /// The same, without letting the transport side work first.
     FrameOutput step_without_delivery(const std::vector<Vec3>& goals_m, const Budgets& budgets,
                                       StageMark mark);
@@ -64,8 +65,9 @@ public:
     /// `frames`; returns how many it took.
     std::uint32_t settle(const Vec3& goal_m, const Budgets& budgets, std::uint32_t frames);
 
-    [[nodiscard]] const ObjectPose& pose() const { return poses_[0]; }
+    [[nodiscard]] const ObjectPose& pose(std::size_t object = 0) const { return poses_[object]; }
     [[nodiscard]] Frame& frame() { return *frame_; }
+    [[nodiscard]] const Frame& frame() const { return *frame_; }
     [[nodiscard]] Model& model(ModelId id = ModelId{0}) { return frame_->model(id); }
     [[nodiscard]] Courier& courier(ModelId id = ModelId{0}) { return *lines_[id.value].courier; }
     [[nodiscard]] LoopbackLink& link(ModelId id = ModelId{0}) { return *lines_[id.value].link; }

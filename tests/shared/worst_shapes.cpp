@@ -4,6 +4,8 @@
 
 #include "host_tools/shapes/shapes.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <string>
@@ -68,6 +70,44 @@ std::uint32_t add_square(TriangleMesh& mesh, std::uint32_t cells, double low, do
         }
     }
     return first;
+}
+
+/// 0 or 1 along each axis; what is below 0 wraps round.
+using Octant = std::array<std::uint32_t, 3>;
+
+bool is_in_notched_cube(const Octant& octant)
+{
+    return octant != Octant{1, 1, 1} &&
+           std::ranges::all_of(octant, [](std::uint32_t i) { return i <= 1; });
+}
+
+/// One side of an octant, square to `axis`, in cells x cells squares with corners of their own.
+void add_side(TriangleMesh& mesh, std::uint32_t cells, const Octant& octant, std::size_t axis,
+              bool is_upper)
+{
+    const double step = kSide_m / (2.0 * cells);
+    const auto add_corner = [&](std::uint32_t column, std::uint32_t row)
+    {
+        Octant at{};
+        at[axis] = (octant[axis] + (is_upper ? 1U : 0U)) * cells;
+        at[(axis + 1) % 3] = octant[(axis + 1) % 3] * cells + column;
+        at[(axis + 2) % 3] = octant[(axis + 2) % 3] * cells + row;
+        mesh.positions.push_back({step * at[0], step * at[1], step * at[2]});
+        return static_cast<std::uint32_t>(mesh.positions.size() - 1);
+    };
+    for (std::uint32_t i = 0; i < cells * cells; ++i)
+    {
+        const std::uint32_t column = i % cells;
+        const std::uint32_t row = i / cells;
+        std::array square{add_corner(column, row), add_corner(column + 1, row),
+                          add_corner(column + 1, row + 1), add_corner(column, row + 1)};
+        if (!is_upper)
+        {
+            std::ranges::reverse(square);
+        }
+        mesh.faces.push_back({square[0], square[1], square[2]});
+        mesh.faces.push_back({square[0], square[2], square[3]});
+    }
 }
 
 } // namespace
@@ -166,6 +206,28 @@ TriangleMesh make_loose_spheres(std::uint32_t per_side)
         for (const auto& [a, b, c] : sphere.faces)
         {
             mesh.faces.push_back({first + a, first + b, first + c});
+        }
+    }
+    return mesh;
+}
+
+TriangleMesh make_notched_cube(std::uint32_t cells)
+{
+    TriangleMesh mesh;
+    for (std::uint32_t i = 0; i < 8; ++i)
+    {
+        const Octant octant{i & 1U, (i >> 1U) & 1U, i >> 2U};
+        for (std::size_t axis = 0; axis < 3 && is_in_notched_cube(octant); ++axis)
+        {
+            for (const bool is_upper : {false, true})
+            {
+                Octant beside = octant;
+                beside[axis] += is_upper ? 1U : ~0U;
+                if (!is_in_notched_cube(beside))
+                {
+                    add_side(mesh, cells, octant, axis, is_upper);
+                }
+            }
         }
     }
     return mesh;

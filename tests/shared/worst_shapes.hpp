@@ -30,6 +30,10 @@ namespace tactus::test
 /// Spheres of 80 faces, loose on a cubic lattice of per_side^3.
 [[nodiscard]] TriangleMesh make_loose_spheres(std::uint32_t per_side);
 
+/// A cube without one of its eight octants, of cells x cells squares a side of an octant: sharp and
+/// concave edges and corners, flat faces.
+[[nodiscard]] TriangleMesh make_notched_cube(std::uint32_t cells);
+
 /// Models of these and of other shapes at which a frame is at its worst: needles, poles, spikes,
 /// thin and close sheets, huge faces beside tiny ones, borders, and loose pieces.
 [[nodiscard]] std::size_t worst_model_count();

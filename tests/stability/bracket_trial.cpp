@@ -4,6 +4,7 @@
 
 #include "tests/shared/frame_verdict.hpp"
 #include "tests/stability/random_motion.hpp"
+#include "tests/stability/wide_place.hpp"
 
 #include <algorithm>
 #include <array>
@@ -19,19 +20,6 @@ namespace
 {
 
 constexpr std::array<double, 3> kScales{1.0, 0.2, 3.0};
-
-/// A place of the world in the model's frame, with no rounding that counts and by the inverse of
-/// the rotation, which its transpose nearly is.
-WidePoint wide_place(const ObjectPose& pose, const Vec3& world_m)
-{
-    using WideMatrix = Eigen::Matrix<long double, 3, 3>;
-    using WideVector = Eigen::Matrix<long double, 3, 1>;
-    const WideMatrix rotation = pose.rotation.cast<long double>();
-    const WideVector relative =
-        world_m.cast<long double>() - pose.translation_m.cast<long double>();
-    const WideVector place = rotation.inverse() * relative / static_cast<long double>(pose.scale);
-    return {place.x(), place.y(), place.z()};
-}
 
 template <typename Real>
 bool is_between(double lower, Real distance, double upper)

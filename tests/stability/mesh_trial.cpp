@@ -5,10 +5,9 @@
 #include "tests/shared/frame_verdict.hpp"
 #include "tests/stability/mesh_judge.hpp"
 #include "tests/stability/same_bits.hpp"
+#include "tests/stability/whole_model.hpp"
 
 #include <algorithm>
-#include <cstdio>
-#include <cstdlib>
 #include <memory>
 
 namespace tactus::test
@@ -16,8 +15,6 @@ namespace tactus::test
 
 namespace
 {
-
-constexpr std::uint32_t kFillingMax = 20'000;
 
 double skin_m(const MeshTrial& trial)
 {
@@ -171,29 +168,13 @@ std::string difference(const PairOutput& a, const PairOutput& b)
 /// A rig that has refined both models fully.
 std::unique_ptr<FrameRig> whole_models(const MeshTrial& trial)
 {
-    MeshTrial ample = trial;
-    ample.hardship = hardship_named(trial.object, "static");
-    ample.hardship.radius_diag = trial.hardship.radius_diag;
-    RigOptions options = rig_options(ample);
-    options.pool_bytes += 512 * (trial.object.faces.size() + trial.tool.faces.size());
-    options.courier_steps_per_frame = 16;
+    RigOptions options = whole_options(trial.object.faces.size() + trial.tool.faces.size());
+    options.pool_bytes *= 2;
+    options.tools = rig_options(trial).tools;
     auto rig = std::make_unique<FrameRig>(std::vector{&trial.object, &trial.tool}, options);
-    Budgets budgets;
-    budgets.splits = kMaxSplitsPerFrame;
-    budgets.pages = kMaxArrivalsPerFrame;
-    budgets.requests = 64;
-    const MeshMoment moment;
-    for (std::uint32_t frame = 0; frame < kFillingMax; ++frame)
-    {
-        const FrameOutput output = step(*rig, moment, budgets);
-        if (output.models[0].is_static && output.models[1].is_static)
-        {
-            return rig;
-        }
-    }
-    std::fprintf(stderr, "mesh twin: %s is not refined fully after %u frames\n",
-                 name_of(trial).c_str(), kFillingMax);
-    std::exit(2);
+    refine_fully(name_of(trial),
+                 [&](const Budgets& budgets) { return step(*rig, MeshMoment{}, budgets); });
+    return rig;
 }
 
 } // namespace

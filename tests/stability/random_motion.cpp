@@ -17,6 +17,7 @@ constexpr double kSlowest_diag = 0.05e-3;
 constexpr double kFastest_diag = 2e-3;
 constexpr double kTap_diag = 0.015;
 constexpr std::uint32_t kTapFrames = 40;
+constexpr double kFrame_s = 1e-3;
 constexpr double kFastestSpin_rad = 0.02;
 constexpr std::uint32_t kLongest = 90;
 
@@ -38,6 +39,12 @@ RandomMotion::RandomMotion(const TestModel& model, const FaceTree& tree, double 
 {
     moment_.pose.scale = scale;
     begin_jump();
+}
+
+void RandomMotion::tap_up_to(double speed_m_per_s)
+{
+    const double angular_speed = 2.0 * std::numbers::pi / (kTapFrames * kFrame_s);
+    farthest_tap_m_ = speed_m_per_s / angular_speed / moment_.pose.scale;
 }
 
 Moment RandomMotion::next()
@@ -86,14 +93,15 @@ void RandomMotion::begin_tap()
 {
     place_ = random_corner();
     direction_ = random_.in_cube(1.0).normalized();
+    const double usual = kTap_diag * model_.diagonal_m;
+    tap_m_ = farthest_tap_m_ > 0.0 ? random_.between(0.0, farthest_tap_m_) : usual;
 }
 
 /// Through the surface and back.
 void RandomMotion::tap()
 {
     const double phase = 2.0 * std::numbers::pi * frame_ / kTapFrames;
-    moment_.goal_m = to_world(
-        moment_.pose, Vec3(place_ + kTap_diag * model_.diagonal_m * std::cos(phase) * direction_));
+    moment_.goal_m = to_world(moment_.pose, Vec3(place_ + tap_m_ * std::cos(phase) * direction_));
 }
 
 void RandomMotion::begin_flight()

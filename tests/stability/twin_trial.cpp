@@ -7,11 +7,10 @@
 #include "tests/shared/surface_slide.hpp"
 #include "tests/stability/core_twin.hpp"
 #include "tests/stability/same_bits.hpp"
+#include "tests/stability/whole_model.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <memory>
 #include <vector>
 
@@ -27,7 +26,6 @@ constexpr double kSpeed_diag = 0.1e-3; ///< A frame of 1 ms: 0.1 diag/s.
 constexpr double kCoreSize_diag = 0.004;
 constexpr double kCoreReach_diag = 0.0102;
 constexpr std::uint32_t kSettling = 100; ///< Frames in which the front comes to the tool.
-constexpr std::uint32_t kFillingMax = 20'000;
 
 /// An exact face and where it is.
 struct NearFace
@@ -106,25 +104,10 @@ std::string difference(const AbTree& refined, const AbTree& whole, const Vec3& c
 /// A rig that has refined everything.
 std::unique_ptr<FrameRig> whole_model(const TestModel& model)
 {
-    RigOptions options;
-    options.pool_bytes = (std::size_t{16} << 20U) + 512 * model.faces.size();
-    options.static_when_it_fits = true;
-    options.courier_steps_per_frame = 16;
-    auto rig = std::make_unique<FrameRig>(model, options);
-    Budgets budgets;
-    budgets.splits = kMaxSplitsPerFrame;
-    budgets.pages = kMaxArrivalsPerFrame;
-    budgets.requests = 64;
-    for (std::uint32_t frame = 0; frame < kFillingMax; ++frame)
-    {
-        if (rig->step(to_vec3(model.faces[0][0]), budgets).models[0].is_static)
-        {
-            return rig;
-        }
-    }
-    std::fprintf(stderr, "twin trial: %s is not refined fully after %u frames\n",
-                 model.name.c_str(), kFillingMax);
-    std::exit(2);
+    auto rig = std::make_unique<FrameRig>(model, whole_options(model.faces.size()));
+    refine_fully(model.name, [&](const Budgets& budgets)
+                 { return rig->step(to_vec3(model.faces[0][0]), budgets); });
+    return rig;
 }
 
 SurfaceSlide slide_over(const TwinTrial& trial, Random& random)

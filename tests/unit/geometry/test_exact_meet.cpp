@@ -30,6 +30,27 @@ TEST(ExactMeet, is_what_exact_linear_algebra_says)
     tally.expect_both();
 }
 
+TEST(ExactMeet, of_a_segment_is_what_exact_linear_algebra_says)
+{
+    Random random(56);
+    Tally tally;
+    for (int i = 0; i < 4 * cases_per_class(); ++i)
+    {
+        Grid grid(random);
+        const GridTriangle a = grid.triangle();
+        const GridTriangle b = grid.triangle();
+        const Triangle ends = grid.placed(a);
+        if (ends[0] != ends[1])
+        {
+            const bool expected = share_a_point({a[0], a[1]}, b);
+            tally.add(expected);
+            ASSERT_EQ(exactly_meet(ends[0], ends[1], grid.placed(b)), expected) << "case " << i;
+            ASSERT_EQ(exactly_meet(ends[1], ends[0], grid.placed(b)), expected) << "case " << i;
+        }
+    }
+    tally.expect_both();
+}
+
 TEST(ExactMeet, tells_touching_from_missing_by_one_bit)
 {
     const Triangle floor{Vec3(0.1, 0.1, 0.1), Vec3(1.1, 0.1, 0.1), Vec3(0.1, 1.1, 0.1)};

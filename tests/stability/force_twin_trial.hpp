@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "tests/shared/face_tree.hpp"
+#include "tests/shared/trial_figures.hpp"
+#include "tests/stability/hardships.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace tactus::test
+{
+
+/// The same tools on the same object twice: streamed and refined round the tools under a hardship,
+/// and refined fully. The object is 0.1 to 0.2 m large; each tool has a PressMotion of its own.
+struct ForceTwinTrial
+{
+    const TestModel& model;
+    const FaceTree& tree; ///< Of the model.
+    Hardship hardship;
+    std::uint64_t seed{0};
+    std::uint32_t frames{0};
+    std::uint32_t tools{1};
+};
+
+/// What the level of detail may add to a frame's change of force: 0.05 N, less than the other
+/// bound, 1 % of a device's 8 N.
+inline constexpr double kForceStep_n = 0.05;
+
+/// One tool and its twin, frame by frame.
+class ForceStepJudge
+{
+public:
+    struct Step
+    {
+        /// By which the force's change since the last frame, as a vector, differs from the twin's.
+        double newtons{0.0};
+        /// In both frames both were certified, and they are in one place since: a proxy that waited
+        /// for data may have come to another side of an edge.
+        bool is_certified{false};
+    };
+
+    /// None unless both were in contact in this frame and the last one, and none of them frozen or
+    /// squeezed. `is_answered`: both answers are exact or decided, and no proxy was held back by
+    /// the end of what is certified.
+    [[nodiscard]] std::optional<Step> judge(const ToolOutput& ours, const ToolOutput& twins,
+                                            bool is_answered);
+
+private:
+    Vec3 ours_n_{0.0, 0.0, 0.0};
+    Vec3 twins_n_{0.0, 0.0, 0.0};
+    bool were_touching_{false};
+    bool were_certified_{false};
+    bool are_apart_{false};
+};
+
+struct ForceTwinFigures
+{
+    /// Certified steps, in newtons; where nothing is scarce all that both made in contact.
+    TrialFigures steps;
+    double apart_n{0.0};         ///< Largest difference of the forces in those frames.
+    std::uint64_t refining{0};   ///< Those frames with splits,
+    std::uint64_t coarsening{0}; ///< with merges,
+    std::uint64_t adopting{0};   ///< and with pages that came in.
+    /// Other frames in contact: the proxy is held back by what isn't certified yet, or was so and
+    /// came to another place.
+    std::uint64_t held_back{0};
+    double held_back_n{0.0}; ///< Largest step in those.
+    /// Frames in which the streamed proxy was frozen or squeezed: its force fades by design.
+    std::uint64_t fading{0};
+
+    /// The same claim, tried elsewhere.
+    void add(const ForceTwinFigures& other)
+    {
+        steps.add(other.steps);
+        apart_n = std::max(apart_n, other.apart_n);
+        refining += other.refining;
+        coarsening += other.coarsening;
+        adopting += other.adopting;
+        fading += other.fading;
+        held_back += other.held_back;
+        held_back_n = std::max(held_back_n, other.held_back_n);
+    }
+};
+
+/// Those of hardships() in which tools can be pressed: points or 0.04 diag large, with pages enough
+/// for these.
+[[nodiscard]] std::vector<Hardship> force_hardships(const TestModel& model);
+
+[[nodiscard]] ForceTwinFigures run_force_twin_trial(const ForceTwinTrial& trial);
+
+} // namespace tactus::test

@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "tests/stability/pop_through_trial.hpp"
+
+#include "tests/stability/proxy_trail.hpp"
+#include "tests/stability/random_motion.hpp"
+
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace tactus::test
+{
+
+namespace
+{
+
+constexpr double kSmallest_m = 0.1; ///< Diagonals of objects.
+constexpr double kLargest_m = 0.2;
+constexpr double kFrame_s = 1e-3;
+
+constexpr double kForceMax_n = 8.0; ///< As with_tool() has it.
+constexpr double kForceRounding_n = 1e-9;
+
+/// Of closing in: the tool's radius, and how long the objects stay where they are.
+constexpr double kSqueezedRadius_diag = 0.05;
+constexpr std::uint32_t kRestFrames = 100;
+
+/// What the frames say of one tool, held against the trail that it leaves past each object.
+class PopThroughJudge
+{
+public:
+    PopThroughJudge(std::string name, std::uint64_t seed) : seed_(seed)
+    {
+        figures_.crossings = {std::move(name), 0, 0.0, 0.0, "frames", 0, {}};
+        figures_.run_over = figures_.crossings;
+        figures_.run_over.name += ", run over";
+    }
+
+    /// A proxy that was nowhere yet, and so many objects of one model.
+    void begin(std::size_t objects, const TestModel& model, const FaceTree& tree)
+    {
+        trails_.assign(objects, ProxyTrail(model, tree));
+    }
+
+    /// The last frame of the rig, of its only tool.
+    void judge(const FrameRig& rig, const ToolOutput& tool, const char* activity)
+    {
+        activity_ = activity;
+        ++figures_.crossings.trials;
+        figures_.in_contact += tool.in_contact ? 1 : 0;
+        figures_.frozen += tool.frozen ? 1 : 0;
+        figures_.squeezed += tool.squeezed ? 1 : 0;
+        for (std::size_t object = 0; object < trails_.size(); ++object)
+        {
+            const ProxyTrail::Crossings found =
+                trails_[object].follow(rig.frame().proxy_path_m(0), rig.pose(object));
+            if (found.moved)
+            {
+                flag(figures_.crossings, found.moved->text());
+            }
+            if (found.carried)
+            {
+                judge_run_over(*found.carried, tool);
+            }
+        }
+        const double force = tool.force_n.norm();
+        if (!(force <= kForceMax_n + kForceRounding_n) || !tool.proxy_m.allFinite())
+        {
+            flag(figures_.crossings, "force of " + std::to_string(force) + " N");
+        }
+        ++frame_;
+    }
+
+    void flag(TrialFigures& figures, const std::string& text)
+    {
+        figures.flag(figures.name + ", TACTUS_SEED=" + std::to_string(seed_) + ", frame " +
+                     std::to_string(frame_) + " (" + activity_ + "): " + text);
+        figures.observe(static_cast<double>(figures.violations));
+    }
+    void flag(const std::string& text) { flag(figures_.crossings, text); }
+
+    [[nodiscard]] PopThroughFigures& figures() { return figures_; }
+
+private:
+    void judge_run_over(const Crossing& crossing, const ToolOutput& tool)
+    {
+        ++figures_.run_over.trials;
+        if (!tool.squeezed)
+        {
+            flag(figures_.run_over, crossing.text());
+            flag(figures_.crossings, crossing.text());
+        }
+    }
+
+    std::uint64_t seed_;
+    std::vector<ProxyTrail> trails_;
+    PopThroughFigures figures_;
+    std::uint64_t frame_{0};
+    std::string activity_;
+};
+
+RigOptions options_of(const PopThroughTrial& trial, double diagonal_m)
+{
+    RigOptions options = with_tool(trial.hardship.rig, trial.hardship.radius_diag * diagonal_m);
+    options.faults.seed = trial.seed + 1;
+    return options;
+}
+
+} // namespace
+
+PopThroughFigures run_pop_through_trial(const PopThroughTrial& trial)
+{
+    Random random = Random::seeded(trial.seed);
+    const double diagonal_m = random.between(kSmallest_m, kLargest_m);
+    const double scale = diagonal_m / trial.model.diagonal_m;
+    RandomMotion motion(trial.model, trial.tree,
+                        trial.hardship.radius_diag * trial.model.diagonal_m, scale, random);
+    motion.tap_up_to(kFastestTap_m_per_s);
+    FrameRig rig(trial.model, options_of(trial, diagonal_m));
+    PopThroughJudge judge("pop-through, " + trial.model.name + ", " + trial.hardship.name,
+                          trial.seed);
+    judge.begin(1, trial.model, trial.tree);
+    for (std::uint32_t frame = 0; frame < trial.frames; ++frame)
+    {
+        const Moment moment = motion.next();
+        rig.place_object(moment.pose);
+        const FrameOutput output = rig.step(moment.goal_m, trial.hardship.budgets);
+        judge.judge(rig, output.tools[0], motion.activity());
+    }
+    return judge.figures();
+}
+
+namespace
+{
+
+/// Two objects on a line through the origin, one on either side, turned at random.
+class Jaws
+{
+public:
+    Jaws(const FaceTree& tree, double scale, Random& random)
+        : middle_m_(0.5 * (tree.low_m() + tree.high_m())), axis_(random.in_cube(1.0).normalized())
+    {
+        for (ObjectPose& pose : poses_)
+        {
+            pose.rotation = Eigen::Quaterniond(random.between(0.1, 1.0), random.between(-1.0, 1.0),
+                                               random.between(-1.0, 1.0), random.between(-1.0, 1.0))
+                                .normalized()
+                                .toRotationMatrix();
+            pose.scale = scale;
+        }
+    }
+
+    /// Puts the middle of each object so far from the origin.
+    void open_to(double half_gap_m, FrameRig& rig)
+    {
+        for (std::size_t i = 0; i < poses_.size(); ++i)
+        {
+            ObjectPose& pose = poses_[i];
+            const Vec3 middle = (i == 0 ? half_gap_m : -half_gap_m) * axis_;
+            pose.translation_m = middle - pose.scale * (pose.rotation * middle_m_);
+            rig.place_object(pose, i);
+        }
+    }
+
+private:
+    Vec3 middle_m_;
+    Vec3 axis_;
+    std::array<ObjectPose, 2> poses_;
+};
+
+/// The tool of a round, which the hand keeps at the origin.
+class ClosingRound
+{
+public:
+    ClosingRound(const ClosingTrial& trial, const RigOptions& options, Jaws& jaws,
+                 PopThroughJudge& judge)
+        : rig_(trial.model, options), jaws_(jaws), judge_(judge)
+    {
+        judge_.begin(2, trial.model, trial.tree);
+    }
+
+    /// Returns whether the tool is squeezed.
+    bool step(double half_gap_m, const char* activity)
+    {
+        jaws_.open_to(half_gap_m, rig_);
+        const FrameOutput output = rig_.step(Vec3(0.0, 0.0, 0.0));
+        const ToolOutput& tool = output.tools[0];
+        judge_.judge(rig_, tool, activity);
+        squeezed_s_ = tool.squeezed ? squeezed_s_ + kFrame_s : 0.0;
+        if (tool.squeezed != has_fault(output.faults, FrameFault::proxy_squeezed))
+        {
+            judge_.flag("the frame's fault and the tool's differ");
+        }
+        if (squeezed_s_ > kFadeTime_s + kFrame_s)
+        {
+            ++judge_.figures().faded;
+            if (tool.force_n.norm() > kForceRounding_n)
+            {
+                judge_.flag("there is still a force");
+            }
+        }
+        return tool.squeezed;
+    }
+
+private:
+    FrameRig rig_;
+    Jaws& jaws_;
+    PopThroughJudge& judge_;
+    double squeezed_s_{0.0};
+};
+
+void close_and_open(ClosingRound& round, double open_m, double speed_m_per_s,
+                    PopThroughJudge& judge)
+{
+    for (std::uint32_t frame = 0; frame < kRestFrames; ++frame)
+    {
+        round.step(open_m, "open");
+    }
+    double half_gap_m = open_m;
+    bool is_squeezed = false;
+    while (half_gap_m > 0.0 && !is_squeezed)
+    {
+        half_gap_m -= speed_m_per_s * kFrame_s;
+        is_squeezed = round.step(half_gap_m, "closing");
+    }
+    for (std::uint32_t frame = 0; frame < kRestFrames; ++frame)
+    {
+        round.step(half_gap_m, "closed");
+    }
+    while (half_gap_m < open_m)
+    {
+        half_gap_m += speed_m_per_s * kFrame_s;
+        round.step(half_gap_m, "opening");
+    }
+    for (std::uint32_t frame = 0; frame < kRestFrames; ++frame)
+    {
+        is_squeezed = round.step(open_m, "open again");
+    }
+    if (is_squeezed)
+    {
+        judge.flag("there is room again, but not for the tool");
+    }
+}
+
+} // namespace
+
+PopThroughFigures run_closing_trial(const ClosingTrial& trial)
+{
+    Random random = Random::seeded(trial.seed);
+    RigOptions options = hardship_named(trial.model, "usual").rig;
+    options.objects = {ObjectSpec{ModelId{0}}, ObjectSpec{ModelId{0}}};
+    PopThroughJudge judge("closing in, " + trial.model.name, trial.seed);
+    for (std::uint32_t i = 0; i < trial.rounds; ++i)
+    {
+        const double diagonal_m = random.between(kSmallest_m, kLargest_m);
+        const double radius_m = kSqueezedRadius_diag * diagonal_m;
+        Jaws jaws(trial.tree, diagonal_m / trial.model.diagonal_m, random);
+        ClosingRound round(trial, with_tool(options, radius_m), jaws, judge);
+        close_and_open(round, 0.5 * diagonal_m + 2.0 * radius_m, random.between(0.05, 1.0), judge);
+    }
+    return judge.figures();
+}
+
+} // namespace tactus::test

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "tests/shared/face_tree.hpp"
+#include "tests/shared/trial_figures.hpp"
+#include "tests/stability/hardships.hpp"
+
+#include <cstdint>
+
+namespace tactus::test
+{
+
+/// Frames of one model under one hardship: the object is 0.1 to 0.2 m large and moves, the hand
+/// taps it at up to kFastestTap_m_per_s.
+struct PopThroughTrial
+{
+    const TestModel& model;
+    const FaceTree& tree; ///< Of the model.
+    Hardship hardship;
+    std::uint64_t seed{0};
+    std::uint32_t frames{0};
+};
+
+inline constexpr double kFastestTap_m_per_s = 2.0;
+
+struct PopThroughFigures
+{
+    /// Frames in which the proxy's centre met a face of the full mesh on its way relative to the
+    /// object: none, but where the object ran over it and the frame says that it is squeezed. And
+    /// frames with a force beyond its limit, or none that is a number.
+    TrialFigures crossings;
+    /// Frames in which an object ran over the proxy; a violation when the frame doesn't say so.
+    TrialFigures run_over;
+    std::uint64_t in_contact{0};
+    std::uint64_t frozen{0};
+    std::uint64_t squeezed{0};
+    std::uint64_t faded{0}; ///< Frames after kFadeTime_s of a squeeze.
+
+    /// The same claims, tried elsewhere.
+    void add(const PopThroughFigures& other)
+    {
+        crossings.add(other.crossings);
+        run_over.add(other.run_over);
+        in_contact += other.in_contact;
+        frozen += other.frozen;
+        squeezed += other.squeezed;
+        faded += other.faded;
+    }
+};
+
+[[nodiscard]] PopThroughFigures run_pop_through_trial(const PopThroughTrial& trial);
+
+/// Two objects of one model close in on a tool from both sides, at up to 1 m/s each, until it is
+/// squeezed; they stay a while and go again.
+struct ClosingTrial
+{
+    const TestModel& model;
+    const FaceTree& tree; ///< Of the model.
+    std::uint64_t seed{0};
+    std::uint32_t rounds{0};
+};
+
+/// As above. Besides, no force is left after kFadeTime_s of a squeeze, and no squeeze when the
+/// objects are gone. A tool may slip out to a side, and end behind one of them.
+[[nodiscard]] PopThroughFigures run_closing_trial(const ClosingTrial& trial);
+
+} // namespace tactus::test

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+
+/// The level of detail adds no step to the force: while faces are split and merged and pages come
+/// in under resting, sliding and tapping tools, the force changes as on the full mesh.
+
+#include "tests/shared/random.hpp"
+#include "tests/stability/force_twin_trial.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+
+namespace tactus::test
+{
+
+namespace
+{
+
+constexpr std::uint32_t kFrames = 2'500;
+
+void print(const ForceTwinFigures& figures)
+{
+    std::printf("%s; %.2g N apart, %llu frames of splits, %llu of merges, %llu of pages, "
+                "%llu fading, %llu held back with steps to %.2g N\n",
+                figures.steps.summary().c_str(), figures.apart_n,
+                static_cast<unsigned long long>(figures.refining),
+                static_cast<unsigned long long>(figures.coarsening),
+                static_cast<unsigned long long>(figures.adopting),
+                static_cast<unsigned long long>(figures.fading),
+                static_cast<unsigned long long>(figures.held_back), figures.held_back_n);
+}
+
+class ForceTwin : public testing::TestWithParam<std::size_t>
+{
+};
+
+TEST_P(ForceTwin, the_force_changes_as_on_the_full_mesh)
+{
+    const TestModel& model = small_model(GetParam());
+    const FaceTree tree(model.faces);
+    for (const Hardship& hardship : force_hardships(model))
+    {
+        const ForceTwinFigures sut = run_force_twin_trial(
+            {model, tree, hardship, seed_of(20'261'800 + GetParam()), kFrames});
+        print(sut);
+        EXPECT_GT(sut.steps.trials, kFrames / 8);
+        EXPECT_TRUE(sut.steps.holds());
+    }
+}
+
+// Smooth, round, open, sharp; needles never fit the pools as a whole.
+INSTANTIATE_TEST_SUITE_P(small_models, ForceTwin, testing::Range<std::size_t>(0, 4));
+
+TEST(ForceTwins, hold_for_two_tools_that_share_the_budgets)
+{
+    const TestModel& model = small_model(0);
+    const FaceTree tree(model.faces);
+    const ForceTwinFigures sut = run_force_twin_trial(
+        {model, tree, force_hardships(model)[5], seed_of(20'261'810), kFrames, 2});
+    print(sut);
+    EXPECT_GT(sut.steps.trials, kFrames / 2);
+    EXPECT_TRUE(sut.steps.holds());
+}
+
+ToolOutput pressed_with(double force_n)
+{
+    ToolOutput output;
+    output.force_n = Vec3(0.0, 0.0, force_n);
+    output.in_contact = true;
+    return output;
+}
+
+double certified_step(ForceStepJudge& sut, double ours_n, double twins_n)
+{
+    const auto step = sut.judge(pressed_with(ours_n), pressed_with(twins_n), true);
+    return step && step->is_certified ? step->newtons : -1.0;
+}
+
+TEST(ForceStepJudge, sees_a_step_that_the_twin_does_not_make_and_no_other)
+{
+    ForceStepJudge sut;
+    EXPECT_EQ(certified_step(sut, 1.0, 1.0), -1.0);
+    EXPECT_EQ(certified_step(sut, 3.0, 3.0), 0.0);
+    EXPECT_EQ(certified_step(sut, 3.25, 3.0), 0.25); // A surface that pops up,
+    EXPECT_EQ(certified_step(sut, 3.25, 3.0), 0.0);  // that stays,
+    EXPECT_EQ(certified_step(sut, 4.0, 4.0), 0.25);  // and is right again.
+    EXPECT_EQ(certified_step(sut, -4.0, 4.0), 8.0);  // A vector's difference.
+}
+
+TEST(ForceStepJudge, waits_for_two_frames_in_contact)
+{
+    ToolOutput frozen = pressed_with(0.5);
+    frozen.frozen = true;
+    ToolOutput squeezed = pressed_with(0.5);
+    squeezed.squeezed = true;
+    for (const ToolOutput& open : {ToolOutput{}, frozen, squeezed})
+    {
+        ForceStepJudge sut;
+        EXPECT_EQ(certified_step(sut, 2.0, 1.0), -1.0);
+        EXPECT_EQ(certified_step(sut, 2.0, 1.0), 0.0);
+        EXPECT_FALSE(sut.judge(open, pressed_with(1.0), true));
+        EXPECT_EQ(certified_step(sut, 2.0, 1.0), -1.0);
+        EXPECT_EQ(certified_step(sut, 2.0, 1.0), 0.0);
+        EXPECT_FALSE(sut.judge(pressed_with(2.0), open, true));
+    }
+}
+
+TEST(ForceStepJudge, tells_steps_apart_that_come_of_late_data)
+{
+    ForceStepJudge sut;
+    ToolOutput ours = pressed_with(1.0);
+    const ToolOutput twin = pressed_with(1.0);
+    const auto is_certified = [&](bool is_answered)
+    { return sut.judge(ours, twin, is_answered).value().is_certified; };
+    EXPECT_FALSE(sut.judge(ours, twin, true));
+    EXPECT_TRUE(is_certified(true));
+    ours.proxy_m = Vec3(0.001, 0.0, 0.0); // Data was there all the time.
+    EXPECT_TRUE(is_certified(true));
+    EXPECT_TRUE(is_certified(true));
+    EXPECT_FALSE(is_certified(false));
+    EXPECT_FALSE(is_certified(true));
+    EXPECT_FALSE(is_certified(true)); // Still in different places, since it had to wait.
+    ours.proxy_m = twin.proxy_m;
+    EXPECT_FALSE(is_certified(true)); // Until both frames are of proxies in one place.
+    EXPECT_TRUE(is_certified(true));
+}
+
+} // namespace
+
+} // namespace tactus::test

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+
+/// The way of the proxy relative to an object crosses no face of the full mesh: fast taps, thin
+/// plates, sharp and concave edges, objects that move, data that is late or lost. Where objects
+/// leave no room the frame says so. And that what holds it can fail.
+
+#include "tests/shared/random.hpp"
+#include "tests/shared/worst_shapes.hpp"
+#include "tests/stability/pop_through_trial.hpp"
+#include "tests/stability/proxy_trail.hpp"
+#include "tests/stability/trial_models.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdio>
+
+namespace tactus::test
+{
+
+namespace
+{
+
+constexpr std::uint32_t kFrames = 100;
+
+const TestModel& notched_cube()
+{
+    return test_model("notched-cube", make_notched_cube(12));
+}
+
+void expect_no_crossing(const TestModel& model, std::uint64_t own_seed)
+{
+    const FaceTree tree(model.faces);
+    std::uint64_t own = 20'261'700 + own_seed;
+    std::uint64_t in_contact = 0;
+    for (const Hardship& hardship : hardships(model))
+    {
+        own += 100;
+        const PopThroughFigures sut =
+            run_pop_through_trial({model, tree, hardship, seed_of(own), kFrames});
+        EXPECT_TRUE(sut.crossings.holds()) << sut.crossings.summary();
+        EXPECT_TRUE(sut.run_over.holds()) << sut.run_over.summary();
+        in_contact += sut.in_contact;
+    }
+    EXPECT_GT(in_contact, 20U);
+}
+
+class PopThrough : public testing::TestWithParam<std::size_t>
+{
+};
+
+TEST_P(PopThrough, never_happens_unless_an_object_runs_over_the_tool_and_it_is_told)
+{
+    expect_no_crossing(generated_model(GetParam()), GetParam());
+}
+
+// Bumpy, open, sharp, thin, needles, crumbs; spikes, plates and sheets 1e-4 diag apart, borders,
+// fins, loose pieces. All in the extended run.
+INSTANTIATE_TEST_SUITE_P(generated, PopThrough,
+                         testing::Values(0, 2, 3, 4, 5, 6, 10, 11, 12, 14, 15, 17));
+
+TEST(PopThroughCorners, never_happens_at_sharp_and_concave_ones)
+{
+    expect_no_crossing(notched_cube(), 99);
+}
+
+TEST(PopThroughClosing, objects_that_leave_no_room_are_told_and_the_force_fades)
+{
+    const TestModel& model = notched_cube();
+    const FaceTree tree(model.faces);
+
+    const PopThroughFigures sut = run_closing_trial({model, tree, seed_of(20'261'790), 6});
+
+    std::printf("%s\n", sut.crossings.summary().c_str());
+    EXPECT_TRUE(sut.crossings.holds()) << sut.crossings.summary();
+    EXPECT_GT(sut.squeezed, 200U);
+    EXPECT_GT(sut.faded, 100U);
+}
+
+/// Two faces in z = 0 that make a square, with x and y from 0 to 1.
+struct Square
+{
+    TestModel model{"square",
+                    {},
+                    {{Vec3f{0, 0, 0}, Vec3f{1, 0, 0}, Vec3f{1, 1, 0}},
+                     {Vec3f{0, 0, 0}, Vec3f{1, 1, 0}, Vec3f{0, 1, 0}}},
+                    1.5};
+    FaceTree tree{model.faces};
+
+    [[nodiscard]] bool is_met(const Vec3& from, const Vec3& to) const
+    {
+        return find_crossing(model, tree, from, to).has_value();
+    }
+};
+
+TEST(ProxyTrail, meets_faces_edges_and_corners_also_when_it_only_touches)
+{
+    const Square sut;
+    const double least = 0x1p-1074;
+    EXPECT_TRUE(sut.is_met(Vec3(0.5, 0.25, 1.0), Vec3(0.5, 0.25, -1.0)));   // A face.
+    EXPECT_TRUE(sut.is_met(Vec3(0.5, 0.5, 1.0), Vec3(0.5, 0.5, -1.0)));     // The edge of two.
+    EXPECT_TRUE(sut.is_met(Vec3(0.25, 0.75, 0.5), Vec3(0.75, 0.25, -0.5))); // The same, aslant.
+    EXPECT_TRUE(sut.is_met(Vec3(1.0, 0.25, 1.0), Vec3(1.0, 0.25, -1.0)));   // The border.
+    EXPECT_TRUE(sut.is_met(Vec3(1.0, 1.0, 1.0), Vec3(1.0, 1.0, -1.0)));     // A corner.
+    EXPECT_TRUE(sut.is_met(Vec3(0.3, 0.1, 1.0), Vec3(0.3, 0.1, 0.0)));      // Ends on it.
+    EXPECT_TRUE(sut.is_met(Vec3(-0.5, 0.5, 0.0), Vec3(0.5, 0.5, 0.0)));     // In its plane.
+    EXPECT_TRUE(sut.is_met(Vec3(-1.0, 1.0, 0.0), Vec3(1.0, -1.0, 0.0)));    // Past a corner.
+
+    EXPECT_FALSE(sut.is_met(Vec3(0.3, 0.1, 1.0), Vec3(0.3, 0.1, least)));
+    EXPECT_FALSE(sut.is_met(Vec3(-least, 0.5, 1.0), Vec3(-least, 0.5, -1.0)));
+    EXPECT_FALSE(sut.is_met(Vec3(0.5, 0.5, 1e-300), Vec3(9.0, 0.5, 1e-300)));
+    EXPECT_FALSE(sut.is_met(Vec3(-1.0, 1.0 - 0x1p-53, 0.0), Vec3(1.0 - 0x1p-53, -1.0, 0.0)));
+}
+
+TEST(ProxyTrail, tells_its_own_steps_from_an_object_that_moves)
+{
+    const Square square;
+    ProxyTrail sut(square.model, square.tree);
+    ObjectPose pose;
+    const std::array above{Vec3(0.5, 0.3, 0.5), Vec3(0.6, 0.3, 0.2)};
+    const std::array through{Vec3(0.6, 0.3, 0.2), Vec3(0.6, 0.3, -0.2), Vec3(0.6, 0.3, -0.3)};
+    EXPECT_FALSE(sut.follow(above, pose).moved);
+    const ProxyTrail::Crossings own = sut.follow(through, pose);
+    EXPECT_FALSE(own.carried);
+    ASSERT_TRUE(own.moved);
+    EXPECT_EQ(own.moved->from_m, through[0]);
+    EXPECT_EQ(own.moved->face, 0U);
+
+    const std::array stays{Vec3(0.6, 0.3, -0.3)};
+    EXPECT_FALSE(sut.follow(stays, pose).carried);
+    pose.translation_m = Vec3(0.0, 0.0, -0.4);
+    const ProxyTrail::Crossings other = sut.follow(stays, pose);
+    EXPECT_TRUE(other.carried);
+    EXPECT_FALSE(other.moved);
+    // Both move alike: nothing is crossed.
+    pose.translation_m.z() -= 5.0;
+    const std::array along{Vec3(0.6, 0.3, -5.3)};
+    EXPECT_FALSE(sut.follow(along, pose).carried);
+}
+
+} // namespace
+
+} // namespace tactus::test
