@@ -84,12 +84,11 @@ std::optional<Material> parse_material(const std::string& text)
     material.static_friction = number(1, 0.0);
     material.dynamic_friction = number(2, material.static_friction);
     material.damping_n_s_per_m = number(3, 0.0);
-    const bool in_range = material.stiffness_n_per_m >= 1.0 &&
-                          material.stiffness_n_per_m <= kStiffest_n_per_m &&
-                          material.dynamic_friction >= 0.0 &&
-                          material.dynamic_friction <= material.static_friction &&
-                          material.static_friction <= 3.0 && material.damping_n_s_per_m >= 0.0 &&
-                          material.damping_n_s_per_m <= 20.0;
+    const bool in_range =
+        material.stiffness_n_per_m >= 1.0 && material.stiffness_n_per_m <= kStiffest_n_per_m &&
+        material.dynamic_friction >= 0.0 && material.dynamic_friction <= material.static_friction &&
+        material.static_friction <= 3.0 && material.damping_n_s_per_m >= 0.0 &&
+        material.damping_n_s_per_m <= 20.0;
     return in_range ? std::optional(material) : std::nullopt;
 }
 
@@ -239,8 +238,8 @@ std::string check_objects(Options& options, const RawOptions& raw)
     {
         return fmt::format("--model: at most {} models", kMaxObjects);
     }
-    for (const auto& [name, given] : {std::pair("--place", raw.places.size()),
-                                      std::pair("--material", raw.materials.size())})
+    for (const auto& [name, given] :
+         {std::pair("--place", raw.places.size()), std::pair("--material", raw.materials.size())})
     {
         if (given > models)
         {

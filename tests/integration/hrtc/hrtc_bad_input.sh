@@ -60,7 +60,7 @@ for value in 1 1,2 1,2,3,4 1,2,x 1,2,3,400,0,0 1,2,3,0,0,0,0 nan,0,0 2e4,0,0 '';
     refuse_option --place "$value" X,Y,Z
 done
 refuse 3 --place --model bumpy --place 0,0,0 --place 0,0,0
-for value in 0.5 3001 soft 500,-0.1 500,3.1 500,0.5,0.6 500,1,1,21 500,1,1,1,1 nan 500, ''; do
+for value in 0.5 3001 soft 500,-0.1 500,3.1 500,0.5,0.6 500,1,1,21 500,1,1,1,1 nan '500,' ''; do
     refuse_option --material "$value" '1 to 3000 N/m'
 done
 refuse 3 --material --model bumpy --material 100 --material 100
