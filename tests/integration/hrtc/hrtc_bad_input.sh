@@ -120,8 +120,9 @@ rm -f out/report.json
 # A hand that is too fast gets no force, and the report says why.
 run_file --duration 2 --speed-limit 0.01 --report out/report.json >hrtc.log 2>&1 \
     || { cat hrtc.log; fault 'a run with a speed limit ended badly'; }
-check out/report.json safety.begun.velocity '>' 0 safety.events '>' 2 safety.events_left_out '>=' 0 \
-    safety.begun.garbage == 0 safety.begun.disconnect == 0 safety.begun.software '<=' 1
+check out/report.json safety.begun.velocity '>' 0 safety.events '>' 2 \
+    safety.events_left_out '>=' 0 safety.begun.garbage == 0 safety.begun.disconnect == 0 \
+    safety.begun.software '<=' 1
 grep -q '^safety .*velocity' hrtc.log || fault 'no word about the speed'
 rm -f out/report.json
 
