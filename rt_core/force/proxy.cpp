@@ -418,8 +418,9 @@ bool Proxy::is_overrun(const Vec3& target, std::span<const ObjectPose> before,
     for (std::size_t i = 0; i < now.size(); ++i)
     {
         const double way = (to_model(now[i], target) - to_model(before[i], position_)).norm();
-        const double scale = std::max(before[i].scale, now[i].scale);
-        if (way > 0.0 && way * scale * (1.0 + kContactTolerance) >= clearances_m_[i])
+        const double way_m = way * std::max(before[i].scale, now[i].scale);
+        const bool moves = way_m > 4.0 * pose_rounding_m(now[i], target, 0.0);
+        if (moves && way_m * (1.0 + kContactTolerance) >= clearances_m_[i])
         {
             return true;
         }

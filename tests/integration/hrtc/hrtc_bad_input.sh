@@ -42,6 +42,9 @@ refuse 3 '--frame-budget-us: must be less than the period of 1000 us' --model bu
 refuse 3 'the period of 250 us' --model bumpy --rate 4000 --frame-budget-us 300
 refuse_option --stiffness 0 '1 .. 3000'
 refuse_option --stiffness 3001 '1 .. 3000'
+for value in 0 -1 0.009 101 nan fast ''; do
+    refuse_option --speed-limit "$value" '0.01 .. 100'
+done
 refuse_option --domain -1 '0 to 232'
 refuse_option --domain 233 '0 to 232'
 refuse_option --domain 1.5 '0 to 232'
@@ -116,6 +119,15 @@ timeout 30 "$hrtc" --allow-no-rt --transport file --model chunk.spm --duration 3
     --report out/report.json >hrtc.log 2>&1 || code=$?
 ((code == 0)) || { cat hrtc.log; fault "a damaged chunk ended the run with $code"; }
 check out/report.json frames == 3000
+rm -f out/report.json
+
+# A hand that is too fast gets no force, and the report says why.
+run_file --duration 2 --speed-limit 0.01 --report out/report.json >hrtc.log 2>&1 \
+    || { cat hrtc.log; fault 'a run with a speed limit ended badly'; }
+check out/report.json safety.begun.velocity '>' 0 safety.events '>' 2 \
+    safety.events_left_out '>=' 0 safety.begun.garbage == 0 safety.begun.disconnect == 0 \
+    safety.begun.software '<=' 1
+grep -q '^safety .*velocity' hrtc.log || fault 'no word about the speed'
 rm -f out/report.json
 
 # An interrupted run ends early and reports.

@@ -18,7 +18,7 @@ end_well() {
     [[ $(lines "host of model 'bumpy' is gone; going on with what is resident") == 1 ]] \
         || fault 'not one line that the host is gone'
     [[ $(lines "model 'bumpy'") == "$2" ]] || fault "not $2 lines about the host"
-    check report.json frames == "$1" wire.host_lost == 1 force.max_n '>' 0
+    check report.json frames == "$1" wire.host_lost == 1 force.max_n '>' 0 safety.begun.host == 1
     check_clean report.json
 }
 

@@ -59,6 +59,7 @@ TEST_P(HapticDeviceConformance, describes_itself_with_sane_limits)
     EXPECT_GT(info.stiffness_max_n_per_m, 0.0);
     EXPECT_GE(info.damping_n_s_per_m, 0.0);
     EXPECT_GT(info.workspace_radius_m, 0.0);
+    EXPECT_GT(info.speed_max_m_per_s, 0.0);
     EXPECT_GT(info.rate_min_hz, 0);
     EXPECT_GE(info.rate_max_hz, info.rate_min_hz);
 }
@@ -70,6 +71,8 @@ TEST_P(HapticDeviceConformance, counts_its_readings_and_never_goes_back_in_time)
     {
         const DeviceSample sample = sut->read();
         EXPECT_TRUE(sample.valid);
+        EXPECT_TRUE(sample.connected);
+        EXPECT_TRUE(sample.deadman_held);
         EXPECT_EQ(sample.frame, frame);
         EXPECT_GT(sample.time, last);
         last = sample.time;
@@ -118,7 +121,10 @@ TEST_P(HapticDeviceConformance, ignores_forces_from_the_brake_to_its_release)
     other.join();
     EXPECT_EQ(sut->status().state, DeviceState::brake);
     EXPECT_EQ(drift_m({5.0, 0.0, 0.0}, 100), 0.0);
+    sut->brake(); // Again, to no effect.
+    EXPECT_EQ(drift_m({5.0, 0.0, 0.0}, 10), 0.0);
     sut->release_brake();
+    EXPECT_EQ(sut->status().state, DeviceState::idle);
     const auto start = sut->read().position_world_m;
     EXPECT_EQ(sut->read().position_world_m, start); // Not the force from before.
     EXPECT_GT(drift_m({5.0, 0.0, 0.0}, 100), 0.0);

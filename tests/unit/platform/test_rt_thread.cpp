@@ -178,6 +178,13 @@ TEST(RtThread, refuses_priorities_and_stacks_out_of_range)
         EXPECT_TRUE(contains(refused.error().message, "1..98"));
         EXPECT_FALSE(probe_realtime(options));
     }
+    RtThreadOptions above = without_lock();
+    above.allow_no_rt = true;
+    above.is_supervisor = true;
+    above.priority = 99; // The supervisor's of a loop at the highest.
+    EXPECT_TRUE(RtThread::start(above, [] {}));
+    above.priority = 100;
+    EXPECT_FALSE(RtThread::start(above, [] {}));
     for (const std::size_t bytes : {std::size_t{0}, std::size_t{65'535}, std::size_t{67'108'865}})
     {
         RtThreadOptions options = without_lock();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
+#include "platform/simulated/simulated_clock.hpp"
 #include "platform/simulated/simulated_device.hpp"
 
 #include <gtest/gtest.h>
@@ -203,6 +204,102 @@ TEST(SimulatedDevice, refuses_a_hand_that_starts_outside_the_workspace)
     SimulatedDeviceOptions options;
     options.workspace_centre_world_m = Vec3(2.0, 0.0, 0.0);
     EXPECT_NE(refusal(options).find("outside its radius of 1.0"), std::string::npos);
+}
+
+/// A force of 2 N for half a second, and then nobody reads or writes for `pause`.
+double drift_in_a_pause_m(std::optional<Duration> watchdog, Duration pause,
+                          std::optional<Duration> brake_after = std::nullopt)
+{
+    SimulatedClock clock;
+    SimulatedDeviceOptions options;
+    options.clock = &clock;
+    options.watchdog = watchdog;
+    options.hand_stiffness_n_per_m = 1e-6; // A hand that does not hold it.
+    auto sut = make(options, std::make_unique<HandThatJumps>(Vec3::Zero()));
+    DeviceSample before;
+    for (int i = 0; i < 500; ++i)
+    {
+        before = sut->read();
+        sut->write({2.0, 0.0, 0.0});
+        clock.advance(milliseconds(1));
+    }
+    before = sut->read();
+    clock.advance(brake_after.value_or(pause));
+    if (brake_after)
+    {
+        sut->brake();
+        clock.advance(pause - *brake_after);
+    }
+    const DeviceSample after = sut->read();
+    EXPECT_EQ((after.time - before.time).ns, pause.ns);
+    EXPECT_EQ(after.frame, before.frame + 1);
+    return after.position_world_m[0] - before.position_world_m[0];
+}
+
+TEST(SimulatedDevice, holds_its_last_force_through_a_pause_unless_a_watchdog_ends_it)
+{
+    // At its final speed, F over both dampings, it goes on as long as the force does.
+    const double speed_m_per_s = 2.0 / (1.0 + 6.0);
+    const double held_m = drift_in_a_pause_m(std::nullopt, milliseconds(100));
+    EXPECT_NEAR(held_m, 0.1 * speed_m_per_s, 1e-5);
+    // Without a force it comes to rest by itself, in m / b seconds of the same speed.
+    const double coasting_m = 0.1 / 7.0 * speed_m_per_s;
+    EXPECT_NEAR(drift_in_a_pause_m(milliseconds(20), milliseconds(100)),
+                0.019 * speed_m_per_s + coasting_m, 2e-4);
+    EXPECT_LT(drift_in_a_pause_m(std::nullopt, milliseconds(100), milliseconds(20)),
+              0.02 * speed_m_per_s + coasting_m);
+    EXPECT_GT(drift_in_a_pause_m(std::nullopt, milliseconds(100), milliseconds(20)),
+              0.02 * speed_m_per_s);
+}
+
+TEST(SimulatedDevice, tells_that_its_watchdog_has_ended_the_force_until_the_next_write)
+{
+    SimulatedClock clock;
+    SimulatedDeviceOptions options;
+    options.clock = &clock;
+    options.watchdog = milliseconds(5);
+    auto sut = make(options, std::make_unique<HandThatJumps>(Vec3::Zero()));
+    static_cast<void>(sut->read());
+    sut->write({1.0, 0.0, 0.0});
+    clock.advance(milliseconds(5) - nanoseconds(1));
+    EXPECT_EQ(sut->status().state, DeviceState::force);
+    EXPECT_EQ(sut->felt_force_world_n(), Vec3(1.0, 0.0, 0.0));
+    clock.advance(nanoseconds(1));
+    EXPECT_EQ(sut->status().state, DeviceState::idle);
+    EXPECT_EQ(sut->felt_force_world_n(), Vec3(Vec3::Zero()));
+    sut->write({0.5, 0.0, 0.0});
+    EXPECT_EQ(sut->status().state, DeviceState::force);
+    EXPECT_EQ(sut->felt_force_world_n(), Vec3(0.5, 0.0, 0.0));
+}
+
+TEST(SimulatedDevice, with_a_clock_counts_true_periods_and_catches_up_on_one_second_at_most)
+{
+    SimulatedClock clock(MonotonicTime{123});
+    SimulatedDeviceOptions options;
+    options.rate_hz = 3'000;
+    options.clock = &clock;
+    auto sut = make(options, std::make_unique<HandThatJumps>(Vec3::Zero()));
+    EXPECT_EQ(sut->read().time.ns, 0);
+    EXPECT_EQ(sut->read().time.ns, 333'333); // A reading is a period, however soon it comes.
+    clock.advance(milliseconds(10));
+    EXPECT_EQ(sut->read().time.ns, 10'000'000);
+    clock.advance(milliseconds(3'600'000));
+    EXPECT_EQ(sut->read().time.ns, 1'010'000'000);
+}
+
+TEST(SimulatedDevice, refuses_a_watchdog_without_a_clock_or_without_a_time)
+{
+    const SimulatedClock clock;
+    SimulatedDeviceOptions options;
+    options.watchdog = milliseconds(5);
+    EXPECT_NE(refusal(options).find("watchdog"), std::string::npos);
+    options.clock = &clock;
+    EXPECT_EQ(refusal(options), "");
+    options.watchdog = Duration{};
+    EXPECT_NE(refusal(options).find("watchdog"), std::string::npos);
+    options.watchdog.reset();
+    options.speed_max_m_per_s = 0.0;
+    EXPECT_NE(refusal(options).find("speed"), std::string::npos);
 }
 
 } // namespace

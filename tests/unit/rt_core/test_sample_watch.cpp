@@ -186,6 +186,26 @@ TEST(SampleWatch, a_gap_in_the_samples_is_no_jump)
     EXPECT_EQ(tool.give(kHere, 0).fault, FrameFault::tool_jumped);
 }
 
+TEST(SampleWatch, says_what_is_wrong_until_it_is_not)
+{
+    WatchedTool tool;
+    EXPECT_EQ(tool.sut.fault(), FrameFault::none);
+    static_cast<void>(tool.give(kHere, 0, false));
+    EXPECT_EQ(tool.sut.fault(), FrameFault::tool_invalid);
+    static_cast<void>(tool.give(kHere, 0));
+    EXPECT_EQ(tool.sut.fault(), FrameFault::none);
+
+    const Vec3 elsewhere = kHere + Vec3(5.0, 0.0, 0.0);
+    static_cast<void>(tool.give(elsewhere, 0));
+    EXPECT_EQ(tool.sut.fault(), FrameFault::tool_jumped);
+    static_cast<void>(tool.trust(kHere));
+    static_cast<void>(tool.give(elsewhere, 0)); // Itself no jump, but the place is still lost.
+    EXPECT_EQ(tool.sut.fault(), FrameFault::tool_jumped);
+    static_cast<void>(tool.trust(elsewhere)); // The proxy has come after it.
+    static_cast<void>(tool.give(elsewhere, 0));
+    EXPECT_EQ(tool.sut.fault(), FrameFault::none);
+}
+
 } // namespace
 
 } // namespace tactus::test
