@@ -17,8 +17,8 @@ namespace tactus::test
 /// falls together that was apart. 200 ns; some microseconds where integers are needed.
 [[nodiscard]] bool exactly_meet(const Triangle& first, const Triangle& second);
 
-/// Whether the segment between two places that differ shares a point with a triangle, as above. Much
-/// faster than a triangle with two equal corners, whose volumes are all 0.
+/// Whether the segment between two places that differ shares a point with a triangle, as above.
+/// Much faster than a triangle with two equal corners, whose volumes are all 0.
 [[nodiscard]] bool exactly_meet(const Vec3& from, const Vec3& to, const Triangle& triangle);
 
 /// The sign of the volume of a tetrahedron, of det(b - a, c - a, d - a).
