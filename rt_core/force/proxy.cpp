@@ -24,8 +24,8 @@ constexpr int kVicinities = 4;
 constexpr double kLeastStep = 1e-4;
 /// Over a curved surface a press turns into a way along it: this share of it within a frame.
 constexpr double kDipShare = 0.1;
-/// A proxy that runs out of steps feels what it was about to touch, this share of the radius away.
-constexpr double kNearlyTouching = 0.02;
+/// A proxy on its way along a surface feels what is this share of the radius below it.
+constexpr double kNearlyTouching = 0.1;
 /// A leap goes this share of the radius along the surface at most, and this share of that above it:
 /// from half-way all triangles are seen below it, on a plane up to 0.8 radii.
 constexpr double kLongestLeap = 0.7;
@@ -193,6 +193,11 @@ Proxy::Motion Proxy::follow(const Vec3& goal, double travel,
         const Motion motion = follow_within(near, surfaces, goal, travel, steps);
         if (motion != Motion::ran_out || round == kVicinities)
         {
+            if (motion != Motion::at_rest && motion != Motion::squeezed && !hold_.touches)
+            {
+                near.stand_at(position_ - near.center_m(), normal_);
+                hold_ = hold_at(near, surfaces, goal - position_, kNearlyTouching * radius_);
+            }
             in_contact_ = hold_.touches;
             slides_ = has_slid_ && in_contact_;
             keep_clearances(surfaces, &near);
@@ -220,8 +225,7 @@ Proxy::Motion Proxy::follow_within(Vicinity& near, std::span<const PlacedSurface
     while (true)
     {
         near.stand_at(position_ - near.center_m(), normal_);
-        const double gap = steps > 1 ? least_step : kNearlyTouching * radius_;
-        hold_ = hold_at(near, surfaces, goal - position_, gap);
+        hold_ = hold_at(near, surfaces, goal - position_, least_step);
         const double length = hold_.motion.norm();
         if (hold_.is_squeezed)
         {

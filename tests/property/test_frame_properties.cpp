@@ -78,7 +78,7 @@ TEST_P(CertifiedBall, holds_the_same_faces_and_distances_as_the_full_mesh)
         const Face& face = model.faces[random.below(model.faces.size())];
         const Vec3 place = to_vec3(face[1]) + random.in_cube(0.01 * model.diagonal_m);
         sut.settle(place, {}, 400);
-        const double reach = random.between(0.008, 0.0125) * model.diagonal_m;
+        const double reach = random.between(0.008, 0.015) * model.diagonal_m;
         const FrameOutput output = sut.step(place);
         const Vec3 center = output.tools[0].proxy_m;
         WalkBudget budget{100'000, 1'000'000};
