@@ -99,9 +99,9 @@ inline constexpr std::uint32_t kMaxLinkUpdatesPerFrame = 64;
 
 /// Steps of the proxy in one frame: each ends where another triangle takes over. 2 to 6 are usual.
 inline constexpr std::uint32_t kProxySteps = 24;
-/// Triangles that the proxy moves among, 56 B each on the stack. With more in reach it moves less
+/// Triangles that the proxy moves among, 48 B each on the stack. With more in reach it moves less
 /// far in one go.
-inline constexpr std::uint32_t kMaxNearFaces = 256;
+inline constexpr std::uint32_t kMaxNearFaces = 768;
 /// Times that a step is solved again with the triangle that it would enter; 2 or 3 are usual. What
 /// is still entered after it shortens the step.
 inline constexpr std::uint32_t kStepRounds = 16;

@@ -175,7 +175,7 @@ TEST(Vicinity, says_how_far_it_reaches_when_more_triangles_are_near_than_fit)
     Random random(62);
     for (int round = 0; round < 20; ++round)
     {
-        const std::array<TriangleList, 2> lists{scattered(random, 250), scattered(random, 250)};
+        const std::array<TriangleList, 2> lists{scattered(random, 450), scattered(random, 450)};
         const ObjectPose pose;
         const Material material;
         const Vec3 center = random.in_cube(0.5);
