@@ -253,7 +253,7 @@ void RigidProxy::add_holds(std::span<const TouchedObject> objects) noexcept
 /// A gap that is too narrow for the tool holds it where it is.
 NearestMotion<6> RigidProxy::find_motion(const Motion<6>& wanted) noexcept
 {
-    const NearestMotion<6> nearest = nearest_motion<6>(planes_.spaces.view(), wanted);
+    NearestMotion<6> nearest = nearest_motion<6>(planes_.spaces.view(), wanted);
     if (nearest.is_feasible)
     {
         return nearest;
@@ -288,7 +288,7 @@ void RigidProxy::keep(const Hold& hold) noexcept
         return other.object == hold.object && hold.normal.dot(other.normal) > kSameDirection &&
                (hold.on_tool_m - other.on_tool_m).norm() < kHoldSlide * radius_m_;
     };
-    auto* old = std::find_if(holds_.begin(), holds_.end(), is_same);
+    auto* old = std::ranges::find_if(holds_, is_same);
     if (old == holds_.end() && !holds_.full())
     {
         holds_.push_back(hold);
