@@ -22,7 +22,7 @@ public:
     explicit SentForces(double delay_periods) noexcept : delay_(delay_periods) {}
 
     /// Nothing was sent: the device holds no force.
-    void clear() noexcept;
+    void clear() noexcept TACTUS_NONBLOCKING;
     void send(const Vec3& force_n) noexcept TACTUS_NONBLOCKING;
     /// The mean over time of the force at the device since the newest was sent, `elapsed_periods`
     /// > 0 ago. Call it once before each send().
@@ -62,7 +62,7 @@ public:
     PassivityObserver(const DeviceLimits& device, double period_s) noexcept;
 
     /// A new start: neither work nor surplus.
-    void clear() noexcept;
+    void clear() noexcept TACTUS_NONBLOCKING;
 
     /// What the device did under `force_n`, the mean of the forces that it held meanwhile.
     /// - `elapsed_s` > 0.
@@ -71,7 +71,7 @@ public:
     /// What the spring holds from now on; called after observe().
     void hold(double energy_j) noexcept TACTUS_NONBLOCKING;
     /// The force comes from no wall: there is no surplus.
-    void hold_nothing() noexcept;
+    void hold_nothing() noexcept TACTUS_NONBLOCKING;
 
     /// Done on hand and device since the start.
     [[nodiscard]] double work_j() const noexcept { return work_j_; }
