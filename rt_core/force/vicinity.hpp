@@ -61,7 +61,7 @@ public:
 
     /// The ball's centre is at `place` now. A place on a face sees it along `fallback` (unit
     /// length).
-    void stand_at(const Vec3& place, const Vec3& fallback) noexcept;
+    void stand_at(const Vec3& place, const Vec3& fallback) noexcept TACTUS_NONBLOCKING;
     /// Whether a face is within this distance of here; looks at it if it may be.
     [[nodiscard]] bool is_within(std::uint32_t face, double distance_m) noexcept TACTUS_NONBLOCKING;
     /// The motions from here that keep a ball of this radius on its side of the face; looks at the
