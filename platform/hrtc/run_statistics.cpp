@@ -162,11 +162,13 @@ bool RunStatistics::is_over_budget(const WorkCounters& work, const Budgets& limi
     const auto models_count = static_cast<std::uint32_t>(models.size());
     // Each pair is walked twice: to refine and to answer.
     const auto walks = static_cast<std::uint32_t>(2 * pairs.size());
-    return work.splits > limits.splits || work.merges > limits.merges ||
-           work.scanned > limits.scanned || work.nodes_visited > walks * limits.nodes ||
+    return work.splits > models_count * limits.splits ||
+           work.merges > models_count * limits.merges ||
+           work.scanned > models_count * limits.scanned ||
+           work.nodes_visited > walks * limits.nodes ||
            work.triangles_tested > walks * limits.triangles ||
            work.pages_adopted > models_count * limits.pages ||
-           work.requests > limits.requests + limits.regions * models_count ||
+           work.requests > models_count * (limits.requests + limits.regions) ||
            work.regions_searched > models_count * limits.regions;
 }
 

@@ -78,7 +78,8 @@ private:
             {
                 const auto column = static_cast<Eigen::Index>(i);
                 normals.col(column) = planes_[subset[i]].normal.template cast<long double>();
-                left[column] = planes_[subset[i]].offset - normals.col(column).dot(wanted_);
+                left[column] = static_cast<long double>(planes_[subset[i]].offset) -
+                               normals.col(column).dot(wanted_);
             }
             const Eigen::FullPivLU<Matrix> lu(normals.transpose() * normals);
             if (!lu.isInvertible())
@@ -90,7 +91,7 @@ private:
         for (const HalfSpace<N>& plane : planes_)
         {
             const Vector normal = plane.normal.template cast<long double>();
-            if (normal.dot(at) < plane.offset - 1e-10L)
+            if (normal.dot(at) < static_cast<long double>(plane.offset) - 1e-10L)
             {
                 return;
             }
