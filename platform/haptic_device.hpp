@@ -3,6 +3,7 @@
 #pragma once
 
 #include "platform/time.hpp"
+#include "rt_core/records/device_limits.hpp"
 
 #include <array>
 #include <cstdint>
@@ -17,9 +18,7 @@ namespace tactus
 struct DeviceInfo
 {
     std::string name;
-    double force_max_n{0.0};           ///< Norm; a device clamps longer forces by itself.
-    double stiffness_max_n_per_m{0.0}; ///< Stiffest wall it can render at its best rate.
-    double damping_n_s_per_m{0.0};     ///< Its own; bounds the stiffness that stays passive.
+    DeviceLimits limits; ///< A device clamps longer forces than the largest by itself.
     std::array<double, 3> workspace_centre_world_m{};
     double workspace_radius_m{0.0}; ///< It reaches no point farther from that centre.
     double speed_max_m_per_s{0.0};  ///< Faster motion means that nobody holds it.
@@ -56,7 +55,7 @@ struct DeviceStatus
 {
     DeviceState state{DeviceState::idle};
     std::uint64_t frames{0};
-    std::uint64_t forces_clamped{0}; ///< Writes beyond force_max_n.
+    std::uint64_t forces_clamped{0}; ///< Writes beyond limits.force_max_n.
     std::uint64_t forces_refused{0}; ///< Writes that were not finite; zero was written instead.
 };
 

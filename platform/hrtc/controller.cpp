@@ -4,6 +4,7 @@
 
 #include "platform/simulated/scripted_hand.hpp"
 #include "platform/simulated/simulated_device.hpp"
+#include "rt_core/force/stiffness_rule.hpp"
 
 #include <fmt/format.h>
 
@@ -180,9 +181,20 @@ std::optional<ControllerError> Controller::make_devices(const Options& options)
             return ControllerError{"--device: " + device.error().message};
         }
         const DeviceInfo& info = device.value()->info();
+        ConditionerSetup conditioner;
+        conditioner.device = info.limits;
+        conditioner.period_s = to_seconds(scene.period);
+        for (const ObjectSpec& object : objects_)
+        {
+            conditioner.surface_damping_max_n_s_per_m = std::max(
+                conditioner.surface_damping_max_n_s_per_m, object.material.damping_n_s_per_m);
+        }
+        conditioners_.push_back(conditioner);
+        const double cap_n_per_m = stiffness_cap(info.limits, conditioner.period_s,
+                                                 conditioner.surface_damping_max_n_s_per_m);
         limits_.push_back({options.speed_limit_m_per_s.value_or(info.speed_max_m_per_s),
-                           info.force_max_n, tool.stiffness_n_per_m,
-                           kDampingShare * info.damping_n_s_per_m});
+                           info.limits.force_max_n, std::min(tool.stiffness_n_per_m, cap_n_per_m),
+                           kDampingShare * info.limits.damping_n_s_per_m});
         devices_.push_back(std::move(device).value());
     }
     return std::nullopt;

@@ -5,6 +5,7 @@
 #include "platform/haptic_device.hpp"
 #include "platform/hrtc/options.hpp"
 #include "platform/pool_memory.hpp"
+#include "rt_core/force/force_conditioner.hpp"
 #include "rt_core/force/safe_state.hpp"
 #include "rt_core/frame/frame.hpp"
 #include "transport/courier.hpp"
@@ -51,6 +52,11 @@ public:
     [[nodiscard]] const std::vector<ToolSpec>& tools() const noexcept { return tools_; }
     /// What each tool's device allows.
     [[nodiscard]] const std::vector<SafetyLimits>& limits() const noexcept { return limits_; }
+    /// What stands between each tool's force and its device.
+    [[nodiscard]] const std::vector<ConditionerSetup>& conditioners() const noexcept
+    {
+        return conditioners_;
+    }
     [[nodiscard]] const Budgets& budgets() const noexcept { return budgets_; }
     /// What the frame was made of.
     [[nodiscard]] const FrameSetup& setup() const noexcept { return setup_; }
@@ -83,6 +89,7 @@ private:
     std::vector<std::unique_ptr<Courier>> couriers_;
     std::vector<std::unique_ptr<HapticDevice>> devices_;
     std::vector<SafetyLimits> limits_;
+    std::vector<ConditionerSetup> conditioners_;
 };
 
 } // namespace tactus::hrtc

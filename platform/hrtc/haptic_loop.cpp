@@ -16,13 +16,19 @@ HapticLoop::HapticLoop(const LoopParts& parts, RunStatistics& statistics)
     , statistics_(statistics)
     , states_(parts.devices.size())
     , samples_(parts.devices.size())
+    , conditioned_(parts.devices.size())
     , forces_n_(parts.devices.size(), Vec3(0.0, 0.0, 0.0))
     , end_(parts.frames)
 {
     TACTUS_ASSERT(parts.limits.size() == parts.devices.size());
+    TACTUS_ASSERT(parts.conditioners.size() == parts.devices.size());
     for (const SafetyLimits& limits : parts.limits)
     {
         safe_states_.emplace_back(limits);
+    }
+    for (const ConditionerSetup& setup : parts.conditioners)
+    {
+        conditioners_.emplace_back(setup);
     }
     measures_.budgets = parts.governor != nullptr ? parts.governor->budgets() : parts.budgets;
 }
@@ -56,7 +62,7 @@ void HapticLoop::run() noexcept
         measures_.allocations = allocation_counter::of_this_thread().allocations - allocations;
         allocations += measures_.allocations;
         measures_.calls = system_call_trap::of_this_thread();
-        statistics_.add(output, forces_n_, measures_);
+        statistics_.add(output, forces_n_, conditioned_, measures_);
         choose_budgets(output);
         frames_done_.store(frame_ + 1, std::memory_order_relaxed);
     }
@@ -175,7 +181,13 @@ void HapticLoop::make_safe(const FrameOutput& output) noexcept
 {
     for (std::size_t i = 0; i < forces_n_.size(); ++i)
     {
-        const SafetyOutput safe = safe_states_[i].step(safety_input(i, output));
+        conditioned_[i] = conditioners_[i].condition(wish_of(i, output.tools[i]));
+        const Vec3& force_n = conditioned_[i].force_n;
+        const SafetyOutput safe = safe_states_[i].step(safety_input(i, output, force_n));
+        if (safe.force_n != force_n)
+        {
+            conditioners_[i].follow(safe.force_n);
+        }
         forces_n_[i] = safe.force_n;
         if (safe.has_changed)
         {
@@ -184,7 +196,21 @@ void HapticLoop::make_safe(const FrameOutput& output) noexcept
     }
 }
 
-SafetyInput HapticLoop::safety_input(std::size_t tool, const FrameOutput& output) noexcept
+ForceWish HapticLoop::wish_of(std::size_t tool, const ToolOutput& output) const noexcept
+{
+    const ToolState& state = states_[tool];
+    const double norm_n = output.force_n.norm();
+    ForceWish wish{output.force_n, state.position_m, output.stiffness_n_per_m, 0.0,
+                   state.elapsed_periods};
+    if (norm_n > 0.0)
+    {
+        wish.stretch_m = (output.proxy_m - state.position_m).dot(output.force_n) / norm_n;
+    }
+    return wish;
+}
+
+SafetyInput HapticLoop::safety_input(std::size_t tool, const FrameOutput& output,
+                                     const Vec3& force_n) noexcept
 {
     const std::uint32_t periods = std::max(states_[tool].elapsed_periods, 1U);
     SafetyInput input;
@@ -197,7 +223,7 @@ SafetyInput HapticLoop::safety_input(std::size_t tool, const FrameOutput& output
     input.sample_time_ns = states_[tool].sample_time_ns;
     input.elapsed_s = to_seconds(parts_.timer->period()) * static_cast<double>(periods);
     input.elapsed_periods = periods;
-    input.force_n = output.tools[tool].force_n;
+    input.force_n = force_n;
     input.proxy_m = output.tools[tool].proxy_m;
     input.sample_fault = parts_.frame->sample_fault(static_cast<std::uint32_t>(tool));
     input.causes = known_causes(tool, output);

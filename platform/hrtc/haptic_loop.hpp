@@ -10,6 +10,7 @@
 #include "platform/hrtc/safety_log.hpp"
 #include "platform/periodic_timer.hpp"
 #include "platform/recording/frame_tap.hpp"
+#include "rt_core/force/force_conditioner.hpp"
 #include "rt_core/force/safe_state.hpp"
 #include "rt_core/frame/frame.hpp"
 
@@ -29,6 +30,7 @@ struct LoopParts
     Frame* frame{nullptr};
     std::span<const std::unique_ptr<HapticDevice>> devices; ///< One a tool.
     std::span<const SafetyLimits> limits;                   ///< One a tool.
+    std::span<const ConditionerSetup> conditioners;         ///< One a tool.
     std::span<const ObjectPose> poses;
     PeriodicTimer* timer{nullptr};
     const Clock* clock{nullptr};
@@ -43,9 +45,9 @@ struct LoopParts
 /// The haptic thread's work: every period read the devices, run the frame, see that its forces are
 /// safe, write them, keep the measures. Nothing else happens on that thread.
 ///
-/// A tool's forces pass its SafeState. The last frames of a run fade them, whether the run ends as
-/// planned or by stop(). A device that somebody has braked is released at once and its force fades
-/// in from zero.
+/// A tool's forces pass its ForceConditioner and its SafeState. The last frames of a run fade them,
+/// whether the run ends as planned or by stop(). A device that somebody has braked is released at
+/// once and its force fades in from zero.
 class HapticLoop
 {
 public:
@@ -82,7 +84,9 @@ private:
     [[nodiscard]] bool has_to_end() noexcept;
     void read_devices(std::uint32_t periods) noexcept;
     void make_safe(const FrameOutput& output) noexcept;
-    [[nodiscard]] SafetyInput safety_input(std::size_t tool, const FrameOutput& output) noexcept;
+    [[nodiscard]] ForceWish wish_of(std::size_t tool, const ToolOutput& output) const noexcept;
+    [[nodiscard]] SafetyInput safety_input(std::size_t tool, const FrameOutput& output,
+                                           const Vec3& force_n) noexcept;
     [[nodiscard]] ForceOff known_causes(std::size_t tool, const FrameOutput& output) const noexcept;
     [[nodiscard]] bool lacks_a_host(const FrameOutput& output) const noexcept;
     [[nodiscard]] bool take_back(std::size_t tool) noexcept;
@@ -95,6 +99,8 @@ private:
     RunStatistics& statistics_;
     std::vector<ToolState> states_;
     std::vector<DeviceSample> samples_;
+    std::vector<ForceConditioner> conditioners_;
+    std::vector<ConditionedForce> conditioned_; ///< This frame's.
     std::vector<SafeState> safe_states_;
     std::vector<Vec3> forces_n_; ///< That go out, or went out last.
     std::uint64_t frame_{0};

@@ -259,9 +259,9 @@ int run(const Options& options, Controller& controller)
     }
     TransportThread transport(controller.couriers(), controller.models());
     HapticLoop loop({&controller.frame(), controller.devices(), controller.limits(),
-                     controller.poses(), &timer, &clock, controller.budgets(),
-                     governor ? &*governor : nullptr, recorder ? &recorder->tap() : nullptr, frames,
-                     &transport.hosts_gone()},
+                     controller.conditioners(), controller.poses(), &timer, &clock,
+                     controller.budgets(), governor ? &*governor : nullptr,
+                     recorder ? &recorder->tap() : nullptr, frames, &transport.hosts_gone()},
                     statistics);
     PosixPeriodicTimer alarm;
     Supervisor supervisor({controller.devices(), &loop.heartbeat(), &clock, &alarm, period});

@@ -4,10 +4,12 @@
 
 #include "platform/allocation_counter.hpp"
 #include "platform/hrtc/machine.hpp"
+#include "rt_core/force/stiffness_rule.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <limits>
 #include <span>
 
 namespace tactus::hrtc
@@ -106,6 +108,22 @@ Json models_of(const RunRecord& record)
     return list;
 }
 
+double stiffness_cap_of(const ConditionerSetup& setup)
+{
+    return stiffness_cap(setup.device, setup.period_s, setup.surface_damping_max_n_s_per_m);
+}
+
+/// Frames with each action; the start-up ramp is the SafeState's.
+Json conditioned_of(const ForceCounts& force)
+{
+    Json json = Json::object();
+    for (std::size_t bit = 0; bit < kForceActions; ++bit)
+    {
+        json[kForceActionNames[bit]] = force.conditioned[bit];
+    }
+    return json;
+}
+
 Json tools_of(const RunRecord& record)
 {
     Json list = Json::array();
@@ -113,12 +131,17 @@ Json tools_of(const RunRecord& record)
     for (std::size_t i = 0; i < record.controller.tools().size(); ++i)
     {
         const ForceCounts& force = record.statistics.tools[i];
-        list.push_back({{"shape", "sphere"},
-                        {"radius_m", record.controller.tools()[i].radius_m},
-                        {"force_max_n", force.max_n},
-                        {"force_max_step_n", force.max_step_n},
-                        {"contact_share", static_cast<double>(force.contact_frames) / frames},
-                        {"frozen_frames", force.frozen_frames}});
+        list.push_back(
+            {{"shape", "sphere"},
+             {"radius_m", record.controller.tools()[i].radius_m},
+             {"force_max_n", force.max_n},
+             {"force_max_step_n", force.max_step_n},
+             {"contact_share", static_cast<double>(force.contact_frames) / frames},
+             {"frozen_frames", force.frozen_frames},
+             {"held_back_frames", force.held_back_frames},
+             {"stiffness_cap_n_per_m", stiffness_cap_of(record.controller.conditioners()[i])},
+             {"surplus_max_j", force.surplus_max_j},
+             {"conditioned", conditioned_of(force)}});
     }
     return list;
 }
@@ -270,6 +293,25 @@ Json safety_of(const RunRecord& record)
             {"events_left_out", record.safety.left_out()}};
 }
 
+/// Empty when no force was another than the frame's.
+std::string stability_line(const Json& tools)
+{
+    std::uint64_t capped = 0;
+    std::uint64_t damped = 0;
+    double cap = std::numeric_limits<double>::infinity();
+    for (const Json& tool : tools)
+    {
+        capped += tool["conditioned"]["stiffness_capped"].get<std::uint64_t>();
+        damped += tool["conditioned"]["damped"].get<std::uint64_t>();
+        cap = std::min(cap, tool["stiffness_cap_n_per_m"].get<double>());
+    }
+    return capped + damped == 0
+               ? ""
+               : fmt::format("stability   {} forces of walls stiffer than {:.0f} N/m softened, {} "
+                             "damped\n",
+                             capped, cap, damped);
+}
+
 /// Empty when the force went off for the end of the run alone.
 std::string safety_line(const Json& safety)
 {
@@ -417,6 +459,7 @@ std::string make_summary(const Json& report)
         report["deadline"]["machine_late"].get<std::uint64_t>(),
         report["realtime"]["allocations"].get<std::uint64_t>(),
         report["realtime"]["page_faults"].get<std::uint64_t>());
+    text += stability_line(report["tools"]);
     text += safety_line(report["safety"]);
     if (report["realtime"]["system_calls_trapped"].get<bool>())
     {

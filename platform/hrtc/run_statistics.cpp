@@ -42,13 +42,21 @@ void AnswerCounts::add(AnswerKind kind, double width_m) noexcept
     width_max_m = is_inexact ? std::max(width_max_m, width_m) : width_max_m;
 }
 
-void ForceCounts::add(const ToolOutput& output, const Vec3& sent_n) noexcept
+void ForceCounts::add(const ToolOutput& output, const Vec3& sent_n,
+                      const ConditionedForce& conditioned_force) noexcept
 {
     max_n = std::max(max_n, sent_n.norm());
     max_step_n = std::max(max_step_n, (sent_n - last_n_).norm());
     last_n_ = sent_n;
     contact_frames += output.in_contact ? 1 : 0;
     frozen_frames += output.frozen ? 1 : 0;
+    held_back_frames += output.held_back ? 1 : 0;
+    surplus_max_j = std::max(surplus_max_j, conditioned_force.surplus_j);
+    for (std::size_t bit = 0; bit < kForceActions; ++bit)
+    {
+        const auto action = static_cast<ForceAction>(1U << bit);
+        conditioned[bit] += has_action(conditioned_force.actions, action) ? 1U : 0U;
+    }
 }
 
 void BudgetRange::add(std::uint32_t budget, bool is_first) noexcept
@@ -65,6 +73,7 @@ RunStatistics::RunStatistics(std::size_t tool_count, std::size_t pair_count,
 }
 
 void RunStatistics::add(const FrameOutput& output, std::span<const Vec3> sent_n,
+                        std::span<const ConditionedForce> conditioned,
                         const CycleMeasures& measures) noexcept
 {
     ++frames;
@@ -81,7 +90,7 @@ void RunStatistics::add(const FrameOutput& output, std::span<const Vec3> sent_n,
     bool any_contact = false;
     for (std::size_t i = 0; i < tools.size(); ++i)
     {
-        tools[i].add(output.tools[i], sent_n[i]);
+        tools[i].add(output.tools[i], sent_n[i], conditioned[i]);
         any_contact = any_contact || output.tools[i].in_contact;
     }
     contact_frames += any_contact ? 1 : 0;

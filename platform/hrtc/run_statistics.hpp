@@ -6,6 +6,7 @@
 #include "platform/periodic_timer.hpp"
 #include "platform/system_call_trap.hpp"
 #include "platform/thread_usage.hpp"
+#include "rt_core/records/conditioned_force.hpp"
 #include "rt_core/records/frame_input.hpp"
 #include "rt_core/records/frame_output.hpp"
 
@@ -40,9 +41,13 @@ struct ForceCounts
     double max_step_n{0.0}; ///< Largest |F(k) - F(k - 1)|.
     std::uint64_t contact_frames{0};
     std::uint64_t frozen_frames{0};
+    std::uint64_t held_back_frames{0};
+    double surplus_max_j{0.0};                              ///< ConditionedForce::surplus_j.
+    std::array<std::uint64_t, kForceActions> conditioned{}; ///< Frames with each ForceAction.
 
     /// `sent_n`: what went to the device.
-    void add(const ToolOutput& output, const Vec3& sent_n) noexcept;
+    void add(const ToolOutput& output, const Vec3& sent_n,
+             const ConditionedForce& conditioned_force) noexcept;
 
 private:
     Vec3 last_n_{0.0, 0.0, 0.0};
@@ -83,9 +88,9 @@ class RunStatistics
 public:
     RunStatistics(std::size_t tools, std::size_t pairs, std::size_t models, Duration period);
 
-    /// `sent_n`: the force that went to each tool's device.
+    /// `sent_n`: the force that went to each tool's device; `conditioned`: how it came about.
     void add(const FrameOutput& output, std::span<const Vec3> sent_n,
-             const CycleMeasures& measures) noexcept;
+             std::span<const ConditionedForce> conditioned, const CycleMeasures& measures) noexcept;
 
     std::uint64_t frames{0};
     std::array<LatencyHistogram, kStages> stages;

@@ -11,7 +11,7 @@ namespace
 {
 
 // A field that is added to one of these has to be hashed below.
-static_assert(sizeof(ToolOutput) == 152);
+static_assert(sizeof(ToolOutput) == 160);
 static_assert(sizeof(PairOutput) == 120);
 static_assert(sizeof(Contact) == 96);
 static_assert(sizeof(MeshReport) == 8 * kMaxMeetingFaces + 24);
@@ -63,6 +63,8 @@ std::uint64_t hash_tools(std::span<const ToolOutput> tools) noexcept
         hash.add(std::uint64_t{tool.in_contact});
         hash.add(std::uint64_t{tool.frozen});
         hash.add(std::uint64_t{tool.squeezed});
+        hash.add(std::uint64_t{tool.held_back});
+        hash.add(tool.stiffness_n_per_m);
     }
     return hash.value();
 }

@@ -110,9 +110,10 @@ SimulatedDevice::SimulatedDevice(const SimulatedDeviceOptions& options,
                                  std::unique_ptr<HandMotion> hand)
     : options_(options)
     , info_{"sim",
-            options.force_max_n,
-            options.stiffness_max_n_per_m,
-            options.device_damping_n_s_per_m,
+            {.mass_kg = options.mass_kg,
+             .damping_n_s_per_m = options.device_damping_n_s_per_m,
+             .force_max_n = options.force_max_n,
+             .stiffness_max_n_per_m = options.stiffness_max_n_per_m},
             to_array(options.workspace_centre_world_m),
             options.workspace_radius_m,
             options.speed_max_m_per_s,

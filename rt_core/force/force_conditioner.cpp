@@ -33,14 +33,12 @@ double spring_energy_j(double force_n, double stiffness_n_per_m, double stretch_
 ForceConditioner::ForceConditioner(const ConditionerSetup& setup) noexcept
     : setup_(setup)
     , cap_n_per_m_(stiffness_cap(setup.device, setup.period_s, setup.surface_damping_max_n_s_per_m))
-    , ramp_(setup.ramp_s, setup.period_s)
     , velocity_(setup.device.quantum_m)
     , sent_(setup.device.delay_s / setup.period_s)
     , observer_(setup.device, setup.period_s)
 {
     TACTUS_ASSERT(find_fault(setup.device) == nullptr);
     TACTUS_ASSERT(setup.period_s > 0.0);
-    TACTUS_ASSERT(setup.ramp_s >= 0.0);
 }
 
 ConditionedForce ForceConditioner::condition(const ForceWish& wish) noexcept
@@ -59,14 +57,11 @@ ConditionedForce ForceConditioner::condition(const ForceWish& wish) noexcept
     return output;
 }
 
-void ForceConditioner::restart_ramp() noexcept
+void ForceConditioner::follow(const Vec3& sent_n) noexcept
 {
-    ramp_.restart();
-    velocity_.clear();
-    sent_.clear();
-    observer_.clear();
-    wall_n_ = Vec3(0.0, 0.0, 0.0);
-    knows_position_ = false;
+    sent_.replace_newest(sent_n);
+    observer_.forgive();
+    wall_n_ = sent_n;
 }
 
 /// The energy since the last frame. False when the position is of no use for that; then the next
@@ -101,7 +96,6 @@ bool ForceConditioner::observe(const ForceWish& wish) noexcept
 /// The frame's force within the device's limits, and what acted, in `output`.
 Vec3 ForceConditioner::limit(const ForceWish& wish, ConditionedForce& output) noexcept
 {
-    const double share = ramp_.next_share();
     if (!wish.force_n.allFinite() || !is_stiffness(wish.stiffness_n_per_m))
     {
         output.actions |= ForceAction::refused;
@@ -110,14 +104,12 @@ Vec3 ForceConditioner::limit(const ForceWish& wish, ConditionedForce& output) no
     const bool is_too_stiff = wish.stiffness_n_per_m > cap_n_per_m_;
     const double scale = is_too_stiff ? cap_n_per_m_ / wish.stiffness_n_per_m : 1.0;
     const Vec3 capped_n = wish.force_n * scale;
-    const Vec3 clamped_n = clamp_norm(capped_n, setup_.device.force_max_n);
-    const Vec3 wished_n = clamped_n * share;
+    const Vec3 wished_n = clamp_norm(capped_n, setup_.device.force_max_n);
     const double step_n = setup_.device.slew_max_n_per_s * setup_.period_s;
     const Vec3 next_n = limit_growth(wall_n_, wished_n, step_n);
-    output.stiffness_n_per_m = wish.stiffness_n_per_m * scale * share;
+    output.stiffness_n_per_m = wish.stiffness_n_per_m * scale;
     output.actions |= is_too_stiff ? ForceAction::stiffness_capped : ForceAction::none;
-    output.actions |= clamped_n != capped_n ? ForceAction::clamped : ForceAction::none;
-    output.actions |= share < 1.0 ? ForceAction::ramping : ForceAction::none;
+    output.actions |= wished_n != capped_n ? ForceAction::clamped : ForceAction::none;
     output.actions |= next_n != wished_n ? ForceAction::slew_limited : ForceAction::none;
     return next_n;
 }
@@ -142,7 +134,7 @@ Vec3 ForceConditioner::damp(const Vec3& wall_n, ConditionedForce& output) const 
 {
     const Vec3 velocity = velocity_.velocity_m_per_s();
     const double damping = observer_.damping_for(velocity.norm());
-    if (!(damping > 0.0) || !(wall_n.norm() > 0.0))
+    if (!(damping * velocity.norm() > kLeastDamping_n) || !(wall_n.norm() > 0.0))
     {
         return wall_n;
     }

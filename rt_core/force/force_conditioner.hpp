@@ -20,7 +20,6 @@ struct ConditionerSetup
 {
     DeviceLimits device;
     double period_s{1e-3};
-    double ramp_s{kForceRamp_s}; ///< 0: the first force goes out whole.
     /// Largest surface damping of any object, in N s/m; lowers the stiffness cap.
     double surface_damping_max_n_s_per_m{0.0};
     bool controls_passivity{true}; ///< False: observes only.
@@ -31,32 +30,31 @@ struct ConditionerSetup
 ///     usable?   a force or stiffness that is no number: zero
 ///     cap       a wall stiffer than the device may have at this rate: scaled down to the cap
 ///     clamp     to the device's largest force
-///     ramp      0 .. 1 after a start
 ///     growth    at most slew x period a frame
 ///     damping   against the velocity, when the port has given away energy (PassivityObserver)
 ///     clamp     again
 ///
 /// All but the damping only shorten the force. The damping is bounded by the device's
 /// added_damping_max_n_s_per_m, acts only where there is a force, and never turns a push into a
-/// pull. After a stall the force may grow by one period's step, and the ramp goes on by one.
+/// pull. After a stall the force may grow by one period's step. A SafeState
+/// brings the first force in.
 /// docs/stability.md says what this is worth in figures.
 ///
-/// Haptic thread, once a frame and tool: between Frame::run() and HapticDevice::write(). Cost:
+/// Haptic thread, once a frame and tool: after Frame::run(), before the SafeState. Cost:
 /// about a microsecond, most of it the velocity's.
 class ForceConditioner
 {
 public:
     /// - `setup.device` has no find_fault().
     /// - `setup.period_s` > 0.
-    /// - `setup.ramp_s` >= 0.
     explicit ForceConditioner(const ConditionerSetup& setup) noexcept;
 
-    /// The force to write now. The caller must write it: the energy of the next period is its.
+    /// The force to write now: the energy of the next period is its.
     [[nodiscard]] ConditionedForce condition(const ForceWish& wish) noexcept TACTUS_NONBLOCKING;
 
-    /// After a brake or any time without force: the device holds none now. The next force starts
-    /// from zero, and nothing is known of motion and energy.
-    void restart_ramp() noexcept TACTUS_NONBLOCKING;
+    /// This went out in place of the force that condition() has just returned. The next one grows
+    /// from it, and what energy it makes beyond the spring's is forgiven.
+    void follow(const Vec3& sent_n) noexcept TACTUS_NONBLOCKING;
 
     /// The stiffest wall that goes through unscaled.
     [[nodiscard]] double stiffness_cap_n_per_m() const noexcept { return cap_n_per_m_; }
@@ -69,7 +67,6 @@ private:
 
     ConditionerSetup setup_;
     double cap_n_per_m_;
-    StartRamp ramp_;
     VelocityWindow velocity_;
     SentForces sent_;
     PassivityObserver observer_;

@@ -37,15 +37,4 @@ Vec3 limit_growth(const Vec3& before_n, const Vec3& wished_n, double step_max_n)
     return clamp_norm(next, wished_n.norm());
 }
 
-double StartRamp::next_share() noexcept
-{
-    if (!(step_ > 0.0))
-    {
-        return 1.0;
-    }
-    const double share = std::min(1.0, step_ * frames_);
-    frames_ += share < 1.0 ? 1U : 0U;
-    return share;
-}
-
 } // namespace tactus

@@ -5,8 +5,6 @@
 #include "rt_core/base/realtime.hpp"
 #include "rt_core/math/vec3.hpp"
 
-#include <cstdint>
-
 namespace tactus
 {
 
@@ -25,26 +23,5 @@ namespace tactus
 /// against it. It shrinks as fast as the wish does: a wall that the tool has left must not push on.
 [[nodiscard]] Vec3 limit_growth(const Vec3& before_n, const Vec3& wished_n,
                                 double step_max_n) noexcept TACTUS_NONBLOCKING;
-
-/// The share of the force that goes out after a start: 0 in the first frame and 1 from `ramp_s` on,
-/// in equal steps. Counts frames, not time: a stall doesn't bring the force back any faster.
-class StartRamp
-{
-public:
-    /// - `ramp_s` 0: no ramp.
-    /// - `period_s` > 0.
-    StartRamp(double ramp_s, double period_s) noexcept
-        : step_(ramp_s > 0.0 ? period_s / ramp_s : 0.0)
-    {
-    }
-
-    void restart() noexcept { frames_ = 0; }
-    /// Once a frame.
-    [[nodiscard]] double next_share() noexcept TACTUS_NONBLOCKING;
-
-private:
-    double step_; ///< 0: no ramp.
-    std::uint32_t frames_{0};
-};
 
 } // namespace tactus

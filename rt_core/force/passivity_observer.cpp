@@ -7,11 +7,6 @@
 namespace tactus
 {
 
-void SentForces::clear() noexcept
-{
-    sent_.fill({});
-}
-
 void SentForces::send(const Vec3& force_n) noexcept
 {
     for (std::uint32_t i = kForcesUnderWay - 1; i > 0; --i)
@@ -51,13 +46,6 @@ PassivityObserver::PassivityObserver(const DeviceLimits& device, double period_s
     , added_damping_max_n_s_per_m_(device.added_damping_max_n_s_per_m)
     , period_s_(period_s)
 {
-}
-
-void PassivityObserver::clear() noexcept
-{
-    work_j_ = 0.0;
-    held_j_ = 0.0;
-    surplus_j_ = 0.0;
 }
 
 void PassivityObserver::observe(const Vec3& force_n, const Vec3& displacement_m,

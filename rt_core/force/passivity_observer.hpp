@@ -21,9 +21,9 @@ public:
     /// `delay_periods`: of the device, whole or not.
     explicit SentForces(double delay_periods) noexcept : delay_(delay_periods) {}
 
-    /// Nothing was sent: the device holds no force.
-    void clear() noexcept TACTUS_NONBLOCKING;
     void send(const Vec3& force_n) noexcept TACTUS_NONBLOCKING;
+    /// The newest was this one after all.
+    void replace_newest(const Vec3& force_n) noexcept { sent_[0].force_n = force_n; }
     /// The mean over time of the force at the device since the newest was sent, `elapsed_periods`
     /// > 0 ago. Call it once before each send().
     [[nodiscard]] Vec3 mean_since(std::uint32_t elapsed_periods) noexcept TACTUS_NONBLOCKING;
@@ -61,15 +61,14 @@ class PassivityObserver
 public:
     PassivityObserver(const DeviceLimits& device, double period_s) noexcept;
 
-    /// A new start: neither work nor surplus.
-    void clear() noexcept TACTUS_NONBLOCKING;
-
     /// What the device did under `force_n`, the mean of the forces that it held meanwhile.
     /// - `elapsed_s` > 0.
     void observe(const Vec3& force_n, const Vec3& displacement_m,
                  double elapsed_s) noexcept TACTUS_NONBLOCKING;
     /// What the spring holds from now on; called after observe().
     void hold(double energy_j) noexcept TACTUS_NONBLOCKING;
+    /// What the spring holds now came from elsewhere: there is no surplus.
+    void forgive() noexcept { surplus_j_ = 0.0; }
     /// The force comes from no wall: there is no surplus.
     void hold_nothing() noexcept TACTUS_NONBLOCKING;
 

@@ -124,12 +124,20 @@ ToolOutput Proxy::respond(const ProxyGoal& goal, std::span<const PlacedSurface> 
     output.in_contact = in_contact_;
     output.frozen = frozen;
     output.squeezed = motion == Motion::squeezed || was_overrun_;
+    output.held_back = motion == Motion::held_back && !frozen;
+    output.stiffness_n_per_m = in_contact_ ? hold_.stiffness / hold_.depth_m : 0.0;
     const bool fades = frozen || output.squeezed;
     fading_s_ = fades ? fading_s_ + goal.elapsed_s : 0.0;
-    if (in_contact_)
+    if (in_contact_ && !fades)
     {
-        output.force_n = fades ? fading_force(goal.position_m) : force(goal);
+        output.force_n = caught_up(goal, waits_);
     }
+    else
+    {
+        output.force_n = in_contact_ ? fading_force(goal.position_m) : Vec3(0.0, 0.0, 0.0);
+        catch_up_.follow(output.force_n);
+    }
+    waits_ = fades || output.held_back;
     return output;
 }
 
@@ -439,6 +447,17 @@ Vec3 Proxy::force(const ProxyGoal& goal) const noexcept
     const double push = hold_.push_n.norm();
     const double damped = std::max(-push, hold_.damping / hold_.depth_m * inward);
     return clamped(hold_.push_n + damped * normal_ + hold_.drag_n);
+}
+
+/// The hand presses along the normal: that change of the force is its own.
+Vec3 Proxy::caught_up(const ProxyGoal& goal, bool has_waited) noexcept
+{
+    const Vec3 velocity = hold_.velocity / hold_.depth_m - goal.velocity_m_per_s;
+    const double stiffness = hold_.stiffness / hold_.depth_m;
+    const double by_hand = stiffness * velocity.dot(normal_) * goal.elapsed_s;
+    const double rate = std::min(kCatchUp_n_per_s, kCatchUpShare_per_s * spec_.force_max_n);
+    return clamped(catch_up_.next(
+        {force(goal), by_hand * normal_, normal_, rate, goal.elapsed_s, has_waited}));
 }
 
 /// Along the last normal, never pulling, less with every moment without a certified surface.

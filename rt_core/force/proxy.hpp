@@ -4,6 +4,7 @@
 
 #include "rt_core/base/realtime.hpp"
 #include "rt_core/base/static_vector.hpp"
+#include "rt_core/force/catch_up.hpp"
 #include "rt_core/force/vicinity.hpp"
 #include "rt_core/records/frame_input.hpp"
 #include "rt_core/records/frame_output.hpp"
@@ -38,6 +39,8 @@ struct ProxyGoal
 /// The force is the spring between goal and proxy, of the softer of tool and object; never a
 /// penalty on a distance. Without a certified surface the proxy is frozen: the force along the last
 /// normal never pulls and fades to zero within kFadeTime_s. So it is where objects leave no room.
+/// After a frame in which the proxy had to wait for data the force catches up by
+/// kCatchUp_n_per_s, beside what the hand does.
 ///
 /// A tool without a radius is a ball of kPointSkin quanta.
 ///
@@ -122,6 +125,7 @@ private:
     [[nodiscard]] bool is_overrun(const Vec3& target, std::span<const ObjectPose> before,
                                   std::span<const ObjectPose> now) const noexcept;
     [[nodiscard]] Vec3 force(const ProxyGoal& goal) const noexcept;
+    [[nodiscard]] Vec3 caught_up(const ProxyGoal& goal, bool has_waited) noexcept;
     [[nodiscard]] Vec3 fading_force(const Vec3& goal) const noexcept;
     [[nodiscard]] Vec3 clamped(const Vec3& force) const noexcept;
 
@@ -133,6 +137,8 @@ private:
     double last_way_m_{0.0};     ///< That it went in the last frame.
     Hold hold_;
     double fading_s_{0.0}; ///< Since it froze or was squeezed.
+    CatchUp catch_up_;
+    bool waits_{false}; ///< Frozen, squeezed or held back in the last frame.
     bool in_contact_{false};
     bool slides_{false};   ///< From the last frame on: the dynamic cone holds.
     bool has_slid_{false}; ///< In this frame.

@@ -84,6 +84,7 @@ ToolOutput RigidProxy::respond(const Vec3& goal_m, const Mat3& goal_rotation,
 {
     ToolOutput output;
     const Room room = find_room(objects);
+    const bool has_waited = frozen_s_ > 0.0;
     is_squeezed_ = false;
     is_joined_ = is_joined_ || room.is_clear;
     if (!is_joined_)
@@ -100,6 +101,8 @@ ToolOutput RigidProxy::respond(const Vec3& goal_m, const Mat3& goal_rotation,
         frozen_s_ += elapsed_s;
         freeze(goal_m, goal_rotation, room.is_crossed, output);
     }
+    output.stiffness_n_per_m = output.in_contact ? spec_.stiffness_n_per_m : 0.0;
+    catch_up(has_waited, elapsed_s, output);
     output.proxy_m = place_.origin;
     output.proxy_rotation = place_.rotation;
     return output;
@@ -166,6 +169,23 @@ void RigidProxy::freeze(const Vec3& goal_m, const Mat3& goal_rotation, bool is_c
         holds_.clear();
         last_normals_.clear();
     }
+}
+
+void RigidProxy::catch_up(bool has_waited, double elapsed_s, ToolOutput& output) noexcept
+{
+    if (output.frozen || !output.in_contact)
+    {
+        force_.follow(output.force_n);
+        torque_.follow(output.torque_nm);
+        return;
+    }
+    const Vec3 none(0.0, 0.0, 0.0);
+    const double rate_n = std::min(kCatchUp_n_per_s, kCatchUpShare_per_s * spec_.force_max_n);
+    const double rate_nm = kCatchUpShare_per_s * spec_.torque_max_nm;
+    output.force_n =
+        force_.next({output.force_n, none, output.force_n, rate_n, elapsed_s, has_waited});
+    output.torque_nm =
+        torque_.next({output.torque_nm, none, output.torque_nm, rate_nm, elapsed_s, has_waited});
 }
 
 void RigidProxy::gather(std::span<const TouchedObject> objects) noexcept

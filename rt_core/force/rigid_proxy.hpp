@@ -4,6 +4,7 @@
 
 #include "rt_core/base/realtime.hpp"
 #include "rt_core/base/static_vector.hpp"
+#include "rt_core/force/catch_up.hpp"
 #include "rt_core/force/half_spaces.hpp"
 #include "rt_core/geometry/placed_core.hpp"
 #include "rt_core/limits.hpp"
@@ -46,7 +47,8 @@ struct TouchedObject
 ///
 /// Where the distance is not exact, the proxy moves no farther than it is proven to be from every
 /// surface, less the radius. When that is nothing it is frozen: the last planes hold what pushes
-/// against them, and that fades to zero within kFadeTime_s. A proxy that nothing is known of yet,
+/// against them, and that fades to zero within kFadeTime_s; afterwards force and torque catch up by
+/// kCatchUpShare_per_s. A proxy that nothing is known of yet,
 /// or whose core has been crossed by an object for as long, is where the hand is, without a force,
 /// until it is proven to be clear there.
 ///
@@ -122,6 +124,7 @@ private:
     void keep_holds(const NearestMotion<6>& nearest,
                     std::span<const TouchedObject> objects) noexcept;
     void keep(const Hold& hold) noexcept;
+    void catch_up(bool has_waited, double elapsed_s, ToolOutput& output) noexcept;
     void add_force(const Motion<6>& held_back, double share, ToolOutput& output) const noexcept;
 
     ToolSpec spec_;
@@ -133,6 +136,8 @@ private:
     bool is_joined_{false};
     bool is_squeezed_{false};
     double frozen_s_{0.0};
+    CatchUp force_;
+    CatchUp torque_;
     StaticVector<Motion<6>, 6> last_normals_; ///< Of the planes that held last.
     StaticVector<Hold, kMaxHolds> holds_;
     Planes planes_;

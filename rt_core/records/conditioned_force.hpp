@@ -4,6 +4,8 @@
 
 #include "rt_core/math/vec3.hpp"
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 
 namespace tactus
@@ -29,11 +31,15 @@ enum class ForceAction : std::uint8_t
     refused = 1U << 0U,          ///< Force or stiffness was no usable number: the force is zero.
     stiffness_capped = 1U << 1U, ///< Stiffer than stiffness_cap(): scaled down to it.
     clamped = 1U << 2U,          ///< Longer than DeviceLimits::force_max_n.
-    ramping = 1U << 3U,          ///< The start-up ramp isn't over.
-    slew_limited = 1U << 4U,     ///< Grew faster than DeviceLimits::slew_max_n_per_s.
-    damped = 1U << 5U,           ///< The passivity controller added damping.
-    blind = 1U << 6U,            ///< The position was no number or jumped: energy not observed.
+    slew_limited = 1U << 3U,     ///< Grew faster than DeviceLimits::slew_max_n_per_s.
+    damped = 1U << 4U,           ///< The passivity controller added damping.
+    blind = 1U << 5U,            ///< The position was no number or jumped: energy not observed.
 };
+
+inline constexpr std::size_t kForceActions = 6;
+/// In the order of ForceAction's bits.
+inline constexpr std::array<const char*, kForceActions> kForceActionNames{
+    "refused", "stiffness_capped", "clamped", "slew_limited", "damped", "blind"};
 
 [[nodiscard]] constexpr ForceAction operator|(ForceAction a, ForceAction b) noexcept
 {
@@ -53,9 +59,9 @@ struct ConditionedForce
 {
     Vec3 force_n{0.0, 0.0, 0.0}; ///< Finite, at most DeviceLimits::force_max_n long.
     ForceAction actions{ForceAction::none};
-    double stiffness_n_per_m{0.0}; ///< In use after cap and ramp.
+    double stiffness_n_per_m{0.0}; ///< In use after the cap.
     double damping_n_s_per_m{0.0}; ///< That the passivity controller added.
-    double work_j{0.0};            ///< Done on hand and device since the start or the last restart.
+    double work_j{0.0};            ///< Done on hand and device since the start.
     /// Energy that came from nowhere and is not lost yet: PassivityObserver::surplus_j().
     double surplus_j{0.0};
 };

@@ -22,9 +22,12 @@ struct ToolOutput
     Vec3 proxy_m{0.0, 0.0, 0.0};           ///< Centre of the tool as the surface lets it be.
     Vec3 torque_nm{0.0, 0.0, 0.0};         ///< About the device's position. Zero for a sphere.
     Mat3 proxy_rotation{Mat3::Identity()}; ///< Of the tool's frame; a sphere's is the hand's.
+    double stiffness_n_per_m{0.0}; ///< Of the spring that makes the force; 0 without contact.
     bool in_contact{false};
     bool frozen{false};   ///< The proxy waits for data; the force fades.
     bool squeezed{false}; ///< Objects leave the tool no room; the force fades.
+    /// The proxy went as far as the surface is known and would have gone farther.
+    bool held_back{false};
 };
 
 /// What one pair of tool and object got. World frame, metres: the model's distances times the

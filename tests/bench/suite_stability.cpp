@@ -259,12 +259,15 @@ void try_force_twins(const Sizes& sizes, bool full, const Report& report)
                          "N",
                          0,
                          {}};
+            all.after_waits = all.steps;
+            all.after_waits.name += ", after a wait";
             for (const test::Hardship& hardship : test::force_hardships(*model))
             {
                 all.add(test::run_force_twin_trial(
                     {*model, tree, hardship, test::seed_of(++own), sizes.force_frames, tools}));
             }
             report(all.steps);
+            report(all.after_waits);
             fmt::print(stderr,
                        "{}: {:.2g} N apart, {} frames of splits, {} of merges, {} of pages; {} "
                        "fading, {} held back with steps to {:.2g} N\n",

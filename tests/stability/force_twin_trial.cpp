@@ -52,6 +52,7 @@ public:
         , rig_(trial.model, options(trial.hardship.rig))
         , whole_(trial.model, options(whole_options(trial.model.faces.size())))
         , judges_(trial.tools)
+        , last_(trial.tools)
     {
         figures_.steps = {"force step, " + trial.model.name + ", " + trial.hardship.name +
                               (trial.tools > 1 ? ", two tools" : ""),
@@ -61,6 +62,8 @@ public:
                           "N",
                           0,
                           {}};
+        figures_.after_waits = figures_.steps;
+        figures_.after_waits.name += ", after a wait";
         ObjectPose pose;
         pose.scale = diagonal_m_ / trial.model.diagonal_m;
         rig_.place_object(pose);
@@ -128,6 +131,7 @@ private:
         const ToolOutput& a = ours.tools[tool];
         const ToolOutput& b = full.tools[tool];
         figures_.fading += a.frozen || a.squeezed ? 1 : 0;
+        judge_wait(tool, a, goal_m);
         const bool is_answered = is_certified(rig_, ours, tool) && is_certified(whole_, full, tool);
         const std::optional<ForceStepJudge::Step> step = judges_[tool].judge(a, b, is_answered);
         if (!step)
@@ -152,6 +156,29 @@ private:
         }
     }
 
+    /// A force that has waited goes on from what it was: the hand's own way changes it by the
+    /// spring at most.
+    void judge_wait(std::uint32_t tool, const ToolOutput& now, const Vec3& goal_m)
+    {
+        Last& last = last_[tool];
+        if (last.has_waited && touches(now))
+        {
+            const double by_hand_n = ToolSpec{}.stiffness_n_per_m * (goal_m - last.goal_m).norm();
+            const double step_n = (now.force_n - last.force_n).norm() - by_hand_n;
+            ++figures_.after_waits.trials;
+            figures_.after_waits.observe(std::max(0.0, step_n));
+            if (step_n > kForceStep_n)
+            {
+                figures_.after_waits.flag(
+                    figures_.after_waits.name + ", TACTUS_SEED=" + std::to_string(trial_.seed) +
+                    ", frame " + std::to_string(frame_) + " (" + motions_[tool].activity() +
+                    "): step of " + std::to_string(step_n) + " N; force " + text_of(last.force_n) +
+                    ", then " + text_of(now.force_n));
+            }
+        }
+        last = {now.force_n, goal_m, now.frozen || now.squeezed || now.held_back};
+    }
+
     void flag(std::uint32_t tool, const FrameOutput& ours, const FrameOutput& full,
               const Vec3& goal_m, double step_n)
     {
@@ -168,6 +195,13 @@ private:
                             ", twin's " + std::to_string(full.pairs[tool].certified_radius_m));
     }
 
+    struct Last
+    {
+        Vec3 force_n{0.0, 0.0, 0.0};
+        Vec3 goal_m{0.0, 0.0, 0.0};
+        bool has_waited{false};
+    };
+
     const ForceTwinTrial& trial_;
     Random random_;
     double diagonal_m_;
@@ -175,6 +209,7 @@ private:
     FrameRig whole_;
     std::vector<PressMotion> motions_;
     std::vector<ForceStepJudge> judges_;
+    std::vector<Last> last_;
     ForceTwinFigures figures_;
     std::uint32_t frame_{0};
 };

@@ -69,6 +69,9 @@ struct ForceTwinFigures
     /// came to another place.
     std::uint64_t held_back{0};
     double held_back_n{0.0}; ///< Largest step in those.
+    /// Frames in contact right after one in which the proxy waited for data: by how much more the
+    /// force changed than the hand's way makes it, in newtons.
+    TrialFigures after_waits;
     /// Frames in which the streamed proxy was frozen or squeezed: its force fades by design.
     std::uint64_t fading{0};
 
@@ -83,7 +86,10 @@ struct ForceTwinFigures
         fading += other.fading;
         held_back += other.held_back;
         held_back_n = std::max(held_back_n, other.held_back_n);
+        after_waits.add(other.after_waits);
     }
+
+    [[nodiscard]] bool hold() const { return steps.holds() && after_waits.holds(); }
 };
 
 /// Those of hardships() in which tools can be pressed: points or 0.04 diag large, with pages enough

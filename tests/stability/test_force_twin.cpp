@@ -45,7 +45,7 @@ TEST_P(ForceTwin, the_force_changes_as_on_the_full_mesh)
             {model, tree, hardship, seed_of(20'261'800 + GetParam()), kFrames});
         print(sut);
         EXPECT_GT(sut.steps.trials, kFrames / 8);
-        EXPECT_TRUE(sut.steps.holds());
+        EXPECT_TRUE(sut.hold()) << sut.after_waits.summary();
     }
 }
 
@@ -60,7 +60,7 @@ TEST(ForceTwins, hold_for_two_tools_that_share_the_budgets)
         {model, tree, force_hardships(model)[5], seed_of(20'261'810), kFrames, 2});
     print(sut);
     EXPECT_GT(sut.steps.trials, kFrames / 2);
-    EXPECT_TRUE(sut.steps.holds());
+    EXPECT_TRUE(sut.hold()) << sut.after_waits.summary();
 }
 
 ToolOutput pressed_with(double force_n)

@@ -328,7 +328,7 @@ TEST(ForceConditioner, leaves_the_heap_alone)
     {
         GTEST_SKIP() << "no allocation counter in this build";
     }
-    ForceConditioner sut({kOmegaClass, 1e-3, 0.1, 0.0, true});
+    ForceConditioner sut({kOmegaClass, 1e-3, 0.0, true});
     Random random(7);
     allocation_counter::mark_this_thread(true);
     const std::uint64_t before = allocation_counter::of_this_thread().allocations;
@@ -341,7 +341,7 @@ TEST(ForceConditioner, leaves_the_heap_alone)
         static_cast<void>(sut.condition(wish));
         if (i % 100 == 99)
         {
-            sut.restart_ramp();
+            sut.follow(random.in_cube(5.0));
         }
     }
     const std::uint64_t after = allocation_counter::of_this_thread().allocations;

@@ -46,8 +46,8 @@ public:
         : trial_(trial)
         , sim_(HandAndDevice::create({trial.device, trial.hand, trial.period_s, trial.start_m})
                    .value())
-        , conditioner_({trial.device, trial.period_s, 0.0,
-                        std::abs(trial.surface_damping_n_s_per_m), trial.controls_passivity})
+        , conditioner_({trial.device, trial.period_s, std::abs(trial.surface_damping_n_s_per_m),
+                        trial.controls_passivity})
         , late_n_(trial.wall_delay_periods + 1, 0.0)
     {
     }

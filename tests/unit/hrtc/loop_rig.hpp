@@ -8,6 +8,7 @@
 #include "tests/shared/frame_rig.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <functional>
 #include <memory>
@@ -95,6 +96,7 @@ struct LoopRigOptions
     bool static_model{false};
     std::uint64_t frames{2'000};
     double speed_max_m_per_s{10.0};
+    double stiffness_n_per_m{500.0};
     const Clock* clock{nullptr}; ///< Another one than the virtual, with a timer of its own.
     PeriodicTimer* timer{nullptr};
 };
@@ -111,12 +113,16 @@ public:
     {
         load_everything(frames_);
         make_device();
-        limits_ = {options_.speed_max_m_per_s, device().info().force_max_n, 500.0,
-                   kDampingShare * device().info().damping_n_s_per_m};
+        const DeviceLimits& device_limits = device().info().limits;
+        limits_ = {options_.speed_max_m_per_s, device_limits.force_max_n,
+                   options_.stiffness_n_per_m, kDampingShare * device_limits.damping_n_s_per_m};
+        conditioner_.device = device_limits;
+        conditioner_.period_s = kPeriod_s;
         LoopParts parts;
         parts.frame = &frames_.frame();
         parts.devices = devices_;
         parts.limits = {&limits_, 1};
+        parts.conditioners = {&conditioner_, 1};
         parts.poses = {&frames_.pose(), 1};
         parts.timer = options_.timer != nullptr ? options_.timer : &timer_;
         parts.clock = &clock();
@@ -148,6 +154,12 @@ public:
         return events;
     }
 
+    [[nodiscard]] std::uint64_t frames_with(ForceAction action) const
+    {
+        const auto bit = std::countr_zero(static_cast<std::uint8_t>(action));
+        return statistics_.tools.front().conditioned[static_cast<std::size_t>(bit)];
+    }
+
     /// The largest step of the force between these frames.
     [[nodiscard]] double largest_step_n(std::uint64_t from, std::uint64_t to)
     {
@@ -166,7 +178,8 @@ private:
     {
         tactus::test::RigOptions rig = tactus::test::with_room_for_all();
         rig.static_when_it_fits = options.static_model;
-        rig.tools = {{0.01 * tactus::test::small_model(0).diagonal_m, 500.0, 8.0, 1.0}};
+        rig.tools = {
+            {0.01 * tactus::test::small_model(0).diagonal_m, options.stiffness_n_per_m, 8.0, 1.0}};
         return rig;
     }
 
@@ -194,6 +207,7 @@ private:
     RunStatistics statistics_;
     std::vector<std::unique_ptr<HapticDevice>> devices_;
     SafetyLimits limits_;
+    ConditionerSetup conditioner_;
     std::optional<HapticLoop> loop_;
 };
 

@@ -252,6 +252,41 @@ TEST(HapticLoop, a_bug_of_another_thread_brakes_at_once_and_nobody_releases_it)
     EXPECT_EQ(rig.device().felt_n().norm(), 0.0);
 }
 
+TEST(HapticLoop, a_wall_that_the_device_may_have_goes_through_as_it_is)
+{
+    LoopRig rig({});
+    rig.loop().run();
+    EXPECT_GT(rig.written_n(kSettled).norm(), 1.0);
+    for (const ForceAction action :
+         {ForceAction::refused, ForceAction::stiffness_capped, ForceAction::clamped,
+          ForceAction::slew_limited, ForceAction::blind})
+    {
+        EXPECT_EQ(rig.frames_with(action), 0U) << static_cast<int>(action);
+    }
+    EXPECT_LT(rig.frames_with(ForceAction::damped), 100U); // What the way in makes in a period.
+}
+
+TEST(HapticLoop, a_stiffer_wall_than_the_device_may_have_is_as_stiff_as_it_may_be)
+{
+    const auto pressed_with = [](double stiffness_n_per_m)
+    {
+        LoopRigOptions options;
+        options.stiffness_n_per_m = stiffness_n_per_m;
+        return options;
+    };
+    const double cap_n_per_m = 0.9 * 2.0 * 1.0 / kPeriod_s; // The device's damping is 1 N s/m.
+    LoopRig stiff(pressed_with(3'000.0));
+    LoopRig softer(pressed_with(cap_n_per_m * (1.0 - 1e-9)));
+    stiff.loop().run();
+    softer.loop().run();
+    for (const std::uint64_t frame : {kSettled, kSettled + 500})
+    {
+        EXPECT_NEAR((stiff.written_n(frame) - softer.written_n(frame)).norm(), 0.0, 1e-3);
+    }
+    EXPECT_GT(stiff.frames_with(ForceAction::stiffness_capped), 1'000U);
+    EXPECT_EQ(softer.frames_with(ForceAction::stiffness_capped), 0U);
+}
+
 TEST(HapticLoop, takes_back_a_device_that_somebody_has_braked)
 {
     LoopRig* running = nullptr;

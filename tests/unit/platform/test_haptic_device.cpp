@@ -55,9 +55,9 @@ TEST_P(HapticDeviceConformance, describes_itself_with_sane_limits)
 {
     const DeviceInfo& info = sut->info();
     EXPECT_FALSE(info.name.empty());
-    EXPECT_GT(info.force_max_n, 0.0);
-    EXPECT_GT(info.stiffness_max_n_per_m, 0.0);
-    EXPECT_GE(info.damping_n_s_per_m, 0.0);
+    EXPECT_GT(info.limits.force_max_n, 0.0);
+    EXPECT_GT(info.limits.stiffness_max_n_per_m, 0.0);
+    EXPECT_GE(info.limits.damping_n_s_per_m, 0.0);
     EXPECT_GT(info.workspace_radius_m, 0.0);
     EXPECT_GT(info.speed_max_m_per_s, 0.0);
     EXPECT_GT(info.rate_min_hz, 0);
@@ -95,7 +95,7 @@ TEST_P(HapticDeviceConformance, gives_way_to_the_force_it_is_told_to_make)
 
 TEST_P(HapticDeviceConformance, clamps_a_force_beyond_its_limit_and_counts_it)
 {
-    const double limit_n = sut->info().force_max_n;
+    const double limit_n = sut->info().limits.force_max_n;
     auto other = GetParam()();
     const double at_limit_m = drift_m({limit_n, 0.0, 0.0}, 300);
     sut.swap(other);

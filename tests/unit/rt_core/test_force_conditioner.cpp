@@ -22,7 +22,7 @@ constexpr double kRounding = 1e-12;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-/// No ramp, a slew of 1 N a frame, 10 N at most.
+/// A slew of 1 N a frame, 10 N at most.
 ConditionerSetup plain_setup()
 {
     ConditionerSetup setup;
@@ -31,7 +31,6 @@ ConditionerSetup plain_setup()
     setup.device.damping_n_s_per_m = 2.0;
     setup.device.stiffness_max_n_per_m = 5'000.0;
     setup.period_s = kPeriod_s;
-    setup.ramp_s = 0.0;
     return setup;
 }
 
@@ -99,23 +98,6 @@ TEST(ForceLimiter, gives_more_where_more_is_wished)
     }
 }
 
-TEST(StartRamp, goes_from_nothing_to_all_in_equal_steps_and_again)
-{
-    StartRamp sut(0.01, kPeriod_s);
-    for (int round = 0; round < 2; ++round)
-    {
-        for (int i = 0; i <= 12; ++i)
-        {
-            EXPECT_NEAR(sut.next_share(), std::min(1.0, 0.1 * i), kRounding);
-        }
-        sut.restart();
-    }
-    StartRamp none(0.0, kPeriod_s);
-    EXPECT_EQ(none.next_share(), 1.0);
-    none.restart();
-    EXPECT_EQ(none.next_share(), 1.0);
-}
-
 TEST(ForceConditioner, lets_a_small_steady_force_through_unchanged)
 {
     ForceConditioner sut(plain_setup());
@@ -180,23 +162,37 @@ TEST(ForceConditioner, scales_a_wall_down_to_the_stiffness_that_the_rule_allows)
     EXPECT_DOUBLE_EQ(out.stiffness_n_per_m, 3'600.0);
 }
 
-TEST(ForceConditioner, ramps_up_after_start_and_restart_whatever_time_a_stall_took)
+TEST(ForceConditioner, goes_on_from_what_went_out_in_its_place)
+{
+    ForceConditioner sut(plain_setup());
+    ForceWish wish = force(8.0);
+    wish.stiffness_n_per_m = 1'000.0;
+    for (int i = 0; i < 20; ++i)
+    {
+        static_cast<void>(sut.condition(wish));
+    }
+    sut.follow(Vec3(2.0, 0, 0));
+    wish.position_m = Vec3(0.001, 0, 0);
+    const ConditionedForce out = sut.condition(wish);
+    EXPECT_NEAR(out.force_n.x(), 3.0, kRounding);
+    EXPECT_NEAR(out.work_j, 0.002, kRounding);
+}
+
+TEST(ForceConditioner, a_force_that_is_let_in_slowly_comes_from_somewhere)
 {
     ConditionerSetup setup = plain_setup();
-    setup.ramp_s = 0.01;
+    setup.device.slew_max_n_per_s = 1e6;
     ForceConditioner sut(setup);
-    for (int round = 0; round < 2; ++round)
+    ForceWish wish = force(4.0);
+    wish.stiffness_n_per_m = 1'000.0;
+    for (int i = 0; i < 20; ++i)
     {
-        for (int i = 0; i <= 12; ++i)
-        {
-            ForceWish wish = force(1.0);
-            wish.elapsed_periods = i == 3 ? 500 : 1;
-            const ConditionedForce out = sut.condition(wish);
-            EXPECT_NEAR(out.force_n.x(), std::min(1.0, 0.1 * i), kRounding);
-            EXPECT_EQ(has_action(out.actions, ForceAction::ramping), i < 10);
-        }
-        sut.restart_ramp();
+        static_cast<void>(sut.condition(wish));
+        sut.follow(Vec3(0.2 * i, 0, 0));
     }
+    const ConditionedForce out = sut.condition(wish);
+    EXPECT_EQ(out.force_n, wish.force_n);
+    EXPECT_EQ(out.surplus_j, 0.0);
 }
 
 TEST(ForceConditioner, lets_a_force_grow_by_one_step_after_a_stall)
@@ -223,9 +219,6 @@ TEST(ForceConditioner, counts_the_work_of_a_force_held_through_a_stall)
     wish.elapsed_periods = 0; // Counts as one; 10 m/s is as fast as devices get.
     wish.position_m = Vec3(0.02, 0.02, 0);
     EXPECT_EQ(sut.condition(wish).actions, ForceAction::blind);
-    sut.restart_ramp();
-    wish.position_m = Vec3(0.021, 0.02, 0);
-    EXPECT_EQ(sut.condition(wish).work_j, 0.0);
 }
 
 TEST(ForceConditioner, damps_what_came_from_nowhere_and_never_pulls)

@@ -41,8 +41,8 @@ TEST(SentForces, are_at_the_device_at_once_without_delay)
     EXPECT_EQ(sut.mean_since(1), Vec3(1, 2, 3));
     sut.send(Vec3(4, 5, 6));
     EXPECT_EQ(sut.mean_since(4), Vec3(4, 5, 6));
-    sut.clear();
-    EXPECT_EQ(sut.mean_since(1), Vec3(0, 0, 0));
+    sut.replace_newest(Vec3(7, 8, 9));
+    EXPECT_EQ(sut.mean_since(1), Vec3(7, 8, 9));
 }
 
 TEST(SentForces, arrive_late_as_a_time_line_of_fine_steps_says)

@@ -311,10 +311,38 @@ TEST(Proxy, comes_back_to_life_when_the_surface_is_certified_again)
     rig.settle(goal, 100);
     rig.certified = 0.05;
 
-    const ToolOutput output = rig.step(goal);
+    double before = 0.0;
+    for (int frame = 0; frame < 100; ++frame)
+    {
+        const ToolOutput output = rig.step(goal);
+        ASSERT_FALSE(output.frozen);
+        ASSERT_LE(output.force_n.z() - before, kCatchUp_n_per_s * kPeriod_s + 1e-9) << frame;
+        ASSERT_GE(output.force_n.z(), before) << frame;
+        before = output.force_n.z();
+    }
+    EXPECT_NEAR(before, kStiffness * 0.008, 0.05);
+}
 
-    EXPECT_FALSE(output.frozen);
-    EXPECT_NEAR(output.force_n.z(), kStiffness * 0.008, 0.05);
+TEST(Proxy, held_back_before_an_edge_and_let_go_the_force_turns_slowly)
+{
+    const Vec3 goal(0.052, 0.0, 0.045); // Nearer to the side.
+    ProxyRig free(cube(0.05), Vec3(0.045, 0.0, 0.07));
+    free.settle(Vec3(0.045, 0.0, 0.058));
+    const Vec3 turned = free.settle(goal).force_n;
+    ProxyRig rig(cube(0.05), Vec3(0.045, 0.0, 0.07));
+    rig.settle(Vec3(0.045, 0.0, 0.058));
+    rig.certified = kRadius + 0.001;
+    Vec3 before = rig.step(goal).force_n;
+    ASSERT_TRUE(rig.step(goal).held_back);
+    ASSERT_GT((turned - before).norm(), 2.0);
+    before = rig.step(goal).force_n;
+    for (int frame = 0; frame < 400; ++frame)
+    {
+        const Vec3 force = rig.step(goal).force_n;
+        ASSERT_LE((force - before).norm(), kCatchUp_n_per_s * kPeriod_s + 1e-9) << frame;
+        before = force;
+    }
+    expect_vector(before, turned, 0.05);
 }
 
 TEST(Proxy, the_same_scene_under_any_pose_and_scale_gives_the_same_force)

@@ -341,6 +341,31 @@ TEST(RigidProxy, frozen_fades_within_fifty_milliseconds_and_never_pulls)
     EXPECT_EQ(rig.settle(Vec3(0, 0, 0.1)).proxy_m, Vec3(0, 0, 0.1));
 }
 
+TEST(RigidProxy, that_was_frozen_gets_its_force_back_step_by_step)
+{
+    Rig rig = on_plane(Box{kHalf});
+    rig.settle(Vec3(0, 0, 0.05));
+    const Vec3 pressed(0, 0, -0.004);
+    const ToolOutput held = rig.settle(pressed);
+    rig.kind = AnswerKind::bracket;
+    rig.lower_share = 0.5;
+    double last = 0.0;
+    for (int i = 0; i < 30; ++i)
+    {
+        last = rig.step(pressed).force_n.z();
+    }
+    rig.kind = AnswerKind::exact;
+    rig.lower_share = 1.0;
+    for (int i = 0; i < 300; ++i)
+    {
+        const ToolOutput output = rig.step(pressed);
+        ASSERT_FALSE(output.frozen);
+        ASSERT_LE(output.force_n.z() - last, kCatchUp_n_per_s * kPeriod_s + 1e-9) << i;
+        last = output.force_n.z();
+    }
+    EXPECT_NEAR(last, held.force_n.z(), 1e-3);
+}
+
 TEST(RigidProxy, between_brackets_goes_no_farther_than_they_allow)
 {
     Rig rig = on_plane(Box{kHalf});
