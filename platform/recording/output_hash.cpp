@@ -64,6 +64,7 @@ std::uint64_t hash_tools(std::span<const ToolOutput> tools) noexcept
         hash.add(std::uint64_t{tool.frozen});
         hash.add(std::uint64_t{tool.squeezed});
         hash.add(std::uint64_t{tool.held_back});
+        hash.add(std::uint64_t{tool.under_way});
         hash.add(tool.stiffness_n_per_m);
     }
     return hash.value();

@@ -7,12 +7,13 @@ namespace tactus
 
 Vec3 CatchUp::next(const Wish& wish) noexcept
 {
+    double step = wish.rate_per_s * wish.elapsed_s;
     if (wish.has_waited)
     {
-        lag_ = sent_ + wish.by_hand - wish.wanted;
+        lag_ = sent_ - wish.wanted;
+        step += wish.by_hand;
     }
     const double lag = lag_.norm();
-    const double step = wish.rate_per_s * wish.elapsed_s;
     if (!(lag > step))
     {
         follow(wish.wanted);
@@ -20,12 +21,9 @@ Vec3 CatchUp::next(const Wish& wish) noexcept
     }
     lag_ *= 1.0 - step / lag;
     sent_ = wish.wanted + lag_;
-    const double against = sent_.dot(wish.outward);
-    if (against < 0.0)
-    {
-        sent_ -= wish.outward * (against / wish.outward.squaredNorm());
-        lag_ = sent_ - wish.wanted;
-    }
+    const double length = sent_.norm();
+    sent_ *= length > wish.longest ? wish.longest / length : 1.0;
+    lag_ = sent_ - wish.wanted;
     return sent_;
 }
 

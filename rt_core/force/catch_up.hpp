@@ -16,21 +16,22 @@ namespace tactus
 ///     sent       _______|__----
 ///                 waits | free again
 ///
-/// After a frame in which the proxy waited, the force changes by what the hand did, and by
-/// kCatchUp_n_per_s on its way to the wanted one. Else it is the wanted one to the last bit. For
-/// torques the same with newton metres. Haptic thread; some 10 ns.
+/// After a frame in which the proxy waited, the force goes towards the wanted one by no more than
+/// the hand's own way may have changed it, and the rate. What it then lags behind goes by the rate.
+/// Else it is the wanted one to the last bit. A force that lags may for some moments point into a
+/// surface that has turned meanwhile. For torques the same with newton metres. Haptic thread; some
+/// 10 ns.
 class CatchUp
 {
 public:
     /// What goes out.
-    /// - `by_hand`: change of the force that the hand's own motion makes, since the last frame.
-    /// - `outward`: what goes out never points against it.
+    /// - `wanted` is no longer than `longest`.
     /// - `rate_per_s` > 0.
     struct Wish
     {
         Vec3 wanted{0.0, 0.0, 0.0};
-        Vec3 by_hand{0.0, 0.0, 0.0};
-        Vec3 outward{0.0, 0.0, 0.0};
+        double by_hand{0.0}; ///< What the hand's way since the last frame may change, at most.
+        double longest{0.0}; ///< Norm of what goes out.
         double rate_per_s{0.0};
         double elapsed_s{0.0};
         bool has_waited{false}; ///< In the last frame.

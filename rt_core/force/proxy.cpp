@@ -93,6 +93,13 @@ NearestMotion<3> nearest_free_motion(Vicinity& near, const Vec3& wanted, double 
     return found;
 }
 
+/// How far round the tool's centre all of the surface is known, in the world.
+double known(const PlacedSurface& placed) noexcept
+{
+    const DistanceAnswer& answer = placed.surface->answer;
+    return std::max(answer.certified_radius_m, answer.lower_m) * placed.pose->scale;
+}
+
 } // namespace
 
 Proxy::Proxy(ToolSpec spec) noexcept : spec_(std::move(spec)), radius_(spec_.radius_m)
@@ -124,13 +131,14 @@ ToolOutput Proxy::respond(const ProxyGoal& goal, std::span<const PlacedSurface> 
     output.in_contact = in_contact_;
     output.frozen = frozen;
     output.squeezed = motion == Motion::squeezed || was_overrun_;
-    output.held_back = motion == Motion::held_back && !frozen;
+    output.held_back = motion == Motion::held_back && !frozen && is_short_of(surfaces, travel);
+    output.under_way = !frozen && motion != Motion::at_rest && motion != Motion::squeezed;
     output.stiffness_n_per_m = in_contact_ ? hold_.stiffness / hold_.depth_m : 0.0;
     const bool fades = frozen || output.squeezed;
     fading_s_ = fades ? fading_s_ + goal.elapsed_s : 0.0;
     if (in_contact_ && !fades)
     {
-        output.force_n = caught_up(goal, waits_);
+        output.force_n = caught_up(goal);
     }
     else
     {
@@ -169,11 +177,21 @@ double Proxy::free_travel(std::span<const PlacedSurface> surfaces) const noexcep
     double travel = kInfinity;
     for (const PlacedSurface& placed : surfaces)
     {
-        const DistanceAnswer& answer = placed.surface->answer;
-        const double known = std::max(answer.certified_radius_m, answer.lower_m);
-        travel = std::min(travel, known * placed.pose->scale - radius_);
+        travel = std::min(travel, known(placed) - radius_);
     }
     return travel;
+}
+
+/// Whether less is known than was asked for where the proxy's way ends.
+bool Proxy::is_short_of(std::span<const PlacedSurface> surfaces, double travel) const noexcept
+{
+    return std::ranges::any_of(surfaces,
+                               [&](const PlacedSurface& placed)
+                               {
+                                   const double known_m = known(placed);
+                                   return known_m <= travel + radius_ &&
+                                          known_m < placed.reach_m * (1.0 - kContactTolerance);
+                               });
 }
 
 /// First straight on as far as nothing is in the way, then among the triangles in reach; where
@@ -201,7 +219,7 @@ Proxy::Motion Proxy::follow(const Vec3& goal, double travel,
         const Motion motion = follow_within(near, surfaces, goal, travel, steps);
         if (motion != Motion::ran_out || round == kVicinities)
         {
-            if (motion != Motion::at_rest && motion != Motion::squeezed && !hold_.touches)
+            if (motion != Motion::at_rest && motion != Motion::squeezed)
             {
                 near.stand_at(position_ - near.center_m(), normal_);
                 hold_ = hold_at(near, surfaces, goal - position_, kNearlyTouching * radius_);
@@ -449,15 +467,14 @@ Vec3 Proxy::force(const ProxyGoal& goal) const noexcept
     return clamped(hold_.push_n + damped * normal_ + hold_.drag_n);
 }
 
-/// The hand presses along the normal: that change of the force is its own.
-Vec3 Proxy::caught_up(const ProxyGoal& goal, bool has_waited) noexcept
+/// The hand's way across the object may change a spring's force by stiffness x way.
+Vec3 Proxy::caught_up(const ProxyGoal& goal) noexcept
 {
-    const Vec3 velocity = hold_.velocity / hold_.depth_m - goal.velocity_m_per_s;
-    const double stiffness = hold_.stiffness / hold_.depth_m;
-    const double by_hand = stiffness * velocity.dot(normal_) * goal.elapsed_s;
+    const Vec3 velocity = goal.velocity_m_per_s - hold_.velocity / hold_.depth_m;
+    const double by_hand_n = hold_.stiffness / hold_.depth_m * velocity.norm() * goal.elapsed_s;
     const double rate = std::min(kCatchUp_n_per_s, kCatchUpShare_per_s * spec_.force_max_n);
-    return clamped(catch_up_.next(
-        {force(goal), by_hand * normal_, normal_, rate, goal.elapsed_s, has_waited}));
+    return catch_up_.next(
+        {force(goal), by_hand_n, spec_.force_max_n, rate, goal.elapsed_s, waits_});
 }
 
 /// Along the last normal, never pulling, less with every moment without a certified surface.

@@ -107,6 +107,8 @@ private:
 
     [[nodiscard]] double find_radius(std::span<const PlacedSurface> surfaces) const noexcept;
     [[nodiscard]] double free_travel(std::span<const PlacedSurface> surfaces) const noexcept;
+    [[nodiscard]] bool is_short_of(std::span<const PlacedSurface> surfaces,
+                                   double travel) const noexcept;
     [[nodiscard]] Motion follow(const Vec3& goal, double travel,
                                 std::span<const PlacedSurface> surfaces) noexcept;
     [[nodiscard]] Motion follow_within(Vicinity& near, std::span<const PlacedSurface> surfaces,
@@ -125,7 +127,7 @@ private:
     [[nodiscard]] bool is_overrun(const Vec3& target, std::span<const ObjectPose> before,
                                   std::span<const ObjectPose> now) const noexcept;
     [[nodiscard]] Vec3 force(const ProxyGoal& goal) const noexcept;
-    [[nodiscard]] Vec3 caught_up(const ProxyGoal& goal, bool has_waited) noexcept;
+    [[nodiscard]] Vec3 caught_up(const ProxyGoal& goal) noexcept;
     [[nodiscard]] Vec3 fading_force(const Vec3& goal) const noexcept;
     [[nodiscard]] Vec3 clamped(const Vec3& force) const noexcept;
 

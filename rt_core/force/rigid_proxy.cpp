@@ -179,13 +179,12 @@ void RigidProxy::catch_up(bool has_waited, double elapsed_s, ToolOutput& output)
         torque_.follow(output.torque_nm);
         return;
     }
-    const Vec3 none(0.0, 0.0, 0.0);
     const double rate_n = std::min(kCatchUp_n_per_s, kCatchUpShare_per_s * spec_.force_max_n);
     const double rate_nm = kCatchUpShare_per_s * spec_.torque_max_nm;
     output.force_n =
-        force_.next({output.force_n, none, output.force_n, rate_n, elapsed_s, has_waited});
+        force_.next({output.force_n, 0.0, spec_.force_max_n, rate_n, elapsed_s, has_waited});
     output.torque_nm =
-        torque_.next({output.torque_nm, none, output.torque_nm, rate_nm, elapsed_s, has_waited});
+        torque_.next({output.torque_nm, 0.0, spec_.torque_max_nm, rate_nm, elapsed_s, has_waited});
 }
 
 void RigidProxy::gather(std::span<const TouchedObject> objects) noexcept

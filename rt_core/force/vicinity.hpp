@@ -9,6 +9,7 @@
 #include "rt_core/records/local_surface.hpp"
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 
@@ -22,6 +23,8 @@ struct PlacedSurface
     const LocalSurface* surface{nullptr};
     const Material* material{nullptr};
     double quantum_m{0.0}; ///< Of the model's coordinates, in its frame.
+    /// How far round the tool's core it was asked for, in the world.
+    double reach_m{std::numeric_limits<double>::infinity()};
 };
 
 /// The triangles that a ball near one place can touch, each with a plane between the two.

@@ -663,9 +663,10 @@ void Frame::respond(std::span<const ObjectPose> poses) noexcept
             const ScenePair& pair = scene_.pairs()[i];
             if (pair.tool == tool)
             {
-                placed.push_back(
-                    {&poses[pair.object], &surfaces_[i], &scene_.objects()[pair.object].material,
-                     static_cast<double>(models_[model_of(pair).value]->header.quantum_m())});
+                const ObjectPose& pose = poses[pair.object];
+                const float quantum_m = models_[model_of(pair).value]->header.quantum_m();
+                placed.push_back({&pose, &surfaces_[i], &scene_.objects()[pair.object].material,
+                                  static_cast<double>(quantum_m), pair.reach_m * pose.scale});
             }
         }
         ToolOutput& output = tool_outputs_[tool];

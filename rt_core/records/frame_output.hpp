@@ -26,8 +26,11 @@ struct ToolOutput
     bool in_contact{false};
     bool frozen{false};   ///< The proxy waits for data; the force fades.
     bool squeezed{false}; ///< Objects leave the tool no room; the force fades.
-    /// The proxy went as far as the surface is known and would have gone farther.
+    /// The proxy went as far as the surface is known, for want of data, and would have gone
+    /// farther.
     bool held_back{false};
+    /// The proxy is still on its way: it came to the end of what is known, or of a frame's steps.
+    bool under_way{false};
 };
 
 /// What one pair of tool and object got. World frame, metres: the model's distances times the

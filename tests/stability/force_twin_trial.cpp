@@ -21,8 +21,9 @@ constexpr double kSmallest_m = 0.1; ///< Diagonals of objects.
 constexpr double kLargest_m = 0.2;
 /// 4 to 8 mm: hundreds of faces are in reach of it.
 constexpr double kPressedRadius_diag = 0.04;
-/// Proxies in one place: as far as 0.5 mN push a spring.
+/// Proxies in one place, with one force: as far as 0.5 mN push a spring.
 constexpr double kTogether_m = 1e-6;
+constexpr double kTogether_n = 5e-4;
 /// A proxy that ends so near to the end of what is certified was held back by it: more than the
 /// skin of a point, and than what is not worth a step.
 constexpr double kStepEnd_m = 1e-6;
@@ -132,13 +133,14 @@ private:
         const ToolOutput& b = full.tools[tool];
         figures_.fading += a.frozen || a.squeezed ? 1 : 0;
         judge_wait(tool, a, goal_m);
-        const bool is_answered = is_certified(rig_, ours, tool) && is_certified(whole_, full, tool);
+        const bool is_answered = is_certified(rig_, ours, tool) &&
+                                 is_certified(whole_, full, tool) && !a.under_way && !b.under_way;
         const std::optional<ForceStepJudge::Step> step = judges_[tool].judge(a, b, is_answered);
         if (!step)
         {
             return;
         }
-        if (!step->is_certified && !trial_.hardship.has_all)
+        if (!step->is_certified)
         {
             ++figures_.held_back;
             figures_.held_back_n = std::max(figures_.held_back_n, step->newtons);
@@ -229,7 +231,8 @@ std::optional<ForceStepJudge::Step> ForceStepJudge::judge(const ToolOutput& ours
         step =
             Step{(change - twins_change).norm(), were_certified_ && are_certified && !are_apart_};
     }
-    const bool are_together = (ours.proxy_m - twins.proxy_m).norm() <= kTogether_m;
+    const bool are_together = (ours.proxy_m - twins.proxy_m).norm() <= kTogether_m &&
+                              (ours.force_n - twins.force_n).norm() <= kTogether_n;
     are_apart_ = !are_together && (are_apart_ || !are_certified);
     ours_n_ = ours.force_n;
     twins_n_ = twins.force_n;

@@ -38,14 +38,14 @@ public:
     {
         /// By which the force's change since the last frame, as a vector, differs from the twin's.
         double newtons{0.0};
-        /// In both frames both were certified, and they are in one place since: a proxy that waited
-        /// for data may have come to another side of an edge.
+        /// In both frames both were certified, and they are in one place with one force since: a
+        /// proxy that waited for data may have come to another side of an edge, and catches up.
         bool is_certified{false};
     };
 
     /// None unless both were in contact in this frame and the last one, and none of them frozen or
-    /// squeezed. `is_answered`: both answers are exact or decided, and no proxy was held back by
-    /// the end of what is certified.
+    /// squeezed. `is_answered`: both answers are exact or decided, and both proxies came to rest
+    /// before the end of what is certified.
     [[nodiscard]] std::optional<Step> judge(const ToolOutput& ours, const ToolOutput& twins,
                                             bool is_answered);
 
@@ -59,14 +59,14 @@ private:
 
 struct ForceTwinFigures
 {
-    /// Certified steps, in newtons; where nothing is scarce all that both made in contact.
+    /// Certified steps, in newtons.
     TrialFigures steps;
     double apart_n{0.0};         ///< Largest difference of the forces in those frames.
     std::uint64_t refining{0};   ///< Those frames with splits,
     std::uint64_t coarsening{0}; ///< with merges,
     std::uint64_t adopting{0};   ///< and with pages that came in.
-    /// Other frames in contact: the proxy is held back by what isn't certified yet, or was so and
-    /// came to another place.
+    /// Other frames in contact: the proxy is held back by what isn't certified yet or has more to
+    /// go than a frame's steps, or was so and came to another place.
     std::uint64_t held_back{0};
     double held_back_n{0.0}; ///< Largest step in those.
     /// Frames in contact right after one in which the proxy waited for data: by how much more the

@@ -97,11 +97,11 @@ TEST(ForceStepJudge, waits_for_two_frames_in_contact)
     for (const ToolOutput& open : {ToolOutput{}, frozen, squeezed})
     {
         ForceStepJudge sut;
-        EXPECT_EQ(certified_step(sut, 2.0, 1.0), -1.0);
-        EXPECT_EQ(certified_step(sut, 2.0, 1.0), 0.0);
-        EXPECT_FALSE(sut.judge(open, pressed_with(1.0), true));
-        EXPECT_EQ(certified_step(sut, 2.0, 1.0), -1.0);
-        EXPECT_EQ(certified_step(sut, 2.0, 1.0), 0.0);
+        EXPECT_EQ(certified_step(sut, 2.0, 2.0), -1.0);
+        EXPECT_EQ(certified_step(sut, 2.0, 2.0), 0.0);
+        EXPECT_FALSE(sut.judge(open, pressed_with(2.0), true));
+        EXPECT_EQ(certified_step(sut, 2.0, 2.0), -1.0);
+        EXPECT_EQ(certified_step(sut, 2.0, 2.0), 0.0);
         EXPECT_FALSE(sut.judge(pressed_with(2.0), open, true));
     }
 }

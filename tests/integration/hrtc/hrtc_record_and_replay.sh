@@ -57,7 +57,7 @@ head -c $((bytes - 1)) run.rec >cut.rec
 cp run.rec bent.rec
 printf '\xff\xfe' | dd of=bent.rec bs=1 seek=3000 conv=notrunc status=none # In the first model.
 cp run.rec newer.rec
-printf '\x03' | dd of=newer.rec bs=1 seek=8 conv=notrunc status=none
+printf '\xff' | dd of=newer.rec bs=1 seek=8 conv=notrunc status=none
 refuse_file() { refuse 2 "$1: $2" --replay "$1"; }
 refuse_file missing.rec 'cannot be opened'
 refuse_file folder 'is not a file but a directory'
@@ -68,7 +68,7 @@ refuse_file start.rec 'at byte *: the file is cut short: '
 refuse_file cut.rec 'at byte *: the file is cut short: 36 bytes are needed here and 35 are left'
 refuse_file long.rec 'at byte *: the end section is followed by 1 bytes; nothing may follow it'
 refuse_file bent.rec 'at byte *: section of kind 2 and * bytes is damaged: its checksum'
-refuse_file newer.rec 'at byte 8: format version 3 is unknown; this program reads 2'
+refuse_file newer.rec 'at byte 8: format version 255 is unknown; this program reads 3'
 refuse 2 'no?where.rec: cannot be opened' --replay $'no\nwhere.rec'
 
 # A recording that can't be stored does not disturb the run, and is told at its end.

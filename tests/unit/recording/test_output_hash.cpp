@@ -47,7 +47,7 @@ std::vector<Part> parts()
          {tool([](auto& t) { t.force_n.x() = 1.0; }), tool([](auto& t) { t.force_n.z() = -0.0; }),
           tool([](auto& t) { t.proxy_m.y() = 1.0; }), tool([](auto& t) { t.in_contact = true; }),
           tool([](auto& t) { t.frozen = true; }), tool([](auto& t) { t.squeezed = true; }),
-          tool([](auto& t) { t.held_back = true; }),
+          tool([](auto& t) { t.held_back = true; }), tool([](auto& t) { t.under_way = true; }),
           tool([](auto& t) { t.stiffness_n_per_m = 1.0; }),
           tool([](auto& t) { t.torque_nm.y() = 1.0; }),
           tool([](auto& t) { t.proxy_rotation(1, 2) = 1.0; })}},

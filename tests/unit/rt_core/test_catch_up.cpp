@@ -12,12 +12,12 @@ namespace
 
 constexpr double kPeriod_s = 0.001;
 constexpr double kRate_n_per_s = 50.0;
+constexpr double kMost_n = 10.0;
 constexpr double kStep_n = kRate_n_per_s * kPeriod_s;
 
 Vec3 next(CatchUp& sut, const Vec3& wanted_n, bool has_waited, double by_hand_n = 0.0)
 {
-    const Vec3 up(0, 0, 1);
-    return sut.next({wanted_n, by_hand_n * up, up, kRate_n_per_s, kPeriod_s, has_waited});
+    return sut.next({wanted_n, by_hand_n, kMost_n, kRate_n_per_s, kPeriod_s, has_waited});
 }
 
 TEST(CatchUp, lets_any_force_through_to_the_last_bit_that_never_waited)
@@ -46,19 +46,20 @@ TEST(CatchUp, goes_to_the_wanted_force_step_by_step_after_a_wait)
     EXPECT_EQ(frames, 29); // The square root of 2 over 0.05, rounded up.
 }
 
-TEST(CatchUp, what_the_hand_does_is_felt_at_once)
+TEST(CatchUp, what_the_hand_may_have_done_is_felt_at_once)
 {
     CatchUp sut;
     EXPECT_NEAR(next(sut, Vec3(0, 0, 4), true, 0.3).z(), 0.3 + kStep_n, 1e-12);
     EXPECT_NEAR(next(sut, Vec3(0, 0, 5), false).z(), 1.3 + 2.0 * kStep_n, 1e-12);
+    EXPECT_EQ(next(sut, Vec3(0, 0, 1), true, 0.5).z(), 1.0);
 }
 
-TEST(CatchUp, never_points_inward)
+TEST(CatchUp, stays_within_the_longest)
 {
     CatchUp sut;
-    sut.follow(Vec3(0, 0, 0));
-    EXPECT_NEAR(next(sut, Vec3(0, 0, 1), true, -5.0).z(), 0.0, 1e-12);
-    EXPECT_NEAR(next(sut, Vec3(0, 0, 1), false).z(), kStep_n, 1e-12);
+    sut.follow(Vec3(0, 9, 0));
+    EXPECT_LE(next(sut, Vec3(0, 0, 9), true).norm(), kMost_n);
+    EXPECT_NEAR(next(sut, Vec3(0, 9, 0), false).norm(), kMost_n, 1e-12);
 }
 
 TEST(CatchUp, begins_anew_from_what_went_out_instead)
