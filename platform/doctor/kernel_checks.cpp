@@ -291,7 +291,7 @@ Finding check_interrupts(const MachineView& view)
                                 new_ones_come ? "may" : "do not");
     if (count.untold > 0)
     {
-        finding.verdict = Verdict::unknown;
+        finding.verdict = count.here > 0 || new_ones_come ? Verdict::advice : Verdict::unknown;
         finding.found += fmt::format("; of {} the kernel does not tell", count.untold);
     }
     else if (count.here == 0 && !new_ones_come)

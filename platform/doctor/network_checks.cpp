@@ -64,6 +64,17 @@ std::string state_in_words(const Interface& interface)
     return name + (interface.has_link ? " is up" : " is up without a link");
 }
 
+std::string mend(const Interface& interface)
+{
+    const std::string name = shell_word(interface.name);
+    if (!interface.is_there)
+    {
+        return "ip -brief link # Then name one of these to DDS.";
+    }
+    return interface.is_up ? fmt::format("ip link show dev {} # No carrier: the cable?", name)
+                           : fmt::format("sudo ip link set dev {} up", name);
+}
+
 /// Worst first: missing or off, then no link, then untold.
 Finding judge_named(Finding finding, const SystemFiles& files,
                     const std::vector<std::string>& names)
@@ -84,9 +95,7 @@ Finding judge_named(Finding finding, const SystemFiles& files,
             continue;
         }
         finding.verdict = Verdict::critical;
-        finding.remedy.push_back(interface.is_there
-                                     ? fmt::format("sudo ip link set dev {} up", shell_word(name))
-                                     : "ip -brief link # Then name one of these to DDS.");
+        finding.remedy.push_back(mend(interface));
     }
     return finding;
 }
@@ -146,12 +155,13 @@ Finding check_dds_configuration(const MachineView& view)
 
 Finding check_dds_interface(const MachineView& view)
 {
-    Finding finding{"dds-interface",
-                    Verdict::unknown,
-                    "",
-                    "DDS can't be joined over an interface that is not there or down, and hrtc "
-                    "gets no model, except from files.",
-                    {}};
+    Finding finding{
+        "dds-interface",
+        Verdict::unknown,
+        "",
+        "Over an interface that is not there, down or without a link hrtc gets no model, "
+        "except from files.",
+        {}};
     if (view.files.names("/sys/class/net").empty())
     {
         return unreadable(std::move(finding), view.files, "/sys/class/net");
