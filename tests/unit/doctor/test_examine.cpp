@@ -132,7 +132,7 @@ TEST(Examine, survives_bytes_at_random)
     }
 }
 
-/// Each of the five things without which the loop can't run, and nothing else.
+/// Each thing without which the loop can not run, by itself.
 TEST(Examine, calls_critical_what_the_loop_can_not_be_without)
 {
     const std::map<std::string, std::function<void(MadeUpMachine&)>> faults{

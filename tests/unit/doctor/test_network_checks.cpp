@@ -66,6 +66,9 @@ TEST_F(NetworkChecks, a_named_interface_must_be_there_on_and_linked)
               std::vector<std::string>{"ip link show dev 'eth0' # No carrier: the cable?"});
     put_state("eth0", "0x1002", "down");
     EXPECT_EQ(check_dds_interface(machine.view()).found, "'eth0' is down");
+    put_state("eth0", "0x1002", "unknown"); // As a tunnel that is off.
+    EXPECT_EQ(check_dds_interface(machine.view()).found, "'eth0' is down");
+    EXPECT_EQ(check_dds_interface(machine.view()).verdict, Verdict::critical);
     put_state("eth0", "many", "up");
     EXPECT_EQ(check_dds_interface(machine.view()).found, "'eth0' does not tell its state");
     EXPECT_EQ(check_dds_interface(machine.view()).verdict, Verdict::unknown);
