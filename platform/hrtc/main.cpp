@@ -14,6 +14,7 @@
 #include "platform/hrtc/replay_file.hpp"
 #include "platform/hrtc/report.hpp"
 #include "platform/hrtc/safety_record.hpp"
+#include "platform/hrtc/subcommands.hpp"
 #include "platform/hrtc/supervisor.hpp"
 #include "platform/hrtc/transport_thread.hpp"
 #include "platform/posix/posix_clock.hpp"
@@ -385,6 +386,10 @@ int main(int argc, char** argv)
 {
     try
     {
+        if (const auto* subcommand = tactus::hrtc::find_subcommand(argc, argv))
+        {
+            return subcommand->run(argc - 1, argv + 1);
+        }
         const auto parsed = tactus::hrtc::parse_options(argc, argv);
         if (const int* code = std::get_if<int>(&parsed))
         {

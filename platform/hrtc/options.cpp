@@ -3,6 +3,7 @@
 #include "platform/hrtc/options.hpp"
 
 #include "host_tools/cli/command_line.hpp"
+#include "platform/hrtc/subcommands.hpp"
 #include "platform/simulated/simulated_device.hpp"
 #include "rt_core/limits.hpp"
 
@@ -340,6 +341,7 @@ std::variant<Options, int> parse_options(int argc, char** argv)
     Options options;
     RawOptions raw;
     declare(app, options, raw);
+    app.footer(describe_subcommands());
     if (const std::optional<int> code = parse_command_line(app, argc, argv))
     {
         return *code;

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # hrtc_without_privilege.sh: without the right to SCHED_FIFO or to lock memory the controller says
-# what is missing and does not run; --allow-no-rt runs and says it too. Skipped (77) where the right
-# can't be given up.
+# what is missing and does not run; --allow-no-rt runs and says it too; the doctor calls it
+# critical. Skipped (77) where the right can't be given up.
 source "$(dirname "$0")/common.sh"
 "$build" --shape bumpy-sphere --faces 5000 -o good.spm >build.log 2>&1
 
@@ -44,4 +44,12 @@ printf '%s\n' "$output"
 [[ "$output" == *SCHED_FIFO* ]] || fault 'with --allow-no-rt it does not say what is missing'
 check report.json frames == 1000 machine.fifo == 0 machine.memory_locked == 0 \
     machine.refused == 2
+
+code=0
+unprivileged ./hrtc doctor --json >doctor.json 2>&1 || code=$?
+((code == 1)) || { cat doctor.json; fault "without privilege hrtc doctor ended with $code"; }
+check doctor.json counts.critical '>=' 2
+output=$(unprivileged ./hrtc doctor 2>&1) || true
+[[ "$output" == *critical*priority*refused*rtprio* && "$output" == *critical*memlock*refused* ]] \
+    || fault "hrtc doctor does not say what is missing: $output"
 finish

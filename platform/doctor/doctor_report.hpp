@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "platform/doctor/finding.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tactus::doctor
+{
+
+/// Every finding and how many there are of each verdict; keys in docs/doctor.md.
+[[nodiscard]] nlohmann::ordered_json make_report(const std::vector<Finding>& findings,
+                                                 std::optional<int> cpu);
+
+/// The same for a terminal of 100 columns. Only commands may be longer: they are not broken, so
+/// that they can be copied.
+[[nodiscard]] std::string make_text(const std::vector<Finding>& findings);
+
+} // namespace tactus::doctor

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/hrtc/doctor_command.hpp"
+
+#include "host_tools/cli/command_line.hpp"
+#include "platform/doctor/doctor.hpp"
+#include "platform/doctor/doctor_report.hpp"
+#include "platform/rt_thread.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+
+namespace tactus::hrtc
+{
+
+namespace
+{
+
+/// Why the loop could not be pinned there, as hrtc itself would say; empty when it could.
+std::string why_not_on(int cpu)
+{
+    RtThreadOptions options;
+    options.cpu = cpu;
+    options.lock_memory = false;
+    const auto probed = probe_realtime(options);
+    return probed ? "" : probed.error().message;
+}
+
+} // namespace
+
+int run_doctor(int argc, char** argv)
+{
+    CLI::App app("Says what of this machine is in the way of the haptic loop: what was found, why "
+                 "it matters, and the command that mends it. Exit code 1 when something critical "
+                 "is missing.",
+                 "hrtc doctor");
+    std::optional<int> cpu;
+    bool as_json = false;
+    app.add_option("--cpu", cpu, "Processor that the haptic thread is to have [not chosen]")
+        ->check(CLI::Range(0, 1'023));
+    app.add_flag("--json", as_json, "Print one JSON object");
+    if (const std::optional<int> code = parse_command_line(app, argc, argv))
+    {
+        return *code;
+    }
+    if (const std::string fault = cpu ? why_not_on(*cpu) : ""; !fault.empty())
+    {
+        return fail(app, "--cpu: " + fault, kExitUsage);
+    }
+    const doctor::SystemFiles files("/");
+    const doctor::Measured measured = doctor::measure();
+    const std::vector<doctor::Finding> findings = doctor::examine({files, measured, cpu});
+    fmt::print("{}", as_json ? doctor::make_report(findings, cpu).dump(2) + '\n'
+                             : doctor::make_text(findings));
+    if (std::fflush(stdout) != 0)
+    {
+        return fail(app, "the findings can't be written");
+    }
+    return doctor::count_of(findings, doctor::Verdict::critical) == 0 ? kExitDone
+                                                                      : kExitCriterionNotMet;
+}
+
+} // namespace tactus::hrtc

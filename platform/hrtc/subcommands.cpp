@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/hrtc/subcommands.hpp"
+
+#include "platform/hrtc/doctor_command.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+namespace tactus::hrtc
+{
+
+namespace
+{
+
+constexpr std::array kSubcommands{
+    Subcommand{"doctor", "what of this machine is in the loop's way, and how to mend it",
+               run_doctor},
+};
+
+} // namespace
+
+std::span<const Subcommand> subcommands() noexcept
+{
+    return kSubcommands;
+}
+
+const Subcommand* find_subcommand(int argc, char** argv) noexcept
+{
+    const std::string_view word = argc > 1 ? argv[1] : "";
+    const auto* const found = std::ranges::find(
+        kSubcommands, word, [](const Subcommand& each) { return std::string_view(each.name); });
+    return found == kSubcommands.end() ? nullptr : found;
+}
+
+std::string describe_subcommands()
+{
+    std::string text = "Instead of a run:";
+    for (const Subcommand& each : subcommands())
+    {
+        text += fmt::format("\n  {:<26}{}", fmt::format("hrtc {}", each.name), each.summary);
+    }
+    return text + "\nEach has a --help of its own.";
+}
+
+} // namespace tactus::hrtc

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include <span>
+#include <string>
+
+namespace tactus::hrtc
+{
+
+/// What hrtc does when its first argument is this word. The rest of the line is the subcommand's.
+struct Subcommand
+{
+    const char* name;
+    const char* summary;     ///< One line for --help.
+    int (*run)(int, char**); ///< argv[0] is the name; returns the exit code.
+};
+
+[[nodiscard]] std::span<const Subcommand> subcommands() noexcept;
+
+/// The one that the first argument names; null when it names none.
+[[nodiscard]] const Subcommand* find_subcommand(int argc, char** argv) noexcept;
+
+/// A paragraph for the end of --help.
+[[nodiscard]] std::string describe_subcommands();
+
+} // namespace tactus::hrtc

@@ -1,0 +1,87 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# hrtc_doctor.sh: whatever this machine is like, the doctor's exit code, text and JSON agree with
+# one another and with what the system does; what DDS can't be joined with is critical; wrong
+# options are refused.
+source "$(dirname "$0")/common.sh"
+
+# examine NAME [ARGUMENT...]: text and JSON into NAME.txt and NAME.json, which must agree; the exit
+# code is in $ended_with.
+examine() {
+    local name=$1 verdict code=0
+    shift
+    ended_with=0
+    "$hrtc" doctor "$@" >"$name.txt" 2>errors.txt || ended_with=$?
+    "$hrtc" doctor --json "$@" >"$name.json" 2>>errors.txt || code=$?
+    [[ ! -s errors.txt ]] || fault "doctor $*: $(cat errors.txt)"
+    ((code == ended_with)) || fault "doctor $* ended with $ended_with and with --json $code"
+    check "$name.json" schema == 1 checks == 16 \
+        counts.good+counts.advice+counts.critical+counts.unknown == '1*checks'
+    for verdict in good advice critical unknown; do
+        check "$name.json" "counts.$verdict" == "$(grep -c "^$verdict " "$name.txt" || true)"
+    done
+    case $ended_with in
+        0) check "$name.json" counts.critical == 0 ;;
+        1) check "$name.json" counts.critical '>' 0 ;;
+        *) fault "doctor $* ended with $ended_with" ;;
+    esac
+    ! LC_ALL=C grep -q '[^[:print:]]' "$name.txt" || fault "doctor $* prints more than text"
+}
+
+# verdict_of NAME CHECK: what the text says of it.
+verdict_of() { awk -v check="$2" '$2 == check { print $1 }' "$1.txt"; }
+
+examine plain
+cpu=$(taskset -cp $$ | sed 's/.*[ ,-]//')
+examine pinned --cpu "$cpu"
+check pinned.json cpu == "$cpu"
+
+# The system's own word.
+wanted=critical
+! chrt -f 81 true 2>/dev/null || wanted=good
+[[ $(verdict_of plain priority) == "$wanted" ]] || fault "priority is not $wanted"
+wanted=advice
+[[ $(uname -v) != *PREEMPT_RT* ]] || wanted=good
+[[ $(verdict_of plain preemption) == "$wanted" ]] || fault "preemption is not $wanted"
+
+# What is critical of DDS is what hrtc does fail with.
+readonly interface='<Interfaces><NetworkInterface name="nowhere0"/></Interfaces>'
+for uri in "file://$scratch/missing.xml" \
+    "<CycloneDDS><Domain><General>$interface</General></Domain></CycloneDDS>"; do
+    export CYCLONEDDS_URI=$uri
+    examine configured
+    ((ended_with == 1)) || fault "doctor with $uri ended with $ended_with"
+    grep -q '^critical  *dds-' configured.txt || fault "no word about $uri"
+    code=0
+    "$hrtc" --allow-no-rt --model bumpy --domain "$domain" --wait 1 >hrtc.log 2>&1 || code=$?
+    if ((code != 2)) || ! grep -q 'cannot be joined' hrtc.log; then
+        cat hrtc.log
+        fault "hrtc itself ended with $code"
+    fi
+    unset CYCLONEDDS_URI
+done
+
+# The command line.
+refuse() { # refuse PATTERN ARGUMENT...: exit code 3 and one line.
+    local code=0 pattern=$1 output
+    shift
+    output=$("$hrtc" doctor "$@" 2>&1) || code=$?
+    if ((code != 3)) || [[ "$output" != 'hrtc doctor: '*$pattern* || "$output" == *$'\n'* ]]; then
+        fault "doctor $* ended with $code: $output"
+    fi
+}
+for value in -1 1024 all 1.5 ''; do
+    refuse '--cpu: *0 to 1023' --cpu "$value"
+done
+refuse --cpu --cpu
+(($(nproc --all) > 1023)) || refuse 'it may use' --cpu 1023
+refuse --fast --fast
+refuse extra extra
+"$hrtc" doctor --help >help.txt || fault 'hrtc doctor --help'
+grep -q -- --json help.txt || fault 'hrtc doctor --help'
+"$hrtc" --help | grep -q 'hrtc doctor' || fault 'hrtc --help does not tell of the doctor'
+expect 3 doctor "$hrtc" --allow-no-rt doctor # Only as the first word.
+code=0
+"$hrtc" doctor >/dev/full 2>full.txt || code=$?
+((code == 2)) || fault "with a full disk doctor ended with $code"
+finish
