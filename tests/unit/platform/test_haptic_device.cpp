@@ -3,6 +3,7 @@
 #include "platform/allocation_counter.hpp"
 #include "platform/haptic_device.hpp"
 #include "platform/system_call_trap.hpp"
+#include "tests/unit/platform/dhd_rig.hpp"
 #include "tests/unit/platform/udp_rig.hpp"
 
 #include <gtest/gtest.h>
@@ -39,6 +40,11 @@ std::unique_ptr<DeviceRig> make_udp_elsewhere()
         DeviceFrame::create(quarter, Vec3(1.0, 2.0, 3.0), 10.0).value());
 }
 
+std::unique_ptr<DeviceRig> make_dhd()
+{
+    return std::make_unique<test::DhdRig>();
+}
+
 /// What every device promises, given a hand that holds it loosely at one place.
 class HapticDeviceConformance : public testing::TestWithParam<std::unique_ptr<DeviceRig> (*)()>
 {
@@ -63,6 +69,7 @@ protected:
 INSTANTIATE_TEST_SUITE_P(Simulated, HapticDeviceConformance, testing::Values(&make_simulated));
 INSTANTIATE_TEST_SUITE_P(Udp, HapticDeviceConformance,
                          testing::Values(&make_udp, &make_udp_elsewhere));
+INSTANTIATE_TEST_SUITE_P(Dhd, HapticDeviceConformance, testing::Values(&make_dhd));
 
 TEST_P(HapticDeviceConformance, describes_itself_with_sane_limits)
 {

@@ -57,7 +57,7 @@ TEST(Mailbox, gives_the_newest_value_again_and_again)
 /// writes do meet.
 TEST(Mailbox, never_mixes_two_letters_and_never_goes_back)
 {
-    constexpr int kLetters = 5'000;
+    constexpr int kLetters = 1'000;
     Mailbox<Letter> sut;
     sut.write(letter_of(0));
     std::atomic<int> reading{2};
