@@ -37,7 +37,7 @@ struct UdpDeviceOptions
     Duration poll{microseconds(100)};
     /// Both ways together, up to kDelayMax; added to the delay that the device tells. The default
     /// is what loopback takes with the default poll: docs/udp-device.md.
-    Duration transport_delay{microseconds(300)};
+    Duration transport_delay{microseconds(400)};
     RemoteTimes times;
     DeviceFrame frame;
     RtThreadOptions thread{io_thread_options()}; ///< The I/O thread.

@@ -84,7 +84,7 @@ protected:
 
 TEST_F(UdpDeviceTest, refuses_options_out_of_range_in_one_line)
 {
-    const auto line_of = [this](const UdpDeviceOptions& bad)
+    const auto line_of = [](const UdpDeviceOptions& bad)
     {
         const auto refused = UdpDevice::create(bad);
         EXPECT_FALSE(refused);
