@@ -6,8 +6,12 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <functional>
 #include <limits>
+#include <string>
+#include <thread>
+#include <vector>
 
 namespace tactus
 {
@@ -160,6 +164,51 @@ TEST_F(RemoteDeviceTest, sends_the_brake_until_its_release_and_then_nothing_from
     EXPECT_EQ(sut.status().state, DeviceState::idle);
     sut.write({3.0, 0.0, 0.0});
     EXPECT_EQ(sut.command().force_n, Vec3(3.0, 0.0, 0.0));
+}
+
+/// More threads than processors, so that the haptic thread is stopped in the middle of a write now
+/// and then: the I/O thread must not fall back on what it had before the brake. A fault here is
+/// rare.
+TEST_F(RemoteDeviceTest, brings_no_force_back_from_before_a_release_with_threads_that_are_stopped)
+{
+    constexpr int kRounds = 4'000'000;
+    arrive(0.0, true);
+    static_cast<void>(sut.read());
+    std::atomic<int> released{0};
+    std::atomic<bool> is_over{false};
+    std::atomic<int> faults{0};
+    const auto be_busy = [&]
+    {
+        while (!is_over)
+        {
+        }
+    };
+    std::thread busy(be_busy);
+    std::thread busier(be_busy);
+    std::thread io(
+        [&]
+        {
+            while (!is_over)
+            {
+                const int before = released;
+                const DeviceCommand now = sut.command();
+                faults +=
+                    now.state == DeviceState::force && now.force_n.x() * kRounds < before - 0.5 ? 1
+                                                                                                : 0;
+            }
+        });
+    for (int round = 1; round <= kRounds; ++round)
+    {
+        sut.brake();
+        sut.release_brake();
+        released = round;
+        sut.write({static_cast<double>(round) / kRounds, 0.0, 0.0});
+    }
+    is_over = true;
+    io.join();
+    busy.join();
+    busier.join();
+    EXPECT_EQ(faults, 0);
 }
 
 TEST_F(RemoteDeviceTest, tells_each_write_from_the_one_before)

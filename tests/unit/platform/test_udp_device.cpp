@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <thread>
 #include <vector>
@@ -287,41 +288,45 @@ TEST_F(UdpDeviceTest, sends_the_brake_by_itself)
     EXPECT_EQ(peer.ask().state, DeviceState::idle);
 }
 
-/// Whatever the threads do: of two datagrams the one with the greater number counts.
+/// Whatever the threads do: of two datagrams the one with the greater number counts. The force
+/// tells the round that it is from, and each round ends with one brake that is sent at once.
 TEST_F(UdpDeviceTest, sends_no_force_with_a_number_beyond_that_of_the_brake)
 {
-    constexpr int kRounds = 300;
+    constexpr int kRounds = 50'000;
     options.times = test::patient_times();
+    options.poll = UdpDeviceOptions::kPollMin;
     attach();
     static_cast<void>(peer.ask());
     peer.say(sample_at(0.0));
     static_cast<void>(sut->read());
-    for (int round = 0; round < kRounds; ++round)
+    std::vector<udp::ForceDatagram> seen;
+    for (int round = 1; round <= kRounds; ++round)
     {
-        std::vector<udp::ForceDatagram> seen;
-        std::thread braking([this] { sut->brake(); });
-        while (sut->status().state != DeviceState::brake)
-        {
-            sut->write({1.0, 0.0, 0.0});
-        }
-        braking.join();
-        peer.describe(desk());
-        const auto is_answer = [&](const udp::ForceDatagram& force)
-        {
-            seen.push_back(force);
-            return force.answers == peer.sequence();
-        };
-        static_cast<void>(await_force(peer, is_answer));
-        std::ranges::sort(seen, {}, [](const auto& force) { return force.address.sequence; });
-        const auto first = std::ranges::find(seen, DeviceState::brake, &udp::ForceDatagram::state);
-        EXPECT_NE(first, seen.end());
-        EXPECT_TRUE(std::all_of(
-            first, seen.end(), [](const auto& force) { return force.state == DeviceState::brake; }))
-            << "round " << round;
         sut->release_brake();
-        // What the I/O thread still sends belongs to this round.
-        EXPECT_EQ(peer.ask().state, DeviceState::idle);
+        for (int i = 0; i < round % 16; ++i)
+        {
+            sut->write({round * 1e-5, 0.0, 0.0});
+        }
+        sut->brake();
+        while (const auto force = peer.receive(Duration{}))
+        {
+            seen.push_back(*force);
+        }
     }
+    std::ranges::sort(seen, {}, [](const auto& force) { return force.address.sequence; });
+    int brakes = 0;
+    int forces = 0;
+    for (const udp::ForceDatagram& datagram : seen)
+    {
+        brakes += datagram.answers == 0 ? 1 : 0;
+        if (datagram.state == DeviceState::force)
+        {
+            ++forces;
+            EXPECT_GT(std::lround(datagram.force_n[0] * 1e5), brakes);
+        }
+    }
+    EXPECT_EQ(brakes, kRounds);
+    EXPECT_GT(forces, 0);
 }
 
 TEST_F(UdpDeviceTest, tells_the_device_to_be_idle_when_it_ends)
