@@ -171,7 +171,7 @@ TEST_F(RemoteDeviceTest, sends_the_brake_until_its_release_and_then_nothing_from
 /// rare.
 TEST_F(RemoteDeviceTest, brings_no_force_back_from_before_a_release_with_threads_that_are_stopped)
 {
-    constexpr int kRounds = 4'000'000;
+    constexpr int kRounds = 2'000'000;
     arrive(0.0, true);
     static_cast<void>(sut.read());
     std::atomic<int> released{0};
