@@ -44,8 +44,14 @@ tactus_room(rt_core/refine ${stage_floor}
 tactus_room(rt_core/frame rt_core)
 
 # --- platform: only the controller program sees core, transport and device; nothing includes it.
-tactus_room(platform
+set(platform_floor
     rt_core/base rt_core/math rt_core/geometry rt_core/records rt_core/limits.hpp)
+
+tactus_room(platform ${platform_floor})
+# What devices say of themselves is judged where the rule is that uses it.
+tactus_room(platform/remote platform ${platform_floor} rt_core/force)
+tactus_room(platform/udp platform ${platform_floor})
+tactus_room(platform/dhd platform ${platform_floor})
 # Frames and what they were given; of the machine it knows nothing.
 tactus_room(platform/recording rt_core)
 # What the machine is like; of frames and models it knows nothing.

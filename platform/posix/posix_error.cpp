@@ -24,6 +24,10 @@ std::string name_of_error(int error)
         return "EAGAIN";
     case ENOSYS:
         return "ENOSYS";
+    case EADDRINUSE:
+        return "EADDRINUSE";
+    case EADDRNOTAVAIL:
+        return "EADDRNOTAVAIL";
     default:
         return "errno " + std::to_string(error);
     }

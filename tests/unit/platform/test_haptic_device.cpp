@@ -2,12 +2,15 @@
 // Copyright the Tactus authors.
 #include "platform/allocation_counter.hpp"
 #include "platform/haptic_device.hpp"
-#include "platform/simulated/simulated_device.hpp"
+#include "platform/system_call_trap.hpp"
+#include "tests/unit/platform/dhd_rig.hpp"
+#include "tests/unit/platform/udp_rig.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
+#include <string>
 #include <thread>
 
 namespace tactus
@@ -16,44 +19,61 @@ namespace tactus
 namespace
 {
 
-class HandAtRest final : public HandMotion
-{
-public:
-    [[nodiscard]] Vec3 start_world_m() const noexcept override { return Vec3::Zero(); }
-    [[nodiscard]] Vec3 next_world_m(const HandSense&) noexcept override { return Vec3::Zero(); }
-};
+using test::DeviceRig;
 
-std::unique_ptr<HapticDevice> make_simulated()
+std::unique_ptr<DeviceRig> make_simulated()
 {
-    return std::move(SimulatedDevice::create({}, std::make_unique<HandAtRest>())).value();
+    return std::make_unique<test::SimulatedRig>();
+}
+
+std::unique_ptr<DeviceRig> make_udp()
+{
+    return std::make_unique<test::UdpRig>();
+}
+
+/// Turned by a quarter about z, moved, and ten times as large.
+std::unique_ptr<DeviceRig> make_udp_elsewhere()
+{
+    Mat3 quarter;
+    quarter << 0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0;
+    return std::make_unique<test::UdpRig>(
+        DeviceFrame::create(quarter, Vec3(1.0, 2.0, 3.0), 10.0).value());
+}
+
+std::unique_ptr<DeviceRig> make_dhd()
+{
+    return std::make_unique<test::DhdRig>();
 }
 
 /// What every device promises, given a hand that holds it loosely at one place.
-class HapticDeviceConformance : public testing::TestWithParam<std::unique_ptr<HapticDevice> (*)()>
+class HapticDeviceConformance : public testing::TestWithParam<std::unique_ptr<DeviceRig> (*)()>
 {
 protected:
     /// Displacement from the first reading after a while under a steady force.
     double drift_m(const std::array<double, 3>& force_n, int frames)
     {
-        const auto start = sut->read().position_world_m;
+        const auto start = rig->next().position_world_m;
         DeviceSample sample;
         for (int i = 0; i < frames; ++i)
         {
-            sut->write(force_n);
-            sample = sut->read();
+            rig->device().write(force_n);
+            sample = rig->next();
         }
         const auto end = sample.position_world_m;
         return std::hypot(end[0] - start[0], end[1] - start[1], end[2] - start[2]);
     }
 
-    std::unique_ptr<HapticDevice> sut = GetParam()();
+    std::unique_ptr<DeviceRig> rig = GetParam()();
 };
 
 INSTANTIATE_TEST_SUITE_P(Simulated, HapticDeviceConformance, testing::Values(&make_simulated));
+INSTANTIATE_TEST_SUITE_P(Udp, HapticDeviceConformance,
+                         testing::Values(&make_udp, &make_udp_elsewhere));
+INSTANTIATE_TEST_SUITE_P(Dhd, HapticDeviceConformance, testing::Values(&make_dhd));
 
 TEST_P(HapticDeviceConformance, describes_itself_with_sane_limits)
 {
-    const DeviceInfo& info = sut->info();
+    const DeviceInfo& info = rig->device().info();
     EXPECT_FALSE(info.name.empty());
     EXPECT_GT(info.limits.force_max_n, 0.0);
     EXPECT_GT(info.limits.stiffness_max_n_per_m, 0.0);
@@ -66,10 +86,10 @@ TEST_P(HapticDeviceConformance, describes_itself_with_sane_limits)
 
 TEST_P(HapticDeviceConformance, counts_its_readings_and_never_goes_back_in_time)
 {
-    MonotonicTime last = sut->read().time;
+    MonotonicTime last = rig->next().time;
     for (std::uint64_t frame = 1; frame < 100; ++frame)
     {
-        const DeviceSample sample = sut->read();
+        const DeviceSample sample = rig->next();
         EXPECT_TRUE(sample.valid);
         EXPECT_TRUE(sample.connected);
         EXPECT_TRUE(sample.deadman_held);
@@ -77,15 +97,15 @@ TEST_P(HapticDeviceConformance, counts_its_readings_and_never_goes_back_in_time)
         EXPECT_GT(sample.time, last);
         last = sample.time;
     }
-    EXPECT_EQ(sut->status().frames, 100U);
+    EXPECT_EQ(rig->device().status().frames, 100U);
 }
 
 TEST_P(HapticDeviceConformance, is_idle_until_the_first_force)
 {
-    static_cast<void>(sut->read());
-    EXPECT_EQ(sut->status().state, DeviceState::idle);
-    sut->write({0.0, 0.0, 0.0});
-    EXPECT_EQ(sut->status().state, DeviceState::force);
+    static_cast<void>(rig->next());
+    EXPECT_EQ(rig->device().status().state, DeviceState::idle);
+    rig->device().write({0.0, 0.0, 0.0});
+    EXPECT_EQ(rig->device().status().state, DeviceState::force);
 }
 
 TEST_P(HapticDeviceConformance, gives_way_to_the_force_it_is_told_to_make)
@@ -95,13 +115,13 @@ TEST_P(HapticDeviceConformance, gives_way_to_the_force_it_is_told_to_make)
 
 TEST_P(HapticDeviceConformance, clamps_a_force_beyond_its_limit_and_counts_it)
 {
-    const double limit_n = sut->info().limits.force_max_n;
+    const double limit_n = rig->device().info().limits.force_max_n;
     auto other = GetParam()();
     const double at_limit_m = drift_m({limit_n, 0.0, 0.0}, 300);
-    sut.swap(other);
+    rig.swap(other);
     const double beyond_m = drift_m({1e6, 0.0, 0.0}, 300);
     EXPECT_NEAR(beyond_m, at_limit_m, 1e-9);
-    EXPECT_EQ(sut->status().forces_clamped, 300U);
+    EXPECT_EQ(rig->device().status().forces_clamped, 300U);
 }
 
 TEST_P(HapticDeviceConformance, refuses_a_force_that_is_not_finite_and_makes_none)
@@ -111,24 +131,24 @@ TEST_P(HapticDeviceConformance, refuses_a_force_that_is_not_finite_and_makes_non
     {
         EXPECT_EQ(drift_m({0.0, bad, 1.0}, 50), 0.0);
     }
-    EXPECT_EQ(sut->status().forces_refused, 100U);
+    EXPECT_EQ(rig->device().status().forces_refused, 100U);
 }
 
 TEST_P(HapticDeviceConformance, ignores_forces_from_the_brake_to_its_release)
 {
-    sut->write({5.0, 0.0, 0.0});
-    std::thread other([&] { sut->brake(); });
+    rig->device().write({5.0, 0.0, 0.0});
+    std::thread other([&] { rig->device().brake(); });
     other.join();
-    EXPECT_EQ(sut->status().state, DeviceState::brake);
+    EXPECT_EQ(rig->device().status().state, DeviceState::brake);
     EXPECT_EQ(drift_m({5.0, 0.0, 0.0}, 100), 0.0);
-    sut->brake(); // Again, to no effect.
+    rig->device().brake(); // Again, to no effect.
     EXPECT_EQ(drift_m({5.0, 0.0, 0.0}, 10), 0.0);
-    sut->release_brake();
-    EXPECT_EQ(sut->status().state, DeviceState::idle);
-    const auto start = sut->read().position_world_m;
-    EXPECT_EQ(sut->read().position_world_m, start); // Not the force from before.
+    rig->device().release_brake();
+    EXPECT_EQ(rig->device().status().state, DeviceState::idle);
+    const auto start = rig->next().position_world_m;
+    EXPECT_EQ(rig->next().position_world_m, start); // Not the force from before.
     EXPECT_GT(drift_m({5.0, 0.0, 0.0}, 100), 0.0);
-    EXPECT_EQ(sut->status().state, DeviceState::force);
+    EXPECT_EQ(rig->device().status().state, DeviceState::force);
 }
 
 TEST_P(HapticDeviceConformance, leaves_the_heap_alone)
@@ -141,15 +161,49 @@ TEST_P(HapticDeviceConformance, leaves_the_heap_alone)
     allocation_counter::mark_this_thread(true);
     for (int i = 0; i < 100; ++i)
     {
-        static_cast<void>(sut->read());
-        sut->write({0.1, 0.2, 0.3});
+        static_cast<void>(rig->device().read());
+        rig->device().write({0.1, 0.2, 0.3});
     }
-    sut->brake();
-    sut->release_brake();
+    rig->device().brake();
+    rig->device().release_brake();
     allocation_counter::mark_this_thread(false);
     const auto after = allocation_counter::of_this_thread();
     EXPECT_EQ(after.allocations, before.allocations);
     EXPECT_EQ(after.frees, before.frees);
+}
+
+/// On a thread of its own, since a trap is for good. brake() is exempt: it is for when all else has
+/// failed.
+TEST_P(HapticDeviceConformance, makes_no_system_call)
+{
+    static_cast<void>(rig->next());
+    std::string refused;
+    system_call_trap::TrappedCalls calls;
+    std::thread haptic(
+        [&]
+        {
+            if (const auto set = system_call_trap::set_on_this_thread(); !set)
+            {
+                refused = set.error().message;
+                return;
+            }
+            system_call_trap::mark_frame(true);
+            for (int i = 0; i < 100; ++i)
+            {
+                static_cast<void>(rig->device().read());
+                rig->device().write({0.1, 0.2, 0.3});
+                static_cast<void>(rig->device().status());
+            }
+            rig->device().release_brake();
+            system_call_trap::mark_frame(false);
+            calls = system_call_trap::of_this_thread();
+        });
+    haptic.join();
+    if (!refused.empty())
+    {
+        GTEST_SKIP() << refused;
+    }
+    EXPECT_EQ(calls.in_frame, 0U) << "the first was number " << calls.first_in_frame;
 }
 
 } // namespace

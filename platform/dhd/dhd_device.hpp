@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "platform/dhd/dhd_library.hpp"
+#include "platform/remote/remote_device.hpp"
+#include "platform/rt_thread.hpp"
+#include "rt_core/base/result.hpp"
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace tactus
+{
+
+struct DhdDeviceOptions
+{
+    static constexpr int kIndexMax = 63;
+    static constexpr Duration kPeriodMin = microseconds(100);
+    static constexpr Duration kPeriodMax = milliseconds(10);
+
+    std::string library; ///< Path of libdhd.so; empty: where the system's loader finds it.
+    int index{0};        ///< Which of the devices that are plugged in, up to kIndexMax.
+    /// What the device is, in its own coordinates: the SDK doesn't tell. An empty name becomes the
+    /// SDK's. The default is small and weak enough for any of the maker's devices, and assumes
+    /// their usual delay (docs/dhd-device.md); measure yours.
+    DeviceInfo info{default_info()};
+    /// The button that says that somebody holds it; none: somebody always does.
+    std::optional<int> deadman_button;
+    /// Of the I/O thread's turns, in [kPeriodMin, kPeriodMax]; the SDK's calls may make them
+    /// longer.
+    Duration period{microseconds(250)};
+    RemoteTimes times;
+    DeviceFrame frame;
+    RtThreadOptions thread{io_thread_options()}; ///< The I/O thread.
+    const Clock* clock{nullptr};                 ///< Lent; it outlives the device. Not null.
+
+    [[nodiscard]] static DeviceInfo default_info();
+};
+
+/// One of Force Dimension's devices, by its maker's SDK, which is loaded at run time. All of its
+/// calls wait for the device's bus, some 100 us each, so they belong to the I/O thread. A device
+/// that doesn't answer any more is closed and looked for again ten times a second.
+///
+/// brake() is acted on in the I/O thread's next turn: it sets zero force, then the device's own
+/// brakes. While a call into the SDK hangs nobody can do so; the device's own electronics must end
+/// the force then, as the maker's do.
+class DhdDevice final : public RemoteDevice
+{
+public:
+    /// Loads the SDK and opens the device. Refuses options out of range (`bad_option`); without
+    /// SDK or device `system`, in one line.
+    [[nodiscard]] static Result<std::unique_ptr<DhdDevice>, PlatformError>
+    create(const DhdDeviceOptions& options);
+
+    DhdDevice(const DhdDevice&) = delete;
+    DhdDevice& operator=(const DhdDevice&) = delete;
+    /// Takes the force away and closes the device.
+    ~DhdDevice() override;
+
+    [[nodiscard]] const RtThreadReport& thread_report() const noexcept { return thread_->report(); }
+
+private:
+    static constexpr Duration kReopen = milliseconds(100);
+
+    DhdDevice(DhdLibrary library, char id, const DeviceInfo& info, const DhdDeviceOptions& options);
+
+    void run() noexcept;
+    [[nodiscard]] bool turn() noexcept;
+    [[nodiscard]] bool publish_reading() noexcept;
+    [[nodiscard]] bool obey(const DeviceCommand& command) noexcept;
+    [[nodiscard]] bool is_held() const noexcept;
+    void lose() noexcept;
+    void find_again() noexcept;
+
+    const DhdLibrary library_;
+    const char index_;
+    const std::optional<int> deadman_button_;
+    const Duration period_;
+    std::atomic<bool> is_stopped_{false};
+
+    // The I/O thread's.
+    char id_;
+    bool is_open_{true};
+    bool is_new_{true};        ///< Nothing was read since it was opened.
+    bool makes_forces_{false}; ///< Brakes are off, forces enabled.
+
+    std::optional<RtThread> thread_; ///< Ends before anything that it uses.
+};
+
+} // namespace tactus

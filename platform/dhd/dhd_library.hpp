@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "platform/platform_error.hpp"
+#include "rt_core/base/result.hpp"
+
+#include <string>
+
+namespace tactus
+{
+
+/// The functions of Force Dimension's SDK (3.x) that we use, by their public C names; written from
+/// its documentation, none of its files is needed to build this. Those that return an int give a
+/// negative one when they fail; 0 and small positive ones are success with or without a remark.
+/// `id` is what dhdOpenID() gave.
+struct DhdFunctions
+{
+    int (*dhdGetDeviceCount)();
+    int (*dhdOpenID)(char index);
+    int (*dhdClose)(char id);
+    const char* (*dhdGetSystemName)(char id); ///< Null when it doesn't know.
+    int (*dhdGetPosition)(double* x_m, double* y_m, double* z_m, char id);
+    int (*dhdGetLinearVelocity)(double* x_m_per_s, double* y_m_per_s, double* z_m_per_s, char id);
+    int (*dhdGetButton)(int index, char id); ///< 1 while it is pressed.
+    int (*dhdSetForce)(double x_n, double y_n, double z_n, char id);
+    int (*dhdSetBrakes)(int on, char id);
+    int (*dhdEnableForce)(unsigned char on, char id);
+    const char* (*dhdErrorGetLastStr)(); ///< Of the last failure.
+};
+
+/// The SDK, loaded when it is asked for and given back at the end of its life.
+class DhdLibrary
+{
+public:
+    /// `path` is a file, or a name for the system's loader to look up; empty: the names that the
+    /// SDK is installed by. A library that isn't there or lacks a function is `system`, in one
+    /// line.
+    [[nodiscard]] static Result<DhdLibrary, PlatformError> load(const std::string& path);
+
+    DhdLibrary(DhdLibrary&& other) noexcept;
+    DhdLibrary& operator=(DhdLibrary&&) = delete;
+    ~DhdLibrary();
+
+    [[nodiscard]] const DhdFunctions& operator*() const noexcept { return functions_; }
+    [[nodiscard]] const DhdFunctions* operator->() const noexcept { return &functions_; }
+
+private:
+    explicit DhdLibrary(void* handle) noexcept : handle_(handle) {}
+
+    /// Null, or the name of a function that the library lacks.
+    [[nodiscard]] const char* find_functions() noexcept;
+
+    void* handle_;
+    DhdFunctions functions_{};
+};
+
+} // namespace tactus

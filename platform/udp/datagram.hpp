@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "platform/haptic_device.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <variant>
+
+/// The datagrams of docs/udp-device.md: fixed sizes, little-endian, each closed by its CRC-32C.
+namespace tactus::udp
+{
+
+inline constexpr std::uint32_t kMagic = 0x44544354; ///< "TCTD".
+inline constexpr std::uint16_t kVersion = 1;
+
+inline constexpr std::size_t kDescribeBytes = 200;
+inline constexpr std::size_t kSampleBytes = 96;
+inline constexpr std::size_t kForceBytes = 72;
+inline constexpr std::size_t kDatagramBytesMax = kDescribeBytes;
+
+enum class Kind : std::uint16_t
+{
+    describe = 1, ///< Device to controller: what it is.
+    sample = 2,   ///< Device to controller: one reading.
+    force = 3     ///< Controller to device.
+};
+
+/// Who speaks, and when.
+struct Address
+{
+    std::uint64_t instance{0}; ///< Chosen by the device program when it starts; never 0.
+    std::uint64_t session{0};  ///< Given by the controller; 0 in `describe`.
+    std::uint64_t sequence{0}; ///< Counted by each sender from 1.
+};
+
+/// The centre of the workspace is in the device's coordinates here.
+struct DescribeDatagram
+{
+    Address address;
+    DeviceInfo info;
+};
+
+struct SampleDatagram
+{
+    Address address;
+    std::array<double, 3> position_m{};
+    std::optional<std::array<double, 3>> velocity_m_per_s;
+    std::int64_t time_ns{0}; ///< On the device's own clock, in [0, 2^62].
+    bool valid{false};       ///< False: the position is not looked at, whatever it is.
+    bool deadman_held{true};
+};
+
+struct ForceDatagram
+{
+    Address address;
+    std::array<double, 3> force_n{};
+    DeviceState state{DeviceState::idle};
+    std::uint64_t answers{0}; ///< Sequence of the device's last datagram that was accepted.
+};
+
+using DescribeBytes = std::array<std::byte, kDescribeBytes>;
+using SampleBytes = std::array<std::byte, kSampleBytes>;
+using ForceBytes = std::array<std::byte, kForceBytes>;
+
+/// A name longer than 31 bytes is cut.
+[[nodiscard]] DescribeBytes encode(const DescribeDatagram& datagram) noexcept;
+[[nodiscard]] SampleBytes encode(const SampleDatagram& datagram) noexcept;
+[[nodiscard]] ForceBytes encode(const ForceDatagram& datagram) noexcept;
+
+/// Why a datagram counts for nothing. The first six are found by decode().
+enum class Refusal : std::uint8_t
+{
+    size,         ///< Not that of its kind.
+    magic,        ///< Somebody else's.
+    version,      ///< Another version of this protocol.
+    kind,         ///< None that is sent this way.
+    checksum,     ///< Changed on its way.
+    content,      ///< A value that is not finite or out of its range; a reserved bit that is set.
+    foreign,      ///< From somebody else while a device is attached.
+    session,      ///< A sample of another session.
+    stale,        ///< Not newer than what was accepted before.
+    other_device, ///< Describes another device than the first one: limits never change.
+};
+inline constexpr std::size_t kRefusals = 10;
+
+/// "wrong size", ready to stand behind a colon.
+[[nodiscard]] std::string_view text_of(Refusal refusal) noexcept;
+
+/// What a controller takes in.
+using FromDevice = std::variant<DescribeDatagram, SampleDatagram, Refusal>;
+/// What a device takes in.
+using FromController = std::variant<ForceDatagram, Refusal>;
+
+[[nodiscard]] FromDevice decode_from_device(std::span<const std::byte> bytes);
+[[nodiscard]] FromController decode_from_controller(std::span<const std::byte> bytes);
+
+} // namespace tactus::udp

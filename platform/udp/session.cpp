@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/udp/session.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace tactus::udp
+{
+
+namespace
+{
+
+bool are_same(const DeviceLimits& a, const DeviceLimits& b) noexcept
+{
+    return a.mass_kg == b.mass_kg && a.damping_n_s_per_m == b.damping_n_s_per_m &&
+           a.friction_n == b.friction_n && a.quantum_m == b.quantum_m && a.delay_s == b.delay_s &&
+           a.force_max_n == b.force_max_n && a.slew_max_n_per_s == b.slew_max_n_per_s &&
+           a.stiffness_max_n_per_m == b.stiffness_max_n_per_m &&
+           a.added_damping_max_n_s_per_m == b.added_damping_max_n_s_per_m;
+}
+
+bool are_same(const DeviceInfo& a, const DeviceInfo& b) noexcept
+{
+    return a.name == b.name && are_same(a.limits, b.limits) &&
+           a.workspace_centre_world_m == b.workspace_centre_world_m &&
+           a.workspace_radius_m == b.workspace_radius_m &&
+           a.speed_max_m_per_s == b.speed_max_m_per_s && a.rate_min_hz == b.rate_min_hz &&
+           a.rate_max_hz == b.rate_max_hz;
+}
+
+Vec3 to_vec3(const std::array<double, 3>& v) noexcept
+{
+    return {v[0], v[1], v[2]};
+}
+
+} // namespace
+
+std::variant<Described, Sampled, Refusal> Session::receive(std::span<const std::byte> bytes,
+                                                           const Endpoint& from, MonotonicTime now)
+{
+    const FromDevice datagram = decode_from_device(bytes);
+    if (const auto* described = std::get_if<DescribeDatagram>(&datagram))
+    {
+        return describe(*described, from, now);
+    }
+    if (const auto* sampled = std::get_if<SampleDatagram>(&datagram))
+    {
+        return sample(*sampled, from, now);
+    }
+    return std::get<Refusal>(datagram);
+}
+
+/// Again and again is no fault: a device does so until it is answered.
+std::variant<Described, Sampled, Refusal> Session::describe(const DescribeDatagram& datagram,
+                                                            const Endpoint& from, MonotonicTime now)
+{
+    const Address& address = datagram.address;
+    const bool is_known = from == peer_.endpoint && address.instance == peer_.instance;
+    if (peer_.is_attached && !is_known)
+    {
+        return Refusal::foreign;
+    }
+    if (address.instance == peer_.instance && address.sequence <= last_sequence_)
+    {
+        return Refusal::stale;
+    }
+    if (info_ && !are_same(*info_, datagram.info))
+    {
+        return Refusal::other_device;
+    }
+    if (!peer_.is_attached)
+    {
+        info_ = datagram.info;
+        begin({from, address.instance, next_, true}, now);
+        next_ = std::max<std::uint64_t>(next_ + 1, 1); // 0 is none.
+    }
+    last_sequence_ = address.sequence;
+    return Described{};
+}
+
+void Session::begin(const Peer& peer, MonotonicTime now) noexcept
+{
+    peer_ = peer;
+    heard_ = now;
+    has_samples_ = false;
+    last_time_ns_ = -1;
+}
+
+std::variant<Described, Sampled, Refusal>
+Session::sample(const SampleDatagram& datagram, const Endpoint& from, MonotonicTime now) noexcept
+{
+    const Address& address = datagram.address;
+    if (from != peer_.endpoint || address.instance != peer_.instance)
+    {
+        return Refusal::foreign;
+    }
+    if (address.session != peer_.session)
+    {
+        return Refusal::session;
+    }
+    if (address.sequence <= last_sequence_ || datagram.time_ns <= last_time_ns_)
+    {
+        return Refusal::stale;
+    }
+    Sampled sampled;
+    sampled.is_new = !std::exchange(has_samples_, true);
+    sampled.reading.arrival = now;
+    sampled.reading.time = on_our_clock(datagram.time_ns, now);
+    sampled.reading.valid = datagram.valid;
+    sampled.reading.deadman_held = datagram.deadman_held;
+    sampled.reading.position_m = to_vec3(datagram.position_m);
+    if (datagram.velocity_m_per_s)
+    {
+        sampled.reading.velocity_m_per_s = to_vec3(*datagram.velocity_m_per_s);
+    }
+    last_sequence_ = address.sequence;
+    heard_ = now;
+    peer_.is_attached = true;
+    return sampled;
+}
+
+/// The device's steps of time, which the network doesn't disturb, set against our clock where they
+/// begin. Never back.
+MonotonicTime Session::on_our_clock(std::int64_t time_ns, MonotonicTime now) noexcept
+{
+    const bool is_first = last_time_ns_ < 0;
+    last_time_ns_ = time_ns;
+    MonotonicTime time{time_ns + clock_offset_ns_};
+    if (is_first || time > now + kClockDrift || time < now - kClockDrift || time <= last_time_)
+    {
+        time = std::max(now, last_time_ + nanoseconds(1));
+        clock_offset_ns_ = time.ns - time_ns;
+    }
+    last_time_ = time;
+    return time;
+}
+
+bool Session::lapse(MonotonicTime now) noexcept
+{
+    if (!peer_.is_attached || now - heard_ <= silence_)
+    {
+        return false;
+    }
+    peer_.is_attached = false;
+    has_samples_ = false;
+    return true;
+}
+
+} // namespace tactus::udp

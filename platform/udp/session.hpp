@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "platform/remote/remote_device.hpp"
+#include "platform/udp/datagram.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <variant>
+
+namespace tactus::udp
+{
+
+/// Where a datagram comes from or goes to: IPv4 address and port.
+struct Endpoint
+{
+    std::uint32_t address{0}; ///< 127.0.0.1 is 0x7F000001.
+    std::uint16_t port{0};
+
+    constexpr bool operator==(const Endpoint&) const noexcept = default;
+};
+
+/// Whom the controller talks to.
+struct Peer
+{
+    Endpoint endpoint;
+    std::uint64_t instance{0};
+    std::uint64_t session{0};
+    bool is_attached{false};
+};
+
+struct Described
+{
+};
+struct Sampled
+{
+    DeviceReading reading;
+    bool is_new{false}; ///< The device wasn't there before: RemoteDevice::publish().
+};
+
+/// The controller's side of the protocol: what is taken in, from whom, in which order. It knows
+/// nothing of sockets and threads. One thread.
+///
+/// A device that describes itself when none is attached is, from then on, the only one that is
+/// heard, until it is silent for too long. It is given a session number that nobody could have
+/// known before, and its samples have to carry it: what was recorded in another session, or sent to
+/// another controller, is refused. A device that comes back within its session goes on with it.
+class Session
+{
+public:
+    /// How far apart the device's time and ours may drift until they are set against each other
+    /// anew.
+    static constexpr Duration kClockDrift = milliseconds(100);
+
+    /// `secret` is the first session's number; later ones count up from there.
+    Session(std::uint64_t secret, Duration silence) noexcept : next_(secret), silence_(silence) {}
+
+    /// Takes in one datagram that came at `now`; a refusal changes nothing. Allocates for the
+    /// first device's name at most.
+    [[nodiscard]] std::variant<Described, Sampled, Refusal>
+    receive(std::span<const std::byte> bytes, const Endpoint& from, MonotonicTime now);
+
+    /// True once: when the device has been silent for too long.
+    [[nodiscard]] bool lapse(MonotonicTime now) noexcept;
+
+    /// The last one that was attached.
+    [[nodiscard]] const Peer& peer() const noexcept { return peer_; }
+    /// Of the last datagram that was accepted.
+    [[nodiscard]] std::uint64_t answers() const noexcept { return last_sequence_; }
+    /// What the first device said of itself, in its own coordinates; none before that.
+    [[nodiscard]] const std::optional<DeviceInfo>& info() const noexcept { return info_; }
+
+private:
+    [[nodiscard]] std::variant<Described, Sampled, Refusal>
+    describe(const DescribeDatagram& datagram, const Endpoint& from, MonotonicTime now);
+    [[nodiscard]] std::variant<Described, Sampled, Refusal>
+    sample(const SampleDatagram& datagram, const Endpoint& from, MonotonicTime now) noexcept;
+    void begin(const Peer& peer, MonotonicTime now) noexcept;
+    [[nodiscard]] MonotonicTime on_our_clock(std::int64_t time_ns, MonotonicTime now) noexcept;
+
+    std::uint64_t next_;
+    Duration silence_;
+    std::optional<DeviceInfo> info_;
+    Peer peer_;
+    std::uint64_t last_sequence_{0};
+    MonotonicTime heard_;           ///< The last sample, or the start of the session.
+    bool has_samples_{false};       ///< In this attachment.
+    std::int64_t last_time_ns_{-1}; ///< Of the last sample of this session; device's clock.
+    std::int64_t clock_offset_ns_{0};
+    MonotonicTime last_time_; ///< Of the last sample of all, on our clock.
+};
+
+} // namespace tactus::udp

@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/udp/udp_device.hpp"
+
+#include <algorithm>
+#include <unistd.h>
+#include <utility>
+
+namespace tactus
+{
+
+namespace
+{
+
+using udp::Refusal;
+
+/// One byte more than any datagram, so that a longer one shows.
+using Buffer = std::array<std::byte, udp::kDatagramBytesMax + 1>;
+
+/// Empty when all options are good.
+std::string find_bad_option(const UdpDeviceOptions& options)
+{
+    using Options = UdpDeviceOptions;
+    if (options.poll < Options::kPollMin || options.poll > Options::kPollMax)
+    {
+        return "udp device: the poll interval must be in range 20 us..10 ms";
+    }
+    if (options.wait < Duration{} || options.wait > Options::kWaitMax)
+    {
+        return "udp device: the wait for a device must be in range 0..3600 s";
+    }
+    if (options.transport_delay < Duration{} || options.transport_delay > Options::kDelayMax)
+    {
+        return "udp device: the transport delay must be in range 0..100 ms";
+    }
+    return find_bad_time(options.times);
+}
+
+/// A number that nobody outside can know.
+Result<std::uint64_t, PlatformError> draw_secret()
+{
+    std::uint64_t secret = 0;
+    if (getentropy(&secret, sizeof(secret)) != 0)
+    {
+        return PlatformError{PlatformErrorKind::system,
+                             "udp device: the system gives no random number"};
+    }
+    return secret == 0 ? 1 : secret;
+}
+
+/// The bytes that are there of what was received; all of the buffer when there were more.
+std::span<const std::byte> part_of(const Buffer& buffer, std::size_t bytes) noexcept
+{
+    return std::span(buffer).first(std::min(bytes, buffer.size()));
+}
+
+PlatformError nobody_came(const udp::Socket& socket, Duration wait, std::uint64_t refused,
+                          std::optional<Refusal> last)
+{
+    std::string line = "udp device: no device described itself to " +
+                       udp::text_of(socket.endpoint()) + " within " +
+                       std::to_string(wait / milliseconds(1)) + " ms";
+    if (last)
+    {
+        line += " (" + std::to_string(refused) +
+                " datagrams refused, the last: " + std::string(udp::text_of(*last)) + ")";
+    }
+    return {PlatformErrorKind::system, std::move(line)};
+}
+
+/// Returns when the session has a device.
+std::optional<PlatformError> await_device(const udp::Socket& socket, udp::Session& session,
+                                          const UdpDeviceOptions& options)
+{
+    const MonotonicTime end = options.clock->now() + options.wait;
+    Buffer buffer{};
+    std::uint64_t refused = 0;
+    std::optional<Refusal> last;
+    for (;;)
+    {
+        const auto received = socket.receive(buffer);
+        const MonotonicTime now = options.clock->now();
+        if (received)
+        {
+            const auto result =
+                session.receive(part_of(buffer, received->bytes), received->from, now);
+            if (std::holds_alternative<udp::Described>(result))
+            {
+                return std::nullopt;
+            }
+            last = std::get<Refusal>(result); // Samples are refused before a description.
+            ++refused;
+        }
+        if (now >= end)
+        {
+            return nobody_came(socket, options.wait, refused, last);
+        }
+        socket.wait(end - now);
+    }
+}
+
+DeviceInfo with_delay(DeviceInfo info, Duration delay)
+{
+    info.limits.delay_s += to_seconds(delay);
+    return info;
+}
+
+} // namespace
+
+Result<std::unique_ptr<UdpDevice>, PlatformError> UdpDevice::create(const UdpDeviceOptions& options)
+{
+    auto socket = udp::Socket::open(options.address, options.port);
+    if (!socket)
+    {
+        return socket.error();
+    }
+    return create(std::move(socket).value(), options);
+}
+
+Result<std::unique_ptr<UdpDevice>, PlatformError> UdpDevice::create(udp::Socket socket,
+                                                                    const UdpDeviceOptions& options)
+{
+    TACTUS_ASSERT(options.clock != nullptr);
+    if (std::string wrong = find_bad_option(options); !wrong.empty())
+    {
+        return PlatformError{PlatformErrorKind::bad_option, std::move(wrong)};
+    }
+    const auto secret = draw_secret();
+    if (!secret)
+    {
+        return secret.error();
+    }
+    udp::Session session(secret.value(), options.times.silence);
+    if (auto nobody = await_device(socket, session, options))
+    {
+        return std::move(*nobody);
+    }
+    const DeviceInfo info = with_delay(*session.info(), options.transport_delay);
+    std::unique_ptr<UdpDevice> device(
+        new UdpDevice(std::move(socket), std::move(session), info, options));
+    auto thread = RtThread::start(options.thread, [raw = device.get()] { raw->run(); });
+    if (!thread)
+    {
+        return thread.error();
+    }
+    device->thread_ = std::move(thread).value();
+    return device;
+}
+
+UdpDevice::UdpDevice(udp::Socket socket, udp::Session session, const DeviceInfo& info,
+                     const UdpDeviceOptions& options)
+    : RemoteDevice(info, options.frame, options.times, *options.clock)
+    , socket_(std::move(socket))
+    , poll_(options.poll)
+    , session_(std::move(session))
+{
+    counts_.described = 1;
+    counts_.sessions = 1;
+    peer_.write(session_.peer());
+    traffic_.write(counts_);
+}
+
+UdpDevice::~UdpDevice()
+{
+    is_stopped_.store(true);
+    thread_.reset();
+}
+
+UdpTraffic UdpDevice::traffic() const noexcept
+{
+    UdpTraffic traffic;
+    while (!traffic_.try_read(traffic))
+    {
+    }
+    return traffic;
+}
+
+void UdpDevice::run() noexcept
+{
+    bool is_asked = true; // By the description that create() took in.
+    while (!is_stopped_.load())
+    {
+        if (session_.lapse(clock().now()))
+        {
+            ++counts_.lost;
+            detach();
+            peer_.write({});
+        }
+        send_due(is_asked);
+        traffic_.write(counts_);
+        socket_.wait(session_.peer().is_attached ? poll_ : kIdlePoll);
+        is_asked = receive_all();
+    }
+    send(session_.peer(), sequence_.fetch_add(1) + 1, {}, session_.answers());
+}
+
+/// True when the device has said something that is to be answered.
+bool UdpDevice::receive_all() noexcept
+{
+    Buffer buffer{};
+    bool is_asked = false;
+    for (int i = 0; i < kDatagramsMax; ++i)
+    {
+        const auto received = socket_.receive(buffer);
+        if (!received)
+        {
+            break;
+        }
+        is_asked |= receive_one(part_of(buffer, received->bytes), received->from);
+    }
+    return is_asked;
+}
+
+bool UdpDevice::receive_one(std::span<const std::byte> bytes, const udp::Endpoint& from)
+{
+    const std::uint64_t session = session_.peer().session;
+    const auto result = session_.receive(bytes, from, clock().now());
+    if (const auto* refusal = std::get_if<Refusal>(&result))
+    {
+        ++counts_.refused.at(static_cast<std::size_t>(*refusal));
+        return false;
+    }
+    if (const auto* sampled = std::get_if<udp::Sampled>(&result))
+    {
+        ++counts_.samples;
+        publish(sampled->reading, sampled->is_new);
+    }
+    else
+    {
+        ++counts_.described;
+    }
+    counts_.sessions += session_.peer().session != session ? 1U : 0U;
+    peer_.write(session_.peer());
+    return true;
+}
+
+/// The number is drawn before the command is looked up. A brake that comes in between sends a
+/// greater one, and the device refuses ours as too old; a brake that came before, we see.
+void UdpDevice::send_due(bool is_asked) noexcept
+{
+    const udp::Peer& peer = session_.peer();
+    const MonotonicTime now = clock().now();
+    const DeviceCommand next = command();
+    const bool is_other = next.written != sent_.written || next.state != sent_.state;
+    if (!peer.is_attached || !(is_asked || is_other || now - sent_at_ >= kRepeat))
+    {
+        return;
+    }
+    const std::uint64_t sequence = sequence_.fetch_add(1) + 1;
+    sent_ = command();
+    sent_at_ = now;
+    send(peer, sequence, sent_, session_.answers());
+}
+
+void UdpDevice::send(const udp::Peer& peer, std::uint64_t sequence, const DeviceCommand& command,
+                     std::uint64_t answers) noexcept
+{
+    const Vec3& force_n = command.force_n;
+    const udp::ForceDatagram datagram{{peer.instance, peer.session, sequence},
+                                      {force_n.x(), force_n.y(), force_n.z()},
+                                      command.state,
+                                      answers};
+    ++counts_.forces;
+    counts_.unsent += socket_.send(encode(datagram), peer.endpoint) ? 0U : 1U;
+}
+
+/// `answers` is 0: what was accepted last only the I/O thread knows.
+void UdpDevice::brake() noexcept
+{
+    RemoteDevice::brake();
+    udp::Peer peer;
+    if (peer_.try_read(peer) && peer.is_attached)
+    {
+        const udp::ForceDatagram datagram{
+            {peer.instance, peer.session, sequence_.fetch_add(1) + 1}, {}, DeviceState::brake, 0};
+        static_cast<void>(socket_.send(encode(datagram), peer.endpoint)); // It is repeated.
+    }
+}
+
+} // namespace tactus

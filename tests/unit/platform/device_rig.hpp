@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "platform/haptic_device.hpp"
+#include "platform/simulated/hand_motion.hpp"
+#include "platform/simulated/simulated_device.hpp"
+
+#include <memory>
+#include <utility>
+
+namespace tactus::test
+{
+
+/// Wants to be at the origin.
+class HandAtRest final : public HandMotion
+{
+public:
+    [[nodiscard]] Vec3 start_world_m() const noexcept override { return Vec3::Zero(); }
+    [[nodiscard]] Vec3 next_world_m(const HandSense&) noexcept override { return Vec3::Zero(); }
+};
+
+/// A device under test, with a hand that holds it loosely at one place, and its time in our hands:
+/// nothing happens between two calls of next(), however late the second one is.
+class DeviceRig
+{
+public:
+    virtual ~DeviceRig() = default;
+    [[nodiscard]] virtual HapticDevice& device() noexcept = 0;
+    /// One period goes by under the force that was written last; then one read().
+    [[nodiscard]] virtual DeviceSample next() = 0;
+
+protected:
+    DeviceRig() = default;
+    DeviceRig(const DeviceRig&) = default;
+    DeviceRig& operator=(const DeviceRig&) = default;
+};
+
+class SimulatedRig final : public DeviceRig
+{
+public:
+    [[nodiscard]] HapticDevice& device() noexcept override { return *device_; }
+    [[nodiscard]] DeviceSample next() override { return device_->read(); }
+
+private:
+    std::unique_ptr<SimulatedDevice> device_ =
+        std::move(SimulatedDevice::create({}, std::make_unique<HandAtRest>())).value();
+};
+
+} // namespace tactus::test

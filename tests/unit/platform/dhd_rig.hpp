@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "platform/dhd/dhd_device.hpp"
+#include "platform/posix/posix_clock.hpp"
+#include "tests/unit/platform/device_rig.hpp"
+#include "tests/unit/platform/stand_in_dhd.hpp"
+#include "tests/unit/platform/udp_rig.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <dlfcn.h>
+#include <thread>
+
+namespace tactus::test
+{
+
+/// The stand-in that DhdDevice will find, too: one library of one path is loaded once.
+class LoadedStandIn
+{
+public:
+    LoadedStandIn() : handle_(dlopen(TACTUS_STAND_IN_DHD, RTLD_NOW | RTLD_LOCAL))
+    {
+        EXPECT_NE(handle_, nullptr);
+        stand_in_ = reinterpret_cast<StandInDhdFunction*>(dlsym(handle_, kStandInDhdName))();
+    }
+    LoadedStandIn(const LoadedStandIn&) = delete;
+    LoadedStandIn& operator=(const LoadedStandIn&) = delete;
+    ~LoadedStandIn() { dlclose(handle_); }
+
+    [[nodiscard]] StandInDhd* operator->() const noexcept { return stand_in_; }
+
+private:
+    void* handle_;
+    StandInDhd* stand_in_{nullptr};
+};
+
+/// A DhdDevice on the stand-in, in lock step.
+class DhdRig final : public DeviceRig
+{
+public:
+    DhdRig()
+    {
+        DhdDeviceOptions options;
+        options.library = TACTUS_STAND_IN_DHD;
+        options.period = DhdDeviceOptions::kPeriodMin;
+        options.times = patient_times();
+        options.clock = &clock_;
+        while (stand_in_->devices.at(index_).is_open)
+        {
+            ++index_; // Another rig's.
+        }
+        options.index = static_cast<int>(index_);
+        device_ = std::move(DhdDevice::create(options)).value();
+    }
+
+    [[nodiscard]] HapticDevice& device() noexcept override { return *device_; }
+    [[nodiscard]] DeviceSample next() override
+    {
+        await_turn();
+        hand().step();
+        await_turn();
+        return device_->read();
+    }
+    [[nodiscard]] StandInDhdDevice& hand() { return stand_in_->devices.at(index_); }
+    /// A turn begins with a reading: between two that come from here on lies a whole one.
+    void await_turn()
+    {
+        const std::uint64_t now = hand().reads;
+        while (hand().reads < now + 2)
+        {
+            std::this_thread::yield();
+        }
+    }
+
+private:
+    PosixClock clock_;
+    LoadedStandIn stand_in_;
+    std::size_t index_{0};
+    std::unique_ptr<DhdDevice> device_;
+};
+
+} // namespace tactus::test

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+/// A library that exports what platform/dhd takes from Force Dimension's SDK; without
+/// dhdSetForce when STAND_IN_DHD_IS_OLD is defined.
+#include "tests/unit/platform/stand_in_dhd.hpp"
+
+namespace
+{
+
+using tactus::test::StandInDhd;
+using tactus::test::StandInDhdDevice;
+
+StandInDhd stand_in;
+
+StandInDhdDevice& device_of(char id)
+{
+    return stand_in.devices.at(static_cast<std::size_t>(id));
+}
+
+/// 0 or -1, as the SDK does.
+template <typename Work>
+int on(char id, const Work& work)
+{
+    StandInDhdDevice& device = device_of(id);
+    if (!device.is_open || !device.is_plugged_in)
+    {
+        return -1;
+    }
+    const std::lock_guard lock(device.mutex);
+    work(device);
+    return 0;
+}
+
+} // namespace
+
+extern "C"
+{
+
+    StandInDhd* tactus_stand_in_dhd()
+    {
+        return &stand_in;
+    }
+
+    int dhdGetDeviceCount()
+    {
+        return stand_in.count;
+    }
+
+    int dhdOpenID(char index)
+    {
+        StandInDhdDevice& device = device_of(index);
+        if (!device.is_plugged_in || device.is_open.exchange(true))
+        {
+            return -1;
+        }
+        const std::lock_guard lock(device.mutex);
+        device.brakes = true;
+        device.forces_enabled = false;
+        return index;
+    }
+
+    int dhdClose(char id)
+    {
+        return device_of(id).is_open.exchange(false) ? 0 : -1;
+    }
+
+    const char* dhdGetSystemName(char)
+    {
+        return "stand-in\n";
+    }
+
+    int dhdGetPosition(double* x, double* y, double* z, char id)
+    {
+        ++device_of(id).reads;
+        return on(id,
+                  [&](const StandInDhdDevice& device)
+                  {
+                      *x = device.position_m[0];
+                      *y = device.position_m[1];
+                      *z = device.position_m[2];
+                  });
+    }
+
+    int dhdGetLinearVelocity(double* x, double* y, double* z, char id)
+    {
+        if (!device_of(id).has_velocity)
+        {
+            return -1;
+        }
+        return on(id,
+                  [&](const StandInDhdDevice& device)
+                  {
+                      *x = device.velocity[0];
+                      *y = device.velocity[1];
+                      *z = device.velocity[2];
+                  });
+    }
+
+    int dhdGetButton(int index, char id)
+    {
+        int pressed = -1;
+        static_cast<void>(on(id,
+                             [&](const StandInDhdDevice& device)
+                             {
+                                 const auto at = static_cast<std::size_t>(index);
+                                 pressed = at < device.buttons.size() ? device.buttons.at(at) : -1;
+                             }));
+        return pressed;
+    }
+
+#ifndef STAND_IN_DHD_IS_OLD
+    int dhdSetForce(double x, double y, double z, char id)
+    {
+        return on(id, [&](StandInDhdDevice& device) { device.force_n = {x, y, z}; });
+    }
+#endif
+
+    int dhdSetBrakes(int is_on, char id)
+    {
+        if (!device_of(id).has_brakes)
+        {
+            return -1;
+        }
+        return on(id, [&](StandInDhdDevice& device) { device.brakes = is_on != 0; });
+    }
+
+    int dhdEnableForce(unsigned char is_on, char id)
+    {
+        return on(id, [&](StandInDhdDevice& device) { device.forces_enabled = is_on != 0; });
+    }
+
+    const char* dhdErrorGetLastStr()
+    {
+        return "device in use";
+    }
+
+} // extern "C"

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <mutex>
+
+namespace tactus::test
+{
+
+/// What a stand-in for Force Dimension's SDK has of one device: 0.1 kg on a spring of 200 N/m. It
+/// moves only in step(), so that a test has its time in its hands.
+struct StandInDhdDevice
+{
+    void step()
+    {
+        const std::lock_guard lock(mutex);
+        const double damping = brakes ? 60.0 : 6.0;
+        for (std::size_t i = 0; i < 3; ++i)
+        {
+            const double force = brakes || !forces_enabled ? 0.0 : force_n.at(i);
+            velocity.at(i) +=
+                1e-3 * (force - 200.0 * position_m.at(i) - damping * velocity.at(i)) / 0.1;
+            position_m.at(i) += 1e-3 * velocity.at(i);
+        }
+    }
+
+    std::mutex mutex;
+    std::array<double, 3> position_m{};
+    std::array<double, 3> velocity{};
+    std::array<double, 3> force_n{};
+    bool brakes{true};
+    bool forces_enabled{false};
+    std::array<int, 2> buttons{};
+    std::atomic<bool> is_open{false};
+    std::atomic<bool> is_plugged_in{true};
+    std::atomic<bool> has_velocity{true};
+    std::atomic<bool> has_brakes{true};
+    std::atomic<std::uint64_t> reads{0};
+};
+
+struct StandInDhd
+{
+    std::atomic<int> count{8};
+    std::array<StandInDhdDevice, 8> devices;
+};
+
+/// The name of the function of the stand-in that returns it.
+inline constexpr const char* kStandInDhdName = "tactus_stand_in_dhd";
+using StandInDhdFunction = StandInDhd*();
+
+} // namespace tactus::test

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "tests/unit/platform/dhd_rig.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <string>
+
+namespace tactus
+{
+
+namespace
+{
+
+using test::LoadedStandIn;
+using test::StandInDhdDevice;
+
+class DhdDeviceTest : public testing::Test
+{
+protected:
+    DhdDeviceTest()
+    {
+        options.library = TACTUS_STAND_IN_DHD;
+        options.clock = &clock;
+        options.times = test::patient_times();
+    }
+
+    /// The one line that says why not.
+    std::string refusal(PlatformErrorKind kind)
+    {
+        const auto refused = DhdDevice::create(options);
+        EXPECT_FALSE(refused);
+        if (refused)
+        {
+            return "";
+        }
+        EXPECT_EQ(refused.error().kind, kind);
+        EXPECT_EQ(refused.error().message.find('\n'), std::string::npos);
+        return refused.error().message;
+    }
+    void open() { sut = std::move(DhdDevice::create(options)).value(); }
+    StandInDhdDevice& hand() { return stand_in->devices.at(0); }
+    /// Reads until it is as wanted.
+    template <typename Wanted>
+    DeviceSample await(const Wanted& is_wanted)
+    {
+        for (;;)
+        {
+            const DeviceSample sample = sut->read();
+            if (is_wanted(sample))
+            {
+                return sample;
+            }
+            std::this_thread::yield();
+        }
+    }
+    /// Until two turns have begun: a whole one lies between.
+    void await_turn()
+    {
+        const std::uint64_t now = hand().reads;
+        while (hand().reads < now + 2)
+        {
+            std::this_thread::yield();
+        }
+    }
+
+    PosixClock clock;
+    LoadedStandIn stand_in;
+    DhdDeviceOptions options;
+    std::unique_ptr<DhdDevice> sut;
+};
+
+TEST_F(DhdDeviceTest, says_in_one_line_that_the_sdk_is_missing)
+{
+    options.library = "/nowhere/libdhd.so";
+    const std::string line = refusal(PlatformErrorKind::system);
+    EXPECT_NE(line.find("dhd device: the SDK can't be loaded (/nowhere/libdhd.so"),
+              std::string::npos)
+        << line;
+}
+
+TEST_F(DhdDeviceTest, says_in_one_line_which_function_is_missing)
+{
+    options.library = TACTUS_OLD_STAND_IN_DHD;
+    const std::string line = refusal(PlatformErrorKind::system);
+    EXPECT_NE(line.find("has no function dhdSetForce; it takes Force Dimension's SDK 3"),
+              std::string::npos)
+        << line;
+}
+
+TEST_F(DhdDeviceTest, says_in_one_line_that_no_device_is_there_or_can_be_opened)
+{
+    stand_in->count = 0;
+    EXPECT_NE(refusal(PlatformErrorKind::system).find("the SDK finds none; is it plugged in"),
+              std::string::npos);
+    stand_in->count = 2;
+    options.index = 2;
+    EXPECT_NE(refusal(PlatformErrorKind::bad_option).find("there is no device 2, they are 0..1"),
+              std::string::npos);
+    stand_in->count = 8;
+    options.index = 0;
+    hand().is_open = true; // Some other program's.
+    EXPECT_NE(refusal(PlatformErrorKind::system).find("device 0 can't be opened (device in use)"),
+              std::string::npos);
+}
+
+TEST_F(DhdDeviceTest, refuses_options_out_of_range)
+{
+    const DhdDeviceOptions good = options;
+    options.index = 64;
+    EXPECT_NE(refusal(PlatformErrorKind::bad_option).find("0..63"), std::string::npos);
+    options = good;
+    options.period = microseconds(99);
+    EXPECT_NE(refusal(PlatformErrorKind::bad_option).find("100 us..10 ms"), std::string::npos);
+    options = good;
+    options.deadman_button = 16;
+    EXPECT_NE(refusal(PlatformErrorKind::bad_option).find("0..15"), std::string::npos);
+    options = good;
+    options.times.force_hold = Duration{};
+    EXPECT_NE(refusal(PlatformErrorKind::bad_option).find("1 ms..60 s"), std::string::npos);
+    options = good;
+    options.info.limits.mass_kg = 0.0;
+    EXPECT_NE(refusal(PlatformErrorKind::bad_option).find("mass_kg"), std::string::npos);
+    EXPECT_FALSE(hand().is_open) << "it is closed again";
+}
+
+TEST_F(DhdDeviceTest, is_called_what_the_sdk_or_the_user_says)
+{
+    open();
+    EXPECT_EQ(sut->info().name, "stand-in") << "without what can't be shown";
+    sut.reset();
+    options.info.name = "left hand";
+    open();
+    EXPECT_EQ(sut->info().name, "left hand");
+}
+
+TEST_F(DhdDeviceTest, reads_position_velocity_and_button)
+{
+    options.deadman_button = 1;
+    hand().position_m = {0.01, 0.02, 0.03};
+    hand().velocity = {1.0, 2.0, 3.0};
+    open();
+    const DeviceSample free = await([](const DeviceSample& sample) { return sample.connected; });
+    EXPECT_TRUE(free.valid);
+    EXPECT_FALSE(free.deadman_held);
+    EXPECT_EQ(free.position_world_m, (std::array{0.01, 0.02, 0.03}));
+    EXPECT_EQ(free.velocity_world_m_per_s, (std::array{1.0, 2.0, 3.0}));
+    {
+        const std::lock_guard lock(hand().mutex);
+        hand().buttons.at(1) = 1;
+    }
+    hand().has_velocity = false;
+    await([](const auto& sample) { return sample.deadman_held && !sample.velocity_world_m_per_s; });
+}
+
+TEST_F(DhdDeviceTest, takes_no_position_that_is_no_number)
+{
+    hand().position_m = {0.01, 0.0, 0.0};
+    open();
+    await([](const DeviceSample& sample) { return sample.valid; });
+    {
+        const std::lock_guard lock(hand().mutex);
+        hand().position_m.at(1) = std::numeric_limits<double>::quiet_NaN();
+    }
+    const DeviceSample lost = await([](const DeviceSample& sample) { return !sample.valid; });
+    EXPECT_TRUE(lost.connected);
+    EXPECT_EQ(lost.position_world_m, (std::array{0.01, 0.0, 0.0}));
+}
+
+TEST_F(DhdDeviceTest, sets_the_devices_own_brakes_and_takes_them_off)
+{
+    open();
+    await([](const DeviceSample& sample) { return sample.valid; });
+    sut->write({1.0, 2.0, 3.0});
+    await_turn();
+    {
+        const std::lock_guard lock(hand().mutex);
+        EXPECT_FALSE(hand().brakes);
+        EXPECT_TRUE(hand().forces_enabled);
+        EXPECT_EQ(hand().force_n, (std::array{1.0, 2.0, 3.0}));
+    }
+    sut->brake();
+    await_turn();
+    {
+        const std::lock_guard lock(hand().mutex);
+        EXPECT_TRUE(hand().brakes);
+        EXPECT_EQ(hand().force_n, (std::array{0.0, 0.0, 0.0}));
+    }
+    sut->release_brake();
+    await_turn();
+    const std::lock_guard lock(hand().mutex);
+    EXPECT_FALSE(hand().brakes);
+    EXPECT_EQ(hand().force_n, (std::array{0.0, 0.0, 0.0}));
+}
+
+TEST_F(DhdDeviceTest, takes_the_force_away_where_there_are_no_brakes)
+{
+    hand().has_brakes = false;
+    open();
+    await([](const DeviceSample& sample) { return sample.valid; });
+    sut->write({1.0, 2.0, 3.0});
+    await_turn();
+    sut->brake();
+    await_turn();
+    EXPECT_TRUE(sut->read().connected);
+    const std::lock_guard lock(hand().mutex);
+    EXPECT_EQ(hand().force_n, (std::array{0.0, 0.0, 0.0}));
+}
+
+TEST_F(DhdDeviceTest, is_gone_when_unplugged_and_idle_when_it_is_back)
+{
+    open();
+    await([](const DeviceSample& sample) { return sample.valid; });
+    sut->write({1.0, 0.0, 0.0});
+    EXPECT_EQ(sut->status().state, DeviceState::force);
+    hand().is_plugged_in = false;
+    EXPECT_FALSE(await([](const DeviceSample& sample) { return !sample.connected; }).valid);
+    EXPECT_EQ(sut->status().state, DeviceState::idle);
+    hand().is_plugged_in = true;
+    await([](const DeviceSample& sample) { return sample.valid; });
+    EXPECT_EQ(sut->status().state, DeviceState::idle);
+    await_turn();
+    const std::lock_guard lock(hand().mutex);
+    EXPECT_EQ(hand().force_n, (std::array{0.0, 0.0, 0.0}));
+    EXPECT_TRUE(hand().forces_enabled);
+}
+
+TEST_F(DhdDeviceTest, leaves_the_device_without_a_force_and_closed)
+{
+    open();
+    await([](const DeviceSample& sample) { return sample.valid; });
+    sut->write({1.0, 0.0, 0.0});
+    await_turn();
+    sut.reset();
+    EXPECT_EQ(hand().force_n, (std::array{0.0, 0.0, 0.0}));
+    EXPECT_FALSE(hand().forces_enabled);
+    EXPECT_FALSE(hand().is_open);
+}
+
+} // namespace
+
+} // namespace tactus

@@ -1,0 +1,399 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "tests/unit/platform/udp_rig.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <thread>
+#include <vector>
+
+namespace tactus
+{
+
+namespace
+{
+
+using test::UdpPeer;
+using udp::Refusal;
+
+udp::Socket any_socket()
+{
+    return std::move(udp::Socket::open("127.0.0.1", 0)).value();
+}
+
+DeviceInfo desk()
+{
+    DeviceInfo info;
+    info.name = "desk";
+    info.limits.delay_s = 0.001;
+    info.workspace_radius_m = 0.1;
+    info.speed_max_m_per_s = 5.0;
+    info.rate_min_hz = 100;
+    info.rate_max_hz = 4'000;
+    return info;
+}
+
+class UdpDeviceTest : public testing::Test
+{
+protected:
+    UdpDeviceTest() { options.clock = &clock; }
+
+    /// From here on `peer` is the device of `sut`.
+    void attach()
+    {
+        peer.describe(desk());
+        sut = std::move(UdpDevice::create(std::move(socket), options)).value();
+    }
+    udp::SampleDatagram sample_at(double x_m)
+    {
+        udp::SampleDatagram sample;
+        sample.position_m = {x_m, 0.0, 0.0};
+        sample.time_ns = ++device_ns;
+        sample.valid = true;
+        return sample;
+    }
+    [[nodiscard]] std::uint64_t refused(Refusal refusal) const
+    {
+        return sut->traffic().refused.at(static_cast<std::size_t>(refusal));
+    }
+    /// Until one is there that is as wanted.
+    template <typename Wanted>
+    static udp::ForceDatagram await_force(UdpPeer& from, const Wanted& is_wanted)
+    {
+        for (;;)
+        {
+            const auto force = from.receive(milliseconds(100));
+            if (force && is_wanted(*force))
+            {
+                return *force;
+            }
+        }
+    }
+
+    PosixClock clock;
+    UdpDeviceOptions options;
+    std::int64_t device_ns{0};
+    udp::Socket socket = any_socket();
+    udp::Endpoint controller = socket.endpoint();
+    UdpPeer peer{controller, 11};
+    std::unique_ptr<UdpDevice> sut;
+};
+
+TEST_F(UdpDeviceTest, refuses_options_out_of_range_in_one_line)
+{
+    const auto line_of = [](const UdpDeviceOptions& bad)
+    {
+        const auto refused = UdpDevice::create(bad);
+        EXPECT_FALSE(refused);
+        EXPECT_EQ(refused.error().kind, PlatformErrorKind::bad_option);
+        EXPECT_EQ(refused.error().message.find('\n'), std::string::npos);
+        return refused.error().message;
+    };
+    UdpDeviceOptions bad = options;
+    bad.address = "localhost";
+    EXPECT_NE(line_of(bad).find("'localhost' is no numeric IPv4 address"), std::string::npos);
+    bad.address = "192.0.2.1"; // Of nobody, by RFC 5737.
+    EXPECT_NE(line_of(bad).find("can't listen on 192.0.2.1:48500"), std::string::npos);
+    bad = options;
+    for (const int port : {-1, 80, 65'536})
+    {
+        bad.port = port;
+        EXPECT_NE(line_of(bad).find("1024..65535"), std::string::npos);
+    }
+    bad.port = controller.port;
+    EXPECT_NE(line_of(bad).find("EADDRINUSE"), std::string::npos);
+    bad = options;
+    bad.port = 0;
+    bad.poll = microseconds(19);
+    EXPECT_NE(line_of(bad).find("20 us..10 ms"), std::string::npos);
+    bad.poll = options.poll;
+    bad.wait = Duration{-1};
+    EXPECT_NE(line_of(bad).find("0..3600 s"), std::string::npos);
+    bad.wait = options.wait;
+    bad.transport_delay = milliseconds(101);
+    EXPECT_NE(line_of(bad).find("0..100 ms"), std::string::npos);
+    bad.transport_delay = Duration{};
+    bad.times.silence = Duration{};
+    EXPECT_NE(line_of(bad).find("1 ms..60 s"), std::string::npos);
+}
+
+TEST_F(UdpDeviceTest, is_bound_to_this_machine_unless_told_otherwise)
+{
+    EXPECT_EQ(options.address, "127.0.0.1");
+    EXPECT_EQ(controller.address, 0x7F00'0001U);
+}
+
+TEST_F(UdpDeviceTest, says_that_nobody_came_and_what_was_refused)
+{
+    options.wait = Duration{};
+    const auto nobody = UdpDevice::create(any_socket(), options);
+    ASSERT_FALSE(nobody);
+    EXPECT_EQ(nobody.error().kind, PlatformErrorKind::system);
+    EXPECT_NE(nobody.error().message.find("no device described itself to 127.0.0.1:"),
+              std::string::npos);
+    peer.send(std::vector<std::byte>(96, std::byte{1}));
+    options.wait = milliseconds(50);
+    const auto rubbish = UdpDevice::create(std::move(socket), options);
+    ASSERT_FALSE(rubbish);
+    EXPECT_NE(rubbish.error().message.find("within 50 ms (1 datagrams refused, the last: wrong "
+                                           "magic)"),
+              std::string::npos)
+        << rubbish.error().message;
+}
+
+TEST_F(UdpDeviceTest, is_what_the_device_says_and_as_late_as_the_way)
+{
+    options.transport_delay = microseconds(400);
+    attach();
+    EXPECT_EQ(sut->info().name, "desk");
+    EXPECT_EQ(sut->info().rate_max_hz, 4'000);
+    EXPECT_DOUBLE_EQ(sut->info().limits.delay_s, 0.0014);
+}
+
+TEST_F(UdpDeviceTest, passes_on_what_a_sample_says)
+{
+    options.times = test::patient_times();
+    attach();
+    static_cast<void>(peer.ask());
+    udp::SampleDatagram sample = sample_at(0.01);
+    sample.velocity_m_per_s = {1.0, 2.0, 3.0};
+    sample.deadman_held = false;
+    peer.say(sample);
+    const DeviceSample first = sut->read();
+    EXPECT_EQ(first.position_world_m, (std::array{0.01, 0.0, 0.0}));
+    EXPECT_EQ(first.velocity_world_m_per_s, (std::array{1.0, 2.0, 3.0}));
+    EXPECT_TRUE(first.valid);
+    EXPECT_FALSE(first.deadman_held);
+    sample = sample_at(0.02);
+    sample.valid = false;
+    peer.say(sample);
+    const DeviceSample second = sut->read();
+    EXPECT_FALSE(second.valid);
+    EXPECT_TRUE(second.deadman_held);
+    EXPECT_EQ(second.position_world_m, first.position_world_m);
+}
+
+TEST_F(UdpDeviceTest, refuses_and_counts_what_is_stale_foreign_or_spoilt)
+{
+    options.times = test::patient_times();
+    attach();
+    static_cast<void>(peer.ask());
+    peer.say(sample_at(0.01));
+    const std::uint64_t sequence = peer.sequence();
+    const std::uint64_t session = peer.session();
+
+    udp::SampleDatagram again = sample_at(0.02);
+    again.address = {peer.instance(), session, sequence};
+    peer.send(udp::encode(again)); // The number of the one before.
+    again.address = {peer.instance(), session + 1, sequence + 1};
+    peer.send(udp::encode(again)); // Another session's.
+    auto spoilt = udp::encode(sample_at(0.03));
+    spoilt[50] ^= std::byte{1};
+    peer.send(spoilt);
+    peer.send(std::span(spoilt).first(95));
+    peer.send(std::vector<std::byte>(1'400, std::byte{7}));
+    UdpPeer thief(controller, 12);
+    thief.describe(desk());
+    again.address = {peer.instance(), session, sequence + 1};
+    thief.send(udp::encode(again)); // All of it right, but from another port.
+
+    peer.say(sample_at(0.04)); // On one socket all others have been taken in before it...
+    while (refused(Refusal::foreign) < 2) // ... but it is two sockets here.
+    {
+        std::this_thread::yield();
+    }
+    EXPECT_EQ(refused(Refusal::stale), 1U);
+    EXPECT_EQ(refused(Refusal::session), 1U);
+    EXPECT_EQ(refused(Refusal::checksum), 1U);
+    EXPECT_EQ(refused(Refusal::size), 2U);
+    EXPECT_EQ(sut->traffic().samples, 2U);
+    EXPECT_EQ(sut->traffic().sessions, 1U);
+    EXPECT_EQ(sut->read().position_world_m[0], 0.04);
+}
+
+TEST_F(UdpDeviceTest, is_gone_when_the_device_is_silent_and_idle_when_another_is_there)
+{
+    attach();
+    static_cast<void>(peer.ask());
+    peer.say(sample_at(0.01));
+    while (sut->read().connected || sut->traffic().lost == 0)
+    {
+        sut->write({1.0, 0.0, 0.0});
+        std::this_thread::yield();
+    }
+    EXPECT_FALSE(sut->read().valid);
+    EXPECT_EQ(sut->status().state, DeviceState::idle);
+    const std::uint64_t lost = sut->traffic().lost;
+
+    UdpPeer other(controller, 12);
+    // Until it is connected: it may be silent for too long by the machine's fault.
+    while (!sut->read().connected)
+    {
+        other.describe(desk());
+        if (other.receive(milliseconds(5)))
+        {
+            other.sample(sample_at(0.05));
+        }
+        std::this_thread::yield();
+    }
+    EXPECT_GE(sut->traffic().lost, lost);
+    EXPECT_GE(sut->traffic().sessions, 2U);
+    EXPECT_EQ(sut->read().position_world_m[0], 0.05);
+    EXPECT_EQ(sut->status().state, DeviceState::idle) << "the force was for the one before";
+    while (const auto force = other.receive(Duration{}))
+    {
+        EXPECT_EQ(force->state, DeviceState::idle);
+        EXPECT_EQ(force->force_n, (std::array{0.0, 0.0, 0.0}));
+    }
+}
+
+TEST_F(UdpDeviceTest, ends_a_force_that_nobody_writes_any_more)
+{
+    options.times.silence = milliseconds(60'000);
+    attach();
+    static_cast<void>(peer.ask());
+    peer.say(sample_at(0.0));
+    static_cast<void>(sut->read());
+    udp::ForceDatagram force;
+    do // The machine may stall for as long as a force is held.
+    {
+        sut->write({1.0, 2.0, 3.0});
+        force = await_force(peer, [](const auto&) { return true; });
+    } while (force.state != DeviceState::force);
+    EXPECT_EQ(force.force_n, (std::array{1.0, 2.0, 3.0}));
+    const auto is_idle = [](const udp::ForceDatagram& f) { return f.state == DeviceState::idle; };
+    EXPECT_EQ(await_force(peer, is_idle).force_n, (std::array{0.0, 0.0, 0.0}));
+    EXPECT_EQ(sut->status().state, DeviceState::idle);
+}
+
+TEST_F(UdpDeviceTest, sends_the_brake_by_itself)
+{
+    options.times = test::patient_times();
+    attach();
+    static_cast<void>(peer.ask());
+    peer.say(sample_at(0.0));
+    std::thread other([this] { sut->brake(); });
+    other.join();
+    // The I/O thread knows which sample it answers; brake() doesn't.
+    const udp::ForceDatagram at_once =
+        await_force(peer, [](const auto& force) { return force.answers == 0; });
+    EXPECT_EQ(at_once.state, DeviceState::brake);
+    EXPECT_EQ(at_once.force_n, (std::array{0.0, 0.0, 0.0}));
+    EXPECT_EQ(peer.ask().state, DeviceState::brake) << "and the I/O thread goes on with it";
+    sut->release_brake();
+    EXPECT_EQ(peer.ask().state, DeviceState::idle);
+}
+
+/// Whatever the threads do: of two datagrams the one with the greater number counts. The force
+/// tells the round that it is from, and each round ends with one brake that is sent at once.
+TEST_F(UdpDeviceTest, sends_no_force_with_a_number_beyond_that_of_the_brake)
+{
+    constexpr int kRounds = 50'000;
+    options.times = test::patient_times();
+    options.poll = UdpDeviceOptions::kPollMin;
+    attach();
+    static_cast<void>(peer.ask());
+    peer.say(sample_at(0.0));
+    static_cast<void>(sut->read());
+    std::vector<udp::ForceDatagram> seen;
+    for (int round = 1; round <= kRounds; ++round)
+    {
+        sut->release_brake();
+        for (int i = 0; i < round % 16; ++i)
+        {
+            sut->write({round * 1e-5, 0.0, 0.0});
+        }
+        sut->brake();
+        while (const auto force = peer.receive(Duration{}))
+        {
+            seen.push_back(*force);
+        }
+    }
+    std::ranges::sort(seen, {}, [](const auto& force) { return force.address.sequence; });
+    int brakes = 0;
+    int forces = 0;
+    for (const udp::ForceDatagram& datagram : seen)
+    {
+        brakes += datagram.answers == 0 ? 1 : 0;
+        if (datagram.state == DeviceState::force)
+        {
+            ++forces;
+            EXPECT_GT(std::lround(datagram.force_n[0] * 1e5), brakes);
+        }
+    }
+    EXPECT_EQ(brakes, kRounds);
+    EXPECT_GT(forces, 0);
+}
+
+TEST_F(UdpDeviceTest, tells_the_device_to_be_idle_when_it_ends)
+{
+    options.times = test::patient_times();
+    attach();
+    static_cast<void>(peer.ask());
+    peer.say(sample_at(0.0));
+    static_cast<void>(sut->read());
+    sut->write({1.0, 0.0, 0.0});
+    EXPECT_EQ(peer.ask().state, DeviceState::force);
+    sut.reset();
+    std::optional<udp::ForceDatagram> last;
+    while (const auto force = peer.receive(Duration{}))
+    {
+        last = force;
+    }
+    ASSERT_TRUE(last);
+    EXPECT_EQ(last->state, DeviceState::idle);
+    EXPECT_EQ(last->force_n, (std::array{0.0, 0.0, 0.0}));
+}
+
+void print(const char* way, std::vector<Duration> times)
+{
+    std::ranges::sort(times);
+    const auto at = [&](std::size_t percent)
+    { return static_cast<double>(times[(times.size() - 1) * percent / 100].ns) * 1e-3; };
+    std::printf("[ latency  ] %s: p50 %.0f us, p99 %.0f us, largest %.0f us\n", way, at(50), at(99),
+                at(100));
+}
+
+/// Each way by itself, over loopback. The figures are those of docs/udp-device.md; what is asserted
+/// is that everything arrives.
+TEST_F(UdpDeviceTest, tells_what_each_way_takes)
+{
+    constexpr int kRounds = 1'000;
+    options.times = test::patient_times();
+    attach();
+    static_cast<void>(peer.ask());
+    peer.say(sample_at(0.0));
+    static_cast<void>(sut->read());
+    std::vector<Duration> forces;
+    std::vector<Duration> samples;
+    const auto get_out_of_step = []
+    { std::this_thread::sleep_for(std::chrono::microseconds(370)); };
+    for (int round = 1; round <= kRounds; ++round)
+    {
+        const double value = round * 1e-3;
+        const MonotonicTime written = clock.now();
+        sut->write({value, 0.0, 0.0});
+        static_cast<void>(
+            await_force(peer, [value](const auto& force) { return force.force_n[0] == value; }));
+        forces.push_back(clock.now() - written);
+        get_out_of_step();
+        const MonotonicTime sent = clock.now();
+        peer.sample(sample_at(value));
+        while (sut->read().position_world_m[0] != value)
+        {
+        }
+        samples.push_back(clock.now() - sent);
+        get_out_of_step();
+    }
+    print("a force, written to received", forces);
+    print("a sample, sent to read", samples);
+    EXPECT_EQ(sut->traffic().unsent, 0U);
+}
+
+} // namespace
+
+} // namespace tactus

@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/udp/session.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace tactus::udp
+{
+
+namespace
+{
+
+constexpr Endpoint kHome{0x7F00'0001, 50'000};
+constexpr Endpoint kElsewhere{0x7F00'0001, 50'001};
+constexpr std::uint64_t kSecret = 0xABCD'EF01'2345'6789;
+
+class UdpSession : public testing::Test
+{
+protected:
+    using Result = std::variant<Described, Sampled, Refusal>;
+
+    Result describe(std::uint64_t sequence, std::uint64_t instance = 9, Endpoint from = kHome)
+    {
+        return sut.receive(encode(DescribeDatagram{{instance, 0, sequence}, info}), from, now);
+    }
+    Result sample(std::uint64_t sequence, std::uint64_t session = kSecret,
+                  std::uint64_t instance = 9, Endpoint from = kHome)
+    {
+        SampleDatagram datagram{{instance, session, sequence}, {}, {}, device_ns, true, true};
+        device_ns += 1'000'000;
+        return sut.receive(encode(datagram), from, now);
+    }
+    static bool is(const Result& result, Refusal refusal)
+    {
+        const auto* found = std::get_if<Refusal>(&result);
+        return found != nullptr && *found == refusal;
+    }
+    static bool is_sampled(const Result& result) { return std::holds_alternative<Sampled>(result); }
+    static bool is_described(const Result& result)
+    {
+        return std::holds_alternative<Described>(result);
+    }
+    void be_silent()
+    {
+        now = now + milliseconds(21);
+        EXPECT_TRUE(sut.lapse(now));
+        EXPECT_FALSE(sut.lapse(now)) << "said once";
+    }
+
+    DeviceInfo info = []
+    {
+        DeviceInfo made;
+        made.name = "desk";
+        made.workspace_radius_m = 0.1;
+        made.speed_max_m_per_s = 1.0;
+        made.rate_min_hz = 100;
+        made.rate_max_hz = 1'000;
+        return made;
+    }();
+    MonotonicTime now{5'000'000'000};
+    std::int64_t device_ns{77};
+    Session sut{kSecret, milliseconds(20)};
+};
+
+TEST_F(UdpSession, hears_nobody_before_a_description)
+{
+    EXPECT_TRUE(is(sample(1), Refusal::foreign));
+    EXPECT_FALSE(sut.peer().is_attached);
+    EXPECT_FALSE(sut.info());
+    EXPECT_TRUE(is_described(describe(1)));
+    EXPECT_TRUE(sut.peer().is_attached);
+    EXPECT_EQ(sut.peer().session, kSecret);
+    EXPECT_EQ(sut.peer().endpoint, kHome);
+    EXPECT_TRUE(is_sampled(sample(2)));
+}
+
+TEST_F(UdpSession, is_described_again_without_a_new_session)
+{
+    EXPECT_TRUE(is_described(describe(1)));
+    EXPECT_TRUE(is_described(describe(2)));
+    EXPECT_EQ(sut.peer().session, kSecret);
+    EXPECT_EQ(sut.answers(), 2U);
+}
+
+TEST_F(UdpSession, refuses_what_is_not_newer)
+{
+    EXPECT_TRUE(is_described(describe(5)));
+    EXPECT_TRUE(is_sampled(sample(6)));
+    for (const std::uint64_t sequence : {std::uint64_t{6}, std::uint64_t{1}, std::uint64_t{5}})
+    {
+        EXPECT_TRUE(is(sample(sequence), Refusal::stale));
+        EXPECT_TRUE(is(describe(sequence), Refusal::stale));
+    }
+    EXPECT_TRUE(is_sampled(sample(900))) << "what was lost doesn't matter";
+    EXPECT_EQ(sut.answers(), 900U);
+    device_ns -= 1'000'000;
+    EXPECT_TRUE(is(sample(901), Refusal::stale)) << "the time of the one before";
+    EXPECT_EQ(sut.answers(), 900U) << "a refusal changes nothing";
+}
+
+TEST_F(UdpSession, refuses_others_while_one_is_attached)
+{
+    EXPECT_TRUE(is_described(describe(1)));
+    EXPECT_TRUE(is(describe(1, 10, kElsewhere), Refusal::foreign));
+    EXPECT_TRUE(is(describe(2, 9, kElsewhere), Refusal::foreign));
+    EXPECT_TRUE(is(describe(2, 10, kHome), Refusal::foreign));
+    EXPECT_TRUE(is(sample(2, kSecret, 9, kElsewhere), Refusal::foreign));
+    EXPECT_TRUE(is(sample(2, kSecret, 10, kHome), Refusal::foreign));
+    EXPECT_TRUE(is(sample(2, kSecret + 1), Refusal::session));
+    EXPECT_TRUE(is(sample(2, 0), Refusal::session));
+    EXPECT_TRUE(is_sampled(sample(2)));
+}
+
+TEST_F(UdpSession, is_new_once_for_each_attachment)
+{
+    EXPECT_TRUE(is_described(describe(1)));
+    EXPECT_TRUE(std::get<Sampled>(sample(2)).is_new);
+    EXPECT_FALSE(std::get<Sampled>(sample(3)).is_new);
+    now = now + milliseconds(20);
+    EXPECT_FALSE(sut.lapse(now)) << "not yet";
+    be_silent();
+    EXPECT_FALSE(sut.peer().is_attached);
+    EXPECT_TRUE(std::get<Sampled>(sample(4)).is_new) << "back within its session";
+    EXPECT_TRUE(sut.peer().is_attached);
+    EXPECT_EQ(sut.peer().session, kSecret);
+}
+
+TEST_F(UdpSession, lets_another_instance_in_when_the_first_is_silent)
+{
+    EXPECT_TRUE(is_described(describe(1)));
+    EXPECT_TRUE(is_sampled(sample(2)));
+    be_silent();
+    EXPECT_TRUE(is_described(describe(1, 10, kElsewhere)));
+    EXPECT_EQ(sut.peer().session, kSecret + 1);
+    EXPECT_EQ(sut.peer().endpoint, kElsewhere);
+    EXPECT_TRUE(is(sample(3), Refusal::foreign)) << "the one before is out";
+    EXPECT_TRUE(is(sample(2, kSecret, 10, kElsewhere), Refusal::session));
+    EXPECT_TRUE(std::get<Sampled>(sample(2, kSecret + 1, 10, kElsewhere)).is_new);
+}
+
+/// What was recorded of a session is of no use in a later one.
+TEST_F(UdpSession, refuses_a_session_that_is_played_again)
+{
+    EXPECT_TRUE(is_described(describe(1)));
+    EXPECT_TRUE(is_sampled(sample(2)));
+    EXPECT_TRUE(is_sampled(sample(3)));
+    be_silent();
+    EXPECT_TRUE(is_described(describe(1, 10)));
+    be_silent();
+    EXPECT_TRUE(is_described(describe(1))) << "anybody may describe the device";
+    EXPECT_TRUE(is(sample(2), Refusal::session));
+    EXPECT_TRUE(is(sample(3), Refusal::session));
+    be_silent();
+    EXPECT_FALSE(sut.peer().is_attached) << "and is out again";
+}
+
+TEST_F(UdpSession, lets_no_other_device_in)
+{
+    EXPECT_TRUE(is_described(describe(1)));
+    be_silent();
+    info.limits.force_max_n += 1.0;
+    EXPECT_TRUE(is(describe(1, 10), Refusal::other_device));
+    info.limits.force_max_n -= 1.0;
+    info.name = "other";
+    EXPECT_TRUE(is(describe(1, 10), Refusal::other_device));
+    info.name = "desk";
+    EXPECT_TRUE(is_described(describe(1, 10)));
+}
+
+TEST_F(UdpSession, steps_as_the_devices_clock_does_and_starts_as_ours)
+{
+    EXPECT_TRUE(is_described(describe(1)));
+    const MonotonicTime first = std::get<Sampled>(sample(2)).reading.time;
+    EXPECT_EQ(first, now);
+    now = now + microseconds(1'700); // Late on its way; the device's step is 1 ms.
+    const auto second = std::get<Sampled>(sample(3)).reading;
+    EXPECT_EQ(second.time - first, milliseconds(1));
+    EXPECT_EQ(second.arrival, now);
+}
+
+TEST_F(UdpSession, never_goes_back_in_time_whatever_the_devices_clock_does)
+{
+    EXPECT_TRUE(is_described(describe(1)));
+    MonotonicTime last = std::get<Sampled>(sample(2)).reading.time;
+    const std::vector<std::int64_t> jumps_ns{1, 3'600'000'000'000, 1, std::int64_t{1} << 61};
+    std::uint64_t sequence = 3;
+    for (const std::int64_t jump_ns : jumps_ns)
+    {
+        device_ns += jump_ns;
+        now = now + milliseconds(1);
+        const auto result = sample(sequence++);
+        ASSERT_TRUE(is_sampled(result)) << jump_ns;
+        const MonotonicTime time = std::get<Sampled>(result).reading.time;
+        EXPECT_GT(time, last);
+        EXPECT_LE(time, now + Session::kClockDrift);
+        last = time;
+    }
+    be_silent();
+    device_ns = 0; // Started anew.
+    EXPECT_TRUE(is_described(describe(1, 10)));
+    EXPECT_GT(std::get<Sampled>(sample(2, kSecret + 1, 10)).reading.time, last);
+}
+
+TEST_F(UdpSession, changes_nothing_for_rubbish)
+{
+    EXPECT_TRUE(is_described(describe(1)));
+    const std::vector<std::byte> rubbish(96, std::byte{0x5A});
+    EXPECT_TRUE(is(sut.receive(rubbish, kHome, now + milliseconds(5)), Refusal::magic));
+    now = now + milliseconds(20);
+    EXPECT_FALSE(sut.lapse(now));
+    be_silent();
+}
+
+} // namespace
+
+} // namespace tactus::udp
