@@ -28,6 +28,15 @@ double nearest_of(std::span<const PlacedSurface> surfaces) noexcept
     return nearest;
 }
 
+/// No more than the distance from `place` to the triangle, and by a side of it less at most.
+double least_distance(const LocalTriangle& triangle, const Vec3& place) noexcept
+{
+    const Vec3 corner = to_vec3(triangle.corners_m[0]);
+    const double side_sq = std::max((to_vec3(triangle.corners_m[1]) - corner).squaredNorm(),
+                                    (to_vec3(triangle.corners_m[2]) - corner).squaredNorm());
+    return (place - corner).norm() - std::sqrt(side_sq);
+}
+
 } // namespace
 
 Vicinity::Vicinity(std::span<const PlacedSurface> surfaces, const Vec3& anchor_m,
@@ -59,13 +68,23 @@ bool Vicinity::try_gather(double moved_m) noexcept
         const LocalSurface& surface = *surfaces_[s].surface;
         const double scale = surfaces_[s].pose->scale;
         const double reach = (reach_m_ + moved_m) / scale;
+        const Vec3 center = to_model(*surfaces_[s].pose, center_m_);
         for (std::uint32_t i = 0; i < surface.count; ++i)
         {
             if (!(surface.distances_m[i] <= reach))
             {
                 continue;
             }
-            const double distance_m = surface.distances_m[i] * scale - moved_m;
+            double distance_m = surface.distances_m[i] * scale - moved_m;
+            if (moved_m > 0.0)
+            {
+                const LocalTriangle& triangle = surface.triangles[i];
+                distance_m = std::max(distance_m, least_distance(triangle, center) * scale);
+                if (distance_m > reach_m_)
+                {
+                    continue;
+                }
+            }
             if (!faces_.try_push_back(
                     {&surface.triangles[i], s, 0, Vec3(0.0, 0.0, 0.0), distance_m}))
             {
