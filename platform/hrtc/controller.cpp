@@ -43,13 +43,17 @@ Controller::create(const Options& options, std::vector<ServedModel> models, cons
 {
     std::unique_ptr<Controller> controller(new Controller(options, std::move(models)));
     controller->make_poses(options);
+    if (std::optional<ControllerError> error = controller->open_devices(options))
+    {
+        return *error;
+    }
     controller->make_tools(options);
     if (std::optional<ControllerError> error = controller->lay_out_pools(options))
     {
         return *error;
     }
     controller->make_couriers(log);
-    if (std::optional<ControllerError> error = controller->make_devices(options))
+    if (std::optional<ControllerError> error = controller->finish_devices(options))
     {
         return *error;
     }
@@ -82,6 +86,34 @@ void Controller::make_poses(const Options& options)
     }
 }
 
+/// Those that aren't simulated; before the tools, which need to know what the devices can do.
+std::optional<ControllerError> Controller::open_devices(const Options& options)
+{
+    devices_.resize(std::max<std::size_t>(options.tool_radii_m.size(), 1));
+    const Duration wait = milliseconds(static_cast<std::int64_t>(options.wait_s * 1e3));
+    for (std::size_t i = 0; i < options.devices.size(); ++i)
+    {
+        if (options.devices[i].kind == DeviceKind::simulated)
+        {
+            continue;
+        }
+        auto device = open_device(options.devices[i], wait, clock_);
+        if (!device)
+        {
+            return ControllerError{"--device: " + device.error().message};
+        }
+        const DeviceInfo& info = device.value()->info();
+        if (options.rate_hz < info.rate_min_hz || options.rate_hz > info.rate_max_hz)
+        {
+            return ControllerError{fmt::format("--rate: {} Hz; the device {} takes {} to {} Hz",
+                                               options.rate_hz, info.name, info.rate_min_hz,
+                                               info.rate_max_hz)};
+        }
+        devices_[i] = std::move(device).value();
+    }
+    return std::nullopt;
+}
+
 void Controller::make_tools(const Options& options)
 {
     std::vector<double> radii_m = options.tool_radii_m;
@@ -89,9 +121,11 @@ void Controller::make_tools(const Options& options)
     {
         radii_m.push_back(kDefaultToolShare * diagonal_world_m());
     }
-    for (const double radius_m : radii_m)
+    for (std::size_t i = 0; i < radii_m.size(); ++i)
     {
-        tools_.push_back({radius_m, options.stiffness_n_per_m, SimulatedDeviceOptions{}.force_max_n,
+        const double force_max_n = devices_[i] != nullptr ? devices_[i]->info().limits.force_max_n
+                                                          : SimulatedDeviceOptions{}.force_max_n;
+        tools_.push_back({radii_m[i], options.stiffness_n_per_m, force_max_n,
                           kSpeedMax_diag * diagonal_world_m()});
     }
 }
@@ -152,52 +186,70 @@ void Controller::make_couriers(const Log& log)
     }
 }
 
-std::optional<ControllerError> Controller::make_devices(const Options& options)
+std::optional<ControllerError> Controller::finish_devices(const Options& options)
 {
-    const std::vector<Vec3> anchors = anchors_world_m();
-    for (const ToolSpec& tool : tools_)
+    for (std::size_t tool = 0; tool < tools_.size(); ++tool)
     {
-        HandScene scene;
-        scene.anchors_world_m = anchors;
-        scene.diagonal_m = diagonal_world_m();
-        scene.tool_radius_m = tool.radius_m;
-        scene.period = nanoseconds(1'000'000'000 / options.rate_hz);
-        scene.frames_total =
-            static_cast<std::uint64_t>(options.duration_s * static_cast<double>(options.rate_hz));
-        auto hand = ScriptedHand::create(scene);
-        if (!hand)
+        if (devices_[tool] == nullptr)
         {
-            return ControllerError{"--tool: " + hand.error().message};
+            if (auto error = simulate_device(options, tool))
+            {
+                return error;
+            }
         }
-        SimulatedDeviceOptions device_options;
-        device_options.rate_hz = options.rate_hz;
-        device_options.workspace_centre_world_m = hand.value()->centre_world_m();
-        device_options.workspace_radius_m = hand.value()->reach_m();
-        device_options.speed_max_m_per_s =
-            std::max(device_options.speed_max_m_per_s, kHandSpeed_diag * diagonal_world_m());
-        auto device = SimulatedDevice::create(device_options, std::move(hand).value());
-        if (!device)
-        {
-            return ControllerError{"--device: " + device.error().message};
-        }
-        const DeviceInfo& info = device.value()->info();
-        ConditionerSetup conditioner;
-        conditioner.device = info.limits;
-        conditioner.period_s = to_seconds(scene.period);
-        for (const ObjectSpec& object : objects_)
-        {
-            conditioner.surface_damping_max_n_s_per_m = std::max(
-                conditioner.surface_damping_max_n_s_per_m, object.material.damping_n_s_per_m);
-        }
-        conditioners_.push_back(conditioner);
-        const double cap_n_per_m = stiffness_cap(info.limits, conditioner.period_s,
-                                                 conditioner.surface_damping_max_n_s_per_m);
-        limits_.push_back({options.speed_limit_m_per_s.value_or(info.speed_max_m_per_s),
-                           info.limits.force_max_n, std::min(tool.stiffness_n_per_m, cap_n_per_m),
-                           kDampingShare * info.limits.damping_n_s_per_m});
-        devices_.push_back(std::move(device).value());
+        limit_force(options, tool);
     }
     return std::nullopt;
+}
+
+std::optional<ControllerError> Controller::simulate_device(const Options& options, std::size_t tool)
+{
+    HandScene scene;
+    scene.anchors_world_m = anchors_world_m();
+    scene.diagonal_m = diagonal_world_m();
+    scene.tool_radius_m = tools_[tool].radius_m;
+    scene.period = nanoseconds(1'000'000'000 / options.rate_hz);
+    scene.frames_total =
+        static_cast<std::uint64_t>(options.duration_s * static_cast<double>(options.rate_hz));
+    auto hand = ScriptedHand::create(scene);
+    if (!hand)
+    {
+        return ControllerError{"--tool: " + hand.error().message};
+    }
+    SimulatedDeviceOptions device_options;
+    device_options.rate_hz = options.rate_hz;
+    device_options.workspace_centre_world_m = hand.value()->centre_world_m();
+    device_options.workspace_radius_m = hand.value()->reach_m();
+    device_options.speed_max_m_per_s =
+        std::max(device_options.speed_max_m_per_s, kHandSpeed_diag * diagonal_world_m());
+    auto device = SimulatedDevice::create(device_options, std::move(hand).value());
+    if (!device)
+    {
+        return ControllerError{"--device: " + device.error().message};
+    }
+    devices_[tool] = std::move(device).value();
+    return std::nullopt;
+}
+
+/// What stands between the tool's force and its device.
+void Controller::limit_force(const Options& options, std::size_t tool)
+{
+    const DeviceInfo& info = devices_[tool]->info();
+    ConditionerSetup conditioner;
+    conditioner.device = info.limits;
+    conditioner.period_s = 1.0 / static_cast<double>(options.rate_hz);
+    for (const ObjectSpec& object : objects_)
+    {
+        conditioner.surface_damping_max_n_s_per_m =
+            std::max(conditioner.surface_damping_max_n_s_per_m, object.material.damping_n_s_per_m);
+    }
+    conditioners_.push_back(conditioner);
+    const double cap_n_per_m =
+        stiffness_cap(info.limits, conditioner.period_s, conditioner.surface_damping_max_n_s_per_m);
+    limits_.push_back({options.speed_limit_m_per_s.value_or(info.speed_max_m_per_s),
+                       info.limits.force_max_n,
+                       std::min(tools_[tool].stiffness_n_per_m, cap_n_per_m),
+                       kDampingShare * info.limits.damping_n_s_per_m});
 }
 
 /// The first model's base vertices: original vertices, so they lie on its surface.

@@ -5,6 +5,7 @@
 #include "platform/haptic_device.hpp"
 #include "platform/hrtc/options.hpp"
 #include "platform/pool_memory.hpp"
+#include "platform/posix/posix_clock.hpp"
 #include "rt_core/force/force_conditioner.hpp"
 #include "rt_core/force/safe_state.hpp"
 #include "rt_core/frame/frame.hpp"
@@ -32,8 +33,10 @@ struct ControllerError
 class Controller
 {
 public:
-    /// Lays out all pools inside options.pool_mib, makes the frame and a simulated device for each
-    /// tool. Refused when the pools are too small, with the size that would do for a start.
+    /// Opens the devices, waiting for those that have to come, lays out all pools inside
+    /// options.pool_mib, makes the frame, and a simulated device for each tool without another.
+    /// Refused when a device isn't there or doesn't run at that rate, or when the pools are too
+    /// small, with the size that would do for a start.
     [[nodiscard]] static Result<std::unique_ptr<Controller>, ControllerError>
     create(const Options& options, std::vector<ServedModel> models, const Log& log);
 
@@ -70,9 +73,13 @@ private:
 
     [[nodiscard]] std::optional<ControllerError> lay_out_pools(const Options& options);
     void make_poses(const Options& options);
+    [[nodiscard]] std::optional<ControllerError> open_devices(const Options& options);
     void make_tools(const Options& options);
     void make_couriers(const Log& log);
-    [[nodiscard]] std::optional<ControllerError> make_devices(const Options& options);
+    [[nodiscard]] std::optional<ControllerError> simulate_device(const Options& options,
+                                                                 std::size_t tool);
+    [[nodiscard]] std::optional<ControllerError> finish_devices(const Options& options);
+    void limit_force(const Options& options, std::size_t tool);
     [[nodiscard]] std::vector<Vec3> anchors_world_m() const;
 
     std::vector<ServedModel> models_;
@@ -87,6 +94,7 @@ private:
     Arena arena_;
     std::optional<Frame> frame_;
     std::vector<std::unique_ptr<Courier>> couriers_;
+    PosixClock clock_; ///< Of the devices that aren't simulated.
     std::vector<std::unique_ptr<HapticDevice>> devices_;
     std::vector<SafetyLimits> limits_;
     std::vector<ConditionerSetup> conditioners_;

@@ -22,6 +22,8 @@ constexpr double kLargestPool_mib = 4'096.0;
 constexpr double kFrameBudgetMin_us = 10.0;
 constexpr double kFrameBudgetMax_us = 10'000.0;
 constexpr double kStiffest_n_per_m = 3'000.0;
+constexpr std::string_view kPlacementForm = "X,Y,Z[,RX,RY,RZ[,SCALE]] with at most 1e4 m, 360 "
+                                            "degrees and a scale of 1e-3 to 1e3";
 
 /// Reads all of `text` as a finite number.
 std::optional<double> parse_number(std::string_view text)
@@ -111,7 +113,8 @@ struct RawOptions
     std::vector<std::string> places;
     std::vector<std::string> materials;
     std::vector<std::string> tools;
-    std::string device{"sim"};
+    std::vector<std::string> devices;
+    std::vector<std::string> device_frames;
     std::string transport{"dds"};
     int cpu{-1};
 };
@@ -123,24 +126,40 @@ void declare(CLI::App& app, Options& options, RawOptions& raw)
                    "Model to touch: NAME or NAME@HASH as published, or with --transport file a "
                    "path; repeatable")
         ->expected(1)
+        ->allow_extra_args(false)
         ->take_all();
     app.add_option("--place", raw.places,
                    "Where the model stands, one for each --model in order: X,Y,Z in m "
                    "[,RX,RY,RZ rotation vector in degrees [,SCALE]]")
         ->expected(1)
+        ->allow_extra_args(false)
         ->take_all();
     app.add_option("--material", raw.materials,
                    "How the model feels, one for each --model in order: STIFFNESS in N/m, 1 to "
                    "3000, the softer of this and --stiffness counts [,STATIC friction, 0 to 3 "
                    "[,DYNAMIC friction, at most the static one [,DAMPING in N s/m, 0 to 20]]]")
         ->expected(1)
+        ->allow_extra_args(false)
         ->take_all();
     app.add_option("--tool", raw.tools,
                    "Tool: sphere:RADIUS_M, 1e-5 to 1 m; repeatable [one sphere of 1 % of the first "
                    "model's diagonal]")
         ->expected(1)
+        ->allow_extra_args(false)
         ->take_all();
-    app.add_option("--device", raw.device, "Device: sim")->check(CLI::IsMember({"sim"}));
+    app.add_option("--device", raw.devices,
+                   "What moves the tool, one for each --tool in order: sim, a simulated hand; "
+                   "udp[:[ADDRESS:]PORT], a driver of your own; dhd[:INDEX], a device of Force "
+                   "Dimension's; repeatable [sim]")
+        ->expected(1)
+        ->allow_extra_args(false)
+        ->take_all();
+    app.add_option("--device-frame", raw.device_frames,
+                   "Where the device's coordinates are in the world, one for each --device in "
+                   "order: as --place, SCALE being that of its motion")
+        ->expected(1)
+        ->allow_extra_args(false)
+        ->take_all();
     app.add_option("--rate", options.rate_hz, "Frames a second")
         ->check(CLI::Range(SimulatedDeviceOptions::kRateMinHz, SimulatedDeviceOptions::kRateMaxHz))
         ->capture_default_str();
@@ -183,7 +202,8 @@ void declare(CLI::App& app, Options& options, RawOptions& raw)
     app.add_option("--domain", options.domain, "DDS domain id")
         ->check(CLI::Range(0, 232))
         ->capture_default_str();
-    app.add_option("--wait", options.wait_s, "Seconds to wait for a model to be published")
+    app.add_option("--wait", options.wait_s,
+                   "Seconds to wait for a model to be published, and for a device to come")
         ->check(number_between(0.1, 3'600.0))
         ->capture_default_str();
     app.add_option("--priority", options.thread.priority,
@@ -252,9 +272,7 @@ std::string check_objects(Options& options, const RawOptions& raw)
         const std::optional<Placement> placement = parse_placement(text);
         if (!placement)
         {
-            return fmt::format("--place: '{}' is not X,Y,Z[,RX,RY,RZ[,SCALE]] with at most 1e4 m, "
-                               "360 degrees and a scale of 1e-3 to 1e3",
-                               printable(text));
+            return fmt::format("--place: '{}' is not {}", printable(text), kPlacementForm);
         }
         options.placements.push_back(*placement);
     }
@@ -275,6 +293,59 @@ std::string check_objects(Options& options, const RawOptions& raw)
     return {};
 }
 
+/// The tools, and what is given for each of them. Empty when all is well.
+std::string check_tools(Options& options, const RawOptions& raw)
+{
+    if (raw.tools.size() > kMaxTools)
+    {
+        return fmt::format("--tool: at most {} tools", kMaxTools);
+    }
+    for (const std::string& text : raw.tools)
+    {
+        const std::optional<double> radius = parse_tool(text);
+        if (!radius)
+        {
+            return fmt::format("--tool: '{}' is not sphere:RADIUS_M with 1e-5 to 1 m",
+                               printable(text));
+        }
+        options.tool_radii_m.push_back(*radius);
+    }
+    const std::size_t tools = std::max<std::size_t>(raw.tools.size(), 1);
+    if (raw.devices.size() > tools)
+    {
+        return fmt::format("--device: {} given for {} tools", raw.devices.size(), tools);
+    }
+    if (raw.device_frames.size() > raw.devices.size())
+    {
+        return fmt::format("--device-frame: {} given for {} of --device", raw.device_frames.size(),
+                           raw.devices.size());
+    }
+    for (const std::string& text : raw.devices)
+    {
+        const std::optional<DeviceChoice> device = parse_device(text);
+        if (!device)
+        {
+            return fmt::format("--device: '{}' is not {}", printable(text), kDeviceForms);
+        }
+        options.devices.push_back(*device);
+    }
+    for (std::size_t i = 0; i < raw.device_frames.size(); ++i)
+    {
+        const std::optional<Placement> frame = parse_placement(raw.device_frames[i]);
+        if (!frame)
+        {
+            return fmt::format("--device-frame: '{}' is not {}", printable(raw.device_frames[i]),
+                               kPlacementForm);
+        }
+        if (options.devices[i].kind == DeviceKind::simulated)
+        {
+            return "--device-frame: a simulated hand is in the world already";
+        }
+        options.devices[i].frame = *frame;
+    }
+    return {};
+}
+
 /// What one option alone can't tell. Empty when all is well.
 std::string check_together(const CLI::App& app, Options& options, const RawOptions& raw)
 {
@@ -290,19 +361,9 @@ std::string check_together(const CLI::App& app, Options& options, const RawOptio
     {
         return fault;
     }
-    if (raw.tools.size() > kMaxTools)
+    if (const std::string fault = check_tools(options, raw); !fault.empty())
     {
-        return fmt::format("--tool: at most {} tools", kMaxTools);
-    }
-    for (const std::string& text : raw.tools)
-    {
-        const std::optional<double> radius = parse_tool(text);
-        if (!radius)
-        {
-            return fmt::format("--tool: '{}' is not sphere:RADIUS_M with 1e-5 to 1 m",
-                               printable(text));
-        }
-        options.tool_radii_m.push_back(*radius);
+        return fault;
     }
     if (app.count("--cache-mib") > 0 && options.cache_mib >= options.pool_mib)
     {

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "platform/hrtc/device_choice.hpp"
 #include "platform/hrtc/placement.hpp"
 #include "platform/rt_thread.hpp"
 #include "rt_core/records/frame_input.hpp"
@@ -29,9 +30,10 @@ struct Options
     std::vector<Placement> placements; ///< One a model.
     std::vector<Material> materials;   ///< One a model.
     std::vector<double> tool_radii_m;  ///< Empty: one tool of 1 % of the first model's diagonal.
+    std::vector<DeviceChoice> devices; ///< One a tool; fewer: the others are simulated.
     TransportKind transport{TransportKind::dds};
     std::uint32_t domain{0};
-    double wait_s{10.0}; ///< For a model that nobody publishes yet.
+    double wait_s{10.0}; ///< For a model that nobody publishes yet, or a device.
     std::int64_t rate_hz{1'000};
     double duration_s{10.0};
     std::string report_path; ///< Empty: no file.

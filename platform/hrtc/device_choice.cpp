@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/hrtc/device_choice.hpp"
+
+#include "platform/dhd/dhd_device.hpp"
+
+#include <charconv>
+#include <utility>
+
+namespace tactus::hrtc
+{
+
+namespace
+{
+
+constexpr int kPortMin = 1'024;
+constexpr int kPortMax = 65'535;
+
+/// Reads all of `text` as a whole number in the range.
+std::optional<int> parse_int(std::string_view text, int least, int most)
+{
+    int value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    const bool is_good =
+        error == std::errc{} && end == text.data() + text.size() && value >= least && value <= most;
+    return is_good ? std::optional(value) : std::nullopt;
+}
+
+std::optional<DeviceChoice> parse_udp(std::string_view text)
+{
+    DeviceChoice choice;
+    choice.kind = DeviceKind::udp;
+    const std::size_t colon = text.rfind(':');
+    if (colon != std::string_view::npos)
+    {
+        choice.address = text.substr(0, colon);
+        text = text.substr(colon + 1);
+    }
+    const std::optional<int> port = parse_int(text, kPortMin, kPortMax);
+    choice.port = port.value_or(0);
+    return port && !choice.address.empty() ? std::optional(choice) : std::nullopt;
+}
+
+std::optional<DeviceChoice> parse_dhd(std::string_view text)
+{
+    DeviceChoice choice;
+    choice.kind = DeviceKind::dhd;
+    const std::optional<int> index = parse_int(text, 0, DhdDeviceOptions::kIndexMax);
+    choice.index = index.value_or(0);
+    return index ? std::optional(choice) : std::nullopt;
+}
+
+template <class Device>
+Result<std::unique_ptr<HapticDevice>, PlatformError>
+as_device(Result<std::unique_ptr<Device>, PlatformError> made)
+{
+    if (!made)
+    {
+        return made.error();
+    }
+    return std::unique_ptr<HapticDevice>(std::move(made).value());
+}
+
+} // namespace
+
+std::optional<DeviceChoice> parse_device(std::string_view text)
+{
+    constexpr std::string_view kUdp = "udp:";
+    constexpr std::string_view kDhd = "dhd:";
+    DeviceChoice choice;
+    if (text == "sim")
+    {
+        return choice;
+    }
+    if (text == "udp" || text == "dhd")
+    {
+        choice.kind = text == "udp" ? DeviceKind::udp : DeviceKind::dhd;
+        return choice;
+    }
+    if (text.starts_with(kUdp))
+    {
+        return parse_udp(text.substr(kUdp.size()));
+    }
+    return text.starts_with(kDhd) ? parse_dhd(text.substr(kDhd.size())) : std::nullopt;
+}
+
+Result<std::unique_ptr<HapticDevice>, PlatformError> open_device(const DeviceChoice& choice,
+                                                                 Duration wait, const Clock& clock)
+{
+    auto frame = DeviceFrame::create(rotation_of(choice.frame), choice.frame.translation_m,
+                                     choice.frame.scale);
+    if (!frame)
+    {
+        return frame.error();
+    }
+    if (choice.kind == DeviceKind::udp)
+    {
+        UdpDeviceOptions options;
+        options.address = choice.address;
+        options.port = choice.port;
+        options.wait = wait;
+        options.frame = frame.value();
+        options.clock = &clock;
+        return as_device(UdpDevice::create(options));
+    }
+    DhdDeviceOptions options;
+    options.index = choice.index;
+    options.frame = frame.value();
+    options.clock = &clock;
+    return as_device(DhdDevice::create(options));
+}
+
+} // namespace tactus::hrtc

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "platform/clock.hpp"
+#include "platform/haptic_device.hpp"
+#include "platform/hrtc/placement.hpp"
+#include "platform/platform_error.hpp"
+#include "platform/udp/udp_device.hpp"
+#include "rt_core/base/result.hpp"
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace tactus::hrtc
+{
+
+enum class DeviceKind : std::uint8_t
+{
+    simulated,
+    udp,
+    dhd,
+};
+
+/// What --device and --device-frame say of one tool's device.
+struct DeviceChoice
+{
+    DeviceKind kind{DeviceKind::simulated};
+    std::string address{UdpDeviceOptions{}.address}; ///< Of udp.
+    int port{UdpDeviceOptions::kPortDefault};        ///< Of udp.
+    int index{0};                                    ///< Of dhd.
+    Placement frame;                                 ///< Device coordinates in the world.
+};
+
+/// What the texts mean that `parse_device` takes; for messages.
+inline constexpr std::string_view kDeviceForms =
+    "sim, udp, udp:PORT, udp:ADDRESS:PORT with a numeric IPv4 address and a port of 1024 to 65535, "
+    "dhd or dhd:INDEX with 0 to 63";
+
+/// None when the text is none of kDeviceForms.
+[[nodiscard]] std::optional<DeviceChoice> parse_device(std::string_view text);
+
+/// Opens a device that isn't simulated; waits up to `wait` for one that comes by udp. `clock` is
+/// lent and outlives it.
+[[nodiscard]] Result<std::unique_ptr<HapticDevice>, PlatformError>
+open_device(const DeviceChoice& choice, Duration wait, const Clock& clock);
+
+} // namespace tactus::hrtc
