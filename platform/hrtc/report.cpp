@@ -305,11 +305,16 @@ std::string stability_line(const Json& tools)
         damped += tool["conditioned"]["damped"].get<std::uint64_t>();
         cap = std::min(cap, tool["stiffness_cap_n_per_m"].get<double>());
     }
-    return capped + damped == 0
-               ? ""
-               : fmt::format("stability   {} forces of walls stiffer than {:.0f} N/m softened, {} "
-                             "damped\n",
-                             capped, cap, damped);
+    std::string text;
+    if (capped > 0)
+    {
+        text = fmt::format("stability   {} forces softened to a wall of {:.0f} N/m\n", capped, cap);
+    }
+    if (damped > 0)
+    {
+        text += fmt::format("stability   {} forces damped\n", damped);
+    }
+    return text;
 }
 
 /// Empty when the force went off for the end of the run alone.
