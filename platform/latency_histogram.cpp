@@ -2,9 +2,12 @@
 // Copyright the Tactus authors.
 #include "platform/latency_histogram.hpp"
 
+#include "rt_core/base/assert.hpp"
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numeric>
 
 namespace tactus
 {
@@ -50,12 +53,74 @@ LatencyHistogram::LatencyHistogram() : counters_(index_of(kLongestNs) + 1, 0) {}
 
 void LatencyHistogram::record(Duration duration) noexcept
 {
+    record(duration, 1);
+}
+
+void LatencyHistogram::record(Duration duration, std::uint64_t times) noexcept
+{
     const Duration kept = std::max(duration, Duration{});
     const auto value = static_cast<std::uint64_t>(kept.ns);
-    ++counters_[index_of(std::min(value, kLongestNs))];
-    ++count_;
-    sum_ns_ += value;
+    counters_[index_of(std::min(value, kLongestNs))] += times;
+    min_ = count_ == 0 ? kept : std::min(min_, kept);
     max_ = std::max(max_, kept);
+    count_ += times;
+    sum_ns_ += value * times;
+}
+
+/// The last counter holds everything beyond the range as well.
+Duration LatencyHistogram::longest_of(std::size_t index) const noexcept
+{
+    const bool is_last = index + 1 == counters_.size();
+    return is_last ? max_ : std::min(max_, Duration{static_cast<std::int64_t>(upper_edge(index))});
+}
+
+LatencyHistogram LatencyHistogram::corrected(Duration interval) const
+{
+    TACTUS_ASSERT(interval.ns > 0);
+    LatencyHistogram all = *this;
+    for (std::size_t i = index_of(static_cast<std::uint64_t>(interval.ns)); i < counters_.size();
+         ++i)
+    {
+        // The shortest that shares the counter, so that a value of whole intervals leaves nothing.
+        const std::int64_t shortest =
+            counters_[i] > 0 ? static_cast<std::int64_t>(upper_edge(i - 1)) + 1 : 0;
+        for (std::int64_t left = shortest - interval.ns; left > 0; left -= interval.ns)
+        {
+            all.record({left}, counters_[i]);
+        }
+    }
+    return all;
+}
+
+void LatencyHistogram::add(const LatencyHistogram& other) noexcept
+{
+    if (other.count_ == 0)
+    {
+        return;
+    }
+    for (std::size_t i = 0; i < counters_.size(); ++i)
+    {
+        counters_[i] += other.counters_[i];
+    }
+    min_ = count_ == 0 ? other.min_ : std::min(min_, other.min_);
+    max_ = std::max(max_, other.max_);
+    count_ += other.count_;
+    sum_ns_ += other.sum_ns_;
+}
+
+std::uint64_t LatencyHistogram::count_to(Duration longest) const noexcept
+{
+    if (longest.ns < 0)
+    {
+        return 0;
+    }
+    if (longest >= max_)
+    {
+        return count_;
+    }
+    const std::size_t end = index_of(std::min(static_cast<std::uint64_t>(longest.ns), kLongestNs));
+    return std::accumulate(counters_.begin(), counters_.begin() + std::ptrdiff_t(end + 1),
+                           std::uint64_t{0});
 }
 
 Duration LatencyHistogram::quantile(double q) const noexcept
@@ -75,10 +140,7 @@ Duration LatencyHistogram::quantile(double q) const noexcept
         seen += counters_[index];
         ++index;
     }
-    // The last counter holds everything beyond the range as well.
-    const bool last = index + 1 == counters_.size();
-    const auto edge = static_cast<std::int64_t>(upper_edge(index));
-    return last ? max_ : std::min(max_, Duration{edge});
+    return longest_of(index);
 }
 
 double LatencyHistogram::mean_ns() const noexcept

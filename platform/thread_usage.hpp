@@ -32,4 +32,7 @@ struct ThreadUsage
 /// outside the frame.
 [[nodiscard]] ThreadUsage read_thread_usage() noexcept;
 
+/// ThreadUsage::cpu_time alone, at one system call.
+[[nodiscard]] Duration read_thread_cpu_time() noexcept;
+
 } // namespace tactus

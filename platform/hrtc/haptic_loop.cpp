@@ -45,6 +45,7 @@ void HapticLoop::run() noexcept
         parts_.timer->sleep_until_margin();
         rehearse();
         measures_.cycle = parts_.timer->spin_until_deadline();
+        const Duration cpu_before = read_thread_cpu_time();
         const MonotonicTime start = parts_.clock->now();
         heartbeat_.beat(start);
         stage_start_ = start;
@@ -53,10 +54,11 @@ void HapticLoop::run() noexcept
         make_safe(output);
         write_devices();
         const MonotonicTime end = parts_.clock->now();
+        const ThreadUsage now = read_thread_usage();
         record(output);
         measures_.frame = end - start;
+        measures_.cpu = now.cpu_time - cpu_before;
         measures_.lateness_of_end = end - measures_.cycle.deadline;
-        const ThreadUsage now = read_thread_usage();
         measures_.usage = now - usage;
         usage = now;
         measures_.allocations = allocation_counter::of_this_thread().allocations - allocations;

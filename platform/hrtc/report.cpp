@@ -9,6 +9,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <array>
+#include <bit>
 #include <limits>
 #include <span>
 
@@ -19,6 +22,14 @@ namespace
 {
 
 using Json = nlohmann::ordered_json;
+
+/// What a report is made of.
+struct RunRecord
+{
+    const Options& options;
+    const Controller& controller;
+    const FinishedRun& run;
+};
 
 constexpr std::array<const char*, kStages> kStageNames{"load", "refine", "refit", "query", "force"};
 
@@ -74,7 +85,7 @@ Json pools_of(const RunRecord& record)
 {
     constexpr std::size_t kFaceBytes =
         sizeof(VertexForest::ActiveFace) + 2 * sizeof(IdTable::Entry);
-    const std::vector<ModelOutput>& models = record.statistics.models;
+    const std::vector<ModelOutput>& models = record.run.statistics.models;
     return {{"pages", pool_of(sum_of(models, &ModelOutput::pages), sizeof(Page))},
             {"index_pages", pool_of(sum_of(models, &ModelOutput::index_pages), sizeof(IndexPage))},
             {"faces", pool_of(sum_of(models, &ModelOutput::faces), kFaceBytes)},
@@ -91,7 +102,7 @@ Json models_of(const RunRecord& record)
     {
         const ServedModel& served = record.controller.models()[i];
         const ModelHeader header = ModelHeader::parse(served.header).value();
-        const ModelOutput& output = record.statistics.models[i];
+        const ModelOutput& output = record.run.statistics.models[i];
         const CourierCounters& courier = record.controller.couriers()[i]->counters();
         list.push_back({{"name", served.name},
                         {"hash", hash_text(served.hash)},
@@ -127,10 +138,11 @@ Json conditioned_of(const ForceCounts& force)
 Json tools_of(const RunRecord& record)
 {
     Json list = Json::array();
-    const double frames = static_cast<double>(std::max<std::uint64_t>(record.statistics.frames, 1));
+    const double frames =
+        static_cast<double>(std::max<std::uint64_t>(record.run.statistics.frames, 1));
     for (std::size_t i = 0; i < record.controller.tools().size(); ++i)
     {
-        const ForceCounts& force = record.statistics.tools[i];
+        const ForceCounts& force = record.run.statistics.tools[i];
         list.push_back(
             {{"shape", "sphere"},
              {"radius_m", record.controller.tools()[i].radius_m},
@@ -150,11 +162,11 @@ Json pairs_of(const RunRecord& record)
 {
     Json list = Json::array();
     const std::size_t objects = record.controller.poses().size();
-    for (std::size_t i = 0; i < record.statistics.pairs.size(); ++i)
+    for (std::size_t i = 0; i < record.run.statistics.pairs.size(); ++i)
     {
         list.push_back({{"tool", i / objects},
                         {"model", record.controller.models()[i % objects].name},
-                        {"answers", answers_of(record.statistics.pairs[i],
+                        {"answers", answers_of(record.run.statistics.pairs[i],
                                                record.controller.diagonal_world_m())}});
     }
     return list;
@@ -183,25 +195,26 @@ Json machine_of(const RunRecord& record)
             {"processors", machine.processors},
             {"load_average", machine.load_average},
             {"date_utc", machine.date_utc},
-            {"fifo", record.thread.fifo},
-            {"memory_locked", record.thread.memory_locked},
-            {"float_control_was_default", record.thread.float_control_was_default},
-            {"refused", record.thread.refused}};
+            {"fifo", record.run.thread.fifo},
+            {"memory_locked", record.run.thread.memory_locked},
+            {"float_control_was_default", record.run.thread.float_control_was_default},
+            {"refused", record.run.thread.refused}};
 }
 
 Json budgets_of(const RunRecord& record)
 {
     constexpr std::array<const char*, kGovernedBudgets.size()> kNames{"splits", "merges", "scanned",
                                                                       "nodes", "triangles"};
-    Json budgets{{"frame_us", nullptr}, {"at_floor", record.statistics.budgets_at_floor}};
-    if (record.frame_budget_us)
+    Json budgets{{"frame_us", nullptr}, {"at_floor", record.run.statistics.budgets_at_floor}};
+    if (record.options.frame_budget_us)
     {
-        budgets["frame_us"] = *record.frame_budget_us;
+        budgets["frame_us"] = *record.options.frame_budget_us;
     }
-    const double frames = static_cast<double>(std::max<std::uint64_t>(record.statistics.frames, 1));
+    const double frames =
+        static_cast<double>(std::max<std::uint64_t>(record.run.statistics.frames, 1));
     for (std::size_t i = 0; i < kNames.size(); ++i)
     {
-        const BudgetRange& range = record.statistics.budgets[i];
+        const BudgetRange& range = record.run.statistics.budgets[i];
         budgets[kNames[i]] = {{"min", range.min},
                               {"mean", static_cast<double>(range.sum) / frames},
                               {"max", range.max}};
@@ -232,6 +245,62 @@ Json faults_of(const RunStatistics& statistics)
     return faults;
 }
 
+/// The names of the bits that are set.
+template <std::size_t Count>
+Json names_of(unsigned bits, const std::array<const char*, Count>& names)
+{
+    Json list = Json::array();
+    for (std::size_t bit = 0; bit < Count; ++bit)
+    {
+        if ((bits & (1U << bit)) != 0)
+        {
+            list.push_back(names[bit]);
+        }
+    }
+    return list;
+}
+
+Json cycle_of(const NotedCycle& cycle)
+{
+    return {{"frame", cycle.frame},
+            {"flags", names_of(static_cast<unsigned>(cycle.flags), kCycleFlagNames)},
+            {"wake_us", to_us(cycle.wake_lateness)},
+            {"frame_us", to_us(cycle.frame_time)},
+            {"cpu_us", to_us(cycle.cpu)},
+            {"end_us", to_us(cycle.lateness_of_end)}};
+}
+
+Json deadline_of(const RunRecord& record)
+{
+    constexpr std::size_t kCyclesShown = 100;
+    const DeadlineAccount& deadlines = record.run.statistics.deadlines;
+    Json cycles = Json::object();
+    for (std::size_t bit = 0; bit < kCycleFlags; ++bit)
+    {
+        cycles[kCycleFlagNames[bit]] = deadlines.flagged[bit];
+    }
+    Json noted = Json::array();
+    for (const NotedCycle& cycle :
+         deadlines.noted().first(std::min(deadlines.noted().size(), kCyclesShown)))
+    {
+        noted.push_back(cycle_of(cycle));
+    }
+    const auto flagged = [&deadlines](CycleFlag flag)
+    { return deadlines.flagged[static_cast<std::size_t>(std::countr_zero(unsigned(flag)))]; };
+    return {{"missed", deadlines.missed},
+            {"own_fault", deadlines.own_faults},
+            {"machine_late", deadlines.machine_late},
+            {"unexplained", deadlines.unexplained},
+            {"missed_periods", record.run.timer.missed_periods},
+            {"episodes", record.run.timer.episodes},
+            {"extra_switches", flagged(CycleFlag::gave_way)},
+            {"over_budget", flagged(CycleFlag::over_work)},
+            {"suspected", deadlines.suspected},
+            {"cycles", cycles},
+            {"noted", noted},
+            {"noted_left_out", deadlines.noted().size() - noted.size() + deadlines.not_kept}};
+}
+
 Json recording_of(const std::optional<RecordingResult>& recording)
 {
     if (!recording)
@@ -246,27 +315,13 @@ Json recording_of(const std::optional<RecordingResult>& recording)
     return json;
 }
 
-/// The names of what is in a set.
-Json names_of(ForceOff causes)
-{
-    Json names = Json::array();
-    for (std::size_t bit = 0; bit < kForceOffs; ++bit)
-    {
-        if (has_cause(causes, static_cast<ForceOff>(1U << bit)))
-        {
-            names.push_back(kForceOffNames[bit]);
-        }
-    }
-    return names;
-}
-
 Json event_of(const SafetyEvent& event, MonotonicTime start)
 {
     Json json{{"time_s", to_seconds(event.time - start)},
               {"frame", event.frame},
               {"tool", event.tool},
               {"state", kSafetyStateNames[static_cast<std::size_t>(event.state)]},
-              {"causes", names_of(event.causes)}};
+              {"causes", names_of(static_cast<unsigned>(event.causes), kForceOffNames)}};
     if (event.by_supervisor) // It counts no frames.
     {
         json["frame"] = nullptr;
@@ -279,18 +334,18 @@ Json safety_of(const RunRecord& record)
     Json begun = Json::object();
     for (std::size_t bit = 0; bit < kForceOffs; ++bit)
     {
-        begun[kForceOffNames[bit]] = record.safety.begun()[bit];
+        begun[kForceOffNames[bit]] = record.run.safety.begun()[bit];
     }
     Json events = Json::array();
-    for (const SafetyEvent& event : record.safety.events())
+    for (const SafetyEvent& event : record.run.safety.events())
     {
-        events.push_back(event_of(event, record.safety.events().front().time));
+        events.push_back(event_of(event, record.run.safety.events().front().time));
     }
-    return {{"supervisor_fifo", record.supervisor_fifo},
-            {"supervisor_brakes", record.safety.brakes()},
+    return {{"supervisor_fifo", record.run.supervisor_fifo},
+            {"supervisor_brakes", record.run.safety.brakes()},
             {"begun", begun},
             {"events", events},
-            {"events_left_out", record.safety.left_out()}};
+            {"events_left_out", record.run.safety.left_out()}};
 }
 
 /// Empty when no force was another than the frame's.
@@ -348,16 +403,19 @@ std::string recording_line(const Json& recording)
 
 } // namespace
 
-Json make_report(const RunRecord& record)
+Json make_report(const Options& options, const Controller& controller, const FinishedRun& run)
 {
-    const RunStatistics& statistics = record.statistics;
+    const RunRecord record{options, controller, run};
+    const RunStatistics& statistics = run.statistics;
     Json times = Json::object();
     for (std::size_t i = 0; i < kStages; ++i)
     {
         times[kStageNames[i]] = times_of(statistics.stages[i]);
     }
     times["frame"] = times_of(statistics.frame);
+    times["cpu"] = times_of(statistics.cpu);
     times["wake"] = times_of(statistics.wake);
+    times["response"] = times_of(statistics.deadlines.response());
     std::uint64_t bytes_received = 0;
     std::uint64_t loads = 0;
     for (std::size_t i = 0; i < record.controller.models().size(); ++i)
@@ -367,7 +425,7 @@ Json make_report(const RunRecord& record)
     }
     return {{"schema", 1},
             {"frames", statistics.frames},
-            {"period_ns", record.period.ns},
+            {"period_ns", record.run.period.ns},
             {"times_us", times},
             {"answers", answers_of(statistics.answers, record.controller.diagonal_world_m())},
             {"work",
@@ -382,23 +440,16 @@ Json make_report(const RunRecord& record)
               {"misses", statistics.cache_misses},
               {"loads", loads},
               {"evictions", statistics.evictions}}},
-            {"wire", {{"bytes_received", bytes_received}, {"host_lost", record.host_was_lost}}},
-            {"deadline",
-             {{"missed", statistics.deadlines_missed},
-              {"own_fault", statistics.own_faults},
-              {"machine_late", statistics.machine_late},
-              {"missed_periods", record.timer.missed_periods},
-              {"episodes", record.timer.episodes},
-              {"extra_switches", statistics.extra_switches},
-              {"over_budget", statistics.over_budget}}},
+            {"wire", {{"bytes_received", bytes_received}, {"host_lost", record.run.host_was_lost}}},
+            {"deadline", deadline_of(record)},
             {"realtime",
-             {{"allocations", statistics.allocations},
+             {{"allocations", statistics.deadlines.allocations},
               {"allocations_counted", allocation_counter::available()},
-              {"page_faults", statistics.page_faults},
-              {"system_calls_trapped", record.calls_were_trapped},
-              {"system_calls_in_frame", statistics.calls.in_frame},
-              {"system_calls_outside", statistics.calls.outside}}},
-            {"recording", recording_of(record.recording)},
+              {"page_faults", statistics.deadlines.page_faults},
+              {"system_calls_trapped", record.options.trap_system_calls},
+              {"system_calls_in_frame", statistics.deadlines.calls.in_frame},
+              {"system_calls_outside", statistics.deadlines.calls.outside}}},
+            {"recording", recording_of(record.run.recording)},
             {"force", force_of(statistics)},
             {"safety", safety_of(record)},
             {"faults", faults_of(statistics)},

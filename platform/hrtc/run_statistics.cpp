@@ -68,7 +68,7 @@ void BudgetRange::add(std::uint32_t budget, bool is_first) noexcept
 
 RunStatistics::RunStatistics(std::size_t tool_count, std::size_t pair_count,
                              std::size_t model_count, Duration period)
-    : pairs(pair_count), tools(tool_count), models(model_count), period_(period)
+    : deadlines(period), pairs(pair_count), tools(tool_count), models(model_count)
 {
 }
 
@@ -76,17 +76,18 @@ void RunStatistics::add(const FrameOutput& output, std::span<const Vec3> sent_n,
                         std::span<const ConditionedForce> conditioned,
                         const CycleMeasures& measures) noexcept
 {
-    ++frames;
+    const std::uint64_t index = frames++;
     for (std::size_t i = 0; i < kStages; ++i)
     {
         stages[i].record(measures.stage[i]);
     }
     frame.record(measures.frame);
+    cpu.record(measures.cpu);
     wake.record(measures.cycle.wake_lateness);
     add_answers(output);
     add_work(output);
     add_budgets(measures);
-    judge_deadline(output, measures);
+    deadlines.add(index, measures, is_over_budget(output.work, measures.budgets));
     bool any_contact = false;
     for (std::size_t i = 0; i < tools.size(); ++i)
     {
@@ -140,30 +141,6 @@ void RunStatistics::add_budgets(const CycleMeasures& measures) noexcept
         budgets[i].add(measures.budgets.*kGovernedBudgets[i], frames == 1);
     }
     budgets_at_floor += measures.budgets_at_floor ? 1 : 0;
-}
-
-/// A cycle is our own fault when the thread did what it must not do, whether or not the deadline
-/// was met; a missed deadline without one is the machine's lateness. Processor time is not judged:
-/// on a shared machine it includes what other guests take.
-void RunStatistics::judge_deadline(const FrameOutput& output,
-                                   const CycleMeasures& measures) noexcept
-{
-    const auto cycle_faults =
-        static_cast<std::uint64_t>(measures.usage.minor_faults + measures.usage.major_faults);
-    // The timer's own sleeps are switches as well.
-    const bool switched = measures.usage.voluntary_switches > measures.cycle.sleeps;
-    const bool over = is_over_budget(output.work, measures.budgets);
-    const bool called = measures.calls.in_frame > calls.in_frame;
-    allocations += measures.allocations;
-    page_faults += cycle_faults;
-    extra_switches += switched ? 1 : 0;
-    over_budget += over ? 1 : 0;
-    calls = measures.calls;
-    const bool own = cycle_faults > 0 || measures.allocations > 0 || switched || over || called;
-    const bool missed = measures.lateness_of_end > period_ || measures.cycle.periods > 1;
-    own_faults += own ? 1 : 0;
-    deadlines_missed += missed ? 1 : 0;
-    machine_late += missed && !own ? 1 : 0;
 }
 
 bool RunStatistics::is_over_budget(const WorkCounters& work, const Budgets& limits) const noexcept

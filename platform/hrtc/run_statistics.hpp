@@ -2,10 +2,9 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "platform/hrtc/cycle_measures.hpp"
+#include "platform/hrtc/deadline_account.hpp"
 #include "platform/latency_histogram.hpp"
-#include "platform/periodic_timer.hpp"
-#include "platform/system_call_trap.hpp"
-#include "platform/thread_usage.hpp"
 #include "rt_core/records/conditioned_force.hpp"
 #include "rt_core/records/frame_input.hpp"
 #include "rt_core/records/frame_output.hpp"
@@ -67,20 +66,6 @@ struct BudgetRange
 inline constexpr std::array kGovernedBudgets{&Budgets::splits, &Budgets::merges, &Budgets::scanned,
                                              &Budgets::nodes, &Budgets::triangles};
 
-/// What one cycle of the loop measured besides the frame's own output.
-struct CycleMeasures
-{
-    Cycle cycle;
-    Budgets budgets;              ///< That the frame had.
-    bool budgets_at_floor{false}; ///< Whether less was not to be had.
-    std::array<Duration, kStages> stage;
-    Duration frame;               ///< From the start of the frame to the force written.
-    Duration lateness_of_end;     ///< End of the frame after its deadline; late when > one period.
-    ThreadUsage usage;            ///< Since the last cycle.
-    std::uint64_t allocations{0}; ///< Since the last cycle.
-    system_call_trap::TrappedCalls calls; ///< Since the loop began.
-};
-
 /// Everything a run's report is made of. Filled by the haptic thread without allocating; read by
 /// others once the loop has ended.
 class RunStatistics
@@ -95,7 +80,9 @@ public:
     std::uint64_t frames{0};
     std::array<LatencyHistogram, kStages> stages;
     LatencyHistogram frame;
+    LatencyHistogram cpu; ///< Processor time of a frame.
     LatencyHistogram wake;
+    DeadlineAccount deadlines;
     AnswerCounts answers; ///< By each frame's worst pair.
     std::vector<AnswerCounts> pairs;
     std::vector<ForceCounts> tools;
@@ -111,14 +98,6 @@ public:
     std::uint64_t evictions{0};
     std::array<std::uint64_t, 32> faults{}; ///< Frames with each FrameFault bit.
 
-    std::uint64_t deadlines_missed{0};
-    std::uint64_t own_faults{0};
-    std::uint64_t machine_late{0};
-    std::uint64_t allocations{0};
-    std::uint64_t page_faults{0};
-    std::uint64_t extra_switches{0};
-    std::uint64_t over_budget{0}; ///< Frames whose work counters exceeded a cap.
-    system_call_trap::TrappedCalls calls;
     std::array<BudgetRange, kGovernedBudgets.size()> budgets;
     std::uint64_t budgets_at_floor{0}; ///< Frames with the least budgets there are.
 
@@ -126,11 +105,8 @@ private:
     void add_answers(const FrameOutput& output) noexcept;
     void add_work(const FrameOutput& output) noexcept;
     void add_budgets(const CycleMeasures& measures) noexcept;
-    void judge_deadline(const FrameOutput& output, const CycleMeasures& measures) noexcept;
     [[nodiscard]] bool is_over_budget(const WorkCounters& work,
                                       const Budgets& limits) const noexcept;
-
-    Duration period_;
 };
 
 } // namespace tactus::hrtc

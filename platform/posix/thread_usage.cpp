@@ -14,11 +14,16 @@ ThreadUsage read_thread_usage() noexcept
 {
     ThreadUsage usage;
     linux_extras::read_fault_and_switch_counts(usage);
+    usage.cpu_time = read_thread_cpu_time();
+    return usage;
+}
+
+Duration read_thread_cpu_time() noexcept
+{
     timespec time{};
     const int failed = clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
     TACTUS_ASSERT(failed == 0);
-    usage.cpu_time = {std::int64_t{time.tv_sec} * 1'000'000'000 + std::int64_t{time.tv_nsec}};
-    return usage;
+    return {std::int64_t{time.tv_sec} * 1'000'000'000 + std::int64_t{time.tv_nsec}};
 }
 
 } // namespace tactus

@@ -92,6 +92,76 @@ TEST(LatencyHistogram, takes_a_quantile_that_is_not_a_number_for_the_least)
     EXPECT_EQ(sut.quantile(std::numeric_limits<double>::quiet_NaN()), nanoseconds(1));
 }
 
+TEST(LatencyHistogram, counts_what_a_stall_kept_from_being_measured)
+{
+    LatencyHistogram sut;
+    sut.record(microseconds(10));
+    sut.record(microseconds(3'500)); // Three more would have begun at 1, 2 and 3 ms of it.
+    sut.record(microseconds(1'000)); // The next one begins in time.
+    const LatencyHistogram corrected = sut.corrected(milliseconds(1));
+    EXPECT_EQ(corrected.count(), 6U);
+    EXPECT_EQ(corrected.count_to(microseconds(490)), 1U);
+    EXPECT_EQ(corrected.count_to(microseconds(510)), 2U);
+    EXPECT_EQ(corrected.count_to(microseconds(1'010)), 3U);
+    EXPECT_EQ(corrected.count_to(microseconds(1'510)), 4U);
+    EXPECT_EQ(corrected.count_to(microseconds(2'510)), 5U);
+    EXPECT_EQ(corrected.min(), microseconds(10));
+    EXPECT_EQ(corrected.max(), microseconds(3'500));
+    EXPECT_EQ(sut.count(), 3U);
+}
+
+TEST(LatencyHistogram, has_nothing_to_correct_when_nothing_was_late)
+{
+    LatencyHistogram sut;
+    EXPECT_EQ(sut.corrected(milliseconds(1)).count(), 0U);
+    sut.record({});
+    sut.record(milliseconds(1));
+    EXPECT_EQ(sut.corrected(milliseconds(1)).count(), 2U);
+}
+
+TEST(LatencyHistogram, corrects_a_value_beyond_its_range_as_one_at_its_end)
+{
+    LatencyHistogram sut;
+    sut.record(LatencyHistogram::kLongest * 10);
+    const LatencyHistogram corrected = sut.corrected(milliseconds(10'000));
+    EXPECT_EQ(corrected.count(), 10U);
+    EXPECT_EQ(corrected.max(), LatencyHistogram::kLongest * 10);
+}
+
+TEST(LatencyHistogram, takes_over_all_that_another_has_recorded)
+{
+    LatencyHistogram sut;
+    LatencyHistogram other;
+    other.record(microseconds(7));
+    other.record(microseconds(70));
+    sut.add(LatencyHistogram{});
+    EXPECT_EQ(sut.count(), 0U);
+    sut.add(other);
+    EXPECT_EQ(sut.min(), microseconds(7)); // Not the zero of an empty one.
+    sut.record(microseconds(1));
+    sut.add(other);
+    EXPECT_EQ(sut.count(), 5U);
+    EXPECT_EQ(sut.min(), microseconds(1));
+    EXPECT_EQ(sut.max(), microseconds(70));
+    EXPECT_EQ(sut.mean_ns(), 31e3);
+}
+
+TEST(LatencyHistogram, counts_up_to_any_length)
+{
+    LatencyHistogram sut;
+    EXPECT_EQ(sut.count_to(LatencyHistogram::kLongest), 0U);
+    for (const std::int64_t us : {1, 1, 5, 500'000'000})
+    {
+        sut.record(microseconds(us));
+    }
+    EXPECT_EQ(sut.count_to(nanoseconds(-1)), 0U);
+    EXPECT_EQ(sut.count_to(nanoseconds(999)), 0U);
+    EXPECT_EQ(sut.count_to(microseconds(1)), 2U);
+    EXPECT_EQ(sut.count_to(microseconds(6)), 3U);
+    EXPECT_EQ(sut.count_to(microseconds(500'000'000)), 4U);
+    EXPECT_EQ(sut.min(), microseconds(1));
+}
+
 RC_GTEST_PROP(LatencyHistogram, agrees_with_sorted_data_to_three_digits, ())
 {
     const auto octaves =

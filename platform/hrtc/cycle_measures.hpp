@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "platform/periodic_timer.hpp"
+#include "platform/system_call_trap.hpp"
+#include "platform/thread_usage.hpp"
+#include "rt_core/records/frame_input.hpp"
+#include "rt_core/records/frame_output.hpp"
+
+#include <array>
+#include <cstdint>
+
+namespace tactus::hrtc
+{
+
+/// What one cycle of the loop measured besides the frame's own output.
+struct CycleMeasures
+{
+    Cycle cycle;
+    Budgets budgets;              ///< That the frame had.
+    bool budgets_at_floor{false}; ///< Whether less was not to be had.
+    std::array<Duration, kStages> stage;
+    Duration frame;               ///< From the start of the frame to the force written.
+    Duration cpu;                 ///< Processor time of the thread in `frame`.
+    Duration lateness_of_end;     ///< End of the frame after its deadline; late when > one period.
+    ThreadUsage usage;            ///< Since the last cycle.
+    std::uint64_t allocations{0}; ///< Since the last cycle.
+    system_call_trap::TrappedCalls calls; ///< Since the loop began.
+};
+
+} // namespace tactus::hrtc
