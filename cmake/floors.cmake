@@ -56,6 +56,8 @@ tactus_room(platform/dhd platform ${platform_floor})
 tactus_room(platform/recording rt_core)
 # What the machine is like; of frames and models it knows nothing.
 tactus_room(platform/doctor platform)
+# Pictures; of what was measured it knows nothing.
+tactus_room(platform/plot)
 # Its command line is read like every other program's: docs/decisions/0003-command-line-room.md.
 tactus_room(platform/hrtc rt_core transport platform host_tools/cli)
 
@@ -83,7 +85,7 @@ tactus_outside(ccd rt_core/query tests)
 tactus_outside(Eigen rt_core platform transport host_tools tests)
 tactus_outside(CLI platform/hrtc host_tools tests)
 tactus_outside(nlohmann platform/doctor platform/hrtc host_tools tests)
-tactus_outside(fmt platform/doctor platform/hrtc transport host_tools tests)
+tactus_outside(fmt platform/doctor platform/plot platform/hrtc transport host_tools tests)
 tactus_outside(assimp host_tools/mesh tests)
 tactus_outside(tbb host_tools tests)
 tactus_outside(oneapi host_tools tests)

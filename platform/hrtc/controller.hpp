@@ -46,6 +46,10 @@ public:
     {
         return couriers_;
     }
+    [[nodiscard]] std::vector<std::unique_ptr<HapticDevice>>& devices() noexcept
+    {
+        return devices_;
+    }
     [[nodiscard]] const std::vector<std::unique_ptr<HapticDevice>>& devices() const noexcept
     {
         return devices_;

@@ -70,7 +70,8 @@ int main(int argc, char** argv)
         {
             return subcommand->run(argc - 1, argv + 1);
         }
-        const auto parsed = tactus::hrtc::parse_options(argc, argv);
+        const auto parsed = tactus::hrtc::parse_options(
+            argc, argv, {.declare = {}, .footer = tactus::hrtc::describe_subcommands()});
         if (const int* code = std::get_if<int>(&parsed))
         {
             return *code;

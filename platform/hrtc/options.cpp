@@ -3,7 +3,6 @@
 #include "platform/hrtc/options.hpp"
 
 #include "host_tools/cli/command_line.hpp"
-#include "platform/hrtc/subcommands.hpp"
 #include "platform/simulated/simulated_device.hpp"
 #include "rt_core/limits.hpp"
 
@@ -119,6 +118,16 @@ struct RawOptions
     int cpu{-1};
 };
 
+void declare_recording(CLI::App& app, Options& options)
+{
+    app.add_option("--record", options.record_path,
+                   "Record all that goes into every frame, and hashes of what comes out, into this "
+                   "file");
+    app.add_option("--replay", options.replay_path,
+                   "Instead of a run: give the frames of a recording the same again; exit code 1 "
+                   "when one comes out otherwise. Takes no other option");
+}
+
 void declare(CLI::App& app, Options& options, RawOptions& raw)
 {
     app.set_version_flag("--version", std::string("hrtc ") + TACTUS_VERSION);
@@ -167,12 +176,6 @@ void declare(CLI::App& app, Options& options, RawOptions& raw)
         ->check(number_between(0.1, 86'400.0))
         ->capture_default_str();
     app.add_option("--report", options.report_path, "Write the report as JSON to this file");
-    app.add_option("--record", options.record_path,
-                   "Record all that goes into every frame, and hashes of what comes out, into this "
-                   "file");
-    app.add_option("--replay", options.replay_path,
-                   "Instead of a run: give the frames of a recording the same again; exit code 1 "
-                   "when one comes out otherwise. Takes no other option");
     app.add_option("--pool-mib", options.pool_mib,
                    "Memory for all pools of all models, in MiB, everything counted")
         ->check(number_between(0.25, kLargestPool_mib))
@@ -237,7 +240,8 @@ std::string check_files(const CLI::App& app, const Options& options)
     for (const auto& [name, path] :
          {std::pair("--record", &options.record_path), std::pair("--replay", &options.replay_path)})
     {
-        if (app.count(name) > 0 && path->empty())
+        const CLI::Option* option = app.get_option_no_throw(name);
+        if (option != nullptr && option->count() > 0 && path->empty())
         {
             return std::string(name) + ": a file's name is needed";
         }
@@ -394,15 +398,22 @@ std::string check_together(const CLI::App& app, Options& options, const RawOptio
 
 } // namespace
 
-std::variant<Options, int> parse_options(int argc, char** argv)
+std::variant<Options, int> parse_options(int argc, char** argv, const CommandForm& form)
 {
-    CLI::App app("Haptic real-time controller: touches models that a host publishes, every period, "
-                 "exactly or with a proven bound.",
-                 "hrtc");
+    CLI::App app(form.description, form.name);
     Options options;
+    options.duration_s = form.duration_s;
     RawOptions raw;
     declare(app, options, raw);
-    app.footer(describe_subcommands());
+    if (form.records)
+    {
+        declare_recording(app, options);
+    }
+    if (form.declare)
+    {
+        form.declare(app);
+    }
+    app.footer(form.footer);
     if (const std::optional<int> code = parse_command_line(app, argc, argv))
     {
         return *code;

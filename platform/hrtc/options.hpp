@@ -9,10 +9,16 @@
 #include "transport/model_name.hpp"
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <variant>
 #include <vector>
+
+namespace CLI
+{
+class App;
+} // namespace CLI
 
 namespace tactus::hrtc
 {
@@ -50,8 +56,21 @@ struct Options
     RtThreadOptions thread;
 };
 
+/// A command that runs the loop, and how its line differs from that of hrtc itself.
+struct CommandForm
+{
+    std::string name{"hrtc"};
+    std::string description{"Haptic real-time controller: touches models that a host publishes, "
+                            "every period, exactly or with a proven bound."};
+    bool records{true}; ///< Takes --record and --replay, too.
+    double duration_s{10.0};
+    std::function<void(CLI::App&)> declare; ///< Its own options; none when empty.
+    std::string footer;                     ///< Of --help.
+};
+
 /// Reads the command line. Returns the exit code instead when the program should leave: after
 /// --help, --version, or wrong usage, which gets one line on stderr.
-[[nodiscard]] std::variant<Options, int> parse_options(int argc, char** argv);
+[[nodiscard]] std::variant<Options, int> parse_options(int argc, char** argv,
+                                                       const CommandForm& form);
 
 } // namespace tactus::hrtc

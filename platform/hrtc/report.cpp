@@ -425,7 +425,9 @@ Json make_report(const Options& options, const Controller& controller, const Fin
     }
     return {{"schema", 1},
             {"frames", statistics.frames},
-            {"period_ns", record.run.period.ns},
+            {"period_ns", run.period.ns},
+            {"duration_s",
+             static_cast<double>(statistics.frames) * static_cast<double>(run.period.ns) * 1e-9},
             {"times_us", times},
             {"answers", answers_of(statistics.answers, record.controller.diagonal_world_m())},
             {"work",
@@ -530,19 +532,23 @@ std::string make_summary(const Json& report)
     return text;
 }
 
-std::optional<OutputFileError> write_report(const Json& report, const std::string& path)
+std::optional<OutputFileError> write_text(const std::string& text, const std::string& path)
 {
     auto file = OutputFile::create(path);
     if (!file)
     {
         return file.error();
     }
-    const std::string text = report.dump(2) + '\n';
     if (auto error = file.value().write(std::as_bytes(std::span(text))))
     {
         return error;
     }
     return file.value().commit();
+}
+
+std::optional<OutputFileError> write_report(const Json& report, const std::string& path)
+{
+    return write_text(report.dump(2) + '\n', path);
 }
 
 } // namespace tactus::hrtc

@@ -21,6 +21,10 @@ make_report(const Options& options, const Controller& controller, const Finished
 /// The same for a person: a few lines.
 [[nodiscard]] std::string make_summary(const nlohmann::ordered_json& report);
 
+/// Writes a text file whole or not at all; returns why not.
+[[nodiscard]] std::optional<OutputFileError> write_text(const std::string& text,
+                                                        const std::string& path);
+
 /// Writes the report whole or not at all; returns why not.
 [[nodiscard]] std::optional<OutputFileError> write_report(const nlohmann::ordered_json& report,
                                                           const std::string& path);

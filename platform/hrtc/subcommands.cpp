@@ -2,7 +2,9 @@
 // Copyright the Tactus authors.
 #include "platform/hrtc/subcommands.hpp"
 
+#include "platform/hrtc/deadline_test_command.hpp"
 #include "platform/hrtc/doctor_command.hpp"
+#include "platform/hrtc/load.hpp"
 
 #include <fmt/format.h>
 
@@ -19,6 +21,9 @@ namespace
 constexpr std::array kSubcommands{
     Subcommand{"doctor", "what of this machine is in the loop's way, and how to mend it",
                run_doctor},
+    Subcommand{"deadline-test", "whose fault each missed deadline is, alone and beside load",
+               run_deadline_test},
+    Subcommand{"load", "keeps this machine busy", run_load},
 };
 
 } // namespace

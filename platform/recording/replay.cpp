@@ -44,7 +44,8 @@ public:
     }
 
     /// What differs in this frame, if anything.
-    [[nodiscard]] std::optional<std::string> step(const RecordedFrame& recorded)
+    [[nodiscard]] std::optional<std::string> step(const RecordedFrame& recorded,
+                                                  std::uint64_t number, const ReplayWatch& watch)
     {
         for (std::size_t i = 0; i < doors_.size(); ++i)
         {
@@ -53,7 +54,17 @@ public:
                 return "model " + std::to_string(i) + ": " + *fault;
             }
         }
-        return compare(frame_->run(recorded.tools, recorded.poses, recorded.budgets, {}), recorded);
+        if (watch.begins)
+        {
+            watch.begins(number);
+        }
+        const FrameOutput output =
+            frame_->run(recorded.tools, recorded.poses, recorded.budgets, {});
+        if (watch.ends)
+        {
+            watch.ends(number);
+        }
+        return compare(output, recorded);
     }
 
 private:
@@ -114,7 +125,8 @@ private:
 
 } // namespace
 
-Result<ReplayReport, ReplayError> replay(const Recording& recording, const Kernels* kernels)
+Result<ReplayReport, ReplayError> replay(const Recording& recording, const Kernels* kernels,
+                                         const ReplayWatch& watch)
 {
     auto replayed = ReplayedFrame::create(recording, kernels);
     if (!replayed)
@@ -128,7 +140,7 @@ Result<ReplayReport, ReplayError> replay(const Recording& recording, const Kerne
         const char* fault = decoder.decode(reader);
         TACTUS_ASSERT(fault == nullptr); // The recording was checked as a whole.
         const std::uint64_t frame = report.frames++;
-        if (auto difference = replayed.value()->step(decoder.frame()))
+        if (auto difference = replayed.value()->step(decoder.frame(), frame, watch))
         {
             report.difference = {frame, std::move(*difference)};
             break;

@@ -6,6 +6,7 @@
 #include "rt_core/kernels/kernels.hpp"
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -31,14 +32,22 @@ struct ReplayError
     std::string text;
 };
 
+/// Called with a frame's number, from 0, right before and right after it runs; the door is open and
+/// pages are linked by then. Either may be empty.
+struct ReplayWatch
+{
+    std::function<void(std::uint64_t)> begins;
+    std::function<void(std::uint64_t)> ends;
+};
+
 /// Makes a frame as the recorded one was made, gives it the recorded inputs, arrivals and link
 /// updates of every frame, and compares what comes out with the recorded hashes. Stops at the first
 /// difference. Needs no device, network, timer or thread; takes the pools' memory.
 ///
 /// Pages are linked here anew, by the same Linker in the recorded order, and compared, too.
 /// `kernels` run the queries, null the best of this processor; it makes no difference.
-[[nodiscard]] Result<ReplayReport, ReplayError> replay(const Recording& recording,
-                                                       const Kernels* kernels = nullptr);
+[[nodiscard]] Result<ReplayReport, ReplayError>
+replay(const Recording& recording, const Kernels* kernels = nullptr, const ReplayWatch& watch = {});
 
 /// The outcome in one line without an end: how many frames agree, or the first that differs; what
 /// recorded them; and whether the recorder lost some.

@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/hrtc/deadline_report.hpp"
+
+#include "platform/plot/step_plot.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace tactus::hrtc
+{
+
+namespace
+{
+
+using Json = nlohmann::ordered_json;
+
+/// What is told of each phase.
+struct Quantity
+{
+    const char* key;
+    const char* title;
+    LatencyHistogram DeadlinePhase::*histogram;
+};
+constexpr std::array kQuantities{
+    Quantity{"wake", "Woken so much later than asked", &DeadlinePhase::wake},
+    Quantity{"cpu", "Processor time of a frame", &DeadlinePhase::cpu},
+    Quantity{"response", "From the deadline to the force written, lost periods counted",
+             &DeadlinePhase::response},
+};
+
+double to_us(Duration duration)
+{
+    return static_cast<double>(duration.ns) * 1e-3;
+}
+
+/// 0.1 us to 100 s, `per_decade` of them.
+std::vector<double> edges_us(int per_decade)
+{
+    constexpr int kDecades = 9;
+    std::vector<double> edges;
+    for (int i = 0; i <= kDecades * per_decade; ++i)
+    {
+        edges.push_back(0.1 * std::pow(10.0, static_cast<double>(i) / per_decade));
+    }
+    return edges;
+}
+
+/// Counts between neighbouring edges; what is below the first counts in the first bin.
+std::vector<double> counts_between(const LatencyHistogram& histogram,
+                                   const std::vector<double>& edges)
+{
+    std::vector<double> counts;
+    std::uint64_t before = 0;
+    for (std::size_t i = 1; i < edges.size(); ++i)
+    {
+        const auto upper_ns = static_cast<std::int64_t>(std::llround(edges[i] * 1e3));
+        const std::uint64_t up_to = histogram.count_to({upper_ns});
+        counts.push_back(static_cast<double>(up_to - before));
+        before = up_to;
+    }
+    return counts;
+}
+
+/// Pairs of an upper edge in us and a count; empty bins are left out.
+Json bins_of(const LatencyHistogram& histogram)
+{
+    const std::vector<double> edges = edges_us(50);
+    const std::vector<double> counts = counts_between(histogram, edges);
+    Json bins = Json::array();
+    for (std::size_t i = 0; i < counts.size(); ++i)
+    {
+        if (counts[i] > 0.0)
+        {
+            bins.push_back({edges[i + 1], static_cast<std::uint64_t>(counts[i])});
+        }
+    }
+    return bins;
+}
+
+Json phase_of(const DeadlinePhase& phase)
+{
+    Json json = phase.report;
+    json["load"] = phase.loads;
+    for (const Quantity& quantity : kQuantities)
+    {
+        json["histograms_us"][quantity.key] = bins_of(phase.*quantity.histogram);
+    }
+    return json;
+}
+
+std::string loads_of(const DeadlinePhase& phase)
+{
+    return phase.loads.empty() ? phase.name
+                               : fmt::format("{} ({})", phase.name, fmt::join(phase.loads, ", "));
+}
+
+std::string table_of(std::span<const DeadlinePhase> phases)
+{
+    std::string text = fmt::format(
+        "{:<12}{:>39}   {:>17}   {:>23}   {:>14}\n"
+        "{:<12}{:>8}{:>7}{:>5}{:>8}{:>11}   {:>5}{:>6}{:>6}   {:>6}{:>7}{:>10}   {:>6}{:>10}\n",
+        "", "deadlines", "cpu us", "wake us", "response us", "", "cycles", "missed", "own",
+        "machine", "unexplained", "p50", "p99", "max", "p50", "p99", "max", "p99", "max");
+    for (const DeadlinePhase& phase : phases)
+    {
+        const Json& deadline = phase.report["deadline"];
+        const auto count = [&deadline](const char* key)
+        { return deadline[key].get<std::uint64_t>(); };
+        const auto us = [](const LatencyHistogram& histogram, double q)
+        { return to_us(histogram.quantile(q)); };
+        text += fmt::format(
+            "{:<12}{:>8}{:>7}{:>5}{:>8}{:>11}   {:>5.0f}{:>6.0f}{:>6.0f}   {:>6.0f}"
+            "{:>7.0f}{:>10.0f}   {:>6.0f}{:>10.0f}\n",
+            phase.name, phase.report["frames"].get<std::uint64_t>(), count("missed"),
+            count("own_fault"), count("machine_late"), count("unexplained"), us(phase.cpu, 0.5),
+            us(phase.cpu, 0.99), to_us(phase.cpu.max()), us(phase.wake, 0.5), us(phase.wake, 0.99),
+            to_us(phase.wake.max()), us(phase.response, 0.99), to_us(phase.response.max()));
+    }
+    return text;
+}
+
+/// As `cyclictest` prints a thread: priority, interval, cycles, latencies, all in us.
+std::string cyclictest_of(const DeadlinePhase& phase, const DeadlineSetting& setting)
+{
+    return fmt::format("{:<12}P:{:2} I:{} C:{:7} Min:{:7.0f} Avg:{:5.0f} Max:{:8.0f}\n", phase.name,
+                       setting.priority, setting.period.ns / 1'000, phase.wake.count(),
+                       to_us(phase.wake.min()), phase.wake.mean_ns() * 1e-3,
+                       to_us(phase.wake.max()));
+}
+
+std::string verdict_of(const SelfCheck& check, std::span<const DeadlinePhase> phases)
+{
+    std::uint64_t cycles = 0;
+    std::uint64_t own = 0;
+    std::uint64_t unexplained = 0;
+    for (const DeadlinePhase& phase : phases)
+    {
+        cycles += phase.report["frames"].get<std::uint64_t>();
+        own += phase.own_faults;
+        unexplained += phase.unexplained;
+    }
+    if (!check.is_passed())
+    {
+        return "failed: the self-check did not flag what it should, so nothing else counts";
+    }
+    const std::string known =
+        unexplained == 0 ? "" : fmt::format("; {} misses unexplained", unexplained);
+    return fmt::format("{}: {} own faults in {} cycles{}", own == 0 ? "passed" : "failed", own,
+                       cycles, known);
+}
+
+/// '#' for each factor of 10^(1/5), at least one for any count.
+std::string bar_of(double count)
+{
+    const auto length =
+        count > 0.0 ? 1 + static_cast<std::size_t>(5.0 * std::log10(count)) : std::size_t{0};
+    return std::string(length, '#');
+}
+
+} // namespace
+
+bool is_passed(const SelfCheck& check, std::span<const DeadlinePhase> phases)
+{
+    return check.is_passed() && std::ranges::all_of(phases, [](const DeadlinePhase& phase)
+                                                    { return phase.own_faults == 0; });
+}
+
+Json make_deadline_report(const SelfCheck& check, std::span<const DeadlinePhase> phases)
+{
+    Json report = phase_of(phases.back());
+    report["self_check"] = {{"injected", check.injected},
+                            {"flagged", check.flagged},
+                            {"false_flags", check.false_flags},
+                            {"allocations_counted", check.allocations_counted},
+                            {"passed", check.is_passed()}};
+    report["passed"] = is_passed(check, phases);
+    if (phases.size() > 1)
+    {
+        report["alone"] = phase_of(phases.front());
+    }
+    return report;
+}
+
+std::string make_deadline_summary(const SelfCheck& check, std::span<const DeadlinePhase> phases,
+                                  const DeadlineSetting& setting)
+{
+    std::string text = "self-check  " + self_check_line(check) + '\n' + table_of(phases);
+    text += "wake as cyclictest tells it, us\n";
+    for (const DeadlinePhase& phase : phases)
+    {
+        text += cyclictest_of(phase, setting);
+    }
+    text += "cpu p99     ";
+    for (const DeadlinePhase& phase : phases)
+    {
+        const double share = static_cast<double>(phase.cpu.quantile(0.99).ns) /
+                             static_cast<double>(setting.period.ns);
+        text += fmt::format("{}{:.1f} % of the period {}", &phase == phases.data() ? "" : ", ",
+                            100.0 * share, loads_of(phase));
+    }
+    return text + "\nverdict     " + verdict_of(check, phases) + '\n';
+}
+
+std::string make_histogram_text(std::span<const DeadlinePhase> phases)
+{
+    constexpr std::array kSteps{1.0, 2.0, 5.0};
+    std::vector<double> edges{0.0};
+    for (double decade = 1.0; decade < 1e8; decade *= 10.0)
+    {
+        for (const double step : kSteps)
+        {
+            edges.push_back(step * decade);
+        }
+    }
+    const Json& machine = phases.front().report["machine"];
+    std::string text = fmt::format(
+        "{}; {}; {}, {} processors; {}\n", machine["kernel"].get<std::string>(),
+        machine["preemption"].get<std::string>(), machine["processor"].get<std::string>(),
+        machine["processors"].get<unsigned>(), machine["date_utc"].get<std::string>());
+    for (const Quantity& quantity : kQuantities)
+    {
+        std::vector<std::vector<double>> counts;
+        std::size_t first = edges.size();
+        std::size_t last = 0;
+        for (const DeadlinePhase& phase : phases)
+        {
+            counts.push_back(counts_between(phase.*quantity.histogram, edges));
+            for (std::size_t i = 0; i < counts.back().size(); ++i)
+            {
+                first = counts.back()[i] > 0.0 ? std::min(first, i) : first;
+                last = counts.back()[i] > 0.0 ? std::max(last, i + 1) : last;
+            }
+        }
+        text += fmt::format("\n{}\n{:>12}", quantity.title, "up to us");
+        for (const DeadlinePhase& phase : phases)
+        {
+            text += fmt::format("{:>10}  {:<28}", "cycles", loads_of(phase));
+        }
+        text += '\n';
+        for (std::size_t i = first; i < last; ++i)
+        {
+            text += fmt::format("{:>12.0f}", edges[i + 1]);
+            for (const std::vector<double>& of_phase : counts)
+            {
+                text += fmt::format("{:>10.0f}  {:<28}", of_phase[i], bar_of(of_phase[i]));
+            }
+            text.erase(text.find_last_not_of(' ') + 1);
+            text += '\n';
+        }
+    }
+    return text;
+}
+
+std::string make_histogram_image(std::span<const DeadlinePhase> phases,
+                                 const DeadlineSetting& setting)
+{
+    const std::vector<double> edges = edges_us(20);
+    std::vector<plot::Panel> panels;
+    for (const Quantity& quantity : kQuantities)
+    {
+        plot::Panel panel{quantity.title, "us", "cycles", {}, {{to_us(setting.period), "period"}}};
+        for (const DeadlinePhase& phase : phases)
+        {
+            panel.steps.push_back(
+                {loads_of(phase), edges, counts_between(phase.*quantity.histogram, edges)});
+        }
+        panels.push_back(std::move(panel));
+    }
+    return plot::make_svg(panels);
+}
+
+} // namespace tactus::hrtc

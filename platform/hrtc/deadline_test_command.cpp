@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/hrtc/deadline_test_command.hpp"
+
+#include "host_tools/cli/command_line.hpp"
+#include "platform/hrtc/deadline_report.hpp"
+#include "platform/hrtc/frame_repeater.hpp"
+#include "platform/hrtc/load.hpp"
+#include "platform/hrtc/report.hpp"
+#include "platform/hrtc/self_check.hpp"
+#include "platform/hrtc/session.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <optional>
+#include <system_error>
+#include <unistd.h>
+#include <utility>
+#include <vector>
+
+namespace tactus::hrtc
+{
+
+namespace
+{
+
+constexpr double kDuration_s = 60.0;
+
+/// A file for a run's recording, gone at the end.
+class TemporaryRecording
+{
+public:
+    TemporaryRecording()
+        : path_((std::filesystem::temp_directory_path() /
+                 fmt::format("hrtc-deadline-test-{}.rec", getpid()))
+                    .string())
+    {
+    }
+    TemporaryRecording(const TemporaryRecording&) = delete;
+    TemporaryRecording& operator=(const TemporaryRecording&) = delete;
+    ~TemporaryRecording()
+    {
+        std::error_code ignored;
+        std::filesystem::remove(path_, ignored);
+    }
+
+    [[nodiscard]] const std::string& path() const noexcept { return path_; }
+
+private:
+    std::string path_;
+};
+
+/// Repeats the frames that are under suspicion; returns why that can't be done.
+std::optional<std::string> settle(FinishedRun& run, const std::string& recording_path)
+{
+    DeadlineAccount& deadlines = run.statistics.deadlines;
+    const std::vector<std::uint64_t> suspects = deadlines.suspects();
+    if (suspects.empty())
+    {
+        return std::nullopt;
+    }
+    const auto recording = Recording::read(recording_path);
+    if (!recording)
+    {
+        return recording.error().text;
+    }
+    const auto over = frames_over_again(recording.value(), suspects, deadlines.cpu_limit());
+    if (!over)
+    {
+        return "frames that took long can't be repeated: " + over.error();
+    }
+    for (const std::uint64_t frame : over.value())
+    {
+        deadlines.blame(frame);
+    }
+    return std::nullopt;
+}
+
+SessionError failure(std::string text)
+{
+    return {std::move(text), kExitFailed};
+}
+
+Result<DeadlinePhase, SessionError> run_phase(Options options, const std::vector<LoadKind>& loads)
+{
+    const TemporaryRecording recording;
+    options.record_path = recording.path();
+    auto session = Session::open(options);
+    if (!session)
+    {
+        return session.error();
+    }
+    auto load = Load::start(loads);
+    if (!load)
+    {
+        return failure("--load: " + load.error());
+    }
+    const std::string name = loads.empty() ? "alone" : "beside load";
+    auto run = session.value()->run(name);
+    if (!run)
+    {
+        return run.error();
+    }
+    if (const auto ended = load.value().ended())
+    {
+        return failure(fmt::format("--load: '{}' ended before the run did",
+                                   kLoadNames[static_cast<std::size_t>(*ended)]));
+    }
+    if (run.value().recording_error)
+    {
+        return failure("the run can't be judged without its recording");
+    }
+    if (const auto fault = settle(run.value(), recording.path()))
+    {
+        return failure(*fault);
+    }
+    const RunStatistics& statistics = run.value().statistics;
+    DeadlinePhase phase{.name = name,
+                        .loads = {},
+                        .report = make_report(options, session.value()->controller(), run.value()),
+                        .wake = statistics.wake,
+                        .cpu = statistics.cpu,
+                        .response = statistics.deadlines.response(),
+                        .own_faults = statistics.deadlines.own_faults,
+                        .unexplained = statistics.deadlines.unexplained};
+    for (const LoadKind kind : loads)
+    {
+        phase.loads.emplace_back(kLoadNames[static_cast<std::size_t>(kind)]);
+    }
+    return phase;
+}
+
+/// The JSON file, and beside it the same name with .txt and .svg.
+struct ReportFiles
+{
+    std::string json;
+    std::string text;
+    std::string image;
+};
+
+ReportFiles files_beside(const std::string& path)
+{
+    const auto with = [&path](const char* extension)
+    { return std::filesystem::path(path).replace_extension(extension).string(); };
+    return {path, with(".txt"), with(".svg")};
+}
+
+std::optional<OutputFileError> write_files(const ReportFiles& files, const SelfCheck& check,
+                                           std::span<const DeadlinePhase> phases,
+                                           const DeadlineSetting& setting)
+{
+    if (auto error = write_report(make_deadline_report(check, phases), files.json))
+    {
+        return error;
+    }
+    if (auto error = write_text(make_histogram_text(phases), files.text))
+    {
+        return error;
+    }
+    return write_text(make_histogram_image(phases, setting), files.image);
+}
+
+int fail(const SessionError& error)
+{
+    log_line(error.text);
+    return error.code;
+}
+
+/// Empty when all is well.
+std::string check_load(const std::vector<std::string>& names, std::vector<LoadKind>& loads)
+{
+    for (const std::string& name : names)
+    {
+        if (name == "none" && names.size() > 1)
+        {
+            return "--load: none goes with no other";
+        }
+        if (const auto kind = parse_load(name); kind && std::ranges::count(loads, *kind) == 0)
+        {
+            loads.push_back(*kind);
+        }
+    }
+    return {};
+}
+
+std::optional<OutputFileError> probe(const ReportFiles& files)
+{
+    for (const std::string* path : {&files.json, &files.text, &files.image})
+    {
+        if (auto error = probe_output(*path))
+        {
+            return error;
+        }
+    }
+    return std::nullopt;
+}
+
+int run_test(const Options& options, const std::vector<LoadKind>& loads)
+{
+    install_handlers();
+    const bool has_files = !options.report_path.empty();
+    const ReportFiles files = has_files ? files_beside(options.report_path) : ReportFiles{};
+    if (const auto error = probe(files))
+    {
+        return fail(failure("--report: " + error->text));
+    }
+    const auto check = run_self_check(options);
+    if (!check)
+    {
+        return fail(check.error());
+    }
+    std::vector<DeadlinePhase> phases;
+    std::vector<std::vector<LoadKind>> runs{{}};
+    if (!loads.empty())
+    {
+        runs.push_back(loads);
+    }
+    for (const std::vector<LoadKind>& beside : runs)
+    {
+        auto phase = run_phase(options, beside);
+        if (!phase)
+        {
+            return fail(phase.error());
+        }
+        phases.push_back(std::move(phase).value());
+        if (was_interrupted())
+        {
+            return fail(failure("interrupted; nothing is judged"));
+        }
+    }
+    const DeadlineSetting setting{options.thread.priority,
+                                  nanoseconds(1'000'000'000 / options.rate_hz)};
+    fmt::print("{}", make_deadline_summary(check.value(), phases, setting));
+    if (has_files)
+    {
+        if (const auto error = write_files(files, check.value(), phases, setting))
+        {
+            return fail(failure("--report: " + error->text));
+        }
+        fmt::print("report      {}, {}, {}\n", files.json, files.text, files.image);
+    }
+    return is_passed(check.value(), phases) ? kExitDone : kExitCriterionNotMet;
+}
+
+} // namespace
+
+int run_deadline_test(int argc, char** argv)
+{
+    std::vector<std::string> load_names{kLoadNames.begin(), kLoadNames.end()};
+    CommandForm form;
+    form.name = "hrtc deadline-test";
+    form.description = "Runs the loop alone and beside load, and tells whose fault each missed "
+                       "deadline was. First faults are injected to prove that they are seen. Exit "
+                       "code 1 after a fault of the loop's own. Takes the options of hrtc; "
+                       "--report writes FILE.json, FILE.txt and FILE.svg.";
+    form.records = false;
+    form.duration_s = kDuration_s;
+    form.declare = [&load_names](CLI::App& app)
+    {
+        app.add_option("--load", load_names,
+                       "What runs beside the second run: cpu, memory, disk, separated by commas, "
+                       "or none")
+            ->delimiter(',')
+            ->check(CLI::IsMember({"cpu", "memory", "disk", "none"}))
+            ->capture_default_str();
+    };
+    auto parsed = parse_options(argc, argv, form);
+    if (const int* code = std::get_if<int>(&parsed))
+    {
+        return *code;
+    }
+    const Options& options = std::get<Options>(parsed);
+    std::vector<LoadKind> loads;
+    if (const std::string fault = check_load(load_names, loads); !fault.empty())
+    {
+        return fail({fault, kExitUsage});
+    }
+    const ReportFiles files = files_beside(options.report_path);
+    if (!files.json.empty() && (files.json == files.text || files.json == files.image))
+    {
+        return fail(
+            {"--report: must not end in .txt or .svg, which the histograms take", kExitUsage});
+    }
+    return run_test(options, loads);
+}
+
+} // namespace tactus::hrtc

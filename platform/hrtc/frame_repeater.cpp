@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/hrtc/frame_repeater.hpp"
+
+#include "platform/recording/replay.hpp"
+#include "platform/thread_usage.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+namespace tactus::hrtc
+{
+
+Result<std::vector<std::uint64_t>, std::string>
+frames_over_again(const Recording& recording, std::span<const std::uint64_t> suspects,
+                  Duration limit)
+{
+    std::set<std::uint64_t> over;
+    Duration before;
+    const ReplayWatch watch{[&before](std::uint64_t) { before = read_thread_cpu_time(); },
+                            [&](std::uint64_t frame)
+                            {
+                                if (read_thread_cpu_time() - before > limit &&
+                                    std::ranges::binary_search(suspects, frame))
+                                {
+                                    over.insert(frame);
+                                }
+                            }};
+    for (int i = 0; i < kRepetitions && over.size() < suspects.size(); ++i)
+    {
+        const auto replayed = replay(recording, nullptr, watch);
+        if (!replayed)
+        {
+            return replayed.error().text;
+        }
+        if (replayed.value().difference)
+        {
+            return replay_line(recording, replayed.value());
+        }
+        if (suspects.back() >= replayed.value().frames)
+        {
+            return fmt::format("frame {} is not in the recording of {} frames", suspects.back(),
+                               replayed.value().frames);
+        }
+    }
+    return std::vector<std::uint64_t>(over.begin(), over.end());
+}
+
+} // namespace tactus::hrtc

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/hrtc/self_check.hpp"
+
+#include "platform/allocation_counter.hpp"
+#include "platform/hrtc/frame_repeater.hpp"
+#include "platform/thread_usage.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <ctime>
+#include <sys/mman.h>
+
+namespace tactus::hrtc
+{
+
+namespace
+{
+
+constexpr std::size_t kPageBytes = 4'096;
+constexpr long kSleep_ns = 20'000;
+
+void touch_new_page() noexcept
+{
+    void* page = mmap(nullptr, kPageBytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1,
+                      0); // Where memory is locked the fault is here, else in the next line.
+    if (page != MAP_FAILED)
+    {
+        *static_cast<volatile char*>(page) = 1;
+        munmap(page, kPageBytes);
+    }
+}
+
+/// The device as it is, but its readings spoil the frames of the plan.
+class SpoilingDevice final : public HapticDevice
+{
+public:
+    SpoilingDevice(std::unique_ptr<HapticDevice> device, Duration period)
+        : device_(std::move(device)), period_(period)
+    {
+    }
+    [[nodiscard]] const DeviceInfo& info() const noexcept override { return device_->info(); }
+    [[nodiscard]] DeviceSample read() noexcept override
+    {
+        if (const auto fault = InjectionPlan::at(frame_++))
+        {
+            inject(*fault, period_);
+        }
+        return device_->read();
+    }
+    void write(const std::array<double, 3>& force_world_n) noexcept override
+    {
+        device_->write(force_world_n);
+    }
+    void brake() noexcept override { device_->brake(); }
+    void release_brake() noexcept override { device_->release_brake(); }
+    [[nodiscard]] DeviceStatus status() const noexcept override { return device_->status(); }
+
+private:
+    std::unique_ptr<HapticDevice> device_;
+    Duration period_;
+    std::uint64_t frame_{0};
+};
+
+/// What an injected fault has to be flagged as.
+CycleFlag flag_of(InjectedFault fault) noexcept
+{
+    switch (fault)
+    {
+    case InjectedFault::overrun:
+        return CycleFlag::repeated_cpu;
+    case InjectedFault::page_fault:
+        return CycleFlag::page_fault;
+    case InjectedFault::allocation:
+        return CycleFlag::allocation;
+    case InjectedFault::sleep:
+        return CycleFlag::gave_way;
+    }
+    return CycleFlag::none;
+}
+
+/// Whether what the plan does to this frame takes more than `limit` again.
+bool is_over_again(std::uint64_t frame, Duration limit, Duration period)
+{
+    const auto fault = InjectionPlan::at(frame);
+    for (int i = 0; fault && i < kRepetitions; ++i)
+    {
+        const Duration before = read_thread_cpu_time();
+        inject(*fault, period);
+        if (read_thread_cpu_time() - before > limit)
+        {
+            return true;
+        }
+    }
+    return false;
+}
+
+} // namespace
+
+std::optional<InjectedFault> InjectionPlan::at(std::uint64_t frame) noexcept
+{
+    const bool is_spoilt = frame >= kFirst && frame < kFrames && (frame - kFirst) % kSpacing == 0;
+    const auto fault = static_cast<InjectedFault>((frame - kFirst) / kSpacing % kInjectedFaults);
+    if (!is_spoilt || (fault == InjectedFault::allocation && !allocation_counter::available()))
+    {
+        return std::nullopt;
+    }
+    return fault;
+}
+
+void inject(InjectedFault fault, Duration period) noexcept
+{
+    switch (fault)
+    {
+    case InjectedFault::overrun:
+        for (const Duration start = read_thread_cpu_time();
+             (read_thread_cpu_time() - start) * 10 < period * 11;)
+        {
+        }
+        return;
+    case InjectedFault::page_fault:
+        touch_new_page();
+        return;
+    case InjectedFault::allocation:
+    {
+        void* volatile memory = std::malloc(1); // Or it is left out: nobody uses it.
+        std::free(memory);
+        return;
+    }
+    case InjectedFault::sleep:
+    {
+        const timespec time{0, kSleep_ns};
+        nanosleep(&time, nullptr);
+        return;
+    }
+    }
+}
+
+SelfCheck compare_with_plan(DeadlineAccount& deadlines)
+{
+    for (const std::uint64_t frame : deadlines.suspects())
+    {
+        if (is_over_again(frame, deadlines.cpu_limit(), deadlines.period()))
+        {
+            deadlines.blame(frame);
+        }
+    }
+    SelfCheck check;
+    check.allocations_counted = allocation_counter::available();
+    for (std::uint64_t frame = 0; frame < InjectionPlan::kFrames; ++frame)
+    {
+        check.injected += InjectionPlan::at(frame) ? 1U : 0U;
+    }
+    for (const NotedCycle& cycle : deadlines.noted())
+    {
+        const auto fault = InjectionPlan::at(cycle.frame);
+        const bool is_own = has_any(cycle.flags, kOwnFaults);
+        check.flagged += fault && has_any(cycle.flags, flag_of(*fault)) ? 1U : 0U;
+        check.false_flags += is_own && !fault ? 1U : 0U;
+    }
+    return check;
+}
+
+Result<SelfCheck, SessionError> run_self_check(Options options)
+{
+    options.devices.clear();
+    options.report_path.clear();
+    options.duration_s = static_cast<double>(InjectionPlan::kFrames + InjectionPlan::kSpacing) /
+                         static_cast<double>(options.rate_hz);
+    auto session = Session::open(options);
+    if (!session)
+    {
+        return session.error();
+    }
+    std::unique_ptr<HapticDevice>& device = session.value()->controller().devices().front();
+    device = std::make_unique<SpoilingDevice>(std::move(device),
+                                              nanoseconds(1'000'000'000 / options.rate_hz));
+    auto run = session.value()->run("self-check");
+    if (!run)
+    {
+        return run.error();
+    }
+    return compare_with_plan(run.value().statistics.deadlines);
+}
+
+std::string self_check_line(const SelfCheck& check)
+{
+    return fmt::format("{} of {} injected faults flagged as what they are, {} false flags{}",
+                       check.flagged, check.injected, check.false_flags,
+                       check.allocations_counted ? "" : "; this build doesn't count allocations");
+}
+
+} // namespace tactus::hrtc

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "platform/hrtc/deadline_account.hpp"
+#include "platform/hrtc/session.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace tactus::hrtc
+{
+
+/// What the loop must not do, done to it on purpose.
+enum class InjectedFault : std::uint8_t
+{
+    overrun,    ///< More processor time than a period.
+    page_fault, ///< A page that isn't there is touched.
+    allocation, ///< A call on the heap.
+    sleep,      ///< The processor is given away.
+};
+inline constexpr std::size_t kInjectedFaults = 4;
+
+/// Which frames of a self-check are spoilt, and how.
+struct InjectionPlan
+{
+    static constexpr std::uint64_t kFirst = 100;
+    static constexpr std::uint64_t kSpacing = 23; ///< Frames; what one costs is over by the next.
+    static constexpr std::uint64_t kOfEachKind = 5;
+    static constexpr std::uint64_t kFrames = kFirst + kInjectedFaults * kOfEachKind * kSpacing;
+
+    [[nodiscard]] static std::optional<InjectedFault> at(std::uint64_t frame) noexcept;
+};
+
+/// Does it on the calling thread. `period`: of the loop.
+void inject(InjectedFault fault, Duration period) noexcept;
+
+/// What a self-check came to.
+struct SelfCheck
+{
+    std::uint64_t injected{0};
+    std::uint64_t flagged{0};       ///< Of these, as what they were.
+    std::uint64_t false_flags{0};   ///< Own faults in frames that were not spoilt.
+    bool allocations_counted{true}; ///< False: this build can't, and none was injected.
+
+    [[nodiscard]] bool is_passed() const noexcept
+    {
+        return injected > 0 && flagged == injected && false_flags == 0;
+    }
+};
+
+/// Settles the suspects of a run that was spoilt by the plan, by doing to them again what the plan
+/// did, and compares what was flagged with the plan.
+[[nodiscard]] SelfCheck compare_with_plan(DeadlineAccount& deadlines);
+
+/// Proof that the accounting sees what it has to see: a short run as the options have it, with
+/// simulated devices, in which each fault is injected InjectionPlan::kOfEachKind times.
+[[nodiscard]] Result<SelfCheck, SessionError> run_self_check(Options options);
+
+[[nodiscard]] std::string self_check_line(const SelfCheck& check);
+
+} // namespace tactus::hrtc
