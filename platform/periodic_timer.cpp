@@ -59,15 +59,27 @@ void PeriodicTimer::sleep_until_margin() noexcept
 Cycle PeriodicTimer::spin_until_deadline() noexcept
 {
     TACTUS_ASSERT(period_ > Duration{});
-    MonotonicTime time = spin_until(deadline_);
+    MonotonicTime time = wait_out();
     while (time - deadline_ >= period_)
     {
         sleep_until_margin();
-        time = spin_until(deadline_);
+        time = wait_out();
     }
     const Cycle cycle{deadline_, wake_lateness_, time - deadline_, periods_, sleeps_};
     count_cycle();
     return cycle;
+}
+
+/// A machine that takes the processor away meanwhile is late as well.
+MonotonicTime PeriodicTimer::wait_out() noexcept
+{
+    const bool began_in_time = now() < deadline_;
+    const MonotonicTime time = spin_until(deadline_);
+    if (began_in_time)
+    {
+        wake_lateness_ = std::max(wake_lateness_, time - deadline_);
+    }
+    return time;
 }
 
 /// Moves the deadline to the first grid point after `time` when whole periods were lost.

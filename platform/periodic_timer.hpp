@@ -16,8 +16,9 @@ struct Cycle
 {
     /// The grid point this frame belongs to: start + a whole number of periods.
     MonotonicTime deadline;
-    /// How much later than asked the machine woke us, the worst of this cycle's sleeps. Zero when
-    /// there was no time to sleep, so a frame that took too long never looks like a late machine.
+    /// How much later than asked the machine woke us, the worst of this cycle's sleeps and of the
+    /// wait for the deadline. Zero when there was no time for either, so a frame that took too long
+    /// never looks like a late machine.
     Duration wake_lateness;
     /// How long after the deadline the frame starts; below one period unless the clock itself
     /// jumps.
@@ -90,6 +91,7 @@ private:
     /// As sleep_until(), but keeps the processor; returns the time it stopped at.
     [[nodiscard]] virtual MonotonicTime spin_until(MonotonicTime deadline) noexcept = 0;
 
+    [[nodiscard]] MonotonicTime wait_out() noexcept;
     void skip_lost_periods(MonotonicTime time) noexcept;
     void count_cycle() noexcept;
 

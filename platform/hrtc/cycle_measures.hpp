@@ -23,6 +23,8 @@ struct CycleMeasures
     std::array<Duration, kStages> stage;
     Duration frame;               ///< From the start of the frame to the force written.
     Duration cpu;                 ///< Processor time of the thread in `frame`.
+    Duration beside;              ///< What the loop did besides: bookkeeping and rehearsal.
+    Duration beside_cpu;          ///< Processor time in `beside`.
     Duration lateness_of_end;     ///< End of the frame after its deadline; late when > one period.
     ThreadUsage usage;            ///< Since the last cycle.
     std::uint64_t allocations{0}; ///< Since the last cycle.

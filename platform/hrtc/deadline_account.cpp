@@ -61,7 +61,9 @@ CycleFlag DeadlineAccount::flags_of(const CycleMeasures& measures, bool over_wor
            when(over_work, CycleFlag::over_work) |
            when(measures.cpu > cpu_limit_, CycleFlag::over_cpu) |
            when(cycle.wake_lateness > machine_limit_, CycleFlag::woken_late) |
-           when(measures.frame - measures.cpu > machine_limit_, CycleFlag::held_up) |
+           when(std::max(measures.frame - measures.cpu, measures.beside - measures.beside_cpu) >
+                    machine_limit_,
+                CycleFlag::held_up) |
            when(measures.lateness_of_end > period_ || (cycle.periods > 1 && !ended_late_),
                 CycleFlag::missed);
 }

@@ -101,10 +101,10 @@ std::string loads_of(const DeadlinePhase& phase)
 std::string table_of(std::span<const DeadlinePhase> phases)
 {
     std::string text = fmt::format(
-        "{:<12}{:>39}   {:>17}   {:>23}   {:>14}\n"
-        "{:<12}{:>8}{:>7}{:>5}{:>8}{:>11}   {:>5}{:>6}{:>6}   {:>6}{:>7}{:>10}   {:>6}{:>10}\n",
+        "{:<12}{:>36}{:>19}{:>24}{:>17}\n"
+        "{:<12}{:>8}{:>8}{:>5}{:>8}{:>7}{:>7}{:>6}{:>6}{:>8}{:>7}{:>9}{:>8}{:>9}\n",
         "", "deadlines", "cpu us", "wake us", "response us", "", "cycles", "missed", "own",
-        "machine", "unexplained", "p50", "p99", "max", "p50", "p99", "max", "p99", "max");
+        "machine", "other", "p50", "p99", "max", "p50", "p99", "max", "p99", "max");
     for (const DeadlinePhase& phase : phases)
     {
         const Json& deadline = phase.report["deadline"];
@@ -112,13 +112,13 @@ std::string table_of(std::span<const DeadlinePhase> phases)
         { return deadline[key].get<std::uint64_t>(); };
         const auto us = [](const LatencyHistogram& histogram, double q)
         { return to_us(histogram.quantile(q)); };
-        text += fmt::format(
-            "{:<12}{:>8}{:>7}{:>5}{:>8}{:>11}   {:>5.0f}{:>6.0f}{:>6.0f}   {:>6.0f}"
-            "{:>7.0f}{:>10.0f}   {:>6.0f}{:>10.0f}\n",
-            phase.name, phase.report["frames"].get<std::uint64_t>(), count("missed"),
-            count("own_fault"), count("machine_late"), count("unexplained"), us(phase.cpu, 0.5),
-            us(phase.cpu, 0.99), to_us(phase.cpu.max()), us(phase.wake, 0.5), us(phase.wake, 0.99),
-            to_us(phase.wake.max()), us(phase.response, 0.99), to_us(phase.response.max()));
+        text += fmt::format("{:<12}{:>8}{:>8}{:>5}{:>8}{:>7}", phase.name,
+                            phase.report["frames"].get<std::uint64_t>(), count("missed"),
+                            count("own_fault"), count("machine_late"), count("unexplained"));
+        text += fmt::format("{:>7.0f}{:>6.0f}{:>6.0f}{:>8.0f}{:>7.0f}{:>9.0f}{:>8.0f}{:>9.0f}\n",
+                            us(phase.cpu, 0.5), us(phase.cpu, 0.99), to_us(phase.cpu.max()),
+                            us(phase.wake, 0.5), us(phase.wake, 0.99), to_us(phase.wake.max()),
+                            us(phase.response, 0.99), to_us(phase.response.max()));
     }
     return text;
 }
@@ -148,7 +148,7 @@ std::string verdict_of(const SelfCheck& check, std::span<const DeadlinePhase> ph
         return "failed: the self-check did not flag what it should, so nothing else counts";
     }
     const std::string known =
-        unexplained == 0 ? "" : fmt::format("; {} misses unexplained", unexplained);
+        unexplained == 0 ? "" : fmt::format("; {} misses of neither's doing", unexplained);
     return fmt::format("{}: {} own faults in {} cycles{}", own == 0 ? "passed" : "failed", own,
                        cycles, known);
 }
@@ -194,13 +194,13 @@ std::string make_deadline_summary(const SelfCheck& check, std::span<const Deadli
     {
         text += cyclictest_of(phase, setting);
     }
-    text += "cpu p99     ";
+    text += "cpu p99     of the period: ";
     for (const DeadlinePhase& phase : phases)
     {
         const double share = static_cast<double>(phase.cpu.quantile(0.99).ns) /
                              static_cast<double>(setting.period.ns);
-        text += fmt::format("{}{:.1f} % of the period {}", &phase == phases.data() ? "" : ", ",
-                            100.0 * share, loads_of(phase));
+        text += fmt::format("{}{:.1f} % {}", &phase == phases.data() ? "" : ", ", 100.0 * share,
+                            loads_of(phase));
     }
     return text + "\nverdict     " + verdict_of(check, phases) + '\n';
 }

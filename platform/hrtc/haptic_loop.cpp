@@ -40,11 +40,10 @@ void HapticLoop::run() noexcept
     fade_frames_ = static_cast<std::uint64_t>(kFadeTime_s / to_seconds(parts_.timer->period())) + 1;
     ThreadUsage usage = read_thread_usage();
     std::uint64_t allocations = allocation_counter::of_this_thread().allocations;
+    MonotonicTime end = parts_.clock->now();
     for (; !has_to_end(); ++frame_)
     {
-        parts_.timer->sleep_until_margin();
-        rehearse();
-        measures_.cycle = parts_.timer->spin_until_deadline();
+        wait_for_deadline(end, usage.cpu_time);
         const Duration cpu_before = read_thread_cpu_time();
         const MonotonicTime start = parts_.clock->now();
         heartbeat_.beat(start);
@@ -53,7 +52,7 @@ void HapticLoop::run() noexcept
         const FrameOutput output = run_frame();
         make_safe(output);
         write_devices();
-        const MonotonicTime end = parts_.clock->now();
+        end = parts_.clock->now();
         const ThreadUsage now = read_thread_usage();
         record(output);
         measures_.frame = end - start;
@@ -85,6 +84,20 @@ bool HapticLoop::has_to_end() noexcept
         end_ = std::min(end_, frame_ + fade_frames_); // The first time it counts.
     }
     return frame_ >= end_ || failing_.load();
+}
+
+/// `since`: when the last frame ended; `cpu_since`: the thread's processor time then.
+void HapticLoop::wait_for_deadline(MonotonicTime since, Duration cpu_since) noexcept
+{
+    measures_.beside = parts_.clock->now() - since;
+    measures_.beside_cpu = read_thread_cpu_time() - cpu_since;
+    parts_.timer->sleep_until_margin();
+    const Duration cpu_awake = read_thread_cpu_time();
+    const MonotonicTime awake = parts_.clock->now();
+    rehearse();
+    measures_.beside += parts_.clock->now() - awake;
+    measures_.beside_cpu += read_thread_cpu_time() - cpu_awake;
+    measures_.cycle = parts_.timer->spin_until_deadline();
 }
 
 /// Rehearsal and frame are what must make no system call.

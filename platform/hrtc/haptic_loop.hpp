@@ -77,6 +77,7 @@ public:
     [[nodiscard]] SafetyLog& safety_log() noexcept { return log_; }
 
 private:
+    void wait_for_deadline(MonotonicTime since, Duration cpu_since) noexcept;
     void rehearse() noexcept;
     [[nodiscard]] FrameOutput run_frame() noexcept;
     void record(const FrameOutput& output) noexcept;

@@ -108,7 +108,12 @@ TEST(DeadlineAccount, a_miss_is_the_machines_when_it_woke_or_held_up_the_loop)
     measures.frame = measures.cpu + microseconds(301);
     sut.add(2, measures, false);
     EXPECT_EQ(sut.machine_late, 2U);
-    EXPECT_EQ(sut.missed, 2U);
+    measures = missed_cycle();
+    measures.beside_cpu = microseconds(10);
+    measures.beside = measures.beside_cpu + microseconds(301);
+    sut.add(4, measures, false);
+    EXPECT_EQ(sut.machine_late, 3U);
+    EXPECT_EQ(sut.missed, 3U);
     EXPECT_EQ(sut.unexplained, 0U);
 }
 
