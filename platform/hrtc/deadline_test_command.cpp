@@ -92,7 +92,7 @@ Result<DeadlinePhase, SessionError> run_phase(Options options, const std::vector
     {
         return session.error();
     }
-    auto load = Load::start(loads);
+    auto load = Load::start(loads, "/proc/self/exe");
     if (!load)
     {
         return failure("--load: " + load.error());

@@ -165,14 +165,8 @@ std::optional<std::string> work(LoadKind kind, bool (*goes_on)())
     return std::nullopt;
 }
 
-Result<Load, std::string> Load::start(std::span<const LoadKind> kinds)
+Result<Load, std::string> Load::start(std::span<const LoadKind> kinds, const std::string& program)
 {
-    std::error_code error;
-    const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
-    if (error)
-    {
-        return "the load can't be started: /proc/self/exe: " + error.message();
-    }
     Load load;
     std::array<int, 2> ends{};
     if (pipe(ends.data()) != 0)
@@ -188,7 +182,7 @@ Result<Load, std::string> Load::start(std::span<const LoadKind> kinds)
     {
         for (unsigned i = 0; i < (kind == LoadKind::disk ? 1U : processors); ++i)
         {
-            if (const auto fault = load.start(kind, program.string()))
+            if (const auto fault = load.start_one(kind, program))
             {
                 return *fault;
             }
@@ -197,7 +191,7 @@ Result<Load, std::string> Load::start(std::span<const LoadKind> kinds)
     return load;
 }
 
-std::optional<std::string> Load::start(LoadKind kind, const std::string& program)
+std::optional<std::string> Load::start_one(LoadKind kind, const std::string& program)
 {
     std::string name = kLoadNames[static_cast<std::size_t>(kind)];
     std::string path = program;

@@ -37,8 +37,10 @@ inline constexpr std::array<const char*, 3> kLoadNames{"cpu", "memory", "disk"};
 class Load
 {
 public:
-    /// Starts them, through `hrtc load`. Returns which one could not be started.
-    [[nodiscard]] static Result<Load, std::string> start(std::span<const LoadKind> kinds);
+    /// Starts them: `program` with the arguments `load` and the kind's name. Returns which one
+    /// could not be started.
+    [[nodiscard]] static Result<Load, std::string> start(std::span<const LoadKind> kinds,
+                                                         const std::string& program);
 
     Load(Load&& other) noexcept;
     Load& operator=(Load&&) = delete;
@@ -57,7 +59,7 @@ private:
     };
 
     Load() = default;
-    [[nodiscard]] std::optional<std::string> start(LoadKind kind, const std::string& program);
+    [[nodiscard]] std::optional<std::string> start_one(LoadKind kind, const std::string& program);
 
     std::vector<Worker> workers_;
     int lifeline_{-1}; ///< They live as long as its other end is open.

@@ -35,12 +35,14 @@ fail() {
 finish() { ((failures == 0)) || fail "$failures faults in all"; }
 
 # expect CODE PATTERN PROGRAM ARGUMENT...: that exit code, and exactly one line, which begins with
-# the program's name and holds what matches PATTERN.
+# the program's name, perhaps with a subcommand's, and holds what matches PATTERN.
 expect() {
-    local code=0 wanted=$1 pattern=$2 output
+    local code=0 wanted=$1 pattern=$2 output name
     shift 2
     output=$("$@" 2>&1) || code=$?
-    if ((code != wanted)) || [[ "$output" != "$(basename "$1"): "*$pattern* ]] \
+    name=$(basename "$1")
+    [[ "$output" != "$name ${2:-}: "* ]] || name+=" $2"
+    if ((code != wanted)) || [[ "$output" != "$name: "*$pattern* ]] \
         || [[ "$output" == *$'\n'* ]] || [[ "$output" == *[$'\x01'-$'\x1f']* ]]; then
         printf '%q ' "${@:1:30}"
         printf '\n  expected exit %d and one line with "%s"\n  got exit %d and:\n%s\n' \

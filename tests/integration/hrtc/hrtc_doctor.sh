@@ -62,14 +62,7 @@ for uri in "file://$scratch/missing.xml" \
 done
 
 # The command line.
-refuse() { # refuse PATTERN ARGUMENT...: exit code 3 and one line.
-    local code=0 pattern=$1 output
-    shift
-    output=$("$hrtc" doctor "$@" 2>&1) || code=$?
-    if ((code != 3)) || [[ "$output" != 'hrtc doctor: '*$pattern* || "$output" == *$'\n'* ]]; then
-        fault "doctor $* ended with $code: $output"
-    fi
-}
+refuse() { expect 3 "$1" "$hrtc" doctor "${@:2}"; } # refuse PATTERN ARGUMENT...
 for value in -1 1024 all 1.5 ''; do
     refuse '--cpu: *0 to 1023' --cpu "$value"
 done

@@ -1,0 +1,75 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# hrtc_deadline_test.sh: the accounting flags what is injected, alone and beside load; report,
+# histograms and image are written and agree; nothing is left behind; wrong options are refused.
+source "$(dirname "$0")/common.sh"
+"$build" --shape bumpy-sphere --faces 5000 -o good.spm >build.log 2>&1
+mkdir temporary
+export TMPDIR=$scratch/temporary
+
+refuse() { expect "$1" "$2" "$hrtc" "${@:3}"; }
+refuse 3 '--model is required' deadline-test
+refuse 3 '--load: ' deadline-test --model bumpy --load network
+refuse 3 'none goes with no other' deadline-test --model bumpy --load none,cpu
+refuse 3 'must not end in .txt' deadline-test --model bumpy --report run.svg
+refuse 3 '--record' deadline-test --model bumpy --record run.rec
+refuse 3 '--replay' deadline-test --model bumpy --replay run.rec
+refuse 2 'nowhere/run.json' deadline-test --model bumpy --report nowhere/run.json
+refuse 2 'missing.spm' deadline-test --allow-no-rt --transport file --model missing.spm
+refuse 3 'KIND' load
+refuse 3 'KIND' load network
+"$hrtc" deadline-test --help >help.txt
+grep -q -- '--load ' help.txt || fault 'deadline-test --help does not tell of --load'
+
+for kind in cpu memory disk; do
+    "$hrtc" load $kind </dev/null || fault "load $kind did not end well at the end of its input"
+done
+
+# test_deadlines ARGUMENT...: its exit code in $ended_with.
+test_deadlines() {
+    ended_with=0
+    "$hrtc" deadline-test --allow-no-rt --transport file --model good.spm --duration 1 \
+        --report run.json "$@" >test.log 2>&1 || ended_with=$?
+    cat test.log
+    [[ -z $(ls temporary) ]] || fault "left behind: $(ls temporary)"
+}
+
+# judge: what must hold of any run. Without locked memory and SCHED_FIFO the loop has faults of its
+# own, and a sanitizer makes more.
+judge() {
+    check run.json schema == 1 frames == 1000 self_check.injected '>=' 15 duration_s == 1 \
+        times_us.cpu.p50 '>' 0 times_us.response.max '>=' '1*times_us.response.p99' \
+        deadline.machine_late+deadline.unexplained '<=' '1*deadline.missed'
+    [[ -z "$sanitizer" ]] && is_realtime run.json || return 0
+    check run.json passed == 1 self_check.passed == 1 self_check.injected == 20 \
+        self_check.flagged == 20 self_check.false_flags == 0 deadline.own_fault == 0
+    ((ended_with == 0)) || fault "passed, but ended with $ended_with"
+    grep -q '^verdict     passed: 0 own faults in ' test.log || fault 'no verdict'
+}
+
+test_deadlines --load none
+judge
+check run.json load == 0
+! grep -q 'beside load' test.log || fault 'loaded without being asked to'
+test_deadlines --load cpu,disk
+judge
+check run.json load == 2 alone.load == 0 alone.frames == 1000
+grep -q 'beside load (cpu, disk)' run.txt || fault 'the histogram does not tell of the load'
+for title in 'Woken' 'Processor time' 'From the deadline'; do
+    grep -q "^$title" run.txt || fault "no histogram '$title'"
+    grep -q "class=\"title\".*>$title" run.svg || fault "no image '$title'"
+done
+[[ $(tail -n 1 run.svg) == '</svg>' ]] || fault 'the image has no end'
+
+# Ended early it judges nothing, writes nothing and leaves no load behind.
+rm run.*
+"$hrtc" deadline-test --allow-no-rt --transport file --model good.spm --report run.json >test.log \
+    2>&1 &
+started+=($!)
+wait_for_line test.log 'alone: ' 30
+stop INT "${started[-1]}"
+((stopped_with == 2)) || fault "interrupted, it ended with $stopped_with"
+grep -q 'interrupted; nothing is judged' test.log || fault 'it does not say that it was interrupted'
+[[ ! -e run.json ]] || fault 'interrupted, it wrote a report'
+[[ -z $(ls temporary) ]] || fault "left behind: $(ls temporary)"
+finish

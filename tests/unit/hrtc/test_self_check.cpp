@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/allocation_counter.hpp"
+#include "platform/hrtc/self_check.hpp"
+#include "platform/thread_usage.hpp"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <optional>
+#include <thread>
+
+namespace tactus::hrtc::test
+{
+
+namespace
+{
+
+constexpr Duration kPeriod = milliseconds(1);
+
+/// What the loop measures in a frame that is spoilt this way, on a machine that does nothing.
+CycleMeasures measures_of(std::optional<InjectedFault> fault)
+{
+    CycleMeasures measures{};
+    measures.cycle.periods = 1;
+    measures.cycle.sleeps = 1;
+    measures.usage.voluntary_switches = 1;
+    if (!fault)
+    {
+        return measures;
+    }
+    switch (*fault)
+    {
+    case InjectedFault::overrun:
+        measures.cpu = kPeriod * 2;
+        break;
+    case InjectedFault::page_fault:
+        measures.usage.minor_faults = 1;
+        break;
+    case InjectedFault::allocation:
+        measures.allocations = 1;
+        break;
+    case InjectedFault::sleep:
+        ++measures.usage.voluntary_switches;
+        break;
+    }
+    return measures;
+}
+
+/// A self-check's run as it should be, but for what `change` does to one frame.
+template <typename Change>
+SelfCheck check_with(std::uint64_t changed, Change change)
+{
+    DeadlineAccount account(kPeriod);
+    for (std::uint64_t frame = 0; frame < InjectionPlan::kFrames; ++frame)
+    {
+        CycleMeasures measures = measures_of(InjectionPlan::at(frame));
+        if (frame == changed)
+        {
+            change(measures);
+        }
+        account.add(frame, measures, false);
+    }
+    return compare_with_plan(account);
+}
+
+TEST(InjectionPlan, has_as_many_of_each_kind_as_it_says_with_room_between_them)
+{
+    std::map<InjectedFault, std::uint64_t> counts;
+    std::uint64_t last = 0;
+    for (std::uint64_t frame = 0; frame < 2 * InjectionPlan::kFrames; ++frame)
+    {
+        if (const auto fault = InjectionPlan::at(frame))
+        {
+            EXPECT_GE(frame - last, InjectionPlan::kSpacing);
+            last = frame;
+            ++counts[*fault];
+        }
+    }
+    EXPECT_LT(last, InjectionPlan::kFrames);
+    const std::size_t kinds = kInjectedFaults - (allocation_counter::available() ? 0U : 1U);
+    EXPECT_EQ(counts.size(), kinds);
+    for (const auto& [kind, count] : counts)
+    {
+        EXPECT_EQ(count, InjectionPlan::kOfEachKind);
+    }
+}
+
+/// Each kind, done on a thread that counts as the loop does.
+TEST(InjectedFaults, are_seen_by_what_the_loop_counts_with)
+{
+    std::thread haptic(
+        []
+        {
+            allocation_counter::mark_this_thread(true);
+            const auto usage_of = [](InjectedFault fault)
+            {
+                const ThreadUsage before = read_thread_usage();
+                inject(fault, kPeriod);
+                return read_thread_usage() - before;
+            };
+            EXPECT_GT(usage_of(InjectedFault::overrun).cpu_time, kPeriod);
+            EXPECT_GE(usage_of(InjectedFault::page_fault).minor_faults, 1);
+            EXPECT_GE(usage_of(InjectedFault::sleep).voluntary_switches, 1);
+            const std::uint64_t before = allocation_counter::of_this_thread().allocations;
+            inject(InjectedFault::allocation, kPeriod);
+            EXPECT_EQ(allocation_counter::of_this_thread().allocations - before,
+                      allocation_counter::available() ? 1U : 0U);
+        });
+    haptic.join();
+}
+
+TEST(SelfCheck, passes_when_each_injected_fault_was_flagged_and_nothing_else)
+{
+    const SelfCheck check = check_with(0, [](CycleMeasures&) {});
+    EXPECT_TRUE(check.is_passed()) << self_check_line(check);
+    EXPECT_EQ(check.flagged, check.injected);
+}
+
+TEST(SelfCheck, fails_when_any_injected_fault_went_unseen_or_was_taken_for_another)
+{
+    for (std::uint64_t frame = 0; frame < InjectionPlan::kFrames; ++frame)
+    {
+        const auto fault = InjectionPlan::at(frame);
+        if (!fault)
+        {
+            continue;
+        }
+        const SelfCheck unseen =
+            check_with(frame, [](CycleMeasures& m) { m = measures_of(std::nullopt); });
+        EXPECT_FALSE(unseen.is_passed());
+        EXPECT_EQ(unseen.flagged + 1, unseen.injected);
+        const InjectedFault other =
+            *fault == InjectedFault::sleep ? InjectedFault::page_fault : InjectedFault::sleep;
+        EXPECT_FALSE(
+            check_with(frame, [&](CycleMeasures& m) { m = measures_of(other); }).is_passed());
+    }
+}
+
+TEST(SelfCheck, fails_when_a_clean_frame_was_flagged)
+{
+    const SelfCheck check =
+        check_with(7, [](CycleMeasures& m) { m = measures_of(InjectedFault::page_fault); });
+    EXPECT_FALSE(check.is_passed());
+    EXPECT_EQ(check.false_flags, 1U);
+}
+
+/// What the machine adds to a frame's processor time isn't there when the frame is repeated.
+TEST(SelfCheck, does_not_mind_a_frame_that_was_long_once)
+{
+    const SelfCheck check =
+        check_with(7, [](CycleMeasures& m) { m = measures_of(InjectedFault::overrun); });
+    EXPECT_TRUE(check.is_passed()) << self_check_line(check);
+}
+
+} // namespace
+
+} // namespace tactus::hrtc::test
