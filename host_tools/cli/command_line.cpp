@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <string_view>
 
 namespace tactus
 {
@@ -37,6 +38,19 @@ std::string on_one_line(std::string text)
     return text;
 }
 
+/// The library's own words for a key that no option has end in the key, and in "++" behind the name
+/// of a section.
+std::string unknown_key(const CLI::ConfigError& error)
+{
+    std::string key = error.what();
+    key = on_one_line(key.substr(key.rfind(' ') + 1));
+    const std::size_t section = key.find(".++");
+    return section == std::string::npos
+               ? fmt::format("--config: no option is called '{}'", key)
+               : fmt::format("--config: there are no sections; '[{}]' is one",
+                             key.substr(0, section));
+}
+
 } // namespace
 
 std::optional<int> parse_command_line(CLI::App& app, int argc, char** argv)
@@ -45,6 +59,11 @@ std::optional<int> parse_command_line(CLI::App& app, int argc, char** argv)
     {
         app.parse(argc, argv);
         return std::nullopt;
+    }
+    catch (const CLI::ConfigError& error)
+    {
+        const bool is_extra = std::string_view(error.what()).find("parse") != std::string::npos;
+        return fail(app, is_extra ? unknown_key(error) : on_one_line(error.what()), kExitUsage);
     }
     catch (const CLI::ParseError& error)
     {

@@ -10,6 +10,8 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <cstdio>
+#include <sstream>
 
 namespace tactus::hrtc
 {
@@ -115,8 +117,32 @@ struct RawOptions
     std::vector<std::string> devices;
     std::vector<std::string> device_frames;
     std::string transport{"dds"};
-    int cpu{-1};
+    std::optional<int> cpu;
+    bool prints_config{false};
 };
+
+/// Options without a value are shown as comments: no file could set them to nothing.
+std::string without_empty(const std::string& config)
+{
+    std::istringstream lines(config);
+    std::string text;
+    for (std::string line; std::getline(lines, line);)
+    {
+        text += (line.ends_with("=\"\"") ? "# " : "") + line + '\n';
+    }
+    return text;
+}
+
+/// The file's keys are the options' names without the dashes.
+void declare_config(CLI::App& app, RawOptions& raw)
+{
+    app.set_config("--config", "", "Read options from this TOML file; the command line goes first");
+    app.get_config_ptr()->configurable(false);
+    app.allow_config_extras(CLI::config_extras_mode::error);
+    app.add_flag("--print-config", raw.prints_config,
+                 "Print what the options come to as such a file, and end")
+        ->configurable(false);
+}
 
 void declare_recording(CLI::App& app, Options& options)
 {
@@ -405,6 +431,7 @@ std::variant<Options, int> parse_options(int argc, char** argv, const CommandFor
     options.duration_s = form.duration_s;
     RawOptions raw;
     declare(app, options, raw);
+    declare_config(app, raw);
     if (form.records)
     {
         declare_recording(app, options);
@@ -422,9 +449,11 @@ std::variant<Options, int> parse_options(int argc, char** argv, const CommandFor
     {
         return fail(app, fault, kExitUsage);
     }
-    if (raw.cpu >= 0)
+    options.thread.cpu = raw.cpu;
+    if (raw.prints_config)
     {
-        options.thread.cpu = raw.cpu;
+        fmt::print("{}", without_empty(app.config_to_str(true, true)));
+        return std::fflush(stdout) == 0 ? kExitDone : fail(app, "the options can't be written");
     }
     return options;
 }

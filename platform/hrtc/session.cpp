@@ -10,6 +10,7 @@
 #include "platform/hrtc/transport_thread.hpp"
 #include "platform/posix/posix_clock.hpp"
 #include "platform/posix/posix_periodic_timer.hpp"
+#include "platform/posix/service_notify.hpp"
 #include "platform/system_call_trap.hpp"
 #include "transport/store/store_link.hpp"
 
@@ -127,16 +128,27 @@ void wait_for_end(HapticLoop& loop, std::uint64_t frames, Supervisor& supervisor
                   SafetyRecord& record, const std::string& what)
 {
     Progress progress(what, "frames");
+    const PosixClock clock;
+    ServiceNotify manager;
+    manager.ready();
+    std::uint64_t seen = 0;
     while (!loop.is_done() && !loop.has_failed())
     {
         if (interrupted.load())
         {
             loop.stop();
         }
-        progress.update(loop.frames_done(), frames);
+        const std::uint64_t done = loop.frames_done();
+        if (done > seen)
+        {
+            manager.alive(clock.now());
+        }
+        seen = done;
+        progress.update(done, frames);
         take_events(loop, supervisor, record);
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
+    manager.stopping();
 }
 
 /// None when the budgets are to stay as they are.

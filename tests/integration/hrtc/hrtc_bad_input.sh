@@ -12,6 +12,29 @@ refuse_option() { # refuse_option OPTION VALUE ALLOWED: the line names the optio
 }
 run_file() { timeout 30 "$hrtc" --allow-no-rt --transport file --model good.spm "$@"; }
 
+# A file of options: its keys are checked as the command line is, and go behind it.
+refuse_config() { # refuse_config PATTERN LINE: of a file with this line.
+    printf '%s\n' "$2" >bad.toml
+    refuse 3 "$1" --model bumpy --config bad.toml
+}
+refuse_config "no option is called 'speed'" 'speed = 3'
+refuse_config "no sections; '[[]loop]' is one" $'[loop]\nrate = 1000'
+refuse_config '--rate: *fast*100 to 10000' 'rate = "fast"'
+refuse_config '--rate: *99*100 to 10000' 'rate = 99'
+refuse_config '--rate: ' 'rate ='
+refuse_config '--rate: ' 'rate = [1000, 2000]'
+refuse_config '--cpu: *1.5*0 to 1023' 'cpu = 1.5'
+refuse_config '--pool-mib: *0.25 .. 4096' 'pool-mib = 0'
+refuse_config 'maybe' 'allow-no-rt = "maybe"'
+refuse_config '--device: *udp:ADDRESS:PORT' 'device = "phantom"'
+refuse_config 'not allowed in a configuration file' 'config = "other.toml"'
+refuse 3 'missing.toml' --config missing.toml
+printf 'model = ["bumpy", "torus"]\nplace = ["0,0,0", "1,0,0"]\nrate = 2000\n' >good.toml
+"$hrtc" --config good.toml --rate 4000 --print-config >all.toml || fault '--print-config'
+grep -qx 'rate=4000' all.toml || fault 'the command line does not go first'
+grep -q '^place=.*1,0,0' all.toml || fault 'a list is lost'
+"$hrtc" --config all.toml --print-config | cmp - all.toml || fault 'what is printed reads otherwise'
+
 # The command line.
 [[ $("$hrtc" --version) == 'hrtc '* ]] || fault 'hrtc --version'
 "$hrtc" --help >help.txt
