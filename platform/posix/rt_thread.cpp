@@ -127,6 +127,7 @@ struct RtThread::Running
     pthread_t thread{};
     bool joinable{false};
     RtThreadReport report;
+    std::optional<linux_extras::AwakeProcessors> awake;
     int pin_error{0};
     bool undecided{false};
     bool body_may_run{false};
@@ -217,6 +218,7 @@ void RtThread::Running::join() noexcept
     {
         TACTUS_ASSERT(pthread_join(thread, nullptr) == 0);
         joinable = false;
+        awake.reset();
     }
 }
 
@@ -242,9 +244,7 @@ Result<RtThread, PlatformError> RtThread::start(const RtThreadOptions& options,
     if (running->pin_error != 0)
     {
         return PlatformError{PlatformErrorKind::bad_option,
-                             "processor " + std::to_string(*options.cpu) +
-                                 " can't be used by this process; it may use " +
-                                 linux_extras::allowed_cpus()};
+                             linux_extras::explain_pin_refusal(*options.cpu)};
     }
     if (options.lock_memory)
     {
@@ -253,6 +253,10 @@ Result<RtThread, PlatformError> RtThread::start(const RtThreadOptions& options,
     if (!running->report.refused.empty() && !options.allow_no_rt)
     {
         return join_lines(PlatformErrorKind::not_permitted, running->report.refused);
+    }
+    if (options.processors_awake)
+    {
+        running->report.processors_awake = running->awake.emplace().are_granted();
     }
     running->decide(true);
     return RtThread(std::move(running));
@@ -277,6 +281,7 @@ Result<std::vector<std::string>, PlatformError> probe_realtime(const RtThreadOpt
 {
     RtThreadOptions tried = options;
     tried.allow_no_rt = true;
+    tried.processors_awake = false;
     Result<RtThread, PlatformError> started = RtThread::start(tried, [] {});
     if (!started)
     {

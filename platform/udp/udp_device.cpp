@@ -48,10 +48,9 @@ Result<std::uint64_t, PlatformError> draw_secret()
     return secret == 0 ? 1 : secret;
 }
 
-/// The bytes that are there of what was received; all of the buffer when there were more.
 std::span<const std::byte> part_of(const Buffer& buffer, std::size_t bytes) noexcept
 {
-    return std::span(buffer).first(std::min(bytes, buffer.size()));
+    return std::span(buffer).first(bytes);
 }
 
 PlatformError nobody_came(const udp::Socket& socket, Duration wait, std::uint64_t refused,

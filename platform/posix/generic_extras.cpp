@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/posix/linux_extras.hpp"
+#include "platform/posix/posix_error.hpp"
+
+#include <cerrno>
+
+/// For systems of which nothing is known but that they are POSIX: each thing is refused or left
+/// out, in the way that callers know from Linux.
+namespace tactus::linux_extras
+{
+
+int pin_calling_thread(int /*cpu*/) noexcept
+{
+    return ENOTSUP;
+}
+
+std::string explain_pin_refusal(int cpu)
+{
+    return "processor " + std::to_string(cpu) +
+           " can't be asked for: this build can't pin threads on this system; leave the choice to "
+           "the system";
+}
+
+std::optional<int> another_cpu(int /*cpu*/) noexcept
+{
+    return std::nullopt;
+}
+
+std::string explain_fifo_refusal(int priority, int error)
+{
+    return "SCHED_FIFO " + std::to_string(priority) + " refused (" + posix::name_of_error(error) +
+           "): " + posix::user_name() + " lacks this system's right to real-time priorities";
+}
+
+int try_to_exceed_lock_limit() noexcept
+{
+    return 0;
+}
+
+std::string explain_lock_refusal(int error)
+{
+    return "mlockall refused (" + posix::name_of_error(error) + "): " + posix::user_name() +
+           " lacks this system's right to lock memory, or there is not enough of it";
+}
+
+void read_fault_and_switch_counts(ThreadUsage& /*usage*/) noexcept {}
+
+void ask_for_huge_pages(std::span<std::byte> /*memory*/) noexcept {}
+
+AwakeProcessors::AwakeProcessors() noexcept = default;
+AwakeProcessors::~AwakeProcessors() = default;
+
+} // namespace tactus::linux_extras
