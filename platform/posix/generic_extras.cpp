@@ -4,9 +4,11 @@
 #include "platform/posix/posix_error.hpp"
 
 #include <cerrno>
+#include <fcntl.h>
+#include <unistd.h>
 
-/// For systems of which nothing is known but that they are POSIX: each thing is refused or left
-/// out, in the way that callers know from Linux.
+/// For systems of which nothing is known but that they are POSIX, with /dev/urandom: each thing
+/// else is refused or left out, in the way that callers know from Linux.
 namespace tactus::linux_extras
 {
 
@@ -47,6 +49,19 @@ std::string explain_lock_refusal(int error)
 void read_fault_and_switch_counts(ThreadUsage& /*usage*/) noexcept {}
 
 void ask_for_huge_pages(std::span<std::byte> /*memory*/) noexcept {}
+
+bool draw_random(std::span<std::byte> bytes) noexcept
+{
+    // NOLINTNEXTLINE(cppcoreguidelines-pro-type-vararg): the C library has no other.
+    const int file = open("/dev/urandom", O_RDONLY | O_CLOEXEC);
+    if (file < 0)
+    {
+        return false;
+    }
+    const ssize_t drawn = read(file, bytes.data(), bytes.size());
+    close(file);
+    return drawn == static_cast<ssize_t>(bytes.size());
+}
 
 AwakeProcessors::AwakeProcessors() noexcept = default;
 AwakeProcessors::~AwakeProcessors() = default;

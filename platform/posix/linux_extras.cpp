@@ -160,6 +160,11 @@ void ask_for_huge_pages(std::span<std::byte> memory) noexcept
     static_cast<void>(madvise(memory.data(), memory.size(), MADV_HUGEPAGE));
 }
 
+bool draw_random(std::span<std::byte> bytes) noexcept
+{
+    return getentropy(bytes.data(), bytes.size()) == 0;
+}
+
 AwakeProcessors::AwakeProcessors() noexcept
     // NOLINTNEXTLINE(cppcoreguidelines-pro-type-vararg): the C library has no other.
     : descriptor_(open("/dev/cpu_dma_latency", O_WRONLY | O_CLOEXEC))

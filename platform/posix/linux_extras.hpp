@@ -44,6 +44,9 @@ void read_fault_and_switch_counts(ThreadUsage& usage) noexcept;
 /// Lets the system back this memory with huge pages; it may as well not. `memory` starts on a page.
 void ask_for_huge_pages(std::span<std::byte> memory) noexcept;
 
+/// Fills `bytes`, 256 at most, with what nobody outside can know. False when the system gives none.
+[[nodiscard]] bool draw_random(std::span<std::byte> bytes) noexcept;
+
 /// While one lives no processor falls into a sleep that takes time to wake from, where that is
 /// granted. It costs power on the whole machine.
 class AwakeProcessors

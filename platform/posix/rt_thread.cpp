@@ -12,7 +12,7 @@
 #include <csignal>
 #include <pthread.h>
 #include <sched.h>
-#include <semaphore>
+#include <semaphore.h>
 #include <utility>
 
 namespace tactus
@@ -51,6 +51,29 @@ private:
     static void check(int error) noexcept { TACTUS_ASSERT(error == 0); }
 
     pthread_attr_t attributes_{};
+};
+
+/// A gate that one thread waits at until another opens it, once. By POSIX alone: the C++ library's
+/// semaphores go to each system in a way of their own.
+class Gate
+{
+public:
+    Gate() noexcept { TACTUS_ASSERT(sem_init(&semaphore_, 0, 0) == 0); }
+    Gate(const Gate&) = delete;
+    Gate& operator=(const Gate&) = delete;
+    ~Gate() { TACTUS_ASSERT(sem_destroy(&semaphore_) == 0); }
+
+    void open() noexcept { TACTUS_ASSERT(sem_post(&semaphore_) == 0); }
+    void wait() noexcept
+    {
+        while (sem_wait(&semaphore_) != 0)
+        {
+            TACTUS_ASSERT(errno == EINTR);
+        }
+    }
+
+private:
+    sem_t semaphore_{};
 };
 
 /// While it lives, new threads start with every signal blocked.
@@ -103,7 +126,7 @@ PlatformError join_lines(PlatformErrorKind kind, const std::vector<std::string>&
 } // namespace
 
 /// Shared by starter and thread. The thread writes what it found out and then waits for the
-/// starter's decision; the two semaphores order their accesses.
+/// starter's decision; the two gates order their accesses.
 struct RtThread::Running
 {
     Running(const RtThreadOptions& wanted, std::function<void()> work)
@@ -131,8 +154,8 @@ struct RtThread::Running
     int pin_error{0};
     bool undecided{false};
     bool body_may_run{false};
-    std::binary_semaphore set_up{0};
-    std::binary_semaphore decided{0};
+    Gate set_up;
+    Gate decided;
 };
 
 /// A thread that is still waiting was refused, and so is the memory lock made for it.
@@ -157,8 +180,8 @@ void* RtThread::Running::enter(void* context) noexcept
     self.report.float_control_was_default = reset_float_control();
     self.pin_error = self.options.cpu ? linux_extras::pin_calling_thread(*self.options.cpu) : 0;
     self.report.pinned = self.options.cpu && self.pin_error == 0;
-    self.set_up.release();
-    self.decided.acquire();
+    self.set_up.open();
+    self.decided.wait();
     if (self.body_may_run)
     {
         self.body();
@@ -191,7 +214,7 @@ int RtThread::Running::create_thread()
     {
         joinable = true;
         undecided = true;
-        set_up.acquire();
+        set_up.wait();
     }
     return error;
 }
@@ -209,7 +232,7 @@ void RtThread::Running::decide(bool run) noexcept
 {
     body_may_run = run;
     undecided = false;
-    decided.release();
+    decided.open();
 }
 
 void RtThread::Running::join() noexcept

@@ -2,8 +2,9 @@
 // Copyright the Tactus authors.
 #include "platform/udp/udp_device.hpp"
 
+#include "platform/posix/linux_extras.hpp"
+
 #include <algorithm>
-#include <unistd.h>
 #include <utility>
 
 namespace tactus
@@ -40,7 +41,7 @@ std::string find_bad_option(const UdpDeviceOptions& options)
 Result<std::uint64_t, PlatformError> draw_secret()
 {
     std::uint64_t secret = 0;
-    if (getentropy(&secret, sizeof(secret)) != 0)
+    if (!linux_extras::draw_random(std::as_writable_bytes(std::span(&secret, 1))))
     {
         return PlatformError{PlatformErrorKind::system,
                              "udp device: the system gives no random number"};

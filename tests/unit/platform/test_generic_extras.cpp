@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <string>
 
@@ -94,6 +95,16 @@ TEST(GenericExtras, leave_faults_and_switches_uncounted_but_not_the_time)
     EXPECT_EQ(used.major_faults, 0);
     EXPECT_EQ(used.voluntary_switches, 0);
     EXPECT_EQ(used.involuntary_switches, 0);
+}
+
+TEST(GenericExtras, draw_other_random_bytes_each_time)
+{
+    std::array<std::byte, 32> first{};
+    std::array<std::byte, 32> second{};
+    ASSERT_TRUE(linux_extras::draw_random(first));
+    ASSERT_TRUE(linux_extras::draw_random(second));
+    EXPECT_NE(first, second);
+    EXPECT_FALSE(std::ranges::all_of(first, [](std::byte byte) { return byte == std::byte{}; }));
 }
 
 TEST(GenericExtras, give_pools_in_ordinary_pages)
