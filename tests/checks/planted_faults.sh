@@ -107,7 +107,7 @@ if ((code != 1)) || [[ "$output" != *'operator new(unsigned long) in heap.o'* ]]
 fi
 
 # Calls of one system only, in an object that may make them and in others.
-expect_platform() { # expect_platform CODE TEXT OBJECT CALL: of an archive whose object makes the call.
+expect_platform() { # expect_platform CODE TEXT OBJECT CALL: of an archive whose object calls it.
     local output code=0
     printf 'extern "C" int %s(...);\nint run() { return %s(1); }\n' "$4" "$4" >"$house/$3.cpp"
     "$cxx" -w -O1 -c "$house/$3.cpp" -o "$house/$3.cpp.o"
