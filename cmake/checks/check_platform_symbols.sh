@@ -21,25 +21,22 @@ if [[ -z "$defined" ]]; then
     echo "$archive: defines no symbol; is it the right archive?" >&2
     exit 3
 fi
-foreign=$(symbols --undefined-only | awk -v allowed="$allowed" -v defined="$defined" '
-    BEGIN {
-        count = split(defined, lines, "\n")
-        for (i = 1; i <= count; ++i) {
-            sub(/ .*/, "", lines[i])
-            ours[lines[i]] = 1
+# Three lists: what is allowed, what is defined, what is needed.
+foreign=$(awk '
+    FNR == 1 { ++list; only = "" }
+    list == 1 {
+        sub(/[ \t]*#.*/, "")
+        if (/^\[any\]$/) {
+            only = ""
+        } else if (/^\[only .*\]$/) {
+            only = " " substr($0, 7, length($0) - 7) " "
+        } else if ($0 != "") {
+            pattern[++patterns] = "^(" $0 ")$"
+            objects[patterns] = only
         }
-        while ((getline line < allowed) > 0) {
-            sub(/[ \t]*#.*/, "", line)
-            if (line ~ /^\[any\]$/) {
-                only = ""
-            } else if (line ~ /^\[only .*\]$/) {
-                only = " " substr(line, 7, length(line) - 7) " "
-            } else if (line != "") {
-                pattern[++patterns] = "^(" line ")$"
-                objects[patterns] = only
-            }
-        }
+        next
     }
+    list == 2 { ours[$1] = 1; next }
     $1 in ours { next }
     {
         for (i = 1; i <= patterns; ++i) {
@@ -48,7 +45,7 @@ foreign=$(symbols --undefined-only | awk -v allowed="$allowed" -v defined="$defi
             }
         }
         print
-    }')
+    }' "$allowed" <(echo "$defined") <(symbols --undefined-only))
 if [[ -n "$foreign" ]]; then
     echo "$archive needs what not every system has (allowed: $allowed):"
     while read -r symbol object; do

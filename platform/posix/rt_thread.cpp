@@ -208,7 +208,7 @@ int RtThread::Running::create_thread()
     if (error == EPERM)
     {
         report.refused.push_back(linux_extras::explain_fifo_refusal(options.priority, error));
-        error = create_with(SCHED_OTHER, 0);
+        error = create_with(SCHED_OTHER, sched_get_priority_min(SCHED_OTHER)); // On Linux 0.
     }
     if (error == 0)
     {
