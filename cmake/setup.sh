@@ -15,7 +15,7 @@ Usage: bash cmake/setup.sh COMMAND [OPTIONS] [-- CTEST-OPTIONS]
 Commands:
   build     install the packages that are missing and build everything into build/release
   test      build, then run the tests; CTEST-OPTIONS after -- go to ctest, e.g. -- -R Arena, or
-            -- -L extended for the long runs or -- -L other_builds for replays by other
+            -- -L extended for the long runs or -- -L other_builds for builds by other
             compilers, which are both left out otherwise
   demo      build the programs, make a model, publish it over DDS on this machine and touch it
             for 10 s at 1 kHz; the report is written to build/demo/report.json

@@ -29,6 +29,10 @@ struct RtThreadOptions
     bool lock_memory{true};               ///< All memory of the process, present and future.
     bool allow_no_rt{false};              ///< Run with what is granted and list what was refused.
     bool is_supervisor{false};            ///< One above kPriorityMax is in range, too.
+    /// As long as the thread is not joined no processor of the machine sleeps deeply, where this
+    /// can be had (on Linux /dev/cpu_dma_latency; root by default). Waking from a deep sleep may
+    /// take longer than the loop can wait. It costs power.
+    bool processors_awake{true};
 };
 
 /// What the thread really got.
@@ -37,6 +41,7 @@ struct RtThreadReport
     bool fifo{false};                     ///< Runs with SCHED_FIFO at the priority asked for.
     bool memory_locked{false};            ///< False as well when it was not asked for.
     bool pinned{false};                   ///< False as well when no processor was asked for.
+    bool processors_awake{false};         ///< False as well when it was not asked for.
     bool float_control_was_default{true}; ///< False: see reset_float_control(); it is mended now.
     std::vector<std::string> refused;     ///< One line each, with what to do about it.
 };

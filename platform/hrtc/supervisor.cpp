@@ -60,7 +60,8 @@ RtThreadOptions Supervisor::thread_beside(const RtThreadOptions& loop)
     RtThreadOptions options = loop;
     options.priority = loop.priority + 1;
     options.is_supervisor = true;
-    options.lock_memory = false; // The loop's thread locks that of the process.
+    options.lock_memory = false;      // The loop's thread locks that of the process, and keeps
+    options.processors_awake = false; // the processors awake.
     options.cpu = loop.cpu ? linux_extras::another_cpu(*loop.cpu) : std::nullopt;
     return options;
 }

@@ -12,7 +12,7 @@
 #include <csignal>
 #include <pthread.h>
 #include <sched.h>
-#include <semaphore>
+#include <semaphore.h>
 #include <utility>
 
 namespace tactus
@@ -51,6 +51,29 @@ private:
     static void check(int error) noexcept { TACTUS_ASSERT(error == 0); }
 
     pthread_attr_t attributes_{};
+};
+
+/// A gate that one thread waits at until another opens it, once. By POSIX alone: the C++ library's
+/// semaphores go to each system in a way of their own.
+class Gate
+{
+public:
+    Gate() noexcept { TACTUS_ASSERT(sem_init(&semaphore_, 0, 0) == 0); }
+    Gate(const Gate&) = delete;
+    Gate& operator=(const Gate&) = delete;
+    ~Gate() { TACTUS_ASSERT(sem_destroy(&semaphore_) == 0); }
+
+    void open() noexcept { TACTUS_ASSERT(sem_post(&semaphore_) == 0); }
+    void wait() noexcept
+    {
+        while (sem_wait(&semaphore_) != 0)
+        {
+            TACTUS_ASSERT(errno == EINTR);
+        }
+    }
+
+private:
+    sem_t semaphore_{};
 };
 
 /// While it lives, new threads start with every signal blocked.
@@ -103,7 +126,7 @@ PlatformError join_lines(PlatformErrorKind kind, const std::vector<std::string>&
 } // namespace
 
 /// Shared by starter and thread. The thread writes what it found out and then waits for the
-/// starter's decision; the two semaphores order their accesses.
+/// starter's decision; the two gates order their accesses.
 struct RtThread::Running
 {
     Running(const RtThreadOptions& wanted, std::function<void()> work)
@@ -127,11 +150,12 @@ struct RtThread::Running
     pthread_t thread{};
     bool joinable{false};
     RtThreadReport report;
+    std::optional<linux_extras::AwakeProcessors> awake;
     int pin_error{0};
     bool undecided{false};
     bool body_may_run{false};
-    std::binary_semaphore set_up{0};
-    std::binary_semaphore decided{0};
+    Gate set_up;
+    Gate decided;
 };
 
 /// A thread that is still waiting was refused, and so is the memory lock made for it.
@@ -156,8 +180,8 @@ void* RtThread::Running::enter(void* context) noexcept
     self.report.float_control_was_default = reset_float_control();
     self.pin_error = self.options.cpu ? linux_extras::pin_calling_thread(*self.options.cpu) : 0;
     self.report.pinned = self.options.cpu && self.pin_error == 0;
-    self.set_up.release();
-    self.decided.acquire();
+    self.set_up.open();
+    self.decided.wait();
     if (self.body_may_run)
     {
         self.body();
@@ -184,13 +208,13 @@ int RtThread::Running::create_thread()
     if (error == EPERM)
     {
         report.refused.push_back(linux_extras::explain_fifo_refusal(options.priority, error));
-        error = create_with(SCHED_OTHER, 0);
+        error = create_with(SCHED_OTHER, sched_get_priority_min(SCHED_OTHER)); // On Linux 0.
     }
     if (error == 0)
     {
         joinable = true;
         undecided = true;
-        set_up.acquire();
+        set_up.wait();
     }
     return error;
 }
@@ -208,7 +232,7 @@ void RtThread::Running::decide(bool run) noexcept
 {
     body_may_run = run;
     undecided = false;
-    decided.release();
+    decided.open();
 }
 
 void RtThread::Running::join() noexcept
@@ -217,6 +241,7 @@ void RtThread::Running::join() noexcept
     {
         TACTUS_ASSERT(pthread_join(thread, nullptr) == 0);
         joinable = false;
+        awake.reset();
     }
 }
 
@@ -242,9 +267,7 @@ Result<RtThread, PlatformError> RtThread::start(const RtThreadOptions& options,
     if (running->pin_error != 0)
     {
         return PlatformError{PlatformErrorKind::bad_option,
-                             "processor " + std::to_string(*options.cpu) +
-                                 " can't be used by this process; it may use " +
-                                 linux_extras::allowed_cpus()};
+                             linux_extras::explain_pin_refusal(*options.cpu)};
     }
     if (options.lock_memory)
     {
@@ -253,6 +276,10 @@ Result<RtThread, PlatformError> RtThread::start(const RtThreadOptions& options,
     if (!running->report.refused.empty() && !options.allow_no_rt)
     {
         return join_lines(PlatformErrorKind::not_permitted, running->report.refused);
+    }
+    if (options.processors_awake)
+    {
+        running->report.processors_awake = running->awake.emplace().are_granted();
     }
     running->decide(true);
     return RtThread(std::move(running));
@@ -277,6 +304,7 @@ Result<std::vector<std::string>, PlatformError> probe_realtime(const RtThreadOpt
 {
     RtThreadOptions tried = options;
     tried.allow_no_rt = true;
+    tried.processors_awake = false;
     Result<RtThread, PlatformError> started = RtThread::start(tried, [] {});
     if (!started)
     {

@@ -26,7 +26,8 @@ RtThreadOptions io_thread_options()
 {
     RtThreadOptions options;
     options.priority = 79;
-    options.lock_memory = false; // That is for whoever has the haptic thread.
+    options.lock_memory = false; // These are for whoever has the haptic thread.
+    options.processors_awake = false;
     options.allow_no_rt = true;
     return options;
 }

@@ -6,8 +6,9 @@
 
 #include <arpa/inet.h>
 #include <cerrno>
+#include <fcntl.h>
 #include <netinet/in.h>
-#include <poll.h>
+#include <sys/select.h>
 #include <sys/socket.h>
 #include <unistd.h>
 #include <utility>
@@ -31,6 +32,21 @@ Endpoint from_system(const sockaddr_in& address) noexcept
 {
     return {ntohl(address.sin_addr.s_addr), ntohs(address.sin_port)};
 }
+
+/// Makes it so, and closes it in children; false with errno set. wait() can hold only descriptors
+/// that fit into a set.
+// NOLINTBEGIN(cppcoreguidelines-pro-type-vararg): the C library has no other.
+bool never_waits(int descriptor) noexcept
+{
+    if (descriptor >= FD_SETSIZE)
+    {
+        errno = EMFILE;
+        return false;
+    }
+    return fcntl(descriptor, F_SETFL, O_NONBLOCK) == 0 &&
+           fcntl(descriptor, F_SETFD, FD_CLOEXEC) == 0;
+}
+// NOLINTEND(cppcoreguidelines-pro-type-vararg)
 
 PlatformError refuse_binding(const Endpoint& endpoint, int error)
 {
@@ -58,8 +74,8 @@ Result<Socket, PlatformError> Socket::open(const std::string& address, int port)
                                  " is out of range 1024..65535 (0: any that is free)"};
     }
     const Endpoint wanted{ntohl(parsed.s_addr), static_cast<std::uint16_t>(port)};
-    Socket made(socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0), wanted);
-    if (made.descriptor_ < 0)
+    Socket made(socket(AF_INET, SOCK_DGRAM, 0), wanted);
+    if (made.descriptor_ < 0 || !never_waits(made.descriptor_))
     {
         return PlatformError{PlatformErrorKind::system, "udp device: the system gives no socket (" +
                                                             posix::name_of_error(errno) + ")"};
@@ -94,16 +110,19 @@ Socket::~Socket()
 void Socket::wait(Duration time) const noexcept
 {
     constexpr std::int64_t kSecond_ns = 1'000'000'000;
-    pollfd entry{descriptor_, POLLIN, 0};
+    fd_set readable;
+    FD_ZERO(&readable);
+    FD_SET(descriptor_, &readable);
     const timespec most{time.ns / kSecond_ns, time.ns % kSecond_ns};
-    static_cast<void>(ppoll(&entry, 1, &most, nullptr)); // What is there, receive() finds out.
+    // What is there, receive() finds out. poll() has no times below 1 ms.
+    static_cast<void>(pselect(descriptor_ + 1, &readable, nullptr, nullptr, &most, nullptr));
 }
 
 std::optional<Socket::Received> Socket::receive(std::span<std::byte> buffer) const noexcept
 {
     sockaddr_in from{};
     socklen_t size = sizeof(from);
-    const ssize_t bytes = recvfrom(descriptor_, buffer.data(), buffer.size(), MSG_TRUNC,
+    const ssize_t bytes = recvfrom(descriptor_, buffer.data(), buffer.size(), 0,
                                    reinterpret_cast<sockaddr*>(&from), &size);
     if (bytes < 0)
     {

@@ -39,7 +39,7 @@ public:
 
     struct Received
     {
-        std::size_t bytes{0}; ///< Its true size, which may be more than the buffer's.
+        std::size_t bytes{0}; ///< As many as it had, or the buffer has room for.
         Endpoint from;
     };
     /// None when nothing is there.

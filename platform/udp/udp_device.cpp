@@ -2,8 +2,9 @@
 // Copyright the Tactus authors.
 #include "platform/udp/udp_device.hpp"
 
+#include "platform/posix/linux_extras.hpp"
+
 #include <algorithm>
-#include <unistd.h>
 #include <utility>
 
 namespace tactus
@@ -40,7 +41,7 @@ std::string find_bad_option(const UdpDeviceOptions& options)
 Result<std::uint64_t, PlatformError> draw_secret()
 {
     std::uint64_t secret = 0;
-    if (getentropy(&secret, sizeof(secret)) != 0)
+    if (!linux_extras::draw_random(std::as_writable_bytes(std::span(&secret, 1))))
     {
         return PlatformError{PlatformErrorKind::system,
                              "udp device: the system gives no random number"};
@@ -48,10 +49,9 @@ Result<std::uint64_t, PlatformError> draw_secret()
     return secret == 0 ? 1 : secret;
 }
 
-/// The bytes that are there of what was received; all of the buffer when there were more.
 std::span<const std::byte> part_of(const Buffer& buffer, std::size_t bytes) noexcept
 {
-    return std::span(buffer).first(std::min(bytes, buffer.size()));
+    return std::span(buffer).first(bytes);
 }
 
 PlatformError nobody_came(const udp::Socket& socket, Duration wait, std::uint64_t refused,

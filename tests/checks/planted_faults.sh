@@ -106,6 +106,29 @@ if ((code != 1)) || [[ "$output" != *'operator new(unsigned long) in heap.o'* ]]
     failures=$((failures + 1))
 fi
 
+# Calls of one system only, in an object that may make them and in others.
+expect_platform() { # expect_platform CODE TEXT OBJECT CALL: of an archive whose object calls it.
+    local output code=0
+    printf 'extern "C" int %s(...);\nint run() { return %s(1); }\n' "$4" "$4" >"$house/$3.cpp"
+    "$cxx" -w -O1 -c "$house/$3.cpp" -o "$house/$3.cpp.o"
+    rm -f "$house/libcalls.a"
+    ar rcs "$house/libcalls.a" "$house/$3.cpp.o"
+    output=$(bash "$checks/check_platform_symbols.sh" "$house/libcalls.a" \
+        "$checks/platform_symbols.txt") || code=$?
+    if ((code != $1)) || [[ "$output" != *"$2"* ]]; then
+        printf 'platform symbols: expected exit %d and "%s" for %s in %s; exit %d and:\n%s\n' \
+            "$1" "$2" "$4" "$3" "$code" "$output"
+        failures=$((failures + 1))
+    fi
+}
+expect_platform 0 'needs nothing but' timer clock_nanosleep
+expect_platform 1 'epoll_wait in timer.cpp.o' timer epoll_wait
+expect_platform 1 'sched_getaffinity in timer.cpp.o' timer sched_getaffinity
+expect_platform 0 'needs nothing but' linux_extras sched_getaffinity
+expect_platform 1 'prctl in linux_extras.cpp.o' linux_extras prctl
+expect_platform 0 'needs nothing but' system_call_trap prctl
+expect_platform 1 'clock_gettime64 in timer.cpp.o' timer clock_gettime64
+
 if ((failures > 0)); then
     echo "$failures guards do not see what they are for"
     exit 1

@@ -7,10 +7,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <filesystem>
+#include <fstream>
 #include <pthread.h>
 #include <sched.h>
 #include <sys/resource.h>
@@ -265,6 +268,59 @@ TEST(RtThread, locks_the_memory_of_the_process)
     EXPECT_TRUE(started.value().report().memory_locked);
     started.value().join();
     posix::unlock_all_memory();
+}
+
+/// What all processes together ask for: the longest time to wake, in microseconds.
+std::int32_t longest_wake_us()
+{
+    std::int32_t time_us = -1;
+    std::ifstream file("/dev/cpu_dma_latency", std::ios::binary);
+    file.read(reinterpret_cast<char*>(&time_us), sizeof(time_us));
+    return file ? time_us : -1;
+}
+
+/// How often this process has that file open.
+std::ptrdiff_t wishes_held()
+{
+    return std::ranges::count_if(std::filesystem::directory_iterator("/proc/self/fd"),
+                                 [](const auto& entry)
+                                 {
+                                     std::error_code error;
+                                     return std::filesystem::read_symlink(entry.path(), error) ==
+                                            "/dev/cpu_dma_latency";
+                                 });
+}
+
+TEST(RtThread, keeps_the_processors_awake_until_it_is_joined)
+{
+    RtThreadOptions options = without_lock();
+    options.allow_no_rt = true;
+    const std::ptrdiff_t before = wishes_held();
+    std::int32_t asked_us = -1;
+    auto started = RtThread::start(options, [&] { asked_us = longest_wake_us(); });
+    ASSERT_TRUE(started);
+    EXPECT_EQ(wishes_held(), before + (started.value().report().processors_awake ? 1 : 0));
+    started.value().join();
+    EXPECT_EQ(wishes_held(), before);
+    if (!started.value().report().processors_awake)
+    {
+        GTEST_SKIP() << "/dev/cpu_dma_latency can't be written";
+    }
+    EXPECT_EQ(asked_us, 0);
+}
+
+TEST(RtThread, lets_the_processors_sleep_where_it_was_not_asked)
+{
+    RtThreadOptions options = without_lock();
+    options.allow_no_rt = true;
+    options.processors_awake = false;
+    const std::ptrdiff_t before = wishes_held();
+    std::ptrdiff_t meanwhile = -1;
+    auto started = RtThread::start(options, [&] { meanwhile = wishes_held(); });
+    ASSERT_TRUE(started);
+    started.value().join();
+    EXPECT_EQ(meanwhile, before);
+    EXPECT_FALSE(started.value().report().processors_awake);
 }
 
 TEST(RtThread, says_what_is_missing_for_fifo_to_an_ordinary_user)
