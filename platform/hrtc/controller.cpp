@@ -123,8 +123,9 @@ void Controller::make_tools(const Options& options)
     }
     for (std::size_t i = 0; i < radii_m.size(); ++i)
     {
-        const double force_max_n = devices_[i] != nullptr ? devices_[i]->info().limits.force_max_n
-                                                          : SimulatedDeviceOptions{}.force_max_n;
+        const double force_max_n = devices_[i] != nullptr
+                                       ? devices_[i]->info().limits.force_max_n
+                                       : SimulatedDeviceOptions{}.device.force_max_n;
         tools_.push_back({radii_m[i], options.stiffness_n_per_m, force_max_n,
                           kSpeedMax_diag * diagonal_world_m()});
     }
