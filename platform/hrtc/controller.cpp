@@ -36,6 +36,12 @@ ObjectPose pose_of(const Placement& placement, const ModelHeader& header)
     return pose;
 }
 
+/// Without one it is simulated.
+DeviceChoice choice_of(const Options& options, std::size_t tool)
+{
+    return tool < options.devices.size() ? options.devices[tool] : DeviceChoice{};
+}
+
 } // namespace
 
 Result<std::unique_ptr<Controller>, ControllerError>
@@ -123,10 +129,9 @@ void Controller::make_tools(const Options& options)
     }
     for (std::size_t i = 0; i < radii_m.size(); ++i)
     {
-        const double force_max_n = devices_[i] != nullptr
-                                       ? devices_[i]->info().limits.force_max_n
-                                       : SimulatedDeviceOptions{}.device.force_max_n;
-        tools_.push_back({radii_m[i], options.stiffness_n_per_m, force_max_n,
+        const DeviceLimits limits =
+            devices_[i] != nullptr ? devices_[i]->info().limits : choice_of(options, i).limits;
+        tools_.push_back({radii_m[i], options.stiffness_n_per_m, limits.force_max_n,
                           kSpeedMax_diag * diagonal_world_m()});
     }
 }
@@ -219,6 +224,7 @@ std::optional<ControllerError> Controller::simulate_device(const Options& option
     }
     SimulatedDeviceOptions device_options;
     device_options.rate_hz = options.rate_hz;
+    device_options.device = choice_of(options, tool).limits;
     device_options.workspace_centre_world_m = hand.value()->centre_world_m();
     device_options.workspace_radius_m = hand.value()->reach_m();
     device_options.speed_max_m_per_s =

@@ -3,6 +3,7 @@
 #include "platform/hrtc/device_choice.hpp"
 
 #include "platform/dhd/dhd_device.hpp"
+#include "platform/simulated/device_classes.hpp"
 
 #include <charconv>
 #include <utility>
@@ -24,6 +25,22 @@ std::optional<int> parse_int(std::string_view text, int least, int most)
     const bool is_good =
         error == std::errc{} && end == text.data() + text.size() && value >= least && value <= most;
     return is_good ? std::optional(value) : std::nullopt;
+}
+
+std::optional<DeviceChoice> parse_class(std::string_view text)
+{
+    DeviceChoice choice;
+    if (text == "touch")
+    {
+        choice.limits = kTouchClass;
+        return choice;
+    }
+    if (text == "omega" || text == "delta")
+    {
+        choice.limits = text == "omega" ? kOmegaClass : kDeltaClass;
+        return choice;
+    }
+    return std::nullopt;
 }
 
 std::optional<DeviceChoice> parse_udp(std::string_view text)
@@ -65,6 +82,7 @@ as_device(Result<std::unique_ptr<Device>, PlatformError> made)
 
 std::optional<DeviceChoice> parse_device(std::string_view text)
 {
+    constexpr std::string_view kSimulated = "sim:";
     constexpr std::string_view kUdp = "udp:";
     constexpr std::string_view kDhd = "dhd:";
     DeviceChoice choice;
@@ -76,6 +94,10 @@ std::optional<DeviceChoice> parse_device(std::string_view text)
     {
         choice.kind = text == "udp" ? DeviceKind::udp : DeviceKind::dhd;
         return choice;
+    }
+    if (text.starts_with(kSimulated))
+    {
+        return parse_class(text.substr(kSimulated.size()));
     }
     if (text.starts_with(kUdp))
     {

@@ -8,6 +8,7 @@
 #include "platform/platform_error.hpp"
 #include "platform/udp/udp_device.hpp"
 #include "rt_core/base/result.hpp"
+#include "rt_core/records/device_limits.hpp"
 
 #include <cstdint>
 #include <memory>
@@ -29,6 +30,7 @@ enum class DeviceKind : std::uint8_t
 struct DeviceChoice
 {
     DeviceKind kind{DeviceKind::simulated};
+    DeviceLimits limits;                             ///< Of the simulated.
     std::string address{UdpDeviceOptions{}.address}; ///< Of udp.
     int port{UdpDeviceOptions::kPortDefault};        ///< Of udp.
     int index{0};                                    ///< Of dhd.
@@ -37,7 +39,7 @@ struct DeviceChoice
 
 /// What the texts mean that `parse_device` takes; for messages.
 inline constexpr std::string_view kDeviceForms =
-    "sim, udp, udp:PORT, udp:ADDRESS:PORT with a numeric IPv4 address and a port of 1024 to 65535, "
+    "sim, sim:CLASS with touch, omega or delta, udp, udp:PORT, udp:ADDRESS:PORT with a numeric IPv4 address and a port of 1024 to 65535, "
     "dhd or dhd:INDEX with 0 to 63";
 
 /// None when the text is none of kDeviceForms.

@@ -148,8 +148,8 @@ void declare(CLI::App& app, Options& options, RawOptions& raw)
         ->allow_extra_args(false)
         ->take_all();
     app.add_option("--device", raw.devices,
-                   "What moves the tool, one for each --tool in order: sim, a simulated hand; "
-                   "udp[:[ADDRESS:]PORT], a driver of your own; dhd[:INDEX], a device of Force "
+                   "What moves the tool, one for each --tool in order: sim[:CLASS], a simulated "
+                   "hand on a device of the class touch, omega or delta; udp[:[ADDRESS:]PORT], a driver of your own; dhd[:INDEX], a device of Force "
                    "Dimension's; repeatable [sim]")
         ->expected(1)
         ->allow_extra_args(false)

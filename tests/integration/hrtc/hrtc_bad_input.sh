@@ -54,7 +54,7 @@ refuse_option --priority 99 '1 to 98'
 refuse_option --cpu -1 '0 to 1023'
 refuse_option --cpu 1024 '0 to 1023'
 (($(nproc --all) > 1023)) || refuse_option --cpu 1023 'it may use'
-for value in phantom udp: udp:80 udp:65536 udp:5x udp::48500 dhd: dhd:64 dhd:-1 ''; do
+for value in phantom sim: sim:sigma udp: udp:80 udp:65536 udp:5x udp::48500 dhd: dhd:64 dhd:-1 ''; do
     refuse_option --device "$value" 'udp:ADDRESS:PORT'
 done
 refuse 3 'extra' --model a extra

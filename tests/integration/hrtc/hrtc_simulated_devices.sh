@@ -1,0 +1,21 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# hrtc_simulated_devices.sh: the controller on each kind of simulated device.
+source "$(dirname "$0")/common.sh"
+
+"$build" --shape bumpy-sphere --faces 20000 -o bumpy.spm >build.log 2>&1
+readonly model=(--transport file --model bumpy.spm)
+
+# One device of each class. Its largest stiffness is that of docs/stability.md.
+run_hrtc "${model[@]}" --pool-mib 4 --duration 2 \
+    --tool sphere:0.002 --tool sphere:0.002 --tool sphere:0.002 --tool sphere:0.002 \
+    --device sim:touch --device sim:omega --device sim:delta --device sim
+check report.json frames == 2000 tools.0.stiffness_cap_n_per_m == 400 \
+    tools.1.stiffness_cap_n_per_m '>' 3059 tools.1.stiffness_cap_n_per_m '<' 3061 \
+    tools.2.stiffness_cap_n_per_m '>' 3059 tools.2.stiffness_cap_n_per_m '<' 3061 \
+    tools.3.stiffness_cap_n_per_m == 1800
+for i in 0 1 2 3; do
+    check report.json tools.$i.contact_share '>' 0.5 tools.$i.force_max_n '<' 3.3
+done
+check_clean report.json
+finish
