@@ -235,6 +235,11 @@ std::optional<ControllerError> Controller::simulate_device(const Options& option
         return ControllerError{"--device: " + device.error().message};
     }
     devices_[tool] = std::move(device).value();
+    if (!options.device_faults.empty())
+    {
+        devices_[tool] =
+            std::make_unique<FaultyDevice>(std::move(devices_[tool]), options.device_faults, tool);
+    }
     return std::nullopt;
 }
 

@@ -5,7 +5,9 @@
 #include "platform/dhd/dhd_device.hpp"
 #include "platform/simulated/device_classes.hpp"
 
+#include <algorithm>
 #include <charconv>
+#include <iterator>
 #include <utility>
 
 namespace tactus::hrtc
@@ -16,6 +18,18 @@ namespace
 
 constexpr int kPortMin = 1'024;
 constexpr int kPortMax = 65'535;
+constexpr int kFaultFramesMax = 1'000'000'000;
+
+struct NamedFault
+{
+    std::string_view name;
+    DeviceFaultKind kind;
+};
+constexpr NamedFault kFaults[] = {
+    {"jitter", DeviceFaultKind::jitter},       {"dropout", DeviceFaultKind::dropout},
+    {"stuck", DeviceFaultKind::stuck},         {"nan", DeviceFaultKind::nan},
+    {"time_jump", DeviceFaultKind::time_jump}, {"disconnect", DeviceFaultKind::disconnect},
+};
 
 /// Reads all of `text` as a whole number in the range.
 std::optional<int> parse_int(std::string_view text, int least, int most)
@@ -104,6 +118,26 @@ std::optional<DeviceChoice> parse_device(std::string_view text)
         return parse_udp(text.substr(kUdp.size()));
     }
     return text.starts_with(kDhd) ? parse_dhd(text.substr(kDhd.size())) : std::nullopt;
+}
+
+std::optional<DeviceFault> parse_device_fault(std::string_view text)
+{
+    const std::size_t at = std::min(text.find('@'), text.size());
+    const std::size_t plus = std::min(text.find('+', at), text.size());
+    const auto* const named = std::ranges::find(kFaults, text.substr(0, at), &NamedFault::name);
+    if (named == std::end(kFaults) || plus == text.size())
+    {
+        return std::nullopt;
+    }
+    const std::optional<int> frame =
+        parse_int(text.substr(at + 1, plus - at - 1), 0, kFaultFramesMax);
+    const std::optional<int> length = parse_int(text.substr(plus + 1), 1, kFaultFramesMax);
+    if (!frame || !length)
+    {
+        return std::nullopt;
+    }
+    return DeviceFault{named->kind, static_cast<std::uint64_t>(*frame),
+                       static_cast<std::uint64_t>(*length)};
 }
 
 Result<std::unique_ptr<HapticDevice>, PlatformError> open_device(const DeviceChoice& choice,

@@ -6,6 +6,7 @@
 #include "platform/haptic_device.hpp"
 #include "platform/hrtc/placement.hpp"
 #include "platform/platform_error.hpp"
+#include "platform/simulated/faulty_device.hpp"
 #include "platform/udp/udp_device.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/records/device_limits.hpp"
@@ -39,11 +40,20 @@ struct DeviceChoice
 
 /// What the texts mean that `parse_device` takes; for messages.
 inline constexpr std::string_view kDeviceForms =
-    "sim, sim:CLASS with touch, omega or delta, udp, udp:PORT, udp:ADDRESS:PORT with a numeric IPv4 address and a port of 1024 to 65535, "
+    "sim, sim:CLASS with touch, omega or delta, udp, udp:PORT, udp:ADDRESS:PORT with a numeric "
+    "IPv4 address and a port of 1024 to 65535, "
     "dhd or dhd:INDEX with 0 to 63";
 
 /// None when the text is none of kDeviceForms.
 [[nodiscard]] std::optional<DeviceChoice> parse_device(std::string_view text);
+
+/// What the texts mean that `parse_device_fault` takes; for messages.
+inline constexpr std::string_view kDeviceFaultForms =
+    "KIND@FRAME+LENGTH with the kind jitter, dropout, stuck, nan, time_jump or disconnect, a frame "
+    "of 0 to 1e9 and a length of 1 to 1e9 frames";
+
+/// None when the text is none of kDeviceFaultForms.
+[[nodiscard]] std::optional<DeviceFault> parse_device_fault(std::string_view text);
 
 /// Opens a device that isn't simulated; waits up to `wait` for one that comes by udp. `clock` is
 /// lent and outlives it.

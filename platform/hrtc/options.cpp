@@ -10,6 +10,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 
 namespace tactus::hrtc
@@ -115,6 +116,7 @@ struct RawOptions
     std::vector<std::string> tools;
     std::vector<std::string> devices;
     std::vector<std::string> device_frames;
+    std::vector<std::string> device_faults;
     std::string transport{"dds"};
     int cpu{-1};
 };
@@ -149,7 +151,8 @@ void declare(CLI::App& app, Options& options, RawOptions& raw)
         ->take_all();
     app.add_option("--device", raw.devices,
                    "What moves the tool, one for each --tool in order: sim[:CLASS], a simulated "
-                   "hand on a device of the class touch, omega or delta; udp[:[ADDRESS:]PORT], a driver of your own; dhd[:INDEX], a device of Force "
+                   "hand on a device of the class touch, omega or delta; udp[:[ADDRESS:]PORT], a "
+                   "driver of your own; dhd[:INDEX], a device of Force "
                    "Dimension's; repeatable [sim]")
         ->expected(1)
         ->allow_extra_args(false)
@@ -157,6 +160,13 @@ void declare(CLI::App& app, Options& options, RawOptions& raw)
     app.add_option("--device-frame", raw.device_frames,
                    "Where the device's coordinates are in the world, one for each --device in "
                    "order: as --place, SCALE being that of its motion")
+        ->expected(1)
+        ->allow_extra_args(false)
+        ->take_all();
+    app.add_option("--device-fault", raw.device_faults,
+                   "For tests: what goes wrong with the readings of simulated devices: "
+                   "KIND@FRAME+LENGTH with jitter, dropout, stuck, nan, time_jump or disconnect, "
+                   "from that frame on for so many; repeatable")
         ->expected(1)
         ->allow_extra_args(false)
         ->take_all();
@@ -293,6 +303,28 @@ std::string check_objects(Options& options, const RawOptions& raw)
     return {};
 }
 
+/// What is said of simulated devices only. Empty when all is well.
+std::string check_simulated(Options& options, const RawOptions& raw)
+{
+    for (const std::string& text : raw.device_faults)
+    {
+        const std::optional<DeviceFault> fault = parse_device_fault(text);
+        if (!fault)
+        {
+            return fmt::format("--device-fault: '{}' is not {}", printable(text),
+                               kDeviceFaultForms);
+        }
+        options.device_faults.push_back(*fault);
+    }
+    const bool has_other_only =
+        options.devices.size() == std::max<std::size_t>(options.tool_radii_m.size(), 1) &&
+        std::ranges::none_of(options.devices, [](const DeviceChoice& device)
+                             { return device.kind == DeviceKind::simulated; });
+    return has_other_only && !raw.device_faults.empty()
+               ? "--device-fault: there is no simulated device"
+               : "";
+}
+
 /// The tools, and what is given for each of them. Empty when all is well.
 std::string check_tools(Options& options, const RawOptions& raw)
 {
@@ -343,7 +375,7 @@ std::string check_tools(Options& options, const RawOptions& raw)
         }
         options.devices[i].frame = *frame;
     }
-    return {};
+    return check_simulated(options, raw);
 }
 
 /// What one option alone can't tell. Empty when all is well.

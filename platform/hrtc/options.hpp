@@ -31,6 +31,7 @@ struct Options
     std::vector<Material> materials;   ///< One a model.
     std::vector<double> tool_radii_m;  ///< Empty: one tool of 1 % of the first model's diagonal.
     std::vector<DeviceChoice> devices; ///< One a tool; fewer: the others are simulated.
+    std::vector<DeviceFault> device_faults; ///< Of every simulated device.
     TransportKind transport{TransportKind::dds};
     std::uint32_t domain{0};
     double wait_s{10.0}; ///< For a model that nobody publishes yet, or a device.

@@ -57,6 +57,11 @@ refuse_option --cpu 1024 '0 to 1023'
 for value in phantom sim: sim:sigma udp: udp:80 udp:65536 udp:5x udp::48500 dhd: dhd:64 dhd:-1 ''; do
     refuse_option --device "$value" 'udp:ADDRESS:PORT'
 done
+for value in nan nan@1 nan@1+0 nan@-1+1 nan@1+2000000000 late@1+1 ''; do
+    refuse_option --device-fault "$value" 'KIND@FRAME+LENGTH'
+done
+refuse 3 '--device-fault: there is no simulated device' --model a --device udp \
+    --device-fault nan@1+1
 refuse 3 'extra' --model a extra
 refuse 3 '--device: 2 given for 1 tools' --model a --device sim --device sim
 refuse 3 '--device-frame: 1 given for 0' --model a --device-frame 0,0,0

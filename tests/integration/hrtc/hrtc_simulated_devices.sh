@@ -18,4 +18,12 @@ for i in 0 1 2 3; do
     check report.json tools.$i.contact_share '>' 0.5 tools.$i.force_max_n '<' 3.3
 done
 check_clean report.json
+
+# Readings that go wrong while the hand slides.
+run_hrtc "${model[@]}" --duration 3 --device-fault jitter@700+50 --device-fault nan@1000+50 \
+    --device-fault dropout@1300+50 --device-fault disconnect@1600+50 \
+    --device-fault time_jump@1900+50 --device-fault stuck@2400+20
+check report.json frames == 3000 safety.begun.garbage '>=' 3 safety.begun.disconnect == 1 \
+    tools.0.force_max_n '>' 0.5 tools.0.force_max_n '<=' 8
+check_clean report.json
 finish

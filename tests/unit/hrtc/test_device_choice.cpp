@@ -49,6 +49,31 @@ TEST(DeviceChoice, refuses_what_is_no_device)
     }
 }
 
+TEST(DeviceChoice, takes_faults_of_each_kind)
+{
+    int kind = 0;
+    for (const char* text : {"jitter@0+1", "dropout@7+1000000000", "stuck@1000000000+3", "nan@12+4",
+                             "time_jump@12+4", "disconnect@12+4"})
+    {
+        const std::optional<DeviceFault> fault = parse_device_fault(text);
+        ASSERT_TRUE(fault.has_value()) << text;
+        EXPECT_EQ(static_cast<int>(fault->kind), kind++);
+    }
+    const std::optional<DeviceFault> fault = parse_device_fault("dropout@7+1000000000");
+    EXPECT_EQ(fault->begin_frame, 7U);
+    EXPECT_EQ(fault->frames, 1'000'000'000U);
+}
+
+TEST(DeviceChoice, refuses_what_is_no_fault)
+{
+    for (const char* text :
+         {"", "@", "@+", "nan", "nan@", "nan@1", "nan@1+", "nan@+1", "nan@1+0", "nan@-1+1",
+          "nan@1+1000000001", "nan@1000000001+1", "nan@1+1+", "nan+1@1", "NaN@1+1", " nan@1+1"})
+    {
+        EXPECT_FALSE(parse_device_fault(text).has_value()) << text;
+    }
+}
+
 } // namespace
 
 } // namespace tactus::hrtc::test
