@@ -103,7 +103,7 @@ std::optional<ControllerError> Controller::open_devices(const Options& options)
         {
             continue;
         }
-        auto device = open_device(options.devices[i], wait, clock_);
+        auto device = open_device(options.devices[i], i, wait, clock_);
         if (!device)
         {
             return ControllerError{"--device: " + device.error().message};

@@ -3,6 +3,7 @@
 #include "platform/hrtc/device_choice.hpp"
 
 #include "platform/dhd/dhd_device.hpp"
+#include "platform/hrtc/recorded_motion.hpp"
 #include "platform/simulated/device_classes.hpp"
 
 #include <algorithm>
@@ -92,6 +93,22 @@ as_device(Result<std::unique_ptr<Device>, PlatformError> made)
     return std::unique_ptr<HapticDevice>(std::move(made).value());
 }
 
+Result<std::unique_ptr<HapticDevice>, PlatformError> open_replay(const std::string& path,
+                                                                 std::size_t tool)
+{
+    auto motion = read_recorded_motion(path, tool);
+    if (!motion)
+    {
+        return PlatformError{PlatformErrorKind::bad_option, motion.error().text};
+    }
+    auto device = ReplayDevice::create(std::move(motion).value());
+    if (!device)
+    {
+        return PlatformError{device.error().kind, path + ": " + device.error().message};
+    }
+    return as_device(std::move(device));
+}
+
 } // namespace
 
 std::optional<DeviceChoice> parse_device(std::string_view text)
@@ -99,6 +116,7 @@ std::optional<DeviceChoice> parse_device(std::string_view text)
     constexpr std::string_view kSimulated = "sim:";
     constexpr std::string_view kUdp = "udp:";
     constexpr std::string_view kDhd = "dhd:";
+    constexpr std::string_view kReplay = "replay:";
     DeviceChoice choice;
     if (text == "sim")
     {
@@ -116,6 +134,12 @@ std::optional<DeviceChoice> parse_device(std::string_view text)
     if (text.starts_with(kUdp))
     {
         return parse_udp(text.substr(kUdp.size()));
+    }
+    if (text.starts_with(kReplay) && text.size() > kReplay.size())
+    {
+        choice.kind = DeviceKind::replay;
+        choice.recording = text.substr(kReplay.size());
+        return choice;
     }
     return text.starts_with(kDhd) ? parse_dhd(text.substr(kDhd.size())) : std::nullopt;
 }
@@ -140,9 +164,13 @@ std::optional<DeviceFault> parse_device_fault(std::string_view text)
                        static_cast<std::uint64_t>(*length)};
 }
 
-Result<std::unique_ptr<HapticDevice>, PlatformError> open_device(const DeviceChoice& choice,
-                                                                 Duration wait, const Clock& clock)
+Result<std::unique_ptr<HapticDevice>, PlatformError>
+open_device(const DeviceChoice& choice, std::size_t tool, Duration wait, const Clock& clock)
 {
+    if (choice.kind == DeviceKind::replay)
+    {
+        return open_replay(choice.recording, tool);
+    }
     auto frame = DeviceFrame::create(rotation_of(choice.frame), choice.frame.translation_m,
                                      choice.frame.scale);
     if (!frame)

@@ -25,6 +25,7 @@ enum class DeviceKind : std::uint8_t
     simulated,
     udp,
     dhd,
+    replay,
 };
 
 /// What --device and --device-frame say of one tool's device.
@@ -35,6 +36,7 @@ struct DeviceChoice
     std::string address{UdpDeviceOptions{}.address}; ///< Of udp.
     int port{UdpDeviceOptions::kPortDefault};        ///< Of udp.
     int index{0};                                    ///< Of dhd.
+    std::string recording;                           ///< Of replay: the file.
     Placement frame;                                 ///< Device coordinates in the world.
 };
 
@@ -42,7 +44,7 @@ struct DeviceChoice
 inline constexpr std::string_view kDeviceForms =
     "sim, sim:CLASS with touch, omega or delta, udp, udp:PORT, udp:ADDRESS:PORT with a numeric "
     "IPv4 address and a port of 1024 to 65535, "
-    "dhd or dhd:INDEX with 0 to 63";
+    "dhd, dhd:INDEX with 0 to 63, or replay:FILE with what hrtc --record wrote";
 
 /// None when the text is none of kDeviceForms.
 [[nodiscard]] std::optional<DeviceChoice> parse_device(std::string_view text);
@@ -55,9 +57,9 @@ inline constexpr std::string_view kDeviceFaultForms =
 /// None when the text is none of kDeviceFaultForms.
 [[nodiscard]] std::optional<DeviceFault> parse_device_fault(std::string_view text);
 
-/// Opens a device that isn't simulated; waits up to `wait` for one that comes by udp. `clock` is
-/// lent and outlives it.
+/// Opens a device that isn't simulated, for the tool with that index; waits up to `wait` for one
+/// that comes by udp, reads a recording as a whole. `clock` is lent and outlives it.
 [[nodiscard]] Result<std::unique_ptr<HapticDevice>, PlatformError>
-open_device(const DeviceChoice& choice, Duration wait, const Clock& clock);
+open_device(const DeviceChoice& choice, std::size_t tool, Duration wait, const Clock& clock);
 
 } // namespace tactus::hrtc

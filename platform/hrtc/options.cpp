@@ -153,7 +153,7 @@ void declare(CLI::App& app, Options& options, RawOptions& raw)
                    "What moves the tool, one for each --tool in order: sim[:CLASS], a simulated "
                    "hand on a device of the class touch, omega or delta; udp[:[ADDRESS:]PORT], a "
                    "driver of your own; dhd[:INDEX], a device of Force "
-                   "Dimension's; repeatable [sim]")
+                   "Dimension's; replay:FILE, the hand of a recording; repeatable [sim]")
         ->expected(1)
         ->allow_extra_args(false)
         ->take_all();
@@ -369,9 +369,10 @@ std::string check_tools(Options& options, const RawOptions& raw)
             return fmt::format("--device-frame: '{}' is not {}", printable(raw.device_frames[i]),
                                kPlacementForm);
         }
-        if (options.devices[i].kind == DeviceKind::simulated)
+        if (options.devices[i].kind == DeviceKind::simulated ||
+            options.devices[i].kind == DeviceKind::replay)
         {
-            return "--device-frame: a simulated hand is in the world already";
+            return "--device-frame: a simulated or recorded hand is in the world already";
         }
         options.devices[i].frame = *frame;
     }

@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #include "platform/simulated/simulated_device.hpp"
 
+#include "platform/device_force.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -166,19 +168,7 @@ void SimulatedDevice::write(const std::array<double, 3>& force_world_n) noexcept
         return;
     }
     written_ = now();
-    Vec3 force_n{force_world_n[0], force_world_n[1], force_world_n[2]};
-    const double norm_n = force_n.norm();
-    if (!std::isfinite(norm_n))
-    {
-        ++status_.forces_refused;
-        force_n.setZero();
-    }
-    else if (norm_n > options_.device.force_max_n)
-    {
-        ++status_.forces_clamped;
-        force_n *= options_.device.force_max_n / norm_n;
-    }
-    force_world_n_ = force_n;
+    force_world_n_ = take_force(force_world_n, options_.device.force_max_n, status_);
     status_.state = DeviceState::force;
 }
 

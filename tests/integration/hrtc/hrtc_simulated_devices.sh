@@ -26,4 +26,16 @@ run_hrtc "${model[@]}" --duration 3 --device-fault jitter@700+50 --device-fault 
 check report.json frames == 3000 safety.begun.garbage '>=' 3 safety.begun.disconnect == 1 \
     tools.0.force_max_n '>' 0.5 tools.0.force_max_n '<=' 8
 check_clean report.json
+
+# A recorded hand touches the same, and is gone after its end.
+run_hrtc "${model[@]}" --duration 2 --record run.rec
+check report.json tools.0.contact_share '>' 0.5
+run_hrtc "${model[@]}" --duration 3 --device replay:run.rec
+check report.json safety.begun.disconnect == 1 tools.0.contact_share '>' 0.33 \
+    tools.0.contact_share '<' 0.67 tools.0.force_max_n '>' 0.5
+check_clean report.json
+expect 2 '--rate: 2000 Hz; the device replay takes 1000 to 1000 Hz' \
+    "$hrtc" --allow-no-rt "${model[@]}" --rate 2000 --device replay:run.rec
+expect 2 '--device: bumpy.spm: *is not a Tactus recording' \
+    "$hrtc" --allow-no-rt "${model[@]}" --device replay:bumpy.spm
 finish

@@ -38,12 +38,16 @@ TEST(DeviceChoice, takes_places_of_devices_that_are_not_simulated)
     ASSERT_TRUE(dhd.has_value());
     EXPECT_EQ(dhd->kind, DeviceKind::dhd);
     EXPECT_EQ(dhd->index, 63);
+    const std::optional<DeviceChoice> replay = parse_device("replay:a:b.rec");
+    ASSERT_TRUE(replay.has_value());
+    EXPECT_EQ(replay->kind, DeviceKind::replay);
+    EXPECT_EQ(replay->recording, "a:b.rec");
 }
 
 TEST(DeviceChoice, refuses_what_is_no_device)
 {
     for (const char* text : {"", "simulated", "sim:", "sim:Touch", "sim:touch ", "sim:sigma",
-                             "udp:80", "udp:", "dhd:64", "dhd:-1"})
+                             "udp:80", "udp:", "dhd:64", "dhd:-1", "replay", "replay:"})
     {
         EXPECT_FALSE(parse_device(text).has_value()) << text;
     }

@@ -4,6 +4,7 @@
 
 #include "platform/haptic_device.hpp"
 #include "platform/simulated/hand_motion.hpp"
+#include "platform/simulated/replay_device.hpp"
 #include "platform/simulated/simulated_device.hpp"
 
 #include <memory>
@@ -29,6 +30,8 @@ public:
     [[nodiscard]] virtual HapticDevice& device() noexcept = 0;
     /// One period goes by under the force that was written last; then one read().
     [[nodiscard]] virtual DeviceSample next() = 0;
+    /// Whether the hand gives way to a force; where it doesn't it never moves.
+    [[nodiscard]] virtual bool gives_way() const { return true; }
 
 protected:
     DeviceRig() = default;
@@ -45,6 +48,28 @@ public:
 private:
     std::unique_ptr<SimulatedDevice> device_ =
         std::move(SimulatedDevice::create({}, std::make_unique<HandAtRest>())).value();
+};
+
+/// A recording of a hand at rest.
+class ReplayRig final : public DeviceRig
+{
+public:
+    [[nodiscard]] HapticDevice& device() noexcept override { return *device_; }
+    [[nodiscard]] DeviceSample next() override { return device_->read(); }
+    [[nodiscard]] bool gives_way() const override { return false; }
+
+private:
+    static ReplayDeviceOptions hand_at_rest()
+    {
+        ReplayDeviceOptions options;
+        for (std::int64_t i = 0; i < 1'000; ++i)
+        {
+            options.readings.push_back({Vec3(0.1, 0.2, 0.3), MonotonicTime{i * 1'000'000}, true});
+        }
+        return options;
+    }
+
+    std::unique_ptr<ReplayDevice> device_ = std::move(ReplayDevice::create(hand_at_rest())).value();
 };
 
 } // namespace tactus::test
