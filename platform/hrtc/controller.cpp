@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #include "platform/hrtc/controller.hpp"
 
-#include "platform/simulated/scripted_hand.hpp"
+#include "platform/simulated/hand_motions.hpp"
 #include "platform/simulated/simulated_device.hpp"
 #include "rt_core/force/stiffness_rule.hpp"
 
@@ -217,19 +217,19 @@ std::optional<ControllerError> Controller::simulate_device(const Options& option
     scene.period = nanoseconds(1'000'000'000 / options.rate_hz);
     scene.frames_total =
         static_cast<std::uint64_t>(options.duration_s * static_cast<double>(options.rate_hz));
-    auto hand = ScriptedHand::create(scene);
-    if (!hand)
+    auto motion = make_motion(options.motion, scene, tool + 1);
+    if (!motion)
     {
-        return ControllerError{"--tool: " + hand.error().message};
+        return ControllerError{"--tool: " + motion.error().message};
     }
     SimulatedDeviceOptions device_options;
     device_options.rate_hz = options.rate_hz;
     device_options.device = choice_of(options, tool).limits;
-    device_options.workspace_centre_world_m = hand.value()->centre_world_m();
-    device_options.workspace_radius_m = hand.value()->reach_m();
+    device_options.workspace_centre_world_m = motion.value().centre_world_m;
+    device_options.workspace_radius_m = motion.value().reach_m;
     device_options.speed_max_m_per_s =
         std::max(device_options.speed_max_m_per_s, kHandSpeed_diag * diagonal_world_m());
-    auto device = SimulatedDevice::create(device_options, std::move(hand).value());
+    auto device = SimulatedDevice::create(device_options, std::move(motion.value().hand));
     if (!device)
     {
         return ControllerError{"--device: " + device.error().message};

@@ -117,6 +117,7 @@ struct RawOptions
     std::vector<std::string> devices;
     std::vector<std::string> device_frames;
     std::vector<std::string> device_faults;
+    std::optional<std::string> motion;
     std::string transport{"dds"};
     int cpu{-1};
 };
@@ -170,6 +171,9 @@ void declare(CLI::App& app, Options& options, RawOptions& raw)
         ->expected(1)
         ->allow_extra_args(false)
         ->take_all();
+    app.add_option("--motion", raw.motion,
+                   "What simulated hands do: script, free, approach, slide, tap, teleport, spin or "
+                   "tremor [script]");
     app.add_option("--rate", options.rate_hz, "Frames a second")
         ->check(CLI::Range(SimulatedDeviceOptions::kRateMinHz, SimulatedDeviceOptions::kRateMaxHz))
         ->capture_default_str();
@@ -316,13 +320,22 @@ std::string check_simulated(Options& options, const RawOptions& raw)
         }
         options.device_faults.push_back(*fault);
     }
-    const bool has_other_only =
+    const std::optional<MotionKind> motion = motion_named(raw.motion.value_or("script"));
+    if (!motion)
+    {
+        return fmt::format("--motion: '{}' is not {}", printable(*raw.motion), kMotionNames);
+    }
+    options.motion = *motion;
+    const bool has_others_only =
         options.devices.size() == std::max<std::size_t>(options.tool_radii_m.size(), 1) &&
         std::ranges::none_of(options.devices, [](const DeviceChoice& device)
                              { return device.kind == DeviceKind::simulated; });
-    return has_other_only && !raw.device_faults.empty()
-               ? "--device-fault: there is no simulated device"
-               : "";
+    if (has_others_only && (raw.motion || !raw.device_faults.empty()))
+    {
+        return fmt::format("{}: there is no simulated device",
+                           raw.motion ? "--motion" : "--device-fault");
+    }
+    return {};
 }
 
 /// The tools, and what is given for each of them. Empty when all is well.

@@ -62,6 +62,9 @@ for value in nan nan@1 nan@1+0 nan@-1+1 nan@1+2000000000 late@1+1 ''; do
 done
 refuse 3 '--device-fault: there is no simulated device' --model a --device udp \
     --device-fault nan@1+1
+refuse_option --motion fly 'script, free, approach'
+refuse_option --motion '' 'script, free, approach'
+refuse 3 '--motion: there is no simulated device' --model a --device udp --motion free
 refuse 3 'extra' --model a extra
 refuse 3 '--device: 2 given for 1 tools' --model a --device sim --device sim
 refuse 3 '--device-frame: 1 given for 0' --model a --device-frame 0,0,0

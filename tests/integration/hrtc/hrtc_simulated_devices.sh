@@ -27,6 +27,18 @@ check report.json frames == 3000 safety.begun.garbage '>=' 3 safety.begun.discon
     tools.0.force_max_n '>' 0.5 tools.0.force_max_n '<=' 8
 check_clean report.json
 
+# Other motions.
+run_hrtc "${model[@]}" --duration 1 --motion free
+check report.json tools.0.contact_share == 0
+for motion in approach slide tap spin; do
+    run_hrtc "${model[@]}" --duration 2 --motion "$motion"
+    check report.json tools.0.contact_share '>' 0.2 tools.0.force_max_n '>' 0.3 \
+        tools.0.force_max_n '<' 6
+    check_clean report.json
+done
+run_hrtc "${model[@]}" --duration 3 --motion teleport
+check report.json tools.0.force_max_n '>' 0 tools.0.force_max_n '<=' 8
+
 # A recorded hand touches the same, and is gone after its end.
 run_hrtc "${model[@]}" --duration 2 --record run.rec
 check report.json tools.0.contact_share '>' 0.5
