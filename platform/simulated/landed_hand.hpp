@@ -32,12 +32,17 @@ protected:
     [[nodiscard]] double press_m() const noexcept { return press_m_; }
 
 private:
+    [[nodiscard]] bool has_met_something(const HandSense& sense, double left_m,
+                                         double speed_m_per_s) noexcept;
+
     double period_s_;
     double diagonal_m_;
     double tool_radius_m_;
     double press_m_;
     HandPace pace_;
     ContactSlide feeling_; ///< Knows what counts as a touch.
+    Vec3 last_device_world_m_;
+    double device_speed_m_per_s_{0.0}; ///< Downwards, over the last 10 ms or so.
     Vec3 start_world_m_;
     Vec3 down_;
     Vec3 across_;

@@ -52,13 +52,15 @@ MadeMotion make(MotionKind kind, std::uint64_t frames, std::uint64_t seed = 1)
     return std::move(make_motion(kind, scene_of(frames), seed)).value();
 }
 
-/// The default device in that hand, on a ball of 500 N/m or on nothing.
+/// The default device in that hand, on a ball of 500 N/m or on nothing. With a drag its force damps
+/// the motion, too, as one does that comes back after a fault.
 struct Play
 {
     std::vector<Vec3> device_m;
     std::vector<double> force_n;
 
-    explicit Play(MotionKind kind, std::uint64_t frames = 4'000, bool is_there = true)
+    explicit Play(MotionKind kind, std::uint64_t frames = 4'000, bool is_there = true,
+                  double drag_n_s_per_m = 0.0)
     {
         MadeMotion motion = make(kind, frames);
         SimulatedDeviceOptions options;
@@ -70,9 +72,12 @@ struct Play
         auto device = std::move(SimulatedDevice::create(options, std::move(motion.hand))).value();
         for (std::uint64_t frame = 0; frame < frames; ++frame)
         {
-            const auto p = device->read().position_world_m;
+            const DeviceSample sample = device->read();
+            const auto& p = sample.position_world_m;
+            const auto& v = *sample.velocity_world_m_per_s;
             const Vec3 force = wall.respond(Vec3(p[0], p[1], p[2]));
-            device->write({force.x(), force.y(), force.z()});
+            const Vec3 felt = force - drag_n_s_per_m * Vec3(v[0], v[1], v[2]);
+            device->write({felt.x(), felt.y(), felt.z()});
             device_m.emplace_back(p[0], p[1], p[2]);
             force_n.push_back(force.norm());
         }
@@ -159,6 +164,16 @@ TEST(HandMotions, approach_comes_to_rest_with_about_a_newton)
     EXPECT_EQ(run.contact_share(3'000), 1.0);
     EXPECT_NEAR(run.force_n.back(), 1.0, 0.2);
     EXPECT_LT((run.device_m.back() - run.device_m[3'000]).norm(), 1e-6);
+}
+
+TEST(HandMotions, are_not_taken_in_by_a_force_that_damps_in_the_air)
+{
+    for (const MotionKind kind : {MotionKind::approach, MotionKind::tap, MotionKind::spin})
+    {
+        const Play run(kind, 4'000, true, 1.0);
+        EXPECT_GT(run.contact_share(2'000), 0.2) << static_cast<int>(kind);
+        EXPECT_GT(*std::ranges::max_element(run.force_n), 0.7) << static_cast<int>(kind);
+    }
 }
 
 TEST(HandMotions, slide_stays_on_the_surface)
