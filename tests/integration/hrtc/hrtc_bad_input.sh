@@ -54,7 +54,8 @@ refuse_option --priority 99 '1 to 98'
 refuse_option --cpu -1 '0 to 1023'
 refuse_option --cpu 1024 '0 to 1023'
 (($(nproc --all) > 1023)) || refuse_option --cpu 1023 'it may use'
-for value in phantom sim: sim:sigma replay replay: udp: udp:80 udp:65536 udp:5x udp::48500 dhd: dhd:64 dhd:-1 ''; do
+for value in phantom sim: sim:sigma replay replay: udp: udp:80 udp:65536 udp:5x udp::48500 dhd: \
+    dhd:64 dhd:-1 ''; do
     refuse_option --device "$value" 'udp:ADDRESS:PORT'
 done
 for value in nan nan@1 nan@1+0 nan@-1+1 nan@1+2000000000 late@1+1 ''; do
