@@ -3,12 +3,14 @@
 #pragma once
 
 #include "platform/haptic_device.hpp"
+#include "platform/simulated/faulty_device.hpp"
 #include "platform/simulated/hand_motion.hpp"
 #include "platform/simulated/replay_device.hpp"
 #include "platform/simulated/simulated_device.hpp"
 
 #include <memory>
 #include <utility>
+#include <vector>
 
 namespace tactus::test
 {
@@ -39,15 +41,24 @@ protected:
     DeviceRig& operator=(const DeviceRig&) = default;
 };
 
+/// Of any class; what wraps it has to keep its promises, too.
 class SimulatedRig final : public DeviceRig
 {
 public:
+    explicit SimulatedRig(const DeviceLimits& limits = {})
+    {
+        SimulatedDeviceOptions options;
+        options.device = limits;
+        auto made = SimulatedDevice::create(options, std::make_unique<HandAtRest>());
+        device_ = std::make_unique<FaultyDevice>(std::move(made).value(), faults_);
+    }
     [[nodiscard]] HapticDevice& device() noexcept override { return *device_; }
     [[nodiscard]] DeviceSample next() override { return device_->read(); }
 
 private:
-    std::unique_ptr<SimulatedDevice> device_ =
-        std::move(SimulatedDevice::create({}, std::make_unique<HandAtRest>())).value();
+    /// After all tests are over.
+    std::vector<DeviceFault> faults_{{DeviceFaultKind::nan, 1'000'000, 1}};
+    std::unique_ptr<FaultyDevice> device_;
 };
 
 /// A recording of a hand at rest.

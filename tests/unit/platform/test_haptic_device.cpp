@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "platform/allocation_counter.hpp"
 #include "platform/haptic_device.hpp"
+#include "platform/simulated/device_classes.hpp"
 #include "platform/system_call_trap.hpp"
 #include "tests/unit/platform/dhd_rig.hpp"
 #include "tests/unit/platform/udp_rig.hpp"
@@ -24,6 +25,12 @@ using test::DeviceRig;
 std::unique_ptr<DeviceRig> make_simulated()
 {
     return std::make_unique<test::SimulatedRig>();
+}
+
+template <const DeviceLimits& limits>
+std::unique_ptr<DeviceRig> make_class()
+{
+    return std::make_unique<test::SimulatedRig>(limits);
 }
 
 std::unique_ptr<DeviceRig> make_replay()
@@ -71,7 +78,9 @@ protected:
     std::unique_ptr<DeviceRig> rig = GetParam()();
 };
 
-INSTANTIATE_TEST_SUITE_P(Simulated, HapticDeviceConformance, testing::Values(&make_simulated));
+INSTANTIATE_TEST_SUITE_P(Simulated, HapticDeviceConformance,
+                         testing::Values(&make_simulated, &make_class<kTouchClass>,
+                                         &make_class<kOmegaClass>, &make_class<kDeltaClass>));
 INSTANTIATE_TEST_SUITE_P(Replay, HapticDeviceConformance, testing::Values(&make_replay));
 INSTANTIATE_TEST_SUITE_P(Udp, HapticDeviceConformance,
                          testing::Values(&make_udp, &make_udp_elsewhere));
