@@ -23,6 +23,7 @@ constexpr double kLargestPool_mib = 4'096.0;
 constexpr double kFrameBudgetMin_us = 10.0;
 constexpr double kFrameBudgetMax_us = 10'000.0;
 constexpr double kStiffest_n_per_m = 3'000.0;
+constexpr std::size_t kDeviceFaultsMax = 64; ///< Each reading looks at all of them.
 constexpr std::string_view kPlacementForm = "X,Y,Z[,RX,RY,RZ[,SCALE]] with at most 1e4 m, 360 "
                                             "degrees and a scale of 1e-3 to 1e3";
 
@@ -310,6 +311,10 @@ std::string check_objects(Options& options, const RawOptions& raw)
 /// What is said of simulated devices only. Empty when all is well.
 std::string check_simulated(Options& options, const RawOptions& raw)
 {
+    if (raw.device_faults.size() > kDeviceFaultsMax)
+    {
+        return fmt::format("--device-fault: at most {} faults", kDeviceFaultsMax);
+    }
     for (const std::string& text : raw.device_faults)
     {
         const std::optional<DeviceFault> fault = parse_device_fault(text);

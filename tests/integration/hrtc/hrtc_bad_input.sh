@@ -63,6 +63,9 @@ for value in nan nan@1 nan@1+0 nan@-1+1 nan@1+2000000000 late@1+1 ''; do
 done
 refuse 3 '--device-fault: there is no simulated device' --model a --device udp \
     --device-fault nan@1+1
+many=()
+for ((i = 0; i < 65; ++i)); do many+=(--device-fault "nan@$i+1"); done
+refuse 3 '--device-fault: at most 64' --model a "${many[@]}"
 refuse_option --motion fly 'script, free, approach'
 refuse_option --motion '' 'script, free, approach'
 refuse 3 '--motion: there is no simulated device' --model a --device udp --motion free
