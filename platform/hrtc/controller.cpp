@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #include "platform/hrtc/controller.hpp"
 
-#include "platform/simulated/scripted_hand.hpp"
+#include "platform/simulated/hand_motions.hpp"
 #include "platform/simulated/simulated_device.hpp"
 #include "rt_core/force/stiffness_rule.hpp"
 
@@ -34,6 +34,12 @@ ObjectPose pose_of(const Placement& placement, const ModelHeader& header)
     pose.translation_m = placement.translation_m + pose.scale * (pose.rotation * origin_m);
     pose.revision = header.fields().revision;
     return pose;
+}
+
+/// Without one it is simulated.
+DeviceChoice choice_of(const Options& options, std::size_t tool)
+{
+    return tool < options.devices.size() ? options.devices[tool] : DeviceChoice{};
 }
 
 } // namespace
@@ -97,7 +103,7 @@ std::optional<ControllerError> Controller::open_devices(const Options& options)
         {
             continue;
         }
-        auto device = open_device(options.devices[i], wait, clock_);
+        auto device = open_device(options.devices[i], i, wait, clock_);
         if (!device)
         {
             return ControllerError{"--device: " + device.error().message};
@@ -123,9 +129,9 @@ void Controller::make_tools(const Options& options)
     }
     for (std::size_t i = 0; i < radii_m.size(); ++i)
     {
-        const double force_max_n = devices_[i] != nullptr ? devices_[i]->info().limits.force_max_n
-                                                          : SimulatedDeviceOptions{}.force_max_n;
-        tools_.push_back({radii_m[i], options.stiffness_n_per_m, force_max_n,
+        const DeviceLimits limits =
+            devices_[i] != nullptr ? devices_[i]->info().limits : choice_of(options, i).limits;
+        tools_.push_back({radii_m[i], options.stiffness_n_per_m, limits.force_max_n,
                           kSpeedMax_diag * diagonal_world_m()});
     }
 }
@@ -211,23 +217,29 @@ std::optional<ControllerError> Controller::simulate_device(const Options& option
     scene.period = nanoseconds(1'000'000'000 / options.rate_hz);
     scene.frames_total =
         static_cast<std::uint64_t>(options.duration_s * static_cast<double>(options.rate_hz));
-    auto hand = ScriptedHand::create(scene);
-    if (!hand)
+    auto motion = make_motion(options.motion, scene, tool + 1);
+    if (!motion)
     {
-        return ControllerError{"--tool: " + hand.error().message};
+        return ControllerError{"--tool: " + motion.error().message};
     }
     SimulatedDeviceOptions device_options;
     device_options.rate_hz = options.rate_hz;
-    device_options.workspace_centre_world_m = hand.value()->centre_world_m();
-    device_options.workspace_radius_m = hand.value()->reach_m();
+    device_options.device = choice_of(options, tool).limits;
+    device_options.workspace_centre_world_m = motion.value().centre_world_m;
+    device_options.workspace_radius_m = motion.value().reach_m;
     device_options.speed_max_m_per_s =
         std::max(device_options.speed_max_m_per_s, kHandSpeed_diag * diagonal_world_m());
-    auto device = SimulatedDevice::create(device_options, std::move(hand).value());
+    auto device = SimulatedDevice::create(device_options, std::move(motion.value().hand));
     if (!device)
     {
         return ControllerError{"--device: " + device.error().message};
     }
     devices_[tool] = std::move(device).value();
+    if (!options.device_faults.empty())
+    {
+        devices_[tool] =
+            std::make_unique<FaultyDevice>(std::move(devices_[tool]), options.device_faults, tool);
+    }
     return std::nullopt;
 }
 

@@ -3,8 +3,12 @@
 #include "platform/hrtc/device_choice.hpp"
 
 #include "platform/dhd/dhd_device.hpp"
+#include "platform/hrtc/recorded_motion.hpp"
+#include "platform/simulated/device_classes.hpp"
 
+#include <algorithm>
 #include <charconv>
+#include <iterator>
 #include <utility>
 
 namespace tactus::hrtc
@@ -15,6 +19,18 @@ namespace
 
 constexpr int kPortMin = 1'024;
 constexpr int kPortMax = 65'535;
+constexpr int kFaultFramesMax = 1'000'000'000;
+
+struct NamedFault
+{
+    std::string_view name;
+    DeviceFaultKind kind;
+};
+constexpr NamedFault kFaults[] = {
+    {"jitter", DeviceFaultKind::jitter},       {"dropout", DeviceFaultKind::dropout},
+    {"stuck", DeviceFaultKind::stuck},         {"nan", DeviceFaultKind::nan},
+    {"time_jump", DeviceFaultKind::time_jump}, {"disconnect", DeviceFaultKind::disconnect},
+};
 
 /// Reads all of `text` as a whole number in the range.
 std::optional<int> parse_int(std::string_view text, int least, int most)
@@ -24,6 +40,22 @@ std::optional<int> parse_int(std::string_view text, int least, int most)
     const bool is_good =
         error == std::errc{} && end == text.data() + text.size() && value >= least && value <= most;
     return is_good ? std::optional(value) : std::nullopt;
+}
+
+std::optional<DeviceChoice> parse_class(std::string_view text)
+{
+    DeviceChoice choice;
+    if (text == "touch")
+    {
+        choice.limits = kTouchClass;
+        return choice;
+    }
+    if (text == "omega" || text == "delta")
+    {
+        choice.limits = text == "omega" ? kOmegaClass : kDeltaClass;
+        return choice;
+    }
+    return std::nullopt;
 }
 
 std::optional<DeviceChoice> parse_udp(std::string_view text)
@@ -61,12 +93,30 @@ as_device(Result<std::unique_ptr<Device>, PlatformError> made)
     return std::unique_ptr<HapticDevice>(std::move(made).value());
 }
 
+Result<std::unique_ptr<HapticDevice>, PlatformError> open_replay(const std::string& path,
+                                                                 std::size_t tool)
+{
+    auto motion = read_recorded_motion(path, tool);
+    if (!motion)
+    {
+        return PlatformError{PlatformErrorKind::bad_option, motion.error().text};
+    }
+    auto device = ReplayDevice::create(std::move(motion).value());
+    if (!device)
+    {
+        return PlatformError{device.error().kind, path + ": " + device.error().message};
+    }
+    return as_device(std::move(device));
+}
+
 } // namespace
 
 std::optional<DeviceChoice> parse_device(std::string_view text)
 {
+    constexpr std::string_view kSimulated = "sim:";
     constexpr std::string_view kUdp = "udp:";
     constexpr std::string_view kDhd = "dhd:";
+    constexpr std::string_view kReplay = "replay:";
     DeviceChoice choice;
     if (text == "sim")
     {
@@ -77,16 +127,50 @@ std::optional<DeviceChoice> parse_device(std::string_view text)
         choice.kind = text == "udp" ? DeviceKind::udp : DeviceKind::dhd;
         return choice;
     }
+    if (text.starts_with(kSimulated))
+    {
+        return parse_class(text.substr(kSimulated.size()));
+    }
     if (text.starts_with(kUdp))
     {
         return parse_udp(text.substr(kUdp.size()));
     }
+    if (text.starts_with(kReplay) && text.size() > kReplay.size())
+    {
+        choice.kind = DeviceKind::replay;
+        choice.recording = text.substr(kReplay.size());
+        return choice;
+    }
     return text.starts_with(kDhd) ? parse_dhd(text.substr(kDhd.size())) : std::nullopt;
 }
 
-Result<std::unique_ptr<HapticDevice>, PlatformError> open_device(const DeviceChoice& choice,
-                                                                 Duration wait, const Clock& clock)
+std::optional<DeviceFault> parse_device_fault(std::string_view text)
 {
+    const std::size_t at = std::min(text.find('@'), text.size());
+    const std::size_t plus = std::min(text.find('+', at), text.size());
+    const auto* const named = std::ranges::find(kFaults, text.substr(0, at), &NamedFault::name);
+    if (named == std::end(kFaults) || plus == text.size())
+    {
+        return std::nullopt;
+    }
+    const std::optional<int> frame =
+        parse_int(text.substr(at + 1, plus - at - 1), 0, kFaultFramesMax);
+    const std::optional<int> length = parse_int(text.substr(plus + 1), 1, kFaultFramesMax);
+    if (!frame || !length)
+    {
+        return std::nullopt;
+    }
+    return DeviceFault{named->kind, static_cast<std::uint64_t>(*frame),
+                       static_cast<std::uint64_t>(*length)};
+}
+
+Result<std::unique_ptr<HapticDevice>, PlatformError>
+open_device(const DeviceChoice& choice, std::size_t tool, Duration wait, const Clock& clock)
+{
+    if (choice.kind == DeviceKind::replay)
+    {
+        return open_replay(choice.recording, tool);
+    }
     auto frame = DeviceFrame::create(rotation_of(choice.frame), choice.frame.translation_m,
                                      choice.frame.scale);
     if (!frame)

@@ -9,6 +9,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cstdio>
 #include <sstream>
@@ -23,6 +24,7 @@ constexpr double kLargestPool_mib = 4'096.0;
 constexpr double kFrameBudgetMin_us = 10.0;
 constexpr double kFrameBudgetMax_us = 10'000.0;
 constexpr double kStiffest_n_per_m = 3'000.0;
+constexpr std::size_t kDeviceFaultsMax = 64; ///< Each reading looks at all of them.
 constexpr std::string_view kPlacementForm = "X,Y,Z[,RX,RY,RZ[,SCALE]] with at most 1e4 m, 360 "
                                             "degrees and a scale of 1e-3 to 1e3";
 
@@ -116,6 +118,8 @@ struct RawOptions
     std::vector<std::string> tools;
     std::vector<std::string> devices;
     std::vector<std::string> device_frames;
+    std::vector<std::string> device_faults;
+    std::optional<std::string> motion;
     std::string transport{"dds"};
     std::optional<int> cpu;
     bool prints_config{false};
@@ -183,9 +187,10 @@ void declare(CLI::App& app, Options& options, RawOptions& raw)
         ->allow_extra_args(false)
         ->take_all();
     app.add_option("--device", raw.devices,
-                   "What moves the tool, one for each --tool in order: sim, a simulated hand; "
-                   "udp[:[ADDRESS:]PORT], a driver of your own; dhd[:INDEX], a device of Force "
-                   "Dimension's; repeatable [sim]")
+                   "What moves the tool, one for each --tool in order: sim[:CLASS], a simulated "
+                   "hand on a device of the class touch, omega or delta; udp[:[ADDRESS:]PORT], a "
+                   "driver of your own; dhd[:INDEX], a device of Force "
+                   "Dimension's; replay:FILE, the hand of a recording; repeatable [sim]")
         ->expected(1)
         ->allow_extra_args(false)
         ->take_all();
@@ -195,6 +200,16 @@ void declare(CLI::App& app, Options& options, RawOptions& raw)
         ->expected(1)
         ->allow_extra_args(false)
         ->take_all();
+    app.add_option("--device-fault", raw.device_faults,
+                   "For tests: what goes wrong with the readings of simulated devices: "
+                   "KIND@FRAME+LENGTH with jitter, dropout, stuck, nan, time_jump or disconnect, "
+                   "from that frame on for so many; repeatable")
+        ->expected(1)
+        ->allow_extra_args(false)
+        ->take_all();
+    app.add_option("--motion", raw.motion,
+                   "What simulated hands do: script, free, approach, slide, tap, teleport, spin or "
+                   "tremor [script]");
     app.add_option("--rate", options.rate_hz, "Frames a second")
         ->check(CLI::Range(SimulatedDeviceOptions::kRateMinHz, SimulatedDeviceOptions::kRateMaxHz))
         ->capture_default_str();
@@ -323,6 +338,41 @@ std::string check_objects(Options& options, const RawOptions& raw)
     return {};
 }
 
+/// What is said of simulated devices only. Empty when all is well.
+std::string check_simulated(Options& options, const RawOptions& raw)
+{
+    if (raw.device_faults.size() > kDeviceFaultsMax)
+    {
+        return fmt::format("--device-fault: at most {} faults", kDeviceFaultsMax);
+    }
+    for (const std::string& text : raw.device_faults)
+    {
+        const std::optional<DeviceFault> fault = parse_device_fault(text);
+        if (!fault)
+        {
+            return fmt::format("--device-fault: '{}' is not {}", printable(text),
+                               kDeviceFaultForms);
+        }
+        options.device_faults.push_back(*fault);
+    }
+    const std::optional<MotionKind> motion = motion_named(raw.motion.value_or("script"));
+    if (!motion)
+    {
+        return fmt::format("--motion: '{}' is not {}", printable(*raw.motion), kMotionNames);
+    }
+    options.motion = *motion;
+    const bool has_others_only =
+        options.devices.size() == std::max<std::size_t>(options.tool_radii_m.size(), 1) &&
+        std::ranges::none_of(options.devices, [](const DeviceChoice& device)
+                             { return device.kind == DeviceKind::simulated; });
+    if (has_others_only && (raw.motion || !raw.device_faults.empty()))
+    {
+        return fmt::format("{}: there is no simulated device",
+                           raw.motion ? "--motion" : "--device-fault");
+    }
+    return {};
+}
+
 /// The tools, and what is given for each of them. Empty when all is well.
 std::string check_tools(Options& options, const RawOptions& raw)
 {
@@ -367,13 +417,14 @@ std::string check_tools(Options& options, const RawOptions& raw)
             return fmt::format("--device-frame: '{}' is not {}", printable(raw.device_frames[i]),
                                kPlacementForm);
         }
-        if (options.devices[i].kind == DeviceKind::simulated)
+        if (options.devices[i].kind == DeviceKind::simulated ||
+            options.devices[i].kind == DeviceKind::replay)
         {
-            return "--device-frame: a simulated hand is in the world already";
+            return "--device-frame: a simulated or recorded hand is in the world already";
         }
         options.devices[i].frame = *frame;
     }
-    return {};
+    return check_simulated(options, raw);
 }
 
 /// What one option alone can't tell. Empty when all is well.

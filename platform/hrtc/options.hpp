@@ -5,6 +5,7 @@
 #include "platform/hrtc/device_choice.hpp"
 #include "platform/hrtc/placement.hpp"
 #include "platform/rt_thread.hpp"
+#include "platform/simulated/hand_motions.hpp"
 #include "rt_core/records/frame_input.hpp"
 #include "transport/model_name.hpp"
 
@@ -37,6 +38,8 @@ struct Options
     std::vector<Material> materials;   ///< One a model.
     std::vector<double> tool_radii_m;  ///< Empty: one tool of 1 % of the first model's diagonal.
     std::vector<DeviceChoice> devices; ///< One a tool; fewer: the others are simulated.
+    std::vector<DeviceFault> device_faults; ///< Of every simulated device.
+    MotionKind motion{MotionKind::script};  ///< Likewise.
     TransportKind transport{TransportKind::dds};
     std::uint32_t domain{0};
     double wait_s{10.0}; ///< For a model that nobody publishes yet, or a device.

@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #include "platform/remote/remote_device.hpp"
 
-#include <cmath>
+#include "platform/device_force.hpp"
 
 namespace tactus
 {
@@ -74,18 +74,7 @@ void RemoteDevice::write(const std::array<double, 3>& force_world_n) noexcept
     {
         return;
     }
-    Vec3 force_n{force_world_n[0], force_world_n[1], force_world_n[2]};
-    const double norm_n = force_n.norm();
-    if (!std::isfinite(norm_n))
-    {
-        ++status_.forces_refused;
-        force_n.setZero();
-    }
-    else if (norm_n > info_.limits.force_max_n)
-    {
-        ++status_.forces_clamped;
-        force_n *= info_.limits.force_max_n / norm_n;
-    }
+    const Vec3 force_n = take_force(force_world_n, info_.limits.force_max_n, status_);
     written_ = {to_array(force_n), clock_.now(), reading_.attachment, releases_.load(),
                 DeviceState::force};
     commands_.write(written_);

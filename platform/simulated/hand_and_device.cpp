@@ -30,7 +30,9 @@ bool is_usable(const DeviceLimits& device) noexcept
 {
     return is_positive(device.mass_kg) && is_not_negative(device.damping_n_s_per_m) &&
            is_not_negative(device.friction_n) && is_not_negative(device.quantum_m) &&
-           is_not_negative(device.delay_s) && is_positive(device.force_max_n);
+           is_not_negative(device.delay_s) && is_positive(device.force_max_n) &&
+           is_positive(device.slew_max_n_per_s) && is_positive(device.stiffness_max_n_per_m) &&
+           is_not_negative(device.added_damping_max_n_s_per_m);
 }
 
 bool is_usable(const HandLimb& hand) noexcept
@@ -47,8 +49,9 @@ std::string find_bad_option(const HandAndDeviceOptions& options)
 {
     if (!is_usable(options.device))
     {
-        return "hand and device: the device's mass and largest force must be finite and above "
-               "zero, damping, friction, quantum and delay finite and not negative";
+        return "hand and device: the device's mass, largest force, slew and stiffness must be "
+               "finite and above zero, its dampings, friction, quantum and delay finite and not "
+               "negative";
     }
     if (!is_usable(options.hand))
     {
@@ -122,6 +125,12 @@ Vec3 HandAndDevice::step(const Vec3& force_n, const Vec3& target_m) noexcept
     return measured_m();
 }
 
+void HandAndDevice::brake(double damping_n_s_per_m) noexcept
+{
+    forces_n_.fill(Vec3::Zero());
+    brake_n_s_per_m_ = damping_n_s_per_m;
+}
+
 const Vec3& HandAndDevice::force_at(std::uint32_t sub_step) const noexcept
 {
     const std::uint32_t late = sub_step >= delay_sub_steps_
@@ -141,7 +150,7 @@ HandAndDevice::Midway HandAndDevice::solve(const Vec3& force_n, const Vec3& targ
     const double arm = 0.5 * dt_s_ * hand.stiffness_n_per_m + hand.damping_n_s_per_m;
     const double device_inertia = 2.0 * device.mass_kg / dt_s_;
     const double hand_inertia = 2.0 * hand.mass_kg / dt_s_;
-    const double a11 = device_inertia + device.damping_n_s_per_m + grip;
+    const double a11 = device_inertia + device.damping_n_s_per_m + brake_n_s_per_m_ + grip;
     const double a22 = hand_inertia + arm + grip;
     const Vec3 grip_n = (hand_m_ - device_m_) * hand.grip_stiffness_n_per_m;
     const Vec3 on_device = device_m_per_s_ * device_inertia + force_n + grip_n;
@@ -192,7 +201,8 @@ void HandAndDevice::sub_step(const Vec3& force_n, const Vec3& target_mid_m,
         arm_speed * hand.damping_n_s_per_m;
     energy_.force_work_j += force_n.dot(way);
     energy_.target_work_j += arm_n.dot(target_velocity) * dt_s_;
-    energy_.viscous_loss_j += options_.device.damping_n_s_per_m * way.dot(mid.device_m_per_s);
+    energy_.viscous_loss_j +=
+        (options_.device.damping_n_s_per_m + brake_n_s_per_m_) * way.dot(mid.device_m_per_s);
     energy_.friction_loss_j -= mid.friction_n.dot(way);
     energy_.hand_loss_j += (hand.grip_damping_n_s_per_m * grip_speed.squaredNorm() +
                             hand.damping_n_s_per_m * arm_speed.squaredNorm()) *

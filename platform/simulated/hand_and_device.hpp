@@ -38,9 +38,9 @@ struct HandAndDeviceOptions
 /// Where energy went since the start, in joules. All but the works are never negative.
 struct HandAndDeviceEnergy
 {
-    double force_work_j{0.0};  ///< Done by the device's motors.
-    double target_work_j{0.0}; ///< Done by the hand's will, through arm spring and damper.
-    double viscous_loss_j{0.0};
+    double force_work_j{0.0};   ///< Done by the device's motors.
+    double target_work_j{0.0};  ///< Done by the hand's will, through arm spring and damper.
+    double viscous_loss_j{0.0}; ///< In the device's damping and its brake.
     double friction_loss_j{0.0};
     double hand_loss_j{0.0}; ///< In the dampers of arm and grip.
     double stop_loss_j{0.0}; ///< At the end of the reach.
@@ -78,6 +78,11 @@ public:
     /// moves to `target_m` at constant speed. Returns the measured position at its end.
     Vec3 step(const Vec3& force_n, const Vec3& target_m) noexcept;
 
+    /// Forces under way are dropped, and from now on this much damping comes on top of the device's
+    /// own; finite and not negative. It makes a force again by the next step() that gives one.
+    void brake(double damping_n_s_per_m) noexcept;
+    void release_brake() noexcept { brake_n_s_per_m_ = 0.0; }
+
     [[nodiscard]] Vec3 measured_m() const noexcept;
     /// Not known to a controller.
     [[nodiscard]] const Vec3& position_m() const noexcept { return device_m_; }
@@ -108,6 +113,7 @@ private:
 
     HandAndDeviceOptions options_;
     double dt_s_;
+    double brake_n_s_per_m_{0.0};
     std::uint32_t delay_sub_steps_;
     Vec3 device_m_;
     Vec3 device_m_per_s_{0.0, 0.0, 0.0};

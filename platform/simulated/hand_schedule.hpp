@@ -18,13 +18,14 @@ struct HandSchedule
     std::uint32_t lifts;
     std::uint64_t retreat_frame;
 
-    HandSchedule(double run_s, double period_s) noexcept
+    HandSchedule(double run_s, double period_s, bool lifts_off) noexcept
         : flight_s(std::clamp(0.04 * run_s, 0.1, 1.0))
         , first_lift_frame(frames_in(0.3 * run_s, period_s))
         , lifts(std::max(kLiftsMin, static_cast<std::uint32_t>(std::min(run_s / 2.5, 1e6))))
         , retreat_frame(frames_in(run_s - std::clamp(0.03 * run_s, 0.1, 0.5), period_s))
     {
         lift_spacing_frames = frames_in(0.5 * run_s / lifts, period_s) + 1;
+        lifts = lifts_off ? lifts : 0;
     }
 
     [[nodiscard]] bool lift_is_due(std::uint64_t frame, std::uint32_t lifts_done) const noexcept

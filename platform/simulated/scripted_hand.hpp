@@ -27,6 +27,7 @@ struct HandScene
     double tool_radius_m{0.0};
     Duration period;
     std::uint64_t frames_total{0};
+    bool lifts_off{true}; ///< Now and then while it slides.
 };
 
 enum class HandPhase

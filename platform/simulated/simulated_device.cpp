@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #include "platform/simulated/simulated_device.hpp"
 
+#include "platform/device_force.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -13,18 +15,6 @@ namespace
 {
 
 constexpr std::int64_t kSecondNs = 1'000'000'000;
-/// With 0.1 kg this keeps a wall of 3,000 N/m at 0.02 rad a sub-step: far from instability.
-constexpr std::int64_t kSubStepMaxNs = 125'000;
-
-constexpr std::int64_t sub_steps(std::int64_t rate_hz) noexcept
-{
-    return (kSecondNs / rate_hz + kSubStepMaxNs - 1) / kSubStepMaxNs;
-}
-
-double sub_step_s(std::int64_t rate_hz) noexcept
-{
-    return 1.0 / static_cast<double>(rate_hz * sub_steps(rate_hz));
-}
 
 std::array<double, 3> to_array(const Vec3& v) noexcept
 {
@@ -41,19 +31,8 @@ bool is_not_negative(double value) noexcept
     return std::isfinite(value) && value >= 0.0;
 }
 
-/// Semi-implicit Euler on mass, spring and damper stays stable while k dt^2 + 2 b dt < 4 m;
-/// half of that keeps it accurate too.
-bool is_stable(const SimulatedDeviceOptions& options) noexcept
-{
-    const double dt = sub_step_s(options.rate_hz);
-    const double damping = options.device_damping_n_s_per_m + options.hand_damping_n_s_per_m +
-                           options.brake_damping_n_s_per_m;
-    const double stiffness = options.hand_stiffness_n_per_m + options.stiffness_max_n_per_m;
-    return stiffness * dt * dt + 2.0 * damping * dt < 2.0 * options.mass_kg;
-}
-
 /// Empty when all options are good.
-std::string find_bad_option(const SimulatedDeviceOptions& options, const Vec3& start_world_m)
+std::string find_bad_option(const SimulatedDeviceOptions& options)
 {
     if (options.rate_hz < SimulatedDeviceOptions::kRateMinHz ||
         options.rate_hz > SimulatedDeviceOptions::kRateMaxHz)
@@ -61,34 +40,15 @@ std::string find_bad_option(const SimulatedDeviceOptions& options, const Vec3& s
         return "simulated device: rate " + std::to_string(options.rate_hz) +
                " Hz is out of range 100..10000 Hz";
     }
-    if (!is_positive(options.mass_kg) || !is_positive(options.hand_stiffness_n_per_m) ||
-        !is_positive(options.force_max_n) || !is_positive(options.stiffness_max_n_per_m) ||
-        !is_positive(options.workspace_radius_m) || !is_positive(options.speed_max_m_per_s))
-    {
-        return "simulated device: mass, stiffnesses, largest force, workspace radius and largest "
-               "speed must be finite and above zero";
-    }
-    if (!is_not_negative(options.device_damping_n_s_per_m) ||
-        !is_not_negative(options.hand_damping_n_s_per_m) ||
+    if (!is_positive(options.speed_max_m_per_s) ||
         !is_not_negative(options.brake_damping_n_s_per_m))
     {
-        return "simulated device: dampings must be finite and not negative";
+        return "simulated device: the largest speed must be finite and above zero, the brake's "
+               "damping finite and not negative";
     }
     if (options.watchdog && (*options.watchdog <= Duration{} || options.clock == nullptr))
     {
         return "simulated device: a watchdog needs a time above zero, and a clock";
-    }
-    if (!is_stable(options))
-    {
-        return "simulated device: stiffness or damping is too large for the mass at " +
-               std::to_string(options.rate_hz) + " Hz; take a larger mass or a higher rate";
-    }
-    const double from_centre_m = (start_world_m - options.workspace_centre_world_m).norm();
-    if (!(from_centre_m <= options.workspace_radius_m))
-    {
-        return "simulated device: the hand starts " + std::to_string(from_centre_m) +
-               " m from the workspace centre, outside its radius of " +
-               std::to_string(options.workspace_radius_m) + " m";
     }
     return {};
 }
@@ -99,29 +59,33 @@ Result<std::unique_ptr<SimulatedDevice>, PlatformError>
 SimulatedDevice::create(const SimulatedDeviceOptions& options, std::unique_ptr<HandMotion> hand)
 {
     TACTUS_ASSERT(hand != nullptr);
-    if (std::string wrong = find_bad_option(options, hand->start_world_m()); !wrong.empty())
+    if (std::string wrong = find_bad_option(options); !wrong.empty())
     {
         return PlatformError{PlatformErrorKind::bad_option, std::move(wrong)};
     }
-    return std::unique_ptr<SimulatedDevice>(new SimulatedDevice(options, std::move(hand)));
+    const auto body = HandAndDevice::create(
+        {options.device, options.hand, 1.0 / static_cast<double>(options.rate_hz),
+         hand->start_world_m(), options.workspace_centre_world_m, options.workspace_radius_m});
+    if (!body)
+    {
+        return body.error();
+    }
+    return std::unique_ptr<SimulatedDevice>(
+        new SimulatedDevice(options, body.value(), std::move(hand)));
 }
 
-SimulatedDevice::SimulatedDevice(const SimulatedDeviceOptions& options,
+SimulatedDevice::SimulatedDevice(const SimulatedDeviceOptions& options, const HandAndDevice& body,
                                  std::unique_ptr<HandMotion> hand)
     : options_(options)
     , info_{"sim",
-            {.mass_kg = options.mass_kg,
-             .damping_n_s_per_m = options.device_damping_n_s_per_m,
-             .force_max_n = options.force_max_n,
-             .stiffness_max_n_per_m = options.stiffness_max_n_per_m},
+            options.device,
             to_array(options.workspace_centre_world_m),
             options.workspace_radius_m,
             options.speed_max_m_per_s,
             SimulatedDeviceOptions::kRateMinHz,
             SimulatedDeviceOptions::kRateMaxHz}
     , hand_(std::move(hand))
-    , hand_world_m_(hand_->start_world_m())
-    , position_world_m_(hand_world_m_)
+    , body_(body)
 {
 }
 
@@ -136,7 +100,7 @@ DeviceSample SimulatedDevice::read() noexcept
                              makes_force_at(time) ? force_world_n_ : Vec3(Vec3::Zero()));
     }
     const std::uint64_t frame = status_.frames++;
-    return {to_array(position_world_m_), to_array(velocity_world_m_per_s_),
+    return {to_array(body_.measured_m()), to_array(body_.velocity_m_per_s()),
             MonotonicTime{period_at(periods_).ns}, frame, true};
 }
 
@@ -185,43 +149,16 @@ Vec3 SimulatedDevice::felt_force_world_n() const noexcept
 
 void SimulatedDevice::integrate_one_period(bool braked, const Vec3& force_n) noexcept
 {
-    const Vec3 hand_end_m = hand_->next_world_m({periods_, position_world_m_, force_n});
-    const std::int64_t steps = sub_steps(options_.rate_hz);
-    const double dt = sub_step_s(options_.rate_hz);
-    const Vec3 hand_velocity = (hand_end_m - hand_world_m_) / (dt * static_cast<double>(steps));
-    const double ground_damping =
-        options_.device_damping_n_s_per_m + (braked ? options_.brake_damping_n_s_per_m : 0.0);
-    for (std::int64_t step = 0; step < steps; ++step)
+    if (braked)
     {
-        const Vec3 spring_n = (hand_world_m_ - position_world_m_) * options_.hand_stiffness_n_per_m;
-        const Vec3 damper_n =
-            (hand_velocity - velocity_world_m_per_s_) * options_.hand_damping_n_s_per_m;
-        const Vec3 total_n =
-            spring_n + damper_n + force_n - velocity_world_m_per_s_ * ground_damping;
-        velocity_world_m_per_s_ += total_n * (dt / options_.mass_kg);
-        position_world_m_ += velocity_world_m_per_s_ * dt;
-        stay_in_workspace();
-        hand_world_m_ += hand_velocity * dt;
+        body_.brake(options_.brake_damping_n_s_per_m);
     }
-    hand_world_m_ = hand_end_m;
-}
-
-/// The reach ends in a stop without bounce: the outward part of the velocity is lost.
-void SimulatedDevice::stay_in_workspace() noexcept
-{
-    const Vec3 from_centre_m = position_world_m_ - options_.workspace_centre_world_m;
-    const double distance_m = from_centre_m.norm();
-    if (distance_m <= options_.workspace_radius_m)
+    else
     {
-        return;
+        body_.release_brake();
     }
-    const Vec3 outward = from_centre_m / distance_m;
-    position_world_m_ = options_.workspace_centre_world_m + outward * options_.workspace_radius_m;
-    const double speed_out = velocity_world_m_per_s_.dot(outward);
-    if (speed_out > 0.0)
-    {
-        velocity_world_m_per_s_ -= outward * speed_out;
-    }
+    const Vec3 target_m = hand_->next_world_m({periods_, body_.position_m(), force_n});
+    static_cast<void>(body_.step(force_n, target_m));
 }
 
 void SimulatedDevice::write(const std::array<double, 3>& force_world_n) noexcept
@@ -231,19 +168,7 @@ void SimulatedDevice::write(const std::array<double, 3>& force_world_n) noexcept
         return;
     }
     written_ = now();
-    Vec3 force_n{force_world_n[0], force_world_n[1], force_world_n[2]};
-    const double norm_n = force_n.norm();
-    if (!std::isfinite(norm_n))
-    {
-        ++status_.forces_refused;
-        force_n.setZero();
-    }
-    else if (norm_n > options_.force_max_n)
-    {
-        ++status_.forces_clamped;
-        force_n *= options_.force_max_n / norm_n;
-    }
-    force_world_n_ = force_n;
+    force_world_n_ = take_force(force_world_n, options_.device.force_max_n, status_);
     status_.state = DeviceState::force;
 }
 

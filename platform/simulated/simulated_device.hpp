@@ -5,9 +5,11 @@
 #include "platform/clock.hpp"
 #include "platform/haptic_device.hpp"
 #include "platform/platform_error.hpp"
+#include "platform/simulated/hand_and_device.hpp"
 #include "platform/simulated/hand_motion.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/math/vec3.hpp"
+#include "rt_core/records/device_limits.hpp"
 
 #include <atomic>
 #include <cstdint>
@@ -18,24 +20,21 @@
 namespace tactus
 {
 
-/// A hand holding a small desktop device. The values are those of a relaxed grip; all must be
-/// finite, positive where not said otherwise.
+/// A relaxed hand holding a small desktop device.
 struct SimulatedDeviceOptions
 {
     static constexpr std::int64_t kRateMinHz = 100;
     static constexpr std::int64_t kRateMaxHz = 10'000;
 
     std::int64_t rate_hz{1'000};
-    double mass_kg{0.1};                  ///< Device and the part of the hand that moves along.
-    double device_damping_n_s_per_m{1.0}; ///< Against the ground; zero is allowed.
-    double hand_stiffness_n_per_m{200.0};
-    double hand_damping_n_s_per_m{6.0};   ///< Against the moving hand; zero is allowed.
-    double brake_damping_n_s_per_m{10.0}; ///< Added while the brake is on.
-    double force_max_n{8.0};
-    double stiffness_max_n_per_m{3'000.0};
+    DeviceLimits device; ///< What it is and what it says of itself; device_classes.hpp has others.
+    /// Fingers with a stylus: lighter than a whole hand, on the default device damped to two thirds
+    /// of critical.
+    HandLimb hand{.mass_kg = 0.05, .damping_n_s_per_m = 6.0};
+    double brake_damping_n_s_per_m{10.0}; ///< Added while the brake is on; finite, not negative.
     Vec3 workspace_centre_world_m{Vec3::Zero()};
     double workspace_radius_m{1.0};
-    double speed_max_m_per_s{10.0}; ///< No hand is faster.
+    double speed_max_m_per_s{10.0}; ///< No hand is faster. Finite and above zero.
     /// Lent; it outlives the device. Null: a reading is one period, however late it comes. With it
     /// a reading integrates as many periods as went by, under the force that was held meanwhile.
     const Clock* clock{nullptr};
@@ -44,20 +43,18 @@ struct SimulatedDeviceOptions
     std::optional<Duration> watchdog;
 };
 
-/// A point mass on the hand's spring and damper that feels the written force. Each reading
-/// integrates one period in equal sub-steps of at most 1/8 ms (semi-implicit Euler), by frame index
-/// and never by wall time: the same hand and the same forces give the same positions, bit for bit,
-/// however late the readings come. With a clock it lives in that clock's time instead: what it does
-/// when nobody reads or writes for a while can be seen.
+/// A device in a hand that feels the written force: HandAndDevice, with its mass, damping,
+/// friction, delay, reach, and steps of the measured position. Each reading integrates one period,
+/// by frame index and never by wall time: the same hand and the same forces give the same
+/// positions, bit for bit, however late the readings come. With a clock it lives in that clock's
+/// time instead: what it does when nobody reads or writes for a while can be seen.
 ///
-///     hand  --[ spring, damper ]--  mass  <--  written force
-///                                    |
-///                              device damper
+/// It measures its velocity without steps, as by a tachometer.
 class SimulatedDevice final : public HapticDevice
 {
 public:
-    /// Refuses a rate out of [kRateMinHz, kRateMaxHz], other values out of range, a hand that
-    /// starts outside the workspace, and springs or dampers too stiff for the sub-step.
+    /// Refuses a rate out of [kRateMinHz, kRateMaxHz], other values out of range, what
+    /// HandAndDevice refuses, and a hand that starts outside the workspace.
     [[nodiscard]] static Result<std::unique_ptr<SimulatedDevice>, PlatformError>
     create(const SimulatedDeviceOptions& options, std::unique_ptr<HandMotion> hand);
 
@@ -69,12 +66,13 @@ public:
     void release_brake() noexcept override;
     [[nodiscard]] DeviceStatus status() const noexcept override;
 
-    /// What the hand feels now: the written force, or none after the brake or the watchdog. Haptic
-    /// thread, or another one while that hangs.
+    /// What it makes of the last write now: that force, which the hand feels after the delay, or
+    /// none after the brake or the watchdog. Haptic thread, or another one while that hangs.
     [[nodiscard]] Vec3 felt_force_world_n() const noexcept;
 
 private:
-    SimulatedDevice(const SimulatedDeviceOptions& options, std::unique_ptr<HandMotion> hand);
+    SimulatedDevice(const SimulatedDeviceOptions& options, const HandAndDevice& body,
+                    std::unique_ptr<HandMotion> hand);
 
     static constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
 
@@ -83,14 +81,11 @@ private:
     [[nodiscard]] MonotonicTime now() const noexcept;
     [[nodiscard]] bool makes_force_at(MonotonicTime time) const noexcept;
     void integrate_one_period(bool braked, const Vec3& force_n) noexcept;
-    void stay_in_workspace() noexcept;
 
     SimulatedDeviceOptions options_;
     DeviceInfo info_;
     std::unique_ptr<HandMotion> hand_;
-    Vec3 hand_world_m_;
-    Vec3 position_world_m_;
-    Vec3 velocity_world_m_per_s_{Vec3::Zero()};
+    HandAndDevice body_;
     Vec3 force_world_n_{Vec3::Zero()};
     DeviceStatus status_;
     std::uint64_t periods_{0}; ///< Integrated so far.

@@ -77,13 +77,26 @@ refuse_option --priority 99 '1 to 98'
 refuse_option --cpu -1 '0 to 1023'
 refuse_option --cpu 1024 '0 to 1023'
 (($(nproc --all) > 1023)) || refuse_option --cpu 1023 'it may use'
-for value in phantom udp: udp:80 udp:65536 udp:5x udp::48500 dhd: dhd:64 dhd:-1 ''; do
+for value in phantom sim: sim:sigma replay replay: udp: udp:80 udp:65536 udp:5x udp::48500 dhd: \
+    dhd:64 dhd:-1 ''; do
     refuse_option --device "$value" 'udp:ADDRESS:PORT'
 done
+for value in nan nan@1 nan@1+0 nan@-1+1 nan@1+2000000000 late@1+1 ''; do
+    refuse_option --device-fault "$value" 'KIND@FRAME+LENGTH'
+done
+refuse 3 '--device-fault: there is no simulated device' --model a --device udp \
+    --device-fault nan@1+1
+many=()
+for ((i = 0; i < 65; ++i)); do many+=(--device-fault "nan@$i+1"); done
+refuse 3 '--device-fault: at most 64' --model a "${many[@]}"
+refuse_option --motion fly 'script, free, approach'
+refuse_option --motion '' 'script, free, approach'
+refuse 3 '--motion: there is no simulated device' --model a --device udp --motion free
 refuse 3 'extra' --model a extra
 refuse 3 '--device: 2 given for 1 tools' --model a --device sim --device sim
 refuse 3 '--device-frame: 1 given for 0' --model a --device-frame 0,0,0
 refuse 3 'in the world already' --model a --device sim --device-frame 0,0,0
+refuse 3 'in the world already' --model a --device replay:a.rec --device-frame 0,0,0
 refuse 3 '1e4 m' --model a --device udp --device-frame 1,2
 refuse_option --transport smtp '{dds,file}'
 for value in cube sphere: sphere:0 sphere:1.1 sphere:nan sphere:1mm $'sphere:\e[2J'; do

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "platform/hrtc/haptic_loop.hpp"
+#include "platform/simulated/faulty_device.hpp"
 #include "platform/simulated/simulated_device.hpp"
 #include "platform/simulated/simulated_periodic_timer.hpp"
 #include "tests/shared/frame_rig.hpp"
@@ -58,8 +59,11 @@ class TamperedDevice final : public HapticDevice
 public:
     using Tamper = std::function<void(std::uint64_t frame, DeviceSample& sample)>;
 
-    TamperedDevice(std::unique_ptr<SimulatedDevice> device, Tamper tamper)
-        : device_(std::move(device)), tamper_(std::move(tamper))
+    TamperedDevice(std::unique_ptr<SimulatedDevice> device, std::vector<DeviceFault> faults,
+                   Tamper tamper)
+        : simulated_(*device)
+        , device_(std::make_unique<FaultyDevice>(std::move(device), std::move(faults)))
+        , tamper_(std::move(tamper))
     {
     }
     [[nodiscard]] const DeviceInfo& info() const noexcept override { return device_->info(); }
@@ -78,12 +82,13 @@ public:
     void release_brake() noexcept override { device_->release_brake(); }
     [[nodiscard]] DeviceStatus status() const noexcept override { return device_->status(); }
 
-    [[nodiscard]] Vec3 felt_n() const noexcept { return device_->felt_force_world_n(); }
+    [[nodiscard]] Vec3 felt_n() const noexcept { return simulated_.felt_force_world_n(); }
 
     std::vector<Vec3> written_n; ///< One a frame; the last is the zero at the end.
 
 private:
-    std::unique_ptr<SimulatedDevice> device_;
+    const SimulatedDevice& simulated_;
+    std::unique_ptr<HapticDevice> device_;
     Tamper tamper_;
     std::uint64_t reads_{0};
 };
@@ -91,6 +96,7 @@ private:
 struct LoopRigOptions
 {
     TamperedDevice::Tamper tamper = [](std::uint64_t, DeviceSample&) {};
+    std::vector<DeviceFault> faults;
     std::vector<LateWake> late_wakes;
     std::optional<Duration> watchdog; ///< The device's own.
     bool static_model{false};
@@ -196,7 +202,8 @@ private:
         device.workspace_centre_world_m = place;
         auto hand = std::make_unique<PressingHand>(place, Vec3::UnitX(), 0.05 * model_.diagonal_m);
         devices_.push_back(std::make_unique<TamperedDevice>(
-            std::move(SimulatedDevice::create(device, std::move(hand))).value(), options_.tamper));
+            std::move(SimulatedDevice::create(device, std::move(hand))).value(), options_.faults,
+            options_.tamper));
     }
 
     LoopRigOptions options_;

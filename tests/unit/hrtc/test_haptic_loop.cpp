@@ -35,12 +35,16 @@ struct Trouble
     ForceOff cause;
     std::uint64_t notice; ///< Frames until it can be known.
     void (*tamper)(std::uint64_t frame, DeviceSample& sample);
+    std::vector<DeviceFault> faults{};     ///< Of the device itself, from kSettled for kBadFrames.
+    SafetyState state{SafetyState::brake}; ///< That it comes to first.
 };
 
 void PrintTo(const Trouble& trouble, std::ostream* out)
 {
     *out << trouble.name;
 }
+
+void leave(std::uint64_t /*frame*/, DeviceSample& /*sample*/) {}
 
 const Trouble kTroubles[] = {
     {"disconnected", ForceOff::disconnect, 0,
@@ -64,6 +68,22 @@ const Trouble kTroubles[] = {
     {"too_fast", ForceOff::velocity, 0,
      [](std::uint64_t frame, DeviceSample& sample)
      { (*sample.velocity_world_m_per_s)[1] += is_bad(frame) ? 11.0 : 0.0; }},
+    {"device_drops_out",
+     ForceOff::garbage,
+     0,
+     leave,
+     {{DeviceFaultKind::dropout, kSettled, kBadFrames}}},
+    {"device_says_nan",
+     ForceOff::garbage,
+     0,
+     leave,
+     {{DeviceFaultKind::nan, kSettled, kBadFrames}}},
+    {"device_disconnects",
+     ForceOff::disconnect,
+     0,
+     leave,
+     {{DeviceFaultKind::disconnect, kSettled, kBadFrames}},
+     SafetyState::reset}, // Nothing is left to fade: what isn't there makes no force.
 };
 
 class HapticLoopTrouble : public testing::TestWithParam<Trouble>
@@ -77,6 +97,7 @@ TEST_P(HapticLoopTrouble, fades_the_force_within_two_periods_and_brings_it_back_
 {
     LoopRigOptions options;
     options.tamper = GetParam().tamper;
+    options.faults = GetParam().faults;
     LoopRig rig(options);
     rig.loop().run();
     const std::uint64_t known = kSettled + GetParam().notice;
@@ -106,11 +127,84 @@ TEST_P(HapticLoopTrouble, fades_the_force_within_two_periods_and_brings_it_back_
                                             { return has_cause(event.causes, GetParam().cause); });
     ASSERT_NE(noted, events.end());
     EXPECT_LE(noted->frame, known + 1);
-    EXPECT_EQ(noted->state, SafetyState::brake);
+    EXPECT_EQ(noted->state, GetParam().state);
     const SafetyState left =
         GetParam().cause == ForceOff::disconnect ? SafetyState::reset : SafetyState::idle;
     EXPECT_TRUE(std::ranges::any_of(events, [&](const SafetyEvent& event)
                                     { return event.state == left && event.frame > known; }));
+}
+
+/// The states that the loop went through after the first one, up to the run's end.
+std::vector<ForceOff> causes_of(LoopRig& rig)
+{
+    std::vector<ForceOff> causes;
+    for (const SafetyEvent& event : rig.events())
+    {
+        if (event.frame > 0 && event.causes != ForceOff::software)
+        {
+            causes.push_back(event.causes);
+        }
+    }
+    return causes;
+}
+
+TEST(HapticLoop, a_jittering_device_keeps_its_force_with_no_more_than_the_noise_in_it)
+{
+    LoopRigOptions options;
+    options.faults = {{DeviceFaultKind::jitter, kSettled, 900}};
+    LoopRig rig(options);
+    rig.loop().run();
+    const double before_n = rig.written_n(kSettled - 1).norm();
+    const double noise_n = std::sqrt(3.0) * FaultyDevice::kJitter_m * options.stiffness_n_per_m;
+    EXPECT_GT(rig.largest_step_n(kSettled, 1'900), 0.1 * noise_n);
+    EXPECT_LT(rig.largest_step_n(kSettled - 1, 1'900), 2.0 * noise_n + kOwnStep_n);
+    for (std::uint64_t frame = kSettled; frame < 1'900; ++frame)
+    {
+        EXPECT_NEAR(rig.written_n(frame).norm(), before_n, noise_n + kOwnStep_n) << frame;
+    }
+    EXPECT_EQ(causes_of(rig), std::vector<ForceOff>{});
+}
+
+TEST(HapticLoop, time_that_falls_back_ends_the_force_until_the_clock_is_believed_again)
+{
+    LoopRigOptions options;
+    options.faults = {{DeviceFaultKind::time_jump, kSettled - 200, 200}};
+    LoopRig rig(options);
+    rig.loop().run();
+    // Ahead it may jump: what was lost then, nobody knows.
+    const double before_n = rig.written_n(kSettled - 1).norm();
+    EXPECT_GT(before_n, 1.0);
+    EXPECT_LE(rig.largest_step_n(kSettled - 202, kSettled - 1), kOwnStep_n);
+    EXPECT_LT(rig.written_n(kSettled + 1).norm(), 0.99 * before_n);
+    EXPECT_EQ(rig.written_n(kSettled + kFadeFrames).norm(), 0.0);
+    EXPECT_LE(rig.largest_step_n(kSettled - 1, 1'900), kBackStep_n);
+    EXPECT_NEAR(rig.written_n(1'900).norm(), before_n, 0.05 * before_n);
+    const std::vector<ForceOff> causes = causes_of(rig);
+    ASSERT_FALSE(causes.empty());
+    EXPECT_EQ(causes.front(), ForceOff::garbage);
+}
+
+TEST(HapticLoop, encoders_that_were_stuck_come_back_as_a_hand_that_is_too_fast)
+{
+    // In free air, and when it has just begun to press; by the end the hand is at the bottom.
+    const double damping_n = 8.0 * kDampingForceShare; // At most, against that speed.
+    for (const std::uint64_t begin : {100U, 300U, 400U})
+    {
+        LoopRigOptions options;
+        options.faults = {{DeviceFaultKind::stuck, begin, kSettled - begin}};
+        options.speed_max_m_per_s = 1.0;
+        LoopRig rig(options);
+        rig.loop().run();
+        LoopRig whole({});
+        whole.loop().run();
+        EXPECT_LE(rig.largest_step_n(begin, kSettled - 1), kOwnStep_n) << begin;
+        EXPECT_LT(rig.written_n(kSettled - 1).norm(), 0.8 * whole.written_n(1'900).norm()) << begin;
+        EXPECT_LE(rig.largest_step_n(kSettled - 1, 1'900), kBackStep_n + damping_n) << begin;
+        EXPECT_NEAR(rig.written_n(1'900).norm(), whole.written_n(1'900).norm(), 0.1) << begin;
+        const std::vector<ForceOff> causes = causes_of(rig);
+        ASSERT_FALSE(causes.empty()) << begin;
+        EXPECT_EQ(causes.front(), ForceOff::velocity) << begin;
+    }
 }
 
 TEST(HapticLoop, begins_without_a_force_and_ends_without_one)

@@ -3,11 +3,14 @@
 #pragma once
 
 #include "platform/haptic_device.hpp"
+#include "platform/simulated/faulty_device.hpp"
 #include "platform/simulated/hand_motion.hpp"
+#include "platform/simulated/replay_device.hpp"
 #include "platform/simulated/simulated_device.hpp"
 
 #include <memory>
 #include <utility>
+#include <vector>
 
 namespace tactus::test
 {
@@ -29,6 +32,8 @@ public:
     [[nodiscard]] virtual HapticDevice& device() noexcept = 0;
     /// One period goes by under the force that was written last; then one read().
     [[nodiscard]] virtual DeviceSample next() = 0;
+    /// Whether the hand gives way to a force; where it doesn't it never moves.
+    [[nodiscard]] virtual bool gives_way() const { return true; }
 
 protected:
     DeviceRig() = default;
@@ -36,15 +41,46 @@ protected:
     DeviceRig& operator=(const DeviceRig&) = default;
 };
 
+/// Of any class; what wraps it has to keep its promises, too.
 class SimulatedRig final : public DeviceRig
 {
 public:
+    explicit SimulatedRig(const DeviceLimits& limits = {})
+    {
+        SimulatedDeviceOptions options;
+        options.device = limits;
+        auto made = SimulatedDevice::create(options, std::make_unique<HandAtRest>());
+        device_ = std::make_unique<FaultyDevice>(std::move(made).value(), faults_);
+    }
     [[nodiscard]] HapticDevice& device() noexcept override { return *device_; }
     [[nodiscard]] DeviceSample next() override { return device_->read(); }
 
 private:
-    std::unique_ptr<SimulatedDevice> device_ =
-        std::move(SimulatedDevice::create({}, std::make_unique<HandAtRest>())).value();
+    /// After all tests are over.
+    std::vector<DeviceFault> faults_{{DeviceFaultKind::nan, 1'000'000, 1}};
+    std::unique_ptr<FaultyDevice> device_;
+};
+
+/// A recording of a hand at rest.
+class ReplayRig final : public DeviceRig
+{
+public:
+    [[nodiscard]] HapticDevice& device() noexcept override { return *device_; }
+    [[nodiscard]] DeviceSample next() override { return device_->read(); }
+    [[nodiscard]] bool gives_way() const override { return false; }
+
+private:
+    static ReplayDeviceOptions hand_at_rest()
+    {
+        ReplayDeviceOptions options;
+        for (std::int64_t i = 0; i < 1'000; ++i)
+        {
+            options.readings.push_back({Vec3(0.1, 0.2, 0.3), MonotonicTime{i * 1'000'000}, true});
+        }
+        return options;
+    }
+
+    std::unique_ptr<ReplayDevice> device_ = std::move(ReplayDevice::create(hand_at_rest())).value();
 };
 
 } // namespace tactus::test

@@ -84,6 +84,31 @@ TEST(HandAndDevice, comes_to_the_damped_speed)
     }
 }
 
+TEST(HandAndDevice, its_brake_adds_damping_until_it_is_released)
+{
+    HandAndDeviceOptions options = free_mass();
+    options.device.damping_n_s_per_m = 1.0;
+    HandAndDevice sut = make(options);
+    for (int i = 0; i < 100; ++i)
+    {
+        sut.step(Vec3(2.0, 0, 0), kHome);
+    }
+    const double before = sut.velocity_m_per_s().x();
+    sut.brake(9.0);
+    for (int i = 1; i <= 50; ++i)
+    {
+        sut.step(kHome, kHome);
+        EXPECT_NEAR(sut.velocity_m_per_s().x(), before * std::exp(-50e-3 * i), 1e-6);
+    }
+    const double slowed = sut.velocity_m_per_s().x();
+    sut.release_brake();
+    for (int i = 1; i <= 50; ++i)
+    {
+        sut.step(kHome, kHome);
+        EXPECT_NEAR(sut.velocity_m_per_s().x(), slowed * std::exp(-5e-3 * i), 1e-6);
+    }
+}
+
 TEST(HandAndDevice, is_held_still_by_friction_and_no_longer)
 {
     HandAndDeviceOptions options = free_mass();

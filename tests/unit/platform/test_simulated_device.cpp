@@ -54,7 +54,10 @@ std::string refusal(const SimulatedDeviceOptions& options)
     return made ? std::string() : made.error().message;
 }
 
-TEST(SimulatedDevice, settles_where_spring_and_force_balance)
+/// Arm and grip of the default hand, one behind the other.
+constexpr double kArmAndGrip_m_per_n = 1.0 / 200.0 + 1.0 / 2'000.0;
+
+TEST(SimulatedDevice, settles_where_springs_and_force_balance)
 {
     SimulatedDeviceOptions options;
     auto sut = make(options, std::make_unique<HandThatJumps>(Vec3(0.01, 0.02, -0.03)));
@@ -64,27 +67,28 @@ TEST(SimulatedDevice, settles_where_spring_and_force_balance)
         sample = sut->read();
         sut->write({1.0, 0.0, -2.0});
     }
-    EXPECT_NEAR(sample.position_world_m[0], 0.01 + 1.0 / 200.0, 1e-9);
+    EXPECT_NEAR(sample.position_world_m[0], 0.01 + kArmAndGrip_m_per_n, 1e-9);
     EXPECT_NEAR(sample.position_world_m[1], 0.02, 1e-9);
-    EXPECT_NEAR(sample.position_world_m[2], -0.03 - 2.0 / 200.0, 1e-9);
+    EXPECT_NEAR(sample.position_world_m[2], -0.03 - 2.0 * kArmAndGrip_m_per_n, 1e-9);
 }
 
 TEST(SimulatedDevice, swings_as_the_damped_oscillator_of_the_text_book)
 {
     SimulatedDeviceOptions options;
     options.rate_hz = 10'000;
-    options.hand_damping_n_s_per_m = 0.0;
+    options.hand = {0.0, 200.0, 0.0, 2'000.0, 0.0};
     auto sut = make(options, std::make_unique<HandThatJumps>(Vec3::Zero()));
     static_cast<void>(sut->read());
     // A step of force F: x(t) = F/k (1 - e^-at (cos wt + a/w sin wt)), a = b/2m, w^2 = k/m - a^2.
+    const double k = 1.0 / kArmAndGrip_m_per_n;
     const double a = 1.0 / (2.0 * 0.1);
-    const double w = std::sqrt(200.0 / 0.1 - a * a);
+    const double w = std::sqrt(k / 0.1 - a * a);
     for (int i = 1; i <= 2'000; ++i)
     {
         sut->write({1.0, 0.0, 0.0});
         const double t = 1e-4 * i;
         const double decay = std::exp(-a * t) * (std::cos(w * t) + a / w * std::sin(w * t));
-        EXPECT_NEAR(sut->read().position_world_m[0], (1.0 - decay) / 200.0, 2e-5);
+        EXPECT_NEAR(sut->read().position_world_m[0], (1.0 - decay) / k, 1e-8);
     }
 }
 
@@ -97,9 +101,52 @@ TEST(SimulatedDevice, trails_a_moving_hand_by_its_own_drag)
     {
         sample = sut->read();
     }
-    EXPECT_NEAR(sample.position_world_m[0], 0.3 - 0.1 * 1.0 / 200.0, 1e-6);
+    EXPECT_NEAR(sample.position_world_m[0], 0.3 - 0.1 * 1.0 * kArmAndGrip_m_per_n, 1e-6);
     ASSERT_TRUE(sample.velocity_world_m_per_s.has_value());
     EXPECT_NEAR((*sample.velocity_world_m_per_s)[0], 0.1, 1e-6);
+}
+
+TEST(SimulatedDevice, has_the_friction_the_quantum_and_the_delay_of_its_limits)
+{
+    SimulatedDeviceOptions options;
+    options.device.friction_n = 0.5;
+    options.device.quantum_m = 1e-4;
+    options.device.delay_s = 2e-3;
+    auto sut = make(options, std::make_unique<HandThatJumps>(Vec3::Zero()));
+    const auto read_after = [&](double force_n, int periods)
+    {
+        double position_m = sut->read().position_world_m[0];
+        for (int i = 0; i < periods; ++i)
+        {
+            sut->write({force_n, 0.0, 0.0});
+            position_m = sut->read().position_world_m[0];
+        }
+        return position_m;
+    };
+    EXPECT_EQ(read_after(0.49, 500), 0.0); // Friction holds it.
+    const Vec3 before = Vec3(read_after(3.0, 2), 0.0, 0.0);
+    EXPECT_EQ(before.x(), 0.0); // Late.
+    const double there_m = read_after(3.0, 500);
+    EXPECT_GT(there_m, 2.0 * kArmAndGrip_m_per_n);
+    EXPECT_NEAR(std::remainder(there_m, 1e-4), 0.0, 1e-12);
+    EXPECT_EQ(sut->info().limits.quantum_m, 1e-4);
+}
+
+TEST(SimulatedDevice, its_brake_drops_a_force_that_is_still_under_way)
+{
+    SimulatedDeviceOptions options;
+    options.device.delay_s = 5e-3;
+    auto sut = make(options, std::make_unique<HandThatJumps>(Vec3::Zero()));
+    for (int i = 0; i < 3; ++i)
+    {
+        static_cast<void>(sut->read());
+        sut->write({5.0, 0.0, 0.0});
+    }
+    sut->brake();
+    for (int i = 0; i < 20; ++i)
+    {
+        EXPECT_EQ(sut->read().position_world_m[0], 0.0);
+    }
 }
 
 TEST(SimulatedDevice, repeats_bit_for_bit_and_takes_its_time_from_the_frame)
@@ -141,7 +188,7 @@ TEST(SimulatedDevice, comes_to_rest_sooner_with_the_brake)
     const auto swing_m = [](bool braked)
     {
         SimulatedDeviceOptions options;
-        options.hand_damping_n_s_per_m = 0.0;
+        options.hand = {0.0, 200.0, 0.0, 2'000.0, 0.0};
         auto sut = make(options, std::make_unique<HandThatJumps>(Vec3(0.01, 0.0, 0.0)));
         if (braked)
         {
@@ -175,35 +222,58 @@ TEST(SimulatedDevice, accepts_both_ends_of_its_rates_and_refuses_what_lies_beyon
 TEST(SimulatedDevice, refuses_values_that_make_no_device)
 {
     const double nan = std::numeric_limits<double>::quiet_NaN();
-    for (double SimulatedDeviceOptions::*member :
-         {&SimulatedDeviceOptions::mass_kg, &SimulatedDeviceOptions::hand_stiffness_n_per_m,
-          &SimulatedDeviceOptions::force_max_n, &SimulatedDeviceOptions::workspace_radius_m,
-          &SimulatedDeviceOptions::stiffness_max_n_per_m})
+    for (double DeviceLimits::*member :
+         {&DeviceLimits::mass_kg, &DeviceLimits::force_max_n, &DeviceLimits::slew_max_n_per_s,
+          &DeviceLimits::stiffness_max_n_per_m})
     {
         for (const double bad : {0.0, -1.0, nan})
         {
             SimulatedDeviceOptions options;
-            options.*member = bad;
+            options.device.*member = bad;
             EXPECT_NE(refusal(options).find("above zero"), std::string::npos);
         }
     }
+    for (double DeviceLimits::*member :
+         {&DeviceLimits::damping_n_s_per_m, &DeviceLimits::friction_n, &DeviceLimits::quantum_m,
+          &DeviceLimits::delay_s, &DeviceLimits::added_damping_max_n_s_per_m})
+    {
+        for (const double bad : {-1.0, nan})
+        {
+            SimulatedDeviceOptions options;
+            options.device.*member = bad;
+            EXPECT_NE(refusal(options).find("not negative"), std::string::npos);
+        }
+    }
     SimulatedDeviceOptions options;
-    options.hand_damping_n_s_per_m = -1.0;
+    options.hand.damping_n_s_per_m = -1.0;
     EXPECT_NE(refusal(options).find("not negative"), std::string::npos);
+    options = {};
+    options.brake_damping_n_s_per_m = nan;
+    EXPECT_NE(refusal(options).find("brake"), std::string::npos);
+    options = {};
+    options.workspace_radius_m = 0.0;
+    EXPECT_NE(refusal(options).find("radius is 0.0"), std::string::npos);
 }
 
-TEST(SimulatedDevice, refuses_springs_that_its_step_cannot_follow)
+TEST(SimulatedDevice, follows_any_mass_and_spring_without_blowing_up)
 {
     SimulatedDeviceOptions options;
-    options.mass_kg = 1e-5;
-    EXPECT_NE(refusal(options).find("too large for the mass"), std::string::npos);
+    options.rate_hz = 100;
+    options.device.mass_kg = 1e-5;
+    options.hand = {1e-5, 1e5, 0.0, 1e6, 0.0};
+    auto sut = make(options, std::make_unique<HandThatJumps>(Vec3(1e-3, 0.0, 0.0)));
+    for (int i = 0; i < 1'000; ++i)
+    {
+        sut->write({1.0, 0.0, 0.0});
+        EXPECT_LT(std::abs(sut->read().position_world_m[0]), 5e-3);
+    }
 }
 
 TEST(SimulatedDevice, refuses_a_hand_that_starts_outside_the_workspace)
 {
     SimulatedDeviceOptions options;
     options.workspace_centre_world_m = Vec3(2.0, 0.0, 0.0);
-    EXPECT_NE(refusal(options).find("outside its radius of 1.0"), std::string::npos);
+    EXPECT_NE(refusal(options).find("its radius is 1.0"), std::string::npos);
 }
 
 /// A force of 2 N for half a second, and then nobody reads or writes for `pause`.
@@ -214,7 +284,9 @@ double drift_in_a_pause_m(std::optional<Duration> watchdog, Duration pause,
     SimulatedDeviceOptions options;
     options.clock = &clock;
     options.watchdog = watchdog;
-    options.hand_stiffness_n_per_m = 1e-6; // A hand that does not hold it.
+    options.hand.grip_stiffness_n_per_m = 0.0; // A hand that does not hold it,
+    options.hand.grip_damping_n_s_per_m = 0.0;
+    options.device.damping_n_s_per_m = 7.0; // and a device that comes to rest soon.
     auto sut = make(options, std::make_unique<HandThatJumps>(Vec3::Zero()));
     DeviceSample before;
     for (int i = 0; i < 500; ++i)
@@ -238,8 +310,8 @@ double drift_in_a_pause_m(std::optional<Duration> watchdog, Duration pause,
 
 TEST(SimulatedDevice, holds_its_last_force_through_a_pause_unless_a_watchdog_ends_it)
 {
-    // At its final speed, F over both dampings, it goes on as long as the force does.
-    const double speed_m_per_s = 2.0 / (1.0 + 6.0);
+    // At its final speed, F over the damping, it goes on as long as the force does.
+    const double speed_m_per_s = 2.0 / 7.0;
     const double held_m = drift_in_a_pause_m(std::nullopt, milliseconds(100));
     EXPECT_NEAR(held_m, 0.1 * speed_m_per_s, 1e-5);
     // Without a force it comes to rest by itself, in m / b seconds of the same speed.

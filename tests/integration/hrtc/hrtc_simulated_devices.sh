@@ -1,0 +1,53 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# hrtc_simulated_devices.sh: the controller on each kind of simulated device.
+source "$(dirname "$0")/common.sh"
+
+"$build" --shape bumpy-sphere --faces 20000 -o bumpy.spm >build.log 2>&1
+readonly model=(--transport file --model bumpy.spm)
+
+# One device of each class. Its largest stiffness is that of docs/stability.md.
+run_hrtc "${model[@]}" --pool-mib 4 --duration 2 \
+    --tool sphere:0.002 --tool sphere:0.002 --tool sphere:0.002 --tool sphere:0.002 \
+    --device sim:touch --device sim:omega --device sim:delta --device sim
+check report.json frames == 2000 tools.0.stiffness_cap_n_per_m == 400 \
+    tools.1.stiffness_cap_n_per_m '>' 3059 tools.1.stiffness_cap_n_per_m '<' 3061 \
+    tools.2.stiffness_cap_n_per_m '>' 3059 tools.2.stiffness_cap_n_per_m '<' 3061 \
+    tools.3.stiffness_cap_n_per_m == 1800
+for i in 0 1 2 3; do
+    check report.json tools.$i.contact_share '>' 0.5 tools.$i.force_max_n '<' 3.3
+done
+check_clean report.json
+
+# Readings that go wrong while the hand slides.
+run_hrtc "${model[@]}" --duration 3 --device-fault jitter@700+50 --device-fault nan@1000+50 \
+    --device-fault dropout@1300+50 --device-fault disconnect@1600+50 \
+    --device-fault time_jump@1900+50 --device-fault stuck@2400+20
+check report.json frames == 3000 safety.begun.garbage '>=' 3 safety.begun.disconnect == 1 \
+    tools.0.force_max_n '>' 0.5 tools.0.force_max_n '<=' 8
+check_clean report.json
+
+# Other motions.
+run_hrtc "${model[@]}" --duration 1 --motion free
+check report.json tools.0.contact_share == 0
+for motion in approach slide tap spin; do
+    run_hrtc "${model[@]}" --duration 2 --motion "$motion"
+    check report.json tools.0.contact_share '>' 0.2 tools.0.force_max_n '>' 0.3 \
+        tools.0.force_max_n '<' 6
+    check_clean report.json
+done
+run_hrtc "${model[@]}" --duration 3 --motion teleport
+check report.json tools.0.force_max_n '>' 0 tools.0.force_max_n '<=' 8
+
+# A recorded hand touches the same, and is gone after its end.
+run_hrtc "${model[@]}" --duration 2 --record run.rec
+check report.json tools.0.contact_share '>' 0.5
+run_hrtc "${model[@]}" --duration 3 --device replay:run.rec
+check report.json safety.begun.disconnect == 1 tools.0.contact_share '>' 0.33 \
+    tools.0.contact_share '<' 0.67 tools.0.force_max_n '>' 0.5
+check_clean report.json
+expect 2 '--rate: 2000 Hz; the device replay takes 1000 to 1000 Hz' \
+    "$hrtc" --allow-no-rt "${model[@]}" --rate 2000 --device replay:run.rec
+expect 2 '--device: bumpy.spm: *is not a Tactus recording' \
+    "$hrtc" --allow-no-rt "${model[@]}" --device replay:bumpy.spm
+finish

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/hrtc/recorded_motion.hpp"
+#include "tests/shared/frame_rig.hpp"
+#include "tests/shared/temporary_folder.hpp"
+#include "tests/shared/test_model.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <fstream>
+#include <string>
+
+namespace tactus::hrtc::test
+{
+
+namespace
+{
+
+/// Where tool `tool` was in frame `frame`; the third reading of each is not valid.
+ToolState state_of(int tool, int frame)
+{
+    return {Vec3(tool, frame, 0.25), 1'000 * (tool + 1) + frame, 1, frame != 2};
+}
+
+/// Two tools, of 8 and 3 N, at 4 kHz.
+std::vector<std::byte> recording_of(int frames)
+{
+    tactus::test::RigOptions options = tactus::test::with_room_for_all();
+    options.tools = {{0.01, 500.0, 8.0, 1.0}, {0.01, 500.0, 3.0, 1.0}};
+    options.period_ns = 250'000;
+    options.record = true;
+    tactus::test::FrameRig rig(tactus::test::small_model(0), options);
+    for (int frame = 0; frame < frames; ++frame)
+    {
+        rig.step(std::array{state_of(0, frame), state_of(1, frame)}, Budgets{});
+    }
+    return rig.finish_recording();
+}
+
+/// A file that lasts as long as the test.
+class RecordedMotion : public testing::Test
+{
+protected:
+    [[nodiscard]] const std::string& write(const std::vector<std::byte>& bytes)
+    {
+        std::ofstream file(path_, std::ios::binary);
+        for (const std::byte byte : bytes)
+        {
+            file.put(static_cast<char>(byte));
+        }
+        return path_;
+    }
+
+private:
+    tactus::test::TemporaryFolder folder_{"recorded-motion"};
+    std::string path_ = (folder_.path() / "run.rec").string();
+};
+
+TEST_F(RecordedMotion, is_that_of_the_tool_of_the_same_number_or_of_the_first)
+{
+    const std::string path = write(recording_of(5));
+    for (const std::size_t tool : {0U, 1U, 2U, 63U})
+    {
+        const auto sut = read_recorded_motion(path, tool);
+        ASSERT_TRUE(sut) << sut.error().text;
+        const int played = tool == 1 ? 1 : 0;
+        EXPECT_EQ(sut.value().rate_hz, 4'000);
+        EXPECT_EQ(sut.value().limits.force_max_n, played == 1 ? 3.0 : 8.0);
+        ASSERT_EQ(sut.value().readings.size(), 5U);
+        for (int frame = 0; frame < 5; ++frame)
+        {
+            const RecordedReading& reading = sut.value().readings[static_cast<std::size_t>(frame)];
+            EXPECT_EQ(reading.position_world_m, state_of(played, frame).position_m);
+            EXPECT_EQ(reading.time.ns, state_of(played, frame).sample_time_ns);
+            EXPECT_EQ(reading.valid, frame != 2);
+        }
+    }
+}
+
+TEST_F(RecordedMotion, without_frames_is_empty)
+{
+    const auto sut = read_recorded_motion(write(recording_of(0)), 0);
+    ASSERT_TRUE(sut) << sut.error().text;
+    EXPECT_TRUE(sut.value().readings.empty());
+}
+
+TEST_F(RecordedMotion, refuses_what_is_no_recording_with_its_name)
+{
+    std::vector<std::byte> bytes = recording_of(5);
+    bytes.pop_back();
+    const std::string path = write(bytes);
+    const auto cut = read_recorded_motion(path, 0);
+    ASSERT_FALSE(cut);
+    EXPECT_EQ(cut.error().text.rfind(path, 0), 0U) << cut.error().text;
+    EXPECT_FALSE(read_recorded_motion(path + ".missing", 0));
+}
+
+} // namespace
+
+} // namespace tactus::hrtc::test

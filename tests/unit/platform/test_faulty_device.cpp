@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/simulated/faulty_device.hpp"
+#include "tests/unit/platform/device_rig.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <vector>
+
+namespace tactus
+{
+
+namespace
+{
+
+/// Along x, a millimetre each period.
+class HandThatWalks final : public HandMotion
+{
+public:
+    [[nodiscard]] Vec3 start_world_m() const noexcept override { return Vec3::Zero(); }
+    [[nodiscard]] Vec3 next_world_m(const HandSense& sense) noexcept override
+    {
+        return {1e-3 * static_cast<double>(sense.frame), 0.0, 0.0};
+    }
+};
+
+std::unique_ptr<SimulatedDevice> walking_device()
+{
+    return std::move(SimulatedDevice::create({}, std::make_unique<HandThatWalks>())).value();
+}
+
+std::vector<DeviceSample> readings(HapticDevice& device, std::size_t count = 30)
+{
+    std::vector<DeviceSample> samples(count);
+    std::ranges::generate(samples, [&] { return device.read(); });
+    return samples;
+}
+
+std::vector<DeviceSample> readings_with(std::vector<DeviceFault> faults, std::uint64_t seed = 1)
+{
+    FaultyDevice sut(walking_device(), std::move(faults), seed);
+    return readings(sut);
+}
+
+/// Bit for bit, but that no number is as good as another.
+bool is_same(const DeviceSample& a, const DeviceSample& b)
+{
+    return a.position_world_m == b.position_world_m &&
+           a.velocity_world_m_per_s == b.velocity_world_m_per_s && a.time == b.time &&
+           a.frame == b.frame && a.valid == b.valid && a.connected == b.connected &&
+           a.deadman_held == b.deadman_held;
+}
+
+const DeviceFaultKind kKinds[] = {DeviceFaultKind::jitter,    DeviceFaultKind::dropout,
+                                  DeviceFaultKind::stuck,     DeviceFaultKind::nan,
+                                  DeviceFaultKind::time_jump, DeviceFaultKind::disconnect};
+
+TEST(FaultyDevice, is_the_device_itself_but_from_begin_to_end_of_a_fault)
+{
+    const std::vector<DeviceSample> whole = readings(*walking_device());
+    for (const DeviceFaultKind kind : kKinds)
+    {
+        for (const DeviceFault fault : {DeviceFault{kind, 10, 5}, DeviceFault{kind, 1, 1},
+                                        DeviceFault{kind, 29, 1'000'000'000}})
+        {
+            const std::vector<DeviceSample> sut = readings_with({fault});
+            for (std::size_t i = 0; i < whole.size(); ++i)
+            {
+                const bool leaps = kind == DeviceFaultKind::stuck; // Its velocity, right behind.
+                const bool holds = i >= fault.begin_frame &&
+                                   i < fault.begin_frame + fault.frames + (leaps ? 1 : 0);
+                EXPECT_EQ(is_same(sut[i], whole[i]), !holds) << static_cast<int>(kind) << " " << i;
+            }
+        }
+    }
+}
+
+TEST(FaultyDevice, jitters_by_its_seed_within_the_bound)
+{
+    const std::vector<DeviceSample> whole = readings(*walking_device());
+    const std::vector<DeviceFault> faults = {{DeviceFaultKind::jitter, 0, 30}};
+    const std::vector<DeviceSample> one = readings_with(faults);
+    const std::vector<DeviceSample> two = readings_with(faults);
+    const std::vector<DeviceSample> other = readings_with(faults, 2);
+    std::set<double> errors_m;
+    for (std::size_t i = 0; i < whole.size(); ++i)
+    {
+        EXPECT_TRUE(is_same(one[i], two[i]));
+        EXPECT_FALSE(is_same(one[i], other[i]));
+        EXPECT_TRUE(one[i].valid);
+        for (std::size_t axis = 0; axis < 3; ++axis)
+        {
+            errors_m.insert(one[i].position_world_m[axis] - whole[i].position_world_m[axis]);
+        }
+    }
+    EXPECT_EQ(errors_m.size(), 90U);
+    EXPECT_GE(*errors_m.begin(), -1.01e-4);
+    EXPECT_LT(*errors_m.begin(), -0.8e-4);
+    EXPECT_LE(*errors_m.rbegin(), 1.01e-4);
+    EXPECT_GT(*errors_m.rbegin(), 0.8e-4);
+}
+
+TEST(FaultyDevice, a_dropout_repeats_the_last_good_reading_and_says_so)
+{
+    const std::vector<DeviceSample> sut = readings_with({{DeviceFaultKind::dropout, 10, 5}});
+    for (std::size_t i = 10; i < 15; ++i)
+    {
+        EXPECT_FALSE(sut[i].valid);
+        EXPECT_TRUE(sut[i].connected);
+        EXPECT_EQ(sut[i].frame, i);
+        EXPECT_EQ(sut[i].position_world_m, sut[9].position_world_m);
+        EXPECT_EQ(sut[i].time, sut[9].time);
+    }
+}
+
+TEST(FaultyDevice, stuck_encoders_look_as_a_hand_at_rest_that_leaps_at_last)
+{
+    for (const std::uint64_t begin : {0U, 10U})
+    {
+        const std::vector<DeviceSample> sut = readings_with({{DeviceFaultKind::stuck, begin, 5}});
+        const std::size_t last = std::max<std::uint64_t>(begin, 1) - 1;
+        for (std::size_t i = begin; i < begin + 5; ++i)
+        {
+            EXPECT_TRUE(sut[i].valid);
+            EXPECT_EQ(sut[i].position_world_m, sut[last].position_world_m);
+            EXPECT_EQ((*sut[i].velocity_world_m_per_s)[0], 0.0);
+            EXPECT_EQ(sut[i].time.ns, static_cast<std::int64_t>(i) * 1'000'000);
+        }
+        const double way_m = sut[begin + 5].position_world_m[0] - sut[last].position_world_m[0];
+        EXPECT_GT(way_m, 0.0);
+        EXPECT_NEAR((*sut[begin + 5].velocity_world_m_per_s)[0], way_m / 1e-3, 1e-9);
+    }
+}
+
+TEST(FaultyDevice, no_numbers_are_said_to_be_valid_and_never_repeated)
+{
+    const std::vector<DeviceSample> sut =
+        readings_with({{DeviceFaultKind::nan, 10, 3}, {DeviceFaultKind::dropout, 12, 5}});
+    for (std::size_t i = 10; i < 12; ++i)
+    {
+        EXPECT_TRUE(sut[i].valid);
+        EXPECT_TRUE(std::isnan(sut[i].position_world_m[2]));
+        EXPECT_TRUE(std::isnan((*sut[i].velocity_world_m_per_s)[0]));
+    }
+    EXPECT_EQ(sut[16].position_world_m, sut[9].position_world_m);
+}
+
+TEST(FaultyDevice, time_jumps_ahead_by_a_second_and_falls_back)
+{
+    const std::vector<DeviceSample> sut = readings_with({{DeviceFaultKind::time_jump, 10, 5}});
+    EXPECT_EQ(sut[10].time.ns, 1'010'000'000);
+    EXPECT_EQ(sut[14].time.ns, 1'014'000'000);
+    EXPECT_EQ(sut[15].time.ns, 15'000'000);
+}
+
+TEST(FaultyDevice, disconnected_makes_no_force_and_comes_back_idle)
+{
+    auto device =
+        std::move(SimulatedDevice::create({}, std::make_unique<test::HandAtRest>())).value();
+    const SimulatedDevice& simulated = *device;
+    FaultyDevice sut(std::move(device), {{DeviceFaultKind::disconnect, 10, 5}});
+    for (std::uint64_t i = 0; i < 20; ++i)
+    {
+        const bool is_away = i >= 10 && i < 15;
+        const DeviceSample sample = sut.read();
+        EXPECT_EQ(sample.connected, !is_away);
+        EXPECT_EQ(sample.valid, !is_away);
+        EXPECT_EQ(sut.status().state,
+                  i == 0 || is_away || i == 15 ? DeviceState::idle : DeviceState::force);
+        sut.write({1.0, 0.0, 0.0});
+        EXPECT_EQ(simulated.felt_force_world_n().x(), is_away ? 0.0 : 1.0);
+    }
+}
+
+TEST(FaultyDevice, disconnected_stays_braked_when_it_was)
+{
+    FaultyDevice sut(walking_device(), {{DeviceFaultKind::disconnect, 10, 5}});
+    sut.brake();
+    static_cast<void>(readings(sut));
+    EXPECT_EQ(sut.status().state, DeviceState::brake);
+    sut.release_brake();
+    EXPECT_EQ(sut.status().state, DeviceState::idle);
+}
+
+} // namespace
+
+} // namespace tactus

@@ -1,0 +1,305 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/simulated/hand_motions.hpp"
+#include "platform/simulated/landing_sites.hpp"
+#include "platform/simulated/simulated_device.hpp"
+#include "tests/unit/platform/fake_wall.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numbers>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace tactus
+{
+
+namespace
+{
+
+constexpr double kDiagonal_m = 0.2;
+constexpr double kRadius_m = 0.0577;
+constexpr double kTool_m = 0.01 * kDiagonal_m;
+constexpr double kPeriod_s = 1e-3;
+
+const std::pair<const char*, MotionKind> kKinds[] = {
+    {"script", MotionKind::script},     {"free", MotionKind::free},
+    {"approach", MotionKind::approach}, {"slide", MotionKind::slide},
+    {"tap", MotionKind::tap},           {"teleport", MotionKind::teleport},
+    {"spin", MotionKind::spin},         {"tremor", MotionKind::tremor}};
+
+/// A ball's, for so many frames at 1 kHz.
+HandScene scene_of(std::uint64_t frames)
+{
+    HandScene scene;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        scene.anchors_world_m.push_back(Vec3::Unit(axis) * kRadius_m);
+        scene.anchors_world_m.push_back(Vec3::Unit(axis) * -kRadius_m);
+    }
+    scene.diagonal_m = kDiagonal_m;
+    scene.tool_radius_m = kTool_m;
+    scene.period = milliseconds(1);
+    scene.frames_total = frames;
+    return scene;
+}
+
+MadeMotion make(MotionKind kind, std::uint64_t frames, std::uint64_t seed = 1)
+{
+    return std::move(make_motion(kind, scene_of(frames), seed)).value();
+}
+
+/// The default device in that hand, on a ball of 500 N/m or on nothing. With a drag its force damps
+/// the motion, too, as one does that comes back after a fault.
+struct Play
+{
+    std::vector<Vec3> device_m;
+    std::vector<double> force_n;
+
+    explicit Play(MotionKind kind, std::uint64_t frames = 4'000, bool is_there = true,
+                  double drag_n_s_per_m = 0.0)
+    {
+        MadeMotion motion = make(kind, frames);
+        SimulatedDeviceOptions options;
+        options.workspace_centre_world_m = motion.centre_world_m;
+        options.workspace_radius_m = motion.reach_m;
+        test::FakeWall wall(
+            is_there ? test::sphere(kRadius_m) : [](const Vec3&) { return 1.0; }, 500.0, kTool_m,
+            motion.hand->start_world_m());
+        auto device = std::move(SimulatedDevice::create(options, std::move(motion.hand))).value();
+        for (std::uint64_t frame = 0; frame < frames; ++frame)
+        {
+            const DeviceSample sample = device->read();
+            const auto& p = sample.position_world_m;
+            const auto& v = *sample.velocity_world_m_per_s;
+            const Vec3 force = wall.respond(Vec3(p[0], p[1], p[2]));
+            const Vec3 felt = force - drag_n_s_per_m * Vec3(v[0], v[1], v[2]);
+            device->write({felt.x(), felt.y(), felt.z()});
+            device_m.emplace_back(p[0], p[1], p[2]);
+            force_n.push_back(force.norm());
+        }
+    }
+
+    /// Of the frames from `from` on.
+    [[nodiscard]] double contact_share(std::size_t from = 0) const
+    {
+        const auto touching = std::count_if(force_n.begin() + static_cast<std::ptrdiff_t>(from),
+                                            force_n.end(), [](double n) { return n > 0.0; });
+        return static_cast<double>(touching) / static_cast<double>(force_n.size() - from);
+    }
+    /// How often the surface was met anew.
+    [[nodiscard]] int landings() const
+    {
+        int landings = 0;
+        for (std::size_t i = 1; i < force_n.size(); ++i)
+        {
+            landings += force_n[i] > 0.0 && force_n[i - 1] == 0.0 ? 1 : 0;
+        }
+        return landings;
+    }
+};
+
+TEST(HandMotions, are_found_by_their_names_and_by_no_others)
+{
+    for (const auto& [name, kind] : kKinds)
+    {
+        EXPECT_EQ(motion_named(name), kind);
+        EXPECT_NE(kMotionNames.find(name), std::string_view::npos);
+    }
+    for (const char* name : {"", "Free", "free ", "fly"})
+    {
+        EXPECT_FALSE(motion_named(name).has_value()) << name;
+    }
+}
+
+TEST(HandMotions, repeat_bit_for_bit_and_stay_finite_on_a_model_that_is_not_there)
+{
+    for (const auto& [name, kind] : kKinds)
+    {
+        const Play one(kind, 2'000);
+        const Play two(kind, 2'000);
+        const Play nothing(kind, 6'000, false);
+        EXPECT_TRUE(one.device_m == two.device_m) << name;
+        EXPECT_EQ(nothing.contact_share(), 0.0) << name;
+        EXPECT_TRUE(std::ranges::all_of(nothing.device_m,
+                                        [](const Vec3& p) { return p.norm() < 3.0 * kDiagonal_m; }))
+            << name;
+    }
+}
+
+TEST(HandMotions, refuse_a_scene_that_cannot_be_played)
+{
+    for (const auto& [name, kind] : kKinds)
+    {
+        HandScene scene = scene_of(100);
+        scene.tool_radius_m = 0.0;
+        const auto made = make_motion(kind, scene);
+        ASSERT_FALSE(made) << name;
+        EXPECT_NE(made.error().message.find("tool radius"), std::string::npos);
+    }
+}
+
+TEST(HandMotions, free_goes_round_the_model_without_touching_it)
+{
+    const Play run(MotionKind::free, 4'000);
+    EXPECT_EQ(run.contact_share(), 0.0);
+    Vec3 low = run.device_m.front();
+    Vec3 high = low;
+    for (const Vec3& p : run.device_m)
+    {
+        low = low.cwiseMin(p);
+        high = high.cwiseMax(p);
+    }
+    EXPECT_GT((high - low).norm(), 1.3 * kDiagonal_m); // In 4 s once round.
+    EXPECT_LT((run.device_m.back() - run.device_m.front()).norm(), 0.1 * kDiagonal_m);
+}
+
+TEST(HandMotions, approach_comes_to_rest_with_about_a_newton)
+{
+    const Play run(MotionKind::approach);
+    EXPECT_EQ(run.landings(), 1);
+    EXPECT_EQ(run.contact_share(3'000), 1.0);
+    EXPECT_NEAR(run.force_n.back(), 1.0, 0.2);
+    EXPECT_LT((run.device_m.back() - run.device_m[3'000]).norm(), 1e-6);
+}
+
+TEST(HandMotions, are_not_taken_in_by_a_force_that_damps_in_the_air)
+{
+    for (const MotionKind kind : {MotionKind::approach, MotionKind::tap, MotionKind::spin})
+    {
+        const Play run(kind, 4'000, true, 1.0);
+        EXPECT_GT(run.contact_share(2'000), 0.2) << static_cast<int>(kind);
+        EXPECT_GT(*std::ranges::max_element(run.force_n), 0.7) << static_cast<int>(kind);
+    }
+}
+
+TEST(HandMotions, slide_stays_on_the_surface)
+{
+    const Play run(MotionKind::slide);
+    const Play script(MotionKind::script);
+    EXPECT_GT(run.contact_share(), script.contact_share());
+    EXPECT_EQ(run.landings(), 1);
+    EXPECT_GE(script.landings(), 4);
+}
+
+TEST(HandMotions, tap_meets_and_leaves_the_surface_twice_a_second)
+{
+    const Play run(MotionKind::tap, 5'000);
+    EXPECT_GE(run.landings(), 8);
+    EXPECT_LE(run.landings(), 10);
+    EXPECT_GT(run.contact_share(1'000), 0.2);
+    EXPECT_LT(run.contact_share(1'000), 0.8);
+    EXPECT_LT(*std::ranges::max_element(run.force_n), 4.0);
+}
+
+TEST(HandMotions, spin_circles_in_contact)
+{
+    const Play run(MotionKind::spin, 5'000);
+    EXPECT_GT(run.contact_share(2'000), 0.95);
+    Vec3 middle = Vec3::Zero();
+    for (std::size_t i = 3'000; i < 5'000; ++i)
+    {
+        middle += run.device_m[i] / 2'000.0;
+    }
+    double turned_rad = 0.0;
+    for (std::size_t i = 3'001; i < 5'000; ++i)
+    {
+        const Vec3 a = run.device_m[i - 1] - middle;
+        const Vec3 b = run.device_m[i] - middle;
+        turned_rad += std::asin(std::min(a.cross(b).norm() / (a.norm() * b.norm()), 1.0));
+        EXPECT_NEAR(b.norm(), 0.05 * kDiagonal_m, 0.03 * kDiagonal_m);
+    }
+    EXPECT_NEAR(turned_rad, 4.0 * 2.0 * std::numbers::pi, 0.5);
+}
+
+TEST(HandMotions, teleport_is_at_places_of_the_model_and_jumps_between_them)
+{
+    const auto places_of = [](std::uint64_t seed)
+    {
+        const MadeMotion sut = make(MotionKind::teleport, 10'000, seed);
+        std::vector<Vec3> places{sut.hand->start_world_m()};
+        for (std::uint64_t frame = 1; frame < 10'000; ++frame)
+        {
+            const Vec3 place = sut.hand->next_world_m({frame, Vec3::Zero(), Vec3::Zero()});
+            if (place != places.back())
+            {
+                places.push_back(place);
+            }
+        }
+        return places;
+    };
+    const std::vector<Vec3> places = places_of(1);
+    EXPECT_GT(places.size(), 15U); // Now and then it stays where it is.
+    EXPECT_LE(places.size(), 20U);
+    const std::vector<LandingSite> sites =
+        find_landing_sites(scene_of(1).anchors_world_m, kDiagonal_m, kTool_m);
+    for (const Vec3& place : places)
+    {
+        EXPECT_TRUE(std::ranges::any_of(
+            sites, [&](const LandingSite& site)
+            { return site.aim_world_m == place || site.gate_world_m == place; }));
+    }
+    EXPECT_TRUE(places == places_of(1));
+    EXPECT_FALSE(places == places_of(2));
+}
+
+/// The share of a signal's power at these frequencies, by the definition of the transform.
+double power_between(const std::vector<double>& signal, double low_hz, double high_hz)
+{
+    const auto count = static_cast<double>(signal.size());
+    double sum = 0.0;
+    double squares = 0.0;
+    for (const double value : signal)
+    {
+        squares += value * value;
+    }
+    for (double turns = low_hz * count * kPeriod_s; turns <= high_hz * count * kPeriod_s; ++turns)
+    {
+        double re = 0.0;
+        double im = 0.0;
+        for (std::size_t i = 0; i < signal.size(); ++i)
+        {
+            const double angle = 2.0 * std::numbers::pi * turns * static_cast<double>(i) / count;
+            re += signal[i] * std::cos(angle);
+            im += signal[i] * std::sin(angle);
+        }
+        sum += 2.0 * (re * re + im * im) / count;
+    }
+    return sum / squares;
+}
+
+TEST(HandMotions, tremor_is_the_script_with_swings_of_8_to_12_hz_by_its_seed)
+{
+    constexpr std::uint64_t kFrames = 4'000;
+    const MadeMotion plain = make(MotionKind::script, kFrames);
+    const MadeMotion one = make(MotionKind::tremor, kFrames);
+    const MadeMotion other = make(MotionKind::tremor, kFrames, 2);
+    EXPECT_EQ(one.hand->start_world_m(), plain.hand->start_world_m());
+    std::array<std::vector<double>, 3> tremor_m;
+    bool has_own_seed = false;
+    for (std::uint64_t frame = 1; frame <= kFrames; ++frame)
+    {
+        const HandSense sense{frame, Vec3::Zero(), Vec3::Zero()};
+        const Vec3 still_m = plain.hand->next_world_m(sense);
+        const Vec3 difference_m = one.hand->next_world_m(sense) - still_m;
+        has_own_seed |= other.hand->next_world_m(sense) - still_m != difference_m;
+        for (int axis = 0; axis < 3; ++axis)
+        {
+            tremor_m[static_cast<std::size_t>(axis)].push_back(difference_m[axis]);
+            EXPECT_LE(std::abs(difference_m[axis]), 6.1e-4);
+        }
+    }
+    EXPECT_TRUE(has_own_seed);
+    for (const std::vector<double>& signal : tremor_m)
+    {
+        EXPECT_GT(*std::ranges::max_element(signal), 1e-4);
+        EXPECT_GT(power_between(signal, 7.0, 13.0), 0.97);
+    }
+}
+
+} // namespace
+
+} // namespace tactus
