@@ -25,7 +25,7 @@ refuse_config '--rate: ' 'rate ='
 refuse_config '--rate: ' 'rate = [1000, 2000]'
 refuse_config '--cpu: *1.5*0 to 1023' 'cpu = 1.5'
 refuse_config '--pool-mib: *0.25 .. 4096' 'pool-mib = 0'
-refuse_config 'maybe' 'allow-no-rt = "maybe"'
+refuse_config 'maybe' 'no-static = "maybe"'
 refuse_config '--device: *udp:ADDRESS:PORT' 'device = "phantom"'
 refuse_config 'not allowed in a configuration file' 'config = "other.toml"'
 refuse 3 'missing.toml' --config missing.toml

@@ -25,7 +25,7 @@ namespace
 {
 
 constexpr Duration kPeriod = milliseconds(1);
-constexpr std::uint64_t kFrames = 60'000; ///< A minute.
+constexpr std::uint64_t kFrames = 60'000 * TACTUS_VIRTUAL_MINUTES;
 constexpr std::uint64_t kHangSpacing = 7'919;
 constexpr Duration kHang = milliseconds(8); ///< Long enough for the supervisor.
 
@@ -60,7 +60,7 @@ private:
     std::uint64_t value_{0xCBF2'9CE4'8422'2325};
 };
 
-/// Of some 60,000 sleeps one in 40 ends up to 0.5 ms late, one in 900 up to 4 ms, and one in
+/// One sleep in 40 ends up to 0.5 ms late, one in 900 up to 4 ms, and one in
 /// 15,000 as late as the worst that a shared virtual machine was seen to do.
 std::vector<LateWake> late_wakes(std::uint32_t seed)
 {
@@ -318,7 +318,7 @@ private:
     Digest safety_;
 };
 
-TEST(VirtualRun, a_minute_of_the_whole_controller_is_the_same_each_time)
+TEST(VirtualRun, minutes_of_the_whole_controller_are_the_same_each_time)
 {
     VirtualRun first(1);
     first.run();

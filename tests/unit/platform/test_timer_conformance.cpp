@@ -230,7 +230,10 @@ TYPED_TEST(PeriodicTimerConformance, sleeps_where_there_is_time_to_and_tells_how
         {
             EXPECT_EQ(seen.cycle.sleeps, 0U);
         }
-        EXPECT_GE(seen.woken, wake + seen.cycle.wake_lateness);
+        const Duration lateness = seen.cycle.wake_lateness;
+        const bool is_of_the_sleep = seen.woken >= wake + lateness;
+        const bool is_of_the_wait = seen.cycle.start_lateness == lateness;
+        EXPECT_TRUE(is_of_the_sleep || is_of_the_wait);
     }
     EXPECT_GT(sleeps, 0U);
 }
@@ -241,7 +244,7 @@ TYPED_TEST(PeriodicTimerConformance, does_not_blame_the_machine_for_a_long_frame
     for (int i = 0; i < 10; ++i)
     {
         static_cast<void>(this->next());
-        this->machine.pass(this->kPeriod - microseconds(100)); // Past the margin.
+        this->machine.pass(this->kPeriod + microseconds(100)); // Past the deadline.
         const Cycle cycle = this->next().cycle;
         if (cycle.sleeps == 0)
         {

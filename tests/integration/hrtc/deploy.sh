@@ -1,0 +1,52 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# deploy.sh: an install into an empty folder has the programs, the service and an example of its
+# options that hrtc takes; under a service manager hrtc says when it is ready, that it is alive, and
+# that it stops. $4 is the build folder.
+source "$(dirname "$0")/common.sh"
+readonly folder=$4
+command -v python3 >/dev/null || exit 77
+
+cmake --install "$folder" --prefix "$scratch/root" >install.log || fail 'cmake --install'
+readonly installed=$scratch/root/bin documents=$scratch/root/share/doc/tactus
+for program in spm_build spm_inspect spm_publish hrtc; do
+    "$installed/$program" --version | grep -q "^$program " || fault "$program --version"
+done
+for file in README.md LICENSE docs/deploy.md examples/hrtc.toml; do
+    [[ -s $documents/$file ]] || fault "no $file in the documents"
+done
+[[ $(find root -name '*.a' -o -name 'test_*' -o -name '*.hpp' | wc -l) == 0 ]] \
+    || fault 'more is installed than the programs need'
+
+# The example's options, and the service.
+"$installed/hrtc" --config "$documents/examples/hrtc.toml" --print-config >options.toml \
+    || fault 'hrtc does not take the options of its example'
+grep -qx 'duration=86400' options.toml || fault 'the example is not read'
+readonly service=$scratch/root/lib/systemd/system/hrtc.service
+! grep -q '@' "$service" || fault "left as it was in the service: $(grep '@' "$service")"
+if command -v systemd-analyze >/dev/null; then
+    sed "s|^ExecStart=[^ ]*|ExecStart=$installed/hrtc|" "$service" >hrtc.service
+    # It speaks of other units of the machine, too.
+    systemd-analyze verify --man=no ./hrtc.service >verify.log 2>&1 || true
+    ! grep 'hrtc\.service' verify.log || fault 'systemd does not like the service'
+fi
+
+# Under a manager that listens. It waits for the words with patience: the machine may be slow.
+cat >manager.py <<'PYTHON'
+import os, signal, socket, subprocess, sys
+listener = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+listener.bind("notify")
+listener.settimeout(60)
+environment = dict(os.environ, NOTIFY_SOCKET=os.path.abspath("notify"), WATCHDOG_USEC="400000")
+run = subprocess.Popen(sys.argv[1:], env=environment)
+words = [listener.recv(64).decode() for _ in range(4)]
+run.send_signal(signal.SIGTERM)
+while words[-1] != "STOPPING=1":
+    words.append(listener.recv(64).decode())
+sys.exit(run.wait() or words[:4] != ["READY=1"] + 3 * ["WATCHDOG=1"])
+PYTHON
+"$build" --shape bumpy-sphere --faces 5000 -o good.spm >build.log 2>&1
+python3 manager.py "$installed/hrtc" --allow-no-rt --transport file --model good.spm \
+    --duration 600 --report report.json >hrtc.log 2>&1 || fault "as a service: $(cat hrtc.log)"
+check report.json frames '<' 600000 safety.begun.software == 1
+finish

@@ -1,0 +1,33 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# hrtc_long_run.sh: SECONDS ($5) at RATE ($4) on the demo's scene over DDS, in real time: no fault of
+# the loop's own, every frame in the histograms, and no memory more at the end than at the start.
+source "$(dirname "$0")/common.sh"
+readonly rate=$4 seconds=$5
+
+resident_kib() { awk '/^VmRSS/ { print $2 }' "/proc/$1/status"; }
+
+"$build" --shape bumpy-sphere --faces 200000 -o bumpy.spm >build.log 2>&1
+start_publisher bumpy.spm
+start_hrtc --model bumpy --rate "$rate" --duration "$seconds" --report report.json
+sleep 5 # Models found, pools laid out and locked, the first wishes served.
+first=$(resident_kib "$controller")
+publisher_first=$(resident_kib "$publisher")
+sleep $((seconds - 5))
+last=$(resident_kib "$controller") || fail "hrtc ended early: $(cat hrtc.log)"
+publisher_last=$(resident_kib "$publisher")
+code=0
+wait "$controller" || code=$?
+cat hrtc.log
+((code == 0)) || fail "hrtc ended with $code"
+check_clean report.json
+check report.json frames == $((rate * seconds))
+if is_realtime report.json; then
+    check report.json deadline.own_fault == 0
+fi
+printf 'resident: hrtc %s to %s KiB, spm_publish %s to %s KiB\n' "$first" "$last" \
+    "$publisher_first" "$publisher_last"
+((last - first <= 1024)) || fault "hrtc grew by $((last - first)) KiB"
+((publisher_last - publisher_first <= 2048)) \
+    || fault "spm_publish grew by $((publisher_last - publisher_first)) KiB"
+finish
