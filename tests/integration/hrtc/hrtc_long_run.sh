@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# hrtc_long_run.sh: SECONDS ($5) at RATE ($4) on the demo's scene over DDS, in real time: no fault of
-# the loop's own, every frame in the histograms, and no memory more at the end than at the start.
+# hrtc_long_run.sh: SECONDS ($5) at RATE ($4) on the demo's scene over DDS, in real time: no fault
+# of the loop's own, every frame in the histograms, and no memory more at the end than at the start.
 source "$(dirname "$0")/common.sh"
 readonly rate=$4 seconds=$5
 
