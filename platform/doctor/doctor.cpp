@@ -19,11 +19,12 @@ namespace
 
 using Check = Finding (*)(const MachineView&);
 
-constexpr std::array<Check, 16> kChecks{
-    check_priority,      check_memory_lock,       check_clock_source,  check_timer,
-    check_float_control, check_preemption,        check_throttling,    check_isolation,
-    check_interrupts,    check_governor,          check_idle_states,   check_siblings,
-    check_huge_pages,    check_dds_configuration, check_dds_interface, check_dds_buffers,
+constexpr std::array<Check, 17> kChecks{
+    check_priority,      check_memory_lock, check_clock_source,      check_timer,
+    check_float_control, check_preemption,  check_throttling,        check_compaction,
+    check_isolation,     check_interrupts,  check_governor,          check_idle_states,
+    check_siblings,      check_huge_pages,  check_dds_configuration, check_dds_interface,
+    check_dds_buffers,
 };
 
 } // namespace

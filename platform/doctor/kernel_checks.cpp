@@ -205,6 +205,32 @@ Finding check_throttling(const MachineView& view)
     return finding;
 }
 
+Finding check_compaction(const MachineView& view)
+{
+    const std::string file = "/proc/sys/vm/compact_unevictable_allowed";
+    Finding finding{"compaction",
+                    Verdict::advice,
+                    "the kernel may move locked memory to make room for large pieces",
+                    "Whoever touches a page on its way elsewhere waits until it is there: a page "
+                    "fault in a loop whose memory is locked.",
+                    {"echo vm.compact_unevictable_allowed=0 | sudo tee "
+                     "/etc/sysctl.d/61-tactus.conf",
+                     "sudo sysctl --system"}};
+    const auto text = view.files.text(file);
+    const auto allowed = text ? parse_integer(*text) : std::nullopt;
+    if (!allowed)
+    {
+        return unreadable(std::move(finding), view.files, file);
+    }
+    if (*allowed == 0)
+    {
+        finding.verdict = Verdict::good;
+        finding.found = "locked memory stays where it is";
+        finding.remedy.clear();
+    }
+    return finding;
+}
+
 Finding check_isolation(const MachineView& view)
 {
     const std::string folder = "/sys/devices/system/cpu/";

@@ -12,6 +12,8 @@ namespace tactus::doctor
 [[nodiscard]] Finding check_preemption(const MachineView& view);
 /// What share of a processor real-time threads may have.
 [[nodiscard]] Finding check_throttling(const MachineView& view);
+/// Whether locked memory stays where it is.
+[[nodiscard]] Finding check_compaction(const MachineView& view);
 /// Whether the loop's processor is kept free of other threads.
 [[nodiscard]] Finding check_isolation(const MachineView& view);
 /// Whether devices may interrupt the loop's processor.

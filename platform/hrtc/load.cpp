@@ -3,6 +3,7 @@
 #include "platform/hrtc/load.hpp"
 
 #include "host_tools/cli/command_line.hpp"
+#include "platform/posix/linux_extras.hpp"
 
 #include <algorithm>
 #include <cerrno>
@@ -16,7 +17,6 @@
 #include <sys/mman.h>
 #include <sys/wait.h>
 #include <system_error>
-#include <thread>
 #include <unistd.h>
 #include <utility>
 
@@ -177,10 +177,10 @@ Result<Load, std::string> Load::start(std::span<const LoadKind> kinds, const std
     load.lifeline_ = ends[1];
     fcntl(load.lifeline_, F_SETFD, FD_CLOEXEC); // Or they would keep it open themselves.
     fcntl(load.their_end_, F_SETFD, FD_CLOEXEC);
-    const unsigned processors = std::max(std::thread::hardware_concurrency(), 1U);
+    const auto processors = std::max(sysconf(_SC_NPROCESSORS_ONLN), 1L);
     for (const LoadKind kind : kinds)
     {
-        for (unsigned i = 0; i < (kind == LoadKind::disk ? 1U : processors); ++i)
+        for (long i = 0; i < (kind == LoadKind::disk ? 1L : processors); ++i)
         {
             if (const auto fault = load.start_one(kind, program))
             {
@@ -258,6 +258,7 @@ int run_load(int argc, char** argv)
     {
         return *code;
     }
+    linux_extras::let_calling_thread_use_all(); // Also the one that hrtc itself keeps off.
     if (const auto fault = work(parse_load(name).value(), stdin_is_open))
     {
         return fail(app, *fault);

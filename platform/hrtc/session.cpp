@@ -8,6 +8,7 @@
 #include "platform/hrtc/output_file.hpp"
 #include "platform/hrtc/supervisor.hpp"
 #include "platform/hrtc/transport_thread.hpp"
+#include "platform/posix/linux_extras.hpp"
 #include "platform/posix/posix_clock.hpp"
 #include "platform/posix/posix_periodic_timer.hpp"
 #include "platform/posix/service_notify.hpp"
@@ -288,6 +289,10 @@ Result<std::unique_ptr<Session>, SessionError> Session::open(const Options& opti
         {
             return failure(option + error->text);
         }
+    }
+    if (options.thread.cpu) // All other threads, those of DDS too, are started from this one.
+    {
+        linux_extras::keep_calling_thread_off(*options.thread.cpu);
     }
     std::unique_ptr<Session> session(new Session(options));
     if (options.transport == TransportKind::dds)

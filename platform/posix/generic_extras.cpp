@@ -17,6 +17,10 @@ int pin_calling_thread(int /*cpu*/) noexcept
     return ENOTSUP;
 }
 
+void keep_calling_thread_off(int /*cpu*/) noexcept {}
+
+void let_calling_thread_use_all() noexcept {}
+
 std::string explain_pin_refusal(int cpu)
 {
     return "processor " + std::to_string(cpu) +

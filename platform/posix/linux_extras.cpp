@@ -73,6 +73,29 @@ int pin_calling_thread(int cpu) noexcept
     return pthread_setaffinity_np(pthread_self(), sizeof(set), &set);
 }
 
+void keep_calling_thread_off(int cpu) noexcept
+{
+    cpu_set_t set;
+    CPU_ZERO(&set);
+    if (!another_cpu(cpu) || sched_getaffinity(0, sizeof(set), &set) != 0)
+    {
+        return;
+    }
+    CPU_CLR(static_cast<std::size_t>(cpu), &set);
+    static_cast<void>(pthread_setaffinity_np(pthread_self(), sizeof(set), &set));
+}
+
+void let_calling_thread_use_all() noexcept
+{
+    cpu_set_t set;
+    CPU_ZERO(&set);
+    for (std::size_t cpu = 0; cpu < CPU_SETSIZE; ++cpu)
+    {
+        CPU_SET(cpu, &set);
+    }
+    static_cast<void>(pthread_setaffinity_np(pthread_self(), sizeof(set), &set));
+}
+
 std::string explain_pin_refusal(int cpu)
 {
     return "processor " + std::to_string(cpu) + " can't be used by this process; it may use " +

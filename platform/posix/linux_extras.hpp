@@ -19,6 +19,13 @@ namespace tactus::linux_extras
 /// where threads can't be pinned.
 [[nodiscard]] int pin_calling_thread(int cpu) noexcept;
 
+/// Keeps the calling thread, and with it those that it starts, off `cpu` where there is another
+/// processor for them; where not, and where nobody can say, nothing changes.
+void keep_calling_thread_off(int cpu) noexcept;
+
+/// Lets the calling thread use every processor that its process is given.
+void let_calling_thread_use_all() noexcept;
+
 /// The line that tells why a thread was not pinned to `cpu`, and which processors there are.
 [[nodiscard]] std::string explain_pin_refusal(int cpu);
 

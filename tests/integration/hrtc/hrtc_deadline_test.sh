@@ -62,11 +62,18 @@ done
 [[ $(tail -n 1 run.svg) == '</svg>' ]] || fault 'the image has no end'
 
 # Ended early it judges nothing, writes nothing and leaves no load behind.
+# Meanwhile the loop has its processor to itself: the last one allowed, with which a list of allowed
+# ones would end.
 rm run.*
-"$hrtc" deadline-test --allow-no-rt --transport file --model good.spm --report run.json >test.log \
-    2>&1 &
+cpu=$(taskset -cp $$ | sed 's/.*[ ,-]//')
+"$hrtc" deadline-test --allow-no-rt --transport file --model good.spm --report run.json \
+    --cpu "$cpu" >test.log 2>&1 &
 started+=($!)
 wait_for_line test.log 'alone: ' 30
+ending=$(awk '/^Cpus_allowed_list/ { print $2 }' "/proc/${started[-1]}/task/"*/status \
+    | grep -cE "(^|[,-])$cpu\$")
+others=$(taskset -cp $$ | sed 's/.*: //')
+[[ $others == "$cpu" ]] || ((ending == 1)) || fault "$ending threads may run on processor $cpu"
 stop INT "${started[-1]}"
 ((stopped_with == 2)) || fault "interrupted, it ended with $stopped_with"
 grep -q 'interrupted; nothing is judged' test.log || fault 'it does not say that it was interrupted'

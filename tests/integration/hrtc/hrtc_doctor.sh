@@ -15,7 +15,7 @@ examine() {
     "$hrtc" doctor --json "$@" >"$name.json" 2>>errors.txt || code=$?
     [[ ! -s errors.txt ]] || fault "doctor $*: $(cat errors.txt)"
     ((code == ended_with)) || fault "doctor $* ended with $ended_with and with --json $code"
-    check "$name.json" schema == 1 checks == 16 \
+    check "$name.json" schema == 1 checks == 17 \
         counts.good+counts.advice+counts.critical+counts.unknown == '1*checks'
     for verdict in good advice critical unknown; do
         check "$name.json" "counts.$verdict" == "$(grep -c "^$verdict " "$name.txt" || true)"

@@ -102,6 +102,7 @@ void make_good(MadeUpMachine& machine)
     machine.put("/proc/cmdline", "quiet isolcpus=3\n");
     machine.put("/proc/sys/kernel/sched_rt_runtime_us", "-1\n");
     machine.put("/proc/sys/kernel/sched_rt_period_us", "1000000\n");
+    machine.put("/proc/sys/vm/compact_unevictable_allowed", "0\n");
     machine.put("/proc/self/status", "Name:\thrtc\nCapEff:\t0000000000000000\n");
     machine.put("/proc/self/cgroup", "4:cpu,cpuacct:/user.slice\n0::/user.slice\n");
     const std::string cpus = "/sys/devices/system/cpu/";

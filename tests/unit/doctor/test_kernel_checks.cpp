@@ -98,6 +98,20 @@ TEST_F(KernelChecks, throttling_needs_a_period)
     }
 }
 
+TEST_F(KernelChecks, compaction_must_leave_locked_memory_alone)
+{
+    EXPECT_EQ(check_compaction(machine.view()).found, "locked memory stays where it is");
+    for (const auto& [allowed, verdict] :
+         {std::pair("1\n", Verdict::advice), std::pair("2", Verdict::advice),
+          std::pair("", Verdict::unknown), std::pair("no", Verdict::unknown)})
+    {
+        machine.put("/proc/sys/vm/compact_unevictable_allowed", allowed);
+        const Finding sut = check_compaction(machine.view());
+        EXPECT_EQ(sut.verdict, verdict) << allowed;
+        EXPECT_FALSE(sut.remedy.empty());
+    }
+}
+
 TEST_F(KernelChecks, isolation_is_good_for_an_isolated_processor)
 {
     EXPECT_EQ(check_isolation(machine.view()).found, "processor 3 is isolated, without a tick");
