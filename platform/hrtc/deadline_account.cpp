@@ -3,7 +3,7 @@
 #include "platform/hrtc/deadline_account.hpp"
 
 #include <algorithm>
-#include <bit>
+#include <iterator>
 
 namespace tactus::hrtc
 {
@@ -29,6 +29,7 @@ DeadlineAccount::DeadlineAccount(Duration period)
     , machine_limit_(std::min(kMachineTime, share_of(period, kMachineShare)))
 {
     noted_.reserve(kNotedMax);
+    suspects_.reserve(kSuspectsMax);
 }
 
 void DeadlineAccount::add(std::uint64_t frame, const CycleMeasures& measures,
@@ -41,12 +42,18 @@ void DeadlineAccount::add(std::uint64_t frame, const CycleMeasures& measures,
     page_faults +=
         static_cast<std::uint64_t>(measures.usage.minor_faults + measures.usage.major_faults);
     calls = measures.calls;
-    ended_late_ = measures.lateness_of_end > period_;
-    count(flags);
+    own_losses_ = std::max(measures.lateness_of_end, Duration{}) / period_;
+    count(flags, 1);
     if (has_any(flags, kOwnFaults | CycleFlag::over_cpu | CycleFlag::missed))
     {
         note({frame, flags, measures.cycle.wake_lateness, measures.frame, measures.cpu,
               measures.lateness_of_end});
+    }
+    const bool is_suspect = has_any(flags, CycleFlag::over_cpu) && !has_any(flags, kOwnFaults);
+    suspected += is_suspect ? 1U : 0U;
+    if (is_suspect && suspects_.size() < kSuspectsMax)
+    {
+        suspects_.push_back({frame, flags}); // Within what is reserved.
     }
 }
 
@@ -64,24 +71,24 @@ CycleFlag DeadlineAccount::flags_of(const CycleMeasures& measures, bool over_wor
            when(std::max(measures.frame - measures.cpu, measures.beside - measures.beside_cpu) >
                     machine_limit_,
                 CycleFlag::held_up) |
-           when(measures.lateness_of_end > period_ || (cycle.periods > 1 && !ended_late_),
+           when(measures.lateness_of_end > period_ || std::int64_t{cycle.periods} - 1 > own_losses_,
                 CycleFlag::missed);
 }
 
-void DeadlineAccount::count(CycleFlag flags) noexcept
+/// `sign`: 1 to count, or the number that takes away again.
+void DeadlineAccount::count(CycleFlag flags, std::uint64_t sign) noexcept
 {
     for (std::size_t bit = 0; bit < kCycleFlags; ++bit)
     {
-        flagged[bit] += has_any(flags, static_cast<CycleFlag>(1U << bit)) ? 1U : 0U;
+        flagged[bit] += has_any(flags, static_cast<CycleFlag>(1U << bit)) ? sign : 0U;
     }
     const bool own = has_any(flags, kOwnFaults);
     const bool is_missed = has_any(flags, CycleFlag::missed);
     const bool machines = has_any(flags, kMachinesDoing);
-    own_faults += own ? 1U : 0U;
-    missed += is_missed ? 1U : 0U;
-    machine_late += is_missed && !own && machines ? 1U : 0U;
-    unexplained += is_missed && !own && !machines ? 1U : 0U;
-    suspected += !own && has_any(flags, CycleFlag::over_cpu) ? 1U : 0U;
+    own_faults += own ? sign : 0U;
+    missed += is_missed ? sign : 0U;
+    machine_late += is_missed && !own && machines ? sign : 0U;
+    unexplained += is_missed && !own && !machines ? sign : 0U;
 }
 
 void DeadlineAccount::note(const NotedCycle& cycle) noexcept
@@ -97,28 +104,27 @@ void DeadlineAccount::note(const NotedCycle& cycle) noexcept
 std::vector<std::uint64_t> DeadlineAccount::suspects() const
 {
     std::vector<std::uint64_t> frames;
-    for (const NotedCycle& cycle : noted_)
-    {
-        if (has_any(cycle.flags, CycleFlag::over_cpu) && !has_any(cycle.flags, kOwnFaults))
-        {
-            frames.push_back(cycle.frame);
-        }
-    }
+    std::ranges::transform(suspects_, std::back_inserter(frames), &Suspect::frame);
     return frames;
 }
 
-void DeadlineAccount::blame(std::uint64_t frame) noexcept
+void DeadlineAccount::settle(std::span<const std::uint64_t> over) noexcept
 {
-    const auto cycle = std::ranges::lower_bound(noted_, frame, {}, &NotedCycle::frame);
-    if (cycle == noted_.end() || cycle->frame != frame || has_any(cycle->flags, kOwnFaults))
+    constexpr std::uint64_t kTakeAway = ~std::uint64_t{0}; // Modulo 2^64 one less.
+    for (Suspect& suspect : suspects_)
     {
-        return;
+        count(suspect.flags, kTakeAway);
+        suspect.flags = suspect.flags | (std::ranges::binary_search(over, suspect.frame)
+                                             ? CycleFlag::repeated_cpu
+                                             : CycleFlag::acquitted_cpu);
+        count(suspect.flags, 1);
+        const auto noted = std::ranges::lower_bound(noted_, suspect.frame, {}, &NotedCycle::frame);
+        if (noted != noted_.end() && noted->frame == suspect.frame)
+        {
+            noted->flags = suspect.flags;
+        }
     }
-    cycle->flags = cycle->flags | CycleFlag::repeated_cpu;
-    ++flagged[static_cast<std::size_t>(
-        std::countr_zero(static_cast<unsigned>(CycleFlag::repeated_cpu)))];
-    ++own_faults;
-    machine_late -= has_any(cycle->flags, CycleFlag::missed) ? 1U : 0U; // What over_cpu made it.
+    suspects_.clear();
 }
 
 LatencyHistogram DeadlineAccount::response() const

@@ -18,23 +18,24 @@ namespace tactus::hrtc
 enum class CycleFlag : std::uint16_t
 {
     none = 0,
-    page_fault = 1U << 0U,   ///< The loop touched memory that wasn't there.
-    allocation = 1U << 1U,   ///< It called on the heap.
-    gave_way = 1U << 2U,     ///< It slept or waited, besides the timer's own sleeps.
-    system_call = 1U << 3U,  ///< The frame called the system; seen while calls are trapped.
-    over_work = 1U << 4U,    ///< The frame did more than its budgets allow.
-    over_cpu = 1U << 5U,     ///< It took more than kCpuShare of the period in processor time.
-    repeated_cpu = 1U << 6U, ///< And again when it was repeated.
-    woken_late = 1U << 7U,   ///< By more than kMachineShare.
-    held_up = 1U << 8U,      ///< It had no processor for more than kMachineShare.
-    missed = 1U << 9U,       ///< It ended after the next deadline, or deadlines had gone by before
-                             ///< it, other than by the end of the cycle before.
+    page_fault = 1U << 0U,    ///< The loop touched memory that wasn't there.
+    allocation = 1U << 1U,    ///< It called on the heap.
+    gave_way = 1U << 2U,      ///< It slept or waited, besides the timer's own sleeps.
+    system_call = 1U << 3U,   ///< The frame called the system; seen while calls are trapped.
+    over_work = 1U << 4U,     ///< The frame did more than its budgets allow.
+    over_cpu = 1U << 5U,      ///< It took more than kCpuShare of the period in processor time.
+    repeated_cpu = 1U << 6U,  ///< And again when it was repeated.
+    acquitted_cpu = 1U << 7U, ///< And never again when it was repeated.
+    woken_late = 1U << 8U,    ///< By more than kMachineShare.
+    held_up = 1U << 9U,       ///< It had no processor for more than kMachineShare.
+    missed = 1U << 10U,       ///< It ended after the next deadline, or deadlines had gone by before
+                              ///< it, other than by the end of the cycle before.
 };
-inline constexpr std::size_t kCycleFlags = 10;
+inline constexpr std::size_t kCycleFlags = 11;
 /// In the order of the bits.
 inline constexpr std::array<const char*, kCycleFlags> kCycleFlagNames{
-    "page_fault", "allocation",   "gave_way",   "system_call", "over_work",
-    "over_cpu",   "repeated_cpu", "woken_late", "held_up",     "missed"};
+    "page_fault",   "allocation",    "gave_way",   "system_call", "over_work", "over_cpu",
+    "repeated_cpu", "acquitted_cpu", "woken_late", "held_up",     "missed"};
 
 [[nodiscard]] constexpr CycleFlag operator|(CycleFlag a, CycleFlag b) noexcept
 {
@@ -54,7 +55,7 @@ inline constexpr CycleFlag kOwnFaults = CycleFlag::page_fault | CycleFlag::alloc
 /// again is the machine's, too: the clock of a thread also runs for interrupts, and on a shared
 /// machine for what other guests take.
 inline constexpr CycleFlag kMachinesDoing =
-    CycleFlag::woken_late | CycleFlag::held_up | CycleFlag::over_cpu;
+    CycleFlag::woken_late | CycleFlag::held_up | CycleFlag::acquitted_cpu;
 
 /// One cycle worth telling of.
 struct NotedCycle
@@ -81,18 +82,21 @@ public:
     /// Longer than this, or than that share of a short period, and the machine was at it.
     static constexpr Duration kMachineTime = microseconds(300);
     static constexpr double kMachineShare = 0.3;
-    /// Cycles kept to be told of; later ones are counted only.
+    /// Cycles kept to be told of, and suspects; later ones are counted only.
     static constexpr std::size_t kNotedMax = 4'096;
+    static constexpr std::size_t kSuspectsMax = 16'384;
 
     explicit DeadlineAccount(Duration period);
 
     /// `over_work`: the frame's counters exceed their caps.
     void add(std::uint64_t frame, const CycleMeasures& measures, bool over_work) noexcept;
 
-    /// Frames under suspicion for their processor time alone: to be repeated.
+    /// Frames under suspicion for their processor time alone, ascending: to be repeated. Fewer than
+    /// `suspected` when there was no room for more.
     [[nodiscard]] std::vector<std::uint64_t> suspects() const;
-    /// A repetition of this suspect was over the budget again: it is our own fault after all.
-    void blame(std::uint64_t frame) noexcept;
+    /// All suspects have been repeated. Those in `over` (ascending) were over the budget again and
+    /// are our own fault after all; the others' processor time was the machine's. Once.
+    void settle(std::span<const std::uint64_t> over) noexcept;
 
     /// From the deadline to the force written; deadlines whose frame never ran got the force of the
     /// next that did (LatencyHistogram::corrected()).
@@ -105,7 +109,7 @@ public:
     std::uint64_t missed{0};
     std::uint64_t own_faults{0};   ///< Cycles.
     std::uint64_t machine_late{0}; ///< Missed deadlines.
-    std::uint64_t unexplained{0};  ///< Missed deadlines that are neither.
+    std::uint64_t unexplained{0};  ///< Missed deadlines that are neither, or not settled yet.
     std::uint64_t suspected{0};    ///< Cycles that had to be repeated to be judged.
     std::uint64_t not_kept{0};     ///< Cycles worth telling of that are not in noted().
     std::array<std::uint64_t, kCycleFlags> flagged{}; ///< Cycles with each flag.
@@ -115,13 +119,19 @@ public:
 
 private:
     [[nodiscard]] CycleFlag flags_of(const CycleMeasures& measures, bool over_work) const noexcept;
-    void count(CycleFlag flags) noexcept;
+    void count(CycleFlag flags, std::uint64_t sign) noexcept;
     void note(const NotedCycle& cycle) noexcept;
 
     Duration period_;
     Duration cpu_limit_;
     Duration machine_limit_;
-    bool ended_late_{false}; ///< The last cycle did, and takes what deadlines it cost on itself.
+    std::int64_t own_losses_{0}; ///< Deadlines that went by before the last cycle's end; its own.
+    struct Suspect
+    {
+        std::uint64_t frame{0};
+        CycleFlag flags{CycleFlag::none};
+    };
+    std::vector<Suspect> suspects_;
     std::vector<NotedCycle> noted_;
     LatencyHistogram in_turn_;    ///< Responses of frames whose own deadline came next.
     LatencyHistogram after_loss_; ///< To the first of the deadlines that went by before one.

@@ -57,6 +57,12 @@ std::optional<std::string> settle(FinishedRun& run, const std::string& recording
 {
     DeadlineAccount& deadlines = run.statistics.deadlines;
     const std::vector<std::uint64_t> suspects = deadlines.suspects();
+    if (deadlines.suspected > suspects.size())
+    {
+        return fmt::format("{} frames took long, more than the {} that can be repeated; is that "
+                           "the rate that this machine can do?",
+                           deadlines.suspected, suspects.size());
+    }
     if (suspects.empty())
     {
         return std::nullopt;
@@ -71,16 +77,35 @@ std::optional<std::string> settle(FinishedRun& run, const std::string& recording
     {
         return "frames that took long can't be repeated: " + over.error();
     }
-    for (const std::uint64_t frame : over.value())
-    {
-        deadlines.blame(frame);
-    }
+    deadlines.settle(over.value());
     return std::nullopt;
 }
 
 SessionError failure(std::string text)
 {
     return {std::move(text), kExitFailed};
+}
+
+/// Runs beside the load, which is gone when this returns.
+Result<FinishedRun, SessionError> run_beside(Session& session, const std::string& name,
+                                             const std::vector<LoadKind>& loads)
+{
+    auto load = Load::start(loads, "/proc/self/exe");
+    if (!load)
+    {
+        return failure("--load: " + load.error());
+    }
+    auto run = session.run(name);
+    if (was_interrupted()) // The load may have ended by the same signal.
+    {
+        return interruption();
+    }
+    if (const auto ended = load.value().ended(); run && ended)
+    {
+        return failure(fmt::format("--load: '{}' ended before the run did",
+                                   kLoadNames[static_cast<std::size_t>(*ended)]));
+    }
+    return run;
 }
 
 Result<DeadlinePhase, SessionError> run_phase(Options options, const std::vector<LoadKind>& loads)
@@ -92,21 +117,11 @@ Result<DeadlinePhase, SessionError> run_phase(Options options, const std::vector
     {
         return session.error();
     }
-    auto load = Load::start(loads, "/proc/self/exe");
-    if (!load)
-    {
-        return failure("--load: " + load.error());
-    }
     const std::string name = loads.empty() ? "alone" : "beside load";
-    auto run = session.value()->run(name);
+    auto run = run_beside(*session.value(), name, loads);
     if (!run)
     {
         return run.error();
-    }
-    if (const auto ended = load.value().ended())
-    {
-        return failure(fmt::format("--load: '{}' ended before the run did",
-                                   kLoadNames[static_cast<std::size_t>(*ended)]));
     }
     if (run.value().recording_error)
     {
@@ -225,10 +240,6 @@ int run_test(const Options& options, const std::vector<LoadKind>& loads)
             return fail(phase.error());
         }
         phases.push_back(std::move(phase).value());
-        if (was_interrupted())
-        {
-            return fail(failure("interrupted; nothing is judged"));
-        }
     }
     const DeadlineSetting setting{options.thread.priority,
                                   nanoseconds(1'000'000'000 / options.rate_hz)};

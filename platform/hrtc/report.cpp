@@ -510,11 +510,13 @@ std::string make_summary(const Json& report)
                         report["cache"]["loads"].get<std::uint64_t>(),
                         report["cache"]["evictions"].get<std::uint64_t>(),
                         report["wire"]["host_lost"].get<bool>() ? "; the host went away" : "");
+    const auto unexplained = report["deadline"]["unexplained"].get<std::uint64_t>();
     text += fmt::format(
-        "deadlines   {} missed: {} own faults, {} machine late; {} allocations, {} page faults\n",
+        "deadlines   {} missed: {} own faults, {} machine late{}; {} allocations, {} page faults\n",
         report["deadline"]["missed"].get<std::uint64_t>(),
         report["deadline"]["own_fault"].get<std::uint64_t>(),
         report["deadline"]["machine_late"].get<std::uint64_t>(),
+        unexplained > 0 ? fmt::format(", {} other", unexplained) : "",
         report["realtime"]["allocations"].get<std::uint64_t>(),
         report["realtime"]["page_faults"].get<std::uint64_t>());
     text += stability_line(report["tools"]);

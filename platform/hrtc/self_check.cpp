@@ -140,13 +140,10 @@ void inject(InjectedFault fault, Duration period) noexcept
 
 SelfCheck compare_with_plan(DeadlineAccount& deadlines)
 {
-    for (const std::uint64_t frame : deadlines.suspects())
-    {
-        if (is_over_again(frame, deadlines.cpu_limit(), deadlines.period()))
-        {
-            deadlines.blame(frame);
-        }
-    }
+    std::vector<std::uint64_t> over = deadlines.suspects();
+    std::erase_if(over, [&](std::uint64_t frame)
+                  { return !is_over_again(frame, deadlines.cpu_limit(), deadlines.period()); });
+    deadlines.settle(over);
     SelfCheck check;
     check.allocations_counted = allocation_counter::available();
     for (std::uint64_t frame = 0; frame < InjectionPlan::kFrames; ++frame)
@@ -181,6 +178,10 @@ Result<SelfCheck, SessionError> run_self_check(Options options)
     if (!run)
     {
         return run.error();
+    }
+    if (was_interrupted())
+    {
+        return interruption();
     }
     return compare_with_plan(run.value().statistics.deadlines);
 }

@@ -276,6 +276,11 @@ bool was_interrupted() noexcept
     return interrupted.load();
 }
 
+SessionError interruption()
+{
+    return failure("interrupted; nothing is judged");
+}
+
 Result<std::unique_ptr<Session>, SessionError> Session::open(const Options& options)
 {
     if (auto error = check_machine(options))

@@ -75,4 +75,7 @@ void install_handlers();
 /// Whether one of the signals has come.
 [[nodiscard]] bool was_interrupted() noexcept;
 
+/// Why a run that one of them ended can't be judged.
+[[nodiscard]] SessionError interruption();
+
 } // namespace tactus::hrtc

@@ -19,7 +19,7 @@ namespace
 constexpr double kWidth = 760.0;
 constexpr double kPanelHeight = 270.0;
 constexpr double kLeft = 78.0;
-constexpr double kRight = 20.0;
+constexpr double kRight = 34.0;
 constexpr double kTop = 52.0;
 constexpr double kBottom = 50.0;
 constexpr double kPlotWidth = kWidth - kLeft - kRight;
@@ -46,7 +46,7 @@ struct LineStyle
     const char* dash;
 };
 constexpr std::array<LineStyle, Panel::kStepsMax> kLines{
-    {{"#0072b2", "none"}, {"#d55e00", "6 3"}, {"#009e73", "2 2"}, {"#cc79a7", "8 3 2 3"}}};
+    {{"#1f8fd1", "none"}, {"#d55e00", "6 3"}, {"#009e73", "2 2"}, {"#cc79a7", "8 3 2 3"}}};
 
 /// A whole number of decades.
 struct Axis

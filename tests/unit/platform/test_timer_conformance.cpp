@@ -246,7 +246,7 @@ TYPED_TEST(PeriodicTimerConformance, does_not_blame_the_machine_for_a_long_frame
         static_cast<void>(this->next());
         this->machine.pass(this->kPeriod + microseconds(100)); // Past the deadline.
         const Cycle cycle = this->next().cycle;
-        if (cycle.sleeps == 0)
+        if (cycle.sleeps == 0 && cycle.periods == 1)
         {
             EXPECT_EQ(cycle.wake_lateness, Duration{});
         }
