@@ -35,8 +35,8 @@ test_deadlines() {
 }
 
 # pass ARGUMENT...: what must hold of any test, and that it is passed. Without locked memory and
-# SCHED_FIFO the loop has faults of its own, a sanitizer makes more, and where the kernel moves locked
-# memory the test may have to be made again.
+# SCHED_FIFO the loop has faults of its own, a sanitizer makes more, and where the kernel moves
+# locked memory the test may have to be made again.
 pass() {
     local try
     for try in 1 2 3; do
