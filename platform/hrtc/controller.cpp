@@ -45,11 +45,12 @@ DeviceChoice choice_of(const Options& options, std::size_t tool)
 } // namespace
 
 Result<std::unique_ptr<Controller>, ControllerError>
-Controller::create(const Options& options, std::vector<ServedModel> models, const Log& log)
+Controller::create(const Options& options, std::vector<ServedModel> models, const Log& log,
+                   const std::function<bool()>& goes_on)
 {
     std::unique_ptr<Controller> controller(new Controller(options, std::move(models)));
     controller->make_poses(options);
-    if (std::optional<ControllerError> error = controller->open_devices(options))
+    if (std::optional<ControllerError> error = controller->open_devices(options, goes_on))
     {
         return *error;
     }
@@ -93,10 +94,11 @@ void Controller::make_poses(const Options& options)
 }
 
 /// Those that aren't simulated; before the tools, which need to know what the devices can do.
-std::optional<ControllerError> Controller::open_devices(const Options& options)
+std::optional<ControllerError> Controller::open_devices(const Options& options,
+                                                        const std::function<bool()>& goes_on)
 {
     devices_.resize(std::max<std::size_t>(options.tool_radii_m.size(), 1));
-    const Duration wait = milliseconds(static_cast<std::int64_t>(options.wait_s * 1e3));
+    const DeviceWait wait{milliseconds(static_cast<std::int64_t>(options.wait_s * 1e3)), goes_on};
     for (std::size_t i = 0; i < options.devices.size(); ++i)
     {
         if (options.devices[i].kind == DeviceKind::simulated)

@@ -14,6 +14,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -33,12 +34,13 @@ struct ControllerError
 class Controller
 {
 public:
-    /// Opens the devices, waiting for those that have to come, lays out all pools inside
-    /// options.pool_mib, makes the frame, and a simulated device for each tool without another.
-    /// Refused when a device isn't there or doesn't run at that rate, or when the pools are too
-    /// small, with the size that would do for a start.
+    /// Opens the devices, waiting for those that have to come as long as `goes_on`, lays out all
+    /// pools inside options.pool_mib, makes the frame, and a simulated device for each tool without
+    /// another. Refused when a device isn't there or doesn't run at that rate, or when the pools
+    /// are too small, with the size that would do for a start.
     [[nodiscard]] static Result<std::unique_ptr<Controller>, ControllerError>
-    create(const Options& options, std::vector<ServedModel> models, const Log& log);
+    create(const Options& options, std::vector<ServedModel> models, const Log& log,
+           const std::function<bool()>& goes_on);
 
     [[nodiscard]] Frame& frame() noexcept { return *frame_; }
     [[nodiscard]] std::vector<std::unique_ptr<Courier>>& couriers() noexcept { return couriers_; }
@@ -77,7 +79,8 @@ private:
 
     [[nodiscard]] std::optional<ControllerError> lay_out_pools(const Options& options);
     void make_poses(const Options& options);
-    [[nodiscard]] std::optional<ControllerError> open_devices(const Options& options);
+    [[nodiscard]] std::optional<ControllerError> open_devices(const Options& options,
+                                                              const std::function<bool()>& goes_on);
     void make_tools(const Options& options);
     void make_couriers(const Log& log);
     [[nodiscard]] std::optional<ControllerError> simulate_device(const Options& options,

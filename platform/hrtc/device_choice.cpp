@@ -164,8 +164,10 @@ std::optional<DeviceFault> parse_device_fault(std::string_view text)
                        static_cast<std::uint64_t>(*length)};
 }
 
-Result<std::unique_ptr<HapticDevice>, PlatformError>
-open_device(const DeviceChoice& choice, std::size_t tool, Duration wait, const Clock& clock)
+Result<std::unique_ptr<HapticDevice>, PlatformError> open_device(const DeviceChoice& choice,
+                                                                 std::size_t tool,
+                                                                 const DeviceWait& wait,
+                                                                 const Clock& clock)
 {
     if (choice.kind == DeviceKind::replay)
     {
@@ -182,7 +184,8 @@ open_device(const DeviceChoice& choice, std::size_t tool, Duration wait, const C
         UdpDeviceOptions options;
         options.address = choice.address;
         options.port = choice.port;
-        options.wait = wait;
+        options.wait = wait.most;
+        options.goes_on = wait.goes_on;
         options.frame = frame.value();
         options.clock = &clock;
         return as_device(UdpDevice::create(options));

@@ -12,6 +12,7 @@
 #include "rt_core/records/device_limits.hpp"
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -57,9 +58,17 @@ inline constexpr std::string_view kDeviceFaultForms =
 /// None when the text is none of kDeviceFaultForms.
 [[nodiscard]] std::optional<DeviceFault> parse_device_fault(std::string_view text);
 
-/// Opens a device that isn't simulated, for the tool with that index; waits up to `wait` for one
-/// that comes by udp, reads a recording as a whole. `clock` is lent and outlives it.
+/// For a device that has to come.
+struct DeviceWait
+{
+    Duration most;
+    std::function<bool()> goes_on; ///< Asked meanwhile: false ends the wait. Empty: never.
+};
+
+/// Opens a device that isn't simulated, for the tool with that index; waits for one that comes by
+/// udp, reads a recording as a whole. `clock` is lent and outlives it.
 [[nodiscard]] Result<std::unique_ptr<HapticDevice>, PlatformError>
-open_device(const DeviceChoice& choice, std::size_t tool, Duration wait, const Clock& clock);
+open_device(const DeviceChoice& choice, std::size_t tool, const DeviceWait& wait,
+            const Clock& clock);
 
 } // namespace tactus::hrtc

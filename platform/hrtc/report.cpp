@@ -197,6 +197,7 @@ Json machine_of(const RunRecord& record)
             {"date_utc", machine.date_utc},
             {"fifo", record.run.thread.fifo},
             {"memory_locked", record.run.thread.memory_locked},
+            {"processors_awake", record.run.thread.processors_awake},
             {"float_control_was_default", record.run.thread.float_control_was_default},
             {"refused", record.run.thread.refused}};
 }

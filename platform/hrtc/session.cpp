@@ -316,7 +316,8 @@ Result<std::unique_ptr<Session>, SessionError> Session::open(const Options& opti
     {
         return models.error();
     }
-    auto controller = Controller::create(options, std::move(models).value(), log_line);
+    auto controller = Controller::create(options, std::move(models).value(), log_line,
+                                         [] { return !interrupted.load(); });
     if (!controller)
     {
         return failure(controller.error().text);

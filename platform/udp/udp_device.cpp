@@ -72,7 +72,8 @@ PlatformError nobody_came(const udp::Socket& socket, Duration wait, std::uint64_
 std::optional<PlatformError> await_device(const udp::Socket& socket, udp::Session& session,
                                           const UdpDeviceOptions& options)
 {
-    const MonotonicTime end = options.clock->now() + options.wait;
+    const MonotonicTime start = options.clock->now();
+    const MonotonicTime end = start + options.wait;
     Buffer buffer{};
     std::uint64_t refused = 0;
     std::optional<Refusal> last;
@@ -91,11 +92,11 @@ std::optional<PlatformError> await_device(const udp::Socket& socket, udp::Sessio
             last = std::get<Refusal>(result); // Samples are refused before a description.
             ++refused;
         }
-        if (now >= end)
+        if (now >= end || (options.goes_on && !options.goes_on()))
         {
-            return nobody_came(socket, options.wait, refused, last);
+            return nobody_came(socket, std::min(now - start, options.wait), refused, last);
         }
-        socket.wait(end - now);
+        socket.wait(std::min(end - now, UdpDeviceOptions::kAskEvery));
     }
 }
 

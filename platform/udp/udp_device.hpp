@@ -12,6 +12,7 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -26,12 +27,15 @@ struct UdpDeviceOptions
     static constexpr Duration kPollMax = milliseconds(10);
     static constexpr Duration kWaitMax = milliseconds(3'600'000);
     static constexpr Duration kDelayMax = milliseconds(100);
+    static constexpr Duration kAskEvery = milliseconds(50);
 
     /// Numeric IPv4. Whoever reaches it can move the tool: leave it where only this machine is.
     std::string address{"127.0.0.1"};
     int port{kPortDefault}; ///< As udp::Socket::open().
     /// For a device to describe itself, up to kWaitMax.
     Duration wait{milliseconds(10'000)};
+    /// Asked every kAskEvery meanwhile, on the calling thread: false ends the wait. Empty: never.
+    std::function<bool()> goes_on;
     /// How often the I/O thread looks for a force to send, in [kPollMin, kPollMax]: it adds as much
     /// to the delay of a force.
     Duration poll{microseconds(100)};
@@ -62,7 +66,7 @@ class UdpDevice final : public RemoteDevice
 {
 public:
     /// Waits until a device has described itself, on the calling thread. Refuses options out of
-    /// range (`bad_option`); nobody within the time is `system`.
+    /// range (`bad_option`); nobody within the time, or before the wait was ended, is `system`.
     [[nodiscard]] static Result<std::unique_ptr<UdpDevice>, PlatformError>
     create(const UdpDeviceOptions& options);
     /// The same with a socket that is open already; the options' address and port aren't read.

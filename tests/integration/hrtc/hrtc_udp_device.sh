@@ -23,6 +23,11 @@ drive() {
 readonly run=("$hrtc" --allow-no-rt --transport file --model bumpy.spm)
 expect 2 'no device described itself' "${run[@]}" --device "udp:$port" --wait 0.2
 expect 2 'dhd' "${run[@]}" --device dhd
+start_hrtc --transport file --model bumpy.spm --device "udp:$port" --wait 3600
+sleep 1
+stop TERM "$controller" # It waits for a device, and not for an hour.
+((stopped_with == 2)) || fault "told to end while it waited, hrtc ended with $stopped_with"
+grep -q 'no device described itself' hrtc.log || fault 'it does not say what it waited for'
 
 drive
 start_hrtc --transport file --model bumpy.spm --device "udp:$port" --tool sphere:0.004 \
@@ -35,6 +40,7 @@ code=0
 wait "$controller" || code=$?
 cat hrtc.log
 ((code == 0)) || fail "hrtc ended with $code"
-check report.json frames == 6000 safety.begun.disconnect '>=' 1 tools.0.contact_share '>' 0.3 \
+check_contact report.json tools.0.contact_share 0.3
+check report.json frames == 6000 safety.begun.disconnect '>=' 1 \
     tools.0.force_max_n '>' 0.2 tools.0.force_max_n '<=' 8
 finish

@@ -145,6 +145,17 @@ TEST_F(UdpDeviceTest, says_that_nobody_came_and_what_was_refused)
         << rubbish.error().message;
 }
 
+TEST_F(UdpDeviceTest, stops_waiting_when_it_is_told_to)
+{
+    options.wait = UdpDeviceOptions::kWaitMax;
+    int asked = 0;
+    options.goes_on = [&asked] { return ++asked < 3; };
+    const auto nobody = UdpDevice::create(any_socket(), options);
+    ASSERT_FALSE(nobody);
+    EXPECT_EQ(nobody.error().kind, PlatformErrorKind::system);
+    EXPECT_EQ(asked, 3);
+}
+
 TEST_F(UdpDeviceTest, is_what_the_device_says_and_as_late_as_the_way)
 {
     options.transport_delay = microseconds(400);
