@@ -5,10 +5,17 @@
 #include "platform/haptic_device.hpp"
 #include "rt_core/math/vec3.hpp"
 
+#include <array>
 #include <cmath>
 
 namespace tactus
 {
+
+/// As devices' records have it, which know no Eigen.
+[[nodiscard]] inline std::array<double, 3> to_array(const Vec3& v) noexcept
+{
+    return {v.x(), v.y(), v.z()};
+}
 
 /// What a device makes of a written force: none when it isn't finite, else one of at most
 /// `force_max_n` in the same direction. Counts in `status` what it had to change.

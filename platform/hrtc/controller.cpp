@@ -148,7 +148,7 @@ std::optional<ControllerError> Controller::lay_out_pools(const Options& options)
     setup_.objects = objects_;
     setup_.tools = tools_;
     setup_.static_when_it_fits = options.static_when_it_fits;
-    setup_.period_ns = 1'000'000'000 / options.rate_hz;
+    setup_.period_ns = options.period().ns;
     std::size_t shared = Frame::required_bytes(setup_);
     for (const ServedModel& model : models_)
     {
@@ -216,9 +216,8 @@ std::optional<ControllerError> Controller::simulate_device(const Options& option
     scene.anchors_world_m = anchors_world_m();
     scene.diagonal_m = diagonal_world_m();
     scene.tool_radius_m = tools_[tool].radius_m;
-    scene.period = nanoseconds(1'000'000'000 / options.rate_hz);
-    scene.frames_total =
-        static_cast<std::uint64_t>(options.duration_s * static_cast<double>(options.rate_hz));
+    scene.period = options.period();
+    scene.frames_total = options.frames();
     auto motion = make_motion(options.motion, scene, tool + 1);
     if (!motion)
     {

@@ -6,6 +6,7 @@
 #include "platform/latency_histogram.hpp"
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -102,6 +103,10 @@ public:
     /// next that did (LatencyHistogram::corrected()).
     [[nodiscard]] LatencyHistogram response() const;
 
+    [[nodiscard]] std::uint64_t cycles_with(CycleFlag flag) const noexcept
+    {
+        return flagged[static_cast<std::size_t>(std::countr_zero(static_cast<unsigned>(flag)))];
+    }
     [[nodiscard]] Duration period() const noexcept { return period_; }
     [[nodiscard]] Duration cpu_limit() const noexcept { return cpu_limit_; }
     [[nodiscard]] std::span<const NotedCycle> noted() const noexcept { return noted_; }

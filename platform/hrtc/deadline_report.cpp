@@ -103,6 +103,12 @@ std::uint64_t cycles_of(const DeadlinePhase& phase)
     return phase.report["frames"].get<std::uint64_t>();
 }
 
+/// What a run's report says of its deadlines.
+std::uint64_t count_of(const DeadlinePhase& phase, const char* key)
+{
+    return phase.report["deadline"][key].get<std::uint64_t>();
+}
+
 std::string table_of(std::span<const DeadlinePhase> phases)
 {
     std::string text = fmt::format(
@@ -112,14 +118,11 @@ std::string table_of(std::span<const DeadlinePhase> phases)
         "machine", "other", "p50", "p99", "max", "p50", "p99", "max", "p99", "max");
     for (const DeadlinePhase& phase : phases)
     {
-        const Json& deadline = phase.report["deadline"];
-        const auto count = [&deadline](const char* key)
-        { return deadline[key].get<std::uint64_t>(); };
         const auto us = [](const LatencyHistogram& histogram, double q)
         { return to_us(histogram.quantile(q)); };
         text += fmt::format("{:<12}{:>8}{:>8}{:>5}{:>8}{:>7}", phase.name, cycles_of(phase),
-                            count("missed"), count("own_fault"), count("machine_late"),
-                            count("unexplained"));
+                            count_of(phase, "missed"), count_of(phase, "own_fault"),
+                            count_of(phase, "machine_late"), count_of(phase, "unexplained"));
         text += fmt::format("{:>7.0f}{:>6.0f}{:>6.0f}{:>8.0f}{:>7.0f}{:>9.0f}{:>8.0f}{:>9.0f}\n",
                             us(phase.cpu, 0.5), us(phase.cpu, 0.99), to_us(phase.cpu.max()),
                             us(phase.wake, 0.5), us(phase.wake, 0.99), to_us(phase.wake.max()),
@@ -139,8 +142,8 @@ std::string cyclictest_of(const DeadlinePhase& phase, const DeadlineSetting& set
 
 bool is_clean(const DeadlinePhase& phase)
 {
-    return phase.own_faults == 0 &&
-           static_cast<double>(phase.unexplained) <=
+    return count_of(phase, "own_fault") == 0 &&
+           static_cast<double>(count_of(phase, "unexplained")) <=
                kUnexplainedShareMax * static_cast<double>(cycles_of(phase));
 }
 
@@ -152,8 +155,8 @@ std::string verdict_of(const SelfCheck& check, std::span<const DeadlinePhase> ph
     for (const DeadlinePhase& phase : phases)
     {
         cycles += cycles_of(phase);
-        own += phase.own_faults;
-        unexplained += phase.unexplained;
+        own += count_of(phase, "own_fault");
+        unexplained += count_of(phase, "unexplained");
     }
     if (!check.is_passed())
     {

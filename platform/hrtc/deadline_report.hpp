@@ -7,7 +7,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -24,8 +23,6 @@ struct DeadlinePhase
     LatencyHistogram wake;
     LatencyHistogram cpu;
     LatencyHistogram response;
-    std::uint64_t own_faults{0};
-    std::uint64_t unexplained{0};
 };
 
 /// Of a run's cycles: so many misses that nobody is to blame for can be what a shared machine does

@@ -81,11 +81,6 @@ std::optional<std::string> settle(FinishedRun& run, const std::string& recording
     return std::nullopt;
 }
 
-SessionError failure(std::string text)
-{
-    return {std::move(text), kExitFailed};
-}
-
 /// Runs beside the load, which is gone when this returns.
 Result<FinishedRun, SessionError> run_beside(Session& session, const std::string& name,
                                              const std::vector<LoadKind>& loads)
@@ -137,9 +132,7 @@ Result<DeadlinePhase, SessionError> run_phase(Options options, const std::vector
                         .report = make_report(options, session.value()->controller(), run.value()),
                         .wake = statistics.wake,
                         .cpu = statistics.cpu,
-                        .response = statistics.deadlines.response(),
-                        .own_faults = statistics.deadlines.own_faults,
-                        .unexplained = statistics.deadlines.unexplained};
+                        .response = statistics.deadlines.response()};
     for (const LoadKind kind : loads)
     {
         phase.loads.emplace_back(kLoadNames[static_cast<std::size_t>(kind)]);
@@ -175,12 +168,6 @@ std::optional<OutputFileError> write_files(const ReportFiles& files, const SelfC
         return error;
     }
     return write_text(make_histogram_image(phases, setting), files.image);
-}
-
-int fail(const SessionError& error)
-{
-    log_line(error.text);
-    return error.code;
 }
 
 /// Empty when all is well.
@@ -219,12 +206,12 @@ int run_test(const Options& options, const std::vector<LoadKind>& loads)
     const ReportFiles files = has_files ? files_beside(options.report_path) : ReportFiles{};
     if (const auto error = probe(files))
     {
-        return fail(failure("--report: " + error->text));
+        return leave_with(failure("--report: " + error->text));
     }
     const auto check = run_self_check(options);
     if (!check)
     {
-        return fail(check.error());
+        return leave_with(check.error());
     }
     std::vector<DeadlinePhase> phases;
     std::vector<std::vector<LoadKind>> runs{{}};
@@ -237,18 +224,17 @@ int run_test(const Options& options, const std::vector<LoadKind>& loads)
         auto phase = run_phase(options, beside);
         if (!phase)
         {
-            return fail(phase.error());
+            return leave_with(phase.error());
         }
         phases.push_back(std::move(phase).value());
     }
-    const DeadlineSetting setting{options.thread.priority,
-                                  nanoseconds(1'000'000'000 / options.rate_hz)};
+    const DeadlineSetting setting{options.thread.priority, options.period()};
     fmt::print("{}", make_deadline_summary(check.value(), phases, setting));
     if (has_files)
     {
         if (const auto error = write_files(files, check.value(), phases, setting))
         {
-            return fail(failure("--report: " + error->text));
+            return leave_with(failure("--report: " + error->text));
         }
         fmt::print("report      {}, {}, {}\n", files.json, files.text, files.image);
     }
@@ -286,12 +272,12 @@ int run_deadline_test(int argc, char** argv)
     std::vector<LoadKind> loads;
     if (const std::string fault = check_load(load_names, loads); !fault.empty())
     {
-        return fail({fault, kExitUsage});
+        return leave_with({fault, kExitUsage});
     }
     const ReportFiles files = files_beside(options.report_path);
     if (!files.json.empty() && (files.json == files.text || files.json == files.image))
     {
-        return fail(
+        return leave_with(
             {"--report: must not end in .txt or .svg, which the histograms take", kExitUsage});
     }
     return run_test(options, loads);

@@ -22,12 +22,6 @@ namespace tactus::hrtc
 namespace
 {
 
-int fail(const SessionError& error)
-{
-    log_line(error.text);
-    return error.code;
-}
-
 int main_with(const Options& options)
 {
     install_handlers();
@@ -38,12 +32,12 @@ int main_with(const Options& options)
     auto session = Session::open(options);
     if (!session)
     {
-        return fail(session.error());
+        return leave_with(session.error());
     }
     const auto done = session.value()->run("touch");
     if (!done)
     {
-        return fail(done.error());
+        return leave_with(done.error());
     }
     const nlohmann::ordered_json report =
         make_report(options, session.value()->controller(), done.value());
@@ -52,7 +46,7 @@ int main_with(const Options& options)
     {
         if (const auto error = write_report(report, options.report_path))
         {
-            return fail({"--report: " + error->text, kExitFailed});
+            return leave_with(failure("--report: " + error->text));
         }
         fmt::print("report      {}\n", options.report_path);
     }

@@ -57,6 +57,12 @@ struct Options
     std::optional<double> speed_limit_m_per_s; ///< None: the device's own.
     bool trap_system_calls{false};
     RtThreadOptions thread;
+
+    [[nodiscard]] Duration period() const noexcept { return nanoseconds(1'000'000'000 / rate_hz); }
+    [[nodiscard]] std::uint64_t frames() const noexcept
+    {
+        return static_cast<std::uint64_t>(duration_s * static_cast<double>(rate_hz));
+    }
 };
 
 /// A command that runs the loop, and how its line differs from that of hrtc itself.

@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <limits>
 #include <span>
 
@@ -286,16 +285,14 @@ Json deadline_of(const RunRecord& record)
     {
         noted.push_back(cycle_of(cycle));
     }
-    const auto flagged = [&deadlines](CycleFlag flag)
-    { return deadlines.flagged[static_cast<std::size_t>(std::countr_zero(unsigned(flag)))]; };
     return {{"missed", deadlines.missed},
             {"own_fault", deadlines.own_faults},
             {"machine_late", deadlines.machine_late},
             {"unexplained", deadlines.unexplained},
             {"missed_periods", record.run.timer.missed_periods},
             {"episodes", record.run.timer.episodes},
-            {"extra_switches", flagged(CycleFlag::gave_way)},
-            {"over_budget", flagged(CycleFlag::over_work)},
+            {"extra_switches", deadlines.cycles_with(CycleFlag::gave_way)},
+            {"over_budget", deadlines.cycles_with(CycleFlag::over_work)},
             {"suspected", deadlines.suspected},
             {"cycles", cycles},
             {"noted", noted},

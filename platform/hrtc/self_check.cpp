@@ -172,8 +172,7 @@ Result<SelfCheck, SessionError> run_self_check(Options options)
         return session.error();
     }
     std::unique_ptr<HapticDevice>& device = session.value()->controller().devices().front();
-    device = std::make_unique<SpoilingDevice>(std::move(device),
-                                              nanoseconds(1'000'000'000 / options.rate_hz));
+    device = std::make_unique<SpoilingDevice>(std::move(device), options.period());
     auto run = session.value()->run("self-check");
     if (!run)
     {

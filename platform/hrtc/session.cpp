@@ -59,11 +59,6 @@ void on_assertion(const char* condition, const char* file, int line) noexcept
     std::_Exit(kExitFailed);
 }
 
-SessionError failure(std::string text)
-{
-    return {std::move(text), kExitFailed};
-}
-
 Result<std::vector<ServedModel>, SessionError> find_in_files(const Options& options)
 {
     std::vector<ServedModel> models;
@@ -276,6 +271,17 @@ bool was_interrupted() noexcept
     return interrupted.load();
 }
 
+SessionError failure(std::string text)
+{
+    return {std::move(text), kExitFailed};
+}
+
+int leave_with(const SessionError& error)
+{
+    log_line(error.text);
+    return error.code;
+}
+
 SessionError interruption()
 {
     return failure("interrupted; nothing is judged");
@@ -329,9 +335,7 @@ Result<std::unique_ptr<Session>, SessionError> Session::open(const Options& opti
 Result<FinishedRun, SessionError> Session::run(const std::string& what)
 {
     const std::size_t tools = controller_->tools().size();
-    const Duration period = nanoseconds(1'000'000'000 / options_.rate_hz);
-    const auto frames =
-        static_cast<std::uint64_t>(options_.duration_s * static_cast<double>(options_.rate_hz));
+    const Duration period = options_.period();
     FinishedRun done{.statistics = RunStatistics(tools, tools * controller_->poses().size(),
                                                  controller_->models().size(), period),
                      .thread = {},
@@ -352,7 +356,8 @@ Result<FinishedRun, SessionError> Session::run(const std::string& what)
     HapticLoop loop({&controller_->frame(), controller_->devices(), controller_->limits(),
                      controller_->conditioners(), controller_->poses(), &timer, &clock,
                      controller_->budgets(), governor ? &*governor : nullptr,
-                     recorder ? &recorder->tap() : nullptr, frames, &transport.hosts_gone()},
+                     recorder ? &recorder->tap() : nullptr, options_.frames(),
+                     &transport.hosts_gone()},
                     done.statistics);
     PosixPeriodicTimer alarm;
     Supervisor supervisor({controller_->devices(), &loop.heartbeat(), &clock, &alarm, period});
@@ -371,7 +376,7 @@ Result<FinishedRun, SessionError> Session::run(const std::string& what)
         running_loop.store(nullptr);
         return failure(thread.error().message);
     }
-    wait_for_end(loop, frames, supervisor, done.safety, what);
+    wait_for_end(loop, options_.frames(), supervisor, done.safety, what);
     if (loop.has_failed())
     {
         finish_recording(recorder, done); // Up to the frame that failed.

@@ -25,6 +25,12 @@ struct SessionError
     int code{0};
 };
 
+/// One that happened at run time.
+[[nodiscard]] SessionError failure(std::string text);
+
+/// Says it in one line on stderr; returns the code to leave with.
+int leave_with(const SessionError& error);
+
 /// A run that has ended.
 struct FinishedRun
 {

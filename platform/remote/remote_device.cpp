@@ -10,11 +10,6 @@ namespace tactus
 namespace
 {
 
-std::array<double, 3> to_array(const Vec3& v) noexcept
-{
-    return {v.x(), v.y(), v.z()};
-}
-
 bool is_in_range(Duration time) noexcept
 {
     return time >= RemoteTimes::kMin && time <= RemoteTimes::kMax;

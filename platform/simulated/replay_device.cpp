@@ -46,11 +46,6 @@ const char* find_bad_option(const ReplayDeviceOptions& options)
     return nullptr;
 }
 
-std::array<double, 3> to_array(const Vec3& v) noexcept
-{
-    return {v.x(), v.y(), v.z()};
-}
-
 DeviceInfo describe(const ReplayDeviceOptions& options)
 {
     Vec3 low = std::ranges::find_if(options.readings, is_place)->position_world_m;

@@ -16,11 +16,6 @@ namespace
 
 constexpr std::int64_t kSecondNs = 1'000'000'000;
 
-std::array<double, 3> to_array(const Vec3& v) noexcept
-{
-    return {v.x(), v.y(), v.z()};
-}
-
 bool is_positive(double value) noexcept
 {
     return std::isfinite(value) && value > 0.0;

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <bit>
 #include <functional>
 
 namespace tactus::hrtc::test
@@ -51,12 +50,6 @@ private:
     CycleMeasures measures_;
 };
 
-std::uint64_t over_work(const RunStatistics& statistics)
-{
-    return statistics.deadlines.flagged[static_cast<std::size_t>(
-        std::countr_zero(static_cast<unsigned>(CycleFlag::over_work)))];
-}
-
 /// Each model has the budget of splits to itself, and each pair is walked twice.
 TEST(RunStatistics, counts_a_frame_as_over_budget_from_one_beyond_what_all_models_may_do)
 {
@@ -65,7 +58,7 @@ TEST(RunStatistics, counts_a_frame_as_over_budget_from_one_beyond_what_all_model
     {
         run.frame([change](FrameOutput& output, CycleMeasures& measures)
                   { change(output.work, measures.budgets); });
-        return over_work(run.sut);
+        return run.sut.deadlines.cycles_with(CycleFlag::over_work);
     };
     EXPECT_EQ(with([](WorkCounters& work, const Budgets& budgets)
                    { work.splits = kModels * budgets.splits; }),

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/hrtc/deadline_report.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+namespace tactus::hrtc::test
+{
+
+namespace
+{
+
+constexpr std::uint64_t kCycles = 10'000;
+constexpr DeadlineSetting kSetting{80, milliseconds(1)};
+constexpr SelfCheck kSound{20, 20, 0, true};
+
+/// A run of kCycles of which so many deadlines were missed.
+DeadlinePhase phase_with(std::uint64_t own, std::uint64_t machine, std::uint64_t unexplained)
+{
+    DeadlinePhase phase;
+    phase.name = "alone";
+    phase.report["frames"] = kCycles;
+    phase.report["deadline"] = {{"missed", own + machine + unexplained},
+                                {"own_fault", own},
+                                {"machine_late", machine},
+                                {"unexplained", unexplained}};
+    for (std::uint64_t i = 0; i < kCycles; ++i)
+    {
+        phase.wake.record(microseconds(7));
+        phase.cpu.record(microseconds(30));
+        phase.response.record(microseconds(40));
+    }
+    return phase;
+}
+
+std::string verdict_on(const SelfCheck& check, const std::vector<DeadlinePhase>& phases)
+{
+    const std::string text = make_deadline_summary(check, phases, kSetting);
+    return text.substr(text.find("verdict"));
+}
+
+TEST(DeadlineReport, passes_what_the_machine_alone_made_late)
+{
+    const std::vector phases{phase_with(0, 500, 0), phase_with(0, 9'000, 10)};
+    EXPECT_TRUE(is_passed(kSound, phases));
+    EXPECT_EQ(verdict_on(kSound, phases), "verdict     passed: 0 own faults in 20000 cycles; 10 "
+                                          "misses of neither's doing\n");
+    EXPECT_TRUE(make_deadline_report(kSound, phases)["passed"].get<bool>());
+}
+
+TEST(DeadlineReport, fails_for_one_own_fault_in_any_run)
+{
+    for (const std::vector<DeadlinePhase>& phases :
+         {std::vector{phase_with(1, 0, 0), phase_with(0, 0, 0)},
+          std::vector{phase_with(0, 0, 0), phase_with(1, 0, 0)}})
+    {
+        EXPECT_FALSE(is_passed(kSound, phases));
+        EXPECT_EQ(verdict_on(kSound, phases), "verdict     failed: 1 own faults in 20000 cycles\n");
+        EXPECT_FALSE(make_deadline_report(kSound, phases)["passed"].get<bool>());
+    }
+}
+
+TEST(DeadlineReport, fails_for_more_than_a_thousandth_that_nothing_explains)
+{
+    EXPECT_TRUE(is_passed(kSound, std::vector{phase_with(0, 0, 10)}));
+    EXPECT_FALSE(is_passed(kSound, std::vector{phase_with(0, 0, 11)}));
+}
+
+TEST(DeadlineReport, believes_nothing_after_a_self_check_that_failed)
+{
+    for (const SelfCheck& check :
+         {SelfCheck{20, 19, 0, true}, SelfCheck{20, 20, 1, true}, SelfCheck{0, 0, 0, true}})
+    {
+        const std::vector phases{phase_with(0, 0, 0)};
+        EXPECT_FALSE(is_passed(check, phases));
+        EXPECT_NE(verdict_on(check, phases).find("failed: the self-check"), std::string::npos);
+    }
+}
+
+TEST(DeadlineReport, has_the_last_run_in_front_and_the_first_one_apart)
+{
+    std::vector phases{phase_with(0, 1, 0), phase_with(0, 2, 0)};
+    phases.back().loads = {"cpu"};
+    const auto both = make_deadline_report(kSound, phases);
+    EXPECT_EQ(both["deadline"]["machine_late"], 2);
+    EXPECT_EQ(both["load"].size(), 1U);
+    EXPECT_EQ(both["alone"]["deadline"]["machine_late"], 1);
+    EXPECT_TRUE(both["alone"]["load"].empty());
+    EXPECT_FALSE(make_deadline_report(kSound, std::span(phases).first(1)).contains("alone"));
+    for (const char* key : {"wake", "cpu", "response"})
+    {
+        ASSERT_EQ(both["histograms_us"][key].size(), 1U) << key; // All the same value.
+        EXPECT_EQ(both["histograms_us"][key][0][1], kCycles);
+    }
+    EXPECT_GE(both["histograms_us"]["cpu"][0][0].get<double>(), 30.0);
+    EXPECT_LT(both["histograms_us"]["cpu"][0][0].get<double>(), 32.0);
+}
+
+TEST(DeadlineReport, tells_of_the_wake_as_cyclictest_does)
+{
+    const std::string text =
+        make_deadline_summary(kSound, std::vector{phase_with(0, 0, 0)}, kSetting);
+    EXPECT_NE(text.find("P:80 I:1000 C:  10000 Min:      7 Avg:    7 Max:       7"),
+              std::string::npos)
+        << text;
+    EXPECT_NE(text.find("of the period: 3.0 % alone"), std::string::npos) << text;
+}
+
+} // namespace
+
+} // namespace tactus::hrtc::test
