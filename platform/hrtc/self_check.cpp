@@ -5,6 +5,7 @@
 #include "platform/allocation_counter.hpp"
 #include "platform/hrtc/frame_repeater.hpp"
 #include "platform/thread_usage.hpp"
+#include "platform/wrapped_device.hpp"
 
 #include <fmt/format.h>
 
@@ -34,32 +35,23 @@ void touch_new_page() noexcept
 }
 
 /// The device as it is, but its readings spoil the frames of the plan.
-class SpoilingDevice final : public HapticDevice
+class SpoilingDevice final : public WrappedDevice
 {
 public:
     SpoilingDevice(std::unique_ptr<HapticDevice> device, Duration period)
-        : device_(std::move(device)), period_(period)
+        : WrappedDevice(std::move(device)), period_(period)
     {
     }
-    [[nodiscard]] const DeviceInfo& info() const noexcept override { return device_->info(); }
     [[nodiscard]] DeviceSample read() noexcept override
     {
         if (const auto fault = InjectionPlan::at(frame_++))
         {
             inject(*fault, period_);
         }
-        return device_->read();
+        return WrappedDevice::read();
     }
-    void write(const std::array<double, 3>& force_world_n) noexcept override
-    {
-        device_->write(force_world_n);
-    }
-    void brake() noexcept override { device_->brake(); }
-    void release_brake() noexcept override { device_->release_brake(); }
-    [[nodiscard]] DeviceStatus status() const noexcept override { return device_->status(); }
 
 private:
-    std::unique_ptr<HapticDevice> device_;
     Duration period_;
     std::uint64_t frame_{0};
 };

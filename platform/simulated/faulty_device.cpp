@@ -3,7 +3,6 @@
 #include "platform/simulated/faulty_device.hpp"
 
 #include "platform/simulated/seeded_noise.hpp"
-#include "rt_core/base/assert.hpp"
 
 #include <cmath>
 #include <limits>
@@ -27,14 +26,13 @@ void set_velocity(DeviceSample& sample, double m_per_s) noexcept
 
 FaultyDevice::FaultyDevice(std::unique_ptr<HapticDevice> device, std::vector<DeviceFault> faults,
                            std::uint64_t seed)
-    : device_(std::move(device)), faults_(std::move(faults)), seed_(seed)
+    : WrappedDevice(std::move(device)), faults_(std::move(faults)), seed_(seed)
 {
-    TACTUS_ASSERT(device_ != nullptr);
 }
 
 DeviceSample FaultyDevice::read() noexcept
 {
-    DeviceSample sample = device_->read();
+    DeviceSample sample = WrappedDevice::read();
     last_ = sample.frame == 0 ? sample : last_;
     const bool was_away = std::exchange(is_away_, false);
     const bool was_stuck = std::exchange(is_stuck_, false);
@@ -74,9 +72,9 @@ void FaultyDevice::leap(DeviceSample& sample) const noexcept
 /// Unless it is braked, which makes none already and has to stay so.
 void FaultyDevice::drop_force() noexcept
 {
-    if (device_->status().state != DeviceState::brake)
+    if (status().state != DeviceState::brake)
     {
-        device_->release_brake();
+        release_brake();
     }
 }
 
@@ -84,7 +82,7 @@ void FaultyDevice::write(const std::array<double, 3>& force_world_n) noexcept
 {
     if (!is_away_)
     {
-        device_->write(force_world_n);
+        WrappedDevice::write(force_world_n);
     }
 }
 

@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/haptic_device.hpp"
+#include "platform/wrapped_device.hpp"
 
 #include <cstdint>
 #include <memory>
@@ -40,7 +40,7 @@ struct DeviceFault
 
 /// A device as it is, but for readings that go wrong on a schedule. Faults at the same time act in
 /// the order given. The same device, faults and seed give the same readings. Threads as the device.
-class FaultyDevice final : public HapticDevice
+class FaultyDevice final : public WrappedDevice
 {
 public:
     static constexpr double kJitter_m = 1e-4;
@@ -49,12 +49,8 @@ public:
     FaultyDevice(std::unique_ptr<HapticDevice> device, std::vector<DeviceFault> faults,
                  std::uint64_t seed = 1);
 
-    [[nodiscard]] const DeviceInfo& info() const noexcept override { return device_->info(); }
     [[nodiscard]] DeviceSample read() noexcept override;
     void write(const std::array<double, 3>& force_world_n) noexcept override;
-    void brake() noexcept override { device_->brake(); }
-    void release_brake() noexcept override { device_->release_brake(); }
-    [[nodiscard]] DeviceStatus status() const noexcept override { return device_->status(); }
 
 private:
     void spoil(DeviceFaultKind kind, DeviceSample& sample) noexcept;
@@ -62,7 +58,6 @@ private:
     void leap(DeviceSample& sample) const noexcept;
     void drop_force() noexcept;
 
-    std::unique_ptr<HapticDevice> device_;
     std::vector<DeviceFault> faults_;
     std::uint64_t seed_;
     DeviceSample last_;    ///< The last valid one that was given out.

@@ -6,6 +6,7 @@
 #include "platform/simulated/scripted_hand.hpp"
 #include "platform/simulated/simulated_device.hpp"
 #include "platform/simulated/simulated_periodic_timer.hpp"
+#include "platform/wrapped_device.hpp"
 #include "tests/shared/frame_rig.hpp"
 
 #include <gtest/gtest.h>
@@ -86,36 +87,30 @@ std::vector<LateWake> late_wakes(std::uint32_t seed)
 }
 
 /// A device whose reading takes time, in which the other threads' work is done, too.
-class BusyDevice final : public HapticDevice
+class BusyDevice final : public WrappedDevice
 {
 public:
-    BusyDevice(std::unique_ptr<SimulatedDevice> device,
-               std::function<void(std::uint64_t)> meanwhile)
-        : device_(std::move(device)), meanwhile_(std::move(meanwhile))
+    BusyDevice(std::unique_ptr<HapticDevice> device, std::function<void(std::uint64_t)> meanwhile)
+        : WrappedDevice(std::move(device)), meanwhile_(std::move(meanwhile))
     {
     }
-    [[nodiscard]] const DeviceInfo& info() const noexcept override { return device_->info(); }
     [[nodiscard]] DeviceSample read() noexcept override
     {
         meanwhile_(reads_++);
-        return device_->read();
+        return WrappedDevice::read();
     }
     void write(const std::array<double, 3>& force_world_n) noexcept override
     {
-        device_->write(force_world_n);
+        WrappedDevice::write(force_world_n);
         for (const double force_n : force_world_n)
         {
             written.add(force_n);
         }
     }
-    void brake() noexcept override { device_->brake(); }
-    void release_brake() noexcept override { device_->release_brake(); }
-    [[nodiscard]] DeviceStatus status() const noexcept override { return device_->status(); }
 
     Digest written;
 
 private:
-    std::unique_ptr<SimulatedDevice> device_;
     std::function<void(std::uint64_t)> meanwhile_;
     std::uint64_t reads_{0};
 };

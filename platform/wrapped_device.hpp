@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "platform/haptic_device.hpp"
+#include "rt_core/base/assert.hpp"
+
+#include <memory>
+#include <utility>
+
+namespace tactus
+{
+
+/// A device as it is, for those that change one thing about it. Threads as the device.
+class WrappedDevice : public HapticDevice
+{
+public:
+    /// `device` is not null.
+    explicit WrappedDevice(std::unique_ptr<HapticDevice> device) : device_(std::move(device))
+    {
+        TACTUS_ASSERT(device_ != nullptr);
+    }
+
+    [[nodiscard]] const DeviceInfo& info() const noexcept override { return device_->info(); }
+    [[nodiscard]] DeviceSample read() noexcept override { return device_->read(); }
+    void write(const std::array<double, 3>& force_world_n) noexcept override
+    {
+        device_->write(force_world_n);
+    }
+    void brake() noexcept override { device_->brake(); }
+    void release_brake() noexcept override { device_->release_brake(); }
+    [[nodiscard]] DeviceStatus status() const noexcept override { return device_->status(); }
+
+private:
+    std::unique_ptr<HapticDevice> device_;
+};
+
+} // namespace tactus
