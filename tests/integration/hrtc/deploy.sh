@@ -10,7 +10,7 @@ command -v python3 >/dev/null || exit 77
 cmake --install "$folder" --prefix "$scratch/root" >install.log || fail 'cmake --install'
 readonly installed=$scratch/root/bin documents=$scratch/root/share/doc/tactus
 for program in spm_build spm_inspect spm_publish hrtc; do
-    "$installed/$program" --version | grep -q "^$program " || fault "$program --version"
+    [[ $("$installed/$program" --version) == "$program "* ]] || fault "$program --version"
 done
 for file in README.md LICENSE docs/deploy.md examples/hrtc.toml; do
     [[ -s $documents/$file ]] || fault "no $file in the documents"

@@ -72,7 +72,9 @@ refuse --fast --fast
 refuse extra extra
 "$hrtc" doctor --help >help.txt || fault 'hrtc doctor --help'
 grep -q -- --json help.txt || fault 'hrtc doctor --help'
-"$hrtc" --help | grep -q 'hrtc doctor' || fault 'hrtc --help does not tell of the doctor'
+# Not by a pipe: grep leaves at the first match, and what is still written then fails.
+"$hrtc" --help >help.txt
+grep -q 'hrtc doctor' help.txt || fault 'hrtc --help does not tell of the doctor'
 expect 3 doctor "$hrtc" --allow-no-rt doctor # Only as the first word.
 code=0
 "$hrtc" doctor >/dev/full 2>full.txt || code=$?
