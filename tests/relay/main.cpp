@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "host_tools/cli/command_line.hpp"
+#include "platform/posix/posix_clock.hpp"
+#include "tests/relay/relay.hpp"
+#include "tests/relay/tap_network.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <csignal>
+#include <cstdint>
+#include <cstdio>
+#include <exception>
+#include <limits>
+#include <optional>
+#include <poll.h>
+#include <string>
+#include <sys/prctl.h>
+#include <unistd.h>
+
+namespace tactus::relay
+{
+
+namespace
+{
+
+constexpr int kMtuMin_bytes = 576; // What every IPv4 host must take.
+constexpr int kMtuMax_bytes = 9'000;
+constexpr std::size_t kLineBytesMax = 200;
+constexpr const char* kHostAddress = "10.77.0.1";
+constexpr const char* kControllerAddress = "10.77.0.2";
+
+struct Options
+{
+    LinkCondition condition;
+    std::uint32_t seed{1};
+    int mtu_bytes{1'500};
+};
+
+volatile std::sig_atomic_t stop_requested = 0;
+
+/// Held back but while the loop waits, so that none comes between its look and its wait.
+void stop_on_signals(sigset_t& while_waiting)
+{
+    struct sigaction action = {};
+    action.sa_handler = [](int) { stop_requested = 1; };
+    ::sigaction(SIGINT, &action, nullptr);
+    ::sigaction(SIGTERM, &action, nullptr);
+    action.sa_handler = SIG_IGN; // Nobody reads the answers any more: told by the write.
+    ::sigaction(SIGPIPE, &action, nullptr);
+    sigset_t held_back;
+    ::sigemptyset(&held_back);
+    ::sigaddset(&held_back, SIGINT);
+    ::sigaddset(&held_back, SIGTERM);
+    ::sigprocmask(SIG_BLOCK, &held_back, &while_waiting);
+    ::sigdelset(&while_waiting, SIGINT);
+    ::sigdelset(&while_waiting, SIGTERM);
+}
+
+void declare_options(CLI::App& app, Options& options)
+{
+    app.set_version_flag("--version", std::string("network_relay ") + TACTUS_VERSION);
+    app.add_option("--delay-ms", options.condition.delay_ms, "Delay of every frame, one way")
+        ->check(number_between(0.0, kDelayMax_ms))
+        ->capture_default_str();
+    app.add_option("--jitter-ms", options.condition.jitter_ms,
+                   "On top of it, uniform from 0 to this; frames overtake each other")
+        ->check(number_between(0.0, kDelayMax_ms))
+        ->capture_default_str();
+    app.add_option("--loss", options.condition.loss, "Share of the frames that are lost")
+        ->check(number_between(0.0, 1.0))
+        ->capture_default_str();
+    app.add_option("--duplicates", options.condition.duplicates,
+                   "Share of the others that arrive twice")
+        ->check(number_between(0.0, 1.0))
+        ->capture_default_str();
+    app.add_option("--seed", options.seed, "Of all random choices")
+        ->check(CLI::Range(std::uint32_t{0}, std::numeric_limits<std::uint32_t>::max()))
+        ->capture_default_str();
+    app.add_option("--mtu", options.mtu_bytes, "Of both interfaces, in bytes")
+        ->check(CLI::Range(kMtuMin_bytes, kMtuMax_bytes))
+        ->capture_default_str();
+}
+
+/// False when nobody reads any more.
+bool say(const std::string& line)
+{
+    return std::puts(line.c_str()) >= 0 && std::fflush(stdout) == 0;
+}
+
+std::string ready_line(const TapNetwork& host, const TapNetwork& controller)
+{
+    const auto side = [](const TapNetwork& network, const char* interface, const char* address)
+    {
+        return nlohmann::ordered_json{{"fd", network.namespace_descriptor()},
+                                      {"interface", interface},
+                                      {"address", std::string(address) + "/24"}};
+    };
+    return nlohmann::ordered_json{
+        {"pid", ::getpid()},
+        {"host", side(host, "host0", kHostAddress)},
+        {"controller", side(controller, "controller0", kControllerAddress)}}
+        .dump();
+}
+
+/// The lines of stdin, as they come.
+class CommandLines
+{
+public:
+    /// Reads once and answers each whole line. False at the end of the file, for a line that is too
+    /// long, and when nobody reads the answers.
+    bool answer_by(Relay& relay)
+    {
+        std::array<char, kLineBytesMax> bytes{};
+        const ssize_t read = ::read(STDIN_FILENO, bytes.data(), bytes.size());
+        if (read <= 0)
+        {
+            return false;
+        }
+        text_.append(bytes.data(), static_cast<std::size_t>(read));
+        for (std::size_t end = text_.find('\n'); end != std::string::npos; end = text_.find('\n'))
+        {
+            if (!say(relay.answer(text_.substr(0, end))))
+            {
+                return false;
+            }
+            text_.erase(0, end + 1);
+        }
+        return text_.size() <= kLineBytesMax;
+    }
+
+private:
+    std::string text_;
+};
+
+timespec wait_time(MonotonicTime due)
+{
+    constexpr std::int64_t kSecond_ns = 1'000'000'000;
+    const std::int64_t left_ns = std::max<std::int64_t>((due - PosixClock().now()).ns, 0);
+    return {left_ns / kSecond_ns, left_ns % kSecond_ns};
+}
+
+void serve(Relay& relay, const TapNetwork& host, const TapNetwork& controller,
+           const sigset_t& while_waiting)
+{
+    CommandLines lines;
+    std::array<pollfd, 3> awaited{{{STDIN_FILENO, POLLIN, 0},
+                                   {host.tap_descriptor(), POLLIN, 0},
+                                   {controller.tap_descriptor(), POLLIN, 0}}};
+    while (stop_requested == 0)
+    {
+        const std::optional<MonotonicTime> due = relay.next_due();
+        const timespec wait = due ? wait_time(*due) : timespec{};
+        const int ready =
+            ::ppoll(awaited.data(), awaited.size(), due ? &wait : nullptr, &while_waiting);
+        relay.carry();
+        if (ready > 0 && awaited[0].revents != 0 && !lines.answer_by(relay))
+        {
+            return;
+        }
+    }
+}
+
+int run(int argc, char** argv)
+{
+    CLI::App app("Makes two networks and carries frames between them, with delay, loss, duplicates "
+                 "and cuts; told on stdin: " +
+                     command_forms() + ".",
+                 "network_relay");
+    Options options;
+    declare_options(app, options);
+    if (const auto code = parse_command_line(app, argc, argv))
+    {
+        return *code;
+    }
+    const auto host = TapNetwork::create({"host0", kHostAddress, options.mtu_bytes});
+    if (!host)
+    {
+        return fail(app, "no network can be made here: " + host.error().text);
+    }
+    const auto controller =
+        TapNetwork::create({"controller0", kControllerAddress, options.mtu_bytes});
+    if (!controller)
+    {
+        return fail(app, "no network can be made here: " + controller.error().text);
+    }
+    // The system otherwise wakes a sleeper up to 50 us late, to save power.
+    static_cast<void>(::prctl(PR_SET_TIMERSLACK, 1UL));
+    sigset_t while_waiting;
+    stop_on_signals(while_waiting);
+    Relay relay(host.value(), controller.value(), options.condition, options.seed);
+    if (say(ready_line(host.value(), controller.value())))
+    {
+        serve(relay, host.value(), controller.value(), while_waiting);
+    }
+    return kExitDone;
+}
+
+} // namespace
+
+} // namespace tactus::relay
+
+int main(int argc, char** argv)
+{
+    try
+    {
+        return tactus::relay::run(argc, argv);
+    }
+    catch (const std::exception& error)
+    {
+        fmt::print(stderr, "network_relay: {}\n", error.what());
+    }
+    return tactus::kExitFailed;
+}

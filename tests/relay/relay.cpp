@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "tests/relay/relay.hpp"
+
+#include "platform/posix/posix_clock.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <span>
+#include <variant>
+
+namespace tactus::relay
+{
+
+namespace
+{
+
+using Json = nlohmann::ordered_json;
+
+/// With the largest MTU of main.cpp and headers of all kinds.
+constexpr std::size_t kFrameBytesMax = std::size_t{16} << 10U;
+/// Taken from one network before it is the other's turn, and what is due goes out.
+constexpr int kFramesInTurn = 64;
+
+Json json_of(const OneWayCounts& counts, std::uint64_t refused_by_system)
+{
+    return {{"frames", counts.frames},
+            {"bytes", counts.bytes},
+            {"udp_datagrams", counts.udp_datagrams},
+            {"udp_payload_bytes", counts.udp_payload_bytes},
+            {"delivered", counts.delivered},
+            {"lost", counts.lost},
+            {"duplicated", counts.duplicated},
+            {"cut", counts.cut},
+            {"dropped_full", counts.dropped_full},
+            {"refused_by_system", refused_by_system}};
+}
+
+MonotonicTime now()
+{
+    return PosixClock().now();
+}
+
+} // namespace
+
+Relay::Relay(const TapNetwork& host, const TapNetwork& controller, const LinkCondition& condition,
+             std::uint64_t seed)
+    : to_controller_{&host, &controller, OneWay(2 * seed)}
+    , to_host_{&controller, &host, OneWay(2 * seed + 1)}
+    , condition_(condition)
+    , buffer_(kFrameBytesMax)
+{
+}
+
+void Relay::carry()
+{
+    collect(to_controller_);
+    collect(to_host_);
+    deliver(to_controller_);
+    deliver(to_host_);
+}
+
+void Relay::collect(Direction& direction)
+{
+    for (int i = 0; i < kFramesInTurn; ++i)
+    {
+        const std::size_t bytes = direction.from->read(buffer_);
+        if (bytes == 0)
+        {
+            return;
+        }
+        direction.way.take(std::span(buffer_).first(bytes), condition_, now());
+    }
+}
+
+void Relay::deliver(Direction& direction)
+{
+    const MonotonicTime until = now();
+    while (const auto frame = direction.way.take_due(until))
+    {
+        direction.refused_by_system += direction.to->write(*frame) ? 0U : 1U;
+    }
+}
+
+std::optional<MonotonicTime> Relay::next_due() const
+{
+    const std::optional<MonotonicTime> one = to_controller_.way.next_due();
+    const std::optional<MonotonicTime> other = to_host_.way.next_due();
+    return one && other ? std::min(one, other) : (one ? one : other);
+}
+
+std::string Relay::answer(std::string_view line)
+{
+    const std::optional<Command> command = parse_command(line);
+    if (!command)
+    {
+        return "refused: allowed are " + command_forms();
+    }
+    if (std::holds_alternative<Count>(*command))
+    {
+        return counts();
+    }
+    follow(*command);
+    return "done";
+}
+
+void Relay::follow(const Command& command)
+{
+    if (const auto* set = std::get_if<Set>(&command))
+    {
+        condition_.*set->figure = set->value;
+        return;
+    }
+    const bool is_cut = std::holds_alternative<Cut>(command);
+    for (Direction* direction : {&to_controller_, &to_host_})
+    {
+        is_cut ? direction->way.cut() : direction->way.mend();
+    }
+}
+
+std::string Relay::counts() const
+{
+    return Json{
+        {"to_controller", json_of(to_controller_.way.counts(), to_controller_.refused_by_system)},
+        {"to_host", json_of(to_host_.way.counts(), to_host_.refused_by_system)}}
+        .dump();
+}
+
+} // namespace tactus::relay
