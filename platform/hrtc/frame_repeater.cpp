@@ -19,15 +19,16 @@ frames_over_again(const Recording& recording, std::span<const std::uint64_t> sus
 {
     std::set<std::uint64_t> over;
     Duration before;
-    const ReplayWatch watch{[&before](std::uint64_t) { before = read_thread_cpu_time(); },
-                            [&](std::uint64_t frame)
-                            {
-                                if (read_thread_cpu_time() - before > limit &&
-                                    std::ranges::binary_search(suspects, frame))
-                                {
-                                    over.insert(frame);
-                                }
-                            }};
+    const ReplayWatch watch{
+        [&before](std::uint64_t) { before = read_thread_cpu_time(); },
+        [&](std::uint64_t frame, const RecordedFrame& /*unused*/, const FrameOutput& /*unused*/)
+        {
+            if (read_thread_cpu_time() - before > limit &&
+                std::ranges::binary_search(suspects, frame))
+            {
+                over.insert(frame);
+            }
+        }};
     for (int i = 0; i < kRepetitions && over.size() < suspects.size(); ++i)
     {
         const auto replayed = replay(recording, nullptr, watch);

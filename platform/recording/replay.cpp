@@ -62,7 +62,7 @@ public:
             frame_->run(recorded.tools, recorded.poses, recorded.budgets, {});
         if (watch.ends)
         {
-            watch.ends(number);
+            watch.ends(number, recorded, output);
         }
         return compare(output, recorded);
     }

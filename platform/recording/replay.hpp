@@ -2,8 +2,10 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "platform/recording/frame_decoder.hpp"
 #include "platform/recording/recording.hpp"
 #include "rt_core/kernels/kernels.hpp"
+#include "rt_core/records/frame_output.hpp"
 
 #include <cstdint>
 #include <functional>
@@ -36,8 +38,10 @@ struct ReplayError
 /// pages are linked by then. Either may be empty.
 struct ReplayWatch
 {
+    using Ends = void(std::uint64_t, const RecordedFrame& given, const FrameOutput& returned);
+
     std::function<void(std::uint64_t)> begins;
-    std::function<void(std::uint64_t)> ends;
+    std::function<Ends> ends; ///< Both are valid during the call.
 };
 
 /// Makes a frame as the recorded one was made, gives it the recorded inputs, arrivals and link

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cstdint>
 #include <span>
 #include <variant>
 
@@ -24,7 +25,7 @@ constexpr std::size_t kFrameBytesMax = std::size_t{16} << 10U;
 /// Taken from one network before it is the other's turn, and what is due goes out.
 constexpr int kFramesInTurn = 64;
 
-Json json_of(const OneWayCounts& counts, std::uint64_t refused_by_system)
+Json json_of(const OneWayCounts& counts, std::uint64_t missed, std::uint64_t refused_by_system)
 {
     return {{"frames", counts.frames},
             {"bytes", counts.bytes},
@@ -35,6 +36,7 @@ Json json_of(const OneWayCounts& counts, std::uint64_t refused_by_system)
             {"duplicated", counts.duplicated},
             {"cut", counts.cut},
             {"dropped_full", counts.dropped_full},
+            {"missed", missed},
             {"refused_by_system", refused_by_system}};
 }
 
@@ -122,10 +124,12 @@ void Relay::follow(const Command& command)
 
 std::string Relay::counts() const
 {
-    return Json{
-        {"to_controller", json_of(to_controller_.way.counts(), to_controller_.refused_by_system)},
-        {"to_host", json_of(to_host_.way.counts(), to_host_.refused_by_system)}}
-        .dump();
+    const auto side = [](const Direction& direction)
+    {
+        return json_of(direction.way.counts(), direction.from->frames_missed(),
+                       direction.refused_by_system);
+    };
+    return Json{{"to_controller", side(to_controller_)}, {"to_host", side(to_host_)}}.dump();
 }
 
 } // namespace tactus::relay

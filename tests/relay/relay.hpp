@@ -32,8 +32,9 @@ public:
     /// When it has to carry again though nobody sends; none when nothing is under way.
     [[nodiscard]] std::optional<MonotonicTime> next_due() const;
 
-    /// Does what the line says; the answer is one line, "done", the counts as JSON, or "refused: "
-    /// and why.
+    /// Does what the line says; the answer is one line, "done", "refused: " and what is allowed, or
+    /// the counts as JSON: of each direction OneWayCounts, `missed`, frames that the system dropped
+    /// before they could be read, and `refused_by_system`, those that it didn't take.
     [[nodiscard]] std::string answer(std::string_view line);
 
 private:

@@ -2,10 +2,12 @@
 // Copyright the Tactus authors.
 #include "tests/relay/tap_network.hpp"
 
+#include "rt_core/base/assert.hpp"
+
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <arpa/inet.h>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <fcntl.h>
@@ -14,6 +16,7 @@
 #include <netinet/in.h>
 #include <optional>
 #include <sched.h>
+#include <sstream>
 #include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -27,9 +30,10 @@ namespace
 
 constexpr const char* kTunDevice = "/dev/net/tun";
 constexpr const char* kOwnNamespace = "/proc/thread-self/ns/net";
+constexpr const char* kStatistics = "/proc/thread-self/net/dev";
 constexpr const char* kNetmask = "255.255.255.0";
 /// Frames that the system keeps until the relay reads them: a hundred milliseconds' worth of large
-/// ones at 500 Mbit/s. Those beyond are lost before they are counted.
+/// ones at 500 Mbit/s. frames_missed() has those beyond.
 constexpr int kSystemQueueFrames = 4'096;
 
 /// Closed at the end, unless released.
@@ -160,10 +164,19 @@ Result<TapNetwork, TapError> TapNetwork::create(const TapOptions& options)
         return refusal("a network namespace");
     }
     Descriptor network(open(kOwnNamespace, O_RDONLY | O_CLOEXEC));
-    Descriptor tap(open(kTunDevice, O_RDWR | O_NONBLOCK | O_CLOEXEC));
-    if (network.get() < 0 || tap.get() < 0)
+    if (network.get() < 0)
     {
-        return refusal(network.get() < 0 ? kOwnNamespace : kTunDevice);
+        return refusal(kOwnNamespace);
+    }
+    Descriptor statistics(open(kStatistics, O_RDONLY | O_CLOEXEC));
+    if (statistics.get() < 0)
+    {
+        return refusal(kStatistics);
+    }
+    Descriptor tap(open(kTunDevice, O_RDWR | O_NONBLOCK | O_CLOEXEC));
+    if (tap.get() < 0)
+    {
+        return refusal(kTunDevice);
     }
     ifreq request = request_for(options.interface);
     request.ifr_flags = IFF_TAP | IFF_NO_PI;
@@ -176,17 +189,20 @@ Result<TapNetwork, TapError> TapNetwork::create(const TapOptions& options)
     {
         return *refused;
     }
-    return TapNetwork(network.release(), tap.release());
+    return TapNetwork(options.interface, network.release(), tap.release(), statistics.release());
 }
 
 TapNetwork::TapNetwork(TapNetwork&& other) noexcept
-    : namespace_(std::exchange(other.namespace_, -1)), tap_(std::exchange(other.tap_, -1))
+    : interface_(std::move(other.interface_))
+    , namespace_(std::exchange(other.namespace_, -1))
+    , tap_(std::exchange(other.tap_, -1))
+    , statistics_(std::exchange(other.statistics_, -1))
 {
 }
 
 TapNetwork::~TapNetwork()
 {
-    for (const int descriptor : {tap_, namespace_})
+    for (const int descriptor : {tap_, namespace_, statistics_})
     {
         if (descriptor >= 0)
         {
@@ -199,6 +215,30 @@ std::size_t TapNetwork::read(std::span<std::byte> buffer) const
 {
     const ssize_t bytes = ::read(tap_, buffer.data(), buffer.size());
     return bytes < 0 ? 0 : static_cast<std::size_t>(bytes);
+}
+
+std::uint64_t TapNetwork::frames_missed() const
+{
+    constexpr int kColumn = 12; // "interface: 8 columns of what came, 8 of what went", its fourth.
+    std::array<char, 4'096> text{};
+    const ssize_t bytes = ::pread(statistics_, text.data(), text.size(), 0);
+    TACTUS_ASSERT(bytes > 0);
+    std::istringstream lines(std::string(text.data(), static_cast<std::size_t>(bytes)));
+    for (std::string word; lines >> word;)
+    {
+        if (word != interface_ + ":")
+        {
+            continue;
+        }
+        std::uint64_t figure = 0;
+        for (int column = 0; column < kColumn; ++column)
+        {
+            lines >> figure;
+        }
+        return figure;
+    }
+    TACTUS_ASSERT(false); // The interface lives as long as this object.
+    return 0;
 }
 
 bool TapNetwork::write(std::span<const std::byte> frame) const

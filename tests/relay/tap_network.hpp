@@ -5,9 +5,9 @@
 #include "rt_core/base/result.hpp"
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
-#include <vector>
 
 namespace tactus::relay
 {
@@ -46,14 +46,22 @@ public:
     /// The next frame that the network sent, whole; its size, 0 when there is none.
     [[nodiscard]] std::size_t read(std::span<std::byte> buffer) const;
 
+    /// Frames that the network sent and the system dropped, since nobody read them in time.
+    [[nodiscard]] std::uint64_t frames_missed() const;
+
     /// Gives the network a frame. False when the system refused it.
     [[nodiscard]] bool write(std::span<const std::byte> frame) const;
 
 private:
-    TapNetwork(int network, int tap) : namespace_(network), tap_(tap) {}
+    TapNetwork(const std::string& interface, int network, int tap, int statistics)
+        : interface_(interface), namespace_(network), tap_(tap), statistics_(statistics)
+    {
+    }
 
+    std::string interface_;
     int namespace_;
     int tap_;
+    int statistics_; ///< Of the interfaces of the namespace in which it was opened.
 };
 
 } // namespace tactus::relay

@@ -9,6 +9,9 @@ readonly check_report=$2 sanitizer=${3:-}
 # Our own domain, our own loopback: nobody else's models, and none of ours on a real interface.
 readonly domain=$(($$ % 231))
 unset CYCLONEDDS_URI
+# What the programs of either side are started by: two_networks.sh fills them.
+on_host=()
+on_controller=()
 
 scratch=$(mktemp -d)
 started=() # Ids of the background processes.
@@ -66,7 +69,7 @@ wait_for_line() {
 # publish.log.
 start_publisher() {
     : >publish.log
-    "$publish" --domain "$domain" "$@" >publish.log 2>&1 &
+    "${on_host[@]}" "$publish" --domain "$domain" "$@" >publish.log 2>&1 &
     publisher=$!
     started+=("$publisher")
     wait_for_line publish.log 'ready on DDS domain' 10
@@ -81,7 +84,7 @@ stop() {
 
 # start_hrtc ARGUMENT...: in the background; its id is in $controller, its words in hrtc.log.
 start_hrtc() {
-    "$hrtc" --allow-no-rt --domain "$domain" "$@" >hrtc.log 2>&1 &
+    "${on_controller[@]}" "$hrtc" --allow-no-rt --domain "$domain" "$@" >hrtc.log 2>&1 &
     controller=$!
     started+=("$controller")
 }
@@ -92,8 +95,8 @@ run_hrtc() {
     local code try
     for try in 1 2 3 4 5; do
         code=0
-        "$hrtc" --allow-no-rt --domain "$domain" --report report.json "$@" >hrtc.log 2>&1 \
-            || code=$?
+        "${on_controller[@]}" "$hrtc" --allow-no-rt --domain "$domain" --report report.json "$@" \
+            >hrtc.log 2>&1 || code=$?
         cat hrtc.log
         ((code == 0)) || fail "hrtc $* ended with $code"
         was_held_up report.json || return 0

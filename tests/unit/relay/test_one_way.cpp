@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "tests/relay/made_frames.hpp"
 #include "tests/relay/one_way.hpp"
 #include "tests/shared/random.hpp"
+#include "tests/unit/relay/made_frames.hpp"
 
 #include <gtest/gtest.h>
 

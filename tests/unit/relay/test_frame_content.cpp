@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "tests/relay/frame_content.hpp"
-#include "tests/relay/made_frames.hpp"
+#include "tests/unit/relay/made_frames.hpp"
 
 #include <gtest/gtest.h>
 

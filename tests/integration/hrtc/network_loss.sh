@@ -1,0 +1,29 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# network_loss.sh: a link that loses one frame in a hundred each way, doubles another one, and lets
+# them overtake each other. Nothing is refused for its content, what comes twice is taken once, and
+# no answer is wrong.
+source "$(dirname "$0")/two_networks.sh"
+
+start_relay --delay-ms 2 --jitter-ms 2 --loss 0.01 --duplicates 0.01 --seed 7
+"$build" --shape bumpy-sphere --faces 100000 -o large.spm >build.log 2>&1
+start_publisher large.spm
+run_hrtc --model large --device sim:touch --pool-mib 2 --duration 4 --record run.rec
+check report.json frames == 4000 wire.host_lost == 0 safety.begun.host == 0 \
+    answers.exact+answers.decided '>' '0.9*frames'
+check_wire_run report.json
+check_contact report.json force.contact_share 0.3
+judge_run large.spm
+
+count_frames counts.json
+for direction in to_controller to_host; do
+    check counts.json $direction.lost '>' 0 $direction.duplicated '>' 0 \
+        $direction.lost '<' "0.05*$direction.frames"
+done
+wait_for_line publish.log "left model 'large'" 10
+sleep 1 # After several runs the last line may still be on its way.
+echo "the host sent $(sent_pieces) pieces"
+check report.json cache.loads '<=' "$(sent_pieces)" cache.loads '>' 20
+stop TERM "$relay"
+((stopped_with == 0)) || fault "network_relay ended with $stopped_with"
+finish

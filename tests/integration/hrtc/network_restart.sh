@@ -1,0 +1,45 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# network_restart.sh: hosts are killed and started again 10 ms away. The same file is used again and
+# nothing of it is loaded twice; another file of that name is kept apart.
+source "$(dirname "$0")/two_networks.sh"
+
+start_relay --delay-ms 10
+"$build" --shape bumpy-sphere --faces 200000 -o large.spm >build.log 2>&1
+"$build" --shape bumpy-sphere --faces 190000 -o other.spm >build.log 2>&1
+
+start_publisher large.spm
+start_hrtc --model large --device sim:touch --pool-mib 4 --no-static --duration 10 \
+    --record run.rec --report report.json
+wait_for_line publish.log "subscribed to model 'large'" 10
+sleep 2
+stop KILL "$publisher"
+wait_for_line hrtc.log "host of model 'large' is gone; going on with what is resident" 5
+
+start_publisher large.spm
+wait_for_line hrtc.log 'is served again, by another host or a restarted one with the same file' 5
+wait_for_line publish.log "subscribed to model 'large'" 5
+sleep 2.5
+stop KILL "$publisher"
+for ((i = 0; i < 100; ++i)); do
+    [[ $(lines 'is gone' hrtc.log) == 2 ]] && break
+    sleep 0.05
+done
+
+start_publisher other.spm --name large
+wait_for_line hrtc.log "model 'large' is now published with another hash" 5
+code=0
+wait "$controller" || code=$?
+cat hrtc.log publish.log
+((code == 0)) || fail "hrtc ended with $code"
+[[ $(lines "model 'large'" hrtc.log) == 4 && $(lines 'is gone' hrtc.log) == 2 \
+    && $(lines 'served again' hrtc.log) == 1 && $(lines 'another hash' hrtc.log) == 1 ]] \
+    || fault 'not one line for each host that goes, for the one that is back, and for the other'
+[[ $(lines 'subscribed to' publish.log) == 0 ]] || fault 'the other file was asked for'
+
+check report.json frames == 10000 wire.host_lost == 1 models.0.host_connected == 0 \
+    safety.begun.host == 2 models.0.static == 0 cache.evictions == 0 \
+    pools.pages.used_max+pools.index_pages.used_max == '1*cache.loads'
+check_wire_run report.json
+judge_run large.spm
+finish

@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: Apache-2.0
+# shellcheck shell=bash disable=SC2034 # The scripts use what is set here.
+# common.sh with host and controller in networks of their own and a relay between them; sourced with
+# "$@" being BIN CHECK_REPORT SANITIZER NETWORK_RELAY LIST_SAFETY JUDGE_RECORDING. After start_relay
+# whatever common.sh starts is where it belongs. A machine that can't make networks skips (77).
+source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+readonly network_relay=$4 list_safety=$5 judge_recording=$6
+# What a device of the class touch can do: platform/simulated/device_classes.hpp.
+readonly touch_force_max_n=3.3
+
+# dds_configuration INTERFACE ADDRESS PEER: what docs/protocol.md says of a real network.
+dds_configuration() {
+    cat <<XML
+<CycloneDDS><Domain id="any">
+<General>
+  <Interfaces><NetworkInterface name="$1" multicast="false"/></Interfaces>
+  <AllowMulticast>false</AllowMulticast>
+  <MaxMessageSize>1400B</MaxMessageSize><FragmentSize>1300B</FragmentSize>
+</General>
+<Discovery>
+  <ParticipantIndex>auto</ParticipantIndex>
+  <MaxAutoParticipantIndex>64</MaxAutoParticipantIndex>
+  <LeaseDuration>1 s</LeaseDuration>
+  <Peers><Peer address="$2"/><Peer address="$3"/></Peers>
+</Discovery>
+<Internal>
+  <HeartbeatInterval min="2 ms" minsched="2 ms" max="20 ms">5 ms</HeartbeatInterval>
+  <NackDelay>1 ms</NackDelay>
+  <PreEmptiveAckDelay>2 ms</PreEmptiveAckDelay>
+  <MultipleReceiveThreads>false</MultipleReceiveThreads>
+</Internal>
+</Domain></CycloneDDS>
+XML
+}
+
+# skip_without_networks: ends the script where nobody may make a network.
+skip_without_networks() {
+    local reason=''
+    ((EUID == 0)) || reason='only root may make networks'
+    [[ -c /dev/net/tun ]] || reason='there is no /dev/net/tun'
+    [[ -n "$reason" ]] || unshare --net true 2>unshare.log || reason=$(tail -n 1 unshare.log)
+    [[ -z "$reason" ]] || { printf 'skipped: %s\n' "$reason"; exit 77; }
+}
+
+# start_relay ARGUMENT...: returns when both networks are up; its id is in $relay.
+start_relay() {
+    local ready side='"fd":([0-9]+),"interface":"([^"]+)","address":"([0-9.]+)/24"'
+    skip_without_networks
+    coproc relay_process { exec "$network_relay" "$@" 2>relay.log; }
+    relay=$relay_process_PID
+    relay_in=${relay_process[1]}
+    relay_out=${relay_process[0]}
+    started+=("$relay")
+    read -r -t 10 ready <&"$relay_out" || fail "network_relay $*: $(cat relay.log)"
+    [[ "$ready" =~ \"host\":\{$side\},\"controller\":\{$side\} ]] || fail "not ready: $ready"
+    local part=("${BASH_REMATCH[@]}")
+    # Both replace themselves by what they start, so that its id is that of the started process.
+    on_host=(nsenter "--net=/proc/$relay/fd/${part[1]}"
+        env "CYCLONEDDS_URI=$(dds_configuration "${part[2]}" "${part[3]}" "${part[6]}")")
+    on_controller=(nsenter "--net=/proc/$relay/fd/${part[4]}"
+        env "CYCLONEDDS_URI=$(dds_configuration "${part[5]}" "${part[6]}" "${part[3]}")")
+}
+
+in_host_network() { "${on_host[@]}" "$@"; }
+in_controller_network() { "${on_controller[@]}" "$@"; }
+
+# relay_say COMMAND: its answer is in $relay_answer.
+relay_say() {
+    printf '%s\n' "$*" >&"$relay_in"
+    read -r -t 10 relay_answer <&"$relay_out" || fail "the relay says nothing to '$*'"
+    [[ "$relay_answer" != refused* ]] || fail "the relay to '$*': $relay_answer"
+}
+
+# count_frames FILE: what the relay has counted so far, for check; nothing was lost but on purpose.
+count_frames() {
+    relay_say count
+    printf '%s\n' "$relay_answer" | tee "$1"
+    for direction in to_controller to_host; do
+        check "$1" "$direction.udp_datagrams" '>' 0 \
+            "$direction.dropped_full+$direction.missed+$direction.refused_by_system" == 0
+    done
+}
+
+# judge_run MODEL_FILE [FRAME]...: what run.rec says, against the whole source, is in judged.json: no
+# answer was wrong. Named frames divide it into spans.
+judge_run() {
+    "$judge_recording" run.rec "$@" >judged.json || fail 'the recording does not replay'
+    check judged.json frames == "$(recorded_frames)" violations == 0
+    cat judged.json
+}
+recorded_frames() { sed -n 's/^recording *\([0-9]*\) frames.*/\1/p' hrtc.log; }
+
+# check_wire_run FILE: what holds of every run with a streamed model, however bad the link is.
+check_wire_run() {
+    check "$1" models.0.pieces_refused == 0 faults.model_inconsistent == 0 cache.loads '>' 0 \
+        force.max_n '>' 0 force.max_n '<=' "$touch_force_max_n" \
+        answers.exact+answers.decided+answers.bracket+answers.stale == '1*frames'
+    check_clean "$1"
+}
+
+# lines TEXT FILE: how many lines hold it.
+lines() { grep -cF -- "$1" "$2" || true; }
+
+# sent_pieces: what the host sent in the last subscription that ended.
+sent_pieces() { sed -n 's/.* left model .* (\([0-9]*\) pieces, .*/\1/p' publish.log | tail -n 1; }
