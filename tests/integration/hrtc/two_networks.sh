@@ -47,7 +47,7 @@ start_relay() {
     local ready side='"fd":([0-9]+),"interface":"([^"]+)","address":"([0-9.]+)/24"'
     skip_without_networks
     coproc relay_process { exec "$network_relay" "$@" 2>relay.log; }
-    relay=$relay_process_PID
+    relay=${relay_process_PID:?}
     relay_in=${relay_process[1]}
     relay_out=${relay_process[0]}
     started+=("$relay")
@@ -81,8 +81,8 @@ count_frames() {
     done
 }
 
-# judge_run MODEL_FILE [FRAME]...: what run.rec says, against the whole source, is in judged.json: no
-# answer was wrong. Named frames divide it into spans.
+# judge_run MODEL_FILE [FRAME]...: what run.rec says, against the whole source, is in judged.json:
+# no answer was wrong. Named frames divide it into spans.
 judge_run() {
     "$judge_recording" run.rec "$@" >judged.json || fail 'the recording does not replay'
     check judged.json frames == "$(recorded_frames)" violations == 0
@@ -101,5 +101,12 @@ check_wire_run() {
 # lines TEXT FILE: how many lines hold it.
 lines() { grep -cF -- "$1" "$2" || true; }
 
-# sent_pieces: what the host sent in the last subscription that ended.
-sent_pieces() { sed -n 's/.* left model .* (\([0-9]*\) pieces, .*/\1/p' publish.log | tail -n 1; }
+# sent_pieces: what the host sent in the last subscription, once all have ended.
+sent_pieces() {
+    local i
+    for ((i = 0; i < 100; ++i)); do
+        (($(lines ' subscribed to ' publish.log) > $(lines ' left model ' publish.log))) || break
+        sleep 0.05
+    done
+    sed -n 's/.* left model .* (\([0-9]*\) pieces, .*/\1/p' publish.log | tail -n 1
+}

@@ -225,6 +225,25 @@ TEST(OneWay, a_cut_takes_what_is_under_way_and_what_comes_until_it_is_mended)
     EXPECT_EQ(sut.counts().frames, 4U);
 }
 
+TEST(OneWay, a_cut_leaves_all_of_the_room)
+{
+    OneWay sut(1, 1'000);
+    const auto fill = [&sut]
+    {
+        const std::uint64_t refused = sut.counts().dropped_full;
+        std::uint32_t taken = 0;
+        while (sut.counts().dropped_full == refused)
+        {
+            sut.take(numbered(taken++), {.delay_ms = 1.0}, at_us(0));
+        }
+        return taken;
+    };
+    const std::uint32_t taken = fill();
+    sut.cut();
+    sut.mend();
+    EXPECT_EQ(fill(), taken);
+}
+
 TEST(OneWay, an_arp_frame_is_never_lost_nor_duplicated)
 {
     OneWay sut(1);
