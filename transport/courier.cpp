@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 namespace tactus
@@ -104,20 +105,17 @@ void Courier::open_wish(const ChunkInbox::Wish& wish)
     {
         return; // On its way through the door: it was wished for twice.
     }
-    for (OpenWish& open : open_.first(open_count_))
+    if (OpenWish* open = find_open(wish.key); open != nullptr)
     {
-        if (open.key == wish.key)
-        {
-            open.generation = wish.generation;
-            open.wished_ns = now_ns_;
-            return;
-        }
+        open->generation = wish.generation;
+        open->wished_ns = now_ns_;
+        return;
     }
     if (open_count_ == open_.size())
     {
         forget_oldest_generation();
     }
-    open_[open_count_++] = {wish.key, wish.generation, now_ns_, kNeverAsked};
+    open_[open_count_++] = {wish.key, wish.generation, now_ns_, kNeverAsked, now_ns_};
 }
 
 void Courier::forget_oldest_generation()
@@ -188,12 +186,7 @@ void Courier::receive(ContentKey key, std::span<const std::byte> bytes)
 {
     ++counters_.pieces;
     counters_.coded_bytes += bytes.size();
-    bool is_open = false;
-    for (const OpenWish& open : open_.first(open_count_))
-    {
-        is_open = is_open || open.key == key;
-    }
-    if (!is_open)
+    if (find_open(key) == nullptr)
     {
         ++counters_.dropped_unasked;
         return;
@@ -219,7 +212,7 @@ void Courier::adopt_index_page(IndexPageId page, std::span<const std::byte> byte
     if (free_index_.count == 0)
     {
         ++counters_.dropped_no_slot;
-        static_cast<void>(close_wish(key));
+        close_wish(key);
         return;
     }
     const std::uint32_t slot = free_index_.stack[free_index_.count - 1];
@@ -228,7 +221,7 @@ void Courier::adopt_index_page(IndexPageId page, std::span<const std::byte> byte
         !done)
     {
         refuse(counters_.refused_content, key, refusal_text(done.error()));
-        static_cast<void>(close_wish(key)); // The host has no better one.
+        close_wish(key); // The host has no better one.
         return;
     }
     --free_index_.count;
@@ -245,7 +238,7 @@ void Courier::adopt_chunk(ChunkId chunk, std::span<const std::byte> bytes)
     if (index_slot == IdTable::kAbsent)
     {
         ++counters_.dropped_no_index;
-        static_cast<void>(close_wish(key));
+        close_wish(key);
         return;
     }
     const ChunkEntry& entry = index_[index_slot].entries[chunk.value % kChunksPerIndexPage];
@@ -257,14 +250,14 @@ void Courier::adopt_chunk(ChunkId chunk, std::span<const std::byte> bytes)
     if (free_pages_.count == 0)
     {
         ++counters_.dropped_no_slot;
-        static_cast<void>(close_wish(key));
+        close_wish(key);
         return;
     }
     const std::uint32_t slot = free_pages_.stack[free_pages_.count - 1];
     if (auto done = parse_chunk(bytes, header_, chunk, slots_.pages[slot]); !done)
     {
         refuse(counters_.refused_content, key, refusal_text(done.error()));
-        static_cast<void>(close_wish(key));
+        close_wish(key);
         return;
     }
     --free_pages_.count;
@@ -279,8 +272,10 @@ void Courier::hand_over(ContentKey key, std::uint32_t slot, std::uint64_t linked
     {
         copies_->receive(key, bytes);
     }
-    const bool was_open = close_wish(key);
-    TACTUS_ASSERT(was_open);
+    const OpenWish* open = find_open(key);
+    TACTUS_ASSERT(open != nullptr);
+    waiting_times_.add(now_ns_ - open->opened_ns);
+    close_wish(key);
     // Room for every slot: a slot is in at most one queue.
     const bool pushed = inbox_.arrived.try_push({key, slot, freed_taken_, linked});
     TACTUS_ASSERT(pushed);
@@ -313,17 +308,19 @@ void Courier::refuse(std::uint64_t& counter, ContentKey key, const char* reason)
     }
 }
 
-bool Courier::close_wish(ContentKey key) noexcept
+Courier::OpenWish* Courier::find_open(ContentKey key) noexcept
 {
-    for (OpenWish& open : open_.first(open_count_))
+    const std::span<OpenWish> open = open_.first(open_count_);
+    const auto found = std::ranges::find(open, key, &OpenWish::key);
+    return found == open.end() ? nullptr : &*found;
+}
+
+void Courier::close_wish(ContentKey key) noexcept
+{
+    if (OpenWish* open = find_open(key); open != nullptr)
     {
-        if (open.key == key)
-        {
-            open = open_[--open_count_];
-            return true;
-        }
+        *open = open_[--open_count_];
     }
-    return false;
 }
 
 bool Courier::is_resident(ContentKey key) const noexcept

@@ -9,6 +9,7 @@
 #include "rt_core/spm/page_slots.hpp"
 #include "transport/chunk_link.hpp"
 #include "transport/log.hpp"
+#include "transport/waiting_times.hpp"
 
 #include <array>
 #include <cstdint>
@@ -78,6 +79,8 @@ public:
     void copy_pieces_to(PieceSink* copies) noexcept { copies_ = copies; }
 
     [[nodiscard]] const CourierCounters& counters() const noexcept { return counters_; }
+    /// From the wish for a piece until it was handed over.
+    [[nodiscard]] const WaitingTimes& waiting_times() const noexcept { return waiting_times_; }
     [[nodiscard]] std::size_t open_wishes() const noexcept { return open_count_; }
     [[nodiscard]] std::size_t free_pages() const noexcept { return free_pages_.count; }
     [[nodiscard]] std::size_t free_index_pages() const noexcept { return free_index_.count; }
@@ -94,6 +97,7 @@ private:
         std::uint32_t generation{0};
         std::int64_t wished_ns{0};
         std::int64_t asked_ns{0};
+        std::int64_t opened_ns{0};
     };
     struct IndexSlot
     {
@@ -115,7 +119,8 @@ private:
                    std::span<const std::byte> bytes);
     void push_link_updates();
     void refuse(std::uint64_t& counter, ContentKey key, const char* reason);
-    [[nodiscard]] bool close_wish(ContentKey key) noexcept;
+    [[nodiscard]] OpenWish* find_open(ContentKey key) noexcept;
+    void close_wish(ContentKey key) noexcept;
     [[nodiscard]] bool is_resident(ContentKey key) const noexcept;
     [[nodiscard]] bool is_key_of_model(ContentKey key) const noexcept;
     [[nodiscard]] static Slots all_free(Arena& arena, std::size_t count) noexcept;
@@ -144,6 +149,7 @@ private:
     std::uint32_t freed_taken_{0}; ///< Modulo 2^32, as in DoorEvent.
     PieceSink* copies_{nullptr};
     CourierCounters counters_;
+    WaitingTimes waiting_times_;
 };
 
 } // namespace tactus

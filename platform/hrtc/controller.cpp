@@ -148,6 +148,7 @@ std::optional<ControllerError> Controller::lay_out_pools(const Options& options)
     setup_.objects = objects_;
     setup_.tools = tools_;
     setup_.static_when_it_fits = options.static_when_it_fits;
+    setup_.prediction = options.prediction;
     setup_.period_ns = options.period().ns;
     std::size_t shared = Frame::required_bytes(setup_);
     for (const ServedModel& model : models_)

@@ -121,6 +121,7 @@ struct RawOptions
     std::vector<std::string> device_faults;
     std::optional<std::string> motion;
     std::string transport{"dds"};
+    std::string prediction{prediction_name(Prediction::automatic)};
     std::optional<int> cpu;
     bool prints_config{false};
 };
@@ -234,6 +235,11 @@ void declare(CLI::App& app, Options& options, RawOptions& raw)
     app.add_flag_callback(
         "--no-static", [&options] { options.static_when_it_fits = false; },
         "Refine locally also a model that fits the pools as a whole");
+    app.add_option("--predict", raw.prediction,
+                   "How the regions to load are foretold: local, linear, quadratic, distance, or "
+                   "auto, whichever erred least of late")
+        ->check(CLI::IsMember(kPredictionNames))
+        ->capture_default_str();
     app.add_option("--stiffness", options.stiffness_n_per_m, "Of the virtual wall, in N/m")
         ->check(number_between(1.0, kStiffest_n_per_m))
         ->capture_default_str();
@@ -459,6 +465,8 @@ std::string check_together(const CLI::App& app, Options& options, const RawOptio
     {
         options.splits = kMaxSplitsPerFrame;
     }
+    options.prediction = static_cast<Prediction>(
+        std::ranges::find(kPredictionNames, raw.prediction) - kPredictionNames.begin());
     options.transport = raw.transport == "file" ? TransportKind::file : TransportKind::dds;
     if (options.transport == TransportKind::dds)
     {

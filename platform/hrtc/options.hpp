@@ -7,6 +7,7 @@
 #include "platform/rt_thread.hpp"
 #include "platform/simulated/hand_motions.hpp"
 #include "rt_core/records/frame_input.hpp"
+#include "rt_core/records/prediction.hpp"
 #include "transport/model_name.hpp"
 
 #include <cstdint>
@@ -53,6 +54,7 @@ struct Options
     std::uint32_t splits{64};              ///< At most, when there is a frame budget.
     std::optional<double> frame_budget_us; ///< None: budgets are fixed.
     bool static_when_it_fits{true};
+    Prediction prediction{Prediction::automatic};
     double stiffness_n_per_m{500.0};
     std::optional<double> speed_limit_m_per_s; ///< None: the device's own.
     bool trap_system_calls{false};

@@ -270,6 +270,39 @@ Json cycle_of(const NotedCycle& cycle)
             {"end_us", to_us(cycle.lateness_of_end)}};
 }
 
+Json cache_of(const RunRecord& record)
+{
+    std::uint64_t loads = 0;
+    for (const std::unique_ptr<Courier>& courier : record.controller.couriers())
+    {
+        loads += courier->counters().delivered;
+    }
+    const RunStatistics& statistics = record.run.statistics;
+    return {{"prediction", prediction_name(record.options.prediction)},
+            {"hits", statistics.cache_hits},
+            {"misses", statistics.cache_misses},
+            {"loads", loads},
+            {"evictions", statistics.evictions}};
+}
+
+Json wire_of(const RunRecord& record)
+{
+    std::uint64_t bytes_received = 0;
+    WaitingTimes waiting;
+    for (std::size_t i = 0; i < record.controller.models().size(); ++i)
+    {
+        bytes_received += record.controller.models()[i].link->bytes_received();
+        waiting += record.controller.couriers()[i]->waiting_times();
+    }
+    const auto ms = [&](double value) { return waiting.total() > 0 ? Json(value) : Json(); };
+    return {{"bytes_received", bytes_received},
+            {"host_lost", record.run.host_was_lost},
+            {"arrival_ms",
+             {{"p50", ms(waiting.quantile_ms(0.5))},
+              {"p99", ms(waiting.quantile_ms(0.99))},
+              {"max", ms(waiting.longest_ms())}}}};
+}
+
 Json deadline_of(const RunRecord& record)
 {
     constexpr std::size_t kCyclesShown = 100;
@@ -414,13 +447,6 @@ Json make_report(const Options& options, const Controller& controller, const Fin
     times["cpu"] = times_of(statistics.cpu);
     times["wake"] = times_of(statistics.wake);
     times["response"] = times_of(statistics.deadlines.response());
-    std::uint64_t bytes_received = 0;
-    std::uint64_t loads = 0;
-    for (std::size_t i = 0; i < record.controller.models().size(); ++i)
-    {
-        bytes_received += record.controller.models()[i].link->bytes_received();
-        loads += record.controller.couriers()[i]->counters().delivered;
-    }
     return {{"schema", 1},
             {"frames", statistics.frames},
             {"period_ns", run.period.ns},
@@ -435,12 +461,8 @@ Json make_report(const Options& options, const Controller& controller, const Fin
               {"pages_adopted", statistics.pages_adopted}}},
             {"budgets", budgets_of(record)},
             {"pools", pools_of(record)},
-            {"cache",
-             {{"hits", statistics.cache_hits},
-              {"misses", statistics.cache_misses},
-              {"loads", loads},
-              {"evictions", statistics.evictions}}},
-            {"wire", {{"bytes_received", bytes_received}, {"host_lost", record.run.host_was_lost}}},
+            {"cache", cache_of(record)},
+            {"wire", wire_of(record)},
             {"deadline", deadline_of(record)},
             {"realtime",
              {{"allocations", statistics.deadlines.allocations},
@@ -508,6 +530,13 @@ std::string make_summary(const Json& report)
                         report["cache"]["loads"].get<std::uint64_t>(),
                         report["cache"]["evictions"].get<std::uint64_t>(),
                         report["wire"]["host_lost"].get<bool>() ? "; the host went away" : "");
+    const Json& arrival = report["wire"]["arrival_ms"];
+    text += arrival["max"].is_null()
+                ? ""
+                : fmt::format("arrival     {:.1f} / {:.1f} / {:.1f} ms from a wish to its piece "
+                              "(p50 / p99 / max)\n",
+                              arrival["p50"].get<double>(), arrival["p99"].get<double>(),
+                              arrival["max"].get<double>());
     const auto unexplained = report["deadline"]["unexplained"].get<std::uint64_t>();
     text += fmt::format(
         "deadlines   {} missed: {} own faults, {} machine late{}; {} allocations, {} page faults\n",

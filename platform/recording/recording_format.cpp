@@ -50,6 +50,7 @@ RecordedSetup to_recorded(const FrameSetup& setup)
     recorded.period_ns = setup.period_ns;
     recorded.pose_age_max_ns = setup.pose_age_max_ns;
     recorded.static_when_it_fits = setup.static_when_it_fits;
+    recorded.prediction = setup.prediction;
     recorded.tools.assign(setup.tools.begin(), setup.tools.end());
     recorded.objects.assign(setup.objects.begin(), setup.objects.end());
     for (const ModelSource& model : setup.models)

@@ -19,7 +19,7 @@ namespace tactus
 
 /// docs/recording.md describes the file.
 inline constexpr std::array<char, 8> kRecordingMagic{'T', 'A', 'C', 'T', 'R', 'E', 'C', '\n'};
-inline constexpr std::uint32_t kRecordingVersion = 3;
+inline constexpr std::uint32_t kRecordingVersion = 4;
 inline constexpr std::size_t kRecordingPrologueBytes = 12;
 
 enum class SectionKind : std::uint32_t
@@ -50,6 +50,7 @@ struct RecordedSetup
     std::int64_t period_ns{1'000'000};
     std::int64_t pose_age_max_ns{100'000'000};
     bool static_when_it_fits{false};
+    Prediction prediction{Prediction::automatic};
     std::vector<ToolSpec> tools;
     HullVertices hull_vertices; ///< Of tools that were read from a recording.
     std::vector<ObjectSpec> objects;

@@ -81,6 +81,7 @@ private:
         setup_.period_ns = setup.period_ns;
         setup_.pose_age_max_ns = setup.pose_age_max_ns;
         setup_.static_when_it_fits = setup.static_when_it_fits;
+        setup_.prediction = setup.prediction;
         setup_.kernels = kernels;
         memory_.resize(Frame::required_bytes(setup_) / sizeof(CacheLine) + 1);
         arena_.emplace(std::as_writable_bytes(std::span(memory_)));

@@ -156,6 +156,7 @@ std::vector<std::byte> code_setup(const RecordedSetup& setup)
     append(bytes, setup.period_ns);
     append(bytes, setup.pose_age_max_ns);
     append(bytes, static_cast<std::uint8_t>(setup.static_when_it_fits));
+    append(bytes, static_cast<std::uint8_t>(setup.prediction));
     append(bytes, static_cast<std::uint8_t>(setup.tools.size()));
     append(bytes, static_cast<std::uint8_t>(setup.objects.size()));
     append(bytes, static_cast<std::uint8_t>(setup.models.size()));
@@ -208,6 +209,8 @@ std::optional<std::string> parse_setup(std::span<const std::byte> payload, Recor
     setup.pose_age_max_ns = reader.read<std::int64_t>();
     const auto is_static = reader.read<std::uint8_t>();
     setup.static_when_it_fits = is_static != 0;
+    const auto prediction = reader.read<std::uint8_t>();
+    setup.prediction = static_cast<Prediction>(prediction);
     const auto tools = reader.read<std::uint8_t>();
     const auto objects = reader.read<std::uint8_t>();
     models = reader.read<std::uint8_t>();
@@ -221,6 +224,10 @@ std::optional<std::string> parse_setup(std::span<const std::byte> payload, Recor
     if (is_static > 1)
     {
         return "the static mode is " + std::to_string(is_static) + "; 0 and 1 are allowed";
+    }
+    if (setup.prediction > Prediction::automatic)
+    {
+        return "the prediction is " + std::to_string(prediction) + "; 0 to 4 are allowed";
     }
     if (setup.period_ns < 1 || setup.period_ns > 1'000'000'000)
     {

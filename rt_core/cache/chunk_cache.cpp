@@ -55,14 +55,14 @@ void ChunkCache::adopt(const DoorEvent& arrival, std::uint32_t frame) noexcept
     if (arrival.key.kind == ContentKind::chunk)
     {
         pages_->adopt({arrival.key.number}, arrival.slot, frame, arrival.linked);
-        chunk_wishes_.arrive(arrival.key.number);
+        chunk_wishes_.arrive(arrival.key.number, frame);
         ++loads_;
         return;
     }
     index_meta_[arrival.slot] = {IndexPageId{arrival.key.number}, frame};
     const bool inserted = index_slot_of_.try_insert(arrival.key.number, arrival.slot);
     TACTUS_ASSERT(inserted);
-    index_wishes_.arrive(arrival.key.number);
+    index_wishes_.arrive(arrival.key.number, frame);
 }
 
 /// False when the door had no room for one more wish at the start of the frame.

@@ -60,6 +60,8 @@ public:
     /// Frame numbers start here, so that ages can be subtracted.
     static constexpr std::uint32_t kFirstFrame = 4'096;
 
+    /// In frames, from wishing for a chunk to having it.
+    [[nodiscard]] const LoadLatency& latency() const noexcept { return chunk_wishes_.latency(); }
     [[nodiscard]] std::uint64_t loads() const noexcept { return loads_; }
     [[nodiscard]] std::uint64_t evictions() const noexcept { return evictions_; }
     [[nodiscard]] std::uint32_t index_pages_used() const noexcept { return index_slot_of_.size(); }
@@ -97,7 +99,9 @@ private:
     void evict(std::uint32_t slot, WorkCounters& work) noexcept;
     [[nodiscard]] bool try_evict_index_page() noexcept;
 
-    static constexpr std::uint32_t kAheadAge = 1'024;
+    /// Longer than two rounds and a load take, and no longer: while a hand moves on, what it left
+    /// is in the way of what it will need.
+    static constexpr std::uint32_t kAheadAge = 64;
 
     ModelHeader header_;
     PageSlots slots_;

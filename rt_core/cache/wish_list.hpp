@@ -4,6 +4,7 @@
 
 #include "rt_core/base/arena.hpp"
 #include "rt_core/base/id_table.hpp"
+#include "rt_core/cache/load_latency.hpp"
 #include "rt_core/limits.hpp"
 
 #include <algorithm>
@@ -54,8 +55,12 @@ public:
         TACTUS_ASSERT(inserted);
     }
     /// The piece has come, in a slot that is no longer the transport thread's.
-    void arrive(std::uint32_t number) noexcept
+    void arrive(std::uint32_t number, std::uint32_t frame) noexcept
     {
+        if (const std::uint32_t place = under_way_.find(number); place != IdTable::kAbsent)
+        {
+            latency_.add(frame - asked_[place]);
+        }
         forget(number);
         TACTUS_ASSERT(slots_at_transport_ > 0);
         --slots_at_transport_;
@@ -74,6 +79,9 @@ public:
         }
     }
 
+    /// From asking to arriving, of what came before it expired.
+    [[nodiscard]] const LoadLatency& latency() const noexcept { return latency_; }
+
 private:
     void forget(std::uint32_t number) noexcept
     {
@@ -91,6 +99,7 @@ private:
     std::span<std::uint32_t> numbers_;
     std::uint32_t slots_at_transport_;
     std::uint32_t cursor_{0};
+    LoadLatency latency_;
 };
 
 } // namespace tactus

@@ -176,6 +176,7 @@ Frame::Frame(PassKey /*key*/, Arena& arena, const FrameSetup& setup) noexcept
     : scene_(setup.tools, setup.objects)
     , period_ns_(setup.period_ns)
     , pose_age_max_ns_(setup.pose_age_max_ns)
+    , prediction_(setup.prediction)
     , refine_memories_(arena.take<RefineMemory>(scene_.pairs().size() * kQuestions))
     , surfaces_(arena.take<LocalSurface>(scene_.pairs().size() + 1))
 {
@@ -426,52 +427,6 @@ ModelId Frame::tool_model_of(const ScenePair& pair) const noexcept
 {
     const auto* mesh = std::get_if<MeshCore>(&scene_.tools()[pair.tool].core);
     return mesh == nullptr ? ModelId{} : mesh->model;
-}
-
-void Frame::load(const Budgets& budgets) noexcept
-{
-    RegionRanking ranking;
-    for (std::uint32_t i = 0; i < scene_.pairs().size(); ++i)
-    {
-        const ScenePair& pair = scene_.pairs()[i];
-        const ModelId object = model_of(pair);
-        const ModelId tool = tool_model_of(pair);
-        if (is_complete(object) && (tool.is_none() || is_complete(tool)))
-        {
-            continue;
-        }
-        predictors_[i].observe(pair.core.center(), elapsed_s_[pair.tool]);
-        if (MeshPair* mesh = mesh_pair(i); mesh != nullptr)
-        {
-            mesh->rank(pair, tool, object, predictors_[i], ranking);
-            continue;
-        }
-        predictors_[i].rank(object, pair.cover, Scene::kKeepFactor * pair.reach_m, ranking);
-    }
-    for (std::uint32_t i = 0; i < model_count_; ++i)
-    {
-        Model& model = *models_[i];
-        model.work = WorkCounters{};
-        model.cache.adopt_arrivals(budgets.pages, frame_, model.work);
-        door_takes_[i] = model.cache.taken();
-        model.pages_used_max = std::max(model.pages_used_max, model.pages.used());
-        RegionRanking regions;
-        for (const RankedRegion& region : ranking)
-        {
-            if (region.model.value == i && model.may_ask_for(region))
-            {
-                regions.push_back(region);
-            }
-        }
-        if (model.residence != Residence::complete)
-        {
-            model.cache.request_missing(regions.view(), budgets, frame_, model.work, faults_);
-        }
-        if (model.residence == Residence::filling)
-        {
-            model.cache.request_everything(budgets, model.work, faults_);
-        }
-    }
 }
 
 bool Frame::is_complete(ModelId model) const noexcept

@@ -42,6 +42,7 @@ struct FrameSetup
     std::int64_t pose_age_max_ns{100'000'000}; ///< Older poses make answers stale.
     /// A model that fits its pools is loaded and refined fully, once (static mode).
     bool static_when_it_fits{false};
+    Prediction prediction{Prediction::automatic};
     const Kernels* kernels{nullptr}; ///< Null: best_kernels().
 };
 
@@ -123,6 +124,8 @@ private:
     void read_tools(std::span<const ToolState> tools) noexcept;
     void carry_proxies(std::span<const ObjectPose> poses) noexcept;
     void place_pairs(std::span<const ObjectPose> poses, const Budgets& budgets) noexcept;
+    [[nodiscard]] double lead_s(ModelId model) const noexcept;
+    [[nodiscard]] PairMotion motion_of(const ScenePair& pair) const noexcept;
     void load(const Budgets& budgets) noexcept;
     void refine(const Budgets& budgets) noexcept;
     void query(std::span<const ObjectPose> poses, const Budgets& budgets) noexcept;
@@ -158,6 +161,7 @@ private:
     Scene scene_;
     std::int64_t period_ns_;
     std::int64_t pose_age_max_ns_;
+    Prediction prediction_;
     std::array<std::optional<Model>, kMaxModels> models_;
     std::uint32_t model_count_{0};
     std::uint32_t frame_{ChunkCache::kFirstFrame};

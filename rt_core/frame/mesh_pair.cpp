@@ -100,7 +100,8 @@ void MeshPair::place(const ScenePair& pair, const MeshCore& core, const Model& t
 }
 
 void MeshPair::rank(const ScenePair& pair, ModelId tool_model, ModelId object_model,
-                    const RegionPredictor& predictor, RegionRanking& ranking) noexcept
+                    const RegionPredictor& predictor, Prediction prediction,
+                    RegionRanking& ranking) noexcept
 {
     const double scale = placements_[0].place.scale;
     const double reach_m = Scene::kKeepFactor * refine_reach_m(pair);
@@ -116,8 +117,8 @@ void MeshPair::rank(const ScenePair& pair, ModelId tool_model, ModelId object_mo
     {
         of_object.push_back({placements_[0].to_there(ball.center), scale * ball.radius});
     }
-    predictor.rank(object_model, of_object, reach_m, ranking);
-    RegionPredictor().rank(tool_model, cover_, reach_m / scale, ranking);
+    predictor.rank(prediction, object_model, of_object, reach_m, ranking);
+    RegionPredictor().rank(prediction, tool_model, cover_, reach_m / scale, ranking);
 }
 
 double MeshPair::refine_reach_m(const ScenePair& pair) noexcept

@@ -33,7 +33,8 @@ public:
 
     /// Adds what both models need where the surfaces are near.
     void rank(const ScenePair& pair, ModelId tool_model, ModelId object_model,
-              const RegionPredictor& predictor, RegionRanking& ranking) noexcept TACTUS_NONBLOCKING;
+              const RegionPredictor& predictor, Prediction prediction,
+              RegionRanking& ranking) noexcept TACTUS_NONBLOCKING;
 
     /// What a place asks of the object, and of the tool.
     [[nodiscard]] RefineQuestion ask_object(std::size_t place, const ScenePair& pair,

@@ -2,38 +2,121 @@
 // Copyright the Tactus authors.
 #include "rt_core/predict/region_predictor.hpp"
 
+#include <algorithm>
+
 namespace tactus
 {
 
-void RegionPredictor::observe(const Vec3& center_m, double elapsed_s) noexcept
+namespace
 {
-    TACTUS_ASSERT(elapsed_s > 0.0);
-    if (has_center_)
+
+/// Time constants of the smoothed velocity and acceleration: slower than a tremor, faster than a
+/// turn.
+constexpr double kVelocityTime_s = 0.01;
+constexpr double kAccelerationTime_s = 0.02;
+/// Weight of the newest error among all of them.
+constexpr double kNewestError = 0.2;
+/// Another way is believed when its errors are below this share of the present one's.
+constexpr double kClearlyBetter = 0.9;
+/// The shares of the lead after which places are foretold.
+constexpr std::array<double, 2> kLeads{0.5, 1.0};
+
+} // namespace
+
+void RegionPredictor::observe(const PairMotion& motion, double lead_s) noexcept
+{
+    TACTUS_ASSERT(motion.elapsed_s > 0.0 && lead_s > 0.0);
+    motion_ = motion;
+    lead_s_ = lead_s;
+    follow_hand();
+    forecast_left_s_ -= motion.elapsed_s;
+    if (forecast_left_s_ < 0.5 * motion.elapsed_s)
     {
-        const double weight = elapsed_s / (elapsed_s + kSmoothing_s);
-        velocity_ += weight * ((center_m - center_) / elapsed_s - velocity_);
+        judge_forecasts();
     }
-    center_ = center_m;
-    has_center_ = true;
 }
 
-void RegionPredictor::rank(ModelId model, const CoreCover& balls, double reach_m,
+void RegionPredictor::follow_hand() noexcept
+{
+    const Vec3 hand = motion_.center_m + motion_.way_m;
+    const double elapsed_s = motion_.elapsed_s;
+    if (has_hand_)
+    {
+        const Vec3 before = velocity_;
+        velocity_ += elapsed_s / (elapsed_s + kVelocityTime_s) *
+                     ((hand - hand_m_) / elapsed_s - velocity_);
+        acceleration_ += elapsed_s / (elapsed_s + kAccelerationTime_s) *
+                         ((velocity_ - before) / elapsed_s - acceleration_);
+    }
+    hand_m_ = hand;
+    has_hand_ = true;
+}
+
+void RegionPredictor::judge_forecasts() noexcept
+{
+    for (std::size_t i = 0; i < kPredictions; ++i)
+    {
+        if (has_forecasts_)
+        {
+            const double error_m = (forecasts_m_[i] - motion_.center_m).norm();
+            errors_m_[i] += kNewestError * (error_m - errors_m_[i]);
+        }
+        forecasts_m_[i] = motion_.center_m + way_in(static_cast<Prediction>(i), lead_s_);
+    }
+    has_forecasts_ = true;
+    forecast_left_s_ = lead_s_;
+    for (std::size_t i = 0; i < kPredictions; ++i)
+    {
+        const auto way = static_cast<Prediction>(i);
+        believed_ = error_of(way) < kClearlyBetter * error_of(believed_) ? way : believed_;
+    }
+}
+
+/// How far the core's centre goes in this time, no faster than it can.
+Vec3 RegionPredictor::way_in(Prediction way, double lead_s) const noexcept
+{
+    if (way == Prediction::local_neighbours)
+    {
+        return {0.0, 0.0, 0.0};
+    }
+    Vec3 velocity = velocity_;
+    Vec3 ahead = motion_.way_m;
+    if (way == Prediction::quadratic)
+    {
+        velocity += kVelocityTime_s * acceleration_; // By which smoothing lags behind.
+        ahead += 0.5 * lead_s * lead_s * acceleration_;
+    }
+    ahead += lead_s * velocity;
+    if (way == Prediction::distance_query)
+    {
+        ahead -= std::min(ahead.dot(motion_.outward) + motion_.gap_m, 0.0) * motion_.outward;
+    }
+    const double most_m = lead_s * std::max(motion_.speed_max_m_per_s, velocity.norm());
+    const double far_m = ahead.norm();
+    return far_m > most_m ? Vec3(ahead * (most_m / far_m)) : ahead;
+}
+
+void RegionPredictor::rank(Prediction way, ModelId model, const CoreCover& balls, double reach_m,
                            RegionRanking& ranking) const noexcept
 {
-    const auto add = [&](const Vec3& way, double wider_m, std::int64_t lead_ns)
+    const Prediction chosen = way == Prediction::automatic ? believed_ : way;
+    const auto add = [&](const Vec3& ahead, double wider_m, double lead_s)
     {
         for (const Ball& ball : balls)
         {
             // A full ranking leaves the later pairs' balls out: they come on demand.
             static_cast<void>(
-                ranking.try_push_back({model, ball.center + way, ball.radius + wider_m, lead_ns}));
+                ranking.try_push_back({model, ball.center + ahead, ball.radius + wider_m,
+                                       static_cast<std::int64_t>(lead_s * 1e9)}));
         }
     };
-    add(Vec3(0.0, 0.0, 0.0), reach_m, 0);
-    for (const std::int64_t lead_ns : kLeads_ns)
+    add(Vec3(0.0, 0.0, 0.0), reach_m, 0.0);
+    for (const double share : kLeads)
     {
-        const Vec3 way = velocity_ * (static_cast<double>(lead_ns) * 1e-9);
-        add(way, reach_m + 0.1 * way.norm(), lead_ns);
+        const double lead_s = share * lead_s_;
+        const double wider_m = chosen == Prediction::local_neighbours ? lead_s * velocity_.norm()
+                                                                      : share * error_of(chosen);
+        add(way_in(chosen, lead_s), reach_m + wider_m, lead_s);
     }
 }
 

@@ -38,6 +38,7 @@ FrameRig::FrameRig(const std::vector<const TestModel*>& models, const RigOptions
     setup.objects = objects;
     setup.period_ns = options.period_ns;
     setup.static_when_it_fits = options.static_when_it_fits;
+    setup.prediction = options.prediction;
     const std::vector<ModelSource> sources = share_pools(setup, options);
     setup.models = sources;
     if (const auto started = Frame::start(frame_, *arena_, setup); !started)

@@ -31,6 +31,7 @@ struct RigOptions
     std::int64_t period_ns{1'000'000};
     bool cache_off{false};
     bool static_when_it_fits{false};
+    Prediction prediction{Prediction::automatic};
     bool record{false}; ///< Keep a recording; frames must then run through step() only.
 };
 

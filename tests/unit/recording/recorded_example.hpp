@@ -62,6 +62,7 @@ inline RecordedSetup example_setup(const TinyModel& model)
     setup.objects = {{ModelId{0}, {250.0, 0.5, 0.25, 1.5}}};
     setup.models = {{{4, 1, 400, 60, 40, false}, model.header, model.base}};
     setup.static_when_it_fits = true;
+    setup.prediction = Prediction::quadratic;
     setup.compiler = "some compiler";
     setup.architecture = "some processor";
     setup.kernels = "some kernels";

@@ -130,6 +130,7 @@ TEST(RecordingFile, gives_back_what_was_written)
     EXPECT_EQ(setup.models[0].capacities.pages, 4U);
     EXPECT_EQ(setup.models[0].capacities.nodes, 40U);
     EXPECT_TRUE(setup.static_when_it_fits);
+    EXPECT_EQ(setup.prediction, Prediction::quadratic);
     EXPECT_EQ(setup.kernels, "some kernels");
     EXPECT_EQ(sut.value().frame_count(), 3U);
     EXPECT_EQ(sut.value().lost_from(), kNoFrame);
@@ -142,7 +143,7 @@ TEST(RecordingFile, gives_back_what_was_written)
 TEST(RecordingFile, begins_with_its_magic_and_version)
 {
     const std::vector<std::byte> bytes = example();
-    EXPECT_EQ(std::memcmp(bytes.data(), "TACTREC\n\x03\0\0\0", 12), 0);
+    EXPECT_EQ(std::memcmp(bytes.data(), "TACTREC\n\x04\0\0\0", 12), 0);
 }
 
 TEST(RecordingFile, tells_from_where_frames_were_lost)
@@ -186,7 +187,7 @@ TEST(RecordingFile, is_refused_when_it_is_of_another_kind_or_version)
 {
     std::vector<std::byte> bytes = example();
     bytes[8] = std::byte{2};
-    expect_refusal(bytes, "at byte 8: format version 2 is unknown; this program reads 3");
+    expect_refusal(bytes, "at byte 8: format version 2 is unknown; this program reads 4");
     bytes[3] = std::byte{'X'};
     expect_refusal(bytes, "is not a Tactus recording");
     bytes = example();
@@ -227,17 +228,18 @@ TEST(RecordingFile, is_refused_when_sections_are_out_of_order)
 TEST(RecordingFile, is_refused_when_a_value_is_out_of_its_range)
 {
     // What the checksums vouch for is checked all the same.
-    constexpr std::size_t kTool = 20;
+    constexpr std::size_t kTool = 21;
     constexpr std::size_t kTorque = kTool + 33;
     constexpr std::size_t kCore = kTorque + 9;
     constexpr std::size_t kObject = kCore + 1;
     constexpr std::size_t kNames = kObject + 36;
     expect_refusal(with_bytes(kSetup, 0, {0, 0, 0, 0, 0, 0, 0, 0}), "the period is 0 ns; 1 to");
     expect_refusal(with_bytes(kSetup, 16, {2}), "the static mode is 2; 0 and 1 are allowed");
-    expect_refusal(with_bytes(kSetup, 17, {0}), "0 tools, 1 objects and 1 models; 1 to 4");
-    expect_refusal(with_bytes(kSetup, 17, {5}), "5 tools");
-    expect_refusal(with_bytes(kSetup, 18, {9}), "9 objects");
-    expect_refusal(with_bytes(kSetup, 19, {9}), "9 models");
+    expect_refusal(with_bytes(kSetup, 17, {5}), "the prediction is 5; 0 to 4 are allowed");
+    expect_refusal(with_bytes(kSetup, 18, {0}), "0 tools, 1 objects and 1 models; 1 to 4");
+    expect_refusal(with_bytes(kSetup, 18, {5}), "5 tools");
+    expect_refusal(with_bytes(kSetup, 19, {9}), "9 objects");
+    expect_refusal(with_bytes(kSetup, 20, {9}), "9 models");
     expect_refusal(with_bytes(kSetup, kTool + 6, {0xF8, 0x7F}), "tool 0 is not within"); // NaN.
     expect_refusal(with_bytes(kSetup, kTorque + 6, {0xF8, 0x7F}), "tool 0 is not within");
     expect_refusal(with_bytes(kSetup, kTorque - 1, {2}), "tool 0 has an unknown core");

@@ -2,13 +2,27 @@
 // Copyright the Tactus authors.
 #include "rt_core/predict/region_predictor.hpp"
 
+#include "tests/shared/random.hpp"
+
 #include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <functional>
 
 namespace tactus::test
 {
 
 namespace
 {
+
+constexpr double kPeriod_s = 0.001;
+constexpr double kLead_s = 0.02;
+constexpr double kSpeedMax_m_per_s = 10.0;
+
+constexpr std::array<Prediction, 5> kWays{Prediction::local_neighbours, Prediction::linear,
+                                          Prediction::quadratic, Prediction::distance_query,
+                                          Prediction::automatic};
 
 CoreCover one_ball(const Vec3& center)
 {
@@ -17,59 +31,209 @@ CoreCover one_ball(const Vec3& center)
     return balls;
 }
 
-} // namespace
-
-TEST(RegionPredictor, before_and_after_the_first_observation_stands_still)
+PairMotion motion_to(const Vec3& center_m)
 {
-    RegionPredictor sut;
-    sut.observe(Vec3(1, 2, 3), 0.001);
-    RegionRanking ranking;
+    PairMotion motion;
+    motion.center_m = center_m;
+    motion.speed_max_m_per_s = kSpeedMax_m_per_s;
+    motion.elapsed_s = kPeriod_s;
+    return motion;
+}
 
-    sut.rank({5}, one_ball(Vec3(1, 2, 3)), 0.02, ranking);
-
-    ASSERT_EQ(ranking.size(), 3U);
-    for (const RankedRegion& region : ranking)
+/// Follows a path, a place for each frame.
+void follow(RegionPredictor& sut, const std::function<Vec3(double)>& place_at, int frames)
+{
+    for (int i = 0; i <= frames; ++i)
     {
-        EXPECT_EQ(region.model, ModelId{5});
-        EXPECT_EQ(region.center_m, Vec3(1, 2, 3));
-        EXPECT_EQ(region.radius_m, 0.02);
+        sut.observe(motion_to(place_at(i * kPeriod_s)), kLead_s);
     }
 }
 
-TEST(RegionPredictor, finds_a_constant_velocity_and_the_places_it_leads_to)
+RegionRanking ranked(const RegionPredictor& sut, Prediction way, const Vec3& at)
+{
+    RegionRanking ranking;
+    sut.rank(way, {5}, one_ball(at), 0.02, ranking);
+    return ranking;
+}
+
+Vec3 on_circle(double time_s)
+{
+    return {0.1 * std::cos(10.0 * time_s), 0.1 * std::sin(10.0 * time_s), 0.0};
+}
+
+} // namespace
+
+TEST(RegionPredictor, after_the_first_observation_every_way_stands_still)
+{
+    RegionPredictor sut;
+    sut.observe(motion_to(Vec3(1, 2, 3)), kLead_s);
+
+    for (const Prediction way : kWays)
+    {
+        const RegionRanking ranking = ranked(sut, way, Vec3(1, 2, 3));
+
+        ASSERT_EQ(ranking.size(), 3U);
+        for (const RankedRegion& region : ranking)
+        {
+            EXPECT_EQ(region.model, ModelId{5});
+            EXPECT_EQ(region.center_m, Vec3(1, 2, 3));
+            EXPECT_EQ(region.radius_m, 0.02);
+        }
+    }
+}
+
+TEST(RegionPredictor, the_most_urgent_comes_first_and_the_lead_last)
+{
+    RegionPredictor sut;
+    sut.observe(motion_to(Vec3(0, 0, 0)), kLead_s);
+
+    const RegionRanking ranking = ranked(sut, Prediction::linear, Vec3(0, 0, 0));
+
+    ASSERT_EQ(ranking.size(), 3U);
+    EXPECT_EQ(ranking[0].lead_ns, 0);
+    EXPECT_EQ(ranking[1].lead_ns, 10'000'000);
+    EXPECT_EQ(ranking[2].lead_ns, 20'000'000);
+}
+
+TEST(RegionPredictor, linear_finds_a_constant_velocity_and_the_places_it_leads_to)
 {
     const Vec3 velocity(0.3, -0.2, 0.1);
     RegionPredictor sut;
-    Vec3 at(0, 0, 0);
-    for (int i = 0; i < 300; ++i)
-    {
-        at += velocity * 0.001;
-        sut.observe(at, 0.001);
-    }
+    follow(sut, [&](double time_s) { return Vec3(velocity * time_s); }, 600);
+    const Vec3 at = velocity * 0.6;
+
     EXPECT_NEAR((sut.velocity_m_per_s() - velocity).norm(), 0.0, 1e-9);
-    RegionRanking ranking;
-
-    sut.rank({0}, one_ball(at), 0.02, ranking);
-
-    ASSERT_EQ(ranking.size(), 3U);
-    std::int64_t last = -1;
-    for (const RankedRegion& region : ranking)
+    for (const RankedRegion& region : ranked(sut, Prediction::linear, at))
     {
         const Vec3 way = velocity * (static_cast<double>(region.lead_ns) * 1e-9);
         EXPECT_NEAR((region.center_m - (at + way)).norm(), 0.0, 1e-9);
-        EXPECT_NEAR(region.radius_m, 0.02 + 0.1 * way.norm(), 1e-9);
-        EXPECT_GT(region.lead_ns, last) << "most urgent first";
-        last = region.lead_ns;
+        EXPECT_NEAR(region.radius_m, 0.02, 1e-3) << "what it erred while it learned wears off";
     }
-    EXPECT_EQ(ranking[0].lead_ns, 0);
+}
+
+TEST(RegionPredictor, quadratic_foretells_an_acceleration_that_linear_misses)
+{
+    const Vec3 acceleration(3.0, 0.0, -2.0);
+    const auto place_at = [&](double time_s) -> Vec3
+    { return 0.5 * time_s * time_s * acceleration; };
+    RegionPredictor sut;
+    follow(sut, place_at, 600);
+    const Vec3 truth = place_at(0.6 + kLead_s);
+
+    const Vec3 linear = ranked(sut, Prediction::linear, place_at(0.6))[2].center_m;
+    const Vec3 quadratic = ranked(sut, Prediction::quadratic, place_at(0.6))[2].center_m;
+
+    const double missed_by_linear = (linear - truth).norm();
+    EXPECT_GT(missed_by_linear, 0.5 * 0.5 * kLead_s * kLead_s * acceleration.norm());
+    EXPECT_LT((quadratic - truth).norm(), 0.2 * missed_by_linear);
+}
+
+TEST(RegionPredictor, local_neighbours_stay_and_reach_as_far_as_the_speed_leads)
+{
+    RegionPredictor sut;
+    follow(sut, [](double time_s) { return Vec3(0.5 * time_s, 0.0, 0.0); }, 300);
+
+    const RegionRanking ranking = ranked(sut, Prediction::local_neighbours, Vec3(0.15, 0.0, 0.0));
+
+    EXPECT_EQ(ranking[2].center_m, Vec3(0.15, 0.0, 0.0));
+    EXPECT_NEAR(ranking[2].radius_m, 0.02 + 0.5 * kLead_s, 1e-9);
+    EXPECT_NEAR(ranking[1].radius_m, 0.02 + 0.25 * kLead_s, 1e-9);
+}
+
+TEST(RegionPredictor, distance_query_does_not_go_through_the_surface)
+{
+    RegionPredictor through;
+    PairMotion motion = motion_to(Vec3(0, 0, 0));
+    for (int i = 0; i < 300; ++i)
+    {
+        motion.center_m = Vec3(0.4 * i * kPeriod_s, 0.0, 1.0 - 0.3 * i * kPeriod_s);
+        motion.outward = Vec3(0, 0, 1);
+        motion.gap_m = 0.002;
+        through.observe(motion, kLead_s);
+    }
+
+    const Vec3 straight =
+        ranked(through, Prediction::linear, motion.center_m)[2].center_m - motion.center_m;
+    const Vec3 held =
+        ranked(through, Prediction::distance_query, motion.center_m)[2].center_m - motion.center_m;
+
+    EXPECT_NEAR(straight.z(), -0.3 * kLead_s, 1e-9);
+    EXPECT_NEAR(held.z(), -0.002, 1e-9) << "as far as touching";
+    EXPECT_NEAR(held.x(), straight.x(), 1e-9);
+}
+
+/// A tool that waits for data behind its hand comes after it, at its own speed.
+TEST(RegionPredictor, a_tool_behind_its_hand_is_expected_on_the_way_to_it)
+{
+    RegionPredictor sut;
+    PairMotion motion = motion_to(Vec3(0, 0, 0));
+    motion.way_m = Vec3(0.3, 0.0, 0.0);
+    motion.speed_max_m_per_s = 2.0;
+    for (int i = 0; i < 100; ++i)
+    {
+        sut.observe(motion, kLead_s);
+    }
+
+    const RegionRanking ranking = ranked(sut, Prediction::linear, Vec3(0, 0, 0));
+
+    EXPECT_NEAR(ranking[2].center_m.x(), 2.0 * kLead_s, 1e-12);
+    EXPECT_NEAR(ranking[1].center_m.x(), 1.0 * kLead_s, 1e-12);
+}
+
+TEST(RegionPredictor, automatic_believes_the_way_that_errs_least)
+{
+    RegionPredictor straight;
+    follow(straight, [](double time_s) { return Vec3(0.3 * time_s, 0.0, 0.0); }, 600);
+    EXPECT_NE(straight.believed(), Prediction::local_neighbours);
+
+    RegionPredictor turning;
+    follow(turning, on_circle, 600);
+    EXPECT_EQ(turning.believed(), Prediction::quadratic);
+
+    Random random(7);
+    RegionPredictor trembling;
+    follow(trembling, [&](double) { return random.in_cube(1e-3); }, 2'000);
+    EXPECT_EQ(trembling.believed(), Prediction::local_neighbours);
+}
+
+TEST(RegionPredictor, automatic_ranks_as_the_way_it_believes)
+{
+    RegionPredictor sut;
+    follow(sut, on_circle, 600);
+    const Vec3 at = on_circle(0.6);
+
+    const RegionRanking automatic = ranked(sut, Prediction::automatic, at);
+    const RegionRanking believed = ranked(sut, sut.believed(), at);
+
+    for (std::size_t i = 0; i < 3; ++i)
+    {
+        EXPECT_EQ(automatic[i].center_m, believed[i].center_m);
+        EXPECT_EQ(automatic[i].radius_m, believed[i].radius_m);
+    }
+}
+
+TEST(RegionPredictor, balls_are_wider_by_what_forecasts_erred)
+{
+    RegionPredictor sut;
+    follow(sut, on_circle, 2'000);
+    const double before_m = (on_circle(2.0 - kLead_s) - on_circle(2.0)).norm();
+
+    const RegionRanking ranking = ranked(sut, Prediction::linear, on_circle(2.0));
+    const double erred_m = (ranking[2].center_m - on_circle(2.0 + kLead_s)).norm();
+
+    EXPECT_GT(ranking[2].radius_m - 0.02, 0.8 * erred_m);
+    EXPECT_LT(ranking[2].radius_m - 0.02, 1.2 * erred_m);
+    EXPECT_LT(erred_m, before_m) << "better than staying";
 }
 
 TEST(RegionPredictor, a_stall_counts_with_its_whole_time)
 {
     RegionPredictor sut;
-    sut.observe(Vec3(0, 0, 0), 0.001);
+    sut.observe(motion_to(Vec3(0, 0, 0)), kLead_s);
+    PairMotion later = motion_to(Vec3(0.5, 0, 0));
+    later.elapsed_s = 0.5;
 
-    sut.observe(Vec3(0.5, 0, 0), 0.5);
+    sut.observe(later, kLead_s);
 
     EXPECT_GT(sut.velocity_m_per_s().x(), 0.9);
     EXPECT_LE(sut.velocity_m_per_s().x(), 1.0);
@@ -80,7 +244,7 @@ TEST(RegionPredictor, smooths_a_tremor_away)
     RegionPredictor sut;
     for (int i = 0; i < 1'000; ++i)
     {
-        sut.observe(Vec3(i % 2 == 0 ? 1e-4 : -1e-4, 0, 0), 0.001);
+        sut.observe(motion_to(Vec3(i % 2 == 0 ? 1e-4 : -1e-4, 0, 0)), kLead_s);
     }
     EXPECT_LT(sut.velocity_m_per_s().norm(), 0.1 * 0.2);
 }
@@ -88,13 +252,13 @@ TEST(RegionPredictor, smooths_a_tremor_away)
 TEST(RegionPredictor, a_full_ranking_keeps_what_it_has)
 {
     RegionPredictor sut;
-    sut.observe(Vec3(1, 0, 0), 0.001);
+    sut.observe(motion_to(Vec3(1, 0, 0)), kLead_s);
     RegionRanking ranking;
     while (ranking.try_push_back({ModelId{9}, Vec3(0, 0, 0), 1.0, 0}))
     {
     }
 
-    sut.rank({0}, one_ball(Vec3(1, 0, 0)), 0.02, ranking);
+    sut.rank(Prediction::automatic, {0}, one_ball(Vec3(1, 0, 0)), 0.02, ranking);
 
     EXPECT_TRUE(ranking.full());
     EXPECT_EQ(ranking[ranking.size() - 1].model, ModelId{9});
@@ -103,7 +267,10 @@ TEST(RegionPredictor, a_full_ranking_keeps_what_it_has)
 TEST(RegionPredictorDeathTest, time_that_stands_still_is_a_bug)
 {
     RegionPredictor sut;
-    EXPECT_DEATH(sut.observe(Vec3(0, 0, 0), 0.0), "");
+    PairMotion motion = motion_to(Vec3(0, 0, 0));
+    motion.elapsed_s = 0.0;
+    EXPECT_DEATH(sut.observe(motion, kLead_s), "");
+    EXPECT_DEATH(sut.observe(motion_to(Vec3(0, 0, 0)), 0.0), "");
 }
 
 } // namespace tactus::test

@@ -59,7 +59,7 @@ TEST_F(WishListTest, an_arrival_takes_its_slot_along_until_it_is_given_back)
     sut.ask(7, 0);
     sut.ask(8, 0);
 
-    sut.arrive(7);
+    sut.arrive(7, 0);
 
     EXPECT_FALSE(sut.is_under_way(7));
     EXPECT_TRUE(sut.is_under_way(8));
@@ -102,18 +102,47 @@ TEST_F(WishListTest, what_arrives_after_it_expired_takes_a_slot_all_the_same)
     expire_all(sut, 2, kWishTimeoutFrames + 1);
     ASSERT_FALSE(sut.is_under_way(7));
 
-    sut.arrive(7);
+    sut.arrive(7, 0);
 
     sut.ask(8, 300);
     EXPECT_FALSE(sut.has_credit());
 }
 
+TEST_F(WishListTest, tells_how_long_pieces_took)
+{
+    WishList sut = make(40);
+    EXPECT_FALSE(sut.latency().is_measured());
+    for (std::uint32_t i = 0; i < 30; ++i)
+    {
+        sut.ask(i, 100 + i);
+        sut.arrive(i, 120 + i);
+    }
+    EXPECT_DOUBLE_EQ(sut.latency().mean_frames(), 20.0);
+    EXPECT_NEAR(sut.latency().most_frames(), 20.0, 0.1) << "the deviation wears off";
+
+    sut.ask(30, 200);
+    sut.arrive(30, 300);
+    EXPECT_GT(sut.latency().mean_frames(), 25.0);
+    EXPECT_GT(sut.latency().most_frames(), 60.0);
+}
+
+TEST_F(WishListTest, what_expired_does_not_count_as_latency)
+{
+    WishList sut = make(2);
+    sut.ask(7, 0);
+    expire_all(sut, 2, kWishTimeoutFrames + 1);
+
+    sut.arrive(7, 10'000);
+
+    EXPECT_FALSE(sut.latency().is_measured());
+}
+
 TEST_F(WishListTest, more_arrivals_than_slots_are_a_bug)
 {
     WishList sut = make(1);
-    sut.arrive(3);
+    sut.arrive(3, 0);
 
-    EXPECT_DEATH(sut.arrive(4), "");
+    EXPECT_DEATH(sut.arrive(4, 0), "");
 }
 
 TEST_F(WishListTest, random_use_never_asks_for_more_than_the_slots)
@@ -135,7 +164,7 @@ TEST_F(WishListTest, random_use_never_asks_for_more_than_the_slots)
         }
         if (!under_way.empty() && random.one_in(3))
         {
-            sut.arrive(*under_way.begin());
+            sut.arrive(*under_way.begin(), frame);
             under_way.erase(under_way.begin());
             --free_slots;
         }

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+
+namespace tactus
+{
+
+/// How long pieces were waited for: counts in steps of a quarter of a millisecond, up to half a
+/// second; the longest is kept beside them. 16 KiB, nothing allocated.
+class WaitingTimes
+{
+public:
+    void add(std::int64_t waited_ns) noexcept
+    {
+        const std::int64_t waited = std::max<std::int64_t>(waited_ns, 0);
+        const auto step = static_cast<std::size_t>(waited / kStep_ns);
+        ++counts_[std::min(step, counts_.size() - 1)];
+        ++total_;
+        longest_ns_ = std::max(longest_ns_, waited);
+    }
+
+    /// The end of the step that so large a share of all, 0 .. 1, stayed within; 0 when there are
+    /// none, and the longest when it is beyond the steps.
+    [[nodiscard]] double quantile_ms(double share) const noexcept
+    {
+        const auto enough = static_cast<std::uint64_t>(std::ceil(share * static_cast<double>(total_)));
+        std::uint64_t sum = 0;
+        for (std::size_t step = 0; step + 1 < counts_.size(); ++step)
+        {
+            sum += counts_[step];
+            if (sum >= enough && sum > 0)
+            {
+                const auto end_ns = static_cast<std::int64_t>(step + 1) * kStep_ns;
+                return static_cast<double>(std::min(end_ns, longest_ns_)) * 1e-6;
+            }
+        }
+        return longest_ms();
+    }
+    [[nodiscard]] double longest_ms() const noexcept
+    {
+        return static_cast<double>(longest_ns_) * 1e-6;
+    }
+    [[nodiscard]] std::uint64_t total() const noexcept { return total_; }
+
+    WaitingTimes& operator+=(const WaitingTimes& other) noexcept
+    {
+        std::ranges::transform(counts_, other.counts_, counts_.begin(), std::plus<>());
+        total_ += other.total_;
+        longest_ns_ = std::max(longest_ns_, other.longest_ns_);
+        return *this;
+    }
+
+private:
+    static constexpr std::int64_t kStep_ns = 250'000;
+
+    std::array<std::uint64_t, 2'049> counts_{}; ///< The last one: longer.
+    std::uint64_t total_{0};
+    std::int64_t longest_ns_{0};
+};
+
+} // namespace tactus
