@@ -87,7 +87,7 @@ void Memory::store(std::size_t thread, std::size_t location, std::uint64_t value
     const std::memory_order used = weakened(thread, location, true, order);
     events_.push_back({thread, location, true, value, 0, used});
     Location& at = locations_[location];
-    if (at.writer != kMainThread && at.writer != thread)
+    if (thread != kMainThread && at.writer != kMainThread && at.writer != thread)
     {
         fail("a second thread writes the same location");
     }

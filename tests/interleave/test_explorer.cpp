@@ -222,7 +222,6 @@ TEST(Explorer, refuses_what_it_does_not_model)
         "");
 }
 
-/// Three threads of one store each: 3! orders when all meet a reader, one when none do.
 TEST(Explorer, leaves_out_only_orders_of_what_commutes)
 {
     const Bodies apart{[](Shared& s) { s.x.store(1, kRelaxed); },
@@ -245,8 +244,8 @@ TEST(Explorer, leaves_out_only_orders_of_what_commutes)
                        [](Shared& s) { s.read[0] = s.x.load(kRelaxed); }};
     EXPECT_EQ(explore_small<Shared>(twice).executions, 6U);
 
-    // Two loads, between them j of n = 2 stores: the sum of C(i + 1, 1) choices over all places,
-    // each then never older than the one before.
+    // Two loads, so many stores before the first and until the second: the first sees any of
+    // those, the second nothing older than that.
     const Bodies loads{twice[0], [](Shared& s)
                        {
                            s.read[0] = s.x.load(kRelaxed);
