@@ -14,10 +14,10 @@ namespace tactus::interleave
 namespace
 {
 
-/// An unanswered wish is asked again in every second step and given up in the sixth.
+/// An unanswered wish is asked again in every second step and given up in the fourth.
 constexpr std::int64_t kStepNs = 1'000'000;
 constexpr CourierOptions kOptions{
-    .open_wishes = 3, .retry_ns = 2 * kStepNs, .give_up_ns = 6 * kStepNs};
+    .open_wishes = 3, .retry_ns = 2 * kStepNs, .give_up_ns = 4 * kStepNs};
 /// Fewer than the chunks and the index page together, so that the door is full at times.
 constexpr std::uint32_t kWishes = 2;
 constexpr std::array<ChunkId, 3> kAll{ChunkId{0}, ChunkId{1}, ChunkId{2}};
@@ -29,6 +29,7 @@ const char* name_of(Verb verb)
     constexpr std::array<const char*, kVerbs> names{"adopt",
                                                     "want_a",
                                                     "want_b",
+                                                    "want_c",
                                                     "want_all",
                                                     "evict",
                                                     "pin",
@@ -76,7 +77,8 @@ void DoorWorld::Copies::receive(ContentKey key, std::span<const std::byte> bytes
 
 std::vector<Verb> DoorWorld::offered() const
 {
-    std::vector<Verb> verbs{Verb::want_a, Verb::want_b, Verb::want_all, Verb::be_late};
+    std::vector<Verb> verbs{Verb::want_a, Verb::want_b, Verb::want_c, Verb::want_all,
+                            Verb::be_late};
     const bool has_pages = pages_.used() > 0;
     const auto add_if = [&](bool makes_sense, Verb verb)
     {
@@ -114,6 +116,9 @@ bool DoorWorld::apply(Verb verb)
         break;
     case Verb::want_b:
         want(std::span(kAll).subspan(1, 1));
+        break;
+    case Verb::want_c:
+        want(std::span(kAll).subspan(2, 1));
         break;
     case Verb::want_all:
         want(kAll);

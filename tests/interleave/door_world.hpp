@@ -26,6 +26,7 @@ enum class Verb : std::uint8_t
     adopt,
     want_a,   ///< A frame that needs chunk 0,
     want_b,   ///< chunk 1,
+    want_c,   ///< chunk 2,
     want_all, ///< all of the model, which is one page more than there are slots.
     evict,    ///< Every page that isn't pinned.
     pin,      ///< A page that isn't, by refining a record.
@@ -44,7 +45,7 @@ enum class Verb : std::uint8_t
     step_frame_at_piece,
     step_frame_at_hand_over,
 };
-inline constexpr std::uint32_t kVerbs = 18;
+inline constexpr std::uint32_t kVerbs = 19;
 
 [[nodiscard]] const char* name_of(Verb verb);
 
@@ -78,6 +79,9 @@ public:
     void settle();
 
     [[nodiscard]] const std::string& failure() const { return ledger_.failure(); }
+    [[nodiscard]] const CourierCounters& counters() const { return courier_.counters(); }
+    [[nodiscard]] const SlotLedger& ledger() const { return ledger_; }
+    [[nodiscard]] std::uint64_t evictions() const { return cache_.evictions(); }
 
 private:
     void adopt();

@@ -126,11 +126,14 @@ void SlotLedger::update(const DoorEvent& update)
 {
     require(update.key.kind == ContentKind::chunk, "an update of an index page");
     Slot& slot = slots_.at(update.slot);
-    if (slot.chunk.value == update.key.number) // Otherwise it was freed meanwhile.
+    if (slot.chunk.value != update.key.number)
     {
-        require((slot.told & ~update.linked) == 0, "a record is unlinked", update.slot);
-        slot.told = update.linked;
+        ++late_updates_; // It was freed meanwhile.
+        return;
     }
+    ++updates_;
+    require((slot.told & ~update.linked) == 0, "a record is unlinked", update.slot);
+    slot.told = update.linked;
 }
 
 void SlotLedger::find_freed()

@@ -53,6 +53,9 @@ public:
 
     /// Keeps `what` when it does not hold and nothing failed before; `number` is of what it is about.
     void require(bool holds, const char* what, std::uint32_t number = 0);
+    /// Link updates that came in time, and those of pages that were freed meanwhile.
+    [[nodiscard]] std::uint64_t updates() const { return updates_; }
+    [[nodiscard]] std::uint64_t late_updates() const { return late_updates_; }
     [[nodiscard]] bool has_failed() const { return !failure_.empty(); }
     [[nodiscard]] const std::string& failure() const { return failure_; }
     /// Records of a chunk that the haptic thread was told of and may use.
@@ -87,6 +90,8 @@ private:
     std::uint32_t handed_indices_{0};
     std::uint32_t freed_{0};
     std::uint32_t freed_at_step_{0};
+    std::uint64_t updates_{0};
+    std::uint64_t late_updates_{0};
     std::string failure_;
 };
 

@@ -9,10 +9,13 @@
 #include <array>
 #include <cstdint>
 #include <cstdlib>
+#include <initializer_list>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 /// The life of pages between the two threads: the product's courier, linker, cache and page table,
@@ -46,6 +49,31 @@ struct FreeDeleter
     void operator()(std::byte* bytes) const { std::free(bytes); } // NOLINT: aligned_alloc's partner.
 };
 
+/// What came to pass in all sequences, so that none of it goes untried unnoticed.
+struct Tally
+{
+    void add(const DoorWorld& world)
+    {
+        const CourierCounters& counters = world.counters();
+        for (const auto& [name, count] :
+             {std::pair{"delivered", counters.delivered},
+              {"evicted", world.evictions()},
+              {"linked after arrival", world.ledger().updates()},
+              {"linked after eviction", world.ledger().late_updates()},
+              {"asked again", counters.asked_again},
+              {"damaged", counters.refused_hash},
+              {"unasked", counters.dropped_unasked},
+              {"without a slot", counters.dropped_no_slot},
+              {"forgotten", counters.forgotten}})
+        {
+            counts[name] += count;
+        }
+    }
+
+    std::uint64_t sequences{0};
+    std::map<std::string, std::uint64_t> counts;
+};
+
 class PageLife : public testing::Test
 {
 protected:
@@ -57,11 +85,12 @@ protected:
     PageLife& operator=(PageLife&&) = delete;
 
     /// Every sequence of `length` verbs after those of `beginning`; of `allowed` ones, where given.
+    /// All that is named in `happens` must come to pass.
     void explore(const char* what, std::span<const Verb> beginning, int length,
-                 std::span<const Verb> allowed = {})
+                 std::initializer_list<const char*> happens, std::span<const Verb> allowed = {})
     {
         Choices choices;
-        std::uint64_t sequences = 0;
+        Tally tally;
         do
         {
             DoorWorld world(truth_, {memory_.get(), DoorWorld::kBytes});
@@ -76,11 +105,20 @@ protected:
                 continue; // Came to the same as another.
             }
             ASSERT_EQ(world.failure(), "") << "after" << text_of(verbs_so_far);
-            ++sequences;
             world.settle();
             ASSERT_EQ(world.failure(), "") << "in settling after" << text_of(verbs_so_far);
+            ++tally.sequences;
+            tally.add(world);
         } while (choices.try_advance());
-        std::cout << what << ": " << sequences << " sequences\n";
+        std::cout << what << ": " << tally.sequences << " sequences\n";
+        for (const auto& [name, count] : tally.counts)
+        {
+            std::cout << "  " << name << ' ' << count << '\n';
+        }
+        for (const char* name : happens)
+        {
+            EXPECT_GT(tally.counts[name], 0U) << name;
+        }
     }
 
 private:
@@ -116,17 +154,51 @@ bool PageLife::run(DoorWorld& world, Choices& choices, int length, std::span<con
     return true;
 }
 
+/// What brings the index page, then chunk 0, then chunk 1; each up to where it is adopted.
+constexpr std::array kAllHere{Verb::want_a, Verb::step,   Verb::adopt, Verb::want_a, Verb::step,
+                              Verb::adopt,  Verb::want_b, Verb::step,  Verb::adopt};
+constexpr std::size_t kIndexHere = 3;
+constexpr std::size_t kOneOnItsWay = 7;
+
 TEST_F(PageLife, is_sound_from_the_start)
 {
-    explore("every verb, from the start", {}, 4);
+    explore("every verb, from the start", {}, 4, {"delivered", "asked again", "damaged", "unasked"});
+}
+
+TEST_F(PageLife, is_sound_with_the_index_page_here)
+{
+    explore("every verb, the index page here", std::span(kAllHere).first(kIndexHere), 4,
+            {"evicted", "linked after arrival", "linked after eviction", "damaged", "unasked"});
 }
 
 TEST_F(PageLife, is_sound_with_one_page_here_and_one_on_its_way)
 {
     explore("every verb, one page here and one on its way",
-            std::array{Verb::want_a, Verb::step, Verb::adopt, Verb::want_a, Verb::step, Verb::adopt,
-                       Verb::want_b},
-            4);
+            std::span(kAllHere).first(kOneOnItsWay), 4,
+            {"evicted", "linked after arrival", "linked after eviction", "damaged", "unasked"});
+}
+
+TEST_F(PageLife, is_sound_with_every_slot_taken)
+{
+    explore("every verb, every slot taken", kAllHere, 4, {"evicted", "linked after arrival"});
+}
+
+TEST_F(PageLife, is_sound_in_longer_sequences_of_usual_verbs)
+{
+    constexpr std::array usual{Verb::adopt, Verb::want_a, Verb::want_all, Verb::evict, Verb::step,
+                               Verb::step_holding};
+    explore("usual verbs, the index page here", std::span(kAllHere).first(kIndexHere), 7,
+            {"evicted", "linked after arrival", "asked again"}, usual);
+}
+
+TEST_F(PageLife, is_sound_when_wishes_expire_and_are_answered_late)
+{
+    constexpr std::array beginning{Verb::want_a, Verb::step,   Verb::adopt,
+                                   Verb::want_a, Verb::want_b, Verb::step_holding};
+    constexpr std::array late{Verb::adopt,   Verb::want_b, Verb::want_c,
+                              Verb::be_late, Verb::step,   Verb::step_holding};
+    explore("late answers, both pages on their way", beginning, 6,
+            {"without a slot", "forgotten", "asked again"}, late);
 }
 
 } // namespace
