@@ -106,6 +106,8 @@ std::vector<Verb> DoorWorld::offered() const
 bool DoorWorld::apply(Verb verb)
 {
     bool is_new = true;
+    had_losses_ = had_losses_ || verb == Verb::be_late || verb == Verb::step_losing ||
+                  verb == Verb::step_damaging || verb == Verb::change_host;
     switch (verb)
     {
     case Verb::adopt:
@@ -159,7 +161,8 @@ bool DoorWorld::step(Verb verb)
     now_ns_ += kStepNs;
     ledger_.begin_step();
     courier_.step(now_ns_);
-    return verb == Verb::step || (verb < Verb::change_host ? link_.was_weather_felt() : had_middle_);
+    return verb == Verb::step ||
+           (verb < Verb::change_host ? link_.was_weather_felt() : had_middle_);
 }
 
 void DoorWorld::adopt()
@@ -176,7 +179,8 @@ void DoorWorld::want(std::span<const ChunkId> chunks, std::uint32_t frames)
     std::vector<RankedRegion> regions;
     for (const ChunkId chunk : chunks) // See TinyModelSpec::boxes_in_a_row.
     {
-        const double x = (static_cast<double>(chunk.value) + 0.5) / static_cast<double>(kAll.size());
+        const double x =
+            (static_cast<double>(chunk.value) + 0.5) / static_cast<double>(kAll.size());
         const double extent_m = 1'000.0 * static_cast<double>(truth_.header.quantum_m());
         regions.push_back({{}, Vec3(x * extent_m, 0.0, 0.0), 0.01 * extent_m, 0});
     }
@@ -237,6 +241,13 @@ bool DoorWorld::is_settled() const
            inbox_.wanted.size() == 0 && courier_.free_pages() + pages_.used() == kPages;
 }
 
+/// Then a wish may have to expire before it is made anew.
+bool DoorWorld::was_anything_lost() const
+{
+    const CourierCounters& counters = courier_.counters();
+    return had_losses_ || counters.forgotten + counters.dropped_no_slot > 0;
+}
+
 void DoorWorld::settle()
 {
     constexpr int kFrames = 24;
@@ -248,7 +259,7 @@ void DoorWorld::settle()
     for (int i = 0; i < kFrames && !ledger_.has_failed() && !is_settled(); ++i)
     {
         adopt();
-        want(std::span(kAll).first(kPages), kWishTimeoutFrames + 1);
+        want(std::span(kAll).first(kPages), was_anything_lost() ? kWishTimeoutFrames + 1 : 1);
         static_cast<void>(apply(Verb::step));
     }
     ledger_.require(is_settled(), "a wish is lost: what is wanted does not come");

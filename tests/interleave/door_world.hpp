@@ -32,7 +32,7 @@ enum class Verb : std::uint8_t
     pin,      ///< A page that isn't, by refining a record.
     unpin,    ///< All.
     be_late,  ///< A frame after so long that unanswered wishes expire.
-    // The transport thread: a step, and how the link is.
+             // The transport thread: a step, and how the link is.
     step,
     step_holding,
     step_losing,
@@ -40,7 +40,7 @@ enum class Verb : std::uint8_t
     step_reversing,
     step_repeating,
     change_host, ///< It goes away, or another one comes.
-    // A step with a frame in the middle: adopt, evict, want everything.
+                 // A step with a frame in the middle: adopt, evict, want everything.
     step_frame_at_request,
     step_frame_at_piece,
     step_frame_at_hand_over,
@@ -53,14 +53,15 @@ inline constexpr std::uint32_t kVerbs = 19;
 /// slots; a link that does as it is told; and a ledger beside it.
 ///
 /// The verbs are whole: what one does to several queues is not cut up by the other thread, except
-/// in the middle of a step. That leaves nothing out. A thread learns of the other only by what it
-/// pops and by counts, and pops are in the order of pushes (QueueOrders, DoorOrders). So all that
-/// the place of a cut decides is how far into the other's pushes a thread sees, and:
-/// - a step sees two queues. The wishes that it takes were pushed before the freed slots that it
-///   takes or after earlier ones; either is what it sees between two verbs, since `evict` and
-///   `want_...` are verbs of their own. What is pushed while it runs is seen in the middle steps.
-/// - `adopt` sees one queue, whose prefixes are those between two hand-overs: the middle steps.
-/// - counts that are out of date make for less room or fewer values, never more.
+/// in the middle of a step. Finer cuts add little. A thread learns of the other only by what it
+/// pops and by counts; pops come in the order of pushes, and whoever takes a wish has taken what
+/// was freed before it (QueueOrders, DoorOrders). So a cut decides no more than how far into the
+/// other's pushes a thread sees:
+/// - `adopt` sees one queue, up to some hand-over; those within a step are the middle steps' cuts.
+/// - A step sees wishes up to some point and freed slots up to that or a later one. Between a
+///   freeing and the wish behind it that is what a step after `evict` sees, before `want_...`.
+///   What is pushed while the step runs is there in the middle steps.
+/// - Counts that are out of date make for less room or fewer values, never more.
 class DoorWorld
 {
 public:
@@ -75,7 +76,8 @@ public:
     /// Does it and checks. False when it came to the same as a plain `step`.
     [[nodiscard]] bool apply(Verb verb);
     /// With a good link and no pins: the first two chunks come, linked as far as they can be
-    /// without the third, and nothing stays open.
+    /// without the third, and nothing stays open. Where nothing was lost on the way, also without
+    /// any wish that expires.
     void settle();
 
     [[nodiscard]] const std::string& failure() const { return ledger_.failure(); }
@@ -92,6 +94,7 @@ private:
     void frame_in_the_middle();
     [[nodiscard]] bool step(Verb verb);
     [[nodiscard]] bool is_settled() const;
+    [[nodiscard]] bool was_anything_lost() const;
     [[nodiscard]] std::uint32_t page_to_pin() const;
 
     /// Runs a frame when it is told of a hand-over.
@@ -118,6 +121,7 @@ private:
     std::uint32_t frame_{ChunkCache::kFirstFrame};
     std::int64_t now_ns_{0};
     bool had_middle_{false};
+    bool had_losses_{false}; ///< Of the link, or wishes that expired.
 };
 
 } // namespace tactus::interleave

@@ -57,7 +57,8 @@ void Fiber::start(std::function<void()> body)
     inside_.uc_stack.ss_sp = stack_.get();
     inside_.uc_stack.ss_size = kStackBytes;
     inside_.uc_link = &outside_;
-    const auto self = reinterpret_cast<std::uintptr_t>(this); // Passed on as two ints, all it takes.
+    const auto self =
+        reinterpret_cast<std::uintptr_t>(this); // Passed on as two ints, all it takes.
     ::makecontext(&inside_, reinterpret_cast<void (*)()>(&Fiber::enter), 2,
                   static_cast<unsigned>(std::uint64_t{self} >> 32U), static_cast<unsigned>(self));
 }

@@ -2,11 +2,10 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include <ucontext.h>
-
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <ucontext.h>
 
 namespace tactus::interleave
 {

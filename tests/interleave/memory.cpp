@@ -163,13 +163,14 @@ void Memory::join(Knowledge& into, const Knowledge& from)
 std::memory_order Memory::weakened(std::size_t thread, std::size_t location, bool is_store,
                                    std::memory_order order) const
 {
-    const bool is_weak = std::ranges::any_of(
-        faults_,
-        [&](const Fault& fault)
-        {
-            return fault.adds == 0 && fault.location == location && fault.is_store == is_store &&
-                   fault.thread.value_or(thread) == thread;
-        });
+    const bool is_weak = std::ranges::any_of(faults_,
+                                             [&](const Fault& fault)
+                                             {
+                                                 return fault.adds == 0 &&
+                                                        fault.location == location &&
+                                                        fault.is_store == is_store &&
+                                                        fault.thread.value_or(thread) == thread;
+                                             });
     return is_weak ? std::memory_order_relaxed : order;
 }
 

@@ -62,7 +62,8 @@ public:
     Memory(Choices& choices, std::span<const Fault> faults) : choices_(choices), faults_(faults) {}
 
     [[nodiscard]] std::size_t add_location(std::uint64_t value);
-    /// The threads begin knowing all that the main thread did, which afterwards knows all of theirs.
+    /// The threads begin knowing all that the main thread did, which afterwards knows all of
+    /// theirs.
     void begin_threads();
     void join_threads();
 

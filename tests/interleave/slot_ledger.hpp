@@ -51,7 +51,8 @@ public:
     /// After any verb: every slot is in one place, every page holds what the model says.
     void check(const Courier& courier, const ChunkInbox& inbox, const ChunkCache& cache);
 
-    /// Keeps `what` when it does not hold and nothing failed before; `number` is of what it is about.
+    /// Keeps `what` when it does not hold and nothing failed before; `number` is of what it is
+    /// about.
     void require(bool holds, const char* what, std::uint32_t number = 0);
     /// Link updates that came in time, and those of pages that were freed meanwhile.
     [[nodiscard]] std::uint64_t updates() const { return updates_; }

@@ -35,17 +35,17 @@ using Bodies = std::vector<SmallProgram<Shared>::Body>;
 std::set<std::string> outcomes(const Bodies& bodies, std::size_t count)
 {
     std::set<std::string> seen;
-    const Exploration result = explore_small<Shared>(
-        bodies,
-        [&](Shared& shared)
-        {
-            std::string digits;
-            for (std::size_t i = 0; i < count; ++i)
-            {
-                digits += static_cast<char>('0' + shared.read.at(i));
-            }
-            seen.insert(digits);
-        });
+    const Exploration result =
+        explore_small<Shared>(bodies,
+                              [&](Shared& shared)
+                              {
+                                  std::string digits;
+                                  for (std::size_t i = 0; i < count; ++i)
+                                  {
+                                      digits += static_cast<char>('0' + shared.read.at(i));
+                                  }
+                                  seen.insert(digits);
+                              });
     EXPECT_EQ(result.failure, "");
     return seen;
 }

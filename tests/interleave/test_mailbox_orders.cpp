@@ -44,26 +44,27 @@ struct Post
 
 Exploration write_and_read(std::uint64_t letters, int reads, std::span<const Fault> faults = {})
 {
-    return explore_small<Post>({[=](Post& post)
-                                {
-                                    for (std::uint64_t i = 1; i <= letters; ++i)
-                                    {
-                                        post.mailbox.write({i, i});
-                                    }
-                                },
-                                [=](Post& post)
-                                {
-                                    for (int i = 0; i < reads; ++i)
-                                    {
-                                        post.read();
-                                    }
-                                }},
-                               [](Post& post)
-                               {
-                                   post.read();
-                                   require(post.last > 0, "the last letter is not there");
-                               },
-                               faults);
+    return explore_small<Post>(
+        {[=](Post& post)
+         {
+             for (std::uint64_t i = 1; i <= letters; ++i)
+             {
+                 post.mailbox.write({i, i});
+             }
+         },
+         [=](Post& post)
+         {
+             for (int i = 0; i < reads; ++i)
+             {
+                 post.read();
+             }
+         }},
+        [](Post& post)
+        {
+            post.read();
+            require(post.last > 0, "the last letter is not there");
+        },
+        faults);
 }
 
 void expect_sound(const char* what, const Exploration& result)

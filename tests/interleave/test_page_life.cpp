@@ -40,13 +40,16 @@ std::vector<Verb> verbs_so_far;
 
 void tell_verbs(const char* condition, const char* file, int line) noexcept
 {
-    std::cerr << file << ':' << line << ": " << condition << " fails after"
-              << text_of(verbs_so_far) << '\n';
+    std::cerr << file << ':' << line << ": " << condition << " fails after" << text_of(verbs_so_far)
+              << '\n';
 }
 
 struct FreeDeleter
 {
-    void operator()(std::byte* bytes) const { std::free(bytes); } // NOLINT: aligned_alloc's partner.
+    void operator()(std::byte* bytes) const
+    {
+        std::free(bytes);
+    } // NOLINT: aligned_alloc's partner.
 };
 
 /// What came to pass in all sequences, so that none of it goes untried unnoticed.
@@ -55,16 +58,15 @@ struct Tally
     void add(const DoorWorld& world)
     {
         const CourierCounters& counters = world.counters();
-        for (const auto& [name, count] :
-             {std::pair{"delivered", counters.delivered},
-              {"evicted", world.evictions()},
-              {"linked after arrival", world.ledger().updates()},
-              {"linked after eviction", world.ledger().late_updates()},
-              {"asked again", counters.asked_again},
-              {"damaged", counters.refused_hash},
-              {"unasked", counters.dropped_unasked},
-              {"without a slot", counters.dropped_no_slot},
-              {"forgotten", counters.forgotten}})
+        for (const auto& [name, count] : {std::pair{"delivered", counters.delivered},
+                                          {"evicted", world.evictions()},
+                                          {"linked after arrival", world.ledger().updates()},
+                                          {"linked after eviction", world.ledger().late_updates()},
+                                          {"asked again", counters.asked_again},
+                                          {"damaged", counters.refused_hash},
+                                          {"unasked", counters.dropped_unasked},
+                                          {"without a slot", counters.dropped_no_slot},
+                                          {"forgotten", counters.forgotten}})
         {
             counts[name] += count;
         }
@@ -128,8 +130,8 @@ private:
     test::TinyModel model_ =
         test::make_tiny_model({.records = 150, .shuffled_ids = true, .boxes_in_a_row = true});
     Truth truth_{model_};
-    std::unique_ptr<std::byte, FreeDeleter> memory_{static_cast<std::byte*>(
-        std::aligned_alloc(Arena::kAlignment, DoorWorld::kBytes))};
+    std::unique_ptr<std::byte, FreeDeleter> memory_{
+        static_cast<std::byte*>(std::aligned_alloc(Arena::kAlignment, DoorWorld::kBytes))};
     AssertHandler before_;
 };
 
@@ -162,7 +164,8 @@ constexpr std::size_t kOneOnItsWay = 7;
 
 TEST_F(PageLife, is_sound_from_the_start)
 {
-    explore("every verb, from the start", {}, 4, {"delivered", "asked again", "damaged", "unasked"});
+    explore("every verb, from the start", {}, 4,
+            {"delivered", "asked again", "damaged", "unasked"});
 }
 
 TEST_F(PageLife, is_sound_with_the_index_page_here)
@@ -173,9 +176,8 @@ TEST_F(PageLife, is_sound_with_the_index_page_here)
 
 TEST_F(PageLife, is_sound_with_one_page_here_and_one_on_its_way)
 {
-    explore("every verb, one page here and one on its way",
-            std::span(kAllHere).first(kOneOnItsWay), 4,
-            {"evicted", "linked after arrival", "linked after eviction", "damaged", "unasked"});
+    explore("every verb, one page here and one on its way", std::span(kAllHere).first(kOneOnItsWay),
+            4, {"evicted", "linked after arrival", "linked after eviction", "damaged", "unasked"});
 }
 
 TEST_F(PageLife, is_sound_with_every_slot_taken)
@@ -185,8 +187,8 @@ TEST_F(PageLife, is_sound_with_every_slot_taken)
 
 TEST_F(PageLife, is_sound_in_longer_sequences_of_usual_verbs)
 {
-    constexpr std::array usual{Verb::adopt, Verb::want_a, Verb::want_all, Verb::evict, Verb::step,
-                               Verb::step_holding};
+    constexpr std::array usual{Verb::adopt, Verb::want_a, Verb::want_all,
+                               Verb::evict, Verb::step,   Verb::step_holding};
     explore("usual verbs, the index page here", std::span(kAllHere).first(kIndexHere), 7,
             {"evicted", "linked after arrival", "asked again"}, usual);
 }

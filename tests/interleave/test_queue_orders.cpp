@@ -153,8 +153,8 @@ TEST(QueueOrders, each_weaker_order_is_found)
     for (const Mutation& mutation : mutations)
     {
         const std::array faults{mutation.fault};
-        for (const Exploration& result : {push_and_pop<1>(2, 2, faults),
-                                          push_and_pop<2>(3, 2, faults)})
+        for (const Exploration& result :
+             {push_and_pop<1>(2, 2, faults), push_and_pop<2>(3, 2, faults)})
         {
             EXPECT_EQ(result.failure.substr(0, 4), mutation.found_as) << mutation.what;
         }
@@ -188,23 +188,23 @@ TEST(QueueOrders, a_refusal_may_be_late_on_both_sides_at_once)
         bool was_empty{false};
     };
     std::size_t both = 0;
-    const Exploration result = explore_small<Both>(
-        {[](Both& s)
-         {
-             s.bench.push();
-             s.bench.push();
-             std::uint32_t third = 3;
-             s.was_full = !s.bench.queue.try_push(third);
-         },
-         [](Both& s)
-         {
-             std::uint32_t number = 0;
-             if (s.bench.queue.try_pop(number))
-             {
-                 s.was_empty = !s.bench.queue.try_pop(number);
-             }
-         }},
-        [&](Both& s) { both += s.was_full && s.was_empty ? 1U : 0U; });
+    const Exploration result =
+        explore_small<Both>({[](Both& s)
+                             {
+                                 s.bench.push();
+                                 s.bench.push();
+                                 std::uint32_t third = 3;
+                                 s.was_full = !s.bench.queue.try_push(third);
+                             },
+                             [](Both& s)
+                             {
+                                 std::uint32_t number = 0;
+                                 if (s.bench.queue.try_pop(number))
+                                 {
+                                     s.was_empty = !s.bench.queue.try_pop(number);
+                                 }
+                             }},
+                            [&](Both& s) { both += s.was_full && s.was_empty ? 1U : 0U; });
     EXPECT_EQ(result.failure, "");
     EXPECT_GT(both, 0U);
 }

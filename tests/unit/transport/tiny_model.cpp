@@ -392,7 +392,8 @@ std::vector<std::byte> write_index_page(const TinyModel& model, std::uint32_t pa
          chunk < std::min<std::size_t>(model.chunks.size(), std::size_t{page} * 64 + 64); ++chunk)
     {
         const std::size_t chunks = model.chunks.size();
-        const auto low = static_cast<std::uint16_t>(in_a_row ? (chunk * kExtent + 100) / chunks : 0);
+        const auto low =
+            static_cast<std::uint16_t>(in_a_row ? (chunk * kExtent + 100) / chunks : 0);
         const auto high =
             static_cast<std::uint16_t>(in_a_row ? (chunk * kExtent + 900) / chunks : kExtent);
         bytes.put(std::array<std::uint16_t, 6>{low, 0, 0, high, kExtent, kExtent});
