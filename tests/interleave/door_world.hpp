@@ -19,10 +19,9 @@
 namespace tactus::interleave
 {
 
-/// What either thread may do next.
+/// What either thread may do next; the haptic thread up to be_late.
 enum class Verb : std::uint8_t
 {
-    // The haptic thread.
     adopt,
     want_a,   ///< A frame that needs chunk 0,
     want_b,   ///< chunk 1,
@@ -31,16 +30,15 @@ enum class Verb : std::uint8_t
     evict,    ///< Every page that isn't pinned.
     pin,      ///< A page that isn't, by refining a record.
     unpin,    ///< All.
-    be_late,  ///< A frame after so long that unanswered wishes expire.
-             // The transport thread: a step, and how the link is.
-    step,
+    be_late,  ///< A frame so late that unanswered wishes expire.
+    step,     ///< With a link as its Weather says, and the next ones in its order.
     step_holding,
     step_losing,
     step_damaging,
     step_reversing,
     step_repeating,
     change_host, ///< It goes away, or another one comes.
-                 // A step with a frame in the middle: adopt, evict, want everything.
+    /// A step with a frame in the middle: adopt, evict, want everything.
     step_frame_at_request,
     step_frame_at_piece,
     step_frame_at_hand_over,

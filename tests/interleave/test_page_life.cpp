@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <cstdlib>
 #include <initializer_list>
@@ -123,13 +124,14 @@ protected:
         }
     }
 
+    test::TinyModel model_ =
+        test::make_tiny_model({.records = 150, .shuffled_ids = true, .boxes_in_a_row = true});
+    Truth truth_{model_};
+
 private:
     [[nodiscard]] static bool run(DoorWorld& world, Choices& choices, int length,
                                   std::span<const Verb> allowed);
 
-    test::TinyModel model_ =
-        test::make_tiny_model({.records = 150, .shuffled_ids = true, .boxes_in_a_row = true});
-    Truth truth_{model_};
     std::unique_ptr<std::byte, FreeDeleter> memory_{
         static_cast<std::byte*>(std::aligned_alloc(Arena::kAlignment, DoorWorld::kBytes))};
     AssertHandler before_;
@@ -161,6 +163,14 @@ constexpr std::array kAllHere{Verb::want_a, Verb::step,   Verb::adopt, Verb::wan
                               Verb::adopt,  Verb::want_b, Verb::step,  Verb::adopt};
 constexpr std::size_t kIndexHere = 3;
 constexpr std::size_t kOneOnItsWay = 7;
+
+/// Otherwise nothing would be linked after its arrival.
+TEST_F(PageLife, of_a_model_whose_pages_need_each_other)
+{
+    EXPECT_EQ(std::popcount(truth_.linkable[0]), 64) << "the base mesh is enough";
+    EXPECT_LT(std::popcount(truth_.linkable[1]), 64) << "some need chunk 2";
+    EXPECT_GT(std::popcount(truth_.linkable[1]), 0) << "some don't";
+}
 
 TEST_F(PageLife, is_sound_from_the_start)
 {
