@@ -124,8 +124,8 @@ protected:
         }
     }
 
-    test::TinyModel model_ =
-        test::make_tiny_model({.records = 150, .shuffled_ids = true, .boxes_in_a_row = true});
+    test::TinyModel model_ = test::make_tiny_model(
+        {.seed = 6, .base_faces = 2, .records = 150, .shuffled_ids = true, .boxes_in_a_row = true});
     Truth truth_{model_};
 
 private:
