@@ -37,8 +37,8 @@ public:
 
 struct Exploration
 {
-    std::uint64_t executions{0}; ///< Run to the end, no two of them alike.
-    std::uint64_t redundant{0};  ///< Given up: like one before but for the order of what commutes.
+    std::uint64_t executions{0}; ///< Run to the end; no two differ only by what commutes.
+    std::uint64_t redundant{0};  ///< Given up, since one before differs only so.
     std::string failure;         ///< The first, with the schedule that led to it; empty: none.
 };
 
