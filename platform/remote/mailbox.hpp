@@ -18,7 +18,10 @@ namespace tactus
 /// The count is odd while a write is under way. Words are stored with release and loaded with
 /// acquire, so that a reader that saw a word of a write also sees, in its second look at the
 /// count, that this write began; a fence would do as well, but the thread sanitizer knows none.
-template <typename T>
+///
+/// `Atomic` and `tries` are others in tests/interleave only, which runs this code in every order
+/// that the memory model allows.
+template <typename T, template <typename> typename Atomic = std::atomic, int tries = 16>
 class Mailbox
 {
     static_assert(std::is_trivially_copyable_v<T>);
@@ -26,7 +29,7 @@ class Mailbox
 public:
     /// A write takes some 20 ns: only a writer that lost its processor in the middle of one makes
     /// a reader run out of tries.
-    static constexpr int kTries = 16;
+    static constexpr int kTries = tries;
 
     /// The writer's thread.
     void write(const T& value) noexcept
@@ -74,8 +77,8 @@ private:
         return true;
     }
 
-    alignas(64) std::atomic<std::uint64_t> count_{0};
-    std::array<std::atomic<std::uint64_t>, kWords> words_{};
+    alignas(64) Atomic<std::uint64_t> count_{0};
+    std::array<Atomic<std::uint64_t>, kWords> words_{};
 };
 
 } // namespace tactus

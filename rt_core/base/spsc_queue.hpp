@@ -20,13 +20,16 @@ namespace tactus
 /// own counter: the producer publishes a filled slot with the release store of `tail_`, the
 /// consumer hands a read slot back with the release store of `head_`.
 /// The slots are lent at construction and must outlive the queue.
-template <typename T>
+///
+/// `Atomic` and `Slot` are what tests/interleave puts its own types in place of, to run this code
+/// in every order that the memory model allows; nobody else names them.
+template <typename T, template <typename> typename Atomic = std::atomic, typename Slot = T>
 class SpscQueue
 {
     static_assert(std::is_trivially_copyable_v<T>);
 
 public:
-    explicit SpscQueue(std::span<T> slots) noexcept : slots_(slots)
+    explicit SpscQueue(std::span<Slot> slots) noexcept : slots_(slots)
     {
         TACTUS_ASSERT(!slots.empty());
     }
@@ -69,9 +72,9 @@ public:
     [[nodiscard]] std::size_t capacity() const noexcept { return slots_.size(); }
 
 private:
-    std::span<T> slots_;
-    alignas(64) std::atomic<std::uint64_t> head_{0};
-    alignas(64) std::atomic<std::uint64_t> tail_{0};
+    std::span<Slot> slots_;
+    alignas(64) Atomic<std::uint64_t> head_{0};
+    alignas(64) Atomic<std::uint64_t> tail_{0};
 };
 
 } // namespace tactus

@@ -384,14 +384,19 @@ std::vector<std::byte> write_base(const TinyModel& model)
     return Bytes().append(bits.bytes()).with_checksum();
 }
 
-std::vector<std::byte> write_index_page(const TinyModel& model, std::uint32_t page)
+std::vector<std::byte> write_index_page(const TinyModel& model, std::uint32_t page, bool in_a_row)
 {
     Bytes bytes;
     bytes.put(page);
     for (std::size_t chunk = std::size_t{page} * 64;
          chunk < std::min<std::size_t>(model.chunks.size(), std::size_t{page} * 64 + 64); ++chunk)
     {
-        bytes.put(std::array<std::uint16_t, 6>{0, 0, 0, 1'000, 1'000, 1'000});
+        const std::size_t chunks = model.chunks.size();
+        const auto low =
+            static_cast<std::uint16_t>(in_a_row ? (chunk * kExtent + 100) / chunks : 0);
+        const auto high =
+            static_cast<std::uint16_t>(in_a_row ? (chunk * kExtent + 900) / chunks : kExtent);
+        bytes.put(std::array<std::uint16_t, 6>{low, 0, 0, high, kExtent, kExtent});
         bytes.put(static_cast<std::uint16_t>(model.chunks[chunk].size()));
         bytes.put(short_hash(model.chunks[chunk]));
     }
@@ -462,7 +467,7 @@ TinyModel make_tiny_model(const TinyModelSpec& spec)
     }
     for (std::uint32_t page = 0; page < model.counts.index_pages(); ++page)
     {
-        model.index_pages.push_back(write_index_page(model, page));
+        model.index_pages.push_back(write_index_page(model, page, spec.boxes_in_a_row));
     }
     model.base = write_base(model);
     write_header_and_file(model);

@@ -22,6 +22,8 @@ struct TinyModelSpec
     std::uint32_t base_faces{8};
     std::uint32_t records{200};
     bool shuffled_ids{false}; ///< Dependencies may have larger ids than their dependents.
+    /// Influence boxes of chunks are slices of x, apart from each other; otherwise everything.
+    bool boxes_in_a_row{false};
 };
 
 /// A made-up model: a mesh of random vertices that grows by random splits, with borders. Header,

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "tests/interleave/fiber.hpp"
+
+#include <cstdint>
+#include <utility>
+
+// The address sanitizer has to be told of every change of the stack.
+#if defined(__SANITIZE_ADDRESS__)
+#define TACTUS_TELLS_SANITIZER
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define TACTUS_TELLS_SANITIZER
+#endif
+#endif
+#ifdef TACTUS_TELLS_SANITIZER
+#include <sanitizer/common_interface_defs.h>
+#endif
+
+namespace tactus::interleave
+{
+
+namespace
+{
+
+void begin_switch(void** own, const void* to, std::size_t bytes)
+{
+#ifdef TACTUS_TELLS_SANITIZER
+    __sanitizer_start_switch_fiber(own, to, bytes);
+#else
+    static_cast<void>(own);
+    static_cast<void>(to);
+    static_cast<void>(bytes);
+#endif
+}
+
+void end_switch(void* own, const void** from, std::size_t* bytes)
+{
+#ifdef TACTUS_TELLS_SANITIZER
+    __sanitizer_finish_switch_fiber(own, from, bytes);
+#else
+    static_cast<void>(own);
+    static_cast<void>(from);
+    static_cast<void>(bytes);
+#endif
+}
+
+} // namespace
+
+Fiber::Fiber() : stack_(new std::byte[kStackBytes]) {}
+
+void Fiber::start(std::function<void()> body)
+{
+    body_ = std::move(body);
+    is_done_ = false;
+    ::getcontext(&inside_);
+    inside_.uc_stack.ss_sp = stack_.get();
+    inside_.uc_stack.ss_size = kStackBytes;
+    inside_.uc_link = &outside_;
+    const auto self =
+        reinterpret_cast<std::uintptr_t>(this); // Passed on as two ints, all it takes.
+    ::makecontext(&inside_, reinterpret_cast<void (*)()>(&Fiber::enter), 2,
+                  static_cast<unsigned>(std::uint64_t{self} >> 32U), static_cast<unsigned>(self));
+}
+
+void Fiber::resume()
+{
+    void* own = nullptr;
+    begin_switch(&own, stack_.get(), kStackBytes);
+    ::swapcontext(&outside_, &inside_);
+    end_switch(own, nullptr, nullptr);
+}
+
+void Fiber::pause()
+{
+    void* own = nullptr;
+    begin_switch(&own, outside_stack_, outside_bytes_);
+    ::swapcontext(&inside_, &outside_);
+    end_switch(own, &outside_stack_, &outside_bytes_);
+}
+
+void Fiber::enter(unsigned high, unsigned low)
+{
+    const std::uint64_t self = (std::uint64_t{high} << 32U) | low;
+    reinterpret_cast<Fiber*>(static_cast<std::uintptr_t>(self))->run();
+}
+
+void Fiber::run()
+{
+    end_switch(nullptr, &outside_stack_, &outside_bytes_);
+    body_();
+    is_done_ = true;
+    begin_switch(nullptr, outside_stack_, outside_bytes_); // For good: this stack is left.
+}
+
+} // namespace tactus::interleave
