@@ -77,8 +77,8 @@ inline constexpr std::uint32_t kRefineHeap = 1'024;
 inline constexpr std::uint32_t kMaxHeldRecords = 1'024;
 /// A traversal's stack: 22 levels of 7 siblings and the 8 of the last node.
 inline constexpr std::uint32_t kTreeStack = 22 * 7 + 8;
-/// Balls that the predictor ranks: now, soon and later for each ball of the pairs that are near.
-/// Enough for a sphere in each pair, or eight tools of eight balls; more come on demand.
+/// Balls that the predictor ranks: five for each ball of the pairs that are near.
+/// Enough for a sphere in each pair, or four bodies of eight balls; more come on demand.
 inline constexpr std::uint32_t kMaxRankedRegions = 6 * kMaxPairs;
 /// A model with more index pages, about 800 B each, keeps this many, or more where there is memory.
 inline constexpr std::uint32_t kLeastResidentIndexPages = 192;

@@ -19,7 +19,7 @@ namespace
 constexpr double kBytesPerMib = 1024.0 * 1024.0;
 /// A tool when none is named, as a share of the first model's diagonal.
 constexpr double kDefaultToolShare = 0.01;
-/// Goals faster than this many diagonals a second are followed at this speed in contact.
+/// Without --follow-speed.
 constexpr double kSpeedMax_diag = 1.0;
 /// The simulated hand flies at two diagonals a second; its device stands twice that.
 constexpr double kHandSpeed_diag = 4.0;
@@ -133,8 +133,9 @@ void Controller::make_tools(const Options& options)
     {
         const DeviceLimits limits =
             devices_[i] != nullptr ? devices_[i]->info().limits : choice_of(options, i).limits;
-        tools_.push_back({radii_m[i], options.stiffness_n_per_m, limits.force_max_n,
-                          kSpeedMax_diag * diagonal_world_m()});
+        tools_.push_back(
+            {radii_m[i], options.stiffness_n_per_m, limits.force_max_n,
+             options.follow_speed_m_per_s.value_or(kSpeedMax_diag * diagonal_world_m())});
     }
 }
 

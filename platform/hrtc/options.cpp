@@ -246,6 +246,10 @@ void declare(CLI::App& app, Options& options, RawOptions& raw)
     app.add_option("--speed-limit", options.speed_limit_m_per_s,
                    "Speed of the hand, in m/s, above which its force fades [the device's own]")
         ->check(number_between(0.01, 100.0));
+    app.add_option("--follow-speed", options.follow_speed_m_per_s,
+                   "In m/s, at which a tool in contact follows a faster hand; what it needs round "
+                   "itself grows with it [a diagonal of the first model a second]")
+        ->check(number_between(0.001, 100.0));
     app.add_option("--transport", raw.transport, "Where models come from")
         ->check(CLI::IsMember({"dds", "file"}))
         ->capture_default_str();

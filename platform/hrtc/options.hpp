@@ -57,6 +57,8 @@ struct Options
     Prediction prediction{Prediction::automatic};
     double stiffness_n_per_m{500.0};
     std::optional<double> speed_limit_m_per_s; ///< None: the device's own.
+    /// None: one diagonal of the first model a second.
+    std::optional<double> follow_speed_m_per_s;
     bool trap_system_calls{false};
     RtThreadOptions thread;
 

@@ -31,8 +31,8 @@ struct PairMotion
 ///
 /// All ways foretell the tool's place after the lead; when that time has come each is compared with
 /// where the tool is, and foretells anew. What a way erred of late is how much wider its balls are
-/// made, and the automatic choice is the way that erred least. So speed, latency and noise decide
-/// by what they do to a forecast.
+/// made, up to a half, and the automatic choice is the way that erred least. So speed, latency and
+/// noise decide by what they do to a forecast.
 class RegionPredictor
 {
 public:
@@ -40,7 +40,8 @@ public:
     void observe(const PairMotion& motion, double lead_s) noexcept TACTUS_NONBLOCKING;
 
     /// Adds the balls to the ranking, most urgent first, each wider by `reach_m`: where they are,
-    /// and where they go with the core's centre in half the lead and in the whole of it.
+    /// and where they go with the core's centre in each quarter of the lead, so that there is no
+    /// gap on the way of a tool that had to wait.
     void rank(Prediction way, ModelId model, const CoreCover& balls, double reach_m,
               RegionRanking& ranking) const noexcept TACTUS_NONBLOCKING;
 

@@ -24,12 +24,16 @@ struct Row
     std::uint64_t seed{0};
     std::uint64_t frames{0};
     std::uint64_t hash{0};      ///< Over the frames: the same work was measured.
-    std::optional<double> goal; ///< The value is to be this at most.
+    std::optional<double> goal; ///< The value is to be this at most,
+    bool is_least{false};       ///< or at least.
     std::optional<std::string> peer;
     double peer_value{0.0};
 
     /// True without a goal; false for a value that is not a number.
-    [[nodiscard]] bool is_met() const { return !goal || value <= *goal; }
+    [[nodiscard]] bool is_met() const
+    {
+        return !goal || (is_least ? value >= *goal : value <= *goal);
+    }
 };
 
 using Rows = std::vector<Row>;

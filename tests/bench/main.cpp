@@ -34,7 +34,8 @@ struct CommandLine
 
 std::vector<Suite> all_suites()
 {
-    return {frame_suite(), force_suite(), encoder_suite(), table1_suite(), stability_suite()};
+    return {frame_suite(),  force_suite(),     encoder_suite(),
+            table1_suite(), stability_suite(), stream_suite()};
 }
 
 std::string suite_names()

@@ -31,6 +31,7 @@ struct Suite
 [[nodiscard]] Suite force_suite();
 [[nodiscard]] Suite frame_suite();
 [[nodiscard]] Suite stability_suite();
+[[nodiscard]] Suite stream_suite();
 [[nodiscard]] Suite table1_suite();
 
 } // namespace tactus::bench

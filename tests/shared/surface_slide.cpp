@@ -40,6 +40,7 @@ SurfaceSlide::SurfaceSlide(const FaceTree& tree, SlideManner manner, const Vec3&
     , center_(start_m)
     , normal_(normal_at(start_m, tree.nearest(start_m).point_m, Vec3(0.0, 0.0, 1.0)))
     , heading_(tangent(Vec3(1.0, 0.0, 0.0), normal_))
+    , frame_(manner_.first_frame)
 {
 }
 

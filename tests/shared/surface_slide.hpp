@@ -18,9 +18,10 @@ namespace tactus::test
 struct SlideManner
 {
     double diagonal_m{0.0};
-    double radius_diag{0.01}; ///< Of the probe.
-    double step_m{0.0};       ///< A frame.
-    double turn_rad{3.0e-3};  ///< At most, a frame.
+    double radius_diag{0.01};     ///< Of the probe.
+    double step_m{0.0};           ///< A frame.
+    double turn_rad{3.0e-3};      ///< At most, a frame.
+    std::uint32_t first_frame{0}; ///< Where it begins in its turns and swings.
     /// In -1 .. 1 for each turn of kTurnFrames: how fast it turns then.
     std::function<double(std::uint64_t turn)> turn_rate;
 };

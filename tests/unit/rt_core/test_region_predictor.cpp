@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "rt_core/predict/region_predictor.hpp"
-
 #include "tests/shared/random.hpp"
 
 #include <gtest/gtest.h>
@@ -19,6 +18,10 @@ namespace
 constexpr double kPeriod_s = 0.001;
 constexpr double kLead_s = 0.02;
 constexpr double kSpeedMax_m_per_s = 10.0;
+/// One where the tool is, and one for each quarter of the lead.
+constexpr std::size_t kBalls = 5;
+constexpr std::size_t kHalf = 2;
+constexpr std::size_t kLast = 4;
 
 constexpr std::array<Prediction, 5> kWays{Prediction::local_neighbours, Prediction::linear,
                                           Prediction::quadratic, Prediction::distance_query,
@@ -72,7 +75,7 @@ TEST(RegionPredictor, after_the_first_observation_every_way_stands_still)
     {
         const RegionRanking ranking = ranked(sut, way, Vec3(1, 2, 3));
 
-        ASSERT_EQ(ranking.size(), 3U);
+        ASSERT_EQ(ranking.size(), kBalls);
         for (const RankedRegion& region : ranking)
         {
             EXPECT_EQ(region.model, ModelId{5});
@@ -89,17 +92,19 @@ TEST(RegionPredictor, the_most_urgent_comes_first_and_the_lead_last)
 
     const RegionRanking ranking = ranked(sut, Prediction::linear, Vec3(0, 0, 0));
 
-    ASSERT_EQ(ranking.size(), 3U);
-    EXPECT_EQ(ranking[0].lead_ns, 0);
-    EXPECT_EQ(ranking[1].lead_ns, 10'000'000);
-    EXPECT_EQ(ranking[2].lead_ns, 20'000'000);
+    ASSERT_EQ(ranking.size(), kBalls);
+    for (std::int64_t i = 0; i < 5; ++i)
+    {
+        EXPECT_EQ(ranking[static_cast<std::size_t>(i)].lead_ns, 5'000'000 * i);
+    }
 }
 
 TEST(RegionPredictor, linear_finds_a_constant_velocity_and_the_places_it_leads_to)
 {
     const Vec3 velocity(0.3, -0.2, 0.1);
     RegionPredictor sut;
-    follow(sut, [&](double time_s) { return Vec3(velocity * time_s); }, 600);
+    follow(
+        sut, [&](double time_s) { return Vec3(velocity * time_s); }, 600);
     const Vec3 at = velocity * 0.6;
 
     EXPECT_NEAR((sut.velocity_m_per_s() - velocity).norm(), 0.0, 1e-9);
@@ -120,8 +125,8 @@ TEST(RegionPredictor, quadratic_foretells_an_acceleration_that_linear_misses)
     follow(sut, place_at, 600);
     const Vec3 truth = place_at(0.6 + kLead_s);
 
-    const Vec3 linear = ranked(sut, Prediction::linear, place_at(0.6))[2].center_m;
-    const Vec3 quadratic = ranked(sut, Prediction::quadratic, place_at(0.6))[2].center_m;
+    const Vec3 linear = ranked(sut, Prediction::linear, place_at(0.6))[kLast].center_m;
+    const Vec3 quadratic = ranked(sut, Prediction::quadratic, place_at(0.6))[kLast].center_m;
 
     const double missed_by_linear = (linear - truth).norm();
     EXPECT_GT(missed_by_linear, 0.5 * 0.5 * kLead_s * kLead_s * acceleration.norm());
@@ -131,13 +136,14 @@ TEST(RegionPredictor, quadratic_foretells_an_acceleration_that_linear_misses)
 TEST(RegionPredictor, local_neighbours_stay_and_reach_as_far_as_the_speed_leads)
 {
     RegionPredictor sut;
-    follow(sut, [](double time_s) { return Vec3(0.5 * time_s, 0.0, 0.0); }, 300);
+    follow(
+        sut, [](double time_s) { return Vec3(0.5 * time_s, 0.0, 0.0); }, 300);
 
     const RegionRanking ranking = ranked(sut, Prediction::local_neighbours, Vec3(0.15, 0.0, 0.0));
 
-    EXPECT_EQ(ranking[2].center_m, Vec3(0.15, 0.0, 0.0));
-    EXPECT_NEAR(ranking[2].radius_m, 0.02 + 0.5 * kLead_s, 1e-9);
-    EXPECT_NEAR(ranking[1].radius_m, 0.02 + 0.25 * kLead_s, 1e-9);
+    EXPECT_EQ(ranking[kLast].center_m, Vec3(0.15, 0.0, 0.0));
+    EXPECT_NEAR(ranking[kLast].radius_m, 0.02 + 0.5 * kLead_s, 1e-9);
+    EXPECT_NEAR(ranking[kHalf].radius_m, 0.02 + 0.25 * kLead_s, 1e-9);
 }
 
 TEST(RegionPredictor, distance_query_does_not_go_through_the_surface)
@@ -153,9 +159,9 @@ TEST(RegionPredictor, distance_query_does_not_go_through_the_surface)
     }
 
     const Vec3 straight =
-        ranked(through, Prediction::linear, motion.center_m)[2].center_m - motion.center_m;
-    const Vec3 held =
-        ranked(through, Prediction::distance_query, motion.center_m)[2].center_m - motion.center_m;
+        ranked(through, Prediction::linear, motion.center_m)[kLast].center_m - motion.center_m;
+    const Vec3 held = ranked(through, Prediction::distance_query, motion.center_m)[kLast].center_m -
+                      motion.center_m;
 
     EXPECT_NEAR(straight.z(), -0.3 * kLead_s, 1e-9);
     EXPECT_NEAR(held.z(), -0.002, 1e-9) << "as far as touching";
@@ -176,14 +182,15 @@ TEST(RegionPredictor, a_tool_behind_its_hand_is_expected_on_the_way_to_it)
 
     const RegionRanking ranking = ranked(sut, Prediction::linear, Vec3(0, 0, 0));
 
-    EXPECT_NEAR(ranking[2].center_m.x(), 2.0 * kLead_s, 1e-12);
-    EXPECT_NEAR(ranking[1].center_m.x(), 1.0 * kLead_s, 1e-12);
+    EXPECT_NEAR(ranking[kLast].center_m.x(), 2.0 * kLead_s, 1e-12);
+    EXPECT_NEAR(ranking[kHalf].center_m.x(), 1.0 * kLead_s, 1e-12);
 }
 
 TEST(RegionPredictor, automatic_believes_the_way_that_errs_least)
 {
     RegionPredictor straight;
-    follow(straight, [](double time_s) { return Vec3(0.3 * time_s, 0.0, 0.0); }, 600);
+    follow(
+        straight, [](double time_s) { return Vec3(0.3 * time_s, 0.0, 0.0); }, 600);
     EXPECT_NE(straight.believed(), Prediction::local_neighbours);
 
     RegionPredictor turning;
@@ -192,7 +199,8 @@ TEST(RegionPredictor, automatic_believes_the_way_that_errs_least)
 
     Random random(7);
     RegionPredictor trembling;
-    follow(trembling, [&](double) { return random.in_cube(1e-3); }, 2'000);
+    follow(
+        trembling, [&](double) { return random.in_cube(1e-3); }, 2'000);
     EXPECT_EQ(trembling.believed(), Prediction::local_neighbours);
 }
 
@@ -205,7 +213,7 @@ TEST(RegionPredictor, automatic_ranks_as_the_way_it_believes)
     const RegionRanking automatic = ranked(sut, Prediction::automatic, at);
     const RegionRanking believed = ranked(sut, sut.believed(), at);
 
-    for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t i = 0; i < kBalls; ++i)
     {
         EXPECT_EQ(automatic[i].center_m, believed[i].center_m);
         EXPECT_EQ(automatic[i].radius_m, believed[i].radius_m);
@@ -219,11 +227,21 @@ TEST(RegionPredictor, balls_are_wider_by_what_forecasts_erred)
     const double before_m = (on_circle(2.0 - kLead_s) - on_circle(2.0)).norm();
 
     const RegionRanking ranking = ranked(sut, Prediction::linear, on_circle(2.0));
-    const double erred_m = (ranking[2].center_m - on_circle(2.0 + kLead_s)).norm();
+    const double erred_m = (ranking[kLast].center_m - on_circle(2.0 + kLead_s)).norm();
 
-    EXPECT_GT(ranking[2].radius_m - 0.02, 0.8 * erred_m);
-    EXPECT_LT(ranking[2].radius_m - 0.02, 1.2 * erred_m);
+    EXPECT_GT(ranking[kLast].radius_m - 0.02, 0.8 * erred_m);
+    EXPECT_LT(ranking[kLast].radius_m - 0.02, 1.2 * erred_m);
     EXPECT_LT(erred_m, before_m) << "better than staying";
+}
+
+TEST(RegionPredictor, no_ball_is_wider_than_by_half_of_what_is_asked_for)
+{
+    RegionPredictor sut;
+    follow(
+        sut, [](double time_s) { return Vec3(5.0 * time_s, 0.0, 0.0); }, 300);
+    const Vec3 at(1.5, 0.0, 0.0);
+
+    EXPECT_NEAR(ranked(sut, Prediction::local_neighbours, at)[kLast].radius_m, 0.03, 1e-12);
 }
 
 TEST(RegionPredictor, a_stall_counts_with_its_whole_time)

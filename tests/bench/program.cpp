@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "tests/bench/program.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <fcntl.h>
+#include <fstream>
+#include <iterator>
+#include <sched.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <thread>
+#include <unistd.h>
+
+namespace tactus::bench
+{
+
+namespace
+{
+
+constexpr int kNotStarted = 127;
+
+/// The child's way to the other program. Returns only when it could not go.
+void become(const ProgramSetup& setup, int talk)
+{
+    const int output = ::open(setup.output.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+    if (output < 0 || ::dup2(output, STDERR_FILENO) < 0 ||
+        ::dup2(setup.is_asked ? talk : output, STDOUT_FILENO) < 0 ||
+        (setup.is_asked && ::dup2(talk, STDIN_FILENO) < 0))
+    {
+        return;
+    }
+    cpu_set_t all;
+    std::memset(&all, 0xFF, sizeof(all));
+    static_cast<void>(::sched_setaffinity(0, sizeof(all), &all));
+    if (!setup.network.empty())
+    {
+        const int network = ::open(setup.network.c_str(), O_RDONLY | O_CLOEXEC);
+        if (network < 0 || ::setns(network, CLONE_NEWNET) != 0)
+        {
+            return;
+        }
+    }
+    if (setup.dds_uri.empty())
+    {
+        ::unsetenv("CYCLONEDDS_URI");
+    }
+    else
+    {
+        ::setenv("CYCLONEDDS_URI", setup.dds_uri.c_str(), 1);
+    }
+    std::vector<char*> words;
+    for (const std::string& word : setup.words)
+    {
+        words.push_back(const_cast<char*>(word.c_str()));
+    }
+    words.push_back(nullptr);
+    ::execv(words[0], words.data());
+}
+
+std::string last_line(const std::string& text)
+{
+    const std::size_t end = text.find_last_not_of('\n');
+    const std::size_t begin = text.find_last_of('\n', end);
+    return end == std::string::npos ? std::string("nothing") : text.substr(begin + 1, end - begin);
+}
+
+} // namespace
+
+std::filesystem::path program_path(const std::string& name)
+{
+    const auto own = std::filesystem::read_symlink("/proc/self/exe").parent_path();
+    const auto beside = own / name;
+    return std::filesystem::exists(beside) ? beside : own.parent_path() / "tests" / name;
+}
+
+Result<Program, SceneError> Program::start(const ProgramSetup& setup)
+{
+    Program program;
+    program.name_ = std::filesystem::path(setup.words[0]).filename();
+    program.output_ = setup.output;
+    std::array<int, 2> ends{-1, -1};
+    if (setup.is_asked && ::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0)
+    {
+        return SceneError{fmt::format("{}: no socket: {}", program.name_, std::strerror(errno))};
+    }
+    const pid_t child = ::fork();
+    if (child == 0)
+    {
+        become(setup, ends[1]);
+        ::_exit(kNotStarted);
+    }
+    const int fork_error = errno;
+    if (ends[1] >= 0)
+    {
+        ::close(ends[1]);
+    }
+    program.talk_ = ends[0];
+    if (child < 0)
+    {
+        return SceneError{
+            fmt::format("{}: no process: {}", program.name_, std::strerror(fork_error))};
+    }
+    program.id_ = child;
+    return program;
+}
+
+Program::~Program()
+{
+    if (id_ != 0)
+    {
+        ::kill(id_, SIGKILL);
+        ::waitpid(id_, nullptr, 0);
+    }
+    if (talk_ >= 0)
+    {
+        ::close(talk_);
+    }
+}
+
+Result<Done, SceneError> Program::wait()
+{
+    int status = 0;
+    while (::waitpid(id_, &status, 0) < 0 && errno == EINTR)
+    {
+    }
+    id_ = 0;
+    if (WIFEXITED(status) && WEXITSTATUS(status) == 0)
+    {
+        return Done{};
+    }
+    return SceneError{fmt::format("{} ended with {}: {}", name_,
+                                  WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status),
+                                  last_line(output_text()))};
+}
+
+Result<Done, SceneError> Program::wait_for(const std::string& text,
+                                           std::chrono::seconds timeout) const
+{
+    const auto end = std::chrono::steady_clock::now() + timeout;
+    while (output_text().find(text) == std::string::npos)
+    {
+        if (std::chrono::steady_clock::now() > end)
+        {
+            return SceneError{
+                fmt::format("{}: no '{}', but: {}", name_, text, last_line(output_text()))};
+        }
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    return Done{};
+}
+
+Result<std::string, SceneError> Program::ask(const std::string& line)
+{
+    const std::string sent = line + '\n';
+    if (!line.empty() && ::send(talk_, sent.data(), sent.size(), MSG_NOSIGNAL) < 0)
+    {
+        return SceneError{fmt::format("{}: {}", name_, last_line(output_text()))};
+    }
+    std::string answer;
+    char letter = 0;
+    while (::read(talk_, &letter, 1) == 1)
+    {
+        if (letter == '\n')
+        {
+            return answer;
+        }
+        answer += letter;
+    }
+    return SceneError{fmt::format("{}: {}", name_, last_line(output_text()))};
+}
+
+std::string Program::output_text() const
+{
+    std::ifstream file(output_);
+    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+} // namespace tactus::bench

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "tests/bench/program.hpp"
+
+#include <cstdint>
+#include <string>
+
+namespace tactus::bench
+{
+
+/// What lies between two networks, each way.
+struct LinkManner
+{
+    double delay_ms{10.0};
+    double loss{0.0};
+};
+
+/// One end: where a program has to live, and what its DDS has to know.
+struct NetworkEnd
+{
+    std::string network; ///< ProgramSetup::network.
+    std::string dds_uri;
+};
+
+/// The loopback interface, with the same recovery as the networks.
+[[nodiscard]] NetworkEnd loopback_end();
+
+/// UDP payload that the relay has seen, both ways together.
+struct LinkTraffic
+{
+    std::uint64_t payload_bytes{0};
+    std::uint64_t datagrams{0};
+};
+
+/// Two networks and the relay between them (tests/relay). Needs root and /dev/net/tun.
+class RelayedNetworks
+{
+public:
+    [[nodiscard]] static Result<RelayedNetworks, SceneError>
+    make(const LinkManner& manner, const std::filesystem::path& folder);
+
+    [[nodiscard]] const NetworkEnd& host() const { return host_; }
+    [[nodiscard]] const NetworkEnd& controller() const { return controller_; }
+    [[nodiscard]] Result<LinkTraffic, SceneError> traffic();
+
+private:
+    explicit RelayedNetworks(Program relay) : relay_(std::move(relay)) {}
+
+    Program relay_;
+    NetworkEnd host_;
+    NetworkEnd controller_;
+};
+
+} // namespace tactus::bench

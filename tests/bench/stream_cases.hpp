@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "tests/bench/cases.hpp"
+
+#include <cstdint>
+#include <string>
+
+namespace tactus::bench
+{
+
+/// The tool of all tours follows its hand at this times the tour's speed.
+inline constexpr double kTourFollow = 1.5;
+
+/// Splits and merges that a tour's frames may make.
+[[nodiscard]] constexpr std::uint32_t tour_splits(double speed_diag_per_s)
+{
+    return speed_diag_per_s < 1.0 ? 64 : 128;
+}
+
+struct PredictionCase
+{
+    SceneSource scene;
+    double speed_diag_per_s;
+    std::uint32_t latency_ms;
+    double cache_mib;
+    double tremor_diag{0.0};
+};
+/// A tour with each way to foretell, in virtual time.
+[[nodiscard]] CaseFailure run_prediction_case(const CaseContext& context,
+                                              const PredictionCase& test_case);
+
+struct CacheCase
+{
+    SceneSource scene;
+    double small_mib;
+    double larger_mib;
+};
+/// The four regimes of the paper's figure 5: no cache, a small one, a larger one, all of the model.
+[[nodiscard]] CaseFailure run_cache_case(const CaseContext& context, const CacheCase& test_case);
+
+/// Goals in percent of the frames, counts and milliseconds.
+struct TourCase
+{
+    SceneSource scene;
+    double speed_diag_per_s;
+    double cache_mib;
+    double delay_ms; ///< Each way; negative: on loopback.
+    double loss{0.0};
+    double open_max{kNoGoal};
+    double late_taps_max{kNoGoal};
+    double arrival_p99_ms{kNoGoal};
+};
+/// spm_publish and hrtc, whole programs, over DDS: a tour.
+[[nodiscard]] CaseFailure run_tour_case(const CaseContext& context, const TourCase& test_case);
+
+struct FirstTouchCase
+{
+    SceneSource scene;
+    double delay_ms;
+    double payload_kb{kNoGoal};
+    double time_ms{kNoGoal};
+};
+/// Whole programs: hrtc starts in touch and knows nothing of the model but its header and base.
+[[nodiscard]] CaseFailure run_first_touch_case(const CaseContext& context,
+                                               const FirstTouchCase& test_case);
+
+struct ThroughputCase
+{
+    SceneSource scene;
+    double mb_per_s;
+};
+/// spm_publish and one client on loopback, as fast as pieces come.
+[[nodiscard]] CaseFailure run_throughput_case(const CaseContext& context,
+                                              const ThroughputCase& test_case);
+
+struct FanOutCase
+{
+    SceneSource scene;
+    std::uint32_t clients;
+    double rate_hz;
+    bool stops_one; ///< Halfway one of them is stopped as by SIGSTOP.
+    double p99_ms{kNoGoal};
+};
+/// spm_publish and many clients on loopback, each at a rate.
+[[nodiscard]] CaseFailure run_fan_out_case(const CaseContext& context, const FanOutCase& test_case);
+
+} // namespace tactus::bench
