@@ -86,4 +86,14 @@ struct FanOutCase
 /// spm_publish and many clients on loopback, each at a rate.
 [[nodiscard]] CaseFailure run_fan_out_case(const CaseContext& context, const FanOutCase& test_case);
 
+struct BesideDdsCase
+{
+    SceneSource scene;
+    bool is_beside; ///< A client in another thread of the process asks as fast as pieces come.
+};
+/// A slide's frames: the same states and counters whatever DDS does beside them. For counting
+/// instructions each takes one pass with --count.
+[[nodiscard]] CaseFailure run_beside_dds_case(const CaseContext& context,
+                                              const BesideDdsCase& test_case);
+
 } // namespace tactus::bench

@@ -4,16 +4,24 @@
 /// Whole programs over DDS, on loopback and across two networks with a delay between them.
 
 #include "platform/recording/replay.hpp"
+#include "tests/bench/asking_client.hpp"
+#include "tests/bench/frame_replay.hpp"
 #include "tests/bench/random.hpp"
 #include "tests/bench/relayed_networks.hpp"
 #include "tests/bench/stream_cases.hpp"
 #include "tests/bench/stream_run.hpp"
+#include "transport/dds/dds_client.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <atomic>
+#include <cstdlib>
 #include <fstream>
+#include <limits>
+#include <memory>
+#include <optional>
 #include <thread>
 #include <unistd.h>
 
@@ -507,6 +515,118 @@ CaseFailure run_fan_out_case(const CaseContext& context, const FanOutCase& test_
         before_ms = p99_ms;
     }
     rows.add("host", resident_mib(host.value().id()), "MiB");
+    return std::nullopt;
+}
+
+namespace
+{
+
+/// Asks a host for pieces in a thread of its own while it lives.
+class Flood
+{
+public:
+    static Result<std::unique_ptr<Flood>, SceneError> begin()
+    {
+        auto flood = std::make_unique<Flood>();
+        ::setenv("CYCLONEDDS_URI", loopback_end().dds_uri.c_str(), 1);
+        auto client =
+            dds::DdsClient::create(static_cast<std::uint32_t>(std::stoul(domain())), "flood", {});
+        if (!client)
+        {
+            return SceneError{client.error().text};
+        }
+        flood->client_ = std::move(client).value();
+        auto model = flood->client_->find({"model", std::nullopt}, kStartTimeout);
+        if (!model)
+        {
+            return SceneError{model.error().text};
+        }
+        flood->model_ = std::move(model).value();
+        flood->asking_.emplace(flood->model_, 0.0);
+        flood->thread_ = std::thread([&self = *flood] { self.asking_->run(1e9, self.stop_); });
+        return flood;
+    }
+    Flood() = default;
+    Flood(const Flood&) = delete;
+    Flood& operator=(const Flood&) = delete;
+    ~Flood()
+    {
+        stop_ = true;
+        if (thread_.joinable())
+        {
+            thread_.join();
+        }
+    }
+    /// Ends it; what it moved, in MB/s.
+    [[nodiscard]] double end()
+    {
+        stop_ = true;
+        thread_.join();
+        const Json report = Json::parse(asking_->to_json());
+        return report["link_bytes"].get<double>() * 1e-6 / report["seconds"].get<double>();
+    }
+
+private:
+    std::atomic<bool> stop_{false};
+    std::unique_ptr<dds::DdsClient> client_;
+    ServedModel model_;
+    std::optional<AskingClient> asking_;
+    std::thread thread_;
+};
+
+} // namespace
+
+CaseFailure run_beside_dds_case(const CaseContext& context, const BesideDdsCase& test_case)
+{
+    constexpr double kSpeed_diag_per_s = 0.5;
+    constexpr std::uint32_t kFrames = 5'000;
+    constexpr std::uint32_t kQuickFrames = 500;
+    constexpr std::uint32_t kPasses = 5;
+    const auto scene = context.scenes.get(test_case.scene);
+    if (!scene)
+    {
+        return scene.error().text;
+    }
+    const std::uint32_t frames = context.options.frames_or(kFrames, kQuickFrames);
+    const FrameRun run = make_slide(*scene.value(), kSpeed_diag_per_s,
+                                    tour_splits(kSpeed_diag_per_s), std::size_t{4} << 20U, frames);
+    const test::TemporaryFolder folder("beside-dds");
+    std::optional<Program> host;
+    std::unique_ptr<Flood> flood;
+    if (test_case.is_beside)
+    {
+        auto started = publish(*scene.value(), loopback_end(), folder.path());
+        if (!started)
+        {
+            return started.error().text;
+        }
+        host.emplace(std::move(started).value());
+        auto begun = Flood::begin();
+        if (!begun)
+        {
+            return begun.error().text;
+        }
+        flood = std::move(begun).value();
+    }
+    FrameReplay replay(run);
+    for (std::uint32_t pass = 0; pass < context.options.passes_or(kPasses, 2); ++pass)
+    {
+        if (const auto failure = replay.run_once(CacheState::warm, frames))
+        {
+            return failure;
+        }
+    }
+    Row common = common_row(context, "frames beside DDS", *scene.value());
+    common.frames = run.counted();
+    common.hash = replay.hash();
+    CaseRows rows(context.rows, common);
+    const FrameWork& work = replay.work();
+    rows.add("splits", static_cast<double>(work.splits), "");
+    rows.add("nodes", static_cast<double>(work.nodes), "");
+    rows.add("triangles", static_cast<double>(work.triangles), "");
+    rows.add("p50", spread_of(replay.sum_us(CacheState::warm).least()).p50, "us");
+    rows.add("p99", spread_of(replay.sum_us(CacheState::warm).least()).p99, "us");
+    rows.add("DDS", flood == nullptr ? 0.0 : flood->end(), "MB/s");
     return std::nullopt;
 }
 
