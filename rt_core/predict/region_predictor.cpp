@@ -19,9 +19,9 @@ constexpr double kNewestError = 0.2;
 /// Another way is believed when its errors are below this share of the present one's.
 constexpr double kClearlyBetter = 0.9;
 /// No ball is wider than by this share of what is asked for round the tool: its pages grow with the
-/// square, and a forecast that errs by more is worth no place in the cache. Of 0.25 to 2.5 the one
-/// that left the fewest frames open at 2 diag/s.
-constexpr double kWidest = 0.5;
+/// square, and a forecast that errs by more is worth no place in the cache. At 2 diag/s half of it
+/// and twice it leave more frames open.
+constexpr double kWidest = 1.0;
 /// The shares of the lead after which places are foretold.
 constexpr std::array<double, 4> kLeads{0.25, 0.5, 0.75, 1.0};
 

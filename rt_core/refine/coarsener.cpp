@@ -122,6 +122,10 @@ bool Coarsener::merge_back(RecordId first, std::span<const RefineQuestion> quest
     while (depth > 0)
     {
         const RecordId id = stack_[--depth];
+        if (!pages_->is_refined(id))
+        {
+            continue; // Several faces of one record asked for it; it is merged.
+        }
         if (work.scanned >= budgets.scanned || work.merges >= budgets.merges)
         {
             look_soon(id);

@@ -4,9 +4,13 @@
 /// No livelock: the smallest budget still gets there, and what can't be had is not tried again and
 /// again.
 
+#include "host_tools/shapes/shapes.hpp"
 #include "tests/property/frame_checks.hpp"
+#include "tests/shared/face_tree.hpp"
+#include "tests/shared/surface_slide.hpp"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <set>
 
@@ -234,6 +238,45 @@ TEST_P(Progress, a_record_of_a_pending_closure_is_neither_merged_nor_evicted)
 }
 
 INSTANTIATE_TEST_SUITE_P(small_models, Progress, testing::Range<std::size_t>(0, 6));
+
+/// Nothing stays refined for good because pages come and go: a tool that has been all over a model
+/// holds as much with a small cache as with one for all of it.
+TEST(Coarsening, what_a_tool_leaves_behind_is_merged_in_a_small_cache_too)
+{
+    constexpr double kRadius_diag = 0.02;
+    constexpr int kFrames = 6'000;
+    constexpr int kRest = 200;
+    const TestModel& model =
+        test_model("bumpy-40k", make_shape(Shape::bumpy_sphere, 40'000).value());
+    RigOptions options = with_room_for_all();
+    options.tools = {{kRadius_diag * model.diagonal_m, 500.0, 8.0, 1.0}};
+    options.tools[0].passes_through = true;
+    FrameRig roomy(model, options);
+    load_everything(roomy);
+    options.cache_bytes = std::size_t{1} << 20U;
+    FrameRig tight(model, options);
+    const FaceTree tree(model.faces);
+    Random random(731);
+    SlideManner manner;
+    manner.diagonal_m = model.diagonal_m;
+    manner.radius_diag = kRadius_diag;
+    manner.step_m = 0.004 * model.diagonal_m;
+    manner.turn_rad = 0.05;
+    manner.turn_rate = [&](std::uint64_t) { return random.between(-1.0, 1.0); };
+    SurfaceSlide slide(tree, manner, place_at_distance(model, random, 0.02 * model.diagonal_m));
+    Vec3 goal(0.0, 0.0, 0.0);
+    std::uint32_t kept = 0;
+    std::uint32_t kept_in_room = 0;
+    for (int frame = 0; frame < kFrames + kRest; ++frame)
+    {
+        goal = frame < kFrames ? slide.next() : goal;
+        kept = tight.step({goal}, with_splits(64)).models[0].refined_records;
+        kept_in_room = roomy.step({goal}, with_splits(64)).models[0].refined_records;
+    }
+    EXPECT_GT(tight.model().cache.evictions(), 1'000U) << "the test tests nothing";
+    EXPECT_GT(kept, 0U);
+    EXPECT_LE(kept, kept_in_room + kept_in_room / 5);
+}
 
 } // namespace
 } // namespace tactus::test

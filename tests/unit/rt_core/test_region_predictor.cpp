@@ -234,14 +234,14 @@ TEST(RegionPredictor, balls_are_wider_by_what_forecasts_erred)
     EXPECT_LT(erred_m, before_m) << "better than staying";
 }
 
-TEST(RegionPredictor, no_ball_is_wider_than_by_half_of_what_is_asked_for)
+TEST(RegionPredictor, no_ball_is_wider_than_by_as_much_as_is_asked_for)
 {
     RegionPredictor sut;
     follow(
         sut, [](double time_s) { return Vec3(5.0 * time_s, 0.0, 0.0); }, 300);
     const Vec3 at(1.5, 0.0, 0.0);
 
-    EXPECT_NEAR(ranked(sut, Prediction::local_neighbours, at)[kLast].radius_m, 0.03, 1e-12);
+    EXPECT_NEAR(ranked(sut, Prediction::local_neighbours, at)[kLast].radius_m, 0.04, 1e-12);
 }
 
 TEST(RegionPredictor, a_stall_counts_with_its_whole_time)
