@@ -279,6 +279,7 @@ void Courier::hand_over(ContentKey key, std::uint32_t slot, std::uint64_t linked
     {
         copies_->receive(key, bytes);
     }
+    counters_.waited_ns += wait_of(key);
     const bool was_open = close_wish(key);
     TACTUS_ASSERT(was_open);
     // Room for every slot: a slot is in at most one queue.
@@ -324,6 +325,14 @@ bool Courier::close_wish(ContentKey key) noexcept
         }
     }
     return false;
+}
+
+/// How long an open wish has been open; a new session begins it anew.
+std::int64_t Courier::wait_of(ContentKey key) const noexcept
+{
+    const auto wishes = open_.first(open_count_);
+    const auto at = std::ranges::find(wishes, key, &OpenWish::key);
+    return at == wishes.end() ? 0 : now_ns_ - at->wished_ns;
 }
 
 bool Courier::is_resident(ContentKey key) const noexcept

@@ -49,6 +49,7 @@ void HapticLoop::run() noexcept
         heartbeat_.beat(start);
         stage_start_ = start;
         read_devices(measures_.cycle.periods);
+        read_poses(start);
         const FrameOutput output = run_frame();
         make_safe(output);
         write_devices();
@@ -64,6 +65,7 @@ void HapticLoop::run() noexcept
         allocations += measures_.allocations;
         measures_.calls = system_call_trap::of_this_thread();
         statistics_.add(output, forces_n_, conditioned_, measures_);
+        show(output, start);
         choose_budgets(output);
         frames_done_.store(frame_ + 1, std::memory_order_relaxed);
     }
@@ -189,6 +191,24 @@ void HapticLoop::read_devices(std::uint32_t periods) noexcept
         states_[i].elapsed_periods = periods;
         states_[i].valid = sample.valid && sample.connected;
         samples_[i] = sample;
+    }
+}
+
+/// What the network says of the objects enters the frame here and nowhere else.
+void HapticLoop::read_poses(MonotonicTime now) noexcept
+{
+    if (parts_.pose_door != nullptr)
+    {
+        parts_.pose_door->refresh(now);
+        parts_.poses = parts_.pose_door->poses();
+    }
+}
+
+void HapticLoop::show(const FrameOutput& output, MonotonicTime start) noexcept
+{
+    if (parts_.telemetry != nullptr)
+    {
+        parts_.telemetry->show({start, states_, forces_n_, parts_.poses, output}, statistics_);
     }
 }
 

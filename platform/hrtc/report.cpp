@@ -94,6 +94,26 @@ Json pools_of(const RunRecord& record)
             {"total_bytes", record.controller.pool_bytes()}};
 }
 
+/// How the object moved. All zero from files, and where poses are passed over.
+Json pose_of(const FinishedRun& run, std::size_t object)
+{
+    const PoseUse use = run.pose_uses.empty() ? PoseUse{} : run.pose_uses[object];
+    const dds::PoseCounts counts =
+        run.pose_counts.empty() ? dds::PoseCounts{} : run.pose_counts[object];
+    Json refused = Json::object();
+    for (std::size_t i = 0; i < kPoseRefusals; ++i)
+    {
+        refused[kPoseRefusalNames[i]] = counts.refused[i];
+    }
+    return {{"followed", use.is_followed},
+            {"accepted", counts.accepted},
+            {"refused", refused},
+            {"moves", use.moves},
+            {"step_max_m", use.step_max_m},
+            {"age_max_s", to_seconds(use.age_max)},
+            {"old_frames", use.old_frames}};
+}
+
 Json models_of(const RunRecord& record)
 {
     Json list = Json::array();
@@ -113,7 +133,8 @@ Json models_of(const RunRecord& record)
                         {"static", output.is_static},
                         {"bytes_received", served.link->bytes_received()},
                         {"pieces_refused", courier.refused()},
-                        {"host_connected", served.link->state() == LinkState::connected}});
+                        {"host_connected", served.link->state() == LinkState::connected},
+                        {"pose", pose_of(record.run, i)}});
     }
     return list;
 }
@@ -346,6 +367,24 @@ Json safety_of(const RunRecord& record)
             {"events_left_out", record.run.safety.left_out()}};
 }
 
+/// One line for each object that was moved.
+std::string pose_lines(const Json& models)
+{
+    std::string text;
+    for (const Json& model : models)
+    {
+        const Json& pose = model["pose"];
+        if (pose["followed"].get<bool>())
+        {
+            text += fmt::format(
+                "poses       {}: moved in {} frames, by {:.4g} m at most; oldest {:.3g} s\n",
+                model["name"].get<std::string>(), pose["moves"].get<std::uint64_t>(),
+                pose["step_max_m"].get<double>(), pose["age_max_s"].get<double>());
+        }
+    }
+    return text;
+}
+
 /// Empty when no force was another than the frame's.
 std::string stability_line(const Json& tools)
 {
@@ -440,7 +479,10 @@ Json make_report(const Options& options, const Controller& controller, const Fin
               {"misses", statistics.cache_misses},
               {"loads", loads},
               {"evictions", statistics.evictions}}},
-            {"wire", {{"bytes_received", bytes_received}, {"host_lost", record.run.host_was_lost}}},
+            {"wire",
+             {{"bytes_received", bytes_received},
+              {"host_lost", record.run.host_was_lost},
+              {"telemetry_sent", record.run.telemetry_sent}}},
             {"deadline", deadline_of(record)},
             {"realtime",
              {{"allocations", statistics.deadlines.allocations},
@@ -508,6 +550,7 @@ std::string make_summary(const Json& report)
                         report["cache"]["loads"].get<std::uint64_t>(),
                         report["cache"]["evictions"].get<std::uint64_t>(),
                         report["wire"]["host_lost"].get<bool>() ? "; the host went away" : "");
+    text += pose_lines(report["models"]);
     const auto unexplained = report["deadline"]["unexplained"].get<std::uint64_t>();
     text += fmt::format(
         "deadlines   {} missed: {} own faults, {} machine late{}; {} allocations, {} page faults\n",
