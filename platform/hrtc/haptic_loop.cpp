@@ -17,6 +17,7 @@ HapticLoop::HapticLoop(const LoopParts& parts, RunStatistics& statistics)
     , states_(parts.devices.size())
     , samples_(parts.devices.size())
     , conditioned_(parts.devices.size())
+    , jumps_(parts.limits, parts.poses)
     , forces_n_(parts.devices.size(), Vec3(0.0, 0.0, 0.0))
     , end_(parts.frames)
 {
@@ -51,6 +52,7 @@ void HapticLoop::run() noexcept
         read_devices(measures_.cycle.periods);
         read_poses(start);
         const FrameOutput output = run_frame();
+        jumps_.remember(output);
         make_safe(output);
         write_devices();
         end = parts_.clock->now();
@@ -201,6 +203,7 @@ void HapticLoop::read_poses(MonotonicTime now) noexcept
     {
         parts_.pose_door->refresh(now);
         parts_.poses = parts_.pose_door->poses();
+        jumps_.see(parts_.poses);
     }
 }
 
@@ -276,6 +279,7 @@ ForceOff HapticLoop::known_causes(std::size_t tool, const FrameOutput& output) c
     return when(frame_ + fade_frames_ >= end_, ForceOff::software) |
            when(!samples_[tool].connected, ForceOff::disconnect) |
            when(!samples_[tool].deadman_held, ForceOff::deadman) | when(is_stale, ForceOff::stale) |
+           when(jumps_.has_jumped(tool), ForceOff::jump) |
            when(lacks_a_host(output), ForceOff::host);
 }
 

@@ -6,6 +6,7 @@
 #include "platform/clock.hpp"
 #include "platform/haptic_device.hpp"
 #include "platform/heartbeat.hpp"
+#include "platform/hrtc/jump_watch.hpp"
 #include "platform/hrtc/run_statistics.hpp"
 #include "platform/hrtc/safety_log.hpp"
 #include "platform/hrtc/telemetry_tap.hpp"
@@ -109,6 +110,7 @@ private:
     std::vector<ForceConditioner> conditioners_;
     std::vector<ConditionedForce> conditioned_; ///< This frame's.
     std::vector<SafeState> safe_states_;
+    JumpWatch jumps_;
     std::vector<Vec3> forces_n_; ///< That go out, or went out last.
     std::uint64_t frame_{0};
     std::uint64_t fade_frames_{0}; ///< That the last forces of a run take.
