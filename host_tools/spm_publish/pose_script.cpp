@@ -103,8 +103,8 @@ Result<PoseLine, PoseScriptError> parse_line(std::string_view text,
     const std::optional<double> time_s = parse_number(fields[0]);
     if (!time_s || *time_s < 0.0 || *time_s > kPoseTimeMax_s)
     {
-        return PoseScriptError{fmt::format("time '{}' is not 0 to {} s", printable(fields[0]),
-                                           kPoseTimeMax_s)};
+        return PoseScriptError{
+            fmt::format("time '{}' is not 0 to {} s", printable(fields[0]), kPoseTimeMax_s)};
     }
     const auto name = std::ranges::find(names, fields[1]);
     if (name == names.end())
@@ -144,8 +144,7 @@ Result<std::vector<PoseLine>, PoseScriptError> parse_pose_lines(std::string_view
         {
             return PoseScriptError{fmt::format("line {}: time {} s is before {} s of the line "
                                                "before",
-                                               number, parsed.value().time_s,
-                                               lines.back().time_s)};
+                                               number, parsed.value().time_s, lines.back().time_s)};
         }
         lines.push_back(parsed.value());
     }

@@ -27,8 +27,8 @@ std::string tool_text(const ToolTelemetry& tool)
 
 std::string model_text(const ModelIdentity& identity, const ModelTelemetry& model)
 {
-    std::string text = fmt::format("; {} {}/{} pages", identity.name, model.pages.used,
-                                   model.pages.capacity);
+    std::string text =
+        fmt::format("; {} {}/{} pages", identity.name, model.pages.used, model.pages.capacity);
     if (model.piece_wait_ns > 0)
     {
         text += fmt::format(" {:.1f} ms", static_cast<double>(model.piece_wait_ns) * 1e-6);
@@ -47,10 +47,10 @@ std::string watch_line(const dds::WatchedController& controller)
     const Telemetry& telemetry = controller.telemetry;
     const double frames = static_cast<double>(std::max<std::uint64_t>(telemetry.frame, 1));
     const auto sure = static_cast<double>(telemetry.exact + telemetry.decided);
-    std::string text = fmt::format(
-        "watch {}: {} frames, {:.1f} % sure, {} stale, {} missed, {} own faults", controller.name,
-        telemetry.frame, 100.0 * sure / frames, telemetry.stale, telemetry.missed,
-        telemetry.own_faults);
+    std::string text =
+        fmt::format("watch {}: {} frames, {:.1f} % sure, {} stale, {} missed, {} own faults",
+                    controller.name, telemetry.frame, 100.0 * sure / frames, telemetry.stale,
+                    telemetry.missed, telemetry.own_faults);
     for (std::size_t i = 0; i < telemetry.tool_count; ++i)
     {
         text += tool_text(telemetry.tools[i]);

@@ -43,7 +43,7 @@ struct LoopParts
     std::uint64_t frames{0};           ///< How many to run.
     /// One bit a model whose host is gone; may be none.
     const std::atomic<std::uint32_t>* hosts_gone{nullptr};
-    PoseDoor* pose_door{nullptr}; ///< Where the objects stand in each frame; may be none.
+    PoseDoor* pose_door{nullptr};     ///< Where the objects stand in each frame; may be none.
     TelemetryTap* telemetry{nullptr}; ///< Shows every frame; may be none.
 };
 

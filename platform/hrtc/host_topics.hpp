@@ -32,7 +32,8 @@ public:
     /// Between these two and the haptic thread; both live as long as the run.
     void connect(PoseDoor& door, const TelemetryTap& tap) noexcept;
 
-    /// The transport thread, after the couriers' round: poses to the door, telemetry when it is due.
+    /// The transport thread, after the couriers' round: poses to the door, telemetry when it is
+    /// due.
     void step(MonotonicTime now);
 
     /// One an object; none when poses are passed over. While no step is under way.

@@ -105,12 +105,9 @@ Json pose_of(const FinishedRun& run, std::size_t object)
     {
         refused[kPoseRefusalNames[i]] = counts.refused[i];
     }
-    return {{"followed", use.is_followed},
-            {"accepted", counts.accepted},
-            {"refused", refused},
-            {"moves", use.moves},
-            {"step_max_m", use.step_max_m},
-            {"age_max_s", to_seconds(use.age_max)},
+    return {{"followed", use.is_followed},  {"accepted", counts.accepted},
+            {"refused", refused},           {"moves", use.moves},
+            {"step_max_m", use.step_max_m}, {"age_max_s", to_seconds(use.age_max)},
             {"old_frames", use.old_frames}};
 }
 

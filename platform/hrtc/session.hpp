@@ -43,7 +43,7 @@ struct FinishedRun
     TimerCounts timer;
     Duration period;
     SafetyRecord safety;
-    bool host_was_lost{false}; ///< Some model's host went away during the run.
+    bool host_was_lost{false};                ///< Some model's host went away during the run.
     std::vector<PoseUse> pose_uses;           ///< One an object; none from files.
     std::vector<dds::PoseCounts> pose_counts; ///< Likewise; none when poses are passed over.
     std::uint64_t telemetry_sent{0};

@@ -33,7 +33,8 @@ public:
     explicit TelemetryTap(Duration period) noexcept { news_.period_ns = period.ns; }
 
     /// The haptic thread, after the forces have gone out and the statistics have the frame.
-    /// Allocates nothing; about 0.2 us.
+    /// Allocates nothing; 0.07 us for a tool and a model,
+    /// 0.13 us for four and eight.
     void show(const ShownFrame& frame, const RunStatistics& statistics) noexcept;
 
     /// Any thread: the newest frame; false, with `telemetry` as it was, before the first one. What

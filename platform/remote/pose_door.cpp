@@ -74,8 +74,7 @@ void PoseDoor::move_to(std::size_t object, const ObjectPose& pose) noexcept
     const bool has_moved = pose.translation_m != before.translation_m ||
                            pose.rotation != before.rotation || pose.scale != before.scale;
     use.moves += has_moved ? 1U : 0U;
-    use.step_max_m =
-        std::max(use.step_max_m, (pose.translation_m - before.translation_m).norm());
+    use.step_max_m = std::max(use.step_max_m, (pose.translation_m - before.translation_m).norm());
     use.is_followed = true;
     poses_[object] = pose;
 }

@@ -57,7 +57,7 @@ inline constexpr std::array<const char*, kSafetyStates> kSafetyStateNames{"reset
                                                                           "brake"};
 /// In the order of ForceOff's bits.
 inline constexpr std::array<const char*, kForceOffs> kForceOffNames{
-    "velocity", "watchdog", "software", "disconnect", "deadman",
-    "stale",    "garbage",  "stall",    "host",       "assertion", "jump"};
+    "velocity", "watchdog", "software", "disconnect", "deadman", "stale",
+    "garbage",  "stall",    "host",     "assertion",  "jump"};
 
 } // namespace tactus

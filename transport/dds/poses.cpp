@@ -127,9 +127,9 @@ std::uint64_t PoseCounts::refused_in_all() const noexcept
     return std::accumulate(refused.begin(), refused.end(), std::uint64_t{0});
 }
 
-Result<std::unique_ptr<PoseReader>, DdsError>
-PoseReader::create(const Domain& domain, const Catalogue& catalogue,
-                   std::vector<ModelIdentity> objects)
+Result<std::unique_ptr<PoseReader>, DdsError> PoseReader::create(const Domain& domain,
+                                                                 const Catalogue& catalogue,
+                                                                 std::vector<ModelIdentity> objects)
 {
     std::unique_ptr<PoseReader> reader(new PoseReader(catalogue, std::move(objects)));
     std::vector<std::string> partitions;

@@ -78,8 +78,9 @@ ToolTelemetry from_wire(const tactus_v1_ToolTelemetry& wire)
 
 tactus_v1_ModelTelemetry to_wire(const ModelIdentity& identity, const ModelTelemetry& model)
 {
-    const auto pool = [](const PoolTelemetry& use)
-    { return tactus_v1_PoolTelemetry{use.used, use.capacity}; };
+    const auto pool = [](const PoolTelemetry& use) {
+        return tactus_v1_PoolTelemetry{use.used, use.capacity};
+    };
     tactus_v1_ModelTelemetry wire = {};
     identity.name.copy(static_cast<char*>(wire.name), kMaxNameBytes);
     std::memcpy(wire.hash, identity.hash.data(), identity.hash.size());
@@ -100,8 +101,9 @@ tactus_v1_ModelTelemetry to_wire(const ModelIdentity& identity, const ModelTelem
 
 ModelTelemetry from_wire(const tactus_v1_ModelTelemetry& wire)
 {
-    const auto pool = [](const tactus_v1_PoolTelemetry& use)
-    { return PoolTelemetry{use.used, use.capacity}; };
+    const auto pool = [](const tactus_v1_PoolTelemetry& use) {
+        return PoolTelemetry{use.used, use.capacity};
+    };
     ModelTelemetry model;
     model.pages = pool(wire.pages);
     model.faces = pool(wire.faces);

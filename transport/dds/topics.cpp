@@ -31,7 +31,7 @@ struct TopicTraits
     bool is_kept_for_late_joiners;
     bool has_liveliness;
     bool is_best_effort; ///< Only the newest counts: what is lost isn't sent again.
-    std::int32_t depth; ///< Samples per instance.
+    std::int32_t depth;  ///< Samples per instance.
     std::int32_t instances;
 };
 
@@ -60,10 +60,9 @@ Qos make_qos()
 Qos endpoint_qos(const TopicTraits& traits)
 {
     Qos qos = make_qos();
-    dds_qset_reliability(qos.get(),
-                         traits.is_best_effort ? DDS_RELIABILITY_BEST_EFFORT
-                                               : DDS_RELIABILITY_RELIABLE,
-                         kBlockingMax);
+    dds_qset_reliability(
+        qos.get(), traits.is_best_effort ? DDS_RELIABILITY_BEST_EFFORT : DDS_RELIABILITY_RELIABLE,
+        kBlockingMax);
     dds_qset_durability(qos.get(), traits.is_kept_for_late_joiners ? DDS_DURABILITY_TRANSIENT_LOCAL
                                                                    : DDS_DURABILITY_VOLATILE);
     dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, traits.depth);

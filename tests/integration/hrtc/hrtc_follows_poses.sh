@@ -15,7 +15,8 @@ awk 'BEGIN {
 
 # The object moves, the force follows, and the host sees it.
 start_publisher bumpy.spm --poses swing.txt --poses-loop --watch
-run_hrtc --model bumpy --duration 4
+run_hrtc --model bumpy --duration 4 --record swing.rec
+"$hrtc" --replay swing.rec >replay.log 2>&1 || fault "moved objects replay otherwise: $(cat replay.log)"
 check_clean report.json
 check_answers report.json
 check report.json models.0.pose.followed == 1 models.0.pose.accepted '>' 300 \
@@ -76,9 +77,9 @@ printf '0 bumpy 0 0 0 0 0 0 1\n' >still.txt
 refuse 2 'still.txt: --poses-loop needs' --poses still.txt --poses-loop
 bad_line 'is not TIME_S NAME' '1 bumpy 0 0 0'
 bad_line "time '-1'" '-1 bumpy 0 0 0 0 0 0 1'
-bad_line "published as 'bunny'" '1 bunny 0 0 0 0 0 0 1'
+bad_line "no model is published as 'bunny'" '1 bunny 0 0 0 0 0 0 1'
 bad_line "'nan' is not a finite" '1 bumpy nan 0 0 0 0 0 1'
-bad_line 'within 0.001 of 1' '1 bumpy 0 0 0 0 0 0 1.1'
+bad_line 'QX QY QZ QW must have a length within 0.001 of 1' '1 bumpy 0 0 0 0 0 0 1.1'
 bad_line 'X Y Z must be' '1 bumpy 2e4 0 0 0 0 0 1'
 bad_line 'SCALE must be 0.001 to 1000' '1 bumpy 0 0 0 0 0 0 1 0'
 finish

@@ -119,10 +119,7 @@ protected:
     static constexpr std::uint32_t kClientDomain = 3;
     static constexpr std::uint32_t kOtherClientDomain = 4;
 
-    void SetUp() override
-    {
-        test::isolate_domains();
-    }
+    void SetUp() override { test::isolate_domains(); }
 
     PublishedModel published(const std::string& name, const TinyModel& model)
     {

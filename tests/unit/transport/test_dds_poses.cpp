@@ -66,7 +66,8 @@ protected:
 
     std::unique_ptr<DdsHost> make_host(std::uint32_t domain)
     {
-        const auto path = folder_.write(("tiny" + std::to_string(domain)).c_str(), make_tiny_model({}).file);
+        const auto path =
+            folder_.write(("tiny" + std::to_string(domain)).c_str(), make_tiny_model({}).file);
         std::vector<PublishedModel> models;
         models.push_back({"tiny", ModelStore::open(path).value()});
         auto host = DdsHost::create(domain, std::move(models), [](const std::string&) {});

@@ -48,8 +48,8 @@ Telemetry some_telemetry(std::uint32_t tools, std::uint32_t models)
     telemetry.model_count = models;
     for (std::uint32_t i = 0; i < tools; ++i)
     {
-        telemetry.tools[i] = {vector(), vector(),         vector(),        vector(),
-                              i == 0,   (i & 1U) != 0,    (i & 2U) != 0,   i == 3};
+        telemetry.tools[i] = {vector(), vector(),      vector(),      vector(),
+                              i == 0,   (i & 1U) != 0, (i & 2U) != 0, i == 3};
     }
     for (std::uint32_t i = 0; i < models; ++i)
     {
@@ -95,8 +95,8 @@ void expect_same(const ToolTelemetry& got, const ToolTelemetry& sent)
 
 void expect_same(const ModelTelemetry& got, const ModelTelemetry& sent)
 {
-    for (const auto pool : {&ModelTelemetry::pages, &ModelTelemetry::faces,
-                            &ModelTelemetry::blocks, &ModelTelemetry::nodes})
+    for (const auto pool : {&ModelTelemetry::pages, &ModelTelemetry::faces, &ModelTelemetry::blocks,
+                            &ModelTelemetry::nodes})
     {
         EXPECT_EQ((got.*pool).used, (sent.*pool).used);
         EXPECT_EQ((got.*pool).capacity, (sent.*pool).capacity);
@@ -158,8 +158,8 @@ protected:
 
 TEST_F(DdsTelemetry, comes_as_it_was_sent)
 {
-    for (const auto& [tools, models] : {std::pair(0U, 0U), std::pair(1U, 1U),
-                                        std::pair(kMaxTools, kMaxObjects)})
+    for (const auto& [tools, models] :
+         {std::pair(0U, 0U), std::pair(1U, 1U), std::pair(kMaxTools, kMaxObjects)})
     {
         const auto controller = make_controller("one", models);
         const Telemetry sent = some_telemetry(tools, models);
@@ -269,8 +269,7 @@ TEST_F(DdsTelemetry, with_a_fault_in_it_is_refused)
         [&](Sample& s) { name(static_cast<char*>(s.controller_name), "two words"); },
         [&](Sample& s) { name(static_cast<char*>(s.controller_name), "\x1b[31mred"); },
         [&](Sample& s) { name(static_cast<char*>(s.models._buffer[0].name), "a\nb"); },
-        [](Sample& s)
-        { s.tools._buffer[0].force_n[1] = std::numeric_limits<double>::quiet_NaN(); },
+        [](Sample& s) { s.tools._buffer[0].force_n[1] = std::numeric_limits<double>::quiet_NaN(); },
         [](Sample& s)
         { s.tools._buffer[0].position_m[0] = std::numeric_limits<double>::infinity(); },
     };
@@ -298,7 +297,8 @@ TEST_F(DdsTelemetry, with_a_fault_in_it_is_refused)
                 dds_write(writer.handle, &sample);
                 sut_->poll();
                 return is_good ? !sut_->controllers().empty() : sut_->refused() > before;
-            })) << i;
+            }))
+            << i;
         EXPECT_EQ(sut_->controllers().empty(), !is_good) << i;
     }
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "host_tools/spm_publish/pose_script.hpp"
-
 #include "tests/unit/transport/tiny_model.hpp"
 
 #include <gtest/gtest.h>
