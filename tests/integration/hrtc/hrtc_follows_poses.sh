@@ -16,7 +16,7 @@ awk 'BEGIN {
 # The object moves, the force follows, and the host sees it.
 start_publisher bumpy.spm --poses swing.txt --poses-loop --watch
 run_hrtc --model bumpy --duration 4 --record swing.rec
-"$hrtc" --replay swing.rec >replay.log 2>&1 || fault "moved objects replay otherwise: $(cat replay.log)"
+"$hrtc" --replay swing.rec >replay.log 2>&1 || fault "another replay: $(cat replay.log)"
 check_clean report.json
 check_answers report.json
 check report.json models.0.pose.followed == 1 models.0.pose.accepted '>' 300 \
