@@ -28,7 +28,11 @@ class MovedObject
 public:
     using Shift = std::function<std::optional<double>(std::uint64_t frame)>;
 
-    explicit MovedObject(Shift shift) : shift_(std::move(shift)), rig_(options()) {}
+    /// `flood`: poses from anywhere that come in each frame before the last one.
+    explicit MovedObject(Shift shift, int flood = 0)
+        : shift_(std::move(shift)), flood_(flood), rig_(options())
+    {
+    }
 
     void run() { rig_.loop().run(); }
     [[nodiscard]] LoopRig& rig() { return rig_; }
@@ -58,6 +62,12 @@ private:
             if (const auto shift_m = shift_(frame))
             {
                 ObjectPose pose = rig_.placed();
+                for (int i = 0; i < flood_; ++i)
+                {
+                    pose.translation_m.y() = static_cast<double>(i);
+                    rig_.door().put(0, pose, rig_.clock().now());
+                }
+                pose = rig_.placed();
                 pose.translation_m.x() += *shift_m;
                 rig_.door().put(0, pose, rig_.clock().now());
             }
@@ -66,6 +76,7 @@ private:
     }
 
     Shift shift_;
+    int flood_;
     LoopRig rig_;
 };
 
@@ -136,6 +147,20 @@ TEST(MovedObject, that_jumps_under_the_tool_makes_no_step_of_the_force)
         EXPECT_TRUE(MovedObject::has(sut.rig().events(), ForceOff::jump)) << jump_m;
         EXPECT_LE(sut.rig().largest_step_n(kSettled - 1, 1'900), kBackStep_n) << jump_m;
     }
+}
+
+TEST(MovedObject, in_a_flood_of_poses_feels_bit_for_bit_as_by_the_last_of_each_frame)
+{
+    const auto shift = [](std::uint64_t frame) { return swing(frame, 0.002); };
+    MovedObject calm(shift);
+    MovedObject flooded(shift, 100);
+    calm.run();
+    flooded.run();
+    for (std::uint64_t frame = 0; frame < 2'000; ++frame)
+    {
+        ASSERT_EQ(flooded.rig().written_n(frame), calm.rig().written_n(frame)) << frame;
+    }
+    EXPECT_EQ(flooded.rig().statistics().nodes_visited, calm.rig().statistics().nodes_visited);
 }
 
 TEST(MovedObject, that_goes_15_mm_at_once_is_followed)

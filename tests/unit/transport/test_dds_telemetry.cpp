@@ -158,11 +158,16 @@ protected:
 
 TEST_F(DdsTelemetry, comes_as_it_was_sent)
 {
-    for (const auto& [tools, models] :
-         {std::pair(0U, 0U), std::pair(1U, 1U), std::pair(kMaxTools, kMaxObjects)})
+    struct Size
     {
+        std::uint32_t tools;
+        std::uint32_t models;
+    };
+    for (const Size size : {Size{0, 0}, Size{1, 1}, Size{kMaxTools, kMaxObjects}})
+    {
+        const std::uint32_t models = size.models;
         const auto controller = make_controller("one", models);
-        const Telemetry sent = some_telemetry(tools, models);
+        const Telemetry sent = some_telemetry(size.tools, models);
         ASSERT_TRUE(eventually(
             [&]
             {
