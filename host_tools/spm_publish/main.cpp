@@ -75,8 +75,9 @@ void declare_options(CLI::App& app, Options& options)
     app.add_option("--seconds", options.seconds, "End by itself after this long")
         ->check(number_between(0.1, 1e9));
     app.add_option("--poses", options.poses_path,
-                   fmt::format("Move the models as this text file says, from the start on: lines "
-                               "{} in order of time, a unit quaternion and m; --name's NAME",
+                   fmt::format("Move the models as this text file says, in real time: lines {} in "
+                               "order of time, in s and m, with the published name and a unit "
+                               "quaternion; # begins a comment",
                                kPoseLineForm));
     app.add_flag("--poses-loop", options.poses_loop,
                  "Begin the file anew at the time of its last line, again and again");
