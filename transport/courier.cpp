@@ -275,11 +275,11 @@ void Courier::adopt_chunk(ChunkId chunk, std::span<const std::byte> bytes)
 void Courier::hand_over(ContentKey key, std::uint32_t slot, std::uint64_t linked,
                         std::span<const std::byte> bytes)
 {
+    counters_.waited_ns += wait_of(key);
     if (copies_ != nullptr)
     {
         copies_->receive(key, bytes);
     }
-    counters_.waited_ns += wait_of(key);
     const bool was_open = close_wish(key);
     TACTUS_ASSERT(was_open);
     // Room for every slot: a slot is in at most one queue.
@@ -327,14 +327,6 @@ bool Courier::close_wish(ContentKey key) noexcept
     return false;
 }
 
-/// How long an open wish has been open; a new session begins it anew.
-std::int64_t Courier::wait_of(ContentKey key) const noexcept
-{
-    const auto wishes = open_.first(open_count_);
-    const auto at = std::ranges::find(wishes, key, &OpenWish::key);
-    return at == wishes.end() ? 0 : now_ns_ - at->wished_ns;
-}
-
 bool Courier::is_resident(ContentKey key) const noexcept
 {
     return key.kind == ContentKind::chunk ? linker_.is_resident({key.number})
@@ -346,6 +338,14 @@ bool Courier::is_key_of_model(ContentKey key) const noexcept
     return key.kind == ContentKind::chunk        ? key.number < counts_.chunks()
            : key.kind == ContentKind::index_page ? key.number < counts_.index_pages()
                                                  : false;
+}
+
+/// How long an open wish has been open; a new session begins it anew.
+std::int64_t Courier::wait_of(ContentKey key) const noexcept
+{
+    const auto wishes = open_.first(open_count_);
+    const auto at = std::ranges::find(wishes, key, &OpenWish::key);
+    return at == wishes.end() ? 0 : now_ns_ - at->wished_ns;
 }
 
 std::size_t Courier::required_bytes(std::size_t pages, std::size_t index_pages,

@@ -117,9 +117,9 @@ private:
     void push_link_updates();
     void refuse(std::uint64_t& counter, ContentKey key, const char* reason);
     [[nodiscard]] bool close_wish(ContentKey key) noexcept;
-    [[nodiscard]] std::int64_t wait_of(ContentKey key) const noexcept;
     [[nodiscard]] bool is_resident(ContentKey key) const noexcept;
     [[nodiscard]] bool is_key_of_model(ContentKey key) const noexcept;
+    [[nodiscard]] std::int64_t wait_of(ContentKey key) const noexcept;
     [[nodiscard]] static Slots all_free(Arena& arena, std::size_t count) noexcept;
 
     const ModelHeader& header_;

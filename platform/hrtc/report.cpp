@@ -476,10 +476,7 @@ Json make_report(const Options& options, const Controller& controller, const Fin
               {"misses", statistics.cache_misses},
               {"loads", loads},
               {"evictions", statistics.evictions}}},
-            {"wire",
-             {{"bytes_received", bytes_received},
-              {"host_lost", record.run.host_was_lost},
-              {"telemetry_sent", record.run.telemetry_sent}}},
+            {"wire", {{"bytes_received", bytes_received}, {"host_lost", record.run.host_was_lost}}},
             {"deadline", deadline_of(record)},
             {"realtime",
              {{"allocations", statistics.deadlines.allocations},
@@ -489,6 +486,7 @@ Json make_report(const Options& options, const Controller& controller, const Fin
               {"system_calls_in_frame", statistics.deadlines.calls.in_frame},
               {"system_calls_outside", statistics.deadlines.calls.outside}}},
             {"recording", recording_of(record.run.recording)},
+            {"telemetry", {{"sent", record.run.telemetry_sent}}},
             {"force", force_of(statistics)},
             {"safety", safety_of(record)},
             {"faults", faults_of(statistics)},
@@ -547,7 +545,6 @@ std::string make_summary(const Json& report)
                         report["cache"]["loads"].get<std::uint64_t>(),
                         report["cache"]["evictions"].get<std::uint64_t>(),
                         report["wire"]["host_lost"].get<bool>() ? "; the host went away" : "");
-    text += pose_lines(report["models"]);
     const auto unexplained = report["deadline"]["unexplained"].get<std::uint64_t>();
     text += fmt::format(
         "deadlines   {} missed: {} own faults, {} machine late{}; {} allocations, {} page faults\n",
@@ -557,6 +554,7 @@ std::string make_summary(const Json& report)
         unexplained > 0 ? fmt::format(", {} other", unexplained) : "",
         report["realtime"]["allocations"].get<std::uint64_t>(),
         report["realtime"]["page_faults"].get<std::uint64_t>());
+    text += pose_lines(report["models"]);
     text += stability_line(report["tools"]);
     text += safety_line(report["safety"]);
     if (report["realtime"]["system_calls_trapped"].get<bool>())

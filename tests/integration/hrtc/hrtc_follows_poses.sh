@@ -22,7 +22,7 @@ check_answers report.json
 check report.json models.0.pose.followed == 1 models.0.pose.accepted '>' 300 \
     models.0.pose.moves '>' 200 models.0.pose.step_max_m '<' 0.005 \
     models.0.pose.refused.rotation == 0 models.0.pose.refused.not_newer == 0 \
-    force.max_n '>' 0 safety.begun.jump == 0 wire.telemetry_sent '>' 200
+    force.max_n '>' 0 safety.begun.jump == 0 telemetry.sent '>' 200
 grep -q '^poses  *bumpy: moved in [0-9]* frames' hrtc.log || fault 'the summary tells no poses'
 wait_for_line publish.log 'watch hrtc-' 5
 grep -q '^watch hrtc-[0-9]*: [0-9]* frames, .* N in contact.*; bumpy .* pages.* pose ' publish.log \
@@ -31,7 +31,7 @@ grep -q '^watch hrtc-[0-9]*: [0-9]* frames, .* N in contact.*; bumpy .* pages.* 
 # A controller that is told to leave its models alone: still seen, but nothing moves.
 run_hrtc --model bumpy --duration 1 --ignore-poses
 check report.json models.0.pose.followed == 0 models.0.pose.accepted == 0 \
-    wire.telemetry_sent '>' 40 answers.stale == 0
+    telemetry.sent '>' 40 answers.stale == 0
 
 # Poses that stop: the touched object grows stale and the force fades; they come again, and so does
 # the force. A model that is here as a whole needs no host for anything else.
@@ -54,7 +54,7 @@ stop TERM "$publisher"
 
 # From files nothing of this exists.
 run_hrtc --transport file --model bumpy.spm --duration 1
-check report.json models.0.pose.followed == 0 wire.telemetry_sent == 0
+check report.json models.0.pose.followed == 0 telemetry.sent == 0
 
 # An object that goes far at once while it is touched: the force fades and comes back by the ramp.
 printf '0 bumpy 0 0 0 0 0 0 1\n0.5 bumpy 0.04 0 0 0 0 0 1\n1 bumpy 0 0 0 0 0 0 1\n' >jump.txt
