@@ -1,19 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "host_tools/cli/command_line.hpp"
+#include "host_tools/spm_publish/pose_script.hpp"
 #include "host_tools/spm_publish/serving_report.hpp"
+#include "host_tools/spm_publish/watch.hpp"
 #include "transport/content_hash.hpp"
 #include "transport/dds/dds_host.hpp"
+#include "transport/dds/poses.hpp"
+#include "transport/dds/telemetry.hpp"
 #include "transport/model_name.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <csignal>
 #include <cstdint>
 #include <exception>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -31,6 +37,17 @@ struct Options
     std::vector<std::string> names;
     std::uint32_t domain{0};
     std::optional<double> seconds;
+    std::string poses_path; ///< Empty: nothing moves.
+    bool poses_loop{false};
+    bool watch{false};
+};
+
+/// What a host does besides serving; each may be none.
+struct Extras
+{
+    std::unique_ptr<dds::PosePublisher> publisher;
+    std::optional<PosePlayer> player;
+    std::optional<Watch> watch;
 };
 
 std::atomic<bool> stop_requested{false};
@@ -57,6 +74,15 @@ void declare_options(CLI::App& app, Options& options)
         ->capture_default_str();
     app.add_option("--seconds", options.seconds, "End by itself after this long")
         ->check(number_between(0.1, 1e9));
+    app.add_option("--poses", options.poses_path,
+                   fmt::format("Move the models as this text file says, in real time: lines {} in "
+                               "order of time, in s and m, with the published name and a unit "
+                               "quaternion; # begins a comment",
+                               kPoseLineForm));
+    app.add_flag("--poses-loop", options.poses_loop,
+                 "Begin the file anew at the time of its last line, again and again");
+    app.add_flag("--watch", options.watch,
+                 "Print what each controller on the domain does, a line a second");
 }
 
 /// The models' names in the order of the files; a line when one is missing, wrong or there twice.
@@ -124,16 +150,98 @@ void print_models(ServingReport& report, const dds::DdsHost& host, std::uint32_t
     report.print_line(fmt::format("ready on DDS domain {}; end with Ctrl-C", domain));
 }
 
-void serve(dds::DdsHost& host, ServingReport& report, const std::optional<double>& seconds)
+/// Nothing when no pose file is given.
+Result<std::vector<PoseLine>, PoseScriptError> read_poses(const Options& options,
+                                                          const std::vector<std::string>& names)
+{
+    if (options.poses_path.empty())
+    {
+        return std::vector<PoseLine>{};
+    }
+    auto lines = read_pose_file(options.poses_path, names);
+    if (lines && options.poses_loop && lines.value().back().time_s == 0.0)
+    {
+        return PoseScriptError{options.poses_path + ": --poses-loop needs a last line with a time "
+                                                    "above 0 s"};
+    }
+    return lines;
+}
+
+Result<Extras, dds::DdsError> make_extras(const Options& options, const dds::DdsHost& host,
+                                          std::vector<PoseLine> lines)
+{
+    Extras extras;
+    if (!lines.empty())
+    {
+        std::vector<ModelIdentity> objects;
+        for (const dds::PublishedModel& model : host.models())
+        {
+            objects.push_back({model.name, model.store.hash(), model.store.revision()});
+        }
+        extras.player.emplace(std::move(lines), objects.size(), options.poses_loop);
+        auto publisher =
+            dds::PosePublisher::create(host.domain(), host.epoch(), std::move(objects));
+        if (!publisher)
+        {
+            return publisher.error();
+        }
+        extras.publisher = std::move(publisher).value();
+    }
+    if (options.watch)
+    {
+        auto reader = dds::TelemetryReader::create(host.domain());
+        if (!reader)
+        {
+            return reader.error();
+        }
+        extras.watch.emplace(std::move(reader).value());
+    }
+    return extras;
+}
+
+/// How long the host may wait: until a pose is due.
+std::chrono::milliseconds longest_wait(const Extras& extras, double now_s)
+{
+    constexpr std::chrono::milliseconds least{1};
+    if (!extras.player)
+    {
+        return std::chrono::milliseconds(50);
+    }
+    const std::chrono::milliseconds most = dds::kPoseRepeat / 2;
+    const double left_s = extras.player->next_s().value_or(now_s + 1.0) - now_s;
+    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(
+        std::chrono::duration<double>(std::clamp(left_s, 0.0, 1.0)));
+    return std::clamp(left, least, most);
+}
+
+void play(Extras& extras, double now_s)
+{
+    for (const PoseLine& line : extras.player->take_due(now_s))
+    {
+        const auto moved = extras.publisher->move(line.object, line.pose);
+        TACTUS_ASSERT(moved.has_value()); // The file was checked.
+    }
+    extras.publisher->repeat();
+}
+
+void serve(dds::DdsHost& host, ServingReport& report, Extras& extras,
+           const std::optional<double>& seconds)
 {
     using Clock = std::chrono::steady_clock;
     const auto start = Clock::now();
-    const auto is_over = [&]
-    { return seconds && std::chrono::duration<double>(Clock::now() - start).count() >= *seconds; };
-    while (!stop_requested.load(std::memory_order_relaxed) && !is_over())
+    const auto now_s = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
+    while (!stop_requested.load(std::memory_order_relaxed) && !(seconds && now_s() >= *seconds))
     {
-        host.wait(std::chrono::milliseconds(50));
+        host.wait(longest_wait(extras, now_s()));
         host.step();
+        if (extras.player)
+        {
+            play(extras, now_s());
+        }
+        if (extras.watch)
+        {
+            extras.watch->update(report);
+        }
         report.update(host);
     }
 }
@@ -152,10 +260,19 @@ int run(int argc, char** argv)
     {
         return fail(app, names.error().text, kExitUsage);
     }
+    if (options.poses_loop && options.poses_path.empty())
+    {
+        return fail(app, "--poses-loop: needs --poses", kExitUsage);
+    }
     auto models = open_models(options, names.value());
     if (!models)
     {
         return fail(app, models.error().text);
+    }
+    auto poses = read_poses(options, names.value());
+    if (!poses)
+    {
+        return fail(app, poses.error().text);
     }
     stop_on_signals();
     ServingReport report;
@@ -166,8 +283,13 @@ int run(int argc, char** argv)
     {
         return fail(app, host.error().text);
     }
+    auto extras = make_extras(options, *host.value(), std::move(poses).value());
+    if (!extras)
+    {
+        return fail(app, extras.error().text);
+    }
     print_models(report, *host.value(), options.domain);
-    serve(*host.value(), report, options.seconds);
+    serve(*host.value(), report, extras.value(), options.seconds);
     const auto counters = host.value()->counters();
     report.print_line(fmt::format("ended; {} chunks, {:.1f} KB sent", counters.pieces_sent,
                                   static_cast<double>(counters.bytes_sent) / 1e3));

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "platform/hrtc/controller.hpp"
 
+#include "platform/hrtc/object_pose.hpp"
 #include "platform/simulated/hand_motions.hpp"
 #include "platform/simulated/simulated_device.hpp"
 #include "rt_core/force/stiffness_rule.hpp"
@@ -23,18 +24,6 @@ constexpr double kDefaultToolShare = 0.01;
 constexpr double kSpeedMax_diag = 1.0;
 /// The simulated hand flies at two diagonals a second; its device stands twice that.
 constexpr double kHandSpeed_diag = 4.0;
-
-ObjectPose pose_of(const Placement& placement, const ModelHeader& header)
-{
-    ObjectPose pose;
-    pose.rotation = rotation_of(placement);
-    const auto& origin = header.fields().origin_m;
-    const Vec3 origin_m(origin[0], origin[1], origin[2]);
-    pose.scale = placement.scale;
-    pose.translation_m = placement.translation_m + pose.scale * (pose.rotation * origin_m);
-    pose.revision = header.fields().revision;
-    return pose;
-}
 
 /// Without one it is simulated.
 DeviceChoice choice_of(const Options& options, std::size_t tool)
@@ -89,7 +78,7 @@ void Controller::make_poses(const Options& options)
 {
     for (std::size_t i = 0; i < models_.size(); ++i)
     {
-        poses_.push_back(pose_of(options.placements[i], headers_[i]));
+        poses_.push_back(object_pose(options.placements[i], headers_[i]));
     }
 }
 

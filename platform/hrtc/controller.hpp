@@ -56,6 +56,7 @@ public:
     {
         return devices_;
     }
+    /// Where the objects stand at the start.
     [[nodiscard]] const std::vector<ObjectPose>& poses() const noexcept { return poses_; }
     [[nodiscard]] const std::vector<ServedModel>& models() const noexcept { return models_; }
     [[nodiscard]] const std::vector<ToolSpec>& tools() const noexcept { return tools_; }

@@ -17,6 +17,7 @@ HapticLoop::HapticLoop(const LoopParts& parts, RunStatistics& statistics)
     , states_(parts.devices.size())
     , samples_(parts.devices.size())
     , conditioned_(parts.devices.size())
+    , jumps_(parts.limits, parts.poses)
     , forces_n_(parts.devices.size(), Vec3(0.0, 0.0, 0.0))
     , end_(parts.frames)
 {
@@ -49,7 +50,9 @@ void HapticLoop::run() noexcept
         heartbeat_.beat(start);
         stage_start_ = start;
         read_devices(measures_.cycle.periods);
+        read_poses(start);
         const FrameOutput output = run_frame();
+        jumps_.remember(output);
         make_safe(output);
         write_devices();
         end = parts_.clock->now();
@@ -64,6 +67,7 @@ void HapticLoop::run() noexcept
         allocations += measures_.allocations;
         measures_.calls = system_call_trap::of_this_thread();
         statistics_.add(output, forces_n_, conditioned_, measures_);
+        show(output, start);
         choose_budgets(output);
         frames_done_.store(frame_ + 1, std::memory_order_relaxed);
     }
@@ -192,6 +196,25 @@ void HapticLoop::read_devices(std::uint32_t periods) noexcept
     }
 }
 
+/// What the network says of the objects enters the frame here and nowhere else.
+void HapticLoop::read_poses(MonotonicTime now) noexcept
+{
+    if (parts_.pose_door != nullptr)
+    {
+        parts_.pose_door->refresh(now);
+        parts_.poses = parts_.pose_door->poses();
+        jumps_.see(parts_.poses);
+    }
+}
+
+void HapticLoop::show(const FrameOutput& output, MonotonicTime start) noexcept
+{
+    if (parts_.telemetry != nullptr)
+    {
+        parts_.telemetry->show({start, states_, forces_n_, parts_.poses, output}, statistics_);
+    }
+}
+
 void HapticLoop::make_safe(const FrameOutput& output) noexcept
 {
     for (std::size_t i = 0; i < forces_n_.size(); ++i)
@@ -256,6 +279,7 @@ ForceOff HapticLoop::known_causes(std::size_t tool, const FrameOutput& output) c
     return when(frame_ + fade_frames_ >= end_, ForceOff::software) |
            when(!samples_[tool].connected, ForceOff::disconnect) |
            when(!samples_[tool].deadman_held, ForceOff::deadman) | when(is_stale, ForceOff::stale) |
+           when(jumps_.has_jumped(tool), ForceOff::jump) |
            when(lacks_a_host(output), ForceOff::host);
 }
 

@@ -6,10 +6,13 @@
 #include "platform/clock.hpp"
 #include "platform/haptic_device.hpp"
 #include "platform/heartbeat.hpp"
+#include "platform/hrtc/jump_watch.hpp"
 #include "platform/hrtc/run_statistics.hpp"
 #include "platform/hrtc/safety_log.hpp"
+#include "platform/hrtc/telemetry_tap.hpp"
 #include "platform/periodic_timer.hpp"
 #include "platform/recording/frame_tap.hpp"
+#include "platform/remote/pose_door.hpp"
 #include "rt_core/force/force_conditioner.hpp"
 #include "rt_core/force/safe_state.hpp"
 #include "rt_core/frame/frame.hpp"
@@ -31,7 +34,7 @@ struct LoopParts
     std::span<const std::unique_ptr<HapticDevice>> devices; ///< One a tool.
     std::span<const SafetyLimits> limits;                   ///< One a tool.
     std::span<const ConditionerSetup> conditioners;         ///< One a tool.
-    std::span<const ObjectPose> poses;
+    std::span<const ObjectPose> poses;                      ///< When there is no door.
     PeriodicTimer* timer{nullptr};
     const Clock* clock{nullptr};
     Budgets budgets;                   ///< Of every frame, when there is no governor.
@@ -40,6 +43,8 @@ struct LoopParts
     std::uint64_t frames{0};           ///< How many to run.
     /// One bit a model whose host is gone; may be none.
     const std::atomic<std::uint32_t>* hosts_gone{nullptr};
+    PoseDoor* pose_door{nullptr};     ///< Where the objects stand in each frame; may be none.
+    TelemetryTap* telemetry{nullptr}; ///< Shows every frame; may be none.
 };
 
 /// The haptic thread's work: every period read the devices, run the frame, see that its forces are
@@ -84,6 +89,8 @@ private:
     void choose_budgets(const FrameOutput& output) noexcept;
     [[nodiscard]] bool has_to_end() noexcept;
     void read_devices(std::uint32_t periods) noexcept;
+    void read_poses(MonotonicTime now) noexcept;
+    void show(const FrameOutput& output, MonotonicTime start) noexcept;
     void make_safe(const FrameOutput& output) noexcept;
     [[nodiscard]] ForceWish wish_of(std::size_t tool, const ToolOutput& output) const noexcept;
     [[nodiscard]] SafetyInput safety_input(std::size_t tool, const FrameOutput& output,
@@ -103,6 +110,7 @@ private:
     std::vector<ForceConditioner> conditioners_;
     std::vector<ConditionedForce> conditioned_; ///< This frame's.
     std::vector<SafeState> safe_states_;
+    JumpWatch jumps_;
     std::vector<Vec3> forces_n_; ///< That go out, or went out last.
     std::uint64_t frame_{0};
     std::uint64_t fade_frames_{0}; ///< That the last forces of a run take.

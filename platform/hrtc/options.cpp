@@ -124,6 +124,7 @@ struct RawOptions
     std::string prediction{prediction_name(Prediction::automatic)};
     std::optional<int> cpu;
     bool prints_config{false};
+    bool ignores_poses{false};
 };
 
 /// Options without a value are shown as comments: no file could set them to nothing.
@@ -256,6 +257,8 @@ void declare(CLI::App& app, Options& options, RawOptions& raw)
     app.add_option("--domain", options.domain, "DDS domain id")
         ->check(CLI::Range(0, 232))
         ->capture_default_str();
+    app.add_flag("--ignore-poses", raw.ignores_poses,
+                 "Leave the models where --place puts them, whatever their hosts say");
     app.add_option("--wait", options.wait_s,
                    "Seconds to wait for a model to be published, and for a device to come")
         ->check(number_between(0.1, 3'600.0))
@@ -513,6 +516,7 @@ std::variant<Options, int> parse_options(int argc, char** argv, const CommandFor
         return fail(app, fault, kExitUsage);
     }
     options.thread.cpu = raw.cpu;
+    options.follows_poses = !raw.ignores_poses;
     if (raw.prints_config)
     {
         fmt::print("{}", without_empty(app.config_to_str(true, true)));

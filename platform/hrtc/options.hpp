@@ -43,7 +43,8 @@ struct Options
     MotionKind motion{MotionKind::script};  ///< Likewise.
     TransportKind transport{TransportKind::dds};
     std::uint32_t domain{0};
-    double wait_s{10.0}; ///< For a model that nobody publishes yet, or a device.
+    bool follows_poses{true}; ///< Objects move as the hosts say.
+    double wait_s{10.0};      ///< For a model that nobody publishes yet, or a device.
     std::int64_t rate_hz{1'000};
     double duration_s{10.0};
     std::string report_path; ///< Empty: no file.

@@ -16,8 +16,8 @@ struct Placement
     double scale{1.0};
 };
 
-/// Orthonormal to 2e-15. The only place where the program makes a rotation: once an object,
-/// and no frame ever composes two, so there is nothing to drift.
+/// Orthonormal to 2e-15. Made once an object, as a host's poses are once each (object_pose.hpp):
+/// no frame ever composes two rotations, so there is nothing to drift.
 [[nodiscard]] Mat3 rotation_of(const Placement& placement);
 
 } // namespace tactus::hrtc

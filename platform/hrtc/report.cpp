@@ -94,6 +94,23 @@ Json pools_of(const RunRecord& record)
             {"total_bytes", record.controller.pool_bytes()}};
 }
 
+/// How the object moved. All zero from files, and where poses are passed over.
+Json pose_of(const FinishedRun& run, std::size_t object)
+{
+    const PoseUse use = run.pose_uses.empty() ? PoseUse{} : run.pose_uses[object];
+    const dds::PoseCounts counts =
+        run.pose_counts.empty() ? dds::PoseCounts{} : run.pose_counts[object];
+    Json refused = Json::object();
+    for (std::size_t i = 0; i < kPoseRefusals; ++i)
+    {
+        refused[kPoseRefusalNames[i]] = counts.refused[i];
+    }
+    return {{"followed", use.is_followed},  {"accepted", counts.accepted},
+            {"refused", refused},           {"moves", use.moves},
+            {"step_max_m", use.step_max_m}, {"age_max_s", to_seconds(use.age_max)},
+            {"old_frames", use.old_frames}};
+}
+
 Json models_of(const RunRecord& record)
 {
     Json list = Json::array();
@@ -113,7 +130,8 @@ Json models_of(const RunRecord& record)
                         {"static", output.is_static},
                         {"bytes_received", served.link->bytes_received()},
                         {"pieces_refused", courier.refused()},
-                        {"host_connected", served.link->state() == LinkState::connected}});
+                        {"host_connected", served.link->state() == LinkState::connected},
+                        {"pose", pose_of(record.run, i)}});
     }
     return list;
 }
@@ -379,6 +397,24 @@ Json safety_of(const RunRecord& record)
             {"events_left_out", record.run.safety.left_out()}};
 }
 
+/// One line for each object that was moved.
+std::string pose_lines(const Json& models)
+{
+    std::string text;
+    for (const Json& model : models)
+    {
+        const Json& pose = model["pose"];
+        if (pose["followed"].get<bool>())
+        {
+            text += fmt::format(
+                "poses       {}: moved in {} frames, by {:.4g} m at most; oldest {:.3g} s\n",
+                model["name"].get<std::string>(), pose["moves"].get<std::uint64_t>(),
+                pose["step_max_m"].get<double>(), pose["age_max_s"].get<double>());
+        }
+    }
+    return text;
+}
+
 /// Empty when no force was another than the frame's.
 std::string stability_line(const Json& tools)
 {
@@ -472,6 +508,7 @@ Json make_report(const Options& options, const Controller& controller, const Fin
               {"system_calls_in_frame", statistics.deadlines.calls.in_frame},
               {"system_calls_outside", statistics.deadlines.calls.outside}}},
             {"recording", recording_of(record.run.recording)},
+            {"telemetry", {{"sent", record.run.telemetry_sent}}},
             {"force", force_of(statistics)},
             {"safety", safety_of(record)},
             {"faults", faults_of(statistics)},
@@ -546,6 +583,7 @@ std::string make_summary(const Json& report)
         unexplained > 0 ? fmt::format(", {} other", unexplained) : "",
         report["realtime"]["allocations"].get<std::uint64_t>(),
         report["realtime"]["page_faults"].get<std::uint64_t>());
+    text += pose_lines(report["models"]);
     text += stability_line(report["tools"]);
     text += safety_line(report["safety"]);
     if (report["realtime"]["system_calls_trapped"].get<bool>())

@@ -223,6 +223,17 @@ void finish_recording(std::optional<Recorder>& recorder, FinishedRun& done)
     done.recording = recording.value();
 }
 
+/// What hosts and controller told each other; the threads between which it went have ended.
+void note_topics(const HostTopics* topics, const PoseDoor& door, FinishedRun& done)
+{
+    if (topics != nullptr)
+    {
+        done.pose_uses.assign(door.uses().begin(), door.uses().end());
+        done.pose_counts = topics->pose_counts();
+        done.telemetry_sent = topics->telemetry_sent();
+    }
+}
+
 /// None when all that the options ask of the machine can be had or done without.
 std::optional<SessionError> check_machine(const Options& options)
 {
@@ -329,6 +340,16 @@ Result<std::unique_ptr<Session>, SessionError> Session::open(const Options& opti
         return failure(controller.error().text);
     }
     session->controller_ = std::move(controller).value();
+    if (session->client_ != nullptr)
+    {
+        auto topics =
+            HostTopics::create(*session->client_, *session->controller_, options.follows_poses);
+        if (!topics)
+        {
+            return failure(topics.error().text);
+        }
+        session->topics_ = std::move(topics).value();
+    }
     return session;
 }
 
@@ -342,6 +363,8 @@ Result<FinishedRun, SessionError> Session::run(const std::string& what)
                      .timer = {},
                      .period = period,
                      .safety = SafetyRecord(tools),
+                     .pose_uses = {},
+                     .pose_counts = {},
                      .recording = {},
                      .recording_error = {}};
     const PosixClock clock;
@@ -352,12 +375,19 @@ Result<FinishedRun, SessionError> Session::run(const std::string& what)
     {
         return failure(*error);
     }
-    TransportThread transport(controller_->couriers(), controller_->models());
+    PoseDoor door(controller_->poses(), nanoseconds(controller_->setup().pose_age_max_ns));
+    TelemetryTap telemetry(period);
+    if (topics_ != nullptr)
+    {
+        topics_->connect(door, telemetry);
+    }
+    TransportThread transport(controller_->couriers(), controller_->models(), topics_.get());
     HapticLoop loop({&controller_->frame(), controller_->devices(), controller_->limits(),
                      controller_->conditioners(), controller_->poses(), &timer, &clock,
                      controller_->budgets(), governor ? &*governor : nullptr,
                      recorder ? &recorder->tap() : nullptr, options_.frames(),
-                     &transport.hosts_gone()},
+                     &transport.hosts_gone(), topics_ != nullptr ? &door : nullptr,
+                     topics_ != nullptr ? &telemetry : nullptr},
                     done.statistics);
     PosixPeriodicTimer alarm;
     Supervisor supervisor({controller_->devices(), &loop.heartbeat(), &clock, &alarm, period});
@@ -395,6 +425,7 @@ Result<FinishedRun, SessionError> Session::run(const std::string& what)
     done.supervisor_fifo = supervising.value().report().fifo;
     done.timer = timer.counts();
     done.host_was_lost = transport.host_was_lost();
+    note_topics(topics_.get(), door, done);
     for (const std::string& line : done.thread.refused)
     {
         log_line("without " + line);

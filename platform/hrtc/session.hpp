@@ -3,6 +3,7 @@
 #pragma once
 
 #include "platform/hrtc/controller.hpp"
+#include "platform/hrtc/host_topics.hpp"
 #include "platform/hrtc/options.hpp"
 #include "platform/hrtc/recorder.hpp"
 #include "platform/hrtc/run_statistics.hpp"
@@ -11,9 +12,11 @@
 #include "platform/rt_thread.hpp"
 #include "transport/dds/dds_client.hpp"
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace tactus::hrtc
 {
@@ -40,7 +43,10 @@ struct FinishedRun
     TimerCounts timer;
     Duration period;
     SafetyRecord safety;
-    bool host_was_lost{false}; ///< Some model's host went away during the run.
+    bool host_was_lost{false};                ///< Some model's host went away during the run.
+    std::vector<PoseUse> pose_uses;           ///< One an object; none from files.
+    std::vector<dds::PoseCounts> pose_counts; ///< Likewise; none when poses are passed over.
+    std::uint64_t telemetry_sent{0};
     std::optional<RecordingResult> recording;
     std::optional<std::string> recording_error; ///< Why a wanted recording is not there.
 };
@@ -69,6 +75,7 @@ private:
     Options options_;
     std::unique_ptr<dds::DdsClient> client_; ///< Lives as long as the links of its models.
     std::unique_ptr<Controller> controller_;
+    std::unique_ptr<HostTopics> topics_; ///< None from files.
 };
 
 /// One line on stderr behind the program's name, whatever is in it: file names may hold control

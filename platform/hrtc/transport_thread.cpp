@@ -19,8 +19,8 @@ constexpr std::chrono::microseconds kPause{300};
 } // namespace
 
 TransportThread::TransportThread(std::vector<std::unique_ptr<Courier>>& couriers,
-                                 const std::vector<ServedModel>& models)
-    : couriers_(couriers), models_(models), thread_([this] { run(); })
+                                 const std::vector<ServedModel>& models, HostTopics* topics)
+    : couriers_(couriers), models_(models), topics_(topics), thread_([this] { run(); })
 {
 }
 
@@ -43,6 +43,10 @@ void TransportThread::run()
             courier->step(clock.now().ns);
         }
         watch_hosts();
+        if (topics_ != nullptr)
+        {
+            topics_->step(clock.now());
+        }
         std::this_thread::sleep_for(kPause);
     }
 }

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "platform/hrtc/host_topics.hpp"
 #include "transport/courier.hpp"
 #include "transport/served_model.hpp"
 
@@ -22,8 +23,9 @@ class TransportThread
 public:
     /// Couriers and models must outlive the thread; nobody else touches them or the models' links
     /// while it runs.
+    /// `topics` has its turn after each round of the couriers; it may be none.
     TransportThread(std::vector<std::unique_ptr<Courier>>& couriers,
-                    const std::vector<ServedModel>& models);
+                    const std::vector<ServedModel>& models, HostTopics* topics);
     TransportThread(const TransportThread&) = delete;
     TransportThread& operator=(const TransportThread&) = delete;
     ~TransportThread() { stop(); }
@@ -45,6 +47,7 @@ private:
 
     std::vector<std::unique_ptr<Courier>>& couriers_;
     const std::vector<ServedModel>& models_;
+    HostTopics* topics_;
     std::atomic<bool> host_was_lost_{false};
     std::atomic<std::uint32_t> hosts_gone_{0}; ///< Relaxed: it orders nothing else.
     std::atomic<bool> stopped_{false};

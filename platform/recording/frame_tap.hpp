@@ -22,7 +22,8 @@ namespace tactus
 class FrameTap
 {
 public:
-    /// Room for `cells` of 64 B; a frame of one tool and model takes 3 to 5, an arrival a third.
+    /// Room for `cells` of 64 B; a frame of one tool and model takes 3 to 5, an object that
+    /// its host moves 2 more, an arrival a third.
     explicit FrameTap(std::size_t cells = kUsualCells);
 
     /// A second or more of usual frames: 1 MiB.

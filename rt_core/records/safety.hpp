@@ -35,8 +35,9 @@ enum class ForceOff : std::uint32_t
     stall = 1U << 7U,      ///< Frames were missed.
     host = 1U << 8U,       ///< A host is lost that may still have to send parts of its model.
     assertion = 1U << 9U,  ///< The haptic thread found a bug in itself.
+    jump = 1U << 10U,      ///< A host moved an object too far at once while the tool touched one.
 };
-inline constexpr std::size_t kForceOffs = 10;
+inline constexpr std::size_t kForceOffs = 11;
 
 [[nodiscard]] constexpr ForceOff operator|(ForceOff a, ForceOff b) noexcept
 {
@@ -56,7 +57,7 @@ inline constexpr std::array<const char*, kSafetyStates> kSafetyStateNames{"reset
                                                                           "brake"};
 /// In the order of ForceOff's bits.
 inline constexpr std::array<const char*, kForceOffs> kForceOffNames{
-    "velocity", "watchdog", "software", "disconnect", "deadman",
-    "stale",    "garbage",  "stall",    "host",       "assertion"};
+    "velocity", "watchdog", "software", "disconnect", "deadman", "stale",
+    "garbage",  "stall",    "host",     "assertion",  "jump"};
 
 } // namespace tactus

@@ -35,6 +35,9 @@ public:
                                                      const std::function<bool()>& go_on = {});
 
     [[nodiscard]] const Catalogue& catalogue() const noexcept { return catalogue_; }
+    /// For further topics of the same controller; lives as long as the client.
+    [[nodiscard]] const Domain& domain() const noexcept { return domain_; }
+    [[nodiscard]] const std::string& controller_name() const noexcept { return controller_name_; }
 
 private:
     struct Wait;

@@ -58,6 +58,10 @@ public:
     [[nodiscard]] Counters counters() const;
     [[nodiscard]] std::vector<Subscriber> subscribers() const;
     [[nodiscard]] const std::vector<PublishedModel>& models() const noexcept { return models_; }
+    /// Random, of this run: a PosePublisher of these models needs it.
+    [[nodiscard]] std::uint64_t epoch() const noexcept { return epoch_; }
+    /// For further topics of the same program; lives as long as the host.
+    [[nodiscard]] const Domain& domain() const noexcept { return domain_; }
 
 private:
     using Clock = std::chrono::steady_clock;

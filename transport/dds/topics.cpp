@@ -30,19 +30,22 @@ struct TopicTraits
     const dds_topic_descriptor_t* type;
     bool is_kept_for_late_joiners;
     bool has_liveliness;
-    std::int32_t depth; ///< Samples per instance.
+    bool is_best_effort; ///< Only the newest counts: what is lost isn't sent again.
+    std::int32_t depth;  ///< Samples per instance.
     std::int32_t instances;
 };
 
 const TopicTraits& traits_of(Topic topic)
 {
-    // The depths of the last two are never reached: wishes are few and bounded by their kind,
-    // pieces are under credit. Reliable and keep-last, so that no writer ever waits for a reader.
-    static const std::array<TopicTraits, 4> traits{{
-        {"tactus/v1/catalogue", &tactus_v1_CatalogueEntry_desc, true, true, 1, 4096},
-        {"tactus/v1/model", &tactus_v1_ModelStart_desc, true, false, 1, 16},
-        {"tactus/v1/wanted", &tactus_v1_Wanted_desc, false, true, 16, 4096},
-        {"tactus/v1/chunks", &tactus_v1_Pieces_desc, false, false, 4 * kCreditPieces, 1},
+    // The depths of wishes and pieces are never reached: wishes are few and bounded by their kind,
+    // pieces are under credit. All are keep-last, so that no writer ever waits for a reader.
+    static const std::array<TopicTraits, 6> traits{{
+        {"tactus/v1/catalogue", &tactus_v1_CatalogueEntry_desc, true, true, false, 1, 4096},
+        {"tactus/v1/model", &tactus_v1_ModelStart_desc, true, false, false, 1, 16},
+        {"tactus/v1/wanted", &tactus_v1_Wanted_desc, false, true, false, 16, 4096},
+        {"tactus/v1/chunks", &tactus_v1_Pieces_desc, false, false, false, 4 * kCreditPieces, 1},
+        {"tactus/v1/poses", &tactus_v1_ObjectPose_desc, false, false, true, 1, 4096},
+        {"tactus/v1/telemetry", &tactus_v1_Telemetry_desc, false, true, true, 1, 256},
     }};
     return traits[static_cast<std::size_t>(topic)];
 }
@@ -57,7 +60,9 @@ Qos make_qos()
 Qos endpoint_qos(const TopicTraits& traits)
 {
     Qos qos = make_qos();
-    dds_qset_reliability(qos.get(), DDS_RELIABILITY_RELIABLE, kBlockingMax);
+    dds_qset_reliability(
+        qos.get(), traits.is_best_effort ? DDS_RELIABILITY_BEST_EFFORT : DDS_RELIABILITY_RELIABLE,
+        kBlockingMax);
     dds_qset_durability(qos.get(), traits.is_kept_for_late_joiners ? DDS_DURABILITY_TRANSIENT_LOCAL
                                                                    : DDS_DURABILITY_VOLATILE);
     dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, traits.depth);

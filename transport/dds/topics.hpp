@@ -34,7 +34,9 @@ enum class Topic : std::uint8_t
     catalogue,
     model,
     wanted,
-    chunks
+    chunks,
+    poses,
+    telemetry
 };
 
 /// Creates a writer or reader with the topic's quality of service (docs/protocol.md). No call on it

@@ -22,6 +22,8 @@ namespace tactus::hrtc::test
 
 inline constexpr Duration kPeriod = milliseconds(1);
 inline constexpr double kPeriod_s = 1e-3;
+/// FrameSetup::pose_age_max_ns.
+inline constexpr Duration kPoseAge = milliseconds(100);
 /// Deep enough for 1.7 N; without a force the hand sinks to where the spring makes 6 of 8 N.
 inline constexpr double kPress_m = 0.012;
 /// From here on the hand is at rest in the surface and the whole force goes out.
@@ -100,6 +102,7 @@ struct LoopRigOptions
     std::vector<LateWake> late_wakes;
     std::optional<Duration> watchdog; ///< The device's own.
     bool static_model{false};
+    bool has_door{false}; ///< Objects stand where door() says.
     std::uint64_t frames{2'000};
     double speed_max_m_per_s{10.0};
     double stiffness_n_per_m{500.0};
@@ -134,11 +137,18 @@ public:
         parts.clock = &clock();
         parts.frames = options_.frames;
         parts.hosts_gone = &hosts_gone;
+        door_.emplace(parts.poses, kPoseAge);
+        parts.pose_door = options_.has_door ? &*door_ : nullptr;
+        parts.telemetry = &telemetry;
         parts.budgets.splits = kMaxSplitsPerFrame;
         loop_.emplace(parts, statistics_);
         static_cast<void>(parts.timer->start(kPeriod, {}));
     }
 
+    [[nodiscard]] PoseDoor& door() { return *door_; }
+    /// Where the object stands at first.
+    [[nodiscard]] const ObjectPose& placed() const { return frames_.pose(); }
+    [[nodiscard]] const RunStatistics& statistics() const { return statistics_; }
     [[nodiscard]] HapticLoop& loop() { return *loop_; }
     [[nodiscard]] TamperedDevice& device()
     {
@@ -178,6 +188,7 @@ public:
     }
 
     std::atomic<std::uint32_t> hosts_gone{0};
+    TelemetryTap telemetry{kPeriod};
 
 private:
     static tactus::test::RigOptions rig_options(const LoopRigOptions& options)
@@ -215,6 +226,7 @@ private:
     std::vector<std::unique_ptr<HapticDevice>> devices_;
     SafetyLimits limits_;
     ConditionerSetup conditioner_;
+    std::optional<PoseDoor> door_;
     std::optional<HapticLoop> loop_;
 };
 

@@ -99,6 +99,25 @@ TEST(Courier, brings_an_index_page_and_then_its_chunks)
     EXPECT_TRUE(road.lines.empty());
 }
 
+TEST(Courier, counts_how_long_each_piece_was_waited_for)
+{
+    constexpr std::uint32_t kPolls = 7; // The link is polled once a step.
+    const TinyModel model = make_tiny_model({.records = 300});
+    LoopbackFaults faults;
+    faults.delay_polls_min = kPolls;
+    faults.delay_polls_max = kPolls;
+    Road road(model, faults);
+    ASSERT_TRUE(road.side.wish(index_key(0)));
+    ASSERT_TRUE(road.comes(index_key(0), 100));
+    const std::int64_t once_ns = road.sut.counters().waited_ns;
+    EXPECT_EQ(once_ns, kPolls * kStepNs);
+    ASSERT_TRUE(road.side.wish(chunk_key(0)));
+    ASSERT_TRUE(road.side.wish(chunk_key(1)));
+    ASSERT_TRUE(road.comes(chunk_key(1), 100));
+    EXPECT_EQ(road.sut.counters().delivered, 3U);
+    EXPECT_EQ(road.sut.counters().waited_ns, 3 * once_ns);
+}
+
 TEST(Courier, drops_a_chunk_whose_index_page_is_not_here)
 {
     const TinyModel model = make_tiny_model({});

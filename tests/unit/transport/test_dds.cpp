@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
+#include "tests/unit/transport/dds_rig.hpp"
 #include "tests/unit/transport/door_side.hpp"
 #include "tests/unit/transport/tiny_model.hpp"
 #include "transport/content_hash.hpp"
@@ -32,39 +33,12 @@ namespace
 
 using namespace std::chrono_literals;
 using test::DoorSide;
+using test::eventually;
+using test::kPatience;
+using test::Lines;
 using test::make_tiny_model;
 using test::TemporaryFolder;
 using test::TinyModel;
-
-/// Far beyond what anything here takes; only a broken build waits this long.
-constexpr auto kPatience = 60s;
-
-/// Lines from any thread.
-class Lines
-{
-public:
-    Log log()
-    {
-        return [this](const std::string& line)
-        {
-            const std::lock_guard lock(mutex_);
-            text_ += line + "\n";
-        };
-    }
-    [[nodiscard]] std::string text()
-    {
-        const std::lock_guard lock(mutex_);
-        return text_;
-    }
-    [[nodiscard]] bool has(const std::string& part)
-    {
-        return text().find(part) != std::string::npos;
-    }
-
-private:
-    std::mutex mutex_;
-    std::string text_;
-};
 
 /// A host with a thread of its own, in a DDS domain of its own that meets the client's on the
 /// network: samples take the way over loopback sockets, as between processes.
@@ -145,22 +119,7 @@ protected:
     static constexpr std::uint32_t kClientDomain = 3;
     static constexpr std::uint32_t kOtherClientDomain = 4;
 
-    void SetUp() override
-    {
-        static int tests = 0;
-        const auto wire =
-            (static_cast<unsigned>(::getpid()) * 7U + static_cast<unsigned>(tests++)) % 230U;
-        const std::string uri =
-            "<CycloneDDS><Domain id=\"any\"><General><Interfaces><NetworkInterface name=\"lo\" "
-            "multicast=\"false\"/></Interfaces><AllowMulticast>false</AllowMulticast></General>"
-            "<Discovery><ExternalDomainId>" +
-            std::to_string(wire) +
-            "</ExternalDomainId><ParticipantIndex>auto</ParticipantIndex><LeaseDuration>1 "
-            "s</LeaseDuration><Peers><Peer address=\"127.0.0.1\"/></Peers></Discovery>"
-            "<Internal><HeartbeatInterval min=\"2 ms\" minsched=\"2 ms\" max=\"20 ms\">5 ms"
-            "</HeartbeatInterval><NackDelay>1 ms</NackDelay></Internal></Domain></CycloneDDS>";
-        ::setenv("CYCLONEDDS_URI", uri.c_str(), 1);
-    }
+    void SetUp() override { test::isolate_domains(); }
 
     PublishedModel published(const std::string& name, const TinyModel& model)
     {
@@ -181,19 +140,6 @@ protected:
         return std::move(created).value();
     }
 
-    static bool eventually(const std::function<bool()>& is_so)
-    {
-        const auto start = std::chrono::steady_clock::now();
-        while (!is_so())
-        {
-            if (std::chrono::steady_clock::now() - start > kPatience)
-            {
-                return false;
-            }
-            std::this_thread::sleep_for(1ms);
-        }
-        return true;
-    }
     static bool polled_until(ChunkLink& link, PieceSink& sink, const std::function<bool()>& is_so)
     {
         return eventually(

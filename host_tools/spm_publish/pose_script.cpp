@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "host_tools/spm_publish/pose_script.hpp"
+
+#include "transport/model_name.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <utility>
+
+namespace tactus
+{
+
+namespace
+{
+
+constexpr std::size_t kFieldsMin = 9;
+constexpr std::size_t kFieldsMax = 10;
+constexpr std::string_view kSpaces = " \t";
+
+/// One more than a line may have at most, so that too many are seen.
+std::vector<std::string_view> fields_of(std::string_view line)
+{
+    std::vector<std::string_view> fields;
+    while (fields.size() <= kFieldsMax)
+    {
+        const std::size_t begin = line.find_first_not_of(kSpaces);
+        if (begin == std::string_view::npos)
+        {
+            break;
+        }
+        const std::size_t end = std::min(line.find_first_of(kSpaces, begin), line.size());
+        fields.push_back(line.substr(begin, end - begin));
+        line.remove_prefix(end);
+    }
+    return fields;
+}
+
+std::optional<double> parse_number(std::string_view text)
+{
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    const bool is_whole = error == std::errc{} && end == text.data() + text.size();
+    return is_whole && std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
+
+std::string refusal_text(PoseRefusal refusal)
+{
+    switch (refusal)
+    {
+    case PoseRefusal::rotation:
+        return fmt::format("QX QY QZ QW must have a length within {} of 1", kPoseUnitTolerance);
+    case PoseRefusal::translation:
+        return fmt::format("X Y Z must be {} to {} m", -kPoseReachMax_m, kPoseReachMax_m);
+    case PoseRefusal::scale:
+        return fmt::format("SCALE must be {} to {}", kPoseScaleMin, kPoseScaleMax);
+    default:
+        return "is no pose";
+    }
+}
+
+/// The first three of eight numbers are the translation, then the rotation, then the scale.
+Result<Pose, PoseScriptError> parse_pose(std::span<const std::string_view> fields)
+{
+    std::array<double, 8> numbers{0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0};
+    for (std::size_t i = 0; i < fields.size(); ++i)
+    {
+        const std::optional<double> number = parse_number(fields[i]);
+        if (!number)
+        {
+            return PoseScriptError{
+                fmt::format("'{}' is not a finite number", printable(fields[i]))};
+        }
+        numbers.at(i) = *number;
+    }
+    Pose pose;
+    std::copy_n(numbers.begin(), 3, pose.translation_m.begin());
+    std::copy_n(numbers.begin() + 3, 4, pose.rotation.begin());
+    pose.scale = numbers[7];
+    const auto checked = checked_pose(pose);
+    if (!checked)
+    {
+        return PoseScriptError{refusal_text(checked.error())};
+    }
+    return checked.value();
+}
+
+Result<PoseLine, PoseScriptError> parse_line(std::string_view text,
+                                             std::span<const std::string> names)
+{
+    const std::vector<std::string_view> fields = fields_of(text);
+    if (fields.size() < kFieldsMin || fields.size() > kFieldsMax)
+    {
+        return PoseScriptError{fmt::format("is not {}", kPoseLineForm)};
+    }
+    const std::optional<double> time_s = parse_number(fields[0]);
+    if (!time_s || *time_s < 0.0 || *time_s > kPoseTimeMax_s)
+    {
+        return PoseScriptError{
+            fmt::format("time '{}' is not 0 to {} s", printable(fields[0]), kPoseTimeMax_s)};
+    }
+    const auto name = std::ranges::find(names, fields[1]);
+    if (name == names.end())
+    {
+        return PoseScriptError{fmt::format("no model is published as '{}'", printable(fields[1]))};
+    }
+    auto pose = parse_pose(std::span(fields).subspan(2));
+    if (!pose)
+    {
+        return pose.error();
+    }
+    return PoseLine{*time_s, static_cast<std::size_t>(name - names.begin()), pose.value()};
+}
+
+} // namespace
+
+Result<std::vector<PoseLine>, PoseScriptError> parse_pose_lines(std::string_view text,
+                                                                std::span<const std::string> names)
+{
+    std::vector<PoseLine> lines;
+    for (std::size_t number = 1; !text.empty(); ++number)
+    {
+        const std::size_t end = std::min(text.find('\n'), text.size());
+        const std::string_view line = text.substr(0, end);
+        text.remove_prefix(std::min(end + 1, text.size()));
+        const std::size_t begin = line.find_first_not_of(kSpaces);
+        if (begin == std::string_view::npos || line[begin] == '#')
+        {
+            continue;
+        }
+        auto parsed = parse_line(line, names);
+        if (!parsed)
+        {
+            return PoseScriptError{fmt::format("line {}: {}", number, parsed.error().text)};
+        }
+        if (!lines.empty() && parsed.value().time_s < lines.back().time_s)
+        {
+            return PoseScriptError{fmt::format("line {}: time {} s is before {} s of the line "
+                                               "before",
+                                               number, parsed.value().time_s, lines.back().time_s)};
+        }
+        lines.push_back(parsed.value());
+    }
+    if (lines.empty())
+    {
+        return PoseScriptError{fmt::format("holds no line {}", kPoseLineForm)};
+    }
+    return lines;
+}
+
+Result<std::vector<PoseLine>, PoseScriptError> read_pose_file(const std::filesystem::path& path,
+                                                              std::span<const std::string> names)
+{
+    const auto refuse = [&](const std::string& reason)
+    { return PoseScriptError{fmt::format("{}: {}", path.string(), reason)}; };
+    std::ifstream file(path, std::ios::binary);
+    if (!file)
+    {
+        return refuse(fmt::format("cannot be opened: {}", std::strerror(errno)));
+    }
+    std::string text;
+    std::array<char, 65'536> block{};
+    do
+    {
+        file.read(block.data(), static_cast<std::streamsize>(block.size()));
+        text.append(block.data(), static_cast<std::size_t>(file.gcount()));
+    } while (file && text.size() <= kPoseFileBytesMax);
+    if (text.size() > kPoseFileBytesMax)
+    {
+        return refuse(fmt::format("is larger than {} bytes", kPoseFileBytesMax));
+    }
+    if (!file.eof())
+    {
+        return refuse("cannot be read");
+    }
+    auto lines = parse_pose_lines(text, names);
+    if (!lines)
+    {
+        return refuse(lines.error().text);
+    }
+    return lines;
+}
+
+PosePlayer::PosePlayer(std::vector<PoseLine> lines, std::size_t objects, bool loops)
+    : lines_(std::move(lines)), objects_(objects), loops_(loops)
+{
+    TACTUS_ASSERT(!lines_.empty());
+    TACTUS_ASSERT(!loops || lines_.back().time_s > 0.0);
+}
+
+std::vector<PoseLine> PosePlayer::take_due(double now_s)
+{
+    const double round_s = lines_.back().time_s;
+    std::vector<const PoseLine*> newest(objects_, nullptr);
+    if (loops_ && now_s - round_start_s_ > 2.0 * round_s)
+    {
+        // A stall of whole rounds: they aren't made up for.
+        round_start_s_ += (std::floor((now_s - round_start_s_) / round_s) - 1.0) * round_s;
+    }
+    for (auto due_s = next_s(); due_s && *due_s <= now_s; due_s = next_s())
+    {
+        newest[lines_[next_].object] = &lines_[next_];
+        ++next_;
+        if (loops_ && next_ == lines_.size())
+        {
+            next_ = 0;
+            round_start_s_ += round_s;
+        }
+    }
+    std::vector<PoseLine> due;
+    for (const PoseLine* line : newest)
+    {
+        if (line != nullptr)
+        {
+            due.push_back(*line);
+        }
+    }
+    return due;
+}
+
+std::optional<double> PosePlayer::next_s() const
+{
+    return next_ < lines_.size() ? std::optional(round_start_s_ + lines_[next_].time_s)
+                                 : std::nullopt;
+}
+
+} // namespace tactus

@@ -1,0 +1,85 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# hrtc_follows_poses.sh: an object that its host moves while the tool touches it; poses that stop
+# and come again; a controller that doesn't want them; what the host sees of the controller; pose
+# files that are refused.
+source "$(dirname "$0")/common.sh"
+"$build" --shape bumpy-sphere --faces 5000 -o bumpy.spm >build.log 2>&1
+
+# A swing of 4 mm in x within two seconds, 100 poses a second; the model is 173 mm across.
+awk 'BEGIN {
+    print "# time name x y z qx qy qz qw"
+    for (i = 0; i <= 200; ++i)
+        printf "%.3f bumpy %.6f 0 0 0 0 0 1\n", i / 100, 0.002 * sin(i * 3.14159265 / 100)
+}' >swing.txt
+
+# The object moves, the force follows, and the host sees it.
+start_publisher bumpy.spm --poses swing.txt --poses-loop --watch
+run_hrtc --model bumpy --duration 4 --record swing.rec
+"$hrtc" --replay swing.rec >replay.log 2>&1 || fault "another replay: $(cat replay.log)"
+check_clean report.json
+check_answers report.json
+check report.json models.0.pose.followed == 1 models.0.pose.accepted '>' 300 \
+    models.0.pose.moves '>' 200 models.0.pose.step_max_m '<' 0.005 \
+    models.0.pose.refused.rotation == 0 models.0.pose.refused.not_newer == 0 \
+    force.max_n '>' 0 safety.begun.jump == 0 telemetry.sent '>' 200
+grep -q '^poses  *bumpy: moved in [0-9]* frames' hrtc.log || fault 'the summary tells no poses'
+wait_for_line publish.log 'watch hrtc-' 5
+grep -q '^watch hrtc-[0-9]*: [0-9]* frames, .* N in contact.*; bumpy .* pages.* pose ' publish.log \
+    || fault 'the host never saw the tool in contact and the pose followed'
+
+# A controller that is told to leave its models alone: still seen, but nothing moves.
+run_hrtc --model bumpy --duration 1 --ignore-poses
+check report.json models.0.pose.followed == 0 models.0.pose.accepted == 0 \
+    telemetry.sent '>' 40 answers.stale == 0
+
+# Poses that stop: the touched object grows stale and the force fades; they come again, and so does
+# the force. A model that is here as a whole needs no host for anything else.
+start_hrtc --model bumpy --duration 6 --report report.json
+wait_for_line publish.log 'subscribed to model' 10
+sleep 2
+kill -STOP "$publisher"
+sleep 1.5
+kill -CONT "$publisher"
+code=0
+wait "$controller" || code=$?
+cat hrtc.log
+((code == 0)) || fail "hrtc ended with $code"
+check report.json frames == 6000 answers.stale '>' 800 models.0.pose.old_frames '>' 800 \
+    models.0.pose.age_max_s '>' 1 models.0.pose.age_max_s '<' 5 models.0.static == 1 \
+    safety.begun.stale '>=' 1 safety.begun.host == 0 answers.stale '<' 4000
+check_clean report.json
+stop TERM "$publisher"
+((stopped_with == 0)) || fault "spm_publish ended with $stopped_with"
+
+# From files nothing of this exists.
+run_hrtc --transport file --model bumpy.spm --duration 1
+check report.json models.0.pose.followed == 0 telemetry.sent == 0
+
+# An object that goes far at once while it is touched: the force fades and comes back by the ramp.
+printf '0 bumpy 0 0 0 0 0 0 1\n0.5 bumpy 0.04 0 0 0 0 0 1\n1 bumpy 0 0 0 0 0 0 1\n' >jump.txt
+start_publisher bumpy.spm --poses jump.txt --poses-loop
+run_hrtc --model bumpy --duration 4 --motion slide
+check report.json safety.begun.jump '>=' 1 models.0.pose.step_max_m '>' 0.039 frames == 4000
+check_clean report.json
+stop TERM "$publisher"
+
+refuse() { expect "$1" "$2" "$publish" --domain "$domain" --seconds 5 bumpy.spm "${@:3}"; }
+bad_line() {
+    printf '0 bumpy 0 0 0 0 0 0 1\n%s\n' "$2" >bad.txt
+    refuse 2 "bad.txt: line 2: $1" --poses bad.txt
+}
+refuse 3 'needs --poses' --poses-loop
+refuse 2 'missing.txt: cannot be opened' --poses missing.txt
+: >empty.txt
+refuse 2 'empty.txt: holds no line' --poses empty.txt
+printf '0 bumpy 0 0 0 0 0 0 1\n' >still.txt
+refuse 2 'still.txt: --poses-loop needs' --poses still.txt --poses-loop
+bad_line 'is not TIME_S NAME' '1 bumpy 0 0 0'
+bad_line "time '-1'" '-1 bumpy 0 0 0 0 0 0 1'
+bad_line "no model is published as 'bunny'" '1 bunny 0 0 0 0 0 0 1'
+bad_line "'nan' is not a finite" '1 bumpy nan 0 0 0 0 0 1'
+bad_line 'QX QY QZ QW must have a length within 0.001 of 1' '1 bumpy 0 0 0 0 0 0 1.1'
+bad_line 'X Y Z must be' '1 bumpy 2e4 0 0 0 0 0 1'
+bad_line 'SCALE must be 0.001 to 1000' '1 bumpy 0 0 0 0 0 0 1 0'
+finish

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "rt_core/limits.hpp"
+#include "tests/unit/hrtc/loop_rig.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+
+namespace tactus::hrtc::test
+{
+
+namespace
+{
+
+constexpr double kRounding_n = 1e-9;
+/// Steps of a fading force, and of one on its way back.
+constexpr double kFadeStep_n = 8.0 * kPeriod_s / kFadeTime_s;
+constexpr double kBackStep_n = 2.0 * 8.0 * kPeriod_s / kRiseTime_s + kOwnStep_n;
+
+/// Puts a pose into the door before each frame for which `shift_m` says how far in x the object is
+/// from where it was placed; the hand comes down on it in -x.
+class MovedObject
+{
+public:
+    using Shift = std::function<std::optional<double>(std::uint64_t frame)>;
+
+    /// `flood`: poses from anywhere that come in each frame before the last one.
+    explicit MovedObject(Shift shift, int flood = 0)
+        : shift_(std::move(shift)), flood_(flood), rig_(options())
+    {
+    }
+
+    void run() { rig_.loop().run(); }
+    [[nodiscard]] LoopRig& rig() { return rig_; }
+    /// Mean norm of the force over 50 frames.
+    [[nodiscard]] double force_n(std::uint64_t frame)
+    {
+        double sum = 0.0;
+        for (std::uint64_t i = frame; i < frame + 50; ++i)
+        {
+            sum += rig_.written_n(i).norm();
+        }
+        return sum / 50.0;
+    }
+    [[nodiscard]] static bool has(const std::vector<SafetyEvent>& events, ForceOff cause)
+    {
+        return std::ranges::any_of(events, [cause](const SafetyEvent& event)
+                                   { return has_cause(event.causes, cause); });
+    }
+
+private:
+    LoopRigOptions options()
+    {
+        LoopRigOptions options;
+        options.has_door = true;
+        options.tamper = [this](std::uint64_t frame, DeviceSample&)
+        {
+            if (const auto shift_m = shift_(frame))
+            {
+                ObjectPose pose = rig_.placed();
+                for (int i = 0; i < flood_; ++i)
+                {
+                    pose.translation_m.y() = static_cast<double>(i);
+                    rig_.door().put(0, pose, rig_.clock().now());
+                }
+                pose = rig_.placed();
+                pose.translation_m.x() += *shift_m;
+                rig_.door().put(0, pose, rig_.clock().now());
+            }
+        };
+        return options;
+    }
+
+    Shift shift_;
+    int flood_;
+    LoopRig rig_;
+};
+
+/// Up and down again by `most_m`, a cosine over 400 frames from kSettled on.
+std::optional<double> swing(std::uint64_t frame, double most_m)
+{
+    const double phase = std::clamp((static_cast<double>(frame) - kSettled) / 400.0, 0.0, 1.0);
+    return 0.5 * most_m * (1.0 - std::cos(2.0 * 3.14159265358979 * phase));
+}
+
+TEST(MovedObject, pushes_the_hand_that_touches_it_and_lets_go_again)
+{
+    constexpr double kMost_m = 0.002;
+    MovedObject sut([](std::uint64_t frame) { return swing(frame, kMost_m); });
+    sut.run();
+    const double before_n = sut.force_n(kSettled - 50);
+    const double pushed_n = sut.force_n(kSettled + 175);
+    const double after_n = sut.force_n(1'800);
+    EXPECT_GT(before_n, 1.0);
+    // The hand gives way: of what the wall's 500 N/m would make alone a fifth is left.
+    EXPECT_GT(pushed_n, before_n + 500.0 * kMost_m / 5.0);
+    EXPECT_NEAR(after_n, before_n, 0.05 * before_n);
+    EXPECT_LE(sut.rig().largest_step_n(kSettled, 1'900), 500.0 * kMost_m / 10.0);
+    EXPECT_EQ(sut.rig().statistics().answers.stale, 0U);
+    EXPECT_FALSE(MovedObject::has(sut.rig().events(), ForceOff::jump));
+    EXPECT_NEAR(static_cast<double>(sut.rig().door().uses()[0].moves), 400.0, 1.0);
+}
+
+TEST(MovedObject, whose_poses_stop_loses_the_force_and_gets_it_back_with_them)
+{
+    constexpr std::uint64_t kSilence = 400;
+    const auto is_silent = [](std::uint64_t frame)
+    { return frame >= kSettled && frame < kSettled + kSilence; };
+    MovedObject sut([&](std::uint64_t frame)
+                    { return is_silent(frame) ? std::nullopt : std::optional(0.0); });
+    sut.run();
+    // The last pose came at the start of frame kSettled - 1: 100 frames later it is as old as it
+    // may be.
+    const double before_n = sut.force_n(kSettled);
+    EXPECT_NEAR(sut.rig().written_n(kSettled + 99).norm(), before_n, 0.05 * before_n);
+    EXPECT_LT(sut.rig().written_n(kSettled + 110).norm(), 0.9 * before_n);
+    EXPECT_EQ(sut.rig().written_n(kSettled + 152).norm(), 0.0);
+    EXPECT_EQ(sut.rig().written_n(kSettled + kSilence - 1).norm(), 0.0);
+    EXPECT_NEAR(sut.force_n(1'800), before_n, 0.05 * before_n);
+    EXPECT_LE(sut.rig().largest_step_n(kSettled, 1'900), kBackStep_n);
+    EXPECT_EQ(sut.rig().statistics().answers.stale, kSilence - 100U);
+    EXPECT_EQ(sut.rig().door().uses()[0].old_frames, kSilence - 100U);
+    EXPECT_TRUE(MovedObject::has(sut.rig().events(), ForceOff::stale));
+}
+
+TEST(MovedObject, that_nobody_moves_never_grows_old)
+{
+    MovedObject sut([](std::uint64_t) { return std::nullopt; });
+    sut.run();
+    EXPECT_GT(sut.force_n(1'800), 1.0);
+    EXPECT_EQ(sut.rig().statistics().answers.stale, 0U);
+    EXPECT_FALSE(sut.rig().door().uses()[0].is_followed);
+}
+
+/// The device may 8 N, the wall has 500 N/m: 16 mm at once is a jump.
+TEST(MovedObject, that_jumps_under_the_tool_makes_no_step_of_the_force)
+{
+    for (const double jump_m : {0.02, 0.2, -0.02, -0.2})
+    {
+        MovedObject sut([jump_m](std::uint64_t frame)
+                        { return std::optional(frame < kSettled ? 0.0 : jump_m); });
+        sut.run();
+        EXPECT_TRUE(MovedObject::has(sut.rig().events(), ForceOff::jump)) << jump_m;
+        EXPECT_LE(sut.rig().largest_step_n(kSettled - 1, 1'900), kBackStep_n) << jump_m;
+    }
+}
+
+TEST(MovedObject, in_a_flood_of_poses_feels_bit_for_bit_as_by_the_last_of_each_frame)
+{
+    const auto shift = [](std::uint64_t frame) { return swing(frame, 0.002); };
+    MovedObject calm(shift);
+    MovedObject flooded(shift, 100);
+    calm.run();
+    flooded.run();
+    for (std::uint64_t frame = 0; frame < 2'000; ++frame)
+    {
+        ASSERT_EQ(flooded.rig().written_n(frame), calm.rig().written_n(frame)) << frame;
+    }
+    EXPECT_EQ(flooded.rig().statistics().nodes_visited, calm.rig().statistics().nodes_visited);
+}
+
+TEST(MovedObject, that_goes_15_mm_at_once_is_followed)
+{
+    MovedObject sut([](std::uint64_t frame)
+                    { return std::optional(frame < kSettled ? 0.0 : -0.015); });
+    sut.run();
+    EXPECT_FALSE(MovedObject::has(sut.rig().events(), ForceOff::jump));
+    EXPECT_NEAR(sut.rig().written_n(1'800).norm(), 0.0, kRounding_n); // It has left the hand.
+    EXPECT_GT(sut.rig().largest_step_n(kSettled - 1, 1'900), kFadeStep_n);
+}
+
+} // namespace
+
+} // namespace tactus::hrtc::test

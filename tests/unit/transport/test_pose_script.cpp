@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "host_tools/spm_publish/pose_script.hpp"
+#include "tests/unit/transport/tiny_model.hpp"
+
+#include <gtest/gtest.h>
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace tactus
+{
+namespace
+{
+
+const std::vector<std::string> kNames{"bunny", "cow"};
+
+/// What is said against a text; empty when it is fine.
+std::string fault_of(std::string_view text)
+{
+    const auto lines = parse_pose_lines(text, kNames);
+    return lines ? "" : lines.error().text;
+}
+
+TEST(PoseScript, reads_lines_comments_and_empty_lines)
+{
+    const auto lines = parse_pose_lines("# two objects\n\n0 cow 1 2 3 0 0 0 1\n"
+                                        "  0.5\tbunny -1e-2 0 0  0 0 0.6 0.8 2.5 ",
+                                        kNames);
+    ASSERT_TRUE(lines) << lines.error().text;
+    ASSERT_EQ(lines.value().size(), 2U);
+    const PoseLine& cow = lines.value()[0];
+    EXPECT_EQ(cow.time_s, 0.0);
+    EXPECT_EQ(cow.object, 1U);
+    EXPECT_EQ(cow.pose.translation_m, (std::array{1.0, 2.0, 3.0}));
+    EXPECT_EQ(cow.pose.scale, 1.0);
+    const PoseLine& bunny = lines.value()[1];
+    EXPECT_EQ(bunny.time_s, 0.5);
+    EXPECT_EQ(bunny.object, 0U);
+    EXPECT_EQ(bunny.pose.translation_m[0], -0.01);
+    EXPECT_NEAR(bunny.pose.rotation[2], 0.6, 1e-15);
+    EXPECT_NEAR(bunny.pose.rotation[3], 0.8, 1e-15);
+    EXPECT_EQ(bunny.pose.scale, 2.5);
+}
+
+TEST(PoseScript, names_the_line_and_what_is_wrong_with_it)
+{
+    const std::string good = "0 cow 1 2 3 0 0 0 1\n";
+    EXPECT_EQ(fault_of(""), "holds no line TIME_S NAME X Y Z QX QY QZ QW [SCALE]");
+    EXPECT_EQ(fault_of("# nothing\n"), "holds no line TIME_S NAME X Y Z QX QY QZ QW [SCALE]");
+    const std::string form = "is not TIME_S NAME X Y Z QX QY QZ QW [SCALE]";
+    EXPECT_EQ(fault_of(good + "1 cow 1 2 3 0 0 0\n"), "line 2: " + form);
+    EXPECT_EQ(fault_of("1 cow 1 2 3 0 0 0 1 1 1\n"), "line 1: " + form);
+    EXPECT_EQ(fault_of("\n# x\n1\n"), "line 3: " + form);
+    EXPECT_EQ(fault_of("-1 cow 1 2 3 0 0 0 1"), "line 1: time '-1' is not 0 to 1000000 s");
+    EXPECT_EQ(fault_of("nan cow 1 2 3 0 0 0 1"), "line 1: time 'nan' is not 0 to 1000000 s");
+    EXPECT_EQ(fault_of("1e7 cow 1 2 3 0 0 0 1"), "line 1: time '1e7' is not 0 to 1000000 s");
+    EXPECT_EQ(fault_of("0 dog 1 2 3 0 0 0 1"), "line 1: no model is published as 'dog'");
+    EXPECT_EQ(fault_of("0 \x1b[31m 1 2 3 0 0 0 1"), "line 1: no model is published as '?[31m'");
+    EXPECT_EQ(fault_of("0 cow 1 2 x 0 0 0 1"), "line 1: 'x' is not a finite number");
+    EXPECT_EQ(fault_of("0 cow 1 2 3 0 0 0 1,0"), "line 1: '1,0' is not a finite number");
+    EXPECT_EQ(fault_of("0 cow 1 2 inf 0 0 0 1"), "line 1: 'inf' is not a finite number");
+    EXPECT_EQ(fault_of("0 cow 1 2 3 0 0 0 1\r\n"), "line 1: '1?' is not a finite number");
+    EXPECT_EQ(fault_of("0 cow 1 2 3 0 0 0 2"),
+              "line 1: QX QY QZ QW must have a length within 0.001 of 1");
+    EXPECT_EQ(fault_of("0 cow 0 10001 0 0 0 0 1"), "line 1: X Y Z must be -10000 to 10000 m");
+    EXPECT_EQ(fault_of("0 cow 0 0 0 0 0 0 1 0"), "line 1: SCALE must be 0.001 to 1000");
+    EXPECT_EQ(fault_of("2 cow 0 0 0 0 0 0 1\n1.5 cow 0 0 0 0 0 0 1\n"),
+              "line 2: time 1.5 s is before 2 s of the line before");
+}
+
+TEST(PoseScript, refuses_every_cut_in_the_middle_of_a_line_or_reads_what_is_whole)
+{
+    const std::string text = "0 cow 1 2 3 0 0 0 1\n0.5 bunny 0 0 0 0 0 0.6 0.8 2.5\n";
+    for (std::size_t length = 0; length <= text.size(); ++length)
+    {
+        const auto lines = parse_pose_lines(text.substr(0, length), kNames);
+        const bool is_first_whole = length >= 19;
+        EXPECT_LE(lines ? lines.value().size() : 0, 2U);
+        EXPECT_FALSE(!is_first_whole && lines.has_value()) << length;
+    }
+}
+
+TEST(PoseScript, a_file_is_named_in_what_is_said)
+{
+    const test::TemporaryFolder folder;
+    const auto missing = read_pose_file(folder.path() / "none.txt", kNames);
+    ASSERT_FALSE(missing);
+    EXPECT_NE(missing.error().text.find("none.txt: cannot be opened: No such file"),
+              std::string::npos);
+    const auto unread = read_pose_file(folder.path(), kNames);
+    ASSERT_FALSE(unread);
+    const std::string text = "0 cow 1 2 3 0 0 0 1\nx\n";
+    const auto path = folder.write("bad.txt", std::as_bytes(std::span(text)));
+    const auto bad = read_pose_file(path, kNames);
+    ASSERT_FALSE(bad);
+    EXPECT_EQ(bad.error().text, path.string() + ": line 2: is not TIME_S NAME X Y Z QX QY QZ QW "
+                                                "[SCALE]");
+}
+
+std::vector<PoseLine> played()
+{
+    return parse_pose_lines("0 cow 1 0 0 0 0 0 1\n0 bunny 1 0 0 0 0 0 1\n1 cow 2 0 0 0 0 0 1\n"
+                            "2 cow 3 0 0 0 0 0 1\n",
+                            kNames)
+        .value();
+}
+
+TEST(PosePlayer, gives_each_line_when_it_is_due_and_once)
+{
+    PosePlayer sut(played(), 2, false);
+    EXPECT_EQ(sut.next_s(), 0.0);
+    EXPECT_EQ(sut.take_due(0.0).size(), 2U);
+    EXPECT_TRUE(sut.take_due(0.9).empty());
+    EXPECT_EQ(sut.next_s(), 1.0);
+    const auto due = sut.take_due(1.1);
+    ASSERT_EQ(due.size(), 1U);
+    EXPECT_EQ(due[0].pose.translation_m[0], 2.0);
+    EXPECT_EQ(sut.take_due(100.0).size(), 1U);
+    EXPECT_FALSE(sut.next_s());
+    EXPECT_TRUE(sut.take_due(200.0).empty());
+}
+
+TEST(PosePlayer, passes_over_what_is_overtaken)
+{
+    PosePlayer sut(played(), 2, false);
+    const auto due = sut.take_due(5.0);
+    ASSERT_EQ(due.size(), 2U);
+    EXPECT_EQ(due[0].object, 0U);
+    EXPECT_EQ(due[1].pose.translation_m[0], 3.0);
+}
+
+TEST(PosePlayer, begins_anew_at_the_last_line_s_time_and_catches_up_after_a_stall)
+{
+    PosePlayer sut(played(), 2, true);
+    EXPECT_EQ(sut.take_due(1.5).size(), 2U);
+    const auto turn = sut.take_due(2.0); // The last line, and the first ones after it.
+    ASSERT_EQ(turn.size(), 2U);
+    EXPECT_EQ(turn[1].pose.translation_m[0], 1.0);
+    EXPECT_EQ(sut.next_s(), 3.0);
+    const auto late = sut.take_due(2'000'001.5);
+    ASSERT_EQ(late.size(), 2U);
+    EXPECT_EQ(late[1].pose.translation_m[0], 2.0);
+    EXPECT_EQ(sut.next_s(), 2'000'002.0);
+}
+
+} // namespace
+} // namespace tactus

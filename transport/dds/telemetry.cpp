@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "transport/dds/telemetry.hpp"
+
+#include "transport/dds/take.hpp"
+#include "transport/model_name.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <string_view>
+#include <utility>
+
+#include "tactus.h"
+
+namespace tactus::dds
+{
+
+namespace
+{
+
+/// Bits of ToolTelemetry::state.
+constexpr unsigned kInContact = 1;
+constexpr unsigned kFrozen = 2;
+constexpr unsigned kSqueezed = 4;
+constexpr unsigned kHeldBack = 8;
+/// Bits of ModelTelemetry::state.
+constexpr unsigned kHostGone = 1;
+constexpr unsigned kStatic = 2;
+constexpr unsigned kFollowsPoses = 4;
+
+constexpr unsigned bit_when(bool is_so, unsigned bit)
+{
+    return is_so ? bit : 0U;
+}
+
+ControllerId random_controller()
+{
+    const std::array<std::uint64_t, 2> bits{random_bits(), random_bits()};
+    ControllerId id{};
+    std::memcpy(id.data(), bits.data(), id.size());
+    return id;
+}
+
+template <std::size_t Size>
+std::string text_of(const char (&text)[Size]) // NOLINT: idlc's type.
+{
+    return {static_cast<const char*>(text), ::strnlen(static_cast<const char*>(text), Size)};
+}
+
+tactus_v1_ToolTelemetry to_wire(const ToolTelemetry& tool)
+{
+    tactus_v1_ToolTelemetry wire = {};
+    std::ranges::copy(tool.position_m, std::begin(wire.position_m));
+    std::ranges::copy(tool.proxy_m, std::begin(wire.proxy_m));
+    std::ranges::copy(tool.force_n, std::begin(wire.force_n));
+    std::ranges::copy(tool.torque_nm, std::begin(wire.torque_nm));
+    wire.state = static_cast<std::uint8_t>(
+        bit_when(tool.in_contact, kInContact) | bit_when(tool.frozen, kFrozen) |
+        bit_when(tool.squeezed, kSqueezed) | bit_when(tool.held_back, kHeldBack));
+    return wire;
+}
+
+ToolTelemetry from_wire(const tactus_v1_ToolTelemetry& wire)
+{
+    ToolTelemetry tool;
+    std::ranges::copy(wire.position_m, tool.position_m.begin());
+    std::ranges::copy(wire.proxy_m, tool.proxy_m.begin());
+    std::ranges::copy(wire.force_n, tool.force_n.begin());
+    std::ranges::copy(wire.torque_nm, tool.torque_nm.begin());
+    tool.in_contact = (wire.state & kInContact) != 0;
+    tool.frozen = (wire.state & kFrozen) != 0;
+    tool.squeezed = (wire.state & kSqueezed) != 0;
+    tool.held_back = (wire.state & kHeldBack) != 0;
+    return tool;
+}
+
+tactus_v1_ModelTelemetry to_wire(const ModelIdentity& identity, const ModelTelemetry& model)
+{
+    const auto pool = [](const PoolTelemetry& use) {
+        return tactus_v1_PoolTelemetry{use.used, use.capacity};
+    };
+    tactus_v1_ModelTelemetry wire = {};
+    identity.name.copy(static_cast<char*>(wire.name), kMaxNameBytes);
+    std::memcpy(wire.hash, identity.hash.data(), identity.hash.size());
+    wire.revision = identity.revision;
+    wire.state = static_cast<std::uint8_t>(bit_when(model.host_gone, kHostGone) |
+                                           bit_when(model.is_static, kStatic) |
+                                           bit_when(model.follows_poses, kFollowsPoses));
+    wire.pages = pool(model.pages);
+    wire.faces = pool(model.faces);
+    wire.blocks = pool(model.blocks);
+    wire.nodes = pool(model.nodes);
+    wire.pose_age_ns = model.pose_age_ns;
+    wire.poses_refused = model.poses_refused;
+    wire.pieces = model.pieces;
+    wire.piece_wait_ns = model.piece_wait_ns;
+    return wire;
+}
+
+ModelTelemetry from_wire(const tactus_v1_ModelTelemetry& wire)
+{
+    const auto pool = [](const tactus_v1_PoolTelemetry& use) {
+        return PoolTelemetry{use.used, use.capacity};
+    };
+    ModelTelemetry model;
+    model.pages = pool(wire.pages);
+    model.faces = pool(wire.faces);
+    model.blocks = pool(wire.blocks);
+    model.nodes = pool(wire.nodes);
+    model.host_gone = (wire.state & kHostGone) != 0;
+    model.is_static = (wire.state & kStatic) != 0;
+    model.follows_poses = (wire.state & kFollowsPoses) != 0;
+    model.pose_age_ns = wire.pose_age_ns;
+    model.poses_refused = wire.poses_refused;
+    model.pieces = wire.pieces;
+    model.piece_wait_ns = wire.piece_wait_ns;
+    return model;
+}
+
+bool is_finite(const ToolTelemetry& tool)
+{
+    const auto all_finite = [](const std::array<double, 3>& vector)
+    { return std::ranges::all_of(vector, [](double value) { return std::isfinite(value); }); };
+    return all_finite(tool.position_m) && all_finite(tool.proxy_m) && all_finite(tool.force_n) &&
+           all_finite(tool.torque_nm);
+}
+
+ModelIdentity identity_of(const tactus_v1_ModelTelemetry& wire)
+{
+    ModelIdentity identity{text_of(wire.name), {}, wire.revision};
+    std::memcpy(identity.hash.data(), wire.hash, identity.hash.size());
+    return identity;
+}
+
+/// Everything but tools and models.
+void copy_counts(const Telemetry& from, tactus_v1_Telemetry& to)
+{
+    to.frame = from.frame;
+    to.period_ns = from.period_ns;
+    to.time_ns = from.time_ns;
+    to.exact = from.exact;
+    to.decided = from.decided;
+    to.bracket = from.bracket;
+    to.stale = from.stale;
+    to.missed = from.missed;
+    to.own_faults = from.own_faults;
+    to.machine_late = from.machine_late;
+    to.faults_now = from.faults_now;
+    to.faults_seen = from.faults_seen;
+}
+
+Telemetry counts_of(const tactus_v1_Telemetry& from)
+{
+    Telemetry to;
+    to.frame = from.frame;
+    to.period_ns = from.period_ns;
+    to.time_ns = from.time_ns;
+    to.exact = from.exact;
+    to.decided = from.decided;
+    to.bracket = from.bracket;
+    to.stale = from.stale;
+    to.missed = from.missed;
+    to.own_faults = from.own_faults;
+    to.machine_late = from.machine_late;
+    to.faults_now = from.faults_now;
+    to.faults_seen = from.faults_seen;
+    return to;
+}
+
+} // namespace
+
+Result<std::unique_ptr<TelemetryWriter>, DdsError>
+TelemetryWriter::create(const Domain& domain, std::string controller_name,
+                        std::vector<ModelIdentity> models)
+{
+    auto endpoint = make_writer(domain, Topic::telemetry, "");
+    if (!endpoint)
+    {
+        return endpoint.error();
+    }
+    std::unique_ptr<TelemetryWriter> writer(
+        new TelemetryWriter(std::move(controller_name), std::move(models)));
+    writer->writer_ = std::move(endpoint).value();
+    return writer;
+}
+
+TelemetryWriter::TelemetryWriter(std::string controller_name, std::vector<ModelIdentity> models)
+    : controller_name_(std::move(controller_name))
+    , models_(std::move(models))
+    , controller_(random_controller())
+{
+    TACTUS_ASSERT(is_valid_name(controller_name_));
+    TACTUS_ASSERT(models_.size() <= kMaxObjects);
+}
+
+void TelemetryWriter::write(const Telemetry& telemetry)
+{
+    TACTUS_ASSERT(telemetry.tool_count <= kMaxTools);
+    TACTUS_ASSERT(telemetry.model_count == models_.size());
+    std::array<tactus_v1_ToolTelemetry, kMaxTools> tools{};
+    std::array<tactus_v1_ModelTelemetry, kMaxObjects> models{};
+    for (std::uint32_t i = 0; i < telemetry.tool_count; ++i)
+    {
+        tools[i] = to_wire(telemetry.tools[i]);
+    }
+    for (std::uint32_t i = 0; i < telemetry.model_count; ++i)
+    {
+        models[i] = to_wire(models_[i], telemetry.models[i]);
+    }
+    tactus_v1_Telemetry sample = {};
+    std::memcpy(sample.controller, controller_.data(), controller_.size());
+    sample.protocol_version = kProtocolVersion;
+    controller_name_.copy(static_cast<char*>(sample.controller_name), kMaxNameBytes);
+    sample.serial = ++sent_;
+    copy_counts(telemetry, sample);
+    sample.tools = {telemetry.tool_count, telemetry.tool_count, tools.data(), false};
+    sample.models = {telemetry.model_count, telemetry.model_count, models.data(), false};
+    dds_write(writer_.handle, &sample); // One that fails is a lost one: the next is as good.
+}
+
+Result<std::unique_ptr<TelemetryReader>, DdsError> TelemetryReader::create(const Domain& domain)
+{
+    const std::string everywhere;
+    auto reader = make_reader(domain, Topic::telemetry, {&everywhere, 1});
+    if (!reader)
+    {
+        return reader.error();
+    }
+    return std::unique_ptr<TelemetryReader>(new TelemetryReader(std::move(reader).value()));
+}
+
+TelemetryReader::TelemetryReader(Endpoint reader) : reader_(std::move(reader)) {}
+
+void TelemetryReader::poll()
+{
+    take_each<tactus_v1_Telemetry>(
+        reader_.handle, kMaxWatched,
+        [this](const tactus_v1_Telemetry& sample, const dds_sample_info_t& info)
+        {
+            if (info.instance_state != DDS_ALIVE_INSTANCE_STATE)
+            {
+                std::erase_if(controllers_,
+                              [&](const WatchedController& controller) {
+                                  return std::memcmp(controller.id.data(), sample.controller,
+                                                     controller.id.size()) == 0;
+                              });
+            }
+            else if (info.valid_data)
+            {
+                refused_ += try_take(sample) ? 0U : 1U;
+            }
+        });
+}
+
+bool TelemetryReader::try_take(const tactus_v1_Telemetry& sample)
+{
+    WatchedController news;
+    std::memcpy(news.id.data(), sample.controller, news.id.size());
+    news.name = text_of(sample.controller_name);
+    news.serial = sample.serial;
+    const bool is_in_bounds =
+        sample.tools._length <= kMaxTools && sample.models._length <= kMaxObjects;
+    if (sample.protocol_version != kProtocolVersion || !is_valid_name(news.name) || !is_in_bounds)
+    {
+        return false;
+    }
+    news.telemetry = counts_of(sample);
+    news.telemetry.tool_count = sample.tools._length;
+    news.telemetry.model_count = sample.models._length;
+    for (std::uint32_t i = 0; i < sample.tools._length; ++i)
+    {
+        news.telemetry.tools[i] = from_wire(sample.tools._buffer[i]);
+        if (!is_finite(news.telemetry.tools[i]))
+        {
+            return false;
+        }
+    }
+    for (std::uint32_t i = 0; i < sample.models._length; ++i)
+    {
+        news.models.push_back(identity_of(sample.models._buffer[i]));
+        news.telemetry.models[i] = from_wire(sample.models._buffer[i]);
+        if (!is_valid_name(news.models.back().name))
+        {
+            return false;
+        }
+    }
+    const auto known = std::ranges::find(controllers_, news.id, &WatchedController::id);
+    if (known != controllers_.end())
+    {
+        *known = std::move(news);
+        return true;
+    }
+    if (controllers_.size() == kMaxWatched)
+    {
+        return false;
+    }
+    controllers_.push_back(std::move(news));
+    return true;
+}
+
+} // namespace tactus::dds

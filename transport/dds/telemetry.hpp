@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "transport/dds/domain.hpp"
+#include "transport/dds/topics.hpp"
+#include "transport/model_identity.hpp"
+#include "transport/telemetry.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+struct tactus_v1_Telemetry; // idlc's type of a sample.
+
+namespace tactus::dds
+{
+
+/// Controllers that one reader keeps; news of further ones are passed over.
+inline constexpr std::size_t kMaxWatched = 256;
+
+/// The controller's side. One thread, the transport thread.
+class TelemetryWriter
+{
+public:
+    /// `domain` must outlive it; `models` in the order of Telemetry::models, at most kMaxObjects.
+    [[nodiscard]] static Result<std::unique_ptr<TelemetryWriter>, DdsError>
+    create(const Domain& domain, std::string controller_name, std::vector<ModelIdentity> models);
+
+    /// Sends it to whoever watches; never waits. `telemetry.model_count` is that of the models.
+    void write(const Telemetry& telemetry);
+
+    /// How many were sent.
+    [[nodiscard]] std::uint64_t sent() const noexcept { return sent_; }
+
+private:
+    TelemetryWriter(std::string controller_name, std::vector<ModelIdentity> models);
+
+    std::string controller_name_;
+    std::vector<ModelIdentity> models_;
+    ControllerId controller_;
+    Endpoint writer_;
+    std::uint64_t sent_{0};
+};
+
+/// A controller as its last sample shows it.
+struct WatchedController
+{
+    ControllerId id{};
+    std::string name; ///< Valid.
+    std::uint64_t serial{0};
+    std::vector<ModelIdentity> models; ///< In the order of Telemetry::models.
+    Telemetry telemetry;
+};
+
+/// The host's side: the controllers on a domain, each at its newest. One thread.
+class TelemetryReader
+{
+public:
+    /// `domain` must outlive it.
+    [[nodiscard]] static Result<std::unique_ptr<TelemetryReader>, DdsError>
+    create(const Domain& domain);
+
+    /// Takes what has come, and forgets controllers that left or fell silent (500 ms). Bounded,
+    /// never waits.
+    void poll();
+
+    /// In the order in which they were first seen; at most kMaxWatched.
+    [[nodiscard]] const std::vector<WatchedController>& controllers() const noexcept
+    {
+        return controllers_;
+    }
+    /// Samples of another protocol version, with names that are none or numbers that aren't finite,
+    /// and those of controllers beyond kMaxWatched.
+    [[nodiscard]] std::uint64_t refused() const noexcept { return refused_; }
+
+private:
+    explicit TelemetryReader(Endpoint reader);
+
+    [[nodiscard]] bool try_take(const tactus_v1_Telemetry& sample);
+
+    Endpoint reader_;
+    std::vector<WatchedController> controllers_;
+    std::uint64_t refused_{0};
+};
+
+} // namespace tactus::dds

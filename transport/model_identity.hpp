@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/spm/header.hpp"
+
+#include <cstdint>
+#include <string>
+
+namespace tactus
+{
+
+/// A model as it is spoken of on the wire.
+struct ModelIdentity
+{
+    std::string name; ///< By which it is published; valid.
+    ContentHash hash{};
+    std::uint32_t revision{0};
+};
+
+} // namespace tactus

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/base/result.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace tactus
+{
+
+/// Where an object stands: world = translation + scale x rotation x point of the source mesh. The
+/// same as hrtc's --place says, but for the rotation's form.
+struct Pose
+{
+    std::array<double, 4> rotation{0.0, 0.0, 0.0, 1.0}; ///< Unit quaternion x, y, z, w.
+    std::array<double, 3> translation_m{};
+    double scale{1.0};
+};
+
+/// What a pose may be: the ranges of --place.
+inline constexpr double kPoseReachMax_m = 1e4; ///< Of each coordinate, either way.
+inline constexpr double kPoseScaleMin = 1e-3;
+inline constexpr double kPoseScaleMax = 1e3;
+/// How far a quaternion's length may be from 1: room for senders that compute in float.
+inline constexpr double kPoseUnitTolerance = 1e-3;
+
+/// Why a pose isn't used.
+enum class PoseRefusal : std::uint8_t
+{
+    version,     ///< Another protocol version.
+    host,        ///< It isn't from the host that serves the model.
+    model,       ///< Another model or another revision of it.
+    not_newer,   ///< Its serial number isn't above that of the last one.
+    not_finite,  ///< A number is none.
+    rotation,    ///< The quaternion's length isn't within kPoseUnitTolerance of 1.
+    translation, ///< Beyond kPoseReachMax_m.
+    scale,       ///< Outside kPoseScaleMin to kPoseScaleMax.
+};
+
+inline constexpr std::size_t kPoseRefusals = 8;
+/// In the order of PoseRefusal.
+inline constexpr std::array<const char*, kPoseRefusals> kPoseRefusalNames{
+    "version", "host", "model", "not_newer", "not_finite", "rotation", "translation", "scale"};
+
+/// The same pose with a rotation of length 1, or what is wrong with its numbers.
+[[nodiscard]] Result<Pose, PoseRefusal> checked_pose(const Pose& pose) noexcept;
+
+} // namespace tactus
