@@ -268,7 +268,6 @@ void Courier::adopt_chunk(ChunkId chunk, std::span<const std::byte> bytes)
 void Courier::hand_over(ContentKey key, std::uint32_t slot, std::uint64_t linked,
                         std::span<const std::byte> bytes)
 {
-    counters_.waited_ns += wait_of(key);
     if (copies_ != nullptr)
     {
         copies_->receive(key, bytes);
@@ -335,14 +334,6 @@ bool Courier::is_key_of_model(ContentKey key) const noexcept
     return key.kind == ContentKind::chunk        ? key.number < counts_.chunks()
            : key.kind == ContentKind::index_page ? key.number < counts_.index_pages()
                                                  : false;
-}
-
-/// How long an open wish has been open; a new session begins it anew.
-std::int64_t Courier::wait_of(ContentKey key) const noexcept
-{
-    const auto wishes = open_.first(open_count_);
-    const auto at = std::ranges::find(wishes, key, &OpenWish::key);
-    return at == wishes.end() ? 0 : now_ns_ - at->wished_ns;
 }
 
 std::size_t Courier::required_bytes(std::size_t pages, std::size_t index_pages,

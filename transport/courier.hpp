@@ -25,7 +25,6 @@ struct CourierCounters
     std::uint64_t pieces{0};      ///< Came in, whatever became of them.
     std::uint64_t coded_bytes{0}; ///< Of those, without the link's framing.
     std::uint64_t delivered{0};   ///< Handed over to the haptic thread.
-    std::int64_t waited_ns{0};    ///< Of those, from wish to hand-over, summed.
     std::uint64_t wishes{0};      ///< Taken from the door.
     std::uint64_t asked_again{0}; ///< Requests repeated because nothing came.
 
@@ -124,7 +123,6 @@ private:
     void close_wish(ContentKey key) noexcept;
     [[nodiscard]] bool is_resident(ContentKey key) const noexcept;
     [[nodiscard]] bool is_key_of_model(ContentKey key) const noexcept;
-    [[nodiscard]] std::int64_t wait_of(ContentKey key) const noexcept;
     [[nodiscard]] static Slots all_free(Arena& arena, std::size_t count) noexcept;
 
     const ModelHeader& header_;

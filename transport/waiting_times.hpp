@@ -23,6 +23,7 @@ public:
         const auto step = static_cast<std::size_t>(waited / kStep_ns);
         ++counts_[std::min(step, counts_.size() - 1)];
         ++total_;
+        sum_ns_ += waited;
         longest_ns_ = std::max(longest_ns_, waited);
     }
 
@@ -49,11 +50,13 @@ public:
         return static_cast<double>(longest_ns_) * 1e-6;
     }
     [[nodiscard]] std::uint64_t total() const noexcept { return total_; }
+    [[nodiscard]] std::int64_t sum_ns() const noexcept { return sum_ns_; }
 
     WaitingTimes& operator+=(const WaitingTimes& other) noexcept
     {
         std::ranges::transform(counts_, other.counts_, counts_.begin(), std::plus<>());
         total_ += other.total_;
+        sum_ns_ += other.sum_ns_;
         longest_ns_ = std::max(longest_ns_, other.longest_ns_);
         return *this;
     }
@@ -63,6 +66,7 @@ private:
 
     std::array<std::uint64_t, 2'049> counts_{}; ///< The last one: longer.
     std::uint64_t total_{0};
+    std::int64_t sum_ns_{0};
     std::int64_t longest_ns_{0};
 };
 

@@ -99,13 +99,13 @@ void HostTopics::send_telemetry()
 
 void HostTopics::add_transport_side(std::size_t model, ModelTelemetry& telemetry)
 {
-    const CourierCounters& courier = controller_.couriers()[model]->counters();
+    const WaitingTimes& waiting = controller_.couriers()[model]->waiting_times();
     telemetry.host_gone = controller_.models()[model].link->state() == LinkState::host_gone;
-    telemetry.pieces = courier.delivered;
+    telemetry.pieces = waiting.total();
     Seen& seen = seen_[model];
-    const auto news = static_cast<std::int64_t>(courier.delivered - seen.pieces);
-    telemetry.piece_wait_ns = news > 0 ? (courier.waited_ns - seen.wait_ns) / news : 0;
-    seen = {courier.delivered, courier.waited_ns};
+    const auto news = static_cast<std::int64_t>(waiting.total() - seen.pieces);
+    telemetry.piece_wait_ns = news > 0 ? (waiting.sum_ns() - seen.wait_ns) / news : 0;
+    seen = {waiting.total(), waiting.sum_ns()};
     if (poses_ != nullptr)
     {
         const dds::PoseCounts& counts = poses_->counts()[model];

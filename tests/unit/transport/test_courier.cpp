@@ -109,13 +109,13 @@ TEST(Courier, counts_how_long_each_piece_was_waited_for)
     Road road(model, faults);
     ASSERT_TRUE(road.side.wish(index_key(0)));
     ASSERT_TRUE(road.comes(index_key(0), 100));
-    const std::int64_t once_ns = road.sut.counters().waited_ns;
+    const std::int64_t once_ns = road.sut.waiting_times().sum_ns();
     EXPECT_EQ(once_ns, kPolls * kStepNs);
     ASSERT_TRUE(road.side.wish(chunk_key(0)));
     ASSERT_TRUE(road.side.wish(chunk_key(1)));
     ASSERT_TRUE(road.comes(chunk_key(1), 100));
     EXPECT_EQ(road.sut.counters().delivered, 3U);
-    EXPECT_EQ(road.sut.counters().waited_ns, 3 * once_ns);
+    EXPECT_EQ(road.sut.waiting_times().sum_ns(), 3 * once_ns);
 }
 
 TEST(Courier, drops_a_chunk_whose_index_page_is_not_here)

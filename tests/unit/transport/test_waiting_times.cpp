@@ -64,6 +64,7 @@ TEST(WaitingTimes, those_of_two_models_add_up)
     sut += other;
 
     EXPECT_EQ(sut.total(), 2U);
+    EXPECT_EQ(sut.sum_ns(), 10 * kMillisecond_ns);
     EXPECT_EQ(sut.quantile_ms(1.0), 9.0);
     EXPECT_LE(sut.quantile_ms(0.5), 1.25);
 }
