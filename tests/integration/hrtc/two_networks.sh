@@ -8,6 +8,10 @@ readonly network_relay=$4 list_safety=$5 judge_recording=$6
 # What a device of the class touch can do: platform/simulated/device_classes.hpp.
 readonly touch_force_max_n=3.3
 
+# What docs/protocol.md promises of a side that is gone, and what a busy machine may add until the
+# line is written.
+readonly notice_ms=500 machine_ms=250
+
 # dds_configuration INTERFACE ADDRESS PEER: what docs/protocol.md says of a real network.
 dds_configuration() {
     cat <<XML
@@ -96,6 +100,16 @@ check_wire_run() {
         force.max_n '>' 0 force.max_n '<=' "$touch_force_max_n" \
         answers.exact+answers.decided+answers.bracket+answers.stale == '1*frames'
     check_clean "$1"
+}
+
+now_ms() { echo $((${EPOCHREALTIME/[.,]/} / 1000)); }
+
+# check_notice FILE SINCE: the last line of it was written soon enough after that now_ms.
+check_notice() {
+    local noticed_ms
+    noticed_ms=$(($(stat -c %.3Y "$1" | tr -d .,) - $2))
+    echo "noticed after $noticed_ms ms"
+    ((noticed_ms <= notice_ms + machine_ms)) || fault "noticed only after $noticed_ms ms"
 }
 
 # lines TEXT FILE: how many lines hold it.
