@@ -30,7 +30,8 @@ public:
     /// none, and the longest when it is beyond the steps.
     [[nodiscard]] double quantile_ms(double share) const noexcept
     {
-        const auto enough = static_cast<std::uint64_t>(std::ceil(share * static_cast<double>(total_)));
+        const auto enough =
+            static_cast<std::uint64_t>(std::ceil(share * static_cast<double>(total_)));
         std::uint64_t sum = 0;
         for (std::size_t step = 0; step + 1 < counts_.size(); ++step)
         {

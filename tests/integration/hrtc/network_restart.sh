@@ -10,7 +10,7 @@ start_relay --delay-ms 10
 "$build" --shape bumpy-sphere --faces 190000 -o other.spm >build.log 2>&1
 
 start_publisher large.spm
-start_hrtc --model large --device sim:touch --pool-mib 4 --no-static --duration 10 \
+start_hrtc --model large --device sim:touch --pool-mib 8 --no-static --duration 10 \
     --record run.rec --report report.json
 wait_for_line publish.log "subscribed to model 'large'" 10
 sleep 2
