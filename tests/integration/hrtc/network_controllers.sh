@@ -6,8 +6,6 @@
 source "$(dirname "$0")/two_networks.sh"
 readonly kills=4
 
-resident_kib() { awk '/^VmRSS/ { print $2 }' "/proc/$1/status"; }
-
 # start_controller NAME ARGUMENT...: its words in NAME.log, its id in $controller.
 start_controller() {
     local name=$1
@@ -18,30 +16,20 @@ start_controller() {
     started+=("$controller")
 }
 
-# wait_for_lines COUNT TEXT: that many of them in publish.log.
-wait_for_lines() {
-    local i
-    for ((i = 0; i < 200; ++i)); do
-        (($(lines "$2" publish.log) < $1)) || return 0
-        sleep 0.05
-    done
-    fail "not $1 times '$2' in $(cat publish.log)"
-}
-
 start_relay --delay-ms 10
 "$build" --shape bumpy-sphere --faces 100000 -o large.spm >build.log 2>&1
 start_publisher large.spm
 start_controller steady --duration 16 --record steady.rec --report steady.json
 steady=$controller
-wait_for_lines 1 'subscribed to'
+wait_for_lines 1 'subscribed to' publish.log
 
 for ((kill = 1; kill <= kills; ++kill)); do
     start_controller killed --duration 60
-    wait_for_lines $((1 + kill)) 'subscribed to'
+    wait_for_lines $((1 + kill)) 'subscribed to' publish.log
     sleep 1
     killed_ms=$(now_ms)
     stop KILL "$controller"
-    wait_for_lines "$kill" "left model 'large'"
+    wait_for_lines "$kill" "left model 'large'" publish.log
     check_notice publish.log "$killed_ms"
     ((kill > 1)) || first_kib=$(resident_kib "$publisher") # Its first two are served.
 done

@@ -112,6 +112,19 @@ check_notice() {
     ((noticed_ms <= notice_ms + machine_ms)) || fault "noticed only after $noticed_ms ms"
 }
 
+# wait_for_lines COUNT TEXT FILE: at least so many.
+wait_for_lines() {
+    local i
+    for ((i = 0; i < 400; ++i)); do
+        (($(lines "$2" "$3") < $1)) || return 0
+        sleep 0.05
+    done
+    cat "$3"
+    fail "not $1 times '$2' in $3"
+}
+
+resident_kib() { awk '/^VmRSS/ { print $2 }' "/proc/$1/status"; }
+
 # lines TEXT FILE: how many lines hold it.
 lines() { grep -cF -- "$1" "$2" || true; }
 
