@@ -78,7 +78,7 @@ kill -TERM "$controller"
 wait "$controller" || code=$?
 cat hrtc.log
 ((code == 0)) || fail "hrtc ended with $code"
-(($(lines "model 'large'" hrtc.log) == 4 * cycles)) || fault 'not two lines for each loss of the host'
+(($(lines "model 'large'" hrtc.log) == 4 * cycles)) || fault 'not two lines for each loss'
 check report.json models.0.host_connected == 1 models.0.static == 0 safety.begun.host '>' 0
 check_wire_run report.json
 judge_run large.spm
