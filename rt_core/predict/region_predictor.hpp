@@ -31,8 +31,8 @@ struct PairMotion
 ///
 /// All ways foretell the tool's place after the lead; when that time has come each is compared with
 /// where the tool is, and foretells anew. What a way erred of late is how much wider its balls are
-/// made, at most as much again, and the automatic choice is the way that erred least. So speed, latency and
-/// noise decide by what they do to a forecast.
+/// made, at most as much again, and the automatic choice is the way that erred least. So speed,
+/// latency and noise decide by what they do to a forecast.
 class RegionPredictor
 {
 public:

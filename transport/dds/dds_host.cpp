@@ -30,6 +30,13 @@ constexpr std::size_t kRequestsPerStep = 1'024;
 /// How long to wait while a controller's reader is not there yet.
 constexpr auto kMatchWait = std::chrono::milliseconds(2);
 
+/// What a controller calls itself, fit to be printed.
+std::string name_of(const tactus_v1_Wanted& wanted)
+{
+    const char* const text = static_cast<const char*>(wanted.controller_name);
+    return printable({text, ::strnlen(text, sizeof(wanted.controller_name))});
+}
+
 } // namespace
 
 struct DdsHost::Request
@@ -222,8 +229,15 @@ void DdsHost::on_request(const Request& request)
 {
     const tactus_v1_Wanted& wanted = request.wanted;
     const PublishedModel* model = model_of(request.hash);
-    if (model == nullptr || wanted.protocol_version != kProtocolVersion ||
-        wanted.revision != model->store.revision())
+    if (wanted.protocol_version != kProtocolVersion)
+    {
+        ++counters_.requests_refused;
+        fault_log_.write(fmt::format("controller {} is refused: it speaks protocol version {}, "
+                                     "this build {}",
+                                     name_of(wanted), wanted.protocol_version, kProtocolVersion));
+        return;
+    }
+    if (model == nullptr || wanted.revision != model->store.revision())
     {
         ++counters_.requests_refused;
         return;
@@ -231,9 +245,7 @@ void DdsHost::on_request(const Request& request)
     auto subscription = find(request.controller, request.hash);
     if (subscription == subscriptions_.end())
     {
-        const char* const name_text = static_cast<const char*>(wanted.controller_name);
-        const std::string name =
-            printable({name_text, ::strnlen(name_text, sizeof(wanted.controller_name))});
+        const std::string name = name_of(wanted);
         if (subscriptions_.size() == kMaxSubscriptions)
         {
             ++counters_.requests_refused;

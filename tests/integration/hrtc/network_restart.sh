@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # network_restart.sh: hosts are killed and started again 10 ms away. The same file is used again and
-# nothing of it is loaded twice; another file of that name is kept apart.
+# nothing of it is loaded twice; another file of that name is kept apart, and is what the next
+# controller takes. Of a model that is here as a whole the touch goes on.
 source "$(dirname "$0")/two_networks.sh"
 
 start_relay --delay-ms 10
@@ -9,12 +10,14 @@ start_relay --delay-ms 10
 "$build" --shape bumpy-sphere --faces 190000 -o other.spm >build.log 2>&1
 
 start_publisher large.spm
-start_hrtc --model large --device sim:touch --pool-mib 4 --no-static --duration 10 \
+start_hrtc --model large --device sim:touch --pool-mib 8 --no-static --duration 10 \
     --record run.rec --report report.json
 wait_for_line publish.log "subscribed to model 'large'" 10
 sleep 2
+killed_ms=$(now_ms)
 stop KILL "$publisher"
 wait_for_line hrtc.log "host of model 'large' is gone; going on with what is resident" 5
+check_notice hrtc.log "$killed_ms"
 
 start_publisher large.spm
 wait_for_line hrtc.log 'is served again, by another host or a restarted one with the same file' 5
@@ -45,4 +48,29 @@ judge_run large.spm
 # Against another mesh the same answers are wrong.
 "$judge_recording" run.rec other.spm >judged.json 2>/dev/null || fail 'it does not replay'
 check judged.json violations '>' 0
+
+# A controller that starts now takes the file that is there now.
+run_hrtc --model large --device sim:touch --pool-mib 2 --duration 3 --record run.rec
+check report.json wire.host_lost == 0 safety.begun.host == 0
+check_wire_run report.json
+check_contact report.json force.contact_share 0.3
+judge_run other.spm
+stop TERM "$publisher"
+
+"$build" --shape bumpy-sphere --faces 5000 -o small.spm >build.log 2>&1
+start_publisher small.spm
+start_hrtc --model small --device sim:touch --duration 5 --record run.rec --report report.json
+wait_for_line publish.log "subscribed to model 'small'" 10
+sleep 2
+stop KILL "$publisher"
+wait_for_line hrtc.log "host of model 'small' is gone" 5
+readonly near_the_kill=2500 # Frames; the run's last half, at least, is without a host.
+code=0
+wait "$controller" || code=$?
+cat hrtc.log
+((code == 0)) || fail "hrtc ended with $code"
+check report.json frames == 5000 wire.host_lost == 1 safety.begun.host == 0 models.0.static == 1
+check_wire_run report.json
+judge_run small.spm "$near_the_kill"
+check judged.json spans.1.contact_frames '>' "0.3*spans.1.frames"
 finish

@@ -8,6 +8,10 @@ readonly network_relay=$4 list_safety=$5 judge_recording=$6
 # What a device of the class touch can do: platform/simulated/device_classes.hpp.
 readonly touch_force_max_n=3.3
 
+# What docs/protocol.md promises of a side that is gone, and what a busy machine may add until the
+# line is written.
+readonly notice_ms=500 machine_ms=250
+
 # dds_configuration INTERFACE ADDRESS PEER: what docs/protocol.md says of a real network.
 dds_configuration() {
     cat <<XML
@@ -97,6 +101,29 @@ check_wire_run() {
         answers.exact+answers.decided+answers.bracket+answers.stale == '1*frames'
     check_clean "$1"
 }
+
+now_ms() { echo $((${EPOCHREALTIME/[.,]/} / 1000)); }
+
+# check_notice FILE SINCE: the last line of it was written soon enough after that now_ms.
+check_notice() {
+    local noticed_ms
+    noticed_ms=$(($(stat -c %.3Y "$1" | tr -d .,) - $2))
+    echo "noticed after $noticed_ms ms"
+    ((noticed_ms <= notice_ms + machine_ms)) || fault "noticed only after $noticed_ms ms"
+}
+
+# wait_for_lines COUNT TEXT FILE: at least so many.
+wait_for_lines() {
+    local i
+    for ((i = 0; i < 400; ++i)); do
+        (($(lines "$2" "$3") < $1)) || return 0
+        sleep 0.05
+    done
+    cat "$3"
+    fail "not $1 times '$2' in $3"
+}
+
+resident_kib() { awk '/^VmRSS/ { print $2 }' "/proc/$1/status"; }
 
 # lines TEXT FILE: how many lines hold it.
 lines() { grep -cF -- "$1" "$2" || true; }

@@ -1,0 +1,61 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# network_controllers.sh: controllers are killed and started again 10 ms from their host. It counts
+# each out and in and grows by none of them, another controller feels nothing of it, and the touch
+# of the one that is started last is as good as any.
+source "$(dirname "$0")/two_networks.sh"
+readonly kills=4
+
+# start_controller NAME ARGUMENT...: its words in NAME.log, its id in $controller.
+start_controller() {
+    local name=$1
+    shift
+    "${on_controller[@]}" "$hrtc" --allow-no-rt --domain "$domain" --model large \
+        --device sim:touch --pool-mib 2 "$@" >"$name.log" 2>&1 &
+    controller=$!
+    started+=("$controller")
+}
+
+start_relay --delay-ms 10
+"$build" --shape bumpy-sphere --faces 100000 -o large.spm >build.log 2>&1
+start_publisher large.spm
+start_controller steady --duration 16 --record steady.rec --report steady.json
+steady=$controller
+wait_for_lines 1 'subscribed to' publish.log
+
+for ((kill = 1; kill <= kills; ++kill)); do
+    start_controller killed --duration 60
+    wait_for_lines $((1 + kill)) 'subscribed to' publish.log
+    sleep 1
+    killed_ms=$(now_ms)
+    stop KILL "$controller"
+    wait_for_lines "$kill" "left model 'large'" publish.log
+    check_notice publish.log "$killed_ms"
+    ((kill > 1)) || first_kib=$(resident_kib "$publisher") # Its first two are served.
+done
+last_kib=$(resident_kib "$publisher")
+echo "the host has $first_kib, later $last_kib KiB"
+[[ -n "$sanitizer" ]] || ((last_kib - first_kib <= 1024)) || fault 'the host grows with each kill'
+
+code=0
+wait "$steady" || code=$?
+cat steady.log
+((code == 0)) || fail "the controller that went on ended with $code"
+[[ $(lines "model 'large'" steady.log) == 0 ]] || fault 'it was told of a host that went'
+check steady.json frames == 16000 wire.host_lost == 0 safety.begun.host == 0 \
+    answers.exact+answers.decided '>' '0.9*frames'
+check_wire_run steady.json
+check_contact steady.json force.contact_share 0.3
+mv steady.rec run.rec
+mv steady.log hrtc.log
+judge_run large.spm
+
+run_hrtc --model large --device sim:touch --pool-mib 2 --duration 3 --record run.rec
+check report.json frames == 3000 wire.host_lost == 0 safety.begun.host == 0 \
+    answers.exact+answers.decided '>' '0.9*frames'
+check_wire_run report.json
+check_contact report.json force.contact_share 0.3
+judge_run large.spm
+stop TERM "$publisher"
+((stopped_with == 0)) || fault "spm_publish ended with $stopped_with"
+finish

@@ -1,0 +1,60 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# network_two_hosts.sh: two hosts serve different files under one name. A controller stays with the
+# one that it found first or was pinned to, and is told of the other; nothing is mixed.
+source "$(dirname "$0")/two_networks.sh"
+
+start_relay --delay-ms 10
+"$build" --shape bumpy-sphere --faces 100000 -o first.spm >build.log 2>&1
+"$build" --shape bumpy-sphere --faces 90000 -o second.spm >build.log 2>&1
+
+# check_touch FILE: what hrtc.log and run.rec are of was touched as this file, and by nobody else's
+# pieces.
+check_touch() {
+    check report.json wire.host_lost == 0 safety.begun.host == 0 models.0.host_connected == 1
+    check_wire_run report.json
+    check_contact report.json force.contact_share 0.3
+    judge_run "$1"
+}
+subscriptions() { lines ' subscribed to ' "$1"; }
+
+start_publisher first.spm --name ball
+first=$publisher
+start_hrtc --model ball --device sim:touch --pool-mib 2 --duration 6 --record run.rec \
+    --report report.json
+wait_for_line publish.log "subscribed to model 'ball'" 10
+sleep 1.5
+mv publish.log first.log # The host goes on writing there.
+start_publisher second.spm --name ball
+mv publish.log second.log
+wait_for_line hrtc.log "warning: model 'ball' is published with two hashes" 5
+code=0
+wait "$controller" || code=$?
+cat hrtc.log
+((code == 0)) || fail "hrtc ended with $code"
+[[ $(lines "model 'ball'" hrtc.log) == 1 ]] || fault 'not one line about the second host'
+[[ $(subscriptions second.log) == 0 ]] || fault 'the second host was asked'
+check_touch first.spm
+"$judge_recording" run.rec second.spm >judged.json 2>/dev/null || fail 'it does not replay'
+check judged.json violations '>' 0 # The two can be told apart.
+
+for which in first second; do
+    before=$(subscriptions $which.log)
+    hash=$(sed -n "s/^serving 'ball' hash \([0-9a-f]*\):.*/\1/p" $which.log)
+    run_hrtc --model "ball@$hash" --device sim:touch --pool-mib 2 --duration 3 --record run.rec
+    (($(subscriptions $which.log) > before)) || fault "pinned to the $which, but it was not asked"
+    check_touch $which.spm
+done
+
+# Without a pin any of the two, but one of them as a whole; the warning says which.
+run_hrtc --model ball --device sim:touch --pool-mib 2 --duration 3 --record run.rec
+used=$(sed -n "s/.*two hashes, \([0-9a-f]*\) (seen first, .*/\1/p" hrtc.log)
+which=first
+grep -qF "$used" first.log || which=second
+[[ -n "$used" ]] || fault 'no warning of two hashes'
+check_touch $which.spm
+stop TERM "$first"
+((stopped_with == 0)) || fault "the first host ended with $stopped_with"
+stop TERM "$publisher"
+((stopped_with == 0)) || fault "the second host ended with $stopped_with"
+finish
