@@ -209,13 +209,13 @@ int run(int argc, char** argv)
     const Suite suite = *find_suite(line.suite);
     const bool is_recorded = !line.options.trajectory.file.empty();
     Rows rows;
-    const auto failure =
+    const auto refused =
         is_recorded ? compare_trajectory(line.options, rows) : suite.run(line.options, rows);
     const auto table = is_recorded ? to_columns : suite.to_table;
     fmt::print("{}", line.all ? to_table(rows) : table(rows)); // What came before a failure, too.
-    if (failure)
+    if (refused)
     {
-        return fail(app, *failure, is_recorded ? kExitFailed : kExitCriterionNotMet);
+        return fail(app, *refused, is_recorded ? kExitFailed : kExitCriterionNotMet);
     }
     fmt::print("{}\n", facts.core < 0 ? std::string("not held to one core: the system refuses")
                                       : fmt::format("measured on core {}", facts.core));
