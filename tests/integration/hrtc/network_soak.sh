@@ -2,12 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 # network_soak.sh: one controller lives through CYCLES ($7) of: another one that comes and is killed
 # or ended, and a link that is cut and mended; and as many of: its host killed and started again.
-# Neither the host of the first half nor the controller grows, and no answer was wrong.
+# The host of the first half and the controller keep within what they had, and no answer was wrong.
 source "$(dirname "$0")/two_networks.sh"
 readonly cycles=$7
-# More than this a program must not have at the end than after its first cycle, when all that is
-# made once has been made.
-readonly slack_kib=1024
+# What a program may have more than after its first cycle, when all that is made once has been made:
+# the C library gives memory back late, Cyclone adds receive buffers of 1 MiB each, and keeps 0.8 KB
+# of each subscription that a host has served (docs/protocol.md, "Limits").
+declare -rA slack_kib=([host]=$((512 + 32 * cycles)) [controller]=$((1024 + 32 * cycles)))
 
 open_files() { find "/proc/$1/fd" -mindepth 1 | wc -l; }
 
@@ -22,7 +23,7 @@ check_holdings() {
         first_kib[$name]=$kib
         first_files[$name]=$files
     fi
-    [[ -n "$sanitizer" ]] || ((kib <= first_kib[$name] + slack_kib)) \
+    [[ -n "$sanitizer" ]] || ((kib <= first_kib[$name] + slack_kib[$name])) \
         || fault "$name grew from ${first_kib[$name]} to $kib KiB in $3 cycles"
     ((files <= first_files[$name])) || fault "$name had ${first_files[$name]} files and has $files"
 }

@@ -203,8 +203,8 @@ TEST_F(DdsVersions, a_host_of_another_version_is_reported_and_passed_over)
     const std::string line =
         "model 'tiny' is published with protocol version 2; this build speaks 1";
     EXPECT_EQ(count_of(lines, line), 1U) << lines;
-    start_host();
-    connect();
+    ASSERT_NO_FATAL_FAILURE(start_host());
+    ASSERT_NO_FATAL_FAILURE(connect());
     const std::vector<ContentKey> keys{{ContentKind::chunk, 0}};
     link->request(keys, 1);
     EXPECT_TRUE(step_until([&] { return got.count == 1; }));
@@ -212,8 +212,8 @@ TEST_F(DdsVersions, a_host_of_another_version_is_reported_and_passed_over)
 
 TEST_F(DdsVersions, when_the_host_goes_one_of_another_version_is_no_successor)
 {
-    start_host();
-    connect();
+    ASSERT_NO_FATAL_FAILURE(start_host());
+    ASSERT_NO_FATAL_FAILURE(connect());
     const Endpoint foreign = announce(5, kOtherVersion);
     ASSERT_TRUE(step_until([&] { return lines.find("protocol version 2") != std::string::npos; }));
     EXPECT_EQ(link->state(), LinkState::connected);
@@ -226,8 +226,8 @@ TEST_F(DdsVersions, when_the_host_goes_one_of_another_version_is_no_successor)
 
 TEST_F(DdsVersions, a_controller_of_another_version_is_refused_and_named_and_ours_is_served)
 {
-    start_host();
-    connect();
+    ASSERT_NO_FATAL_FAILURE(start_host());
+    ASSERT_NO_FATAL_FAILURE(connect());
     const std::uint64_t epoch = host_epoch();
     const Endpoint writer =
         make_writer(stranger, Topic::wanted, model_partition(model_hash(model.header))).value();

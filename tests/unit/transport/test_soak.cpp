@@ -29,7 +29,8 @@
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define TACTUS_HEAP_IS_A_SANITIZER_S
-#include <sanitizer/allocator_interface.h>
+/// Not every compiler comes with <sanitizer/allocator_interface.h>.
+extern "C" std::size_t __sanitizer_get_current_allocated_bytes();
 #endif
 
 namespace tactus::test
