@@ -49,6 +49,6 @@ grep -q 'served.spm: .* at offset [0-9]* is damaged' publish.log || fault 'no da
 touch_while replace
 [[ $(lines 'served.spm: ' publish.log) == 0 ]] || fault 'damage of a file that is another one'
 check_contact report.json force.contact_share 0.3
-check judged.json spans.1.contact_frames '>' '0.1*spans.1.frames'
+check_span_contact 1 0.1
 check report.json answers.exact+answers.decided '>' '0.9*frames'
 finish

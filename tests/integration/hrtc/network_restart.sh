@@ -72,5 +72,5 @@ cat hrtc.log
 check report.json frames == 5000 wire.host_lost == 1 safety.begun.host == 0 models.0.static == 1
 check_wire_run report.json
 judge_run small.spm "$near_the_kill"
-check judged.json spans.1.contact_frames '>' "0.3*spans.1.frames"
+check_span_contact 1 0.3
 finish

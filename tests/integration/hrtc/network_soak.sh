@@ -83,7 +83,7 @@ cat hrtc.log
 check report.json models.0.host_connected == 1 models.0.static == 0 safety.begun.host '>' 0
 check_wire_run report.json
 judge_run large.spm
-check judged.json spans.0.contact_frames '>' "0.1*spans.0.frames"
+check_span_contact 0 0.1
 stop TERM "$publisher"
 ((stopped_with == 0)) || fault "spm_publish ended with $stopped_with"
 finish

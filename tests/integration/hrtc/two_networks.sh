@@ -92,6 +92,12 @@ judge_run() {
     check judged.json frames == "$(recorded_frames)" violations == 0
     cat judged.json
 }
+# check_span_contact SPAN SHARE: more than this share of that span of judged.json in contact, unless
+# the machine stalled the loop: then the force was off, and the hand lost what it touched.
+check_span_contact() {
+    was_held_up report.json \
+        || check judged.json "spans.$1.contact_frames" '>' "$2*spans.$1.frames"
+}
 recorded_frames() { sed -n 's/^recording *\([0-9]*\) frames.*/\1/p' hrtc.log; }
 
 # check_wire_run FILE: what holds of every run with a streamed model, however bad the link is.
