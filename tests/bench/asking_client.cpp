@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <limits>
 #include <thread>
 
@@ -18,7 +19,10 @@ namespace
 
 constexpr std::size_t kOpenMax = 256;
 constexpr auto kRetry = std::chrono::milliseconds(200);
-constexpr auto kPause = std::chrono::microseconds(300);
+/// Between two looks, as the controller's transport thread; longer, a tenth of the time between two
+/// chunks, for slow clients, so that many of them find room on few processors.
+constexpr double kPauseMin_s = 300e-6;
+constexpr double kPauseMax_s = 10e-3;
 
 } // namespace
 
@@ -32,6 +36,8 @@ AskingClient::AskingClient(ServedModel& model, double rate_hz)
 void AskingClient::run(double seconds, const std::atomic<bool>& stop)
 {
     const auto begin = Clock::now();
+    const std::chrono::duration<double> pause(
+        rate_hz_ > 0.0 ? std::clamp(0.1 / rate_hz_, kPauseMin_s, kPauseMax_s) : 0.0);
     for (double elapsed_s = 0.0; !stop.load() && elapsed_s < seconds; seconds_ = elapsed_s)
     {
         ask(elapsed_s);
@@ -39,7 +45,7 @@ void AskingClient::run(double seconds, const std::atomic<bool>& stop)
         link_.poll(*this);
         if (rate_hz_ > 0.0)
         {
-            std::this_thread::sleep_for(kPause);
+            std::this_thread::sleep_for(pause);
         }
         elapsed_s = std::chrono::duration<double>(Clock::now() - begin).count();
     }
