@@ -126,7 +126,7 @@ private:
     void place_pairs(std::span<const ObjectPose> poses, const Budgets& budgets) noexcept;
     [[nodiscard]] double lead_s(ModelId model) const noexcept;
     [[nodiscard]] PairMotion motion_of(const ScenePair& pair) const noexcept;
-    void load(const Budgets& budgets) noexcept;
+    void load(const Budgets& budgets) noexcept TACTUS_NONBLOCKING;
     void refine(const Budgets& budgets) noexcept;
     void query(std::span<const ObjectPose> poses, const Budgets& budgets) noexcept;
     void respond(std::span<const ObjectPose> poses) noexcept;
