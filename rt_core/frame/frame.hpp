@@ -138,10 +138,10 @@ private:
     void query_core(std::uint32_t i, const ObjectPose& pose, const Budgets& budgets) noexcept;
     void query_mesh(std::uint32_t i, const ObjectPose& pose) noexcept;
     void report_pair(std::uint32_t i, const ObjectPose& pose) noexcept;
-    [[nodiscard]] MeshPair* mesh_pair(std::uint32_t pair) noexcept;
-    [[nodiscard]] ModelId tool_model_of(const ScenePair& pair) const noexcept;
+    [[nodiscard]] MeshPair* mesh_pair(std::uint32_t pair) noexcept TACTUS_NONBLOCKING;
+    [[nodiscard]] ModelId tool_model_of(const ScenePair& pair) const noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] static bool looks_ahead(const ScenePair& pair) noexcept;
-    [[nodiscard]] bool is_complete(ModelId model) const noexcept;
+    [[nodiscard]] bool is_complete(ModelId model) const noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] ToolOutput follow(std::uint32_t tool,
                                     std::span<const PlacedSurface> surfaces) const noexcept;
     [[nodiscard]] double reach_of(std::uint32_t tool) const noexcept;
@@ -149,13 +149,13 @@ private:
     [[nodiscard]] bool has_proxy(std::uint32_t tool) const noexcept;
     [[nodiscard]] RigidProxy* rigid_proxy(std::uint32_t tool) noexcept;
     [[nodiscard]] const RigidProxy* rigid_proxy(std::uint32_t tool) const noexcept;
-    [[nodiscard]] const Vec3& position_of(std::uint32_t tool) const noexcept;
+    [[nodiscard]] const Vec3& position_of(std::uint32_t tool) const noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] const Mat3& rotation_of(std::uint32_t tool) const noexcept;
     [[nodiscard]] ToolOutput respond_rigidly(std::uint32_t tool,
                                              std::span<const ObjectPose> poses) noexcept;
     [[nodiscard]] double lower_of(std::uint32_t i, const ObjectPose& pose) noexcept;
     [[nodiscard]] double pair_rounding_m(std::uint32_t i, const ObjectPose& pose) noexcept;
-    [[nodiscard]] ModelId model_of(const ScenePair& pair) const noexcept;
+    [[nodiscard]] ModelId model_of(const ScenePair& pair) const noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] FrameOutput finish() const noexcept;
 
     Scene scene_;
