@@ -55,8 +55,8 @@ warned fault "non-'nonblocking' function 'malloc'" '#include <cstdlib>' \
     'static_cast<void>(std::malloc(1));'
 warned fault 'allocate' '' 'delete new int(1);'
 warned fault "std::mutex::lock" '#include <mutex>' 'static std::mutex m; m.lock();'
-warned fault "static local" '' 'static int n = static_cast<int>(elapsed_s); static_cast<void>(n);'
-warned fault 'throw' '' 'if (elapsed_s < 0.0) throw 1;'
+warned fault "static local" '' 'static int n = static_cast<int>(lead_s); static_cast<void>(n);'
+warned fault 'throw' '' 'if (lead_s < 0.0) throw 1;'
 warned fault 'pointer' 'void (*hook)() noexcept;' 'hook();'
 warned fault "non-'nonblocking' function 'elsewhere'" 'void elsewhere() noexcept;' 'elsewhere();'
 
@@ -67,7 +67,9 @@ cat >main.cpp <<'EOC'
 int main()
 {
     tactus::RegionPredictor predictor;
-    predictor.observe({0.0, 0.0, 0.0}, 0.001);
+    tactus::PairMotion motion;
+    motion.elapsed_s = 0.001;
+    predictor.observe(motion, 0.02);
     std::puts("went through");
 }
 EOC
