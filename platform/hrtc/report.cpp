@@ -296,7 +296,7 @@ Json cache_of(const RunRecord& record)
         loads += courier->counters().delivered;
     }
     const RunStatistics& statistics = record.run.statistics;
-    return {{"prediction", prediction_name(record.options.prediction)},
+    return {{"prediction", prediction_name(record.controller.setup().prediction)},
             {"hits", statistics.cache_hits},
             {"misses", statistics.cache_misses},
             {"loads", loads},

@@ -373,9 +373,15 @@ double Frame::reach_of(std::uint32_t tool) const noexcept
     const double way = rigid != nullptr  ? rigid->way_to_m(goals_[tool], rotations_[tool])
                        : has_proxy(tool) ? proxies_[tool].way_to_m(goals_[tool])
                                          : ways_m_[tool];
-    const double radius_m = rigid != nullptr ? rigid->radius_m() : proxies_[tool].radius_m();
     const double most = spec.speed_max_m_per_s * elapsed_s_[tool];
-    return radius_m * (1.0 + kReachMargin) + std::min(way, most);
+    return radius_of(tool) * (1.0 + kReachMargin) + std::min(way, most);
+}
+
+/// Within which of its core's place the proxy keeps surfaces out.
+double Frame::radius_of(std::uint32_t tool) const noexcept
+{
+    const RigidProxy* rigid = rigid_proxy(tool);
+    return rigid != nullptr ? rigid->radius_m() : proxies_[tool].radius_m();
 }
 
 /// How far a tool without contact comes in kApproachTime_s.

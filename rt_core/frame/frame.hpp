@@ -145,6 +145,7 @@ private:
     [[nodiscard]] ToolOutput follow(std::uint32_t tool,
                                     std::span<const PlacedSurface> surfaces) const noexcept;
     [[nodiscard]] double reach_of(std::uint32_t tool) const noexcept;
+    [[nodiscard]] double radius_of(std::uint32_t tool) const noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] Vec3 ahead_of(std::uint32_t tool) const noexcept;
     [[nodiscard]] bool has_proxy(std::uint32_t tool) const noexcept;
     [[nodiscard]] RigidProxy* rigid_proxy(std::uint32_t tool) noexcept;

@@ -45,7 +45,7 @@ PairMotion Frame::motion_of(const ScenePair& pair) const noexcept
         if (distance > 0.0)
         {
             motion.outward = apart / distance;
-            motion.gap_m = std::max(distance - proxies_[pair.tool].radius_m() / pose.scale, 0.0);
+            motion.gap_m = std::max(distance - radius_of(pair.tool) / pose.scale, 0.0);
         }
     }
     return motion;

@@ -118,7 +118,7 @@ void MeshPair::rank(const ScenePair& pair, ModelId tool_model, ModelId object_mo
         of_object.push_back({placements_[0].to_there(ball.center), scale * ball.radius});
     }
     predictor.rank(prediction, object_model, of_object, reach_m, ranking);
-    RegionPredictor().rank(prediction, tool_model, cover_, reach_m / scale, ranking);
+    RegionPredictor::rank_present(tool_model, cover_, reach_m / scale, ranking);
 }
 
 double MeshPair::refine_reach_m(const ScenePair& pair) noexcept

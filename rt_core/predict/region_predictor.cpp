@@ -25,6 +25,18 @@ constexpr double kWidest = 1.0;
 /// The shares of the lead after which places are foretold.
 constexpr std::array<double, 4> kLeads{0.25, 0.5, 0.75, 1.0};
 
+/// Each ball moved by the region's centre and wider by its radius. A full ranking leaves the later
+/// pairs' balls out: they come on demand.
+void add_balls(const RankedRegion& moved, const CoreCover& balls, RegionRanking& ranking) noexcept
+{
+    for (const Ball& ball : balls)
+    {
+        static_cast<void>(
+            ranking.try_push_back({moved.model, ball.center + moved.center_m,
+                                   ball.radius + moved.radius_m, moved.lead_ns}));
+    }
+}
+
 } // namespace
 
 void RegionPredictor::observe(const PairMotion& motion, double lead_s) noexcept
@@ -100,27 +112,25 @@ Vec3 RegionPredictor::way_in(Prediction way, double lead_s) const noexcept
     return far_m > most_m ? Vec3(ahead * (most_m / far_m)) : ahead;
 }
 
+void RegionPredictor::rank_present(ModelId model, const CoreCover& balls, double reach_m,
+                                   RegionRanking& ranking) noexcept
+{
+    add_balls({model, Vec3(0.0, 0.0, 0.0), reach_m, 0}, balls, ranking);
+}
+
 void RegionPredictor::rank(Prediction way, ModelId model, const CoreCover& balls, double reach_m,
                            RegionRanking& ranking) const noexcept
 {
     const Prediction chosen = way == Prediction::automatic ? believed_ : way;
-    const auto add = [&](const Vec3& ahead, double wider_m, double lead_s)
-    {
-        for (const Ball& ball : balls)
-        {
-            // A full ranking leaves the later pairs' balls out: they come on demand.
-            static_cast<void>(
-                ranking.try_push_back({model, ball.center + ahead, ball.radius + wider_m,
-                                       static_cast<std::int64_t>(lead_s * 1e9)}));
-        }
-    };
-    add(Vec3(0.0, 0.0, 0.0), reach_m, 0.0);
+    rank_present(model, balls, reach_m, ranking);
     for (const double share : kLeads)
     {
         const double lead_s = share * lead_s_;
         const double wider_m = chosen == Prediction::local_neighbours ? lead_s * velocity_.norm()
                                                                       : share * error_of(chosen);
-        add(way_in(chosen, lead_s), reach_m + std::min(wider_m, kWidest * reach_m), lead_s);
+        add_balls({model, way_in(chosen, lead_s), reach_m + std::min(wider_m, kWidest * reach_m),
+                   static_cast<std::int64_t>(lead_s * 1e9)},
+                  balls, ranking);
     }
 }
 

@@ -45,6 +45,10 @@ public:
     void rank(Prediction way, ModelId model, const CoreCover& balls, double reach_m,
               RegionRanking& ranking) const noexcept TACTUS_NONBLOCKING;
 
+    /// Only where the balls are, of what stands still in its own frame.
+    static void rank_present(ModelId model, const CoreCover& balls, double reach_m,
+                             RegionRanking& ranking) noexcept TACTUS_NONBLOCKING;
+
     /// The hand's.
     [[nodiscard]] const Vec3& velocity_m_per_s() const noexcept { return velocity_; }
     /// What Prediction::automatic stands for at present.

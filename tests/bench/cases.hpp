@@ -7,9 +7,11 @@
 #include "tests/bench/scenes.hpp"
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 
 namespace tactus::bench
 {
@@ -25,12 +27,31 @@ inline constexpr double kNoGoal = std::numeric_limits<double>::infinity();
 /// gave wrong answers; goals that are not met are rows, not failures.
 struct CaseContext
 {
-    const char* name;
+    const char* suite;
+    const std::string& name;
     const BenchOptions& options;
     SceneStore& scenes;
     Rows& rows;
+
+    /// What all rows of this case have in common; the part is the suite's, if it has any.
+    [[nodiscard]] Row common_row(const std::string& scene, const char* part = "") const;
 };
 using CaseFailure = std::optional<std::string>;
+
+struct Case
+{
+    std::string name;
+    When when;
+    std::function<CaseFailure(const CaseContext&)> run;
+};
+template <typename Parameters>
+[[nodiscard]] Case make_case(std::string name, When when,
+                             CaseFailure (*run)(const CaseContext&, const Parameters&),
+                             const Parameters& parameters)
+{
+    return {std::move(name), when,
+            [run, parameters](const CaseContext& context) { return run(context, parameters); }};
+}
 
 /// Goals in microseconds.
 struct FrameCase

@@ -68,7 +68,7 @@ void add_contact(CaseRows& rows, const ModelStore& store, const DecodedModel& mo
 
 } // namespace
 
-EncoderFailure measure_bounds(const EncoderContext& context)
+CaseFailure measure_bounds(const EncoderContext& context)
 {
     const auto named = context.mesh.make();
     if (!named)
@@ -86,7 +86,7 @@ EncoderFailure measure_bounds(const EncoderContext& context)
         return named.value().name + ": " + simplification.error().text;
     }
     const auto rows_of = [&](const char* part)
-    { return CaseRows(context.rows, context.common_row(part, named.value().name)); };
+    { return CaseRows(context.rows, context.common_row(named.value().name, part)); };
     CaseRows bounds = rows_of("Bounds");
     add_tightness(bounds, prepared.value(), simplification.value(), context);
 

@@ -2,9 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "tests/bench/bench_options.hpp"
-#include "tests/bench/bench_row.hpp"
-#include "tests/bench/scenes.hpp"
+#include "tests/bench/cases.hpp"
 
 #include <cstdint>
 #include <functional>
@@ -53,29 +51,25 @@ struct EncoderMesh
     bool is_compared{true}; ///< Simplified beside the peers.
 };
 
-/// What a part of the suite gets. Each returns a line when it could not be run or gave wrong
-/// results; goals that are not met are rows, not failures.
-struct EncoderContext
+/// What a part of the suite gets.
+struct EncoderContext : CaseContext
 {
     const EncoderMesh& mesh;
-    const BenchOptions& options;
-    Rows& rows;
-
-    /// What all rows of this mesh in one part of the suite have in common.
-    [[nodiscard]] Row common_row(const char* part, const std::string& scene) const;
 };
-using EncoderFailure = std::optional<std::string>;
+
+/// The parts of the suite. Each returns a line when it could not be run or gave wrong results;
+/// goals that are not met are rows, not failures.
 
 /// Our simplifier and the peers' on one mesh: faces reached, error of the surface and of its
 /// features, time. On one thread; ours on two as well, with the same result.
-[[nodiscard]] EncoderFailure compare_simplifiers(const EncoderContext& context);
+[[nodiscard]] CaseFailure compare_simplifiers(const EncoderContext& context);
 
 /// The whole encoder, from a mesh in memory to a file, each run in a process of its own: time,
 /// memory, and what the file holds and how fast it is read. The same bytes from one thread and two.
-[[nodiscard]] EncoderFailure measure_files(const EncoderContext& context);
+[[nodiscard]] CaseFailure measure_files(const EncoderContext& context);
 
 /// How much larger bounds are than what they bound, how many splits a distance takes until it is
 /// exact, and how many bytes a first contact. With a tool's radius of 1 % of the diagonal.
-[[nodiscard]] EncoderFailure measure_bounds(const EncoderContext& context);
+[[nodiscard]] CaseFailure measure_bounds(const EncoderContext& context);
 
 } // namespace tactus::bench

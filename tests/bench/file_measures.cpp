@@ -83,7 +83,7 @@ void add_content(CaseRows& rows, const ModelStore& store, const ModelStore& fine
     add("hashes", hashes, std::nullopt);
 }
 
-EncoderFailure add_reading(CaseRows& rows, const ModelStore& store, const EncoderContext& context)
+CaseFailure add_reading(CaseRows& rows, const ModelStore& store, const EncoderContext& context)
 {
     const PinnedCore pinned(context.options.core);
     const auto speed = measure_reading(store, context.options.passes_or(7, 3));
@@ -100,7 +100,7 @@ EncoderFailure add_reading(CaseRows& rows, const ModelStore& store, const Encode
 
 } // namespace
 
-EncoderFailure measure_files(const EncoderContext& context)
+CaseFailure measure_files(const EncoderContext& context)
 {
     const test::TemporaryFolder folder("bench-encoder");
     const std::uint32_t passes = context.options.passes_or(3, 1);
@@ -130,7 +130,7 @@ EncoderFailure measure_files(const EncoderContext& context)
     }
     const auto rows_of = [&](const char* part)
     {
-        Row common = context.common_row(part, scene);
+        Row common = context.common_row(scene, part);
         common.hash = short_hash(store.value());
         return CaseRows(context.rows, common);
     };

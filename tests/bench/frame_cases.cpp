@@ -26,11 +26,7 @@ constexpr std::size_t kColdShare = 4;
 
 CaseRows rows_of(const CaseContext& context, const FrameRun& run, std::uint64_t hash)
 {
-    Row common;
-    common.suite = "frame";
-    common.test_case = context.name;
-    common.scene = run.scene.model.name;
-    common.seed = kSeed;
+    Row common = context.common_row(run.scene.model.name);
     common.frames = run.counted();
     common.hash = hash;
     return {context.rows, common};

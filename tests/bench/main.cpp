@@ -32,12 +32,6 @@ struct CommandLine
     BenchOptions options;
 };
 
-std::vector<Suite> all_suites()
-{
-    return {frame_suite(),  force_suite(),     encoder_suite(),
-            table1_suite(), stability_suite(), stream_suite()};
-}
-
 std::string suite_names()
 {
     std::string names;
@@ -46,18 +40,6 @@ std::string suite_names()
         names += (names.empty() ? "" : ", ") + std::string(suite.name);
     }
     return names;
-}
-
-std::optional<Suite> find_suite(const std::string& name)
-{
-    for (const Suite& suite : all_suites())
-    {
-        if (suite.name == name)
-        {
-            return suite;
-        }
-    }
-    return std::nullopt;
 }
 
 /// What a user may call a unit of length.
@@ -159,7 +141,7 @@ std::optional<std::string> wrong_usage(const CommandLine& line)
     {
         return "--full: only the suite stability has it; the others do all without --quick";
     }
-    const std::vector<std::string> names = suite->case_names();
+    const std::vector<std::string> names = case_names(*suite);
     for (const std::string& name : line.options.only)
     {
         if (std::find(names.begin(), names.end(), name) == names.end())
@@ -209,8 +191,9 @@ int run(int argc, char** argv)
     const Suite suite = *find_suite(line.suite);
     const bool is_recorded = !line.options.trajectory.file.empty();
     Rows rows;
-    const auto refused =
-        is_recorded ? compare_trajectory(line.options, rows) : suite.run(line.options, rows);
+    SceneStore scenes(line.options.cache);
+    const auto refused = is_recorded ? compare_trajectory(line.options, rows)
+                                     : run_suite(suite, line.options, scenes, rows);
     const auto table = is_recorded ? to_columns : suite.to_table;
     fmt::print("{}", line.all ? to_table(rows) : table(rows)); // What came before a failure, too.
     if (refused)

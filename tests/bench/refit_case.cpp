@@ -125,11 +125,7 @@ CaseFailure run_refit_case(const CaseContext& context, const RefitCase& test_cas
     const auto move_m = static_cast<float>(kMove_diag * scene.value()->model.diagonal_m);
     const ChangeTimes vertices = time_vertices(model.tree, places, move_m, passes);
 
-    Row common;
-    common.suite = "frame";
-    common.test_case = context.name;
-    common.scene = scene.value()->model.name;
-    common.seed = kSeed;
+    Row common = context.common_row(scene.value()->model.name);
     common.frames = kPlaces;
     common.hash = model.forest.state_hash() + faces.nodes + 3 * vertices.nodes;
     CaseRows rows(context.rows, common);

@@ -17,15 +17,13 @@ struct LinkManner
     double loss{0.0};
 };
 
-/// One end: where a program has to live, and what its DDS has to know.
+/// One end: where a program has to live, and what its DDS has to know. Unless it is made, this
+/// machine's loopback interface, which programs of ours configure themselves.
 struct NetworkEnd
 {
     std::string network; ///< ProgramSetup::network.
     std::string dds_uri;
 };
-
-/// The loopback interface, with the same recovery as the networks.
-[[nodiscard]] NetworkEnd loopback_end();
 
 /// UDP payload that the relay has seen, both ways together.
 struct LinkTraffic

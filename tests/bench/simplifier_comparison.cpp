@@ -83,7 +83,7 @@ public:
     {
     }
 
-    [[nodiscard]] EncoderFailure run();
+    [[nodiscard]] CaseFailure run();
 
 private:
     [[nodiscard]] CaseRows line_of(const MeshSimplifier& simplifier) const;
@@ -103,7 +103,7 @@ private:
     SurfaceReference reference_;
 };
 
-EncoderFailure Comparison::run()
+CaseFailure Comparison::run()
 {
     const SimplifiedMesh on_two = fastest(kOursOnTwo);
     const PinnedCore pinned(context_.options.core);
@@ -131,7 +131,7 @@ EncoderFailure Comparison::run()
 
 CaseRows Comparison::line_of(const MeshSimplifier& simplifier) const
 {
-    Row common = context_.common_row("Simplification", scene_);
+    Row common = context_.common_row(scene_, "Simplification");
     common.by = simplifier.name;
     common.frames = samples_;
     return {context_.rows, common};
@@ -194,7 +194,7 @@ void Comparison::add_ratios(CaseRows& rows, const MeshSimplifier& peer, const Su
 
 } // namespace
 
-EncoderFailure compare_simplifiers(const EncoderContext& context)
+CaseFailure compare_simplifiers(const EncoderContext& context)
 {
     if (!context.mesh.is_compared)
     {

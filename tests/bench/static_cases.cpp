@@ -30,11 +30,7 @@ constexpr std::uint32_t kColdFrames = 1'000;
 Row common_row(const CaseContext& context, const Scene& scene, std::size_t frames,
                std::uint64_t hash)
 {
-    Row row;
-    row.suite = "frame";
-    row.test_case = context.name;
-    row.scene = scene.model.name;
-    row.seed = kSeed;
+    Row row = context.common_row(scene.model.name);
     row.frames = frames;
     row.hash = hash;
     return row;

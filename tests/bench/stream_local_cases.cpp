@@ -3,7 +3,6 @@
 
 /// Prediction and cache, in virtual time: the same figures in every run.
 
-#include "tests/bench/random.hpp"
 #include "tests/bench/stream_cases.hpp"
 #include "tests/bench/stream_run.hpp"
 
@@ -50,17 +49,6 @@ TapTour make_tour(const CaseContext& context, const Scene& scene, double speed_d
     return tap_tour(scene.touch(), manner);
 }
 
-Row common_row(const CaseContext& context, const char* part, const Scene& scene)
-{
-    Row common;
-    common.suite = "stream";
-    common.part = part;
-    common.test_case = context.name;
-    common.scene = scene.model.name;
-    common.seed = kSeed;
-    return common;
-}
-
 } // namespace
 
 CaseFailure run_prediction_case(const CaseContext& context, const PredictionCase& test_case)
@@ -79,7 +67,7 @@ CaseFailure run_prediction_case(const CaseContext& context, const PredictionCase
     {
         run.rig.prediction = static_cast<Prediction>(i);
         const StreamFigures figures = stream(run);
-        Row common = common_row(context, "prediction", *scene.value());
+        Row common = context.common_row(scene.value()->model.name, "prediction");
         common.by = prediction_name(run.rig.prediction);
         common.frames = figures.frames;
         common.hash = figures.hash;
@@ -129,7 +117,7 @@ CaseFailure run_cache_case(const CaseContext& context, const CacheCase& test_cas
         run.rig.static_when_it_fits = regime.is_whole;
         run.rig.pool_bytes *= regime.is_whole ? 3 : 1;
         const StreamFigures figures = stream(run);
-        Row common = common_row(context, "cache", *scene.value());
+        Row common = context.common_row(scene.value()->model.name, "cache");
         common.by = regime.name;
         common.frames = figures.frames;
         common.hash = figures.hash;

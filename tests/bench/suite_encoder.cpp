@@ -135,52 +135,33 @@ std::vector<EncoderMesh> all_meshes()
 /// memory begin with what this one has.
 constexpr std::array kParts{measure_files, compare_simplifiers, measure_bounds};
 
-std::vector<std::string> mesh_names()
+CaseFailure run_mesh(const CaseContext& context, const EncoderMesh& mesh)
 {
-    std::vector<std::string> names;
-    for (const EncoderMesh& mesh : all_meshes())
+    for (const auto& run_part : kParts)
     {
-        names.emplace_back(mesh.name);
-    }
-    return names;
-}
-
-std::optional<std::string> run_encoder_suite(const BenchOptions& options, Rows& rows)
-{
-    for (const EncoderMesh& mesh : all_meshes())
-    {
-        if (!is_chosen(options, mesh.name, mesh.when))
+        if (CaseFailure failure = run_part({context, mesh}))
         {
-            continue;
-        }
-        fmt::print(stderr, "{}\n", mesh.name);
-        for (const auto& run_part : kParts)
-        {
-            if (const EncoderFailure failure = run_part({mesh, options, rows}))
-            {
-                return fmt::format("encoder {}: {}", mesh.name, *failure);
-            }
+            return failure;
         }
     }
     return std::nullopt;
 }
 
-} // namespace
-
-Row EncoderContext::common_row(const char* part, const std::string& scene) const
+std::vector<Case> all_cases()
 {
-    Row common;
-    common.suite = "encoder";
-    common.part = part;
-    common.test_case = mesh.name;
-    common.scene = scene;
-    common.seed = kSeed;
-    return common;
+    std::vector<Case> cases;
+    for (const EncoderMesh& mesh : all_meshes())
+    {
+        cases.push_back(make_case(mesh.name, mesh.when, run_mesh, mesh));
+    }
+    return cases;
 }
+
+} // namespace
 
 Suite encoder_suite()
 {
-    return {"encoder", mesh_names, run_encoder_suite, to_columns};
+    return {"encoder", all_cases, to_columns};
 }
 
 } // namespace tactus::bench

@@ -6,7 +6,6 @@
 
 #include "host_tools/shapes/shapes.hpp"
 #include "tests/bench/bench_report.hpp"
-#include "tests/bench/cases.hpp"
 #include "tests/bench/force_rows.hpp"
 #include "tests/bench/measuring.hpp"
 #include "tests/bench/suites.hpp"
@@ -18,6 +17,7 @@
 #include <cmath>
 #include <iterator>
 #include <map>
+#include <memory>
 #include <utility>
 
 namespace tactus::bench
@@ -60,18 +60,15 @@ constexpr std::array<MeshCase, 6> kMeshes{{{"5k", When::always, 5'120, 16},
                                            {"1.3M", When::full_only, 1'310'720, 20, 0.03},
                                            {"tiny", When::named_only, 1'280, 16, kNoGoal, false}}};
 constexpr const char* kFinest = "1.3M";
-constexpr const char* kUnits = "units";
 
 /// Error p99 of the last mesh's sweeps, by speed and radius.
 using CoarserErrors = std::map<std::pair<double, double>, double>;
 
-struct SweepContext
+struct SweepContext : CaseContext
 {
     const MeshCase& mesh;
-    const BenchOptions& options;
     const Scene& scene;
     const Faceting& faceting;
-    Rows& rows;
     CoarserErrors& coarser;
 };
 
@@ -147,13 +144,9 @@ CaseFailure run_sweep(const SweepContext& context, double radius_m, double speed
     const ForceFigures figures = measure_forces(
         trace.value(), counted(run.goals_m, run.lead_in),
         counted(in_model(sweep.rests_m, context.scene, 1.0), run.lead_in), touch, lag_m);
-    Row common;
-    common.suite = "force";
-    common.part = "Sweeps";
-    common.test_case =
-        fmt::format("{}, {} m/s, {} mm", context.mesh.name, speed_m_per_s, 1e3 * radius_m);
+    Row common = context.common_row(context.scene.model.name, "Sweeps");
+    common.test_case += fmt::format(", {} m/s, {} mm", speed_m_per_s, 1e3 * radius_m);
     common.by = "Tactus";
-    common.scene = context.scene.model.name;
     common.frames = trace.value().outputs.size();
     common.hash = trace.value().hash;
     CaseRows rows(context.rows, common);
@@ -167,12 +160,7 @@ CaseFailure run_sweep(const SweepContext& context, double radius_m, double speed
 
 void add_mesh_rows(const SweepContext& context)
 {
-    Row common;
-    common.suite = "force";
-    common.part = "Meshes";
-    common.test_case = context.mesh.name;
-    common.scene = context.scene.model.name;
-    CaseRows rows(context.rows, common);
+    CaseRows rows(context.rows, context.common_row(context.scene.model.name, "Meshes"));
     rows.add("faces", static_cast<double>(context.scene.model.faces.size()), "");
     rows.add("position bits", context.mesh.position_bits, "");
     rows.add("off the surface", 1e6 * context.faceting.distance_m, "um");
@@ -185,20 +173,19 @@ void add_mesh_rows(const SweepContext& context)
     }
 }
 
-CaseFailure run_mesh(const MeshCase& mesh, const BenchOptions& options, SceneStore& scenes,
-                     Rows& rows, CoarserErrors& coarser)
+CaseFailure run_mesh(const CaseContext& of_case, const MeshCase& mesh, CoarserErrors& coarser)
 {
     const auto scene =
-        scenes.get(bumpy_mesh(mesh.faces, mesh.position_bits, 1.0), mesh.position_bits);
+        of_case.scenes.get(bumpy_mesh(mesh.faces, mesh.position_bits, 1.0), mesh.position_bits);
     if (!scene)
     {
         return scene.error().text;
     }
     const Faceting faceting =
         measure_faceting(scene.value()->model.faces, scene.value()->model.origin_m);
-    const SweepContext context{mesh, options, *scene.value(), faceting, rows, coarser};
+    const SweepContext context{of_case, mesh, *scene.value(), faceting, coarser};
     add_mesh_rows(context);
-    const PinnedCore pinned(options.core);
+    const PinnedCore pinned(context.options.core);
     for (const double radius_m : kRadii_m)
     {
         for (const double speed_m_per_s : kSpeeds_m_per_s)
@@ -229,17 +216,17 @@ Result<ForceTrace, SceneError> scaled_forces(SceneStore& scenes, std::uint32_t f
 
 /// A power of two changes no bit. Any other factor rounds differently: corners by a part in 2^24 of
 /// the box, which with what the proxy tolerates stays below a thousandth of the force.
-CaseFailure run_units(const BenchOptions& options, SceneStore& scenes, Rows& rows)
+CaseFailure run_units(const CaseContext& context)
 {
-    const std::uint32_t frames = options.frames_or(10'000, 2'000);
-    const auto metres = scaled_forces(scenes, frames, 1.0);
+    const std::uint32_t frames = context.options.frames_or(10'000, 2'000);
+    const auto metres = scaled_forces(context.scenes, frames, 1.0);
     if (!metres)
     {
         return metres.error().text;
     }
     for (const double scale : {1'024.0, 1'000.0})
     {
-        const auto scaled = scaled_forces(scenes, frames, scale);
+        const auto scaled = scaled_forces(context.scenes, frames, scale);
         if (!scaled)
         {
             return scaled.error().text;
@@ -253,14 +240,12 @@ CaseFailure run_units(const BenchOptions& options, SceneStore& scenes, Rows& row
             largest_n = std::max(largest_n, (there - here).norm());
             others += there == here ? 0U : 1U;
         }
-        Row common;
-        common.suite = "force";
-        common.part = "Units";
-        common.test_case = fmt::format("all lengths x {:.0f}", scale);
-        common.scene = common.test_case;
+        const std::string lengths = fmt::format("all lengths x {:.0f}", scale);
+        Row common = context.common_row(lengths, "Units");
+        common.test_case = lengths;
         common.frames = frames;
         common.hash = scaled.value().hash;
-        CaseRows lines(rows, common);
+        CaseRows lines(context.rows, common);
         const bool is_exact = std::exp2(std::round(std::log2(scale))) == scale;
         const double tolerance_n = 1e-3 * kStiffness_n_per_m * kDepth_m;
         lines.add("frames with another force", static_cast<double>(others), "",
@@ -270,43 +255,24 @@ CaseFailure run_units(const BenchOptions& options, SceneStore& scenes, Rows& row
     return std::nullopt;
 }
 
-std::vector<std::string> force_case_names()
+std::vector<Case> all_cases()
 {
-    std::vector<std::string> names;
+    std::vector<Case> cases;
+    const auto coarser = std::make_shared<CoarserErrors>();
     for (const MeshCase& mesh : kMeshes)
     {
-        names.emplace_back(mesh.name);
+        cases.push_back({mesh.name, mesh.when, [&mesh, coarser](const CaseContext& context) {
+                             return run_mesh(context, mesh, *coarser);
+                         }});
     }
-    names.emplace_back(kUnits);
-    return names;
-}
-
-std::optional<std::string> run_force_suite(const BenchOptions& options, Rows& rows)
-{
-    SceneStore scenes(options.cache);
-    CoarserErrors coarser;
-    for (const MeshCase& mesh : kMeshes)
-    {
-        if (!is_chosen(options, mesh.name, mesh.when))
-        {
-            continue;
-        }
-        fmt::print(stderr, "{}\n", mesh.name);
-        if (const auto failure = run_mesh(mesh, options, scenes, rows, coarser))
-        {
-            return fmt::format("force {}: {}", mesh.name, *failure);
-        }
-    }
-    if (is_chosen(options, kUnits, When::always))
-    {
-        fmt::print(stderr, "{}\n", kUnits);
-        if (const auto failure = run_units(options, scenes, rows))
-        {
-            return fmt::format("force {}: {}", kUnits, *failure);
-        }
-    }
-    add_recorded_peer(rows);
-    return std::nullopt;
+    cases.push_back({"units", When::always, run_units});
+    cases.push_back({"recorded", When::always,
+                     [](const CaseContext& context) -> CaseFailure
+                     {
+                         add_recorded_peer(context.rows);
+                         return std::nullopt;
+                     }});
+    return cases;
 }
 
 /// The sweeps as the recorded table has them, the rest as columns.
@@ -327,7 +293,7 @@ std::string to_force_tables(const Rows& rows)
 
 Suite force_suite()
 {
-    return {"force", force_case_names, run_force_suite, to_force_tables, true};
+    return {"force", all_cases, to_force_tables, true};
 }
 
 } // namespace tactus::bench

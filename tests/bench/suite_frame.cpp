@@ -5,15 +5,8 @@
 /// in the cases' own files.
 
 #include "tests/bench/bench_report.hpp"
-#include "tests/bench/cases.hpp"
 #include "tests/bench/measuring.hpp"
-#include "tests/bench/random.hpp"
 #include "tests/bench/suites.hpp"
-
-#include <fmt/format.h>
-
-#include <array>
-#include <functional>
 
 namespace tactus::bench
 {
@@ -21,22 +14,14 @@ namespace tactus::bench
 namespace
 {
 
-struct Case
-{
-    const char* name;
-    When when;
-    std::function<CaseFailure(const CaseContext&)> run;
-};
-
 constexpr std::size_t kMiB = std::size_t{1} << 20U;
 
-template <typename Parameters>
-Case make_case(const char* name, When when,
-               CaseFailure (*run)(const CaseContext&, const Parameters&),
-               const Parameters& parameters)
+CaseFailure run_clock_case(const CaseContext& context)
 {
-    return {name, when,
-            [run, parameters](const CaseContext& context) { return run(context, parameters); }};
+    Row common = context.common_row("none");
+    common.frames = 1'000;
+    CaseRows(context.rows, common).add("two readings", clock_cost_us(), "us");
+    return std::nullopt;
 }
 
 /// What the pages call the goals' table, row by row.
@@ -45,6 +30,7 @@ std::vector<Case> all_cases()
     const auto frame = [](const char* name, When when, const FrameCase& test_case)
     { return make_case(name, when, run_frame_case, test_case); };
     return {
+        {"clock", When::always, run_clock_case},
         frame("bunny-0.1", When::always, {kBunny, 0.1, 64, 2 * kMiB, 1.0, 4.0, 12.0}),
         frame("bunny-2", When::always, {kBunny, 2.0, 64, 2 * kMiB, 4.0, 16.0, 25.0}),
         frame("1.1M-0.5", When::always, {kFineBunny, 0.5, 64, 4 * kMiB, 9.0, 28.0, 35.0, 120.0}),
@@ -68,53 +54,11 @@ std::vector<Case> all_cases()
     };
 }
 
-void add_clock(Rows& rows)
-{
-    Row row;
-    row.suite = "frame";
-    row.test_case = "clock";
-    row.metric = "two readings";
-    row.value = clock_cost_us();
-    row.unit = "us";
-    row.scene = "none";
-    row.frames = 1'000;
-    rows.push_back(row);
-}
-
-std::vector<std::string> frame_case_names()
-{
-    std::vector<std::string> names;
-    for (const Case& one : all_cases())
-    {
-        names.emplace_back(one.name);
-    }
-    return names;
-}
-
-std::optional<std::string> run_frame_suite(const BenchOptions& options, Rows& rows)
-{
-    SceneStore scenes(options.cache);
-    add_clock(rows);
-    for (const Case& one : all_cases())
-    {
-        if (!is_chosen(options, one.name, one.when))
-        {
-            continue;
-        }
-        fmt::print(stderr, "{}\n", one.name);
-        if (const CaseFailure failure = one.run({one.name, options, scenes, rows}))
-        {
-            return fmt::format("frame {}: {}", one.name, *failure);
-        }
-    }
-    return std::nullopt;
-}
-
 } // namespace
 
 Suite frame_suite()
 {
-    return {"frame", frame_case_names, run_frame_suite, to_goal_table};
+    return {"frame", all_cases, to_goal_table};
 }
 
 } // namespace tactus::bench

@@ -328,43 +328,36 @@ constexpr std::array<Part, 10> kParts{{{"kernels", try_kernels},
                                        {"day", try_day},
                                        {"garbage", try_garbage}}};
 
-std::vector<std::string> part_names()
+CaseFailure run_part(const CaseContext& context, const Part& part)
 {
-    std::vector<std::string> names;
-    for (const Part& part : kParts)
-    {
-        names.emplace_back(part.name);
-    }
-    return names;
+    const bool is_full = context.options.full;
+    (*part.run)(is_full ? kFull : kSized, is_full,
+                [&](const TrialFigures& figures)
+                {
+                    for (const std::string& text : figures.texts)
+                    {
+                        fmt::print(stderr, "violation: {}\n", text);
+                    }
+                    add_trial_rows(figures, part.name, context.rows);
+                });
+    return std::nullopt;
 }
 
-std::optional<std::string> run_stability_suite(const BenchOptions& options, Rows& rows)
+std::vector<Case> all_parts()
 {
+    std::vector<Case> cases;
     for (const Part& part : kParts)
     {
-        if (!is_chosen(options, part.name, When::always))
-        {
-            continue;
-        }
-        fmt::print(stderr, "{}\n", part.name);
-        (*part.run)(options.full ? kFull : kSized, options.full,
-                    [&](const TrialFigures& figures)
-                    {
-                        for (const std::string& text : figures.texts)
-                        {
-                            fmt::print(stderr, "violation: {}\n", text);
-                        }
-                        add_trial_rows(figures, part.name, rows);
-                    });
+        cases.push_back(make_case(part.name, When::always, run_part, part));
     }
-    return std::nullopt;
+    return cases;
 }
 
 } // namespace
 
 Suite stability_suite()
 {
-    return {"stability", part_names, run_stability_suite, to_trial_table, true};
+    return {"stability", all_parts, to_trial_table, true};
 }
 
 } // namespace tactus::bench

@@ -8,10 +8,6 @@
 #include "tests/bench/stream_cases.hpp"
 #include "tests/bench/suites.hpp"
 
-#include <fmt/format.h>
-
-#include <functional>
-
 namespace tactus::bench
 {
 
@@ -19,22 +15,6 @@ namespace
 {
 
 constexpr SceneSource kSmall{"small", nullptr, 0, 60'000};
-
-struct Case
-{
-    const char* name;
-    When when;
-    std::function<CaseFailure(const CaseContext&)> run;
-};
-
-template <typename Parameters>
-Case make_case(const char* name, When when,
-               CaseFailure (*run)(const CaseContext&, const Parameters&),
-               const Parameters& parameters)
-{
-    return {name, when,
-            [run, parameters](const CaseContext& context) { return run(context, parameters); }};
-}
 
 std::vector<Case> all_cases()
 {
@@ -78,39 +58,11 @@ std::vector<Case> all_cases()
     };
 }
 
-std::vector<std::string> stream_case_names()
-{
-    std::vector<std::string> names;
-    for (const Case& one : all_cases())
-    {
-        names.emplace_back(one.name);
-    }
-    return names;
-}
-
-std::optional<std::string> run_stream_suite(const BenchOptions& options, Rows& rows)
-{
-    SceneStore scenes(options.cache);
-    for (const Case& one : all_cases())
-    {
-        if (!is_chosen(options, one.name, one.when))
-        {
-            continue;
-        }
-        fmt::print(stderr, "{}\n", one.name);
-        if (const CaseFailure failure = one.run({one.name, options, scenes, rows}))
-        {
-            return fmt::format("stream {}: {}", one.name, *failure);
-        }
-    }
-    return std::nullopt;
-}
-
 } // namespace
 
 Suite stream_suite()
 {
-    return {"stream", stream_case_names, run_stream_suite, to_columns};
+    return {"stream", all_cases, to_columns};
 }
 
 } // namespace tactus::bench

@@ -129,7 +129,7 @@ std::optional<std::uint32_t> binary_height(Model& model)
     return highest;
 }
 
-std::optional<std::string> run_case(const Table1Case& test_case, Rows& rows)
+CaseFailure run_case(const CaseContext& context, const Table1Case& test_case)
 {
     const auto named = test_case.mesh();
     if (!named)
@@ -149,11 +149,7 @@ std::optional<std::string> run_case(const Table1Case& test_case, Rows& rows)
     {
         return scene.model.name + ": the binary tree has a face below an inactive node";
     }
-    Row common;
-    common.suite = "table1";
-    common.test_case = test_case.name;
-    common.scene = scene.model.name;
-    CaseRows table(rows, common);
+    CaseRows table(context.rows, context.common_row(scene.model.name));
     const HeaderFields& fields = model.header.fields();
     table.add("faces", fields.source_faces, "");
     table.add("vertices", fields.source_vertices, "");
@@ -166,36 +162,21 @@ std::optional<std::string> run_case(const Table1Case& test_case, Rows& rows)
     return std::nullopt;
 }
 
-std::vector<std::string> case_names()
+std::vector<Case> all_cases()
 {
-    std::vector<std::string> names;
-    std::transform(kCases.begin(), kCases.end(), std::back_inserter(names),
-                   [](const Table1Case& one) { return one.name; });
-    return names;
-}
-
-std::optional<std::string> run_table1(const BenchOptions& options, Rows& rows)
-{
+    std::vector<Case> cases;
     for (const Table1Case& one : kCases)
     {
-        if (!is_chosen(options, one.name, When::always))
-        {
-            continue;
-        }
-        fmt::print(stderr, "{}\n", one.name);
-        if (const auto failure = run_case(one, rows))
-        {
-            return fmt::format("table1 {}: {}", one.name, *failure);
-        }
+        cases.push_back(make_case(one.name, When::always, run_case, one));
     }
-    return std::nullopt;
+    return cases;
 }
 
 } // namespace
 
 Suite table1_suite()
 {
-    return {"table1", case_names, run_table1, to_columns};
+    return {"table1", all_cases, to_columns};
 }
 
 } // namespace tactus::bench

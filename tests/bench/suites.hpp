@@ -2,8 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "tests/bench/bench_options.hpp"
-#include "tests/bench/bench_row.hpp"
+#include "tests/bench/cases.hpp"
 
 #include <optional>
 #include <string>
@@ -17,10 +16,7 @@ struct Suite
 {
     const char* name;
     /// In the order of the table; those that only run when named included.
-    std::vector<std::string> (*case_names)();
-    /// Runs the chosen cases, each on one core, and adds their rows. Returns a line when a case
-    /// could not be run or gave wrong answers.
-    std::optional<std::string> (*run)(const BenchOptions& options, Rows& rows);
+    std::vector<Case> (*cases)();
     /// What is printed unless every row is asked for.
     std::string (*to_table)(const Rows& rows);
     /// Its goals are laws: the program leaves with code 1 when one isn't met, asked or not.
@@ -33,5 +29,15 @@ struct Suite
 [[nodiscard]] Suite stability_suite();
 [[nodiscard]] Suite stream_suite();
 [[nodiscard]] Suite table1_suite();
+
+/// In the order in which they are told.
+[[nodiscard]] std::vector<Suite> all_suites();
+[[nodiscard]] std::optional<Suite> find_suite(const std::string& name);
+[[nodiscard]] std::vector<std::string> case_names(const Suite& suite);
+
+/// Runs the chosen cases, each on one core, and adds their rows. Returns a line when a case could
+/// not be run or gave wrong answers.
+[[nodiscard]] CaseFailure run_suite(const Suite& suite, const BenchOptions& options,
+                                    SceneStore& scenes, Rows& rows);
 
 } // namespace tactus::bench

@@ -210,11 +210,7 @@ CaseFailure run_volume_case(const CaseContext& context, const VolumeCase& test_c
     {
         return "the volumes give different answers";
     }
-    Row common;
-    common.suite = "frame";
-    common.test_case = context.name;
-    common.scene = touched.model.name;
-    common.seed = kSeed;
+    Row common = context.common_row(touched.model.name);
     common.frames = context.options.frames_or(4 * kCycleFrames, kCycleFrames);
     common.hash = dop.value().hash;
     CaseRows rows(context.rows, common);

@@ -27,6 +27,7 @@ struct Hardship
     LoopbackFaults faults;
     std::uint32_t courier_steps;
     bool static_when_it_fits{false};
+    Prediction prediction{Prediction::automatic};
 };
 
 std::vector<Hardship> hardships()
@@ -47,11 +48,12 @@ std::vector<Hardship> hardships()
     bad.delay_polls_max = 200;
     LoopbackFaults uneven;
     uneven.delay_polls_max = 40;
-    return {{"usual", {}, std::size_t{8} << 20U, {}, 4},
-            {"starved", starved, std::size_t{8} << 20U, uneven, 1},
-            {"tiny-pools", {}, std::size_t{400} << 10U, uneven, 2},
-            {"bad-link", {}, std::size_t{600} << 10U, bad, 3},
-            {"static", {}, std::size_t{8} << 20U, uneven, 2, true}};
+    return {
+        {"usual", {}, std::size_t{8} << 20U, {}, 4},
+        {"starved", starved, std::size_t{8} << 20U, uneven, 1},
+        {"tiny-pools", {}, std::size_t{400} << 10U, uneven, 2, false, Prediction::local_neighbours},
+        {"bad-link", {}, std::size_t{600} << 10U, bad, 3},
+        {"static", {}, std::size_t{8} << 20U, uneven, 2, true}};
 }
 
 /// A goal that slides, leaps and rests, and a sample that is invalid now and then.
@@ -99,6 +101,7 @@ std::vector<std::byte> record_run(const TestModel& model, const Hardship& hardsh
     options.courier_steps_per_frame = hardship.courier_steps;
     options.record = true;
     options.static_when_it_fits = hardship.static_when_it_fits;
+    options.prediction = hardship.prediction;
     FrameRig rig(model, options);
     Budgets budgets = hardship.budgets;
     for (int frame = 0; frame < kFrames; ++frame)

@@ -91,13 +91,33 @@ bool say(const std::string& line)
     return std::puts(line.c_str()) >= 0 && std::fflush(stdout) == 0;
 }
 
+/// What docs/protocol.md says of a network; without a double quote, so that it stands in JSON as it
+/// is.
+std::string dds_configuration(const char* interface)
+{
+    return fmt::format(
+        "<CycloneDDS><Domain id='any'><General>"
+        "<Interfaces><NetworkInterface name='{}' multicast='false'/></Interfaces>"
+        "<AllowMulticast>false</AllowMulticast><MaxMessageSize>1400B</MaxMessageSize>"
+        "<FragmentSize>1300B</FragmentSize></General>"
+        "<Discovery><ParticipantIndex>auto</ParticipantIndex>"
+        "<MaxAutoParticipantIndex>64</MaxAutoParticipantIndex><LeaseDuration>1 s</LeaseDuration>"
+        "<Peers><Peer address='{}'/><Peer address='{}'/></Peers></Discovery>"
+        "<Internal><HeartbeatInterval min='2 ms' minsched='2 ms' max='20 ms'>5 ms"
+        "</HeartbeatInterval><NackDelay>1 ms</NackDelay><PreEmptiveAckDelay>2 ms"
+        "</PreEmptiveAckDelay><MultipleReceiveThreads>false</MultipleReceiveThreads></Internal>"
+        "</Domain></CycloneDDS>",
+        interface, kHostAddress, kControllerAddress);
+}
+
 std::string ready_line(const TapNetwork& host, const TapNetwork& controller)
 {
     const auto side = [](const TapNetwork& network, const char* interface, const char* address)
     {
         return nlohmann::ordered_json{{"fd", network.namespace_descriptor()},
                                       {"interface", interface},
-                                      {"address", std::string(address) + "/24"}};
+                                      {"address", std::string(address) + "/24"},
+                                      {"dds", dds_configuration(interface)}};
     };
     return nlohmann::ordered_json{
         {"pid", ::getpid()},

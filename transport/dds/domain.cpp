@@ -21,7 +21,7 @@ namespace
 {
 
 /// Recovery: with Cyclone's defaults one lost sample costs 100 to 200 ms. One receive thread, so
-/// that every thread's stack can be set by name. Index range: 65 participants on one machine.
+/// that every thread's stack can be set by name. Index range: 100 participants on one machine.
 constexpr const char* kConfiguration = R"(<CycloneDDS><Domain id="any">
 <General>
   <Interfaces><NetworkInterface name="lo" multicast="false"/></Interfaces>
@@ -29,7 +29,7 @@ constexpr const char* kConfiguration = R"(<CycloneDDS><Domain id="any">
 </General>
 <Discovery>
   <ParticipantIndex>auto</ParticipantIndex>
-  <MaxAutoParticipantIndex>64</MaxAutoParticipantIndex>
+  <MaxAutoParticipantIndex>99</MaxAutoParticipantIndex>
   <LeaseDuration>1 s</LeaseDuration>
   <Peers><Peer address="127.0.0.1"/></Peers>
 </Discovery>

@@ -134,8 +134,9 @@ ModelIdentity identity_of(const tactus_v1_ModelTelemetry& wire)
     return identity;
 }
 
-/// Everything but tools and models.
-void copy_counts(const Telemetry& from, tactus_v1_Telemetry& to)
+/// Everything but tools and models, to the wire or from it.
+template <typename From, typename To>
+void copy_counts(const From& from, To& to)
 {
     to.frame = from.frame;
     to.period_ns = from.period_ns;
@@ -149,24 +150,6 @@ void copy_counts(const Telemetry& from, tactus_v1_Telemetry& to)
     to.machine_late = from.machine_late;
     to.faults_now = from.faults_now;
     to.faults_seen = from.faults_seen;
-}
-
-Telemetry counts_of(const tactus_v1_Telemetry& from)
-{
-    Telemetry to;
-    to.frame = from.frame;
-    to.period_ns = from.period_ns;
-    to.time_ns = from.time_ns;
-    to.exact = from.exact;
-    to.decided = from.decided;
-    to.bracket = from.bracket;
-    to.stale = from.stale;
-    to.missed = from.missed;
-    to.own_faults = from.own_faults;
-    to.machine_late = from.machine_late;
-    to.faults_now = from.faults_now;
-    to.faults_seen = from.faults_seen;
-    return to;
 }
 
 } // namespace
@@ -266,7 +249,7 @@ bool TelemetryReader::try_take(const tactus_v1_Telemetry& sample)
     {
         return false;
     }
-    news.telemetry = counts_of(sample);
+    copy_counts(sample, news.telemetry);
     news.telemetry.tool_count = sample.tools._length;
     news.telemetry.model_count = sample.models._length;
     for (std::uint32_t i = 0; i < sample.tools._length; ++i)

@@ -30,9 +30,10 @@ done
 start_publisher bumpy.spm torus.spm
 run_hrtc --model bumpy --model torus --place 0,0,0 --place 0.3,0,0,0,30,0,2 \
     --material 300,0.4,0.3,1 --tool sphere:0.002 --tool sphere:0.004 --duration 2 \
-    --pool-mib 1.25 --frame-budget-us 300 --record run.rec
+    --pool-mib 1.25 --frame-budget-us 300 --predict quadratic --record run.rec
 check_clean report.json
 check report.json frames == 2000 recording.frames == 2000 recording.bytes '>' 100000
+grep -q '"prediction": *"quadratic"' report.json || fault 'the report tells of another prediction'
 grep -q '^recording   2000 frames, ' hrtc.log || fault 'the summary has no recording'
 ! grep -q 'incomplete' hrtc.log || fault 'frames of the recording are lost'
 [[ -z $(compgen -G '*.partial') ]] || fault 'left behind: a partial file'

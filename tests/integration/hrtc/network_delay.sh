@@ -41,14 +41,7 @@ for try in 1 2 3; do
     ((passed_us >= 20000)) || fault "a round trip of $passed_us us over 10 ms each way"
 done
 
-"$build" --shape bumpy-sphere --faces 100000 -o large.spm >build.log 2>&1
-start_publisher large.spm
-run_hrtc --model large --device sim:touch --pool-mib 2 --duration 4 --record run.rec
-check report.json frames == 4000 wire.host_lost == 0 safety.begun.host == 0 \
-    answers.exact+answers.decided '>' '0.9*frames'
-check_wire_run report.json
-check_contact report.json force.contact_share 0.3
-judge_run large.spm
+touch_large_model
 count_frames counts.json
 check counts.json to_controller.lost+to_controller.duplicated+to_controller.cut == 0 \
     to_host.lost+to_host.duplicated+to_host.cut == 0 \

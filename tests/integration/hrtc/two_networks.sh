@@ -12,31 +12,6 @@ readonly touch_force_max_n=3.3
 # line is written.
 readonly notice_ms=500 machine_ms=250
 
-# dds_configuration INTERFACE ADDRESS PEER: what docs/protocol.md says of a real network.
-dds_configuration() {
-    cat <<XML
-<CycloneDDS><Domain id="any">
-<General>
-  <Interfaces><NetworkInterface name="$1" multicast="false"/></Interfaces>
-  <AllowMulticast>false</AllowMulticast>
-  <MaxMessageSize>1400B</MaxMessageSize><FragmentSize>1300B</FragmentSize>
-</General>
-<Discovery>
-  <ParticipantIndex>auto</ParticipantIndex>
-  <MaxAutoParticipantIndex>64</MaxAutoParticipantIndex>
-  <LeaseDuration>1 s</LeaseDuration>
-  <Peers><Peer address="$2"/><Peer address="$3"/></Peers>
-</Discovery>
-<Internal>
-  <HeartbeatInterval min="2 ms" minsched="2 ms" max="20 ms">5 ms</HeartbeatInterval>
-  <NackDelay>1 ms</NackDelay>
-  <PreEmptiveAckDelay>2 ms</PreEmptiveAckDelay>
-  <MultipleReceiveThreads>false</MultipleReceiveThreads>
-</Internal>
-</Domain></CycloneDDS>
-XML
-}
-
 # skip_without_networks: ends the script where nobody may make a network.
 skip_without_networks() {
     local reason=''
@@ -48,7 +23,7 @@ skip_without_networks() {
 
 # start_relay ARGUMENT...: returns when both networks are up; its id is in $relay.
 start_relay() {
-    local ready side='"fd":([0-9]+),"interface":"([^"]+)","address":"([0-9.]+)/24"'
+    local ready side='"fd":([0-9]+),[^}]*"dds":"([^"]+)"'
     skip_without_networks
     coproc relay_process { exec "$network_relay" "$@" 2>relay.log; }
     relay=${relay_process_PID:?}
@@ -59,10 +34,8 @@ start_relay() {
     [[ "$ready" =~ \"host\":\{$side\},\"controller\":\{$side\} ]] || fail "not ready: $ready"
     local part=("${BASH_REMATCH[@]}")
     # Both replace themselves by what they start, so that its id is that of the started process.
-    on_host=(nsenter "--net=/proc/$relay/fd/${part[1]}"
-        env "CYCLONEDDS_URI=$(dds_configuration "${part[2]}" "${part[3]}" "${part[6]}")")
-    on_controller=(nsenter "--net=/proc/$relay/fd/${part[4]}"
-        env "CYCLONEDDS_URI=$(dds_configuration "${part[5]}" "${part[6]}" "${part[3]}")")
+    on_host=(nsenter "--net=/proc/$relay/fd/${part[1]}" env "CYCLONEDDS_URI=${part[2]}")
+    on_controller=(nsenter "--net=/proc/$relay/fd/${part[3]}" env "CYCLONEDDS_URI=${part[4]}")
 }
 
 in_host_network() { "${on_host[@]}" "$@"; }
@@ -83,6 +56,19 @@ count_frames() {
         check "$1" "$direction.udp_datagrams" '>' 0 \
             "$direction.dropped_full+$direction.missed+$direction.refused_by_system" == 0
     done
+}
+
+# touch_large_model: a model that streams is published and touched for four seconds, and no answer is
+# wrong.
+touch_large_model() {
+    "$build" --shape bumpy-sphere --faces 100000 -o large.spm >build.log 2>&1
+    start_publisher large.spm
+    run_hrtc --model large --device sim:touch --pool-mib 2 --duration 4 --record run.rec
+    check report.json frames == 4000 wire.host_lost == 0 safety.begun.host == 0 \
+        answers.exact+answers.decided '>' '0.9*frames'
+    check_wire_run report.json
+    check_contact report.json force.contact_share 0.3
+    judge_run large.spm
 }
 
 # judge_run MODEL_FILE [FRAME]...: what run.rec says, against the whole source, is in judged.json:

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "tests/bench/program.hpp"
+#include "tests/bench/relayed_networks.hpp"
+#include "tests/bench/scenes.hpp"
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace tactus::bench
+{
+
+inline constexpr std::chrono::seconds kStartTimeout{60};
+
+/// That of this process and its programs; nobody else in this machine uses it, most likely.
+[[nodiscard]] std::uint32_t dds_domain();
+
+/// Starts a program of ours at an end, in our DDS domain. Its output goes to a file of its name in
+/// the folder.
+[[nodiscard]] Result<Program, SceneError> start_at(const NetworkEnd& end, const std::string& name,
+                                                   const std::filesystem::path& folder,
+                                                   const std::vector<std::string>& arguments);
+
+/// spm_publish with this scene as "model"; it is ready.
+[[nodiscard]] Result<Program, SceneError> publish(const Scene& scene, const NetworkEnd& end,
+                                                  const std::filesystem::path& folder);
+
+} // namespace tactus::bench

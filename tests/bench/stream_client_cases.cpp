@@ -1,0 +1,299 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+
+/// A publisher and many clients on loopback: how much, how many, and what it does to frames.
+
+#include "tests/bench/asking_client.hpp"
+#include "tests/bench/frame_replay.hpp"
+#include "tests/bench/published.hpp"
+#include "tests/bench/stream_cases.hpp"
+#include "transport/dds/dds_client.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <atomic>
+#include <cstdlib>
+#include <fstream>
+#include <memory>
+#include <optional>
+#include <thread>
+
+namespace tactus::bench
+{
+
+namespace
+{
+
+using Json = nlohmann::json;
+
+std::string client_name(std::uint32_t number)
+{
+    return fmt::format("client-{}", number);
+}
+
+Result<Program, SceneError> start_client(const std::filesystem::path& folder, std::uint32_t number,
+                                         double rate_hz, double seconds)
+{
+    std::filesystem::create_directory(folder / client_name(number));
+    return start_at({}, "stream_client", folder / client_name(number),
+                    {"--model", "model", "--name", client_name(number), "--rate",
+                     fmt::format("{}", rate_hz), "--seconds", fmt::format("{}", seconds)});
+}
+
+/// The client's last line.
+Result<Json, SceneError> client_report(Program& client, const std::filesystem::path& folder,
+                                       std::uint32_t number)
+{
+    if (auto done = client.wait(); !done)
+    {
+        return done.error();
+    }
+    std::ifstream file(folder / client_name(number) / "stream_client.log");
+    std::string line;
+    std::string last;
+    while (std::getline(file, line))
+    {
+        last = line;
+    }
+    return Json::parse(last);
+}
+
+double resident_mib(pid_t id)
+{
+    std::ifstream file(fmt::format("/proc/{}/status", id));
+    for (std::string word; file >> word;)
+    {
+        if (word == "VmRSS:")
+        {
+            double kib = 0.0;
+            file >> kib;
+            return kib / 1'024.0;
+        }
+    }
+    return 0.0;
+}
+
+} // namespace
+
+CaseFailure run_throughput_case(const CaseContext& context, const ThroughputCase& test_case)
+{
+    constexpr double kSeconds = 5.0;
+    const auto scene = context.scenes.get(test_case.scene);
+    if (!scene)
+    {
+        return scene.error().text;
+    }
+    const test::TemporaryFolder folder("throughput");
+    const auto host = publish(*scene.value(), {}, folder.path());
+    if (!host)
+    {
+        return host.error().text;
+    }
+    const double before_mib = resident_mib(host.value().id());
+    auto client = start_client(folder.path(), 0, 0.0, kSeconds);
+    if (!client)
+    {
+        return client.error().text;
+    }
+    const auto report = client_report(client.value(), folder.path(), 0);
+    if (!report)
+    {
+        return report.error().text;
+    }
+    CaseRows rows(context.rows, context.common_row(scene.value()->model.name, "throughput"));
+    const double seconds = report.value()["seconds"].get<double>();
+    rows.add("samples", report.value()["link_bytes"].get<double>() * 1e-6 / seconds, "MB/s",
+             test_case.mb_per_s)
+        .is_least = true;
+    rows.add("pieces", report.value()["pieces"].get<double>() / seconds, "/s");
+    rows.add("host before", before_mib, "MiB");
+    rows.add("host after", resident_mib(host.value().id()), "MiB");
+    return std::nullopt;
+}
+
+CaseFailure run_fan_out_case(const CaseContext& context, const FanOutCase& test_case)
+{
+    constexpr double kSeconds = 10.0;
+    constexpr double kServedGoal = 95.0; // The last ones are on their way at the end.
+    const auto scene = context.scenes.get(test_case.scene);
+    if (!scene)
+    {
+        return scene.error().text;
+    }
+    const test::TemporaryFolder folder("fan-out");
+    const auto host = publish(*scene.value(), {}, folder.path());
+    if (!host)
+    {
+        return host.error().text;
+    }
+    CaseRows rows(context.rows, context.common_row(scene.value()->model.name, "many controllers"));
+    rows.add("clients", test_case.clients, "");
+    double before_ms = 0.0;
+    for (const bool stops_one : {false, true})
+    {
+        if (stops_one && !test_case.stops_one)
+        {
+            break;
+        }
+        std::vector<Program> clients;
+        for (std::uint32_t i = 0; i < test_case.clients; ++i)
+        {
+            auto client = start_client(folder.path(), i, test_case.rate_hz, kSeconds);
+            if (!client)
+            {
+                return client.error().text;
+            }
+            clients.push_back(std::move(client).value());
+        }
+        for (const Program& client : clients)
+        {
+            if (auto ready = client.wait_for("connected", kStartTimeout); !ready)
+            {
+                return ready.error().text;
+            }
+        }
+        if (stops_one)
+        {
+            clients[0].send_signal(SIGSTOP);
+        }
+        double p99_ms = 0.0;
+        double least_share = 1.0;
+        for (std::uint32_t i = stops_one ? 1 : 0; i < test_case.clients; ++i)
+        {
+            const auto report = client_report(clients[i], folder.path(), i);
+            if (!report)
+            {
+                return report.error().text;
+            }
+            p99_ms = std::max(p99_ms, report.value()["p99_ms"].get<double>());
+            least_share = std::min(least_share, report.value()["pieces"].get<double>() /
+                                                    (test_case.rate_hz * kSeconds));
+        }
+        const char* when = stops_one ? "one stopped: " : "";
+        rows.add(fmt::format("{}worst p99", when), p99_ms, "ms", goal_if(test_case.p99_ms));
+        rows.add(fmt::format("{}least served", when), 100.0 * least_share, "%", kServedGoal)
+            .is_least = true;
+        if (stops_one)
+        {
+            rows.add("worst p99 above before", 100.0 * (p99_ms / before_ms - 1.0), "%", 10.0);
+        }
+        before_ms = p99_ms;
+    }
+    rows.add("host", resident_mib(host.value().id()), "MiB");
+    return std::nullopt;
+}
+
+namespace
+{
+
+/// Asks a host for pieces in a thread of its own while it lives.
+class Flood
+{
+public:
+    static Result<std::unique_ptr<Flood>, SceneError> begin()
+    {
+        auto flood = std::make_unique<Flood>();
+        ::unsetenv("CYCLONEDDS_URI"); // As for the programs on loopback.
+        auto client = dds::DdsClient::create(dds_domain(), "flood", {});
+        if (!client)
+        {
+            return SceneError{client.error().text};
+        }
+        flood->client_ = std::move(client).value();
+        auto model = flood->client_->find({"model", std::nullopt}, kStartTimeout);
+        if (!model)
+        {
+            return SceneError{model.error().text};
+        }
+        flood->model_ = std::move(model).value();
+        flood->asking_.emplace(flood->model_, 0.0);
+        flood->thread_ = std::thread([&self = *flood] { self.asking_->run(1e9, self.stop_); });
+        return flood;
+    }
+    Flood() = default;
+    Flood(const Flood&) = delete;
+    Flood& operator=(const Flood&) = delete;
+    ~Flood()
+    {
+        stop_ = true;
+        if (thread_.joinable())
+        {
+            thread_.join();
+        }
+    }
+    /// Ends it; what it moved, in MB/s.
+    [[nodiscard]] double end()
+    {
+        stop_ = true;
+        thread_.join();
+        const Json report = Json::parse(asking_->to_json());
+        return report["link_bytes"].get<double>() * 1e-6 / report["seconds"].get<double>();
+    }
+
+private:
+    std::atomic<bool> stop_{false};
+    std::unique_ptr<dds::DdsClient> client_;
+    ServedModel model_;
+    std::optional<AskingClient> asking_;
+    std::thread thread_;
+};
+
+} // namespace
+
+CaseFailure run_beside_dds_case(const CaseContext& context, const BesideDdsCase& test_case)
+{
+    constexpr double kSpeed_diag_per_s = 0.5;
+    constexpr std::uint32_t kFrames = 5'000;
+    constexpr std::uint32_t kQuickFrames = 500;
+    constexpr std::uint32_t kPasses = 5;
+    const auto scene = context.scenes.get(test_case.scene);
+    if (!scene)
+    {
+        return scene.error().text;
+    }
+    const std::uint32_t frames = context.options.frames_or(kFrames, kQuickFrames);
+    const FrameRun run = make_slide(*scene.value(), kSpeed_diag_per_s,
+                                    tour_splits(kSpeed_diag_per_s), std::size_t{4} << 20U, frames);
+    const test::TemporaryFolder folder("beside-dds");
+    std::optional<Program> host;
+    std::unique_ptr<Flood> flood;
+    if (test_case.is_beside)
+    {
+        auto started = publish(*scene.value(), {}, folder.path());
+        if (!started)
+        {
+            return started.error().text;
+        }
+        host.emplace(std::move(started).value());
+        auto begun = Flood::begin();
+        if (!begun)
+        {
+            return begun.error().text;
+        }
+        flood = std::move(begun).value();
+    }
+    FrameReplay replay(run);
+    for (std::uint32_t pass = 0; pass < context.options.passes_or(kPasses, 2); ++pass)
+    {
+        if (const auto failure = replay.run_once(CacheState::warm, frames))
+        {
+            return failure;
+        }
+    }
+    Row common = context.common_row(scene.value()->model.name, "frames beside DDS");
+    common.frames = run.counted();
+    common.hash = replay.hash();
+    CaseRows rows(context.rows, common);
+    const FrameWork& work = replay.work();
+    rows.add("splits", static_cast<double>(work.splits), "");
+    rows.add("nodes", static_cast<double>(work.nodes), "");
+    rows.add("triangles", static_cast<double>(work.triangles), "");
+    rows.add("p50", spread_of(replay.sum_us(CacheState::warm).least()).p50, "us");
+    rows.add("p99", spread_of(replay.sum_us(CacheState::warm).least()).p99, "us");
+    rows.add("DDS", flood == nullptr ? 0.0 : flood->end(), "MB/s");
+    return std::nullopt;
+}
+
+} // namespace tactus::bench

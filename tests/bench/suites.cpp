@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "tests/bench/suites.hpp"
+
+#include "tests/bench/random.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+
+namespace tactus::bench
+{
+
+Row CaseContext::common_row(const std::string& scene, const char* part) const
+{
+    Row common;
+    common.suite = suite;
+    common.part = part;
+    common.test_case = name;
+    common.scene = scene;
+    common.seed = kSeed;
+    return common;
+}
+
+std::vector<Suite> all_suites()
+{
+    return {frame_suite(),  force_suite(),     encoder_suite(),
+            table1_suite(), stability_suite(), stream_suite()};
+}
+
+std::optional<Suite> find_suite(const std::string& name)
+{
+    const std::vector<Suite> suites = all_suites();
+    const auto found = std::ranges::find(suites, name, &Suite::name);
+    return found == suites.end() ? std::nullopt : std::optional(*found);
+}
+
+std::vector<std::string> case_names(const Suite& suite)
+{
+    std::vector<std::string> names;
+    std::ranges::transform(suite.cases(), std::back_inserter(names), &Case::name);
+    return names;
+}
+
+CaseFailure run_suite(const Suite& suite, const BenchOptions& options, SceneStore& scenes,
+                      Rows& rows)
+{
+    for (const Case& one : suite.cases())
+    {
+        if (!is_chosen(options, one.name, one.when))
+        {
+            continue;
+        }
+        fmt::print(stderr, "{}\n", one.name);
+        if (const CaseFailure failure = one.run({suite.name, one.name, options, scenes, rows}))
+        {
+            return fmt::format("{} {}: {}", suite.name, one.name, *failure);
+        }
+    }
+    return std::nullopt;
+}
+
+} // namespace tactus::bench
