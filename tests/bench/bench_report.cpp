@@ -110,6 +110,10 @@ nlohmann::ordered_json to_json(const Row& row)
     {
         entry["by"] = row.by;
     }
+    if (!row.setting.empty())
+    {
+        entry["setting"] = row.setting;
+    }
     entry["metric"] = row.metric;
     entry["value"] = row.value;
     entry["unit"] = row.unit;
@@ -158,6 +162,7 @@ std::string to_table(const Rows& rows)
         std::string now = fmt::format("{} / {}", row.scene, row.test_case);
         now += row.part.empty() ? "" : " / " + row.part;
         now += row.by.empty() ? "" : " / " + row.by;
+        now += row.setting.empty() ? "" : " / " + row.setting;
         if (now != heading)
         {
             heading = now;

@@ -16,7 +16,8 @@ struct Row
     std::string suite;
     std::string part; ///< Of the suite; empty when it has only one.
     std::string test_case;
-    std::string by; ///< Whose figure it is; empty when all are ours.
+    std::string by;      ///< Whose figure it is; empty when all are ours.
+    std::string setting; ///< Of what a case varies, e.g. "K 64"; empty: it varies nothing.
     std::string metric;
     double value{0.0};
     std::string unit;

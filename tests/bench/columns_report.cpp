@@ -41,13 +41,30 @@ std::string column_name(const Row& row)
     return row.unit.empty() ? row.metric : row.metric + ", " + row.unit;
 }
 
-/// The first cells of a line; rows with the same ones stand in one line.
-std::string line_name(const Row& row, bool has_authors)
+/// Which of the first columns a table has beside the model's.
+struct LineHead
 {
-    std::string name = row.test_case;
-    name += row.scene == row.test_case ? "" : " (" + row.scene + ")";
-    return name + (has_authors ? " | " + row.by : "");
-}
+    bool has_authors;
+    bool has_settings;
+
+    [[nodiscard]] std::string title() const
+    {
+        return std::string("model") + (has_authors ? " | by" : "") +
+               (has_settings ? " | setting" : "");
+    }
+    /// The first cells of a line; rows with the same ones stand in one line.
+    [[nodiscard]] std::string of(const Row& row) const
+    {
+        std::string name = row.test_case;
+        name += row.scene == row.test_case ? "" : " (" + row.scene + ")";
+        return name + (has_authors ? " | " + row.by : "") +
+               (has_settings ? " | " + row.setting : "");
+    }
+    [[nodiscard]] std::size_t width() const
+    {
+        return std::size_t{1} + (has_authors ? 1 : 0) + (has_settings ? 1 : 0);
+    }
+};
 
 /// The place of a name in a list, at whose end it is put when it is new.
 std::size_t place_of(const std::string& name, std::vector<std::string>& names)
@@ -68,21 +85,22 @@ std::string markdown_line(const std::vector<std::string>& cells)
 
 std::string to_markdown(std::span<const Row> part)
 {
-    const bool has_authors =
-        std::any_of(part.begin(), part.end(), [](const Row& row) { return !row.by.empty(); });
-    std::vector<std::string> columns{has_authors ? "model | by" : "model"};
+    const LineHead head{
+        std::ranges::any_of(part, [](const Row& row) { return !row.by.empty(); }),
+        std::ranges::any_of(part, [](const Row& row) { return !row.setting.empty(); })};
+    std::vector<std::string> columns{head.title()};
     std::vector<std::string> names;
     std::vector<std::vector<std::string>> lines;
     for (const Row& row : part)
     {
-        const std::size_t line = place_of(line_name(row, has_authors), names);
+        const std::size_t line = place_of(head.of(row), names);
         lines.resize(names.size());
         const std::size_t column = place_of(column_name(row), columns);
         lines[line].resize(std::max(lines[line].size(), column));
         lines[line][column - 1] = cell(row);
     }
     std::string text = markdown_line(columns);
-    text += markdown_line(std::vector<std::string>(columns.size() + (has_authors ? 1 : 0), "---"));
+    text += markdown_line(std::vector<std::string>(columns.size() - 1 + head.width(), "---"));
     for (std::size_t line = 0; line < lines.size(); ++line)
     {
         lines[line].resize(columns.size() - 1);
