@@ -106,6 +106,25 @@ void BasicAbTree<Volume>::mark(TreeRef ref) noexcept
     }
 }
 
+template <typename Volume>
+void BasicAbTree<Volume>::mark_all() noexcept
+{
+    for (std::uint32_t i = 0; i < sides_.size(); ++i)
+    {
+        if (sides_[i].in_use)
+        {
+            mark(TreeRef::to_block(i));
+        }
+    }
+    for (std::uint32_t i = 0; i < nodes_.size(); ++i)
+    {
+        if (nodes_[i].in_use)
+        {
+            mark(TreeRef::to_node(i));
+        }
+    }
+}
+
 /// Into refit's list of the node's level, unless it is there.
 template <typename Volume>
 void BasicAbTree<Volume>::enqueue(std::uint32_t index) noexcept

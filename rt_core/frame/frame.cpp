@@ -177,6 +177,7 @@ Frame::Frame(PassKey /*key*/, Arena& arena, const FrameSetup& setup) noexcept
     , period_ns_(setup.period_ns)
     , pose_age_max_ns_(setup.pose_age_max_ns)
     , prediction_(setup.prediction)
+    , variant_(setup.variant)
     , refine_memories_(arena.take<RefineMemory>(scene_.pairs().size() * kQuestions))
     , surfaces_(arena.take<LocalSurface>(scene_.pairs().size() + 1))
 {
@@ -255,6 +256,10 @@ FrameOutput Frame::run(std::span<const ToolState> tools, std::span<const ObjectP
     mark(Stage::refine);
     for (std::uint32_t i = 0; i < model_count_; ++i)
     {
+        if (!variant_.refits_changed_only)
+        {
+            models_[i]->tree.mark_all();
+        }
         models_[i]->refit(faults_);
     }
     mark(Stage::refit);
@@ -402,6 +407,7 @@ void Frame::place_pairs(std::span<const ObjectPose> poses, const Budgets& budget
     {
         scene_.place(pair, poses[pair.object], rotation_of(pair.tool), position_of(pair.tool),
                      reach_of(pair.tool), ahead_of(pair.tool));
+        pair.is_asleep = pair.is_asleep && variant_.lets_pairs_rest;
         const bool is_reached =
             pair.has_known && pair.known.lower_m > 0.0 && pair.known.lower_m <= pair.motion_m();
         if (is_reached && rigid_proxy(pair.tool) != nullptr)
@@ -486,7 +492,8 @@ void Frame::ask_for_balls(std::uint32_t i) noexcept
     {
         const bool is_there = ball < pair.cover.size();
         const Ball here = is_there ? pair.cover[ball] : Ball{};
-        const double reach_m = here.radius + pair.reach_m;
+        const double reach_m = (here.radius + pair.reach_m) *
+                               (variant_.fixed_radius > 0.0 ? variant_.fixed_radius : 1.0);
         const double keep_m = Scene::kKeepFactor * reach_m;
         ask(is_there && !pair.is_asleep, model_of(pair),
             {here.center, reach_m, keep_m, &memories[2 * ball]});
@@ -516,10 +523,17 @@ void Frame::ask_for_mesh(std::uint32_t i, ModelId model) noexcept
 
 void Frame::ask(bool is_asked, ModelId model, const RefineQuestion& question) noexcept
 {
+    if (!variant_.keeps_certificates)
+    {
+        question.memory->is_known = false;
+    }
     // From beyond the kernels' range nothing of a model is in reach.
     if (is_asked && !is_beyond_kernels(question.center_m, models_[model.value]->header.quantum_m()))
     {
-        questions_.push_back(question);
+        RefineQuestion asked = question;
+        asked.counts_errors = variant_.fixed_radius == 0.0;
+        asked.tolerance_m = variant_.tolerance_m;
+        questions_.push_back(asked);
         return;
     }
     question.memory->is_known = false;
@@ -561,6 +575,10 @@ void Frame::query_core(std::uint32_t i, const ObjectPose& pose, const Budgets& b
     if (!pair.is_asleep)
     {
         WalkBudget budget{budgets.nodes, budgets.triangles};
+        if (!variant_.starts_warm)
+        {
+            query_memories_[i] = QueryMemory{};
+        }
         gather_surface(model.tree, pair.core, pair.reach_m, query_memories_[i], budget, surface);
         work_.nodes_visited += budget.nodes_visited;
         work_.triangles_tested += budget.triangles_tested;

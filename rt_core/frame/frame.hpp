@@ -13,6 +13,7 @@
 #include "rt_core/query/surface_query.hpp"
 #include "rt_core/records/frame_input.hpp"
 #include "rt_core/records/frame_output.hpp"
+#include "rt_core/records/frame_variant.hpp"
 #include "rt_core/scene/scene.hpp"
 
 #include <array>
@@ -43,6 +44,7 @@ struct FrameSetup
     /// A model that fits its pools is loaded and refined fully, once (static mode).
     bool static_when_it_fits{false};
     Prediction prediction{Prediction::automatic};
+    FrameVariant variant;            ///< As it is: the frame that ships.
     const Kernels* kernels{nullptr}; ///< Null: best_kernels().
 };
 
@@ -163,6 +165,7 @@ private:
     std::int64_t period_ns_;
     std::int64_t pose_age_max_ns_;
     Prediction prediction_;
+    FrameVariant variant_;
     std::array<std::optional<Model>, kMaxModels> models_;
     std::uint32_t model_count_{0};
     std::uint32_t frame_{ChunkCache::kFirstFrame};

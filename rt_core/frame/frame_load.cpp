@@ -69,7 +69,14 @@ void Frame::load(const Budgets& budgets) noexcept
             mesh->rank(pair, tool, object, predictors_[i], prediction_, ranking);
             continue;
         }
-        predictors_[i].rank(prediction_, object, pair.cover, pair.reach_m, ranking);
+        if (variant_.asks_ahead)
+        {
+            predictors_[i].rank(prediction_, object, pair.cover, pair.reach_m, ranking);
+        }
+        else
+        {
+            RegionPredictor::rank_present(object, pair.cover, pair.reach_m, ranking);
+        }
     }
     for (std::uint32_t i = 0; i < model_count_; ++i)
     {

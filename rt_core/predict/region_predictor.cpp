@@ -31,9 +31,8 @@ void add_balls(const RankedRegion& moved, const CoreCover& balls, RegionRanking&
 {
     for (const Ball& ball : balls)
     {
-        static_cast<void>(
-            ranking.try_push_back({moved.model, ball.center + moved.center_m,
-                                   ball.radius + moved.radius_m, moved.lead_ns}));
+        static_cast<void>(ranking.try_push_back({moved.model, ball.center + moved.center_m,
+                                                 ball.radius + moved.radius_m, moved.lead_ns}));
     }
 }
 

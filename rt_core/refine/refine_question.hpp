@@ -35,8 +35,10 @@ struct RefineQuestion
     RefineMemory* memory{nullptr};
     OtherSurface* surface{nullptr}; ///< Null for a ball.
     double span_m{0.0};
-    double moved_m{0.0}; ///< No point of the surface has moved farther since the last frame.
-    double ahead_m{0.0}; ///< How much farther than usual beyond the reach is refined.
+    double moved_m{0.0};      ///< No point of the surface has moved farther since the last frame.
+    double ahead_m{0.0};      ///< How much farther than usual beyond the reach is refined.
+    bool counts_errors{true}; ///< Without: coarse faces are wanted by distance alone.
+    double tolerance_m{0.0};  ///< Coarse faces with no larger error are not wanted.
 };
 
 } // namespace tactus

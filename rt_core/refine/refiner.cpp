@@ -52,6 +52,18 @@ Ball ball_of_face(const BlockGeometry& block, std::size_t lane) noexcept
     return ball_round(to_triangle(block_triangle(block, static_cast<std::uint32_t>(lane))));
 }
 
+/// Whether a coarse face of this error may stay as it is.
+bool is_good_enough(const RefineQuestion& question, double error_m) noexcept
+{
+    return error_m <= question.tolerance_m;
+}
+
+/// What of a face's error counts.
+double counted(const RefineQuestion& question, double error_m) noexcept
+{
+    return question.counts_errors ? error_m : 0.0;
+}
+
 /// A coarse face whose distance minus its error is `lower` stays as it is for now.
 void leave(const RefineQuestion& question, double lower_m) noexcept
 {
@@ -227,7 +239,12 @@ void Refiner::gather_block(std::uint32_t index, const RefineQuestion& question) 
     for (std::uint32_t lanes = side.coarse; lanes != 0; lanes &= lanes - 1)
     {
         const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
-        const double error = static_cast<double>(error_in_quanta(side.errors[lane])) * quantum_m_;
+        const double bound = static_cast<double>(error_in_quanta(side.errors[lane])) * quantum_m_;
+        if (is_good_enough(question, bound))
+        {
+            continue;
+        }
+        const double error = counted(question, bound);
         const double key =
             sharpened(question, static_cast<double>(bounds.lower[lane]) * quantum_m_ - error, error,
                       [&] { return ball_of_face(block, lane); });
@@ -459,8 +476,13 @@ void Refiner::consider_star(RecordId id, const VsplitRecord& record,
         for (std::uint32_t lanes = coarse; lanes != 0; lanes &= lanes - 1)
         {
             const auto place = static_cast<std::size_t>(std::countr_zero(lanes));
-            const double error =
+            const double bound =
                 static_cast<double>(error_in_quanta(record.error[place])) * quantum_m_;
+            if (is_good_enough(question, bound))
+            {
+                continue;
+            }
+            const double error = counted(question, bound);
             const double key =
                 sharpened(question, static_cast<double>(bounds.lower[place]) * quantum_m_ - error,
                           error, [&] { return ball_of_face(star.geometry, place); });
@@ -486,7 +508,8 @@ void Refiner::consider_star(RecordId id, const VsplitRecord& record,
 /// Distance minus error of a coarse face, or a lower bound on it that is beyond the target.
 double Refiner::lower_bound(PrimId prim, const RefineQuestion& question) const noexcept
 {
-    const double error = static_cast<double>(error_in_quanta(forest_->error_of(prim))) * quantum_m_;
+    const double error = counted(
+        question, static_cast<double>(error_in_quanta(forest_->error_of(prim))) * quantum_m_);
     const Triangle triangle = to_triangle(forest_->corners_of(prim));
     const double box_lower =
         std::sqrt(box_distance_sq(question.center_m, triangle)) * (1.0 - 1e-15) - error;

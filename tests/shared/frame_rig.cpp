@@ -39,6 +39,7 @@ FrameRig::FrameRig(const std::vector<const TestModel*>& models, const RigOptions
     setup.period_ns = options.period_ns;
     setup.static_when_it_fits = options.static_when_it_fits;
     setup.prediction = options.prediction;
+    setup.variant = options.variant;
     const std::vector<ModelSource> sources = share_pools(setup, options);
     setup.models = sources;
     if (const auto started = Frame::start(frame_, *arena_, setup); !started)

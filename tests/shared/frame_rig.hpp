@@ -32,6 +32,7 @@ struct RigOptions
     bool cache_off{false};
     bool static_when_it_fits{false};
     Prediction prediction{Prediction::automatic};
+    FrameVariant variant;
     bool record{false}; ///< Keep a recording; frames must then run through step() only.
 };
 

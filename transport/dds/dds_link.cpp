@@ -49,7 +49,7 @@ DdsLink::create(const Domain& domain, Catalogue& catalogue, const Catalogue::Off
     {
         return chunks.error();
     }
-    auto wanted = make_writer(domain, Topic::wanted, model_partition(offer.hash));
+    auto wanted = WriterLanes::create(domain, Topic::wanted, model_partition(offer.hash));
     if (!wanted)
     {
         return wanted.error();
@@ -101,7 +101,7 @@ void DdsLink::poll(PieceSink& sink)
 
 bool DdsLink::is_ready() const
 {
-    return is_matched(wanted_) && has_publisher(chunks_);
+    return wanted_.is_matched() && has_publisher(chunks_);
 }
 
 void DdsLink::follow_host()
@@ -237,7 +237,7 @@ void DdsLink::send(std::span<const ContentKey> keys)
     wanted.pieces = {count, count, names.data(), false};
     last_sent_ = Clock::now();
     // A write that fails is a lost request: the courier asks again.
-    if (dds_write(wanted_.handle, &wanted) == DDS_RETCODE_OK)
+    if (wanted_.write(&wanted))
     {
         granted_sent_ = wanted.granted;
     }

@@ -7,6 +7,7 @@
 #include "transport/dds/credit.hpp"
 #include "transport/dds/domain.hpp"
 #include "transport/dds/topics.hpp"
+#include "transport/dds/writer_lanes.hpp"
 #include "transport/log.hpp"
 
 #include <chrono>
@@ -62,7 +63,7 @@ private:
     std::string controller_name_;
     RateLimitedLog log_;
     ControllerId controller_{};
-    Endpoint wanted_;
+    WriterLanes wanted_;
     Endpoint chunks_;
     CreditWindow credit_{kCreditPieces};
     ContentHash refused_hash_{}; ///< Of the changed file that was last reported.

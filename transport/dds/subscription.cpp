@@ -4,8 +4,6 @@
 
 #include "transport/dds/piece_frame.hpp"
 
-#include <dds/dds.h>
-
 #include <utility>
 
 #include "tactus.h"
@@ -17,16 +15,16 @@ Result<Subscription, DdsError> Subscription::create(const Domain& domain, const 
                                                     const ControllerId& controller,
                                                     std::string controller_name, std::uint64_t seen)
 {
-    auto writer =
-        make_writer(domain, Topic::chunks, controller_partition(controller, store.hash()));
-    if (!writer)
+    auto writers =
+        WriterLanes::create(domain, Topic::chunks, controller_partition(controller, store.hash()));
+    if (!writers)
     {
-        return writer.error();
+        return writers.error();
     }
     Subscription subscription(store);
     subscription.controller_ = controller;
     subscription.controller_name_ = std::move(controller_name);
-    subscription.writer_ = std::move(writer).value();
+    subscription.writers_ = std::move(writers).value();
     subscription.sent_ = seen;
     return subscription;
 }
@@ -34,7 +32,7 @@ Result<Subscription, DdsError> Subscription::create(const Domain& domain, const 
 bool Subscription::send_one(std::uint64_t host_epoch, std::vector<std::byte>& payload,
                             std::vector<std::byte>& piece, RateLimitedLog& log)
 {
-    if (!has_work() || !is_matched(writer_))
+    if (!has_work() || !writers_.is_matched())
     {
         return false; // Written before the reader is known, a sample would reach nobody.
     }
@@ -48,7 +46,7 @@ bool Subscription::send_one(std::uint64_t host_epoch, std::vector<std::byte>& pa
     sample.sent = sent_ + pieces;
     const auto length = static_cast<std::uint32_t>(payload.size());
     sample.payload = {length, length, reinterpret_cast<std::uint8_t*>(payload.data()), false};
-    if (dds_write(writer_.handle, &sample) != DDS_RETCODE_OK)
+    if (!writers_.write(&sample))
     {
         return false; // The pieces count as lost: the controller asks again.
     }

@@ -5,9 +5,11 @@
 #include "transport/dds/domain.hpp"
 #include "transport/dds/topics.hpp"
 #include "transport/dds/wish_queue.hpp"
+#include "transport/dds/writer_lanes.hpp"
 #include "transport/log.hpp"
 #include "transport/store/model_store.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -16,7 +18,7 @@
 namespace tactus::dds
 {
 
-/// One controller's subscription to one model, on the host: its wishes, its credit, and a writer of
+/// One controller's subscription to one model, on the host: its wishes, its credit, and writers of
 /// its own in a partition of its own, so that no other controller waits for it.
 class Subscription
 {
@@ -40,7 +42,13 @@ public:
     [[nodiscard]] const ModelStore& store() const noexcept { return *store_; }
 
     void wish(ContentKey key, std::uint32_t generation) { wishes_.add(key, generation); }
-    void set_credit(const Credit& credit) noexcept { credit_ = credit; }
+    /// Requests may come in another order than they were sent in: the counts only grow.
+    void set_credit(const Credit& credit) noexcept
+    {
+        credit_.seen = std::max(credit_.seen, credit.seen);
+        credit_.granted = std::max(credit_.granted, credit.granted);
+        credit_.received = std::max(credit_.received, credit.received);
+    }
 
     /// Whether send_one() would find something to do, were the controller's reader there.
     [[nodiscard]] bool has_work() const noexcept
@@ -66,7 +74,7 @@ private:
     const ModelStore* store_;
     ControllerId controller_{};
     std::string controller_name_;
-    Endpoint writer_;
+    WriterLanes writers_;
     WishQueue wishes_;
     Credit credit_;
     std::uint64_t sent_{0};

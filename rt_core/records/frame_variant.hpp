@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+namespace tactus
+{
+
+/// How a frame may differ from the one that ships, so that what it saves can be measured. The first
+/// five are shortcuts: without them exact answers are the same and cost more. Recordings are of
+/// frames without any difference.
+struct FrameVariant
+{
+    /// A pair that its last distance and the motion since prove out of reach is not looked at.
+    bool lets_pairs_rest{true};
+    bool starts_warm{true};        ///< A query starts where the last one ended.
+    bool keeps_certificates{true}; ///< What is certified is not looked at until motion uses it up.
+    bool refits_changed_only{true};
+    bool asks_ahead{true}; ///< Chunks are asked for where a tool will be, not only where it is.
+    /// Above 0 every coarse face within so many times the reach is split, whatever its error;
+    /// answers are what the faces' errors prove all the same.
+    double fixed_radius{0.0};
+    /// Coarse faces whose error is at most this stay as they are: answers are brackets of up to
+    /// twice this, and a proxy in touch waits. Model frame.
+    double tolerance_m{0.0};
+};
+
+} // namespace tactus
