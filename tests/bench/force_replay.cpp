@@ -3,6 +3,7 @@
 #include "tests/bench/force_replay.hpp"
 
 #include "platform/allocation_counter.hpp"
+#include "tests/bench/heap_use.hpp"
 #include "tests/bench/stage_timer.hpp"
 #include "tests/bench/static_model.hpp"
 
@@ -48,17 +49,6 @@ Result<std::unique_ptr<test::FrameRig>, SceneError> make_rig(const ForceRun& run
     }
     rig->model().residence = Residence::complete;
     return rig;
-}
-
-/// The calls on the heap that a function makes.
-template <typename Function>
-std::uint64_t allocations_of(const Function& function)
-{
-    const std::uint64_t before = allocation_counter::of_this_thread().allocations;
-    allocation_counter::mark_this_thread(true);
-    function();
-    allocation_counter::mark_this_thread(false);
-    return allocation_counter::of_this_thread().allocations - before;
 }
 
 /// One replay; its outputs in the order of the counted frames.

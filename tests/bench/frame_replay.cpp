@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "tests/bench/frame_replay.hpp"
 
+#include "tests/bench/heap_use.hpp"
 #include "tests/bench/stage_timer.hpp"
 
 #include <fmt/format.h>
@@ -58,13 +59,19 @@ std::optional<std::string> FrameReplay::run_once(CacheState caches, std::size_t 
 {
     test::FrameRig rig(run_.scene.model, run_.rig);
     StageTimer timer;
+    std::uint64_t allocations = 0;
     for (std::size_t i = 0; i < std::min(run_.lead_in + frames, run_.goals_m.size()); ++i)
     {
         const bool is_counted = i >= run_.lead_in;
         const std::vector<Vec3> goals{run_.goals_m[i]};
         prepare(rig, is_counted ? caches : CacheState::warm);
-        timer.begin();
-        const FrameOutput output = rig.step_without_delivery(goals, run_.budgets, timer.mark());
+        FrameOutput output;
+        const std::uint64_t frame_allocations = allocations_of(
+            [&]
+            {
+                timer.begin();
+                output = rig.step_without_delivery(goals, run_.budgets, timer.mark());
+            });
         if (i == hashes_.size())
         {
             hashes_.push_back(output.models[0].state_hash);
@@ -80,6 +87,7 @@ std::optional<std::string> FrameReplay::run_once(CacheState caches, std::size_t 
         {
             continue;
         }
+        allocations += frame_allocations;
         const std::size_t place = i - run_.lead_in;
         sum_us_[index(caches)].keep(place, timer.us(Stage::refine) + timer.us(Stage::refit) +
                                                timer.us(Stage::query));
@@ -88,6 +96,7 @@ std::optional<std::string> FrameReplay::run_once(CacheState caches, std::size_t 
             stage_us_[stage].keep(place, timer.us(static_cast<Stage>(stage)));
         }
     }
+    allocations_ = counted_if_available(allocations);
     return std::nullopt;
 }
 
@@ -100,6 +109,7 @@ void FrameReplay::count(const FrameOutput& output, std::size_t frame)
     const AnswerKind kind = output.pairs[0].kind;
     const bool is_in_contact = output.tools[0].in_contact;
     splits_.push_back(output.work.splits);
+    answers_.push_back(output.pairs[0]);
     ++work_.frames;
     work_.splits += output.work.splits;
     work_.nodes += output.work.nodes_visited;

@@ -79,6 +79,10 @@ public:
     /// T_R + T_B of a split, in frames that split at least kBusySplits; NaN when there is none.
     [[nodiscard]] double split_us() const;
     [[nodiscard]] const FrameWork& work() const { return work_; }
+    /// What the counted frames answered, by the first replay.
+    [[nodiscard]] const std::vector<PairOutput>& answers() const { return answers_; }
+    /// Calls on the heap by the counted frames of the last replay; none where they aren't counted.
+    [[nodiscard]] std::optional<std::uint64_t> allocations() const { return allocations_; }
     [[nodiscard]] std::uint64_t hash() const;
 
     static constexpr std::uint32_t kBusySplits = 16;
@@ -98,6 +102,8 @@ private:
     std::vector<std::uint64_t> hashes_; ///< Of each frame's state, by the first replay.
     std::vector<std::uint32_t> splits_; ///< Of each counted frame, likewise.
     FrameWork work_;
+    std::vector<PairOutput> answers_;
+    std::optional<std::uint64_t> allocations_;
 };
 
 } // namespace tactus::bench

@@ -42,6 +42,11 @@ Result<std::unique_ptr<StaticModel>, SceneError> StaticModel::make(const Scene& 
     return made;
 }
 
+std::size_t StaticModel::bytes()
+{
+    return required_bytes(model().header, model().capacities);
+}
+
 // What a record depends on is split first.
 bool refine_fully(Model& model)
 {
@@ -86,6 +91,7 @@ double TactusQuery::distance_m(const Vec3& point_m, double band_m)
     const DistanceAnswer answer = query_distance(tree_, point_m, band_m, memory_, budget);
     nodes_visited_ += budget.nodes_visited;
     triangles_tested_ += budget.triangles_tested;
+    nearest_m_ = answer.nearest_point_m;
     const bool is_beyond = std::isinf(answer.upper_m) && answer.lower_m >= band_m;
     const bool is_exact = answer.upper_m - answer.lower_m <= 1e-12 + 1e-12 * answer.upper_m;
     return is_beyond || is_exact ? answer.upper_m : std::numeric_limits<double>::quiet_NaN();

@@ -31,6 +31,8 @@ public:
 
     [[nodiscard]] AbTree& tree() { return rig_.model().tree; }
     [[nodiscard]] Model& model() { return rig_.model(); }
+    /// Of its pools, tables and records included, without the room that nothing is in.
+    [[nodiscard]] std::size_t bytes();
 
 private:
     explicit StaticModel(const Scene& scene);
@@ -40,7 +42,7 @@ private:
 
 /// The controller's distance query over a static model, as a contestant. One probe: it keeps where
 /// the last answer was found.
-class TactusQuery final : public PointQuery
+class TactusQuery final : public TouchQuery
 {
 public:
     explicit TactusQuery(const AbTree& tree) : tree_(tree) {}
@@ -48,6 +50,8 @@ public:
     [[nodiscard]] std::string name() const override { return "Tactus"; }
     /// NaN when the answer is not proven to rounding.
     [[nodiscard]] double distance_m(const Vec3& point_m, double band_m) override;
+    [[nodiscard]] Vec3 nearest_m() const override { return nearest_m_; }
+    void forget() override { memory_ = {}; }
 
     /// The last question once more, into scratch memory and by the same machine code: what a loop
     /// does in the wait before its deadline.
@@ -62,6 +66,7 @@ private:
     QueryMemory memory_;
     Vec3 last_point_m_{0.0, 0.0, 0.0};
     double last_band_m_{0.0};
+    Vec3 nearest_m_{0.0, 0.0, 0.0};
     double rehearsed_m_{0.0};
     std::uint64_t nodes_visited_{0};
     std::uint64_t triangles_tested_{0};

@@ -26,6 +26,7 @@ struct Suite
 [[nodiscard]] Suite encoder_suite();
 [[nodiscard]] Suite force_suite();
 [[nodiscard]] Suite frame_suite();
+[[nodiscard]] Suite peers_suite();
 [[nodiscard]] Suite stability_suite();
 [[nodiscard]] Suite stream_suite();
 [[nodiscard]] Suite table1_suite();

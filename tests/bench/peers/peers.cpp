@@ -1,13 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "tests/bench/peers/mesh_simplifier.hpp"
+#include "tests/bench/peers/pair_query.hpp"
 #include "tests/bench/peers/point_query.hpp"
 
+#ifdef TACTUS_BENCH_BULLET
+#include "tests/bench/peers/bullet_query.hpp"
+#endif
 #ifdef TACTUS_BENCH_CGAL
+#include "tests/bench/peers/cgal_query.hpp"
 #include "tests/bench/peers/cgal_simplifiers.hpp"
 #endif
 #ifdef TACTUS_BENCH_EMBREE
 #include "tests/bench/peers/embree_query.hpp"
+#endif
+#ifdef TACTUS_BENCH_FCL
+#include "tests/bench/peers/fcl_query.hpp"
 #endif
 #ifdef TACTUS_BENCH_MESHOPTIMIZER
 #include "tests/bench/peers/meshopt_simplifier.hpp"
@@ -19,14 +27,42 @@
 namespace tactus::bench
 {
 
+std::vector<PointPeer> point_peers()
+{
+    return {
+#ifdef TACTUS_BENCH_EMBREE
+        {"Embree", make_embree_query},
+#endif
+#ifdef TACTUS_BENCH_CGAL
+        {"CGAL", make_cgal_query},
+#endif
+#ifdef TACTUS_BENCH_FCL
+        {"FCL, point", make_fcl_query, false, 1'000'000},
+        {"FCL, sphere", make_fcl_sphere_query, false, 1'000'000},
+#endif
+#ifdef TACTUS_BENCH_BULLET
+        {"Bullet", make_bullet_query, false},
+#endif
+    };
+}
+
 std::vector<std::unique_ptr<PointQuery>>
 make_peers([[maybe_unused]] const std::vector<test::Face>& faces)
 {
     std::vector<std::unique_ptr<PointQuery>> peers;
 #ifdef TACTUS_BENCH_EMBREE
-    peers.push_back(make_embree_query(faces));
+    peers.push_back(make_embree_query(faces, 0.0));
 #endif
     return peers;
+}
+
+std::vector<PairPeer> pair_peers()
+{
+    return {
+#ifdef TACTUS_BENCH_FCL
+        {"FCL", make_fcl_pair_query},
+#endif
+    };
 }
 
 std::vector<MeshSimplifier> mesh_simplifiers()

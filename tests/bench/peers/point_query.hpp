@@ -5,7 +5,9 @@
 #include "rt_core/math/vec3.hpp"
 #include "tests/shared/brute_force.hpp"
 
+#include <cstddef>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,8 +28,36 @@ public:
     [[nodiscard]] virtual double distance_m(const Vec3& point_m, double band_m) = 0;
 };
 
-/// The peers that this build was configured with (TACTUS_BENCH_PEERS), each over the whole mesh;
-/// `faces` must outlive them. Throws std::runtime_error when a peer refuses the mesh.
+/// A contestant that is judged by more than its time. What knows no band answers beyond it, too.
+class TouchQuery : public PointQuery
+{
+public:
+    /// Where on the surface the last answer that was finite has its nearest point.
+    [[nodiscard]] virtual Vec3 nearest_m() const = 0;
+    /// Drops what is kept of earlier questions: the next one is asked as the first one was.
+    virtual void forget() {}
+    /// True: it has to be asked with a finite band, without one it would look at every face.
+    [[nodiscard]] virtual bool needs_band() const { return false; }
+    /// What it holds by its own account; none: what the heap has grown by is all.
+    [[nodiscard]] virtual std::optional<std::size_t> own_bytes() const { return std::nullopt; }
+};
+
+/// A peer that this build was configured with (TACTUS_BENCH_PEERS).
+struct PointPeer
+{
+    std::string name;
+    /// Builds it over the whole mesh, for a probe of this radius; `faces` must outlive it. Throws
+    /// std::runtime_error when the peer refuses the mesh.
+    std::unique_ptr<TouchQuery> (*make)(const std::vector<test::Face>& faces, double radius_m);
+    /// Right to the rounding of single precision, always; others are known to be off.
+    bool is_right{true};
+    /// The most faces that it builds over in less than a minute or two.
+    std::size_t most_faces{static_cast<std::size_t>(-1)};
+};
+[[nodiscard]] std::vector<PointPeer> point_peers();
+
+/// The peers whose times are the goals of other suites, over the whole mesh, as PointPeer::make
+/// has it: Embree, if it was configured.
 [[nodiscard]] std::vector<std::unique_ptr<PointQuery>>
 make_peers(const std::vector<test::Face>& faces);
 

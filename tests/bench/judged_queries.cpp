@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "tests/bench/judged_queries.hpp"
+
+#include "tests/bench/heap_use.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace tactus::bench
+{
+
+namespace
+{
+
+void ask_once(TouchQuery& query, const Questions& questions, double band_m, PointAnswers& answers)
+{
+    query.forget();
+    for (std::size_t i = 0; i < questions.points_m.size(); ++i)
+    {
+        const BenchClock::time_point start = BenchClock::now();
+        answers.distances_m[i] = query.distance_m(questions.points_m[i], band_m);
+        answers.us.keep(i, microseconds(start, BenchClock::now()));
+        answers.nearest_m[i] = query.nearest_m();
+    }
+}
+
+std::uint64_t hash_of(std::span<const double> values)
+{
+    std::uint64_t hash = 0;
+    for (std::size_t i = 0; i < values.size(); ++i)
+    {
+        hash += std::bit_cast<std::uint64_t>(values[i]) * (2 * i + 1);
+    }
+    return hash;
+}
+
+} // namespace
+
+Result<PointAnswers, SceneError> replay_queries(TouchQuery& query, const Questions& questions,
+                                                double band_m, std::uint32_t passes)
+{
+    const std::size_t count = questions.points_m.size();
+    PointAnswers answers{LeastTimes(count), std::vector<double>(count), std::vector<Vec3>(count), 0,
+                         std::nullopt};
+    for (std::uint32_t pass = 0; pass < passes; ++pass)
+    {
+        answers.allocations = counted_if_available(
+            allocations_of([&] { ask_once(query, questions, band_m, answers); }));
+        const std::uint64_t hash = hash_of(answers.distances_m);
+        if (pass > 0 && hash != answers.hash)
+        {
+            return SceneError{query.name() + ": passes over the same points gave other answers"};
+        }
+        answers.hash = hash;
+    }
+    return answers;
+}
+
+Questions chosen(const Questions& questions, const std::vector<bool>& choice)
+{
+    Questions kept;
+    for (std::size_t i = 0; i < choice.size(); ++i)
+    {
+        if (choice[i])
+        {
+            kept.points_m.push_back(questions.points_m[i]);
+            kept.truth_m.push_back(questions.truth_m[i]);
+        }
+    }
+    return kept;
+}
+
+TouchErrors judge_touch(std::span<const double> answers_m, std::span<const double> truth_m,
+                        double radius_m, double tolerance_m)
+{
+    TouchErrors errors;
+    for (std::size_t i = 0; i < answers_m.size(); ++i)
+    {
+        const bool is_told = answers_m[i] < radius_m;
+        errors.missed += truth_m[i] < radius_m - tolerance_m && !is_told ? 1U : 0U;
+        errors.invented += truth_m[i] > radius_m + tolerance_m && is_told ? 1U : 0U;
+    }
+    return errors;
+}
+
+double largest_error_m(std::span<const double> answers_m, std::span<const double> truth_m,
+                       double band_m)
+{
+    double largest_m = 0.0;
+    for (std::size_t i = 0; i < answers_m.size(); ++i)
+    {
+        const double error_m =
+            std::isnan(answers_m[i])
+                ? std::numeric_limits<double>::infinity()
+                : std::abs(std::min(answers_m[i], band_m) - std::min(truth_m[i], band_m));
+        largest_m = std::max(largest_m, error_m);
+    }
+    return largest_m;
+}
+
+double largest_point_error_m(const PointAnswers& answers, const Questions& questions,
+                             const test::FaceTree& tree)
+{
+    double largest_m = 0.0;
+    for (std::size_t i = 0; i < answers.nearest_m.size(); ++i)
+    {
+        if (!std::isfinite(answers.distances_m[i]))
+        {
+            continue;
+        }
+        const Vec3& told_m = answers.nearest_m[i];
+        const double away_m = (told_m - questions.points_m[i]).norm();
+        largest_m = std::max(
+            {largest_m, tree.nearest(told_m).distance_m, std::abs(away_m - questions.truth_m[i])});
+    }
+    return largest_m;
+}
+
+Result<BuiltQuery, SceneError> build_peer(const PointPeer& peer,
+                                          const std::vector<test::Face>& faces, double radius_m)
+{
+    BuiltQuery built;
+    const std::size_t bytes_before = heap_bytes();
+    const BenchClock::time_point start = BenchClock::now();
+    try
+    {
+        built.query = peer.make(faces, radius_m);
+    }
+    catch (const std::runtime_error& error)
+    {
+        return SceneError{error.what()};
+    }
+    built.build_ms = 1e-3 * microseconds(start, BenchClock::now());
+    const std::size_t bytes = heap_bytes() - bytes_before;
+    built.bytes = static_cast<double>(built.query->own_bytes().value_or(bytes));
+    return built;
+}
+
+} // namespace tactus::bench

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "tests/bench/mesh_touch.hpp"
+
+#include "host_tools/shapes/shapes.hpp"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace tactus::bench
+{
+
+namespace
+{
+
+constexpr std::uint32_t kToolFaces = 1'000;
+constexpr double kAcross_diag = 0.15;
+constexpr double kTouch_diag_per_s = 0.1;
+constexpr double kTurn_rad_per_s = 1.0;
+constexpr double kLowest_diag = -0.0075;
+constexpr double kHighest_diag = 0.005;
+constexpr double kSwing_s = 1.0;
+/// Nothing is to be cut short.
+constexpr std::uint32_t kUnlimited = std::numeric_limits<std::uint32_t>::max();
+
+Vec3 to_vec3(const std::array<double, 3>& coordinates)
+{
+    return {coordinates[0], coordinates[1], coordinates[2]};
+}
+
+/// Of the lowest corner above the surface; highest in frame 0.
+double height_diag(std::uint32_t frame)
+{
+    const double phase = 2.0 * std::numbers::pi * frame * kPeriod_s / kSwing_s;
+    return 0.5 * (kHighest_diag + kLowest_diag) +
+           0.5 * (kHighest_diag - kLowest_diag) * std::cos(phase);
+}
+
+/// How far a tool reaches along a direction, from its frame's origin.
+double extent_along(const Vec3& direction, const std::vector<Triangle>& tool)
+{
+    double most = -std::numeric_limits<double>::infinity();
+    for (const Triangle& triangle : tool)
+    {
+        for (const Vec3& corner : triangle)
+        {
+            most = std::max(most, direction.dot(corner));
+        }
+    }
+    return most;
+}
+
+std::vector<Triangle> moved(const std::vector<test::Face>& faces, const Vec3& offset_m)
+{
+    std::vector<Triangle> triangles;
+    triangles.reserve(faces.size());
+    for (const test::Face& face : faces)
+    {
+        triangles.push_back(to_triangle(face));
+        for (Vec3& corner : triangles.back())
+        {
+            corner += offset_m;
+        }
+    }
+    return triangles;
+}
+
+} // namespace
+
+NamedMesh make_tool_mesh(const Scene& object)
+{
+    TriangleMesh mesh = make_shape(Shape::bumpy_sphere, kToolFaces).value();
+    Vec3 low = to_vec3(mesh.positions[0]);
+    Vec3 high = low;
+    for (const auto& position : mesh.positions)
+    {
+        low = low.cwiseMin(to_vec3(position));
+        high = high.cwiseMax(to_vec3(position));
+    }
+    const double scale = kAcross_diag * object.model.diagonal_m / (high - low).maxCoeff();
+    for (auto& position : mesh.positions)
+    {
+        std::ranges::transform(position, position.begin(), [&](double x) { return scale * x; });
+    }
+    return {"tool-for-" + object.model.name, std::move(mesh)};
+}
+
+std::vector<Triangle> faces_in_source_frame(const Scene& scene)
+{
+    return moved(scene.model.faces, to_vec3(scene.model.origin_m));
+}
+
+std::vector<Triangle> faces_in_model_frame(const Scene& scene)
+{
+    return moved(scene.model.faces, Vec3(0.0, 0.0, 0.0));
+}
+
+std::vector<Placement> mesh_touch_motion(const TouchScene& object,
+                                         const std::vector<Triangle>& tool, std::uint32_t frames)
+{
+    const std::vector<Vec3> slide = slide_motion(object, kTouch_diag_per_s, frames);
+    const Vec3 axis = Vec3(1.0, 2.0, 2.0) / 3.0;
+    std::vector<Placement> places;
+    for (std::uint32_t frame = 0; frame < frames; ++frame)
+    {
+        const Vec3& above_m = slide[kApproachFrames + frame];
+        const Vec3 below_m = object.tree.nearest(above_m).point_m;
+        const Vec3 up = (above_m - below_m).normalized();
+        const Mat3 rotation =
+            Eigen::AngleAxisd(kTurn_rad_per_s * kPeriod_s * frame, axis).toRotationMatrix();
+        const double lowest_m = extent_along(-(rotation.transpose() * up), tool);
+        const double height_m = lowest_m + height_diag(frame) * object.diagonal_m;
+        places.push_back({rotation, below_m + height_m * up, 1.0});
+    }
+    return places;
+}
+
+TactusPairQuery::TactusPairQuery(std::unique_ptr<StaticModel> tool,
+                                 std::unique_ptr<StaticModel> object, const Scene& tool_scene,
+                                 const Scene& object_scene)
+    : tool_(std::move(tool))
+    , object_(std::move(object))
+    , tool_names_(tool_scene.model.faces)
+    , object_names_(object_scene.model.faces)
+    , place_{{}, to_vec3(tool_scene.model.origin_m)}
+{
+    pairs_.reserve(kMaxMeetingFaces);
+}
+
+Result<std::unique_ptr<TactusPairQuery>, SceneError> TactusPairQuery::make(const Scene& tool,
+                                                                           const Scene& object)
+{
+    auto tool_model = StaticModel::make(tool);
+    if (!tool_model)
+    {
+        return tool_model.error();
+    }
+    auto object_model = StaticModel::make(object);
+    if (!object_model)
+    {
+        return object_model.error();
+    }
+    return std::unique_ptr<TactusPairQuery>(new TactusPairQuery(
+        std::move(tool_model).value(), std::move(object_model).value(), tool, object));
+}
+
+void TactusPairQuery::place(const Placement& tool)
+{
+    place_.place = tool;
+}
+
+void TactusPairQuery::ask(double reach_m)
+{
+    OtherSurface surface(object_->tree(), place_, {kUnlimited, kUnlimited});
+    query_meshes({tool_->tree(), object_->tree(), place_, reach_m}, surface, memory_, answer_,
+                 report_, contacts_);
+}
+
+bool TactusPairQuery::do_meet()
+{
+    ask(0.0);
+    return report_.intersection == Intersection::proven;
+}
+
+const std::vector<test::FacePair>& TactusPairQuery::meeting()
+{
+    ask(0.0);
+    pairs_.clear();
+    for (const MeetingFaces& faces : report_.meeting)
+    {
+        pairs_.push_back({faces.tool_face.value, faces.face.value});
+    }
+    return pairs_;
+}
+
+double TactusPairQuery::distance_m()
+{
+    ask(0.0);
+    if (report_.intersection == Intersection::proven)
+    {
+        return 0.0;
+    }
+    ask(answer_.upper_m);
+    const bool is_proven = answer_.kind == AnswerKind::exact;
+    return is_proven ? answer_.upper_m : std::numeric_limits<double>::quiet_NaN();
+}
+
+test::FacePair TactusPairQuery::in_source(const test::FacePair& own) const
+{
+    return {tool_names_.of(tool_->model(), FaceId{own.tool_face}).value(),
+            object_names_.of(object_->model(), FaceId{own.face}).value()};
+}
+
+} // namespace tactus::bench

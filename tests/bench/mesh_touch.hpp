@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/query/mesh_query.hpp"
+#include "tests/bench/peers/pair_query.hpp"
+#include "tests/bench/scenes.hpp"
+#include "tests/bench/static_model.hpp"
+#include "tests/shared/face_names.hpp"
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace tactus::bench
+{
+
+/// A tool that is a mesh: a bumpy sphere of about 1,000 faces whose longest side is 0.15 of an
+/// object's diagonal, round the origin of its frame.
+[[nodiscard]] NamedMesh make_tool_mesh(const Scene& object);
+
+/// The faces of a scene in the frame of the mesh that it was made of.
+[[nodiscard]] std::vector<Triangle> faces_in_source_frame(const Scene& scene);
+/// In the model's frame, as every contestant has the object.
+[[nodiscard]] std::vector<Triangle> faces_in_model_frame(const Scene& scene);
+
+/// Places of a tool that slides over the object at 0.1 diag/s and turns at 1 rad/s about one axis.
+/// Along the direction in which the slide's probe has the surface below it, the tool's lowest
+/// corner is between 0.75 % of the diagonal below the surface's nearest point and 0.5 % above it,
+/// there and back once a second.
+[[nodiscard]] std::vector<Placement> mesh_touch_motion(const TouchScene& object,
+                                                       const std::vector<Triangle>& tool,
+                                                       std::uint32_t frames);
+
+/// The controller's query of two meshes over two static models. One query answers all: do_meet()
+/// and meeting() ask with no reach; where nothing meets, distance_m() asks again with the bound
+/// that this gave as its reach, since only within the reach the nearest pair is proven.
+class TactusPairQuery final : public PairQuery
+{
+public:
+    [[nodiscard]] static Result<std::unique_ptr<TactusPairQuery>, SceneError>
+    make(const Scene& tool, const Scene& object);
+
+    [[nodiscard]] std::string name() const override { return "Tactus"; }
+    void place(const Placement& tool) override;
+    [[nodiscard]] bool do_meet() override;
+    /// Those with the lowest ids when there are more than kMaxMeetingFaces.
+    [[nodiscard]] const std::vector<test::FacePair>& meeting() override;
+    /// NaN when the answer is not proven to rounding.
+    [[nodiscard]] double distance_m() override;
+    [[nodiscard]] test::FacePair in_source(const test::FacePair& own) const override;
+    void forget() override { memory_ = {}; }
+
+private:
+    TactusPairQuery(std::unique_ptr<StaticModel> tool, std::unique_ptr<StaticModel> object,
+                    const Scene& tool_scene, const Scene& object_scene);
+    void ask(double reach_m);
+
+    std::unique_ptr<StaticModel> tool_;
+    std::unique_ptr<StaticModel> object_;
+    test::FaceNames tool_names_;
+    test::FaceNames object_names_;
+    MeshPlacement place_;
+    QueryMemory memory_;
+    DistanceAnswer answer_;
+    MeshReport report_;
+    ContactReport contacts_;
+    std::vector<test::FacePair> pairs_;
+};
+
+} // namespace tactus::bench

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "tests/bench/cases.hpp"
+
+#include <cstddef>
+
+namespace tactus::bench
+{
+
+/// One probe in the touching motion, asked of every contestant.
+struct PeerTouchCase
+{
+    SceneSource scene;
+    std::size_t pool_bytes; ///< Of the streaming contestant.
+};
+/// The workload W1: near frames with a band of two radii, flight without one, whether touch is
+/// told, what building costs and holds.
+[[nodiscard]] CaseFailure run_peer_touch_case(const CaseContext& context,
+                                              const PeerTouchCase& test_case);
+
+struct PeerScaleCase
+{
+    SceneSource scene;
+    const char* setting;
+};
+/// The workload W3: the near frames of W1 on one of the sizes of one surface.
+[[nodiscard]] CaseFailure run_peer_scale_case(const CaseContext& context,
+                                              const PeerScaleCase& test_case);
+
+struct PeerMeshCase
+{
+    SceneSource scene;
+};
+/// The workload W2: a tool that is a mesh turns and slides through the surface.
+[[nodiscard]] CaseFailure run_peer_mesh_case(const CaseContext& context,
+                                             const PeerMeshCase& test_case);
+
+} // namespace tactus::bench

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "tests/bench/peers/point_query.hpp"
+
+#include <memory>
+#include <vector>
+
+namespace tactus::bench
+{
+
+/// CGAL's AABB_tree of triangles in double precision, Simple_cartesian<double>; the closest point
+/// with the last answer's as the hint, the first corner for the first question. It knows no band.
+[[nodiscard]] std::unique_ptr<TouchQuery> make_cgal_query(const std::vector<test::Face>& faces,
+                                                          double radius_m);
+
+} // namespace tactus::bench

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+
+/// The suite `peers`: the same work for our queries and for those of the libraries that a user
+/// could take instead. Without peers in the build, ours alone.
+
+#include "tests/bench/bench_report.hpp"
+#include "tests/bench/peer_cases.hpp"
+#include "tests/bench/suites.hpp"
+
+namespace tactus::bench
+{
+
+namespace
+{
+
+constexpr std::size_t kMiB = std::size_t{1} << 20U;
+constexpr SceneSource kIgea{"igea-269k", "igea.ply", 0, 268'686};
+
+std::vector<Case> all_cases()
+{
+    const auto touch = [](const char* name, When when, const PeerTouchCase& test_case)
+    { return make_case(name, when, run_peer_touch_case, test_case); };
+    const auto mesh = [](const char* name, When when, const SceneSource& scene)
+    { return make_case(name, when, run_peer_mesh_case, PeerMeshCase{scene}); };
+    const auto scale = [](const char* name, When when, std::uint32_t faces, const char* setting)
+    {
+        return make_case(name, when, run_peer_scale_case,
+                         PeerScaleCase{{name, nullptr, 0, faces}, setting});
+    };
+    return {
+        touch("touch-bunny", When::always, {kBunny, 2 * kMiB}),
+        touch("touch-igea", When::full_only, {kIgea, 4 * kMiB}),
+        mesh("mesh-bunny", When::always, kBunny),
+        scale("scale-4k", When::always, 4'000, "4 k faces"),
+        scale("scale-40k", When::always, 40'000, "40 k faces"),
+        scale("scale-400k", When::full_only, 400'000, "400 k faces"),
+        scale("scale-4M", When::full_only, 4'000'000, "4 M faces"),
+        touch("touch-tiny", When::named_only, {kTiny, kMiB}),
+        mesh("mesh-tiny", When::named_only, kTiny),
+        scale("scale-tiny", When::named_only, 2'000, "2 k faces"),
+    };
+}
+
+} // namespace
+
+Suite peers_suite()
+{
+    return {"peers", all_cases, to_columns};
+}
+
+} // namespace tactus::bench
