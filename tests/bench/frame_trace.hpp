@@ -15,7 +15,7 @@ namespace tactus::bench
 /// What the frames of one replay answered and did; no times.
 struct FrameTrace
 {
-    std::vector<PairOutput> pairs;    ///< Of the first pair, of each counted frame.
+    std::vector<PairOutput> pairs; ///< Of the first pair, of each counted frame.
     WorkCounters work;             ///< Of the counted frames.
     std::uint64_t coded_bytes{0};  ///< That came over the link, the lead-in's included.
     ModelOutput model;             ///< After the last frame.

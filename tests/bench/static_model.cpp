@@ -2,6 +2,9 @@
 // Copyright the Tactus authors.
 #include "tests/bench/static_model.hpp"
 
+#include "transport/courier.hpp"
+#include "transport/store/model_store.hpp"
+
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -25,6 +28,26 @@ test::RigOptions room_for_all(const Scene& scene)
     options.pool_bytes = (std::size_t{16} << 20U) + kBytesPerFace * scene.model.faces.size();
     options.courier_steps_per_frame = 32;
     return options;
+}
+
+std::size_t static_pool_bytes(const Scene& scene)
+{
+    const auto store = ModelStore::open(scene.model.path); // Its scene was made of it.
+    const ModelHeader& header = store.value().header();
+    const ModelCounts counts = header.counts();
+    // What belongs to no model, and the courier.
+    const std::size_t beside =
+        (std::size_t{1} << 20U) + Courier::required_bytes(counts.chunks(), counts.index_pages());
+    std::size_t bytes = 64 * scene.model.faces.size();
+    for (;; bytes += bytes / 50)
+    {
+        const ModelCapacities capacities = plan_capacities(header, bytes, 0);
+        if (capacities.pages >= counts.chunks() && capacities.faces >= counts.face_ids() &&
+            capacities.index_pages >= counts.index_pages())
+        {
+            return bytes + beside;
+        }
+    }
 }
 
 StaticModel::StaticModel(const Scene& scene) : rig_(scene.model, room_for_all(scene)) {}

@@ -18,6 +18,9 @@ namespace tactus::bench
 /// A rig with pools for all of a scene's model.
 [[nodiscard]] test::RigOptions room_for_all(const Scene& scene);
 
+/// The least pools in which all of a scene's model fits, within 2 %: what static mode takes.
+[[nodiscard]] std::size_t static_pool_bytes(const Scene& scene);
+
 /// Splits every record of a model whose chunks are all there. False when one can't be split or the
 /// tree has no room.
 [[nodiscard]] bool refine_fully(Model& model);

@@ -23,10 +23,14 @@ struct Suite
     bool always_checks{false};
 };
 
+[[nodiscard]] Suite counts_suite();
 [[nodiscard]] Suite encoder_suite();
+[[nodiscard]] Suite error_time_suite();
 [[nodiscard]] Suite force_suite();
 [[nodiscard]] Suite frame_suite();
+[[nodiscard]] Suite growth_suite();
 [[nodiscard]] Suite peers_suite();
+[[nodiscard]] Suite skip_suite();
 [[nodiscard]] Suite stability_suite();
 [[nodiscard]] Suite stream_suite();
 [[nodiscard]] Suite table1_suite();

@@ -1,0 +1,478 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "tests/bench/error_time_case.hpp"
+
+#include "host_tools/encode/extract.hpp"
+#include "tests/bench/answer_errors.hpp"
+#include "tests/bench/frame_trace.hpp"
+#include "tests/bench/static_model.hpp"
+#include "transport/store/model_store.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <optional>
+
+namespace tactus::bench
+{
+
+namespace
+{
+
+constexpr double kSpeed_diag_per_s = 0.5;
+constexpr std::uint32_t kSplits = 64;
+constexpr std::uint32_t kLatency_ms = 4;
+
+/// One way to run ours: what differs from the usual.
+struct Setting
+{
+    std::string name;
+    bool is_quick;
+    std::function<void(FrameRun&)> change{[](FrameRun&) {}};
+    double speed_diag_per_s{kSpeed_diag_per_s};
+    double radius_diag{kRadius_diag};
+};
+
+/// What stands in the table for one point of the plane.
+struct Figures
+{
+    std::string name;
+    Spread us;
+    double bytes{0.0};
+    AnswerErrors errors;
+};
+
+void set_latency(FrameRun& run, std::uint32_t latency_ms)
+{
+    run.rig.courier_steps_per_frame = 1; // So a poll is a frame.
+    run.rig.faults.delay_polls_min = run.rig.faults.delay_polls_max = latency_ms;
+}
+
+Setting with_splits(std::uint32_t splits, bool is_quick)
+{
+    return {fmt::format("K {}", splits), is_quick,
+            [splits](FrameRun& run) { run.budgets.splits = run.budgets.merges = splits; }};
+}
+
+Setting with_tolerance(double tolerance_diag, bool is_quick)
+{
+    return {fmt::format("tolerance {:g} diag", tolerance_diag), is_quick, [=](FrameRun& run) {
+                run.rig.variant.tolerance_m = tolerance_diag * run.scene.model.diagonal_m;
+            }};
+}
+
+Setting with_fixed_radius(double factor, bool is_quick)
+{
+    return {fmt::format("radius {:g} x reach", factor), is_quick,
+            [factor](FrameRun& run) { run.rig.variant.fixed_radius = factor; }};
+}
+
+Setting with_probe(double radius_diag)
+{
+    return {fmt::format("probe {:g} diag", radius_diag), false, [](FrameRun&) {}, kSpeed_diag_per_s,
+            radius_diag};
+}
+
+Setting with_speed(double speed_diag_per_s)
+{
+    return {fmt::format("{:g} diag/s", speed_diag_per_s), false, [](FrameRun&) {},
+            speed_diag_per_s};
+}
+
+Setting with_cache(double mib)
+{
+    return {fmt::format("cache {:g} MiB", mib), false,
+            [mib](FrameRun& run) { run.rig.cache_bytes = static_cast<std::size_t>(mib * 0x1p20); }};
+}
+
+Setting with_pools(double mib, bool is_quick)
+{
+    return {fmt::format("pools {:g} MiB", mib), is_quick,
+            [mib](FrameRun& run) { run.rig.pool_bytes = static_cast<std::size_t>(mib * 0x1p20); }};
+}
+
+Setting with_latency(std::uint32_t latency_ms, double loss, bool is_quick)
+{
+    return {loss > 0.0 ? fmt::format("{} ms, {:g} % lost", latency_ms, 100.0 * loss)
+                       : fmt::format("{} ms", latency_ms),
+            is_quick,
+            [=](FrameRun& run)
+            {
+                set_latency(run, latency_ms);
+                run.rig.faults.loss = loss;
+            }};
+}
+
+/// Nothing streams: the tool's first frames load and refine all of it.
+Setting whole_model()
+{
+    return {"whole model, static", true,
+            [](FrameRun& run)
+            {
+                run.rig.pool_bytes = static_pool_bytes(run.scene);
+                run.rig.static_when_it_fits = true;
+            }};
+}
+
+std::vector<Setting> all_settings()
+{
+    return {{"usual", true},
+            with_splits(1, true),
+            with_splits(4, false),
+            with_splits(16, true),
+            with_splits(256, false),
+            with_tolerance(1e-5, false),
+            with_tolerance(1e-4, true),
+            with_tolerance(1e-3, false),
+            with_fixed_radius(0.5, false),
+            with_fixed_radius(1.0, true),
+            with_fixed_radius(2.0, false),
+            with_probe(0.003),
+            with_probe(0.03),
+            with_speed(0.1),
+            with_speed(2.0),
+            with_cache(0.25),
+            with_cache(0.5),
+            with_pools(0.5, false),
+            with_pools(1.0, true),
+            with_latency(0, 0.0, false),
+            with_latency(20, 0.0, true),
+            with_latency(50, 0.0, false),
+            with_latency(20, 0.05, false),
+            whole_model()};
+}
+
+/// A slide without its lead-in.
+std::vector<Vec3> counted(const std::vector<Vec3>& goals_m)
+{
+    return {goals_m.begin() + kApproachFrames, goals_m.end()};
+}
+
+/// Counted points of a slide with these figures, and what they truly are.
+class Slides
+{
+public:
+    Slides(const Scene& scene, std::uint32_t frames) : scene_(scene), frames_(frames) {}
+
+    [[nodiscard]] const TrueAnswers& of(double speed_diag_per_s, double radius_diag)
+    {
+        const auto [at, is_new] = known_.try_emplace({speed_diag_per_s, radius_diag});
+        if (is_new)
+        {
+            at->second.emplace(*scene_.tree, scene_.model.diagonal_m,
+                               counted(slide_motion(scene_.touch(), speed_diag_per_s, frames_)),
+                               radius_diag * scene_.model.diagonal_m);
+        }
+        return *at->second;
+    }
+
+private:
+    const Scene& scene_;
+    std::uint32_t frames_;
+    std::map<std::pair<double, double>, std::optional<TrueAnswers>> known_;
+};
+
+void add_figures(CaseRows& rows, const Figures& figures)
+{
+    const AnswerErrors& errors = figures.errors;
+    rows.add("p50", figures.us.p50, "us");
+    rows.add("p99", figures.us.p99, "us");
+    rows.add("max", figures.us.max, "us");
+    rows.add("memory", figures.bytes * 1e-6, "MB");
+    rows.add("error p99", errors.distance_diag.p99, "diag");
+    rows.add("error max", errors.distance_diag.max, "diag");
+    rows.add("normal p99", errors.normal_deg.p99, "deg");
+    rows.add("force error p99", errors.force_n.p99, "N");
+    rows.add("force error max", errors.force_n.max, "N");
+    rows.add("missed", static_cast<double>(errors.touch.missed), "");
+    rows.add("invented", static_cast<double>(errors.touch.invented), "");
+}
+
+void add_streaming(CaseRows& rows, const FrameTrace& trace, double diagonal_m)
+{
+    std::vector<double> widths_diag;
+    double exact = 0.0;
+    for (const PairOutput& pair : trace.pairs)
+    {
+        exact += pair.kind == AnswerKind::exact ? 1.0 : 0.0;
+        widths_diag.push_back((pair.upper_m - pair.lower_m) / diagonal_m);
+    }
+    const auto frames = static_cast<double>(trace.pairs.size());
+    rows.add("bracket p99", spread_of(widths_diag).p99, "diag");
+    rows.add("exact", 100.0 * exact / frames, "%");
+    rows.add("wire", static_cast<double>(trace.coded_bytes) * 1e-3 / (frames * kPeriod_s), "kB/s");
+}
+
+/// In single precision, in the frame of a scene.
+std::vector<test::Face> faces_of(const TriangleMesh& mesh, const Scene& scene)
+{
+    std::vector<test::Face> list;
+    for (const auto& face : mesh.faces)
+    {
+        test::Face corners{};
+        for (std::size_t corner = 0; corner < 3; ++corner)
+        {
+            const auto& position = mesh.positions[face[corner]];
+            for (std::size_t axis = 0; axis < 3; ++axis)
+            {
+                corners[corner][axis] =
+                    static_cast<float>(position[axis] - scene.model.origin_m[axis]);
+            }
+        }
+        list.push_back(corners);
+    }
+    return list;
+}
+
+/// All records of a scene's model.
+Result<DecodedModel, SceneError> decode(const Scene& scene)
+{
+    const auto store = ModelStore::open(scene.model.path);
+    if (!store)
+    {
+        return SceneError{store.error().text};
+    }
+    std::vector<std::string> damage;
+    DecodedModel decoded = DecodedModel::decode(store.value(), damage);
+    if (!damage.empty())
+    {
+        return SceneError{damage.front()};
+    }
+    return decoded;
+}
+
+class ErrorTime
+{
+public:
+    ErrorTime(const CaseContext& context, const ErrorTimeCase& test_case, const Scene& scene)
+        : context_(context)
+        , test_case_(test_case)
+        , scene_(scene)
+        , frames_(context.options.frames_or(3'000, 400))
+        , slides_(scene, frames_)
+    {
+    }
+
+    [[nodiscard]] CaseFailure run()
+    {
+        for (const Setting& setting : all_settings())
+        {
+            if (setting.is_quick || !context_.options.quick)
+            {
+                if (CaseFailure failure = run_ours(setting))
+                {
+                    return failure;
+                }
+            }
+        }
+        for (const std::uint32_t bits : {kMinPositionBits, kMaxPositionBits})
+        {
+            if (CaseFailure failure = run_position_bits(bits))
+            {
+                return failure;
+            }
+        }
+        const auto decoded = decode(scene_);
+        if (!decoded)
+        {
+            return decoded.error().text;
+        }
+        const std::size_t whole = scene_.model.faces.size();
+        for (const std::size_t faces : {std::size_t{1'000}, std::size_t{3'000}, std::size_t{10'000},
+                                        std::size_t{30'000}, std::size_t{100'000}, whole})
+        {
+            if (faces <= whole)
+            {
+                const auto coarse =
+                    faces == whole ? scene_.model.faces
+                                   : faces_of(extract(decoded.value(),
+                                                      {static_cast<std::uint32_t>(faces), {}, {}})
+                                                  .mesh,
+                                              scene_);
+                if (CaseFailure failure = run_peers(coarse))
+                {
+                    return failure;
+                }
+            }
+        }
+        return std::nullopt;
+    }
+
+private:
+    [[nodiscard]] CaseRows rows_of(const std::string& by, const std::string& setting,
+                                   std::uint64_t hash) const
+    {
+        Row common = context_.common_row(scene_.model.name);
+        common.by = by;
+        common.setting = setting;
+        common.frames = frames_;
+        common.hash = hash;
+        return {context_.rows, common};
+    }
+
+    [[nodiscard]] CaseFailure run_ours(const Setting& setting)
+    {
+        const TrueAnswers& truth = slides_.of(setting.speed_diag_per_s, setting.radius_diag);
+        const auto figures = measure(scene_, setting, truth);
+        if (!figures)
+        {
+            return figures.error().text;
+        }
+        if (setting.speed_diag_per_s == kSpeed_diag_per_s && setting.radius_diag == kRadius_diag)
+        {
+            ours_.push_back(figures.value());
+        }
+        return std::nullopt;
+    }
+
+    /// A model of so many bits, judged by the mesh that it was made of: what rounding costs.
+    [[nodiscard]] CaseFailure run_position_bits(std::uint32_t bits)
+    {
+        auto named = source_mesh(test_case_.scene);
+        if (!named)
+        {
+            return named.error().text;
+        }
+        named.value().name += bits == kMinPositionBits ? "" : fmt::format("-{}bit", bits);
+        const auto scene = context_.scenes.get(named.value(), bits);
+        if (!scene)
+        {
+            return scene.error().text;
+        }
+        const std::vector<test::Face> source = faces_of(named.value().mesh, *scene.value());
+        const test::FaceTree tree(source);
+        const double diagonal_m = scene.value()->model.diagonal_m;
+        const TrueAnswers truth(
+            tree, diagonal_m, counted(slide_motion({tree, diagonal_m}, kSpeed_diag_per_s, frames_)),
+            kRadius_diag * diagonal_m);
+        Setting setting{fmt::format("{} position bits, against the source", bits), true};
+        const auto figures = measure(*scene.value(), setting, truth);
+        return figures ? std::nullopt : CaseFailure(figures.error().text);
+    }
+
+    /// The tool is where `truth` was asked.
+    [[nodiscard]] Result<Figures, SceneError> measure(const Scene& scene, const Setting& setting,
+                                                      const TrueAnswers& truth)
+    {
+        FrameRun run = make_slide(scene, setting.speed_diag_per_s, kSplits,
+                                  static_cast<std::size_t>(test_case_.pool_mib * 0x1p20), frames_);
+        std::ranges::copy(truth.questions().points_m, run.goals_m.begin() + kApproachFrames);
+        ToolSpec& tool = run.rig.tools[0];
+        tool.radius_m = truth.radius_m();
+        tool.passes_through = true; // It is where the peers are asked.
+        set_latency(run, kLatency_ms);
+        setting.change(run);
+        if (run.rig.static_when_it_fits)
+        {
+            stay_until_all_is_there(run);
+        }
+        FrameReplay replay(run);
+        for (std::uint32_t pass = 0; pass < context_.options.passes_or(4, 2); ++pass)
+        {
+            if (const auto failure = replay.run_once(CacheState::warm, frames_))
+            {
+                return SceneError{*failure};
+            }
+        }
+        const FrameTrace trace = trace_frames(run);
+        std::vector<SurfaceAnswer> answers;
+        std::ranges::transform(trace.pairs, std::back_inserter(answers), answer_of);
+        Figures figures{setting.name, spread_of(replay.sum_us(CacheState::warm).least()),
+                        static_cast<double>(run.rig.pool_bytes), truth.errors_of(answers)};
+        CaseRows rows = rows_of("Tactus", setting.name, replay.hash() + figures.errors.hash);
+        add_figures(rows, figures);
+        add_streaming(rows, trace, scene.model.diagonal_m);
+        return figures;
+    }
+
+    /// Frames at the first goal, not counted: some records a frame, everything twice over.
+    void stay_until_all_is_there(FrameRun& run) const
+    {
+        const std::size_t frames = 2 * scene_.model.faces.size() / kSplits + 1'000;
+        run.goals_m.insert(run.goals_m.begin(), frames, run.goals_m.front());
+        run.lead_in += frames;
+        run.rig.courier_steps_per_frame = 4;
+        run.rig.faults = {};
+    }
+
+    [[nodiscard]] CaseFailure run_peers(const std::vector<test::Face>& faces)
+    {
+        const TrueAnswers& truth = slides_.of(kSpeed_diag_per_s, kRadius_diag);
+        for (const PointPeer& peer : point_peers())
+        {
+            if (faces.size() > peer.most_faces)
+            {
+                continue;
+            }
+            auto built = build_peer(peer, faces, truth.radius_m());
+            if (!built)
+            {
+                return built.error().text;
+            }
+            const auto answers =
+                replay_queries(*built.value().query, truth.questions(), 2.0 * truth.radius_m(),
+                               context_.options.passes_or(4, 2));
+            if (!answers)
+            {
+                return answers.error().text;
+            }
+            Figures figures;
+            figures.us = spread_of(answers.value().us.least());
+            figures.bytes = built.value().bytes;
+            figures.errors = truth.errors_of(answers_of(answers.value()));
+            CaseRows rows =
+                rows_of(peer.name, fmt::format("{} faces", faces.size()), answers.value().hash);
+            add_figures(rows, figures);
+            add_verdict(rows, figures);
+        }
+        return std::nullopt;
+    }
+
+    /// Whether some setting of ours is as right and as small in at most twice the time.
+    void add_verdict(CaseRows& rows, const Figures& peer) const
+    {
+        constexpr double kSlower = 2.0;
+        constexpr double kRounding_diag = 1e-9;
+        const auto better =
+            std::ranges::find_if(ours_,
+                                 [&](const Figures& mine)
+                                 {
+                                     return mine.errors.distance_diag.max <=
+                                                peer.errors.distance_diag.max + kRounding_diag &&
+                                            mine.bytes <= peer.bytes &&
+                                            mine.us.p99 <= kSlower * peer.us.p99;
+                                 });
+        Row& row = rows.add("ours as good", better == ours_.end() ? 0.0 : 1.0, "", 1.0);
+        row.is_least = true;
+        if (better != ours_.end())
+        {
+            row.peer = better->name;
+        }
+    }
+
+    const CaseContext& context_;
+    const ErrorTimeCase& test_case_;
+    const Scene& scene_;
+    std::uint32_t frames_;
+    Slides slides_;
+    std::vector<Figures> ours_; ///< Of the motion that the peers are asked about.
+};
+
+} // namespace
+
+CaseFailure run_error_time_case(const CaseContext& context, const ErrorTimeCase& test_case)
+{
+    const auto scene = context.scenes.get(test_case.scene);
+    if (!scene)
+    {
+        return scene.error().text;
+    }
+    const PinnedCore pinned(context.options.core);
+    return ErrorTime(context, test_case, *scene.value()).run();
+}
+
+} // namespace tactus::bench

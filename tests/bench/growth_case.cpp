@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "tests/bench/growth_case.hpp"
+
+#include "host_tools/encode/write_spm.hpp"
+#include "host_tools/mesh/prepare.hpp"
+#include "host_tools/simplify/simplify.hpp"
+#include "tests/bench/frame_trace.hpp"
+#include "tests/bench/measuring.hpp"
+#include "tests/shared/temporary_folder.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <iterator>
+#include <utility>
+
+namespace tactus::bench
+{
+
+namespace
+{
+
+constexpr double kSpeed_diag_per_s = 0.5;
+constexpr std::uint32_t kSplits = 128;
+constexpr std::size_t kPool_bytes = std::size_t{8} << 20U;
+
+/// A model's faces, and the splits that a frame made on it.
+struct Size
+{
+    double n;
+    double k;
+};
+
+/// One figure at each size.
+struct Figure
+{
+    const char* name;
+    const char* unit;
+    double (*law)(const Size& size); ///< What it should follow, up to a factor.
+    std::vector<double> values{};
+};
+
+double logarithm(const Size& size)
+{
+    return std::log2(size.n);
+}
+
+double linear(const Size& size)
+{
+    return size.n;
+}
+
+/// The paper's for k faces that change together.
+double clustered(const Size& size)
+{
+    return size.k * (std::log2(size.n) - std::log2(size.k) + 2.0);
+}
+
+/// The tool covers a share of the surface, and each frame it comes to a share that is new: what is
+/// done there grows with n, what leads there with log n.
+std::vector<Figure> all_figures()
+{
+    return {{"frame p50", "us", linear},
+            {"frame p99", "us", linear},
+            {"query p50", "us", logarithm},
+            {"splits", "/frame", linear},
+            {"refit visits", "/frame", clustered},
+            {"faces in the pool", "", linear},
+            {"pages in the pool", "", linear},
+            {"wire", "kB/s", linear},
+            {"encoder", "s", linear},
+            {"file", "MB", linear}};
+}
+
+/// Seconds on one core from the mesh to the file, and the file's bytes.
+Result<std::pair<double, double>, SceneError> encode(const NamedMesh& named)
+{
+    const test::TemporaryFolder folder("growth");
+    const BenchClock::time_point start = BenchClock::now();
+    const auto prepared = prepare_mesh(named.mesh, {});
+    if (!prepared)
+    {
+        return SceneError{prepared.error().text};
+    }
+    const auto simplification = simplify(prepared.value().mesh, {});
+    if (!simplification)
+    {
+        return SceneError{simplification.error().text};
+    }
+    const auto path = folder.path() / "model.spm";
+    if (auto done = write_spm(path, prepared.value(), simplification.value(), {}); !done)
+    {
+        return SceneError{done.error().text};
+    }
+    return std::pair(seconds(start, BenchClock::now()),
+                     static_cast<double>(std::filesystem::file_size(path)));
+}
+
+/// Scaled to go through the middle of the points, in the sense of the geometric mean.
+std::vector<double> fitted_law(const Figure& figure, const std::vector<Size>& sizes)
+{
+    std::vector<double> law;
+    double sum = 0.0;
+    for (std::size_t i = 0; i < sizes.size(); ++i)
+    {
+        law.push_back(figure.law(sizes[i]));
+        sum += std::log(figure.values[i] / law.back());
+    }
+    const double factor = std::exp(sum / static_cast<double>(sizes.size()));
+    std::ranges::transform(law, law.begin(), [factor](double value) { return factor * value; });
+    return law;
+}
+
+/// What all figures are at one size.
+struct SizeFigures
+{
+    Size size;
+    std::string scene;
+    std::uint64_t hash{0};
+    std::vector<double> values;
+};
+
+Result<SizeFigures, SceneError> measure(const CaseContext& context, std::uint32_t faces,
+                                        std::uint32_t frames)
+{
+    const std::string name = fmt::format("bumpy-{}k", faces / 1'000);
+    const auto named = source_mesh({name.c_str(), nullptr, 0, faces});
+    if (!named)
+    {
+        return named.error();
+    }
+    const auto scene = context.scenes.get(named.value());
+    if (!scene)
+    {
+        return scene.error();
+    }
+    const PinnedCore pinned(context.options.core);
+    const FrameRun run =
+        make_slide(*scene.value(), kSpeed_diag_per_s, kSplits, kPool_bytes, frames);
+    FrameReplay replay(run);
+    for (std::uint32_t pass = 0; pass < context.options.passes_or(4, 2); ++pass)
+    {
+        if (const auto failure = replay.run_once(CacheState::warm, frames))
+        {
+            return SceneError{*failure};
+        }
+    }
+    const FrameTrace trace = trace_frames(run);
+    const auto encoded = encode(named.value());
+    if (!encoded)
+    {
+        return encoded.error();
+    }
+    const Spread frame = spread_of(replay.sum_us(CacheState::warm).least());
+    const double splits = static_cast<double>(trace.work.splits) / frames;
+    const double visits =
+        static_cast<double>(trace.work.nodes_refitted + trace.work.blocks_refitted) / frames;
+    return SizeFigures{{static_cast<double>(scene.value()->model.faces.size()), splits},
+                       scene.value()->model.name,
+                       replay.hash(),
+                       {frame.p50, frame.p99, spread_of(replay.stage_us(Stage::query).least()).p50,
+                        splits, visits, static_cast<double>(trace.model.faces.used_max),
+                        static_cast<double>(trace.model.pages.used_max),
+                        static_cast<double>(trace.coded_bytes) * 1e-3 / (frames * kPeriod_s),
+                        encoded.value().first, encoded.value().second * 1e-6}};
+}
+
+} // namespace
+
+double fitted_exponent(const std::vector<double>& n, const std::vector<double>& values)
+{
+    const auto count = static_cast<double>(n.size());
+    double x = 0.0;
+    double y = 0.0;
+    double xx = 0.0;
+    double xy = 0.0;
+    for (std::size_t i = 0; i < n.size(); ++i)
+    {
+        const double at = std::log(n[i]);
+        const double value = std::log(values[i]);
+        x += at;
+        y += value;
+        xx += at * at;
+        xy += at * value;
+    }
+    return (count * xy - x * y) / (count * xx - x * x);
+}
+
+CaseFailure run_growth_law_case(const CaseContext& context, const GrowthLawCase& test_case)
+{
+    const std::uint32_t frames = context.options.frames_or(3'000, 500);
+    std::vector<Figure> figures = all_figures();
+    std::vector<SizeFigures> measured;
+    std::vector<Size> sizes;
+    std::vector<double> n;
+    for (const std::uint32_t faces : test_case.faces)
+    {
+        auto at_size = measure(context, faces, frames);
+        if (!at_size)
+        {
+            return at_size.error().text;
+        }
+        for (std::size_t i = 0; i < figures.size(); ++i)
+        {
+            figures[i].values.push_back(at_size.value().values[i]);
+        }
+        sizes.push_back(at_size.value().size);
+        n.push_back(at_size.value().size.n);
+        measured.push_back(std::move(at_size).value());
+    }
+    for (const Figure& figure : figures)
+    {
+        const std::vector<double> law = fitted_law(figure, sizes);
+        for (std::size_t i = 0; i < n.size(); ++i)
+        {
+            Row common = context.common_row(measured[i].scene, figure.name);
+            common.test_case = measured[i].scene;
+            common.frames = frames;
+            common.hash = measured[i].hash;
+            CaseRows rows(context.rows, common);
+            rows.add("faces", n[i], "");
+            rows.add(figure.name, figure.values[i], figure.unit);
+            rows.add("law", law[i], figure.unit);
+        }
+        Row common = context.common_row(context.name, "Exponents of n");
+        common.test_case = figure.name;
+        CaseRows rows(context.rows, common);
+        rows.add("fitted", fitted_exponent(n, figure.values), "n^");
+        rows.add("of the law", fitted_exponent(n, law), "n^");
+    }
+    return std::nullopt;
+}
+
+} // namespace tactus::bench

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+
+/// The suite `counts`: what frames do on three fixed scenes that need no mesh from elsewhere, in
+/// counts that are the same on every machine; no times. Under callgrind, instructions as well:
+/// check_counts.py.
+
+#include "tests/bench/bench_report.hpp"
+#include "tests/bench/frame_trace.hpp"
+#include "tests/bench/static_model.hpp"
+#include "tests/bench/suites.hpp"
+
+#include <filesystem>
+
+namespace tactus::bench
+{
+
+namespace
+{
+
+constexpr SceneSource kLarger{"larger", nullptr, 0, 60'000};
+constexpr std::uint32_t kFrames = 2'000;
+constexpr std::size_t kMiB = std::size_t{1} << 20U;
+
+/// A proxy slides, everything streams and comes 10 ms late.
+FrameRun slide(const Scene& scene)
+{
+    FrameRun run = make_slide(scene, 0.5, 64, kMiB, kFrames);
+    run.rig.courier_steps_per_frame = 1;
+    run.rig.faults.delay_polls_min = run.rig.faults.delay_polls_max = 10;
+    return run;
+}
+
+/// Flight, approach, slide and retreat over a model that fits and is refined once.
+FrameRun touch_static(const Scene& scene)
+{
+    constexpr std::size_t kFillFrames = 1'000;
+    FrameRun run = make_slide(scene, 0.5, 64, static_pool_bytes(scene), 1);
+    run.goals_m = touch_motion(scene.touch(), kCycleFrames);
+    run.goals_m.insert(run.goals_m.begin(), kFillFrames, run.goals_m.front());
+    run.lead_in = kFillFrames;
+    run.rig.static_when_it_fits = true;
+    return run;
+}
+
+struct CountCase
+{
+    SceneSource scene;
+    FrameRun (*make)(const Scene& scene);
+};
+
+CaseFailure run_count_case(const CaseContext& context, const CountCase& test_case)
+{
+    const auto scene = context.scenes.get(test_case.scene);
+    if (!scene)
+    {
+        return scene.error().text;
+    }
+    const FrameRun run = test_case.make(*scene.value());
+    const FrameTrace trace = trace_frames(run);
+    Row common = context.common_row(scene.value()->model.name);
+    common.frames = trace.pairs.size();
+    common.hash = trace.model.state_hash;
+    CaseRows rows(context.rows, common);
+    const WorkCounters& work = trace.work;
+    // Of all frames, those before the slide included: what callgrind counts.
+    rows.add("frames in all", static_cast<double>(run.goals_m.size()), "");
+    rows.add("splits", work.splits, "");
+    rows.add("merges", work.merges, "");
+    rows.add("nodes visited", work.nodes_visited, "");
+    rows.add("triangles", work.triangles_tested, "");
+    rows.add("refit visits", work.nodes_refitted + work.blocks_refitted, "");
+    rows.add("bytes on the wire", static_cast<double>(trace.coded_bytes), "");
+    rows.add("bytes of the file",
+             static_cast<double>(std::filesystem::file_size(scene.value()->model.path)), "");
+    return std::nullopt;
+}
+
+std::vector<Case> all_cases()
+{
+    const auto count = [](const char* name, const SceneSource& scene,
+                          FrameRun (*make)(const Scene&)) {
+        return make_case(name, When::always, run_count_case, CountCase{scene, make});
+    };
+    return {count("slide, 4 k faces", kTiny, slide), count("slide, 60 k faces", kLarger, slide),
+            count("touch, static, 4 k faces", kTiny, touch_static)};
+}
+
+} // namespace
+
+Suite counts_suite()
+{
+    return {"counts", all_cases, to_columns};
+}
+
+} // namespace tactus::bench

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+
+/// The suite `skip`: what each of a frame's shortcuts saves, off one at a time and all off; exact
+/// answers stay the same to the bit, or the case fails.
+
+#include "tests/bench/bench_report.hpp"
+#include "tests/bench/frame_trace.hpp"
+#include "tests/bench/suites.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <iterator>
+
+namespace tactus::bench
+{
+
+namespace
+{
+
+/// How a frame goes without a shortcut.
+struct Without
+{
+    const char* name;
+    void (*leave_out)(FrameRun& run);
+};
+
+void keep_splits(FrameRun& run)
+{
+    run.budgets.merges = 0;
+    run.budgets.scanned = 0;
+}
+
+/// Also without certificates: every face within a radius in which, on these scenes, nearly every
+/// answer is exact.
+constexpr double kFixedRadius = 1.5;
+
+constexpr std::array<Without, 9> kWithout{{
+    {"all shortcuts", [](FrameRun&) {}},
+    {"no rest out of reach", [](FrameRun& run) { run.rig.variant.lets_pairs_rest = false; }},
+    {"no warm start", [](FrameRun& run) { run.rig.variant.starts_warm = false; }},
+    {"no lasting certificates", [](FrameRun& run) { run.rig.variant.keeps_certificates = false; }},
+    {"no certificates, fixed radius",
+     [](FrameRun& run) { run.rig.variant.fixed_radius = kFixedRadius; }},
+    {"refit of everything", [](FrameRun& run) { run.rig.variant.refits_changed_only = false; }},
+    {"no coarsening", keep_splits},
+    {"no prefetch", [](FrameRun& run) { run.rig.variant.asks_ahead = false; }},
+    {"none of them",
+     [](FrameRun& run)
+     {
+         run.rig.variant = {false, false, false, false, false, kFixedRadius, 0.0};
+         keep_splits(run);
+     }},
+}};
+
+struct SkipCase
+{
+    SceneSource scene;
+    double pool_mib;
+    Without without;
+};
+
+/// Half flight, half touch: a shortcut may be for either.
+FrameRun make_run(const CaseContext& context, const SkipCase& test_case, const Scene& scene)
+{
+    constexpr std::uint32_t kSplits = 64;
+    constexpr double kSpeed_diag_per_s = 2.0; // As fast as the flight.
+    const std::uint32_t frames = context.options.frames_or(2 * kCycleFrames, kCycleFrames);
+    FrameRun run = make_slide(scene, kSpeed_diag_per_s, kSplits,
+                              static_cast<std::size_t>(test_case.pool_mib * 0x1p20), 1);
+    run.goals_m = touch_motion(scene.touch(), frames);
+    run.lead_in = 0;
+    run.rig.tools[0].passes_through = true; // The same way whatever is known.
+    run.rig.courier_steps_per_frame = 1;
+    run.rig.faults.delay_polls_min = run.rig.faults.delay_polls_max = 10;
+    return run;
+}
+
+bool is_exact(const PairOutput& pair)
+{
+    return pair.kind == AnswerKind::exact;
+}
+
+/// A line when an answer that is exact both times is not the same.
+CaseFailure compare(const FrameTrace& usual, const FrameTrace& other)
+{
+    for (std::size_t i = 0; i < usual.pairs.size(); ++i)
+    {
+        const PairOutput& a = usual.pairs[i];
+        const PairOutput& b = other.pairs[i];
+        if (is_exact(a) && is_exact(b) &&
+            (a.lower_m != b.lower_m || a.upper_m != b.upper_m || a.nearest_face != b.nearest_face))
+        {
+            return fmt::format("frame {}: exact distances of {} and {} m", i, a.upper_m, b.upper_m);
+        }
+    }
+    return std::nullopt;
+}
+
+CaseFailure run_skip_case(const CaseContext& context, const SkipCase& test_case)
+{
+    const auto scene = context.scenes.get(test_case.scene);
+    if (!scene)
+    {
+        return scene.error().text;
+    }
+    const PinnedCore pinned(context.options.core);
+    const FrameRun usual = make_run(context, test_case, *scene.value());
+    FrameRun run = usual;
+    test_case.without.leave_out(run);
+    FrameReplay replay(run);
+    for (std::uint32_t pass = 0; pass < context.options.passes_or(3, 2); ++pass)
+    {
+        if (const auto failure = replay.run_once(CacheState::warm, run.counted()))
+        {
+            return failure;
+        }
+    }
+    Row common = context.common_row(scene.value()->model.name);
+    common.test_case = scene.value()->model.name;
+    common.setting = test_case.without.name;
+    common.frames = run.counted();
+    common.hash = replay.hash();
+    CaseRows rows(context.rows, common);
+    const Spread spread = spread_of(replay.sum_us(CacheState::warm).least());
+    rows.add("p50", spread.p50, "us");
+    rows.add("p99", spread.p99, "us");
+    const Spread loading = spread_of(replay.stage_us(Stage::load).least());
+    rows.add("loading p99", loading.p99, "us");
+    const FrameWork& work = replay.work();
+    const auto frames = static_cast<double>(work.frames);
+    rows.add("splits", static_cast<double>(work.splits) / frames, "/frame");
+    rows.add("nodes", static_cast<double>(work.nodes) / frames, "/frame");
+    rows.add("open", 100.0 * static_cast<double>(work.open) / frames, "%");
+    if (context.options.count)
+    {
+        return std::nullopt; // The comparison's frames are not to be counted.
+    }
+    const FrameTrace trace = trace_frames(run);
+    rows.add("refit visits",
+             static_cast<double>(trace.work.nodes_refitted + trace.work.blocks_refitted) / frames,
+             "/frame");
+    rows.add("exact frames", static_cast<double>(std::ranges::count_if(trace.pairs, is_exact)), "");
+    return compare(trace_frames(usual), trace);
+}
+
+std::vector<Case> all_cases()
+{
+    std::vector<Case> cases;
+    const auto add = [&](When when, const SceneSource& scene, double pool_mib)
+    {
+        for (const Without& without : kWithout)
+        {
+            cases.push_back(make_case(fmt::format("{}, {}", scene.name, without.name), when,
+                                      run_skip_case, SkipCase{scene, pool_mib, without}));
+        }
+    };
+    add(When::always, kBunny, 4.0);
+    add(When::full_only, kFineBunny, 16.0);
+    add(When::named_only, kTiny, 2.0);
+    return cases;
+}
+
+} // namespace
+
+Suite skip_suite()
+{
+    return {"skip", all_cases, to_columns};
+}
+
+} // namespace tactus::bench
