@@ -133,6 +133,12 @@ Result<PairAnswers, SceneError> replay_pairs(PairQuery& query, std::span<const P
     {
         std::uint64_t hash = 0;
         query.forget();
+        if (!places.empty())
+        {
+            query.place(places[0]);
+            PairAnswers not_kept = room_for(question, 1);
+            static_cast<void>(answer(query, question, 0, not_kept));
+        }
         for (std::size_t i = 0; i < places.size(); ++i)
         {
             query.place(places[i]);
