@@ -19,11 +19,6 @@ namespace
 void ask_once(TouchQuery& query, std::span<const Vec3> points_m, std::span<const double> bands_m,
               PointAnswers& answers)
 {
-    query.forget();
-    if (!points_m.empty())
-    {
-        answers.distances_m[0] = query.distance_m(points_m[0], bands_m[0]);
-    }
     for (std::size_t i = 0; i < points_m.size(); ++i)
     {
         const BenchClock::time_point start = BenchClock::now();
@@ -54,6 +49,11 @@ Result<PointAnswers, SceneError> replay_queries(TouchQuery& query, std::span<con
                          std::nullopt};
     for (std::uint32_t pass = 0; pass < passes; ++pass)
     {
+        query.forget();
+        if (count > 0)
+        {
+            answers.distances_m[0] = query.distance_m(points_m[0], bands_m[0]);
+        }
         answers.allocations = counted_if_available(
             allocations_of([&] { ask_once(query, points_m, bands_m, answers); }));
         const std::uint64_t hash = hash_of(answers.distances_m);

@@ -166,8 +166,8 @@ CaseFailure add_peers(TouchTrial& trial)
     {
         if (trial.scene.model.faces.size() > peer.most_faces)
         {
-            fmt::print(stderr, "{}: left out, {} faces would take it minutes\n", peer.name,
-                       trial.scene.model.faces.size());
+            fmt::print(stderr, "{}: left out, {} faces: {}\n", peer.name,
+                       trial.scene.model.faces.size(), peer.why_no_more);
             continue;
         }
         const auto built = build_peer(peer, trial.scene.model.faces, trial.radius_m());
