@@ -38,8 +38,7 @@ std::vector<test::FacePair> named(const std::vector<test::FacePair>& pairs, cons
         names.push_back({truth.tool_names[pair.tool_face], truth.object_names[pair.face]});
     }
     std::ranges::sort(names);
-    const auto repeated = std::ranges::unique(names);
-    names.erase(repeated.begin(), repeated.end());
+    names.erase(std::unique(names.begin(), names.end()), names.end());
     return names;
 }
 

@@ -48,7 +48,7 @@ std::vector<PointPeer> point_peers()
         {"FCL, point", make_fcl_query, kFloatError_diag},
         // Of a triangle with several edges in the sphere the last one counts, not the nearest.
         {"FCL, sphere", make_fcl_sphere_query, 1e-2, 1'000'000,
-         "minutes of flight at 10 ms a query"},
+         "a query in flight takes 1.2 ms at 400 k already"},
 #endif
 #ifdef TACTUS_BENCH_BULLET
         // Of 10 units: what is nearer than the root of float's epsilon is as near as can be.
