@@ -28,12 +28,12 @@ struct PointAnswers
     std::optional<std::uint64_t> allocations; ///< Of all questions; none where none are counted.
 };
 
-/// Asks all questions in turn, `passes` times from the start. Refused only when passes differ.
-[[nodiscard]] Result<PointAnswers, SceneError>
-replay_queries(TouchQuery& query, const Questions& questions, double band_m, std::uint32_t passes);
-
-/// The questions of the chosen frames.
-[[nodiscard]] Questions chosen(const Questions& questions, const std::vector<bool>& choice);
+/// Asks all questions in turn, each with a band of its own, `passes` times from the start: as in a
+/// loop that is on its way, the first one was asked once before. Refused only when passes differ.
+[[nodiscard]] Result<PointAnswers, SceneError> replay_queries(TouchQuery& query,
+                                                              std::span<const Vec3> points_m,
+                                                              std::span<const double> bands_m,
+                                                              std::uint32_t passes);
 
 /// How wrong answers are about touch: a probe of a radius touches where the distance of its centre
 /// is less.
@@ -58,7 +58,8 @@ struct TouchErrors
 /// The largest error of a distance, all counted as the band where they are beyond it; infinite for
 /// one that is not a number.
 [[nodiscard]] double largest_error_m(std::span<const double> answers_m,
-                                     std::span<const double> truth_m, double band_m);
+                                     std::span<const double> truth_m,
+                                     std::span<const double> bands_m);
 
 /// How far the told nearest points are off at most: from the surface, and in their distance from
 /// the question's point. Which one of several that are as near is told, does not matter.

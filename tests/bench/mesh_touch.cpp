@@ -24,6 +24,8 @@ constexpr double kTurn_rad_per_s = 1.0;
 constexpr double kLowest_diag = -0.0075;
 constexpr double kHighest_diag = 0.005;
 constexpr double kSwing_s = 1.0;
+/// The next distance is expected to be at most this many times the last one.
+constexpr double kGuess = 1.1;
 /// Nothing is to be cut short.
 constexpr std::uint32_t kUnlimited = std::numeric_limits<std::uint32_t>::max();
 
@@ -153,6 +155,12 @@ void TactusPairQuery::place(const Placement& tool)
     place_.place = tool;
 }
 
+void TactusPairQuery::forget()
+{
+    memory_ = {};
+    guess_m_ = 0.0;
+}
+
 void TactusPairQuery::ask(double reach_m)
 {
     OtherSurface surface(object_->tree(), place_, {kUnlimited, kUnlimited});
@@ -179,14 +187,19 @@ const std::vector<test::FacePair>& TactusPairQuery::meeting()
 
 double TactusPairQuery::distance_m()
 {
-    ask(0.0);
-    if (report_.intersection == Intersection::proven)
+    ask(guess_m_);
+    if (answer_.kind != AnswerKind::exact)
     {
-        return 0.0;
+        ask(answer_.upper_m);
     }
-    ask(answer_.upper_m);
-    const bool is_proven = answer_.kind == AnswerKind::exact;
-    return is_proven ? answer_.upper_m : std::numeric_limits<double>::quiet_NaN();
+    if (answer_.kind != AnswerKind::exact)
+    {
+        return std::numeric_limits<double>::quiet_NaN();
+    }
+    const bool do_meet = report_.intersection == Intersection::proven;
+    const double distance_m = do_meet ? 0.0 : answer_.upper_m;
+    guess_m_ = kGuess * distance_m;
+    return distance_m;
 }
 
 test::FacePair TactusPairQuery::in_source(const test::FacePair& own) const

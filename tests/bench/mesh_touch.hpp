@@ -33,9 +33,10 @@ namespace tactus::bench
                                                        const std::vector<Triangle>& tool,
                                                        std::uint32_t frames);
 
-/// The controller's query of two meshes over two static models. One query answers all: do_meet()
-/// and meeting() ask with no reach; where nothing meets, distance_m() asks again with the bound
-/// that this gave as its reach, since only within the reach the nearest pair is proven.
+/// The controller's query of two meshes over two static models. One query answers all, and it
+/// always finds every pair that meets: do_meet() and meeting() ask it with no reach. The nearest
+/// pair is proven within the reach only: distance_m() asks with a little more than the last
+/// distance and, where that was too little, again with the bound that it got.
 class TactusPairQuery final : public PairQuery
 {
 public:
@@ -50,7 +51,7 @@ public:
     /// NaN when the answer is not proven to rounding.
     [[nodiscard]] double distance_m() override;
     [[nodiscard]] test::FacePair in_source(const test::FacePair& own) const override;
-    void forget() override { memory_ = {}; }
+    void forget() override;
 
 private:
     TactusPairQuery(std::unique_ptr<StaticModel> tool, std::unique_ptr<StaticModel> object,
@@ -63,6 +64,7 @@ private:
     test::FaceNames object_names_;
     MeshPlacement place_;
     QueryMemory memory_;
+    double guess_m_{0.0};
     DistanceAnswer answer_;
     MeshReport report_;
     ContactReport contacts_;

@@ -38,8 +38,7 @@ std::vector<test::FacePair> named(const std::vector<test::FacePair>& pairs, cons
         names.push_back({truth.tool_names[pair.tool_face], truth.object_names[pair.face]});
     }
     std::ranges::sort(names);
-    const auto repeated = std::ranges::unique(names);
-    names.erase(repeated.begin(), repeated.end());
+    names.erase(std::unique(names.begin(), names.end()), names.end());
     return names;
 }
 
@@ -133,6 +132,12 @@ Result<PairAnswers, SceneError> replay_pairs(PairQuery& query, std::span<const P
     {
         std::uint64_t hash = 0;
         query.forget();
+        if (!places.empty())
+        {
+            query.place(places[0]);
+            PairAnswers not_kept = room_for(question, 1);
+            static_cast<void>(answer(query, question, 0, not_kept));
+        }
         for (std::size_t i = 0; i < places.size(); ++i)
         {
             query.place(places[i]);

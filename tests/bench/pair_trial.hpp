@@ -47,8 +47,8 @@ struct PairAnswers
     std::vector<double> distances_m;
     std::uint64_t hash{0}; ///< Over the answers: they were used.
 };
-/// Asks at all places in turn, `passes` times from the start; only the question is timed. Refused
-/// only when passes differ.
+/// Asks at all places in turn, `passes` times from the start, at the first one once before. Only
+/// the question is timed. Refused only when passes differ.
 [[nodiscard]] Result<PairAnswers, SceneError> replay_pairs(PairQuery& query,
                                                            std::span<const Placement> places,
                                                            PairQuestion question,

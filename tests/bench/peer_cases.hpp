@@ -5,6 +5,7 @@
 #include "tests/bench/cases.hpp"
 
 #include <cstddef>
+#include <optional>
 
 namespace tactus::bench
 {
@@ -12,22 +13,15 @@ namespace tactus::bench
 /// One probe in the touching motion, asked of every contestant.
 struct PeerTouchCase
 {
-    SceneSource scene;
-    std::size_t pool_bytes; ///< Of the streaming contestant.
-};
-/// The workload W1: near frames with a band of two radii, flight without one, whether touch is
-/// told, what building costs and holds.
-[[nodiscard]] CaseFailure run_peer_touch_case(const CaseContext& context,
-                                              const PeerTouchCase& test_case);
-
-struct PeerScaleCase
-{
+    const char* part;
     SceneSource scene;
     const char* setting;
+    std::optional<std::size_t> pool_bytes; ///< Of the streaming contestant; none: there is none.
 };
-/// The workload W3: the near frames of W1 on one of the sizes of one surface.
-[[nodiscard]] CaseFailure run_peer_scale_case(const CaseContext& context,
-                                              const PeerScaleCase& test_case);
+/// The workloads W1 and W3: near frames with a band of two radii, flight without one, whether touch
+/// is told, what building costs and holds.
+[[nodiscard]] CaseFailure run_peer_touch_case(const CaseContext& context,
+                                              const PeerTouchCase& test_case);
 
 struct PeerMeshCase
 {

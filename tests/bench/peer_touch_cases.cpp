@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// One probe against one mesh, by every contestant in turn: only one of them is in memory.
+/// One probe against one mesh, by every contestant in turn; no two of them are in memory at once.
 
 #include "tests/bench/frame_replay.hpp"
 #include "tests/bench/judged_queries.hpp"
@@ -12,7 +12,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <functional>
+#include <iterator>
 #include <limits>
 
 namespace tactus::bench
@@ -28,60 +28,74 @@ constexpr double kTouchTolerance_diag = 2e-6;
 /// The streaming tool may move this fast: the flight's speed and half as much again.
 constexpr double kFastest_diag_per_s = 3.0;
 
-/// The questions of one scene and what every contestant is told of them.
+/// The questions about one scene, and the first contestant's time for the others to be held
+/// against.
 struct TouchTrial
 {
     const CaseContext& context;
-    const char* part;
+    const PeerTouchCase& test_case;
     const Scene& scene;
-    std::string setting;
     std::uint32_t passes;
-    Questions all;
+    Questions questions;
     std::vector<bool> is_near;
-    Questions near;
-    Questions flight; ///< The others; none: not asked.
+    std::vector<bool> is_flight;
     double our_p99_us{0.0};
 
     [[nodiscard]] double diagonal_m() const { return scene.model.diagonal_m; }
     [[nodiscard]] double band_m() const { return kNear_diag * diagonal_m(); }
     [[nodiscard]] double radius_m() const { return kRadius_diag * diagonal_m(); }
-    [[nodiscard]] TouchErrors judge(std::span<const double> answers_m,
-                                    std::span<const double> truth_m) const
+    /// None in flight, unless a contestant can't do without.
+    [[nodiscard]] std::vector<double> bands_m(bool in_flight_too) const
     {
-        return judge_touch(answers_m, truth_m, radius_m(), kTouchTolerance_diag * diagonal_m());
+        std::vector<double> bands;
+        std::ranges::transform(is_near, std::back_inserter(bands),
+                               [&](bool near)
+                               { return near || in_flight_too ? band_m() : kInfinity; });
+        return bands;
     }
 };
 
-TouchTrial make_trial(const CaseContext& context, const char* part, const Scene& scene)
+TouchTrial make_trial(const CaseContext& context, const PeerTouchCase& test_case,
+                      const Scene& scene)
 {
-    TouchTrial trial{context, part, scene, "", context.options.passes_or(5, 3), {}, {}, {}, {}};
+    TouchTrial trial{context, test_case, scene, context.options.passes_or(5, 3), {}, {}, {}};
     const std::uint32_t frames = context.options.frames_or(4 * kCycleFrames, kCycleFrames);
-    trial.all = ask(scene, touch_motion(scene.touch(), frames));
-    trial.is_near = trial.all.nearer_than(trial.band_m());
-    trial.near = chosen(trial.all, trial.is_near);
+    trial.questions = ask(scene, touch_motion(scene.touch(), frames));
+    trial.is_near = trial.questions.nearer_than(trial.band_m());
+    trial.is_flight = trial.is_near;
+    trial.is_flight.flip();
     return trial;
 }
 
 CaseRows rows_of(const TouchTrial& trial, const std::string& by, std::uint64_t hash)
 {
-    Row common = trial.context.common_row(trial.scene.model.name, trial.part);
+    Row common = trial.context.common_row(trial.scene.model.name, trial.test_case.part);
     common.by = by;
-    common.setting = trial.setting;
-    common.frames = trial.near.points_m.size() + trial.flight.points_m.size();
+    common.setting = trial.test_case.setting;
+    common.frames = trial.is_near.size();
     common.hash = hash;
     return {trial.context.rows, common};
 }
 
-void add_times(const TouchTrial& trial, CaseRows& rows, const Spread& near)
+/// Flight only of contestants that were asked without a band there.
+void add_times(const TouchTrial& trial, CaseRows& rows, const std::vector<double>& times_us,
+               bool is_banded)
 {
+    const Spread near = spread_of(chosen(times_us, trial.is_near));
     rows.add("near p50", near.p50, "us");
     rows.add("near p99", near.p99, "us");
     rows.add("near max", near.max, "us");
     rows.add("p99 to Tactus static", near.p99 / trial.our_p99_us, "x");
+    if (!is_banded)
+    {
+        rows.add("flight p99", quantile(chosen(times_us, trial.is_flight), 0.99), "us");
+    }
 }
 
-void add_errors(CaseRows& rows, const TouchErrors& errors)
+void add_touch_errors(const TouchTrial& trial, CaseRows& rows, std::span<const double> told_m)
 {
+    const TouchErrors errors = judge_touch(told_m, trial.questions.truth_m, trial.radius_m(),
+                                           kTouchTolerance_diag * trial.diagonal_m());
     rows.add("missed", static_cast<double>(errors.missed), "");
     rows.add("invented", static_cast<double>(errors.invented), "");
 }
@@ -101,44 +115,31 @@ void add_cost(const TouchTrial& trial, CaseRows& rows, double build_ms, double b
     rows.add("memory", bytes / static_cast<double>(trial.scene.model.faces.size()), "B a face");
 }
 
-/// All rows of one contestant whose structure is built. Its near p99 becomes ours when it is the
-/// first.
+/// All rows of one contestant whose structure is built.
 CaseFailure add_contestant(TouchTrial& trial, const std::string& by, const BuiltQuery& built)
 {
-    TouchQuery& query = *built.query;
-    const auto near = replay_queries(query, trial.near, trial.band_m(), trial.passes);
-    if (!near)
+    const bool is_banded = built.query->needs_band();
+    const std::vector<double> bands_m = trial.bands_m(is_banded);
+    const auto replayed =
+        replay_queries(*built.query, trial.questions.points_m, bands_m, trial.passes);
+    if (!replayed)
     {
-        return near.error().text;
+        return replayed.error().text;
     }
-    const bool flies = !trial.flight.points_m.empty() && !query.needs_band();
-    const auto flight =
-        replay_queries(query, flies ? trial.flight : Questions{}, kInfinity, trial.passes);
-    if (!flight)
+    const PointAnswers& told = replayed.value();
+    const std::vector<double>& times_us = told.us.least();
+    if (trial.our_p99_us == 0.0)
     {
-        return flight.error().text;
+        trial.our_p99_us = quantile(chosen(times_us, trial.is_near), 0.99);
     }
-    const PointAnswers& told = near.value();
-    const PointAnswers& told_far = flight.value();
-    const Spread times_us = spread_of(told.us.least());
-    trial.our_p99_us = trial.our_p99_us > 0.0 ? trial.our_p99_us : times_us.p99;
-    CaseRows rows = rows_of(trial, by, told.hash + 3 * told_far.hash);
-    add_times(trial, rows, times_us);
-    if (flies)
-    {
-        rows.add("flight p99", spread_of(told_far.us.least()).p99, "us");
-    }
-    const double error_m =
-        std::max(largest_error_m(told.distances_m, trial.near.truth_m, trial.band_m()),
-                 largest_error_m(told_far.distances_m, trial.flight.truth_m, kInfinity));
+    const double error_m = largest_error_m(told.distances_m, trial.questions.truth_m, bands_m);
+    const double point_error_m = largest_point_error_m(told, trial.questions, *trial.scene.tree);
+    CaseRows rows = rows_of(trial, by, told.hash);
+    add_times(trial, rows, times_us, is_banded);
     rows.add("distance off", error_m / trial.diagonal_m(), "diag");
-    rows.add("nearest point off",
-             largest_point_error_m(told, trial.near, *trial.scene.tree) / trial.diagonal_m(),
-             "diag");
-    TouchErrors errors = trial.judge(told.distances_m, trial.near.truth_m);
-    errors += trial.judge(told_far.distances_m, trial.flight.truth_m);
-    add_errors(rows, errors);
-    add_allocations(rows, told.allocations, told.distances_m.size());
+    rows.add("nearest point off", point_error_m / trial.diagonal_m(), "diag");
+    add_touch_errors(trial, rows, told.distances_m);
+    add_allocations(rows, told.allocations, times_us.size());
     add_cost(trial, rows, built.build_ms, built.bytes);
     return std::nullopt;
 }
@@ -165,8 +166,8 @@ CaseFailure add_peers(TouchTrial& trial)
     {
         if (trial.scene.model.faces.size() > peer.most_faces)
         {
-            fmt::print(stderr, "{}: left out, {} faces would take it minutes\n", peer.name,
-                       trial.scene.model.faces.size());
+            fmt::print(stderr, "{}: left out, {} faces: {}\n", peer.name,
+                       trial.scene.model.faces.size(), peer.why_no_more);
             continue;
         }
         const auto built = build_peer(peer, trial.scene.model.faces, trial.radius_m());
@@ -191,7 +192,7 @@ double told_distance_m(const PairOutput& answer)
 
 FrameRun make_streaming_run(const TouchTrial& trial, std::size_t pool_bytes)
 {
-    FrameRun run{trial.scene, trial.all.points_m, 0, {}, {}};
+    FrameRun run{trial.scene, trial.questions.points_m, 0, {}, {}};
     ToolSpec tool;
     tool.radius_m = trial.radius_m();
     tool.speed_max_m_per_s = kFastest_diag_per_s * trial.diagonal_m();
@@ -214,12 +215,12 @@ void add_frame_answers(const TouchTrial& trial, CaseRows& rows, const FrameRepla
         told_m.push_back(told_distance_m(answer));
         if (answer.kind == AnswerKind::exact)
         {
-            error_m = std::max(error_m, std::abs(answer.upper_m - trial.all.truth_m[i]));
+            error_m = std::max(error_m, std::abs(answer.upper_m - trial.questions.truth_m[i]));
         }
         open += answer.kind == AnswerKind::exact || answer.kind == AnswerKind::decided ? 0U : 1U;
     }
     rows.add("distance off", error_m / trial.diagonal_m(), "diag");
-    add_errors(rows, trial.judge(told_m, trial.all.truth_m));
+    add_touch_errors(trial, rows, told_m);
     rows.add("open frames", static_cast<double>(open), "");
 }
 
@@ -235,12 +236,8 @@ CaseFailure add_streaming(const TouchTrial& trial, std::size_t pool_bytes)
             return failure;
         }
     }
-    const std::vector<double>& times_us = replay.sum_us(CacheState::warm).least();
-    std::vector<bool> is_far = trial.is_near;
-    is_far.flip();
     CaseRows rows = rows_of(trial, "Tactus streaming", replay.hash());
-    add_times(trial, rows, spread_of(chosen(times_us, trial.is_near)));
-    rows.add("flight p99", spread_of(chosen(times_us, is_far)).p99, "us");
+    add_times(trial, rows, replay.sum_us(CacheState::warm).least(), false);
     add_frame_answers(trial, rows, replay);
     add_allocations(rows, replay.allocations(), run.counted());
     const double faces = static_cast<double>(trial.scene.model.faces.size());
@@ -258,34 +255,17 @@ CaseFailure run_peer_touch_case(const CaseContext& context, const PeerTouchCase&
         return scene.error().text;
     }
     const PinnedCore pinned(context.options.core);
-    TouchTrial trial = make_trial(context, "W1, touch", *scene.value());
-    std::vector<bool> is_far = trial.is_near;
-    is_far.flip();
-    trial.flight = chosen(trial.all, is_far);
+    TouchTrial trial = make_trial(context, test_case, *scene.value());
     if (auto failure = add_static_model(trial))
     {
         return failure;
     }
-    if (auto failure = add_streaming(trial, test_case.pool_bytes))
+    if (test_case.pool_bytes)
     {
-        return failure;
-    }
-    return add_peers(trial);
-}
-
-CaseFailure run_peer_scale_case(const CaseContext& context, const PeerScaleCase& test_case)
-{
-    const auto scene = context.scenes.get(test_case.scene);
-    if (!scene)
-    {
-        return scene.error().text;
-    }
-    const PinnedCore pinned(context.options.core);
-    TouchTrial trial = make_trial(context, "W3, scale", *scene.value());
-    trial.setting = test_case.setting;
-    if (auto failure = add_static_model(trial))
-    {
-        return failure;
+        if (auto failure = add_streaming(trial, *test_case.pool_bytes))
+        {
+            return failure;
+        }
     }
     return add_peers(trial);
 }

@@ -48,6 +48,7 @@ FrameRig::FrameRig(const std::vector<const TestModel*>& models, const RigOptions
     }
     make_couriers();
     poses_.resize(objects.size());
+    tools_.reserve(tools.size());
     if (options.record)
     {
         recorder_ = std::make_unique<RigRecorder>(setup);

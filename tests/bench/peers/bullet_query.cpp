@@ -97,7 +97,7 @@ public:
             return std::numeric_limits<double>::infinity();
         }
         const btVector3& on_mesh = nearest.on_mesh;
-        nearest_m_ = Vec3(on_mesh.x(), on_mesh.y(), on_mesh.z()) / units_per_metre_;
+        nearest_m_ = to_vec3(Vec3f{on_mesh.x(), on_mesh.y(), on_mesh.z()}) / units_per_metre_;
         return distance_m;
     }
     [[nodiscard]] Vec3 nearest_m() const override { return nearest_m_; }

@@ -130,7 +130,7 @@ double EmbreeQuery::distance_m(const Vec3& point_m, double band_m)
     {
         return std::numeric_limits<double>::infinity();
     }
-    nearest_m_ = Vec3(search.nearest[0], search.nearest[1], search.nearest[2]);
+    nearest_m_ = to_vec3(search.nearest);
     return static_cast<double>(query.radius);
 }
 

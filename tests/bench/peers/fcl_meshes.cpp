@@ -2,12 +2,13 @@
 // Copyright the Tactus authors.
 #include "tests/bench/peers/fcl_meshes.hpp"
 
-#include <algorithm>
+#include <cmath>
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/geometry/shape/sphere.h>
 #include <fcl/narrowphase/collision.h>
 #include <fcl/narrowphase/distance.h>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 
 namespace tactus::bench::fcl_meshes
@@ -55,21 +56,22 @@ struct Mesh::Content
 {
     fcl::BVHModel<fcl::OBBRSSd> model;
 
-    /// The deepest of all contacts.
-    [[nodiscard]] Nearest deepest(const fcl::Sphered& sphere, const fcl::Transform3d& place) const
+    /// The deepest of all contacts; none where nothing touches. FCL tells depths of spheres in
+    /// triangles as negative numbers.
+    [[nodiscard]] std::optional<Nearest> deepest(const fcl::Sphered& sphere,
+                                                 const fcl::Transform3d& place) const
     {
         fcl::CollisionResultd result;
         fcl::collide(&model, nowhere_else(), &sphere, place,
                      fcl::CollisionRequestd(kAllContacts, true), result);
-        Nearest deepest;
+        std::optional<Nearest> deepest;
         for (std::size_t i = 0; i < result.numContacts(); ++i)
         {
             const fcl::Contactd& contact = result.getContact(i);
-            if (-contact.penetration_depth < deepest.distance)
+            const double distance = -std::abs(contact.penetration_depth);
+            if (!deepest || distance < deepest->distance)
             {
-                deepest.distance = -contact.penetration_depth;
-                deepest.on_mesh = from_fcl(place.translation() -
-                                           (sphere.radius + deepest.distance) * contact.normal);
+                deepest = {distance, from_fcl(contact.pos)};
             }
         }
         return deepest;
@@ -98,11 +100,17 @@ Nearest Mesh::nearest_to_sphere(const Point& center, double radius) const
     const fcl::Sphered sphere(radius);
     fcl::Transform3d place = fcl::Transform3d::Identity();
     place.translation() = to_fcl(center);
+    if (radius > 0.0)
+    {
+        if (const auto deepest = content_->deepest(sphere, place))
+        {
+            return *deepest;
+        }
+    }
     fcl::DistanceResultd result;
     const double distance = fcl::distance(&content_->model, nowhere_else(), &sphere, place,
                                           fcl::DistanceRequestd(true), result);
-    return distance < 0.0 ? content_->deepest(sphere, place)
-                          : Nearest{distance, from_fcl(result.nearest_points[0])};
+    return {distance, from_fcl(result.nearest_points[0])};
 }
 
 bool Mesh::does_meet(const Place& place, const Mesh& other) const

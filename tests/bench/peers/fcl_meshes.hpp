@@ -39,6 +39,8 @@ public:
     Mesh& operator=(const Mesh&) = delete;
     ~Mesh();
 
+    /// By collide(), where it finds contacts, else by distance(); a sphere without a radius is
+    /// asked for its distance alone.
     [[nodiscard]] Nearest nearest_to_sphere(const Point& center, double radius) const;
 
     [[nodiscard]] bool does_meet(const Place& place, const Mesh& other) const;

@@ -16,10 +16,9 @@ namespace tactus::bench
 [[nodiscard]] std::unique_ptr<TouchQuery> make_fcl_query(const std::vector<test::Face>& faces,
                                                          double radius_m);
 
-/// The same with the probe as a sphere of its radius. Where it touches the mesh, distance() says -1
-/// and the depth is collide()'s, the greatest of all contacts (FCL's own signed distance asks for
-/// one contact only, whichever is found first). The radius is added, for the distance of the
-/// centre.
+/// The same with the probe as a sphere of its radius: collide() tells whether it touches and the
+/// greatest depth of all contacts, distance() the gap where it doesn't (of what overlaps it says 0
+/// or so, of either sign). The radius is added, for the distance of the centre.
 [[nodiscard]] std::unique_ptr<TouchQuery>
 make_fcl_sphere_query(const std::vector<test::Face>& faces, double radius_m);
 
