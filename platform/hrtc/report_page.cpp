@@ -50,28 +50,45 @@ std::string text_of(const Json& value)
     }
 }
 
-/// Everything below an object, "outer.inner" with its text; lists of objects have tables.
-void flatten(const Json& object, const std::string& before, SummaryFacts& facts)
+struct Figure
+{
+    std::string name;
+    std::string text;
+    bool is_number;
+};
+
+/// Everything below an object, named "outer.inner"; lists of objects have tables.
+void flatten(const Json& object, const std::string& before, std::vector<Figure>& figures)
 {
     for (const auto& [key, value] : object.items())
     {
         const bool is_table = value.is_array() && !value.empty() && value.front().is_object();
         if (value.is_object())
         {
-            flatten(value, before + key + ".", facts);
+            flatten(value, before + key + ".", figures);
         }
         else if (!is_table)
         {
-            facts.emplace_back(before + key, text_of(value));
+            figures.push_back({before + key, text_of(value), value.is_number()});
         }
     }
 }
 
-SummaryFacts facts_of(const Json& object)
+std::vector<Figure> figures_of(const Json& object)
+{
+    std::vector<Figure> figures;
+    flatten(object, "", figures);
+    return figures;
+}
+
+plot::Table facts_of(const Json& object)
 {
     SummaryFacts facts;
-    flatten(object, "", facts);
-    return facts;
+    for (const Figure& figure : figures_of(object))
+    {
+        facts.emplace_back(figure.name, figure.text);
+    }
+    return plot::facts(facts);
 }
 
 /// A line for each entry of a list whose entries are alike.
@@ -80,14 +97,13 @@ plot::Table table_of(const Json& list)
     plot::Table table;
     for (const Json& entry : list)
     {
-        const SummaryFacts facts = facts_of(entry);
         auto& line = table.lines.emplace_back();
-        for (const auto& [key, text] : facts)
+        for (const Figure& figure : figures_of(entry))
         {
-            line.emplace_back(text);
+            line.emplace_back(figure.text);
             if (table.lines.size() == 1)
             {
-                table.columns.push_back({key, entry.contains(key) && entry[key].is_number()});
+                table.columns.push_back({figure.name, figure.is_number});
             }
         }
     }
@@ -100,16 +116,16 @@ plot::Table columns_of(const Json& list)
     plot::Table table{{{"", false}}, {}};
     for (const Json& entry : list)
     {
-        const SummaryFacts facts = facts_of(entry);
+        const std::vector<Figure> figures = figures_of(entry);
         table.columns.push_back({fmt::format("{}", table.columns.size() - 1), false});
-        table.lines.resize(facts.size());
-        for (std::size_t i = 0; i < facts.size(); ++i)
+        table.lines.resize(figures.size());
+        for (std::size_t i = 0; i < figures.size(); ++i)
         {
             if (table.lines[i].empty())
             {
-                table.lines[i].emplace_back(facts[i].first);
+                table.lines[i].emplace_back(figures[i].name);
             }
-            table.lines[i].emplace_back(facts[i].second);
+            table.lines[i].emplace_back(figures[i].text);
         }
     }
     return table;
@@ -149,7 +165,6 @@ std::vector<std::string> complaints_of(const Json& report)
     count(report["deadline"]["unexplained"], "missed with nobody to blame");
     count(report["realtime"]["allocations"], "allocations in the loop");
     count(report["realtime"]["system_calls_in_frame"], "system calls in frames");
-    count(report["answers"]["bracket"], "frames with a bracket for an answer");
     count(report["answers"]["stale"], "frames with a stale answer");
     if (report["wire"]["host_lost"].get<bool>())
     {
@@ -166,12 +181,17 @@ std::vector<std::string> complaints_of(const Json& report)
 void add_verdict(const Json& report, plot::Page& page)
 {
     const std::vector<std::string> complaints = complaints_of(report);
-    page.verdict(complaints.empty()
-                     ? fmt::format("Every answer exact or decided; no deadline missed by the "
-                                   "loop's own fault, {} by the machine's.",
-                                   report["deadline"]["machine_late"].get<std::uint64_t>())
-                     : fmt::format("{}.", fmt::join(complaints, "; ")),
-                 complaints.empty());
+    if (!complaints.empty())
+    {
+        page.verdict(fmt::format("{}.", fmt::join(complaints, "; ")), false);
+        return;
+    }
+    const auto brackets = report["answers"]["bracket"].get<std::uint64_t>();
+    page.verdict(fmt::format("No deadline missed by the loop's own fault, {} by the machine's; {}.",
+                             report["deadline"]["machine_late"].get<std::uint64_t>(),
+                             brackets == 0 ? "every answer exact or decided"
+                                           : fmt::format("{} answers are brackets", brackets)),
+                 true);
 }
 
 plot::Drawing stage_bars(const Json& times)
@@ -257,7 +277,7 @@ std::string make_page(const Json& report, const RunStatistics& statistics)
     {
         if (!report[key].is_null())
         {
-            sections.push_back({title, plot::facts(facts_of(report[key]))});
+            sections.push_back({title, facts_of(report[key])});
         }
     }
     page.heading("Every figure");

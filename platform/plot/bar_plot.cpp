@@ -19,6 +19,7 @@ constexpr double kLeft = 150.0;
 constexpr double kRight = 80.0; ///< For the longest bar's value.
 constexpr double kTop = 32.0;
 constexpr double kRow = 21.0;
+constexpr double kGap = 8.0; ///< Above a group's name.
 constexpr double kThickness = 14.0;
 
 Axis axis_of(const BarPlot& plot)
@@ -70,6 +71,7 @@ Drawing draw(const BarPlot& plot)
     {
         if (!group.name.empty())
         {
+            y += y > kTop ? kGap : 0.0;
             rows +=
                 fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", kLeft, y + 14.0,
                             escaped(shortened(group.name, characters_in(kDrawingWidth - kLeft))));

@@ -7,7 +7,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
+#include <cmath>
+#include <iterator>
 
 namespace tactus::plot
 {
@@ -34,26 +35,45 @@ class Labels
 public:
     explicit Labels(const Chart& chart) : chart_(chart) {}
 
-    void keep_free(const Point& point)
+    /// A line's points and what joins them.
+    void keep_free(const std::vector<Point>& points)
     {
-        constexpr double kHalf = 5.0;
-        const double x = chart_.x_of(point.x);
-        const double y = chart_.y_of(point.y);
-        taken_.push_back({x - kHalf, x + kHalf, y - kHalf, y + kHalf});
+        constexpr double kMarker = 5.0;
+        constexpr double kJoint = 2.0; ///< About a line, and half as far as its boxes are apart.
+        for (std::size_t i = 0; i < points.size(); ++i)
+        {
+            const double x = chart_.x_of(points[i].x);
+            const double y = chart_.y_of(points[i].y);
+            take(x, y, kMarker);
+            const Point& next = points[std::min(i + 1, points.size() - 1)];
+            const double along_x = chart_.x_of(next.x) - x;
+            const double along_y = chart_.y_of(next.y) - y;
+            const double steps = std::ceil(std::hypot(along_x, along_y) / (2.0 * kJoint));
+            for (double step = 1.0; step < steps; step += 1.0)
+            {
+                take(x + along_x * step / steps, y + along_y * step / steps, kJoint);
+            }
+        }
     }
 
     [[nodiscard]] std::string place(const Point& point)
     {
         constexpr double kLetter = 6.6; // At the size of notes.
+        constexpr double kHigh = 12.0;
         const double x = chart_.x_of(point.x);
         const double y = chart_.y_of(point.y);
         const double width = kLetter * static_cast<double>(characters_of(point.label));
-        const std::array<Box, 6> places{{{x + 7.0, x + 7.0 + width, y - 15.0, y - 3.0},
-                                         {x + 7.0, x + 7.0 + width, y + 3.0, y + 15.0},
-                                         {x - 7.0 - width, x - 7.0, y - 15.0, y - 3.0},
-                                         {x - 7.0 - width, x - 7.0, y + 3.0, y + 15.0},
-                                         {x - width / 2.0, x + width / 2.0, y - 20.0, y - 8.0},
-                                         {x - width / 2.0, x + width / 2.0, y + 8.0, y + 20.0}}};
+        std::vector<Box> places;
+        for (const double away : {0.0, 12.0, 24.0}) // Beside the point, then further off.
+        {
+            const double above = y - 15.0 - away;
+            const double below = y + 3.0 + away;
+            for (const double left : {x + 7.0, x - 7.0 - width, x - width / 2.0})
+            {
+                places.push_back({left, left + width, above, above + kHigh});
+                places.push_back({left, left + width, below, below + kHigh});
+            }
+        }
         const auto found =
             std::ranges::find_if(places, [this](const Box& box) { return fits(box); });
         if (point.label.empty() || found == places.end())
@@ -66,6 +86,11 @@ public:
     }
 
 private:
+    void take(double x, double y, double half)
+    {
+        taken_.push_back({x - half, x + half, y - half, y + half});
+    }
+
     [[nodiscard]] bool fits(const Box& box) const
     {
         return box.left >= chart_.left() && box.right <= chart_.right() &&
@@ -160,8 +185,8 @@ Drawing draw(const LinePlot& plot)
             markers += line.is_guide ? ""
                                      : Look(i).marker(chart.x_of(point.x), chart.y_of(point.y),
                                                       told_of(line, point));
-            labels.keep_free(point);
         }
+        labels.keep_free(points);
     }
     std::string texts;
     for (const Line& line : plot.lines)

@@ -54,6 +54,7 @@ constexpr const char* kStyleSheet =
     "  th, td { padding-right: 0.3rem; }\n"
     "  th[scope=row], .number { white-space: normal; }\n"
     "  .number { padding-left: 0.3rem; }\n"
+    "  .tables { columns: 14rem auto; }\n"
     "  .drawings { display: block; }\n"
     "  figure { width: 12cm; }\n"
     "  figure, tr, .verdict { break-inside: avoid; }\n"

@@ -87,7 +87,7 @@ std::vector<plot::Cell> figure_cells(std::span<const Row> figure)
 
 std::string text_line(const std::vector<std::string>& cells)
 {
-    std::string line = fmt::format("{:<16}{:<22}{:<24}{:<8}{:<20}{:<22}{}", cells[0], cells[1],
+    std::string line = fmt::format("{:<16}{:<22}{:<24}{:<8}{:<22}{:<22}{}", cells[0], cells[1],
                                    cells[2], cells[3], cells[4], cells[5], cells[6]);
     line.erase(line.find_last_not_of(' ') + 1);
     return line + '\n';

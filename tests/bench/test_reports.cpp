@@ -63,6 +63,10 @@ std::vector<std::vector<std::string>> read_csv(const std::string& text)
             records.push_back({""});
             ++i;
         }
+        else if (!is_quoted && (text[i] == '\r' || text[i] == '\n'))
+        {
+            return {};
+        }
         else
         {
             records.back().back() += text[i];
@@ -156,9 +160,9 @@ TEST(ToGoalTable, leaves_out_what_has_no_goal)
     lines.add("splits", 3.0, "");
     EXPECT_EQ(to_goal_table(rows),
               "case            figure                p50 / p99 / max         unit    goal          "
-              "                            peer, same run\n"
+              "                              peer, same run\n"
               "bunny           frame                 1.00 / 5.00 / 6.00      us      2.00 / 4.00 / "
-              "-     NOT MET: p99          Embree 0.00 / - / -\n"
+              "-       NOT MET: p99          Embree 0.00 / - / -\n"
               "1 of 2 goals met\n");
     EXPECT_EQ(figure_table(rows, Figures::all).lines.size(), 2U);
 }

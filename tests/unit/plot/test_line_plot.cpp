@@ -6,7 +6,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <iterator>
 #include <limits>
+#include <random>
 #include <set>
 
 namespace tactus::plot::test
@@ -105,6 +110,76 @@ TEST(LinePlot, every_point_tells_its_label_and_the_ends_show_it)
     EXPECT_EQ(count_of(body, ">K 1</text>"), 1U);
     EXPECT_EQ(count_of(body, ">K 64</text>"), 0U);
     EXPECT_EQ(count_of(body, ">K 128</text>"), 1U);
+}
+
+/// Texts beside points: where they start, and how many characters they have.
+struct Note
+{
+    Place at;
+    std::size_t characters;
+
+    [[nodiscard]] double right() const { return at.x + 6.0 * static_cast<double>(characters); }
+};
+
+std::vector<Note> notes_of(const std::string& body)
+{
+    const std::string start = "<text class=\"note\" x=\"";
+    std::vector<Note> notes;
+    for (std::size_t at = body.find(start); at != std::string::npos; at = body.find(start, at + 1))
+    {
+        const std::size_t text = body.find('>', at) + 1;
+        notes.push_back({{std::strtod(body.c_str() + at + start.size(), nullptr),
+                          std::strtod(body.c_str() + body.find(" y=\"", at) + 4, nullptr)},
+                         body.find('<', text) - text});
+    }
+    return notes;
+}
+
+TEST(LinePlot, labels_keep_off_markers_and_one_another)
+{
+    constexpr unsigned kSeed = 8'112'026;
+    SCOPED_TRACE(kSeed);
+    std::mt19937 random(kSeed);
+    std::uniform_real_distribution<double> value(1.0, 1'000.0);
+    std::size_t seen = 0;
+    for (int trial = 0; trial < 200; ++trial)
+    {
+        std::vector<Line> lines;
+        std::vector<Place> markers;
+        for (int i = 0; i < 4; ++i)
+        {
+            Line line{"line", {}};
+            for (int k = 0; k < 6; ++k)
+            {
+                line.points.push_back({value(random), value(random), "K 1234"});
+            }
+            lines.push_back(line);
+        }
+        const std::string body = body_of(plot_of(lines, trial % 2 == 0));
+        for (std::size_t i = 0; i < lines.size(); ++i)
+        {
+            std::ranges::copy(data_of(body, i), std::back_inserter(markers));
+        }
+        const std::vector<Note> notes = notes_of(body);
+        seen += notes.size();
+        for (const Note& note : notes)
+        {
+            for (const Place& marker : markers)
+            {
+                const bool is_covered = marker.x > note.at.x && marker.x < note.right() &&
+                                        marker.y > note.at.y - 10.0 && marker.y < note.at.y + 2.0;
+                ASSERT_FALSE(is_covered) << trial;
+            }
+            for (const Note& other : notes)
+            {
+                const bool is_over = &other != &note && other.at.x < note.right() &&
+                                     note.at.x < other.right() &&
+                                     std::abs(note.at.y - other.at.y) < 11.0;
+                ASSERT_FALSE(is_over) << trial;
+            }
+        }
+    }
+    EXPECT_GT(seen, 200U); // They are not just left out.
 }
 
 TEST(LinePlot, the_legend_grows_above_the_frame)
