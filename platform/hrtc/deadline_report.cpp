@@ -2,13 +2,12 @@
 // Copyright the Tactus authors.
 #include "platform/hrtc/deadline_report.hpp"
 
-#include "platform/plot/step_plot.hpp"
+#include "platform/hrtc/latency_plot.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 namespace tactus::hrtc
 {
@@ -35,34 +34,6 @@ constexpr std::array kQuantities{
 double to_us(Duration duration)
 {
     return static_cast<double>(duration.ns) * 1e-3;
-}
-
-/// 0.1 us to 100 s, `per_decade` of them.
-std::vector<double> edges_us(int per_decade)
-{
-    constexpr int kDecades = 9;
-    std::vector<double> edges;
-    for (int i = 0; i <= kDecades * per_decade; ++i)
-    {
-        edges.push_back(0.1 * std::pow(10.0, static_cast<double>(i) / per_decade));
-    }
-    return edges;
-}
-
-/// Counts between neighbouring edges; what is below the first counts in the first bin.
-std::vector<double> counts_between(const LatencyHistogram& histogram,
-                                   const std::vector<double>& edges)
-{
-    std::vector<double> counts;
-    std::uint64_t before = 0;
-    for (std::size_t i = 1; i < edges.size(); ++i)
-    {
-        const auto upper_ns = static_cast<std::int64_t>(std::llround(edges[i] * 1e3));
-        const std::uint64_t up_to = histogram.count_to({upper_ns});
-        counts.push_back(static_cast<double>(up_to - before));
-        before = up_to;
-    }
-    return counts;
 }
 
 /// Pairs of an upper edge in us and a count; empty bins are left out.
@@ -272,15 +243,13 @@ std::string make_histogram_text(std::span<const DeadlinePhase> phases)
 std::string make_histogram_image(std::span<const DeadlinePhase> phases,
                                  const DeadlineSetting& setting)
 {
-    const std::vector<double> edges = edges_us(20);
     std::vector<plot::Panel> panels;
     for (const Quantity& quantity : kQuantities)
     {
         plot::Panel panel{quantity.title, "us", "cycles", {}, {{to_us(setting.period), "period"}}};
         for (const DeadlinePhase& phase : phases)
         {
-            panel.steps.push_back(
-                {loads_of(phase), edges, counts_between(phase.*quantity.histogram, edges)});
+            panel.steps.push_back(steps_of(loads_of(phase), phase.*quantity.histogram));
         }
         panels.push_back(std::move(panel));
     }

@@ -7,6 +7,7 @@
 #include "platform/hrtc/frame_repeater.hpp"
 #include "platform/hrtc/load.hpp"
 #include "platform/hrtc/report.hpp"
+#include "platform/hrtc/report_page.hpp"
 #include "platform/hrtc/self_check.hpp"
 #include "platform/hrtc/session.hpp"
 
@@ -279,6 +280,10 @@ int run_deadline_test(int argc, char** argv)
     {
         return leave_with(
             {"--report: must not end in .txt or .svg, which the histograms take", kExitUsage});
+    }
+    if (is_page_name(options.report_path))
+    {
+        return leave_with({"--report: must not end in .html: this one is JSON", kExitUsage});
     }
     return run_test(options, loads);
 }

@@ -8,6 +8,7 @@
 #include "platform/hrtc/options.hpp"
 #include "platform/hrtc/replay_file.hpp"
 #include "platform/hrtc/report.hpp"
+#include "platform/hrtc/report_page.hpp"
 #include "platform/hrtc/session.hpp"
 #include "platform/hrtc/subcommands.hpp"
 
@@ -44,7 +45,11 @@ int main_with(const Options& options)
     fmt::print("{}", make_summary(report));
     if (!options.report_path.empty())
     {
-        if (const auto error = write_report(report, options.report_path))
+        const auto error =
+            is_page_name(options.report_path)
+                ? write_text(make_page(report, done.value().statistics), options.report_path)
+                : write_report(report, options.report_path);
+        if (error)
         {
             return leave_with(failure("--report: " + error->text));
         }

@@ -218,7 +218,8 @@ void declare(CLI::App& app, Options& options, RawOptions& raw)
     app.add_option("--duration", options.duration_s, "Seconds to run")
         ->check(number_between(0.1, 86'400.0))
         ->capture_default_str();
-    app.add_option("--report", options.report_path, "Write the report as JSON to this file");
+    app.add_option("--report", options.report_path,
+                   "Write the report to this file: a page when its name ends in .html, else JSON");
     app.add_option("--pool-mib", options.pool_mib,
                    "Memory for all pools of all models, in MiB, everything counted")
         ->check(number_between(0.25, kLargestPool_mib))

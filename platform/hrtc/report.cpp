@@ -4,6 +4,7 @@
 
 #include "platform/allocation_counter.hpp"
 #include "platform/hrtc/machine.hpp"
+#include "platform/hrtc/report_events.hpp"
 #include "rt_core/force/stiffness_rule.hpp"
 
 #include <fmt/format.h>
@@ -11,7 +12,6 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <span>
 
 namespace tactus::hrtc
@@ -240,19 +240,6 @@ Json budgets_of(const RunRecord& record)
     return budgets;
 }
 
-std::string budgets_line(const Json& budgets)
-{
-    const auto range = [&](const char* name)
-    {
-        return fmt::format(
-            "{} {} to {}, mean {:.1f}", name, budgets[name]["min"].get<std::uint32_t>(),
-            budgets[name]["max"].get<std::uint32_t>(), budgets[name]["mean"].get<double>());
-    };
-    return fmt::format("budgets     for {} us a frame: {}; {}; {} frames at the least\n",
-                       budgets["frame_us"].get<double>(), range("splits"), range("nodes"),
-                       budgets["at_floor"].get<std::uint64_t>());
-}
-
 Json faults_of(const RunStatistics& statistics)
 {
     Json faults = Json::object();
@@ -261,31 +248,6 @@ Json faults_of(const RunStatistics& statistics)
         faults[kFaultNames[bit]] = statistics.faults[bit];
     }
     return faults;
-}
-
-/// The names of the bits that are set.
-template <std::size_t Count>
-Json names_of(unsigned bits, const std::array<const char*, Count>& names)
-{
-    Json list = Json::array();
-    for (std::size_t bit = 0; bit < Count; ++bit)
-    {
-        if ((bits & (1U << bit)) != 0)
-        {
-            list.push_back(names[bit]);
-        }
-    }
-    return list;
-}
-
-Json cycle_of(const NotedCycle& cycle)
-{
-    return {{"frame", cycle.frame},
-            {"flags", names_of(static_cast<unsigned>(cycle.flags), kCycleFlagNames)},
-            {"wake_us", to_us(cycle.wake_lateness)},
-            {"frame_us", to_us(cycle.frame_time)},
-            {"cpu_us", to_us(cycle.cpu)},
-            {"end_us", to_us(cycle.lateness_of_end)}};
 }
 
 Json cache_of(const RunRecord& record)
@@ -321,35 +283,6 @@ Json wire_of(const RunRecord& record)
               {"max", ms(waiting.longest_ms())}}}};
 }
 
-Json deadline_of(const RunRecord& record)
-{
-    constexpr std::size_t kCyclesShown = 100;
-    const DeadlineAccount& deadlines = record.run.statistics.deadlines;
-    Json cycles = Json::object();
-    for (std::size_t bit = 0; bit < kCycleFlags; ++bit)
-    {
-        cycles[kCycleFlagNames[bit]] = deadlines.flagged[bit];
-    }
-    Json noted = Json::array();
-    for (const NotedCycle& cycle :
-         deadlines.noted().first(std::min(deadlines.noted().size(), kCyclesShown)))
-    {
-        noted.push_back(cycle_of(cycle));
-    }
-    return {{"missed", deadlines.missed},
-            {"own_fault", deadlines.own_faults},
-            {"machine_late", deadlines.machine_late},
-            {"unexplained", deadlines.unexplained},
-            {"missed_periods", record.run.timer.missed_periods},
-            {"episodes", record.run.timer.episodes},
-            {"extra_switches", deadlines.cycles_with(CycleFlag::gave_way)},
-            {"over_budget", deadlines.cycles_with(CycleFlag::over_work)},
-            {"suspected", deadlines.suspected},
-            {"cycles", cycles},
-            {"noted", noted},
-            {"noted_left_out", deadlines.noted().size() - noted.size() + deadlines.not_kept}};
-}
-
 Json recording_of(const std::optional<RecordingResult>& recording)
 {
     if (!recording)
@@ -362,110 +295,6 @@ Json recording_of(const std::optional<RecordingResult>& recording)
         json["lost_from"] = recording->lost_from;
     }
     return json;
-}
-
-Json event_of(const SafetyEvent& event, MonotonicTime start)
-{
-    Json json{{"time_s", to_seconds(event.time - start)},
-              {"frame", event.frame},
-              {"tool", event.tool},
-              {"state", kSafetyStateNames[static_cast<std::size_t>(event.state)]},
-              {"causes", names_of(static_cast<unsigned>(event.causes), kForceOffNames)}};
-    if (event.by_supervisor) // It counts no frames.
-    {
-        json["frame"] = nullptr;
-    }
-    return json;
-}
-
-Json safety_of(const RunRecord& record)
-{
-    Json begun = Json::object();
-    for (std::size_t bit = 0; bit < kForceOffs; ++bit)
-    {
-        begun[kForceOffNames[bit]] = record.run.safety.begun()[bit];
-    }
-    Json events = Json::array();
-    for (const SafetyEvent& event : record.run.safety.events())
-    {
-        events.push_back(event_of(event, record.run.safety.events().front().time));
-    }
-    return {{"supervisor_fifo", record.run.supervisor_fifo},
-            {"supervisor_brakes", record.run.safety.brakes()},
-            {"begun", begun},
-            {"events", events},
-            {"events_left_out", record.run.safety.left_out()}};
-}
-
-/// One line for each object that was moved.
-std::string pose_lines(const Json& models)
-{
-    std::string text;
-    for (const Json& model : models)
-    {
-        const Json& pose = model["pose"];
-        if (pose["followed"].get<bool>())
-        {
-            text += fmt::format(
-                "poses       {}: moved in {} frames, by {:.4g} m at most; oldest {:.3g} s\n",
-                model["name"].get<std::string>(), pose["moves"].get<std::uint64_t>(),
-                pose["step_max_m"].get<double>(), pose["age_max_s"].get<double>());
-        }
-    }
-    return text;
-}
-
-/// Empty when no force was another than the frame's.
-std::string stability_line(const Json& tools)
-{
-    std::uint64_t capped = 0;
-    std::uint64_t damped = 0;
-    double cap = std::numeric_limits<double>::infinity();
-    for (const Json& tool : tools)
-    {
-        capped += tool["conditioned"]["stiffness_capped"].get<std::uint64_t>();
-        damped += tool["conditioned"]["damped"].get<std::uint64_t>();
-        cap = std::min(cap, tool["stiffness_cap_n_per_m"].get<double>());
-    }
-    std::string text;
-    if (capped > 0)
-    {
-        text = fmt::format("stability   {} forces softened to a wall of {:.0f} N/m\n", capped, cap);
-    }
-    if (damped > 0)
-    {
-        text += fmt::format("stability   {} forces damped\n", damped);
-    }
-    return text;
-}
-
-/// Empty when the force went off for the end of the run alone.
-std::string safety_line(const Json& safety)
-{
-    std::string causes;
-    for (const auto& [name, count] : safety["begun"].items())
-    {
-        if (count.get<std::uint64_t>() > 0 && name != "software")
-        {
-            causes += fmt::format("{}{} {}", causes.empty() ? "" : ", ", name,
-                                  count.get<std::uint64_t>());
-        }
-    }
-    return causes.empty()
-               ? ""
-               : fmt::format("safety      force off for: {}; {} brakes by the supervisor\n", causes,
-                             safety["supervisor_brakes"].get<std::uint64_t>());
-}
-
-std::string recording_line(const Json& recording)
-{
-    const Json& lost_from = recording["lost_from"];
-    return fmt::format(
-        "recording   {} frames, {:.1f} KB{}\n", recording["frames"].get<std::uint64_t>(),
-        recording["bytes"].get<double>() / 1e3,
-        lost_from.is_null() ? ""
-                            : fmt::format("; incomplete: frame {} and all later ones are lost",
-                                          lost_from.get<std::uint64_t>()));
 }
 
 } // namespace
@@ -499,7 +328,7 @@ Json make_report(const Options& options, const Controller& controller, const Fin
             {"pools", pools_of(record)},
             {"cache", cache_of(record)},
             {"wire", wire_of(record)},
-            {"deadline", deadline_of(record)},
+            {"deadline", deadlines_of(run)},
             {"realtime",
              {{"allocations", statistics.deadlines.allocations},
               {"allocations_counted", allocation_counter::available()},
@@ -510,93 +339,12 @@ Json make_report(const Options& options, const Controller& controller, const Fin
             {"recording", recording_of(record.run.recording)},
             {"telemetry", {{"sent", record.run.telemetry_sent}}},
             {"force", force_of(statistics)},
-            {"safety", safety_of(record)},
+            {"safety", safety_of(run.safety, run.supervisor_fifo)},
             {"faults", faults_of(statistics)},
             {"machine", machine_of(record)},
             {"models", models_of(record)},
             {"tools", tools_of(record)},
             {"pairs", pairs_of(record)}};
-}
-
-std::string make_summary(const Json& report)
-{
-    const double frames = std::max(report["frames"].get<double>(), 1.0);
-    const auto share = [&](const char* kind)
-    { return 100.0 * report["answers"][kind].get<double>() / frames; };
-    std::string text = fmt::format(
-        "frames      {} at {:.0f} Hz, in contact {:.1f} %\n"
-        "answers     exact {:.2f} %, decided {:.2f} %, bracket {:.2f} %, stale {:.2f} %; longest "
-        "inexact run {} frames\n",
-        report["frames"].get<std::uint64_t>(), 1e9 / report["period_ns"].get<double>(),
-        100.0 * report["force"]["contact_share"].get<double>(), share("exact"), share("decided"),
-        share("bracket"), share("stale"),
-        report["answers"]["longest_inexact_run"].get<std::uint64_t>());
-    text += fmt::format("force       at most {:.2f} N, largest step {:.3f} N\n",
-                        report["force"]["max_n"].get<double>(),
-                        report["force"]["max_step_n"].get<double>());
-    text += "times us        mean     p50     p99   p99.9     max\n";
-    for (const auto& [name, times] : report["times_us"].items())
-    {
-        text += fmt::format("  {:<10}{:>8.1f}{:>8.1f}{:>8.1f}{:>8.1f}{:>8.1f}\n", name,
-                            times["mean"].get<double>(), times["p50"].get<double>(),
-                            times["p99"].get<double>(), times["p999"].get<double>(),
-                            times["max"].get<double>());
-    }
-    if (!report["budgets"]["frame_us"].is_null())
-    {
-        text += budgets_line(report["budgets"]);
-    }
-    text +=
-        fmt::format("memory      {:.2f} MiB of pools; {} of {} pages, {} of {} faces at the peak\n",
-                    report["pools"]["total_bytes"].get<double>() / (1024.0 * 1024.0),
-                    report["pools"]["pages"]["used_max"].get<std::uint64_t>(),
-                    report["pools"]["pages"]["capacity"].get<std::uint64_t>(),
-                    report["pools"]["faces"]["used_max"].get<std::uint64_t>(),
-                    report["pools"]["faces"]["capacity"].get<std::uint64_t>());
-    for (const Json& model : report["models"])
-    {
-        if (model["static"].get<bool>())
-        {
-            text += fmt::format("static      {}: all of it is here and refined, nothing is left to "
-                                "load, refine or refit\n",
-                                model["name"].get<std::string>());
-        }
-    }
-    text += fmt::format("streaming   {:.1f} KB received, {} pages loaded, {} evicted{}\n",
-                        report["wire"]["bytes_received"].get<double>() / 1e3,
-                        report["cache"]["loads"].get<std::uint64_t>(),
-                        report["cache"]["evictions"].get<std::uint64_t>(),
-                        report["wire"]["host_lost"].get<bool>() ? "; the host went away" : "");
-    const Json& arrival = report["wire"]["arrival_ms"];
-    text += arrival["max"].is_null()
-                ? ""
-                : fmt::format("arrival     {:.1f} / {:.1f} / {:.1f} ms from a wish to its piece "
-                              "(p50 / p99 / max)\n",
-                              arrival["p50"].get<double>(), arrival["p99"].get<double>(),
-                              arrival["max"].get<double>());
-    const auto unexplained = report["deadline"]["unexplained"].get<std::uint64_t>();
-    text += fmt::format(
-        "deadlines   {} missed: {} own faults, {} machine late{}; {} allocations, {} page faults\n",
-        report["deadline"]["missed"].get<std::uint64_t>(),
-        report["deadline"]["own_fault"].get<std::uint64_t>(),
-        report["deadline"]["machine_late"].get<std::uint64_t>(),
-        unexplained > 0 ? fmt::format(", {} other", unexplained) : "",
-        report["realtime"]["allocations"].get<std::uint64_t>(),
-        report["realtime"]["page_faults"].get<std::uint64_t>());
-    text += pose_lines(report["models"]);
-    text += stability_line(report["tools"]);
-    text += safety_line(report["safety"]);
-    if (report["realtime"]["system_calls_trapped"].get<bool>())
-    {
-        text += fmt::format("calls       {} system calls in frames, {} of the loop between them\n",
-                            report["realtime"]["system_calls_in_frame"].get<std::uint64_t>(),
-                            report["realtime"]["system_calls_outside"].get<std::uint64_t>());
-    }
-    if (!report["recording"].is_null())
-    {
-        text += recording_line(report["recording"]);
-    }
-    return text;
 }
 
 std::optional<OutputFileError> write_text(const std::string& text, const std::string& path)

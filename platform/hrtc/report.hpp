@@ -10,6 +10,8 @@
 
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace tactus::hrtc
 {
@@ -18,7 +20,11 @@ namespace tactus::hrtc
 [[nodiscard]] nlohmann::ordered_json
 make_report(const Options& options, const Controller& controller, const FinishedRun& run);
 
-/// The same for a person: a few lines.
+/// What a person wants to know of a report: names, perhaps the same one twice, and words.
+using SummaryFacts = std::vector<std::pair<std::string, std::string>>;
+[[nodiscard]] SummaryFacts summary_facts(const nlohmann::ordered_json& report);
+
+/// The same with the times as a few lines.
 [[nodiscard]] std::string make_summary(const nlohmann::ordered_json& report);
 
 /// Writes a text file whole or not at all; returns why not.

@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "platform/plot/chart.hpp"
+
 #include <span>
 #include <string>
 #include <vector>
@@ -30,15 +32,14 @@ struct Panel
     std::string title;
     std::string x_label; ///< With its unit.
     std::string y_label;
-    std::vector<Steps> steps; ///< At most kStepsMax.
-    std::vector<Mark> marks;  ///< Drawn where they are within the axis.
-
-    static constexpr std::size_t kStepsMax = 4;
+    std::vector<Steps> steps;
+    std::vector<Mark> marks; ///< Drawn where they are within the axis.
 };
 
-/// An SVG image of the panels, one below the other, all over the same range of x, whole decades
-/// that hold every count. It needs nothing but itself, follows the reader's light or dark scheme,
-/// and tells lines apart by dash and by colours close to Okabe and Ito's for the colour-blind.
+/// Each panel's drawing, all over the same range of x: whole decades that hold every count.
+[[nodiscard]] std::vector<Drawing> draw(std::span<const Panel> panels);
+
+/// The same as one SVG file, the panels one below the other.
 [[nodiscard]] std::string make_svg(std::span<const Panel> panels);
 
 } // namespace tactus::plot

@@ -7,7 +7,10 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <iterator>
 #include <span>
+#include <vector>
 
 namespace tactus::bench
 {
@@ -66,20 +69,26 @@ std::string verdict(std::span<const Row> figure)
     return missed.empty() ? "met" : missed == " " ? "NOT MET" : "NOT MET:" + missed;
 }
 
-std::string goal_line(std::span<const Row> figure)
+std::vector<plot::Cell> figure_cells(std::span<const Row> figure)
 {
     const Row& first = figure.front();
-    std::string line = fmt::format(
-        "{:<16}{:<22}{:<24}{:<8}{:<20}{:<22}", first.test_case, figure_of(first),
-        joined(figure, [](const Row& row) { return number(row.value); }), first.unit,
-        joined(figure, [](const Row& row) { return row.goal ? number(*row.goal) : "-"; }),
-        verdict(figure));
-    if (first.peer)
-    {
-        line +=
-            *first.peer + " " +
-            joined(figure, [](const Row& row) { return row.peer ? number(row.peer_value) : "-"; });
-    }
+    const bool has_goal = count_goals(Rows(figure.begin(), figure.end())).goals > 0;
+    const std::string judged = has_goal ? verdict(figure) : "";
+    const auto goal = [](const Row& row) { return row.goal ? number(*row.goal) : "-"; };
+    const auto peer = [](const Row& row) { return row.peer ? number(row.peer_value) : "-"; };
+    return {first.test_case,
+            figure_of(first),
+            joined(figure, [](const Row& row) { return number(row.value); }),
+            first.unit,
+            has_goal ? joined(figure, goal) : "",
+            {judged, judged.starts_with("NOT")},
+            first.peer ? *first.peer + " " + joined(figure, peer) : ""};
+}
+
+std::string text_line(const std::vector<std::string>& cells)
+{
+    std::string line = fmt::format("{:<16}{:<22}{:<24}{:<8}{:<22}{:<22}{}", cells[0], cells[1],
+                                   cells[2], cells[3], cells[4], cells[5], cells[6]);
     line.erase(line.find_last_not_of(' ') + 1);
     return line + '\n';
 }
@@ -136,18 +145,51 @@ nlohmann::ordered_json to_json(const Row& row)
 
 } // namespace
 
-std::string to_goal_table(const Rows& rows)
+plot::Table figure_table(const Rows& rows, Figures which)
 {
-    std::string text = fmt::format("{:<16}{:<22}{:<24}{:<8}{:<20}{:<22}{}\n", "case", "figure",
-                                   "p50 / p99 / max", "unit", "goal", "", "peer, same run");
+    plot::Table table{{{"case", false},
+                       {"figure", false},
+                       {"p50 / p99 / max"},
+                       {"unit", false},
+                       {"goal"},
+                       {"", false},
+                       {"peer, same run", false}},
+                      {}};
     for (std::size_t i = 0; i < rows.size();)
     {
         const std::span<const Row> figure = std::span(rows).subspan(i, figure_length(rows, i));
-        if (count_goals(Rows(figure.begin(), figure.end())).goals > 0)
+        if (which == Figures::all || count_goals(Rows(figure.begin(), figure.end())).goals > 0)
         {
-            text += goal_line(figure);
+            table.lines.push_back(figure_cells(figure));
         }
         i += figure.size();
+    }
+    return table;
+}
+
+bool has_quantiles(const Rows& rows)
+{
+    for (std::size_t i = 0; i < rows.size(); ++i)
+    {
+        if (figure_length(rows, i) > 1)
+        {
+            return true;
+        }
+    }
+    return false;
+}
+
+std::string to_goal_table(const Rows& rows)
+{
+    const plot::Table table = figure_table(rows, Figures::with_goals);
+    std::vector<std::string> words;
+    std::ranges::transform(table.columns, std::back_inserter(words), &plot::Column::name);
+    std::string text = text_line(words);
+    for (const std::vector<plot::Cell>& line : table.lines)
+    {
+        words.clear();
+        std::ranges::transform(line, std::back_inserter(words), &plot::Cell::text);
+        text += text_line(words);
     }
     const GoalCount count = count_goals(rows);
     return text + fmt::format("{} of {} goals met\n", count.met, count.goals);
@@ -174,28 +216,32 @@ std::string to_table(const Rows& rows)
     return text;
 }
 
-std::string to_json(const Rows& rows, const RunFacts& facts)
+std::string to_json(const Results& results, const RunFacts& facts)
 {
     using Json = nlohmann::ordered_json;
     Json list = Json::array();
-    for (const Row& row : rows)
+    for (const Row& row : results.rows)
     {
         list.push_back(to_json(row));
     }
     const hrtc::Machine machine = hrtc::describe_machine();
-    const Json all{{"schema", 2},
-                   {"commit", TACTUS_COMMIT},
-                   {"machine",
-                    {{"kernel", machine.kernel},
-                     {"preemption", machine.preemption},
-                     {"processor", machine.processor},
-                     {"processors", machine.processors},
-                     {"load_average", machine.load_average},
-                     {"date_utc", machine.date_utc}}},
-                   {"core", facts.core},
-                   {"quick", facts.quick},
-                   {"compiler", __VERSION__},
-                   {"rows", list}};
+    Json all{{"schema", 2},
+             {"commit", TACTUS_COMMIT},
+             {"machine",
+              {{"kernel", machine.kernel},
+               {"preemption", machine.preemption},
+               {"processor", machine.processor},
+               {"processors", machine.processors},
+               {"load_average", machine.load_average},
+               {"date_utc", machine.date_utc}}},
+             {"core", facts.core},
+             {"quick", facts.quick},
+             {"compiler", __VERSION__},
+             {"rows", list}};
+    if (!results.failures.empty())
+    {
+        all["failures"] = results.failures;
+    }
     return all.dump(2) + "\n";
 }
 

@@ -5,6 +5,7 @@
 #include "tests/bench/bench_options.hpp"
 #include "tests/bench/bench_row.hpp"
 #include "tests/bench/scenes.hpp"
+#include "tests/bench/stage_series.hpp"
 
 #include <cstdint>
 #include <functional>
@@ -12,6 +13,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace tactus::bench
 {
@@ -32,6 +34,7 @@ struct CaseContext
     const BenchOptions& options;
     SceneStore& scenes;
     Rows& rows;
+    std::vector<StageSeries>& series;
 
     /// What all rows of this case have in common; the part is the suite's, if it has any.
     [[nodiscard]] Row common_row(const std::string& scene, const char* part = "") const;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// Rows as tables of Markdown, for the pages.
+/// Rows as tables of a column for each metric, and those as Markdown.
 
 #include "tests/bench/bench_report.hpp"
 
@@ -9,7 +9,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
+#include <iterator>
+#include <string>
 #include <vector>
 
 namespace tactus::bench
@@ -28,12 +29,12 @@ std::string number(double value, bool is_count)
     return is_count || value >= 100.0 ? fmt::format("{:.0f}", value) : fmt::format("{:.3g}", value);
 }
 
-std::string cell(const Row& row)
+plot::Cell cell(const Row& row)
 {
     const bool is_count = row.unit.empty();
-    std::string text = number(row.value, is_count);
-    text = row.is_met() ? text : "**" + text + "**";
-    return row.goal ? fmt::format("{} ({})", text, number(*row.goal, is_count)) : text;
+    const std::string text = number(row.value, is_count);
+    return {row.goal ? fmt::format("{} ({})", text, number(*row.goal, is_count)) : text,
+            !row.is_met()};
 }
 
 std::string column_name(const Row& row)
@@ -47,35 +48,79 @@ struct LineHead
     bool has_authors;
     bool has_settings;
 
-    [[nodiscard]] std::string title() const
+    [[nodiscard]] std::vector<plot::Column> columns() const
     {
-        return std::string("model") + (has_authors ? " | by" : "") +
-               (has_settings ? " | setting" : "");
+        std::vector<plot::Column> names{{"model", false}};
+        add(names, {"by", false}, {"setting", false});
+        return names;
     }
     /// The first cells of a line; rows with the same ones stand in one line.
-    [[nodiscard]] std::string of(const Row& row) const
+    [[nodiscard]] std::vector<std::string> of(const Row& row) const
     {
-        std::string name = row.test_case;
-        name += row.scene == row.test_case ? "" : " (" + row.scene + ")";
-        return name + (has_authors ? " | " + row.by : "") +
-               (has_settings ? " | " + row.setting : "");
+        std::vector<std::string> names{row.test_case +
+                                       (row.scene == row.test_case ? "" : " (" + row.scene + ")")};
+        add(names, row.by, row.setting);
+        return names;
     }
-    [[nodiscard]] std::size_t width() const
+
+private:
+    template <typename T>
+    void add(std::vector<T>& list, const T& author, const T& setting) const
     {
-        return std::size_t{1} + (has_authors ? 1 : 0) + (has_settings ? 1 : 0);
+        if (has_authors)
+        {
+            list.push_back(author);
+        }
+        if (has_settings)
+        {
+            list.push_back(setting);
+        }
     }
 };
 
-/// The place of a name in a list, at whose end it is put when it is new.
-std::size_t place_of(const std::string& name, std::vector<std::string>& names)
+/// The place of an item in a list, at whose end it is put when it is new.
+template <typename T>
+std::size_t place_of(const T& item, std::vector<T>& items)
 {
-    const auto found = std::find(names.begin(), names.end(), name);
-    const auto place = static_cast<std::size_t>(found - names.begin());
-    if (found == names.end())
+    const auto found = std::ranges::find(items, item);
+    const auto place = static_cast<std::size_t>(found - items.begin());
+    if (found == items.end())
     {
-        names.push_back(name);
+        items.push_back(item);
     }
     return place;
+}
+
+plot::Table table_of(const Rows& part)
+{
+    const LineHead head{
+        std::ranges::any_of(part, [](const Row& row) { return !row.by.empty(); }),
+        std::ranges::any_of(part, [](const Row& row) { return !row.setting.empty(); })};
+    plot::Table table{head.columns(), {}};
+    const std::size_t first = table.columns.size();
+    std::vector<std::vector<std::string>> heads;
+    std::vector<std::string> metrics;
+    for (const Row& row : part)
+    {
+        const std::size_t line = place_of(head.of(row), heads);
+        if (line == table.lines.size())
+        {
+            table.lines.emplace_back(heads[line].begin(), heads[line].end());
+        }
+        const std::size_t column = first + place_of(column_name(row), metrics);
+        std::vector<plot::Cell>& cells = table.lines[line];
+        cells.resize(std::max(cells.size(), column + 1));
+        cells[column] = cell(row);
+    }
+    for (const std::string& metric : metrics)
+    {
+        table.columns.push_back({metric});
+    }
+    for (std::vector<plot::Cell>& cells : table.lines)
+    {
+        cells.resize(table.columns.size());
+    }
+    return table;
 }
 
 std::string markdown_line(const std::vector<std::string>& cells)
@@ -83,51 +128,64 @@ std::string markdown_line(const std::vector<std::string>& cells)
     return fmt::format("| {} |\n", fmt::join(cells, " | "));
 }
 
-std::string to_markdown(std::span<const Row> part)
+/// Bold when the goal is missed, which stands in brackets behind.
+std::string markdown_cell(const plot::Cell& cell)
 {
-    const LineHead head{
-        std::ranges::any_of(part, [](const Row& row) { return !row.by.empty(); }),
-        std::ranges::any_of(part, [](const Row& row) { return !row.setting.empty(); })};
-    std::vector<std::string> columns{head.title()};
-    std::vector<std::string> names;
-    std::vector<std::vector<std::string>> lines;
-    for (const Row& row : part)
+    const std::size_t end = std::min(cell.text.find(" ("), cell.text.size());
+    return cell.is_missed ? "**" + cell.text.substr(0, end) + "**" + cell.text.substr(end)
+                          : cell.text;
+}
+
+std::string to_markdown(const plot::Table& table)
+{
+    std::vector<std::string> words;
+    std::ranges::transform(table.columns, std::back_inserter(words), &plot::Column::name);
+    std::string text = markdown_line(words);
+    text += markdown_line(std::vector<std::string>(words.size(), "---"));
+    for (const std::vector<plot::Cell>& line : table.lines)
     {
-        const std::size_t line = place_of(head.of(row), names);
-        lines.resize(names.size());
-        const std::size_t column = place_of(column_name(row), columns);
-        lines[line].resize(std::max(lines[line].size(), column));
-        lines[line][column - 1] = cell(row);
-    }
-    std::string text = markdown_line(columns);
-    text += markdown_line(std::vector<std::string>(columns.size() - 1 + head.width(), "---"));
-    for (std::size_t line = 0; line < lines.size(); ++line)
-    {
-        lines[line].resize(columns.size() - 1);
-        lines[line].insert(lines[line].begin(), names[line]);
-        text += markdown_line(lines[line]);
+        words.clear();
+        std::ranges::transform(line, std::back_inserter(words), markdown_cell);
+        text += markdown_line(words);
     }
     return text;
 }
 
 } // namespace
 
-std::string to_columns(const Rows& rows)
+std::vector<RowGroup> grouped_by(const Rows& rows, std::string Row::*key)
 {
-    std::vector<std::string> parts;
-    std::vector<Rows> rows_of;
+    std::vector<std::string> keys;
+    std::vector<RowGroup> groups;
     for (const Row& row : rows)
     {
-        const std::size_t part = place_of(row.part, parts);
-        rows_of.resize(parts.size());
-        rows_of[part].push_back(row);
+        const std::size_t place = place_of(row.*key, keys);
+        if (place == groups.size())
+        {
+            groups.push_back({row.*key, {}});
+        }
+        groups[place].rows.push_back(row);
     }
-    std::string text;
-    for (std::size_t part = 0; part < parts.size(); ++part)
+    return groups;
+}
+
+std::vector<plot::TitledTable> column_tables(const Rows& rows)
+{
+    std::vector<plot::TitledTable> tables;
+    for (const auto& [part, of_part] : grouped_by(rows, &Row::part))
     {
-        text +=
-            parts[part].empty() ? "" : fmt::format("{}{}:\n\n", part > 0 ? "\n" : "", parts[part]);
-        text += to_markdown(rows_of[part]);
+        tables.push_back({part, table_of(of_part)});
+    }
+    return tables;
+}
+
+std::string to_columns(const Rows& rows)
+{
+    std::string text;
+    for (const auto& [part, table] : column_tables(rows))
+    {
+        text += part.empty() ? "" : fmt::format("{}{}:\n\n", text.empty() ? "" : "\n", part);
+        text += to_markdown(table);
     }
     const GoalCount count = count_goals(rows);
     return count.goals == 0 ? text

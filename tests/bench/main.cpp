@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <iterator>
 #include <span>
 
 namespace tactus::bench
@@ -27,19 +28,34 @@ struct CommandLine
 {
     std::string suite;
     std::string json_path;
+    std::string csv_path;
+    std::string html_path;
     bool all{false};
     bool check{false};
     BenchOptions options;
 };
+
+constexpr const char* kEvery = "all"; ///< In place of a suite.
 
 std::string suite_names()
 {
     std::string names;
     for (const Suite& suite : all_suites())
     {
-        names += (names.empty() ? "" : ", ") + std::string(suite.name);
+        names += std::string(suite.name) + ", ";
     }
-    return names;
+    return names + kEvery;
+}
+
+/// None when there is no suite of that name.
+std::vector<Suite> chosen_suites(const std::string& name)
+{
+    if (name == kEvery)
+    {
+        return all_suites();
+    }
+    const std::optional<Suite> suite = find_suite(name);
+    return suite ? std::vector{*suite} : std::vector<Suite>{};
 }
 
 /// What a user may call a unit of length.
@@ -83,7 +99,8 @@ void declare_options(CLI::App& app, CommandLine& line)
 {
     BenchOptions& options = line.options;
     app.set_version_flag("--version", std::string("tactus_bench ") + TACTUS_VERSION);
-    app.add_option("SUITE", line.suite, "Suite to run: " + suite_names())->required();
+    app.add_option("SUITE", line.suite, "Suite to run, or all of them in turn: " + suite_names())
+        ->required();
     app.add_flag(
         "--quick", options.quick,
         "Fewer frames and repeats; without the cases of 4 M faces unless --only names them");
@@ -103,6 +120,9 @@ void declare_options(CLI::App& app, CommandLine& line)
     app.add_flag("--all", line.all, "Print every row, not only those with a goal");
     app.add_flag("--check", line.check, "Leave with code 1 when a goal is not met");
     app.add_option("--json", line.json_path, "Write the rows to this file as JSON");
+    app.add_option("--csv", line.csv_path, "Write the rows to this file as CSV");
+    app.add_option("--html", line.html_path,
+                   "Write the rows to this file as a page, with plots where they make some");
     declare_trajectory_options(app, options.trajectory);
 }
 
@@ -129,19 +149,37 @@ std::optional<std::string> wrong_trajectory(const CommandLine& line)
     return columns ? std::nullopt : std::optional("--traj-columns: " + columns.error().text);
 }
 
+std::optional<std::string> wrong_files(const CommandLine& line)
+{
+    if (!line.csv_path.empty() && line.csv_path == line.json_path)
+    {
+        return "--csv: must be another file than --json";
+    }
+    if (!line.html_path.empty() &&
+        (line.html_path == line.json_path || line.html_path == line.csv_path))
+    {
+        return "--html: must be another file than --json and --csv";
+    }
+    return std::nullopt;
+}
+
 /// Why the command line makes no sense; nothing when it does.
 std::optional<std::string> wrong_usage(const CommandLine& line)
 {
-    const std::optional<Suite> suite = find_suite(line.suite);
-    if (!suite)
+    const std::vector<Suite> suites = chosen_suites(line.suite);
+    if (suites.empty())
     {
         return "SUITE: there is no suite '" + line.suite + "'; there are: " + suite_names();
     }
-    if (line.options.full && suite->name != std::string("stability"))
+    if (line.options.full && line.suite != "stability" && line.suite != kEvery)
     {
         return "--full: only the suite stability has it; the others do all without --quick";
     }
-    const std::vector<std::string> names = case_names(*suite);
+    if (line.suite == kEvery && !line.options.only.empty())
+    {
+        return "--only: not with all, which runs every case; name the suite that has the case";
+    }
+    const std::vector<std::string> names = case_names(suites.front());
     for (const std::string& name : line.options.only)
     {
         if (std::find(names.begin(), names.end(), name) == names.end())
@@ -153,6 +191,10 @@ std::optional<std::string> wrong_usage(const CommandLine& line)
     if (line.options.core != -1 && !may_use_core(line.options.core))
     {
         return fmt::format("--core {}: this process may not run there", line.options.core);
+    }
+    if (const auto reason = wrong_files(line))
+    {
+        return reason;
     }
     return wrong_trajectory(line);
 }
@@ -173,6 +215,58 @@ std::optional<std::string> write_text(const std::string& path, const std::string
     return done ? std::nullopt : std::optional(done.error().text);
 }
 
+/// All suites of the line, one after the other, printed as they come; what came before a failure,
+/// too. `laws`: goals that leave with code 1, asked or not.
+Results run_suites(const CommandLine& line, GoalCount& laws)
+{
+    Results results;
+    SceneStore scenes(line.options.cache);
+    for (const Suite& suite : chosen_suites(line.suite))
+    {
+        Results own;
+        if (const auto refused = run_suite(suite, line.options, scenes, own))
+        {
+            results.failures.push_back(*refused);
+        }
+        fmt::print("{}", line.all ? to_table(own.rows) : suite.to_table(own.rows));
+        const GoalCount count = count_goals(own.rows);
+        laws.goals += suite.always_checks ? count.goals : 0;
+        laws.met += suite.always_checks ? count.met : 0;
+        std::ranges::move(own.rows, std::back_inserter(results.rows));
+        std::ranges::move(own.series, std::back_inserter(results.series));
+    }
+    return results;
+}
+
+Results run_trajectory(const CommandLine& line)
+{
+    Results results;
+    if (const auto refused = compare_trajectory(line.options, results.rows))
+    {
+        results.failures.push_back(*refused);
+    }
+    fmt::print("{}", line.all ? to_table(results.rows) : to_columns(results.rows));
+    return results;
+}
+
+/// Returns why a file could not be written.
+std::optional<std::string> write_files(const CommandLine& line, const Results& results,
+                                       const RunFacts& facts)
+{
+    std::optional<std::string> failure;
+    const auto write = [&failure](const std::string& path, const std::string& text)
+    {
+        if (!failure && !path.empty())
+        {
+            failure = write_text(path, text);
+        }
+    };
+    write(line.json_path, to_json(results, facts));
+    write(line.csv_path, to_csv(results.rows));
+    write(line.html_path, to_page(results, facts));
+    return failure;
+}
+
 int run(int argc, char** argv)
 {
     CLI::App app("Measures Tactus. Times are per-frame least values of repeated replays.",
@@ -188,30 +282,27 @@ int run(int argc, char** argv)
         return fail(app, *reason, kExitUsage);
     }
     const RunFacts facts{PinnedCore(line.options.core).core(), line.options.quick};
-    const Suite suite = *find_suite(line.suite);
     const bool is_recorded = !line.options.trajectory.file.empty();
-    Rows rows;
-    SceneStore scenes(line.options.cache);
-    const auto refused = is_recorded ? compare_trajectory(line.options, rows)
-                                     : run_suite(suite, line.options, scenes, rows);
-    const auto table = is_recorded ? to_columns : suite.to_table;
-    fmt::print("{}", line.all ? to_table(rows) : table(rows)); // What came before a failure, too.
-    if (refused)
+    GoalCount laws;
+    const Results results = is_recorded ? run_trajectory(line) : run_suites(line, laws);
+    int code = kExitDone;
+    for (const std::string& failure : results.failures)
     {
-        return fail(app, *refused, is_recorded ? kExitFailed : kExitCriterionNotMet);
+        code = fail(app, failure, is_recorded ? kExitFailed : kExitCriterionNotMet);
+    }
+    if (is_recorded && code != kExitDone)
+    {
+        return code;
     }
     fmt::print("{}\n", facts.core < 0 ? std::string("not held to one core: the system refuses")
                                       : fmt::format("measured on core {}", facts.core));
-    if (!line.json_path.empty())
+    if (const auto failure = write_files(line, results, facts))
     {
-        if (const auto failure = write_text(line.json_path, to_json(rows, facts)))
-        {
-            return fail(app, *failure);
-        }
+        return fail(app, *failure);
     }
-    const GoalCount count = count_goals(rows);
-    return (line.check || suite.always_checks) && count.met < count.goals ? kExitCriterionNotMet
-                                                                          : kExitDone;
+    const GoalCount count = count_goals(results.rows);
+    const bool misses = laws.met < laws.goals || (line.check && count.met < count.goals);
+    return misses ? kExitCriterionNotMet : code;
 }
 
 } // namespace

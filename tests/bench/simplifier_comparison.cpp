@@ -67,6 +67,20 @@ std::vector<Segment> edges_of(const TriangleMesh& mesh, Feature feature)
                                              : std::vector<Segment>{};
 }
 
+/// FNV-1a over the faces' corners: what was timed is looked at.
+std::uint64_t hash_of(const TriangleMesh& mesh)
+{
+    std::uint64_t hash = 0xCBF2'9CE4'8422'2325;
+    for (const auto& face : mesh.faces)
+    {
+        for (const auto corner : face)
+        {
+            hash = (hash ^ static_cast<std::uint64_t>(corner)) * 0x100'0000'01B3;
+        }
+    }
+    return hash;
+}
+
 /// Measures simplified versions of one mesh and turns them into rows.
 class Comparison
 {
@@ -86,7 +100,8 @@ public:
     [[nodiscard]] CaseFailure run();
 
 private:
-    [[nodiscard]] CaseRows line_of(const MeshSimplifier& simplifier) const;
+    [[nodiscard]] CaseRows line_of(const MeshSimplifier& simplifier,
+                                   const TriangleMesh& mesh) const;
     [[nodiscard]] SimplifiedMesh fastest(const MeshSimplifier& simplifier) const;
     void add_time(CaseRows& rows, double seconds) const;
     [[nodiscard]] SurfaceError add_quality(CaseRows& rows, const TriangleMesh& mesh) const;
@@ -112,16 +127,16 @@ CaseFailure Comparison::run()
     {
         return "one thread and two simplify it differently";
     }
-    CaseRows our_rows = line_of(kOurs);
+    CaseRows our_rows = line_of(kOurs, ours.mesh);
     const SurfaceError our_error = add_quality(our_rows, ours.mesh);
     add_time(our_rows, ours.seconds);
-    CaseRows rows_on_two = line_of(kOursOnTwo);
+    CaseRows rows_on_two = line_of(kOursOnTwo, on_two.mesh);
     add_time(rows_on_two, on_two.seconds);
     for (const MeshSimplifier& peer :
          context_.options.count ? std::vector<MeshSimplifier>{} : mesh_simplifiers())
     {
         const SimplifiedMesh theirs = fastest(peer);
-        CaseRows rows = line_of(peer);
+        CaseRows rows = line_of(peer, theirs.mesh);
         const SurfaceError error = add_quality(rows, theirs.mesh);
         add_time(rows, theirs.seconds);
         add_ratios(rows, peer, our_error, error);
@@ -129,11 +144,12 @@ CaseFailure Comparison::run()
     return std::nullopt;
 }
 
-CaseRows Comparison::line_of(const MeshSimplifier& simplifier) const
+CaseRows Comparison::line_of(const MeshSimplifier& simplifier, const TriangleMesh& mesh) const
 {
     Row common = context_.common_row(scene_, "Simplification");
     common.by = simplifier.name;
     common.frames = samples_;
+    common.hash = hash_of(mesh);
     return {context_.rows, common};
 }
 

@@ -208,6 +208,7 @@ CaseFailure run_tour_case(const CaseContext& context, const TourCase& test_case)
     const StreamFigures& figures = counter.figures();
     Row common = context.common_row(scene.value()->model.name, "tours, whole programs");
     common.frames = figures.frames;
+    common.hash = figures.hash;
     CaseRows rows(context.rows, common);
     rows.add("open", figures.percent(figures.open), "%", goal_if(test_case.open_max));
     rows.add("late taps", static_cast<double>(figures.late_taps), "",
@@ -247,6 +248,7 @@ CaseFailure run_first_touch_case(const CaseContext& context, const FirstTouchCas
     std::uint64_t first_wish = 0;
     std::uint64_t first_exact = 0;
     std::uint64_t loads = 0;
+    std::uint64_t hash = 0;
     // What a run costs that asks for nothing comes off.
     for (const bool touches : {false, true})
     {
@@ -286,6 +288,7 @@ CaseFailure run_first_touch_case(const CaseContext& context, const FirstTouchCas
             [&](const FrameOutput& output)
             {
                 ++frame;
+                hash += output.models[0].state_hash * (2 * frame + 1);
                 loads += output.work.pages_adopted;
                 first_wish = first_wish == 0 && output.work.requests > 0 ? frame : first_wish;
                 const bool is_exact = touches && output.pairs[0].kind == AnswerKind::exact;
@@ -298,6 +301,7 @@ CaseFailure run_first_touch_case(const CaseContext& context, const FirstTouchCas
     }
     Row common = context.common_row(scene.value()->model.name, "first touch, cold");
     common.frames = kFrames;
+    common.hash = hash;
     CaseRows rows(context.rows, common);
     rows.add("UDP payload", payload_kb, "kB", goal_if(test_case.payload_kb));
     rows.add("first wish to exact",

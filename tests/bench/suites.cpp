@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 
 namespace tactus::bench
@@ -45,7 +46,7 @@ std::vector<std::string> case_names(const Suite& suite)
 }
 
 CaseFailure run_suite(const Suite& suite, const BenchOptions& options, SceneStore& scenes,
-                      Rows& rows)
+                      Results& results)
 {
     for (const Case& one : suite.cases())
     {
@@ -54,9 +55,31 @@ CaseFailure run_suite(const Suite& suite, const BenchOptions& options, SceneStor
             continue;
         }
         fmt::print(stderr, "{}\n", one.name);
-        if (const CaseFailure failure = one.run({suite.name, one.name, options, scenes, rows}))
+        const std::size_t rows_before = results.rows.size();
+        CaseFailure failure =
+            one.run({suite.name, one.name, options, scenes, results.rows, results.series});
+        if (!failure)
+        {
+            failure = check_hashes(std::span(results.rows).subspan(rows_before));
+        }
+        if (failure)
         {
             return fmt::format("{} {}: {}", suite.name, one.name, *failure);
+        }
+    }
+    return std::nullopt;
+}
+
+CaseFailure check_hashes(std::span<const Row> rows)
+{
+    constexpr std::array kTimes{"s", "ms", "us", "ns"};
+    for (const Row& row : rows)
+    {
+        const bool is_time = std::ranges::find(kTimes, row.unit) != kTimes.end();
+        if (is_time && row.frames > 0 && row.hash == 0)
+        {
+            return fmt::format("{}: its result goes unused, no hash is over its {} frames",
+                               row.metric, row.frames);
         }
     }
     return std::nullopt;

@@ -5,6 +5,7 @@
 #include "tests/bench/cases.hpp"
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -40,9 +41,13 @@ struct Suite
 [[nodiscard]] std::optional<Suite> find_suite(const std::string& name);
 [[nodiscard]] std::vector<std::string> case_names(const Suite& suite);
 
-/// Runs the chosen cases, each on one core, and adds their rows. Returns a line when a case could
-/// not be run or gave wrong answers.
+/// Runs the chosen cases, each on one core, and adds what they bring. Returns a line when a case
+/// could not be run or gave wrong answers, or measured a time whose result nothing looks at.
 [[nodiscard]] CaseFailure run_suite(const Suite& suite, const BenchOptions& options,
-                                    SceneStore& scenes, Rows& rows);
+                                    SceneStore& scenes, Results& results);
+
+/// A line when a row has the time of frames but no hash over them: what was timed may then be
+/// nothing at all.
+[[nodiscard]] CaseFailure check_hashes(std::span<const Row> rows);
 
 } // namespace tactus::bench

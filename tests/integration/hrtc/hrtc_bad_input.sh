@@ -173,6 +173,17 @@ check out/report.json safety.begun.velocity '>' 0 safety.events '>' 2 \
 grep -q '^safety .*velocity' hrtc.log || fault 'no word about the speed'
 rm -f out/report.json
 
+# A report in .html is a page, whole and with the run's figures.
+run_file --duration 0.5 --report out/run.html >hrtc.log 2>&1 || fault 'no page'
+[[ $(head -n 1 out/run.html) == '<!DOCTYPE html>' && $(tail -n 1 out/run.html) == '</html>' ]] \
+    || fault 'the page is no page'
+grep -qF "$(sed -n 's/^frames *//p' hrtc.log)" out/run.html || fault 'the page is of another run'
+if command -v python3 >/dev/null; then
+    python3 -c 'import sys, xml.etree.ElementTree as tree; tree.parse(sys.argv[1])' out/run.html \
+        || fault 'the page is not well-formed'
+fi
+rm -f out/run.html
+
 # An interrupted run ends early and reports.
 "$hrtc" --allow-no-rt --transport file --model good.spm --duration 60 --report out/report.json \
     >hrtc.log 2>&1 &

@@ -12,6 +12,7 @@ refuse 3 '--model is required' deadline-test
 refuse 3 '--load: ' deadline-test --model bumpy --load network
 refuse 3 'none goes with no other' deadline-test --model bumpy --load none,cpu
 refuse 3 'must not end in .txt' deadline-test --model bumpy --report run.svg
+refuse 3 'must not end in .html' deadline-test --model bumpy --report run.html
 refuse 3 '--record' deadline-test --model bumpy --record run.rec
 refuse 3 '--replay' deadline-test --model bumpy --replay run.rec
 refuse 2 'nowhere/run.json' deadline-test --model bumpy --report nowhere/run.json

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "platform/hrtc/session.hpp"
+
+#include <nlohmann/json_fwd.hpp>
+
+namespace tactus::hrtc
+{
+
+/// What the report says of a run's deadlines, and of single cycles of it.
+[[nodiscard]] nlohmann::ordered_json deadlines_of(const FinishedRun& run);
+
+/// What it says of the force that was off, when and why.
+[[nodiscard]] nlohmann::ordered_json safety_of(const SafetyRecord& safety, bool supervisor_fifo);
+
+} // namespace tactus::hrtc

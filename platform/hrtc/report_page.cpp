@@ -1,0 +1,297 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/hrtc/report_page.hpp"
+
+#include "platform/hrtc/latency_plot.hpp"
+#include "platform/hrtc/report.hpp"
+#include "platform/plot/bar_plot.hpp"
+#include "platform/plot/page.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+
+namespace tactus::hrtc
+{
+
+namespace
+{
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::array<const char*, kStages> kStageNames{"T_L load", "T_R refine", "T_B refit",
+                                                       "T_Q query", "force"};
+
+std::string text_of(const Json& value)
+{
+    switch (value.type())
+    {
+    case Json::value_t::null:
+        return "none";
+    case Json::value_t::boolean:
+        return value.get<bool>() ? "yes" : "no";
+    case Json::value_t::string:
+        return value.get<std::string>();
+    case Json::value_t::number_float:
+        return fmt::format("{:.6g}", value.get<double>());
+    case Json::value_t::array:
+    {
+        std::string text;
+        for (const Json& entry : value)
+        {
+            text += (text.empty() ? "" : ", ") + text_of(entry);
+        }
+        return text;
+    }
+    default:
+        return value.dump();
+    }
+}
+
+struct Figure
+{
+    std::string name;
+    std::string text;
+    bool is_number;
+};
+
+/// Everything below an object, named "outer.inner"; lists of objects have tables.
+void flatten(const Json& object, const std::string& before, std::vector<Figure>& figures)
+{
+    for (const auto& [key, value] : object.items())
+    {
+        const bool is_table = value.is_array() && !value.empty() && value.front().is_object();
+        if (value.is_object())
+        {
+            flatten(value, before + key + ".", figures);
+        }
+        else if (!is_table)
+        {
+            figures.push_back({before + key, text_of(value), value.is_number()});
+        }
+    }
+}
+
+std::vector<Figure> figures_of(const Json& object)
+{
+    std::vector<Figure> figures;
+    flatten(object, "", figures);
+    return figures;
+}
+
+plot::Table facts_of(const Json& object)
+{
+    SummaryFacts facts;
+    for (const Figure& figure : figures_of(object))
+    {
+        facts.emplace_back(figure.name, figure.text);
+    }
+    return plot::facts(facts);
+}
+
+/// A line for each entry of a list whose entries are alike.
+plot::Table table_of(const Json& list)
+{
+    plot::Table table;
+    for (const Json& entry : list)
+    {
+        auto& line = table.lines.emplace_back();
+        for (const Figure& figure : figures_of(entry))
+        {
+            line.emplace_back(figure.text);
+            if (table.lines.size() == 1)
+            {
+                table.columns.push_back({figure.name, figure.is_number});
+            }
+        }
+    }
+    return table;
+}
+
+/// The same with a column for each entry, for entries of many figures.
+plot::Table columns_of(const Json& list)
+{
+    plot::Table table{{{"", false}}, {}};
+    for (const Json& entry : list)
+    {
+        const std::vector<Figure> figures = figures_of(entry);
+        table.columns.push_back({fmt::format("{}", table.columns.size() - 1), false});
+        table.lines.resize(figures.size());
+        for (std::size_t i = 0; i < figures.size(); ++i)
+        {
+            if (table.lines[i].empty())
+            {
+                table.lines[i].emplace_back(figures[i].name);
+            }
+            table.lines[i].emplace_back(figures[i].text);
+        }
+    }
+    return table;
+}
+
+plot::Table times_of(const Json& all_times)
+{
+    plot::Table table{{{"us", false}}, {}};
+    for (const auto& [name, times] : all_times.items())
+    {
+        std::vector<plot::Cell> line{name};
+        for (const auto& [quantile, time] : times.items())
+        {
+            line.emplace_back(fmt::format("{:.1f}", time.get<double>()));
+            if (table.lines.empty())
+            {
+                table.columns.push_back({quantile});
+            }
+        }
+        table.lines.push_back(std::move(line));
+    }
+    return table;
+}
+
+/// What nobody wants to see of a run; none when it was as it should be.
+std::vector<std::string> complaints_of(const Json& report)
+{
+    std::vector<std::string> complaints;
+    const auto count = [&](const Json& value, const char* what)
+    {
+        if (const auto number = value.get<std::uint64_t>(); number > 0)
+        {
+            complaints.push_back(fmt::format("{} {}", number, what));
+        }
+    };
+    count(report["deadline"]["own_fault"], "deadlines missed by the loop's own fault");
+    count(report["deadline"]["unexplained"], "missed with nobody to blame");
+    count(report["realtime"]["allocations"], "allocations in the loop");
+    count(report["realtime"]["system_calls_in_frame"], "system calls in frames");
+    count(report["answers"]["stale"], "frames with a stale answer");
+    if (report["wire"]["host_lost"].get<bool>())
+    {
+        complaints.emplace_back("the host went away");
+    }
+    if (const Json& recording = report["recording"];
+        !recording.is_null() && !recording["lost_from"].is_null())
+    {
+        complaints.emplace_back("the recording is incomplete");
+    }
+    return complaints;
+}
+
+void add_verdict(const Json& report, plot::Page& page)
+{
+    const std::vector<std::string> complaints = complaints_of(report);
+    if (!complaints.empty())
+    {
+        page.verdict(fmt::format("{}.", fmt::join(complaints, "; ")), false);
+        return;
+    }
+    const auto brackets = report["answers"]["bracket"].get<std::uint64_t>();
+    page.verdict(fmt::format("No deadline missed by the loop's own fault, {} by the machine's; {}.",
+                             report["deadline"]["machine_late"].get<std::uint64_t>(),
+                             brackets == 0 ? "every answer exact or decided"
+                                           : fmt::format("{} answers are brackets", brackets)),
+                 true);
+}
+
+plot::Drawing stage_bars(const Json& times)
+{
+    plot::BarPlot bars{
+        "Where a frame's time goes", "us", {{"p50 of each stage", {}}, {"p99 of each stage", {}}}};
+    constexpr std::array kKeys{"load", "refine", "refit", "query", "force"};
+    for (std::size_t stage = 0; stage < kStages; ++stage)
+    {
+        const Json& of_stage = times[kKeys.at(stage)];
+        bars.groups[0].bars.push_back({kStageNames.at(stage), of_stage["p50"].get<double>()});
+        bars.groups[1].bars.push_back({kStageNames.at(stage), of_stage["p99"].get<double>()});
+    }
+    return draw(bars);
+}
+
+void add_times(const Json& report, const RunStatistics& statistics, plot::Page& page)
+{
+    page.heading("Times");
+    page.table(times_of(report["times_us"]));
+    const plot::Mark period{report["period_ns"].get<double>() * 1e-3, "period"};
+    const auto panel = [&](const char* title) {
+        return plot::Panel{title, "us", "frames", {}, {period}};
+    };
+    std::array panels{panel("A frame"), panel("Its stages"),
+                      panel("Waking, and the force's delay")};
+    panels[0].steps = {steps_of("frame, device included", statistics.frame),
+                       steps_of("processor time of it", statistics.cpu)};
+    for (std::size_t stage = 0; stage < kStages; ++stage)
+    {
+        panels[1].steps.push_back(steps_of(kStageNames.at(stage), statistics.stages.at(stage)));
+    }
+    panels[2].steps = {steps_of("woken late", statistics.wake),
+                       steps_of("deadline to force", statistics.deadlines.response())};
+    std::vector<plot::Drawing> drawings = draw(panels);
+    drawings.push_back(stage_bars(report["times_us"]));
+    page.drawings(drawings);
+}
+
+/// A list in a section of its own, unless it is empty.
+void add_list(const char* heading, const Json& list, plot::Table (*to_table)(const Json& list),
+              plot::Page& page)
+{
+    if (!list.empty())
+    {
+        page.heading(heading);
+        page.table(to_table(list));
+    }
+}
+
+std::string title_of(const Json& report)
+{
+    std::vector<std::string> names;
+    for (const Json& model : report["models"])
+    {
+        names.push_back(model["name"].get<std::string>());
+    }
+    return fmt::format("hrtc: {}", fmt::join(names, ", "));
+}
+
+} // namespace
+
+bool is_page_name(const std::string& path)
+{
+    return path.ends_with(".html");
+}
+
+std::string make_page(const Json& report, const RunStatistics& statistics)
+{
+    plot::Page page(title_of(report));
+    add_verdict(report, page);
+    page.table(plot::facts(summary_facts(report)));
+    add_times(report, statistics, page);
+    std::vector<plot::TitledTable> sections;
+    for (const auto& [key, title] :
+         {std::pair("answers", "Answers, frames"), std::pair("cache", "Cache"),
+          std::pair("wire", "Wire"), std::pair("deadline", "Deadlines"),
+          std::pair("realtime", "In the loop"), std::pair("work", "Work"),
+          std::pair("pools", "Pools"), std::pair("budgets", "Budgets"), std::pair("force", "Force"),
+          std::pair("safety", "Safety"), std::pair("faults", "Frames with a fault"),
+          std::pair("recording", "Recording"), std::pair("telemetry", "Telemetry"),
+          std::pair("machine", "Machine")})
+    {
+        if (!report[key].is_null())
+        {
+            sections.push_back({title, facts_of(report[key])});
+        }
+    }
+    page.heading("Every figure");
+    page.tables(sections);
+    add_list("Models", report["models"], columns_of, page);
+    add_list("Tools", report["tools"], columns_of, page);
+    add_list("Pairs of tool and model", report["pairs"], table_of, page);
+    add_list("Safety events", report["safety"]["events"], table_of, page);
+    add_list("Cycles of note", report["deadline"]["noted"], table_of, page);
+    page.paragraph(fmt::format("Report schema {}, {} frames of {} ns, {} s.",
+                               report["schema"].get<int>(), report["frames"].get<std::uint64_t>(),
+                               report["period_ns"].get<std::int64_t>(),
+                               text_of(report["duration_s"])));
+    return page.html();
+}
+
+} // namespace tactus::hrtc

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "platform/hrtc/run_statistics.hpp"
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <string>
+
+namespace tactus::hrtc
+{
+
+/// Whether a report that is to have this name is a page: it ends in .html.
+[[nodiscard]] bool is_page_name(const std::string& path);
+
+/// A run's report as an HTML page: what it comes to, every figure of the report, and histograms of
+/// the times in `statistics`, those that the report is made from.
+[[nodiscard]] std::string make_page(const nlohmann::ordered_json& report,
+                                    const RunStatistics& statistics);
+
+} // namespace tactus::hrtc

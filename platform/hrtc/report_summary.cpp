@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+
+/// The report for a person: a few lines.
+
+#include "platform/hrtc/report.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <iterator>
+#include <limits>
+
+namespace tactus::hrtc
+{
+
+namespace
+{
+
+using Json = nlohmann::ordered_json;
+
+std::string budgets_text(const Json& budgets)
+{
+    const auto range = [&](const char* name)
+    {
+        return fmt::format(
+            "{} {} to {}, mean {:.1f}", name, budgets[name]["min"].get<std::uint32_t>(),
+            budgets[name]["max"].get<std::uint32_t>(), budgets[name]["mean"].get<double>());
+    };
+    return fmt::format("for {} us a frame: {}; {}; {} frames at the least",
+                       budgets["frame_us"].get<double>(), range("splits"), range("nodes"),
+                       budgets["at_floor"].get<std::uint64_t>());
+}
+
+/// One for each object that was moved.
+void add_poses(const Json& models, SummaryFacts& facts)
+{
+    for (const Json& model : models)
+    {
+        const Json& pose = model["pose"];
+        if (pose["followed"].get<bool>())
+        {
+            facts.emplace_back(
+                "poses",
+                fmt::format("{}: moved in {} frames, by {:.4g} m at most; oldest {:.3g} s",
+                            model["name"].get<std::string>(), pose["moves"].get<std::uint64_t>(),
+                            pose["step_max_m"].get<double>(), pose["age_max_s"].get<double>()));
+        }
+    }
+}
+
+/// None when no force was another than the frame's.
+void add_stability(const Json& tools, SummaryFacts& facts)
+{
+    std::uint64_t capped = 0;
+    std::uint64_t damped = 0;
+    double cap = std::numeric_limits<double>::infinity();
+    for (const Json& tool : tools)
+    {
+        capped += tool["conditioned"]["stiffness_capped"].get<std::uint64_t>();
+        damped += tool["conditioned"]["damped"].get<std::uint64_t>();
+        cap = std::min(cap, tool["stiffness_cap_n_per_m"].get<double>());
+    }
+    if (capped > 0)
+    {
+        facts.emplace_back("stability",
+                           fmt::format("{} forces softened to a wall of {:.0f} N/m", capped, cap));
+    }
+    if (damped > 0)
+    {
+        facts.emplace_back("stability", fmt::format("{} forces damped", damped));
+    }
+}
+
+/// None when the force went off for the end of the run alone.
+void add_safety(const Json& safety, SummaryFacts& facts)
+{
+    std::string causes;
+    for (const auto& [name, count] : safety["begun"].items())
+    {
+        if (count.get<std::uint64_t>() > 0 && name != "software")
+        {
+            causes += fmt::format("{}{} {}", causes.empty() ? "" : ", ", name,
+                                  count.get<std::uint64_t>());
+        }
+    }
+    if (!causes.empty())
+    {
+        facts.emplace_back("safety",
+                           fmt::format("force off for: {}; {} brakes by the supervisor", causes,
+                                       safety["supervisor_brakes"].get<std::uint64_t>()));
+    }
+}
+
+std::string recording_text(const Json& recording)
+{
+    const Json& lost_from = recording["lost_from"];
+    return fmt::format("{} frames, {:.1f} KB{}", recording["frames"].get<std::uint64_t>(),
+                       recording["bytes"].get<double>() / 1e3,
+                       lost_from.is_null()
+                           ? ""
+                           : fmt::format("; incomplete: frame {} and all later ones are lost",
+                                         lost_from.get<std::uint64_t>()));
+}
+
+std::string answers_text(const Json& report)
+{
+    const double frames = std::max(report["frames"].get<double>(), 1.0);
+    const auto share = [&](const char* kind)
+    { return 100.0 * report["answers"][kind].get<double>() / frames; };
+    return fmt::format("exact {:.2f} %, decided {:.2f} %, bracket {:.2f} %, stale {:.2f} %; "
+                       "longest inexact run {} frames",
+                       share("exact"), share("decided"), share("bracket"), share("stale"),
+                       report["answers"]["longest_inexact_run"].get<std::uint64_t>());
+}
+
+std::string deadlines_text(const Json& report)
+{
+    const Json& deadline = report["deadline"];
+    const auto unexplained = deadline["unexplained"].get<std::uint64_t>();
+    return fmt::format(
+        "{} missed: {} own faults, {} machine late{}; {} allocations, {} page faults",
+        deadline["missed"].get<std::uint64_t>(), deadline["own_fault"].get<std::uint64_t>(),
+        deadline["machine_late"].get<std::uint64_t>(),
+        unexplained > 0 ? fmt::format(", {} other", unexplained) : "",
+        report["realtime"]["allocations"].get<std::uint64_t>(),
+        report["realtime"]["page_faults"].get<std::uint64_t>());
+}
+
+/// How the models came, and what of them is here.
+void add_models(const Json& report, SummaryFacts& facts)
+{
+    const Json& pools = report["pools"];
+    facts.emplace_back(
+        "memory", fmt::format("{:.2f} MiB of pools; {} of {} pages, {} of {} faces at the peak",
+                              pools["total_bytes"].get<double>() / (1024.0 * 1024.0),
+                              pools["pages"]["used_max"].get<std::uint64_t>(),
+                              pools["pages"]["capacity"].get<std::uint64_t>(),
+                              pools["faces"]["used_max"].get<std::uint64_t>(),
+                              pools["faces"]["capacity"].get<std::uint64_t>()));
+    for (const Json& model : report["models"])
+    {
+        if (model["static"].get<bool>())
+        {
+            facts.emplace_back("static", model["name"].get<std::string>() +
+                                             ": all of it is here and refined, nothing is left to "
+                                             "load, refine or refit");
+        }
+    }
+    facts.emplace_back(
+        "streaming",
+        fmt::format("{:.1f} KB received, {} pages loaded, {} evicted{}",
+                    report["wire"]["bytes_received"].get<double>() / 1e3,
+                    report["cache"]["loads"].get<std::uint64_t>(),
+                    report["cache"]["evictions"].get<std::uint64_t>(),
+                    report["wire"]["host_lost"].get<bool>() ? "; the host went away" : ""));
+    if (const Json& arrival = report["wire"]["arrival_ms"]; !arrival["max"].is_null())
+    {
+        facts.emplace_back(
+            "arrival",
+            fmt::format("{:.1f} / {:.1f} / {:.1f} ms from a wish to its piece (p50 / p99 / max)",
+                        arrival["p50"].get<double>(), arrival["p99"].get<double>(),
+                        arrival["max"].get<double>()));
+    }
+}
+
+SummaryFacts touch_facts(const Json& report)
+{
+    return {{"frames", fmt::format("{} at {:.0f} Hz, in contact {:.1f} %",
+                                   report["frames"].get<std::uint64_t>(),
+                                   1e9 / report["period_ns"].get<double>(),
+                                   100.0 * report["force"]["contact_share"].get<double>())},
+            {"answers", answers_text(report)},
+            {"force", fmt::format("at most {:.2f} N, largest step {:.3f} N",
+                                  report["force"]["max_n"].get<double>(),
+                                  report["force"]["max_step_n"].get<double>())}};
+}
+
+SummaryFacts run_facts(const Json& report)
+{
+    SummaryFacts facts;
+    if (!report["budgets"]["frame_us"].is_null())
+    {
+        facts.emplace_back("budgets", budgets_text(report["budgets"]));
+    }
+    add_models(report, facts);
+    facts.emplace_back("deadlines", deadlines_text(report));
+    add_poses(report["models"], facts);
+    add_stability(report["tools"], facts);
+    add_safety(report["safety"], facts);
+    if (report["realtime"]["system_calls_trapped"].get<bool>())
+    {
+        facts.emplace_back(
+            "calls", fmt::format("{} system calls in frames, {} of the loop between them",
+                                 report["realtime"]["system_calls_in_frame"].get<std::uint64_t>(),
+                                 report["realtime"]["system_calls_outside"].get<std::uint64_t>()));
+    }
+    if (!report["recording"].is_null())
+    {
+        facts.emplace_back("recording", recording_text(report["recording"]));
+    }
+    return facts;
+}
+
+std::string to_lines(const SummaryFacts& facts)
+{
+    std::string text;
+    for (const auto& [name, fact] : facts)
+    {
+        text += fmt::format("{:<12}{}\n", name, fact);
+    }
+    return text;
+}
+
+std::string times_table(const Json& all_times)
+{
+    std::string text = "times us        mean     p50     p99   p99.9     max\n";
+    for (const auto& [name, times] : all_times.items())
+    {
+        text += fmt::format("  {:<10}{:>8.1f}{:>8.1f}{:>8.1f}{:>8.1f}{:>8.1f}\n", name,
+                            times["mean"].get<double>(), times["p50"].get<double>(),
+                            times["p99"].get<double>(), times["p999"].get<double>(),
+                            times["max"].get<double>());
+    }
+    return text;
+}
+
+} // namespace
+
+SummaryFacts summary_facts(const Json& report)
+{
+    SummaryFacts facts = touch_facts(report);
+    std::ranges::copy(run_facts(report), std::back_inserter(facts));
+    return facts;
+}
+
+std::string make_summary(const Json& report)
+{
+    return to_lines(touch_facts(report)) + times_table(report["times_us"]) +
+           to_lines(run_facts(report));
+}
+
+} // namespace tactus::hrtc

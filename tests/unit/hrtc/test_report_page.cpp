@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/hrtc/report.hpp"
+#include "platform/hrtc/report_page.hpp"
+#include "tests/shared/markup_reader.hpp"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+namespace tactus::hrtc::test
+{
+
+namespace
+{
+
+using Json = nlohmann::ordered_json;
+using tactus::test::read_markup;
+using tactus::test::ReadMarkup;
+
+Json times(double first)
+{
+    return {{"mean", first},      {"p50", first + 0.1},  {"p90", first + 0.2},
+            {"p99", first + 0.3}, {"p999", first + 0.4}, {"max", first + 0.5}};
+}
+
+/// What make_report() gives, with a number of its own for each figure.
+Json report_of(const std::string& model)
+{
+    return {
+        {"schema", 1},
+        {"frames", 5'003},
+        {"period_ns", 1'000'003},
+        {"duration_s", 5.003},
+        {"times_us",
+         {{"load", times(1.0)},
+          {"refine", times(2.0)},
+          {"refit", times(3.0)},
+          {"query", times(4.0)},
+          {"force", times(5.0)},
+          {"frame", times(6.0)},
+          {"cpu", times(7.0)},
+          {"wake", times(8.0)},
+          {"response", times(9.0)}}},
+        {"answers",
+         {{"exact", 4'001},
+          {"decided", 1'002},
+          {"bracket", 0},
+          {"stale", 0},
+          {"longest_inexact_run", 23},
+          {"width_max_diag", 1.234567e-5}}},
+        {"work", {{"splits", 29}, {"merges", 31}}},
+        {"budgets", {{"frame_us", nullptr}, {"at_floor", 37}, {"splits", {{"min", 41}}}}},
+        {"pools",
+         {{"pages", {{"used_max", 43}, {"capacity", 47}}},
+          {"faces", {{"used_max", 53}, {"capacity", 59}}},
+          {"total_bytes", 2'097'169}}},
+        {"cache", {{"prediction", "auto"}, {"loads", 61}, {"evictions", 67}}},
+        {"wire",
+         {{"bytes_received", 71'000},
+          {"host_lost", false},
+          {"arrival_ms", {{"p50", 1.5}, {"p99", 2.5}, {"max", 3.5}}}}},
+        {"deadline",
+         {{"missed", 73},
+          {"own_fault", 0},
+          {"machine_late", 79},
+          {"unexplained", 0},
+          {"noted", Json::array({{{"frame", 83}, {"flags", {"woken_late"}}, {"wake_us", 89.5}}})}}},
+        {"realtime",
+         {{"allocations", 0},
+          {"page_faults", 97},
+          {"system_calls_trapped", true},
+          {"system_calls_in_frame", 0},
+          {"system_calls_outside", 101}}},
+        {"recording", nullptr},
+        {"telemetry", {{"sent", 103}}},
+        {"force", {{"max_n", 1.25}, {"max_step_n", 0.75}, {"contact_share", 0.5}}},
+        {"safety",
+         {{"supervisor_brakes", 107},
+          {"begun", {{"software", 1}, {"stall", 109}}},
+          {"events", Json::array({{{"time_s", 0.125}, {"causes", {"stall"}}}})}}},
+        {"faults", {{"chunk_late", 113}}},
+        {"machine", {{"kernel", "Linux <6> & more"}, {"processors", 127}}},
+        {"models", Json::array({{{"name", model},
+                                 {"static", false},
+                                 {"diagonal_m", 0.3125},
+                                 {"pose", {{"followed", false}, {"moves", 131}}}}})},
+        {"tools", Json::array({{{"radius_m", 0.002},
+                                {"stiffness_cap_n_per_m", 3'000.5},
+                                {"conditioned", {{"stiffness_capped", 137}, {"damped", 139}}}}})},
+        {"pairs", Json::array({{{"tool", 0}, {"model", model}, {"answers", {{"exact", 149}}}}})}};
+}
+
+RunStatistics statistics_of(std::size_t frames)
+{
+    RunStatistics statistics(1, 1, 1, milliseconds(1));
+    for (std::size_t i = 0; i < frames; ++i)
+    {
+        statistics.frame.record(microseconds(10));
+        statistics.stages[1].record(microseconds(3));
+    }
+    return statistics;
+}
+
+/// Whether some text of the page is this number, as far as its digits go.
+bool has_number(const ReadMarkup& page, double number)
+{
+    return std::ranges::any_of(page.texts,
+                               [number](const std::string& text)
+                               {
+                                   char* end = nullptr;
+                                   const double value = std::strtod(text.c_str(), &end);
+                                   const bool is_all = end == text.c_str() + text.size();
+                                   return is_all &&
+                                          std::abs(value - number) <= 1e-5 * std::abs(number);
+                               });
+}
+
+/// The figures of a report that the page lacks.
+std::vector<std::string> lacking(const Json& report, const ReadMarkup& page)
+{
+    std::vector<std::string> names;
+    const Json flat = report.flatten();
+    for (const auto& [name, value] : flat.items())
+    {
+        const bool is_in_words = name == "/schema" || name == "/frames" || name == "/period_ns" ||
+                                 name == "/duration_s" || value.is_null() || value.is_boolean();
+        const bool is_there =
+            is_in_words || (value.is_number() ? has_number(page, value.get<double>())
+                                              : page.has_text(value.get<std::string>()));
+        if (!is_there)
+        {
+            names.push_back(name);
+        }
+    }
+    return names;
+}
+
+TEST(ReportPage, holds_every_figure_of_the_report)
+{
+    const Json report = report_of("bunny");
+    const std::string page = make_page(report, statistics_of(5'003));
+    const auto read = read_markup(page);
+    ASSERT_TRUE(read.has_value());
+    EXPECT_EQ(lacking(report, *read), std::vector<std::string>{});
+    EXPECT_TRUE(read->has_text("Report schema 1, 5003 frames of 1000003 ns, 5.003 s."));
+    EXPECT_EQ(read->count("svg"), 4U); // A frame, its stages, waking; the stages' bars.
+    for (const auto& [name, fact] : summary_facts(report))
+    {
+        EXPECT_TRUE(read->has_text(name) && read->has_text(fact)) << name;
+    }
+}
+
+TEST(ReportPage, a_hostile_name_stays_text)
+{
+    const std::string name = "</title></td><script>alert('\"')</script>&\x1B[31m";
+    const auto read = read_markup(make_page(report_of(name), statistics_of(1)));
+    ASSERT_TRUE(read.has_value());
+    EXPECT_EQ(read->count("script"), 0U);
+    EXPECT_TRUE(read->has_text("</title></td><script>alert('\"')</script>&\uFFFD[31m"));
+}
+
+TEST(ReportPage, says_what_went_wrong)
+{
+    Json report = report_of("bunny");
+    const auto verdict = [&report](const std::string& kind, const std::string& words)
+    {
+        const std::string wanted = "<p class=\"verdict " + kind + "\">" + words + "</p>";
+        return make_page(report, statistics_of(1)).find(wanted) != std::string::npos;
+    };
+    EXPECT_TRUE(verdict("good", "No deadline missed by the loop&#39;s own fault, 79 by the "
+                                "machine&#39;s; every answer exact or decided."));
+    report["answers"]["bracket"] = 7; // Proven bounds are no fault.
+    EXPECT_TRUE(verdict("good", "No deadline missed by the loop&#39;s own fault, 79 by the "
+                                "machine&#39;s; 7 answers are brackets."));
+    report["deadline"]["own_fault"] = 2;
+    report["answers"]["stale"] = 5;
+    report["wire"]["host_lost"] = true;
+    EXPECT_TRUE(verdict("bad", "2 deadlines missed by the loop&#39;s own fault; 5 frames with a "
+                               "stale answer; the host went away."));
+}
+
+TEST(ReportPage, leaves_out_lists_with_nothing_in_them)
+{
+    Json report = report_of("bunny");
+    report["deadline"]["noted"] = Json::array();
+    report["safety"]["events"] = Json::array();
+    const auto read = read_markup(make_page(report, statistics_of(0)));
+    ASSERT_TRUE(read.has_value());
+    EXPECT_FALSE(read->has_text("Cycles of note"));
+    EXPECT_FALSE(read->has_text("Safety events"));
+}
+
+TEST(ReportPage, is_what_a_name_in_html_asks_for)
+{
+    EXPECT_TRUE(is_page_name("run.html"));
+    EXPECT_TRUE(is_page_name("/tmp/a.b/run.html"));
+    for (const char* other : {"", "run.json", "run.html.json", "run.HTML", "html", "run.htm"})
+    {
+        EXPECT_FALSE(is_page_name(other)) << other;
+    }
+}
+
+} // namespace
+
+} // namespace tactus::hrtc::test
