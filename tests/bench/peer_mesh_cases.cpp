@@ -62,11 +62,12 @@ CaseFailure add_contestant(const MeshTrial& trial, PairQuery& query)
         const PairErrors errors = judge_pairs(answers.value(), trial.truth, question);
         if (question == PairQuestion::distance)
         {
-            rows.add("off", errors.largest_m / trial.object.model.diagonal_m, "diag");
+            rows.add("off", errors.largest_m / trial.object.model.diagonal_m, "diag",
+                     our_goal(query.name(), kOurError_diag));
             continue;
         }
-        rows.add("missed", static_cast<double>(errors.missed), "");
-        rows.add("invented", static_cast<double>(errors.invented), "");
+        rows.add("missed", static_cast<double>(errors.missed), "", our_goal(query.name(), 0.0));
+        rows.add("invented", static_cast<double>(errors.invented), "", our_goal(query.name(), 0.0));
     }
     return std::nullopt;
 }

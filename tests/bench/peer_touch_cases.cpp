@@ -27,6 +27,7 @@ constexpr double kNear_diag = 2.0 * kRadius_diag;
 constexpr double kTouchTolerance_diag = 2e-6;
 /// The streaming tool may move this fast: the flight's speed and half as much again.
 constexpr double kFastest_diag_per_s = 3.0;
+constexpr const char* kStreaming = "Tactus streaming";
 
 /// The questions about one scene, and the first contestant's time for the others to be held
 /// against.
@@ -92,20 +93,22 @@ void add_times(const TouchTrial& trial, CaseRows& rows, const std::vector<double
     }
 }
 
-void add_touch_errors(const TouchTrial& trial, CaseRows& rows, std::span<const double> told_m)
+void add_touch_errors(const TouchTrial& trial, CaseRows& rows, const std::string& by,
+                      std::span<const double> told_m)
 {
     const TouchErrors errors = judge_touch(told_m, trial.questions.truth_m, trial.radius_m(),
                                            kTouchTolerance_diag * trial.diagonal_m());
-    rows.add("missed", static_cast<double>(errors.missed), "");
-    rows.add("invented", static_cast<double>(errors.invented), "");
+    rows.add("missed", static_cast<double>(errors.missed), "", our_goal(by, 0.0));
+    rows.add("invented", static_cast<double>(errors.invented), "", our_goal(by, 0.0));
 }
 
-void add_allocations(CaseRows& rows, const std::optional<std::uint64_t>& count, std::size_t queries)
+void add_allocations(CaseRows& rows, const std::string& by, std::optional<std::uint64_t> count,
+                     std::size_t queries)
 {
     if (count)
     {
         rows.add("allocations a query", static_cast<double>(*count) / static_cast<double>(queries),
-                 "calls");
+                 "calls", our_goal(by, 0.0));
     }
 }
 
@@ -136,10 +139,11 @@ CaseFailure add_contestant(TouchTrial& trial, const std::string& by, const Built
     const double point_error_m = largest_point_error_m(told, trial.questions, *trial.scene.tree);
     CaseRows rows = rows_of(trial, by, told.hash);
     add_times(trial, rows, times_us, is_banded);
-    rows.add("distance off", error_m / trial.diagonal_m(), "diag");
-    rows.add("nearest point off", point_error_m / trial.diagonal_m(), "diag");
-    add_touch_errors(trial, rows, told.distances_m);
-    add_allocations(rows, told.allocations, times_us.size());
+    rows.add("distance off", error_m / trial.diagonal_m(), "diag", our_goal(by, kOurError_diag));
+    rows.add("nearest point off", point_error_m / trial.diagonal_m(), "diag",
+             our_goal(by, kOurError_diag));
+    add_touch_errors(trial, rows, by, told.distances_m);
+    add_allocations(rows, by, told.allocations, times_us.size());
     add_cost(trial, rows, built.build_ms, built.bytes);
     return std::nullopt;
 }
@@ -219,8 +223,9 @@ void add_frame_answers(const TouchTrial& trial, CaseRows& rows, const FrameRepla
         }
         open += answer.kind == AnswerKind::exact || answer.kind == AnswerKind::decided ? 0U : 1U;
     }
-    rows.add("distance off", error_m / trial.diagonal_m(), "diag");
-    add_touch_errors(trial, rows, told_m);
+    rows.add("distance off", error_m / trial.diagonal_m(), "diag",
+             our_goal(kStreaming, kOurError_diag));
+    add_touch_errors(trial, rows, kStreaming, told_m);
     rows.add("open frames", static_cast<double>(open), "");
 }
 
@@ -236,10 +241,10 @@ CaseFailure add_streaming(const TouchTrial& trial, std::size_t pool_bytes)
             return failure;
         }
     }
-    CaseRows rows = rows_of(trial, "Tactus streaming", replay.hash());
+    CaseRows rows = rows_of(trial, kStreaming, replay.hash());
     add_times(trial, rows, replay.sum_us(CacheState::warm).least(), false);
     add_frame_answers(trial, rows, replay);
-    add_allocations(rows, replay.allocations(), run.counted());
+    add_allocations(rows, kStreaming, replay.allocations(), run.counted());
     const double faces = static_cast<double>(trial.scene.model.faces.size());
     rows.add("memory", static_cast<double>(pool_bytes) / faces, "B a face");
     return std::nullopt;

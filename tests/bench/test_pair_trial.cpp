@@ -32,7 +32,7 @@ TEST(JudgePairs, counts_what_is_planted)
     const PairTruth truth = small_truth();
     PairAnswers answers;
     answers.do_meet = {false, true};
-    answers.meeting = {{{1, 1}, {1, 0}, {2, 2}}, {{0, 1}}};
+    answers.meeting = {{{1, 1}, {1, 0}, {2, 2}, {0, 0}}, {{0, 1}}};
     answers.distances_m = {0.125, 0.25};
 
     const PairErrors any = judge_pairs(answers, truth, PairQuestion::any);

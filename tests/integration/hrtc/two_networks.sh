@@ -58,8 +58,8 @@ count_frames() {
     done
 }
 
-# touch_large_model: a model that streams is published and touched for four seconds, and no answer is
-# wrong.
+# touch_large_model: a model that streams is published and touched for four seconds, and no answer
+# is wrong.
 touch_large_model() {
     "$build" --shape bumpy-sphere --faces 100000 -o large.spm >build.log 2>&1
     start_publisher large.spm
