@@ -49,7 +49,7 @@ constexpr const char* kStyleSheet =
     ".plot { display: block; width: 100%; height: auto; }\n"
     "@media screen and (max-width: 40rem) {\n"
     "  th[scope=row] { white-space: normal; min-width: 7.5rem; }\n"
-    "  thead th.number { min-width: 5rem; }\n"
+    "  thead th.number { min-width: 3rem; }\n"
     "}\n"
     "@page { margin: 12mm; }\n"
     "@media print {\n"
