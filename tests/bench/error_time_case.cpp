@@ -413,9 +413,10 @@ private:
             {
                 return built.error().text;
             }
-            const auto answers =
-                replay_queries(*built.value().query, truth.questions(), 2.0 * truth.radius_m(),
-                               context_.options.passes_or(4, 2));
+            const std::vector<Vec3>& points_m = truth.questions().points_m;
+            const std::vector<double> bands_m(points_m.size(), 2.0 * truth.radius_m());
+            const auto answers = replay_queries(*built.value().query, points_m, bands_m,
+                                                context_.options.passes_or(4, 2));
             if (!answers)
             {
                 return answers.error().text;
