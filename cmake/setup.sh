@@ -10,7 +10,7 @@ readonly demo=${TACTUS_BUILD_DIR:-$root/build}/demo
 
 usage() {
     cat <<'TEXT'
-Usage: bash cmake/setup.sh COMMAND [OPTIONS] [-- CTEST-OPTIONS]
+Usage: bash cmake/setup.sh COMMAND [OPTIONS] [-- CTEST-OPTIONS | -- BENCH-OPTIONS]
 
 Commands:
   build     install the packages that are missing and build everything into build/release
@@ -19,9 +19,14 @@ Commands:
             compilers, which are both left out otherwise
   demo      build the programs, make a model, publish it over DDS on this machine and touch it
             for 10 s at 1 kHz; the report is written to build/demo/report.json
+  bench     build the benchmarks and run every suite; the results are written to build/bench as
+            JSON, CSV and a page, BENCH-OPTIONS after -- go to tactus_bench, e.g. -- --core 1
   packages  only install the packages that are missing
 
 Options:
+  --quick       bench: fewer frames and repeats, some three minutes instead of an hour
+  --peers       bench: beside ours measure the libraries of cmake/packages-bench.txt, which are
+                installed if need be; some are under the GPL, none becomes part of Tactus
   --ci          packages: the packages of .ci/run (cmake/packages-ci.txt) as well
   --bench       packages: the peers of tactus_bench (cmake/packages-bench.txt) as well
   --seconds N   demo: touch for N seconds, 1 to 3600 (default 10)
@@ -90,10 +95,11 @@ job_count() {
     echo $((cores < by_memory ? cores : by_memory))
 }
 
+configure_options=() # Of the release build.
 build_targets() { # build_targets TARGET...
     local compiler options
     compiler=$(command -v "${CXX:-g++}") || fail 2 "CXX names '${CXX:-g++}', which is not here"
-    options=("-DCMAKE_CXX_COMPILER=$compiler")
+    options=("-DCMAKE_CXX_COMPILER=$compiler" "${configure_options[@]}")
     # CMake drops the other settings when the compiler of a configured folder changes.
     if ! grep -qs "^CMAKE_CXX_COMPILER:.*=$compiler\$" "$build/CMakeCache.txt"; then
         options+=(--fresh)
@@ -191,6 +197,18 @@ run_demo() { # run_demo SECONDS [DOMAIN]
     return "$code"
 }
 
+# --- bench ---------------------------------------------------------------------------------------
+
+run_bench() { # run_bench OPTION...: all suites, as tactus_bench takes options.
+    local results=$root/build/bench
+    mkdir -p "$results/models"
+    "$build/bin/tactus_bench" all --cache "$results/models" --json "$results/bench.json" \
+        --csv "$results/bench.csv" --html "$results/bench.html" "$@" >"$results/bench.txt" \
+        || return
+    grep 'goals met' "$results/bench.txt" | sed 's/^/  /' || true
+    echo "Results: $results/bench.html, bench.json, bench.csv and bench.txt beside it"
+}
+
 # --- command line --------------------------------------------------------------------------------
 
 number_in() { # number_in OPTION VALUE LOW HIGH
@@ -200,12 +218,18 @@ number_in() { # number_in OPTION VALUE LOW HIGH
 }
 
 main() {
-    local command='' seconds=10 domain='' lists=("$root/cmake/packages.txt") ctest_options=()
+    local command='' seconds=10 domain='' lists=("$root/cmake/packages.txt") more_options=()
+    local bench_options=() peers=''
     while (($# > 0)); do
         case "$1" in
-            build | test | demo | packages)
+            build | test | demo | bench | packages)
                 [[ -z "$command" ]] || fail 3 "two commands given: '$command' and '$1'"
                 command=$1
+                ;;
+            --quick) bench_options+=(--quick) ;;
+            --peers)
+                lists+=("$root/cmake/packages-bench.txt")
+                peers='bullet;cgal;embree;fcl;meshoptimizer;openmesh'
                 ;;
             --ci | --bench) lists+=("$root/cmake/packages-${1#--}.txt") ;;
             --seconds)
@@ -224,18 +248,21 @@ main() {
                 ;;
             --)
                 shift
-                ctest_options=("$@")
+                more_options=("$@")
                 break
                 ;;
             *) fail 3 "unknown argument '$1'; --help lists what there is" ;;
         esac
         shift
     done
-    if [[ -n "${TACTUS_BUILD_DIR:-}" && "$command" == @(build|test) ]]; then
+    if [[ -n "${TACTUS_BUILD_DIR:-}" && "$command" == @(build|test|bench) ]]; then
         fail 3 "TACTUS_BUILD_DIR is for the demo only; unset it for '$command'"
     fi
+    if [[ "$command" != bench && (-n "$peers" || ${#bench_options[@]} -gt 0) ]]; then
+        fail 3 "--quick and --peers are for 'bench' only"
+    fi
     case "$command" in
-        '') fail 3 "no command given; use build, test, demo or --help" ;;
+        '') fail 3 "no command given; use build, test, demo, bench or --help" ;;
         packages) install_packages "${lists[@]}" ;;
         build)
             install_packages "${lists[@]}"
@@ -244,7 +271,13 @@ main() {
         test)
             install_packages "${lists[@]}"
             build_targets all
-            run_tests "${ctest_options[@]}"
+            run_tests "${more_options[@]}"
+            ;;
+        bench)
+            install_packages "${lists[@]}"
+            configure_options=("-DTACTUS_BENCH_PEERS=$peers")
+            build_targets tactus_bench
+            run_bench "${bench_options[@]}" "${more_options[@]}"
             ;;
         demo)
             if [[ -z "${TACTUS_BUILD_DIR:-}" ]]; then

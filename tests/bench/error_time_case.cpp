@@ -176,6 +176,13 @@ private:
     std::map<std::pair<double, double>, std::optional<TrueAnswers>> known_;
 };
 
+/// What double precision rounds is no error.
+double beyond_rounding(double error)
+{
+    constexpr double kRounding = 1e-12;
+    return error < kRounding ? 0.0 : error;
+}
+
 void add_figures(CaseRows& rows, const Figures& figures)
 {
     const AnswerErrors& errors = figures.errors;
@@ -183,11 +190,11 @@ void add_figures(CaseRows& rows, const Figures& figures)
     rows.add("p99", figures.us.p99, "us");
     rows.add("max", figures.us.max, "us");
     rows.add("memory", figures.bytes * 1e-6, "MB");
-    rows.add("error p99", errors.distance_diag.p99, "diag");
-    rows.add("error max", errors.distance_diag.max, "diag");
+    rows.add("error p99", beyond_rounding(errors.distance_diag.p99), "diag");
+    rows.add("error max", beyond_rounding(errors.distance_diag.max), "diag");
     rows.add("normal p99", errors.normal_deg.p99, "deg");
-    rows.add("force error p99", errors.force_n.p99, "N");
-    rows.add("force error max", errors.force_n.max, "N");
+    rows.add("force error p99", beyond_rounding(errors.force_n.p99), "N");
+    rows.add("force error max", beyond_rounding(errors.force_n.max), "N");
     rows.add("missed", static_cast<double>(errors.touch.missed), "");
     rows.add("invented", static_cast<double>(errors.touch.invented), "");
 }

@@ -11,8 +11,10 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <map>
 #include <optional>
+#include <tuple>
 
 namespace tactus::bench
 {
@@ -35,8 +37,21 @@ std::string author_of(const std::string& by)
     return by.empty() ? "Tactus" : by;
 }
 
-/// A point for each setting that has both metrics, by x.
-plot::Line points_of(const RowGroup& author, const char* x, const char* y)
+/// Of points by x: those below all before them.
+void keep_front(std::vector<plot::Point>& points)
+{
+    double least = std::numeric_limits<double>::infinity();
+    std::erase_if(points,
+                  [&](const plot::Point& point)
+                  {
+                      const bool is_beaten = point.y >= least;
+                      least = std::min(least, point.y);
+                      return is_beaten;
+                  });
+}
+
+/// The Pareto front of the settings that have both metrics, by x.
+plot::Line front_of(const RowGroup& author, const char* x, const char* y)
 {
     plot::Line line{author_of(author.key), {}};
     for (const auto& [setting, rows] : grouped_by(author.rows, &Row::setting))
@@ -48,7 +63,9 @@ plot::Line points_of(const RowGroup& author, const char* x, const char* y)
             line.points.push_back({*at, *value, setting});
         }
     }
-    std::ranges::stable_sort(line.points, {}, &plot::Point::x);
+    std::ranges::stable_sort(line.points, [](const plot::Point& a, const plot::Point& b)
+                             { return std::tie(a.x, a.y) < std::tie(b.x, b.y); });
+    keep_front(line.points);
     return line;
 }
 
@@ -92,7 +109,7 @@ std::vector<plot::Line> growth_lines(const Rows& rows, const std::map<std::strin
                 }
             }
             std::ranges::stable_sort(line.points, {}, &plot::Point::x);
-            if (!line.points.empty())
+            if (line.points.size() > 1)
             {
                 lines.push_back(std::move(line));
             }
@@ -105,23 +122,36 @@ std::vector<plot::Line> growth_lines(const Rows& rows, const std::map<std::strin
 
 std::vector<plot::Drawing> error_time_plots(const Rows& rows)
 {
+    struct Figure
+    {
+        const char* metric;
+        const char* title;
+        const char* label;
+    };
+    constexpr std::array<Figure, 2> kFigures{
+        {{"p99", "{}: time", "p99, us"}, {"memory", "{}: memory", "memory, MB"}}};
     std::vector<plot::Drawing> drawings;
     for (const auto& [name, of_case] : grouped_by(rows, &Row::test_case))
     {
         const char* error = value_of(of_case, "error p99") ? "error p99" : "error max";
-        plot::LinePlot plot{
-            name, {fmt::format("{}, shares of the diagonal", error), true}, {"p99, us", true}, {}};
-        for (const RowGroup& author : grouped_by(of_case, &Row::by))
+        for (const Figure& figure : kFigures)
         {
-            plot::Line line = points_of(author, error, "p99");
-            if (!line.points.empty())
+            plot::LinePlot plot{fmt::format(fmt::runtime(figure.title), name),
+                                {fmt::format("{}, shares of the diagonal", error), true},
+                                {figure.label, true},
+                                {}};
+            for (const RowGroup& author : grouped_by(of_case, &Row::by))
             {
-                plot.lines.push_back(std::move(line));
+                plot::Line line = front_of(author, error, figure.metric);
+                if (!line.points.empty())
+                {
+                    plot.lines.push_back(std::move(line));
+                }
             }
-        }
-        if (!plot.lines.empty())
-        {
-            drawings.push_back(draw(plot));
+            if (!plot.lines.empty())
+            {
+                drawings.push_back(draw(plot));
+            }
         }
     }
     return drawings;
@@ -134,10 +164,6 @@ std::vector<plot::Drawing> growth_plots(const Rows& rows)
     {
         for (const auto& [unit, of_unit] : grouped_by(of_part, &Row::unit))
         {
-            if (unit != "us" && !is_count(unit))
-            {
-                continue;
-            }
             plot::LinePlot plot{part, {kFaces, true}, {is_count(unit) ? "count" : unit, true}, {}};
             plot.lines = growth_lines(of_unit, faces_of(of_part));
             if (!plot.lines.empty())

@@ -63,7 +63,7 @@ TEST(ErrorTimePlots, one_a_case_and_a_marker_for_each_setting)
     ASSERT_EQ(drawings.size(), 1U);
     const std::string& body = drawings[0].body;
     expect_sound(drawings[0]);
-    EXPECT_EQ(drawings[0].title, "bunny");
+    EXPECT_EQ(drawings[0].title, "bunny: time");
     EXPECT_EQ(count_of(body, "class=\"marker\""), 4U + 2U); // And two in the legend.
     EXPECT_EQ(count_of(body, "error p99, shares of the diagonal"), 1U);
     EXPECT_EQ(count_of(body, "<title>Tactus, K 128: 10\u207B\u2075, 80</title>"), 1U);
@@ -71,6 +71,24 @@ TEST(ErrorTimePlots, one_a_case_and_a_marker_for_each_setting)
     EXPECT_EQ(count_of(body, "class=\"mark\""), 1U); // The border of the column for zero.
     EXPECT_LT(body.find("Tactus, K 32:"), body.find("Tactus, K 128:")); // By their errors.
     EXPECT_LT(body.find("Tactus, K 128:"), body.find("Tactus, K 64:"));
+}
+
+TEST(ErrorTimePlots, what_another_setting_beats_in_both_is_left_out)
+{
+    Rows rows;
+    add_point(rows, "", "good", 1e-5, 10.0);
+    add_point(rows, "", "slower", 1e-5, 11.0);
+    add_point(rows, "", "worse", 1e-4, 10.0);
+    add_point(rows, "", "fast", 1e-3, 1.0);
+
+    const auto drawings = error_time_plots(rows);
+
+    ASSERT_EQ(drawings.size(), 1U);
+    const std::string& body = drawings[0].body;
+    EXPECT_EQ(count_of(body, "<title>Tactus, good:"), 1U);
+    EXPECT_EQ(count_of(body, "<title>Tactus, fast:"), 1U);
+    EXPECT_EQ(count_of(body, "<title>Tactus, slower:"), 0U);
+    EXPECT_EQ(count_of(body, "<title>Tactus, worse:"), 0U);
 }
 
 TEST(ErrorTimePlots, the_largest_error_stands_in_for_quantiles)
@@ -110,7 +128,7 @@ TEST(GrowthPlots, one_a_part_and_unit_with_the_law_as_a_guide)
 
     const auto drawings = growth_plots(rows);
 
-    ASSERT_EQ(drawings.size(), 2U);
+    ASSERT_EQ(drawings.size(), 3U); // Counts, times, memory.
     for (const plot::Drawing& drawing : drawings)
     {
         EXPECT_EQ(drawing.title, "near");
