@@ -36,7 +36,7 @@ Options:
 Environment: CXX names the compiler (default g++). ccache is used when it is there.
 TACTUS_BUILD_DIR names a finished build folder: the demo then uses its programs, installs and
 builds nothing, and writes into its folder demo; the other commands refuse it.
-Exit codes: 0 done, 1 a test failed or the demo missed a criterion, 2 failed at run time,
+Exit codes: 0 done, 1 a test failed, or the demo or bench missed a criterion, 2 failed at run time,
 3 wrong usage.
 TEXT
 }
@@ -95,11 +95,11 @@ job_count() {
     echo $((cores < by_memory ? cores : by_memory))
 }
 
-configure_options=() # Of the release build.
+bench_peers= # Of tactus_bench, by their names in CMake.
 build_targets() { # build_targets TARGET...
     local compiler options
     compiler=$(command -v "${CXX:-g++}") || fail 2 "CXX names '${CXX:-g++}', which is not here"
-    options=("-DCMAKE_CXX_COMPILER=$compiler" "${configure_options[@]}")
+    options=("-DCMAKE_CXX_COMPILER=$compiler" "-DTACTUS_BENCH_PEERS=$bench_peers")
     # CMake drops the other settings when the compiler of a configured folder changes.
     if ! grep -qs "^CMAKE_CXX_COMPILER:.*=$compiler\$" "$build/CMakeCache.txt"; then
         options+=(--fresh)
@@ -202,11 +202,16 @@ run_demo() { # run_demo SECONDS [DOMAIN]
 run_bench() { # run_bench OPTION...: all suites, as tactus_bench takes options.
     local results=$root/build/bench
     mkdir -p "$results/models"
+    local code=0
+    rm -f "$results"/bench.*
     "$build/bin/tactus_bench" all --cache "$results/models" --json "$results/bench.json" \
         --csv "$results/bench.csv" --html "$results/bench.html" "$@" >"$results/bench.txt" \
-        || return
-    grep 'goals met' "$results/bench.txt" | sed 's/^/  /' || true
-    echo "Results: $results/bench.html, bench.json, bench.csv and bench.txt beside it"
+        || code=$?
+    if [[ -f "$results/bench.html" ]]; then
+        grep 'goals met' "$results/bench.txt" | sed 's/^/  /' || true
+        echo "Results: $results/bench.html, bench.json, bench.csv and bench.txt beside it"
+    fi
+    return "$code"
 }
 
 # --- command line --------------------------------------------------------------------------------
@@ -275,7 +280,7 @@ main() {
             ;;
         bench)
             install_packages "${lists[@]}"
-            configure_options=("-DTACTUS_BENCH_PEERS=$peers")
+            bench_peers=$peers
             build_targets tactus_bench
             run_bench "${bench_options[@]}" "${more_options[@]}"
             ;;

@@ -166,6 +166,14 @@ std::vector<std::string> complaints_of(const Json& report)
     count(report["realtime"]["allocations"], "allocations in the loop");
     count(report["realtime"]["system_calls_in_frame"], "system calls in frames");
     count(report["answers"]["stale"], "frames with a stale answer");
+    for (const auto& [cause, times] : report["safety"]["begun"].items())
+    {
+        if (cause != "software") // Of those that end a run at its own time.
+        {
+            count(times, ("times the force was off for: " + cause).c_str());
+        }
+    }
+    count(report["safety"]["supervisor_brakes"], "brakes by the supervisor");
     if (report["wire"]["host_lost"].get<bool>())
     {
         complaints.emplace_back("the host went away");

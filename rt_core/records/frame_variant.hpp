@@ -6,8 +6,8 @@ namespace tactus
 {
 
 /// How a frame may differ from the one that ships, so that what it saves can be measured. The first
-/// five are shortcuts: without them exact answers are the same and cost more. Recordings are of
-/// frames without any difference.
+/// five are shortcuts: without them exact answers are the same and cost more. For tools that are no
+/// meshes. Recordings are of frames without any difference.
 struct FrameVariant
 {
     /// A pair that its last distance and the motion since prove out of reach is not looked at.

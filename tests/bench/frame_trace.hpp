@@ -17,7 +17,7 @@ struct FrameTrace
 {
     std::vector<PairOutput> pairs; ///< Of the first pair, of each counted frame.
     WorkCounters work;             ///< Of the counted frames.
-    std::uint64_t coded_bytes{0};  ///< That came over the link, the lead-in's included.
+    std::uint64_t coded_bytes{0};  ///< That came over the link meanwhile.
     ModelOutput model;             ///< After the last frame.
 };
 

@@ -196,7 +196,8 @@ CaseFailure run_growth_law_case(const CaseContext& context, const GrowthLawCase&
     std::vector<SizeFigures> measured;
     std::vector<Size> sizes;
     std::vector<double> n;
-    for (const std::uint32_t faces : test_case.faces)
+    for (const std::uint32_t faces :
+         context.options.quick ? test_case.quick_faces : test_case.faces)
     {
         auto at_size = measure(context, faces, frames);
         if (!at_size)

@@ -12,7 +12,8 @@ namespace tactus::bench
 
 struct GrowthLawCase
 {
-    std::vector<std::uint32_t> faces; ///< Of bumpy spheres, ascending.
+    std::vector<std::uint32_t> quick_faces; ///< Of bumpy spheres, ascending.
+    std::vector<std::uint32_t> faces;       ///< Without --quick.
 };
 /// What a slide costs on one surface of more and more faces, what encoding it does, and the
 /// exponent of each figure: that of n in the power law that fits it best.

@@ -220,10 +220,10 @@ std::optional<std::string> write_text(const std::string& path, const std::string
 Results run_suites(const CommandLine& line, GoalCount& laws)
 {
     Results results;
-    SceneStore scenes(line.options.cache);
     for (const Suite& suite : chosen_suites(line.suite))
     {
         Results own;
+        SceneStore scenes(line.options.cache); // Its own: what others needed is not kept in memory.
         if (const auto refused = run_suite(suite, line.options, scenes, own))
         {
             results.failures.push_back(*refused);

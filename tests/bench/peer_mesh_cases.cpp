@@ -122,7 +122,7 @@ CaseFailure run_peer_mesh_case(const CaseContext& context, const PeerMeshCase& t
     {
         return failure;
     }
-    for (const PairPeer& peer : pair_peers())
+    for (const PairPeer& peer : context.options.count ? std::vector<PairPeer>() : pair_peers())
     {
         if (auto failure = add_contestant(trial, *peer.make(meshes)))
         {

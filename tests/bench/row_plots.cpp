@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <optional>
@@ -74,6 +75,15 @@ bool is_count(const std::string& unit)
     return unit.empty() || unit == "count";
 }
 
+/// The rows that have this text there.
+Rows group_of(const Rows& rows, std::string Row::*member, const std::string& text)
+{
+    Rows some;
+    std::ranges::copy_if(rows, std::back_inserter(some),
+                         [&](const Row& row) { return row.*member == text; });
+    return some;
+}
+
 /// How many faces each case has.
 std::map<std::string, double> faces_of(const Rows& rows)
 {
@@ -133,14 +143,15 @@ std::vector<plot::Drawing> error_time_plots(const Rows& rows)
     std::vector<plot::Drawing> drawings;
     for (const auto& [name, of_case] : grouped_by(rows, &Row::test_case))
     {
-        const char* error = value_of(of_case, "error p99") ? "error p99" : "error max";
+        const Rows of_motion = group_of(of_case, &Row::part, "");
+        const char* error = value_of(of_motion, "error p99") ? "error p99" : "error max";
         for (const Figure& figure : kFigures)
         {
             plot::LinePlot plot{fmt::format(fmt::runtime(figure.title), name),
                                 {fmt::format("{}, shares of the diagonal", error), true},
                                 {figure.label, true},
                                 {}};
-            for (const RowGroup& author : grouped_by(of_case, &Row::by))
+            for (const RowGroup& author : grouped_by(of_motion, &Row::by))
             {
                 plot::Line line = front_of(author, error, figure.metric);
                 if (!line.points.empty())

@@ -283,6 +283,7 @@ CaseFailure run_first_touch_case(const CaseContext& context, const FirstTouchCas
         const double all_kb = static_cast<double>(traffic.value().payload_bytes) / kKilo;
         payload_kb = touches ? all_kb - payload_kb : all_kb;
         std::uint64_t frame = 0;
+        first_wish = first_exact = loads = 0;
         const CaseFailure failure = look_at_frames(
             folder.path(),
             [&](const FrameOutput& output)

@@ -84,18 +84,26 @@ bool is_exact(const PairOutput& pair)
     return pair.kind == AnswerKind::exact;
 }
 
-/// A line when an answer that is exact both times is not the same.
+/// A line when an answer that is exact both times is not the same, or too few are.
 CaseFailure compare(const FrameTrace& usual, const FrameTrace& other)
 {
+    std::size_t exact = 0;
+    std::size_t both_exact = 0;
     for (std::size_t i = 0; i < usual.pairs.size(); ++i)
     {
         const PairOutput& a = usual.pairs[i];
         const PairOutput& b = other.pairs[i];
+        exact += is_exact(a) ? 1U : 0U;
+        both_exact += is_exact(a) && is_exact(b) ? 1U : 0U;
         if (is_exact(a) && is_exact(b) &&
             (a.lower_m != b.lower_m || a.upper_m != b.upper_m || a.nearest_face != b.nearest_face))
         {
             return fmt::format("frame {}: exact distances of {} and {} m", i, a.upper_m, b.upper_m);
         }
+    }
+    if (both_exact == 0 || 10 * both_exact < 9 * exact)
+    {
+        return fmt::format("of {} exact answers only {} are exact without it", exact, both_exact);
     }
     return std::nullopt;
 }

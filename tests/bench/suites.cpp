@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <exception>
 #include <iterator>
 
 namespace tactus::bench
@@ -45,6 +46,24 @@ std::vector<std::string> case_names(const Suite& suite)
     return names;
 }
 
+namespace
+{
+
+/// A library's or the system's exception is a failure like any other.
+CaseFailure run_case(const Case& one, const CaseContext& context)
+{
+    try
+    {
+        return one.run(context);
+    }
+    catch (const std::exception& error)
+    {
+        return error.what();
+    }
+}
+
+} // namespace
+
 CaseFailure run_suite(const Suite& suite, const BenchOptions& options, SceneStore& scenes,
                       Results& results)
 {
@@ -57,7 +76,7 @@ CaseFailure run_suite(const Suite& suite, const BenchOptions& options, SceneStor
         fmt::print(stderr, "{}\n", one.name);
         const std::size_t rows_before = results.rows.size();
         CaseFailure failure =
-            one.run({suite.name, one.name, options, scenes, results.rows, results.series});
+            run_case(one, {suite.name, one.name, options, scenes, results.rows, results.series});
         if (!failure)
         {
             failure = check_hashes(std::span(results.rows).subspan(rows_before));

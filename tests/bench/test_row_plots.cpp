@@ -91,6 +91,21 @@ TEST(ErrorTimePlots, what_another_setting_beats_in_both_is_left_out)
     EXPECT_EQ(count_of(body, "<title>Tactus, worse:"), 0U);
 }
 
+TEST(ErrorTimePlots, other_motions_have_no_place_among_those_of_one)
+{
+    Rows rows;
+    add_point(rows, "", "usual", 1e-5, 10.0);
+    add_point(rows, "", "slow motion", 1e-6, 1.0);
+    for (Row& row : rows)
+    {
+        row.part = row.setting == "usual" ? "" : "Other motions";
+    }
+    const auto drawings = error_time_plots(rows);
+    ASSERT_EQ(drawings.size(), 1U);
+    EXPECT_EQ(count_of(drawings[0].body, "<title>Tactus, usual:"), 1U);
+    EXPECT_EQ(count_of(drawings[0].body, "slow motion"), 0U);
+}
+
 TEST(ErrorTimePlots, the_largest_error_stands_in_for_quantiles)
 {
     Rows rows;

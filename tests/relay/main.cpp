@@ -101,7 +101,7 @@ std::string dds_configuration(const char* interface)
         "<AllowMulticast>false</AllowMulticast><MaxMessageSize>1400B</MaxMessageSize>"
         "<FragmentSize>1300B</FragmentSize></General>"
         "<Discovery><ParticipantIndex>auto</ParticipantIndex>"
-        "<MaxAutoParticipantIndex>64</MaxAutoParticipantIndex><LeaseDuration>1 s</LeaseDuration>"
+        "<MaxAutoParticipantIndex>99</MaxAutoParticipantIndex><LeaseDuration>1 s</LeaseDuration>"
         "<Peers><Peer address='{}'/><Peer address='{}'/></Peers></Discovery>"
         "<Internal><HeartbeatInterval min='2 ms' minsched='2 ms' max='20 ms'>5 ms"
         "</HeartbeatInterval><NackDelay>1 ms</NackDelay><PreEmptiveAckDelay>2 ms"

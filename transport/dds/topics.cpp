@@ -37,8 +37,10 @@ struct TopicTraits
 
 const TopicTraits& traits_of(Topic topic)
 {
-    // The depths of wishes and pieces are never reached: wishes are few and bounded by their kind,
-    // pieces are under credit. All are keep-last, so that no writer ever waits for a reader.
+    // The depths of wishes and pieces are hardly ever reached: wishes are few and bounded by their
+    // kind, pieces are under credit. What one stuck writer of several holds back while the others'
+    // counts go on is bounded by its depth alone: what is pushed out of it is asked for again. All
+    // are keep-last, so that no writer ever waits for a reader.
     static const std::array<TopicTraits, 6> traits{{
         {"tactus/v1/catalogue", &tactus_v1_CatalogueEntry_desc, true, true, false, 1, 4096},
         {"tactus/v1/model", &tactus_v1_ModelStart_desc, true, false, false, 1, 16},

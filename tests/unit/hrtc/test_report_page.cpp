@@ -168,6 +168,8 @@ TEST(ReportPage, a_hostile_name_stays_text)
 TEST(ReportPage, says_what_went_wrong)
 {
     Json report = report_of("bunny");
+    report["safety"]["begun"]["stall"] = 0; // The end of the run alone.
+    report["safety"]["supervisor_brakes"] = 0;
     const auto verdict = [&report](const std::string& kind, const std::string& words)
     {
         const std::string wanted = "<p class=\"verdict " + kind + "\">" + words + "</p>";
@@ -181,8 +183,11 @@ TEST(ReportPage, says_what_went_wrong)
     report["deadline"]["own_fault"] = 2;
     report["answers"]["stale"] = 5;
     report["wire"]["host_lost"] = true;
+    report["safety"]["begun"]["stall"] = 3;
+    report["safety"]["supervisor_brakes"] = 1;
     EXPECT_TRUE(verdict("bad", "2 deadlines missed by the loop&#39;s own fault; 5 frames with a "
-                               "stale answer; the host went away."));
+                               "stale answer; 3 times the force was off for: stall; 1 brakes by "
+                               "the supervisor; the host went away."));
 }
 
 TEST(ReportPage, leaves_out_lists_with_nothing_in_them)
