@@ -129,7 +129,8 @@ Setting whole_model()
             }};
 }
 
-std::vector<Setting> all_settings()
+/// `pool_mib`: the usual pools.
+std::vector<Setting> all_settings(double pool_mib)
 {
     return {{"usual", true},
             with_splits(1, true),
@@ -148,8 +149,8 @@ std::vector<Setting> all_settings()
             with_speed(2.0),
             with_cache(0.25),
             with_cache(0.5),
-            with_pools(0.5, false),
-            with_pools(1.0, true),
+            with_pools(pool_mib / 4.0, false),
+            with_pools(pool_mib / 2.0, true),
             with_latency(0, 0.0, false),
             with_latency(20, 0.0, true),
             with_latency(50, 0.0, false),
@@ -287,7 +288,7 @@ public:
 
     [[nodiscard]] CaseFailure run()
     {
-        for (const Setting& setting : all_settings())
+        for (const Setting& setting : all_settings(test_case_.pool_mib))
         {
             if (setting.is_quick || !context_.options.quick)
             {

@@ -22,7 +22,7 @@ namespace
 
 /// The catalogue is written anew this often: after a stall a host may have been taken for dead.
 constexpr auto kAnnouncement = std::chrono::seconds(1);
-/// Subscriptions of all controllers together; each has four DDS writers, about 400 KB.
+/// Subscriptions of all controllers together; each has up to four DDS writers, about 400 KB.
 constexpr std::size_t kMaxSubscriptions = 1'024;
 /// Samples sent in one step, so that requests are looked at in between.
 constexpr std::size_t kSamplesPerStep = 64;

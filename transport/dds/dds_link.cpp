@@ -55,7 +55,7 @@ DdsLink::create(const Domain& domain, Catalogue& catalogue, const Catalogue::Off
         return wanted.error();
     }
     link->chunks_ = std::move(chunks).value();
-    link->wanted_ = std::move(wanted).value();
+    link->wanted_.emplace(std::move(wanted).value());
     return link;
 }
 
@@ -101,7 +101,7 @@ void DdsLink::poll(PieceSink& sink)
 
 bool DdsLink::is_ready() const
 {
-    return wanted_.is_matched() && has_publisher(chunks_);
+    return wanted_->is_matched() && has_publisher(chunks_);
 }
 
 void DdsLink::follow_host()
@@ -237,7 +237,9 @@ void DdsLink::send(std::span<const ContentKey> keys)
     wanted.pieces = {count, count, names.data(), false};
     last_sent_ = Clock::now();
     // A write that fails is a lost request: the courier asks again.
-    if (wanted_.write(&wanted))
+    tactus_v1_Wanted probe = wanted;
+    probe.pieces = {};
+    if (wanted_->write(&wanted, &probe))
     {
         granted_sent_ = wanted.granted;
     }

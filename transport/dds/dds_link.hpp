@@ -13,6 +13,7 @@
 #include <chrono>
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace tactus::dds
@@ -63,7 +64,7 @@ private:
     std::string controller_name_;
     RateLimitedLog log_;
     ControllerId controller_{};
-    WriterLanes wanted_;
+    std::optional<WriterLanes> wanted_; ///< From create() on.
     Endpoint chunks_;
     CreditWindow credit_{kCreditPieces};
     ContentHash refused_hash_{}; ///< Of the changed file that was last reported.

@@ -21,10 +21,9 @@ Result<Subscription, DdsError> Subscription::create(const Domain& domain, const 
     {
         return writers.error();
     }
-    Subscription subscription(store);
+    Subscription subscription(store, std::move(writers).value());
     subscription.controller_ = controller;
     subscription.controller_name_ = std::move(controller_name);
-    subscription.writers_ = std::move(writers).value();
     subscription.sent_ = seen;
     return subscription;
 }
@@ -46,7 +45,10 @@ bool Subscription::send_one(std::uint64_t host_epoch, std::vector<std::byte>& pa
     sample.sent = sent_ + pieces;
     const auto length = static_cast<std::uint32_t>(payload.size());
     sample.payload = {length, length, reinterpret_cast<std::uint8_t*>(payload.data()), false};
-    if (!writers_.write(&sample))
+    tactus_v1_Pieces probe = {};
+    probe.host_epoch = host_epoch;
+    probe.sent = sent_;
+    if (!writers_.write(&sample, &probe))
     {
         return false; // The pieces count as lost: the controller asks again.
     }

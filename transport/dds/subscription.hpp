@@ -13,6 +13,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace tactus::dds
@@ -66,7 +67,10 @@ public:
     [[nodiscard]] std::size_t wishes() const noexcept { return wishes_.size(); }
 
 private:
-    explicit Subscription(const ModelStore& store) : store_(&store), wishes_(kMaxWishes) {}
+    Subscription(const ModelStore& store, WriterLanes writers)
+        : store_(&store), writers_(std::move(writers)), wishes_(kMaxWishes)
+    {
+    }
 
     [[nodiscard]] std::uint64_t fill(std::vector<std::byte>& payload, std::vector<std::byte>& piece,
                                      RateLimitedLog& log);

@@ -10,39 +10,73 @@
 namespace tactus::dds
 {
 
+WriterLanes::WriterLanes(const Domain& domain, Topic topic, std::string partition)
+    : domain_(&domain), topic_(topic), partition_(std::move(partition))
+{
+}
+
 Result<WriterLanes, DdsError> WriterLanes::create(const Domain& domain, Topic topic,
                                                   const std::string& partition)
 {
-    WriterLanes lanes;
-    for (Endpoint& writer : lanes.writers_)
+    auto first = make_writer(domain, topic, partition);
+    if (!first)
     {
-        auto made = make_writer(domain, topic, partition);
-        if (!made)
-        {
-            return made.error();
-        }
-        writer = std::move(made).value();
+        return first.error();
     }
+    WriterLanes lanes(domain, topic, partition);
+    lanes.lanes_.push_back({std::move(first).value(), true, true});
     return lanes;
 }
 
-bool WriterLanes::is_matched() const
+std::size_t WriterLanes::open() const
 {
-    return std::ranges::any_of(writers_,
-                               [](const Endpoint& writer) { return dds::is_matched(writer); });
+    return static_cast<std::size_t>(std::ranges::count_if(lanes_, &Lane::is_open));
 }
 
-bool WriterLanes::write(const void* sample)
+bool WriterLanes::write(const void* sample, const void* probe)
 {
-    for (std::size_t i = 0; i < kLanes; ++i)
+    open_next(probe);
+    ++written_;
+    for (std::size_t i = 0; i < lanes_.size(); ++i)
     {
-        turn_ = (turn_ + 1) % kLanes;
-        if (dds::is_matched(writers_[turn_]))
+        turn_ = (turn_ + 1) % lanes_.size();
+        Lane& lane = lanes_[turn_];
+        if (turn_ == 0 || (lane.is_open && dds::is_matched(lane.writer)))
         {
             break;
         }
+        if (lane.is_open) // It has lost its reader.
+        {
+            lane.is_open = lane.is_probed = false;
+        }
     }
-    return dds_write(writers_[turn_].handle, sample) == DDS_RETCODE_OK;
+    return dds_write(lanes_[turn_].writer.handle, sample) == DDS_RETCODE_OK;
+}
+
+/// Brings the first one that isn't open a step further.
+void WriterLanes::open_next(const void* probe)
+{
+    const auto next = std::ranges::find(lanes_, false, &Lane::is_open);
+    if (next == lanes_.end())
+    {
+        const bool is_due = lanes_.size() < kLanes && written_ >= kSamplesALane * lanes_.size();
+        if (is_due)
+        {
+            if (auto writer = make_writer(*domain_, topic_, partition_))
+            {
+                lanes_.push_back({std::move(writer).value(), false, false});
+            }
+        }
+        return;
+    }
+    if (!next->is_probed)
+    {
+        next->is_probed = dds::is_matched(next->writer) &&
+                          dds_write(next->writer.handle, probe) == DDS_RETCODE_OK;
+        return;
+    }
+    next->is_open = dds::is_matched(next->writer) &&
+                    dds_wait_for_acks(next->writer.handle, 0) == DDS_RETCODE_OK;
 }
 
 } // namespace tactus::dds

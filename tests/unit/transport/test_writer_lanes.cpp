@@ -64,36 +64,48 @@ TEST_F(Lanes, without_a_reader_are_not_matched_and_write_to_nobody)
     tactus_v1_Pieces sample = {};
 
     EXPECT_FALSE(sut.is_matched());
-    EXPECT_TRUE(sut.write(&sample));
+    for (std::uint64_t i = 0; i < 10 * WriterLanes::kSamplesALane; ++i)
+    {
+        EXPECT_TRUE(sut.write(&sample, &sample));
+    }
+    EXPECT_EQ(sut.open(), 1U); // A next one waits for its reader's answer.
 }
 
-TEST_F(Lanes, take_turns_and_everything_comes)
+TEST_F(Lanes, join_one_by_one_and_take_turns_and_everything_comes)
 {
-    constexpr std::uint64_t kSamples = 40;
     auto sut = WriterLanes::create(*host_, Topic::chunks, kPartition).value();
     const Endpoint in = reader(kPartition);
-    const auto publishers = [&]
-    {
-        dds_subscription_matched_status_t status = {};
-        dds_get_subscription_matched_status(in.handle, &status);
-        return status.current_count;
-    };
-    ASSERT_TRUE(
-        eventually([&] { return publishers() == WriterLanes::kLanes && sut.is_matched(); }));
-    for (std::uint64_t i = 1; i <= kSamples; ++i)
+    ASSERT_TRUE(eventually([&] { return sut.is_matched() && has_publisher(in); }));
+    EXPECT_EQ(sut.open(), 1U);
+    std::uint64_t sent = 0;
+    const auto write = [&]
     {
         tactus_v1_Pieces sample = {};
-        sample.sent = i;
-        ASSERT_TRUE(sut.write(&sample));
+        tactus_v1_Pieces probe = {};
+        sample.sent = ++sent;
+        EXPECT_TRUE(sut.write(&sample, &probe));
+        take_from(in);
+    };
+    EXPECT_TRUE(eventually(
+        [&]
+        {
+            write();
+            return sut.open() == WriterLanes::kLanes;
+        }));
+    EXPECT_GE(sent, (WriterLanes::kLanes - 1) * WriterLanes::kSamplesALane);
+    writers_.clear();
+    for (std::size_t i = 0; i < 2 * WriterLanes::kLanes; ++i)
+    {
+        write();
     }
     EXPECT_TRUE(eventually(
         [&]
         {
             take_from(in);
-            return counts_.size() == kSamples;
+            return counts_.size() == sent + 1; // And the probes' 0.
         }));
-    // A writer's own side of a match may come a moment later, so not all need to have had a turn.
-    EXPECT_GT(writers_.size(), 1U);
+    EXPECT_EQ(*counts_.rbegin(), sent);
+    EXPECT_EQ(writers_.size(), WriterLanes::kLanes);
 }
 
 TEST_F(Lanes, an_older_request_that_comes_late_takes_no_credit_back)
