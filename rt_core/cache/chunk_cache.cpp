@@ -8,6 +8,15 @@
 namespace tactus
 {
 
+namespace
+{
+
+/// Wishes under way while the whole model is loaded: what a tool needs must not wait behind more of
+/// them, nor be pushed out of what the transport side remembers.
+constexpr std::uint32_t kMostFilling = 128;
+
+} // namespace
+
 ChunkCache::ChunkCache(Arena& arena, const ModelHeader& header, PageSlots slots, PageTable& pages,
                        ChunkInbox& inbox) noexcept
     : header_(header)
@@ -83,8 +92,8 @@ void ChunkCache::request_missing(std::span<const RankedRegion> regions, const Bu
                                  FrameFault& faults) noexcept
 {
     frame_ = frame;
-    chunk_wishes_.expire_one(frame);
-    index_wishes_.expire_one(frame);
+    chunk_wishes_.expire(frame);
+    index_wishes_.expire(frame);
     const RankedBalls balls = to_quanta(regions);
     const std::uint32_t pages = header_.counts().index_pages();
     std::uint32_t searched = 0;
@@ -116,8 +125,9 @@ void ChunkCache::request_everything(const Budgets& budgets, WorkCounters& work,
                                     FrameFault& faults) noexcept
 {
     const std::uint32_t chunks = header_.counts().chunks();
-    for (std::uint32_t looked = 0; looked < std::min(chunks, kChunksPerIndexPage) &&
-                                   work.requests < budgets.requests && pages_->used() < chunks;
+    for (std::uint32_t looked = 0;
+         looked < std::min(chunks, kChunksPerIndexPage) && work.requests < budgets.requests &&
+         chunk_wishes_.under_way() < kMostFilling && pages_->used() < chunks;
          ++looked)
     {
         const ChunkId chunk{fill_cursor_};

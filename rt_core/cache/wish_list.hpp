@@ -67,17 +67,22 @@ public:
     }
     void give_back_slot() noexcept { ++slots_at_transport_; }
 
-    /// Forgets one wish that went unanswered for too long, so that it may be asked again. Looks at
-    /// one wish a call.
-    void expire_one(std::uint32_t frame) noexcept
+    /// Forgets wishes that went unanswered for too long, so that they may be asked again. Looks at
+    /// so many a call that each is looked at once in kWishTimeoutFrames calls.
+    void expire(std::uint32_t frame) noexcept
     {
-        advance_cursor();
-        const std::uint32_t number = numbers_[cursor_];
-        if (number != IdTable::kAbsent && frame - asked_[cursor_] > kWishTimeoutFrames)
+        const auto places = static_cast<std::uint32_t>(numbers_.size());
+        for (std::uint32_t looked = 0; looked <= places / kWishTimeoutFrames; ++looked)
         {
-            forget(number);
+            advance_cursor();
+            const std::uint32_t number = numbers_[cursor_];
+            if (number != IdTable::kAbsent && frame - asked_[cursor_] > kWishTimeoutFrames)
+            {
+                forget(number);
+            }
         }
     }
+    [[nodiscard]] std::uint32_t under_way() const noexcept { return under_way_.size(); }
 
     /// From asking to arriving, of what came before it expired.
     [[nodiscard]] const LoadLatency& latency() const noexcept { return latency_; }

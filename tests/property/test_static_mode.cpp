@@ -3,6 +3,7 @@
 
 /// A model that fits the pools ends up refined as a whole, and then frames only query.
 
+#include "host_tools/shapes/shapes.hpp"
 #include "tests/property/frame_checks.hpp"
 
 #include <algorithm>
@@ -109,6 +110,33 @@ TEST_P(StaticMode, comes_to_it_with_one_split_a_frame_and_a_link_that_loses)
     }
     // As many as there was time for: what is behind the tool may be merged and split again.
     EXPECT_GE(refined, std::min(records, kFramesMax / 4));
+}
+
+/// More chunks than the transport side remembers wishes for, and pieces that take long.
+TEST(StaticModeFarAway, is_reached_and_what_the_tool_needs_comes_first)
+{
+    const TestModel& model =
+        test_model("far-away", make_shape(Shape::bumpy_sphere, 60'000).value());
+    RigOptions options;
+    options.pool_bytes = std::size_t{64} << 20U;
+    options.static_when_it_fits = true;
+    options.courier_steps_per_frame = 1;
+    options.faults.delay_polls_min = options.faults.delay_polls_max = 20;
+    FrameRig sut(model, options);
+    const Vec3 goal = to_vec3(model.faces[0][0]);
+    std::uint32_t first_exact = 0;
+    std::uint32_t first_static = 0;
+    for (std::uint32_t frame = 1; frame <= 4'000 && first_static == 0; ++frame)
+    {
+        const FrameOutput output = sut.step(goal);
+        const bool is_exact = output.pairs[0].kind == AnswerKind::exact;
+        first_exact = first_exact == 0 && is_exact ? frame : first_exact;
+        first_static = output.models[0].is_static ? frame : 0;
+    }
+    EXPECT_GT(first_exact, 0U);
+    EXPECT_LT(first_exact, 300U); // A round trip for each level of the index, and the splits.
+    EXPECT_GT(first_static, 0U);
+    EXPECT_EQ(sut.courier().counters().forgotten, 0U);
 }
 
 INSTANTIATE_TEST_SUITE_P(small_models, StaticMode,

@@ -23,7 +23,7 @@ protected:
         return WishList(arena, slots);
     }
 
-    ArenaMemory memory_{1U << 14U};
+    ArenaMemory memory_{1U << 18U};
 };
 
 /// As often as it takes to look at each wish once.
@@ -31,11 +31,27 @@ void expire_all(WishList& sut, std::uint32_t slots, std::uint32_t frame)
 {
     for (std::uint32_t i = 0; i < slots; ++i)
     {
-        sut.expire_one(frame);
+        sut.expire(frame);
     }
 }
 
 } // namespace
+
+TEST_F(WishListTest, looks_at_every_wish_in_time_however_many_slots_there_are)
+{
+    constexpr std::uint32_t kSlots = 20 * kWishTimeoutFrames + 7;
+    WishList sut = make(kSlots);
+    for (std::uint32_t number = 0; number < kSlots; ++number)
+    {
+        sut.ask(number, 0);
+    }
+    EXPECT_EQ(sut.under_way(), kSlots);
+    for (std::uint32_t frame = kWishTimeoutFrames + 1; frame <= 2 * kWishTimeoutFrames; ++frame)
+    {
+        sut.expire(frame);
+    }
+    EXPECT_EQ(sut.under_way(), 0U);
+}
 
 TEST_F(WishListTest, has_credit_for_as_many_pieces_as_there_are_slots)
 {
