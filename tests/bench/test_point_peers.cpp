@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
+#include <vector>
 
 namespace tactus::bench
 {
@@ -88,54 +90,56 @@ Error error_of(TouchQuery& query, const test::FaceTree& tree, double tolerance_m
     return error;
 }
 
-TEST(PointPeers, are_off_by_as_much_as_they_are_known_to_be)
+/// Each peer of this build; none is built without TACTUS_BENCH_PEERS.
+class PointPeers : public testing::TestWithParam<PointPeer>
 {
-    const std::vector<PointPeer> peers = point_peers();
-    if (peers.empty())
-    {
-        GTEST_SKIP() << "built without peers (TACTUS_BENCH_PEERS)";
-    }
+};
+
+TEST_P(PointPeers, are_off_by_as_much_as_they_are_known_to_be)
+{
+    const PointPeer& peer = GetParam();
     const std::vector<test::Face> faces = small_sphere();
     const test::FaceTree tree(faces);
-    for (const PointPeer& peer : peers)
+    const auto query = peer.make(faces, kRadius_m);
+    EXPECT_EQ(query->name(), peer.name);
+
+    const double tolerance_m = peer.error_diag * kDiagonal_m;
+    const Error error = error_of(*query, tree, tolerance_m);
+
+    EXPECT_EQ(error.missed, 0);
+    EXPECT_LE(error.distance_m, tolerance_m);
+    EXPECT_LE(error.point_m, tolerance_m);
+    if (peer.error_diag > 1e-4) // Else it would be right after all.
     {
-        SCOPED_TRACE(peer.name);
-        const auto query = peer.make(faces, kRadius_m);
-        EXPECT_EQ(query->name(), peer.name);
-
-        const double tolerance_m = peer.error_diag * kDiagonal_m;
-        const Error error = error_of(*query, tree, tolerance_m);
-
-        EXPECT_EQ(error.missed, 0);
-        EXPECT_LE(error.distance_m, tolerance_m);
-        EXPECT_LE(error.point_m, tolerance_m);
-        if (peer.error_diag > 1e-4) // Else it would be right after all.
-        {
-            EXPECT_GT(error.distance_m, 1e-5 * kDiagonal_m);
-        }
+        EXPECT_GT(error.distance_m, 1e-5 * kDiagonal_m);
     }
 }
 
-TEST(PointPeers, forget_what_they_were_asked)
+TEST_P(PointPeers, forget_what_they_were_asked)
 {
     const std::vector<test::Face> faces = small_sphere();
-    for (const PointPeer& peer : point_peers())
+    const auto query = GetParam().make(faces, kRadius_m);
+    test::Random random(811);
+    const Vec3 first_m = point_near(random);
+    const double before_m = query->distance_m(first_m, 2.0 * kRadius_m);
+    for (int i = 0; i < 50; ++i)
     {
-        SCOPED_TRACE(peer.name);
-        const auto query = peer.make(faces, kRadius_m);
-        test::Random random(811);
-        const Vec3 first_m = point_near(random);
-        const double before_m = query->distance_m(first_m, 2.0 * kRadius_m);
-        for (int i = 0; i < 50; ++i)
-        {
-            static_cast<void>(query->distance_m(point_near(random), 2.0 * kRadius_m));
-        }
-        query->forget();
-        EXPECT_EQ(query->distance_m(first_m, 2.0 * kRadius_m), before_m);
+        static_cast<void>(query->distance_m(point_near(random), 2.0 * kRadius_m));
     }
+    query->forget();
+    EXPECT_EQ(query->distance_m(first_m, 2.0 * kRadius_m), before_m);
 }
 
-TEST(PointPeers, of_the_goals_are_right_and_know_a_band)
+GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(PointPeers);
+INSTANTIATE_TEST_SUITE_P(Built, PointPeers, testing::ValuesIn(point_peers()),
+                         [](const auto& tested)
+                         {
+                             std::string name = tested.param.name;
+                             std::erase_if(name, [](char c) { return c == ' ' || c == ','; });
+                             return name;
+                         });
+
+TEST(GoalPeers, know_a_band)
 {
     const std::vector<test::Face> faces = small_sphere();
     for (const auto& peer : make_peers(faces))
