@@ -127,10 +127,10 @@ void Model::refine(std::span<const RefineQuestion> questions, const Budgets& bud
     own.scanned = residence == Residence::filling ? 0 : budgets.scanned;
     FrameFault found = FrameFault::none;
     refiner.run(questions, own, frame, work, found);
-    faults |= found;
     if (residence == Residence::filling)
     {
-        switch (refiner.refine_everything(header.counts().records, budgets, frame, work, faults))
+        switch (refiner.refine_everything(header.counts().records, questions, budgets, frame, work,
+                                          found))
         {
         case Refiner::Progress::complete:
             residence = Residence::complete;
@@ -142,6 +142,7 @@ void Model::refine(std::span<const RefineQuestion> questions, const Budgets& bud
             break;
         }
     }
+    faults |= found;
     is_refined = found == FrameFault::none;
     if (capacities.cache_off && is_refined)
     {

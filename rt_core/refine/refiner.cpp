@@ -417,18 +417,32 @@ Refiner::ClosureOutcome Refiner::split_with_closure(RecordId target, std::uint32
     return ClosureOutcome::complete;
 }
 
-Refiner::Progress Refiner::refine_everything(std::uint32_t records, const Budgets& budgets,
-                                             std::uint32_t frame, WorkCounters& work,
-                                             FrameFault& faults) noexcept
+Refiner::Progress Refiner::refine_everything(std::uint32_t records,
+                                             std::span<const RefineQuestion> questions,
+                                             const Budgets& budgets, std::uint32_t frame,
+                                             WorkCounters& work, FrameFault& faults) noexcept
 {
+    heap_size_ = 0;
     const std::uint32_t most = std::min(budgets.splits, kMaxSplitsPerFrame);
-    while (next_record_ < records && work.splits < most)
+    const Progress progress = fill(records, most, questions, frame, work, faults);
+    if (heap_size_ > 0) // Faces that came up within a question's target.
+    {
+        split_wanted(questions, budgets, frame, work, faults);
+    }
+    return progress;
+}
+
+Refiner::Progress Refiner::fill(std::uint32_t records, std::uint32_t limit,
+                                std::span<const RefineQuestion> questions, std::uint32_t frame,
+                                WorkCounters& work, FrameFault& faults) noexcept
+{
+    while (next_record_ < records && work.splits < limit)
     {
         if (!pages_->is_refined({next_record_}))
         {
             FrameFault found = FrameFault::none; // That a chunk is on its way is no fault here.
             const ClosureOutcome outcome =
-                split_with_closure({next_record_}, most, {}, frame, work, found);
+                split_with_closure({next_record_}, limit, questions, frame, work, found);
             faults |= found & FrameFault::model_inconsistent;
             if (outcome != ClosureOutcome::complete)
             {

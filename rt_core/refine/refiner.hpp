@@ -47,9 +47,12 @@ public:
         full,     ///< A pool has no room.
         complete, ///< All records are refined.
     };
-    /// Splits records one after the other with what run() left of the budget.
-    [[nodiscard]] Progress refine_everything(std::uint32_t records, const Budgets& budgets,
-                                             std::uint32_t frame, WorkCounters& work,
+    /// Splits records one after the other with what run() left of the budget, for the same
+    /// questions; faces that they lack for it afterwards are split with what is left then.
+    [[nodiscard]] Progress refine_everything(std::uint32_t records,
+                                             std::span<const RefineQuestion> questions,
+                                             const Budgets& budgets, std::uint32_t frame,
+                                             WorkCounters& work,
                                              FrameFault& faults) noexcept TACTUS_NONBLOCKING;
 
     /// How far beyond the reach is refined, as a share of it.
@@ -100,6 +103,9 @@ private:
                                                     std::span<const RefineQuestion> questions,
                                                     std::uint32_t frame, WorkCounters& work,
                                                     FrameFault& faults) noexcept;
+    [[nodiscard]] Progress fill(std::uint32_t records, std::uint32_t limit,
+                                std::span<const RefineQuestion> questions, std::uint32_t frame,
+                                WorkCounters& work, FrameFault& faults) noexcept;
     void consider_star(RecordId id, const VsplitRecord& record,
                        const VertexForest::StarGeometry& star,
                        std::span<const RefineQuestion> questions) noexcept;
@@ -120,7 +126,7 @@ private:
     std::uint32_t done_count_{0};
     RecordId pending_{}; ///< Whose closure the held records were split for.
     std::size_t question_count_{0};
-    std::uint32_t next_record_{0}; ///< refine_everything() has done those before.
+    std::uint32_t next_record_{0}; ///< fill() has done those before.
 };
 
 } // namespace tactus

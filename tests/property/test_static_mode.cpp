@@ -5,6 +5,7 @@
 
 #include "host_tools/shapes/shapes.hpp"
 #include "tests/property/frame_checks.hpp"
+#include "tests/shared/frame_verdict.hpp"
 
 #include <algorithm>
 
@@ -80,6 +81,22 @@ TEST_P(StaticMode, a_model_that_fits_ends_refined_and_frames_only_query)
         if (pair.kind == AnswerKind::exact)
         {
             EXPECT_NEAR(pair.lower_m, pair.upper_m, 1e-12 * model_.diagonal_m);
+        }
+    }
+}
+
+/// Records that are split to fill the pools bring faces that the question wants, too.
+TEST_P(StaticMode, says_what_it_lacks_while_it_fills)
+{
+    SCOPED_TRACE(model_.name + " seed " + std::to_string(seed_));
+    for (int place = 0; place < 20; ++place)
+    {
+        FrameRig sut(model_, static_options());
+        const Vec3 goal = random_place();
+        for (int frame = 0; frame < 30; ++frame)
+        {
+            const Verdict verdict = unexplained(sut.step(goal));
+            ASSERT_FALSE(verdict) << *verdict << ", place " << place << ", frame " << frame;
         }
     }
 }
