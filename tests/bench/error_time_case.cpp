@@ -4,7 +4,7 @@
 
 #include "host_tools/encode/extract.hpp"
 #include "tests/bench/answer_errors.hpp"
-#include "tests/bench/frame_trace.hpp"
+#include "tests/bench/frame_replay.hpp"
 #include "tests/bench/static_model.hpp"
 #include "transport/store/model_store.hpp"
 
@@ -221,19 +221,19 @@ void add_figures(CaseRows& rows, const Figures& figures)
     rows.add("invented", static_cast<double>(errors.touch.invented), "");
 }
 
-void add_streaming(CaseRows& rows, const FrameTrace& trace, double diagonal_m)
+void add_streaming(CaseRows& rows, const FrameReplay& replay, double diagonal_m)
 {
     std::vector<double> widths_diag;
     double exact = 0.0;
-    for (const PairOutput& pair : trace.pairs)
+    for (const PairOutput& pair : replay.answers())
     {
         exact += pair.kind == AnswerKind::exact ? 1.0 : 0.0;
         widths_diag.push_back((pair.upper_m - pair.lower_m) / diagonal_m);
     }
-    const auto frames = static_cast<double>(trace.pairs.size());
+    const FrameWork& work = replay.work();
     rows.add("bracket p99", spread_of(widths_diag).p99, "diag");
-    rows.add("exact", 100.0 * exact / frames, "%");
-    rows.add("wire", static_cast<double>(trace.coded_bytes) * 1e-3 / (frames * kPeriod_s), "kB/s");
+    rows.add("exact", 100.0 * exact / static_cast<double>(work.frames), "%");
+    rows.add("wire", work.per_frame(work.coded_bytes) * 1e-3 / kPeriod_s, "kB/s");
 }
 
 /// In single precision, in the frame of a scene.
@@ -405,21 +405,17 @@ private:
             stay_until_all_is_there(run);
         }
         FrameReplay replay(run);
-        for (std::uint32_t pass = 0; pass < context_.options.passes_or(4, 2); ++pass)
+        if (const auto failure = replay.run(context_.options.passes_or(4, 2)))
         {
-            if (const auto failure = replay.run_once(CacheState::warm, frames_))
-            {
-                return SceneError{*failure};
-            }
+            return SceneError{*failure};
         }
-        const FrameTrace trace = trace_frames(run);
         std::vector<SurfaceAnswer> answers;
         std::ranges::transform(replay.answers(), std::back_inserter(answers), answer_of);
         Figures figures{setting.name, spread_of(whole_us(replay)),
                         static_cast<double>(run.rig.pool_bytes), truth.errors_of(answers)};
         CaseRows rows = rows_of(part, "Tactus", setting.name, replay.hash() + figures.errors.hash);
         add_figures(rows, figures);
-        add_streaming(rows, trace, scene.model.diagonal_m);
+        add_streaming(rows, replay, scene.model.diagonal_m);
         return figures;
     }
 

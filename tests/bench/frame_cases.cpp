@@ -102,21 +102,19 @@ void add_cold(CaseRows& rows, const FrameReplay& replay, CacheState caches, doub
 void add_work(CaseRows& rows, const FrameReplay& replay, std::size_t pool_bytes)
 {
     const FrameWork& work = replay.work();
-    const auto per_frame = [&](std::uint64_t count)
-    { return static_cast<double>(count) / static_cast<double>(work.frames); };
     if (const double split_us = replay.split_us(); split_us > 0.0)
     {
         rows.add("split, all in", split_us, "us", kSplitGoal_us);
     }
-    rows.add("splits", per_frame(work.splits), "/frame");
-    rows.add("nodes", per_frame(work.nodes), "/frame");
-    rows.add("triangles", per_frame(work.triangles), "/frame");
-    rows.add("in contact", 100.0 * per_frame(work.contacts), "%");
-    rows.add("uncertified contacts", 100.0 * per_frame(work.uncertified), "%");
-    rows.add("open answers", 100.0 * per_frame(work.open), "%");
+    rows.add("splits", work.per_frame(work.counters.splits), "/frame");
+    rows.add("nodes", work.per_frame(work.counters.nodes_visited), "/frame");
+    rows.add("triangles", work.per_frame(work.counters.triangles_tested), "/frame");
+    rows.add("in contact", 100.0 * work.per_frame(work.contacts), "%");
+    rows.add("uncertified contacts", 100.0 * work.per_frame(work.uncertified), "%");
+    rows.add("open answers", 100.0 * work.per_frame(work.open), "%");
     rows.add("pools", static_cast<double>(pool_bytes) * 0x1p-20, "MiB");
-    rows.add("pages used at most", work.pages.used_max, "");
-    rows.add("faces used at most", work.faces.used_max, "");
+    rows.add("pages used at most", work.model.pages.used_max, "");
+    rows.add("faces used at most", work.model.faces.used_max, "");
 }
 
 void add_series(const CaseContext& context, const FrameReplay& replay)
@@ -125,20 +123,6 @@ void add_series(const CaseContext& context, const FrameReplay& replay)
     context.series.push_back(
         make_series(context.common_row(""),
                     {us(Stage::load), us(Stage::refine), us(Stage::refit), us(Stage::query)}));
-}
-
-/// All replays of one cache state; a line when two differ.
-CaseFailure replay_all(FrameReplay& replay, CacheState caches, std::uint32_t passes,
-                       std::size_t frames)
-{
-    for (std::uint32_t pass = 0; pass < passes; ++pass)
-    {
-        if (const auto failure = replay.run_once(caches, frames))
-        {
-            return failure;
-        }
-    }
-    return std::nullopt;
 }
 
 } // namespace
@@ -156,7 +140,7 @@ CaseFailure run_frame_case(const CaseContext& context, const FrameCase& test_cas
     const FrameRun run = make_slide(*scene.value(), test_case.speed_diag_per_s, test_case.splits,
                                     test_case.pool_bytes, frames);
     FrameReplay replay(run);
-    if (const auto failure = replay_all(replay, CacheState::warm, passes, frames))
+    if (const auto failure = replay.run(passes))
     {
         return failure;
     }
@@ -178,7 +162,7 @@ CaseFailure run_frame_case(const CaseContext& context, const FrameCase& test_cas
     const std::size_t cold_frames = frames / kColdShare;
     for (const CacheState caches : {CacheState::cold, CacheState::rehearsed})
     {
-        if (const auto failure = replay_all(replay, caches, std::min(passes, 2U), cold_frames))
+        if (const auto failure = replay.run(caches, std::min(passes, 2U), cold_frames))
         {
             return failure;
         }
@@ -206,7 +190,7 @@ CaseFailure run_memory_case(const CaseContext& context, const MemoryCase& test_c
             make_slide(*scene.value(), test_case.speed_diag_per_s, test_case.splits,
                        static_cast<std::size_t>(mib * 0x1p20), frames);
         FrameReplay replay(run);
-        if (const auto failure = replay.run_once(CacheState::warm, frames))
+        if (const auto failure = replay.run(1))
         {
             return failure;
         }
@@ -216,12 +200,10 @@ CaseFailure run_memory_case(const CaseContext& context, const MemoryCase& test_c
         {
             CaseRows rows = rows_of(context, run, replay.hash());
             rows.add("pools", is_enough ? mib : enough_mib, "MiB", test_case.pool_mib);
-            rows.add("in contact",
-                     100.0 * static_cast<double>(work.contacts) / static_cast<double>(work.frames),
-                     "%");
+            rows.add("in contact", 100.0 * work.per_frame(work.contacts), "%");
             rows.add("uncertified contacts", static_cast<double>(work.uncertified), "frames");
-            rows.add("pages used at most", work.pages.used_max, "");
-            rows.add("faces used at most", work.faces.used_max, "");
+            rows.add("pages used at most", work.model.pages.used_max, "");
+            rows.add("faces used at most", work.model.faces.used_max, "");
             break;
         }
     }

@@ -55,15 +55,33 @@ void FrameReplay::prepare(test::FrameRig& rig, CacheState caches)
     }
 }
 
+std::optional<std::string> FrameReplay::run(CacheState caches, std::uint32_t passes,
+                                            std::size_t frames)
+{
+    for (std::uint32_t pass = 0; pass < passes; ++pass)
+    {
+        if (auto failure = run_once(caches, frames))
+        {
+            return failure;
+        }
+    }
+    return std::nullopt;
+}
+
 std::optional<std::string> FrameReplay::run_once(CacheState caches, std::size_t frames)
 {
     test::FrameRig rig(run_.scene.model, run_.rig);
     StageTimer timer;
     std::uint64_t allocations = 0;
+    std::uint64_t bytes_before = 0;
     for (std::size_t i = 0; i < std::min(run_.lead_in + frames, run_.goals_m.size()); ++i)
     {
         const bool is_counted = i >= run_.lead_in;
         const std::vector<Vec3> goals{run_.goals_m[i]};
+        if (i == run_.lead_in)
+        {
+            bytes_before = rig.courier().counters().coded_bytes;
+        }
         prepare(rig, is_counted ? caches : CacheState::warm);
         FrameOutput output;
         const std::uint64_t frame_allocations = allocations_of(
@@ -75,7 +93,11 @@ std::optional<std::string> FrameReplay::run_once(CacheState caches, std::size_t 
         if (i == hashes_.size())
         {
             hashes_.push_back(output.models[0].state_hash);
-            count(output, i);
+            if (is_counted)
+            {
+                count(output);
+                work_.coded_bytes = rig.courier().counters().coded_bytes - bytes_before;
+            }
         }
         if (hashes_[i] != output.models[0].state_hash)
         {
@@ -100,25 +122,18 @@ std::optional<std::string> FrameReplay::run_once(CacheState caches, std::size_t 
     return std::nullopt;
 }
 
-void FrameReplay::count(const FrameOutput& output, std::size_t frame)
+void FrameReplay::count(const FrameOutput& output)
 {
-    if (frame < run_.lead_in)
-    {
-        return;
-    }
     const AnswerKind kind = output.pairs[0].kind;
     const bool is_in_contact = output.tools[0].in_contact;
     splits_.push_back(output.work.splits);
     answers_.push_back(output.pairs[0]);
     ++work_.frames;
-    work_.splits += output.work.splits;
-    work_.nodes += output.work.nodes_visited;
-    work_.triangles += output.work.triangles_tested;
+    work_.counters += output.work;
     work_.contacts += is_in_contact ? 1 : 0;
     work_.uncertified += is_in_contact && kind != AnswerKind::exact ? 1 : 0;
     work_.open += kind == AnswerKind::exact || kind == AnswerKind::decided ? 0 : 1;
-    work_.pages = output.models[0].pages;
-    work_.faces = output.models[0].faces;
+    work_.model = output.models[0];
 }
 
 double FrameReplay::split_us() const

@@ -3,6 +3,8 @@
 #pragma once
 
 #include "rt_core/records/frame_input.hpp"
+#include "rt_core/records/frame_output.hpp"
+#include "rt_core/records/work_counters.hpp"
 #include "tests/bench/least_times.hpp"
 #include "tests/bench/measuring.hpp"
 #include "tests/bench/scenes.hpp"
@@ -47,14 +49,21 @@ struct FrameRun
 struct FrameWork
 {
     std::uint64_t frames{0};
-    std::uint64_t splits{0};
-    std::uint64_t nodes{0};
-    std::uint64_t triangles{0};
+    WorkCounters counters;        ///< Their sum.
+    std::uint64_t coded_bytes{0}; ///< That came over the link meanwhile.
     std::uint64_t contacts{0};    ///< Frames in contact.
     std::uint64_t uncertified{0}; ///< Of those, without an exact answer.
     std::uint64_t open{0};        ///< Frames with neither an exact nor a decided answer.
-    PoolUse pages;
-    PoolUse faces;
+    ModelOutput model;            ///< After the last frame.
+
+    [[nodiscard]] double per_frame(std::uint64_t count) const
+    {
+        return static_cast<double>(count) / static_cast<double>(frames);
+    }
+    [[nodiscard]] std::uint64_t refit_visits() const
+    {
+        return std::uint64_t{counters.nodes_refitted} + counters.blocks_refitted;
+    }
 };
 
 /// Runs the same frames from the start again and again.
@@ -63,8 +72,15 @@ class FrameReplay
 public:
     explicit FrameReplay(const FrameRun& run);
 
-    /// One replay. Returns a line when a frame's state differs from that of earlier replays.
-    [[nodiscard]] std::optional<std::string> run_once(CacheState caches, std::size_t frames);
+    /// So many replays of the first counted frames. Returns a line when a frame's state differs
+    /// from that of an earlier replay.
+    [[nodiscard]] std::optional<std::string> run(CacheState caches, std::uint32_t passes,
+                                                 std::size_t frames);
+    /// Of all counted frames, the caches warm.
+    [[nodiscard]] std::optional<std::string> run(std::uint32_t passes)
+    {
+        return run(CacheState::warm, passes, run_.counted());
+    }
 
     /// T_R + T_B + T_Q, in microseconds, of the counted frames.
     [[nodiscard]] const LeastTimes& sum_us(CacheState caches) const
@@ -92,8 +108,9 @@ private:
     {
         return static_cast<std::size_t>(caches);
     }
+    [[nodiscard]] std::optional<std::string> run_once(CacheState caches, std::size_t frames);
     void prepare(test::FrameRig& rig, CacheState caches);
-    void count(const FrameOutput& output, std::size_t frame);
+    void count(const FrameOutput& output);
 
     const FrameRun& run_;
     CacheEvictor evictor_;

@@ -5,7 +5,7 @@
 #include "host_tools/encode/write_spm.hpp"
 #include "host_tools/mesh/prepare.hpp"
 #include "host_tools/simplify/simplify.hpp"
-#include "tests/bench/frame_trace.hpp"
+#include "tests/bench/frame_replay.hpp"
 #include "tests/bench/measuring.hpp"
 #include "tests/shared/temporary_folder.hpp"
 
@@ -126,8 +126,7 @@ struct SizeFigures
 Result<SizeFigures, SceneError> measure(const CaseContext& context, std::uint32_t faces,
                                         std::uint32_t frames)
 {
-    const std::string name = fmt::format("bumpy-{}k", faces / 1'000);
-    const auto named = source_mesh({name.c_str(), nullptr, 0, faces});
+    const auto named = source_mesh({"", nullptr, 0, faces});
     if (!named)
     {
         return named.error();
@@ -141,31 +140,27 @@ Result<SizeFigures, SceneError> measure(const CaseContext& context, std::uint32_
     const FrameRun run =
         make_slide(*scene.value(), kSpeed_diag_per_s, kSplits, kPool_bytes, frames);
     FrameReplay replay(run);
-    for (std::uint32_t pass = 0; pass < context.options.passes_or(4, 2); ++pass)
+    if (const auto failure = replay.run(context.options.passes_or(4, 2)))
     {
-        if (const auto failure = replay.run_once(CacheState::warm, frames))
-        {
-            return SceneError{*failure};
-        }
+        return SceneError{*failure};
     }
-    const FrameTrace trace = trace_frames(run);
     const auto encoded = encode(named.value());
     if (!encoded)
     {
         return encoded.error();
     }
     const Spread frame = spread_of(replay.sum_us(CacheState::warm).least());
-    const double splits = static_cast<double>(trace.work.splits) / frames;
-    const double visits =
-        static_cast<double>(trace.work.nodes_refitted + trace.work.blocks_refitted) / frames;
+    const FrameWork& work = replay.work();
+    const double splits = work.per_frame(work.counters.splits);
     return SizeFigures{{static_cast<double>(scene.value()->model.faces.size()), splits},
                        scene.value()->model.name,
                        replay.hash(),
                        {frame.p50, frame.p99, spread_of(replay.stage_us(Stage::query).least()).p50,
-                        splits, visits, static_cast<double>(trace.model.faces.used_max),
-                        static_cast<double>(trace.model.pages.used_max),
-                        static_cast<double>(trace.coded_bytes) * 1e-3 / (frames * kPeriod_s),
-                        encoded.value().first, encoded.value().second * 1e-6}};
+                        splits, work.per_frame(work.refit_visits()),
+                        static_cast<double>(work.model.faces.used_max),
+                        static_cast<double>(work.model.pages.used_max),
+                        work.per_frame(work.coded_bytes) * 1e-3 / kPeriod_s, encoded.value().first,
+                        encoded.value().second * 1e-6}};
 }
 
 } // namespace
@@ -206,6 +201,11 @@ CaseFailure run_growth_law_case(const CaseContext& context, const GrowthLawCase&
         }
         for (std::size_t i = 0; i < figures.size(); ++i)
         {
+            if (!(at_size.value().values[i] > 0.0))
+            {
+                return fmt::format("{}: nothing to fit an exponent to at {} faces", figures[i].name,
+                                   faces);
+            }
             figures[i].values.push_back(at_size.value().values[i]);
         }
         sizes.push_back(at_size.value().size);

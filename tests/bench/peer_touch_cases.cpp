@@ -234,12 +234,9 @@ CaseFailure add_streaming(const TouchTrial& trial, std::size_t pool_bytes)
 {
     const FrameRun run = make_streaming_run(trial, pool_bytes);
     FrameReplay replay(run);
-    for (std::uint32_t pass = 0; pass < trial.passes; ++pass)
+    if (auto failure = replay.run(trial.passes))
     {
-        if (auto failure = replay.run_once(CacheState::warm, run.counted()))
-        {
-            return failure;
-        }
+        return failure;
     }
     CaseRows rows = rows_of(trial, kStreaming, replay.hash());
     add_times(trial, rows, replay.sum_us(CacheState::warm).least(), false);

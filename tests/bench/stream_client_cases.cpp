@@ -275,21 +275,18 @@ CaseFailure run_beside_dds_case(const CaseContext& context, const BesideDdsCase&
         flood = std::move(begun).value();
     }
     FrameReplay replay(run);
-    for (std::uint32_t pass = 0; pass < context.options.passes_or(kPasses, 2); ++pass)
+    if (auto failure = replay.run(context.options.passes_or(kPasses, 2)))
     {
-        if (const auto failure = replay.run_once(CacheState::warm, frames))
-        {
-            return failure;
-        }
+        return failure;
     }
     Row common = context.common_row(scene.value()->model.name, "frames beside DDS");
     common.frames = run.counted();
     common.hash = replay.hash();
     CaseRows rows(context.rows, common);
-    const FrameWork& work = replay.work();
-    rows.add("splits", static_cast<double>(work.splits), "");
-    rows.add("nodes", static_cast<double>(work.nodes), "");
-    rows.add("triangles", static_cast<double>(work.triangles), "");
+    const WorkCounters& work = replay.work().counters;
+    rows.add("splits", work.splits, "");
+    rows.add("nodes", work.nodes_visited, "");
+    rows.add("triangles", work.triangles_tested, "");
     rows.add("p50", spread_of(replay.sum_us(CacheState::warm).least()).p50, "us");
     rows.add("p99", spread_of(replay.sum_us(CacheState::warm).least()).p99, "us");
     rows.add("DDS", flood == nullptr ? 0.0 : flood->end(), "MB/s");

@@ -6,7 +6,7 @@
 /// check_counts.py.
 
 #include "tests/bench/bench_report.hpp"
-#include "tests/bench/frame_trace.hpp"
+#include "tests/bench/frame_replay.hpp"
 #include "tests/bench/static_model.hpp"
 #include "tests/bench/suites.hpp"
 
@@ -57,20 +57,24 @@ CaseFailure run_count_case(const CaseContext& context, const CountCase& test_cas
         return scene.error().text;
     }
     const FrameRun run = test_case.make(*scene.value());
-    const FrameTrace trace = trace_frames(run);
+    FrameReplay replay(run);
+    if (auto failure = replay.run(1))
+    {
+        return failure;
+    }
     Row common = context.common_row(scene.value()->model.name);
-    common.frames = trace.pairs.size();
-    common.hash = trace.model.state_hash;
+    common.frames = run.counted();
+    common.hash = replay.hash();
     CaseRows rows(context.rows, common);
-    const WorkCounters& work = trace.work;
-    // Of all frames, those before the slide included: what callgrind counts.
+    // Those before the slide included, as callgrind counts them; all else is of the counted ones.
     rows.add("frames in all", static_cast<double>(run.goals_m.size()), "");
+    const WorkCounters& work = replay.work().counters;
     rows.add("splits", work.splits, "");
     rows.add("merges", work.merges, "");
     rows.add("nodes visited", work.nodes_visited, "");
     rows.add("triangles", work.triangles_tested, "");
-    rows.add("refit visits", work.nodes_refitted + work.blocks_refitted, "");
-    rows.add("bytes on the wire", static_cast<double>(trace.coded_bytes), "");
+    rows.add("refit visits", static_cast<double>(replay.work().refit_visits()), "");
+    rows.add("bytes on the wire", static_cast<double>(replay.work().coded_bytes), "");
     rows.add("bytes of the file",
              static_cast<double>(std::filesystem::file_size(scene.value()->model.path)), "");
     return std::nullopt;

@@ -5,7 +5,7 @@
 /// answers stay the same to the bit, or the case fails.
 
 #include "tests/bench/bench_report.hpp"
-#include "tests/bench/frame_trace.hpp"
+#include "tests/bench/frame_replay.hpp"
 #include "tests/bench/suites.hpp"
 
 #include <fmt/format.h>
@@ -85,14 +85,14 @@ bool is_exact(const PairOutput& pair)
 }
 
 /// A line when an answer that is exact both times is not the same, or too few are.
-CaseFailure compare(const FrameTrace& usual, const FrameTrace& other)
+CaseFailure compare(const std::vector<PairOutput>& usual, const std::vector<PairOutput>& other)
 {
     std::size_t exact = 0;
     std::size_t both_exact = 0;
-    for (std::size_t i = 0; i < usual.pairs.size(); ++i)
+    for (std::size_t i = 0; i < usual.size(); ++i)
     {
-        const PairOutput& a = usual.pairs[i];
-        const PairOutput& b = other.pairs[i];
+        const PairOutput& a = usual[i];
+        const PairOutput& b = other[i];
         exact += is_exact(a) ? 1U : 0U;
         both_exact += is_exact(a) && is_exact(b) ? 1U : 0U;
         if (is_exact(a) && is_exact(b) &&
@@ -120,12 +120,9 @@ CaseFailure run_skip_case(const CaseContext& context, const SkipCase& test_case)
     FrameRun run = usual;
     test_case.without.leave_out(run);
     FrameReplay replay(run);
-    for (std::uint32_t pass = 0; pass < context.options.passes_or(3, 2); ++pass)
+    if (auto failure = replay.run(context.options.passes_or(3, 2)))
     {
-        if (const auto failure = replay.run_once(CacheState::warm, run.counted()))
-        {
-            return failure;
-        }
+        return failure;
     }
     Row common = context.common_row(scene.value()->model.name);
     common.test_case = scene.value()->model.name;
@@ -139,20 +136,22 @@ CaseFailure run_skip_case(const CaseContext& context, const SkipCase& test_case)
     const Spread loading = spread_of(replay.stage_us(Stage::load).least());
     rows.add("loading p99", loading.p99, "us");
     const FrameWork& work = replay.work();
-    const auto frames = static_cast<double>(work.frames);
-    rows.add("splits", static_cast<double>(work.splits) / frames, "/frame");
-    rows.add("nodes", static_cast<double>(work.nodes) / frames, "/frame");
-    rows.add("open", 100.0 * static_cast<double>(work.open) / frames, "%");
+    rows.add("splits", work.per_frame(work.counters.splits), "/frame");
+    rows.add("nodes", work.per_frame(work.counters.nodes_visited), "/frame");
+    rows.add("open", 100.0 * work.per_frame(work.open), "%");
+    rows.add("refit visits", work.per_frame(work.refit_visits()), "/frame");
+    rows.add("exact frames", static_cast<double>(std::ranges::count_if(replay.answers(), is_exact)),
+             "");
     if (context.options.count)
     {
         return std::nullopt; // The comparison's frames are not to be counted.
     }
-    const FrameTrace trace = trace_frames(run);
-    rows.add("refit visits",
-             static_cast<double>(trace.work.nodes_refitted + trace.work.blocks_refitted) / frames,
-             "/frame");
-    rows.add("exact frames", static_cast<double>(std::ranges::count_if(trace.pairs, is_exact)), "");
-    return compare(trace_frames(usual), trace);
+    FrameReplay with_all(usual);
+    if (auto failure = with_all.run(1))
+    {
+        return failure;
+    }
+    return compare(with_all.answers(), replay.answers());
 }
 
 std::vector<Case> all_cases()
