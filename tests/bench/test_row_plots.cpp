@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "tests/bench/row_plots.hpp"
+#include "tests/shared/count_of.hpp"
 #include "tests/shared/markup_reader.hpp"
 
 #include <gtest/gtest.h>
@@ -14,15 +15,7 @@ namespace tactus::bench
 namespace
 {
 
-std::size_t count_of(const std::string& text, const std::string& part)
-{
-    std::size_t count = 0;
-    for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1))
-    {
-        ++count;
-    }
-    return count;
-}
+using test::count_of;
 
 Row row_of(const char* suite, const std::string& test_case, const std::string& by,
            const std::string& setting)

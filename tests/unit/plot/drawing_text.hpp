@@ -2,25 +2,17 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "tests/shared/count_of.hpp"
+
 #include <cstdlib>
 #include <string>
-#include <string_view>
 #include <vector>
 
 /// What tests read out of a drawing's text.
 namespace tactus::plot::test
 {
 
-inline std::size_t count_of(std::string_view text, std::string_view part)
-{
-    std::size_t count = 0;
-    for (std::size_t at = text.find(part); at != std::string_view::npos;
-         at = text.find(part, at + 1))
-    {
-        ++count;
-    }
-    return count;
-}
+using tactus::test::count_of;
 
 /// The number behind each of these.
 inline std::vector<double> numbers_behind(const std::string& text, const std::string& part)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "platform/plot/step_plot.hpp"
+#include "tests/unit/plot/drawing_text.hpp"
 
 #include <gtest/gtest.h>
 
@@ -14,16 +15,6 @@ namespace tactus::plot::test
 
 namespace
 {
-
-std::size_t count_of(const std::string& text, const std::string& part)
-{
-    std::size_t count = 0;
-    for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1))
-    {
-        ++count;
-    }
-    return count;
-}
 
 Panel panel_of(const std::vector<double>& counts)
 {

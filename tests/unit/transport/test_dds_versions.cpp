@@ -4,6 +4,7 @@
 /// Others on the wire that speak another version of the protocol: passed over, in one line, and
 /// nothing that they say touches what speaks ours.
 
+#include "tests/shared/count_of.hpp"
 #include "tests/unit/transport/tiny_model.hpp"
 #include "transport/content_hash.hpp"
 #include "transport/dds/dds_client.hpp"
@@ -184,16 +185,6 @@ protected:
     Nobody got;
 };
 
-std::size_t count_of(const std::string& text, const std::string& part)
-{
-    std::size_t count = 0;
-    for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1))
-    {
-        ++count;
-    }
-    return count;
-}
-
 TEST_F(DdsVersions, a_host_of_another_version_is_reported_and_passed_over)
 {
     const Endpoint foreign = announce(5, kOtherVersion);
@@ -202,7 +193,7 @@ TEST_F(DdsVersions, a_host_of_another_version_is_reported_and_passed_over)
     EXPECT_NE(alone.error().text.find("is not published"), std::string::npos) << alone.error().text;
     const std::string line =
         "model 'tiny' is published with protocol version 2; this build speaks 1";
-    EXPECT_EQ(count_of(lines, line), 1U) << lines;
+    EXPECT_EQ(test::count_of(lines, line), 1U) << lines;
     ASSERT_NO_FATAL_FAILURE(start_host());
     ASSERT_NO_FATAL_FAILURE(connect());
     const std::vector<ContentKey> keys{{ContentKind::chunk, 0}};
@@ -236,7 +227,8 @@ TEST_F(DdsVersions, a_controller_of_another_version_is_refused_and_named_and_our
     ASSERT_EQ(dds_write(writer.handle, &wanted), DDS_RETCODE_OK);
     ASSERT_TRUE(step_until([&] { return host->counters().requests_refused == 1; }));
     EXPECT_EQ(host->subscribers().size(), 1U);
-    EXPECT_EQ(count_of(host_lines, "it speaks protocol version 2, this build 1"), 1U) << host_lines;
+    EXPECT_EQ(test::count_of(host_lines, "it speaks protocol version 2, this build 1"), 1U)
+        << host_lines;
     EXPECT_EQ(host_lines.find('\x1b'), std::string::npos);
     EXPECT_EQ(std::ranges::count(host_lines, '\n'), 2) << host_lines; // And that ours subscribed.
     const std::vector<ContentKey> keys{{ContentKind::chunk, 0}};
