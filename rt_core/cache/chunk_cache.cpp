@@ -188,19 +188,18 @@ void ChunkCache::search_page(IndexPageId page, const RankedBalls& balls, const B
     index_meta_[slot].touched = frame;
     const IndexPage& index = slots_.index_pages[slot];
     const QuantumBox box = header_.index_entry(page).box;
-    const auto meeting = [&](const Balls& some)
+    const auto with_those_meeting = [&](const Balls& some, std::uint64_t chunks)
     {
-        std::uint64_t chunks = 0;
         for (const QuantumBall& ball : some)
         {
-            chunks |= chunks_meeting(index, box, ball);
+            chunks = chunks_meeting(index, box, ball, chunks);
         }
         return chunks;
     };
-    const std::uint64_t present = meeting(balls.present);
+    const std::uint64_t present = with_those_meeting(balls.present, 0);
     const Urgency now{frame, last_round_began_};
     const Urgency later{frame - kAheadAge, last_round_began_ - kAheadAge};
-    for (std::uint64_t left = present | meeting(balls.ahead); left != 0; left &= left - 1)
+    for (std::uint64_t left = with_those_meeting(balls.ahead, present); left != 0; left &= left - 1)
     {
         const auto i = static_cast<std::uint32_t>(std::countr_zero(left));
         const ChunkId chunk{(page.value << kChunksPerIndexPageLog2) + i};

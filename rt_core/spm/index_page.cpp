@@ -17,6 +17,9 @@ namespace tactus
 namespace
 {
 
+/// Of an index page's boxes.
+constexpr double kLastStep = 65'535.0;
+
 bool read_entry(ByteReader& reader, InfluenceBox& box, ChunkEntry& entry) noexcept
 {
     box = reader.read<InfluenceBox>();
@@ -26,11 +29,11 @@ bool read_entry(ByteReader& reader, InfluenceBox& box, ChunkEntry& entry) noexce
            entry.coded_bytes > 0 && entry.coded_bytes <= kMaxCodedChunkBytes;
 }
 
-FourFloats to_floats(const std::uint16_t* from) noexcept
+EightUnsigned eight_of(const std::uint16_t* from) noexcept
 {
-    std::uint16_t __attribute__((vector_size(8))) shorts;
-    std::memcpy(&shorts, from, sizeof shorts);
-    return __builtin_convertvector(__builtin_convertvector(shorts, FourInts), FourFloats);
+    EightUnsigned lanes;
+    std::memcpy(&lanes, from, sizeof lanes);
+    return lanes;
 }
 
 } // namespace
@@ -72,7 +75,7 @@ Result<Done, SpmRefusal> parse_index_page(std::span<const std::byte> bytes,
 }
 
 std::uint64_t chunks_meeting(const IndexPage& page, const QuantumBox& page_box,
-                             const QuantumBall& ball) noexcept
+                             const QuantumBall& ball, std::uint64_t known) noexcept
 {
     std::array<double, 3> step{};
     std::array<double, 3> at{};
@@ -81,32 +84,37 @@ std::uint64_t chunks_meeting(const IndexPage& page, const QuantumBox& page_box,
         step[axis] = static_cast<double>(index_step(page_box.low[axis], page_box.high[axis]));
         at[axis] = ball.center[axis] - static_cast<double>(page_box.low[axis]);
     }
-    // A position in the page is right to a quantum, and one far outside to 1e-7 of its distance.
-    const auto reach = static_cast<float>(ball.radius * (1.0 + 1e-6) + 4.0);
-    std::uint64_t near = 0;
-    for (std::size_t first = 0; first < page.chunks; first += 4)
+    // What the ball spans on each axis, in steps; a step more on both sides than rounding can be.
+    std::array<EightUnsigned, 3> lows;
+    std::array<EightUnsigned, 3> highs;
+    for (std::size_t axis = 0; axis < 3; ++axis)
     {
-        FourFloats about_sq{};
+        const double reach = ball.radius * (1.0 + 1e-12);
+        const double low = (at[axis] - reach) / step[axis] - 1.0;
+        const double high = (at[axis] + reach) / step[axis] + 1.0;
+        if (!(low <= kLastStep && high >= 0.0))
+        {
+            return known;
+        }
+        lows[axis] = EightUnsigned{} + static_cast<std::uint16_t>(std::max(low, 0.0));
+        highs[axis] = EightUnsigned{} + static_cast<std::uint16_t>(std::min(high, kLastStep));
+    }
+    std::uint64_t near = 0;
+    for (std::size_t first = 0; first < page.chunks; first += 8)
+    {
+        EightUnsigned outside{};
         for (std::size_t axis = 0; axis < 3; ++axis)
         {
-            const auto step_about = static_cast<float>(step[axis]);
-            const auto at_about = static_cast<float>(at[axis]);
-            const FourFloats below = to_floats(&page.low[axis][first]) * step_about - at_about;
-            const FourFloats above = at_about - to_floats(&page.high[axis][first]) * step_about;
-            const FourFloats outside = below > above ? below : above;
-            const FourFloats gap = outside > FourFloats{} ? outside : FourFloats{};
-            about_sq += gap * gap;
+            outside |= excess(eight_of(&page.low[axis][first]), highs[axis]);
+            outside |= excess(lows[axis], eight_of(&page.high[axis][first]));
         }
-        near |= std::uint64_t{bits_of(about_sq <= reach * reach)} << first;
+        near |= std::uint64_t{bits_of(outside == EightUnsigned{})} << first;
     }
-    std::uint64_t meeting = 0;
-    for (; near != 0; near &= near - 1)
+    std::uint64_t meeting = known;
+    const std::uint64_t all = ~std::uint64_t{0} >> (kChunksPerIndexPage - page.chunks);
+    for (near &= all & ~known; near != 0; near &= near - 1)
     {
         const auto i = static_cast<std::size_t>(std::countr_zero(near));
-        if (i >= page.chunks)
-        {
-            break;
-        }
         double distance_sq = 0.0;
         for (std::size_t axis = 0; axis < 3; ++axis)
         {

@@ -176,6 +176,8 @@ TEST(ChunksMeeting, names_the_boxes_that_the_ball_meets)
         ball.radius = 0.001 * static_cast<double>(below(1'000 * side));
 
         const std::uint64_t named = chunks_meeting(page, page_box, ball);
+        const std::uint64_t known = random();
+        ASSERT_EQ(chunks_meeting(page, page_box, ball, known), named | known) << "round " << round;
 
         ASSERT_EQ(page.chunks == 64 ? 0 : named >> page.chunks, 0U);
         for (std::uint32_t i = 0; i < page.chunks; ++i)
