@@ -71,6 +71,7 @@ class Hole:
     """One figure of the pattern: the rows it may be of."""
 
     def __init__(self, text):
+        self.source = text
         self.is_optional = text.endswith("?")
         metric, *words = (word.strip() for word in text.removesuffix("?").split(";"))
         if metric:
@@ -89,7 +90,7 @@ class Hole:
         """None when no row fills it."""
         found = self.rows(rows)
         if len(found) > 1:
-            raise Failure(f"{self.wanted}: {len(found)} rows have it; say which by more fields")
+            raise Failure(f"'{self.source}': {len(found)} rows have it; say which by more fields")
         if not found:
             return None
         text = number(found[0][self.value_key])
@@ -161,7 +162,7 @@ class Table:
         part = [row for row in own if has(row, judged(self.wanted))]
         for hole in (hole for cell in self.holes for hole in cell):
             if not hole.is_optional and not hole.is_in(part):
-                yield f"the suite has no column {hole.wanted}"
+                yield f"the suite has no column '{hole.source}'"
         if len(self.head) != len(self.pattern):
             yield f"{len(self.head)} columns, {len(self.pattern)} in the pattern"
         names = [self.name_in(line) for line in self.lines]
