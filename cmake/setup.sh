@@ -27,6 +27,8 @@ Options:
   --quick       bench: fewer frames and repeats, some three minutes instead of an hour
   --peers       bench: beside ours measure the libraries of cmake/packages-bench.txt, which are
                 installed if need be; some are under the GPL, none becomes part of Tactus
+  --docs        bench: put the results into the tables of docs/benchmarks.md, too, those of a
+                quick run not over those of a full one; needs TACTUS_MESHES and python3
   --ci          packages: the packages of .ci/run (cmake/packages-ci.txt) as well
   --bench       packages: the peers of tactus_bench (cmake/packages-bench.txt) as well
   --seconds N   demo: touch for N seconds, 1 to 3600 (default 10)
@@ -36,8 +38,8 @@ Options:
 Environment: CXX names the compiler (default g++). ccache is used when it is there.
 TACTUS_BUILD_DIR names a finished build folder: the demo then uses its programs, installs and
 builds nothing, and writes into its folder demo; the other commands refuse it.
-Exit codes: 0 done, 1 a test failed, or the demo or bench missed a criterion, 2 failed at run time,
-3 wrong usage.
+Exit codes: 0 done, 1 a test failed, the demo or bench missed a criterion, or --docs had to leave a
+table of a full run as it was, 2 failed at run time, 3 wrong usage.
 TEXT
 }
 
@@ -199,8 +201,9 @@ run_demo() { # run_demo SECONDS [DOMAIN]
 
 # --- bench ---------------------------------------------------------------------------------------
 
-run_bench() { # run_bench OPTION...: all suites, as tactus_bench takes options.
-    local results=$root/build/bench
+run_bench() { # run_bench PAGE OPTION...: all suites, as tactus_bench takes options.
+    local results=$root/build/bench page=$1
+    shift
     mkdir -p "$results/models"
     local code=0
     rm -f "$results"/bench.*
@@ -210,6 +213,10 @@ run_bench() { # run_bench OPTION...: all suites, as tactus_bench takes options.
     if [[ -f "$results/bench.html" ]]; then
         grep 'goals met' "$results/bench.txt" | sed 's/^/  /' || true
         echo "Results: $results/bench.html, bench.json, bench.csv and bench.txt beside it"
+    fi
+    if [[ -n "$page" && -f "$results/bench.json" ]]; then
+        python3 "$root/tests/bench/page_tables.py" write "$page" "$results/bench.json" \
+            || code=$?
     fi
     return "$code"
 }
@@ -224,7 +231,7 @@ number_in() { # number_in OPTION VALUE LOW HIGH
 
 main() {
     local command='' seconds=10 domain='' lists=("$root/cmake/packages.txt") more_options=()
-    local bench_options=() peers=''
+    local bench_options=() peers='' page=''
     while (($# > 0)); do
         case "$1" in
             build | test | demo | bench | packages)
@@ -236,6 +243,7 @@ main() {
                 lists+=("$root/cmake/packages-bench.txt")
                 peers='bullet;cgal;embree;fcl;meshoptimizer;openmesh'
                 ;;
+            --docs) page=$root/docs/benchmarks.md ;;
             --ci | --bench) lists+=("$root/cmake/packages-${1#--}.txt") ;;
             --seconds)
                 number_in "$1" "${2:-}" 1 3600
@@ -263,8 +271,13 @@ main() {
     if [[ -n "${TACTUS_BUILD_DIR:-}" && "$command" == @(build|test|bench) ]]; then
         fail 3 "TACTUS_BUILD_DIR is for the demo only; unset it for '$command'"
     fi
-    if [[ "$command" != bench && (-n "$peers" || ${#bench_options[@]} -gt 0) ]]; then
-        fail 3 "--quick and --peers are for 'bench' only"
+    if [[ "$command" != bench && (-n "$peers$page" || ${#bench_options[@]} -gt 0) ]]; then
+        fail 3 "--quick, --peers and --docs are for 'bench' only"
+    fi
+    if [[ -n "$page" ]]; then
+        [[ -d "${TACTUS_MESHES:-}" ]] || fail 3 "--docs: TACTUS_MESHES must name the folder with\
+ the well-known meshes; the page's tables are about them"
+        command -v python3 >/dev/null || fail 2 "--docs: there is no python3 here"
     fi
     case "$command" in
         '') fail 3 "no command given; use build, test, demo, bench or --help" ;;
@@ -282,7 +295,7 @@ main() {
             install_packages "${lists[@]}"
             bench_peers=$peers
             build_targets tactus_bench
-            run_bench "${bench_options[@]}" "${more_options[@]}"
+            run_bench "$page" "${bench_options[@]}" "${more_options[@]}"
             ;;
         demo)
             if [[ -z "${TACTUS_BUILD_DIR:-}" ]]; then

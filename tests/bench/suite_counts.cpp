@@ -3,7 +3,7 @@
 
 /// The suite `counts`: what frames do on three fixed scenes that need no mesh from elsewhere, in
 /// counts that are the same on every machine; no times. Under callgrind, instructions as well:
-/// check_counts.py.
+/// page_tables.py.
 
 #include "tests/bench/bench_report.hpp"
 #include "tests/bench/frame_replay.hpp"

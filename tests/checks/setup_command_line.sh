@@ -29,8 +29,10 @@ expect 3 "--seconds 'ten'" demo --seconds ten
 expect 3 "--seconds '0'" demo --seconds 0
 expect 3 "--seconds ''" demo --seconds
 expect 3 "--domain '233'" demo --domain 233
-expect 3 "--quick and --peers are for 'bench' only" test --quick
-expect 3 "--quick and --peers are for 'bench' only" packages --peers
+expect 3 "--quick, --peers and --docs are for 'bench' only" test --quick
+expect 3 "--quick, --peers and --docs are for 'bench' only" packages --peers
+expect 3 "--quick, --peers and --docs are for 'bench' only" build --docs
+TACTUS_MESHES=nowhere expect 3 'TACTUS_MESHES must name the folder' bench --docs
 
 # A dpkg that knows nothing and a sudo that refuses stand in for a user without packages and root.
 scratch=$(mktemp -d)
