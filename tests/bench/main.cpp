@@ -4,11 +4,11 @@
 /// tactus_bench: measures, and prints rows that can be compared from commit to commit.
 
 #include "host_tools/cli/command_line.hpp"
-#include "host_tools/mesh/atomic_file.hpp"
 #include "host_tools/mesh/prepare.hpp"
 #include "tests/bench/bench_report.hpp"
 #include "tests/bench/force_trajectory.hpp"
 #include "tests/bench/measuring.hpp"
+#include "tests/bench/output_files.hpp"
 #include "tests/bench/suites.hpp"
 
 #include <CLI/CLI.hpp>
@@ -17,7 +17,6 @@
 #include <algorithm>
 #include <exception>
 #include <iterator>
-#include <span>
 
 namespace tactus::bench
 {
@@ -27,9 +26,7 @@ namespace
 struct CommandLine
 {
     std::string suite;
-    std::string json_path;
-    std::string csv_path;
-    std::string html_path;
+    OutputPaths paths;
     bool all{false};
     bool check{false};
     BenchOptions options;
@@ -119,9 +116,9 @@ void declare_options(CLI::App& app, CommandLine& line)
                  "One warm pass, nothing evicted and no peers: for counting instructions");
     app.add_flag("--all", line.all, "Print every row, not only those with a goal");
     app.add_flag("--check", line.check, "Leave with code 1 when a goal is not met");
-    app.add_option("--json", line.json_path, "Write the rows to this file as JSON");
-    app.add_option("--csv", line.csv_path, "Write the rows to this file as CSV");
-    app.add_option("--html", line.html_path,
+    app.add_option("--json", line.paths.json, "Write the rows to this file as JSON");
+    app.add_option("--csv", line.paths.csv, "Write the rows to this file as CSV");
+    app.add_option("--html", line.paths.html,
                    "Write the rows to this file as a page, with plots where they make some");
     declare_trajectory_options(app, options.trajectory);
 }
@@ -147,20 +144,6 @@ std::optional<std::string> wrong_trajectory(const CommandLine& line)
     }
     const auto columns = TrajectoryColumns::parse(options.trajectory.columns);
     return columns ? std::nullopt : std::optional("--traj-columns: " + columns.error().text);
-}
-
-std::optional<std::string> wrong_files(const CommandLine& line)
-{
-    if (!line.csv_path.empty() && line.csv_path == line.json_path)
-    {
-        return "--csv: must be another file than --json";
-    }
-    if (!line.html_path.empty() &&
-        (line.html_path == line.json_path || line.html_path == line.csv_path))
-    {
-        return "--html: must be another file than --json and --csv";
-    }
-    return std::nullopt;
 }
 
 /// Why the command line makes no sense; nothing when it does.
@@ -192,27 +175,11 @@ std::optional<std::string> wrong_usage(const CommandLine& line)
     {
         return fmt::format("--core {}: this process may not run there", line.options.core);
     }
-    if (const auto reason = wrong_files(line))
+    if (const auto reason = line.paths.wrong_usage())
     {
         return reason;
     }
     return wrong_trajectory(line);
-}
-
-/// Returns why the file could not be written.
-std::optional<std::string> write_text(const std::string& path, const std::string& text)
-{
-    auto file = AtomicFile::create(path);
-    if (!file)
-    {
-        return file.error().text;
-    }
-    if (const auto written = file.value().write(std::as_bytes(std::span(text))); !written)
-    {
-        return written.error().text;
-    }
-    const auto done = file.value().commit();
-    return done ? std::nullopt : std::optional(done.error().text);
 }
 
 /// All suites of the line, one after the other, printed as they come; what came before a failure,
@@ -249,24 +216,6 @@ Results run_trajectory(const CommandLine& line)
     return results;
 }
 
-/// Returns why a file could not be written.
-std::optional<std::string> write_files(const CommandLine& line, const Results& results,
-                                       const RunFacts& facts)
-{
-    std::optional<std::string> failure;
-    const auto write = [&failure](const std::string& path, const std::string& text)
-    {
-        if (!failure && !path.empty())
-        {
-            failure = write_text(path, text);
-        }
-    };
-    write(line.json_path, to_json(results, facts));
-    write(line.csv_path, to_csv(results.rows));
-    write(line.html_path, to_page(results, facts));
-    return failure;
-}
-
 int run(int argc, char** argv)
 {
     CLI::App app("Measures Tactus. Times are per-frame least values of repeated replays.",
@@ -280,6 +229,12 @@ int run(int argc, char** argv)
     if (const auto reason = wrong_usage(line))
     {
         return fail(app, *reason, kExitUsage);
+    }
+    AtomicFile::remove_pending_on_signal();
+    auto files = OutputFiles::create(line.paths);
+    if (!files)
+    {
+        return fail(app, files.error().text);
     }
     const RunFacts facts{PinnedCore(line.options.core).core(), line.options.quick};
     const bool is_recorded = !line.options.trajectory.file.empty();
@@ -296,9 +251,9 @@ int run(int argc, char** argv)
     }
     fmt::print("{}\n", facts.core < 0 ? std::string("not held to one core: the system refuses")
                                       : fmt::format("measured on core {}", facts.core));
-    if (const auto failure = write_files(line, results, facts))
+    if (const auto written = files.value().write(results, facts); !written)
     {
-        return fail(app, *failure);
+        return fail(app, written.error().text);
     }
     const GoalCount count = count_goals(results.rows);
     const bool misses = laws.met < laws.goals || (line.check && count.met < count.goals);
