@@ -114,7 +114,7 @@ struct Asked
 };
 
 Asked ask(const TreeRig& tool, const TreeRig& object, const MeshPlacement& place, double reach,
-          double contact, QueryMemory& memory, const WalkBudget& budget = kAmple)
+          double contact, MeshMemory& memory, const WalkBudget& budget = kAmple)
 {
     Asked asked;
     OtherSurface surface(*object.sut, place, budget);
@@ -207,7 +207,7 @@ TEST(MeshQuery, finds_what_measuring_all_pairs_finds)
         fill(object, random, 1 + random.below(120), round % 4 != 0);
         const auto tool_faces = tool.present();
         const auto faces = object.present();
-        QueryMemory memory;
+        MeshMemory memory;
         for (int query = 0; query < 10; ++query)
         {
             MeshPlacement place = random_placement(random);
@@ -270,7 +270,7 @@ TEST(MeshQuery, a_spent_budget_leaves_all_that_it_says_true)
         const AllPairs truth(tool.present(), object.present(), place, 0.05);
         for (std::uint32_t share = 1; share < 3'000; share *= 3)
         {
-            QueryMemory memory{random.below(10)};
+            MeshMemory memory{random.below(10), random.below(10)};
             const Asked asked =
                 ask(tool, object, place, 0.05, 0.05, memory, {share, random.below(10 * share)});
             spent += asked.budget.is_spent ? 1 : 0;
@@ -309,7 +309,7 @@ TEST(MeshQuery, keeps_the_lowest_of_too_many_meeting_faces_and_contacts)
     tool.sut->refit();
     object.sut->refit();
     const MeshPlacement place;
-    QueryMemory memory;
+    MeshMemory memory;
 
     const Asked asked = ask(tool, object, place, 0.01, 0.01, memory);
 
@@ -337,7 +337,7 @@ TEST(MeshQuery, an_empty_tree_is_infinitely_far)
 {
     TreeRig tool({8, 50, 50});
     TreeRig object({8, 50, 50});
-    QueryMemory memory;
+    MeshMemory memory;
     const Asked asked = ask(tool, object, MeshPlacement{}, 0.1, 0.1, memory);
     EXPECT_EQ(asked.answer.kind, AnswerKind::decided);
     EXPECT_EQ(asked.report.intersection, Intersection::none);
