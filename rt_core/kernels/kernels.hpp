@@ -113,11 +113,17 @@ struct Kernels
     std::uint32_t (*near_faces)(const TriangleRows& rows, const KernelBox& box, std::uint32_t mask,
                                 float bound) noexcept TACTUS_NONBLOCKING;
 
+    /// The faces in `mask` whose boxes are not proven to be farther than `bound` from one round all
+    /// faces in `other_mask`, of which there are some. Both rows are around the same point; `slack`
+    /// is what their coordinates are off beyond 2^-22 of themselves.
+    std::uint32_t (*near_lanes)(const TriangleRows& rows, const TriangleRows& other,
+                                std::uint32_t other_mask, std::uint32_t mask, float bound,
+                                float slack) noexcept TACTUS_NONBLOCKING;
+
     /// Lower bounds on the distances from face `lane` of `other` to the faces in `mask`: the largest
     /// of what separates them along the frame's axes and along the normal of either. Returns the
-    /// faces whose bound is not above `bound`. Both rows are around the same point. `slack` is in
-    /// every bound: kPairMargin x the sum of the largest coordinates of `rows`, and what the rows'
-    /// coordinates are off beyond 2^-22 of themselves.
+    /// faces whose bound is not above `bound`; other lanes hold values of no meaning. Rows and
+    /// `slack` as above.
     std::uint32_t (*triangle_gaps)(const TriangleRows& rows, const TriangleRows& other,
                                    std::uint32_t lane, std::uint32_t mask, float bound, float slack,
                                    float* gaps) noexcept TACTUS_NONBLOCKING;

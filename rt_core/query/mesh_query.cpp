@@ -314,24 +314,40 @@ private:
         kernels.place_triangles(block.coordinates.front().data(), block.corners.front().data(),
                                 tool.box.center, rows);
         candidates_.clear();
-        const std::uint32_t tool_lanes = question_.tool.block(blocks.tool_block).faces;
-        for (std::uint32_t near = kernels.near_faces(rows, tool.box, block.faces, bound); near != 0;
-             near &= near - 1)
+        const std::uint32_t lanes = kernels.near_faces(rows, tool.box, block.faces, bound);
+        if (lanes == 0)
         {
-            const auto lane = static_cast<std::uint32_t>(std::countr_zero(near));
+            return;
+        }
+        const std::uint32_t tool_lanes =
+            kernels.near_lanes(tool.rows, rows, lanes, question_.tool.block(blocks.tool_block).faces,
+                               bound, views_.slack());
+        // One face against sixteen costs the same whoever has the one.
+        const bool is_tool_fewer = std::popcount(tool_lanes) < std::popcount(lanes);
+        const TriangleRows& ones = is_tool_fewer ? tool.rows : rows;
+        const TriangleRows& others = is_tool_fewer ? rows : tool.rows;
+        for (std::uint32_t left = is_tool_fewer ? tool_lanes : lanes; left != 0; left &= left - 1)
+        {
+            const auto one = static_cast<std::uint32_t>(std::countr_zero(left));
             alignas(64) std::array<float, kBlockFaces> gaps; // NOLINT: the kernel fills it.
-            for (std::uint32_t lanes =
-                     kernels.triangle_gaps(tool.rows, rows, lane, tool_lanes, bound,
-                                           tool.box.center.slack, gaps.data());
-                 lanes != 0; lanes &= lanes - 1)
+            for (std::uint32_t near =
+                     kernels.triangle_gaps(others, ones, one, is_tool_fewer ? lanes : tool_lanes,
+                                           bound, views_.slack(), gaps.data());
+                 near != 0; near &= near - 1)
             {
-                const auto tool_lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
-                candidates_.push_back({tool_lane, lane, gaps[tool_lane]});
-                if (gaps[tool_lane] < candidates_[0].gap)
-                {
-                    std::swap(candidates_[0], candidates_[candidates_.size() - 1]);
-                }
+                const auto other = static_cast<std::uint32_t>(std::countr_zero(near));
+                add_candidate(is_tool_fewer ? Candidate{one, other, gaps[other]}
+                                            : Candidate{other, one, gaps[other]});
             }
+        }
+    }
+
+    void add_candidate(const Candidate& candidate) noexcept
+    {
+        candidates_.push_back(candidate);
+        if (candidate.gap < candidates_[0].gap)
+        {
+            std::swap(candidates_[0], candidates_[candidates_.size() - 1]);
         }
     }
 
