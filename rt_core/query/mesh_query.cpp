@@ -147,6 +147,7 @@ public:
         {
             search_remembered();
         }
+        // Where a distance is wanted there has to be a bound, before anything can be left out.
         if (object != nullptr && upper_m_ == kInfinity)
         {
             upper_m_ = object->upper_bound_m(all) * scale * kRoundedUp;
@@ -157,7 +158,7 @@ public:
         }
         else
         {
-            leave(object == nullptr ? 0.0 : object->lower_bound_m(all, kInfinity) * scale);
+            leave(balls_gap_m(all));
         }
     }
 
@@ -230,6 +231,15 @@ private:
     /// Something was not looked at that is at least this far away.
     void leave(double gap_m) noexcept { open_m_ = std::min(open_m_, gap_m); }
     [[nodiscard]] bool is_enough() const noexcept { return found_ >= enough_; }
+
+    /// Of the tool's ball and the object's.
+    [[nodiscard]] double balls_gap_m(const Ball& tool) const noexcept
+    {
+        const Ball object = ball_round(question_.object.box());
+        const Vec3 way = question_.place.to_there(tool.center) - object.center;
+        return way.norm() / kRoundedUp - question_.place.rounding_m(tool.center) -
+               (question_.place.place.scale * tool.radius + object.radius) * kRoundedUp;
+    }
 
     /// First the blocks that are remembered: their bound leaves little to look at.
     void search_remembered() noexcept
