@@ -34,11 +34,11 @@ struct FaceBounds
     // NOLINTEND(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays)
 };
 
-/// A box of another frame as the kernels see it, turned as it is. Around its centre, in units: quanta
-/// of the object, whichever of the two frames this is.
+/// A box of another frame as the kernels see it, turned as it is; around its centre, in units that
+/// both frames share.
 struct KernelBox
 {
-    KernelProbe center; ///< `scale` is units a metre here; `slack` holds what is rounded of the box.
+    KernelProbe center; ///< `scale` is units a metre; `slack` holds what is rounded of the box.
     // NOLINTBEGIN(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays): kernel_source.inc.
     float half[3];       ///< Half its extent along the axes of this frame.
     float half_along[3]; ///< Half its extent along its own axes,
@@ -54,8 +54,8 @@ struct TriangleRows
     alignas(64) float vertex[3][16]; ///< By the block's rows.
     float low[3][16];                ///< Of the faces' boxes.
     float high[3][16];
-    float normal[3][16];   ///< Of unit length to rounding, or zero of a face that has none.
-    float plane_low[16];   ///< Least and greatest height of the face's own corners along it.
+    float normal[3][16]; ///< Of unit length to rounding, or zero of a face that has none.
+    float plane_low[16]; ///< Least and greatest height of the face's own corners along it.
     float plane_high[16];
     std::uint8_t corners[3][16]; ///< Row of each corner.
     // NOLINTEND(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays)
@@ -120,10 +120,10 @@ struct Kernels
                                 std::uint32_t other_mask, std::uint32_t mask, float bound,
                                 float slack) noexcept TACTUS_NONBLOCKING;
 
-    /// Lower bounds on the distances from face `lane` of `other` to the faces in `mask`: the largest
-    /// of what separates them along the frame's axes and along the normal of either. Returns the
-    /// faces whose bound is not above `bound`; other lanes hold values of no meaning. Rows and
-    /// `slack` as above.
+    /// Lower bounds on the distances from face `lane` of `other` to the faces in `mask`: the
+    /// largest of what separates them along the frame's axes and along the normal of either.
+    /// Returns the faces whose bound is not above `bound`; other lanes hold values of no meaning.
+    /// Rows and `slack` as above.
     std::uint32_t (*triangle_gaps)(const TriangleRows& rows, const TriangleRows& other,
                                    std::uint32_t lane, std::uint32_t mask, float bound, float slack,
                                    float* gaps) noexcept TACTUS_NONBLOCKING;

@@ -329,9 +329,9 @@ private:
         {
             return;
         }
-        const std::uint32_t tool_lanes =
-            kernels.near_lanes(tool.rows, rows, lanes, question_.tool.block(blocks.tool_block).faces,
-                               bound, views_.slack());
+        const std::uint32_t tool_lanes = kernels.near_lanes(
+            tool.rows, rows, lanes, question_.tool.block(blocks.tool_block).faces, bound,
+            views_.slack());
         // One face against sixteen costs the same whoever has the one.
         const bool is_tool_fewer = std::popcount(tool_lanes) < std::popcount(lanes);
         const TriangleRows& ones = is_tool_fewer ? tool.rows : rows;
@@ -401,7 +401,8 @@ private:
         {
             add_meeting({faces, tool_face.prim, face.prim});
         }
-        else if (aim_ == Aim::distance && apart_m <= std::max(kept_contact_m(), nearest_m(boxes.span_m)))
+        else if (aim_ == Aim::distance &&
+                 apart_m <= std::max(kept_contact_m(), nearest_m(boxes.span_m)))
         {
             add_apart(faces, face.triangle, closest_points(tool_face.triangle, face.triangle));
         }
@@ -544,7 +545,7 @@ private:
     MeshMemory& memory_;
     MeshReport& report_;
     ContactReport* contacts_; ///< Null where no distance is wanted.
-    double tool_quantum_m_; ///< In the object's frame.
+    double tool_quantum_m_;   ///< In the object's frame.
     double quantum_m_;
     MeshViews views_;
     PlacedBlocks placed_;

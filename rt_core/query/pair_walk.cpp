@@ -97,8 +97,8 @@ void PairWalk::open(const Item& item, float bound) noexcept
         !item.tool.is_block() && (item.object.is_block() || is_tool_larger(item));
     const AbTree& tree = opens_tool ? tool_ : object_;
     const AbNode& node = tree.node(opens_tool ? item.tool.index() : item.object.index());
-    const KernelBox other = opens_tool ? views_.of_object().of(item.object_box)
-                                       : views_.of_tool().of(item.tool_box);
+    const KernelBox other =
+        opens_tool ? views_.of_object().of(item.object_box) : views_.of_tool().of(item.tool_box);
     alignas(32) std::array<float, kNodeChildren> gaps; // NOLINT: the kernel fills it.
     std::uint32_t near = tree.kernels().box_gaps(node.volumes.low.front().data(), other, node.mask,
                                                  bound, gaps.data());

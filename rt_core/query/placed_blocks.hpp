@@ -14,10 +14,10 @@ namespace tactus
 struct PlacedBlock
 {
     std::uint32_t index{kNoNode};
-    double largest_error_m{0.0};                ///< Of its faces, in the object's frame.
+    double largest_error_m{0.0};                 ///< Of its faces, in the object's frame.
     std::array<Vec3, kBlockVertices> vertices_m; ///< Each coordinate rounded once or twice.
-    KernelBox box;                              ///< Round the faces, errors left out.
-    TriangleRows rows;                          ///< Around the box's centre.
+    KernelBox box;                               ///< Round the faces, errors left out.
+    TriangleRows rows;                           ///< Around the box's centre.
 
     [[nodiscard]] Triangle triangle(const BlockGeometry& block, std::uint32_t lane) const noexcept
     {

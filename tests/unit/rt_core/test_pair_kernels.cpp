@@ -87,8 +87,8 @@ struct BoxScene
                  random.in_cube(size)};
         const double gap = random.one_in(3) ? 0.0 : size * std::exp2(-random.between(0.0, 20.0));
         const Vec3 way = gap * random.in_cube(1.0).normalized();
-        place.place.origin = point_in(random, boxes.get(touched)) + way -
-                             place.to_there(point_in(random, other));
+        place.place.origin =
+            point_in(random, boxes.get(touched)) + way - place.to_there(point_in(random, other));
         apart_units = gap * units_per_m;
     }
 
@@ -127,8 +127,8 @@ double separation(const BoxScene& scene, std::uint32_t child)
     double widest = 0.0;
     for (int i = 0; i < 6; ++i)
     {
-        const Vec3 direction = i < 3 ? Vec3(Mat3::Identity().col(i))
-                                     : Vec3(scene.place.place.rotation.col(i - 3));
+        const Vec3 direction =
+            i < 3 ? Vec3(Mat3::Identity().col(i)) : Vec3(scene.place.place.rotation.col(i - 3));
         const auto here = extent(scene.boxes.get(child), MeshPlacement{}, direction);
         const auto there = extent(scene.other, scene.place, direction);
         widest = std::max({widest, here[0] - there[1], there[0] - here[1]});
@@ -218,9 +218,8 @@ std::vector<std::uint32_t> answer_bits(const Kernels& kernels, const FacesScene&
     for (std::uint32_t lane = 0; lane < kBlockFaces; ++lane)
     {
         alignas(64) std::array<float, kBlockFaces> gaps{};
-        const std::uint32_t near =
-            kernels.triangle_gaps(scene.rows, scene.other_rows, lane, mask, bound,
-                                  scene.probe.slack, gaps.data());
+        const std::uint32_t near = kernels.triangle_gaps(scene.rows, scene.other_rows, lane, mask,
+                                                         bound, scene.probe.slack, gaps.data());
         bits.push_back(near);
         for (std::uint32_t lanes = near; lanes != 0; lanes &= lanes - 1)
         {
@@ -276,9 +275,8 @@ TEST(PairKernels, give_the_same_bits_in_every_set)
                                     ? kUnlimited
                                     : static_cast<float>(std::exp2(random.between(-2.0, 20.0)));
             alignas(32) std::array<float, kNodeChildren> expected_gaps{};
-            const std::uint32_t expected_near =
-                portable_kernels().box_gaps(boxes.boxes.low.front().data(), box, mask & 0xFFU,
-                                            bound, expected_gaps.data());
+            const std::uint32_t expected_near = portable_kernels().box_gaps(
+                boxes.boxes.low.front().data(), box, mask & 0xFFU, bound, expected_gaps.data());
             const auto expected_rows = row_bits(scene.rows);
             const auto expected = answer_bits(portable_kernels(), scene, round_other, mask, bound);
             for (const Kernels* kernels : available_kernels())
@@ -311,8 +309,7 @@ TEST(PairKernels, bound_the_distance_of_turned_boxes_from_below_and_closely)
         static_cast<void>(portable_kernels().box_gaps(scene.boxes.low.front().data(), box, 0xFF,
                                                       kUnlimited, gaps.data()));
         // Two points are known that are so far apart.
-        ASSERT_LE(static_cast<double>(gaps[scene.touched]),
-                  scene.apart_units + scene.slack_units())
+        ASSERT_LE(static_cast<double>(gaps[scene.touched]), scene.apart_units + scene.slack_units())
             << round;
         for (std::uint32_t child = 0; child < kNodeChildren; ++child)
         {
@@ -368,8 +365,8 @@ TEST(PairKernels, bound_the_distance_of_faces_from_below_and_no_worse_than_their
             const Aabb box = box_of(scene.other, 1U << lane);
             for (std::uint32_t own = 0; own < kBlockFaces; ++own)
             {
-                const ClosestPoints closest = closest_points(
-                    to_triangle(block_triangle(scene.first.block, own)), other);
+                const ClosestPoints closest =
+                    closest_points(to_triangle(block_triangle(scene.first.block, own)), other);
                 const double gap = static_cast<double>(gaps[own]) * quantum;
                 ASSERT_LE(gap, closest.distance + closest.distance_error)
                     << scene.first.shape << " " << own;
@@ -395,9 +392,8 @@ TEST(PairKernels, leave_out_no_face_within_the_bound)
             const std::uint32_t asked = random.below(kBlockFaces);
             const ClosestPoints closest =
                 closest_points(to_triangle(block_triangle(scene.first.block, asked)), other);
-            const float bound = round_up_to_float(
-                (closest.distance + closest.distance_error) /
-                static_cast<double>(scene.first.quantum_m));
+            const float bound = round_up_to_float((closest.distance + closest.distance_error) /
+                                                  static_cast<double>(scene.first.quantum_m));
             alignas(64) std::array<float, kBlockFaces> gaps{};
             const std::uint32_t near = portable_kernels().triangle_gaps(
                 scene.rows, scene.other_rows, lane, mask, bound, scene.probe.slack, gaps.data());
