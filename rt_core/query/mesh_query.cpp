@@ -140,8 +140,6 @@ public:
         {
             return;
         }
-        const Ball all = ball_round(question_.tool.box());
-        const double scale = question_.place.place.scale;
         const bool is_near = !views_.is_beyond_kernels();
         if (is_near)
         {
@@ -150,7 +148,8 @@ public:
         // Where a distance is wanted there has to be a bound, before anything can be left out.
         if (object != nullptr && upper_m_ == kInfinity)
         {
-            upper_m_ = object->upper_bound_m(all) * scale * kRoundedUp;
+            upper_m_ = object->upper_bound_m(ball_round(question_.tool.box())) *
+                       question_.place.place.scale * kRoundedUp;
         }
         if (is_near)
         {
@@ -158,7 +157,7 @@ public:
         }
         else
         {
-            leave(balls_gap_m(all));
+            leave(balls_gap_m());
         }
     }
 
@@ -233,8 +232,9 @@ private:
     [[nodiscard]] bool is_enough() const noexcept { return found_ >= enough_; }
 
     /// Of the tool's ball and the object's.
-    [[nodiscard]] double balls_gap_m(const Ball& tool) const noexcept
+    [[nodiscard]] double balls_gap_m() const noexcept
     {
+        const Ball tool = ball_round(question_.tool.box());
         const Ball object = ball_round(question_.object.box());
         const Vec3 way = question_.place.to_there(tool.center) - object.center;
         return way.norm() / kRoundedUp - question_.place.rounding_m(tool.center) -
