@@ -75,7 +75,7 @@ private:
     Ball own_ball_;   ///< Round the tool's model, in its frame.
     CoreCover cover_; ///< Of the tool's model near the object, as it was found last.
     std::uint32_t frames_until_cover_{0};
-    QueryMemory memory_;
+    MeshMemory memory_;
     MeshReport report_;
 };
 

@@ -34,6 +34,33 @@ struct FaceBounds
     // NOLINTEND(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays)
 };
 
+/// A box of another frame as the kernels see it, turned as it is; around its centre, in units that
+/// both frames share.
+struct KernelBox
+{
+    KernelProbe center; ///< `scale` is units a metre; `slack` holds what is rounded of the box.
+    // NOLINTBEGIN(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays): kernel_source.inc.
+    float half[3];       ///< Half its extent along the axes of this frame.
+    float half_along[3]; ///< Half its extent along its own axes,
+    float axes[3][3];    ///< which are these, of unit length to rounding.
+    // NOLINTEND(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays)
+};
+
+/// The faces of a block, one lane each, with all that bounds the distance of two faces from below.
+/// In quanta, around some point. 960 B.
+struct TriangleRows
+{
+    // NOLINTBEGIN(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays): kernel_source.inc.
+    alignas(64) float vertex[3][16]; ///< By the block's rows.
+    float low[3][16];                ///< Of the faces' boxes.
+    float high[3][16];
+    float normal[3][16]; ///< Of unit length to rounding, or zero of a face that has none.
+    float plane_low[16]; ///< Least and greatest height of the face's own corners along it.
+    float plane_high[16];
+    std::uint8_t corners[3][16]; ///< Row of each corner.
+    // NOLINTEND(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays)
+};
+
 /// The inner loops of query and refit, in one set for each instruction set.
 ///
 /// They filter, they do not decide: bounds are conservative by a stated margin, and what lies
@@ -69,7 +96,42 @@ struct Kernels
     /// Union of the boxes of the children in `mask`. Exact.
     void (*node_box)(const float* boxes, std::uint32_t mask,
                      float* box) noexcept TACTUS_NONBLOCKING;
+
+    /// Lower bounds on the distances from a box to the boxes of a node's eight children: the larger
+    /// of what separates them along the axes of the one and of the other. Returns the children in
+    /// `mask` whose bound is not above `bound`.
+    std::uint32_t (*box_gaps)(const float* boxes, const KernelBox& box, std::uint32_t mask,
+                              float bound, float* gaps) noexcept TACTUS_NONBLOCKING;
+
+    /// The faces of a block around the probe; `coordinates` and `corners` are BlockGeometry's rows.
+    void (*place_triangles)(const float* coordinates, const std::uint8_t* corners,
+                            const KernelProbe& probe,
+                            TriangleRows& rows) noexcept TACTUS_NONBLOCKING;
+
+    /// The faces in `mask` whose boxes are not proven to be farther than `bound` from a box. `rows`
+    /// are around its centre.
+    std::uint32_t (*near_faces)(const TriangleRows& rows, const KernelBox& box, std::uint32_t mask,
+                                float bound) noexcept TACTUS_NONBLOCKING;
+
+    /// The faces in `mask` whose boxes are not proven to be farther than `bound` from one round all
+    /// faces in `other_mask`, of which there are some. Both rows are around the same point; `slack`
+    /// is what their coordinates are off beyond 2^-22 of themselves.
+    std::uint32_t (*near_lanes)(const TriangleRows& rows, const TriangleRows& other,
+                                std::uint32_t other_mask, std::uint32_t mask, float bound,
+                                float slack) noexcept TACTUS_NONBLOCKING;
+
+    /// Lower bounds on the distances from face `lane` of `other` to the faces in `mask`: the
+    /// largest of what separates them along the frame's axes and along the normal of either.
+    /// Returns the faces whose bound is not above `bound`; other lanes hold values of no meaning.
+    /// Rows and `slack` as above.
+    std::uint32_t (*triangle_gaps)(const TriangleRows& rows, const TriangleRows& other,
+                                   std::uint32_t lane, std::uint32_t mask, float bound, float slack,
+                                   float* gaps) noexcept TACTUS_NONBLOCKING;
 };
+
+/// What single precision rounds in the bounds between boxes and between faces, as a share of the
+/// sum of their coordinates around the common point; four times the sum of all roundings.
+inline constexpr float kPairMargin = 0x1p-20F;
 
 /// Faces with a larger (longest edge squared / twice the area) are bounded by their edges alone.
 inline constexpr float kThinAspect = 128.0F;

@@ -6,6 +6,8 @@
 #include "rt_core/geometry/triangle_triangle.hpp"
 #include "rt_core/math/rounding.hpp"
 #include "rt_core/query/contact_set.hpp"
+#include "rt_core/query/pair_walk.hpp"
+#include "rt_core/query/placed_blocks.hpp"
 #include "rt_core/query/probe.hpp"
 #include "rt_core/query/surface_query.hpp"
 
@@ -72,66 +74,12 @@ BoxGap box_gap(const MeshFace& a, const MeshFace& b) noexcept
     return {std::sqrt(gap_sq) / kRoundedUp, std::sqrt(span_sq) * kRoundedUp};
 }
 
-/// The faces of one block of the tool, and their boxes row by axis.
-class ToolFaces
+/// Two faces that single precision does not tell to be far apart.
+struct Candidate
 {
-public:
-    void add(const MeshFace& face) noexcept
-    {
-        const std::size_t lane = faces_.size();
-        for (std::size_t axis = 0; axis < 3; ++axis)
-        {
-            low_[axis][lane] = face.low[static_cast<Eigen::Index>(axis)];
-            high_[axis][lane] = face.high[static_cast<Eigen::Index>(axis)];
-        }
-        low_end_ = lane == 0 ? face.low : least_of(low_end_, face.low);
-        high_end_ = lane == 0 ? face.high : greatest_of(high_end_, face.high);
-        largest_error_m_ = std::max(largest_error_m_, face.error_m);
-        faces_.push_back(face);
-    }
-
-    /// Holds all of them, errors left out.
-    [[nodiscard]] Ball ball() const noexcept
-    {
-        const Vec3 half = 0.5 * (high_end_ - low_end_);
-        return {low_end_ + half, half.norm() * kRoundedUp};
-    }
-    [[nodiscard]] const MeshFace& face(std::size_t lane) const noexcept { return faces_[lane]; }
-    [[nodiscard]] double largest_error_m() const noexcept { return largest_error_m_; }
-
-    /// Lanes of the faces whose boxes are within `limit_m` of another face's.
-    [[nodiscard]] std::uint32_t near(const MeshFace& other, double limit_m) const noexcept
-    {
-        std::array<double, kBlockFaces> gap_sq{};
-        for (std::size_t axis = 0; axis < 3; ++axis)
-        {
-            const double other_low = other.low[static_cast<Eigen::Index>(axis)];
-            const double other_high = other.high[static_cast<Eigen::Index>(axis)];
-            for (std::size_t lane = 0; lane < kBlockFaces; ++lane)
-            {
-                const double below = other_low - high_[axis][lane];
-                const double above = low_[axis][lane] - other_high;
-                const double larger = below > above ? below : above;
-                const double gap = larger > 0.0 ? larger : 0.0;
-                gap_sq[lane] += gap * gap;
-            }
-        }
-        const double limit_sq = limit_m * limit_m * kRoundedUp;
-        std::uint32_t lanes = 0;
-        for (std::size_t lane = 0; lane < faces_.size(); ++lane)
-        {
-            lanes |= gap_sq[lane] <= limit_sq ? 1U << lane : 0U;
-        }
-        return lanes;
-    }
-
-private:
-    std::array<std::array<double, kBlockFaces>, 3> low_{};
-    std::array<std::array<double, kBlockFaces>, 3> high_{};
-    StaticVector<MeshFace, kBlockFaces> faces_;
-    Vec3 low_end_{0.0, 0.0, 0.0}; ///< Of a box round all.
-    Vec3 high_end_{0.0, 0.0, 0.0};
-    double largest_error_m_{0.0};
+    std::uint32_t tool_lane;
+    std::uint32_t lane;
+    float gap; ///< They are at least this far apart, in quanta.
 };
 
 /// Exact faces that share a point.
@@ -154,46 +102,62 @@ Triangle triangle_of(const AbTree& tree, PrimId prim) noexcept
     return to_triangle(block_triangle(tree.block(leaf / kBlockFaces), leaf % kBlockFaces));
 }
 
-/// One query: the tool's faces near the object, and for each the object's faces near it.
+/// What a search is for.
+enum class Aim : std::uint8_t
+{
+    distance, ///< And all that meets.
+    meeting,  ///< Which needs no measuring.
+};
+constexpr std::uint32_t kAll = std::numeric_limits<std::uint32_t>::max();
+
+/// One query: the pairs of blocks that are near, and of each the pairs of faces.
 class MeshSearch
 {
 public:
-    MeshSearch(const MeshQuestion& question, OtherSurface& object, QueryMemory& memory,
-               MeshReport& report, ContactReport& contacts) noexcept
+    /// Ends when `enough` pairs meet.
+    MeshSearch(const MeshQuestion& question, Aim aim, std::uint32_t enough, WalkBudget& budget,
+               MeshMemory& memory, MeshReport& report, ContactReport* contacts) noexcept
         : question_(question)
-        , object_(object)
-        , budget_(object.budget())
+        , aim_(aim)
+        , enough_(enough)
+        , budget_(budget)
         , memory_(memory)
         , report_(report)
         , contacts_(contacts)
         , tool_quantum_m_(static_cast<double>(question.tool.quantum_m()) *
                           question.place.place.scale)
         , quantum_m_(static_cast<double>(question.object.quantum_m()))
+        , views_(question.tool, question.object, question.place)
+        , placed_(question.tool, question.object, question.place, views_)
     {
     }
 
-    void run() noexcept
+    /// `object` is asked how far away it is where nothing is remembered; null when that is not
+    /// wanted.
+    void run(OtherSurface* object) noexcept
     {
-        const Ball all = ball_round(question_.tool.box());
-        upper_m_ = object_.upper_bound_m(all) * question_.place.place.scale * kRoundedUp;
-        const std::uint32_t warm = memory_.block;
-        const bool is_warm = question_.tool.is_block_in_use(warm) && budget_.take_node();
-        if (is_warm)
+        if (question_.tool.root().is_none() || question_.object.root().is_none())
         {
-            test_tool_block(warm);
+            return;
         }
-        SurfaceWalk walk(question_.tool, object_);
-        for (std::uint32_t block = walk.next_block(bound_m(), false); block != kNoNode;
-             block = walk.next_block(bound_m(), false))
+        const bool is_near = !views_.is_beyond_kernels();
+        if (is_near)
         {
-            if (!is_warm || block != warm)
-            {
-                test_tool_block(block);
-            }
+            search_remembered();
         }
-        for (const SurfaceWalk::Item& item : walk.left())
+        // Where a distance is wanted there has to be a bound, before anything can be left out.
+        if (object != nullptr && upper_m_ == kInfinity)
         {
-            open_m_ = std::min(open_m_, item.gap_m * question_.place.place.scale);
+            upper_m_ = object->upper_bound_m(ball_round(question_.tool.box())) *
+                       question_.place.place.scale * kRoundedUp;
+        }
+        if (is_near)
+        {
+            search_all();
+        }
+        else
+        {
+            leave(balls_gap_m());
         }
     }
 
@@ -221,15 +185,20 @@ public:
         return answer;
     }
 
-    /// After answer(): what meets, sorted, and the contacts in order.
-    void report(const DistanceAnswer& answer) noexcept
+    /// What meets, sorted.
+    void report_meeting() noexcept
     {
         std::ranges::sort_heap(report_.meeting);
         const bool is_all_seen = is_all_there() && open_m_ > 0.0;
-        report_.is_complete = is_all_seen && !report_.is_truncated;
+        report_.is_complete = is_all_seen && !report_.is_truncated && !is_enough();
         report_.intersection = !report_.meeting.empty() ? Intersection::proven
                                : is_all_seen            ? Intersection::none
                                                         : Intersection::open;
+    }
+
+    /// The contacts in order, and the tool's face of the nearest pair.
+    void report_contacts(const DistanceAnswer& answer) noexcept
+    {
         report_.nearest_tool_face =
             answer.nearest_face.is_none() ? FaceId{} : nearest_faces_.tool_face;
         if (question_.contact_m < 0.0)
@@ -240,7 +209,7 @@ public:
         {
             keep_contact(meeting.faces, object_triangle(meeting.prim), closest_of(meeting));
         }
-        contacts_.is_complete =
+        contacts_->is_complete =
             !has_dropped_ && (answer.certified_radius_m >= question_.contact_m ||
                               answer.lower_m > question_.contact_m);
     }
@@ -254,98 +223,167 @@ private:
     /// What is farther changes nothing; never grows.
     [[nodiscard]] double worth_m() const noexcept
     {
-        return std::max(question_.reach_m, static_cast<double>(kProofShare) * upper_m_);
+        return aim_ == Aim::distance
+                   ? std::max(question_.reach_m, static_cast<double>(kProofShare) * upper_m_)
+                   : 0.0;
     }
-    /// The same in the tool's model.
-    [[nodiscard]] double bound_m() const noexcept
+    /// Something was not looked at that is at least this far away.
+    void leave(double gap_m) noexcept { open_m_ = std::min(open_m_, gap_m); }
+    [[nodiscard]] bool is_enough() const noexcept { return found_ >= enough_; }
+
+    /// Of the tool's ball and the object's.
+    [[nodiscard]] double balls_gap_m() const noexcept
     {
-        return worth_m() / question_.place.place.scale * kRoundedUp;
+        const Ball tool = ball_round(question_.tool.box());
+        const Ball object = ball_round(question_.object.box());
+        const Vec3 way = question_.place.to_there(tool.center) - object.center;
+        return way.norm() / kRoundedUp - question_.place.rounding_m(tool.center) -
+               (question_.place.place.scale * tool.radius + object.radius) * kRoundedUp;
     }
 
-    void test_tool_block(std::uint32_t index) noexcept
+    /// First the blocks that are remembered: their bound leaves little to look at.
+    void search_remembered() noexcept
     {
-        const BlockSide& side = question_.tool.side(index);
-        const double upper_before = upper_m_;
-        ToolFaces faces;
-        for (std::uint32_t lanes = question_.tool.block(index).faces; lanes != 0;
-             lanes &= lanes - 1)
+        warm_ = memory_;
+        is_warm_ = question_.tool.is_block_in_use(warm_.tool_block) &&
+                   question_.object.is_block_in_use(warm_.block) && budget_.take_node();
+        if (is_warm_)
         {
-            const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
-            const auto error = static_cast<double>(error_in_quanta(side.errors[lane]));
-            faces.add({tool_triangle(side.prims[lane]), question_.tool, side.prims[lane],
-                       error * tool_quantum_m_ * kRoundedUp, (side.coarse >> lane & 1U) != 0});
+            test_blocks(warm_);
         }
-        test_tool_faces(faces);
-        memory_.block = upper_m_ < upper_before ? index : memory_.block;
     }
 
-    void test_tool_faces(const ToolFaces& faces) noexcept
+    void search_all() noexcept
     {
-        const Ball ball = faces.ball();
-        if (is_beyond_kernels(ball.center, question_.object.quantum_m()))
+        PairWalk walk(question_.tool, question_.object, views_, budget_);
+        while (!is_enough() && !has_stopped_)
         {
-            open_m_ = std::min(open_m_, 0.0);
-            return;
-        }
-        const double wider_m = ball.radius + faces.largest_error_m();
-        const KernelProbe probe = make_probe(ball.center, question_.object.quantum_m());
-        const auto bound = [&]
-        {
-            const double quanta = (wider_m + worth_m()) / quantum_m_;
-            return quanta < kFarQuanta ? round_up_to_float(quanta)
-                                       : std::numeric_limits<float>::infinity();
-        };
-        TreeWalk walk(question_.object, probe, budget_);
-        for (std::uint32_t block = walk.next_block(bound(), false); block != kNoNode;
-             block = walk.next_block(bound(), false))
-        {
-            if (!budget_.take_triangles(face_count(question_.object.block(block))))
+            const PairWalk::Item* near = walk.next_blocks(bound_quanta(0.0));
+            if (near == nullptr)
             {
-                open_m_ = std::min(open_m_, 0.0); // Its parent's bound may have gone with it.
                 break;
             }
-            test_object_block(block, faces, probe, wider_m);
+            const MeshMemory blocks{near->tool.index(), near->object.index()};
+            if (!is_warm_ || blocks != warm_)
+            {
+                test_blocks(blocks);
+            }
         }
-        for (const WalkItem& item : walk.left())
+        for (const PairWalk::Item& item : walk.left())
         {
-            open_m_ = std::min(open_m_, static_cast<double>(item.gap) * quantum_m_ - wider_m);
+            leave(static_cast<double>(item.gap) * quantum_m_);
         }
     }
 
-    void test_object_block(std::uint32_t index, const ToolFaces& tool_faces,
-                           const KernelProbe& probe, double wider_m) noexcept
+    /// The same for the kernels, of faces with such an error.
+    [[nodiscard]] float bound_quanta(double error_m) const noexcept
     {
-        const BlockGeometry& block = question_.object.block(index);
-        const BlockSide& side = question_.object.side(index);
-        FaceBounds bounds; // NOLINT(cppcoreguidelines-pro-type-member-init): the kernel fills it.
-        bound_faces(question_.object.kernels(), block, block.faces, probe, bounds);
-        for (std::uint32_t lanes = block.faces; lanes != 0; lanes &= lanes - 1)
+        const double quanta = (worth_m() + error_m) / quantum_m_ * kRoundedUp;
+        return quanta < kFarQuanta ? round_up_to_float(quanta)
+                                   : std::numeric_limits<float>::infinity();
+    }
+
+    void test_blocks(const MeshMemory& blocks) noexcept
+    {
+        const BlockGeometry& block = question_.object.block(blocks.block);
+        if (!budget_.take_triangles(face_count(block)))
         {
-            const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
-            const double error =
-                static_cast<double>(error_in_quanta(side.errors[lane])) * quantum_m_;
-            if (static_cast<double>(bounds.lower[lane]) * quantum_m_ - wider_m - error <= worth_m())
+            leave(0.0); // Its parent's bound may have gone with it.
+            has_stopped_ = true;
+            return;
+        }
+        const PlacedBlock& tool = placed_.get(blocks.tool_block);
+        const double error_m =
+            tool.largest_error_m +
+            static_cast<double>(largest_error_quanta(question_.object.side(blocks.block))) *
+                quantum_m_;
+        find_candidates(blocks, tool, bound_quanta(error_m));
+        const double upper_before = upper_m_;
+        for (const Candidate& candidate : candidates_)
+        {
+            if (is_enough())
             {
-                test_object_face({to_triangle(block_triangle(block, lane)), question_.object,
-                                  side.prims[lane], error, (side.coarse >> lane & 1U) != 0},
-                                 tool_faces);
+                break;
+            }
+            if (static_cast<double>(candidate.gap) * quantum_m_ <= worth_m() + error_m)
+            {
+                test_pair(tool_face(blocks.tool_block, tool, candidate.tool_lane),
+                          object_face(blocks.block, candidate.lane),
+                          static_cast<double>(candidate.gap) * quantum_m_);
+            }
+        }
+        memory_ = upper_m_ < upper_before ? blocks : memory_;
+    }
+
+    /// The nearest first: its bound spares the others' measuring.
+    void find_candidates(const MeshMemory& blocks, const PlacedBlock& tool, float bound) noexcept
+    {
+        const Kernels& kernels = question_.object.kernels();
+        const BlockGeometry& block = question_.object.block(blocks.block);
+        TriangleRows rows; // NOLINT(cppcoreguidelines-pro-type-member-init): the kernel fills it.
+        kernels.place_triangles(block.coordinates.front().data(), block.corners.front().data(),
+                                tool.box.center, rows);
+        candidates_.clear();
+        const std::uint32_t lanes = kernels.near_faces(rows, tool.box, block.faces, bound);
+        if (lanes == 0)
+        {
+            return;
+        }
+        const std::uint32_t tool_lanes = kernels.near_lanes(
+            tool.rows, rows, lanes, question_.tool.block(blocks.tool_block).faces, bound,
+            views_.slack());
+        // One face against sixteen costs the same whoever has the one.
+        const bool is_tool_fewer = std::popcount(tool_lanes) < std::popcount(lanes);
+        const TriangleRows& ones = is_tool_fewer ? tool.rows : rows;
+        const TriangleRows& others = is_tool_fewer ? rows : tool.rows;
+        for (std::uint32_t left = is_tool_fewer ? tool_lanes : lanes; left != 0; left &= left - 1)
+        {
+            const auto one = static_cast<std::uint32_t>(std::countr_zero(left));
+            alignas(64) std::array<float, kBlockFaces> gaps; // NOLINT: the kernel fills it.
+            for (std::uint32_t near =
+                     kernels.triangle_gaps(others, ones, one, is_tool_fewer ? lanes : tool_lanes,
+                                           bound, views_.slack(), gaps.data());
+                 near != 0; near &= near - 1)
+            {
+                const auto other = static_cast<std::uint32_t>(std::countr_zero(near));
+                add_candidate(is_tool_fewer ? Candidate{one, other, gaps[other]}
+                                            : Candidate{other, one, gaps[other]});
             }
         }
     }
 
-    void test_object_face(const MeshFace& face, const ToolFaces& tool_faces) noexcept
+    void add_candidate(const Candidate& candidate) noexcept
     {
-        const double limit = worth_m() + tool_faces.largest_error_m() + face.error_m;
-        for (std::uint32_t near = tool_faces.near(face, limit); near != 0; near &= near - 1)
+        candidates_.push_back(candidate);
+        if (candidate.gap < candidates_[0].gap)
         {
-            test_pair(tool_faces.face(static_cast<std::size_t>(std::countr_zero(near))), face);
+            std::swap(candidates_[0], candidates_[candidates_.size() - 1]);
         }
     }
 
-    void test_pair(const MeshFace& tool_face, const MeshFace& face) noexcept
+    [[nodiscard]] MeshFace tool_face(std::uint32_t block, const PlacedBlock& placed,
+                                     std::uint32_t lane) const noexcept
+    {
+        const BlockSide& side = question_.tool.side(block);
+        const auto error = static_cast<double>(error_in_quanta(side.errors[lane]));
+        return {placed.triangle(question_.tool.block(block), lane), question_.tool,
+                side.prims[lane], error * tool_quantum_m_ * kRoundedUp,
+                (side.coarse >> lane & 1U) != 0};
+    }
+    [[nodiscard]] MeshFace object_face(std::uint32_t block, std::uint32_t lane) const noexcept
+    {
+        const BlockSide& side = question_.object.side(block);
+        const auto error = static_cast<double>(error_in_quanta(side.errors[lane]));
+        return {to_triangle(block_triangle(question_.object.block(block), lane)), question_.object,
+                side.prims[lane], error * quantum_m_, (side.coarse >> lane & 1U) != 0};
+    }
+
+    /// `gap_m`: what the kernels know them to be apart.
+    void test_pair(const MeshFace& tool_face, const MeshFace& face, double gap_m) noexcept
     {
         const BoxGap boxes = box_gap(tool_face, face);
-        const double lower = boxes.distance_m - tool_face.error_m - face.error_m;
+        const double apart_m = std::max(boxes.distance_m, gap_m);
+        const double lower = apart_m - tool_face.error_m - face.error_m;
         if (lower > worth_m())
         {
             return;
@@ -359,11 +397,12 @@ private:
             return;
         }
         const MeetingFaces faces{tool_face.id, face.id};
-        if (boxes.distance_m == 0.0 && meet(tool_face.triangle, face.triangle))
+        if (apart_m == 0.0 && meet(tool_face.triangle, face.triangle))
         {
             add_meeting({faces, tool_face.prim, face.prim});
         }
-        else if (boxes.distance_m <= std::max(kept_contact_m(), nearest_m(boxes.span_m)))
+        else if (aim_ == Aim::distance &&
+                 apart_m <= std::max(kept_contact_m(), nearest_m(boxes.span_m)))
         {
             add_apart(faces, face.triangle, closest_points(tool_face.triangle, face.triangle));
         }
@@ -382,7 +421,7 @@ private:
         {
             return question_.contact_m;
         }
-        const ContactSet& kept = contacts_.contacts;
+        const ContactSet& kept = contacts_->contacts;
         return touching_.size() == kMaxContacts ? -1.0
                : kept.size() == kMaxContacts    ? kept[kMaxContacts - 1].distance_m
                                                 : question_.contact_m;
@@ -428,8 +467,12 @@ private:
     {
         exact_lower_m_ = 0.0;
         upper_m_ = 0.0;
+        ++found_;
         keep_lowest(meeting.faces);
-        keep_touching(meeting);
+        if (aim_ == Aim::distance)
+        {
+            keep_touching(meeting);
+        }
     }
 
     /// A heap with the highest on top.
@@ -473,7 +516,7 @@ private:
                       const ClosestPoints& closest) noexcept
     {
         const Contact contact = make_contact(closest, triangle, faces.face, faces.tool_face);
-        has_dropped_ = !keep_nearest(contact, contacts_.contacts) || has_dropped_;
+        has_dropped_ = !keep_nearest(contact, contacts_->contacts) || has_dropped_;
     }
 
     [[nodiscard]] ClosestPoints closest_of(const Meeting& meeting) const noexcept
@@ -496,13 +539,21 @@ private:
     }
 
     const MeshQuestion& question_;
-    OtherSurface& object_;
+    Aim aim_;
+    std::uint32_t enough_;
     WalkBudget& budget_;
-    QueryMemory& memory_;
+    MeshMemory& memory_;
     MeshReport& report_;
-    ContactReport& contacts_;
-    double tool_quantum_m_; ///< In the object's frame.
+    ContactReport* contacts_; ///< Null where no distance is wanted.
+    double tool_quantum_m_;   ///< In the object's frame.
     double quantum_m_;
+    MeshViews views_;
+    PlacedBlocks placed_;
+    MeshMemory warm_; ///< What was looked at first,
+    bool is_warm_{false};
+    bool has_stopped_{false}; ///< and no more can be.
+    std::uint32_t found_{0};  ///< Pairs that meet.
+    StaticVector<Candidate, std::size_t{kBlockFaces} * kBlockFaces> candidates_; ///< Of two blocks.
     double open_m_{kInfinity};        ///< Pairs that are not exact or not seen are this far apart;
     double exact_lower_m_{kInfinity}; ///< exact pairs this;
     double upper_m_{kInfinity};       ///< and some pair not farther than this.
@@ -515,15 +566,25 @@ private:
 
 } // namespace
 
-void query_meshes(const MeshQuestion& question, OtherSurface& object, QueryMemory& memory,
+void query_meshes(const MeshQuestion& question, OtherSurface& object, MeshMemory& memory,
                   DistanceAnswer& answer, MeshReport& report, ContactReport& contacts) noexcept
 {
     report.clear();
     contacts.clear();
-    MeshSearch search(question, object, memory, report, contacts);
-    search.run();
+    MeshSearch search(question, Aim::distance, kAll, object.budget(), memory, report, &contacts);
+    search.run(&object);
     answer = search.answer();
-    search.report(answer);
+    search.report_meeting();
+    search.report_contacts(answer);
+}
+
+void find_meeting_faces(const MeshQuestion& question, std::uint32_t enough, WalkBudget& budget,
+                        MeshMemory& memory, MeshReport& report) noexcept
+{
+    report.clear();
+    MeshSearch search(question, Aim::meeting, enough, budget, memory, report, nullptr);
+    search.run(nullptr);
+    search.report_meeting();
 }
 
 } // namespace tactus

@@ -170,7 +170,8 @@ void TactusPairQuery::ask(double reach_m)
 
 bool TactusPairQuery::do_meet()
 {
-    ask(0.0);
+    WalkBudget budget{kUnlimited, kUnlimited};
+    find_meeting_faces({tool_->tree(), object_->tree(), place_}, 1, budget, memory_, report_);
     return report_.intersection == Intersection::proven;
 }
 

@@ -33,10 +33,10 @@ namespace tactus::bench
                                                        const std::vector<Triangle>& tool,
                                                        std::uint32_t frames);
 
-/// The controller's query of two meshes over two static models. One query answers all, and it
-/// always finds every pair that meets: do_meet() and meeting() ask it with no reach. The nearest
-/// pair is proven within the reach only: distance_m() asks with a little more than the last
-/// distance and, where that was too little, again with the bound that it got.
+/// The controller's query of two meshes over two static models. It finds every pair that meets and
+/// bounds the distance: meeting() asks it with no reach. The nearest pair is proven within the
+/// reach only: distance_m() asks with a little more than the last distance and, where that was too
+/// little, again with the bound that it got. do_meet() asks for one pair that meets, and no more.
 class TactusPairQuery final : public PairQuery
 {
 public:
@@ -63,7 +63,7 @@ private:
     test::FaceNames tool_names_;
     test::FaceNames object_names_;
     MeshPlacement place_;
-    QueryMemory memory_;
+    MeshMemory memory_;
     double guess_m_{0.0};
     DistanceAnswer answer_;
     MeshReport report_;

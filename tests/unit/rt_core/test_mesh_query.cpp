@@ -114,13 +114,23 @@ struct Asked
 };
 
 Asked ask(const TreeRig& tool, const TreeRig& object, const MeshPlacement& place, double reach,
-          double contact, QueryMemory& memory, const WalkBudget& budget = kAmple)
+          double contact, MeshMemory& memory, const WalkBudget& budget = kAmple)
 {
     Asked asked;
     OtherSurface surface(*object.sut, place, budget);
     query_meshes({*tool.sut, *object.sut, place, reach, contact}, surface, memory, asked.answer,
                  asked.report, asked.contacts);
     asked.budget = surface.budget();
+    return asked;
+}
+
+/// Up to `enough` pairs that meet.
+Asked ask_meeting(const TreeRig& tool, const TreeRig& object, const MeshPlacement& place,
+                  std::uint32_t enough, MeshMemory& memory, const WalkBudget& budget = kAmple)
+{
+    Asked asked;
+    asked.budget = budget;
+    find_meeting_faces({*tool.sut, *object.sut, place}, enough, asked.budget, memory, asked.report);
     return asked;
 }
 
@@ -207,7 +217,7 @@ TEST(MeshQuery, finds_what_measuring_all_pairs_finds)
         fill(object, random, 1 + random.below(120), round % 4 != 0);
         const auto tool_faces = tool.present();
         const auto faces = object.present();
-        QueryMemory memory;
+        MeshMemory memory;
         for (int query = 0; query < 10; ++query)
         {
             MeshPlacement place = random_placement(random);
@@ -256,6 +266,158 @@ TEST(MeshQuery, finds_what_measuring_all_pairs_finds)
     EXPECT_GT(met, 60);
 }
 
+TEST(MeetingFaces, are_those_of_the_whole_query)
+{
+    Random random(77);
+    int met = 0;
+    int apart = 0;
+    for (int round = 0; round < 80; ++round)
+    {
+        TreeRig tool({80, 200, 200});
+        TreeRig object({120, 300, 300});
+        fill(tool, random, 1 + random.below(80), round % 3 != 0);
+        fill(object, random, 1 + random.below(120), round % 4 != 0);
+        MeshMemory memory{random.below(10), random.below(10)};
+        for (int query = 0; query < 10; ++query)
+        {
+            MeshPlacement place = random_placement(random);
+            place.place.origin.y() += random.between(0.0, 1.5);
+            const AllPairs truth(tool.present(), object.present(), place, 0.0);
+
+            const Asked all = ask_meeting(tool, object, place, 1'000'000, memory);
+
+            ASSERT_EQ(as_set(all.report.meeting), truth.meeting) << round << " " << query;
+            ASSERT_TRUE(std::is_sorted(all.report.meeting.begin(), all.report.meeting.end()));
+            ASSERT_EQ(all.report.is_complete, truth.coarse_lower > 0.0);
+            ASSERT_EQ(all.report.intersection, !truth.meeting.empty()     ? Intersection::proven
+                                               : truth.coarse_lower > 0.0 ? Intersection::none
+                                                                          : Intersection::open);
+            met += truth.meeting.empty() ? 0 : 1;
+            apart += truth.meeting.empty() ? 1 : 0;
+        }
+    }
+    EXPECT_GT(met, 60);
+    EXPECT_GT(apart, 60);
+}
+
+TEST(MeetingFaces, end_with_the_first_and_say_so)
+{
+    Random random(78);
+    int met = 0;
+    for (int round = 0; round < 200; ++round)
+    {
+        TreeRig tool({80, 200, 200});
+        TreeRig object({120, 300, 300});
+        fill(tool, random, 80, true);
+        fill(object, random, 120, true);
+        const MeshPlacement place = random_placement(random);
+        const AllPairs truth(tool.present(), object.present(), place, 0.0);
+        MeshMemory memory;
+        for (int again = 0; again < 2; ++again)
+        {
+            const Asked any = ask_meeting(tool, object, place, 1, memory);
+
+            ASSERT_EQ(any.report.meeting.size(), truth.meeting.empty() ? 0U : 1U);
+            ASSERT_EQ(any.report.intersection,
+                      truth.meeting.empty() ? Intersection::none : Intersection::proven);
+            ASSERT_EQ(any.report.is_complete, truth.meeting.empty());
+            ASSERT_FALSE(any.report.is_truncated);
+            if (!truth.meeting.empty())
+            {
+                ++met;
+                ASSERT_TRUE(truth.meeting.contains(any.report.meeting[0]));
+                // What met last is looked at first.
+                ASSERT_TRUE(again == 0 || any.budget.nodes_visited == 1);
+            }
+        }
+    }
+    EXPECT_GT(met, 50);
+}
+
+TEST(MeetingFaces, a_spent_budget_proves_nothing)
+{
+    Random random(79);
+    int open = 0;
+    for (int round = 0; round < 60; ++round)
+    {
+        TreeRig tool({80, 200, 200});
+        TreeRig object({120, 300, 300});
+        fill(tool, random, 80, true);
+        fill(object, random, 120, true);
+        const MeshPlacement place = random_placement(random);
+        const AllPairs truth(tool.present(), object.present(), place, 0.0);
+        for (std::uint32_t share = 0; share < 200; share = 2 * share + 1)
+        {
+            MeshMemory memory{random.below(10), random.below(10)};
+            const Asked asked = ask_meeting(tool, object, place, 1'000'000, memory,
+                                            {share, random.below(10 * share + 1)});
+            const auto found = as_set(asked.report.meeting);
+            ASSERT_TRUE(std::includes(truth.meeting.begin(), truth.meeting.end(), found.begin(),
+                                      found.end()));
+            ASSERT_TRUE(!asked.report.is_complete || found == truth.meeting);
+            ASSERT_TRUE(asked.report.intersection != Intersection::none || truth.meeting.empty());
+            open += asked.report.intersection == Intersection::open ? 1 : 0;
+        }
+    }
+    EXPECT_GT(open, 50);
+}
+
+TEST(MeshQuery, faces_that_only_touch_meet)
+{
+    // A mesh on itself: all that shares a corner, an edge or a plane meets, with nothing to spare
+    // for the filters.
+    Random random(80);
+    int met = 0;
+    for (int round = 0; round < 40; ++round)
+    {
+        TreeRig tool({60, 200, 200});
+        TreeRig object({60, 200, 200});
+        fill(tool, random, 60, true);
+        for (ChangedFace face : tool.present())
+        {
+            object.put(face);
+        }
+        object.sut->refit();
+        MeshPlacement place;
+        place.offset_m = Vec3(0.0, random.below(2) * 0.5, 0.0);
+        const AllPairs truth(tool.present(), object.present(), place, 0.0);
+        met += truth.meeting.empty() ? 0 : 1;
+        MeshMemory memory;
+
+        EXPECT_EQ(as_set(ask(tool, object, place, 0.0, -1.0, memory).report.meeting),
+                  truth.meeting);
+        EXPECT_EQ(as_set(ask_meeting(tool, object, place, 1'000'000, memory).report.meeting),
+                  truth.meeting);
+    }
+    EXPECT_GT(met, 20);
+}
+
+TEST(MeshQuery, beyond_single_precision_bounds_what_it_can)
+{
+    Random random(81);
+    TreeRig tool({80, 200, 200});
+    TreeRig object({120, 300, 300});
+    fill(tool, random, 80, true);
+    fill(object, random, 120, true);
+    for (const double far_m : {1e6, 1e8, 1e12})
+    {
+        MeshPlacement place = random_placement(random);
+        place.place.origin = Vec3(far_m, -far_m, 0.0);
+        const AllPairs truth(tool.present(), object.present(), place, -1.0);
+        MeshMemory memory{0, 0};
+
+        const Asked asked = ask(tool, object, place, 0.1, 0.1, memory);
+
+        EXPECT_LE(asked.answer.lower_m, truth.lower);
+        EXPECT_GT(asked.answer.lower_m, 0.8 * truth.lower);
+        EXPECT_GE(asked.answer.upper_m, truth.lower);
+        EXPECT_EQ(asked.answer.kind, AnswerKind::decided);
+        EXPECT_EQ(asked.report.intersection, Intersection::none);
+        EXPECT_EQ(ask_meeting(tool, object, place, 1, memory).report.intersection,
+                  Intersection::none);
+    }
+}
+
 TEST(MeshQuery, a_spent_budget_leaves_all_that_it_says_true)
 {
     Random random(74);
@@ -270,7 +432,7 @@ TEST(MeshQuery, a_spent_budget_leaves_all_that_it_says_true)
         const AllPairs truth(tool.present(), object.present(), place, 0.05);
         for (std::uint32_t share = 1; share < 3'000; share *= 3)
         {
-            QueryMemory memory{random.below(10)};
+            MeshMemory memory{random.below(10), random.below(10)};
             const Asked asked =
                 ask(tool, object, place, 0.05, 0.05, memory, {share, random.below(10 * share)});
             spent += asked.budget.is_spent ? 1 : 0;
@@ -309,7 +471,7 @@ TEST(MeshQuery, keeps_the_lowest_of_too_many_meeting_faces_and_contacts)
     tool.sut->refit();
     object.sut->refit();
     const MeshPlacement place;
-    QueryMemory memory;
+    MeshMemory memory;
 
     const Asked asked = ask(tool, object, place, 0.01, 0.01, memory);
 
@@ -337,7 +499,7 @@ TEST(MeshQuery, an_empty_tree_is_infinitely_far)
 {
     TreeRig tool({8, 50, 50});
     TreeRig object({8, 50, 50});
-    QueryMemory memory;
+    MeshMemory memory;
     const Asked asked = ask(tool, object, MeshPlacement{}, 0.1, 0.1, memory);
     EXPECT_EQ(asked.answer.kind, AnswerKind::decided);
     EXPECT_EQ(asked.report.intersection, Intersection::none);

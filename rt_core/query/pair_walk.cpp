@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "rt_core/query/pair_walk.hpp"
+
+#include "rt_core/query/probe.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tactus
+{
+
+namespace
+{
+
+/// A split coordinate leaves 2^-48 of itself; the rest is for what the split rounds.
+constexpr double kSplitRounding = 0x1p-46;
+constexpr double kLeastSlack = 0x1p-40;
+
+double half_diagonal_sq(const Aabb& box) noexcept
+{
+    return (0.5 * (to_vec3(box.high) - to_vec3(box.low))).squaredNorm();
+}
+
+} // namespace
+
+MeshViews::MeshViews(const AbTree& tool, const AbTree& object, const MeshPlacement& place) noexcept
+    : scale_(place.place.scale)
+    , slack_(slack_of(tool, object, place))
+    , of_tool_(place, 1.0 / static_cast<double>(object.quantum_m()), slack_)
+    , of_object_(place.inverse(), scale_ / static_cast<double>(object.quantum_m()), slack_)
+{
+}
+
+/// Of the corners that are farthest out: good for all.
+float MeshViews::slack_of(const AbTree& tool, const AbTree& object,
+                          const MeshPlacement& place) noexcept
+{
+    const Ball tool_ball = ball_round(tool.box());
+    const Ball object_ball = ball_round(object.box());
+    const double tool_reach_m = tool_ball.center.norm() + tool_ball.radius;
+    const double object_reach_m = object_ball.center.norm() + object_ball.radius;
+    const auto quantum_m = static_cast<double>(object.quantum_m());
+    // Of either, in the other's frame and in metres of the object's.
+    const double placed_m =
+        place.place.origin.norm() + scale_ * (tool_reach_m + place.offset_m.norm());
+    const double farthest = (placed_m + object_reach_m) / quantum_m;
+    // NOLINTNEXTLINE(readability-simplify-boolean-expr): the simpler one lets NaN pass.
+    is_beyond_ = !(farthest < kFarQuanta);
+    // Placed once each way, to either of two precisions.
+    const double share = 2.0 * kPoseRounding + kSplitRounding;
+    return is_beyond_ ? 0.0F : round_up_to_float(farthest * share + kLeastSlack);
+}
+
+PairWalk::PairWalk(const AbTree& tool, const AbTree& object, const MeshViews& views,
+                   WalkBudget& budget) noexcept
+    : tool_(tool), object_(object), views_(views), budget_(budget)
+{
+    if (!tool.root().is_none() && !object.root().is_none())
+    {
+        stack_.push_back({tool.root(), object.root(), tool.box(), object.box(), 0.0F});
+    }
+}
+
+const PairWalk::Item* PairWalk::next_blocks(float bound) noexcept
+{
+    while (!stack_.empty())
+    {
+        if (stack_[stack_.size() - 1].gap > bound)
+        {
+            stack_.pop_back();
+            continue;
+        }
+        if (!budget_.take_node())
+        {
+            return nullptr;
+        }
+        current_ = stack_.pop_back();
+        if (current_.tool.is_block() && current_.object.is_block())
+        {
+            return &current_;
+        }
+        open(current_, bound);
+    }
+    return nullptr;
+}
+
+bool PairWalk::is_tool_larger(const Item& item) const noexcept
+{
+    return views_.scale() * views_.scale() * half_diagonal_sq(item.tool_box) >
+           half_diagonal_sq(item.object_box);
+}
+
+void PairWalk::open(const Item& item, float bound) noexcept
+{
+    const bool opens_tool =
+        !item.tool.is_block() && (item.object.is_block() || is_tool_larger(item));
+    const AbTree& tree = opens_tool ? tool_ : object_;
+    const AbNode& node = tree.node(opens_tool ? item.tool.index() : item.object.index());
+    const KernelBox other =
+        opens_tool ? views_.of_object().of(item.object_box) : views_.of_tool().of(item.tool_box);
+    alignas(32) std::array<float, kNodeChildren> gaps; // NOLINT: the kernel fills it.
+    std::uint32_t near = tree.kernels().box_gaps(node.volumes.low.front().data(), other, node.mask,
+                                                 bound, gaps.data());
+    const std::size_t first = stack_.size();
+    for (; near != 0; near &= near - 1)
+    {
+        const auto child = static_cast<std::uint32_t>(std::countr_zero(near));
+        const TreeRef ref = node.children[child];
+        const Aabb box = node.box_of(child);
+        tree.prefetch(ref);
+        const float gap = std::max(gaps[child], item.gap);
+        stack_.push_back(opens_tool ? Item{ref, item.object, box, item.object_box, gap}
+                                    : Item{item.tool, ref, item.tool_box, box, gap});
+        // The nearest on top, the others below in any order.
+        const std::size_t top = stack_.size() - 1;
+        if (top > first && stack_[top].gap > stack_[top - 1].gap)
+        {
+            std::swap(stack_[top], stack_[top - 1]);
+        }
+    }
+}
+
+} // namespace tactus

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/query/box_view.hpp"
+#include "rt_core/query/tree_walk.hpp"
+
+#include <span>
+
+namespace tactus
+{
+
+/// How two models' frames lie in each other, for boxes of either as the other's tree sees them.
+/// Lengths are quanta of the object.
+class MeshViews
+{
+public:
+    MeshViews(const AbTree& tool, const AbTree& object,
+              const MeshPlacement& place) noexcept TACTUS_NONBLOCKING;
+
+    /// The tool is so far away that single precision does not hold it; nothing else may be asked.
+    [[nodiscard]] bool is_beyond_kernels() const noexcept { return is_beyond_; }
+    [[nodiscard]] const BoxView& of_tool() const noexcept { return of_tool_; }
+    [[nodiscard]] const BoxView& of_object() const noexcept { return of_object_; }
+    [[nodiscard]] double scale() const noexcept { return scale_; }
+    /// What placing and single precision round of any coordinate, beyond a share of it.
+    [[nodiscard]] float slack() const noexcept { return slack_; }
+
+private:
+    [[nodiscard]] float slack_of(const AbTree& tool, const AbTree& object,
+                                 const MeshPlacement& place) noexcept;
+
+    double scale_;
+    bool is_beyond_{false};
+    float slack_;
+    BoxView of_tool_;
+    BoxView of_object_;
+};
+
+/// A depth-first walk of the pairs of blocks of two trees that may be near. Of a pair of boxes the
+/// larger one is opened, and its eight children are measured against the other at once; the nearest
+/// pair is entered first. Haptic thread; some 50 ns a node opened. 20 KiB.
+class PairWalk
+{
+public:
+    struct Item
+    {
+        TreeRef tool;
+        TreeRef object;
+        Aabb tool_box; ///< In the tool's frame.
+        Aabb object_box;
+        float gap{0.0F}; ///< They are at least this far apart, errors taken off.
+    };
+
+    /// Both trees' boxes must be right (AbTree::refit). `views` must not be beyond the kernels.
+    PairWalk(const AbTree& tool, const AbTree& object, const MeshViews& views,
+             WalkBudget& budget) noexcept TACTUS_NONBLOCKING;
+
+    /// The next pair of blocks of which something may be within `bound` quanta; null when there is
+    /// none or the budget is spent. Good until the next call.
+    [[nodiscard]] const Item* next_blocks(float bound) noexcept TACTUS_NONBLOCKING;
+
+    /// What was not visited when the budget was spent; empty after a complete walk.
+    [[nodiscard]] std::span<const Item> left() const noexcept { return stack_.view(); }
+
+private:
+    void open(const Item& item, float bound) noexcept TACTUS_NONBLOCKING;
+    [[nodiscard]] bool is_tool_larger(const Item& item) const noexcept TACTUS_NONBLOCKING;
+
+    const AbTree& tool_;
+    const AbTree& object_;
+    const MeshViews& views_;
+    WalkBudget& budget_;
+    Item current_;
+    StaticVector<Item, 2 * kTreeStack> stack_;
+};
+
+} // namespace tactus
