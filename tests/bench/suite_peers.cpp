@@ -37,6 +37,7 @@ std::vector<Case> all_cases()
         touch("touch-bunny", When::always, kBunny, 2 * kMiB),
         touch("touch-igea", When::full_only, kIgea, 4 * kMiB),
         mesh("mesh-bunny", When::always, kBunny),
+        mesh("mesh-igea", When::full_only, kIgea),
         scale("scale-4k", When::always, 4'000, "4 k faces"),
         scale("scale-40k", When::always, 40'000, "40 k faces"),
         scale("scale-400k", When::full_only, 400'000, "400 k faces"),
