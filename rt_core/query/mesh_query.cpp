@@ -157,7 +157,8 @@ public:
         }
         else
         {
-            leave(balls_gap_m());
+            const double gap_m = balls_gap_m();
+            leave(gap_m > 0.0 ? gap_m : 0.0); // Not a number: nothing is known.
         }
     }
 
@@ -298,6 +299,12 @@ private:
             static_cast<double>(largest_error_quanta(question_.object.side(blocks.block))) *
                 quantum_m_;
         find_candidates(blocks, tool, bound_quanta(error_m));
+        if (!budget_.take_triangles(static_cast<std::uint32_t>(candidates_.size())))
+        {
+            leave(0.0);
+            has_stopped_ = true;
+            return;
+        }
         const double upper_before = upper_m_;
         for (const Candidate& candidate : candidates_)
         {

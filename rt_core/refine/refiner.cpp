@@ -410,7 +410,8 @@ Refiner::ClosureOutcome Refiner::split_with_closure(RecordId target, std::uint32
             ++work.splits;
             done_[done_count_++] = id;
             --depth;
-            coarsener_.look_when_left(slot, *record, questions);
+            coarsener_.look_when_left(slot, *record,
+                                      is_filling_ ? std::span<const RefineQuestion>{} : questions);
             consider_star(id, *record, star, questions);
         }
     }
@@ -424,7 +425,9 @@ Refiner::Progress Refiner::refine_everything(std::uint32_t records,
 {
     heap_size_ = 0;
     const std::uint32_t most = std::min(budgets.splits, kMaxSplitsPerFrame);
+    is_filling_ = true;
     const Progress progress = fill(records, most, questions, frame, work, faults);
+    is_filling_ = false;
     if (heap_size_ > 0) // Faces that came up within a question's target.
     {
         split_wanted(questions, budgets, frame, work, faults);
@@ -474,6 +477,11 @@ void Refiner::consider_star(RecordId id, const VsplitRecord& record,
     const double reach = static_cast<double>(error_in_quanta(record.reach)) * quantum_m_;
     for (const RefineQuestion& question : questions)
     {
+        if (is_filling_ && question.surface != nullptr)
+        {
+            leave(question, 0.0); // Asked anew in the next frame, in one walk for all.
+            continue;
+        }
         const Vec3 vertex = to_vec3(record.position_m);
         const double nearest =
             sharpened(question, (vertex - question.center_m).norm() * (1.0 - 1e-15) - reach, 0.0,

@@ -127,6 +127,8 @@ private:
     RecordId pending_{}; ///< Whose closure the held records were split for.
     std::size_t question_count_{0};
     std::uint32_t next_record_{0}; ///< fill() has done those before.
+    /// Splits are not for the questions: another surface is not walked for each of them.
+    bool is_filling_{false};
 };
 
 } // namespace tactus

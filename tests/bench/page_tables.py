@@ -118,6 +118,8 @@ class Table:
         self.is_name = [any(hole.removesuffix("?") in FIELDS for hole in cell) for cell in holes]
         self.holes = [[] if is_name else [Hole(hole) for hole in cell]
                       for cell, is_name in zip(holes, self.is_name)]
+        if any(len({hole.is_optional for hole in cell}) > 1 for cell in self.holes):
+            raise Failure(f"{self.where}: a cell has figures with ? and without")
         if not any(self.is_name) or not any(self.holes):
             raise Failure(f"{self.where}: the pattern needs a field's name and a figure")
 
@@ -364,7 +366,8 @@ def counts(page_path, bench, options):
         raise Failure(f"{page_path}: {len(own)} tables of the suite counts, not one")
     results = count(bench, "--instructions" in options)
     if "--write" in options:
-        write_table(own[0], results)
+        if reason := write_table(own[0], results):
+            raise Failure(f"{own[0].where}: {reason[0]}")
         page_path.write_text(page_with(page, tables), encoding="utf-8")
         return 0
     found = sorted(differences(own[0], results))

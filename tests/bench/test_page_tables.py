@@ -149,7 +149,8 @@ class PageTables(unittest.TestCase):
     def test_damaged_tables_and_marks_are_refused(self):
         for old, new in (("-->\n*Full", "--> *Full"), ("*Full run", "*Some run"),
                          ("machine.*\n\n", "machine.*\n"), ("| {case} | {splits", "{case} | {splits"),
-                         ("part=A", "pant=A"), ("part=A", "part"), ("{case} |", "case |"),
+                         ("part=A", "pant=A"), ("{t.p50} /", "{t.p50?} /"),
+                         ("part=A", "part"), ("{case} |", "case |"),
                          ("{splits; part=B} | {instructions a frame?}", "splits | instructions"),
                          ("| --- | --- | --- |\n| one", "| one")):
             with self.subTest(new):

@@ -418,6 +418,26 @@ TEST(MeshQuery, beyond_single_precision_bounds_what_it_can)
     }
 }
 
+TEST(MeshQuery, a_place_that_is_no_number_proves_nothing)
+{
+    Random random(82);
+    TreeRig tool({80, 200, 200});
+    TreeRig object({120, 300, 300});
+    fill(tool, random, 80, true);
+    fill(object, random, 120, true);
+    MeshPlacement place = random_placement(random);
+    place.place.origin.x() = std::numeric_limits<double>::quiet_NaN();
+    MeshMemory memory{0, 0};
+
+    const Asked asked = ask(tool, object, place, 0.1, 0.1, memory);
+
+    EXPECT_NE(asked.answer.kind, AnswerKind::decided);
+    EXPECT_LE(asked.answer.lower_m, 0.0);
+    EXPECT_EQ(asked.report.intersection, Intersection::open);
+    EXPECT_FALSE(asked.report.is_complete);
+    EXPECT_EQ(ask_meeting(tool, object, place, 1, memory).report.intersection, Intersection::open);
+}
+
 TEST(MeshQuery, a_spent_budget_leaves_all_that_it_says_true)
 {
     Random random(74);
