@@ -32,11 +32,11 @@ KernelBox BoxView::of(const Aabb& box) const noexcept
         seen.center.high[axis] = at;
         seen.center.low[axis] = static_cast<float>(center[axis] - static_cast<double>(at));
         double extent = 0.0;
-        for (int own = 0; own < 3; ++own)
+        for (int along = 0; along < 3; ++along)
         {
-            const double share = there_.place.rotation(axis, own);
-            seen.axes[own][axis] = static_cast<float>(share);
-            extent += std::abs(share) * half[own];
+            const double share = there_.place.rotation(axis, along);
+            seen.axes[along][axis] = static_cast<float>(share);
+            extent += std::abs(share) * half[along];
         }
         seen.half[axis] = static_cast<float>(extent);
         seen.half_along[axis] = static_cast<float>(half[axis]);

@@ -72,7 +72,7 @@ private:
     const MeshViews& views_;
     WalkBudget& budget_;
     Item current_;
-    StaticVector<Item, 2 * kTreeStack> stack_;
+    StaticVector<Item, std::size_t{2} * kTreeStack> stack_;
 };
 
 } // namespace tactus

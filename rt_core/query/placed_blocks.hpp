@@ -10,8 +10,8 @@
 namespace tactus
 {
 
-/// A block of the tool where it lies in the object's frame.
-struct PlacedBlock
+/// A block of the tool where it lies in the object's frame; without an index it is nothing.
+struct PlacedBlock // NOLINT(cppcoreguidelines-pro-type-member-init): written where the index is.
 {
     std::uint32_t index{kNoNode};
     double largest_error_m{0.0};                 ///< Of its faces, in the object's frame.

@@ -85,14 +85,15 @@ std::uint64_t chunks_meeting(const IndexPage& page, const QuantumBox& page_box,
         at[axis] = ball.center[axis] - static_cast<double>(page_box.low[axis]);
     }
     // What the ball spans on each axis, in steps; a step more on both sides than rounding can be.
-    std::array<EightUnsigned, 3> lows;
-    std::array<EightUnsigned, 3> highs;
+    std::array<EightUnsigned, 3> lows{};
+    std::array<EightUnsigned, 3> highs{};
     for (std::size_t axis = 0; axis < 3; ++axis)
     {
         const double reach = ball.radius * (1.0 + 1e-12);
         const double low = (at[axis] - reach) / step[axis] - 1.0;
         const double high = (at[axis] + reach) / step[axis] + 1.0;
-        if (!(low <= kLastStep && high >= 0.0))
+        const bool is_in_page = low <= kLastStep && high >= 0.0;
+        if (!is_in_page)
         {
             return known;
         }
