@@ -130,7 +130,7 @@ struct Kernels
 };
 
 /// What single precision rounds in the bounds between boxes and between faces, as a share of the
-/// sum of their coordinates around the common point; four times the sum of all roundings.
+/// sum of their coordinates around the common point; more than all roundings together.
 inline constexpr float kPairMargin = 0x1p-20F;
 
 /// Faces with a larger (longest edge squared / twice the area) are bounded by their edges alone.

@@ -432,6 +432,11 @@ Refiner::Progress Refiner::refine_everything(std::uint32_t records,
     {
         split_wanted(questions, budgets, frame, work, faults);
     }
+    // The splits went elsewhere, and what they changed near a surface is not known yet.
+    const bool is_left =
+        std::ranges::any_of(questions, [](const RefineQuestion& question)
+                            { return question.surface != nullptr && is_wanting(question); });
+    faults |= is_left ? FrameFault::split_budget_spent : FrameFault::none;
     return progress;
 }
 
