@@ -43,9 +43,12 @@ tactus_room(rt_core/refine ${stage_floor}
     rt_core/abtree rt_core/forest rt_core/kernels rt_core/cache rt_core/query)
 tactus_room(rt_core/frame rt_core)
 
+# --- What every room above rt_core may use.
+tactus_room(platform/base rt_core/base)
+
 # --- platform: only the controller program sees core, transport and device; nothing includes it.
 set(platform_floor
-    rt_core/base rt_core/math rt_core/geometry rt_core/records rt_core/limits.hpp)
+    platform/base rt_core/base rt_core/math rt_core/geometry rt_core/records rt_core/limits.hpp)
 
 tactus_room(platform ${platform_floor})
 # What devices say of themselves is judged where the rule is that uses it.
@@ -53,7 +56,7 @@ tactus_room(platform/remote platform ${platform_floor} rt_core/force)
 tactus_room(platform/udp platform ${platform_floor})
 tactus_room(platform/dhd platform ${platform_floor})
 # Frames and what they were given; of the machine it knows nothing.
-tactus_room(platform/recording rt_core)
+tactus_room(platform/recording platform/base rt_core)
 # What the machine is like; of frames and models it knows nothing.
 tactus_room(platform/doctor platform)
 # Pictures; of what was measured it knows nothing.
@@ -62,12 +65,12 @@ tactus_room(platform/plot)
 tactus_room(platform/hrtc rt_core transport platform host_tools/cli)
 
 # --- transport: parse and link live in spm; of the cache it knows inbox and page slots.
-tactus_room(transport ${stage_floor} rt_core/cache)
+tactus_room(transport ${stage_floor} rt_core/cache platform/base)
 
 # --- host_tools: downward only; nothing includes a program.
-set(host_floor rt_core transport)
+set(host_floor platform/base rt_core transport)
 
-tactus_room(host_tools/cli)
+tactus_room(host_tools/cli platform/base)
 tactus_room(host_tools/mesh ${host_floor})
 tactus_room(host_tools/shapes ${host_floor} host_tools/mesh)
 tactus_room(host_tools/simplify ${host_floor} host_tools/mesh)

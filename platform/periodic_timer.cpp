@@ -8,27 +8,17 @@
 namespace tactus
 {
 
-namespace
-{
-
-PlatformError bad_option(std::string message)
-{
-    return {PlatformErrorKind::bad_option, std::move(message)};
-}
-
-} // namespace
-
-Result<Done, PlatformError> PeriodicTimer::start(Duration period, Duration margin)
+Result<Done, Refusal> PeriodicTimer::start(Duration period, Duration margin)
 {
     if (period < kPeriodMin || period > kPeriodMax)
     {
-        return bad_option("timer period " + std::to_string(period.ns) +
-                          " ns is out of range 50000..1000000000 ns (1 Hz to 20 kHz)");
+        return Refusal{"timer period " + std::to_string(period.ns) +
+                       " ns is out of range 50000..1000000000 ns (1 Hz to 20 kHz)"};
     }
     if (margin < Duration{} || margin >= period)
     {
-        return bad_option("timer margin " + std::to_string(margin.ns) + " ns is out of range 0.." +
-                          std::to_string(period.ns - 1) + " ns (below the period)");
+        return Refusal{"timer margin " + std::to_string(margin.ns) + " ns is out of range 0.." +
+                       std::to_string(period.ns - 1) + " ns (below the period)"};
     }
     period_ = period;
     margin_ = margin;

@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/platform_error.hpp"
+#include "platform/base/refusal.hpp"
 #include "platform/time.hpp"
 #include "rt_core/base/result.hpp"
 
@@ -67,7 +67,7 @@ public:
 
     /// The first deadline is one period from now. Starting again forgets the counts.
     /// `period` must be in [kPeriodMin, kPeriodMax], `margin` in [0, period).
-    Result<Done, PlatformError> start(Duration period, Duration margin);
+    Result<Done, Refusal> start(Duration period, Duration margin);
 
     /// Sleeps until `margin` before the deadline. Returns at once when that has passed.
     void sleep_until_margin() noexcept;

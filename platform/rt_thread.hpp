@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/platform_error.hpp"
+#include "platform/base/refusal.hpp"
 #include "rt_core/base/result.hpp"
 
 #include <cstddef>
@@ -56,12 +56,12 @@ class RtThread
 {
 public:
     /// Starts the thread, waits until it is set up, then lets `body` run. Without the privilege it
-    /// is refused with `not_permitted` and says exactly what is missing, one line for each thing;
-    /// no body has run then. With `allow_no_rt` it runs all the same and report() has those lines.
-    /// `body` must not throw. A value out of range or a processor that this process may not use is
-    /// `bad_option` in both cases.
-    [[nodiscard]] static Result<RtThread, PlatformError> start(const RtThreadOptions& options,
-                                                               std::function<void()> body);
+    /// is refused and says exactly what is missing, one line for each thing; no body has run then.
+    /// With `allow_no_rt` it runs all the same and report() has those lines. `body` must not throw.
+    /// A value out of range or a processor that this process may not use is refused as usage
+    /// (`Refusal::is_usage`) in both cases.
+    [[nodiscard]] static Result<RtThread, Refusal> start(const RtThreadOptions& options,
+                                                         std::function<void()> body);
 
     RtThread(RtThread&&) noexcept;
     RtThread& operator=(RtThread&&) noexcept;
@@ -82,7 +82,7 @@ private:
 /// What RtThread::start() would be refused on this machine, in the same lines; empty when nothing.
 /// It really tries, on a short-lived thread, and leaves policy and locked memory as they were
 /// before (memory that was locked already becomes unlocked: call it before the first start).
-[[nodiscard]] Result<std::vector<std::string>, PlatformError>
+[[nodiscard]] Result<std::vector<std::string>, Refusal>
 probe_realtime(const RtThreadOptions& options);
 
 } // namespace tactus

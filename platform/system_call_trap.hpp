@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/platform_error.hpp"
+#include "platform/base/refusal.hpp"
 #include "rt_core/base/result.hpp"
 
 #include <cstdint>
@@ -37,7 +37,7 @@ struct TrappedCalls
 /// Sets the trap on the calling thread, for good. Refused where the kernel has no seccomp filters,
 /// and with `not_permitted` where this process may not use them. Only Linux on x86-64 and aarch64
 /// can do it, without the thread sanitizer; any other build refuses with one line that says so.
-[[nodiscard]] Result<Done, PlatformError> set_on_this_thread();
+[[nodiscard]] Result<Done, Refusal> set_on_this_thread();
 
 /// Tells that a frame runs on the calling thread from here on, or no longer. About 1 ns; costs
 /// nothing else when there is no trap.

@@ -5,89 +5,136 @@
 #include <cstddef>
 #include <cstdint>
 
-/// Every capacity and tolerance of rt_core: what it bounds, its unit, why this value, what it
-/// costs.
+/// Every capacity of rt_core, every bound of a loop and every tolerance of a result: what it
+/// bounds, its unit, why this value, what it costs, and what happens where it is reached. Nothing
+/// is given up in silence: input is refused, the answer says less, or a FrameFault names the limit.
+///
+/// Elsewhere stand, named, with unit and reason: what changes only the speed or the quality of one
+/// algorithm, at the top of its source; the rounding errors of some arithmetic, beside it; sizes
+/// that follow from a layout in memory or in a file, beside that. A test names each constant below
+/// and stands on both sides of it (guard.limits_tested).
 namespace tactus
 {
 
 // --- The mesh format -----------------------------------------------------------------------------
 
 /// Faces in one record's star, the appearing ones included. Costs 9 B a face in every record;
-/// a cap of 8 costs no quality (design measurements), so larger stars are never collapsed.
+/// a cap of 8 costs no quality (design measurements), so larger stars are never collapsed. The
+/// coded form has no more places, so a chunk can't bring a larger one.
 inline constexpr std::uint32_t kMaxStarFaces = 8;
 /// Fan faces of a star: all but A and B (a border star misses one of those, its fan is not longer).
+/// A chunk with a longer fan is refused.
 inline constexpr std::uint32_t kMaxFanFaces = kMaxStarFaces - 2;
 
-/// Largest record count: FaceState keeps the record in 29 bits, all ones meaning the base state.
+/// Largest record count: FaceState keeps the record in 29 bits, all ones meaning the base state. A
+/// header with more is refused, as with all of this section where nothing else is said.
 inline constexpr std::uint32_t kMaxRecords = (1U << 29U) - 2;
 /// Largest base mesh the controller accepts, in faces. Base faces are resident: about 150 B each.
 inline constexpr std::uint32_t kMaxBaseFaces = 16'384;
 /// Base vertices; a soup of single triangles has three a face.
 inline constexpr std::uint32_t kMaxBaseVertices = 3 * kMaxBaseFaces;
 /// Dependency depth of a record (number of rounds of the encoder; 20 to 60 on real meshes).
-/// It bounds the closure stack: depth x fan.
+/// It bounds the stacks over a closure, 4 B each: where merging finds none left, the record waits
+/// until its page is looked at again.
 inline constexpr std::uint32_t kMaxDepth = 1'024;
 /// Coordinates are integers of at most this many bits times the quantum, so exact in a float.
 inline constexpr std::uint32_t kMinPositionBits = 16;
 inline constexpr std::uint32_t kMaxPositionBits = 24;
+static_assert(kMinPositionBits <= kMaxPositionBits);
+static_assert(kMaxPositionBits <= 24, "a float's mantissa holds a coordinate exactly");
 
+/// Places of a model's frame and vertices of a hull are refused beyond this: differences would
+/// overflow.
+inline constexpr double kCoordinateRange = 1e300;
 /// The quantum is 2^-60 .. 2^20 m: from a micrometre-sized model at 24 bits to 10^6 m at 16.
 inline constexpr std::int32_t kMinQuantumLog2 = -60;
 inline constexpr std::int32_t kMaxQuantumLog2 = 20;
-/// Cells of the regular partition: one bit each in the header, 32 KiB at most.
+/// Cells of the regular partition: one bit each in the header, 32 KiB at most. The encoder refuses
+/// more, too.
 inline constexpr std::uint32_t kMaxRegions = 1U << 18U;
-/// Chunks of one model, by kMaxRecords; bounds every chunk count that is read.
-inline constexpr std::uint32_t kMaxChunks = (kMaxRecords + 63) / 64;
 /// One coded chunk; about 550 B are usual. A reader may lend a buffer of this size and need no
-/// other.
+/// other. An index page that states a longer one is refused.
 inline constexpr std::size_t kMaxCodedChunkBytes = 8'448;
 
 // --- The scene -----------------------------------------------------------------------------------
 
-/// Tools, objects and models of one frame. A pair of tool and object costs about 52 KiB, most of it
-/// its local surface.
+/// Tools, objects and models of one frame. A pair of tool and object costs about 51 KiB, most of it
+/// its local surface, 3 KiB more with contacts and 10 KiB more where the tool is a mesh.
+/// Frame::start refuses a scene with more.
 inline constexpr std::uint32_t kMaxTools = 4;
 inline constexpr std::uint32_t kMaxObjects = 8;
 inline constexpr std::uint32_t kMaxModels = 8;
 inline constexpr std::uint32_t kMaxPairs = kMaxTools * kMaxObjects;
 
 /// Balls that a tool's core is covered with, each a question to the refinement: around a capsule
-/// as long as sixteen radii no farther than 2.5 radii from its axis is refined. 100 B each for a
-/// pair.
+/// as long as sixteen radii no farther than 2.5 radii from its axis is refined. 240 B each for a
+/// pair. A longer core has larger balls, and one of a mesh's grows: more is refined than needed.
 inline constexpr std::uint32_t kMaxCoverBalls = 8;
 
 /// Exact triangles handed to the force stage for one pair; 76 are usual at 1.1 M faces and a tool
-/// of 1 % of the diagonal, 750 for a ball of eight edges that moves four edges a frame. With more,
-/// the certified radius shrinks to those kept. 48 B each.
+/// of 1 % of the diagonal, 750 for a ball of eight edges that moves four edges a frame. 48 B each.
+/// Of more the nearest are kept, the certified radius ends at the first one left out, and the frame
+/// says FrameFault::surface_truncated.
 inline constexpr std::uint32_t kMaxLocalTriangles = 1'024;
 
-/// Contacts told of one pair: the nearest ones. 128 B each.
+/// Contacts of one pair, the nearest ones; 96 B each. With more the report is not complete and says
+/// so. A tool with a torque then feels the nearest (FrameFault::tool_crowded); it can't cross what
+/// was left out, since its step ends at the proven distance.
 inline constexpr std::uint32_t kMaxContacts = 32;
-/// Pairs of faces that meet and are kept, of a tool that is a mesh and an object.
+/// Pairs of faces that meet and are kept, of a tool that is a mesh and an object; 8 B each. With
+/// more the report says that it is truncated.
 inline constexpr std::uint32_t kMaxMeetingFaces = 1'024;
 
 // --- The frame -----------------------------------------------------------------------------------
 
-/// Largest budgets that a caller may give (records/budgets.hpp); scratch memory follows them.
+/// Largest budgets that a caller may give (records/frame_input.hpp); scratch memory follows them.
+/// Of a larger one this much is used: what is left coarse is told as with any spent budget, what is
+/// left to merge only costs room.
 inline constexpr std::uint32_t kMaxSplitsPerFrame = 256;
 inline constexpr std::uint32_t kMaxMergesPerFrame = 256;
-/// Faces that wait to be split in one frame; 16 B each. Faces beyond it wait for the next frame.
+/// Faces that wait to be split in one frame; 16 B each. Faces beyond it wait for the next frame,
+/// no certificate reaches that far, and the frame says FrameFault::refine_heap_full.
 inline constexpr std::uint32_t kRefineHeap = 1'024;
-/// Records split for a closure that is not complete yet, kept from being merged; 4 B each.
+/// Records split for closures that are not complete yet, kept from being merged; 4 B each. Records
+/// beyond it may be merged and split again: FrameFault::held_records_full.
 inline constexpr std::uint32_t kMaxHeldRecords = 1'024;
-/// A traversal's stack: 22 levels of 7 siblings and the 8 of the last node.
-inline constexpr std::uint32_t kTreeStack = 22 * 7 + 8;
-/// Balls that the predictor ranks: five for each ball of the pairs that are near.
-/// Enough for a sphere in each pair, or four bodies of eight balls; more come on demand.
+static_assert(kMaxSplitsPerFrame <= kMaxHeldRecords, "one frame's splits can all be held");
+/// Levels of nodes in the AB-Tree: octal digits of its 64-bit paths. No two faces have the same
+/// path, so there can't be more.
+inline constexpr std::uint32_t kTreeLevels = 22;
+/// A traversal's stack: 7 siblings on each level and the 8 of the last node. A tree of kTreeLevels
+/// needs no more; beyond it an assertion fails.
+inline constexpr std::uint32_t kTreeStack = kTreeLevels * 7 + 8;
+/// A tool that is a mesh has thousands of faces near an object where another is one shape: it may
+/// look at this many times what Budgets says for a pair, in each of its walks. Then
+/// FrameFault::node_budget_spent.
+inline constexpr std::uint32_t kMeshBudgetFactor = 16;
+/// Balls that the predictor ranks, 48 B each: five for each ball of the pairs that are near. Enough
+/// for a sphere in each pair, or four bodies of eight balls. Of later pairs those are left out that
+/// look ahead, which only makes their chunks late, and then those where the tool is:
+/// FrameFault::ranking_full.
 inline constexpr std::uint32_t kMaxRankedRegions = 6 * kMaxPairs;
-/// A model with more index pages, about 800 B each, keeps this many, or more where there is memory.
+/// A model with more index pages, 772 B each, keeps this many, or more where there is memory;
+/// others are asked for again when they are needed.
 inline constexpr std::uint32_t kLeastResidentIndexPages = 192;
+/// Wishes under way while a whole model is loaded; more wait for answers. What a tool needs must
+/// not wait behind more of them, nor be pushed out of what the transport side remembers.
+inline constexpr std::uint32_t kMaxFillingWishes = 128;
 /// What a point's way into a model's frame and back may be off by: a share of its distance from the
 /// object's origin and of its own coordinates. Each way rounds some seven times by 1.1e-16, and
-/// R^T R of a rotation may be 2e-15 from the identity.
+/// R^T R of a rotation may be 2e-15 from the identity. Bounds are widened by it.
 inline constexpr double kPoseRounding = 4e-15;
+/// What a model's place may be off by because its pose is its source's: a share of how far the
+/// model's origin lies from the source's. Each coordinate rounds four times by 1.1e-16.
+inline constexpr double kOriginRounding = 1e-15;
+/// A point this far from the origin or farther, in quanta, is beyond the kernels: their squares
+/// would leave single precision, and the box of everything answers. A model has at most 2^24 quanta
+/// a side.
+inline constexpr double kFarQuanta = 0x1p36;
 /// Frames after which an unanswered wish is asked again.
 inline constexpr std::uint32_t kWishTimeoutFrames = 250;
+/// The same as a time, for loops of any rate: longer than arrivals over a bad link take.
+inline constexpr std::int64_t kWishTimeout_ns = 250'000'000;
 
 /// Arrivals taken from a model's door in one frame, whatever Budgets::pages says, and updates of
 /// linked records; what a frame took is kept for recordings, 32 B each. An arrival brings few
@@ -98,20 +145,35 @@ inline constexpr std::uint32_t kMaxLinkUpdatesPerFrame = 64;
 // --- Force ---------------------------------------------------------------------------------------
 
 /// Steps of the proxy in one frame: each ends where another triangle takes over. 2 to 6 are usual.
+/// After the last it is `under_way` and goes on in the next frame.
 inline constexpr std::uint32_t kProxySteps = 24;
+/// Below this share of the tool's radius a motion isn't worth a step, and the proxy is at rest: 0.1
+/// mN at 500 N/m and 2 mm.
+inline constexpr double kLeastStep = 1e-4;
 /// Triangles that the proxy moves among, 48 B each on the stack. With more in reach it moves less
 /// far in one go.
 inline constexpr std::uint32_t kMaxNearFaces = 768;
+/// How often that list, when it is too long, is made again with half the reach beyond the nearest
+/// face; after it with none, and if that is too much, too, nothing moves: the proxy is `under_way`.
+inline constexpr int kMaxGatherings = 6;
+/// Lists in a frame, each four times as wide as the last, while the proxy comes to the end of one
+/// and is not there yet. After the last it is `under_way`.
+inline constexpr int kMaxVicinities = 4;
 /// Times that a step is solved again with the triangle that it would enter; 2 or 3 are usual. What
-/// is still entered after it shortens the step.
+/// is still entered after it shortens the step, and the next one begins there. No step is shortened
+/// to nothing: what touches is among the planes from the first, and the rest is kLeastStep away.
 inline constexpr std::uint32_t kStepRounds = 16;
-/// How far the proxy may sit inside the tool's radius from the surface, relative to that radius.
+/// How far the proxy may sit inside the tool's radius from the surface, relative to that radius;
+/// what is deeper counts as entered.
 inline constexpr double kContactTolerance = 1e-6;
-/// Planes that one motion is held back by; 5 us in six dimensions with all of them.
+/// Planes that one motion is held back by; 5 us in six dimensions with all of them. Of more those
+/// that hold a tool back least are left out, or a sphere's later ones, from its force only:
+/// FrameFault::tool_crowded.
 inline constexpr std::uint32_t kMaxHalfSpaces = 64;
 /// Steps of a search for the nearest motion, in each of which a plane joins those that hold it or
 /// leaves them. Awkward planes took 72 in the worst of a million searches; after half of them
-/// kSqueezeTolerance is enough.
+/// kSqueezeTolerance is enough. After all of them no motion counts as allowed: the tool is
+/// `squeezed`.
 inline constexpr std::uint32_t kConstraintRounds = 128;
 /// A motion may be this far beyond a plane, relative to the lengths in the question.
 inline constexpr double kPlaneTolerance = 1e-12;
@@ -122,12 +184,12 @@ inline constexpr double kParallelPlanes = 1e-7;
 inline constexpr double kSqueezeTolerance = 1e-6;
 /// A tool without a radius is a ball of this many quanta, so that it has an outside.
 inline constexpr double kPointSkin = 0.25;
-/// Places that a tool was held at and that are remembered while it rests there; a body is held by
-/// six planes at most, and some seek their place. 80 B each.
+/// Past contact points kept while a tool rests, 80 B each. Six planes suffice to hold a body; the
+/// rest are candidates. Beyond it the oldest is forgotten: FrameFault::tool_crowded.
 inline constexpr std::uint32_t kMaxHolds = 16;
 /// A tool without a radius keeps this share of its core's, so that it can slide.
 inline constexpr double kLeastSkin = 0.002;
-/// Time in which a frozen force fades to zero, in seconds.
+/// Time in which SafeState fades a force to zero, in seconds.
 inline constexpr double kFadeTime_s = 0.05;
 /// How fast the force of a proxy that had to wait for data catches up: this share of the device's
 /// largest force or torque a second, but no more than so many newtons. At 1 kHz 0.8 % and 0.04 N a
@@ -152,40 +214,66 @@ inline constexpr double kDampingShare = 0.5;
 /// period in the delay (8 %) and a device's damping that is known to 10 %.
 inline constexpr double kStiffnessMargin = 0.9;
 /// Positions that a velocity is found from; 16 at 1 kHz tell 1/16 of a quantum a period. 32 B each.
+/// Older ones are forgotten: the velocity is that of the newest.
 inline constexpr std::uint32_t kVelocitySamples = 16;
-/// Forces kept that may still be under way to the device; older ones count as arrived. 32 B each.
+/// Forces kept that may still be under way to the device, 32 B each: enough for a delay of nine
+/// periods. With a longer one the oldest kept stands for those before it, so the energy is that of
+/// a force newer than the device's: ForceAction::blind.
 inline constexpr std::uint32_t kForcesUnderWay = 10;
-/// A device that is faster has jumped: its energy is not observed. A hand makes 10 m/s at most.
+/// A device that is faster has jumped: its energy is not observed (ForceAction::blind). A hand
+/// makes 10 m/s at most.
 inline constexpr double kDeviceSpeedMax_m_per_s = 10.0;
-/// Damping that makes less force than this isn't added, in newtons: the rounding of a tool at rest.
+/// Damping that makes no more force than this isn't added, in newtons: the rounding of a tool at
+/// rest.
 inline constexpr double kLeastDamping_n = 1e-3;
 
 // --- Convex tools --------------------------------------------------------------------------------
 
 /// Vertices of a convex hull. Each answer asks for a few farthest points and each looks at all
-/// vertices, 2 ns apiece; a rounder tool than 64 vertices make is given by a support function.
+/// vertices, 2 ns apiece; a rounder tool than 64 vertices make is given by a support function. A
+/// hull with more is refused.
 inline constexpr std::uint32_t kMaxHullVertices = 64;
 /// Farthest points that one distance of a convex body and a triangle asks for. Hulls need 4 as a
-/// rule and 15 at most in two million cases; curved bodies that nearly touch end here.
+/// rule and 15 at most in two million cases; curved bodies that nearly touch end here, with bounds
+/// that hold but are farther apart.
 inline constexpr std::uint32_t kGjkIterations = 64;
+/// Bounds nearer to one another than this share of the distance are near enough.
+inline constexpr double kGjkRelativeGap = 1e-12;
+/// Faces round a vertex of which a normal is made, 16 B each on the stack. With more the normal is
+/// zero, which says that it is not known.
+inline constexpr std::uint32_t kMaxIncidentFaces = 64;
+
+// --- Poses of objects and of devices -------------------------------------------------------------
+
+/// What `--place`, a host's pose and the frame of a device may say: each coordinate of the
+/// translation, either way, and the scale.
+inline constexpr double kPoseReachMax_m = 1e4;
+inline constexpr double kPoseScaleMin = 1e-3;
+inline constexpr double kPoseScaleMax = 1e3;
+/// How far R^T R of a tool's or a device frame's rotation may be from the identity, in each entry;
+/// it is made orthonormal. Beyond it a sample is FrameFault::tool_invalid, a device frame refused.
+inline constexpr double kRotationTolerance = 1e-6;
+/// How far the length of a host's quaternion may be from 1. Wider than kRotationTolerance, as
+/// senders may compute in float; its length is divided out.
+inline constexpr double kPoseUnitTolerance = 1e-3;
 
 // --- Samples of the device -----------------------------------------------------------------------
 
-/// Goals are taken up to this coordinate, far beyond any device and any model.
+/// Positions of a device and goals are taken below this coordinate. Wider than kPoseReachMax_m, as
+/// a device frame scales and moves what the device says; beyond any device and any model. Others
+/// are FrameFault::tool_invalid.
 inline constexpr double kGoalRange_m = 1e6;
-/// How far R^T R of a tool's rotation may be from the identity, in each entry; it is made
-/// orthonormal.
-inline constexpr double kRotationTolerance = 1e-6;
 /// How long the last sample stands in for those that don't come or can't be used. 20 periods of a
-/// loop at 1 kHz; after it the force fades within kFadeTime_s.
+/// loop at 1 kHz; after it the force fades within kFadeTime_s (FrameFault::tool_stuck, where it is
+/// the device's time that stands still).
 inline constexpr double kSampleHold_s = 0.02;
 /// A goal that is this many times faster than ToolSpec::speed_max_m_per_s, taken for at least
-/// 1 m/s, has jumped: a hand makes 10 m/s at most.
+/// 1 m/s, has jumped (FrameFault::tool_jumped): a hand makes 10 m/s at most.
 inline constexpr double kJumpSpeeds = 100.0;
 
 // --- Names ---------------------------------------------------------------------------------------
 
-/// A model's or tool's name: at most this many bytes of [A-Za-z0-9._-].
+/// A model's or tool's name: at most this many bytes of [A-Za-z0-9._-]. A longer one is refused.
 inline constexpr std::size_t kMaxNameBytes = 63;
 
 } // namespace tactus

@@ -16,8 +16,6 @@ namespace tactus
 namespace
 {
 
-constexpr std::int64_t kNeverAsked = -1;
-
 /// Generations count up and may wrap: whether `a` is older than `b`.
 bool is_older(std::uint32_t a, std::uint32_t b) noexcept
 {
@@ -57,8 +55,7 @@ void Courier::step(std::int64_t now_ns)
     const std::size_t wishes = inbox_.wanted.size();
     take_back_freed();
     take_wishes(wishes);
-    ask_new();
-    ask_again();
+    ask();
     link_.poll(*this);
     push_link_updates();
 }
@@ -108,14 +105,14 @@ void Courier::open_wish(const ChunkInbox::Wish& wish)
     if (OpenWish* open = find_open(wish.key); open != nullptr)
     {
         open->generation = wish.generation;
-        open->wished_ns = now_ns_;
+        ask_again(*open); // The cache has waited long enough for an answer.
         return;
     }
     if (open_count_ == open_.size())
     {
         forget_oldest_generation();
     }
-    open_[open_count_++] = {wish.key, wish.generation, now_ns_, kNeverAsked, now_ns_};
+    open_[open_count_++] = {wish.key, wish.generation, false, now_ns_};
 }
 
 void Courier::forget_oldest_generation()
@@ -129,56 +126,40 @@ void Courier::forget_oldest_generation()
     ++counters_.forgotten;
 }
 
-void Courier::ask_new()
+void Courier::ask_again(OpenWish& open)
 {
-    for (OpenWish& open : open_.first(open_count_))
-    {
-        if (open.asked_ns == kNeverAsked)
-        {
-            open.asked_ns = now_ns_;
-            batch_[batch_count_++] = open.key;
-        }
-    }
-    send_batch();
+    counters_.asked_again += open.is_asked ? 1 : 0;
+    open.is_asked = false;
 }
 
-/// Loss is the link's business first; this is for what it cannot see: requests that went to a host
-/// that is gone, pieces that were damaged.
-void Courier::ask_again()
+/// What hasn't been asked for yet, and everything again when another host serves the model. How
+/// long to wait for an answer is the cache's to know: a wish has one clock, WishList's. Loss is the
+/// link's business first; wishes expire for what it cannot see: pieces that were damaged, or found
+/// no slot.
+void Courier::ask()
 {
-    const bool is_new_session = link_.session() != session_;
-    session_ = link_.session();
+    const std::span<OpenWish> open = open_.first(open_count_);
+    if (link_.session() != session_)
+    {
+        session_ = link_.session();
+        std::ranges::for_each(open, [this](OpenWish& wish) { ask_again(wish); });
+    }
     if (link_.state() == LinkState::host_gone)
     {
         return;
     }
-    for (std::size_t i = 0; i < open_count_;)
+    std::size_t count = 0;
+    for (OpenWish& wish : open)
     {
-        OpenWish& open = open_[i];
-        if (!is_new_session && now_ns_ - open.wished_ns >= options_.give_up_ns)
+        if (!wish.is_asked)
         {
-            open = open_[--open_count_];
-            ++counters_.forgotten;
-            continue;
+            wish.is_asked = true;
+            batch_[count++] = wish.key;
         }
-        if (is_new_session || now_ns_ - open.asked_ns >= options_.retry_ns)
-        {
-            open.asked_ns = now_ns_;
-            open.wished_ns = is_new_session ? now_ns_ : open.wished_ns;
-            batch_[batch_count_++] = open.key;
-            ++counters_.asked_again;
-        }
-        ++i;
     }
-    send_batch();
-}
-
-void Courier::send_batch()
-{
-    if (batch_count_ > 0)
+    if (count > 0)
     {
-        link_.request(batch_.first(batch_count_), newest_generation_);
-        batch_count_ = 0;
+        link_.request(batch_.first(count), newest_generation_);
     }
 }
 

@@ -26,24 +26,21 @@ struct CourierCounters
     std::uint64_t coded_bytes{0}; ///< Of those, without the link's framing.
     std::uint64_t delivered{0};   ///< Handed over to the haptic thread.
     std::uint64_t wishes{0};      ///< Taken from the door.
-    std::uint64_t asked_again{0}; ///< Requests repeated because nothing came.
+    std::uint64_t asked_again{0}; ///< Repeated: nothing came, or another host serves the model.
 
     std::uint64_t refused_hash{0};     ///< Damaged, forged, or another piece under this key.
     std::uint64_t refused_content{0};  ///< The hash fits but parse refuses: a faulty model.
     std::uint64_t dropped_unasked{0};  ///< Duplicates, late ones, and what nobody wished for.
     std::uint64_t dropped_no_slot{0};  ///< Every slot is with the haptic thread.
     std::uint64_t dropped_no_index{0}; ///< The chunk's index page is not here to verify it.
-    std::uint64_t forgotten{0};        ///< Wishes given up: too many, too old, or never answered.
+    std::uint64_t forgotten{0};        ///< Wishes given up because too many were open.
 
     [[nodiscard]] std::uint64_t refused() const noexcept { return refused_hash + refused_content; }
 };
 
-/// How long and how much a courier waits.
 struct CourierOptions
 {
-    std::uint32_t open_wishes{256};         ///< Asked for and not yet here. 40 B each.
-    std::int64_t retry_ns{200'000'000};     ///< An unanswered wish is asked again after this.
-    std::int64_t give_up_ns{5'000'000'000}; ///< And forgotten after this; the cache asks anew.
+    std::uint32_t open_wishes{256}; ///< Asked for and not yet here. 32 B each.
 };
 
 /// The transport thread's work for one model: takes wishes from the door, asks the link, verifies
@@ -95,8 +92,7 @@ private:
     {
         ContentKey key;
         std::uint32_t generation{0};
-        std::int64_t wished_ns{0};
-        std::int64_t asked_ns{0};
+        bool is_asked{false};
         std::int64_t opened_ns{0};
     };
     struct IndexSlot
@@ -110,9 +106,8 @@ private:
     void take_wishes(std::size_t count);
     void open_wish(const ChunkInbox::Wish& wish);
     void forget_oldest_generation();
-    void ask_new();
-    void ask_again();
-    void send_batch();
+    void ask_again(OpenWish& open);
+    void ask();
     void adopt_index_page(IndexPageId page, std::span<const std::byte> bytes);
     void adopt_chunk(ChunkId chunk, std::span<const std::byte> bytes);
     void hand_over(ContentKey key, std::uint32_t slot, std::uint64_t linked,
@@ -142,7 +137,6 @@ private:
     std::span<OpenWish> open_; ///< The first `open_count_` are in use.
     std::size_t open_count_{0};
     std::span<ContentKey> batch_;
-    std::size_t batch_count_{0};
     std::uint32_t newest_generation_{0};
     std::uint64_t session_{0};
     std::int64_t now_ns_{0};

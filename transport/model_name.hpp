@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "platform/base/printable.hpp"
+#include "platform/base/refusal.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/limits.hpp"
 #include "rt_core/spm/header.hpp"
@@ -28,16 +30,6 @@ namespace tactus
                        });
 }
 
-/// Text from outside, fit for a message: bytes that are not printable ASCII become '?', and what is
-/// longer than a name may be is cut.
-[[nodiscard]] inline std::string printable(std::string_view text)
-{
-    std::string result(text.substr(0, kMaxNameBytes));
-    std::replace_if(
-        result.begin(), result.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-    return text.size() > kMaxNameBytes ? result + "..." : result;
-}
-
 /// Which model is meant: by name, or by name and hash. Without a hash the first one seen is taken.
 struct ModelSelector
 {
@@ -45,29 +37,23 @@ struct ModelSelector
     std::optional<ContentHash> hash;
 };
 
-/// Why a name or NAME@HASH was refused: one line without the option's name.
-struct NameError
-{
-    std::string text;
-};
-
 /// Reads NAME or NAME@HASH, HASH being 32 hexadecimal digits.
-[[nodiscard]] inline Result<ModelSelector, NameError> parse_selector(std::string_view text)
+[[nodiscard]] inline Result<ModelSelector, Refusal> parse_selector(std::string_view text)
 {
     const std::size_t at = text.find('@');
     ModelSelector selector{std::string(text.substr(0, at)), std::nullopt};
     if (!is_valid_name(selector.name))
     {
-        return NameError{"name '" + printable(selector.name) +
-                         "' is not 1 to 63 characters of A-Z a-z 0-9 . _ -"};
+        return Refusal{"name '" + printable(selector.name) +
+                       "' is not 1 to 63 characters of A-Z a-z 0-9 . _ -"};
     }
     if (at != std::string_view::npos)
     {
         selector.hash = parse_hash(text.substr(at + 1));
         if (!selector.hash)
         {
-            return NameError{"hash '" + printable(text.substr(at + 1)) +
-                             "' is not 32 hexadecimal digits"};
+            return Refusal{"hash '" + printable(text.substr(at + 1)) +
+                           "' is not 32 hexadecimal digits"};
         }
     }
     return selector;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "rt_core/base/result.hpp"
+#include "rt_core/limits.hpp"
 
 #include <array>
 #include <cstddef>
@@ -19,13 +20,6 @@ struct Pose
     std::array<double, 3> translation_m{};
     double scale{1.0};
 };
-
-/// What a pose may be: the ranges of --place.
-inline constexpr double kPoseReachMax_m = 1e4; ///< Of each coordinate, either way.
-inline constexpr double kPoseScaleMin = 1e-3;
-inline constexpr double kPoseScaleMax = 1e3;
-/// How far a quaternion's length may be from 1: room for senders that compute in float.
-inline constexpr double kPoseUnitTolerance = 1e-3;
 
 /// Why a pose isn't used.
 enum class PoseRefusal : std::uint8_t

@@ -97,7 +97,23 @@ files_listed() {
     return "$faults"
 }
 
-readonly checks='line_length no_leftovers machine_paths licence files_listed'
+# A constant of rt_core/limits.hpp that no test names, comments aside, is a limit that nobody has
+# ever reached. Programs that measure are no tests.
+limits_tested() {
+    local limits=rt_core/limits.hpp named line name faults=0
+    named=$(project_files 'tests/*/test_*.cpp' | grep -v '^tests/bench/' | tr '\n' '\0' \
+        | xargs -0 -r sed 's|//.*||' | grep -owE 'k[A-Z][A-Za-z0-9_]*' | sort -u)
+    while IFS=: read -r line name; do
+        if ! grep -qxF "$name" <<<"$named"; then
+            echo "$limits:$line: $name is named in no tests/*/test_*.cpp"
+            faults=1
+        fi
+    done < <(grep -nE '^(inline )?constexpr ' "$limits" \
+        | sed -E 's/^([0-9]+):.* (k[A-Z][A-Za-z0-9_]*) = .*/\1:\2/')
+    return "$faults"
+}
+
+readonly checks='line_length no_leftovers machine_paths licence files_listed limits_tested'
 if (($# != 2)) || [[ " $checks " != *" $1 "* ]]; then
     echo "usage: check_text.sh CHECK ROOT, CHECK being one of: $checks" >&2
     exit 3

@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #include "host_tools/cli/command_line.hpp"
 
+#include "platform/base/printable.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,19 +15,6 @@ namespace tactus
 
 namespace
 {
-
-std::string printable(std::string text)
-{
-    std::replace_if(
-        text.begin(), text.end(),
-        [](char c)
-        {
-            const auto code = static_cast<unsigned char>(c);
-            return code < 0x20U || code == 0x7FU;
-        },
-        '?');
-    return text;
-}
 
 /// The library ends some messages with a line end and uses several lines for lists.
 std::string on_one_line(std::string text)
@@ -91,7 +80,7 @@ CLI::Validator number_between(double least, double most)
 
 int fail(const CLI::App& app, const std::string& text, int code)
 {
-    fmt::print(stderr, "{}: {}\n", app.get_name(), printable(text));
+    fmt::print(stderr, "{}: {}\n", app.get_name(), printable_line(text));
     return code;
 }
 

@@ -5,8 +5,8 @@
 #include "host_tools/encode/model_pieces.hpp"
 #include "host_tools/encode/piece_coding.hpp"
 #include "host_tools/encode/region_grid.hpp"
-#include "host_tools/mesh/atomic_file.hpp"
 #include "host_tools/simplify/parallel_blocks.hpp"
+#include "platform/base/atomic_file.hpp"
 #include "rt_core/base/assert.hpp"
 #include "rt_core/spm/index_page.hpp"
 #include "transport/content_hash.hpp"
@@ -23,8 +23,6 @@ namespace tactus
 namespace
 {
 
-using Refusal = std::optional<std::string>;
-
 std::array<std::uint32_t, 3> extent_of(const QuantisedMesh& mesh)
 {
     std::array<std::uint32_t, 3> extent{};
@@ -39,8 +37,8 @@ std::array<std::uint32_t, 3> extent_of(const QuantisedMesh& mesh)
     return extent;
 }
 
-Refusal check_base(const Simplification& simplification, std::size_t base_vertices,
-                   std::uint32_t allowed_faces)
+std::optional<std::string> check_base(const Simplification& simplification,
+                                      std::size_t base_vertices, std::uint32_t allowed_faces)
 {
     const std::size_t faces = simplification.base_faces.size();
     const std::size_t vertices_needed = (base_vertices + 2) / 3;
@@ -59,7 +57,7 @@ Refusal check_base(const Simplification& simplification, std::size_t base_vertic
     return std::nullopt;
 }
 
-Refusal check_pieces(const ModelPieces& pieces)
+std::optional<std::string> check_pieces(const ModelPieces& pieces)
 {
     if (pieces.max_depth() > kMaxDepth)
     {
@@ -76,7 +74,7 @@ std::uint32_t cell_of(double region_size_m, double quantum_m)
     return std::bit_floor(static_cast<std::uint32_t>(quanta));
 }
 
-Refusal check_regions(const RegionGrid& grid, double quantum_m)
+std::optional<std::string> check_regions(const RegionGrid& grid, double quantum_m)
 {
     if (grid.count() > kMaxRegions)
     {
@@ -200,9 +198,9 @@ void code_chunks(const ModelPieces& pieces, std::uint32_t first,
 }
 
 /// Chunks go behind a gap of the front's size, which is filled last.
-Result<Done, FileError> write_pieces(AtomicFile& file, HeaderFields& fields,
-                                     const ModelPieces& pieces, const RegionGrid& grid,
-                                     unsigned threads)
+Result<Done, Refusal> write_pieces(AtomicFile& file, HeaderFields& fields,
+                                   const ModelPieces& pieces, const RegionGrid& grid,
+                                   unsigned threads)
 {
     constexpr std::uint32_t kBatch = 256;
     const ModelCounts& counts = pieces.counts();
@@ -230,15 +228,15 @@ Result<Done, FileError> write_pieces(AtomicFile& file, HeaderFields& fields,
 
 } // namespace
 
-Result<HeaderFields, EncodeError> write_spm(const std::filesystem::path& path,
-                                            const PreparedMesh& prepared,
-                                            const Simplification& simplification,
-                                            const EncodeOptions& options)
+Result<HeaderFields, Refusal> write_spm(const std::filesystem::path& path,
+                                        const PreparedMesh& prepared,
+                                        const Simplification& simplification,
+                                        const EncodeOptions& options)
 {
     const QuantisedMesh& mesh = prepared.mesh;
     const auto refuse = [&](const std::string& what)
-    { return EncodeError{fmt::format("{}: not written: {}", path.string(), what)}; };
-    if (const Refusal refusal =
+    { return Refusal{fmt::format("{}: not written: {}", path.string(), what)}; };
+    if (const auto refusal =
             check_base(simplification, mesh.positions.size() - simplification.collapses.size(),
                        options.base_faces))
     {
@@ -249,12 +247,12 @@ Result<HeaderFields, EncodeError> write_spm(const std::filesystem::path& path,
     RegionGrid grid = make_region_grid(
         extent, options.region_size_m ? cell_of(*options.region_size_m, prepared.quantum_m)
                                       : default_cell(extent));
-    if (const Refusal refusal = check_regions(grid, prepared.quantum_m))
+    if (const auto refusal = check_regions(grid, prepared.quantum_m))
     {
         return refuse(*refusal);
     }
     const ModelPieces pieces(prepared, simplification, options.threads);
-    if (const Refusal refusal = check_pieces(pieces))
+    if (const auto refusal = check_pieces(pieces))
     {
         return refuse(*refusal);
     }
@@ -264,12 +262,12 @@ Result<HeaderFields, EncodeError> write_spm(const std::filesystem::path& path,
     auto file = AtomicFile::create(path);
     if (!file)
     {
-        return EncodeError{file.error().text};
+        return file.error();
     }
     if (const auto written = write_pieces(file.value(), fields, pieces, grid, options.threads);
         !written)
     {
-        return EncodeError{written.error().text};
+        return written.error();
     }
     return fields;
 }

@@ -4,6 +4,7 @@
 
 #include "host_tools/mesh/prepare.hpp"
 #include "host_tools/simplify/simplify.hpp"
+#include "platform/base/refusal.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/spm/header.hpp"
 
@@ -25,19 +26,13 @@ struct EncodeOptions
     unsigned threads{1}; ///< The file does not depend on it.
 };
 
-/// Why there is no file: one line that begins with the file's name.
-struct EncodeError
-{
-    std::string text;
-};
-
 /// Writes a model's file: header, base mesh, index pages, chunks. The file appears under its name
 /// only when it is whole; after a refusal there is nothing new on the disk. Returns the header's
 /// fields. The same arguments give the same bytes. Linear memory, about 100 B a face beside the
 /// arguments; chunks are coded side by side and go to the disk batch by batch.
-[[nodiscard]] Result<HeaderFields, EncodeError> write_spm(const std::filesystem::path& path,
-                                                          const PreparedMesh& prepared,
-                                                          const Simplification& simplification,
-                                                          const EncodeOptions& options);
+[[nodiscard]] Result<HeaderFields, Refusal> write_spm(const std::filesystem::path& path,
+                                                      const PreparedMesh& prepared,
+                                                      const Simplification& simplification,
+                                                      const EncodeOptions& options);
 
 } // namespace tactus

@@ -59,29 +59,28 @@ Box box_of(const std::vector<Point>& positions)
     return box;
 }
 
-std::optional<MeshError> find_bad_option(const PrepareOptions& options)
+std::optional<Refusal> find_bad_option(const PrepareOptions& options)
 {
     if (!(options.metres_per_unit > 0.0) || !std::isfinite(options.metres_per_unit))
     {
-        return MeshError{fmt::format("metres per unit is {}; must be positive and finite",
-                                     options.metres_per_unit)};
+        return Refusal{fmt::format("metres per unit is {}; must be positive and finite",
+                                   options.metres_per_unit)};
     }
     if (options.fit_diagonal_m && !(*options.fit_diagonal_m >= kMinFitDiagonal_m &&
                                     *options.fit_diagonal_m <= kMaxFitDiagonal_m))
     {
-        return MeshError{fmt::format("fit diagonal is {} m; must be {} .. {} m",
-                                     *options.fit_diagonal_m, kMinFitDiagonal_m,
-                                     kMaxFitDiagonal_m)};
+        return Refusal{fmt::format("fit diagonal is {} m; must be {} .. {} m",
+                                   *options.fit_diagonal_m, kMinFitDiagonal_m, kMaxFitDiagonal_m)};
     }
     if (options.position_bits < kMinPositionBits || options.position_bits > kMaxPositionBits)
     {
-        return MeshError{fmt::format("position bits is {}; must be {} .. {}", options.position_bits,
-                                     kMinPositionBits, kMaxPositionBits)};
+        return Refusal{fmt::format("position bits is {}; must be {} .. {}", options.position_bits,
+                                   kMinPositionBits, kMaxPositionBits)};
     }
     return std::nullopt;
 }
 
-std::optional<MeshError> find_bad_source(const TriangleMesh& source)
+std::optional<Refusal> find_bad_source(const TriangleMesh& source)
 {
     for (std::size_t f = 0; f < source.faces.size(); ++f)
     {
@@ -89,13 +88,13 @@ std::optional<MeshError> find_bad_source(const TriangleMesh& source)
         {
             if (v >= source.positions.size())
             {
-                return MeshError{fmt::format("face {} names vertex {}; must be below {}", f, v,
-                                             source.positions.size())};
+                return Refusal{fmt::format("face {} names vertex {}; must be below {}", f, v,
+                                           source.positions.size())};
             }
             const Point& p = source.positions[v];
             if (!std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2]))
             {
-                return MeshError{
+                return Refusal{
                     fmt::format("vertex {} is ({}, {}, {}); must be finite", v, p[0], p[1], p[2])};
             }
         }
@@ -114,8 +113,8 @@ TriangleMesh clean_up(TriangleMesh mesh, PreparedMesh& out)
 }
 
 /// Metres per source unit, after fitting; sets the diagonal.
-Result<double, MeshError> choose_scale(const Box& box, const PrepareOptions& options,
-                                       PreparedMesh& out)
+Result<double, Refusal> choose_scale(const Box& box, const PrepareOptions& options,
+                                     PreparedMesh& out)
 {
     const double source_diagonal = box.diagonal();
     double scale = options.metres_per_unit;
@@ -130,15 +129,15 @@ Result<double, MeshError> choose_scale(const Box& box, const PrepareOptions& opt
         out.origin_m[axis] = box.low[axis] * scale;
         if (!std::isfinite(out.origin_m[axis]) || !std::isfinite(box.extent(axis) * scale))
         {
-            return MeshError{
+            return Refusal{
                 fmt::format("coordinates are not finite any more after scaling by {}", scale)};
         }
     }
     if (!(out.diagonal_m >= kMinDiagonal_m && out.diagonal_m <= kMaxDiagonal_m))
     {
-        return MeshError{fmt::format("the model's diagonal is {} m; must be {} .. {} m (check the "
-                                     "unit, or fit it to a diagonal)",
-                                     out.diagonal_m, kMinDiagonal_m, kMaxDiagonal_m)};
+        return Refusal{fmt::format("the model's diagonal is {} m; must be {} .. {} m (check the "
+                                   "unit, or fit it to a diagonal)",
+                                   out.diagonal_m, kMinDiagonal_m, kMaxDiagonal_m)};
     }
     return scale;
 }
@@ -248,8 +247,8 @@ std::optional<double> metres_per_unit(std::string_view unit)
     return unit == "in" ? std::optional(0.0254) : std::nullopt;
 }
 
-Result<PreparedMesh, MeshError> prepare_mesh(const TriangleMesh& source,
-                                             const PrepareOptions& options)
+Result<PreparedMesh, Refusal> prepare_mesh(const TriangleMesh& source,
+                                           const PrepareOptions& options)
 {
     if (auto error = find_bad_option(options))
     {
@@ -263,9 +262,9 @@ Result<PreparedMesh, MeshError> prepare_mesh(const TriangleMesh& source,
     TriangleMesh mesh = clean_up(source, out);
     if (mesh.faces.empty())
     {
-        return MeshError{fmt::format("no face is left of {}: {} are degenerate; at least 1 is "
-                                     "needed",
-                                     source.faces.size(), out.degenerate_faces)};
+        return Refusal{fmt::format("no face is left of {}: {} are degenerate; at least 1 is "
+                                   "needed",
+                                   source.faces.size(), out.degenerate_faces)};
     }
     const Box box = box_of(mesh.positions);
     const auto scale = choose_scale(box, options, out);

@@ -2,9 +2,9 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "host_tools/mesh/mesh_error.hpp"
 #include "host_tools/mesh/quantised_mesh.hpp"
 #include "host_tools/mesh/triangle_mesh.hpp"
+#include "platform/base/refusal.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/limits.hpp"
 
@@ -59,7 +59,7 @@ struct PreparedMesh
 /// vertices and faces keep their order, copies of vertices come last. A face's opposite is kept:
 /// together they are a two-sided sheet and part into two.
 /// Nearly linear in the mesh: 4 M faces take 4 s and, with the source, 70 B a face at the peak.
-[[nodiscard]] Result<PreparedMesh, MeshError> prepare_mesh(const TriangleMesh& source,
-                                                           const PrepareOptions& options);
+[[nodiscard]] Result<PreparedMesh, Refusal> prepare_mesh(const TriangleMesh& source,
+                                                         const PrepareOptions& options);
 
 } // namespace tactus

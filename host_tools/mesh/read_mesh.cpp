@@ -23,7 +23,7 @@ namespace
 /// Indices are 32-bit and the largest value is kept free to mean "none".
 constexpr std::size_t kMaxVertices = 0xFFFF'FFFE;
 
-using Reader = Result<MeshFile, MeshError> (*)(std::string_view);
+using Reader = Result<MeshFile, Refusal> (*)(std::string_view);
 
 std::optional<Reader> reader_for(const std::filesystem::path& path)
 {
@@ -73,45 +73,45 @@ std::string why_not_a_file(const std::filesystem::path& path)
     return {};
 }
 
-Result<std::string, MeshError> read_all_bytes(const std::filesystem::path& path)
+Result<std::string, Refusal> read_all_bytes(const std::filesystem::path& path)
 {
     std::error_code code;
     const std::uintmax_t size = std::filesystem::file_size(path, code);
     std::ifstream file(path, std::ios::binary);
     if (code || !file)
     {
-        return MeshError{fmt::format("can't be opened: {}", std::strerror(errno))};
+        return Refusal{fmt::format("can't be opened: {}", std::strerror(errno))};
     }
     if (size == 0)
     {
-        return MeshError{"is empty"};
+        return Refusal{"is empty"};
     }
     std::string bytes(size, '\0');
     file.read(bytes.data(), static_cast<std::streamsize>(size));
     if (static_cast<std::uintmax_t>(file.gcount()) != size)
     {
-        return MeshError{fmt::format("only {} of {} bytes could be read", file.gcount(), size)};
+        return Refusal{fmt::format("only {} of {} bytes could be read", file.gcount(), size)};
     }
     return bytes;
 }
 
 /// What every format owes: finite coordinates, indices in range, some faces but not too many.
-std::optional<MeshError> find_fault(const TriangleMesh& mesh)
+std::optional<Refusal> find_fault(const TriangleMesh& mesh)
 {
     if (mesh.faces.empty())
     {
-        return MeshError{fmt::format("holds no faces ({} vertices); at least 1 is needed",
-                                     mesh.positions.size())};
+        return Refusal{fmt::format("holds no faces ({} vertices); at least 1 is needed",
+                                   mesh.positions.size())};
     }
     if (mesh.faces.size() > kMaxFaces)
     {
-        return MeshError{
+        return Refusal{
             fmt::format("holds {} faces; at most {} (2^29)", mesh.faces.size(), kMaxFaces)};
     }
     if (mesh.positions.size() > kMaxVertices)
     {
-        return MeshError{fmt::format("holds {} vertices; at most {} (2^32 - 2)",
-                                     mesh.positions.size(), kMaxVertices)};
+        return Refusal{fmt::format("holds {} vertices; at most {} (2^32 - 2)",
+                                   mesh.positions.size(), kMaxVertices)};
     }
     for (std::size_t v = 0; v < mesh.positions.size(); ++v)
     {
@@ -119,8 +119,8 @@ std::optional<MeshError> find_fault(const TriangleMesh& mesh)
         {
             if (!std::isfinite(mesh.positions[v][axis]))
             {
-                return MeshError{fmt::format("vertex {} (from 0): {} is {}; must be finite", v,
-                                             "xyz"[axis], mesh.positions[v][axis])};
+                return Refusal{fmt::format("vertex {} (from 0): {} is {}; must be finite", v,
+                                           "xyz"[axis], mesh.positions[v][axis])};
             }
         }
     }
@@ -131,16 +131,16 @@ std::optional<MeshError> find_fault(const TriangleMesh& mesh)
     return std::nullopt;
 }
 
-Result<MeshFile, MeshError> read_without_name(const std::filesystem::path& path)
+Result<MeshFile, Refusal> read_without_name(const std::filesystem::path& path)
 {
     if (const std::string reason = why_not_a_file(path); !reason.empty())
     {
-        return MeshError{reason};
+        return Refusal{reason};
     }
     const auto reader = reader_for(path);
     if (!reader)
     {
-        return MeshError{"unknown kind of mesh file; must end in .ply, .obj, .stl or .off"};
+        return Refusal{"unknown kind of mesh file; must end in .ply, .obj, .stl or .off"};
     }
     const auto bytes = read_all_bytes(path);
     if (!bytes)
@@ -161,24 +161,24 @@ Result<MeshFile, MeshError> read_without_name(const std::filesystem::path& path)
 
 } // namespace
 
-Result<MeshFile, MeshError> read_mesh_file(const std::filesystem::path& path)
+Result<MeshFile, Refusal> read_mesh_file(const std::filesystem::path& path)
 {
     try
     {
         auto file = read_without_name(path);
         if (!file)
         {
-            return MeshError{fmt::format("{}: {}", path.string(), file.error().text)};
+            return Refusal{fmt::format("{}: {}", path.string(), file.error().text)};
         }
         return file;
     }
     catch (const std::bad_alloc&)
     {
-        return MeshError{fmt::format("{}: there is not enough memory to read it", path.string())};
+        return Refusal{fmt::format("{}: there is not enough memory to read it", path.string())};
     }
 }
 
-Result<TriangleMesh, MeshError> read_mesh(const std::filesystem::path& path)
+Result<TriangleMesh, Refusal> read_mesh(const std::filesystem::path& path)
 {
     auto file = read_mesh_file(path);
     if (!file)

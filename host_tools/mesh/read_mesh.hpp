@@ -2,8 +2,8 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "host_tools/mesh/mesh_error.hpp"
 #include "host_tools/mesh/triangle_mesh.hpp"
+#include "platform/base/refusal.hpp"
 #include "rt_core/base/result.hpp"
 
 #include <cstddef>
@@ -32,9 +32,9 @@ struct MeshFile
 /// number without line end) there is a note.
 /// Costs the file's bytes plus the mesh in memory; a count in a header allocates nothing that the
 /// file's size doesn't support.
-[[nodiscard]] Result<MeshFile, MeshError> read_mesh_file(const std::filesystem::path& path);
+[[nodiscard]] Result<MeshFile, Refusal> read_mesh_file(const std::filesystem::path& path);
 
 /// The same for callers that don't show notes.
-[[nodiscard]] Result<TriangleMesh, MeshError> read_mesh(const std::filesystem::path& path);
+[[nodiscard]] Result<TriangleMesh, Refusal> read_mesh(const std::filesystem::path& path);
 
 } // namespace tactus

@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #include "host_tools/mesh/write_mesh.hpp"
 
-#include "host_tools/mesh/atomic_file.hpp"
+#include "platform/base/atomic_file.hpp"
 #include "rt_core/math/vec3.hpp"
 
 #include <fmt/format.h>
@@ -73,7 +73,7 @@ public:
         }
     }
 
-    Result<Done, FileError> finish()
+    Result<Done, Refusal> finish()
     {
         flush();
         return result_ ? file_.commit() : result_;
@@ -93,7 +93,7 @@ private:
 
     AtomicFile& file_;
     std::vector<std::byte> buffer_;
-    Result<Done, FileError> result_{Done{}};
+    Result<Done, Refusal> result_{Done{}};
 };
 
 void put_ply(Writer& writer, const TriangleMesh& mesh)
@@ -206,29 +206,29 @@ bool has_mesh_extension(const std::filesystem::path& path)
     return writer_for(path) != nullptr;
 }
 
-Result<Done, MeshError> write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh)
+Result<Done, Refusal> write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh)
 {
     const PutMesh put_mesh = writer_for(path);
     if (put_mesh == nullptr)
     {
-        return MeshError{path.string() + ": the name must end in .ply, .obj or .stl"};
+        return Refusal{path.string() + ": the name must end in .ply, .obj or .stl"};
     }
     if (put_mesh == put_stl && !stay_apart_as_floats(mesh.positions))
     {
-        return MeshError{path.string() + ": STL's 32-bit coordinates can't keep all vertices apart "
-                                         "so far from the origin; write .ply or .obj"};
+        return Refusal{path.string() + ": STL's 32-bit coordinates can't keep all vertices apart "
+                                       "so far from the origin; write .ply or .obj"};
     }
     auto file = AtomicFile::create(path);
     if (!file)
     {
-        return MeshError{file.error().text};
+        return file.error();
     }
     Writer writer(file.value());
     put_mesh(writer, mesh);
     const auto done = writer.finish();
     if (!done)
     {
-        return MeshError{done.error().text};
+        return done.error();
     }
     return Done{};
 }

@@ -2,8 +2,8 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "host_tools/mesh/mesh_error.hpp"
 #include "host_tools/mesh/triangle_mesh.hpp"
+#include "platform/base/refusal.hpp"
 #include "rt_core/base/result.hpp"
 
 #include <filesystem>
@@ -22,7 +22,7 @@ namespace tactus
 /// .stl: binary, loose triangles; coordinates are rounded to float. Refused when that would put two
 /// vertices of different positions into one place.
 /// Refused when the path ends otherwise or can't be written.
-[[nodiscard]] Result<Done, MeshError> write_mesh(const std::filesystem::path& path,
-                                                 const TriangleMesh& mesh);
+[[nodiscard]] Result<Done, Refusal> write_mesh(const std::filesystem::path& path,
+                                               const TriangleMesh& mesh);
 
 } // namespace tactus

@@ -3,6 +3,7 @@
 #include "host_tools/shapes/detail/grid.hpp"
 #include "host_tools/shapes/detail/sine.hpp"
 #include "host_tools/shapes/shapes.hpp"
+#include "platform/base/refusal.hpp"
 
 #include <fmt/format.h>
 
@@ -80,14 +81,14 @@ private:
 
 } // namespace
 
-Result<TriangleMesh, MeshError> make_uv_sphere(std::uint32_t rings, std::uint32_t segments)
+Result<TriangleMesh, Refusal> make_uv_sphere(std::uint32_t rings, std::uint32_t segments)
 {
     constexpr double kRadius_m = 0.05;
     if (rings < 2 || segments < 3 || 2ULL * segments * (std::uint64_t{rings} - 1) > kMaxShapeFaces)
     {
-        return MeshError{fmt::format("{} rings x {} segments: must be at least 2 x 3 and make at "
-                                     "most {} faces",
-                                     rings, segments, kMaxShapeFaces)};
+        return Refusal{fmt::format("{} rings x {} segments: must be at least 2 x 3 and make at "
+                                   "most {} faces",
+                                   rings, segments, kMaxShapeFaces)};
     }
     TriangleMesh mesh;
     const Grid grid{segments, rings - 1, true, false};
@@ -108,14 +109,14 @@ Result<TriangleMesh, MeshError> make_uv_sphere(std::uint32_t rings, std::uint32_
     return mesh;
 }
 
-Result<TriangleMesh, MeshError> make_thin_plate(std::uint32_t cells, double thickness_m)
+Result<TriangleMesh, Refusal> make_thin_plate(std::uint32_t cells, double thickness_m)
 {
     constexpr double kSide_m = 0.1;
     if (cells < 1 || cells > 1000 || !(thickness_m >= 1e-6 && thickness_m <= kSide_m))
     {
-        return MeshError{fmt::format("{} cells, {} m thick: must be 1 .. 1000 cells and 1e-6 .. "
-                                     "{} m",
-                                     cells, thickness_m, kSide_m)};
+        return Refusal{fmt::format("{} cells, {} m thick: must be 1 .. 1000 cells and 1e-6 .. "
+                                   "{} m",
+                                   cells, thickness_m, kSide_m)};
     }
     TriangleMesh mesh;
     const Grid grid{cells + 1, cells + 1, false, false};
@@ -150,14 +151,13 @@ Result<TriangleMesh, MeshError> make_thin_plate(std::uint32_t cells, double thic
     return mesh;
 }
 
-Result<TriangleMesh, MeshError> make_triangle_soup(std::uint32_t triangles, std::uint64_t seed)
+Result<TriangleMesh, Refusal> make_triangle_soup(std::uint32_t triangles, std::uint64_t seed)
 {
     constexpr double kCube_m = 0.1;
     constexpr double kTriangle_m = 0.005;
     if (triangles < 1 || triangles > kMaxShapeFaces)
     {
-        return MeshError{
-            fmt::format("triangles is {}; must be 1 .. {}", triangles, kMaxShapeFaces)};
+        return Refusal{fmt::format("triangles is {}; must be 1 .. {}", triangles, kMaxShapeFaces)};
     }
     TriangleMesh mesh;
     Random random(seed);

@@ -281,11 +281,11 @@ std::optional<Shape> parse_shape(std::string_view name)
     return std::nullopt;
 }
 
-Result<TriangleMesh, MeshError> make_shape(Shape shape, std::uint32_t faces)
+Result<TriangleMesh, Refusal> make_shape(Shape shape, std::uint32_t faces)
 {
     if (faces < kMinShapeFaces || faces > kMaxShapeFaces)
     {
-        return MeshError{
+        return Refusal{
             fmt::format("faces is {}; must be {} .. {}", faces, kMinShapeFaces, kMaxShapeFaces)};
     }
     switch (shape)
@@ -301,7 +301,7 @@ Result<TriangleMesh, MeshError> make_shape(Shape shape, std::uint32_t faces)
     case Shape::gear:
         return make_gear(faces);
     }
-    return MeshError{"unknown shape"};
+    return Refusal{"unknown shape"};
 }
 
 } // namespace tactus

@@ -2,8 +2,8 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "host_tools/mesh/mesh_error.hpp"
 #include "host_tools/mesh/triangle_mesh.hpp"
+#include "platform/base/refusal.hpp"
 #include "rt_core/base/result.hpp"
 
 #include <cstdint>
@@ -36,7 +36,7 @@ inline constexpr std::uint32_t kMaxShapeFaces = 16'000'000;
 /// The shape with the face count nearest to `faces` that it can have at a sensible aspect ratio:
 /// 20 n^2 for the spheres; within 2 % for the others from 10,000 faces on (a gear has at least
 /// 256). Refused outside kMinShapeFaces .. kMaxShapeFaces.
-[[nodiscard]] Result<TriangleMesh, MeshError> make_shape(Shape shape, std::uint32_t faces);
+[[nodiscard]] Result<TriangleMesh, Refusal> make_shape(Shape shape, std::uint32_t faces);
 
 /// Where the bumpy sphere's surface f(x) = |x| - R (1 + a sin(m u) sin(m v) sin(m w)) = 0 with
 /// (u, v, w) = x / |x| lies along a unit direction: R = 50 mm, a = 0.02, m = 8.
@@ -44,17 +44,17 @@ inline constexpr std::uint32_t kMaxShapeFaces = 16'000'000;
 
 /// A sphere of 50 mm with poles of valence `segments`; 2 x segments x (rings - 1) faces. Few rings
 /// and many segments make needles. At least 2 rings and 3 segments, at most kMaxShapeFaces faces.
-[[nodiscard]] Result<TriangleMesh, MeshError> make_uv_sphere(std::uint32_t rings,
-                                                             std::uint32_t segments);
+[[nodiscard]] Result<TriangleMesh, Refusal> make_uv_sphere(std::uint32_t rings,
+                                                           std::uint32_t segments);
 
 /// A closed plate of 100 x 100 mm, both sides cut into cells x cells squares. 1 .. 1000 cells, 1e-6
 /// to 0.1 m thick.
-[[nodiscard]] Result<TriangleMesh, MeshError> make_thin_plate(std::uint32_t cells,
-                                                              double thickness_m);
+[[nodiscard]] Result<TriangleMesh, Refusal> make_thin_plate(std::uint32_t cells,
+                                                            double thickness_m);
 
 /// Loose triangles of up to 5 mm in a cube of 100 mm, each with three vertices of its own.
 /// At most kMaxShapeFaces.
-[[nodiscard]] Result<TriangleMesh, MeshError> make_triangle_soup(std::uint32_t triangles,
-                                                                 std::uint64_t seed);
+[[nodiscard]] Result<TriangleMesh, Refusal> make_triangle_soup(std::uint32_t triangles,
+                                                               std::uint64_t seed);
 
 } // namespace tactus

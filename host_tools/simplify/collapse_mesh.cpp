@@ -55,7 +55,7 @@ Star star_at(const VertexRing& ring, std::uint32_t place) noexcept
     return star;
 }
 
-Result<CollapseMesh, SimplifyError> CollapseMesh::create(const QuantisedMesh& mesh)
+Result<CollapseMesh, Refusal> CollapseMesh::create(const QuantisedMesh& mesh)
 {
     auto neighbours = match_edges(mesh);
     if (!neighbours)
@@ -67,12 +67,11 @@ Result<CollapseMesh, SimplifyError> CollapseMesh::create(const QuantisedMesh& me
     {
         if (result.degree_[v] == 0)
         {
-            return SimplifyError{"vertex " + std::to_string(v) + " belongs to no face"};
+            return Refusal{"vertex " + std::to_string(v) + " belongs to no face"};
         }
         if (result.walk_degree(v) != result.degree_[v])
         {
-            return SimplifyError{"the faces of vertex " + std::to_string(v) +
-                                 " form more than one fan"};
+            return Refusal{"the faces of vertex " + std::to_string(v) + " form more than one fan"};
         }
     }
     return result;

@@ -4,6 +4,7 @@
 
 #include "host_tools/simplify/edge_match.hpp"
 #include "host_tools/simplify/simplify.hpp"
+#include "platform/base/refusal.hpp"
 #include "rt_core/base/result.hpp"
 
 #include <array>
@@ -67,7 +68,7 @@ class CollapseMesh
 public:
     /// Refuses, naming the place, what match_edges() refuses, and a vertex without faces or with
     /// more than one fan.
-    [[nodiscard]] static Result<CollapseMesh, SimplifyError> create(const QuantisedMesh& mesh);
+    [[nodiscard]] static Result<CollapseMesh, Refusal> create(const QuantisedMesh& mesh);
 
     [[nodiscard]] std::uint32_t vertex_count() const noexcept
     {

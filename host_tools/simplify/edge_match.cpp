@@ -35,7 +35,7 @@ std::string text_of(std::size_t number)
     return std::to_string(number);
 }
 
-std::optional<SimplifyError> find_bad_face(const QuantisedMesh& mesh)
+std::optional<Refusal> find_bad_face(const QuantisedMesh& mesh)
 {
     for (std::size_t f = 0; f < mesh.faces.size(); ++f)
     {
@@ -44,34 +44,34 @@ std::optional<SimplifyError> find_bad_face(const QuantisedMesh& mesh)
         {
             if (vertex >= mesh.positions.size())
             {
-                return SimplifyError{"face " + text_of(f) + " names vertex " + text_of(vertex) +
-                                     ", but the mesh has " + text_of(mesh.positions.size()) +
-                                     " vertices"};
+                return Refusal{"face " + text_of(f) + " names vertex " + text_of(vertex) +
+                               ", but the mesh has " + text_of(mesh.positions.size()) +
+                               " vertices"};
             }
         }
         if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0])
         {
-            return SimplifyError{"face " + text_of(f) +
-                                 " names a vertex twice; its three corners must differ"};
+            return Refusal{"face " + text_of(f) +
+                           " names a vertex twice; its three corners must differ"};
         }
     }
     return std::nullopt;
 }
 
-std::optional<SimplifyError> find_bad_mesh(const QuantisedMesh& mesh)
+std::optional<Refusal> find_bad_mesh(const QuantisedMesh& mesh)
 {
     if (mesh.faces.empty() || mesh.faces.size() > kMaxFaces)
     {
-        return SimplifyError{"the mesh has " + text_of(mesh.faces.size()) +
-                             " faces; allowed are 1 to " + text_of(kMaxFaces)};
+        return Refusal{"the mesh has " + text_of(mesh.faces.size()) + " faces; allowed are 1 to " +
+                       text_of(kMaxFaces)};
     }
     for (std::size_t v = 0; v < mesh.positions.size(); ++v)
     {
         const auto off_grid = [](std::int32_t value) { return value < 0 || value >= kGridEnd; };
         if (std::ranges::any_of(mesh.positions[v], off_grid))
         {
-            return SimplifyError{"vertex " + text_of(v) +
-                                 " is off the grid; coordinates are 0 to " + text_of(kGridEnd - 1)};
+            return Refusal{"vertex " + text_of(v) + " is off the grid; coordinates are 0 to " +
+                           text_of(kGridEnd - 1)};
         }
     }
     return find_bad_face(mesh);
@@ -118,8 +118,8 @@ EdgeGroups group_edges(const QuantisedMesh& mesh)
     return groups;
 }
 
-std::optional<SimplifyError> join_faces(std::uint32_t vertex, std::span<EdgeEnd> group,
-                                        FaceNeighbours& neighbours)
+std::optional<Refusal> join_faces(std::uint32_t vertex, std::span<EdgeEnd> group,
+                                  FaceNeighbours& neighbours)
 {
     std::ranges::sort(group);
     for (std::size_t i = 1; i < group.size(); ++i)
@@ -134,13 +134,13 @@ std::optional<SimplifyError> join_faces(std::uint32_t vertex, std::span<EdgeEnd>
             "the edge between vertices " + text_of(vertex) + " and " + text_of(first.far_vertex);
         if (i + 1 < group.size() && group[i + 1].far_vertex == first.far_vertex)
         {
-            return SimplifyError{edge + " has more than two faces: " + text_of(first.face) + ", " +
-                                 text_of(second.face) + " and " + text_of(group[i + 1].face)};
+            return Refusal{edge + " has more than two faces: " + text_of(first.face) + ", " +
+                           text_of(second.face) + " and " + text_of(group[i + 1].face)};
         }
         if (first.outward == second.outward)
         {
-            return SimplifyError{"faces " + text_of(first.face) + " and " + text_of(second.face) +
-                                 " run along " + edge + " in the same direction"};
+            return Refusal{"faces " + text_of(first.face) + " and " + text_of(second.face) +
+                           " run along " + edge + " in the same direction"};
         }
         neighbours[first.face][first.corner] = second.face;
         neighbours[second.face][second.corner] = first.face;
@@ -150,7 +150,7 @@ std::optional<SimplifyError> join_faces(std::uint32_t vertex, std::span<EdgeEnd>
 
 } // namespace
 
-Result<FaceNeighbours, SimplifyError> match_edges(const QuantisedMesh& mesh)
+Result<FaceNeighbours, Refusal> match_edges(const QuantisedMesh& mesh)
 {
     if (auto bad = find_bad_mesh(mesh))
     {

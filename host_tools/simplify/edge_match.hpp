@@ -3,6 +3,7 @@
 #pragma once
 
 #include "host_tools/simplify/simplify.hpp"
+#include "platform/base/refusal.hpp"
 #include "rt_core/base/result.hpp"
 
 #include <array>
@@ -19,6 +20,6 @@ using FaceNeighbours = std::vector<std::array<std::uint32_t, 3>>;
 /// Finds the faces that share an edge. Refuses, naming the face or edge: no faces or too many,
 /// an index out of range, a vertex repeated in a face, a position off the grid, an edge with three
 /// faces or with two that run along it in the same direction. Costs a sort of each vertex's edges.
-[[nodiscard]] Result<FaceNeighbours, SimplifyError> match_edges(const QuantisedMesh& mesh);
+[[nodiscard]] Result<FaceNeighbours, Refusal> match_edges(const QuantisedMesh& mesh);
 
 } // namespace tactus

@@ -65,7 +65,7 @@ public:
         result_.is_closed = current_.is_closed();
     }
 
-    Result<Simplification, SimplifyError> run();
+    Result<Simplification, Refusal> run();
 
 private:
     void measure_from_now_on();
@@ -102,14 +102,14 @@ private:
     Simplification result_;
 };
 
-Result<Simplification, SimplifyError> Simplifier::run()
+Result<Simplification, Refusal> Simplifier::run()
 {
     while (current_.faces_left() > options_.base_faces && result_.rounds < kMaxDepth)
     {
         if (options_.progress && !options_.progress(current_.faces_left(), mesh_.faces.size()))
         {
-            return SimplifyError{"cancelled with " + std::to_string(current_.faces_left()) +
-                                 " of " + std::to_string(mesh_.faces.size()) + " faces left"};
+            return Refusal{"cancelled with " + std::to_string(current_.faces_left()) + " of " +
+                           std::to_string(mesh_.faces.size()) + " faces left"};
         }
         find_candidates();
         pick_candidates();
@@ -374,24 +374,23 @@ void Simplifier::collect_base()
     }
 }
 
-std::optional<SimplifyError> find_bad_option(const SimplifyOptions& options)
+std::optional<Refusal> find_bad_option(const SimplifyOptions& options)
 {
     if (options.base_faces == 0)
     {
-        return SimplifyError{"base_faces is 0; it must be 1 or more"};
+        return Refusal{"base_faces is 0; it must be 1 or more"};
     }
     if (options.threads == 0 || options.threads > kMaxThreads)
     {
-        return SimplifyError{"threads is " + std::to_string(options.threads) +
-                             "; allowed are 1 to " + std::to_string(kMaxThreads)};
+        return Refusal{"threads is " + std::to_string(options.threads) + "; allowed are 1 to " +
+                       std::to_string(kMaxThreads)};
     }
     return std::nullopt;
 }
 
 } // namespace
 
-Result<Simplification, SimplifyError> simplify(const QuantisedMesh& mesh,
-                                               const SimplifyOptions& options)
+Result<Simplification, Refusal> simplify(const QuantisedMesh& mesh, const SimplifyOptions& options)
 {
     if (auto bad = find_bad_option(options))
     {

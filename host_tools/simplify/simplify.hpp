@@ -3,6 +3,7 @@
 #pragma once
 
 #include "host_tools/mesh/quantised_mesh.hpp"
+#include "platform/base/refusal.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/limits.hpp"
 
@@ -52,12 +53,6 @@ struct SimplifyOptions
     std::function<bool(std::size_t faces_left, std::size_t faces_total)> progress;
 };
 
-/// Why there is no simplification.
-struct SimplifyError
-{
-    std::string text; ///< One line for the user.
-};
-
 /// Collapses edges in rounds, and lets components that can't shrink vanish into others, until at
 /// most `base_faces` faces are left or nothing is legal: more than asked for only the caller can
 /// refuse. The certificate holds in every dependency-closed cut: each original surface point is
@@ -65,7 +60,7 @@ struct SimplifyError
 /// Same input, same result, for any number of threads. Costs 10 to 20 us and about 300 B a face.
 /// Refuses, by name and place, a mesh that breaks the contract of QuantisedMesh (unused vertices
 /// and coordinates beyond 24 bits included), an option out of range, and a cancelled run.
-[[nodiscard]] Result<Simplification, SimplifyError> simplify(const QuantisedMesh& mesh,
-                                                             const SimplifyOptions& options);
+[[nodiscard]] Result<Simplification, Refusal> simplify(const QuantisedMesh& mesh,
+                                                       const SimplifyOptions& options);
 
 } // namespace tactus

@@ -2,23 +2,22 @@
 // Copyright the Tactus authors.
 #include "host_tools/cli/command_line.hpp"
 #include "host_tools/cli/progress.hpp"
+#include "host_tools/cli/run_program.hpp"
 #include "host_tools/encode/write_spm.hpp"
-#include "host_tools/mesh/atomic_file.hpp"
 #include "host_tools/mesh/prepare.hpp"
 #include "host_tools/mesh/read_mesh.hpp"
 #include "host_tools/shapes/shapes.hpp"
 #include "host_tools/simplify/sampled_distance.hpp"
 #include "host_tools/simplify/simplify.hpp"
+#include "platform/base/atomic_file.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <chrono>
-#include <exception>
 #include <filesystem>
 #include <limits>
-#include <new>
 #include <optional>
 #include <string>
 #include <sys/resource.h>
@@ -176,9 +175,9 @@ Result<Outcome, Failure> build(const Options& options, std::vector<std::string>&
 {
     const auto start = std::chrono::steady_clock::now();
     // Refuses a place that can't be written before minutes of work; the file itself comes last.
-    if (const auto probe = AtomicFile::create(options.output); !probe)
+    if (const auto refused = AtomicFile::probe(options.output))
     {
-        return Failure{probe.error().text};
+        return Failure{refused->text};
     }
     const auto prepared = prepare_source(options, notes);
     if (!prepared)
@@ -287,17 +286,6 @@ int run(int argc, char** argv)
 
 int main(int argc, char** argv)
 {
-    try
-    {
-        return tactus::run(argc, argv);
-    }
-    catch (const std::bad_alloc&)
-    {
-        fmt::print(stderr, "spm_build: not enough memory; about 500 bytes a face are needed\n");
-    }
-    catch (const std::exception& error)
-    {
-        fmt::print(stderr, "spm_build: {}\n", error.what());
-    }
-    return tactus::kExitFailed;
+    return tactus::run_program("spm_build", "about 500 bytes a face are needed",
+                               [&] { return tactus::run(argc, argv); });
 }

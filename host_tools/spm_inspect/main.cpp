@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "host_tools/cli/command_line.hpp"
 #include "host_tools/cli/progress.hpp"
+#include "host_tools/cli/run_program.hpp"
 #include "host_tools/encode/decoded_model.hpp"
 #include "host_tools/encode/replay.hpp"
 #include "host_tools/spm_inspect/extraction.hpp"
@@ -12,8 +13,6 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <exception>
-#include <new>
 #include <optional>
 #include <string>
 #include <vector>
@@ -259,17 +258,6 @@ int run(int argc, char** argv)
 
 int main(int argc, char** argv)
 {
-    try
-    {
-        return tactus::run(argc, argv);
-    }
-    catch (const std::bad_alloc&)
-    {
-        fmt::print(stderr, "spm_inspect: not enough memory; about 150 bytes a face are needed\n");
-    }
-    catch (const std::exception& error)
-    {
-        fmt::print(stderr, "spm_inspect: {}\n", error.what());
-    }
-    return tactus::kExitFailed;
+    return tactus::run_program("spm_inspect", "about 150 bytes a face are needed",
+                               [&] { return tactus::run(argc, argv); });
 }

@@ -18,7 +18,7 @@ namespace
 constexpr std::string_view kBall = "sphere:";
 constexpr std::string_view kBox = "box:";
 
-ZoneError error_in(std::string_view text, const std::string& reason)
+Refusal error_in(std::string_view text, const std::string& reason)
 {
     return {fmt::format("'{}': {}", text, reason)};
 }
@@ -34,8 +34,8 @@ std::optional<double> parse_number(std::string_view text)
 }
 
 /// Exactly `count` numbers within the range of coordinates, separated by commas.
-Result<std::vector<double>, ZoneError> parse_numbers(std::string_view text, std::size_t prefix,
-                                                     std::size_t count)
+Result<std::vector<double>, Refusal> parse_numbers(std::string_view text, std::size_t prefix,
+                                                   std::size_t count)
 {
     std::vector<double> numbers;
     for (std::size_t begin = prefix; begin <= text.size();)
@@ -58,7 +58,7 @@ Result<std::vector<double>, ZoneError> parse_numbers(std::string_view text, std:
     return numbers;
 }
 
-Result<Zone, ZoneError> parse_ball(std::string_view text)
+Result<Zone, Refusal> parse_ball(std::string_view text)
 {
     const auto numbers = parse_numbers(text, kBall.size(), 4);
     if (!numbers)
@@ -74,7 +74,7 @@ Result<Zone, ZoneError> parse_ball(std::string_view text)
     return Zone{BallZone{{n[0], n[1], n[2]}, n[3]}};
 }
 
-Result<Zone, ZoneError> parse_box(std::string_view text)
+Result<Zone, Refusal> parse_box(std::string_view text)
 {
     const auto numbers = parse_numbers(text, kBox.size(), 6);
     if (!numbers)
@@ -96,7 +96,7 @@ Result<Zone, ZoneError> parse_box(std::string_view text)
 
 } // namespace
 
-Result<Zone, ZoneError> parse_zone(std::string_view text)
+Result<Zone, Refusal> parse_zone(std::string_view text)
 {
     if (text.substr(0, kBall.size()) == kBall)
     {

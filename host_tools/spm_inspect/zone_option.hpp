@@ -3,6 +3,7 @@
 #pragma once
 
 #include "host_tools/encode/zone.hpp"
+#include "platform/base/refusal.hpp"
 #include "rt_core/base/result.hpp"
 
 #include <string>
@@ -15,14 +16,8 @@ namespace tactus
 inline constexpr double kMaxZoneCoordinate_m = 1e9;
 inline constexpr double kMinZoneRadius_m = 1e-9;
 
-/// Why a text is no zone: what of it is wrong, and the allowed range.
-struct ZoneError
-{
-    std::string text;
-};
-
 /// Reads sphere:x,y,z,r or box:x0,y0,z0,x1,y1,z1. Numbers are plain decimals, no spaces; a box's
 /// second corner is not below its first on any axis.
-[[nodiscard]] Result<Zone, ZoneError> parse_zone(std::string_view text);
+[[nodiscard]] Result<Zone, Refusal> parse_zone(std::string_view text);
 
 } // namespace tactus

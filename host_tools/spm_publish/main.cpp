@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "host_tools/cli/command_line.hpp"
+#include "host_tools/cli/run_program.hpp"
 #include "host_tools/spm_publish/pose_script.hpp"
 #include "host_tools/spm_publish/serving_report.hpp"
 #include "host_tools/spm_publish/watch.hpp"
+#include "platform/base/printable.hpp"
+#include "platform/base/refusal.hpp"
 #include "transport/content_hash.hpp"
 #include "transport/dds/dds_host.hpp"
 #include "transport/dds/poses.hpp"
@@ -17,7 +20,6 @@
 #include <chrono>
 #include <csignal>
 #include <cstdint>
-#include <exception>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -86,12 +88,12 @@ void declare_options(CLI::App& app, Options& options)
 }
 
 /// The models' names in the order of the files; a line when one is missing, wrong or there twice.
-Result<std::vector<std::string>, NameError> choose_names(const Options& options)
+Result<std::vector<std::string>, Refusal> choose_names(const Options& options)
 {
     if (options.names.size() > options.files.size())
     {
-        return NameError{fmt::format("--name is given {} times for {} files", options.names.size(),
-                                     options.files.size())};
+        return Refusal{fmt::format("--name is given {} times for {} files", options.names.size(),
+                                   options.files.size())};
     }
     std::vector<std::string> names;
     for (std::size_t i = 0; i < options.files.size(); ++i)
@@ -102,18 +104,17 @@ Result<std::vector<std::string>, NameError> choose_names(const Options& options)
             is_given ? options.names[i] : std::filesystem::path(file).stem().string();
         if (!is_valid_name(name))
         {
-            return NameError{fmt::format("{} '{}' is not 1 to 63 characters of A-Z a-z 0-9 . _ -{}",
-                                         is_given ? "--name" : "the stem of '" + file + "',",
-                                         printable(name),
-                                         is_given ? "" : "; give one with --name")};
+            return Refusal{fmt::format("{} '{}' is not 1 to 63 characters of A-Z a-z 0-9 . _ -{}",
+                                       is_given ? "--name" : "the stem of '" + file + "',",
+                                       printable(name), is_given ? "" : "; give one with --name")};
         }
         for (std::size_t other = 0; other < i; ++other)
         {
             if (names[other] == name)
             {
-                return NameError{fmt::format("'{}' and '{}' would both be published as '{}'; give "
-                                             "them different names with --name",
-                                             options.files[other], file, name)};
+                return Refusal{fmt::format("'{}' and '{}' would both be published as '{}'; give "
+                                           "them different names with --name",
+                                           options.files[other], file, name)};
             }
         }
         names.push_back(name);
@@ -121,8 +122,8 @@ Result<std::vector<std::string>, NameError> choose_names(const Options& options)
     return names;
 }
 
-Result<std::vector<dds::PublishedModel>, StoreError>
-open_models(const Options& options, const std::vector<std::string>& names)
+Result<std::vector<dds::PublishedModel>, Refusal> open_models(const Options& options,
+                                                              const std::vector<std::string>& names)
 {
     std::vector<dds::PublishedModel> models;
     for (std::size_t i = 0; i < names.size(); ++i)
@@ -151,8 +152,8 @@ void print_models(ServingReport& report, const dds::DdsHost& host, std::uint32_t
 }
 
 /// Nothing when no pose file is given.
-Result<std::vector<PoseLine>, PoseScriptError> read_poses(const Options& options,
-                                                          const std::vector<std::string>& names)
+Result<std::vector<PoseLine>, Refusal> read_poses(const Options& options,
+                                                  const std::vector<std::string>& names)
 {
     if (options.poses_path.empty())
     {
@@ -161,14 +162,14 @@ Result<std::vector<PoseLine>, PoseScriptError> read_poses(const Options& options
     auto lines = read_pose_file(options.poses_path, names);
     if (lines && options.poses_loop && lines.value().back().time_s == 0.0)
     {
-        return PoseScriptError{options.poses_path + ": --poses-loop needs a last line with a time "
-                                                    "above 0 s"};
+        return Refusal{options.poses_path + ": --poses-loop needs a last line with a time "
+                                            "above 0 s"};
     }
     return lines;
 }
 
-Result<Extras, dds::DdsError> make_extras(const Options& options, const dds::DdsHost& host,
-                                          std::vector<PoseLine> lines)
+Result<Extras, Refusal> make_extras(const Options& options, const dds::DdsHost& host,
+                                    std::vector<PoseLine> lines)
 {
     Extras extras;
     if (!lines.empty())
@@ -302,13 +303,5 @@ int run(int argc, char** argv)
 
 int main(int argc, char** argv)
 {
-    try
-    {
-        return tactus::run(argc, argv);
-    }
-    catch (const std::exception& error)
-    {
-        fmt::print(stderr, "spm_publish: {}\n", error.what());
-    }
-    return tactus::kExitFailed;
+    return tactus::run_program("spm_publish", "", [&] { return tactus::run(argc, argv); });
 }

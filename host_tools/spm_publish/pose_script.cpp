@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #include "host_tools/spm_publish/pose_script.hpp"
 
-#include "transport/model_name.hpp"
+#include "platform/base/printable.hpp"
 
 #include <fmt/format.h>
 
@@ -67,7 +67,7 @@ std::string refusal_text(PoseRefusal refusal)
 }
 
 /// The first three of eight numbers are the translation, then the rotation, then the scale.
-Result<Pose, PoseScriptError> parse_pose(std::span<const std::string_view> fields)
+Result<Pose, Refusal> parse_pose(std::span<const std::string_view> fields)
 {
     std::array<double, 8> numbers{0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0};
     for (std::size_t i = 0; i < fields.size(); ++i)
@@ -75,8 +75,7 @@ Result<Pose, PoseScriptError> parse_pose(std::span<const std::string_view> field
         const std::optional<double> number = parse_number(fields[i]);
         if (!number)
         {
-            return PoseScriptError{
-                fmt::format("'{}' is not a finite number", printable(fields[i]))};
+            return Refusal{fmt::format("'{}' is not a finite number", printable(fields[i]))};
         }
         numbers.at(i) = *number;
     }
@@ -87,29 +86,28 @@ Result<Pose, PoseScriptError> parse_pose(std::span<const std::string_view> field
     const auto checked = checked_pose(pose);
     if (!checked)
     {
-        return PoseScriptError{refusal_text(checked.error())};
+        return Refusal{refusal_text(checked.error())};
     }
     return checked.value();
 }
 
-Result<PoseLine, PoseScriptError> parse_line(std::string_view text,
-                                             std::span<const std::string> names)
+Result<PoseLine, Refusal> parse_line(std::string_view text, std::span<const std::string> names)
 {
     const std::vector<std::string_view> fields = fields_of(text);
     if (fields.size() < kFieldsMin || fields.size() > kFieldsMax)
     {
-        return PoseScriptError{fmt::format("is not {}", kPoseLineForm)};
+        return Refusal{fmt::format("is not {}", kPoseLineForm)};
     }
     const std::optional<double> time_s = parse_number(fields[0]);
     if (!time_s || *time_s < 0.0 || *time_s > kPoseTimeMax_s)
     {
-        return PoseScriptError{
+        return Refusal{
             fmt::format("time '{}' is not 0 to {} s", printable(fields[0]), kPoseTimeMax_s)};
     }
     const auto name = std::ranges::find(names, fields[1]);
     if (name == names.end())
     {
-        return PoseScriptError{fmt::format("no model is published as '{}'", printable(fields[1]))};
+        return Refusal{fmt::format("no model is published as '{}'", printable(fields[1]))};
     }
     auto pose = parse_pose(std::span(fields).subspan(2));
     if (!pose)
@@ -121,8 +119,8 @@ Result<PoseLine, PoseScriptError> parse_line(std::string_view text,
 
 } // namespace
 
-Result<std::vector<PoseLine>, PoseScriptError> parse_pose_lines(std::string_view text,
-                                                                std::span<const std::string> names)
+Result<std::vector<PoseLine>, Refusal> parse_pose_lines(std::string_view text,
+                                                        std::span<const std::string> names)
 {
     std::vector<PoseLine> lines;
     for (std::size_t number = 1; !text.empty(); ++number)
@@ -138,28 +136,28 @@ Result<std::vector<PoseLine>, PoseScriptError> parse_pose_lines(std::string_view
         auto parsed = parse_line(line, names);
         if (!parsed)
         {
-            return PoseScriptError{fmt::format("line {}: {}", number, parsed.error().text)};
+            return Refusal{fmt::format("line {}: {}", number, parsed.error().text)};
         }
         if (!lines.empty() && parsed.value().time_s < lines.back().time_s)
         {
-            return PoseScriptError{fmt::format("line {}: time {} s is before {} s of the line "
-                                               "before",
-                                               number, parsed.value().time_s, lines.back().time_s)};
+            return Refusal{fmt::format("line {}: time {} s is before {} s of the line "
+                                       "before",
+                                       number, parsed.value().time_s, lines.back().time_s)};
         }
         lines.push_back(parsed.value());
     }
     if (lines.empty())
     {
-        return PoseScriptError{fmt::format("holds no line {}", kPoseLineForm)};
+        return Refusal{fmt::format("holds no line {}", kPoseLineForm)};
     }
     return lines;
 }
 
-Result<std::vector<PoseLine>, PoseScriptError> read_pose_file(const std::filesystem::path& path,
-                                                              std::span<const std::string> names)
+Result<std::vector<PoseLine>, Refusal> read_pose_file(const std::filesystem::path& path,
+                                                      std::span<const std::string> names)
 {
     const auto refuse = [&](const std::string& reason)
-    { return PoseScriptError{fmt::format("{}: {}", path.string(), reason)}; };
+    { return Refusal{fmt::format("{}: {}", path.string(), reason)}; };
     std::ifstream file(path, std::ios::binary);
     if (!file)
     {

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "platform/base/refusal.hpp"
 #include "rt_core/base/result.hpp"
 #include "transport/dds/poses.hpp"
 #include "transport/pose.hpp"
@@ -24,12 +25,6 @@ inline constexpr std::string_view kPoseLineForm = "TIME_S NAME X Y Z QX QY QZ QW
 inline constexpr std::size_t kPoseFileBytesMax = 64U << 20U;
 inline constexpr double kPoseTimeMax_s = 1e6;
 
-/// Why a pose file is refused: one line that names file and line.
-struct PoseScriptError
-{
-    std::string text;
-};
-
 /// One line of a pose file, checked.
 struct PoseLine
 {
@@ -41,11 +36,11 @@ struct PoseLine
 /// Reads a pose file's text: lines of kPoseLineForm in the order of their times; empty ones and
 /// those that begin with # are passed over. `names` are the published ones. The error begins with
 /// the line's number.
-[[nodiscard]] Result<std::vector<PoseLine>, PoseScriptError>
+[[nodiscard]] Result<std::vector<PoseLine>, Refusal>
 parse_pose_lines(std::string_view text, std::span<const std::string> names);
 
 /// The same for a file; the error begins with its name.
-[[nodiscard]] Result<std::vector<PoseLine>, PoseScriptError>
+[[nodiscard]] Result<std::vector<PoseLine>, Refusal>
 read_pose_file(const std::filesystem::path& path, std::span<const std::string> names);
 
 /// Plays lines in real time. Where several of one object are due only the newest is sent.

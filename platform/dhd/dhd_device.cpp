@@ -2,7 +2,9 @@
 // Copyright the Tactus authors.
 #include "platform/dhd/dhd_device.hpp"
 
+#include "platform/base/printable.hpp"
 #include "platform/remote/info_fault.hpp"
+#include "rt_core/limits.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -16,11 +18,9 @@ namespace tactus
 namespace
 {
 
-constexpr double kCoordinateMax_m = 1e6; ///< Beyond it no sample is usable (docs/conventions.md).
-
-PlatformError refuse(PlatformErrorKind kind, std::string line)
+Refusal refuse(std::string line)
 {
-    return {kind, "dhd device: " + std::move(line)};
+    return {"dhd device: " + std::move(line)};
 }
 
 /// Empty when all options are good; the name is looked at later.
@@ -53,40 +53,37 @@ std::string system_name(const DhdLibrary& library, char id)
 {
     const char* text = library->dhdGetSystemName(id);
     std::string name = text == nullptr ? "" : text;
-    std::erase_if(name, [](char c) { return c < ' ' || c > '~'; });
+    std::erase_if(name, [](char c) { return !is_printable(c); });
     name.resize(std::min(name.size(), kDeviceNameMax));
     return name.empty() ? "dhd" : name;
 }
 
-Result<char, PlatformError> open_device(const DhdLibrary& library, int index)
+Result<char, Refusal> open_device(const DhdLibrary& library, int index)
 {
     const int count = library->dhdGetDeviceCount();
     if (count <= 0)
     {
-        return refuse(PlatformErrorKind::system,
-                      "the SDK finds none; is it plugged in and switched on, and may this user "
+        return refuse("the SDK finds none; is it plugged in and switched on, and may this user "
                       "open USB devices?");
     }
     if (index >= count)
     {
-        return refuse(PlatformErrorKind::bad_option, "there is no device " + std::to_string(index) +
-                                                         ", they are 0.." +
-                                                         std::to_string(count - 1));
+        return refuse("there is no device " + std::to_string(index) + ", they are 0.." +
+                      std::to_string(count - 1));
     }
     const int id = library->dhdOpenID(static_cast<char>(index));
     if (id < 0)
     {
-        return refuse(PlatformErrorKind::system, "device " + std::to_string(index) +
-                                                     " can't be opened (" + last_error(library) +
-                                                     ")");
+        return refuse("device " + std::to_string(index) + " can't be opened (" +
+                      last_error(library) + ")");
     }
     return static_cast<char>(id);
 }
 
 bool is_usable(const Vec3& v) noexcept
 {
-    return std::abs(v.x()) <= kCoordinateMax_m && std::abs(v.y()) <= kCoordinateMax_m &&
-           std::abs(v.z()) <= kCoordinateMax_m;
+    return std::abs(v.x()) <= kGoalRange_m && std::abs(v.y()) <= kGoalRange_m &&
+           std::abs(v.z()) <= kGoalRange_m;
 }
 
 } // namespace
@@ -112,12 +109,12 @@ DeviceInfo DhdDeviceOptions::default_info()
     return info;
 }
 
-Result<std::unique_ptr<DhdDevice>, PlatformError> DhdDevice::create(const DhdDeviceOptions& options)
+Result<std::unique_ptr<DhdDevice>, Refusal> DhdDevice::create(const DhdDeviceOptions& options)
 {
     TACTUS_ASSERT(options.clock != nullptr);
     if (std::string wrong = find_bad_option(options); !wrong.empty())
     {
-        return PlatformError{PlatformErrorKind::bad_option, std::move(wrong)};
+        return Refusal{std::move(wrong)};
     }
     auto library = DhdLibrary::load(options.library);
     if (!library)
@@ -135,7 +132,7 @@ Result<std::unique_ptr<DhdDevice>, PlatformError> DhdDevice::create(const DhdDev
         new DhdDevice(std::move(library).value(), id.value(), info, options)); // Closes it, too.
     if (const char* fault = find_fault(info); fault != nullptr)
     {
-        return PlatformError{PlatformErrorKind::bad_option, fault};
+        return Refusal{fault};
     }
     auto thread = RtThread::start(options.thread, [raw = device.get()] { raw->run(); });
     if (!thread)

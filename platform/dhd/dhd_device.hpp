@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "platform/base/refusal.hpp"
 #include "platform/dhd/dhd_library.hpp"
 #include "platform/remote/remote_device.hpp"
 #include "platform/rt_thread.hpp"
@@ -51,9 +52,9 @@ struct DhdDeviceOptions
 class DhdDevice final : public RemoteDevice
 {
 public:
-    /// Loads the SDK and opens the device. Refuses options out of range (`bad_option`); without
-    /// SDK or device `system`, in one line.
-    [[nodiscard]] static Result<std::unique_ptr<DhdDevice>, PlatformError>
+    /// Loads the SDK and opens the device. Refuses options out of range, and a missing
+    /// SDK or device, in one line.
+    [[nodiscard]] static Result<std::unique_ptr<DhdDevice>, Refusal>
     create(const DhdDeviceOptions& options);
 
     DhdDevice(const DhdDevice&) = delete;

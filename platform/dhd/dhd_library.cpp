@@ -27,14 +27,14 @@ std::string loaders_reason()
     return text.substr(0, text.find('\n'));
 }
 
-PlatformError refuse(std::string line)
+Refusal refuse(std::string line)
 {
-    return {PlatformErrorKind::system, std::move(line)};
+    return {std::move(line)};
 }
 
 } // namespace
 
-Result<DhdLibrary, PlatformError> DhdLibrary::load(const std::string& path)
+Result<DhdLibrary, Refusal> DhdLibrary::load(const std::string& path)
 {
     const char* name = path.empty() ? "libdhd.so.3" : path.c_str();
     void* handle = dlopen(name, RTLD_NOW | RTLD_LOCAL);

@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/platform_error.hpp"
+#include "platform/base/refusal.hpp"
 #include "rt_core/base/result.hpp"
 
 #include <string>
@@ -36,7 +36,7 @@ public:
     /// `path` is a file, or a name for the system's loader to look up; empty: the names that the
     /// SDK is installed by. A library that isn't there or lacks a function is `system`, in one
     /// line.
-    [[nodiscard]] static Result<DhdLibrary, PlatformError> load(const std::string& path);
+    [[nodiscard]] static Result<DhdLibrary, Refusal> load(const std::string& path);
 
     DhdLibrary(DhdLibrary&& other) noexcept;
     DhdLibrary& operator=(DhdLibrary&&) = delete;

@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #include "platform/doctor/system_text.hpp"
 
+#include "platform/base/printable.hpp"
+
 #include <algorithm>
 #include <charconv>
 #include <cstdio>
@@ -32,11 +34,6 @@ std::vector<std::string_view> split(std::string_view text, char separator)
         at = end + 1;
     }
     return parts;
-}
-
-bool is_printable(char c)
-{
-    return c >= 0x20 && c < 0x7F;
 }
 
 } // namespace
@@ -183,11 +180,7 @@ bool has_word(std::string_view list, std::string_view word)
 
 std::string shown(std::string_view text)
 {
-    constexpr std::size_t kMost = 60;
-    std::string quoted(text.substr(0, kMost));
-    std::ranges::replace_if(
-        quoted, [](char c) { return !is_printable(c); }, '?');
-    return "'" + quoted + (text.size() > kMost ? "...'" : "'");
+    return "'" + printable(text) + "'";
 }
 
 std::string shell_word(std::string_view text)

@@ -38,7 +38,7 @@ using ProcessorSet = std::bitset<kMostProcessors>;
 /// Whether a list of words, separated by white space, has this one.
 [[nodiscard]] bool has_word(std::string_view list, std::string_view word);
 
-/// A foreign text in quotes, to be shown: at most 60 characters, unprintable ones as '?'.
+/// A foreign text in quotes, as printable() shows it.
 [[nodiscard]] std::string shown(std::string_view text);
 
 /// A foreign text as one word of a shell, whatever is in it.

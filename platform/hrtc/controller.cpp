@@ -33,23 +33,23 @@ DeviceChoice choice_of(const Options& options, std::size_t tool)
 
 } // namespace
 
-Result<std::unique_ptr<Controller>, ControllerError>
+Result<std::unique_ptr<Controller>, Refusal>
 Controller::create(const Options& options, std::vector<ServedModel> models, const Log& log,
                    const std::function<bool()>& goes_on)
 {
     std::unique_ptr<Controller> controller(new Controller(options, std::move(models)));
     controller->make_poses(options);
-    if (std::optional<ControllerError> error = controller->open_devices(options, goes_on))
+    if (std::optional<Refusal> error = controller->open_devices(options, goes_on))
     {
         return *error;
     }
     controller->make_tools(options);
-    if (std::optional<ControllerError> error = controller->lay_out_pools(options))
+    if (std::optional<Refusal> error = controller->lay_out_pools(options))
     {
         return *error;
     }
     controller->make_couriers(log);
-    if (std::optional<ControllerError> error = controller->finish_devices(options))
+    if (std::optional<Refusal> error = controller->finish_devices(options))
     {
         return *error;
     }
@@ -83,10 +83,10 @@ void Controller::make_poses(const Options& options)
 }
 
 /// Those that aren't simulated; before the tools, which need to know what the devices can do.
-std::optional<ControllerError> Controller::open_devices(const Options& options,
-                                                        const std::function<bool()>& goes_on)
+std::optional<Refusal> Controller::open_devices(const Options& options,
+                                                const std::function<bool()>& goes_on)
 {
-    devices_.resize(std::max<std::size_t>(options.tool_radii_m.size(), 1));
+    tools_.resize(std::max<std::size_t>(options.tool_radii_m.size(), 1));
     const DeviceWait wait{milliseconds(static_cast<std::int64_t>(options.wait_s * 1e3)), goes_on};
     for (std::size_t i = 0; i < options.devices.size(); ++i)
     {
@@ -97,16 +97,16 @@ std::optional<ControllerError> Controller::open_devices(const Options& options,
         auto device = open_device(options.devices[i], i, wait, clock_);
         if (!device)
         {
-            return ControllerError{"--device: " + device.error().message};
+            return Refusal{"--device: " + device.error().text};
         }
         const DeviceInfo& info = device.value()->info();
         if (options.rate_hz < info.rate_min_hz || options.rate_hz > info.rate_max_hz)
         {
-            return ControllerError{fmt::format("--rate: {} Hz; the device {} takes {} to {} Hz",
-                                               options.rate_hz, info.name, info.rate_min_hz,
-                                               info.rate_max_hz)};
+            return Refusal{fmt::format("--rate: {} Hz; the device {} takes {} to {} Hz",
+                                       options.rate_hz, info.name, info.rate_min_hz,
+                                       info.rate_max_hz)};
         }
-        devices_[i] = std::move(device).value();
+        tools_[i].device = std::move(device).value();
     }
     return std::nullopt;
 }
@@ -118,25 +118,26 @@ void Controller::make_tools(const Options& options)
     {
         radii_m.push_back(kDefaultToolShare * diagonal_world_m());
     }
-    for (std::size_t i = 0; i < radii_m.size(); ++i)
+    for (std::size_t i = 0; i < tools_.size(); ++i)
     {
+        ToolSetup& tool = tools_[i];
         const DeviceLimits limits =
-            devices_[i] != nullptr ? devices_[i]->info().limits : choice_of(options, i).limits;
-        tools_.push_back(
-            {radii_m[i], options.stiffness_n_per_m, limits.force_max_n,
-             options.follow_speed_m_per_s.value_or(kSpeedMax_diag * diagonal_world_m())});
+            tool.device != nullptr ? tool.device->info().limits : choice_of(options, i).limits;
+        tool.spec = {radii_m[i], options.stiffness_n_per_m, limits.force_max_n,
+                     options.follow_speed_m_per_s.value_or(kSpeedMax_diag * diagonal_world_m())};
+        tool_specs_.push_back(tool.spec);
     }
 }
 
 /// Every model gets the same share of the memory; what belongs to no model comes off first.
-std::optional<ControllerError> Controller::lay_out_pools(const Options& options)
+std::optional<Refusal> Controller::lay_out_pools(const Options& options)
 {
     for (std::size_t i = 0; i < models_.size(); ++i)
     {
         objects_.push_back({ModelId{static_cast<std::uint32_t>(i)}, options.materials[i]});
     }
     setup_.objects = objects_;
-    setup_.tools = tools_;
+    setup_.tools = tool_specs_;
     setup_.static_when_it_fits = options.static_when_it_fits;
     setup_.prediction = options.prediction;
     setup_.period_ns = options.period().ns;
@@ -158,7 +159,7 @@ std::optional<ControllerError> Controller::lay_out_pools(const Options& options)
                                      : ModelCapacities{};
         if (capacities.pages == 0)
         {
-            return ControllerError{fmt::format(
+            return Refusal{fmt::format(
                 "--pool-mib: {} MiB is too small for model '{}' (its base mesh has {} faces); "
                 "give more, or less --cache-mib",
                 options.pool_mib, models_[i].name, headers_[i].counts().base_faces)};
@@ -168,7 +169,7 @@ std::optional<ControllerError> Controller::lay_out_pools(const Options& options)
     setup_.models = sources_;
     if (const auto started = Frame::start(frame_, arena_, setup_); !started)
     {
-        return ControllerError{
+        return Refusal{
             fmt::format("--pool-mib: {} MiB: {}", options.pool_mib, refusal_text(started.error()))};
     }
     return std::nullopt;
@@ -185,34 +186,34 @@ void Controller::make_couriers(const Log& log)
     }
 }
 
-std::optional<ControllerError> Controller::finish_devices(const Options& options)
+std::optional<Refusal> Controller::finish_devices(const Options& options)
 {
     for (std::size_t tool = 0; tool < tools_.size(); ++tool)
     {
-        if (devices_[tool] == nullptr)
+        if (tools_[tool].device == nullptr)
         {
             if (auto error = simulate_device(options, tool))
             {
                 return error;
             }
         }
-        limit_force(options, tool);
+        limit_force(options, tools_[tool]);
     }
     return std::nullopt;
 }
 
-std::optional<ControllerError> Controller::simulate_device(const Options& options, std::size_t tool)
+std::optional<Refusal> Controller::simulate_device(const Options& options, std::size_t tool)
 {
     HandScene scene;
     scene.anchors_world_m = anchors_world_m();
     scene.diagonal_m = diagonal_world_m();
-    scene.tool_radius_m = tools_[tool].radius_m;
+    scene.tool_radius_m = tools_[tool].spec.radius_m;
     scene.period = options.period();
     scene.frames_total = options.frames();
     auto motion = make_motion(options.motion, scene, tool + 1);
     if (!motion)
     {
-        return ControllerError{"--tool: " + motion.error().message};
+        return Refusal{"--tool: " + motion.error().text};
     }
     SimulatedDeviceOptions device_options;
     device_options.rate_hz = options.rate_hz;
@@ -224,22 +225,22 @@ std::optional<ControllerError> Controller::simulate_device(const Options& option
     auto device = SimulatedDevice::create(device_options, std::move(motion.value().hand));
     if (!device)
     {
-        return ControllerError{"--device: " + device.error().message};
+        return Refusal{"--device: " + device.error().text};
     }
-    devices_[tool] = std::move(device).value();
+    tools_[tool].device = std::move(device).value();
     if (!options.device_faults.empty())
     {
-        devices_[tool] =
-            std::make_unique<FaultyDevice>(std::move(devices_[tool]), options.device_faults, tool);
+        tools_[tool].device = std::make_unique<FaultyDevice>(std::move(tools_[tool].device),
+                                                             options.device_faults, tool);
     }
     return std::nullopt;
 }
 
 /// What stands between the tool's force and its device.
-void Controller::limit_force(const Options& options, std::size_t tool)
+void Controller::limit_force(const Options& options, ToolSetup& tool) const
 {
-    const DeviceInfo& info = devices_[tool]->info();
-    ConditionerSetup conditioner;
+    const DeviceInfo& info = tool.device->info();
+    ConditionerSetup& conditioner = tool.conditioner;
     conditioner.device = info.limits;
     conditioner.period_s = 1.0 / static_cast<double>(options.rate_hz);
     for (const ObjectSpec& object : objects_)
@@ -247,22 +248,21 @@ void Controller::limit_force(const Options& options, std::size_t tool)
         conditioner.surface_damping_max_n_s_per_m =
             std::max(conditioner.surface_damping_max_n_s_per_m, object.material.damping_n_s_per_m);
     }
-    conditioners_.push_back(conditioner);
     const double cap_n_per_m =
         stiffness_cap(info.limits, conditioner.period_s, conditioner.surface_damping_max_n_s_per_m);
-    limits_.push_back({options.speed_limit_m_per_s.value_or(info.speed_max_m_per_s),
-                       info.limits.force_max_n,
-                       std::min(tools_[tool].stiffness_n_per_m, cap_n_per_m),
-                       kDampingShare * info.limits.damping_n_s_per_m});
+    tool.limits = {options.speed_limit_m_per_s.value_or(info.speed_max_m_per_s),
+                   info.limits.force_max_n, std::min(tool.spec.stiffness_n_per_m, cap_n_per_m),
+                   kDampingShare * info.limits.damping_n_s_per_m};
 }
 
 /// The first model's base vertices: original vertices, so they lie on its surface.
 std::vector<Vec3> Controller::anchors_world_m() const
 {
     std::vector<Vec3> anchors;
+    const ObjectPose pose = model_pose(poses_.front(), headers_.front().origin_m());
     for (const Vec3f& position_m : frame_->model({0}).slots.base.positions_m)
     {
-        anchors.push_back(to_world(poses_.front(), to_vec3(position_m)));
+        anchors.push_back(to_world(pose, to_vec3(position_m)));
     }
     return anchors;
 }

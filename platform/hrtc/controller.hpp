@@ -2,12 +2,12 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "platform/base/refusal.hpp"
 #include "platform/haptic_device.hpp"
 #include "platform/hrtc/options.hpp"
+#include "platform/hrtc/tool_port.hpp"
 #include "platform/pool_memory.hpp"
 #include "platform/posix/posix_clock.hpp"
-#include "rt_core/force/force_conditioner.hpp"
-#include "rt_core/force/safe_state.hpp"
 #include "rt_core/frame/frame.hpp"
 #include "transport/courier.hpp"
 #include "transport/served_model.hpp"
@@ -23,12 +23,6 @@
 namespace tactus::hrtc
 {
 
-/// Why the controller can't start: one line.
-struct ControllerError
-{
-    std::string text;
-};
-
 /// Everything between the transport and the devices: the pools, the frame in them, a courier for
 /// each model, the objects' poses and the devices. Assembled before any thread starts.
 class Controller
@@ -38,7 +32,7 @@ public:
     /// pools inside options.pool_mib, makes the frame, and a simulated device for each tool without
     /// another. Refused when a device isn't there or doesn't run at that rate, or when the pools
     /// are too small, with the size that would do for a start.
-    [[nodiscard]] static Result<std::unique_ptr<Controller>, ControllerError>
+    [[nodiscard]] static Result<std::unique_ptr<Controller>, Refusal>
     create(const Options& options, std::vector<ServedModel> models, const Log& log,
            const std::function<bool()>& goes_on);
 
@@ -48,25 +42,11 @@ public:
     {
         return couriers_;
     }
-    [[nodiscard]] std::vector<std::unique_ptr<HapticDevice>>& devices() noexcept
-    {
-        return devices_;
-    }
-    [[nodiscard]] const std::vector<std::unique_ptr<HapticDevice>>& devices() const noexcept
-    {
-        return devices_;
-    }
+    [[nodiscard]] std::vector<ToolSetup>& tools() noexcept { return tools_; }
+    [[nodiscard]] const std::vector<ToolSetup>& tools() const noexcept { return tools_; }
     /// Where the objects stand at the start.
     [[nodiscard]] const std::vector<ObjectPose>& poses() const noexcept { return poses_; }
     [[nodiscard]] const std::vector<ServedModel>& models() const noexcept { return models_; }
-    [[nodiscard]] const std::vector<ToolSpec>& tools() const noexcept { return tools_; }
-    /// What each tool's device allows.
-    [[nodiscard]] const std::vector<SafetyLimits>& limits() const noexcept { return limits_; }
-    /// What stands between each tool's force and its device.
-    [[nodiscard]] const std::vector<ConditionerSetup>& conditioners() const noexcept
-    {
-        return conditioners_;
-    }
     [[nodiscard]] const Budgets& budgets() const noexcept { return budgets_; }
     /// What the frame was made of.
     [[nodiscard]] const FrameSetup& setup() const noexcept { return setup_; }
@@ -78,22 +58,21 @@ public:
 private:
     Controller(const Options& options, std::vector<ServedModel> models);
 
-    [[nodiscard]] std::optional<ControllerError> lay_out_pools(const Options& options);
+    [[nodiscard]] std::optional<Refusal> lay_out_pools(const Options& options);
     void make_poses(const Options& options);
-    [[nodiscard]] std::optional<ControllerError> open_devices(const Options& options,
-                                                              const std::function<bool()>& goes_on);
+    [[nodiscard]] std::optional<Refusal> open_devices(const Options& options,
+                                                      const std::function<bool()>& goes_on);
     void make_tools(const Options& options);
     void make_couriers(const Log& log);
-    [[nodiscard]] std::optional<ControllerError> simulate_device(const Options& options,
-                                                                 std::size_t tool);
-    [[nodiscard]] std::optional<ControllerError> finish_devices(const Options& options);
-    void limit_force(const Options& options, std::size_t tool);
+    [[nodiscard]] std::optional<Refusal> simulate_device(const Options& options, std::size_t tool);
+    [[nodiscard]] std::optional<Refusal> finish_devices(const Options& options);
+    void limit_force(const Options& options, ToolSetup& tool) const;
     [[nodiscard]] std::vector<Vec3> anchors_world_m() const;
 
     std::vector<ServedModel> models_;
     std::vector<ModelHeader> headers_; ///< Views into models_.
     std::vector<ObjectPose> poses_;
-    std::vector<ToolSpec> tools_;
+    std::vector<ToolSpec> tool_specs_; ///< Those of tools_, in one piece for the frame.
     std::vector<ObjectSpec> objects_;
     std::vector<ModelSource> sources_; ///< Views into models_.
     FrameSetup setup_;                 ///< Views into the above.
@@ -103,9 +82,7 @@ private:
     std::optional<Frame> frame_;
     std::vector<std::unique_ptr<Courier>> couriers_;
     PosixClock clock_; ///< Of the devices that aren't simulated.
-    std::vector<std::unique_ptr<HapticDevice>> devices_;
-    std::vector<SafetyLimits> limits_;
-    std::vector<ConditionerSetup> conditioners_;
+    std::vector<ToolSetup> tools_;
 };
 
 } // namespace tactus::hrtc

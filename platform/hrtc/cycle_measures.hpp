@@ -5,6 +5,7 @@
 #include "platform/periodic_timer.hpp"
 #include "platform/system_call_trap.hpp"
 #include "platform/thread_usage.hpp"
+#include "rt_core/records/conditioned_force.hpp"
 #include "rt_core/records/frame_input.hpp"
 #include "rt_core/records/frame_output.hpp"
 
@@ -13,6 +14,13 @@
 
 namespace tactus::hrtc
 {
+
+/// The force of one tool in one cycle.
+struct ToolForce
+{
+    Vec3 sent_n{0.0, 0.0, 0.0};   ///< That went to the device.
+    ConditionedForce conditioned; ///< How it came about, before the safe state.
+};
 
 /// What one cycle of the loop measured besides the frame's own output.
 struct CycleMeasures

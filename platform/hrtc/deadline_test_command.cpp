@@ -3,6 +3,9 @@
 #include "platform/hrtc/deadline_test_command.hpp"
 
 #include "host_tools/cli/command_line.hpp"
+#include "platform/base/atomic_file.hpp"
+#include "platform/base/refusal.hpp"
+#include "platform/hrtc/assertion_brake.hpp"
 #include "platform/hrtc/deadline_report.hpp"
 #include "platform/hrtc/frame_repeater.hpp"
 #include "platform/hrtc/load.hpp"
@@ -10,6 +13,7 @@
 #include "platform/hrtc/report_page.hpp"
 #include "platform/hrtc/self_check.hpp"
 #include "platform/hrtc/session.hpp"
+#include "platform/hrtc/signals.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -83,8 +87,8 @@ std::optional<std::string> settle(FinishedRun& run, const std::string& recording
 }
 
 /// Runs beside the load, which is gone when this returns.
-Result<FinishedRun, SessionError> run_beside(Session& session, const std::string& name,
-                                             const std::vector<LoadKind>& loads)
+Result<FinishedRun, Refusal> run_beside(Session& session, const std::string& name,
+                                        const std::vector<LoadKind>& loads)
 {
     auto load = Load::start(loads, "/proc/self/exe");
     if (!load)
@@ -104,7 +108,7 @@ Result<FinishedRun, SessionError> run_beside(Session& session, const std::string
     return run;
 }
 
-Result<DeadlinePhase, SessionError> run_phase(Options options, const std::vector<LoadKind>& loads)
+Result<DeadlinePhase, Refusal> run_phase(Options options, const std::vector<LoadKind>& loads)
 {
     const TemporaryRecording recording;
     options.record_path = recording.path();
@@ -156,9 +160,9 @@ ReportFiles files_beside(const std::string& path)
     return {path, with(".txt"), with(".svg")};
 }
 
-std::optional<OutputFileError> write_files(const ReportFiles& files, const SelfCheck& check,
-                                           std::span<const DeadlinePhase> phases,
-                                           const DeadlineSetting& setting)
+std::optional<Refusal> write_files(const ReportFiles& files, const SelfCheck& check,
+                                   std::span<const DeadlinePhase> phases,
+                                   const DeadlineSetting& setting)
 {
     if (auto error = write_report(make_deadline_report(check, phases), files.json))
     {
@@ -188,7 +192,7 @@ std::string check_load(const std::vector<std::string>& names, std::vector<LoadKi
     return {};
 }
 
-std::optional<OutputFileError> probe(const ReportFiles& files)
+std::optional<Refusal> probe(const ReportFiles& files)
 {
     for (const std::string* path : {&files.json, &files.text, &files.image})
     {
@@ -202,7 +206,8 @@ std::optional<OutputFileError> probe(const ReportFiles& files)
 
 int run_test(const Options& options, const std::vector<LoadKind>& loads)
 {
-    install_handlers();
+    install_signal_handlers();
+    install_assertion_brake();
     const bool has_files = !options.report_path.empty();
     const ReportFiles files = has_files ? files_beside(options.report_path) : ReportFiles{};
     if (const auto error = probe(files))
@@ -273,17 +278,19 @@ int run_deadline_test(int argc, char** argv)
     std::vector<LoadKind> loads;
     if (const std::string fault = check_load(load_names, loads); !fault.empty())
     {
-        return leave_with({fault, kExitUsage});
+        return leave_with({.text = fault, .is_usage = true});
     }
     const ReportFiles files = files_beside(options.report_path);
     if (!files.json.empty() && (files.json == files.text || files.json == files.image))
     {
         return leave_with(
-            {"--report: must not end in .txt or .svg, which the histograms take", kExitUsage});
+            {.text = "--report: must not end in .txt or .svg, which the histograms take",
+             .is_usage = true});
     }
     if (is_page_name(options.report_path))
     {
-        return leave_with({"--report: must not end in .html: this one is JSON", kExitUsage});
+        return leave_with(
+            {.text = "--report: must not end in .html: this one is JSON", .is_usage = true});
     }
     return run_test(options, loads);
 }

@@ -83,8 +83,8 @@ std::optional<DeviceChoice> parse_dhd(std::string_view text)
 }
 
 template <class Device>
-Result<std::unique_ptr<HapticDevice>, PlatformError>
-as_device(Result<std::unique_ptr<Device>, PlatformError> made)
+Result<std::unique_ptr<HapticDevice>, Refusal>
+as_device(Result<std::unique_ptr<Device>, Refusal> made)
 {
     if (!made)
     {
@@ -93,18 +93,18 @@ as_device(Result<std::unique_ptr<Device>, PlatformError> made)
     return std::unique_ptr<HapticDevice>(std::move(made).value());
 }
 
-Result<std::unique_ptr<HapticDevice>, PlatformError> open_replay(const std::string& path,
-                                                                 std::size_t tool)
+Result<std::unique_ptr<HapticDevice>, Refusal> open_replay(const std::string& path,
+                                                           std::size_t tool)
 {
     auto motion = read_recorded_motion(path, tool);
     if (!motion)
     {
-        return PlatformError{PlatformErrorKind::bad_option, motion.error().text};
+        return motion.error();
     }
     auto device = ReplayDevice::create(std::move(motion).value());
     if (!device)
     {
-        return PlatformError{device.error().kind, path + ": " + device.error().message};
+        return Refusal{path + ": " + device.error().text};
     }
     return as_device(std::move(device));
 }
@@ -164,17 +164,15 @@ std::optional<DeviceFault> parse_device_fault(std::string_view text)
                        static_cast<std::uint64_t>(*length)};
 }
 
-Result<std::unique_ptr<HapticDevice>, PlatformError> open_device(const DeviceChoice& choice,
-                                                                 std::size_t tool,
-                                                                 const DeviceWait& wait,
-                                                                 const Clock& clock)
+Result<std::unique_ptr<HapticDevice>, Refusal> open_device(const DeviceChoice& choice,
+                                                           std::size_t tool, const DeviceWait& wait,
+                                                           const Clock& clock)
 {
     if (choice.kind == DeviceKind::replay)
     {
         return open_replay(choice.recording, tool);
     }
-    auto frame = DeviceFrame::create(rotation_of(choice.frame), choice.frame.translation_m,
-                                     choice.frame.scale);
+    auto frame = DeviceFrame::create(choice.frame);
     if (!frame)
     {
         return frame.error();

@@ -2,10 +2,10 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "platform/base/refusal.hpp"
 #include "platform/clock.hpp"
 #include "platform/haptic_device.hpp"
 #include "platform/hrtc/placement.hpp"
-#include "platform/platform_error.hpp"
 #include "platform/simulated/faulty_device.hpp"
 #include "platform/udp/udp_device.hpp"
 #include "rt_core/base/result.hpp"
@@ -38,7 +38,7 @@ struct DeviceChoice
     int port{UdpDeviceOptions::kPortDefault};        ///< Of udp.
     int index{0};                                    ///< Of dhd.
     std::string recording;                           ///< Of replay: the file.
-    Placement frame;                                 ///< Device coordinates in the world.
+    Similarity frame;                                ///< Device coordinates in the world.
 };
 
 /// What the texts mean that `parse_device` takes; for messages.
@@ -67,8 +67,9 @@ struct DeviceWait
 
 /// Opens a device that isn't simulated, for the tool with that index; waits for one that comes by
 /// udp, reads a recording as a whole. `clock` is lent and outlives it.
-[[nodiscard]] Result<std::unique_ptr<HapticDevice>, PlatformError>
-open_device(const DeviceChoice& choice, std::size_t tool, const DeviceWait& wait,
-            const Clock& clock);
+[[nodiscard]] Result<std::unique_ptr<HapticDevice>, Refusal> open_device(const DeviceChoice& choice,
+                                                                         std::size_t tool,
+                                                                         const DeviceWait& wait,
+                                                                         const Clock& clock);
 
 } // namespace tactus::hrtc

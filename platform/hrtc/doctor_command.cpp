@@ -24,7 +24,7 @@ std::string why_not_on(int cpu)
     options.cpu = cpu;
     options.lock_memory = false;
     const auto probed = probe_realtime(options);
-    return probed ? "" : probed.error().message;
+    return probed ? "" : probed.error().text;
 }
 
 } // namespace

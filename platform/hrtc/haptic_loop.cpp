@@ -14,22 +14,14 @@ namespace tactus::hrtc
 HapticLoop::HapticLoop(const LoopParts& parts, RunStatistics& statistics)
     : parts_(parts)
     , statistics_(statistics)
-    , states_(parts.devices.size())
-    , samples_(parts.devices.size())
-    , conditioned_(parts.devices.size())
-    , jumps_(parts.limits, parts.poses)
-    , forces_n_(parts.devices.size(), Vec3(0.0, 0.0, 0.0))
+    , states_(parts.tools.size())
+    , forces_(parts.tools.size())
+    , stood_(parts.poses.begin(), parts.poses.end())
     , end_(parts.frames)
 {
-    TACTUS_ASSERT(parts.limits.size() == parts.devices.size());
-    TACTUS_ASSERT(parts.conditioners.size() == parts.devices.size());
-    for (const SafetyLimits& limits : parts.limits)
+    for (const ToolSetup& tool : parts.tools)
     {
-        safe_states_.emplace_back(limits);
-    }
-    for (const ConditionerSetup& setup : parts.conditioners)
-    {
-        conditioners_.emplace_back(setup);
+        ports_.emplace_back(tool);
     }
     measures_.budgets = parts.governor != nullptr ? parts.governor->budgets() : parts.budgets;
 }
@@ -39,45 +31,55 @@ void HapticLoop::run() noexcept
     allocation_counter::mark_this_thread(true);
     haptic_thread_.store(std::this_thread::get_id());
     fade_frames_ = static_cast<std::uint64_t>(kFadeTime_s / to_seconds(parts_.timer->period())) + 1;
-    ThreadUsage usage = read_thread_usage();
-    std::uint64_t allocations = allocation_counter::of_this_thread().allocations;
-    MonotonicTime end = parts_.clock->now();
+    usage_ = read_thread_usage();
+    allocations_ = allocation_counter::of_this_thread().allocations;
+    last_end_ = parts_.clock->now();
     for (; !has_to_end(); ++frame_)
     {
-        wait_for_deadline(end, usage.cpu_time);
-        const Duration cpu_before = read_thread_cpu_time();
-        const MonotonicTime start = parts_.clock->now();
-        heartbeat_.beat(start);
-        stage_start_ = start;
-        read_devices(measures_.cycle.periods);
-        read_poses(start);
-        const FrameOutput output = run_frame();
-        jumps_.remember(output);
-        make_safe(output);
-        write_devices();
-        end = parts_.clock->now();
-        const ThreadUsage now = read_thread_usage();
-        record(output);
-        measures_.frame = end - start;
-        measures_.cpu = now.cpu_time - cpu_before;
-        measures_.lateness_of_end = end - measures_.cycle.deadline;
-        measures_.usage = now - usage;
-        usage = now;
-        measures_.allocations = allocation_counter::of_this_thread().allocations - allocations;
-        allocations += measures_.allocations;
-        measures_.calls = system_call_trap::of_this_thread();
-        statistics_.add(output, forces_n_, conditioned_, measures_);
-        show(output, start);
-        choose_budgets(output);
+        wait_for_deadline();
+        run_period();
         frames_done_.store(frame_ + 1, std::memory_order_relaxed);
     }
     heartbeat_.rest();
-    for (const std::unique_ptr<HapticDevice>& device : parts_.devices)
+    for (ToolPort& port : ports_)
     {
-        device->write({0.0, 0.0, 0.0});
+        port.rest();
     }
     allocation_counter::mark_this_thread(false);
     done_.store(true);
+}
+
+void HapticLoop::run_period() noexcept
+{
+    const Duration cpu_before = read_thread_cpu_time();
+    const MonotonicTime start = parts_.clock->now();
+    heartbeat_.beat(start);
+    stage_start_ = start;
+    read_devices();
+    read_poses(start);
+    const FrameOutput output = run_frame();
+    make_safe(output);
+    write_devices();
+    last_end_ = parts_.clock->now();
+    const ThreadUsage now = read_thread_usage();
+    record(output);
+    measures_.frame = last_end_ - start;
+    measures_.cpu = now.cpu_time - cpu_before;
+    measures_.lateness_of_end = last_end_ - measures_.cycle.deadline;
+    measure_thread(now);
+    statistics_.add(output, forces_, measures_);
+    show(output, start);
+    choose_budgets(output);
+}
+
+/// What the thread has used since the last cycle.
+void HapticLoop::measure_thread(const ThreadUsage& now) noexcept
+{
+    measures_.usage = now - usage_;
+    usage_ = now;
+    measures_.allocations = allocation_counter::of_this_thread().allocations - allocations_;
+    allocations_ += measures_.allocations;
+    measures_.calls = system_call_trap::of_this_thread();
 }
 
 /// When somebody wants it, as soon as the forces have had the time to fade.
@@ -90,11 +92,10 @@ bool HapticLoop::has_to_end() noexcept
     return frame_ >= end_ || failing_.load();
 }
 
-/// `since`: when the last frame ended; `cpu_since`: the thread's processor time then.
-void HapticLoop::wait_for_deadline(MonotonicTime since, Duration cpu_since) noexcept
+void HapticLoop::wait_for_deadline() noexcept
 {
-    measures_.beside = parts_.clock->now() - since;
-    measures_.beside_cpu = read_thread_cpu_time() - cpu_since;
+    measures_.beside = parts_.clock->now() - last_end_;
+    measures_.beside_cpu = read_thread_cpu_time() - usage_.cpu_time;
     parts_.timer->sleep_until_margin();
     const Duration cpu_awake = read_thread_cpu_time();
     const MonotonicTime awake = parts_.clock->now();
@@ -152,9 +153,9 @@ void HapticLoop::fail() noexcept
     {
         fade_last_forces();
     }
-    for (const std::unique_ptr<HapticDevice>& device : parts_.devices)
+    for (ToolPort& port : ports_)
     {
-        device->brake();
+        port.brake();
     }
     failed_.store(true);
 }
@@ -163,17 +164,16 @@ void HapticLoop::fail() noexcept
 /// but what was sent last.
 void HapticLoop::fade_last_forces() noexcept
 {
-    for (std::size_t i = 0; i < forces_n_.size(); ++i)
+    for (std::size_t i = 0; i < ports_.size(); ++i)
     {
         note(i, SafetyState::brake, ForceOff::assertion);
     }
+    const double period_s = to_seconds(parts_.timer->period());
     for (std::uint64_t left = fade_frames_; left > 0; --left)
     {
-        const double gain = static_cast<double>(left - 1) / static_cast<double>(fade_frames_);
-        for (std::size_t i = 0; i < forces_n_.size(); ++i)
+        for (ToolPort& port : ports_)
         {
-            const Vec3 force_n = gain * forces_n_[i];
-            parts_.devices[i]->write({force_n.x(), force_n.y(), force_n.z()});
+            port.fade(period_s, ForceOff::assertion);
         }
         heartbeat_.beat(parts_.clock->now());
         parts_.timer->sleep_until_margin();
@@ -182,17 +182,11 @@ void HapticLoop::fade_last_forces() noexcept
     heartbeat_.rest();
 }
 
-void HapticLoop::read_devices(std::uint32_t periods) noexcept
+void HapticLoop::read_devices() noexcept
 {
-    for (std::size_t i = 0; i < states_.size(); ++i)
+    for (std::size_t i = 0; i < ports_.size(); ++i)
     {
-        const DeviceSample sample = parts_.devices[i]->read();
-        states_[i].position_m = Vec3(sample.position_world_m[0], sample.position_world_m[1],
-                                     sample.position_world_m[2]);
-        states_[i].sample_time_ns = sample.time.ns;
-        states_[i].elapsed_periods = periods;
-        states_[i].valid = sample.valid && sample.connected;
-        samples_[i] = sample;
+        states_[i] = ports_[i].read(measures_.cycle.periods);
     }
 }
 
@@ -203,7 +197,11 @@ void HapticLoop::read_poses(MonotonicTime now) noexcept
     {
         parts_.pose_door->refresh(now);
         parts_.poses = parts_.pose_door->poses();
-        jumps_.see(parts_.poses);
+        for (ToolPort& port : ports_)
+        {
+            port.see_objects(stood_, parts_.poses);
+        }
+        std::ranges::copy(parts_.poses, stood_.begin());
     }
 }
 
@@ -211,22 +209,25 @@ void HapticLoop::show(const FrameOutput& output, MonotonicTime start) noexcept
 {
     if (parts_.telemetry != nullptr)
     {
-        parts_.telemetry->show({start, states_, forces_n_, parts_.poses, output}, statistics_);
+        parts_.telemetry->show({start, states_, forces_, parts_.poses, output}, statistics_);
     }
 }
 
 void HapticLoop::make_safe(const FrameOutput& output) noexcept
 {
-    for (std::size_t i = 0; i < forces_n_.size(); ++i)
+    PeriodContext context;
+    context.elapsed_s = to_seconds(parts_.timer->period()) *
+                        static_cast<double>(std::max(measures_.cycle.periods, 1U));
+    const ForceOff for_all = causes_for_all(output);
+    for (std::uint32_t i = 0; i < ports_.size(); ++i)
     {
-        conditioned_[i] = conditioners_[i].condition(wish_of(i, output.tools[i]));
-        const Vec3& force_n = conditioned_[i].force_n;
-        const SafetyOutput safe = safe_states_[i].step(safety_input(i, output, force_n));
-        if (safe.force_n != force_n)
+        context.causes = for_all;
+        if (touches_old_pose(i, output))
         {
-            conditioners_[i].follow(safe.force_n);
+            context.causes |= ForceOff::stale;
         }
-        forces_n_[i] = safe.force_n;
+        const SafetyOutput safe = ports_[i].make_safe(output.tools[i], context);
+        forces_[i] = ports_[i].force();
         if (safe.has_changed)
         {
             note(i, safe.state, safe.causes);
@@ -234,53 +235,18 @@ void HapticLoop::make_safe(const FrameOutput& output) noexcept
     }
 }
 
-ForceWish HapticLoop::wish_of(std::size_t tool, const ToolOutput& output) const noexcept
+ForceOff HapticLoop::causes_for_all(const FrameOutput& output) const noexcept
 {
-    const ToolState& state = states_[tool];
-    const double norm_n = output.force_n.norm();
-    ForceWish wish{output.force_n, state.position_m, output.stiffness_n_per_m, 0.0,
-                   state.elapsed_periods};
-    if (norm_n > 0.0)
-    {
-        wish.stretch_m = (output.proxy_m - state.position_m).dot(output.force_n) / norm_n;
-    }
-    return wish;
+    const ForceOff ends = frame_ + fade_frames_ >= end_ ? ForceOff::software : ForceOff::none;
+    return ends | (lacks_a_host(output) ? ForceOff::host : ForceOff::none);
 }
 
-SafetyInput HapticLoop::safety_input(std::size_t tool, const FrameOutput& output,
-                                     const Vec3& force_n) noexcept
+/// Whether the tool is in contact and one of its answers rests on a pose that is too old.
+bool HapticLoop::touches_old_pose(std::uint32_t tool, const FrameOutput& output) noexcept
 {
-    const std::uint32_t periods = std::max(states_[tool].elapsed_periods, 1U);
-    SafetyInput input;
-    input.position_m = states_[tool].position_m;
-    if (const auto& velocity = samples_[tool].velocity_world_m_per_s)
-    {
-        input.velocity_m_per_s = Vec3((*velocity)[0], (*velocity)[1], (*velocity)[2]);
-        input.has_velocity = true;
-    }
-    input.sample_time_ns = states_[tool].sample_time_ns;
-    input.elapsed_s = to_seconds(parts_.timer->period()) * static_cast<double>(periods);
-    input.elapsed_periods = periods;
-    input.force_n = force_n;
-    input.proxy_m = output.tools[tool].proxy_m;
-    input.sample_fault = parts_.frame->sample_fault(static_cast<std::uint32_t>(tool));
-    input.causes = known_causes(tool, output);
-    input.force_was_lost = take_back(tool);
-    return input;
-}
-
-ForceOff HapticLoop::known_causes(std::size_t tool, const FrameOutput& output) const noexcept
-{
-    const auto when = [](bool is_so, ForceOff cause) { return is_so ? cause : ForceOff::none; };
-    const bool is_stale =
-        output.tools[tool].in_contact &&
-        std::ranges::any_of(output.pairs, [tool](const PairOutput& pair)
-                            { return pair.tool == tool && pair.kind == AnswerKind::stale; });
-    return when(frame_ + fade_frames_ >= end_, ForceOff::software) |
-           when(!samples_[tool].connected, ForceOff::disconnect) |
-           when(!samples_[tool].deadman_held, ForceOff::deadman) | when(is_stale, ForceOff::stale) |
-           when(jumps_.has_jumped(tool), ForceOff::jump) |
-           when(lacks_a_host(output), ForceOff::host);
+    return output.tools[tool].in_contact &&
+           std::ranges::any_of(output.pairs, [tool](const PairOutput& pair)
+                               { return pair.tool == tool && pair.kind == AnswerKind::stale; });
 }
 
 /// A model that is here as a whole needs nobody to send more of it.
@@ -298,31 +264,11 @@ bool HapticLoop::lacks_a_host(const FrameOutput& output) const noexcept
     return gone != 0;
 }
 
-/// Whether the device has dropped the force by itself or at somebody's wish; a brake is released.
-bool HapticLoop::take_back(std::size_t tool) noexcept
-{
-    switch (parts_.devices[tool]->status().state)
-    {
-    case DeviceState::brake:
-        if (!failing_.load())
-        {
-            parts_.devices[tool]->release_brake();
-        }
-        return true;
-    case DeviceState::idle:
-        return safe_states_[tool].gain() > 0.0;
-    case DeviceState::force:
-        break;
-    }
-    return false;
-}
-
 void HapticLoop::write_devices() noexcept
 {
-    for (std::size_t i = 0; i < forces_n_.size(); ++i)
+    for (ToolPort& port : ports_)
     {
-        const Vec3& force_n = forces_n_[i];
-        parts_.devices[i]->write({force_n.x(), force_n.y(), force_n.z()});
+        port.write();
     }
 }
 

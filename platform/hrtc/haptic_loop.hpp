@@ -4,22 +4,19 @@
 
 #include "platform/budget_governor.hpp"
 #include "platform/clock.hpp"
-#include "platform/haptic_device.hpp"
 #include "platform/heartbeat.hpp"
-#include "platform/hrtc/jump_watch.hpp"
 #include "platform/hrtc/run_statistics.hpp"
 #include "platform/hrtc/safety_log.hpp"
 #include "platform/hrtc/telemetry_tap.hpp"
+#include "platform/hrtc/tool_port.hpp"
 #include "platform/periodic_timer.hpp"
 #include "platform/recording/frame_tap.hpp"
 #include "platform/remote/pose_door.hpp"
-#include "rt_core/force/force_conditioner.hpp"
-#include "rt_core/force/safe_state.hpp"
 #include "rt_core/frame/frame.hpp"
 
 #include <atomic>
 #include <cstdint>
-#include <memory>
+#include <deque>
 #include <span>
 #include <thread>
 #include <vector>
@@ -27,14 +24,12 @@
 namespace tactus::hrtc
 {
 
-/// What the loop works on; all of it outlives the loop.
+/// What the loop works on. All of it outlives the loop.
 struct LoopParts
 {
     Frame* frame{nullptr};
-    std::span<const std::unique_ptr<HapticDevice>> devices; ///< One a tool.
-    std::span<const SafetyLimits> limits;                   ///< One a tool.
-    std::span<const ConditionerSetup> conditioners;         ///< One a tool.
-    std::span<const ObjectPose> poses;                      ///< When there is no door.
+    std::span<const ToolSetup> tools;
+    std::span<const ObjectPose> poses; ///< Where the objects stand until the door says otherwise.
     PeriodicTimer* timer{nullptr};
     const Clock* clock{nullptr};
     Budgets budgets;                   ///< Of every frame, when there is no governor.
@@ -50,9 +45,9 @@ struct LoopParts
 /// The haptic thread's work: every period read the devices, run the frame, see that its forces are
 /// safe, write them, keep the measures. Nothing else happens on that thread.
 ///
-/// A tool's forces pass its ForceConditioner and its SafeState. The last frames of a run fade them,
-/// whether the run ends as planned or by stop(). A device that somebody has braked is released at
-/// once and its force fades in from zero.
+/// The loop orders the period; what happens at one tool is its ToolPort's. The last frames of a run
+/// fade the forces, whether the run ends as planned or by stop(). A device that somebody has braked
+/// is released at once and its force fades in from zero.
 class HapticLoop
 {
 public:
@@ -64,7 +59,7 @@ public:
 
     /// Any thread: ends the loop once the forces have faded.
     void stop() noexcept { stopped_.store(true, std::memory_order_relaxed); }
-    /// Any thread: whether the haptic thread has failed an assertion; the devices are braked then.
+    /// Any thread: whether fail() has done its work: the devices are braked.
     [[nodiscard]] bool has_failed() const noexcept { return failed_.load(); }
     [[nodiscard]] bool is_done() const noexcept { return done_.load(); }
     [[nodiscard]] std::uint64_t frames_done() const noexcept
@@ -82,22 +77,22 @@ public:
     [[nodiscard]] SafetyLog& safety_log() noexcept { return log_; }
 
 private:
-    void wait_for_deadline(MonotonicTime since, Duration cpu_since) noexcept;
+    void wait_for_deadline() noexcept;
+    void run_period() noexcept;
     void rehearse() noexcept;
     [[nodiscard]] FrameOutput run_frame() noexcept;
+    void measure_thread(const ThreadUsage& now) noexcept;
     void record(const FrameOutput& output) noexcept;
     void choose_budgets(const FrameOutput& output) noexcept;
     [[nodiscard]] bool has_to_end() noexcept;
-    void read_devices(std::uint32_t periods) noexcept;
+    void read_devices() noexcept;
     void read_poses(MonotonicTime now) noexcept;
     void show(const FrameOutput& output, MonotonicTime start) noexcept;
     void make_safe(const FrameOutput& output) noexcept;
-    [[nodiscard]] ForceWish wish_of(std::size_t tool, const ToolOutput& output) const noexcept;
-    [[nodiscard]] SafetyInput safety_input(std::size_t tool, const FrameOutput& output,
-                                           const Vec3& force_n) noexcept;
-    [[nodiscard]] ForceOff known_causes(std::size_t tool, const FrameOutput& output) const noexcept;
+    [[nodiscard]] static bool touches_old_pose(std::uint32_t tool,
+                                               const FrameOutput& output) noexcept;
+    [[nodiscard]] ForceOff causes_for_all(const FrameOutput& output) const noexcept;
     [[nodiscard]] bool lacks_a_host(const FrameOutput& output) const noexcept;
-    [[nodiscard]] bool take_back(std::size_t tool) noexcept;
     void write_devices() noexcept;
     void fade_last_forces() noexcept;
     void note(std::size_t tool, SafetyState state, ForceOff causes) noexcept;
@@ -105,13 +100,10 @@ private:
 
     LoopParts parts_;
     RunStatistics& statistics_;
-    std::vector<ToolState> states_;
-    std::vector<DeviceSample> samples_;
-    std::vector<ForceConditioner> conditioners_;
-    std::vector<ConditionedForce> conditioned_; ///< This frame's.
-    std::vector<SafeState> safe_states_;
-    JumpWatch jumps_;
-    std::vector<Vec3> forces_n_; ///< That go out, or went out last.
+    std::deque<ToolPort> ports_;    ///< One a tool; they are never moved.
+    std::vector<ToolState> states_; ///< Copied from the ports, in one piece for the frame.
+    std::vector<ToolForce> forces_; ///< Likewise, for those who keep figures.
+    std::vector<ObjectPose> stood_; ///< Where the objects stood in the last frame.
     std::uint64_t frame_{0};
     std::uint64_t fade_frames_{0}; ///< That the last forces of a run take.
     std::uint64_t end_;            ///< Frame that is not run any more.
@@ -120,8 +112,11 @@ private:
     SafetyLog log_;
     CycleMeasures measures_;
     MonotonicTime stage_start_{};
+    MonotonicTime last_end_{};         ///< Of the last frame.
+    ThreadUsage usage_;                ///< Of this thread at that time.
+    std::uint64_t allocations_{0};     ///< Likewise.
     std::atomic<bool> stopped_{false}; ///< Relaxed: it orders nothing else.
-    std::atomic<bool> failing_{false}; ///< Set first: nobody releases a brake any more.
+    std::atomic<bool> failing_{false}; ///< Set by the first that fails.
     std::atomic<bool> failed_{false};
     std::atomic<bool> done_{false};
     std::atomic<std::uint64_t> frames_done_{0}; ///< Relaxed: shown, nothing more.

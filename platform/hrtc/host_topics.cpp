@@ -9,7 +9,7 @@
 namespace tactus::hrtc
 {
 
-Result<std::unique_ptr<HostTopics>, dds::DdsError>
+Result<std::unique_ptr<HostTopics>, Refusal>
 HostTopics::create(const dds::DdsClient& client, const Controller& controller, bool follows_poses)
 {
     std::unique_ptr<HostTopics> topics(new HostTopics(controller));
@@ -77,7 +77,7 @@ void HostTopics::take_poses(MonotonicTime now)
     poses_->poll(
         [&](const dds::PoseNews& news)
         {
-            ObjectPose pose = object_pose(news.pose, headers_[news.object]);
+            ObjectPose pose = object_pose(to_similarity(news.pose), headers_[news.object]);
             pose.stamp_ns = news.host_time_ns;
             door_->put(news.object, pose, now);
         });

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "platform/base/refusal.hpp"
 #include "platform/hrtc/controller.hpp"
 #include "platform/hrtc/telemetry_tap.hpp"
 #include "platform/remote/pose_door.hpp"
@@ -26,7 +27,7 @@ public:
     static constexpr Duration kTelemetryPeriod = milliseconds(10);
 
     /// `client` and `controller` must outlive it. Poses are passed over unless `follows_poses`.
-    [[nodiscard]] static Result<std::unique_ptr<HostTopics>, dds::DdsError>
+    [[nodiscard]] static Result<std::unique_ptr<HostTopics>, Refusal>
     create(const dds::DdsClient& client, const Controller& controller, bool follows_poses);
 
     /// Between these two and the haptic thread; both live as long as the run.

@@ -6,73 +6,49 @@
 #include "rt_core/records/frame_input.hpp"
 #include "rt_core/records/frame_output.hpp"
 
+#include <cstddef>
 #include <span>
-#include <vector>
 
 namespace tactus::hrtc
 {
 
-/// Sees when an object goes so far in one frame that the spring of a tool in touch would change by
-/// more than the device's largest force: no surface that a hand holds on to moves so. For the
-/// haptic thread; allocates nothing after construction.
+/// Notices when an object moves so far in one frame that the spring of a tool in contact would
+/// change by more than the device's largest force. No surface that a hand holds on to moves like
+/// that. One for each tool; haptic thread; allocates nothing.
 class JumpWatch
 {
 public:
-    JumpWatch(std::span<const SafetyLimits> limits, std::span<const ObjectPose> poses)
-        : poses_(poses.begin(), poses.end())
+    explicit JumpWatch(const SafetyLimits& limits) noexcept
+        : step_max_m_(limits.force_max_n / limits.stiffness_n_per_m)
     {
-        for (const SafetyLimits& limit : limits)
-        {
-            tools_.push_back({limit.force_max_n / limit.stiffness_n_per_m});
-        }
     }
 
-    /// At the start of a frame, which will have these poses.
-    void see(std::span<const ObjectPose> poses) noexcept
+    /// At the start of a frame: where the objects stood in the frame before, and stand now.
+    void see(std::span<const ObjectPose> before, std::span<const ObjectPose> now) noexcept
     {
-        for (Tool& tool : tools_)
+        has_jumped_ = false;
+        for (std::size_t i = 0; i < now.size() && in_contact_; ++i)
         {
-            tool.has_jumped = false;
-            for (std::size_t i = 0; i < poses.size() && tool.in_contact; ++i)
-            {
-                const Vec3 along_m = to_world(poses[i], to_model(poses_[i], tool.proxy_m));
-                tool.has_jumped =
-                    tool.has_jumped || (along_m - tool.proxy_m).norm() > tool.step_max_m;
-            }
-        }
-        for (std::size_t i = 0; i < poses.size(); ++i)
-        {
-            poses_[i] = poses[i];
+            const Vec3 along_m = to_world(now[i], to_model(before[i], proxy_m_));
+            has_jumped_ = has_jumped_ || (along_m - proxy_m_).norm() > step_max_m_;
         }
     }
 
     /// At its end.
-    void remember(const FrameOutput& output) noexcept
+    void remember(const ToolOutput& output) noexcept
     {
-        for (std::size_t i = 0; i < tools_.size(); ++i)
-        {
-            tools_[i].in_contact = output.tools[i].in_contact;
-            tools_[i].proxy_m = output.tools[i].proxy_m;
-        }
+        in_contact_ = output.in_contact;
+        proxy_m_ = output.proxy_m;
     }
 
-    /// In this frame, under this tool.
-    [[nodiscard]] bool has_jumped(std::size_t tool) const noexcept
-    {
-        return tools_[tool].has_jumped;
-    }
+    /// Whether an object has jumped in this frame.
+    [[nodiscard]] bool has_jumped() const noexcept { return has_jumped_; }
 
 private:
-    struct Tool
-    {
-        double step_max_m{0.0};
-        Vec3 proxy_m{0.0, 0.0, 0.0};
-        bool in_contact{false};
-        bool has_jumped{false};
-    };
-
-    std::vector<ObjectPose> poses_; ///< Of the frame before.
-    std::vector<Tool> tools_;
+    double step_max_m_;
+    Vec3 proxy_m_{0.0, 0.0, 0.0};
+    bool in_contact_{false};
+    bool has_jumped_{false};
 };
 
 } // namespace tactus::hrtc

@@ -5,27 +5,30 @@
 /// real-time thread, and reports.
 
 #include "host_tools/cli/command_line.hpp"
+#include "host_tools/cli/run_program.hpp"
+#include "platform/hrtc/assertion_brake.hpp"
 #include "platform/hrtc/options.hpp"
 #include "platform/hrtc/replay_file.hpp"
 #include "platform/hrtc/report.hpp"
 #include "platform/hrtc/report_page.hpp"
 #include "platform/hrtc/session.hpp"
+#include "platform/hrtc/signals.hpp"
 #include "platform/hrtc/subcommands.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <cstdio>
-#include <exception>
+#include <variant>
 
 namespace tactus::hrtc
 {
 namespace
 {
 
-int main_with(const Options& options)
+int touch(const Options& options)
 {
-    install_handlers();
+    install_signal_handlers();
+    install_assertion_brake();
     if (!options.replay_path.empty())
     {
         return replay_file(options.replay_path, log_line);
@@ -58,28 +61,25 @@ int main_with(const Options& options)
     return done.value().recording_error ? kExitFailed : kExitDone;
 }
 
+int run(int argc, char** argv)
+{
+    if (const auto* subcommand = find_subcommand(argc, argv))
+    {
+        return subcommand->run(argc - 1, argv + 1);
+    }
+    const auto parsed =
+        parse_options(argc, argv, {.declare = {}, .footer = describe_subcommands()});
+    if (const int* code = std::get_if<int>(&parsed))
+    {
+        return *code;
+    }
+    return touch(std::get<Options>(parsed));
+}
+
 } // namespace
 } // namespace tactus::hrtc
 
 int main(int argc, char** argv)
 {
-    try
-    {
-        if (const auto* subcommand = tactus::hrtc::find_subcommand(argc, argv))
-        {
-            return subcommand->run(argc - 1, argv + 1);
-        }
-        const auto parsed = tactus::hrtc::parse_options(
-            argc, argv, {.declare = {}, .footer = tactus::hrtc::describe_subcommands()});
-        if (const int* code = std::get_if<int>(&parsed))
-        {
-            return *code;
-        }
-        return tactus::hrtc::main_with(std::get<tactus::hrtc::Options>(parsed));
-    }
-    catch (const std::exception& error)
-    {
-        std::fprintf(stderr, "hrtc: %s\n", error.what());
-        return tactus::kExitFailed;
-    }
+    return tactus::run_program("hrtc", "", [&] { return tactus::hrtc::run(argc, argv); });
 }

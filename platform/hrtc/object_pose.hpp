@@ -2,7 +2,6 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/hrtc/placement.hpp"
 #include "rt_core/records/frame_input.hpp"
 #include "rt_core/spm/header.hpp"
 #include "transport/pose.hpp"
@@ -10,13 +9,11 @@
 namespace tactus::hrtc
 {
 
-/// Of a quaternion that is not zero, whatever its length; orthonormal to 2e-15.
-[[nodiscard]] Mat3 rotation_of(const Pose& pose);
+/// A host's pose as the frame computes with it. The quaternion is not zero, whatever its length;
+/// the rotation is orthonormal to 2e-15.
+[[nodiscard]] Similarity to_similarity(const Pose& pose);
 
-/// Where --place puts an object of this model, in the model's own frame.
-[[nodiscard]] ObjectPose object_pose(const Placement& placement, const ModelHeader& header);
-
-/// Where a host says that it stands: nothing of --place is left.
-[[nodiscard]] ObjectPose object_pose(const Pose& pose, const ModelHeader& header);
+/// An object of this model that stands there, for the model's present revision.
+[[nodiscard]] ObjectPose object_pose(const Similarity& place, const ModelHeader& header);
 
 } // namespace tactus::hrtc

@@ -34,11 +34,11 @@ enum class TransportKind : std::uint8_t
 /// Everything that the command line says; checked, in SI.
 struct Options
 {
-    std::vector<std::string> models;   ///< NAME[@HASH], or paths with the file transport.
-    std::vector<Placement> placements; ///< One a model.
-    std::vector<Material> materials;   ///< One a model.
-    std::vector<double> tool_radii_m;  ///< Empty: one tool of 1 % of the first model's diagonal.
-    std::vector<DeviceChoice> devices; ///< One a tool; fewer: the others are simulated.
+    std::vector<std::string> models;    ///< NAME[@HASH], or paths with the file transport.
+    std::vector<Similarity> placements; ///< One a model.
+    std::vector<Material> materials;    ///< One a model.
+    std::vector<double> tool_radii_m;   ///< Empty: one tool of 1 % of the first model's diagonal.
+    std::vector<DeviceChoice> devices;  ///< One a tool; fewer: the others are simulated.
     std::vector<DeviceFault> device_faults; ///< Of every simulated device.
     MotionKind motion{MotionKind::script};  ///< Likewise.
     TransportKind transport{TransportKind::dds};

@@ -2,22 +2,23 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "rt_core/math/vec3.hpp"
+#include "rt_core/limits.hpp"
+#include "rt_core/math/similarity.hpp"
+
+#include <optional>
+#include <string_view>
 
 namespace tactus::hrtc
 {
 
-/// Where an object stands: world = translation + scale x rotation x source point, where source
-/// points are those of the mesh file in metres.
-struct Placement
-{
-    Vec3 translation_m{0.0, 0.0, 0.0};
-    Vec3 rotation_deg{0.0, 0.0, 0.0}; ///< Rotation vector: axis times angle.
-    double scale{1.0};
-};
+/// What parse_placement() takes; for messages.
+inline constexpr std::string_view kPlacementForm =
+    "X,Y,Z[,RX,RY,RZ[,SCALE]] with at most 1e4 m, 360 "
+    "degrees and a scale of 1e-3 to 1e3";
+static_assert(kPoseReachMax_m == 1e4 && kPoseScaleMin == 1e-3 && kPoseScaleMax == 1e3);
 
-/// Orthonormal to 2e-15. Made once an object, as a host's poses are once each (object_pose.hpp):
-/// no frame ever composes two rotations, so there is nothing to drift.
-[[nodiscard]] Mat3 rotation_of(const Placement& placement);
+/// Where the source frame of an object, or a device, lies in the world: translation in metres, a
+/// rotation vector (axis times angle) in degrees, scale. None when the text is not of that form.
+[[nodiscard]] std::optional<Similarity> parse_placement(std::string_view text);
 
 } // namespace tactus::hrtc

@@ -9,8 +9,7 @@
 namespace tactus::hrtc
 {
 
-Result<ReplayDeviceOptions, RecordingError> read_recorded_motion(const std::string& path,
-                                                                 std::size_t tool)
+Result<ReplayDeviceOptions, Refusal> read_recorded_motion(const std::string& path, std::size_t tool)
 {
     const auto recording = Recording::read(path);
     if (!recording)

@@ -16,7 +16,7 @@ constexpr std::chrono::milliseconds kPause{5};
 
 } // namespace
 
-Recorder::Recorder(OutputFile file, const FrameSetup& setup,
+Recorder::Recorder(AtomicFile file, const FrameSetup& setup,
                    std::vector<std::unique_ptr<Courier>>& couriers)
     : file_(std::move(file)), couriers_(couriers), writer_(to_recorded(setup))
 {
@@ -37,19 +37,19 @@ Recorder::~Recorder()
     }
 }
 
-Result<RecordingResult, OutputFileError> Recorder::finish()
+Result<RecordingResult, Refusal> Recorder::finish()
 {
     stop();
     const std::uint64_t lost_from = tap_.lost_from();
     writer_.finish(lost_from);
     store();
-    if (!error_)
+    if (stored_)
     {
-        error_ = file_.commit();
+        stored_ = file_.commit();
     }
-    if (error_)
+    if (!stored_)
     {
-        return *error_;
+        return stored_.error();
     }
     return RecordingResult{writer_.frames(), file_.bytes(), lost_from};
 }
@@ -102,9 +102,9 @@ void Recorder::take_pieces()
 void Recorder::store()
 {
     const std::vector<std::byte> bytes = writer_.take_bytes();
-    if (!error_)
+    if (stored_)
     {
-        error_ = file_.write(bytes);
+        stored_ = file_.write(bytes);
     }
 }
 

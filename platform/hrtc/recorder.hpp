@@ -2,7 +2,8 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/hrtc/output_file.hpp"
+#include "platform/base/atomic_file.hpp"
+#include "platform/base/refusal.hpp"
 #include "platform/recording/frame_tap.hpp"
 #include "platform/recording/recording_writer.hpp"
 #include "transport/courier.hpp"
@@ -33,7 +34,7 @@ class Recorder
 public:
     /// Starts the thread, so before the haptic thread: threads inherit policy and processor. The
     /// couriers must outlive the recorder, and nobody may run them while it is made or destroyed.
-    Recorder(OutputFile file, const FrameSetup& setup,
+    Recorder(AtomicFile file, const FrameSetup& setup,
              std::vector<std::unique_ptr<Courier>>& couriers);
     Recorder(const Recorder&) = delete;
     Recorder& operator=(const Recorder&) = delete;
@@ -44,7 +45,7 @@ public:
 
     /// Writes what waits, ends the recording and gives the file its name. Once, when no frame runs
     /// any more.
-    [[nodiscard]] Result<RecordingResult, OutputFileError> finish();
+    [[nodiscard]] Result<RecordingResult, Refusal> finish();
 
 private:
     struct Piece
@@ -71,14 +72,14 @@ private:
     void take_pieces();
     void store();
 
-    OutputFile file_;
+    AtomicFile file_;
     std::vector<std::unique_ptr<Courier>>& couriers_;
     std::vector<std::unique_ptr<Sink>> sinks_;
     FrameTap tap_;
     RecordingWriter writer_;
     std::mutex mutex_;
     std::vector<Piece> pieces_; ///< Not yet in the writer; under the mutex.
-    std::optional<OutputFileError> error_;
+    Result<Done, Refusal> stored_{Done{}};
     std::atomic<bool> stopped_{false};
     std::thread thread_; ///< Last: it uses the others.
 };

@@ -3,8 +3,8 @@
 #include "platform/hrtc/replay_file.hpp"
 
 #include "host_tools/cli/command_line.hpp"
+#include "platform/base/printable.hpp"
 #include "platform/recording/replay.hpp"
-#include "transport/model_name.hpp"
 
 #include <fmt/format.h>
 

@@ -3,6 +3,7 @@
 #include "platform/hrtc/report.hpp"
 
 #include "platform/allocation_counter.hpp"
+#include "platform/base/atomic_file.hpp"
 #include "platform/hrtc/machine.hpp"
 #include "platform/hrtc/report_events.hpp"
 #include "rt_core/force/stiffness_rule.hpp"
@@ -29,14 +30,6 @@ struct RunRecord
     const Controller& controller;
     const FinishedRun& run;
 };
-
-constexpr std::array<const char*, kStages> kStageNames{"load", "refine", "refit", "query", "force"};
-
-/// In the order of FrameFault's bits.
-constexpr std::array<const char*, 13> kFaultNames{
-    "split_budget_spent", "forest_full",       "tree_full",          "chunk_late",   "cache_full",
-    "node_budget_spent",  "surface_truncated", "model_inconsistent", "tool_invalid", "proxy_frozen",
-    "tool_stuck",         "tool_jumped",       "proxy_squeezed"};
 
 double to_us(Duration duration)
 {
@@ -162,13 +155,13 @@ Json tools_of(const RunRecord& record)
         const ForceCounts& force = record.run.statistics.tools[i];
         list.push_back(
             {{"shape", "sphere"},
-             {"radius_m", record.controller.tools()[i].radius_m},
+             {"radius_m", record.controller.tools()[i].spec.radius_m},
              {"force_max_n", force.max_n},
              {"force_max_step_n", force.max_step_n},
              {"contact_share", static_cast<double>(force.contact_frames) / frames},
              {"frozen_frames", force.frozen_frames},
              {"held_back_frames", force.held_back_frames},
-             {"stiffness_cap_n_per_m", stiffness_cap_of(record.controller.conditioners()[i])},
+             {"stiffness_cap_n_per_m", stiffness_cap_of(record.controller.tools()[i].conditioner)},
              {"surplus_max_j", force.surplus_max_j},
              {"conditioned", conditioned_of(force)}});
     }
@@ -243,9 +236,9 @@ Json budgets_of(const RunRecord& record)
 Json faults_of(const RunStatistics& statistics)
 {
     Json faults = Json::object();
-    for (std::size_t bit = 0; bit < kFaultNames.size(); ++bit)
+    for (std::size_t bit = 0; bit < kFrameFaultNames.size(); ++bit)
     {
-        faults[kFaultNames[bit]] = statistics.faults[bit];
+        faults[kFrameFaultNames[bit]] = statistics.faults[bit];
     }
     return faults;
 }
@@ -347,21 +340,24 @@ Json make_report(const Options& options, const Controller& controller, const Fin
             {"pairs", pairs_of(record)}};
 }
 
-std::optional<OutputFileError> write_text(const std::string& text, const std::string& path)
+std::optional<Refusal> probe_output(const std::string& path)
 {
-    auto file = OutputFile::create(path);
+    return path.empty() ? std::nullopt : AtomicFile::probe(path);
+}
+
+std::optional<Refusal> write_text(const std::string& text, const std::string& path)
+{
+    auto file = AtomicFile::create(path);
     if (!file)
     {
         return file.error();
     }
-    if (auto error = file.value().write(std::as_bytes(std::span(text))))
-    {
-        return error;
-    }
-    return file.value().commit();
+    auto done = file.value().write(std::as_bytes(std::span(text)));
+    done = done ? file.value().commit() : done;
+    return done ? std::nullopt : std::optional(done.error());
 }
 
-std::optional<OutputFileError> write_report(const Json& report, const std::string& path)
+std::optional<Refusal> write_report(const Json& report, const std::string& path)
 {
     return write_text(report.dump(2) + '\n', path);
 }

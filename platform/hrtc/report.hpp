@@ -2,8 +2,10 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "platform/base/refusal.hpp"
+#include "platform/hrtc/controller.hpp"
+#include "platform/hrtc/finished_run.hpp"
 #include "platform/hrtc/options.hpp"
-#include "platform/hrtc/output_file.hpp"
 #include "platform/hrtc/session.hpp"
 
 #include <nlohmann/json_fwd.hpp>
@@ -27,12 +29,14 @@ using SummaryFacts = std::vector<std::pair<std::string, std::string>>;
 /// The same with the times as a few lines.
 [[nodiscard]] std::string make_summary(const nlohmann::ordered_json& report);
 
+/// Finds out before a run whether a file can be written; returns why not. An empty path is no file.
+[[nodiscard]] std::optional<Refusal> probe_output(const std::string& path);
+
 /// Writes a text file whole or not at all; returns why not.
-[[nodiscard]] std::optional<OutputFileError> write_text(const std::string& text,
-                                                        const std::string& path);
+[[nodiscard]] std::optional<Refusal> write_text(const std::string& text, const std::string& path);
 
 /// Writes the report whole or not at all; returns why not.
-[[nodiscard]] std::optional<OutputFileError> write_report(const nlohmann::ordered_json& report,
-                                                          const std::string& path);
+[[nodiscard]] std::optional<Refusal> write_report(const nlohmann::ordered_json& report,
+                                                  const std::string& path);
 
 } // namespace tactus::hrtc

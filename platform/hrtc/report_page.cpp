@@ -21,9 +21,6 @@ namespace
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::array<const char*, kStages> kStageNames{"T_L load", "T_R refine", "T_B refit",
-                                                       "T_Q query", "force"};
-
 std::string text_of(const Json& value)
 {
     switch (value.type())
@@ -206,10 +203,9 @@ plot::Drawing stage_bars(const Json& times)
 {
     plot::BarPlot bars{
         "Where a frame's time goes", "us", {{"p50 of each stage", {}}, {"p99 of each stage", {}}}};
-    constexpr std::array kKeys{"load", "refine", "refit", "query", "force"};
     for (std::size_t stage = 0; stage < kStages; ++stage)
     {
-        const Json& of_stage = times[kKeys.at(stage)];
+        const Json& of_stage = times[kStageNames.at(stage)];
         bars.groups[0].bars.push_back({kStageNames.at(stage), of_stage["p50"].get<double>()});
         bars.groups[1].bars.push_back({kStageNames.at(stage), of_stage["p99"].get<double>()});
     }

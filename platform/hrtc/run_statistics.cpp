@@ -42,20 +42,19 @@ void AnswerCounts::add(AnswerKind kind, double width_m) noexcept
     width_max_m = is_inexact ? std::max(width_max_m, width_m) : width_max_m;
 }
 
-void ForceCounts::add(const ToolOutput& output, const Vec3& sent_n,
-                      const ConditionedForce& conditioned_force) noexcept
+void ForceCounts::add(const ToolOutput& output, const ToolForce& force) noexcept
 {
-    max_n = std::max(max_n, sent_n.norm());
-    max_step_n = std::max(max_step_n, (sent_n - last_n_).norm());
-    last_n_ = sent_n;
+    max_n = std::max(max_n, force.sent_n.norm());
+    max_step_n = std::max(max_step_n, (force.sent_n - last_n_).norm());
+    last_n_ = force.sent_n;
     contact_frames += output.in_contact ? 1 : 0;
     frozen_frames += output.frozen ? 1 : 0;
     held_back_frames += output.held_back ? 1 : 0;
-    surplus_max_j = std::max(surplus_max_j, conditioned_force.surplus_j);
+    surplus_max_j = std::max(surplus_max_j, force.conditioned.surplus_j);
     for (std::size_t bit = 0; bit < kForceActions; ++bit)
     {
         const auto action = static_cast<ForceAction>(1U << bit);
-        conditioned[bit] += has_action(conditioned_force.actions, action) ? 1U : 0U;
+        conditioned[bit] += has_action(force.conditioned.actions, action) ? 1U : 0U;
     }
 }
 
@@ -72,8 +71,7 @@ RunStatistics::RunStatistics(std::size_t tool_count, std::size_t pair_count,
 {
 }
 
-void RunStatistics::add(const FrameOutput& output, std::span<const Vec3> sent_n,
-                        std::span<const ConditionedForce> conditioned,
+void RunStatistics::add(const FrameOutput& output, std::span<const ToolForce> forces,
                         const CycleMeasures& measures) noexcept
 {
     const std::uint64_t index = frames++;
@@ -91,7 +89,7 @@ void RunStatistics::add(const FrameOutput& output, std::span<const Vec3> sent_n,
     bool any_contact = false;
     for (std::size_t i = 0; i < tools.size(); ++i)
     {
-        tools[i].add(output.tools[i], sent_n[i], conditioned[i]);
+        tools[i].add(output.tools[i], forces[i]);
         any_contact = any_contact || output.tools[i].in_contact;
     }
     contact_frames += any_contact ? 1 : 0;

@@ -44,9 +44,7 @@ struct ForceCounts
     double surplus_max_j{0.0};                              ///< ConditionedForce::surplus_j.
     std::array<std::uint64_t, kForceActions> conditioned{}; ///< Frames with each ForceAction.
 
-    /// `sent_n`: what went to the device.
-    void add(const ToolOutput& output, const Vec3& sent_n,
-             const ConditionedForce& conditioned_force) noexcept;
+    void add(const ToolOutput& output, const ToolForce& force) noexcept;
 
 private:
     Vec3 last_n_{0.0, 0.0, 0.0};
@@ -73,9 +71,9 @@ class RunStatistics
 public:
     RunStatistics(std::size_t tools, std::size_t pairs, std::size_t models, Duration period);
 
-    /// `sent_n`: the force that went to each tool's device; `conditioned`: how it came about.
-    void add(const FrameOutput& output, std::span<const Vec3> sent_n,
-             std::span<const ConditionedForce> conditioned, const CycleMeasures& measures) noexcept;
+    /// `forces`: one a tool.
+    void add(const FrameOutput& output, std::span<const ToolForce> forces,
+             const CycleMeasures& measures) noexcept;
 
     std::uint64_t frames{0};
     std::array<LatencyHistogram, kStages> stages;

@@ -4,6 +4,8 @@
 
 #include "platform/allocation_counter.hpp"
 #include "platform/hrtc/frame_repeater.hpp"
+#include "platform/hrtc/session.hpp"
+#include "platform/hrtc/signals.hpp"
 #include "platform/thread_usage.hpp"
 #include "platform/wrapped_device.hpp"
 
@@ -152,7 +154,7 @@ SelfCheck compare_with_plan(DeadlineAccount& deadlines)
     return check;
 }
 
-Result<SelfCheck, SessionError> run_self_check(Options options)
+Result<SelfCheck, Refusal> run_self_check(Options options)
 {
     options.devices.clear();
     options.report_path.clear();
@@ -163,7 +165,7 @@ Result<SelfCheck, SessionError> run_self_check(Options options)
     {
         return session.error();
     }
-    std::unique_ptr<HapticDevice>& device = session.value()->controller().devices().front();
+    std::unique_ptr<HapticDevice>& device = session.value()->controller().tools().front().device;
     device = std::make_unique<SpoilingDevice>(std::move(device), options.period());
     auto run = session.value()->run("self-check");
     if (!run)

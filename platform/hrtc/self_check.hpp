@@ -2,8 +2,10 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "platform/base/refusal.hpp"
 #include "platform/hrtc/deadline_account.hpp"
-#include "platform/hrtc/session.hpp"
+#include "platform/hrtc/messages.hpp"
+#include "platform/hrtc/options.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -56,7 +58,7 @@ struct SelfCheck
 
 /// Proof that the accounting sees what it has to see: a short run as the options have it, with
 /// simulated devices, in which each fault is injected InjectionPlan::kOfEachKind times.
-[[nodiscard]] Result<SelfCheck, SessionError> run_self_check(Options options);
+[[nodiscard]] Result<SelfCheck, Refusal> run_self_check(Options options);
 
 [[nodiscard]] std::string self_check_line(const SelfCheck& check);
 

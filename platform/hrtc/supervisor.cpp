@@ -44,12 +44,12 @@ MonotonicTime Supervisor::look() noexcept
 
 void Supervisor::brake(MonotonicTime now) noexcept
 {
-    for (const std::unique_ptr<HapticDevice>& device : parts_.devices)
+    for (const ToolSetup& tool : parts_.tools)
     {
-        device->brake();
+        tool.device->brake();
     }
     brakes_.fetch_add(1, std::memory_order_relaxed);
-    for (std::uint32_t tool = 0; tool < parts_.devices.size(); ++tool)
+    for (std::uint32_t tool = 0; tool < parts_.tools.size(); ++tool)
     {
         log_.note({now, 0, tool, SafetyState::brake, ForceOff::watchdog, true});
     }

@@ -3,15 +3,14 @@
 #pragma once
 
 #include "platform/clock.hpp"
-#include "platform/haptic_device.hpp"
 #include "platform/heartbeat.hpp"
 #include "platform/hrtc/safety_log.hpp"
+#include "platform/hrtc/tool_port.hpp"
 #include "platform/periodic_timer.hpp"
 #include "platform/rt_thread.hpp"
 
 #include <atomic>
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <span>
 
@@ -21,7 +20,7 @@ namespace tactus::hrtc
 /// What the supervisor looks at; all of it outlives the supervisor.
 struct SupervisorParts
 {
-    std::span<const std::unique_ptr<HapticDevice>> devices;
+    std::span<const ToolSetup> tools; ///< Whose devices it brakes.
     const Heartbeat* heartbeat{nullptr};
     const Clock* clock{nullptr};   ///< The one that the heartbeat's times are of.
     PeriodicTimer* timer{nullptr}; ///< Its own; used as an alarm.

@@ -70,7 +70,7 @@ void TelemetryTap::show(const ShownFrame& frame, const RunStatistics& statistics
     news_.model_count = static_cast<std::uint32_t>(frame.output.models.size());
     for (std::size_t i = 0; i < frame.tools.size(); ++i)
     {
-        news_.tools[i] = tool_of(frame.tools[i], frame.sent_n[i], frame.output.tools[i]);
+        news_.tools[i] = tool_of(frame.tools[i], frame.forces[i].sent_n, frame.output.tools[i]);
     }
     for (std::size_t i = 0; i < frame.output.models.size(); ++i)
     {

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "platform/hrtc/run_statistics.hpp"
-#include "platform/remote/mailbox.hpp"
 #include "platform/time.hpp"
+#include "rt_core/base/mailbox.hpp"
 #include "rt_core/math/vec3.hpp"
 #include "rt_core/records/frame_input.hpp"
 #include "rt_core/records/frame_output.hpp"
@@ -20,7 +20,7 @@ struct ShownFrame
 {
     MonotonicTime start;
     std::span<const ToolState> tools;
-    std::span<const Vec3> sent_n; ///< The force that went to each tool's device.
+    std::span<const ToolForce> forces; ///< One a tool.
     std::span<const ObjectPose> poses;
     const FrameOutput& output;
 };

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "platform/rt_thread.hpp"
 
+#include "platform/base/refusal.hpp"
 #include "platform/float_control.hpp"
 #include "platform/posix/linux_extras.hpp"
 #include "platform/posix/memory_lock.hpp"
@@ -113,14 +114,14 @@ std::string find_bad_option(const RtThreadOptions& options)
     return {};
 }
 
-PlatformError join_lines(PlatformErrorKind kind, const std::vector<std::string>& lines)
+Refusal join_lines(const std::vector<std::string>& lines)
 {
     std::string text;
     for (const std::string& line : lines)
     {
         text += (text.empty() ? "" : "\n") + line;
     }
-    return {kind, std::move(text)};
+    return {std::move(text)};
 }
 
 } // namespace
@@ -245,29 +246,27 @@ void RtThread::Running::join() noexcept
     }
 }
 
-Result<RtThread, PlatformError> RtThread::start(const RtThreadOptions& options,
-                                                std::function<void()> body)
+Result<RtThread, Refusal> RtThread::start(const RtThreadOptions& options,
+                                          std::function<void()> body)
 {
     if (std::string wrong = find_bad_option(options); !wrong.empty())
     {
-        return PlatformError{PlatformErrorKind::bad_option, std::move(wrong)};
+        return Refusal{.text = std::move(wrong), .is_usage = true};
     }
     auto running = std::make_unique<Running>(options, std::move(body));
     if (running->stack.memory().empty())
     {
-        return PlatformError{PlatformErrorKind::system, "no memory for a thread stack of " +
-                                                            std::to_string(options.stack_bytes) +
-                                                            " bytes"};
+        return Refusal{"no memory for a thread stack of " + std::to_string(options.stack_bytes) +
+                       " bytes"};
     }
     if (const int error = running->create_thread(); error != 0)
     {
-        return PlatformError{PlatformErrorKind::system, "the system refused to start a thread (" +
-                                                            posix::name_of_error(error) + ")"};
+        return Refusal{"the system refused to start a thread (" + posix::name_of_error(error) +
+                       ")"};
     }
     if (running->pin_error != 0)
     {
-        return PlatformError{PlatformErrorKind::bad_option,
-                             linux_extras::explain_pin_refusal(*options.cpu)};
+        return Refusal{.text = linux_extras::explain_pin_refusal(*options.cpu), .is_usage = true};
     }
     if (options.lock_memory)
     {
@@ -275,7 +274,7 @@ Result<RtThread, PlatformError> RtThread::start(const RtThreadOptions& options,
     }
     if (!running->report.refused.empty() && !options.allow_no_rt)
     {
-        return join_lines(PlatformErrorKind::not_permitted, running->report.refused);
+        return join_lines(running->report.refused);
     }
     if (options.processors_awake)
     {
@@ -300,12 +299,12 @@ const RtThreadReport& RtThread::report() const noexcept
     return running_->report;
 }
 
-Result<std::vector<std::string>, PlatformError> probe_realtime(const RtThreadOptions& options)
+Result<std::vector<std::string>, Refusal> probe_realtime(const RtThreadOptions& options)
 {
     RtThreadOptions tried = options;
     tried.allow_no_rt = true;
     tried.processors_awake = false;
-    Result<RtThread, PlatformError> started = RtThread::start(tried, [] {});
+    Result<RtThread, Refusal> started = RtThread::start(tried, [] {});
     if (!started)
     {
         return started.error();

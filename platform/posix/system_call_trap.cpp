@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "platform/system_call_trap.hpp"
 
+#include "platform/base/refusal.hpp"
 #include "platform/posix/posix_error.hpp"
 
 // The thread sanitizer puts handlers off to where the trapped call would have to have returned.
@@ -179,16 +180,14 @@ void on_trapped_call(int /*signal*/, siginfo_t* info, void* raw_context) noexcep
     set_result(context, is_ours ? tactus_make_call(&call) : -ENOSYS);
 }
 
-PlatformError refusal(const char* what, int error)
+Refusal refusal(const char* what, int error)
 {
-    const bool may_not = error == EPERM || error == EACCES;
-    return {may_not ? PlatformErrorKind::not_permitted : PlatformErrorKind::system,
-            std::string("system calls can't be trapped: ") + what + " (" +
-                posix::name_of_error(error) + ")"};
+    return {std::string("system calls can't be trapped: ") + what + " (" +
+            posix::name_of_error(error) + ")"};
 }
 
 /// The handler is the process's, the mask this thread's: a blocked SIGSYS would end the process.
-std::optional<PlatformError> set_handler()
+std::optional<Refusal> set_handler()
 {
     struct sigaction action
     {
@@ -242,9 +241,9 @@ int install_filter(std::uint64_t behind_call) noexcept
 
 } // namespace
 
-Result<Done, PlatformError> set_on_this_thread()
+Result<Done, Refusal> set_on_this_thread()
 {
-    if (std::optional<PlatformError> error = set_handler())
+    if (std::optional<Refusal> error = set_handler())
     {
         return std::move(*error);
     }
@@ -269,11 +268,10 @@ Result<Done, PlatformError> set_on_this_thread()
 namespace tactus::system_call_trap
 {
 
-Result<Done, PlatformError> set_on_this_thread()
+Result<Done, Refusal> set_on_this_thread()
 {
-    return PlatformError{PlatformErrorKind::system,
-                         "system calls can't be trapped: a build can do it only for Linux on "
-                         "x86-64 and aarch64, and without the thread sanitizer"};
+    return Refusal{"system calls can't be trapped: a build can do it only for Linux on "
+                   "x86-64 and aarch64, and without the thread sanitizer"};
 }
 
 } // namespace tactus::system_call_trap

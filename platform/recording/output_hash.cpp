@@ -11,7 +11,7 @@ namespace
 {
 
 // A field that is added to one of these has to be hashed below.
-static_assert(sizeof(ToolOutput) == 160);
+static_assert(sizeof(ToolOutput) == 168);
 static_assert(sizeof(PairOutput) == 120);
 static_assert(sizeof(Contact) == 96);
 static_assert(sizeof(MeshReport) == 8 * kMaxMeetingFaces + 24);
@@ -65,7 +65,9 @@ std::uint64_t hash_tools(std::span<const ToolOutput> tools) noexcept
         hash.add(std::uint64_t{tool.squeezed});
         hash.add(std::uint64_t{tool.held_back});
         hash.add(std::uint64_t{tool.under_way});
+        hash.add(std::uint64_t{tool.crowded});
         hash.add(tool.stiffness_n_per_m);
+        hash.add(static_cast<std::uint64_t>(tool.sample_fault));
     }
     return hash.value();
 }

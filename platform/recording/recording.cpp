@@ -10,26 +10,26 @@
 namespace tactus
 {
 
-Result<Recording, RecordingError> Recording::read(const std::string& path)
+Result<Recording, Refusal> Recording::read(const std::string& path)
 {
     std::error_code error;
     const auto status = std::filesystem::status(path, error);
     if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
     {
-        return RecordingError{path + ": is not a file but a directory, device or pipe"};
+        return Refusal{path + ": is not a file but a directory, device or pipe"};
     }
     const std::uintmax_t size = std::filesystem::file_size(path, error);
     std::ifstream file(path, std::ios::binary);
     if (error || !file)
     {
-        return RecordingError{
-            path + ": cannot be opened: " + (error ? error.message() : std::strerror(errno))};
+        return Refusal{path +
+                       ": cannot be opened: " + (error ? error.message() : std::strerror(errno))};
     }
     std::vector<std::byte> bytes(size);
     if (!file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size)))
     {
-        return RecordingError{path + ": at byte " + std::to_string(file.gcount()) +
-                              ": can't be read further: " + std::strerror(errno)};
+        return Refusal{path + ": at byte " + std::to_string(file.gcount()) +
+                       ": can't be read further: " + std::strerror(errno)};
     }
     return parse(bytes, path);
 }

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "platform/base/refusal.hpp"
 #include "platform/recording/frame_decoder.hpp"
 #include "platform/recording/recording_format.hpp"
 #include "rt_core/base/result.hpp"
@@ -18,23 +19,16 @@
 namespace tactus
 {
 
-/// Why a recording was refused: one line with the file's name, the byte where it is wrong, what is
-/// wrong there and what is allowed.
-struct RecordingError
-{
-    std::string text;
-};
-
 /// A recording in memory, checked as a whole: every section's checksum, every count and range, and
 /// that each piece that a frame takes from the door is there before it.
 class Recording
 {
 public:
     /// Reads a file, whole; it takes as much memory as the file has bytes.
-    [[nodiscard]] static Result<Recording, RecordingError> read(const std::string& path);
+    [[nodiscard]] static Result<Recording, Refusal> read(const std::string& path);
     /// The same for bytes in memory; `name` stands for the file's in messages.
-    [[nodiscard]] static Result<Recording, RecordingError> parse(std::span<const std::byte> bytes,
-                                                                 const std::string& name);
+    [[nodiscard]] static Result<Recording, Refusal> parse(std::span<const std::byte> bytes,
+                                                          const std::string& name);
 
     [[nodiscard]] const RecordedSetup& setup() const noexcept { return setup_; }
     [[nodiscard]] FrameShape shape() const noexcept

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
+#include "platform/base/refusal.hpp"
 #include "platform/recording/recording.hpp"
 #include "platform/recording/setup_coding.hpp"
 #include "rt_core/base/crc32c.hpp"
@@ -28,7 +29,7 @@ public:
     {
     }
 
-    [[nodiscard]] Result<Recording, RecordingError> parse()
+    [[nodiscard]] Result<Recording, Refusal> parse()
     {
         std::optional<std::string> fault = parse_prologue();
         while (!fault && !has_end_)
@@ -42,7 +43,7 @@ public:
         }
         if (fault)
         {
-            return RecordingError{name_ + ": at byte " + std::to_string(at_) + ": " + *fault};
+            return Refusal{name_ + ": at byte " + std::to_string(at_) + ": " + *fault};
         }
         return std::move(recording_);
     }
@@ -282,8 +283,8 @@ private:
     std::optional<FrameDecoder> decoder_;
 };
 
-Result<Recording, RecordingError> Recording::parse(std::span<const std::byte> bytes,
-                                                   const std::string& name)
+Result<Recording, Refusal> Recording::parse(std::span<const std::byte> bytes,
+                                            const std::string& name)
 {
     return RecordingParser(bytes, name).parse();
 }

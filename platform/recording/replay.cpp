@@ -25,7 +25,7 @@ struct alignas(Arena::kAlignment) CacheLine
 class ReplayedFrame
 {
 public:
-    [[nodiscard]] static Result<std::unique_ptr<ReplayedFrame>, ReplayError>
+    [[nodiscard]] static Result<std::unique_ptr<ReplayedFrame>, Refusal>
     create(const Recording& recording, const Kernels* kernels)
     {
         std::unique_ptr<ReplayedFrame> replayed(new ReplayedFrame(recording, kernels));
@@ -33,8 +33,8 @@ public:
                 Frame::start(replayed->frame_, *replayed->arena_, replayed->setup_);
             !started)
         {
-            return ReplayError{std::string("no frame can be made of the recording's setup: ") +
-                               refusal_text(started.error())};
+            return Refusal{std::string("no frame can be made of the recording's setup: ") +
+                           refusal_text(started.error())};
         }
         for (std::uint32_t i = 0; i < replayed->frame_->model_count(); ++i)
         {
@@ -126,8 +126,8 @@ private:
 
 } // namespace
 
-Result<ReplayReport, ReplayError> replay(const Recording& recording, const Kernels* kernels,
-                                         const ReplayWatch& watch)
+Result<ReplayReport, Refusal> replay(const Recording& recording, const Kernels* kernels,
+                                     const ReplayWatch& watch)
 {
     auto replayed = ReplayedFrame::create(recording, kernels);
     if (!replayed)

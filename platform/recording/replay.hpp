@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "platform/base/refusal.hpp"
 #include "platform/recording/frame_decoder.hpp"
 #include "platform/recording/recording.hpp"
 #include "rt_core/kernels/kernels.hpp"
@@ -28,12 +29,6 @@ struct ReplayReport
     std::optional<ReplayDifference> difference;
 };
 
-/// Why a sound recording can't be replayed: no frame can be made of its setup.
-struct ReplayError
-{
-    std::string text;
-};
-
 /// Called with a frame's number, from 0, right before and right after it runs; the door is open and
 /// pages are linked by then. Either may be empty.
 struct ReplayWatch
@@ -50,7 +45,7 @@ struct ReplayWatch
 ///
 /// Pages are linked here anew, by the same Linker in the recorded order, and compared, too.
 /// `kernels` run the queries, null the best of this processor; it makes no difference.
-[[nodiscard]] Result<ReplayReport, ReplayError>
+[[nodiscard]] Result<ReplayReport, Refusal>
 replay(const Recording& recording, const Kernels* kernels = nullptr, const ReplayWatch& watch = {});
 
 /// The outcome in one line without an end: how many frames agree, or the first that differs; what

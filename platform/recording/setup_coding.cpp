@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "platform/recording/setup_coding.hpp"
 
+#include "platform/base/printable.hpp"
 #include "platform/recording/byte_append.hpp"
 #include "platform/recording/core_coding.hpp"
 #include "rt_core/frame/frame.hpp"
@@ -37,8 +38,12 @@ std::string read_name(ByteReader& reader)
 /// Names are printed; a recording must not move the terminal's cursor.
 bool is_sound(const std::string& name)
 {
-    return name.size() <= kMaxRecordedNameBytes &&
-           std::all_of(name.begin(), name.end(), [](char c) { return c >= ' ' && c <= '~'; });
+    return name.size() <= kMaxRecordedNameBytes && std::ranges::all_of(name, is_printable);
+}
+
+std::string up_to(std::uint32_t most)
+{
+    return "1 to " + std::to_string(most);
 }
 
 bool is_within(double value, double least, double most)
@@ -52,6 +57,13 @@ bool is_sound(const ToolSpec& tool)
            is_within(tool.force_max_n, 0.0, 1e9) && is_within(tool.speed_max_m_per_s, 0.0, 1e9) &&
            is_within(tool.torque_max_nm, 0.0, 1e9);
 }
+
+// What a file says; another number is another format version (docs/recording.md).
+static_assert(static_cast<int>(Prediction::local_neighbours) == 0);
+static_assert(static_cast<int>(Prediction::linear) == 1);
+static_assert(static_cast<int>(Prediction::quadratic) == 2);
+static_assert(static_cast<int>(Prediction::distance_query) == 3);
+static_assert(static_cast<int>(Prediction::automatic) == 4);
 
 Fault parse_tools(ByteReader& reader, std::uint32_t tools, std::uint32_t models,
                   RecordedSetup& setup)
@@ -218,8 +230,8 @@ std::optional<std::string> parse_setup(std::span<const std::byte> payload, Recor
         models > kMaxModels)
     {
         return "the setup has " + std::to_string(tools) + " tools, " + std::to_string(objects) +
-               " objects and " + std::to_string(models) +
-               " models; 1 to 4, 1 to 8 and 1 to 8 are allowed";
+               " objects and " + std::to_string(models) + " models; " + up_to(kMaxTools) + ", " +
+               up_to(kMaxObjects) + " and " + up_to(kMaxModels) + " are allowed";
     }
     if (is_static > 1)
     {
@@ -227,7 +239,8 @@ std::optional<std::string> parse_setup(std::span<const std::byte> payload, Recor
     }
     if (setup.prediction > Prediction::automatic)
     {
-        return "the prediction is " + std::to_string(prediction) + "; 0 to 4 are allowed";
+        return "the prediction is " + std::to_string(prediction) + "; 0 to " +
+               std::to_string(kPredictions) + " are allowed";
     }
     if (setup.period_ns < 1 || setup.period_ns > 1'000'000'000)
     {

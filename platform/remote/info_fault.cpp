@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "platform/remote/info_fault.hpp"
 
+#include "platform/base/printable.hpp"
 #include "rt_core/force/stiffness_rule.hpp"
 
 #include <algorithm>
@@ -21,7 +22,6 @@ constexpr std::int64_t kRateMax_hz = 100'000;
 
 bool is_good_name(const std::string& name) noexcept
 {
-    const auto is_printable = [](char c) { return c >= ' ' && c <= '~'; };
     return !name.empty() && name.size() <= kDeviceNameMax &&
            std::ranges::all_of(name, is_printable);
 }

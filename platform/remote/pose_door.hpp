@@ -2,8 +2,8 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/remote/mailbox.hpp"
 #include "platform/time.hpp"
+#include "rt_core/base/mailbox.hpp"
 #include "rt_core/limits.hpp"
 #include "rt_core/records/frame_input.hpp"
 

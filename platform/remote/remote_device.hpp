@@ -5,8 +5,8 @@
 #include "platform/clock.hpp"
 #include "platform/device_frame.hpp"
 #include "platform/haptic_device.hpp"
-#include "platform/remote/mailbox.hpp"
 #include "platform/rt_thread.hpp"
+#include "rt_core/base/mailbox.hpp"
 
 #include <atomic>
 #include <cstdint>

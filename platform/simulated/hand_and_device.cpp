@@ -91,11 +91,11 @@ Vec3 motor_force(const Vec3& force_n, double force_max_n) noexcept
 
 } // namespace
 
-Result<HandAndDevice, PlatformError> HandAndDevice::create(const HandAndDeviceOptions& options)
+Result<HandAndDevice, Refusal> HandAndDevice::create(const HandAndDeviceOptions& options)
 {
     if (std::string wrong = find_bad_option(options); !wrong.empty())
     {
-        return PlatformError{PlatformErrorKind::bad_option, std::move(wrong)};
+        return Refusal{std::move(wrong)};
     }
     return HandAndDevice(options);
 }

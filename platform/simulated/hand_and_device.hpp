@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/platform_error.hpp"
+#include "platform/base/refusal.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/math/vec3.hpp"
 #include "rt_core/records/device_limits.hpp"
@@ -71,8 +71,7 @@ public:
     /// Refuses a device with a fault, values that are not finite or out of range, a period out of
     /// 1e-5 .. 0.1 s, a delay over kDelayMaxPeriods, a start outside the workspace, and a hand
     /// with neither mass nor arm.
-    [[nodiscard]] static Result<HandAndDevice, PlatformError>
-    create(const HandAndDeviceOptions& options);
+    [[nodiscard]] static Result<HandAndDevice, Refusal> create(const HandAndDeviceOptions& options);
 
     /// One period under `force_n` (what is no finite force counts as none), while the hand's target
     /// moves to `target_m` at constant speed. Returns the measured position at its end.
@@ -88,7 +87,6 @@ public:
     [[nodiscard]] const Vec3& position_m() const noexcept { return device_m_; }
     [[nodiscard]] const Vec3& velocity_m_per_s() const noexcept { return device_m_per_s_; }
     [[nodiscard]] const Vec3& hand_m() const noexcept { return hand_m_; }
-    [[nodiscard]] const Vec3& hand_velocity_m_per_s() const noexcept { return hand_m_per_s_; }
     [[nodiscard]] const HandAndDeviceEnergy& energy() const noexcept { return energy_; }
     /// Of both masses and both springs.
     [[nodiscard]] double stored_j() const noexcept;

@@ -163,8 +163,7 @@ std::optional<MotionKind> motion_named(std::string_view name)
                : std::nullopt;
 }
 
-Result<MadeMotion, PlatformError> make_motion(MotionKind kind, const HandScene& scene,
-                                              std::uint64_t seed)
+Result<MadeMotion, Refusal> make_motion(MotionKind kind, const HandScene& scene, std::uint64_t seed)
 {
     HandScene played = scene;
     played.lifts_off = kind != MotionKind::slide;

@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/platform_error.hpp"
+#include "platform/base/refusal.hpp"
 #include "platform/simulated/hand_motion.hpp"
 #include "platform/simulated/scripted_hand.hpp"
 #include "rt_core/base/result.hpp"
@@ -46,7 +46,7 @@ struct MadeMotion
 
 /// Refuses the scenes that ScriptedHand refuses. The same scene and seed make the same motion, bit
 /// for bit; only teleport and tremor look at the seed.
-[[nodiscard]] Result<MadeMotion, PlatformError> make_motion(MotionKind kind, const HandScene& scene,
-                                                            std::uint64_t seed = 1);
+[[nodiscard]] Result<MadeMotion, Refusal> make_motion(MotionKind kind, const HandScene& scene,
+                                                      std::uint64_t seed = 1);
 
 } // namespace tactus

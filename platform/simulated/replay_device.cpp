@@ -70,12 +70,11 @@ DeviceInfo describe(const ReplayDeviceOptions& options)
 
 } // namespace
 
-Result<std::unique_ptr<ReplayDevice>, PlatformError>
-ReplayDevice::create(ReplayDeviceOptions options)
+Result<std::unique_ptr<ReplayDevice>, Refusal> ReplayDevice::create(ReplayDeviceOptions options)
 {
     if (const char* wrong = find_bad_option(options))
     {
-        return PlatformError{PlatformErrorKind::bad_option, wrong};
+        return Refusal{wrong};
     }
     return std::unique_ptr<ReplayDevice>(new ReplayDevice(std::move(options)));
 }

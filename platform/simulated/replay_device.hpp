@@ -2,8 +2,8 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "platform/base/refusal.hpp"
 #include "platform/haptic_device.hpp"
-#include "platform/platform_error.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/math/vec3.hpp"
 
@@ -46,7 +46,7 @@ public:
 
     /// Refuses readings of which none is a place, a rate that isn't above zero, a largest force or
     /// speed that isn't finite and above zero.
-    [[nodiscard]] static Result<std::unique_ptr<ReplayDevice>, PlatformError>
+    [[nodiscard]] static Result<std::unique_ptr<ReplayDevice>, Refusal>
     create(ReplayDeviceOptions options);
 
     [[nodiscard]] const DeviceInfo& info() const noexcept override { return info_; }

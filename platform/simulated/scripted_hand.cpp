@@ -83,11 +83,11 @@ std::string find_fault(const HandScene& scene)
 
 } // namespace
 
-Result<std::unique_ptr<ScriptedHand>, PlatformError> ScriptedHand::create(const HandScene& scene)
+Result<std::unique_ptr<ScriptedHand>, Refusal> ScriptedHand::create(const HandScene& scene)
 {
     if (std::string fault = find_fault(scene); !fault.empty())
     {
-        return PlatformError{PlatformErrorKind::bad_option, std::move(fault)};
+        return Refusal{std::move(fault)};
     }
     return std::unique_ptr<ScriptedHand>(new ScriptedHand(scene));
 }

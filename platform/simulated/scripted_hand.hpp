@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/platform_error.hpp"
+#include "platform/base/refusal.hpp"
 #include "platform/simulated/contact_slide.hpp"
 #include "platform/simulated/hand_motion.hpp"
 #include "platform/simulated/hand_pace.hpp"
@@ -54,7 +54,7 @@ class ScriptedHand final : public HandMotion
 public:
     /// Refuses a scene without anchors, with values that are not finite, with a diagonal or a tool
     /// radius that is not positive, a tool larger than the model, a period that is not positive.
-    [[nodiscard]] static Result<std::unique_ptr<ScriptedHand>, PlatformError>
+    [[nodiscard]] static Result<std::unique_ptr<ScriptedHand>, Refusal>
     create(const HandScene& scene);
 
     [[nodiscard]] Vec3 start_world_m() const noexcept override { return start_world_m_; }

@@ -50,13 +50,13 @@ std::string find_bad_option(const SimulatedDeviceOptions& options)
 
 } // namespace
 
-Result<std::unique_ptr<SimulatedDevice>, PlatformError>
+Result<std::unique_ptr<SimulatedDevice>, Refusal>
 SimulatedDevice::create(const SimulatedDeviceOptions& options, std::unique_ptr<HandMotion> hand)
 {
     TACTUS_ASSERT(hand != nullptr);
     if (std::string wrong = find_bad_option(options); !wrong.empty())
     {
-        return PlatformError{PlatformErrorKind::bad_option, std::move(wrong)};
+        return Refusal{std::move(wrong)};
     }
     const auto body = HandAndDevice::create(
         {options.device, options.hand, 1.0 / static_cast<double>(options.rate_hz),

@@ -2,9 +2,9 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "platform/base/refusal.hpp"
 #include "platform/clock.hpp"
 #include "platform/haptic_device.hpp"
-#include "platform/platform_error.hpp"
 #include "platform/simulated/hand_and_device.hpp"
 #include "platform/simulated/hand_motion.hpp"
 #include "rt_core/base/result.hpp"
@@ -55,7 +55,7 @@ class SimulatedDevice final : public HapticDevice
 public:
     /// Refuses a rate out of [kRateMinHz, kRateMaxHz], other values out of range, what
     /// HandAndDevice refuses, and a hand that starts outside the workspace.
-    [[nodiscard]] static Result<std::unique_ptr<SimulatedDevice>, PlatformError>
+    [[nodiscard]] static Result<std::unique_ptr<SimulatedDevice>, Refusal>
     create(const SimulatedDeviceOptions& options, std::unique_ptr<HandMotion> hand);
 
     [[nodiscard]] const DeviceInfo& info() const noexcept override { return info_; }

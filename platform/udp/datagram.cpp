@@ -92,38 +92,38 @@ struct Envelope
 };
 
 /// What all datagrams have in common, checksum included; none when it is sound.
-std::optional<Refusal> open(std::span<const std::byte> bytes, Envelope& envelope) noexcept
+std::optional<DatagramFault> open(std::span<const std::byte> bytes, Envelope& envelope) noexcept
 {
     ByteReader reader(bytes);
     if (bytes.size() < kHeaderBytes || bytes.size() > kDatagramBytesMax)
     {
-        return Refusal::size;
+        return DatagramFault::size;
     }
     if (reader.read<std::uint32_t>() != kMagic)
     {
-        return Refusal::magic;
+        return DatagramFault::magic;
     }
     if (reader.read<std::uint16_t>() != kVersion)
     {
-        return Refusal::version;
+        return DatagramFault::version;
     }
     envelope.kind = static_cast<Kind>(reader.read<std::uint16_t>());
     if (size_of(envelope.kind) == 0)
     {
-        return Refusal::kind;
+        return DatagramFault::kind;
     }
     if (bytes.size() != size_of(envelope.kind))
     {
-        return Refusal::size;
+        return DatagramFault::size;
     }
     envelope.address = reader.read<Address>();
     const std::size_t end = bytes.size() - 4;
     if (ByteReader(bytes.subspan(end)).read<std::uint32_t>() != crc32c(bytes.first(end)))
     {
-        return Refusal::checksum;
+        return DatagramFault::checksum;
     }
     const bool is_addressed = envelope.address.instance != 0 && envelope.address.sequence != 0;
-    return is_addressed ? std::nullopt : std::optional(Refusal::content);
+    return is_addressed ? std::nullopt : std::optional(DatagramFault::content);
 }
 
 /// False when something stands behind the zero that ends it, or nothing in front.
@@ -156,7 +156,7 @@ FromDevice decode_describe(const Address& address, ByteReader reader)
     const bool is_reserved_clean = reader.read<std::uint32_t>() == 0;
     if (!is_name_clean || !is_reserved_clean || address.session != 0 || find_fault(info) != nullptr)
     {
-        return Refusal::content;
+        return DatagramFault::content;
     }
     return datagram;
 }
@@ -174,7 +174,7 @@ FromDevice decode_sample(const Address& address, ByteReader reader) noexcept
     if ((flags & ~(kValid | kHasVelocity | kDeadmanHeld)) != 0 || datagram.time_ns < 0 ||
         datagram.time_ns > kTimeMax_ns)
     {
-        return Refusal::content;
+        return DatagramFault::content;
     }
     if (!datagram.valid)
     {
@@ -189,7 +189,7 @@ FromDevice decode_sample(const Address& address, ByteReader reader) noexcept
         !datagram.velocity_m_per_s || are_in_range(velocity, kCoordinateMax);
     if (!are_in_range(datagram.position_m, kCoordinateMax) || !is_velocity_good)
     {
-        return Refusal::content;
+        return DatagramFault::content;
     }
     return datagram;
 }
@@ -241,9 +241,9 @@ ForceBytes encode(const ForceDatagram& datagram) noexcept
     return writer.close();
 }
 
-std::string_view text_of(Refusal refusal) noexcept
+std::string_view text_of(DatagramFault fault) noexcept
 {
-    constexpr std::array<std::string_view, kRefusals> kTexts{
+    constexpr std::array<std::string_view, kDatagramFaults> kTexts{
         "wrong size",
         "wrong magic",
         "wrong version",
@@ -254,15 +254,15 @@ std::string_view text_of(Refusal refusal) noexcept
         "of another session",
         "not newer than the last one",
         "another device than the first one"};
-    return kTexts.at(static_cast<std::size_t>(refusal));
+    return kTexts.at(static_cast<std::size_t>(fault));
 }
 
 FromDevice decode_from_device(std::span<const std::byte> bytes)
 {
     Envelope envelope;
-    if (const auto refusal = open(bytes, envelope))
+    if (const auto fault = open(bytes, envelope))
     {
-        return *refusal;
+        return *fault;
     }
     const ByteReader body(bytes.subspan(kHeaderBytes));
     switch (envelope.kind)
@@ -274,19 +274,19 @@ FromDevice decode_from_device(std::span<const std::byte> bytes)
     case Kind::force:
         break;
     }
-    return Refusal::kind;
+    return DatagramFault::kind;
 }
 
 FromController decode_from_controller(std::span<const std::byte> bytes)
 {
     Envelope envelope;
-    if (const auto refusal = open(bytes, envelope))
+    if (const auto fault = open(bytes, envelope))
     {
-        return *refusal;
+        return *fault;
     }
     if (envelope.kind != Kind::force)
     {
-        return Refusal::kind;
+        return DatagramFault::kind;
     }
     ByteReader reader(bytes.subspan(kHeaderBytes));
     ForceDatagram datagram;
@@ -297,7 +297,7 @@ FromController decode_from_controller(std::span<const std::byte> bytes)
     if (state > static_cast<std::uint32_t>(DeviceState::brake) ||
         !are_in_range(datagram.force_n, kCoordinateMax))
     {
-        return Refusal::content;
+        return DatagramFault::content;
     }
     datagram.state = static_cast<DeviceState>(state);
     return datagram;

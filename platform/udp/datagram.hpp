@@ -74,7 +74,7 @@ using ForceBytes = std::array<std::byte, kForceBytes>;
 [[nodiscard]] ForceBytes encode(const ForceDatagram& datagram) noexcept;
 
 /// Why a datagram counts for nothing. The first six are found by decode().
-enum class Refusal : std::uint8_t
+enum class DatagramFault : std::uint8_t
 {
     size,         ///< Not that of its kind.
     magic,        ///< Somebody else's.
@@ -87,15 +87,15 @@ enum class Refusal : std::uint8_t
     stale,        ///< Not newer than what was accepted before.
     other_device, ///< Describes another device than the first one: limits never change.
 };
-inline constexpr std::size_t kRefusals = 10;
+inline constexpr std::size_t kDatagramFaults = 10;
 
 /// "wrong size", ready to stand behind a colon.
-[[nodiscard]] std::string_view text_of(Refusal refusal) noexcept;
+[[nodiscard]] std::string_view text_of(DatagramFault fault) noexcept;
 
 /// What a controller takes in.
-using FromDevice = std::variant<DescribeDatagram, SampleDatagram, Refusal>;
+using FromDevice = std::variant<DescribeDatagram, SampleDatagram, DatagramFault>;
 /// What a device takes in.
-using FromController = std::variant<ForceDatagram, Refusal>;
+using FromController = std::variant<ForceDatagram, DatagramFault>;
 
 [[nodiscard]] FromDevice decode_from_device(std::span<const std::byte> bytes);
 [[nodiscard]] FromController decode_from_controller(std::span<const std::byte> bytes);

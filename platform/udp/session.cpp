@@ -36,8 +36,8 @@ Vec3 to_vec3(const std::array<double, 3>& v) noexcept
 
 } // namespace
 
-std::variant<Described, Sampled, Refusal> Session::receive(std::span<const std::byte> bytes,
-                                                           const Endpoint& from, MonotonicTime now)
+std::variant<Described, Sampled, DatagramFault>
+Session::receive(std::span<const std::byte> bytes, const Endpoint& from, MonotonicTime now)
 {
     const FromDevice datagram = decode_from_device(bytes);
     if (const auto* described = std::get_if<DescribeDatagram>(&datagram))
@@ -48,26 +48,26 @@ std::variant<Described, Sampled, Refusal> Session::receive(std::span<const std::
     {
         return sample(*sampled, from, now);
     }
-    return std::get<Refusal>(datagram);
+    return std::get<DatagramFault>(datagram);
 }
 
 /// Again and again is no fault: a device does so until it is answered.
-std::variant<Described, Sampled, Refusal> Session::describe(const DescribeDatagram& datagram,
-                                                            const Endpoint& from, MonotonicTime now)
+std::variant<Described, Sampled, DatagramFault>
+Session::describe(const DescribeDatagram& datagram, const Endpoint& from, MonotonicTime now)
 {
     const Address& address = datagram.address;
     const bool is_known = from == peer_.endpoint && address.instance == peer_.instance;
     if (peer_.is_attached && !is_known)
     {
-        return Refusal::foreign;
+        return DatagramFault::foreign;
     }
     if (address.instance == peer_.instance && address.sequence <= last_sequence_)
     {
-        return Refusal::stale;
+        return DatagramFault::stale;
     }
     if (info_ && !are_same(*info_, datagram.info))
     {
-        return Refusal::other_device;
+        return DatagramFault::other_device;
     }
     if (!peer_.is_attached)
     {
@@ -87,21 +87,21 @@ void Session::begin(const Peer& peer, MonotonicTime now) noexcept
     last_time_ns_ = -1;
 }
 
-std::variant<Described, Sampled, Refusal>
+std::variant<Described, Sampled, DatagramFault>
 Session::sample(const SampleDatagram& datagram, const Endpoint& from, MonotonicTime now) noexcept
 {
     const Address& address = datagram.address;
     if (from != peer_.endpoint || address.instance != peer_.instance)
     {
-        return Refusal::foreign;
+        return DatagramFault::foreign;
     }
     if (address.session != peer_.session)
     {
-        return Refusal::session;
+        return DatagramFault::session;
     }
     if (address.sequence <= last_sequence_ || datagram.time_ns <= last_time_ns_)
     {
-        return Refusal::stale;
+        return DatagramFault::stale;
     }
     Sampled sampled;
     sampled.is_new = !std::exchange(has_samples_, true);

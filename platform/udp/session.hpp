@@ -59,7 +59,7 @@ public:
 
     /// Takes in one datagram that came at `now`; a refusal changes nothing. Allocates for the
     /// first device's name at most.
-    [[nodiscard]] std::variant<Described, Sampled, Refusal>
+    [[nodiscard]] std::variant<Described, Sampled, DatagramFault>
     receive(std::span<const std::byte> bytes, const Endpoint& from, MonotonicTime now);
 
     /// True once: when the device has been silent for too long.
@@ -73,9 +73,9 @@ public:
     [[nodiscard]] const std::optional<DeviceInfo>& info() const noexcept { return info_; }
 
 private:
-    [[nodiscard]] std::variant<Described, Sampled, Refusal>
+    [[nodiscard]] std::variant<Described, Sampled, DatagramFault>
     describe(const DescribeDatagram& datagram, const Endpoint& from, MonotonicTime now);
-    [[nodiscard]] std::variant<Described, Sampled, Refusal>
+    [[nodiscard]] std::variant<Described, Sampled, DatagramFault>
     sample(const SampleDatagram& datagram, const Endpoint& from, MonotonicTime now) noexcept;
     void begin(const Peer& peer, MonotonicTime now) noexcept;
     [[nodiscard]] MonotonicTime on_our_clock(std::int64_t time_ns, MonotonicTime now) noexcept;

@@ -48,37 +48,34 @@ bool never_waits(int descriptor) noexcept
 }
 // NOLINTEND(cppcoreguidelines-pro-type-vararg)
 
-PlatformError refuse_binding(const Endpoint& endpoint, int error)
+Refusal refuse_binding(const Endpoint& endpoint, int error)
 {
-    return {PlatformErrorKind::bad_option,
-            "udp device: can't listen on " + text_of(endpoint) + " (" +
-                posix::name_of_error(error) +
-                "); it must be an address of this machine and a port that nobody uses"};
+    return {"udp device: can't listen on " + text_of(endpoint) + " (" +
+            posix::name_of_error(error) +
+            "); it must be an address of this machine and a port that nobody uses"};
 }
 
 } // namespace
 
-Result<Socket, PlatformError> Socket::open(const std::string& address, int port)
+Result<Socket, Refusal> Socket::open(const std::string& address, int port)
 {
     in_addr parsed{};
     if (inet_pton(AF_INET, address.c_str(), &parsed) != 1)
     {
-        return PlatformError{PlatformErrorKind::bad_option,
-                             "udp device: '" + address +
-                                 "' is no numeric IPv4 address such as 127.0.0.1"};
+        return Refusal{"udp device: '" + address +
+                       "' is no numeric IPv4 address such as 127.0.0.1"};
     }
     if (port != 0 && (port < kPortMin || port > kPortMax))
     {
-        return PlatformError{PlatformErrorKind::bad_option,
-                             "udp device: port " + std::to_string(port) +
-                                 " is out of range 1024..65535 (0: any that is free)"};
+        return Refusal{"udp device: port " + std::to_string(port) +
+                       " is out of range 1024..65535 (0: any that is free)"};
     }
     const Endpoint wanted{ntohl(parsed.s_addr), static_cast<std::uint16_t>(port)};
     Socket made(socket(AF_INET, SOCK_DGRAM, 0), wanted);
     if (made.descriptor_ < 0 || !never_waits(made.descriptor_))
     {
-        return PlatformError{PlatformErrorKind::system, "udp device: the system gives no socket (" +
-                                                            posix::name_of_error(errno) + ")"};
+        return Refusal{"udp device: the system gives no socket (" + posix::name_of_error(errno) +
+                       ")"};
     }
     sockaddr_in bound = to_system(wanted);
     socklen_t size = sizeof(bound);

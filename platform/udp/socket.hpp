@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/platform_error.hpp"
+#include "platform/base/refusal.hpp"
 #include "platform/time.hpp"
 #include "platform/udp/session.hpp"
 #include "rt_core/base/result.hpp"
@@ -24,8 +24,8 @@ public:
     static constexpr int kPortMax = 65'535;
 
     /// Bound to a numeric IPv4 address of this machine and a port in [kPortMin, kPortMax], or 0 for
-    /// any that is free. Refuses, with `bad_option`, others and those that are taken.
-    [[nodiscard]] static Result<Socket, PlatformError> open(const std::string& address, int port);
+    /// any that is free. Refuses others and those that are taken.
+    [[nodiscard]] static Result<Socket, Refusal> open(const std::string& address, int port);
 
     Socket(Socket&& other) noexcept;
     Socket& operator=(Socket&&) = delete;

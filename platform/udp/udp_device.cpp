@@ -13,7 +13,7 @@ namespace tactus
 namespace
 {
 
-using udp::Refusal;
+using udp::DatagramFault;
 
 /// One byte more than any datagram, so that a longer one shows.
 using Buffer = std::array<std::byte, udp::kDatagramBytesMax + 1>;
@@ -38,13 +38,12 @@ std::string find_bad_option(const UdpDeviceOptions& options)
 }
 
 /// A number that nobody outside can know.
-Result<std::uint64_t, PlatformError> draw_secret()
+Result<std::uint64_t, Refusal> draw_secret()
 {
     std::uint64_t secret = 0;
     if (!linux_extras::draw_random(std::as_writable_bytes(std::span(&secret, 1))))
     {
-        return PlatformError{PlatformErrorKind::system,
-                             "udp device: the system gives no random number"};
+        return Refusal{"udp device: the system gives no random number"};
     }
     return secret == 0 ? 1 : secret;
 }
@@ -54,8 +53,8 @@ std::span<const std::byte> part_of(const Buffer& buffer, std::size_t bytes) noex
     return std::span(buffer).first(bytes);
 }
 
-PlatformError nobody_came(const udp::Socket& socket, Duration wait, std::uint64_t refused,
-                          std::optional<Refusal> last)
+Refusal nobody_came(const udp::Socket& socket, Duration wait, std::uint64_t refused,
+                    std::optional<DatagramFault> last)
 {
     std::string line = "udp device: no device described itself to " +
                        udp::text_of(socket.endpoint()) + " within " +
@@ -65,18 +64,18 @@ PlatformError nobody_came(const udp::Socket& socket, Duration wait, std::uint64_
         line += " (" + std::to_string(refused) +
                 " datagrams refused, the last: " + std::string(udp::text_of(*last)) + ")";
     }
-    return {PlatformErrorKind::system, std::move(line)};
+    return {std::move(line)};
 }
 
 /// Returns when the session has a device.
-std::optional<PlatformError> await_device(const udp::Socket& socket, udp::Session& session,
-                                          const UdpDeviceOptions& options)
+std::optional<Refusal> await_device(const udp::Socket& socket, udp::Session& session,
+                                    const UdpDeviceOptions& options)
 {
     const MonotonicTime start = options.clock->now();
     const MonotonicTime end = start + options.wait;
     Buffer buffer{};
     std::uint64_t refused = 0;
-    std::optional<Refusal> last;
+    std::optional<DatagramFault> last;
     for (;;)
     {
         const auto received = socket.receive(buffer);
@@ -89,7 +88,7 @@ std::optional<PlatformError> await_device(const udp::Socket& socket, udp::Sessio
             {
                 return std::nullopt;
             }
-            last = std::get<Refusal>(result); // Samples are refused before a description.
+            last = std::get<DatagramFault>(result); // Samples are refused before a description.
             ++refused;
         }
         if (now >= end || (options.goes_on && !options.goes_on()))
@@ -108,7 +107,7 @@ DeviceInfo with_delay(DeviceInfo info, Duration delay)
 
 } // namespace
 
-Result<std::unique_ptr<UdpDevice>, PlatformError> UdpDevice::create(const UdpDeviceOptions& options)
+Result<std::unique_ptr<UdpDevice>, Refusal> UdpDevice::create(const UdpDeviceOptions& options)
 {
     auto socket = udp::Socket::open(options.address, options.port);
     if (!socket)
@@ -118,13 +117,13 @@ Result<std::unique_ptr<UdpDevice>, PlatformError> UdpDevice::create(const UdpDev
     return create(std::move(socket).value(), options);
 }
 
-Result<std::unique_ptr<UdpDevice>, PlatformError> UdpDevice::create(udp::Socket socket,
-                                                                    const UdpDeviceOptions& options)
+Result<std::unique_ptr<UdpDevice>, Refusal> UdpDevice::create(udp::Socket socket,
+                                                              const UdpDeviceOptions& options)
 {
     TACTUS_ASSERT(options.clock != nullptr);
     if (std::string wrong = find_bad_option(options); !wrong.empty())
     {
-        return PlatformError{PlatformErrorKind::bad_option, std::move(wrong)};
+        return Refusal{std::move(wrong)};
     }
     const auto secret = draw_secret();
     if (!secret)
@@ -216,7 +215,7 @@ bool UdpDevice::receive_one(std::span<const std::byte> bytes, const udp::Endpoin
 {
     const std::uint64_t session = session_.peer().session;
     const auto result = session_.receive(bytes, from, clock().now());
-    if (const auto* refusal = std::get_if<Refusal>(&result))
+    if (const auto* refusal = std::get_if<DatagramFault>(&result))
     {
         ++counts_.refused.at(static_cast<std::size_t>(*refusal));
         return false;

@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/platform_error.hpp"
+#include "platform/base/refusal.hpp"
 #include "platform/remote/remote_device.hpp"
 #include "platform/rt_thread.hpp"
 #include "platform/udp/session.hpp"
@@ -57,7 +57,7 @@ struct UdpTraffic
     std::uint64_t lost{0};      ///< Times that one was silent for too long.
     std::uint64_t forces{0};    ///< Sent by the I/O thread.
     std::uint64_t unsent{0};    ///< Those of them that the system refused.
-    std::array<std::uint64_t, udp::kRefusals> refused{}; ///< By udp::Refusal.
+    std::array<std::uint64_t, udp::kDatagramFaults> refused{}; ///< By udp::DatagramFault.
 };
 
 /// A device that another program drives, over the datagrams of docs/udp-device.md. The socket
@@ -66,11 +66,11 @@ class UdpDevice final : public RemoteDevice
 {
 public:
     /// Waits until a device has described itself, on the calling thread. Refuses options out of
-    /// range (`bad_option`); nobody within the time, or before the wait was ended, is `system`.
-    [[nodiscard]] static Result<std::unique_ptr<UdpDevice>, PlatformError>
+    /// range, and that nobody came within the time or before the wait was ended.
+    [[nodiscard]] static Result<std::unique_ptr<UdpDevice>, Refusal>
     create(const UdpDeviceOptions& options);
     /// The same with a socket that is open already; the options' address and port aren't read.
-    [[nodiscard]] static Result<std::unique_ptr<UdpDevice>, PlatformError>
+    [[nodiscard]] static Result<std::unique_ptr<UdpDevice>, Refusal>
     create(udp::Socket socket, const UdpDeviceOptions& options);
 
     UdpDevice(const UdpDevice&) = delete;

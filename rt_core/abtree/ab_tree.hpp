@@ -5,8 +5,10 @@
 #include "rt_core/abtree/block.hpp"
 #include "rt_core/abtree/node.hpp"
 #include "rt_core/base/arena.hpp"
+#include "rt_core/base/assert.hpp"
 #include "rt_core/base/realtime.hpp"
 #include "rt_core/kernels/kernels.hpp"
+#include "rt_core/limits.hpp"
 #include "rt_core/records/changed_face.hpp"
 
 #include <array>
@@ -33,6 +35,9 @@ struct TreeCapacities
     std::uint32_t blocks{0};
     std::uint32_t nodes{0};
 };
+
+template <typename Tree>
+class TreeValidator;
 
 /// The Active Bounding Tree over one model's active faces.
 ///
@@ -100,6 +105,7 @@ public:
     [[nodiscard]] bool is_complete() const noexcept { return first_unplaced_ == kLastUnplaced; }
     [[nodiscard]] bool is_unplaced(PrimId prim) const noexcept
     {
+        TACTUS_ASSERT(prim.value < prims_.size());
         const std::uint32_t leaf = prims_[prim.value].leaf;
         return (leaf & kUnplaced) != 0 && leaf != kNoLeaf;
     }
@@ -110,6 +116,7 @@ public:
         std::uint32_t index = std::exchange(first_unplaced_, kLastUnplaced);
         while (index != kLastUnplaced)
         {
+            TACTUS_ASSERT(is_unplaced(PrimId{index}));
             const std::uint32_t next = prims_[index].leaf & ~kUnplaced;
             prims_[index].leaf = kNoLeaf;
             insert(describe(PrimId{index}));
@@ -151,7 +158,11 @@ public:
     /// Volume of the whole tree; empty when the tree is.
     [[nodiscard]] Box box() const noexcept TACTUS_NONBLOCKING;
     /// The face that a prim stands for; its lasting name, used for ties and answers.
-    [[nodiscard]] FaceId face_of(PrimId prim) const noexcept { return prims_[prim.value].face; }
+    [[nodiscard]] FaceId face_of(PrimId prim) const noexcept
+    {
+        TACTUS_ASSERT(prim.value < prims_.size());
+        return prims_[prim.value].face;
+    }
     /// Block x 16 + lane of a prim, or kNoLeaf. With `parent` of blocks and nodes: the way up.
     static constexpr std::uint32_t kNoLeaf = 0xFFFF'FFFFU;
     [[nodiscard]] std::uint32_t leaf_of(PrimId prim) const noexcept
@@ -176,6 +187,8 @@ public:
     [[nodiscard]] const Kernels& kernels() const noexcept { return *kernels_; }
 
 private:
+    friend class TreeValidator<BasicAbTree>;
+
     struct Prim
     {
         FaceId face{};
@@ -186,7 +199,8 @@ private:
     static constexpr std::uint32_t kUnplaced = 0x8000'0000U;
     static constexpr std::uint32_t kLastUnplaced = 0x7FFF'FFFEU;
 
-    [[nodiscard]] static std::uint64_t path_of(FaceId face, std::uint32_t bucket) noexcept;
+    [[nodiscard]] static std::uint64_t path_of(FaceId face,
+                                               std::uint32_t bucket) noexcept TACTUS_NONBLOCKING;
 
     void place(const ChangedFace& face) noexcept;
     void insert_below(TreeRef ref, const ChangedFace& face, std::uint64_t path) noexcept;
@@ -230,8 +244,6 @@ private:
     void keep_unplaced(PrimId prim) noexcept;
     void drop_unplaced(PrimId prim) noexcept;
 
-    static constexpr std::uint32_t kLevels = 22; ///< Octal digits of a 64-bit path.
-
     Capacities capacities_;
     float quantum_m_;
     const Kernels* kernels_;
@@ -239,7 +251,7 @@ private:
     std::span<BlockSide> sides_;
     std::span<Node> nodes_;
     std::span<Prim> prims_;
-    std::array<std::uint32_t, kLevels> dirty_heads_{};
+    std::array<std::uint32_t, kTreeLevels> dirty_heads_{};
     TreeRef root_;
     std::uint32_t free_block_{kNoNode}; ///< First of its list, as the three below.
     std::uint32_t free_node_{kNoNode};

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "rt_core/abtree/ab_tree.hpp"
+#include "rt_core/base/assert.hpp"
 
 /// Refit of the AB-Tree: included where the tree is instantiated for a volume.
 namespace tactus
@@ -44,8 +45,10 @@ typename BasicAbTree<Volume>::RefitWork BasicAbTree<Volume>::refit() noexcept
             head = node.link;
             node.is_queued = false;
             ++work.nodes;
+            TACTUS_ASSERT(node.in_use);
             if (node.parent != kNoNode)
             {
+                TACTUS_ASSERT(nodes_[node.parent].shift > node.shift);
                 pass_up(node.parent, node.child,
                         Volume::of_children(*kernels_, node.volumes, node.mask), node.coarse != 0);
             }
@@ -73,6 +76,7 @@ void BasicAbTree<Volume>::pass_up(std::uint32_t parent, std::uint32_t child, con
         return;
     }
     Node& node = nodes_[parent];
+    TACTUS_ASSERT(((std::uint32_t{node.mask} >> child) & 1U) != 0);
     const bool was_coarse = ((std::uint32_t{node.coarse} >> child) & 1U) != 0;
     if (node.box_of(child) == box && was_coarse == coarse)
     {

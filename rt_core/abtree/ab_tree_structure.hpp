@@ -3,6 +3,7 @@
 #pragma once
 
 #include "rt_core/abtree/ab_tree.hpp"
+#include "rt_core/base/assert.hpp"
 #include "rt_core/base/static_vector.hpp"
 
 /// How the AB-Tree grows and shrinks: included where the tree is instantiated for a volume.
@@ -15,10 +16,12 @@ namespace detail
 /// Sibling cells with at most this many faces together become one block again; the gap to the 16
 /// at which a block splits keeps a face that comes and goes from splitting it each time.
 inline constexpr std::uint32_t kMergeFaces = 10;
+static_assert(kMergeFaces < kBlockFaces);
 
 /// The highest octal digit in which two different paths differ, as its shift.
 inline std::uint32_t digit_shift(std::uint64_t a, std::uint64_t b) noexcept
 {
+    TACTUS_ASSERT(a != b);
     const auto bit = static_cast<std::uint32_t>(63 - std::countl_zero(a ^ b));
     return bit / 3 * 3;
 }
@@ -41,6 +44,9 @@ BasicAbTree<Volume>::BasicAbTree(Arena& arena, const Capacities& capacities, flo
     {
         return;
     }
+    TACTUS_ASSERT(quantum_m > 0.0F);
+    TACTUS_ASSERT(capacities.prims <= kLastUnplaced);
+    TACTUS_ASSERT(capacities.blocks <= kUnplaced / kBlockFaces);
     for (std::uint32_t i = capacities.blocks; i-- > 0;)
     {
         free_block(i);
@@ -54,6 +60,8 @@ BasicAbTree<Volume>::BasicAbTree(Arena& arena, const Capacities& capacities, flo
 template <typename Volume>
 void BasicAbTree<Volume>::insert(const ChangedFace& face) noexcept
 {
+    TACTUS_ASSERT(!face.face.is_none());
+    TACTUS_ASSERT(face.prim.value < prims_.size());
     TACTUS_ASSERT(prims_[face.prim.value].leaf == kNoLeaf);
     prims_[face.prim.value] = Prim{face.face, face.bucket, kNoLeaf};
     if (has_reserve())
@@ -70,6 +78,7 @@ template <typename Volume>
 void BasicAbTree<Volume>::move_corner(PrimId prim, std::uint32_t corner, const Vec3f& position_m,
                                       ErrorCode error) noexcept
 {
+    TACTUS_ASSERT(corner < 3);
     const std::uint32_t leaf = leaf_of(prim);
     if (leaf == kNoLeaf)
     {
@@ -91,6 +100,7 @@ void BasicAbTree<Volume>::move_corner(PrimId prim, std::uint32_t corner, const V
 template <typename Volume>
 void BasicAbTree<Volume>::remove(PrimId prim) noexcept
 {
+    TACTUS_ASSERT(!face_of(prim).is_none());
     if (leaf_of(prim) == kNoLeaf)
     {
         drop_unplaced(prim);
@@ -106,6 +116,8 @@ template <typename Volume>
 void BasicAbTree<Volume>::move_vertex(std::uint32_t block, std::uint32_t row,
                                       const Vec3f& position_m) noexcept
 {
+    TACTUS_ASSERT(is_block_in_use(block));
+    TACTUS_ASSERT(((std::uint32_t{blocks_[block].vertices} >> row) & 1U) != 0);
     for (std::size_t axis = 0; axis < 3; ++axis)
     {
         blocks_[block].coordinates[axis][row] = position_m[axis];
@@ -131,7 +143,7 @@ template <typename Volume>
 void BasicAbTree<Volume>::insert_below(TreeRef ref, const ChangedFace& face,
                                        std::uint64_t path) noexcept
 {
-    for (std::uint32_t level = 0; level <= kLevels; ++level)
+    for (std::uint32_t level = 0; level <= kTreeLevels; ++level)
     {
         if (ref.is_block())
         {
@@ -176,6 +188,7 @@ void BasicAbTree<Volume>::insert_at_free_digit(std::uint32_t node_index, const C
                                                std::uint32_t digit) noexcept
 {
     Node& node = nodes_[node_index];
+    TACTUS_ASSERT(node.child_of(digit) == Node::kNoChild);
     for (std::uint32_t width = 2; width <= kNodeChildren; width *= 2)
     {
         const DigitRange cell{digit & ~(width - 1), width};
@@ -300,6 +313,7 @@ void BasicAbTree<Volume>::split_block(std::uint32_t block, const ChangedFace& fa
             paths[lane] = path_of(prim.face, prim.bucket);
             differing |= paths[lane] ^ path;
         }
+        TACTUS_ASSERT(differing != 0);
         const auto bit = static_cast<std::uint32_t>(63 - std::countl_zero(differing));
         std::uint32_t apart = 0;
         for (std::uint32_t lanes = blocks_[block].faces; lanes != 0; lanes &= lanes - 1)
@@ -322,6 +336,7 @@ template <typename Volume>
 std::uint32_t BasicAbTree<Volume>::part(std::uint32_t block, std::uint32_t bit, std::uint64_t path,
                                         std::uint32_t apart) noexcept
 {
+    TACTUS_ASSERT(apart != 0);
     const std::uint32_t shift = bit / 3 * 3;
     const std::uint32_t width = 1U << (bit - shift);
     const std::uint32_t parent = node_above(block, shift, path);
@@ -359,6 +374,7 @@ std::uint32_t BasicAbTree<Volume>::node_above(std::uint32_t block, std::uint32_t
     {
         return parent;
     }
+    TACTUS_ASSERT(parent == kNoNode || nodes_[parent].shift > shift);
     const std::uint32_t child = sides_[block].child;
     const std::uint32_t above = take_node(shift, path);
     if (parent == kNoNode)
@@ -445,6 +461,7 @@ bool BasicAbTree<Volume>::try_absorb(std::uint32_t block, std::uint32_t other) n
 template <typename Volume>
 void BasicAbTree<Volume>::hoist_only_child(std::uint32_t node) noexcept
 {
+    TACTUS_ASSERT(nodes_[node].child_count() == 1);
     const auto child = static_cast<std::uint32_t>(std::countr_zero(nodes_[node].mask));
     const TreeRef ref = nodes_[node].children[child];
     replace(TreeRef::to_node(node), ref);
@@ -458,6 +475,8 @@ void BasicAbTree<Volume>::attach(std::uint32_t node_index, DigitRange digits, Tr
     Node& node = nodes_[node_index];
     const auto child = static_cast<std::uint32_t>(std::countr_one(node.mask));
     TACTUS_ASSERT(child < kNodeChildren);
+    TACTUS_ASSERT(std::has_single_bit(digits.width));
+    TACTUS_ASSERT(digits.first % digits.width == 0);
     node.mask = static_cast<std::uint8_t>(node.mask | (1U << child));
     node.children[child] = ref;
     node.volumes.set(child, Box{});
@@ -473,6 +492,7 @@ template <typename Volume>
 void BasicAbTree<Volume>::detach(std::uint32_t node_index, std::uint32_t child) noexcept
 {
     Node& node = nodes_[node_index];
+    TACTUS_ASSERT(((std::uint32_t{node.mask} >> child) & 1U) != 0);
     node.mask = static_cast<std::uint8_t>(node.mask & ~(1U << child));
     node.children[child] = TreeRef{};
     node.set_coarse(child, false);
@@ -484,6 +504,8 @@ void BasicAbTree<Volume>::detach(std::uint32_t node_index, std::uint32_t child) 
 template <typename Volume>
 void BasicAbTree<Volume>::replace(TreeRef old_ref, TreeRef new_ref) noexcept
 {
+    TACTUS_ASSERT(!old_ref.is_block());
+    TACTUS_ASSERT(!new_ref.is_none());
     const std::uint32_t parent = nodes_[old_ref.index()].parent;
     const std::uint32_t child = nodes_[old_ref.index()].child;
     set_link(new_ref, parent, child);
@@ -515,6 +537,7 @@ void BasicAbTree<Volume>::set_link(TreeRef ref, std::uint32_t parent, std::uint3
 template <typename Volume>
 ChangedFace BasicAbTree<Volume>::describe(std::uint32_t block, std::uint32_t lane) const noexcept
 {
+    TACTUS_ASSERT(((std::uint32_t{blocks_[block].faces} >> lane) & 1U) != 0);
     const PrimId prim = sides_[block].prims[lane];
     const Prim& known = prims_[prim.value];
     return {prim, known.face, known.bucket, sides_[block].errors[lane],
@@ -546,6 +569,7 @@ std::uint32_t BasicAbTree<Volume>::take_block() noexcept
     TACTUS_ASSERT(free_block_count_ > 0);
     const std::uint32_t block = free_block_;
     BlockSide& side = sides_[block];
+    TACTUS_ASSERT(!side.in_use);
     free_block_ = side.parent;
     --free_block_count_;
     blocks_[block].faces = 0;
@@ -566,6 +590,7 @@ std::uint32_t BasicAbTree<Volume>::take_node(std::uint32_t shift, std::uint64_t 
     TACTUS_ASSERT(free_node_count_ > 0);
     const std::uint32_t index = free_node_;
     Node& node = nodes_[index];
+    TACTUS_ASSERT(!node.in_use);
     free_node_ = node.parent;
     --free_node_count_;
     const std::uint32_t link = node.link;
@@ -583,6 +608,7 @@ std::uint32_t BasicAbTree<Volume>::take_node(std::uint32_t shift, std::uint64_t 
 template <typename Volume>
 void BasicAbTree<Volume>::free_block(std::uint32_t block) noexcept
 {
+    TACTUS_ASSERT(free_block_count_ < capacities_.blocks);
     sides_[block].in_use = false;
     blocks_[block].faces = 0;
     sides_[block].parent = std::exchange(free_block_, block);
@@ -592,6 +618,7 @@ void BasicAbTree<Volume>::free_block(std::uint32_t block) noexcept
 template <typename Volume>
 void BasicAbTree<Volume>::free_node(std::uint32_t node) noexcept
 {
+    TACTUS_ASSERT(free_node_count_ < capacities_.nodes);
     nodes_[node].in_use = false;
     nodes_[node].parent = std::exchange(free_node_, node);
     ++free_node_count_;
@@ -600,12 +627,14 @@ void BasicAbTree<Volume>::free_node(std::uint32_t node) noexcept
 template <typename Volume>
 void BasicAbTree<Volume>::keep_unplaced(PrimId prim) noexcept
 {
+    TACTUS_ASSERT(prims_[prim.value].leaf == kNoLeaf);
     prims_[prim.value].leaf = kUnplaced | std::exchange(first_unplaced_, prim.value);
 }
 
 template <typename Volume>
 void BasicAbTree<Volume>::drop_unplaced(PrimId prim) noexcept
 {
+    TACTUS_ASSERT(is_unplaced(prim));
     const std::uint32_t after = prims_[prim.value].leaf & ~kUnplaced;
     if (first_unplaced_ == prim.value)
     {
@@ -616,6 +645,7 @@ void BasicAbTree<Volume>::drop_unplaced(PrimId prim) noexcept
     while ((prims_[before].leaf & ~kUnplaced) != prim.value)
     {
         before = prims_[before].leaf & ~kUnplaced;
+        TACTUS_ASSERT(before != kLastUnplaced);
     }
     prims_[before].leaf = kUnplaced | after;
 }

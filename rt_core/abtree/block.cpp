@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "rt_core/abtree/block.hpp"
 
+#include "rt_core/base/assert.hpp"
 #include "rt_core/math/four_lanes.hpp"
 
 #include <algorithm>
@@ -122,6 +123,7 @@ void keep_lanes(BlockGeometry& block, BlockSide& side, std::uint32_t lanes) noex
 
 std::uint32_t add_to_block(BlockGeometry& block, BlockSide& side, const ChangedFace& face) noexcept
 {
+    TACTUS_ASSERT(!face.prim.is_none());
     const auto lane = static_cast<std::uint32_t>(std::countr_one(block.faces));
     if (lane >= kBlockFaces)
     {
@@ -152,6 +154,7 @@ std::uint32_t add_to_block(BlockGeometry& block, BlockSide& side, const ChangedF
 bool move_corner_in_block(BlockGeometry& block, BlockSide& side, std::uint32_t lane,
                           std::uint32_t corner, const Vec3f& position_m, ErrorCode error) noexcept
 {
+    TACTUS_ASSERT(((std::uint32_t{block.faces} >> lane) & 1U) != 0);
     const std::uint32_t row = find_or_add_vertex(block, position_m);
     if (row == kNoVertex)
     {
@@ -181,6 +184,7 @@ void halve_block(BlockGeometry& block, BlockSide& side, std::uint32_t moved, Blo
                  BlockSide& other_side) noexcept
 {
     TACTUS_ASSERT((moved & ~std::uint32_t{block.faces}) == 0);
+    TACTUS_ASSERT(other.faces == 0);
     other = block;
     other_side.prims = side.prims;
     other_side.errors = side.errors;

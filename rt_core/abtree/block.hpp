@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "rt_core/base/assert.hpp"
 #include "rt_core/base/realtime.hpp"
 #include "rt_core/limits.hpp"
 #include "rt_core/records/changed_face.hpp"
@@ -15,6 +16,8 @@ namespace tactus
 
 inline constexpr std::uint32_t kBlockFaces = 16;
 inline constexpr std::uint32_t kBlockVertices = 16;
+static_assert(kBlockFaces <= 16, "a block's lanes are bits of 16");
+static_assert(kBlockVertices <= 16, "and so are its rows");
 
 /// Geometry of one leaf: up to 16 faces over up to 16 shared vertices, four cache lines. Two mesh
 /// vertices with equal coordinates share a row. 256 B.
@@ -66,6 +69,7 @@ void halve_block(BlockGeometry& block, BlockSide& side, std::uint32_t moved, Blo
 [[nodiscard]] inline std::array<Vec3f, 3> block_triangle(const BlockGeometry& block,
                                                          std::uint32_t lane) noexcept
 {
+    TACTUS_ASSERT(lane < kBlockFaces);
     std::array<Vec3f, 3> corners{};
     for (std::size_t corner = 0; corner < 3; ++corner)
     {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "rt_core/abtree/volume.hpp"
+#include "rt_core/base/assert.hpp"
 
 #include <array>
 #include <bit>
@@ -47,6 +48,7 @@ template <typename Volume>
 struct alignas(64) BasicAbNode
 {
     static constexpr std::uint32_t kNoChild = 8;
+    static_assert(kNoChild >= kNodeChildren, "no child's index says that there is none");
     static constexpr std::uint32_t kSeveral = 9; ///< Answer of only_child_in(); never stored.
 
     typename Volume::Rows volumes{}; ///< Of the children.
@@ -78,6 +80,8 @@ struct alignas(64) BasicAbNode
     }
     void assign(DigitRange digits, std::uint32_t child_index) noexcept
     {
+        TACTUS_ASSERT(digits.first + digits.width <= kNodeChildren);
+        TACTUS_ASSERT(child_index <= kNoChild);
         for (std::uint32_t digit = digits.first; digit < digits.first + digits.width; ++digit)
         {
             digit_map = (digit_map & ~(15U << (4 * digit))) | (child_index << (4 * digit));
@@ -117,10 +121,12 @@ struct alignas(64) BasicAbNode
     }
     [[nodiscard]] typename Volume::Box box_of(std::uint32_t index) const noexcept
     {
+        TACTUS_ASSERT(index < kNodeChildren);
         return volumes.get(index);
     }
     void set_coarse(std::uint32_t index, bool is_coarse) noexcept
     {
+        TACTUS_ASSERT(index < kNodeChildren);
         const std::uint32_t bit = 1U << index;
         coarse = static_cast<std::uint8_t>(is_coarse ? coarse | bit : coarse & ~bit);
     }

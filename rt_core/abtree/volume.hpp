@@ -12,6 +12,7 @@ namespace tactus
 {
 
 inline constexpr std::uint32_t kNodeChildren = 8;
+static_assert(kNodeChildren <= 8, "a node's masks are bytes");
 
 /// The bounding volume of the AB-Tree, as a policy: what a volume is, how a node keeps those of its
 /// eight children, and the loops over them. Another volume needs the same members.

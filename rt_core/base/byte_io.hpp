@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "rt_core/base/assert.hpp"
+
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -76,8 +78,10 @@ public:
     /// The next field, of up to 32 bits.
     [[nodiscard]] std::uint32_t read(std::uint32_t bits) noexcept
     {
+        TACTUS_ASSERT(bits <= 32);
         while (held_ < bits)
         {
+            TACTUS_ASSERT(next_ < bytes_.size());
             window_ |= std::to_integer<std::uint64_t>(bytes_[next_++]) << held_;
             held_ += 8;
         }

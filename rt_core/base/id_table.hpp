@@ -32,6 +32,7 @@ public:
         : entries_(arena.take<Entry>(2 * std::size_t{capacity})), capacity_(capacity)
     {
         TACTUS_ASSERT(capacity > 0);
+        TACTUS_ASSERT(capacity <= kAbsent / 2);
     }
 
     /// The id's value, or kAbsent.
@@ -71,6 +72,8 @@ public:
     /// Removes an id that is present.
     void erase(std::uint32_t id) noexcept
     {
+        TACTUS_ASSERT(id != kAbsent);
+        TACTUS_ASSERT(size_ > 0);
         std::size_t hole = home_of(id);
         for (; entries_[hole].id != id; hole = after(hole))
         {

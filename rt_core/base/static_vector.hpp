@@ -19,6 +19,7 @@ template <typename T, std::size_t Capacity>
 class StaticVector // NOLINT(cppcoreguidelines-special-member-functions): moving is copying.
 {
     static_assert(std::is_trivially_destructible_v<T>);
+    static_assert(Capacity > 0);
 
 public:
     StaticVector() noexcept {} // NOLINT(modernize-use-equals-default): `= default` would zero it.

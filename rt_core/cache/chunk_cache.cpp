@@ -2,20 +2,14 @@
 // Copyright the Tactus authors.
 #include "rt_core/cache/chunk_cache.hpp"
 
+#include "rt_core/base/assert.hpp"
+#include "rt_core/limits.hpp"
+
 #include <algorithm>
 #include <bit>
 
 namespace tactus
 {
-
-namespace
-{
-
-/// Wishes under way while the whole model is loaded: what a tool needs must not wait behind more of
-/// them, nor be pushed out of what the transport side remembers.
-constexpr std::uint32_t kMostFilling = 128;
-
-} // namespace
 
 ChunkCache::ChunkCache(Arena& arena, const ModelHeader& header, PageSlots slots, PageTable& pages,
                        ChunkInbox& inbox) noexcept
@@ -63,11 +57,16 @@ void ChunkCache::adopt(const DoorEvent& arrival, std::uint32_t frame) noexcept
 {
     if (arrival.key.kind == ContentKind::chunk)
     {
+        TACTUS_ASSERT(arrival.key.number < header_.counts().chunks());
         pages_->adopt({arrival.key.number}, arrival.slot, frame, arrival.linked);
         chunk_wishes_.arrive(arrival.key.number, frame);
         ++loads_;
         return;
     }
+    TACTUS_ASSERT(arrival.key.kind == ContentKind::index_page);
+    TACTUS_ASSERT(arrival.key.number < header_.counts().index_pages());
+    TACTUS_ASSERT(arrival.slot < index_meta_.size());
+    TACTUS_ASSERT(index_meta_[arrival.slot].page.is_none());
     index_meta_[arrival.slot] = {IndexPageId{arrival.key.number}, frame};
     const bool inserted = index_slot_of_.try_insert(arrival.key.number, arrival.slot);
     TACTUS_ASSERT(inserted);
@@ -92,8 +91,8 @@ void ChunkCache::request_missing(std::span<const RankedRegion> regions, const Bu
                                  FrameFault& faults) noexcept
 {
     frame_ = frame;
-    chunk_wishes_.expire(frame);
-    index_wishes_.expire(frame);
+    chunk_wishes_.expire(frame, wish_timeout_frames_);
+    index_wishes_.expire(frame, wish_timeout_frames_);
     const RankedBalls balls = to_quanta(regions);
     const std::uint32_t pages = header_.counts().index_pages();
     std::uint32_t searched = 0;
@@ -105,6 +104,7 @@ void ChunkCache::request_missing(std::span<const RankedRegion> regions, const Bu
             break;
         }
         const IndexPageId page{cursor_};
+        TACTUS_ASSERT(page.value < pages);
         cursor_ = cursor_ + 1 >= pages ? 0 : cursor_ + 1;
         if (cursor_ == 0)
         {
@@ -127,10 +127,11 @@ void ChunkCache::request_everything(const Budgets& budgets, WorkCounters& work,
     const std::uint32_t chunks = header_.counts().chunks();
     for (std::uint32_t looked = 0;
          looked < std::min(chunks, kChunksPerIndexPage) && work.requests < budgets.requests &&
-         chunk_wishes_.under_way() < kMostFilling && pages_->used() < chunks;
+         chunk_wishes_.under_way() < kMaxFillingWishes && pages_->used() < chunks;
          ++looked)
     {
         const ChunkId chunk{fill_cursor_};
+        TACTUS_ASSERT(chunk.value < chunks);
         const IndexPageId page{chunk.value >> kChunksPerIndexPageLog2};
         if (index_slot_of_.find(page.value) == IdTable::kAbsent)
         {
@@ -185,6 +186,7 @@ void ChunkCache::search_page(IndexPageId page, const RankedBalls& balls, const B
         want_index_page(page, frame, work, faults);
         return;
     }
+    TACTUS_ASSERT(index_meta_[slot].page == page);
     index_meta_[slot].touched = frame;
     const IndexPage& index = slots_.index_pages[slot];
     const QuantumBox box = header_.index_entry(page).box;

@@ -32,6 +32,14 @@ public:
     ChunkCache(Arena& arena, const ModelHeader& header, PageSlots slots, PageTable& pages,
                ChunkInbox& inbox) noexcept;
 
+    /// How long a frame is; a period of 1 ms unless told. Wishes wait for answers kWishTimeout_ns.
+    void set_period(std::int64_t period_ns) noexcept
+    {
+        TACTUS_ASSERT(period_ns > 0);
+        wish_timeout_frames_ = static_cast<std::uint32_t>(
+            std::clamp<std::int64_t>(kWishTimeout_ns / period_ns, 1, kFirstFrame));
+    }
+
     /// Takes over what arrived, at most `budget` slots, and link updates on the way. Each is taken
     /// in its order; what is beyond kMaxArrivalsPerFrame or kMaxLinkUpdatesPerFrame waits.
     void adopt_arrivals(std::uint32_t budget, std::uint32_t frame,
@@ -62,11 +70,18 @@ public:
 
     /// In frames, from wishing for a chunk to having it.
     [[nodiscard]] const LoadLatency& latency() const noexcept { return chunk_wishes_.latency(); }
+    /// Wishes that wait for an answer.
+    [[nodiscard]] std::uint32_t wishes_under_way() const noexcept
+    {
+        return chunk_wishes_.under_way() + index_wishes_.under_way();
+    }
     [[nodiscard]] std::uint64_t loads() const noexcept { return loads_; }
     [[nodiscard]] std::uint64_t evictions() const noexcept { return evictions_; }
     [[nodiscard]] std::uint32_t index_pages_used() const noexcept { return index_slot_of_.size(); }
 
 private:
+    friend class CacheValidator;
+
     struct IndexMeta
     {
         IndexPageId page{};
@@ -102,6 +117,7 @@ private:
     /// Longer than two rounds and a load take, and no longer: while a hand moves on, what it left
     /// is in the way of what it will need.
     static constexpr std::uint32_t kAheadAge = 64;
+    static_assert(kAheadAge < kFirstFrame, "a touch dated back is no frame before the first");
 
     ModelHeader header_;
     PageSlots slots_;
@@ -115,6 +131,7 @@ private:
     std::uint32_t taken_count_{0};
     std::uint32_t wish_room_at_start_{0};
     std::uint32_t wish_room_{0};
+    std::uint32_t wish_timeout_frames_{kWishTimeoutFrames};
     std::uint32_t cursor_{0};      ///< Next index page to look at.
     std::uint32_t fill_cursor_{0}; ///< Next chunk of request_everything().
     std::uint32_t frame_{kFirstFrame};

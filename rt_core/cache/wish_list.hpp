@@ -3,6 +3,7 @@
 #pragma once
 
 #include "rt_core/base/arena.hpp"
+#include "rt_core/base/assert.hpp"
 #include "rt_core/base/id_table.hpp"
 #include "rt_core/cache/load_latency.hpp"
 #include "rt_core/limits.hpp"
@@ -43,6 +44,7 @@ public:
     }
     void ask(std::uint32_t number, std::uint32_t frame) noexcept
     {
+        TACTUS_ASSERT(!is_under_way(number));
         TACTUS_ASSERT(has_credit());
         // One place of the ring is free: fewer are under way than there are slots.
         while (numbers_[cursor_] != IdTable::kAbsent)
@@ -65,18 +67,23 @@ public:
         TACTUS_ASSERT(slots_at_transport_ > 0);
         --slots_at_transport_;
     }
-    void give_back_slot() noexcept { ++slots_at_transport_; }
+    void give_back_slot() noexcept
+    {
+        TACTUS_ASSERT(slots_at_transport_ < numbers_.size());
+        ++slots_at_transport_;
+    }
 
     /// Forgets wishes that went unanswered for too long, so that they may be asked again. Looks at
-    /// so many a call that each is looked at once in kWishTimeoutFrames calls.
-    void expire(std::uint32_t frame) noexcept
+    /// so many a call that each is looked at once in `timeout` calls. `timeout` > 0, in frames.
+    void expire(std::uint32_t frame, std::uint32_t timeout = kWishTimeoutFrames) noexcept
     {
+        TACTUS_ASSERT(timeout > 0);
         const auto places = static_cast<std::uint32_t>(numbers_.size());
-        for (std::uint32_t looked = 0; looked <= places / kWishTimeoutFrames; ++looked)
+        for (std::uint32_t looked = 0; looked <= places / timeout; ++looked)
         {
             advance_cursor();
             const std::uint32_t number = numbers_[cursor_];
-            if (number != IdTable::kAbsent && frame - asked_[cursor_] > kWishTimeoutFrames)
+            if (number != IdTable::kAbsent && frame - asked_[cursor_] > timeout)
             {
                 forget(number);
             }
@@ -88,11 +95,14 @@ public:
     [[nodiscard]] const LoadLatency& latency() const noexcept { return latency_; }
 
 private:
+    friend class CacheValidator;
+
     void forget(std::uint32_t number) noexcept
     {
         const std::uint32_t place = under_way_.find(number);
         if (place != IdTable::kAbsent)
         {
+            TACTUS_ASSERT(numbers_[place] == number);
             numbers_[place] = IdTable::kAbsent;
             under_way_.erase(number);
         }

@@ -4,6 +4,7 @@
 
 #include "rt_core/base/assert.hpp"
 #include "rt_core/force/stiffness_rule.hpp"
+#include "rt_core/math/rounding.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -44,13 +45,15 @@ ForceConditioner::ForceConditioner(const ConditionerSetup& setup) noexcept
 ConditionedForce ForceConditioner::condition(const ForceWish& wish) noexcept
 {
     ConditionedForce output;
-    if (!observe(wish))
+    const bool is_observed = observe(wish);
+    if (!is_observed || !sent_.knows_delay())
     {
         output.actions |= ForceAction::blind;
     }
     wall_n_ = limit(wish, output);
     hold(wish, wall_n_, output.stiffness_n_per_m);
     output.force_n = setup_.controls_passivity ? damp(wall_n_, output) : wall_n_;
+    TACTUS_ASSERT(output.force_n.norm() <= setup_.device.force_max_n * kRoundedUp);
     output.work_j = observer_.work_j();
     output.surplus_j = observer_.surplus_j();
     sent_.send(output.force_n);

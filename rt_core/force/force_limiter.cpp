@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "rt_core/force/force_limiter.hpp"
 
+#include "rt_core/base/assert.hpp"
 #include "rt_core/math/direction.hpp"
 
 #include <algorithm>
@@ -11,6 +12,7 @@ namespace tactus
 
 Vec3 clamp_norm(const Vec3& force_n, double norm_max_n) noexcept
 {
+    TACTUS_ASSERT(norm_max_n >= 0.0);
     if (!has_direction(force_n))
     {
         return {0.0, 0.0, 0.0};
@@ -23,6 +25,7 @@ Vec3 clamp_norm(const Vec3& force_n, double norm_max_n) noexcept
 
 Vec3 limit_growth(const Vec3& before_n, const Vec3& wished_n, double step_max_n) noexcept
 {
+    TACTUS_ASSERT(step_max_n >= 0.0);
     const Vec3 change = wished_n - before_n;
     if (change.norm() <= step_max_n)
     {

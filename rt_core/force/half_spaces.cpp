@@ -4,18 +4,16 @@
 
 #include "rt_core/base/assert.hpp"
 #include "rt_core/limits.hpp"
+#include "rt_core/math/infinity.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace tactus
 {
 
 namespace
 {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// The planes that hold the motion now: independent normals as Q x R, Q orthonormal and R upper
 /// triangular, and a multiplier for each.
@@ -63,6 +61,8 @@ public:
     {
         TACTUS_ASSERT(size_ < N);
         const double length = normal_split.across.norm();
+        TACTUS_ASSERT(length > 0.0);
+        TACTUS_ASSERT(multiplier >= 0.0);
         planes_[slot(size_)] = plane;
         normals_[slot(size_)] = normal;
         multipliers_[size_] = multiplier;
@@ -74,6 +74,7 @@ public:
 
     void drop(int dropped) noexcept
     {
+        TACTUS_ASSERT(dropped < size_);
         const HoldingPlanes before = *this;
         size_ = dropped;
         for (int i = dropped + 1; i < before.size_; ++i)
@@ -86,6 +87,7 @@ public:
     /// The multipliers go down by this share each, never below zero.
     void lower(const Motion<N>& shares, double step) noexcept
     {
+        TACTUS_ASSERT(step >= 0.0);
         for (int i = 0; i < size_; ++i)
         {
             multipliers_[i] = std::max(0.0, multipliers_[i] - step * shares[i]);

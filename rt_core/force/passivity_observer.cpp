@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #include "rt_core/force/passivity_observer.hpp"
 
+#include "rt_core/base/assert.hpp"
+
 #include <algorithm>
 
 namespace tactus
@@ -24,6 +26,7 @@ void SentForces::send(const Vec3& force_n) noexcept
 ///                                 delay
 Vec3 SentForces::mean_since(std::uint32_t elapsed_periods) noexcept
 {
+    TACTUS_ASSERT(elapsed_periods > 0);
     const double elapsed = elapsed_periods;
     sent_[0].periods = elapsed;
     double begin = delay_;
@@ -51,6 +54,7 @@ PassivityObserver::PassivityObserver(const DeviceLimits& device, double period_s
 void PassivityObserver::observe(const Vec3& force_n, const Vec3& displacement_m,
                                 double elapsed_s) noexcept
 {
+    TACTUS_ASSERT(elapsed_s > 0.0);
     const double work = force_n.dot(displacement_m);
     // By Cauchy's inequality b v^2 over the time is no less than this, whatever the motion.
     const double viscous_loss = damping_n_s_per_m_ * displacement_m.squaredNorm() / elapsed_s;
@@ -60,6 +64,7 @@ void PassivityObserver::observe(const Vec3& force_n, const Vec3& displacement_m,
 
 void PassivityObserver::hold(double energy_j) noexcept
 {
+    TACTUS_ASSERT(!(energy_j < 0.0));
     surplus_j_ = std::max(0.0, surplus_j_ + energy_j - held_j_);
     held_j_ = energy_j;
 }
@@ -72,6 +77,7 @@ void PassivityObserver::hold_nothing() noexcept
 
 double PassivityObserver::damping_for(double speed_m_per_s) const noexcept
 {
+    TACTUS_ASSERT(speed_m_per_s >= 0.0);
     const double lost_by_one = period_s_ * speed_m_per_s * speed_m_per_s;
     return surplus_j_ < lost_by_one * added_damping_max_n_s_per_m_ ? surplus_j_ / lost_by_one
            : lost_by_one > 0.0                                     ? added_damping_max_n_s_per_m_

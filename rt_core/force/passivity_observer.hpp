@@ -21,6 +21,8 @@ public:
     /// `delay_periods`: of the device, whole or not.
     explicit SentForces(double delay_periods) noexcept : delay_(delay_periods) {}
 
+    /// Whether no force is at the device that is older than those kept.
+    [[nodiscard]] bool knows_delay() const noexcept { return delay_ <= kForcesUnderWay - 1; }
     void send(const Vec3& force_n) noexcept TACTUS_NONBLOCKING;
     /// The newest was this one after all.
     void replace_newest(const Vec3& force_n) noexcept { sent_[0].force_n = force_n; }

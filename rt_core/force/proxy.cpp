@@ -2,9 +2,10 @@
 // Copyright the Tactus authors.
 #include "rt_core/force/proxy.hpp"
 
+#include "rt_core/math/infinity.hpp"
+
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace tactus
 {
@@ -12,16 +13,10 @@ namespace tactus
 namespace
 {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 /// How far beyond the tool's radius triangles are listed: a share of the radius and this many times
-/// the last frame's way. A list that was too short is made again, four
-/// times as wide.
+/// the last frame's way. A list that was too short is made again, four times as wide.
 constexpr double kWindow = 0.05;
 constexpr double kWindowWays = 1.5;
-constexpr int kVicinities = 4;
-/// Below this share of the tool's radius a motion isn't worth a step: 0.1 mN at 500 N/m and 2 mm.
-constexpr double kLeastStep = 1e-4;
 /// Over a curved surface a press turns into a way along it: this share of it within a frame.
 constexpr double kDipShare = 0.1;
 /// A proxy on its way along a surface feels what is this share of the radius below it.
@@ -108,10 +103,11 @@ Proxy::Proxy(ToolSpec spec) noexcept : spec_(std::move(spec)), radius_(spec_.rad
     object_velocities_.fill(Vec3(0.0, 0.0, 0.0));
 }
 
-ToolOutput Proxy::respond(const ProxyGoal& goal, std::span<const PlacedSurface> surfaces) noexcept
+ToolOutput Proxy::respond(const ToolGoal& goal, std::span<const PlacedSurface> surfaces) noexcept
 {
     anchor_ = position_;
     radius_ = find_radius(surfaces);
+    is_crowded_ = false;
     path_.clear();
     path_.push_back(position_);
     const double travel = free_travel(surfaces);
@@ -128,30 +124,40 @@ ToolOutput Proxy::respond(const ProxyGoal& goal, std::span<const PlacedSurface> 
     last_way_m_ = (position_ - anchor_).norm();
     ToolOutput output;
     output.proxy_m = position_;
+    output.proxy_rotation = goal.rotation;
     output.in_contact = in_contact_;
     output.frozen = frozen;
     output.squeezed = motion == Motion::squeezed || was_overrun_;
+    output.crowded = is_crowded_;
     output.held_back = motion == Motion::held_back && !frozen && is_short_of(surfaces, travel);
     output.under_way = !frozen && motion != Motion::at_rest && motion != Motion::squeezed;
     output.stiffness_n_per_m = in_contact_ ? hold_.stiffness / hold_.depth_m : 0.0;
-    const bool fades = frozen || output.squeezed;
-    fading_s_ = fades ? fading_s_ + goal.elapsed_s : 0.0;
-    if (in_contact_ && !fades)
+    const bool is_held = frozen || output.squeezed;
+    if (in_contact_ && !is_held)
     {
         output.force_n = caught_up(goal);
     }
     else
     {
-        output.force_n = in_contact_ ? fading_force(goal.position_m) : Vec3(0.0, 0.0, 0.0);
+        output.force_n = in_contact_ ? held_force(goal.position_m) : Vec3(0.0, 0.0, 0.0);
         catch_up_.follow(output.force_n);
     }
-    waits_ = fades || output.held_back;
+    waits_ = is_held || output.held_back;
     return output;
 }
 
-double Proxy::way_to_m(const Vec3& goal_m) const noexcept
+void Proxy::see(const ToolGoal& goal) noexcept
 {
-    const Vec3 way = goal_m - position_;
+    rotation_ = goal.rotation;
+    if (goal.change == GoalChange::first)
+    {
+        position_ = goal.position_m;
+    }
+}
+
+double Proxy::way_to_m(const ToolGoal& goal) const noexcept
+{
+    const Vec3 way = goal.position_m - position_;
     const double inward = -way.dot(normal_);
     if (!in_contact_ || inward <= 0.0)
     {
@@ -217,7 +223,7 @@ Proxy::Motion Proxy::follow(const Vec3& goal, double travel,
         const double left = travel - (position_ - anchor_).norm();
         Vicinity near(surfaces, anchor_, position_, radius_ + std::min(left, window));
         const Motion motion = follow_within(near, surfaces, goal, travel, steps);
-        if (motion != Motion::ran_out || round == kVicinities)
+        if (motion != Motion::ran_out || round == kMaxVicinities)
         {
             if (motion != Motion::at_rest && motion != Motion::squeezed)
             {
@@ -309,13 +315,15 @@ Proxy::Hold Proxy::hold_at(Vicinity& near, std::span<const PlacedSurface> surfac
                            const Vec3& wanted, double gap_m) noexcept
 {
     StepPlanes touching;
-    for (std::uint32_t face = 0; face < near.size() && !touching.planes.full(); ++face)
+    std::uint32_t face = 0;
+    for (; face < near.size() && !touching.planes.full(); ++face)
     {
         if (near.is_within(face, radius_ + gap_m))
         {
             touching.add(face, near.half_space(face, radius_));
         }
     }
+    is_crowded_ = is_crowded_ || face < near.size();
     StepPlanes step = touching;
     const NearestMotion<3> found = nearest_free_motion(near, wanted, radius_, step);
     Hold hold;
@@ -459,7 +467,7 @@ bool Proxy::is_overrun(const Vec3& target, std::span<const ObjectPose> before,
 }
 
 /// The spring's, and what damps the motion across the surface; together they never pull.
-Vec3 Proxy::force(const ProxyGoal& goal) const noexcept
+Vec3 Proxy::force(const ToolGoal& goal) const noexcept
 {
     const double inward = (hold_.velocity / hold_.depth_m - goal.velocity_m_per_s).dot(normal_);
     const double push = hold_.push_n.norm();
@@ -468,7 +476,7 @@ Vec3 Proxy::force(const ProxyGoal& goal) const noexcept
 }
 
 /// The hand's way across the object may change a spring's force by stiffness x way.
-Vec3 Proxy::caught_up(const ProxyGoal& goal) noexcept
+Vec3 Proxy::caught_up(const ToolGoal& goal) noexcept
 {
     const Vec3 velocity = goal.velocity_m_per_s - hold_.velocity / hold_.depth_m;
     const double by_hand_n = hold_.stiffness / hold_.depth_m * velocity.norm() * goal.elapsed_s;
@@ -477,12 +485,11 @@ Vec3 Proxy::caught_up(const ProxyGoal& goal) noexcept
         {force(goal), by_hand_n, spec_.force_max_n, rate, goal.elapsed_s, waits_});
 }
 
-/// Along the last normal, never pulling, less with every moment without a certified surface.
-Vec3 Proxy::fading_force(const Vec3& goal) const noexcept
+/// Along the last normal, never pulling.
+Vec3 Proxy::held_force(const Vec3& goal) const noexcept
 {
     const double push = spec_.stiffness_n_per_m * (position_ - goal).dot(normal_);
-    const double share = std::max(0.0, 1.0 - fading_s_ / kFadeTime_s);
-    return clamped(normal_ * (std::max(0.0, push) * share));
+    return clamped(normal_ * std::max(0.0, push));
 }
 
 Vec3 Proxy::clamped(const Vec3& force) const noexcept

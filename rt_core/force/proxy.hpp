@@ -5,7 +5,9 @@
 #include "rt_core/base/realtime.hpp"
 #include "rt_core/base/static_vector.hpp"
 #include "rt_core/force/catch_up.hpp"
+#include "rt_core/force/tool_goal.hpp"
 #include "rt_core/force/vicinity.hpp"
+#include "rt_core/limits.hpp"
 #include "rt_core/records/frame_input.hpp"
 #include "rt_core/records/frame_output.hpp"
 
@@ -16,14 +18,6 @@
 
 namespace tactus
 {
-
-/// Where the hand wants the tool to be. World frame.
-struct ProxyGoal
-{
-    Vec3 position_m{0.0, 0.0, 0.0};
-    Vec3 velocity_m_per_s{0.0, 0.0, 0.0};
-    double elapsed_s{0.0}; ///< Since the last frame.
-};
 
 /// The virtual proxy of a tool whose core is a point (god-object: Zilles and Salisbury 1995;
 /// virtual proxy: Ruspini, Kolarov and Khatib 1997; friction cone: Harwin and Melder 2002).
@@ -37,8 +31,9 @@ struct ProxyGoal
 /// (L - tool radius), of where they were queried.
 ///
 /// The force is the spring between goal and proxy, of the softer of tool and object; never a
-/// penalty on a distance. Without a certified surface the proxy is frozen: the force along the last
-/// normal never pulls and fades to zero within kFadeTime_s. So it is where objects leave no room.
+/// penalty on a distance. Without a certified surface, and where objects leave no room, the proxy
+/// is frozen or squeezed and says so: SafeState fades the force, which is along the last normal and
+/// never pulls.
 /// After a frame in which the proxy had to wait for data the force catches up by
 /// kCatchUp_n_per_s, beside what the hand does.
 ///
@@ -52,16 +47,20 @@ public:
     Proxy() noexcept = default;
     explicit Proxy(ToolSpec spec) noexcept;
 
-    /// Where the proxy is; before the first frame the first goal.
+    /// The proxy begins at the first goal; later ones it goes to when it responds.
+    void see(const ToolGoal& goal) noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] const Vec3& position_m() const noexcept { return position_; }
+    /// Where the tool lies in the world: at the proxy, turned as the hand has it.
+    [[nodiscard]] Similarity place() const noexcept { return {rotation_, position_, 1.0}; }
     /// The tool's, or a point's skin.
     [[nodiscard]] double radius_m() const noexcept { return radius_; }
     /// How far it may have to go for this goal: what presses it against what it touches is no way.
-    [[nodiscard]] double way_to_m(const Vec3& goal_m) const noexcept TACTUS_NONBLOCKING;
+    [[nodiscard]] double way_to_m(const ToolGoal& goal) const noexcept TACTUS_NONBLOCKING;
     /// The places that it went by in this frame, the first and the last included: straight lines.
     [[nodiscard]] std::span<const Vec3> path_m() const noexcept { return path_.view(); }
     [[nodiscard]] bool is_in_contact() const noexcept { return in_contact_; }
-    void start_at(const Vec3& position_m) noexcept { position_ = position_m; }
+    /// More triangles touched in the last frame than planes fit: the force may lack some.
+    [[nodiscard]] bool is_crowded() const noexcept { return is_crowded_; }
 
     /// The objects move. The proxy goes along with the one that it touches, or that would run over
     /// it; else it stays. Where one of them runs over it whatever it does, it is squeezed. As many
@@ -72,7 +71,7 @@ public:
     /// Moves towards the goal and returns the force. `surfaces`, one for each object in order, were
     /// queried at position_m().
     [[nodiscard]] ToolOutput
-    respond(const ProxyGoal& goal,
+    respond(const ToolGoal& goal,
             std::span<const PlacedSurface> surfaces) noexcept TACTUS_NONBLOCKING;
 
 private:
@@ -126,25 +125,26 @@ private:
     void keep_clearances(std::span<const PlacedSurface> surfaces, const Vicinity* near) noexcept;
     [[nodiscard]] bool is_overrun(const Vec3& target, std::span<const ObjectPose> before,
                                   std::span<const ObjectPose> now) const noexcept;
-    [[nodiscard]] Vec3 force(const ProxyGoal& goal) const noexcept;
-    [[nodiscard]] Vec3 caught_up(const ProxyGoal& goal) noexcept;
-    [[nodiscard]] Vec3 fading_force(const Vec3& goal) const noexcept;
+    [[nodiscard]] Vec3 force(const ToolGoal& goal) const noexcept;
+    [[nodiscard]] Vec3 caught_up(const ToolGoal& goal) noexcept;
+    [[nodiscard]] Vec3 held_force(const Vec3& goal) const noexcept;
     [[nodiscard]] Vec3 clamped(const Vec3& force) const noexcept;
 
     ToolSpec spec_;
     double radius_{0.0};
     Vec3 position_{0.0, 0.0, 0.0};
-    Vec3 anchor_{0.0, 0.0, 0.0}; ///< Where this frame's surfaces were queried.
-    Vec3 normal_{0.0, 0.0, 1.0}; ///< Of the last contact.
-    double last_way_m_{0.0};     ///< That it went in the last frame.
+    Mat3 rotation_{Mat3::Identity()}; ///< The goal's.
+    Vec3 anchor_{0.0, 0.0, 0.0};      ///< Where this frame's surfaces were queried.
+    Vec3 normal_{0.0, 0.0, 1.0};      ///< Of the last contact.
+    double last_way_m_{0.0};          ///< That it went in the last frame.
     Hold hold_;
-    double fading_s_{0.0}; ///< Since it froze or was squeezed.
     CatchUp catch_up_;
     bool waits_{false}; ///< Frozen, squeezed or held back in the last frame.
     bool in_contact_{false};
     bool slides_{false};   ///< From the last frame on: the dynamic cone holds.
     bool has_slid_{false}; ///< In this frame.
     bool was_overrun_{false};
+    bool is_crowded_{false};
     StaticVector<Vec3, 2 * kProxySteps + 2> path_; ///< A leap goes by two places.
     /// The proxy may move by this much before it is on the other side of the object's surface.
     std::array<double, kMaxObjects> clearances_m_{};

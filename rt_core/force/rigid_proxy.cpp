@@ -2,11 +2,11 @@
 // Copyright the Tactus authors.
 #include "rt_core/force/rigid_proxy.hpp"
 
+#include "rt_core/math/infinity.hpp"
 #include "rt_core/math/rotation.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace tactus
 {
@@ -42,26 +42,27 @@ Vec3 clamped(const Vec3& vector, double most) noexcept
 
 } // namespace
 
-RigidProxy::RigidProxy(const ToolSpec& spec) noexcept : spec_(spec)
+RigidProxy::RigidProxy(const ToolSpec& spec, Planes& planes) noexcept
+    : spec_(spec), planes_(&planes)
 {
-    const PlacedCore core(spec.core, Placement{});
+    const PlacedCore core(spec.core, Similarity{});
     center_m_ = core.center();
     core_radius_m_ = core.radius();
     radius_m_ = std::max(spec.radius_m, kLeastSkin * core_radius_m_);
     arm_m_ = core_radius_m_ + radius_m_;
 }
 
-void RigidProxy::stay_with(const Vec3& goal_m, const Mat3& goal_rotation) noexcept
+void RigidProxy::see(const ToolGoal& goal) noexcept
 {
     if (!is_joined_)
     {
-        place_ = {goal_rotation, goal_m, 1.0};
+        place_ = {goal.rotation, goal.position_m, 1.0};
     }
 }
 
-double RigidProxy::way_to_m(const Vec3& goal_m, const Mat3& goal_rotation) const noexcept
+double RigidProxy::way_to_m(const ToolGoal& goal) const noexcept
 {
-    return length_of(way_to(goal_m, goal_rotation));
+    return length_of(way_to(goal));
 }
 
 /// No point of the core goes farther, over a way on which its centre goes straight while it turns
@@ -73,48 +74,51 @@ double RigidProxy::length_of(const Motion<6>& motion) const noexcept
     return motion.head<3>().norm() + turn.cross(center).norm() + turn.norm() * core_radius_m_;
 }
 
-Motion<6> RigidProxy::way_to(const Vec3& goal_m, const Mat3& goal_rotation) const noexcept
+Motion<6> RigidProxy::way_to(const ToolGoal& goal) const noexcept
 {
-    const Vec3 turn = rotation_vector(goal_rotation * place_.rotation.transpose());
-    return to_motion(goal_m - place_.origin, arm_m_ * turn);
+    const Vec3 turn = rotation_vector(goal.rotation * place_.rotation.transpose());
+    return to_motion(goal.position_m - place_.translation_m, arm_m_ * turn);
 }
 
-ToolOutput RigidProxy::respond(const Vec3& goal_m, const Mat3& goal_rotation,
-                               std::span<const TouchedObject> objects, double elapsed_s) noexcept
+ToolOutput RigidProxy::respond(const ToolGoal& goal,
+                               std::span<const PlacedSurface> surfaces) noexcept
 {
     ToolOutput output;
-    const Room room = find_room(objects);
+    const Room room = find_room(surfaces);
     const bool has_waited = frozen_s_ > 0.0;
     is_squeezed_ = false;
+    is_crowded_ = false;
     is_joined_ = is_joined_ || room.is_clear;
     if (!is_joined_)
     {
-        stay_with(goal_m, goal_rotation);
+        see(goal);
     }
     else if (room.free_m > 0.0)
     {
         frozen_s_ = 0.0;
-        step(goal_m, goal_rotation, objects, room.free_m, output);
+        step(goal, surfaces, room.free_m, output);
     }
     else
     {
-        frozen_s_ += elapsed_s;
-        freeze(goal_m, goal_rotation, room.is_crossed, output);
+        frozen_s_ += goal.elapsed_s;
+        freeze(goal, room.is_crossed, output);
     }
     output.stiffness_n_per_m = output.in_contact ? spec_.stiffness_n_per_m : 0.0;
-    catch_up(has_waited, elapsed_s, output);
-    output.proxy_m = place_.origin;
+    catch_up(has_waited, goal.elapsed_s, output);
+    output.squeezed = is_squeezed_;
+    output.crowded = is_crowded_;
+    output.proxy_m = place_.translation_m;
     output.proxy_rotation = place_.rotation;
     return output;
 }
 
-RigidProxy::Room RigidProxy::find_room(std::span<const TouchedObject> objects) const noexcept
+RigidProxy::Room RigidProxy::find_room(std::span<const PlacedSurface> surfaces) const noexcept
 {
-    Room room{std::numeric_limits<double>::infinity(), true, false};
-    for (const TouchedObject& object : objects)
+    Room room{kInfinity, true, false};
+    for (const PlacedSurface& placed : surfaces)
     {
-        const bool is_exact = object.kind == AnswerKind::exact;
-        const double lower_m = object.lower_m;
+        const bool is_exact = placed.surface->answer.kind == AnswerKind::exact;
+        const double lower_m = placed.lower_m;
         const double beyond_m = is_exact ? std::max(lower_m - kKeptOfRadius * radius_m_,
                                                     (1.0 - kKeptOfRadius) * lower_m)
                                          : lower_m - radius_m_;
@@ -125,44 +129,41 @@ RigidProxy::Room RigidProxy::find_room(std::span<const TouchedObject> objects) c
     return room;
 }
 
-void RigidProxy::step(const Vec3& goal_m, const Mat3& goal_rotation,
-                      std::span<const TouchedObject> objects, double free_m,
+void RigidProxy::step(const ToolGoal& goal, std::span<const PlacedSurface> surfaces, double free_m,
                       ToolOutput& output) noexcept
 {
-    const Motion<6> wanted = way_to(goal_m, goal_rotation);
-    gather(objects);
+    const Motion<6> wanted = way_to(goal);
+    gather(surfaces);
     const NearestMotion<6> nearest = find_motion(wanted);
     output.in_contact = !nearest.held_by.empty();
-    add_force(nearest.motion - wanted, 1.0, output);
-    keep_holds(nearest, objects);
+    add_force(nearest.motion - wanted, output);
+    keep_holds(nearest, surfaces);
     const double length = length_of(nearest.motion);
     if (!output.in_contact && length <= free_m)
     {
-        place_ = {goal_rotation, goal_m, 1.0}; // As the hand has it, to the last bit.
+        place_ = {goal.rotation, goal.position_m, 1.0}; // As the hand has it, to the last bit.
         return;
     }
     const double share = length > free_m ? free_m / length : 1.0;
-    place_.origin += share * nearest.motion.head<3>();
+    place_.translation_m += share * nearest.motion.head<3>();
     place_.rotation = turned_by(nearest.motion.tail<3>() * (share / arm_m_), place_.rotation);
 }
 
-/// Where the proxy is the last planes hold what pushes against them, less with every moment. A core
-/// that an object came over has no way out that is known to be clear: it is given up.
-void RigidProxy::freeze(const Vec3& goal_m, const Mat3& goal_rotation, bool is_crossed,
-                        ToolOutput& output) noexcept
+/// Where the proxy is the last planes hold what pushes against them. A core that an object came
+/// over has no way out that is known to be clear: when its force has faded it is given up.
+void RigidProxy::freeze(const ToolGoal& goal, bool is_crossed, ToolOutput& output) noexcept
 {
-    planes_.spaces.clear();
+    planes_->spaces.clear();
     for (const Motion<6>& normal : last_normals_)
     {
-        planes_.spaces.push_back({normal, 0.0});
+        planes_->spaces.push_back({normal, 0.0});
     }
-    const Motion<6> wanted = way_to(goal_m, goal_rotation);
-    const NearestMotion<6> nearest = nearest_motion<6>(planes_.spaces.view(), wanted);
+    const Motion<6> wanted = way_to(goal);
+    const NearestMotion<6> nearest = nearest_motion<6>(planes_->spaces.view(), wanted);
     output.frozen = true;
     output.in_contact = !nearest.held_by.empty();
-    const double share = std::max(0.0, 1.0 - frozen_s_ / kFadeTime_s);
-    add_force(nearest.motion - wanted, share, output);
-    if (is_crossed && !(share > 0.0))
+    add_force(nearest.motion - wanted, output);
+    if (is_crossed && frozen_s_ >= kFadeTime_s)
     {
         is_joined_ = false;
         frozen_s_ = 0.0;
@@ -187,14 +188,15 @@ void RigidProxy::catch_up(bool has_waited, double elapsed_s, ToolOutput& output)
         torque_.next({output.torque_nm, 0.0, spec_.torque_max_nm, rate_nm, elapsed_s, has_waited});
 }
 
-void RigidProxy::gather(std::span<const TouchedObject> objects) noexcept
+void RigidProxy::gather(std::span<const PlacedSurface> surfaces) noexcept
 {
-    planes_.spaces.clear();
-    planes_.touches.clear();
-    for (std::uint32_t i = 0; i < objects.size(); ++i)
+    planes_->spaces.clear();
+    planes_->touches.clear();
+    for (std::uint32_t i = 0; i < surfaces.size(); ++i)
     {
-        for (const ContactSet* contacts :
-             {&objects[i].touches->nearest, &objects[i].touches->corners})
+        const TouchReport& touches = *surfaces[i].touches;
+        is_crowded_ = is_crowded_ || touches.is_truncated;
+        for (const ContactSet* contacts : {&touches.nearest, &touches.corners})
         {
             for (const Contact& contact : *contacts)
             {
@@ -202,7 +204,7 @@ void RigidProxy::gather(std::span<const TouchedObject> objects) noexcept
             }
         }
     }
-    add_holds(objects);
+    add_holds(surfaces);
 }
 
 /// When there is no room, what holds back least goes.
@@ -212,46 +214,47 @@ void RigidProxy::add(const Touch& touch) noexcept
     {
         return; // Of a face without area: those round it hold.
     }
-    const Vec3 lever = (touch.on_tool_m - place_.origin) / arm_m_;
+    const Vec3 lever = (touch.on_tool_m - place_.translation_m) / arm_m_;
     const HalfSpace<6> space{to_motion(touch.normal, lever.cross(touch.normal)),
                              radius_m_ - touch.normal.dot(touch.on_tool_m - touch.on_surface_m)};
     std::size_t least = 0;
-    for (std::size_t i = 0; i < planes_.spaces.size(); ++i)
+    for (std::size_t i = 0; i < planes_->spaces.size(); ++i)
     {
-        const HalfSpace<6>& other = planes_.spaces[i];
+        const HalfSpace<6>& other = planes_->spaces[i];
         if ((other.normal - space.normal).norm() < kSamePlane)
         {
             replace(i, space, touch);
             return;
         }
-        least = other.offset < planes_.spaces[least].offset ? i : least;
+        least = other.offset < planes_->spaces[least].offset ? i : least;
     }
-    if (!planes_.spaces.full())
+    if (!planes_->spaces.full())
     {
-        planes_.spaces.push_back(space);
-        planes_.touches.push_back(touch);
+        planes_->spaces.push_back(space);
+        planes_->touches.push_back(touch);
         return;
     }
+    is_crowded_ = true;
     replace(least, space, touch);
 }
 
 void RigidProxy::replace(std::size_t plane, const HalfSpace<6>& space, const Touch& touch) noexcept
 {
-    if (space.offset > planes_.spaces[plane].offset)
+    if (space.offset > planes_->spaces[plane].offset)
     {
-        planes_.spaces[plane] = space;
-        planes_.touches[plane] = touch;
+        planes_->spaces[plane] = space;
+        planes_->touches[plane] = touch;
     }
 }
 
 /// Adds what held before, and forgets where the tool is no longer.
-void RigidProxy::add_holds(std::span<const TouchedObject> objects) noexcept
+void RigidProxy::add_holds(std::span<const PlacedSurface> surfaces) noexcept
 {
     std::size_t kept = 0;
     for (const Hold& hold : holds_)
     {
-        const ObjectPose& pose = *objects[hold.object].pose;
-        const Touch touch{hold.object, place_.origin + place_.rotation * hold.on_tool_m,
+        const ObjectPose& pose = *surfaces[hold.object].pose;
+        const Touch touch{hold.object, place_.translation_m + place_.rotation * hold.on_tool_m,
                           to_world(pose, hold.on_surface_m), pose.rotation * hold.normal};
         const Vec3 gap = touch.on_tool_m - touch.on_surface_m;
         const double height = touch.normal.dot(gap);
@@ -272,29 +275,29 @@ void RigidProxy::add_holds(std::span<const TouchedObject> objects) noexcept
 /// A gap that is too narrow for the tool holds it where it is.
 NearestMotion<6> RigidProxy::find_motion(const Motion<6>& wanted) noexcept
 {
-    NearestMotion<6> nearest = nearest_motion<6>(planes_.spaces.view(), wanted);
+    NearestMotion<6> nearest = nearest_motion<6>(planes_->spaces.view(), wanted);
     if (nearest.is_feasible)
     {
         return nearest;
     }
     is_squeezed_ = true;
-    for (HalfSpace<6>& space : planes_.spaces)
+    for (HalfSpace<6>& space : planes_->spaces)
     {
         space.offset = std::min(space.offset, 0.0);
     }
-    return nearest_motion<6>(planes_.spaces.view(), wanted);
+    return nearest_motion<6>(planes_->spaces.view(), wanted);
 }
 
 void RigidProxy::keep_holds(const NearestMotion<6>& nearest,
-                            std::span<const TouchedObject> objects) noexcept
+                            std::span<const PlacedSurface> surfaces) noexcept
 {
     last_normals_.clear();
     for (const std::uint32_t plane : nearest.held_by)
     {
-        last_normals_.push_back(planes_.spaces[plane].normal);
-        const Touch& touch = planes_.touches[plane];
-        const ObjectPose& pose = *objects[touch.object].pose;
-        keep({touch.object, place_.rotation.transpose() * (touch.on_tool_m - place_.origin),
+        last_normals_.push_back(planes_->spaces[plane].normal);
+        const Touch& touch = planes_->touches[plane];
+        const ObjectPose& pose = *surfaces[touch.object].pose;
+        keep({touch.object, place_.rotation.transpose() * (touch.on_tool_m - place_.translation_m),
               to_model(pose, touch.on_surface_m), pose.rotation.transpose() * touch.normal});
     }
 }
@@ -313,18 +316,17 @@ void RigidProxy::keep(const Hold& hold) noexcept
         holds_.push_back(hold);
         return;
     }
+    is_crowded_ = is_crowded_ || old == holds_.end();
     old = old == holds_.end() ? holds_.begin() : old;
     std::move(old + 1, holds_.end(), old);
     holds_[holds_.size() - 1] = hold;
 }
 
-void RigidProxy::add_force(const Motion<6>& held_back, double share,
-                           ToolOutput& output) const noexcept
+void RigidProxy::add_force(const Motion<6>& held_back, ToolOutput& output) const noexcept
 {
     const double stiffness = spec_.stiffness_n_per_m;
-    output.force_n = share * clamped(stiffness * held_back.head<3>(), spec_.force_max_n);
-    output.torque_nm =
-        share * clamped(stiffness * arm_m_ * held_back.tail<3>(), spec_.torque_max_nm);
+    output.force_n = clamped(stiffness * held_back.head<3>(), spec_.force_max_n);
+    output.torque_nm = clamped(stiffness * arm_m_ * held_back.tail<3>(), spec_.torque_max_nm);
 }
 
 } // namespace tactus

@@ -18,9 +18,17 @@ namespace
 constexpr FrameFault kSampleFaults =
     FrameFault::tool_invalid | FrameFault::tool_stuck | FrameFault::tool_jumped;
 
+/// While nothing else is wrong the frame's force is that of a proxy held where it is.
+constexpr ForceOff kHeldProxy = ForceOff::frozen | ForceOff::squeezed;
+
+bool is_trusted(ForceOff causes) noexcept
+{
+    return (causes | kHeldProxy) == kHeldProxy;
+}
+
 bool is_good(const SafetyInput& input) noexcept
 {
-    return (input.sample_fault & kSampleFaults) == FrameFault::none;
+    return (input.faults & kSampleFaults) == FrameFault::none;
 }
 
 bool is_finite(const Vec3& v) noexcept
@@ -43,23 +51,43 @@ SafeState::SafeState(const SafetyLimits& limits) noexcept : limits_(limits)
     TACTUS_ASSERT(limits.speed_max_m_per_s >= 0.0);
     TACTUS_ASSERT(limits.stiffness_n_per_m >= 0.0);
     TACTUS_ASSERT(limits.damping_n_s_per_m >= 0.0);
+    TACTUS_ASSERT(limits.torque_max_nm >= 0.0);
 }
 
 SafetyOutput SafeState::step(const SafetyInput& input) noexcept
 {
+    TACTUS_ASSERT(input.elapsed_s >= 0.0);
     observe_speed(input);
     const ForceOff causes = find_causes(input);
     const bool was_off = gain_ <= 0.0;
     move_gain(input, causes);
-    if (causes == ForceOff::none)
+    if (is_trusted(causes))
     {
         follow(input, was_off);
     }
+    return output(causes);
+}
+
+SafetyOutput SafeState::fade(double elapsed_s, ForceOff cause) noexcept
+{
+    TACTUS_ASSERT(cause != ForceOff::none);
+    gain_ = std::max(gain_ - elapsed_s / kFadeTime_s, 0.0);
+    is_following_ = false;
+    velocity_m_per_s_ = Vec3(0.0, 0.0, 0.0);
+    return output(cause);
+}
+
+SafetyOutput SafeState::output(ForceOff causes) noexcept
+{
+    const double damping = 4.0 * gain_ * (1.0 - gain_) * limits_.damping_n_s_per_m;
+    const Vec3 damping_n =
+        shortened(-damping * velocity_m_per_s_, kDampingForceShare * limits_.force_max_n);
     const SafetyState state = next_state(causes);
     const bool has_changed = state != state_ || causes != causes_;
     state_ = state;
     causes_ = causes;
-    return {shaped_force(), state, causes, has_changed};
+    return {shortened(gain_ * base_n_ + damping_n, limits_.force_max_n), gain_ * base_nm_, state,
+            causes, has_changed};
 }
 
 /// From the device, or from the ways between new samples over the true times between them.
@@ -97,10 +125,12 @@ ForceOff SafeState::find_causes(const SafetyInput& input) const noexcept
     const auto when = [](bool is_so, ForceOff cause) { return is_so ? cause : ForceOff::none; };
     return input.causes | when(is_too_fast_, ForceOff::velocity) |
            when(input.force_was_lost, ForceOff::watchdog) |
-           when(has_fault(input.sample_fault, FrameFault::tool_stuck), ForceOff::stale) |
-           when(has_fault(input.sample_fault, FrameFault::tool_invalid | FrameFault::tool_jumped) ||
-                    !is_finite(input.force_n),
+           when(has_fault(input.faults, FrameFault::tool_stuck), ForceOff::stale) |
+           when(has_fault(input.faults, FrameFault::tool_invalid | FrameFault::tool_jumped) ||
+                    !is_finite(input.force_n) || !is_finite(input.torque_nm),
                 ForceOff::garbage) |
+           when(has_fault(input.faults, FrameFault::proxy_frozen), ForceOff::frozen) |
+           when(has_fault(input.faults, FrameFault::proxy_squeezed), ForceOff::squeezed) |
            when(input.elapsed_periods > 1, ForceOff::stall);
 }
 
@@ -120,7 +150,7 @@ void SafeState::move_gain(const SafetyInput& input, ForceOff causes) noexcept
     }
     // Another device, or the same one after it was moved: what it says first counts anew.
     has_sample_ = has_sample_ && (gain_ > 0.0 || !has_cause(causes, ForceOff::disconnect));
-    is_following_ = is_following_ && causes == ForceOff::none && gain_ >= 1.0;
+    is_following_ = is_following_ && is_trusted(causes);
 }
 
 /// A hand so deep in a wall that the device couldn't make the spring's force has to come out first.
@@ -135,19 +165,17 @@ bool SafeState::may_begin(const SafetyInput& input) const noexcept
 void SafeState::follow(const SafetyInput& input, bool was_off) noexcept
 {
     const Vec3 target_n = shortened(input.force_n, limits_.force_max_n);
+    const Vec3 target_nm = shortened(input.torque_nm, limits_.torque_max_nm);
     const Vec3 way_n = target_n - base_n_;
-    const double step_n = limits_.force_max_n * input.elapsed_s / kRiseTime_s;
-    const bool has_arrived = is_following_ || was_off || way_n.norm() <= step_n;
+    const Vec3 way_nm = target_nm - base_nm_;
+    const double share = input.elapsed_s / kRiseTime_s;
+    const double step_n = limits_.force_max_n * share;
+    const double step_nm = limits_.torque_max_nm * share;
+    const bool has_arrived =
+        is_following_ || was_off || (way_n.norm() <= step_n && way_nm.norm() <= step_nm);
     base_n_ = has_arrived ? target_n : Vec3(base_n_ + shortened(way_n, step_n));
-    is_following_ = has_arrived && gain_ >= 1.0;
-}
-
-Vec3 SafeState::shaped_force() const noexcept
-{
-    const double damping = 4.0 * gain_ * (1.0 - gain_) * limits_.damping_n_s_per_m;
-    const Vec3 damping_n =
-        shortened(-damping * velocity_m_per_s_, kDampingForceShare * limits_.force_max_n);
-    return shortened(gain_ * base_n_ + damping_n, limits_.force_max_n);
+    base_nm_ = has_arrived ? target_nm : Vec3(base_nm_ + shortened(way_nm, step_nm));
+    is_following_ = is_following_ || (has_arrived && gain_ >= 1.0);
 }
 
 SafetyState SafeState::next_state(ForceOff causes) const noexcept

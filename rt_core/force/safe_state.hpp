@@ -20,6 +20,7 @@ struct SafetyLimits
     double stiffness_n_per_m{0.0}; ///< Of the virtual wall.
     double damping_n_s_per_m{0.0}; ///< Added while a force fades or comes back: see
                                    ///< kDampingShare.
+    double torque_max_nm{0.0};     ///< Norm; 0: the device has no torque.
 };
 
 /// What one frame knows about one tool. World frame, SI.
@@ -27,28 +28,31 @@ struct SafetyInput
 {
     Vec3 position_m{0.0, 0.0, 0.0}; ///< Of the sample; used only while it has no fault.
     Vec3 velocity_m_per_s{0.0, 0.0, 0.0};
-    bool has_velocity{false};         ///< False: from the positions.
-    std::int64_t sample_time_ns{0};   ///< 0: the device has none, every sample is new.
-    double elapsed_s{0.0};            ///< Since the last frame, the true one after a stall.
-    std::uint32_t elapsed_periods{1}; ///< The same in whole periods.
-    Vec3 force_n{0.0, 0.0, 0.0};      ///< The frame's.
-    Vec3 proxy_m{0.0, 0.0, 0.0};      ///< The frame's.
-    FrameFault sample_fault{FrameFault::none}; ///< SampleWatch::fault().
-    ForceOff causes{ForceOff::none};           ///< What the caller knows of by itself.
-    bool force_was_lost{false}; ///< The device has dropped the last force: a brake, or its
-                                ///< own watchdog.
+    bool has_velocity{false};            ///< False: from the positions.
+    std::int64_t sample_time_ns{0};      ///< 0: the device has none, every sample is new.
+    double elapsed_s{0.0};               ///< Since the last frame, the true one after a stall.
+    std::uint32_t elapsed_periods{1};    ///< The same in whole periods.
+    Vec3 force_n{0.0, 0.0, 0.0};         ///< The frame's.
+    Vec3 torque_nm{0.0, 0.0, 0.0};       ///< The frame's.
+    Vec3 proxy_m{0.0, 0.0, 0.0};         ///< The frame's.
+    FrameFault faults{FrameFault::none}; ///< The frame's of this tool: faults_of().
+    ForceOff causes{ForceOff::none};     ///< What the caller knows of by itself.
+    bool force_was_lost{false};          ///< The device has dropped the last force: a brake, or its
+                                         ///< own watchdog.
 };
 
 /// What goes to the device.
 struct SafetyOutput
 {
     Vec3 force_n{0.0, 0.0, 0.0};
+    Vec3 torque_nm{0.0, 0.0, 0.0};
     SafetyState state{SafetyState::reset};
     ForceOff causes{ForceOff::none};
     bool has_changed{false}; ///< State or causes are others than in the frame before.
 };
 
-/// Stands between the frame and one tool's device and decides how much of the force goes out.
+/// Stands between the frame and one tool's device and decides how much of force and torque goes
+/// out: the one law by which they fade. Torques go as forces do.
 ///
 ///     gain  1 |------.                                .------
 ///             |       \  kFadeTime_s     kRiseTime_s /
@@ -56,14 +60,17 @@ struct SafetyOutput
 ///              force    brake      idle              force
 ///
 /// While any cause is there the gain falls with the true elapsed time, from the frame on that finds
-/// it, and scales the last force from before: nothing that is computed from bad data goes out. When
+/// it, and scales the last force from before: nothing that is computed from bad data goes out. Only
+/// a proxy that is frozen or squeezed still has good data: there the gain scales its present force,
+/// so that a hand that draws back is let go at once. When
 /// all causes are gone the gain rises, and what it scales moves from that last force to the frame's
 /// no faster than the device's largest force in kRiseTime_s, until the gain is full and the frame's
 /// force is caught up with; at a gain of zero, where nothing is felt, it is the frame's at once.
 /// From zero the gain rises only once the spring between proxy and hand is within the device's
 /// range. So, with dt the elapsed time and besides the damping, the force changes by at most
 /// force_max x dt / kFadeTime_s in a brake and 2 x force_max x dt / kRiseTime_s on the way back,
-/// whatever the frame's force does meanwhile.
+/// whatever the frame's force does meanwhile. Where the proxy was only held, both bounds are those
+/// of the gain: the frame's own change comes on top, and CatchUp bounds that when data has come.
 ///
 /// The device is in reset until its first good sample, and again when it is gone.
 ///
@@ -81,6 +88,9 @@ public:
     /// Once a frame, after the force is computed and before it is written.
     [[nodiscard]] SafetyOutput step(const SafetyInput& input) noexcept TACTUS_NONBLOCKING;
 
+    /// Instead of step() where there is no frame to go by: the last force fades on.
+    [[nodiscard]] SafetyOutput fade(double elapsed_s, ForceOff cause) noexcept TACTUS_NONBLOCKING;
+
     [[nodiscard]] SafetyState state() const noexcept { return state_; }
     /// Share of the force that goes out, 0 .. 1.
     [[nodiscard]] double gain() const noexcept { return gain_; }
@@ -91,7 +101,7 @@ private:
     void move_gain(const SafetyInput& input, ForceOff causes) noexcept;
     void follow(const SafetyInput& input, bool was_off) noexcept;
     [[nodiscard]] bool may_begin(const SafetyInput& input) const noexcept;
-    [[nodiscard]] Vec3 shaped_force() const noexcept;
+    [[nodiscard]] SafetyOutput output(ForceOff causes) noexcept;
     [[nodiscard]] SafetyState next_state(ForceOff causes) const noexcept;
 
     SafetyLimits limits_;
@@ -99,8 +109,9 @@ private:
     ForceOff causes_{ForceOff::none};
     double gain_{0.0};
     Vec3 base_n_{0.0, 0.0, 0.0}; ///< What the gain scales.
-    bool is_following_{false};   ///< base_n_ is the frame's force and no longer on its way there.
-    bool has_sample_{false};     ///< Of this device, since it was connected.
+    Vec3 base_nm_{0.0, 0.0, 0.0};
+    bool is_following_{false};       ///< Both are the frame's and no longer on their way there.
+    bool has_sample_{false};         ///< Of this device, since it was connected.
     Vec3 position_m_{0.0, 0.0, 0.0}; ///< Of the last new sample.
     std::int64_t sample_time_ns_{0};
     double since_sample_s_{0.0};

@@ -2,7 +2,9 @@
 // Copyright the Tactus authors.
 #include "rt_core/force/stiffness_rule.hpp"
 
+#include "rt_core/base/assert.hpp"
 #include "rt_core/limits.hpp"
+#include "rt_core/math/infinity.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -30,6 +32,8 @@ bool is_positive(double value) noexcept
 StiffnessLimits stiffness_limits(const DeviceLimits& device, double period_s,
                                  double surface_damping_n_s_per_m) noexcept
 {
+    TACTUS_ASSERT(find_fault(device) == nullptr);
+    TACTUS_ASSERT(period_s > 0.0);
     const double damping = std::abs(surface_damping_n_s_per_m);
     StiffnessLimits limits;
     limits.sampling_n_per_m = std::max(0.0, 2.0 * (device.damping_n_s_per_m - damping) /
@@ -38,7 +42,7 @@ StiffnessLimits stiffness_limits(const DeviceLimits& device, double period_s,
     limits.quantisation_n_per_m =
         device.friction_n > 0.0 && device.quantum_m > 0.0
             ? std::max(0.0, 2.0 * (device.friction_n - noise_n) / device.quantum_m)
-            : std::numeric_limits<double>::infinity();
+            : kInfinity;
     limits.device_n_per_m = device.stiffness_max_n_per_m;
     const double passive = std::min(limits.sampling_n_per_m, limits.quantisation_n_per_m);
     limits.cap_n_per_m = std::min(kStiffnessMargin * passive, limits.device_n_per_m);

@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #include "rt_core/force/velocity_window.hpp"
 
+#include "rt_core/base/assert.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -10,6 +12,7 @@ namespace tactus
 
 void VelocityWindow::add(const Vec3& position_m, double elapsed_s) noexcept
 {
+    TACTUS_ASSERT(elapsed_s > 0.0);
     count_ = std::min(count_ + 1, kVelocitySamples);
     for (std::uint32_t i = count_ - 1; i > 0; --i)
     {

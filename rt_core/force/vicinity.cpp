@@ -2,9 +2,11 @@
 // Copyright the Tactus authors.
 #include "rt_core/force/vicinity.hpp"
 
+#include "rt_core/base/assert.hpp"
+#include "rt_core/math/infinity.hpp"
+
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace tactus
 {
@@ -12,12 +14,9 @@ namespace tactus
 namespace
 {
 
-/// How often a list that is too short is made again with half the reach beyond the nearest face.
-constexpr int kGatherings = 6;
-
 double nearest_of(std::span<const PlacedSurface> surfaces) noexcept
 {
-    double nearest = std::numeric_limits<double>::infinity();
+    double nearest = kInfinity;
     for (const PlacedSurface& placed : surfaces)
     {
         for (std::uint32_t i = 0; i < placed.surface->count; ++i)
@@ -43,13 +42,14 @@ Vicinity::Vicinity(std::span<const PlacedSurface> surfaces, const Vec3& anchor_m
                    const Vec3& center_m, double reach_m) noexcept
     : surfaces_(surfaces), center_m_(center_m), reach_m_(reach_m)
 {
+    TACTUS_ASSERT(reach_m >= 0.0);
     const double moved_m = (center_m - anchor_m).norm();
     double nearest_m = -1.0;
     for (int i = 0; !try_gather(moved_m); ++i)
     {
         nearest_m = nearest_m < 0.0 ? nearest_of(surfaces) - moved_m : nearest_m;
-        reach_m_ = i < kGatherings ? 0.5 * (reach_m_ + nearest_m) : nearest_m;
-        if (i > kGatherings || !(reach_m_ > 0.0))
+        reach_m_ = i < kMaxGatherings ? 0.5 * (reach_m_ + nearest_m) : nearest_m;
+        if (i > kMaxGatherings || !(reach_m_ > 0.0))
         {
             faces_.clear();
             reach_m_ = 0.0; // Nothing may move: there is no telling the faces apart.
@@ -65,7 +65,11 @@ bool Vicinity::try_gather(double moved_m) noexcept
     faces_.clear();
     for (std::uint32_t s = 0; s < surfaces_.size(); ++s)
     {
+        TACTUS_ASSERT(surfaces_[s].surface != nullptr);
+        TACTUS_ASSERT(surfaces_[s].pose != nullptr);
         const LocalSurface& surface = *surfaces_[s].surface;
+        TACTUS_ASSERT(surface.count <= kMaxLocalTriangles);
+        TACTUS_ASSERT(surfaces_[s].pose->scale > 0.0);
         const double scale = surfaces_[s].pose->scale;
         const double reach = (reach_m_ + moved_m) / scale;
         const Vec3 center = to_model(*surfaces_[s].pose, center_m_);
@@ -97,7 +101,7 @@ bool Vicinity::try_gather(double moved_m) noexcept
 
 double Vicinity::bound_of_surface(std::uint32_t surface, const Vec3& place) const noexcept
 {
-    double least = std::numeric_limits<double>::infinity();
+    double least = kInfinity;
     for (const NearFace& face : faces_)
     {
         if (face.surface == surface)
@@ -151,6 +155,7 @@ HalfSpace<3> Vicinity::half_space(std::uint32_t face, double radius_m) noexcept
 std::optional<std::uint32_t> Vicinity::find_entered(const Vec3& motion, double radius_m) noexcept
 {
     const Vec3 place = place_ + motion;
+    TACTUS_ASSERT(radius_m > 0.0);
     const double least = radius_m * (1.0 - kContactTolerance);
     double deepest = least;
     std::optional<std::uint32_t> entered;

@@ -5,27 +5,15 @@
 #include "rt_core/base/realtime.hpp"
 #include "rt_core/base/static_vector.hpp"
 #include "rt_core/force/half_spaces.hpp"
-#include "rt_core/records/frame_input.hpp"
-#include "rt_core/records/local_surface.hpp"
+#include "rt_core/force/placed_surface.hpp"
+#include "rt_core/limits.hpp"
 
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <span>
 
 namespace tactus
 {
-
-/// One object's surface near a tool, as the force stage sees it.
-struct PlacedSurface
-{
-    const ObjectPose* pose{nullptr};
-    const LocalSurface* surface{nullptr};
-    const Material* material{nullptr};
-    double quantum_m{0.0}; ///< Of the model's coordinates, in its frame.
-    /// How far round the tool's core it was asked for, in the world.
-    double reach_m{std::numeric_limits<double>::infinity()};
-};
 
 /// The triangles that a ball near one place can touch, each with a plane between the two.
 ///

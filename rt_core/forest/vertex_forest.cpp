@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #include "rt_core/forest/vertex_forest.hpp"
 
+#include "rt_core/base/assert.hpp"
+
 #include <bit>
 
 namespace tactus
@@ -10,24 +12,13 @@ namespace tactus
 namespace
 {
 
-/// Odd multipliers spread the ids over the word; the finalizer is SplitMix64's.
-std::uint64_t hash_of(const VertexForest::ActiveFace& face, ErrorCode error) noexcept
-{
-    const std::uint64_t name = (std::uint64_t{face.id.value} << 8U) | error;
-    const std::uint64_t edge =
-        (std::uint64_t{face.corners[0].value} << 32U) | face.corners[1].value;
-    std::uint64_t value = name * 0x9E37'79B9'7F4A'7C15ULL +
-                          std::rotl(edge * 0xD6E8'FEB8'6659'FD93ULL, 23) +
-                          std::rotl(face.corners[2].value * 0xA076'1D64'78BD'642FULL, 47);
-    value = (value ^ (value >> 30U)) * 0xBF58'476D'1CE4'E5B9ULL;
-    value = (value ^ (value >> 27U)) * 0x94D0'49BB'1331'11EBULL;
-    return value ^ (value >> 31U);
-}
-
 std::uint32_t corner_place(const std::array<VertexId, 3>& corners, VertexId vertex) noexcept
 {
     return corners[0] == vertex ? 0U : corners[1] == vertex ? 1U : corners[2] == vertex ? 2U : 3U;
 }
+
+static_assert(kMaxStarFaces <= kBlockFaces, "a star is laid out as a block");
+static_assert(kMaxFanFaces + 3 <= kBlockVertices);
 
 /// A = (v, u, w0), B = (v, wk, u), fan face i = (v, wi, wi+1).
 void lay_out(BlockGeometry& star, const VsplitRecord& record) noexcept
@@ -50,6 +41,7 @@ void set_row(BlockGeometry& star, std::uint32_t row, const Vec3f& position_m) no
 
 std::uint32_t next_corner(std::uint32_t place, std::uint32_t by) noexcept
 {
+    TACTUS_ASSERT(place < 3);
     return place + by < 3 ? place + by : place + by - 3;
 }
 
@@ -68,6 +60,8 @@ VertexForest::VertexForest(Arena& arena, const ModelCounts& counts, PageSlots sl
     {
         return;
     }
+    TACTUS_ASSERT(slots.base.faces.size() == counts.base_faces);
+    TACTUS_ASSERT(tree.root().is_none());
     TACTUS_ASSERT(face_capacity >= counts.base_faces);
     TACTUS_ASSERT(tree.capacities().prims >= face_capacity);
     for (std::uint32_t i = 0; i < face_capacity; ++i)
@@ -85,9 +79,26 @@ VertexForest::VertexForest(Arena& arena, const ModelCounts& counts, PageSlots sl
     tree.refit();
 }
 
+/// Odd multipliers spread the ids over the word; the finalizer is SplitMix64's.
+std::uint64_t VertexForest::hash_of(const ActiveFace& face, ErrorCode error) noexcept
+{
+    const std::uint64_t name = (std::uint64_t{face.id.value} << 8U) | error;
+    const std::uint64_t edge =
+        (std::uint64_t{face.corners[0].value} << 32U) | face.corners[1].value;
+    std::uint64_t value = name * 0x9E37'79B9'7F4A'7C15ULL +
+                          std::rotl(edge * 0xD6E8'FEB8'6659'FD93ULL, 23) +
+                          std::rotl(face.corners[2].value * 0xA076'1D64'78BD'642FULL, 47);
+    value = (value ^ (value >> 30U)) * 0xBF58'476D'1CE4'E5B9ULL;
+    value = (value ^ (value >> 27U)) * 0x94D0'49BB'1331'11EBULL;
+    return value ^ (value >> 31U);
+}
+
 VertexForest::SplitOutcome VertexForest::split(RecordId id, const VsplitRecord& record,
                                                StarGeometry& star) noexcept
 {
+    TACTUS_ASSERT(id.value < counts_.records);
+    TACTUS_ASSERT(record.fan_size > 0);
+    TACTUS_ASSERT(record.fan_size <= kMaxFanFaces);
     Fan fan;
     if (!find_fan(record, fan))
     {
@@ -135,6 +146,7 @@ VertexForest::SplitOutcome VertexForest::split(RecordId id, const VsplitRecord& 
 
 bool VertexForest::try_merge(RecordId id) noexcept
 {
+    TACTUS_ASSERT(pages_->is_refined(id));
     const VsplitRecord& record = pages_->resident(id);
     std::array<PrimId, kMaxStarFaces> star{};
     if (!find_star(id, record, star))
@@ -160,6 +172,7 @@ bool VertexForest::try_merge(RecordId id) noexcept
                     parent_at, record.before[i], error_in(record.star[2 + i], record.before[i]));
     }
     pages_->set_refined(id, false);
+    TACTUS_ASSERT(refined_count_ > 0);
     --refined_count_;
     return true;
 }
@@ -179,7 +192,8 @@ RecordId VertexForest::missing_dependency(const VsplitRecord& record) const noex
 
 std::uint32_t VertexForest::next_of(PrimId prim) const noexcept
 {
-    const ActiveFace& active = faces_[prim.value];
+    const ActiveFace& active = face(prim);
+    TACTUS_ASSERT(!active.id.is_none());
     std::uint32_t& next = active.state.is_base()
                               ? slots_.base.next[active.id.value]
                               : pages_->resident(active.state.record()).next[active.state.place()];
@@ -228,7 +242,7 @@ ChangedFace VertexForest::describe(PrimId prim) const noexcept
 {
     ChangedFace change;
     change.prim = prim;
-    change.face = faces_[prim.value].id;
+    change.face = face(prim).id;
     if (change.face.is_none())
     {
         return change;
@@ -303,6 +317,8 @@ PrimId VertexForest::add_face(const ActiveFace& face, ErrorCode error, std::uint
 {
     TACTUS_ASSERT(first_free_ < faces_.size());
     const PrimId prim{first_free_};
+    TACTUS_ASSERT(!face.id.is_none());
+    TACTUS_ASSERT(faces_[prim.value].id.is_none());
     first_free_ = faces_[prim.value].corners[0].value;
     faces_[prim.value] = face;
     const bool inserted = index_list_.try_insert(face.id.value, prim.value);
@@ -316,6 +332,7 @@ PrimId VertexForest::add_face(const ActiveFace& face, ErrorCode error, std::uint
 void VertexForest::remove_face(PrimId prim) noexcept
 {
     ActiveFace& face = faces_[prim.value];
+    TACTUS_ASSERT(!face.id.is_none());
     hash_ -= hash_of(face, error_of(prim));
     index_list_.erase(face.id.value);
     tree_->remove(prim);

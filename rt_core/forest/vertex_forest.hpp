@@ -4,6 +4,7 @@
 
 #include "rt_core/abtree/ab_tree.hpp"
 #include "rt_core/base/arena.hpp"
+#include "rt_core/base/assert.hpp"
 #include "rt_core/base/id_table.hpp"
 #include "rt_core/base/realtime.hpp"
 #include "rt_core/records/changed_face.hpp"
@@ -75,7 +76,11 @@ public:
     [[nodiscard]] RecordId
     missing_dependency(const VsplitRecord& record) const noexcept TACTUS_NONBLOCKING;
 
-    [[nodiscard]] const ActiveFace& face(PrimId prim) const noexcept { return faces_[prim.value]; }
+    [[nodiscard]] const ActiveFace& face(PrimId prim) const noexcept
+    {
+        TACTUS_ASSERT(prim.value < faces_.size());
+        return faces_[prim.value];
+    }
     [[nodiscard]] PrimId find(FaceId face) const noexcept { return {index_list_.find(face.value)}; }
     /// kNextExact, kNextPending, or the id of the record that splits the face next.
     [[nodiscard]] std::uint32_t next_of(PrimId prim) const noexcept TACTUS_NONBLOCKING;
@@ -99,6 +104,8 @@ public:
     [[nodiscard]] std::uint64_t state_hash() const noexcept { return hash_; }
 
 private:
+    friend class ForestValidator;
+
     struct FanFace
     {
         PrimId prim{};
@@ -111,11 +118,16 @@ private:
         VertexId last{};  ///< wk
     };
 
+    /// What a face adds to the state hash.
+    [[nodiscard]] static std::uint64_t hash_of(const ActiveFace& face,
+                                               ErrorCode error) noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] bool find_fan(const VsplitRecord& record, Fan& fan) const noexcept;
     [[nodiscard]] bool find_star(RecordId id, const VsplitRecord& record,
                                  std::array<PrimId, kMaxStarFaces>& star) const noexcept;
-    [[nodiscard]] ErrorCode error_in(FaceId face, FaceState state) const noexcept;
-    [[nodiscard]] Vec3f corner_position(PrimId prim, std::uint32_t place) const noexcept;
+    [[nodiscard]] ErrorCode error_in(FaceId face,
+                                     FaceState state) const noexcept TACTUS_NONBLOCKING;
+    [[nodiscard]] Vec3f corner_position(PrimId prim,
+                                        std::uint32_t place) const noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] PrimId add_face(const ActiveFace& face, ErrorCode error, std::uint32_t bucket,
                                   const std::array<Vec3f, 3>& corners_m) noexcept;
     void remove_face(PrimId prim) noexcept;

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "rt_core/frame/mesh_pair.hpp"
 
+#include "rt_core/limits.hpp"
 #include "rt_core/math/rounding.hpp"
 
 #include <algorithm>
@@ -12,9 +13,6 @@ namespace tactus
 namespace
 {
 
-/// A mesh has thousands of faces near an object where another tool is one shape: it may look at
-/// this many times what Budgets says for a pair, in each of its walks.
-constexpr std::uint32_t kMeshBudget = 16;
 /// Faces this near are exact whatever the tool's radius, a share of the tool's: surfaces that slide
 /// along each other part and meet in every frame.
 constexpr double kLeastReach = 0.002;
@@ -23,12 +21,12 @@ constexpr double kLeastReach = 0.002;
 constexpr double kFramesAhead = 4.0;
 /// The cover for prefetching is looked for once in so many frames.
 constexpr std::uint32_t kCoverFrames = 8;
-/// How far ahead in time faces are asked for, in units of ScenePair::ahead_m.
+/// How far ahead in time faces are asked for, in units of Outlook::approach_m().
 constexpr double kPrefetchAhead = 4.0;
 
 WalkBudget budget_of(const Budgets& budgets) noexcept
 {
-    return {kMeshBudget * budgets.nodes, kMeshBudget * budgets.triangles};
+    return {kMeshBudgetFactor * budgets.nodes, kMeshBudgetFactor * budgets.triangles};
 }
 
 /// As many balls as a cover may have; when there are too many, one grows.
@@ -79,8 +77,8 @@ CoreCover cover_near(const AbTree& tree, OtherSurface& other, double near_m) noe
 
 } // namespace
 
-void MeshPair::place(const ScenePair& pair, const MeshCore& core, const Model& tool_model,
-                     const Model& object_model, const Placement& tool,
+void MeshPair::place(const Outlook& outlook, const MeshCore& core, const Model& tool_model,
+                     const Model& object_model, const Similarity& tool,
                      const Budgets& budgets) noexcept
 {
     tool_tree_ = &tool_model.tree;
@@ -88,8 +86,8 @@ void MeshPair::place(const ScenePair& pair, const MeshCore& core, const Model& t
     own_ball_ = {0.5 * core.extent_m, 0.5 * core.extent_m.norm() * kRoundedUp};
     for (std::size_t i = 0; i < kPlaces; ++i)
     {
-        Placement placed = tool;
-        placed.origin += static_cast<double>(i) * pair.ahead_m;
+        Similarity placed = tool;
+        placed.translation_m += static_cast<double>(i) * outlook.approach_m();
         placements_[i] = {placed, core.origin_m};
         objects_[i] = OtherSurface(*object_tree_, placements_[i], budget_of(budgets));
         tools_[i] = OtherSurface(*tool_tree_, placements_[i].inverse(), budget_of(budgets));
@@ -99,13 +97,13 @@ void MeshPair::place(const ScenePair& pair, const MeshCore& core, const Model& t
     }
 }
 
-void MeshPair::rank(const ScenePair& pair, ModelId tool_model, ModelId object_model,
+void MeshPair::rank(const Outlook& outlook, ModelId tool_model, ModelId object_model,
                     const RegionPredictor& predictor, Prediction prediction,
                     RegionRanking& ranking) noexcept
 {
     const double scale = placements_[0].place.scale;
-    const double reach_m = Scene::kKeepFactor * refine_reach_m(pair);
-    const double near_m = reach_m + kPrefetchAhead * pair.ahead_m.norm();
+    const double reach_m = Outlook::kKeepFactor * refine_reach_m(outlook);
+    const double near_m = reach_m + kPrefetchAhead * outlook.approach_m().norm();
     if (frames_until_cover_ == 0)
     {
         cover_ = cover_near(*tool_tree_, objects_[0], near_m / scale);
@@ -121,22 +119,22 @@ void MeshPair::rank(const ScenePair& pair, ModelId tool_model, ModelId object_mo
     RegionPredictor::rank_present(tool_model, cover_, reach_m / scale, ranking);
 }
 
-double MeshPair::refine_reach_m(const ScenePair& pair) noexcept
+double MeshPair::refine_reach_m(const Outlook& outlook) noexcept
 {
-    return std::max(pair.reach_m, kLeastReach * pair.core.radius());
+    return std::max(outlook.reach_m(), kLeastReach * outlook.core().radius());
 }
 
-RefineQuestion MeshPair::ask_object(std::size_t place, const ScenePair& pair,
+RefineQuestion MeshPair::ask_object(std::size_t place, const Outlook& outlook,
                                     RefineMemory& memory) noexcept
 {
-    return question({cores_[place].center(), cores_[place].radius()}, refine_reach_m(pair),
+    return question({cores_[place].center(), cores_[place].radius()}, refine_reach_m(outlook),
                     moved_m_[place], tools_[place], memory);
 }
 
-RefineQuestion MeshPair::ask_tool(std::size_t place, const ScenePair& pair) noexcept
+RefineQuestion MeshPair::ask_tool(std::size_t place, const Outlook& outlook) noexcept
 {
     const double scale = placements_[place].place.scale;
-    return question(own_ball_, refine_reach_m(pair) / scale, moved_m_[place] / scale,
+    return question(own_ball_, refine_reach_m(outlook) / scale, moved_m_[place] / scale,
                     objects_[place], tool_memories_[place]);
 }
 
@@ -147,7 +145,7 @@ RefineQuestion MeshPair::question(const Ball& ball, double reach_m, double moved
     const double ahead_m = std::min(kFramesAhead * moved_m, reach_m);
     return {ball.center,
             ball.radius + reach_m,
-            ball.radius + Scene::kKeepFactor * (reach_m + ahead_m),
+            ball.radius + Outlook::kKeepFactor * (reach_m + ahead_m),
             &memory,
             &surface,
             ball.radius,
@@ -155,15 +153,15 @@ RefineQuestion MeshPair::question(const Ball& ball, double reach_m, double moved
             ahead_m};
 }
 
-void MeshPair::query(const ScenePair& pair, double contact_m, DistanceAnswer& answer,
+void MeshPair::query(const Outlook& outlook, double contact_m, DistanceAnswer& answer,
                      ContactReport& contacts) noexcept
 {
-    const MeshQuestion question{*tool_tree_, *object_tree_, placements_[0], pair.reach_m,
+    const MeshQuestion question{*tool_tree_, *object_tree_, placements_[0], outlook.reach_m(),
                                 contact_m};
     query_meshes(question, objects_[0], memory_, answer, report_, contacts);
     if (answer.nearest_face.is_none())
     {
-        answer.tool_point_m = pair.core.center();
+        answer.tool_point_m = outlook.core().center();
     }
 }
 

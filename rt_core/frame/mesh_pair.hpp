@@ -8,7 +8,7 @@
 #include "rt_core/query/mesh_query.hpp"
 #include "rt_core/records/mesh_report.hpp"
 #include "rt_core/refine/refine_question.hpp"
-#include "rt_core/scene/scene.hpp"
+#include "rt_core/scene/outlook.hpp"
 
 #include <array>
 
@@ -27,27 +27,23 @@ public:
 
     /// Fits the pair to this frame: both models' boxes must be right, and `tool` is where the tool
     /// lies in the object's frame.
-    void place(const ScenePair& pair, const MeshCore& core, const Model& tool_model,
-               const Model& object_model, const Placement& tool,
+    void place(const Outlook& outlook, const MeshCore& core, const Model& tool_model,
+               const Model& object_model, const Similarity& tool,
                const Budgets& budgets) noexcept TACTUS_NONBLOCKING;
 
     /// Adds what both models need where the surfaces are near.
-    void rank(const ScenePair& pair, ModelId tool_model, ModelId object_model,
+    void rank(const Outlook& outlook, ModelId tool_model, ModelId object_model,
               const RegionPredictor& predictor, Prediction prediction,
               RegionRanking& ranking) noexcept TACTUS_NONBLOCKING;
 
     /// What a place asks of the object, and of the tool.
-    [[nodiscard]] RefineQuestion ask_object(std::size_t place, const ScenePair& pair,
+    [[nodiscard]] RefineQuestion ask_object(std::size_t place, const Outlook& outlook,
                                             RefineMemory& memory) noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] RefineQuestion ask_tool(std::size_t place,
-                                          const ScenePair& pair) noexcept TACTUS_NONBLOCKING;
-    [[nodiscard]] RefineMemory& tool_memory(std::size_t place) noexcept
-    {
-        return tool_memories_[place];
-    }
+                                          const Outlook& outlook) noexcept TACTUS_NONBLOCKING;
 
     /// In the object's frame; contacts within `contact_m`, none when it is negative.
-    void query(const ScenePair& pair, double contact_m, DistanceAnswer& answer,
+    void query(const Outlook& outlook, double contact_m, DistanceAnswer& answer,
                ContactReport& contacts) noexcept TACTUS_NONBLOCKING;
 
     /// Instead of a query, while the pair is proven to be apart.
@@ -59,7 +55,7 @@ public:
     [[nodiscard]] const MeshReport& report() const noexcept { return report_; }
 
 private:
-    [[nodiscard]] static double refine_reach_m(const ScenePair& pair) noexcept;
+    [[nodiscard]] static double refine_reach_m(const Outlook& outlook) noexcept;
     [[nodiscard]] static RefineQuestion question(const Ball& ball, double reach_m, double moved_m,
                                                  OtherSurface& surface,
                                                  RefineMemory& memory) noexcept;

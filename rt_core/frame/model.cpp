@@ -25,6 +25,12 @@ constexpr std::uint32_t kMinPages = 16;
 /// The least number of active faces beyond the base mesh that is worth starting with.
 constexpr std::uint32_t kMinFaces = 256;
 
+/// From the arrival of chunks to a certified surface, after a jump at 1.1 M faces some frames: what
+/// is asked for has to be here this much before the tool is.
+constexpr double kRefineTime_s = 0.008;
+/// No hand can be predicted for longer.
+constexpr double kLongestLead_s = 0.15;
+
 /// Blocks are about two thirds full, so 11 faces; twice that many for thin cuts.
 std::uint32_t blocks_for(std::uint32_t faces) noexcept
 {
@@ -104,6 +110,38 @@ Model::Model(Arena& arena, const ModelHeader& model_header, PageSlots model_slot
 {
 }
 
+double Model::lead_s(std::int64_t period_ns) const noexcept
+{
+    const double latency_s = cache.latency().most_frames() * static_cast<double>(period_ns) * 1e-9;
+    return std::min(latency_s + kRefineTime_s, kLongestLead_s);
+}
+
+DoorTake Model::load(ModelId id, const RegionRanking& ranking, const Budgets& budgets,
+                     std::uint32_t frame, FrameFault& faults) noexcept
+{
+    work = WorkCounters{};
+    cache.adopt_arrivals(budgets.pages, frame, work);
+    pages_used_max = std::max(pages_used_max, pages.used());
+    if (residence == Residence::complete)
+    {
+        return cache.taken();
+    }
+    RegionRanking regions;
+    for (const RankedRegion& region : ranking)
+    {
+        if (region.model == id && may_ask_for(region))
+        {
+            regions.push_back(region);
+        }
+    }
+    cache.request_missing(regions.view(), budgets, frame, work, faults);
+    if (residence == Residence::filling)
+    {
+        cache.request_everything(budgets, work, faults);
+    }
+    return cache.taken();
+}
+
 bool Model::may_ask_for(const RankedRegion& region) const noexcept
 {
     return !capacities.cache_off || (region.lead_ns == 0 && !is_refined);
@@ -148,6 +186,20 @@ void Model::refine(std::span<const RefineQuestion> questions, const Budgets& bud
     {
         cache.evict_unpinned(work);
     }
+}
+
+ModelOutput Model::output() const noexcept
+{
+    const AbTree::Capacities& own = tree.capacities();
+    const std::uint32_t index_pages = cache.index_pages_used();
+    return {{pages.used(), pages_used_max, pages.capacity()},
+            {index_pages, index_pages, capacities.index_pages},
+            {forest.active_faces(), forest.active_faces_max(), forest.capacity()},
+            {tree.blocks_used(), tree.blocks_used_max(), own.blocks},
+            {tree.nodes_used(), tree.nodes_used_max(), own.nodes},
+            forest.refined_records(),
+            forest.state_hash(),
+            is_complete()};
 }
 
 void Model::refit(FrameFault& faults) noexcept

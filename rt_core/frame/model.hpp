@@ -9,6 +9,8 @@
 #include "rt_core/cache/chunk_cache.hpp"
 #include "rt_core/cache/chunk_inbox.hpp"
 #include "rt_core/forest/vertex_forest.hpp"
+#include "rt_core/records/frame_output.hpp"
+#include "rt_core/records/region_ranking.hpp"
 #include "rt_core/refine/refiner.hpp"
 #include "rt_core/spm/linker.hpp"
 #include "rt_core/spm/page_table.hpp"
@@ -69,8 +71,16 @@ struct Model
     /// Offers the tree the faces that found no place in it before, and refits it.
     void refit(FrameFault& faults) noexcept TACTUS_NONBLOCKING;
 
-    /// Whether this frame may ask for what the region lacks.
-    [[nodiscard]] bool may_ask_for(const RankedRegion& region) const noexcept TACTUS_NONBLOCKING;
+    /// The frame's first stage: takes what has come, and asks for what the regions of the ranking
+    /// that name this model lack. Returns what was taken, valid until the next call.
+    [[nodiscard]] DoorTake load(ModelId id, const RegionRanking& ranking, const Budgets& budgets,
+                                std::uint32_t frame,
+                                FrameFault& faults) noexcept TACTUS_NONBLOCKING;
+    /// How far ahead of a tool chunks have to be asked for at present, in seconds > 0.
+    [[nodiscard]] double lead_s(std::int64_t period_ns) const noexcept TACTUS_NONBLOCKING;
+    [[nodiscard]] bool is_complete() const noexcept { return residence == Residence::complete; }
+    /// The state after a frame.
+    [[nodiscard]] ModelOutput output() const noexcept TACTUS_NONBLOCKING;
     /// Whether all of the model has room at once.
     [[nodiscard]] bool fits() const noexcept;
     /// Moves the refined front to what the questions need; with the cache off, gives unused pages
@@ -92,6 +102,10 @@ struct Model
     WorkCounters work; ///< Of this frame; budgets are per model.
     Residence residence{Residence::partial};
     bool is_refined{false}; ///< The last refinement left nothing to do.
+
+private:
+    /// Whether this frame may ask for what the region lacks.
+    [[nodiscard]] bool may_ask_for(const RankedRegion& region) const noexcept TACTUS_NONBLOCKING;
 };
 
 } // namespace tactus

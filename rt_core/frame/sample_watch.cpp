@@ -3,6 +3,7 @@
 #include "rt_core/frame/sample_watch.hpp"
 
 #include "rt_core/limits.hpp"
+#include "rt_core/math/rotation.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -18,17 +19,6 @@ bool is_in_range(const Vec3& point) noexcept
     // Comparisons are false for NaN.
     return std::abs(point.x()) < kGoalRange_m && std::abs(point.y()) < kGoalRange_m &&
            std::abs(point.z()) < kGoalRange_m;
-}
-
-bool is_rotation(const Mat3& matrix) noexcept
-{
-    const Mat3 excess = matrix.transpose() * matrix - Mat3::Identity();
-    bool is_orthonormal = matrix.determinant() > 0.0;
-    for (int i = 0; i < 9; ++i)
-    {
-        is_orthonormal = is_orthonormal && std::abs(excess(i / 3, i % 3)) < kRotationTolerance;
-    }
-    return is_orthonormal;
 }
 
 /// A device that doesn't know the time says 0 and is never late.
@@ -78,18 +68,16 @@ FrameFault SampleWatch::find_fault(const ToolState& sample) const noexcept
 {
     const bool is_late = tells_time(sample) && sample.sample_time_ns < time_ns_ &&
                          blind_s_ <= kSampleHold_s + kFadeTime_s;
-    const bool is_usable =
-        sample.valid && is_in_range(sample.position_m) && is_rotation(sample.rotation) && !is_late;
+    const bool is_usable = sample.valid && is_in_range(sample.position_m) &&
+                           is_rotation(sample.rotation, kRotationTolerance) && !is_late;
     return is_usable ? FrameFault::none : FrameFault::tool_invalid;
 }
 
-double SampleWatch::trust(const ToolOutput& output, const ToolSpec& spec,
-                          const Vec3& goal_m) noexcept
+void SampleWatch::look_for_return(const ToolOutput& output, const ToolSpec& spec,
+                                  const Vec3& goal_m) noexcept
 {
     const double spring_n = spec.stiffness_n_per_m * (output.proxy_m - goal_m).norm();
     has_lost_place_ = has_lost_place_ && spring_n > spec.force_max_n;
-    const double faded = (blind_s_ - kSampleHold_s) / kFadeTime_s;
-    return has_lost_place_ ? 0.0 : std::clamp(1.0 - faded, 0.0, 1.0);
 }
 
 } // namespace tactus

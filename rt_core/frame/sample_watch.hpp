@@ -3,24 +3,24 @@
 #pragma once
 
 #include "rt_core/base/realtime.hpp"
+#include "rt_core/math/infinity.hpp"
 #include "rt_core/records/frame_input.hpp"
 #include "rt_core/records/frame_output.hpp"
 
 #include <cstdint>
-#include <limits>
 
 namespace tactus
 {
 
-/// Stands between one tool's device and the frame: which samples are taken, and how much of the
-/// force is left when they can't be trusted.
+/// Stands between one tool's device and the frame: which samples are taken, and what is wrong when
+/// they can't be trusted, so that SafeState takes the force away.
 ///
 /// A sample that is not finite, out of range, no rotation or older than the one before is not
 /// taken; the goal stays. Neither is one with the time of the one before: a device may be slower
-/// than the frame. The last sample stands in for what doesn't come during kSampleHold_s, and then
-/// the force fades to zero within kFadeTime_s. A goal that jumps farther than any hand moves is
-/// taken, but there is no force until it is so near the proxy that the spring between them is
-/// within the device's range: a device that has lost its place must not pull towards where it was.
+/// than the frame. The last sample stands in for what doesn't come during kSampleHold_s; then the
+/// device is stuck. A goal that jumps farther than any hand moves is taken, but it is told as a
+/// jump until it is so near the proxy that the spring between them is within the device's range: a
+/// device that has lost its place must not pull towards where it was.
 /// Haptic thread.
 class SampleWatch
 {
@@ -39,9 +39,10 @@ public:
     [[nodiscard]] Verdict judge(const ToolState& sample, const ToolSpec& spec, const Vec3& goal_m,
                                 double elapsed_s) noexcept TACTUS_NONBLOCKING;
 
-    /// The share of the frame's force that goes out, 0 .. 1; `output` is what the tool would get.
-    [[nodiscard]] double trust(const ToolOutput& output, const ToolSpec& spec,
-                               const Vec3& goal_m) noexcept TACTUS_NONBLOCKING;
+    /// After the frame's force is known: a goal that had jumped is back where the spring between
+    /// proxy and goal is within the device's range.
+    void look_for_return(const ToolOutput& output, const ToolSpec& spec,
+                         const Vec3& goal_m) noexcept TACTUS_NONBLOCKING;
 
     /// What is wrong with the device after this frame: the last verdict's fault, and tool_jumped
     /// until the goal is back where a force may follow it.
@@ -55,7 +56,7 @@ private:
                                double elapsed_s) noexcept;
     [[nodiscard]] FrameFault find_fault(const ToolState& sample) const noexcept;
 
-    double blind_s_{std::numeric_limits<double>::infinity()}; ///< Since the last taken sample.
+    double blind_s_{kInfinity}; ///< Since the last taken sample.
     std::int64_t time_ns_{0};
     bool has_lost_place_{false};
     FrameFault fault_{FrameFault::none}; ///< Of the last verdict.

@@ -2,15 +2,16 @@
 // Copyright the Tactus authors.
 #include "rt_core/geometry/boundary_distance.hpp"
 
+#include "rt_core/base/assert.hpp"
 #include "rt_core/base/static_vector.hpp"
 #include "rt_core/geometry/closest_features.hpp"
 #include "rt_core/geometry/face_filter.hpp"
+#include "rt_core/math/infinity.hpp"
 #include "rt_core/math/kernel_error.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 
 namespace tactus
 {
@@ -21,7 +22,6 @@ namespace
 /// Far enough apart, in local lengths: a wrong place by kFilterMargin changes the distance by the
 /// square of that only.
 constexpr double kFarApart = 1e-6;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 enum class Kind : std::uint8_t
 {
@@ -49,6 +49,7 @@ public:
     BoundaryDistance(std::span<const Vec3> corners, const Triangle& triangle) noexcept
         : corners_(corners), triangle_(triangle), length_(local_length(corners, triangle))
     {
+        TACTUS_ASSERT(corners.size() == 2 || corners.size() == 3);
     }
 
     ClosestPoints find() noexcept
@@ -62,6 +63,7 @@ public:
                 decide(candidate);
             }
         }
+        TACTUS_ASSERT(best_.distance < kInfinity);
         best_.distance_error = kernel_error(0.0, length_);
         return best_;
     }

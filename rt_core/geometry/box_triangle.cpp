@@ -2,8 +2,10 @@
 // Copyright the Tactus authors.
 #include "rt_core/geometry/box_triangle.hpp"
 
+#include "rt_core/base/assert.hpp"
 #include "rt_core/geometry/closest_features.hpp"
 #include "rt_core/geometry/face_filter.hpp"
+#include "rt_core/math/infinity.hpp"
 #include "rt_core/math/kernel_error.hpp"
 #include "rt_core/math/orientation.hpp"
 
@@ -90,11 +92,14 @@ public:
         , length_(local_length(box, triangle))
         , face_(triangle, length_)
     {
+        TACTUS_ASSERT(box.half.x() >= 0.0);
+        TACTUS_ASSERT(box.half.y() >= 0.0);
+        TACTUS_ASSERT(box.half.z() >= 0.0);
     }
 
     ClosestPoints find() noexcept
     {
-        double upper = std::numeric_limits<double>::infinity();
+        double upper = kInfinity;
         std::array<double, 3> distance{};
         for (std::size_t i = 0; i < 3; ++i)
         {
@@ -114,6 +119,7 @@ public:
                 decide_edge(i);
             }
         }
+        TACTUS_ASSERT(best_.distance < std::numeric_limits<double>::infinity());
         best_.distance_error = kernel_error(0.0, length_);
         return best_;
     }
@@ -187,8 +193,8 @@ private:
     const Triangle& triangle_;
     double length_;
     FaceFilter face_;
-    DoubleDouble best_sq_{std::numeric_limits<double>::infinity()};
-    ClosestPoints best_{.distance = std::numeric_limits<double>::infinity()};
+    DoubleDouble best_sq_{kInfinity};
+    ClosestPoints best_{.distance = kInfinity};
 };
 
 } // namespace

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "rt_core/geometry/shapes.hpp"
+#include "rt_core/math/rounding.hpp"
 #include "rt_core/math/triangle.hpp"
 #include "rt_core/math/triple.hpp"
 
@@ -66,8 +67,7 @@ template <typename Real>
                                            difference<Real>(triangle[0], triangle[2])};
     const auto normal = cross(edge[0], edge[1]);
     const Real normal_sq = dot(normal, normal);
-    // A smaller one has lost bits, and the edges are as near as this is wide.
-    if (!(normal_sq > Real{1e-240}))
+    if (!(normal_sq > Real{kLeastTrustedNormalSq}))
     {
         return std::nullopt;
     }

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "rt_core/base/assert.hpp"
 #include "rt_core/math/safe_scale.hpp"
 #include "rt_core/math/triangle.hpp"
 
@@ -49,6 +50,7 @@ template <std::size_t N, typename Solve>
 [[nodiscard]] ClosestPoints solve_in_range(const std::array<Vec3, N>& points, Solve solve) noexcept
 {
     const double scale = safe_scale(largest_coordinate(points));
+    TACTUS_ASSERT(scale > 0.0);
     if (scale == 1.0)
     {
         return solve(points);

@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #include "rt_core/geometry/convex.hpp"
 
+#include "rt_core/base/assert.hpp"
+#include "rt_core/limits.hpp"
 #include "rt_core/math/safe_scale.hpp"
 
 #include <algorithm>
@@ -13,10 +15,9 @@ namespace tactus
 namespace
 {
 
-constexpr double kLargestCoordinate = 1e300;
-
 Vec3 mean_of(std::span<const Vec3> points) noexcept
 {
+    TACTUS_ASSERT(!points.empty());
     const double share = 1.0 / static_cast<double>(points.size());
     Vec3 mean(0.0, 0.0, 0.0);
     for (const Vec3& point : points)
@@ -59,7 +60,7 @@ Result<Hull, HullError> Hull::create(std::span<const Vec3> vertices) noexcept
     if (!std::ranges::all_of(
             vertices,
             [](const Vec3& vertex) noexcept {
-                return vertex.allFinite() && largest_coordinate({&vertex, 1}) <= kLargestCoordinate;
+                return vertex.allFinite() && largest_coordinate({&vertex, 1}) <= kCoordinateRange;
             }))
     {
         return HullError::vertex_not_finite;

@@ -2,13 +2,14 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "rt_core/base/assert.hpp"
+#include "rt_core/math/infinity.hpp"
 #include "rt_core/math/triangle.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 
 namespace tactus
 {
@@ -23,6 +24,7 @@ public:
     /// Of points up to `length` away from the corners.
     FaceFilter(const Triangle& triangle, double length) noexcept : corner_(triangle)
     {
+        TACTUS_ASSERT(length >= 0.0);
         const std::array<Vec3, 3> edge{triangle[1] - triangle[0], triangle[2] - triangle[1],
                                        triangle[0] - triangle[2]};
         const double longest_sq =
@@ -51,7 +53,7 @@ public:
         {
             if (!has_plane_ || outward_[i].dot(corner_[i] - point) < -slack_[i])
             {
-                return std::numeric_limits<double>::infinity();
+                return kInfinity;
             }
         }
         return std::abs(unit_normal_.dot(corner_[0] - point));

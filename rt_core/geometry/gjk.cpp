@@ -2,8 +2,10 @@
 // Copyright the Tactus authors.
 #include "rt_core/geometry/gjk.hpp"
 
+#include "rt_core/base/assert.hpp"
 #include "rt_core/base/static_vector.hpp"
 #include "rt_core/geometry/simplex.hpp"
+#include "rt_core/limits.hpp"
 #include "rt_core/math/direction.hpp"
 #include "rt_core/math/safe_scale.hpp"
 
@@ -50,6 +52,9 @@ public:
                   std::max({triangle_[0].norm(), triangle_[1].norm(), triangle_[2].norm()}))
         , rounding_(kGjkRounding * length_)
     {
+        TACTUS_ASSERT(body.support != nullptr);
+        TACTUS_ASSERT(body.radius >= 0.0);
+        TACTUS_ASSERT(limit >= 0.0);
     }
 
     [[nodiscard]] GjkAnswer find(Vec3& direction) noexcept
@@ -165,6 +170,7 @@ private:
                 simplex_.push_back(all[i]);
             }
         }
+        TACTUS_ASSERT(!simplex_.empty());
         gap_ = to_vec3(foot.foot);
         distance_ = gap_.norm();
     }

@@ -3,10 +3,10 @@
 #pragma once
 
 #include "rt_core/geometry/convex.hpp"
+#include "rt_core/math/infinity.hpp"
 #include "rt_core/math/triangle.hpp"
 
 #include <cstdint>
-#include <limits>
 
 namespace tactus
 {
@@ -14,8 +14,6 @@ namespace tactus
 /// What rounding may do to a bound, in local lengths: 23 roundings of a support point's place and
 /// of the products with it, rounded up.
 inline constexpr double kGjkRounding = 3e-15;
-/// Bounds nearer to one another than this share of the distance are near enough.
-inline constexpr double kGjkRelativeGap = 1e-12;
 
 /// How far a convex body and a triangle are apart: at least `lower` and at most `upper`.
 struct GjkAnswer
@@ -60,8 +58,8 @@ struct GjkAnswer
 /// Any triangle; coordinates up to 1e300. Those below 1e-85 of the largest may count as 0. A box
 /// takes 0.6 us apart and 0.9 near, a hull of 64 twice that, 0.2 to 0.3 beyond the limit; curved
 /// bodies up to 12 us where near.
-[[nodiscard]] GjkAnswer
-gjk_distance(const ConvexBody& body, const Triangle& triangle, Vec3& direction,
-             double limit = std::numeric_limits<double>::infinity()) noexcept TACTUS_NONBLOCKING;
+[[nodiscard]] GjkAnswer gjk_distance(const ConvexBody& body, const Triangle& triangle,
+                                     Vec3& direction,
+                                     double limit = kInfinity) noexcept TACTUS_NONBLOCKING;
 
 } // namespace tactus

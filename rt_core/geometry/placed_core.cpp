@@ -16,11 +16,6 @@ namespace tactus
 namespace
 {
 
-Vec3 to_place(const Placement& place, const Vec3& point) noexcept
-{
-    return place.origin + place.scale * (place.rotation * point);
-}
-
 /// An orthonormal frame whose first axis is along `way`; any when that is zero.
 Mat3 frame_along(const Vec3& way) noexcept
 {
@@ -50,12 +45,13 @@ constexpr double kRotationRounding = 4e-15;
 
 } // namespace
 
-PlacedCore::PlacedCore(const ToolCore& core, const Placement& place) noexcept
-    : center_(place.origin), axes_(place.rotation), scale_(place.scale)
+PlacedCore::PlacedCore(const ToolCore& core, const Similarity& place) noexcept
+    : center_(place.translation_m), axes_(place.rotation), scale_(place.scale)
 {
+    TACTUS_ASSERT(place.scale > 0.0);
     if (const auto* segment = std::get_if<Segment>(&core))
     {
-        const Segment placed{to_place(place, segment->from), to_place(place, segment->to)};
+        const Segment placed{place.to_there(segment->from), place.to_there(segment->to)};
         const Vec3 half_way = 0.5 * (placed.to - placed.from);
         core_ = placed;
         center_ = placed.from + half_way;
@@ -69,7 +65,7 @@ PlacedCore::PlacedCore(const ToolCore& core, const Placement& place) noexcept
     }
     else if (const auto* mesh = std::get_if<MeshCore>(&core))
     {
-        center_ = to_place(place, mesh->origin_m + 0.5 * mesh->extent_m);
+        center_ = place.to_there(mesh->origin_m + 0.5 * mesh->extent_m);
         half_ = 0.5 * place.scale * kRoundedUp * mesh->extent_m;
         core_ = Box{half_};
         is_mesh_ = true;
@@ -92,9 +88,9 @@ PlacedCore::PlacedCore(const ToolCore& core, const Placement& place) noexcept
 }
 
 /// A box in the body's own axes, round its centre.
-void PlacedCore::surround(const ConvexBody& body, const Placement& place) noexcept
+void PlacedCore::surround(const ConvexBody& body, const Similarity& place) noexcept
 {
-    center_ = to_place(place, body.center);
+    center_ = place.to_there(body.center);
     for (int axis = 0; axis < 3; ++axis)
     {
         Vec3 along(0.0, 0.0, 0.0);
@@ -109,6 +105,7 @@ void PlacedCore::surround(const ConvexBody& body, const Placement& place) noexce
 /// In its own frame.
 ConvexBody PlacedCore::own_body() const noexcept
 {
+    TACTUS_ASSERT(is_convex_body());
     const auto* hull = std::get_if<Hull>(&core_);
     return hull != nullptr ? hull->body() : *std::get_if<ConvexBody>(&core_);
 }
@@ -272,7 +269,7 @@ double PlacedCore::motion_since(const PlacedCore& before) const noexcept
         motion +=
             (half_[axis] * axes_.col(axis) - before.half_[axis] * before.axes_.col(axis)).norm();
     }
-    return motion * (1.0 + 1e-12);
+    return motion * kWidened;
 }
 
 } // namespace tactus

@@ -31,7 +31,7 @@ class PlacedCore
 {
 public:
     PlacedCore() noexcept = default;
-    PlacedCore(const ToolCore& core, const Placement& place) noexcept TACTUS_NONBLOCKING;
+    PlacedCore(const ToolCore& core, const Similarity& place) noexcept TACTUS_NONBLOCKING;
 
     [[nodiscard]] bool is_point() const noexcept
     {
@@ -67,7 +67,7 @@ public:
     [[nodiscard]] double motion_since(const PlacedCore& before) const noexcept TACTUS_NONBLOCKING;
 
 private:
-    void surround(const ConvexBody& body, const Placement& place) noexcept TACTUS_NONBLOCKING;
+    void surround(const ConvexBody& body, const Similarity& place) noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] ConvexBody own_body() const noexcept TACTUS_NONBLOCKING;
     static Vec3 placed_support(const void* core, const Vec3& direction) noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] ClosestPoints

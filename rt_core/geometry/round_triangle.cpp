@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "rt_core/geometry/round_triangle.hpp"
 
+#include "rt_core/base/assert.hpp"
 #include "rt_core/geometry/segment_triangle.hpp"
 
 #include <cmath>
@@ -14,6 +15,7 @@ namespace
 
 ClosestPoints grown(const ClosestPoints& core, double radius) noexcept
 {
+    TACTUS_ASSERT(radius >= 0.0);
     ClosestPoints result = core;
     result.distance = core.distance - radius;
     result.distance_error = core.distance_error + 1.2e-16 * radius;

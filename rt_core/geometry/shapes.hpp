@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "rt_core/base/assert.hpp"
 #include "rt_core/math/vec3.hpp"
 
 namespace tactus
@@ -19,6 +20,8 @@ struct Segment
 /// Rounded from the nearer end, so that the ends come out as they are.
 [[nodiscard]] inline Vec3 point_at(const Segment& segment, double parameter) noexcept
 {
+    TACTUS_ASSERT(parameter >= 0.0);
+    TACTUS_ASSERT(parameter <= 1.0);
     return parameter <= 0.5 ? Vec3(segment.from + parameter * (segment.to - segment.from))
                             : Vec3(segment.to - (1.0 - parameter) * (segment.to - segment.from));
 }

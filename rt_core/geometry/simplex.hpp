@@ -2,7 +2,9 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "rt_core/base/assert.hpp"
 #include "rt_core/math/double_double.hpp"
+#include "rt_core/math/rounding.hpp"
 #include "rt_core/math/triple.hpp"
 
 #include <array>
@@ -62,6 +64,8 @@ public:
     [[nodiscard]] SimplexFoot<Real> find(bool with_last_only) noexcept
     {
         const std::size_t count = points_.size();
+        TACTUS_ASSERT(count > 0);
+        TACTUS_ASSERT(count <= 4);
         const std::size_t last = count - 1;
         if (count == 4)
         {
@@ -88,6 +92,7 @@ public:
         {
             try_corner(k);
         }
+        TACTUS_ASSERT(best_.corners > 0);
         return best_;
     }
 
@@ -126,8 +131,7 @@ private:
         const std::array<Point, 3> edge{points_[j] - points_[i], points_[k] - points_[j],
                                         points_[i] - points_[k]};
         const Point normal = cross(edge[0], edge[1]);
-        // A smaller one has lost bits, and the edges are as near as this is wide.
-        if (!(dot(normal, normal) > Real{1e-240}))
+        if (!(dot(normal, normal) > Real{kLeastTrustedNormalSq}))
         {
             return;
         }

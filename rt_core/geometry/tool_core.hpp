@@ -5,6 +5,7 @@
 #include "rt_core/base/model_id.hpp"
 #include "rt_core/geometry/convex.hpp"
 #include "rt_core/geometry/shapes.hpp"
+#include "rt_core/math/similarity.hpp"
 
 #include <variant>
 
@@ -28,14 +29,5 @@ struct MeshCore
 /// its core. A sphere is a point with a radius, a capsule a segment with one, a box may have
 /// rounded edges. In the tool's own frame, metres. What a hull or body refers to outlives the tool.
 using ToolCore = std::variant<PointCore, Segment, Box, Hull, ConvexBody, MeshCore>;
-
-/// Where a frame lies in another one: there = origin + scale x rotation x here. The rotation is
-/// orthonormal to rounding.
-struct Placement
-{
-    Mat3 rotation{Mat3::Identity()};
-    Vec3 origin{0.0, 0.0, 0.0};
-    double scale{1.0};
-};
 
 } // namespace tactus

@@ -23,6 +23,8 @@ struct KernelProbe
     float slack; ///< What `high` and `low` leave of the point, in quanta; in every bound.
 };
 
+static_assert(sizeof(KernelProbe) == 32);
+
 /// Bounds on the distances from the probe to the 16 faces of a block, in quanta: one lane a face;
 /// lanes without a face hold values of no meaning.
 struct FaceBounds
@@ -60,6 +62,9 @@ struct TriangleRows
     std::uint8_t corners[3][16]; ///< Row of each corner.
     // NOLINTEND(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays)
 };
+
+static_assert(sizeof(FaceBounds) == 128);
+static_assert(sizeof(TriangleRows) == 960);
 
 /// The inner loops of query and refit, in one set for each instruction set.
 ///

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "rt_core/base/assert.hpp"
 #include "rt_core/math/rounding.hpp"
 #include "rt_core/math/vec3.hpp"
 
@@ -45,6 +46,7 @@ struct Aabb
     /// grid coordinates of 24 bits and error bounds up to 2^27 quanta keep.
     [[nodiscard]] constexpr Aabb inflated(float margin) const noexcept
     {
+        TACTUS_ASSERT(margin >= 0.0F);
         Aabb box;
         for (std::size_t axis = 0; axis < 3; ++axis)
         {

@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "rt_core/base/assert.hpp"
+
 #include <cmath>
 #include <numbers>
 
@@ -12,6 +14,7 @@ namespace tactus
 /// between platforms.
 [[nodiscard]] inline double arc_tangent(double t) noexcept
 {
+    TACTUS_ASSERT(t >= 0.0);
     const bool is_steep = t > 1.0;
     double x = is_steep ? 1.0 / t : t;
     constexpr int kHalvings = 3; // To at most pi / 32, where nine terms are enough.

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "rt_core/base/assert.hpp"
 #include "rt_core/math/safe_scale.hpp"
 
 namespace tactus
@@ -16,6 +17,7 @@ namespace tactus
 /// Of length 1 within a few roundings, however long the vector, which must have a direction.
 [[nodiscard]] inline Vec3 unit_of(const Vec3& way) noexcept
 {
+    TACTUS_ASSERT(has_direction(way));
     const Vec3 near_one = way / largest_coordinate({&way, 1});
     return near_one / near_one.norm();
 }

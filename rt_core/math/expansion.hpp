@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "rt_core/base/assert.hpp"
 #include "rt_core/math/double_double.hpp"
 
 #include <array>
@@ -34,6 +35,7 @@ public:
     {
         if (term != 0.0)
         {
+            TACTUS_ASSERT(size_ < Capacity);
             term_[size_++] = term;
         }
     }

@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "rt_core/base/assert.hpp"
+
 #include <algorithm>
 
 namespace tactus
@@ -19,6 +21,7 @@ inline constexpr double kLargestAspect = 8.0;
 /// decide in double-double give 0.
 [[nodiscard]] constexpr double kernel_error(double aspect, double length) noexcept
 {
+    TACTUS_ASSERT(length >= 0.0);
     return (4e-16 + 1e-16 * std::min(aspect, kLargestAspect)) * length;
 }
 

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "rt_core/base/assert.hpp"
 #include "rt_core/base/realtime.hpp"
 #include "rt_core/math/vec3.hpp"
 
@@ -16,6 +17,7 @@ using Vec2 = std::array<double, 2>;
 /// The other two coordinates, in an order that keeps areas' signs: of x those are y, z.
 [[nodiscard]] inline Vec2 seen_along(std::size_t axis, const Vec3& point) noexcept
 {
+    TACTUS_ASSERT(axis < 3);
     return {point[static_cast<Eigen::Index>((axis + 1) % 3)],
             point[static_cast<Eigen::Index>((axis + 2) % 3)]};
 }

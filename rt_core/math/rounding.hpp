@@ -40,4 +40,17 @@ namespace tactus
 /// A length of some roundings, multiplied by this, is at least the true one.
 inline constexpr double kRoundedUp = 1.0 + 1e-14;
 
+/// The root of a sum of three squares, multiplied by one of these, is at most / at least the true
+/// one: it has five roundings of 2^-53, the square root halves those of the sum.
+inline constexpr double kRootRoundedDown = 1.0 - 1e-15;
+inline constexpr double kRootRoundedUp = 1.0 + 1e-15;
+
+/// A length that only has to be no less than the true one, such as a filter's or a motion that a
+/// certificate loses, multiplied by this: generous, since nothing is decided by it.
+inline constexpr double kWidened = 1.0 + 1e-12;
+
+/// A face's normal, with coordinates near 1, whose squared length is not above this has lost bits,
+/// and the face's edges are as near as it is wide.
+inline constexpr double kLeastTrustedNormalSq = 1e-240;
+
 } // namespace tactus

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "rt_core/math/triangle.hpp"
 
+#include "rt_core/base/assert.hpp"
 #include "rt_core/math/kernel_error.hpp"
 #include "rt_core/math/safe_scale.hpp"
 #include "rt_core/math/triple.hpp"
@@ -138,6 +139,7 @@ ClosestPoint find_closest(const Triangle& triangle, const Surroundings& around) 
 
 Vec3 exact_normal(const Triangle& triangle, double longest_sq) noexcept
 {
+    TACTUS_ASSERT(longest_sq >= 0.0);
     const auto normal = to_vec3(cross(difference<DoubleDouble>(triangle[1], triangle[0]),
                                       difference<DoubleDouble>(triangle[2], triangle[1])));
     const double least = 0x1p-50 * longest_sq;

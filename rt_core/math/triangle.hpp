@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "rt_core/base/assert.hpp"
 #include "rt_core/base/realtime.hpp"
 #include "rt_core/math/vec3.hpp"
 
@@ -62,6 +63,7 @@ closest_point_on_triangle(const Vec3& query, const Triangle& triangle) noexcept 
 /// The feature at `parameter` (0 to 1) of an edge: one of its corners at the ends.
 [[nodiscard]] constexpr TriangleFeature feature_of_edge(std::size_t edge, double parameter) noexcept
 {
+    TACTUS_ASSERT(edge < 3);
     const bool is_end = parameter == 0.0 || parameter == 1.0;
     const std::size_t corner = parameter == 0.0 ? edge : (edge + 1) % 3;
     return static_cast<TriangleFeature>(is_end ? corner : 3 + edge);

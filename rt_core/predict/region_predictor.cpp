@@ -26,13 +26,14 @@ constexpr double kWidest = 1.0;
 constexpr std::array<double, 4> kLeads{0.25, 0.5, 0.75, 1.0};
 
 /// Each ball moved by the region's centre and wider by its radius. A full ranking leaves the later
-/// pairs' balls out: they come on demand.
+/// pairs' balls out: only those where a tool is now are missed.
 void add_balls(const RankedRegion& moved, const CoreCover& balls, RegionRanking& ranking) noexcept
 {
     for (const Ball& ball : balls)
     {
-        static_cast<void>(ranking.try_push_back({moved.model, ball.center + moved.center_m,
-                                                 ball.radius + moved.radius_m, moved.lead_ns}));
+        const bool has_room = ranking.try_push_back({moved.model, ball.center + moved.center_m,
+                                                     ball.radius + moved.radius_m, moved.lead_ns});
+        ranking.lacks_present = ranking.lacks_present || (!has_room && moved.lead_ns == 0);
     }
 }
 

@@ -2,11 +2,12 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "rt_core/base/assert.hpp"
+#include "rt_core/math/infinity.hpp"
 #include "rt_core/query/tree_walk.hpp"
 #include "rt_core/records/local_surface.hpp"
 
 #include <algorithm>
-#include <limits>
 
 namespace tactus
 {
@@ -60,7 +61,7 @@ struct Findings
 [[nodiscard]] inline bool is_nearest_proven(const Findings& found) noexcept
 {
     return found.exact_lower_m <= found.open_m && found.exact_lower_m <= found.pruned_m &&
-           found.exact_lower_m < std::numeric_limits<double>::infinity();
+           found.exact_lower_m < kInfinity;
 }
 
 /// The answer within `reach_m`, but for the nearest face and points: theirs is who has them.
@@ -76,6 +77,7 @@ struct Findings
                   : is_nearest_proven(found)  ? AnswerKind::exact
                   : answer.lower_m == reach_m ? AnswerKind::decided
                                               : AnswerKind::bracket;
+    TACTUS_ASSERT(!(answer.lower_m > answer.upper_m)); // U may be no number: then L is 0.
     return answer;
 }
 

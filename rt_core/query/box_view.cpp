@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "rt_core/query/box_view.hpp"
 
+#include "rt_core/base/assert.hpp"
 #include "rt_core/math/rounding.hpp"
 
 #include <cmath>
@@ -16,6 +17,8 @@ BoxView::BoxView(const MeshPlacement& there, double units_per_m, float slack) no
     , units_per_m_here_(units_per_m * there.place.scale)
     , slack_(slack)
 {
+    TACTUS_ASSERT(units_per_m > 0.0);
+    TACTUS_ASSERT(slack >= 0.0F);
 }
 
 KernelBox BoxView::of(const Aabb& box) const noexcept

@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #include "rt_core/query/contact_report.hpp"
 
+#include "rt_core/base/assert.hpp"
+#include "rt_core/limits.hpp"
 #include "rt_core/math/arc_tangent.hpp"
 #include "rt_core/query/contact_set.hpp"
 #include "rt_core/query/convex_contact.hpp"
@@ -25,9 +27,7 @@ struct IncidentFace
     std::size_t corner{0};
 };
 
-/// A vertex of more faces has no normal here.
-constexpr std::size_t kMaxIncident = 64;
-using Incident = StaticVector<IncidentFace, kMaxIncident>;
+using Incident = StaticVector<IncidentFace, kMaxIncidentFaces>;
 
 /// By the half angle, as Kahan has it: good at any angle. Zero when one has no length.
 double angle_between(const Vec3& a, const Vec3& b) noexcept
@@ -94,6 +94,7 @@ private:
     }
     [[nodiscard]] const Corners& corners(std::uint32_t i) const noexcept
     {
+        TACTUS_ASSERT(i < surface_.count);
         return surface_.triangles[i].corners_m;
     }
     [[nodiscard]] Triangle triangle(std::uint32_t i) const noexcept
@@ -263,7 +264,7 @@ bool is_over(const Vec3& point, const Triangle& triangle, const Vec3& normal) no
 
 /// Corners of the core that stand over a face, on either side.
 void add_corners(const CoreCorners& corners, double reach_m, const Triangle& triangle, FaceId face,
-                 ContactSet& contacts) noexcept
+                 TouchReport& touches) noexcept
 {
     const Vec3 normal = normal_of(triangle);
     for (const Vec3& corner : corners)
@@ -278,7 +279,8 @@ void add_corners(const CoreCorners& corners, double reach_m, const Triangle& tri
             face,   TriangleFeature::interior, distance,
             corner, corner - height * normal,  height > 0.0 ? normal : Vec3(-normal),
             {}};
-        (void)keep_nearest(contact, contacts); // Nearer ones matter more.
+        const bool has_room = keep_nearest(contact, touches.corners);
+        touches.is_truncated = touches.is_truncated || !has_room;
     }
 }
 
@@ -287,6 +289,8 @@ void add_corners(const CoreCorners& corners, double reach_m, const Triangle& tri
 void report_touches(const PlacedCore& core, double reach_m, const AbTree& tree,
                     const LocalSurface& surface, TouchReport& touches) noexcept
 {
+    TACTUS_ASSERT(reach_m >= 0.0);
+    TACTUS_ASSERT(surface.count <= kMaxLocalTriangles);
     touches.clear();
     const CoreCorners corners = core.corners();
     for (std::uint32_t i = 0; i < surface.count; ++i)
@@ -300,8 +304,10 @@ void report_touches(const PlacedCore& core, double reach_m, const AbTree& tree,
         const ClosestPoints closest = core.closest(triangle);
         if (closest.distance <= reach_m)
         {
-            (void)keep_nearest(make_contact(closest, triangle, face), touches.nearest);
-            add_corners(corners, reach_m, triangle, face, touches.corners);
+            const bool has_room =
+                keep_nearest(make_contact(closest, triangle, face), touches.nearest);
+            add_corners(corners, reach_m, triangle, face, touches);
+            touches.is_truncated = touches.is_truncated || !has_room;
         }
     }
 }
@@ -309,6 +315,8 @@ void report_touches(const PlacedCore& core, double reach_m, const AbTree& tree,
 void report_contacts(const PlacedCore& core, double radius_m, const AbTree& tree,
                      const LocalSurface& surface, bool is_closed, ContactReport& report) noexcept
 {
+    TACTUS_ASSERT(radius_m >= 0.0);
+    TACTUS_ASSERT(surface.count <= kMaxLocalTriangles);
     report.clear();
     const DistanceAnswer& answer = surface.answer;
     // Nothing unseen may touch: either all is exact that far, or all is farther.

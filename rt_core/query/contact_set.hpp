@@ -2,10 +2,12 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "rt_core/base/assert.hpp"
 #include "rt_core/geometry/closest_points.hpp"
 #include "rt_core/records/contact.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 #include <utility>
 
@@ -49,6 +51,7 @@ namespace tactus
 /// Inserts in order; the farthest goes when there are too many, and then it is false.
 [[nodiscard]] inline bool keep_nearest(const Contact& contact, ContactSet& contacts) noexcept
 {
+    TACTUS_ASSERT(!std::isnan(contact.distance_m)); // Else there is no order.
     const bool is_full = contacts.size() == kMaxContacts;
     if (is_full && !comes_before(contact, contacts[kMaxContacts - 1]))
     {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "rt_core/geometry/gjk.hpp"
+#include "rt_core/math/infinity.hpp"
 
 namespace tactus
 {
@@ -26,8 +27,8 @@ struct ConvexContact
 /// libccd takes what is zero from its size, so it is given both relative to the body's centre and
 /// scaled to about 1. Built without it (a replay on another processor) an open question counts as
 /// yes. Takes 0.1 us more than gjk_distance where they are apart, 0.5 to 1.7 us where near.
-[[nodiscard]] ConvexContact
-contact_of(const ConvexBody& body, const Triangle& triangle, Vec3& direction,
-           double limit = std::numeric_limits<double>::infinity()) noexcept TACTUS_NONBLOCKING;
+[[nodiscard]] ConvexContact contact_of(const ConvexBody& body, const Triangle& triangle,
+                                       Vec3& direction,
+                                       double limit = kInfinity) noexcept TACTUS_NONBLOCKING;
 
 } // namespace tactus

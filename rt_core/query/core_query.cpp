@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #include "rt_core/query/core_query.hpp"
 
+#include "rt_core/base/assert.hpp"
+#include "rt_core/math/infinity.hpp"
 #include "rt_core/query/nearest_triangles.hpp"
 #include "rt_core/query/probe.hpp"
 #include "rt_core/query/surface_query.hpp"
@@ -14,8 +16,6 @@ namespace tactus
 
 namespace
 {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// One query. Kernels bound distances from the core's centre; its ball turns them into bounds from
 /// the core.
@@ -59,6 +59,7 @@ public:
             return false;
         }
         const BlockSide& side = tree_.side(index);
+        TACTUS_ASSERT(side.in_use);
         FaceBounds bounds; // NOLINT(cppcoreguidelines-pro-type-member-init): the kernel fills it.
         bound_faces(tree_.kernels(), block, block.faces, probe_, bounds);
         for (std::uint32_t lanes = block.faces; lanes != 0; lanes &= lanes - 1)
@@ -202,6 +203,7 @@ void gather_surface(const AbTree& tree, const PlacedCore& core, double reach_m, 
         answer.kind = answer.lower_m > reach_m ? AnswerKind::decided : AnswerKind::bracket;
         return;
     }
+    TACTUS_ASSERT(!core.is_mesh());
     surface.center_m = core.center();
     CoreSearch search(tree, core, reach_m, budget, surface);
     search.run(memory);

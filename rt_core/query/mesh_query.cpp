@@ -2,8 +2,10 @@
 // Copyright the Tactus authors.
 #include "rt_core/query/mesh_query.hpp"
 
+#include "rt_core/base/assert.hpp"
 #include "rt_core/geometry/crossing.hpp"
 #include "rt_core/geometry/triangle_triangle.hpp"
+#include "rt_core/math/infinity.hpp"
 #include "rt_core/math/rounding.hpp"
 #include "rt_core/query/contact_set.hpp"
 #include "rt_core/query/pair_walk.hpp"
@@ -24,7 +26,6 @@ namespace tactus
 namespace
 {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Twice the kernel's error law and more.
 constexpr double kSpanError = 4e-15;
 
@@ -99,6 +100,7 @@ bool comes_before(const MeetingFaces& a, const MeetingFaces& b) noexcept
 Triangle triangle_of(const AbTree& tree, PrimId prim) noexcept
 {
     const std::uint32_t leaf = tree.leaf_of(prim);
+    TACTUS_ASSERT(leaf != AbTree::kNoLeaf);
     return to_triangle(block_triangle(tree.block(leaf / kBlockFaces), leaf % kBlockFaces));
 }
 
@@ -130,6 +132,9 @@ public:
         , views_(question.tool, question.object, question.place)
         , placed_(question.tool, question.object, question.place, views_)
     {
+        TACTUS_ASSERT(question.reach_m >= 0.0);
+        TACTUS_ASSERT(enough > 0);
+        TACTUS_ASSERT(aim == Aim::meeting || contacts != nullptr);
     }
 
     /// `object` is asked how far away it is where nothing is remembered; null when that is not
@@ -189,6 +194,7 @@ public:
     /// What meets, sorted.
     void report_meeting() noexcept
     {
+        TACTUS_ASSERT(report_.meeting.size() <= found_);
         std::ranges::sort_heap(report_.meeting);
         const bool is_all_seen = is_all_there() && open_m_ > 0.0;
         report_.is_complete = is_all_seen && !report_.is_truncated && !is_enough();
@@ -286,6 +292,7 @@ private:
 
     void test_blocks(const MeshMemory& blocks) noexcept
     {
+        TACTUS_ASSERT(question_.object.is_block_in_use(blocks.block));
         const BlockGeometry& block = question_.object.block(blocks.block);
         if (!budget_.take_triangles(face_count(block)))
         {
@@ -522,6 +529,7 @@ private:
     void keep_contact(const MeetingFaces& faces, const Triangle& triangle,
                       const ClosestPoints& closest) noexcept
     {
+        TACTUS_ASSERT(contacts_ != nullptr);
         const Contact contact = make_contact(closest, triangle, faces.face, faces.tool_face);
         has_dropped_ = !keep_nearest(contact, contacts_->contacts) || has_dropped_;
     }

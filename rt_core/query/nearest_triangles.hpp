@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "rt_core/base/assert.hpp"
+#include "rt_core/math/infinity.hpp"
 #include "rt_core/records/local_surface.hpp"
 
 #include <algorithm>
@@ -25,6 +27,7 @@ public:
     /// `distance_m` is a lower bound and not negative.
     void add(const LocalTriangle& triangle, double distance_m) noexcept
     {
+        TACTUS_ASSERT(distance_m >= 0.0);
         if (surface_.count < kMaxLocalTriangles)
         {
             put(surface_.count++, triangle, distance_m);
@@ -81,7 +84,7 @@ private:
     }
 
     LocalSurface& surface_;
-    double dropped_m_{std::numeric_limits<double>::infinity()};
+    double dropped_m_{kInfinity};
 };
 
 } // namespace tactus

@@ -2,6 +2,9 @@
 // Copyright the Tactus authors.
 #include "rt_core/query/other_surface.hpp"
 
+#include "rt_core/base/assert.hpp"
+#include "rt_core/math/infinity.hpp"
+#include "rt_core/math/rotation.hpp"
 #include "rt_core/math/rounding.hpp"
 #include "rt_core/query/probe.hpp"
 #include "rt_core/query/surface_query.hpp"
@@ -17,24 +20,27 @@ namespace tactus
 namespace
 {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 } // namespace
 
 MeshPlacement MeshPlacement::inverse() const noexcept
 {
+    TACTUS_ASSERT(place.scale > 0.0);
+    TACTUS_ASSERT(is_orthonormal(place.rotation, kRotationTolerance));
     const double scale = 1.0 / place.scale;
     // there = origin + scale R (here + offset), so here = R^T / scale (there - origin) - offset.
-    return {{place.rotation.transpose(), -offset_m, scale}, -place.origin};
+    return {{place.rotation.transpose(), -offset_m, scale}, -place.translation_m};
 }
 
 double MeshPlacement::rounding_m(const Vec3& here_m) const noexcept
 {
-    return kPoseRounding * (place.origin.norm() + place.scale * (here_m.norm() + offset_m.norm()));
+    return kPoseRounding *
+           (place.translation_m.norm() + place.scale * (here_m.norm() + offset_m.norm()));
 }
 
 double OtherSurface::lower_bound_m(const Ball& ball, double enough_m) noexcept
 {
+    TACTUS_ASSERT(other_ != nullptr);
+    TACTUS_ASSERT(ball.radius >= 0.0);
     const auto quantum = static_cast<double>(other_->quantum_m());
     const double scale = there_.place.scale;
     const double rounding = there_.rounding_m(ball.center);
@@ -57,6 +63,8 @@ double OtherSurface::lower_bound_m(const Ball& ball, double enough_m) noexcept
 
 double OtherSurface::upper_bound_m(const Ball& ball) noexcept
 {
+    TACTUS_ASSERT(other_ != nullptr);
+    TACTUS_ASSERT(ball.radius >= 0.0);
     const DistanceAnswer answer =
         query_distance(*other_, there_.to_there(ball.center), kInfinity, memory_, budget_);
     return (answer.upper_m + there_.rounding_m(ball.center)) / there_.place.scale * kRoundedUp +
@@ -145,6 +153,7 @@ std::uint32_t SurfaceWalk::next_block(double bound_m, bool coarse_only) noexcept
 void SurfaceWalk::push_children(const AbNode& node, double least_m, double bound_m,
                                 bool coarse_only) noexcept
 {
+    TACTUS_ASSERT(node.in_use);
     const std::uint32_t wanted = coarse_only ? node.mask & node.coarse : node.mask;
     const std::size_t first = stack_.size();
     for (std::uint32_t left = wanted; left != 0; left &= left - 1)

@@ -17,12 +17,12 @@ namespace tactus
 /// offset).
 struct MeshPlacement
 {
-    Placement place;
+    Similarity place;
     Vec3 offset_m{0.0, 0.0, 0.0};
 
     [[nodiscard]] Vec3 to_there(const Vec3& here_m) const noexcept
     {
-        return place.origin + place.scale * (place.rotation * (here_m + offset_m));
+        return place.to_there(here_m + offset_m);
     }
     /// The way back.
     [[nodiscard]] MeshPlacement inverse() const noexcept TACTUS_NONBLOCKING;

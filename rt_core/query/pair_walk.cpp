@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "rt_core/query/pair_walk.hpp"
 
+#include "rt_core/base/assert.hpp"
 #include "rt_core/query/probe.hpp"
 
 #include <algorithm>
@@ -43,7 +44,7 @@ float MeshViews::slack_of(const AbTree& tool, const AbTree& object,
     const auto quantum_m = static_cast<double>(object.quantum_m());
     // Of either, in the other's frame and in metres of the object's.
     const double placed_m =
-        place.place.origin.norm() + scale_ * (tool_reach_m + place.offset_m.norm());
+        place.place.translation_m.norm() + scale_ * (tool_reach_m + place.offset_m.norm());
     const double farthest = (placed_m + object_reach_m) / quantum_m;
     // NOLINTNEXTLINE(readability-simplify-boolean-expr): the simpler one lets NaN pass.
     is_beyond_ = !(farthest < kFarQuanta);
@@ -56,6 +57,7 @@ PairWalk::PairWalk(const AbTree& tool, const AbTree& object, const MeshViews& vi
                    WalkBudget& budget) noexcept
     : tool_(tool), object_(object), views_(views), budget_(budget)
 {
+    TACTUS_ASSERT(!views.is_beyond_kernels());
     if (!tool.root().is_none() && !object.root().is_none())
     {
         stack_.push_back({tool.root(), object.root(), tool.box(), object.box(), 0.0F});
@@ -93,10 +95,12 @@ bool PairWalk::is_tool_larger(const Item& item) const noexcept
 
 void PairWalk::open(const Item& item, float bound) noexcept
 {
+    TACTUS_ASSERT(!item.tool.is_block() || !item.object.is_block());
     const bool opens_tool =
         !item.tool.is_block() && (item.object.is_block() || is_tool_larger(item));
     const AbTree& tree = opens_tool ? tool_ : object_;
     const AbNode& node = tree.node(opens_tool ? item.tool.index() : item.object.index());
+    TACTUS_ASSERT(node.in_use);
     const KernelBox other =
         opens_tool ? views_.of_object().of(item.object_box) : views_.of_tool().of(item.tool_box);
     alignas(32) std::array<float, kNodeChildren> gaps; // NOLINT: the kernel fills it.

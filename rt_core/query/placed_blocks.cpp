@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "rt_core/query/placed_blocks.hpp"
 
+#include "rt_core/base/assert.hpp"
 #include "rt_core/math/rounding.hpp"
 
 #include <bit>
@@ -18,6 +19,7 @@ PlacedBlocks::PlacedBlocks(const AbTree& tool, const AbTree& object, const MeshP
 
 const PlacedBlock& PlacedBlocks::get(std::uint32_t index) noexcept
 {
+    TACTUS_ASSERT(tool_.is_block_in_use(index));
     PlacedBlock& placed = blocks_[index % kKept];
     if (placed.index != index)
     {

@@ -26,7 +26,7 @@ struct PlacedBlock // NOLINT(cppcoreguidelines-pro-type-member-init): written wh
     }
 };
 
-/// The tool's blocks that were placed last. Good for one query. 26 KiB.
+/// The tool's blocks that were placed last. Good for one query. 23 KiB.
 class PlacedBlocks
 {
 public:

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "rt_core/kernels/kernels.hpp"
+#include "rt_core/limits.hpp"
 #include "rt_core/math/rounding.hpp"
 #include "rt_core/math/vec3.hpp"
 
@@ -12,10 +13,7 @@
 namespace tactus
 {
 
-/// A point farther than this from the origin, in quanta, is beyond the kernels: their squares would
-/// leave single precision. A model has at most 2^24 quanta a side.
-inline constexpr double kFarQuanta = 0x1p36;
-
+/// Whether a coordinate is kFarQuanta or more from the origin.
 [[nodiscard]] inline bool is_beyond_kernels(const Vec3& point_m, float quantum_m) noexcept
 {
     const double limit_m = kFarQuanta * static_cast<double>(quantum_m);

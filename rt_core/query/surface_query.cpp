@@ -2,6 +2,9 @@
 // Copyright the Tactus authors.
 #include "rt_core/query/surface_query.hpp"
 
+#include "rt_core/base/assert.hpp"
+#include "rt_core/math/infinity.hpp"
+#include "rt_core/math/rounding.hpp"
 #include "rt_core/query/nearest_triangles.hpp"
 #include "rt_core/query/probe.hpp"
 
@@ -15,7 +18,6 @@ namespace tactus
 namespace
 {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr float kInfiniteQuanta = std::numeric_limits<float>::infinity();
 
 /// One query: filters in single precision and quanta, decides in double precision and metres.
@@ -62,6 +64,7 @@ public:
             unproven_ = 0.0; // Its parent's bound may have gone with it.
             return false;
         }
+        TACTUS_ASSERT(tree_.side(index).in_use);
         const std::uint32_t coarse = tree_.side(index).coarse;
         const float limit_before = limit_;
         FaceBounds bounds; // NOLINT(cppcoreguidelines-pro-type-member-init): the kernel fills it.
@@ -239,8 +242,8 @@ DistanceAnswer answer_from_afar(const AbTree& tree, const Vec3& center_m, double
         near_sq += gap * gap;
         far_sq += span * span;
     }
-    answer.lower_m = tree.is_complete() ? std::sqrt(near_sq) * (1.0 - 1e-15) : 0.0;
-    answer.upper_m = std::sqrt(far_sq) * (1.0 + 1e-15);
+    answer.lower_m = tree.is_complete() ? std::sqrt(near_sq) * kRootRoundedDown : 0.0;
+    answer.upper_m = std::sqrt(far_sq) * kRootRoundedUp;
     answer.kind = answer.lower_m > reach_m ? AnswerKind::decided : AnswerKind::bracket;
     answer.tool_point_m = center_m;
     return answer;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "rt_core/abtree/ab_tree.hpp"
+#include "rt_core/base/assert.hpp"
 #include "rt_core/base/static_vector.hpp"
 #include "rt_core/kernels/kernels.hpp"
 #include "rt_core/limits.hpp"
@@ -27,6 +28,7 @@ struct WalkBudget
 
     [[nodiscard]] bool take_node() noexcept
     {
+        TACTUS_ASSERT(nodes_visited <= nodes);
         if (nodes_visited == nodes)
         {
             is_spent = true;
@@ -37,6 +39,7 @@ struct WalkBudget
     }
     [[nodiscard]] bool take_triangles(std::uint32_t count) noexcept
     {
+        TACTUS_ASSERT(triangles_tested <= triangles);
         if (triangles - triangles_tested < count)
         {
             is_spent = true;
@@ -112,6 +115,7 @@ public:
 private:
     void push_children(const typename Tree::Node& node, float bound, bool coarse_only) noexcept
     {
+        TACTUS_ASSERT(node.in_use);
         alignas(32) std::array<float, kNodeChildren> gaps; // NOLINT: the kernel fills it.
         const std::uint32_t wanted = coarse_only ? node.mask & node.coarse : node.mask;
         std::uint32_t near = Tree::Volume::child_gaps(tree_.kernels(), node.volumes, probe_, wanted,

@@ -33,10 +33,13 @@ enum class ForceAction : std::uint8_t
     clamped = 1U << 2U,          ///< Longer than DeviceLimits::force_max_n.
     slew_limited = 1U << 3U,     ///< Grew faster than DeviceLimits::slew_max_n_per_s.
     damped = 1U << 4U,           ///< The passivity controller added damping.
-    blind = 1U << 5U,            ///< The position was no number or jumped: energy not observed.
+    /// Energy not observed: the position was no number or jumped. Observed wrongly: the device's
+    /// delay is longer than kForcesUnderWay tell.
+    blind = 1U << 5U,
 };
 
 inline constexpr std::size_t kForceActions = 6;
+static_assert(static_cast<std::uint32_t>(ForceAction::blind) == 1U << (kForceActions - 1));
 /// In the order of ForceAction's bits.
 inline constexpr std::array<const char*, kForceActions> kForceActionNames{
     "refused", "stiffness_capped", "clamped", "slew_limited", "damped", "blind"};

@@ -33,14 +33,16 @@ using ContactSet = StaticVector<Contact, kMaxContacts>;
 /// Where a tool with a force and a torque may come to touch an object, for the force stage. 6 KiB.
 struct TouchReport
 {
-    ContactSet nearest; ///< Of each face the nearest point.
-    ContactSet corners; ///< Of a convex core, over a face.
+    ContactSet nearest;       ///< Of each face the nearest point.
+    ContactSet corners;       ///< Of a convex core, over a face.
+    bool is_truncated{false}; ///< There were more.
 
     /// As new, without touching what no contact is in.
     void clear() noexcept
     {
         nearest.clear();
         corners.clear();
+        is_truncated = false;
     }
 };
 

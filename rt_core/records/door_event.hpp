@@ -3,6 +3,7 @@
 #pragma once
 
 #include "rt_core/spm/content_key.hpp"
+#include "rt_core/spm/ids.hpp"
 
 #include <cstdint>
 #include <span>
@@ -26,6 +27,7 @@ struct DoorEvent
     /// For an arrival: slots that the transport thread had taken back in all when it linked the
     /// page (modulo 2^32). Linking depends on it, so a replay waits for the same number.
     std::uint32_t freed_taken{0};
+    static_assert(kRecordsPerChunk <= 64);
     std::uint64_t linked{0}; ///< One bit a record of the chunk; none for an index page.
     DoorEventKind kind{DoorEventKind::arrival};
 };

@@ -2,14 +2,17 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "rt_core/base/assert.hpp"
 #include "rt_core/base/realtime.hpp"
 #include "rt_core/geometry/tool_core.hpp"
 #include "rt_core/limits.hpp"
+#include "rt_core/math/infinity.hpp"
+#include "rt_core/math/similarity.hpp"
 #include "rt_core/math/vec3.hpp"
 #include "rt_core/spm/ids.hpp"
 
+#include <array>
 #include <cstdint>
-#include <limits>
 
 namespace tactus
 {
@@ -38,14 +41,17 @@ struct ToolSpec
     bool passes_through{false};
 };
 
-/// Where an object stands: world = translation + scale x rotation x model-frame point.
-struct ObjectPose
+[[nodiscard]] inline bool is_mesh(const ToolSpec& tool) noexcept
 {
-    Mat3 rotation{Mat3::Identity()};
-    Vec3 translation_m{0.0, 0.0, 0.0};
-    double scale{1.0};
+    return std::holds_alternative<MeshCore>(tool.core);
+}
+
+/// Where an object stands: how the frame of its source mesh lies in the world. The default is where
+/// the source stood. Inside the frame, from model_pose() on, it is that of the model's frame.
+struct ObjectPose : Similarity
+{
     std::int64_t stamp_ns{0};
-    std::int64_t age_ns{0};    ///< Beyond `Scene` limits the answers are called stale.
+    std::int64_t age_ns{0};    ///< Beyond FrameSetup::pose_age_max_ns the answers are called stale.
     std::uint32_t revision{0}; ///< Of the model that the pose was made for.
 };
 
@@ -53,7 +59,7 @@ struct ObjectPose
 struct Material
 {
     /// The tool's or this, whichever is softer; > 0.
-    double stiffness_n_per_m{std::numeric_limits<double>::infinity()};
+    double stiffness_n_per_m{kInfinity};
     double static_friction{0.0};   ///< Coulomb's coefficient while the tool sticks; >= 0.
     double dynamic_friction{0.0};  ///< While it slides; at most the static one.
     double damping_n_s_per_m{0.0}; ///< Of the motion across the surface, in touch; >= 0.
@@ -66,24 +72,24 @@ struct ObjectSpec
     Material material{};
 };
 
-/// Where a tool's frame lies in the model's, the tool's in the world.
-[[nodiscard]] inline Placement place_in_model(const ObjectPose& pose, const Mat3& rotation,
-                                              const Vec3& position_m) noexcept
+/// The same for the frame of the model, whose origin the source mesh has at `origin_m`
+/// (ModelHeader::origin_m).
+[[nodiscard]] inline ObjectPose model_pose(const ObjectPose& source_pose,
+                                           const Vec3& origin_m) noexcept
 {
-    return {pose.rotation.transpose() * rotation,
-            (pose.rotation.transpose() * (position_m - pose.translation_m)) / pose.scale,
-            1.0 / pose.scale};
+    ObjectPose pose = source_pose;
+    pose.translation_m = source_pose.to_there(origin_m);
+    return pose;
 }
 
 [[nodiscard]] inline Vec3 to_model(const ObjectPose& pose, const Vec3& world_m) noexcept
 {
-    const Vec3 relative = world_m - pose.translation_m;
-    return (pose.rotation.transpose() * relative) / pose.scale;
+    return pose.to_here(world_m);
 }
 
 [[nodiscard]] inline Vec3 to_world(const ObjectPose& pose, const Vec3& model_m) noexcept
 {
-    return pose.translation_m + pose.scale * (pose.rotation * model_m);
+    return pose.to_there(model_m);
 }
 
 /// How far distances from a core of this radius round a place of the world may be off by its way
@@ -91,6 +97,7 @@ struct ObjectSpec
 [[nodiscard]] inline double pose_rounding_m(const ObjectPose& pose, const Vec3& world_m,
                                             double radius_m) noexcept
 {
+    TACTUS_ASSERT(radius_m >= 0.0);
     return kPoseRounding *
            ((world_m - pose.translation_m).norm() + world_m.norm() + 2.0 * radius_m);
 }
@@ -112,13 +119,17 @@ struct Budgets
 /// The frame's stages, in order; times are named after them.
 enum class Stage : std::uint8_t
 {
-    load,   ///< adopt, predict, request: T_L
+    load,   ///< adopt, predict, request: T_L of the paper
     refine, ///< coarsen, refine: T_R
     refit,  ///< T_B
     query,  ///< T_Q
     force,
 };
 inline constexpr std::uint32_t kStages = 5;
+/// In the order of Stage.
+inline constexpr std::array<const char*, kStages> kStageNames{"load", "refine", "refit", "query",
+                                                              "force"};
+static_assert(static_cast<std::uint32_t>(Stage::force) + 1 == kStages);
 
 /// Called at the end of each stage, so that the caller can take the time; the frame reads no clock.
 struct StageMark

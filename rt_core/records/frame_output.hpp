@@ -16,6 +16,9 @@ namespace tactus
 {
 
 /// What one tool got. World frame, SI.
+///
+/// Force and torque are those of the proxy's spring, whatever is wrong: SafeState fades them for
+/// what faults_of() says.
 struct ToolOutput
 {
     Vec3 force_n{0.0, 0.0, 0.0};
@@ -24,14 +27,34 @@ struct ToolOutput
     Mat3 proxy_rotation{Mat3::Identity()}; ///< Of the tool's frame; a sphere's is the hand's.
     double stiffness_n_per_m{0.0}; ///< Of the spring that makes the force; 0 without contact.
     bool in_contact{false};
-    bool frozen{false};   ///< The proxy waits for data; the force fades.
-    bool squeezed{false}; ///< Objects leave the tool no room; the force fades.
+    bool frozen{false};   ///< The proxy waits for data, held where it is.
+    bool squeezed{false}; ///< Objects leave the tool no room.
     /// The proxy went as far as the surface is known, for want of data, and would have gone
     /// farther.
     bool held_back{false};
     /// The proxy is still on its way: it came to the end of what is known, or of a frame's steps.
     bool under_way{false};
+    bool crowded{false}; ///< More touches it than limits allow: force and torque may lack some.
+    FrameFault sample_fault{FrameFault::none}; ///< What is wrong with the device (SampleWatch).
 };
+
+/// What a frame says of a tool with this output.
+[[nodiscard]] constexpr FrameFault frame_faults(const ToolOutput& output) noexcept
+{
+    return output.sample_fault | (output.frozen ? FrameFault::proxy_frozen : FrameFault::none) |
+           (output.squeezed ? FrameFault::proxy_squeezed : FrameFault::none) |
+           (output.crowded ? FrameFault::tool_crowded : FrameFault::none);
+}
+
+/// Why a tool's force must fade; none while nothing is wrong. A proxy that waits without a force
+/// has nothing to fade.
+[[nodiscard]] constexpr FrameFault faults_of(const ToolOutput& output) noexcept
+{
+    const auto in_contact = [&output](bool is_so, FrameFault fault)
+    { return is_so && output.in_contact ? fault : FrameFault::none; };
+    return output.sample_fault | in_contact(output.frozen, FrameFault::proxy_frozen) |
+           in_contact(output.squeezed, FrameFault::proxy_squeezed);
+}
 
 /// What one pair of tool and object got. World frame, metres: the model's distances times the
 /// scale.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "rt_core/limits.hpp"
+#include "rt_core/math/infinity.hpp"
 #include "rt_core/math/triangle.hpp"
 #include "rt_core/math/vec3.hpp"
 #include "rt_core/records/changed_face.hpp"
@@ -10,7 +11,6 @@
 
 #include <array>
 #include <cstdint>
-#include <limits>
 
 namespace tactus
 {
@@ -35,8 +35,8 @@ enum class AnswerKind : std::uint8_t
 struct DistanceAnswer
 {
     AnswerKind kind{AnswerKind::bracket};
-    double lower_m{0.0};                                     ///< L: no original surface is nearer.
-    double upper_m{std::numeric_limits<double>::infinity()}; ///< U: some is within this.
+    double lower_m{0.0};       ///< L: no original surface is nearer.
+    double upper_m{kInfinity}; ///< U: some is within this.
     /// All original faces within this distance of the core are active and exact; negative when not
     /// even those that touch it are.
     double certified_radius_m{-1.0};
@@ -57,5 +57,8 @@ struct LocalSurface
     std::uint32_t count{0};
     bool truncated{false}; ///< More triangles were in reach; the certified radius says how far.
 };
+static_assert(sizeof(LocalTriangle) == 40);
+static_assert(sizeof(LocalSurface) == kMaxLocalTriangles * 48 + 128,
+              "docs/architecture.md, Memory");
 
 } // namespace tactus

@@ -23,6 +23,9 @@ struct RankedRegion
 };
 
 /// The regions of one frame, most urgent first.
-using RegionRanking = StaticVector<RankedRegion, kMaxRankedRegions>;
+struct RegionRanking : StaticVector<RankedRegion, kMaxRankedRegions>
+{
+    bool lacks_present{false}; ///< A ball where a tool is now had no room.
+};
 
 } // namespace tactus

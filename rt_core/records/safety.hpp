@@ -19,6 +19,7 @@ enum class SafetyState : std::uint8_t
     brake  ///< Something is wrong: the last force fades, the motion is damped.
 };
 inline constexpr std::size_t kSafetyStates = 4;
+static_assert(static_cast<std::size_t>(SafetyState::brake) + 1 == kSafetyStates);
 
 /// Why a force is taken away, a set. The first five are the DHD's; the others say more exactly
 /// what a watch of ours has found.
@@ -36,8 +37,11 @@ enum class ForceOff : std::uint32_t
     host = 1U << 8U,       ///< A host is lost that may still have to send parts of its model.
     assertion = 1U << 9U,  ///< The haptic thread found a bug in itself.
     jump = 1U << 10U,      ///< A host moved an object too far at once while the tool touched one.
+    frozen = 1U << 11U,    ///< The proxy waits for data of the surface.
+    squeezed = 1U << 12U,  ///< Objects leave the tool no room.
 };
-inline constexpr std::size_t kForceOffs = 11;
+inline constexpr std::size_t kForceOffs = 13;
+static_assert(static_cast<std::uint32_t>(ForceOff::squeezed) == 1U << (kForceOffs - 1));
 
 [[nodiscard]] constexpr ForceOff operator|(ForceOff a, ForceOff b) noexcept
 {
@@ -46,6 +50,10 @@ inline constexpr std::size_t kForceOffs = 11;
 constexpr ForceOff& operator|=(ForceOff& a, ForceOff b) noexcept
 {
     return a = a | b;
+}
+[[nodiscard]] constexpr ForceOff operator&(ForceOff a, ForceOff b) noexcept
+{
+    return static_cast<ForceOff>(static_cast<std::uint32_t>(a) & static_cast<std::uint32_t>(b));
 }
 [[nodiscard]] constexpr bool has_cause(ForceOff set, ForceOff one) noexcept
 {
@@ -57,7 +65,7 @@ inline constexpr std::array<const char*, kSafetyStates> kSafetyStateNames{"reset
                                                                           "brake"};
 /// In the order of ForceOff's bits.
 inline constexpr std::array<const char*, kForceOffs> kForceOffNames{
-    "velocity", "watchdog", "software", "disconnect", "deadman", "stale",
-    "garbage",  "stall",    "host",     "assertion",  "jump"};
+    "velocity", "watchdog", "software",  "disconnect", "deadman", "stale",   "garbage",
+    "stall",    "host",     "assertion", "jump",       "frozen",  "squeezed"};
 
 } // namespace tactus

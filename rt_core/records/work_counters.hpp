@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 
 namespace tactus
@@ -56,11 +58,23 @@ enum class FrameFault : std::uint32_t
     surface_truncated = 1U << 6U,  ///< More triangles in reach than kMaxLocalTriangles.
     model_inconsistent = 1U << 7U, ///< A record contradicts the mesh: rebuild the model.
     tool_invalid = 1U << 8U,       ///< A device sample was not usable.
-    proxy_frozen = 1U << 9U,       ///< Contact without a certified surface; the force fades.
-    tool_stuck = 1U << 10U,        ///< A device's time stands still; the force fades.
+    proxy_frozen = 1U << 9U,       ///< Its surface is not certified; SafeState fades a force.
+    tool_stuck = 1U << 10U,        ///< A device's time stands still; SafeState fades the force.
     tool_jumped = 1U << 11U,       ///< A goal faster than any hand; no force until it is back.
     proxy_squeezed = 1U << 12U,    ///< Objects leave a proxy no room, or one came over it.
+    refine_heap_full = 1U << 13U,  ///< More coarse faces in reach than kRefineHeap; they wait.
+    held_records_full = 1U << 14U, ///< A record of an open closure isn't held: kMaxHeldRecords.
+    ranking_full = 1U << 15U,      ///< What a tool is at isn't asked for: kMaxRankedRegions.
+    tool_crowded = 1U << 16U,      ///< Not all that holds a tool fits: kMaxContacts and others.
 };
+inline constexpr std::size_t kFrameFaults = 17;
+/// In the order of FrameFault's bits.
+inline constexpr std::array<const char*, kFrameFaults> kFrameFaultNames{
+    "split_budget_spent", "forest_full",       "tree_full",         "chunk_late",
+    "cache_full",         "node_budget_spent", "surface_truncated", "model_inconsistent",
+    "tool_invalid",       "proxy_frozen",      "tool_stuck",        "tool_jumped",
+    "proxy_squeezed",     "refine_heap_full",  "held_records_full", "ranking_full",
+    "tool_crowded"};
 
 [[nodiscard]] constexpr FrameFault operator|(FrameFault a, FrameFault b) noexcept
 {

@@ -2,20 +2,19 @@
 // Copyright the Tactus authors.
 #include "rt_core/refine/coarsener.hpp"
 
+#include "rt_core/base/assert.hpp"
+#include "rt_core/math/infinity.hpp"
 #include "rt_core/spm/error_code.hpp"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <limits>
 
 namespace tactus
 {
 
 namespace
 {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// A record may stay while a tool goes this much farther than it has to, as a share of the keep
 /// distance, so that a page has not to be looked at for each of its records.
@@ -35,6 +34,7 @@ Coarsener::Coarsener(Arena& arena, VertexForest& forest, PageTable& pages, float
 
 void Coarsener::follow(double farthest_m) noexcept
 {
+    TACTUS_ASSERT(farthest_m >= 0.0);
     travel_ += farthest_m;
 }
 
@@ -47,6 +47,7 @@ void Coarsener::look_at_all() noexcept
 void Coarsener::look_when_left(std::uint32_t slot, const VsplitRecord& record,
                                std::span<const RefineQuestion> questions) noexcept
 {
+    TACTUS_ASSERT(slot < look_at_.size());
     look_at_[slot] = std::min(look_at_[slot], travel_ + slack_of(record, questions));
     next_look_ = std::min(next_look_, look_at_[slot]);
 }
@@ -137,6 +138,7 @@ bool Coarsener::merge_back(RecordId first, std::span<const RefineQuestion> quest
         }
         ++work.scanned;
         const std::uint32_t slot = pages_->find(chunk_of(id));
+        TACTUS_ASSERT(slot < needed_.size());
         const VsplitRecord& record = pages_->slots().pages[slot].records[place_in_chunk(id)];
         const std::uint64_t bit = std::uint64_t{1} << place_in_chunk(id);
         needed_[slot] &= ~bit;
@@ -174,6 +176,7 @@ bool Coarsener::merge_back(RecordId first, std::span<const RefineQuestion> quest
 void Coarsener::look_soon(RecordId record) noexcept
 {
     const std::uint32_t slot = pages_->find(chunk_of(record));
+    TACTUS_ASSERT(slot < needed_.size());
     needed_[slot] &= ~(std::uint64_t{1} << place_in_chunk(record));
     look_at_[slot] = travel_;
     next_look_ = travel_;

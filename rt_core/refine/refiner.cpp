@@ -2,20 +2,20 @@
 // Copyright the Tactus authors.
 #include "rt_core/refine/refiner.hpp"
 
+#include "rt_core/base/assert.hpp"
+#include "rt_core/math/infinity.hpp"
+#include "rt_core/math/rounding.hpp"
 #include "rt_core/math/triangle.hpp"
 #include "rt_core/query/probe.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace tactus
 {
 
 namespace
 {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Most urgent first; among equals the lower slot, so that the order is the same in every run. An
 /// object, since a function would be called through a pointer.
@@ -122,6 +122,7 @@ void Refiner::run(std::span<const RefineQuestion> questions, const Budgets& budg
 {
     follow(questions);
     heap_size_ = 0;
+    given_up_ = FrameFault::none;
     for (const RefineQuestion& question : questions)
     {
         if (is_wanting(question))
@@ -130,7 +131,9 @@ void Refiner::run(std::span<const RefineQuestion> questions, const Budgets& budg
         }
     }
     const std::uint32_t merges_before = work.merges;
-    coarsener_.run(questions, budgets, work);
+    Budgets within = budgets;
+    within.merges = std::min(budgets.merges, kMaxMergesPerFrame);
+    coarsener_.run(questions, within, work);
     if (work.merges != merges_before)
     {
         // What was merged is beyond every question's keep distance, but no farther.
@@ -150,6 +153,10 @@ void Refiner::follow(std::span<const RefineQuestion> questions) noexcept
     question_count_ = questions.size();
     for (const RefineQuestion& question : questions)
     {
+        TACTUS_ASSERT(question.memory != nullptr);
+        TACTUS_ASSERT(question.reach_m >= 0.0);
+        TACTUS_ASSERT(question.keep_m >= question.reach_m);
+        TACTUS_ASSERT(!is_beyond_kernels(question.center_m, tree_->quantum_m()));
         RefineMemory& memory = *question.memory;
         memory.probe = make_probe(question.center_m, tree_->quantum_m());
         if (!memory.is_known)
@@ -163,7 +170,7 @@ void Refiner::follow(std::span<const RefineQuestion> questions) noexcept
         }
         const double moved = question.surface != nullptr
                                  ? question.moved_m
-                                 : (question.center_m - memory.center_m).norm() * (1.0 + 1e-12);
+                                 : (question.center_m - memory.center_m).norm() * kWidened;
         farthest = std::max(farthest, moved + std::max(0.0, memory.keep_m - question.keep_m));
         memory.certified_m = tree_->is_complete() ? memory.certified_m - moved : 0.0;
         memory.center_m = question.center_m;
@@ -307,7 +314,7 @@ void Refiner::split_wanted(std::span<const RefineQuestion> questions, const Budg
     // What is only looked ahead for may wait.
     const bool is_late = std::ranges::any_of(questions, [](const RefineQuestion& question)
                                              { return is_wanting(question); });
-    faults |= is_late ? found : found & FrameFault::model_inconsistent;
+    faults |= is_late ? found | given_up_ : found & FrameFault::model_inconsistent;
 }
 
 /// The least excess of a face for which the pending closure was begun; infinity when none of them
@@ -369,6 +376,8 @@ Refiner::ClosureOutcome Refiner::split_with_closure(RecordId target, std::uint32
                                                     std::uint32_t frame, WorkCounters& work,
                                                     FrameFault& faults) noexcept
 {
+    TACTUS_ASSERT(!target.is_none());
+    TACTUS_ASSERT(limit <= done_.size());
     done_count_ = 0;
     std::uint32_t depth = 0;
     stack_[depth++] = target;
@@ -408,6 +417,7 @@ Refiner::ClosureOutcome Refiner::split_with_closure(RecordId target, std::uint32
             return ClosureOutcome::blocked;
         case VertexForest::SplitOutcome::done:
             ++work.splits;
+            TACTUS_ASSERT(done_count_ < done_.size());
             done_[done_count_++] = id;
             --depth;
             coarsener_.look_when_left(slot, *record,
@@ -423,6 +433,7 @@ Refiner::Progress Refiner::refine_everything(std::uint32_t records,
                                              const Budgets& budgets, std::uint32_t frame,
                                              WorkCounters& work, FrameFault& faults) noexcept
 {
+    TACTUS_ASSERT(next_record_ <= records);
     heap_size_ = 0;
     const std::uint32_t most = std::min(budgets.splits, kMaxSplitsPerFrame);
     is_filling_ = true;
@@ -489,7 +500,7 @@ void Refiner::consider_star(RecordId id, const VsplitRecord& record,
         }
         const Vec3 vertex = to_vec3(record.position_m);
         const double nearest =
-            sharpened(question, (vertex - question.center_m).norm() * (1.0 - 1e-15) - reach, 0.0,
+            sharpened(question, (vertex - question.center_m).norm() * kRootRoundedDown - reach, 0.0,
                       [&] {
                           return Ball{vertex, reach};
                       });
@@ -539,7 +550,7 @@ double Refiner::lower_bound(PrimId prim, const RefineQuestion& question) const n
         question, static_cast<double>(error_in_quanta(forest_->error_of(prim))) * quantum_m_);
     const Triangle triangle = to_triangle(forest_->corners_of(prim));
     const double box_lower =
-        std::sqrt(box_distance_sq(question.center_m, triangle)) * (1.0 - 1e-15) - error;
+        std::sqrt(box_distance_sq(question.center_m, triangle)) * kRootRoundedDown - error;
     if (box_lower > target_of(question))
     {
         return box_lower;
@@ -549,12 +560,16 @@ double Refiner::lower_bound(PrimId prim, const RefineQuestion& question) const n
                      error, [&] { return ball_round(triangle); });
 }
 
-/// Full: the face waits for the next frame, when nearer ones are done.
+/// Full: the face waits for the next frame, when nearer ones are done. One that is only looked
+/// ahead for is missed by nobody.
 void Refiner::push(const Candidate& candidate, std::span<const RefineQuestion> questions) noexcept
 {
+    TACTUS_ASSERT(!candidate.prim.is_none());
+    TACTUS_ASSERT(candidate.excess_m < kInfinity);
     if (heap_size_ == heap_.size())
     {
         leave_at(questions, candidate.excess_m);
+        given_up_ |= candidate.excess_m <= 0.0 ? FrameFault::refine_heap_full : FrameFault::none;
         return;
     }
     heap_[heap_size_++] = candidate;
@@ -563,6 +578,7 @@ void Refiner::push(const Candidate& candidate, std::span<const RefineQuestion> q
 
 Refiner::Candidate Refiner::pop() noexcept
 {
+    TACTUS_ASSERT(heap_size_ > 0);
     std::pop_heap(heap_.data(), heap_.data() + heap_size_, comes_later);
     return heap_[--heap_size_];
 }
@@ -573,17 +589,21 @@ bool Refiner::is_current(const Candidate& candidate) const noexcept
     return !face.id.is_none() && face.state == candidate.state;
 }
 
+/// Full: the record may be merged before its closure is complete, and has to be split again.
 void Refiner::hold(RecordId record) noexcept
 {
-    if (held_count_ < held_.size())
+    if (held_count_ == held_.size())
     {
-        held_[held_count_++] = record;
-        pages_->set_held(record, true);
+        given_up_ |= FrameFault::held_records_full;
+        return;
     }
+    held_[held_count_++] = record;
+    pages_->set_held(record, true);
 }
 
 void Refiner::release_held() noexcept
 {
+    TACTUS_ASSERT(held_count_ == 0 || !pending_.is_none());
     for (std::uint32_t i = 0; i < held_count_; ++i)
     {
         pages_->set_held(held_[i], false);

@@ -129,6 +129,7 @@ private:
     std::uint32_t next_record_{0}; ///< fill() has done those before.
     /// Splits are not for the questions: another surface is not walked for each of them.
     bool is_filling_{false};
+    FrameFault given_up_{FrameFault::none}; ///< For want of room in this frame.
 };
 
 } // namespace tactus

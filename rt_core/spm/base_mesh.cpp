@@ -51,7 +51,8 @@ Result<Done, SpmRefusal> parse_base_mesh(std::span<const std::byte> bytes,
 {
     const ModelCounts counts = header.counts();
     TACTUS_ASSERT(mesh.positions_m.size() == counts.base_vertices);
-    TACTUS_ASSERT(mesh.faces.size() == counts.base_faces && mesh.next.size() == counts.base_faces);
+    TACTUS_ASSERT(mesh.faces.size() == counts.base_faces);
+    TACTUS_ASSERT(mesh.next.size() == counts.base_faces);
     const std::uint64_t size = coded_base_bytes(header.fields());
     if (bytes.size() != size)
     {

@@ -29,6 +29,7 @@ namespace tactus
 [[nodiscard]] constexpr std::uint32_t records_in_chunk(const ModelCounts& counts,
                                                        ChunkId chunk) noexcept
 {
+    TACTUS_ASSERT(chunk.value < counts.chunks());
     const std::uint32_t left = counts.records - (chunk.value << kRecordsPerChunkLog2);
     return left < kRecordsPerChunk ? left : kRecordsPerChunk;
 }

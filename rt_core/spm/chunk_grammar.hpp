@@ -92,6 +92,7 @@ inline constexpr std::uint32_t kExactBelow = 15; ///< Stands for an error of 0.
 }
 [[nodiscard]] constexpr ErrorCode error_below(ErrorCode largest, std::uint32_t steps) noexcept
 {
+    TACTUS_ASSERT(steps <= kExactBelow);
     const std::uint32_t error = largest > 2 * steps ? largest - 2 * steps : 1U;
     return static_cast<ErrorCode>(steps == kExactBelow ? 0U : error);
 }
@@ -111,6 +112,7 @@ public:
     ChunkGrammar(Coder& coder, const ModelCounts& counts, ChunkId chunk) noexcept
         : coder_(coder), model_(initial_chunk_model()), counts_(counts)
     {
+        TACTUS_ASSERT(chunk.value < counts.chunks());
         const RecordId first{chunk.value << kRecordsPerChunkLog2};
         const Tier own = tier_of(first);
         for (std::uint32_t tier = 0; tier < kTiers; ++tier)
@@ -125,6 +127,7 @@ public:
 
     void code(RecordId id, CodedRecord& record) noexcept
     {
+        TACTUS_ASSERT(id.value < counts_.records);
         own_ = tier_of(id).number;
         code_fan(id, record);
         code_residual(record);
@@ -200,6 +203,7 @@ private:
     std::uint32_t code_rest(std::array<Probability, 4>& next_bits, std::uint32_t width,
                             std::uint32_t value) noexcept
     {
+        TACTUS_ASSERT(width <= 32);
         if (width < 2)
         {
             return width;
@@ -305,6 +309,7 @@ private:
         using Kind = CodedRecord::Owner::Kind;
         const bool is_base = owner.kind == Kind::base;
         const std::uint32_t tier = is_base ? 0 : tier_of({owner.value}).number;
+        TACTUS_ASSERT(tier <= own_);
         auto& tree = model_.tier_step[role][context_of(last_step_)];
         const std::uint32_t step = code_tree(tree, is_base ? kBaseStep : own_ - tier);
         if (role == kAnchor)

@@ -4,6 +4,7 @@
 
 #include "rt_core/math/rounding.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -37,6 +38,8 @@ constexpr std::array<float, 256> make_error_quanta() noexcept
 }
 
 inline constexpr std::array<float, 256> kErrorQuanta = make_error_quanta();
+static_assert(std::ranges::is_sorted(kErrorQuanta), "a larger code is a larger bound");
+static_assert(kErrorQuanta[1] == 1.0F / 256.0F);
 
 } // namespace detail
 

@@ -25,7 +25,7 @@ bool counts_are_in_range(const HeaderFields& fields) noexcept
 
 bool is_finite(double value) noexcept
 {
-    return std::abs(value) <= 1e300;
+    return std::abs(value) <= kCoordinateRange;
 }
 
 bool geometry_is_in_range(const HeaderFields& fields) noexcept

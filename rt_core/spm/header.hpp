@@ -5,6 +5,7 @@
 #include "rt_core/base/realtime.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/limits.hpp"
+#include "rt_core/math/vec3.hpp"
 #include "rt_core/spm/ids.hpp"
 
 #include <array>
@@ -119,6 +120,11 @@ public:
     /// Metres in one quantum; a power of two, so products with grid integers are exact floats.
     [[nodiscard]] float quantum_m() const noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] double diagonal_m() const noexcept;
+    /// Where the source mesh has the origin of the model's frame; the axes are parallel.
+    [[nodiscard]] Vec3 origin_m() const noexcept
+    {
+        return {fields_.origin_m[0], fields_.origin_m[1], fields_.origin_m[2]};
+    }
     [[nodiscard]] bool is_closed() const noexcept { return fields_.topology == kClosedTopology; }
 
     [[nodiscard]] IndexPageEntry index_entry(IndexPageId page) const noexcept TACTUS_NONBLOCKING;

@@ -5,6 +5,7 @@
 #include "rt_core/base/assert.hpp"
 #include "rt_core/base/model_id.hpp"
 #include "rt_core/base/strong_id.hpp"
+#include "rt_core/limits.hpp"
 
 #include <cstdint>
 
@@ -64,15 +65,19 @@ struct ModelCounts
     [[nodiscard]] constexpr RecordId record_of(VertexId vertex) const noexcept
     {
         TACTUS_ASSERT(!is_base(vertex));
+        TACTUS_ASSERT(vertex.value < vertices());
         return {vertex.value - base_vertices};
     }
     [[nodiscard]] constexpr VertexId vertex_of(RecordId record) const noexcept
     {
+        TACTUS_ASSERT(record.value < records);
         return {record.value + base_vertices};
     }
     /// The face that appears on side 0 (A) or 1 (B) when the record is split.
     [[nodiscard]] constexpr FaceId face_of(RecordId record, std::uint32_t side) const noexcept
     {
+        TACTUS_ASSERT(record.value < records);
+        TACTUS_ASSERT(side < 2);
         return {base_faces + 2 * record.value + side};
     }
 };

@@ -5,6 +5,7 @@
 #include "rt_core/base/byte_io.hpp"
 #include "rt_core/base/crc32c.hpp"
 #include "rt_core/math/four_lanes.hpp"
+#include "rt_core/math/rounding.hpp"
 
 #include <algorithm>
 #include <array>
@@ -89,7 +90,7 @@ std::uint64_t chunks_meeting(const IndexPage& page, const QuantumBox& page_box,
     std::array<EightUnsigned, 3> highs{};
     for (std::size_t axis = 0; axis < 3; ++axis)
     {
-        const double reach = ball.radius * (1.0 + 1e-12);
+        const double reach = ball.radius * kWidened;
         const double low = (at[axis] - reach) / step[axis] - 1.0;
         const double high = (at[axis] + reach) / step[axis] + 1.0;
         const bool is_in_page = low <= kLastStep && high >= 0.0;

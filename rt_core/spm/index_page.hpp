@@ -32,11 +32,13 @@ struct IndexPage
 
     [[nodiscard]] InfluenceBox box(std::size_t chunk) const noexcept
     {
+        TACTUS_ASSERT(chunk < chunks);
         return {{low[0][chunk], low[1][chunk], low[2][chunk]},
                 {high[0][chunk], high[1][chunk], high[2][chunk]}};
     }
     void set_box(std::size_t chunk, const InfluenceBox& box) noexcept
     {
+        TACTUS_ASSERT(chunk < kChunksPerIndexPage);
         for (std::size_t axis = 0; axis < 3; ++axis)
         {
             low[axis][chunk] = box.low[axis];
@@ -69,6 +71,7 @@ struct ChunkEntry
 /// Quanta in one step of an index page's boxes along an axis: the least that spans it in 16 bits.
 [[nodiscard]] constexpr std::uint32_t index_step(std::int32_t low, std::int32_t high) noexcept
 {
+    TACTUS_ASSERT(low <= high);
     const auto extent = static_cast<std::uint64_t>(static_cast<std::int64_t>(high) -
                                                    static_cast<std::int64_t>(low));
     return static_cast<std::uint32_t>(extent / 65'535 + 1);
@@ -79,12 +82,14 @@ inline constexpr std::size_t kIndexEntryBytes = 12 + 2 + 16;
 /// Coded index page: page number, the entries, a checksum.
 [[nodiscard]] constexpr std::size_t coded_index_page_bytes(std::uint32_t chunks) noexcept
 {
+    TACTUS_ASSERT(chunks <= kChunksPerIndexPage);
     return 4 + chunks * kIndexEntryBytes + kChecksumBytes;
 }
 /// How many chunks an index page holds.
 [[nodiscard]] constexpr std::uint32_t chunks_in_index_page(const ModelCounts& counts,
                                                            IndexPageId page) noexcept
 {
+    TACTUS_ASSERT(page.value < counts.index_pages());
     const std::uint32_t left = counts.chunks() - (page.value << kChunksPerIndexPageLog2);
     return left < kChunksPerIndexPage ? left : kChunksPerIndexPage;
 }

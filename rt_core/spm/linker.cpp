@@ -42,7 +42,9 @@ Linker::Linker(Arena& arena, const ModelHeader& header, PageSlots slots) noexcep
 
 void Linker::link_page(ChunkId chunk, std::uint32_t slot) noexcept
 {
-    TACTUS_ASSERT(slot < residents_.size() && residents_[slot].chunk.is_none());
+    TACTUS_ASSERT(chunk.value < counts_.chunks());
+    TACTUS_ASSERT(slot < residents_.size());
+    TACTUS_ASSERT(residents_[slot].chunk.is_none());
     residents_[slot] = Resident{chunk, 0, 0};
     const bool inserted = slot_of_.try_insert(chunk.value, slot);
     TACTUS_ASSERT(inserted);
@@ -54,7 +56,8 @@ void Linker::link_page(ChunkId chunk, std::uint32_t slot) noexcept
 
 void Linker::release_page(std::uint32_t slot) noexcept
 {
-    TACTUS_ASSERT(slot < residents_.size() && !residents_[slot].chunk.is_none());
+    TACTUS_ASSERT(slot < residents_.size());
+    TACTUS_ASSERT(!residents_[slot].chunk.is_none());
     const ChunkId chunk = residents_[slot].chunk;
     for (std::uint32_t place = 0; place < records_in_chunk(counts_, chunk); ++place)
     {
@@ -70,6 +73,8 @@ void Linker::release_page(std::uint32_t slot) noexcept
 
 std::uint64_t Linker::tell_linked(std::uint32_t slot) noexcept
 {
+    TACTUS_ASSERT(slot < residents_.size());
+    TACTUS_ASSERT(!residents_[slot].chunk.is_none());
     residents_[slot].told = residents_[slot].linked;
     return residents_[slot].linked;
 }
@@ -79,6 +84,7 @@ bool Linker::try_take_update(Update& update) noexcept
     while (!owing_.is_empty)
     {
         const std::uint32_t slot = owing_.first;
+        TACTUS_ASSERT(owing_.behind[slot] != kNotOwing);
         owing_.is_empty = slot == owing_.last;
         owing_.first = owing_.behind[slot];
         owing_.behind[slot] = kNotOwing;
@@ -105,6 +111,7 @@ void Linker::owe_update(std::uint32_t slot) noexcept
     }
     else
     {
+        TACTUS_ASSERT(owing_.behind[owing_.last] == owing_.last);
         owing_.behind[owing_.last] = slot;
     }
     owing_.last = slot;
@@ -115,6 +122,8 @@ void Linker::owe_update(std::uint32_t slot) noexcept
 /// takes a record off a list and puts it back for a later dependency at most, so this ends.
 void Linker::settle(Seat seat) noexcept
 {
+    TACTUS_ASSERT(ready_ == kNoSeat);
+    TACTUS_ASSERT(!waiting_[seat].is_in_list());
     waiting_[seat].behind = kNoSeat;
     ready_ = seat;
     while (ready_ != kNoSeat)
@@ -160,6 +169,8 @@ bool Linker::try_link(Seat seat) noexcept
 
 void Linker::link(Seat seat, const VsplitRecord& record, const StarRing& ring) noexcept
 {
+    TACTUS_ASSERT(!is_linked_at(seat));
+    TACTUS_ASSERT(record.fan_size > 0);
     record_at(seat) = record;
     rings_[seat] = ring;
     for (std::uint32_t i = 0; i < record.fan_size; ++i)
@@ -216,6 +227,8 @@ void Linker::mend_next(Seat seat) noexcept
 
 void Linker::wait_for(Seat seat, RecordId awaited) noexcept
 {
+    TACTUS_ASSERT(!awaited.is_none());
+    TACTUS_ASSERT(!waiting_[seat].is_in_list());
     Seat& first = list_of(awaited);
     waiting_[seat] = {awaited, first};
     first = seat;
@@ -244,6 +257,7 @@ void Linker::stop_waiting(Seat seat) noexcept
     Seat* link = &list_of(waiting_[seat].awaited);
     while (*link != seat)
     {
+        TACTUS_ASSERT(*link != kNoSeat);
         link = &waiting_[*link].behind;
     }
     *link = waiting_[seat].behind;
@@ -291,8 +305,14 @@ bool Linker::is_linked(RecordId record) const noexcept
 
 std::uint32_t& Linker::next_of(FaceId face, FaceState state) const noexcept
 {
-    return state.is_base() ? slots_.base.next[face.value]
-                           : record_at(seat_of(state.record())).next[state.place()];
+    if (state.is_base())
+    {
+        TACTUS_ASSERT(counts_.is_base(face));
+        return slots_.base.next[face.value];
+    }
+    const Seat owner = seat_of(state.record());
+    TACTUS_ASSERT(owner != kNoSeat);
+    return record_at(owner).next[state.place()];
 }
 
 /// kNoSeat when the record's page is away.
@@ -306,6 +326,7 @@ Linker::Seat Linker::seat_of(RecordId record) const noexcept
 RecordId Linker::id_of(Seat seat) const noexcept
 {
     const ChunkId chunk = residents_[seat >> kRecordsPerChunkLog2].chunk;
+    TACTUS_ASSERT(!chunk.is_none());
     return {(chunk.value << kRecordsPerChunkLog2) + seat % kRecordsPerChunk};
 }
 

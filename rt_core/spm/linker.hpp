@@ -70,6 +70,7 @@ public:
     [[nodiscard]] bool try_take_update(Update& update) noexcept;
     [[nodiscard]] std::uint64_t linked(std::uint32_t slot) const noexcept
     {
+        TACTUS_ASSERT(slot < residents_.size());
         return residents_[slot].linked;
     }
 
@@ -105,6 +106,7 @@ private:
     struct Resident
     {
         ChunkId chunk{};
+        static_assert(kRecordsPerChunk <= 64);
         std::uint64_t linked{0}; ///< One bit a record.
         std::uint64_t told{0};   ///< Of `linked`, what the haptic thread was told.
     };

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "rt_core/base/assert.hpp"
 #include "rt_core/limits.hpp"
 #include "rt_core/math/vec3.hpp"
 #include "rt_core/spm/ids.hpp"
@@ -24,13 +25,26 @@ struct FaceState
     [[nodiscard]] static constexpr FaceState base() noexcept { return {}; }
     [[nodiscard]] static constexpr FaceState after(RecordId record, std::uint32_t place) noexcept
     {
+        TACTUS_ASSERT(place < kMaxStarFaces);
         return {(record.value << 3U) | place};
     }
     [[nodiscard]] constexpr bool is_base() const noexcept { return value == kBaseValue; }
-    [[nodiscard]] constexpr RecordId record() const noexcept { return {value >> 3U}; }
-    [[nodiscard]] constexpr std::uint32_t place() const noexcept { return value & 7U; }
+    /// Neither this nor place() may be asked of the base state.
+    [[nodiscard]] constexpr RecordId record() const noexcept
+    {
+        TACTUS_ASSERT(!is_base());
+        return {value >> 3U};
+    }
+    [[nodiscard]] constexpr std::uint32_t place() const noexcept
+    {
+        TACTUS_ASSERT(!is_base());
+        return value & 7U;
+    }
     constexpr bool operator==(const FaceState&) const noexcept = default;
 };
+
+static_assert(kMaxStarFaces <= 8, "a place in a star is three bits of a FaceState");
+static_assert(kMaxRecords <= FaceState::kBaseValue >> 3U, "no record's state is the base state");
 
 /// One vsplit record as the forest reads it.
 ///
@@ -64,6 +78,7 @@ struct VsplitRecord
 
     [[nodiscard]] constexpr bool has_face(std::uint32_t side) const noexcept
     {
+        TACTUS_ASSERT(side < 2);
         return !star[side].is_none();
     }
     /// One past the last used place of the star.
@@ -73,6 +88,7 @@ struct VsplitRecord
 inline constexpr std::uint32_t kNextExact = 0xFFFF'FFFFU;   ///< No record splits this face.
 inline constexpr std::uint32_t kNextPending = 0xFFFF'FFFEU; ///< One does; it isn't here yet.
 
+static_assert(kMaxRecords <= kNextPending, "no record's id says exact or pending");
 static_assert(sizeof(VsplitRecord) == 128 && std::is_trivially_copyable_v<VsplitRecord>);
 
 /// One chunk's records, decoded.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "rt_core/base/arena.hpp"
+#include "rt_core/base/assert.hpp"
 #include "rt_core/base/id_table.hpp"
 #include "rt_core/spm/page_slots.hpp"
 
@@ -18,6 +19,7 @@ namespace tactus
 class PageTable
 {
 public:
+    static_assert(kRecordsPerChunk <= 64); // Meta has a bit for each.
     struct Meta
     {
         ChunkId chunk{};          ///< None: the slot is the transport thread's.
@@ -38,6 +40,8 @@ public:
     void adopt(ChunkId chunk, std::uint32_t slot, std::uint32_t frame,
                std::uint64_t linked = 0) noexcept
     {
+        TACTUS_ASSERT(!chunk.is_none());
+        TACTUS_ASSERT(slot < meta_.size());
         TACTUS_ASSERT(meta_[slot].chunk.is_none());
         meta_[slot] = Meta{chunk, frame, 0, 0, linked};
         const bool inserted = slot_of_.try_insert(chunk.value, slot);
@@ -48,8 +52,10 @@ public:
     /// update was on its way when the page was evicted.
     void update_linked(ChunkId chunk, std::uint32_t slot, std::uint64_t linked) noexcept
     {
+        TACTUS_ASSERT(slot < meta_.size());
         if (meta_[slot].chunk == chunk)
         {
+            TACTUS_ASSERT((meta_[slot].linked & ~linked) == 0);
             meta_[slot].linked = linked;
         }
     }
@@ -57,7 +63,10 @@ public:
     /// Forgets an unpinned page; the slot may go back to the transport thread.
     void evict(std::uint32_t slot) noexcept
     {
-        TACTUS_ASSERT(!meta_[slot].chunk.is_none() && meta_[slot].refined == 0);
+        TACTUS_ASSERT(slot < meta_.size());
+        TACTUS_ASSERT(!meta_[slot].chunk.is_none());
+        TACTUS_ASSERT(meta_[slot].refined == 0);
+        TACTUS_ASSERT(meta_[slot].held == 0);
         slot_of_.erase(meta_[slot].chunk.value);
         meta_[slot] = Meta{};
     }
@@ -77,6 +86,8 @@ public:
     /// The same for a record whose chunk is in `slot`.
     [[nodiscard]] VsplitRecord* find_linked(RecordId record, std::uint32_t slot) const noexcept
     {
+        TACTUS_ASSERT(slot < meta_.size());
+        TACTUS_ASSERT(meta_[slot].chunk == chunk_of(record));
         const std::uint32_t place = place_in_chunk(record);
         const bool is_linked = ((meta_[slot].linked >> place) & 1U) != 0;
         return is_linked ? &slots_.pages[slot].records[place] : nullptr;
@@ -98,7 +109,11 @@ public:
     }
     void set_refined(RecordId record, bool refined) noexcept
     {
-        set_bit(meta_[slot_of_resident(record)].refined, place_in_chunk(record), refined);
+        Meta& meta = meta_[slot_of_resident(record)];
+        const std::uint64_t bit = bit_of(record);
+        TACTUS_ASSERT(((meta.refined & bit) != 0) != refined);
+        TACTUS_ASSERT((meta.held & bit) == 0);
+        meta.refined ^= bit;
     }
     [[nodiscard]] bool is_held(RecordId record) const noexcept
     {
@@ -107,10 +122,17 @@ public:
     }
     void set_held(RecordId record, bool held) noexcept
     {
-        set_bit(meta_[slot_of_resident(record)].held, place_in_chunk(record), held);
+        Meta& meta = meta_[slot_of_resident(record)];
+        const std::uint64_t bit = bit_of(record);
+        TACTUS_ASSERT((meta.refined & bit) != 0);
+        meta.held = held ? meta.held | bit : meta.held & ~bit;
     }
 
-    void touch(std::uint32_t slot, std::uint32_t frame) noexcept { meta_[slot].touched = frame; }
+    void touch(std::uint32_t slot, std::uint32_t frame) noexcept
+    {
+        TACTUS_ASSERT(!meta_[slot].chunk.is_none());
+        meta_[slot].touched = frame;
+    }
     [[nodiscard]] const Meta& meta(std::uint32_t slot) const noexcept { return meta_[slot]; }
     [[nodiscard]] std::uint32_t capacity() const noexcept
     {
@@ -126,10 +148,9 @@ private:
         TACTUS_ASSERT(slot != IdTable::kAbsent);
         return slot;
     }
-    static void set_bit(std::uint64_t& bits, std::uint32_t place, bool value) noexcept
+    [[nodiscard]] static std::uint64_t bit_of(RecordId record) noexcept
     {
-        const std::uint64_t bit = std::uint64_t{1} << place;
-        bits = value ? bits | bit : bits & ~bit;
+        return std::uint64_t{1} << place_in_chunk(record);
     }
 
     PageSlots slots_;

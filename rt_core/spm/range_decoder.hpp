@@ -39,6 +39,7 @@ public:
     }
     std::uint32_t code_raw(std::uint32_t bits, std::uint32_t /*value*/ = 0) noexcept
     {
+        TACTUS_ASSERT(bits <= 32);
         std::uint32_t value = 0;
         for (; bits > 0; --bits)
         {

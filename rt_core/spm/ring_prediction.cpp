@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #include "rt_core/spm/ring_prediction.hpp"
 
+#include "rt_core/base/assert.hpp"
+#include "rt_core/limits.hpp"
 #include "rt_core/math/rounding.hpp"
 
 #include <algorithm>
@@ -17,6 +19,7 @@ namespace
 /// Rounded to the nearest, halves up; `divisor` > 0.
 std::int64_t divide(std::int64_t value, std::int64_t divisor) noexcept
 {
+    TACTUS_ASSERT(divisor > 0);
     const std::int64_t twice = 2 * value + divisor;
     const std::int64_t quotient = twice / (2 * divisor);
     return quotient - (twice % (2 * divisor) < 0 ? 1 : 0);
@@ -26,6 +29,8 @@ std::int64_t divide(std::int64_t value, std::int64_t divisor) noexcept
 
 RingPrediction::RingPrediction(std::span<const GridPosition> ring) noexcept
 {
+    TACTUS_ASSERT(ring.size() >= 3);
+    TACTUS_ASSERT(ring.size() <= kMaxFanFaces + 2);
     const auto count = static_cast<std::int64_t>(ring.size());
     for (std::size_t axis = 0; axis < 3; ++axis)
     {
@@ -93,6 +98,7 @@ GridPosition RingPrediction::position_of(const std::array<std::int32_t, 3>& resi
 ErrorCode star_reach(const GridPosition& v, std::span<const GridPosition> ring,
                      ErrorCode largest_error) noexcept
 {
+    TACTUS_ASSERT(!ring.empty());
     std::int64_t farthest_sq = 0;
     for (const GridPosition& vertex : ring)
     {

@@ -74,6 +74,8 @@ public:
     [[nodiscard]] std::array<VertexId, 3> corners(const LinkedStar& star,
                                                   std::uint32_t place) const noexcept
     {
+        TACTUS_ASSERT(star.record != nullptr);
+        TACTUS_ASSERT(place < star.record->star_end());
         const VertexId v = counts_.vertex_of(star.id);
         const auto& w = star.ring->w;
         if (place == 0)
@@ -89,6 +91,7 @@ public:
     [[nodiscard]] std::uint32_t place_with_edge(const LinkedStar& star, VertexId from,
                                                 VertexId to) const noexcept
     {
+        TACTUS_ASSERT(star.record != nullptr);
         const VsplitRecord& record = *star.record;
         const auto& w = star.ring->w;
         const VertexId v = counts_.vertex_of(star.id);
@@ -118,6 +121,7 @@ public:
     /// The vertex's place on the grid; false when its record is missing.
     [[nodiscard]] bool find_position(VertexId vertex, GridPosition& position) noexcept
     {
+        TACTUS_ASSERT(vertex.value < counts_.vertices());
         const Vec3f* at = nullptr;
         if (counts_.is_base(vertex))
         {
@@ -143,6 +147,7 @@ public:
     /// The bucket of a face of the model; false when the record that brings it is missing.
     [[nodiscard]] bool find_bucket(FaceId face, std::uint32_t& bucket) noexcept
     {
+        TACTUS_ASSERT(face.value < counts_.face_ids());
         if (counts_.is_base(face))
         {
             bucket = base_.faces[face.value].bucket;
@@ -168,7 +173,11 @@ public:
         owner_count_ = 0;
         missing_ = RecordId{};
     }
-    void meet(const LinkedStar& owner) noexcept { owners_[owner_count_++] = owner; }
+    void meet(const LinkedStar& owner) noexcept
+    {
+        TACTUS_ASSERT(owner_count_ < owners_.size());
+        owners_[owner_count_++] = owner;
+    }
     /// The state of the face with the directed edge as the walk derives it; base when it can't.
     [[nodiscard]] FaceState derive(VertexId from, VertexId to) noexcept
     {
@@ -205,6 +214,7 @@ private:
 
     [[nodiscard]] LinkedStar find(RecordId id) noexcept
     {
+        TACTUS_ASSERT(id.value < counts_.records);
         const LinkedStar star = lookup_.find(id);
         if (star.record == nullptr && missing_.is_none())
         {
@@ -234,6 +244,7 @@ private:
     /// Puts a base face in its base state into the fan.
     void take(std::uint32_t fan_place, FaceId face) noexcept
     {
+        TACTUS_ASSERT(fan_place < kMaxFanFaces);
         record_.star[2 + fan_place] = face;
         record_.before[fan_place] = FaceState::base();
         fan_owners_[fan_place] = LinkedStar{};
@@ -241,6 +252,8 @@ private:
     /// Puts the face at a place of its owner's star into the fan.
     void take(std::uint32_t fan_place, const LinkedStar& owner, std::uint32_t place) noexcept
     {
+        TACTUS_ASSERT(fan_place < kMaxFanFaces);
+        TACTUS_ASSERT(owner.record != nullptr);
         record_.star[2 + fan_place] = owner.record->star[place];
         record_.before[fan_place] = FaceState::after(owner.id, place);
         fan_owners_[fan_place] = owner;
@@ -249,6 +262,8 @@ private:
 
     [[nodiscard]] bool place_anchor(const CodedRecord& coded) noexcept
     {
+        TACTUS_ASSERT(coded.fan_size() <= kMaxFanFaces);
+        TACTUS_ASSERT(coded.corner < 3);
         record_.fan_size = static_cast<std::uint8_t>(coded.fan_size());
         std::array<VertexId, 3> anchor{};
         if (coded.anchor.kind == Owner::Kind::base)

@@ -58,7 +58,6 @@ std::vector<ToolOutput> replay(const ForceRun& run, test::FrameRig& rig, ForceTr
     std::uint64_t allocations = 0;
     StageTimer timer;
     std::array<ToolState, 1> tools;
-    const std::array<ObjectPose, 1> poses{rig.pose()};
     for (std::size_t i = 0; i < run.goals_m.size(); ++i)
     {
         tools[0].position_m = run.goals_m[i];
@@ -68,7 +67,7 @@ std::vector<ToolOutput> replay(const ForceRun& run, test::FrameRig& rig, ForceTr
             [&]
             {
                 timer.begin();
-                output = rig.frame().run(tools, poses, Budgets{}, timer.mark());
+                output = rig.frame().run(tools, rig.source_poses(), Budgets{}, timer.mark());
             });
         if (i >= run.lead_in)
         {

@@ -101,12 +101,12 @@ std::vector<Triangle> faces_in_model_frame(const Scene& scene)
     return moved(scene.model.faces, Vec3(0.0, 0.0, 0.0));
 }
 
-std::vector<Placement> mesh_touch_motion(const TouchScene& object,
-                                         const std::vector<Triangle>& tool, std::uint32_t frames)
+std::vector<Similarity> mesh_touch_motion(const TouchScene& object,
+                                          const std::vector<Triangle>& tool, std::uint32_t frames)
 {
     const std::vector<Vec3> slide = slide_motion(object, kTouch_diag_per_s, frames);
     const Vec3 axis = Vec3(1.0, 2.0, 2.0) / 3.0;
-    std::vector<Placement> places;
+    std::vector<Similarity> places;
     for (std::uint32_t frame = 0; frame < frames; ++frame)
     {
         const Vec3& above_m = slide[kApproachFrames + frame];
@@ -150,7 +150,7 @@ Result<std::unique_ptr<TactusPairQuery>, SceneError> TactusPairQuery::make(const
         std::move(tool_model).value(), std::move(object_model).value(), tool, object));
 }
 
-void TactusPairQuery::place(const Placement& tool)
+void TactusPairQuery::place(const Similarity& tool)
 {
     place_.place = tool;
 }

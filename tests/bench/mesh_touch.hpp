@@ -29,9 +29,9 @@ namespace tactus::bench
 /// Along the direction in which the slide's probe has the surface below it, the tool's lowest
 /// corner is between 0.75 % of the diagonal below the surface's nearest point and 0.5 % above it,
 /// there and back once a second.
-[[nodiscard]] std::vector<Placement> mesh_touch_motion(const TouchScene& object,
-                                                       const std::vector<Triangle>& tool,
-                                                       std::uint32_t frames);
+[[nodiscard]] std::vector<Similarity> mesh_touch_motion(const TouchScene& object,
+                                                        const std::vector<Triangle>& tool,
+                                                        std::uint32_t frames);
 
 /// The controller's query of two meshes over two static models. It finds every pair that meets and
 /// bounds the distance: meeting() asks it with no reach. The nearest pair is proven within the
@@ -44,7 +44,7 @@ public:
     make(const Scene& tool, const Scene& object);
 
     [[nodiscard]] std::string name() const override { return "Tactus"; }
-    void place(const Placement& tool) override;
+    void place(const Similarity& tool) override;
     [[nodiscard]] bool do_meet() override;
     /// Those with the lowest ids when there are more than kMaxMeetingFaces.
     [[nodiscard]] const std::vector<test::FacePair>& meeting() override;

@@ -11,7 +11,7 @@ namespace tactus::bench
 namespace
 {
 
-Result<Done, FileError> make(const std::string& path, std::optional<AtomicFile>& file)
+Result<Done, Refusal> make(const std::string& path, std::optional<AtomicFile>& file)
 {
     if (path.empty())
     {
@@ -26,7 +26,7 @@ Result<Done, FileError> make(const std::string& path, std::optional<AtomicFile>&
     return Done{};
 }
 
-Result<Done, FileError> finish(std::optional<AtomicFile>& file, const std::string& text)
+Result<Done, Refusal> finish(std::optional<AtomicFile>& file, const std::string& text)
 {
     const auto written = file->write(std::as_bytes(std::span(text)));
     return written ? file->commit() : written;
@@ -47,7 +47,7 @@ std::optional<std::string> OutputPaths::wrong_usage() const
     return std::nullopt;
 }
 
-Result<OutputFiles, FileError> OutputFiles::create(const OutputPaths& paths)
+Result<OutputFiles, Refusal> OutputFiles::create(const OutputPaths& paths)
 {
     OutputFiles files;
     for (const auto& [path, file] : {std::pair{&paths.json, &files.json_},
@@ -62,9 +62,9 @@ Result<OutputFiles, FileError> OutputFiles::create(const OutputPaths& paths)
     return files;
 }
 
-Result<Done, FileError> OutputFiles::write(const Results& results, const RunFacts& facts)
+Result<Done, Refusal> OutputFiles::write(const Results& results, const RunFacts& facts)
 {
-    Result<Done, FileError> done = Done{};
+    Result<Done, Refusal> done = Done{};
     if (json_)
     {
         done = finish(json_, to_json(results, facts));

@@ -2,7 +2,8 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "host_tools/mesh/atomic_file.hpp"
+#include "platform/base/atomic_file.hpp"
+#include "platform/base/refusal.hpp"
 #include "tests/bench/bench_report.hpp"
 
 #include <optional>
@@ -26,10 +27,10 @@ struct OutputPaths
 class OutputFiles
 {
 public:
-    [[nodiscard]] static Result<OutputFiles, FileError> create(const OutputPaths& paths);
+    [[nodiscard]] static Result<OutputFiles, Refusal> create(const OutputPaths& paths);
 
     /// Once, at the end; files without it don't appear.
-    [[nodiscard]] Result<Done, FileError> write(const Results& results, const RunFacts& facts);
+    [[nodiscard]] Result<Done, Refusal> write(const Results& results, const RunFacts& facts);
 
 private:
     OutputFiles() = default;

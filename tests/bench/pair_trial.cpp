@@ -104,16 +104,17 @@ const char* question_name(PairQuestion question)
                                                  : "distance";
 }
 
-PairTruth find_pair_truth(const Scene& tool, const Scene& object, std::span<const Placement> places)
+PairTruth find_pair_truth(const Scene& tool, const Scene& object,
+                          std::span<const Similarity> places)
 {
     PairTruth truth;
     truth.tool_names = names_of(tool);
     truth.object_names = names_of(object);
     test::MeshPairOracle oracle(tool.model, object.model);
-    for (const Placement& place : places)
+    for (const Similarity& place : places)
     {
         ToolState state;
-        state.position_m = place.origin;
+        state.position_m = place.translation_m;
         state.rotation = place.rotation;
         oracle.place(ObjectPose{}, state);
         truth.meeting.push_back(named(oracle.meeting(), truth));
@@ -124,7 +125,7 @@ PairTruth find_pair_truth(const Scene& tool, const Scene& object, std::span<cons
     return truth;
 }
 
-Result<PairAnswers, SceneError> replay_pairs(PairQuery& query, std::span<const Placement> places,
+Result<PairAnswers, SceneError> replay_pairs(PairQuery& query, std::span<const Similarity> places,
                                              PairQuestion question, std::uint32_t passes)
 {
     PairAnswers answers = room_for(question, places.size());

@@ -36,7 +36,7 @@ struct PairTruth
 };
 /// Some milliseconds a place.
 [[nodiscard]] PairTruth find_pair_truth(const Scene& tool, const Scene& object,
-                                        std::span<const Placement> places);
+                                        std::span<const Similarity> places);
 
 /// What one contestant said to one question at every place; what was not asked is empty.
 struct PairAnswers
@@ -50,7 +50,7 @@ struct PairAnswers
 /// Asks at all places in turn, `passes` times from the start, at the first one once before. Only
 /// the question is timed. Refused only when passes differ.
 [[nodiscard]] Result<PairAnswers, SceneError> replay_pairs(PairQuery& query,
-                                                           std::span<const Placement> places,
+                                                           std::span<const Similarity> places,
                                                            PairQuestion question,
                                                            std::uint32_t passes);
 

@@ -24,7 +24,7 @@ struct MeshTrial
     const CaseContext& context;
     const Scene& object;
     std::uint32_t passes;
-    std::vector<Placement> places;
+    std::vector<Similarity> places;
     PairTruth truth;
 };
 

@@ -3,6 +3,7 @@
 
 /// One probe against one mesh, by every contestant in turn; no two of them are in memory at once.
 
+#include "rt_core/math/infinity.hpp"
 #include "tests/bench/frame_replay.hpp"
 #include "tests/bench/judged_queries.hpp"
 #include "tests/bench/measuring.hpp"
@@ -13,7 +14,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <limits>
 
 namespace tactus::bench
 {
@@ -21,7 +21,6 @@ namespace tactus::bench
 namespace
 {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNear_diag = 2.0 * kRadius_diag;
 /// Some contestants work in float on coordinates of about a diagonal; that is no miss.
 constexpr double kTouchTolerance_diag = 2e-6;

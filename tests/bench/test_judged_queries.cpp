@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "platform/allocation_counter.hpp"
+#include "rt_core/math/infinity.hpp"
 #include "tests/bench/judged_queries.hpp"
 
 #include <gtest/gtest.h>
@@ -15,7 +16,6 @@ namespace tactus::bench
 namespace
 {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 
 /// The plane z = 0, asked as a contestant; what is wrong with it can be planted.

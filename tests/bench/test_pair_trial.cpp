@@ -63,7 +63,7 @@ public:
     bool drifts{false};
 
     [[nodiscard]] std::string name() const override { return "script"; }
-    void place(const Placement& tool) override { x_m_ = tool.origin.x(); }
+    void place(const Similarity& tool) override { x_m_ = tool.translation_m.x(); }
     [[nodiscard]] bool do_meet() override { return x_m_ > next(); }
     [[nodiscard]] const std::vector<test::FacePair>& meeting() override
     {
@@ -87,8 +87,8 @@ private:
 TEST(ReplayPairs, asks_at_every_place_and_names_faces_as_the_sources_do)
 {
     ScriptedPair sut;
-    std::vector<Placement> places(2);
-    places[1].origin.x() = 7.0;
+    std::vector<Similarity> places(2);
+    places[1].translation_m.x() = 7.0;
 
     const auto any = replay_pairs(sut, places, PairQuestion::any, 2);
     const auto all = replay_pairs(sut, places, PairQuestion::all_pairs, 2);
@@ -104,7 +104,7 @@ TEST(ReplayPairs, refuses_passes_that_differ)
 {
     ScriptedPair sut;
     sut.drifts = true;
-    const std::vector<Placement> places(3);
+    const std::vector<Similarity> places(3);
     EXPECT_TRUE(replay_pairs(sut, places, PairQuestion::distance, 1));
     EXPECT_FALSE(replay_pairs(sut, places, PairQuestion::distance, 2));
     EXPECT_FALSE(replay_pairs(sut, places, PairQuestion::all_pairs, 2));
@@ -133,8 +133,8 @@ protected:
     const Scene* object{nullptr};
     const Scene* tool{nullptr};
     PairMeshes meshes;
-    std::vector<Placement> all_places;
-    std::vector<Placement> places;
+    std::vector<Similarity> all_places;
+    std::vector<Similarity> places;
 
 private:
     SceneStore scenes_{""};
@@ -174,7 +174,7 @@ TEST_F(MeshTouch, the_tool_goes_through_the_surface_and_out_again)
     }
 }
 
-void expect_right(PairQuery& query, const std::vector<Placement>& places, const PairTruth& truth,
+void expect_right(PairQuery& query, const std::vector<Similarity>& places, const PairTruth& truth,
                   double tolerance_m)
 {
     SCOPED_TRACE(query.name());

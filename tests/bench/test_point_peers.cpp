@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "host_tools/shapes/shapes.hpp"
+#include "rt_core/math/infinity.hpp"
 #include "tests/bench/peers/point_query.hpp"
 #include "tests/shared/face_tree.hpp"
 #include "tests/shared/random.hpp"
@@ -9,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -19,7 +19,6 @@ namespace tactus::bench
 namespace
 {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kDiagonal_m = 0.17;
 /// Larger than faces, which shows what spheres are off by.
 constexpr double kRadius_m = 0.03 * kDiagonal_m;

@@ -5,6 +5,7 @@
 /// and changed alike. Both run on the portable kernels, since the 18-DOP's loops have no others.
 
 #include "rt_core/abtree/ab_tree.hpp"
+#include "rt_core/math/infinity.hpp"
 #include "tests/bench/cases.hpp"
 #include "tests/bench/local_changes.hpp"
 #include "tests/bench/static_model.hpp"
@@ -126,7 +127,6 @@ Result<VolumeFigures, SceneError> measure(const CaseContext& context, const std:
                                           const Scene& scene, const Model& model,
                                           const std::vector<ChangedFace>& faces)
 {
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
     WholeTree<Tree> whole(faces, model.tree);
     if (!whole.tree().is_complete())
     {

@@ -11,12 +11,14 @@ begin_house() {
     mkdir -p "$house"/rt_core/{base,math,forest,abtree} "$house"/{transport,tests/unit}
     printf '# SPDX-License-Identifier: Apache-2.0\nadd_subdirectory(rt_core)\n%s\n' \
         'add_subdirectory(tests)' >"$house/CMakeLists.txt"
-    printf '# SPDX-License-Identifier: Apache-2.0\nadd_library(core base/good.hpp)\n' \
+    printf '# SPDX-License-Identifier: Apache-2.0\nadd_library(core base/good.hpp limits.hpp)\n' \
         >"$house/rt_core/CMakeLists.txt"
     printf '# SPDX-License-Identifier: Apache-2.0\nadd_executable(t unit/test_good.cpp)\n' \
         >"$house/tests/CMakeLists.txt"
     source_file rt_core/base/good.hpp '#include <array>'
-    source_file tests/unit/test_good.cpp '#include "rt_core/base/good.hpp"'
+    source_file rt_core/limits.hpp 'inline constexpr int kMaxGood = 1;'
+    source_file tests/unit/test_good.cpp \
+        $'#include "rt_core/base/good.hpp"\nstatic_assert(kMaxGood == 1);'
 }
 
 source_file() { # source_file PATH LINE: the LINE becomes line 4.
@@ -50,7 +52,7 @@ expect_refusal() { # expect_refusal GUARD TEXT: fails, and the output has TEXT.
 }
 
 begin_house
-for guard in floors line_length no_leftovers machine_paths licence files_listed; do
+for guard in floors line_length no_leftovers machine_paths licence files_listed limits_tested; do
     expect_clean "$guard"
 done
 
@@ -94,6 +96,9 @@ source_file rt_core/base/lost.hpp ''
 expect_refusal files_listed 'rt_core/base/lost.hpp:1:'
 echo '# add_executable(t unit/test_good.cpp)' >"$house/tests/CMakeLists.txt"
 expect_refusal files_listed 'tests/unit/test_good.cpp:1:'
+source_file tests/unit/test_good.cpp 'int kMaxGoods; // kMaxGood'
+source_file tests/unit/rig.hpp 'static_assert(kMaxGood == 1);'
+expect_refusal limits_tested 'rt_core/limits.hpp:4: kMaxGood is named in no tests/*/test_*.cpp'
 
 # An archive whose one object takes memory from the heap.
 printf 'int* make() { return new int(1); }\n' >"$house/heap.cpp"

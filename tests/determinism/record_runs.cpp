@@ -91,6 +91,7 @@ struct Run
     RigOptions options;
     Budgets budgets;
     std::uint32_t frames{kFrames};
+    bool objects_move{false};
 };
 
 /// A tool of this core that wants all there is to know.
@@ -99,6 +100,38 @@ RigOptions with_core(RigOptions options, const ToolCore& core)
     options.tools = {{1e-4, 500.0, 8.0, 1.0, core, true}};
     options.tools[0].passes_through = std::holds_alternative<MeshCore>(core); // So that faces meet.
     return options;
+}
+
+/// A ball, a capsule that surfaces hold, and a box that measures, at two objects of two models.
+RigOptions crowd(RigOptions options)
+{
+    const Vec3 half(0.004, 0.002, 0.003);
+    options.tools = {{0.003}, {0.001}, {1e-4}};
+    options.tools[1].core = Segment{-half, half};
+    options.tools[2].core = Box{half};
+    options.tools[2].passes_through = true;
+    options.objects = {{ModelId{0}, {300.0, 0.4, 0.3, 0.5}}, {ModelId{1}}};
+    return options;
+}
+
+/// A mesh that surfaces hold back.
+RigOptions held_mesh(RigOptions options, const MeshCore& core)
+{
+    options = with_core(options, core);
+    options.tools[0].passes_through = false;
+    return options;
+}
+
+/// To and fro, and turning.
+ObjectPose pose_at(std::uint32_t frame, std::size_t object)
+{
+    const double angle = 0.001 * frame * (object == 0 ? 1.0 : -1.0);
+    ObjectPose pose;
+    pose.rotation = Eigen::AngleAxisd(angle, Vec3(0.6, 0.0, 0.8)).toRotationMatrix();
+    pose.translation_m = 0.01 * std::sin(angle) * Vec3(1.0, 2.0, -1.0);
+    pose.scale = object == 0 ? 1.0 : 0.7;
+    pose.age_ns = frame % 100 == 99 ? 200'000'000 : 1'000'000;
+    return pose;
 }
 
 std::vector<Run> runs()
@@ -129,22 +162,31 @@ std::vector<Run> runs()
             {"needles", {models[5]}, slide, usual, {}},
             {"static", {models[1]}, slide, fixed, {}},
             {"box", {models[3]}, slide, with_core(usual, Box{Vec3(0.004, 0.002, 0.003)}), {}},
-            {"mesh", {models[0], models[1]}, land, with_core(usual, mesh), {}, kMeshFrames}};
+            {"mesh", {models[0], models[1]}, land, with_core(usual, mesh), {}, kMeshFrames},
+            {"held_mesh", {models[0], models[1]}, land, held_mesh(usual, mesh), {}, kMeshFrames},
+            {"crowd", {models[0], models[1]}, slide, crowd(usual), {}, kFrames, true}};
 }
 
 /// False when the file can't be written.
 bool record(const Run& run, const std::filesystem::path& folder)
 {
     FrameRig rig(run.models, run.options);
-    std::array<ToolState, 1> tool;
+    std::vector<ToolState> tools(std::max<std::size_t>(run.options.tools.size(), 1));
     std::uint64_t faces = 0;
     std::uint32_t contacts = 0;
     std::uint32_t static_frames = 0;
     for (std::uint32_t frame = 0; frame < run.frames; ++frame)
     {
-        tool[0].position_m = run.motion(*run.models[0], frame);
-        tool[0].rotation = turn(frame);
-        const FrameOutput output = rig.step(tool, run.budgets);
+        for (std::uint32_t i = 0; i < tools.size(); ++i)
+        {
+            tools[i].position_m = run.motion(*run.models[0], frame + 100 * i);
+            tools[i].rotation = turn(frame);
+        }
+        for (std::size_t object = 0; run.objects_move && object < 2; ++object)
+        {
+            rig.place_object(pose_at(frame, object), object);
+        }
+        const FrameOutput output = rig.step(tools, run.budgets);
         faces += output.work.splits;
         contacts += output.tools[0].in_contact ? 1U : 0U;
         static_frames += output.models[0].is_static ? 1U : 0U;

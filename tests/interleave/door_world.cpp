@@ -15,10 +15,8 @@ namespace tactus::interleave
 namespace
 {
 
-/// An unanswered wish is asked again in every second step and given up in the fourth.
 constexpr std::int64_t kStepNs = 1'000'000;
-constexpr CourierOptions kOptions{
-    .open_wishes = 3, .retry_ns = 2 * kStepNs, .give_up_ns = 4 * kStepNs};
+constexpr CourierOptions kOptions{.open_wishes = 3};
 /// Fewer than the chunks and the index page together, so that the door is full at times.
 constexpr std::uint32_t kWishes = 2;
 constexpr std::array<ChunkId, 3> kAll{ChunkId{0}, ChunkId{1}, ChunkId{2}};
@@ -238,8 +236,9 @@ void DoorWorld::unpin()
 bool DoorWorld::is_settled() const
 {
     return ledger_.told({0}) == truth_.linkable[0] && ledger_.told({1}) == truth_.linkable[1] &&
-           courier_.open_wishes() == 0 && inbox_.arrived.size() == 0 && inbox_.freed.size() == 0 &&
-           inbox_.wanted.size() == 0 && courier_.free_pages() + pages_.used() == kPages;
+           cache_.wishes_under_way() == 0 && inbox_.arrived.size() == 0 &&
+           inbox_.freed.size() == 0 && inbox_.wanted.size() == 0 &&
+           courier_.free_pages() + pages_.used() == kPages;
 }
 
 /// Then a wish may have to expire before it is made anew.

@@ -3,7 +3,9 @@
 
 /// The forest's invariants on whole small models, with every chunk loaded: I1 full refinement is
 /// the source, I2 undoing returns the base state, I3 every cut is manifold, I10 the finest corner.
+/// The validators look at the cuts, too.
 
+#include "rt_core/forest/validate_forest.hpp"
 #include "tests/shared/loaded_forest.hpp"
 
 #include <gtest/gtest.h>
@@ -102,6 +104,7 @@ TEST_P(ForestProperties, splits_and_merges_undone_in_any_legal_order_return_the_
         if (step % 1'000 == 999)
         {
             ASSERT_TRUE(is_manifold(sut)) << model_.name << " seed " << seed_ << " step " << step;
+            ASSERT_STREQ(text_of(find_flaw(sut.forest())).data(), "") << "step " << step;
         }
     }
     EXPECT_NE(sut.forest().state_hash(), base_hash);

@@ -182,5 +182,25 @@ TEST(FrameRehearsal, changes_no_result)
     }
 }
 
+TEST(FrameProperties, a_full_scene_has_a_pair_of_each_tool_and_object_tool_by_tool)
+{
+    const TestModel& model = small_model(0);
+    RigOptions options;
+    options.pool_bytes = std::size_t{16} << 20U;
+    options.tools.assign(kMaxTools, ToolSpec{0.01 * model.diagonal_m});
+    options.objects.assign(kMaxObjects, ObjectSpec{ModelId{0}});
+    FrameRig rig(model, options);
+    const std::vector<Vec3> goals(kMaxTools, to_vec3(model.faces[0][0]));
+
+    const FrameOutput output = rig.step(goals, Budgets{});
+
+    ASSERT_EQ(output.pairs.size(), kMaxPairs);
+    for (std::uint32_t i = 0; i < kMaxPairs; ++i)
+    {
+        EXPECT_EQ(output.pairs[i].tool, i / kMaxObjects);
+        EXPECT_EQ(output.pairs[i].object, i % kMaxObjects);
+    }
+}
+
 } // namespace
 } // namespace tactus::test

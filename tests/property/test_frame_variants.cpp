@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// Frames without one of their shortcuts, or with a tolerance: answers hold all the same, and what
-/// is exact is the same to the bit.
+/// Frames without one of their shortcuts, or with a tolerance: answers hold all the same (I5), and
+/// what is exact is the same to the bit.
 
 #include "tests/property/frame_checks.hpp"
 

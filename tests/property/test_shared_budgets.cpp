@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// Budgets count per model and frame: what one model uses up must not be missing in another.
+/// Budgets are kept (I8) and count per model and frame: what one model uses up must not be missing
+/// in another.
 
 #include "tests/property/frame_checks.hpp"
 
@@ -38,6 +39,11 @@ public:
         setup.objects = objects;
         setup.tools = tools;
         EXPECT_TRUE(Frame::start(frame_, *arena_, setup));
+        origin_m_ = frame_->model({0}).header.origin_m();
+        for (ObjectPose& pose : poses_)
+        {
+            pose.translation_m = -origin_m_; // Goals are of the model's frame.
+        }
         for (std::uint32_t i = 0; i < 2; ++i)
         {
             Model& parts = frame_->model({i});
@@ -60,7 +66,7 @@ public:
     }
     void move_away(std::size_t object, double distance_m)
     {
-        poses_[object].translation_m.z() = distance_m;
+        poses_[object].translation_m.z() = distance_m - origin_m_.z();
     }
     [[nodiscard]] std::uint32_t refined(std::uint32_t model) const
     {
@@ -77,6 +83,7 @@ private:
     std::array<std::unique_ptr<Courier>, 2> couriers_;
     std::int64_t now_ns_{0};
     std::array<ToolState, 1> tools_;
+    Vec3 origin_m_{0.0, 0.0, 0.0};
     std::array<ObjectPose, 2> poses_;
 };
 

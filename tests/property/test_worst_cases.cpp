@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// A flood of arrivals. Meshes and hardships at which a frame is at its worst: tests/stability.
+/// A flood of arrivals keeps the budget (I8). Meshes and hardships at which a frame is at its
+/// worst: tests/stability.
 
 #include "tests/property/frame_checks.hpp"
 

@@ -2,8 +2,8 @@
 // Copyright the Tactus authors.
 
 /// The frame as the haptic thread runs it, streaming and in want of everything, while its heap
-/// calls and system calls are counted: there must be none. In a build with the realtime sanitizer
-/// that one watches, too, and ends the program at the first breach.
+/// calls and system calls are counted: there must be none (I7). In a build with the realtime
+/// sanitizer that one watches, too, and ends the program at the first breach.
 
 #include "host_tools/shapes/shapes.hpp"
 #include "platform/allocation_counter.hpp"
@@ -123,7 +123,6 @@ void watch_frames(FrameRig& rig, const Touch& touch, Random& random, Watched& wa
     const std::size_t tool_count = std::max<std::size_t>(touch.options.tools.size(), 1);
     std::vector<Wander> wanders(tool_count, Wander(model_to_touch(), touch.leg_frames, random));
     std::vector<ToolState> tools(tool_count);
-    const std::vector<ObjectPose> poses(1);
     for (std::uint32_t i = 0; i < touch.frames; ++i)
     {
         rig.deliver();
@@ -134,7 +133,8 @@ void watch_frames(FrameRig& rig, const Touch& touch, Random& random, Watched& wa
         allocation_counter::mark_this_thread(true);
         system_call_trap::mark_frame(true);
         rig.frame().rehearse();
-        const FrameOutput output = rig.frame().run(tools, poses, touch.budgets, touch.mark);
+        const FrameOutput output =
+            rig.frame().run(tools, rig.source_poses(), touch.budgets, touch.mark);
         system_call_trap::mark_frame(false);
         allocation_counter::mark_this_thread(false);
         add_work(watched.work, output.work);
@@ -156,7 +156,7 @@ Watched watch(const Touch& touch)
         {
             if (const auto set = system_call_trap::set_on_this_thread(); !set)
             {
-                watched.not_trapped = set.error().message;
+                watched.not_trapped = set.error().text;
             }
             watch_frames(rig, touch, random, watched);
         });

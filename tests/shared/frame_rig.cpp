@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #include "tests/shared/frame_rig.hpp"
 
+#include "rt_core/frame/validate_model.hpp"
+
 #include <cstdio>
 #include <cstdlib>
 #include <numeric>
@@ -18,7 +20,17 @@ namespace
     std::exit(2);
 }
 
+std::uint32_t validated_every = 0; ///< Frames; 0 is never.
+/// A model that is refined fully changes no more, and is the largest to look at: without this the
+/// force twins of test_stability take thirty times as long.
+constexpr std::uint32_t kCompleteEvery = 64;
+
 } // namespace
+
+void FrameRig::validate_every(std::uint32_t frames)
+{
+    validated_every = frames;
+}
 
 FrameRig::FrameRig(const std::vector<const TestModel*>& models, const RigOptions& options)
     : memory_(options.pool_bytes)
@@ -48,6 +60,12 @@ FrameRig::FrameRig(const std::vector<const TestModel*>& models, const RigOptions
     }
     make_couriers();
     poses_.resize(objects.size());
+    source_poses_.resize(objects.size());
+    for (std::size_t i = 0; i < objects.size(); ++i)
+    {
+        shown_.push_back(objects[i].model);
+        place_object({}, i);
+    }
     tools_.reserve(tools.size());
     if (options.record)
     {
@@ -146,14 +164,44 @@ FrameOutput FrameRig::step_without_delivery(const std::vector<Vec3>& goals_m,
     return run(tools_, budgets, mark);
 }
 
+void FrameRig::place_object(const ObjectPose& pose, std::size_t object)
+{
+    const Vec3 origin_m = frame_->model(shown_[object]).header.origin_m();
+    source_poses_[object] = pose;
+    source_poses_[object].translation_m -= pose.scale * (pose.rotation * origin_m);
+    poses_[object] = model_pose(source_poses_[object], origin_m);
+}
+
 FrameOutput FrameRig::run(std::span<const ToolState> tools, const Budgets& budgets, StageMark mark)
 {
-    const FrameOutput output = frame_->run(tools, poses_, budgets, mark);
+    const FrameOutput output = frame_->run(tools, source_poses_, budgets, mark);
     if (recorder_ != nullptr)
     {
-        recorder_->add(tools, poses_, budgets, output);
+        recorder_->add(tools, source_poses_, budgets, output);
     }
+    validate();
     return output;
+}
+
+void FrameRig::validate()
+{
+    ++frames_;
+    if (validated_every == 0 || frames_ % validated_every != 0)
+    {
+        return;
+    }
+    for (std::uint32_t i = 0; i < lines_.size(); ++i)
+    {
+        if (model({i}).residence == Residence::complete && frames_ % kCompleteEvery != 0)
+        {
+            continue;
+        }
+        if (const Flaw flaw = find_flaw(model({i})); !flaw.is_none())
+        {
+            give_up("frame " + std::to_string(frames_) + ", model " + lines_[i].served.name + ": " +
+                    text_of(flaw).data());
+        }
+    }
 }
 
 void FrameRig::deliver()
@@ -168,11 +216,14 @@ void FrameRig::deliver()
     }
 }
 
-std::size_t FrameRig::open_wishes() const
+std::uint32_t FrameRig::wishes_under_way() const
 {
-    return std::accumulate(lines_.begin(), lines_.end(), std::size_t{0},
-                           [](std::size_t sum, const Line& line)
-                           { return sum + line.courier->open_wishes(); });
+    std::uint32_t sum = 0;
+    for (std::uint32_t i = 0; i < frame_->model_count(); ++i)
+    {
+        sum += frame_->model(ModelId{i}).cache.wishes_under_way();
+    }
+    return sum;
 }
 
 std::uint32_t FrameRig::settle(const Vec3& goal_m, const Budgets& budgets, std::uint32_t frames)
@@ -181,7 +232,7 @@ std::uint32_t FrameRig::settle(const Vec3& goal_m, const Budgets& budgets, std::
     {
         const FrameOutput output = step(goal_m, budgets);
         const bool quiet = output.work.splits == 0 && output.work.requests == 0 &&
-                           output.work.pages_adopted == 0 && open_wishes() == 0 &&
+                           output.work.pages_adopted == 0 && wishes_under_way() == 0 &&
                            output.faults == FrameFault::none;
         if (quiet && i > 10)
         {
@@ -217,8 +268,8 @@ void load_region(FrameRig& rig, const RankedRegion& region)
         model.cache.request_missing({&region, 1}, budgets, ChunkCache::kFirstFrame + frame, work,
                                     faults);
         rig.deliver();
-        const bool is_quiet = work.requests == 0 && work.pages_adopted == 0 &&
-                              rig.courier(region.model).open_wishes() == 0;
+        const bool is_quiet =
+            work.requests == 0 && work.pages_adopted == 0 && model.cache.wishes_under_way() == 0;
         quiet = is_quiet ? quiet + 1 : 0;
     }
     if (frame == 10'000 || (faults & FrameFault::cache_full) != FrameFault::none)

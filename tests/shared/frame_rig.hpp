@@ -45,6 +45,11 @@ public:
         : FrameRig(std::vector{&model}, options)
     {
     }
+    /// From now on every rig's models are validated after each so manieth frame; never with 0, as
+    /// at first. A flaw ends the program with a line. Test programs call it when they start
+    /// (validated_rigs.cpp); a bench measures frames without it.
+    static void validate_every(std::uint32_t frames);
+
     /// Models that no object shows are for tools that are meshes.
     FrameRig(const std::vector<const TestModel*>& models, const RigOptions& options);
 
@@ -56,8 +61,8 @@ public:
     }
     /// One frame with samples as a device gives them.
     FrameOutput step(std::span<const ToolState> tools, const Budgets& budgets);
-    /// Where an object stands from the next frame on; at first its model's frame is the world's.
-    void place_object(const ObjectPose& pose, std::size_t object = 0) { poses_[object] = pose; }
+    /// How an object's model stands from the next frame on; at first its frame is the world's.
+    void place_object(const ObjectPose& pose, std::size_t object = 0);
     /// The same, without letting the transport side work first.
     FrameOutput step_without_delivery(const std::vector<Vec3>& goals_m, const Budgets& budgets,
                                       StageMark mark);
@@ -67,7 +72,10 @@ public:
     /// `frames`; returns how many it took.
     std::uint32_t settle(const Vec3& goal_m, const Budgets& budgets, std::uint32_t frames);
 
+    /// Of the model's frame, as the frame has it.
     [[nodiscard]] const ObjectPose& pose(std::size_t object = 0) const { return poses_[object]; }
+    /// Of the sources' frames, as they are given to Frame::run.
+    [[nodiscard]] std::span<const ObjectPose> source_poses() const { return source_poses_; }
     [[nodiscard]] Frame& frame() { return *frame_; }
     [[nodiscard]] const Frame& frame() const { return *frame_; }
     [[nodiscard]] Model& model(ModelId id = ModelId{0}) { return frame_->model(id); }
@@ -89,8 +97,9 @@ private:
     [[nodiscard]] std::vector<ModelSource> share_pools(const FrameSetup& setup,
                                                        const RigOptions& options) const;
     void make_couriers();
-    [[nodiscard]] std::size_t open_wishes() const;
+    [[nodiscard]] std::uint32_t wishes_under_way() const;
     FrameOutput run(std::span<const ToolState> tools, const Budgets& budgets, StageMark mark);
+    void validate();
 
     std::vector<Line> lines_; ///< One a model.
     PoolMemory memory_;
@@ -100,7 +109,10 @@ private:
     std::uint32_t courier_steps_;
     std::int64_t period_ns_;
     std::int64_t now_ns_{0};
+    std::uint64_t frames_{0};
     std::vector<ObjectPose> poses_;
+    std::vector<ObjectPose> source_poses_;
+    std::vector<ModelId> shown_; ///< By each object.
     std::vector<ToolState> tools_;
 };
 

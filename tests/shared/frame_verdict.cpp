@@ -70,7 +70,8 @@ Verdict unexplained(const FrameOutput& output)
 {
     constexpr FrameFault kReasons = FrameFault::split_budget_spent | FrameFault::forest_full |
                                     FrameFault::tree_full | FrameFault::chunk_late |
-                                    FrameFault::cache_full | FrameFault::node_budget_spent;
+                                    FrameFault::cache_full | FrameFault::node_budget_spent |
+                                    FrameFault::refine_heap_full;
     if (has_fault(output.faults, FrameFault::model_inconsistent))
     {
         return "a record is said to contradict the mesh";

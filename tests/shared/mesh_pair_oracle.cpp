@@ -136,7 +136,7 @@ MeshPairOracle::MeshPairOracle(const TestModel& tool, const TestModel& object)
 
 void MeshPairOracle::place(const ObjectPose& pose, const ToolState& tool)
 {
-    const Placement placement = place_in_model(pose, orthonormal(tool.rotation), tool.position_m);
+    const Similarity placement = in_frame(pose, {orthonormal(tool.rotation), tool.position_m, 1.0});
     rotation_ = placement.rotation;
     double size_m = 0.0;
     for (std::size_t i = 0; i < tool_faces_.size(); ++i)
@@ -145,7 +145,7 @@ void MeshPairOracle::place(const ObjectPose& pose, const ToolState& tool)
         {
             const Vec3 own_m = tool_faces_[i][corner] + origin_m_;
             placed_faces_[i][corner] =
-                placement.origin + placement.scale * (placement.rotation * own_m);
+                placement.translation_m + placement.scale * (placement.rotation * own_m);
             size_m = std::max(size_m, placed_faces_[i][corner].norm() + own_m.norm() / pose.scale);
         }
     }

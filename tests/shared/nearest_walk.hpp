@@ -3,6 +3,7 @@
 #pragma once
 
 #include "rt_core/base/static_vector.hpp"
+#include "rt_core/math/infinity.hpp"
 #include "rt_core/math/triangle.hpp"
 #include "rt_core/query/probe.hpp"
 #include "rt_core/query/tree_walk.hpp"
@@ -125,7 +126,6 @@ private:
         candidates_.clear();
     }
 
-    static constexpr double kInfinity = std::numeric_limits<double>::infinity();
     static constexpr std::uint32_t kUnlimited = std::numeric_limits<std::uint32_t>::max();
     static constexpr std::size_t kCandidates = 64;
 

@@ -45,7 +45,7 @@ PlacedCore twin_core(std::uint32_t turn, const Vec3& center_m, double size_m, Ra
     static const Hull wedge = Hull::create(kWedge).value();
     const Eigen::Quaterniond rotation(random.between(0.1, 1.0), random.between(-1.0, 1.0),
                                       random.between(-1.0, 1.0), random.between(-1.0, 1.0));
-    const Placement place{rotation.normalized().toRotationMatrix(), center_m, size_m};
+    const Similarity place{rotation.normalized().toRotationMatrix(), center_m, size_m};
     switch (turn % 4)
     {
     case 0:

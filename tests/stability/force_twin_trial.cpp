@@ -119,7 +119,7 @@ private:
                                     std::uint32_t tool) const
     {
         const PairOutput& pair = output.pairs[tool];
-        const std::span<const Vec3> path = rig.frame().proxy_path_m(tool);
+        const std::span<const Vec3> path = rig.frame().tool(tool).path_m();
         const double end_m = (path.back() - path.front()).norm() + radius_m();
         const double known_m = std::max(pair.certified_radius_m, pair.lower_m);
         return (pair.kind == AnswerKind::exact || pair.kind == AnswerKind::decided) &&

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "tests/stability/pop_through_trial.hpp"
 
+#include "tests/shared/safe_force.hpp"
 #include "tests/stability/proxy_trail.hpp"
 #include "tests/stability/random_motion.hpp"
 
@@ -55,7 +56,7 @@ public:
         for (std::size_t object = 0; object < trails_.size(); ++object)
         {
             const ProxyTrail::Crossings found =
-                trails_[object].follow(rig.frame().proxy_path_m(0), rig.pose(object));
+                trails_[object].follow(rig.frame().tool(0).path_m(), rig.pose(object));
             if (found.moved)
             {
                 flag(figures_.crossings, found.moved->text());
@@ -176,7 +177,10 @@ class ClosingRound
 public:
     ClosingRound(const ClosingTrial& trial, const RigOptions& options, Jaws& jaws,
                  PopThroughJudge& judge)
-        : rig_(trial.model, options), jaws_(jaws), judge_(judge)
+        : rig_(trial.model, options)
+        , safe_(rig_.frame().tool(0).spec(), kFrame_s)
+        , jaws_(jaws)
+        , judge_(judge)
     {
         judge_.begin(2, trial.model, trial.tree);
     }
@@ -193,10 +197,11 @@ public:
         {
             judge_.flag("the frame's fault and the tool's differ");
         }
+        const Vec3 safe_n = safe_.step(tool, Vec3(0.0, 0.0, 0.0));
         if (squeezed_s_ > kFadeTime_s + kFrame_s)
         {
             ++judge_.figures().faded;
-            if (tool.force_n.norm() > kForceRounding_n)
+            if (safe_n.norm() > kForceRounding_n)
             {
                 judge_.flag("there is still a force");
             }
@@ -206,6 +211,7 @@ public:
 
 private:
     FrameRig rig_;
+    SafeForce safe_;
     Jaws& jaws_;
     PopThroughJudge& judge_;
     double squeezed_s_{0.0};

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// Tools that are meshes: brackets, pairs of faces that meet, contacts, whatever runs out.
+/// Tools that are meshes: brackets (I5), budgets (I8), pairs of faces that meet and contacts,
+/// whatever runs out; and exact answers are those of the full meshes (I4).
 
 #include "host_tools/shapes/shapes.hpp"
 #include "tests/shared/random.hpp"

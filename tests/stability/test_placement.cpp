@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 
@@ -18,16 +19,23 @@ namespace
 /// How far from orthonormal poses may be for L and U to hold (kPoseRounding).
 constexpr double kOrthonormal = 2e-15;
 
+/// Of `--place`, with a rotation vector in degrees.
+Similarity place_turned(const Vec3& degrees)
+{
+    std::array<char, 128> text{};
+    std::snprintf(text.data(), text.size(), "0,0,0,%.17g,%.17g,%.17g", degrees.x(), degrees.y(),
+                  degrees.z());
+    return hrtc::parse_placement(text.data()).value();
+}
+
 TEST(Placement, rotations_of_any_angle_are_orthonormal_and_no_mirrors)
 {
     Random random(600);
     double worst = 0.0;
     for (int i = 0; i < 20'000; ++i)
     {
-        hrtc::Placement placement;
         const double angle_deg = std::exp2(random.between(-60.0, 8.4)); // To 338 degrees.
-        placement.rotation_deg = angle_deg * random.in_cube(1.0).normalized();
-        const Mat3 sut = rotation_of(placement);
+        const Mat3 sut = place_turned(angle_deg * random.in_cube(1.0).normalized()).rotation;
         const Mat3 off = sut.transpose() * sut - Mat3::Identity();
         worst = std::max(worst, off.norm());
         ASSERT_NEAR(sut.determinant(), 1.0, kOrthonormal) << "rotation " << i;
@@ -38,11 +46,9 @@ TEST(Placement, rotations_of_any_angle_are_orthonormal_and_no_mirrors)
 
 TEST(Placement, turns_counter_clockwise_round_its_axis)
 {
-    hrtc::Placement placement;
-    placement.rotation_deg = Vec3(0.0, 0.0, 90.0);
-    const Vec3 turned = rotation_of(placement) * Vec3(1.0, 0.0, 0.0);
+    const Vec3 turned = place_turned(Vec3(0.0, 0.0, 90.0)).rotation * Vec3(1.0, 0.0, 0.0);
     EXPECT_NEAR((turned - Vec3(0.0, 1.0, 0.0)).norm(), 0.0, 1e-15);
-    EXPECT_EQ(rotation_of(hrtc::Placement{}), Mat3::Identity());
+    EXPECT_EQ(place_turned(Vec3(0.0, 0.0, 0.0)).rotation, Mat3::Identity());
 }
 
 } // namespace

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "tests/stability/twin_trial.hpp"
 
+#include "rt_core/query/surface_query.hpp"
 #include "tests/shared/closest_point.hpp"
 #include "tests/shared/random.hpp"
 #include "tests/shared/surface_slide.hpp"

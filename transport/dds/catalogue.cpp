@@ -31,7 +31,7 @@ ContentHash hash_from(const std::uint8_t (&bytes)[16]) // NOLINT: idlc's type.
 
 } // namespace
 
-Result<Catalogue, DdsError> Catalogue::create(const Domain& domain, Log log)
+Result<Catalogue, Refusal> Catalogue::create(const Domain& domain, Log log)
 {
     const std::string everywhere;
     auto reader = make_reader(domain, Topic::catalogue, {&everywhere, 1});

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "platform/base/refusal.hpp"
 #include "transport/dds/domain.hpp"
 #include "transport/dds/topics.hpp"
 #include "transport/log.hpp"
@@ -28,7 +29,7 @@ public:
         std::uint32_t faces{0};
     };
 
-    [[nodiscard]] static Result<Catalogue, DdsError> create(const Domain& domain, Log log);
+    [[nodiscard]] static Result<Catalogue, Refusal> create(const Domain& domain, Log log);
 
     /// Takes news from DDS: new offers, hosts that left or fell silent. Cheap when there are none.
     void refresh();
@@ -39,8 +40,6 @@ public:
     /// The offer of one run of one host; null when that is gone.
     [[nodiscard]] const Offer* find(const ContentHash& hash, std::uint64_t host_epoch) const;
 
-    /// In the order in which they were first seen.
-    [[nodiscard]] const std::vector<Offer>& offers() const noexcept { return offers_; }
     /// Their names for a message, "none" without any; a long list is cut.
     [[nodiscard]] std::string names() const;
 

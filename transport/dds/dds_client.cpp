@@ -72,8 +72,8 @@ const char* objection_to(const ServedModel& model)
 
 } // namespace
 
-Result<std::unique_ptr<DdsClient>, DdsError> DdsClient::create(std::uint32_t domain,
-                                                               std::string controller_name, Log log)
+Result<std::unique_ptr<DdsClient>, Refusal> DdsClient::create(std::uint32_t domain,
+                                                              std::string controller_name, Log log)
 {
     TACTUS_ASSERT(is_valid_name(controller_name));
     auto joined = Domain::join(domain);
@@ -99,9 +99,9 @@ DdsClient::DdsClient(Domain domain, Catalogue catalogue, std::string controller_
 {
 }
 
-Result<ServedModel, DdsError> DdsClient::find(const ModelSelector& selector,
-                                              std::chrono::milliseconds timeout,
-                                              const std::function<bool()>& go_on)
+Result<ServedModel, Refusal> DdsClient::find(const ModelSelector& selector,
+                                             std::chrono::milliseconds timeout,
+                                             const std::function<bool()>& go_on)
 {
     const Wait wait{timeout, go_on};
     auto offer = wait_for_offer(selector, wait);
@@ -129,8 +129,8 @@ Result<ServedModel, DdsError> DdsClient::find(const ModelSelector& selector,
     return model;
 }
 
-Result<Catalogue::Offer, DdsError> DdsClient::wait_for_offer(const ModelSelector& selector,
-                                                             const Wait& wait)
+Result<Catalogue::Offer, Refusal> DdsClient::wait_for_offer(const ModelSelector& selector,
+                                                            const Wait& wait)
 {
     bool has_said = false;
     do
@@ -148,14 +148,14 @@ Result<Catalogue::Offer, DdsError> DdsClient::wait_for_offer(const ModelSelector
     } while (wait.goes_on());
     const std::string pin = selector.hash ? "@" + hash_text(*selector.hash) : "";
     const Catalogue::Offer* other = catalogue_.find(ModelSelector{selector.name, std::nullopt});
-    return DdsError{
+    return Refusal{
         fmt::format("model '{}{}' is not published on domain {} ({}; published there: {}{})",
                     selector.name, pin, domain_.id(), wait.waited(), catalogue_.names(),
                     other != nullptr ? ", with hash " + hash_text(other->hash) : "")};
 }
 
-Result<Done, DdsError> DdsClient::wait_for_start(const Catalogue::Offer& offer, const Wait& wait,
-                                                 ServedModel& model)
+Result<Done, Refusal> DdsClient::wait_for_start(const Catalogue::Offer& offer, const Wait& wait,
+                                                ServedModel& model)
 {
     const std::string partition = model_partition(offer.hash);
     auto reader = make_reader(domain_, Topic::model, {&partition, 1});
@@ -183,17 +183,17 @@ Result<Done, DdsError> DdsClient::wait_for_start(const Catalogue::Offer& offer, 
         }
         if (*objection != '\0')
         {
-            return DdsError{fmt::format("model '{}' from domain {}: the header {}", offer.name,
-                                        domain_.id(), objection)};
+            return Refusal{fmt::format("model '{}' from domain {}: the header {}", offer.name,
+                                       domain_.id(), objection)};
         }
     } while (wait.goes_on());
-    return DdsError{fmt::format("model '{}' is published on domain {}, but its header did not come "
-                                "({})",
-                                offer.name, domain_.id(), wait.waited())};
+    return Refusal{fmt::format("model '{}' is published on domain {}, but its header did not come "
+                               "({})",
+                               offer.name, domain_.id(), wait.waited())};
 }
 
-Result<Done, DdsError> DdsClient::wait_for_link(DdsLink& link, const Wait& wait,
-                                                const std::string& name)
+Result<Done, Refusal> DdsClient::wait_for_link(DdsLink& link, const Wait& wait,
+                                               const std::string& name)
 {
     NoSink sink;
     do
@@ -204,8 +204,8 @@ Result<Done, DdsError> DdsClient::wait_for_link(DdsLink& link, const Wait& wait,
             return Done{};
         }
     } while (wait.goes_on());
-    return DdsError{fmt::format("the host of model '{}' on domain {} does not answer ({})", name,
-                                domain_.id(), wait.waited())};
+    return Refusal{fmt::format("the host of model '{}' on domain {} does not answer ({})", name,
+                               domain_.id(), wait.waited())};
 }
 
 } // namespace tactus::dds

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "platform/base/refusal.hpp"
 #include "transport/dds/catalogue.hpp"
 #include "transport/dds/dds_link.hpp"
 #include "transport/dds/domain.hpp"
@@ -24,15 +25,15 @@ class DdsClient
 {
 public:
     /// `controller_name` is shown by hosts; a valid name. Join from an ordinary thread, see Domain.
-    [[nodiscard]] static Result<std::unique_ptr<DdsClient>, DdsError>
+    [[nodiscard]] static Result<std::unique_ptr<DdsClient>, Refusal>
     create(std::uint32_t domain, std::string controller_name, Log log);
 
     /// Waits until the model is published, its header and base mesh came and its host answers;
     /// everything is verified. The only call here that waits: at most `timeout`, or until `go_on`
     /// (asked every few milliseconds) returns false. The client must outlive the model's link.
-    [[nodiscard]] Result<ServedModel, DdsError> find(const ModelSelector& selector,
-                                                     std::chrono::milliseconds timeout,
-                                                     const std::function<bool()>& go_on = {});
+    [[nodiscard]] Result<ServedModel, Refusal> find(const ModelSelector& selector,
+                                                    std::chrono::milliseconds timeout,
+                                                    const std::function<bool()>& go_on = {});
 
     [[nodiscard]] const Catalogue& catalogue() const noexcept { return catalogue_; }
     /// For further topics of the same controller; lives as long as the client.
@@ -44,12 +45,12 @@ private:
 
     DdsClient(Domain domain, Catalogue catalogue, std::string controller_name, Log log);
 
-    [[nodiscard]] Result<Catalogue::Offer, DdsError> wait_for_offer(const ModelSelector& selector,
-                                                                    const Wait& wait);
-    [[nodiscard]] Result<Done, DdsError> wait_for_start(const Catalogue::Offer& offer,
-                                                        const Wait& wait, ServedModel& model);
-    [[nodiscard]] Result<Done, DdsError> wait_for_link(DdsLink& link, const Wait& wait,
-                                                       const std::string& name);
+    [[nodiscard]] Result<Catalogue::Offer, Refusal> wait_for_offer(const ModelSelector& selector,
+                                                                   const Wait& wait);
+    [[nodiscard]] Result<Done, Refusal> wait_for_start(const Catalogue::Offer& offer,
+                                                       const Wait& wait, ServedModel& model);
+    [[nodiscard]] Result<Done, Refusal> wait_for_link(DdsLink& link, const Wait& wait,
+                                                      const std::string& name);
 
     Domain domain_; ///< First, so that it is left last.
     Catalogue catalogue_;

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "transport/dds/dds_host.hpp"
 
+#include "platform/base/printable.hpp"
 #include "transport/content_hash.hpp"
 #include "transport/dds/take.hpp"
 #include "transport/model_name.hpp"
@@ -46,7 +47,7 @@ struct DdsHost::Request
     const tactus_v1_Wanted& wanted;
 };
 
-Result<std::unique_ptr<DdsHost>, DdsError>
+Result<std::unique_ptr<DdsHost>, Refusal>
 DdsHost::create(std::uint32_t domain, std::vector<PublishedModel> models, Log log)
 {
     auto joined = Domain::join(domain);
@@ -120,7 +121,7 @@ std::vector<DdsHost::Subscriber> DdsHost::subscribers() const
     return list;
 }
 
-Result<Done, DdsError> DdsHost::open_endpoints()
+Result<Done, Refusal> DdsHost::open_endpoints()
 {
     std::vector<std::string> partitions;
     for (const PublishedModel& model : models_)
@@ -150,7 +151,7 @@ Result<Done, DdsError> DdsHost::open_endpoints()
     return Done{};
 }
 
-Result<Done, DdsError> DdsHost::publish_start(const PublishedModel& model)
+Result<Done, Refusal> DdsHost::publish_start(const PublishedModel& model)
 {
     auto writer = make_writer(domain_, Topic::model, model_partition(model.store.hash()));
     if (!writer)
@@ -160,7 +161,7 @@ Result<Done, DdsError> DdsHost::publish_start(const PublishedModel& model)
     std::vector<std::byte> base;
     if (auto done = model.store.read({ContentKind::base, 0}, base); !done)
     {
-        return DdsError{done.error().text};
+        return done.error();
     }
     const auto header = model.store.header_bytes();
     std::vector<std::byte> header_copy(header.begin(), header.end());
@@ -177,9 +178,9 @@ Result<Done, DdsError> DdsHost::publish_start(const PublishedModel& model)
     start.base = sequence(base);
     if (const auto code = dds_write(writer.value().handle, &start); code != DDS_RETCODE_OK)
     {
-        return DdsError{fmt::format("model '{}' (header of {} bytes, base mesh of {}) cannot be "
-                                    "published: {}",
-                                    model.name, header.size(), base.size(), dds_strretcode(code))};
+        return Refusal{fmt::format("model '{}' (header of {} bytes, base mesh of {}) cannot be "
+                                   "published: {}",
+                                   model.name, header.size(), base.size(), dds_strretcode(code))};
     }
     starts_.push_back(std::move(writer).value());
     return Done{};

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "platform/base/refusal.hpp"
 #include "transport/dds/domain.hpp"
 #include "transport/dds/subscription.hpp"
 #include "transport/log.hpp"
@@ -47,7 +48,7 @@ public:
 
     /// Announces the models. `log` gets a line when a controller comes or goes and, at a limited
     /// rate, one for what can't be served.
-    [[nodiscard]] static Result<std::unique_ptr<DdsHost>, DdsError>
+    [[nodiscard]] static Result<std::unique_ptr<DdsHost>, Refusal>
     create(std::uint32_t domain, std::vector<PublishedModel> models, Log log);
 
     /// Waits until there is something to do, at most `timeout`. Signals don't end it early.
@@ -69,8 +70,8 @@ private:
 
     DdsHost(Domain domain, std::vector<PublishedModel> models, Log log);
 
-    [[nodiscard]] Result<Done, DdsError> open_endpoints();
-    [[nodiscard]] Result<Done, DdsError> publish_start(const PublishedModel& model);
+    [[nodiscard]] Result<Done, Refusal> open_endpoints();
+    [[nodiscard]] Result<Done, Refusal> publish_start(const PublishedModel& model);
     void announce();
     void take_requests();
     void on_request(const Request& request);

@@ -38,7 +38,7 @@ ControllerId random_controller()
 
 } // namespace
 
-Result<std::unique_ptr<DdsLink>, DdsError>
+Result<std::unique_ptr<DdsLink>, Refusal>
 DdsLink::create(const Domain& domain, Catalogue& catalogue, const Catalogue::Offer& offer,
                 const std::string& controller_name, Log log)
 {
@@ -156,13 +156,8 @@ void DdsLink::take_pieces(PieceSink& sink)
     take_each<tactus_v1_Pieces>(chunks_.handle, kSamplesPerPoll,
                                 [&](const tactus_v1_Pieces& sample, const dds_sample_info_t& info)
                                 {
-                                    if (!info.valid_data)
+                                    if (!info.valid_data || sample.host_epoch != host_epoch_)
                                     {
-                                        return;
-                                    }
-                                    if (sample.host_epoch != host_epoch_)
-                                    {
-                                        ++samples_refused_;
                                         return;
                                     }
                                     const std::span payload(sample.payload._buffer,
@@ -184,12 +179,10 @@ void DdsLink::take_sample(std::span<const std::byte> payload, std::uint64_t sent
                                  piece->key.kind <= static_cast<std::uint32_t>(ContentKind::chunk);
         if (!is_of_model)
         {
-            ++samples_refused_;
             break;
         }
         sink.receive({static_cast<ContentKind>(piece->key.kind), piece->key.number}, piece->bytes);
     }
-    samples_refused_ += reader.is_broken() ? 1U : 0U;
     credit_.on_sample(sent, pieces);
     awaits_pieces_ = false;
     last_progress_ = Clock::now();

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "platform/base/refusal.hpp"
 #include "transport/chunk_link.hpp"
 #include "transport/dds/catalogue.hpp"
 #include "transport/dds/credit.hpp"
@@ -27,7 +28,7 @@ class DdsLink final : public ChunkLink
 {
 public:
     /// `domain` and `catalogue` must outlive the link.
-    [[nodiscard]] static Result<std::unique_ptr<DdsLink>, DdsError>
+    [[nodiscard]] static Result<std::unique_ptr<DdsLink>, Refusal>
     create(const Domain& domain, Catalogue& catalogue, const Catalogue::Offer& offer,
            const std::string& controller_name, Log log);
 
@@ -40,9 +41,6 @@ public:
     /// Whether the host has our wishes' writer and its writer for us has our reader: from then on
     /// nothing is lost. Needs poll() meanwhile.
     [[nodiscard]] bool is_ready() const;
-
-    /// Samples that were of another epoch, model or revision, or whose framing was broken.
-    [[nodiscard]] std::uint64_t samples_refused() const noexcept { return samples_refused_; }
 
 private:
     using Clock = std::chrono::steady_clock;
@@ -76,7 +74,6 @@ private:
     Clock::time_point last_sent_{};
     Clock::time_point last_progress_{};
     std::uint64_t bytes_received_{0};
-    std::uint64_t samples_refused_{0};
 };
 
 } // namespace tactus::dds

@@ -101,7 +101,7 @@ std::shared_ptr<Entity> configured_domain(std::uint32_t id)
     return domain;
 }
 
-DdsError join_error(std::uint32_t id, std::int32_t code)
+Refusal join_error(std::uint32_t id, std::int32_t code)
 {
     const std::string reason = MessageSink::instance().last();
     return {fmt::format(
@@ -111,11 +111,11 @@ DdsError join_error(std::uint32_t id, std::int32_t code)
 
 } // namespace
 
-Result<Domain, DdsError> Domain::join(std::uint32_t id)
+Result<Domain, Refusal> Domain::join(std::uint32_t id)
 {
     if (id > kMaxDomain)
     {
-        return DdsError{fmt::format("DDS domain {} is not in 0 to {}", id, kMaxDomain)};
+        return Refusal{fmt::format("DDS domain {} is not in 0 to {}", id, kMaxDomain)};
     }
     dds_set_log_sink(&MessageSink::on_message, nullptr);
     Domain domain;

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "platform/base/refusal.hpp"
 #include "rt_core/base/result.hpp"
 #include "transport/dds/entity.hpp"
 
@@ -11,12 +12,6 @@
 
 namespace tactus::dds
 {
-
-/// Why DDS refused, in one line.
-struct DdsError
-{
-    std::string text;
-};
 
 /// Domain ids of the DDS port mapping.
 inline constexpr std::uint32_t kMaxDomain = 232;
@@ -34,7 +29,7 @@ class Domain
 public:
     /// `id` is 0 .. 232. Refused with Cyclone's own reason, e.g. for an unknown element in
     /// CYCLONEDDS_URI or when no network interface fits.
-    [[nodiscard]] static Result<Domain, DdsError> join(std::uint32_t id);
+    [[nodiscard]] static Result<Domain, Refusal> join(std::uint32_t id);
 
     [[nodiscard]] std::uint32_t id() const noexcept { return id_; }
     [[nodiscard]] std::int32_t participant() const noexcept { return participant_.get(); }

@@ -33,7 +33,7 @@ std::uint64_t first_serial()
 
 } // namespace
 
-Result<std::unique_ptr<PosePublisher>, DdsError>
+Result<std::unique_ptr<PosePublisher>, Refusal>
 PosePublisher::create(const Domain& domain, std::uint64_t host_epoch,
                       std::vector<ModelIdentity> objects)
 {
@@ -53,7 +53,7 @@ PosePublisher::PosePublisher(std::uint64_t host_epoch, std::vector<ModelIdentity
 {
 }
 
-Result<Done, DdsError> PosePublisher::open_writers(const Domain& domain)
+Result<Done, Refusal> PosePublisher::open_writers(const Domain& domain)
 {
     std::vector<ContentHash> hashes;
     for (std::size_t i = 0; i < objects_.size(); ++i)
@@ -127,9 +127,9 @@ std::uint64_t PoseCounts::refused_in_all() const noexcept
     return std::accumulate(refused.begin(), refused.end(), std::uint64_t{0});
 }
 
-Result<std::unique_ptr<PoseReader>, DdsError> PoseReader::create(const Domain& domain,
-                                                                 const Catalogue& catalogue,
-                                                                 std::vector<ModelIdentity> objects)
+Result<std::unique_ptr<PoseReader>, Refusal> PoseReader::create(const Domain& domain,
+                                                                const Catalogue& catalogue,
+                                                                std::vector<ModelIdentity> objects)
 {
     std::unique_ptr<PoseReader> reader(new PoseReader(catalogue, std::move(objects)));
     std::vector<std::string> partitions;

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "platform/base/refusal.hpp"
 #include "transport/dds/catalogue.hpp"
 #include "transport/dds/domain.hpp"
 #include "transport/dds/topics.hpp"
@@ -31,7 +32,7 @@ class PosePublisher
 {
 public:
     /// `domain` must outlive it; `objects` are models of the host with that epoch.
-    [[nodiscard]] static Result<std::unique_ptr<PosePublisher>, DdsError>
+    [[nodiscard]] static Result<std::unique_ptr<PosePublisher>, Refusal>
     create(const Domain& domain, std::uint64_t host_epoch, std::vector<ModelIdentity> objects);
 
     /// Sends the pose of the object with that index at once; from now on the object is followed.
@@ -55,7 +56,7 @@ private:
 
     PosePublisher(std::uint64_t host_epoch, std::vector<ModelIdentity> objects);
 
-    [[nodiscard]] Result<Done, DdsError> open_writers(const Domain& domain);
+    [[nodiscard]] Result<Done, Refusal> open_writers(const Domain& domain);
     void send(std::size_t object);
 
     std::uint64_t host_epoch_;
@@ -89,7 +90,7 @@ class PoseReader
 {
 public:
     /// `domain` and `catalogue` must outlive it.
-    [[nodiscard]] static Result<std::unique_ptr<PoseReader>, DdsError>
+    [[nodiscard]] static Result<std::unique_ptr<PoseReader>, Refusal>
     create(const Domain& domain, const Catalogue& catalogue, std::vector<ModelIdentity> objects);
 
     /// Hands over what has come: one pose at most of each object and host. Bounded, never waits.

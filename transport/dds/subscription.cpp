@@ -11,9 +11,9 @@
 namespace tactus::dds
 {
 
-Result<Subscription, DdsError> Subscription::create(const Domain& domain, const ModelStore& store,
-                                                    const ControllerId& controller,
-                                                    std::string controller_name, std::uint64_t seen)
+Result<Subscription, Refusal> Subscription::create(const Domain& domain, const ModelStore& store,
+                                                   const ControllerId& controller,
+                                                   std::string controller_name, std::uint64_t seen)
 {
     auto writers =
         WriterLanes::create(domain, Topic::chunks, controller_partition(controller, store.hash()));

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "platform/base/refusal.hpp"
 #include "transport/dds/domain.hpp"
 #include "transport/dds/topics.hpp"
 #include "transport/dds/wish_queue.hpp"
@@ -34,7 +35,7 @@ public:
 
     /// `store` must outlive the subscription. The first request's `seen` is where counting starts:
     /// a controller that was thought dead and speaks again goes on counting.
-    [[nodiscard]] static Result<Subscription, DdsError>
+    [[nodiscard]] static Result<Subscription, Refusal>
     create(const Domain& domain, const ModelStore& store, const ControllerId& controller,
            std::string controller_name, std::uint64_t seen);
 

@@ -154,7 +154,7 @@ void copy_counts(const From& from, To& to)
 
 } // namespace
 
-Result<std::unique_ptr<TelemetryWriter>, DdsError>
+Result<std::unique_ptr<TelemetryWriter>, Refusal>
 TelemetryWriter::create(const Domain& domain, std::string controller_name,
                         std::vector<ModelIdentity> models)
 {
@@ -203,7 +203,7 @@ void TelemetryWriter::write(const Telemetry& telemetry)
     dds_write(writer_.handle, &sample); // One that fails is a lost one: the next is as good.
 }
 
-Result<std::unique_ptr<TelemetryReader>, DdsError> TelemetryReader::create(const Domain& domain)
+Result<std::unique_ptr<TelemetryReader>, Refusal> TelemetryReader::create(const Domain& domain)
 {
     const std::string everywhere;
     auto reader = make_reader(domain, Topic::telemetry, {&everywhere, 1});

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "platform/base/refusal.hpp"
 #include "transport/dds/domain.hpp"
 #include "transport/dds/topics.hpp"
 #include "transport/model_identity.hpp"
@@ -26,7 +27,7 @@ class TelemetryWriter
 {
 public:
     /// `domain` must outlive it; `models` in the order of Telemetry::models, at most kMaxObjects.
-    [[nodiscard]] static Result<std::unique_ptr<TelemetryWriter>, DdsError>
+    [[nodiscard]] static Result<std::unique_ptr<TelemetryWriter>, Refusal>
     create(const Domain& domain, std::string controller_name, std::vector<ModelIdentity> models);
 
     /// Sends it to whoever watches; never waits. `telemetry.model_count` is that of the models.
@@ -60,7 +61,7 @@ class TelemetryReader
 {
 public:
     /// `domain` must outlive it.
-    [[nodiscard]] static Result<std::unique_ptr<TelemetryReader>, DdsError>
+    [[nodiscard]] static Result<std::unique_ptr<TelemetryReader>, Refusal>
     create(const Domain& domain);
 
     /// Takes what has come, and forgets controllers that left or fell silent (500 ms). Bounded,

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "transport/dds/topics.hpp"
 
+#include "rt_core/limits.hpp"
 #include "transport/content_hash.hpp"
 
 #include <dds/dds.h>
@@ -23,6 +24,16 @@ namespace
 constexpr std::int64_t kBlockingMax = DDS_MSECS(5);
 /// Who says nothing for this long is gone: catalogue (hosts) and wishes (controllers).
 constexpr std::int64_t kLiveliness = DDS_MSECS(500);
+
+// The bounds of transport/idl/tactus.idl. When a constant on the right grows, the wire changes with
+// it: raise the bound there and the protocol's version.
+static_assert(tactus_v1_max_name_bytes == kMaxNameBytes);
+static_assert(tactus_v1_max_tools == kMaxTools);
+static_assert(tactus_v1_max_objects == kMaxObjects);
+static_assert(tactus_v1_max_wishes == kMaxWishes);
+static_assert(tactus_v1_max_payload_bytes >= kPayloadBytes);
+static_assert(sizeof(tactus_v1_Wanted::controller) == sizeof(ControllerId));
+static_assert(sizeof(tactus_v1_Wanted::model_hash) == sizeof(ContentHash));
 
 struct TopicTraits
 {
@@ -80,7 +91,7 @@ std::int32_t find_or_create_topic(const Domain& domain, const TopicTraits& trait
     return dds_create_topic(domain.participant(), traits.type, traits.name, nullptr, nullptr);
 }
 
-DdsError refused(const TopicTraits& traits, std::int32_t code)
+Refusal refused(const TopicTraits& traits, std::int32_t code)
 {
     return {fmt::format("DDS topic {} cannot be used: {}", traits.name, dds_strretcode(code))};
 }
@@ -99,8 +110,8 @@ Qos partition_qos(std::span<const std::string> partitions)
 
 } // namespace
 
-Result<Endpoint, DdsError> make_writer(const Domain& domain, Topic topic,
-                                       const std::string& partition)
+Result<Endpoint, Refusal> make_writer(const Domain& domain, Topic topic,
+                                      const std::string& partition)
 {
     const TopicTraits& traits = traits_of(topic);
     const Entity type(find_or_create_topic(domain, traits)); // The writer keeps it in use.
@@ -124,8 +135,8 @@ Result<Endpoint, DdsError> make_writer(const Domain& domain, Topic topic,
     return writer;
 }
 
-Result<Endpoint, DdsError> make_reader(const Domain& domain, Topic topic,
-                                       std::span<const std::string> partitions)
+Result<Endpoint, Refusal> make_reader(const Domain& domain, Topic topic,
+                                      std::span<const std::string> partitions)
 {
     const TopicTraits& traits = traits_of(topic);
     const Entity type(find_or_create_topic(domain, traits));

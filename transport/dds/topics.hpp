@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "platform/base/refusal.hpp"
 #include "rt_core/spm/header.hpp"
 #include "transport/dds/domain.hpp"
 #include "transport/dds/entity.hpp"
@@ -41,10 +42,10 @@ enum class Topic : std::uint8_t
 
 /// Creates a writer or reader with the topic's quality of service (docs/protocol.md). No call on it
 /// blocks for more than 5 ms. The domain must outlive it.
-[[nodiscard]] Result<Endpoint, DdsError> make_writer(const Domain& domain, Topic topic,
-                                                     const std::string& partition);
-[[nodiscard]] Result<Endpoint, DdsError> make_reader(const Domain& domain, Topic topic,
-                                                     std::span<const std::string> partitions);
+[[nodiscard]] Result<Endpoint, Refusal> make_writer(const Domain& domain, Topic topic,
+                                                    const std::string& partition);
+[[nodiscard]] Result<Endpoint, Refusal> make_reader(const Domain& domain, Topic topic,
+                                                    std::span<const std::string> partitions);
 
 /// Partition of what concerns one model, whoever serves it.
 [[nodiscard]] std::string model_partition(const ContentHash& model);

@@ -15,8 +15,8 @@ WriterLanes::WriterLanes(const Domain& domain, Topic topic, std::string partitio
 {
 }
 
-Result<WriterLanes, DdsError> WriterLanes::create(const Domain& domain, Topic topic,
-                                                  const std::string& partition)
+Result<WriterLanes, Refusal> WriterLanes::create(const Domain& domain, Topic topic,
+                                                 const std::string& partition)
 {
     auto first = make_writer(domain, topic, partition);
     if (!first)

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "platform/base/refusal.hpp"
 #include "transport/dds/topics.hpp"
 
 #include <cstddef>
@@ -22,8 +23,8 @@ class WriterLanes
 {
 public:
     /// `domain` must outlive the lanes.
-    [[nodiscard]] static Result<WriterLanes, DdsError> create(const Domain& domain, Topic topic,
-                                                              const std::string& partition);
+    [[nodiscard]] static Result<WriterLanes, Refusal> create(const Domain& domain, Topic topic,
+                                                             const std::string& partition);
 
     /// Whether the first of them has a reader.
     [[nodiscard]] bool is_matched() const { return dds::is_matched(lanes_[0].writer); }

@@ -46,7 +46,7 @@ std::uint64_t index_page_offset(const HeaderFields& fields, IndexPageId page) no
 
 } // namespace
 
-Result<ModelStore, StoreError> ModelStore::open(const std::filesystem::path& path)
+Result<ModelStore, Refusal> ModelStore::open(const std::filesystem::path& path)
 {
     ModelStore store;
     if (auto opened = store.open_file(path); !opened)
@@ -118,7 +118,7 @@ std::size_t ModelStore::coded_bytes(ContentKey key) const noexcept
     return extent_of(key).bytes;
 }
 
-Result<Done, StoreError> ModelStore::read(ContentKey key, std::vector<std::byte>& out) const
+Result<Done, Refusal> ModelStore::read(ContentKey key, std::vector<std::byte>& out) const
 {
     if (!has(key))
     {
@@ -138,7 +138,7 @@ Result<Done, StoreError> ModelStore::read(ContentKey key, std::vector<std::byte>
     return Done{};
 }
 
-Result<Done, StoreError> ModelStore::open_file(const std::filesystem::path& path)
+Result<Done, Refusal> ModelStore::open_file(const std::filesystem::path& path)
 {
     path_ = path;
     // Not blocking, so that a named pipe without a writer is refused below instead of waited for.
@@ -160,7 +160,7 @@ Result<Done, StoreError> ModelStore::open_file(const std::filesystem::path& path
     return Done{};
 }
 
-Result<Done, StoreError> ModelStore::read_header()
+Result<Done, Refusal> ModelStore::read_header()
 {
     std::array<std::byte, sizeof(HeaderFields)> start{};
     const std::size_t available = file_bytes_ < start.size() ? file_bytes_ : start.size();
@@ -211,7 +211,7 @@ Result<Done, StoreError> ModelStore::read_header()
     return Done{};
 }
 
-Result<Done, StoreError> ModelStore::check_base() const
+Result<Done, Refusal> ModelStore::check_base() const
 {
     const HeaderFields& fields = header_.fields();
     if (fields.base_bytes != coded_base_bytes(fields))
@@ -235,7 +235,7 @@ Result<Done, StoreError> ModelStore::check_base() const
     return Done{};
 }
 
-Result<Done, StoreError> ModelStore::read_index()
+Result<Done, Refusal> ModelStore::read_index()
 {
     const ModelCounts counts = header_.counts();
     // By pages, so that a lying header cannot make us allocate more than its file has.
@@ -263,7 +263,7 @@ Result<Done, StoreError> ModelStore::read_index()
     return Done{};
 }
 
-Result<Done, StoreError> ModelStore::check_chunk_extents(IndexPageId page) const
+Result<Done, Refusal> ModelStore::check_chunk_extents(IndexPageId page) const
 {
     const auto last = static_cast<std::uint32_t>(chunks_.size()) - 1;
     const std::uint64_t start = header_.index_entry(page).chunks_offset;
@@ -302,8 +302,8 @@ ModelStore::Extent ModelStore::extent_of(ContentKey key) const noexcept
     return extent;
 }
 
-Result<Done, StoreError> ModelStore::read_at(std::uint64_t offset, std::span<std::byte> out,
-                                             const std::string& what) const
+Result<Done, Refusal> ModelStore::read_at(std::uint64_t offset, std::span<std::byte> out,
+                                          const std::string& what) const
 {
     // Stated by the file, so it may be anything; pread takes signed offsets.
     constexpr std::uint64_t offset_max = std::numeric_limits<off_t>::max();
@@ -336,7 +336,7 @@ Result<Done, StoreError> ModelStore::read_at(std::uint64_t offset, std::span<std
     return Done{};
 }
 
-StoreError ModelStore::error(const std::string& what) const
+Refusal ModelStore::error(const std::string& what) const
 {
     return {path_.string() + ": " + what};
 }

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "platform/base/refusal.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/spm/content_key.hpp"
 #include "rt_core/spm/header.hpp"
@@ -17,12 +18,6 @@
 namespace tactus
 {
 
-/// One line that names the file, what is wrong with it, and where.
-struct StoreError
-{
-    std::string text;
-};
-
 /// Read-only access to one .spm file. Reads with pread, never mmap: a file that is truncated while
 /// it is served gives an error instead of SIGBUS.
 ///
@@ -32,7 +27,7 @@ class ModelStore
 public:
     /// Checks everything but the chunks' content: size, header, root hash, base mesh, index pages,
     /// and that all extents lie within the file. Cost: reads header, base and index.
-    [[nodiscard]] static Result<ModelStore, StoreError> open(const std::filesystem::path& path);
+    [[nodiscard]] static Result<ModelStore, Refusal> open(const std::filesystem::path& path);
 
     ModelStore(ModelStore&& other) noexcept;
     ModelStore& operator=(ModelStore&& other) noexcept;
@@ -53,7 +48,7 @@ public:
 
     /// Reads a piece in its coded form into `out` (resized; no allocation once it is large enough)
     /// and verifies its hash. Refuses a key that the model doesn't have.
-    [[nodiscard]] Result<Done, StoreError> read(ContentKey key, std::vector<std::byte>& out) const;
+    [[nodiscard]] Result<Done, Refusal> read(ContentKey key, std::vector<std::byte>& out) const;
 
 private:
     struct Extent
@@ -65,15 +60,15 @@ private:
 
     ModelStore() = default;
 
-    [[nodiscard]] Result<Done, StoreError> open_file(const std::filesystem::path& path);
-    [[nodiscard]] Result<Done, StoreError> read_header();
-    [[nodiscard]] Result<Done, StoreError> check_base() const;
-    [[nodiscard]] Result<Done, StoreError> read_index();
-    [[nodiscard]] Result<Done, StoreError> check_chunk_extents(IndexPageId page) const;
+    [[nodiscard]] Result<Done, Refusal> open_file(const std::filesystem::path& path);
+    [[nodiscard]] Result<Done, Refusal> read_header();
+    [[nodiscard]] Result<Done, Refusal> check_base() const;
+    [[nodiscard]] Result<Done, Refusal> read_index();
+    [[nodiscard]] Result<Done, Refusal> check_chunk_extents(IndexPageId page) const;
     [[nodiscard]] Extent extent_of(ContentKey key) const noexcept;
-    [[nodiscard]] Result<Done, StoreError> read_at(std::uint64_t offset, std::span<std::byte> out,
-                                                   const std::string& what) const;
-    [[nodiscard]] StoreError error(const std::string& what) const;
+    [[nodiscard]] Result<Done, Refusal> read_at(std::uint64_t offset, std::span<std::byte> out,
+                                                const std::string& what) const;
+    [[nodiscard]] Refusal error(const std::string& what) const;
 
     std::filesystem::path path_;
     int file_{-1};

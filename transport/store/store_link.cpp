@@ -51,8 +51,8 @@ void StoreLink::poll(PieceSink& sink)
     }
 }
 
-Result<ServedModel, StoreError> serve_from_file(const std::filesystem::path& path,
-                                                const std::string& name, Log log)
+Result<ServedModel, Refusal> serve_from_file(const std::filesystem::path& path,
+                                             const std::string& name, Log log)
 {
     auto store = ModelStore::open(path);
     if (!store)

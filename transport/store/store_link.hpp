@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "platform/base/refusal.hpp"
 #include "transport/chunk_link.hpp"
 #include "transport/log.hpp"
 #include "transport/served_model.hpp"
@@ -36,7 +37,7 @@ private:
 };
 
 /// Opens a file as the model `name`, which the caller has checked.
-[[nodiscard]] Result<ServedModel, StoreError> serve_from_file(const std::filesystem::path& path,
-                                                              const std::string& name, Log log);
+[[nodiscard]] Result<ServedModel, Refusal> serve_from_file(const std::filesystem::path& path,
+                                                           const std::string& name, Log log);
 
 } // namespace tactus

@@ -71,11 +71,11 @@ class HeaderReader
 public:
     explicit HeaderReader(std::string_view bytes) : cursor_(bytes) {}
 
-    Result<PlyHeader, MeshError> read()
+    Result<PlyHeader, Refusal> read()
     {
         if (cursor_.next_token_in_line() != "ply")
         {
-            return MeshError{"is not a PLY file: its first line must be 'ply'"};
+            return Refusal{"is not a PLY file: its first line must be 'ply'"};
         }
         std::string_view word;
         while (cursor_.skip_line())
@@ -94,7 +94,7 @@ public:
     }
 
 private:
-    std::optional<MeshError> read_line(std::string_view word)
+    std::optional<Refusal> read_line(std::string_view word)
     {
         if (word == "format")
         {
@@ -121,7 +121,7 @@ private:
         return cursor_.error("unknown word " + quote(word) + " in the header");
     }
 
-    std::optional<MeshError> read_element()
+    std::optional<Refusal> read_element()
     {
         const auto name = cursor_.next_token_in_line();
         const auto count = parse_integer(cursor_.next_token_in_line());
@@ -133,7 +133,7 @@ private:
         return std::nullopt;
     }
 
-    std::optional<MeshError> read_property()
+    std::optional<Refusal> read_property()
     {
         if (header_.elements.empty())
         {
@@ -162,7 +162,7 @@ private:
         return std::nullopt;
     }
 
-    Result<PlyHeader, MeshError> finish()
+    Result<PlyHeader, Refusal> finish()
     {
         if (!format_)
         {
@@ -188,7 +188,7 @@ std::size_t size_of(PlyType type)
     return kSizes[static_cast<std::size_t>(type)];
 }
 
-Result<PlyHeader, MeshError> read_ply_header(std::string_view bytes)
+Result<PlyHeader, Refusal> read_ply_header(std::string_view bytes)
 {
     return HeaderReader(bytes).read();
 }

@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "host_tools/mesh/mesh_error.hpp"
+#include "platform/base/refusal.hpp"
 #include "rt_core/base/result.hpp"
 
 #include <cstddef>
@@ -60,6 +60,6 @@ struct PlyHeader
 
 /// Reads up to and including "end_header"; the words are those of the 1994 PLY description, with
 /// the sized type names (int8 .. float64) beside the C ones.
-[[nodiscard]] Result<PlyHeader, MeshError> read_ply_header(std::string_view bytes);
+[[nodiscard]] Result<PlyHeader, Refusal> read_ply_header(std::string_view bytes);
 
 } // namespace tactus::detail

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "host_tools/mesh/detail/readers.hpp"
 #include "host_tools/mesh/detail/text_cursor.hpp"
+#include "platform/base/refusal.hpp"
 
 #include <fmt/format.h>
 
@@ -22,7 +23,7 @@ class ObjReader
 public:
     explicit ObjReader(std::string_view text) : text_(text), cursor_(text) {}
 
-    Result<MeshFile, MeshError> read()
+    Result<MeshFile, Refusal> read()
     {
         do
         {
@@ -33,10 +34,9 @@ public:
         } while (cursor_.skip_line());
         if (largest_index_ > file_.mesh.positions.size())
         {
-            return MeshError{fmt::format("line {}: vertex index {} is out of range; the file has "
-                                         "{} vertices",
-                                         largest_line_, largest_index_,
-                                         file_.mesh.positions.size())};
+            return Refusal{fmt::format("line {}: vertex index {} is out of range; the file has "
+                                       "{} vertices",
+                                       largest_line_, largest_index_, file_.mesh.positions.size())};
         }
         polygons_.add_notes(file_.notes);
         if (left_out_ > 0)
@@ -60,7 +60,7 @@ private:
         return word;
     }
 
-    std::optional<MeshError> read_line(std::string_view keyword)
+    std::optional<Refusal> read_line(std::string_view keyword)
     {
         if (keyword == "v")
         {
@@ -78,7 +78,7 @@ private:
         return std::nullopt;
     }
 
-    std::optional<MeshError> read_vertex()
+    std::optional<Refusal> read_vertex()
     {
         auto& position = file_.mesh.positions.emplace_back();
         for (std::size_t axis = 0; axis < 3; ++axis)
@@ -96,7 +96,7 @@ private:
         return std::nullopt;
     }
 
-    std::optional<MeshError> read_face()
+    std::optional<Refusal> read_face()
     {
         corners_.clear();
         for (auto word = next_word(); !word.empty() && word[0] != '#'; word = next_word())
@@ -141,7 +141,7 @@ private:
 
 } // namespace
 
-Result<MeshFile, MeshError> read_obj(std::string_view text)
+Result<MeshFile, Refusal> read_obj(std::string_view text)
 {
     return ObjReader(text).read();
 }

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "host_tools/mesh/detail/readers.hpp"
 #include "host_tools/mesh/detail/text_cursor.hpp"
+#include "platform/base/refusal.hpp"
 
 #include <fmt/format.h>
 
@@ -21,7 +22,7 @@ class OffReader
 public:
     explicit OffReader(std::string_view text) : text_(text), cursor_(text) {}
 
-    Result<MeshFile, MeshError> read()
+    Result<MeshFile, Refusal> read()
     {
         if (auto error = read_keyword())
         {
@@ -77,7 +78,7 @@ private:
         return {};
     }
 
-    std::optional<MeshError> read_keyword()
+    std::optional<Refusal> read_keyword()
     {
         const std::string_view keyword = first_of_line();
         if (keyword == "OFF" || keyword == "COFF" || keyword == "NOFF" || keyword == "CNOFF" ||
@@ -90,7 +91,7 @@ private:
                         quote(keyword)));
     }
 
-    std::optional<MeshError> read_counts()
+    std::optional<Refusal> read_counts()
     {
         std::string_view token = next_of_line();
         if (token.empty())
@@ -118,7 +119,7 @@ private:
         return std::nullopt;
     }
 
-    std::optional<MeshError> read_vertices()
+    std::optional<Refusal> read_vertices()
     {
         file_.mesh.positions.reserve(vertices_);
         for (std::uint64_t v = 0; v < vertices_; ++v)
@@ -141,7 +142,7 @@ private:
         return std::nullopt;
     }
 
-    std::optional<MeshError> read_faces()
+    std::optional<Refusal> read_faces()
     {
         PolygonSink polygons(file_.mesh);
         std::vector<std::uint32_t> corners;
@@ -185,7 +186,7 @@ private:
 
 } // namespace
 
-Result<MeshFile, MeshError> read_off(std::string_view text)
+Result<MeshFile, Refusal> read_off(std::string_view text)
 {
     return OffReader(text).read();
 }

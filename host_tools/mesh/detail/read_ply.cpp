@@ -3,6 +3,8 @@
 #include "host_tools/mesh/detail/ply_header.hpp"
 #include "host_tools/mesh/detail/readers.hpp"
 #include "host_tools/mesh/detail/text_cursor.hpp"
+#include "platform/base/printable.hpp"
+#include "platform/base/refusal.hpp"
 
 #include <fmt/format.h>
 
@@ -106,7 +108,7 @@ class PlyBody
 public:
     PlyBody(const PlyHeader& header, Values values) : header_(header), values_(std::move(values)) {}
 
-    Result<MeshFile, MeshError> read()
+    Result<MeshFile, Refusal> read()
     {
         if (auto error = find_vertex_element())
         {
@@ -121,7 +123,7 @@ public:
         }
         if (!values_.at_end())
         {
-            return MeshError{values_.where() + "data after the last element"};
+            return Refusal{values_.where() + "data after the last element"};
         }
         polygons_.add_notes(file_.notes);
         return std::move(file_);
@@ -136,7 +138,7 @@ private:
         strip,
     };
 
-    std::optional<MeshError> find_vertex_element()
+    std::optional<Refusal> find_vertex_element()
     {
         for (const PlyElement& element : header_.elements)
         {
@@ -154,12 +156,12 @@ private:
             }
             if (vertices_ || seen != std::array<int, 3>{1, 1, 1})
             {
-                return MeshError{"the header must have one vertex element with one x, y and z"};
+                return Refusal{"the header must have one vertex element with one x, y and z"};
             }
             vertices_ = element.count;
         }
         return vertices_ ? std::nullopt
-                         : std::optional(MeshError{"the header has no vertex element"});
+                         : std::optional(Refusal{"the header has no vertex element"});
     }
 
     static std::optional<std::size_t> axis_of(const PlyProperty& property)
@@ -185,7 +187,7 @@ private:
         return Role::passed_over;
     }
 
-    std::optional<MeshError> read_element(const PlyElement& element)
+    std::optional<Refusal> read_element(const PlyElement& element)
     {
         std::size_t least = 0;
         std::vector<Role> roles;
@@ -200,10 +202,10 @@ private:
         }
         if (element.count > values_.remaining() / least)
         {
-            return MeshError{fmt::format("the header declares {} x {} of at least {} bytes each, "
-                                         "but only {} bytes are left",
-                                         element.count, quote(element.name), least,
-                                         values_.remaining())};
+            return Refusal{fmt::format("the header declares {} x {} of at least {} bytes each, "
+                                       "but only {} bytes are left",
+                                       element.count, quote(element.name), least,
+                                       values_.remaining())};
         }
         if (element.name == "vertex")
         {
@@ -213,8 +215,8 @@ private:
         {
             if (auto error = read_item(element, roles))
             {
-                return MeshError{fmt::format("{}{} {} of {} (from 0): {}", values_.where(),
-                                             printable(element.name), item, element.count, *error)};
+                return Refusal{fmt::format("{}{} {} of {} (from 0): {}", values_.where(),
+                                           printable(element.name), item, element.count, *error)};
             }
         }
         return std::nullopt;
@@ -341,7 +343,7 @@ private:
 
 } // namespace
 
-Result<MeshFile, MeshError> read_ply(std::string_view bytes)
+Result<MeshFile, Refusal> read_ply(std::string_view bytes)
 {
     const auto header = read_ply_header(bytes);
     if (!header)

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "host_tools/mesh/detail/readers.hpp"
 #include "host_tools/mesh/detail/text_cursor.hpp"
+#include "platform/base/refusal.hpp"
 
 #include <fmt/format.h>
 
@@ -49,7 +50,7 @@ bool is_text(std::string_view bytes)
            std::none_of(start.begin(), start.end(), control);
 }
 
-Result<MeshFile, MeshError> read_binary(std::string_view bytes)
+Result<MeshFile, Refusal> read_binary(std::string_view bytes)
 {
     MeshFile file;
     const std::uint64_t triangles = binary_triangles(bytes);
@@ -78,7 +79,7 @@ public:
     explicit TextStlReader(std::string_view text) : cursor_(text) {}
 
     /// One or more "solid name ... endsolid name".
-    Result<MeshFile, MeshError> read()
+    Result<MeshFile, Refusal> read()
     {
         std::string word = lower(cursor_.next_token());
         while (!word.empty())
@@ -104,7 +105,7 @@ public:
     }
 
 private:
-    std::optional<MeshError> expect(std::string_view wanted, std::string_view found)
+    std::optional<Refusal> expect(std::string_view wanted, std::string_view found)
     {
         if (lower(found) == wanted)
         {
@@ -116,7 +117,7 @@ private:
     }
 
     /// "facet normal x y z outer loop vertex ... endloop endfacet"; the normal is passed over.
-    std::optional<MeshError> read_facet(std::string_view first)
+    std::optional<Refusal> read_facet(std::string_view first)
     {
         if (auto error = expect(first.empty() ? "endsolid" : "facet", first))
         {
@@ -149,7 +150,7 @@ private:
         return expect("endfacet", cursor_.next_token());
     }
 
-    std::optional<MeshError> read_position()
+    std::optional<Refusal> read_position()
     {
         auto& position = file_.mesh.positions.emplace_back();
         for (std::size_t axis = 0; axis < 3; ++axis)
@@ -173,7 +174,7 @@ private:
 
 } // namespace
 
-Result<MeshFile, MeshError> read_stl(std::string_view bytes)
+Result<MeshFile, Refusal> read_stl(std::string_view bytes)
 {
     if (has_binary_length(bytes))
     {
@@ -185,15 +186,15 @@ Result<MeshFile, MeshError> read_stl(std::string_view bytes)
     }
     if (bytes.size() < kHeaderBytes)
     {
-        return MeshError{fmt::format("has {} bytes and doesn't begin with 'solid'; a binary STL "
-                                     "has at least {}",
-                                     bytes.size(), kHeaderBytes)};
+        return Refusal{fmt::format("has {} bytes and doesn't begin with 'solid'; a binary STL "
+                                   "has at least {}",
+                                   bytes.size(), kHeaderBytes)};
     }
-    return MeshError{fmt::format("the header at byte 80 declares {} triangles, which makes {} "
-                                 "bytes; the file has {}",
-                                 binary_triangles(bytes),
-                                 kHeaderBytes + kTriangleBytes * binary_triangles(bytes),
-                                 bytes.size())};
+    return Refusal{fmt::format("the header at byte 80 declares {} triangles, which makes {} "
+                               "bytes; the file has {}",
+                               binary_triangles(bytes),
+                               kHeaderBytes + kTriangleBytes * binary_triangles(bytes),
+                               bytes.size())};
 }
 
 } // namespace tactus::detail

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "host_tools/mesh/read_mesh.hpp"
+#include "platform/base/refusal.hpp"
 
 #include <cstdint>
 #include <span>
@@ -14,10 +15,10 @@
 namespace tactus::detail
 {
 
-[[nodiscard]] Result<MeshFile, MeshError> read_ply(std::string_view bytes);
-[[nodiscard]] Result<MeshFile, MeshError> read_obj(std::string_view text);
-[[nodiscard]] Result<MeshFile, MeshError> read_stl(std::string_view bytes);
-[[nodiscard]] Result<MeshFile, MeshError> read_off(std::string_view text);
+[[nodiscard]] Result<MeshFile, Refusal> read_ply(std::string_view bytes);
+[[nodiscard]] Result<MeshFile, Refusal> read_obj(std::string_view text);
+[[nodiscard]] Result<MeshFile, Refusal> read_stl(std::string_view bytes);
+[[nodiscard]] Result<MeshFile, Refusal> read_off(std::string_view text);
 
 /// Cuts polygons into fans and counts what a user should hear about.
 class PolygonSink

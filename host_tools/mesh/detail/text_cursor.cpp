@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #include "host_tools/mesh/detail/text_cursor.hpp"
 
+#include "platform/base/printable.hpp"
+
 #include <fmt/format.h>
 
 #include <charconv>
@@ -64,7 +66,7 @@ bool TextCursor::skip_line()
     return true;
 }
 
-MeshError TextCursor::error(const std::string& what) const
+Refusal TextCursor::error(const std::string& what) const
 {
     return {fmt::format("line {}: {}", line_, what)};
 }
@@ -99,20 +101,10 @@ std::optional<std::int64_t> parse_integer(std::string_view token)
     return value;
 }
 
-std::string printable(std::string_view token)
-{
-    constexpr std::size_t kLongest = 24;
-    std::string text;
-    for (const char c : token.substr(0, kLongest))
-    {
-        text += c >= ' ' && c <= '~' ? c : '?';
-    }
-    return text + (token.size() > kLongest ? "..." : "");
-}
-
 std::string quote(std::string_view token)
 {
-    return "'" + printable(token) + "'";
+    constexpr std::size_t kLongest = 24; // Of a file that may be one long line.
+    return "'" + printable(token, kLongest) + "'";
 }
 
 } // namespace tactus::detail

@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "host_tools/mesh/mesh_error.hpp"
+#include "platform/base/refusal.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -35,7 +35,7 @@ public:
     [[nodiscard]] std::size_t remaining() const { return text_.size() - at_; }
     [[nodiscard]] std::size_t line() const { return line_; }
     /// The error with the current line in front.
-    [[nodiscard]] MeshError error(const std::string& what) const;
+    [[nodiscard]] Refusal error(const std::string& what) const;
 
 private:
     std::string_view text_;
@@ -48,10 +48,7 @@ private:
 [[nodiscard]] std::optional<double> parse_number(std::string_view token);
 [[nodiscard]] std::optional<std::int64_t> parse_integer(std::string_view token);
 
-/// The token as it can stand in a message, whatever bytes it holds: short, '?' for what a terminal
-/// would not print or would obey.
-[[nodiscard]] std::string printable(std::string_view token);
-/// The same in quotes.
+/// The token in quotes as it can stand in a message, whatever bytes it holds.
 [[nodiscard]] std::string quote(std::string_view token);
 
 } // namespace tactus::detail

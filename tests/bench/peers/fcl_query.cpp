@@ -74,10 +74,10 @@ public:
     }
 
     [[nodiscard]] std::string name() const override { return "FCL"; }
-    void place(const Placement& tool) override
+    void place(const Similarity& tool) override
     {
         std::copy_n(tool.rotation.data(), place_.rotation.size(), place_.rotation.begin());
-        place_.origin = to_point(tool.origin);
+        place_.origin = to_point(tool.translation_m);
     }
 
     [[nodiscard]] bool do_meet() override { return tool_.does_meet(place_, object_); }

@@ -25,7 +25,7 @@ public:
 
     [[nodiscard]] virtual std::string name() const = 0;
     /// From here on the tool's frame lies so in the object's; of scale 1. Not timed.
-    virtual void place(const Placement& tool) = 0;
+    virtual void place(const Similarity& tool) = 0;
 
     /// Whether any two faces share a point.
     [[nodiscard]] virtual bool do_meet() = 0;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
+#include "rt_core/force/safe_state.hpp"
 #include "rt_core/frame/frame.hpp"
 #include "transport/courier.hpp"
 #include "transport/store/store_link.hpp"
@@ -54,26 +55,37 @@ int main(int argc, char** argv)
     Courier courier(arena, parts.header, parts.slots, parts.linker, parts.inbox, *model.link,
                     model.name, {});
 
-    // Base vertices lie on the surface. Down to the highest one and 0.5 mm into it, in 0.5 s.
+    // A model stands where its source mesh stood, unless a pose says otherwise. Its base vertices
+    // lie on the surface. Down to the highest one and 0.5 mm into it, in 0.5 s.
     const auto vertices = parts.slots.base.positions_m;
     const Vec3 top =
+        header.origin_m() +
         to_vec3(*std::max_element(vertices.begin(), vertices.end(),
                                   [](const Vec3f& a, const Vec3f& b) { return a[2] < b[2]; }));
     const std::array<ObjectPose, 1> poses{};
     std::array<ToolState, 1> states{};
+    SafeState safe({1.0, 8.0, 500.0}); // Fades the force where the frame says that it must.
     FrameOutput output;
+    SafetyOutput to_device;
     for (int i = 0; i <= 500; ++i)
     {
         const double height_m = 3.0 * radius_m - (3.0 * radius_m + 0.0005) * i / 500.0;
         states[0].position_m = top + Vec3(0.0, 0.0, height_m);
         courier.step(i * setup.period_ns);
         output = frame->run(states, poses, Budgets{}, StageMark{});
+        SafetyInput input;
+        input.position_m = states[0].position_m;
+        input.elapsed_s = 1e-9 * static_cast<double>(setup.period_ns);
+        input.force_n = output.tools[0].force_n;
+        input.proxy_m = output.tools[0].proxy_m;
+        input.faults = faults_of(output.tools[0]);
+        to_device = safe.step(input);
     }
 
-    const ToolOutput& tool = output.tools[0];
     const PairOutput& pair = output.pairs[0];
     std::printf("%s, distance %.3f to %.3f mm, force %.3f %.3f %.3f N\n",
                 pair.kind == AnswerKind::exact ? "exact" : "not exact", pair.lower_m * 1e3,
-                pair.upper_m * 1e3, tool.force_n.x(), tool.force_n.y(), tool.force_n.z());
-    return tool.in_contact ? 0 : 1;
+                pair.upper_m * 1e3, to_device.force_n.x(), to_device.force_n.y(),
+                to_device.force_n.z());
+    return output.tools[0].in_contact ? 0 : 1;
 }

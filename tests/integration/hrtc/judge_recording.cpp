@@ -58,6 +58,7 @@ test::TestModel source_of(const std::string& path)
     const TriangleMesh mesh = extract(model, {std::nullopt, 0.0, std::nullopt}).mesh;
     const auto& origin_m = model.header().fields().origin_m;
     test::TestModel source;
+    source.origin_m = origin_m;
     for (const auto& corners : mesh.faces)
     {
         test::Face& face = source.faces.emplace_back();
@@ -73,14 +74,16 @@ test::TestModel source_of(const std::string& path)
     return source;
 }
 
-void judge(Span& span, const test::CenterOracle& oracle, std::uint64_t frame,
-           const RecordedFrame& given, const FrameOutput& returned)
+void judge(Span& span, const test::CenterOracle& oracle, const std::array<double, 3>& origin_m,
+           std::uint64_t frame, const RecordedFrame& given, const FrameOutput& returned)
 {
     const ToolOutput& tool = returned.tools[0];
     ++span.frames;
     span.contact_frames += tool.in_contact ? 1U : 0U;
     span.force_max_n = std::max(span.force_max_n, tool.force_n.norm());
-    const auto verdict = test::judge_bracket(oracle, returned.pairs[0], given.poses[0]);
+    const auto verdict = test::judge_bracket(
+        oracle, returned.pairs[0],
+        model_pose(given.poses[0], Vec3(origin_m[0], origin_m[1], origin_m[2])));
     if (verdict.error > 1.0)
     {
         ++span.violations;
@@ -129,7 +132,7 @@ int run(const std::string& recorded, const std::string& model, std::vector<Span>
             {
                 ++current;
             }
-            judge(spans[current], oracle, frame, given, returned);
+            judge(spans[current], oracle, source.origin_m, frame, given, returned);
         }};
     const auto replayed = replay(recording.value(), nullptr, watch);
     if (!replayed || replayed.value().difference)

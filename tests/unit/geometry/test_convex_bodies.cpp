@@ -167,10 +167,12 @@ TEST(Hull, refuses_what_is_no_hull)
     vertices.emplace_back(1, 2, 3);
     EXPECT_EQ(Hull::create(vertices).error(), too_many_vertices);
     EXPECT_EQ(Hull::create({}).error(), no_vertex);
-    for (const double bad : {std::numeric_limits<double>::quiet_NaN(),
-                             std::numeric_limits<double>::infinity(), -1.1e300})
+    for (const double bad :
+         {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
+          -std::nextafter(kCoordinateRange, 1e301)})
     {
-        vertices.assign(3, Vec3(1, 2, 3));
+        vertices.assign(3, Vec3(1, 2, -kCoordinateRange));
+        EXPECT_TRUE(Hull::create(vertices).has_value());
         vertices[1][2] = bad;
         EXPECT_EQ(Hull::create(vertices).error(), vertex_not_finite) << bad;
     }

@@ -225,6 +225,25 @@ TEST(Gjk, stops_as_soon_as_it_is_beyond_the_limit)
     EXPECT_GT(answer.lower, 1.0);
 }
 
+TEST(Gjk, ends_when_the_bounds_are_as_near_as_the_tolerance_says_and_not_much_later)
+{
+    Random random(98);
+    double widest = 0.0;
+    for (int i = 0; i < 2'000; ++i)
+    {
+        const RoundBody round({{random.in_cube(1.0), random.in_cube(1.0)}, 1.0});
+        const Vec3 far = random.in_cube(1.0).normalized() * random.between(5.0, 30.0);
+        const Triangle triangle{far + random.in_cube(2.0), far + random.in_cube(2.0),
+                                far + random.in_cube(2.0)};
+        const GjkAnswer answer = ask(round.body(), triangle);
+        const double apart = answer.upper - answer.lower - 4.0 * answer.rounding;
+        ASSERT_LT(answer.iterations, kGjkIterations) << i;
+        ASSERT_LE(apart, kGjkRelativeGap * answer.upper) << i;
+        widest = std::max(widest, apart / answer.upper);
+    }
+    EXPECT_GT(widest, 0.01 * kGjkRelativeGap);
+}
+
 TEST(Gjk, repeats_its_bits)
 {
     Random random(93);

@@ -20,7 +20,7 @@ Mat3 random_rotation(Random& random)
     return Eigen::AngleAxisd(random.between(-4.0, 4.0), axis.normalized()).toRotationMatrix();
 }
 
-Placement random_place(Random& random)
+Similarity random_place(Random& random)
 {
     return {random_rotation(random), random.in_cube(2.0), random.between(0.2, 3.0)};
 }
@@ -105,13 +105,13 @@ std::vector<Vec3> points_of(const ToolCore& core, Random& random)
     return points;
 }
 
-Vec3 placed(const Placement& place, const Vec3& point)
+Vec3 placed(const Similarity& place, const Vec3& point)
 {
-    return place.origin + place.scale * (place.rotation * point);
+    return place.translation_m + place.scale * (place.rotation * point);
 }
 
 /// The distance by the oracle, of a core placed by its own arithmetic.
-long double true_distance(const ToolCore& core, const Placement& place, const Triangle& triangle)
+long double true_distance(const ToolCore& core, const Similarity& place, const Triangle& triangle)
 {
     if (const auto* segment = std::get_if<Segment>(&core))
     {
@@ -123,7 +123,8 @@ long double true_distance(const ToolCore& core, const Placement& place, const Tr
         Triangle near;
         for (std::size_t i = 0; i < 3; ++i)
         {
-            near[i] = place.rotation.transpose() * (triangle[i] - place.origin) / place.scale;
+            near[i] =
+                place.rotation.transpose() * (triangle[i] - place.translation_m) / place.scale;
         }
         return Oracle::distance(*box, near) * static_cast<long double>(place.scale);
     }
@@ -136,7 +137,7 @@ long double true_distance(const ToolCore& core, const Placement& place, const Tr
         }
         return HullOracle<long double>::distance(vertices, triangle);
     }
-    return Oracle::Base::distance(place.origin, triangle);
+    return Oracle::Base::distance(place.translation_m, triangle);
 }
 
 Triangle random_triangle(Random& random)
@@ -157,7 +158,7 @@ TEST(PlacedCore, measures_as_the_oracle_does_and_bounds_from_below)
     {
         const OwnedCore owned = random_core(random);
         const ToolCore& core = owned.core;
-        const Placement place = random_place(random);
+        const Similarity place = random_place(random);
         const PlacedCore sut(core, place);
         const Triangle triangle = random_triangle(random);
         const auto truth = static_cast<double>(true_distance(core, place, triangle));
@@ -189,7 +190,7 @@ TEST(PlacedCore, is_held_by_its_ball_and_by_its_cover)
     {
         const OwnedCore owned = random_core(random);
         const ToolCore& core = owned.core;
-        const Placement place = random_place(random);
+        const Similarity place = random_place(random);
         const PlacedCore sut(core, place);
         const double enough = sut.radius() * random.between(0.0, 1.2);
 
@@ -230,10 +231,10 @@ TEST(PlacedCore, no_point_moved_farther_than_it_says)
     {
         const OwnedCore owned = random_core(random);
         const ToolCore& core = owned.core;
-        const Placement before = random_place(random);
-        Placement after = before;
+        const Similarity before = random_place(random);
+        Similarity after = before;
         const double much = random.one_in(3) ? 1.0 : 1e-6;
-        after.origin += random.in_cube(much);
+        after.translation_m += random.in_cube(much);
         after.rotation =
             Eigen::AngleAxisd(much * random.between(-1, 1), random.in_cube(1.0).normalized())
                 .toRotationMatrix() *

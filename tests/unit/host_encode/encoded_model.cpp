@@ -14,7 +14,7 @@ namespace
 {
 
 std::unique_ptr<EncodedModel> encode_source(const std::string& name,
-                                            const Result<TriangleMesh, MeshError>& mesh,
+                                            const Result<TriangleMesh, Refusal>& mesh,
                                             unsigned position_bits)
 {
     if (!mesh)

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
+
+/// Which record changed a face last: its finest corner (I10). And what errors faces have.
+
 #include "host_tools/encode/face_history.hpp"
 #include "host_tools/encode/replay.hpp"
 #include "tests/unit/host_encode/encoded_model.hpp"

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
+
+/// I11: influence boxes miss no chunk that a ball needs.
+
 #include "host_tools/encode/influence.hpp"
 #include "host_tools/encode/replay.hpp"
 #include "tests/unit/host_encode/encoded_model.hpp"

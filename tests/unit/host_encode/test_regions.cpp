@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// Regions at full resolution: with the chunks that the two-level index names for a zone, and none
-/// besides, the controller's linker and forest bring back every source face that the zone touches.
+/// Regions at full resolution (I11): with the chunks that the two-level index names for a zone, and
+/// none besides, the controller's linker and forest bring back every source face that the zone
+/// touches.
 
 #include "host_tools/encode/replay.hpp"
 #include "tests/shared/frame_rig.hpp"

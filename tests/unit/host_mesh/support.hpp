@@ -4,6 +4,7 @@
 
 #include "host_tools/mesh/prepare.hpp"
 #include "host_tools/mesh/read_mesh.hpp"
+#include "platform/base/refusal.hpp"
 
 #include <gtest/gtest.h>
 
@@ -67,14 +68,14 @@ private:
     std::filesystem::path path_;
 };
 
-inline Result<MeshFile, MeshError> read_bytes(const std::string& name, std::string_view bytes)
+inline Result<MeshFile, Refusal> read_bytes(const std::string& name, std::string_view bytes)
 {
     const TempDirectory directory;
     return read_mesh_file(directory.write(name, bytes));
 }
 
 /// The error's text; fails when there is none or when it is not one line.
-inline std::string refusal(const Result<MeshFile, MeshError>& result)
+inline std::string refusal(const Result<MeshFile, Refusal>& result)
 {
     if (result)
     {

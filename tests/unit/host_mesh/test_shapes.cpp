@@ -15,7 +15,7 @@ namespace tactus::test
 namespace
 {
 
-TriangleMesh made(Result<TriangleMesh, MeshError> result)
+TriangleMesh made(Result<TriangleMesh, Refusal> result)
 {
     EXPECT_TRUE(result) << result.error().text;
     return result ? std::move(result).value() : TriangleMesh{};

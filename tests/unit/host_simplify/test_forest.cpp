@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-// The vertex forest that a simplification describes: it is replayed from the collapses alone.
+
+/// The vertex forest that a simplification describes, replayed from the collapses alone: I1 undoing
+/// them gives the mesh, I3 cuts are manifold and stars keep their cap, I10 the finest corner.
+
 #include "tests/unit/host_simplify/forest_replay.hpp"
 #include "tests/unit/host_simplify/small_meshes.hpp"
 

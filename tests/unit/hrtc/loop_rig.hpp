@@ -9,6 +9,7 @@
 #include "tests/shared/frame_rig.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <functional>
@@ -81,12 +82,17 @@ public:
         written_n.push_back({force_world_n[0], force_world_n[1], force_world_n[2]});
     }
     void brake() noexcept override { device_->brake(); }
-    void release_brake() noexcept override { device_->release_brake(); }
+    void release_brake() noexcept override
+    {
+        before_release();
+        device_->release_brake();
+    }
     [[nodiscard]] DeviceStatus status() const noexcept override { return device_->status(); }
 
     [[nodiscard]] Vec3 felt_n() const noexcept { return simulated_.felt_force_world_n(); }
 
     std::vector<Vec3> written_n; ///< One a frame; the last is the zero at the end.
+    std::function<void()> before_release = [] {};
 
 private:
     const SimulatedDevice& simulated_;
@@ -123,16 +129,15 @@ public:
         load_everything(frames_);
         make_device();
         const DeviceLimits& device_limits = device().info().limits;
-        limits_ = {options_.speed_max_m_per_s, device_limits.force_max_n,
-                   options_.stiffness_n_per_m, kDampingShare * device_limits.damping_n_s_per_m};
-        conditioner_.device = device_limits;
-        conditioner_.period_s = kPeriod_s;
+        tool().limits = {options_.speed_max_m_per_s, device_limits.force_max_n,
+                         options_.stiffness_n_per_m,
+                         kDampingShare * device_limits.damping_n_s_per_m};
+        tool().conditioner.device = device_limits;
+        tool().conditioner.period_s = kPeriod_s;
         LoopParts parts;
         parts.frame = &frames_.frame();
-        parts.devices = devices_;
-        parts.limits = {&limits_, 1};
-        parts.conditioners = {&conditioner_, 1};
-        parts.poses = {&frames_.pose(), 1};
+        parts.tools = tools_;
+        parts.poses = frames_.source_poses();
         parts.timer = options_.timer != nullptr ? options_.timer : &timer_;
         parts.clock = &clock();
         parts.frames = options_.frames;
@@ -147,14 +152,11 @@ public:
 
     [[nodiscard]] PoseDoor& door() { return *door_; }
     /// Where the object stands at first.
-    [[nodiscard]] const ObjectPose& placed() const { return frames_.pose(); }
+    [[nodiscard]] const ObjectPose& placed() const { return frames_.source_poses()[0]; }
     [[nodiscard]] const RunStatistics& statistics() const { return statistics_; }
     [[nodiscard]] HapticLoop& loop() { return *loop_; }
-    [[nodiscard]] TamperedDevice& device()
-    {
-        return static_cast<TamperedDevice&>(*devices_.front());
-    }
-    [[nodiscard]] std::span<const std::unique_ptr<HapticDevice>> devices() { return devices_; }
+    [[nodiscard]] TamperedDevice& device() { return static_cast<TamperedDevice&>(*tool().device); }
+    [[nodiscard]] std::span<const ToolSetup> tools() const { return tools_; }
     [[nodiscard]] SimulatedClock& virtual_clock() { return clock_; }
     [[nodiscard]] const Clock& clock() const
     {
@@ -212,10 +214,11 @@ private:
         device.watchdog = options_.watchdog;
         device.workspace_centre_world_m = place;
         auto hand = std::make_unique<PressingHand>(place, Vec3::UnitX(), 0.05 * model_.diagonal_m);
-        devices_.push_back(std::make_unique<TamperedDevice>(
+        tool().device = std::make_unique<TamperedDevice>(
             std::move(SimulatedDevice::create(device, std::move(hand))).value(), options_.faults,
-            options_.tamper));
+            options_.tamper);
     }
+    [[nodiscard]] ToolSetup& tool() { return tools_.front(); }
 
     LoopRigOptions options_;
     const tactus::test::TestModel& model_;
@@ -223,9 +226,7 @@ private:
     SimulatedClock clock_{MonotonicTime{1'000'000'000}};
     SimulatedPeriodicTimer timer_;
     RunStatistics statistics_;
-    std::vector<std::unique_ptr<HapticDevice>> devices_;
-    SafetyLimits limits_;
-    ConditionerSetup conditioner_;
+    std::array<ToolSetup, 1> tools_;
     std::optional<PoseDoor> door_;
     std::optional<HapticLoop> loop_;
 };

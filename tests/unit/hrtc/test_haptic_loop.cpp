@@ -303,7 +303,8 @@ void report_and_leave(const char* /*condition*/, const char* /*file*/, int /*lin
     bool is_straight = before_n > 1.0 && faded == kFadeFrames;
     for (std::size_t i = 0; i < faded; ++i)
     {
-        const double left = 1.0 - static_cast<double>(i + 1) / static_cast<double>(faded);
+        const double left =
+            std::max(1.0 - static_cast<double>(i + 1) * kPeriod_s / kFadeTime_s, 0.0);
         is_straight = is_straight && std::abs(sent[kSettled + i].norm() - left * before_n) < 1e-9;
     }
     const bool is_braked = failing_rig->device().status().state == DeviceState::brake;
@@ -341,6 +342,26 @@ TEST(HapticLoop, a_bug_of_another_thread_brakes_at_once_and_nobody_releases_it)
     running = &rig;
     rig.loop().run();
     EXPECT_TRUE(rig.loop().has_failed());
+    EXPECT_EQ(rig.loop().frames_done(), kSettled + 1);
+    EXPECT_EQ(rig.device().status().state, DeviceState::brake);
+    EXPECT_EQ(rig.device().felt_n().norm(), 0.0);
+}
+
+TEST(HapticLoop, a_release_that_has_begun_does_not_undo_the_brake_of_a_bug)
+{
+    LoopRig* running = nullptr;
+    LoopRigOptions options;
+    options.tamper = [&](std::uint64_t frame, DeviceSample&)
+    {
+        if (frame == kSettled)
+        {
+            running->device().brake(); // As the supervisor does; the loop releases it.
+        }
+    };
+    LoopRig rig(options);
+    running = &rig;
+    rig.device().before_release = [&] { std::thread([&] { rig.loop().fail(); }).join(); };
+    rig.loop().run();
     EXPECT_EQ(rig.loop().frames_done(), kSettled + 1);
     EXPECT_EQ(rig.device().status().state, DeviceState::brake);
     EXPECT_EQ(rig.device().felt_n().norm(), 0.0);

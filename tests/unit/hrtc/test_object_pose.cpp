@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "platform/hrtc/object_pose.hpp"
+#include "platform/hrtc/placement.hpp"
 #include "tests/shared/frame_rig.hpp"
 
 #include <Eigen/Geometry>
@@ -36,7 +37,7 @@ TEST(ObjectPose, a_quaternion_becomes_the_rotation_that_it_is_and_stays_orthonor
     for (int i = 0; i < 100'000; ++i)
     {
         const Pose pose = random_pose(random, i % 2 == 0 ? 1.0 : 1.0 + kPoseUnitTolerance);
-        const Mat3 rotation = rotation_of(pose);
+        const Mat3 rotation = to_similarity(pose).rotation;
         const auto& q = pose.rotation;
         const Mat3 oracle = Eigen::Quaterniond(q[3], q[0], q[1], q[2]).normalized().matrix();
         ASSERT_LT((rotation - oracle).cwiseAbs().maxCoeff(), 2e-15) << "seed " << kSeed << " " << i;
@@ -50,24 +51,20 @@ TEST(ObjectPose, from_a_host_is_where_place_would_put_the_object)
     const tactus::test::TestModel& model = tactus::test::small_model(0);
     const tactus::test::FrameRig rig(model, tactus::test::with_room_for_all());
     const ModelHeader& header = rig.frame().model({0}).header;
-    Placement placement;
-    placement.translation_m = Vec3(0.1, -0.2, 0.3);
-    placement.rotation_deg = Vec3(0.0, 0.0, 90.0);
-    placement.scale = 2.0;
+    const std::optional<Similarity> placement = parse_placement("0.1,-0.2,0.3,0,0,90,2");
+    ASSERT_TRUE(placement);
     Pose pose;
     pose.translation_m = {0.1, -0.2, 0.3};
     pose.rotation = {0.0, 0.0, std::sqrt(0.5), std::sqrt(0.5)};
     pose.scale = 2.0;
-    const ObjectPose placed = object_pose(placement, header);
-    const ObjectPose moved = object_pose(pose, header);
+    const ObjectPose placed = object_pose(*placement, header);
+    const ObjectPose moved = object_pose(to_similarity(pose), header);
     EXPECT_LT((placed.rotation - moved.rotation).cwiseAbs().maxCoeff(), 1e-15);
     EXPECT_LT((placed.translation_m - moved.translation_m).norm(), 1e-15);
     EXPECT_EQ(placed.scale, moved.scale);
     EXPECT_EQ(placed.revision, moved.revision);
-    // A quarter turn about z of the source's point (1, 0, 0), which is its own in the model's frame
-    // but for the origin.
-    const Vec3 origin_m(model.origin_m[0], model.origin_m[1], model.origin_m[2]);
-    const Vec3 world_m = to_world(moved, Vec3(1.0, 0.0, 0.0) - origin_m);
+    // A quarter turn about z of the source's point (1, 0, 0).
+    const Vec3 world_m = to_world(moved, Vec3(1.0, 0.0, 0.0));
     EXPECT_LT((world_m - Vec3(0.1, -0.2 + 2.0, 0.3)).norm(), 1e-14);
 }
 

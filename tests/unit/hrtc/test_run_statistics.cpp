@@ -35,7 +35,7 @@ public:
         FrameOutput output = output_;
         CycleMeasures measures = measures_;
         change(output, measures);
-        sut.add(output, sent_n_, conditioned_, measures);
+        sut.add(output, forces_, measures);
     }
 
     RunStatistics sut{kTools, kPairs, kModels, kPeriod};
@@ -44,8 +44,7 @@ private:
     std::array<ToolOutput, kTools> tools_{};
     std::array<PairOutput, kPairs> pairs_{};
     std::array<ModelOutput, kModels> models_{};
-    std::array<Vec3, kTools> sent_n_{Vec3(0.0, 0.0, 0.0)};
-    std::array<ConditionedForce, kTools> conditioned_{};
+    std::array<ToolForce, kTools> forces_{};
     FrameOutput output_;
     CycleMeasures measures_;
 };

@@ -36,7 +36,7 @@ class HangingLoop
 public:
     HangingLoop(std::optional<Duration> own_watchdog, bool is_supervised)
         : rig_(options(own_watchdog, is_supervised))
-        , supervisor_({rig_.devices(), &rig_.loop().heartbeat(), &rig_.clock(), nullptr, kPeriod})
+        , supervisor_({rig_.tools(), &rig_.loop().heartbeat(), &rig_.clock(), nullptr, kPeriod})
     {
         rig_.loop().run();
     }
@@ -154,7 +154,7 @@ TEST(Supervisor, looks_when_the_silence_would_be_long_enough)
 {
     LoopRig rig({});
     Heartbeat heartbeat;
-    Supervisor sut({rig.devices(), &heartbeat, &rig.clock(), nullptr, kPeriod});
+    Supervisor sut({rig.tools(), &heartbeat, &rig.clock(), nullptr, kPeriod});
     SimulatedClock& clock = rig.virtual_clock();
     EXPECT_EQ(sut.look(), clock.now() + kPeriod * 3); // Not begun.
     clock.advance(milliseconds(100));
@@ -217,12 +217,12 @@ TEST(Supervisor, brakes_a_device_whose_reading_hangs_and_lets_the_loop_come_back
         }
     };
     LoopRig rig(options);
-    Supervisor sut({rig.devices(), &rig.loop().heartbeat(), &clock, &alarm, kPeriod});
+    Supervisor sut({rig.tools(), &rig.loop().heartbeat(), &clock, &alarm, kPeriod});
     RtThreadOptions thread;
     thread.allow_no_rt = true;
     thread.priority = 10;
     auto supervising = RtThread::start(Supervisor::thread_beside(thread), [&] { sut.run(); });
-    ASSERT_TRUE(supervising) << supervising.error().message;
+    ASSERT_TRUE(supervising) << supervising.error().text;
     std::thread looping([&] { rig.loop().run(); });
 
     is_hanging.wait(false);

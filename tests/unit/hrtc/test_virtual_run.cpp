@@ -137,25 +137,23 @@ public:
         , statistics_(1, 1, 1, kPeriod)
     {
         make_device();
-        const DeviceLimits& device = devices_.front()->info().limits;
-        limits_ = {10.0, device.force_max_n, 500.0, kDampingShare * device.damping_n_s_per_m};
-        conditioner_.device = device;
-        conditioner_.period_s = to_seconds(kPeriod);
-        loop_.emplace(LoopParts{&frames_.frame(),
-                                devices_,
-                                {&limits_, 1},
-                                {&conditioner_, 1},
-                                {&frames_.pose(), 1},
-                                &timer_,
-                                &clock_,
-                                most(),
-                                &governor_,
-                                &tap_,
-                                kFrames,
-                                nullptr},
+        ToolSetup& tool = tools_.front();
+        const DeviceLimits& device = tool.device->info().limits;
+        tool.limits = {10.0, device.force_max_n, 500.0, kDampingShare * device.damping_n_s_per_m};
+        tool.conditioner.device = device;
+        tool.conditioner.period_s = to_seconds(kPeriod);
+        loop_.emplace(LoopParts{.frame = &frames_.frame(),
+                                .tools = tools_,
+                                .poses = frames_.source_poses(),
+                                .timer = &timer_,
+                                .clock = &clock_,
+                                .budgets = most(),
+                                .governor = &governor_,
+                                .tap = &tap_,
+                                .frames = kFrames},
                       statistics_);
         supervisor_.emplace(
-            SupervisorParts{devices_, &loop_->heartbeat(), &clock_, nullptr, kPeriod});
+            SupervisorParts{tools_, &loop_->heartbeat(), &clock_, nullptr, kPeriod});
     }
 
     void run()
@@ -232,7 +230,7 @@ private:
 
     [[nodiscard]] const BusyDevice& device() const
     {
-        return static_cast<const BusyDevice&>(*devices_.front());
+        return static_cast<const BusyDevice&>(*tools_.front().device);
     }
 
     void make_device()
@@ -251,9 +249,9 @@ private:
         options.clock = &clock_;
         options.workspace_centre_world_m = hand->centre_world_m();
         options.workspace_radius_m = hand->reach_m();
-        devices_.push_back(std::make_unique<BusyDevice>(
+        tools_.front().device = std::make_unique<BusyDevice>(
             std::move(SimulatedDevice::create(options, std::move(hand))).value(),
-            [this](std::uint64_t frame) { work_meanwhile(frame); }));
+            [this](std::uint64_t frame) { work_meanwhile(frame); });
     }
 
     /// What the other threads do between two frames, and what time that and the reading take.
@@ -300,9 +298,7 @@ private:
     BudgetGovernor governor_;
     FrameTap tap_;
     RunStatistics statistics_;
-    std::vector<std::unique_ptr<HapticDevice>> devices_;
-    SafetyLimits limits_;
-    ConditionerSetup conditioner_;
+    std::array<ToolSetup, 1> tools_;
     std::optional<HapticLoop> loop_;
     std::optional<Supervisor> supervisor_;
     MonotonicTime wake_{kStart};

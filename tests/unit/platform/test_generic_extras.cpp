@@ -41,9 +41,9 @@ TEST(GenericExtras, refuse_a_processor_and_say_why)
     const auto refused = RtThread::start(options, [&] { has_run = true; });
     ASSERT_FALSE(refused);
     EXPECT_FALSE(has_run);
-    EXPECT_EQ(refused.error().kind, PlatformErrorKind::bad_option);
-    EXPECT_TRUE(contains(refused.error().message, "processor 0 can't be asked for"));
-    EXPECT_TRUE(contains(refused.error().message, "leave the choice to the system"));
+    EXPECT_TRUE(refused.error().is_usage);
+    EXPECT_TRUE(contains(refused.error().text, "processor 0 can't be asked for"));
+    EXPECT_TRUE(contains(refused.error().text, "leave the choice to the system"));
     EXPECT_EQ(linux_extras::another_cpu(0), std::nullopt);
 }
 
@@ -51,7 +51,7 @@ TEST(GenericExtras, run_a_thread_on_whatever_processor_and_let_the_processors_sl
 {
     bool has_run = false;
     auto started = RtThread::start(as_far_as_allowed(), [&] { has_run = true; });
-    ASSERT_TRUE(started) << started.error().message;
+    ASSERT_TRUE(started) << started.error().text;
     started.value().join();
     EXPECT_TRUE(has_run);
     EXPECT_FALSE(started.value().report().pinned);

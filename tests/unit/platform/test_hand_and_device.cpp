@@ -35,7 +35,7 @@ HandAndDevice make(const HandAndDeviceOptions& options)
 std::string refusal(const HandAndDeviceOptions& options)
 {
     const auto made = HandAndDevice::create(options);
-    return made ? std::string() : made.error().message;
+    return made ? std::string() : made.error().text;
 }
 
 const Vec3 kHome(0, 0, 0);

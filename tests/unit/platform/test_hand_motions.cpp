@@ -138,7 +138,7 @@ TEST(HandMotions, refuse_a_scene_that_cannot_be_played)
         scene.tool_radius_m = 0.0;
         const auto made = make_motion(kind, scene);
         ASSERT_FALSE(made) << name;
-        EXPECT_NE(made.error().message.find("tool radius"), std::string::npos);
+        EXPECT_NE(made.error().text.find("tool radius"), std::string::npos);
     }
 }
 

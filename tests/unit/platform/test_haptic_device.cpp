@@ -49,7 +49,7 @@ std::unique_ptr<DeviceRig> make_udp_elsewhere()
     Mat3 quarter;
     quarter << 0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0;
     return std::make_unique<test::UdpRig>(
-        DeviceFrame::create(quarter, Vec3(1.0, 2.0, 3.0), 10.0).value());
+        DeviceFrame::create({quarter, Vec3(1.0, 2.0, 3.0), 10.0}).value());
 }
 
 std::unique_ptr<DeviceRig> make_dhd()
@@ -200,7 +200,7 @@ TEST_P(HapticDeviceConformance, makes_no_system_call)
         {
             if (const auto set = system_call_trap::set_on_this_thread(); !set)
             {
-                refused = set.error().message;
+                refused = set.error().text;
                 return;
             }
             // A sanitizer looks an object's type up by system calls, once.

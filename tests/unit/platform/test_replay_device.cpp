@@ -94,7 +94,7 @@ TEST(ReplayDevice, refuses_what_is_no_recording_of_a_hand)
         ReplayDeviceOptions options = four_readings();
         spoil(options);
         const auto made = ReplayDevice::create(std::move(options));
-        return made ? std::string() : made.error().message;
+        return made ? std::string() : made.error().text;
     };
     const auto has = [](const std::string& text, const char* part)
     { return text.find(part) != std::string::npos; };

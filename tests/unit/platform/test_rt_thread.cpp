@@ -112,7 +112,7 @@ TEST(RtThread, runs_its_body_with_fifo_at_the_priority_asked_for)
     options.priority = 42;
     Seen seen;
     auto started = RtThread::start(options, [&] { look_around(seen); });
-    ASSERT_TRUE(started) << started.error().message;
+    ASSERT_TRUE(started) << started.error().text;
     started.value().join();
     EXPECT_EQ(seen.policy, SCHED_FIFO);
     EXPECT_EQ(seen.priority, 42);
@@ -126,7 +126,7 @@ TEST(RtThread, does_not_pass_the_starters_policy_on_where_fifo_is_not_wanted_by_
     options.allow_no_rt = true;
     Seen seen;
     auto started = RtThread::start(options, [&] { look_around(seen); });
-    ASSERT_TRUE(started) << started.error().message;
+    ASSERT_TRUE(started) << started.error().text;
     started.value().join();
     EXPECT_EQ(seen.policy, started.value().report().fifo ? SCHED_FIFO : SCHED_OTHER);
     EXPECT_EQ(started.value().report().refused.empty(), started.value().report().fifo);
@@ -146,7 +146,7 @@ TEST(RtThread, pins_the_body_to_the_processor_asked_for)
     options.cpu = last;
     Seen seen;
     auto started = RtThread::start(options, [&] { look_around(seen); });
-    ASSERT_TRUE(started) << started.error().message;
+    ASSERT_TRUE(started) << started.error().text;
     started.value().join();
     EXPECT_EQ(seen.cpu, last);
     EXPECT_TRUE(started.value().report().pinned);
@@ -162,9 +162,9 @@ TEST(RtThread, refuses_a_processor_that_does_not_exist_and_names_those_that_do)
         bool ran = false;
         const auto refused = RtThread::start(options, [&] { ran = true; });
         ASSERT_FALSE(refused);
-        EXPECT_EQ(refused.error().kind, PlatformErrorKind::bad_option);
-        EXPECT_TRUE(contains(refused.error().message, "processor " + std::to_string(cpu)));
-        EXPECT_TRUE(contains(refused.error().message, "may use 0"));
+        EXPECT_TRUE(refused.error().is_usage);
+        EXPECT_TRUE(contains(refused.error().text, "processor " + std::to_string(cpu)));
+        EXPECT_TRUE(contains(refused.error().text, "may use 0"));
         EXPECT_FALSE(ran);
     }
 }
@@ -177,8 +177,8 @@ TEST(RtThread, refuses_priorities_and_stacks_out_of_range)
         options.priority = priority;
         const auto refused = RtThread::start(options, [] {});
         ASSERT_FALSE(refused);
-        EXPECT_EQ(refused.error().kind, PlatformErrorKind::bad_option);
-        EXPECT_TRUE(contains(refused.error().message, "1..98"));
+        EXPECT_TRUE(refused.error().is_usage);
+        EXPECT_TRUE(contains(refused.error().text, "1..98"));
         EXPECT_FALSE(probe_realtime(options));
     }
     RtThreadOptions above = without_lock();
@@ -194,7 +194,7 @@ TEST(RtThread, refuses_priorities_and_stacks_out_of_range)
         options.stack_bytes = bytes;
         const auto refused = RtThread::start(options, [] {});
         ASSERT_FALSE(refused);
-        EXPECT_TRUE(contains(refused.error().message, "65536..67108864 bytes"));
+        EXPECT_TRUE(contains(refused.error().text, "65536..67108864 bytes"));
     }
 }
 
@@ -264,7 +264,7 @@ TEST(RtThread, locks_the_memory_of_the_process)
         GTEST_SKIP() << probed.value().front();
     }
     auto started = RtThread::start(options, [] {});
-    ASSERT_TRUE(started) << started.error().message;
+    ASSERT_TRUE(started) << started.error().text;
     EXPECT_TRUE(started.value().report().memory_locked);
     started.value().join();
     posix::unlock_all_memory();
@@ -331,11 +331,11 @@ TEST(RtThread, says_what_is_missing_for_fifo_to_an_ordinary_user)
         {
             bool ran = false;
             const auto refused = RtThread::start(without_lock(), [&] { ran = true; });
-            if (refused || ran || refused.error().kind != PlatformErrorKind::not_permitted)
+            if (refused || ran || refused.error().is_usage)
             {
                 return 1;
             }
-            const std::string& line = refused.error().message;
+            const std::string& line = refused.error().text;
             return contains(line, "SCHED_FIFO 80 refused (EPERM): RLIMIT_RTPRIO is 0; add '") &&
                            contains(line, " - rtprio 98' to /etc/security/limits.conf") &&
                            contains(line, "CAP_SYS_NICE") && !contains(line, "\n")

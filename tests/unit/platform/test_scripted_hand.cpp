@@ -364,7 +364,7 @@ TEST(ScriptedHand, refuses_scenes_that_cannot_be_played)
         HandScene scene = good;
         spoil(scene);
         const auto made = ScriptedHand::create(scene);
-        return made ? std::string() : made.error().message;
+        return made ? std::string() : made.error().text;
     };
     const double nan = std::numeric_limits<double>::quiet_NaN();
     EXPECT_NE(refusal([](HandScene& s) { s.anchors_world_m.clear(); }).find("no anchor"),

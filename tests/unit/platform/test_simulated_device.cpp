@@ -51,7 +51,7 @@ std::string refusal(const SimulatedDeviceOptions& options)
 {
     const auto made =
         SimulatedDevice::create(options, std::make_unique<HandThatJumps>(Vec3::Zero()));
-    return made ? std::string() : made.error().message;
+    return made ? std::string() : made.error().text;
 }
 
 /// Arm and grip of the default hand, one behind the other.

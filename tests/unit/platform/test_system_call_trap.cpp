@@ -33,7 +33,7 @@ void with_trap(const std::function<void()>& work)
         {
             if (const auto set = system_call_trap::set_on_this_thread(); !set)
             {
-                refused = set.error().message;
+                refused = set.error().text;
                 return;
             }
             work();

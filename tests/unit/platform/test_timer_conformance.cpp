@@ -125,10 +125,9 @@ TYPED_TEST(PeriodicTimerConformance, refuses_a_period_out_of_range_and_names_the
     {
         const auto refused = this->sut.start(period, Duration{});
         ASSERT_FALSE(refused);
-        EXPECT_EQ(refused.error().kind, PlatformErrorKind::bad_option);
-        EXPECT_NE(refused.error().message.find("period " + std::to_string(period.ns) + " ns"),
+        EXPECT_NE(refused.error().text.find("period " + std::to_string(period.ns) + " ns"),
                   std::string::npos);
-        EXPECT_NE(refused.error().message.find("50000..1000000000 ns"), std::string::npos);
+        EXPECT_NE(refused.error().text.find("50000..1000000000 ns"), std::string::npos);
     }
 }
 
@@ -138,8 +137,7 @@ TYPED_TEST(PeriodicTimerConformance, refuses_a_margin_that_does_not_fit_the_peri
     {
         const auto refused = this->sut.start(milliseconds(1), margin);
         ASSERT_FALSE(refused);
-        EXPECT_EQ(refused.error().kind, PlatformErrorKind::bad_option);
-        EXPECT_NE(refused.error().message.find("0..999999 ns"), std::string::npos);
+        EXPECT_NE(refused.error().text.find("0..999999 ns"), std::string::npos);
     }
 }
 

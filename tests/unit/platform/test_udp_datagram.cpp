@@ -88,18 +88,18 @@ Bytes with(Bytes bytes, std::size_t at, const T& value)
     return bytes;
 }
 
-Refusal refusal_of(const Bytes& bytes)
+DatagramFault refusal_of(const Bytes& bytes)
 {
     const FromDevice decoded = decode_from_device(bytes);
-    const auto* refusal = std::get_if<Refusal>(&decoded);
-    return refusal != nullptr ? *refusal : Refusal::foreign; // Which decode() never says.
+    const auto* refusal = std::get_if<DatagramFault>(&decoded);
+    return refusal != nullptr ? *refusal : DatagramFault::foreign; // Which decode() never says.
 }
 
-Refusal force_refusal_of(const Bytes& bytes)
+DatagramFault force_refusal_of(const Bytes& bytes)
 {
     const FromController decoded = decode_from_controller(bytes);
-    const auto* refusal = std::get_if<Refusal>(&decoded);
-    return refusal != nullptr ? *refusal : Refusal::foreign;
+    const auto* refusal = std::get_if<DatagramFault>(&decoded);
+    return refusal != nullptr ? *refusal : DatagramFault::foreign;
 }
 
 TEST(UdpDatagram, has_the_bytes_of_the_page)
@@ -164,18 +164,18 @@ TEST(UdpDatagram, is_refused_when_cut_or_too_long)
         for (std::size_t size = 0; size < whole.size(); ++size)
         {
             EXPECT_EQ(refusal_of(Bytes(whole.begin(), whole.begin() + std::ptrdiff_t(size))),
-                      Refusal::size)
+                      DatagramFault::size)
                 << size << " of " << whole.size();
         }
         Bytes longer = whole;
         longer.push_back(std::byte{0});
-        EXPECT_EQ(refusal_of(longer), Refusal::size);
+        EXPECT_EQ(refusal_of(longer), DatagramFault::size);
     }
     const Bytes force = to_bytes(encode(a_force()));
     for (std::size_t size = 0; size < force.size(); ++size)
     {
         EXPECT_EQ(force_refusal_of(Bytes(force.begin(), force.begin() + std::ptrdiff_t(size))),
-                  Refusal::size);
+                  DatagramFault::size);
     }
 }
 
@@ -187,7 +187,7 @@ TEST(UdpDatagram, is_refused_with_any_bit_flipped)
         {
             Bytes bytes = whole;
             bytes[bit / 8] ^= std::byte{1} << (bit % 8);
-            EXPECT_NE(refusal_of(bytes), Refusal::foreign) << "bit " << bit << " is taken";
+            EXPECT_NE(refusal_of(bytes), DatagramFault::foreign) << "bit " << bit << " is taken";
         }
     }
     const Bytes force = to_bytes(encode(a_force()));
@@ -195,23 +195,23 @@ TEST(UdpDatagram, is_refused_with_any_bit_flipped)
     {
         Bytes bytes = force;
         bytes[bit / 8] ^= std::byte{1} << (bit % 8);
-        EXPECT_NE(force_refusal_of(bytes), Refusal::foreign) << "bit " << bit << " is taken";
+        EXPECT_NE(force_refusal_of(bytes), DatagramFault::foreign) << "bit " << bit << " is taken";
     }
 }
 
 TEST(UdpDatagram, says_what_is_wrong)
 {
     const Bytes sample = to_bytes(encode(a_sample()));
-    EXPECT_EQ(refusal_of(with(sample, 0, std::uint32_t{0})), Refusal::magic);
-    EXPECT_EQ(refusal_of(with(sample, 4, std::uint16_t{2})), Refusal::version);
-    EXPECT_EQ(refusal_of(with(sample, 6, std::uint16_t{0})), Refusal::kind);
-    EXPECT_EQ(refusal_of(with(sample, 6, std::uint16_t{4})), Refusal::kind);
-    EXPECT_EQ(refusal_of(with(sample, 6, std::uint16_t{1})), Refusal::size);
-    EXPECT_EQ(refusal_of(to_bytes(encode(a_force()))), Refusal::kind);
-    EXPECT_EQ(force_refusal_of(sample), Refusal::kind);
+    EXPECT_EQ(refusal_of(with(sample, 0, std::uint32_t{0})), DatagramFault::magic);
+    EXPECT_EQ(refusal_of(with(sample, 4, std::uint16_t{2})), DatagramFault::version);
+    EXPECT_EQ(refusal_of(with(sample, 6, std::uint16_t{0})), DatagramFault::kind);
+    EXPECT_EQ(refusal_of(with(sample, 6, std::uint16_t{4})), DatagramFault::kind);
+    EXPECT_EQ(refusal_of(with(sample, 6, std::uint16_t{1})), DatagramFault::size);
+    EXPECT_EQ(refusal_of(to_bytes(encode(a_force()))), DatagramFault::kind);
+    EXPECT_EQ(force_refusal_of(sample), DatagramFault::kind);
     Bytes noisy = sample;
     noisy[40] ^= std::byte{16};
-    EXPECT_EQ(refusal_of(noisy), Refusal::checksum);
+    EXPECT_EQ(refusal_of(noisy), DatagramFault::checksum);
 }
 
 TEST(UdpDatagram, is_refused_for_values_out_of_range)
@@ -219,36 +219,39 @@ TEST(UdpDatagram, is_refused_for_values_out_of_range)
     const double nan = std::numeric_limits<double>::quiet_NaN();
     const double infinite = std::numeric_limits<double>::infinity();
     const Bytes sample = to_bytes(encode(a_sample()));
-    EXPECT_EQ(refusal_of(with(sample, 8, std::uint64_t{0})), Refusal::content) << "instance";
-    EXPECT_EQ(refusal_of(with(sample, 24, std::uint64_t{0})), Refusal::content) << "sequence";
+    EXPECT_EQ(refusal_of(with(sample, 8, std::uint64_t{0})), DatagramFault::content) << "instance";
+    EXPECT_EQ(refusal_of(with(sample, 24, std::uint64_t{0})), DatagramFault::content) << "sequence";
     for (std::size_t at = 32; at < 80; at += 8)
     {
         for (const double bad : {nan, infinite, -infinite, 1.000'001e6, -1.000'001e6})
         {
-            EXPECT_EQ(refusal_of(with(sample, at, bad)), Refusal::content) << at << ": " << bad;
+            EXPECT_EQ(refusal_of(with(sample, at, bad)), DatagramFault::content)
+                << at << ": " << bad;
         }
-        EXPECT_EQ(refusal_of(with(sample, at, 1e6)), Refusal::foreign) << "is taken";
+        EXPECT_EQ(refusal_of(with(sample, at, 1e6)), DatagramFault::foreign) << "is taken";
     }
-    EXPECT_EQ(refusal_of(with(sample, 80, std::int64_t{-1})), Refusal::content);
-    EXPECT_EQ(refusal_of(with(sample, 80, (std::int64_t{1} << 62) + 1)), Refusal::content);
-    EXPECT_EQ(refusal_of(with(sample, 88, std::uint32_t{8 | 1})), Refusal::content);
+    EXPECT_EQ(refusal_of(with(sample, 80, std::int64_t{-1})), DatagramFault::content);
+    EXPECT_EQ(refusal_of(with(sample, 80, (std::int64_t{1} << 62) + 1)), DatagramFault::content);
+    EXPECT_EQ(refusal_of(with(sample, 88, std::uint32_t{8 | 1})), DatagramFault::content);
 
     const Bytes described = to_bytes(encode(a_description()));
-    EXPECT_EQ(refusal_of(with(described, 16, std::uint64_t{1})), Refusal::content) << "session";
-    EXPECT_EQ(refusal_of(with(described, 192, std::uint32_t{1})), Refusal::content) << "reserved";
-    EXPECT_EQ(refusal_of(with(described, 60, 'x')), Refusal::content) << "behind the name";
-    EXPECT_EQ(refusal_of(with(described, 32, std::array<char, 32>{})), Refusal::content);
+    EXPECT_EQ(refusal_of(with(described, 16, std::uint64_t{1})), DatagramFault::content)
+        << "session";
+    EXPECT_EQ(refusal_of(with(described, 192, std::uint32_t{1})), DatagramFault::content)
+        << "reserved";
+    EXPECT_EQ(refusal_of(with(described, 60, 'x')), DatagramFault::content) << "behind the name";
+    EXPECT_EQ(refusal_of(with(described, 32, std::array<char, 32>{})), DatagramFault::content);
     for (std::size_t at = 64; at < 176; at += 8)
     {
-        EXPECT_EQ(refusal_of(with(described, at, nan)), Refusal::content) << at;
-        EXPECT_EQ(refusal_of(with(described, at, infinite)), Refusal::content) << at;
+        EXPECT_EQ(refusal_of(with(described, at, nan)), DatagramFault::content) << at;
+        EXPECT_EQ(refusal_of(with(described, at, infinite)), DatagramFault::content) << at;
     }
-    EXPECT_EQ(refusal_of(with(described, 176, std::int64_t{0})), Refusal::content);
-    EXPECT_EQ(refusal_of(with(described, 184, std::int64_t{14})), Refusal::content);
+    EXPECT_EQ(refusal_of(with(described, 176, std::int64_t{0})), DatagramFault::content);
+    EXPECT_EQ(refusal_of(with(described, 184, std::int64_t{14})), DatagramFault::content);
 
     const Bytes force = to_bytes(encode(a_force()));
-    EXPECT_EQ(force_refusal_of(with(force, 32, nan)), Refusal::content);
-    EXPECT_EQ(force_refusal_of(with(force, 64, std::uint32_t{3})), Refusal::content);
+    EXPECT_EQ(force_refusal_of(with(force, 32, nan)), DatagramFault::content);
+    EXPECT_EQ(force_refusal_of(with(force, 64, std::uint32_t{3})), DatagramFault::content);
 }
 
 /// A device that has no position must be able to say so, whatever stands in its variables.
@@ -293,9 +296,9 @@ TEST(UdpDatagram, takes_nothing_out_of_range_from_sealed_noise)
 
 TEST(UdpDatagram, has_a_text_for_each_refusal)
 {
-    for (std::size_t i = 0; i < kRefusals; ++i)
+    for (std::size_t i = 0; i < kDatagramFaults; ++i)
     {
-        EXPECT_FALSE(text_of(static_cast<Refusal>(i)).empty());
+        EXPECT_FALSE(text_of(static_cast<DatagramFault>(i)).empty());
     }
 }
 

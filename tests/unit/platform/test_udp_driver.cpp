@@ -103,7 +103,7 @@ TEST(UdpDriver, of_the_page_attaches_obeys_dies_and_attaches_again)
 
     Driver first(script, port);
     auto made = UdpDevice::create(std::move(socket), options);
-    ASSERT_TRUE(made) << made.error().message;
+    ASSERT_TRUE(made) << made.error().text;
     UdpDevice& sut = *made.value();
     EXPECT_EQ(sut.info().name, "python");
     EXPECT_EQ(sut.info().limits.force_max_n, 8.0);
@@ -123,8 +123,8 @@ TEST(UdpDriver, of_the_page_attaches_obeys_dies_and_attaches_again)
     push_to(sut, {0.0, 2.0, 0.0}, 0.01);
     EXPECT_GT(sut.traffic().sessions, sessions);
     const UdpTraffic traffic = sut.traffic();
-    EXPECT_EQ(traffic.refused.at(static_cast<std::size_t>(udp::Refusal::checksum)), 0U);
-    EXPECT_EQ(traffic.refused.at(static_cast<std::size_t>(udp::Refusal::content)), 0U);
+    EXPECT_EQ(traffic.refused.at(static_cast<std::size_t>(udp::DatagramFault::checksum)), 0U);
+    EXPECT_EQ(traffic.refused.at(static_cast<std::size_t>(udp::DatagramFault::content)), 0U);
 }
 
 } // namespace

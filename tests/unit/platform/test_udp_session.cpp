@@ -19,7 +19,7 @@ constexpr std::uint64_t kSecret = 0xABCD'EF01'2345'6789;
 class UdpSession : public testing::Test
 {
 protected:
-    using Result = std::variant<Described, Sampled, Refusal>;
+    using Result = std::variant<Described, Sampled, DatagramFault>;
 
     Result describe(std::uint64_t sequence, std::uint64_t instance = 9, Endpoint from = kHome)
     {
@@ -32,9 +32,9 @@ protected:
         device_ns += 1'000'000;
         return sut.receive(encode(datagram), from, now);
     }
-    static bool is(const Result& result, Refusal refusal)
+    static bool is(const Result& result, DatagramFault refusal)
     {
-        const auto* found = std::get_if<Refusal>(&result);
+        const auto* found = std::get_if<DatagramFault>(&result);
         return found != nullptr && *found == refusal;
     }
     static bool is_sampled(const Result& result) { return std::holds_alternative<Sampled>(result); }
@@ -66,7 +66,7 @@ protected:
 
 TEST_F(UdpSession, hears_nobody_before_a_description)
 {
-    EXPECT_TRUE(is(sample(1), Refusal::foreign));
+    EXPECT_TRUE(is(sample(1), DatagramFault::foreign));
     EXPECT_FALSE(sut.peer().is_attached);
     EXPECT_FALSE(sut.info());
     EXPECT_TRUE(is_described(describe(1)));
@@ -90,26 +90,26 @@ TEST_F(UdpSession, refuses_what_is_not_newer)
     EXPECT_TRUE(is_sampled(sample(6)));
     for (const std::uint64_t sequence : {std::uint64_t{6}, std::uint64_t{1}, std::uint64_t{5}})
     {
-        EXPECT_TRUE(is(sample(sequence), Refusal::stale));
-        EXPECT_TRUE(is(describe(sequence), Refusal::stale));
+        EXPECT_TRUE(is(sample(sequence), DatagramFault::stale));
+        EXPECT_TRUE(is(describe(sequence), DatagramFault::stale));
     }
     EXPECT_TRUE(is_sampled(sample(900))) << "what was lost doesn't matter";
     EXPECT_EQ(sut.answers(), 900U);
     device_ns -= 1'000'000;
-    EXPECT_TRUE(is(sample(901), Refusal::stale)) << "the time of the one before";
+    EXPECT_TRUE(is(sample(901), DatagramFault::stale)) << "the time of the one before";
     EXPECT_EQ(sut.answers(), 900U) << "a refusal changes nothing";
 }
 
 TEST_F(UdpSession, refuses_others_while_one_is_attached)
 {
     EXPECT_TRUE(is_described(describe(1)));
-    EXPECT_TRUE(is(describe(1, 10, kElsewhere), Refusal::foreign));
-    EXPECT_TRUE(is(describe(2, 9, kElsewhere), Refusal::foreign));
-    EXPECT_TRUE(is(describe(2, 10, kHome), Refusal::foreign));
-    EXPECT_TRUE(is(sample(2, kSecret, 9, kElsewhere), Refusal::foreign));
-    EXPECT_TRUE(is(sample(2, kSecret, 10, kHome), Refusal::foreign));
-    EXPECT_TRUE(is(sample(2, kSecret + 1), Refusal::session));
-    EXPECT_TRUE(is(sample(2, 0), Refusal::session));
+    EXPECT_TRUE(is(describe(1, 10, kElsewhere), DatagramFault::foreign));
+    EXPECT_TRUE(is(describe(2, 9, kElsewhere), DatagramFault::foreign));
+    EXPECT_TRUE(is(describe(2, 10, kHome), DatagramFault::foreign));
+    EXPECT_TRUE(is(sample(2, kSecret, 9, kElsewhere), DatagramFault::foreign));
+    EXPECT_TRUE(is(sample(2, kSecret, 10, kHome), DatagramFault::foreign));
+    EXPECT_TRUE(is(sample(2, kSecret + 1), DatagramFault::session));
+    EXPECT_TRUE(is(sample(2, 0), DatagramFault::session));
     EXPECT_TRUE(is_sampled(sample(2)));
 }
 
@@ -135,8 +135,8 @@ TEST_F(UdpSession, lets_another_instance_in_when_the_first_is_silent)
     EXPECT_TRUE(is_described(describe(1, 10, kElsewhere)));
     EXPECT_EQ(sut.peer().session, kSecret + 1);
     EXPECT_EQ(sut.peer().endpoint, kElsewhere);
-    EXPECT_TRUE(is(sample(3), Refusal::foreign)) << "the one before is out";
-    EXPECT_TRUE(is(sample(2, kSecret, 10, kElsewhere), Refusal::session));
+    EXPECT_TRUE(is(sample(3), DatagramFault::foreign)) << "the one before is out";
+    EXPECT_TRUE(is(sample(2, kSecret, 10, kElsewhere), DatagramFault::session));
     EXPECT_TRUE(std::get<Sampled>(sample(2, kSecret + 1, 10, kElsewhere)).is_new);
 }
 
@@ -150,8 +150,8 @@ TEST_F(UdpSession, refuses_a_session_that_is_played_again)
     EXPECT_TRUE(is_described(describe(1, 10)));
     be_silent();
     EXPECT_TRUE(is_described(describe(1))) << "anybody may describe the device";
-    EXPECT_TRUE(is(sample(2), Refusal::session));
-    EXPECT_TRUE(is(sample(3), Refusal::session));
+    EXPECT_TRUE(is(sample(2), DatagramFault::session));
+    EXPECT_TRUE(is(sample(3), DatagramFault::session));
     be_silent();
     EXPECT_FALSE(sut.peer().is_attached) << "and is out again";
 }
@@ -161,10 +161,10 @@ TEST_F(UdpSession, lets_no_other_device_in)
     EXPECT_TRUE(is_described(describe(1)));
     be_silent();
     info.limits.force_max_n += 1.0;
-    EXPECT_TRUE(is(describe(1, 10), Refusal::other_device));
+    EXPECT_TRUE(is(describe(1, 10), DatagramFault::other_device));
     info.limits.force_max_n -= 1.0;
     info.name = "other";
-    EXPECT_TRUE(is(describe(1, 10), Refusal::other_device));
+    EXPECT_TRUE(is(describe(1, 10), DatagramFault::other_device));
     info.name = "desk";
     EXPECT_TRUE(is_described(describe(1, 10)));
 }
@@ -207,7 +207,7 @@ TEST_F(UdpSession, changes_nothing_for_rubbish)
 {
     EXPECT_TRUE(is_described(describe(1)));
     const std::vector<std::byte> rubbish(96, std::byte{0x5A});
-    EXPECT_TRUE(is(sut.receive(rubbish, kHome, now + milliseconds(5)), Refusal::magic));
+    EXPECT_TRUE(is(sut.receive(rubbish, kHome, now + milliseconds(5)), DatagramFault::magic));
     now = now + milliseconds(20);
     EXPECT_FALSE(sut.lapse(now));
     be_silent();

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
+
+/// I6: boxes hold their faces inflated by e, and are those of a tree refitted from scratch.
+
 #include "tests/unit/rt_core/tree_support.hpp"
 #include "tests/unit/rt_core/tree_volumes.hpp"
 

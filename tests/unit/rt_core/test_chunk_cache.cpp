@@ -48,7 +48,7 @@ public:
         const ModelHeader header = parsed(bytes_);
         slots_ = PageSlots::take(arena_, header.counts(), pages, index_pages);
         table_.emplace(arena_, slots_);
-        inbox_ = std::make_unique<ChunkInbox>(arena_, pages, index_pages, 64);
+        inbox_ = std::make_unique<ChunkInbox>(arena_, pages, index_pages, 256);
         sut.emplace(arena_, header, slots_, *table_, *inbox_);
         for (std::uint32_t slot = 0; slot < pages; ++slot)
         {
@@ -93,6 +93,13 @@ public:
         slot_of[chunk] = free_pages_.front();
         free_pages_.pop_front();
         ASSERT_TRUE(inbox_->arrived.try_push({{ContentKind::chunk, chunk}, slot_of[chunk]}));
+    }
+    /// One frame in which the whole model is asked for.
+    std::vector<ContentKey> fill()
+    {
+        ask({});
+        sut->request_everything(budgets, work, faults);
+        return ask({});
     }
     void deliver_index_page(std::uint32_t page)
     {
@@ -140,7 +147,7 @@ private:
 
     HeaderParts parts_;
     std::vector<std::byte> bytes_;
-    ArenaMemory memory_{1U << 18U};
+    ArenaMemory memory_{1U << 22U};
     Arena arena_{memory_.bytes()};
     PageSlots slots_;
     std::optional<PageTable> table_;
@@ -391,6 +398,45 @@ TEST(ChunkCache, an_index_page_gives_way_when_the_balls_have_moved_on)
     rig.deliver_index_page(1);
     EXPECT_TRUE(rig.ask({ball(CacheRig::kPageDistance + 75, 1)}).empty()) << "between two boxes";
     EXPECT_EQ(rig.ask_chunks({ball(CacheRig::kPageDistance + 125, 1)}), Chunks{64 + 1});
+}
+
+TEST(ChunkCache, adopts_no_more_arrivals_in_a_frame_than_the_limit_whatever_the_budget)
+{
+    CacheRig rig(kMaxArrivalsPerFrame + 1, 2, (kMaxArrivalsPerFrame + 1) * kRecordsPerChunk);
+    rig.budgets.pages = 10 * kMaxArrivalsPerFrame;
+    for (std::uint32_t chunk = 0; chunk <= kMaxArrivalsPerFrame; ++chunk)
+    {
+        rig.deliver_chunk(chunk);
+    }
+
+    rig.ask({});
+    EXPECT_EQ(rig.table().used(), kMaxArrivalsPerFrame);
+    rig.ask({});
+    EXPECT_EQ(rig.table().used(), kMaxArrivalsPerFrame + 1);
+}
+
+TEST(ChunkCache, has_no_more_wishes_under_way_for_a_whole_model_than_the_limit)
+{
+    constexpr std::uint32_t kPages = 4;
+    constexpr std::uint32_t kAll = kPages * kChunksPerIndexPage;
+    static_assert(kAll > kMaxFillingWishes + 1);
+    CacheRig rig(kAll, kPages, kAll * kRecordsPerChunk);
+    rig.budgets.requests = kAll;
+    for (std::uint32_t page = 0; page < kPages; ++page)
+    {
+        rig.deliver_index_page(page);
+    }
+    std::vector<ContentKey> asked;
+    for (std::uint32_t frame = 0; frame < kPages; ++frame)
+    {
+        const std::vector<ContentKey> more = rig.fill();
+        asked.insert(asked.end(), more.begin(), more.end());
+    }
+    EXPECT_EQ(asked.size(), kMaxFillingWishes);
+    EXPECT_TRUE(rig.fill().empty());
+
+    rig.deliver_chunk(asked.front().number);
+    EXPECT_EQ(rig.fill().size(), 1U) << "as soon as one is answered";
 }
 
 TEST(ChunkCache, adopts_no_more_arrivals_than_the_budget)

@@ -236,6 +236,50 @@ TEST(ContactReport, beyond_what_is_certified_there_is_no_normal)
     EXPECT_EQ(report.contacts.size(), 0U);
 }
 
+/// A disc of so many faces round a vertex at the origin.
+Mesh fan(std::uint32_t faces)
+{
+    const auto rim = [faces](std::uint32_t i)
+    {
+        const double angle = 2.0 * std::numbers::pi * (i % faces) / faces;
+        return to_float(Vec3(std::cos(angle), std::sin(angle), 0.0));
+    };
+    Mesh mesh;
+    for (std::uint32_t i = 0; i < faces; ++i)
+    {
+        mesh.push_back({Vec3f{0.0F, 0.0F, 0.0F}, rim(i), rim(i + 1)});
+    }
+    return mesh;
+}
+
+TEST(ContactReport, a_vertex_has_a_normal_with_as_many_faces_as_the_limit_and_none_with_more)
+{
+    Random random(83);
+    for (const std::uint32_t faces : {kMaxIncidentFaces, kMaxIncidentFaces + 1})
+    {
+        Placed placed(fan(faces), random);
+        const ContactReport report = placed.report(point_at(Vec3(0, 0, 0.5)), 0.6, false);
+        EXPECT_EQ(report.contacts.size(), kMaxContacts);
+        const Vec3 expected(0, 0, faces == kMaxIncidentFaces ? 1.0 : 0.0);
+        EXPECT_NEAR((report.normal - expected).norm(), 0.0, 1e-12) << faces;
+    }
+}
+
+TEST(ContactReport, touches_that_were_left_out_are_told)
+{
+    Random random(84);
+    for (const std::uint32_t faces : {std::uint32_t{kMaxContacts}, std::uint32_t{kMaxContacts} + 1})
+    {
+        Placed placed(fan(faces), random);
+        const PlacedCore core = point_at(Vec3(0, 0, 0.5));
+        static_cast<void>(placed.report(core, 0.6, false));
+        TouchReport touches;
+        report_touches(core, 0.6, *placed.rig.sut, *placed.surface, touches);
+        EXPECT_EQ(touches.nearest.size(), kMaxContacts);
+        EXPECT_EQ(touches.is_truncated, faces > kMaxContacts);
+    }
+}
+
 TEST(ContactReport, contacts_are_the_faces_within_the_radius_nearest_first)
 {
     Random random(75);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
+#include "rt_core/math/infinity.hpp"
 #include "rt_core/query/core_query.hpp"
 #include "rt_core/query/surface_query.hpp"
 #include "tests/unit/rt_core/support.hpp"
@@ -17,14 +18,12 @@ namespace tactus::test
 namespace
 {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 PlacedCore random_core(Random& random)
 {
     const Mat3 rotation = Eigen::AngleAxisd(random.between(-4.0, 4.0),
                                             (random.in_cube(1.0) + Vec3(2, 0, 0)).normalized())
                               .toRotationMatrix();
-    const Placement place{
+    const Similarity place{
         rotation,
         {random.between(-2.5, 2.5), random.between(-0.3, 0.8), random.between(-0.3, 0.8)},
         random.between(0.5, 2.0)};

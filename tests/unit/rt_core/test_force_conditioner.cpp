@@ -221,6 +221,52 @@ TEST(ForceConditioner, counts_the_work_of_a_force_held_through_a_stall)
     EXPECT_EQ(sut.condition(wish).actions, ForceAction::blind);
 }
 
+TEST(ForceConditioner, sees_nothing_of_a_device_that_is_faster_than_any)
+{
+    for (const double share : {0.999, 1.001})
+    {
+        ForceConditioner sut(plain_setup());
+        static_cast<void>(sut.condition(force(1.0)));
+        ForceWish wish = force(1.0);
+        wish.elapsed_periods = 3;
+        wish.position_m.y() = share * kDeviceSpeedMax_m_per_s * 3 * kPeriod_s;
+        EXPECT_EQ(has_action(sut.condition(wish).actions, ForceAction::blind), share > 1.0);
+    }
+}
+
+TEST(ForceConditioner, says_that_it_sees_wrongly_what_a_long_delay_hides)
+{
+    for (const double periods : {kForcesUnderWay - 1.01, kForcesUnderWay - 0.99})
+    {
+        ConditionerSetup setup = plain_setup();
+        setup.device.delay_s = periods * kPeriod_s;
+        ForceConditioner sut(setup);
+        EXPECT_EQ(has_action(sut.condition(force(1.0)).actions, ForceAction::blind),
+                  periods > kForcesUnderWay - 1);
+    }
+}
+
+TEST(ForceConditioner, adds_no_damping_that_makes_less_force_than_the_least)
+{
+    // A force that leaves with the device gives energy away: 0.1 N over `way` in the second frame.
+    const auto damped_n = [](double way_m)
+    {
+        ConditionerSetup setup = plain_setup();
+        setup.device.damping_n_s_per_m = 0.5;
+        setup.device.added_damping_max_n_s_per_m = 1.0;
+        ForceConditioner sut(setup);
+        ForceWish wish = force(0.1);
+        wish.stiffness_n_per_m = 200.0;
+        static_cast<void>(sut.condition(wish));
+        wish.position_m.x() = way_m;
+        const ConditionedForce out = sut.condition(wish);
+        EXPECT_EQ(has_action(out.actions, ForceAction::damped), out.damping_n_s_per_m > 0.0);
+        return 0.1 - out.force_n.x();
+    };
+    EXPECT_EQ(damped_n(0.999 * kLeastDamping_n * kPeriod_s), 0.0);
+    EXPECT_NEAR(damped_n(1.001 * kLeastDamping_n * kPeriod_s), 1.001 * kLeastDamping_n, 1e-9);
+}
+
 TEST(ForceConditioner, damps_what_came_from_nowhere_and_never_pulls)
 {
     Random random(4);

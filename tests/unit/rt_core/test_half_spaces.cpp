@@ -328,6 +328,58 @@ TEST(HalfSpaces, that_squeeze_at_an_angle_too_small_for_an_edge_are_refused)
     EXPECT_TRUE(nearest<3>(wedge, Vec3(0, 0, 0)).is_feasible);
 }
 
+TEST(HalfSpaces, hold_what_is_beyond_them_by_more_than_the_tolerance)
+{
+    const Vec3 wanted(0, 0, 1);
+    const double lengths = 1.0 + 2.0 * wanted.norm(); // Offset, wanted and found motion.
+    for (const double share : {0.9, 1.1})
+    {
+        const Planes<3> planes{{Vec3(0, 0, 1), 1.0 + share * kPlaneTolerance * lengths}};
+        EXPECT_EQ(nearest<3>(planes, wanted).held_by.empty(), share < 1.0);
+    }
+}
+
+TEST(HalfSpaces, face_each_other_as_a_gap_up_to_the_angle_of_parallel_ones_and_then_as_a_wedge)
+{
+    for (const double share : {0.9, 1.1})
+    {
+        const Planes<3> planes{{Vec3(0, 0, 1), 0.1}, {Vec3(share * kParallelPlanes, 0, -1), 0.1}};
+        const NearestMotion<3> sut = nearest<3>(planes, Vec3(0, 0, 0));
+        EXPECT_EQ(sut.is_feasible, share > 1.0);
+        EXPECT_EQ(sut.motion.x() > 1e6, share > 1.0) << "the edge is far away";
+    }
+}
+
+TEST(HalfSpaces, squeeze_when_their_gap_is_too_narrow_by_more_than_the_tolerance)
+{
+    const Vec3 wanted(0, 0, 1);
+    for (const double share : {0.9, 1.1})
+    {
+        const double narrow = share * kSqueezeTolerance * (1.0 + 2.0 * wanted.norm());
+        const Planes<3> planes{{Vec3(0, 0, 1), 1.0}, {Vec3(0, 0, -1), narrow - 1.0}};
+        EXPECT_EQ(nearest<3>(planes, wanted).is_feasible, share < 1.0);
+    }
+}
+
+TEST(HalfSpaces, as_many_as_the_limit_are_solved_within_the_rounds)
+{
+    static_assert(kConstraintRounds >= 2 * kMaxHalfSpaces, "each may join and leave");
+    Random random(10);
+    for (int round = 0; round < 2'000; ++round)
+    {
+        const Planes<6> planes = awkward_planes<6>(random, kMaxHalfSpaces, -3.0);
+        ASSERT_TRUE(nearest<6>(planes, 3.0 * in_cube<6>(random)).is_feasible) << round;
+    }
+}
+
+TEST(HalfSpacesDeathTest, more_of_them_than_the_limit_are_a_bug)
+{
+    Planes<3> planes(kMaxHalfSpaces, {Vec3(0, 0, 1), -1.0});
+    EXPECT_EQ(nearest<3>(planes, Vec3(0, 0, -2)).motion, Vec3(0, 0, -1));
+    planes.push_back(planes.front());
+    EXPECT_DEATH(static_cast<void>(nearest<3>(planes, Vec3(0, 0, 0))), "");
+}
+
 TEST(HalfSpaces, with_offsets_of_at_most_zero_always_allow_some_motion)
 {
     Random random(1);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
+#include "rt_core/math/infinity.hpp"
 #include "rt_core/spm/header.hpp"
 #include "rt_core/spm/index_page.hpp"
 #include "tests/unit/rt_core/coded_bytes.hpp"
@@ -119,10 +120,9 @@ TEST(ModelHeader, counts_out_of_range_are_refused)
 TEST(ModelHeader, values_out_of_range_are_refused)
 {
     constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
     const std::vector<std::function<void(HeaderFields&)>> changes{
-        [](HeaderFields& f) { f.position_bits = 15; },
-        [](HeaderFields& f) { f.position_bits = 25; },
+        [](HeaderFields& f) { f.position_bits = kMinPositionBits - 1; },
+        [](HeaderFields& f) { f.position_bits = kMaxPositionBits + 1; },
         [](HeaderFields& f) { f.position_bits = 0xFFFFU; },
         [](HeaderFields& f) { f.topology = 2; },
         [](HeaderFields& f) { f.quantum_log2 = kMinQuantumLog2 - 1; },
@@ -133,6 +133,7 @@ TEST(ModelHeader, values_out_of_range_are_refused)
         [](HeaderFields& f) { f.extent_quanta[1] = 1U << 16U; },
         [](HeaderFields& f) { f.origin_m[0] = kNaN; },
         [](HeaderFields& f) { f.origin_m[1] = -kInfinity; },
+        [](HeaderFields& f) { f.origin_m[1] = std::nextafter(kCoordinateRange, kInfinity); },
         [](HeaderFields& f) { f.quantisation_m = kNaN; },
         [](HeaderFields& f) { f.quantisation_m = kInfinity; },
         [](HeaderFields& f) { f.quantisation_m = -1e-9; },
@@ -164,11 +165,30 @@ TEST(ModelHeader, the_ends_of_each_range_are_accepted)
               SpmRefusal{255});
     EXPECT_EQ(refusal_after([](HeaderFields& f) { f.quantum_log2 = kMaxQuantumLog2; }),
               SpmRefusal{255});
-    EXPECT_EQ(refusal_after([](HeaderFields& f) { f.position_bits = 24; }), SpmRefusal{255});
+    for (const std::uint32_t bits : {kMinPositionBits, kMaxPositionBits})
+    {
+        EXPECT_EQ(refusal_after([bits](HeaderFields& f)
+                                { f.position_bits = static_cast<std::uint16_t>(bits); }),
+                  SpmRefusal{255});
+    }
+    EXPECT_EQ(refusal_after([](HeaderFields& f) { f.origin_m[1] = -kCoordinateRange; }),
+              SpmRefusal{255});
     EXPECT_EQ(refusal_after([](HeaderFields& f) { f.extent_quanta = {0, 0, 1}; }), SpmRefusal{255});
     EXPECT_EQ(refusal_after([](HeaderFields& f) { f.base_faces = kMaxBaseFaces; }),
               SpmRefusal{255});
     EXPECT_EQ(refusal_after([](HeaderFields& f) { f.max_depth = kMaxDepth; }), SpmRefusal{255});
+}
+
+TEST(ModelHeader, as_many_regions_as_the_limit_are_accepted_and_no_more)
+{
+    HeaderParts parts = sound_header(kTwoPages);
+    parts.fields.region_grid = {kMaxRegions / 16, 4, 4};
+    parts.region_bits.assign(kMaxRegions / 8, 0);
+    parts.region_bits[0] = 0b111;
+    EXPECT_EQ(parsed(parts.write()).region_count(), kMaxRegions);
+    ++parts.fields.region_grid[0];
+    parts.region_bits.resize(kMaxRegions / 8 + 2);
+    EXPECT_EQ(ModelHeader::parse(parts.write()).error(), SpmRefusal::value_out_of_range);
 }
 
 TEST(ModelHeader, a_stated_size_that_does_not_match_is_refused)
@@ -213,7 +233,6 @@ TEST(ModelHeader, points_outside_take_the_nearest_region)
     HeaderParts parts = sound_header(1);
     const auto bytes = parts.write();
     const ModelHeader sut = parsed(bytes);
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
     constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
     EXPECT_EQ(sut.region_at({-1.0, -1e300, -kInfinity}).value, 0U);

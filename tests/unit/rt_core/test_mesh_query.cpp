@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "rt_core/geometry/crossing.hpp"
 #include "rt_core/geometry/triangle_triangle.hpp"
+#include "rt_core/math/infinity.hpp"
 #include "rt_core/query/mesh_query.hpp"
 #include "tests/unit/rt_core/support.hpp"
 #include "tests/unit/rt_core/tree_support.hpp"
@@ -19,7 +20,6 @@ namespace tactus::test
 namespace
 {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr WalkBudget kAmple{10'000'000, 100'000'000};
 
 MeshPlacement random_placement(Random& random)
@@ -243,7 +243,7 @@ TEST(MeshQuery, finds_what_measuring_all_pairs_finds)
         for (int query = 0; query < 10; ++query)
         {
             MeshPlacement place = random_placement(random);
-            place.place.origin.y() += random.between(0.0, 1.5);
+            place.place.translation_m.y() += random.between(0.0, 1.5);
             const double reach = random.between(0.0, 0.2);
             const double contact = random.one_in(3) ? -1.0 : reach * random.between(0.0, 1.0);
             const AllPairs truth(tool_faces, faces, place, contact);
@@ -301,7 +301,7 @@ TEST(MeetingFaces, are_those_of_the_whole_query)
         for (int query = 0; query < 10; ++query)
         {
             MeshPlacement place = random_placement(random);
-            place.place.origin.y() += random.between(0.0, 1.5);
+            place.place.translation_m.y() += random.between(0.0, 1.5);
             const AllPairs truth(tool.present(), object.present(), place, 0.0);
 
             const Asked all = ask_meeting(tool, object, place, 1'000'000, memory);
@@ -413,7 +413,7 @@ TEST(MeshQuery, beyond_single_precision_bounds_what_it_can)
     for (const double far_m : {1e6, 1e8, 1e12})
     {
         MeshPlacement place = random_placement(random);
-        place.place.origin = Vec3(far_m, -far_m, 0.0);
+        place.place.translation_m = Vec3(far_m, -far_m, 0.0);
         const AllPairs truth(tool.present(), object.present(), place, -1.0);
         MeshMemory memory{0, 0};
 
@@ -434,7 +434,7 @@ TEST(MeshQuery, a_place_that_is_no_number_proves_nothing)
     Random random(82);
     const auto [tool, object] = full_meshes(random);
     MeshPlacement place = random_placement(random);
-    place.place.origin.x() = std::numeric_limits<double>::quiet_NaN();
+    place.place.translation_m.x() = std::numeric_limits<double>::quiet_NaN();
     MeshMemory memory{0, 0};
 
     const Asked asked = ask(tool, object, place, 0.1, 0.1, memory);

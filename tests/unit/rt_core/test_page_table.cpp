@@ -71,13 +71,12 @@ TEST_F(PageTableTest, refined_and_held_are_kept_apart_for_each_record)
 
     sut_.set_refined({7 * 64}, true);
     sut_.set_refined({7 * 64 + 63}, true);
-    sut_.set_held({7 * 64 + 1}, true);
+    sut_.set_held({7 * 64 + 63}, true);
 
     EXPECT_TRUE(sut_.is_refined({7 * 64}));
     EXPECT_FALSE(sut_.is_refined({7 * 64 + 1}));
-    EXPECT_TRUE(sut_.is_held({7 * 64 + 1}));
+    EXPECT_TRUE(sut_.is_held({7 * 64 + 63}));
     EXPECT_FALSE(sut_.is_held({7 * 64}));
-    sut_.set_refined({7 * 64}, false);
     sut_.set_refined({7 * 64}, false);
     EXPECT_FALSE(sut_.is_refined({7 * 64}));
     EXPECT_TRUE(sut_.is_refined({7 * 64 + 63}));
@@ -107,6 +106,14 @@ TEST_F(PageTableTest, misuse_is_a_bug)
     EXPECT_DEATH(static_cast<void>(sut_.resident({3})), "");
     sut_.set_refined({7 * 64}, true);
     EXPECT_DEATH(sut_.evict(1), "") << "a pinned page";
+    EXPECT_DEATH(sut_.set_refined({7 * 64}, true), "") << "a record that is refined";
+    EXPECT_DEATH(sut_.set_refined({7 * 64 + 1}, false), "") << "one that is not";
+    EXPECT_DEATH(sut_.set_held({7 * 64 + 1}, true), "") << "one that is not refined";
+    sut_.set_held({7 * 64}, true);
+    EXPECT_DEATH(sut_.set_refined({7 * 64}, false), "") << "one that is held";
+    sut_.update_linked({7}, 1, 3);
+    EXPECT_DEATH(sut_.update_linked({7}, 1, 2), "") << "fewer records than before";
+    EXPECT_DEATH(sut_.evict(kPages), "") << "no slot";
 }
 
 } // namespace tactus::test

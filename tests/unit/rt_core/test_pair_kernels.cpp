@@ -87,7 +87,7 @@ struct BoxScene
                  random.in_cube(size)};
         const double gap = random.one_in(3) ? 0.0 : size * std::exp2(-random.between(0.0, 20.0));
         const Vec3 way = gap * random.in_cube(1.0).normalized();
-        place.place.origin =
+        place.place.translation_m =
             point_in(random, boxes.get(touched)) + way - place.to_there(point_in(random, other));
         apart_units = gap * units_per_m;
     }
@@ -95,7 +95,7 @@ struct BoxScene
     /// What placing may round.
     [[nodiscard]] double slack_units() const
     {
-        return units_per_m * (place.place.origin.norm() + 1e3) * 1e-13;
+        return units_per_m * (place.place.translation_m.norm() + 1e3) * 1e-13;
     }
     [[nodiscard]] KernelBox seen() const
     {

@@ -70,6 +70,23 @@ TEST(SentForces, arrive_late_as_a_time_line_of_fine_steps_says)
     }
 }
 
+TEST(SentForces, know_a_delay_of_all_periods_but_the_newest_and_no_longer_one)
+{
+    constexpr double kLongest = kForcesUnderWay - 1;
+    SentForces sut(kLongest);
+    SentForces late(kLongest + 1.0);
+    EXPECT_TRUE(sut.knows_delay());
+    EXPECT_FALSE(late.knows_delay());
+    for (std::uint32_t i = 0; i < 3 * kForcesUnderWay; ++i)
+    {
+        sut.send(Vec3(i, 0, 0));
+        late.send(Vec3(i, 0, 0));
+        const double at_device = std::max(0.0, i - kLongest);
+        EXPECT_EQ(sut.mean_since(1).x(), at_device) << i;
+        EXPECT_EQ(late.mean_since(1).x(), at_device) << "the oldest that is kept, " << i;
+    }
+}
+
 TEST(PassivityObserver, sees_no_surplus_in_a_spring_that_gives_back_what_it_got)
 {
     PassivityObserver sut(lossless(), kPeriod_s);

@@ -282,6 +282,25 @@ TEST(RegionPredictor, a_full_ranking_keeps_what_it_has)
     EXPECT_EQ(ranking[ranking.size() - 1].model, ModelId{9});
 }
 
+TEST(RegionPredictor, a_full_ranking_says_when_it_lacks_a_ball_where_a_tool_is)
+{
+    RegionPredictor sut;
+    sut.observe(motion_to(Vec3(1, 0, 0)), kLead_s);
+    RegionRanking ranking;
+    while (ranking.size() + 1 < kMaxRankedRegions)
+    {
+        ranking.push_back({ModelId{9}, Vec3(0, 0, 0), 1.0, 0});
+    }
+
+    sut.rank(Prediction::automatic, {0}, one_ball(Vec3(1, 0, 0)), 0.02, ranking);
+
+    EXPECT_EQ(ranking.size(), kMaxRankedRegions);
+    EXPECT_FALSE(ranking.lacks_present) << "only balls that look ahead were left out";
+    RegionPredictor::rank_present({0}, one_ball(Vec3(1, 0, 0)), 0.02, ranking);
+    EXPECT_EQ(ranking.size(), kMaxRankedRegions);
+    EXPECT_TRUE(ranking.lacks_present);
+}
+
 TEST(RegionPredictorDeathTest, time_that_stands_still_is_a_bug)
 {
     RegionPredictor sut;

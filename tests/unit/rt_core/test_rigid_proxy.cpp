@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 namespace tactus::test
@@ -36,6 +37,23 @@ ToolSpec tool_of(const ToolCore& core, double radius_m = kRadius)
     return spec;
 }
 
+ToolGoal hand_at(const Vec3& position_m, const Mat3& rotation = Mat3::Identity())
+{
+    ToolGoal hand;
+    hand.position_m = position_m;
+    hand.rotation = rotation;
+    hand.elapsed_s = kPeriod_s;
+    return hand;
+}
+
+/// What a query says that found all there is.
+std::unique_ptr<LocalSurface> exact_surface()
+{
+    auto surface = std::make_unique<LocalSurface>();
+    surface->answer.kind = AnswerKind::exact;
+    return surface;
+}
+
 /// An object as triangles, all of them exact.
 struct Solid
 {
@@ -48,15 +66,17 @@ class Rig
 {
 public:
     Rig(const ToolSpec& spec, std::vector<Solid> solids)
-        : objects(std::move(solids)), spec_(spec), sut(spec)
+        : objects(std::move(solids)), spec_(spec), sut(spec, planes_)
     {
     }
 
     ToolOutput step(const Vec3& goal, const Mat3& rotation = Mat3::Identity())
     {
-        sut.stay_with(goal, rotation);
+        const ToolGoal hand = hand_at(goal, rotation);
+        sut.see(hand);
         std::vector<TouchReport> reports(objects.size());
-        std::vector<TouchedObject> touched;
+        std::vector<LocalSurface> surfaces(objects.size());
+        std::vector<PlacedSurface> placed;
         for (std::size_t i = 0; i < objects.size(); ++i)
         {
             const double lower = look(objects[i], reports[i]);
@@ -64,9 +84,11 @@ public:
             {
                 reports[i].corners.clear();
             }
-            touched.push_back({&objects[i].pose, &reports[i], kind, lower_share * lower});
+            surfaces[i].answer.kind = kind;
+            placed.push_back({&objects[i].pose, &surfaces[i], nullptr, 0.0, 0.0,
+                              lower_share * lower, &reports[i]});
         }
-        return sut.respond(goal, rotation, touched, kPeriod_s);
+        return sut.respond(hand, placed);
     }
     ToolOutput settle(const Vec3& goal, const Mat3& rotation = Mat3::Identity(), int frames = 300)
     {
@@ -97,7 +119,7 @@ public:
 private:
     [[nodiscard]] double look(const Solid& solid, TouchReport& report) const
     {
-        const PlacedCore core(spec_.core, {sut.rotation(), sut.position_m(), 1.0});
+        const PlacedCore core(spec_.core, sut.place());
         const double reach = sut.radius_m() + 0.002;
         double least = std::numeric_limits<double>::infinity();
         for (const auto& corners : solid.triangles)
@@ -129,6 +151,7 @@ private:
     }
 
     ToolSpec spec_;
+    RigidProxy::Planes planes_;
 
 public:
     RigidProxy sut;
@@ -202,7 +225,7 @@ TEST(RigidProxy, comes_to_rest_on_what_held_it_where_it_is_told_of_one_point_at_
     rig.settle(Vec3(0, 0, -0.004), tilted, 100);
     for (int i = 0; i < 100; ++i)
     {
-        const Vec3 before = rig.sut.position_m();
+        const Vec3 before = rig.sut.place().translation_m;
         const ToolOutput output = rig.step(Vec3(0, 0, -0.004), tilted);
         ASSERT_LE((output.proxy_m - before).norm(), 1e-4 * kRadius) << i;
         ASSERT_NEAR(rig.distance(), kRadius, 0.01 * kRadius) << i;
@@ -292,7 +315,8 @@ TEST(RigidProxy, never_pulls_and_its_core_never_crosses_a_surface)
             }
             goal += 0.05 * (aim - goal);
             rotation = turn(axis, 0.03) * rotation;
-            const PlacedCore before(core, {rig.sut.rotation(), rig.sut.position_m(), 1.0});
+            const PlacedCore before(core,
+                                    {rig.sut.place().rotation, rig.sut.place().translation_m, 1.0});
             const double room = rig.distance();
 
             const ToolOutput output = rig.step(goal, rotation);
@@ -314,7 +338,7 @@ TEST(RigidProxy, never_pulls_and_its_core_never_crosses_a_surface)
     }
 }
 
-TEST(RigidProxy, frozen_fades_within_fifty_milliseconds_and_never_pulls)
+TEST(RigidProxy, frozen_stays_with_its_force_says_so_and_never_pulls)
 {
     Rig rig = on_plane(Box{kHalf});
     rig.settle(Vec3(0, 0, 0.05));
@@ -322,16 +346,13 @@ TEST(RigidProxy, frozen_fades_within_fifty_milliseconds_and_never_pulls)
     rig.kind = AnswerKind::bracket;
     rig.lower_share = 0.5;
 
-    double last = held.force_n.z();
-    for (int i = 0; i < 50; ++i)
+    for (int i = 0; i < 60; ++i)
     {
         const ToolOutput output = rig.step(Vec3(0, 0, -0.004));
-        ASSERT_TRUE(output.frozen);
-        ASSERT_LT(output.force_n.z(), last) << i;
+        ASSERT_TRUE(has_fault(faults_of(output), FrameFault::proxy_frozen));
+        ASSERT_NEAR(output.force_n.z(), held.force_n.z(), 1e-9) << i;
         ASSERT_EQ(output.proxy_m, held.proxy_m);
-        last = output.force_n.z();
     }
-    EXPECT_EQ(last, 0.0);
     const ToolOutput pulled = rig.step(Vec3(0, 0, 0.1));
     EXPECT_EQ(pulled.force_n, Vec3(0, 0, 0));
     EXPECT_EQ(pulled.proxy_m, held.proxy_m) << "what lies between is not known";
@@ -339,31 +360,6 @@ TEST(RigidProxy, frozen_fades_within_fifty_milliseconds_and_never_pulls)
     rig.kind = AnswerKind::exact;
     rig.lower_share = 1.0;
     EXPECT_EQ(rig.settle(Vec3(0, 0, 0.1)).proxy_m, Vec3(0, 0, 0.1));
-}
-
-TEST(RigidProxy, that_was_frozen_gets_its_force_back_step_by_step)
-{
-    Rig rig = on_plane(Box{kHalf});
-    rig.settle(Vec3(0, 0, 0.05));
-    const Vec3 pressed(0, 0, -0.004);
-    const ToolOutput held = rig.settle(pressed);
-    rig.kind = AnswerKind::bracket;
-    rig.lower_share = 0.5;
-    double last = 0.0;
-    for (int i = 0; i < 30; ++i)
-    {
-        last = rig.step(pressed).force_n.z();
-    }
-    rig.kind = AnswerKind::exact;
-    rig.lower_share = 1.0;
-    for (int i = 0; i < 300; ++i)
-    {
-        const ToolOutput output = rig.step(pressed);
-        ASSERT_FALSE(output.frozen);
-        ASSERT_LE(output.force_n.z() - last, kCatchUp_n_per_s * kPeriod_s + 1e-9) << i;
-        last = output.force_n.z();
-    }
-    EXPECT_NEAR(last, held.force_n.z(), 1e-3);
 }
 
 TEST(RigidProxy, between_brackets_goes_no_farther_than_they_allow)
@@ -374,7 +370,7 @@ TEST(RigidProxy, between_brackets_goes_no_farther_than_they_allow)
     rig.lower_share = 0.5;
     for (int i = 0; i < 100; ++i)
     {
-        const Vec3 before = rig.sut.position_m();
+        const Vec3 before = rig.sut.place().translation_m;
         const double room = std::max(0.0, 0.5 * rig.distance() - kRadius);
         const ToolOutput output = rig.step(Vec3(0, 0, -0.05));
         ASSERT_LE((output.proxy_m - before).norm(), room + 1e-15) << i;
@@ -442,6 +438,94 @@ TEST(RigidProxy, that_an_object_came_over_is_given_up_when_its_force_has_faded)
 
     EXPECT_EQ(output.proxy_m, Vec3(0, 0, 0.1));
     EXPECT_EQ(output.force_n, Vec3(0, 0, 0));
+}
+
+/// A ball's proxy at the origin that is told of contacts with one object.
+class ToldBall
+{
+public:
+    ToolOutput step(const std::vector<Contact>& contacts, const Vec3& goal)
+    {
+        TouchReport touches;
+        for (const Contact& contact : contacts)
+        {
+            (touches.nearest.full() ? touches.corners : touches.nearest).push_back(contact);
+        }
+        touches.is_truncated = is_truncated;
+        const PlacedSurface placed{&pose_, surface_.get(), nullptr, 0.0, 0.0, kRadius, &touches};
+        sut.see(hand_at(goal));
+        return sut.respond(hand_at(goal), {&placed, 1});
+    }
+    /// Where the ball's core is, with a surface so far away.
+    [[nodiscard]] Contact contact(const Vec3& normal, double distance) const
+    {
+        const Vec3 at = sut.place().translation_m;
+        return {FaceId{}, TriangleFeature::interior, distance, at, at - distance * normal, normal,
+                FaceId{}};
+    }
+
+private:
+    ObjectPose pose_;
+    std::unique_ptr<LocalSurface> surface_ = exact_surface();
+    RigidProxy::Planes planes_;
+
+public:
+    RigidProxy sut{tool_of(Segment{{0, 0, -0.01}, {0, 0, 0.01}}), planes_};
+    bool is_truncated{false};
+};
+
+/// The i-th of `count` directions on a cone, none of which lies between others.
+Vec3 on_cone(std::size_t i, std::size_t count)
+{
+    const double angle =
+        2.0 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(count);
+    return Vec3(std::cos(angle), std::sin(angle), 1.5).normalized();
+}
+
+TEST(RigidProxy, remembers_as_many_holds_as_the_limit_and_says_when_it_forgets_one)
+{
+    ToldBall ball;
+    static_cast<void>(ball.step({}, Vec3(0, 0, 0)));
+    for (std::size_t i = 0; i <= kMaxHolds; ++i)
+    {
+        const Vec3 normal = on_cone(i, kMaxHolds + 1);
+        const ToolOutput output = ball.step({ball.contact(normal, kRadius)},
+                                            ball.sut.place().translation_m - kRadius * normal);
+        ASSERT_TRUE(output.in_contact) << i;
+        EXPECT_EQ(ball.sut.is_crowded(), i == kMaxHolds) << i;
+    }
+}
+
+TEST(RigidProxy, takes_as_many_planes_as_the_limit_and_says_when_it_leaves_one_out)
+{
+    for (const std::size_t count : {std::size_t{kMaxHalfSpaces}, std::size_t{kMaxHalfSpaces} + 1})
+    {
+        ToldBall ball;
+        static_cast<void>(ball.step({}, Vec3(0, 0, 0)));
+        std::vector<Contact> contacts;
+        for (std::size_t i = 1; i < count; ++i)
+        {
+            contacts.push_back(ball.contact(on_cone(i, count), 1.5 * kRadius));
+        }
+        // What holds is kept, wherever it is told of: only then one more is added from what held.
+        static_cast<void>(ball.step({ball.contact(on_cone(0, count), kRadius)},
+                                    ball.sut.place().translation_m - kRadius * on_cone(0, count)));
+        EXPECT_FALSE(ball.sut.is_crowded());
+        const ToolOutput output =
+            ball.step(contacts, ball.sut.place().translation_m - kRadius * on_cone(0, count));
+        EXPECT_TRUE(output.in_contact);
+        EXPECT_EQ(ball.sut.is_crowded(), count > kMaxHalfSpaces);
+    }
+}
+
+TEST(RigidProxy, that_is_not_told_of_all_touches_says_so)
+{
+    ToldBall ball;
+    static_cast<void>(ball.step({}, Vec3(0, 0, 0)));
+    EXPECT_FALSE(ball.sut.is_crowded());
+    ball.is_truncated = true;
+    static_cast<void>(ball.step({}, Vec3(0, 0, 0)));
+    EXPECT_TRUE(ball.sut.is_crowded());
 }
 
 TEST(RigidProxy, without_a_radius_keeps_a_skin)

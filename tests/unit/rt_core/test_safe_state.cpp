@@ -49,7 +49,7 @@ public:
     }
 
     static inline const Vec3 kForce_n{1.0, -2.0, 3.0};
-    static inline const SafetyLimits kLimits{1.0, kForceMax_n, 500.0, 0.5};
+    static inline const SafetyLimits kLimits{1.0, kForceMax_n, 500.0, 0.5, 0.4};
     SafeState sut{kLimits};
     SafetyInput input;
     SafetyOutput last;
@@ -79,8 +79,8 @@ constexpr Cause known(const char* name)
 template <FrameFault fault>
 constexpr Cause faulty(const char* name, ForceOff cause)
 {
-    return {name, cause, [](SafetyInput& input) { input.sample_fault = fault; },
-            [](SafetyInput& input) { input.sample_fault = FrameFault::none; }};
+    return {name, cause, [](SafetyInput& input) { input.faults = fault; },
+            [](SafetyInput& input) { input.faults = FrameFault::none; }};
 }
 
 /// Causes that last until they are ended; the lost force and the stall have tests of their own.
@@ -175,16 +175,91 @@ TEST_P(SafeStateCause, comes_back_by_the_ramp_after_any_time)
     }
 }
 
+TEST(SafeState, fades_the_present_force_of_a_proxy_that_is_held_and_goes_on_with_it)
+{
+    for (const FrameFault held : {FrameFault::proxy_frozen, FrameFault::proxy_squeezed,
+                                  FrameFault::proxy_frozen | FrameFault::proxy_squeezed})
+    {
+        GuardedTool tool;
+        tool.warm_up();
+        tool.input.faults = held;
+        for (int frame = 1; frame <= 20; ++frame)
+        {
+            tool.input.force_n = GuardedTool::kForce_n * (1.0 - 0.02 * frame); // It draws back.
+            const double gain = 1.0 - frame * kFrame_s / kFadeTime_s;
+            EXPECT_EQ(tool.step().state, SafetyState::brake);
+            EXPECT_NEAR((tool.last.force_n - gain * tool.input.force_n).norm(), 0.0, kRounding_n);
+        }
+        tool.input.faults = FrameFault::none;
+        for (int frame = 1; frame <= 20; ++frame)
+        {
+            tool.input.force_n *= 0.99;
+            const double gain = 0.6 + frame * kFrame_s / kRiseTime_s;
+            EXPECT_EQ(tool.step().state, SafetyState::force);
+            EXPECT_NEAR((tool.last.force_n - gain * tool.input.force_n).norm(), 0.0, kRounding_n);
+        }
+    }
+}
+
+TEST(SafeState, a_held_proxy_with_bad_data_fades_as_bad_data_do)
+{
+    GuardedTool tool;
+    tool.warm_up();
+    tool.input.faults = FrameFault::proxy_frozen | FrameFault::tool_invalid;
+    tool.input.force_n = Vec3(5.0, 0.0, 0.0);
+    tool.step();
+    const Vec3 ramp_n = GuardedTool::kForce_n * (1.0 - kFrame_s / kFadeTime_s);
+    EXPECT_NEAR((tool.last.force_n - ramp_n).norm(), 0.0, kRounding_n);
+    EXPECT_EQ(tool.last.causes, ForceOff::frozen | ForceOff::garbage);
+}
+
+TEST(SafeState, a_torque_goes_as_the_force_goes)
+{
+    GuardedTool tool;
+    tool.input.torque_nm = Vec3(0.0, 0.3, 0.0);
+    tool.warm_up();
+    EXPECT_EQ(tool.last.torque_nm, tool.input.torque_nm);
+    tool.input.causes = ForceOff::deadman;
+    tool.step();
+    EXPECT_NEAR(tool.last.torque_nm.y(), 0.3 * (1.0 - kFrame_s / kFadeTime_s), 1e-12);
+    tool.input.causes = ForceOff::none;
+    tool.input.torque_nm = Vec3(0.0, 4.0, 0.0);
+    for (int i = 0; i < 200; ++i)
+    {
+        const double before_nm = tool.last.torque_nm.norm();
+        tool.step();
+        EXPECT_LE(tool.last.torque_nm.norm() - before_nm,
+                  2.0 * 0.4 * kFrame_s / kRiseTime_s + 1e-9);
+    }
+    EXPECT_NEAR(tool.last.torque_nm.norm(), 0.4, 1e-12) << "the device's largest";
+    tool.input.torque_nm.z() = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_EQ(tool.step().causes, ForceOff::garbage);
+}
+
+TEST(SafeState, without_a_frame_the_last_force_fades_by_the_same_law)
+{
+    GuardedTool tool;
+    tool.warm_up();
+    for (int frame = 1; frame <= 60; ++frame)
+    {
+        const SafetyOutput out = tool.sut.fade(kFrame_s, ForceOff::assertion);
+        const double gain = std::max(0.0, 1.0 - frame * kFrame_s / kFadeTime_s);
+        EXPECT_NEAR((out.force_n - gain * GuardedTool::kForce_n).norm(), 0.0, kRounding_n);
+        EXPECT_EQ(out.causes, ForceOff::assertion);
+    }
+    EXPECT_EQ(tool.sut.state(), SafetyState::idle);
+}
+
 TEST(SafeState, makes_no_force_before_the_first_good_sample)
 {
     GuardedTool tool;
-    tool.input.sample_fault = FrameFault::tool_invalid;
+    tool.input.faults = FrameFault::tool_invalid;
     for (int i = 0; i < 10; ++i)
     {
         EXPECT_EQ(tool.step().state, SafetyState::reset);
         EXPECT_EQ(tool.last.force_n.norm(), 0.0);
     }
-    tool.input.sample_fault = FrameFault::none;
+    tool.input.faults = FrameFault::none;
     EXPECT_EQ(tool.step().state, SafetyState::force);
     EXPECT_NEAR(tool.last.force_n.norm(), GuardedTool::kForce_n.norm() * kFrame_s / kRiseTime_s,
                 kRounding_n);
@@ -241,7 +316,7 @@ TEST(SafeState, does_not_pull_a_hand_that_is_deeper_than_the_device_is_strong)
     EXPECT_EQ(tool.step().state, SafetyState::force);
 }
 
-TEST(SafeState, a_fast_hand_is_calm_again_at_half_the_limit)
+TEST(SafeState, a_fast_hand_is_calm_again_at_a_share_of_the_limit)
 {
     GuardedTool tool;
     tool.input.has_velocity = true;
@@ -252,8 +327,8 @@ TEST(SafeState, a_fast_hand_is_calm_again_at_half_the_limit)
     };
     EXPECT_FALSE(is_off_at(0.99));
     EXPECT_TRUE(is_off_at(1.01));
-    EXPECT_TRUE(is_off_at(0.51));
-    EXPECT_FALSE(is_off_at(0.49));
+    EXPECT_TRUE(is_off_at(1.01 * kCalmSpeedShare));
+    EXPECT_FALSE(is_off_at(0.99 * kCalmSpeedShare));
     EXPECT_FALSE(is_off_at(0.99));
 }
 

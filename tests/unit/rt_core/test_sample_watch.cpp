@@ -31,12 +31,14 @@ public:
         goal_m = verdict.is_taken ? position_m : goal_m;
         return verdict;
     }
-    [[nodiscard]] double trust(const Vec3& proxy_m)
+    /// What is wrong once the proxy is there.
+    [[nodiscard]] FrameFault fault_with(const Vec3& proxy_m)
     {
         ToolOutput output;
         output.proxy_m = proxy_m;
         output.in_contact = true;
-        return sut.trust(output, spec, goal_m);
+        sut.look_for_return(output, spec, goal_m);
+        return sut.fault();
     }
 
     SampleWatch sut;
@@ -46,17 +48,17 @@ public:
 
 const Vec3 kHere(0.1, 0.0, 0.0);
 
-TEST(SampleWatch, there_is_no_force_before_the_first_sample)
+TEST(SampleWatch, tells_the_first_sample)
 {
     WatchedTool tool;
     EXPECT_FALSE(tool.give(kHere, 0, false).is_taken);
-    EXPECT_EQ(tool.trust(kHere), 0.0);
+    EXPECT_EQ(tool.fault_with(kHere), FrameFault::tool_invalid);
 
     const SampleWatch::Verdict first = tool.give(kHere, 0);
     EXPECT_TRUE(first.is_taken);
     EXPECT_TRUE(first.is_first);
     EXPECT_EQ(first.fault, FrameFault::none);
-    EXPECT_EQ(tool.trust(kHere), 1.0);
+    EXPECT_EQ(tool.fault_with(kHere), FrameFault::none);
 }
 
 TEST(SampleWatch, takes_no_number_that_is_none_or_out_of_range)
@@ -96,25 +98,30 @@ TEST(SampleWatch, takes_no_matrix_that_is_no_rotation)
     }
 }
 
-TEST(SampleWatch, holds_the_force_for_a_while_without_samples_and_then_fades_it)
+TEST(SampleWatch, takes_a_rotation_within_the_tolerance_alone)
+{
+    for (const double share : {0.99, 1.01})
+    {
+        SampleWatch sut;
+        ToolState sample;
+        sample.rotation(0, 1) = share * kRotationTolerance;
+        const SampleWatch::Verdict verdict = sut.judge(sample, {}, Vec3(0.0, 0.0, 0.0), kFrame_s);
+        EXPECT_EQ(verdict.is_taken, share < 1.0);
+        EXPECT_EQ(verdict.fault, share < 1.0 ? FrameFault::none : FrameFault::tool_invalid);
+    }
+}
+
+TEST(SampleWatch, knows_how_long_it_had_no_sample)
 {
     WatchedTool tool;
     ASSERT_TRUE(tool.give(kHere, 0).is_taken);
-    double last = 1.0;
     for (int frame = 1; frame <= 80; ++frame)
     {
         EXPECT_EQ(tool.give(kHere, 0, false).fault, FrameFault::tool_invalid);
-        const double blind_s = frame * kFrame_s;
-        const double trust = tool.trust(kHere);
-        EXPECT_LE(trust, last);
-        EXPECT_TRUE(blind_s > kSampleHold_s - kRounding_s || trust == 1.0) << frame;
-        EXPECT_TRUE(blind_s < kSampleHold_s + kFadeTime_s + kRounding_s || trust == 0.0) << frame;
-        last = trust;
     }
     const SampleWatch::Verdict again = tool.give(kHere, 0);
     EXPECT_TRUE(again.is_taken);
     EXPECT_NEAR(again.since_s, 81 * kFrame_s, 1e-12);
-    EXPECT_EQ(tool.trust(kHere), 1.0);
 }
 
 TEST(SampleWatch, a_slow_device_is_not_stuck_and_a_stuck_one_is)
@@ -126,7 +133,7 @@ TEST(SampleWatch, a_slow_device_is_not_stuck_and_a_stuck_one_is)
         const SampleWatch::Verdict verdict = tool.give(kHere, time_ns + frame / 4);
         EXPECT_EQ(verdict.is_taken, frame % 4 == 0);
         EXPECT_EQ(verdict.fault, FrameFault::none);
-        EXPECT_EQ(tool.trust(kHere), 1.0);
+        EXPECT_EQ(tool.fault_with(kHere), FrameFault::none);
     }
     time_ns += 10;
     ASSERT_TRUE(tool.give(kHere, time_ns).is_taken);
@@ -137,7 +144,7 @@ TEST(SampleWatch, a_slow_device_is_not_stuck_and_a_stuck_one_is)
         EXPECT_TRUE(is_stuck || blind_s < kSampleHold_s + kRounding_s) << frame;
         EXPECT_TRUE(!is_stuck || blind_s > kSampleHold_s - kRounding_s) << frame;
     }
-    EXPECT_EQ(tool.trust(kHere), 0.0);
+    EXPECT_EQ(tool.fault_with(kHere), FrameFault::tool_stuck);
 }
 
 TEST(SampleWatch, an_older_sample_is_not_taken_unless_the_clock_began_anew)
@@ -157,20 +164,37 @@ TEST(SampleWatch, an_older_sample_is_not_taken_unless_the_clock_began_anew)
     EXPECT_TRUE(tool.give(kHere, 11).is_taken);
 }
 
-TEST(SampleWatch, after_a_jump_there_is_no_force_until_the_goal_is_near_the_proxy)
+TEST(SampleWatch, a_jump_is_told_until_the_goal_is_near_the_proxy)
 {
     WatchedTool tool;
     ASSERT_TRUE(tool.give(kHere, 0).is_taken);
     const SampleWatch::Verdict jump = tool.give(Vec3(10.0, 0.0, 0.0), 0);
     EXPECT_TRUE(jump.is_taken);
     EXPECT_EQ(jump.fault, FrameFault::tool_jumped);
-    EXPECT_EQ(tool.trust(kHere), 0.0);
+    EXPECT_EQ(tool.fault_with(kHere), FrameFault::tool_jumped);
     EXPECT_EQ(tool.give(Vec3(9.95, 0.0, 0.0), 0).fault, FrameFault::none);
-    EXPECT_EQ(tool.trust(kHere), 0.0) << "it is still far away";
+    EXPECT_EQ(tool.fault_with(kHere), FrameFault::tool_jumped) << "it is still far away";
     const double spring_m = tool.spec.force_max_n / tool.spec.stiffness_n_per_m;
-    EXPECT_EQ(tool.trust(Vec3(9.95 - 1.01 * spring_m, 0.0, 0.0)), 0.0);
-    EXPECT_EQ(tool.trust(Vec3(9.95 - 0.99 * spring_m, 0.0, 0.0)), 1.0);
-    EXPECT_EQ(tool.trust(kHere), 1.0) << "once it was near, the force is as ever";
+    EXPECT_EQ(tool.fault_with(Vec3(9.95 - 1.01 * spring_m, 0.0, 0.0)), FrameFault::tool_jumped);
+    EXPECT_EQ(tool.fault_with(Vec3(9.95 - 0.99 * spring_m, 0.0, 0.0)), FrameFault::none);
+    EXPECT_EQ(tool.fault_with(kHere), FrameFault::none) << "once it was near, all is as ever";
+}
+
+TEST(SampleWatch, a_goal_has_jumped_that_is_so_many_times_too_fast)
+{
+    for (const double speed_max : {0.1, 1.0, 3.0}) // Taken for at least 1 m/s.
+    {
+        const double limit_m = kJumpSpeeds * std::max(speed_max, 1.0) * kFrame_s;
+        for (const double share : {0.999, 1.001})
+        {
+            WatchedTool tool;
+            tool.spec.speed_max_m_per_s = speed_max;
+            ASSERT_TRUE(tool.give(kHere, 0).is_taken);
+            EXPECT_EQ(tool.give(kHere + Vec3(0.0, share * limit_m, 0.0), 0).fault,
+                      share < 1.0 ? FrameFault::none : FrameFault::tool_jumped)
+                << speed_max;
+        }
+    }
 }
 
 TEST(SampleWatch, a_gap_in_the_samples_is_no_jump)
@@ -198,10 +222,10 @@ TEST(SampleWatch, says_what_is_wrong_until_it_is_not)
     const Vec3 elsewhere = kHere + Vec3(5.0, 0.0, 0.0);
     static_cast<void>(tool.give(elsewhere, 0));
     EXPECT_EQ(tool.sut.fault(), FrameFault::tool_jumped);
-    static_cast<void>(tool.trust(kHere));
+    static_cast<void>(tool.fault_with(kHere));
     static_cast<void>(tool.give(elsewhere, 0)); // Itself no jump, but the place is still lost.
     EXPECT_EQ(tool.sut.fault(), FrameFault::tool_jumped);
-    static_cast<void>(tool.trust(elsewhere)); // The proxy has come after it.
+    static_cast<void>(tool.fault_with(elsewhere)); // The proxy has come after it.
     static_cast<void>(tool.give(elsewhere, 0));
     EXPECT_EQ(tool.sut.fault(), FrameFault::none);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
+#include "rt_core/math/infinity.hpp"
 #include "rt_core/query/probe.hpp"
 #include "rt_core/query/surface_query.hpp"
 #include "tests/shared/distance_oracle.hpp"
@@ -17,7 +18,6 @@ namespace tactus::test
 namespace
 {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr float kInfiniteQuanta = std::numeric_limits<float>::infinity();
 /// What long double leaves of the distance of a thin triangle 10 m away; the law is far below.
 constexpr double kSlack = 1e-9;
@@ -365,6 +365,73 @@ TEST(TreeWalk, visits_exactly_the_coarse_blocks_when_asked_for_coarse_ones)
 
     EXPECT_EQ(visited, expected);
     EXPECT_TRUE(sut.left().empty());
+}
+
+/// A face of this path (AbTree); its corners are its own.
+ChangedFace face_of_path(std::uint32_t prim, std::uint64_t path, float x)
+{
+    // A face's path is its bucket, and its id times an odd number, whose inverse this is.
+    constexpr std::uint32_t kFactor = 0x9E37'79B9U;
+    std::uint32_t inverse = 1;
+    for (int i = 0; i < 5; ++i) // Newton's: each time twice as many bits are right.
+    {
+        inverse *= 2U - kFactor * inverse;
+    }
+    const auto own = static_cast<float>(prim);
+    return {PrimId{prim},
+            FaceId{static_cast<std::uint32_t>(path >> 1U) * inverse},
+            static_cast<std::uint32_t>(path >> 33U),
+            0,
+            {{{x, own, 0.0F}, {x + 0.5F, own, 0.0F}, {x, own, 0.5F}}}};
+}
+
+TEST(TreeWalk, of_the_deepest_tree_leaves_no_more_on_its_stack_than_the_limit)
+{
+    constexpr std::uint32_t kFaces = 5; // Of corners of their own, as many as fit into a block.
+    constexpr std::uint32_t kLast = 3 * (kTreeLevels - 1);
+    TreeRig rig({1'000, 1'000, 1'000});
+    std::uint32_t prim = 0;
+    const auto add_block = [&](std::uint64_t path, std::uint32_t faces, float x)
+    {
+        for (std::uint64_t i = 0; i < faces; ++i, ++prim)
+        {
+            rig.put(face_of_path(prim, path | (i << 1U), x));
+        }
+    };
+    // From the root to the last digit but one all have a zero, and beside it all other digits.
+    for (std::uint32_t shift = kLast; shift >= 3; shift -= 3)
+    {
+        for (std::uint64_t digit = 1; digit < (shift == kLast ? 2 : 8); ++digit)
+        {
+            add_block(digit << shift, shift == 3 ? 4 : kFaces, 1'000.0F);
+        }
+    }
+    add_block(0, 4, 0.0F);
+    rig.sut->refit();
+    ASSERT_EQ(rig.faults(), "");
+    std::uint32_t levels = 0;
+    for (std::uint32_t node =
+             rig.sut->side(rig.sut->leaf_of(PrimId{prim - 1}) / kBlockFaces).parent;
+         node != kNoNode; node = rig.sut->node(node).parent)
+    {
+        ++levels;
+    }
+    EXPECT_EQ(levels, kTreeLevels - 1) << "the last digit has too few faces for a node";
+
+    const KernelProbe probe = make_probe(Vec3(0, 0, 0), kTreeQuantum);
+    std::size_t deepest = 0;
+    for (std::uint32_t nodes = 0; nodes <= levels; ++nodes)
+    {
+        WalkBudget budget;
+        budget.nodes = nodes;
+        TreeWalk sut(*rig.sut, probe, budget);
+        EXPECT_EQ(sut.next_block(kInfiniteQuanta, false), kNoNode);
+        deepest = std::max(deepest, sut.left().size());
+    }
+
+    EXPECT_LE(deepest, kTreeStack);
+    // The path's highest digit has one bit, and the lowest is in blocks.
+    EXPECT_EQ(deepest, kTreeStack - 6 - 2 * 7);
 }
 
 TEST(TreeWalk, leaves_out_only_blocks_beyond_the_bound)

@@ -215,6 +215,63 @@ TEST(Vicinity, of_more_equally_near_triangles_than_fit_lets_nothing_move)
     EXPECT_LE(sut.reach_m(), 0.05);
 }
 
+TEST(Vicinity, reaches_as_far_as_asked_with_as_many_triangles_as_fit)
+{
+    const ObjectPose pose;
+    const Material material;
+    const Vec3 center(0.2, 0.1, 0.05);
+    for (const std::uint32_t count : {kMaxNearFaces, kMaxNearFaces + 1})
+    {
+        const TriangleList many(count, plane().front());
+        const auto surface = surface_of(many, center, 10.0);
+        const PlacedSurface placed{&pose, surface.get(), &material, 1e-6};
+        const Vicinity sut({&placed, 1}, center, center, 1.0);
+        EXPECT_EQ(sut.reach_m() == 1.0, count == kMaxNearFaces);
+    }
+}
+
+TEST(Vicinity, halves_what_it_reaches_beyond_the_nearest_so_many_times_and_no_more)
+{
+    constexpr double kNearest = 0.125;
+    const double last = kNearest + std::ldexp(1.0, -kMaxGatherings);
+    for (const double share : {0.9, 1.1})
+    {
+        // One face at a time in reach of the last list, or all of them.
+        const double far = kNearest + share * std::ldexp(1.0, -kMaxGatherings);
+        LocalSurface surface;
+        surface.distances_m[surface.count++] = kNearest;
+        while (surface.count <= kMaxNearFaces)
+        {
+            surface.distances_m[surface.count++] = far;
+        }
+        const ObjectPose pose;
+        const Material material;
+        const PlacedSurface placed{&pose, &surface, &material, 1e-6};
+
+        const Vicinity sut({&placed, 1}, Vec3(0, 0, 0), Vec3(0, 0, 0), kNearest + 1.0);
+
+        EXPECT_EQ(sut.size(), 1U);
+        EXPECT_EQ(sut.reach_m(), share > 1.0 ? last : kNearest);
+    }
+}
+
+TEST(Vicinity, a_face_is_entered_by_more_than_the_tolerance)
+{
+    const ObjectPose pose;
+    const Material material;
+    const double radius = 0.01;
+    const Vec3 center(0.25, 0.1, radius);
+    const auto surface = surface_of(plane(), center, 10.0);
+    const PlacedSurface placed{&pose, surface.get(), &material, 1e-6};
+    for (const double share : {0.9, 1.1})
+    {
+        Vicinity sut({&placed, 1}, center, center, 1.0);
+        sut.stand_at(Vec3(0, 0, 0), Vec3(0, 0, 1));
+        const Vec3 motion(0, 0, -share * kContactTolerance * radius);
+        EXPECT_EQ(sut.find_entered(motion, radius).has_value(), share > 1.0);
+    }
+}
+
 TEST(Vicinity, a_place_on_the_surface_sees_it_along_the_fallback)
 {
     const ObjectPose pose;

@@ -100,6 +100,20 @@ TEST_F(WishListTest, a_wish_expires_only_after_its_time)
     EXPECT_TRUE(sut.is_under_way(7));
 }
 
+TEST_F(WishListTest, a_wish_waits_as_long_as_it_is_told)
+{
+    for (const std::uint32_t timeout : {1U, 25U, 2'500U})
+    {
+        WishList sut = make(1);
+        sut.ask(7, 100);
+        sut.expire(100 + timeout, timeout);
+        EXPECT_TRUE(sut.is_under_way(7));
+        sut.expire(101 + timeout, timeout);
+        EXPECT_FALSE(sut.is_under_way(7));
+    }
+    EXPECT_EQ(kWishTimeout_ns / 1'000'000, kWishTimeoutFrames) << "at 1 kHz";
+}
+
 TEST_F(WishListTest, the_frame_counter_may_wrap)
 {
     WishList sut = make(1);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
+#include "rt_core/math/infinity.hpp"
 #include "tests/unit/transport/dds_rig.hpp"
 #include "tests/unit/transport/tiny_model.hpp"
 #include "transport/dds/dds_host.hpp"
@@ -31,7 +32,6 @@ using test::make_tiny_model;
 using test::TemporaryFolder;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// A quarter turn about z at some place.
 Pose some_pose()

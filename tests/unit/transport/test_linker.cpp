@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
+
+/// What is linked, what waits and what is refused: a foreign id and a dependency cycle always
+/// (I12).
+
 #include "host_tools/encode/record_coder.hpp"
 #include "rt_core/spm/chunk_coding.hpp"
 #include "rt_core/spm/linker.hpp"

@@ -149,7 +149,7 @@ public:
     /// Far off, until nothing is under way any more and all slots are where they belong.
     [[nodiscard]] Verdict come_to_rest()
     {
-        constexpr std::uint32_t most = 6'000; // Frames: more than the courier keeps a wish for.
+        constexpr std::uint32_t most = 6'000; // Frames: many times kWishTimeoutFrames.
         const Vec3 far_off = to_world(rig_.pose(), Vec3(100.0 * model_.diagonal_m, 0.0, 0.0));
         std::uint32_t quiet =
             0; // Frames in a row; what is late and unasked for comes in them, too.
@@ -157,7 +157,7 @@ public:
         {
             const FrameOutput output = rig_.step(far_off, budgets_);
             const bool is_quiet = output.work.requests == 0 && output.work.pages_adopted == 0 &&
-                                  rig_.courier().open_wishes() == 0;
+                                  rig_.model().cache.wishes_under_way() == 0;
             quiet = is_quiet ? quiet + 1 : 0;
         }
         if (quiet < 100)

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "host_tools/mesh/atomic_file.hpp"
-
-#include <fmt/format.h>
+#include "platform/base/atomic_file.hpp"
 
 #include <array>
 #include <atomic>
@@ -22,7 +20,7 @@ namespace
 
 constexpr std::size_t kLongestPath = 4096; ///< With its end mark; Linux and QNX take no longer.
 
-/// A temporary's name where a signal handler may read it.
+/// A partial file's name where a signal handler may read it.
 struct PendingSlot
 {
     enum State : int
@@ -46,7 +44,7 @@ std::array<PendingSlot, AtomicFile::kMaxPending>& pending_slots()
     return slots;
 }
 
-/// Keeps the signals away from this thread between making a temporary and registering its name.
+/// Keeps the signals away from this thread between making a partial file and registering its name.
 class SignalPause
 {
 public:
@@ -99,20 +97,19 @@ void remove_pending_and_reraise(int signal)
     std::raise(signal); // SA_RESETHAND has put the default action back.
 }
 
-FileError error_for(const std::filesystem::path& path, std::string_view what, int code)
+Refusal refuse(const std::filesystem::path& path, const std::string& reason)
 {
-    return {fmt::format("{}: {}: {}", path.string(), what, std::strerror(code))};
+    return {path.string() + ": can't be written: " + reason};
 }
 
 /// Makes a new file beside `target` and leaves its name in `name`; -1 and errno when it can't.
-int make_temporary(const std::filesystem::path& target, std::string& name)
+int make_partial(const std::filesystem::path& target, std::string& name)
 {
     constexpr int kTries = 1000; // Names left over by killed processes with our id.
     for (int i = 0; i < kTries; ++i)
     {
-        name = (target.parent_path() /
-                fmt::format(".{}.{}-{}.tmp", target.filename().string(), ::getpid(), i))
-                   .string();
+        name = target.string() + '.' + std::to_string(::getpid()) + '-' + std::to_string(i) +
+               ".partial";
         if (name.size() >= kLongestPath)
         {
             errno = ENAMETOOLONG;
@@ -140,38 +137,46 @@ void sync_directory(const std::filesystem::path& directory)
 
 } // namespace
 
-Result<AtomicFile, FileError> AtomicFile::create(const std::filesystem::path& path)
+Result<AtomicFile, Refusal> AtomicFile::create(const std::filesystem::path& path)
 {
     std::error_code code;
     const auto status = std::filesystem::status(path, code);
     if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
     {
-        return FileError{path.string() + ": is not a regular file and can't be replaced"};
+        // Taking the place of a device or pipe would be no service to anybody.
+        return refuse(path, "it is a directory, device or pipe");
     }
     const auto target = std::filesystem::absolute(path, code);
     if (code || !path.has_filename())
     {
-        return FileError{fmt::format("'{}': is not a file name", path.string())};
+        return refuse(path, "it is no file name");
     }
     const std::size_t slot = reserve_slot();
     if (slot == kMaxPending)
     {
-        return FileError{fmt::format("{}: more than {} files are being written at once",
-                                     path.string(), kMaxPending)};
+        return refuse(path, "more than " + std::to_string(kMaxPending) +
+                                " files are being written at once");
     }
     auto& pending = pending_slots()[slot];
     const SignalPause pause;
     std::string name;
-    const int descriptor = make_temporary(target, name);
+    const int descriptor = make_partial(target, name);
     if (descriptor < 0)
     {
         const int reason = errno;
         release_slot(slot);
-        return error_for(path, "no file can be made in its directory", reason);
+        return refuse(path, std::string("no file can be made in its directory: ") +
+                                std::strerror(reason));
     }
     std::memcpy(pending.path.data(), name.c_str(), name.size() + 1);
     pending.state = PendingSlot::pending;
-    return AtomicFile(target, name, descriptor, slot);
+    return AtomicFile(path.string(), target, name, descriptor, slot);
+}
+
+std::optional<Refusal> AtomicFile::probe(const std::filesystem::path& path)
+{
+    const auto file = create(path);
+    return file ? std::nullopt : std::optional(file.error());
 }
 
 void AtomicFile::remove_pending_on_signal()
@@ -193,15 +198,20 @@ void AtomicFile::remove_pending_on_signal()
     }
 }
 
-AtomicFile::AtomicFile(std::filesystem::path path, std::filesystem::path temporary, int descriptor,
-                       std::size_t slot)
-    : path_(std::move(path)), temporary_(std::move(temporary)), descriptor_(descriptor), slot_(slot)
+AtomicFile::AtomicFile(std::string name, std::filesystem::path path, std::filesystem::path partial,
+                       int descriptor, std::size_t slot)
+    : name_(std::move(name))
+    , path_(std::move(path))
+    , partial_(std::move(partial))
+    , descriptor_(descriptor)
+    , slot_(slot)
 {
 }
 
 AtomicFile::AtomicFile(AtomicFile&& other) noexcept
-    : path_(std::move(other.path_))
-    , temporary_(std::move(other.temporary_))
+    : name_(std::move(other.name_))
+    , path_(std::move(other.path_))
+    , partial_(std::move(other.partial_))
     , descriptor_(std::exchange(other.descriptor_, -1))
     , slot_(other.slot_)
     , end_(other.end_)
@@ -213,8 +223,9 @@ AtomicFile& AtomicFile::operator=(AtomicFile&& other) noexcept
     if (this != &other)
     {
         discard();
+        name_ = std::move(other.name_);
         path_ = std::move(other.path_);
-        temporary_ = std::move(other.temporary_);
+        partial_ = std::move(other.partial_);
         descriptor_ = std::exchange(other.descriptor_, -1);
         slot_ = other.slot_;
         end_ = other.end_;
@@ -227,14 +238,14 @@ AtomicFile::~AtomicFile()
     discard();
 }
 
-Result<Done, FileError> AtomicFile::write(std::span<const std::byte> bytes)
+Result<Done, Refusal> AtomicFile::write(std::span<const std::byte> bytes)
 {
     auto done = write_at(end_, bytes);
     end_ += done ? bytes.size() : 0;
     return done;
 }
 
-Result<Done, FileError> AtomicFile::write_at(std::uint64_t offset, std::span<const std::byte> bytes)
+Result<Done, Refusal> AtomicFile::write_at(std::uint64_t offset, std::span<const std::byte> bytes)
 {
     TACTUS_ASSERT(descriptor_ >= 0);
     while (!bytes.empty())
@@ -248,7 +259,7 @@ Result<Done, FileError> AtomicFile::write_at(std::uint64_t offset, std::span<con
         if (written <= 0)
         {
             errno = written == 0 ? ENOSPC : errno;
-            return error("can't be written");
+            return error();
         }
         offset += static_cast<std::uint64_t>(written);
         bytes = bytes.subspan(static_cast<std::size_t>(written));
@@ -256,19 +267,19 @@ Result<Done, FileError> AtomicFile::write_at(std::uint64_t offset, std::span<con
     return Done{};
 }
 
-Result<Done, FileError> AtomicFile::commit()
+Result<Done, Refusal> AtomicFile::commit()
 {
     TACTUS_ASSERT(descriptor_ >= 0);
     if (::fsync(descriptor_) != 0)
     {
-        const FileError reason = error("can't be flushed to the disk");
+        const Refusal reason = error();
         discard();
         return reason;
     }
     const SignalPause pause;
-    if (std::rename(temporary_.c_str(), path_.c_str()) != 0)
+    if (std::rename(partial_.c_str(), path_.c_str()) != 0)
     {
-        const FileError reason = error("can't be renamed to");
+        const Refusal reason = error();
         discard();
         return reason;
     }
@@ -283,14 +294,14 @@ void AtomicFile::discard() noexcept
     if (descriptor_ >= 0)
     {
         ::close(std::exchange(descriptor_, -1));
-        ::unlink(temporary_.c_str());
+        ::unlink(partial_.c_str());
         release_slot(slot_);
     }
 }
 
-FileError AtomicFile::error(const char* what) const
+Refusal AtomicFile::error() const
 {
-    return error_for(path_, what, errno);
+    return refuse(name_, std::strerror(errno));
 }
 
 } // namespace tactus

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/remote/mailbox.hpp"
+#include "rt_core/base/mailbox.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "host_tools/mesh/atomic_file.hpp"
-#include "tests/unit/host_mesh/support.hpp"
+#include "platform/base/atomic_file.hpp"
+#include "tests/shared/temporary_folder.hpp"
 
 #include <gtest/gtest.h>
 
 #include <csignal>
+#include <cstddef>
+#include <filesystem>
+#include <fstream>
 #include <optional>
 #include <span>
 #include <string>
@@ -31,9 +34,21 @@ std::string content_of(const std::filesystem::path& path)
     return {std::istreambuf_iterator<char>(file), {}};
 }
 
+std::size_t files_in(const TemporaryFolder& folder)
+{
+    const std::filesystem::directory_iterator entries(folder.path());
+    return static_cast<std::size_t>(std::distance(begin(entries), end(entries)));
+}
+
+std::filesystem::path write(const TemporaryFolder& folder, const char* name, const char* text)
+{
+    std::ofstream(folder.path() / name, std::ios::binary) << text;
+    return folder.path() / name;
+}
+
 TEST(AtomicFile, appears_with_its_content_at_commit_and_not_before)
 {
-    const TempDirectory directory;
+    const TemporaryFolder directory("atomic-file");
     const auto path = directory.path() / "a.bin";
     auto sut = AtomicFile::create(path);
     ASSERT_TRUE(sut) << sut.error().text;
@@ -43,26 +58,27 @@ TEST(AtomicFile, appears_with_its_content_at_commit_and_not_before)
     ASSERT_TRUE(sut.value().write(bytes_of("!")));
     EXPECT_FALSE(std::filesystem::exists(path));
     ASSERT_TRUE(sut.value().commit());
+    EXPECT_EQ(sut.value().bytes(), 12U);
     EXPECT_EQ(content_of(path), "Jello world!");
-    EXPECT_EQ(directory.files(), 1U);
+    EXPECT_EQ(files_in(directory), 1U);
 }
 
 TEST(AtomicFile, leaves_nothing_behind_without_commit)
 {
-    const TempDirectory directory;
+    const TemporaryFolder directory("atomic-file");
     {
         auto sut = AtomicFile::create(directory.path() / "a.bin");
         ASSERT_TRUE(sut);
         ASSERT_TRUE(sut.value().write(bytes_of("half")));
-        EXPECT_EQ(directory.files(), 1U);
+        EXPECT_EQ(files_in(directory), 1U);
     }
-    EXPECT_EQ(directory.files(), 0U);
+    EXPECT_EQ(files_in(directory), 0U);
 }
 
 TEST(AtomicFile, leaves_the_old_file_alone_until_commit_and_keeps_the_umask)
 {
-    const TempDirectory directory;
-    const auto path = directory.write("a.bin", "old");
+    const TemporaryFolder directory("atomic-file");
+    const auto path = write(directory, "a.bin", "old");
     {
         auto sut = AtomicFile::create(path);
         ASSERT_TRUE(sut);
@@ -83,41 +99,56 @@ TEST(AtomicFile, leaves_the_old_file_alone_until_commit_and_keeps_the_umask)
     EXPECT_EQ(status.st_mode & 0777U, 0640U);
 }
 
-TEST(AtomicFile, moves_its_temporary_along)
+TEST(AtomicFile, moves_its_partial_file_along)
 {
-    const TempDirectory directory;
+    const TemporaryFolder directory("atomic-file");
     auto first = AtomicFile::create(directory.path() / "a.bin");
     auto second = AtomicFile::create(directory.path() / "b.bin");
     ASSERT_TRUE(first && second);
-    EXPECT_EQ(directory.files(), 2U);
+    EXPECT_EQ(files_in(directory), 2U);
     first.value() = std::move(second.value());
-    EXPECT_EQ(directory.files(), 1U);
+    EXPECT_EQ(files_in(directory), 1U);
     ASSERT_TRUE(first.value().commit());
     EXPECT_TRUE(std::filesystem::exists(directory.path() / "b.bin"));
 }
 
 TEST(AtomicFile, refuses_places_where_no_file_can_be_made)
 {
-    const TempDirectory directory;
+    const TemporaryFolder directory("atomic-file");
     const std::vector<std::filesystem::path> places{directory.path(),
                                                     directory.path() / "no" / "a.bin",
                                                     "/dev/null",
                                                     "",
                                                     directory.path() / "",
                                                     directory.path() / std::string(300, 'x'),
-                                                    directory.write("file", "x") / "a.bin"};
+                                                    write(directory, "file", "x") / "a.bin"};
     for (const auto& place : places)
     {
         const auto sut = AtomicFile::create(place);
         ASSERT_FALSE(sut) << place;
+        EXPECT_TRUE(sut.error().text.starts_with(place.string() + ": can't be written: "))
+            << sut.error().text;
         EXPECT_EQ(sut.error().text.find('\n'), std::string::npos) << sut.error().text;
     }
-    EXPECT_EQ(directory.files(), 1U);
+    EXPECT_EQ(files_in(directory), 1U);
+}
+
+TEST(AtomicFile, finds_out_before_a_run_whether_a_file_can_be_written_and_leaves_nothing_behind)
+{
+    const TemporaryFolder directory("atomic-file");
+    EXPECT_FALSE(AtomicFile::probe(directory.path() / "a.bin"));
+    EXPECT_EQ(files_in(directory), 0U);
+    EXPECT_FALSE(AtomicFile::probe(write(directory, "old.bin", "old")));
+    EXPECT_EQ(content_of(directory.path() / "old.bin"), "old");
+    const auto refused = AtomicFile::probe(directory.path());
+    ASSERT_TRUE(refused);
+    EXPECT_EQ(refused->text,
+              directory.path().string() + ": can't be written: it is a directory, device or pipe");
 }
 
 TEST(AtomicFile, refuses_one_too_many_and_takes_one_more_after_a_release)
 {
-    const TempDirectory directory;
+    const TemporaryFolder directory("atomic-file");
     std::vector<AtomicFile> open;
     for (std::size_t i = 0; i < AtomicFile::kMaxPending; ++i)
     {
@@ -129,7 +160,7 @@ TEST(AtomicFile, refuses_one_too_many_and_takes_one_more_after_a_release)
     open.pop_back();
     EXPECT_TRUE(AtomicFile::create(directory.path() / "a.bin"));
     open.clear();
-    EXPECT_EQ(directory.files(), 0U);
+    EXPECT_EQ(files_in(directory), 0U);
 }
 
 /// Runs in a child process: what it does to limits and signals ends with it.
@@ -146,30 +177,34 @@ int status_of_child(Body body)
     return status;
 }
 
-TEST(AtomicFile, reports_a_full_disk_and_leaves_nothing_behind)
+TEST(AtomicFile, tells_of_a_full_disk_by_the_name_it_was_given_and_leaves_nothing_behind)
 {
-    const TempDirectory directory;
+    const TemporaryFolder directory("atomic-file");
     const int status = status_of_child(
         [&]
         {
             const rlimit limit{1000, 1000}; // Writing beyond is EFBIG, with the signal ignored.
             ::setrlimit(RLIMIT_FSIZE, &limit);
             ::signal(SIGXFSZ, SIG_IGN);
-            auto sut = AtomicFile::create(directory.path() / "a.bin");
+            std::filesystem::current_path(directory.path());
+            auto sut = AtomicFile::create("a.bin");
             const std::string much(5000, 'x');
-            const bool refused = sut && !sut.value().write(bytes_of(much));
-            return refused ? 0 : 1;
+            const auto written = sut.value().write(bytes_of(much));
+            return !written && written.error().text == "a.bin: can't be written: File too large"
+                       ? 0
+                       : 1;
         });
     EXPECT_TRUE(WIFEXITED(status));
     EXPECT_EQ(WEXITSTATUS(status), 0);
+    EXPECT_EQ(files_in(directory), 0U);
 }
 
-TEST(AtomicFile, removes_its_temporaries_when_a_signal_ends_the_process)
+TEST(AtomicFile, removes_its_partial_files_when_a_signal_ends_the_process)
 {
     for (const int signal : {SIGINT, SIGTERM, SIGHUP})
     {
-        const TempDirectory directory;
-        directory.write("old.bin", "old");
+        const TemporaryFolder directory("atomic-file");
+        write(directory, "old.bin", "old");
         const int status = status_of_child(
             [&]
             {
@@ -187,14 +222,14 @@ TEST(AtomicFile, removes_its_temporaries_when_a_signal_ends_the_process)
             });
         EXPECT_TRUE(WIFSIGNALED(status));
         EXPECT_EQ(WTERMSIG(status), signal);
-        EXPECT_EQ(directory.files(), 2U);
+        EXPECT_EQ(files_in(directory), 2U);
         EXPECT_EQ(content_of(directory.path() / "old.bin"), "old");
     }
 }
 
 TEST(AtomicFile, leaves_an_ignored_signal_ignored)
 {
-    const TempDirectory directory;
+    const TemporaryFolder directory("atomic-file");
     const int status = status_of_child(
         [&]
         {

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "platform/hrtc/recorder.hpp"
+#include "platform/hrtc/run_statistics.hpp"
+#include "platform/hrtc/safety_record.hpp"
+#include "platform/periodic_timer.hpp"
+#include "platform/remote/pose_door.hpp"
+#include "platform/rt_thread.hpp"
+#include "platform/time.hpp"
+#include "transport/dds/dds_client.hpp"
+#include "transport/dds/poses.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tactus::hrtc
+{
+
+/// What is known of a run that has ended.
+struct FinishedRun
+{
+    RunStatistics statistics;
+    RtThreadReport thread{};
+    bool supervisor_fifo{false}; ///< The supervisor had SCHED_FIFO.
+    TimerCounts timer{};
+    Duration period;
+    SafetyRecord safety;
+    bool host_was_lost{false};                  ///< Some model's host went away during the run.
+    std::vector<PoseUse> pose_uses{};           ///< One an object; none from files.
+    std::vector<dds::PoseCounts> pose_counts{}; ///< One an object; none with --ignore-poses.
+    std::uint64_t telemetry_sent{0};
+    std::optional<RecordingResult> recording{};
+    std::optional<std::string> recording_error{}; ///< Why a wanted recording is not there.
+};
+
+} // namespace tactus::hrtc

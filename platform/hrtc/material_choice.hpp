@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/records/frame_input.hpp"
+
+#include <optional>
+#include <string_view>
+
+namespace tactus::hrtc
+{
+
+/// Of --stiffness, too.
+inline constexpr double kStiffest_n_per_m = 3'000.0;
+
+/// What parse_material() takes; for messages.
+inline constexpr std::string_view kMaterialForm =
+    "STIFFNESS[,STATIC[,DYNAMIC[,DAMPING]]] with 1 to 3000 N/m, friction of 0 to 3, the dynamic "
+    "one at most the static one, and 0 to 20 N s/m";
+
+/// None when the text is not of that form.
+[[nodiscard]] std::optional<Material> parse_material(std::string_view text);
+
+} // namespace tactus::hrtc

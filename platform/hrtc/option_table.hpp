@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "platform/hrtc/options.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tactus::hrtc
+{
+
+/// Texts of the command line that options.cpp reads once the line is parsed.
+struct RawOptions
+{
+    std::vector<std::string> places;
+    std::vector<std::string> materials;
+    std::vector<std::string> tools;
+    std::vector<std::string> devices;
+    std::vector<std::string> device_frames;
+    std::vector<std::string> device_faults;
+    std::optional<std::string> motion;
+    std::string transport{"dds"};
+    std::string prediction{prediction_name(Prediction::automatic)};
+    std::optional<int> cpu;
+    bool prints_config{false};
+    bool ignores_poses{false};
+};
+
+/// Tells CLI11 of all options of the command. It fills `options` and `raw` when it parses the line,
+/// so both outlive `app`. --help lists them in the order of their declaration.
+void declare_options(CLI::App& app, Options& options, RawOptions& raw, const CommandForm& form);
+
+} // namespace tactus::hrtc

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "platform/budget_governor.hpp"
+#include "platform/hrtc/assertion_brake.hpp"
+#include "platform/hrtc/controller.hpp"
+#include "platform/hrtc/finished_run.hpp"
+#include "platform/hrtc/haptic_loop.hpp"
+#include "platform/hrtc/host_topics.hpp"
+#include "platform/hrtc/messages.hpp"
+#include "platform/hrtc/options.hpp"
+#include "platform/hrtc/recorder.hpp"
+#include "platform/hrtc/supervisor.hpp"
+#include "platform/hrtc/telemetry_tap.hpp"
+#include "platform/hrtc/transport_thread.hpp"
+#include "platform/posix/posix_clock.hpp"
+#include "platform/posix/posix_periodic_timer.hpp"
+#include "platform/remote/pose_door.hpp"
+#include "platform/rt_thread.hpp"
+
+#include <optional>
+#include <string>
+
+namespace tactus::hrtc
+{
+
+/// What one run works with. All of it outlives the run.
+struct RunParts
+{
+    const Options& options;
+    Controller& controller;
+    HostTopics* topics{nullptr}; ///< None from files.
+    Recorder* recorder{nullptr}; ///< None unless --record.
+};
+
+/// One run of the loop on its real-time thread, the supervisor and the transport beside it. The
+/// main thread calls start(), wait() and finish() in this order, each once. The transport thread
+/// runs from construction on.
+class SessionRun
+{
+public:
+    explicit SessionRun(const RunParts& parts);
+    SessionRun(const SessionRun&) = delete;
+    SessionRun& operator=(const SessionRun&) = delete;
+    ~SessionRun();
+
+    /// Starts supervisor and loop. Returns why that was refused; nothing runs then.
+    [[nodiscard]] std::optional<Refusal> start();
+
+    /// Waits for the loop's end and tells how far it is; `what` names the run in these lines. After
+    /// a signal the loop ends early. After a failed assertion this does not return.
+    void wait(const std::string& what);
+
+    /// Ends all threads.
+    [[nodiscard]] FinishedRun finish();
+
+private:
+    [[nodiscard]] HostTopics* connected_topics();
+    [[nodiscard]] LoopParts loop_parts();
+    void run_loop();
+    void watch(const std::string& what);
+    void take_events();
+    void end_after_failure();
+    void finish_recording();
+    void note_topics();
+
+    RunParts parts_;
+    Duration period_;
+    FinishedRun done_;
+    PosixClock clock_;
+    PosixPeriodicTimer timer_;
+    PosixPeriodicTimer alarm_; ///< The supervisor's.
+    std::optional<BudgetGovernor> governor_;
+    PoseDoor door_;
+    TelemetryTap telemetry_;
+    TransportThread transport_;
+    HapticLoop loop_;
+    Supervisor supervisor_;
+    std::optional<AssertionBrake> brake_;
+    std::optional<RtThread> supervisor_thread_;
+    std::optional<RtThread> haptic_thread_;
+};
+
+} // namespace tactus::hrtc

@@ -1,0 +1,375 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/abtree/ab_tree.hpp"
+#include "rt_core/base/flaw.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <concepts>
+#include <cstdint>
+
+namespace tactus
+{
+
+/// Holds an AB-Tree against what it promises after refit():
+///
+///     free lists   hold exactly what is not in use, each once
+///     links        a child and its parent name each other; a parent's digit is above its child's;
+///                  only the root has no parent. So everything in use hangs below the root.
+///     paths        every face lies where the digits of its path lead
+///     faces        each is in one lane or in the list of the unplaced, and its prim says where
+///     boxes        a parent has its child's box, which holds every face inflated by its error
+///
+/// One look at each block, node and prim, without recursion or memory. It trusts the kernels that
+/// make boxes; the tests' own oracle does not.
+template <typename Tree>
+class TreeValidator
+{
+public:
+    [[nodiscard]] static Flaw find_flaw(const Tree& tree) noexcept TACTUS_NONBLOCKING
+    {
+        TreeValidator validator(tree);
+        validator.check_free_blocks();
+        validator.check_free_nodes();
+        validator.check_work_is_done();
+        // What follows goes along links, and these are bounded by what is above.
+        for (std::uint32_t i = 0; validator.is_sound() && i < tree.sides_.size(); ++i)
+        {
+            validator.check_block(i);
+        }
+        for (std::uint32_t i = 0; validator.is_sound() && i < tree.nodes_.size(); ++i)
+        {
+            validator.check_node(i);
+        }
+        for (std::uint32_t i = 0; validator.is_sound() && i < tree.prims_.size(); ++i)
+        {
+            validator.check_prim(i);
+        }
+        validator.check_unplaced();
+        return validator.finder_.first();
+    }
+
+private:
+    using Node = typename Tree::Node;
+    using Box = typename Tree::Box;
+    using Volume = typename Tree::Volume;
+
+    explicit TreeValidator(const Tree& tree) noexcept : tree_(tree) {}
+
+    [[nodiscard]] bool is_sound() const noexcept { return finder_.is_sound(); }
+    bool block(bool holds, std::uint32_t index, const char* what) noexcept
+    {
+        return finder_.expect(holds, "block", index, what);
+    }
+    bool node(bool holds, std::uint32_t index, const char* what) noexcept
+    {
+        return finder_.expect(holds, "node", index, what);
+    }
+    bool prim(bool holds, std::uint32_t index, const char* what) noexcept
+    {
+        return finder_.expect(holds, "prim", index, what);
+    }
+
+    void check_free_blocks() noexcept
+    {
+        std::uint32_t listed = 0;
+        for (std::uint32_t i = tree_.free_block_; i != kNoNode;
+             i = tree_.sides_[i].parent, ++listed)
+        {
+            if (!block(i < tree_.sides_.size(), i, "is free and not there") ||
+                !block(!tree_.sides_[i].in_use, i, "is in use and free") ||
+                !block(listed < tree_.free_block_count_, i, "is in a free list that is too long"))
+            {
+                return;
+            }
+        }
+        const auto in_use = static_cast<std::uint32_t>(
+            std::ranges::count_if(tree_.sides_, [](const BlockSide& side) { return side.in_use; }));
+        finder_.expect(listed == tree_.free_block_count_, "tree", listed,
+                       "blocks are in its free list, and it counts others");
+        finder_.expect(listed + in_use == tree_.capacities_.blocks, "tree", in_use,
+                       "blocks are in use, and some are neither that nor free");
+    }
+
+    void check_free_nodes() noexcept
+    {
+        std::uint32_t listed = 0;
+        for (std::uint32_t i = tree_.free_node_; i != kNoNode; i = tree_.nodes_[i].parent, ++listed)
+        {
+            if (!node(i < tree_.nodes_.size(), i, "is free and not there") ||
+                !node(!tree_.nodes_[i].in_use, i, "is in use and free") ||
+                !node(listed < tree_.free_node_count_, i, "is in a free list that is too long"))
+            {
+                return;
+            }
+        }
+        const auto in_use = static_cast<std::uint32_t>(
+            std::ranges::count_if(tree_.nodes_, [](const Node& each) { return each.in_use; }));
+        finder_.expect(listed == tree_.free_node_count_, "tree", listed,
+                       "nodes are in its free list, and it counts others");
+        finder_.expect(listed + in_use == tree_.capacities_.nodes, "tree", in_use,
+                       "nodes are in use, and some are neither that nor free");
+    }
+
+    void check_work_is_done() noexcept
+    {
+        block(tree_.marked_block_ == kNoNode, tree_.marked_block_, "waits for refit");
+        node(tree_.marked_node_ == kNoNode, tree_.marked_node_, "waits for refit");
+        for (const std::uint32_t head : tree_.dirty_heads_)
+        {
+            node(head == kNoNode, head, "waits for refit");
+        }
+        if (!tree_.root_.is_none())
+        {
+            finder_.expect(is_in_use(tree_.root_), "tree", tree_.root_.value, "has no such root");
+        }
+    }
+
+    [[nodiscard]] bool is_in_use(TreeRef ref) const noexcept
+    {
+        const std::uint32_t index = ref.index();
+        return ref.is_block() ? tree_.is_block_in_use(index)
+                              : index < tree_.nodes_.size() && tree_.nodes_[index].in_use;
+    }
+
+    /// Whether `parent` has `ref` as its child; without a parent, whether it is the root.
+    [[nodiscard]] bool is_linked(TreeRef ref, std::uint32_t parent,
+                                 std::uint32_t child) const noexcept
+    {
+        if (parent == kNoNode)
+        {
+            return tree_.root_ == ref;
+        }
+        return is_in_use(TreeRef::to_node(parent)) && child < kNodeChildren &&
+               ((std::uint32_t{tree_.nodes_[parent].mask} >> child) & 1U) != 0 &&
+               tree_.nodes_[parent].children[child] == ref;
+    }
+    [[nodiscard]] bool leads_to(std::uint32_t parent, std::uint32_t child,
+                                std::uint64_t path) const noexcept
+    {
+        const Node& above = tree_.nodes_[parent];
+        return above.holds(path) && above.child_of(above.digit_of(path)) == child;
+    }
+
+    void check_block(std::uint32_t index) noexcept
+    {
+        const BlockSide& side = tree_.sides_[index];
+        const BlockGeometry& geometry = tree_.blocks_[index];
+        block(!side.is_marked, index, "is marked after refit");
+        if (!side.in_use)
+        {
+            return;
+        }
+        block(geometry.faces != 0, index, "is in use and empty");
+        if (!block(is_linked(TreeRef::to_block(index), side.parent, side.child), index,
+                   "is not where its parent has it"))
+        {
+            return;
+        }
+        const Box box = refitted_box(index);
+        std::uint32_t rows = 0;
+        std::uint32_t coarse = 0;
+        for (std::uint32_t lanes = geometry.faces; lanes != 0; lanes &= lanes - 1)
+        {
+            const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
+            coarse |= side.errors[lane] != 0 ? 1U << lane : 0U;
+            for (const std::array<std::uint8_t, kBlockFaces>& corners : geometry.corners)
+            {
+                block(corners[lane] < kBlockVertices, index, "has a face without a vertex");
+                rows |= 1U << (corners[lane] % kBlockVertices);
+            }
+            check_lane(index, lane);
+            check_is_inside(box, index, lane);
+        }
+        block(geometry.vertices == rows, index, "keeps other vertices than its faces use");
+        block(side.coarse == coarse, index, "has wrong coarse bits");
+        if (side.parent != kNoNode)
+        {
+            const Node& parent = tree_.nodes_[side.parent];
+            block(parent.box_of(side.child) == box, index, "has another box at its parent");
+            block(((parent.coarse >> side.child) & 1U) == (coarse != 0 ? 1U : 0U), index,
+                  "has a wrong coarse bit at its parent");
+        }
+    }
+
+    void check_lane(std::uint32_t index, std::uint32_t lane) noexcept
+    {
+        const BlockSide& side = tree_.sides_[index];
+        const std::uint32_t value = side.prims[lane].value;
+        if (!block(value < tree_.prims_.size(), index, "holds a prim that does not exist") ||
+            !prim(tree_.prims_[value].leaf == index * kBlockFaces + lane, value,
+                  "is in another lane than it says"))
+        {
+            return;
+        }
+        const auto& known = tree_.prims_[value];
+        if (side.parent != kNoNode)
+        {
+            prim(leads_to(side.parent, side.child, Tree::path_of(known.face, known.bucket)), value,
+                 "lies off its path");
+        }
+    }
+
+    [[nodiscard]] Box refitted_box(std::uint32_t index) const noexcept
+    {
+        const BlockGeometry& geometry = tree_.blocks_[index];
+        const Box box = Volume::of_vertices(*tree_.kernels_, geometry.coordinates.front().data(),
+                                            geometry.vertices);
+        const BlockSide& side = tree_.sides_[index];
+        return side.coarse == 0 ? box : box.inflated(largest_error_quanta(side) * tree_.quantum_m_);
+    }
+
+    /// Of boxes with two corners only; others are as refit makes them.
+    void check_is_inside(const Box& box, std::uint32_t index, std::uint32_t lane) noexcept
+    {
+        if constexpr (std::same_as<Box, Aabb>)
+        {
+            const double error =
+                static_cast<double>(error_in_quanta(tree_.sides_[index].errors[lane])) *
+                static_cast<double>(tree_.quantum_m_);
+            for (const Vec3f& corner : block_triangle(tree_.blocks_[index], lane))
+            {
+                for (std::size_t axis = 0; axis < 3; ++axis)
+                {
+                    const auto at = static_cast<double>(corner[axis]);
+                    block(at - error >= static_cast<double>(box.low[axis]) &&
+                              at + error <= static_cast<double>(box.high[axis]),
+                          index, "has a box that does not hold a face");
+                }
+            }
+        }
+    }
+
+    void check_node(std::uint32_t index) noexcept
+    {
+        const Node& own = tree_.nodes_[index];
+        node(!own.is_marked && !own.is_queued, index, "is marked after refit");
+        if (!own.in_use)
+        {
+            return;
+        }
+        node(own.shift % 3 == 0 && own.shift / 3U < kTreeLevels, index, "has no octal digit");
+        node(own.child_count() >= 2, index, "has fewer than two children");
+        node((own.coarse & ~own.mask) == 0, index, "has a coarse child that is not there");
+        check_children(index);
+        check_digits(index);
+        if (!node(is_linked(TreeRef::to_node(index), own.parent, own.child), index,
+                  "is not where its parent has it") ||
+            own.parent == kNoNode)
+        {
+            return;
+        }
+        const Node& parent = tree_.nodes_[own.parent];
+        node(parent.shift > own.shift, index, "is not below its parent's digit");
+        node(leads_to(own.parent, own.child, own.prefix), index, "lies off its path");
+        node(parent.box_of(own.child) ==
+                 Volume::of_children(*tree_.kernels_, own.volumes, own.mask),
+             index, "has another box at its parent");
+        node(((parent.coarse >> own.child) & 1U) == (own.coarse != 0 ? 1U : 0U), index,
+             "has a wrong coarse bit at its parent");
+    }
+
+    void check_children(std::uint32_t index) noexcept
+    {
+        const Node& own = tree_.nodes_[index];
+        for (std::uint32_t child = 0; child < kNodeChildren; ++child)
+        {
+            const TreeRef ref = own.children[child];
+            const bool is_used = ((std::uint32_t{own.mask} >> child) & 1U) != 0;
+            if (!node(is_used == !ref.is_none(), index, "has a mask that is not its children's") ||
+                !is_used || !node(is_in_use(ref), index, "has a child that is not in use"))
+            {
+                continue;
+            }
+            const std::uint32_t at = ref.index();
+            node(ref.is_block() ? is_linked(ref, tree_.sides_[at].parent, tree_.sides_[at].child)
+                                : is_linked(ref, tree_.nodes_[at].parent, tree_.nodes_[at].child),
+                 index, "has a child that hangs elsewhere");
+        }
+    }
+
+    /// Each child has one aligned range of digits, a power of two wide; a node's is one digit.
+    void check_digits(std::uint32_t index) noexcept
+    {
+        const Node& own = tree_.nodes_[index];
+        std::uint32_t reached = 0;
+        for (std::uint32_t digit = 0; digit < kNodeChildren; ++digit)
+        {
+            const std::uint32_t child = own.child_of(digit);
+            node(child <= Node::kNoChild, index, "has a digit that leads nowhere");
+            reached |= child < kNodeChildren ? 1U << child : 0U;
+        }
+        if (!node(reached == own.mask, index, "has digits of other children than its own"))
+        {
+            return;
+        }
+        for (std::uint32_t left = own.mask; left != 0; left &= left - 1)
+        {
+            const auto child = static_cast<std::uint32_t>(std::countr_zero(left));
+            const DigitRange range = own.range_of(child);
+            node(std::has_single_bit(range.width) && range.first % range.width == 0 &&
+                     own.only_child_in(range) == child && range.width < kNodeChildren,
+                 index, "has a child without an aligned cell");
+            node(own.children[child].is_block() || range.width == 1, index,
+                 "has a child node of several digits");
+        }
+    }
+
+    void check_prim(std::uint32_t index) noexcept
+    {
+        const auto& own = tree_.prims_[index];
+        if (own.leaf == Tree::kNoLeaf)
+        {
+            prim(own.face.is_none(), index, "has a face and no place");
+            return;
+        }
+        prim(!own.face.is_none(), index, "has a place and no face");
+        if ((own.leaf & Tree::kUnplaced) != 0)
+        {
+            ++unplaced_;
+            return;
+        }
+        const std::uint32_t at = own.leaf / kBlockFaces;
+        const std::uint32_t lane = own.leaf % kBlockFaces;
+        prim(tree_.is_block_in_use(at) &&
+                 ((std::uint32_t{tree_.blocks_[at].faces} >> lane) & 1U) != 0 &&
+                 tree_.sides_[at].prims[lane].value == index,
+             index, "is not in the lane that it says");
+    }
+
+    void check_unplaced() noexcept
+    {
+        if (!is_sound())
+        {
+            return;
+        }
+        std::uint32_t listed = 0;
+        for (std::uint32_t i = tree_.first_unplaced_; i != Tree::kLastUnplaced; ++listed)
+        {
+            if (!prim(i < tree_.prims_.size(), i, "is unplaced and not there") ||
+                !prim(tree_.is_unplaced({i}), i, "is placed and in the list of the unplaced") ||
+                !prim(listed < unplaced_, i, "is twice in the list of the unplaced"))
+            {
+                return;
+            }
+            i = tree_.prims_[i].leaf & ~Tree::kUnplaced;
+        }
+        finder_.expect(listed == unplaced_, "tree", listed,
+                       "prims are in the list of the unplaced, and others are not");
+    }
+
+    const Tree& tree_;
+    FlawFinder finder_;
+    std::uint32_t unplaced_{0}; ///< Prims that say so.
+};
+
+template <typename Volume>
+[[nodiscard]] Flaw find_flaw(const BasicAbTree<Volume>& tree) noexcept TACTUS_NONBLOCKING
+{
+    return TreeValidator<BasicAbTree<Volume>>::find_flaw(tree);
+}
+
+} // namespace tactus

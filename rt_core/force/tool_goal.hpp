@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/math/vec3.hpp"
+
+#include <cstdint>
+
+namespace tactus
+{
+
+/// How a tool's goal came about since the last frame.
+enum class GoalChange : std::uint8_t
+{
+    none,   ///< No sample was taken: the goal is the last one.
+    first,  ///< The first sample of all.
+    jump,   ///< The goal is farther from the last one than any hand gets.
+    motion, ///< The hand has moved.
+};
+
+/// Where the hand wants the tool to be. World frame, SI.
+struct ToolGoal
+{
+    Vec3 position_m{0.0, 0.0, 0.0};
+    Vec3 velocity_m_per_s{0.0, 0.0, 0.0};
+    double elapsed_s{0.0};           ///< Since the last frame.
+    Mat3 rotation{Mat3::Identity()}; ///< Of the tool's frame; orthonormal to rounding.
+    GoalChange change{GoalChange::none};
+};
+
+} // namespace tactus

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/frame/model.hpp"
+#include "rt_core/kernels/kernels.hpp"
+#include "rt_core/records/frame_input.hpp"
+#include "rt_core/records/frame_variant.hpp"
+#include "rt_core/records/prediction.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+namespace tactus
+{
+
+/// One model: bytes of its header and base mesh, and its pool sizes.
+struct ModelSource
+{
+    std::span<const std::byte> header; ///< Copied.
+    std::span<const std::byte> base;   ///< Read once.
+    ModelCapacities capacities;
+};
+
+/// What a frame is made of. `models[object.model]` must exist for every object, and for every tool
+/// that is a mesh one that no object shows.
+struct FrameSetup
+{
+    std::span<const ModelSource> models;
+    std::span<const ObjectSpec> objects;
+    std::span<const ToolSpec> tools;
+    std::int64_t period_ns{1'000'000};
+    std::int64_t pose_age_max_ns{100'000'000}; ///< Older poses make answers stale.
+    /// A model that fits its pools is loaded and refined fully, once (static mode).
+    bool static_when_it_fits{false};
+    Prediction prediction{Prediction::automatic};
+    FrameVariant variant;            ///< As it is: the frame that ships.
+    const Kernels* kernels{nullptr}; ///< Null: best_kernels().
+};
+
+/// Why there is no frame.
+enum class FrameRefusal : std::uint8_t
+{
+    too_many,         ///< More tools, objects or models than limits.hpp allows, or none.
+    unknown_model,    ///< An object or a tool names a model that isn't there.
+    shared_model,     ///< A tool names a model that an object shows.
+    header_refused,   ///< A model's header did not pass its checks.
+    base_refused,     ///< A model's base mesh did not pass its checks.
+    memory_too_small, ///< The lent memory is less than required_bytes().
+};
+
+[[nodiscard]] const char* refusal_text(FrameRefusal refusal) noexcept;
+
+/// Copies the header, reads the base mesh and lays out the pools of one model. False when the base
+/// mesh is damaged. The header must parse.
+[[nodiscard]] bool try_take_model(std::optional<Model>& model, Arena& arena,
+                                  const ModelSource& source, const FrameSetup& setup) noexcept;
+
+/// The tool, a mesh with what its model's header says of it.
+[[nodiscard]] ToolSpec described(const ToolSpec& tool, const ModelHeader& header) noexcept;
+
+/// Why there can be no frame of this, as far as that shows before it is made.
+[[nodiscard]] std::optional<FrameRefusal> find_refusal(const FrameSetup& setup) noexcept;
+
+} // namespace tactus

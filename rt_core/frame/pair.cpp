@@ -1,0 +1,379 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "rt_core/frame/pair.hpp"
+
+#include "rt_core/query/contact_report.hpp"
+#include "rt_core/query/core_query.hpp"
+#include "rt_core/query/probe.hpp"
+
+#include <algorithm>
+
+namespace tactus
+{
+
+namespace
+{
+
+/// From the model's frame to the world.
+void place_in_world(const ObjectPose& pose, ContactSet& contacts) noexcept
+{
+    for (Contact& contact : contacts)
+    {
+        contact.distance_m *= pose.scale;
+        contact.on_tool_m = to_world(pose, contact.on_tool_m);
+        contact.on_surface_m = to_world(pose, contact.on_surface_m);
+        contact.normal = pose.rotation * contact.normal;
+    }
+}
+
+void place_in_world(const ObjectPose& pose, ContactReport& report) noexcept
+{
+    report.normal = pose.rotation * report.normal;
+    place_in_world(pose, report.contacts);
+}
+
+/// Of contacts that were looked for farther away: those within the radius.
+void keep_within(double radius_m, const DistanceAnswer& answer, ContactReport& report) noexcept
+{
+    ContactSet& contacts = report.contacts;
+    const bool has_seen_all = report.is_complete || !contacts.full();
+    bool has_left_out = false;
+    while (!contacts.empty() && contacts[contacts.size() - 1].distance_m > radius_m)
+    {
+        (void)contacts.pop_back();
+        has_left_out = true;
+    }
+    report.is_complete = (has_seen_all || has_left_out) &&
+                         (answer.certified_radius_m >= radius_m || answer.lower_m > radius_m);
+}
+
+const MeshCore& mesh_core_of(const Tool& tool) noexcept
+{
+    const auto* core = std::get_if<MeshCore>(&tool.spec().core);
+    TACTUS_ASSERT(core != nullptr);
+    return *core;
+}
+
+bool wants_contacts(const ToolSpec& tool) noexcept
+{
+    return tool.wants_contacts || is_mesh(tool);
+}
+
+} // namespace
+
+PairMemory PairMemory::take(Arena& arena, std::span<const ToolSpec> tools,
+                            std::size_t pairs) noexcept
+{
+    const auto for_any = [&](bool (*needs)(const ToolSpec&) noexcept)
+    { return std::ranges::any_of(tools, needs) ? pairs : 0; };
+    return {arena.take<LocalSurface>(pairs), arena.take<ContactReport>(for_any(&wants_contacts)),
+            arena.take<TouchReport>(for_any(&Tool::is_held_as_body)),
+            arena.take<MeshPair>(for_any(&is_mesh))};
+}
+
+Pair::Pair(const PairParts& parts, const PairMemory& memory, std::size_t index) noexcept
+    : parts_(parts), surface_(&memory.surfaces[index])
+{
+    const ToolSpec& tool = parts.tool->spec();
+    contacts_ = wants_contacts(tool) ? &memory.contacts[index] : nullptr;
+    touches_ = Tool::is_held_as_body(tool) ? &memory.touches[index] : nullptr;
+    mesh_ = is_mesh(tool) ? &memory.meshes[index] : nullptr;
+}
+
+void Pair::place(const Budgets& budgets, FrameFault& faults) noexcept
+{
+    const ToolStance& stance = parts_.tool->stance();
+    outlook_.look(parts_.tool->spec(), stance, *parts_.pose);
+    if (!parts_.rules->variant.lets_pairs_rest)
+    {
+        outlook_.wake();
+    }
+    if (touches_ != nullptr && outlook_.is_reached())
+    {
+        faults |= FrameFault::proxy_squeezed; // An object came as far as to its core.
+    }
+    if (mesh_ != nullptr)
+    {
+        mesh_->place(outlook_, mesh_core_of(*parts_.tool), *parts_.tool_model.model,
+                     *parts_.model.model, in_frame(*parts_.pose, stance.place), budgets);
+    }
+}
+
+/// What the predictor is told.
+PairMotion Pair::motion() const noexcept
+{
+    const Tool& tool = *parts_.tool;
+    const ObjectPose& pose = *parts_.pose;
+    PairMotion motion;
+    motion.center_m = outlook_.core().center();
+    motion.way_m =
+        to_model(pose, tool.goal().position_m) - to_model(pose, tool.stance().place.translation_m);
+    motion.speed_max_m_per_s = tool.spec().speed_max_m_per_s / pose.scale;
+    motion.elapsed_s = tool.goal().elapsed_s;
+    if (outlook_.has_known() && !outlook_.known().nearest_face.is_none())
+    {
+        const Vec3 apart = outlook_.known().tool_point_m - outlook_.known().nearest_point_m;
+        const double distance = apart.norm();
+        if (distance > 0.0)
+        {
+            motion.outward = apart / distance;
+            motion.gap_m = std::max(distance - tool.radius_m() / pose.scale, 0.0);
+        }
+    }
+    return motion;
+}
+
+void Pair::rank(RegionRanking& ranking) noexcept
+{
+    if (parts_.model.model->is_complete() &&
+        (parts_.tool_model.model == nullptr || parts_.tool_model.model->is_complete()))
+    {
+        return;
+    }
+    const PairRules& rules = *parts_.rules;
+    predictor_.observe(motion(), parts_.model.model->lead_s(rules.period_ns));
+    if (mesh_ != nullptr)
+    {
+        mesh_->rank(outlook_, parts_.tool_model.id, parts_.model.id, predictor_, rules.prediction,
+                    ranking);
+    }
+    else if (rules.variant.asks_ahead)
+    {
+        predictor_.rank(rules.prediction, parts_.model.id, outlook_.cover(), outlook_.reach_m(),
+                        ranking);
+    }
+    else
+    {
+        RegionPredictor::rank_present(parts_.model.id, outlook_.cover(), outlook_.reach_m(),
+                                      ranking);
+    }
+}
+
+void Pair::ask(ModelId model, RefineQuestions& questions) noexcept
+{
+    if (mesh_ != nullptr)
+    {
+        ask_for_mesh(model, questions);
+    }
+    else if (parts_.model.id == model)
+    {
+        ask_for_balls(questions);
+    }
+}
+
+void Pair::ask_for_balls(RefineQuestions& questions) noexcept
+{
+    const double fixed_radius = parts_.rules->variant.fixed_radius;
+    const CoreCover& cover = outlook_.cover();
+    for (std::size_t i = 0; i < kMaxCoverBalls; ++i)
+    {
+        const bool is_there = i < cover.size();
+        const Ball here = is_there ? cover[i] : Ball{};
+        const double reach_m =
+            (here.radius + outlook_.reach_m()) * (fixed_radius > 0.0 ? fixed_radius : 1.0);
+        const double keep_m = Outlook::kKeepFactor * reach_m;
+        ask(is_there && !outlook_.is_asleep(), *parts_.model.model,
+            {here.center, reach_m, keep_m, &refine_memories_[2 * i]}, questions);
+        ask(is_there && outlook_.looks_ahead(), *parts_.model.model,
+            {here.center + outlook_.approach_m(), reach_m, keep_m, &refine_memories_[2 * i + 1]},
+            questions);
+    }
+}
+
+void Pair::ask_for_mesh(ModelId model, RefineQuestions& questions) noexcept
+{
+    MeshPair& mesh = *mesh_;
+    for (std::size_t place = 0; place < MeshPair::kPlaces; ++place)
+    {
+        const bool is_asked = place == 0 ? !outlook_.is_asleep() : outlook_.looks_ahead();
+        if (parts_.model.id == model)
+        {
+            ask(is_asked, *parts_.model.model,
+                mesh.ask_object(place, outlook_, refine_memories_[place]), questions);
+        }
+        if (parts_.tool_model.id == model)
+        {
+            ask(is_asked, *parts_.tool_model.model, mesh.ask_tool(place, outlook_), questions);
+        }
+    }
+}
+
+void Pair::ask(bool is_asked, const Model& model, const RefineQuestion& question,
+               RefineQuestions& questions) const noexcept
+{
+    const FrameVariant& variant = parts_.rules->variant;
+    if (!variant.keeps_certificates)
+    {
+        question.memory->is_known = false;
+    }
+    // From beyond the kernels' range nothing of a model is in reach.
+    if (is_asked && !is_beyond_kernels(question.center_m, model.header.quantum_m()))
+    {
+        RefineQuestion asked = question;
+        asked.counts_errors = variant.fixed_radius == 0.0;
+        asked.tolerance_m = variant.tolerance_m;
+        questions.push_back(asked);
+        return;
+    }
+    question.memory->is_known = false;
+}
+
+void Pair::query(const Budgets& budgets, WorkCounters& work, FrameFault& faults) noexcept
+{
+    LocalSurface& surface = *surface_;
+    const ObjectPose& pose = *parts_.pose;
+    if (outlook_.is_asleep())
+    {
+        surface.answer = outlook_.from_motion();
+        surface.count = 0;
+    }
+    if (mesh_ != nullptr)
+    {
+        query_mesh(work, faults);
+    }
+    else
+    {
+        query_core(budgets, work, faults);
+    }
+    if (pose.age_ns > parts_.rules->pose_age_max_ns ||
+        pose.revision != parts_.model.model->header.fields().revision)
+    {
+        surface.answer.kind = AnswerKind::stale;
+    }
+    const double rounding = rounding_m();
+    lower_m_ = std::max(0.0, surface.answer.lower_m * pose.scale - rounding);
+    upper_m_ = surface.answer.upper_m * pose.scale + rounding;
+}
+
+void Pair::query_core(const Budgets& budgets, WorkCounters& work, FrameFault& faults) noexcept
+{
+    if (!outlook_.is_asleep())
+    {
+        LocalSurface& surface = *surface_;
+        WalkBudget budget{budgets.nodes, budgets.triangles};
+        if (!parts_.rules->variant.starts_warm)
+        {
+            query_memory_ = QueryMemory{};
+        }
+        gather_surface(parts_.model.model->tree, outlook_.core(), outlook_.reach_m(), query_memory_,
+                       budget, surface);
+        work.nodes_visited += budget.nodes_visited;
+        work.triangles_tested += budget.triangles_tested;
+        faults |= budget.is_spent ? FrameFault::node_budget_spent : FrameFault::none;
+        faults |= surface.truncated ? FrameFault::surface_truncated : FrameFault::none;
+        outlook_.remember(surface.answer);
+    }
+    report_core();
+}
+
+/// Contacts for the caller and touches for the force, in the world.
+void Pair::report_core() noexcept
+{
+    const ToolSpec& tool = parts_.tool->spec();
+    const ObjectPose& pose = *parts_.pose;
+    const Model& model = *parts_.model.model;
+    if (tool.wants_contacts)
+    {
+        report_contacts(outlook_.core(), tool.radius_m / pose.scale, model.tree, *surface_,
+                        model.header.is_closed(), *contacts_);
+        place_in_world(pose, *contacts_);
+    }
+    if (touches_ != nullptr)
+    {
+        report_touches(outlook_.core(), outlook_.reach_m(), model.tree, *surface_, *touches_);
+        place_in_world(pose, touches_->nearest);
+        place_in_world(pose, touches_->corners);
+    }
+}
+
+void Pair::query_mesh(WorkCounters& work, FrameFault& faults) noexcept
+{
+    const ToolSpec& tool = parts_.tool->spec();
+    const ObjectPose& pose = *parts_.pose;
+    DistanceAnswer& answer = surface_->answer;
+    ContactReport& contacts = *contacts_;
+    TouchReport* touches = touches_;
+    if (touches != nullptr)
+    {
+        touches->clear();
+    }
+    if (outlook_.is_asleep())
+    {
+        mesh_->rest(contacts);
+    }
+    else
+    {
+        const double radius_m = tool.radius_m / pose.scale;
+        const double contact_m = touches != nullptr    ? outlook_.reach_m()
+                                 : tool.wants_contacts ? radius_m
+                                                       : -1.0;
+        surface_->count = 0;
+        mesh_->query(outlook_, contact_m, answer, contacts);
+        outlook_.remember(answer);
+        if (touches != nullptr)
+        {
+            touches->nearest = contacts.contacts;
+            touches->is_truncated = contacts.contacts.full() && !contacts.is_complete;
+            place_in_world(pose, touches->nearest);
+            keep_within(radius_m, answer, contacts);
+        }
+        place_in_world(pose, contacts);
+    }
+    mesh_->add_work(work, faults);
+}
+
+/// What the distances may be off in the world.
+double Pair::rounding_m() const noexcept
+{
+    const ObjectPose& pose = *parts_.pose;
+    const double offset_m = mesh_ == nullptr ? 0.0 : mesh_core_of(*parts_.tool).origin_m.norm();
+    const double origin_m = parts_.model.model->header.origin_m().norm() * pose.scale;
+    return pose_rounding_m(pose, to_world(pose, outlook_.core().center()),
+                           outlook_.core().radius() * pose.scale + offset_m) +
+           kOriginRounding * origin_m;
+}
+
+void Pair::rehearse(const Budgets& budgets, LocalSurface& scratch) const noexcept
+{
+    if (outlook_.has_known() && !outlook_.is_asleep() && mesh_ == nullptr)
+    {
+        WalkBudget budget{budgets.nodes, budgets.triangles};
+        QueryMemory memory = query_memory_;
+        gather_surface(parts_.model.model->tree, outlook_.core(), outlook_.reach_m(), memory,
+                       budget, scratch);
+    }
+}
+
+PlacedSurface Pair::placed() const noexcept
+{
+    const auto quantum_m = static_cast<double>(parts_.model.model->header.quantum_m());
+    return {parts_.pose,
+            surface_,
+            &parts_.object->material,
+            quantum_m,
+            outlook_.reach_m() * parts_.pose->scale,
+            lower_m_,
+            touches_,
+            upper_m_};
+}
+
+PairOutput Pair::output() const noexcept
+{
+    const ObjectPose& pose = *parts_.pose;
+    const DistanceAnswer& answer = surface_->answer;
+    return {parts_.tool_index,
+            parts_.object_index,
+            answer.kind,
+            to_world(pose, answer.tool_point_m),
+            lower_m_,
+            upper_m_,
+            std::max(0.0, answer.certified_radius_m) * pose.scale,
+            answer.nearest_face,
+            to_world(pose, answer.nearest_point_m),
+            outlook_.is_asleep(),
+            answer.nearest_feature,
+            parts_.tool->spec().wants_contacts ? contacts_ : nullptr,
+            mesh_ == nullptr ? nullptr : &mesh_->report()};
+}
+
+} // namespace tactus

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/base/assert.hpp"
+#include "rt_core/math/vec3.hpp"
+
+namespace tactus
+{
+
+/// Where a frame lies in another one: there = translation + scale x rotation x here. Metres; the
+/// rotation is orthonormal to rounding and right-handed, the scale above 0.
+struct Similarity
+{
+    Mat3 rotation{Mat3::Identity()};
+    Vec3 translation_m{0.0, 0.0, 0.0};
+    double scale{1.0};
+
+    [[nodiscard]] Vec3 to_there(const Vec3& here_m) const noexcept
+    {
+        return translation_m + scale * (rotation * here_m);
+    }
+    /// The way back.
+    [[nodiscard]] Vec3 to_here(const Vec3& there_m) const noexcept
+    {
+        const Vec3 relative = there_m - translation_m;
+        return (rotation.transpose() * relative) / scale;
+    }
+};
+
+/// Where the frame `here` lies in `other`, both in a third one.
+[[nodiscard]] inline Similarity in_frame(const Similarity& other, const Similarity& here) noexcept
+{
+    TACTUS_ASSERT(other.scale > 0.0);
+    return {other.rotation.transpose() * here.rotation, other.to_here(here.translation_m),
+            here.scale / other.scale};
+}
+
+} // namespace tactus

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "rt_core/scene/outlook.hpp"
+
+#include "rt_core/base/assert.hpp"
+
+#include <algorithm>
+
+namespace tactus
+{
+
+namespace
+{
+
+/// An approach that is a smaller share of the reach is not worth a second place.
+constexpr double kLeastApproach = 0.1;
+
+} // namespace
+
+void Outlook::look(const ToolSpec& tool, const ToolStance& stance, const ObjectPose& pose) noexcept
+{
+    TACTUS_ASSERT(stance.reach_m >= 0.0);
+    TACTUS_ASSERT(pose.scale > 0.0);
+    core_ = PlacedCore(tool.core, in_frame(pose, stance.place));
+    cover_ = core_.cover(tool.radius_m / pose.scale);
+    reach_m_ = stance.reach_m / pose.scale;
+    approach_m_ = (pose.rotation.transpose() * stance.approach_m) / pose.scale;
+    const double awake_m = kKeepFactor * reach_m_ + approach_m_.norm();
+    is_asleep_ = has_known_ && known_.lower_m - motion_m() > awake_m;
+}
+
+void Outlook::remember(const DistanceAnswer& answer) noexcept
+{
+    TACTUS_ASSERT(answer.lower_m >= 0.0);
+    TACTUS_ASSERT(answer.lower_m <= answer.upper_m);
+    known_ = answer;
+    known_core_ = core_;
+    has_known_ = true;
+}
+
+bool Outlook::looks_ahead() const noexcept
+{
+    return !is_asleep_ && approach_m_.norm() > kLeastApproach * reach_m_;
+}
+
+bool Outlook::is_reached() const noexcept
+{
+    return has_known_ && known_.lower_m > 0.0 && known_.lower_m <= motion_m();
+}
+
+DistanceAnswer Outlook::from_motion() const noexcept
+{
+    TACTUS_ASSERT(has_known_);
+    const double motion = motion_m();
+    DistanceAnswer answer;
+    answer.lower_m = std::max(0.0, known_.lower_m - motion);
+    answer.upper_m = known_.upper_m + motion;
+    answer.kind = answer.lower_m > reach_m_ ? AnswerKind::decided : AnswerKind::bracket;
+    answer.tool_point_m = core_.center();
+    return answer;
+}
+
+} // namespace tactus

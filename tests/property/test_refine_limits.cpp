@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+
+/// What refinement and loading do where a list of theirs is full.
+
+#include "host_tools/shapes/shapes.hpp"
+#include "tests/property/frame_checks.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <vector>
+
+namespace tactus::test
+{
+namespace
+{
+
+/// Coarse faces of the front, each distance less error from a point, ascending; in metres.
+std::vector<double> coarse_distances(const Model& model, const Vec3& point)
+{
+    std::vector<double> distances;
+    const auto quantum_m = static_cast<double>(model.header.quantum_m());
+    for (std::uint32_t i = 0; i < model.forest.capacity(); ++i)
+    {
+        if (const PrimId prim{i};
+            !model.forest.face(prim).id.is_none() && model.forest.error_of(prim) != 0)
+        {
+            const Triangle triangle = to_triangle(model.forest.corners_of(prim));
+            const double distance = closest_point_on_triangle(point, triangle).gap.norm();
+            distances.push_back(distance -
+                                static_cast<double>(error_in_quanta(model.forest.error_of(prim))) *
+                                    quantum_m);
+        }
+    }
+    std::ranges::sort(distances);
+    return distances;
+}
+
+/// 40,000 faces over a base mesh of more than kRefineHeap, all loaded.
+class WideModel
+{
+public:
+    WideModel() : rig(model(), with_room_for_all())
+    {
+        load_everything(rig);
+        static_cast<void>(rig.step(far_away(), {}));
+    }
+    static const TestModel& model()
+    {
+        return test_model("bumpy-40k-wide", make_shape(Shape::bumpy_sphere, 40'000).value(),
+                          3 * kRefineHeap);
+    }
+    static Vec3 far_away() { return Vec3(10.0, 10.0, 10.0) * model().diagonal_m; }
+
+    /// One frame of the refiner alone, for everything within `reach_m` of a point.
+    FrameFault refine(const Vec3& point, double reach_m, const Budgets& budgets)
+    {
+        FrameFault faults = FrameFault::none;
+        const RefineQuestion question{point, reach_m, 1.25 * reach_m, &memory};
+        work = WorkCounters{};
+        rig.model().refiner.run({&question, 1}, budgets, ++frame_, work, faults);
+        static_cast<void>(rig.model().tree.refit());
+        return faults;
+    }
+    [[nodiscard]] std::uint32_t held() const
+    {
+        std::uint32_t held = 0;
+        const PageTable& pages = rig.frame().model(ModelId{0}).pages;
+        for (std::uint32_t slot = 0; slot < pages.capacity(); ++slot)
+        {
+            held += static_cast<std::uint32_t>(std::popcount(pages.meta(slot).held));
+        }
+        return held;
+    }
+
+    FrameRig rig;
+    RefineMemory memory;
+    WorkCounters work;
+
+private:
+    std::uint32_t frame_{1'000'000};
+};
+
+Budgets unlimited(std::uint32_t splits)
+{
+    Budgets budgets;
+    budgets.splits = splits;
+    budgets.merges = 0;
+    budgets.nodes = 1'000'000;
+    budgets.triangles = 10'000'000;
+    return budgets;
+}
+
+TEST(RefineLimits, a_full_heap_leaves_faces_for_the_next_frame_and_says_so)
+{
+    const Vec3 point = to_vec3(WideModel::model().faces[0][0]);
+    for (const bool is_over : {false, true})
+    {
+        WideModel sut;
+        const std::vector<double> distances = coarse_distances(sut.rig.model(), point);
+        ASSERT_GT(distances.size(), 2 * kRefineHeap);
+        // What is looked ahead for is in the heap, too. A split adds a few faces, and takes some.
+        const std::size_t last = is_over ? 2 * kRefineHeap : kRefineHeap - 64;
+        const double reach_m = distances[last] / (is_over ? 1.0 : 1.0 + Refiner::kLookAhead);
+
+        const FrameFault faults = sut.refine(point, reach_m, unlimited(1));
+
+        EXPECT_EQ(has_fault(faults, FrameFault::refine_heap_full), is_over);
+        EXPECT_TRUE(has_fault(faults, FrameFault::split_budget_spent));
+        EXPECT_LT(sut.memory.certified_m, reach_m) << "nothing is certified that was left out";
+        EXPECT_EQ(sut.work.splits, 1U);
+    }
+}
+
+TEST(RefineLimits, what_a_full_heap_leaves_out_is_split_in_later_frames)
+{
+    WideModel sut;
+    const Vec3 point = to_vec3(WideModel::model().faces[0][0]);
+    const double reach_m = coarse_distances(sut.rig.model(), point)[2 * kRefineHeap];
+    bool was_full = false;
+    FrameFault faults = FrameFault::split_budget_spent;
+    for (int frame = 0; frame < 400 && faults != FrameFault::none; ++frame)
+    {
+        faults = sut.refine(point, reach_m, unlimited(kMaxSplitsPerFrame));
+        was_full = was_full || has_fault(faults, FrameFault::refine_heap_full);
+    }
+    EXPECT_TRUE(was_full);
+    EXPECT_EQ(faults, FrameFault::none);
+    EXPECT_GE(sut.memory.certified_m, reach_m);
+}
+
+TEST(RefineLimits, as_many_records_are_held_as_the_limit_and_the_frame_says_when_one_is_not)
+{
+    WideModel sut;
+    const TestModel& model = WideModel::model();
+    Random random = Random::seeded(seed_of(740));
+    // One split a frame, each for another place, and all places wanted: no closure is ever done.
+    FrameFault faults = FrameFault::none;
+    std::uint32_t before = 0;
+    for (int frame = 0; frame < 20'000 && !has_fault(faults, FrameFault::held_records_full);
+         ++frame)
+    {
+        before = sut.held();
+        const Vec3 point = to_vec3(model.faces[random.below(model.faces.size())][0]);
+        faults = sut.refine(point, 2.0 * model.diagonal_m, unlimited(1));
+        ASSERT_TRUE(before == kMaxHeldRecords || !has_fault(faults, FrameFault::held_records_full))
+            << before << " held before frame " << frame;
+    }
+    EXPECT_TRUE(has_fault(faults, FrameFault::held_records_full));
+    EXPECT_EQ(before, kMaxHeldRecords);
+    EXPECT_EQ(sut.held(), kMaxHeldRecords);
+}
+
+TEST(RefineLimits, no_more_is_merged_in_a_frame_than_the_limit_whatever_the_budget)
+{
+    WideModel sut;
+    const TestModel& model = WideModel::model();
+    const Vec3 point = to_vec3(model.faces[0][0]);
+    for (int frame = 0; frame < 8; ++frame)
+    {
+        static_cast<void>(
+            sut.refine(point, 0.5 * model.diagonal_m, unlimited(10 * kMaxSplitsPerFrame)));
+        EXPECT_EQ(sut.work.splits, kMaxSplitsPerFrame);
+    }
+    Budgets budgets = unlimited(0);
+    budgets.merges = 10 * kMaxMergesPerFrame;
+    budgets.scanned = 100'000;
+
+    static_cast<void>(sut.refine(WideModel::far_away(), 0.1 * model.diagonal_m, budgets));
+
+    EXPECT_EQ(sut.work.merges, kMaxMergesPerFrame);
+}
+
+/// Tools of eight balls each, near every object.
+FrameFault faults_of_long_tools(std::uint32_t tools, std::uint32_t objects)
+{
+    const TestModel& model = small_model(0);
+    RigOptions options = with_room_for_all();
+    const double length_m = model.diagonal_m;
+    const Segment segment{{-length_m, 0, 0}, {length_m, 0, 0}};
+    options.tools.assign(tools, {0.01 * length_m, 500.0, 8.0, 1.0, segment});
+    options.objects.assign(objects, ObjectSpec{ModelId{0}});
+    FrameRig rig(model, options);
+    const std::vector<Vec3> goals(tools, to_vec3(model.faces[0][0]));
+    return rig.step(goals, {}).faults;
+}
+
+TEST(RefineLimits, a_frame_says_when_it_does_not_ask_for_what_a_tool_is_at)
+{
+    constexpr std::uint32_t kFive = 5 * kMaxCoverBalls; // Now, and four times ahead.
+    static_assert(4 * kFive < kMaxRankedRegions && 5 * kFive > kMaxRankedRegions);
+    EXPECT_FALSE(has_fault(faults_of_long_tools(2, 2), FrameFault::ranking_full));
+    EXPECT_TRUE(has_fault(faults_of_long_tools(2, 3), FrameFault::ranking_full));
+}
+
+TEST(RefineLimits, a_tool_that_is_a_mesh_looks_at_so_many_times_the_budget_in_each_walk)
+{
+    const TestModel& object = small_model(0);
+    const TestModel& tool = small_model(1);
+    constexpr std::uint32_t kWalks = 4; // Either model's, now and a little ahead.
+    for (const std::uint32_t nodes : {1U, 1'000'000U})
+    {
+        RigOptions options = with_room_for_all();
+        options.pool_bytes = std::size_t{32} << 20U;
+        options.tools = {{1e-4, 500.0, 8.0, 1.0, MeshCore{ModelId{1}}, true}};
+        FrameRig rig({&object, &tool}, options);
+        Budgets budgets = unlimited(64);
+        budgets.nodes = nodes;
+        const FrameOutput output = rig.step(to_vec3(object.faces[0][0]), budgets);
+        EXPECT_EQ(has_fault(output.faults, FrameFault::node_budget_spent), nodes == 1);
+        EXPECT_EQ(output.work.nodes_visited <= kWalks * kMeshBudgetFactor, nodes == 1)
+            << output.work.nodes_visited;
+        EXPECT_GE(output.work.nodes_visited, kMeshBudgetFactor);
+    }
+}
+
+} // namespace
+} // namespace tactus::test

@@ -1,0 +1,466 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/hrtc/assertion_brake.hpp"
+#include "platform/hrtc/session.hpp"
+#include "platform/recording/recording.hpp"
+#include "platform/wrapped_device.hpp"
+#include "rt_core/base/assert.hpp"
+#include "tests/shared/test_model.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <cstdint>
+#include <cstdlib>
+#include <fcntl.h>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <poll.h>
+#include <string>
+#include <string_view>
+#include <sys/ioctl.h>
+#include <sys/wait.h>
+#include <thread>
+#include <unistd.h>
+#include <utility>
+#include <vector>
+
+/// Whole sessions, each in a process of its own, in which an assertion fails on one of the threads.
+namespace tactus::hrtc::test
+{
+
+namespace
+{
+
+constexpr int kExitCode = 2;
+constexpr std::uint64_t kFailAt = 200; ///< The reading in which the bug happens.
+constexpr std::uint64_t kFadeWrites = 51;
+constexpr std::uint64_t kFadeFailsAt = 7;
+/// The test would wait for ever for a brake that never comes; this only ends it as a failure.
+constexpr std::chrono::milliseconds kHopeless{30'000};
+constexpr bool kThereIsNoBug = false;
+constexpr bool kThereIsNoSecondBug = false;
+
+/// Where the bug is.
+enum class Bug : std::uint8_t
+{
+    none,
+    haptic,
+    haptic_and_fade, ///< And another one while the forces fade.
+    main,
+    supervisor,
+    other,
+};
+
+/// What the device tells the test through a pipe.
+struct Event
+{
+    enum class Kind : std::uint8_t
+    {
+        brake,
+        release,
+    };
+    Kind kind{Kind::brake};
+    bool is_after_bug{false};
+    bool is_haptic_thread{false};
+    bool is_braked{false};
+    std::uint64_t writes_since_bug{0};
+    int stderr_bytes{0};        ///< Waiting for a reader now.
+    int stderr_bytes_at_bug{0}; ///< And when the bug happened.
+};
+
+int bytes_in(int pipe)
+{
+    int bytes = 0;
+    return ioctl(pipe, FIONREAD, &bytes) == 0 ? bytes : -1;
+}
+
+/// Until not one byte more has room.
+void fill(int pipe)
+{
+    const int flags = fcntl(pipe, F_GETFL);
+    fcntl(pipe, F_SETFL, flags | O_NONBLOCK); // NOLINT(hicpp-signed-bitwise): the C interface's.
+    const std::vector<char> dots(65'536, '.');
+    while (write(pipe, dots.data(), dots.size()) > 0)
+    {
+    }
+    while (write(pipe, dots.data(), 1) == 1)
+    {
+    }
+    fcntl(pipe, F_SETFL, flags);
+}
+
+struct Plan
+{
+    Bug bug{Bug::none};
+    bool stderr_is_full{false};
+    bool main_hangs{false}; ///< It never comes to end the process.
+    std::string record_path{};
+};
+
+/// In the child process: makes the bug happen, and tells of brakes and releases.
+class FailingDevice final : public WrappedDevice
+{
+public:
+    FailingDevice(std::unique_ptr<HapticDevice> device, Plan plan, int events)
+        : WrappedDevice(std::move(device))
+        , plan_(std::move(plan))
+        , events_(events)
+        , main_(pthread_self())
+        , other_([this] { fail_elsewhere(); })
+    {
+        other_.detach();
+    }
+
+    [[nodiscard]] DeviceSample read() noexcept override
+    {
+        haptic_.store(std::this_thread::get_id());
+        ++reads_;
+        if (reads_ == kFailAt - 1)
+        {
+            prepare();
+        }
+        if (reads_ == kFailAt)
+        {
+            start_bug();
+        }
+        if (reads_ > kFailAt && plan_.bug == Bug::supervisor)
+        {
+            wait_for_supervisor();
+        }
+        return WrappedDevice::read();
+    }
+    void write(const std::array<double, 3>& force_world_n) noexcept override
+    {
+        WrappedDevice::write(force_world_n);
+        writes_since_bug_ += has_bug_.load() ? 1 : 0;
+        if (plan_.bug == Bug::haptic_and_fade && writes_since_bug_ == kFadeFailsAt)
+        {
+            TACTUS_ASSERT(kThereIsNoSecondBug);
+        }
+    }
+    void brake() noexcept override
+    {
+        if (plan_.bug == Bug::supervisor && has_bug_.load() && !supervisor_failed_.exchange(true))
+        {
+            TACTUS_ASSERT(kThereIsNoBug); // The handler brakes again.
+        }
+        WrappedDevice::brake();
+        tell(Event::Kind::brake);
+    }
+    void release_brake() noexcept override
+    {
+        WrappedDevice::release_brake();
+        tell(Event::Kind::release);
+    }
+
+private:
+    void prepare() noexcept
+    {
+        if (plan_.stderr_is_full)
+        {
+            fill(STDERR_FILENO);
+        }
+        stderr_bytes_at_bug_ = bytes_in(STDERR_FILENO);
+    }
+
+    void start_bug() noexcept
+    {
+        if (plan_.main_hangs)
+        {
+            pthread_kill(main_, SIGUSR2);
+        }
+        has_bug_.store(true);
+        has_bug_.notify_all();
+        switch (plan_.bug)
+        {
+        case Bug::haptic:
+        case Bug::haptic_and_fade:
+            TACTUS_ASSERT(kThereIsNoBug);
+            break;
+        case Bug::main:
+            pthread_kill(main_, SIGUSR1);
+            break;
+        case Bug::none:
+        case Bug::supervisor:
+        case Bug::other:
+            break;
+        }
+    }
+
+    /// Not in the frame in which the bug begins: the supervisor may have braked in it already, and
+    /// does so once a silence.
+    void wait_for_supervisor() const noexcept
+    {
+        while (!supervisor_failed_.load())
+        {
+        }
+    }
+
+    void fail_elsewhere() noexcept
+    {
+        has_bug_.wait(false);
+        if (plan_.bug == Bug::other)
+        {
+            TACTUS_ASSERT(kThereIsNoBug);
+        }
+    }
+
+    void tell(Event::Kind kind) noexcept
+    {
+        const Event event{kind,
+                          has_bug_.load(),
+                          haptic_.load() == std::this_thread::get_id(),
+                          WrappedDevice::status().state == DeviceState::brake,
+                          writes_since_bug_.load(),
+                          bytes_in(STDERR_FILENO),
+                          stderr_bytes_at_bug_};
+        static_cast<void>(::write(events_, &event, sizeof(event)) == sizeof(event));
+    }
+
+    Plan plan_;
+    int events_;
+    pthread_t main_;
+    std::atomic<std::thread::id> haptic_{};
+    std::uint64_t reads_{0};
+    std::atomic<std::uint64_t> writes_since_bug_{0};
+    std::atomic<bool> has_bug_{false};
+    std::atomic<bool> supervisor_failed_{false};
+    int stderr_bytes_at_bug_{0};
+    std::thread other_; ///< Last: it uses the others.
+};
+
+/// The child's main thread. Returns when the bug didn't end it.
+void run_session(const Plan& plan, const std::string& model, int events)
+{
+    std::signal(SIGUSR1, [](int) { TACTUS_ASSERT(kThereIsNoBug); });
+    std::signal(SIGUSR2,
+                [](int)
+                {
+                    for (;;)
+                    {
+                        pause();
+                    }
+                });
+    install_assertion_brake();
+    Options options;
+    options.transport = TransportKind::file;
+    options.models = {model};
+    options.placements.resize(1);
+    options.materials.resize(1);
+    options.pool_mib = 8.0;
+    options.duration_s = 3'600.0;
+    options.record_path = plan.record_path;
+    options.thread.allow_no_rt = true;
+    auto session = Session::open(options);
+    if (!session)
+    {
+        leave_with(session.error());
+        return;
+    }
+    ToolSetup& tool = session.value()->controller().tools().front();
+    tool.device = std::make_unique<FailingDevice>(std::move(tool.device), plan, events);
+    if (const auto done = session.value()->run("touch"); !done)
+    {
+        leave_with(done.error());
+    }
+}
+
+class Pipe
+{
+public:
+    Pipe() { TACTUS_ASSERT(pipe(ends_.data()) == 0); }
+    Pipe(const Pipe&) = delete;
+    Pipe& operator=(const Pipe&) = delete;
+    ~Pipe()
+    {
+        close(ends_[0]);
+        close_writer();
+    }
+    [[nodiscard]] int reader() const { return ends_[0]; }
+    [[nodiscard]] int writer() const { return ends_[1]; }
+    void close_writer() { close(std::exchange(ends_[1], -1)); }
+
+private:
+    std::array<int, 2> ends_{};
+};
+
+/// How the child process ended, and what it did before.
+struct Ended
+{
+    int code{-1};
+    std::string text; ///< From stderr, without what filled it.
+    std::vector<Event> events;
+
+    /// The brake on that thread after the bug; none when there was none.
+    [[nodiscard]] const Event* brake(bool on_haptic_thread) const
+    {
+        const auto found =
+            std::ranges::find_if(events,
+                                 [&](const Event& event)
+                                 {
+                                     return event.kind == Event::Kind::brake &&
+                                            event.is_after_bug &&
+                                            event.is_haptic_thread == on_haptic_thread;
+                                 });
+        return found == events.end() ? nullptr : &*found;
+    }
+};
+
+/// Reads until the brake comes that the test waits for, or all are read.
+void read_events(int pipe, Ended& ended, std::optional<bool> until_brake_on_haptic_thread)
+{
+    pollfd in{pipe, POLLIN, 0};
+    Event event;
+    const auto is_there = [&]
+    { return until_brake_on_haptic_thread && ended.brake(*until_brake_on_haptic_thread); };
+    while (!is_there() && poll(&in, 1, static_cast<int>(kHopeless.count())) == 1 &&
+           read(pipe, &event, sizeof(event)) == sizeof(event))
+    {
+        ended.events.push_back(event);
+    }
+}
+
+std::string read_to_end(int pipe)
+{
+    std::string text;
+    std::array<char, 4'096> part{};
+    for (ssize_t bytes = 0; (bytes = read(pipe, part.data(), part.size())) > 0;)
+    {
+        text.append(part.data(), static_cast<std::size_t>(bytes));
+    }
+    return text;
+}
+
+/// Nobody reads the child's stderr before the brake that its bug leads to.
+Ended run_in_child(const Plan& plan)
+{
+    const std::string model = tactus::test::small_model(0).path;
+    Pipe errors;
+    Pipe events;
+    const pid_t child = fork();
+    if (child == 0)
+    {
+        dup2(errors.writer(), STDERR_FILENO);
+        run_session(plan, model, events.writer());
+        std::_Exit(0);
+    }
+    errors.close_writer();
+    events.close_writer();
+    Ended ended;
+    read_events(events.reader(), ended,
+                plan.bug == Bug::haptic || plan.bug == Bug::haptic_and_fade);
+    ended.text = read_to_end(errors.reader());
+    ended.text.erase(0, ended.text.find_first_not_of('.'));
+    read_events(events.reader(), ended, std::nullopt);
+    int status = 0;
+    TACTUS_ASSERT(waitpid(child, &status, 0) == child);
+    ended.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    return ended;
+}
+
+constexpr std::string_view kLine = "hrtc: internal error: kThereIsNoBug (";
+constexpr std::string_view kSecondLine = "hrtc: internal error: kThereIsNoSecondBug (";
+
+void expect_nothing_printed(const Event& brake)
+{
+    EXPECT_EQ(brake.stderr_bytes, brake.stderr_bytes_at_bug);
+}
+
+TEST(AssertionBrake, on_the_haptic_thread_the_forces_fade_before_anything_is_printed)
+{
+    for (const bool is_full : {false, true})
+    {
+        const Ended ended = run_in_child({.bug = Bug::haptic, .stderr_is_full = is_full});
+        const Event* brake = ended.brake(true);
+        ASSERT_NE(brake, nullptr) << is_full;
+        EXPECT_EQ(brake->writes_since_bug, kFadeWrites) << is_full;
+        EXPECT_EQ(brake->stderr_bytes_at_bug > 0, is_full);
+        EXPECT_TRUE(brake->is_braked) << is_full;
+        expect_nothing_printed(*brake);
+        EXPECT_TRUE(ended.text.starts_with(kLine)) << ended.text;
+        EXPECT_EQ(ended.code, kExitCode) << is_full;
+    }
+}
+
+TEST(AssertionBrake, the_recording_is_kept_up_to_the_frame_that_failed)
+{
+    const std::string path = testing::TempDir() + "failed_run.tactusrec";
+    std::filesystem::remove(path); // That of an earlier run of this test.
+    const Ended ended = run_in_child({.bug = Bug::haptic, .record_path = path});
+    EXPECT_EQ(ended.code, kExitCode);
+    const auto recording = Recording::read(path);
+    ASSERT_TRUE(recording) << recording.error().text;
+    EXPECT_EQ(recording.value().frame_count(), kFailAt - 1);
+}
+
+TEST(AssertionBrake, a_second_bug_ends_the_fade_and_both_are_printed_in_order)
+{
+    const Ended ended = run_in_child({.bug = Bug::haptic_and_fade, .stderr_is_full = true});
+    const Event* brake = ended.brake(true);
+    ASSERT_NE(brake, nullptr);
+    EXPECT_EQ(brake->writes_since_bug, kFadeFailsAt);
+    expect_nothing_printed(*brake);
+    EXPECT_TRUE(ended.text.starts_with(kLine)) << ended.text;
+    EXPECT_NE(ended.text.find(kSecondLine), std::string::npos) << ended.text;
+    EXPECT_EQ(ended.code, kExitCode);
+}
+
+TEST(AssertionBrake, the_thread_that_failed_ends_the_process_when_the_main_thread_hangs)
+{
+    const Ended ended = run_in_child({.bug = Bug::haptic, .main_hangs = true});
+    EXPECT_NE(ended.brake(true), nullptr);
+    EXPECT_TRUE(ended.text.starts_with(kLine)) << ended.text;
+    EXPECT_EQ(ended.code, kExitCode);
+}
+
+struct Thread
+{
+    const char* name;
+    Bug bug;
+};
+
+class AssertionOnOrdinaryThread : public testing::TestWithParam<Thread>
+{
+};
+
+INSTANTIATE_TEST_SUITE_P(Each, AssertionOnOrdinaryThread,
+                         testing::Values(Thread{"main", Bug::main},
+                                         Thread{"supervisor", Bug::supervisor},
+                                         Thread{"other", Bug::other}),
+                         [](const auto& test) { return std::string(test.param.name); });
+
+TEST_P(AssertionOnOrdinaryThread, brakes_the_devices_for_good_then_prints_and_ends_the_process)
+{
+    for (const bool is_full : {false, true})
+    {
+        const Ended ended = run_in_child({.bug = GetParam().bug, .stderr_is_full = is_full});
+        const Event* brake = ended.brake(false);
+        ASSERT_NE(brake, nullptr) << is_full;
+        EXPECT_TRUE(brake->is_braked) << is_full;
+        expect_nothing_printed(*brake);
+        EXPECT_EQ(ended.events.back().kind, Event::Kind::brake) << is_full;
+        EXPECT_TRUE(ended.text.starts_with(kLine)) << ended.text;
+        EXPECT_EQ(ended.code, kExitCode) << is_full;
+    }
+}
+
+TEST(AssertionBrakeDeathTest, without_a_loop_a_failed_assertion_is_printed_and_ends_the_process)
+{
+    const auto fail = []
+    {
+        install_assertion_brake();
+        TACTUS_ASSERT(kThereIsNoBug);
+    };
+    EXPECT_EXIT(fail(), testing::ExitedWithCode(kExitCode),
+                "^hrtc: internal error: kThereIsNoBug \\(.*test_assertion_brake.cpp:[0-9]+\\)\n$");
+}
+
+} // namespace
+
+} // namespace tactus::hrtc::test

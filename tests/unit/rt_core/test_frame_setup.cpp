@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "rt_core/frame/frame_setup.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <optional>
+
+namespace tactus::test
+{
+
+namespace
+{
+
+/// So many of each, all of model 0, whose header is empty.
+std::optional<FrameRefusal> refusal_of(std::size_t tools, std::size_t objects, std::size_t models)
+{
+    static const std::array<ToolSpec, kMaxTools + 1> kTools{};
+    std::array<ObjectSpec, kMaxObjects + 1> shown;
+    shown.fill(ObjectSpec{ModelId{0}});
+    static const std::array<ModelSource, kMaxModels + 1> kModels{};
+    FrameSetup setup;
+    setup.tools = std::span(kTools).first(tools);
+    setup.objects = std::span(shown).first(objects);
+    setup.models = std::span(kModels).first(models);
+    return find_refusal(setup);
+}
+
+} // namespace
+
+TEST(FrameSetup, takes_as_many_tools_objects_and_models_as_the_limits_and_refuses_none_or_more)
+{
+    const FrameRefusal counts_are_fine = FrameRefusal::header_refused; // It is looked at later.
+    EXPECT_EQ(refusal_of(1, 1, 1), counts_are_fine);
+    EXPECT_EQ(refusal_of(kMaxTools, kMaxObjects, kMaxModels), counts_are_fine);
+    EXPECT_EQ(refusal_of(kMaxTools + 1, 1, 1), FrameRefusal::too_many);
+    EXPECT_EQ(refusal_of(1, kMaxObjects + 1, 1), FrameRefusal::too_many);
+    EXPECT_EQ(refusal_of(1, 1, kMaxModels + 1), FrameRefusal::too_many);
+    EXPECT_EQ(refusal_of(0, 1, 1), FrameRefusal::too_many);
+    EXPECT_EQ(refusal_of(1, 0, 1), FrameRefusal::too_many);
+    EXPECT_EQ(refusal_of(1, 1, 0), FrameRefusal::too_many);
+}
+
+TEST(FrameSetup, refuses_models_that_are_not_there_and_a_tool_s_model_that_an_object_shows)
+{
+    const std::array<ModelSource, 2> models{};
+    std::array<ObjectSpec, 1> objects{ObjectSpec{ModelId{0}}};
+    std::array<ToolSpec, 1> tools{};
+    FrameSetup setup;
+    setup.models = models;
+    setup.objects = objects;
+    setup.tools = tools;
+    tools[0].core = MeshCore{ModelId{0}, Vec3(0, 0, 0), Vec3(0, 0, 0)};
+    EXPECT_EQ(find_refusal(setup), FrameRefusal::shared_model);
+    tools[0].core = MeshCore{ModelId{2}, Vec3(0, 0, 0), Vec3(0, 0, 0)};
+    EXPECT_EQ(find_refusal(setup), FrameRefusal::unknown_model);
+    tools[0].core = MeshCore{ModelId{1}, Vec3(0, 0, 0), Vec3(0, 0, 0)};
+    EXPECT_EQ(find_refusal(setup), FrameRefusal::header_refused);
+    objects[0].model = ModelId{2};
+    EXPECT_EQ(find_refusal(setup), FrameRefusal::unknown_model);
+}
+
+} // namespace tactus::test
