@@ -5,6 +5,10 @@ target_compile_options(tactus_warnings INTERFACE
     -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wshadow -Wold-style-cast
     -Wnon-virtual-dtor -Woverloaded-virtual -Wcast-align -Wunused -Wformat=2 -Wdouble-promotion
     -Wimplicit-fallthrough)
+# In a unity build every source is an include of the one that is compiled: the warning means headers.
+if(CMAKE_UNITY_BUILD)
+    target_compile_options(tactus_warnings INTERFACE -Wno-subobject-linkage)
+endif()
 if(TACTUS_WERROR)
     target_compile_options(tactus_warnings INTERFACE -Werror)
 endif()

@@ -55,6 +55,10 @@ struct Duration
 {
     return static_cast<double>(duration.ns) * 1e-9;
 }
+[[nodiscard]] constexpr double to_us(Duration duration) noexcept
+{
+    return static_cast<double>(duration.ns) * 1e-3;
+}
 
 /// A point on a clock that never jumps, counted from an arbitrary start. Deadlines and latencies
 /// are made of it; it means nothing on another machine or after a reboot.

@@ -18,7 +18,7 @@ namespace tactus
 namespace
 {
 
-constexpr std::uint32_t kNone = Collapse::kNoFace;
+constexpr std::uint32_t kAbsent = Collapse::kNoFace;
 /// Places looked at per component: the nearest may be taken.
 constexpr std::size_t kPlacesMax = 4;
 constexpr std::size_t kPartBlock = 256;
@@ -63,11 +63,11 @@ std::optional<StuckPart> stuck_part_of(const CollapseMesh& current, std::uint32_
         const std::uint32_t other = current.neighbour(face, edge);
         const bool is_known =
             std::find(part.faces.begin(), part.faces.end(), other) != part.faces.end();
-        if (other != kNone && other < face)
+        if (other != kAbsent && other < face)
         {
             return std::nullopt;
         }
-        if (other != kNone && !is_known)
+        if (other != kAbsent && !is_known)
         {
             part.faces.push_back(other);
         }
@@ -80,7 +80,7 @@ std::optional<StuckPart> stuck_part_of(const CollapseMesh& current, std::uint32_
         {
             const std::uint32_t other = current.neighbour(mine, edge);
             // A triangle has three borders, all others none.
-            if (part.faces.size() == 1 ? other != kNone : !is_mine(other))
+            if (part.faces.size() == 1 ? other != kAbsent : !is_mine(other))
             {
                 return std::nullopt;
             }
@@ -242,7 +242,7 @@ Absorption make_absorption(const QuantisedMesh& mesh, const CollapseMesh& curren
                            const StuckPart& part, const Place& place)
 {
     Absorption absorption;
-    std::array<std::uint32_t, 2> sides{part.faces[0], kNone}; // (d, s, t) and (d, t, s).
+    std::array<std::uint32_t, 2> sides{part.faces[0], kAbsent}; // (d, s, t) and (d, t, s).
     std::array<std::uint32_t, 3> corners = current.corners(part.faces[0]);
     if (part.faces.size() == 2)
     {
@@ -268,10 +268,11 @@ Absorption make_absorption(const QuantisedMesh& mesh, const CollapseMesh& curren
     current.walk_ring(place.x, ring);
     const std::uint32_t first = place_of_y(mesh, ring, s);
     const std::uint32_t y = ring.neighbours[first];
-    const std::uint32_t count = sides[1] == kNone ? 1 : 2;
-    absorption.steps.push_back({t, place.x, count, {kNone, kNone, sides[0], sides[1]}, {d, s, d}});
+    const std::uint32_t count = sides[1] == kAbsent ? 1 : 2;
     absorption.steps.push_back(
-        {s, y, count, {kNone, kNone, sides[0], sides[1]}, {place.x, d, place.x}});
+        {t, place.x, count, {kAbsent, kAbsent, sides[0], sides[1]}, {d, s, d}});
+    absorption.steps.push_back(
+        {s, y, count, {kAbsent, kAbsent, sides[0], sides[1]}, {place.x, d, place.x}});
     Star last{place.x, d, ring.face_count, {sides[0], sides[1]}, {}};
     for (std::uint32_t i = 0; i < ring.face_count; ++i)
     {
@@ -353,7 +354,7 @@ std::size_t count_components(const CollapseMesh& current)
             for (std::uint32_t edge = 0; edge < 3; ++edge)
             {
                 const std::uint32_t other = current.neighbour(face, edge);
-                if (other != kNone && is_reached[other] == 0)
+                if (other != kAbsent && is_reached[other] == 0)
                 {
                     is_reached[other] = 1;
                     open.push_back(other);

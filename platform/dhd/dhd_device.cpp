@@ -18,7 +18,7 @@ namespace tactus
 namespace
 {
 
-Refusal refuse(std::string line)
+Refusal refuse_device(std::string line)
 {
     return {"dhd device: " + std::move(line)};
 }
@@ -63,19 +63,20 @@ Result<char, Refusal> open_device(const DhdLibrary& library, int index)
     const int count = library->dhdGetDeviceCount();
     if (count <= 0)
     {
-        return refuse("the SDK finds none; is it plugged in and switched on, and may this user "
-                      "open USB devices?");
+        return refuse_device(
+            "the SDK finds none; is it plugged in and switched on, and may this user "
+            "open USB devices?");
     }
     if (index >= count)
     {
-        return refuse("there is no device " + std::to_string(index) + ", they are 0.." +
-                      std::to_string(count - 1));
+        return refuse_device("there is no device " + std::to_string(index) + ", they are 0.." +
+                             std::to_string(count - 1));
     }
     const int id = library->dhdOpenID(static_cast<char>(index));
     if (id < 0)
     {
-        return refuse("device " + std::to_string(index) + " can't be opened (" +
-                      last_error(library) + ")");
+        return refuse_device("device " + std::to_string(index) + " can't be opened (" +
+                             last_error(library) + ")");
     }
     return static_cast<char>(id);
 }

@@ -27,7 +27,7 @@ std::string loaders_reason()
     return text.substr(0, text.find('\n'));
 }
 
-Refusal refuse(std::string line)
+Refusal refuse_library(std::string line)
 {
     return {std::move(line)};
 }
@@ -48,13 +48,14 @@ Result<DhdLibrary, Refusal> DhdLibrary::load(const std::string& path)
         const char* hint = path.empty() ? "; install Force Dimension's SDK or give the path of its "
                                           "libdhd.so"
                                         : "";
-        return refuse("dhd device: the SDK can't be loaded (" + loaders_reason() + ")" + hint);
+        return refuse_library("dhd device: the SDK can't be loaded (" + loaders_reason() + ")" +
+                              hint);
     }
     DhdLibrary library(handle);
     if (const char* missing = library.find_functions(); missing != nullptr)
     {
-        return refuse("dhd device: " + std::string(name) + " has no function " + missing +
-                      "; it takes Force Dimension's SDK 3");
+        return refuse_library("dhd device: " + std::string(name) + " has no function " + missing +
+                              "; it takes Force Dimension's SDK 3");
     }
     return library;
 }

@@ -31,11 +31,6 @@ constexpr std::array kQuantities{
              &DeadlinePhase::response},
 };
 
-double to_us(Duration duration)
-{
-    return static_cast<double>(duration.ns) * 1e-3;
-}
-
 /// Pairs of an upper edge in us and a count; empty bins are left out.
 Json bins_of(const LatencyHistogram& histogram)
 {

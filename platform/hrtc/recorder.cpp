@@ -12,7 +12,7 @@ namespace
 {
 
 /// Pause between two rounds; the tap holds some 300 ms at the highest rate.
-constexpr std::chrono::milliseconds kPause{5};
+constexpr std::chrono::milliseconds kWriterPause{5};
 
 } // namespace
 
@@ -70,7 +70,7 @@ void Recorder::run()
     {
         take_frames();
         store();
-        std::this_thread::sleep_for(kPause);
+        std::this_thread::sleep_for(kWriterPause);
     }
 }
 

@@ -31,11 +31,6 @@ struct RunRecord
     const FinishedRun& run;
 };
 
-double to_us(Duration duration)
-{
-    return static_cast<double>(duration.ns) * 1e-3;
-}
-
 Json times_of(const LatencyHistogram& histogram)
 {
     return {{"mean", histogram.mean_ns() * 1e-3},       {"p50", to_us(histogram.quantile(0.5))},

@@ -15,11 +15,6 @@ namespace
 
 using Json = nlohmann::ordered_json;
 
-double to_us(Duration duration)
-{
-    return static_cast<double>(duration.ns) * 1e-3;
-}
-
 /// The names of the bits that are set.
 template <std::size_t Count>
 Json names_of(unsigned bits, const std::array<const char*, Count>& names)

@@ -14,7 +14,7 @@ namespace
 {
 
 /// Pause between two rounds: a wish waits this long at most before it leaves.
-constexpr std::chrono::microseconds kPause{300};
+constexpr std::chrono::microseconds kPollPause{300};
 
 } // namespace
 
@@ -47,7 +47,7 @@ void TransportThread::run()
         {
             topics_->step(clock.now());
         }
-        std::this_thread::sleep_for(kPause);
+        std::this_thread::sleep_for(kPollPause);
     }
 }
 

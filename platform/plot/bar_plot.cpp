@@ -15,8 +15,8 @@ namespace tactus::plot
 namespace
 {
 
-constexpr double kLeft = 150.0;
-constexpr double kRight = 80.0; ///< For the longest bar's value.
+constexpr double kNamesWidth = 150.0;
+constexpr double kValuesWidth = 80.0; ///< For the longest bar's value.
 constexpr double kTop = 32.0;
 constexpr double kRow = 21.0;
 constexpr double kGap = 8.0; ///< Above a group's name.
@@ -49,14 +49,14 @@ std::size_t place_of(const std::string& name, std::vector<std::string>& names)
 
 std::string row_of(const Bar& bar, const Look& look, double share, double y)
 {
-    const double length = (kDrawingWidth - kLeft - kRight) * share;
+    const double length = (kDrawingWidth - kNamesWidth - kValuesWidth) * share;
     return fmt::format(
         "<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"end\">{}</text>\n"
         "<rect fill=\"{}\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"/>\n"
         "<text x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n",
-        kLeft - 8.0, y + 5.0, escaped(shortened(bar.name, characters_in(kLeft - 8.0))),
-        look.colour(), kLeft, y - kThickness / 2.0, length, kThickness, kLeft + length + 6.0,
-        y + 5.0, number_text(bar.value));
+        kNamesWidth - 8.0, y + 5.0, escaped(shortened(bar.name, characters_in(kNamesWidth - 8.0))),
+        look.colour(), kNamesWidth, y - kThickness / 2.0, length, kThickness,
+        kNamesWidth + length + 6.0, y + 5.0, number_text(bar.value));
 }
 
 } // namespace
@@ -72,9 +72,9 @@ Drawing draw(const BarPlot& plot)
         if (!group.name.empty())
         {
             y += y > kTop ? kGap : 0.0;
-            rows +=
-                fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", kLeft, y + 14.0,
-                            escaped(shortened(group.name, characters_in(kDrawingWidth - kLeft))));
+            rows += fmt::format(
+                "<text x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", kNamesWidth, y + 14.0,
+                escaped(shortened(group.name, characters_in(kDrawingWidth - kNamesWidth))));
             y += kRow;
         }
         for (const Bar& bar : group.bars)
@@ -90,15 +90,15 @@ Drawing draw(const BarPlot& plot)
         grid += fmt::format("<line class=\"grid\" x1=\"{0:.1f}\" x2=\"{0:.1f}\" y1=\"{1:.1f}\" "
                             "y2=\"{2:.1f}\"/>\n<text x=\"{0:.1f}\" y=\"{3:.1f}\" "
                             "text-anchor=\"middle\">{4}</text>\n",
-                            kLeft + (kDrawingWidth - kLeft - kRight) * tick.share, kTop, y + 4.0,
-                            y + 22.0, tick.text);
+                            kNamesWidth + (kDrawingWidth - kNamesWidth - kValuesWidth) * tick.share,
+                            kTop, y + 4.0, y + 22.0, tick.text);
     }
     const std::string words =
         fmt::format("<text class=\"title\" x=\"{:.1f}\" y=\"20\">{}</text>\n"
                     "<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{}</text>\n",
                     8.0, escaped(shortened(plot.title, characters_in(kDrawingWidth - 8.0))),
-                    (kLeft + kDrawingWidth - kRight) / 2.0, y + 42.0,
-                    escaped(shortened(plot.x_label, characters_in(kDrawingWidth - kLeft))));
+                    (kNamesWidth + kDrawingWidth - kValuesWidth) / 2.0, y + 42.0,
+                    escaped(shortened(plot.x_label, characters_in(kDrawingWidth - kNamesWidth))));
     return {plot.title, y + 54.0, words + grid + rows};
 }
 

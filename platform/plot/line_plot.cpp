@@ -58,11 +58,11 @@ public:
 
     [[nodiscard]] std::string place(const Point& point)
     {
-        constexpr double kLetter = 6.6; // At the size of notes.
+        constexpr double kNoteLetter = 6.6; // At the size of notes.
         constexpr double kHigh = 12.0;
         const double x = chart_.x_of(point.x);
         const double y = chart_.y_of(point.y);
-        const double width = kLetter * static_cast<double>(characters_of(point.label));
+        const double width = kNoteLetter * static_cast<double>(characters_of(point.label));
         std::vector<Box> places;
         for (const double away : {0.0, 12.0, 24.0}) // Beside the point, then further off.
         {

@@ -15,7 +15,7 @@ namespace tactus::plot
 namespace
 {
 
-constexpr const char* kStyleSheet =
+constexpr const char* kPageStyle =
     ":root { --good: #00704f; --bad: #b34700; --stripe: #f4f4f4; }\n"
     "@media screen and (prefers-color-scheme: dark) {\n"
     "  :root { --good: #4fd3a5; --bad: #ff9a57; --stripe: #232323; }\n"
@@ -166,7 +166,7 @@ std::string Page::html() const
                        "content=\"width=device-width, initial-scale=1\"/>\n<title>{0}</title>\n"
                        "<style>\n{1}{2}{3}</style>\n</head>\n<body>\n<h1>{0}</h1>\n{4}</body>\n"
                        "</html>\n",
-                       title_, drawing_colours(), drawing_style(), kStyleSheet, body_);
+                       title_, drawing_colours(), drawing_style(), kPageStyle, body_);
 }
 
 Table facts(const std::vector<std::pair<std::string, std::string>>& pairs)

@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #include "platform/simulated/hand_and_device.hpp"
 
+#include "platform/simulated/value_range.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -15,16 +17,6 @@ namespace
 
 constexpr double kPeriodMin_s = 1e-5;
 constexpr double kPeriodMax_s = 0.1;
-
-bool is_positive(double value) noexcept
-{
-    return std::isfinite(value) && value > 0.0;
-}
-
-bool is_not_negative(double value) noexcept
-{
-    return std::isfinite(value) && value >= 0.0;
-}
 
 bool is_usable(const DeviceLimits& device) noexcept
 {

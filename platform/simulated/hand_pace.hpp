@@ -11,6 +11,9 @@ namespace tactus
 /// How fast the scripted hand moves: in diagonals, so that every size of model is treated alike.
 struct HandPace
 {
+    /// Before the surface; where it slows down.
+    static constexpr double kSlowDown_diag = 0.1;
+
     double flight_m_per_s;
     double approach_m_per_s;
     double lift_m_per_s;

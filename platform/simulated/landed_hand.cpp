@@ -14,7 +14,6 @@ namespace tactus
 namespace
 {
 
-constexpr double kSlowDownDiag = 0.1;
 constexpr double kBeyondDiag = 0.5;
 constexpr double kSpeedFilter_s = 0.01;
 /// In the air the device is as fast as the hand, on a wall of 500 N/m a third of it.
@@ -56,7 +55,8 @@ Vec3 LandedHand::next_world_m(const HandSense& sense) noexcept
                down_ * offset.z();
     }
     const double left_m = length_m_ - way_m_ - tool_radius_m_;
-    const double speed = pace_.slowing(pace_.approach_m_per_s, left_m, kSlowDownDiag * diagonal_m_);
+    const double speed =
+        pace_.slowing(pace_.approach_m_per_s, left_m, HandPace::kSlowDown_diag * diagonal_m_);
     way_m_ = std::min(way_m_ + speed * period_s_, length_m_ + kBeyondDiag * diagonal_m_);
     touched_world_m_ = start_world_m_ + down_ * way_m_;
     has_landed_ = has_met_something(sense, left_m, speed);
@@ -71,7 +71,7 @@ bool LandedHand::has_met_something(const HandSense& sense, double left_m,
     last_device_world_m_ = sense.device_world_m;
     device_speed_m_per_s_ += (moved_m.dot(down_) / period_s_ - device_speed_m_per_s_) * period_s_ /
                              (period_s_ + kSpeedFilter_s);
-    return left_m < kSlowDownDiag * diagonal_m_ && feeling_.is_touching(sense) &&
+    return left_m < HandPace::kSlowDown_diag * diagonal_m_ && feeling_.is_touching(sense) &&
            device_speed_m_per_s_ < kHeldBackShare * speed_m_per_s;
 }
 

@@ -3,6 +3,7 @@
 #include "platform/simulated/replay_device.hpp"
 
 #include "platform/device_force.hpp"
+#include "platform/simulated/value_range.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,11 +14,6 @@ namespace tactus
 
 namespace
 {
-
-bool is_positive(double value) noexcept
-{
-    return std::isfinite(value) && value > 0.0;
-}
 
 bool is_place(const RecordedReading& reading) noexcept
 {

@@ -15,7 +15,6 @@ namespace
 {
 
 /// Before the expected surface.
-constexpr double kSlowDownDiag = 0.1;
 /// Nearer to the aim than this the direction stays: it would swing round at the aim itself.
 constexpr double kSteerUntilDiag = 0.05;
 /// Of the flight's largest speed, with its start and end counted in.
@@ -197,7 +196,7 @@ Vec3 ScriptedHand::approach(const HandSense& sense) noexcept
     }
     const double gap_m = left_m - tool_radius_m_;
     return approach_direction_ *
-           pace_.slowing(pace_.approach_m_per_s, gap_m, kSlowDownDiag * diagonal_m_);
+           pace_.slowing(pace_.approach_m_per_s, gap_m, HandPace::kSlowDown_diag * diagonal_m_);
 }
 
 Vec3 ScriptedHand::slide(const HandSense& sense) noexcept

@@ -3,6 +3,7 @@
 #include "platform/simulated/simulated_device.hpp"
 
 #include "platform/device_force.hpp"
+#include "platform/simulated/value_range.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -15,16 +16,6 @@ namespace
 {
 
 constexpr std::int64_t kSecondNs = 1'000'000'000;
-
-bool is_positive(double value) noexcept
-{
-    return std::isfinite(value) && value > 0.0;
-}
-
-bool is_not_negative(double value) noexcept
-{
-    return std::isfinite(value) && value >= 0.0;
-}
 
 /// Empty when all options are good.
 std::string find_bad_option(const SimulatedDeviceOptions& options)

@@ -20,7 +20,7 @@ namespace tactus::bench
 namespace
 {
 
-constexpr std::uint32_t kBaseFaces = 500;
+constexpr std::uint32_t kCertifiedBaseFaces = 500;
 /// Of the tool, of the diagonal.
 constexpr double kRadius = 0.01;
 
@@ -80,7 +80,7 @@ CaseFailure measure_bounds(const EncoderContext& context)
     {
         return named.value().name + ": " + prepared.error().text;
     }
-    const auto simplification = simplify(prepared.value().mesh, {kBaseFaces, 2, {}});
+    const auto simplification = simplify(prepared.value().mesh, {kCertifiedBaseFaces, 2, {}});
     if (!simplification)
     {
         return named.value().name + ": " + simplification.error().text;

@@ -22,7 +22,7 @@ namespace tactus::bench
 namespace
 {
 
-constexpr std::uint32_t kBaseFaces = 500;
+constexpr std::uint32_t kEncodedBaseFaces = 500;
 
 /// Seconds since it was made or last asked.
 class Laps
@@ -53,7 +53,7 @@ Result<std::string, SceneError> encode(NamedMesh source, const EncodeJob& job)
     }
     const double prepare_s = laps.next();
     SimplifyOptions options;
-    options.base_faces = kBaseFaces;
+    options.base_faces = kEncodedBaseFaces;
     options.threads = job.threads;
     const auto simplified = simplify(prepared.value().mesh, options);
     if (!simplified)

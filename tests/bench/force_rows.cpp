@@ -73,7 +73,7 @@ std::string number(double value)
     return value == std::round(value) ? fmt::format("{:.0f}", value) : fmt::format("{:.3g}", value);
 }
 
-std::string cell(const Row& row)
+std::string force_cell(const Row& row)
 {
     const std::string text = row.is_met() ? number(row.value) : "**" + number(row.value) + "**";
     return row.goal ? fmt::format("{} ({})", text, number(*row.goal)) : text;
@@ -96,7 +96,7 @@ std::string to_line(std::span<const Row> line)
                 line, [&](const Row& one) { return metric != nullptr && one.metric == metric; });
             if (row != line.end())
             {
-                cells += (cells.empty() ? "" : " / ") + cell(*row);
+                cells += (cells.empty() ? "" : " / ") + force_cell(*row);
             }
         }
         text += " " + cells + (cells.empty() ? "|" : " |");

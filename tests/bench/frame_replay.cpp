@@ -17,7 +17,7 @@ namespace
 {
 
 /// How much faster than the slide the proxy may follow its goal.
-constexpr double kFollow = 1.5;
+constexpr double kFollowTimes = 1.5;
 
 } // namespace
 
@@ -28,7 +28,7 @@ FrameRun make_slide(const Scene& scene, double speed_diag_per_s, std::uint32_t s
         scene, slide_motion(scene.touch(), speed_diag_per_s, frames), kApproachFrames, {}, {}};
     ToolSpec tool;
     tool.radius_m = kRadius_diag * scene.model.diagonal_m;
-    tool.speed_max_m_per_s = kFollow * speed_diag_per_s * scene.model.diagonal_m;
+    tool.speed_max_m_per_s = kFollowTimes * speed_diag_per_s * scene.model.diagonal_m;
     run.rig.tools = {tool};
     run.rig.pool_bytes = pool_bytes;
     run.budgets.splits = splits;

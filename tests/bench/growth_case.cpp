@@ -23,8 +23,8 @@ namespace tactus::bench
 namespace
 {
 
-constexpr double kSpeed_diag_per_s = 0.5;
-constexpr std::uint32_t kSplits = 128;
+constexpr double kGrowthSpeed_diag_per_s = 0.5;
+constexpr std::uint32_t kGrowthSplits = 128;
 constexpr std::size_t kPool_bytes = std::size_t{8} << 20U;
 
 /// A model's faces, and the splits that a frame made on it.
@@ -138,7 +138,7 @@ Result<SizeFigures, SceneError> measure(const CaseContext& context, std::uint32_
     }
     const PinnedCore pinned(context.options.core);
     const FrameRun run =
-        make_slide(*scene.value(), kSpeed_diag_per_s, kSplits, kPool_bytes, frames);
+        make_slide(*scene.value(), kGrowthSpeed_diag_per_s, kGrowthSplits, kPool_bytes, frames);
     FrameReplay replay(run);
     if (const auto failure = replay.run(context.options.passes_or(4, 2)))
     {

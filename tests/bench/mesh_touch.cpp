@@ -27,9 +27,9 @@ constexpr double kSwing_s = 1.0;
 /// The next distance is expected to be at most this many times the last one.
 constexpr double kGuess = 1.1;
 /// Nothing is to be cut short.
-constexpr std::uint32_t kUnlimited = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t kUnlimitedSplits = std::numeric_limits<std::uint32_t>::max();
 
-Vec3 to_vec3(const std::array<double, 3>& coordinates)
+Vec3 vec3_of(const std::array<double, 3>& coordinates)
 {
     return {coordinates[0], coordinates[1], coordinates[2]};
 }
@@ -76,12 +76,12 @@ std::vector<Triangle> moved(const std::vector<test::Face>& faces, const Vec3& of
 NamedMesh make_tool_mesh(const Scene& object)
 {
     TriangleMesh mesh = make_shape(Shape::bumpy_sphere, kToolFaces).value();
-    Vec3 low = to_vec3(mesh.positions[0]);
+    Vec3 low = vec3_of(mesh.positions[0]);
     Vec3 high = low;
     for (const auto& position : mesh.positions)
     {
-        low = low.cwiseMin(to_vec3(position));
-        high = high.cwiseMax(to_vec3(position));
+        low = low.cwiseMin(vec3_of(position));
+        high = high.cwiseMax(vec3_of(position));
     }
     const double scale = kAcross_diag * object.model.diagonal_m / (high - low).maxCoeff();
     for (auto& position : mesh.positions)
@@ -93,7 +93,7 @@ NamedMesh make_tool_mesh(const Scene& object)
 
 std::vector<Triangle> faces_in_source_frame(const Scene& scene)
 {
-    return moved(scene.model.faces, to_vec3(scene.model.origin_m));
+    return moved(scene.model.faces, vec3_of(scene.model.origin_m));
 }
 
 std::vector<Triangle> faces_in_model_frame(const Scene& scene)
@@ -128,7 +128,7 @@ TactusPairQuery::TactusPairQuery(std::unique_ptr<StaticModel> tool,
     , object_(std::move(object))
     , tool_names_(tool_scene.model.faces)
     , object_names_(object_scene.model.faces)
-    , place_{{}, to_vec3(tool_scene.model.origin_m)}
+    , place_{{}, vec3_of(tool_scene.model.origin_m)}
 {
     pairs_.reserve(kMaxMeetingFaces);
 }
@@ -163,14 +163,14 @@ void TactusPairQuery::forget()
 
 void TactusPairQuery::ask(double reach_m)
 {
-    OtherSurface surface(object_->tree(), place_, {kUnlimited, kUnlimited});
+    OtherSurface surface(object_->tree(), place_, {kUnlimitedSplits, kUnlimitedSplits});
     query_meshes({tool_->tree(), object_->tree(), place_, reach_m}, surface, memory_, answer_,
                  report_, contacts_);
 }
 
 bool TactusPairQuery::do_meet()
 {
-    WalkBudget budget{kUnlimited, kUnlimited};
+    WalkBudget budget{kUnlimitedSplits, kUnlimitedSplits};
     find_meeting_faces({tool_->tree(), object_->tree(), place_}, 1, budget, memory_, report_);
     return report_.intersection == Intersection::proven;
 }

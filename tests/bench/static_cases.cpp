@@ -21,10 +21,10 @@ namespace tactus::bench
 namespace
 {
 
-constexpr double kNear_diag = 2.0 * kRadius_diag;
+constexpr double kStaticNear_diag = 2.0 * kRadius_diag;
 /// Ours is exact to rounding; the peers work in float on coordinates of about a diagonal.
 constexpr double kOurTolerance_diag = 1e-9;
-constexpr double kPeerTolerance_diag = 2e-6;
+constexpr double kStaticTolerance_diag = 2e-6;
 constexpr std::uint32_t kColdFrames = 1'000;
 
 Row common_row(const CaseContext& context, const Scene& scene, std::size_t frames,
@@ -60,7 +60,7 @@ time_all(const CaseContext& context, TactusQuery& ours,
     for (const std::unique_ptr<PointQuery>& peer : peers)
     {
         auto theirs = time_queries(*peer, questions, band_m,
-                                   kPeerTolerance_diag * scene.model.diagonal_m, passes);
+                                   kStaticTolerance_diag * scene.model.diagonal_m, passes);
         if (!theirs)
         {
             return theirs.error();
@@ -179,7 +179,7 @@ CaseFailure run_static_case(const CaseContext& context, const StaticCase& test_c
     const auto peers = context.options.count ? std::vector<std::unique_ptr<PointQuery>>{}
                                              : make_peers(touched.model.faces);
     const Questions questions = touch_questions(context, touched);
-    const double band_m = kNear_diag * touched.model.diagonal_m;
+    const double band_m = kStaticNear_diag * touched.model.diagonal_m;
     const std::vector<bool> near = questions.nearer_than(band_m);
     TactusQuery ours(model.value()->tree());
     const auto banded = time_all(context, ours, peers, touched, questions, band_m);
@@ -230,7 +230,7 @@ CaseFailure run_growth_case(const CaseContext& context, const GrowthCase& test_c
         }
         const auto peers = make_peers(touched.model.faces);
         const Questions questions = touch_questions(context, touched);
-        const double band_m = kNear_diag * touched.model.diagonal_m;
+        const double band_m = kStaticNear_diag * touched.model.diagonal_m;
         TactusQuery ours(model.value()->tree());
         const auto times = time_all(context, ours, peers, touched, questions, band_m);
         if (!times)

@@ -26,8 +26,8 @@ namespace
 
 using Json = nlohmann::json;
 
-constexpr std::uint32_t kTaps = 40;
-constexpr std::uint32_t kQuickTaps = 3;
+constexpr std::uint32_t kTourTaps = 40;
+constexpr std::uint32_t kQuickTourTaps = 3;
 constexpr double kFacePool_mib = 4.0;
 constexpr double kKilo = 1e3;
 
@@ -174,7 +174,7 @@ CaseFailure run_tour_case(const CaseContext& context, const TourCase& test_case)
     const test::TemporaryFolder folder("tour");
     TourManner manner;
     manner.speed_diag_per_s = test_case.speed_diag_per_s;
-    manner.taps = context.options.quick ? kQuickTaps : kTaps;
+    manner.taps = context.options.quick ? kQuickTourTaps : kTourTaps;
     const TapTour tour = tap_tour(scene.value()->touch(), manner);
     if (auto written =
             write_motion(context, *scene.value(), tour.goals_m, folder.path() / "motion.rec");

@@ -20,12 +20,12 @@ namespace
 
 constexpr SceneSource kLarger{"larger", nullptr, 0, 60'000};
 constexpr std::uint32_t kFrames = 2'000;
-constexpr std::size_t kMiB = std::size_t{1} << 20U;
+constexpr std::size_t kCountsMiB = std::size_t{1} << 20U;
 
 /// A proxy slides, everything streams and comes 10 ms late.
 FrameRun slide(const Scene& scene)
 {
-    FrameRun run = make_slide(scene, 0.5, 64, kMiB, kFrames);
+    FrameRun run = make_slide(scene, 0.5, 64, kCountsMiB, kFrames);
     run.rig.courier_steps_per_frame = 1;
     run.rig.faults.delay_polls_min = run.rig.faults.delay_polls_max = 10;
     return run;
@@ -80,7 +80,7 @@ CaseFailure run_count_case(const CaseContext& context, const CountCase& test_cas
     return std::nullopt;
 }
 
-std::vector<Case> all_cases()
+std::vector<Case> counts_cases()
 {
     const auto count = [](const char* name, const SceneSource& scene,
                           FrameRun (*make)(const Scene&)) {
@@ -94,7 +94,7 @@ std::vector<Case> all_cases()
 
 Suite counts_suite()
 {
-    return {"counts", all_cases, to_columns};
+    return {"counts", counts_cases, to_columns};
 }
 
 } // namespace tactus::bench

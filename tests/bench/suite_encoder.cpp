@@ -133,11 +133,11 @@ std::vector<EncoderMesh> all_meshes()
 
 /// The parts of the suite in the order in which they run. Files first: the processes that measure
 /// memory begin with what this one has.
-constexpr std::array kParts{measure_files, compare_simplifiers, measure_bounds};
+constexpr std::array kEncoderParts{measure_files, compare_simplifiers, measure_bounds};
 
 CaseFailure run_mesh(const CaseContext& context, const EncoderMesh& mesh)
 {
-    for (const auto& run_part : kParts)
+    for (const auto& run_part : kEncoderParts)
     {
         if (CaseFailure failure = run_part({context, mesh}))
         {
@@ -147,7 +147,7 @@ CaseFailure run_mesh(const CaseContext& context, const EncoderMesh& mesh)
     return std::nullopt;
 }
 
-std::vector<Case> all_cases()
+std::vector<Case> encoder_cases()
 {
     std::vector<Case> cases;
     for (const EncoderMesh& mesh : all_meshes())
@@ -161,7 +161,7 @@ std::vector<Case> all_cases()
 
 Suite encoder_suite()
 {
-    return {"encoder", all_cases, to_columns};
+    return {"encoder", encoder_cases, to_columns};
 }
 
 } // namespace tactus::bench

@@ -17,7 +17,7 @@ namespace
 constexpr SceneSource kFandisk{"fandisk-13k", "fandisk.obj", 0, 12'946};
 constexpr SceneSource kIgea{"igea-269k", "igea.ply", 0, 268'686};
 
-std::vector<Case> all_cases()
+std::vector<Case> error_time_cases()
 {
     const auto on = [](When when, const SceneSource& scene, double pool_mib) {
         return make_case(scene.name, when, run_error_time_case, ErrorTimeCase{scene, pool_mib});
@@ -31,7 +31,7 @@ std::vector<Case> all_cases()
 
 Suite error_time_suite()
 {
-    return {"error_time", all_cases, to_columns};
+    return {"error_time", error_time_cases, to_columns};
 }
 
 } // namespace tactus::bench

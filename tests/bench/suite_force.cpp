@@ -255,7 +255,7 @@ CaseFailure run_units(const CaseContext& context)
     return std::nullopt;
 }
 
-std::vector<Case> all_cases()
+std::vector<Case> force_cases()
 {
     std::vector<Case> cases;
     const auto coarser = std::make_shared<CoarserErrors>();
@@ -293,7 +293,7 @@ std::string to_force_tables(const Rows& rows)
 
 Suite force_suite()
 {
-    return {"force", all_cases, to_force_tables, true};
+    return {"force", force_cases, to_force_tables, true};
 }
 
 } // namespace tactus::bench

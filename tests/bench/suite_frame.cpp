@@ -23,7 +23,7 @@ CaseFailure run_clock_case(const CaseContext& context)
 }
 
 /// What the pages call the goals' table, row by row.
-std::vector<Case> all_cases()
+std::vector<Case> frame_cases()
 {
     const auto frame = [](const char* name, When when, const FrameCase& test_case)
     { return make_case(name, when, run_frame_case, test_case); };
@@ -56,7 +56,7 @@ std::vector<Case> all_cases()
 
 Suite frame_suite()
 {
-    return {"frame", all_cases, to_goal_table};
+    return {"frame", frame_cases, to_goal_table};
 }
 
 } // namespace tactus::bench

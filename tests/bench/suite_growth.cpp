@@ -13,7 +13,7 @@ namespace tactus::bench
 namespace
 {
 
-std::vector<Case> all_cases()
+std::vector<Case> growth_cases()
 {
     return {make_case("sizes", When::always, run_growth_law_case,
                       GrowthLawCase{{4'000, 10'000, 40'000, 100'000},
@@ -26,7 +26,7 @@ std::vector<Case> all_cases()
 
 Suite growth_suite()
 {
-    return {"growth", all_cases, to_columns};
+    return {"growth", growth_cases, to_columns};
 }
 
 } // namespace tactus::bench

@@ -14,10 +14,10 @@ namespace tactus::bench
 namespace
 {
 
-constexpr std::size_t kMiB = std::size_t{1} << 20U;
-constexpr SceneSource kIgea{"igea-269k", "igea.ply", 0, 268'686};
+constexpr std::size_t kPeersMiB = std::size_t{1} << 20U;
+constexpr SceneSource kPeersIgea{"igea-269k", "igea.ply", 0, 268'686};
 
-std::vector<Case> all_cases()
+std::vector<Case> peers_cases()
 {
     const auto touch =
         [](const char* name, When when, const SceneSource& scene, std::size_t pool_bytes)
@@ -34,15 +34,15 @@ std::vector<Case> all_cases()
                          PeerTouchCase{"W3, scale", sphere, setting, std::nullopt});
     };
     return {
-        touch("touch-bunny", When::always, kBunny, 2 * kMiB),
-        touch("touch-igea", When::full_only, kIgea, 4 * kMiB),
+        touch("touch-bunny", When::always, kBunny, 2 * kPeersMiB),
+        touch("touch-igea", When::full_only, kPeersIgea, 4 * kPeersMiB),
         mesh("mesh-bunny", When::always, kBunny),
-        mesh("mesh-igea", When::full_only, kIgea),
+        mesh("mesh-igea", When::full_only, kPeersIgea),
         scale("scale-4k", When::always, 4'000, "4 k faces"),
         scale("scale-40k", When::always, 40'000, "40 k faces"),
         scale("scale-400k", When::full_only, 400'000, "400 k faces"),
         scale("scale-4M", When::full_only, 4'000'000, "4 M faces"),
-        touch("touch-tiny", When::named_only, kTiny, kMiB),
+        touch("touch-tiny", When::named_only, kTiny, kPeersMiB),
         mesh("mesh-tiny", When::named_only, kTiny),
         scale("scale-tiny", When::named_only, 2'000, "2 k faces"),
     };
@@ -52,7 +52,7 @@ std::vector<Case> all_cases()
 
 Suite peers_suite()
 {
-    return {"peers", all_cases, to_columns};
+    return {"peers", peers_cases, to_columns};
 }
 
 } // namespace tactus::bench

@@ -154,7 +154,7 @@ CaseFailure run_skip_case(const CaseContext& context, const SkipCase& test_case)
     return compare(with_all.answers(), replay.answers());
 }
 
-std::vector<Case> all_cases()
+std::vector<Case> skip_cases()
 {
     std::vector<Case> cases;
     const auto add = [&](When when, const SceneSource& scene, double pool_mib)
@@ -175,7 +175,7 @@ std::vector<Case> all_cases()
 
 Suite skip_suite()
 {
-    return {"skip", all_cases, to_columns};
+    return {"skip", skip_cases, to_columns};
 }
 
 } // namespace tactus::bench

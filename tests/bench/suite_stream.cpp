@@ -16,7 +16,7 @@ namespace
 
 constexpr SceneSource kSmall{"small", nullptr, 0, 60'000};
 
-std::vector<Case> all_cases()
+std::vector<Case> stream_cases()
 {
     const auto predict = [](const char* name, When when, const PredictionCase& test_case)
     { return make_case(name, when, run_prediction_case, test_case); };
@@ -62,7 +62,7 @@ std::vector<Case> all_cases()
 
 Suite stream_suite()
 {
-    return {"stream", all_cases, to_columns};
+    return {"stream", stream_cases, to_columns};
 }
 
 } // namespace tactus::bench

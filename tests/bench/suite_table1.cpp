@@ -162,7 +162,7 @@ CaseFailure run_case(const CaseContext& context, const Table1Case& test_case)
     return std::nullopt;
 }
 
-std::vector<Case> all_cases()
+std::vector<Case> table1_cases()
 {
     std::vector<Case> cases;
     for (const Table1Case& one : kCases)
@@ -176,7 +176,7 @@ std::vector<Case> all_cases()
 
 Suite table1_suite()
 {
-    return {"table1", all_cases, to_columns};
+    return {"table1", table1_cases, to_columns};
 }
 
 } // namespace tactus::bench

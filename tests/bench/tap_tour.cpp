@@ -14,9 +14,9 @@ namespace tactus::bench
 namespace
 {
 
-constexpr double kTurn_rad_per_s = 3.0;
+constexpr double kTapTurn_rad_per_s = 3.0;
 /// Height of the flights above the surface, of the tool's own surface.
-constexpr double kFlight_diag = 0.03;
+constexpr double kTapFlight_diag = 0.03;
 constexpr std::uint32_t kFlightSteps = 250;
 constexpr std::uint32_t kSlideSteps = 500;
 
@@ -30,14 +30,14 @@ public:
     {
         const Vec3 middle = 0.5 * (scene.tree.low_m() + scene.tree.high_m());
         goals_m_.emplace_back(middle.x(), middle.y(),
-                              scene.tree.high_m().z() + kFlight_diag * scene.diagonal_m);
+                              scene.tree.high_m().z() + kTapFlight_diag * scene.diagonal_m);
     }
 
     TapTour make()
     {
         for (std::uint32_t tap = 0; tap < manner_.taps; ++tap)
         {
-            glide(kRadius_diag + kFlight_diag, 0, kFlightSteps);
+            glide(kRadius_diag + kTapFlight_diag, 0, kFlightSteps);
             glide(kRadius_diag, kDeepest, kSlideSteps);
         }
         TapTour tour;
@@ -59,7 +59,7 @@ private:
         slide.diagonal_m = scene_.diagonal_m;
         slide.radius_diag = radius_diag;
         slide.step_m = step_m_;
-        slide.turn_rad = kTurn_rad_per_s * kPeriod_s;
+        slide.turn_rad = kTapTurn_rad_per_s * kPeriod_s;
         slide.first_frame = first_frame;
         slide.turn_rate = [seed = kSeed + goals_m_.size()](std::uint64_t turn)
         { return signed_unit(seed, turn); };
@@ -97,7 +97,8 @@ private:
                 touches.push_back(i);
                 was_near = true;
             }
-            was_near = was_near && distance_m <= reach_m + 0.5 * kFlight_diag * scene_.diagonal_m;
+            was_near =
+                was_near && distance_m <= reach_m + 0.5 * kTapFlight_diag * scene_.diagonal_m;
         }
         return touches;
     }

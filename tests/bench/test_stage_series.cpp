@@ -40,10 +40,10 @@ TEST(StageSeries, few_frames_are_a_point_each)
 
 TEST(StageSeries, no_peak_is_lost_and_a_point_is_one_frame)
 {
-    constexpr std::size_t kFrames = 1'999;
+    constexpr std::size_t kSamples = 1'999;
     for (const std::size_t peak : {0U, 1U, 2U, 777U, 1'997U, 1'998U})
     {
-        Times us = times_of(kFrames);
+        Times us = times_of(kSamples);
         us[1][peak] = 50.0;
         us[3][peak] = 0.5;
 

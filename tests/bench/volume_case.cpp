@@ -25,7 +25,7 @@ namespace tactus::bench
 namespace
 {
 
-constexpr double kNear_diag = 2.0 * kRadius_diag;
+constexpr double kVolumeNear_diag = 2.0 * kRadius_diag;
 constexpr double kTolerance_diag = 1e-9;
 
 /// All of a model's faces as they are when it is fully refined, in the order of their ids.
@@ -134,7 +134,7 @@ Result<VolumeFigures, SceneError> measure(const CaseContext& context, const std:
     }
     const std::uint32_t frames = context.options.frames_or(4 * kCycleFrames, kCycleFrames);
     const Questions questions = ask(scene, touch_motion(scene.touch(), frames));
-    const double band_m = kNear_diag * scene.model.diagonal_m;
+    const double band_m = kVolumeNear_diag * scene.model.diagonal_m;
     const double tolerance_m = kTolerance_diag * scene.model.diagonal_m;
     const std::uint32_t passes = context.options.passes_or(5, 3);
     WalkQuery query(whole.tree(), name);

@@ -17,11 +17,6 @@ namespace
 
 constexpr std::uint64_t kMostRecords = 536'870'910; // 2^29 - 2.
 
-bool is_in(double value, double low, double high)
-{
-    return value >= low && value <= high;
-}
-
 bool has_lawful_counts(const HeaderFields& f)
 {
     return std::string_view(f.magic.data(), f.magic.size()) == "TACTSPM\n" &&

@@ -14,6 +14,11 @@
 namespace tactus::fuzz
 {
 
+[[nodiscard]] inline bool is_in(double value, double low, double high)
+{
+    return value >= low && value <= high;
+}
+
 /// `bytes` are those that the header was parsed from.
 [[nodiscard]] bool is_lawful_header(const ModelHeader& header, std::span<const std::byte> bytes);
 

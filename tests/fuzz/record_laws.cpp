@@ -15,11 +15,6 @@ namespace tactus::fuzz
 namespace
 {
 
-bool is_in(double value, double low, double high)
-{
-    return value >= low && value <= high;
-}
-
 bool has_lawful_star(const ModelCounts& counts, RecordId id, const VsplitRecord& record)
 {
     const std::uint32_t first_face = counts.base_faces + 2 * id.value;

@@ -2,13 +2,13 @@
 // Copyright the Tactus authors.
 #include "rt_core/base/spsc_queue.hpp"
 #include "tests/interleave/checked.hpp"
+#include "tests/interleave/expect_sound.hpp"
 
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <iostream>
 #include <set>
 #include <string>
 #include <vector>
@@ -92,15 +92,14 @@ struct Bench
 template <std::size_t capacity>
 Exploration push_and_pop(int pushes, int pops, std::span<const Fault> faults = {})
 {
-    using Body = typename SmallProgram<Bench<capacity>>::Body;
-    const Body produce = [pushes](Bench<capacity>& bench)
+    const auto produce = [pushes](Bench<capacity>& bench)
     {
         for (int i = 0; i < pushes; ++i)
         {
             bench.push();
         }
     };
-    const Body consume = [pops](Bench<capacity>& bench)
+    const auto consume = [pops](Bench<capacity>& bench)
     {
         for (int i = 0; i < pops; ++i)
         {
@@ -109,14 +108,6 @@ Exploration push_and_pop(int pushes, int pops, std::span<const Fault> faults = {
     };
     return explore_small<Bench<capacity>>(
         {produce, consume}, [](Bench<capacity>& bench) { bench.end(); }, faults);
-}
-
-void expect_sound(const char* what, const Exploration& result, std::uint64_t at_least)
-{
-    EXPECT_EQ(result.failure, "");
-    EXPECT_GE(result.executions, at_least);
-    std::cout << what << ": " << result.executions << " executions, " << result.redundant
-              << " given up as redundant\n";
 }
 
 TEST(QueueOrders, of_one_slot_hand_over_everything_once_in_order_without_a_race)

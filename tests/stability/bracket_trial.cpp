@@ -4,12 +4,12 @@
 
 #include "tests/shared/frame_verdict.hpp"
 #include "tests/stability/random_motion.hpp"
+#include "tests/stability/trial_terms.hpp"
 #include "tests/stability/wide_place.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <string>
 
@@ -21,29 +21,11 @@ namespace
 
 constexpr std::array<double, 3> kScales{1.0, 0.2, 3.0};
 
-template <typename Real>
-bool is_between(double lower, Real distance, double upper)
-{
-    return static_cast<Real>(lower) <= distance && distance <= static_cast<Real>(upper);
-}
-
-std::string exactly(double value)
-{
-    std::array<char, 64> text{};
-    std::snprintf(text.data(), text.size(), "%.17g", value);
-    return text.data();
-}
-
-std::string exactly(const Vec3& v)
-{
-    return "(" + exactly(v.x()) + ", " + exactly(v.y()) + ", " + exactly(v.z()) + ")";
-}
-
 /// The frames of one trial and what is to be said of them.
-class Trial
+class BracketRun
 {
 public:
-    explicit Trial(const BracketTrial& trial)
+    explicit BracketRun(const BracketTrial& trial)
         : trial_(trial)
         , random_(Random::seeded(trial.seed))
         , scale_(kScales[random_.below(kScales.size())])
@@ -133,7 +115,7 @@ private:
 
 BracketFigures run_bracket_trial(const BracketTrial& trial)
 {
-    return Trial(trial).run();
+    return BracketRun(trial).run();
 }
 
 BracketVerdict judge_bracket(const ToolOracle& oracle, const PairOutput& pair,

@@ -7,6 +7,7 @@
 #include "tests/shared/random.hpp"
 #include "tests/shared/surface_slide.hpp"
 #include "tests/stability/rest_state.hpp"
+#include "tests/stability/trial_terms.hpp"
 
 #include <array>
 #include <string>
@@ -18,7 +19,6 @@ namespace tactus::test
 namespace
 {
 
-constexpr double kRadius_diag = 0.01;
 constexpr std::size_t kPlaces = 8; ///< Different touches.
 
 /// One touch: down from afar, a slide, a press, back, and a rest.

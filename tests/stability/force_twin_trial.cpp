@@ -3,6 +3,7 @@
 #include "tests/stability/force_twin_trial.hpp"
 
 #include "tests/stability/press_motion.hpp"
+#include "tests/stability/trial_terms.hpp"
 #include "tests/stability/whole_model.hpp"
 
 #include <algorithm>
@@ -17,8 +18,6 @@ namespace tactus::test
 namespace
 {
 
-constexpr double kSmallest_m = 0.1; ///< Diagonals of objects.
-constexpr double kLargest_m = 0.2;
 /// 4 to 8 mm: hundreds of faces are in reach of it.
 constexpr double kPressedRadius_diag = 0.04;
 /// Proxies in one place, with one force: as far as 0.5 mN push a spring.
@@ -43,10 +42,10 @@ std::string text_of(const Vec3& v)
     return text.data();
 }
 
-class Trial
+class ForceTwinRun
 {
 public:
-    explicit Trial(const ForceTwinTrial& trial)
+    explicit ForceTwinRun(const ForceTwinTrial& trial)
         : trial_(trial)
         , random_(Random::seeded(trial.seed))
         , diagonal_m_(random_.between(kSmallest_m, kLargest_m))
@@ -257,7 +256,7 @@ std::vector<Hardship> force_hardships(const TestModel& model)
 
 ForceTwinFigures run_force_twin_trial(const ForceTwinTrial& trial)
 {
-    return Trial(trial).run();
+    return ForceTwinRun(trial).run();
 }
 
 } // namespace tactus::test

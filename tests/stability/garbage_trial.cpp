@@ -7,6 +7,7 @@
 #include "tests/shared/surface_slide.hpp"
 #include "tests/stability/bracket_trial.hpp"
 #include "tests/stability/hardships.hpp"
+#include "tests/stability/trial_terms.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -23,9 +24,7 @@ constexpr std::int64_t kFrame_ns = 1'000'000;
 constexpr std::uint32_t kHeldFrames = 20; ///< kSampleHold_s.
 constexpr std::uint32_t kGoneFrames = 72; ///< And kFadeTime_s, and one on either side.
 constexpr std::uint32_t kRecoveryFrames = 200;
-constexpr double kRadius_diag = 0.01;
 constexpr double kPressed = 0.7;
-constexpr double kForceMax_n = 8.0;
 constexpr double kForceRounding = 1e-15;
 
 Vec3 with_one(const Vec3& place, Random& random, double value)
@@ -80,11 +79,11 @@ void spoil_all(ToolState& sample, const ToolState& good, Random& random)
 }
 
 /// One tool, its device, and what is known of the episode.
-class Trial
+class GarbageRun
 {
 public:
-    Trial(const TestModel& model, const CenterOracle& oracle, const Garbage& garbage,
-          std::uint64_t seed)
+    GarbageRun(const TestModel& model, const CenterOracle& oracle, const Garbage& garbage,
+               std::uint64_t seed)
         : oracle_(oracle)
         , garbage_(garbage)
         , seed_(seed)
@@ -239,7 +238,7 @@ const std::array<Garbage, kGarbageKinds>& garbage_kinds()
 TrialFigures run_garbage_trial(const TestModel& model, const CenterOracle& oracle,
                                const Garbage& garbage, std::uint32_t frames, std::uint64_t seed)
 {
-    return Trial(model, oracle, garbage, seed).run(frames);
+    return GarbageRun(model, oracle, garbage, seed).run(frames);
 }
 
 } // namespace tactus::test

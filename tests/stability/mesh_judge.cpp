@@ -2,10 +2,11 @@
 // Copyright the Tactus authors.
 #include "tests/stability/mesh_judge.hpp"
 
+#include "tests/stability/trial_terms.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <iterator>
 #include <map>
 
@@ -19,23 +20,10 @@ constexpr ModelId kObject{0};
 constexpr ModelId kTool{1};
 constexpr FacePair kNoPair{0xFFFF'FFFFU, 0xFFFF'FFFFU};
 
-std::string exactly(double value)
-{
-    std::array<char, 64> text{};
-    std::snprintf(text.data(), text.size(), "%.17g", value);
-    return text.data();
-}
-
 std::string text_of(const FacePair& faces)
 {
     return "faces " + std::to_string(faces.tool_face) + " of the tool and " +
            std::to_string(faces.face) + " of the object";
-}
-
-template <typename Real>
-bool is_between(double lower, Real distance, double upper)
-{
-    return static_cast<Real>(lower) <= distance && distance <= static_cast<Real>(upper);
 }
 
 /// The first that is in one of them only.

@@ -58,10 +58,10 @@ bool is_answered(const PairOutput& pair)
 }
 
 /// The frames of one trial and what is to be said of them.
-class Trial
+class MeshRun
 {
 public:
-    Trial(const MeshTrial& trial, MeshMotion& motion)
+    MeshRun(const MeshTrial& trial, MeshMotion& motion)
         : trial_(trial)
         , motion_(motion)
         , rig_({&trial.object, &trial.tool}, rig_options(trial))
@@ -183,20 +183,20 @@ MeshFigures run_mesh_trial(const MeshTrial& trial)
 {
     Random random = Random::seeded(trial.seed);
     RandomMeshMotion motion(trial.tool, trial.object, trial.tree, trial.scale, random);
-    return Trial(trial, motion).run();
+    return MeshRun(trial, motion).run();
 }
 
 MeshFigures run_mesh_slide(const MeshTrial& trial)
 {
     Random random = Random::seeded(trial.seed);
     MeshSlide motion(trial.tool, trial.object, trial.tree, trial.scale, random);
-    return Trial(trial, motion).run();
+    return MeshRun(trial, motion).run();
 }
 
 MeshFigures run_coincident_meshes(const MeshTrial& trial)
 {
     CoincidentMotion motion(trial.tool, trial.object);
-    return Trial(trial, motion).run();
+    return MeshRun(trial, motion).run();
 }
 
 TrialFigures run_mesh_twin(const MeshTrial& trial)

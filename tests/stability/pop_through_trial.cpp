@@ -2,9 +2,11 @@
 // Copyright the Tactus authors.
 #include "tests/stability/pop_through_trial.hpp"
 
+#include "tests/shared/period.hpp"
 #include "tests/shared/safe_force.hpp"
 #include "tests/stability/proxy_trail.hpp"
 #include "tests/stability/random_motion.hpp"
+#include "tests/stability/trial_terms.hpp"
 
 #include <array>
 #include <cmath>
@@ -17,11 +19,6 @@ namespace tactus::test
 namespace
 {
 
-constexpr double kSmallest_m = 0.1; ///< Diagonals of objects.
-constexpr double kLargest_m = 0.2;
-constexpr double kFrame_s = 1e-3;
-
-constexpr double kForceMax_n = 8.0; ///< As with_tool() has it.
 constexpr double kForceRounding_n = 1e-9;
 
 /// Of closing in: the tool's radius, and how long the objects stay where they are.
@@ -178,7 +175,7 @@ public:
     ClosingRound(const ClosingTrial& trial, const RigOptions& options, Jaws& jaws,
                  PopThroughJudge& judge)
         : rig_(trial.model, options)
-        , safe_(rig_.frame().tool(0).spec(), kFrame_s)
+        , safe_(rig_.frame().tool(0).spec(), kPeriod_s)
         , jaws_(jaws)
         , judge_(judge)
     {
@@ -192,13 +189,13 @@ public:
         const FrameOutput output = rig_.step(Vec3(0.0, 0.0, 0.0));
         const ToolOutput& tool = output.tools[0];
         judge_.judge(rig_, tool, activity);
-        squeezed_s_ = tool.squeezed ? squeezed_s_ + kFrame_s : 0.0;
+        squeezed_s_ = tool.squeezed ? squeezed_s_ + kPeriod_s : 0.0;
         if (tool.squeezed != has_fault(output.faults, FrameFault::proxy_squeezed))
         {
             judge_.flag("the frame's fault and the tool's differ");
         }
         const Vec3 safe_n = safe_.step(tool, Vec3(0.0, 0.0, 0.0));
-        if (squeezed_s_ > kFadeTime_s + kFrame_s)
+        if (squeezed_s_ > kFadeTime_s + kPeriod_s)
         {
             ++judge_.figures().faded;
             if (safe_n.norm() > kForceRounding_n)
@@ -228,7 +225,7 @@ void close_and_open(ClosingRound& round, double open_m, double speed_m_per_s,
     bool is_squeezed = false;
     while (half_gap_m > 0.0 && !is_squeezed)
     {
-        half_gap_m -= speed_m_per_s * kFrame_s;
+        half_gap_m -= speed_m_per_s * kPeriod_s;
         is_squeezed = round.step(half_gap_m, "closing");
     }
     for (std::uint32_t frame = 0; frame < kRestFrames; ++frame)
@@ -237,7 +234,7 @@ void close_and_open(ClosingRound& round, double open_m, double speed_m_per_s,
     }
     while (half_gap_m < open_m)
     {
-        half_gap_m += speed_m_per_s * kFrame_s;
+        half_gap_m += speed_m_per_s * kPeriod_s;
         round.step(half_gap_m, "opening");
     }
     for (std::uint32_t frame = 0; frame < kRestFrames; ++frame)

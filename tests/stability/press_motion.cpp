@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #include "tests/stability/press_motion.hpp"
 
+#include "tests/shared/period.hpp"
+
 #include <algorithm>
 #include <array>
 
@@ -13,7 +15,6 @@ namespace
 
 /// Of the ball that slides along the surface, whatever the tool is.
 constexpr double kGuide_diag = 0.01;
-constexpr double kFrame_s = 1e-3;
 constexpr double kLeastDepth_m = 0.5e-3;
 constexpr double kMostDepth_m = 1e-3;
 constexpr double kLifted_m = -3e-3;
@@ -49,7 +50,7 @@ void PressMotion::slide_from(const Vec3& place_m, double speed_diag_per_s)
     SlideManner manner;
     manner.diagonal_m = model_.diagonal_m;
     manner.radius_diag = kGuide_diag;
-    manner.step_m = speed_diag_per_s * kFrame_s * model_.diagonal_m;
+    manner.step_m = speed_diag_per_s * kPeriod_s * model_.diagonal_m;
     manner.turn_rate = [rate = random_.between(-1.0, 1.0)](std::uint64_t) { return rate; };
     slide_.emplace(tree_, manner, place_m);
 }
@@ -58,7 +59,7 @@ void PressMotion::begin()
 {
     frame_ = 0;
     pressed_m_ = random_.between(kLeastDepth_m, kMostDepth_m);
-    change_m_ = random_.between(kSlowest_m_per_s, kFastest_m_per_s) * kFrame_s;
+    change_m_ = random_.between(kSlowest_m_per_s, kFastest_m_per_s) * kPeriod_s;
     const bool hops = activity_ == Activity::hop;
     frames_left_ = kHopFrames + random_.below(hops ? kHopFrames : 4 * kHopFrames);
     const double slow = random_.between(kSlowestSlide_diag_per_s, kFastestSlide_diag_per_s);

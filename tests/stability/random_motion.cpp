@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #include "tests/stability/random_motion.hpp"
 
+#include "tests/shared/period.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -16,8 +18,7 @@ namespace
 constexpr double kSlowest_diag = 0.05e-3;
 constexpr double kFastest_diag = 2e-3;
 constexpr double kTap_diag = 0.015;
-constexpr std::uint32_t kTapFrames = 40;
-constexpr double kFrame_s = 1e-3;
+constexpr std::uint32_t kShakeFrames = 40;
 constexpr double kFastestSpin_rad = 0.02;
 constexpr std::uint32_t kLongest = 90;
 
@@ -43,7 +44,7 @@ RandomMotion::RandomMotion(const TestModel& model, const FaceTree& tree, double 
 
 void RandomMotion::tap_up_to(double speed_m_per_s)
 {
-    const double angular_speed = 2.0 * std::numbers::pi / (kTapFrames * kFrame_s);
+    const double angular_speed = 2.0 * std::numbers::pi / (kShakeFrames * kPeriod_s);
     farthest_tap_m_ = speed_m_per_s / angular_speed / moment_.pose.scale;
 }
 
@@ -100,7 +101,7 @@ void RandomMotion::begin_tap()
 /// Through the surface and back.
 void RandomMotion::tap()
 {
-    const double phase = 2.0 * std::numbers::pi * frame_ / kTapFrames;
+    const double phase = 2.0 * std::numbers::pi * frame_ / kShakeFrames;
     moment_.goal_m = to_world(moment_.pose, Vec3(place_ + tap_m_ * std::cos(phase) * direction_));
 }
 

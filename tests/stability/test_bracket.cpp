@@ -20,7 +20,7 @@ namespace tactus::test
 namespace
 {
 
-constexpr std::uint32_t kFrames = 150;
+constexpr std::uint32_t kBracketFrames = 150;
 /// Of the frames without a hardship nearly all have an answer; jumps and what is carried cost some.
 constexpr double kAnswered = 0.8;
 
@@ -50,7 +50,7 @@ class Bracket : public testing::TestWithParam<std::size_t>
 
 TEST_P(Bracket, holds_and_budgets_are_kept_whatever_runs_out)
 {
-    expect_sound_brackets(generated_model(GetParam()), GetParam(), kFrames);
+    expect_sound_brackets(generated_model(GetParam()), GetParam(), kBracketFrames);
 }
 
 INSTANTIATE_TEST_SUITE_P(generated, Bracket,
@@ -67,7 +67,7 @@ TEST_P(KnownBracket, holds_and_budgets_are_kept_whatever_runs_out)
     {
         GTEST_SKIP() << "TACTUS_MESHES is not set";
     }
-    expect_sound_brackets(*model, 50 + model->faces.size() % 50, kFrames);
+    expect_sound_brackets(*model, 50 + model->faces.size() % 50, kBracketFrames);
 }
 
 // The largest takes seconds to encode: in the extended run.

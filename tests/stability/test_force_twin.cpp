@@ -17,7 +17,7 @@ namespace tactus::test
 namespace
 {
 
-constexpr std::uint32_t kFrames = 2'500;
+constexpr std::uint32_t kForceFrames = 2'500;
 
 void print(const ForceTwinFigures& figures)
 {
@@ -42,9 +42,9 @@ TEST_P(ForceTwin, the_force_changes_as_on_the_full_mesh)
     for (const Hardship& hardship : force_hardships(model))
     {
         const ForceTwinFigures sut = run_force_twin_trial(
-            {model, tree, hardship, seed_of(20'261'800 + GetParam()), kFrames});
+            {model, tree, hardship, seed_of(20'261'800 + GetParam()), kForceFrames});
         print(sut);
-        EXPECT_GT(sut.steps.trials, kFrames / 8);
+        EXPECT_GT(sut.steps.trials, kForceFrames / 8);
         EXPECT_TRUE(sut.hold()) << sut.after_waits.summary();
     }
 }
@@ -57,9 +57,9 @@ TEST(ForceTwins, hold_for_two_tools_that_share_the_budgets)
     const TestModel& model = small_model(0);
     const FaceTree tree(model.faces);
     const ForceTwinFigures sut = run_force_twin_trial(
-        {model, tree, force_hardships(model)[5], seed_of(20'261'810), kFrames, 2});
+        {model, tree, force_hardships(model)[5], seed_of(20'261'810), kForceFrames, 2});
     print(sut);
-    EXPECT_GT(sut.steps.trials, kFrames / 2);
+    EXPECT_GT(sut.steps.trials, kForceFrames / 2);
     EXPECT_TRUE(sut.hold()) << sut.after_waits.summary();
 }
 

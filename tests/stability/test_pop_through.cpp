@@ -22,7 +22,7 @@ namespace tactus::test
 namespace
 {
 
-constexpr std::uint32_t kFrames = 100;
+constexpr std::uint32_t kPopFrames = 100;
 
 const TestModel& notched_cube()
 {
@@ -38,7 +38,7 @@ void expect_no_crossing(const TestModel& model, std::uint64_t own_seed)
     {
         own += 100;
         const PopThroughFigures sut =
-            run_pop_through_trial({model, tree, hardship, seed_of(own), kFrames});
+            run_pop_through_trial({model, tree, hardship, seed_of(own), kPopFrames});
         EXPECT_TRUE(sut.crossings.holds()) << sut.crossings.summary();
         EXPECT_TRUE(sut.run_over.holds()) << sut.run_over.summary();
         in_contact += sut.in_contact;

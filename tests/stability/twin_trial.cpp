@@ -8,6 +8,7 @@
 #include "tests/shared/surface_slide.hpp"
 #include "tests/stability/core_twin.hpp"
 #include "tests/stability/same_bits.hpp"
+#include "tests/stability/trial_terms.hpp"
 #include "tests/stability/whole_model.hpp"
 
 #include <algorithm>
@@ -21,12 +22,11 @@ namespace tactus::test
 namespace
 {
 
-constexpr double kRadius_diag = 0.01;
 constexpr double kSpeed_diag = 0.1e-3; ///< A frame of 1 ms: 0.1 diag/s.
 /// Cores are tried where the sphere's ball is certified: in the middle of it, and so far out.
 constexpr double kCoreSize_diag = 0.004;
 constexpr double kCoreReach_diag = 0.0102;
-constexpr std::uint32_t kSettling = 100; ///< Frames in which the front comes to the tool.
+constexpr std::uint32_t kTwinSettling = 100; ///< Frames in which the front comes to the tool.
 
 /// An exact face and where it is.
 struct NearFace
@@ -151,10 +151,10 @@ TwinFigures run_twin_trial(const TwinTrial& trial)
         trial.model.name + ", uncertified", 0, 0.0, kUncertifiedShare, "of the frames", 0, {}};
     figures.cores = {trial.model.name + ", contacts", 0, 0.0, 0.0, "differences", 0, {}};
     std::uint64_t open = 0;
-    for (std::uint32_t frame = 0; frame < trial.frames + kSettling; ++frame)
+    for (std::uint32_t frame = 0; frame < trial.frames + kTwinSettling; ++frame)
     {
         const PairOutput pair = rig.step(slide.next()).pairs[0];
-        if (frame < kSettling)
+        if (frame < kTwinSettling)
         {
             continue;
         }

@@ -39,10 +39,10 @@ struct ContactLedger
     HandAndDeviceEnergy begin;
 };
 
-class Trial
+class WallRun
 {
 public:
-    explicit Trial(const WallTrial& trial)
+    explicit WallRun(const WallTrial& trial)
         : trial_(trial)
         , sim_(HandAndDevice::create({trial.device, trial.hand, trial.period_s, trial.start_m})
                    .value())
@@ -167,7 +167,7 @@ private:
 
 WallFigures run_wall_trial(const WallTrial& trial)
 {
-    return Trial(trial).run();
+    return WallRun(trial).run();
 }
 
 std::function<double(double)> press(double from_m, double depth_m)

@@ -26,15 +26,7 @@ constexpr auto kRenewal = std::chrono::milliseconds(200);
 /// Nothing came for this long though something was asked for: the credit is written off.
 constexpr auto kWriteOff = std::chrono::milliseconds(400);
 /// Samples taken in one poll; the rest waits in the reader for the next one.
-constexpr std::size_t kSamplesPerPoll = 256;
-
-ControllerId random_controller()
-{
-    const std::array<std::uint64_t, 2> bits{random_bits(), random_bits()};
-    ControllerId id{};
-    std::memcpy(id.data(), bits.data(), id.size());
-    return id;
-}
+constexpr std::size_t kPiecesPerPoll = 256;
 
 } // namespace
 
@@ -153,7 +145,7 @@ void DdsLink::adopt(const Catalogue::Offer& offer)
 
 void DdsLink::take_pieces(PieceSink& sink)
 {
-    take_each<tactus_v1_Pieces>(chunks_.handle, kSamplesPerPoll,
+    take_each<tactus_v1_Pieces>(chunks_.handle, kPiecesPerPoll,
                                 [&](const tactus_v1_Pieces& sample, const dds_sample_info_t& info)
                                 {
                                     if (!info.valid_data || sample.host_epoch != host_epoch_)

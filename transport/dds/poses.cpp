@@ -20,7 +20,7 @@ namespace
 {
 
 /// Samples taken in one poll: the reader keeps one for each object of each host.
-constexpr std::size_t kSamplesPerPoll = 256;
+constexpr std::size_t kPosesPerPoll = 256;
 
 /// So that a publisher that starts again under the same epoch counts on from above its last one:
 /// none sends a thousand million poses a second.
@@ -157,7 +157,7 @@ PoseReader::PoseReader(const Catalogue& catalogue, std::vector<ModelIdentity> ob
 void PoseReader::poll(const std::function<void(const PoseNews&)>& take)
 {
     take_each<tactus_v1_ObjectPose>(
-        reader_.handle, kSamplesPerPoll,
+        reader_.handle, kPosesPerPoll,
         [&](const tactus_v1_ObjectPose& sample, const dds_sample_info_t& info)
         {
             if (info.valid_data)

@@ -35,14 +35,6 @@ constexpr unsigned bit_when(bool is_so, unsigned bit)
     return is_so ? bit : 0U;
 }
 
-ControllerId random_controller()
-{
-    const std::array<std::uint64_t, 2> bits{random_bits(), random_bits()};
-    ControllerId id{};
-    std::memcpy(id.data(), bits.data(), id.size());
-    return id;
-}
-
 template <std::size_t Size>
 std::string text_of(const char (&text)[Size]) // NOLINT: idlc's type.
 {

@@ -172,6 +172,14 @@ std::uint64_t random_bits()
     return (std::uint64_t{system()} << 32U) | system();
 }
 
+ControllerId random_controller()
+{
+    const std::array<std::uint64_t, 2> bits{random_bits(), random_bits()};
+    ControllerId id{};
+    std::memcpy(id.data(), bits.data(), id.size());
+    return id;
+}
+
 bool is_matched(const Endpoint& writer)
 {
     dds_publication_matched_status_t status = {};

@@ -55,6 +55,7 @@ enum class Topic : std::uint8_t
 
 /// Random bits from the system: host epochs and controller ids.
 [[nodiscard]] std::uint64_t random_bits();
+[[nodiscard]] ControllerId random_controller();
 
 /// Whether a reader or writer has anybody on the other side.
 [[nodiscard]] bool is_matched(const Endpoint& writer);

@@ -13,7 +13,7 @@ namespace tactus::detail
 namespace
 {
 
-constexpr std::uint32_t kNone = 0xFFFF'FFFFU;
+constexpr std::uint32_t kNoItem = 0xFFFF'FFFFU;
 
 /// Finalizer of the splitmix64 kind: every input bit reaches every output bit.
 std::uint64_t mix(std::uint64_t x)
@@ -45,18 +45,18 @@ std::uint64_t hash_of(const Face& face)
 class FirstEqualTable
 {
 public:
-    explicit FirstEqualTable(std::size_t items) : slots_(std::bit_ceil(2 * items + 2), kNone) {}
+    explicit FirstEqualTable(std::size_t items) : slots_(std::bit_ceil(2 * items + 2), kNoItem) {}
 
     /// The first item equal to `item`, which is `item` itself when it is new and gets inserted.
     template <typename IsEqual>
     std::uint32_t find_or_insert(std::uint32_t item, std::uint64_t hash, IsEqual is_equal)
     {
         std::size_t at = hash & (slots_.size() - 1);
-        while (slots_[at] != kNone && !is_equal(slots_[at]))
+        while (slots_[at] != kNoItem && !is_equal(slots_[at]))
         {
             at = (at + 1) & (slots_.size() - 1);
         }
-        slots_[at] = slots_[at] == kNone ? item : slots_[at];
+        slots_[at] = slots_[at] == kNoItem ? item : slots_[at];
         return slots_[at];
     }
 
@@ -140,7 +140,7 @@ std::size_t drop_duplicate_faces(std::vector<Face>& faces)
 
 std::size_t drop_isolated_vertices(TriangleMesh& mesh)
 {
-    std::vector<std::uint32_t> number(mesh.positions.size(), kNone);
+    std::vector<std::uint32_t> number(mesh.positions.size(), kNoItem);
     for (const Face& face : mesh.faces)
     {
         number[face[0]] = number[face[1]] = number[face[2]] = 0;
@@ -148,7 +148,7 @@ std::size_t drop_isolated_vertices(TriangleMesh& mesh)
     std::uint32_t kept = 0;
     for (std::size_t v = 0; v < number.size(); ++v)
     {
-        if (number[v] != kNone)
+        if (number[v] != kNoItem)
         {
             mesh.positions[kept] = mesh.positions[v];
             number[v] = kept++;

@@ -33,7 +33,7 @@ namespace tactus::detail
 namespace
 {
 
-constexpr std::uint32_t kNone = 0xFFFF'FFFFU;
+constexpr std::uint32_t kNoTwin = 0xFFFF'FFFFU;
 
 std::uint32_t next(std::uint32_t h)
 {
@@ -53,7 +53,7 @@ public:
         : faces_(faces)
         , vertex_count_(vertex_count)
         , is_copy_(std::move(is_copy))
-        , twin_(3 * faces.size(), kNone)
+        , twin_(3 * faces.size(), kNoTwin)
     {
     }
 
@@ -161,11 +161,11 @@ private:
     /// The fan of the first corner found at a vertex keeps the vertex; later fans get copies.
     void give_each_fan_a_vertex()
     {
-        std::vector<std::uint32_t> vertex_of(twin_.size(), kNone); // Per corner.
+        std::vector<std::uint32_t> vertex_of(twin_.size(), kNoTwin); // Per corner.
         std::vector<bool> taken(vertex_count_, false);
         for (std::uint32_t corner = 0; corner < vertex_of.size(); ++corner)
         {
-            if (vertex_of[corner] != kNone)
+            if (vertex_of[corner] != kNoTwin)
             {
                 continue;
             }
@@ -194,12 +194,12 @@ private:
         {
             vertex_of[corner] = vertex;
             corner = twin_[previous(corner)];
-        } while (corner != kNone && corner != start);
+        } while (corner != kNoTwin && corner != start);
         if (corner == start)
         {
             return;
         }
-        for (std::uint32_t h = twin_[start]; h != kNone; h = twin_[corner]) // Clockwise.
+        for (std::uint32_t h = twin_[start]; h != kNoTwin; h = twin_[corner]) // Clockwise.
         {
             corner = next(h);
             vertex_of[corner] = vertex;

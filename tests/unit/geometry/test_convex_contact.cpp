@@ -18,7 +18,7 @@ namespace tactus::test
 namespace
 {
 
-ConvexContact ask(const ConvexBody& body, const Triangle& triangle)
+ConvexContact ask_contact(const ConvexBody& body, const Triangle& triangle)
 {
     Vec3 direction(0, 0, 0);
     return contact_of(body, triangle, direction);
@@ -84,7 +84,7 @@ TEST(ConvexContact, of_small_hulls_is_what_exact_linear_algebra_says)
         const std::vector<Vec3> vertices = placed(grid, corners);
         const Hull hull = hull_of(vertices);
 
-        const ConvexContact contact = ask(hull.body(), grid.placed(triangle));
+        const ConvexContact contact = ask_contact(hull.body(), grid.placed(triangle));
 
         check(contact, expected);
         ASSERT_FALSE(HasFatalFailure()) << "case " << i;
@@ -119,7 +119,7 @@ TEST(ConvexContact, of_solid_hulls_is_what_all_separating_axes_say)
         const std::vector<Vec3> vertices = placed(grid, corners);
         const Hull hull = hull_of(vertices);
 
-        const ConvexContact contact = ask(hull.body(), grid.placed(triangle));
+        const ConvexContact contact = ask_contact(hull.body(), grid.placed(triangle));
 
         check(contact, expected);
         ASSERT_FALSE(HasFatalFailure()) << "case " << i;
@@ -144,7 +144,7 @@ TEST(ConvexContact, of_boxes_is_what_their_kernel_says)
         const bool expected = meet(scene.box, scene.triangle);
         tally.add(expected);
 
-        const ConvexContact contact = ask(hull.body(), scene.triangle);
+        const ConvexContact contact = ask_contact(hull.body(), scene.triangle);
 
         const bool is_near =
             closest_points(scene.box, scene.triangle).distance <= 2.0 * contact.nearest.rounding;
@@ -173,7 +173,7 @@ TEST(ConvexContact, of_capsules_is_what_their_kernel_says)
         const ClosestPoints kernel = closest_points(capsule, pair.second);
         tally.add(kernel.meet);
 
-        const ConvexContact contact = ask(body.body(), pair.second);
+        const ConvexContact contact = ask_contact(body.body(), pair.second);
 
         const double slack = 1e-9 * local_length(body.body(), pair.second);
         ASSERT_TRUE(contact.meet == kernel.meet || std::abs(kernel.distance) <= slack)
@@ -224,7 +224,7 @@ TEST(ConvexContact, the_bound_has_the_last_word_and_says_so)
     const Liar large_at_last{1};
     const ConvexBody body{&Liar::support, &large_at_last, Vec3(0, 0, 0), 4.0};
 
-    const ConvexContact contact = ask(body, triangle);
+    const ConvexContact contact = ask_contact(body, triangle);
 
     EXPECT_NEAR(contact.nearest.lower, 2.0, 1e-12);
     EXPECT_FALSE(contact.meet);
@@ -246,7 +246,7 @@ TEST(ConvexContact, leaves_the_heap_alone)
         const std::uint64_t before = allocation_counter::of_this_thread().allocations;
         allocation_counter::mark_this_thread(true);
         const Result<Hull, HullError> hull = Hull::create(scene.vertices);
-        const ConvexContact contact = ask(hull.value().body(), scene.triangle);
+        const ConvexContact contact = ask_contact(hull.value().body(), scene.triangle);
         allocation_counter::mark_this_thread(false);
         calls += allocation_counter::of_this_thread().allocations - before;
         ASSERT_TRUE(is_finite(contact.nearest));

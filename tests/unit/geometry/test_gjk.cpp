@@ -12,7 +12,7 @@ namespace tactus::test
 namespace
 {
 
-GjkAnswer ask(const ConvexBody& body, const Triangle& triangle)
+GjkAnswer ask_gjk(const ConvexBody& body, const Triangle& triangle)
 {
     Vec3 direction(0, 0, 0);
     return gjk_distance(body, triangle, direction);
@@ -97,7 +97,7 @@ TEST_P(GjkTest, bounds_of_hulls_hold_the_distance_and_keep_the_law)
         const Hull hull = hull_of(scene.vertices);
         const double length = local_length(hull.body(), scene.triangle);
 
-        const GjkAnswer answer = ask(hull.body(), scene.triangle);
+        const GjkAnswer answer = ask_gjk(hull.body(), scene.triangle);
 
         ASSERT_TRUE(is_finite(answer)) << "case " << i;
         ASSERT_EQ(broken_bound_of(answer, scene, length), "")
@@ -125,7 +125,7 @@ TEST_P(GjkTest, bounds_hold_wherever_it_begins_and_ends)
         const HullScene scene = hull_scene(GetParam().make(random), random);
         const Hull hull = hull_of(scene.vertices);
         const double length = local_length(hull.body(), scene.triangle);
-        const GjkAnswer usual = ask(hull.body(), scene.triangle);
+        const GjkAnswer usual = ask_gjk(hull.body(), scene.triangle);
         Vec3 direction = random.in_cube(1.0) * std::exp2(random.between(-900.0, 900.0));
         const GjkAnswer other = gjk_distance(hull.body(), scene.triangle, direction);
         const double limit = random.between(0.0, 1.2) * usual.upper;
@@ -154,7 +154,7 @@ TEST(Gjk, overlap_in_more_than_a_point_is_proven)
         const Vec3 inside = 0.4 * random.in_cube(1.0);
         const Triangle triangle{inside, inside + random.in_cube(2.0), inside + random.in_cube(2.0)};
 
-        const GjkAnswer answer = ask(hull.body(), triangle);
+        const GjkAnswer answer = ask_gjk(hull.body(), triangle);
 
         ASSERT_EQ(answer.upper, 0.0) << "case " << i;
         ASSERT_EQ(answer.lower, 0.0) << "case " << i;
@@ -182,7 +182,7 @@ TEST(Gjk, what_nearly_touches_is_not_proven_to_overlap)
         }
         const Hull hull = hull_of(vertices);
 
-        const GjkAnswer answer = ask(hull.body(), triangle);
+        const GjkAnswer answer = ask_gjk(hull.body(), triangle);
 
         ASSERT_EQ(answer.lower, 0.0) << "case " << i;
         ASSERT_LE(answer.upper, 2.0 * answer.rounding) << "case " << i;
@@ -235,7 +235,7 @@ TEST(Gjk, ends_when_the_bounds_are_as_near_as_the_tolerance_says_and_not_much_la
         const Vec3 far = random.in_cube(1.0).normalized() * random.between(5.0, 30.0);
         const Triangle triangle{far + random.in_cube(2.0), far + random.in_cube(2.0),
                                 far + random.in_cube(2.0)};
-        const GjkAnswer answer = ask(round.body(), triangle);
+        const GjkAnswer answer = ask_gjk(round.body(), triangle);
         const double apart = answer.upper - answer.lower - 4.0 * answer.rounding;
         ASSERT_LT(answer.iterations, kGjkIterations) << i;
         ASSERT_LE(apart, kGjkRelativeGap * answer.upper) << i;
@@ -255,8 +255,8 @@ TEST(Gjk, repeats_its_bits)
         const std::vector<Vec3> elsewhere = scene.vertices;
         const Hull same = hull_of(elsewhere);
 
-        const GjkAnswer answer = ask(hull.body(), scene.triangle);
-        const GjkAnswer again = ask(same.body(), scene.triangle);
+        const GjkAnswer answer = ask_gjk(hull.body(), scene.triangle);
+        const GjkAnswer again = ask_gjk(same.body(), scene.triangle);
 
         ASSERT_EQ(answer.upper, again.upper);
         ASSERT_EQ(answer.lower, again.lower);
@@ -279,7 +279,7 @@ TEST(Gjk, wrong_answers_are_found)
         const HullScene scene = hull_scene(pair_classes()[0].make(random), random);
         const Hull hull = hull_of(scene.vertices);
         const double length = local_length(hull.body(), scene.triangle);
-        const GjkAnswer answer = ask(hull.body(), scene.triangle);
+        const GjkAnswer answer = ask_gjk(hull.body(), scene.triangle);
         GjkAnswer too_large = answer;
         too_large.lower = answer.lower + 1e-6;
         too_large.upper = answer.upper + 1e-6;

@@ -17,7 +17,7 @@ namespace
 {
 
 constexpr std::uint32_t kCuts = 8; ///< Of each kind.
-constexpr std::size_t kPoints = 11'000;
+constexpr std::size_t kCutPoints = 11'000;
 
 class CertifiedCuts : public testing::TestWithParam<SampleMesh>
 {
@@ -30,7 +30,7 @@ TEST_P(CertifiedCuts, cover_the_source_and_would_not_with_a_fifth_less)
     {
         GTEST_SKIP() << "TACTUS_MESHES is not set";
     }
-    expect_sound_bounds(*model, kCuts, kPoints, 20'261'121 + Random::seed());
+    expect_sound_bounds(*model, kCuts, kCutPoints, 20'261'121 + Random::seed());
 }
 
 INSTANTIATE_TEST_SUITE_P(Generated, CertifiedCuts, testing::ValuesIn(generated_meshes()),

@@ -27,7 +27,7 @@ TriangleMesh mesh_of(std::uint32_t vertices, std::vector<Face> faces)
     return mesh;
 }
 
-PreparedMesh prepared(const TriangleMesh& mesh)
+PreparedMesh manifold_of(const TriangleMesh& mesh)
 {
     auto result = prepare_mesh(mesh, {.fit_diagonal_m = 1.0, .position_bits = 24});
     EXPECT_TRUE(result) << result.error().text;
@@ -76,7 +76,7 @@ TEST(Manifold, leaves_a_manifold_mesh_as_it_is)
 
 TEST(Manifold, cuts_a_book_of_three_pages_at_its_spine)
 {
-    const auto sut = prepared(mesh_of(5, {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}}));
+    const auto sut = manifold_of(mesh_of(5, {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}}));
     EXPECT_EQ(sut.cut_edges, 1U);
     EXPECT_EQ(sut.added_vertices, 4U);
     EXPECT_EQ(border_edges(sut.mesh.faces), 9U);
@@ -87,7 +87,7 @@ TEST(Manifold, parts_two_cones_that_share_an_apex)
 {
     auto faces = disc(0, 1, 6);
     join(faces, disc(0, 7, 4));
-    const auto sut = prepared(mesh_of(11, faces));
+    const auto sut = manifold_of(mesh_of(11, faces));
     EXPECT_EQ(sut.cut_edges, 0U);
     EXPECT_EQ(sut.added_vertices, 1U);
     EXPECT_EQ(sut.mesh.positions.back(), sut.mesh.positions[0]);
@@ -105,7 +105,7 @@ TEST(Manifold, cuts_a_moebius_strip_once)
         const std::uint32_t d = i < 4 ? 2 * i + 3 : 0;
         join(faces, {{a, c, b}, {b, c, d}});
     }
-    const auto sut = prepared(mesh_of(10, faces));
+    const auto sut = manifold_of(mesh_of(10, faces));
     EXPECT_EQ(sut.cut_edges, 1U);
     EXPECT_EQ(sut.added_vertices, 2U);
     EXPECT_EQ(euler_characteristic(sut.mesh.faces, sut.mesh.positions.size()), 1)
@@ -116,7 +116,7 @@ TEST(Manifold, cuts_round_a_flipped_face)
 {
     auto mesh = tetrahedron();
     std::swap(mesh.faces[1][0], mesh.faces[1][1]);
-    const auto sut = prepared(mesh);
+    const auto sut = manifold_of(mesh);
     EXPECT_EQ(sut.cut_edges, 3U);
     EXPECT_EQ(border_edges(sut.mesh.faces), 6U);
     EXPECT_EQ(sut.mesh.positions.size(), 7U);
@@ -126,7 +126,7 @@ TEST(Manifold, keeps_one_of_duplicate_faces)
 {
     auto mesh = tetrahedron();
     mesh.faces.push_back({mesh.faces[0][1], mesh.faces[0][2], mesh.faces[0][0]});
-    const auto sut = prepared(mesh);
+    const auto sut = manifold_of(mesh);
     EXPECT_EQ(sut.duplicate_faces, 1U);
     EXPECT_EQ(sut.mesh.faces, tetrahedron().faces);
 }
@@ -151,7 +151,7 @@ TEST(Manifold, parts_a_two_sided_sheet_into_two_whole_sheets)
                 faces.push_back({f[0], f[2], f[1]});
             }
         }
-        const auto sut = prepared(mesh_of(9, faces));
+        const auto sut = manifold_of(mesh_of(9, faces));
         EXPECT_EQ(sut.mesh.positions.size(), 18U);
         EXPECT_EQ(border_edges(sut.mesh.faces), 16U);
         EXPECT_EQ(sut.cut_edges, 0U);
@@ -164,7 +164,7 @@ TEST(Manifold, joins_a_fin_to_neither_side)
     auto mesh = tetrahedron();
     mesh.positions.push_back({-1, -1, -1});
     mesh.faces.push_back({0, 1, 4});
-    const auto sut = prepared(mesh);
+    const auto sut = manifold_of(mesh);
     EXPECT_EQ(sut.mesh.faces.size(), 5U);
     EXPECT_EQ(sut.cut_edges, 1U);
     // The tetrahedron's fans at both ends of the edge still share both ends, so it stays closed.
@@ -178,7 +178,7 @@ TEST(Manifold, splits_two_cubes_that_share_an_edge_into_closed_pieces)
     mesh.positions.push_back({0, -1, 0});
     mesh.positions.push_back({0.1, -0.3, -1});
     join(mesh.faces, {{0, 5, 1}, {0, 4, 5}, {1, 5, 4}, {0, 1, 4}});
-    const auto sut = prepared(mesh);
+    const auto sut = manifold_of(mesh);
     EXPECT_EQ(sut.cut_edges, 1U);
     EXPECT_EQ(border_edges(sut.mesh.faces), 0U);
     EXPECT_EQ(sut.mesh.positions.size(), 8U);

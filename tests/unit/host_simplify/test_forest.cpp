@@ -20,7 +20,7 @@ namespace tactus::test
 namespace
 {
 
-constexpr std::uint32_t kNoFace = Collapse::kNoFace;
+constexpr std::uint32_t kNoStarFace = Collapse::kNoFace;
 
 void expect_original(const QuantisedMesh& mesh, const ForestReplay& sut)
 {
@@ -92,7 +92,7 @@ TEST(Forest, the_last_change_of_a_face_is_by_the_finest_of_its_corners)
     {
         SCOPED_TRACE(name);
         const Simplification forest = simplified(mesh);
-        std::vector<std::uint32_t> removed_by(mesh.positions.size(), kNoFace);
+        std::vector<std::uint32_t> removed_by(mesh.positions.size(), kNoStarFace);
         for (std::uint32_t i = 0; i < forest.collapses.size(); ++i)
         {
             removed_by[forest.collapses[i].vertex] = i;
@@ -109,7 +109,7 @@ TEST(Forest, the_last_change_of_a_face_is_by_the_finest_of_its_corners)
                     const std::uint32_t finest =
                         std::min({removed_by[face.corners[0]], removed_by[face.corners[1]],
                                   removed_by[face.corners[2]]});
-                    const bool changed = sut.last_change(f) != kNoFace;
+                    const bool changed = sut.last_change(f) != kNoStarFace;
                     ASSERT_TRUE(!changed || sut.last_change(f) == finest) << "face " << f;
                 }
             }
@@ -128,7 +128,7 @@ TEST(Forest, stars_keep_their_caps_and_order)
             ASSERT_LE(c.fan_size, kMaxFanFaces);
             for (std::uint32_t place = 2; place < kMaxStarFaces; ++place)
             {
-                ASSERT_EQ(c.star[place] != kNoFace, place < 2 + c.fan_size);
+                ASSERT_EQ(c.star[place] != kNoStarFace, place < 2 + c.fan_size);
             }
         }
     }
@@ -151,7 +151,7 @@ TEST(Forest, a_star_in_the_mesh_before_its_collapse_is_a_counter_clockwise_fan)
             {
                 // A, then the fan, then B.
                 const std::uint32_t place = i == 0 ? 0 : (i == c.fan_size + 1 ? 1 : i + 1);
-                if (c.star[place] != kNoFace)
+                if (c.star[place] != kNoStarFace)
                 {
                     ASSERT_TRUE(present[c.star[place]]);
                     Corners turn = corners[c.star[place]];
@@ -162,18 +162,18 @@ TEST(Forest, a_star_in_the_mesh_before_its_collapse_is_a_counter_clockwise_fan)
                     round.push_back(turn);
                 }
             }
-            ASSERT_TRUE(c.star[0] == kNoFace || round.front()[1] == c.parent);
-            ASSERT_TRUE(c.star[1] == kNoFace || round.back()[2] == c.parent);
+            ASSERT_TRUE(c.star[0] == kNoStarFace || round.front()[1] == c.parent);
+            ASSERT_TRUE(c.star[1] == kNoStarFace || round.back()[2] == c.parent);
             const auto degree =
                 std::ranges::count_if(corners, [&](const Corners& face)
                                       { return std::ranges::count(face, c.vertex) > 0; });
             ASSERT_EQ(static_cast<std::size_t>(degree), round.size());
             for (std::uint32_t place = 0; place < 2 + c.fan_size; ++place)
             {
-                if (c.star[place] != kNoFace && place < 2)
+                if (c.star[place] != kNoStarFace && place < 2)
                 {
                     present[c.star[place]] = 0;
-                    corners[c.star[place]].fill(kNoFace);
+                    corners[c.star[place]].fill(kNoStarFace);
                 }
                 else if (place >= 2)
                 {
@@ -237,7 +237,7 @@ TEST(Forest, stars_of_one_round_are_disjoint_and_rounds_ascend)
             }
             for (const std::uint32_t face : c.star)
             {
-                ASSERT_TRUE(face == kNoFace || touched.insert(face).second);
+                ASSERT_TRUE(face == kNoStarFace || touched.insert(face).second);
             }
         }
         ASSERT_EQ(forest.rounds, round + 1);

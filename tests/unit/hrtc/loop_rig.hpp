@@ -7,6 +7,7 @@
 #include "platform/simulated/simulated_device.hpp"
 #include "platform/simulated/simulated_periodic_timer.hpp"
 #include "tests/shared/frame_rig.hpp"
+#include "tests/unit/hrtc/period.hpp"
 
 #include <algorithm>
 #include <array>
@@ -21,8 +22,6 @@
 namespace tactus::hrtc::test
 {
 
-inline constexpr Duration kPeriod = milliseconds(1);
-inline constexpr double kPeriod_s = 1e-3;
 /// FrameSetup::pose_age_max_ns.
 inline constexpr Duration kPoseAge = milliseconds(100);
 /// Deep enough for 1.7 N; without a force the hand sinks to where the spring makes 6 of 8 N.
@@ -31,6 +30,9 @@ inline constexpr double kPress_m = 0.012;
 inline constexpr std::uint64_t kSettled = 1'000;
 /// Of the pressed force, from frame to frame, when nobody interferes.
 inline constexpr double kOwnStep_n = 0.02;
+inline constexpr double kRounding_n = 1e-9;
+/// Steps of the way back, and what the frame's own force moves meanwhile.
+inline constexpr double kBackStep_n = 2.0 * 8.0 * kPeriod_s / kRiseTime_s + kOwnStep_n;
 
 /// Comes down on a place of the surface along its normal, presses and stays.
 class PressingHand final : public HandMotion

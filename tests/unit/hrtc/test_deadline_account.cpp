@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "platform/hrtc/deadline_account.hpp"
+#include "tests/unit/hrtc/period.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,8 +13,6 @@ namespace tactus::hrtc::test
 
 namespace
 {
-
-constexpr Duration kPeriod = milliseconds(1);
 
 /// A cycle in which nothing went wrong: one period, one sleep, 20 us of work.
 CycleMeasures clean_cycle()

@@ -19,9 +19,6 @@ namespace
 
 constexpr std::uint64_t kFadeFrames = 51; ///< kFadeTime_s, and one for rounding.
 constexpr std::uint64_t kBadFrames = 100; ///< That a cause lasts.
-constexpr double kRounding_n = 1e-9;
-/// Steps of the way back, and what the frame's own force moves meanwhile.
-constexpr double kBackStep_n = 2.0 * 8.0 * kPeriod_s / kRiseTime_s + kOwnStep_n;
 
 bool is_bad(std::uint64_t frame)
 {

@@ -16,10 +16,8 @@ namespace tactus::hrtc::test
 namespace
 {
 
-constexpr double kRounding_n = 1e-9;
-/// Steps of a fading force, and of one on its way back.
+/// Steps of a fading force.
 constexpr double kFadeStep_n = 8.0 * kPeriod_s / kFadeTime_s;
-constexpr double kBackStep_n = 2.0 * 8.0 * kPeriod_s / kRiseTime_s + kOwnStep_n;
 
 /// Puts a pose into the door before each frame for which `shift_m` says how far in x the object is
 /// from where it was placed; the hand comes down on it in -x.

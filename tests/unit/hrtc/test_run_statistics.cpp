@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "platform/hrtc/run_statistics.hpp"
+#include "tests/unit/hrtc/period.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,7 +17,6 @@ namespace
 constexpr std::uint32_t kModels = 2;
 constexpr std::uint32_t kTools = 1;
 constexpr std::uint32_t kPairs = kTools * kModels;
-constexpr Duration kPeriod = milliseconds(1);
 
 /// Frames of two models under one tool, one after the other.
 class StatisticsRig

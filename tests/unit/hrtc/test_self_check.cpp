@@ -3,6 +3,7 @@
 #include "platform/allocation_counter.hpp"
 #include "platform/hrtc/self_check.hpp"
 #include "platform/thread_usage.hpp"
+#include "tests/unit/hrtc/period.hpp"
 
 #include <gtest/gtest.h>
 
@@ -15,8 +16,6 @@ namespace tactus::hrtc::test
 
 namespace
 {
-
-constexpr Duration kPeriod = milliseconds(1);
 
 /// What the loop measures in a frame that is spoilt this way, on a machine that does nothing.
 CycleMeasures measures_of(std::optional<InjectedFault> fault)

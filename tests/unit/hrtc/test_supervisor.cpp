@@ -21,7 +21,7 @@ namespace
 constexpr Duration kHang = milliseconds(10);
 /// How late the machine is to wake the supervisor.
 constexpr Duration kLate = microseconds(50);
-constexpr double kBackStep_n = 8.0 * kPeriod_s / kRiseTime_s + kOwnStep_n;
+constexpr double kStepBack_n = 8.0 * kPeriod_s / kRiseTime_s + kOwnStep_n;
 
 /// What the hand felt while the loop hung in a reading, in steps of 10 us.
 struct Felt
@@ -137,7 +137,7 @@ TEST(Supervisor, a_loop_that_comes_back_fades_its_force_in_from_zero)
         LoopRig& rig = sut.rig();
         const double before_n = rig.written_n(kSettled - 1).norm();
         EXPECT_EQ(rig.written_n(kSettled).norm(), 0.0);
-        EXPECT_LE(rig.largest_step_n(kSettled, 1'900), kBackStep_n);
+        EXPECT_LE(rig.largest_step_n(kSettled, 1'900), kStepBack_n);
         EXPECT_NEAR(rig.written_n(1'900).norm(), before_n, 0.05 * before_n);
         const std::vector<SafetyEvent> events = rig.events();
         EXPECT_TRUE(std::ranges::any_of(events,

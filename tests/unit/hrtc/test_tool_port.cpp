@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "platform/hrtc/tool_port.hpp"
+#include "tests/unit/hrtc/period.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +14,7 @@ namespace tactus::hrtc
 namespace
 {
 
-constexpr double kPeriod_s = 1e-3;
+using test::kPeriod_s;
 
 /// Still, connected and held; keeps the last force that was written.
 class StillDevice final : public HapticDevice

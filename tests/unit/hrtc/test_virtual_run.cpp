@@ -8,6 +8,7 @@
 #include "platform/simulated/simulated_periodic_timer.hpp"
 #include "platform/wrapped_device.hpp"
 #include "tests/shared/frame_rig.hpp"
+#include "tests/unit/hrtc/period.hpp"
 
 #include <gtest/gtest.h>
 
@@ -25,7 +26,6 @@ namespace tactus::hrtc::test
 namespace
 {
 
-constexpr Duration kPeriod = milliseconds(1);
 constexpr std::uint64_t kFrames = 60'000 * TACTUS_VIRTUAL_MINUTES;
 constexpr std::uint64_t kHangSpacing = 7'919;
 constexpr Duration kHang = milliseconds(8); ///< Long enough for the supervisor.

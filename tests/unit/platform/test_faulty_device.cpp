@@ -54,14 +54,14 @@ bool is_same(const DeviceSample& a, const DeviceSample& b)
            a.deadman_held == b.deadman_held;
 }
 
-const DeviceFaultKind kKinds[] = {DeviceFaultKind::jitter,    DeviceFaultKind::dropout,
-                                  DeviceFaultKind::stuck,     DeviceFaultKind::nan,
-                                  DeviceFaultKind::time_jump, DeviceFaultKind::disconnect};
+const DeviceFaultKind kFaultKinds[] = {DeviceFaultKind::jitter,    DeviceFaultKind::dropout,
+                                       DeviceFaultKind::stuck,     DeviceFaultKind::nan,
+                                       DeviceFaultKind::time_jump, DeviceFaultKind::disconnect};
 
 TEST(FaultyDevice, is_the_device_itself_but_from_begin_to_end_of_a_fault)
 {
     const std::vector<DeviceSample> whole = readings(*walking_device());
-    for (const DeviceFaultKind kind : kKinds)
+    for (const DeviceFaultKind kind : kFaultKinds)
     {
         for (const DeviceFault fault : {DeviceFault{kind, 10, 5}, DeviceFault{kind, 1, 1},
                                         DeviceFault{kind, 29, 1'000'000'000}})

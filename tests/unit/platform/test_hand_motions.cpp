@@ -3,6 +3,7 @@
 #include "platform/simulated/hand_motions.hpp"
 #include "platform/simulated/landing_sites.hpp"
 #include "platform/simulated/simulated_device.hpp"
+#include "tests/shared/period.hpp"
 #include "tests/unit/platform/fake_wall.hpp"
 
 #include <gtest/gtest.h>
@@ -20,10 +21,11 @@ namespace tactus
 namespace
 {
 
+using test::kPeriod_s;
+
 constexpr double kDiagonal_m = 0.2;
 constexpr double kRadius_m = 0.0577;
 constexpr double kTool_m = 0.01 * kDiagonal_m;
-constexpr double kPeriod_s = 1e-3;
 
 const std::pair<const char*, MotionKind> kKinds[] = {
     {"script", MotionKind::script},     {"free", MotionKind::free},

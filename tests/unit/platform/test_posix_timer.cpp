@@ -15,7 +15,7 @@ namespace tactus
 namespace
 {
 
-constexpr Duration kPeriod = milliseconds(4);
+constexpr Duration kPosixPeriod = milliseconds(4);
 constexpr Duration kMargin = microseconds(400);
 
 // A handler is given nothing of the program's.
@@ -64,7 +64,7 @@ TEST(PosixPeriodicTimer, is_not_woken_early_by_a_signal)
 {
     const PosixClock clock;
     PosixPeriodicTimer sut;
-    ASSERT_TRUE(sut.start(kPeriod, kMargin));
+    ASSERT_TRUE(sut.start(kPosixPeriod, kMargin));
     const Interruptions interruptions;
     signals_seen = 0;
     int interrupted = 0;
@@ -88,7 +88,7 @@ TEST(PosixPeriodicTimer, gives_the_processor_up_but_for_the_margin)
     PosixPeriodicTimer sut;
     const MonotonicTime began = clock.now();
     const ThreadUsage before = read_thread_usage();
-    ASSERT_TRUE(sut.start(kPeriod, kMargin));
+    ASSERT_TRUE(sut.start(kPosixPeriod, kMargin));
     std::int64_t sleeps = 0;
     for (int i = 0; i < 20; ++i)
     {

@@ -12,8 +12,8 @@ namespace tactus
 namespace
 {
 
-constexpr Duration kPeriod = milliseconds(1);
-constexpr Duration kMargin = microseconds(100);
+constexpr Duration kTick = milliseconds(1);
+constexpr Duration kTickMargin = microseconds(100);
 
 Cycle next(PeriodicTimer& timer)
 {
@@ -25,7 +25,7 @@ TEST(SimulatedPeriodicTimer, starts_every_frame_on_the_nanosecond_while_nothing_
 {
     SimulatedClock clock(MonotonicTime{77});
     SimulatedPeriodicTimer sut(clock);
-    ASSERT_TRUE(sut.start(kPeriod, kMargin));
+    ASSERT_TRUE(sut.start(kTick, kTickMargin));
     for (std::int64_t i = 1; i <= 1'000; ++i)
     {
         const Cycle cycle = next(sut);
@@ -42,7 +42,7 @@ TEST(SimulatedPeriodicTimer, runs_a_frame_at_once_that_is_less_than_a_period_lat
     const std::array script{LateWake{1, microseconds(400)}};
     SimulatedClock clock;
     SimulatedPeriodicTimer sut(clock, script);
-    ASSERT_TRUE(sut.start(kPeriod, kMargin));
+    ASSERT_TRUE(sut.start(kTick, kTickMargin));
     static_cast<void>(next(sut));
     const Cycle late = next(sut);
     EXPECT_EQ(late.wake_lateness, microseconds(400));
@@ -56,7 +56,7 @@ TEST(SimulatedPeriodicTimer, moves_to_the_next_grid_point_after_a_late_wake_of_m
     const std::array script{LateWake{1, microseconds(53'700)}};
     SimulatedClock clock;
     SimulatedPeriodicTimer sut(clock, script);
-    ASSERT_TRUE(sut.start(kPeriod, kMargin));
+    ASSERT_TRUE(sut.start(kTick, kTickMargin));
     static_cast<void>(next(sut));
     const Cycle late = next(sut); // Due at 2 ms, woken at 55.6 ms.
     EXPECT_EQ(late.deadline.ns, 56'000'000);
@@ -74,7 +74,7 @@ TEST(SimulatedPeriodicTimer, tells_how_often_it_slept)
     // The second cycle's sleep ends late, and so does the one to the new grid point.
     const std::array script{LateWake{1, microseconds(5'300)}, LateWake{2, microseconds(7'300)}};
     SimulatedPeriodicTimer sut(clock, script);
-    ASSERT_TRUE(sut.start(kPeriod, kMargin));
+    ASSERT_TRUE(sut.start(kTick, kTickMargin));
     EXPECT_EQ(next(sut).sleeps, 1U);
     EXPECT_EQ(next(sut).sleeps, 3U);
     EXPECT_EQ(next(sut).sleeps, 1U);
@@ -86,7 +86,7 @@ TEST(SimulatedPeriodicTimer, treats_a_frame_of_exactly_two_periods_as_one_lost)
 {
     SimulatedClock clock;
     SimulatedPeriodicTimer sut(clock);
-    ASSERT_TRUE(sut.start(kPeriod, kMargin));
+    ASSERT_TRUE(sut.start(kTick, kTickMargin));
     static_cast<void>(next(sut)); // At 1 ms.
     clock.advance(milliseconds(2));
     const Cycle cycle = next(sut);

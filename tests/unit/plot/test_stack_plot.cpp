@@ -41,7 +41,7 @@ std::vector<std::vector<Place>> lines_of(const std::string& body)
     return lines;
 }
 
-std::string body_of(const StackPlot& plot)
+std::string stack_body(const StackPlot& plot)
 {
     const Drawing drawing = draw(plot);
     EXPECT_TRUE(tactus::test::read_markup("<svg>" + drawing.body + "</svg>").has_value());
@@ -52,7 +52,7 @@ std::string body_of(const StackPlot& plot)
 
 TEST(StackPlot, each_layer_stands_on_those_before)
 {
-    const auto lines = lines_of(body_of(
+    const auto lines = lines_of(stack_body(
         {"t", "frame", "us", {0, 1, 2}, {{"a", {1, 2, 3}}, {"b", {3, 2, 1}}, {"c", {4, 4, 4}}}}));
     ASSERT_EQ(lines.size(), 3U);
     // a 1, 2, 3; a + b 4; all 8, on an axis of 0 to 8 and one pixel scale.
@@ -71,7 +71,7 @@ TEST(StackPlot, what_is_not_finite_counts_as_nothing)
 {
     const double infinity = std::numeric_limits<double>::infinity();
     const auto lines = lines_of(
-        body_of({"t", "frame", "us", {0, 1}, {{"a", {1.0, infinity}}, {"b", {1.0, 2.0}}}}));
+        stack_body({"t", "frame", "us", {0, 1}, {{"a", {1.0, infinity}}, {"b", {1.0, 2.0}}}}));
     ASSERT_EQ(lines.size(), 2U);
     EXPECT_GT(lines[0][1].y, lines[0][0].y);
     EXPECT_NEAR(lines[1][0].y, lines[1][1].y, 0.11);
@@ -79,10 +79,10 @@ TEST(StackPlot, what_is_not_finite_counts_as_nothing)
 
 TEST(StackPlot, is_sound_with_nothing_in_it)
 {
-    EXPECT_FALSE(body_of({"t", "x", "y", {}, {}}).empty());
-    EXPECT_FALSE(body_of({"t", "x", "y", {}, {{"a", {}}}}).empty());
-    EXPECT_FALSE(body_of({"t", "x", "y", {0.0}, {{"a", {0.0}}}}).empty());
-    EXPECT_FALSE(body_of({"t", "x", "y", {0.0, 1.0}, {{"too short", {1.0}}}}).empty());
+    EXPECT_FALSE(stack_body({"t", "x", "y", {}, {}}).empty());
+    EXPECT_FALSE(stack_body({"t", "x", "y", {}, {{"a", {}}}}).empty());
+    EXPECT_FALSE(stack_body({"t", "x", "y", {0.0}, {{"a", {0.0}}}}).empty());
+    EXPECT_FALSE(stack_body({"t", "x", "y", {0.0, 1.0}, {{"too short", {1.0}}}}).empty());
 }
 
 } // namespace

@@ -15,14 +15,14 @@ namespace tactus::relay
 namespace
 {
 
-constexpr std::size_t kFrames = 100'000;
+constexpr std::size_t kFates = 100'000;
 
 std::vector<FrameFate> fates_of(std::uint64_t seed, const LinkCondition& condition,
                                 bool must_arrive = false)
 {
     FrameFates sut(seed);
     std::vector<FrameFate> fates;
-    for (std::size_t i = 0; i < kFrames; ++i)
+    for (std::size_t i = 0; i < kFates; ++i)
     {
         fates.push_back(sut.next(condition, must_arrive));
     }
@@ -64,11 +64,11 @@ TEST(FrameFates, the_same_seed_gives_the_same_fates_and_another_one_others)
     EXPECT_TRUE(std::ranges::equal(fates, fates_of(seed, condition), is_same));
     const auto others = fates_of(seed + 1, condition);
     std::size_t lost_in_both = 0;
-    for (std::size_t i = 0; i < kFrames; ++i)
+    for (std::size_t i = 0; i < kFates; ++i)
     {
         lost_in_both += fates[i].copies == 0 && others[i].copies == 0 ? 1U : 0U;
     }
-    expect_share(lost_in_both, 0.09, kFrames);
+    expect_share(lost_in_both, 0.09, kFates);
 }
 
 TEST(FrameFates, shares_are_those_asked_for)
@@ -78,27 +78,27 @@ TEST(FrameFates, shares_are_those_asked_for)
     {
         const auto fates = fates_of(seed, {.loss = share, .duplicates = share});
         const std::size_t lost = with_copies(fates, 0);
-        expect_share(lost, share, kFrames);
-        expect_share(with_copies(fates, 2), share, kFrames - lost);
+        expect_share(lost, share, kFates);
+        expect_share(with_copies(fates, 2), share, kFates - lost);
     }
 }
 
 TEST(FrameFates, a_share_of_nothing_takes_none_and_one_of_all_takes_each)
 {
-    EXPECT_EQ(with_copies(fates_of(3, {.loss = 1.0, .duplicates = 1.0}), 0), kFrames);
-    EXPECT_EQ(with_copies(fates_of(3, {.loss = 0.0, .duplicates = 1.0}), 2), kFrames);
-    EXPECT_EQ(with_copies(fates_of(3, {.loss = 0.0, .duplicates = 0.0}), 1), kFrames);
+    EXPECT_EQ(with_copies(fates_of(3, {.loss = 1.0, .duplicates = 1.0}), 0), kFates);
+    EXPECT_EQ(with_copies(fates_of(3, {.loss = 0.0, .duplicates = 1.0}), 2), kFates);
+    EXPECT_EQ(with_copies(fates_of(3, {.loss = 0.0, .duplicates = 0.0}), 1), kFates);
 }
 
 TEST(FrameFates, losses_do_not_cluster)
 {
     const auto fates = fates_of(test::Random(3).bits(), {.loss = 0.1});
     std::size_t pairs = 0;
-    for (std::size_t i = 1; i < kFrames; ++i)
+    for (std::size_t i = 1; i < kFates; ++i)
     {
         pairs += fates[i - 1].copies == 0 && fates[i].copies == 0 ? 1U : 0U;
     }
-    expect_share(pairs, 0.01, kFrames - 1);
+    expect_share(pairs, 0.01, kFates - 1);
 }
 
 TEST(FrameFates, delays_fill_their_range_and_keep_to_it)
@@ -137,7 +137,7 @@ TEST(FrameFates, a_frame_keeps_its_fate_whatever_became_of_others)
     const LinkCondition condition{.jitter_ms = 2.0, .loss = 0.1, .duplicates = 0.1};
     const auto fates = fates_of(6, condition);
     FrameFates sut(6);
-    for (std::size_t i = 0; i < kFrames; ++i)
+    for (std::size_t i = 0; i < kFates; ++i)
     {
         const bool is_other = i % 3 != 0;
         const FrameFate fate =
@@ -150,7 +150,7 @@ TEST(FrameFates, a_larger_loss_takes_the_frames_of_the_smaller_one_too)
 {
     const auto few = fates_of(7, {.loss = 0.1});
     const auto many = fates_of(7, {.loss = 0.2});
-    for (std::size_t i = 0; i < kFrames; ++i)
+    for (std::size_t i = 0; i < kFates; ++i)
     {
         ASSERT_TRUE(few[i].copies != 0 || many[i].copies == 0) << "frame " << i;
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "rt_core/force/catch_up.hpp"
+#include "tests/shared/period.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +11,6 @@ namespace tactus::test
 namespace
 {
 
-constexpr double kPeriod_s = 0.001;
 constexpr double kRate_n_per_s = 50.0;
 constexpr double kMost_n = 10.0;
 constexpr double kStep_n = kRate_n_per_s * kPeriod_s;

@@ -30,9 +30,9 @@ PlacedCore random_core(Random& random)
     const double size = random.one_in(6) ? 0.0 : random.between(0.01, 0.8);
     if (random.one_in(3))
     {
-        static const std::array<Vec3, 5> kWedge{Vec3(0, 0, 0), Vec3(0.4, 0, 0), Vec3(0, 0.3, 0),
-                                                Vec3(0, 0, 0.2), Vec3(0.2, 0.2, 0.2)};
-        return {Hull::create(kWedge).value(), place};
+        static const std::array<Vec3, 5> wedge{Vec3(0, 0, 0), Vec3(0.4, 0, 0), Vec3(0, 0.3, 0),
+                                               Vec3(0, 0, 0.2), Vec3(0.2, 0.2, 0.2)};
+        return {Hull::create(wedge).value(), place};
     }
     return random.one_in(2)
                ? PlacedCore(Segment{random.in_cube(size), random.in_cube(size)}, place)
@@ -40,7 +40,7 @@ PlacedCore random_core(Random& random)
 }
 
 /// The answer by measuring every face, with the kernel that PlacedCore's own tests hold.
-struct BruteForce
+struct CoreTruth
 {
     double lower{kInfinity};
     double upper{kInfinity};
@@ -49,7 +49,7 @@ struct BruteForce
     double nearest_distance{kInfinity};
     std::set<std::uint32_t> in_reach;
 
-    BruteForce(std::span<const ChangedFace> faces, const PlacedCore& core, double reach)
+    CoreTruth(std::span<const ChangedFace> faces, const PlacedCore& core, double reach)
     {
         for (const ChangedFace& face : faces)
         {
@@ -84,7 +84,7 @@ struct BruteForce
     }
 };
 
-struct Asked
+struct CoreAnswer
 {
     std::unique_ptr<LocalSurface> surface{std::make_unique<LocalSurface>()};
     WalkBudget budget;
@@ -92,27 +92,17 @@ struct Asked
     [[nodiscard]] const DistanceAnswer& answer() const { return surface->answer; }
 };
 
-Asked ask(const AbTree& tree, const PlacedCore& core, double reach, QueryMemory& memory,
-          std::uint32_t nodes = 1'000'000, std::uint32_t triangles = 1'000'000)
+CoreAnswer ask(const AbTree& tree, const PlacedCore& core, double reach, QueryMemory& memory,
+               std::uint32_t nodes = 1'000'000, std::uint32_t triangles = 1'000'000)
 {
-    Asked asked;
+    CoreAnswer asked;
     asked.budget.nodes = nodes;
     asked.budget.triangles = triangles;
     gather_surface(tree, core, reach, memory, asked.budget, *asked.surface);
     return asked;
 }
 
-std::set<std::uint32_t> faces_of(const AbTree& tree, const LocalSurface& surface)
-{
-    std::set<std::uint32_t> faces;
-    for (std::uint32_t i = 0; i < surface.count; ++i)
-    {
-        EXPECT_TRUE(faces.insert(tree.face_of(surface.triangles[i].prim).value).second);
-    }
-    return faces;
-}
-
-void fill(TreeRig& rig, Random& random, std::uint32_t count, bool exact_only)
+void fill_scattered(TreeRig& rig, Random& random, std::uint32_t count, bool exact_only)
 {
     const FaceStyle& style = face_styles()[random.below(5)];
     for (std::uint32_t prim = 0; prim < count; ++prim)
@@ -134,16 +124,16 @@ TEST(CoreQuery, brackets_the_distance_and_finds_what_measuring_every_face_finds)
     for (int round = 0; round < 60; ++round)
     {
         TreeRig rig({200, 400, 400});
-        fill(rig, random, 1 + random.below(200), round % 2 == 0);
+        fill_scattered(rig, random, 1 + random.below(200), round % 2 == 0);
         const auto faces = rig.present();
         QueryMemory memory;
         for (int query = 0; query < 30; ++query)
         {
             const PlacedCore core = random_core(random);
             const double reach = random.between(0.0, 0.4);
-            const BruteForce truth(faces, core, reach);
+            const CoreTruth truth(faces, core, reach);
 
-            const Asked asked = ask(*rig.sut, core, reach, memory);
+            const CoreAnswer asked = ask(*rig.sut, core, reach, memory);
 
             const DistanceAnswer& answer = asked.answer();
             ASSERT_LE(answer.lower_m, truth.upper);
@@ -179,16 +169,16 @@ TEST(CoreQuery, is_true_when_the_reach_ends_just_before_the_surface)
     for (int round = 0; round < 40; ++round)
     {
         TreeRig rig({200, 400, 400});
-        fill(rig, random, 200, false);
+        fill_scattered(rig, random, 200, false);
         const auto faces = rig.present();
         QueryMemory memory;
         for (int query = 0; query < 30; ++query)
         {
             const PlacedCore core = random_core(random);
-            const BruteForce truth(faces, core, 0.0);
+            const CoreTruth truth(faces, core, 0.0);
             const double reach = random.between(0.85, 1.0) * truth.upper;
 
-            const Asked asked = ask(*rig.sut, core, reach, memory);
+            const CoreAnswer asked = ask(*rig.sut, core, reach, memory);
 
             ASSERT_LE(asked.answer().lower_m, truth.lower + 1e-14) << round << " " << query;
             ASSERT_GE(asked.answer().upper_m, truth.lower);
@@ -203,15 +193,15 @@ TEST(CoreQuery, a_spent_budget_leaves_the_bracket_true)
     for (int round = 0; round < 40; ++round)
     {
         TreeRig rig({200, 400, 400});
-        fill(rig, random, 200, round % 2 == 0);
+        fill_scattered(rig, random, 200, round % 2 == 0);
         const auto faces = rig.present();
         for (int query = 0; query < 20; ++query)
         {
             const PlacedCore core = random_core(random);
-            const BruteForce truth(faces, core, 0.3);
+            const CoreTruth truth(faces, core, 0.3);
             QueryMemory memory{random.below(400)};
 
-            const Asked asked =
+            const CoreAnswer asked =
                 ask(*rig.sut, core, 0.3, memory, random.below(30), random.below(200));
 
             spent += asked.budget.is_spent ? 1 : 0;
@@ -228,12 +218,12 @@ TEST(CoreQuery, a_point_gets_the_answer_of_a_point)
 {
     Random random(63);
     TreeRig rig({200, 400, 400});
-    fill(rig, random, 200, false);
+    fill_scattered(rig, random, 200, false);
     for (int query = 0; query < 100; ++query)
     {
         const Vec3 at = random.in_cube(1.0);
         QueryMemory memory;
-        const Asked asked =
+        const CoreAnswer asked =
             ask(*rig.sut, PlacedCore(PointCore{}, {Mat3::Identity(), at, 2.0}), 0.2, memory);
         WalkBudget budget{1'000'000, 1'000'000};
         QueryMemory own;
@@ -250,12 +240,12 @@ TEST(CoreQuery, from_beyond_the_kernels_the_box_of_everything_answers)
 {
     Random random(64);
     TreeRig rig({200, 400, 400});
-    fill(rig, random, 100, true);
+    fill_scattered(rig, random, 100, true);
     const double far = 1e12;
     const PlacedCore core(Segment{Vec3(-1, 0, 0), Vec3(1, 0, 0)},
                           {Mat3::Identity(), Vec3(far, 0, 0), 10.0});
     QueryMemory memory;
-    const Asked asked = ask(*rig.sut, core, 1.0, memory);
+    const CoreAnswer asked = ask(*rig.sut, core, 1.0, memory);
     EXPECT_EQ(asked.answer().kind, AnswerKind::decided);
     EXPECT_LE(asked.answer().lower_m, far - 10.0 + 3.0);
     EXPECT_GE(asked.answer().upper_m, far - 10.0 - 3.0);
@@ -267,7 +257,7 @@ TEST(CoreQuery, an_empty_tree_has_nothing_near)
     TreeRig rig({8, 16, 16});
     rig.sut->refit();
     QueryMemory memory;
-    const Asked asked = ask(*rig.sut, PlacedCore(Box{{1, 1, 1}}, {}), 1.0, memory);
+    const CoreAnswer asked = ask(*rig.sut, PlacedCore(Box{{1, 1, 1}}, {}), 1.0, memory);
     EXPECT_EQ(asked.answer().kind, AnswerKind::decided);
     EXPECT_EQ(asked.answer().upper_m, kInfinity);
 }

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "rt_core/force/force_conditioner.hpp"
 #include "rt_core/force/stiffness_rule.hpp"
+#include "tests/shared/period.hpp"
 #include "tests/shared/random.hpp"
 
 #include <gtest/gtest.h>
@@ -17,7 +18,6 @@ namespace tactus::test
 namespace
 {
 
-constexpr double kPeriod_s = 1e-3;
 constexpr double kRounding = 1e-12;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinite = std::numeric_limits<double>::infinity();

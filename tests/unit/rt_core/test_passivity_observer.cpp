@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "rt_core/force/passivity_observer.hpp"
 #include "rt_core/force/velocity_window.hpp"
+#include "tests/shared/period.hpp"
 #include "tests/shared/random.hpp"
 
 #include <gtest/gtest.h>
@@ -15,8 +16,6 @@ namespace tactus::test
 
 namespace
 {
-
-constexpr double kPeriod_s = 1e-3;
 
 DeviceLimits lossless()
 {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "rt_core/limits.hpp"
+#include "tests/shared/period.hpp"
 #include "tests/unit/rt_core/surface_support.hpp"
 
 #include <Eigen/Geometry>
@@ -20,7 +21,6 @@ namespace
 
 constexpr double kRadius = 0.01;
 constexpr double kStiffness = 500.0;
-constexpr double kPeriod_s = 0.001;
 /// What the proxy leaves between itself and the goal it could reach, relative to the radius.
 constexpr double kRest = 3e-3;
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "rt_core/predict/region_predictor.hpp"
+#include "tests/shared/period.hpp"
 #include "tests/shared/random.hpp"
 
 #include <gtest/gtest.h>
@@ -15,12 +16,11 @@ namespace tactus::test
 namespace
 {
 
-constexpr double kPeriod_s = 0.001;
 constexpr double kLead_s = 0.02;
 constexpr double kSpeedMax_m_per_s = 10.0;
 /// One where the tool is, and one for each quarter of the lead.
 constexpr std::size_t kBalls = 5;
-constexpr std::size_t kHalf = 2;
+constexpr std::size_t kHalfway = 2;
 constexpr std::size_t kLast = 4;
 
 constexpr std::array<Prediction, 5> kWays{Prediction::local_neighbours, Prediction::linear,
@@ -143,7 +143,7 @@ TEST(RegionPredictor, local_neighbours_stay_and_reach_as_far_as_the_speed_leads)
 
     EXPECT_EQ(ranking[kLast].center_m, Vec3(0.15, 0.0, 0.0));
     EXPECT_NEAR(ranking[kLast].radius_m, 0.02 + 0.5 * kLead_s, 1e-9);
-    EXPECT_NEAR(ranking[kHalf].radius_m, 0.02 + 0.25 * kLead_s, 1e-9);
+    EXPECT_NEAR(ranking[kHalfway].radius_m, 0.02 + 0.25 * kLead_s, 1e-9);
 }
 
 TEST(RegionPredictor, distance_query_does_not_go_through_the_surface)
@@ -183,7 +183,7 @@ TEST(RegionPredictor, a_tool_behind_its_hand_is_expected_on_the_way_to_it)
     const RegionRanking ranking = ranked(sut, Prediction::linear, Vec3(0, 0, 0));
 
     EXPECT_NEAR(ranking[kLast].center_m.x(), 2.0 * kLead_s, 1e-12);
-    EXPECT_NEAR(ranking[kHalf].center_m.x(), 1.0 * kLead_s, 1e-12);
+    EXPECT_NEAR(ranking[kHalfway].center_m.x(), 1.0 * kLead_s, 1e-12);
 }
 
 TEST(RegionPredictor, automatic_believes_the_way_that_errs_least)

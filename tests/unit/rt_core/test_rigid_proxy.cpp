@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "rt_core/force/rigid_proxy.hpp"
+#include "tests/shared/period.hpp"
 #include "tests/unit/rt_core/surface_support.hpp"
 
 #include <Eigen/Geometry>
@@ -16,9 +17,8 @@ namespace tactus::test
 namespace
 {
 
-constexpr double kRadius = 0.002;
-constexpr double kStiffness = 500.0;
-constexpr double kPeriod_s = 0.001;
+constexpr double kBodyRadius = 0.002;
+constexpr double kBodyStiffness = 500.0;
 const Vec3 kHalf(0.03, 0.02, 0.01);
 
 Mat3 turn(const Vec3& axis, double angle)
@@ -26,11 +26,11 @@ Mat3 turn(const Vec3& axis, double angle)
     return Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix();
 }
 
-ToolSpec tool_of(const ToolCore& core, double radius_m = kRadius)
+ToolSpec tool_of(const ToolCore& core, double radius_m = kBodyRadius)
 {
     ToolSpec spec;
     spec.radius_m = radius_m;
-    spec.stiffness_n_per_m = kStiffness;
+    spec.stiffness_n_per_m = kBodyStiffness;
     spec.force_max_n = 1e3;
     spec.torque_max_nm = 1e3;
     spec.core = core;
@@ -206,10 +206,10 @@ TEST(RigidProxy, pressed_flat_stays_flat_and_pushes_by_its_depth)
 
         const ToolOutput output = rig.settle(Vec3(0, 0, -0.004));
 
-        const double rest = height + kRadius;
+        const double rest = height + kBodyRadius;
         EXPECT_TRUE(output.in_contact) << core.index();
         EXPECT_LE((output.proxy_m - Vec3(0, 0, rest)).norm(), 1e-7) << core.index();
-        EXPECT_LE((output.force_n - Vec3(0, 0, kStiffness * (rest + 0.004))).norm(), 1e-3)
+        EXPECT_LE((output.force_n - Vec3(0, 0, kBodyStiffness * (rest + 0.004))).norm(), 1e-3)
             << core.index();
         EXPECT_LE(output.torque_nm.norm(), 1e-5) << core.index();
         EXPECT_LE((output.proxy_rotation - Mat3::Identity()).norm(), 1e-5) << core.index();
@@ -227,8 +227,8 @@ TEST(RigidProxy, comes_to_rest_on_what_held_it_where_it_is_told_of_one_point_at_
     {
         const Vec3 before = rig.sut.place().translation_m;
         const ToolOutput output = rig.step(Vec3(0, 0, -0.004), tilted);
-        ASSERT_LE((output.proxy_m - before).norm(), 1e-4 * kRadius) << i;
-        ASSERT_NEAR(rig.distance(), kRadius, 0.01 * kRadius) << i;
+        ASSERT_LE((output.proxy_m - before).norm(), 1e-4 * kBodyRadius) << i;
+        ASSERT_NEAR(rig.distance(), kBodyRadius, 0.01 * kBodyRadius) << i;
     }
 }
 
@@ -250,13 +250,13 @@ TEST(RigidProxy, pressed_at_an_angle_turns_back_what_the_surface_turns)
         EXPECT_LE(std::abs(output.torque_nm.x()), 1e-4);
         EXPECT_LE(std::abs(output.torque_nm.y()),
                   output.force_n.z() * (kHalf.x() + kHalf.z()) + 1e-6);
-        EXPECT_NEAR(rig.distance(), kRadius, 1e-3 * kRadius);
+        EXPECT_NEAR(rig.distance(), kBodyRadius, 1e-3 * kBodyRadius);
         // Of the coupling's two springs: torque and force say where the proxy is.
-        const double arm = kHalf.norm() + kRadius;
+        const double arm = kHalf.norm() + kBodyRadius;
         const Eigen::AngleAxisd held(output.proxy_rotation * tilted.transpose());
-        const Vec3 torque = kStiffness * arm * arm * held.angle() * held.axis();
+        const Vec3 torque = kBodyStiffness * arm * arm * held.angle() * held.axis();
         EXPECT_LE((output.torque_nm - torque).norm(), 0.02 * torque.norm() + 1e-6) << angle;
-        EXPECT_LE((output.force_n - kStiffness * (output.proxy_m - Vec3(0, 0, -0.01))).norm(),
+        EXPECT_LE((output.force_n - kBodyStiffness * (output.proxy_m - Vec3(0, 0, -0.01))).norm(),
                   0.02 * output.force_n.norm());
     }
 }
@@ -371,11 +371,11 @@ TEST(RigidProxy, between_brackets_goes_no_farther_than_they_allow)
     for (int i = 0; i < 100; ++i)
     {
         const Vec3 before = rig.sut.place().translation_m;
-        const double room = std::max(0.0, 0.5 * rig.distance() - kRadius);
+        const double room = std::max(0.0, 0.5 * rig.distance() - kBodyRadius);
         const ToolOutput output = rig.step(Vec3(0, 0, -0.05));
         ASSERT_LE((output.proxy_m - before).norm(), room + 1e-15) << i;
     }
-    EXPECT_GT(rig.distance(), kRadius);
+    EXPECT_GT(rig.distance(), kBodyRadius);
 }
 
 TEST(RigidProxy, is_pushed_by_an_object_that_moves)
@@ -387,11 +387,11 @@ TEST(RigidProxy, is_pushed_by_an_object_that_moves)
     {
         rig.objects[0].pose.translation_m.z() += 1e-4;
         output = rig.step(Vec3(0, 0, 0.012));
-        ASSERT_GT(rig.distance(), 0.8 * kRadius) << i;
+        ASSERT_GT(rig.distance(), 0.8 * kBodyRadius) << i;
     }
     output = rig.settle(Vec3(0, 0, 0.012));
     EXPECT_NEAR(output.proxy_m.z(), 0.022, 1e-7);
-    EXPECT_NEAR(output.force_n.z(), kStiffness * 0.01, 1e-3);
+    EXPECT_NEAR(output.force_n.z(), kBodyStiffness * 0.01, 1e-3);
 }
 
 TEST(RigidProxy, squeezed_between_objects_says_so_and_stays)
@@ -452,7 +452,8 @@ public:
             (touches.nearest.full() ? touches.corners : touches.nearest).push_back(contact);
         }
         touches.is_truncated = is_truncated;
-        const PlacedSurface placed{&pose_, surface_.get(), nullptr, 0.0, 0.0, kRadius, &touches};
+        const PlacedSurface placed{&pose_, surface_.get(), nullptr, 0.0,
+                                   0.0,    kBodyRadius,    &touches};
         sut.see(hand_at(goal));
         return sut.respond(hand_at(goal), {&placed, 1});
     }
@@ -489,8 +490,8 @@ TEST(RigidProxy, remembers_as_many_holds_as_the_limit_and_says_when_it_forgets_o
     for (std::size_t i = 0; i <= kMaxHolds; ++i)
     {
         const Vec3 normal = on_cone(i, kMaxHolds + 1);
-        const ToolOutput output = ball.step({ball.contact(normal, kRadius)},
-                                            ball.sut.place().translation_m - kRadius * normal);
+        const ToolOutput output = ball.step({ball.contact(normal, kBodyRadius)},
+                                            ball.sut.place().translation_m - kBodyRadius * normal);
         ASSERT_TRUE(output.in_contact) << i;
         EXPECT_EQ(ball.sut.is_crowded(), i == kMaxHolds) << i;
     }
@@ -505,14 +506,15 @@ TEST(RigidProxy, takes_as_many_planes_as_the_limit_and_says_when_it_leaves_one_o
         std::vector<Contact> contacts;
         for (std::size_t i = 1; i < count; ++i)
         {
-            contacts.push_back(ball.contact(on_cone(i, count), 1.5 * kRadius));
+            contacts.push_back(ball.contact(on_cone(i, count), 1.5 * kBodyRadius));
         }
         // What holds is kept, wherever it is told of: only then one more is added from what held.
-        static_cast<void>(ball.step({ball.contact(on_cone(0, count), kRadius)},
-                                    ball.sut.place().translation_m - kRadius * on_cone(0, count)));
+        static_cast<void>(
+            ball.step({ball.contact(on_cone(0, count), kBodyRadius)},
+                      ball.sut.place().translation_m - kBodyRadius * on_cone(0, count)));
         EXPECT_FALSE(ball.sut.is_crowded());
         const ToolOutput output =
-            ball.step(contacts, ball.sut.place().translation_m - kRadius * on_cone(0, count));
+            ball.step(contacts, ball.sut.place().translation_m - kBodyRadius * on_cone(0, count));
         EXPECT_TRUE(output.in_contact);
         EXPECT_EQ(ball.sut.is_crowded(), count > kMaxHalfSpaces);
     }

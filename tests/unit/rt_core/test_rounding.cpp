@@ -14,7 +14,7 @@ namespace tactus::test
 namespace
 {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kFloatInfinity = std::numeric_limits<float>::infinity();
 
 /// Any finite float, each bit pattern as likely.
 float any_float(Random& random)
@@ -46,8 +46,8 @@ const std::vector<float>& special_floats()
 
 void expect_next(float value)
 {
-    ASSERT_EQ(next_up(value), std::nextafter(value, kInfinity)) << value;
-    ASSERT_EQ(next_down(value), std::nextafter(value, -kInfinity)) << value;
+    ASSERT_EQ(next_up(value), std::nextafter(value, kFloatInfinity)) << value;
+    ASSERT_EQ(next_down(value), std::nextafter(value, -kFloatInfinity)) << value;
 }
 
 /// The rounded values are neighbours of the double and on its right sides.
@@ -57,8 +57,8 @@ void expect_rounded(double value)
     const float down = round_down_to_float(value);
     ASSERT_GE(static_cast<double>(up), value) << value;
     ASSERT_LE(static_cast<double>(down), value) << value;
-    ASSERT_LT(static_cast<double>(std::nextafter(up, -kInfinity)), value) << value;
-    ASSERT_GT(static_cast<double>(std::nextafter(down, kInfinity)), value) << value;
+    ASSERT_LT(static_cast<double>(std::nextafter(up, -kFloatInfinity)), value) << value;
+    ASSERT_GT(static_cast<double>(std::nextafter(down, kFloatInfinity)), value) << value;
 }
 
 } // namespace

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "rt_core/force/safe_state.hpp"
 #include "rt_core/limits.hpp"
+#include "tests/shared/period.hpp"
 #include "tests/shared/random.hpp"
 
 #include <gtest/gtest.h>
@@ -19,7 +20,6 @@ namespace tactus::test
 namespace
 {
 
-constexpr double kFrame_s = 1e-3;
 constexpr double kForceMax_n = 8.0;
 constexpr double kRounding_n = 1e-9;
 
@@ -32,7 +32,7 @@ public:
     const SafetyOutput& step(std::uint32_t periods = 1)
     {
         input.elapsed_periods = periods;
-        input.elapsed_s = kFrame_s * periods;
+        input.elapsed_s = kPeriod_s * periods;
         input.sample_time_ns += 1'000'000;
         last = sut.step(input);
         return last;
@@ -127,12 +127,12 @@ TEST_P(SafeStateCause, fades_the_last_force_from_the_first_frame_and_names_itsel
     const double before_n = tool.last.force_n.norm();
     const double damping_n = damping_max_n(tool.input);
     double elapsed_s = 0.0;
-    while (elapsed_s < kFadeTime_s - 0.5 * kFrame_s)
+    while (elapsed_s < kFadeTime_s - 0.5 * kPeriod_s)
     {
         const SafetyOutput out = tool.step();
-        elapsed_s += kFrame_s;
+        elapsed_s += kPeriod_s;
         EXPECT_TRUE(has_cause(out.causes, GetParam().cause));
-        EXPECT_EQ(out.has_changed, elapsed_s < 1.5 * kFrame_s || out.state != SafetyState::brake);
+        EXPECT_EQ(out.has_changed, elapsed_s < 1.5 * kPeriod_s || out.state != SafetyState::brake);
         const Vec3 ramp_n = GuardedTool::kForce_n * std::max(1.0 - elapsed_s / kFadeTime_s, 0.0);
         EXPECT_LE((out.force_n - ramp_n).norm(), damping_n + kRounding_n) << elapsed_s;
         EXPECT_LE(out.force_n.norm(), before_n + damping_n + kRounding_n);
@@ -161,7 +161,7 @@ TEST_P(SafeStateCause, comes_back_by_the_ramp_after_any_time)
         }
         GetParam().end(one.input);
         const double step_max_n =
-            2.0 * kForceMax_n * kFrame_s / kRiseTime_s + damping_n + kRounding_n;
+            2.0 * kForceMax_n * kPeriod_s / kRiseTime_s + damping_n + kRounding_n;
         int frames = 0;
         for (Vec3 last_n = one.last.force_n; one.last.force_n != GuardedTool::kForce_n; ++frames)
         {
@@ -186,7 +186,7 @@ TEST(SafeState, fades_the_present_force_of_a_proxy_that_is_held_and_goes_on_with
         for (int frame = 1; frame <= 20; ++frame)
         {
             tool.input.force_n = GuardedTool::kForce_n * (1.0 - 0.02 * frame); // It draws back.
-            const double gain = 1.0 - frame * kFrame_s / kFadeTime_s;
+            const double gain = 1.0 - frame * kPeriod_s / kFadeTime_s;
             EXPECT_EQ(tool.step().state, SafetyState::brake);
             EXPECT_NEAR((tool.last.force_n - gain * tool.input.force_n).norm(), 0.0, kRounding_n);
         }
@@ -194,7 +194,7 @@ TEST(SafeState, fades_the_present_force_of_a_proxy_that_is_held_and_goes_on_with
         for (int frame = 1; frame <= 20; ++frame)
         {
             tool.input.force_n *= 0.99;
-            const double gain = 0.6 + frame * kFrame_s / kRiseTime_s;
+            const double gain = 0.6 + frame * kPeriod_s / kRiseTime_s;
             EXPECT_EQ(tool.step().state, SafetyState::force);
             EXPECT_NEAR((tool.last.force_n - gain * tool.input.force_n).norm(), 0.0, kRounding_n);
         }
@@ -208,7 +208,7 @@ TEST(SafeState, a_held_proxy_with_bad_data_fades_as_bad_data_do)
     tool.input.faults = FrameFault::proxy_frozen | FrameFault::tool_invalid;
     tool.input.force_n = Vec3(5.0, 0.0, 0.0);
     tool.step();
-    const Vec3 ramp_n = GuardedTool::kForce_n * (1.0 - kFrame_s / kFadeTime_s);
+    const Vec3 ramp_n = GuardedTool::kForce_n * (1.0 - kPeriod_s / kFadeTime_s);
     EXPECT_NEAR((tool.last.force_n - ramp_n).norm(), 0.0, kRounding_n);
     EXPECT_EQ(tool.last.causes, ForceOff::frozen | ForceOff::garbage);
 }
@@ -221,7 +221,7 @@ TEST(SafeState, a_torque_goes_as_the_force_goes)
     EXPECT_EQ(tool.last.torque_nm, tool.input.torque_nm);
     tool.input.causes = ForceOff::deadman;
     tool.step();
-    EXPECT_NEAR(tool.last.torque_nm.y(), 0.3 * (1.0 - kFrame_s / kFadeTime_s), 1e-12);
+    EXPECT_NEAR(tool.last.torque_nm.y(), 0.3 * (1.0 - kPeriod_s / kFadeTime_s), 1e-12);
     tool.input.causes = ForceOff::none;
     tool.input.torque_nm = Vec3(0.0, 4.0, 0.0);
     for (int i = 0; i < 200; ++i)
@@ -229,7 +229,7 @@ TEST(SafeState, a_torque_goes_as_the_force_goes)
         const double before_nm = tool.last.torque_nm.norm();
         tool.step();
         EXPECT_LE(tool.last.torque_nm.norm() - before_nm,
-                  2.0 * 0.4 * kFrame_s / kRiseTime_s + 1e-9);
+                  2.0 * 0.4 * kPeriod_s / kRiseTime_s + 1e-9);
     }
     EXPECT_NEAR(tool.last.torque_nm.norm(), 0.4, 1e-12) << "the device's largest";
     tool.input.torque_nm.z() = std::numeric_limits<double>::quiet_NaN();
@@ -242,8 +242,8 @@ TEST(SafeState, without_a_frame_the_last_force_fades_by_the_same_law)
     tool.warm_up();
     for (int frame = 1; frame <= 60; ++frame)
     {
-        const SafetyOutput out = tool.sut.fade(kFrame_s, ForceOff::assertion);
-        const double gain = std::max(0.0, 1.0 - frame * kFrame_s / kFadeTime_s);
+        const SafetyOutput out = tool.sut.fade(kPeriod_s, ForceOff::assertion);
+        const double gain = std::max(0.0, 1.0 - frame * kPeriod_s / kFadeTime_s);
         EXPECT_NEAR((out.force_n - gain * GuardedTool::kForce_n).norm(), 0.0, kRounding_n);
         EXPECT_EQ(out.causes, ForceOff::assertion);
     }
@@ -261,7 +261,7 @@ TEST(SafeState, makes_no_force_before_the_first_good_sample)
     }
     tool.input.faults = FrameFault::none;
     EXPECT_EQ(tool.step().state, SafetyState::force);
-    EXPECT_NEAR(tool.last.force_n.norm(), GuardedTool::kForce_n.norm() * kFrame_s / kRiseTime_s,
+    EXPECT_NEAR(tool.last.force_n.norm(), GuardedTool::kForce_n.norm() * kPeriod_s / kRiseTime_s,
                 kRounding_n);
 }
 
@@ -272,11 +272,11 @@ TEST(SafeState, a_stall_takes_as_much_of_the_force_as_its_true_time_says)
         GuardedTool tool;
         tool.warm_up();
         EXPECT_EQ(tool.step(periods).causes, ForceOff::stall);
-        const double gain = std::max(1.0 - periods * kFrame_s / kFadeTime_s, 0.0);
+        const double gain = std::max(1.0 - periods * kPeriod_s / kFadeTime_s, 0.0);
         EXPECT_NEAR(tool.sut.gain(), gain, 1e-12) << periods;
         EXPECT_NEAR((tool.last.force_n - gain * GuardedTool::kForce_n).norm(), 0.0, kRounding_n);
         EXPECT_EQ(tool.step().causes, ForceOff::none);
-        EXPECT_NEAR(tool.sut.gain(), std::min(gain + kFrame_s / kRiseTime_s, 1.0), 1e-12);
+        EXPECT_NEAR(tool.sut.gain(), std::min(gain + kPeriod_s / kRiseTime_s, 1.0), 1e-12);
     }
 }
 
@@ -294,7 +294,7 @@ TEST(SafeState, a_force_that_the_device_has_dropped_starts_again_from_zero)
     {
         EXPECT_EQ(tool.step().state, SafetyState::force);
         EXPECT_LE((tool.last.force_n - last_n).norm(),
-                  GuardedTool::kForce_n.norm() * kFrame_s / kRiseTime_s + kRounding_n);
+                  GuardedTool::kForce_n.norm() * kPeriod_s / kRiseTime_s + kRounding_n);
         last_n = tool.last.force_n;
     }
     EXPECT_NEAR((last_n - GuardedTool::kForce_n).norm(), 0.0, kRounding_n);
@@ -340,7 +340,7 @@ TEST(SafeState, finds_the_speed_of_a_device_that_does_not_tell_it)
         tool.step();
         for (const std::uint32_t periods : {1U, 4U}) // By the true time after a stall.
         {
-            tool.input.position_m += Vec3(speed * kFrame_s * periods, 0.0, 0.0);
+            tool.input.position_m += Vec3(speed * kPeriod_s * periods, 0.0, 0.0);
             tool.input.proxy_m = tool.input.position_m;
             EXPECT_EQ(has_cause(tool.step(periods).causes, ForceOff::velocity), speed > 1.0);
         }
@@ -352,7 +352,7 @@ TEST(SafeState, finds_the_speed_of_a_device_that_does_not_tell_it)
     {
         if (i % 4 == 3)
         {
-            tool.input.position_m += Vec3(0.9 * 4 * kFrame_s, 0.0, 0.0);
+            tool.input.position_m += Vec3(0.9 * 4 * kPeriod_s, 0.0, 0.0);
             tool.input.proxy_m = tool.input.position_m;
         }
         else
@@ -418,7 +418,7 @@ TEST(SafeState, never_steps_farther_than_its_law)
         const std::uint32_t periods = random.one_in(50) ? 1 + random.below(8U) : 1;
         const SafetyOutput out = tool.step(periods);
         const double step_n = (out.force_n - before_n).norm();
-        const double elapsed_s = kFrame_s * periods;
+        const double elapsed_s = kPeriod_s * periods;
         ++seen[static_cast<std::size_t>(out.state)];
         ASSERT_LE(out.force_n.norm(), kForceMax_n + kRounding_n) << frame;
         if (out.causes == ForceOff::none)

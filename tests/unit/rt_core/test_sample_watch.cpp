@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "rt_core/frame/sample_watch.hpp"
 #include "rt_core/limits.hpp"
+#include "tests/shared/period.hpp"
 
 #include <gtest/gtest.h>
 
@@ -14,7 +15,6 @@ namespace tactus::test
 namespace
 {
 
-constexpr double kFrame_s = 1e-3;
 constexpr double kRounding_s = 1e-9; ///< Of sums of frames.
 
 /// A watch, the goal that it lets through, and a tool that is not in contact.
@@ -27,7 +27,7 @@ public:
         sample.position_m = position_m;
         sample.sample_time_ns = time_ns;
         sample.valid = valid;
-        const SampleWatch::Verdict verdict = sut.judge(sample, spec, goal_m, kFrame_s);
+        const SampleWatch::Verdict verdict = sut.judge(sample, spec, goal_m, kPeriod_s);
         goal_m = verdict.is_taken ? position_m : goal_m;
         return verdict;
     }
@@ -92,7 +92,7 @@ TEST(SampleWatch, takes_no_matrix_that_is_no_rotation)
         SampleWatch sut;
         ToolState sample;
         sample.rotation = bad;
-        const SampleWatch::Verdict verdict = sut.judge(sample, {}, Vec3(0.0, 0.0, 0.0), kFrame_s);
+        const SampleWatch::Verdict verdict = sut.judge(sample, {}, Vec3(0.0, 0.0, 0.0), kPeriod_s);
         EXPECT_FALSE(verdict.is_taken);
         EXPECT_EQ(verdict.fault, FrameFault::tool_invalid);
     }
@@ -105,7 +105,7 @@ TEST(SampleWatch, takes_a_rotation_within_the_tolerance_alone)
         SampleWatch sut;
         ToolState sample;
         sample.rotation(0, 1) = share * kRotationTolerance;
-        const SampleWatch::Verdict verdict = sut.judge(sample, {}, Vec3(0.0, 0.0, 0.0), kFrame_s);
+        const SampleWatch::Verdict verdict = sut.judge(sample, {}, Vec3(0.0, 0.0, 0.0), kPeriod_s);
         EXPECT_EQ(verdict.is_taken, share < 1.0);
         EXPECT_EQ(verdict.fault, share < 1.0 ? FrameFault::none : FrameFault::tool_invalid);
     }
@@ -121,7 +121,7 @@ TEST(SampleWatch, knows_how_long_it_had_no_sample)
     }
     const SampleWatch::Verdict again = tool.give(kHere, 0);
     EXPECT_TRUE(again.is_taken);
-    EXPECT_NEAR(again.since_s, 81 * kFrame_s, 1e-12);
+    EXPECT_NEAR(again.since_s, 81 * kPeriod_s, 1e-12);
 }
 
 TEST(SampleWatch, a_slow_device_is_not_stuck_and_a_stuck_one_is)
@@ -140,7 +140,7 @@ TEST(SampleWatch, a_slow_device_is_not_stuck_and_a_stuck_one_is)
     for (int frame = 1; frame < 100; ++frame)
     {
         const bool is_stuck = has_fault(tool.give(kHere, time_ns).fault, FrameFault::tool_stuck);
-        const double blind_s = frame * kFrame_s;
+        const double blind_s = frame * kPeriod_s;
         EXPECT_TRUE(is_stuck || blind_s < kSampleHold_s + kRounding_s) << frame;
         EXPECT_TRUE(!is_stuck || blind_s > kSampleHold_s - kRounding_s) << frame;
     }
@@ -160,7 +160,7 @@ TEST(SampleWatch, an_older_sample_is_not_taken_unless_the_clock_began_anew)
     {
         ++refused;
     }
-    EXPECT_NEAR(refused * kFrame_s, kSampleHold_s + kFadeTime_s, 2.0 * kFrame_s);
+    EXPECT_NEAR(refused * kPeriod_s, kSampleHold_s + kFadeTime_s, 2.0 * kPeriod_s);
     EXPECT_TRUE(tool.give(kHere, 11).is_taken);
 }
 
@@ -184,7 +184,7 @@ TEST(SampleWatch, a_goal_has_jumped_that_is_so_many_times_too_fast)
 {
     for (const double speed_max : {0.1, 1.0, 3.0}) // Taken for at least 1 m/s.
     {
-        const double limit_m = kJumpSpeeds * std::max(speed_max, 1.0) * kFrame_s;
+        const double limit_m = kJumpSpeeds * std::max(speed_max, 1.0) * kPeriod_s;
         for (const double share : {0.999, 1.001})
         {
             WatchedTool tool;

@@ -25,7 +25,7 @@ constexpr double kSlack = 1e-9;
 constexpr double kFilterSlack = 4e-3;
 
 /// The answer by looking at every face.
-struct BruteForce
+struct PointTruth
 {
     double lower{kInfinity};        ///< Least d - e.
     double upper{kInfinity};        ///< Least exact d or coarse corner's distance.
@@ -33,7 +33,7 @@ struct BruteForce
     std::vector<double> exact; ///< Exact faces' distances, by place in the list; else infinite.
     FaceId nearest{};          ///< Lowest id of the nearest exact faces, in the kernel's bits.
 
-    BruteForce(std::span<const ChangedFace> faces, const Vec3& center)
+    PointTruth(std::span<const ChangedFace> faces, const Vec3& center)
     {
         double least_sq = kInfinity;
         for (const ChangedFace& face : faces)
@@ -65,16 +65,16 @@ struct BruteForce
     }
 };
 
-struct Asked
+struct PointAnswer
 {
     std::unique_ptr<LocalSurface> surface{std::make_unique<LocalSurface>()};
     WalkBudget budget;
 };
 
-Asked ask(const AbTree& tree, const Vec3& center, double reach, std::uint32_t nodes = 1'000'000,
-          std::uint32_t triangles = 1'000'000)
+PointAnswer ask(const AbTree& tree, const Vec3& center, double reach,
+                std::uint32_t nodes = 1'000'000, std::uint32_t triangles = 1'000'000)
 {
-    Asked asked;
+    PointAnswer asked;
     asked.budget.nodes = nodes;
     asked.budget.triangles = triangles;
     QueryMemory memory;
@@ -82,20 +82,9 @@ Asked ask(const AbTree& tree, const Vec3& center, double reach, std::uint32_t no
     return asked;
 }
 
-std::set<std::uint32_t> faces_of(const AbTree& tree, const LocalSurface& surface)
-{
-    std::set<std::uint32_t> faces;
-    for (std::uint32_t i = 0; i < surface.count; ++i)
-    {
-        EXPECT_TRUE(faces.insert(tree.face_of(surface.triangles[i].prim).value).second)
-            << "listed twice";
-    }
-    return faces;
-}
-
 /// Everything exact within the certified radius is listed, and nothing coarse reaches into it.
 void expect_certified(const AbTree& tree, const LocalSurface& surface,
-                      std::span<const ChangedFace> faces, const BruteForce& truth)
+                      std::span<const ChangedFace> faces, const PointTruth& truth)
 {
     const double radius = surface.answer.certified_radius_m;
     if (radius > 0.0)
@@ -136,7 +125,7 @@ TEST(SurfaceQuery, an_empty_tree_is_free_space)
 {
     TreeRig rig({4, 64, 64});
 
-    const Asked asked = ask(*rig.sut, Vec3(0, 0, 0), 1.0);
+    const PointAnswer asked = ask(*rig.sut, Vec3(0, 0, 0), 1.0);
 
     EXPECT_EQ(asked.surface->answer.kind, AnswerKind::decided);
     EXPECT_EQ(asked.surface->count, 0U);
@@ -158,8 +147,8 @@ TEST(SurfaceQuery, equals_brute_force_in_every_style)
             {
                 const Vec3 center = random_center(random);
                 const double reach = random.between(0.0, 0.4);
-                const BruteForce truth(faces, center);
-                const Asked asked = ask(*rig.sut, center, reach);
+                const PointTruth truth(faces, center);
+                const PointAnswer asked = ask(*rig.sut, center, reach);
                 const DistanceAnswer& answer = asked.surface->answer;
                 // Beyond the reach, and of coarse faces, single precision's bounds will do.
                 const bool is_exact = answer.kind == AnswerKind::exact;
@@ -205,7 +194,7 @@ TEST(SurfaceQuery, is_true_when_the_reach_ends_just_before_the_surface)
             for (int i = 0; i < 30; ++i)
             {
                 const Vec3 center = random_center(random);
-                const BruteForce truth(faces, center);
+                const PointTruth truth(faces, center);
                 const double reach = random.between(0.85, 1.0) * truth.upper;
                 const DistanceAnswer answer = ask(*rig.sut, center, reach).surface->answer;
                 ASSERT_LE(answer.lower_m, truth.lower) << style.name << " " << tree << " " << i;
@@ -229,7 +218,7 @@ TEST(SurfaceQuery, a_nearest_exact_face_is_given_its_lowest_id_among_equals)
     }
     rig.sut->refit();
 
-    const Asked asked = ask(*rig.sut, Vec3(0.2, 0.2, 0.5), 1.0);
+    const PointAnswer asked = ask(*rig.sut, Vec3(0.2, 0.2, 0.5), 1.0);
 
     EXPECT_EQ(asked.surface->answer.nearest_face, FaceId{81});
     EXPECT_EQ(asked.surface->count, 20U);
@@ -248,10 +237,10 @@ TEST(SurfaceQuery, any_budget_leaves_a_valid_bracket)
         {
             const Vec3 center = random_center(random);
             const double reach = random.between(0.0, 0.5);
-            const BruteForce truth(faces, center);
+            const PointTruth truth(faces, center);
             const std::uint32_t nodes = random.below(12);
             const std::uint32_t triangles = random.one_in(2) ? random.below(40) : 1'000;
-            const Asked asked = ask(*rig.sut, center, reach, nodes, triangles);
+            const PointAnswer asked = ask(*rig.sut, center, reach, nodes, triangles);
             ASSERT_LE(asked.budget.nodes_visited, nodes);
             ASSERT_LE(asked.budget.triangles_tested, triangles);
             ASSERT_LE(asked.surface->answer.lower_m, truth.lower) << style.name << " " << i;
@@ -273,7 +262,7 @@ TEST(SurfaceQuery, no_budget_at_all_proves_nothing)
 
     for (const auto& [nodes, triangles] : {std::pair{0U, 100U}, std::pair{100U, 0U}})
     {
-        const Asked asked = ask(*rig.sut, Vec3(0, 3, 0), 0.5, nodes, triangles);
+        const PointAnswer asked = ask(*rig.sut, Vec3(0, 3, 0), 0.5, nodes, triangles);
         EXPECT_EQ(asked.surface->count, 0U);
         EXPECT_EQ(asked.surface->answer.lower_m, 0.0);
         EXPECT_LT(asked.surface->answer.certified_radius_m, 0.0);
@@ -288,7 +277,7 @@ TEST(SurfaceQuery, an_incomplete_tree_proves_nothing)
     fill(rig, random, face_styles()[4], 300, true);
     ASSERT_FALSE(rig.sut->is_complete());
 
-    const Asked asked = ask(*rig.sut, Vec3(0, 0, 0), 0.5);
+    const PointAnswer asked = ask(*rig.sut, Vec3(0, 0, 0), 0.5);
 
     EXPECT_EQ(asked.surface->answer.lower_m, 0.0);
     EXPECT_LT(asked.surface->answer.certified_radius_m, 0.0);
@@ -305,11 +294,11 @@ TEST(SurfaceQuery, more_triangles_than_fit_keep_the_nearest_and_shrink_the_certi
         fill(rig, random, face_styles()[3], count, true);
         const auto faces = rig.present();
         const Vec3 center = random_center(random);
-        const BruteForce truth(faces, center);
+        const PointTruth truth(faces, center);
         std::vector<double> sorted = truth.exact;
         std::sort(sorted.begin(), sorted.end());
 
-        const Asked asked = ask(*rig.sut, center, 100.0);
+        const PointAnswer asked = ask(*rig.sut, center, 100.0);
 
         const LocalSurface& surface = *asked.surface;
         const bool overflows = count > kMaxLocalTriangles;

@@ -3,10 +3,15 @@
 #pragma once
 
 #include "rt_core/abtree/ab_tree.hpp"
+#include "rt_core/records/local_surface.hpp"
 #include "tests/shared/validate_tree.hpp"
 #include "tests/unit/rt_core/support.hpp"
 
+#include <gtest/gtest.h>
+
+#include <cstdint>
 #include <optional>
+#include <set>
 #include <vector>
 
 namespace tactus::test
@@ -129,6 +134,19 @@ inline const std::array<FaceStyle, 5>& face_styles()
         changed.error = static_cast<ErrorCode>(1 + random.below(60));
     }
     return changed;
+}
+
+/// Of the faces in a surface; each is there once.
+[[nodiscard]] inline std::set<std::uint32_t> faces_of(const AbTree& tree,
+                                                      const LocalSurface& surface)
+{
+    std::set<std::uint32_t> faces;
+    for (std::uint32_t i = 0; i < surface.count; ++i)
+    {
+        const std::uint32_t face = tree.face_of(surface.triangles[i].prim).value;
+        EXPECT_TRUE(faces.insert(face).second) << face;
+    }
+    return faces;
 }
 
 } // namespace tactus::test

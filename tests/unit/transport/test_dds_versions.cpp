@@ -37,7 +37,7 @@ using test::TemporaryFolder;
 using test::TinyModel;
 
 /// Far beyond what anything here takes; only a broken build waits this long.
-constexpr auto kPatience = 60s;
+constexpr auto kOtherPatience = 60s;
 /// What a program waits for something that must not come.
 constexpr auto kMoment = 300ms;
 constexpr std::uint32_t kOtherVersion = kProtocolVersion + 1;
@@ -93,7 +93,7 @@ protected:
     }
     /// Both step until it is so or the time is over; whether it is so.
     [[nodiscard]] bool step_until(const std::function<bool()>& is_so,
-                                  std::chrono::nanoseconds patience = kPatience)
+                                  std::chrono::nanoseconds patience = kOtherPatience)
     {
         const auto start = std::chrono::steady_clock::now();
         while (!is_so() && std::chrono::steady_clock::now() - start < patience)
@@ -117,7 +117,7 @@ protected:
     /// Our controller with the model of our host.
     void connect()
     {
-        auto found = client->find({"tiny", std::nullopt}, kPatience,
+        auto found = client->find({"tiny", std::nullopt}, kOtherPatience,
                                   [&]
                                   {
                                       step();

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/math/vec3.hpp"
+
+#include <array>
+#include <cstdio>
+#include <string>
+
+/// What trials have in common.
+namespace tactus::test
+{
+
+inline constexpr double kRadius_diag = 0.01; ///< Of a spherical tool.
+inline constexpr double kForceMax_n = 8.0;   ///< As with_tool() has it.
+/// Diagonals of objects.
+inline constexpr double kSmallest_m = 0.1;
+inline constexpr double kLargest_m = 0.2;
+
+template <typename Real>
+bool is_between(double lower, Real distance, double upper)
+{
+    return static_cast<Real>(lower) <= distance && distance <= static_cast<Real>(upper);
+}
+
+/// All digits.
+[[nodiscard]] inline std::string exactly(double value)
+{
+    std::array<char, 64> text{};
+    std::snprintf(text.data(), text.size(), "%.17g", value);
+    return text.data();
+}
+[[nodiscard]] inline std::string exactly(const Vec3& v)
+{
+    return "(" + exactly(v.x()) + ", " + exactly(v.y()) + ", " + exactly(v.z()) + ")";
+}
+
+} // namespace tactus::test
