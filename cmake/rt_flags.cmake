@@ -17,14 +17,23 @@ if(TACTUS_FUNCTION_EFFECTS)
 endif()
 
 # tactus_library(<name> SOURCES ... HEADERS ... LINK ...)
-# One target per room: explicit files, headers included from the repository root and each compiled
-# alone where CMAKE_VERIFY_INTERFACE_HEADER_SETS is on. PRECOMPILED headers of its own take the
+# One target per room: explicit files, headers included from the repository root. A header is the
+# first include of its source, where it has one, and is compiled alone with it; the others are where
+# CMAKE_VERIFY_INTERFACE_HEADER_SETS is on. PRECOMPILED headers of its own take the
 # place of the common ones (precompiled.cmake).
 function(tactus_library name)
     cmake_parse_arguments(ARG "" "" "SOURCES;HEADERS;LINK;LINK_PRIVATE;PRECOMPILED" ${ARGN})
     add_library(${name} STATIC ${ARG_SOURCES})
     target_sources(${name} PUBLIC
         FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${ARG_HEADERS})
+    set(alone ${ARG_HEADERS})
+    foreach(source ${ARG_SOURCES})
+        string(REGEX REPLACE "\\.cpp$" ".hpp" own ${source})
+        list(REMOVE_ITEM alone ${own})
+    endforeach()
+    target_sources(${name} PUBLIC
+        FILE_SET alone TYPE HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${alone})
+    set_target_properties(${name} PROPERTIES INTERFACE_HEADER_SETS_TO_VERIFY alone)
     target_link_libraries(${name} PUBLIC tactus_numerics ${ARG_LINK}
         PRIVATE $<BUILD_INTERFACE:tactus_warnings> ${ARG_LINK_PRIVATE})
     if(ARG_PRECOMPILED)

@@ -98,10 +98,12 @@ job_count() {
 }
 
 bench_peers= # Of tactus_bench, by their names in CMake.
+with_tests=ON
 build_targets() { # build_targets TARGET...
     local compiler options
     compiler=$(command -v "${CXX:-g++}") || fail 2 "CXX names '${CXX:-g++}', which is not here"
-    options=("-DCMAKE_CXX_COMPILER=$compiler" "-DTACTUS_BENCH_PEERS=$bench_peers")
+    options=("-DCMAKE_CXX_COMPILER=$compiler" "-DTACTUS_BENCH_PEERS=$bench_peers"
+        "-DTACTUS_TESTS=$with_tests")
     # CMake drops the other settings when the compiler of a configured folder changes.
     if ! grep -qs "^CMAKE_CXX_COMPILER:.*=$compiler\$" "$build/CMakeCache.txt"; then
         options+=(--fresh)
@@ -125,7 +127,8 @@ run_tests() { # run_tests CTEST-OPTION...: without options all but long runs and
     local code=0 junit="$build/tests.xml"
     (($# > 0)) || set -- --label-exclude '^(extended|other_builds)$'
     rm -f "$junit"
-    ctest --test-dir "$build" --output-on-failure --no-tests=error --parallel "$(nproc)" \
+    ctest --test-dir "$build" --output-on-failure --no-tests=error \
+        --parallel $((2 * $(nproc))) \
         --output-junit "$junit" "$@" || code=1
     if [[ -f "$junit" ]]; then
         skipped_tests "$junit" >"$build/skipped_tests.txt"
@@ -230,7 +233,8 @@ number_in() { # number_in OPTION VALUE LOW HIGH
 }
 
 main() {
-    local command='' seconds=10 domain='' lists=("$root/cmake/packages.txt") more_options=()
+    local command='' seconds=10 domain='' more_options=()
+    local lists=("$root"/cmake/packages{,-test}.txt)
     local bench_options=() peers='' page=''
     while (($# > 0)); do
         case "$1" in
@@ -299,7 +303,9 @@ main() {
             ;;
         demo)
             if [[ -z "${TACTUS_BUILD_DIR:-}" ]]; then
-                install_packages "${lists[@]}"
+                install_packages "$root/cmake/packages.txt"
+                # The tests' packages may be missing; a folder that has them keeps them.
+                grep -qs '^TACTUS_TESTS:BOOL=ON$' "$build/CMakeCache.txt" || with_tests=OFF
                 build_targets spm_build spm_publish hrtc
             fi
             run_demo "$seconds" "$domain"

@@ -6,7 +6,7 @@ target_compile_options(tactus_warnings INTERFACE
     -Wnon-virtual-dtor -Woverloaded-virtual -Wcast-align -Wunused -Wformat=2 -Wdouble-promotion
     -Wimplicit-fallthrough)
 # In a unity build every source is an include of the one that is compiled: the warning means headers.
-if(CMAKE_UNITY_BUILD)
+if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     target_compile_options(tactus_warnings INTERFACE -Wno-subobject-linkage)
 endif()
 if(TACTUS_WERROR)

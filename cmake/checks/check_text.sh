@@ -113,9 +113,26 @@ limits_tested() {
     return "$faults"
 }
 
-readonly checks='line_length no_leftovers machine_paths licence files_listed limits_tested'
-if (($# != 2)) || [[ " $checks " != *" $1 "* ]]; then
-    echo "usage: check_text.sh CHECK ROOT, CHECK being one of: $checks" >&2
+# A header that its own source includes first is compiled by itself there; all others are by
+# .ci/run (cmake/rt_flags.cmake).
+own_header_first() {
+    local faults=0 file header line
+    while IFS= read -r file; do
+        header=${file%.cpp}.hpp
+        [[ -f "$header" ]] || continue
+        line=$(grep -nm 1 '^#include' "$file")
+        if [[ "${line#*:}" != "#include \"$header\"" ]]; then
+            echo "$file:${line%%:*}: its own header, $header, is not the first include"
+            faults=1
+        fi
+    done < <(project_files {rt_core,transport,platform,host_tools}/'*.cpp')
+    return "$faults"
+}
+
+readonly checks='line_length no_leftovers machine_paths licence files_listed limits_tested
+    own_header_first'
+if (($# != 2)) || [[ " ${checks//[[:space:]]/ } " != *" $1 "* ]]; then
+    echo "usage: check_text.sh CHECK ROOT, CHECK being one of:" $checks >&2
     exit 3
 fi
 cd "$2"

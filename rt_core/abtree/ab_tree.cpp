@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
+#include "rt_core/abtree/ab_tree.hpp"
+
 #include "rt_core/abtree/ab_tree_refit.hpp"
 #include "rt_core/abtree/ab_tree_structure.hpp"
 

@@ -52,7 +52,8 @@ expect_refusal() { # expect_refusal GUARD TEXT: fails, and the output has TEXT.
 }
 
 begin_house
-for guard in floors line_length no_leftovers machine_paths licence files_listed limits_tested; do
+for guard in floors line_length no_leftovers machine_paths licence files_listed limits_tested \
+    own_header_first; do
     expect_clean "$guard"
 done
 
@@ -99,6 +100,8 @@ expect_refusal files_listed 'tests/unit/test_good.cpp:1:'
 source_file tests/unit/test_good.cpp 'int kMaxGoods; // kMaxGood'
 source_file tests/unit/rig.hpp 'static_assert(kMaxGood == 1);'
 expect_refusal limits_tested 'rt_core/limits.hpp:4: kMaxGood is named in no tests/*/test_*.cpp'
+source_file rt_core/base/good.cpp '#include <array>'
+expect_refusal own_header_first 'rt_core/base/good.cpp:4: its own header, rt_core/base/good.hpp, is'
 
 # An archive whose one object takes memory from the heap.
 printf 'int* make() { return new int(1); }\n' >"$house/heap.cpp"

@@ -7,7 +7,7 @@ set -euo pipefail
 readonly build=$1/spm_build inspect=$1/spm_inspect publish=$1/spm_publish hrtc=$1/hrtc
 readonly check_report=$2 sanitizer=${3:-}
 # Our own domain, our own loopback: nobody else's models, and none of ours on a real interface.
-readonly domain=$(($$ % 231))
+readonly domain=${TACTUS_TEST_DOMAIN:-$(($$ % 231))}
 unset CYCLONEDDS_URI
 # What the programs of either side are started by: two_networks.sh fills them.
 on_host=()
