@@ -4,11 +4,15 @@
 
 #include "platform/base/printable.hpp"
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <cstdio>
+#include <filesystem>
 #include <string_view>
+#include <utility>
 
 namespace tactus
 {
@@ -42,33 +46,35 @@ std::string unknown_key(const CLI::ConfigError& error)
 
 } // namespace
 
-std::optional<int> parse_command_line(CLI::App& app, int argc, char** argv)
+CommandOption CommandOption::required() const
 {
-    try
-    {
-        app.parse(argc, argv);
-        return std::nullopt;
-    }
-    catch (const CLI::ConfigError& error)
-    {
-        const bool is_extra = std::string_view(error.what()).find("parse") != std::string::npos;
-        return fail(app, is_extra ? unknown_key(error) : on_one_line(error.what()), kExitUsage);
-    }
-    catch (const CLI::ParseError& error)
-    {
-        if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success))
-        {
-            return app.exit(error); // Prints the help or the version.
-        }
-        return fail(app, on_one_line(error.what()) + "; see --help", kExitUsage);
-    }
+    option_->required();
+    return *this;
 }
 
-CLI::Validator number_between(double least, double most)
+CommandOption CommandOption::needs(CommandOption other) const
+{
+    option_->needs(other.option_);
+    return *this;
+}
+
+CommandOption CommandOption::excludes(CommandOption other) const
+{
+    option_->excludes(other.option_);
+    return *this;
+}
+
+CommandOption CommandOption::show_default() const
+{
+    option_->capture_default_str();
+    return *this;
+}
+
+CommandOption CommandOption::number_between(double least, double most) const
 {
     const std::string range = fmt::format("{} .. {}", least, most);
-    return CLI::Validator(
-        [=](std::string& text)
+    return check(
+        [=](const std::string& text)
         {
             double number = 0.0;
             const bool fits =
@@ -78,9 +84,158 @@ CLI::Validator number_between(double least, double most)
         range);
 }
 
-int fail(const CLI::App& app, const std::string& text, int code)
+template <typename T>
+CommandOption CommandOption::integer_between(T least, T most) const
 {
-    fmt::print(stderr, "{}: {}\n", app.get_name(), printable_line(text));
+    option_->check(CLI::Range(least, most));
+    return *this;
+}
+template CommandOption CommandOption::integer_between(int, int) const;
+template CommandOption CommandOption::integer_between(std::uint32_t, std::uint32_t) const;
+template CommandOption CommandOption::integer_between(std::int64_t, std::int64_t) const;
+
+CommandOption CommandOption::one_of(std::vector<std::string> names) const
+{
+    option_->check(CLI::IsMember(std::move(names)));
+    return *this;
+}
+
+CommandOption CommandOption::existing_directory() const
+{
+    option_->check(CLI::ExistingDirectory);
+    return *this;
+}
+
+CommandOption CommandOption::check(std::function<std::string(const std::string&)> fault_in,
+                                   const std::string& form) const
+{
+    option_->check(CLI::Validator(std::move(fault_in), form));
+    return *this;
+}
+
+CommandOption CommandOption::repeatable() const
+{
+    option_->expected(1)->allow_extra_args(false)->take_all();
+    return *this;
+}
+
+CommandOption CommandOption::repeatable_with_more() const
+{
+    option_->expected(1)->take_all();
+    return *this;
+}
+
+CommandOption CommandOption::separated_by(char delimiter) const
+{
+    option_->delimiter(delimiter);
+    return *this;
+}
+
+CommandOption CommandOption::not_in_file() const
+{
+    option_->configurable(false);
+    return *this;
+}
+
+CommandLine::CommandLine(const std::string& name, const std::string& description)
+    : app_(std::make_unique<CLI::App>(description, name))
+{
+}
+
+CommandLine::~CommandLine() = default;
+
+void CommandLine::add_version(const std::string& version)
+{
+    app_->set_version_flag("--version", version);
+}
+
+template <typename T>
+CommandOption CommandLine::add_option(const std::string& names, T& value,
+                                      const std::string& description)
+{
+    return CommandOption(*app_->add_option(names, value, description));
+}
+#define TACTUS_OPTION_VALUE(T)                                                                     \
+    template CommandOption CommandLine::add_option(const std::string&, T&, const std::string&)
+TACTUS_OPTION_VALUE(int);
+TACTUS_OPTION_VALUE(std::uint32_t);
+TACTUS_OPTION_VALUE(std::int64_t);
+TACTUS_OPTION_VALUE(double);
+TACTUS_OPTION_VALUE(std::string);
+TACTUS_OPTION_VALUE(std::filesystem::path);
+TACTUS_OPTION_VALUE(std::vector<std::string>);
+TACTUS_OPTION_VALUE(std::optional<int>);
+TACTUS_OPTION_VALUE(std::optional<std::uint32_t>);
+TACTUS_OPTION_VALUE(std::optional<double>);
+TACTUS_OPTION_VALUE(std::optional<std::string>);
+#undef TACTUS_OPTION_VALUE
+
+CommandOption CommandLine::add_flag(const std::string& name, bool& value,
+                                    const std::string& description)
+{
+    return CommandOption(*app_->add_flag(name, value, description));
+}
+
+void CommandLine::add_option_file(const std::string& name, const std::string& description)
+{
+    app_->set_config(name, "", description)->configurable(false);
+    app_->allow_config_extras(CLI::config_extras_mode::error);
+}
+
+void CommandLine::set_footer(const std::string& text)
+{
+    app_->footer(text);
+}
+
+std::optional<int> CommandLine::parse(int argc, char** argv)
+{
+    try
+    {
+        app_->parse(argc, argv);
+        return std::nullopt;
+    }
+    catch (const CLI::ConfigError& error)
+    {
+        const bool is_extra = std::string_view(error.what()).find("parse") != std::string::npos;
+        return fail(is_extra ? unknown_key(error) : on_one_line(error.what()), kExitUsage);
+    }
+    catch (const CLI::ParseError& error)
+    {
+        if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success))
+        {
+            return app_->exit(error); // Prints the help or the version.
+        }
+        return fail(on_one_line(error.what()) + "; see --help", kExitUsage);
+    }
+}
+
+std::vector<std::string> CommandLine::given() const
+{
+    std::vector<std::string> names;
+    for (const CLI::Option* option : std::as_const(*app_).get_options())
+    {
+        if (option->count() > 0)
+        {
+            names.push_back(option->get_name());
+        }
+    }
+    return names;
+}
+
+bool CommandLine::is_given(const std::string& name) const
+{
+    const CLI::Option* option = app_->get_option_no_throw(name);
+    return option != nullptr && option->count() > 0;
+}
+
+std::string CommandLine::option_file_text() const
+{
+    return app_->config_to_str(true, true);
+}
+
+int CommandLine::fail(const std::string& text, int code) const
+{
+    fmt::print(stderr, "{}: {}\n", app_->get_name(), printable_line(text));
     return code;
 }
 

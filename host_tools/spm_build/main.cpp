@@ -68,38 +68,40 @@ struct Outcome
     std::uint64_t peak_bytes{0};
 };
 
-void declare_options(CLI::App& app, Options& options)
+void declare_options(CommandLine& line, Options& options)
 {
-    app.set_version_flag("--version", std::string("spm_build ") + TACTUS_VERSION);
-    auto* input = app.add_option("IN", options.input, "Mesh to read: .ply, .obj, .stl or .off");
-    app.add_option("-o,--output", options.output, "Model to write (.spm)")->required();
+    line.add_version(std::string("spm_build ") + TACTUS_VERSION);
+    const auto input =
+        line.add_option("IN", options.input, "Mesh to read: .ply, .obj, .stl or .off");
+    line.add_option("-o,--output", options.output, "Model to write (.spm)").required();
     const std::vector<std::string_view> names = shape_names();
-    auto* shape = app.add_option("--shape", options.shape, "Make a shape instead of reading a mesh")
-                      ->check(CLI::IsMember(std::vector<std::string>(names.begin(), names.end())))
-                      ->excludes(input);
-    auto* faces = app.add_option("--faces", options.shape_faces, "Faces of the shape")
-                      ->check(number_between(kMinShapeFaces, kMaxShapeFaces))
-                      ->needs(shape);
-    shape->needs(faces);
-    app.add_option("--unit", options.unit, "Unit of the mesh's coordinates")
-        ->check(CLI::IsMember({"mm", "cm", "m", "in"}))
-        ->capture_default_str();
-    app.add_option("--fit-diag", options.fit_diagonal_m,
-                   "Scale the model to this bounding-box diagonal, in metres")
-        ->check(number_between(kMinFitDiagonal_m, kMaxFitDiagonal_m));
-    app.add_option("--position-bits", options.position_bits, "Bits of a coordinate")
-        ->check(number_between(kMinPositionBits, kMaxPositionBits))
-        ->capture_default_str();
-    app.add_option("--base-faces", options.base_faces, "Faces of the coarsest mesh, at most")
-        ->check(number_between(1, kMaxBaseFaces))
-        ->capture_default_str();
-    app.add_option("--region-size", options.region_size_m,
-                   "Edge of a region in metres, rounded down to a power of two quanta")
-        ->check(number_between(1e-12, 1e6));
-    app.add_option("--threads", options.threads, "Threads to work with")
-        ->check(number_between(1, 1024))
-        ->capture_default_str();
-    app.add_flag("--json", options.json, "Print the figures as one JSON object");
+    const auto shape =
+        line.add_option("--shape", options.shape, "Make a shape instead of reading a mesh")
+            .one_of({names.begin(), names.end()})
+            .excludes(input);
+    const auto faces = line.add_option("--faces", options.shape_faces, "Faces of the shape")
+                           .number_between(kMinShapeFaces, kMaxShapeFaces)
+                           .needs(shape);
+    shape.needs(faces);
+    line.add_option("--unit", options.unit, "Unit of the mesh's coordinates")
+        .one_of({"mm", "cm", "m", "in"})
+        .show_default();
+    line.add_option("--fit-diag", options.fit_diagonal_m,
+                    "Scale the model to this bounding-box diagonal, in metres")
+        .number_between(kMinFitDiagonal_m, kMaxFitDiagonal_m);
+    line.add_option("--position-bits", options.position_bits, "Bits of a coordinate")
+        .number_between(kMinPositionBits, kMaxPositionBits)
+        .show_default();
+    line.add_option("--base-faces", options.base_faces, "Faces of the coarsest mesh, at most")
+        .number_between(1, kMaxBaseFaces)
+        .show_default();
+    line.add_option("--region-size", options.region_size_m,
+                    "Edge of a region in metres, rounded down to a power of two quanta")
+        .number_between(1e-12, 1e6);
+    line.add_option("--threads", options.threads, "Threads to work with")
+        .number_between(1, 1024)
+        .show_default();
+    line.add_flag("--json", options.json, "Print the figures as one JSON object");
 }
 
 Result<TriangleMesh, Failure> load_source(const Options& options, std::vector<std::string>& notes)
@@ -254,23 +256,23 @@ void print_summary(const Options& options, const Outcome& outcome)
 
 int run(int argc, char** argv)
 {
-    CLI::App app("Turns a triangle mesh into an SPM model.", "spm_build");
+    CommandLine line("spm_build", "Turns a triangle mesh into an SPM model.");
     Options options;
-    declare_options(app, options);
-    if (const auto code = parse_command_line(app, argc, argv))
+    declare_options(line, options);
+    if (const auto code = line.parse(argc, argv))
     {
         return *code;
     }
     if (options.input.empty() && options.shape.empty())
     {
-        return fail(app, "give a mesh to read, or --shape and --faces; see --help", kExitUsage);
+        return line.fail("give a mesh to read, or --shape and --faces; see --help", kExitUsage);
     }
     AtomicFile::remove_pending_on_signal();
     std::vector<std::string> notes;
     const auto outcome = build(options, notes);
     if (!outcome)
     {
-        return fail(app, outcome.error().text);
+        return line.fail(outcome.error().text);
     }
     for (const std::string& note : notes)
     {

@@ -18,16 +18,16 @@ namespace
 
 constexpr double kMaxError_m = 1e6;
 
-CLI::Validator mesh_name()
+std::string fault_in_mesh_name(const std::string& name)
 {
-    return CLI::Validator(
-        [](std::string& name)
-        {
-            return has_mesh_extension(name)
-                       ? std::string()
-                       : fmt::format("'{}' does not end in .ply, .obj or .stl", name);
-        },
-        "");
+    return has_mesh_extension(name) ? ""
+                                    : fmt::format("'{}' does not end in .ply, .obj or .stl", name);
+}
+
+std::string fault_in_zone(const std::string& text)
+{
+    const auto zone = parse_zone(text);
+    return zone ? "" : zone.error().text;
 }
 
 constexpr const char* kRule = "--extract writes the coarsest mesh that meets what is asked for. "
@@ -42,41 +42,35 @@ constexpr const char* kRule = "--extract writes the coarsest mesh that meets wha
 
 } // namespace
 
-void Extractor::declare_options(CLI::App& app)
+void Extractor::declare_options(CommandLine& line)
 {
-    auto* extract = app.add_flag("--extract", wanted_,
-                                 "Write a mesh, coarse or fine as --faces, --error, --region ask");
-    auto* faces = app.add_option("--faces", request_.faces, "Faces of the extracted mesh, at most")
-                      ->check(number_between(1, std::numeric_limits<std::uint32_t>::max()))
-                      ->needs(extract);
-    app.add_option("--error", request_.error_m,
-                   "Largest error bound of a face of the extracted mesh, in metres")
-        ->check(number_between(0, kMaxError_m))
-        ->excludes(faces)
-        ->needs(extract);
-    app.add_option_function<std::string>(
-           "--region",
-           [this](const std::string& text) { request_.zone = parse_zone(text).value(); },
-           "Full resolution in here: sphere:x,y,z,r or box:x0,y0,z0,x1,y1,z1, in metres and the "
-           "source's frame")
-        ->check(CLI::Validator(
-            [](std::string& text)
-            {
-                const auto zone = parse_zone(text);
-                return zone ? std::string() : zone.error().text;
-            },
-            ""))
-        ->needs(extract);
-    auto* output = app.add_option("-o,--output", output_, "Mesh to write (.ply, .obj or .stl)")
-                       ->check(mesh_name())
-                       ->needs(extract);
-    extract->needs(output);
-    app.footer(kRule);
+    const auto extract = line.add_flag(
+        "--extract", wanted_, "Write a mesh, coarse or fine as --faces, --error, --region ask");
+    const auto faces =
+        line.add_option("--faces", request_.faces, "Faces of the extracted mesh, at most")
+            .number_between(1, std::numeric_limits<std::uint32_t>::max())
+            .needs(extract);
+    line.add_option("--error", request_.error_m,
+                    "Largest error bound of a face of the extracted mesh, in metres")
+        .number_between(0, kMaxError_m)
+        .excludes(faces)
+        .needs(extract);
+    line.add_option("--region", region_,
+                    "Full resolution in here: sphere:x,y,z,r or box:x0,y0,z0,x1,y1,z1, in metres "
+                    "and the source's frame")
+        .check(fault_in_zone)
+        .needs(extract);
+    const auto output =
+        line.add_option("-o,--output", output_, "Mesh to write (.ply, .obj or .stl)")
+            .check(fault_in_mesh_name)
+            .needs(extract);
+    extract.needs(output);
+    line.set_footer(kRule);
 }
 
 std::optional<std::string> Extractor::wrong_usage() const
 {
-    if (wanted_ && !request_.faces && !request_.error_m && !request_.zone)
+    if (wanted_ && !request_.faces && !request_.error_m && region_.empty())
     {
         return "--extract needs --faces, --error or --region; see --help";
     }
@@ -85,14 +79,19 @@ std::optional<std::string> Extractor::wrong_usage() const
 
 std::optional<std::string> Extractor::run(const DecodedModel& model) const
 {
-    const Extraction extraction = extract(model, request_);
+    ExtractRequest request = request_;
+    if (!region_.empty())
+    {
+        request.zone = parse_zone(region_).value();
+    }
+    const Extraction extraction = extract(model, request);
     if (const auto written = write_mesh(output_, extraction.mesh); !written)
     {
         return written.error().text;
     }
     fmt::print(stderr, "{}: {} faces\n", output_, extraction.mesh.faces.size());
     fmt::print(stderr, "error bound   {:.3g} m at most\n", extraction.error_max_m);
-    if (request_.zone)
+    if (request.zone)
     {
         fmt::print(stderr, "region        {} faces of the source\n", extraction.zone_faces);
     }

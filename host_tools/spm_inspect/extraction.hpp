@@ -5,20 +5,20 @@
 #include "host_tools/encode/decoded_model.hpp"
 #include "host_tools/encode/extract.hpp"
 
-#include <CLI/CLI.hpp>
-
 #include <optional>
 #include <string>
 
 namespace tactus
 {
 
+class CommandLine;
+
 /// --extract and the options that say what and where to.
 class Extractor
 {
 public:
     /// The extractor must outlive the parsing.
-    void declare_options(CLI::App& app);
+    void declare_options(CommandLine& line);
 
     /// Why the options make no sense together; nothing when they do.
     [[nodiscard]] std::optional<std::string> wrong_usage() const;
@@ -31,7 +31,8 @@ public:
 
 private:
     bool wanted_{false};
-    ExtractRequest request_;
+    ExtractRequest request_; ///< But the zone.
+    std::string region_;     ///< That, as text; empty: none.
     std::string output_;
 };
 

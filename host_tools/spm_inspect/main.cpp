@@ -31,13 +31,13 @@ struct Options
     Extractor extractor;
 };
 
-void declare_options(CLI::App& app, Options& options)
+void declare_options(CommandLine& line, Options& options)
 {
-    app.set_version_flag("--version", std::string("spm_inspect ") + TACTUS_VERSION);
-    app.add_option("FILE", options.file, "Model to look at (.spm)")->required();
-    app.add_flag("--json", options.json, "Print as one JSON object");
-    app.add_flag("--regions", options.regions, "List the occupied regions");
-    options.extractor.declare_options(app);
+    line.add_version(std::string("spm_inspect ") + TACTUS_VERSION);
+    line.add_option("FILE", options.file, "Model to look at (.spm)").required();
+    line.add_flag("--json", options.json, "Print as one JSON object");
+    line.add_flag("--regions", options.regions, "List the occupied regions");
+    options.extractor.declare_options(line);
 }
 
 /// The least and largest corner of the model in the source's frame.
@@ -191,53 +191,53 @@ void print_text(const nlohmann::json& all)
     }
 }
 
-int report_damage(const CLI::App& app, const std::vector<std::string>& damage)
+int report_damage(const CommandLine& line, const std::vector<std::string>& damage)
 {
     constexpr std::size_t kShown = 20;
     for (std::size_t i = 0; i < std::min(damage.size(), kShown); ++i)
     {
-        fail(app, damage[i]);
+        line.fail(damage[i]);
     }
     if (damage.size() > kShown)
     {
-        fail(app, fmt::format("and {} more damaged pieces", damage.size() - kShown));
+        line.fail(fmt::format("and {} more damaged pieces", damage.size() - kShown));
     }
     return kExitFailed;
 }
 
 int run(int argc, char** argv)
 {
-    CLI::App app("Shows and checks an SPM model.", "spm_inspect");
+    CommandLine line("spm_inspect", "Shows and checks an SPM model.");
     Options options;
-    declare_options(app, options);
-    if (const auto code = parse_command_line(app, argc, argv))
+    declare_options(line, options);
+    if (const auto code = line.parse(argc, argv))
     {
         return *code;
     }
     if (const auto reason = options.extractor.wrong_usage())
     {
-        return fail(app, *reason, kExitUsage);
+        return line.fail(*reason, kExitUsage);
     }
     const auto store = ModelStore::open(options.file);
     if (!store)
     {
-        return fail(app, store.error().text);
+        return line.fail(store.error().text);
     }
     std::vector<std::string> damage;
     DecodedModel model = DecodedModel::decode(store.value(), damage);
     if (!damage.empty())
     {
-        return report_damage(app, damage);
+        return report_damage(line, damage);
     }
     if (const auto fault = find_contradiction(model))
     {
-        return fail(app, fmt::format("{}: contradicts itself: {}", options.file, *fault));
+        return line.fail(fmt::format("{}: contradicts itself: {}", options.file, *fault));
     }
     if (options.extractor.is_wanted())
     {
         if (const auto fault = options.extractor.run(model))
         {
-            return fail(app, *fault);
+            return line.fail(*fault);
         }
     }
     const nlohmann::json all = describe(store.value(), model, options.regions);

@@ -63,28 +63,27 @@ void stop_on_signals()
     ::sigaction(SIGTERM, &action, nullptr);
 }
 
-void declare_options(CLI::App& app, Options& options)
+void declare_options(CommandLine& line, Options& options)
 {
-    app.set_version_flag("--version", std::string("spm_publish ") + TACTUS_VERSION);
-    app.add_option("FILE", options.files, "Models to serve (.spm)")->required();
-    app.add_option("--name", options.names,
-                   "Name of the first model, of the second, ...; without it the file's stem")
-        ->expected(1)
-        ->take_all();
-    app.add_option("--domain", options.domain, "DDS domain")
-        ->check(CLI::Range(std::uint32_t{0}, dds::kMaxDomain))
-        ->capture_default_str();
-    app.add_option("--seconds", options.seconds, "End by itself after this long")
-        ->check(number_between(0.1, 1e9));
-    app.add_option("--poses", options.poses_path,
-                   fmt::format("Move the models as this text file says, in real time: lines {} in "
-                               "order of time, in s and m, with the published name and a unit "
-                               "quaternion; # begins a comment",
-                               kPoseLineForm));
-    app.add_flag("--poses-loop", options.poses_loop,
-                 "Begin the file anew at the time of its last line, again and again");
-    app.add_flag("--watch", options.watch,
-                 "Print what each controller on the domain does, a line a second");
+    line.add_version(std::string("spm_publish ") + TACTUS_VERSION);
+    line.add_option("FILE", options.files, "Models to serve (.spm)").required();
+    line.add_option("--name", options.names,
+                    "Name of the first model, of the second, ...; without it the file's stem")
+        .repeatable_with_more();
+    line.add_option("--domain", options.domain, "DDS domain")
+        .integer_between(std::uint32_t{0}, dds::kMaxDomain)
+        .show_default();
+    line.add_option("--seconds", options.seconds, "End by itself after this long")
+        .number_between(0.1, 1e9);
+    line.add_option("--poses", options.poses_path,
+                    fmt::format("Move the models as this text file says, in real time: lines {} in "
+                                "order of time, in s and m, with the published name and a unit "
+                                "quaternion; # begins a comment",
+                                kPoseLineForm));
+    line.add_flag("--poses-loop", options.poses_loop,
+                  "Begin the file anew at the time of its last line, again and again");
+    line.add_flag("--watch", options.watch,
+                  "Print what each controller on the domain does, a line a second");
 }
 
 /// The models' names in the order of the files; a line when one is missing, wrong or there twice.
@@ -249,45 +248,45 @@ void serve(dds::DdsHost& host, ServingReport& report, Extras& extras,
 
 int run(int argc, char** argv)
 {
-    CLI::App app("Serves SPM models to controllers over DDS.", "spm_publish");
+    CommandLine line("spm_publish", "Serves SPM models to controllers over DDS.");
     Options options;
-    declare_options(app, options);
-    if (const auto code = parse_command_line(app, argc, argv))
+    declare_options(line, options);
+    if (const auto code = line.parse(argc, argv))
     {
         return *code;
     }
     const auto names = choose_names(options);
     if (!names)
     {
-        return fail(app, names.error().text, kExitUsage);
+        return line.fail(names.error().text, kExitUsage);
     }
     if (options.poses_loop && options.poses_path.empty())
     {
-        return fail(app, "--poses-loop: needs --poses", kExitUsage);
+        return line.fail("--poses-loop: needs --poses", kExitUsage);
     }
     auto models = open_models(options, names.value());
     if (!models)
     {
-        return fail(app, models.error().text);
+        return line.fail(models.error().text);
     }
     auto poses = read_poses(options, names.value());
     if (!poses)
     {
-        return fail(app, poses.error().text);
+        return line.fail(poses.error().text);
     }
     stop_on_signals();
     ServingReport report;
     auto host =
         dds::DdsHost::create(options.domain, std::move(models).value(),
-                             [&report](const std::string& line) { report.print_line(line); });
+                             [&report](const std::string& text) { report.print_line(text); });
     if (!host)
     {
-        return fail(app, host.error().text);
+        return line.fail(host.error().text);
     }
     auto extras = make_extras(options, *host.value(), std::move(poses).value());
     if (!extras)
     {
-        return fail(app, extras.error().text);
+        return line.fail(extras.error().text);
     }
     print_models(report, *host.value(), options.domain);
     serve(*host.value(), report, extras.value(), options.seconds);

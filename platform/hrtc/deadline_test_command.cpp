@@ -15,7 +15,6 @@
 #include "platform/hrtc/session.hpp"
 #include "platform/hrtc/signals.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -260,14 +259,14 @@ int run_deadline_test(int argc, char** argv)
                        "--report writes FILE.json, FILE.txt and FILE.svg.";
     form.records = false;
     form.duration_s = kDuration_s;
-    form.declare = [&load_names](CLI::App& app)
+    form.declare = [&load_names](CommandLine& line)
     {
-        app.add_option("--load", load_names,
-                       "What runs beside the second run: cpu, memory, disk, separated by commas, "
-                       "or none")
-            ->delimiter(',')
-            ->check(CLI::IsMember({"cpu", "memory", "disk", "none"}))
-            ->capture_default_str();
+        line.add_option("--load", load_names,
+                        "What runs beside the second run: cpu, memory, disk, separated by commas, "
+                        "or none")
+            .separated_by(',')
+            .one_of({"cpu", "memory", "disk", "none"})
+            .show_default();
     };
     auto parsed = parse_options(argc, argv, form);
     if (const int* code = std::get_if<int>(&parsed))

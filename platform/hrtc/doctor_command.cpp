@@ -31,22 +31,22 @@ std::string why_not_on(int cpu)
 
 int run_doctor(int argc, char** argv)
 {
-    CLI::App app("Says what of this machine is in the way of the haptic loop: what was found, why "
-                 "it matters, and the command that mends it. Exit code 1 when something critical "
-                 "is missing.",
-                 "hrtc doctor");
+    CommandLine line("hrtc doctor",
+                     "Says what of this machine is in the way of the haptic loop: what was found, "
+                     "why it matters, and the command that mends it. Exit code 1 when something "
+                     "critical is missing.");
     std::optional<int> cpu;
     bool as_json = false;
-    app.add_option("--cpu", cpu, "Processor that the haptic thread is to have [not chosen]")
-        ->check(CLI::Range(0, 1'023));
-    app.add_flag("--json", as_json, "Print one JSON object");
-    if (const std::optional<int> code = parse_command_line(app, argc, argv))
+    line.add_option("--cpu", cpu, "Processor that the haptic thread is to have [not chosen]")
+        .integer_between(0, 1'023);
+    line.add_flag("--json", as_json, "Print one JSON object");
+    if (const std::optional<int> code = line.parse(argc, argv))
     {
         return *code;
     }
     if (const std::string fault = cpu ? why_not_on(*cpu) : ""; !fault.empty())
     {
-        return fail(app, "--cpu: " + fault, kExitUsage);
+        return line.fail("--cpu: " + fault, kExitUsage);
     }
     const doctor::SystemFiles files("/");
     const doctor::Measured measured = doctor::measure();
@@ -55,7 +55,7 @@ int run_doctor(int argc, char** argv)
                              : doctor::make_text(findings));
     if (std::fflush(stdout) != 0)
     {
-        return fail(app, "the findings can't be written");
+        return line.fail("the findings can't be written");
     }
     return doctor::count_of(findings, doctor::Verdict::critical) == 0 ? kExitDone
                                                                       : kExitCriterionNotMet;

@@ -247,21 +247,21 @@ std::optional<LoadKind> Load::ended()
 
 int run_load(int argc, char** argv)
 {
-    CLI::App app("Keeps this machine busy, to see what that does to a loop beside it, until its "
-                 "standard input ends: work of one kind on one processor.",
-                 "hrtc load");
+    CommandLine line("hrtc load",
+                     "Keeps this machine busy, to see what that does to a loop beside it, until "
+                     "its standard input ends: work of one kind on one processor.");
     std::string name;
-    app.add_option("KIND", name, "cpu, memory or disk")
-        ->required()
-        ->check(CLI::IsMember({kLoadNames[0], kLoadNames[1], kLoadNames[2]}));
-    if (const std::optional<int> code = parse_command_line(app, argc, argv))
+    line.add_option("KIND", name, "cpu, memory or disk")
+        .required()
+        .one_of({kLoadNames.begin(), kLoadNames.end()});
+    if (const std::optional<int> code = line.parse(argc, argv))
     {
         return *code;
     }
     linux_extras::let_calling_thread_use_all(); // Also the one that hrtc itself keeps off.
     if (const auto fault = work(parse_load(name).value(), stdin_is_open))
     {
-        return fail(app, *fault);
+        return line.fail(*fault);
     }
     return kExitDone;
 }

@@ -7,8 +7,6 @@
 #include "platform/simulated/simulated_device.hpp"
 #include "rt_core/limits.hpp"
 
-#include <CLI/CLI.hpp>
-
 namespace tactus::hrtc
 {
 
@@ -20,171 +18,171 @@ constexpr double kFrameBudgetMin_us = 10.0;
 constexpr double kFrameBudgetMax_us = 10'000.0;
 
 /// An option that takes one value and may be given several times.
-void repeatable(CLI::App& app, const std::string& name, std::vector<std::string>& values,
+void repeatable(CommandLine& line, const std::string& name, std::vector<std::string>& values,
                 const std::string& description)
 {
-    app.add_option(name, values, description)->expected(1)->allow_extra_args(false)->take_all();
+    line.add_option(name, values, description).repeatable();
 }
 
 /// The models, the tools that touch them and their devices.
-void declare_scene(CLI::App& app, Options& options, RawOptions& raw)
+void declare_scene(CommandLine& line, Options& options, RawOptions& raw)
 {
-    repeatable(app, "--model", options.models,
+    repeatable(line, "--model", options.models,
                "Model to touch: NAME or NAME@HASH as published, or with --transport file a "
                "path; repeatable");
-    repeatable(app, "--place", raw.places,
+    repeatable(line, "--place", raw.places,
                "Where the model stands, one for each --model in order: X,Y,Z in m "
                "[,RX,RY,RZ rotation vector in degrees [,SCALE]]");
-    repeatable(app, "--material", raw.materials,
+    repeatable(line, "--material", raw.materials,
                "How the model feels, one for each --model in order: STIFFNESS in N/m, 1 to "
                "3000, the softer of this and --stiffness counts [,STATIC friction, 0 to 3 "
                "[,DYNAMIC friction, at most the static one [,DAMPING in N s/m, 0 to 20]]]");
-    repeatable(app, "--tool", raw.tools,
+    repeatable(line, "--tool", raw.tools,
                "Tool: sphere:RADIUS_M, 1e-5 to 1 m; repeatable [one sphere of 1 % of the first "
                "model's diagonal]");
-    repeatable(app, "--device", raw.devices,
+    repeatable(line, "--device", raw.devices,
                "What moves the tool, one for each --tool in order: sim[:CLASS], a simulated "
                "hand on a device of the class touch, omega or delta; udp[:[ADDRESS:]PORT], a "
                "driver of your own; dhd[:INDEX], a device of Force "
                "Dimension's; replay:FILE, the hand of a recording; repeatable [sim]");
-    repeatable(app, "--device-frame", raw.device_frames,
+    repeatable(line, "--device-frame", raw.device_frames,
                "Where the device's coordinates are in the world, one for each --device in "
                "order: as --place, SCALE being that of its motion");
-    repeatable(app, "--device-fault", raw.device_faults,
+    repeatable(line, "--device-fault", raw.device_faults,
                "For tests: what goes wrong with the readings of simulated devices: "
                "KIND@FRAME+LENGTH with jitter, dropout, stuck, nan, time_jump or disconnect, "
                "from that frame on for so many; repeatable");
-    app.add_option("--motion", raw.motion,
-                   "What simulated hands do: script, free, approach, slide, tap, teleport, spin or "
-                   "tremor [script]");
+    line.add_option(
+        "--motion", raw.motion,
+        "What simulated hands do: script, free, approach, slide, tap, teleport, spin or "
+        "tremor [script]");
 }
 
-void declare_run(CLI::App& app, Options& options)
+void declare_run(CommandLine& line, Options& options)
 {
-    app.add_option("--rate", options.rate_hz, "Frames a second")
-        ->check(CLI::Range(SimulatedDeviceOptions::kRateMinHz, SimulatedDeviceOptions::kRateMaxHz))
-        ->capture_default_str();
-    app.add_option("--duration", options.duration_s, "Seconds to run")
-        ->check(number_between(0.1, 86'400.0))
-        ->capture_default_str();
-    app.add_option("--report", options.report_path,
-                   "Write the report to this file: a page when its name ends in .html, else JSON");
+    line.add_option("--rate", options.rate_hz, "Frames a second")
+        .integer_between(SimulatedDeviceOptions::kRateMinHz, SimulatedDeviceOptions::kRateMaxHz)
+        .show_default();
+    line.add_option("--duration", options.duration_s, "Seconds to run")
+        .number_between(0.1, 86'400.0)
+        .show_default();
+    line.add_option("--report", options.report_path,
+                    "Write the report to this file: a page when its name ends in .html, else JSON");
 }
 
 /// Memory, and the work of a frame.
-void declare_budgets(CLI::App& app, Options& options, RawOptions& raw)
+void declare_budgets(CommandLine& line, Options& options, RawOptions& raw)
 {
-    app.add_option("--pool-mib", options.pool_mib,
-                   "Memory for all pools of all models, in MiB, everything counted")
-        ->check(number_between(0.25, kLargestPool_mib))
-        ->capture_default_str();
-    app.add_option("--cache-mib", options.cache_mib,
-                   "Share of it for pages of records, in MiB [about six tenths]")
-        ->check(number_between(0.05, kLargestPool_mib));
-    app.add_option("--splits", options.splits, "Splits and merges in one frame at most")
-        ->check(CLI::Range(std::uint32_t{1}, kMaxSplitsPerFrame))
-        ->capture_default_str();
-    app.add_option("--frame-budget-us", options.frame_budget_us,
-                   "Microseconds that a frame may take: its budgets follow what frames cost, "
-                   "--splits being the most [budgets fixed]")
-        ->check(number_between(kFrameBudgetMin_us, kFrameBudgetMax_us));
-    app.add_flag_callback(
-        "--no-static", [&options] { options.static_when_it_fits = false; },
-        "Refine locally also a model that fits the pools as a whole");
-    app.add_option("--predict", raw.prediction,
-                   "How the regions to load are foretold: local, linear, quadratic, distance, or "
-                   "auto, whichever erred least of late")
-        ->check(CLI::IsMember(kPredictionNames))
-        ->capture_default_str();
+    line.add_option("--pool-mib", options.pool_mib,
+                    "Memory for all pools of all models, in MiB, everything counted")
+        .number_between(0.25, kLargestPool_mib)
+        .show_default();
+    line.add_option("--cache-mib", options.cache_mib,
+                    "Share of it for pages of records, in MiB [about six tenths]")
+        .number_between(0.05, kLargestPool_mib);
+    line.add_option("--splits", options.splits, "Splits and merges in one frame at most")
+        .integer_between(std::uint32_t{1}, kMaxSplitsPerFrame)
+        .show_default();
+    line.add_option("--frame-budget-us", options.frame_budget_us,
+                    "Microseconds that a frame may take: its budgets follow what frames cost, "
+                    "--splits being the most [budgets fixed]")
+        .number_between(kFrameBudgetMin_us, kFrameBudgetMax_us);
+    line.add_flag("--no-static", raw.refines_always,
+                  "Refine locally also a model that fits the pools as a whole");
+    line.add_option("--predict", raw.prediction,
+                    "How the regions to load are foretold: local, linear, quadratic, distance, or "
+                    "auto, whichever erred least of late")
+        .one_of({kPredictionNames.begin(), kPredictionNames.end()})
+        .show_default();
 }
 
-void declare_force(CLI::App& app, Options& options)
+void declare_force(CommandLine& line, Options& options)
 {
-    app.add_option("--stiffness", options.stiffness_n_per_m, "Of the virtual wall, in N/m")
-        ->check(number_between(1.0, kStiffest_n_per_m))
-        ->capture_default_str();
-    app.add_option("--speed-limit", options.speed_limit_m_per_s,
-                   "Speed of the hand, in m/s, above which its force fades [the device's own]")
-        ->check(number_between(0.01, 100.0));
-    app.add_option("--follow-speed", options.follow_speed_m_per_s,
-                   "In m/s, at which a tool in contact follows a faster hand; what it needs round "
-                   "itself grows with it [a diagonal of the first model a second]")
-        ->check(number_between(0.001, 100.0));
+    line.add_option("--stiffness", options.stiffness_n_per_m, "Of the virtual wall, in N/m")
+        .number_between(1.0, kStiffest_n_per_m)
+        .show_default();
+    line.add_option("--speed-limit", options.speed_limit_m_per_s,
+                    "Speed of the hand, in m/s, above which its force fades [the device's own]")
+        .number_between(0.01, 100.0);
+    line.add_option("--follow-speed", options.follow_speed_m_per_s,
+                    "In m/s, at which a tool in contact follows a faster hand; what it needs round "
+                    "itself grows with it [a diagonal of the first model a second]")
+        .number_between(0.001, 100.0);
 }
 
-void declare_transport(CLI::App& app, Options& options, RawOptions& raw)
+void declare_transport(CommandLine& line, Options& options, RawOptions& raw)
 {
-    app.add_option("--transport", raw.transport, "Where models come from")
-        ->check(CLI::IsMember({"dds", "file"}))
-        ->capture_default_str();
-    app.add_option("--domain", options.domain, "DDS domain id")
-        ->check(CLI::Range(0, 232))
-        ->capture_default_str();
-    app.add_flag("--ignore-poses", raw.ignores_poses,
-                 "Leave the models where --place puts them, whatever their hosts say");
-    app.add_option("--wait", options.wait_s,
-                   "Seconds to wait for a model to be published, and for a device to come")
-        ->check(number_between(0.1, 3'600.0))
-        ->capture_default_str();
+    line.add_option("--transport", raw.transport, "Where models come from")
+        .one_of({"dds", "file"})
+        .show_default();
+    line.add_option("--domain", options.domain, "DDS domain id")
+        .integer_between(0, 232)
+        .show_default();
+    line.add_flag("--ignore-poses", raw.ignores_poses,
+                  "Leave the models where --place puts them, whatever their hosts say");
+    line.add_option("--wait", options.wait_s,
+                    "Seconds to wait for a model to be published, and for a device to come")
+        .number_between(0.1, 3'600.0)
+        .show_default();
 }
 
-void declare_thread(CLI::App& app, Options& options, RawOptions& raw)
+void declare_thread(CommandLine& line, Options& options, RawOptions& raw)
 {
-    app.add_option("--priority", options.thread.priority,
-                   "SCHED_FIFO priority of the haptic thread")
-        ->check(CLI::Range(RtThreadOptions::kPriorityMin, RtThreadOptions::kPriorityMax))
-        ->capture_default_str();
-    app.add_option("--cpu", raw.cpu, "Processor of the haptic thread [left to the system]")
-        ->check(CLI::Range(0, 1'023));
-    app.add_flag("--allow-no-rt", options.thread.allow_no_rt,
-                 "Run without SCHED_FIFO or locked memory when they are refused");
-    app.add_flag("--trap-system-calls", options.trap_system_calls,
-                 "For tests: count the system calls that frames make, which must be none; every "
-                 "call of the haptic thread costs some 3 us more");
+    line.add_option("--priority", options.thread.priority,
+                    "SCHED_FIFO priority of the haptic thread")
+        .integer_between(RtThreadOptions::kPriorityMin, RtThreadOptions::kPriorityMax)
+        .show_default();
+    line.add_option("--cpu", raw.cpu, "Processor of the haptic thread [left to the system]")
+        .integer_between(0, 1'023);
+    line.add_flag("--allow-no-rt", options.thread.allow_no_rt,
+                  "Run without SCHED_FIFO or locked memory when they are refused");
+    line.add_flag("--trap-system-calls", options.trap_system_calls,
+                  "For tests: count the system calls that frames make, which must be none; every "
+                  "call of the haptic thread costs some 3 us more");
 }
 
 /// The file's keys are the options' names without the dashes.
-void declare_config(CLI::App& app, RawOptions& raw)
+void declare_config(CommandLine& line, RawOptions& raw)
 {
-    app.set_config("--config", "", "Read options from this TOML file; the command line goes first");
-    app.get_config_ptr()->configurable(false);
-    app.allow_config_extras(CLI::config_extras_mode::error);
-    app.add_flag("--print-config", raw.prints_config,
-                 "Print what the options come to as such a file, and end")
-        ->configurable(false);
+    line.add_option_file("--config",
+                         "Read options from this TOML file; the command line goes first");
+    line.add_flag("--print-config", raw.prints_config,
+                  "Print what the options come to as such a file, and end")
+        .not_in_file();
 }
 
-void declare_recording(CLI::App& app, Options& options)
+void declare_recording(CommandLine& line, Options& options)
 {
-    app.add_option("--record", options.record_path,
-                   "Record all that goes into every frame, and hashes of what comes out, into this "
-                   "file");
-    app.add_option("--replay", options.replay_path,
-                   "Instead of a run: give the frames of a recording the same again; exit code 1 "
-                   "when one comes out otherwise. Takes no other option");
+    line.add_option(
+        "--record", options.record_path,
+        "Record all that goes into every frame, and hashes of what comes out, into this "
+        "file");
+    line.add_option("--replay", options.replay_path,
+                    "Instead of a run: give the frames of a recording the same again; exit code 1 "
+                    "when one comes out otherwise. Takes no other option");
 }
 
 } // namespace
 
-void declare_options(CLI::App& app, Options& options, RawOptions& raw, const CommandForm& form)
+void declare_options(CommandLine& line, Options& options, RawOptions& raw, const CommandForm& form)
 {
-    app.set_version_flag("--version", std::string("hrtc ") + TACTUS_VERSION);
-    declare_scene(app, options, raw);
-    declare_run(app, options);
-    declare_budgets(app, options, raw);
-    declare_force(app, options);
-    declare_transport(app, options, raw);
-    declare_thread(app, options, raw);
-    declare_config(app, raw);
+    line.add_version(std::string("hrtc ") + TACTUS_VERSION);
+    declare_scene(line, options, raw);
+    declare_run(line, options);
+    declare_budgets(line, options, raw);
+    declare_force(line, options);
+    declare_transport(line, options, raw);
+    declare_thread(line, options, raw);
+    declare_config(line, raw);
     if (form.records)
     {
-        declare_recording(app, options);
+        declare_recording(line, options);
     }
     if (form.declare)
     {
-        form.declare(app);
+        form.declare(line);
     }
-    app.footer(form.footer);
+    line.set_footer(form.footer);
 }
 
 } // namespace tactus::hrtc

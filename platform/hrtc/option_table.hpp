@@ -26,10 +26,11 @@ struct RawOptions
     std::optional<int> cpu;
     bool prints_config{false};
     bool ignores_poses{false};
+    bool refines_always{false};
 };
 
-/// Tells CLI11 of all options of the command. It fills `options` and `raw` when it parses the line,
-/// so both outlive `app`. --help lists them in the order of their declaration.
-void declare_options(CLI::App& app, Options& options, RawOptions& raw, const CommandForm& form);
+/// Declares all options of the command. Parsing fills `options` and `raw`, so both outlive `line`.
+/// --help lists them in the order of their declaration.
+void declare_options(CommandLine& line, Options& options, RawOptions& raw, const CommandForm& form);
 
 } // namespace tactus::hrtc

@@ -9,7 +9,6 @@
 #include "platform/hrtc/option_table.hpp"
 #include "rt_core/limits.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -49,25 +48,24 @@ std::string without_empty(const std::string& config)
 }
 
 /// Everything that a run could be told is in the recording. Empty when all is well.
-std::string check_replay(const CLI::App& app)
+std::string check_replay(const CommandLine& line)
 {
-    for (const CLI::Option* option : app.get_options())
+    for (const std::string& name : line.given())
     {
-        if (option->count() > 0 && option->get_name() != "--replay")
+        if (name != "--replay")
         {
-            return "--replay: takes no other option; " + option->get_name() + " was given";
+            return "--replay: takes no other option; " + name + " was given";
         }
     }
     return {};
 }
 
-std::string check_files(const CLI::App& app, const Options& options)
+std::string check_files(const CommandLine& line, const Options& options)
 {
     for (const auto& [name, path] :
          {std::pair("--record", &options.record_path), std::pair("--replay", &options.replay_path)})
     {
-        const CLI::Option* option = app.get_option_no_throw(name);
-        if (option != nullptr && option->count() > 0 && path->empty())
+        if (line.is_given(name) && path->empty())
         {
             return std::string(name) + ": a file's name is needed";
         }
@@ -247,9 +245,9 @@ std::string check_names(const Options& options)
 }
 
 /// Memory and work of a frame. Empty when all is well.
-std::string check_budgets(const CLI::App& app, Options& options)
+std::string check_budgets(const CommandLine& line, Options& options)
 {
-    if (app.count("--cache-mib") > 0 && options.cache_mib >= options.pool_mib)
+    if (line.is_given("--cache-mib") && options.cache_mib >= options.pool_mib)
     {
         return "--cache-mib: must be less than --pool-mib";
     }
@@ -258,7 +256,7 @@ std::string check_budgets(const CLI::App& app, Options& options)
     {
         return fmt::format("--frame-budget-us: must be less than the period of {} us", period_us);
     }
-    if (options.frame_budget_us && app.count("--splits") == 0)
+    if (options.frame_budget_us && !line.is_given("--splits"))
     {
         options.splits = kMaxSplitsPerFrame;
     }
@@ -266,15 +264,15 @@ std::string check_budgets(const CLI::App& app, Options& options)
 }
 
 /// What one option alone can't tell. Empty when all is well.
-std::string check_together(const CLI::App& app, Options& options, const RawOptions& raw)
+std::string check_together(const CommandLine& line, Options& options, const RawOptions& raw)
 {
-    if (const std::string fault = check_files(app, options); !fault.empty())
+    if (const std::string fault = check_files(line, options); !fault.empty())
     {
         return fault;
     }
     if (!options.replay_path.empty())
     {
-        return check_replay(app);
+        return check_replay(line);
     }
     for (const auto check :
          {check_models, check_places, check_materials, check_tools, check_devices, check_simulated})
@@ -284,7 +282,7 @@ std::string check_together(const CLI::App& app, Options& options, const RawOptio
             return fault;
         }
     }
-    if (const std::string fault = check_budgets(app, options); !fault.empty())
+    if (const std::string fault = check_budgets(line, options); !fault.empty())
     {
         return fault;
     }
@@ -298,25 +296,26 @@ std::string check_together(const CLI::App& app, Options& options, const RawOptio
 
 std::variant<Options, int> parse_options(int argc, char** argv, const CommandForm& form)
 {
-    CLI::App app(form.description, form.name);
+    CommandLine line(form.name, form.description);
     Options options;
     options.duration_s = form.duration_s;
     RawOptions raw;
-    declare_options(app, options, raw, form);
-    if (const std::optional<int> code = parse_command_line(app, argc, argv))
+    declare_options(line, options, raw, form);
+    if (const std::optional<int> code = line.parse(argc, argv))
     {
         return *code;
     }
-    if (const std::string fault = check_together(app, options, raw); !fault.empty())
+    if (const std::string fault = check_together(line, options, raw); !fault.empty())
     {
-        return fail(app, fault, kExitUsage);
+        return line.fail(fault, kExitUsage);
     }
     options.thread.cpu = raw.cpu;
     options.follows_poses = !raw.ignores_poses;
+    options.static_when_it_fits = !raw.refines_always;
     if (raw.prints_config)
     {
-        fmt::print("{}", without_empty(app.config_to_str(true, true)));
-        return std::fflush(stdout) == 0 ? kExitDone : fail(app, "the options can't be written");
+        fmt::print("{}", without_empty(line.option_file_text()));
+        return std::fflush(stdout) == 0 ? kExitDone : line.fail("the options can't be written");
     }
     return options;
 }

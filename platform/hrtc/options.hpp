@@ -17,10 +17,10 @@
 #include <variant>
 #include <vector>
 
-namespace CLI
+namespace tactus
 {
-class App;
-} // namespace CLI
+class CommandLine;
+} // namespace tactus
 
 namespace tactus::hrtc
 {
@@ -78,8 +78,8 @@ struct CommandForm
                             "every period, exactly or with a proven bound."};
     bool records{true}; ///< Takes --record and --replay, too.
     double duration_s{10.0};
-    std::function<void(CLI::App&)> declare; ///< Its own options; none when empty.
-    std::string footer;                     ///< Of --help.
+    std::function<void(CommandLine&)> declare; ///< Its own options; none when empty.
+    std::string footer;                        ///< Of --help.
 };
 
 /// Reads the command line. Returns the exit code instead when the program should leave: after

@@ -2,7 +2,6 @@
 // Copyright the Tactus authors.
 #include "platform/hrtc/session.hpp"
 
-#include "host_tools/cli/command_line.hpp"
 #include "platform/base/atomic_file.hpp"
 #include "platform/hrtc/recorder.hpp"
 #include "platform/hrtc/report.hpp"

@@ -8,7 +8,6 @@
 #include "tests/bench/asking_client.hpp"
 #include "transport/dds/dds_client.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <atomic>
@@ -37,37 +36,37 @@ static_assert(std::atomic<bool>::is_always_lock_free);
 
 int run(int argc, char** argv)
 {
-    CLI::App app("Asks a host for chunks and tells how long they took, as JSON.", "stream_client");
+    CommandLine line("stream_client",
+                     "Asks a host for chunks and tells how long they took, as JSON.");
     Options options;
-    app.add_option("--model", options.model, "NAME[@HASH]")->required();
-    app.add_option("--name", options.name, "Its own, for the host")->capture_default_str();
-    app.add_option("--domain", options.domain, "DDS domain id")->check(CLI::Range(0, 232));
-    app.add_option("--rate", options.rate_hz, "Chunks a second; 0: as fast as they come")
-        ->check(number_between(0.0, 1e6));
-    app.add_option("--seconds", options.seconds, "How long")->check(number_between(0.1, 86'400.0));
-    if (const std::optional<int> code = parse_command_line(app, argc, argv))
+    line.add_option("--model", options.model, "NAME[@HASH]").required();
+    line.add_option("--name", options.name, "Its own, for the host").show_default();
+    line.add_option("--domain", options.domain, "DDS domain id").integer_between(0, 232);
+    line.add_option("--rate", options.rate_hz, "Chunks a second; 0: as fast as they come")
+        .number_between(0.0, 1e6);
+    line.add_option("--seconds", options.seconds, "How long").number_between(0.1, 86'400.0);
+    if (const std::optional<int> code = line.parse(argc, argv))
     {
         return *code;
     }
     const auto selector = parse_selector(options.model);
     if (!selector || !is_valid_name(options.name))
     {
-        return fail(app,
-                    "--model, --name: at most 63 of [A-Za-z0-9._-], @ and 32 hexadecimal "
-                    "digits after a model's",
-                    kExitUsage);
+        return line.fail("--model, --name: at most 63 of [A-Za-z0-9._-], @ and 32 hexadecimal "
+                         "digits after a model's",
+                         kExitUsage);
     }
     std::signal(SIGTERM, [](int) { stop_requested = true; });
     auto client = dds::DdsClient::create(options.domain, options.name, {});
     if (!client)
     {
-        return fail(app, client.error().text);
+        return line.fail(client.error().text);
     }
     auto model =
         client.value()->find(selector.value(), kFindTimeout, [] { return !stop_requested; });
     if (!model)
     {
-        return fail(app, model.error().text);
+        return line.fail(model.error().text);
     }
     fmt::print(stderr, "connected\n");
     AskingClient asking(model.value(), options.rate_hz);

@@ -60,29 +60,29 @@ void stop_on_signals(sigset_t& while_waiting)
     ::sigdelset(&while_waiting, SIGTERM);
 }
 
-void declare_options(CLI::App& app, Options& options)
+void declare_options(CommandLine& line, Options& options)
 {
-    app.set_version_flag("--version", std::string("network_relay ") + TACTUS_VERSION);
-    app.add_option("--delay-ms", options.condition.delay_ms, "Delay of every frame, one way")
-        ->check(number_between(0.0, kDelayMax_ms))
-        ->capture_default_str();
-    app.add_option("--jitter-ms", options.condition.jitter_ms,
-                   "On top of it, uniform from 0 to this; frames overtake each other")
-        ->check(number_between(0.0, kDelayMax_ms))
-        ->capture_default_str();
-    app.add_option("--loss", options.condition.loss, "Share of the frames that are lost")
-        ->check(number_between(0.0, 1.0))
-        ->capture_default_str();
-    app.add_option("--duplicates", options.condition.duplicates,
-                   "Share of the others that arrive twice")
-        ->check(number_between(0.0, 1.0))
-        ->capture_default_str();
-    app.add_option("--seed", options.seed, "Of all random choices")
-        ->check(CLI::Range(std::uint32_t{0}, std::numeric_limits<std::uint32_t>::max()))
-        ->capture_default_str();
-    app.add_option("--mtu", options.mtu_bytes, "Of both interfaces, in bytes")
-        ->check(CLI::Range(kMtuMin_bytes, kMtuMax_bytes))
-        ->capture_default_str();
+    line.add_version(std::string("network_relay ") + TACTUS_VERSION);
+    line.add_option("--delay-ms", options.condition.delay_ms, "Delay of every frame, one way")
+        .number_between(0.0, kDelayMax_ms)
+        .show_default();
+    line.add_option("--jitter-ms", options.condition.jitter_ms,
+                    "On top of it, uniform from 0 to this; frames overtake each other")
+        .number_between(0.0, kDelayMax_ms)
+        .show_default();
+    line.add_option("--loss", options.condition.loss, "Share of the frames that are lost")
+        .number_between(0.0, 1.0)
+        .show_default();
+    line.add_option("--duplicates", options.condition.duplicates,
+                    "Share of the others that arrive twice")
+        .number_between(0.0, 1.0)
+        .show_default();
+    line.add_option("--seed", options.seed, "Of all random choices")
+        .integer_between(std::uint32_t{0}, std::numeric_limits<std::uint32_t>::max())
+        .show_default();
+    line.add_option("--mtu", options.mtu_bytes, "Of both interfaces, in bytes")
+        .integer_between(kMtuMin_bytes, kMtuMax_bytes)
+        .show_default();
 }
 
 /// False when nobody reads any more.
@@ -186,26 +186,26 @@ void serve(Relay& relay, const TapNetwork& host, const TapNetwork& controller,
 
 int run(int argc, char** argv)
 {
-    CLI::App app("Makes two networks and carries frames between them, with delay, loss, duplicates "
-                 "and cuts; told on stdin: " +
-                     command_forms() + ".",
-                 "network_relay");
+    CommandLine line("network_relay",
+                     "Makes two networks and carries frames between them, with delay, loss, "
+                     "duplicates and cuts; told on stdin: " +
+                         command_forms() + ".");
     Options options;
-    declare_options(app, options);
-    if (const auto code = parse_command_line(app, argc, argv))
+    declare_options(line, options);
+    if (const auto code = line.parse(argc, argv))
     {
         return *code;
     }
     const auto host = TapNetwork::create({"host0", kHostAddress, options.mtu_bytes});
     if (!host)
     {
-        return fail(app, "no network can be made here: " + host.error().text);
+        return line.fail("no network can be made here: " + host.error().text);
     }
     const auto controller =
         TapNetwork::create({"controller0", kControllerAddress, options.mtu_bytes});
     if (!controller)
     {
-        return fail(app, "no network can be made here: " + controller.error().text);
+        return line.fail("no network can be made here: " + controller.error().text);
     }
     // The system otherwise wakes a sleeper up to 50 us late, to save power.
     static_cast<void>(::prctl(PR_SET_TIMERSLACK, 1UL));
