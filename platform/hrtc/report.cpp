@@ -4,7 +4,10 @@
 
 #include "platform/allocation_counter.hpp"
 #include "platform/base/atomic_file.hpp"
+#include "platform/hrtc/controller.hpp"
+#include "platform/hrtc/finished_run.hpp"
 #include "platform/hrtc/machine.hpp"
+#include "platform/hrtc/options.hpp"
 #include "platform/hrtc/report_events.hpp"
 #include "rt_core/force/stiffness_rule.hpp"
 

@@ -3,10 +3,6 @@
 #pragma once
 
 #include "platform/base/refusal.hpp"
-#include "platform/hrtc/controller.hpp"
-#include "platform/hrtc/finished_run.hpp"
-#include "platform/hrtc/options.hpp"
-#include "platform/hrtc/session.hpp"
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -17,6 +13,10 @@
 
 namespace tactus::hrtc
 {
+
+class Controller;
+struct FinishedRun;
+struct Options;
 
 /// The report, schema 1 (docs/report.md). Later versions add keys and never rename any.
 [[nodiscard]] nlohmann::ordered_json

@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #include "platform/hrtc/report_events.hpp"
 
+#include "platform/hrtc/finished_run.hpp"
+
 #include <nlohmann/json.hpp>
 
 #include <algorithm>

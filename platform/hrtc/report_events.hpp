@@ -2,12 +2,13 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/hrtc/session.hpp"
-
 #include <nlohmann/json_fwd.hpp>
 
 namespace tactus::hrtc
 {
+
+class SafetyRecord;
+struct FinishedRun;
 
 /// What the report says of a run's deadlines, and of single cycles of it.
 [[nodiscard]] nlohmann::ordered_json deadlines_of(const FinishedRun& run);
