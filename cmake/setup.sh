@@ -27,8 +27,8 @@ Options:
   --quick       bench: fewer frames and repeats, some three minutes instead of an hour
   --peers       bench: beside ours measure the libraries of cmake/packages-bench.txt, which are
                 installed if need be; some are under the GPL, none becomes part of Tactus
-  --docs        bench: put the results into the tables of docs/benchmarks.md, too, those of a
-                quick run not over those of a full one; needs TACTUS_MESHES and python3
+  --docs        bench: with --peers; keep the results in docs/benchmarks, too, those of a quick run
+                not over those of a full one, and draw its pictures; needs TACTUS_MESHES
   --ci          packages: the packages of .ci/run (cmake/packages-ci.txt) as well
   --bench       packages: the peers of tactus_bench (cmake/packages-bench.txt) as well
   --seconds N   demo: touch for N seconds, 1 to 3600 (default 10)
@@ -38,8 +38,8 @@ Options:
 Environment: CXX names the compiler (default g++). ccache is used when it is there.
 TACTUS_BUILD_DIR names a finished build folder: the demo then uses its programs, installs and
 builds nothing, and writes into its folder demo; the other commands refuse it.
-Exit codes: 0 done, 1 a test failed, the demo or bench missed a criterion, or --docs had to leave a
-table of a full run as it was, 2 failed at run time, 3 wrong usage.
+Exit codes: 0 done, 1 a test failed, the demo or bench missed a criterion, or --docs had to leave
+results as they were, 2 failed at run time, 3 wrong usage.
 TEXT
 }
 
@@ -204,8 +204,9 @@ run_demo() { # run_demo SECONDS [DOMAIN]
 
 # --- bench ---------------------------------------------------------------------------------------
 
-run_bench() { # run_bench PAGE OPTION...: all suites, as tactus_bench takes options.
-    local results=$root/build/bench page=$1
+readonly python=/usr/bin/python3 # Debian's, which its matplotlib is for.
+run_bench() { # run_bench KEPT OPTION...: all suites, as tactus_bench takes options.
+    local results=$root/build/bench kept=$1
     shift
     mkdir -p "$results/models"
     local code=0
@@ -217,9 +218,9 @@ run_bench() { # run_bench PAGE OPTION...: all suites, as tactus_bench takes opti
         grep 'goals met' "$results/bench.txt" | sed 's/^/  /' || true
         echo "Results: $results/bench.html, bench.json, bench.csv and bench.txt beside it"
     fi
-    if [[ -n "$page" && -f "$results/bench.json" ]]; then
-        python3 "$root/tests/bench/page_tables.py" write "$page" "$results/bench.json" \
-            || code=$?
+    if [[ -n "$kept" && -f "$results/bench.json" ]]; then
+        "$python" "$root/tests/bench/results.py" store "$kept" "$results/bench.json" || code=$?
+        "$python" "$root/tests/bench/plots.py" draw "$kept" || code=$?
     fi
     return "$code"
 }
@@ -235,7 +236,7 @@ number_in() { # number_in OPTION VALUE LOW HIGH
 main() {
     local command='' seconds=10 domain='' more_options=()
     local lists=("$root"/cmake/packages{,-test}.txt)
-    local bench_options=() peers='' page=''
+    local bench_options=() peers='' kept=''
     while (($# > 0)); do
         case "$1" in
             build | test | demo | bench | packages)
@@ -243,11 +244,11 @@ main() {
                 command=$1
                 ;;
             --quick) bench_options+=(--quick) ;;
-            --peers)
+            --peers | --docs)
+                [[ "$1" == --peers ]] || kept=$root/docs/benchmarks
                 lists+=("$root/cmake/packages-bench.txt")
                 peers='bullet;cgal;embree;fcl;meshoptimizer;openmesh'
                 ;;
-            --docs) page=$root/docs/benchmarks.md ;;
             --ci | --bench) lists+=("$root/cmake/packages-${1#--}.txt") ;;
             --seconds)
                 number_in "$1" "${2:-}" 1 3600
@@ -275,13 +276,12 @@ main() {
     if [[ -n "${TACTUS_BUILD_DIR:-}" && "$command" == @(build|test|bench) ]]; then
         fail 3 "TACTUS_BUILD_DIR is for the demo only; unset it for '$command'"
     fi
-    if [[ "$command" != bench && (-n "$peers$page" || ${#bench_options[@]} -gt 0) ]]; then
+    if [[ "$command" != bench && (-n "$peers" || ${#bench_options[@]} -gt 0) ]]; then
         fail 3 "--quick, --peers and --docs are for 'bench' only"
     fi
-    if [[ -n "$page" ]]; then
-        [[ -d "${TACTUS_MESHES:-}" ]] || fail 3 "--docs: TACTUS_MESHES must name the folder with\
- the well-known meshes; the page's tables are about them"
-        command -v python3 >/dev/null || fail 2 "--docs: there is no python3 here"
+    if [[ -n "$kept" && ! -d "${TACTUS_MESHES:-}" ]]; then
+        fail 3 "--docs: TACTUS_MESHES must name the folder with the well-known meshes; the results\
+ are about them"
     fi
     case "$command" in
         '') fail 3 "no command given; use build, test, demo, bench or --help" ;;
@@ -299,7 +299,7 @@ main() {
             install_packages "${lists[@]}"
             bench_peers=$peers
             build_targets tactus_bench
-            run_bench "$page" "${bench_options[@]}" "${more_options[@]}"
+            run_bench "$kept" "${bench_options[@]}" "${more_options[@]}"
             ;;
         demo)
             if [[ -z "${TACTUS_BUILD_DIR:-}" ]]; then

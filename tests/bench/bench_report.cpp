@@ -236,6 +236,7 @@ std::string to_json(const Results& results, const RunFacts& facts)
                {"date_utc", machine.date_utc}}},
              {"core", facts.core},
              {"quick", facts.quick},
+             {"options", facts.options},
              {"compiler", __VERSION__},
              {"rows", list}};
     if (!results.failures.empty())

@@ -18,6 +18,7 @@ struct RunFacts
 {
     int core{-1}; ///< The one that everything was measured on; -1: not held to one.
     bool quick{false};
+    std::vector<std::string> options; ///< Those that make it another than a full run, as given.
 };
 
 enum class Figures : std::uint8_t
@@ -41,8 +42,8 @@ enum class Figures : std::uint8_t
 [[nodiscard]] std::string to_columns(const Rows& rows);
 /// Every row, a line for each scene, case and metric.
 [[nodiscard]] std::string to_table(const Rows& rows);
-/// {"schema":2,"commit","machine","core","quick","compiler","rows":[...]}, and "failures" when
-/// there are any.
+/// {"schema":2,"commit","machine","core","quick","options","compiler","rows":[...]}, and "failures"
+/// when there are any.
 [[nodiscard]] std::string to_json(const Results& results, const RunFacts& facts);
 /// Every row, by RFC 4180 with a head.
 [[nodiscard]] std::string to_csv(const Rows& rows);

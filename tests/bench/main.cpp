@@ -179,6 +179,31 @@ std::optional<std::string> wrong_usage(const Request& request)
     return wrong_trajectory(request);
 }
 
+/// What makes the run another than a full one, for those who keep its results.
+std::vector<std::string> lesser_options(const BenchOptions& options)
+{
+    std::vector<std::string> told;
+    for (const auto& [is_given, name] :
+         {std::pair{options.quick, "--quick"}, {options.count, "--count"}})
+    {
+        if (is_given)
+        {
+            told.emplace_back(name);
+        }
+    }
+    for (const auto& [number, name] :
+         {std::pair{options.frames, "--frames"}, {options.passes, "--passes"}})
+    {
+        if (number)
+        {
+            told.push_back(fmt::format("{} {}", name, *number));
+        }
+    }
+    std::ranges::transform(options.only, std::back_inserter(told),
+                           [](const std::string& name) { return "--only " + name; });
+    return told;
+}
+
 /// All suites asked for, one after the other, printed as they come; what came before a failure,
 /// too. `laws`: goals that leave with code 1, asked or not.
 Results run_suites(const Request& request, GoalCount& laws)
@@ -234,7 +259,8 @@ int run(int argc, char** argv)
     {
         return line.fail(files.error().text);
     }
-    const RunFacts facts{PinnedCore(request.options.core).core(), request.options.quick};
+    const RunFacts facts{PinnedCore(request.options.core).core(), request.options.quick,
+                         lesser_options(request.options)};
     const bool is_recorded = !request.options.trajectory.file.empty();
     GoalCount laws;
     const Results results = is_recorded ? run_trajectory(request) : run_suites(request, laws);

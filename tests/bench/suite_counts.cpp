@@ -3,7 +3,7 @@
 
 /// The suite `counts`: what frames do on three fixed scenes that need no mesh from elsewhere, in
 /// counts that are the same on every machine; no times. Under callgrind, instructions as well:
-/// page_tables.py.
+/// counts.py.
 
 #include "tests/bench/bench_report.hpp"
 #include "tests/bench/frame_replay.hpp"

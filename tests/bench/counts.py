@@ -1,0 +1,100 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+# Copyright the Tactus authors.
+"""Holds what frames do on fixed scenes against docs/benchmarks/counts.json.
+
+    counts.py FILE TACTUS_BENCH [--instructions | --write]
+
+Counts anew: each must be as in the file. With --instructions those of a frame as well, under
+valgrind's callgrind, some seconds; they are the compiler's, too, and may be off by 2 %. --write puts
+all of it into the file.
+Exit codes: 0 done, 1 a count differs, 2 failed, 3 usage, 77 no valgrind or no AVX2.
+"""
+
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+import results
+
+INSTRUCTIONS = "instructions a frame"
+TOLERANCE = 0.02
+ENTRY = "tactus::Frame::run(*"  # What is counted, and all that it calls.
+
+
+def run(*words):
+    done = subprocess.run(words, capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        lines = done.stderr.strip().splitlines() or ["no word"]
+        raise results.Failure(f"{' '.join(map(str, words))}: ended with {done.returncode}: "
+                              f"{lines[-1]}")
+
+
+def instructions_a_frame(bench, folder, case, frames):
+    out = folder / "callgrind.out"
+    run("valgrind", "--tool=callgrind", f"--toggle-collect={ENTRY}", f"--callgrind-out-file={out}",
+        bench, "counts", "--cache", folder, "--only", case)
+    total = re.search(r"^(?:summary|totals): (\d+)", out.read_text(), re.MULTILINE)
+    if total is None or int(total[1]) == 0:
+        raise results.Failure(f"callgrind counted nothing in {ENTRY}")
+    return round(int(total[1]) / frames)
+
+
+def count(bench, with_instructions):
+    """The results of the suite as this build has it."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        run(bench, "counts", "--cache", folder, "--json", folder / "counts.json")
+        counted = results.read(folder / "counts.json")
+        for row in [row for row in counted["rows"] if with_instructions
+                    and row["metric"] == "frames in all"]:
+            value = instructions_a_frame(bench, folder, row["case"], row["value"])
+            counted["rows"].append(row | {"metric": INSTRUCTIONS, "value": value})
+    return counted
+
+
+def differences(expected, counted, with_instructions):
+    old, new = ({(row["case"], row["metric"]): row["value"] for row in one["rows"]
+                 if with_instructions or row["metric"] != INSTRUCTIONS}
+                for one in (expected, counted))
+    for key in dict.fromkeys([*old, *new]):
+        was, now = old.get(key), new.get(key)
+        allowed = TOLERANCE * was if was is not None and key[1] == INSTRUCTIONS else 0
+        if was is None or now is None or abs(now - was) > allowed:
+            yield f"{': '.join(key)}: {now} counted, {was} expected"
+
+
+def main(arguments):
+    paths = [pathlib.Path(word) for word in arguments if not word.startswith("--")]
+    options = [word for word in arguments if word.startswith("--")]
+    if len(paths) != 2 or options not in ([], ["--instructions"], ["--write"]):
+        print(__doc__, file=sys.stderr)
+        return 3
+    if options:
+        missing = [] if shutil.which("valgrind") else ["valgrind"]
+        if "avx2" not in pathlib.Path("/proc/cpuinfo").read_text(encoding="utf-8"):
+            missing.append("a processor with AVX2")
+        if missing:
+            print(f"skipped: there is no {' and no '.join(missing)}")
+            return 77
+    file, bench = paths
+    counted = count(bench, bool(options))
+    if options == ["--write"]:
+        results.write(file, counted)
+        return 0
+    found = list(differences(results.read(file), counted, bool(options)))
+    if found:
+        print("\n".join(found))
+        print("If the change is meant: counts.py ... --write, and say why in the commit.")
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    try:
+        sys.exit(main(sys.argv[1:]))
+    except (results.Failure, OSError) as error:
+        print(f"counts.py: {error}", file=sys.stderr)
+        sys.exit(2)

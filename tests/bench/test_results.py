@@ -1,0 +1,126 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+# Copyright the Tactus authors.
+"""results.py and counts.py as programs: planted faults are found, and full results stay."""
+
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+HERE = pathlib.Path(__file__).parent
+PAGE = """# Figures
+![a picture](benchmarks/slide.svg) in 100 words.
+
+<!-- benchmarks/slide.json -->
+
+| K 5 | time, us |
+| --- | --- |
+| cow | 1.23, **1,235** (20) |
+"""
+
+
+def row(suite, case, metric, value, **more):
+    return {"suite": suite, "case": case, "metric": metric, "value": value, "unit": "us", **more}
+
+
+ROWS = [row("slide", "cow", "p50", 1.2345), row("slide", "cow", "p99", 1234.9, goal=20, met=False),
+        row("counts", "one", "frames in all", 5), row("counts", "one", "splits", 12)]
+
+
+def results(rows, **more):
+    return {"schema": 2, "commit": "abc", "options": [], "quick": False, "compiler": "12",
+            "machine": {"kernel": "1", "processor": "CPU", "processors": 2, "date_utc": "2026"},
+            "rows": rows, **more}
+
+
+class Kept(unittest.TestCase):
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.root = pathlib.Path(scratch.name)
+        self.folder = self.root / "benchmarks"
+        self.folder.mkdir()
+        self.file = self.folder / "slide.json"
+        self.page = self.root / "benchmarks.md"
+        (self.folder / "slide.svg").touch()
+
+    def sut(self, script, *words):
+        done = subprocess.run([sys.executable, "-B", HERE / script, *words], check=False,
+                              capture_output=True, text=True, env=os.environ | {
+                                  "PATH": f"{self.root}{os.pathsep}{os.environ['PATH']}"})
+        self.said = done.stdout + done.stderr
+        return done.returncode
+
+    def store(self, rows=tuple(ROWS), **more):
+        run = self.root / "run.json"
+        run.write_text(json.dumps(results(list(rows), **more)))
+        return self.sut("results.py", "store", self.folder, run)
+
+    def check(self, page=PAGE):
+        self.page.write_text(page)
+        return self.sut("results.py", "check", self.folder, self.page)
+
+    def test_a_run_is_kept_by_suites_and_told_by_the_page(self):
+        self.assertEqual(self.store(), 0, self.said)
+        self.assertEqual(json.loads(self.file.read_text()), results(ROWS[:2]))
+        self.assertEqual([path.name for path in self.folder.glob("*.json")], ["slide.json"])
+        self.assertEqual(self.check(), 0, self.said)
+
+    def test_a_lesser_run_or_one_that_failed_leaves_a_full_one(self):
+        self.store()
+        full = self.file.read_text()
+        for more in ({"options": ["--quick"]}, {"failures": ["slide cow: wrong answers"]}):
+            self.assertEqual(self.store(ROWS[:1], **more), 1)
+            self.assertEqual(self.file.read_text(), full)
+
+    def test_a_full_run_goes_over_a_lesser_one(self):
+        self.store(ROWS[:1], options=["--quick"])
+        self.assertEqual(self.store(), 0, self.said)
+        self.assertEqual(json.loads(self.file.read_text()), results(ROWS[:2]))
+
+    def test_numbers_and_pictures_that_are_not_kept_are_found(self):
+        self.store()
+        for old, new in (("1.23,", "1.24,"), ("1,235", "1,234"), ("(20)", "(21)"), ("**1,235**", "1,235"),
+                         ("1.23,", "**1.23**,"), ("slide.svg", "other.svg"), ("![a picture]", "")):
+            with self.subTest(new):
+                self.assertEqual(self.check(PAGE.replace(old, new)), 1)
+
+    def test_files_of_another_form_are_found(self):
+        for change in (lambda kept: kept.pop("commit"), lambda kept: kept["machine"].pop("date_utc"),
+                       lambda kept: kept["rows"][0].pop("unit"),
+                       lambda kept: kept["rows"][0].update(peer="them"),
+                       lambda kept: kept["rows"][0].update(suite="other"),
+                       lambda kept: kept["rows"][0].update(value="fast")):
+            self.store()
+            kept = json.loads(self.file.read_text())
+            change(kept)
+            self.file.write_text(json.dumps(kept))
+            self.assertEqual(self.check("No table, ![a picture](benchmarks/slide.svg)."), 1)
+
+    def test_counts_must_be_as_kept_and_instructions_within_two_percent(self):
+        kept, run, bench = (self.root / name for name in ("kept.json", "run.json", "bench"))
+        kept.write_text(json.dumps(results([*ROWS[2:], row("counts", "one", "instructions a frame",
+                                                           10_000)])))
+        bench.write_text(f'#!/bin/sh\n[ "$4" = --json ] && cp "{run}" "$5" || true\n')
+        valgrind = self.root / "valgrind"  # In place of the real one.
+        for splits, total, code in ((12, 50_000, 0), (12, 51_000, 0), (12, 51_005, 1),
+                                    (12, 48_000, 1), (13, 50_000, 1), (12, 0, 2)):
+            run.write_text(json.dumps(results([ROWS[2], ROWS[3] | {"value": splits}])))
+            valgrind.write_text('#!/bin/sh\nfor word; do case "$word" in --callgrind-out-file=*)\n'
+                                f'echo "summary: {total}" >"${{word#*=}}";; esac; done\n')
+            bench.chmod(0o755)
+            valgrind.chmod(0o755)
+            with self.subTest(splits=splits, total=total):
+                self.assertEqual(self.sut("counts.py", kept, bench), splits - 12, self.said)
+                self.assertIn(self.sut("counts.py", kept, bench, "--instructions"),
+                              (code, 77), self.said)  # 77: without AVX2.
+        run.write_text(json.dumps(results(ROWS[2:3])))
+        self.assertEqual(self.sut("counts.py", kept, bench), 1)  # A count less is another, too.
+
+
+if __name__ == "__main__":
+    unittest.main()
