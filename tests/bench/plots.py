@@ -13,6 +13,7 @@ here to check with.
 
 import io
 import pathlib
+import re
 import sys
 
 import results
@@ -188,8 +189,11 @@ def error_time(data):
 
 def faces_of(data, case):
     """Of the whole mesh: the most that somebody was asked about."""
-    return max(int(setting.removesuffix(" faces")) for _, setting, _ in points_of(data, case)
-               if setting.endswith(" faces"))
+    counts = [int(setting.removesuffix(" faces")) for _, setting, _ in points_of(data, case)
+              if setting.endswith(" faces")]
+    if not counts:
+        raise results.Failure(f"error_time: no peer was asked about {case}")
+    return max(counts)
 
 
 def size(data):
@@ -357,7 +361,8 @@ def svg(picture, data):
         figure.savefig(text, format="svg", facecolor="white", metadata={"Date": None,
                                                                         "Creator": None})
         pyplot.close(figure)
-    return "\n".join(line.rstrip() for line in text.getvalue().splitlines()) + "\n"
+    # A line for each thing that is drawn.
+    return re.sub(r"\n\s*(?!<g id=|\s)", " ", text.getvalue()).rstrip() + "\n"
 
 
 def main(arguments):
