@@ -26,6 +26,16 @@ leave() {
 trap leave EXIT
 cd "$scratch"
 
+# model SHAPE-FACES FILE: of make_models.sh where it has run, otherwise made here.
+model() {
+    local made=${TACTUS_TEST_MODELS:-}/$1.spm
+    if [[ -f "$made" ]]; then
+        cp "$made" "$2"
+    else
+        "$build" --shape "${1%-*}" --faces "${1##*-}" -o "$2" >build.log 2>&1
+    fi
+}
+
 failures=0
 fault() {
     printf 'FAULT: %s\n' "$*"
@@ -90,10 +100,11 @@ start_hrtc() {
 }
 
 # run_hrtc ARGUMENT...: to its end, which must be a good one; its words in hrtc.log. A machine that
-# holds the loop up ends the force each time, and the hand loses what it touches: then once more.
+# holds the loop up ends the force each time, and the hand loses what it touches: then it says so
+# and runs again, three times in all.
 run_hrtc() {
     local code try
-    for try in 1 2 3 4 5; do
+    for try in 1 2 3; do
         code=0
         "${on_controller[@]}" "$hrtc" --allow-no-rt --domain "$domain" --report report.json "$@" \
             >hrtc.log 2>&1 || code=$?

@@ -50,7 +50,7 @@ finally:
     run.kill()
 sys.exit(code or words[:4] != ["READY=1"] + 3 * ["WATCHDOG=1"])
 PYTHON
-"$build" --shape bumpy-sphere --faces 5000 -o good.spm >build.log 2>&1
+model bumpy-sphere-5000 good.spm
 python3 manager.py "$installed/hrtc" --allow-no-rt --transport file --model good.spm \
     --duration 600 --report report.json >hrtc.log 2>&1 || fault "as a service: $(cat hrtc.log)"
 check report.json frames '<' 600000 safety.begun.software == 1

@@ -3,7 +3,7 @@
 # hrtc_bad_input.sh: whatever is wrong with options, models, files or the report's path gives the
 # right exit code and one line that names it; nothing is left half-written.
 source "$(dirname "$0")/common.sh"
-"$build" --shape bumpy-sphere --faces 5000 -o good.spm >build.log 2>&1
+model bumpy-sphere-5000 good.spm
 mkdir out
 
 refuse() { expect "$1" "$2" "$hrtc" --allow-no-rt "${@:3}"; }

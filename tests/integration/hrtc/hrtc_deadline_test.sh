@@ -3,7 +3,7 @@
 # hrtc_deadline_test.sh: the accounting flags what is injected, alone and beside load; report,
 # histograms and image are written and agree; nothing is left behind; wrong options are refused.
 source "$(dirname "$0")/common.sh"
-"$build" --shape bumpy-sphere --faces 5000 -o good.spm >build.log 2>&1
+model bumpy-sphere-5000 good.spm
 mkdir temporary
 export TMPDIR=$scratch/temporary
 

@@ -4,7 +4,7 @@
 # and come again; a controller that doesn't want them; what the host sees of the controller; pose
 # files that are refused.
 source "$(dirname "$0")/common.sh"
-"$build" --shape bumpy-sphere --faces 5000 -o bumpy.spm >build.log 2>&1
+model bumpy-sphere-5000 bumpy.spm
 
 # A swing of 4 mm in x within two seconds, 100 poses a second; the model is 173 mm across.
 awk 'BEGIN {

@@ -4,7 +4,7 @@
 # limits, and the answers hold; with too little the report says so. Times are printed, not judged.
 source "$(dirname "$0")/common.sh"
 
-"$build" --shape bumpy-sphere --faces 100000 -o bumpy.spm >build.log 2>&1
+model bumpy-sphere-100000 bumpy.spm
 touch_it() { run_hrtc --transport file --model bumpy.spm --duration 4 "$@"; }
 
 # Without the option they are what they always were.

@@ -7,7 +7,7 @@ readonly rate=$4 seconds=$5
 
 resident_kib() { awk '/^VmRSS/ { print $2 }' "/proc/$1/status"; }
 
-"$build" --shape bumpy-sphere --faces 200000 -o bumpy.spm >build.log 2>&1
+model bumpy-sphere-200000 bumpy.spm
 start_publisher bumpy.spm
 start_hrtc --model bumpy --rate "$rate" --duration "$seconds" --report report.json
 sleep 5 # Models found, pools laid out and locked, the first wishes served.

@@ -6,7 +6,7 @@
 source "$(dirname "$0")/common.sh"
 readonly rate=$4 frames=$5
 
-"$build" --shape bumpy-sphere --faces 200000 -o large.spm >build.log 2>&1
+model bumpy-sphere-200000 large.spm
 code=0
 output=$("$hrtc" --allow-no-rt --transport file --model large.spm --duration 0.1 \
     --trap-system-calls 2>&1) || code=$?

@@ -4,7 +4,7 @@
 # schema 1 is there and the run was as it should be.
 source "$(dirname "$0")/common.sh"
 
-"$build" --shape bumpy-sphere --faces 20000 -o bumpy.spm >build.log 2>&1
+model bumpy-sphere-20000 bumpy.spm
 start_publisher bumpy.spm
 run_hrtc --model bumpy --duration 4 --rate 1000
 grep -q "^report *report.json$" hrtc.log || fault 'the summary does not name the report'

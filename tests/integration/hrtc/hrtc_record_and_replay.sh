@@ -25,8 +25,8 @@ for path in nowhere/run.rec folder; do
 done
 
 # Two tools, two models, streaming into small pools.
-"$build" --shape bumpy-sphere --faces 60000 -o bumpy.spm >build.log 2>&1
-"$build" --shape torus --faces 20000 -o torus.spm >build.log 2>&1
+model bumpy-sphere-60000 bumpy.spm
+model torus-20000 torus.spm
 start_publisher bumpy.spm torus.spm
 run_hrtc --model bumpy --model torus --place 0,0,0 --place 0.3,0,0,0,30,0,2 \
     --material 300,0.4,0.3,1 --tool sphere:0.002 --tool sphere:0.004 --duration 2 \

@@ -3,7 +3,7 @@
 # hrtc_simulated_devices.sh: the controller on each kind of simulated device.
 source "$(dirname "$0")/common.sh"
 
-"$build" --shape bumpy-sphere --faces 20000 -o bumpy.spm >build.log 2>&1
+model bumpy-sphere-20000 bumpy.spm
 readonly model=(--transport file --model bumpy.spm)
 
 # One device of each class. Its largest stiffness is that of docs/stability.md.

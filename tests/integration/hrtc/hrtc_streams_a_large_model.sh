@@ -4,7 +4,7 @@
 # small one; NAME@HASH takes this file and no other.
 source "$(dirname "$0")/common.sh"
 
-"$build" --shape bumpy-sphere --faces 200000 -o large.spm >build.log 2>&1
+model bumpy-sphere-200000 large.spm
 start_publisher large.spm
 hash=$(sed -n "s/^serving 'large' hash \([0-9a-f]*\):.*/\1/p" publish.log)
 ((${#hash} == 32)) || fail "spm_publish names no hash: $(cat publish.log)"

@@ -3,7 +3,7 @@
 # hrtc_survives_the_host.sh: a host that is killed in mid-run is one line and a note in the report;
 # one that comes back is used again.
 source "$(dirname "$0")/common.sh"
-"$build" --shape bumpy-sphere --faces 40000 -o bumpy.spm >build.log 2>&1
+model bumpy-sphere-40000 bumpy.spm
 
 # lines TEXT: how many lines of hrtc's hold it.
 lines() { grep -cF -- "$1" hrtc.log || true; }

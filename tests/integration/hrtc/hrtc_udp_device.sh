@@ -5,7 +5,7 @@
 source "$(dirname "$0")/common.sh"
 
 readonly port=$((20000 + $$ % 20000))
-"$build" --shape bumpy-sphere --faces 20000 -o bumpy.spm >build.log 2>&1
+model bumpy-sphere-20000 bumpy.spm
 # shellcheck disable=SC2016 # The page's own marks.
 sed -n '/^```python$/,/^```$/{/^```/!p}' "$(dirname "$0")/../../../docs/udp-device.md" \
     | sed -e 's/200 \* x\[i\]/200 * (x[i] - (0.045, 0, 0)[i])/' -e 's/^x, v, /HAND/' \

@@ -4,7 +4,7 @@
 # what is missing and does not run; --allow-no-rt runs and says it too; the doctor calls it
 # critical. Skipped (77) where the right can't be given up.
 source "$(dirname "$0")/common.sh"
-"$build" --shape bumpy-sphere --faces 5000 -o good.spm >build.log 2>&1
+model bumpy-sphere-5000 good.spm
 
 # unprivileged COMMAND...: no capabilities, no real-time priority, 64 KiB of locked memory.
 if ((EUID == 0)); then

@@ -17,7 +17,7 @@ start_controller() {
 }
 
 start_relay --delay-ms 10
-"$build" --shape bumpy-sphere --faces 100000 -o large.spm >build.log 2>&1
+model bumpy-sphere-100000 large.spm
 start_publisher large.spm
 start_controller steady --duration 16 --record steady.rec --report steady.json
 steady=$controller

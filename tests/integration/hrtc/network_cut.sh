@@ -56,8 +56,8 @@ fade() {
 }
 
 start_relay --delay-ms 2
-"$build" --shape bumpy-sphere --faces 200000 -o large.spm >build.log 2>&1
-"$build" --shape bumpy-sphere --faces 5000 -o small.spm >build.log 2>&1
+model bumpy-sphere-200000 large.spm
+model bumpy-sphere-5000 small.spm
 
 cut_in_mid_run large --pool-mib 2
 check report.json safety.begun.host == 1 models.0.static == 0

@@ -6,8 +6,8 @@
 source "$(dirname "$0")/two_networks.sh"
 
 start_relay --delay-ms 2
-"$build" --shape bumpy-sphere --faces 200000 -o large.spm >build.log 2>&1
-"$build" --shape bumpy-sphere --faces 190000 -o other.spm >build.log 2>&1
+model bumpy-sphere-200000 large.spm
+model bumpy-sphere-190000 other.spm
 readonly changed_at=3000 # The frame after which the file is certainly another one.
 
 # touch_while COMMAND...: hrtc on served.spm, a fresh copy of large.spm, to which the command is

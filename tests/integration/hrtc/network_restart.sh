@@ -6,8 +6,8 @@
 source "$(dirname "$0")/two_networks.sh"
 
 start_relay --delay-ms 10
-"$build" --shape bumpy-sphere --faces 200000 -o large.spm >build.log 2>&1
-"$build" --shape bumpy-sphere --faces 190000 -o other.spm >build.log 2>&1
+model bumpy-sphere-200000 large.spm
+model bumpy-sphere-190000 other.spm
 
 start_publisher large.spm
 start_hrtc --model large --device sim:touch --pool-mib 8 --no-static --duration 10 \
@@ -57,7 +57,7 @@ check_contact report.json force.contact_share 0.3
 judge_run other.spm
 stop TERM "$publisher"
 
-"$build" --shape bumpy-sphere --faces 5000 -o small.spm >build.log 2>&1
+model bumpy-sphere-5000 small.spm
 start_publisher small.spm
 start_hrtc --model small --device sim:touch --duration 5 --record run.rec --report report.json
 wait_for_line publish.log "subscribed to model 'small'" 10

@@ -43,7 +43,7 @@ guest() {
 }
 
 start_relay --delay-ms 2 --loss 0.005 --duplicates 0.005 --seed 11
-"$build" --shape bumpy-sphere --faces 100000 -o large.spm >build.log 2>&1
+model bumpy-sphere-100000 large.spm
 start_publisher large.spm
 start_hrtc --model large --device sim:touch --pool-mib 2 --no-static --duration 3600 \
     --record run.rec --report report.json

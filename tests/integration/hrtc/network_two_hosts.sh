@@ -5,8 +5,8 @@
 source "$(dirname "$0")/two_networks.sh"
 
 start_relay --delay-ms 10
-"$build" --shape bumpy-sphere --faces 100000 -o first.spm >build.log 2>&1
-"$build" --shape bumpy-sphere --faces 90000 -o second.spm >build.log 2>&1
+model bumpy-sphere-100000 first.spm
+model bumpy-sphere-90000 second.spm
 
 # check_touch FILE: what hrtc.log and run.rec are of was touched as this file, and by nobody else's
 # pieces.

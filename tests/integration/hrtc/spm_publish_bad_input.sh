@@ -3,7 +3,7 @@
 # spm_publish_bad_input.sh: files that can't be served and names that can't be published give the
 # right exit code and one line; a chunk that is damaged while it is served does not end the host.
 source "$(dirname "$0")/common.sh"
-"$build" --shape bumpy-sphere --faces 5000 -o good.spm >build.log 2>&1
+model bumpy-sphere-5000 good.spm
 
 refuse() { expect "$1" "$2" "$publish" --domain "$domain" --seconds 5 "${@:3}"; }
 

@@ -4,8 +4,8 @@
 # put upright through the ball, so that the hand, which feels its way over the ball, meets both.
 source "$(dirname "$0")/common.sh"
 
-"$build" --shape bumpy-sphere --faces 20000 -o first.spm >build.log 2>&1
-"$build" --shape torus --faces 10000 -o second.spm >build.log 2>&1
+model bumpy-sphere-20000 first.spm
+model torus-10000 second.spm
 start_publisher first.spm second.spm
 [[ $(grep -c '^serving ' publish.log) == 2 ]] || fault "not two models: $(cat publish.log)"
 run_hrtc --model first --model second --place 0,0,0 --place 0.02,0,0,0,90,0,0.7 \

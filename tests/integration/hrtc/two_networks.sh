@@ -61,7 +61,7 @@ count_frames() {
 # touch_large_model: a model that streams is published and touched for four seconds, and no answer
 # is wrong.
 touch_large_model() {
-    "$build" --shape bumpy-sphere --faces 100000 -o large.spm >build.log 2>&1
+    model bumpy-sphere-100000 large.spm
     start_publisher large.spm
     run_hrtc --model large --device sim:touch --pool-mib 2 --duration 4 --record run.rec
     check report.json frames == 4000 wire.host_lost == 0 safety.begun.host == 0 \

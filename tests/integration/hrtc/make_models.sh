@@ -1,0 +1,10 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# make_models.sh SPM_BUILD FOLDER: the models that the other scripts touch, once for all of them:
+# encoding takes both processors, and a loop that runs meanwhile is late.
+set -euo pipefail
+readonly build=$1 folder=$2
+mkdir -p "$folder"
+for model in bumpy-sphere-{5000,20000,40000,60000,90000,100000,190000,200000} torus-{10000,20000}; do
+    "$build" --shape "${model%-*}" --faces "${model##*-}" -o "$folder/$model.spm"
+done
