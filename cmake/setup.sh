@@ -39,7 +39,7 @@ Environment: CXX names the compiler (default g++). ccache is used when it is the
 TACTUS_BUILD_DIR names a finished build folder: the demo then uses its programs, installs and
 builds nothing, and writes into its folder demo; the other commands refuse it.
 Exit codes: 0 done, 1 a test failed, the demo or bench missed a criterion, or --docs had to leave
-results as they were, 2 failed at run time, 3 wrong usage.
+results as they were or the page tells old ones, 2 failed at run time, 3 wrong usage.
 TEXT
 }
 
@@ -221,6 +221,8 @@ run_bench() { # run_bench KEPT OPTION...: all suites, as tactus_bench takes opti
     if [[ -n "$kept" && -f "$results/bench.json" ]]; then
         "$python" "$root/tests/bench/results.py" store "$kept" "$results/bench.json" || code=$?
         "$python" "$root/tests/bench/plots.py" draw "$kept" || code=$?
+        echo "What docs/benchmarks.md still has to be told:"
+        "$python" "$root/tests/bench/results.py" check "$kept" "$kept.md" || code=$?
     fi
     return "$code"
 }
