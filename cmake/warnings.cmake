@@ -5,7 +5,7 @@ target_compile_options(tactus_warnings INTERFACE
     -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wshadow -Wold-style-cast
     -Wnon-virtual-dtor -Woverloaded-virtual -Wcast-align -Wunused -Wformat=2 -Wdouble-promotion
     -Wimplicit-fallthrough)
-# In a unity build every source is an include of the one that is compiled: the warning means headers.
+# In a unity build every source is an include of what is compiled; the warning means headers.
 if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     target_compile_options(tactus_warnings INTERFACE -Wno-subobject-linkage)
 endif()

@@ -18,7 +18,8 @@ trap 'rm -f "$output"' EXIT
 code=0
 # shellcheck disable=SC2016 # The inner shell expands them.
 setsid --wait bash -c 'echo $$ >"$1"; shift; exec bash "$@"' demo "$output.session" \
-    "$setup" demo --seconds 3 --domain "${TACTUS_TEST_DOMAIN:-$(($$ % 231))}" >"$output" 2>&1 || code=$?
+    "$setup" demo --seconds 3 --domain "${TACTUS_TEST_DOMAIN:-$(($$ % 231))}" \
+    >"$output" 2>&1 || code=$?
 session=$(cat "$output.session")
 rm -f "$output.session"
 cat "$output"
