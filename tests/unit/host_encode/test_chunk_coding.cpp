@@ -149,37 +149,6 @@ RC_GTEST_PROP(ChunkCoding, parse_gives_back_what_encode_wrote, ())
     }
 }
 
-TEST(ChunkCoding, every_truncation_every_flipped_bit_and_an_extra_byte_is_refused)
-{
-    const auto page = std::make_unique<Page>();
-    std::vector<std::byte> bytes = some_chunk({1});
-    ASSERT_TRUE(parse(bytes, {1}, *page).has_value());
-    for (std::size_t length = 0; length < bytes.size(); ++length)
-    {
-        ASSERT_FALSE(parse(std::span(bytes).first(length), {1}, *page).has_value()) << length;
-    }
-    for (std::size_t bit = 0; bit < 8 * bytes.size(); ++bit)
-    {
-        bytes[bit / 8] ^= static_cast<std::byte>(1U << (bit % 8));
-        ASSERT_FALSE(parse(bytes, {1}, *page).has_value()) << "bit " << bit;
-        bytes[bit / 8] ^= static_cast<std::byte>(1U << (bit % 8));
-    }
-    bytes.push_back(std::byte{0});
-    EXPECT_FALSE(parse(bytes, {1}, *page).has_value());
-}
-
-TEST(ChunkCoding, bytes_behind_the_code_are_refused_under_a_right_checksum)
-{
-    const auto page = std::make_unique<Page>();
-    std::vector<std::byte> code = some_chunk({1});
-    code.resize(code.size() - kChecksumBytes);
-    ASSERT_TRUE(parse(with_right_checksum(code, {1}), {1}, *page).has_value());
-    // A decoder is up to four bytes ahead of what it has decoded.
-    code.resize(code.size() + 5, std::byte{1});
-    EXPECT_EQ(parse(with_right_checksum(code, {1}), {1}, *page).error(),
-              SpmRefusal::trailing_bytes);
-}
-
 TEST(ChunkCoding, the_chunk_of_another_number_is_refused)
 {
     const auto page = std::make_unique<Page>();
@@ -255,36 +224,6 @@ TEST(ChunkCoding, a_bent_bit_of_a_record_is_read_as_bent_or_refused)
     }
     EXPECT_GT(unsound, 10U);
     EXPECT_GT(read, 1'000U);
-}
-
-TEST(ChunkCoding, noise_under_a_right_checksum_never_names_what_the_model_does_not_have)
-{
-    const ModelCounts counts = some_header().counts();
-    const auto page = std::make_unique<Page>();
-    std::mt19937 random(7);
-    std::size_t parsed = 0;
-    for (int round = 0; round < 3'000; ++round)
-    {
-        std::vector<std::byte> code = some_chunk({1});
-        code.resize(code.size() - kChecksumBytes);
-        const std::size_t bit = random() % (8 * code.size());
-        code[bit / 8] ^= static_cast<std::byte>(1U << (bit % 8));
-        if (!parse(with_right_checksum(code, {1}), {1}, *page))
-        {
-            continue;
-        }
-        ++parsed;
-        for (std::uint32_t place = 0; place < kRecordsPerChunk; ++place)
-        {
-            const CodedRecord record = coded_form(page->records[place]);
-            ASSERT_LE(record.fan_size(), kMaxFanFaces);
-            ASSERT_LT(record.corner, 3);
-            ASSERT_NE(record.anchor.kind, Owner::Kind::derived);
-            ASSERT_LT(record.anchor.value,
-                      record.anchor.kind == Owner::Kind::base ? counts.base_faces : counts.records);
-        }
-    }
-    EXPECT_GT(parsed, 10U); // Else the checks above are idle.
 }
 
 RC_GTEST_PROP(RangeCoder, gives_back_bits_of_any_probability, (std::uint32_t seed))

@@ -69,4 +69,23 @@ inline RecordedSetup example_setup(const TinyModel& model)
     return setup;
 }
 
+/// Three frames, the first of which takes a chunk from the door.
+inline std::vector<std::byte> example_recording(const TinyModel& model,
+                                                std::uint64_t lost_from = kNoFrame)
+{
+    constexpr ContentKey kChunk{ContentKind::chunk, 1};
+    RecordingWriter writer(example_setup(model));
+    FrameEncoder encoder;
+    ExampleFrame frame;
+    writer.add_piece(0, kChunk, model.piece(kChunk));
+    writer.add_piece(0, kChunk, model.piece(kChunk)); // Evicted and here again.
+    for (int i = 0; i < 3; ++i)
+    {
+        writer.add_frame(frame.code(encoder));
+        frame.door[0].events = {};
+    }
+    writer.finish(lost_from);
+    return writer.take_bytes();
+}
+
 } // namespace tactus::test

@@ -156,25 +156,6 @@ TEST(FrameCoding, holds_the_largest_frame_there_can_be)
     EXPECT_EQ(sut.decode(reader), nullptr);
 }
 
-TEST(FrameCoding, refuses_a_frame_that_is_cut_at_any_byte)
-{
-    const ExampleFrame frame;
-    FrameEncoder encoder;
-    std::vector<std::byte> bytes = frame.code(encoder);
-    while (!bytes.empty())
-    {
-        bytes.pop_back();
-        EXPECT_NE(decode(bytes), nullptr) << bytes.size();
-        // The same with a size that fits.
-        const std::uint32_t size =
-            static_cast<std::uint32_t>(std::max<std::size_t>(bytes.size(), 4)) - 4;
-        std::vector<std::byte> sized = bytes;
-        sized.resize(size + 4);
-        std::memcpy(sized.data(), &size, sizeof(size));
-        EXPECT_NE(decode(sized), nullptr) << size;
-    }
-}
-
 TEST(FrameCoding, refuses_values_that_no_frame_can_have)
 {
     constexpr std::size_t kFlags = 4;

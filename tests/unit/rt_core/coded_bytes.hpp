@@ -73,11 +73,6 @@ private:
     std::size_t bit_{0};
 };
 
-inline void flip_bit(std::vector<std::byte>& bytes, std::size_t bit)
-{
-    bytes[bit / 8] ^= std::byte{1} << (bit % 8);
-}
-
 /// What a test varies of a header: the fixed fields, one box an index page, region bits.
 struct HeaderParts
 {

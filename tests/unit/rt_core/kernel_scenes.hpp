@@ -9,6 +9,7 @@
 #include "tests/unit/rt_core/support.hpp"
 
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -229,6 +230,11 @@ void for_each_scene(std::uint64_t own_seed, int rounds, const Check& check)
             }
         }
     }
+}
+
+[[nodiscard]] inline std::uint32_t bits_of(float value)
+{
+    return std::bit_cast<std::uint32_t>(value);
 }
 
 /// None, all, some, or those below a lane.

@@ -83,31 +83,6 @@ TEST_F(BaseMeshTest, a_sound_mesh_gives_its_content_back)
               (std::array<std::uint32_t, 4>{kNextExact, kNextPending, kNextPending, kNextPending}));
 }
 
-TEST_F(BaseMeshTest, every_truncation_and_an_extra_byte_is_refused)
-{
-    auto bytes = CodedBase().write();
-    ASSERT_EQ(bytes.size(), coded_base_bytes(header_.fields()));
-    for (std::size_t length = 0; length < bytes.size(); ++length)
-    {
-        const auto result = parse(std::span(bytes).first(length));
-        ASSERT_FALSE(result.has_value()) << length;
-        ASSERT_EQ(result.error(), SpmRefusal::too_short);
-    }
-    bytes.push_back(std::byte{0});
-    EXPECT_EQ(parse(bytes).error(), SpmRefusal::trailing_bytes);
-}
-
-TEST_F(BaseMeshTest, every_single_bit_flip_is_refused)
-{
-    auto bytes = CodedBase().write();
-    for (std::size_t bit = 0; bit < 8 * bytes.size(); ++bit)
-    {
-        flip_bit(bytes, bit);
-        ASSERT_FALSE(parse(bytes).has_value()) << "bit " << bit;
-        flip_bit(bytes, bit);
-    }
-}
-
 TEST_F(BaseMeshTest, a_vertex_outside_the_extent_is_refused)
 {
     for (std::size_t axis = 0; axis < 3; ++axis)

@@ -12,11 +12,6 @@ namespace tactus::test
 namespace
 {
 
-std::uint32_t bits_of(float value)
-{
-    return std::bit_cast<std::uint32_t>(value);
-}
-
 std::string name_of(const KernelScene& scene)
 {
     return std::string(scene.shape) + ", probe " + scene.place;

@@ -181,11 +181,6 @@ void for_each_pair_of_shapes(std::uint64_t own_seed, int rounds, const Check& ch
     }
 }
 
-std::uint32_t float_bits(float value)
-{
-    return std::bit_cast<std::uint32_t>(value);
-}
-
 /// Of all rows but those of vertices that are no face's.
 std::vector<std::uint32_t> row_bits(const TriangleRows& rows)
 {
@@ -197,13 +192,13 @@ std::vector<std::uint32_t> row_bits(const TriangleRows& rows)
             for (const float value :
                  {rows.low[axis][lane], rows.high[axis][lane], rows.normal[axis][lane]})
             {
-                bits.push_back(float_bits(value));
+                bits.push_back(bits_of(value));
             }
             bits.push_back(rows.corners[axis][lane]);
-            bits.push_back(lane < 15 ? float_bits(rows.vertex[axis][lane]) : 0);
+            bits.push_back(lane < 15 ? bits_of(rows.vertex[axis][lane]) : 0);
         }
-        bits.push_back(float_bits(rows.plane_low[lane]));
-        bits.push_back(float_bits(rows.plane_high[lane]));
+        bits.push_back(bits_of(rows.plane_low[lane]));
+        bits.push_back(bits_of(rows.plane_high[lane]));
     }
     return bits;
 }
@@ -223,7 +218,7 @@ std::vector<std::uint32_t> answer_bits(const Kernels& kernels, const FacesScene&
         bits.push_back(near);
         for (std::uint32_t lanes = near; lanes != 0; lanes &= lanes - 1)
         {
-            bits.push_back(float_bits(gaps[static_cast<std::size_t>(std::countr_zero(lanes))]));
+            bits.push_back(bits_of(gaps[static_cast<std::size_t>(std::countr_zero(lanes))]));
         }
     }
     return bits;
@@ -288,7 +283,7 @@ TEST(PairKernels, give_the_same_bits_in_every_set)
                     << kernels->name;
                 for (std::size_t child = 0; child < kNodeChildren; ++child)
                 {
-                    ASSERT_EQ(float_bits(gaps[child]), float_bits(expected_gaps[child]));
+                    ASSERT_EQ(bits_of(gaps[child]), bits_of(expected_gaps[child]));
                 }
                 scene.place(*kernels);
                 ASSERT_EQ(row_bits(scene.rows), expected_rows) << kernels->name;

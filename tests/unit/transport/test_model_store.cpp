@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <string>
 
 namespace tactus
@@ -81,54 +80,6 @@ TEST(ModelStore, refuses_a_piece_that_the_model_does_not_have)
     EXPECT_FALSE(sut.value().read({ContentKind::index_page, 1}, bytes));
     EXPECT_FALSE(sut.value().read({ContentKind::base, 1}, bytes));
     EXPECT_FALSE(sut.value().read({static_cast<ContentKind>(9), 0}, bytes));
-}
-
-TEST(ModelStore, refuses_a_file_cut_at_any_length)
-{
-    const TinyModel model = make_tiny_model({.records = 70});
-    const TemporaryFolder folder;
-    const auto path = folder.write("cut.spm", model.file);
-    for (std::size_t length = model.file.size(); length-- > 0;)
-    {
-        std::filesystem::resize_file(path, length);
-        const std::string text = refusal_of(path);
-        ASSERT_FALSE(text.empty()) << "cut at " << length << " of " << model.file.size();
-        expect_one_clear_line(text, path);
-    }
-}
-
-TEST(ModelStore, finds_any_flipped_bit_at_open_or_when_the_chunk_is_read)
-{
-    const TinyModel model = make_tiny_model({.records = 70});
-    const TemporaryFolder folder;
-    std::vector<std::byte> bytes;
-    const auto path = folder.write("bit.spm", model.file);
-    std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
-    const auto flip = [&](std::size_t i)
-    {
-        const auto flipped =
-            static_cast<char>(file.seekg(static_cast<std::streamoff>(i)).get() ^ (1 << (i % 8)));
-        file.seekp(static_cast<std::streamoff>(i)).put(flipped).flush();
-    };
-    for (std::size_t i = 0; i < model.file.size(); ++i)
-    {
-        flip(i);
-        const auto sut = ModelStore::open(path);
-        std::size_t faults = sut ? 0 : 1;
-        for (std::uint32_t chunk = 0; sut && chunk < model.chunks.size(); ++chunk)
-        {
-            const auto done = sut.value().read({ContentKind::chunk, chunk}, bytes);
-            faults += done ? 0U : 1U;
-            if (!done)
-            {
-                expect_one_clear_line(done.error().text, path);
-                EXPECT_NE(done.error().text.find("chunk " + std::to_string(chunk) + " at offset "),
-                          std::string::npos);
-            }
-        }
-        ASSERT_EQ(faults, 1U) << "byte " << i << " of " << model.file.size();
-        flip(i);
-    }
 }
 
 TEST(ModelStore, says_what_is_wrong_with_files_that_are_no_model)

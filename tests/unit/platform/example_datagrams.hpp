@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "platform/udp/datagram.hpp"
+
+/// Datagrams of each kind, no value like another.
+namespace tactus::test
+{
+
+inline udp::DescribeDatagram example_description()
+{
+    udp::DescribeDatagram datagram{{3, 0, 1}, {}};
+    datagram.info.name = "desk 1";
+    datagram.info.limits = {.mass_kg = 0.1,
+                            .damping_n_s_per_m = 0.2,
+                            .friction_n = 0.3,
+                            .quantum_m = 0.4,
+                            .delay_s = 0.05,
+                            .force_max_n = 6.0,
+                            .slew_max_n_per_s = 7.0,
+                            .stiffness_max_n_per_m = 8.0,
+                            .added_damping_max_n_s_per_m = 9.0};
+    datagram.info.workspace_centre_world_m = {10.0, 11.0, 12.0};
+    datagram.info.workspace_radius_m = 13.0;
+    datagram.info.speed_max_m_per_s = 14.0;
+    datagram.info.rate_min_hz = 15;
+    datagram.info.rate_max_hz = 16;
+    return datagram;
+}
+
+inline udp::SampleDatagram example_sample()
+{
+    return {{3, 4, 5}, {0.1, -0.2, 0.3}, std::array{1.0, 2.0, -3.0}, 1'234'567, true, false};
+}
+
+inline udp::ForceDatagram example_force()
+{
+    return {{3, 4, 6}, {1.5, -2.5, 3.5}, DeviceState::brake, 5};
+}
+
+} // namespace tactus::test
