@@ -2,23 +2,33 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <span>
+#include <stdexcept>
+#include <stdlib.h>
 #include <string>
-#include <unistd.h>
+#include <string_view>
 
 namespace tactus::test
 {
 
-/// A folder of this process in the system's place for them, removed with everything in it at the
-/// end of its life. One name, one folder.
+/// A new folder in the system's place for them, removed with everything in it at the end of its
+/// life.
 class TemporaryFolder
 {
 public:
-    explicit TemporaryFolder(const std::string& name)
-        : path_(std::filesystem::temp_directory_path() /
-                ("tactus-" + name + "-" + std::to_string(::getpid())))
+    explicit TemporaryFolder(const std::string& name = "test")
     {
-        std::filesystem::create_directories(path_);
+        std::string path =
+            (std::filesystem::temp_directory_path() / ("tactus-" + name + "-XXXXXX")).string();
+        if (::mkdtemp(path.data()) == nullptr)
+        {
+            throw std::runtime_error("no temporary folder: " + path);
+        }
+        path_ = path;
     }
     TemporaryFolder(const TemporaryFolder&) = delete;
     TemporaryFolder& operator=(const TemporaryFolder&) = delete;
@@ -28,7 +38,24 @@ public:
         std::filesystem::remove_all(path_, ignored);
     }
 
-    [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+    [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
+
+    std::filesystem::path write(const std::string& name, std::string_view text) const
+    {
+        // A new file each time: overwriting one makes some file systems wait for the disk.
+        std::filesystem::remove(path_ / name);
+        std::ofstream(path_ / name, std::ios::binary) << text;
+        return path_ / name;
+    }
+    std::filesystem::path write(const std::string& name, std::span<const std::byte> bytes) const
+    {
+        return write(name, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    }
+    [[nodiscard]] std::size_t files() const
+    {
+        const std::filesystem::directory_iterator entries(path_);
+        return static_cast<std::size_t>(std::distance(begin(entries), end(entries)));
+    }
 
 private:
     std::filesystem::path path_;

@@ -34,18 +34,6 @@ std::string content_of(const std::filesystem::path& path)
     return {std::istreambuf_iterator<char>(file), {}};
 }
 
-std::size_t files_in(const TemporaryFolder& folder)
-{
-    const std::filesystem::directory_iterator entries(folder.path());
-    return static_cast<std::size_t>(std::distance(begin(entries), end(entries)));
-}
-
-std::filesystem::path write(const TemporaryFolder& folder, const char* name, const char* text)
-{
-    std::ofstream(folder.path() / name, std::ios::binary) << text;
-    return folder.path() / name;
-}
-
 TEST(AtomicFile, appears_with_its_content_at_commit_and_not_before)
 {
     const TemporaryFolder directory("atomic-file");
@@ -60,7 +48,7 @@ TEST(AtomicFile, appears_with_its_content_at_commit_and_not_before)
     ASSERT_TRUE(sut.value().commit());
     EXPECT_EQ(sut.value().bytes(), 12U);
     EXPECT_EQ(content_of(path), "Jello world!");
-    EXPECT_EQ(files_in(directory), 1U);
+    EXPECT_EQ(directory.files(), 1U);
 }
 
 TEST(AtomicFile, leaves_nothing_behind_without_commit)
@@ -70,15 +58,15 @@ TEST(AtomicFile, leaves_nothing_behind_without_commit)
         auto sut = AtomicFile::create(directory.path() / "a.bin");
         ASSERT_TRUE(sut);
         ASSERT_TRUE(sut.value().write(bytes_of("half")));
-        EXPECT_EQ(files_in(directory), 1U);
+        EXPECT_EQ(directory.files(), 1U);
     }
-    EXPECT_EQ(files_in(directory), 0U);
+    EXPECT_EQ(directory.files(), 0U);
 }
 
 TEST(AtomicFile, leaves_the_old_file_alone_until_commit_and_keeps_the_umask)
 {
     const TemporaryFolder directory("atomic-file");
-    const auto path = write(directory, "a.bin", "old");
+    const auto path = directory.write("a.bin", "old");
     {
         auto sut = AtomicFile::create(path);
         ASSERT_TRUE(sut);
@@ -105,9 +93,9 @@ TEST(AtomicFile, moves_its_partial_file_along)
     auto first = AtomicFile::create(directory.path() / "a.bin");
     auto second = AtomicFile::create(directory.path() / "b.bin");
     ASSERT_TRUE(first && second);
-    EXPECT_EQ(files_in(directory), 2U);
+    EXPECT_EQ(directory.files(), 2U);
     first.value() = std::move(second.value());
-    EXPECT_EQ(files_in(directory), 1U);
+    EXPECT_EQ(directory.files(), 1U);
     ASSERT_TRUE(first.value().commit());
     EXPECT_TRUE(std::filesystem::exists(directory.path() / "b.bin"));
 }
@@ -121,7 +109,7 @@ TEST(AtomicFile, refuses_places_where_no_file_can_be_made)
                                                     "",
                                                     directory.path() / "",
                                                     directory.path() / std::string(300, 'x'),
-                                                    write(directory, "file", "x") / "a.bin"};
+                                                    directory.write("file", "x") / "a.bin"};
     for (const auto& place : places)
     {
         const auto sut = AtomicFile::create(place);
@@ -130,15 +118,15 @@ TEST(AtomicFile, refuses_places_where_no_file_can_be_made)
             << sut.error().text;
         EXPECT_EQ(sut.error().text.find('\n'), std::string::npos) << sut.error().text;
     }
-    EXPECT_EQ(files_in(directory), 1U);
+    EXPECT_EQ(directory.files(), 1U);
 }
 
 TEST(AtomicFile, finds_out_before_a_run_whether_a_file_can_be_written_and_leaves_nothing_behind)
 {
     const TemporaryFolder directory("atomic-file");
     EXPECT_FALSE(AtomicFile::probe(directory.path() / "a.bin"));
-    EXPECT_EQ(files_in(directory), 0U);
-    EXPECT_FALSE(AtomicFile::probe(write(directory, "old.bin", "old")));
+    EXPECT_EQ(directory.files(), 0U);
+    EXPECT_FALSE(AtomicFile::probe(directory.write("old.bin", "old")));
     EXPECT_EQ(content_of(directory.path() / "old.bin"), "old");
     const auto refused = AtomicFile::probe(directory.path());
     ASSERT_TRUE(refused);
@@ -160,7 +148,7 @@ TEST(AtomicFile, refuses_one_too_many_and_takes_one_more_after_a_release)
     open.pop_back();
     EXPECT_TRUE(AtomicFile::create(directory.path() / "a.bin"));
     open.clear();
-    EXPECT_EQ(files_in(directory), 0U);
+    EXPECT_EQ(directory.files(), 0U);
 }
 
 /// Runs in a child process: what it does to limits and signals ends with it.
@@ -196,7 +184,7 @@ TEST(AtomicFile, tells_of_a_full_disk_by_the_name_it_was_given_and_leaves_nothin
         });
     EXPECT_TRUE(WIFEXITED(status));
     EXPECT_EQ(WEXITSTATUS(status), 0);
-    EXPECT_EQ(files_in(directory), 0U);
+    EXPECT_EQ(directory.files(), 0U);
 }
 
 TEST(AtomicFile, removes_its_partial_files_when_a_signal_ends_the_process)
@@ -204,7 +192,7 @@ TEST(AtomicFile, removes_its_partial_files_when_a_signal_ends_the_process)
     for (const int signal : {SIGINT, SIGTERM, SIGHUP})
     {
         const TemporaryFolder directory("atomic-file");
-        write(directory, "old.bin", "old");
+        directory.write("old.bin", "old");
         const int status = status_of_child(
             [&]
             {
@@ -222,7 +210,7 @@ TEST(AtomicFile, removes_its_partial_files_when_a_signal_ends_the_process)
             });
         EXPECT_TRUE(WIFSIGNALED(status));
         EXPECT_EQ(WTERMSIG(status), signal);
-        EXPECT_EQ(files_in(directory), 2U);
+        EXPECT_EQ(directory.files(), 2U);
         EXPECT_EQ(content_of(directory.path() / "old.bin"), "old");
     }
 }

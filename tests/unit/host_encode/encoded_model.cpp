@@ -5,7 +5,6 @@
 #include "tests/golden/golden_model.hpp"
 
 #include <stdexcept>
-#include <stdlib.h>
 
 namespace tactus
 {
@@ -31,22 +30,6 @@ std::unique_ptr<EncodedModel> encode_shape(const std::string& name, std::uint32_
 }
 
 } // namespace
-
-ScratchFolder::ScratchFolder()
-{
-    std::string name = (std::filesystem::temp_directory_path() / "host_encode-XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr)
-    {
-        throw std::runtime_error("no scratch folder: " + name);
-    }
-    path_ = name;
-}
-
-ScratchFolder::~ScratchFolder()
-{
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-}
 
 std::unique_ptr<EncodedModel> encode_source(std::string name, const TriangleMesh& mesh,
                                             std::uint32_t base_faces, unsigned position_bits)

@@ -7,6 +7,7 @@
 #include "host_tools/mesh/prepare.hpp"
 #include "host_tools/shapes/shapes.hpp"
 #include "host_tools/simplify/simplify.hpp"
+#include "tests/shared/temporary_folder.hpp"
 #include "transport/store/model_store.hpp"
 
 #include <filesystem>
@@ -17,28 +18,13 @@
 namespace tactus
 {
 
-/// A folder of its own for files of a test; removed with all that is in it.
-class ScratchFolder
-{
-public:
-    ScratchFolder();
-    ~ScratchFolder();
-    ScratchFolder(const ScratchFolder&) = delete;
-    ScratchFolder& operator=(const ScratchFolder&) = delete;
-
-    [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-
-private:
-    std::filesystem::path path_;
-};
-
 /// A mesh, what it was simplified to, the file written from that, and the file read back.
 struct EncodedModel
 {
     std::string name; ///< For failure messages.
     PreparedMesh prepared;
     Simplification simplification;
-    ScratchFolder folder;
+    test::TemporaryFolder folder;
     HeaderFields fields;
     std::unique_ptr<ModelStore> store;
     std::unique_ptr<DecodedModel> decoded;

@@ -38,7 +38,7 @@ TEST(WriteSpm, the_same_input_gives_the_same_bytes)
 {
     const EncodedModel& model = *sample_models()[1];
     const std::string first = content_of(model.path());
-    const ScratchFolder folder;
+    const test::TemporaryFolder folder;
     ASSERT_TRUE(write_spm(folder.path() / "again.spm", model.prepared, model.simplification, {}));
     EXPECT_EQ(content_of(folder.path() / "again.spm"), first);
     EXPECT_EQ(first.size(), model.fields.file_bytes);
@@ -47,7 +47,7 @@ TEST(WriteSpm, the_same_input_gives_the_same_bytes)
 TEST(WriteSpm, the_file_does_not_depend_on_the_threads)
 {
     const EncodedModel& model = *sample_models()[2];
-    const ScratchFolder folder;
+    const test::TemporaryFolder folder;
     EncodeOptions options;
     options.threads = 5;
     const auto path = folder.path() / "threads.spm";
@@ -76,7 +76,7 @@ TEST(WriteSpm, a_mesh_that_is_all_base_has_no_chunks)
     prepared.mesh = {{{0, 0, 0}, {60'000, 0, 0}, {0, 50'000, 0}}, {{0, 1, 2}}};
     prepared.quantum_m = 0x1p-20;
     const Simplification nothing{{}, 0, {0}, {{0, 1, 2}}, {0.0}};
-    const ScratchFolder folder;
+    const test::TemporaryFolder folder;
     ASSERT_TRUE(write_spm(folder.path() / "one.spm", prepared, nothing, {}));
     EXPECT_EQ(read_back(folder.path() / "one.spm"), "");
 }
@@ -86,7 +86,7 @@ TEST(WriteSpm, refuses_a_base_that_is_larger_than_allowed)
     PreparedMesh prepared = make_golden_mesh();
     const Simplification none = collapse_plainly(prepared.mesh, prepared.mesh.faces.size());
     ASSERT_EQ(none.base_faces.size(), 512U);
-    const ScratchFolder folder;
+    const test::TemporaryFolder folder;
     EncodeOptions options;
     const auto refused = write_spm(folder.path() / "a.spm", prepared, none, options);
     ASSERT_FALSE(refused);
@@ -100,7 +100,7 @@ TEST(WriteSpm, refuses_a_base_that_is_larger_than_allowed)
 TEST(WriteSpm, refuses_more_regions_than_a_header_holds)
 {
     const EncodedModel& model = *sample_models()[0];
-    const ScratchFolder folder;
+    const test::TemporaryFolder folder;
     EncodeOptions options;
     options.region_size_m = 1e-6;
     const auto refused =
@@ -113,7 +113,7 @@ TEST(WriteSpm, refuses_more_regions_than_a_header_holds)
 TEST(WriteSpm, rounds_the_region_size_down_to_a_power_of_two_quanta)
 {
     const EncodedModel& model = *sample_models()[0];
-    const ScratchFolder folder;
+    const test::TemporaryFolder folder;
     EncodeOptions options;
     options.region_size_m = model.prepared.quantum_m * 9'000;
     const auto written =
@@ -125,7 +125,7 @@ TEST(WriteSpm, rounds_the_region_size_down_to_a_power_of_two_quanta)
 TEST(WriteSpm, refuses_a_folder_that_is_not_there)
 {
     const EncodedModel& model = *sample_models()[0];
-    const ScratchFolder folder;
+    const test::TemporaryFolder folder;
     const auto refused =
         write_spm(folder.path() / "none" / "a.spm", model.prepared, model.simplification, {});
     ASSERT_FALSE(refused);

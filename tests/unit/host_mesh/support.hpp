@@ -5,19 +5,18 @@
 #include "host_tools/mesh/prepare.hpp"
 #include "host_tools/mesh/read_mesh.hpp"
 #include "platform/base/refusal.hpp"
+#include "tests/shared/temporary_folder.hpp"
 
 #include <gtest/gtest.h>
 
 #include <array>
 #include <bit>
 #include <cstdint>
-#include <filesystem>
 #include <fstream>
 #include <map>
 #include <set>
 #include <string>
 #include <string_view>
-#include <unistd.h>
 #include <vector>
 
 namespace tactus::test
@@ -26,51 +25,9 @@ namespace tactus::test
 using Face = std::array<std::uint32_t, 3>;
 using Point = std::array<double, 3>;
 
-/// A directory of its own for one test, removed with all that is in it.
-class TempDirectory
-{
-public:
-    TempDirectory()
-    {
-        std::string name = (std::filesystem::temp_directory_path() / "host_mesh-XXXXXX").string();
-        path_ = ::mkdtemp(name.data());
-    }
-    ~TempDirectory()
-    {
-        std::error_code ignored;
-        std::filesystem::remove_all(path_, ignored);
-    }
-    TempDirectory(const TempDirectory&) = delete;
-    TempDirectory& operator=(const TempDirectory&) = delete;
-
-    [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-
-    std::filesystem::path write(const std::string& name, std::string_view bytes) const
-    {
-        // A new file each time: overwriting one makes some file systems wait for the disk.
-        std::filesystem::remove(path_ / name);
-        std::ofstream file(path_ / name, std::ios::binary);
-        file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-        return path_ / name;
-    }
-
-    [[nodiscard]] std::size_t files() const
-    {
-        std::size_t count = 0;
-        for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(path_))
-        {
-            ++count;
-        }
-        return count;
-    }
-
-private:
-    std::filesystem::path path_;
-};
-
 inline Result<MeshFile, Refusal> read_bytes(const std::string& name, std::string_view bytes)
 {
-    const TempDirectory directory;
+    const TemporaryFolder directory;
     return read_mesh_file(directory.write(name, bytes));
 }
 

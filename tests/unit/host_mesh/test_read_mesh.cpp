@@ -75,7 +75,7 @@ TEST(ReadMesh, keeps_the_order_of_vertices_of_indexed_formats)
 TEST(ReadMesh, never_takes_a_cut_file_for_a_smaller_mesh)
 {
     const auto mesh = tetrahedron();
-    const TempDirectory directory;
+    const TemporaryFolder directory;
     for (const auto& [name, bytes] : in_all_formats(mesh))
     {
         const auto whole = read_bytes(name, bytes);
@@ -103,7 +103,7 @@ TEST(ReadMesh, never_takes_a_cut_file_for_a_smaller_mesh)
 
 TEST(ReadMesh, refuses_what_is_not_a_file)
 {
-    const TempDirectory directory;
+    const TemporaryFolder directory;
     EXPECT_TRUE(contains(refusal(read_mesh_file(directory.path() / "no.obj")), "no such file"));
     EXPECT_TRUE(contains(refusal(read_mesh_file(directory.path())), "is a directory"));
     const auto pipe = directory.path() / "pipe.obj";

@@ -70,7 +70,7 @@ TEST(SecondOpinion, assimp_reads_the_same_generated_files)
 {
     const auto mesh = make_shape(Shape::bumpy_sphere, 2000);
     ASSERT_TRUE(mesh);
-    const TempDirectory directory;
+    const TemporaryFolder directory;
     for (const auto& [name, bytes] : in_all_formats(mesh.value()))
     {
         expect_same_corners(directory.write(name, bytes));

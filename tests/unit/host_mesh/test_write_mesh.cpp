@@ -18,7 +18,7 @@ namespace
 
 void expect_round_trip(const TriangleMesh& mesh, std::uintmax_t bytes_per_vertex)
 {
-    const TempDirectory directory;
+    const TemporaryFolder directory;
     const auto path = directory.path() / "a.ply";
     const auto written = write_mesh(path, mesh);
     ASSERT_TRUE(written) << written.error().text;
@@ -53,7 +53,7 @@ TEST(WriteMesh, writes_more_than_one_buffer)
 
 void expect_obj_round_trip(const TriangleMesh& mesh, const std::string& name)
 {
-    const TempDirectory directory;
+    const TemporaryFolder directory;
     const auto path = directory.path() / name;
     const auto written = write_mesh(path, mesh);
     ASSERT_TRUE(written) << written.error().text;
@@ -76,7 +76,7 @@ TEST(WriteMesh, an_obj_reads_back_bit_for_bit)
 
 TEST(WriteMesh, an_stl_holds_every_face_in_floats)
 {
-    const TempDirectory directory;
+    const TemporaryFolder directory;
     const auto path = directory.path() / "a.stl";
     const TriangleMesh mesh = make_shape(Shape::torus, 20'000).value();
     const auto written = write_mesh(path, mesh);
@@ -100,7 +100,7 @@ TEST(WriteMesh, an_stl_holds_every_face_in_floats)
 
 TEST(WriteMesh, an_stl_has_unit_normals_to_the_outside_and_none_without_area)
 {
-    const TempDirectory directory;
+    const TemporaryFolder directory;
     const auto path = directory.path() / "a.stl";
     const TriangleMesh mesh{{{0, 0, 0}, {1e-30, 0, 0}, {0, 1e-30, 0}, {2e-30, 0, 0}},
                             {{0, 1, 2}, {0, 2, 1}, {0, 1, 3}}};
@@ -120,7 +120,7 @@ TEST(WriteMesh, an_stl_has_unit_normals_to_the_outside_and_none_without_area)
 
 TEST(WriteMesh, an_stl_is_refused_where_floats_would_join_vertices_or_overflow)
 {
-    const TempDirectory directory;
+    const TemporaryFolder directory;
     TriangleMesh mesh = tetrahedron();
     for (auto& position : mesh.positions)
     {
@@ -139,7 +139,7 @@ TEST(WriteMesh, an_stl_is_refused_where_floats_would_join_vertices_or_overflow)
 
 TEST(WriteMesh, refuses_other_extensions_and_places)
 {
-    const TempDirectory directory;
+    const TemporaryFolder directory;
     EXPECT_FALSE(has_mesh_extension("a.off"));
     EXPECT_FALSE(has_mesh_extension("stl"));
     EXPECT_TRUE(has_mesh_extension("b/a.Stl"));

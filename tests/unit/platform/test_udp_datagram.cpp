@@ -90,26 +90,6 @@ TEST(UdpDatagram, has_the_bytes_of_the_page)
     EXPECT_EQ(value_at<std::uint32_t>(forced, 64), 2U);
 }
 
-TEST(UdpDatagram, comes_back_as_it_was)
-{
-    const auto described = decode_from_device(encode(test::example_description()));
-    ASSERT_TRUE(std::holds_alternative<DescribeDatagram>(described));
-    const DeviceInfo& info = std::get<DescribeDatagram>(described).info;
-    EXPECT_EQ(info.name, "desk 1");
-    EXPECT_EQ(info.limits.slew_max_n_per_s, 7.0);
-    EXPECT_EQ(info.workspace_centre_world_m, (std::array{10.0, 11.0, 12.0}));
-    EXPECT_EQ(info.rate_min_hz, 15);
-
-    const auto sampled = decode_from_device(encode(test::example_sample()));
-    ASSERT_TRUE(std::holds_alternative<SampleDatagram>(sampled));
-    EXPECT_EQ(std::get<SampleDatagram>(sampled).velocity_m_per_s,
-              test::example_sample().velocity_m_per_s);
-
-    const auto forced = decode_from_controller(encode(test::example_force()));
-    ASSERT_TRUE(std::holds_alternative<ForceDatagram>(forced));
-    EXPECT_EQ(std::get<ForceDatagram>(forced).state, DeviceState::brake);
-}
-
 TEST(UdpDatagram, says_what_is_wrong)
 {
     const Bytes sample = to_bytes(encode(test::example_sample()));

@@ -55,6 +55,11 @@ public:
         }
         return *this;
     }
+    CodedBytes& append(std::span<const std::byte> other)
+    {
+        bytes_.insert(bytes_.end(), other.begin(), other.end());
+        return *this;
+    }
     CodedBytes& zeros(std::size_t count)
     {
         bytes_.resize(bytes_.size() + count);

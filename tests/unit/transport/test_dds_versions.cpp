@@ -5,6 +5,7 @@
 /// nothing that they say touches what speaks ours.
 
 #include "tests/shared/count_of.hpp"
+#include "tests/unit/transport/dds_rig.hpp"
 #include "tests/unit/transport/tiny_model.hpp"
 #include "transport/content_hash.hpp"
 #include "transport/dds/dds_client.hpp"
@@ -15,13 +16,11 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdlib>
 #include <cstring>
 #include <functional>
 #include <memory>
 #include <string>
 #include <thread>
-#include <unistd.h>
 #include <vector>
 
 #include "tactus.h"
@@ -32,12 +31,11 @@ namespace
 {
 
 using namespace std::chrono_literals;
+using test::kPatience;
 using test::make_tiny_model;
 using test::TemporaryFolder;
 using test::TinyModel;
 
-/// Far beyond what anything here takes; only a broken build waits this long.
-constexpr auto kOtherPatience = 60s;
 /// What a program waits for something that must not come.
 constexpr auto kMoment = 300ms;
 constexpr std::uint32_t kOtherVersion = kProtocolVersion + 1;
@@ -60,17 +58,7 @@ protected:
 
     void SetUp() override
     {
-        static unsigned tests = 0;
-        const unsigned wire = (static_cast<unsigned>(::getpid()) * 11U + 3U * tests++) % 230U;
-        const std::string uri =
-            "<CycloneDDS><Domain id=\"any\"><General><Interfaces><NetworkInterface name=\"lo\" "
-            "multicast=\"false\"/></Interfaces><AllowMulticast>false</AllowMulticast></General>"
-            "<Discovery><ExternalDomainId>" +
-            std::to_string(wire) +
-            "</ExternalDomainId><ParticipantIndex>auto</ParticipantIndex><LeaseDuration>1 s"
-            "</LeaseDuration><Peers><Peer address=\"127.0.0.1\"/></Peers></Discovery></Domain>"
-            "</CycloneDDS>";
-        ::setenv("CYCLONEDDS_URI", uri.c_str(), 1);
+        test::isolate_domains();
         auto joined = Domain::join(kStrangerDomain);
         ASSERT_TRUE(joined) << joined.error().text;
         stranger = std::move(joined).value();
@@ -93,7 +81,7 @@ protected:
     }
     /// Both step until it is so or the time is over; whether it is so.
     [[nodiscard]] bool step_until(const std::function<bool()>& is_so,
-                                  std::chrono::nanoseconds patience = kOtherPatience)
+                                  std::chrono::nanoseconds patience = kPatience)
     {
         const auto start = std::chrono::steady_clock::now();
         while (!is_so() && std::chrono::steady_clock::now() - start < patience)
@@ -117,7 +105,7 @@ protected:
     /// Our controller with the model of our host.
     void connect()
     {
-        auto found = client->find({"tiny", std::nullopt}, kOtherPatience,
+        auto found = client->find({"tiny", std::nullopt}, kPatience,
                                   [&]
                                   {
                                       step();

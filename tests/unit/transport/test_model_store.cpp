@@ -88,19 +88,11 @@ TEST(ModelStore, says_what_is_wrong_with_files_that_are_no_model)
     const std::string png =
         "\x89PNG\r\n\x1a\n and much more text, longer than a header would be...";
     const auto foreign = folder.write("foreign.spm", std::as_bytes(std::span(png)));
-    const auto empty = folder.write("empty.spm", {});
-    auto newer = make_tiny_model({}).file;
-    newer[8] = std::byte{2};
-    auto longer = make_tiny_model({}).file;
-    longer.push_back(std::byte{0});
+    const auto empty = folder.write("empty.spm", "");
     EXPECT_NE(refusal_of(foreign).find("is not an SPM model"), std::string::npos);
     EXPECT_EQ(refusal_of(empty), empty.string() + ": is empty");
     EXPECT_NE(refusal_of(folder.path() / "none.spm").find("No such file"), std::string::npos);
     EXPECT_NE(refusal_of(folder.path()).find("is not a file"), std::string::npos);
-    EXPECT_NE(refusal_of(folder.write("newer.spm", newer)).find("has format version 2"),
-              std::string::npos);
-    EXPECT_NE(refusal_of(folder.write("longer.spm", longer)).find("followed by other bytes"),
-              std::string::npos);
     EXPECT_NE(refusal_of("/dev/null").find("is not a file"), std::string::npos);
 }
 

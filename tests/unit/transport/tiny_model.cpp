@@ -4,8 +4,8 @@
 
 #include "host_tools/encode/piece_coding.hpp"
 #include "host_tools/encode/record_coder.hpp"
-#include "rt_core/base/crc32c.hpp"
 #include "rt_core/spm/index_page.hpp"
+#include "tests/unit/rt_core/coded_bytes.hpp"
 
 #include <sodium.h>
 
@@ -29,54 +29,6 @@ namespace
 constexpr std::int32_t kQuantumLog2 = -20;
 constexpr std::uint32_t kExtent = 1'000;
 constexpr std::uint8_t kSomeError = 20;
-
-class Bytes
-{
-public:
-    template <typename T>
-    Bytes& put(const T& value)
-    {
-        const auto* first = reinterpret_cast<const std::byte*>(&value);
-        bytes_.insert(bytes_.end(), first, first + sizeof(T));
-        return *this;
-    }
-    Bytes& append(std::span<const std::byte> other)
-    {
-        bytes_.insert(bytes_.end(), other.begin(), other.end());
-        return *this;
-    }
-    std::vector<std::byte> with_checksum()
-    {
-        put(crc32c(bytes_));
-        return std::move(bytes_);
-    }
-    [[nodiscard]] const std::vector<std::byte>& bytes() const { return bytes_; }
-
-private:
-    std::vector<std::byte> bytes_;
-};
-
-/// Fields of bits, lowest first.
-class Bits
-{
-public:
-    void put(std::uint32_t bits, std::uint32_t value)
-    {
-        for (std::uint32_t i = 0; i < bits; ++i, ++count_)
-        {
-            if (count_ % 8 == 0)
-            {
-                bytes_.push_back(std::byte{0});
-            }
-            bytes_.back() |= static_cast<std::byte>(((value >> i) & 1U) << (count_ % 8));
-        }
-    }
-    [[nodiscard]] const std::vector<std::byte>& bytes() const { return bytes_; }
-
-private:
-    std::vector<std::byte> bytes_;
-    std::size_t count_{0};
-};
 
 std::array<std::uint8_t, 32> blake2b(std::span<const std::byte> bytes)
 {
@@ -362,12 +314,12 @@ void code_records(TinyModel& model)
 
 std::vector<std::byte> write_base(const TinyModel& model)
 {
-    Bits bits;
+    CodedBytes bytes;
     for (const Vec3f& position_m : model.base_positions_m)
     {
         for (const std::int32_t quanta : on_grid(position_m))
         {
-            bits.put(10, static_cast<std::uint32_t>(quanta)); // kExtent has ten.
+            bytes.bits(10, static_cast<std::uint32_t>(quanta)); // kExtent has ten.
         }
     }
     const auto width = [](std::uint32_t largest)
@@ -376,17 +328,17 @@ std::vector<std::byte> write_base(const TinyModel& model)
     {
         for (const VertexId corner : face.corners)
         {
-            bits.put(width(model.counts.base_vertices - 1), corner.value);
+            bytes.bits(width(model.counts.base_vertices - 1), corner.value);
         }
-        bits.put(width((model.counts.face_ids() - 1) / 8), face.bucket);
-        bits.put(8, face.error);
+        bytes.bits(width((model.counts.face_ids() - 1) / 8), face.bucket);
+        bytes.bits(8, face.error);
     }
-    return Bytes().append(bits.bytes()).with_checksum();
+    return bytes.with_checksum();
 }
 
 std::vector<std::byte> write_index_page(const TinyModel& model, std::uint32_t page, bool in_a_row)
 {
-    Bytes bytes;
+    CodedBytes bytes;
     bytes.put(page);
     for (std::size_t chunk = std::size_t{page} * 64;
          chunk < std::min<std::size_t>(model.chunks.size(), std::size_t{page} * 64 + 64); ++chunk)
@@ -411,7 +363,7 @@ void write_header_and_file(TinyModel& model)
     {
         offset += page.size();
     }
-    Bytes entries;
+    CodedBytes entries;
     for (std::size_t page = 0; page < model.index_pages.size(); ++page)
     {
         entries.put(IndexPageEntry{
@@ -422,11 +374,11 @@ void write_header_and_file(TinyModel& model)
         }
     }
     fields.file_bytes = offset;
-    Bytes header;
+    CodedBytes header;
     header.put(fields).append(entries.bytes()).put(std::uint8_t{1});
     header.put(blake2b(header.bytes()));
     model.header = header.with_checksum();
-    Bytes file;
+    CodedBytes file;
     file.append(model.header).append(model.base);
     for (const auto& page : model.index_pages)
     {
@@ -472,32 +424,6 @@ TinyModel make_tiny_model(const TinyModelSpec& spec)
     model.base = write_base(model);
     write_header_and_file(model);
     return model;
-}
-
-TemporaryFolder::TemporaryFolder()
-{
-    std::string name = (std::filesystem::temp_directory_path() / "tactus_test_XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr)
-    {
-        throw std::runtime_error("no temporary folder: " + name);
-    }
-    path_ = name;
-}
-
-TemporaryFolder::~TemporaryFolder()
-{
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-}
-
-std::filesystem::path TemporaryFolder::write(const char* name,
-                                             std::span<const std::byte> bytes) const
-{
-    const auto path = path_ / name;
-    std::ofstream file(path, std::ios::binary | std::ios::trunc);
-    file.write(reinterpret_cast<const char*>(bytes.data()),
-               static_cast<std::streamsize>(bytes.size()));
-    return path;
 }
 
 } // namespace tactus::test

@@ -5,10 +5,10 @@
 #include "rt_core/spm/content_key.hpp"
 #include "rt_core/spm/header.hpp"
 #include "rt_core/spm/star_resolver.hpp"
+#include "tests/shared/temporary_folder.hpp"
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <span>
 #include <vector>
 
@@ -51,22 +51,5 @@ struct TinyModel
 };
 
 [[nodiscard]] TinyModel make_tiny_model(const TinyModelSpec& spec);
-
-/// A folder of its own for one test's files; removed at the end.
-class TemporaryFolder
-{
-public:
-    TemporaryFolder();
-    ~TemporaryFolder();
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-    [[nodiscard]] std::filesystem::path write(const char* name,
-                                              std::span<const std::byte> bytes) const;
-    [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
-
-private:
-    std::filesystem::path path_;
-};
 
 } // namespace tactus::test
