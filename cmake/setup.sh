@@ -20,7 +20,7 @@ Commands:
   demo      build the programs, make a model, publish it over DDS on this machine and touch it
             for 10 s at 1 kHz; the report is written to build/demo/report.json
   bench     build the benchmarks and run every suite; the results are written to build/bench as
-            JSON, CSV and a page, BENCH-OPTIONS after -- go to tactus_bench, e.g. -- --core 1
+            JSON and as text, BENCH-OPTIONS after -- go to tactus_bench, e.g. -- --core 1
   packages  only install the packages that are missing
 
 Options:
@@ -211,12 +211,11 @@ run_bench() { # run_bench KEPT OPTION...: all suites, as tactus_bench takes opti
     mkdir -p "$results/models"
     local code=0
     rm -f "$results"/bench.*
-    "$build/bin/tactus_bench" all --cache "$results/models" --json "$results/bench.json" \
-        --csv "$results/bench.csv" --html "$results/bench.html" "$@" >"$results/bench.txt" \
-        || code=$?
-    if [[ -f "$results/bench.html" ]]; then
+    "$build/bin/tactus_bench" all --cache "$results/models" --json "$results/bench.json" "$@" \
+        >"$results/bench.txt" || code=$?
+    if [[ -f "$results/bench.json" ]]; then
         grep 'goals met' "$results/bench.txt" | sed 's/^/  /' || true
-        echo "Results: $results/bench.html, bench.json, bench.csv and bench.txt beside it"
+        echo "Results: $results/bench.json, and bench.txt beside it"
     fi
     if [[ -n "$kept" && -f "$results/bench.json" ]]; then
         "$python" "$root/tests/bench/results.py" store "$kept" "$results/bench.json" || code=$?

@@ -62,4 +62,11 @@ struct GoalCount
 };
 [[nodiscard]] GoalCount count_goals(const Rows& rows);
 
+/// What suites have brought.
+struct Results
+{
+    Rows rows;
+    std::vector<std::string> failures; ///< A line for each suite that could not be run to its end.
+};
+
 } // namespace tactus::bench

@@ -5,7 +5,6 @@
 #include "tests/bench/bench_options.hpp"
 #include "tests/bench/bench_row.hpp"
 #include "tests/bench/scenes.hpp"
-#include "tests/bench/stage_series.hpp"
 
 #include <cstdint>
 #include <functional>
@@ -34,7 +33,6 @@ struct CaseContext
     const BenchOptions& options;
     SceneStore& scenes;
     Rows& rows;
-    std::vector<StageSeries>& series;
 
     /// What all rows of this case have in common; the part is the suite's, if it has any.
     [[nodiscard]] Row common_row(const std::string& scene, const char* part = "") const;

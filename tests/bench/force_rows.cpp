@@ -4,14 +4,10 @@
 
 #include "tests/bench/cases.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
-#include <span>
-#include <utility>
 
 namespace tactus::bench
 {
@@ -19,33 +15,7 @@ namespace tactus::bench
 namespace
 {
 
-constexpr const char* kForceTime50 = "force.p50";
-constexpr const char* kForceTime99 = "force.p99";
-constexpr const char* kFrameTime50 = "frame.p50";
-constexpr const char* kFrameTime99 = "frame.p99";
-constexpr const char* kAllocations = "allocations a call";
-constexpr const char* kError50 = "error.p50";
-constexpr const char* kError99 = "error.p99";
-constexpr const char* kErrorMax = "error.max";
-constexpr const char* kStep = "largest step";
-constexpr const char* kStuck = "stuck frames";
-constexpr const char* kAgainstCoarser = "error p99 by the coarser mesh's";
-
-struct Column
-{
-    const char* name;
-    std::array<const char*, 3> metrics; ///< Null: fewer.
-};
-constexpr std::array<Column, 7> kColumns{
-    {{"force p50 / p99 us", {kForceTime50, kForceTime99, nullptr}},
-     {"frame p50 / p99 us", {kFrameTime50, kFrameTime99, nullptr}},
-     {"allocations a call", {kAllocations, nullptr, nullptr}},
-     {"force error p50 / p99 / max N", {kError50, kError99, kErrorMax}},
-     {"largest force step N", {kStep, nullptr, nullptr}},
-     {"stuck frames", {kStuck, nullptr, nullptr}},
-     {"error p99 by the coarser mesh's", {kAgainstCoarser, nullptr, nullptr}}}};
-
-/// A line of the recorded table; not a number: not told.
+/// Of one sweep; not a number: not told.
 struct Recorded
 {
     const char* sweep;
@@ -62,47 +32,6 @@ constexpr std::array<Recorded, 6> kRecorded{
      {"328k, 0.1 m/s, 0.5 mm", 10.0, 18.5, 0.93, 0.275, 0.77, 4.9},
      {"1.3M, 0.1 m/s, 0.5 mm", 21.5, 50.0, 0.94, 0.201, 0.84, 2.7},
      {"1.3M, 0.1 m/s, 2 mm", 664.0, 10'383.0, 0.98, kNotTold, kNotTold, 45.0}}};
-
-/// Counts whole, everything else with three digits.
-std::string number(double value)
-{
-    if (!std::isfinite(value))
-    {
-        return "none";
-    }
-    return value == std::round(value) ? fmt::format("{:.0f}", value) : fmt::format("{:.3g}", value);
-}
-
-std::string force_cell(const Row& row)
-{
-    const std::string text = row.is_met() ? number(row.value) : "**" + number(row.value) + "**";
-    return row.goal ? fmt::format("{} ({})", text, number(*row.goal)) : text;
-}
-
-bool same_line(const Row& a, const Row& b)
-{
-    return a.test_case == b.test_case && a.by == b.by;
-}
-
-std::string to_line(std::span<const Row> line)
-{
-    std::string text = fmt::format("| {} | {} |", line.front().test_case, line.front().by);
-    for (const Column& column : kColumns)
-    {
-        std::string cells;
-        for (const char* metric : column.metrics)
-        {
-            const auto row = std::ranges::find_if(
-                line, [&](const Row& one) { return metric != nullptr && one.metric == metric; });
-            if (row != line.end())
-            {
-                cells += (cells.empty() ? "" : " / ") + force_cell(*row);
-            }
-        }
-        text += " " + cells + (cells.empty() ? "|" : " |");
-    }
-    return text + "\n";
-}
 
 /// What is not a number is infinitely wrong.
 double length_of(const Vec3& difference)
@@ -142,25 +71,25 @@ void add_force_rows(CaseRows& rows, const ForceTrace& trace, const ForceFigures&
     const std::optional<double> law = goals.has_laws ? std::optional(0.0) : std::nullopt;
     const Spread force_us = spread_of(trace.force_us.least());
     const Spread frame_us = spread_of(trace.frame_us.least());
-    rows.add(kForceTime50, force_us.p50, "us");
-    rows.add(kForceTime99, force_us.p99, "us");
-    rows.add(kFrameTime50, frame_us.p50, "us");
-    rows.add(kFrameTime99, frame_us.p99, "us", goal_if(goals.frame_p99_us));
+    rows.add("force.p50", force_us.p50, "us");
+    rows.add("force.p99", force_us.p99, "us");
+    rows.add("frame.p50", frame_us.p50, "us");
+    rows.add("frame.p99", frame_us.p99, "us", goal_if(goals.frame_p99_us));
     if (trace.allocations)
     {
-        rows.add(kAllocations,
+        rows.add("allocations a call",
                  static_cast<double>(*trace.allocations) /
                      static_cast<double>(trace.outputs.size()),
                  "", law);
     }
-    rows.add(kError50, figures.error_n.p50, "N");
-    rows.add(kError99, figures.error_n.p99, "N", goal_if(goals.error_p99_n));
-    rows.add(kErrorMax, figures.error_n.max, "N", goal_if(goals.error_max_n));
-    rows.add(kStep, figures.largest_step_n, "N", goal_if(goals.step_n));
-    rows.add(kStuck, static_cast<double>(figures.stuck), "", law);
+    rows.add("error.p50", figures.error_n.p50, "N");
+    rows.add("error.p99", figures.error_n.p99, "N", goal_if(goals.error_p99_n));
+    rows.add("error.max", figures.error_n.max, "N", goal_if(goals.error_max_n));
+    rows.add("largest step", figures.largest_step_n, "N", goal_if(goals.step_n));
+    rows.add("stuck frames", static_cast<double>(figures.stuck), "", law);
     if (coarser_p99_n)
     {
-        rows.add(kAgainstCoarser, figures.error_n.p99 / *coarser_p99_n, "x", 1.0);
+        rows.add("error p99 by the coarser mesh's", figures.error_n.p99 / *coarser_p99_n, "x", 1.0);
     }
 }
 
@@ -175,33 +104,13 @@ void add_recorded_peer(Rows& rows)
         common.by = "CHAI3D 3.3, recorded elsewhere";
         common.scene = "a bumpy sphere of its own";
         CaseRows line(rows, common);
-        line.add(kFrameTime50, recorded.p50_us, "us");
-        line.add(kFrameTime99, recorded.p99_us, "us");
-        line.add(kAllocations, recorded.allocations, "");
-        line.add(kError50, recorded.error50_n, "N");
-        line.add(kError99, recorded.error99_n, "N");
-        line.add(kStep, recorded.step_n, "N");
+        line.add("frame.p50", recorded.p50_us, "us");
+        line.add("frame.p99", recorded.p99_us, "us");
+        line.add("allocations a call", recorded.allocations, "");
+        line.add("error.p50", recorded.error50_n, "N");
+        line.add("error.p99", recorded.error99_n, "N");
+        line.add("largest step", recorded.step_n, "N");
     }
-}
-
-std::string to_force_table(const Rows& rows)
-{
-    std::string text = "| triangles, tool speed, proxy | by |";
-    std::string rule = "| --- | --- |";
-    for (const Column& column : kColumns)
-    {
-        text += fmt::format(" {} |", column.name);
-        rule += " --- |";
-    }
-    text += "\n" + rule + "\n";
-    for (auto first = rows.begin(); first != rows.end();)
-    {
-        const auto end = std::find_if(first, rows.end(),
-                                      [&](const Row& row) { return !same_line(*first, row); });
-        text += to_line({first, end});
-        first = end;
-    }
-    return text;
 }
 
 } // namespace tactus::bench

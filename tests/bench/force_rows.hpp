@@ -8,7 +8,6 @@
 
 #include <cstdint>
 #include <optional>
-#include <string>
 
 namespace tactus::bench
 {
@@ -45,9 +44,5 @@ void add_force_rows(CaseRows& rows, const ForceTrace& trace, const ForceFigures&
 /// What was recorded of CHAI3D 3.3's finger proxy: elsewhere, on a surface of the same kind whose
 /// constants were not kept; for the order of magnitude.
 void add_recorded_peer(Rows& rows);
-
-/// Markdown: a line for each sweep and whoever did it. Goals in brackets behind the figure, which
-/// is bold when it isn't met.
-[[nodiscard]] std::string to_force_table(const Rows& rows);
 
 } // namespace tactus::bench

@@ -117,14 +117,6 @@ void add_work(CaseRows& rows, const FrameReplay& replay, std::size_t pool_bytes)
     rows.add("faces used at most", work.model.faces.used_max, "");
 }
 
-void add_series(const CaseContext& context, const FrameReplay& replay)
-{
-    const auto us = [&](Stage stage) { return replay.stage_us(stage).least(); };
-    context.series.push_back(
-        make_series(context.common_row(""),
-                    {us(Stage::load), us(Stage::refine), us(Stage::refit), us(Stage::query)}));
-}
-
 } // namespace
 
 CaseFailure run_frame_case(const CaseContext& context, const FrameCase& test_case)
@@ -144,7 +136,6 @@ CaseFailure run_frame_case(const CaseContext& context, const FrameCase& test_cas
     {
         return failure;
     }
-    add_series(context, replay);
     CaseRows rows = rows_of(context, run, replay.hash());
     if (context.options.count)
     {

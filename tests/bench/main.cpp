@@ -5,10 +5,10 @@
 
 #include "host_tools/cli/command_line.hpp"
 #include "host_tools/mesh/prepare.hpp"
+#include "platform/base/atomic_file.hpp"
 #include "tests/bench/bench_report.hpp"
 #include "tests/bench/force_trajectory.hpp"
 #include "tests/bench/measuring.hpp"
-#include "tests/bench/output_files.hpp"
 #include "tests/bench/suites.hpp"
 
 #include <fmt/format.h>
@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <exception>
 #include <iterator>
+#include <span>
 
 namespace tactus::bench
 {
@@ -25,7 +26,7 @@ namespace
 struct Request
 {
     std::string suite;
-    OutputPaths paths;
+    std::string json; ///< Empty: none is written.
     bool all{false};
     bool check{false};
     BenchOptions options;
@@ -111,12 +112,9 @@ void declare_options(CommandLine& line, Request& request)
     line.add_option("--core", options.core, "Core to measure on (default: the last one)");
     line.add_flag("--count", options.count,
                   "One warm pass, nothing evicted and no peers: for counting instructions");
-    line.add_flag("--all", request.all, "Print every row, not only those with a goal");
+    line.add_flag("--all", request.all, "Print every row, also of suites that have goals");
     line.add_flag("--check", request.check, "Leave with code 1 when a goal is not met");
-    line.add_option("--json", request.paths.json, "Write the rows to this file as JSON");
-    line.add_option("--csv", request.paths.csv, "Write the rows to this file as CSV");
-    line.add_option("--html", request.paths.html,
-                    "Write the rows to this file as a page, with plots where they make some");
+    line.add_option("--json", request.json, "Write the rows to this file as JSON");
     declare_trajectory_options(line, options.trajectory);
 }
 
@@ -172,10 +170,6 @@ std::optional<std::string> wrong_usage(const Request& request)
     {
         return fmt::format("--core {}: this process may not run there", request.options.core);
     }
-    if (const auto reason = request.paths.wrong_usage())
-    {
-        return reason;
-    }
     return wrong_trajectory(request);
 }
 
@@ -211,19 +205,18 @@ Results run_suites(const Request& request, GoalCount& laws)
     Results results;
     for (const Suite& suite : chosen_suites(request.suite))
     {
-        Results own;
+        Rows own;
         SceneStore scenes(
             request.options.cache); // Its own: what others needed is not kept in memory.
         if (const auto refused = run_suite(suite, request.options, scenes, own))
         {
             results.failures.push_back(*refused);
         }
-        fmt::print("{}", request.all ? to_table(own.rows) : suite.to_table(own.rows));
-        const GoalCount count = count_goals(own.rows);
+        fmt::print("{}", to_text(own, request.all ? Figures::all : Figures::with_goals));
+        const GoalCount count = count_goals(own);
         laws.goals += suite.always_checks ? count.goals : 0;
         laws.met += suite.always_checks ? count.met : 0;
-        std::ranges::move(own.rows, std::back_inserter(results.rows));
-        std::ranges::move(own.series, std::back_inserter(results.series));
+        std::ranges::move(own, std::back_inserter(results.rows));
     }
     return results;
 }
@@ -235,8 +228,14 @@ Results run_trajectory(const Request& request)
     {
         results.failures.push_back(*refused);
     }
-    fmt::print("{}", request.all ? to_table(results.rows) : to_columns(results.rows));
+    fmt::print("{}", to_text(results.rows, Figures::all));
     return results;
+}
+
+Result<Done, Refusal> write_json(AtomicFile& file, const std::string& text)
+{
+    const auto written = file.write(std::as_bytes(std::span(text)));
+    return written ? file.commit() : written;
 }
 
 int run(int argc, char** argv)
@@ -254,10 +253,16 @@ int run(int argc, char** argv)
         return line.fail(*reason, kExitUsage);
     }
     AtomicFile::remove_pending_on_signal();
-    auto files = OutputFiles::create(request.paths);
-    if (!files)
+    // Made before the run, so that an hour of it is not lost to a name that can't be written.
+    std::optional<AtomicFile> json;
+    if (!request.json.empty())
     {
-        return line.fail(files.error().text);
+        auto made = AtomicFile::create(request.json);
+        if (!made)
+        {
+            return line.fail(made.error().text);
+        }
+        json.emplace(std::move(made).value());
     }
     const RunFacts facts{PinnedCore(request.options.core).core(), request.options.quick,
                          lesser_options(request.options)};
@@ -275,9 +280,12 @@ int run(int argc, char** argv)
     }
     fmt::print("{}\n", facts.core < 0 ? std::string("not held to one core: the system refuses")
                                       : fmt::format("measured on core {}", facts.core));
-    if (const auto written = files.value().write(results, facts); !written)
+    if (json)
     {
-        return line.fail(written.error().text);
+        if (const auto written = write_json(*json, to_json(results, facts)); !written)
+        {
+            return line.fail(written.error().text);
+        }
     }
     const GoalCount count = count_goals(results.rows);
     const bool misses = laws.met < laws.goals || (request.check && count.met < count.goals);

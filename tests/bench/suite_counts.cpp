@@ -5,7 +5,6 @@
 /// counts that are the same on every machine; no times. Under callgrind, instructions as well:
 /// counts.py.
 
-#include "tests/bench/bench_report.hpp"
 #include "tests/bench/frame_replay.hpp"
 #include "tests/bench/static_model.hpp"
 #include "tests/bench/suites.hpp"
@@ -94,7 +93,7 @@ std::vector<Case> counts_cases()
 
 Suite counts_suite()
 {
-    return {"counts", counts_cases, to_columns};
+    return {"counts", counts_cases};
 }
 
 } // namespace tactus::bench

@@ -5,7 +5,6 @@
 /// simplify. Which meshes, and what is to be reached on each.
 
 #include "host_tools/shapes/shapes.hpp"
-#include "tests/bench/bench_report.hpp"
 #include "tests/bench/encoder_cases.hpp"
 #include "tests/bench/random.hpp"
 #include "tests/bench/suites.hpp"
@@ -161,7 +160,7 @@ std::vector<Case> encoder_cases()
 
 Suite encoder_suite()
 {
-    return {"encoder", encoder_cases, to_columns};
+    return {"encoder", encoder_cases};
 }
 
 } // namespace tactus::bench

@@ -4,7 +4,6 @@
 /// The suite `error_time`: run time against error. On which models; what is varied is in
 /// error_time_case.cpp.
 
-#include "tests/bench/bench_report.hpp"
 #include "tests/bench/error_time_case.hpp"
 #include "tests/bench/suites.hpp"
 
@@ -31,7 +30,7 @@ std::vector<Case> error_time_cases()
 
 Suite error_time_suite()
 {
-    return {"error_time", error_time_cases, to_columns};
+    return {"error_time", error_time_cases};
 }
 
 } // namespace tactus::bench

@@ -5,7 +5,6 @@
 /// sweeps round the bumpy sphere, held 1 mm below where the proxy's centre rests.
 
 #include "host_tools/shapes/shapes.hpp"
-#include "tests/bench/bench_report.hpp"
 #include "tests/bench/force_rows.hpp"
 #include "tests/bench/measuring.hpp"
 #include "tests/bench/suites.hpp"
@@ -275,25 +274,11 @@ std::vector<Case> force_cases()
     return cases;
 }
 
-/// The sweeps as the recorded table has them, the rest as columns.
-std::string to_force_tables(const Rows& rows)
-{
-    Rows sweeps;
-    Rows others;
-    for (const Row& row : rows)
-    {
-        (row.part == "Sweeps" ? sweeps : others).push_back(row);
-    }
-    const GoalCount count = count_goals(rows);
-    return fmt::format("{}\n{}\nIn all {} of {} goals met.\n", to_force_table(sweeps),
-                       to_columns(others), count.met, count.goals);
-}
-
 } // namespace
 
 Suite force_suite()
 {
-    return {"force", force_cases, to_force_tables, true};
+    return {"force", force_cases, true};
 }
 
 } // namespace tactus::bench

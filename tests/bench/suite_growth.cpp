@@ -3,7 +3,6 @@
 
 /// The suite `growth`: how costs grow with the model.
 
-#include "tests/bench/bench_report.hpp"
 #include "tests/bench/growth_case.hpp"
 #include "tests/bench/suites.hpp"
 
@@ -26,7 +25,7 @@ std::vector<Case> growth_cases()
 
 Suite growth_suite()
 {
-    return {"growth", growth_cases, to_columns};
+    return {"growth", growth_cases};
 }
 
 } // namespace tactus::bench

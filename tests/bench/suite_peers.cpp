@@ -4,7 +4,6 @@
 /// The suite `peers`: the same work for our queries and for those of the libraries that a user
 /// could take instead. Without peers in the build, ours alone.
 
-#include "tests/bench/bench_report.hpp"
 #include "tests/bench/peer_cases.hpp"
 #include "tests/bench/suites.hpp"
 
@@ -52,7 +51,7 @@ std::vector<Case> peers_cases()
 
 Suite peers_suite()
 {
-    return {"peers", peers_cases, to_columns};
+    return {"peers", peers_cases};
 }
 
 } // namespace tactus::bench

@@ -4,7 +4,6 @@
 /// The suite `skip`: what each of a frame's shortcuts saves, off one at a time and all off; exact
 /// answers stay the same to the bit, or the case fails.
 
-#include "tests/bench/bench_report.hpp"
 #include "tests/bench/frame_replay.hpp"
 #include "tests/bench/suites.hpp"
 
@@ -175,7 +174,7 @@ std::vector<Case> skip_cases()
 
 Suite skip_suite()
 {
-    return {"skip", skip_cases, to_columns};
+    return {"skip", skip_cases};
 }
 
 } // namespace tactus::bench

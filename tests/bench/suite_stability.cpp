@@ -358,7 +358,7 @@ std::vector<Case> all_parts()
 
 Suite stability_suite()
 {
-    return {"stability", all_parts, to_trial_table, true};
+    return {"stability", all_parts, true};
 }
 
 } // namespace tactus::bench

@@ -65,7 +65,7 @@ CaseFailure run_case(const Case& one, const CaseContext& context)
 } // namespace
 
 CaseFailure run_suite(const Suite& suite, const BenchOptions& options, SceneStore& scenes,
-                      Results& results)
+                      Rows& rows)
 {
     for (const Case& one : suite.cases())
     {
@@ -74,12 +74,11 @@ CaseFailure run_suite(const Suite& suite, const BenchOptions& options, SceneStor
             continue;
         }
         fmt::print(stderr, "{}\n", one.name);
-        const std::size_t rows_before = results.rows.size();
-        CaseFailure failure =
-            run_case(one, {suite.name, one.name, options, scenes, results.rows, results.series});
+        const std::size_t rows_before = rows.size();
+        CaseFailure failure = run_case(one, {suite.name, one.name, options, scenes, rows});
         if (!failure)
         {
-            failure = check_hashes(std::span(results.rows).subspan(rows_before));
+            failure = check_hashes(std::span(rows).subspan(rows_before));
         }
         if (failure)
         {

@@ -12,14 +12,12 @@
 namespace tactus::bench
 {
 
-/// A set of cases that make one table.
+/// A set of cases.
 struct Suite
 {
     const char* name;
-    /// In the order of the table; those that only run when named included.
+    /// In their order; those that only run when named included.
     std::vector<Case> (*cases)();
-    /// What is printed unless every row is asked for.
-    std::string (*to_table)(const Rows& rows);
     /// Its goals are laws: the program leaves with code 1 when one isn't met, asked or not.
     bool always_checks{false};
 };
@@ -44,7 +42,7 @@ struct Suite
 /// Runs the chosen cases, each on one core, and adds what they bring. Returns a line when a case
 /// could not be run or gave wrong answers, or measured a time whose result nothing looks at.
 [[nodiscard]] CaseFailure run_suite(const Suite& suite, const BenchOptions& options,
-                                    SceneStore& scenes, Results& results);
+                                    SceneStore& scenes, Rows& rows);
 
 /// A line when a row has the time of frames but no hash over them: what was timed may then be
 /// nothing at all.

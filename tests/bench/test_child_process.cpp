@@ -5,9 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <csignal>
 #include <memory>
-#include <stdexcept>
 #include <vector>
 
 namespace tactus::bench
@@ -42,30 +40,6 @@ std::uint64_t peak_of_touching(std::size_t bytes)
     return outcome ? outcome.value().peak_bytes : 0;
 }
 
-TEST(RunInChild, returns_a_text_longer_than_a_pipe_holds)
-{
-    const auto outcome = run_in_child([] { return Work(std::string(300'000, 'a')); });
-
-    ASSERT_TRUE(outcome);
-    EXPECT_EQ(outcome.value().text, std::string(300'000, 'a'));
-}
-
-TEST(RunInChild, changes_nothing_here)
-{
-    int value = 1;
-
-    const auto outcome = run_in_child(
-        [&value]
-        {
-            value = 2;
-            return Work(std::to_string(value));
-        });
-
-    ASSERT_TRUE(outcome);
-    EXPECT_EQ(outcome.value().text, "2");
-    EXPECT_EQ(value, 1);
-}
-
 TEST(RunInChild, peak_is_the_childs_own)
 {
     constexpr std::size_t kMuch = std::size_t{256} << 20U;
@@ -96,21 +70,6 @@ TEST(RunInChild, peak_has_nothing_of_what_was_freed_here)
     blocks.clear();
 
     EXPECT_LT(peak_of_touching(1), before + kBlocks * 32) << *last;
-}
-
-TEST(RunInChild, hands_on_why_the_work_failed)
-{
-    const auto refused = run_in_child([] { return Work(SceneError{"no such mesh"}); });
-    const auto thrown =
-        run_in_child([]() -> Work { throw std::runtime_error("the library refuses"); });
-    const auto killed = run_in_child([]() -> Work { ::raise(SIGKILL), ::abort(); });
-
-    ASSERT_FALSE(refused);
-    EXPECT_EQ(refused.error().text, "no such mesh");
-    ASSERT_FALSE(thrown);
-    EXPECT_EQ(thrown.error().text, "the library refuses");
-    ASSERT_FALSE(killed);
-    EXPECT_EQ(killed.error().text, "a child process was ended by signal 9");
 }
 
 } // namespace

@@ -25,15 +25,6 @@ TEST(FeatureEdges, borders_are_edges_of_one_face)
     EXPECT_EQ(border_edges(make_bent_strip(0.0)).size(), 5U);
 }
 
-TEST(FeatureEdges, a_closed_mesh_has_no_border)
-{
-    const TriangleMesh tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
-                                   {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}};
-
-    EXPECT_TRUE(border_edges(tetrahedron).empty());
-    EXPECT_EQ(sharp_edges(tetrahedron, 40.0).size(), 6U);
-}
-
 TEST(FeatureEdges, sharp_is_more_than_the_angle)
 {
     const TriangleMesh strip = make_bent_strip(1.0); // Turns by 45 degrees at x = 1.
@@ -43,14 +34,6 @@ TEST(FeatureEdges, sharp_is_more_than_the_angle)
     EXPECT_EQ(sharp[0].from, Vec3(1, 0, 0));
     EXPECT_EQ(sharp[0].to, Vec3(1, 1, 0));
     EXPECT_TRUE(sharp_edges(strip, 46.0).empty());
-}
-
-TEST(FeatureEdges, a_face_without_area_turns_nothing)
-{
-    TriangleMesh strip = make_bent_strip(0.0);
-    strip.positions[4] = {1, 0.5, 0};
-
-    EXPECT_TRUE(sharp_edges(strip, 1.0).empty());
 }
 
 TEST(FeatureEdges, distance_is_taken_along_the_whole_line)

@@ -45,25 +45,6 @@ struct PlaneTouch
     std::vector<Vec3> rests_m;
 };
 
-TEST(ForceRows, a_ball_that_rests_where_it_should_has_no_error)
-{
-    const ForceFigures figures = PlaneTouch().measure();
-
-    EXPECT_NEAR(figures.error_n.max, 0.0, 1e-12);
-    EXPECT_EQ(figures.largest_step_n, 0.0);
-    EXPECT_EQ(figures.stuck, 0U);
-}
-
-TEST(ForceRows, errors_and_steps_are_vectors_lengths)
-{
-    PlaneTouch sut;
-    sut.trace.outputs[3].force_n = Vec3(0.3, 0.4, 1.0);
-
-    EXPECT_NEAR(sut.measure().error_n.max, 0.5, 1e-12);
-    EXPECT_NEAR(sut.measure().error_n.p50, 0.0, 1e-12);
-    EXPECT_NEAR(sut.measure().largest_step_n, 0.5, 1e-12);
-}
-
 TEST(ForceRows, a_ball_is_stuck_when_it_is_frozen_lost_behind_or_nowhere)
 {
     PlaneTouch sut;
@@ -109,32 +90,6 @@ TEST(ForceRows, each_law_that_is_broken_misses_its_goal)
     EXPECT_EQ(missed(sut), 6U); // And it is more than on the coarser mesh.
     sut.trace.outputs[9].force_n.x() = std::numeric_limits<double>::quiet_NaN();
     EXPECT_EQ(missed(sut), 6U);
-}
-
-TEST(ForceRows, the_table_has_a_line_a_sweep_and_says_what_is_missed)
-{
-    PlaneTouch touch;
-    touch.trace.outputs[2].frozen = true;
-    const Rows rows = rows_of(touch, {kNoGoal, 0.1, kNoGoal, kNoGoal}, std::nullopt);
-
-    const std::string table = to_force_table(rows);
-    EXPECT_NE(table.find("| 5k | Tactus | 4 / 9 | 4 / 9 | 0 (0) | "), std::string::npos) << table;
-    EXPECT_NE(table.find("(0.1) / "), std::string::npos) << table;
-    EXPECT_NE(table.find("| 0 | **1** (0) | |\n"), std::string::npos) << table;
-}
-
-TEST(ForceRows, what_was_recorded_elsewhere_says_so_and_has_no_goals)
-{
-    Rows rows;
-    add_recorded_peer(rows);
-
-    EXPECT_EQ(count_goals(rows).goals, 0U);
-    const std::string table = to_force_table(rows);
-    EXPECT_NE(table.find("| 82k, 0.3 m/s, 0.5 mm | CHAI3D 3.3, recorded elsewhere | | 6.8 / 49 | "
-                         "0.99 | 0.54 / 96 | 51 | | |\n"),
-              std::string::npos)
-        << table;
-    EXPECT_NE(table.find("none / none | 45 |"), std::string::npos) << table;
 }
 
 } // namespace

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "tests/bench/program.hpp"
 #include "tests/bench/stream_run.hpp"
 #include "tests/bench/tap_tour.hpp"
 
@@ -84,29 +83,6 @@ TEST(TapTour, taps_where_it_says_and_moves_no_faster_than_it_should)
     EXPECT_LT(longest_m, 3.0 * step_m) << "the swing in depth and edges add to it";
 }
 
-TEST(TapTour, trembles_by_no_more_than_it_should)
-{
-    const std::vector<test::Face> faces = square();
-    const test::FaceTree tree(faces);
-    const TouchScene scene{tree, 1.5};
-    TourManner manner;
-    manner.taps = 1;
-    const TapTour calm = tap_tour(scene, manner);
-    manner.tremor_m = 1e-3;
-
-    const TapTour sut = tap_tour(scene, manner);
-
-    ASSERT_EQ(sut.goals_m.size(), calm.goals_m.size());
-    EXPECT_EQ(sut.touches, calm.touches) << "of the motion without it";
-    double most_m = 0.0;
-    for (std::size_t i = 0; i < sut.goals_m.size(); ++i)
-    {
-        most_m = std::max(most_m, (sut.goals_m[i] - calm.goals_m[i]).cwiseAbs().maxCoeff());
-    }
-    EXPECT_GT(most_m, 0.9e-3);
-    EXPECT_LE(most_m, 1e-3 * 1.000001);
-}
-
 TEST(StreamCounter, counts_answers_and_late_taps)
 {
     TapTour tour;
@@ -147,48 +123,6 @@ TEST(StreamCounter, counts_reloads_and_their_bursts)
     EXPECT_EQ(figures.loads, 6U);
     EXPECT_EQ(figures.reloads, 3U);
     EXPECT_EQ(figures.reload_bursts, 2U);
-}
-
-TEST(Program, tells_how_it_ended_and_quotes_its_last_line)
-{
-    const test::TemporaryFolder folder("program");
-    ProgramSetup setup;
-    setup.words = {"/bin/sh", "-c", "echo first; echo last words; exit 3"};
-    setup.output = folder.path() / "out";
-    auto sut = Program::start(setup);
-    ASSERT_TRUE(sut);
-
-    const auto done = sut.value().wait();
-
-    ASSERT_FALSE(done);
-    EXPECT_EQ(done.error().text, "sh ended with 3: last words");
-}
-
-TEST(Program, is_asked_line_by_line)
-{
-    const test::TemporaryFolder folder("program");
-    ProgramSetup setup;
-    setup.words = {"/bin/sh", "-c", "echo ready; while read -r line; do echo \"got $line\"; done"};
-    setup.output = folder.path() / "out";
-    setup.is_asked = true;
-    auto sut = Program::start(setup);
-    ASSERT_TRUE(sut);
-
-    EXPECT_EQ(sut.value().ask("").value(), "ready");
-    EXPECT_EQ(sut.value().ask("one").value(), "got one");
-    EXPECT_EQ(sut.value().ask("two").value(), "got two");
-}
-
-TEST(Program, one_that_does_not_exist_is_an_error)
-{
-    const test::TemporaryFolder folder("program");
-    ProgramSetup setup;
-    setup.words = {"/nowhere/at/all"};
-    setup.output = folder.path() / "out";
-    auto sut = Program::start(setup);
-    ASSERT_TRUE(sut);
-
-    EXPECT_FALSE(sut.value().wait());
 }
 
 } // namespace tactus::bench

@@ -20,29 +20,6 @@ TriangleMesh make_rectangle(double width, double z)
     return {{{0, 0, z}, {width, 0, z}, {width, 1, z}, {0, 1, z}}, {{0, 1, 2}, {0, 2, 3}}};
 }
 
-TEST(SurfaceSamples, are_spread_by_area)
-{
-    TriangleMesh mesh = make_rectangle(1.0, 0.0);
-    mesh.positions.insert(mesh.positions.end(), {{5, 0, 0}, {8, 0, 0}, {5, 4, 0}}); // Six times.
-    mesh.faces.push_back({4, 5, 6});
-
-    const std::vector<Vec3> samples = surface_samples(mesh, 7'000, 1);
-
-    ASSERT_EQ(samples.size(), 7'000U);
-    std::size_t on_square = 0;
-    Vec3 sum(0, 0, 0);
-    for (const Vec3& point : samples)
-    {
-        EXPECT_EQ(point.z(), 0.0);
-        on_square += point.x() <= 1.0 ? 1U : 0U;
-        sum += point.x() <= 1.0 ? Vec3(0, 0, 0) : point;
-    }
-    EXPECT_NEAR(static_cast<double>(on_square), 1'000.0, 1.0);
-    const Vec3 middle = sum / static_cast<double>(samples.size() - on_square);
-    EXPECT_NEAR(middle.x(), 6.0, 0.05);
-    EXPECT_NEAR(middle.y(), 4.0 / 3.0, 0.05);
-}
-
 TEST(SurfaceReference, parallel_surfaces_lie_their_distance_apart)
 {
     const SurfaceReference reference(make_rectangle(1.0, 0.0), kSamples);

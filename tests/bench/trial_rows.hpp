@@ -14,8 +14,4 @@ namespace tactus::bench
 /// that are met when the claim holds.
 void add_trial_rows(const test::TrialFigures& figures, const std::string& part, Rows& rows);
 
-/// Markdown, a line a claim: case, trials, worst error, bound, violations. What doesn't hold is
-/// bold.
-[[nodiscard]] std::string to_trial_table(const Rows& rows);
-
 } // namespace tactus::bench

@@ -49,9 +49,6 @@ struct PointPeer
     /// Builds it over the whole mesh, for a probe of this radius; `faces` must outlive it. Throws
     /// std::runtime_error when the peer refuses the mesh.
     std::unique_ptr<TouchQuery> (*make)(const std::vector<test::Face>& faces, double radius_m);
-    /// No distance is known to be farther off than this share of the diagonal, for a probe of a few
-    /// hundredths of it.
-    double error_diag{0.0};
     std::size_t most_faces{static_cast<std::size_t>(-1)}; ///< Over more it is left out,
     const char* why_no_more{""};                          ///< and this is said.
 };
