@@ -133,7 +133,7 @@ plot::Table times_of(const Json& all_times)
     plot::Table table{{{"us", false}}, {}};
     for (const auto& [name, times] : all_times.items())
     {
-        std::vector<plot::Cell> line{name};
+        std::vector<std::string> line{name};
         for (const auto& [quantile, time] : times.items())
         {
             line.emplace_back(fmt::format("{:.1f}", time.get<double>()));

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 namespace tactus::plot
 {
@@ -15,7 +14,6 @@ namespace tactus::plot
 namespace
 {
 
-constexpr double kZeroShare = 0.09;
 /// Powers of ten are reached up to rounding.
 constexpr double kRounding = 1e-9;
 /// Up to so many decades, 2 and 5 are marked as well.
@@ -27,19 +25,7 @@ double power_of_ten(int exponent)
     return std::pow(10.0, exponent);
 }
 
-/// The largest of 1, 2 and 5 times a power of ten that is not above the value, as a logarithm.
-double round_down(double logarithm)
-{
-    const double decade = std::floor(logarithm + kRounding);
-    double result = decade;
-    for (const double step : kSteps)
-    {
-        result =
-            decade + std::log10(step) <= logarithm + kRounding ? decade + std::log10(step) : result;
-    }
-    return result;
-}
-
+/// The least of 1, 2 and 5 times a power of ten that is not below the value, as a logarithm.
 double round_up(double logarithm)
 {
     const double decade = std::floor(logarithm + kRounding);
@@ -120,62 +106,26 @@ std::string number_text(double value)
     return front == "1" ? power : front == "-1" ? "-" + power : front + "\u00D7" + power;
 }
 
-Axis Axis::linear(double least, double most)
+Axis Axis::linear(double most)
 {
     constexpr std::size_t kParts = 5;
-    const double low = std::min(least, 0.0);
-    const double high = std::max(most, 0.0);
-    if (low == high)
+    if (most == 0.0)
     {
-        return {false, 0.0, 1.0, 0.0};
+        return {false, 0.0, 1.0};
     }
-    const double step = even_step(high - low, kParts);
-    return {false, step * std::floor(low / step + kRounding),
-            step * std::ceil(high / step - kRounding), 0.0};
-}
-
-Axis Axis::logarithmic(double least, double most, bool has_zero)
-{
-    const double first = round_down(std::log10(least));
-    const double last = round_up(std::log10(most));
-    return {true, first, last - first < 0.1 ? first + 1.0 : last, has_zero ? kZeroShare : 0.0};
+    const double step = even_step(most, kParts);
+    return {false, 0.0, step * std::ceil(most / step - kRounding)};
 }
 
 Axis Axis::exactly(double least, double most)
 {
-    return {true, std::log10(least), std::log10(most), 0.0};
-}
-
-Axis Axis::fitted(const std::vector<double>& values, bool is_logarithmic)
-{
-    double least = std::numeric_limits<double>::infinity();
-    double most = -least;
-    bool has_zero = false;
-    for (const double value : values)
-    {
-        has_zero = has_zero || value == 0.0;
-        if (std::isfinite(value) && (!is_logarithmic || value > 0.0))
-        {
-            least = std::min(least, value);
-            most = std::max(most, value);
-        }
-    }
-    if (least > most) // There is none.
-    {
-        return is_logarithmic ? logarithmic(1.0, 10.0, has_zero) : linear(0.0, 0.0);
-    }
-    return is_logarithmic ? logarithmic(least, most, has_zero) : linear(least, most);
+    return {true, std::log10(least), std::log10(most)};
 }
 
 double Axis::share(double value) const
 {
-    if (is_logarithmic_ && !(value > 0.0))
-    {
-        return zero_share_ / 2.0;
-    }
     const double place = is_logarithmic_ ? std::log10(value) : value;
-    const double along = std::clamp((place - least_) / (most_ - least_), 0.0, 1.0);
-    return zero_share_ + (1.0 - zero_share_) * along;
+    return std::clamp((place - least_) / (most_ - least_), 0.0, 1.0);
 }
 
 bool Axis::holds(double value) const
@@ -186,12 +136,6 @@ bool Axis::holds(double value) const
     }
     const double place = is_logarithmic_ ? std::log10(value) : value;
     return place > least_ && place < most_;
-}
-
-bool Axis::can_show(double value) const
-{
-    return std::isfinite(value) &&
-           (!is_logarithmic_ || value > 0.0 || (value == 0.0 && zero_share_ > 0.0));
 }
 
 std::vector<Tick> Axis::ticks(std::size_t most) const
@@ -221,10 +165,6 @@ std::vector<Tick> Axis::decade_ticks(std::size_t most) const
     const int room = std::max(static_cast<int>(most), 2);
     const int every = has_few ? 1 : (last - first + room - 1) / room;
     std::vector<Tick> ticks;
-    if (zero_share_ > 0.0)
-    {
-        ticks.push_back({share(0.0), "0"});
-    }
     for (int decade = first; decade <= last; decade += every)
     {
         for (const double step : kSteps)

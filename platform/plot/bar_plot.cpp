@@ -24,15 +24,15 @@ constexpr double kThickness = 14.0;
 
 Axis axis_of(const BarPlot& plot)
 {
-    std::vector<double> values;
+    double most = 0.0;
     for (const BarGroup& group : plot.groups)
     {
         for (const Bar& bar : group.bars)
         {
-            values.push_back(bar.value);
+            most = std::isfinite(bar.value) ? std::max(most, bar.value) : most;
         }
     }
-    return Axis::fitted(values, false);
+    return Axis::linear(most);
 }
 
 /// The place of a bar's name among all different ones.

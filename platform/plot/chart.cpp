@@ -29,34 +29,20 @@ constexpr double kSample = 32.0;
 constexpr std::array kColours{"#1f8fd1", "#d55e00", "#009e73", "#cc79a7",
                               "#c98a00", "#7a5cc0", "#8a8a3c", "#7f8790"};
 constexpr std::array kDashes{"none", "7 3", "2 2", "9 3 2 3", "12 3", "4 2 1 2 1 2"};
-/// Paths about the origin, each of about the same weight.
-constexpr std::array kMarkers{"M-4 0a4 4 0 1 0 8 0a4 4 0 1 0 -8 0z",
-                              "M-3.6 -3.6h7.2v7.2h-7.2z",
-                              "M0 -4.8L4.6 3.4H-4.6z",
-                              "M0 -5L5 0L0 5L-5 0z",
-                              "M0 4.8L4.6 -3.4H-4.6z",
-                              "M-4.6 -1.6h3v-3h3.2v3h3v3.2h-3v3h-3.2v-3h-3z",
-                              "M-4.8 -2.6h9.6v5.2h-9.6z"};
 
-constexpr const char* kColourSheet =
-    ":root { --ink: #222; --grid: #d8d8d8; --paper: #fff; --soft: #5c5c5c; }\n"
-    "@media screen { :root { color-scheme: light dark; } }\n"
-    "@media screen and (prefers-color-scheme: dark) {\n"
-    "  :root { --ink: #e8e8e8; --grid: #444; --paper: #181818; --soft: #a8a8a8; }\n"
-    "}\n";
+constexpr const char* kColourSheet = ":root { --ink: #222; --grid: #d8d8d8; --paper: #fff; }\n"
+                                     "@media screen { :root { color-scheme: light dark; } }\n"
+                                     "@media screen and (prefers-color-scheme: dark) {\n"
+                                     "  :root { --ink: #e8e8e8; --grid: #444; --paper: #181818; }\n"
+                                     "}\n";
 constexpr const char* kStyleSheet =
     ".plot .paper { fill: var(--paper); }\n"
     ".plot text { font: 14px sans-serif; fill: var(--ink); }\n"
     ".plot .title { font-weight: bold; }\n"
-    ".plot .note { font-size: 12px; fill: var(--soft); stroke: var(--paper);\n"
-    "  stroke-width: 3px; paint-order: stroke; }\n"
     ".plot .grid { stroke: var(--grid); stroke-width: 1; }\n"
     ".plot .frame { fill: none; stroke: var(--ink); stroke-width: 1; }\n"
     ".plot .mark { stroke: var(--ink); stroke-width: 1; stroke-dasharray: 2 3; }\n"
-    ".plot .line { fill: none; stroke-width: 1.8; stroke-linejoin: round; }\n"
-    ".plot .area { fill-opacity: 0.6; stroke: none; }\n"
-    ".plot .edge { fill: none; stroke-width: 0.8; stroke-linejoin: round; }\n"
-    ".plot .marker { stroke: var(--paper); stroke-width: 0.8; }\n";
+    ".plot .line { fill: none; stroke-width: 1.8; stroke-linejoin: round; }\n";
 
 } // namespace
 
@@ -95,14 +81,6 @@ std::string Look::stroke() const
 {
     return fmt::format("stroke=\"{}\" stroke-dasharray=\"{}\"", colour(),
                        kDashes.at(place_ % kDashes.size()));
-}
-
-std::string Look::marker(double x, double y, const std::string& told) const
-{
-    const std::string title = told.empty() ? "" : "<title>" + escaped(told) + "</title>";
-    return fmt::format("<path class=\"marker\" fill=\"{}\" transform=\"translate({:.1f} {:.1f})\" "
-                       "d=\"{}\">{}</path>\n",
-                       colour(), x, y, kMarkers.at(place_ % kMarkers.size()), title);
 }
 
 double width_of(const std::string& text)
@@ -211,16 +189,6 @@ std::string Chart::grid() const
             text(left() - 6.0, y + 5.0, "end", tick.text);
             free_to = y - 15.0;
         }
-    }
-    if (const double zero = x_.zero_share(); zero > 0.0)
-    {
-        const double x = left() + (right() - left()) * zero;
-        line("mark", x, x, top_, bottom());
-    }
-    if (const double zero = y_.zero_share(); zero > 0.0)
-    {
-        const double y = bottom() - kPlotHeight * zero;
-        line("mark", left(), right(), y, y);
     }
     return svg;
 }

@@ -33,17 +33,15 @@ struct Drawing
 [[nodiscard]] std::string to_svg_element(const Drawing& drawing);
 
 /// How the things of one name look: lines of a few are told apart by colour, close to Okabe and
-/// Ito's for the colour-blind, by dash and by marker; from the eighth on by dash and marker alone.
+/// Ito's for the colour-blind, and by dash.
 class Look
 {
 public:
     explicit Look(std::size_t place) : place_(place) {}
 
     [[nodiscard]] const char* colour() const;
-    /// Attributes of an element of the class "line", or the thinner "edge".
+    /// Attributes of an element of the class "line".
     [[nodiscard]] std::string stroke() const;
-    /// A marker about this place, with what it tells when it is pointed at, unless that is empty.
-    [[nodiscard]] std::string marker(double x, double y, const std::string& told) const;
 
 private:
     std::size_t place_;

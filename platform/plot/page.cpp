@@ -40,7 +40,6 @@ constexpr const char* kPageStyle =
     "tbody tr:nth-child(even) { background: var(--stripe); }\n"
     ".number { text-align: right; padding-left: 0.7rem; }\n"
     "td.number { white-space: nowrap; }\n"
-    "td.missed { color: var(--bad); font-weight: bold; }\n"
     ".drawings { display: grid; gap: 1rem; margin: 0.5rem 0;\n"
     "  grid-template-columns: repeat(auto-fit, minmax(min(100%, 30rem), 1fr)); }\n"
     ".tables { columns: 22rem auto; column-gap: 2rem; }\n"
@@ -82,17 +81,14 @@ std::string head_of(const Table& table)
 }
 
 /// The first cell of a line names it.
-std::string line_of(const std::vector<Cell>& cells, const std::vector<Column>& columns)
+std::string line_of(const std::vector<std::string>& cells, const std::vector<Column>& columns)
 {
     std::string line = "<tr>";
     for (std::size_t i = 0; i < columns.size(); ++i)
     {
-        const Cell cell = i < cells.size() ? cells[i] : Cell();
-        std::string kind = columns[i].is_number ? "number" : "";
-        kind += cell.is_missed ? (kind.empty() ? "missed" : " missed") : "";
         line += fmt::format("<{0}{1}>{2}</{3}>", i == 0 ? "th scope=\"row\"" : "td",
-                            kind.empty() ? "" : " class=\"" + kind + "\"", escaped(cell.text),
-                            i == 0 ? "th" : "td");
+                            columns[i].is_number ? " class=\"number\"" : "",
+                            escaped(i < cells.size() ? cells[i] : ""), i == 0 ? "th" : "td");
     }
     return line + "</tr>\n";
 }
@@ -104,11 +100,6 @@ Page::Page(const std::string& title) : title_(escaped(title)) {}
 void Page::heading(const std::string& text)
 {
     body_ += "<h2>" + escaped(text) + "</h2>\n";
-}
-
-void Page::subheading(const std::string& text)
-{
-    body_ += "<h3>" + escaped(text) + "</h3>\n";
 }
 
 void Page::paragraph(const std::string& text)
@@ -125,7 +116,7 @@ void Page::verdict(const std::string& text, bool is_good)
 void Page::table(const Table& table)
 {
     body_ += "<div class=\"scroll\" tabindex=\"0\"><table>\n" + head_of(table) + "<tbody>\n";
-    for (const std::vector<Cell>& line : table.lines)
+    for (const std::vector<std::string>& line : table.lines)
     {
         body_ += line_of(line, table.columns);
     }
@@ -137,8 +128,7 @@ void Page::tables(const std::vector<TitledTable>& tables)
     body_ += "<div class=\"tables\">\n";
     for (const auto& [title, small] : tables)
     {
-        body_ += "<section>\n";
-        subheading(title);
+        body_ += "<section>\n<h3>" + escaped(title) + "</h3>\n";
         table(small);
         body_ += "</section>\n";
     }

@@ -16,21 +16,10 @@ struct Column
     bool is_number{true}; ///< Set against the right.
 };
 
-struct Cell
-{
-    Cell(std::string cell_text = "", bool misses_goal = false)
-        : text(std::move(cell_text)), is_missed(misses_goal)
-    {
-    }
-
-    std::string text;
-    bool is_missed; ///< What should have been otherwise: bold and coloured.
-};
-
 struct Table
 {
     std::vector<Column> columns; ///< Without any name there is no head.
-    std::vector<std::vector<Cell>> lines;
+    std::vector<std::vector<std::string>> lines;
 };
 
 struct TitledTable
@@ -49,7 +38,6 @@ public:
     explicit Page(const std::string& title);
 
     void heading(const std::string& text);
-    void subheading(const std::string& text);
     void paragraph(const std::string& text);
     /// What it all comes to, where the eye falls.
     void verdict(const std::string& text, bool is_good);
