@@ -22,12 +22,6 @@ inline Shape sphere(double radius_m)
     return [=](const Vec3& p) { return p.norm() - radius_m; };
 }
 
-inline Shape torus(double ring_m, double tube_m)
-{
-    return [=](const Vec3& p)
-    { return std::hypot(std::hypot(p.x(), p.y()) - ring_m, p.z()) - tube_m; };
-}
-
 inline Shape box(const Vec3& centre, const Vec3& half)
 {
     return [=](const Vec3& p)
@@ -61,8 +55,6 @@ public:
         const Vec3 pull = proxy_ - device;
         return pull.norm() > 1e-9 ? Vec3(pull * stiffness_) : Vec3(Vec3::Zero());
     }
-
-    [[nodiscard]] const Vec3& proxy() const { return proxy_; }
 
 private:
     /// In steps no longer than the free distance; at the surface only along it.

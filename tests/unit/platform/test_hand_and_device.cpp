@@ -42,18 +42,6 @@ const Vec3 kHome(0, 0, 0);
 
 } // namespace
 
-TEST(HandAndDevice, falls_as_a_free_mass_does)
-{
-    HandAndDevice sut = make(free_mass());
-    for (int i = 1; i <= 100; ++i)
-    {
-        sut.step(Vec3(2.0, -1.0, 0.0), kHome);
-        const double t = 1e-3 * i;
-        EXPECT_NEAR(sut.position_m().x(), 0.5 * 10.0 * t * t, 1e-14);
-        EXPECT_NEAR(sut.velocity_m_per_s().y(), -5.0 * t, 1e-13);
-    }
-}
-
 TEST(HandAndDevice, swings_as_two_masses_on_a_spring_do)
 {
     HandAndDeviceOptions options = free_mass();
@@ -69,18 +57,6 @@ TEST(HandAndDevice, swings_as_two_masses_on_a_spring_do)
         const double middle = 0.5 * 0.3 / 0.3 * t * t;
         EXPECT_NEAR(sut.position_m().x(), middle + apart / 3.0, 2e-8);
         EXPECT_NEAR(sut.hand_m().x(), middle - apart * 2.0 / 3.0, 2e-8);
-    }
-}
-
-TEST(HandAndDevice, comes_to_the_damped_speed)
-{
-    HandAndDeviceOptions options = free_mass();
-    options.device.damping_n_s_per_m = 4.0;
-    HandAndDevice sut = make(options);
-    for (int i = 1; i <= 500; ++i)
-    {
-        sut.step(Vec3(2.0, 0, 0), kHome);
-        EXPECT_NEAR(sut.velocity_m_per_s().x(), 0.5 * (1.0 - std::exp(-20e-3 * i)), 1e-7);
     }
 }
 

@@ -72,26 +72,6 @@ TEST(SimulatedDevice, settles_where_springs_and_force_balance)
     EXPECT_NEAR(sample.position_world_m[2], -0.03 - 2.0 * kArmAndGrip_m_per_n, 1e-9);
 }
 
-TEST(SimulatedDevice, swings_as_the_damped_oscillator_of_the_text_book)
-{
-    SimulatedDeviceOptions options;
-    options.rate_hz = 10'000;
-    options.hand = {0.0, 200.0, 0.0, 2'000.0, 0.0};
-    auto sut = make(options, std::make_unique<HandThatJumps>(Vec3::Zero()));
-    static_cast<void>(sut->read());
-    // A step of force F: x(t) = F/k (1 - e^-at (cos wt + a/w sin wt)), a = b/2m, w^2 = k/m - a^2.
-    const double k = 1.0 / kArmAndGrip_m_per_n;
-    const double a = 1.0 / (2.0 * 0.1);
-    const double w = std::sqrt(k / 0.1 - a * a);
-    for (int i = 1; i <= 2'000; ++i)
-    {
-        sut->write({1.0, 0.0, 0.0});
-        const double t = 1e-4 * i;
-        const double decay = std::exp(-a * t) * (std::cos(w * t) + a / w * std::sin(w * t));
-        EXPECT_NEAR(sut->read().position_world_m[0], (1.0 - decay) / k, 1e-8);
-    }
-}
-
 TEST(SimulatedDevice, trails_a_moving_hand_by_its_own_drag)
 {
     SimulatedDeviceOptions options;
@@ -167,43 +147,6 @@ TEST(SimulatedDevice, repeats_bit_for_bit_and_takes_its_time_from_the_frame)
     }
 }
 
-TEST(SimulatedDevice, reaches_the_end_of_its_workspace_and_no_farther)
-{
-    SimulatedDeviceOptions options;
-    options.workspace_radius_m = 0.05;
-    auto sut = make(options, std::make_unique<HandThatJumps>(Vec3(0.03, 0.04, 0.0) * 3.0));
-    DeviceSample sample;
-    for (int i = 0; i < 1'000; ++i)
-    {
-        sample = sut->read();
-        const auto& p = sample.position_world_m;
-        EXPECT_LE(std::hypot(p[0], p[1], p[2]), 0.05 * (1.0 + 1e-15));
-    }
-    EXPECT_NEAR(sample.position_world_m[0], 0.03, 1e-9);
-    EXPECT_NEAR(sample.position_world_m[1], 0.04, 1e-9);
-}
-
-TEST(SimulatedDevice, comes_to_rest_sooner_with_the_brake)
-{
-    const auto swing_m = [](bool braked)
-    {
-        SimulatedDeviceOptions options;
-        options.hand = {0.0, 200.0, 0.0, 2'000.0, 0.0};
-        auto sut = make(options, std::make_unique<HandThatJumps>(Vec3(0.01, 0.0, 0.0)));
-        if (braked)
-        {
-            sut->brake();
-        }
-        double farthest = 0.0;
-        for (int i = 0; i < 500; ++i)
-        {
-            farthest = std::max(farthest, sut->read().position_world_m[0]);
-        }
-        return farthest - 0.01;
-    };
-    EXPECT_LT(swing_m(true), 0.5 * swing_m(false));
-}
-
 TEST(SimulatedDevice, accepts_both_ends_of_its_rates_and_refuses_what_lies_beyond)
 {
     SimulatedDeviceOptions options;
@@ -253,27 +196,6 @@ TEST(SimulatedDevice, refuses_values_that_make_no_device)
     options = {};
     options.workspace_radius_m = 0.0;
     EXPECT_NE(refusal(options).find("radius is 0.0"), std::string::npos);
-}
-
-TEST(SimulatedDevice, follows_any_mass_and_spring_without_blowing_up)
-{
-    SimulatedDeviceOptions options;
-    options.rate_hz = 100;
-    options.device.mass_kg = 1e-5;
-    options.hand = {1e-5, 1e5, 0.0, 1e6, 0.0};
-    auto sut = make(options, std::make_unique<HandThatJumps>(Vec3(1e-3, 0.0, 0.0)));
-    for (int i = 0; i < 1'000; ++i)
-    {
-        sut->write({1.0, 0.0, 0.0});
-        EXPECT_LT(std::abs(sut->read().position_world_m[0]), 5e-3);
-    }
-}
-
-TEST(SimulatedDevice, refuses_a_hand_that_starts_outside_the_workspace)
-{
-    SimulatedDeviceOptions options;
-    options.workspace_centre_world_m = Vec3(2.0, 0.0, 0.0);
-    EXPECT_NE(refusal(options).find("its radius is 1.0"), std::string::npos);
 }
 
 /// A force of 2 N for half a second, and then nobody reads or writes for `pause`.
