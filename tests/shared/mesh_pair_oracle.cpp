@@ -274,33 +274,4 @@ std::vector<FacePair> MeshPairOracle::within(double distance_m, std::size_t enou
     return pairs;
 }
 
-long double MeshPairOracle::brute_distance() const
-{
-    long double least = DistanceOracle::kInfinity;
-    for (std::uint32_t tool_face = 0; tool_face < tool_faces_.size(); ++tool_face)
-    {
-        for (std::uint32_t face = 0; face < object_faces_.size(); ++face)
-        {
-            least = std::min(least, distance({tool_face, face}));
-        }
-    }
-    return least;
-}
-
-std::vector<FacePair> MeshPairOracle::brute_meeting() const
-{
-    std::vector<FacePair> pairs;
-    for (std::uint32_t tool_face = 0; tool_face < tool_faces_.size(); ++tool_face)
-    {
-        for (std::uint32_t face = 0; face < object_faces_.size(); ++face)
-        {
-            if (do_meet({tool_face, face}))
-            {
-                pairs.push_back({tool_face, face});
-            }
-        }
-    }
-    return pairs;
-}
-
 } // namespace tactus::test

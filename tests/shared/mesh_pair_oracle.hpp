@@ -55,10 +55,6 @@ public:
     template <typename Real = long double>
     [[nodiscard]] Real distance(const FacePair& faces) const;
 
-    /// Pair by pair: what the trees are to find.
-    [[nodiscard]] long double brute_distance() const;
-    [[nodiscard]] std::vector<FacePair> brute_meeting() const;
-
 private:
     using WidePoint = Point<long double>;
     using WideTriangle = std::array<WidePoint, 3>;
