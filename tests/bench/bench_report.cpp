@@ -81,12 +81,11 @@ nlohmann::ordered_json to_json(const Row& row)
 std::string to_text(const Rows& rows, Figures which)
 {
     const GoalCount count = count_goals(rows);
-    const bool has_all = which == Figures::all || count.goals == 0;
     std::string text;
     std::string heading;
     for (const Row& row : rows)
     {
-        if (!has_all && !row.goal)
+        if (which == Figures::with_goals && !row.goal)
         {
             continue;
         }

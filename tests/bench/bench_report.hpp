@@ -21,7 +21,7 @@ struct RunFacts
 enum class Figures : std::uint8_t
 {
     all,
-    with_goals, ///< All the same where no row has a goal.
+    with_goals,
 };
 /// A line for each row below one for its case, and how many goals were met.
 [[nodiscard]] std::string to_text(const Rows& rows, Figures which);

@@ -39,6 +39,7 @@ Result<std::unique_ptr<test::FrameRig>, SceneError> make_rig(const ForceRun& run
 {
     test::RigOptions options = room_for_all(run.scene);
     options.tools = {run.tool};
+    options.period_ns = run.period_ns;
     options.static_when_it_fits = true;
     auto rig = std::make_unique<test::FrameRig>(run.scene.model, options);
     load_everything(*rig);
@@ -60,6 +61,7 @@ std::vector<ToolOutput> replay(const ForceRun& run, test::FrameRig& rig, ForceTr
     for (std::size_t i = 0; i < run.goals_m.size(); ++i)
     {
         tools[0].position_m = run.goals_m[i];
+        tools[0].elapsed_periods = run.elapsed_periods.empty() ? 1 : run.elapsed_periods[i];
         FrameOutput output;
         allocations += allocations_of(
             [&]

@@ -23,6 +23,8 @@ struct ForceRun
     ToolSpec tool;
     std::vector<Vec3> goals_m; ///< In the model's frame; one a frame.
     std::size_t lead_in{0};    ///< Frames at the start that are run and not counted.
+    std::int64_t period_ns{1'000'000};
+    std::vector<std::uint32_t> elapsed_periods{}; ///< Of each frame; empty: one.
 };
 
 /// What came of the counted frames.

@@ -112,7 +112,8 @@ void declare_options(CommandLine& line, Request& request)
     line.add_option("--core", options.core, "Core to measure on (default: the last one)");
     line.add_flag("--count", options.count,
                   "One warm pass, nothing evicted and no peers: for counting instructions");
-    line.add_flag("--all", request.all, "Print every row, also of suites that have goals");
+    line.add_flag("--all", request.all,
+                  "Print every row, not only those with a goal, of the suite frame");
     line.add_flag("--check", request.check, "Leave with code 1 when a goal is not met");
     line.add_option("--json", request.json, "Write the rows to this file as JSON");
     declare_trajectory_options(line, options.trajectory);
@@ -212,7 +213,7 @@ Results run_suites(const Request& request, GoalCount& laws)
         {
             results.failures.push_back(*refused);
         }
-        fmt::print("{}", to_text(own, request.all ? Figures::all : Figures::with_goals));
+        fmt::print("{}", to_text(own, request.all ? Figures::all : suite.printed));
         const GoalCount count = count_goals(own);
         laws.goals += suite.always_checks ? count.goals : 0;
         laws.met += suite.always_checks ? count.met : 0;

@@ -47,7 +47,7 @@ std::vector<Case> frame_cases()
 
 Suite frame_suite()
 {
-    return {"frame", frame_cases};
+    return {"frame", frame_cases, false, Figures::with_goals};
 }
 
 } // namespace tactus::bench

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "tests/bench/bench_report.hpp"
 #include "tests/bench/cases.hpp"
 
 #include <optional>
@@ -20,6 +21,8 @@ struct Suite
     std::vector<Case> (*cases)();
     /// Its goals are laws: the program leaves with code 1 when one isn't met, asked or not.
     bool always_checks{false};
+    /// What is printed unless every row is asked for.
+    Figures printed{Figures::all};
 };
 
 [[nodiscard]] Suite counts_suite();
