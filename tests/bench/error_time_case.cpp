@@ -49,7 +49,7 @@ struct Setting
 };
 
 /// What stands in the table for one point of the plane.
-struct Figures
+struct ErrorTimeFigures
 {
     std::string name;
     Spread us;
@@ -205,7 +205,7 @@ double beyond_rounding(double error)
     return error < kRounding ? 0.0 : error;
 }
 
-void add_figures(CaseRows& rows, const Figures& figures)
+void add_figures(CaseRows& rows, const ErrorTimeFigures& figures)
 {
     const AnswerErrors& errors = figures.errors;
     rows.add("p50", figures.us.p50, "us");
@@ -389,8 +389,8 @@ private:
     }
 
     /// The tool is where `truth` was asked.
-    [[nodiscard]] Result<Figures, SceneError> measure(const Scene& scene, const Setting& setting,
-                                                      const TrueAnswers& truth, const char* part)
+    [[nodiscard]] Result<ErrorTimeFigures, SceneError>
+    measure(const Scene& scene, const Setting& setting, const TrueAnswers& truth, const char* part)
     {
         FrameRun run = make_slide(scene, setting.speed_diag_per_s, kSplits,
                                   static_cast<std::size_t>(test_case_.pool_mib * 0x1p20), frames_);
@@ -411,8 +411,8 @@ private:
         }
         std::vector<SurfaceAnswer> answers;
         std::ranges::transform(replay.answers(), std::back_inserter(answers), answer_of);
-        Figures figures{setting.name, spread_of(whole_us(replay)),
-                        static_cast<double>(run.rig.pool_bytes), truth.errors_of(answers)};
+        ErrorTimeFigures figures{setting.name, spread_of(whole_us(replay)),
+                                 static_cast<double>(run.rig.pool_bytes), truth.errors_of(answers)};
         CaseRows rows = rows_of(part, "Tactus", setting.name, replay.hash() + figures.errors.hash);
         add_figures(rows, figures);
         add_streaming(rows, replay, scene.model.diagonal_m);
@@ -451,7 +451,7 @@ private:
             {
                 return answers.error().text;
             }
-            Figures figures;
+            ErrorTimeFigures figures;
             figures.us = spread_of(answers.value().us.least());
             figures.bytes = built.value().bytes;
             figures.errors = truth.errors_of(answers_of(answers.value()));
@@ -464,13 +464,13 @@ private:
     }
 
     /// Whether some setting of ours is as right and as small in at most twice the time.
-    void add_verdict(CaseRows& rows, const Figures& peer) const
+    void add_verdict(CaseRows& rows, const ErrorTimeFigures& peer) const
     {
         constexpr double kSlower = 2.0;
         constexpr double kRounding_diag = 1e-9;
         const auto better =
             std::ranges::find_if(ours_,
-                                 [&](const Figures& mine)
+                                 [&](const ErrorTimeFigures& mine)
                                  {
                                      return mine.errors.distance_diag.max <=
                                                 peer.errors.distance_diag.max + kRounding_diag &&
@@ -490,7 +490,7 @@ private:
     const Scene& scene_;
     std::uint32_t frames_;
     Slides slides_;
-    std::vector<Figures> ours_; ///< Of the motion that the peers are asked about.
+    std::vector<ErrorTimeFigures> ours_; ///< Of the motion that the peers are asked about.
 };
 
 } // namespace
