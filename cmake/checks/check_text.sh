@@ -129,10 +129,10 @@ own_header_first() {
     return "$faults"
 }
 
-readonly checks='line_length no_leftovers machine_paths licence files_listed limits_tested
-    own_header_first'
-if (($# != 2)) || [[ " ${checks//[[:space:]]/ } " != *" $1 "* ]]; then
-    echo "usage: check_text.sh CHECK ROOT, CHECK being one of: ${checks//[[:space:]]/ }" >&2
+readonly checks=(line_length no_leftovers machine_paths licence files_listed limits_tested
+    own_header_first)
+if (($# != 2)) || [[ " ${checks[*]} " != *" $1 "* ]]; then
+    echo "usage: check_text.sh CHECK ROOT, CHECK being one of: ${checks[*]}" >&2
     exit 3
 fi
 cd "$2"
