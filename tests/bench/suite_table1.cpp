@@ -9,12 +9,12 @@
 #include "tests/bench/scenes.hpp"
 #include "tests/bench/static_model.hpp"
 #include "tests/bench/suites.hpp"
+#include "tests/shared/binary_ab_tree.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
-#include <bit>
 
 namespace tactus::bench
 {
@@ -95,11 +95,37 @@ std::uint32_t height_below(const AbTree& tree, TreeRef ref)
     return highest + 1;
 }
 
-/// Edges from the root down to the lowest face of the paper's binary tree: one face a leaf, and
-/// each node halved in the middle.
-std::uint32_t binary_height(std::uint32_t faces)
+/// Edges from the root down to the lowest face of the paper's binary tree, which must be active
+/// from each face up to the root; nothing when it isn't.
+std::optional<std::uint32_t> binary_height(Model& model)
 {
-    return static_cast<std::uint32_t>(std::bit_width(faces - 1));
+    const std::vector<FaceId> order = test::faces_by_path(model);
+    test::BinaryAbTree tree(order, model.header.quantum_m());
+    for (std::uint32_t i = 0; i < model.forest.capacity(); ++i)
+    {
+        const PrimId prim{i};
+        if (const FaceId face = model.forest.face(prim).id; !face.is_none())
+        {
+            tree.set({prim, face, 0, model.forest.error_of(prim), model.forest.corners_of(prim)});
+        }
+    }
+    tree.refit();
+    std::uint32_t highest = 0;
+    for (const FaceId face : order)
+    {
+        std::uint32_t depth = 0;
+        std::uint32_t node = tree.leaf_of(face);
+        for (; tree.parent(node) != test::BinaryAbTree::kNone; node = tree.parent(node))
+        {
+            if (tree.status(node) != test::BinaryAbTree::Status::active)
+            {
+                return std::nullopt;
+            }
+            ++depth;
+        }
+        highest = std::max(highest, depth);
+    }
+    return highest;
 }
 
 CaseFailure run_case(const CaseContext& context, const Table1Case& test_case)
@@ -116,8 +142,14 @@ CaseFailure run_case(const CaseContext& context, const Table1Case& test_case)
     {
         return refined.error().text;
     }
+    Model& model = refined.value()->model();
+    const auto binary = binary_height(model);
+    if (!binary)
+    {
+        return scene.model.name + ": the binary tree has a face below an inactive node";
+    }
     CaseRows table(context.rows, context.common_row(scene.model.name));
-    const HeaderFields& fields = refined.value()->model().header.fields();
+    const HeaderFields& fields = model.header.fields();
     table.add("faces", fields.source_faces, "");
     table.add("vertices", fields.source_vertices, "");
     table.add("records", fields.records, "");
@@ -125,7 +157,7 @@ CaseFailure run_case(const CaseContext& context, const Table1Case& test_case)
     table.add("base vertices", fields.base_vertices, "");
     table.add("height, 8-wide",
               height_below(refined.value()->tree(), refined.value()->tree().root()), "");
-    table.add("height, binary", binary_height(fields.source_faces), "");
+    table.add("height, binary", *binary, "");
     return std::nullopt;
 }
 

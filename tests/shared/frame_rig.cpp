@@ -295,4 +295,31 @@ void load_everything(FrameRig& rig)
     }
 }
 
+std::vector<FaceId> faces_by_path(Model& model)
+{
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> keyed;
+    for (std::uint32_t i = 0; i < model.header.counts().base_faces; ++i)
+    {
+        keyed.emplace_back(model.slots.base.faces[i].bucket, i);
+    }
+    for (std::uint32_t i = 0; i < model.header.counts().records; ++i)
+    {
+        const VsplitRecord& record = model.pages.resident(RecordId{i});
+        for (std::uint32_t side = 0; side < 2; ++side)
+        {
+            if (record.has_face(side))
+            {
+                keyed.emplace_back(record.bucket[side], record.star[side].value);
+            }
+        }
+    }
+    std::sort(keyed.begin(), keyed.end());
+    std::vector<FaceId> faces;
+    for (const auto& [bucket, face] : keyed)
+    {
+        faces.push_back(FaceId{face});
+    }
+    return faces;
+}
+
 } // namespace tactus::test

@@ -126,4 +126,8 @@ void load_region(FrameRig& rig, const RankedRegion& region);
 /// Loads every chunk of a rig's model; its pools must hold them all.
 void load_everything(FrameRig& rig);
 
+/// Every face of a model's finest mesh in the order of the AB-Tree's paths, read from the base mesh
+/// and the records; all of them must be loaded.
+[[nodiscard]] std::vector<FaceId> faces_by_path(Model& model);
+
 } // namespace tactus::test

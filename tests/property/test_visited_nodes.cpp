@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "tests/property/visited_nodes.hpp"
+
+namespace tactus::test
+{
+namespace
+{
+
+struct GridSize
+{
+    std::uint32_t columns;
+    std::uint32_t rows;
+};
+
+/// Two faces a square. The blocks of a grid with sides of powers of two are full; those of the
+/// others hold 9 to 10.6 faces, as on scanned meshes. Some counts are just above a power of two,
+/// where a left-full order is at its least even.
+std::vector<GridSize> grid_sizes()
+{
+    return {{45, 45},   {50, 41},   {64, 32},   {64, 64},   {65, 64},   {90, 91},   {110, 110},
+            {129, 128}, {150, 151}, {181, 181}, {256, 256}, {300, 300}, {513, 256}, {724, 724}};
+}
+
+class VisitedNodes : public testing::TestWithParam<std::size_t>
+{
+protected:
+    const FaceGrid grid_ =
+        make_face_grid(grid_sizes()[GetParam()].columns, grid_sizes()[GetParam()].rows);
+};
+
+TEST_P(VisitedNodes, of_the_8_wide_tree_keep_the_papers_bound)
+{
+    expect_lemma_of_8_wide(grid_, 4'096, 5);
+}
+
+TEST_P(VisitedNodes, of_the_binary_tree_keep_the_papers_bound)
+{
+    expect_lemma_of_binary(grid_, 4'096, 5);
+}
+
+INSTANTIATE_TEST_SUITE_P(grids, VisitedNodes, testing::Range<std::size_t>(0, 14));
+
+} // namespace
+} // namespace tactus::test

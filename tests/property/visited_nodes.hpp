@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "tests/shared/binary_ab_tree.hpp"
+#include "tests/shared/face_grid.hpp"
+#include "tests/unit/rt_core/tree_support.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <unordered_set>
+#include <utility>
+#include <vector>
+
+/// The paper's lemma: refitting a tree of n leaves, b children a node, after k leaves at random
+/// changed visits at most k (log_b n - log_b k + 2) nodes, leaves included. The upper log_b k
+/// levels have fewer than 2 k nodes in all; below them each leaf has a way of its own.
+namespace tactus::test
+{
+
+[[nodiscard]] inline double visits_allowed(double k, double levels, double children)
+{
+    return k * (levels - std::log(k) / std::log(children) + 2.0);
+}
+
+/// The 8-wide tree over a whole finest mesh. Leaves are its blocks.
+class GridTree
+{
+public:
+    explicit GridTree(const FaceGrid& grid)
+        : rig_(capacities(static_cast<std::uint32_t>(grid.faces.size())))
+    {
+        for (const std::uint32_t face : grid.order)
+        {
+            rig_.put(grid.faces[face]);
+        }
+        rig_.sut->refit();
+        std::unordered_set<std::uint32_t> seen;
+        for (const std::uint32_t face : grid.order)
+        {
+            if (seen.insert(block_of(face)).second)
+            {
+                firsts_.push_back(face);
+            }
+        }
+    }
+
+    [[nodiscard]] std::uint32_t leaves() const
+    {
+        return static_cast<std::uint32_t>(firsts_.size());
+    }
+    [[nodiscard]] bool is_complete() const { return rig_.sut->is_complete(); }
+
+    /// Changes one face in each of these leaves (places in path order) so that every box above it
+    /// changes as well, refits, and puts everything back. Returns the visits of the first refit.
+    std::uint64_t visits_of(const std::vector<std::uint32_t>& changed)
+    {
+        set_errors(changed, kFarReaching);
+        const AbTree::RefitWork work = rig_.sut->refit();
+        set_errors(changed, 0);
+        rig_.sut->refit();
+        return std::uint64_t{work.blocks} + work.nodes;
+    }
+
+    /// The same number by another way: all that the parent links lead to, each once.
+    [[nodiscard]] std::uint64_t ancestors_of(const std::vector<std::uint32_t>& changed) const
+    {
+        std::unordered_set<std::uint32_t> nodes;
+        for (const std::uint32_t leaf : changed)
+        {
+            std::uint32_t node = rig_.sut->side(block_of(firsts_[leaf])).parent;
+            for (; node != kNoNode; node = rig_.sut->node(node).parent)
+            {
+                nodes.insert(node);
+            }
+        }
+        return changed.size() + nodes.size();
+    }
+
+private:
+    /// 2^41.5 quanta: a box that reaches out of every other.
+    static constexpr ErrorCode kFarReaching = 200;
+
+    static AbTree::Capacities capacities(std::uint32_t faces)
+    {
+        return {faces, faces / 6 + 2 * AbTree::kReserve, faces / 8 + 2 * AbTree::kReserve};
+    }
+    [[nodiscard]] std::uint32_t block_of(std::uint32_t face) const
+    {
+        return rig_.sut->leaf_of(PrimId{face}) / kBlockFaces;
+    }
+    void set_errors(const std::vector<std::uint32_t>& changed, ErrorCode error)
+    {
+        for (const std::uint32_t leaf : changed)
+        {
+            ChangedFace face = rig_.face(firsts_[leaf]);
+            face.error = error;
+            rig_.put(face);
+        }
+    }
+
+    TreeRig rig_;
+    std::vector<std::uint32_t> firsts_; ///< One face of each block, in path order.
+};
+
+[[nodiscard]] inline std::vector<std::uint32_t> random_leaves(Random& random, std::uint32_t count,
+                                                              std::uint32_t leaves)
+{
+    std::unordered_set<std::uint32_t> picked;
+    while (picked.size() < count)
+    {
+        picked.insert(random.below(leaves));
+    }
+    return {picked.begin(), picked.end()};
+}
+
+[[nodiscard]] inline std::vector<std::uint32_t>
+neighbouring_leaves(Random& random, std::uint32_t count, std::uint32_t leaves)
+{
+    std::vector<std::uint32_t> picked(count);
+    std::uint32_t leaf = random.below(leaves - count + 1);
+    for (std::uint32_t& one : picked)
+    {
+        one = leaf++;
+    }
+    return picked;
+}
+
+/// log_b n. Levels are whole: a leaf that changes alone or nearly so may lie deeper than the real
+/// logarithm says. From eight changed leaves on, the nodes that they share make up for it.
+[[nodiscard]] inline double levels_over(std::uint32_t leaves, double children,
+                                        std::uint32_t changed)
+{
+    const double levels = std::log(static_cast<double>(leaves)) / std::log(children);
+    return changed < 8 ? std::ceil(levels) : levels;
+}
+
+/// k = 1 .. 4,096, random and clustered, in the 8-wide tree over `grid`.
+inline void expect_lemma_of_8_wide(const FaceGrid& grid, std::uint32_t k_max, int trials)
+{
+    GridTree tree(grid);
+    ASSERT_TRUE(tree.is_complete());
+    Random random(300);
+    for (std::uint32_t k = 1; k <= k_max && k <= tree.leaves(); k *= 2)
+    {
+        const double levels = levels_over(tree.leaves(), 8.0, k);
+        for (int trial = 0; trial < trials; ++trial)
+        {
+            const auto spread = random_leaves(random, k, tree.leaves());
+            const auto visits = static_cast<double>(tree.visits_of(spread));
+            ASSERT_EQ(visits, static_cast<double>(tree.ancestors_of(spread)));
+            EXPECT_LE(visits, visits_allowed(k, levels, 8.0))
+                << grid.faces.size() << " faces, n " << tree.leaves() << ", k " << k;
+            const auto cluster = neighbouring_leaves(random, k, tree.leaves());
+            const auto clustered = static_cast<double>(tree.visits_of(cluster));
+            ASSERT_EQ(clustered, static_cast<double>(tree.ancestors_of(cluster)));
+            // Two paths to the ends of the run, and between them no more nodes than blocks.
+            EXPECT_LE(clustered, 2.0 * k + 2.0 * std::ceil(levels))
+                << grid.faces.size() << " faces, n " << tree.leaves() << ", k " << k;
+            if (k >= 16 && tree.leaves() >= 64 * k)
+            {
+                EXPECT_LT(clustered, 0.5 * visits_allowed(k, levels, 8.0)) << "k " << k;
+            }
+        }
+    }
+}
+
+/// The same for the paper's binary tree, whose leaves are faces.
+inline void expect_lemma_of_binary(const FaceGrid& grid, std::uint32_t k_max, int trials)
+{
+    std::vector<FaceId> order;
+    for (const std::uint32_t face : grid.order)
+    {
+        order.push_back(FaceId{face});
+    }
+    BinaryAbTree tree(order, kTreeQuantum);
+    for (const ChangedFace& face : grid.faces)
+    {
+        tree.set(face);
+    }
+    const auto leaves = static_cast<std::uint32_t>(order.size());
+    EXPECT_EQ(tree.refit(), 2 * order.size() - 1);
+    Random random(301);
+    const auto visits_of = [&](const std::vector<std::uint32_t>& changed)
+    {
+        for (const std::uint32_t leaf : changed)
+        {
+            tree.set(grid.faces[grid.order[leaf]]);
+        }
+        return static_cast<double>(tree.refit());
+    };
+    for (std::uint32_t k = 1; k <= k_max && k <= leaves; k *= 2)
+    {
+        const double levels = levels_over(leaves, 2.0, k);
+        for (int trial = 0; trial < trials; ++trial)
+        {
+            EXPECT_LE(visits_of(random_leaves(random, k, leaves)), visits_allowed(k, levels, 2.0))
+                << "n " << leaves << ", k " << k;
+            EXPECT_LE(visits_of(neighbouring_leaves(random, k, leaves)),
+                      2.0 * k + 2.0 * std::ceil(levels))
+                << "n " << leaves << ", k " << k;
+        }
+    }
+}
+
+} // namespace tactus::test
