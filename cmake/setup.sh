@@ -127,8 +127,7 @@ run_tests() { # run_tests CTEST-OPTION...: without options all but long runs and
     local code=0 junit="$build/tests.xml"
     (($# > 0)) || set -- --label-exclude '^(extended|other_builds)$'
     rm -f "$junit"
-    ctest --test-dir "$build" --output-on-failure --no-tests=error \
-        --parallel $((2 * $(nproc))) \
+    ctest --test-dir "$build" --output-on-failure --no-tests=error --parallel "$(nproc)" \
         --output-junit "$junit" "$@" || code=1
     if [[ -f "$junit" ]]; then
         skipped_tests "$junit" >"$build/skipped_tests.txt"
