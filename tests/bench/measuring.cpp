@@ -7,6 +7,18 @@
 namespace tactus::bench
 {
 
+double clock_cost_us()
+{
+    std::vector<double> costs;
+    for (int i = 0; i < 1'000; ++i)
+    {
+        const BenchClock::time_point start = BenchClock::now();
+        costs.push_back(microseconds(start, BenchClock::now()));
+    }
+    std::nth_element(costs.begin(), costs.begin() + 500, costs.end());
+    return costs[500];
+}
+
 bool may_use_core(int core)
 {
     cpu_set_t allowed{};

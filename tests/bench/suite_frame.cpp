@@ -4,6 +4,7 @@
 /// The suite `frame`: the goals' table. What each case is, and its goals; how they are measured is
 /// in the cases' own files.
 
+#include "tests/bench/measuring.hpp"
 #include "tests/bench/suites.hpp"
 
 namespace tactus::bench
@@ -14,12 +15,19 @@ namespace
 
 constexpr std::size_t kMiB = std::size_t{1} << 20U;
 
+CaseFailure run_clock_case(const CaseContext& context)
+{
+    CaseRows(context.rows, context.common_row("none")).add("two readings", clock_cost_us(), "us");
+    return std::nullopt;
+}
+
 /// What the pages call the goals' table, row by row.
 std::vector<Case> frame_cases()
 {
     const auto frame = [](const char* name, When when, const FrameCase& test_case)
     { return make_case(name, when, run_frame_case, test_case); };
     return {
+        {"clock", When::always, run_clock_case},
         frame("bunny-0.1", When::always, {kBunny, 0.1, 64, 2 * kMiB, 1.0, 4.0, 12.0}),
         frame("bunny-2", When::always, {kBunny, 2.0, 64, 2 * kMiB, 4.0, 16.0, 25.0}),
         frame("1.1M-0.5", When::always, {kFineBunny, 0.5, 64, 4 * kMiB, 9.0, 28.0, 35.0, 120.0}),

@@ -33,6 +33,7 @@ std::vector<Case> stream_cases()
         predict("predict-small", When::always, {kSmall, 0.5, 20, 1.0}),
         make_case("cache-1.1M", When::full_only, run_cache_case, CacheCase{kFineBunny, 1.0, 4.5}),
         make_case("cache-small", When::always, run_cache_case, CacheCase{kSmall, 0.5, 1.5}),
+        tour("1.1M, 0.5 diag/s, loopback", When::full_only, {kFineBunny, 0.5, 2.2, -1.0}),
         tour("1.1M, 0.5 diag/s, 10 ms", When::full_only,
              {kFineBunny, 0.5, 2.2, 10.0, 0.0, 0.5, 0.0}),
         tour("1.1M, 0.5 diag/s, 10 ms, 1 % lost", When::full_only,
