@@ -3,6 +3,7 @@
 #include "tests/bench/measuring.hpp"
 
 #include <algorithm>
+#include <vector>
 
 namespace tactus::bench
 {

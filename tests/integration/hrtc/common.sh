@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # shellcheck shell=bash disable=SC2034 # The scripts use what is set here.
 # What the scripts of this folder share; sourced with "$@" being BIN CHECK_REPORT SANITIZER: the
-# folder of the programs, the report checker, and what -fsanitize= the build had, or none. It enters a fresh
-# folder that vanishes at the end together with every process that was started here.
+# folder of the programs, the report checker, and what -fsanitize= the build had, or none. It enters
+# a fresh folder that vanishes at the end together with every process that was started here.
 set -euo pipefail
 readonly build=$1/spm_build inspect=$1/spm_inspect publish=$1/spm_publish hrtc=$1/hrtc
 readonly check_report=$2 sanitizer=${3#none}
