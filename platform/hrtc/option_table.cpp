@@ -17,41 +17,42 @@ constexpr double kLargestPool_mib = 4'096.0;
 constexpr double kFrameBudgetMin_us = 10.0;
 constexpr double kFrameBudgetMax_us = 10'000.0;
 
-/// An option that takes one value and may be given several times.
-void repeatable(CommandLine& line, const std::string& name, std::vector<std::string>& values,
-                const std::string& description)
-{
-    line.add_option(name, values, description).repeatable();
-}
-
 /// The models, the tools that touch them and their devices.
 void declare_scene(CommandLine& line, Options& options, RawOptions& raw)
 {
-    repeatable(line, "--model", options.models,
-               "Model to touch: NAME or NAME@HASH as published, or with --transport file a "
-               "path; repeatable");
-    repeatable(line, "--place", raw.places,
-               "Where the model stands, one for each --model in order: X,Y,Z in m "
-               "[,RX,RY,RZ rotation vector in degrees [,SCALE]]");
-    repeatable(line, "--material", raw.materials,
-               "How the model feels, one for each --model in order: STIFFNESS in N/m, 1 to "
-               "3000, the softer of this and --stiffness counts [,STATIC friction, 0 to 3 "
-               "[,DYNAMIC friction, at most the static one [,DAMPING in N s/m, 0 to 20]]]");
-    repeatable(line, "--tool", raw.tools,
-               "Tool: sphere:RADIUS_M, 1e-5 to 1 m; repeatable [one sphere of 1 % of the first "
-               "model's diagonal]");
-    repeatable(line, "--device", raw.devices,
-               "What moves the tool, one for each --tool in order: sim[:CLASS], a simulated "
-               "hand on a device of the class touch, omega or delta; udp[:[ADDRESS:]PORT], a "
-               "driver of your own; dhd[:INDEX], a device of Force "
-               "Dimension's; replay:FILE, the hand of a recording; repeatable [sim]");
-    repeatable(line, "--device-frame", raw.device_frames,
-               "Where the device's coordinates are in the world, one for each --device in "
-               "order: as --place, SCALE being that of its motion");
-    repeatable(line, "--device-fault", raw.device_faults,
-               "For tests: what goes wrong with the readings of simulated devices: "
-               "KIND@FRAME+LENGTH with jitter, dropout, stuck, nan, time_jump or disconnect, "
-               "from that frame on for so many; repeatable");
+    line.add_option("--model", options.models,
+                    "Model to touch: NAME or NAME@HASH as published, or with --transport file a "
+                    "path; repeatable")
+        .repeatable();
+    line.add_option("--place", raw.places,
+                    "Where the model stands, one for each --model in order: X,Y,Z in m "
+                    "[,RX,RY,RZ rotation vector in degrees [,SCALE]]")
+        .repeatable();
+    line.add_option("--material", raw.materials,
+                    "How the model feels, one for each --model in order: STIFFNESS in N/m, 1 to "
+                    "3000, the softer of this and --stiffness counts [,STATIC friction, 0 to 3 "
+                    "[,DYNAMIC friction, at most the static one [,DAMPING in N s/m, 0 to 20]]]")
+        .repeatable();
+    line.add_option(
+            "--tool", raw.tools,
+            "Tool: sphere:RADIUS_M, 1e-5 to 1 m; repeatable [one sphere of 1 % of the first "
+            "model's diagonal]")
+        .repeatable();
+    line.add_option("--device", raw.devices,
+                    "What moves the tool, one for each --tool in order: sim[:CLASS], a simulated "
+                    "hand on a device of the class touch, omega or delta; udp[:[ADDRESS:]PORT], a "
+                    "driver of your own; dhd[:INDEX], a device of Force "
+                    "Dimension's; replay:FILE, the hand of a recording; repeatable [sim]")
+        .repeatable();
+    line.add_option("--device-frame", raw.device_frames,
+                    "Where the device's coordinates are in the world, one for each --device in "
+                    "order: as --place, SCALE being that of its motion")
+        .repeatable();
+    line.add_option("--device-fault", raw.device_faults,
+                    "For tests: what goes wrong with the readings of simulated devices: "
+                    "KIND@FRAME+LENGTH with jitter, dropout, stuck, nan, time_jump or disconnect, "
+                    "from that frame on for so many; repeatable")
+        .repeatable();
     line.add_option(
         "--motion", raw.motion,
         "What simulated hands do: script, free, approach, slide, tap, teleport, spin or "

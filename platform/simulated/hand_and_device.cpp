@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #include "platform/simulated/hand_and_device.hpp"
 
-#include "platform/simulated/value_range.hpp"
+#include "rt_core/math/value_range.hpp"
 
 #include <algorithm>
 #include <cmath>

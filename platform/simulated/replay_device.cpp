@@ -3,7 +3,7 @@
 #include "platform/simulated/replay_device.hpp"
 
 #include "platform/device_force.hpp"
-#include "platform/simulated/value_range.hpp"
+#include "rt_core/math/value_range.hpp"
 
 #include <algorithm>
 #include <cmath>

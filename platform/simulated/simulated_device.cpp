@@ -3,10 +3,9 @@
 #include "platform/simulated/simulated_device.hpp"
 
 #include "platform/device_force.hpp"
-#include "platform/simulated/value_range.hpp"
+#include "rt_core/math/value_range.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace tactus

@@ -5,29 +5,13 @@
 #include "rt_core/base/assert.hpp"
 #include "rt_core/limits.hpp"
 #include "rt_core/math/infinity.hpp"
+#include "rt_core/math/value_range.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace tactus
 {
-
-namespace
-{
-
-/// Comparisons are false for NaN.
-bool is_not_negative(double value) noexcept
-{
-    return value >= 0.0 && value <= std::numeric_limits<double>::max();
-}
-
-bool is_positive(double value) noexcept
-{
-    return is_not_negative(value) && value > 0.0;
-}
-
-} // namespace
 
 StiffnessLimits stiffness_limits(const DeviceLimits& device, double period_s,
                                  double surface_damping_n_s_per_m) noexcept

@@ -4,6 +4,7 @@
 /// tactus_bench: measures, and prints rows that can be compared from commit to commit.
 
 #include "host_tools/cli/command_line.hpp"
+#include "host_tools/cli/run_program.hpp"
 #include "host_tools/mesh/prepare.hpp"
 #include "platform/base/atomic_file.hpp"
 #include "tests/bench/bench_report.hpp"
@@ -14,7 +15,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <exception>
 #include <iterator>
 #include <span>
 
@@ -91,7 +91,7 @@ void declare_trajectory_options(CommandLine& line, TrajectoryOptions& options)
 void declare_options(CommandLine& line, Request& request)
 {
     BenchOptions& options = request.options;
-    line.add_version(std::string("tactus_bench ") + TACTUS_VERSION);
+    line.add_version("tactus_bench " TACTUS_VERSION);
     line.add_option("SUITE", request.suite,
                     "Suite to run, or all of them in turn: " + suite_names())
         .required();
@@ -135,8 +135,8 @@ std::optional<std::string> wrong_trajectory(const Request& request)
     }
     if (!options.only.empty() || options.frames)
     {
-        return std::string(options.frames ? "--frames" : "--only") +
-               ": not with --traj, which replays its file and no case";
+        return fmt::format("{}: not with --traj, which replays its file and no case",
+                           options.frames ? "--frames" : "--only");
     }
     const auto columns = TrajectoryColumns::parse(options.trajectory.columns);
     return columns ? std::nullopt : std::optional("--traj-columns: " + columns.error().text);
@@ -195,7 +195,7 @@ std::vector<std::string> lesser_options(const BenchOptions& options)
         }
     }
     std::ranges::transform(options.only, std::back_inserter(told),
-                           [](const std::string& name) { return "--only " + name; });
+                           [](const std::string& name) { return fmt::format("--only {}", name); });
     return told;
 }
 
@@ -298,13 +298,5 @@ int run(int argc, char** argv)
 
 int main(int argc, char** argv)
 {
-    try
-    {
-        return tactus::bench::run(argc, argv);
-    }
-    catch (const std::exception& error)
-    {
-        fmt::print(stderr, "tactus_bench: {}\n", error.what());
-        return tactus::kExitFailed;
-    }
+    return tactus::run_program("tactus_bench", "", [&] { return tactus::bench::run(argc, argv); });
 }

@@ -5,6 +5,7 @@
 /// rate, or as fast as they come, and tells how long they took.
 
 #include "host_tools/cli/command_line.hpp"
+#include "host_tools/cli/run_program.hpp"
 #include "tests/bench/asking_client.hpp"
 #include "transport/dds/dds_client.hpp"
 
@@ -13,7 +14,6 @@
 #include <atomic>
 #include <chrono>
 #include <csignal>
-#include <exception>
 
 namespace tactus::bench
 {
@@ -80,13 +80,5 @@ int run(int argc, char** argv)
 
 int main(int argc, char** argv)
 {
-    try
-    {
-        return tactus::bench::run(argc, argv);
-    }
-    catch (const std::exception& error)
-    {
-        fmt::print(stderr, "stream_client: {}\n", error.what());
-        return tactus::kExitFailed;
-    }
+    return tactus::run_program("stream_client", "", [&] { return tactus::bench::run(argc, argv); });
 }

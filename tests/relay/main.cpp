@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "host_tools/cli/command_line.hpp"
+#include "host_tools/cli/run_program.hpp"
 #include "platform/posix/posix_clock.hpp"
 #include "tests/relay/relay.hpp"
 #include "tests/relay/tap_network.hpp"
@@ -13,7 +14,6 @@
 #include <csignal>
 #include <cstdint>
 #include <cstdio>
-#include <exception>
 #include <limits>
 #include <optional>
 #include <poll.h>
@@ -225,13 +225,5 @@ int run(int argc, char** argv)
 
 int main(int argc, char** argv)
 {
-    try
-    {
-        return tactus::relay::run(argc, argv);
-    }
-    catch (const std::exception& error)
-    {
-        fmt::print(stderr, "network_relay: {}\n", error.what());
-    }
-    return tactus::kExitFailed;
+    return tactus::run_program("network_relay", "", [&] { return tactus::relay::run(argc, argv); });
 }

@@ -165,11 +165,12 @@ TEST(SimulatedDevice, accepts_both_ends_of_its_rates_and_refuses_what_lies_beyon
 TEST(SimulatedDevice, refuses_values_that_make_no_device)
 {
     const double nan = std::numeric_limits<double>::quiet_NaN();
+    const double infinite = std::numeric_limits<double>::infinity();
     for (double DeviceLimits::*member :
          {&DeviceLimits::mass_kg, &DeviceLimits::force_max_n, &DeviceLimits::slew_max_n_per_s,
           &DeviceLimits::stiffness_max_n_per_m})
     {
-        for (const double bad : {0.0, -1.0, nan})
+        for (const double bad : {0.0, -1.0, nan, infinite})
         {
             SimulatedDeviceOptions options;
             options.device.*member = bad;
@@ -180,7 +181,7 @@ TEST(SimulatedDevice, refuses_values_that_make_no_device)
          {&DeviceLimits::damping_n_s_per_m, &DeviceLimits::friction_n, &DeviceLimits::quantum_m,
           &DeviceLimits::delay_s, &DeviceLimits::added_damping_max_n_s_per_m})
     {
-        for (const double bad : {-1.0, nan})
+        for (const double bad : {-1.0, nan, infinite})
         {
             SimulatedDeviceOptions options;
             options.device.*member = bad;

@@ -7,7 +7,7 @@
 namespace tactus
 {
 
-/// Ranges of options; no infinity and no NaN.
+/// Ranges of finite numbers: infinity and NaN are in none.
 [[nodiscard]] inline bool is_positive(double value) noexcept
 {
     return std::isfinite(value) && value > 0.0;
