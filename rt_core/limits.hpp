@@ -58,19 +58,39 @@ inline constexpr std::size_t kMaxCodedChunkBytes = 8'448;
 
 // --- The scene -----------------------------------------------------------------------------------
 
-/// Tools, objects and models of one frame. A pair of tool and object costs about 51 KiB, most of it
-/// its local surface, 3 KiB more with contacts and 10 KiB more where the tool is a mesh.
-/// Frame::start refuses a scene with more.
-inline constexpr std::uint32_t kMaxTools = 4;
-inline constexpr std::uint32_t kMaxObjects = 8;
-inline constexpr std::uint32_t kMaxModels = 8;
-inline constexpr std::uint32_t kMaxPairs = kMaxTools * kMaxObjects;
+/// Tools of one frame; 2.6 KiB each. Frame::start refuses more.
+inline constexpr std::uint32_t kMaxTools = 16;
+/// Objects that a scene may have at once, some 250 B each; their capacity is chosen when a frame
+/// starts, which refuses more.
+inline constexpr std::uint32_t kMaxObjects = 4'096;
+/// Models that share the pools: 7 KiB each beside their header and base mesh. A byte says whose a
+/// slot is.
+inline constexpr std::uint32_t kMaxModels = 256;
+/// Pairs of a tool and an object near it that are followed at once: 4.6 KiB each, 3 KiB more with
+/// contacts and 10 KiB more where a tool is a mesh. Of more the nearest are followed, and a tool
+/// goes no farther than it is clear of the others: FrameFault::scene_crowded.
+inline constexpr std::uint32_t kMaxPairs = 64;
+/// Objects on the list of those near one tool, 4 B each. Of more the nearest are listed, likewise.
+inline constexpr std::uint32_t kMaxNear = 32;
+/// Looks at all objects of a scene in one frame, each for one tool: of 4,096 objects 11 us, or 43
+/// us where all are near it. A tool that waits for its own goes no farther than it is known to be
+/// clear.
+inline constexpr std::uint32_t kBroadWalks = 4;
+/// Changes of the scene that a frame takes, 184 B each. Later ones of the same frame are refused:
+/// ChangeRefusal::too_many.
+inline constexpr std::uint32_t kMaxSceneChanges = 64;
+/// Active faces of all models together: beside the owner's byte there are so many places; 108 B
+/// each with their part of the tree. Frame::start refuses pools with more.
+inline constexpr std::uint32_t kMaxPoolFaces = (1U << 24) - 1;
 
 /// Balls that a tool's core is covered with, each a question to the refinement: around a capsule
 /// as long as sixteen radii no farther than 2.5 radii from its axis is refined. 240 B each for a
 /// pair. A longer core has larger balls, and one of a mesh's grows: more is refined than needed.
 inline constexpr std::uint32_t kMaxCoverBalls = 8;
 
+/// Room for exact triangles of a frame, in pairs with kMaxLocalTriangles: the most urgent pairs
+/// take what they need first. 48 KiB each.
+inline constexpr std::uint32_t kLocalSurfaces = 4;
 /// Exact triangles handed to the force stage for one pair; 76 are usual at 1.1 M faces and a tool
 /// of 1 % of the diagonal, 750 for a ball of eight edges that moves four edges a frame. 48 B each.
 /// Of more the nearest are kept, the certified radius ends at the first one left out, and the frame
@@ -95,8 +115,8 @@ inline constexpr std::uint32_t kMaxMergesPerFrame = 256;
 /// Faces that wait to be split in one frame; 16 B each. Faces beyond it wait for the next frame,
 /// no certificate reaches that far, and the frame says FrameFault::refine_heap_full.
 inline constexpr std::uint32_t kRefineHeap = 1'024;
-/// Records split for closures that are not complete yet, kept from being merged; 4 B each. Records
-/// beyond it may be merged and split again: FrameFault::held_records_full.
+/// Records split for closures that are not complete yet, kept from being merged, of all models of a
+/// frame; 8 B each. Records beyond it may be merged and split again: FrameFault::held_records_full.
 inline constexpr std::uint32_t kMaxHeldRecords = 1'024;
 static_assert(kMaxSplitsPerFrame <= kMaxHeldRecords, "one frame's splits can all be held");
 /// Levels of nodes in the AB-Tree: octal digits of its 64-bit paths. No two faces have the same
@@ -105,11 +125,16 @@ inline constexpr std::uint32_t kTreeLevels = 22;
 /// A traversal's stack: 7 siblings on each level and the 8 of the last node. A tree of kTreeLevels
 /// needs no more; beyond it an assertion fails.
 inline constexpr std::uint32_t kTreeStack = kTreeLevels * 7 + 8;
+/// Traversals of a full `nodes` and `triangles` that a frame does to refine, and as many to answer,
+/// the most urgent pairs first; a slide over 60,000 faces visits some 25 nodes a frame. Later ones
+/// are cut short, with what is proven until there: FrameFault::node_budget_spent. Bounds the frame
+/// whatever the scene.
+inline constexpr std::uint32_t kFrameWalks = 8;
 /// A tool that is a mesh has thousands of faces near an object where another is one shape: it may
 /// look at this many times what Budgets says for a pair, in each of its walks. Then
 /// FrameFault::node_budget_spent.
 inline constexpr std::uint32_t kMeshBudgetFactor = 16;
-/// Balls that the predictor ranks, 48 B each: five for each ball of the pairs that are near. Enough
+/// Balls that the predictor ranks, 56 B each: five for each ball of the pairs that are near. Enough
 /// for a sphere in each pair, or four bodies of eight balls. Of later pairs those are left out that
 /// look ahead, which only makes their chunks late, and then those where the tool is:
 /// FrameFault::ranking_full.
@@ -250,6 +275,9 @@ inline constexpr std::uint32_t kMaxIncidentFaces = 64;
 inline constexpr double kPoseReachMax_m = 1e4;
 inline constexpr double kPoseScaleMin = 1e-3;
 inline constexpr double kPoseScaleMax = 1e3;
+/// What a material may say: more is nobody's, and would leave the range of what is computed of it.
+inline constexpr double kFrictionMax = 1e3;
+inline constexpr double kDampingMax_n_s_per_m = 1e9;
 /// How far R^T R of a tool's or a device frame's rotation may be from the identity, in each entry;
 /// it is made orthonormal. Beyond it a sample is FrameFault::tool_invalid, a device frame refused.
 inline constexpr double kRotationTolerance = 1e-6;

@@ -4,7 +4,7 @@
 
 #include "rt_core/abtree/block.hpp"
 #include "rt_core/abtree/node.hpp"
-#include "rt_core/base/arena.hpp"
+#include "rt_core/abtree/tree_pool.hpp"
 #include "rt_core/base/assert.hpp"
 #include "rt_core/base/realtime.hpp"
 #include "rt_core/kernels/kernels.hpp"
@@ -29,17 +29,8 @@ enum class NodeStatus : std::uint8_t
     deformed,
 };
 
-struct TreeCapacities
-{
-    std::uint32_t prims{0};
-    std::uint32_t blocks{0};
-    std::uint32_t nodes{0};
-};
-
-template <typename Tree>
-class TreeValidator;
-
-/// The Active Bounding Tree over one model's active faces.
+/// The Active Bounding Tree over one model's active faces, in a pool that other trees may be in as
+/// well.
 ///
 /// It is a path-compressed radix tree. A face's path is its bucket (the upper bits of its rank in
 /// the left-full median order of the finest mesh's faces) followed by its id with the bits mixed,
@@ -52,11 +43,12 @@ class TreeValidator;
 /// holds its faces inflated by their error bounds, so a face's distance minus its error is never
 /// less than the distance of any box around it.
 ///
-/// When a pool is full a face stays *unplaced*: the tree is then incomplete() and a query may prove
-/// nothing; unplaced faces are offered again by the caller in later frames.
+/// When the pool has no more for it a face stays *unplaced*: the tree is then incomplete() and a
+/// query may prove nothing; unplaced faces are offered again by the caller in later frames.
 ///
-/// The bounding volume is a policy (AabbVolume in volume.hpp ships). Memory: 352 B a block, 256 B a
-/// node with boxes, 12 B a face.
+/// A block or node that is freed while it waits for refit is the pool's again after that.
+///
+/// The bounding volume is a policy (AabbVolume in volume.hpp ships). All memory is the pool's.
 ///
 /// Haptic thread only.
 template <typename VolumePolicy>
@@ -64,8 +56,8 @@ class BasicAbTree
 {
 public:
     using Volume = VolumePolicy;
-    using Capacities = TreeCapacities;
-    using Node = BasicAbNode<Volume>;
+    using Pool = BasicTreePool<Volume>;
+    using Node = typename Pool::Node;
     using Box = typename Volume::Box;
 
     struct RefitWork
@@ -74,11 +66,12 @@ public:
         std::uint32_t nodes{0};
     };
 
-    /// `kernels` must outlive the tree.
-    BasicAbTree(Arena& arena, const Capacities& capacities, float quantum_m,
+    /// Pool and kernels must outlive the tree; blocks and nodes of `least` are kept for it in the
+    /// pool. No two trees of a pool have the same owner, which is below kMaxModels.
+    BasicAbTree(Pool& pool, ModelId owner, const TreeCapacities& least, float quantum_m,
                 const Kernels& kernels = best_kernels()) noexcept;
 
-    /// Adds a face; its prim has none so far.
+    /// Adds a face; its prim has none so far, in any tree of the pool.
     void insert(const ChangedFace& face) noexcept TACTUS_NONBLOCKING;
 
     /// One corner (0 .. 2) of the face has moved, and its error changed: what a split or a merge
@@ -113,6 +106,11 @@ public:
     template <typename Describe>
     void offer_unplaced(const Describe& describe) noexcept
     {
+        if (is_complete())
+        {
+            return;
+        }
+        give_back_freed();
         std::uint32_t index = std::exchange(first_unplaced_, kLastUnplaced);
         while (index != kLastUnplaced)
         {
@@ -139,7 +137,11 @@ public:
     }
     [[nodiscard]] bool is_block_in_use(std::uint32_t index) const noexcept
     {
-        return index < sides_.size() && sides_[index].in_use;
+        return index < sides_.size() && sides_[index].in_use && sides_[index].owner == owner_;
+    }
+    [[nodiscard]] bool is_node_in_use(std::uint32_t index) const noexcept
+    {
+        return index < nodes_.size() && nodes_[index].in_use && nodes_[index].owner == owner_;
     }
     /// Brings a node or a block on its way into the cache.
     void prefetch(TreeRef ref) const noexcept
@@ -164,7 +166,7 @@ public:
         return prims_[prim.value].face;
     }
     /// Block x 16 + lane of a prim, or kNoLeaf. With `parent` of blocks and nodes: the way up.
-    static constexpr std::uint32_t kNoLeaf = 0xFFFF'FFFFU;
+    static constexpr std::uint32_t kNoLeaf = TreePrim::kNoLeaf;
     [[nodiscard]] std::uint32_t leaf_of(PrimId prim) const noexcept
     {
         const std::uint32_t leaf = prims_[prim.value].leaf;
@@ -172,30 +174,18 @@ public:
     }
     [[nodiscard]] NodeStatus status(TreeRef ref) const noexcept TACTUS_NONBLOCKING;
 
-    [[nodiscard]] std::uint32_t blocks_used() const noexcept
-    {
-        return capacities_.blocks - free_block_count_;
-    }
+    [[nodiscard]] std::uint32_t blocks_used() const noexcept { return blocks_used_; }
     [[nodiscard]] std::uint32_t blocks_used_max() const noexcept { return blocks_used_max_; }
-    [[nodiscard]] std::uint32_t nodes_used() const noexcept
-    {
-        return capacities_.nodes - free_node_count_;
-    }
+    [[nodiscard]] std::uint32_t nodes_used() const noexcept { return nodes_used_; }
     [[nodiscard]] std::uint32_t nodes_used_max() const noexcept { return nodes_used_max_; }
-    [[nodiscard]] const Capacities& capacities() const noexcept { return capacities_; }
+    [[nodiscard]] const Pool& pool() const noexcept { return *pool_; }
     [[nodiscard]] float quantum_m() const noexcept { return quantum_m_; }
     [[nodiscard]] const Kernels& kernels() const noexcept { return *kernels_; }
 
 private:
     friend class TreeValidator<BasicAbTree>;
 
-    struct Prim
-    {
-        FaceId face{};
-        std::uint32_t bucket{0};
-        /// Block x 16 + lane; kNoLeaf; or kUnplaced with the next unplaced prim.
-        std::uint32_t leaf{kNoLeaf};
-    };
+    using Prim = TreePrim;
     static constexpr std::uint32_t kUnplaced = 0x8000'0000U;
     static constexpr std::uint32_t kLastUnplaced = 0x7FFF'FFFEU;
 
@@ -214,7 +204,7 @@ private:
     void drop_empty(std::uint32_t block) noexcept;
     [[nodiscard]] bool has_reserve() const noexcept
     {
-        return free_block_count_ >= kReserve && free_node_count_ >= kReserve;
+        return pool_->has_room_for(share_, kReserve);
     }
 
     [[nodiscard]] bool try_add(std::uint32_t block, const ChangedFace& face) noexcept;
@@ -237,6 +227,7 @@ private:
     [[nodiscard]] std::uint32_t take_node(std::uint32_t shift, std::uint64_t prefix) noexcept;
     void free_block(std::uint32_t block) noexcept;
     void free_node(std::uint32_t node) noexcept;
+    void give_back_freed() noexcept TACTUS_NONBLOCKING;
     void mark(TreeRef ref) noexcept;
     void enqueue(std::uint32_t index) noexcept;
     [[nodiscard]] Box refitted_box(std::uint32_t index) noexcept;
@@ -244,22 +235,22 @@ private:
     void keep_unplaced(PrimId prim) noexcept;
     void drop_unplaced(PrimId prim) noexcept;
 
-    Capacities capacities_;
+    Pool* pool_;
     float quantum_m_;
     const Kernels* kernels_;
-    std::span<BlockGeometry> blocks_;
+    std::span<BlockGeometry> blocks_; ///< All of the pool's, as the three below.
     std::span<BlockSide> sides_;
     std::span<Node> nodes_;
     std::span<Prim> prims_;
     std::array<std::uint32_t, kTreeLevels> dirty_heads_{};
     TreeRef root_;
-    std::uint32_t free_block_{kNoNode}; ///< First of its list, as the three below.
-    std::uint32_t free_node_{kNoNode};
-    std::uint32_t marked_block_{kNoNode};
+    std::uint8_t owner_;
+    TreeShare share_;                     ///< With what was freed and waits for refit.
+    std::uint32_t marked_block_{kNoNode}; ///< First of its list, as the two below.
     std::uint32_t marked_node_{kNoNode};
     std::uint32_t first_unplaced_{kLastUnplaced};
-    std::uint32_t free_block_count_{0};
-    std::uint32_t free_node_count_{0};
+    std::uint32_t blocks_used_{0};
+    std::uint32_t nodes_used_{0};
     std::uint32_t blocks_used_max_{0};
     std::uint32_t nodes_used_max_{0};
 };

@@ -23,6 +23,10 @@ typename BasicAbTree<Volume>::RefitWork BasicAbTree<Volume>::refit() noexcept
         {
             enqueue(index);
         }
+        else
+        {
+            pool_->give_back_node(share_, index);
+        }
     }
     while (marked_block_ != kNoNode)
     {
@@ -34,6 +38,10 @@ typename BasicAbTree<Volume>::RefitWork BasicAbTree<Volume>::refit() noexcept
         {
             ++work.blocks;
             pass_up(side.parent, side.child, refitted_box(index), side.coarse != 0);
+        }
+        else
+        {
+            pool_->give_back_block(share_, index);
         }
     }
     for (std::uint32_t& head : dirty_heads_)
@@ -87,6 +95,34 @@ void BasicAbTree<Volume>::pass_up(std::uint32_t parent, std::uint32_t child, con
     enqueue(parent);
 }
 
+/// What was freed while it waited for refit waits no more.
+template <typename Volume>
+void BasicAbTree<Volume>::give_back_freed() noexcept
+{
+    for (std::uint32_t* at = &marked_block_; *at != kNoNode;)
+    {
+        BlockSide& side = sides_[*at];
+        if (side.in_use)
+        {
+            at = &side.link;
+            continue;
+        }
+        side.is_marked = false;
+        pool_->give_back_block(share_, std::exchange(*at, side.link));
+    }
+    for (std::uint32_t* at = &marked_node_; *at != kNoNode;)
+    {
+        Node& node = nodes_[*at];
+        if (node.in_use)
+        {
+            at = &node.link;
+            continue;
+        }
+        node.is_marked = false;
+        pool_->give_back_node(share_, std::exchange(*at, node.link));
+    }
+}
+
 /// Into the list of what waits for refit, unless it is there.
 template <typename Volume>
 void BasicAbTree<Volume>::mark(TreeRef ref) noexcept
@@ -115,14 +151,14 @@ void BasicAbTree<Volume>::mark_all() noexcept
 {
     for (std::uint32_t i = 0; i < sides_.size(); ++i)
     {
-        if (sides_[i].in_use)
+        if (is_block_in_use(i))
         {
             mark(TreeRef::to_block(i));
         }
     }
     for (std::uint32_t i = 0; i < nodes_.size(); ++i)
     {
-        if (nodes_[i].in_use)
+        if (is_node_in_use(i))
         {
             mark(TreeRef::to_node(i));
         }
@@ -163,7 +199,7 @@ template <typename Volume>
 NodeStatus BasicAbTree<Volume>::status(TreeRef ref) const noexcept
 {
     const std::uint32_t index = ref.index();
-    const bool in_use = ref.is_block() ? sides_[index].in_use : nodes_[index].in_use;
+    const bool in_use = ref.is_block() ? is_block_in_use(index) : is_node_in_use(index);
     if (!in_use)
     {
         return NodeStatus::inactive;

@@ -29,32 +29,22 @@ inline std::uint32_t digit_shift(std::uint64_t a, std::uint64_t b) noexcept
 } // namespace detail
 
 template <typename Volume>
-BasicAbTree<Volume>::BasicAbTree(Arena& arena, const Capacities& capacities, float quantum_m,
-                                 const Kernels& kernels) noexcept
-    : capacities_(capacities)
+BasicAbTree<Volume>::BasicAbTree(Pool& pool, ModelId owner, const TreeCapacities& least,
+                                 float quantum_m, const Kernels& kernels) noexcept
+    : pool_(&pool)
     , quantum_m_(quantum_m)
     , kernels_(&kernels)
-    , blocks_(arena.take<BlockGeometry>(capacities.blocks))
-    , sides_(arena.take<BlockSide>(capacities.blocks))
-    , nodes_(arena.take<Node>(capacities.nodes))
-    , prims_(arena.take<Prim>(capacities.prims))
+    , blocks_(pool.blocks())
+    , sides_(pool.sides())
+    , nodes_(pool.nodes())
+    , prims_(pool.prims())
+    , owner_(static_cast<std::uint8_t>(owner.value))
+    , share_(pool.promise(least))
 {
+    static_assert(Pool::kMostBlocks * kBlockFaces <= kUnplaced);
+    static_assert(kMaxPoolFaces <= kLastUnplaced);
+    TACTUS_ASSERT(owner.value < kMaxModels);
     dirty_heads_.fill(kNoNode);
-    if (arena.is_measuring())
-    {
-        return;
-    }
-    TACTUS_ASSERT(quantum_m > 0.0F);
-    TACTUS_ASSERT(capacities.prims <= kLastUnplaced);
-    TACTUS_ASSERT(capacities.blocks <= kUnplaced / kBlockFaces);
-    for (std::uint32_t i = capacities.blocks; i-- > 0;)
-    {
-        free_block(i);
-    }
-    for (std::uint32_t i = capacities.nodes; i-- > 0;)
-    {
-        free_node(i);
-    }
 }
 
 template <typename Volume>
@@ -559,69 +549,51 @@ template <typename Volume>
 bool BasicAbTree<Volume>::has_room_for(std::uint32_t changed_faces) const noexcept
 {
     // One changed face splits one block in the ordinary case; the reserve covers the worst one.
-    return free_block_count_ >= changed_faces + kReserve &&
-           free_node_count_ >= changed_faces + kReserve;
+    return pool_->has_room_for(share_, changed_faces + kReserve);
 }
 
 template <typename Volume>
 std::uint32_t BasicAbTree<Volume>::take_block() noexcept
 {
-    TACTUS_ASSERT(free_block_count_ > 0);
-    const std::uint32_t block = free_block_;
-    BlockSide& side = sides_[block];
-    TACTUS_ASSERT(!side.in_use);
-    free_block_ = side.parent;
-    --free_block_count_;
-    blocks_[block].faces = 0;
-    blocks_[block].vertices = 0;
-    const std::uint32_t link = side.link;
-    const bool is_marked = side.is_marked;
-    side = BlockSide{};
-    side.in_use = true;
-    side.link = link;
-    side.is_marked = is_marked;
-    blocks_used_max_ = blocks_used() > blocks_used_max_ ? blocks_used() : blocks_used_max_;
-    return block;
+    ++blocks_used_;
+    blocks_used_max_ = blocks_used_ > blocks_used_max_ ? blocks_used_ : blocks_used_max_;
+    return pool_->take_block(share_, {owner_});
 }
 
 template <typename Volume>
 std::uint32_t BasicAbTree<Volume>::take_node(std::uint32_t shift, std::uint64_t prefix) noexcept
 {
-    TACTUS_ASSERT(free_node_count_ > 0);
-    const std::uint32_t index = free_node_;
-    Node& node = nodes_[index];
-    TACTUS_ASSERT(!node.in_use);
-    free_node_ = node.parent;
-    --free_node_count_;
-    const std::uint32_t link = node.link;
-    const bool is_marked = node.is_marked;
-    node = Node{};
-    node.shift = static_cast<std::uint8_t>(shift);
-    node.prefix = prefix;
-    node.in_use = true;
-    node.link = link;
-    node.is_marked = is_marked;
-    nodes_used_max_ = nodes_used() > nodes_used_max_ ? nodes_used() : nodes_used_max_;
+    const std::uint32_t index = pool_->take_node(share_, {owner_});
+    nodes_[index].shift = static_cast<std::uint8_t>(shift);
+    nodes_[index].prefix = prefix;
+    ++nodes_used_;
+    nodes_used_max_ = nodes_used_ > nodes_used_max_ ? nodes_used_ : nodes_used_max_;
     return index;
 }
 
 template <typename Volume>
 void BasicAbTree<Volume>::free_block(std::uint32_t block) noexcept
 {
-    TACTUS_ASSERT(free_block_count_ < capacities_.blocks);
+    TACTUS_ASSERT(is_block_in_use(block));
     sides_[block].in_use = false;
     blocks_[block].faces = 0;
-    sides_[block].parent = std::exchange(free_block_, block);
-    ++free_block_count_;
+    --blocks_used_;
+    if (!sides_[block].is_marked)
+    {
+        pool_->give_back_block(share_, block);
+    }
 }
 
 template <typename Volume>
 void BasicAbTree<Volume>::free_node(std::uint32_t node) noexcept
 {
-    TACTUS_ASSERT(free_node_count_ < capacities_.nodes);
+    TACTUS_ASSERT(is_node_in_use(node));
     nodes_[node].in_use = false;
-    nodes_[node].parent = std::exchange(free_node_, node);
-    ++free_node_count_;
+    --nodes_used_;
+    if (!nodes_[node].is_marked)
+    {
+        pool_->give_back_node(share_, node);
+    }
 }
 
 template <typename Volume>

@@ -4,11 +4,12 @@
 
 #include "rt_core/base/assert.hpp"
 #include "rt_core/base/realtime.hpp"
+#include "rt_core/kernels/kernels.hpp"
 #include "rt_core/limits.hpp"
 #include "rt_core/records/changed_face.hpp"
 
 #include <array>
-#include <bit>
+#include <cstddef>
 #include <cstdint>
 
 namespace tactus
@@ -29,7 +30,11 @@ struct alignas(64) BlockGeometry
     std::uint16_t vertices{0};                                      ///< Rows that they use.
 };
 
-static_assert(sizeof(BlockGeometry) == 256);
+static_assert(sizeof(BlockGeometry) == kBlockBytes);
+static_assert(offsetof(BlockGeometry, coordinates) == 0);
+static_assert(offsetof(BlockGeometry, corners) == kBlockCornersAt);
+static_assert(offsetof(BlockGeometry, faces) == kBlockFacesAt);
+static_assert(offsetof(BlockGeometry, vertices) == kBlockVerticesAt);
 
 /// What a query reads of a block only when a lane matters, and the block's place in the tree. 96 B.
 struct BlockSide
@@ -42,7 +47,8 @@ struct BlockSide
     std::uint8_t child{0};              ///< Which child of the parent.
     bool in_use{false};
     bool is_marked{false}; ///< In the list of marked blocks, even once freed.
-    std::array<std::uint8_t, 3> reserved{};
+    std::uint8_t owner{0}; ///< Whose tree it is in.
+    std::array<std::uint8_t, 2> reserved{};
 };
 
 static_assert(sizeof(BlockSide) == 96);
@@ -85,7 +91,12 @@ void halve_block(BlockGeometry& block, BlockSide& side, std::uint32_t moved, Blo
 
 [[nodiscard]] inline std::uint32_t face_count(const BlockGeometry& block) noexcept
 {
-    return static_cast<std::uint32_t>(std::popcount(block.faces));
+    // std::popcount is a call where the processor may lack the instruction.
+    std::uint32_t bits = block.faces;
+    bits -= (bits >> 1U) & 0x5555U;
+    bits = (bits & 0x3333U) + ((bits >> 2U) & 0x3333U);
+    bits = (bits + (bits >> 4U)) & 0x0F0FU;
+    return (bits + (bits >> 8U)) & 31U;
 }
 
 } // namespace tactus

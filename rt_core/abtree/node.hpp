@@ -64,6 +64,7 @@ struct alignas(64) BasicAbNode
     bool in_use{false};
     bool is_marked{false}; ///< In the list of marked nodes, even once freed.
     bool is_queued{false}; ///< In refit's list of its level.
+    std::uint8_t owner{0}; ///< Whose tree it is in.
 
     [[nodiscard]] std::uint32_t digit_of(std::uint64_t path) const noexcept
     {

@@ -16,11 +16,11 @@ namespace tactus
 
 /// Holds an AB-Tree against what it promises after refit():
 ///
-///     free lists   hold exactly what is not in use, each once
+///     free lists   of the pool hold exactly what no tree uses, each once
 ///     links        a child and its parent name each other; a parent's digit is above its child's;
 ///                  only the root has no parent. So everything in use hangs below the root.
 ///     paths        every face lies where the digits of its path lead
-///     faces        each is in one lane or in the list of the unplaced, and its prim says where
+///     faces        each placed one is in one lane, and its prim says in which
 ///     boxes        a parent has its child's box, which holds every face inflated by its error
 ///
 /// One look at each block, node and prim, without recursion or memory. It trusts the kernels that
@@ -34,6 +34,7 @@ public:
         TreeValidator validator(tree);
         validator.check_free_blocks();
         validator.check_free_nodes();
+        validator.check_counts();
         validator.check_work_is_done();
         // What follows goes along links, and these are bounded by what is above.
         for (std::uint32_t i = 0; validator.is_sound() && i < tree.sides_.size(); ++i)
@@ -75,43 +76,59 @@ private:
 
     void check_free_blocks() noexcept
     {
+        const auto& pool = *tree_.pool_;
+        const std::uint32_t free = pool.capacities().blocks - pool.block_room_.used();
         std::uint32_t listed = 0;
-        for (std::uint32_t i = tree_.free_block_; i != kNoNode;
-             i = tree_.sides_[i].parent, ++listed)
+        for (std::uint32_t i = pool.free_block_; i != kNoNode; i = tree_.sides_[i].parent, ++listed)
         {
             if (!block(i < tree_.sides_.size(), i, "is free and not there") ||
                 !block(!tree_.sides_[i].in_use, i, "is in use and free") ||
-                !block(listed < tree_.free_block_count_, i, "is in a free list that is too long"))
+                !block(listed < free, i, "is in a free list that is too long"))
             {
                 return;
             }
         }
         const auto in_use = static_cast<std::uint32_t>(
             std::ranges::count_if(tree_.sides_, [](const BlockSide& side) { return side.in_use; }));
-        finder_.expect(listed == tree_.free_block_count_, "tree", listed,
-                       "blocks are in its free list, and it counts others");
-        finder_.expect(listed + in_use == tree_.capacities_.blocks, "tree", in_use,
+        finder_.expect(listed == free, "tree", listed,
+                       "blocks are in its pool's free list, and it counts others");
+        finder_.expect(listed + in_use == pool.capacities().blocks, "tree", in_use,
                        "blocks are in use, and some are neither that nor free");
     }
 
     void check_free_nodes() noexcept
     {
+        const auto& pool = *tree_.pool_;
+        const std::uint32_t free = pool.capacities().nodes - pool.node_room_.used();
         std::uint32_t listed = 0;
-        for (std::uint32_t i = tree_.free_node_; i != kNoNode; i = tree_.nodes_[i].parent, ++listed)
+        for (std::uint32_t i = pool.free_node_; i != kNoNode; i = tree_.nodes_[i].parent, ++listed)
         {
             if (!node(i < tree_.nodes_.size(), i, "is free and not there") ||
                 !node(!tree_.nodes_[i].in_use, i, "is in use and free") ||
-                !node(listed < tree_.free_node_count_, i, "is in a free list that is too long"))
+                !node(listed < free, i, "is in a free list that is too long"))
             {
                 return;
             }
         }
         const auto in_use = static_cast<std::uint32_t>(
             std::ranges::count_if(tree_.nodes_, [](const Node& each) { return each.in_use; }));
-        finder_.expect(listed == tree_.free_node_count_, "tree", listed,
-                       "nodes are in its free list, and it counts others");
-        finder_.expect(listed + in_use == tree_.capacities_.nodes, "tree", in_use,
+        finder_.expect(listed == free, "tree", listed,
+                       "nodes are in its pool's free list, and it counts others");
+        finder_.expect(listed + in_use == pool.capacities().nodes, "tree", in_use,
                        "nodes are in use, and some are neither that nor free");
+    }
+
+    /// Blocks and nodes that name the tree as their owner.
+    void check_counts() noexcept
+    {
+        const auto is_own = [this](const auto& each)
+        { return each.in_use && each.owner == tree_.owner_; };
+        const auto blocks = static_cast<std::uint32_t>(std::ranges::count_if(tree_.sides_, is_own));
+        const auto nodes = static_cast<std::uint32_t>(std::ranges::count_if(tree_.nodes_, is_own));
+        finder_.expect(blocks == tree_.blocks_used_ && blocks == tree_.share_.blocks.used, "tree",
+                       blocks, "blocks are its own, and it counts others");
+        finder_.expect(nodes == tree_.nodes_used_ && nodes == tree_.share_.nodes.used, "tree",
+                       nodes, "nodes are its own, and it counts others");
     }
 
     void check_work_is_done() noexcept
@@ -131,8 +148,7 @@ private:
     [[nodiscard]] bool is_in_use(TreeRef ref) const noexcept
     {
         const std::uint32_t index = ref.index();
-        return ref.is_block() ? tree_.is_block_in_use(index)
-                              : index < tree_.nodes_.size() && tree_.nodes_[index].in_use;
+        return ref.is_block() ? tree_.is_block_in_use(index) : tree_.is_node_in_use(index);
     }
 
     /// Whether `parent` has `ref` as its child; without a parent, whether it is the root.
@@ -158,8 +174,8 @@ private:
     {
         const BlockSide& side = tree_.sides_[index];
         const BlockGeometry& geometry = tree_.blocks_[index];
-        block(!side.is_marked, index, "is marked after refit");
-        if (!side.in_use)
+        block(!side.is_marked || side.owner != tree_.owner_, index, "is marked after refit");
+        if (!tree_.is_block_in_use(index))
         {
             return;
         }
@@ -246,8 +262,9 @@ private:
     void check_node(std::uint32_t index) noexcept
     {
         const Node& own = tree_.nodes_[index];
-        node(!own.is_marked && !own.is_queued, index, "is marked after refit");
-        if (!own.in_use)
+        node((!own.is_marked && !own.is_queued) || own.owner != tree_.owner_, index,
+             "is marked after refit");
+        if (!tree_.is_node_in_use(index))
         {
             return;
         }
@@ -327,13 +344,13 @@ private:
             return;
         }
         prim(!own.face.is_none(), index, "has a place and no face");
-        if ((own.leaf & Tree::kUnplaced) != 0)
-        {
-            ++unplaced_;
-            return;
-        }
         const std::uint32_t at = own.leaf / kBlockFaces;
         const std::uint32_t lane = own.leaf % kBlockFaces;
+        if ((own.leaf & Tree::kUnplaced) != 0 ||
+            (at < tree_.sides_.size() && tree_.sides_[at].owner != tree_.owner_))
+        {
+            return; // It waits, or is another tree's.
+        }
         prim(tree_.is_block_in_use(at) &&
                  ((std::uint32_t{tree_.blocks_[at].faces} >> lane) & 1U) != 0 &&
                  tree_.sides_[at].prims[lane].value == index,
@@ -342,28 +359,20 @@ private:
 
     void check_unplaced() noexcept
     {
-        if (!is_sound())
-        {
-            return;
-        }
         std::uint32_t listed = 0;
-        for (std::uint32_t i = tree_.first_unplaced_; i != Tree::kLastUnplaced; ++listed)
+        for (std::uint32_t i = tree_.first_unplaced_; is_sound() && i != Tree::kLastUnplaced;)
         {
-            if (!prim(i < tree_.prims_.size(), i, "is unplaced and not there") ||
-                !prim(tree_.is_unplaced({i}), i, "is placed and in the list of the unplaced") ||
-                !prim(listed < unplaced_, i, "is twice in the list of the unplaced"))
+            if (prim(i < tree_.prims_.size(), i, "is unplaced and not there") &&
+                prim(tree_.is_unplaced({i}), i, "is placed and in the list of the unplaced") &&
+                prim(++listed <= tree_.prims_.size(), i, "is twice in the list of the unplaced"))
             {
-                return;
+                i = tree_.prims_[i].leaf & ~Tree::kUnplaced;
             }
-            i = tree_.prims_[i].leaf & ~Tree::kUnplaced;
         }
-        finder_.expect(listed == unplaced_, "tree", listed,
-                       "prims are in the list of the unplaced, and others are not");
     }
 
     const Tree& tree_;
     FlawFinder finder_;
-    std::uint32_t unplaced_{0}; ///< Prims that say so.
 };
 
 template <typename Volume>

@@ -12,12 +12,14 @@
 namespace tactus
 {
 
-/// Fixed open-addressing table from a 32-bit id to a 32-bit value (a pool slot).
+/// Fixed open-addressing table from a 32-bit id to a 32-bit value (a pool slot). With owners, each
+/// has ids of its own, and their numbers take the upper bits of the value.
 ///
 /// Linear probing at a load of at most one half; erasing shifts later entries back, so there are no
 /// tombstones and a probe's length depends on the present content alone. 16 B per entry of
 /// capacity.
-class IdTable
+template <std::uint32_t kOwnerBits>
+class BasicIdTable
 {
 public:
     static constexpr std::uint32_t kAbsent = 0xFFFF'FFFFU;
@@ -28,60 +30,63 @@ public:
         std::uint32_t value{kAbsent};
     };
 
-    IdTable(Arena& arena, std::uint32_t capacity) noexcept
+    BasicIdTable(Arena& arena, std::uint32_t capacity) noexcept
         : entries_(arena.take<Entry>(2 * std::size_t{capacity})), capacity_(capacity)
     {
-        TACTUS_ASSERT(capacity > 0);
+        TACTUS_ASSERT(capacity > 0 || arena.is_measuring());
         TACTUS_ASSERT(capacity <= kAbsent / 2);
+        TACTUS_ASSERT(capacity <= kValues);
     }
 
-    /// The id's value, or kAbsent.
-    [[nodiscard]] std::uint32_t find(std::uint32_t id) const noexcept
+    /// The value of an owner's id, or kAbsent.
+    [[nodiscard]] std::uint32_t find(std::uint32_t id, std::uint32_t owner = 0) const noexcept
     {
-        for (std::size_t at = home_of(id);; at = after(at))
+        for (std::size_t at = home_of(id, owner);; at = after(at))
         {
-            if (entries_[at].id == id)
-            {
-                return entries_[at].value;
-            }
             if (entries_[at].id == kAbsent)
             {
                 return kAbsent;
+            }
+            if (is_of(entries_[at], id, owner))
+            {
+                return entries_[at].value & kValues;
             }
         }
     }
 
     /// Adds an id that is absent; false when the table is full.
-    [[nodiscard]] bool try_insert(std::uint32_t id, std::uint32_t value) noexcept
+    [[nodiscard]] bool try_insert(std::uint32_t id, std::uint32_t value,
+                                  std::uint32_t owner = 0) noexcept
     {
         TACTUS_ASSERT(id != kAbsent);
+        TACTUS_ASSERT(value <= kValues);
         if (size_ == capacity_)
         {
             return false;
         }
-        std::size_t at = home_of(id);
+        std::size_t at = home_of(id, owner);
         for (; entries_[at].id != kAbsent; at = after(at))
         {
-            TACTUS_ASSERT(entries_[at].id != id);
+            TACTUS_ASSERT(!is_of(entries_[at], id, owner));
         }
-        entries_[at] = {id, value};
+        entries_[at] = {id, value | tag_of(owner)};
         ++size_;
         return true;
     }
 
     /// Removes an id that is present.
-    void erase(std::uint32_t id) noexcept
+    void erase(std::uint32_t id, std::uint32_t owner = 0) noexcept
     {
         TACTUS_ASSERT(id != kAbsent);
         TACTUS_ASSERT(size_ > 0);
-        std::size_t hole = home_of(id);
-        for (; entries_[hole].id != id; hole = after(hole))
+        std::size_t hole = home_of(id, owner);
+        for (; !is_of(entries_[hole], id, owner); hole = after(hole))
         {
             TACTUS_ASSERT(entries_[hole].id != kAbsent);
         }
         for (std::size_t at = after(hole); entries_[at].id != kAbsent; at = after(at))
         {
-            if (may_move(home_of(entries_[at].id), hole, at))
+            if (may_move(home_of(entries_[at].id, owner_of(entries_[at])), hole, at))
             {
                 entries_[hole] = entries_[at];
                 hole = at;
@@ -95,10 +100,35 @@ public:
     [[nodiscard]] std::uint32_t capacity() const noexcept { return capacity_; }
 
 private:
-    [[nodiscard]] std::size_t home_of(std::uint32_t id) const noexcept
+    static constexpr std::uint32_t kValues = kAbsent >> kOwnerBits;
+
+    [[nodiscard]] static std::uint32_t tag_of(std::uint32_t owner) noexcept
+    {
+        if constexpr (kOwnerBits > 0)
+        {
+            TACTUS_ASSERT(owner < 1U << kOwnerBits);
+            return owner << (32 - kOwnerBits);
+        }
+        TACTUS_ASSERT(owner == 0);
+        return 0;
+    }
+    [[nodiscard]] static std::uint32_t owner_of([[maybe_unused]] const Entry& entry) noexcept
+    {
+        if constexpr (kOwnerBits > 0)
+        {
+            return entry.value >> (32 - kOwnerBits);
+        }
+        return 0;
+    }
+    [[nodiscard]] static bool is_of(const Entry& entry, std::uint32_t id,
+                                    std::uint32_t owner) noexcept
+    {
+        return entry.id == id && owner_of(entry) == owner;
+    }
+    [[nodiscard]] std::size_t home_of(std::uint32_t id, std::uint32_t owner) const noexcept
     {
         // Fibonacci hashing, then a multiply-shift onto a table of any size.
-        const std::uint32_t mixed = id * 0x9E37'79B9U;
+        const std::uint32_t mixed = (id + owner * 0x85EB'CA6BU) * 0x9E37'79B9U;
         return static_cast<std::size_t>((std::uint64_t{mixed} * entries_.size()) >> 32U);
     }
     [[nodiscard]] std::size_t after(std::size_t at) const noexcept
@@ -115,5 +145,7 @@ private:
     std::uint32_t capacity_;
     std::uint32_t size_{0};
 };
+
+using IdTable = BasicIdTable<0>;
 
 } // namespace tactus

@@ -11,46 +11,65 @@
 namespace tactus
 {
 
-ChunkCache::ChunkCache(Arena& arena, const ModelHeader& header, PageSlots slots, PageTable& pages,
-                       ChunkInbox& inbox) noexcept
-    : header_(header)
-    , slots_(slots)
-    , pages_(&pages)
-    , inbox_(&inbox)
-    , index_slot_of_(arena, static_cast<std::uint32_t>(slots.index_pages.size()) + 1)
-    , index_meta_(arena.take<IndexMeta>(slots.index_pages.size()))
-    , chunk_wishes_(arena, static_cast<std::uint32_t>(slots.pages.size()))
-    , index_wishes_(arena, static_cast<std::uint32_t>(slots.index_pages.size()))
-    , taken_(arena.take<DoorEvent>(kMaxArrivalsPerFrame + kMaxLinkUpdatesPerFrame))
+namespace
 {
+
+/// Of all index pages' boxes; of a model without any the origin.
+QuantumBox extent_of(const ModelHeader& header) noexcept
+{
+    QuantumBox extent;
+    for (std::uint32_t i = 0; i < header.counts().index_pages(); ++i)
+    {
+        const QuantumBox box = header.index_entry({i}).box;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+        {
+            extent.low[axis] = i == 0 ? box.low[axis] : std::min(extent.low[axis], box.low[axis]);
+            extent.high[axis] =
+                i == 0 ? box.high[axis] : std::max(extent.high[axis], box.high[axis]);
+        }
+    }
+    return extent;
 }
 
-void ChunkCache::adopt_arrivals(std::uint32_t budget, std::uint32_t frame,
-                                WorkCounters& work) noexcept
+bool meets(const QuantumBall& ball, const QuantumBox& box) noexcept
 {
-    // Looked at once a frame: the other side makes room at any time, and how many wishes leave must
-    // not depend on when.
-    wish_room_ = static_cast<std::uint32_t>(inbox_->wanted.capacity() - inbox_->wanted.size());
-    wish_room_at_start_ = wish_room_;
-    taken_count_ = 0;
-    const std::uint32_t arrivals_end = std::min(budget, kMaxArrivalsPerFrame);
-    std::uint32_t arrivals = 0;
-    std::uint32_t updates = 0;
-    DoorEvent event;
-    while (arrivals < arrivals_end && updates < kMaxLinkUpdatesPerFrame &&
-           inbox_->arrived.try_pop(event))
+    double distance_sq = 0.0;
+    for (std::size_t axis = 0; axis < 3; ++axis)
     {
-        taken_[taken_count_++] = event;
-        if (event.kind == DoorEventKind::link_update)
-        {
-            pages_->update_linked({event.key.number}, event.slot, event.linked);
-            ++updates;
-            continue;
-        }
-        adopt(event, frame);
-        ++arrivals;
+        const double gap = std::max({static_cast<double>(box.low[axis]) - ball.center[axis],
+                                     ball.center[axis] - static_cast<double>(box.high[axis]), 0.0});
+        distance_sq += gap * gap;
     }
-    work.pages_adopted += arrivals;
+    return distance_sq <= ball.radius * ball.radius;
+}
+
+} // namespace
+
+ChunkCache::ChunkCache(CachePool& pool, const Kept& kept, const ModelHeader& header,
+                       PageSlots slots, PageTable& pages) noexcept
+    : pool_(&pool)
+    , header_(header)
+    , extent_(extent_of(header))
+    , slots_(slots)
+    , pages_(&pages)
+    , index_meta_(pool.index_metas)
+    , chunk_wishes_(pool.chunk_wishes, pages.owner(), kept.pages)
+    , index_wishes_(pool.index_wishes, pages.owner(), kept.index_pages)
+{
+    if (pool.caches_.data() != nullptr) // Not where it is measured.
+    {
+        pool.caches_[pages.owner()] = this;
+    }
+}
+
+void ChunkCache::take(const DoorEvent& event, std::uint32_t frame) noexcept
+{
+    if (event.kind == DoorEventKind::link_update)
+    {
+        pages_->update_linked({event.key.number}, event.slot, event.linked);
+        return;
+    }
+    adopt(event, frame);
 }
 
 void ChunkCache::adopt(const DoorEvent& arrival, std::uint32_t frame) noexcept
@@ -67,23 +86,14 @@ void ChunkCache::adopt(const DoorEvent& arrival, std::uint32_t frame) noexcept
     TACTUS_ASSERT(arrival.key.number < header_.counts().index_pages());
     TACTUS_ASSERT(arrival.slot < index_meta_.size());
     TACTUS_ASSERT(index_meta_[arrival.slot].page.is_none());
-    index_meta_[arrival.slot] = {IndexPageId{arrival.key.number}, frame};
-    const bool inserted = index_slot_of_.try_insert(arrival.key.number, arrival.slot);
+    index_meta_[arrival.slot] = {IndexPageId{arrival.key.number}, frame, pages_->owner()};
+    const bool inserted = pool_->index_slot_of.try_insert(
+        PagePool::first_key(pages_->owner()) + arrival.key.number, arrival.slot);
     TACTUS_ASSERT(inserted);
+    ++index_pages_used_;
     index_wishes_.arrive(arrival.key.number, frame);
-}
-
-/// False when the door had no room for one more wish at the start of the frame.
-bool ChunkCache::try_wish(ContentKey key, std::uint32_t generation) noexcept
-{
-    if (wish_room_ == 0)
-    {
-        return false;
-    }
-    --wish_room_;
-    const bool pushed = inbox_->wanted.try_push({key, generation});
-    TACTUS_ASSERT(pushed);
-    return true;
+    urgent_.begin_anew(); // It has not been searched yet.
+    patient_.begin_anew();
 }
 
 void ChunkCache::request_missing(std::span<const RankedRegion> regions, const Budgets& budgets,
@@ -91,34 +101,76 @@ void ChunkCache::request_missing(std::span<const RankedRegion> regions, const Bu
                                  FrameFault& faults) noexcept
 {
     frame_ = frame;
-    chunk_wishes_.expire(frame, wish_timeout_frames_);
-    index_wishes_.expire(frame, wish_timeout_frames_);
-    const RankedBalls balls = to_quanta(regions);
+    const IndexSearch::Balls urgent = to_quanta(regions, true);
+    const IndexSearch::Balls patient = to_quanta(regions, false);
+    const bool is_far = urgent.empty() && patient.empty();
+    work.skipped.add(Skip::models, is_far ? 1 : 0);
     const std::uint32_t pages = header_.counts().index_pages();
-    std::uint32_t searched = 0;
-    // The upper level is cheap to look at: sixteen entries count as much as one page.
-    for (std::uint32_t looked = 0; looked < pages && searched < budgets.regions; ++looked)
+    urgent_.aim(urgent, pages, frame, variant_.keeps_searches);
+    patient_.aim(patient, pages, frame, variant_.keeps_searches);
+    lends_before_ = is_far ? frame : unused_since();
+    Budgets most = budgets;
+    if (!patient_.is_at_rest())
     {
-        if (looked / 16 >= budgets.regions)
+        most.requests -= budgets.requests / kPatientShare;
+        most.regions -= budgets.regions / kPatientShare;
+    }
+    search(urgent_, most, work, faults);
+    search(patient_, budgets, work, faults);
+}
+
+/// The balls near the model in the order of their levels.
+IndexSearch::Balls ChunkCache::to_quanta(std::span<const RankedRegion> regions,
+                                         bool are_urgent) const noexcept
+{
+    const double per_metre = 1.0 / static_cast<double>(header_.quantum_m());
+    IndexSearch::Balls balls;
+    const std::uint32_t first = are_urgent ? 0 : level_of(UrgencyClass::later, true);
+    const std::uint32_t end = are_urgent ? level_of(UrgencyClass::later, true) : kWantedLevels;
+    for (std::uint32_t level = first; level < end; ++level)
+    {
+        for (const RankedRegion& region : regions)
         {
-            break;
-        }
-        const IndexPageId page{cursor_};
-        TACTUS_ASSERT(page.value < pages);
-        cursor_ = cursor_ + 1 >= pages ? 0 : cursor_ + 1;
-        if (cursor_ == 0)
-        {
-            last_round_began_ = round_began_;
-            round_began_ = frame;
-        }
-        const QuantumBox box = header_.index_entry(page).box;
-        if (meets(balls.present, box) || meets(balls.ahead, box))
-        {
-            ++searched;
-            search_page(page, balls, budgets, frame, work, faults);
+            if (level_of(region.of, region.lead_ns == 0) != level)
+            {
+                continue;
+            }
+            const Vec3 center = region.center_m * per_metre;
+            const QuantumBall ball{{center.x(), center.y(), center.z()},
+                                   region.radius_m * per_metre};
+            if (!variant_.asks_near_models_only || meets(ball, extent_))
+            {
+                balls.push_back({ball, level});
+            }
         }
     }
-    work.regions_searched += searched;
+    return balls;
+}
+
+/// Some of the pages of a search's round, until the frame has done `most`.
+void ChunkCache::search(IndexSearch& search, const Budgets& most, WorkCounters& work,
+                        FrameFault& faults) noexcept
+{
+    if (search.is_at_rest())
+    {
+        work.skipped.add(Skip::searches, search.balls().empty() ? 0 : 1);
+        return;
+    }
+    // The upper level is cheap to look at: sixteen entries count as much as one page.
+    const std::uint32_t entries =
+        16 * (most.regions - std::min(most.regions, work.regions_searched));
+    for (std::uint32_t looked = 0;
+         looked < entries && work.regions_searched < most.regions && !search.is_at_rest(); ++looked)
+    {
+        const IndexPageId page = search.next(frame_);
+        const QuantumBox box = header_.index_entry(page).box;
+        if (std::ranges::any_of(search.balls(),
+                                [&](const WantedBall& wanted) { return meets(wanted.ball, box); }))
+        {
+            ++work.regions_searched;
+            search_page(page, search, most, work, faults);
+        }
+    }
 }
 
 void ChunkCache::request_everything(const Budgets& budgets, WorkCounters& work,
@@ -133,165 +185,192 @@ void ChunkCache::request_everything(const Budgets& budgets, WorkCounters& work,
         const ChunkId chunk{fill_cursor_};
         TACTUS_ASSERT(chunk.value < chunks);
         const IndexPageId page{chunk.value >> kChunksPerIndexPageLog2};
-        if (index_slot_of_.find(page.value) == IdTable::kAbsent)
+        if (find_index_page(page) == IdTable::kAbsent)
         {
-            want_index_page(page, frame_, work, faults); // What verifies the chunk comes first.
+            want_index_page(page, nullptr, work, faults); // What verifies the chunk comes first.
             return;
         }
-        want_chunk(chunk, {frame_, last_round_began_}, budgets, work, faults);
+        const Want want = want_of({}, nullptr);
+        if (!try_touch(chunk, want, work))
+        {
+            want_chunk(chunk, want, budgets, work, faults);
+        }
         fill_cursor_ = fill_cursor_ + 1 == chunks ? 0 : fill_cursor_ + 1;
     }
 }
 
-ChunkCache::RankedBalls ChunkCache::to_quanta(std::span<const RankedRegion> regions) const noexcept
+ChunkCache::Want ChunkCache::want_of(const WantedBall& ball, IndexSearch* search) const noexcept
 {
-    const double per_metre = 1.0 / static_cast<double>(header_.quantum_m());
-    RankedBalls balls;
-    for (const RankedRegion& region : regions)
-    {
-        const Vec3 center = region.center_m * per_metre;
-        const double radius = region.radius_m * per_metre;
-        (region.lead_ns == 0 ? balls.present : balls.ahead)
-            .push_back({{center.x(), center.y(), center.z()}, radius});
-    }
-    return balls;
+    const std::uint32_t age = kLevelAge * ball.level;
+    return {frame_ - age, unused_since() - age, age, ball, search};
 }
 
-bool ChunkCache::meets(const Balls& balls, const QuantumBox& box) noexcept
+std::uint32_t ChunkCache::unused_since() const noexcept
 {
-    for (const QuantumBall& ball : balls)
-    {
-        double distance_sq = 0.0;
-        for (std::size_t axis = 0; axis < 3; ++axis)
-        {
-            const double gap =
-                std::max({static_cast<double>(box.low[axis]) - ball.center[axis],
-                          ball.center[axis] - static_cast<double>(box.high[axis]), 0.0});
-            distance_sq += gap * gap;
-        }
-        if (distance_sq <= ball.radius * ball.radius)
-        {
-            return true;
-        }
-    }
-    return false;
+    return std::min(urgent_.last_round_began(), patient_.last_round_began());
 }
 
-void ChunkCache::search_page(IndexPageId page, const RankedBalls& balls, const Budgets& budgets,
-                             std::uint32_t frame, WorkCounters& work, FrameFault& faults) noexcept
+void ChunkCache::search_page(IndexPageId page, IndexSearch& search, const Budgets& most,
+                             WorkCounters& work, FrameFault& faults) noexcept
 {
-    const std::uint32_t slot = index_slot_of_.find(page.value);
+    const std::uint32_t slot = find_index_page(page);
     if (slot == IdTable::kAbsent)
     {
-        want_index_page(page, frame, work, faults);
+        want_index_page(page, &search, work, faults);
         return;
     }
     TACTUS_ASSERT(index_meta_[slot].page == page);
-    index_meta_[slot].touched = frame;
+    index_meta_[slot].touched = frame_;
     const IndexPage& index = slots_.index_pages[slot];
     const QuantumBox box = header_.index_entry(page).box;
-    const auto with_those_meeting = [&](const Balls& some, std::uint64_t chunks)
+    std::uint64_t known = 0;
+    for (const WantedBall& wanted : search.balls())
     {
-        for (const QuantumBall& ball : some)
+        const std::uint64_t meeting = chunks_meeting(index, box, wanted.ball, known);
+        const Want want = want_of(wanted, &search);
+        for (std::uint64_t left = meeting & ~known; left != 0; left &= left - 1)
         {
-            chunks = chunks_meeting(index, box, ball, chunks);
+            const auto i = static_cast<std::uint32_t>(std::countr_zero(left));
+            const ChunkId chunk{(page.value << kChunksPerIndexPageLog2) + i};
+            if (try_touch(chunk, want, work))
+            {
+                continue;
+            }
+            // What only the wider balls of the round meet is not asked for yet.
+            const std::uint64_t others = ~(std::uint64_t{1} << i);
+            if (std::ranges::any_of(search.aimed_at(),
+                                    [&](const WantedBall& aimed) {
+                                        return ~chunks_meeting(index, box, aimed.ball, others) == 0;
+                                    }))
+            {
+                want_chunk(chunk, want, most, work, faults);
+            }
+            else
+            {
+                search.begin_anew();
+            }
         }
-        return chunks;
-    };
-    const std::uint64_t present = with_those_meeting(balls.present, 0);
-    const Urgency now{frame, last_round_began_};
-    const Urgency later{frame - kAheadAge, last_round_began_ - kAheadAge};
-    for (std::uint64_t left = with_those_meeting(balls.ahead, present); left != 0; left &= left - 1)
-    {
-        const auto i = static_cast<std::uint32_t>(std::countr_zero(left));
-        const ChunkId chunk{(page.value << kChunksPerIndexPageLog2) + i};
-        want_chunk(chunk, ((present >> i) & 1U) != 0 ? now : later, budgets, work, faults);
+        known = meeting;
     }
 }
 
-void ChunkCache::want_chunk(ChunkId chunk, const Urgency& urgency, const Budgets& budgets,
-                            WorkCounters& work, FrameFault& faults) noexcept
+/// Whether the chunk is here, or on its way.
+bool ChunkCache::try_touch(ChunkId chunk, const Want& want, WorkCounters& work) noexcept
 {
     if (const std::uint32_t slot = pages_->find(chunk); slot != IdTable::kAbsent)
     {
-        pages_->touch(slot, std::max(pages_->meta(slot).touched, urgency.touch));
+        pages_->touch(slot, std::max(pages_->meta(slot).touched, want.touch));
         ++work.cache_hits;
-        return;
+        return true;
     }
-    if (chunk_wishes_.is_under_way(chunk.value) || work.requests >= budgets.requests)
-    {
-        return;
-    }
-    if (!chunk_wishes_.has_credit())
-    {
-        static_cast<void>(try_evict_page(urgency.evict_before, work));
-    }
-    // One page may not be enough when late answers to expired wishes took slots meanwhile.
-    if (!chunk_wishes_.has_credit())
-    {
-        // What is only predicted may go without: it was worth asking for, no more.
-        faults |= urgency.touch == frame_ ? FrameFault::cache_full : FrameFault::none;
-        return;
-    }
-    if (try_wish({ContentKind::chunk, chunk.value}, frame_))
-    {
-        chunk_wishes_.ask(chunk.value, frame_);
-        ++work.requests;
-        ++work.cache_misses;
-    }
+    return chunk_wishes_.is_under_way(chunk.value);
 }
 
-void ChunkCache::want_index_page(IndexPageId page, std::uint32_t frame, WorkCounters& work,
+void ChunkCache::want_chunk(ChunkId chunk, const Want& want, const Budgets& most,
+                            WorkCounters& work, FrameFault& faults) noexcept
+{
+    if (work.requests < most.requests && !chunk_wishes_.has_credit())
+    {
+        give_page_back(want, work);
+        // One page may not be enough when late answers to expired wishes took slots meanwhile. What
+        // is only foretold may go without: it was worth asking for, no more.
+        if (want.ball.is_present() && !chunk_wishes_.has_credit())
+        {
+            faults |= FrameFault::cache_full;
+            if (pool_->barren_looks_ >= pages_->capacity())
+            {
+                pool_->refuse(want.ball.of());
+            }
+        }
+    }
+    if (work.requests >= most.requests || !chunk_wishes_.has_credit() ||
+        !pool_->try_wish({ContentKind::chunk, chunk.value}, pages_->owner(), frame_))
+    {
+        if (want.search != nullptr)
+        {
+            want.search->begin_anew(); // It is still to be asked for.
+        }
+        return;
+    }
+    chunk_wishes_.ask(chunk.value, frame_);
+    ++work.requests;
+    ++work.cache_misses;
+}
+
+void ChunkCache::want_index_page(IndexPageId page, IndexSearch* search, WorkCounters& work,
                                  FrameFault& faults) noexcept
 {
     if (index_wishes_.is_under_way(page.value))
     {
         return;
     }
-    if (!index_wishes_.has_credit())
+    const bool has_credit = index_wishes_.has_credit() || try_evict_index_page();
+    faults |= has_credit ? FrameFault::none : FrameFault::cache_full;
+    if (!has_credit ||
+        !pool_->try_wish({ContentKind::index_page, page.value}, pages_->owner(), frame_))
     {
-        static_cast<void>(try_evict_index_page());
-    }
-    if (!index_wishes_.has_credit())
-    {
-        faults |= FrameFault::cache_full;
+        if (search != nullptr)
+        {
+            search->begin_anew();
+        }
         return;
     }
-    if (try_wish({ContentKind::index_page, page.value}, frame))
-    {
-        index_wishes_.ask(page.value, frame);
-        ++work.requests;
-    }
+    index_wishes_.ask(page.value, frame_);
+    ++work.requests;
 }
 
-/// Gives the least recently touched page back that is not pinned and was last touched before the
-/// frame given. One look at each page.
-bool ChunkCache::try_evict_page(std::uint32_t touched_before, WorkCounters& work) noexcept
+/// Gives the least recently touched page back, of some, that is not pinned and was of no use for
+/// long enough, to this model or to another that has more than its own.
+void ChunkCache::give_page_back(const Want& want, WorkCounters& work) noexcept
 {
-    std::uint32_t oldest = pages_->capacity();
-    for (std::uint32_t slot = 0; slot < pages_->capacity(); ++slot)
+    const std::uint32_t slots = pages_->capacity();
+    const std::uint32_t looks = std::min(slots, CachePool::kEvictionLooks);
+    std::uint32_t oldest = slots;
+    for (std::uint32_t look = 0; look < looks; ++look)
     {
+        const std::uint32_t slot = pool_->hand_;
+        pool_->hand_ = slot + 1 == slots ? 0 : slot + 1;
         const PageTable::Meta& meta = pages_->meta(slot);
-        if (!meta.chunk.is_none() && meta.refined == 0 && meta.touched < touched_before &&
-            (oldest == pages_->capacity() || meta.touched < pages_->meta(oldest).touched))
+        if (meta.chunk.is_none() || meta.refined != 0 ||
+            (oldest != slots && meta.touched >= pages_->meta(oldest).touched))
         {
-            oldest = slot;
+            continue;
         }
+        const ChunkCache& owner = *pool_->caches_[meta.owner];
+        const std::uint32_t before =
+            &owner == this ? want.evict_before
+                           : owner.lends_before(owner.chunk_wishes_, frame_, want.age);
+        oldest = meta.touched < before ? slot : oldest;
     }
-    if (oldest == pages_->capacity())
+    if (oldest == slots)
     {
-        return false;
+        pool_->barren_looks_ = std::min(pool_->barren_looks_ + looks, slots);
+        return;
     }
-    evict(oldest, work);
-    return true;
+    pool_->barren_looks_ = 0;
+    pool_->caches_[pages_->meta(oldest).owner]->evict(oldest, work);
+}
+
+/// Pages of a kind that were last touched before are for others: none that are kept for the model,
+/// and none that were of use in the last two rounds or in so many frames before. A model that
+/// nobody is near has no rounds.
+std::uint32_t ChunkCache::lends_before(const WishList& wishes, std::uint32_t frame,
+                                       std::uint32_t age) const noexcept
+{
+    const bool is_idle = frame - frame_ > 1;
+    return wishes.has_more_than_its_own() ? (is_idle ? frame : lends_before_) - age : 0;
+}
+
+std::uint32_t ChunkCache::find_index_page(IndexPageId page) const noexcept
+{
+    return pool_->index_slot_of.find(PagePool::first_key(pages_->owner()) + page.value);
 }
 
 void ChunkCache::evict_unpinned(WorkCounters& work) noexcept
 {
     for (std::uint32_t slot = 0; slot < pages_->capacity(); ++slot)
     {
-        const PageTable::Meta& meta = pages_->meta(slot);
-        if (!meta.chunk.is_none() && meta.refined == 0)
+        if (pages_->is_own(slot) && pages_->meta(slot).refined == 0)
         {
             evict(slot, work);
         }
@@ -301,7 +380,7 @@ void ChunkCache::evict_unpinned(WorkCounters& work) noexcept
 void ChunkCache::evict(std::uint32_t slot, WorkCounters& work) noexcept
 {
     pages_->evict(slot);
-    const bool freed = inbox_->freed.try_push({ContentKind::chunk, slot});
+    const bool freed = pool_->door.freed.try_push({ContentKind::chunk, slot});
     TACTUS_ASSERT(freed);
     chunk_wishes_.give_back_slot();
     ++work.evictions;
@@ -314,22 +393,32 @@ bool ChunkCache::try_evict_index_page() noexcept
     for (std::uint32_t slot = 0; slot < index_meta_.size(); ++slot)
     {
         const IndexMeta& meta = index_meta_[slot];
-        if (!meta.page.is_none() && meta.touched < last_round_began_ &&
-            (oldest == index_meta_.size() || meta.touched < index_meta_[oldest].touched))
+        if (meta.page.is_none() ||
+            (oldest != index_meta_.size() && meta.touched >= index_meta_[oldest].touched))
         {
-            oldest = slot;
+            continue;
         }
+        const ChunkCache& owner = *pool_->caches_[meta.owner];
+        const std::uint32_t before =
+            &owner == this ? unused_since() : owner.lends_before(owner.index_wishes_, frame_, 0);
+        oldest = meta.touched < before ? slot : oldest;
     }
     if (oldest == index_meta_.size())
     {
         return false;
     }
-    index_slot_of_.erase(index_meta_[oldest].page.value);
-    index_meta_[oldest] = IndexMeta{};
-    const bool freed = inbox_->freed.try_push({ContentKind::index_page, oldest});
+    pool_->caches_[index_meta_[oldest].owner]->evict_index_page(oldest);
+    return true;
+}
+
+void ChunkCache::evict_index_page(std::uint32_t slot) noexcept
+{
+    pool_->index_slot_of.erase(PagePool::first_key(pages_->owner()) + index_meta_[slot].page.value);
+    --index_pages_used_;
+    index_meta_[slot] = IndexMeta{};
+    const bool freed = pool_->door.freed.try_push({ContentKind::index_page, slot});
     TACTUS_ASSERT(freed);
     index_wishes_.give_back_slot();
-    return true;
 }
 
 } // namespace tactus

@@ -3,9 +3,11 @@
 #pragma once
 
 #include "rt_core/base/realtime.hpp"
-#include "rt_core/cache/chunk_inbox.hpp"
+#include "rt_core/cache/cache_pool.hpp"
+#include "rt_core/cache/index_search.hpp"
 #include "rt_core/cache/wish_list.hpp"
 #include "rt_core/records/frame_input.hpp"
+#include "rt_core/records/frame_variant.hpp"
 #include "rt_core/records/region_ranking.hpp"
 #include "rt_core/records/work_counters.hpp"
 #include "rt_core/spm/page_table.hpp"
@@ -18,39 +20,41 @@ namespace tactus
 
 /// Which of a model's chunks and index pages are here, and what to ask for.
 ///
-/// Every frame it searches some index pages, round and round, for chunks whose influence box meets
-/// a ranked ball. Such a chunk is touched when it is here and asked for when it isn't. A page goes
-/// back when its slot is needed, no record of it is refined, and it was not touched in the last
-/// two rounds, the least recently touched first. What a present ball needs counts as touched
-/// kAheadAge frames after what only a predicted one does: prefetching never evicts what is of
-/// use, while present need may take the place of what was prefetched.
+/// Every frame it searches some index pages for chunks whose influence box meets a ranked ball
+/// (IndexSearch): first for pairs that touch or will soon, then for the rest, each with a part of
+/// the budget that the other can't take. Such a chunk is touched when it is here and asked for when
+/// it isn't. A page goes back when its slot is needed, no record of it is refined, and it was not
+/// touched in the last two rounds, the least recently touched first. What is wanted counts as
+/// touched kLevelAge frames later than what is only foretold of the same class, and that as much
+/// later than what the next class wants: prefetching never evicts what is of use, while present
+/// need may take the place of what was prefetched, and a touch that of what others only want.
 ///
-/// Haptic thread; the other end of the inbox is the courier.
+/// Slots are in a pool of all models. When it has no more for this one, the page that goes back may
+/// be another model's that has more than what is kept for it.
+///
+/// Haptic thread; the other end of the door is the courier.
 class ChunkCache
 {
 public:
-    ChunkCache(Arena& arena, const ModelHeader& header, PageSlots slots, PageTable& pages,
-               ChunkInbox& inbox) noexcept;
-
-    /// How long a frame is; a period of 1 ms unless told. Wishes wait for answers kWishTimeout_ns.
-    void set_period(std::int64_t period_ns) noexcept
+    /// What is kept of a pool for one model.
+    struct Kept
     {
-        TACTUS_ASSERT(period_ns > 0);
-        wish_timeout_frames_ = static_cast<std::uint32_t>(
-            std::clamp<std::int64_t>(kWishTimeout_ns / period_ns, 1, kFirstFrame));
-    }
+        std::uint32_t pages{0};
+        std::uint32_t index_pages{0};
+    };
 
-    /// Takes over what arrived, at most `budget` slots, and link updates on the way. Each is taken
-    /// in its order; what is beyond kMaxArrivalsPerFrame or kMaxLinkUpdatesPerFrame waits.
-    void adopt_arrivals(std::uint32_t budget, std::uint32_t frame,
-                        WorkCounters& work) noexcept TACTUS_NONBLOCKING;
+    /// The table is the model's; the pool is its table's. Both outlive the cache, which does not
+    /// move.
+    ChunkCache(CachePool& pool, const Kept& kept, const ModelHeader& header, PageSlots slots,
+               PageTable& pages) noexcept;
+    ChunkCache(const ChunkCache&) = delete;
+    ChunkCache& operator=(const ChunkCache&) = delete;
+    ChunkCache(ChunkCache&&) = delete;
+    ChunkCache& operator=(ChunkCache&&) = delete;
+    ~ChunkCache() = default;
 
-    /// What the last adopt_arrivals() took. With the frame's arguments this is all that decides
-    /// what the frame does. Valid until the next call.
-    [[nodiscard]] DoorTake taken() const noexcept
-    {
-        return {taken_.first(taken_count_), wish_room_at_start_};
-    }
+    /// Which shortcuts requests take; all of them unless told.
+    void set_variant(const FrameVariant& variant) noexcept { variant_ = variant; }
 
     /// Asks for what `regions` (of this model, most urgent first) lack.
     void request_missing(std::span<const RankedRegion> regions, const Budgets& budgets,
@@ -77,66 +81,71 @@ public:
     }
     [[nodiscard]] std::uint64_t loads() const noexcept { return loads_; }
     [[nodiscard]] std::uint64_t evictions() const noexcept { return evictions_; }
-    [[nodiscard]] std::uint32_t index_pages_used() const noexcept { return index_slot_of_.size(); }
+    [[nodiscard]] std::uint32_t index_pages_used() const noexcept { return index_pages_used_; }
 
 private:
     friend class CacheValidator;
+    friend class CachePool;
 
-    struct IndexMeta
-    {
-        IndexPageId page{};
-        std::uint32_t touched{0};
-    };
-    using Balls = StaticVector<QuantumBall, kMaxRankedRegions>;
-    struct RankedBalls
-    {
-        Balls present;
-        Balls ahead; ///< Where the proxy may be after a lead time.
-    };
+    using IndexMeta = CachePool::IndexMeta;
     /// How a chunk is wanted: what counts as its last use, and whose place it may take.
-    struct Urgency
+    struct Want
     {
         std::uint32_t touch{0};
         std::uint32_t evict_before{0};
+        std::uint32_t age{0}; ///< So much longer another model's page was of no use.
+        WantedBall ball;
+        IndexSearch* search{nullptr}; ///< Goes on while it has to wait; null: asked again anyway.
     };
 
+    void take(const DoorEvent& event, std::uint32_t frame) noexcept TACTUS_NONBLOCKING;
     void adopt(const DoorEvent& arrival, std::uint32_t frame) noexcept;
-    [[nodiscard]] bool try_wish(ContentKey key, std::uint32_t generation) noexcept;
-    [[nodiscard]] RankedBalls to_quanta(std::span<const RankedRegion> regions) const noexcept;
-    [[nodiscard]] static bool meets(const Balls& balls, const QuantumBox& box) noexcept;
-    void search_page(IndexPageId page, const RankedBalls& balls, const Budgets& budgets,
-                     std::uint32_t frame, WorkCounters& work, FrameFault& faults) noexcept;
-    void want_chunk(ChunkId chunk, const Urgency& urgency, const Budgets& budgets,
-                    WorkCounters& work, FrameFault& faults) noexcept;
-    void want_index_page(IndexPageId page, std::uint32_t frame, WorkCounters& work,
+    [[nodiscard]] IndexSearch::Balls to_quanta(std::span<const RankedRegion> regions,
+                                               bool are_urgent) const noexcept;
+    [[nodiscard]] Want want_of(const WantedBall& ball, IndexSearch* search) const noexcept;
+    void search(IndexSearch& search, const Budgets& most, WorkCounters& work,
+                FrameFault& faults) noexcept;
+    void search_page(IndexPageId page, IndexSearch& search, const Budgets& most, WorkCounters& work,
+                     FrameFault& faults) noexcept;
+    [[nodiscard]] bool try_touch(ChunkId chunk, const Want& want, WorkCounters& work) noexcept;
+    void want_chunk(ChunkId chunk, const Want& want, const Budgets& most, WorkCounters& work,
+                    FrameFault& faults) noexcept;
+    void want_index_page(IndexPageId page, IndexSearch* search, WorkCounters& work,
                          FrameFault& faults) noexcept;
-    [[nodiscard]] bool try_evict_page(std::uint32_t touched_before, WorkCounters& work) noexcept;
+    /// What was not touched since was of no use in two rounds.
+    [[nodiscard]] std::uint32_t unused_since() const noexcept;
+    void give_page_back(const Want& want, WorkCounters& work) noexcept;
+    [[nodiscard]] std::uint32_t find_index_page(IndexPageId page) const noexcept TACTUS_NONBLOCKING;
+    [[nodiscard]] std::uint32_t lends_before(const WishList& wishes, std::uint32_t frame,
+                                             std::uint32_t age) const noexcept;
+    void evict_index_page(std::uint32_t slot) noexcept;
     void evict(std::uint32_t slot, WorkCounters& work) noexcept;
     [[nodiscard]] bool try_evict_index_page() noexcept;
 
     /// Longer than two rounds and a load take, and no longer: while a hand moves on, what it left
     /// is in the way of what it will need.
-    static constexpr std::uint32_t kAheadAge = 64;
-    static_assert(kAheadAge < kFirstFrame, "a touch dated back is no frame before the first");
+    static constexpr std::uint32_t kLevelAge = 64;
+    static_assert(kLevelAge * kWantedLevels < kFirstFrame,
+                  "a touch dated back is no frame before the first");
+    /// Of the budgets, what the less urgent balls always get.
+    static constexpr std::uint32_t kPatientShare = 4;
 
+    CachePool* pool_;
     ModelHeader header_;
+    QuantumBox extent_; ///< Of all index pages' boxes.
+    FrameVariant variant_;
+    IndexSearch urgent_{kFirstFrame};  ///< For pairs that touch or will soon,
+    IndexSearch patient_{kFirstFrame}; ///< and for the rest.
     PageSlots slots_;
     PageTable* pages_;
-    ChunkInbox* inbox_;
-    IdTable index_slot_of_;
-    std::span<IndexMeta> index_meta_;
+    std::span<IndexMeta> index_meta_; ///< Of all models.
+    std::uint32_t index_pages_used_{0};
     WishList chunk_wishes_;
     WishList index_wishes_;
-    std::span<DoorEvent> taken_; ///< The first `taken_count_` are of this frame.
-    std::uint32_t taken_count_{0};
-    std::uint32_t wish_room_at_start_{0};
-    std::uint32_t wish_room_{0};
-    std::uint32_t wish_timeout_frames_{kWishTimeoutFrames};
-    std::uint32_t cursor_{0};      ///< Next index page to look at.
+    /// Others may take what was not touched since, where no more than that is kept.
+    std::uint32_t lends_before_{kFirstFrame};
     std::uint32_t fill_cursor_{0}; ///< Next chunk of request_everything().
     std::uint32_t frame_{kFirstFrame};
-    std::uint32_t round_began_{kFirstFrame};      ///< Frame in which the cursor last passed zero,
-    std::uint32_t last_round_began_{kFirstFrame}; ///< and the time before.
     std::uint64_t loads_{0};
     std::uint64_t evictions_{0};
 };

@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #include "rt_core/cache/validate_cache.hpp"
 
+#include <algorithm>
+
 namespace tactus
 {
 
@@ -17,15 +19,10 @@ public:
         check_wishes(cache_.chunk_wishes_, "chunk", pages.used(),
                      [&](std::uint32_t number)
                      { return pages.find(ChunkId{number}) == IdTable::kAbsent; });
-        check_wishes(cache_.index_wishes_, "index page", cache_.index_slot_of_.size(),
+        check_wishes(cache_.index_wishes_, "index page", cache_.index_pages_used_,
                      [&](std::uint32_t number)
-                     { return cache_.index_slot_of_.find(number) == IdTable::kAbsent; });
-        // Freed slots are on their way to the transport thread, which may take them meanwhile.
-        const std::size_t on_the_way = cache_.inbox_->freed.size();
-        const std::size_t at_transport = std::size_t{cache_.chunk_wishes_.slots_at_transport_} +
-                                         cache_.index_wishes_.slots_at_transport_;
-        finder_.expect(on_the_way <= at_transport, "cache", static_cast<std::uint32_t>(on_the_way),
-                       "slots are on their way back, more than are not its own");
+                     { return cache_.find_index_page({number}) == IdTable::kAbsent; });
+        check_freed();
         const std::uint32_t chunks = cache_.header_.counts().chunks();
         finder_.expect(cache_.fill_cursor_ < chunks || cache_.fill_cursor_ == 0, "chunk",
                        cache_.fill_cursor_, "is next to be loaded and does not exist");
@@ -33,6 +30,21 @@ public:
     }
 
 private:
+    /// Freed slots are on their way to the transport thread, which may take them meanwhile.
+    void check_freed() noexcept
+    {
+        const CachePool& pool = *cache_.pool_;
+        const auto pages = static_cast<std::size_t>(std::ranges::count_if(
+            pool.pages.metas, [](const PageMeta& meta) { return meta.chunk.is_none(); }));
+        const auto index_pages = static_cast<std::size_t>(
+            std::ranges::count_if(pool.index_metas, [](const CachePool::IndexMeta& meta)
+                                  { return meta.page.is_none(); }));
+        const std::size_t on_the_way = pool.door.freed.size();
+        finder_.expect(on_the_way <= pages + index_pages, "cache",
+                       static_cast<std::uint32_t>(on_the_way),
+                       "slots are on their way back, more than are not its own");
+    }
+
     void check_index() noexcept
     {
         const ModelCounts counts = cache_.header_.counts();
@@ -40,7 +52,7 @@ private:
         for (std::uint32_t slot = 0; slot < cache_.index_meta_.size(); ++slot)
         {
             const IndexPageId page = cache_.index_meta_[slot].page;
-            if (page.is_none())
+            if (page.is_none() || cache_.index_meta_[slot].owner != cache_.pages_->owner())
             {
                 continue;
             }
@@ -50,13 +62,13 @@ private:
             {
                 continue;
             }
-            finder_.expect(cache_.index_slot_of_.find(page.value) == slot, "index page", page.value,
+            finder_.expect(cache_.find_index_page(page) == slot, "index page", page.value,
                            "is found elsewhere or nowhere");
             finder_.expect(cache_.slots_.index_pages[slot].chunks ==
                                chunks_in_index_page(counts, page),
                            "index page", page.value, "has too few or too many chunks");
         }
-        finder_.expect(resident == cache_.index_slot_of_.size(), "cache", resident,
+        finder_.expect(resident == cache_.index_pages_used_, "cache", resident,
                        "index pages are in its slots, and its index has others");
     }
 
@@ -64,26 +76,27 @@ private:
     void check_wishes(const WishList& wishes, const char* thing, std::uint32_t resident,
                       const IsAway& is_away) noexcept
     {
-        finder_.expect(resident + wishes.slots_at_transport_ == wishes.numbers_.size(), thing,
-                       resident,
-                       "slots are used here, and the others are not all at the transport");
+        finder_.expect(resident == wishes.slots_had(), thing, resident,
+                       "slots are used here, and its pool counts others");
         std::uint32_t wished = 0;
-        for (std::uint32_t place = 0; place < wishes.numbers_.size(); ++place)
+        const WishPool& pool = *wishes.pool_;
+        for (std::uint32_t place = 0; place < pool.wishes_.size(); ++place)
         {
-            const std::uint32_t number = wishes.numbers_[place];
-            if (number == IdTable::kAbsent)
+            const WishPool::Wish& wish = pool.wishes_[place];
+            if (wish.list != &wishes)
             {
                 continue;
             }
             ++wished;
-            finder_.expect(wishes.under_way_.find(number) == place, thing, number,
+            const std::uint32_t number = wish.key - wishes.first_key_;
+            finder_.expect(pool.place_of_.find(wish.key) == place, thing, number,
                            "is wished for twice, or is not known to be");
             finder_.expect(is_away(number), thing, number, "is wished for and here");
-            finder_.expect(wishes.asked_[place] <= cache_.frame_, thing, number,
+            finder_.expect(wish.asked <= cache_.frame_, thing, number,
                            "was wished for in a later frame");
         }
-        finder_.expect(wished == wishes.under_way_.size(), thing, wished,
-                       "wishes are under way, and the list's index has others");
+        finder_.expect(wished == wishes.under_way_, thing, wished,
+                       "wishes are under way, and the list counts others");
     }
 
     const ChunkCache& cache_;

@@ -17,8 +17,8 @@ void Follower::see(const ToolGoal& goal) noexcept
     place_ = {goal.rotation, goal.position_m, 1.0};
 }
 
-ToolOutput Follower::respond(const ToolGoal& goal,
-                             std::span<const PlacedSurface> surfaces) const noexcept
+ToolOutput Follower::respond(const ToolGoal& goal, std::span<const PlacedSurface> surfaces,
+                             double /*clear_m*/) const noexcept
 {
     ToolOutput output;
     output.proxy_m = goal.position_m;

@@ -23,19 +23,19 @@ public:
 
     void see(const ToolGoal& goal) noexcept TACTUS_NONBLOCKING;
     /// Objects do not move it.
-    void carry(std::span<const ObjectPose> /*before*/, std::span<const ObjectPose> /*now*/,
+    void carry(std::span<const NearObject> /*objects*/,
                double /*elapsed_s*/) noexcept TACTUS_NONBLOCKING
     {
     }
+    void forget(std::uint32_t /*object*/) noexcept TACTUS_NONBLOCKING {}
     [[nodiscard]] const Similarity& place() const noexcept { return place_; }
     [[nodiscard]] double radius_m() const noexcept { return radius_m_; }
     /// How far the core's farthest point went since the last frame.
     [[nodiscard]] double way_to_m(const ToolGoal& /*goal*/) const noexcept { return way_m_; }
 
     /// In contact where an upper bound proves that the tool touches.
-    [[nodiscard]] ToolOutput
-    respond(const ToolGoal& goal,
-            std::span<const PlacedSurface> surfaces) const noexcept TACTUS_NONBLOCKING;
+    [[nodiscard]] ToolOutput respond(const ToolGoal& goal, std::span<const PlacedSurface> surfaces,
+                                     double clear_m) const noexcept TACTUS_NONBLOCKING;
 
 private:
     double radius_m_;

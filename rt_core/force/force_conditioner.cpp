@@ -4,6 +4,7 @@
 
 #include "rt_core/base/assert.hpp"
 #include "rt_core/force/stiffness_rule.hpp"
+#include "rt_core/math/direction.hpp"
 #include "rt_core/math/rounding.hpp"
 
 #include <algorithm>
@@ -29,6 +30,19 @@ double spring_energy_j(double force_n, double stiffness_n_per_m, double stretch_
     return force_n * (std::max(stretch_m, least_stretch) - 0.5 * least_stretch);
 }
 
+/// A device that turns faster has jumped: a wrist makes 30 rad/s at most.
+constexpr double kTurnMax_rad_per_s = 60.0;
+
+/// For a device that makes a torque. What damps the surface's motion has no part in turning.
+ConditionerSetup in_angles(const ConditionerSetup& setup) noexcept
+{
+    ConditionerSetup angles = setup;
+    angles.device = turning_of(setup.device);
+    angles.surface_damping_max_n_s_per_m = 0.0;
+    angles.speed_max_m_per_s = kTurnMax_rad_per_s;
+    return angles;
+}
+
 } // namespace
 
 ForceConditioner::ForceConditioner(const ConditionerSetup& setup) noexcept
@@ -44,20 +58,36 @@ ForceConditioner::ForceConditioner(const ConditionerSetup& setup) noexcept
 
 ConditionedForce ForceConditioner::condition(const ForceWish& wish) noexcept
 {
-    ConditionedForce output;
+    return finish(begin(wish));
+}
+
+double ForceConditioner::begin(const ForceWish& wish) noexcept
+{
+    wish_ = wish;
+    output_ = {};
     const bool is_observed = observe(wish);
     if (!is_observed || !sent_.knows_delay())
     {
-        output.actions |= ForceAction::blind;
+        output_.actions |= ForceAction::blind;
     }
-    wall_n_ = limit(wish, output);
-    hold(wish, wall_n_, output.stiffness_n_per_m);
-    output.force_n = setup_.controls_passivity ? damp(wall_n_, output) : wall_n_;
-    TACTUS_ASSERT(output.force_n.norm() <= setup_.device.force_max_n * kRoundedUp);
-    output.work_j = observer_.work_j();
-    output.surplus_j = observer_.surplus_j();
-    sent_.send(output.force_n);
-    return output;
+    gain_ = limit(wish, output_);
+    return gain_;
+}
+
+ConditionedForce ForceConditioner::finish(double gain) noexcept
+{
+    TACTUS_ASSERT(gain >= 0.0);
+    const Vec3 wished_n = gain < gain_ ? Vec3(wished_n_ * (gain / gain_)) : wished_n_;
+    const double step_n = setup_.device.slew_max_n_per_s * setup_.period_s;
+    wall_n_ = limit_growth(wall_n_, wished_n, step_n);
+    output_.actions |= wall_n_ != wished_n ? ForceAction::slew_limited : ForceAction::none;
+    hold(wish_, wall_n_, output_.stiffness_n_per_m);
+    output_.force_n = setup_.controls_passivity ? damp(wall_n_, output_) : wall_n_;
+    TACTUS_ASSERT(output_.force_n.norm() <= setup_.device.force_max_n * kRoundedUp);
+    output_.work_j = observer_.work_j();
+    output_.surplus_j = observer_.surplus_j();
+    sent_.send(output_.force_n);
+    return output_;
 }
 
 void ForceConditioner::follow(const Vec3& sent_n) noexcept
@@ -75,7 +105,7 @@ bool ForceConditioner::observe(const ForceWish& wish) noexcept
     const double elapsed_s = setup_.period_s * periods;
     const Vec3 force_n = sent_.mean_since(periods);
     const Vec3 way = wish.position_m - position_m_;
-    const double farthest = kDeviceSpeedMax_m_per_s * elapsed_s;
+    const double farthest = setup_.speed_max_m_per_s * elapsed_s;
     const bool is_usable =
         wish.position_m.allFinite() && (!knows_position_ || way.norm() <= farthest);
     if (!is_usable)
@@ -96,25 +126,29 @@ bool ForceConditioner::observe(const ForceWish& wish) noexcept
     return is_usable;
 }
 
-/// The frame's force within the device's limits, and what acted, in `output`.
-Vec3 ForceConditioner::limit(const ForceWish& wish, ConditionedForce& output) noexcept
+/// How much of the wish is within the device's limits, and what acted, in `output`.
+double ForceConditioner::limit(const ForceWish& wish, ConditionedForce& output) noexcept
 {
+    wished_n_ = Vec3(0.0, 0.0, 0.0);
     if (!wish.force_n.allFinite() || !is_stiffness(wish.stiffness_n_per_m))
     {
         output.actions |= ForceAction::refused;
-        return {0.0, 0.0, 0.0};
+        return 0.0;
     }
     const bool is_too_stiff = wish.stiffness_n_per_m > cap_n_per_m_;
     const double scale = is_too_stiff ? cap_n_per_m_ / wish.stiffness_n_per_m : 1.0;
     const Vec3 capped_n = wish.force_n * scale;
-    const Vec3 wished_n = clamp_norm(capped_n, setup_.device.force_max_n);
-    const double step_n = setup_.device.slew_max_n_per_s * setup_.period_s;
-    const Vec3 next_n = limit_growth(wall_n_, wished_n, step_n);
+    wished_n_ = clamp_norm(capped_n, setup_.device.force_max_n);
+    const bool is_clamped = wished_n_ != capped_n;
     output.stiffness_n_per_m = wish.stiffness_n_per_m * scale;
     output.actions |= is_too_stiff ? ForceAction::stiffness_capped : ForceAction::none;
-    output.actions |= wished_n != capped_n ? ForceAction::clamped : ForceAction::none;
-    output.actions |= next_n != wished_n ? ForceAction::slew_limited : ForceAction::none;
-    return next_n;
+    output.actions |= is_clamped ? ForceAction::clamped : ForceAction::none;
+    // By the largest coordinate: the square of what is huge is infinite.
+    const double share =
+        is_clamped && has_direction(capped_n)
+            ? largest_coordinate({&wished_n_, 1}) / largest_coordinate({&capped_n, 1})
+            : 1.0;
+    return scale * share;
 }
 
 void ForceConditioner::hold(const ForceWish& wish, const Vec3& wall_n,
@@ -150,6 +184,40 @@ Vec3 ForceConditioner::damp(const Vec3& wall_n, ConditionedForce& output) const 
     output.actions |= ForceAction::damped;
     output.damping_n_s_per_m = damping;
     return clamp_norm(total, setup_.device.force_max_n);
+}
+
+WrenchConditioner::WrenchConditioner(const ConditionerSetup& setup) noexcept
+    : force_(setup)
+    , torque_(setup.device.turn.torque_max_nm > 0.0 ? in_angles(setup) : setup)
+    , has_torque_(setup.device.turn.torque_max_nm > 0.0)
+{
+}
+
+ConditionedWrench WrenchConditioner::condition(const WrenchWish& wish) noexcept
+{
+    ConditionedWrench output;
+    double gain = force_.begin(wish.force);
+    gain = has_torque_ ? std::min(gain, torque_.begin(wish.torque)) : gain;
+    output.force = force_.finish(gain);
+    if (has_torque_)
+    {
+        output.torque = torque_.finish(gain);
+    }
+    last_n_ = output.force.force_n;
+    last_nm_ = output.torque.force_n;
+    return output;
+}
+
+void WrenchConditioner::follow(const Vec3& sent_n, const Vec3& sent_nm) noexcept
+{
+    if (sent_n != last_n_)
+    {
+        force_.follow(sent_n);
+    }
+    if (has_torque_ && sent_nm != last_nm_)
+    {
+        torque_.follow(sent_nm);
+    }
 }
 
 } // namespace tactus

@@ -23,6 +23,8 @@ struct ConditionerSetup
     /// Largest surface damping of any object, in N s/m; lowers the stiffness cap.
     double surface_damping_max_n_s_per_m{0.0};
     bool controls_passivity{true}; ///< False: observes only.
+    /// A device that is faster has jumped: its energy isn't observed.
+    double speed_max_m_per_s{kDeviceSpeedMax_m_per_s};
 };
 
 /// What stands between the force that one tool's frame wants and its device. In this order:
@@ -52,6 +54,12 @@ public:
     /// The force to write now: the energy of the next period is its.
     [[nodiscard]] ConditionedForce condition(const ForceWish& wish) noexcept TACTUS_NONBLOCKING;
 
+    /// The same in two steps, for what shares a gain with others: how much of the wish, 0 .. 1, cap
+    /// and clamp leave; then the force of it, or of less.
+    /// - finish() follows each begin(); `gain` in 0 .. 1.
+    [[nodiscard]] double begin(const ForceWish& wish) noexcept TACTUS_NONBLOCKING;
+    [[nodiscard]] ConditionedForce finish(double gain) noexcept TACTUS_NONBLOCKING;
+
     /// This went out in place of the force that condition() has just returned. The next one grows
     /// from it, and what energy it makes beyond the spring's is forgiven.
     void follow(const Vec3& sent_n) noexcept TACTUS_NONBLOCKING;
@@ -61,7 +69,7 @@ public:
 
 private:
     [[nodiscard]] bool observe(const ForceWish& wish) noexcept;
-    [[nodiscard]] Vec3 limit(const ForceWish& wish, ConditionedForce& output) noexcept;
+    [[nodiscard]] double limit(const ForceWish& wish, ConditionedForce& output) noexcept;
     void hold(const ForceWish& wish, const Vec3& wall_n, double stiffness_n_per_m) noexcept;
     [[nodiscard]] Vec3 damp(const Vec3& wall_n, ConditionedForce& output) const noexcept;
 
@@ -73,6 +81,33 @@ private:
     Vec3 wall_n_{0.0, 0.0, 0.0}; ///< The last force, without the damping.
     Vec3 position_m_{0.0, 0.0, 0.0};
     bool knows_position_{false};
+    // From begin() to finish().
+    ForceWish wish_;
+    Vec3 wished_n_{0.0, 0.0, 0.0}; ///< Within the limits.
+    double gain_{0.0};             ///< What begin() said.
+    ConditionedForce output_;
+};
+
+/// Two of them for a device that turns: the law of the ways for the force, that of the angles for
+/// the torque. What caps or clamps one of them shortens both by one gain, and garbage in one takes
+/// both away, so that a wrench keeps its line of action; growth and damping are each one's own.
+class WrenchConditioner
+{
+public:
+    /// As ForceConditioner. A device that makes no torque gets none.
+    explicit WrenchConditioner(const ConditionerSetup& setup) noexcept;
+
+    [[nodiscard]] ConditionedWrench condition(const WrenchWish& wish) noexcept TACTUS_NONBLOCKING;
+
+    /// As ForceConditioner::follow(); each for itself, where it was another.
+    void follow(const Vec3& sent_n, const Vec3& sent_nm) noexcept TACTUS_NONBLOCKING;
+
+private:
+    ForceConditioner force_;
+    ForceConditioner torque_;
+    bool has_torque_;
+    Vec3 last_n_{0.0, 0.0, 0.0};
+    Vec3 last_nm_{0.0, 0.0, 0.0};
 };
 
 } // namespace tactus

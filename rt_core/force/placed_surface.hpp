@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "rt_core/force/near_object.hpp"
 #include "rt_core/math/infinity.hpp"
 #include "rt_core/records/contact.hpp"
 #include "rt_core/records/frame_input.hpp"
@@ -24,6 +25,8 @@ struct PlacedSurface
     /// World frame; null unless the tool is held as a body.
     const TouchReport* touches{nullptr};
     double upper_m{kInfinity}; ///< Some surface is within this of the core, in the world.
+    std::uint32_t object{0};   ///< Its number in the scene.
+    ProxyMemory* memory{nullptr};
 };
 
 } // namespace tactus

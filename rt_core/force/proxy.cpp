@@ -97,20 +97,17 @@ double known(const PlacedSurface& placed) noexcept
 
 } // namespace
 
-Proxy::Proxy(ToolSpec spec) noexcept : spec_(std::move(spec)), radius_(spec_.radius_m)
-{
-    clearances_m_.fill(kInfinity);
-    object_velocities_.fill(Vec3(0.0, 0.0, 0.0));
-}
+Proxy::Proxy(ToolSpec spec) noexcept : spec_(std::move(spec)), radius_(spec_.radius_m) {}
 
-ToolOutput Proxy::respond(const ToolGoal& goal, std::span<const PlacedSurface> surfaces) noexcept
+ToolOutput Proxy::respond(const ToolGoal& goal, std::span<const PlacedSurface> surfaces,
+                          double clear_m) noexcept
 {
     anchor_ = position_;
     radius_ = find_radius(surfaces);
     is_crowded_ = false;
     path_.clear();
     path_.push_back(position_);
-    const double travel = free_travel(surfaces);
+    const double travel = free_travel(surfaces, clear_m);
     const bool frozen = !(travel > 0.0);
     Motion motion = Motion::held_back;
     if (frozen)
@@ -178,9 +175,9 @@ double Proxy::find_radius(std::span<const PlacedSurface> surfaces) const noexcep
 }
 
 /// How far the proxy may move with the tool still inside what is proven; <= 0 is not at all.
-double Proxy::free_travel(std::span<const PlacedSurface> surfaces) const noexcept
+double Proxy::free_travel(std::span<const PlacedSurface> surfaces, double clear_m) const noexcept
 {
-    double travel = kInfinity;
+    double travel = clear_m - radius_;
     for (const PlacedSurface& placed : surfaces)
     {
         travel = std::min(travel, known(placed) - radius_);
@@ -333,8 +330,7 @@ Proxy::Hold Proxy::hold_at(Vicinity& near, std::span<const PlacedSurface> surfac
     for (std::size_t i = 0; i < held.held_by.size(); ++i)
     {
         const std::uint32_t plane = held.held_by[i];
-        const std::uint32_t object = near.surface_of(touching.faces[plane]);
-        press(hold, *surfaces[object].material, object,
+        press(hold, surfaces[near.surface_of(touching.faces[plane])],
               held.reactions[i] * touching.planes[plane].normal);
     }
     if (hold.touches)
@@ -358,12 +354,12 @@ Proxy::Hold Proxy::hold_at(Vicinity& near, std::span<const PlacedSurface> surfac
 }
 
 /// Adds one plane that touches; `depth` is how far the goal is behind it, along its normal.
-void Proxy::press(Hold& hold, const Material& material, std::uint32_t object,
-                  const Vec3& depth) const noexcept
+void Proxy::press(Hold& hold, const PlacedSurface& placed, const Vec3& depth) const noexcept
 {
+    const Material& material = *placed.material;
     const double length = depth.norm();
     const double stiffness = std::min(spec_.stiffness_n_per_m, material.stiffness_n_per_m);
-    hold.object = length >= hold.deepest_m ? object : hold.object;
+    hold.object = length >= hold.deepest_m ? placed.object : hold.object;
     hold.deepest_m = std::max(hold.deepest_m, length);
     hold.touches = hold.touches || length > 0.0;
     hold.push_n += stiffness * depth;
@@ -372,7 +368,7 @@ void Proxy::press(Hold& hold, const Material& material, std::uint32_t object,
     hold.static_m += material.static_friction * length;
     hold.dynamic_m += material.dynamic_friction * length;
     hold.damping += material.damping_n_s_per_m * length;
-    hold.velocity += object_velocities_[object] * length;
+    hold.velocity += placed.memory->velocity_m_per_s * length;
 }
 
 /// Friction begins where the tool touches, so it goes there straight.
@@ -408,62 +404,66 @@ void Proxy::keep_clearances(std::span<const PlacedSurface> surfaces, const Vicin
     {
         const DistanceAnswer& answer = surfaces[i].surface->answer;
         const double scale = surfaces[i].pose->scale;
-        clearances_m_[i] = answer.lower_m * scale - moved;
+        double clearance_m = answer.lower_m * scale - moved;
         if (near != nullptr)
         {
             const Vec3 place = position_ - near->center_m();
             const double known = answer.certified_radius_m * scale - moved;
             const double listed =
                 std::min(near->reach_m() - place.norm(), near->bound_of_surface(i, place));
-            clearances_m_[i] = std::max(clearances_m_[i], std::min(known, listed));
+            clearance_m = std::max(clearance_m, std::min(known, listed));
         }
+        surfaces[i].memory->clearance_m = clearance_m;
     }
 }
 
-void Proxy::carry(std::span<const ObjectPose> before, std::span<const ObjectPose> now,
-                  double elapsed_s) noexcept
+void Proxy::carry(std::span<const NearObject> objects, double elapsed_s) noexcept
 {
-    const auto along = [&](std::size_t object)
-    { return to_world(now[object], to_model(before[object], position_)); };
-    for (std::size_t i = 0; i < now.size(); ++i)
-    {
-        object_velocities_[i] = (along(i) - position_) / elapsed_s;
-    }
+    const auto along = [this](const NearObject& object)
+    { return to_world(*object.now, to_model(*object.before, position_)); };
     const Vec3 stays = position_;
-    Vec3 target = in_contact_ ? along(hold_.object) : stays;
-    was_overrun_ = is_overrun(target, before, now);
-    if (was_overrun_ && !is_overrun(stays, before, now))
+    Vec3 target = stays;
+    for (const NearObject& object : objects)
+    {
+        object.memory->velocity_m_per_s = (along(object) - position_) / elapsed_s;
+        target = in_contact_ && object.object == hold_.object ? along(object) : target;
+    }
+    was_overrun_ = is_overrun(target, objects);
+    if (was_overrun_ && !is_overrun(stays, objects))
     {
         target = stays;
         was_overrun_ = false;
     }
-    for (std::size_t i = 0; i < now.size() && was_overrun_; ++i)
+    for (std::size_t i = 0; i < objects.size() && was_overrun_; ++i)
     {
-        if (!is_overrun(along(i), before, now))
+        if (!is_overrun(along(objects[i]), objects))
         {
-            target = along(i);
+            target = along(objects[i]);
             was_overrun_ = false;
         }
     }
     position_ = target;
 }
 
+void Proxy::forget(std::uint32_t object) noexcept
+{
+    hold_.object = hold_.object == object ? kNoObject : hold_.object;
+}
+
 /// Whether the proxy could be on the other side of a surface if it goes to `target` while the
 /// objects move.
-bool Proxy::is_overrun(const Vec3& target, std::span<const ObjectPose> before,
-                       std::span<const ObjectPose> now) const noexcept
+bool Proxy::is_overrun(const Vec3& target, std::span<const NearObject> objects) const noexcept
 {
-    for (std::size_t i = 0; i < now.size(); ++i)
-    {
-        const double way = (to_model(now[i], target) - to_model(before[i], position_)).norm();
-        const double way_m = way * std::max(before[i].scale, now[i].scale);
-        const bool moves = way_m > 4.0 * pose_rounding_m(now[i], target, 0.0);
-        if (moves && way_m * (1.0 + kContactTolerance) >= clearances_m_[i])
+    return std::ranges::any_of(
+        objects,
+        [&](const NearObject& object)
         {
-            return true;
-        }
-    }
-    return false;
+            const Vec3 before = to_model(*object.before, position_);
+            const double way = (to_model(*object.now, target) - before).norm();
+            const double way_m = way * std::max(object.before->scale, object.now->scale);
+            const bool moves = way_m > 4.0 * pose_rounding_m(*object.now, target, 0.0);
+            return moves && way_m * (1.0 + kContactTolerance) >= object.memory->clearance_m;
+        });
 }
 
 /// The spring's, and what damps the motion across the surface; together they never pull.

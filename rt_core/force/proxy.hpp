@@ -5,13 +5,13 @@
 #include "rt_core/base/realtime.hpp"
 #include "rt_core/base/static_vector.hpp"
 #include "rt_core/force/catch_up.hpp"
+#include "rt_core/force/near_object.hpp"
 #include "rt_core/force/tool_goal.hpp"
 #include "rt_core/force/vicinity.hpp"
 #include "rt_core/limits.hpp"
 #include "rt_core/records/frame_input.hpp"
 #include "rt_core/records/frame_output.hpp"
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <utility>
@@ -45,7 +45,7 @@ class Proxy
 {
 public:
     Proxy() noexcept = default;
-    explicit Proxy(ToolSpec spec) noexcept;
+    explicit Proxy(ToolSpec spec) noexcept TACTUS_NONBLOCKING;
 
     /// The proxy begins at the first goal; later ones it goes to when it responds.
     void see(const ToolGoal& goal) noexcept TACTUS_NONBLOCKING;
@@ -63,18 +63,20 @@ public:
     [[nodiscard]] bool is_crowded() const noexcept { return is_crowded_; }
 
     /// The objects move. The proxy goes along with the one that it touches, or that would run over
-    /// it; else it stays. Where one of them runs over it whatever it does, it is squeezed. As many
-    /// poses as objects; once a frame, before the surfaces are queried.
-    void carry(std::span<const ObjectPose> before, std::span<const ObjectPose> now,
-               double elapsed_s) noexcept TACTUS_NONBLOCKING;
+    /// it; else it stays. Where one of them runs over it whatever it does, it is squeezed. Once a
+    /// frame, before the surfaces are queried.
+    void carry(std::span<const NearObject> objects, double elapsed_s) noexcept TACTUS_NONBLOCKING;
+    /// The object is another from now on, or gone.
+    void forget(std::uint32_t object) noexcept TACTUS_NONBLOCKING;
 
-    /// Moves towards the goal and returns the force. `surfaces`, one for each object in order, were
-    /// queried at position_m().
-    [[nodiscard]] ToolOutput
-    respond(const ToolGoal& goal,
-            std::span<const PlacedSurface> surfaces) noexcept TACTUS_NONBLOCKING;
+    /// Moves towards the goal and returns the force. `surfaces` were queried at position_m(); from
+    /// everything else it is at least `clear_m` away there.
+    [[nodiscard]] ToolOutput respond(const ToolGoal& goal, std::span<const PlacedSurface> surfaces,
+                                     double clear_m) noexcept TACTUS_NONBLOCKING;
 
 private:
+    static constexpr std::uint32_t kNoObject = 0xFFFF'FFFFU;
+
     enum class Motion : std::uint8_t
     {
         at_rest,   ///< At the goal, or held by the surface.
@@ -99,13 +101,14 @@ private:
         double damping{0.0};
         Vec3 velocity{0.0, 0.0, 0.0}; ///< The objects'.
         double deepest_m{0.0};
-        std::uint32_t object{0}; ///< Whose plane that is.
+        std::uint32_t object{kNoObject}; ///< Whose plane that is.
         bool touches{false};
         bool is_squeezed{false};
     };
 
     [[nodiscard]] double find_radius(std::span<const PlacedSurface> surfaces) const noexcept;
-    [[nodiscard]] double free_travel(std::span<const PlacedSurface> surfaces) const noexcept;
+    [[nodiscard]] double free_travel(std::span<const PlacedSurface> surfaces,
+                                     double clear_m) const noexcept;
     [[nodiscard]] bool is_short_of(std::span<const PlacedSurface> surfaces,
                                    double travel) const noexcept;
     [[nodiscard]] Motion follow(const Vec3& goal, double travel,
@@ -117,14 +120,13 @@ private:
     void go_straight_on(const Vec3& goal, double clear) noexcept;
     [[nodiscard]] Hold hold_at(Vicinity& near, std::span<const PlacedSurface> surfaces,
                                const Vec3& wanted, double gap_m) noexcept;
-    void press(Hold& hold, const Material& material, std::uint32_t object,
-               const Vec3& depth) const noexcept;
+    void press(Hold& hold, const PlacedSurface& placed, const Vec3& depth) const noexcept;
     [[nodiscard]] Vec3 go_to_contact(Vicinity& near, const Vec3& wanted,
                                      const Vec3& motion) const noexcept;
     [[nodiscard]] Vec3 rub(Hold& hold, const Vec3& slip) noexcept;
     void keep_clearances(std::span<const PlacedSurface> surfaces, const Vicinity* near) noexcept;
-    [[nodiscard]] bool is_overrun(const Vec3& target, std::span<const ObjectPose> before,
-                                  std::span<const ObjectPose> now) const noexcept;
+    [[nodiscard]] bool is_overrun(const Vec3& target,
+                                  std::span<const NearObject> objects) const noexcept;
     [[nodiscard]] Vec3 force(const ToolGoal& goal) const noexcept;
     [[nodiscard]] Vec3 caught_up(const ToolGoal& goal) noexcept;
     [[nodiscard]] Vec3 held_force(const Vec3& goal) const noexcept;
@@ -146,9 +148,6 @@ private:
     bool was_overrun_{false};
     bool is_crowded_{false};
     StaticVector<Vec3, 2 * kProxySteps + 2> path_; ///< A leap goes by two places.
-    /// The proxy may move by this much before it is on the other side of the object's surface.
-    std::array<double, kMaxObjects> clearances_m_{};
-    std::array<Vec3, kMaxObjects> object_velocities_{}; ///< At the proxy.
 };
 
 } // namespace tactus

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "rt_core/force/rigid_proxy.hpp"
 
+#include "rt_core/force/angular_stiffness.hpp"
 #include "rt_core/math/infinity.hpp"
 #include "rt_core/math/rotation.hpp"
 
@@ -34,22 +35,36 @@ Motion<6> to_motion(const Vec3& translation, const Vec3& rotation) noexcept
     return motion;
 }
 
-Vec3 clamped(const Vec3& vector, double most) noexcept
+/// How much of it is no longer than this.
+double share_within(const Vec3& vector, double most) noexcept
 {
     const double length = vector.norm();
-    return length > most ? Vec3(vector * (most / length)) : vector;
+    return length > most ? most / length : 1.0;
+}
+
+/// The core's ball and the radius.
+double arm_of(const ToolSpec& spec) noexcept
+{
+    const double core_m = PlacedCore(spec.core, Similarity{}).radius();
+    return core_m + std::max(spec.radius_m, kLeastSkin * core_m);
 }
 
 } // namespace
 
+double angular_stiffness_nm_per_rad(const ToolSpec& spec) noexcept
+{
+    const bool turns = !spec.passes_through && !std::holds_alternative<PointCore>(spec.core);
+    const double arm_m = turns ? arm_of(spec) : 0.0;
+    return spec.stiffness_n_per_m * arm_m * arm_m;
+}
+
 RigidProxy::RigidProxy(const ToolSpec& spec, Planes& planes) noexcept
-    : spec_(spec), planes_(&planes)
+    : spec_(spec), arm_m_(arm_of(spec)), planes_(&planes)
 {
     const PlacedCore core(spec.core, Similarity{});
     center_m_ = core.center();
     core_radius_m_ = core.radius();
     radius_m_ = std::max(spec.radius_m, kLeastSkin * core_radius_m_);
-    arm_m_ = core_radius_m_ + radius_m_;
 }
 
 void RigidProxy::see(const ToolGoal& goal) noexcept
@@ -57,6 +72,22 @@ void RigidProxy::see(const ToolGoal& goal) noexcept
     if (!is_joined_)
     {
         place_ = {goal.rotation, goal.position_m, 1.0};
+    }
+}
+
+void RigidProxy::forget(std::uint32_t object) noexcept
+{
+    std::size_t kept = 0;
+    for (const Hold& hold : holds_)
+    {
+        if (hold.object != object)
+        {
+            holds_[kept++] = hold;
+        }
+    }
+    while (holds_.size() > kept)
+    {
+        (void)holds_.pop_back();
     }
 }
 
@@ -80,11 +111,11 @@ Motion<6> RigidProxy::way_to(const ToolGoal& goal) const noexcept
     return to_motion(goal.position_m - place_.translation_m, arm_m_ * turn);
 }
 
-ToolOutput RigidProxy::respond(const ToolGoal& goal,
-                               std::span<const PlacedSurface> surfaces) noexcept
+ToolOutput RigidProxy::respond(const ToolGoal& goal, std::span<const PlacedSurface> surfaces,
+                               double clear_m) noexcept
 {
     ToolOutput output;
-    const Room room = find_room(surfaces);
+    const Room room = find_room(surfaces, clear_m);
     const bool has_waited = frozen_s_ > 0.0;
     is_squeezed_ = false;
     is_crowded_ = false;
@@ -112,9 +143,10 @@ ToolOutput RigidProxy::respond(const ToolGoal& goal,
     return output;
 }
 
-RigidProxy::Room RigidProxy::find_room(std::span<const PlacedSurface> surfaces) const noexcept
+RigidProxy::Room RigidProxy::find_room(std::span<const PlacedSurface> surfaces,
+                                       double clear_m) const noexcept
 {
-    Room room{kInfinity, true, false};
+    Room room{std::min(clear_m - radius_m_, kMostOfDistance * clear_m), clear_m > 0.0, false};
     for (const PlacedSurface& placed : surfaces)
     {
         const bool is_exact = placed.surface->answer.kind == AnswerKind::exact;
@@ -253,8 +285,14 @@ void RigidProxy::add_holds(std::span<const PlacedSurface> surfaces) noexcept
     std::size_t kept = 0;
     for (const Hold& hold : holds_)
     {
-        const ObjectPose& pose = *surfaces[hold.object].pose;
-        const Touch touch{hold.object, place_.translation_m + place_.rotation * hold.on_tool_m,
+        const auto placed = std::ranges::find(surfaces, hold.object, &PlacedSurface::object);
+        if (placed == surfaces.end())
+        {
+            continue;
+        }
+        const ObjectPose& pose = *placed->pose;
+        const Touch touch{static_cast<std::uint32_t>(placed - surfaces.begin()),
+                          place_.translation_m + place_.rotation * hold.on_tool_m,
                           to_world(pose, hold.on_surface_m), pose.rotation * hold.normal};
         const Vec3 gap = touch.on_tool_m - touch.on_surface_m;
         const double height = touch.normal.dot(gap);
@@ -296,8 +334,9 @@ void RigidProxy::keep_holds(const NearestMotion<6>& nearest,
     {
         last_normals_.push_back(planes_->spaces[plane].normal);
         const Touch& touch = planes_->touches[plane];
-        const ObjectPose& pose = *surfaces[touch.object].pose;
-        keep({touch.object, place_.rotation.transpose() * (touch.on_tool_m - place_.translation_m),
+        const ObjectPose& pose = *surfaces[touch.surface].pose;
+        keep({surfaces[touch.surface].object,
+              place_.rotation.transpose() * (touch.on_tool_m - place_.translation_m),
               to_model(pose, touch.on_surface_m), pose.rotation.transpose() * touch.normal});
     }
 }
@@ -324,9 +363,13 @@ void RigidProxy::keep(const Hold& hold) noexcept
 
 void RigidProxy::add_force(const Motion<6>& held_back, ToolOutput& output) const noexcept
 {
-    const double stiffness = spec_.stiffness_n_per_m;
-    output.force_n = clamped(stiffness * held_back.head<3>(), spec_.force_max_n);
-    output.torque_nm = clamped(stiffness * arm_m_ * held_back.tail<3>(), spec_.torque_max_nm);
+    const Vec3 force_n = spec_.stiffness_n_per_m * held_back.head<3>();
+    const Vec3 torque_nm = spec_.stiffness_n_per_m * arm_m_ * held_back.tail<3>();
+    const double most_nm = spec_.torque_max_nm;
+    double share = share_within(force_n, spec_.force_max_n);
+    share = most_nm > 0.0 ? std::min(share, share_within(torque_nm, most_nm)) : share;
+    output.force_n = share * force_n;
+    output.torque_nm = most_nm > 0.0 ? Vec3(share * torque_nm) : Vec3(0.0, 0.0, 0.0);
 }
 
 } // namespace tactus

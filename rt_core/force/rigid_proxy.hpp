@@ -48,7 +48,7 @@ public:
     /// A plane of the step, and where it comes from; world frame.
     struct Touch
     {
-        std::uint32_t object{0};
+        std::uint32_t surface{0}; ///< Of the step's.
         Vec3 on_tool_m{0.0, 0.0, 0.0};
         Vec3 on_surface_m{0.0, 0.0, 0.0};
         Vec3 normal{0.0, 0.0, 0.0};
@@ -61,7 +61,7 @@ public:
     };
 
     /// `planes` may serve many proxies, one after the other, and outlives them.
-    RigidProxy(const ToolSpec& spec, Planes& planes) noexcept;
+    RigidProxy(const ToolSpec& spec, Planes& planes) noexcept TACTUS_NONBLOCKING;
 
     /// What the tool keeps round its core.
     [[nodiscard]] double radius_m() const noexcept { return radius_m_; }
@@ -77,22 +77,23 @@ public:
     /// A proxy that is nowhere yet is at the hand; else nothing changes before it responds.
     void see(const ToolGoal& goal) noexcept TACTUS_NONBLOCKING;
     /// Objects that move push it in its next step.
-    void carry(std::span<const ObjectPose> /*before*/, std::span<const ObjectPose> /*now*/,
+    void carry(std::span<const NearObject> /*objects*/,
                double /*elapsed_s*/) noexcept TACTUS_NONBLOCKING
     {
     }
+    /// The object is another from now on, or gone.
+    void forget(std::uint32_t object) noexcept TACTUS_NONBLOCKING;
 
-    /// One step towards the hand, and its force. `surfaces` were queried where the proxy is, as
-    /// many and in the order as in every frame.
-    [[nodiscard]] ToolOutput
-    respond(const ToolGoal& goal,
-            std::span<const PlacedSurface> surfaces) noexcept TACTUS_NONBLOCKING;
+    /// One step towards the hand, and its force. `surfaces` were queried where the proxy is; from
+    /// everything else its core is at least `clear_m` away there.
+    [[nodiscard]] ToolOutput respond(const ToolGoal& goal, std::span<const PlacedSurface> surfaces,
+                                     double clear_m) noexcept TACTUS_NONBLOCKING;
 
 private:
     /// A place where the tool was held, kept while the tool has not slid away from it.
     struct Hold
     {
-        std::uint32_t object{0};
+        std::uint32_t object{0};          ///< Its number in the scene.
         Vec3 on_tool_m{0.0, 0.0, 0.0};    ///< In the tool's frame.
         Vec3 on_surface_m{0.0, 0.0, 0.0}; ///< In the object's.
         Vec3 normal{0.0, 0.0, 0.0};       ///< In the object's.
@@ -105,7 +106,8 @@ private:
         bool is_crossed{false}; ///< The core is known to touch something.
     };
 
-    [[nodiscard]] Room find_room(std::span<const PlacedSurface> surfaces) const noexcept;
+    [[nodiscard]] Room find_room(std::span<const PlacedSurface> surfaces,
+                                 double clear_m) const noexcept;
     [[nodiscard]] Motion<6> way_to(const ToolGoal& goal) const noexcept;
     [[nodiscard]] double length_of(const Motion<6>& motion) const noexcept;
     void step(const ToolGoal& goal, std::span<const PlacedSurface> surfaces, double free_m,

@@ -52,6 +52,8 @@ SafeState::SafeState(const SafetyLimits& limits) noexcept : limits_(limits)
     TACTUS_ASSERT(limits.stiffness_n_per_m >= 0.0);
     TACTUS_ASSERT(limits.damping_n_s_per_m >= 0.0);
     TACTUS_ASSERT(limits.torque_max_nm >= 0.0);
+    TACTUS_ASSERT(limits.stiffness_nm_per_rad >= 0.0);
+    TACTUS_ASSERT(limits.damping_nm_s_per_rad >= 0.0);
 }
 
 SafetyOutput SafeState::step(const SafetyInput& input) noexcept
@@ -74,20 +76,24 @@ SafetyOutput SafeState::fade(double elapsed_s, ForceOff cause) noexcept
     gain_ = std::max(gain_ - elapsed_s / kFadeTime_s, 0.0);
     is_following_ = false;
     velocity_m_per_s_ = Vec3(0.0, 0.0, 0.0);
+    turning_rad_per_s_ = Vec3(0.0, 0.0, 0.0);
     return output(cause);
 }
 
 SafetyOutput SafeState::output(ForceOff causes) noexcept
 {
-    const double damping = 4.0 * gain_ * (1.0 - gain_) * limits_.damping_n_s_per_m;
-    const Vec3 damping_n =
-        shortened(-damping * velocity_m_per_s_, kDampingForceShare * limits_.force_max_n);
+    const double share = 4.0 * gain_ * (1.0 - gain_);
+    const Vec3 damping_n = shortened(-share * limits_.damping_n_s_per_m * velocity_m_per_s_,
+                                     kDampingForceShare * limits_.force_max_n);
+    const Vec3 damping_nm = shortened(-share * limits_.damping_nm_s_per_rad * turning_rad_per_s_,
+                                      kDampingForceShare * limits_.torque_max_nm);
     const SafetyState state = next_state(causes);
     const bool has_changed = state != state_ || causes != causes_;
     state_ = state;
     causes_ = causes;
-    return {shortened(gain_ * base_n_ + damping_n, limits_.force_max_n), gain_ * base_nm_, state,
-            causes, has_changed};
+    return {shortened(gain_ * base_n_ + damping_n, limits_.force_max_n),
+            shortened(gain_ * base_nm_ + damping_nm, limits_.torque_max_nm), state, causes,
+            has_changed};
 }
 
 /// From the device, or from the ways between new samples over the true times between them.
@@ -97,6 +103,7 @@ void SafeState::observe_speed(const SafetyInput& input) noexcept
     if (!is_good(input) || has_cause(input.causes, ForceOff::disconnect))
     {
         velocity_m_per_s_ = Vec3(0.0, 0.0, 0.0);
+        turning_rad_per_s_ = Vec3(0.0, 0.0, 0.0);
         return;
     }
     const bool is_new = input.sample_time_ns == 0 || input.sample_time_ns != sample_time_ns_;
@@ -112,6 +119,8 @@ void SafeState::observe_speed(const SafetyInput& input) noexcept
     {
         velocity_m_per_s_ = (input.position_m - position_m_) / since_sample_s_;
     }
+    turning_rad_per_s_ =
+        is_finite(input.turning_rad_per_s) ? input.turning_rad_per_s : Vec3(0.0, 0.0, 0.0);
     position_m_ = input.position_m;
     sample_time_ns_ = input.sample_time_ns;
     since_sample_s_ = 0.0;
@@ -129,6 +138,7 @@ ForceOff SafeState::find_causes(const SafetyInput& input) const noexcept
            when(has_fault(input.faults, FrameFault::tool_invalid | FrameFault::tool_jumped) ||
                     !is_finite(input.force_n) || !is_finite(input.torque_nm),
                 ForceOff::garbage) |
+           when(has_fault(input.faults, FrameFault::object_lost), ForceOff::jump) |
            when(has_fault(input.faults, FrameFault::proxy_frozen), ForceOff::frozen) |
            when(has_fault(input.faults, FrameFault::proxy_squeezed), ForceOff::squeezed) |
            when(input.elapsed_periods > 1, ForceOff::stall);
@@ -157,7 +167,9 @@ void SafeState::move_gain(const SafetyInput& input, ForceOff causes) noexcept
 bool SafeState::may_begin(const SafetyInput& input) const noexcept
 {
     const double spring_n = limits_.stiffness_n_per_m * (input.proxy_m - input.position_m).norm();
-    return spring_n <= limits_.force_max_n;
+    const double spring_nm = limits_.stiffness_nm_per_rad * input.twist_rad;
+    return spring_n <= limits_.force_max_n &&
+           (limits_.torque_max_nm <= 0.0 || spring_nm <= limits_.torque_max_nm);
 }
 
 /// At its full gain the frame's force goes out as it is, once it has been caught up with. Where

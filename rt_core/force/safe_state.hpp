@@ -15,12 +15,14 @@ namespace tactus
 /// What one tool's device allows; finite and not negative.
 struct SafetyLimits
 {
-    double speed_max_m_per_s{0.0}; ///< Faster hands get no force.
-    double force_max_n{0.0};       ///< Norm; above zero.
-    double stiffness_n_per_m{0.0}; ///< Of the virtual wall.
-    double damping_n_s_per_m{0.0}; ///< Added while a force fades or comes back: see
-                                   ///< kDampingShare.
-    double torque_max_nm{0.0};     ///< Norm; 0: the device has no torque.
+    double speed_max_m_per_s{0.0};    ///< Faster hands get no force.
+    double force_max_n{0.0};          ///< Norm; above zero.
+    double stiffness_n_per_m{0.0};    ///< Of the virtual wall.
+    double damping_n_s_per_m{0.0};    ///< Added while a force fades or comes back: see
+                                      ///< kDampingShare.
+    double torque_max_nm{0.0};        ///< Norm; 0: the device has no torque.
+    double stiffness_nm_per_rad{0.0}; ///< Of the virtual wall against turning.
+    double damping_nm_s_per_rad{0.0}; ///< As damping_n_s_per_m.
 };
 
 /// What one frame knows about one tool. World frame, SI.
@@ -28,17 +30,19 @@ struct SafetyInput
 {
     Vec3 position_m{0.0, 0.0, 0.0}; ///< Of the sample; used only while it has no fault.
     Vec3 velocity_m_per_s{0.0, 0.0, 0.0};
-    bool has_velocity{false};            ///< False: from the positions.
-    std::int64_t sample_time_ns{0};      ///< 0: the device has none, every sample is new.
-    double elapsed_s{0.0};               ///< Since the last frame, the true one after a stall.
-    std::uint32_t elapsed_periods{1};    ///< The same in whole periods.
-    Vec3 force_n{0.0, 0.0, 0.0};         ///< The frame's.
-    Vec3 torque_nm{0.0, 0.0, 0.0};       ///< The frame's.
-    Vec3 proxy_m{0.0, 0.0, 0.0};         ///< The frame's.
-    FrameFault faults{FrameFault::none}; ///< The frame's of this tool: faults_of().
-    ForceOff causes{ForceOff::none};     ///< What the caller knows of by itself.
-    bool force_was_lost{false};          ///< The device has dropped the last force: a brake, or its
-                                         ///< own watchdog.
+    bool has_velocity{false};              ///< False: from the positions.
+    std::int64_t sample_time_ns{0};        ///< 0: the device has none, every sample is new.
+    double elapsed_s{0.0};                 ///< Since the last frame, the true one after a stall.
+    std::uint32_t elapsed_periods{1};      ///< The same in whole periods.
+    Vec3 force_n{0.0, 0.0, 0.0};           ///< The frame's.
+    Vec3 torque_nm{0.0, 0.0, 0.0};         ///< The frame's.
+    Vec3 proxy_m{0.0, 0.0, 0.0};           ///< The frame's.
+    double twist_rad{0.0};                 ///< Angle between the frame's proxy and the hand.
+    Vec3 turning_rad_per_s{0.0, 0.0, 0.0}; ///< Of the hand, where the device tells it.
+    FrameFault faults{FrameFault::none};   ///< The frame's of this tool: faults_of().
+    ForceOff causes{ForceOff::none};       ///< What the caller knows of by itself.
+    bool force_was_lost{false}; ///< The device has dropped the last force: a brake, or its
+                                ///< own watchdog.
 };
 
 /// What goes to the device.
@@ -74,8 +78,8 @@ struct SafetyOutput
 ///
 /// The device is in reset until its first good sample, and again when it is gone.
 ///
-/// The damping works against the hand's velocity while the gain is between 0 and 1, most at 1/2 and
-/// none at either end, by at most kDampingForceShare of the largest force.
+/// The damping works against the hand's velocities while the gain is between 0 and 1, most at 1/2
+/// and none at either end, by at most kDampingForceShare of the largest force or torque.
 ///
 /// A device that has dropped the force by itself has no ramp left to make: the gain is zero at
 /// once. Haptic thread; some 50 ns.
@@ -115,7 +119,8 @@ private:
     Vec3 position_m_{0.0, 0.0, 0.0}; ///< Of the last new sample.
     std::int64_t sample_time_ns_{0};
     double since_sample_s_{0.0};
-    Vec3 velocity_m_per_s_{0.0, 0.0, 0.0}; ///< Zero when it isn't known.
+    Vec3 velocity_m_per_s_{0.0, 0.0, 0.0};  ///< Zero when it isn't known.
+    Vec3 turning_rad_per_s_{0.0, 0.0, 0.0}; ///< Likewise.
     bool is_too_fast_{false};
 };
 

@@ -77,6 +77,40 @@ const char* find_fault(const DeviceLimits& device) noexcept
     {
         return "device: added_damping_max_n_s_per_m must be finite and >= 0";
     }
+    return find_fault(device.turn);
+}
+
+const char* find_fault(const TurnLimits& turn) noexcept
+{
+    if (!is_not_negative(turn.torque_max_nm))
+    {
+        return "device: torque_max_nm must be finite and >= 0";
+    }
+    if (turn.torque_max_nm > 0.0 && !turn.is_measured)
+    {
+        return "device: a torque needs a rotation that is measured";
+    }
+    const bool turns = turn.torque_max_nm > 0.0;
+    const auto is_good = [turns](double value)
+    { return turns ? is_positive(value) : is_not_negative(value); };
+    if (!is_good(turn.inertia_kg_m2))
+    {
+        return "device: inertia_kg_m2 must be finite and > 0, or 0 without a torque";
+    }
+    if (!is_not_negative(turn.damping_nm_s_per_rad) || !is_not_negative(turn.friction_nm) ||
+        !is_not_negative(turn.quantum_rad))
+    {
+        return "device: damping_nm_s_per_rad, friction_nm and quantum_rad must be finite and >= 0";
+    }
+    if (!is_good(turn.slew_max_nm_per_s) || !is_good(turn.stiffness_max_nm_per_rad))
+    {
+        return "device: slew_max_nm_per_s and stiffness_max_nm_per_rad must be finite and > 0, or "
+               "0 without a torque";
+    }
+    if (!is_not_negative(turn.added_damping_max_nm_s_per_rad))
+    {
+        return "device: added_damping_max_nm_s_per_rad must be finite and >= 0";
+    }
     return nullptr;
 }
 

@@ -41,7 +41,25 @@ stiffness_limits(const DeviceLimits& device, double period_s,
 stiffness_cap(const DeviceLimits& device, double period_s,
               double surface_damping_n_s_per_m = 0.0) noexcept TACTUS_NONBLOCKING;
 
-/// Null, or one line that names the value of `device` that is out of its range.
+/// The turning of a device that makes a torque, as a device of the same law: kg m^2 for kg, N m
+/// s/rad for N s/m, N m for N, rad for m. So all that is said of K holds for a rotational spring,
+/// in N m/rad. It doesn't turn itself.
+[[nodiscard]] inline DeviceLimits turning_of(const DeviceLimits& device) noexcept
+{
+    const TurnLimits& turn = device.turn;
+    return {.mass_kg = turn.inertia_kg_m2,
+            .damping_n_s_per_m = turn.damping_nm_s_per_rad,
+            .friction_n = turn.friction_nm,
+            .quantum_m = turn.quantum_rad,
+            .delay_s = device.delay_s,
+            .force_max_n = turn.torque_max_nm,
+            .slew_max_n_per_s = turn.slew_max_nm_per_s,
+            .stiffness_max_n_per_m = turn.stiffness_max_nm_per_rad,
+            .added_damping_max_n_s_per_m = turn.added_damping_max_nm_s_per_rad};
+}
+
+/// Null, or one line that names the value that is out of its range.
 [[nodiscard]] const char* find_fault(const DeviceLimits& device) noexcept TACTUS_NONBLOCKING;
+[[nodiscard]] const char* find_fault(const TurnLimits& turn) noexcept TACTUS_NONBLOCKING;
 
 } // namespace tactus

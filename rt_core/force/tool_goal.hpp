@@ -26,6 +26,8 @@ struct ToolGoal
     double elapsed_s{0.0};           ///< Since the last frame.
     Mat3 rotation{Mat3::Identity()}; ///< Of the tool's frame; orthonormal to rounding.
     GoalChange change{GoalChange::none};
+
+    [[nodiscard]] bool operator==(const ToolGoal&) const = default;
 };
 
 } // namespace tactus

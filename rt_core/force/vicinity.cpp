@@ -68,7 +68,7 @@ bool Vicinity::try_gather(double moved_m) noexcept
         TACTUS_ASSERT(surfaces_[s].surface != nullptr);
         TACTUS_ASSERT(surfaces_[s].pose != nullptr);
         const LocalSurface& surface = *surfaces_[s].surface;
-        TACTUS_ASSERT(surface.count <= kMaxLocalTriangles);
+        TACTUS_ASSERT(surface.count <= surface.triangles.size());
         TACTUS_ASSERT(surfaces_[s].pose->scale > 0.0);
         const double scale = surfaces_[s].pose->scale;
         const double reach = (reach_m_ + moved_m) / scale;

@@ -31,6 +31,8 @@ public:
         {
             expect(active_ == expected_, "forest", active_,
                    "faces are active, and the refined records make others");
+            expect(active_ == forest_.active_faces(), "forest", active_,
+                   "faces are active, and it counts others");
             expect(hash_ == forest_.hash_, "forest", active_,
                    "faces are active, and its hash is of others");
         }
@@ -46,8 +48,8 @@ private:
     void check_free_slots() noexcept
     {
         std::uint32_t listed = 0;
-        const std::uint32_t free = forest_.capacity() - forest_.active_faces();
-        for (std::uint32_t i = forest_.first_free_; listed < free; ++listed)
+        const std::uint32_t free = forest_.pool_->capacity() - forest_.pool_->used();
+        for (std::uint32_t i = forest_.pool_->first_free_; listed < free; ++listed)
         {
             if (!expect(i < forest_.faces_.size(), "prim", i, "is free and not there") ||
                 !expect(forest_.faces_[i].id.is_none(), "prim", i, "is active and free"))
@@ -59,12 +61,19 @@ private:
         const auto none = static_cast<std::uint32_t>(
             std::ranges::count_if(forest_.faces_, [](const VertexForest::ActiveFace& face)
                                   { return face.id.is_none(); }));
-        expect(none == free, "forest", none, "slots hold no face, and its index has others");
+        expect(none == free, "forest", none, "slots hold no face, and its pool counts others");
+        expect(forest_.pool_->index_list_.size() == forest_.pool_->used(), "forest",
+               forest_.pool_->index_list_.size(),
+               "faces are in its index, and its pool has others");
     }
 
     void check_page(std::uint32_t slot) noexcept
     {
         const PageTable::Meta& meta = forest_.pages_->meta(slot);
+        if (!forest_.pages_->is_own(slot))
+        {
+            return;
+        }
         for (std::uint64_t left = meta.refined; left != 0; left &= left - 1)
         {
             const auto place = static_cast<std::uint32_t>(std::countr_zero(left));
@@ -107,7 +116,7 @@ private:
     void check_face(PrimId prim) noexcept
     {
         const VertexForest::ActiveFace& face = forest_.faces_[prim.value];
-        if (face.id.is_none())
+        if (face.id.is_none() || is_of_others(prim, face))
         {
             return;
         }
@@ -123,6 +132,16 @@ private:
         const ErrorCode error = forest_.error_in(face.id, face.state);
         hash_ += VertexForest::hash_of(face, error);
         check_tree(prim, error);
+    }
+
+    /// The tree says whose a face is that it has placed, the index list that of others.
+    [[nodiscard]] bool is_of_others(PrimId prim,
+                                    const VertexForest::ActiveFace& face) const noexcept
+    {
+        const AbTree& tree = *forest_.tree_;
+        const std::uint32_t leaf = tree.leaf_of(prim);
+        return leaf == AbTree::kNoLeaf ? forest_.find(face.id) != prim
+                                       : !tree.is_block_in_use(leaf / kBlockFaces);
     }
 
     /// The state's record is refined and gave the face that state.

@@ -16,7 +16,7 @@ namespace tactus
 ///     records   what a refined one depends on is refined, and less deep; the faces that it brought
 ///               are active, and no others
 ///     tree      has each face with the forest's id, error and corners
-///     slots     free ones are in one list
+///     slots     free ones of the pool are in one list
 ///     hash      is that of the active faces
 ///
 /// One look at each face and refined record, with a look-up for each corner and fan face.

@@ -47,14 +47,17 @@ std::uint32_t next_corner(std::uint32_t place, std::uint32_t by) noexcept
 
 } // namespace
 
-VertexForest::VertexForest(Arena& arena, const ModelCounts& counts, PageSlots slots,
-                           PageTable& pages, AbTree& tree, std::uint32_t face_capacity) noexcept
+VertexForest::VertexForest(const Arena& arena, FacePool& faces, ModelId owner, std::uint32_t least,
+                           const ModelCounts& counts, PageSlots slots, PageTable& pages,
+                           AbTree& tree) noexcept
     : counts_(counts)
     , slots_(slots)
     , pages_(&pages)
     , tree_(&tree)
-    , faces_(arena.take<ActiveFace>(face_capacity))
-    , index_list_(arena, face_capacity)
+    , pool_(&faces)
+    , faces_(faces.faces())
+    , owner_(owner.value)
+    , share_(faces.promise(least))
 {
     if (arena.is_measuring())
     {
@@ -62,12 +65,8 @@ VertexForest::VertexForest(Arena& arena, const ModelCounts& counts, PageSlots sl
     }
     TACTUS_ASSERT(slots.base.faces.size() == counts.base_faces);
     TACTUS_ASSERT(tree.root().is_none());
-    TACTUS_ASSERT(face_capacity >= counts.base_faces);
-    TACTUS_ASSERT(tree.capacities().prims >= face_capacity);
-    for (std::uint32_t i = 0; i < face_capacity; ++i)
-    {
-        faces_[i].corners[0] = VertexId{i + 1};
-    }
+    TACTUS_ASSERT(faces.left_for(share_) >= counts.base_faces);
+    TACTUS_ASSERT(tree.pool().prims().size() >= faces.capacity());
     for (std::uint32_t i = 0; i < counts.base_faces; ++i)
     {
         const BaseFace& face = slots_.base.faces[i];
@@ -104,7 +103,7 @@ VertexForest::SplitOutcome VertexForest::split(RecordId id, const VsplitRecord& 
     {
         return SplitOutcome::inconsistent;
     }
-    if (capacity() - active_faces() < 2)
+    if (pool_->left_for(share_) < 2)
     {
         return SplitOutcome::full;
     }
@@ -315,14 +314,7 @@ bool VertexForest::find_star(RecordId id, const VsplitRecord& record,
 PrimId VertexForest::add_face(const ActiveFace& face, ErrorCode error, std::uint32_t bucket,
                               const std::array<Vec3f, 3>& corners_m) noexcept
 {
-    TACTUS_ASSERT(first_free_ < faces_.size());
-    const PrimId prim{first_free_};
-    TACTUS_ASSERT(!face.id.is_none());
-    TACTUS_ASSERT(faces_[prim.value].id.is_none());
-    first_free_ = faces_[prim.value].corners[0].value;
-    faces_[prim.value] = face;
-    const bool inserted = index_list_.try_insert(face.id.value, prim.value);
-    TACTUS_ASSERT(inserted);
+    const PrimId prim = pool_->take(share_, owner_, face);
     active_max_ = active_faces() > active_max_ ? active_faces() : active_max_;
     hash_ += hash_of(face, error);
     tree_->insert({prim, face.id, bucket, error, corners_m});
@@ -331,14 +323,9 @@ PrimId VertexForest::add_face(const ActiveFace& face, ErrorCode error, std::uint
 
 void VertexForest::remove_face(PrimId prim) noexcept
 {
-    ActiveFace& face = faces_[prim.value];
-    TACTUS_ASSERT(!face.id.is_none());
-    hash_ -= hash_of(face, error_of(prim));
-    index_list_.erase(face.id.value);
+    hash_ -= hash_of(faces_[prim.value], error_of(prim));
     tree_->remove(prim);
-    face = ActiveFace{};
-    face.corners[0] = VertexId{first_free_};
-    first_free_ = prim.value;
+    pool_->give_back(share_, owner_, prim);
 }
 
 void VertexForest::move_corner(FanFace fan, VertexId to, const Vec3f& position_m, FaceState state,

@@ -3,10 +3,9 @@
 #pragma once
 
 #include "rt_core/abtree/ab_tree.hpp"
-#include "rt_core/base/arena.hpp"
 #include "rt_core/base/assert.hpp"
-#include "rt_core/base/id_table.hpp"
 #include "rt_core/base/realtime.hpp"
+#include "rt_core/forest/face_pool.hpp"
 #include "rt_core/records/changed_face.hpp"
 #include "rt_core/spm/page_table.hpp"
 
@@ -17,9 +16,9 @@
 namespace tactus
 {
 
-/// The vertex forest of one model: which faces are active now, and the two operations that change
-/// that. A split or a merge is a table write over one star; there is no adjacency structure. Each
-/// change goes straight to the AB-Tree, whose boxes are right again after its refit().
+/// The vertex forest of one model: which of its faces are active now, and the two operations that
+/// change that. A split or a merge is a table write over one star; there is no adjacency structure.
+/// Each change goes straight to the AB-Tree, whose boxes are right again after its refit().
 ///
 /// The cut it holds is dependency-closed: a record is split only when each fan face is in the state
 /// that the record expects, and merged only when each star face is in the state that the
@@ -30,13 +29,7 @@ namespace tactus
 class VertexForest
 {
 public:
-    /// One active face: 20 B, besides 16 B in the index list.
-    struct ActiveFace
-    {
-        FaceId id{};
-        std::array<VertexId, 3> corners{};
-        FaceState state;
-    };
+    using ActiveFace = tactus::ActiveFace;
 
     /// The star of a record that was just split, laid out as a block is: lane i is the face at
     /// place i of the star, row 0 is v, row 1 is u, and w0 .. wk follow.
@@ -53,10 +46,12 @@ public:
         inconsistent, ///< The record contradicts the faces it names: a fault of the model.
     };
 
-    /// Memory for at most `face_capacity` active faces, at least the base mesh's, which must be
-    /// in `slots.base` already and enters the tree. `tree` is empty and has as many prims.
-    VertexForest(Arena& arena, const ModelCounts& counts, PageSlots slots, PageTable& pages,
-                 AbTree& tree, std::uint32_t face_capacity) noexcept;
+    /// The base mesh must be in `slots.base` already and enters the tree, which is empty and the
+    /// same owner's, and whose pool has as many prims as `faces` has faces. `least` of these are
+    /// kept for the forest; the base mesh has room. Nothing enters on a `measuring` arena.
+    VertexForest(const Arena& arena, FacePool& faces, ModelId owner, std::uint32_t least,
+                 const ModelCounts& counts, PageSlots slots, PageTable& pages,
+                 AbTree& tree) noexcept;
 
     /// Undoes the record's collapse. The record is linked and not refined, and every record it
     /// depends on is refined (see missing_dependency()).
@@ -81,7 +76,7 @@ public:
         TACTUS_ASSERT(prim.value < faces_.size());
         return faces_[prim.value];
     }
-    [[nodiscard]] PrimId find(FaceId face) const noexcept { return {index_list_.find(face.value)}; }
+    [[nodiscard]] PrimId find(FaceId face) const noexcept { return pool_->find(face, owner_); }
     /// kNextExact, kNextPending, or the id of the record that splits the face next.
     [[nodiscard]] std::uint32_t next_of(PrimId prim) const noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] ErrorCode error_of(PrimId prim) const noexcept TACTUS_NONBLOCKING;
@@ -91,12 +86,10 @@ public:
     /// The face as it is now, for a tree that has no place for it yet.
     [[nodiscard]] ChangedFace describe(PrimId prim) const noexcept TACTUS_NONBLOCKING;
 
-    [[nodiscard]] std::uint32_t active_faces() const noexcept { return index_list_.size(); }
+    [[nodiscard]] std::uint32_t active_faces() const noexcept { return share_.used; }
     [[nodiscard]] std::uint32_t active_faces_max() const noexcept { return active_max_; }
-    [[nodiscard]] std::uint32_t capacity() const noexcept
-    {
-        return static_cast<std::uint32_t>(faces_.size());
-    }
+    /// Of the pool.
+    [[nodiscard]] std::uint32_t capacity() const noexcept { return pool_->capacity(); }
     [[nodiscard]] std::uint32_t refined_records() const noexcept { return refined_count_; }
 
     /// Commutative sum over (face id, error, corners) of the active faces: the same cut has the
@@ -138,9 +131,10 @@ private:
     PageSlots slots_;
     PageTable* pages_;
     AbTree* tree_;
-    std::span<ActiveFace> faces_; ///< A free slot holds the next free one in its first corner.
-    IdTable index_list_;
-    std::uint32_t first_free_{0};
+    FacePool* pool_;
+    std::span<ActiveFace> faces_; ///< All of the pool's.
+    std::uint32_t owner_;
+    PoolShare share_;
     std::uint32_t refined_count_{0};
     std::uint32_t active_max_{0};
     std::uint64_t hash_{0};

@@ -21,7 +21,7 @@ Result<Done, FrameRefusal> Frame::start(std::optional<Frame>& frame, Arena& aren
         return FrameRefusal::memory_too_small;
     }
     frame.emplace(PassKey{}, arena, setup);
-    if (frame->model_count_ != setup.models.size())
+    if (frame->model_count() != setup.models.size())
     {
         frame.reset();
         return FrameRefusal::base_refused;
@@ -38,207 +38,600 @@ std::size_t Frame::required_bytes(const FrameSetup& setup) noexcept
 
 Frame::Frame(PassKey /*key*/, Arena& arena, const FrameSetup& setup) noexcept
     : rules_{setup.period_ns, setup.pose_age_max_ns, setup.prediction, setup.variant}
-    , has_meshes_(std::ranges::any_of(setup.tools, &is_mesh))
+    , pools_(arena, pool_capacities(setup.models), static_cast<std::uint32_t>(setup.models.size()))
+    , refinement_(std::ranges::any_of(setup.tools, &is_mesh))
 {
-    for (const ObjectSpec& object : setup.objects)
-    {
-        objects_.push_back(object);
-    }
     if (try_take_models(arena, setup))
     {
+        const SceneCapacities capacities = capacities_of(setup);
+        objects_ = ObjectTable(arena, capacities.objects);
+        broad_ =
+            BroadPhase(arena, capacities.objects, static_cast<std::uint32_t>(setup.tools.size()));
         take_tools(arena, setup);
-        take_pairs(arena, setup);
+        take_pairs(arena, setup, capacities.pairs);
+        if (!arena.is_measuring())
+        {
+            take_objects(setup);
+        }
     }
 }
 
 /// False where a base mesh is damaged; start() sees that its model is missing.
 bool Frame::try_take_models(Arena& arena, const FrameSetup& setup) noexcept
 {
-    for (const ModelSource& source : setup.models)
+    const std::size_t count = setup.models.size();
+    models_ = ModelSet(arena, count);
+    is_shown_ = arena.take<bool>(count);
+    model_outputs_ = arena.take<ModelOutput>(count);
+    for (std::uint32_t i = 0; i < count; ++i)
     {
-        if (!try_take_model(models_[model_count_], arena, source, setup))
+        std::optional<Model> measured;
+        std::optional<Model>& model = arena.is_measuring() ? measured : models_.next();
+        if (!try_take_model(model, arena, pools_, {i}, setup))
         {
             return false;
         }
-        ++model_count_;
+        if (!arena.is_measuring())
+        {
+            is_shown_[i] = true;
+            models_.add(frame_);
+        }
     }
+    pools_.cache.set_period(setup.period_ns);
     return true;
 }
 
 void Frame::take_tools(Arena& arena, const FrameSetup& setup) noexcept
 {
     tools_ = arena.take<Tool>(setup.tools.size());
-    const auto planes = arena.take<RigidProxy::Planes>(
-        std::ranges::any_of(setup.tools, &Tool::is_held_as_body) ? 1 : 0);
+    planes_ = arena
+                  .take<RigidProxy::Planes>(
+                      std::ranges::any_of(setup.tools, &Tool::is_held_as_body) ? 1 : 0)
+                  .data();
     for (std::size_t i = 0; i < setup.tools.size() && !arena.is_measuring(); ++i)
     {
         const auto* mesh = std::get_if<MeshCore>(&setup.tools[i].core);
         const ModelId model = mesh != nullptr ? mesh->model : ModelId{0};
-        tools_[i] = Tool(described(setup.tools[i], models_[model.value]->header), planes.data());
+        is_shown_[model.value] = is_shown_[model.value] && mesh == nullptr;
+        tools_[i] = Tool(described(setup.tools[i], models_[model].header), planes_);
     }
 }
 
-void Frame::take_pairs(Arena& arena, const FrameSetup& setup) noexcept
+void Frame::take_pairs(Arena& arena, const FrameSetup& setup, std::uint32_t count) noexcept
 {
-    const std::size_t count = setup.tools.size() * setup.objects.size();
-    pairs_ = arena.take<Pair>(count);
-    rehearsed_ = arena.take<LocalSurface>(1).data();
-    const PairMemory memory = PairMemory::take(arena, setup.tools, count);
-    for (std::size_t i = 0; i < count && !arena.is_measuring(); ++i)
+    pairs_ = AwakePairs(arena, setup.tools, count);
+    const std::size_t triangles = kMaxLocalTriangles * std::min<std::size_t>(count, kLocalSurfaces);
+    room_ = {arena.take<LocalTriangle>(triangles), arena.take<double>(triangles)};
+}
+
+void Frame::take_objects(const FrameSetup& setup) noexcept
+{
+    for (std::uint32_t i = 0; i < setup.objects.size(); ++i)
     {
-        const std::size_t tool = i / objects_.size();
-        const std::size_t object = i % objects_.size();
-        const ModelId model = objects_[object].model;
-        PairParts parts;
-        parts.tool_index = static_cast<std::uint32_t>(tool);
-        parts.object_index = static_cast<std::uint32_t>(object);
-        parts.rules = &rules_;
-        parts.tool = &tools_[tool];
-        parts.object = &objects_[object];
-        parts.pose = &poses_[object];
-        parts.model = {model, &*models_[model.value]};
-        if (const auto* mesh = std::get_if<MeshCore>(&tools_[tool].spec().core); mesh != nullptr)
-        {
-            parts.tool_model = {mesh->model, &*models_[mesh->model.value]};
-        }
-        pairs_[i] = Pair(parts, memory, i);
+        SceneChange change;
+        change.kind = SceneChangeKind::object_comes;
+        change.number = i;
+        change.object = setup.objects[i];
+        change.pose = i < setup.poses.size() ? setup.poses[i] : ObjectPose{};
+        const Vec3 origin_m = models_[change.object.model].header.origin_m();
+        objects_.make(change, origin_m, 0);
+        place(i);
     }
 }
 
-FrameOutput Frame::run(std::span<const ToolState> tools, std::span<const ObjectPose> poses,
-                       const Budgets& budgets, StageMark mark) noexcept
+FrameOutput Frame::run(const FrameInput& input, StageMark mark) noexcept
 {
+    const Budgets& budgets = input.budgets;
     ++frame_;
     work_ = WorkCounters{};
+    scene_.walks = 0;
+    scene_.refused = {};
     faults_ = FrameFault::none;
     budgets_ = budgets;
-    begin(tools, poses);
+    rules_.now_ns = input.now_ns;
+    rules_.frame = frame_;
+    change_scene(input.changes);
+    begin(input.tools);
+    if (try_rest(input))
+    {
+        for (const Stage stage :
+             {Stage::load, Stage::refine, Stage::refit, Stage::query, Stage::force})
+        {
+            mark(stage);
+        }
+        return output();
+    }
+    find_neighbours();
+    for (Pair* pair : pairs_.all())
+    {
+        pair->place(budgets, faults_);
+    }
+    pairs_.order();
+    faults_ |= shedding_.shed(pairs_.by_urgency()) ? FrameFault::pair_shed : FrameFault::none;
+    wake_models();
     load(budgets);
     mark(Stage::load);
     refine(budgets);
     mark(Stage::refine);
     refit();
     mark(Stage::refit);
-    for (Pair& pair : pairs_)
-    {
-        pair.query(budgets, work_, faults_);
-    }
+    query(budgets);
     mark(Stage::query);
     respond();
-    const FrameOutput output = report();
+    report();
     mark(Stage::force);
-    return output;
+    return output();
 }
 
 void Frame::rehearse() noexcept
 {
-    for (const Pair& pair : pairs_)
+    for (const Pair* pair : pairs_.all())
     {
-        pair.rehearse(budgets_, *rehearsed_);
+        pair->rehearse(room_, budgets_); // Nobody asks for the last frame's surfaces any more.
     }
 }
 
-/// Places tools and pairs, before anything is asked where they are.
-void Frame::begin(std::span<const ToolState> tools, std::span<const ObjectPose> poses) noexcept
+/// Before anything else, so that all of the frame sees one scene.
+void Frame::change_scene(std::span<const SceneChange> changes) noexcept
+{
+    const std::size_t taken = std::min<std::size_t>(changes.size(), kMaxSceneChanges);
+    for (const SceneChange& change : changes.first(taken))
+    {
+        if (const std::optional<ChangeRefusal> refusal = try_change(change))
+        {
+            ++scene_.refused[static_cast<std::size_t>(*refusal)];
+        }
+    }
+    scene_.refused[static_cast<std::size_t>(ChangeRefusal::too_many)] +=
+        static_cast<std::uint32_t>(changes.size() - taken);
+}
+
+std::optional<ChangeRefusal> Frame::try_change(const SceneChange& change) noexcept
+{
+    if (change.kind == SceneChangeKind::tool_comes || change.kind == SceneChangeKind::tool_goes)
+    {
+        return try_change_tool(change);
+    }
+    const std::optional<ChangeRefusal> refusal =
+        objects_.find_refusal(change, std::span(is_shown_).first(models_.size()));
+    if (refusal)
+    {
+        return refusal;
+    }
+    const bool comes = change.kind == SceneChangeKind::object_comes;
+    const ModelId model = comes ? change.object.model : objects_[change.number].spec.model;
+    objects_.make(change, models_[model].header.origin_m(), frame_);
+    if (change.kind != SceneChangeKind::object_goes)
+    {
+        place(change.number);
+        return std::nullopt;
+    }
+    broad_.remove(change.number);
+    for (std::size_t i = pairs_.all().size(); i > 0; --i)
+    {
+        Pair& pair = *pairs_.all()[i - 1];
+        if (pair.object() == change.number)
+        {
+            tools_[pair.tool()].forget(pair.placed());
+            end_pair(pair);
+        }
+    }
+    return std::nullopt;
+}
+
+/// A tool that comes knows nothing of what was before.
+std::optional<ChangeRefusal> Frame::try_change_tool(const SceneChange& change) noexcept
+{
+    if (change.number >= tools_.size())
+    {
+        return ChangeRefusal::number_too_big;
+    }
+    Presence& presence = presences_[change.number];
+    const bool comes = change.kind == SceneChangeKind::tool_comes;
+    if (presence.is_here == comes)
+    {
+        return comes ? ChangeRefusal::already_here : ChangeRefusal::not_here;
+    }
+    presence.is_here = comes;
+    presence.clear_m = 0.0;
+    broad_.forget(change.number);
+    for (std::size_t i = pairs_.all().size(); i > 0; --i)
+    {
+        if (pairs_.all()[i - 1]->tool() == change.number)
+        {
+            end_pair(*pairs_.all()[i - 1]);
+        }
+    }
+    tools_[change.number] = Tool(tools_[change.number].spec(), planes_);
+    return std::nullopt;
+}
+
+/// The object's ball holds its model's box, and what it may be off by there.
+void Frame::place(std::uint32_t object) noexcept
+{
+    const ObjectPose& pose = objects_[object].pose;
+    const ModelHeader& header = models_[objects_[object].spec.model].header;
+    const auto& extent = header.fields().extent_quanta;
+    const auto quantum_m = static_cast<double>(header.quantum_m());
+    const Vec3 half_m = 0.5 * quantum_m * Vec3(extent[0], extent[1], extent[2]);
+    const Vec3 center_m = to_world(pose, half_m);
+    const double radius_m = pose.scale * half_m.norm();
+    const double off_m = pose_rounding_m(pose, center_m, radius_m) +
+                         kOriginRounding * header.origin_m().norm() * pose.scale;
+    broad_.place(object, {center_m, radius_m + off_m});
+}
+
+/// Places the tools, before anything is asked where they are.
+void Frame::begin(std::span<const ToolState> tools) noexcept
 {
     TACTUS_ASSERT(tools.size() == tools_.size());
-    TACTUS_ASSERT(poses.size() == objects_.size());
     const double period_s = static_cast<double>(rules_.period_ns) * 1e-9;
-    last_poses_ = poses_;
-    for (std::size_t i = 0; i < poses.size(); ++i)
+    for (std::uint32_t i = 0; i < tools.size(); ++i)
     {
-        const Model& model = *models_[objects_[i].model.value];
-        poses_[i] = model_pose(poses[i], model.header.origin_m());
+        if (!presences_[i].is_here)
+        {
+            continue;
+        }
+        StaticVector<NearObject, kMaxNear> near;
+        for (Pair* pair : pairs_.of(i))
+        {
+            if (!pair->has_moved())
+            {
+                pair->stand();
+            }
+            else if (pair->is_joined())
+            {
+                near.push_back(pair->near());
+            }
+        }
+        faults_ |= tools_[i].begin(tools[i], period_s, near.view());
     }
-    const std::span<const ObjectPose> before{last_poses_.data(), has_poses_ ? poses.size() : 0};
-    for (std::size_t i = 0; i < tools.size(); ++i)
+}
+
+/// What is near each tool becomes a pair, as far as there is room; to the rest it is proven clear.
+void Frame::find_neighbours() noexcept
+{
+    for (std::uint32_t i = 0; i < tools_.size(); ++i)
     {
-        faults_ |= tools_[i].begin(tools[i], period_s, before, {poses_.data(), poses.size()});
+        if (presences_[i].is_here)
+        {
+            const double near_m = rules_.variant.finds_neighbours ? tools_[i].near_m() : kInfinity;
+            broad_.look(i, tools_[i].ball().center, near_m);
+        }
     }
-    has_poses_ = true;
-    for (Pair& pair : pairs_)
+    broad_.walk();
+    const Nearness first_out = first_left_out();
+    const bool has_room_for_all = first_out == kNobody;
+    if (!has_room_for_all || paired_lists_ != broad_.lists())
     {
-        pair.place(budgets_, faults_);
+        pair_up(first_out);
     }
+    paired_lists_ = has_room_for_all ? broad_.lists() : 0;
+    scene_.objects = broad_.objects();
+    scene_.pairs = static_cast<std::uint32_t>(pairs_.all().size());
+    scene_.walks = broad_.walks();
+    find_clearances(first_out);
+}
+
+/// Of what is near and has no room to be a pair, the nearest.
+Frame::Nearness Frame::first_left_out() const noexcept
+{
+    StaticVector<Nearness, std::size_t{kMaxTools} * kMaxNear> each;
+    std::size_t near = 0;
+    for (std::uint32_t tool = 0; tool < tools_.size(); ++tool)
+    {
+        near += broad_.near(tool).size();
+    }
+    if (near <= pairs_.capacity())
+    {
+        return kNobody;
+    }
+    for (std::uint32_t tool = 0; tool < tools_.size(); ++tool)
+    {
+        for (const std::uint32_t object : broad_.near(tool))
+        {
+            each.push_back(nearness(tool, object));
+        }
+    }
+    auto* const first_out = each.begin() + pairs_.capacity();
+    std::nth_element(each.begin(), first_out, each.end());
+    return *first_out;
+}
+
+/// How far beyond where the object could matter to the tool in this frame; no two are alike.
+Frame::Nearness Frame::nearness(std::uint32_t tool, std::uint32_t object) const noexcept
+{
+    const double gap_m =
+        broad_.gap_m(tool, object) - tools_[tool].ball().radius - tools_[tool].stance().reach_m;
+    return {gap_m, tool * kMaxObjects + object};
+}
+
+/// Pairs that are nearer than `first_out` go on or begin, others end.
+void Frame::pair_up(const Nearness& first_out) noexcept
+{
+    for (std::size_t i = pairs_.all().size(); i > 0; --i)
+    {
+        Pair& pair = *pairs_.all()[i - 1];
+        if (!std::ranges::binary_search(broad_.near(pair.tool()), pair.object()) ||
+            !(nearness(pair.tool(), pair.object()) < first_out))
+        {
+            end_pair(pair);
+        }
+    }
+    for (std::uint32_t tool = 0; tool < tools_.size(); ++tool)
+    {
+        for (const std::uint32_t object : broad_.near(tool))
+        {
+            if (nearness(tool, object) < first_out &&
+                !std::ranges::any_of(pairs_.of(tool), [object](const Pair* pair)
+                                     { return pair->object() == object; }))
+            {
+                begin_pair(tool, object);
+            }
+        }
+    }
+}
+
+/// Of everything that is no pair.
+void Frame::find_clearances(const Nearness& first_out) noexcept
+{
+    scene_.crowded_tools = 0;
+    scene_.walled_tools = 0;
+    for (std::uint32_t tool = 0; tool < tools_.size(); ++tool)
+    {
+        Presence& presence = presences_[tool];
+        if (!presence.is_here)
+        {
+            continue;
+        }
+        double clear_m = broad_.clear_m(tool);
+        for (const std::uint32_t object : broad_.near(tool))
+        {
+            const bool is_pair = first_out == kNobody || nearness(tool, object) < first_out;
+            clear_m = is_pair ? clear_m : std::min(clear_m, broad_.gap_m(tool, object));
+        }
+        presence.clear_m = clear_m - tools_[tool].ball().radius;
+        presence.is_crowded = presence.clear_m < tools_[tool].stance().reach_m;
+        scene_.crowded_tools += presence.is_crowded ? 1U : 0U;
+        faults_ |= presence.is_crowded ? FrameFault::scene_crowded : FrameFault::none;
+        work_.skipped.add(Skip::objects,
+                          scene_.objects - static_cast<std::uint32_t>(pairs_.of(tool).size()));
+    }
+}
+
+void Frame::begin_pair(std::uint32_t tool, std::uint32_t object) noexcept
+{
+    const ModelId model = objects_[object].spec.model;
+    PairParts parts;
+    parts.tool_index = tool;
+    parts.object_number = object;
+    parts.rules = &rules_;
+    parts.tool = &tools_[tool];
+    parts.object = &objects_[object];
+    parts.model = {model, &models_[model]};
+    parts.begins_apart = begins_apart(tool, object);
+    if (const auto* mesh = std::get_if<MeshCore>(&tools_[tool].spec().core); mesh != nullptr)
+    {
+        parts.tool_model = {mesh->model, &models_[mesh->model]};
+    }
+    pairs_.begin(parts);
+}
+
+/// Unless both were proven apart in the last frame, one has come round the other. What a frame
+/// starts with is where it is meant to be.
+bool Frame::begins_apart(std::uint32_t tool, std::uint32_t object) const noexcept
+{
+    return frame_ > ChunkCache::kFirstFrame + 1 &&
+           (objects_[object].came_frame == frame_ ||
+            !(presences_[tool].clear_m > tools_[tool].radius_m()));
+}
+
+/// What is open for it in its models is of no use any more.
+void Frame::end_pair(Pair& pair) noexcept
+{
+    const PairParts& parts = pair.parts();
+    models_[parts.model.id].refiner.release(pair.object_closure());
+    if (parts.tool_model.model != nullptr)
+    {
+        models_[parts.tool_model.id].refiner.release(pair.tool_closure());
+    }
+    pairs_.end(pair);
 }
 
 /// Adopt, predict, request.
 void Frame::load(const Budgets& budgets) noexcept
 {
-    RegionRanking ranking;
-    for (Pair& pair : pairs_)
+    ranking_.clear();
+    ranking_.lacks_present = false;
+    for (Pair* pair : pairs_.by_urgency())
     {
-        pair.rank(ranking);
+        pair->rank(ranking_);
     }
-    faults_ |= ranking.lacks_present ? FrameFault::ranking_full : FrameFault::none;
-    for (std::uint32_t i = 0; i < model_count_; ++i)
+    faults_ |= ranking_.lacks_present ? FrameFault::ranking_full : FrameFault::none;
+    pools_.cache.adopt_arrivals(budgets.pages, frame_, work_);
+    for (std::uint32_t i = 0; i < models_.busy().size(); ++i)
     {
-        door_takes_[i] = models_[i]->load(ModelId{i}, ranking, budgets, frame_, faults_);
+        const ModelId id = models_.in_turn(i, frame_);
+        models_[id].load(id, ranking_, budgets, frame_, work_, faults_);
     }
+}
+
+/// What a pair is of is looked at.
+void Frame::wake_models() noexcept
+{
+    for (const Pair* pair : pairs_.all())
+    {
+        const PairParts& parts = pair->parts();
+        models_.wake(parts.model.id, frame_);
+        if (parts.tool_model.model != nullptr)
+        {
+            models_.wake(parts.tool_model.id, frame_);
+        }
+    }
+    work_.skipped.add(Skip::models,
+                      models_.size() - static_cast<std::uint32_t>(models_.busy().size()));
 }
 
 /// Coarsen, refine.
 void Frame::refine(const Budgets& budgets) noexcept
 {
-    for (std::uint32_t i = 0; i < model_count_; ++i)
-    {
-        questions_.clear();
-        for (Pair& pair : pairs_)
-        {
-            pair.ask(ModelId{i}, questions_);
-        }
-        models_[i]->refine(questions_.view(), budgets, frame_, faults_);
-        if (has_meshes_)
-        {
-            models_[i]->refit(faults_); // The next model may ask how near its surface is.
-        }
-    }
+    const std::uint32_t refused =
+        refinement_.run({models_, budgets, frame_, work_, faults_}, pairs_.by_urgency());
+    shedding_.learn(std::min(refused, pools_.cache.refused_class()));
 }
 
 void Frame::refit() noexcept
 {
-    for (std::uint32_t i = 0; i < model_count_; ++i)
+    std::uint32_t boxes = 0;
+    for (const ModelId id : models_.busy())
     {
+        Model& model = models_[id];
         if (!rules_.variant.refits_changed_only)
         {
-            models_[i]->tree.mark_all();
+            model.tree.mark_all();
         }
-        models_[i]->refit(faults_);
+        boxes += model.tree.blocks_used() + model.tree.nodes_used();
+        model.refit(work_, faults_);
+    }
+    const std::uint32_t refitted = work_.blocks_refitted + work_.nodes_refitted;
+    work_.skipped.add(Skip::boxes, boxes - std::min(boxes, refitted));
+}
+
+/// A tool rests where nothing is otherwise than when it answered last.
+void Frame::find_resting() noexcept
+{
+    for (std::uint32_t i = 0; i < tools_.size(); ++i)
+    {
+        Presence& presence = presences_[i];
+        const std::span<Pair* const> pairs = pairs_.of(i);
+        presence.rests =
+            presence.is_here && rules_.variant.lets_tools_rest && tools_[i].is_settled() &&
+            std::max(presence.clear_m, 0.0) == tool_outputs_[i].clear_m &&
+            std::ranges::all_of(pairs, [](const Pair* pair) { return pair->is_unchanged(); });
+        work_.skipped.add(Skip::tools, presence.rests ? 1 : 0);
+    }
+}
+
+/// Whether the frame is the last one once more: nothing is left to do for anybody.
+bool Frame::try_rest(const FrameInput& input) noexcept
+{
+    if (!may_rest_ || !rules_.variant.lets_frames_rest || !input.changes.empty())
+    {
+        return false;
+    }
+    for (std::uint32_t i = 0; i < tools_.size(); ++i)
+    {
+        if (presences_[i].is_here && !tools_[i].is_settled())
+        {
+            return false;
+        }
+    }
+    for (std::uint32_t i = 0; i < tools_.size(); ++i)
+    {
+        faults_ |= frame_faults(tool_outputs_[i]);
+        faults_ |= presences_[i].is_crowded ? FrameFault::scene_crowded : FrameFault::none;
+    }
+    pools_.cache.adopt_arrivals(input.budgets.pages, frame_, work_);
+    work_.skipped.add(Skip::frames);
+    return true;
+}
+
+/// The most urgent first: what they leave of the frame's walks is for the others.
+void Frame::query(const Budgets& budgets) noexcept
+{
+    std::uint32_t nodes = 0;
+    std::uint32_t triangles = 0;
+    SurfaceRoom room = room_;
+    find_resting();
+    for (Pair* pair : pairs_.by_urgency())
+    {
+        if (presences_[pair->tool()].rests)
+        {
+            continue;
+        }
+        Budgets left = budgets;
+        left.nodes = walk_left(budgets.nodes, nodes);
+        left.triangles = walk_left(budgets.triangles, triangles);
+        const WorkCounters before = work_;
+        room = pair->query(room, left, work_, faults_);
+        if (!pair->is_of_mesh()) // Those have an allowance of their own: kMeshBudgetFactor.
+        {
+            nodes += work_.nodes_visited - before.nodes_visited;
+            triangles += work_.triangles_tested - before.triangles_tested;
+        }
     }
 }
 
 void Frame::respond() noexcept
 {
-    for (std::size_t i = 0; i < tools_.size(); ++i)
+    for (std::uint32_t i = 0; i < tools_.size(); ++i)
     {
-        StaticVector<PlacedSurface, kMaxObjects> near;
-        for (const Pair& pair : pairs_.subspan(i * objects_.size(), objects_.size()))
+        const Presence& presence = presences_[i];
+        ToolOutput& output = tool_outputs_[i];
+        if (!presence.is_here)
         {
-            near.push_back(pair.placed());
+            output = ToolOutput{};
+            output.is_gone = true;
+            continue;
         }
-        const ToolOutput& output = tool_outputs_[i] = tools_[i].respond(near.view());
+        if (!presence.rests)
+        {
+            output = respond(i);
+        }
         faults_ |= frame_faults(output);
+        scene_.walled_tools += presence.is_crowded && (output.frozen || output.under_way) ? 1U : 0U;
     }
 }
 
-FrameOutput Frame::report() noexcept
+ToolOutput Frame::respond(std::uint32_t tool) noexcept
 {
-    for (std::size_t i = 0; i < pairs_.size(); ++i)
+    StaticVector<PlacedSurface, kMaxNear> near;
+    for (Pair* pair : pairs_.of(tool))
     {
-        pair_outputs_[i] = pairs_[i].output();
+        if (pair->is_joined())
+        {
+            near.push_back(pair->placed());
+        }
     }
-    for (std::uint32_t i = 0; i < model_count_; ++i)
+    return tools_[tool].respond(near.view(), presences_[tool].clear_m);
+}
+
+void Frame::report() noexcept
+{
+    for (std::size_t i = 0; i < pairs_.all().size(); ++i)
     {
-        validate(*models_[i]);
-        model_outputs_[i] = models_[i]->output();
-        work_ += models_[i]->work;
+        pair_outputs_[i] = pairs_.all()[i]->output();
+        pairs_.all()[i]->remember();
     }
+    for (const ModelId id : models_.busy())
+    {
+        validate(models_[id]);
+        model_outputs_[id.value] = models_[id].output();
+    }
+    may_rest_ = true;
+    for (std::uint32_t i = 0; i < tools_.size(); ++i)
+    {
+        may_rest_ = may_rest_ && (presences_[i].rests || !presences_[i].is_here);
+    }
+    for (const ModelId id : models_.busy())
+    {
+        may_rest_ = may_rest_ && models_[id].is_complete();
+    }
+    if (rules_.variant.asks_near_models_only)
+    {
+        models_.let_rest(frame_);
+    }
+}
+
+FrameOutput Frame::output() const noexcept
+{
     return {{tool_outputs_.data(), tools_.size()},
-            {pair_outputs_.data(), pairs_.size()},
-            {model_outputs_.data(), model_count_},
+            {pair_outputs_.data(), pairs_.all().size()},
+            model_outputs_,
             work_,
             faults_,
-            {door_takes_.data(), model_count_}};
+            pools_.cache.taken(),
+            scene_};
 }
 
 } // namespace tactus

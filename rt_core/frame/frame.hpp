@@ -5,16 +5,22 @@
 #include "rt_core/base/arena.hpp"
 #include "rt_core/base/realtime.hpp"
 #include "rt_core/base/result.hpp"
+#include "rt_core/frame/awake_pairs.hpp"
 #include "rt_core/frame/frame_setup.hpp"
-#include "rt_core/frame/pair.hpp"
+#include "rt_core/frame/model_set.hpp"
+#include "rt_core/frame/pair_shedding.hpp"
+#include "rt_core/frame/refinement.hpp"
 #include "rt_core/frame/tool.hpp"
 #include "rt_core/records/frame_input.hpp"
 #include "rt_core/records/frame_output.hpp"
+#include "rt_core/scene/broad_phase.hpp"
+#include "rt_core/scene/object_table.hpp"
 
 #include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <utility>
 
 namespace tactus
 {
@@ -39,12 +45,10 @@ public:
     Frame& operator=(Frame&&) = delete;
     ~Frame() = default;
 
-    /// One period, with an entry for each tool and object in set-up order. Poses place the source
-    /// meshes: a default pose leaves a model where its source stood. The output is valid until the
-    /// next run.
-    [[nodiscard]] FrameOutput run(std::span<const ToolState> tools,
-                                  std::span<const ObjectPose> poses, const Budgets& budgets,
-                                  StageMark mark) noexcept TACTUS_NONBLOCKING;
+    /// One period. A change that can't be made is refused, counted by its reason, and changes
+    /// nothing. The output is valid until the next run.
+    [[nodiscard]] FrameOutput run(const FrameInput& input,
+                                  StageMark mark = {}) noexcept TACTUS_NONBLOCKING;
 
     /// Runs last frame's queries again, into scratch memory, with the same machine code: called in
     /// the wait before the deadline it brings code and data back into the caches. No effect on any
@@ -52,10 +56,14 @@ public:
     void rehearse() noexcept TACTUS_NONBLOCKING;
 
     [[nodiscard]] const Tool& tool(std::uint32_t index) const noexcept { return tools_[index]; }
+    /// The scene's objects by their numbers, as the last frame left them.
+    [[nodiscard]] const ObjectTable& objects() const noexcept { return objects_; }
     /// The transport thread's parts of a model: its inbox, linker and slots.
-    [[nodiscard]] Model& model(ModelId id) noexcept { return *models_[id.value]; }
-    [[nodiscard]] const Model& model(ModelId id) const noexcept { return *models_[id.value]; }
-    [[nodiscard]] std::uint32_t model_count() const noexcept { return model_count_; }
+    [[nodiscard]] Model& model(ModelId id) noexcept { return models_[id]; }
+    [[nodiscard]] const Model& model(ModelId id) const noexcept { return models_[id]; }
+    [[nodiscard]] std::uint32_t model_count() const noexcept { return models_.size(); }
+    /// What the models share; slots, door and links are for the transport thread, too.
+    [[nodiscard]] ModelPools& pools() noexcept { return pools_; }
 
     struct PassKey
     {
@@ -66,38 +74,74 @@ public:
     Frame(PassKey key, Arena& arena, const FrameSetup& setup) noexcept;
 
 private:
+    /// Metres, then who it is.
+    using Nearness = std::pair<double, std::uint32_t>;
+    /// Farther than anything.
+    static constexpr Nearness kNobody{kInfinity, 0xFFFF'FFFFU};
+
     [[nodiscard]] bool try_take_models(Arena& arena, const FrameSetup& setup) noexcept;
     void take_tools(Arena& arena, const FrameSetup& setup) noexcept;
-    void take_pairs(Arena& arena, const FrameSetup& setup) noexcept;
+    void take_pairs(Arena& arena, const FrameSetup& setup, std::uint32_t count) noexcept;
+    void take_objects(const FrameSetup& setup) noexcept;
 
-    void begin(std::span<const ToolState> tools, std::span<const ObjectPose> poses) noexcept;
+    void change_scene(std::span<const SceneChange> changes) noexcept;
+    [[nodiscard]] std::optional<ChangeRefusal> try_change(const SceneChange& change) noexcept;
+    [[nodiscard]] std::optional<ChangeRefusal> try_change_tool(const SceneChange& change) noexcept;
+    void place(std::uint32_t object) noexcept;
+    void begin(std::span<const ToolState> tools) noexcept;
+    void find_neighbours() noexcept;
+    void wake_models() noexcept;
+    [[nodiscard]] Nearness first_left_out() const noexcept;
+    [[nodiscard]] Nearness nearness(std::uint32_t tool, std::uint32_t object) const noexcept;
+    void pair_up(const Nearness& first_out) noexcept;
+    void find_clearances(const Nearness& first_out) noexcept;
+    [[nodiscard]] bool begins_apart(std::uint32_t tool, std::uint32_t object) const noexcept;
+    void begin_pair(std::uint32_t tool, std::uint32_t object) noexcept;
+    void end_pair(Pair& pair) noexcept;
     void load(const Budgets& budgets) noexcept;
     void refine(const Budgets& budgets) noexcept;
     void refit() noexcept;
+    void find_resting() noexcept;
+    [[nodiscard]] bool try_rest(const FrameInput& input) noexcept;
+    void query(const Budgets& budgets) noexcept;
     void respond() noexcept;
-    [[nodiscard]] FrameOutput report() noexcept;
+    [[nodiscard]] ToolOutput respond(std::uint32_t tool) noexcept;
+    void report() noexcept;
+    [[nodiscard]] FrameOutput output() const noexcept;
 
     PairRules rules_;
-    StaticVector<ObjectSpec, kMaxObjects> objects_;
-    std::array<std::optional<Model>, kMaxModels> models_;
-    std::uint32_t model_count_{0};
+    ObjectTable objects_;
+    BroadPhase broad_;
+    ModelPools pools_;
+    ModelSet models_;
+    std::span<bool> is_shown_; ///< By model: whether objects may show it.
     std::span<Tool> tools_;
-    std::span<Pair> pairs_; ///< Tool by tool, in each the objects in order.
-    bool has_meshes_{false};
-    LocalSurface* rehearsed_{nullptr};
+    RigidProxy::Planes* planes_{nullptr}; ///< Of all tools that are held as bodies.
+    /// A tool beside its body.
+    struct Presence
+    {
+        bool is_here{true};
+        double clear_m{0.0};    ///< ToolOutput::clear_m, or below zero where nothing is known yet.
+        bool is_crowded{false}; ///< In this frame it asks for more than that.
+        bool rests{false};      ///< In this frame it answers as in the last one.
+    };
+    std::array<Presence, kMaxTools> presences_{};
+    AwakePairs pairs_;
+    std::uint32_t paired_lists_{0}; ///< BroadPhase::lists() that all are pairs of; 0: not all.
+    SurfaceRoom room_;
 
     std::uint32_t frame_{ChunkCache::kFirstFrame};
-    bool has_poses_{false};
-    std::array<ObjectPose, kMaxObjects> poses_{}; ///< Of the models' frames, in this frame.
-    std::array<ObjectPose, kMaxObjects> last_poses_{};
-    RefineQuestions questions_; ///< About the model that is being refined.
-    Budgets budgets_;           ///< The last frame's.
+    Budgets budgets_;       ///< The last frame's.
+    RegionRanking ranking_; ///< The last one that was made.
+    Refinement refinement_;
+    PairShedding shedding_;
 
     std::array<ToolOutput, kMaxTools> tool_outputs_{};
     std::array<PairOutput, kMaxPairs> pair_outputs_{};
-    std::array<ModelOutput, kMaxModels> model_outputs_{};
-    std::array<DoorTake, kMaxModels> door_takes_{};
+    std::span<ModelOutput> model_outputs_;
+    bool may_rest_{false}; ///< The last frame ended with everything at rest.
     WorkCounters work_;
+    SceneOutput scene_;
     FrameFault faults_{FrameFault::none};
 };
 

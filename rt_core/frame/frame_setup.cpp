@@ -3,6 +3,7 @@
 #include "rt_core/frame/frame_setup.hpp"
 
 #include <algorithm>
+#include <array>
 
 namespace tactus
 {
@@ -12,7 +13,9 @@ const char* refusal_text(FrameRefusal refusal) noexcept
     switch (refusal)
     {
     case FrameRefusal::too_many:
-        return "there are too many tools, objects or models, or none";
+        return "there are too many tools, objects, pairs or models, or no tool or model";
+    case FrameRefusal::too_many_faces:
+        return "the pools have room for more faces than can be told apart";
     case FrameRefusal::unknown_model:
         return "an object or a tool names a model that is not loaded";
     case FrameRefusal::shared_model:
@@ -27,9 +30,20 @@ const char* refusal_text(FrameRefusal refusal) noexcept
     return "the frame can't be made";
 }
 
-bool try_take_model(std::optional<Model>& model, Arena& arena, const ModelSource& source,
+ModelCapacities pool_capacities(std::span<const ModelSource> models) noexcept
+{
+    ModelCapacities sum;
+    for (const ModelSource& model : models)
+    {
+        sum = sum_of(std::array{sum, model.capacities});
+    }
+    return sum;
+}
+
+bool try_take_model(std::optional<Model>& model, Arena& arena, ModelPools& pools, ModelId id,
                     const FrameSetup& setup) noexcept
 {
+    const ModelSource& source = setup.models[id.value];
     const std::span<std::byte> header_bytes = arena.take<std::byte>(source.header.size());
     std::span<const std::byte> kept = source.header;
     if (!arena.is_measuring())
@@ -38,15 +52,14 @@ bool try_take_model(std::optional<Model>& model, Arena& arena, const ModelSource
         kept = header_bytes;
     }
     const ModelHeader header = ModelHeader::parse(kept).value();
-    const PageSlots slots = PageSlots::take(arena, header.counts(), source.capacities.pages,
-                                            source.capacities.index_pages);
+    const PageSlots slots = pools.slots.of_model(arena, header.counts());
     if (!arena.is_measuring() && !parse_base_mesh(source.base, header, slots.base))
     {
         return false;
     }
     const Kernels& kernels = setup.kernels != nullptr ? *setup.kernels : best_kernels();
-    model.emplace(arena, header, slots, source.capacities, kernels);
-    model->cache.set_period(setup.period_ns);
+    model.emplace(arena, pools, id, header, slots, source.capacities, kernels);
+    model->cache.set_variant(setup.variant);
     if (setup.static_when_it_fits && model->fits())
     {
         model->residence = Residence::filling;
@@ -67,13 +80,36 @@ ToolSpec described(const ToolSpec& tool, const ModelHeader& header) noexcept
     return spec;
 }
 
+SceneCapacities capacities_of(const FrameSetup& setup) noexcept
+{
+    SceneCapacities capacities = setup.capacities;
+    capacities.objects =
+        capacities.objects != 0
+            ? capacities.objects
+            : static_cast<std::uint32_t>(std::max<std::size_t>(setup.objects.size(), 1));
+    const auto all = capacities.objects * static_cast<std::uint32_t>(setup.tools.size());
+    capacities.pairs = capacities.pairs != 0 ? capacities.pairs : std::min(all, kMaxPairs);
+    return capacities;
+}
+
 std::optional<FrameRefusal> find_refusal(const FrameSetup& setup) noexcept
 {
-    if (setup.tools.empty() || setup.tools.size() > kMaxTools || setup.objects.empty() ||
-        setup.objects.size() > kMaxObjects || setup.models.empty() ||
-        setup.models.size() > kMaxModels)
+    const SceneCapacities& capacities = setup.capacities;
+    if (setup.tools.empty() || setup.tools.size() > kMaxTools || setup.models.empty() ||
+        setup.models.size() > kMaxModels || capacities_of(setup).objects > kMaxObjects ||
+        (capacities.objects != 0 && capacities.objects < setup.objects.size()) ||
+        capacities.pairs > kMaxPairs)
     {
         return FrameRefusal::too_many;
+    }
+    std::uint64_t faces = 0;
+    for (const ModelSource& source : setup.models)
+    {
+        faces += source.capacities.faces;
+    }
+    if (faces > kMaxPoolFaces)
+    {
+        return FrameRefusal::too_many_faces;
     }
     for (const ObjectSpec& object : setup.objects)
     {

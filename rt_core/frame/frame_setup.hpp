@@ -24,13 +24,24 @@ struct ModelSource
     ModelCapacities capacities;
 };
 
+/// What a scene may come to. 0: what the set-up has.
+struct SceneCapacities
+{
+    std::uint32_t objects{0}; ///< At once; at most kMaxObjects, at least those of the set-up.
+    std::uint32_t pairs{0};   ///< At most kMaxPairs; 0: each tool with each object, or kMaxPairs.
+};
+
 /// What a frame is made of. `models[object.model]` must exist for every object, and for every tool
 /// that is a mesh one that no object shows.
 struct FrameSetup
 {
     std::span<const ModelSource> models;
+    /// Those that are there at first, by their numbers and of generation 0.
     std::span<const ObjectSpec> objects;
-    std::span<const ToolSpec> tools;
+    /// Where each of them stands; of later ones where its source stood.
+    std::span<const ObjectPose> poses;
+    std::span<const ToolSpec> tools; ///< All that there can be, and are at first.
+    SceneCapacities capacities;
     std::int64_t period_ns{1'000'000};
     std::int64_t pose_age_max_ns{100'000'000}; ///< Older poses make answers stale.
     /// A model that fits its pools is loaded and refined fully, once (static mode).
@@ -43,7 +54,8 @@ struct FrameSetup
 /// Why there is no frame.
 enum class FrameRefusal : std::uint8_t
 {
-    too_many,         ///< More tools, objects or models than limits.hpp allows, or none.
+    too_many,         ///< More tools, objects, pairs or models than limits.hpp allows, or no tool.
+    too_many_faces,   ///< The models bring more than kMaxPoolFaces.
     unknown_model,    ///< An object or a tool names a model that isn't there.
     shared_model,     ///< A tool names a model that an object shows.
     header_refused,   ///< A model's header did not pass its checks.
@@ -53,13 +65,19 @@ enum class FrameRefusal : std::uint8_t
 
 [[nodiscard]] const char* refusal_text(FrameRefusal refusal) noexcept;
 
-/// Copies the header, reads the base mesh and lays out the pools of one model. False when the base
-/// mesh is damaged. The header must parse.
-[[nodiscard]] bool try_take_model(std::optional<Model>& model, Arena& arena,
-                                  const ModelSource& source, const FrameSetup& setup) noexcept;
+/// What all models together bring to the pools.
+[[nodiscard]] ModelCapacities pool_capacities(std::span<const ModelSource> models) noexcept;
+
+/// Copies the header, reads the base mesh and lays out one model. False when the base mesh is
+/// damaged. The header must parse.
+[[nodiscard]] bool try_take_model(std::optional<Model>& model, Arena& arena, ModelPools& pools,
+                                  ModelId id, const FrameSetup& setup) noexcept;
 
 /// The tool, a mesh with what its model's header says of it.
 [[nodiscard]] ToolSpec described(const ToolSpec& tool, const ModelHeader& header) noexcept;
+
+/// As they will be.
+[[nodiscard]] SceneCapacities capacities_of(const FrameSetup& setup) noexcept;
 
 /// Why there can be no frame of this, as far as that shows before it is made.
 [[nodiscard]] std::optional<FrameRefusal> find_refusal(const FrameSetup& setup) noexcept;

@@ -15,11 +15,11 @@ void for_each_loaded(const Model& model, const Take& take) noexcept
     const std::uint32_t records = model.header.counts().records;
     for (std::uint32_t slot = 0; slot < model.pages.capacity(); ++slot)
     {
-        const ChunkId chunk = model.pages.meta(slot).chunk;
-        if (chunk.is_none())
+        if (!model.pages.is_own(slot))
         {
             continue;
         }
+        const ChunkId chunk = model.pages.meta(slot).chunk;
         const std::uint32_t first = chunk.value << kRecordsPerChunkLog2;
         for (std::uint32_t i = first; i < records && i < first + kRecordsPerChunk; ++i)
         {

@@ -10,14 +10,9 @@ namespace tactus
 namespace
 {
 
-std::uint32_t wish_capacity(const ModelCapacities& capacities) noexcept
-{
-    return capacities.pages + capacities.index_pages;
-}
-
 /// Share of the memory that goes to pages, with what linking keeps of each, unless the caller says
 /// how much, in percent: a page is mostly prefetched, an active face costs two thirds of a record.
-constexpr std::size_t kPageShare = 70;
+constexpr std::size_t kPageShare = 72;
 /// Index pages beyond the least number get this part of the memory at most.
 constexpr std::size_t kIndexPageShare = 64;
 /// Fewer pages are not worth starting with unless the caller says so.
@@ -46,67 +41,182 @@ ModelCapacities with_faces(ModelCapacities capacities, std::uint32_t faces) noex
     return capacities;
 }
 
-} // namespace
-
-std::size_t required_bytes(const ModelHeader& header, const ModelCapacities& capacities) noexcept
+TreeCapacities tree_part(const ModelCapacities& capacities) noexcept
 {
-    Arena arena = Arena::measuring();
-    const PageSlots slots =
-        PageSlots::take(arena, header.counts(), capacities.pages, capacities.index_pages);
-    const Model model(arena, header, slots, capacities, portable_kernels());
-    return arena.used();
+    return {capacities.faces, capacities.blocks, capacities.nodes};
 }
 
-ModelCapacities plan_capacities(const ModelHeader& header, std::size_t bytes,
-                                std::size_t cache_bytes) noexcept
+/// Of what a model brings beyond its base mesh, and does not need as a whole, this part is kept.
+constexpr std::uint32_t kKeptPart = 4;
+
+bool brings_all(const ModelCounts& counts, const ModelCapacities& capacities) noexcept
+{
+    return capacities.pages >= counts.chunks() && capacities.index_pages >= counts.index_pages() &&
+           capacities.faces >= counts.face_ids();
+}
+
+/// What others can't take from a model.
+ModelCapacities kept_for(const ModelHeader& header, const ModelCapacities& capacities) noexcept
 {
     const ModelCounts counts = header.counts();
-    ModelCapacities capacities;
-    const auto index_pages_max = std::max<std::size_t>(kLeastResidentIndexPages,
-                                                       bytes / kIndexPageShare / sizeof(IndexPage));
-    capacities.index_pages = static_cast<std::uint32_t>(
-        std::clamp<std::size_t>(counts.index_pages(), 1, index_pages_max));
-    const std::size_t fitting =
-        cache_bytes > 0 ? cache_bytes / sizeof(Page)
-                        : bytes / 100 * kPageShare / (sizeof(Page) + Linker::bytes_per_page());
-    capacities.pages =
-        static_cast<std::uint32_t>(std::min<std::size_t>(std::max(counts.chunks(), 1U), fitting));
-    // Faces beyond the whole model are of no use; below the base mesh there is no model.
-    const std::uint32_t all_faces = std::max(counts.face_ids(), kMinFaces);
-    const std::uint32_t least_faces = counts.base_faces + kMinFaces;
-    const auto leaves_too_little = [&]
-    { return required_bytes(header, with_faces(capacities, least_faces)) > bytes; };
-    while (cache_bytes == 0 && capacities.pages > kMinPages && leaves_too_little())
+    if (brings_all(counts, capacities))
     {
-        --capacities.pages;
+        return capacities;
     }
-    if (capacities.pages == 0 || leaves_too_little())
-    {
-        return {};
-    }
-    std::uint32_t fits = least_faces;
-    for (std::uint32_t too_many = all_faces + least_faces; too_many - fits > 1;)
-    {
-        const std::uint32_t middle = fits + (too_many - fits) / 2;
-        (required_bytes(header, with_faces(capacities, middle)) <= bytes ? fits : too_many) =
-            middle;
-    }
-    return with_faces(capacities, fits);
+    const std::uint32_t more = capacities.faces - std::min(counts.base_faces, capacities.faces);
+    ModelCapacities kept = with_faces(capacities, counts.base_faces + more / kKeptPart);
+    kept.pages = capacities.pages / kKeptPart;
+    kept.index_pages = capacities.index_pages / kKeptPart;
+    return kept;
 }
 
-Model::Model(Arena& arena, const ModelHeader& model_header, PageSlots model_slots,
-             const ModelCapacities& model_capacities, const Kernels& kernels) noexcept
+/// Divides `all` so that nobody gets more than `most` of its own, and what one does not need is for
+/// the others. Returns what is left in the end.
+template <typename MostOf>
+std::uint32_t divide(std::uint32_t all, std::span<ModelCapacities> models,
+                     std::uint32_t ModelCapacities::*part, const MostOf& most_of) noexcept
+{
+    for (std::size_t round = 0; round < models.size(); ++round)
+    {
+        const std::uint32_t each = std::max(all / static_cast<std::uint32_t>(models.size()), 1U);
+        for (std::size_t i = 0; i < models.size(); ++i)
+        {
+            const std::uint32_t missing = most_of(i) - models[i].*part;
+            const std::uint32_t given = std::min({each, missing, all});
+            models[i].*part += given;
+            all -= given;
+        }
+    }
+    return all;
+}
+
+} // namespace
+
+ModelPools::ModelPools(Arena& arena, const ModelCapacities& all, std::uint32_t models) noexcept
+    : scratch(arena, all.pages)
+    , faces(arena, all.faces)
+    , tree(arena, tree_part(all))
+    , slots{arena.take<Page>(all.pages), arena.take<IndexPage>(all.index_pages), {}}
+    , cache(arena, all.pages, all.index_pages, models)
+    , links(arena, all.pages)
+{
+}
+
+ModelCapacities sum_of(std::span<const ModelCapacities> each) noexcept
+{
+    ModelCapacities sum;
+    for (const ModelCapacities& one : each)
+    {
+        sum.pages += one.pages;
+        sum.index_pages += one.index_pages;
+        sum.faces += one.faces;
+        sum.blocks += one.blocks;
+        sum.nodes += one.nodes;
+    }
+    return sum;
+}
+
+std::size_t required_bytes(std::span<const ModelHeader> headers,
+                           std::span<const ModelCapacities> capacities) noexcept
+{
+    TACTUS_ASSERT(headers.size() == capacities.size());
+    Arena scratch = Arena::measuring();
+    const RefineScratch beside(scratch, 0);
+    Arena arena = Arena::measuring();
+    ModelPools pools(arena, sum_of(capacities), static_cast<std::uint32_t>(headers.size()));
+    for (std::uint32_t i = 0; i < headers.size(); ++i)
+    {
+        const PageSlots slots = pools.slots.of_model(arena, headers[i].counts());
+        const Model model(arena, pools, {i}, headers[i], slots, capacities[i], portable_kernels());
+    }
+    static_cast<void>(arena.take<ModelSlot>(headers.size()));
+    static_cast<void>(arena.take<bool>(headers.size()));
+    static_cast<void>(arena.take<ModelOutput>(headers.size()));
+    return arena.used() - scratch.used();
+}
+
+bool try_plan(std::span<const ModelHeader> headers, std::size_t bytes, std::size_t cache_bytes,
+              std::span<ModelCapacities> capacities) noexcept
+{
+    TACTUS_ASSERT(headers.size() == capacities.size());
+    TACTUS_ASSERT(!headers.empty());
+    TACTUS_ASSERT(headers.size() <= kMaxModels);
+    const auto count = static_cast<std::uint32_t>(headers.size());
+    std::ranges::fill(capacities, ModelCapacities{});
+    const auto chunks_of = [&](std::size_t i)
+    { return std::max(headers[i].counts().chunks(), 1U); };
+    const auto index_pages_of = [&](std::size_t i)
+    { return std::max(headers[i].counts().index_pages(), 1U); };
+    const auto index_pages_max = static_cast<std::uint32_t>(std::max<std::size_t>(
+        kLeastResidentIndexPages, bytes / kIndexPageShare / sizeof(IndexPage)));
+    static_cast<void>(
+        divide(index_pages_max, capacities, &ModelCapacities::index_pages, index_pages_of));
+    const std::size_t page_bytes =
+        sizeof(Page) + LinkPool::bytes_per_page() + 2 * sizeof(IdTable::Entry);
+    const auto fitting = static_cast<std::uint32_t>(std::min<std::size_t>(
+        cache_bytes > 0 ? cache_bytes / sizeof(Page) : bytes / 100 * kPageShare / page_bytes,
+        kMaxModels * std::size_t{kMaxRecords >> kRecordsPerChunkLog2}));
+    const auto share_pages = [&](std::uint32_t pages)
+    {
+        for (ModelCapacities& one : capacities)
+        {
+            one.pages = 0;
+        }
+        return pages - divide(pages, capacities, &ModelCapacities::pages, chunks_of);
+    };
+    // Faces beyond the whole model are of no use; below the base mesh there is no model.
+    const auto plan_faces = [&](std::uint32_t more)
+    {
+        std::uint64_t sum = 0;
+        for (std::size_t i = 0; i < count; ++i)
+        {
+            const ModelCounts counts = headers[i].counts();
+            const std::uint32_t most = std::max(counts.face_ids(), kMinFaces) + kMinFaces - 1;
+            capacities[i] = with_faces(capacities[i], counts.base_faces + std::min(more, most));
+            sum += capacities[i].faces;
+        }
+        return sum <= kMaxPoolFaces && required_bytes(headers, capacities) <= bytes;
+    };
+    const std::uint32_t least_more = (kMinFaces + count - 1) / count;
+    std::uint32_t pages = share_pages(fitting);
+    while (cache_bytes == 0 && pages > std::max(kMinPages, count) && !plan_faces(least_more))
+    {
+        pages = share_pages(pages - 1);
+    }
+    if (pages < count || !plan_faces(least_more))
+    {
+        return false;
+    }
+    std::uint32_t fits = least_more;
+    std::uint32_t too_many = 0;
+    for (const ModelHeader& header : headers)
+    {
+        too_many = std::max(too_many, std::max(header.counts().face_ids(), kMinFaces) + kMinFaces);
+    }
+    while (too_many - fits > 1)
+    {
+        const std::uint32_t middle = fits + (too_many - fits) / 2;
+        (plan_faces(middle) ? fits : too_many) = middle;
+    }
+    static_cast<void>(plan_faces(fits));
+    return true;
+}
+
+Model::Model(Arena& arena, ModelPools& shared, ModelId id, const ModelHeader& model_header,
+             PageSlots model_slots, const ModelCapacities& model_capacities,
+             const Kernels& kernels) noexcept
     : header(model_header)
     , capacities(model_capacities)
     , slots(model_slots)
-    , inbox(arena, capacities.pages, capacities.index_pages, wish_capacity(capacities))
-    , linker(arena, header, slots)
-    , pages(arena, slots)
-    , cache(arena, header, slots, pages, inbox)
-    , tree(arena, {capacities.faces, capacities.blocks, capacities.nodes}, header.quantum_m(),
-           kernels)
-    , forest(arena, header.counts(), slots, pages, tree, capacities.faces)
-    , refiner(arena, forest, pages, tree, header.quantum_m())
+    , linker(shared.links, id.value, header, slots)
+    , pages(shared.cache.pages, id.value, slots)
+    , cache(shared.cache,
+            {kept_for(header, capacities).pages, kept_for(header, capacities).index_pages}, header,
+            slots, pages)
+    , tree(shared.tree, id, tree_part(kept_for(header, capacities)), header.quantum_m(), kernels)
+    , forest(arena, shared.faces, id, kept_for(header, capacities).faces, header.counts(), slots,
+             pages, tree)
+    , refiner(forest, pages, tree, shared.scratch, header.quantum_m())
 {
 }
 
@@ -116,15 +226,13 @@ double Model::lead_s(std::int64_t period_ns) const noexcept
     return std::min(latency_s + kRefineTime_s, kLongestLead_s);
 }
 
-DoorTake Model::load(ModelId id, const RegionRanking& ranking, const Budgets& budgets,
-                     std::uint32_t frame, FrameFault& faults) noexcept
+void Model::load(ModelId id, const RegionRanking& ranking, const Budgets& budgets,
+                 std::uint32_t frame, WorkCounters& work, FrameFault& faults) noexcept
 {
-    work = WorkCounters{};
-    cache.adopt_arrivals(budgets.pages, frame, work);
     pages_used_max = std::max(pages_used_max, pages.used());
-    if (residence == Residence::complete)
+    if (is_complete())
     {
-        return cache.taken();
+        return;
     }
     RegionRanking regions;
     for (const RankedRegion& region : ranking)
@@ -139,7 +247,6 @@ DoorTake Model::load(ModelId id, const RegionRanking& ranking, const Budgets& bu
     {
         cache.request_everything(budgets, work, faults);
     }
-    return cache.taken();
 }
 
 bool Model::may_ask_for(const RankedRegion& region) const noexcept
@@ -149,39 +256,45 @@ bool Model::may_ask_for(const RankedRegion& region) const noexcept
 
 bool Model::fits() const noexcept
 {
-    const ModelCounts counts = header.counts();
-    return capacities.pages >= counts.chunks() && capacities.index_pages >= counts.index_pages() &&
-           capacities.faces >= counts.face_ids();
+    return brings_all(header.counts(), capacities);
 }
 
-void Model::refine(std::span<const RefineQuestion> questions, const Budgets& budgets,
-                   std::uint32_t frame, FrameFault& faults) noexcept
+void Model::begin_refinement(std::span<const RefineRequest> requests, const Budgets& budgets,
+                             WorkCounters& work) noexcept
 {
-    if (residence == Residence::complete)
+    if (is_complete() && requests.empty())
     {
         return;
     }
     Budgets own = budgets;
-    own.scanned = residence == Residence::filling ? 0 : budgets.scanned;
-    FrameFault found = FrameFault::none;
-    refiner.run(questions, own, frame, work, found);
-    if (residence == Residence::filling)
+    own.scanned = residence == Residence::partial ? budgets.scanned : 0;
+    refiner.begin(requests, own, work);
+}
+
+void Model::fill(std::uint32_t limit, std::uint32_t frame, WorkCounters& work,
+                 FrameFault& faults) noexcept
+{
+    if (residence != Residence::filling)
     {
-        switch (refiner.refine_everything(header.counts().records, questions, budgets, frame, work,
-                                          found))
-        {
-        case Refiner::Progress::complete:
-            residence = Residence::complete;
-            break;
-        case Refiner::Progress::full:
-            residence = Residence::partial;
-            break;
-        case Refiner::Progress::under_way:
-            break;
-        }
+        return;
     }
-    faults |= found;
-    is_refined = found == FrameFault::none;
+    switch (refiner.fill(header.counts().records, limit, frame, work, faults))
+    {
+    case Refiner::Progress::complete:
+        residence = Residence::complete;
+        break;
+    case Refiner::Progress::full:
+        residence = Residence::partial;
+        break;
+    case Refiner::Progress::under_way:
+        break;
+    }
+}
+
+void Model::end_refinement(std::span<const RefineRequest> requests, WorkCounters& work) noexcept
+{
+    is_refined = std::ranges::none_of(requests, [](const RefineRequest& request)
+                                      { return request.is_late(); });
     if (capacities.cache_off && is_refined)
     {
         cache.evict_unpinned(work);
@@ -190,22 +303,22 @@ void Model::refine(std::span<const RefineQuestion> questions, const Budgets& bud
 
 ModelOutput Model::output() const noexcept
 {
-    const AbTree::Capacities& own = tree.capacities();
     const std::uint32_t index_pages = cache.index_pages_used();
-    return {{pages.used(), pages_used_max, pages.capacity()},
+    return {{pages.used(), pages_used_max, capacities.pages},
             {index_pages, index_pages, capacities.index_pages},
-            {forest.active_faces(), forest.active_faces_max(), forest.capacity()},
-            {tree.blocks_used(), tree.blocks_used_max(), own.blocks},
-            {tree.nodes_used(), tree.nodes_used_max(), own.nodes},
+            {forest.active_faces(), forest.active_faces_max(), capacities.faces},
+            {tree.blocks_used(), tree.blocks_used_max(), capacities.blocks},
+            {tree.nodes_used(), tree.nodes_used_max(), capacities.nodes},
             forest.refined_records(),
             forest.state_hash(),
             is_complete()};
 }
 
-void Model::refit(FrameFault& faults) noexcept
+void Model::refit(WorkCounters& work, FrameFault& faults) noexcept
 {
     tree.offer_unplaced([&](PrimId prim) { return forest.describe(prim); });
     const AbTree::RefitWork refitted = tree.refit();
+    revision += refitted.blocks + refitted.nodes > 0 ? 1 : 0;
     work.blocks_refitted += refitted.blocks;
     work.nodes_refitted += refitted.nodes;
     faults |= tree.is_complete() ? FrameFault::none : FrameFault::tree_full;

@@ -6,8 +6,9 @@
 #include "rt_core/base/arena.hpp"
 #include "rt_core/base/realtime.hpp"
 #include "rt_core/base/result.hpp"
+#include "rt_core/cache/cache_pool.hpp"
 #include "rt_core/cache/chunk_cache.hpp"
-#include "rt_core/cache/chunk_inbox.hpp"
+#include "rt_core/forest/face_pool.hpp"
 #include "rt_core/forest/vertex_forest.hpp"
 #include "rt_core/records/frame_output.hpp"
 #include "rt_core/records/region_ranking.hpp"
@@ -16,6 +17,7 @@
 #include "rt_core/spm/page_table.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <span>
 
 namespace tactus
@@ -35,15 +37,46 @@ struct ModelCapacities
     bool cache_off{false};
 };
 
-/// Bytes that a model of these capacities takes from the arena, tables and inbox included.
-[[nodiscard]] std::size_t required_bytes(const ModelHeader& header,
-                                         const ModelCapacities& capacities) noexcept;
+/// What the models of a frame share: each brings what its capacities say, and takes what it needs.
+/// What a model needs as a whole is kept for it if it brings that; else its base mesh and a quarter
+/// of what else it brings.
+struct ModelPools
+{
+    /// `all` is what so many models bring together.
+    ModelPools(Arena& arena, const ModelCapacities& all, std::uint32_t models) noexcept;
 
-/// The capacities that fit into `bytes`: `cache_bytes` of them for pages (0: the usual share), the
-/// rest for active faces and the tree. No more than the whole model needs. With less than the base
-/// mesh and a few pages need, `pages` is 0 and nothing else counts.
-[[nodiscard]] ModelCapacities plan_capacities(const ModelHeader& header, std::size_t bytes,
-                                              std::size_t cache_bytes) noexcept;
+    RefineScratch scratch;
+    FacePool faces;
+    TreePool tree;
+    PageSlots slots; ///< Without a base mesh.
+    CachePool cache;
+    LinkPool links; ///< The transport thread's, with the other ends of the cache's door.
+};
+
+/// The sum of each, of any models.
+[[nodiscard]] ModelCapacities sum_of(std::span<const ModelCapacities> each) noexcept;
+
+/// Bytes that models of these capacities take from the arena: tables, and what they bring to the
+/// pools.
+[[nodiscard]] std::size_t required_bytes(std::span<const ModelHeader> headers,
+                                         std::span<const ModelCapacities> capacities) noexcept;
+
+/// The capacities of up to kMaxModels models that fit into `bytes`: `cache_bytes` of them for pages
+/// (0: the usual share), the rest for active faces and the tree. All bring the same beyond their
+/// base meshes, but no more than the whole model needs. With less than the base meshes and a few
+/// pages need, false, and `capacities` don't count.
+[[nodiscard]] bool try_plan(std::span<const ModelHeader> headers, std::size_t bytes,
+                            std::size_t cache_bytes,
+                            std::span<ModelCapacities> capacities) noexcept;
+
+/// The same of one model; `pages` is 0 where it does not fit.
+[[nodiscard]] inline ModelCapacities plan_capacities(const ModelHeader& header, std::size_t bytes,
+                                                     std::size_t cache_bytes) noexcept
+{
+    ModelCapacities capacities;
+    const bool fits = try_plan({&header, 1}, bytes, cache_bytes, {&capacities, 1});
+    return fits ? capacities : ModelCapacities{};
+}
 
 /// How much of a model is here.
 enum class Residence : std::uint8_t
@@ -55,13 +88,15 @@ enum class Residence : std::uint8_t
 };
 
 /// One model's forest, tree, cache and front, in the model's frame, refined for the union of what
-/// its objects' tools need. Everything is the haptic thread's but `linker` (the transport
-/// thread's) and `inbox` (between both). Does not move: its parts point at one another.
+/// its objects' tools need. Everything is the haptic thread's but `linker`, the transport thread's.
+/// Does not move: its parts point at one another.
 struct Model
 {
-    /// `header` views bytes that outlive the model; `base` was parsed for it into `slots`.
-    Model(Arena& arena, const ModelHeader& model_header, PageSlots model_slots,
-          const ModelCapacities& model_capacities, const Kernels& kernels) noexcept;
+    /// `header` views bytes that outlive the model, as the pools do; `base` was parsed for it into
+    /// `slots`, whose pages are the pools'. No other model has the id.
+    Model(Arena& arena, ModelPools& shared, ModelId id, const ModelHeader& model_header,
+          PageSlots model_slots, const ModelCapacities& model_capacities,
+          const Kernels& kernels) noexcept;
     Model(const Model&) = delete;
     Model& operator=(const Model&) = delete;
     Model(Model&&) = delete;
@@ -69,29 +104,41 @@ struct Model
     ~Model() = default;
 
     /// Offers the tree the faces that found no place in it before, and refits it.
-    void refit(FrameFault& faults) noexcept TACTUS_NONBLOCKING;
+    void refit(WorkCounters& work, FrameFault& faults) noexcept TACTUS_NONBLOCKING;
 
-    /// The frame's first stage: takes what has come, and asks for what the regions of the ranking
-    /// that name this model lack. Returns what was taken, valid until the next call.
-    [[nodiscard]] DoorTake load(ModelId id, const RegionRanking& ranking, const Budgets& budgets,
-                                std::uint32_t frame,
-                                FrameFault& faults) noexcept TACTUS_NONBLOCKING;
+    /// The frame's first stage, after what has come was adopted: asks for what the regions of the
+    /// ranking that name this model lack.
+    void load(ModelId id, const RegionRanking& ranking, const Budgets& budgets, std::uint32_t frame,
+              WorkCounters& work, FrameFault& faults) noexcept TACTUS_NONBLOCKING;
     /// How far ahead of a tool chunks have to be asked for at present, in seconds > 0.
     [[nodiscard]] double lead_s(std::int64_t period_ns) const noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] bool is_complete() const noexcept { return residence == Residence::complete; }
+    /// After a frame in which nobody asked for anything: whether another one like it would change
+    /// nothing.
+    [[nodiscard]] bool is_at_rest() const noexcept
+    {
+        return is_complete() || (residence == Residence::partial && forest.refined_records() == 0 &&
+                                 tree.is_complete() && cache.wishes_under_way() == 0);
+    }
     /// The state after a frame.
     [[nodiscard]] ModelOutput output() const noexcept TACTUS_NONBLOCKING;
     /// Whether all of the model has room at once.
     [[nodiscard]] bool fits() const noexcept;
-    /// Moves the refined front to what the questions need; with the cache off, gives unused pages
-    /// back.
-    void refine(std::span<const RefineQuestion> questions, const Budgets& budgets,
-                std::uint32_t frame, FrameFault& faults) noexcept TACTUS_NONBLOCKING;
+    /// The refinement in three parts. What is asked of the model in this frame, which must stay
+    /// until its end: merges what all of it left behind.
+    void begin_refinement(std::span<const RefineRequest> requests, const Budgets& budgets,
+                          WorkCounters& work) noexcept TACTUS_NONBLOCKING;
+    /// After some of the requests had their splits: goes on to everything, while the model is
+    /// filling, until the frame has done `limit` splits.
+    void fill(std::uint32_t limit, std::uint32_t frame, WorkCounters& work,
+              FrameFault& faults) noexcept TACTUS_NONBLOCKING;
+    /// With the cache off, gives pages back that are of no use while no request waits.
+    void end_refinement(std::span<const RefineRequest> requests,
+                        WorkCounters& work) noexcept TACTUS_NONBLOCKING;
 
     ModelHeader header;
     ModelCapacities capacities;
     PageSlots slots;
-    ChunkInbox inbox;
     Linker linker;
     PageTable pages;
     ChunkCache cache;
@@ -99,13 +146,23 @@ struct Model
     VertexForest forest;
     Refiner refiner;
     std::uint32_t pages_used_max{0};
-    WorkCounters work; ///< Of this frame; budgets are per model.
     Residence residence{Residence::partial};
-    bool is_refined{false}; ///< The last refinement left nothing to do.
+    bool is_refined{false};    ///< The last refinement left nothing to do.
+    std::uint32_t revision{0}; ///< Another one after each refit that changed something.
 
 private:
     /// Whether this frame may ask for what the region lacks.
     [[nodiscard]] bool may_ask_for(const RankedRegion& region) const noexcept TACTUS_NONBLOCKING;
+};
+
+/// What a frame keeps of a model beside its output.
+struct ModelSlot
+{
+    std::optional<Model> model;
+    bool is_busy{false};           ///< Whether this frame looks at it,
+    std::uint32_t paired_frame{0}; ///< and when a pair was of it last.
+    std::uint32_t requests{0};     ///< Of this frame,
+    std::uint32_t requests_end{0}; ///< and where they end among those of all models.
 };
 
 } // namespace tactus

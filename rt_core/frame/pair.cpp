@@ -66,24 +66,28 @@ PairMemory PairMemory::take(Arena& arena, std::span<const ToolSpec> tools,
 {
     const auto for_any = [&](bool (*needs)(const ToolSpec&) noexcept)
     { return std::ranges::any_of(tools, needs) ? pairs : 0; };
-    return {arena.take<LocalSurface>(pairs), arena.take<ContactReport>(for_any(&wants_contacts)),
+    return {arena.take<ContactReport>(for_any(&wants_contacts)),
             arena.take<TouchReport>(for_any(&Tool::is_held_as_body)),
             arena.take<MeshPair>(for_any(&is_mesh))};
 }
 
 Pair::Pair(const PairParts& parts, const PairMemory& memory, std::size_t index) noexcept
-    : parts_(parts), surface_(&memory.surfaces[index])
+    : parts_(parts), is_joined_(!parts.begins_apart), stood_(parts.object->pose)
 {
     const ToolSpec& tool = parts.tool->spec();
     contacts_ = wants_contacts(tool) ? &memory.contacts[index] : nullptr;
     touches_ = Tool::is_held_as_body(tool) ? &memory.touches[index] : nullptr;
     mesh_ = is_mesh(tool) ? &memory.meshes[index] : nullptr;
+    if (mesh_ != nullptr)
+    {
+        *mesh_ = MeshPair{};
+    }
 }
 
 void Pair::place(const Budgets& budgets, FrameFault& faults) noexcept
 {
     const ToolStance& stance = parts_.tool->stance();
-    outlook_.look(parts_.tool->spec(), stance, *parts_.pose);
+    outlook_.look(parts_.tool->spec(), stance, parts_.object->pose);
     if (!parts_.rules->variant.lets_pairs_rest)
     {
         outlook_.wake();
@@ -92,10 +96,26 @@ void Pair::place(const Budgets& budgets, FrameFault& faults) noexcept
     {
         faults |= FrameFault::proxy_squeezed; // An object came as far as to its core.
     }
+    find_urgency();
     if (mesh_ != nullptr)
     {
         mesh_->place(outlook_, mesh_core_of(*parts_.tool), *parts_.tool_model.model,
-                     *parts_.model.model, in_frame(*parts_.pose, stance.place), budgets);
+                     *parts_.model.model, in_frame(parts_.object->pose, stance.place), budgets);
+    }
+}
+
+void Pair::find_urgency() noexcept
+{
+    const Tool& tool = *parts_.tool;
+    const ObjectPose& pose = parts_.object->pose;
+    const Vec3 before_m = hand_m_;
+    hand_m_ = to_model(pose, tool.goal().position_m);
+    urgency_ = Urgency::at(0.0, 0.0, tool.spec().passes_through);
+    if (outlook_.has_known())
+    {
+        const double gap_m = outlook_.from_motion().lower_m * pose.scale - tool.radius_m();
+        const double speed = (hand_m_ - before_m).norm() * pose.scale / tool.goal().elapsed_s;
+        urgency_ = Urgency::at(std::max(gap_m, 0.0), speed, tool.spec().passes_through);
     }
 }
 
@@ -103,7 +123,7 @@ void Pair::place(const Budgets& budgets, FrameFault& faults) noexcept
 PairMotion Pair::motion() const noexcept
 {
     const Tool& tool = *parts_.tool;
-    const ObjectPose& pose = *parts_.pose;
+    const ObjectPose& pose = parts_.object->pose;
     PairMotion motion;
     motion.center_m = outlook_.core().center();
     motion.way_m =
@@ -125,12 +145,17 @@ PairMotion Pair::motion() const noexcept
 
 void Pair::rank(RegionRanking& ranking) noexcept
 {
+    if (is_shed_)
+    {
+        return;
+    }
     if (parts_.model.model->is_complete() &&
         (parts_.tool_model.model == nullptr || parts_.tool_model.model->is_complete()))
     {
         return;
     }
     const PairRules& rules = *parts_.rules;
+    const std::size_t before = ranking.size();
     predictor_.observe(motion(), parts_.model.model->lead_s(rules.period_ns));
     if (mesh_ != nullptr)
     {
@@ -147,21 +172,29 @@ void Pair::rank(RegionRanking& ranking) noexcept
         RegionPredictor::rank_present(parts_.model.id, outlook_.cover(), outlook_.reach_m(),
                                       ranking);
     }
+    for (std::size_t i = before; i < ranking.size(); ++i)
+    {
+        ranking[i].of = urgency_.of;
+    }
 }
 
-void Pair::ask(ModelId model, RefineQuestions& questions) noexcept
+void Pair::ask(RefineRequests& requests) noexcept
 {
+    of_object_.questions.clear();
+    of_tool_.questions.clear();
     if (mesh_ != nullptr)
     {
-        ask_for_mesh(model, questions);
+        ask_for_mesh();
+        request(parts_.tool_model, of_tool_, requests);
     }
-    else if (parts_.model.id == model)
+    else
     {
-        ask_for_balls(questions);
+        ask_for_balls();
     }
+    request(parts_.model, of_object_, requests);
 }
 
-void Pair::ask_for_balls(RefineQuestions& questions) noexcept
+void Pair::ask_for_balls() noexcept
 {
     const double fixed_radius = parts_.rules->variant.fixed_radius;
     const CoreCover& cover = outlook_.cover();
@@ -173,69 +206,79 @@ void Pair::ask_for_balls(RefineQuestions& questions) noexcept
             (here.radius + outlook_.reach_m()) * (fixed_radius > 0.0 ? fixed_radius : 1.0);
         const double keep_m = Outlook::kKeepFactor * reach_m;
         ask(is_there && !outlook_.is_asleep(), *parts_.model.model,
-            {here.center, reach_m, keep_m, &refine_memories_[2 * i]}, questions);
+            {here.center, reach_m, keep_m, &refine_memories_[2 * i]}, of_object_);
         ask(is_there && outlook_.looks_ahead(), *parts_.model.model,
             {here.center + outlook_.approach_m(), reach_m, keep_m, &refine_memories_[2 * i + 1]},
-            questions);
+            of_object_);
     }
 }
 
-void Pair::ask_for_mesh(ModelId model, RefineQuestions& questions) noexcept
+void Pair::ask_for_mesh() noexcept
 {
     MeshPair& mesh = *mesh_;
     for (std::size_t place = 0; place < MeshPair::kPlaces; ++place)
     {
         const bool is_asked = place == 0 ? !outlook_.is_asleep() : outlook_.looks_ahead();
-        if (parts_.model.id == model)
-        {
-            ask(is_asked, *parts_.model.model,
-                mesh.ask_object(place, outlook_, refine_memories_[place]), questions);
-        }
-        if (parts_.tool_model.id == model)
-        {
-            ask(is_asked, *parts_.tool_model.model, mesh.ask_tool(place, outlook_), questions);
-        }
+        ask(is_asked, *parts_.model.model,
+            mesh.ask_object(place, outlook_, refine_memories_[place]), of_object_);
+        ask(is_asked, *parts_.tool_model.model, mesh.ask_tool(place, outlook_), of_tool_);
     }
 }
 
+template <std::size_t Capacity>
 void Pair::ask(bool is_asked, const Model& model, const RefineQuestion& question,
-               RefineQuestions& questions) const noexcept
+               Inquiry<Capacity>& inquiry) const noexcept
 {
     const FrameVariant& variant = parts_.rules->variant;
     if (!variant.keeps_certificates)
     {
         question.memory->is_known = false;
     }
-    // From beyond the kernels' range nothing of a model is in reach.
-    if (is_asked && !is_beyond_kernels(question.center_m, model.header.quantum_m()))
+    // From beyond the kernels' range nothing of a model is in reach; a whole one lacks nothing.
+    if (is_asked && !is_shed_ && !model.is_complete() &&
+        !is_beyond_kernels(question.center_m, model.header.quantum_m()))
     {
         RefineQuestion asked = question;
         asked.counts_errors = variant.fixed_radius == 0.0;
         asked.tolerance_m = variant.tolerance_m;
-        questions.push_back(asked);
+        inquiry.questions.push_back(asked);
         return;
     }
     question.memory->is_known = false;
 }
 
-void Pair::query(const Budgets& budgets, WorkCounters& work, FrameFault& faults) noexcept
+/// A pair that asks nothing is heard when it asked before.
+template <std::size_t Capacity>
+void Pair::request(const NamedModel& model, Inquiry<Capacity>& inquiry,
+                   RefineRequests& requests) const noexcept
 {
-    LocalSurface& surface = *surface_;
-    const ObjectPose& pose = *parts_.pose;
+    if (!inquiry.questions.empty() || !inquiry.closure.target.is_none())
+    {
+        requests.push_back({model.id, inquiry.questions.view(), &inquiry.closure, urgency_});
+    }
+}
+
+SurfaceRoom Pair::query(const SurfaceRoom& room, const Budgets& budgets, WorkCounters& work,
+                        FrameFault& faults) noexcept
+{
+    LocalSurface& surface = surface_;
+    surface = room.surface();
+    const ObjectPose& pose = parts_.object->pose;
     if (outlook_.is_asleep())
     {
         surface.answer = outlook_.from_motion();
-        surface.count = 0;
+        work.skipped.add(Skip::pairs);
     }
+    FrameFault found = FrameFault::none;
     if (mesh_ != nullptr)
     {
-        query_mesh(work, faults);
+        query_mesh(work, found);
     }
     else
     {
-        query_core(budgets, work, faults);
+        query_core(budgets, work, found);
     }
-    if (pose.age_ns > parts_.rules->pose_age_max_ns ||
+    if (age_ns(pose, parts_.rules->now_ns) > parts_.rules->pose_age_max_ns ||
         pose.revision != parts_.model.model->header.fields().revision)
     {
         surface.answer.kind = AnswerKind::stale;
@@ -243,18 +286,38 @@ void Pair::query(const Budgets& budgets, WorkCounters& work, FrameFault& faults)
     const double rounding = rounding_m();
     lower_m_ = std::max(0.0, surface.answer.lower_m * pose.scale - rounding);
     upper_m_ = surface.answer.upper_m * pose.scale + rounding;
+    is_joined_ = is_joined_ || lower_m_ > parts_.tool->radius_m();
+    was_answered_ = found == FrameFault::none;
+    answered_revision_ = revision();
+    faults |= found;
+    return room.after(surface.count);
+}
+
+/// Both only grow.
+std::uint32_t Pair::revision() const noexcept
+{
+    return parts_.model.model->revision +
+           (mesh_ != nullptr ? parts_.tool_model.model->revision : 0U);
+}
+
+/// A pose that a host repeats may grow too old.
+bool Pair::is_unchanged() const noexcept
+{
+    return was_answered_ && !has_moved() && parts_.object->pose.arrival_ns == 0 &&
+           answered_revision_ == revision();
 }
 
 void Pair::query_core(const Budgets& budgets, WorkCounters& work, FrameFault& faults) noexcept
 {
     if (!outlook_.is_asleep())
     {
-        LocalSurface& surface = *surface_;
+        LocalSurface& surface = surface_;
         WalkBudget budget{budgets.nodes, budgets.triangles};
         if (!parts_.rules->variant.starts_warm)
         {
             query_memory_ = QueryMemory{};
         }
+        work.skipped.add(Skip::starts, query_memory_.block != kNoNode ? 1 : 0);
         gather_surface(parts_.model.model->tree, outlook_.core(), outlook_.reach_m(), query_memory_,
                        budget, surface);
         work.nodes_visited += budget.nodes_visited;
@@ -270,17 +333,17 @@ void Pair::query_core(const Budgets& budgets, WorkCounters& work, FrameFault& fa
 void Pair::report_core() noexcept
 {
     const ToolSpec& tool = parts_.tool->spec();
-    const ObjectPose& pose = *parts_.pose;
+    const ObjectPose& pose = parts_.object->pose;
     const Model& model = *parts_.model.model;
     if (tool.wants_contacts)
     {
-        report_contacts(outlook_.core(), tool.radius_m / pose.scale, model.tree, *surface_,
+        report_contacts(outlook_.core(), tool.radius_m / pose.scale, model.tree, surface_,
                         model.header.is_closed(), *contacts_);
         place_in_world(pose, *contacts_);
     }
     if (touches_ != nullptr)
     {
-        report_touches(outlook_.core(), outlook_.reach_m(), model.tree, *surface_, *touches_);
+        report_touches(outlook_.core(), outlook_.reach_m(), model.tree, surface_, *touches_);
         place_in_world(pose, touches_->nearest);
         place_in_world(pose, touches_->corners);
     }
@@ -289,8 +352,8 @@ void Pair::report_core() noexcept
 void Pair::query_mesh(WorkCounters& work, FrameFault& faults) noexcept
 {
     const ToolSpec& tool = parts_.tool->spec();
-    const ObjectPose& pose = *parts_.pose;
-    DistanceAnswer& answer = surface_->answer;
+    const ObjectPose& pose = parts_.object->pose;
+    DistanceAnswer& answer = surface_.answer;
     ContactReport& contacts = *contacts_;
     TouchReport* touches = touches_;
     if (touches != nullptr)
@@ -307,7 +370,6 @@ void Pair::query_mesh(WorkCounters& work, FrameFault& faults) noexcept
         const double contact_m = touches != nullptr    ? outlook_.reach_m()
                                  : tool.wants_contacts ? radius_m
                                                        : -1.0;
-        surface_->count = 0;
         mesh_->query(outlook_, contact_m, answer, contacts);
         outlook_.remember(answer);
         if (touches != nullptr)
@@ -325,7 +387,7 @@ void Pair::query_mesh(WorkCounters& work, FrameFault& faults) noexcept
 /// What the distances may be off in the world.
 double Pair::rounding_m() const noexcept
 {
-    const ObjectPose& pose = *parts_.pose;
+    const ObjectPose& pose = parts_.object->pose;
     const double offset_m = mesh_ == nullptr ? 0.0 : mesh_core_of(*parts_.tool).origin_m.norm();
     const double origin_m = parts_.model.model->header.origin_m().norm() * pose.scale;
     return pose_rounding_m(pose, to_world(pose, outlook_.core().center()),
@@ -333,36 +395,40 @@ double Pair::rounding_m() const noexcept
            kOriginRounding * origin_m;
 }
 
-void Pair::rehearse(const Budgets& budgets, LocalSurface& scratch) const noexcept
+void Pair::rehearse(const SurfaceRoom& room, const Budgets& budgets) const noexcept
 {
     if (outlook_.has_known() && !outlook_.is_asleep() && mesh_ == nullptr)
     {
         WalkBudget budget{budgets.nodes, budgets.triangles};
         QueryMemory memory = query_memory_;
+        LocalSurface surface = room.surface();
         gather_surface(parts_.model.model->tree, outlook_.core(), outlook_.reach_m(), memory,
-                       budget, scratch);
+                       budget, surface);
     }
 }
 
-PlacedSurface Pair::placed() const noexcept
+PlacedSurface Pair::placed() noexcept
 {
     const auto quantum_m = static_cast<double>(parts_.model.model->header.quantum_m());
-    return {parts_.pose,
-            surface_,
-            &parts_.object->material,
+    const ObjectPose& pose = parts_.object->pose;
+    return {&pose,
+            &surface_,
+            &parts_.object->spec.material,
             quantum_m,
-            outlook_.reach_m() * parts_.pose->scale,
+            outlook_.reach_m() * pose.scale,
             lower_m_,
             touches_,
-            upper_m_};
+            upper_m_,
+            parts_.object_number,
+            &body_};
 }
 
 PairOutput Pair::output() const noexcept
 {
-    const ObjectPose& pose = *parts_.pose;
-    const DistanceAnswer& answer = surface_->answer;
+    const ObjectPose& pose = parts_.object->pose;
+    const DistanceAnswer& answer = surface_.answer;
     return {parts_.tool_index,
-            parts_.object_index,
+            parts_.object_number,
             answer.kind,
             to_world(pose, answer.tool_point_m),
             lower_m_,
@@ -372,6 +438,8 @@ PairOutput Pair::output() const noexcept
             to_world(pose, answer.nearest_point_m),
             outlook_.is_asleep(),
             answer.nearest_feature,
+            is_shed_,
+            is_joined_,
             parts_.tool->spec().wants_contacts ? contacts_ : nullptr,
             mesh_ == nullptr ? nullptr : &mesh_->report()};
 }

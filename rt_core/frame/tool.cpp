@@ -20,11 +20,16 @@ constexpr double kReachMargin = 0.05;
 /// the tool is: a contact needs some 600 splits at 1 M faces, ten frames of 64.
 constexpr double kApproachTime_s = 0.01;
 
+/// What a tool can come to in this time is looked at: chunks of it are asked for that far ahead.
+constexpr double kNearTime_s = 0.15;
+
 } // namespace
 
 Tool::Tool(const ToolSpec& spec, RigidProxy::Planes* planes) noexcept
     : spec_(spec), body_(make_body(spec, planes))
 {
+    const PlacedCore core(spec.core, Similarity{});
+    ball_ = {core.center(), core.radius()};
 }
 
 Tool::Body Tool::make_body(const ToolSpec& spec, RigidProxy::Planes* planes) noexcept
@@ -56,28 +61,30 @@ auto Tool::with(auto& body, const Function& function) noexcept
     return function(*std::get_if<Follower>(&body));
 }
 
-FrameFault Tool::begin(const ToolState& sample, double period_s, std::span<const ObjectPose> before,
-                       std::span<const ObjectPose> now) noexcept
+FrameFault Tool::begin(const ToolState& sample, double period_s,
+                       std::span<const NearObject> objects) noexcept
 {
     TACTUS_ASSERT(period_s > 0.0);
-    TACTUS_ASSERT(before.empty() || before.size() == now.size());
+    lost_object_ = lost_object_ || (output_.in_contact &&
+                                    std::ranges::any_of(objects, [this](const NearObject& object)
+                                                        { return is_jump(object); }));
+    const ToolGoal last = goal_;
     goal_.elapsed_s = period_s * static_cast<double>(std::max(sample.elapsed_periods, 1U));
     const FrameFault fault = take(sample);
+    is_still_ = fault == FrameFault::none && objects.empty() && !lost_object_ && goal_ == last &&
+                goal_.velocity_m_per_s == Vec3(0.0, 0.0, 0.0);
     with(body_,
          [&](auto& body)
          {
              body.see(goal_);
-             if (!before.empty())
-             {
-                 body.carry(before, now, goal_.elapsed_s);
-             }
+             body.carry(objects, goal_.elapsed_s);
              const double most_m = spec_.speed_max_m_per_s * goal_.elapsed_s;
              stance_.place = body.place();
              stance_.reach_m =
                  body.radius_m() * (1.0 + kReachMargin) + std::min(body.way_to_m(goal_), most_m);
          });
     stance_.approach_m =
-        is_in_contact_ ? Vec3(0.0, 0.0, 0.0) : Vec3(kApproachTime_s * goal_.velocity_m_per_s);
+        output_.in_contact ? Vec3(0.0, 0.0, 0.0) : Vec3(kApproachTime_s * goal_.velocity_m_per_s);
     return fault;
 }
 
@@ -101,12 +108,40 @@ FrameFault Tool::take(const ToolState& sample) noexcept
     return verdict.fault;
 }
 
-ToolOutput Tool::respond(std::span<const PlacedSurface> surfaces) noexcept
+/// No surface that a hand holds on to goes so far in one frame that the spring would change by more
+/// than the device's largest force.
+bool Tool::is_jump(const NearObject& object) const noexcept
 {
-    ToolOutput output = with(body_, [&](auto& body) { return body.respond(goal_, surfaces); });
+    const Vec3 proxy_m = stance_.place.translation_m;
+    const Vec3 along_m = to_world(*object.now, to_model(*object.before, proxy_m));
+    return (along_m - proxy_m).norm() * spec_.stiffness_n_per_m > spec_.force_max_n;
+}
+
+void Tool::forget(const PlacedSurface& gone) noexcept
+{
+    lost_object_ = lost_object_ || (output_.in_contact && gone.lower_m <= stance_.reach_m);
+    with(body_, [&gone](auto& body) { body.forget(gone.object); });
+}
+
+double Tool::near_m() const noexcept
+{
+    const double soon_m =
+        std::max(Outlook::kKeepFactor * stance_.reach_m + stance_.approach_m.norm(),
+                 stance_.reach_m + kNearTime_s * goal_.velocity_m_per_s.norm());
+    return ball_.radius + soon_m;
+}
+
+ToolOutput Tool::respond(std::span<const PlacedSurface> surfaces, double clear_m) noexcept
+{
+    ToolOutput output =
+        with(body_, [&](auto& body) { return body.respond(goal_, surfaces, clear_m); });
     watch_.look_for_return(output, spec_, goal_.position_m);
     output.sample_fault = watch_.fault();
-    is_in_contact_ = output.in_contact;
+    output.clear_m = std::max(clear_m, 0.0);
+    output.lost_object = lost_object_;
+    lost_object_ = false;
+    equal_outputs_ = is_still_ && output == output_ ? equal_outputs_ + 1 : 0;
+    output_ = output;
     return output;
 }
 

@@ -7,6 +7,7 @@
 #include "rt_core/force/proxy.hpp"
 #include "rt_core/force/rigid_proxy.hpp"
 #include "rt_core/frame/sample_watch.hpp"
+#include "rt_core/records/frame_output.hpp"
 #include "rt_core/scene/outlook.hpp"
 
 #include <span>
@@ -20,13 +21,13 @@ namespace tactus
 ///
 /// What kind of tool it is, is decided once, by what becomes its body: a point that surfaces hold
 /// back is a Proxy, another core a RigidProxy, a tool that passes through a Follower. Haptic
-/// thread. 2.4 KiB.
+/// thread. 2.6 KiB.
 class Tool
 {
 public:
     Tool() noexcept : Tool(ToolSpec{}, nullptr) {}
     /// `planes`: scratch of tools that are held as bodies; others need none.
-    Tool(const ToolSpec& spec, RigidProxy::Planes* planes) noexcept;
+    Tool(const ToolSpec& spec, RigidProxy::Planes* planes) noexcept TACTUS_NONBLOCKING;
 
     /// Whether surfaces hold back a tool of this kind as a body, with a force and a torque.
     [[nodiscard]] static bool is_held_as_body(const ToolSpec& spec) noexcept
@@ -34,22 +35,38 @@ public:
         return !spec.passes_through && !std::holds_alternative<PointCore>(spec.core);
     }
 
-    /// The frame begins: a new sample, and objects that went from `before` to `now`; in the first
-    /// frame `before` is empty. `period_s` > 0 is the loop's. Returns what is wrong with the
-    /// sample.
+    /// The frame begins: a new sample, and objects that it was near to in the last frame.
+    /// `period_s` > 0 is the loop's. Returns what is wrong with the sample.
     [[nodiscard]] FrameFault begin(const ToolState& sample, double period_s,
-                                   std::span<const ObjectPose> before,
-                                   std::span<const ObjectPose> now) noexcept TACTUS_NONBLOCKING;
+                                   std::span<const NearObject> objects) noexcept TACTUS_NONBLOCKING;
 
-    /// The force, from the surfaces of all objects in order, which were queried at stance().
-    [[nodiscard]] ToolOutput
-    respond(std::span<const PlacedSurface> surfaces) noexcept TACTUS_NONBLOCKING;
+    /// An object that it was near to is gone; before begin().
+    void forget(const PlacedSurface& gone) noexcept TACTUS_NONBLOCKING;
+
+    /// The force, from surfaces that were queried at stance(); from everything else its core is at
+    /// least `clear_m` away there.
+    [[nodiscard]] ToolOutput respond(std::span<const PlacedSurface> surfaces,
+                                     double clear_m) noexcept TACTUS_NONBLOCKING;
+
+    /// In this frame hand and objects are where they were, and the last outputs were alike: with
+    /// the same surfaces respond() would say the same.
+    [[nodiscard]] bool is_settled() const noexcept
+    {
+        return is_still_ && equal_outputs_ >= kSettledOutputs;
+    }
 
     [[nodiscard]] const ToolSpec& spec() const noexcept { return spec_; }
     /// As the hand has it.
     [[nodiscard]] const ToolGoal& goal() const noexcept { return goal_; }
     /// As the surfaces let it be, from begin() to respond().
     [[nodiscard]] const ToolStance& stance() const noexcept { return stance_; }
+    /// Holds the core, in the world.
+    [[nodiscard]] Ball ball() const noexcept
+    {
+        return {stance_.place.to_there(ball_.center), ball_.radius};
+    }
+    /// How far round that ball's centre a surface may matter to it soon.
+    [[nodiscard]] double near_m() const noexcept TACTUS_NONBLOCKING;
     /// Surfaces are kept at least this far from the core.
     [[nodiscard]] double radius_m() const noexcept TACTUS_NONBLOCKING;
     /// The places that a proxy went by in the last frame, in straight lines, the first and the last
@@ -58,18 +75,25 @@ public:
 
 private:
     using Body = std::variant<Follower, Proxy, RigidProxy>;
+    /// After so many equal outputs of equal inputs nothing within the body changes any more.
+    static constexpr std::uint32_t kSettledOutputs = 4;
 
     [[nodiscard]] static Body make_body(const ToolSpec& spec, RigidProxy::Planes* planes) noexcept;
     template <typename Function>
     static auto with(auto& body, const Function& function) noexcept;
     [[nodiscard]] FrameFault take(const ToolState& sample) noexcept;
+    [[nodiscard]] bool is_jump(const NearObject& object) const noexcept;
 
     ToolSpec spec_;
+    Ball ball_; ///< Holds the core, in the tool's frame.
     SampleWatch watch_;
     ToolGoal goal_;
     Body body_;
     ToolStance stance_;
-    bool is_in_contact_{false}; ///< In the last frame.
+    ToolOutput output_; ///< The last frame's.
+    bool is_still_{false};
+    std::uint32_t equal_outputs_{0};
+    bool lost_object_{false}; ///< In this one, while it was: an object went or jumped.
 };
 
 } // namespace tactus

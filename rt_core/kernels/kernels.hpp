@@ -3,8 +3,11 @@
 #pragma once
 
 #include "rt_core/base/realtime.hpp"
+#include "rt_core/limits.hpp"
+#include "rt_core/math/seen_triangle.hpp"
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -63,6 +66,85 @@ struct TriangleRows
     // NOLINTEND(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays)
 };
 
+/// A block's vertices around a point, in quanta, and the sum of each one's coordinates' sizes.
+struct VertexRows
+{
+    // NOLINTBEGIN(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays): kernel_source.inc.
+    alignas(64) float at[3][16];
+    float size[16];
+    // NOLINTEND(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays)
+};
+
+/// Pairs of faces, one lane each: corners 0 to 2 of the tool's and 3 to 5 of the object's, around
+/// the object's first one, which is therefore zero. In quanta.
+inline constexpr std::uint32_t kPairLanes = 8;
+struct PairRows
+{
+    // NOLINTBEGIN(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays): kernel_source.inc.
+    alignas(64) float at[6][3][kPairLanes];
+    float off[kPairLanes]; ///< What any coordinate is off by at most; kLeastPairOff or more.
+    // NOLINTEND(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays)
+};
+inline constexpr float kLeastPairOff = 0x1p-40F;
+
+/// What single precision proves of pairs, a bit each; of some it proves neither.
+struct PairSides
+{
+    std::uint32_t meet;
+    std::uint32_t apart;
+};
+
+/// Bounds on the distances of pairs, in quanta.
+struct PairDistances
+{
+    // NOLINTBEGIN(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays): kernel_source.inc.
+    alignas(64) float lower[kPairLanes];
+    float upper[kPairLanes];
+    float way[3][kPairLanes]; ///< From the object to the tool; zero where none was found.
+    // NOLINTEND(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays)
+};
+
+/// What a breadth-first traversal has found and not looked at: nodes, and blocks with coarse faces,
+/// which are looked at one by one. The kernels write whole vectors, so eight places more are there
+/// than are used. 3.4 KB on the stack.
+struct Frontier
+{
+    /// So many items are gone through in their order, and beyond that the last comes first, which
+    /// bounds what waits: then no level has more than a depth-first stack's.
+    static constexpr std::uint32_t kBroad = 256;
+    static constexpr std::uint32_t kRoom = kBroad + kTreeStack + 8;
+
+    std::uint32_t count;
+    // NOLINTBEGIN(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays): kernel_source.inc.
+    std::uint32_t refs[kRoom]; ///< TreeRefs.
+    float gaps[kRoom];         ///< Lower bounds on the distances of their boxes, in quanta.
+    // NOLINTEND(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays)
+};
+
+/// Blocks whose faces are all exact, looked at together. 3.7 KB on the stack.
+struct BlockBatch
+{
+    static constexpr std::uint32_t kFull = 32; ///< With more it is looked at before it grows.
+    static constexpr std::uint32_t kRoom = kFull + 2 * 8;
+
+    std::uint32_t count;
+    // NOLINTBEGIN(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays): kernel_source.inc.
+    std::uint32_t blocks[kRoom]; ///< TreeRefs.
+    float gaps[kRoom];           ///< Lower bounds on the distances of their boxes, in quanta.
+    float toward[3][kRoom];      ///< From the probe towards their boxes' middles, of any length.
+    std::uint16_t near[kRoom];   ///< test_blocks(): the faces that may matter,
+    /// and lower bounds on all faces' squared distances; may be negative.
+    alignas(64) float lower_sq[kRoom][16];
+    // NOLINTEND(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays)
+};
+
+/// A block as the point kernels read it in the tree's array: three rows of 16 floats, three of 16
+/// bytes, and two masks of 16 bits.
+inline constexpr std::size_t kBlockBytes = 256;
+inline constexpr std::size_t kBlockCornersAt = 192;
+inline constexpr std::size_t kBlockFacesAt = 240;
+inline constexpr std::size_t kBlockVerticesAt = 242;
+
 static_assert(sizeof(FaceBounds) == 128);
 static_assert(sizeof(TriangleRows) == 960);
 
@@ -94,6 +176,35 @@ struct Kernels
                                  float floor, float& limit,
                                  FaceBounds& bounds) noexcept TACTUS_NONBLOCKING;
 
+    /// Adds the children in `mask` whose bound, child_gaps()'s, is not above `bound`: the blocks
+    /// that are not in `coarse` to the batch, all others to the frontier, each in their order.
+    /// `children` are eight TreeRefs. Both have room for eight.
+    void (*enter_node)(const float* boxes, const std::uint32_t* children, const KernelProbe& probe,
+                       std::uint32_t mask, std::uint32_t coarse, float bound, Frontier& frontier,
+                       BlockBatch& batch) noexcept TACTUS_NONBLOCKING;
+
+    /// Takes the block `known` (a TreeRef) from the batch, and those whose vertices all lie farther
+    /// than `bound` from the probe along the way to the middle of the box: then all their faces do.
+    /// A slanted block's box stands out of the surface, and what is in it doesn't. `blocks` is the
+    /// tree's array.
+    void (*sort_out)(const void* blocks, const KernelProbe& probe, std::uint32_t known, float bound,
+                     BlockBatch& batch) noexcept TACTUS_NONBLOCKING;
+
+    /// face_bounds() of all blocks in the batch, in squares: the least upper bound lowers `limit`,
+    /// and faces are near whose lower bound is not above the larger of `floor` and the new `limit`.
+    /// All distances are quanta.
+    ///
+    /// The bounds on a squared distance are off by at most 2 kSquareMargin x the squared distance
+    /// of the farthest corner, for faces of an aspect up to 8. Thinner ones may be farther than
+    /// their lower bound says, those above kSquareThinAspect by 1/kSquareThinAspect x the longest
+    /// edge.
+    void (*test_blocks)(const void* blocks, const KernelProbe& probe, float floor, float& limit,
+                        BlockBatch& batch) noexcept TACTUS_NONBLOCKING;
+
+    /// see_triangle() of math/seen_triangle.hpp, with all three edges at once.
+    void (*see_triangle)(const double* query, const double* triangle,
+                         SeenTriangle& seen) noexcept TACTUS_NONBLOCKING;
+
     /// Box of the vertices in `mask` of a block: low x, y, z, high x, y, z. Exact.
     void (*block_box)(const float* coordinates, std::uint32_t mask,
                       float* box) noexcept TACTUS_NONBLOCKING;
@@ -108,30 +219,53 @@ struct Kernels
     std::uint32_t (*box_gaps)(const float* boxes, const KernelBox& box, std::uint32_t mask,
                               float bound, float* gaps) noexcept TACTUS_NONBLOCKING;
 
-    /// The faces of a block around the probe; `coordinates` and `corners` are BlockGeometry's rows.
-    void (*place_triangles)(const float* coordinates, const std::uint8_t* corners,
-                            const KernelProbe& probe,
-                            TriangleRows& rows) noexcept TACTUS_NONBLOCKING;
+    /// Raises the lower bounds `gaps` to what parts the boxes along one more direction; `way` is
+    /// not longer than 1 and leads from the node to the box. The rest is as above.
+    std::uint32_t (*boxes_along)(const float* boxes, const KernelBox& box, const float* way,
+                                 std::uint32_t mask, float bound,
+                                 float* gaps) noexcept TACTUS_NONBLOCKING;
 
-    /// The faces in `mask` whose boxes are not proven to be farther than `bound` from a box. `rows`
-    /// are around its centre.
-    std::uint32_t (*near_faces)(const TriangleRows& rows, const KernelBox& box, std::uint32_t mask,
-                                float bound) noexcept TACTUS_NONBLOCKING;
+    /// The faces of a block, moved and turned: `coordinates` less `from`, times the 3 x 3 of
+    /// `turn`, row by row. A coordinate is off by less than 2^-21 of the sum of the differences'
+    /// sizes, times the largest of `turn`. `coordinates` and `corners` are BlockGeometry's rows.
+    void (*place_turned)(const float* coordinates, const std::uint8_t* corners, const float* from,
+                         const float* turn, TriangleRows& rows) noexcept TACTUS_NONBLOCKING;
 
-    /// The faces in `mask` whose boxes are not proven to be farther than `bound` from one round all
-    /// faces in `other_mask`, of which there are some. Both rows are around the same point; `slack`
-    /// is what their coordinates are off beyond 2^-22 of themselves.
-    std::uint32_t (*near_lanes)(const TriangleRows& rows, const TriangleRows& other,
-                                std::uint32_t other_mask, std::uint32_t mask, float bound,
-                                float slack) noexcept TACTUS_NONBLOCKING;
+    /// No vertex in `mask`, of which there are some, is higher along a way not longer than 1 than
+    /// this above the probe, but for the probe's slack. `coordinates` are three rows of 16.
+    float (*highest_along)(const float* coordinates, std::uint32_t mask, const KernelProbe& probe,
+                           const float* way) noexcept TACTUS_NONBLOCKING;
 
-    /// Lower bounds on the distances from face `lane` of `other` to the faces in `mask`: the
-    /// largest of what separates them along the frame's axes and along the normal of either.
-    /// Returns the faces whose bound is not above `bound`; other lanes hold values of no meaning.
-    /// Rows and `slack` as above.
-    std::uint32_t (*triangle_gaps)(const TriangleRows& rows, const TriangleRows& other,
-                                   std::uint32_t lane, std::uint32_t mask, float bound, float slack,
-                                   float* gaps) noexcept TACTUS_NONBLOCKING;
+    /// The faces in `mask` that are not proven to be farther than `bound` from a box, along the
+    /// frame's axes and their normals. `box` is low x, y, z, high x, y, z in metres, and `center`
+    /// what the rows are around; `slack` is how far their vertices are off beyond 2^-22 of
+    /// themselves.
+    std::uint32_t (*near_rows)(const TriangleRows& rows, const float* box,
+                               const KernelProbe& center, std::uint32_t mask, float bound,
+                               float slack) noexcept TACTUS_NONBLOCKING;
+
+    /// The faces in `mask` of a block that are not proven to be farther than `bound` from a box,
+    /// along its own axes and the frame's; and the block's vertices around the box's centre.
+    std::uint32_t (*near_block)(const float* coordinates, const std::uint8_t* corners,
+                                const KernelBox& box, std::uint32_t mask, float bound,
+                                VertexRows& rows) noexcept TACTUS_NONBLOCKING;
+
+    /// For each face in `tool_mask`, the faces in `mask` that are not proven to be farther than
+    /// `bound` from it, along the frame's axes, its own normal and `way`: not longer than 1, from
+    /// the object to the tool, null where none is known. Both rows are around the same point;
+    /// `slack` is as above.
+    void (*near_pairs)(const VertexRows& rows, const std::uint8_t* corners, std::uint32_t mask,
+                       const TriangleRows& tool, std::uint32_t tool_mask, float bound, float slack,
+                       const float* way, std::uint32_t* near) noexcept TACTUS_NONBLOCKING;
+
+    /// Whether the pairs in the first `count` lanes meet.
+    PairSides (*decide_pairs)(const PairRows& rows,
+                              std::uint32_t count) noexcept TACTUS_NONBLOCKING;
+
+    /// Bounds on the distances of the pairs in the first `count` lanes. A pair's `way` makes its
+    /// lower bound, and is good to rule out others.
+    void (*pair_distances)(const PairRows& rows, std::uint32_t count,
+                           PairDistances& distances) noexcept TACTUS_NONBLOCKING;
 };
 
 /// What single precision rounds in the bounds between boxes and between faces, as a share of the
@@ -141,6 +275,13 @@ inline constexpr float kPairMargin = 0x1p-20F;
 /// Faces with a larger (longest edge squared / twice the area) are bounded by their edges alone.
 inline constexpr float kThinAspect = 128.0F;
 inline constexpr float kFaceMargin = 4e-5F;
+
+/// The same of test_blocks(), of squares (docs/accuracy.md, "The filter in squares").
+inline constexpr float kSquareThinAspect = 32.0F;
+inline constexpr float kSquareMargin = 0x1p-15F;
+/// What rounding may take from an inside test, as a share of the farthest corner's distance x the
+/// cube of the longest edge.
+inline constexpr float kInsideMargin = 0x1p-17F;
 
 /// Runs everywhere.
 [[nodiscard]] const Kernels& portable_kernels() noexcept;

@@ -6,6 +6,7 @@
 #include "rt_core/math/arc_tangent.hpp"
 #include "rt_core/math/vec3.hpp"
 
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -51,6 +52,36 @@ inline constexpr double kOrthonormalRounding = 1e-9;
     return result;
 }
 
+/// A rotation as records of devices and hosts have it: x, y, z, w.
+using Quaternion = std::array<double, 4>;
+
+/// Whether its length is within the tolerance of 1; not when it is no number.
+[[nodiscard]] inline bool is_unit(const Quaternion& q, double tolerance) noexcept
+{
+    const double square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+    return std::abs(std::sqrt(square) - 1.0) <= tolerance; // So that NaN is not.
+}
+
+/// Its length is divided out; it is not zero.
+[[nodiscard]] inline Mat3 to_rotation(const Quaternion& quaternion) noexcept
+{
+    const auto [x, y, z, w] = quaternion;
+    const double s = 2.0 / (x * x + y * y + z * z + w * w);
+    Mat3 rotation;
+    rotation << 1.0 - s * (y * y + z * z), s * (x * y - z * w), s * (x * z + y * w),
+        s * (x * y + z * w), 1.0 - s * (x * x + z * z), s * (y * z - x * w), s * (x * z - y * w),
+        s * (y * z + x * w), 1.0 - s * (x * x + y * y);
+    return rotation;
+}
+
+/// Of a rotation that is orthonormal to rounding; its sign is either.
+[[nodiscard]] inline Quaternion to_quaternion(const Mat3& rotation) noexcept
+{
+    TACTUS_ASSERT(is_orthonormal(rotation, kOrthonormalRounding));
+    const Eigen::Quaterniond turn(rotation);
+    return {turn.x(), turn.y(), turn.z(), turn.w()};
+}
+
 /// Axis times angle, 0 .. pi, of a rotation that is orthonormal to rounding.
 [[nodiscard]] inline Vec3 rotation_vector(const Mat3& rotation) noexcept
 {
@@ -82,6 +113,15 @@ inline constexpr double kOrthonormalRounding = 1e-9;
         result.col(axis) = column + share * (across + half.cross(across));
     }
     return orthonormalised(result);
+}
+
+/// Round the axis of `turn` by its length, to rounding for lengths up to 0.1 (8e-11 there, by the
+/// 7th power); by IEEE operations alone.
+[[nodiscard]] inline Mat3 turned_exactly_by(const Vec3& turn, const Mat3& rotation) noexcept
+{
+    // Twice the tangent of half the angle, which turned_by() takes: t + t^3/12 + t^5/120.
+    const double square = turn.squaredNorm();
+    return turned_by(turn * (1.0 + square / 12.0 + square * square / 120.0), rotation);
 }
 
 } // namespace tactus

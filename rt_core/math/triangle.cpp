@@ -16,29 +16,20 @@ namespace tactus
 namespace
 {
 
-/// A triangle relative to the query point, which is the origin.
-struct Surroundings
-{
-    std::array<Vec3, 3> corner;
-    std::array<Vec3, 3> edge;
-    std::array<double, 3> edge_sq;
-    double longest_sq{0.0}; ///< Of the edges.
-    double local_sq{0.0};   ///< Of edges and corners.
-};
+// NOLINTBEGIN(cppcoreguidelines-pro-bounds-constant-array-index): columns below 3.
+// NOLINTBEGIN(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays): rows of SeenTriangle.
 
-Surroundings look_from(const Vec3& query, const Triangle& triangle) noexcept
+Vec3 column(const double (&rows)[3][4], std::size_t i) noexcept
 {
-    Surroundings around{
-        {triangle[0] - query, triangle[1] - query, triangle[2] - query}, {}, {}, 0.0, 0.0};
-    for (std::size_t i = 0; i < 3; ++i)
+    return {rows[0][i], rows[1][i], rows[2][i]};
+}
+
+void put_column(double (&rows)[3][4], std::size_t i, const Vec3& value) noexcept
+{
+    for (std::size_t axis = 0; axis < 3; ++axis)
     {
-        around.edge[i] = around.corner[(i + 1) % 3] - around.corner[i];
-        around.edge_sq[i] = around.edge[i].squaredNorm();
-        around.longest_sq = std::max(around.longest_sq, around.edge_sq[i]);
-        around.local_sq = std::max(around.local_sq, around.corner[i].squaredNorm());
+        rows[axis][i] = value[static_cast<Eigen::Index>(axis)];
     }
-    around.local_sq = std::max(around.local_sq, around.longest_sq);
-    return around;
 }
 
 struct SegmentFoot
@@ -60,36 +51,44 @@ SegmentFoot foot_on_segment(const Vec3& from, const Vec3& edge, double length_sq
     return {foot, parameter};
 }
 
-void find_on_edges(const Surroundings& around, ClosestPoint& result) noexcept
+/// Whether the origin lies over the triangle, seen along the normal: all three edges say so.
+bool is_over(const SeenTriangle& seen, const Vec3& normal) noexcept
 {
-    result.gap = around.corner[0];
-    result.distance_sq = around.corner[0].squaredNorm();
+    for (std::size_t i = 0; i < 3; ++i)
+    {
+        if (!(column(seen.edge, i).cross(normal).dot(column(seen.corner, i)) > 0.0))
+        {
+            return false;
+        }
+    }
+    return true;
+}
+
+double largest_of(const double (&values)[4]) noexcept
+{
+    return std::max({values[0], values[1], values[2]});
+}
+
+void find_on_edges(const SeenTriangle& seen, ClosestPoint& result) noexcept
+{
+    result.gap = column(seen.corner, 0);
+    result.distance_sq = seen.corner_sq[0];
     result.feature = TriangleFeature::corner_0;
     for (std::size_t i = 0; i < 3; ++i)
     {
-        const SegmentFoot foot =
-            foot_on_segment(around.corner[i], around.edge[i], around.edge_sq[i]);
-        const double distance_sq = foot.foot.squaredNorm();
-        if (distance_sq < result.distance_sq)
+        if (seen.foot_sq[i] < result.distance_sq)
         {
-            result.distance_sq = distance_sq;
-            result.gap = foot.foot;
-            result.feature = feature_of_edge(i, foot.parameter);
+            result.distance_sq = seen.foot_sq[i];
+            result.gap = column(seen.foot, i);
+            result.feature = feature_of_edge(i, seen.parameter[i]);
         }
     }
 }
 
-void find_in_interior(const Surroundings& around, const Vec3& normal, ClosestPoint& result) noexcept
+void find_in_interior(const SeenTriangle& seen, const Vec3& normal, ClosestPoint& result) noexcept
 {
-    for (std::size_t i = 0; i < 3; ++i)
-    {
-        if (!(around.edge[i].cross(normal).dot(around.corner[i]) > 0.0))
-        {
-            return;
-        }
-    }
     const double normal_sq = normal.squaredNorm();
-    const double height = around.corner[0].dot(normal);
+    const double height = column(seen.corner, 0).dot(normal);
     const double plane_sq = height * height / normal_sq;
     if (plane_sq < result.distance_sq)
     {
@@ -99,25 +98,36 @@ void find_in_interior(const Surroundings& around, const Vec3& normal, ClosestPoi
     }
 }
 
-/// Of lengths between 2^-130 and 2^130.
-ClosestPoint find_closest(const Triangle& triangle, const Surroundings& around) noexcept
+/// Of lengths between 2^-130 and 2^130; `local_sq` is the largest of edges and corners.
+ClosestPoint find_closest(const Triangle& triangle, const SeenTriangle& seen,
+                          double local_sq) noexcept
 {
     ClosestPoint result;
-    find_on_edges(around, result);
-    Vec3 normal = around.edge[0].cross(around.edge[1]);
+    find_on_edges(seen, result);
+    Vec3 normal(seen.normal[0], seen.normal[1], seen.normal[2]);
+    bool is_inside = seen.is_inside;
     double aspect = kLargestAspect;
-    if (normal.squaredNorm() * (kLargestAspect * kLargestAspect) >
-        around.longest_sq * around.longest_sq)
+    const double longest_sq = largest_of(seen.edge_sq);
+    if (normal.squaredNorm() * (kLargestAspect * kLargestAspect) > longest_sq * longest_sq)
     {
-        aspect = around.longest_sq / normal.norm();
+        aspect = longest_sq / normal.norm();
     }
     else
     {
-        normal = exact_normal(triangle, around.longest_sq);
+        normal = exact_normal(triangle, longest_sq);
+        is_inside = is_over(seen, normal);
     }
-    find_in_interior(around, normal, result);
-    result.distance_error = kernel_error(aspect, std::sqrt(around.local_sq));
+    if (is_inside)
+    {
+        find_in_interior(seen, normal, result);
+    }
+    result.distance_error = kernel_error(aspect, std::sqrt(local_sq));
     return result;
+}
+
+double local_sq(const SeenTriangle& seen) noexcept
+{
+    return std::max(largest_of(seen.corner_sq), largest_of(seen.edge_sq));
 }
 
 /// Of coordinates so large or small that their products would not be doubles.
@@ -127,7 +137,10 @@ ClosestPoint find_closest(const Triangle& triangle, const Surroundings& around) 
     const std::array<Vec3, 4> points{query, triangle[0], triangle[1], triangle[2]};
     const double scale = safe_scale(largest_coordinate(points));
     const Triangle near = scaled(triangle, scale);
-    ClosestPoint result = find_closest(near, look_from(query * scale, near));
+    const Vec3 near_query = query * scale;
+    SeenTriangle seen; // NOLINT(cppcoreguidelines-pro-type-member-init): filled below.
+    see_triangle(near_query.data(), near[0].data(), seen);
+    ClosestPoint result = find_closest(near, seen, local_sq(seen));
     const double inverse = 1.0 / scale;
     result.gap *= inverse;
     result.distance_sq = result.distance_sq * inverse * inverse;
@@ -146,14 +159,54 @@ Vec3 exact_normal(const Triangle& triangle, double longest_sq) noexcept
     return normal.squaredNorm() > least * least ? normal : Vec3(0.0, 0.0, 0.0);
 }
 
-ClosestPoint closest_point_on_triangle(const Vec3& query, const Triangle& triangle) noexcept
+void see_triangle(const double* query, const double* triangle, SeenTriangle& seen) noexcept
 {
-    const Surroundings around = look_from(query, triangle);
-    const bool is_in_range = around.local_sq > 0x1p-260 && around.local_sq < 0x1p260;
+    const Vec3 from(query[0], query[1], query[2]);
+    for (std::size_t i = 0; i < 3; ++i)
+    {
+        const double* at = triangle + 3 * i;
+        const Vec3 corner = Vec3(at[0], at[1], at[2]) - from;
+        put_column(seen.corner, i, corner);
+        seen.corner_sq[i] = corner.squaredNorm();
+    }
+    for (std::size_t i = 0; i < 3; ++i)
+    {
+        const Vec3 corner = column(seen.corner, i);
+        const Vec3 edge = column(seen.corner, (i + 1) % 3) - corner;
+        seen.edge_sq[i] = edge.squaredNorm();
+        const SegmentFoot foot = foot_on_segment(corner, edge, seen.edge_sq[i]);
+        put_column(seen.edge, i, edge);
+        put_column(seen.foot, i, foot.foot);
+        seen.foot_sq[i] = foot.foot.squaredNorm();
+        seen.parameter[i] = foot.parameter;
+    }
+    const Vec3 normal = column(seen.edge, 0).cross(column(seen.edge, 1));
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+        seen.normal[axis] = normal[static_cast<Eigen::Index>(axis)];
+    }
+    seen.is_inside = is_over(seen, normal);
+}
+
+ClosestPoint closest_point_seen(const Vec3& query, const Triangle& triangle,
+                                const SeenTriangle& seen) noexcept
+{
+    const double local = local_sq(seen);
+    const bool is_in_range = local > 0x1p-260 && local < 0x1p260;
     ClosestPoint result =
-        is_in_range ? find_closest(triangle, around) : find_closest_scaled(query, triangle);
+        is_in_range ? find_closest(triangle, seen, local) : find_closest_scaled(query, triangle);
     result.point = query + result.gap;
     return result;
 }
+
+ClosestPoint closest_point_on_triangle(const Vec3& query, const Triangle& triangle) noexcept
+{
+    SeenTriangle seen; // NOLINT(cppcoreguidelines-pro-type-member-init): filled below.
+    see_triangle(query.data(), triangle[0].data(), seen);
+    return closest_point_seen(query, triangle, seen);
+}
+
+// NOLINTEND(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays)
+// NOLINTEND(cppcoreguidelines-pro-bounds-constant-array-index)
 
 } // namespace tactus

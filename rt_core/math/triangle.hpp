@@ -4,6 +4,7 @@
 
 #include "rt_core/base/assert.hpp"
 #include "rt_core/base/realtime.hpp"
+#include "rt_core/math/seen_triangle.hpp"
 #include "rt_core/math/vec3.hpp"
 
 #include <array>
@@ -14,6 +15,7 @@ namespace tactus
 {
 
 using Triangle = std::array<Vec3, 3>;
+static_assert(sizeof(Triangle) == 9 * sizeof(double), "nine coordinates, corner by corner");
 
 [[nodiscard]] inline Triangle to_triangle(const std::array<Vec3f, 3>& corners) noexcept
 {
@@ -42,6 +44,10 @@ struct ClosestPoint
     double distance_error{0.0};
     TriangleFeature feature{TriangleFeature::interior};
 };
+
+/// closest_point_on_triangle() of a triangle as see_triangle() saw it.
+[[nodiscard]] ClosestPoint closest_point_seen(const Vec3& query, const Triangle& triangle,
+                                              const SeenTriangle& seen) noexcept TACTUS_NONBLOCKING;
 
 /// The point of the triangle nearest to `query`.
 ///

@@ -16,6 +16,7 @@ namespace tactus
 struct QueryMemory
 {
     std::uint32_t block{kNoNode}; ///< The block of the last nearest face; any value is safe.
+    float limit{0.0F}; ///< Of a point: how far the surface was at most, in quanta; likewise.
 };
 
 /// Shows `search` the blocks that matter, the remembered one first and then nearest first.

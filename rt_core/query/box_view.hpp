@@ -22,11 +22,20 @@ public:
 
     /// Its centre, placed, must be within kFarQuanta units of the origin. About 20 ns.
     [[nodiscard]] KernelBox of(const Aabb& box) const noexcept TACTUS_NONBLOCKING;
+    /// One of the boxes' own axes, as they are seen.
+    [[nodiscard]] const std::array<float, 3>& axis(std::size_t along) const noexcept
+    {
+        return axes_[along];
+    }
 
 private:
+    using Axes = std::array<std::array<float, 3>, 3>;
+
+    Axes axes_{};  ///< Of the boxes' own frame, one after the other.
+    Axes sizes_{}; ///< Of their coordinates.
     MeshPlacement there_;
     double units_per_m_;
-    double units_per_m_here_; ///< Of lengths in the boxes' own frame.
+    float units_per_m_here_; ///< Of lengths in the boxes' own frame.
     float slack_;
 };
 

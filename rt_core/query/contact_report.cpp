@@ -290,7 +290,7 @@ void report_touches(const PlacedCore& core, double reach_m, const AbTree& tree,
                     const LocalSurface& surface, TouchReport& touches) noexcept
 {
     TACTUS_ASSERT(reach_m >= 0.0);
-    TACTUS_ASSERT(surface.count <= kMaxLocalTriangles);
+    TACTUS_ASSERT(surface.count <= surface.triangles.size());
     touches.clear();
     const CoreCorners corners = core.corners();
     for (std::uint32_t i = 0; i < surface.count; ++i)
@@ -316,7 +316,7 @@ void report_contacts(const PlacedCore& core, double radius_m, const AbTree& tree
                      const LocalSurface& surface, bool is_closed, ContactReport& report) noexcept
 {
     TACTUS_ASSERT(radius_m >= 0.0);
-    TACTUS_ASSERT(surface.count <= kMaxLocalTriangles);
+    TACTUS_ASSERT(surface.count <= surface.triangles.size());
     report.clear();
     const DistanceAnswer& answer = surface.answer;
     // Nothing unseen may touch: either all is exact that far, or all is farther.

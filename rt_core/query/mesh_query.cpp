@@ -15,8 +15,10 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -36,52 +38,39 @@ struct MeshFace
     PrimId prim{};
     FaceId id{};
     double error_m{0.0};
-    bool is_coarse{false};
     Vec3 low{0.0, 0.0, 0.0}; ///< Of its box.
     Vec3 high{0.0, 0.0, 0.0};
 
-    MeshFace(const Triangle& corners, const AbTree& tree, PrimId face, double error,
-             bool coarse) noexcept
+    MeshFace(const Triangle& corners, const AbTree& tree, PrimId face, double error) noexcept
         : triangle(corners)
         , prim(face)
         , id(tree.face_of(face))
         , error_m(error)
-        , is_coarse(coarse)
         , low(least_of(least_of(corners[0], corners[1]), corners[2]))
         , high(greatest_of(greatest_of(corners[0], corners[1]), corners[2]))
     {
     }
 };
 
-/// Of the boxes of two faces.
-struct BoxGap
-{
-    double distance_m;
-    double span_m; ///< Diagonal of a box round both; the kernel's error goes with it at most.
-};
-
-BoxGap box_gap(const MeshFace& a, const MeshFace& b) noexcept
+/// Between the boxes of two faces.
+double box_gap_m(const MeshFace& a, const MeshFace& b) noexcept
 {
     double gap_sq = 0.0;
-    double span_sq = 0.0;
     for (int axis = 0; axis < 3; ++axis)
     {
         const double gap = std::max({b.low[axis] - a.high[axis], a.low[axis] - b.high[axis], 0.0});
-        const double span =
-            std::max(a.high[axis], b.high[axis]) - std::min(a.low[axis], b.low[axis]);
         gap_sq += gap * gap;
-        span_sq += span * span;
     }
-    return {std::sqrt(gap_sq) / kRoundedUp, std::sqrt(span_sq) * kRoundedUp};
+    return std::sqrt(gap_sq) / kRoundedUp;
 }
 
-/// Two faces that single precision does not tell to be far apart.
+/// Exact faces that are to be measured, unless others turn out to be nearer.
 struct Candidate
 {
-    std::uint32_t tool_lane;
-    std::uint32_t lane;
+    FacePair pair;
     float gap; ///< They are at least this far apart, in quanta.
 };
+constexpr std::size_t kMaxCandidates = 256;
 
 /// Exact faces that share a point.
 struct Meeting
@@ -104,11 +93,56 @@ Triangle triangle_of(const AbTree& tree, PrimId prim) noexcept
     return to_triangle(block_triangle(tree.block(leaf / kBlockFaces), leaf % kBlockFaces));
 }
 
+Triangle placed_triangle(const Triangle& there, const MeshPlacement& place) noexcept
+{
+    return {place.to_there(there[0]), place.to_there(there[1]), place.to_there(there[2])};
+}
+
+/// Whether a lane of a block is an exact face now.
+bool is_exact_face(const AbTree& tree, std::uint32_t block, std::uint32_t lane) noexcept
+{
+    return tree.is_block_in_use(block) && lane < kBlockFaces &&
+           (tree.block(block).faces & ~tree.side(block).coarse & 1U << lane) != 0;
+}
+
+/// The faces that are remembered, where they are now.
+struct Witness
+{
+    Triangle tool;
+    Triangle triangle;
+    Meeting meeting;
+    bool do_meet{false};
+};
+
+/// None when one of them is gone or no longer exact.
+std::optional<Witness> find_witness(const MeshQuestion& question, const FacePair& pair,
+                                    WalkBudget& budget) noexcept
+{
+    if (!is_exact_face(question.tool, pair.tool_block, pair.tool_lane) ||
+        !is_exact_face(question.object, pair.block, pair.lane) || !budget.take_node() ||
+        !budget.take_triangles(1))
+    {
+        return std::nullopt;
+    }
+    Witness witness;
+    witness.tool = placed_triangle(
+        to_triangle(block_triangle(question.tool.block(pair.tool_block), pair.tool_lane)),
+        question.place);
+    witness.triangle = to_triangle(block_triangle(question.object.block(pair.block), pair.lane));
+    witness.meeting.tool_prim = question.tool.side(pair.tool_block).prims[pair.tool_lane];
+    witness.meeting.prim = question.object.side(pair.block).prims[pair.lane];
+    witness.meeting.faces = {question.tool.face_of(witness.meeting.tool_prim),
+                             question.object.face_of(witness.meeting.prim)};
+    witness.do_meet = meet(witness.tool, witness.triangle);
+    return witness;
+}
+
 /// What a search is for.
 enum class Aim : std::uint8_t
 {
-    distance, ///< And all that meets.
-    meeting,  ///< Which needs no measuring.
+    all,     ///< Distance within the reach, all that meets, contacts.
+    nearest, ///< The distance.
+    meeting, ///< What meets, which needs no measuring.
 };
 constexpr std::uint32_t kAll = std::numeric_limits<std::uint32_t>::max();
 
@@ -117,11 +151,13 @@ class MeshSearch
 {
 public:
     /// Ends when `enough` pairs meet.
+    // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): distances_ are written first.
     MeshSearch(const MeshQuestion& question, Aim aim, std::uint32_t enough, WalkBudget& budget,
                MeshMemory& memory, MeshReport& report, ContactReport* contacts) noexcept
         : question_(question)
         , aim_(aim)
         , enough_(enough)
+        , reach_m_(aim == Aim::nearest ? kInfinity : question.reach_m)
         , budget_(budget)
         , memory_(memory)
         , report_(report)
@@ -131,39 +167,46 @@ public:
         , quantum_m_(static_cast<double>(question.object.quantum_m()))
         , views_(question.tool, question.object, question.place)
         , placed_(question.tool, question.object, question.place, views_)
+        , doubt_m_(kSpanError * 2.0 * views_.farthest() * quantum_m_)
     {
         TACTUS_ASSERT(question.reach_m >= 0.0);
         TACTUS_ASSERT(enough > 0);
-        TACTUS_ASSERT(aim == Aim::meeting || contacts != nullptr);
+        TACTUS_ASSERT(aim != Aim::all || contacts != nullptr);
     }
 
     /// `object` is asked how far away it is where nothing is remembered; null when that is not
     /// wanted.
-    void run(OtherSurface* object) noexcept
+    void run(OtherSurface* object, const std::optional<Witness>& witness) noexcept
     {
         if (question_.tool.root().is_none() || question_.object.root().is_none())
         {
             return;
         }
         const bool is_near = !views_.is_beyond_kernels();
-        if (is_near)
+        if (is_near && witness)
         {
-            search_remembered();
+            bound_by(*witness);
         }
         // Where a distance is wanted there has to be a bound, before anything can be left out.
-        if (object != nullptr && upper_m_ == kInfinity)
+        if (object != nullptr && bound_m_ == kInfinity)
         {
-            upper_m_ = object->upper_bound_m(ball_round(question_.tool.box())) *
+            bound_m_ = object->upper_bound_m(ball_round(question_.tool.box())) *
                        question_.place.place.scale * kRoundedUp;
         }
         if (is_near)
         {
             search_all();
+            decide_queued();
+            measure_candidates();
         }
         else
         {
             const double gap_m = balls_gap_m();
             leave(gap_m > 0.0 ? gap_m : 0.0); // Not a number: nothing is known.
+        }
+        if (found_ == 0 && witness && witness->do_meet)
+        {
+            add_meeting(witness->meeting); // The budget was spent before.
         }
     }
 
@@ -171,11 +214,15 @@ public:
     {
         Findings found;
         found.exact_lower_m = exact_lower_m_;
-        found.upper_m = upper_m_;
+        found.upper_m = std::min(upper_m_, bound_m_);
         found.open_m = is_all_there() ? open_m_ : std::min(open_m_, 0.0);
-        found.pruned_m = upper_m_ > question_.reach_m ? worth_m() : kInfinity;
+        if (aim_ == Aim::nearest)
+        {
+            found.open_m = std::max(found.open_m, 0.0); // Nothing is nearer than what meets.
+        }
+        found.pruned_m = found.upper_m > reach_m_ ? worth_m() : kInfinity;
         found.dropped_m = kInfinity;
-        DistanceAnswer answer = answer_from(found, question_.reach_m);
+        DistanceAnswer answer = answer_from(found, reach_m_);
         if (is_nearest_proven(found))
         {
             if (!touching_.empty())
@@ -195,6 +242,10 @@ public:
     void report_meeting() noexcept
     {
         TACTUS_ASSERT(report_.meeting.size() <= found_);
+        if (!report_.is_truncated)
+        {
+            std::ranges::make_heap(report_.meeting);
+        }
         std::ranges::sort_heap(report_.meeting);
         const bool is_all_seen = is_all_there() && open_m_ > 0.0;
         report_.is_complete = is_all_seen && !report_.is_truncated && !is_enough();
@@ -203,11 +254,17 @@ public:
                                                         : Intersection::open;
     }
 
-    /// The contacts in order, and the tool's face of the nearest pair.
-    void report_contacts(const DistanceAnswer& answer) noexcept
+    /// The tool's face of the nearest pair.
+    void report_nearest(const DistanceAnswer& answer) noexcept
     {
         report_.nearest_tool_face =
             answer.nearest_face.is_none() ? FaceId{} : nearest_faces_.tool_face;
+    }
+
+    /// The contacts in order, and the tool's face of the nearest pair.
+    void report_contacts(const DistanceAnswer& answer) noexcept
+    {
+        report_nearest(answer);
         if (question_.contact_m < 0.0)
         {
             return;
@@ -230,9 +287,26 @@ private:
     /// What is farther changes nothing; never grows.
     [[nodiscard]] double worth_m() const noexcept
     {
-        return aim_ == Aim::distance
-                   ? std::max(question_.reach_m, static_cast<double>(kProofShare) * upper_m_)
-                   : 0.0;
+        switch (aim_)
+        {
+        case Aim::all:
+            return std::max(reach_m_, static_cast<double>(kProofShare) * bound_m_);
+        case Aim::nearest:
+            return bound_m_ + doubt_m_;
+        case Aim::meeting:
+            break;
+        }
+        return 0.0;
+    }
+    /// Exact pairs that are farther apart need no measuring; negative when none does.
+    [[nodiscard]] double measured_m() const noexcept
+    {
+        if (aim_ == Aim::meeting)
+        {
+            return -1.0;
+        }
+        const double nearest_m = bound_m_ > 0.0 ? bound_m_ + doubt_m_ : -1.0;
+        return std::min(worth_m(), std::max(kept_contact_m(), nearest_m));
     }
     /// Something was not looked at that is at least this far away.
     void leave(double gap_m) noexcept { open_m_ = std::min(open_m_, gap_m); }
@@ -248,16 +322,32 @@ private:
                (question_.place.place.scale * tool.radius + object.radius) * kRoundedUp;
     }
 
-    /// First the blocks that are remembered: their bound leaves little to look at.
-    void search_remembered() noexcept
+    /// What is remembered leaves little to look at.
+    void bound_by(const Witness& witness) noexcept
     {
-        warm_ = memory_;
-        is_warm_ = question_.tool.is_block_in_use(warm_.tool_block) &&
-                   question_.object.is_block_in_use(warm_.block) && budget_.take_node();
-        if (is_warm_)
+        if (witness.do_meet || aim_ == Aim::meeting)
         {
-            test_blocks(warm_);
+            bound_m_ = 0.0;
+            return;
         }
+        queue_.add(memory_.faces, witness.tool, witness.triangle, quantum_m_);
+        question_.object.kernels().pair_distances(queue_.rows(), 1, distances_);
+        queue_.clear();
+        take_bound(0, memory_.faces);
+        test_remembered();
+    }
+
+    /// All faces of the blocks of those that are remembered: the nearest moves to a face beside.
+    void test_remembered() noexcept
+    {
+        const FacePair& pair = memory_.faces;
+        const BlockGeometry& block = question_.object.block(pair.block);
+        remembered_.tool = TreeRef::to_block(pair.tool_block);
+        remembered_.object = TreeRef::to_block(pair.block);
+        remembered_.object_box = AabbVolume::of_vertices(
+            question_.object.kernels(), block.coordinates.front().data(), block.vertices);
+        test_blocks(remembered_);
+        decide_queued();
     }
 
     void search_all() noexcept
@@ -265,15 +355,15 @@ private:
         PairWalk walk(question_.tool, question_.object, views_, budget_);
         while (!is_enough() && !has_stopped_)
         {
-            const PairWalk::Item* near = walk.next_blocks(bound_quanta(0.0));
+            const PairWalk::Item* near =
+                walk.next_blocks(bound_quanta(worth_m()), way_number_ != 0 ? &way_ : nullptr);
             if (near == nullptr)
             {
                 break;
             }
-            const MeshMemory blocks{near->tool.index(), near->object.index()};
-            if (!is_warm_ || blocks != warm_)
+            if (near->tool != remembered_.tool || near->object != remembered_.object)
             {
-                test_blocks(blocks);
+                test_blocks(*near);
             }
         }
         for (const PairWalk::Item& item : walk.left())
@@ -282,155 +372,260 @@ private:
         }
     }
 
-    /// The same for the kernels, of faces with such an error.
-    [[nodiscard]] float bound_quanta(double error_m) const noexcept
+    /// For the kernels.
+    [[nodiscard]] float bound_quanta(double bound_m) const noexcept
     {
-        const double quanta = (worth_m() + error_m) / quantum_m_ * kRoundedUp;
+        const double quanta = bound_m / quantum_m_ * kRoundedUp;
         return quanta < kFarQuanta ? round_up_to_float(quanta)
                                    : std::numeric_limits<float>::infinity();
     }
 
-    void test_blocks(const MeshMemory& blocks) noexcept
+    /// The budget is spent; of these blocks not all was looked at.
+    void stop_at(const PairWalk::Item& item) noexcept
     {
-        TACTUS_ASSERT(question_.object.is_block_in_use(blocks.block));
-        const BlockGeometry& block = question_.object.block(blocks.block);
-        if (!budget_.take_triangles(face_count(block)))
-        {
-            leave(0.0); // Its parent's bound may have gone with it.
-            has_stopped_ = true;
-            return;
-        }
-        const PlacedBlock& tool = placed_.get(blocks.tool_block);
-        const double error_m =
-            tool.largest_error_m +
-            static_cast<double>(largest_error_quanta(question_.object.side(blocks.block))) *
-                quantum_m_;
-        find_candidates(blocks, tool, bound_quanta(error_m));
-        if (!budget_.take_triangles(static_cast<std::uint32_t>(candidates_.size())))
-        {
-            leave(0.0);
-            has_stopped_ = true;
-            return;
-        }
-        const double upper_before = upper_m_;
-        for (const Candidate& candidate : candidates_)
-        {
-            if (is_enough())
-            {
-                break;
-            }
-            if (static_cast<double>(candidate.gap) * quantum_m_ <= worth_m() + error_m)
-            {
-                test_pair(tool_face(blocks.tool_block, tool, candidate.tool_lane),
-                          object_face(blocks.block, candidate.lane),
-                          static_cast<double>(candidate.gap) * quantum_m_);
-            }
-        }
-        memory_ = upper_m_ < upper_before ? blocks : memory_;
+        leave(static_cast<double>(item.gap) * quantum_m_);
+        has_stopped_ = true;
     }
 
-    /// The nearest first: its bound spares the others' measuring.
-    void find_candidates(const MeshMemory& blocks, const PlacedBlock& tool, float bound) noexcept
+    /// The cheapest test first; the object's block is not read before the tool's faces are near its
+    /// box.
+    void test_blocks(const PairWalk::Item& item) noexcept
     {
+        FacePair pair{item.tool.index(), item.object.index()};
         const Kernels& kernels = question_.object.kernels();
-        const BlockGeometry& block = question_.object.block(blocks.block);
-        TriangleRows rows; // NOLINT(cppcoreguidelines-pro-type-member-init): the kernel fills it.
-        kernels.place_triangles(block.coordinates.front().data(), block.corners.front().data(),
-                                tool.box.center, rows);
-        candidates_.clear();
-        const std::uint32_t lanes = kernels.near_faces(rows, tool.box, block.faces, bound);
+        const PlacedBlock& tool = placed_.get(pair.tool_block);
+        const BlockSide& side = question_.object.side(pair.block);
+        if (!budget_.take_triangles(static_cast<std::uint32_t>(std::popcount(tool.faces))))
+        {
+            stop_at(item);
+            return;
+        }
+        const float bound = bound_of(tool, side);
+        const BlockGeometry& block = question_.object.block(pair.block);
+        const Aabb& object_box = item.object_box;
+        if (way_number_ != 0 && are_parted_along_way(tool, object_box, block, bound))
+        {
+            return;
+        }
+        const std::array<float, 6> box{object_box.low[0],  object_box.low[1],  object_box.low[2],
+                                       object_box.high[0], object_box.high[1], object_box.high[2]};
+        std::uint32_t tool_lanes = kernels.near_rows(tool.rows, box.data(), tool.box.center,
+                                                     tool.faces, bound, tool.slack());
+        if (tool_lanes == 0)
+        {
+            return;
+        }
+        const std::uint8_t* corners = block.corners.front().data();
+        VertexRows rows; // NOLINT(cppcoreguidelines-pro-type-member-init): the kernel fills it.
+        const std::uint32_t lanes = kernels.near_block(block.coordinates.front().data(), corners,
+                                                       tool.box, block.faces, bound, rows);
         if (lanes == 0)
         {
             return;
         }
-        const std::uint32_t tool_lanes = kernels.near_lanes(
-            tool.rows, rows, lanes, question_.tool.block(blocks.tool_block).faces, bound,
-            views_.slack());
-        // One face against sixteen costs the same whoever has the one.
-        const bool is_tool_fewer = std::popcount(tool_lanes) < std::popcount(lanes);
-        const TriangleRows& ones = is_tool_fewer ? tool.rows : rows;
-        const TriangleRows& others = is_tool_fewer ? rows : tool.rows;
-        for (std::uint32_t left = is_tool_fewer ? tool_lanes : lanes; left != 0; left &= left - 1)
+        std::array<std::uint32_t, kBlockFaces> near; // NOLINT: the kernel fills what is read.
+        kernels.near_pairs(rows, corners, lanes, tool.rows, tool_lanes, bound, tool.slack(),
+                           way_number_ != 0 ? way_.data() : nullptr, near.data());
+        for (; tool_lanes != 0 && !has_stopped_; tool_lanes &= tool_lanes - 1)
         {
-            const auto one = static_cast<std::uint32_t>(std::countr_zero(left));
-            alignas(64) std::array<float, kBlockFaces> gaps; // NOLINT: the kernel fills it.
-            for (std::uint32_t near =
-                     kernels.triangle_gaps(others, ones, one, is_tool_fewer ? lanes : tool_lanes,
-                                           bound, views_.slack(), gaps.data());
-                 near != 0; near &= near - 1)
+            pair.tool_lane = static_cast<std::uint32_t>(std::countr_zero(tool_lanes));
+            for (std::uint32_t left = near[pair.tool_lane]; left != 0; left &= left - 1)
             {
-                const auto other = static_cast<std::uint32_t>(std::countr_zero(near));
-                add_candidate(is_tool_fewer ? Candidate{one, other, gaps[other]}
-                                            : Candidate{other, one, gaps[other]});
+                pair.lane = static_cast<std::uint32_t>(std::countr_zero(left));
+                if (!budget_.take_triangles(1))
+                {
+                    stop_at(item);
+                    break;
+                }
+                if (((tool.coarse >> pair.tool_lane | side.coarse >> pair.lane) & 1U) != 0)
+                {
+                    test_coarse(pair);
+                    continue;
+                }
+                queue_.add(pair, tool, block, rows, views_.slack());
+                if (queue_.is_full())
+                {
+                    decide_queued();
+                }
             }
         }
     }
 
-    void add_candidate(const Candidate& candidate) noexcept
+    /// Along the way between the nearest two blocks are farther apart than they may be: by the
+    /// object's box, or by all vertices of both.
+    [[nodiscard]] bool are_parted_along_way(const PlacedBlock& tool, const Aabb& object_box,
+                                            const BlockGeometry& block, float bound) noexcept
     {
-        candidates_.push_back(candidate);
-        if (candidate.gap < candidates_[0].gap)
+        const KernelProbe& center = tool.box.center;
+        const float lowest = placed_.lowest_along(way_, way_number_) - center.slack - bound;
+        float highest = 0.0F;
+        float size = 0.0F;
+        for (std::size_t axis = 0; axis < 3; ++axis)
         {
-            std::swap(candidates_[0], candidates_[candidates_.size() - 1]);
+            const float end = way_[axis] > 0.0F ? object_box.high[axis] : object_box.low[axis];
+            const float at = ((end - center.high[axis]) - center.low[axis]) * center.scale;
+            highest += at * way_[axis];
+            size += std::abs(at);
+        }
+        return lowest > highest + size * kPairMargin ||
+               lowest > question_.object.kernels().highest_along(
+                            block.coordinates.front().data(), block.vertices, center, way_.data());
+    }
+
+    /// In quanta, what pairs of faces of two blocks have to be within.
+    [[nodiscard]] float bound_of(const PlacedBlock& tool, const BlockSide& side) const noexcept
+    {
+        if ((tool.coarse | side.coarse) == 0)
+        {
+            return bound_quanta(std::max(measured_m(), 0.0));
+        }
+        const double error_m = static_cast<double>(largest_error_quanta(side)) * quantum_m_;
+        return bound_quanta(worth_m() + tool.largest_error_m + error_m);
+    }
+
+    void test_coarse(const FacePair& pair) noexcept
+    {
+        const MeshFace tool = tool_face(pair);
+        const MeshFace face = object_face(pair);
+        const double lower = box_gap_m(tool, face) - tool.error_m - face.error_m;
+        if (lower <= worth_m() && lower < open_m_)
+        {
+            bound_by_coarse(tool, face);
         }
     }
 
-    [[nodiscard]] MeshFace tool_face(std::uint32_t block, const PlacedBlock& placed,
-                                     std::uint32_t lane) const noexcept
+    /// Signs in single precision, and exactly where they are in doubt.
+    void decide_queued() noexcept
     {
-        const BlockSide& side = question_.tool.side(block);
-        const auto error = static_cast<double>(error_in_quanta(side.errors[lane]));
-        return {placed.triangle(question_.tool.block(block), lane), question_.tool,
-                side.prims[lane], error * tool_quantum_m_ * kRoundedUp,
-                (side.coarse >> lane & 1U) != 0};
-    }
-    [[nodiscard]] MeshFace object_face(std::uint32_t block, std::uint32_t lane) const noexcept
-    {
-        const BlockSide& side = question_.object.side(block);
-        const auto error = static_cast<double>(error_in_quanta(side.errors[lane]));
-        return {to_triangle(block_triangle(question_.object.block(block), lane)), question_.object,
-                side.prims[lane], error * quantum_m_, (side.coarse >> lane & 1U) != 0};
-    }
-
-    /// `gap_m`: what the kernels know them to be apart.
-    void test_pair(const MeshFace& tool_face, const MeshFace& face, double gap_m) noexcept
-    {
-        const BoxGap boxes = box_gap(tool_face, face);
-        const double apart_m = std::max(boxes.distance_m, gap_m);
-        const double lower = apart_m - tool_face.error_m - face.error_m;
-        if (lower > worth_m())
+        const std::uint32_t count = queue_.size();
+        if (count == 0)
         {
             return;
         }
-        if (tool_face.is_coarse || face.is_coarse)
+        const PairSides sides = question_.object.kernels().decide_pairs(queue_.rows(), count);
+        std::uint32_t apart = sides.apart;
+        for (std::uint32_t left = ((1U << count) - 1) & ~sides.apart; left != 0 && !is_enough();
+             left &= left - 1)
         {
-            if (lower < open_m_)
+            const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
+            const FacePair& pair = queue_[lane];
+            if ((sides.meet >> lane & 1U) != 0 || do_meet(pair))
             {
-                bound_by_coarse(tool_face, face);
+                memory_.faces = pair;
+                add_meeting(meeting_of(pair));
             }
-            return;
+            else
+            {
+                apart |= 1U << lane;
+            }
         }
-        const MeetingFaces faces{tool_face.id, face.id};
-        if (apart_m == 0.0 && meet(tool_face.triangle, face.triangle))
+        if (apart != 0 && measured_m() >= 0.0)
         {
-            add_meeting({faces, tool_face.prim, face.prim});
+            bound_distances(apart, count);
         }
-        else if (aim_ == Aim::distance &&
-                 apart_m <= std::max(kept_contact_m(), nearest_m(boxes.span_m)))
+        queue_.clear();
+    }
+
+    [[nodiscard]] bool do_meet(const FacePair& pair) const noexcept
+    {
+        return meet(placed_triangle(to_triangle(block_triangle(
+                                        question_.tool.block(pair.tool_block), pair.tool_lane)),
+                                    question_.place),
+                    to_triangle(block_triangle(question_.object.block(pair.block), pair.lane)));
+    }
+
+    [[nodiscard]] Meeting meeting_of(const FacePair& pair) const noexcept
+    {
+        const PrimId tool_prim = question_.tool.side(pair.tool_block).prims[pair.tool_lane];
+        const PrimId prim = question_.object.side(pair.block).prims[pair.lane];
+        return {
+            {question_.tool.face_of(tool_prim), question_.object.face_of(prim)}, tool_prim, prim};
+    }
+
+    /// Of queued pairs that don't meet.
+    void bound_distances(std::uint32_t apart, std::uint32_t count) noexcept
+    {
+        question_.object.kernels().pair_distances(queue_.rows(), count, distances_);
+        for (; apart != 0; apart &= apart - 1)
         {
-            add_apart(faces, face.triangle, closest_points(tool_face.triangle, face.triangle));
+            const auto lane = static_cast<std::uint32_t>(std::countr_zero(apart));
+            const float gap = distances_.lower[lane];
+            if (static_cast<double>(gap) * quantum_m_ > measured_m())
+            {
+                continue;
+            }
+            const Candidate candidate{queue_[lane], gap};
+            take_bound(lane, candidate.pair);
+            if (candidates_.full())
+            {
+                measure_candidates();
+            }
+            candidates_.push_back(candidate);
         }
     }
 
-    /// Exact pairs that are farther apart have no part in L and U, whatever their error.
-    [[nodiscard]] double nearest_m(double span_m) const noexcept
+    /// What is farther than this pair, in space or along the way between the two, is not the
+    /// nearest.
+    void take_bound(std::uint32_t lane, const FacePair& pair) noexcept
     {
-        return upper_m_ > 0.0 ? upper_m_ + kSpanError * span_m : -1.0;
+        const double upper_m =
+            static_cast<double>(distances_.upper[lane]) * quantum_m_ * kRoundedUp;
+        if (!(upper_m < bound_m_))
+        {
+            return;
+        }
+        bound_m_ = upper_m;
+        memory_.faces = pair;
+        ++way_number_;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+        {
+            way_[axis] = distances_.way[axis][lane] * (1.0F - 0x1p-20F); // Not longer than 1.
+        }
+    }
+
+    /// In double precision, those that may be the nearest or contacts.
+    void measure_candidates() noexcept
+    {
+        for (const Candidate& candidate : candidates_)
+        {
+            const double gap_m = static_cast<double>(candidate.gap) * quantum_m_;
+            if (gap_m > measured_m())
+            {
+                continue;
+            }
+            const MeshFace tool = tool_face(candidate.pair);
+            const MeshFace face = object_face(candidate.pair);
+            if (box_gap_m(tool, face) <= measured_m())
+            {
+                add_apart({tool.id, face.id}, face.triangle,
+                          closest_points(tool.triangle, face.triangle));
+            }
+        }
+        candidates_.clear();
+    }
+
+    [[nodiscard]] MeshFace tool_face(const FacePair& pair) const noexcept
+    {
+        const BlockSide& side = question_.tool.side(pair.tool_block);
+        const auto error = static_cast<double>(error_in_quanta(side.errors[pair.tool_lane]));
+        const PrimId prim = side.prims[pair.tool_lane];
+        return {tool_triangle(prim), question_.tool, prim, error * tool_quantum_m_ * kRoundedUp};
+    }
+    [[nodiscard]] MeshFace object_face(const FacePair& pair) const noexcept
+    {
+        const BlockSide& side = question_.object.side(pair.block);
+        const auto error = static_cast<double>(error_in_quanta(side.errors[pair.lane]));
+        const PrimId prim = side.prims[pair.lane];
+        return {object_triangle(prim), question_.object, prim, error * quantum_m_};
     }
 
     /// Contacts that are farther apart change nothing; negative when none does.
     [[nodiscard]] double kept_contact_m() const noexcept
     {
+        if (aim_ != Aim::all)
+        {
+            return -1.0;
+        }
         if (!has_dropped_)
         {
             return question_.contact_m;
@@ -455,7 +650,13 @@ private:
                 nearest_sq = std::min(nearest_sq, (tool_corner - corner).squaredNorm());
             }
         }
-        upper_m_ = std::min(upper_m_, std::sqrt(nearest_sq) * kRoundedUp);
+        take_upper(std::sqrt(nearest_sq) * kRoundedUp);
+    }
+
+    void take_upper(double upper_m) noexcept
+    {
+        upper_m_ = std::min(upper_m_, upper_m);
+        bound_m_ = std::min(bound_m_, upper_m_);
     }
 
     void add_apart(const MeetingFaces& faces, const Triangle& triangle,
@@ -463,8 +664,8 @@ private:
     {
         exact_lower_m_ =
             std::min(exact_lower_m_, std::max(0.0, closest.distance - closest.distance_error));
-        upper_m_ = std::min(upper_m_, closest.distance + closest.distance_error);
-        if (closest.distance <= question_.contact_m)
+        take_upper(closest.distance + closest.distance_error);
+        if (aim_ == Aim::all && closest.distance <= question_.contact_m)
         {
             keep_contact(faces, triangle, closest);
         }
@@ -480,39 +681,44 @@ private:
     void add_meeting(const Meeting& meeting) noexcept
     {
         exact_lower_m_ = 0.0;
-        upper_m_ = 0.0;
+        take_upper(0.0);
         ++found_;
         keep_lowest(meeting.faces);
-        if (aim_ == Aim::distance)
+        if (aim_ != Aim::meeting)
         {
             keep_touching(meeting);
         }
     }
 
-    /// A heap with the highest on top.
+    /// In any order until there are too many, then a heap with the highest on top.
     void keep_lowest(const MeetingFaces& faces) noexcept
     {
-        if (report_.meeting.size() == kMaxMeetingFaces)
+        if (report_.meeting.try_push_back(faces))
+        {
+            return;
+        }
+        if (!report_.is_truncated)
         {
             report_.is_truncated = true;
-            if (faces > report_.meeting[0])
-            {
-                return;
-            }
+            std::ranges::make_heap(report_.meeting);
+        }
+        if (faces < report_.meeting[0])
+        {
             std::ranges::pop_heap(report_.meeting);
             report_.meeting.pop_back();
+            report_.meeting.push_back(faces);
+            std::ranges::push_heap(report_.meeting);
         }
-        report_.meeting.push_back(faces);
-        std::ranges::push_heap(report_.meeting);
     }
 
     /// Those that come first among contacts: where they meet is asked at the end.
     void keep_touching(const Meeting& meeting) noexcept
     {
-        if (touching_.size() == kMaxContacts)
+        const bool are_contacts = aim_ == Aim::all && question_.contact_m >= 0.0;
+        if (touching_.size() == (are_contacts ? kMaxContacts : 1))
         {
-            has_dropped_ = question_.contact_m >= 0.0;
-            if (!comes_before(meeting.faces, touching_[kMaxContacts - 1].faces))
+            has_dropped_ = are_contacts;
+            if (!comes_before(meeting.faces, touching_[touching_.size() - 1].faces))
             {
                 return;
             }
@@ -541,12 +747,7 @@ private:
 
     [[nodiscard]] Triangle tool_triangle(PrimId prim) const noexcept
     {
-        Triangle triangle = triangle_of(question_.tool, prim);
-        for (Vec3& corner : triangle)
-        {
-            corner = question_.place.to_there(corner);
-        }
-        return triangle;
+        return placed_triangle(triangle_of(question_.tool, prim), question_.place);
     }
     [[nodiscard]] Triangle object_triangle(PrimId prim) const noexcept
     {
@@ -556,19 +757,25 @@ private:
     const MeshQuestion& question_;
     Aim aim_;
     std::uint32_t enough_;
+    double reach_m_;
     WalkBudget& budget_;
     MeshMemory& memory_;
     MeshReport& report_;
-    ContactReport* contacts_; ///< Null where no distance is wanted.
+    ContactReport* contacts_; ///< Null where none are wanted.
     double tool_quantum_m_;   ///< In the object's frame.
     double quantum_m_;
     MeshViews views_;
     PlacedBlocks placed_;
-    MeshMemory warm_; ///< What was looked at first,
-    bool is_warm_{false};
-    bool has_stopped_{false}; ///< and no more can be.
-    std::uint32_t found_{0};  ///< Pairs that meet.
-    StaticVector<Candidate, std::size_t{kBlockFaces} * kBlockFaces> candidates_; ///< Of two blocks.
+    double doubt_m_; ///< Twice the error law of the kernels that measure, for any two faces.
+    bool has_stopped_{false};   ///< No more can be looked at.
+    std::uint32_t found_{0};    ///< Pairs that meet.
+    PairWalk::Item remembered_; ///< What was looked at first.
+    FacePairQueue queue_;       ///< Exact ones.
+    PairDistances distances_;   ///< Of the queue.
+    StaticVector<Candidate, kMaxCandidates> candidates_;
+    std::uint32_t way_number_{0};     ///< 0: none was found.
+    Vec3f way_{};                     ///< Between the nearest that were found.
+    double bound_m_{kInfinity};       ///< Some pair is not farther apart, in single precision.
     double open_m_{kInfinity};        ///< Pairs that are not exact or not seen are this far apart;
     double exact_lower_m_{kInfinity}; ///< exact pairs this;
     double upper_m_{kInfinity};       ///< and some pair not farther than this.
@@ -579,6 +786,32 @@ private:
     bool has_dropped_{false}; ///< A contact found no room.
 };
 
+DistanceAnswer answer_of_meeting(const Witness& witness) noexcept
+{
+    const ClosestPoints closest = closest_points(witness.tool, witness.triangle);
+    DistanceAnswer answer;
+    answer.kind = AnswerKind::exact;
+    answer.lower_m = 0.0;
+    answer.upper_m = 0.0;
+    answer.tool_point_m = closest.on_shape;
+    answer.nearest_face = witness.meeting.faces.face;
+    answer.nearest_point_m = closest.on_triangle;
+    answer.nearest_feature = closest.feature;
+    return answer;
+}
+
+/// Where the faces that are remembered still meet there is nothing to search.
+bool try_report(const std::optional<Witness>& witness, MeshReport& report) noexcept
+{
+    if (!witness || !witness->do_meet)
+    {
+        return false;
+    }
+    report.meeting.push_back(witness->meeting.faces);
+    report.intersection = Intersection::proven;
+    return true;
+}
+
 } // namespace
 
 void query_meshes(const MeshQuestion& question, OtherSurface& object, MeshMemory& memory,
@@ -586,19 +819,42 @@ void query_meshes(const MeshQuestion& question, OtherSurface& object, MeshMemory
 {
     report.clear();
     contacts.clear();
-    MeshSearch search(question, Aim::distance, kAll, object.budget(), memory, report, &contacts);
-    search.run(&object);
+    const std::optional<Witness> witness = find_witness(question, memory.faces, object.budget());
+    MeshSearch search(question, Aim::all, kAll, object.budget(), memory, report, &contacts);
+    search.run(&object, witness);
     answer = search.answer();
     search.report_meeting();
     search.report_contacts(answer);
+}
+
+void find_nearest_faces(const MeshQuestion& question, OtherSurface& object, MeshMemory& memory,
+                        DistanceAnswer& answer, MeshReport& report) noexcept
+{
+    report.clear();
+    const std::optional<Witness> witness = find_witness(question, memory.faces, object.budget());
+    if (try_report(witness, report))
+    {
+        answer = answer_of_meeting(*witness);
+        report.nearest_tool_face = witness->meeting.faces.tool_face;
+        return;
+    }
+    MeshSearch search(question, Aim::nearest, 1, object.budget(), memory, report, nullptr);
+    search.run(&object, witness);
+    answer = search.answer();
+    search.report_meeting();
+    search.report_nearest(answer);
 }
 
 void find_meeting_faces(const MeshQuestion& question, std::uint32_t enough, WalkBudget& budget,
                         MeshMemory& memory, MeshReport& report) noexcept
 {
     report.clear();
+    if (enough == 1 && try_report(find_witness(question, memory.faces, budget), report))
+    {
+        return;
+    }
     MeshSearch search(question, Aim::meeting, enough, budget, memory, report, nullptr);
-    search.run(nullptr);
+    search.run(nullptr, std::nullopt);
     search.report_meeting();
 }
 

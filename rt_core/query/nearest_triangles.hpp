@@ -12,14 +12,15 @@
 namespace tactus
 {
 
-/// Fills a local surface with the nearest kMaxLocalTriangles that it is given: a heap once there
-/// are that many.
+/// Fills a local surface with the nearest that it is given, as many as it has room for: a heap once
+/// there are that many.
 class NearestTriangles
 {
 public:
     /// Empties the surface, which outlives this.
     explicit NearestTriangles(LocalSurface& surface) noexcept : surface_(surface)
     {
+        TACTUS_ASSERT(surface.triangles.size() == surface.distances_m.size());
         surface.count = 0;
         surface.truncated = false;
     }
@@ -28,7 +29,7 @@ public:
     void add(const LocalTriangle& triangle, double distance_m) noexcept
     {
         TACTUS_ASSERT(distance_m >= 0.0);
-        if (surface_.count < kMaxLocalTriangles)
+        if (surface_.count < surface_.triangles.size())
         {
             put(surface_.count++, triangle, distance_m);
             return;
@@ -36,12 +37,12 @@ public:
         if (!surface_.truncated)
         {
             surface_.truncated = true;
-            for (std::uint32_t i = kMaxLocalTriangles / 2; i-- > 0;)
+            for (std::uint32_t i = surface_.count / 2; i-- > 0;)
             {
                 sift_down(i);
             }
         }
-        const double farthest = surface_.distances_m[0];
+        const double farthest = surface_.count > 0 ? surface_.distances_m[0] : 0.0;
         dropped_m_ = std::min(dropped_m_, std::max(distance_m, farthest));
         if (distance_m < farthest)
         {
@@ -54,13 +55,13 @@ public:
     [[nodiscard]] double dropped_m() const noexcept { return dropped_m_; }
 
 private:
-    void put(std::uint32_t at, const LocalTriangle& triangle, double distance_m) noexcept
+    void put(std::uint32_t at, const LocalTriangle& triangle, double distance_m) const noexcept
     {
         surface_.distances_m[at] = distance_m;
         surface_.triangles[at] = triangle;
     }
 
-    void sift_down(std::uint32_t at) noexcept
+    void sift_down(std::uint32_t at) const noexcept
     {
         for (;;)
         {

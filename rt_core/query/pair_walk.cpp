@@ -18,9 +18,28 @@ namespace
 constexpr double kSplitRounding = 0x1p-46;
 constexpr double kLeastSlack = 0x1p-40;
 
-double half_diagonal_sq(const Aabb& box) noexcept
+/// Only a choice hangs on it: single precision is enough.
+float diagonal_sq(const Aabb& box) noexcept
 {
-    return (0.5 * (to_vec3(box.high) - to_vec3(box.low))).squaredNorm();
+    float sum = 0.0F;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+        const float side = box.high[axis] - box.low[axis];
+        sum += side * side;
+    }
+    return sum;
+}
+
+/// The other way round, in the tool's frame.
+Vec3f seen_from_tool(const Vec3f& way, const BoxView& of_tool) noexcept
+{
+    Vec3f turned{};
+    for (std::size_t along = 0; along < 3; ++along)
+    {
+        const std::array<float, 3>& axis = of_tool.axis(along);
+        turned[along] = -(way[0] * axis[0] + way[1] * axis[1] + way[2] * axis[2]);
+    }
+    return turned;
 }
 
 } // namespace
@@ -45,12 +64,12 @@ float MeshViews::slack_of(const AbTree& tool, const AbTree& object,
     // Of either, in the other's frame and in metres of the object's.
     const double placed_m =
         place.place.translation_m.norm() + scale_ * (tool_reach_m + place.offset_m.norm());
-    const double farthest = (placed_m + object_reach_m) / quantum_m;
+    farthest_ = (placed_m + object_reach_m) / quantum_m;
     // NOLINTNEXTLINE(readability-simplify-boolean-expr): the simpler one lets NaN pass.
-    is_beyond_ = !(farthest < kFarQuanta);
+    is_beyond_ = !(farthest_ < kFarQuanta);
     // Placed once each way, to either of two precisions.
     const double share = 2.0 * kPoseRounding + kSplitRounding;
-    return is_beyond_ ? 0.0F : round_up_to_float(farthest * share + kLeastSlack);
+    return is_beyond_ ? 0.0F : round_up_to_float(farthest_ * share + kLeastSlack);
 }
 
 PairWalk::PairWalk(const AbTree& tool, const AbTree& object, const MeshViews& views,
@@ -58,13 +77,17 @@ PairWalk::PairWalk(const AbTree& tool, const AbTree& object, const MeshViews& vi
     : tool_(tool), object_(object), views_(views), budget_(budget)
 {
     TACTUS_ASSERT(!views.is_beyond_kernels());
+    for (Seen& seen : seen_)
+    {
+        seen.ref = {};
+    }
     if (!tool.root().is_none() && !object.root().is_none())
     {
         stack_.push_back({tool.root(), object.root(), tool.box(), object.box(), 0.0F});
     }
 }
 
-const PairWalk::Item* PairWalk::next_blocks(float bound) noexcept
+const PairWalk::Item* PairWalk::next_blocks(float bound, const Vec3f* way) noexcept
 {
     while (!stack_.empty())
     {
@@ -82,18 +105,28 @@ const PairWalk::Item* PairWalk::next_blocks(float bound) noexcept
         {
             return &current_;
         }
-        open(current_, bound);
+        open(current_, bound, way);
     }
     return nullptr;
 }
 
 bool PairWalk::is_tool_larger(const Item& item) const noexcept
 {
-    return views_.scale() * views_.scale() * half_diagonal_sq(item.tool_box) >
-           half_diagonal_sq(item.object_box);
+    const auto scale = static_cast<float>(views_.scale());
+    return scale * scale * diagonal_sq(item.tool_box) > diagonal_sq(item.object_box);
 }
 
-void PairWalk::open(const Item& item, float bound) noexcept
+const KernelBox& PairWalk::seen(const Item& item) noexcept
+{
+    Seen& seen = seen_[item.tool.value % kSeen];
+    if (seen.ref != item.tool)
+    {
+        seen = {item.tool, views_.of_tool().of(item.tool_box)};
+    }
+    return seen.box;
+}
+
+void PairWalk::open(const Item& item, float bound, const Vec3f* way) noexcept
 {
     TACTUS_ASSERT(!item.tool.is_block() || !item.object.is_block());
     const bool opens_tool =
@@ -101,11 +134,15 @@ void PairWalk::open(const Item& item, float bound) noexcept
     const AbTree& tree = opens_tool ? tool_ : object_;
     const AbNode& node = tree.node(opens_tool ? item.tool.index() : item.object.index());
     TACTUS_ASSERT(node.in_use);
-    const KernelBox other =
-        opens_tool ? views_.of_object().of(item.object_box) : views_.of_tool().of(item.tool_box);
+    const KernelBox& other = opens_tool ? views_.of_object().of(item.object_box) : seen(item);
+    const float* boxes = node.volumes.low.front().data();
     alignas(32) std::array<float, kNodeChildren> gaps; // NOLINT: the kernel fills it.
-    std::uint32_t near = tree.kernels().box_gaps(node.volumes.low.front().data(), other, node.mask,
-                                                 bound, gaps.data());
+    std::uint32_t near = tree.kernels().box_gaps(boxes, other, node.mask, bound, gaps.data());
+    if (way != nullptr && near != 0)
+    {
+        const Vec3f turned = opens_tool ? seen_from_tool(*way, views_.of_tool()) : *way;
+        near = tree.kernels().boxes_along(boxes, other, turned.data(), near, bound, gaps.data());
+    }
     const std::size_t first = stack_.size();
     for (; near != 0; near &= near - 1)
     {

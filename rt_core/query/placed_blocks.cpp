@@ -5,11 +5,20 @@
 #include "rt_core/base/assert.hpp"
 #include "rt_core/math/rounding.hpp"
 
-#include <bit>
+#include <array>
+#include <cmath>
 #include <cstddef>
 
 namespace tactus
 {
+
+namespace
+{
+
+/// What turning a vertex in single precision rounds of it, as a share of its way from the centre.
+constexpr float kTurnRounding = 0x1p-21F;
+
+} // namespace
 
 PlacedBlocks::PlacedBlocks(const AbTree& tool, const AbTree& object, const MeshPlacement& place,
                            const MeshViews& views) noexcept
@@ -20,7 +29,8 @@ PlacedBlocks::PlacedBlocks(const AbTree& tool, const AbTree& object, const MeshP
 const PlacedBlock& PlacedBlocks::get(std::uint32_t index) noexcept
 {
     TACTUS_ASSERT(tool_.is_block_in_use(index));
-    PlacedBlock& placed = blocks_[index % kKept];
+    last_ = index % kKept;
+    PlacedBlock& placed = blocks_[last_];
     if (placed.index != index)
     {
         put(index, placed);
@@ -28,35 +38,58 @@ const PlacedBlock& PlacedBlocks::get(std::uint32_t index) noexcept
     return placed;
 }
 
+float PlacedBlocks::lowest_along(const Vec3f& way, std::uint32_t number) noexcept
+{
+    TACTUS_ASSERT(number != 0);
+    PlacedBlock& placed = blocks_[last_];
+    if (placed.way != number)
+    {
+        const KernelProbe here{{0.0F, 0.0F, 0.0F}, {0.0F, 0.0F, 0.0F}, 1.0F, 0.0F};
+        const Vec3f back{-way[0], -way[1], -way[2]};
+        placed.lowest = -tool_.kernels().highest_along(&placed.rows.vertex[0][0], placed.vertices,
+                                                       here, back.data()) -
+                        placed.slack();
+        placed.way = number;
+    }
+    return placed.lowest;
+}
+
 void PlacedBlocks::put(std::uint32_t index, PlacedBlock& placed) const noexcept
 {
     const BlockGeometry& block = tool_.block(index);
-    const BlockSide& side = tool_.side(index);
-    const auto quantum_m = static_cast<double>(object_.quantum_m());
+    const Aabb own =
+        AabbVolume::of_vertices(tool_.kernels(), block.coordinates.front().data(), block.vertices);
     placed.index = index;
-    placed.box = views_.of_tool().of(
-        AabbVolume::of_vertices(tool_.kernels(), block.coordinates.front().data(), block.vertices));
-    placed.largest_error_m = static_cast<double>(largest_error_quanta(side)) *
+    placed.box = views_.of_tool().of(own);
+    placed.way = 0;
+    placed.vertices = block.vertices;
+    placed.faces = block.faces;
+    placed.coarse = tool_.side(index).coarse;
+    placed.largest_error_m = static_cast<double>(largest_error_quanta(tool_.side(index))) *
                              static_cast<double>(tool_.quantum_m()) * views_.scale() * kRoundedUp;
-    const KernelProbe& center = placed.box.center;
-    alignas(64) std::array<std::array<float, kBlockVertices>, 3> around{};
-    for (std::uint32_t rows = block.vertices; rows != 0; rows &= rows - 1)
+    // Rows are turned round the centre as a float has it, which is seldom off.
+    const double units_per_m = place_.place.scale / static_cast<double>(object_.quantum_m());
+    const Vec3 middle = 0.5 * (to_vec3(own.low) + to_vec3(own.high));
+    std::array<float, 3> from{};
+    std::array<float, 9> turn{};
+    float size = 0.0F;
+    double moved_m = 0.0;
+    for (std::size_t row = 0; row < 3; ++row)
     {
-        const auto row = static_cast<std::size_t>(std::countr_zero(rows));
-        const Vec3 vertex_m = place_.to_there(to_vec3(Vec3f{
-            block.coordinates[0][row], block.coordinates[1][row], block.coordinates[2][row]}));
-        placed.vertices_m[row] = vertex_m;
-        for (std::size_t axis = 0; axis < 3; ++axis)
+        const auto axis = static_cast<Eigen::Index>(row);
+        from[row] = static_cast<float>(middle[axis]);
+        moved_m += std::abs(middle[axis] - static_cast<double>(from[row]));
+        size += placed.box.half_along[row];
+        for (std::size_t along = 0; along < 3; ++along)
         {
-            const double from =
-                static_cast<double>(center.high[axis]) + static_cast<double>(center.low[axis]);
-            around[axis][row] =
-                static_cast<float>((vertex_m[static_cast<Eigen::Index>(axis)] - from) / quantum_m);
+            turn[3 * row + along] = static_cast<float>(
+                units_per_m * place_.place.rotation(axis, static_cast<Eigen::Index>(along)));
         }
     }
-    const KernelProbe here{{0.0F, 0.0F, 0.0F}, {0.0F, 0.0F, 0.0F}, 1.0F, 0.0F};
-    tool_.kernels().place_triangles(around.front().data(), block.corners.front().data(), here,
-                                    placed.rows);
+    tool_.kernels().place_turned(block.coordinates.front().data(), block.corners.front().data(),
+                                 from.data(), turn.data(), placed.rows);
+    placed.off =
+        size * kTurnRounding + round_up_to_float(2.0 * moved_m * units_per_m) + views_.slack();
 }
 
 } // namespace tactus

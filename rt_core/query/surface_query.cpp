@@ -9,8 +9,11 @@
 #include "rt_core/query/probe.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 namespace tactus
 {
@@ -42,53 +45,33 @@ public:
         }
     }
 
+    /// The block that was nearest before gives a bound that is nearly final, or else, after a jump,
+    /// the one that the nearest boxes lead to. With it nothing needs an order, and one pass goes
+    /// through all that is near.
     void run(QueryMemory& memory) noexcept
     {
-        search_blocks(tree_, probe_, budget_, memory, *this);
+        BlockBatch batch; // NOLINT(cppcoreguidelines-pro-type-member-init): filled to its count.
+        batch.count = 0;
+        std::uint32_t known = kNoNode;
+        if (tree_.is_block_in_use(memory.block))
+        {
+            known = memory.block;
+            look_at_alone(known, batch);
+        }
+        if (known == kNoNode || limit_ > kPoorLimit * memory.limit)
+        {
+            const std::uint32_t nearest = descend();
+            if (nearest != kNoNode && nearest != known)
+            {
+                known = nearest;
+                look_at_alone(known, batch);
+            }
+        }
+        walk(known, batch);
         decide();
         memory.block = nearest_block_ == kNoNode ? memory.block : nearest_block_;
+        memory.limit = limit_;
     }
-
-    /// Beyond this nothing changes the answer. Never grows: what was left out stays beyond it.
-    [[nodiscard]] float bound() const noexcept
-    {
-        return nearest_triangles_ ? std::max(floor_, kProofShare * limit_) : limit_;
-    }
-
-    /// False when the budget is spent.
-    [[nodiscard]] bool test_block(std::uint32_t index) noexcept
-    {
-        const BlockGeometry& block = tree_.block(index);
-        if (!budget_.take_triangles(face_count(block)))
-        {
-            unproven_ = 0.0; // Its parent's bound may have gone with it.
-            return false;
-        }
-        TACTUS_ASSERT(tree_.side(index).in_use);
-        const std::uint32_t coarse = tree_.side(index).coarse;
-        const float limit_before = limit_;
-        FaceBounds bounds; // NOLINT(cppcoreguidelines-pro-type-member-init): the kernel fills it.
-        std::uint32_t near = tree_.kernels().face_bounds(
-            block.coordinates.front().data(), block.corners.front().data(), probe_, block.faces,
-            block.faces & ~coarse, floor_, limit_, bounds);
-        if (coarse != 0)
-        {
-            add_coarse(index, coarse, bounds);
-            near &= ~coarse;
-        }
-        if (limit_ < limit_before)
-        {
-            nearest_block_ = index;
-        }
-        for (; near != 0; near &= near - 1)
-        {
-            const auto lane = static_cast<std::uint32_t>(std::countr_zero(near));
-            add_exact({index, lane, bounds.lower[lane]});
-        }
-        return true;
-    }
-
-    void leave(float gap) noexcept { unproven_ = std::min(unproven_, static_cast<double>(gap)); }
 
     [[nodiscard]] DistanceAnswer answer() const noexcept
     {
@@ -116,6 +99,179 @@ private:
         std::uint32_t lane;
         float lower;
     };
+
+    /// Beyond this nothing changes the answer. Never grows: what was left out stays beyond it.
+    [[nodiscard]] float bound() const noexcept
+    {
+        return nearest_triangles_ ? std::max(floor_, kProofShare * limit_) : limit_;
+    }
+
+    void leave(float gap) noexcept { unproven_ = std::min(unproven_, static_cast<double>(gap)); }
+
+    /// The block behind the nearest child of each node on the way; none when the budget is spent.
+    [[nodiscard]] std::uint32_t descend() noexcept
+    {
+        TreeRef ref = tree_.root();
+        while (!ref.is_none() && !ref.is_block())
+        {
+            if (!budget_.take_node())
+            {
+                return kNoNode;
+            }
+            const AbNode& node = tree_.node(ref.index());
+            alignas(32) std::array<float, kNodeChildren> gaps; // NOLINT: the kernel fills it.
+            std::uint32_t children = AabbVolume::child_gaps(
+                tree_.kernels(), node.volumes, probe_, node.mask, kInfiniteQuanta, gaps.data());
+            float least = kInfiniteQuanta;
+            for (ref = TreeRef{}; children != 0; children &= children - 1)
+            {
+                const auto child = static_cast<std::uint32_t>(std::countr_zero(children));
+                ref = gaps[child] < least ? node.children[child] : ref;
+                least = std::min(least, gaps[child]);
+            }
+        }
+        return ref.is_none() ? kNoNode : ref.index();
+    }
+
+    /// Breadth first no visit waits for the one before; `known` was looked at.
+    void walk(std::uint32_t known, BlockBatch& batch) noexcept
+    {
+        Frontier frontier; // NOLINT(cppcoreguidelines-pro-type-member-init): likewise.
+        frontier.count = tree_.root().is_none() ? 0 : 1;
+        frontier.refs[0] = tree_.root().value;
+        frontier.gaps[0] = 0.0F;
+        std::uint32_t next = 0;
+        while (next < frontier.count)
+        {
+            const bool is_broad = frontier.count < Frontier::kBroad;
+            const std::uint32_t at = is_broad ? next++ : --frontier.count;
+            const TreeRef ref{frontier.refs[at]};
+            const float gap = frontier.gaps[at];
+            if (gap > bound() || (ref.is_block() && ref.index() == known))
+            {
+                continue;
+            }
+            if (!budget_.take_node() || (ref.is_block() && !test_block(ref.index())))
+            {
+                leave(gap);
+                break;
+            }
+            if (!ref.is_block())
+            {
+                enter(tree_.node(ref.index()), frontier, batch);
+            }
+            if (batch.count > BlockBatch::kFull)
+            {
+                look_at(batch, known);
+            }
+        }
+        look_at(batch, known);
+        for (; next < frontier.count; ++next)
+        {
+            leave(frontier.gaps[next]);
+        }
+    }
+
+    void enter(const AbNode& node, Frontier& frontier, BlockBatch& batch) noexcept
+    {
+        TACTUS_ASSERT(node.in_use);
+        tree_.kernels().enter_node(node.volumes.low.front().data(), &node.children.front().value,
+                                   probe_, node.mask, node.coarse, bound(), frontier, batch);
+    }
+
+    void look_at_alone(std::uint32_t index, BlockBatch& batch) noexcept
+    {
+        if (!budget_.take_node())
+        {
+            leave(0.0F);
+        }
+        else if (tree_.side(index).coarse != 0)
+        {
+            if (!test_block(index))
+            {
+                leave(0.0F);
+            }
+        }
+        else
+        {
+            batch.blocks[0] = TreeRef::to_block(index).value;
+            batch.gaps[0] = 0.0F;
+            batch.count = 1;
+            test_batch(batch);
+        }
+    }
+
+    /// All blocks of the batch but the known one, and empties it.
+    void look_at(BlockBatch& batch, std::uint32_t known) noexcept
+    {
+        const std::uint32_t granted = budget_.take_nodes(batch.count);
+        for (std::uint32_t i = granted; i < batch.count; ++i)
+        {
+            leave(batch.gaps[i]);
+        }
+        batch.count = granted;
+        tree_.kernels().sort_out(&tree_.block(0), probe_, TreeRef::to_block(known).value, bound(),
+                                 batch);
+        test_batch(batch);
+    }
+
+    void test_batch(BlockBatch& batch) noexcept
+    {
+        const std::uint32_t count = std::exchange(batch.count, 0);
+        for (; batch.count < count; ++batch.count)
+        {
+            const TreeRef ref{batch.blocks[batch.count]};
+            if (!budget_.take_triangles(face_count(tree_.block(ref.index()))))
+            {
+                break;
+            }
+        }
+        for (std::uint32_t i = batch.count; i < count; ++i)
+        {
+            leave(batch.gaps[i]);
+        }
+        tree_.kernels().test_blocks(&tree_.block(0), probe_, floor_, limit_, batch);
+        for (std::uint32_t i = 0; i < batch.count; ++i)
+        {
+            for (std::uint32_t near = batch.near[i]; near != 0; near &= near - 1)
+            {
+                const auto lane = static_cast<std::uint32_t>(std::countr_zero(near));
+                const float lower_sq = std::max(batch.lower_sq[i][lane], 0.0F);
+                add_exact(
+                    {TreeRef{batch.blocks[i]}.index(), lane, std::sqrt(lower_sq) - probe_.slack});
+            }
+        }
+        batch.count = 0;
+    }
+
+    /// A block that has coarse faces, too. False when the budget is spent.
+    [[nodiscard]] bool test_block(std::uint32_t index) noexcept
+    {
+        const BlockGeometry& block = tree_.block(index);
+        if (!budget_.take_triangles(face_count(block)))
+        {
+            return false;
+        }
+        TACTUS_ASSERT(tree_.side(index).in_use);
+        const std::uint32_t coarse = tree_.side(index).coarse;
+        const float limit_before = limit_;
+        FaceBounds bounds; // NOLINT(cppcoreguidelines-pro-type-member-init): the kernel fills it.
+        std::uint32_t near = tree_.kernels().face_bounds(
+            block.coordinates.front().data(), block.corners.front().data(), probe_, block.faces,
+            block.faces & ~coarse, floor_, limit_, bounds);
+        add_coarse(index, coarse, bounds);
+        near &= ~coarse;
+        if (limit_ < limit_before)
+        {
+            nearest_block_ = index;
+        }
+        for (; near != 0; near &= near - 1)
+        {
+            const auto lane = static_cast<std::uint32_t>(std::countr_zero(near));
+            add_exact({index, lane, bounds.lower[lane]});
+        }
+        return true;
+    }
 
     [[nodiscard]] float to_quanta(double metres) const noexcept
     {
@@ -146,13 +302,20 @@ private:
         }
     }
 
+    [[nodiscard]] ClosestPoint closest_point(std::uint32_t block, std::uint32_t lane) const noexcept
+    {
+        const Triangle triangle = to_triangle(block_triangle(tree_.block(block), lane));
+        SeenTriangle seen; // NOLINT(cppcoreguidelines-pro-type-member-init): the kernel fills it.
+        tree_.kernels().see_triangle(center_.data(), triangle[0].data(), seen);
+        return closest_point_seen(center_, triangle, seen);
+    }
+
     /// In double precision: the margin of single precision is wide on thin faces, and an answer
     /// must not be open for it.
     [[nodiscard]] double coarse_gap(std::uint32_t index, std::uint32_t lane,
                                     float error) const noexcept
     {
-        const ClosestPoint closest = closest_point_on_triangle(
-            center_, to_triangle(block_triangle(tree_.block(index), lane)));
+        const ClosestPoint closest = closest_point(index, lane);
         return (std::sqrt(closest.distance_sq) - closest.distance_error) / quantum_ -
                static_cast<double>(error);
     }
@@ -186,9 +349,7 @@ private:
             {
                 continue;
             }
-            const Triangle triangle =
-                to_triangle(block_triangle(tree_.block(candidate.block), candidate.lane));
-            const ClosestPoint closest = closest_point_on_triangle(center_, triangle);
+            const ClosestPoint closest = closest_point(candidate.block, candidate.lane);
             const double distance = std::sqrt(closest.distance_sq);
             exact_lower_ = std::min(exact_lower_, distance - closest.distance_error);
             upper_ = std::min(upper_, distance + closest.distance_error);
@@ -205,6 +366,8 @@ private:
     }
 
     static constexpr std::size_t kCandidates = 64;
+    /// A remembered block this much farther than the last answer is not where the surface is now.
+    static constexpr float kPoorLimit = 2.0F;
 
     const AbTree& tree_;
     Vec3 center_;

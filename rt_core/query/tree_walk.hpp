@@ -8,6 +8,7 @@
 #include "rt_core/kernels/kernels.hpp"
 #include "rt_core/limits.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <limits>
@@ -16,6 +17,14 @@
 
 namespace tactus
 {
+
+/// What one more traversal may use of a frame that used so much already; `each` is one's allowance.
+[[nodiscard]] constexpr std::uint32_t walk_left(std::uint32_t each, std::uint32_t used) noexcept
+{
+    const std::uint64_t all = std::uint64_t{kFrameWalks} * each;
+    return static_cast<std::uint32_t>(
+        std::min<std::uint64_t>(each, all - std::min<std::uint64_t>(all, used)));
+}
 
 /// A traversal's allowance and what it used; when it is spent the traversal stops where it is.
 struct WalkBudget
@@ -36,6 +45,15 @@ struct WalkBudget
         }
         ++nodes_visited;
         return true;
+    }
+    /// As many of `count` as are left.
+    [[nodiscard]] std::uint32_t take_nodes(std::uint32_t count) noexcept
+    {
+        TACTUS_ASSERT(nodes_visited <= nodes);
+        const std::uint32_t taken = std::min(count, nodes - nodes_visited);
+        is_spent = is_spent || taken < count;
+        nodes_visited += taken;
+        return taken;
     }
     [[nodiscard]] bool take_triangles(std::uint32_t count) noexcept
     {

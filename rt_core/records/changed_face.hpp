@@ -13,8 +13,8 @@
 namespace tactus
 {
 
-/// An active face's slot in the forest's pool: dense, reused, and the name under which the AB-Tree
-/// keeps the face. Valid only until the next frame; FaceId is the lasting name.
+/// An active face's slot in the pool of all models: dense, reused, and the name under which the
+/// AB-Tree keeps the face. Valid only until the next frame; FaceId is the lasting name.
 using PrimId = StrongId<struct PrimTag>;
 
 /// One face that splits or merges of this frame have changed, as it is now. What the forest hands

@@ -24,6 +24,14 @@ struct ForceWish
     std::uint32_t elapsed_periods{1}; ///< Since the last wish; more after a stall. 0 counts as 1.
 };
 
+/// Force and torque that are one spring between proxy and hand. `torque` is in angles: N m for N,
+/// rad for m; its position is how far the device has turned about the world's axes, summed up.
+struct WrenchWish
+{
+    ForceWish force;
+    ForceWish torque;
+};
+
 /// What acted on a force on its way to the device.
 enum class ForceAction : std::uint8_t
 {
@@ -67,6 +75,13 @@ struct ConditionedForce
     double work_j{0.0};            ///< Done on hand and device since the start.
     /// Energy that came from nowhere and is not lost yet: PassivityObserver::surplus_j().
     double surplus_j{0.0};
+};
+
+/// Force and torque for the device; `torque` in angles.
+struct ConditionedWrench
+{
+    ConditionedForce force;
+    ConditionedForce torque; ///< Nothing where the device makes none.
 };
 
 } // namespace tactus

@@ -30,11 +30,12 @@ struct DoorEvent
     static_assert(kRecordsPerChunk <= 64);
     std::uint64_t linked{0}; ///< One bit a record of the chunk; none for an index page.
     DoorEventKind kind{DoorEventKind::arrival};
+    std::uint8_t owner{0}; ///< The model that the piece is of.
 };
 
 static_assert(sizeof(DoorEvent) == 32 && std::is_trivially_copyable_v<DoorEvent>);
 
-/// What one model's frame took from the door.
+/// What a frame took from the door.
 struct DoorTake
 {
     std::span<const DoorEvent> events; ///< In the order in which they were taken.

@@ -2,17 +2,15 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "rt_core/base/assert.hpp"
 #include "rt_core/base/realtime.hpp"
 #include "rt_core/geometry/tool_core.hpp"
-#include "rt_core/limits.hpp"
-#include "rt_core/math/infinity.hpp"
-#include "rt_core/math/similarity.hpp"
 #include "rt_core/math/vec3.hpp"
-#include "rt_core/spm/ids.hpp"
+#include "rt_core/records/object_pose.hpp"
+#include "rt_core/records/scene_change.hpp"
 
 #include <array>
 #include <cstdint>
+#include <span>
 
 namespace tactus
 {
@@ -46,64 +44,9 @@ struct ToolSpec
     return std::holds_alternative<MeshCore>(tool.core);
 }
 
-/// Where an object stands: how the frame of its source mesh lies in the world. The default is where
-/// the source stood. Inside the frame, from model_pose() on, it is that of the model's frame.
-struct ObjectPose : Similarity
-{
-    std::int64_t stamp_ns{0};
-    std::int64_t age_ns{0};    ///< Beyond FrameSetup::pose_age_max_ns the answers are called stale.
-    std::uint32_t revision{0}; ///< Of the model that the pose was made for.
-};
-
-/// How an object feels to a tool that touches it.
-struct Material
-{
-    /// The tool's or this, whichever is softer; > 0.
-    double stiffness_n_per_m{kInfinity};
-    double static_friction{0.0};   ///< Coulomb's coefficient while the tool sticks; >= 0.
-    double dynamic_friction{0.0};  ///< While it slides; at most the static one.
-    double damping_n_s_per_m{0.0}; ///< Of the motion across the surface, in touch; >= 0.
-};
-
-/// Which model an object shows, and how it feels; fixed when the frame is made.
-struct ObjectSpec
-{
-    ModelId model{};
-    Material material{};
-};
-
-/// The same for the frame of the model, whose origin the source mesh has at `origin_m`
-/// (ModelHeader::origin_m).
-[[nodiscard]] inline ObjectPose model_pose(const ObjectPose& source_pose,
-                                           const Vec3& origin_m) noexcept
-{
-    ObjectPose pose = source_pose;
-    pose.translation_m = source_pose.to_there(origin_m);
-    return pose;
-}
-
-[[nodiscard]] inline Vec3 to_model(const ObjectPose& pose, const Vec3& world_m) noexcept
-{
-    return pose.to_here(world_m);
-}
-
-[[nodiscard]] inline Vec3 to_world(const ObjectPose& pose, const Vec3& model_m) noexcept
-{
-    return pose.to_there(model_m);
-}
-
-/// How far distances from a core of this radius round a place of the world may be off by its way
-/// into the model's frame and back: see kPoseRounding.
-[[nodiscard]] inline double pose_rounding_m(const ObjectPose& pose, const Vec3& world_m,
-                                            double radius_m) noexcept
-{
-    TACTUS_ASSERT(radius_m >= 0.0);
-    return kPoseRounding *
-           ((world_m - pose.translation_m).norm() + world_m.norm() + 2.0 * radius_m);
-}
-
 /// What one frame may do at most. Inputs of the frame, chosen outside and recorded, so a replay is
-/// exact. Counts are per model and frame, but `nodes` and `triangles` per pair and traversal.
+/// exact. Counts are the frame's, whatever is in the scene; `nodes` and `triangles` are those of
+/// one traversal, of which a frame does kFrameWalks to refine and as many to answer.
 struct Budgets
 {
     std::uint32_t splits{64};       ///< K, at most kMaxSplitsPerFrame.
@@ -114,6 +57,16 @@ struct Budgets
     std::uint32_t pages{8};         ///< A, arrivals adopted.
     std::uint32_t requests{32};     ///< Q, wishes sent.
     std::uint32_t regions{8}; ///< G, index pages searched for chunks that ranked regions need.
+};
+
+/// All that a frame gets, beside what its models' doors bring: the same inputs give the same bits.
+struct FrameInput
+{
+    std::span<const ToolState> tools;     ///< One for each tool of the set-up; of one that is gone
+                                          ///< it is not looked at.
+    std::span<const SceneChange> changes; ///< In their order, before anything else.
+    Budgets budgets;
+    std::int64_t now_ns{0}; ///< On the clock of ObjectPose::arrival_ns.
 };
 
 /// The frame's stages, in order; times are named after them.

@@ -7,8 +7,10 @@
 #include "rt_core/records/door_event.hpp"
 #include "rt_core/records/local_surface.hpp"
 #include "rt_core/records/mesh_report.hpp"
+#include "rt_core/records/scene_change.hpp"
 #include "rt_core/records/work_counters.hpp"
 
+#include <array>
 #include <cstdint>
 #include <span>
 
@@ -34,8 +36,15 @@ struct ToolOutput
     bool held_back{false};
     /// The proxy is still on its way: it came to the end of what is known, or of a frame's steps.
     bool under_way{false};
-    bool crowded{false}; ///< More touches it than limits allow: force and torque may lack some.
+    bool crowded{false};     ///< More touches it than limits allow: force and torque may lack some.
+    bool lost_object{false}; ///< In touch, and an object near it went or jumped in this frame.
+    bool is_gone{false};     ///< SceneChangeKind::tool_goes: everything else is as it was made.
+    /// Proven distance of its core from every object that no PairOutput names, at the proxy at the
+    /// start of the frame; infinite where there is none.
+    double clear_m{kInfinity};
     FrameFault sample_fault{FrameFault::none}; ///< What is wrong with the device (SampleWatch).
+
+    [[nodiscard]] bool operator==(const ToolOutput&) const = default;
 };
 
 /// What a frame says of a tool with this output.
@@ -43,7 +52,8 @@ struct ToolOutput
 {
     return output.sample_fault | (output.frozen ? FrameFault::proxy_frozen : FrameFault::none) |
            (output.squeezed ? FrameFault::proxy_squeezed : FrameFault::none) |
-           (output.crowded ? FrameFault::tool_crowded : FrameFault::none);
+           (output.crowded ? FrameFault::tool_crowded : FrameFault::none) |
+           (output.lost_object ? FrameFault::object_lost : FrameFault::none);
 }
 
 /// Why a tool's force must fade; none while nothing is wrong. A proxy that waits without a force
@@ -52,7 +62,8 @@ struct ToolOutput
 {
     const auto in_contact = [&output](bool is_so, FrameFault fault)
     { return is_so && output.in_contact ? fault : FrameFault::none; };
-    return output.sample_fault | in_contact(output.frozen, FrameFault::proxy_frozen) |
+    return output.sample_fault | (output.lost_object ? FrameFault::object_lost : FrameFault::none) |
+           in_contact(output.frozen, FrameFault::proxy_frozen) |
            in_contact(output.squeezed, FrameFault::proxy_squeezed);
 }
 
@@ -73,8 +84,23 @@ struct PairOutput
     Vec3 nearest_point_m{0.0, 0.0, 0.0};
     bool skipped{false}; ///< Answered from the last distance and the motion since.
     TriangleFeature nearest_feature{TriangleFeature::interior}; ///< Of the nearest face.
+    bool is_shed{false}; ///< Nothing is loaded or refined for it: more urgent pairs had no room.
+    /// False: one came round the other, and there is no force until they are proven apart.
+    bool is_joined{true};
     const ContactReport* contacts{nullptr}; ///< Null unless the tool wants them.
     const MeshReport* mesh{nullptr};        ///< Null unless the tool is a mesh.
+};
+
+/// The scene after a frame.
+struct SceneOutput
+{
+    std::uint32_t objects{0};       ///< That are there.
+    std::uint32_t pairs{0};         ///< Awake: those that have a PairOutput.
+    std::uint32_t crowded_tools{0}; ///< That are not proven clear as far as they ask.
+    std::uint32_t walled_tools{0};  ///< Of those, with a hand that is farther.
+    std::uint32_t walks{0};         ///< Over all objects: at most kBroadWalks.
+    /// Changes that were not made, in the order of ChangeRefusal.
+    std::array<std::uint32_t, kChangeRefusals> refused{};
 };
 
 /// Use of one pool now.
@@ -102,11 +128,13 @@ struct ModelOutput
 struct FrameOutput
 {
     std::span<const ToolOutput> tools;
-    std::span<const PairOutput> pairs; ///< Tool by tool, in each the objects in order.
+    std::span<const PairOutput> pairs; ///< Of what is near: tool by tool, in each the objects by
+                                       ///< their numbers; the nearest one always.
     std::span<const ModelOutput> models;
     WorkCounters work;
     FrameFault faults{FrameFault::none};
-    std::span<const DoorTake> door; ///< One a model: an input of the frame, kept for recordings.
+    DoorTake door; ///< An input of the frame, kept for recordings.
+    SceneOutput scene;
 };
 
 } // namespace tactus

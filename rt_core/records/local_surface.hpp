@@ -11,6 +11,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 
 namespace tactus
 {
@@ -52,13 +53,11 @@ struct LocalSurface
 {
     Vec3 center_m{0.0, 0.0, 0.0}; ///< Of the core, in the model's frame.
     DistanceAnswer answer;
-    std::array<LocalTriangle, kMaxLocalTriangles> triangles{};
-    std::array<double, kMaxLocalTriangles> distances_m{}; ///< Lower bounds, from the core.
+    std::span<LocalTriangle> triangles; ///< Room; the first `count` are of the surface.
+    std::span<double> distances_m;      ///< As much; lower bounds, from the core.
     std::uint32_t count{0};
     bool truncated{false}; ///< More triangles were in reach; the certified radius says how far.
 };
 static_assert(sizeof(LocalTriangle) == 40);
-static_assert(sizeof(LocalSurface) == kMaxLocalTriangles * 48 + 128,
-              "docs/architecture.md, Memory");
 
 } // namespace tactus

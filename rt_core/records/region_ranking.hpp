@@ -5,6 +5,7 @@
 #include "rt_core/base/static_vector.hpp"
 #include "rt_core/limits.hpp"
 #include "rt_core/math/vec3.hpp"
+#include "rt_core/records/urgency.hpp"
 #include "rt_core/spm/ids.hpp"
 
 #include <cstdint>
@@ -20,6 +21,7 @@ struct RankedRegion
     Vec3 center_m{0.0, 0.0, 0.0};
     double radius_m{0.0};
     std::int64_t lead_ns{0};
+    UrgencyClass of{UrgencyClass::touching}; ///< Of its pair.
 };
 
 /// The regions of one frame, most urgent first.

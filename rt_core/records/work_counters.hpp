@@ -9,6 +9,46 @@
 namespace tactus
 {
 
+/// A shortcut that finds work needless; FrameVariant turns each off.
+enum class Skip : std::uint8_t
+{
+    objects,  ///< Of a scene: proven to be far from a tool, by no more than a comparison.
+    models,   ///< Not asked for: no ball comes near any of their boxes.
+    searches, ///< Index pages were searched for these balls lately.
+    pairs,    ///< At rest: proven out of reach.
+    regions,  ///< Balls whose certificate still holds: no face is looked at.
+    starts,   ///< Queries that began where the last one ended.
+    boxes,    ///< Of the tree, not refitted: nothing changed in them.
+    tools,    ///< At rest, like all near them: their answers and forces are the last ones.
+    frames,   ///< The same of all tools, with models that are here as a whole.
+};
+inline constexpr std::size_t kSkips = 9;
+/// In the order of Skip.
+inline constexpr std::array<const char*, kSkips> kSkipNames{
+    "objects", "models", "searches", "pairs", "regions", "starts", "boxes", "tools", "frames"};
+
+/// How often a frame took each shortcut.
+class SkipCounters
+{
+public:
+    void add(Skip skip, std::uint32_t times = 1) noexcept
+    {
+        times_[static_cast<std::size_t>(skip)] += times;
+    }
+    [[nodiscard]] const std::array<std::uint32_t, kSkips>& times() const noexcept { return times_; }
+    SkipCounters& operator+=(const SkipCounters& other) noexcept
+    {
+        for (std::size_t i = 0; i < kSkips; ++i)
+        {
+            times_[i] += other.times_[i];
+        }
+        return *this;
+    }
+
+private:
+    std::array<std::uint32_t, kSkips> times_{};
+};
+
 /// What a frame did, in the units of its budgets. Sums over models and pairs.
 struct WorkCounters
 {
@@ -25,6 +65,7 @@ struct WorkCounters
     std::uint32_t evictions{0};
     std::uint32_t cache_hits{0};   ///< Wanted chunks found resident.
     std::uint32_t cache_misses{0}; ///< Wanted chunks absent and asked for.
+    SkipCounters skipped;
 
     WorkCounters& operator+=(const WorkCounters& other) noexcept
     {
@@ -41,6 +82,7 @@ struct WorkCounters
         evictions += other.evictions;
         cache_hits += other.cache_hits;
         cache_misses += other.cache_misses;
+        skipped += other.skipped;
         return *this;
     }
 };
@@ -66,15 +108,18 @@ enum class FrameFault : std::uint32_t
     held_records_full = 1U << 14U, ///< A record of an open closure isn't held: kMaxHeldRecords.
     ranking_full = 1U << 15U,      ///< What a tool is at isn't asked for: kMaxRankedRegions.
     tool_crowded = 1U << 16U,      ///< Not all that holds a tool fits: kMaxContacts and others.
+    pair_shed = 1U << 17U,         ///< A pair waits: its room went to a touch. More `--pool-mib`.
+    scene_crowded = 1U << 18U,     ///< A tool waits: too much is near it. See kMaxPairs.
+    object_lost = 1U << 19U,       ///< What a tool touched went or jumped; SafeState fades a force.
 };
-inline constexpr std::size_t kFrameFaults = 17;
+inline constexpr std::size_t kFrameFaults = 20;
 /// In the order of FrameFault's bits.
 inline constexpr std::array<const char*, kFrameFaults> kFrameFaultNames{
     "split_budget_spent", "forest_full",       "tree_full",         "chunk_late",
     "cache_full",         "node_budget_spent", "surface_truncated", "model_inconsistent",
     "tool_invalid",       "proxy_frozen",      "tool_stuck",        "tool_jumped",
     "proxy_squeezed",     "refine_heap_full",  "held_records_full", "ranking_full",
-    "tool_crowded"};
+    "tool_crowded",       "pair_shed",         "scene_crowded",     "object_lost"};
 
 [[nodiscard]] constexpr FrameFault operator|(FrameFault a, FrameFault b) noexcept
 {

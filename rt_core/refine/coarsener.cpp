@@ -22,14 +22,16 @@ constexpr double kPatience = 0.1;
 
 } // namespace
 
-Coarsener::Coarsener(Arena& arena, VertexForest& forest, PageTable& pages, float quantum_m) noexcept
+Coarsener::Coarsener(VertexForest& forest, PageTable& pages, const RefineScratch& scratch,
+                     float quantum_m) noexcept
     : forest_(&forest)
     , pages_(&pages)
     , quantum_m_(static_cast<double>(quantum_m))
-    , stack_(arena.take<RecordId>(kMaxDepth))
-    , look_at_(arena.take<double>(pages.capacity()))
-    , needed_(arena.take<std::uint64_t>(pages.capacity()))
+    , stack_(scratch.stack)
+    , look_at_(scratch.look_at)
+    , needed_(scratch.needed)
 {
+    TACTUS_ASSERT(look_at_.size() == pages.capacity());
 }
 
 void Coarsener::follow(double farthest_m) noexcept
@@ -40,19 +42,22 @@ void Coarsener::follow(double farthest_m) noexcept
 
 void Coarsener::look_at_all() noexcept
 {
-    std::ranges::fill(look_at_, travel_);
+    for (std::uint32_t slot = 0; slot < pages_->capacity(); ++slot)
+    {
+        look_at_[slot] = is_of_this_model(slot) ? travel_ : look_at_[slot];
+    }
     next_look_ = travel_;
 }
 
 void Coarsener::look_when_left(std::uint32_t slot, const VsplitRecord& record,
-                               std::span<const RefineQuestion> questions) noexcept
+                               std::span<const RefineRequest> requests) noexcept
 {
     TACTUS_ASSERT(slot < look_at_.size());
-    look_at_[slot] = std::min(look_at_[slot], travel_ + slack_of(record, questions));
+    look_at_[slot] = std::min(look_at_[slot], travel_ + slack_of(record, requests));
     next_look_ = std::min(next_look_, look_at_[slot]);
 }
 
-void Coarsener::run(std::span<const RefineQuestion> questions, const Budgets& budgets,
+void Coarsener::run(std::span<const RefineRequest> requests, const Budgets& budgets,
                     WorkCounters& work) noexcept
 {
     if (travel_ < next_look_)
@@ -63,15 +68,16 @@ void Coarsener::run(std::span<const RefineQuestion> questions, const Budgets& bu
     double next = kInfinity;
     for (std::uint32_t looked = 0; looked < pages_->capacity(); ++looked)
     {
-        if (look_at_[scan_slot_] <= travel_)
+        const bool is_own = is_of_this_model(scan_slot_);
+        if (is_own && look_at_[scan_slot_] <= travel_)
         {
             if (work.scanned >= budgets.scanned || work.merges >= budgets.merges)
             {
                 return;
             }
-            scan_page(scan_slot_, questions, budgets, work);
+            scan_page(scan_slot_, requests, budgets, work);
         }
-        next = std::min(next, look_at_[scan_slot_]);
+        next = is_own ? std::min(next, look_at_[scan_slot_]) : next;
         scan_slot_ = scan_slot_ == 0 ? pages_->capacity() - 1 : scan_slot_ - 1;
     }
     next_look_ = std::max(next, travel_);
@@ -79,7 +85,7 @@ void Coarsener::run(std::span<const RefineQuestion> questions, const Budgets& bu
 
 /// Looks at the refined records of one page, finest last in first. Unless the budget ends it, the
 /// page is not due again before the tools have come far enough to leave one of them behind.
-void Coarsener::scan_page(std::uint32_t slot, std::span<const RefineQuestion> questions,
+void Coarsener::scan_page(std::uint32_t slot, std::span<const RefineRequest> requests,
                           const Budgets& budgets, WorkCounters& work) noexcept
 {
     const PageTable::Meta& meta = pages_->meta(slot);
@@ -96,14 +102,14 @@ void Coarsener::scan_page(std::uint32_t slot, std::span<const RefineQuestion> qu
             look_at_[slot] = travel_;
             return;
         }
-        const double slack = slack_of(page.records[place], questions);
+        const double slack = slack_of(page.records[place], requests);
         if (slack > 0.0)
         {
             ++work.scanned;
             look_at_[slot] = std::min(look_at_[slot], travel_ + slack);
             continue;
         }
-        if (!merge_back({(meta.chunk.value << kRecordsPerChunkLog2) + place}, questions, budgets,
+        if (!merge_back({(meta.chunk.value << kRecordsPerChunkLog2) + place}, requests, budgets,
                         work))
         {
             look_at_[slot] = travel_;
@@ -115,7 +121,7 @@ void Coarsener::scan_page(std::uint32_t slot, std::span<const RefineQuestion> qu
 
 /// Merges a record that was left behind, then those that it was the last to depend on. False when
 /// the budget is spent.
-bool Coarsener::merge_back(RecordId first, std::span<const RefineQuestion> questions,
+bool Coarsener::merge_back(RecordId first, std::span<const RefineRequest> requests,
                            const Budgets& budgets, WorkCounters& work) noexcept
 {
     std::uint32_t depth = 0;
@@ -142,7 +148,7 @@ bool Coarsener::merge_back(RecordId first, std::span<const RefineQuestion> quest
         const VsplitRecord& record = pages_->slots().pages[slot].records[place_in_chunk(id)];
         const std::uint64_t bit = std::uint64_t{1} << place_in_chunk(id);
         needed_[slot] &= ~bit;
-        if (const double slack = slack_of(record, questions); slack > 0.0)
+        if (const double slack = slack_of(record, requests); slack > 0.0)
         {
             look_at_[slot] = std::min(look_at_[slot], travel_ + slack);
             continue;
@@ -184,26 +190,28 @@ void Coarsener::look_soon(RecordId record) noexcept
 
 /// How much farther the tools have to go before the record is left behind by all of them.
 double Coarsener::slack_of(const VsplitRecord& record,
-                           std::span<const RefineQuestion> questions) const noexcept
+                           std::span<const RefineRequest> requests) const noexcept
 {
     const double reach = static_cast<double>(error_in_quanta(record.reach)) * quantum_m_;
     const Vec3 vertex = to_vec3(record.position_m);
     double slack = 0.0;
-    for (const RefineQuestion& question : questions)
-    {
-        const double keep = question.keep_m + reach;
-        const double distance_sq = (vertex - question.center_m).squaredNorm();
-        if (distance_sq > keep * keep)
-        {
-            continue;
-        }
-        const double own_keep = question.keep_m - question.span_m;
-        const double left =
-            question.surface == nullptr
-                ? keep - std::sqrt(distance_sq)
-                : own_keep - question.surface->lower_bound_m({vertex, reach}, own_keep);
-        slack = left >= 0.0 ? std::max(slack, left + kPatience * own_keep) : slack;
-    }
+    for_each_question(requests,
+                      [&](const RefineQuestion& question)
+                      {
+                          const double keep = question.keep_m + reach;
+                          const double distance_sq = (vertex - question.center_m).squaredNorm();
+                          if (distance_sq > keep * keep)
+                          {
+                              return;
+                          }
+                          const double own_keep = question.keep_m - question.span_m;
+                          const double left = question.surface == nullptr
+                                                  ? keep - std::sqrt(distance_sq)
+                                                  : own_keep - question.surface->lower_bound_m(
+                                                                   {vertex, reach}, own_keep);
+                          slack =
+                              left >= 0.0 ? std::max(slack, left + kPatience * own_keep) : slack;
+                      });
     return slack;
 }
 

@@ -2,12 +2,12 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "rt_core/base/arena.hpp"
 #include "rt_core/base/realtime.hpp"
 #include "rt_core/forest/vertex_forest.hpp"
 #include "rt_core/records/frame_input.hpp"
 #include "rt_core/records/work_counters.hpp"
 #include "rt_core/refine/refine_question.hpp"
+#include "rt_core/refine/refine_scratch.hpp"
 
 #include <cstdint>
 #include <span>
@@ -25,7 +25,9 @@ namespace tactus
 class Coarsener
 {
 public:
-    Coarsener(Arena& arena, VertexForest& forest, PageTable& pages, float quantum_m) noexcept;
+    /// Of the scratch it uses the stack while run() runs.
+    Coarsener(VertexForest& forest, PageTable& pages, const RefineScratch& scratch,
+              float quantum_m) noexcept;
 
     /// The questions have moved, or their keep distances have shrunk, by at most that much.
     void follow(double farthest_m) noexcept TACTUS_NONBLOCKING;
@@ -33,28 +35,34 @@ public:
     void look_at_all() noexcept TACTUS_NONBLOCKING;
     /// A record of the page in `slot` was refined.
     void look_when_left(std::uint32_t slot, const VsplitRecord& record,
-                        std::span<const RefineQuestion> questions) noexcept TACTUS_NONBLOCKING;
+                        std::span<const RefineRequest> requests) noexcept TACTUS_NONBLOCKING;
     /// The record's page is due, and the record may be asked again.
     void look_soon(RecordId record) noexcept TACTUS_NONBLOCKING;
 
     /// One frame: looks at up to `budgets.scanned` refined records and merges up to
     /// `budgets.merges`. One comparison a page for those that are not due.
-    void run(std::span<const RefineQuestion> questions, const Budgets& budgets,
+    void run(std::span<const RefineRequest> requests, const Budgets& budgets,
              WorkCounters& work) noexcept TACTUS_NONBLOCKING;
 
 private:
-    void scan_page(std::uint32_t slot, std::span<const RefineQuestion> questions,
+    void scan_page(std::uint32_t slot, std::span<const RefineRequest> requests,
                    const Budgets& budgets, WorkCounters& work) noexcept;
-    [[nodiscard]] bool merge_back(RecordId first, std::span<const RefineQuestion> questions,
+    [[nodiscard]] bool merge_back(RecordId first, std::span<const RefineRequest> requests,
                                   const Budgets& budgets, WorkCounters& work) noexcept;
     [[nodiscard]] double slack_of(const VsplitRecord& record,
-                                  std::span<const RefineQuestion> questions) const noexcept;
+                                  std::span<const RefineRequest> requests) const noexcept;
+
+    /// Or was, as long as no other takes the slot.
+    [[nodiscard]] bool is_of_this_model(std::uint32_t slot) const noexcept
+    {
+        return pages_->meta(slot).owner == pages_->owner();
+    }
 
     VertexForest* forest_;
     PageTable* pages_;
     double quantum_m_;
     std::span<RecordId> stack_;
-    /// By page slot: the travel from which on some record in it may be left behind.
+    /// By page slot of all models: the travel from which on some record in it may be left behind.
     std::span<double> look_at_;
     /// By page slot, one bit a record: left behind, but another refined record depends on it.
     std::span<std::uint64_t> needed_;

@@ -5,6 +5,12 @@
 #include "rt_core/kernels/kernels.hpp"
 #include "rt_core/math/vec3.hpp"
 #include "rt_core/query/other_surface.hpp"
+#include "rt_core/records/urgency.hpp"
+#include "rt_core/spm/ids.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
 
 namespace tactus
 {
@@ -40,5 +46,54 @@ struct RefineQuestion
     bool counts_errors{true}; ///< Without: coarse faces are wanted by distance alone.
     double tolerance_m{0.0};  ///< Coarse faces with no larger error are not wanted.
 };
+
+/// Whether something within the reach may be coarse.
+[[nodiscard]] inline bool is_wanting(const RefineQuestion& question) noexcept
+{
+    return question.memory->certified_m < question.reach_m;
+}
+
+/// Records that were split towards one which the budget did not come to: kept from being merged
+/// until it is split, or nobody wants it. One for each pair and model, from frame to frame.
+struct Closure
+{
+    static constexpr std::uint32_t kNone = 0xFFFF'FFFFU;
+
+    RecordId target{};               ///< None: nothing is open.
+    std::uint32_t first_held{kNone}; ///< In the refiner's list.
+    std::uint32_t saved{0};          ///< Splits that the pair left to others: see SplitShares.
+    std::uint32_t waited{0};         ///< Frames on end in which nothing was left for it.
+};
+
+/// What one pair asks of one model in a frame; without a question, that it asks no more.
+struct RefineRequest
+{
+    ModelId model{};
+    std::span<const RefineQuestion> questions;
+    Closure* closure{nullptr};
+    Urgency urgency;
+
+    /// Whether something within reach may be coarse.
+    [[nodiscard]] bool is_late() const noexcept
+    {
+        return std::ranges::any_of(questions, [](const RefineQuestion& question)
+                                   { return is_wanting(question); });
+    }
+    /// Whether there may be something to split for it.
+    [[nodiscard]] bool is_open() const noexcept { return !closure->target.is_none() || is_late(); }
+};
+
+/// Calls `function` for each question of the requests, in order.
+template <typename Function>
+void for_each_question(std::span<const RefineRequest> requests, const Function& function) noexcept
+{
+    for (const RefineRequest& request : requests)
+    {
+        for (const RefineQuestion& question : request.questions)
+        {
+            function(question);
+        }
+    }
+}
 
 } // namespace tactus

@@ -79,11 +79,6 @@ void leave_at(std::span<const RefineQuestion> questions, double excess_m) noexce
     }
 }
 
-bool is_wanting(const RefineQuestion& question) noexcept
-{
-    return question.memory->certified_m < question.reach_m;
-}
-
 /// Distance to the triangle's box: a cheap lower bound on the distance to the triangle.
 double box_distance_sq(const Vec3& point, const Triangle& triangle) noexcept
 {
@@ -103,79 +98,80 @@ double box_distance_sq(const Vec3& point, const Triangle& triangle) noexcept
 
 } // namespace
 
-Refiner::Refiner(Arena& arena, VertexForest& forest, PageTable& pages, const AbTree& tree,
+Refiner::Refiner(VertexForest& forest, PageTable& pages, const AbTree& tree, RefineScratch& scratch,
                  float quantum_m) noexcept
     : forest_(&forest)
     , pages_(&pages)
     , tree_(&tree)
-    , coarsener_(arena, forest, pages, quantum_m)
+    , coarsener_(forest, pages, scratch, quantum_m)
     , quantum_m_(static_cast<double>(quantum_m))
-    , heap_(arena.take<Candidate>(kRefineHeap))
-    , held_(arena.take<RecordId>(kMaxHeldRecords))
-    , stack_(arena.take<RecordId>(kMaxDepth))
-    , done_(arena.take<RecordId>(kMaxSplitsPerFrame))
+    , scratch_(&scratch)
+    , heap_(scratch.heap)
+    , stack_(scratch.stack)
+    , done_(scratch.done)
 {
 }
 
-void Refiner::run(std::span<const RefineQuestion> questions, const Budgets& budgets,
-                  std::uint32_t frame, WorkCounters& work, FrameFault& faults) noexcept
+void Refiner::begin(std::span<const RefineRequest> requests, const Budgets& budgets,
+                    WorkCounters& work) noexcept
 {
-    follow(questions);
-    heap_size_ = 0;
-    given_up_ = FrameFault::none;
-    for (const RefineQuestion& question : questions)
+    requests_ = requests;
+    for (const RefineRequest& request : requests)
     {
-        if (is_wanting(question))
+        if (request.questions.empty())
         {
-            gather(question, budgets, work, faults);
+            release(*request.closure);
         }
     }
+    follow();
     const std::uint32_t merges_before = work.merges;
     Budgets within = budgets;
     within.merges = std::min(budgets.merges, kMaxMergesPerFrame);
-    coarsener_.run(questions, within, work);
-    if (work.merges != merges_before)
-    {
-        // What was merged is beyond every question's keep distance, but no farther.
-        for (const RefineQuestion& question : questions)
-        {
-            leave(question, question.keep_m);
-        }
-    }
-    split_wanted(questions, budgets, frame, work, faults);
+    coarsener_.run(requests_, within, work);
+    for_each_question(requests_,
+                      [&](const RefineQuestion& question)
+                      {
+                          if (work.merges != merges_before)
+                          {
+                              // What was merged is beyond every keep distance, but no farther.
+                              leave(question, question.keep_m);
+                          }
+                          work.skipped.add(Skip::regions, is_wanting(question) ? 0 : 1);
+                      });
 }
 
-/// A certificate loses what its question moved, and records are left behind by as much.
-void Refiner::follow(std::span<const RefineQuestion> questions) noexcept
+FrameFault Refiner::refine(const RefineRequest& request, std::uint32_t limit,
+                           const Budgets& budgets, std::uint32_t frame, WorkCounters& work) noexcept
+{
+    TACTUS_ASSERT(limit <= kMaxSplitsPerFrame);
+    FrameFault found = FrameFault::none;
+    heap_size_ = 0;
+    given_up_ = FrameFault::none;
+    for (const RefineQuestion& question : request.questions)
+    {
+        if (is_wanting(question))
+        {
+            gather(question, budgets, work, found);
+        }
+    }
+    split_wanted(request, limit, frame, work, found);
+    return found | given_up_;
+}
+
+/// Certificates lose what their questions moved, and records are left behind by as much.
+void Refiner::follow() noexcept
 {
     double farthest = 0.0;
-    bool is_same = questions.size() == question_count_;
-    question_count_ = questions.size();
-    for (const RefineQuestion& question : questions)
-    {
-        TACTUS_ASSERT(question.memory != nullptr);
-        TACTUS_ASSERT(question.reach_m >= 0.0);
-        TACTUS_ASSERT(question.keep_m >= question.reach_m);
-        TACTUS_ASSERT(!is_beyond_kernels(question.center_m, tree_->quantum_m()));
-        RefineMemory& memory = *question.memory;
-        memory.probe = make_probe(question.center_m, tree_->quantum_m());
-        if (!memory.is_known)
-        {
-            memory.center_m = question.center_m;
-            memory.keep_m = question.keep_m;
-            memory.certified_m = 0.0;
-            memory.is_known = true;
-            is_same = false;
-            continue;
-        }
-        const double moved = question.surface != nullptr
-                                 ? question.moved_m
-                                 : (question.center_m - memory.center_m).norm() * kWidened;
-        farthest = std::max(farthest, moved + std::max(0.0, memory.keep_m - question.keep_m));
-        memory.certified_m = tree_->is_complete() ? memory.certified_m - moved : 0.0;
-        memory.center_m = question.center_m;
-        memory.keep_m = question.keep_m;
-    }
+    std::size_t count = 0;
+    bool is_same = true;
+    for_each_question(requests_,
+                      [&](const RefineQuestion& question)
+                      {
+                          ++count;
+                          follow(question, farthest, is_same);
+                      });
+    is_same = is_same && count == question_count_;
+    question_count_ = count;
     coarsener_.follow(farthest);
     if (!is_same)
     {
@@ -183,9 +179,35 @@ void Refiner::follow(std::span<const RefineQuestion> questions) noexcept
     }
 }
 
+void Refiner::follow(const RefineQuestion& question, double& farthest_m, bool& is_same) noexcept
+{
+    TACTUS_ASSERT(question.memory != nullptr);
+    TACTUS_ASSERT(question.reach_m >= 0.0);
+    TACTUS_ASSERT(question.keep_m >= question.reach_m);
+    TACTUS_ASSERT(!is_beyond_kernels(question.center_m, tree_->quantum_m()));
+    RefineMemory& memory = *question.memory;
+    memory.probe = make_probe(question.center_m, tree_->quantum_m());
+    if (!memory.is_known)
+    {
+        memory.center_m = question.center_m;
+        memory.keep_m = question.keep_m;
+        memory.certified_m = 0.0;
+        memory.is_known = true;
+        is_same = false;
+        return;
+    }
+    const double moved = question.surface != nullptr
+                             ? question.moved_m
+                             : (question.center_m - memory.center_m).norm() * kWidened;
+    farthest_m = std::max(farthest_m, moved + std::max(0.0, memory.keep_m - question.keep_m));
+    memory.certified_m = tree_->is_complete() ? memory.certified_m - moved : 0.0;
+    memory.center_m = question.center_m;
+    memory.keep_m = question.keep_m;
+}
+
 /// Finds the coarse faces within the target; the certificate reaches as far as was looked.
 void Refiner::gather(const RefineQuestion& question, const Budgets& budgets, WorkCounters& work,
-                     FrameFault& faults) noexcept
+                     FrameFault& found) noexcept
 {
     question.memory->certified_m = tree_->is_complete() ? target_of(question) : 0.0;
     if (question.surface != nullptr)
@@ -193,9 +215,10 @@ void Refiner::gather(const RefineQuestion& question, const Budgets& budgets, Wor
         gather_near_surface(question);
         return;
     }
-    WalkBudget budget{budgets.nodes, budgets.triangles};
+    WalkBudget budget{walk_left(budgets.nodes, work.nodes_visited),
+                      walk_left(budgets.triangles, work.triangles_tested)};
     gather_near_ball(question, budget);
-    faults |= budget.is_spent ? FrameFault::node_budget_spent : FrameFault::none;
+    found |= budget.is_spent ? FrameFault::node_budget_spent : FrameFault::none;
     work.nodes_visited += budget.nodes_visited;
     work.triangles_tested += budget.triangles_tested;
 }
@@ -267,21 +290,23 @@ void Refiner::gather_block(std::uint32_t index, const RefineQuestion& question) 
     }
 }
 
-void Refiner::split_wanted(std::span<const RefineQuestion> questions, const Budgets& budgets,
-                           std::uint32_t frame, WorkCounters& work, FrameFault& faults) noexcept
+void Refiner::split_wanted(const RefineRequest& request, std::uint32_t limit, std::uint32_t frame,
+                           WorkCounters& work, FrameFault& found) noexcept
 {
-    const std::uint32_t most = std::min(budgets.splits, kMaxSplitsPerFrame);
-    const std::uint32_t most_ahead = std::max(most / kAheadShare, 1U);
-    FrameFault found = FrameFault::none;
-    double pending_excess = excess_of_pending(questions);
+    const std::span<const RefineQuestion> own = request.questions;
+    Closure& closure = *request.closure;
+    const std::uint32_t share = limit - std::min(limit, work.splits);
+    const std::uint32_t limit_ahead =
+        work.splits + std::max(share / kAheadShare, std::min(share, 1U));
+    double pending_excess = excess_of_pending(request);
     if (!(pending_excess < kInfinity))
     {
-        release_held();
+        release(closure);
     }
     bool can_go_on = true;
     while (can_go_on && (heap_size_ > 0 || pending_excess < kInfinity))
     {
-        Wanted wanted{pending_, pending_excess};
+        Wanted wanted{closure.target, pending_excess};
         if (heap_size_ > 0 && heap_[0].excess_m < pending_excess)
         {
             const Candidate candidate = pop();
@@ -296,32 +321,29 @@ void Refiner::split_wanted(std::span<const RefineQuestion> questions, const Budg
             pending_excess = kInfinity;
             if (pages_->is_refined(wanted.record))
             {
-                release_held(); // Split for a nearer face meanwhile.
+                release(closure); // Split for a nearer face, or for another pair, meanwhile.
                 continue;
             }
         }
         if (wanted.record.value >= kNextPending)
         {
             found |= FrameFault::chunk_late;
-            leave_at(questions, wanted.excess_m);
+            leave_at(own, wanted.excess_m);
             continue;
         }
-        const std::uint32_t limit = wanted.excess_m <= 0.0 ? most : most_ahead;
-        can_go_on = try_advance(wanted, limit, questions, frame, work, found);
+        can_go_on = try_advance(wanted, request, wanted.excess_m <= 0.0 ? limit : limit_ahead,
+                                frame, work, found);
     }
     // The nearest of those that were not come to.
-    leave_at(questions, std::min(pending_excess, heap_size_ > 0 ? heap_[0].excess_m : kInfinity));
-    // What is only looked ahead for may wait.
-    const bool is_late = std::ranges::any_of(questions, [](const RefineQuestion& question)
-                                             { return is_wanting(question); });
-    faults |= is_late ? found | given_up_ : found & FrameFault::model_inconsistent;
+    leave_at(own, std::min(pending_excess, heap_size_ > 0 ? heap_[0].excess_m : kInfinity));
 }
 
-/// The least excess of a face for which the pending closure was begun; infinity when none of them
+/// The least excess of a face for which the open closure was begun; infinity when none of them
 /// waits within the target any more.
-double Refiner::excess_of_pending(std::span<const RefineQuestion> questions) const noexcept
+double Refiner::excess_of_pending(const RefineRequest& request) const noexcept
 {
-    const VsplitRecord* record = pending_.is_none() ? nullptr : pages_->find_linked(pending_);
+    const RecordId target = request.closure->target;
+    const VsplitRecord* record = target.is_none() ? nullptr : pages_->find_linked(target);
     double excess = kInfinity;
     for (std::uint32_t i = 0; record != nullptr && i < record->fan_size; ++i)
     {
@@ -330,7 +352,7 @@ double Refiner::excess_of_pending(std::span<const RefineQuestion> questions) con
         {
             continue;
         }
-        for (const RefineQuestion& question : questions)
+        for (const RefineQuestion& question : request.questions)
         {
             const double lower = lower_bound(prim, question);
             excess =
@@ -340,29 +362,29 @@ double Refiner::excess_of_pending(std::span<const RefineQuestion> questions) con
     return excess;
 }
 
-/// Splits towards a wanted record; false when nothing more can be split in this frame.
-bool Refiner::try_advance(const Wanted& wanted, std::uint32_t limit,
-                          std::span<const RefineQuestion> questions, std::uint32_t frame,
-                          WorkCounters& work, FrameFault& found) noexcept
+/// Splits towards a wanted record; false when nothing more can be split for the request.
+bool Refiner::try_advance(const Wanted& wanted, const RefineRequest& request, std::uint32_t limit,
+                          std::uint32_t frame, WorkCounters& work, FrameFault& found) noexcept
 {
+    Closure& closure = *request.closure;
     const ClosureOutcome outcome =
-        split_with_closure(wanted.record, limit, questions, frame, work, found);
+        split_with_closure(wanted.record, request.questions, limit, frame, work, found);
     if (outcome != ClosureOutcome::complete)
     {
-        leave_at(questions, wanted.excess_m);
+        leave_at(request.questions, wanted.excess_m);
     }
     if (outcome == ClosureOutcome::complete || outcome == ClosureOutcome::blocked)
     {
-        if (wanted.record == pending_)
+        if (wanted.record == closure.target)
         {
-            release_held();
+            release(closure);
         }
         return true;
     }
-    pending_ = wanted.record;
+    closure.target = wanted.record;
     for (std::uint32_t i = 0; i < done_count_; ++i)
     {
-        hold(done_[i]);
+        hold(done_[i], closure);
     }
     found |=
         outcome == ClosureOutcome::full ? FrameFault::forest_full : FrameFault::split_budget_spent;
@@ -371,13 +393,12 @@ bool Refiner::try_advance(const Wanted& wanted, std::uint32_t limit,
 
 /// Depth-first over the records that must be split before `target`; the stack is never deeper than
 /// the deepest record.
-Refiner::ClosureOutcome Refiner::split_with_closure(RecordId target, std::uint32_t limit,
-                                                    std::span<const RefineQuestion> questions,
-                                                    std::uint32_t frame, WorkCounters& work,
-                                                    FrameFault& faults) noexcept
+Refiner::ClosureOutcome Refiner::split_with_closure(RecordId target,
+                                                    std::span<const RefineQuestion> own,
+                                                    std::uint32_t limit, std::uint32_t frame,
+                                                    WorkCounters& work, FrameFault& found) noexcept
 {
     TACTUS_ASSERT(!target.is_none());
-    TACTUS_ASSERT(limit <= done_.size());
     done_count_ = 0;
     std::uint32_t depth = 0;
     stack_[depth++] = target;
@@ -389,7 +410,7 @@ Refiner::ClosureOutcome Refiner::split_with_closure(RecordId target, std::uint32
             slot == IdTable::kAbsent ? nullptr : pages_->find_linked(id, slot);
         if (record == nullptr)
         {
-            faults |= FrameFault::chunk_late;
+            found |= FrameFault::chunk_late;
             return ClosureOutcome::blocked;
         }
         pages_->touch(slot, frame);
@@ -413,7 +434,7 @@ Refiner::ClosureOutcome Refiner::split_with_closure(RecordId target, std::uint32
         case VertexForest::SplitOutcome::full:
             return ClosureOutcome::full;
         case VertexForest::SplitOutcome::inconsistent:
-            faults |= FrameFault::model_inconsistent;
+            found |= FrameFault::model_inconsistent;
             return ClosureOutcome::blocked;
         case VertexForest::SplitOutcome::done:
             ++work.splits;
@@ -421,47 +442,27 @@ Refiner::ClosureOutcome Refiner::split_with_closure(RecordId target, std::uint32
             done_[done_count_++] = id;
             --depth;
             coarsener_.look_when_left(slot, *record,
-                                      is_filling_ ? std::span<const RefineQuestion>{} : questions);
-            consider_star(id, *record, star, questions);
+                                      is_filling_ ? std::span<const RefineRequest>{} : requests_);
+            consider_star(id, *record, star, own);
         }
     }
     return ClosureOutcome::complete;
 }
 
-Refiner::Progress Refiner::refine_everything(std::uint32_t records,
-                                             std::span<const RefineQuestion> questions,
-                                             const Budgets& budgets, std::uint32_t frame,
-                                             WorkCounters& work, FrameFault& faults) noexcept
-{
-    TACTUS_ASSERT(next_record_ <= records);
-    heap_size_ = 0;
-    const std::uint32_t most = std::min(budgets.splits, kMaxSplitsPerFrame);
-    is_filling_ = true;
-    const Progress progress = fill(records, most, questions, frame, work, faults);
-    is_filling_ = false;
-    if (heap_size_ > 0) // Faces that came up within a question's target.
-    {
-        split_wanted(questions, budgets, frame, work, faults);
-    }
-    // The splits went elsewhere, and what they changed near a surface is not known yet.
-    const bool is_left =
-        std::ranges::any_of(questions, [](const RefineQuestion& question)
-                            { return question.surface != nullptr && is_wanting(question); });
-    faults |= is_left ? FrameFault::split_budget_spent : FrameFault::none;
-    return progress;
-}
-
-Refiner::Progress Refiner::fill(std::uint32_t records, std::uint32_t limit,
-                                std::span<const RefineQuestion> questions, std::uint32_t frame,
+Refiner::Progress Refiner::fill(std::uint32_t records, std::uint32_t limit, std::uint32_t frame,
                                 WorkCounters& work, FrameFault& faults) noexcept
 {
+    TACTUS_ASSERT(next_record_ <= records);
+    TACTUS_ASSERT(limit <= kMaxSplitsPerFrame);
     while (next_record_ < records && work.splits < limit)
     {
         if (!pages_->is_refined({next_record_}))
         {
             FrameFault found = FrameFault::none; // That a chunk is on its way is no fault here.
+            is_filling_ = true;
             const ClosureOutcome outcome =
-                split_with_closure({next_record_}, limit, questions, frame, work, found);
+                split_with_closure({next_record_}, {}, limit, frame, work, found);
+            is_filling_ = false;
             faults |= found & FrameFault::model_inconsistent;
             if (outcome != ClosureOutcome::complete)
             {
@@ -473,10 +474,11 @@ Refiner::Progress Refiner::fill(std::uint32_t records, std::uint32_t limit,
     return next_record_ == records ? Progress::complete : Progress::under_way;
 }
 
-/// The faces that a split changed may be wanted themselves.
+/// The faces that a split changed may be wanted themselves: at once by the questions that it was
+/// made for, in their own turn by others.
 void Refiner::consider_star(RecordId id, const VsplitRecord& record,
                             const VertexForest::StarGeometry& star,
-                            std::span<const RefineQuestion> questions) noexcept
+                            std::span<const RefineQuestion> own) noexcept
 {
     std::uint32_t coarse = 0;
     for (std::uint32_t place = 0; place < kMaxStarFaces; ++place)
@@ -490,15 +492,15 @@ void Refiner::consider_star(RecordId id, const VsplitRecord& record,
     }
     std::array<double, kMaxStarFaces> excess{};
     excess.fill(kInfinity);
+    const Vec3 vertex = to_vec3(record.position_m);
     const double reach = static_cast<double>(error_in_quanta(record.reach)) * quantum_m_;
-    for (const RefineQuestion& question : questions)
+    const auto consider = [&](const RefineQuestion& question)
     {
         if (is_filling_ && question.surface != nullptr)
         {
-            leave(question, 0.0); // Asked anew in the next frame, in one walk for all.
-            continue;
+            leave(question, 0.0); // Asked anew, in one walk for all.
+            return;
         }
-        const Vec3 vertex = to_vec3(record.position_m);
         const double nearest =
             sharpened(question, (vertex - question.center_m).norm() * kRootRoundedDown - reach, 0.0,
                       [&] {
@@ -507,8 +509,9 @@ void Refiner::consider_star(RecordId id, const VsplitRecord& record,
         if (nearest > target_of(question))
         {
             leave(question, nearest);
-            continue;
+            return;
         }
+        const bool is_own = &question >= own.data() && &question < own.data() + own.size();
         FaceBounds bounds; // NOLINT(cppcoreguidelines-pro-type-member-init): the kernel fills it.
         bound_faces(tree_->kernels(), star.geometry, coarse, question.memory->probe, bounds);
         for (std::uint32_t lanes = coarse; lanes != 0; lanes &= lanes - 1)
@@ -524,7 +527,7 @@ void Refiner::consider_star(RecordId id, const VsplitRecord& record,
             const double key =
                 sharpened(question, static_cast<double>(bounds.lower[place]) * quantum_m_ - error,
                           error, [&] { return ball_of_face(star.geometry, place); });
-            if (key <= target_of(question))
+            if (is_own && key <= target_of(question))
             {
                 excess[place] = std::min(excess[place], key - question.reach_m);
             }
@@ -533,12 +536,13 @@ void Refiner::consider_star(RecordId id, const VsplitRecord& record,
                 leave(question, key);
             }
         }
-    }
+    };
+    for_each_question(requests_, consider);
     for (std::uint32_t place = 0; place < kMaxStarFaces; ++place)
     {
         if (excess[place] < kInfinity)
         {
-            push({excess[place], star.prims[place], FaceState::after(id, place)}, questions);
+            push({excess[place], star.prims[place], FaceState::after(id, place)}, own);
         }
     }
 }
@@ -590,27 +594,33 @@ bool Refiner::is_current(const Candidate& candidate) const noexcept
 }
 
 /// Full: the record may be merged before its closure is complete, and has to be split again.
-void Refiner::hold(RecordId record) noexcept
+void Refiner::hold(RecordId record, Closure& closure) noexcept
 {
-    if (held_count_ == held_.size())
+    const std::uint32_t place = scratch_->free_held;
+    if (place == Closure::kNone)
     {
         given_up_ |= FrameFault::held_records_full;
         return;
     }
-    held_[held_count_++] = record;
+    HeldRecord& held = scratch_->held[place];
+    scratch_->free_held = held.next;
+    held = {record, closure.first_held};
+    closure.first_held = place;
     pages_->set_held(record, true);
 }
 
-void Refiner::release_held() noexcept
+void Refiner::release(Closure& closure) noexcept
 {
-    TACTUS_ASSERT(held_count_ == 0 || !pending_.is_none());
-    for (std::uint32_t i = 0; i < held_count_; ++i)
+    TACTUS_ASSERT(closure.first_held == Closure::kNone || !closure.target.is_none());
+    while (closure.first_held != Closure::kNone)
     {
-        pages_->set_held(held_[i], false);
-        coarsener_.look_soon(held_[i]);
+        HeldRecord& held = scratch_->held[closure.first_held];
+        pages_->set_held(held.record, false);
+        coarsener_.look_soon(held.record);
+        std::swap(closure.first_held, held.next);
+        std::swap(held.next, scratch_->free_held);
     }
-    held_count_ = 0;
-    pending_ = RecordId{};
+    closure.target = RecordId{};
 }
 
 } // namespace tactus

@@ -15,9 +15,11 @@ enum class ContentKind : std::uint8_t
     base = 0,
     index_page = 1,
     chunk = 2,
+    header = 3, ///< On the wire only.
 };
 
-/// Names one piece within one model: its index page or chunk number; 0 for the base mesh.
+/// Names one piece within one model: its index page or chunk number; 0 for the base mesh. On the
+/// wire, where base mesh and header go in parts, the part's number.
 struct ContentKey
 {
     ContentKind kind{ContentKind::base};

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <utility>
 
 namespace tactus
 {
@@ -21,23 +22,36 @@ void store_next(std::uint32_t& next, RecordId id) noexcept
 
 } // namespace
 
-Linker::Linker(Arena& arena, const ModelHeader& header, PageSlots slots) noexcept
-    : header_(header)
-    , counts_(header.counts())
-    , slots_(slots)
-    , slot_of_(arena, static_cast<std::uint32_t>(slots.pages.size()) + 1)
-    , residents_(arena.take<Resident>(slots.pages.size()))
-    , rings_(arena.take<StarRing>(slots.pages.size() * kRecordsPerChunk))
-    , waiting_(arena.take<Waiting>(slots.pages.size() * kRecordsPerChunk))
-    , lists_(arena.take<Seat>(slots.pages.size() * kListsPerPage))
-    , owing_{.behind = arena.take<std::uint32_t>(slots.pages.size())}
+LinkPool::LinkPool(Arena& arena, std::size_t slots) noexcept
+    : slot_of_(arena, static_cast<std::uint32_t>(slots) + 1)
+    , residents_(arena.take<Resident>(slots))
+    , rings_(arena.take<StarRing>(slots * kRecordsPerChunk))
+    , waiting_(arena.take<Waiting>(slots * kRecordsPerChunk))
+    , lists_(arena.take<Seat>(slots * kListsPerPage))
+    , behind_(arena.take<std::uint32_t>(slots))
 {
     if (!arena.is_measuring())
     {
         TACTUS_ASSERT(waiting_.size() < kNowhere);
         std::ranges::fill(lists_, kNoSeat);
-        std::ranges::fill(owing_.behind, kNotOwing);
+        std::ranges::fill(behind_, kNotOwing);
     }
+}
+
+Linker::Linker(LinkPool& pool, std::uint32_t owner, const ModelHeader& header,
+               PageSlots slots) noexcept
+    : header_(header)
+    , counts_(header.counts())
+    , slots_(slots)
+    , owner_(owner)
+    , pool_(&pool)
+    , residents_(pool.residents_)
+    , rings_(pool.rings_)
+    , waiting_(pool.waiting_)
+    , lists_(pool.lists_)
+    , owing_{.behind = pool.behind_}
+{
+    TACTUS_ASSERT(residents_.size() == slots.pages.size());
 }
 
 void Linker::link_page(ChunkId chunk, std::uint32_t slot) noexcept
@@ -45,8 +59,9 @@ void Linker::link_page(ChunkId chunk, std::uint32_t slot) noexcept
     TACTUS_ASSERT(chunk.value < counts_.chunks());
     TACTUS_ASSERT(slot < residents_.size());
     TACTUS_ASSERT(residents_[slot].chunk.is_none());
-    residents_[slot] = Resident{chunk, 0, 0};
-    const bool inserted = slot_of_.try_insert(chunk.value, slot);
+    residents_[slot] = Resident{chunk, owner_, 0, 0};
+    const bool inserted =
+        pool_->slot_of_.try_insert(PagePool::first_key(owner_) + chunk.value, slot);
     TACTUS_ASSERT(inserted);
     for (std::uint32_t place = 0; place < records_in_chunk(counts_, chunk); ++place)
     {
@@ -58,17 +73,20 @@ void Linker::release_page(std::uint32_t slot) noexcept
 {
     TACTUS_ASSERT(slot < residents_.size());
     TACTUS_ASSERT(!residents_[slot].chunk.is_none());
+    TACTUS_ASSERT(residents_[slot].owner == owner_);
     const ChunkId chunk = residents_[slot].chunk;
     for (std::uint32_t place = 0; place < records_in_chunk(counts_, chunk); ++place)
     {
         stop_waiting((slot << kRecordsPerChunkLog2) + place);
     }
-    slot_of_.erase(chunk.value); // From here on no dependent is found in this page itself.
+    // From here on no dependent is found in this page itself.
+    pool_->slot_of_.erase(PagePool::first_key(owner_) + chunk.value);
     for (std::uint32_t place = 0; place < records_in_chunk(counts_, chunk); ++place)
     {
         let_dependents_wait((slot << kRecordsPerChunkLog2) + place);
     }
     residents_[slot] = Resident{};
+    owe_nothing(slot); // Another model may have the slot next.
 }
 
 std::uint64_t Linker::tell_linked(std::uint32_t slot) noexcept
@@ -88,7 +106,7 @@ bool Linker::try_take_update(Update& update) noexcept
         owing_.is_empty = slot == owing_.last;
         owing_.first = owing_.behind[slot];
         owing_.behind[slot] = kNotOwing;
-        // Told with its arrival, or given back meanwhile: then it owes nothing any more.
+        // Told with its arrival: then it owes nothing any more.
         if (residents_[slot].linked != residents_[slot].told)
         {
             update = {residents_[slot].chunk, slot, tell_linked(slot)};
@@ -116,6 +134,31 @@ void Linker::owe_update(std::uint32_t slot) noexcept
     }
     owing_.last = slot;
     owing_.is_empty = false;
+}
+
+/// One look at each slot that owes an update.
+void Linker::owe_nothing(std::uint32_t slot) noexcept
+{
+    if (owing_.behind[slot] == kNotOwing)
+    {
+        return;
+    }
+    const std::uint32_t next = std::exchange(owing_.behind[slot], kNotOwing);
+    const bool is_last = slot == owing_.last;
+    if (slot == owing_.first)
+    {
+        owing_.is_empty = is_last;
+        owing_.first = next;
+        return;
+    }
+    std::uint32_t before = owing_.first;
+    while (owing_.behind[before] != slot)
+    {
+        TACTUS_ASSERT(before != owing_.last);
+        before = owing_.behind[before];
+    }
+    owing_.behind[before] = is_last ? before : next;
+    owing_.last = is_last ? before : owing_.last;
 }
 
 /// Links the record if nothing is missing, then those that waited for it, and so on. Every turn
@@ -240,7 +283,8 @@ void Linker::wake_waiting(RecordId linked) noexcept
     for (Seat seat = list_of(linked); seat != kNoSeat;)
     {
         const Seat behind = waiting_[seat].behind;
-        Seat& list = waiting_[seat].awaited == linked ? ready_ : kept;
+        const bool is_own = residents_[seat >> kRecordsPerChunkLog2].owner == owner_;
+        Seat& list = is_own && waiting_[seat].awaited == linked ? ready_ : kept;
         waiting_[seat].behind = list;
         list = seat;
         seat = behind;
@@ -318,7 +362,7 @@ std::uint32_t& Linker::next_of(FaceId face, FaceState state) const noexcept
 /// kNoSeat when the record's page is away.
 Linker::Seat Linker::seat_of(RecordId record) const noexcept
 {
-    const std::uint32_t slot = slot_of_.find(chunk_of(record).value);
+    const std::uint32_t slot = slot_of(chunk_of(record));
     return slot == IdTable::kAbsent ? kNoSeat
                                     : (slot << kRecordsPerChunkLog2) + place_in_chunk(record);
 }
@@ -343,7 +387,7 @@ bool Linker::is_linked_at(Seat seat) const noexcept
 
 Linker::Seat& Linker::list_of(RecordId awaited) noexcept
 {
-    const std::uint32_t mixed = awaited.value * 0x9E37'79B9U;
+    const std::uint32_t mixed = (awaited.value + owner_ * 0x85EB'CA6BU) * 0x9E37'79B9U;
     return lists_[(std::uint64_t{mixed} * lists_.size()) >> 32U];
 }
 

@@ -5,6 +5,7 @@
 #include "rt_core/base/arena.hpp"
 #include "rt_core/base/id_table.hpp"
 #include "rt_core/spm/header.hpp"
+#include "rt_core/spm/page_pool.hpp"
 #include "rt_core/spm/page_slots.hpp"
 #include "rt_core/spm/star_resolver.hpp"
 
@@ -14,8 +15,61 @@
 namespace tactus
 {
 
-/// Resolves parsed records against the records they depend on, and links them, on the transport
-/// thread.
+class Linker;
+
+/// What linking keeps beside each page slot of all models: about 2.4 KB. Transport thread.
+class LinkPool
+{
+public:
+    LinkPool(Arena& arena, std::size_t slots) noexcept;
+
+    [[nodiscard]] static constexpr std::size_t bytes_per_page() noexcept
+    {
+        return kRecordsPerChunk * (sizeof(StarRing) + sizeof(Waiting)) +
+               kListsPerPage * sizeof(Seat) + sizeof(Resident) + sizeof(std::uint32_t) +
+               2 * sizeof(IdTable::Entry);
+    }
+
+private:
+    friend class Linker;
+
+    /// A record by its place in the page slots: slot * 64 + place.
+    using Seat = std::uint32_t;
+    static constexpr Seat kNoSeat = 0xFFFF'FFFFU;
+    /// A quarter of the records that may wait at most.
+    static constexpr std::size_t kListsPerPage = 16;
+    static constexpr Seat kNowhere = 0xFFFF'FFFEU;
+    static constexpr std::uint32_t kNotOwing = 0xFFFF'FFFFU;
+
+    /// A record in a list: for which record it waits, and who is behind it there.
+    struct Waiting
+    {
+        RecordId awaited{};
+        Seat behind{kNowhere};
+
+        [[nodiscard]] bool is_in_list() const noexcept { return behind != kNowhere; }
+    };
+    struct Resident
+    {
+        ChunkId chunk{};
+        std::uint32_t owner{0};
+        static_assert(kRecordsPerChunk <= 64);
+        std::uint64_t linked{0}; ///< One bit a record.
+        std::uint64_t told{0};   ///< Of `linked`, what the haptic thread was told.
+    };
+
+    IdTable slot_of_; ///< By PagePool::first_key() + chunk.
+    std::span<Resident> residents_;
+    std::span<StarRing> rings_;  ///< Per seat; of linked records.
+    std::span<Waiting> waiting_; ///< Per seat.
+    std::span<Seat> lists_;      ///< First waiting, by a hash of owner and awaited record.
+    /// Per slot, the one behind it that owes an update; itself when last, kNotOwing when it
+    /// doesn't.
+    std::span<std::uint32_t> behind_;
+};
+
+/// Resolves parsed records of one model against the records they depend on, and links them, on the
+/// transport thread.
 ///
 /// A record says what it is in terms of records that last changed its fan faces, and of those that
 /// brought its vertices. When these are linked it is resolved (StarResolver) and `next` of each
@@ -37,16 +91,9 @@ namespace tactus
 class Linker
 {
 public:
-    /// What it keeps beside each page: about 2.4 KB.
-    [[nodiscard]] static constexpr std::size_t bytes_per_page() noexcept
-    {
-        return kRecordsPerChunk * (sizeof(StarRing) + sizeof(Waiting)) +
-               kListsPerPage * sizeof(Seat) + sizeof(Resident) + sizeof(std::uint32_t) +
-               2 * sizeof(IdTable::Entry);
-    }
-
-    /// `header` must outlive the linker.
-    Linker(Arena& arena, const ModelHeader& header, PageSlots slots) noexcept;
+    /// `header` and `pool` must outlive the linker; the pool has as many slots.
+    Linker(LinkPool& pool, std::uint32_t owner, const ModelHeader& header,
+           PageSlots slots) noexcept;
 
     /// A page was parsed into `slot`: links what can be linked now, in it and in waiting pages.
     /// Cost: per record, and per waiting record that one of them was the last thing missing for.
@@ -74,9 +121,10 @@ public:
         return residents_[slot].linked;
     }
 
+    [[nodiscard]] std::uint32_t owner() const noexcept { return owner_; }
     [[nodiscard]] bool is_resident(ChunkId chunk) const noexcept
     {
-        return slot_of_.find(chunk.value) != IdTable::kAbsent;
+        return slot_of(chunk) != IdTable::kAbsent;
     }
     /// Records that were refused since the start; each is a fault of the model or of its sender.
     [[nodiscard]] std::uint64_t records_refused() const noexcept { return refused_count_; }
@@ -88,37 +136,20 @@ public:
     [[nodiscard]] LinkedStar find(RecordId id) const noexcept;
 
 private:
-    /// A record by its place in the page slots: slot * 64 + place.
-    using Seat = std::uint32_t;
-    static constexpr Seat kNoSeat = 0xFFFF'FFFFU;
-    /// A quarter of the records that may wait at most.
-    static constexpr std::size_t kListsPerPage = 16;
-    static constexpr Seat kNowhere = 0xFFFF'FFFEU;
+    using Seat = LinkPool::Seat;
+    using Waiting = LinkPool::Waiting;
+    using Resident = LinkPool::Resident;
+    static constexpr Seat kNoSeat = LinkPool::kNoSeat;
+    static constexpr std::uint32_t kNotOwing = LinkPool::kNotOwing;
 
-    /// A record in a list: for which record it waits, and who is behind it there.
-    struct Waiting
-    {
-        RecordId awaited{};
-        Seat behind{kNowhere};
-
-        [[nodiscard]] bool is_in_list() const noexcept { return behind != kNowhere; }
-    };
-    struct Resident
-    {
-        ChunkId chunk{};
-        static_assert(kRecordsPerChunk <= 64);
-        std::uint64_t linked{0}; ///< One bit a record.
-        std::uint64_t told{0};   ///< Of `linked`, what the haptic thread was told.
-    };
-    /// Slots that may owe an update, in the order in which they came to owe it.
+    /// Slots that owe an update, in the order in which they came to owe it.
     struct Owing
     {
-        std::span<std::uint32_t> behind; ///< Per slot; itself when last, kNotOwing when not here.
+        std::span<std::uint32_t> behind; ///< The pool's.
         std::uint32_t first{0};
         std::uint32_t last{0};
         bool is_empty{true};
     };
-    static constexpr std::uint32_t kNotOwing = 0xFFFF'FFFFU;
 
     void settle(Seat seat) noexcept;
     [[nodiscard]] bool try_link(Seat seat) noexcept;
@@ -129,9 +160,14 @@ private:
     void stop_waiting(Seat seat) noexcept;
     void let_dependents_wait(Seat leaving) noexcept;
     void owe_update(std::uint32_t slot) noexcept;
+    void owe_nothing(std::uint32_t slot) noexcept;
     [[nodiscard]] bool is_free_for(RecordId id, const VsplitRecord& record) const noexcept;
     [[nodiscard]] bool is_linked(RecordId record) const noexcept;
     [[nodiscard]] std::uint32_t& next_of(FaceId face, FaceState state) const noexcept;
+    [[nodiscard]] std::uint32_t slot_of(ChunkId chunk) const noexcept
+    {
+        return pool_->slot_of_.find(PagePool::first_key(owner_) + chunk.value);
+    }
     [[nodiscard]] Seat seat_of(RecordId record) const noexcept;
     [[nodiscard]] RecordId id_of(Seat seat) const noexcept;
     [[nodiscard]] VsplitRecord& record_at(Seat seat) const noexcept;
@@ -141,12 +177,13 @@ private:
     const ModelHeader& header_;
     ModelCounts counts_;
     PageSlots slots_;
-    IdTable slot_of_;
-    std::span<Resident> residents_;
-    std::span<StarRing> rings_;  ///< Per seat; of linked records.
-    std::span<Waiting> waiting_; ///< Per seat.
-    std::span<Seat> lists_;      ///< First waiting, by a hash of the record that is waited for.
-    Seat ready_{kNoSeat};        ///< Records to look at, a list of the same kind.
+    std::uint32_t owner_;
+    LinkPool* pool_;
+    std::span<Resident> residents_; ///< All of the pool's, as the three below.
+    std::span<StarRing> rings_;
+    std::span<Waiting> waiting_;
+    std::span<Seat> lists_;
+    Seat ready_{kNoSeat}; ///< Records to look at, a list of the same kind.
     Owing owing_;
     std::uint64_t linked_count_{0};
     std::uint64_t looks_{0};

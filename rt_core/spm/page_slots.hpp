@@ -14,7 +14,8 @@
 namespace tactus
 {
 
-/// The memory in which a model's pages live, seen by both threads.
+/// The memory in which a model's pages live, seen by both threads. Pages and index pages are those
+/// of all models, each slot of one at a time; the base mesh is the model's own.
 ///
 /// The transport thread alone writes it: a page's content while the slot is on loan to it, and
 /// later only `next` (through std::atomic_ref). The haptic thread reads slots that were handed over
@@ -33,6 +34,13 @@ struct PageSlots
         PageSlots slots;
         slots.pages = arena.take<Page>(page_capacity);
         slots.index_pages = arena.take<IndexPage>(index_capacity);
+        return slots.of_model(arena, counts);
+    }
+
+    /// The same pages, with a base mesh of its own.
+    [[nodiscard]] PageSlots of_model(Arena& arena, const ModelCounts& counts) const noexcept
+    {
+        PageSlots slots{pages, index_pages, {}};
         slots.base.positions_m = arena.take<Vec3f>(counts.base_vertices);
         slots.base.faces = arena.take<BaseFace>(counts.base_faces);
         slots.base.next = arena.take<std::uint32_t>(counts.base_faces);

@@ -2,9 +2,9 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "rt_core/base/arena.hpp"
 #include "rt_core/base/assert.hpp"
 #include "rt_core/base/id_table.hpp"
+#include "rt_core/spm/page_pool.hpp"
 #include "rt_core/spm/page_slots.hpp"
 
 #include <bit>
@@ -14,26 +14,22 @@
 namespace tactus
 {
 
-/// The haptic thread's view of a model's pages: which chunk is in which slot, which of its records
-/// are refined (split), and when it was last of use. Haptic thread only.
+/// The haptic thread's view of one model's pages: which chunk is in which slot, which of its
+/// records are refined (split), and when it was last of use. Haptic thread only.
 class PageTable
 {
 public:
-    static_assert(kRecordsPerChunk <= 64); // Meta has a bit for each.
-    struct Meta
-    {
-        ChunkId chunk{};          ///< None: the slot is the transport thread's.
-        std::uint32_t touched{0}; ///< Frame number of the last use.
-        std::uint64_t refined{0}; ///< One bit a record. The page is pinned while any is set.
-        std::uint64_t held{0};    ///< Refined for a closure that isn't complete; not to be merged.
-        std::uint64_t linked{0};  ///< As the inbox has told so far; the linker may know of more.
-    };
+    using Meta = PageMeta;
 
-    PageTable(Arena& arena, PageSlots slots) noexcept
-        : slots_(slots)
-        , slot_of_(arena, static_cast<std::uint32_t>(slots.pages.size()))
-        , meta_(arena.take<Meta>(slots.pages.size()))
+    /// Slots and pool are all models'; the pool has as many slots and outlives the table.
+    PageTable(PagePool& pool, std::uint32_t owner, PageSlots slots) noexcept
+        : pool_(&pool)
+        , meta_(pool.metas)
+        , slots_(slots)
+        , owner_(owner)
+        , first_key_(PagePool::first_key(owner))
     {
+        TACTUS_ASSERT(slots.pages.size() == pool.metas.size());
     }
 
     /// `linked` has a bit for each record that find_linked() may return.
@@ -43,9 +39,10 @@ public:
         TACTUS_ASSERT(!chunk.is_none());
         TACTUS_ASSERT(slot < meta_.size());
         TACTUS_ASSERT(meta_[slot].chunk.is_none());
-        meta_[slot] = Meta{chunk, frame, 0, 0, linked};
-        const bool inserted = slot_of_.try_insert(chunk.value, slot);
+        meta_[slot] = Meta{chunk, frame, 0, 0, linked, owner_};
+        const bool inserted = pool_->slot_of.try_insert(first_key_ + chunk.value, slot);
         TACTUS_ASSERT(inserted);
+        ++used_;
     }
 
     /// More records of the chunk are linked. No effect when the slot does not hold it any more: the
@@ -53,7 +50,7 @@ public:
     void update_linked(ChunkId chunk, std::uint32_t slot, std::uint64_t linked) noexcept
     {
         TACTUS_ASSERT(slot < meta_.size());
-        if (meta_[slot].chunk == chunk)
+        if (meta_[slot].chunk == chunk && meta_[slot].owner == owner_)
         {
             TACTUS_ASSERT((meta_[slot].linked & ~linked) == 0);
             meta_[slot].linked = linked;
@@ -64,17 +61,19 @@ public:
     void evict(std::uint32_t slot) noexcept
     {
         TACTUS_ASSERT(slot < meta_.size());
-        TACTUS_ASSERT(!meta_[slot].chunk.is_none());
+        TACTUS_ASSERT(is_own(slot));
         TACTUS_ASSERT(meta_[slot].refined == 0);
         TACTUS_ASSERT(meta_[slot].held == 0);
-        slot_of_.erase(meta_[slot].chunk.value);
+        pool_->slot_of.erase(first_key_ + meta_[slot].chunk.value);
         meta_[slot] = Meta{};
+        meta_[slot].owner = owner_;
+        --used_;
     }
 
     /// The chunk's slot, or IdTable::kAbsent.
     [[nodiscard]] std::uint32_t find(ChunkId chunk) const noexcept
     {
-        return slot_of_.find(chunk.value);
+        return pool_->slot_of.find(first_key_ + chunk.value);
     }
 
     /// The record when its page is adopted and it is linked; otherwise null.
@@ -133,12 +132,20 @@ public:
         TACTUS_ASSERT(!meta_[slot].chunk.is_none());
         meta_[slot].touched = frame;
     }
+    /// Of any model's slot.
     [[nodiscard]] const Meta& meta(std::uint32_t slot) const noexcept { return meta_[slot]; }
+    /// Whether a page of this model is in the slot.
+    [[nodiscard]] bool is_own(std::uint32_t slot) const noexcept
+    {
+        return meta_[slot].owner == owner_ && !meta_[slot].chunk.is_none();
+    }
+    [[nodiscard]] std::uint32_t owner() const noexcept { return owner_; }
+    /// Slots of all models.
     [[nodiscard]] std::uint32_t capacity() const noexcept
     {
         return static_cast<std::uint32_t>(meta_.size());
     }
-    [[nodiscard]] std::uint32_t used() const noexcept { return slot_of_.size(); }
+    [[nodiscard]] std::uint32_t used() const noexcept { return used_; }
     [[nodiscard]] const PageSlots& slots() const noexcept { return slots_; }
 
 private:
@@ -153,9 +160,12 @@ private:
         return std::uint64_t{1} << place_in_chunk(record);
     }
 
+    PagePool* pool_;
+    std::span<Meta> meta_; ///< All of the pool's.
     PageSlots slots_;
-    IdTable slot_of_;
-    std::span<Meta> meta_;
+    std::uint32_t owner_;
+    std::uint32_t first_key_;
+    std::uint32_t used_{0};
 };
 
 } // namespace tactus

@@ -20,6 +20,10 @@ Flaw find_flaw(const PageTable& pages, const ModelCounts& counts) noexcept
                           "has records and no page");
             continue;
         }
+        if (!pages.is_own(slot))
+        {
+            continue;
+        }
         ++resident;
         if (!finder.expect(meta.chunk.value < counts.chunks(), "slot", slot,
                            "has a chunk that the model does not have"))

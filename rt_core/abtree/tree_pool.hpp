@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/abtree/block.hpp"
+#include "rt_core/abtree/node.hpp"
+#include "rt_core/base/arena.hpp"
+#include "rt_core/base/assert.hpp"
+#include "rt_core/base/model_id.hpp"
+#include "rt_core/base/pool_room.hpp"
+
+#include <cstdint>
+#include <span>
+#include <utility>
+
+namespace tactus
+{
+
+struct TreeCapacities
+{
+    std::uint32_t prims{0};
+    std::uint32_t blocks{0};
+    std::uint32_t nodes{0};
+};
+
+/// What one tree has of a pool.
+struct TreeShare
+{
+    PoolShare blocks;
+    PoolShare nodes;
+};
+
+template <typename Tree>
+class TreeValidator;
+
+/// A face of some tree.
+struct TreePrim
+{
+    static constexpr std::uint32_t kNoLeaf = 0xFFFF'FFFFU;
+
+    FaceId face{};
+    std::uint32_t bucket{0};
+    /// Block x 16 + lane; kNoLeaf; or, with the highest bit, the next unplaced prim of its tree.
+    std::uint32_t leaf{kNoLeaf};
+};
+
+/// The memory of AB-Trees over one kind of volume: each has its blocks and nodes wherever one was
+/// free. Who makes the faces says which prim is whose. 352 B a block, 256 B a node with boxes, 12 B
+/// a prim.
+///
+/// Haptic thread only.
+template <typename VolumePolicy>
+class BasicTreePool
+{
+public:
+    using Node = BasicAbNode<VolumePolicy>;
+
+    /// A face's place, block x 16 + lane, has 31 bits.
+    static constexpr std::uint32_t kMostBlocks = 0x8000'0000U / kBlockFaces;
+
+    BasicTreePool(Arena& arena, const TreeCapacities& capacities) noexcept
+        : blocks_(arena.take<BlockGeometry>(capacities.blocks))
+        , sides_(arena.take<BlockSide>(capacities.blocks))
+        , nodes_(arena.take<Node>(capacities.nodes))
+        , prims_(arena.take<TreePrim>(capacities.prims))
+        , block_room_(capacities.blocks)
+        , node_room_(capacities.nodes)
+    {
+        if (arena.is_measuring())
+        {
+            return;
+        }
+        TACTUS_ASSERT(capacities.blocks <= kMostBlocks);
+        TACTUS_ASSERT(capacities.prims <= kMaxPoolFaces);
+        for (std::uint32_t i = capacities.blocks; i-- > 0;)
+        {
+            sides_[i].parent = std::exchange(free_block_, i);
+        }
+        for (std::uint32_t i = capacities.nodes; i-- > 0;)
+        {
+            nodes_[i].parent = std::exchange(free_node_, i);
+        }
+    }
+
+    /// Keeps as many blocks and nodes for a new tree, or what is not kept for others.
+    [[nodiscard]] TreeShare promise(const TreeCapacities& least) noexcept
+    {
+        return {block_room_.promise(least.blocks), node_room_.promise(least.nodes)};
+    }
+    /// Whether a tree may take so many of either.
+    [[nodiscard]] bool has_room_for(const TreeShare& share, std::uint32_t count) const noexcept
+    {
+        return block_room_.left_for(share.blocks) >= count &&
+               node_room_.left_for(share.nodes) >= count;
+    }
+
+    /// An empty block; the tree has room for one.
+    [[nodiscard]] std::uint32_t take_block(TreeShare& share, ModelId owner) noexcept
+    {
+        block_room_.take(share.blocks);
+        const std::uint32_t block = free_block_;
+        TACTUS_ASSERT(!sides_[block].in_use);
+        TACTUS_ASSERT(!sides_[block].is_marked);
+        free_block_ = sides_[block].parent;
+        blocks_[block].faces = 0;
+        blocks_[block].vertices = 0;
+        sides_[block] = BlockSide{};
+        sides_[block].in_use = true;
+        sides_[block].owner = static_cast<std::uint8_t>(owner.value);
+        return block;
+    }
+    /// A node without children; the tree has room for one.
+    [[nodiscard]] std::uint32_t take_node(TreeShare& share, ModelId owner) noexcept
+    {
+        node_room_.take(share.nodes);
+        const std::uint32_t node = free_node_;
+        TACTUS_ASSERT(!nodes_[node].in_use);
+        TACTUS_ASSERT(!nodes_[node].is_marked);
+        free_node_ = nodes_[node].parent;
+        nodes_[node] = Node{};
+        nodes_[node].in_use = true;
+        nodes_[node].owner = static_cast<std::uint8_t>(owner.value);
+        return node;
+    }
+    /// The tree has it no more, not even in a list.
+    void give_back_block(TreeShare& share, std::uint32_t block) noexcept
+    {
+        TACTUS_ASSERT(!sides_[block].in_use);
+        TACTUS_ASSERT(!sides_[block].is_marked);
+        block_room_.give_back(share.blocks);
+        sides_[block].parent = std::exchange(free_block_, block);
+    }
+    void give_back_node(TreeShare& share, std::uint32_t node) noexcept
+    {
+        TACTUS_ASSERT(!nodes_[node].in_use);
+        TACTUS_ASSERT(!nodes_[node].is_marked);
+        node_room_.give_back(share.nodes);
+        nodes_[node].parent = std::exchange(free_node_, node);
+    }
+
+    [[nodiscard]] std::span<BlockGeometry> blocks() const noexcept { return blocks_; }
+    [[nodiscard]] std::span<BlockSide> sides() const noexcept { return sides_; }
+    [[nodiscard]] std::span<Node> nodes() const noexcept { return nodes_; }
+    [[nodiscard]] std::span<TreePrim> prims() const noexcept { return prims_; }
+    [[nodiscard]] TreeCapacities capacities() const noexcept
+    {
+        return {static_cast<std::uint32_t>(prims_.size()), block_room_.capacity(),
+                node_room_.capacity()};
+    }
+
+private:
+    template <typename Tree>
+    friend class TreeValidator;
+
+    std::span<BlockGeometry> blocks_;
+    std::span<BlockSide> sides_;
+    std::span<Node> nodes_;
+    std::span<TreePrim> prims_;
+    PoolRoom block_room_;
+    PoolRoom node_room_;
+    std::uint32_t free_block_{kNoNode}; ///< First of its list, as below.
+    std::uint32_t free_node_{kNoNode};
+};
+
+using TreePool = BasicTreePool<AabbVolume>;
+
+} // namespace tactus

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include <algorithm>
+
+namespace tactus
+{
+
+/// Sorts few things; `before` tells any two apart. std::sort calls itself.
+template <typename List, typename Before>
+void sort_without_recursion(List& list, const Before& before) noexcept
+{
+    std::make_heap(list.begin(), list.end(), before);
+    std::sort_heap(list.begin(), list.end(), before);
+}
+
+} // namespace tactus

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "rt_core/cache/cache_pool.hpp"
+
+#include "rt_core/base/assert.hpp"
+#include "rt_core/cache/chunk_cache.hpp"
+
+namespace tactus
+{
+
+CachePool::CachePool(Arena& arena, std::uint32_t page_slots, std::uint32_t index_slots,
+                     std::uint32_t models) noexcept
+    : pages(arena, page_slots)
+    , index_slot_of(arena, index_slots)
+    , index_metas(arena.take<IndexMeta>(index_slots))
+    , chunk_wishes(arena, page_slots)
+    , index_wishes(arena, index_slots)
+    , door(arena, std::size_t{page_slots} + index_slots, std::size_t{page_slots} + index_slots)
+    , caches_(arena.take<ChunkCache*>(models))
+    , taken_(arena.take<DoorEvent>(kMaxArrivalsPerFrame + kMaxLinkUpdatesPerFrame))
+{
+}
+
+void CachePool::set_period(std::int64_t period_ns) noexcept
+{
+    TACTUS_ASSERT(period_ns > 0);
+    wish_timeout_frames_ = static_cast<std::uint32_t>(
+        std::clamp<std::int64_t>(kWishTimeout_ns / period_ns, 1, ChunkCache::kFirstFrame));
+}
+
+void CachePool::adopt_arrivals(std::uint32_t budget, std::uint32_t frame,
+                               WorkCounters& work) noexcept
+{
+    // Looked at once a frame: the other side makes room at any time, and how many wishes leave must
+    // not depend on when.
+    wish_room_ = static_cast<std::uint32_t>(door.wanted.capacity() - door.wanted.size());
+    wish_room_at_start_ = wish_room_;
+    refused_class_ = kUrgencyClasses;
+    taken_count_ = 0;
+    const std::uint32_t arrivals_end =
+        std::min(budget - std::min(budget, work.pages_adopted), kMaxArrivalsPerFrame);
+    std::uint32_t arrivals = 0;
+    std::uint32_t updates = 0;
+    while (has_next_ || door.arrived.try_pop(next_))
+    {
+        const bool is_update = next_.kind == DoorEventKind::link_update;
+        has_next_ = is_update ? updates == kMaxLinkUpdatesPerFrame : arrivals == arrivals_end;
+        if (has_next_)
+        {
+            break;
+        }
+        TACTUS_ASSERT(next_.owner < caches_.size());
+        caches_[next_.owner]->take(next_, frame);
+        taken_[taken_count_++] = next_;
+        ++(is_update ? updates : arrivals);
+    }
+    work.pages_adopted += arrivals;
+    chunk_wishes.expire(frame, wish_timeout_frames_);
+    index_wishes.expire(frame, wish_timeout_frames_);
+}
+
+/// False when the door had no room for one more wish at the start of the frame.
+bool CachePool::try_wish(ContentKey key, std::uint32_t owner, std::uint32_t generation) noexcept
+{
+    if (wish_room_ == 0)
+    {
+        return false;
+    }
+    --wish_room_;
+    const bool pushed = door.wanted.try_push({key, generation, static_cast<std::uint8_t>(owner)});
+    TACTUS_ASSERT(pushed);
+    return true;
+}
+
+} // namespace tactus

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/base/arena.hpp"
+#include "rt_core/base/spsc_queue.hpp"
+#include "rt_core/limits.hpp"
+#include "rt_core/records/door_event.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
+namespace tactus
+{
+
+/// A slot that the haptic thread has no more use for. Kind base never occurs.
+struct FreedSlot
+{
+    ContentKind kind{ContentKind::chunk};
+    std::uint32_t slot{0};
+};
+
+/// A piece that the haptic thread wants. Wishes of an older generation may be dropped.
+struct PieceWish
+{
+    ContentKey key;
+    std::uint32_t generation{0};
+    std::uint8_t owner{0}; ///< The model that the piece is of.
+};
+
+/// The one door between the transport thread and the haptic thread, for all models. Slots, words of
+/// linked bits and wishes cross it, each kind in one order, and nothing else.
+///
+/// A slot of PageSlots (a page, or an index page) has one owner at a time:
+///
+///     transport: loan (parse into it) -> fill -> hand over (`arrived`)
+///     haptic:    adopt -> use -> evict -> free (`freed`) -> the transport's again
+///
+/// At start every slot is the transport's. `arrived` keeps arrivals and link updates in one order,
+/// so what a frame learns is what it popped, however the threads ran.
+struct SlotDoor
+{
+    /// Room for every slot in both queues, so those never refuse, and for link updates while those
+    /// leave arrivals their room (has_room_for_update()); for so many wishes.
+    SlotDoor(Arena& arena, std::size_t slots, std::size_t wishes) noexcept
+        : arrived(arena.take<DoorEvent>(slots + kMaxLinkUpdatesPerFrame))
+        , freed(arena.take<FreedSlot>(std::max<std::size_t>(slots, 1)))
+        , wanted(arena.take<PieceWish>(std::max<std::size_t>(wishes, 1)))
+    {
+    }
+
+    /// Whether a link update may be pushed: with fewer than kMaxLinkUpdatesPerFrame events waiting
+    /// no more than that many updates are ever among them, and every arrival finds room.
+    [[nodiscard]] bool has_room_for_update() const noexcept
+    {
+        return arrived.size() < kMaxLinkUpdatesPerFrame;
+    }
+
+    SpscQueue<DoorEvent> arrived; ///< Transport -> haptic.
+    SpscQueue<FreedSlot> freed;   ///< Haptic -> transport.
+    SpscQueue<PieceWish> wanted;  ///< Haptic -> transport.
+};
+
+} // namespace tactus

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "rt_core/frame/awake_pairs.hpp"
+
+#include "rt_core/base/small_sort.hpp"
+
+#include <algorithm>
+#include <tuple>
+
+namespace tactus
+{
+
+namespace
+{
+
+[[nodiscard]] std::pair<std::uint32_t, std::uint32_t> place_of(const PairParts& parts) noexcept
+{
+    return {parts.tool_index, parts.object_number};
+}
+
+} // namespace
+
+AwakePairs::AwakePairs(Arena& arena, std::span<const ToolSpec> tools, std::uint32_t most) noexcept
+    : pairs_(arena.take<Pair>(most)), memory_(PairMemory::take(arena, tools, most))
+{
+    for (std::uint32_t i = most; i > 0; --i)
+    {
+        free_.push_back(i - 1);
+    }
+}
+
+void AwakePairs::order() noexcept
+{
+    order_ = awake_;
+    sort_without_recursion(order_,
+                           [](const Pair* a, const Pair* b)
+                           {
+                               return a->urgency() == b->urgency()
+                                          ? place_of(a->parts()) < place_of(b->parts())
+                                          : a->urgency() < b->urgency();
+                           });
+}
+
+void AwakePairs::begin(const PairParts& parts) noexcept
+{
+    const std::uint32_t slot = free_.pop_back();
+    pairs_[slot] = Pair(parts, memory_, slot);
+    const auto at = std::ranges::find_if(awake_, [&parts](const Pair* pair)
+                                         { return place_of(parts) < place_of(pair->parts()); }) -
+                    awake_.begin();
+    awake_.push_back(&pairs_[slot]);
+    std::rotate(awake_.begin() + at, awake_.end() - 1, awake_.end());
+    for (std::uint32_t i = parts.tool_index + 1; i < first_of_tool_.size(); ++i)
+    {
+        ++first_of_tool_[i];
+    }
+}
+
+void AwakePairs::end(const Pair& pair) noexcept
+{
+    free_.push_back(static_cast<std::uint32_t>(&pair - pairs_.data()));
+    auto* const at = std::ranges::find(awake_, &pair);
+    std::move(at + 1, awake_.end(), at);
+    (void)awake_.pop_back();
+    for (std::uint32_t i = pair.tool() + 1; i < first_of_tool_.size(); ++i)
+    {
+        --first_of_tool_[i];
+    }
+}
+
+} // namespace tactus

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "rt_core/frame/model_set.hpp"
+
+#include <algorithm>
+
+namespace tactus
+{
+
+void ModelSet::add(std::uint32_t frame) noexcept
+{
+    wake({count_++}, frame);
+}
+
+void ModelSet::wake(ModelId id, std::uint32_t frame) noexcept
+{
+    ModelSlot& slot = slots_[id.value];
+    slot.paired_frame = frame;
+    if (!slot.is_busy)
+    {
+        slot.is_busy = true;
+        busy_.push_back(id);
+        const auto is_before = [](ModelId a, ModelId b) { return a.value < b.value; };
+        auto* const at = std::lower_bound(busy_.begin(), busy_.end() - 1, id, is_before);
+        std::rotate(at, busy_.end() - 1, busy_.end());
+    }
+}
+
+void ModelSet::let_rest(std::uint32_t frame) noexcept
+{
+    std::uint32_t left = 0;
+    for (const ModelId id : busy_)
+    {
+        ModelSlot& slot = slots_[id.value];
+        slot.is_busy = slot.paired_frame == frame || !slot.model->is_at_rest();
+        busy_[left] = id;
+        left += slot.is_busy ? 1 : 0;
+    }
+    while (busy_.size() > left)
+    {
+        (void)busy_.pop_back();
+    }
+}
+
+} // namespace tactus

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "rt_core/frame/refinement.hpp"
+
+#include "rt_core/base/small_sort.hpp"
+#include "rt_core/refine/split_shares.hpp"
+
+#include <algorithm>
+#include <tuple>
+
+namespace tactus
+{
+
+std::uint32_t Refinement::run(const RefinementRound& round, std::span<Pair* const> order) noexcept
+{
+    const auto& [models, budgets, frame, work, faults] = round;
+    requests_.clear();
+    for (Pair* pair : order)
+    {
+        pair->ask(requests_);
+    }
+    std::fill_n(services_.begin(), requests_.size(), Service{});
+    group(models);
+    for (std::uint32_t i = 0; i < models.busy().size(); ++i)
+    {
+        ModelSlot& slot = models.slot(models.in_turn(i, frame));
+        slot.model->begin_refinement(requests_of(slot), budgets, work);
+        if (has_meshes_)
+        {
+            slot.model->refit(work, faults);
+        }
+    }
+    const std::uint32_t splits = std::min(budgets.splits, kMaxSplitsPerFrame);
+    share_splits(round, splits);
+    for (const ModelId id : models.busy())
+    {
+        models[id].fill(splits, frame, work, faults);
+        if (has_meshes_)
+        {
+            models[id].refit(work, faults);
+        }
+    }
+    for (std::uint32_t i = 0; i < requests_.size() && work.splits < splits; ++i)
+    {
+        // One that stopped short of the budget gets no farther unless others split since.
+        const Service& last = services_[i];
+        const bool may_go_on = last.limit < splits || last.splits != work.splits;
+        if (may_go_on && requests_[i].is_late())
+        {
+            serve(round, i, splits);
+        }
+    }
+    for (std::uint32_t i = 0; i < requests_.size(); ++i)
+    {
+        faults |= lateness_of(i);
+    }
+    const std::uint32_t refused = refused_class();
+    for (const ModelId id : models.busy())
+    {
+        ModelSlot& slot = models.slot(id);
+        slot.model->end_refinement(requests_of(slot), work);
+    }
+    return refused;
+}
+
+std::uint32_t Refinement::refused_class() const noexcept
+{
+    std::uint32_t refused = kUrgencyClasses;
+    for (std::uint32_t i = 0; i < requests_.size(); ++i)
+    {
+        if (has_fault(lateness_of(i), FrameFault::forest_full))
+        {
+            refused = std::min(refused, static_cast<std::uint32_t>(requests_[i].urgency.of));
+        }
+    }
+    return refused;
+}
+
+/// Counts the requests of each model, then puts each in its place.
+void Refinement::group(ModelSet& models) noexcept
+{
+    for (const ModelId id : models.busy())
+    {
+        models.slot(id).requests = 0;
+    }
+    by_model_.clear();
+    for (const RefineRequest& request : requests_)
+    {
+        ++models.slot(request.model).requests;
+        by_model_.push_back(request); // In any place: the last loop puts it right.
+    }
+    std::uint32_t before = 0;
+    for (const ModelId id : models.busy())
+    {
+        models.slot(id).requests_end = before;
+        before += models.slot(id).requests;
+    }
+    for (const RefineRequest& request : requests_)
+    {
+        by_model_[models.slot(request.model).requests_end++] = request;
+    }
+}
+
+std::span<const RefineRequest> Refinement::requests_of(const ModelSlot& slot) const noexcept
+{
+    return by_model_.view().subspan(slot.requests_end - slot.requests, slot.requests);
+}
+
+/// Each request that waits gets its part of the splits, class by class: first those that came off
+/// with nothing for longest, then those that saved some.
+void Refinement::share_splits(const RefinementRound& round, std::uint32_t splits) noexcept
+{
+    SplitShares shares(splits);
+    StaticVector<std::uint32_t, kMaxRequests> waiting;
+    for (std::uint32_t i = 0; i < requests_.size(); ++i)
+    {
+        const RefineRequest& request = requests_[i];
+        if (request.is_open())
+        {
+            shares.add(request.urgency.of);
+            waiting.push_back(i);
+        }
+        else
+        {
+            request.closure->saved = shares.save_all(request.closure->saved);
+            request.closure->waited = 0;
+        }
+    }
+    const auto turn_of = [this](std::uint32_t i)
+    {
+        const RefineRequest& request = requests_[i];
+        return std::tuple(request.urgency.of, ~request.closure->waited, ~request.closure->saved, i);
+    };
+    sort_without_recursion(waiting, [&turn_of](std::uint32_t a, std::uint32_t b)
+                           { return turn_of(a) < turn_of(b); });
+    for (const std::uint32_t i : waiting)
+    {
+        Closure& closure = *requests_[i].closure;
+        const std::uint32_t before = round.work.splits;
+        const SplitShares::Share share =
+            shares.take(requests_[i].urgency.of, closure.saved, before);
+        serve(round, i, share.limit);
+        closure.saved = shares.save(closure.saved, share.equal, round.work.splits - before);
+        closure.waited = share.equal == 0 ? closure.waited + 1 : 0;
+    }
+}
+
+void Refinement::serve(const RefinementRound& round, std::uint32_t request,
+                       std::uint32_t limit) noexcept
+{
+    const auto& [models, budgets, frame, work, faults] = round;
+    Model& model = models[requests_[request].model];
+    model.refit(work, faults); // What others split, or was merged, is where it is looked for.
+    const FrameFault found = model.refiner.refine(requests_[request], limit, budgets, frame, work);
+    services_[request] = {limit, work.splits, found};
+    if (has_meshes_)
+    {
+        model.refit(work, faults);
+    }
+}
+
+/// What was in the way matters where something within reach is coarse still.
+FrameFault Refinement::lateness_of(std::uint32_t request) const noexcept
+{
+    const FrameFault found = services_[request].found;
+    if (!requests_[request].is_late())
+    {
+        return found & FrameFault::model_inconsistent;
+    }
+    return found == FrameFault::none ? FrameFault::split_budget_spent : found;
+}
+
+} // namespace tactus

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/base/realtime.hpp"
+#include "rt_core/frame/model_set.hpp"
+#include "rt_core/frame/pair.hpp"
+#include "rt_core/records/frame_input.hpp"
+#include "rt_core/records/frame_output.hpp"
+#include "rt_core/records/work_counters.hpp"
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+namespace tactus
+{
+
+/// What a frame refines, with what, and where it tells of it.
+struct RefinementRound
+{
+    ModelSet& models;
+    const Budgets& budgets;
+    std::uint32_t frame;
+    WorkCounters& work;
+    FrameFault& faults;
+};
+
+/// A frame's second stage: gathers what its pairs ask of their models, merges what all left behind,
+/// and shares the frame's splits among those that wait (SplitShares). Haptic thread.
+class Refinement
+{
+public:
+    Refinement() noexcept = default;
+    /// Where tools are meshes others ask how near their surface is, so trees are refitted at once.
+    explicit Refinement(bool has_meshes) noexcept : has_meshes_(has_meshes) {}
+
+    /// `order`: the pairs, the most urgent first. Returns the most urgent class of those that found
+    /// no room for a face, kUrgencyClasses where all did.
+    [[nodiscard]] std::uint32_t run(const RefinementRound& round,
+                                    std::span<Pair* const> order) noexcept TACTUS_NONBLOCKING;
+
+private:
+    void group(ModelSet& models) noexcept;
+    [[nodiscard]] std::span<const RefineRequest> requests_of(const ModelSlot& slot) const noexcept;
+    void share_splits(const RefinementRound& round, std::uint32_t splits) noexcept;
+    void serve(const RefinementRound& round, std::uint32_t request, std::uint32_t limit) noexcept;
+    [[nodiscard]] std::uint32_t refused_class() const noexcept;
+    [[nodiscard]] FrameFault lateness_of(std::uint32_t request) const noexcept;
+
+    bool has_meshes_{false};
+    RefineRequests requests_; ///< In the order of their pairs.
+    RefineRequests by_model_; ///< The same, model by model.
+    /// How a request was served last in this frame.
+    struct Service
+    {
+        std::uint32_t limit{0};  ///< Splits that the frame might have done after it,
+        std::uint32_t splits{0}; ///< and that it had done.
+        FrameFault found{FrameFault::none};
+    };
+    std::array<Service, kMaxRequests> services_{};
+};
+
+} // namespace tactus

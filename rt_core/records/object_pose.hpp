@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/base/assert.hpp"
+#include "rt_core/limits.hpp"
+#include "rt_core/math/infinity.hpp"
+#include "rt_core/math/similarity.hpp"
+#include "rt_core/math/vec3.hpp"
+#include "rt_core/spm/ids.hpp"
+
+#include <cstdint>
+
+namespace tactus
+{
+
+/// Where an object stands: how the frame of its source mesh lies in the world. The default is where
+/// the source stood. Inside the frame, from model_pose() on, it is that of the model's frame.
+struct ObjectPose : Similarity
+{
+    std::int64_t stamp_ns{0};
+    /// On the clock of FrameInput::now_ns. A pose that is older than FrameSetup::pose_age_max_ns
+    /// makes answers stale; 0: it never grows old.
+    std::int64_t arrival_ns{0};
+    std::uint32_t revision{0}; ///< Of the model that the pose was made for.
+};
+
+/// How an object feels to a tool that touches it.
+struct Material
+{
+    /// The tool's or this, whichever is softer; > 0.
+    double stiffness_n_per_m{kInfinity};
+    double static_friction{0.0};   ///< Coulomb's coefficient while the tool sticks; >= 0.
+    double dynamic_friction{0.0};  ///< While it slides; at most the static one.
+    double damping_n_s_per_m{0.0}; ///< Of the motion across the surface, in touch; >= 0.
+};
+
+/// Which model an object shows, and how it feels.
+struct ObjectSpec
+{
+    ModelId model{};
+    Material material{};
+};
+
+/// The same for the frame of the model, whose origin the source mesh has at `origin_m`
+/// (ModelHeader::origin_m).
+[[nodiscard]] inline ObjectPose model_pose(const ObjectPose& source_pose,
+                                           const Vec3& origin_m) noexcept
+{
+    ObjectPose pose = source_pose;
+    pose.translation_m = source_pose.to_there(origin_m);
+    return pose;
+}
+
+[[nodiscard]] inline Vec3 to_model(const ObjectPose& pose, const Vec3& world_m) noexcept
+{
+    return pose.to_here(world_m);
+}
+
+[[nodiscard]] inline Vec3 to_world(const ObjectPose& pose, const Vec3& model_m) noexcept
+{
+    return pose.to_there(model_m);
+}
+
+/// How far distances from a core of this radius round a place of the world may be off by its way
+/// into the model's frame and back: see kPoseRounding.
+[[nodiscard]] inline double pose_rounding_m(const ObjectPose& pose, const Vec3& world_m,
+                                            double radius_m) noexcept
+{
+    TACTUS_ASSERT(radius_m >= 0.0);
+    return kPoseRounding *
+           ((world_m - pose.translation_m).norm() + world_m.norm() + 2.0 * radius_m);
+}
+
+/// How old a pose is at `now_ns`; one that came since the frame began is not from the future.
+[[nodiscard]] inline std::int64_t age_ns(const ObjectPose& pose, std::int64_t now_ns) noexcept
+{
+    return pose.arrival_ns == 0 || pose.arrival_ns > now_ns ? 0 : now_ns - pose.arrival_ns;
+}
+
+} // namespace tactus

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/base/arena.hpp"
+#include "rt_core/refine/refine_question.hpp"
+#include "rt_core/spm/page_table.hpp"
+
+#include <cstdint>
+#include <span>
+#include <utility>
+
+namespace tactus
+{
+
+/// A record that must not be merged yet, in the list of its closure or of free ones.
+struct HeldRecord
+{
+    RecordId record{};
+    std::uint32_t next{Closure::kNone};
+};
+
+/// A coarse face that is wanted, and the state in which it was looked at.
+struct RefineCandidate
+{
+    /// Distance minus error minus reach, the least over the questions; above zero it is only
+    /// looked ahead for.
+    double excess_m{0.0};
+    PrimId prim{};
+    FaceState state;
+};
+
+/// What refinement needs while it runs, one for all models of a frame, which take turns; and the
+/// records that their closures hold from frame to frame, kMaxHeldRecords of them in all. 29 KiB,
+/// and 16 B a page slot for when to look at its records, which is its owner's matter.
+///
+/// Haptic thread only.
+struct RefineScratch
+{
+    RefineScratch(Arena& arena, std::size_t page_slots) noexcept
+        : heap(arena.take<RefineCandidate>(kRefineHeap))
+        , stack(arena.take<RecordId>(kMaxDepth))
+        , done(arena.take<RecordId>(kMaxSplitsPerFrame))
+        , held(arena.take<HeldRecord>(kMaxHeldRecords))
+        , look_at(arena.take<double>(page_slots))
+        , needed(arena.take<std::uint64_t>(page_slots))
+    {
+        for (std::uint32_t i = kMaxHeldRecords; i > 0 && !arena.is_measuring(); --i)
+        {
+            held[i - 1].next = std::exchange(free_held, i - 1);
+        }
+    }
+
+    std::span<RefineCandidate> heap;
+    std::span<RecordId> stack; ///< Of a closure, or of what is merged back.
+    std::span<RecordId> done;  ///< The records that a closure split.
+    std::span<HeldRecord> held;
+    std::span<double> look_at;               ///< See Coarsener.
+    std::span<std::uint64_t> needed;         ///< See Coarsener.
+    std::uint32_t free_held{Closure::kNone}; ///< First of those that are free.
+};
+
+} // namespace tactus
