@@ -3,18 +3,21 @@
 #pragma once
 
 #include "rt_core/base/arena.hpp"
-#include "rt_core/base/id_table.hpp"
-#include "rt_core/cache/chunk_inbox.hpp"
+#include "rt_core/cache/slot_door.hpp"
 #include "rt_core/spm/linker.hpp"
 #include "rt_core/spm/page_slots.hpp"
 #include "transport/chunk_link.hpp"
 #include "transport/log.hpp"
+#include "transport/slot_bank.hpp"
 #include "transport/waiting_times.hpp"
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace tactus
 {
@@ -43,9 +46,9 @@ struct CourierOptions
     std::uint32_t open_wishes{256}; ///< Asked for and not yet here. 32 B each.
 };
 
-/// The transport thread's work for one model: takes wishes from the door, asks the link, verifies
-/// what comes, parses it into a free slot, links it and hands the slot over. Has no thread of its
-/// own: call step() on one thread.
+/// The transport thread's work: takes wishes from the door, asks each model's link, verifies what
+/// comes, parses it into a free slot, links it and hands the slot over. Has no thread of its own:
+/// call step() on one thread.
 ///
 /// Trust: an index page is checked against its hash in the header, a chunk against its hash in its
 /// index page, so nothing that the header's author did not write reaches a slot. A refused piece
@@ -54,96 +57,118 @@ struct CourierOptions
 /// What a record waited for may come with a later page: the door is told then which records of
 /// pages already handed over are linked, the latest state of a page, once there is room.
 ///
-/// Nothing is allocated after construction (the link and the log are their own matter).
-class Courier final : private PieceSink
+/// Nothing is allocated after the last add() (the links and the log are their own matter).
+class Courier
 {
 public:
-    /// `header`, `linker`, `inbox` and `link` must outlive the courier; `slots.base` is parsed.
-    /// `name` stands in front of log lines.
-    Courier(Arena& arena, const ModelHeader& header, const PageSlots& slots, Linker& linker,
-            ChunkInbox& inbox, ChunkLink& link, std::string name, Log log,
+    /// Slots are those of all models; they are all the courier's at first. Slots and door must
+    /// outlive it.
+    Courier(Arena& arena, const PageSlots& slots, SlotDoor& door, Log log,
             const CourierOptions& options = {});
 
     /// Bytes that the constructor takes from the arena.
     [[nodiscard]] static std::size_t required_bytes(std::size_t pages, std::size_t index_pages,
                                                     const CourierOptions& options = {}) noexcept;
 
+    /// One model more, the linker's owner: they come in the order of their numbers, from 0. All
+    /// must outlive the courier. `name` stands in front of log lines.
+    void add(const ModelHeader& header, Linker& linker, ChunkLink& link, std::string name);
+
     /// One round: freed slots, wishes, repeats, arrivals, link updates. `now_ns` is monotonic.
     void step(std::int64_t now_ns);
 
-    /// From now on `copies` gets every piece that is handed over, in its coded form and right
-    /// before; null ends it. It must outlive the courier.
-    void copy_pieces_to(PieceSink* copies) noexcept { copies_ = copies; }
+    /// From now on `copies` gets every piece of the model that is handed over, in its coded form
+    /// and right before; null ends it. It must outlive the courier.
+    void copy_pieces_to(PieceSink* copies, std::uint32_t model = 0) noexcept
+    {
+        sides_[model]->copies = copies;
+    }
 
-    [[nodiscard]] const CourierCounters& counters() const noexcept { return counters_; }
+    [[nodiscard]] std::uint32_t model_count() const noexcept
+    {
+        return static_cast<std::uint32_t>(sides_.size());
+    }
+    [[nodiscard]] const CourierCounters& counters(std::uint32_t model = 0) const noexcept
+    {
+        return sides_[model]->counters;
+    }
     /// From the wish for a piece until it was handed over.
-    [[nodiscard]] const WaitingTimes& waiting_times() const noexcept { return waiting_times_; }
+    [[nodiscard]] const WaitingTimes& waiting_times(std::uint32_t model = 0) const noexcept
+    {
+        return sides_[model]->waiting_times;
+    }
     [[nodiscard]] std::size_t open_wishes() const noexcept { return open_count_; }
-    [[nodiscard]] std::size_t free_pages() const noexcept { return free_pages_.count; }
-    [[nodiscard]] std::size_t free_index_pages() const noexcept { return free_index_.count; }
+    [[nodiscard]] std::size_t free_pages() const noexcept { return bank_.free_pages(); }
+    [[nodiscard]] std::size_t free_index_pages() const noexcept { return bank_.free_index_pages(); }
 
 private:
-    struct Slots
+    /// One model's.
+    struct Side final : PieceSink
     {
-        std::span<std::uint32_t> stack;
-        std::size_t count{0};
+        Side(Courier& courier, const ModelHeader& model_header, Linker& model_linker,
+             ChunkLink& model_link, std::string model_name)
+            : owner(courier)
+            , header(model_header)
+            , counts(model_header.counts())
+            , linker(model_linker)
+            , link(model_link)
+            , name(std::move(model_name))
+            , session(model_link.session())
+        {
+        }
+        void receive(ContentKey key, std::span<const std::byte> bytes) override
+        {
+            owner.receive(*this, key, bytes);
+        }
+
+        Courier& owner;
+        const ModelHeader& header;
+        ModelCounts counts;
+        Linker& linker;
+        ChunkLink& link;
+        std::string name;
+        std::uint64_t session;
+        std::size_t unasked{0}; ///< Of the open wishes.
+        PieceSink* copies{nullptr};
+        CourierCounters counters;
+        WaitingTimes waiting_times;
     };
     struct OpenWish
     {
+        Side* side{nullptr};
         ContentKey key;
         std::uint32_t generation{0};
         bool is_asked{false};
         std::int64_t opened_ns{0};
     };
-    struct IndexSlot
-    {
-        IndexPageId page{};
-        std::array<ChunkEntry, kChunksPerIndexPage> entries{};
-    };
 
-    void receive(ContentKey key, std::span<const std::byte> bytes) override;
-    void take_back_freed();
+    void receive(Side& side, ContentKey key, std::span<const std::byte> bytes);
     void take_wishes(std::size_t count);
-    void open_wish(const ChunkInbox::Wish& wish);
+    void open_wish(const PieceWish& wish);
     void forget_oldest_generation();
     void ask_again(OpenWish& open);
-    void ask();
-    void adopt_index_page(IndexPageId page, std::span<const std::byte> bytes);
-    void adopt_chunk(ChunkId chunk, std::span<const std::byte> bytes);
-    void hand_over(ContentKey key, std::uint32_t slot, std::uint64_t linked,
+    void ask(Side& side);
+    void adopt_index_page(Side& side, IndexPageId page, std::span<const std::byte> bytes);
+    void adopt_chunk(Side& side, ChunkId chunk, std::span<const std::byte> bytes);
+    void hand_over(Side& side, ContentKey key, std::uint32_t slot, std::uint64_t linked,
                    std::span<const std::byte> bytes);
-    void push_link_updates();
-    void refuse(std::uint64_t& counter, ContentKey key, const char* reason);
-    [[nodiscard]] OpenWish* find_open(ContentKey key) noexcept;
-    void close_wish(ContentKey key) noexcept;
-    [[nodiscard]] bool is_resident(ContentKey key) const noexcept;
-    [[nodiscard]] bool is_key_of_model(ContentKey key) const noexcept;
-    [[nodiscard]] static Slots all_free(Arena& arena, std::size_t count) noexcept;
+    void push_link_updates(Side& side);
+    void refuse(const Side& side, std::uint64_t& counter, ContentKey key, const char* reason);
+    [[nodiscard]] OpenWish* find_open(const Side& side, ContentKey key) noexcept;
+    void close_wish(const Side& side, ContentKey key) noexcept;
+    void remove(OpenWish& open) noexcept;
+    [[nodiscard]] bool is_resident(const Side& side, ContentKey key) const noexcept;
 
-    const ModelHeader& header_;
-    ModelCounts counts_;
     PageSlots slots_;
-    Linker& linker_;
-    ChunkInbox& inbox_;
-    ChunkLink& link_;
-    std::string name_;
+    SlotDoor& door_;
+    SlotBank bank_;
     RateLimitedLog log_;
-    CourierOptions options_;
-
-    Slots free_pages_;
-    Slots free_index_;
-    std::span<IndexSlot> index_; ///< What verifies chunks, per index slot.
-    IdTable index_slot_of_;
     std::span<OpenWish> open_; ///< The first `open_count_` are in use.
     std::size_t open_count_{0};
     std::span<ContentKey> batch_;
     std::uint32_t newest_generation_{0};
-    std::uint64_t session_{0};
     std::int64_t now_ns_{0};
-    std::uint32_t freed_taken_{0}; ///< Modulo 2^32, as in DoorEvent.
-    PieceSink* copies_{nullptr};
-    CourierCounters counters_;
-    WaitingTimes waiting_times_;
+    std::vector<std::unique_ptr<Side>> sides_; ///< By owner.
 };
 
 } // namespace tactus

@@ -12,7 +12,7 @@ namespace tactus
 {
 
 /// Takes one line of text, without its newline. Called on the transport thread, never on the haptic
-/// thread.
+/// thread. An empty one is never called: nothing is told.
 using Log = std::function<void(const std::string&)>;
 
 /// Lets through a few lines a second and says how many it held back: a fault that repeats a

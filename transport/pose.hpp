@@ -24,9 +24,6 @@ struct Pose
 /// Why a pose isn't used.
 enum class PoseRefusal : std::uint8_t
 {
-    version,     ///< Another protocol version.
-    host,        ///< It isn't from the host that serves the model.
-    model,       ///< Another model or another revision of it.
     not_newer,   ///< Its serial number isn't above that of the last one.
     not_finite,  ///< A number is none.
     rotation,    ///< The quaternion's length isn't within kPoseUnitTolerance of 1.
@@ -34,10 +31,10 @@ enum class PoseRefusal : std::uint8_t
     scale,       ///< Outside kPoseScaleMin to kPoseScaleMax.
 };
 
-inline constexpr std::size_t kPoseRefusals = 8;
+inline constexpr std::size_t kPoseRefusals = 5;
 /// In the order of PoseRefusal.
 inline constexpr std::array<const char*, kPoseRefusals> kPoseRefusalNames{
-    "version", "host", "model", "not_newer", "not_finite", "rotation", "translation", "scale"};
+    "not_newer", "not_finite", "rotation", "translation", "scale"};
 
 /// The same pose with a rotation of length 1, or what is wrong with its numbers.
 [[nodiscard]] Result<Pose, PoseRefusal> checked_pose(const Pose& pose) noexcept;

@@ -33,32 +33,35 @@ ContentHash hash_from(const std::uint8_t (&bytes)[16]) // NOLINT: idlc's type.
 
 Result<Catalogue, Refusal> Catalogue::create(const Domain& domain, Log log)
 {
-    const std::string everywhere;
-    auto reader = make_reader(domain, Topic::catalogue, {&everywhere, 1});
+    auto reader = make_reader(domain, Topic::catalogue, "");
     if (!reader)
     {
         return reader.error();
     }
-    return Catalogue(std::move(reader).value(), std::move(log));
+    return Catalogue(domain.participants(), std::move(reader).value(), std::move(log));
 }
 
-Catalogue::Catalogue(Endpoint reader, Log log) : reader_(std::move(reader)), log_(std::move(log)) {}
+Catalogue::Catalogue(Participants& participants, Endpoint reader, Log log)
+    : participants_(&participants), reader_(std::move(reader)), log_(std::move(log))
+{
+}
 
 void Catalogue::refresh()
 {
-    take_each<tactus_v1_CatalogueEntry>(
+    participants_->report_other_versions(log_);
+    take_each<tactus_v2_CatalogueEntry>(
         reader_.handle, kMaxOffers,
-        [this](const tactus_v1_CatalogueEntry& entry, const dds_sample_info_t& info)
+        [this](const tactus_v2_CatalogueEntry& entry, const dds_sample_info_t& info)
         {
             const std::string name(entry.name, ::strnlen(entry.name, sizeof(entry.name)));
             if (info.instance_state != DDS_ALIVE_INSTANCE_STATE)
             {
-                remove(name, entry.host_epoch);
+                remove(entry.model, entry.host_epoch);
             }
             else if (info.valid_data && is_valid_name(name))
             {
-                add({name, hash_from(entry.model_hash), entry.host_epoch, entry.revision,
-                     entry.protocol_version, entry.faces});
+                add({name, hash_from(entry.model_hash), entry.host_epoch, entry.model, entry.faces,
+                     entry.header_bytes, entry.base_bytes});
             }
         });
 }
@@ -66,11 +69,9 @@ void Catalogue::refresh()
 const Catalogue::Offer* Catalogue::find(const ModelSelector& selector) const
 {
     const auto at = std::find_if(offers_.begin(), offers_.end(),
-                                 [&](const Offer& offer)
-                                 {
+                                 [&](const Offer& offer) {
                                      return offer.name == selector.name &&
-                                            (!selector.hash || offer.hash == *selector.hash) &&
-                                            offer.protocol_version == kProtocolVersion;
+                                            (!selector.hash || offer.hash == *selector.hash);
                                  });
     return at == offers_.end() ? nullptr : &*at;
 }
@@ -81,6 +82,11 @@ const Catalogue::Offer* Catalogue::find(const ContentHash& hash, std::uint64_t h
                                  [&](const Offer& offer)
                                  { return offer.hash == hash && offer.host_epoch == host_epoch; });
     return at == offers_.end() ? nullptr : &*at;
+}
+
+bool Catalogue::has_host(std::uint64_t host_epoch) const
+{
+    return std::ranges::find(offers_, host_epoch, &Offer::host_epoch) != offers_.end();
 }
 
 std::string Catalogue::names() const
@@ -99,27 +105,21 @@ std::string Catalogue::names() const
 
 void Catalogue::add(const Offer& offer)
 {
-    const bool is_known = std::any_of(offers_.begin(), offers_.end(),
-                                      [&](const Offer& known)
-                                      {
-                                          return known.name == offer.name &&
-                                                 known.host_epoch == offer.host_epoch &&
-                                                 known.hash == offer.hash;
-                                      });
+    const bool is_known =
+        std::any_of(offers_.begin(), offers_.end(),
+                    [&](const Offer& known)
+                    {
+                        return known.name == offer.name && known.model == offer.model &&
+                               known.host_epoch == offer.host_epoch && known.hash == offer.hash;
+                    });
     if (is_known)
     {
         return; // Written anew every second.
     }
-    remove(offer.name, offer.host_epoch);
+    remove(offer.model, offer.host_epoch);
     if (offers_.size() == kMaxOffers)
     {
         return;
-    }
-    if (offer.protocol_version != kProtocolVersion)
-    {
-        log_.write(fmt::format("model '{}' is published with protocol version {}; this build "
-                               "speaks {}",
-                               offer.name, offer.protocol_version, kProtocolVersion));
     }
     const Offer* first = find(ModelSelector{offer.name, std::nullopt});
     if (first != nullptr && first->hash != offer.hash)
@@ -129,12 +129,13 @@ void Catalogue::add(const Offer& offer)
                                offer.name, hash_text(first->hash), hash_text(offer.hash)));
     }
     offers_.push_back(offer);
+    ++version_;
 }
 
-void Catalogue::remove(const std::string& name, std::uint64_t host_epoch)
+void Catalogue::remove(std::uint32_t model, std::uint64_t host_epoch)
 {
-    std::erase_if(offers_, [&](const Offer& offer)
-                  { return offer.name == name && offer.host_epoch == host_epoch; });
+    version_ += std::erase_if(offers_, [&](const Offer& offer)
+                              { return offer.model == model && offer.host_epoch == host_epoch; });
 }
 
 } // namespace tactus::dds

@@ -24,34 +24,45 @@ public:
         std::string name;
         ContentHash hash{};
         std::uint64_t host_epoch{0};
-        std::uint32_t revision{0};
-        std::uint32_t protocol_version{0};
+        std::uint32_t model{0}; ///< Its number on that host.
         std::uint32_t faces{0};
+        std::uint32_t header_bytes{0};
+        std::uint32_t base_bytes{0};
     };
 
+    /// `domain` must outlive it.
     [[nodiscard]] static Result<Catalogue, Refusal> create(const Domain& domain, Log log);
 
-    /// Takes news from DDS: new offers, hosts that left or fell silent. Cheap when there are none.
+    /// Takes news from DDS: new offers, hosts that left or fell silent, programs that speak another
+    /// version of the protocol. Cheap when there are none.
     void refresh();
 
+    /// Changes with what is there.
+    [[nodiscard]] std::uint64_t version() const noexcept { return version_; }
+
     /// The offer first seen of those that are there now; null when there is none. With a hash in
-    /// the selector only that one counts. Offers of another protocol version are passed over.
+    /// the selector only that one counts.
     [[nodiscard]] const Offer* find(const ModelSelector& selector) const;
     /// The offer of one run of one host; null when that is gone.
     [[nodiscard]] const Offer* find(const ContentHash& hash, std::uint64_t host_epoch) const;
+
+    /// Whether that run of a host is there.
+    [[nodiscard]] bool has_host(std::uint64_t host_epoch) const;
 
     /// Their names for a message, "none" without any; a long list is cut.
     [[nodiscard]] std::string names() const;
 
 private:
-    Catalogue(Endpoint reader, Log log);
+    Catalogue(Participants& participants, Endpoint reader, Log log);
 
     void add(const Offer& offer);
-    void remove(const std::string& name, std::uint64_t host_epoch);
+    void remove(std::uint32_t model, std::uint64_t host_epoch);
 
+    Participants* participants_;
     Endpoint reader_;
     RateLimitedLog log_;
     std::vector<Offer> offers_;
+    std::uint64_t version_{0};
 };
 
 } // namespace tactus::dds

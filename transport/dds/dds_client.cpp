@@ -3,74 +3,36 @@
 #include "transport/dds/dds_client.hpp"
 
 #include "transport/content_hash.hpp"
-#include "transport/dds/take.hpp"
+#include "transport/dds/dds_link.hpp"
+#include "transport/dds/model_fetch.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <thread>
 #include <utility>
-
-#include "tactus.h"
 
 namespace tactus::dds
 {
 
-/// One call's patience.
-struct DdsClient::Wait
-{
-    using Clock = std::chrono::steady_clock;
-
-    std::chrono::milliseconds timeout;
-    const std::function<bool()>& go_on;
-    Clock::time_point start{Clock::now()};
-
-    /// Sleeps a little; false when it is over.
-    [[nodiscard]] bool goes_on() const
-    {
-        std::this_thread::sleep_for(std::chrono::milliseconds(2));
-        return Clock::now() - start < timeout && (!go_on || go_on());
-    }
-    [[nodiscard]] std::string waited() const
-    {
-        const std::chrono::duration<double> passed = Clock::now() - start;
-        return fmt::format("waited {:.3g} s", passed.count());
-    }
-};
-
 namespace
 {
 
-/// Pieces that come before anybody has asked: none, but a link must be polled to get ready.
-class NoSink final : public PieceSink
-{
-public:
-    void receive(ContentKey /*key*/, std::span<const std::byte> /*bytes*/) override {}
-};
-
-void assign(std::vector<std::byte>& to, const dds_sequence_octet& from)
-{
-    const auto bytes = std::as_bytes(std::span(from._buffer, from._length));
-    to.assign(bytes.begin(), bytes.end());
-}
-
-/// Why a header or base mesh must not be used; null when both are sound and of this hash.
-const char* objection_to(const ServedModel& model)
-{
-    const auto header = parse_trusted_header(model.header);
-    if (!header)
-    {
-        return refusal_text(header.error());
-    }
-    if (model_hash(model.header) != model.hash)
-    {
-        return refusal_text(SpmRefusal::wrong_identity);
-    }
-    return content_hash(model.base) == header.value().fields().base_hash
-               ? nullptr
-               : "has a base mesh of another hash than its header names";
-}
+/// Between two looks.
+constexpr auto kPause = std::chrono::milliseconds(1);
+/// A model that isn't there after this long is spoken of.
+constexpr auto kQuiet = std::chrono::seconds(2);
 
 } // namespace
+
+/// For one model.
+struct DdsClient::Search
+{
+    ModelSelector selector;
+    Catalogue::Offer offer;            ///< Once there is a fetch.
+    std::unique_ptr<ModelFetch> fetch; ///< Once it is published.
+    bool is_done{false};
+};
 
 Result<std::unique_ptr<DdsClient>, Refusal> DdsClient::create(std::uint32_t domain,
                                                               std::string controller_name, Log log)
@@ -86,9 +48,17 @@ Result<std::unique_ptr<DdsClient>, Refusal> DdsClient::create(std::uint32_t doma
     {
         return catalogue.error();
     }
-    return std::unique_ptr<DdsClient>(new DdsClient(std::move(joined).value(),
+    std::unique_ptr<DdsClient> client(new DdsClient(std::move(joined).value(),
                                                     std::move(catalogue).value(),
                                                     std::move(controller_name), std::move(log)));
+    auto exchange =
+        PieceExchange::create(client->domain_, client->catalogue_, client->controller_name_);
+    if (!exchange)
+    {
+        return exchange.error();
+    }
+    client->exchange_ = std::move(exchange).value();
+    return client;
 }
 
 DdsClient::DdsClient(Domain domain, Catalogue catalogue, std::string controller_name, Log log)
@@ -99,113 +69,109 @@ DdsClient::DdsClient(Domain domain, Catalogue catalogue, std::string controller_
 {
 }
 
+Result<std::vector<ServedModel>, Refusal>
+DdsClient::find_all(std::span<const ModelSelector> selectors, std::chrono::milliseconds timeout,
+                    const std::function<bool()>& go_on)
+{
+    using Clock = std::chrono::steady_clock;
+    std::vector<Search> searches;
+    for (const ModelSelector& selector : selectors)
+    {
+        searches.emplace_back().selector = selector;
+    }
+    const auto start = Clock::now();
+    bool has_said = false;
+    for (auto open = searches.begin(); open != searches.end();)
+    {
+        exchange_->step();
+        for (Search& search : searches)
+        {
+            if (const auto refusal = step(search))
+            {
+                return *refusal;
+            }
+        }
+        open = std::ranges::find(searches, false, &Search::is_done);
+        const auto waited = Clock::now() - start;
+        if (open == searches.end())
+        {
+            break;
+        }
+        if (waited >= timeout || (go_on && !go_on()))
+        {
+            const std::chrono::duration<double> seconds = waited;
+            return not_found(*open, fmt::format("waited {:.3g} s", seconds.count()));
+        }
+        if (!has_said && log_ && waited > kQuiet && open->fetch == nullptr)
+        {
+            log_(fmt::format("waiting for model '{}' on domain {}", open->selector.name,
+                             domain_.id()));
+            has_said = true;
+        }
+        std::this_thread::sleep_for(kPause);
+    }
+    std::vector<ServedModel> models;
+    for (Search& search : searches)
+    {
+        ServedModel& model = models.emplace_back();
+        model.name = search.offer.name;
+        model.hash = search.offer.hash;
+        model.header = std::move(search.fetch->header());
+        model.base = std::move(search.fetch->base());
+        model.link = std::make_unique<DdsLink>(*exchange_, catalogue_, search.offer, log_);
+    }
+    return models;
+}
+
 Result<ServedModel, Refusal> DdsClient::find(const ModelSelector& selector,
                                              std::chrono::milliseconds timeout,
                                              const std::function<bool()>& go_on)
 {
-    const Wait wait{timeout, go_on};
-    auto offer = wait_for_offer(selector, wait);
-    if (!offer)
+    auto models = find_all({&selector, 1}, timeout, go_on);
+    if (!models)
     {
-        return offer.error();
+        return models.error();
     }
-    ServedModel model;
-    model.name = offer.value().name;
-    model.hash = offer.value().hash;
-    if (auto done = wait_for_start(offer.value(), wait, model); !done)
-    {
-        return done.error();
-    }
-    auto link = DdsLink::create(domain_, catalogue_, offer.value(), controller_name_, log_);
-    if (!link)
-    {
-        return link.error();
-    }
-    if (auto done = wait_for_link(*link.value(), wait, model.name); !done)
-    {
-        return done.error();
-    }
-    model.link = std::move(link).value();
-    return model;
+    return std::move(models.value().front());
 }
 
-Result<Catalogue::Offer, Refusal> DdsClient::wait_for_offer(const ModelSelector& selector,
-                                                            const Wait& wait)
+/// What is to be done for it now; a refusal ends all.
+std::optional<Refusal> DdsClient::step(Search& search)
 {
-    bool has_said = false;
-    do
+    if (search.fetch == nullptr)
     {
-        catalogue_.refresh();
-        if (const Catalogue::Offer* offer = catalogue_.find(selector); offer != nullptr)
+        const Catalogue::Offer* offer = catalogue_.find(search.selector);
+        if (offer == nullptr)
         {
-            return *offer;
+            return std::nullopt;
         }
-        if (!has_said && log_ && Wait::Clock::now() - wait.start > std::chrono::seconds(2))
-        {
-            log_(fmt::format("waiting for model '{}' on domain {}", selector.name, domain_.id()));
-            has_said = true;
-        }
-    } while (wait.goes_on());
+        search.offer = *offer;
+        search.fetch = std::make_unique<ModelFetch>(*exchange_, catalogue_, *offer);
+    }
+    const auto state = search.fetch->step();
+    search.is_done = state == ModelFetch::State::done;
+    if (state == ModelFetch::State::refused)
+    {
+        return Refusal{fmt::format("model '{}' from domain {} {}", search.offer.name, domain_.id(),
+                                   search.fetch->objection())};
+    }
+    return std::nullopt;
+}
+
+Refusal DdsClient::not_found(const Search& search, const std::string& waited) const
+{
+    const ModelSelector& selector = search.selector;
+    if (search.fetch != nullptr)
+    {
+        return {fmt::format("model '{}' is published on domain {}, but its header and base mesh "
+                            "did not come ({})",
+                            selector.name, domain_.id(), waited)};
+    }
     const std::string pin = selector.hash ? "@" + hash_text(*selector.hash) : "";
     const Catalogue::Offer* other = catalogue_.find(ModelSelector{selector.name, std::nullopt});
-    return Refusal{
-        fmt::format("model '{}{}' is not published on domain {} ({}; published there: {}{})",
-                    selector.name, pin, domain_.id(), wait.waited(), catalogue_.names(),
-                    other != nullptr ? ", with hash " + hash_text(other->hash) : "")};
-}
-
-Result<Done, Refusal> DdsClient::wait_for_start(const Catalogue::Offer& offer, const Wait& wait,
-                                                ServedModel& model)
-{
-    const std::string partition = model_partition(offer.hash);
-    auto reader = make_reader(domain_, Topic::model, {&partition, 1});
-    if (!reader)
-    {
-        return reader.error();
-    }
-    do
-    {
-        const char* objection = "";
-        take_each<tactus_v1_ModelStart>(
-            reader.value().handle, 16,
-            [&](const tactus_v1_ModelStart& start, const dds_sample_info_t& info)
-            {
-                if (info.valid_data && (objection == nullptr || *objection == '\0'))
-                {
-                    assign(model.header, start.header);
-                    assign(model.base, start.base);
-                    objection = objection_to(model);
-                }
-            });
-        if (objection == nullptr)
-        {
-            return Done{};
-        }
-        if (*objection != '\0')
-        {
-            return Refusal{fmt::format("model '{}' from domain {}: the header {}", offer.name,
-                                       domain_.id(), objection)};
-        }
-    } while (wait.goes_on());
-    return Refusal{fmt::format("model '{}' is published on domain {}, but its header did not come "
-                               "({})",
-                               offer.name, domain_.id(), wait.waited())};
-}
-
-Result<Done, Refusal> DdsClient::wait_for_link(DdsLink& link, const Wait& wait,
-                                               const std::string& name)
-{
-    NoSink sink;
-    do
-    {
-        link.poll(sink);
-        if (link.is_ready())
-        {
-            return Done{};
-        }
-    } while (wait.goes_on());
-    return Refusal{fmt::format("the host of model '{}' on domain {} does not answer ({})", name,
-                               domain_.id(), wait.waited())};
+    return {fmt::format("model '{}{}' is not published on domain {} ({}; published there: {}{})",
+                        selector.name, pin, domain_.id(), waited, catalogue_.names(),
+                        other != nullptr ? ", with hash " + hash_text(other->hash) : "")};
 }
 
 } // namespace tactus::dds

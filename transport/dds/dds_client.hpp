@@ -4,8 +4,8 @@
 
 #include "platform/base/refusal.hpp"
 #include "transport/dds/catalogue.hpp"
-#include "transport/dds/dds_link.hpp"
 #include "transport/dds/domain.hpp"
+#include "transport/dds/piece_exchange.hpp"
 #include "transport/log.hpp"
 #include "transport/model_name.hpp"
 #include "transport/served_model.hpp"
@@ -14,7 +14,10 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 namespace tactus::dds
 {
@@ -28,34 +31,36 @@ public:
     [[nodiscard]] static Result<std::unique_ptr<DdsClient>, Refusal>
     create(std::uint32_t domain, std::string controller_name, Log log);
 
-    /// Waits until the model is published, its header and base mesh came and its host answers;
+    /// Waits until all these models are published and their headers and base meshes came;
     /// everything is verified. The only call here that waits: at most `timeout`, or until `go_on`
-    /// (asked every few milliseconds) returns false. The client must outlive the model's link.
+    /// (asked every few milliseconds) returns false. The client must outlive the models' links.
+    [[nodiscard]] Result<std::vector<ServedModel>, Refusal>
+    find_all(std::span<const ModelSelector> selectors, std::chrono::milliseconds timeout,
+             const std::function<bool()>& go_on = {});
+    /// The same for one.
     [[nodiscard]] Result<ServedModel, Refusal> find(const ModelSelector& selector,
                                                     std::chrono::milliseconds timeout,
                                                     const std::function<bool()>& go_on = {});
 
     [[nodiscard]] const Catalogue& catalogue() const noexcept { return catalogue_; }
+    [[nodiscard]] PieceExchange& exchange() noexcept { return *exchange_; }
     /// For further topics of the same controller; lives as long as the client.
     [[nodiscard]] const Domain& domain() const noexcept { return domain_; }
     [[nodiscard]] const std::string& controller_name() const noexcept { return controller_name_; }
 
 private:
-    struct Wait;
+    struct Search;
 
     DdsClient(Domain domain, Catalogue catalogue, std::string controller_name, Log log);
 
-    [[nodiscard]] Result<Catalogue::Offer, Refusal> wait_for_offer(const ModelSelector& selector,
-                                                                   const Wait& wait);
-    [[nodiscard]] Result<Done, Refusal> wait_for_start(const Catalogue::Offer& offer,
-                                                       const Wait& wait, ServedModel& model);
-    [[nodiscard]] Result<Done, Refusal> wait_for_link(DdsLink& link, const Wait& wait,
-                                                      const std::string& name);
+    [[nodiscard]] std::optional<Refusal> step(Search& search);
+    [[nodiscard]] Refusal not_found(const Search& search, const std::string& waited) const;
 
     Domain domain_; ///< First, so that it is left last.
     Catalogue catalogue_;
     std::string controller_name_;
     Log log_;
+    std::unique_ptr<PieceExchange> exchange_; ///< From create() on.
 };
 
 } // namespace tactus::dds

@@ -23,8 +23,15 @@ namespace
 
 /// The catalogue is written anew this often: after a stall a host may have been taken for dead.
 constexpr auto kAnnouncement = std::chrono::seconds(1);
-/// Subscriptions of all controllers together; each has up to four DDS writers, about 400 KB.
-constexpr std::size_t kMaxSubscriptions = 1'024;
+/// Each has up to four DDS writers, about 400 KB.
+constexpr std::size_t kMaxClients = 1'024;
+/// Controllers that get all objects at the same time: many at once make each other lose what they
+/// get, and it is sent again and again.
+constexpr std::ptrdiff_t kMaxJoining = 4;
+/// Who says nothing about its objects for so long has them, or has other troubles.
+constexpr auto kJoiningMax = std::chrono::seconds(5);
+/// It is told again that it may come in; the first time may have been before it listened.
+constexpr auto kLetInAgain = std::chrono::milliseconds(100);
 /// Samples sent in one step, so that requests are looked at in between.
 constexpr std::size_t kSamplesPerStep = 64;
 constexpr std::size_t kRequestsPerStep = 1'024;
@@ -32,7 +39,7 @@ constexpr std::size_t kRequestsPerStep = 1'024;
 constexpr auto kMatchWait = std::chrono::milliseconds(2);
 
 /// What a controller calls itself, fit to be printed.
-std::string name_of(const tactus_v1_Wanted& wanted)
+std::string name_of(const tactus_v2_Wanted& wanted)
 {
     const char* const text = static_cast<const char*>(wanted.controller_name);
     return printable({text, ::strnlen(text, sizeof(wanted.controller_name))});
@@ -40,23 +47,31 @@ std::string name_of(const tactus_v1_Wanted& wanted)
 
 } // namespace
 
-struct DdsHost::Request
-{
-    ControllerId controller{};
-    ContentHash hash{};
-    const tactus_v1_Wanted& wanted;
-};
-
 Result<std::unique_ptr<DdsHost>, Refusal>
 DdsHost::create(std::uint32_t domain, std::vector<PublishedModel> models, Log log)
 {
+    if (models.size() > kMaxModels)
+    {
+        return Refusal{
+            fmt::format("{} models; a host serves at most {}", models.size(), kMaxModels)};
+    }
     auto joined = Domain::join(domain);
     if (!joined)
     {
         return joined.error();
     }
+    std::vector<ModelPieces> served;
+    for (PublishedModel& model : models)
+    {
+        auto pieces = ModelPieces::create(std::move(model));
+        if (!pieces)
+        {
+            return pieces.error();
+        }
+        served.push_back(std::move(pieces).value());
+    }
     std::unique_ptr<DdsHost> host(
-        new DdsHost(std::move(joined).value(), std::move(models), std::move(log)));
+        new DdsHost(std::move(joined).value(), std::move(served), std::move(log)));
     if (auto done = host->open_endpoints(); !done)
     {
         return done.error();
@@ -64,15 +79,15 @@ DdsHost::create(std::uint32_t domain, std::vector<PublishedModel> models, Log lo
     return host;
 }
 
-DdsHost::DdsHost(Domain domain, std::vector<PublishedModel> models, Log log)
+DdsHost::DdsHost(Domain domain, std::vector<ModelPieces> models, Log log)
     : domain_(std::move(domain))
     , models_(std::move(models))
-    , log_(log)
+    , log_(log ? log : Log([](const std::string& /*line*/) {}))
     , fault_log_(std::move(log))
-    , epoch_(random_bits())
+    , epoch_(domain_.participants().own_epoch())
 {
-    payload_.reserve(kPayloadBytes);
-    piece_.reserve(kMaxCodedChunkBytes);
+    room_.payload.reserve(kPayloadBytes);
+    room_.piece.reserve(kPartBytes);
 }
 
 void DdsHost::wait(std::chrono::milliseconds timeout)
@@ -82,17 +97,25 @@ void DdsHost::wait(std::chrono::milliseconds timeout)
         return;
     }
     const bool waits_for_match =
-        std::any_of(subscriptions_.begin(), subscriptions_.end(),
-                    [](const Subscription& subscription) { return subscription.has_work(); });
-    const std::chrono::nanoseconds longest =
+        std::any_of(clients_.begin(), clients_.end(),
+                    [](const Client& client)
+                    { return client.subscription.has_work() || client.joining == Joining::waits; });
+    std::chrono::nanoseconds longest =
         waits_for_match ? std::min<std::chrono::nanoseconds>(timeout, kMatchWait) : timeout;
+    const auto beat = objects_->next_beat();
+    if (beat != Clock::time_point::max())
+    {
+        longest = std::clamp<std::chrono::nanoseconds>(beat - Clock::now(), {}, longest);
+    }
     dds_waitset_wait(waitset_.get(), nullptr, 0, longest.count());
 }
 
 void DdsHost::step()
 {
     take_requests();
+    let_in();
     serve();
+    objects_->step();
     if (Clock::now() - last_announced_ >= kAnnouncement)
     {
         announce();
@@ -102,10 +125,10 @@ void DdsHost::step()
 DdsHost::Counters DdsHost::counters() const
 {
     Counters counters = counters_;
-    for (const Subscription& subscription : subscriptions_)
+    for (const Client& client : clients_)
     {
-        counters.pieces_sent += subscription.pieces_sent();
-        counters.bytes_sent += subscription.bytes_sent();
+        counters.pieces_sent += client.subscription.pieces_sent();
+        counters.bytes_sent += client.subscription.bytes_sent();
     }
     return counters;
 }
@@ -113,26 +136,29 @@ DdsHost::Counters DdsHost::counters() const
 std::vector<DdsHost::Subscriber> DdsHost::subscribers() const
 {
     std::vector<Subscriber> list;
-    for (const Subscription& subscription : subscriptions_)
+    for (const Client& client : clients_)
     {
-        list.push_back({subscription.controller_name(), model_of(subscription.store().hash())->name,
-                        subscription.pieces_sent(), subscription.bytes_sent()});
+        const Subscription& subscription = client.subscription;
+        list.push_back({subscription.controller_name(), subscription.pieces_sent(),
+                        subscription.bytes_sent()});
     }
     return list;
 }
 
 Result<Done, Refusal> DdsHost::open_endpoints()
 {
-    std::vector<std::string> partitions;
-    for (const PublishedModel& model : models_)
+    std::vector<ContentHash> hashes;
+    for (const ModelPieces& model : models_)
     {
-        partitions.push_back(model_partition(model.store.hash()));
-        if (auto done = publish_start(model); !done)
-        {
-            return done;
-        }
+        hashes.push_back(model.store().hash());
     }
-    auto wanted = make_reader(domain_, Topic::wanted, partitions);
+    auto objects = ObjectPublisher::create(domain_, std::move(hashes));
+    if (!objects)
+    {
+        return objects.error();
+    }
+    objects_ = std::move(objects).value();
+    auto wanted = make_reader(domain_, Topic::wanted, kAnyPartition);
     if (!wanted)
     {
         return wanted.error();
@@ -151,55 +177,21 @@ Result<Done, Refusal> DdsHost::open_endpoints()
     return Done{};
 }
 
-Result<Done, Refusal> DdsHost::publish_start(const PublishedModel& model)
-{
-    auto writer = make_writer(domain_, Topic::model, model_partition(model.store.hash()));
-    if (!writer)
-    {
-        return writer.error();
-    }
-    std::vector<std::byte> base;
-    if (auto done = model.store.read({ContentKind::base, 0}, base); !done)
-    {
-        return done.error();
-    }
-    const auto header = model.store.header_bytes();
-    std::vector<std::byte> header_copy(header.begin(), header.end());
-    const auto sequence = [](std::vector<std::byte>& bytes)
-    {
-        const auto length = static_cast<std::uint32_t>(bytes.size());
-        return dds_sequence_octet{length, length, reinterpret_cast<std::uint8_t*>(bytes.data()),
-                                  false};
-    };
-    tactus_v1_ModelStart start = {};
-    std::memcpy(start.model_hash, model.store.hash().data(), model.store.hash().size());
-    start.host_epoch = epoch_;
-    start.header = sequence(header_copy);
-    start.base = sequence(base);
-    if (const auto code = dds_write(writer.value().handle, &start); code != DDS_RETCODE_OK)
-    {
-        return Refusal{fmt::format("model '{}' (header of {} bytes, base mesh of {}) cannot be "
-                                   "published: {}",
-                                   model.name, header.size(), base.size(), dds_strretcode(code))};
-    }
-    starts_.push_back(std::move(writer).value());
-    return Done{};
-}
-
 void DdsHost::announce()
 {
-    for (const PublishedModel& model : models_)
+    domain_.participants().report_other_versions(fault_log_);
+    for (std::uint32_t i = 0; i < models_.size(); ++i)
     {
-        const HeaderFields& fields = model.store.header().fields();
-        tactus_v1_CatalogueEntry entry = {};
-        model.name.copy(static_cast<char*>(entry.name), kMaxNameBytes);
+        const ModelStore& store = models_[i].store();
+        const HeaderFields& fields = store.header().fields();
+        tactus_v2_CatalogueEntry entry = {};
         entry.host_epoch = epoch_;
-        entry.protocol_version = kProtocolVersion;
-        std::memcpy(entry.model_hash, model.store.hash().data(), model.store.hash().size());
-        entry.revision = fields.revision;
+        entry.model = i;
+        models_[i].model().name.copy(static_cast<char*>(entry.name), kMaxNameBytes);
+        std::memcpy(entry.model_hash, store.hash().data(), store.hash().size());
         entry.faces = fields.source_faces;
-        entry.header_bytes = fields.header_bytes;
-        entry.base_bytes = fields.base_bytes;
+        entry.header_bytes = static_cast<std::uint32_t>(store.header_bytes().size());
+        entry.base_bytes = static_cast<std::uint32_t>(store.coded_bytes({ContentKind::base, 0}));
         dds_write(catalogue_.handle, &entry); // A failure is made good in the next second.
     }
     last_announced_ = Clock::now();
@@ -207,126 +199,151 @@ void DdsHost::announce()
 
 void DdsHost::take_requests()
 {
-    take_each<tactus_v1_Wanted>(
+    take_each<tactus_v2_Wanted>(
         wanted_.handle, kRequestsPerStep,
-        [this](const tactus_v1_Wanted& wanted, const dds_sample_info_t& info)
+        [this](const tactus_v2_Wanted& wanted, const dds_sample_info_t& info)
         {
-            Request request{{}, {}, wanted};
-            std::memcpy(request.controller.data(), wanted.controller, sizeof(wanted.controller));
-            std::memcpy(request.hash.data(), wanted.model_hash, sizeof(wanted.model_hash));
+            ControllerId controller{};
+            std::memcpy(controller.data(), wanted.controller, sizeof(wanted.controller));
             if (info.instance_state != DDS_ALIVE_INSTANCE_STATE)
             {
-                on_controller_gone(request.controller, request.hash);
+                on_controller_gone(controller);
             }
-            else if (info.valid_data && wanted.host_epoch == epoch_)
+            else if (info.valid_data)
             {
                 ++counters_.requests;
-                on_request(request);
+                on_request(controller, wanted);
             }
         });
 }
 
-void DdsHost::on_request(const Request& request)
+void DdsHost::on_request(const ControllerId& controller, const tactus_v2_Wanted& wanted)
 {
-    const tactus_v1_Wanted& wanted = request.wanted;
-    const PublishedModel* model = model_of(request.hash);
-    if (wanted.protocol_version != kProtocolVersion)
-    {
-        ++counters_.requests_refused;
-        fault_log_.write(fmt::format("controller {} is refused: it speaks protocol version {}, "
-                                     "this build {}",
-                                     name_of(wanted), wanted.protocol_version, kProtocolVersion));
-        return;
-    }
-    if (model == nullptr || wanted.revision != model->store.revision())
+    Client* client = find(controller);
+    client = client == nullptr ? add_client(controller, wanted) : client;
+    if (client == nullptr)
     {
         ++counters_.requests_refused;
         return;
     }
-    auto subscription = find(request.controller, request.hash);
-    if (subscription == subscriptions_.end())
+    client->subscription.set_credit({wanted.seen, wanted.granted, wanted.received});
+    if (wanted.objects == 1)
     {
-        const std::string name = name_of(wanted);
-        if (subscriptions_.size() == kMaxSubscriptions)
+        const bool is_new =
+            client->joining == Joining::not_wanted || client->joining == Joining::done;
+        client->joining = is_new ? Joining::waits : client->joining;
+        if (client->joining == Joining::under_way && Clock::now() - client->let_in > kLetInAgain)
         {
-            ++counters_.requests_refused;
-            fault_log_.write(fmt::format("controller {} is refused: {} subscriptions are the limit",
-                                         name, kMaxSubscriptions));
-            return;
+            client->subscription.let_in(epoch_);
         }
-        auto created =
-            Subscription::create(domain_, model->store, request.controller, name, wanted.seen);
-        if (!created)
-        {
-            fault_log_.write(created.error().text);
-            return;
-        }
-        subscriptions_.push_back(std::move(created).value());
-        subscription = subscriptions_.end() - 1;
-        log_(fmt::format("controller {} subscribed to model '{}'", name, model->name));
     }
-    subscription->set_credit({wanted.seen, wanted.granted, wanted.received});
+    else
+    {
+        client->joining = wanted.objects == 0 ? Joining::not_wanted : Joining::done;
+    }
+    take_wishes(*client, wanted);
+}
+
+void DdsHost::take_wishes(Client& client, const tactus_v2_Wanted& wanted)
+{
     for (std::uint32_t i = 0; i < wanted.pieces._length; ++i)
     {
-        const tactus_v1_PieceName piece = wanted.pieces._buffer[i];
-        const ContentKey key{static_cast<ContentKind>(piece.kind), piece.number};
-        const bool is_served = piece.kind == static_cast<std::uint32_t>(ContentKind::index_page) ||
-                               piece.kind == static_cast<std::uint32_t>(ContentKind::chunk);
-        if (!is_served || !model->store.has(key))
+        const tactus_v2_PieceName& name = wanted.pieces._buffer[i];
+        const ContentKey key{static_cast<ContentKind>(name.kind), name.number};
+        if (name.model >= models_.size() || !models_[name.model].has(key))
         {
             ++counters_.requests_refused;
             continue;
         }
-        subscription->wish(key, wanted.generation);
+        client.subscription.wish({name.model, key}, wanted.generation);
     }
 }
 
-void DdsHost::on_controller_gone(const ControllerId& controller, const ContentHash& hash)
+DdsHost::Client* DdsHost::add_client(const ControllerId& controller, const tactus_v2_Wanted& wanted)
 {
-    const auto subscription = find(controller, hash);
-    if (subscription == subscriptions_.end())
+    const std::string name = name_of(wanted);
+    if (!is_valid_name(name)) // It would name a partition.
+    {
+        fault_log_.write(fmt::format("controller '{}' is refused: its name is not 1 to 63 "
+                                     "characters of A-Z a-z 0-9 . _ -",
+                                     name));
+        return nullptr;
+    }
+    if (clients_.size() == kMaxClients)
+    {
+        fault_log_.write(
+            fmt::format("controller {} is refused: {} are the limit", name, kMaxClients));
+        return nullptr;
+    }
+    auto created = Subscription::create(domain_, controller, name, wanted.seen);
+    if (!created)
+    {
+        fault_log_.write(created.error().text);
+        return nullptr;
+    }
+    clients_.push_back({std::move(created).value()});
+    log_(fmt::format("controller {} subscribed", name));
+    return &clients_.back();
+}
+
+void DdsHost::on_controller_gone(const ControllerId& controller)
+{
+    const Client* client = find(controller);
+    if (client == nullptr)
     {
         return;
     }
-    counters_.pieces_sent += subscription->pieces_sent();
-    counters_.bytes_sent += subscription->bytes_sent();
-    log_(fmt::format("controller {} left model '{}' ({} pieces, {:.1f} KB sent)",
-                     subscription->controller_name(), model_of(hash)->name,
-                     subscription->pieces_sent(),
-                     static_cast<double>(subscription->bytes_sent()) / 1e3));
-    subscriptions_.erase(subscription);
+    const Subscription& subscription = client->subscription;
+    counters_.pieces_sent += subscription.pieces_sent();
+    counters_.bytes_sent += subscription.bytes_sent();
+    log_(fmt::format("controller {} left ({} pieces, {:.1f} KB sent)",
+                     subscription.controller_name(), subscription.pieces_sent(),
+                     static_cast<double>(subscription.bytes_sent()) / 1e3));
+    clients_.erase(clients_.begin() + (client - clients_.data()));
 }
 
 void DdsHost::serve()
 {
     std::size_t sent = 0;
     std::size_t idle = 0;
-    while (sent < kSamplesPerStep && idle < subscriptions_.size())
+    while (sent < kSamplesPerStep && idle < clients_.size())
     {
-        next_turn_ = (next_turn_ + 1) % subscriptions_.size();
-        const bool did = subscriptions_[next_turn_].send_one(epoch_, payload_, piece_, fault_log_);
+        next_turn_ = (next_turn_ + 1) % clients_.size();
+        const bool did =
+            clients_[next_turn_].subscription.send_one(epoch_, models_, room_, fault_log_);
         sent += did ? 1U : 0U;
         idle = did ? 0 : idle + 1;
     }
     has_more_work_ = sent == kSamplesPerStep;
 }
 
-const PublishedModel* DdsHost::model_of(const ContentHash& hash) const
+/// A few controllers at a time get all objects.
+void DdsHost::let_in()
 {
-    const auto at =
-        std::find_if(models_.begin(), models_.end(),
-                     [&](const PublishedModel& model) { return model.store.hash() == hash; });
-    return at == models_.end() ? nullptr : &*at;
+    const auto now = Clock::now();
+    std::ptrdiff_t joining = std::ranges::count(clients_, Joining::under_way, &Client::joining);
+    for (Client& client : clients_)
+    {
+        if (client.joining == Joining::under_way && now - client.let_in > kJoiningMax)
+        {
+            client.joining = Joining::done;
+            --joining;
+        }
+        const bool is_next = client.joining == Joining::waits && joining < kMaxJoining;
+        if (is_next && client.subscription.let_in(epoch_))
+        {
+            client.joining = Joining::under_way;
+            client.let_in = now;
+            ++joining;
+        }
+    }
 }
 
-std::vector<Subscription>::iterator DdsHost::find(const ControllerId& controller,
-                                                  const ContentHash& hash)
+DdsHost::Client* DdsHost::find(const ControllerId& controller)
 {
-    return std::find_if(subscriptions_.begin(), subscriptions_.end(),
-                        [&](const Subscription& subscription) {
-                            return subscription.controller() == controller &&
-                                   subscription.store().hash() == hash;
-                        });
+    const auto client = std::ranges::find_if(
+        clients_, [&](const Client& each) { return each.subscription.controller() == controller; });
+    return client == clients_.end() ? nullptr : &*client;
 }
 
 } // namespace tactus::dds

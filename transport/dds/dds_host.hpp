@@ -4,9 +4,10 @@
 
 #include "platform/base/refusal.hpp"
 #include "transport/dds/domain.hpp"
+#include "transport/dds/model_pieces.hpp"
+#include "transport/dds/object_publisher.hpp"
 #include "transport/dds/subscription.hpp"
 #include "transport/log.hpp"
-#include "transport/store/model_store.hpp"
 
 #include <chrono>
 #include <cstddef>
@@ -15,18 +16,13 @@
 #include <string>
 #include <vector>
 
+struct tactus_v2_Wanted; // idlc's type of a sample.
+
 namespace tactus::dds
 {
 
-/// A model under the name by which controllers ask for it.
-struct PublishedModel
-{
-    std::string name; ///< Valid, and no other model of this host has it.
-    ModelStore store;
-};
-
-/// Serves models on one DDS domain: announces them, gives header and base mesh to late joiners and
-/// pieces to whoever asks, under the credit that each controller grants. One thread.
+/// Serves models on one DDS domain: announces them, gives pieces to whoever asks, under the credit
+/// that each controller grants, and shows objects. One thread.
 class DdsHost
 {
 public:
@@ -36,12 +32,11 @@ public:
         std::uint64_t pieces_sent{0};
         std::uint64_t bytes_sent{0}; ///< Payload.
         std::uint64_t requests{0};
-        std::uint64_t requests_refused{0}; ///< Other version or revision, unknown piece, too many.
+        std::uint64_t requests_refused{0}; ///< A bad name, an unknown piece, too many.
     };
     struct Subscriber
     {
         std::string controller;
-        std::string model;
         std::uint64_t pieces_sent{0};
         std::uint64_t bytes_sent{0};
     };
@@ -53,49 +48,64 @@ public:
 
     /// Waits until there is something to do, at most `timeout`. Signals don't end it early.
     void wait(std::chrono::milliseconds timeout);
-    /// Takes requests, serves a bounded number of samples round-robin, announces when due.
+    /// Takes requests, serves a bounded number of samples round-robin, announces when due, and
+    /// steps the objects.
     void step();
 
     [[nodiscard]] Counters counters() const;
     [[nodiscard]] std::vector<Subscriber> subscribers() const;
-    [[nodiscard]] const std::vector<PublishedModel>& models() const noexcept { return models_; }
-    /// Random, of this run: a PosePublisher of these models needs it.
+    [[nodiscard]] const std::vector<ModelPieces>& models() const noexcept { return models_; }
+    /// Shows, moves and removes objects of these models.
+    [[nodiscard]] ObjectPublisher& objects() noexcept { return *objects_; }
+    /// By which controllers know this run of this host.
     [[nodiscard]] std::uint64_t epoch() const noexcept { return epoch_; }
     /// For further topics of the same program; lives as long as the host.
     [[nodiscard]] const Domain& domain() const noexcept { return domain_; }
 
 private:
     using Clock = std::chrono::steady_clock;
-    struct Request;
+    enum class Joining : std::uint8_t
+    {
+        not_wanted,
+        waits,
+        under_way, ///< It was let in; the objects are on their way to it.
+        done,
+    };
+    struct Client
+    {
+        Subscription subscription;
+        Joining joining{Joining::not_wanted};
+        Clock::time_point let_in{};
+    };
 
-    DdsHost(Domain domain, std::vector<PublishedModel> models, Log log);
+    DdsHost(Domain domain, std::vector<ModelPieces> models, Log log);
 
     [[nodiscard]] Result<Done, Refusal> open_endpoints();
-    [[nodiscard]] Result<Done, Refusal> publish_start(const PublishedModel& model);
     void announce();
     void take_requests();
-    void on_request(const Request& request);
-    void on_controller_gone(const ControllerId& controller, const ContentHash& hash);
+    void on_request(const ControllerId& controller, const tactus_v2_Wanted& wanted);
+    void take_wishes(Client& client, const tactus_v2_Wanted& wanted);
+    [[nodiscard]] Client* add_client(const ControllerId& controller,
+                                     const tactus_v2_Wanted& wanted);
+    void on_controller_gone(const ControllerId& controller);
     void serve();
-    [[nodiscard]] const PublishedModel* model_of(const ContentHash& hash) const;
-    [[nodiscard]] std::vector<Subscription>::iterator find(const ControllerId& controller,
-                                                           const ContentHash& hash);
+    void let_in();
+    [[nodiscard]] Client* find(const ControllerId& controller);
 
     Domain domain_; ///< First, so that it is left last.
-    std::vector<PublishedModel> models_;
+    std::vector<ModelPieces> models_;
     Log log_;
     RateLimitedLog fault_log_;
     std::uint64_t epoch_;
-    std::vector<Endpoint> starts_;
     Endpoint catalogue_;
     Endpoint wanted_;
     Entity waitset_;
-    std::vector<Subscription> subscriptions_;
+    std::unique_ptr<ObjectPublisher> objects_; ///< From create() on.
+    std::vector<Client> clients_;
     std::size_t next_turn_{0};
     bool has_more_work_{false};
     Clock::time_point last_announced_{};
-    std::vector<std::byte> payload_;
-    std::vector<std::byte> piece_;
+    PieceBuffers room_;
     Counters counters_;
 };
 

@@ -134,6 +134,7 @@ Result<Domain, Refusal> Domain::join(std::uint32_t id)
     {
         return join_error(id, domain.participant_.get());
     }
+    domain.participants_ = std::make_unique<Participants>(domain.participant_.get());
     return domain;
 }
 

@@ -5,6 +5,7 @@
 #include "platform/base/refusal.hpp"
 #include "rt_core/base/result.hpp"
 #include "transport/dds/entity.hpp"
+#include "transport/dds/participants.hpp"
 
 #include <cstdint>
 #include <memory>
@@ -33,10 +34,13 @@ public:
 
     [[nodiscard]] std::uint32_t id() const noexcept { return id_; }
     [[nodiscard]] std::int32_t participant() const noexcept { return participant_.get(); }
+    /// Who is there, and who we are.
+    [[nodiscard]] Participants& participants() const noexcept { return *participants_; }
 
 private:
     std::uint32_t id_{0};
     std::shared_ptr<Entity> configuration_; ///< Ours, shared by the process; outlives participants.
+    std::unique_ptr<Participants> participants_; ///< In use as long as there are readers.
     Entity participant_;
 };
 

@@ -11,75 +11,84 @@
 namespace tactus::dds
 {
 
-Result<Subscription, Refusal> Subscription::create(const Domain& domain, const ModelStore& store,
+Result<Subscription, Refusal> Subscription::create(const Domain& domain,
                                                    const ControllerId& controller,
                                                    std::string controller_name, std::uint64_t seen)
 {
-    auto writers =
-        WriterLanes::create(domain, Topic::chunks, controller_partition(controller, store.hash()));
+    auto writers = WriterLanes::create(domain, Topic::chunks,
+                                       controller_partition(controller_name, controller));
     if (!writers)
     {
         return writers.error();
     }
-    Subscription subscription(store, std::move(writers).value());
+    Subscription subscription(std::move(writers).value());
     subscription.controller_ = controller;
     subscription.controller_name_ = std::move(controller_name);
     subscription.sent_ = seen;
     return subscription;
 }
 
-bool Subscription::send_one(std::uint64_t host_epoch, std::vector<std::byte>& payload,
-                            std::vector<std::byte>& piece, RateLimitedLog& log)
+bool Subscription::send_one(std::uint64_t host_epoch, std::span<const ModelPieces> models,
+                            PieceBuffers& room, RateLimitedLog& log)
 {
     if (!has_work() || !writers_.is_matched())
     {
         return false; // Written before the reader is known, a sample would reach nobody.
     }
-    const std::uint64_t pieces = fill(payload, piece, log);
-    if (pieces == 0)
-    {
-        return false;
-    }
-    tactus_v1_Pieces sample = {};
-    sample.host_epoch = host_epoch;
-    sample.sent = sent_ + pieces;
-    const auto length = static_cast<std::uint32_t>(payload.size());
-    sample.payload = {length, length, reinterpret_cast<std::uint8_t*>(payload.data()), false};
-    tactus_v1_Pieces probe = {};
-    probe.host_epoch = host_epoch;
-    probe.sent = sent_;
-    if (!writers_.write(&sample, &probe))
+    const std::uint64_t pieces = fill(models, room, log);
+    if (pieces == 0 || !write(host_epoch, pieces, false, room.payload))
     {
         return false; // The pieces count as lost: the controller asks again.
     }
     sent_ += pieces;
     pieces_sent_ += pieces;
-    bytes_sent_ += length;
+    bytes_sent_ += room.payload.size();
     return true;
 }
 
-std::uint64_t Subscription::fill(std::vector<std::byte>& payload, std::vector<std::byte>& piece,
+bool Subscription::let_in(std::uint64_t host_epoch)
+{
+    std::vector<std::byte> nothing;
+    return writers_.is_matched() && write(host_epoch, 0, true, nothing);
+}
+
+bool Subscription::write(std::uint64_t host_epoch, std::uint64_t pieces, bool lets_in,
+                         std::vector<std::byte>& payload)
+{
+    tactus_v2_Pieces sample = {};
+    sample.host_epoch = host_epoch;
+    sample.sent = sent_;
+    const tactus_v2_Pieces probe = sample;
+    sample.sent += pieces;
+    sample.lets_in = lets_in;
+    const auto length = static_cast<std::uint32_t>(payload.size());
+    sample.payload = {length, length, reinterpret_cast<std::uint8_t*>(payload.data()), false};
+    return writers_.write(&sample, &probe);
+}
+
+std::uint64_t Subscription::fill(std::span<const ModelPieces> models, PieceBuffers& room,
                                  RateLimitedLog& log)
 {
-    payload.clear();
+    room.payload.clear();
     std::uint64_t pieces = 0;
     while (!wishes_.empty() && sent_ + pieces < credit_.granted)
     {
-        const ContentKey key = wishes_.front();
-        if (payload.size() + kFrameBytes + store_->coded_bytes(key) > kPayloadBytes)
+        const HostPiece wish = wishes_.front();
+        const ModelPieces& model = models[wish.model];
+        if (room.payload.size() + kFrameBytes + model.bytes(wish.key) > kPayloadBytes)
         {
             break;
         }
         wishes_.pop_front();
-        if (auto done = store_->read(key, piece); !done)
+        if (auto done = model.read(wish.key, room.piece); !done)
         {
             log.write(done.error().text);
             continue;
         }
-        append_piece(
-            payload,
-            {store_->hash(), store_->revision(), static_cast<std::uint32_t>(key.kind), key.number},
-            piece);
+        append_piece(room.payload,
+                     {model.store().hash(), model.store().revision(),
+                      static_cast<std::uint32_t>(wish.key.kind), wish.key.number},
+                     room.piece);
         ++pieces;
     }
     return pieces;

@@ -4,15 +4,16 @@
 
 #include "platform/base/refusal.hpp"
 #include "transport/dds/domain.hpp"
+#include "transport/dds/model_pieces.hpp"
 #include "transport/dds/topics.hpp"
 #include "transport/dds/wish_queue.hpp"
 #include "transport/dds/writer_lanes.hpp"
 #include "transport/log.hpp"
-#include "transport/store/model_store.hpp"
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,8 +21,15 @@
 namespace tactus::dds
 {
 
-/// One controller's subscription to one model, on the host: its wishes, its credit, and writers of
-/// its own in a partition of its own, so that no other controller waits for it.
+/// Room that all subscriptions use in turn.
+struct PieceBuffers
+{
+    std::vector<std::byte> payload;
+    std::vector<std::byte> piece;
+};
+
+/// One controller, on the host: its wishes, its credit, and writers of its own in a partition of
+/// its own, so that no other controller waits for it.
 class Subscription
 {
 public:
@@ -33,17 +41,18 @@ public:
         std::uint64_t received{0};
     };
 
-    /// `store` must outlive the subscription. The first request's `seen` is where counting starts:
-    /// a controller that was thought dead and speaks again goes on counting.
-    [[nodiscard]] static Result<Subscription, Refusal>
-    create(const Domain& domain, const ModelStore& store, const ControllerId& controller,
-           std::string controller_name, std::uint64_t seen);
+    /// The first request's `seen` is where counting starts: a controller that was thought dead and
+    /// speaks again goes on counting.
+    [[nodiscard]] static Result<Subscription, Refusal> create(const Domain& domain,
+                                                              const ControllerId& controller,
+                                                              std::string controller_name,
+                                                              std::uint64_t seen);
 
     [[nodiscard]] const ControllerId& controller() const noexcept { return controller_; }
     [[nodiscard]] const std::string& controller_name() const noexcept { return controller_name_; }
-    [[nodiscard]] const ModelStore& store() const noexcept { return *store_; }
 
-    void wish(ContentKey key, std::uint32_t generation) { wishes_.add(key, generation); }
+    /// Pieces that there are.
+    void wish(const HostPiece& piece, std::uint32_t generation) { wishes_.add(piece, generation); }
     /// Requests may come in another order than they were sent in: the counts only grow.
     void set_credit(const Credit& credit) noexcept
     {
@@ -57,10 +66,12 @@ public:
     {
         return !wishes_.empty() && sent_ < credit_.granted;
     }
-    /// Sends one sample of as many wished pieces as credit and payload allow, read from the store.
-    /// A piece that can't be read is skipped and named in the log. False when nothing was sent.
-    bool send_one(std::uint64_t host_epoch, std::vector<std::byte>& payload,
-                  std::vector<std::byte>& piece, RateLimitedLog& log);
+    /// Sends one sample of as many wished pieces as credit and payload allow. A piece that can't be
+    /// read is skipped and named in the log. False when nothing was sent.
+    bool send_one(std::uint64_t host_epoch, std::span<const ModelPieces> models, PieceBuffers& room,
+                  RateLimitedLog& log);
+    /// Tells the controller that it may read the objects. False while its reader is not there.
+    bool let_in(std::uint64_t host_epoch);
 
     [[nodiscard]] std::uint64_t pieces_sent() const noexcept { return pieces_sent_; }
     [[nodiscard]] std::uint64_t bytes_sent() const noexcept { return bytes_sent_; }
@@ -68,15 +79,15 @@ public:
     [[nodiscard]] std::size_t wishes() const noexcept { return wishes_.size(); }
 
 private:
-    Subscription(const ModelStore& store, WriterLanes writers)
-        : store_(&store), writers_(std::move(writers)), wishes_(kMaxWishes)
+    explicit Subscription(WriterLanes writers) : writers_(std::move(writers)), wishes_(kMaxWaiting)
     {
     }
 
-    [[nodiscard]] std::uint64_t fill(std::vector<std::byte>& payload, std::vector<std::byte>& piece,
+    [[nodiscard]] std::uint64_t fill(std::span<const ModelPieces> models, PieceBuffers& room,
                                      RateLimitedLog& log);
+    bool write(std::uint64_t host_epoch, std::uint64_t pieces, bool lets_in,
+               std::vector<std::byte>& payload);
 
-    const ModelStore* store_;
     ControllerId controller_{};
     std::string controller_name_;
     WriterLanes writers_;

@@ -9,7 +9,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <string_view>
+#include <span>
 #include <utility>
 
 #include "tactus.h"
@@ -25,6 +25,7 @@ constexpr unsigned kInContact = 1;
 constexpr unsigned kFrozen = 2;
 constexpr unsigned kSqueezed = 4;
 constexpr unsigned kHeldBack = 8;
+constexpr unsigned kHasGripper = 16;
 /// Bits of ModelTelemetry::state.
 constexpr unsigned kHostGone = 1;
 constexpr unsigned kStatic = 2;
@@ -41,39 +42,72 @@ std::string text_of(const char (&text)[Size]) // NOLINT: idlc's type.
     return {static_cast<const char*>(text), ::strnlen(static_cast<const char*>(text), Size)};
 }
 
-tactus_v1_ToolTelemetry to_wire(const ToolTelemetry& tool)
+tactus_v2_ToolTelemetry to_wire(const ToolTelemetry& tool)
 {
-    tactus_v1_ToolTelemetry wire = {};
+    tactus_v2_ToolTelemetry wire = {};
     std::ranges::copy(tool.position_m, std::begin(wire.position_m));
+    std::ranges::copy(tool.rotation, std::begin(wire.rotation));
     std::ranges::copy(tool.proxy_m, std::begin(wire.proxy_m));
+    std::ranges::copy(tool.proxy_rotation, std::begin(wire.proxy_rotation));
     std::ranges::copy(tool.force_n, std::begin(wire.force_n));
     std::ranges::copy(tool.torque_nm, std::begin(wire.torque_nm));
     wire.state = static_cast<std::uint8_t>(
         bit_when(tool.in_contact, kInContact) | bit_when(tool.frozen, kFrozen) |
-        bit_when(tool.squeezed, kSqueezed) | bit_when(tool.held_back, kHeldBack));
+        bit_when(tool.squeezed, kSqueezed) | bit_when(tool.held_back, kHeldBack) |
+        bit_when(tool.has_gripper, kHasGripper));
+    wire.gripper_m = tool.gripper_m;
+    wire.buttons = tool.buttons;
     return wire;
 }
 
-ToolTelemetry from_wire(const tactus_v1_ToolTelemetry& wire)
+ToolTelemetry from_wire(const tactus_v2_ToolTelemetry& wire)
 {
     ToolTelemetry tool;
     std::ranges::copy(wire.position_m, tool.position_m.begin());
+    std::ranges::copy(wire.rotation, tool.rotation.begin());
     std::ranges::copy(wire.proxy_m, tool.proxy_m.begin());
+    std::ranges::copy(wire.proxy_rotation, tool.proxy_rotation.begin());
     std::ranges::copy(wire.force_n, tool.force_n.begin());
     std::ranges::copy(wire.torque_nm, tool.torque_nm.begin());
     tool.in_contact = (wire.state & kInContact) != 0;
     tool.frozen = (wire.state & kFrozen) != 0;
     tool.squeezed = (wire.state & kSqueezed) != 0;
     tool.held_back = (wire.state & kHeldBack) != 0;
+    tool.has_gripper = (wire.state & kHasGripper) != 0;
+    tool.gripper_m = wire.gripper_m;
+    tool.buttons = wire.buttons;
     return tool;
 }
 
-tactus_v1_ModelTelemetry to_wire(const ModelIdentity& identity, const ModelTelemetry& model)
+tactus_v2_PairTelemetry to_wire(const PairTelemetry& pair)
+{
+    tactus_v2_PairTelemetry wire = {};
+    wire.host_epoch = pair.host_epoch;
+    wire.object = pair.object;
+    wire.tool = pair.tool;
+    wire.kind = static_cast<std::uint8_t>(pair.kind);
+    wire.lower_m = pair.lower_m;
+    wire.upper_m = pair.upper_m;
+    std::ranges::copy(pair.point_m, std::begin(wire.point_m));
+    std::ranges::copy(pair.force_n, std::begin(wire.force_n));
+    return wire;
+}
+
+PairTelemetry from_wire(const tactus_v2_PairTelemetry& wire)
+{
+    PairTelemetry pair{wire.host_epoch, wire.object,  wire.tool, static_cast<AnswerKind>(wire.kind),
+                       wire.lower_m,    wire.upper_m, {},        {}};
+    std::ranges::copy(wire.point_m, pair.point_m.begin());
+    std::ranges::copy(wire.force_n, pair.force_n.begin());
+    return pair;
+}
+
+tactus_v2_ModelTelemetry to_wire(const ModelIdentity& identity, const ModelTelemetry& model)
 {
     const auto pool = [](const PoolTelemetry& use) {
-        return tactus_v1_PoolTelemetry{use.used, use.capacity};
+        return tactus_v2_PoolTelemetry{use.used, use.capacity};
     };
-    tactus_v1_ModelTelemetry wire = {};
+    tactus_v2_ModelTelemetry wire = {};
     identity.name.copy(static_cast<char*>(wire.name), kMaxNameBytes);
     std::memcpy(wire.hash, identity.hash.data(), identity.hash.size());
     wire.revision = identity.revision;
@@ -91,9 +125,9 @@ tactus_v1_ModelTelemetry to_wire(const ModelIdentity& identity, const ModelTelem
     return wire;
 }
 
-ModelTelemetry from_wire(const tactus_v1_ModelTelemetry& wire)
+ModelTelemetry from_wire(const tactus_v2_ModelTelemetry& wire)
 {
-    const auto pool = [](const tactus_v1_PoolTelemetry& use) {
+    const auto pool = [](const tactus_v2_PoolTelemetry& use) {
         return PoolTelemetry{use.used, use.capacity};
     };
     ModelTelemetry model;
@@ -111,22 +145,33 @@ ModelTelemetry from_wire(const tactus_v1_ModelTelemetry& wire)
     return model;
 }
 
-bool is_finite(const ToolTelemetry& tool)
+bool all_finite(std::span<const double> numbers)
 {
-    const auto all_finite = [](const std::array<double, 3>& vector)
-    { return std::ranges::all_of(vector, [](double value) { return std::isfinite(value); }); };
-    return all_finite(tool.position_m) && all_finite(tool.proxy_m) && all_finite(tool.force_n) &&
-           all_finite(tool.torque_nm);
+    return std::ranges::all_of(numbers, [](double value) { return std::isfinite(value); });
 }
 
-ModelIdentity identity_of(const tactus_v1_ModelTelemetry& wire)
+bool is_sound(const ToolTelemetry& tool)
+{
+    return all_finite(tool.position_m) && all_finite(tool.rotation) && all_finite(tool.proxy_m) &&
+           all_finite(tool.proxy_rotation) && all_finite(tool.force_n) &&
+           all_finite(tool.torque_nm) && std::isfinite(tool.gripper_m);
+}
+
+/// Of an object that nothing is known of yet the upper bound is infinite.
+bool is_sound(const PairTelemetry& pair, std::uint32_t tools)
+{
+    return pair.tool < tools && pair.kind <= AnswerKind::stale && pair.lower_m <= pair.upper_m &&
+           all_finite(pair.point_m) && all_finite(pair.force_n);
+}
+
+ModelIdentity identity_of(const tactus_v2_ModelTelemetry& wire)
 {
     ModelIdentity identity{text_of(wire.name), {}, wire.revision};
     std::memcpy(identity.hash.data(), wire.hash, identity.hash.size());
     return identity;
 }
 
-/// Everything but tools and models, to the wire or from it.
+/// Everything but tools, pairs and models, to the wire or from it.
 template <typename From, typename To>
 void copy_counts(const From& from, To& to)
 {
@@ -150,55 +195,61 @@ Result<std::unique_ptr<TelemetryWriter>, Refusal>
 TelemetryWriter::create(const Domain& domain, std::string controller_name,
                         std::vector<ModelIdentity> models)
 {
-    auto endpoint = make_writer(domain, Topic::telemetry, "");
+    auto endpoint = make_writer(domain, Topic::telemetry, controller_name);
     if (!endpoint)
     {
         return endpoint.error();
     }
-    std::unique_ptr<TelemetryWriter> writer(
-        new TelemetryWriter(std::move(controller_name), std::move(models)));
+    std::unique_ptr<TelemetryWriter> writer(new TelemetryWriter(
+        domain.participants().own(), std::move(controller_name), std::move(models)));
     writer->writer_ = std::move(endpoint).value();
     return writer;
 }
 
-TelemetryWriter::TelemetryWriter(std::string controller_name, std::vector<ModelIdentity> models)
-    : controller_name_(std::move(controller_name))
+TelemetryWriter::TelemetryWriter(const ControllerId& controller, std::string controller_name,
+                                 std::vector<ModelIdentity> models)
+    : controller_(controller)
+    , controller_name_(std::move(controller_name))
     , models_(std::move(models))
-    , controller_(random_controller())
 {
     TACTUS_ASSERT(is_valid_name(controller_name_));
-    TACTUS_ASSERT(models_.size() <= kMaxObjects);
+    TACTUS_ASSERT(models_.size() <= kMaxShownModels);
 }
 
 void TelemetryWriter::write(const Telemetry& telemetry)
 {
     TACTUS_ASSERT(telemetry.tool_count <= kMaxTools);
+    TACTUS_ASSERT(telemetry.pair_count <= kMaxPairs);
     TACTUS_ASSERT(telemetry.model_count == models_.size());
-    std::array<tactus_v1_ToolTelemetry, kMaxTools> tools{};
-    std::array<tactus_v1_ModelTelemetry, kMaxObjects> models{};
+    std::array<tactus_v2_PairTelemetry, kMaxPairs> pairs{};
+    std::array<tactus_v2_ToolTelemetry, kMaxTools> tools{};
+    std::array<tactus_v2_ModelTelemetry, kMaxShownModels> models{};
     for (std::uint32_t i = 0; i < telemetry.tool_count; ++i)
     {
         tools[i] = to_wire(telemetry.tools[i]);
+    }
+    for (std::uint32_t i = 0; i < telemetry.pair_count; ++i)
+    {
+        pairs[i] = to_wire(telemetry.pairs[i]);
     }
     for (std::uint32_t i = 0; i < telemetry.model_count; ++i)
     {
         models[i] = to_wire(models_[i], telemetry.models[i]);
     }
-    tactus_v1_Telemetry sample = {};
+    tactus_v2_Telemetry sample = {};
     std::memcpy(sample.controller, controller_.data(), controller_.size());
-    sample.protocol_version = kProtocolVersion;
     controller_name_.copy(static_cast<char*>(sample.controller_name), kMaxNameBytes);
     sample.serial = ++sent_;
     copy_counts(telemetry, sample);
     sample.tools = {telemetry.tool_count, telemetry.tool_count, tools.data(), false};
+    sample.pairs = {telemetry.pair_count, telemetry.pair_count, pairs.data(), false};
     sample.models = {telemetry.model_count, telemetry.model_count, models.data(), false};
     dds_write(writer_.handle, &sample); // One that fails is a lost one: the next is as good.
 }
 
 Result<std::unique_ptr<TelemetryReader>, Refusal> TelemetryReader::create(const Domain& domain)
 {
-    const std::string everywhere;
-    auto reader = make_reader(domain, Topic::telemetry, {&everywhere, 1});
+    auto reader = make_reader(domain, Topic::telemetry, kAnyPartition);
     if (!reader)
     {
         return reader.error();
@@ -210,9 +261,9 @@ TelemetryReader::TelemetryReader(Endpoint reader) : reader_(std::move(reader)) {
 
 void TelemetryReader::poll()
 {
-    take_each<tactus_v1_Telemetry>(
+    take_each<tactus_v2_Telemetry>(
         reader_.handle, kMaxWatched,
-        [this](const tactus_v1_Telemetry& sample, const dds_sample_info_t& info)
+        [this](const tactus_v2_Telemetry& sample, const dds_sample_info_t& info)
         {
             if (info.instance_state != DDS_ALIVE_INSTANCE_STATE)
             {
@@ -229,25 +280,35 @@ void TelemetryReader::poll()
         });
 }
 
-bool TelemetryReader::try_take(const tactus_v1_Telemetry& sample)
+bool TelemetryReader::try_take(const tactus_v2_Telemetry& sample)
 {
     WatchedController news;
     std::memcpy(news.id.data(), sample.controller, news.id.size());
     news.name = text_of(sample.controller_name);
     news.serial = sample.serial;
-    const bool is_in_bounds =
-        sample.tools._length <= kMaxTools && sample.models._length <= kMaxObjects;
-    if (sample.protocol_version != kProtocolVersion || !is_valid_name(news.name) || !is_in_bounds)
+    const bool is_in_bounds = sample.tools._length <= kMaxTools &&
+                              sample.pairs._length <= kMaxPairs &&
+                              sample.models._length <= kMaxShownModels;
+    if (!is_valid_name(news.name) || !is_in_bounds)
     {
         return false;
     }
     copy_counts(sample, news.telemetry);
     news.telemetry.tool_count = sample.tools._length;
+    news.telemetry.pair_count = sample.pairs._length;
     news.telemetry.model_count = sample.models._length;
     for (std::uint32_t i = 0; i < sample.tools._length; ++i)
     {
         news.telemetry.tools[i] = from_wire(sample.tools._buffer[i]);
-        if (!is_finite(news.telemetry.tools[i]))
+        if (!is_sound(news.telemetry.tools[i]))
+        {
+            return false;
+        }
+    }
+    for (std::uint32_t i = 0; i < sample.pairs._length; ++i)
+    {
+        news.telemetry.pairs[i] = from_wire(sample.pairs._buffer[i]);
+        if (!is_sound(news.telemetry.pairs[i], sample.tools._length))
         {
             return false;
         }

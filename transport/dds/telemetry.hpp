@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-struct tactus_v1_Telemetry; // idlc's type of a sample.
+struct tactus_v2_Telemetry; // idlc's type of a sample.
 
 namespace tactus::dds
 {
@@ -26,7 +26,8 @@ inline constexpr std::size_t kMaxWatched = 256;
 class TelemetryWriter
 {
 public:
-    /// `domain` must outlive it; `models` in the order of Telemetry::models, at most kMaxObjects.
+    /// `domain` must outlive it; `models` in the order of Telemetry::models, at most
+    /// kMaxShownModels.
     [[nodiscard]] static Result<std::unique_ptr<TelemetryWriter>, Refusal>
     create(const Domain& domain, std::string controller_name, std::vector<ModelIdentity> models);
 
@@ -37,11 +38,12 @@ public:
     [[nodiscard]] std::uint64_t sent() const noexcept { return sent_; }
 
 private:
-    TelemetryWriter(std::string controller_name, std::vector<ModelIdentity> models);
+    TelemetryWriter(const ControllerId& controller, std::string controller_name,
+                    std::vector<ModelIdentity> models);
 
+    ControllerId controller_;
     std::string controller_name_;
     std::vector<ModelIdentity> models_;
-    ControllerId controller_;
     Endpoint writer_;
     std::uint64_t sent_{0};
 };
@@ -73,14 +75,14 @@ public:
     {
         return controllers_;
     }
-    /// Samples of another protocol version, with names that are none or numbers that aren't finite,
-    /// and those of controllers beyond kMaxWatched.
+    /// Samples with names that are none or numbers that aren't finite, and those of controllers
+    /// beyond kMaxWatched.
     [[nodiscard]] std::uint64_t refused() const noexcept { return refused_; }
 
 private:
     explicit TelemetryReader(Endpoint reader);
 
-    [[nodiscard]] bool try_take(const tactus_v1_Telemetry& sample);
+    [[nodiscard]] bool try_take(const tactus_v2_Telemetry& sample);
 
     Endpoint reader_;
     std::vector<WatchedController> controllers_;

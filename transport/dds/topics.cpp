@@ -4,13 +4,14 @@
 
 #include "rt_core/limits.hpp"
 #include "transport/content_hash.hpp"
+#include "transport/telemetry.hpp"
 
 #include <dds/dds.h>
 #include <fmt/format.h>
 
+#include <array>
+#include <cstring>
 #include <memory>
-#include <random>
-#include <vector>
 
 #include "tactus.h"
 
@@ -27,38 +28,102 @@ constexpr std::int64_t kLiveliness = DDS_MSECS(500);
 
 // The bounds of transport/idl/tactus.idl. When a constant on the right grows, the wire changes with
 // it: raise the bound there and the protocol's version.
-static_assert(tactus_v1_max_name_bytes == kMaxNameBytes);
-static_assert(tactus_v1_max_tools == kMaxTools);
-static_assert(tactus_v1_max_objects == kMaxObjects);
-static_assert(tactus_v1_max_wishes == kMaxWishes);
-static_assert(tactus_v1_max_payload_bytes >= kPayloadBytes);
-static_assert(sizeof(tactus_v1_Wanted::controller) == sizeof(ControllerId));
-static_assert(sizeof(tactus_v1_Wanted::model_hash) == sizeof(ContentHash));
+static_assert(tactus_v2_max_name_bytes == kMaxNameBytes);
+static_assert(tactus_v2_max_tools == kMaxTools);
+static_assert(tactus_v2_max_models == kMaxShownModels);
+static_assert(tactus_v2_max_pairs == kMaxPairs);
+static_assert(tactus_v2_max_wishes == kMaxWishes);
+static_assert(tactus_v2_max_moved == kMaxMoved);
+static_assert(tactus_v2_max_payload_bytes >= kPayloadBytes);
+static_assert(kMaxModels <= UINT16_MAX); // PieceName::model.
+static_assert(sizeof(tactus_v2_Wanted::controller) == sizeof(ControllerId));
+static_assert(sizeof(tactus_v2_CatalogueEntry::model_hash) == sizeof(ContentHash));
 
 struct TopicTraits
 {
     const char* name;
     const dds_topic_descriptor_t* type;
+    dds_topic_filter_sample_sampleinfo_arg_fn is_honest;
     bool is_kept_for_late_joiners;
     bool has_liveliness;
     bool is_best_effort; ///< Only the newest counts: what is lost isn't sent again.
     std::int32_t depth;  ///< Samples per instance.
-    std::int32_t instances;
 };
+
+Participants& participants_of(void* context)
+{
+    return *static_cast<Participants*>(context);
+}
+
+/// Whether a sample of a host comes from that host.
+template <typename Sample>
+bool is_of_its_host(const Sample& sample, const dds_sample_info_t* info, void* context)
+{
+    return participants_of(context).is_host(info->publication_handle, sample.host_epoch);
+}
+
+template <typename Sample>
+bool is_of_its_controller(const Sample& sample, const dds_sample_info_t* info, void* context)
+{
+    const auto writer = participants_of(context).writer_of(info->publication_handle);
+    return writer && std::memcmp(static_cast<const std::uint8_t*>(sample.controller),
+                                 writer->data(), writer->size()) == 0;
+}
+
+bool is_honest_entry(const void* sample, const dds_sample_info_t* info, void* context)
+{
+    const auto& entry = *static_cast<const tactus_v2_CatalogueEntry*>(sample);
+    return entry.model < kMaxModels && is_of_its_host(entry, info, context);
+}
+
+bool is_honest_record(const void* sample, const dds_sample_info_t* info, void* context)
+{
+    const auto& record = *static_cast<const tactus_v2_ObjectRecord*>(sample);
+    return record.object < kMaxObjects && is_of_its_host(record, info, context);
+}
+
+bool is_honest_motion(const void* sample, const dds_sample_info_t* info, void* context)
+{
+    return is_of_its_host(*static_cast<const tactus_v2_Motion*>(sample), info, context);
+}
+
+/// Wishes to other hosts take no room either.
+bool is_honest_wish(const void* sample, const dds_sample_info_t* info, void* context)
+{
+    const auto& wanted = *static_cast<const tactus_v2_Wanted*>(sample);
+    return wanted.host_epoch == participants_of(context).own_epoch() &&
+           is_of_its_controller(wanted, info, context);
+}
+
+bool is_honest_pieces(const void* sample, const dds_sample_info_t* info, void* context)
+{
+    return is_of_its_host(*static_cast<const tactus_v2_Pieces*>(sample), info, context);
+}
+
+bool is_honest_telemetry(const void* sample, const dds_sample_info_t* info, void* context)
+{
+    return is_of_its_controller(*static_cast<const tactus_v2_Telemetry*>(sample), info, context);
+}
 
 const TopicTraits& traits_of(Topic topic)
 {
     // The depths of wishes and pieces are hardly ever reached: wishes are few and bounded by their
     // kind, pieces are under credit. What one stuck writer of several holds back while the others'
     // counts go on is bounded by its depth alone: what is pushed out of it is asked for again. All
-    // are keep-last, so that no writer ever waits for a reader.
+    // are keep-last, so that no writer ever waits for a reader. Readers have no other limits: one
+    // that is full would hold up all reception of its process. What the filters let through bounds
+    // them.
     static const std::array<TopicTraits, 6> traits{{
-        {"tactus/v1/catalogue", &tactus_v1_CatalogueEntry_desc, true, true, false, 1, 4096},
-        {"tactus/v1/model", &tactus_v1_ModelStart_desc, true, false, false, 1, 16},
-        {"tactus/v1/wanted", &tactus_v1_Wanted_desc, false, true, false, 16, 4096},
-        {"tactus/v1/chunks", &tactus_v1_Pieces_desc, false, false, false, 4 * kCreditPieces, 1},
-        {"tactus/v1/poses", &tactus_v1_ObjectPose_desc, false, false, true, 1, 4096},
-        {"tactus/v1/telemetry", &tactus_v1_Telemetry_desc, false, true, true, 1, 256},
+        {"tactus/v2/catalogue", &tactus_v2_CatalogueEntry_desc, is_honest_entry, true, true, false,
+         1},
+        {"tactus/v2/objects", &tactus_v2_ObjectRecord_desc, is_honest_record, true, false, false,
+         1},
+        {"tactus/v2/motion", &tactus_v2_Motion_desc, is_honest_motion, false, false, true, 128},
+        {"tactus/v2/wanted", &tactus_v2_Wanted_desc, is_honest_wish, false, true, false, 16},
+        {"tactus/v2/chunks", &tactus_v2_Pieces_desc, is_honest_pieces, false, false, false,
+         4 * kCreditPieces},
+        {"tactus/v2/telemetry", &tactus_v2_Telemetry_desc, is_honest_telemetry, false, true, true,
+         1},
     }};
     return traits[static_cast<std::size_t>(topic)];
 }
@@ -79,14 +144,13 @@ Qos endpoint_qos(const TopicTraits& traits)
     dds_qset_durability(qos.get(), traits.is_kept_for_late_joiners ? DDS_DURABILITY_TRANSIENT_LOCAL
                                                                    : DDS_DURABILITY_VOLATILE);
     dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, traits.depth);
-    const std::int32_t samples = traits.depth * traits.instances;
-    dds_qset_resource_limits(qos.get(), samples, traits.instances, traits.depth);
-    dds_qset_durability_service(qos.get(), 0, DDS_HISTORY_KEEP_LAST, traits.depth, samples,
-                                traits.instances, traits.depth);
+    constexpr std::int32_t unlimited = DDS_LENGTH_UNLIMITED;
+    dds_qset_durability_service(qos.get(), 0, DDS_HISTORY_KEEP_LAST, traits.depth, unlimited,
+                                unlimited, unlimited);
     return qos;
 }
 
-std::int32_t find_or_create_topic(const Domain& domain, const TopicTraits& traits)
+std::int32_t make_topic(const Domain& domain, const TopicTraits& traits)
 {
     return dds_create_topic(domain.participant(), traits.type, traits.name, nullptr, nullptr);
 }
@@ -96,15 +160,11 @@ Refusal refused(const TopicTraits& traits, std::int32_t code)
     return {fmt::format("DDS topic {} cannot be used: {}", traits.name, dds_strretcode(code))};
 }
 
-Qos partition_qos(std::span<const std::string> partitions)
+Qos partition_qos(const std::string& partition)
 {
     Qos qos = make_qos();
-    std::vector<const char*> names;
-    for (const std::string& partition : partitions)
-    {
-        names.push_back(partition.c_str());
-    }
-    dds_qset_partition(qos.get(), static_cast<std::uint32_t>(names.size()), names.data());
+    const char* name = partition.c_str();
+    dds_qset_partition(qos.get(), 1, &name);
     return qos;
 }
 
@@ -114,12 +174,12 @@ Result<Endpoint, Refusal> make_writer(const Domain& domain, Topic topic,
                                       const std::string& partition)
 {
     const TopicTraits& traits = traits_of(topic);
-    const Entity type(find_or_create_topic(domain, traits)); // The writer keeps it in use.
+    const Entity type(make_topic(domain, traits)); // The writer keeps it in use.
     if (!type.is_valid())
     {
         return refused(traits, type.get());
     }
-    const Qos parent_qos = partition_qos({&partition, 1});
+    const Qos parent_qos = partition_qos(partition);
     const Qos qos = endpoint_qos(traits);
     if (traits.has_liveliness)
     {
@@ -136,15 +196,24 @@ Result<Endpoint, Refusal> make_writer(const Domain& domain, Topic topic,
 }
 
 Result<Endpoint, Refusal> make_reader(const Domain& domain, Topic topic,
-                                      std::span<const std::string> partitions)
+                                      const std::string& partition)
 {
     const TopicTraits& traits = traits_of(topic);
-    const Entity type(find_or_create_topic(domain, traits));
+    const Entity type(make_topic(domain, traits)); // The filter is this one's alone.
     if (!type.is_valid())
     {
         return refused(traits, type.get());
     }
-    const Qos parent_qos = partition_qos(partitions);
+    dds_topic_filter filter = {};
+    filter.mode = DDS_TOPIC_FILTER_SAMPLE_SAMPLEINFO_ARG;
+    filter.f.sample_sampleinfo_arg = traits.is_honest;
+    filter.arg = &domain.participants();
+    if (const auto code = dds_set_topic_filter_extended(type.get(), &filter);
+        code != DDS_RETCODE_OK)
+    {
+        return refused(traits, code);
+    }
+    const Qos parent_qos = partition_qos(partition);
     const Qos qos = endpoint_qos(traits);
     Endpoint reader;
     reader.parent = Entity(dds_create_subscriber(domain.participant(), parent_qos.get(), nullptr));
@@ -156,28 +225,14 @@ Result<Endpoint, Refusal> make_reader(const Domain& domain, Topic topic,
     return reader;
 }
 
-std::string model_partition(const ContentHash& model)
+std::string host_partition(std::uint64_t host_epoch)
 {
-    return hash_text(model);
+    return fmt::format("host.{:016x}", host_epoch);
 }
 
-std::string controller_partition(const ControllerId& controller, const ContentHash& model)
+std::string controller_partition(const std::string& name, const ControllerId& id)
 {
-    return hash_text(controller) + "." + hash_text(model);
-}
-
-std::uint64_t random_bits()
-{
-    std::random_device system;
-    return (std::uint64_t{system()} << 32U) | system();
-}
-
-ControllerId random_controller()
-{
-    const std::array<std::uint64_t, 2> bits{random_bits(), random_bits()};
-    ControllerId id{};
-    std::memcpy(id.data(), bits.data(), id.size());
-    return id;
+    return name + "." + hash_text(id);
 }
 
 bool is_matched(const Endpoint& writer)

@@ -3,40 +3,43 @@
 #pragma once
 
 #include "platform/base/refusal.hpp"
-#include "rt_core/spm/header.hpp"
 #include "transport/dds/domain.hpp"
 #include "transport/dds/entity.hpp"
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <span>
 #include <string>
 
 namespace tactus::dds
 {
 
-/// Both sides must agree on it; a sample of another version is ignored and reported.
-inline constexpr std::uint32_t kProtocolVersion = 1;
+/// In the topics' names: who speaks another one is not heard.
+inline constexpr std::uint32_t kProtocolVersion = 2;
 
-/// Names of pieces in one request; also how many a host keeps waiting per controller and model.
+/// Names of pieces in one request.
 inline constexpr std::uint32_t kMaxWishes = 256;
-/// Pieces that may be under way to one controller for one model: at 0.6 KB a piece and 20 ms from
+/// Names that a host keeps waiting for one controller.
+inline constexpr std::uint32_t kMaxWaiting = 1'024;
+/// Objects in one sample of motion.
+inline constexpr std::uint32_t kMaxMoved = 64;
+/// Pieces that may be under way from one host to one controller: at 0.6 KB a piece and 20 ms from
 /// request to arrival 6,400 a second. Readers keep at least as many samples.
 inline constexpr std::uint32_t kCreditPieces = 128;
 /// Payload of one sample, in bytes: fits the type's bound and leaves a UDP datagram room.
 inline constexpr std::size_t kPayloadBytes = 60'000;
-
-/// Random, one per controller link; names its partition.
-using ControllerId = std::array<std::uint8_t, 16>;
+/// Header and base mesh go in parts of this size; the last one is smaller.
+inline constexpr std::size_t kPartBytes = std::size_t{28} << 10U;
+/// Most of them that a controller fetches.
+inline constexpr std::size_t kMaxHeaderBytes = std::size_t{8} << 20U;
+inline constexpr std::size_t kMaxBaseBytes = std::size_t{1} << 20U;
 
 enum class Topic : std::uint8_t
 {
     catalogue,
-    model,
+    objects,
+    motion,
     wanted,
     chunks,
-    poses,
     telemetry
 };
 
@@ -44,18 +47,17 @@ enum class Topic : std::uint8_t
 /// blocks for more than 5 ms. The domain must outlive it.
 [[nodiscard]] Result<Endpoint, Refusal> make_writer(const Domain& domain, Topic topic,
                                                     const std::string& partition);
+/// Samples that name another host or controller than their writer's participant never get into the
+/// reader, nor those of objects and models with numbers that can't be.
 [[nodiscard]] Result<Endpoint, Refusal> make_reader(const Domain& domain, Topic topic,
-                                                    std::span<const std::string> partitions);
+                                                    const std::string& partition);
 
-/// Partition of what concerns one model, whoever serves it.
-[[nodiscard]] std::string model_partition(const ContentHash& model);
-/// Partition of what one controller gets of one model.
-[[nodiscard]] std::string controller_partition(const ControllerId& controller,
-                                               const ContentHash& model);
-
-/// Random bits from the system: host epochs and controller ids.
-[[nodiscard]] std::uint64_t random_bits();
-[[nodiscard]] ControllerId random_controller();
+/// Of all controllers, for readers.
+inline constexpr const char* kAnyPartition = "*";
+/// Where a host tells of its objects.
+[[nodiscard]] std::string host_partition(std::uint64_t host_epoch);
+/// Where one controller gets its pieces.
+[[nodiscard]] std::string controller_partition(const std::string& name, const ControllerId& id);
 
 /// Whether a reader or writer has anybody on the other side.
 [[nodiscard]] bool is_matched(const Endpoint& writer);

@@ -12,8 +12,17 @@
 namespace tactus::dds
 {
 
+/// A piece of one of a host's models.
+struct HostPiece
+{
+    std::uint32_t model{0}; ///< Its number on the host.
+    ContentKey key;
+
+    constexpr bool operator==(const HostPiece&) const noexcept = default;
+};
+
 /// What one controller waits for at its host: newest generation first, within it in the order of
-/// asking; each key once. When it is full the last ones are forgotten: the oldest generation.
+/// asking; each piece once. When it is full the last ones are forgotten: the oldest generation.
 class WishQueue
 {
 public:
@@ -23,14 +32,14 @@ public:
     }
 
     /// Generations count up and may wrap.
-    void add(ContentKey key, std::uint32_t generation)
+    void add(const HostPiece& piece, std::uint32_t generation)
     {
-        std::erase_if(wishes_, [&](const Wish& wish) { return wish.key == key; });
+        std::erase_if(wishes_, [&](const Wish& wish) { return wish.piece == piece; });
         const auto at =
             std::find_if(wishes_.begin(), wishes_.end(),
                          [&](const Wish& wish)
                          { return static_cast<std::int32_t>(wish.generation - generation) < 0; });
-        wishes_.insert(at, {key, generation});
+        wishes_.insert(at, {piece, generation});
         if (wishes_.size() > capacity_)
         {
             wishes_.pop_back();
@@ -42,13 +51,13 @@ public:
     [[nodiscard]] std::size_t size() const noexcept { return wishes_.size(); }
     [[nodiscard]] std::uint64_t forgotten() const noexcept { return forgotten_; }
     /// The most urgent one; there must be one.
-    [[nodiscard]] ContentKey front() const noexcept { return wishes_.front().key; }
+    [[nodiscard]] const HostPiece& front() const noexcept { return wishes_.front().piece; }
     void pop_front() noexcept { wishes_.erase(wishes_.begin()); }
 
 private:
     struct Wish
     {
-        ContentKey key;
+        HostPiece piece;
         std::uint32_t generation{0};
     };
 

@@ -32,6 +32,7 @@ std::string name_of(ContentKey key)
         return "base mesh";
     case ContentKind::index_page:
         return fmt::format("index page {}", key.number);
+    case ContentKind::header:
     case ContentKind::chunk:
         break;
     }
@@ -109,6 +110,8 @@ bool ModelStore::has(ContentKey key) const noexcept
         return key.number < header_.counts().index_pages();
     case ContentKind::chunk:
         return key.number < header_.counts().chunks();
+    case ContentKind::header:
+        break; // Of header_bytes().
     }
     return false;
 }

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "platform/base/refusal.hpp"
+#include "rt_core/spm/content_key.hpp"
+#include "transport/dds/topics.hpp"
+#include "transport/store/model_store.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace tactus::dds
+{
+
+/// A model under the name by which controllers ask for it.
+struct PublishedModel
+{
+    std::string name; ///< Valid, and no other model of this host has it.
+    ModelStore store;
+};
+
+/// A published model in the pieces that go over the wire: index pages, chunks, and header and base
+/// mesh in parts.
+class ModelPieces
+{
+public:
+    /// Reads the base mesh, which is kept. Refused when that fails, or when header or base mesh are
+    /// larger than a controller takes.
+    [[nodiscard]] static Result<ModelPieces, Refusal> create(PublishedModel model);
+
+    [[nodiscard]] const PublishedModel& model() const noexcept { return model_; }
+    [[nodiscard]] const ModelStore& store() const noexcept { return model_.store; }
+
+    [[nodiscard]] bool has(ContentKey key) const noexcept;
+    /// Bytes of a piece that there is.
+    [[nodiscard]] std::size_t bytes(ContentKey key) const noexcept;
+    /// Reads such a piece into `out`, verified; no allocation once that is large enough.
+    [[nodiscard]] Result<Done, Refusal> read(ContentKey key, std::vector<std::byte>& out) const;
+
+private:
+    explicit ModelPieces(PublishedModel model) : model_(std::move(model)) {}
+
+    /// Header or base mesh; empty for other kinds.
+    [[nodiscard]] std::span<const std::byte> whole(ContentKind kind) const noexcept;
+
+    PublishedModel model_;
+    std::vector<std::byte> base_;
+};
+
+/// Parts of something of that size.
+[[nodiscard]] constexpr std::uint32_t parts_of(std::size_t bytes) noexcept
+{
+    return static_cast<std::uint32_t>((bytes + kPartBytes - 1) / kPartBytes);
+}
+
+/// One part of it; empty beyond its end.
+[[nodiscard]] constexpr std::span<const std::byte> part_of(std::span<const std::byte> whole,
+                                                           std::uint32_t part) noexcept
+{
+    const std::size_t begin = std::min(part * kPartBytes, whole.size());
+    return whole.subspan(begin, std::min(kPartBytes, whole.size() - begin));
+}
+
+} // namespace tactus::dds

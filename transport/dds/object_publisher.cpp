@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "transport/dds/object_publisher.hpp"
+
+#include "platform/base/printable.hpp"
+#include "transport/content_hash.hpp"
+#include "transport/dds/placement.hpp"
+#include "transport/model_name.hpp"
+
+#include <dds/dds.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <utility>
+
+#include "tactus.h"
+
+namespace tactus::dds
+{
+
+namespace
+{
+
+/// A pose is sent again this often, a beat apart.
+constexpr int kRepeats = 3;
+/// An object that has rested for this long gets its record anew, for late joiners.
+constexpr auto kRest = std::chrono::milliseconds(500);
+
+} // namespace
+
+Result<std::unique_ptr<ObjectPublisher>, Refusal>
+ObjectPublisher::create(const Domain& domain, std::vector<ContentHash> models)
+{
+    const std::uint64_t epoch = domain.participants().own_epoch();
+    std::unique_ptr<ObjectPublisher> publisher(new ObjectPublisher(epoch, std::move(models)));
+    auto records = make_writer(domain, Topic::objects, host_partition(epoch));
+    if (!records)
+    {
+        return records.error();
+    }
+    auto motion = make_writer(domain, Topic::motion, host_partition(epoch));
+    if (!motion)
+    {
+        return motion.error();
+    }
+    publisher->records_ = std::move(records).value();
+    publisher->motion_ = std::move(motion).value();
+    return publisher;
+}
+
+ObjectPublisher::ObjectPublisher(std::uint64_t host_epoch, std::vector<ContentHash> models)
+    : host_epoch_(host_epoch), models_(std::move(models))
+{
+}
+
+Result<std::uint32_t, Refusal> ObjectPublisher::show(const ShownObject& object)
+{
+    const auto refuse = [&](const std::string& reason)
+    { return Refusal{fmt::format("object '{}' {}", printable(object.name), reason)}; };
+    const auto pose = checked_pose(object.pose);
+    if (!is_valid_name(object.name))
+    {
+        return refuse("needs a name of 1 to 63 characters of A-Z a-z 0-9 . _ -");
+    }
+    if (!pose)
+    {
+        return refuse(fmt::format("stands nowhere: {}",
+                                  kPoseRefusalNames[static_cast<std::size_t>(pose.error())]));
+    }
+    if (!is_sound(object.material))
+    {
+        return refuse("has a material with stiffness not above 0, friction or damping below 0, or "
+                      "dynamic friction above static friction");
+    }
+    if (std::ranges::find(models_, object.model) == models_.end())
+    {
+        return refuse("shows model " + hash_text(object.model) + ", which isn't served");
+    }
+    if (count_ == kMaxObjects)
+    {
+        return refuse(fmt::format("is one too many: {} are the limit", kMaxObjects));
+    }
+    if (free_.empty())
+    {
+        free_.push_back(static_cast<std::uint32_t>(slots_.size()));
+        slots_.emplace_back();
+    }
+    const std::uint32_t number = free_.back();
+    free_.pop_back();
+    Slot& slot = slots_[number];
+    const bool is_listed = slot.is_listed; // Of an object that had the number before.
+    slot = {object, slot.generation + 1, true};
+    slot.is_listed = is_listed;
+    slot.shown.pose = pose.value();
+    ++count_;
+    write_record(number);
+    return number;
+}
+
+Result<Done, PoseRefusal> ObjectPublisher::move(std::uint32_t object, const Pose& pose)
+{
+    TACTUS_ASSERT(find(object) != nullptr);
+    const auto checked = checked_pose(pose);
+    if (!checked)
+    {
+        return checked.error();
+    }
+    Slot& slot = slots_[object];
+    slot.shown.pose = checked.value();
+    slot.has_moved = slot.owes_record = true;
+    slot.repeats = kRepeats;
+    slot.moved = Clock::now();
+    wake(object);
+    return Done{};
+}
+
+void ObjectPublisher::remove(std::uint32_t object)
+{
+    TACTUS_ASSERT(find(object) != nullptr);
+    tactus_v2_ObjectRecord record = {};
+    record.host_epoch = host_epoch_;
+    record.object = object;
+    dds_dispose(records_.handle, &record);
+    Slot& slot = slots_[object];
+    slot.is_shown = slot.has_moved = slot.owes_record = false;
+    slot.repeats = 0;
+    free_.push_back(object);
+    --count_;
+}
+
+void ObjectPublisher::step()
+{
+    const auto now = Clock::now();
+    due_.clear();
+    for (const std::uint32_t object : awake_)
+    {
+        Slot& slot = slots_[object];
+        const bool is_repeat = slot.repeats > 0 && now - slot.sent >= kMotionBeat;
+        if (slot.is_shown && (slot.has_moved || is_repeat))
+        {
+            slot.repeats -= slot.has_moved ? 0 : 1;
+            slot.has_moved = false;
+            slot.sent = now;
+            due_.push_back(object);
+        }
+    }
+    const std::span<const std::uint32_t> due(due_);
+    for (std::size_t i = 0; i < due.size(); i += kMaxMoved)
+    {
+        send(due.subspan(i, std::min<std::size_t>(kMaxMoved, due.size() - i)), now);
+    }
+    if (due.empty() && now >= next_beat())
+    {
+        send({}, now);
+    }
+    settle(now);
+}
+
+ObjectPublisher::Clock::time_point ObjectPublisher::next_beat() const noexcept
+{
+    return slots_.empty() ? Clock::time_point::max() : last_sample_ + kMotionBeat;
+}
+
+const ShownObject* ObjectPublisher::find(std::uint32_t object) const noexcept
+{
+    return object < slots_.size() && slots_[object].is_shown ? &slots_[object].shown : nullptr;
+}
+
+void ObjectPublisher::wake(std::uint32_t object)
+{
+    if (!slots_[object].is_listed)
+    {
+        slots_[object].is_listed = true;
+        awake_.push_back(object);
+    }
+}
+
+/// One that finds no room in the writer now is written in a later step.
+void ObjectPublisher::write_record(std::uint32_t object)
+{
+    Slot& slot = slots_[object];
+    const ShownObject& shown = slot.shown;
+    tactus_v2_ObjectRecord record = {};
+    record.host_epoch = host_epoch_;
+    record.object = object;
+    record.generation = slot.generation;
+    shown.name.copy(static_cast<char*>(record.name), kMaxNameBytes);
+    std::memcpy(record.model_hash, shown.model.data(), shown.model.size());
+    const bool is_rigid = shown.material.stiffness_n_per_m == kInfinity;
+    record.stiffness_n_per_m = is_rigid ? 0.0 : shown.material.stiffness_n_per_m;
+    record.static_friction = shown.material.static_friction;
+    record.dynamic_friction = shown.material.dynamic_friction;
+    record.damping_n_s_per_m = shown.material.damping_n_s_per_m;
+    record.serial = ++serial_;
+    record.pose = to_wire(shown.pose);
+    slot.owes_record = dds_write(records_.handle, &record) != DDS_RETCODE_OK;
+    if (slot.owes_record)
+    {
+        wake(object);
+    }
+}
+
+void ObjectPublisher::settle(Clock::time_point now)
+{
+    std::erase_if(awake_,
+                  [&](std::uint32_t object)
+                  {
+                      Slot& slot = slots_[object];
+                      if (now - slot.moved < kRest)
+                      {
+                          return false;
+                      }
+                      if (slot.owes_record)
+                      {
+                          write_record(object); // It is listed already.
+                      }
+                      slot.is_listed = slot.owes_record;
+                      return !slot.is_listed;
+                  });
+}
+
+void ObjectPublisher::send(std::span<const std::uint32_t> moved, Clock::time_point now)
+{
+    std::array<tactus_v2_MovedObject, kMaxMoved> objects{};
+    for (std::size_t i = 0; i < moved.size(); ++i)
+    {
+        const Slot& slot = slots_[moved[i]];
+        objects.at(i) = {moved[i], slot.generation, to_wire(slot.shown.pose)};
+    }
+    tactus_v2_Motion sample = {};
+    sample.host_epoch = host_epoch_;
+    sample.serial = ++serial_;
+    sample.host_time_ns =
+        std::chrono::duration_cast<std::chrono::nanoseconds>(now.time_since_epoch()).count();
+    sample.objects = static_cast<std::uint32_t>(count_);
+    const auto count = static_cast<std::uint32_t>(moved.size());
+    sample.moved = {count, count, objects.data(), false};
+    dds_write(motion_.handle, &sample); // A failure is made good by the next one.
+    last_sample_ = now;
+}
+
+} // namespace tactus::dds

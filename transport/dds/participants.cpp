@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "transport/dds/participants.hpp"
+
+#include "platform/base/printable.hpp"
+#include "transport/content_hash.hpp"
+#include "transport/dds/topics.hpp"
+
+#include <dds/dds.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace tactus::dds
+{
+
+namespace
+{
+
+/// Handles that are remembered: of writers long gone, too.
+constexpr std::size_t kMaxKnown = 16'384;
+constexpr std::string_view kTopicRoot = "tactus/v";
+
+ParticipantId id_of(const dds_guid_t& guid)
+{
+    ParticipantId id{};
+    std::memcpy(id.data(), static_cast<const std::uint8_t*>(guid.v), id.size());
+    return id;
+}
+
+/// Calls `visit(sample, info)` with what DDS has published anew.
+template <typename Sample, typename Visit>
+void read_news(std::int32_t reader, Visit&& visit)
+{
+    const std::uint32_t fresh =
+        DDS_NOT_READ_SAMPLE_STATE | DDS_ANY_VIEW_STATE | DDS_ANY_INSTANCE_STATE;
+    for (;;)
+    {
+        void* sample = nullptr;
+        dds_sample_info_t info = {};
+        if (dds_read_mask(reader, &sample, &info, 1, 1, fresh) != 1)
+        {
+            break;
+        }
+        if (info.valid_data)
+        {
+            visit(*static_cast<const Sample*>(sample), info);
+        }
+        dds_return_loan(reader, &sample, 1);
+    }
+    // Of those that are gone; or they would be kept for ever.
+    const std::uint32_t gone = DDS_ANY_SAMPLE_STATE | DDS_ANY_VIEW_STATE |
+                               DDS_NOT_ALIVE_DISPOSED_INSTANCE_STATE |
+                               DDS_NOT_ALIVE_NO_WRITERS_INSTANCE_STATE;
+    void* sample = nullptr;
+    dds_sample_info_t info = {};
+    while (dds_take_mask(reader, &sample, &info, 1, 1, gone) == 1)
+    {
+        dds_return_loan(reader, &sample, 1);
+        sample = nullptr;
+    }
+}
+
+std::string property(const dds_qos_t* qos, const char* name)
+{
+    char* value = nullptr;
+    std::string text;
+    if (qos != nullptr && dds_qget_prop(qos, name, &value) && value != nullptr)
+    {
+        text = printable(value);
+        dds_free(value);
+    }
+    return text;
+}
+
+/// The version that a topic is of; nothing for one that isn't ours in any.
+std::optional<std::string> version_of(const char* topic)
+{
+    std::string_view name(topic == nullptr ? "" : topic);
+    if (!name.starts_with(kTopicRoot))
+    {
+        return std::nullopt;
+    }
+    name.remove_prefix(kTopicRoot.size());
+    return printable(name.substr(0, std::min<std::size_t>(name.find('/'), 8)));
+}
+
+} // namespace
+
+std::uint64_t host_epoch_of(const ParticipantId& participant) noexcept
+{
+    const ContentHash hash = content_hash(std::as_bytes(std::span(participant)));
+    std::uint64_t epoch = 0;
+    std::memcpy(&epoch, hash.data(), sizeof(epoch));
+    return epoch;
+}
+
+Participants::Participants(std::int32_t participant)
+    : writers_(dds_create_reader(participant, DDS_BUILTIN_TOPIC_DCPSPUBLICATION, nullptr, nullptr))
+    , participants_(
+          dds_create_reader(participant, DDS_BUILTIN_TOPIC_DCPSPARTICIPANT, nullptr, nullptr))
+{
+    dds_guid_t guid = {};
+    dds_get_guid(participant, &guid);
+    own_ = id_of(guid);
+    own_epoch_ = host_epoch_of(own_);
+}
+
+std::optional<ParticipantId> Participants::writer_of(std::uint64_t publication_handle)
+{
+    const std::lock_guard lock(mutex_);
+    if (const auto known = known_.find(publication_handle); known != known_.end())
+    {
+        return known->second;
+    }
+    void* sample = nullptr;
+    dds_sample_info_t info = {};
+    if (dds_read_instance(writers_, &sample, &info, 1, 1, publication_handle) != 1)
+    {
+        return std::nullopt;
+    }
+    std::optional<ParticipantId> owner;
+    if (info.valid_data)
+    {
+        owner = id_of(static_cast<const dds_builtintopic_endpoint_t*>(sample)->participant_key);
+    }
+    dds_return_loan(writers_, &sample, 1);
+    if (owner)
+    {
+        if (known_.size() == kMaxKnown)
+        {
+            known_.erase(known_.begin());
+        }
+        known_.emplace(publication_handle, *owner);
+    }
+    return owner;
+}
+
+bool Participants::is_host(std::uint64_t publication_handle, std::uint64_t host_epoch)
+{
+    const auto writer = writer_of(publication_handle);
+    return writer && host_epoch_of(*writer) == host_epoch;
+}
+
+void Participants::report_other_versions(RateLimitedLog& log)
+{
+    const std::string ours = std::to_string(kProtocolVersion);
+    read_news<dds_builtintopic_endpoint_t>(
+        writers_,
+        [&](const dds_builtintopic_endpoint_t& writer, const dds_sample_info_t&)
+        {
+            const auto version = version_of(writer.topic_name);
+            const ParticipantId who = id_of(writer.participant_key);
+            if (!version || *version == ours || reported_.size() == kMaxKnown ||
+                !reported_.insert(who).second)
+            {
+                return;
+            }
+            void* sample = nullptr;
+            dds_sample_info_t info = {};
+            std::string name = "a program";
+            if (dds_read_instance(participants_, &sample, &info, 1, 1,
+                                  writer.participant_instance_handle) == 1)
+            {
+                const auto& about = *static_cast<const dds_builtintopic_participant_t*>(sample);
+                const std::string program =
+                    info.valid_data ? property(about.qos, "__ProcessName") : "";
+                const std::string id = info.valid_data ? property(about.qos, "__Pid") : "";
+                const std::string host = info.valid_data ? property(about.qos, "__Hostname") : "";
+                name = program.empty() ? name
+                                       : fmt::format("{} (process {} on {})", program, id, host);
+                dds_return_loan(participants_, &sample, 1);
+            }
+            log.write(fmt::format("{} is refused: it speaks protocol version {}, this build {}",
+                                  name, *version, ours));
+        });
+}
+
+} // namespace tactus::dds

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "transport/log.hpp"
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <set>
+
+namespace tactus::dds
+{
+
+/// A participant's GUID: names a controller on the wire.
+using ParticipantId = std::array<std::uint8_t, 16>;
+using ControllerId = ParticipantId;
+
+/// By which a host is named on the wire: nobody else's samples carry it and pass.
+[[nodiscard]] std::uint64_t host_epoch_of(const ParticipantId& participant) noexcept;
+
+/// Who is on a domain, and whose a sample is. Its calls are safe from any thread, among them those
+/// of Cyclone that deliver.
+class Participants
+{
+public:
+    /// `participant` is ours; the instance must outlive all readers below it.
+    explicit Participants(std::int32_t participant);
+
+    [[nodiscard]] const ParticipantId& own() const noexcept { return own_; }
+    [[nodiscard]] std::uint64_t own_epoch() const noexcept { return own_epoch_; }
+
+    /// Whose writer it is that a sample's publication_handle names; nothing when that is gone and
+    /// was never seen. 0.1 us, the first time 10 us.
+    [[nodiscard]] std::optional<ParticipantId> writer_of(std::uint64_t publication_handle);
+    [[nodiscard]] bool is_host(std::uint64_t publication_handle, std::uint64_t host_epoch);
+
+    /// Names each participant that has come since the last call and has topics of another version
+    /// of the protocol, once.
+    void report_other_versions(RateLimitedLog& log);
+
+private:
+    std::int32_t writers_; ///< Readers of what DDS itself publishes; they end with the participant.
+    std::int32_t participants_;
+    ParticipantId own_{};
+    std::uint64_t own_epoch_;
+    std::mutex mutex_;
+    std::map<std::uint64_t, ParticipantId> known_;
+    std::set<ParticipantId> reported_;
+};
+
+} // namespace tactus::dds

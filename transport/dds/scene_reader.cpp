@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "transport/dds/scene_reader.hpp"
+
+#include "transport/dds/placement.hpp"
+#include "transport/dds/take.hpp"
+#include "transport/model_name.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <numeric>
+#include <utility>
+
+#include "tactus.h"
+
+namespace tactus::dds
+{
+
+namespace
+{
+
+/// Samples taken in one poll; the rest waits for the next.
+constexpr std::size_t kRecordsPerPoll = 1'024;
+constexpr std::size_t kMotionPerPoll = 128;
+/// A host that says how many objects it has should have told of them by then.
+constexpr auto kCompleteMax = std::chrono::seconds(2);
+
+} // namespace
+
+std::uint64_t PoseCounts::refused_in_all() const noexcept
+{
+    return std::accumulate(refused.begin(), refused.end(), std::uint64_t{0});
+}
+
+void SceneReader::poll(std::span<const std::uint64_t> hosts, const Take& take)
+{
+    for (auto host = hosts_.begin(); host != hosts_.end();)
+    {
+        if (std::ranges::find(hosts, host->first) != hosts.end())
+        {
+            ++host;
+            continue;
+        }
+        while (!host->second.objects.empty())
+        {
+            remove(host->second, host->second.objects.begin()->first, take);
+        }
+        exchange_.leave_objects(host->first);
+        host = hosts_.erase(host);
+    }
+    for (const std::uint64_t epoch : hosts)
+    {
+        Host& host = hosts_[epoch];
+        if (!host.motion.is_valid())
+        {
+            join(epoch, host);
+            continue;
+        }
+        take_records(epoch, host, take);
+        take_motion(host, take);
+        if (!host.is_complete && Clock::now() - host.since > kCompleteMax)
+        {
+            host.is_complete = true; // As far as can be told.
+        }
+        if (host.is_complete)
+        {
+            exchange_.tell_objects_are_here(epoch);
+        }
+    }
+}
+
+bool SceneReader::was_heard(std::uint64_t host_epoch) const
+{
+    const auto host = hosts_.find(host_epoch);
+    return host != hosts_.end() && host->second.was_heard;
+}
+
+bool SceneReader::is_complete(std::uint64_t host_epoch) const
+{
+    const auto host = hosts_.find(host_epoch);
+    return host != hosts_.end() && host->second.is_complete;
+}
+
+const std::map<std::uint32_t, SeenObject>& SceneReader::objects(std::uint64_t host_epoch) const
+{
+    static const std::map<std::uint32_t, SeenObject> none;
+    const auto host = hosts_.find(host_epoch);
+    return host == hosts_.end() ? none : host->second.objects;
+}
+
+void SceneReader::join(std::uint64_t epoch, Host& host)
+{
+    exchange_.ask_for_objects(epoch);
+    if (!exchange_.is_let_in(epoch))
+    {
+        return;
+    }
+    auto records = make_reader(domain_, Topic::objects, host_partition(epoch));
+    auto motion = make_reader(domain_, Topic::motion, host_partition(epoch));
+    if (!records || !motion)
+    {
+        fault_ = records ? motion.error().text : records.error().text;
+        return;
+    }
+    host.records = std::move(records).value();
+    host.motion = std::move(motion).value();
+    host.since = Clock::now();
+}
+
+void SceneReader::take_records(std::uint64_t epoch, Host& host, const Take& take)
+{
+    take_each<tactus_v2_ObjectRecord>(
+        host.records.handle, kRecordsPerPoll,
+        [&](const tactus_v2_ObjectRecord& record, const dds_sample_info_t& info)
+        {
+            if (info.valid_data)
+            {
+                take_record(host, record, take);
+            }
+            const bool is_gone = info.instance_state != DDS_ALIVE_INSTANCE_STATE;
+            if (is_gone && domain_.participants().is_host(info.publication_handle, epoch))
+            {
+                remove(host, record.object, take);
+            }
+        });
+}
+
+void SceneReader::take_record(Host& host, const tactus_v2_ObjectRecord& record, const Take& take)
+{
+    const char* const text = static_cast<const char*>(record.name);
+    SeenObject news;
+    news.host_epoch = record.host_epoch;
+    news.number = record.object;
+    news.generation = record.generation;
+    news.shown.name.assign(text, ::strnlen(text, sizeof(record.name)));
+    std::memcpy(news.shown.model.data(), record.model_hash, news.shown.model.size());
+    const bool is_rigid = record.stiffness_n_per_m == 0.0;
+    news.shown.material = {is_rigid ? kInfinity : record.stiffness_n_per_m, record.static_friction,
+                           record.dynamic_friction, record.damping_n_s_per_m};
+    if (!is_valid_name(news.shown.name) || !is_sound(news.shown.material))
+    {
+        return;
+    }
+    const auto known = host.objects.find(record.object);
+    if (known != host.objects.end() && known->second.generation == record.generation)
+    {
+        if (record.serial > known->second.serial &&
+            try_move(known->second, record.serial, record.pose))
+        {
+            take(SceneNews::moves, known->second);
+        }
+        return;
+    }
+    if (!try_move(news, record.serial, record.pose))
+    {
+        return;
+    }
+    remove(host, record.object, take);
+    take(SceneNews::comes, host.objects.emplace(record.object, std::move(news)).first->second);
+}
+
+void SceneReader::take_motion(Host& host, const Take& take)
+{
+    host.was_heard = false;
+    take_each<tactus_v2_Motion>(
+        host.motion.handle, kMotionPerPoll,
+        [&](const tactus_v2_Motion& motion, const dds_sample_info_t& info)
+        {
+            if (!info.valid_data)
+            {
+                return;
+            }
+            host.was_heard = true;
+            for (std::uint32_t i = 0; i < motion.moved._length; ++i)
+            {
+                const tactus_v2_MovedObject& moved = motion.moved._buffer[i];
+                const auto known = host.objects.find(moved.object);
+                if (known == host.objects.end() || known->second.generation != moved.generation)
+                {
+                    continue; // Its record is on its way, or it is gone.
+                }
+                SeenObject& object = known->second;
+                if (try_move(object, motion.serial, moved.pose))
+                {
+                    object.host_time_ns = motion.host_time_ns;
+                    take(SceneNews::moves, object);
+                }
+            }
+            host.is_complete = host.is_complete || host.objects.size() >= motion.objects;
+        });
+}
+
+/// Whether the pose was accepted; counted either way.
+bool SceneReader::try_move(SeenObject& object, std::uint64_t serial, const tactus_v2_Placement& to)
+{
+    const auto refuse = [&](PoseRefusal refusal)
+    {
+        ++object.counts.refused.at(static_cast<std::size_t>(refusal));
+        return false;
+    };
+    if (serial <= object.serial)
+    {
+        return refuse(PoseRefusal::not_newer);
+    }
+    const auto pose = checked_pose(from_wire(to));
+    if (!pose)
+    {
+        return refuse(pose.error());
+    }
+    ++object.counts.accepted;
+    object.shown.pose = pose.value();
+    object.serial = serial;
+    return true;
+}
+
+void SceneReader::remove(Host& host, std::uint32_t number, const Take& take)
+{
+    const auto known = host.objects.find(number);
+    if (known != host.objects.end())
+    {
+        const SeenObject last = std::move(known->second);
+        host.objects.erase(known);
+        take(SceneNews::goes, last);
+    }
+}
+
+} // namespace tactus::dds

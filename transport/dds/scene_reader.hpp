@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "platform/base/refusal.hpp"
+#include "transport/dds/piece_exchange.hpp"
+#include "transport/shown_object.hpp"
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+
+struct tactus_v2_ObjectRecord; // idlc's types of samples.
+struct tactus_v2_Motion;
+struct tactus_v2_Placement;
+
+namespace tactus::dds
+{
+
+/// What has come of an object's poses.
+struct PoseCounts
+{
+    std::uint64_t accepted{0};
+    std::array<std::uint64_t, kPoseRefusals> refused{}; ///< In the order of PoseRefusal.
+
+    [[nodiscard]] std::uint64_t refused_in_all() const noexcept;
+};
+
+/// An object as its host shows it at present.
+struct SeenObject
+{
+    std::uint64_t host_epoch{0};
+    std::uint32_t number{0}; ///< On that host.
+    std::uint32_t generation{0};
+    ShownObject shown; ///< Its pose has a rotation of length 1.
+    std::uint64_t serial{0};
+    std::int64_t host_time_ns{0}; ///< Of the pose; 0: it came with the object.
+    PoseCounts counts;
+};
+
+enum class SceneNews : std::uint8_t
+{
+    comes,
+    moves,
+    goes,
+};
+
+/// The controller's side of objects: those of the hosts that it follows, checked. A host lets in a
+/// few controllers at a time, so the objects come a little later than the host is followed. What is
+/// older than what is here, or no pose, is counted and passed over. One thread, that of the
+/// exchange; no call waits.
+class SceneReader
+{
+public:
+    /// Both must outlive it.
+    SceneReader(const Domain& domain, PieceExchange& exchange)
+        : domain_(domain), exchange_(exchange)
+    {
+    }
+
+    /// Follows these hosts and no others, and tells what has become of their objects; an object
+    /// that is another one under its number goes and comes. Bounded.
+    void poll(std::span<const std::uint64_t> hosts,
+              const std::function<void(SceneNews, const SeenObject&)>& take);
+
+    /// Whether the host was heard in the last poll: all its objects stand as they were told.
+    [[nodiscard]] bool was_heard(std::uint64_t host_epoch) const;
+    /// Whether all that the host shows is here.
+    [[nodiscard]] bool is_complete(std::uint64_t host_epoch) const;
+
+    /// By number; empty for a host that isn't followed.
+    [[nodiscard]] const std::map<std::uint32_t, SeenObject>&
+    objects(std::uint64_t host_epoch) const;
+
+    /// Hosts whose objects can't be read; a line each, of the last poll.
+    [[nodiscard]] const std::string& fault() const noexcept { return fault_; }
+
+private:
+    using Clock = std::chrono::steady_clock;
+    using Take = std::function<void(SceneNews, const SeenObject&)>;
+    struct Host
+    {
+        Endpoint records; ///< Once it has let us in.
+        Endpoint motion;
+        std::map<std::uint32_t, SeenObject> objects;
+        bool was_heard{false};
+        bool is_complete{false};
+        Clock::time_point since{};
+    };
+
+    void join(std::uint64_t epoch, Host& host);
+    void take_records(std::uint64_t epoch, Host& host, const Take& take);
+    void take_record(Host& host, const tactus_v2_ObjectRecord& record, const Take& take);
+    void take_motion(Host& host, const Take& take);
+    static bool try_move(SeenObject& object, std::uint64_t serial, const tactus_v2_Placement& to);
+    static void remove(Host& host, std::uint32_t number, const Take& take);
+
+    const Domain& domain_;
+    PieceExchange& exchange_;
+    std::map<std::uint64_t, Host> hosts_;
+    std::string fault_;
+};
+
+} // namespace tactus::dds
