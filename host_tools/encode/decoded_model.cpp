@@ -70,10 +70,11 @@ void DecodedModel::link_all(const ModelStore& store, std::vector<std::string>& d
     };
     const PageSlots slots{pages_, {}, {base_positions_m_, base_faces_, base_next_}};
     Arena measure = Arena::measuring();
-    static_cast<void>(Linker(measure, header_, slots));
+    static_cast<void>(LinkPool(measure, pages_.size()));
     std::vector<Line> memory(measure.used() / sizeof(Line));
     Arena arena(std::as_writable_bytes(std::span(memory)));
-    Linker linker(arena, header_, slots);
+    LinkPool pool(arena, pages_.size());
+    Linker linker(pool, 0, header_, slots);
     for (std::uint32_t chunk = 0; chunk < pages_.size(); ++chunk)
     {
         linker.link_page({chunk}, chunk);

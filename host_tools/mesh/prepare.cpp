@@ -8,8 +8,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace tactus
 {
@@ -66,11 +68,11 @@ std::optional<Refusal> find_bad_option(const PrepareOptions& options)
         return Refusal{fmt::format("metres per unit is {}; must be positive and finite",
                                    options.metres_per_unit)};
     }
-    if (options.fit_diagonal_m && !(*options.fit_diagonal_m >= kMinFitDiagonal_m &&
-                                    *options.fit_diagonal_m <= kMaxFitDiagonal_m))
+    if (options.fit_diagonal_m &&
+        !(*options.fit_diagonal_m >= kMinDiagonal_m && *options.fit_diagonal_m <= kMaxDiagonal_m))
     {
         return Refusal{fmt::format("fit diagonal is {} m; must be {} .. {} m",
-                                   *options.fit_diagonal_m, kMinFitDiagonal_m, kMaxFitDiagonal_m)};
+                                   *options.fit_diagonal_m, kMinDiagonal_m, kMaxDiagonal_m)};
     }
     if (options.position_bits < kMinPositionBits || options.position_bits > kMaxPositionBits)
     {
@@ -124,6 +126,7 @@ Result<double, Refusal> choose_scale(const Box& box, const PrepareOptions& optio
         scale = *options.fit_diagonal_m / source_diagonal;
         out.diagonal_m = *options.fit_diagonal_m;
     }
+    out.metres_per_unit = scale;
     for (std::size_t axis = 0; axis < 3; ++axis)
     {
         out.origin_m[axis] = box.low[axis] * scale;
@@ -232,19 +235,18 @@ void write_notes(PreparedMesh& out)
 
 std::optional<double> metres_per_unit(std::string_view unit)
 {
-    if (unit == "mm")
+    constexpr std::array<std::pair<std::string_view, double>, 5> kUnits{
+        {{"mm", 0.001}, {"cm", 0.01}, {"m", 1.0}, {"in", 0.0254}, {"inch", 0.0254}}};
+    const auto is_same_letter = [](char a, char b)
+    { return a == b || (a >= 'A' && a <= 'Z' && a - 'A' + 'a' == b); };
+    for (const auto& [name, metres] : kUnits)
     {
-        return 0.001;
+        if (std::ranges::equal(unit, name, is_same_letter))
+        {
+            return metres;
+        }
     }
-    if (unit == "cm")
-    {
-        return 0.01;
-    }
-    if (unit == "m")
-    {
-        return 1.0;
-    }
-    return unit == "in" ? std::optional(0.0254) : std::nullopt;
+    return std::nullopt;
 }
 
 Result<PreparedMesh, Refusal> prepare_mesh(const TriangleMesh& source,

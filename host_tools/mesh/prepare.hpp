@@ -18,13 +18,12 @@
 namespace tactus
 {
 
-/// The bounding-box diagonals that a model may have, and those one may ask for.
+/// The bounding-box diagonals that a model may have.
 inline constexpr double kMinDiagonal_m = 1e-6;
 inline constexpr double kMaxDiagonal_m = 1e6;
-inline constexpr double kMinFitDiagonal_m = 1e-4;
-inline constexpr double kMaxFitDiagonal_m = 1e3;
 
-/// Metres per unit for the unit names that a user may give: mm, cm, m, in. None for other names.
+/// Metres per unit for the unit names that a user may give, in capitals or not: mm, cm, m, in,
+/// inch. None for other names.
 [[nodiscard]] std::optional<double> metres_per_unit(std::string_view unit);
 
 struct PrepareOptions
@@ -43,6 +42,7 @@ struct PreparedMesh
     std::array<double, 3> origin_m{}; ///< Least corner of the source's box, in the source's frame.
     double quantisation_m{0.0};       ///< Largest distance between a source vertex and its place.
     double diagonal_m{0.0};           ///< Of the source's box, scaled, before quantisation.
+    double metres_per_unit{0.0};      ///< The scale: by the unit, or to fit the diagonal.
 
     std::size_t welded_vertices{0};   ///< Dropped for an equal position before them.
     std::size_t isolated_vertices{0}; ///< Dropped since no face uses them.

@@ -3,14 +3,12 @@
 #include "host_tools/mesh/read_mesh.hpp"
 
 #include "host_tools/mesh/detail/readers.hpp"
+#include "platform/base/read_file.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
-#include <fstream>
 #include <new>
 #include <optional>
 
@@ -47,52 +45,6 @@ std::optional<Reader> reader_for(const std::filesystem::path& path)
         return detail::read_off;
     }
     return std::nullopt;
-}
-
-/// What keeps the path from being read; empty when nothing does.
-std::string why_not_a_file(const std::filesystem::path& path)
-{
-    std::error_code code;
-    const auto status = std::filesystem::status(path, code);
-    if (status.type() == std::filesystem::file_type::not_found)
-    {
-        return "no such file";
-    }
-    if (status.type() == std::filesystem::file_type::none)
-    {
-        return code.message();
-    }
-    if (status.type() == std::filesystem::file_type::directory)
-    {
-        return "is a directory, not a mesh file";
-    }
-    if (status.type() != std::filesystem::file_type::regular)
-    {
-        return "is not a regular file";
-    }
-    return {};
-}
-
-Result<std::string, Refusal> read_all_bytes(const std::filesystem::path& path)
-{
-    std::error_code code;
-    const std::uintmax_t size = std::filesystem::file_size(path, code);
-    std::ifstream file(path, std::ios::binary);
-    if (code || !file)
-    {
-        return Refusal{fmt::format("can't be opened: {}", std::strerror(errno))};
-    }
-    if (size == 0)
-    {
-        return Refusal{"is empty"};
-    }
-    std::string bytes(size, '\0');
-    file.read(bytes.data(), static_cast<std::streamsize>(size));
-    if (static_cast<std::uintmax_t>(file.gcount()) != size)
-    {
-        return Refusal{fmt::format("only {} of {} bytes could be read", file.gcount(), size)};
-    }
-    return bytes;
 }
 
 /// What every format owes: finite coordinates, indices in range, some faces but not too many.
@@ -133,19 +85,15 @@ std::optional<Refusal> find_fault(const TriangleMesh& mesh)
 
 Result<MeshFile, Refusal> read_without_name(const std::filesystem::path& path)
 {
-    if (const std::string reason = why_not_a_file(path); !reason.empty())
+    const auto bytes = read_file(path);
+    if (!bytes)
     {
-        return Refusal{reason};
+        return bytes.error();
     }
     const auto reader = reader_for(path);
     if (!reader)
     {
         return Refusal{"unknown kind of mesh file; must end in .ply, .obj, .stl or .off"};
-    }
-    const auto bytes = read_all_bytes(path);
-    if (!bytes)
-    {
-        return bytes.error();
     }
     auto file = (*reader)(bytes.value());
     if (!file)

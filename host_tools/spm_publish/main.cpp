@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #include "host_tools/cli/command_line.hpp"
 #include "host_tools/cli/run_program.hpp"
+#include "host_tools/scene/placed_models.hpp"
+#include "host_tools/scene/scene.hpp"
 #include "host_tools/spm_publish/pose_script.hpp"
 #include "host_tools/spm_publish/serving_report.hpp"
 #include "host_tools/spm_publish/watch.hpp"
@@ -9,7 +11,6 @@
 #include "platform/base/refusal.hpp"
 #include "transport/content_hash.hpp"
 #include "transport/dds/dds_host.hpp"
-#include "transport/dds/poses.hpp"
 #include "transport/dds/telemetry.hpp"
 #include "transport/model_name.hpp"
 
@@ -21,6 +22,7 @@
 #include <csignal>
 #include <cstdint>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
@@ -39,15 +41,24 @@ struct Options
     std::vector<std::string> names;
     std::uint32_t domain{0};
     std::optional<double> seconds;
-    std::string poses_path; ///< Empty: nothing moves.
+    std::string poses_path; ///< Empty: no file moves anything.
     bool poses_loop{false};
     bool watch{false};
+};
+
+/// An object that may be shown.
+struct Prop
+{
+    ShownObject shown; ///< Its model's hash is known once the models are open.
+    std::size_t model{0};
+    bool is_there_from_start{false};
+    std::optional<std::uint32_t> number{}; ///< While it is shown.
 };
 
 /// What a host does besides serving; each may be none.
 struct Extras
 {
-    std::unique_ptr<dds::PosePublisher> publisher;
+    std::vector<Prop> props;
     std::optional<PosePlayer> player;
     std::optional<Watch> watch;
 };
@@ -66,7 +77,9 @@ void stop_on_signals()
 void declare_options(CommandLine& line, Options& options)
 {
     line.add_version(std::string("spm_publish ") + TACTUS_VERSION);
-    line.add_option("FILE", options.files, "Models to serve (.spm)").required();
+    line.add_option("FILE", options.files,
+                    "Models to serve (.spm), or one scene (.gltf, .glb) whose objects name theirs")
+        .required();
     line.add_option("--name", options.names,
                     "Name of the first model, of the second, ...; without it the file's stem")
         .repeatable_with_more();
@@ -76,14 +89,60 @@ void declare_options(CommandLine& line, Options& options)
     line.add_option("--seconds", options.seconds, "End by itself after this long")
         .number_between(0.1, 1e9);
     line.add_option("--poses", options.poses_path,
-                    fmt::format("Move the models as this text file says, in real time: lines {} in "
-                                "order of time, in s and m, with the published name and a unit "
-                                "quaternion; # begins a comment",
-                                kPoseLineForm));
+                    fmt::format("Move objects as this text file says, in real time: lines {} in "
+                                "order of time, in s and m, with a scene's object or the name of a "
+                                "model and a unit quaternion; '{}' in place of the numbers removes "
+                                "one; # begins a comment",
+                                kPoseLineForm, kGoneWord));
     line.add_flag("--poses-loop", options.poses_loop,
                   "Begin the file anew at the time of its last line, again and again");
     line.add_flag("--watch", options.watch,
                   "Print what each controller on the domain does, a line a second");
+}
+
+/// Whether a scene is served. It has a refusal when something else is asked for besides.
+Result<bool, Refusal> check_scene(const Options& options)
+{
+    const bool has_scene = std::ranges::any_of(options.files, has_scene_extension);
+    if (has_scene && (options.files.size() > 1 || !options.names.empty()))
+    {
+        return Refusal{fmt::format("{}: a scene is served alone, its models under the names of "
+                                   "their files",
+                                   options.names.empty() ? "FILE" : "--name")};
+    }
+    return has_scene;
+}
+
+/// Puts a scene's models in the place of its file, and tells of its objects.
+Result<std::vector<Prop>, Refusal> open_scene(Options& options)
+{
+    const auto scene = read_placed_models(options.files.front());
+    if (!scene)
+    {
+        return scene.error();
+    }
+    std::vector<Prop> props;
+    for (const PlacedModel& object : scene.value().objects)
+    {
+        props.push_back({{object.name, {}, object.material, object.pose}, object.model, true});
+    }
+    options.files.clear();
+    for (const std::filesystem::path& file : scene.value().files)
+    {
+        options.files.push_back(file.string());
+    }
+    return props;
+}
+
+/// Without a scene each model may be shown once, under its own name.
+std::vector<Prop> props_of(const std::vector<std::string>& names)
+{
+    std::vector<Prop> props;
+    for (std::size_t i = 0; i < names.size(); ++i)
+    {
+        props.push_back({{names[i], {}, {}, {}}, i});
+    }
+    return props;
 }
 
 /// The models' names in the order of the files; a line when one is missing, wrong or there twice.
@@ -137,15 +196,19 @@ Result<std::vector<dds::PublishedModel>, Refusal> open_models(const Options& opt
     return models;
 }
 
-void print_models(ServingReport& report, const dds::DdsHost& host, std::uint32_t domain)
+void print_models(ServingReport& report, dds::DdsHost& host, std::uint32_t domain)
 {
-    for (const dds::PublishedModel& model : host.models())
+    for (const dds::ModelPieces& model : host.models())
     {
-        const HeaderFields& fields = model.store.header().fields();
+        const HeaderFields& fields = model.store().header().fields();
         report.print_line(fmt::format("serving '{}' hash {}: {} faces, {} bytes, from {}",
-                                      model.name, hash_text(model.store.hash()),
+                                      model.model().name, hash_text(model.store().hash()),
                                       fields.source_faces, fields.file_bytes,
-                                      model.store.path().string()));
+                                      model.store().path().string()));
+    }
+    if (const std::size_t objects = host.objects().objects(); objects > 0)
+    {
+        report.print_line(fmt::format("showing {} objects", objects));
     }
     report.print_line(fmt::format("ready on DDS domain {}; end with Ctrl-C", domain));
 }
@@ -167,26 +230,29 @@ Result<std::vector<PoseLine>, Refusal> read_poses(const Options& options,
     return lines;
 }
 
-Result<Extras, Refusal> make_extras(const Options& options, const dds::DdsHost& host,
-                                    std::vector<PoseLine> lines)
+Result<Extras, Refusal> make_extras(const Options& options, dds::DdsHost& host,
+                                    std::vector<Prop> props, std::vector<PoseLine> lines)
 {
     Extras extras;
+    for (Prop& prop : props)
+    {
+        prop.shown.model = host.models()[prop.model].store().hash();
+        if (!prop.is_there_from_start)
+        {
+            continue;
+        }
+        const auto number = host.objects().show(prop.shown);
+        if (!number)
+        {
+            return number.error();
+        }
+        prop.number = number.value();
+    }
     if (!lines.empty())
     {
-        std::vector<ModelIdentity> objects;
-        for (const dds::PublishedModel& model : host.models())
-        {
-            objects.push_back({model.name, model.store.hash(), model.store.revision()});
-        }
-        extras.player.emplace(std::move(lines), objects.size(), options.poses_loop);
-        auto publisher =
-            dds::PosePublisher::create(host.domain(), host.epoch(), std::move(objects));
-        if (!publisher)
-        {
-            return publisher.error();
-        }
-        extras.publisher = std::move(publisher).value();
+        extras.player.emplace(std::move(lines), props.size(), options.poses_loop);
     }
+    extras.props = std::move(props);
     if (options.watch)
     {
         auto reader = dds::TelemetryReader::create(host.domain());
@@ -207,21 +273,37 @@ std::chrono::milliseconds longest_wait(const Extras& extras, double now_s)
     {
         return std::chrono::milliseconds(50);
     }
-    const std::chrono::milliseconds most = dds::kPoseRepeat / 2;
+    const std::chrono::milliseconds most{50};
     const double left_s = extras.player->next_s().value_or(now_s + 1.0) - now_s;
     const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(
         std::chrono::duration<double>(std::clamp(left_s, 0.0, 1.0)));
     return std::clamp(left, least, most);
 }
 
-void play(Extras& extras, double now_s)
+/// What the file says by now: objects come, move and go.
+void play(Extras& extras, dds::ObjectPublisher& objects, double now_s)
 {
     for (const PoseLine& line : extras.player->take_due(now_s))
     {
-        const auto moved = extras.publisher->move(line.object, line.pose);
-        TACTUS_ASSERT(moved.has_value()); // The file was checked.
+        Prop& prop = extras.props[line.object];
+        if (line.pose && prop.number)
+        {
+            const auto moved = objects.move(*prop.number, *line.pose);
+            TACTUS_ASSERT(moved.has_value()); // The file was checked.
+        }
+        else if (line.pose)
+        {
+            prop.shown.pose = *line.pose;
+            const auto number = objects.show(prop.shown);
+            TACTUS_ASSERT(number.has_value()); // There are no more props than a host may show.
+            prop.number = number.value();
+        }
+        else if (prop.number)
+        {
+            objects.remove(*prop.number);
+            prop.number.reset();
+        }
     }
-    extras.publisher->repeat();
 }
 
 void serve(dds::DdsHost& host, ServingReport& report, Extras& extras,
@@ -233,11 +315,11 @@ void serve(dds::DdsHost& host, ServingReport& report, Extras& extras,
     while (!stop_requested.load(std::memory_order_relaxed) && !(seconds && now_s() >= *seconds))
     {
         host.wait(longest_wait(extras, now_s()));
-        host.step();
         if (extras.player)
         {
-            play(extras, now_s());
+            play(extras, host.objects(), now_s());
         }
+        host.step();
         if (extras.watch)
         {
             extras.watch->update(report);
@@ -255,6 +337,21 @@ int run(int argc, char** argv)
     {
         return *code;
     }
+    const auto is_scene = check_scene(options);
+    if (!is_scene)
+    {
+        return line.fail(is_scene.error().text, kExitUsage);
+    }
+    std::vector<Prop> props;
+    if (is_scene.value())
+    {
+        auto placed = open_scene(options);
+        if (!placed)
+        {
+            return line.fail(placed.error().text);
+        }
+        props = std::move(placed).value();
+    }
     const auto names = choose_names(options);
     if (!names)
     {
@@ -269,7 +366,11 @@ int run(int argc, char** argv)
     {
         return line.fail(models.error().text);
     }
-    auto poses = read_poses(options, names.value());
+    props = is_scene.value() ? std::move(props) : props_of(names.value());
+    std::vector<std::string> objects;
+    std::ranges::transform(props, std::back_inserter(objects),
+                           [](const Prop& prop) { return prop.shown.name; });
+    auto poses = read_poses(options, objects);
     if (!poses)
     {
         return line.fail(poses.error().text);
@@ -283,7 +384,7 @@ int run(int argc, char** argv)
     {
         return line.fail(host.error().text);
     }
-    auto extras = make_extras(options, *host.value(), std::move(poses).value());
+    auto extras = make_extras(options, *host.value(), std::move(props), std::move(poses).value());
     if (!extras)
     {
         return line.fail(extras.error().text);

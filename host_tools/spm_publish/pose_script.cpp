@@ -94,7 +94,8 @@ Result<Pose, Refusal> parse_pose(std::span<const std::string_view> fields)
 Result<PoseLine, Refusal> parse_line(std::string_view text, std::span<const std::string> names)
 {
     const std::vector<std::string_view> fields = fields_of(text);
-    if (fields.size() < kFieldsMin || fields.size() > kFieldsMax)
+    const bool goes = fields.size() == 3 && fields[2] == kGoneWord;
+    if (!goes && (fields.size() < kFieldsMin || fields.size() > kFieldsMax))
     {
         return Refusal{fmt::format("is not {}", kPoseLineForm)};
     }
@@ -107,14 +108,19 @@ Result<PoseLine, Refusal> parse_line(std::string_view text, std::span<const std:
     const auto name = std::ranges::find(names, fields[1]);
     if (name == names.end())
     {
-        return Refusal{fmt::format("no model is published as '{}'", printable(fields[1]))};
+        return Refusal{fmt::format("no object is called '{}'", printable(fields[1]))};
     }
-    auto pose = parse_pose(std::span(fields).subspan(2));
-    if (!pose)
+    PoseLine line{*time_s, static_cast<std::size_t>(name - names.begin()), std::nullopt};
+    if (!goes)
     {
-        return pose.error();
+        auto pose = parse_pose(std::span(fields).subspan(2));
+        if (!pose)
+        {
+            return pose.error();
+        }
+        line.pose = pose.value();
     }
-    return PoseLine{*time_s, static_cast<std::size_t>(name - names.begin()), pose.value()};
+    return line;
 }
 
 } // namespace

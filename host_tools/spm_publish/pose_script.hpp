@@ -4,7 +4,6 @@
 
 #include "platform/base/refusal.hpp"
 #include "rt_core/base/result.hpp"
-#include "transport/dds/poses.hpp"
 #include "transport/pose.hpp"
 
 #include <cstddef>
@@ -20,6 +19,8 @@ namespace tactus
 
 /// What a line of a pose file holds; for messages.
 inline constexpr std::string_view kPoseLineForm = "TIME_S NAME X Y Z QX QY QZ QW [SCALE]";
+/// What takes the place of the pose where the object goes.
+inline constexpr std::string_view kGoneWord = "gone";
 
 /// Largest pose file, and the latest time in one.
 inline constexpr std::size_t kPoseFileBytesMax = 64U << 20U;
@@ -28,13 +29,13 @@ inline constexpr double kPoseTimeMax_s = 1e6;
 /// One line of a pose file, checked.
 struct PoseLine
 {
-    double time_s{0.0}; ///< From the start of play.
-    std::size_t object{0};
-    Pose pose;
+    double time_s{0.0};       ///< From the start of play.
+    std::size_t object{0};    ///< Of the names.
+    std::optional<Pose> pose; ///< None: it is gone from then on.
 };
 
 /// Reads a pose file's text: lines of kPoseLineForm in the order of their times; empty ones and
-/// those that begin with # are passed over. `names` are the published ones. The error begins with
+/// those that begin with # are passed over. `names` are the objects'. The error begins with
 /// the line's number.
 [[nodiscard]] Result<std::vector<PoseLine>, Refusal>
 parse_pose_lines(std::string_view text, std::span<const std::string> names);

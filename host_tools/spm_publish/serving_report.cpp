@@ -63,7 +63,7 @@ std::string ServingReport::rates(const dds::DdsHost& host, double seconds) const
     const auto counters = host.counters();
     const auto pieces = static_cast<double>(counters.pieces_sent - shown_.pieces_sent);
     const auto bytes = static_cast<double>(counters.bytes_sent - shown_.bytes_sent);
-    return fmt::format("{} subscribed, {:.0f} chunks/s, {:.1f} KB/s, {} chunks in all",
+    return fmt::format("{} controllers, {:.0f} chunks/s, {:.1f} KB/s, {} chunks in all",
                        host.subscribers().size(), pieces / seconds, bytes / seconds / 1e3,
                        counters.pieces_sent);
 }

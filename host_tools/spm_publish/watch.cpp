@@ -22,7 +22,21 @@ std::string tool_text(const ToolTelemetry& tool)
                         : tool.squeezed   ? " squeezed"
                         : tool.in_contact ? " in contact"
                                           : "";
-    return fmt::format("; {:.2f} N{}", std::hypot(n[0], n[1], n[2]), state);
+    const auto& nm = tool.torque_nm;
+    std::string text = fmt::format("; {:.2f} N", std::hypot(n[0], n[1], n[2]));
+    if (const double torque_nm = std::hypot(nm[0], nm[1], nm[2]); torque_nm > 0.0)
+    {
+        text += fmt::format(" {:.3f} N m", torque_nm);
+    }
+    if (tool.has_gripper)
+    {
+        text += fmt::format(" gripper {:.0f} mm", tool.gripper_m * 1e3);
+    }
+    if (tool.buttons != 0)
+    {
+        text += fmt::format(" buttons {:x}", tool.buttons);
+    }
+    return text + state;
 }
 
 std::string model_text(const ModelIdentity& identity, const ModelTelemetry& model)

@@ -1,0 +1,777 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "host_tools/c/tactus.h"
+
+#include "platform/base/refusal.hpp"
+#include "rt_core/frame/frame.hpp"
+#include "rt_core/math/rotation.hpp"
+#include "transport/courier.hpp"
+#include "transport/dds/dds_client.hpp"
+#include "transport/model_name.hpp"
+#include "transport/store/store_link.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <exception>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <mutex>
+#include <new>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+using namespace tactus;
+
+struct tactus_model
+{
+    std::unique_ptr<dds::DdsClient> client; ///< First, since it must outlive the link.
+    ServedModel served;
+    std::optional<ModelHeader> header; ///< A view into `served`.
+    bool is_taken{false};              ///< By a frame; under `registry`.
+};
+
+struct tactus_frame
+{
+    explicit tactus_frame(std::span<std::byte> lent) : memory(lent), arena(lent) {}
+
+    std::span<std::byte> memory;
+    Arena arena;
+    std::vector<tactus_model*> models;
+    std::optional<Frame> frame;
+    std::optional<Courier> courier;
+    std::vector<ToolState> states;
+    StaticVector<SceneChange, kMaxSceneChanges> changes;
+    std::uint32_t objects{0};
+    std::int64_t period_ns{0};
+    std::atomic<std::int64_t> now_ns{0}; ///< Written where frames run, read where they load.
+    std::uint64_t frames{0};
+    FrameOutput output;
+};
+
+namespace
+{
+
+/// Thrown inside a call, told by its result.
+struct Fault
+{
+    tactus_result result;
+    std::string text;
+};
+
+/// The frames that there are, for what no two may share.
+std::mutex registry_mutex;
+std::vector<const tactus_frame*>& registry()
+{
+    static std::vector<const tactus_frame*> frames;
+    return frames;
+}
+
+void tell(tactus_error* error, const std::string& text) noexcept
+{
+    if (error != nullptr)
+    {
+        const std::size_t length = std::min(text.size(), sizeof(error->text) - 1);
+        std::memcpy(error->text, text.data(), length);
+        error->text[length] = '\0';
+    }
+}
+
+/// Nothing that is thrown leaves a call.
+template <typename Work>
+tactus_result guarded(tactus_error* error, Work&& work) noexcept
+{
+    try
+    {
+        work();
+        if (error != nullptr)
+        {
+            error->text[0] = '\0';
+        }
+        return TACTUS_DONE;
+    }
+    catch (const Fault& fault)
+    {
+        tell(error, fault.text);
+        return fault.result;
+    }
+    catch (const std::bad_alloc&)
+    {
+        tell(error, "out of memory");
+    }
+    catch (const std::exception& exception)
+    {
+        tell(error, exception.what());
+    }
+    return TACTUS_REFUSED;
+}
+
+template <typename... Arguments>
+[[noreturn]] void refuse(tactus_result result, fmt::format_string<Arguments...> format,
+                         Arguments&&... arguments)
+{
+    throw Fault{result, fmt::format(format, std::forward<Arguments>(arguments)...)};
+}
+
+template <typename T>
+const T& given(const T* pointer, const char* name)
+{
+    if (pointer == nullptr)
+    {
+        refuse(TACTUS_BAD_ARGUMENT, "{}: null", name);
+    }
+    return *pointer;
+}
+
+template <typename T>
+T& given(T* pointer, const char* name)
+{
+    return const_cast<T&>(given(static_cast<const T*>(pointer), name));
+}
+
+template <typename Record>
+void check_size(const Record& record, const char* name)
+{
+    if (record.size != sizeof(Record))
+    {
+        refuse(TACTUS_BAD_VERSION,
+               "{}: its size is {}, this library's is {}; was it made for another version, or by "
+               "none of the _default functions?",
+               name, record.size, sizeof(Record));
+    }
+}
+
+void check_abi(std::uint32_t abi)
+{
+    if (abi != TACTUS_ABI)
+    {
+        refuse(TACTUS_BAD_VERSION, "made for ABI version {}; this library has {}", abi, TACTUS_ABI);
+    }
+}
+
+void check_range(double value, double low, double high, const std::string& name)
+{
+    if (!(value >= low && value <= high)) // So that NaN is refused.
+    {
+        refuse(TACTUS_BAD_ARGUMENT, "{}: {}; {} to {} is allowed", name, value, low, high);
+    }
+}
+
+/// Of each place, rotation or number of an array.
+void check_finite(const double* values, std::size_t count, const char* name)
+{
+    const double* end = values + count;
+    const double* bad = std::find_if_not(values, end, [](double v) { return std::isfinite(v); });
+    if (bad != end)
+    {
+        refuse(TACTUS_BAD_ARGUMENT, "{}: element {} is {}; numbers must be finite", name,
+               bad - values, *bad);
+    }
+}
+
+Vec3 to_vec(const double* values)
+{
+    return {values[0], values[1], values[2]};
+}
+
+Mat3 to_rotation(const double* rows)
+{
+    Mat3 rotation;
+    rotation << rows[0], rows[1], rows[2], rows[3], rows[4], rows[5], rows[6], rows[7], rows[8];
+    return rotation;
+}
+
+void write(double* to, std::size_t index, const Vec3& value)
+{
+    if (to != nullptr)
+    {
+        std::copy_n(value.data(), 3, to + 3 * index);
+    }
+}
+
+template <typename T>
+void write(T* to, std::size_t index, T value)
+{
+    if (to != nullptr)
+    {
+        to[index] = value;
+    }
+}
+
+// --- Models --------------------------------------------------------------------------------------
+
+void finish(std::unique_ptr<tactus_model>& made, Result<ServedModel, Refusal> served,
+            tactus_model*& model)
+{
+    if (!served)
+    {
+        refuse(TACTUS_REFUSED, "{}", served.error().text);
+    }
+    made->served = std::move(served).value();
+    made->header = ModelHeader::parse(made->served.header).value();
+    model = made.release();
+}
+
+// --- Set-up --------------------------------------------------------------------------------------
+
+ToolSpec tool_of(const tactus_tool& tool, std::size_t index)
+{
+    const std::string name = fmt::format("tools[{}].", index);
+    check_size(tool, name.c_str());
+    check_range(tool.shape, TACTUS_SPHERE, TACTUS_BOX, name + "shape");
+    check_range(tool.radius_m, 1e-6, 1e3, name + "radius_m");
+    check_range(tool.stiffness_n_per_m, 1e-3, 1e6, name + "stiffness_n_per_m");
+    check_range(tool.force_max_n, 1e-3, 1e6, name + "force_max_n");
+    check_range(tool.torque_max_nm, 0.0, 1e6, name + "torque_max_nm");
+    check_range(tool.speed_max_m_per_s, 1e-6, 1e6, name + "speed_max_m_per_s");
+    for (const double half_m : tool.half_m)
+    {
+        check_range(half_m, tool.shape == TACTUS_BOX ? 0.0 : -1e3, 1e3, name + "half_m");
+    }
+    ToolSpec spec;
+    spec.radius_m = tool.radius_m;
+    spec.stiffness_n_per_m = tool.stiffness_n_per_m;
+    spec.force_max_n = tool.force_max_n;
+    spec.speed_max_m_per_s = tool.speed_max_m_per_s;
+    spec.torque_max_nm = tool.torque_max_nm;
+    spec.passes_through = tool.passes_through != 0;
+    const Vec3 half_m = to_vec(tool.half_m);
+    if (tool.shape == TACTUS_CAPSULE)
+    {
+        spec.core = Segment{-half_m, half_m};
+    }
+    else if (tool.shape == TACTUS_BOX)
+    {
+        spec.core = Box{half_m};
+    }
+    return spec;
+}
+
+ObjectPose pose_of(const tactus_pose& pose, const std::string& name)
+{
+    check_finite(pose.rotation, 9, (name + "rotation").c_str());
+    check_finite(pose.translation_m, 3, (name + "translation_m").c_str());
+    check_range(pose.scale, kPoseScaleMin, kPoseScaleMax, name + "scale");
+    ObjectPose place;
+    place.rotation = to_rotation(pose.rotation);
+    if (!is_rotation(place.rotation, kRotationTolerance))
+    {
+        refuse(TACTUS_BAD_ARGUMENT, "{}rotation: not a rotation to {}", name, kRotationTolerance);
+    }
+    place.rotation = orthonormalised(place.rotation);
+    place.translation_m = to_vec(pose.translation_m);
+    place.scale = pose.scale;
+    return place;
+}
+
+/// The records of the library for those of the caller, who keeps the models.
+struct Scene
+{
+    std::vector<ToolSpec> tools;
+    std::vector<ObjectSpec> objects;
+    std::vector<ObjectPose> poses;
+    std::vector<ModelHeader> headers;
+    std::vector<ModelSource> sources;
+    FrameSetup setup;
+};
+
+void read_setup(const tactus_setup& from, Scene& scene)
+{
+    check_size(from, "setup");
+    check_abi(from.abi);
+    check_range(from.model_count, 1, kMaxModels, "setup.model_count");
+    check_range(from.tool_count, 1, kMaxTools, "setup.tool_count");
+    check_range(from.object_count, 1, kMaxObjects, "setup.object_count");
+    check_range(static_cast<double>(from.period_ns), 1e4, 1e9, "setup.period_ns");
+    for (std::uint32_t i = 0; i < from.model_count; ++i)
+    {
+        const tactus_model& model = given(given(from.models, "setup.models") == nullptr
+                                              ? static_cast<tactus_model*>(nullptr)
+                                              : from.models[i],
+                                          "setup.models[i]");
+        scene.headers.push_back(*model.header);
+    }
+    for (std::uint32_t i = 0; i < from.tool_count; ++i)
+    {
+        scene.tools.push_back(tool_of((&given(from.tools, "setup.tools"))[i], i));
+    }
+    for (std::uint32_t i = 0; i < from.object_count; ++i)
+    {
+        const tactus_object& object = (&given(from.objects, "setup.objects"))[i];
+        const std::string name = fmt::format("objects[{}].", i);
+        check_size(object, name.c_str());
+        check_range(object.model, 0, from.model_count - 1, name + "model");
+        check_range(object.static_friction, 0.0, 10.0, name + "static_friction");
+        check_range(object.dynamic_friction, 0.0, object.static_friction,
+                    name + "dynamic_friction");
+        Material material;
+        material.static_friction = object.static_friction;
+        material.dynamic_friction = object.dynamic_friction;
+        scene.objects.push_back({ModelId{object.model}, material});
+        scene.poses.push_back(pose_of(object.pose, name + "pose."));
+    }
+    scene.setup.tools = scene.tools;
+    scene.setup.objects = scene.objects;
+    scene.setup.poses = scene.poses;
+    scene.setup.period_ns = from.period_ns;
+    scene.setup.static_when_it_fits = from.loads_whole != 0;
+}
+
+/// What belongs to no model comes off first. Twice, since what the courier needs follows from the
+/// number of pages.
+void plan_pools(const tactus_setup& from, std::size_t bytes, Scene& scene)
+{
+    std::size_t common = Frame::required_bytes(scene.setup);
+    for (std::uint32_t i = 0; i < from.model_count; ++i)
+    {
+        common += Arena::round_up(from.models[i]->served.header.size());
+    }
+    std::vector<ModelCapacities> capacities(from.model_count);
+    for (int round = 0; round < 2; ++round)
+    {
+        const ModelCapacities sum = sum_of(capacities);
+        const std::size_t taken = common + Courier::required_bytes(sum.pages, sum.index_pages);
+        if (taken >= bytes || !try_plan(scene.headers, bytes - taken, 0, capacities))
+        {
+            refuse(TACTUS_REFUSED,
+                   "memory: {} bytes; base meshes and a few pages of the models need more", bytes);
+        }
+    }
+    for (std::uint32_t i = 0; i < from.model_count; ++i)
+    {
+        const ServedModel& model = from.models[i]->served;
+        scene.sources.push_back({model.header, model.base, capacities[i]});
+    }
+    scene.setup.models = scene.sources;
+}
+
+/// No two frames share memory or a model.
+void enter(tactus_frame& frame)
+{
+    const std::lock_guard lock(registry_mutex);
+    const std::byte* begin = frame.memory.data();
+    const std::byte* end = begin + frame.memory.size();
+    for (const tactus_frame* other : registry())
+    {
+        const std::byte* others = other->memory.data();
+        if (std::less<>{}(begin, others + other->memory.size()) && std::less<>{}(others, end))
+        {
+            refuse(TACTUS_BUSY, "memory: a frame that has not ended uses it");
+        }
+    }
+    for (const tactus_model* model : frame.models)
+    {
+        if (model->is_taken || std::ranges::count(frame.models, model) > 1)
+        {
+            refuse(TACTUS_BUSY,
+                   "models: '{}' serves another frame, or this one twice; open it again",
+                   model->served.name);
+        }
+    }
+    registry().push_back(&frame);
+    for (tactus_model* model : frame.models)
+    {
+        model->is_taken = true;
+    }
+}
+
+void leave(tactus_frame& frame) noexcept
+{
+    const std::lock_guard lock(registry_mutex);
+    std::erase(registry(), &frame);
+    for (tactus_model* model : frame.models)
+    {
+        model->is_taken = false;
+    }
+}
+
+void start(tactus_frame& frame, const FrameSetup& setup)
+{
+    if (const auto started = Frame::start(frame.frame, frame.arena, setup); !started)
+    {
+        refuse(TACTUS_REFUSED, "{}", refusal_text(started.error()));
+    }
+    ModelPools& pools = frame.frame->pools();
+    frame.courier.emplace(frame.arena, pools.slots, pools.cache.door, Log{});
+    for (std::uint32_t i = 0; i < frame.models.size(); ++i)
+    {
+        Model& model = frame.frame->model({i});
+        ServedModel& served = frame.models[i]->served;
+        frame.courier->add(model.header, model.linker, *served.link, served.name);
+    }
+    frame.states.resize(setup.tools.size());
+    frame.objects = static_cast<std::uint32_t>(setup.objects.size());
+    frame.period_ns = setup.period_ns;
+}
+
+// --- Frames --------------------------------------------------------------------------------------
+
+void load(tactus_frame& frame)
+{
+    frame.courier->step(frame.now_ns.load(std::memory_order_relaxed));
+}
+
+void run_one(tactus_frame& frame)
+{
+    const std::int64_t now_ns = frame.now_ns.load(std::memory_order_relaxed) + frame.period_ns;
+    frame.now_ns.store(now_ns, std::memory_order_relaxed);
+    frame.output = frame.frame->run({.tools = frame.states,
+                                     .changes = {frame.changes.begin(), frame.changes.size()},
+                                     .budgets = {},
+                                     .now_ns = now_ns});
+    frame.changes.clear();
+    ++frame.frames;
+}
+
+bool is_settled(const FrameOutput& output)
+{
+    return std::ranges::all_of(
+               output.pairs, [](const PairOutput& pair)
+               { return pair.kind == AnswerKind::exact || pair.kind == AnswerKind::decided; }) &&
+           std::ranges::none_of(output.tools, [](const ToolOutput& tool)
+                                { return tool.frozen || tool.held_back || tool.under_way; });
+}
+
+void place_tools(tactus_frame& frame, const tactus_poses& poses, std::size_t pose)
+{
+    for (std::size_t tool = 0; tool < frame.states.size(); ++tool)
+    {
+        const std::size_t index = pose * frame.states.size() + tool;
+        frame.states[tool].position_m = to_vec(poses.positions_m + 3 * index);
+        if (poses.rotations != nullptr)
+        {
+            frame.states[tool].rotation = to_rotation(poses.rotations + 9 * index);
+        }
+    }
+}
+
+std::uint32_t flags_of(const ToolOutput& tool)
+{
+    return (tool.in_contact ? TACTUS_IN_CONTACT : 0U) | (tool.frozen ? TACTUS_FROZEN : 0U) |
+           (tool.squeezed ? TACTUS_SQUEEZED : 0U) | (tool.crowded ? TACTUS_CROWDED : 0U) |
+           (tool.held_back ? TACTUS_HELD_BACK : 0U);
+}
+
+void write_answers(const tactus_frame& frame, const tactus_poses& poses, std::size_t pose)
+{
+    constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+    const FrameOutput& output = frame.output;
+    const std::size_t first = pose * output.tools.size();
+    for (std::size_t t = 0; t < output.tools.size(); ++t)
+    {
+        const ToolOutput& tool = output.tools[t];
+        write(poses.force_n, first + t, tool.force_n);
+        write(poses.torque_nm, first + t, tool.torque_nm);
+        write(poses.proxy_m, first + t, tool.proxy_m);
+        write(poses.flags, first + t, flags_of(tool));
+        // Of an object that no pair is of the tool is proven clear.
+        for (std::size_t k = 0; k < frame.objects; ++k)
+        {
+            const std::size_t index = (first + t) * frame.objects + k;
+            write(poses.lower_m, index, tool.clear_m);
+            write(poses.upper_m, index, kInfinity);
+            write(poses.kind, index, static_cast<std::uint8_t>(TACTUS_DECIDED));
+            write(poses.nearest_m, index, Vec3(kUnknown, kUnknown, kUnknown));
+        }
+    }
+    for (const PairOutput& pair : output.pairs)
+    {
+        const std::size_t index = (first + pair.tool) * frame.objects + pair.object;
+        write(poses.lower_m, index, pair.lower_m);
+        write(poses.upper_m, index, pair.upper_m);
+        write(poses.kind, index, static_cast<std::uint8_t>(pair.kind));
+        if (pair.kind == AnswerKind::exact)
+        {
+            write(poses.nearest_m, index, pair.nearest_point_m);
+        }
+    }
+}
+static_assert(static_cast<int>(AnswerKind::exact) == TACTUS_EXACT);
+static_assert(static_cast<int>(AnswerKind::decided) == TACTUS_DECIDED);
+static_assert(static_cast<int>(AnswerKind::bracket) == TACTUS_BRACKET);
+static_assert(static_cast<int>(AnswerKind::stale) == TACTUS_STALE);
+
+void check_poses(const tactus_frame& frame, const tactus_poses& poses)
+{
+    check_size(poses, "poses");
+    check_range(poses.rounds, 0, 10'000, "poses.rounds");
+    const std::size_t places = poses.count * frame.states.size();
+    check_finite(&given(poses.positions_m, "poses.positions_m"), 3 * places, "poses.positions_m");
+    if (poses.rotations == nullptr)
+    {
+        return;
+    }
+    check_finite(poses.rotations, 9 * places, "poses.rotations");
+    for (std::size_t i = 0; i < places; ++i)
+    {
+        if (!is_rotation(to_rotation(poses.rotations + 9 * i), kRotationTolerance))
+        {
+            refuse(TACTUS_BAD_ARGUMENT, "poses.rotations: matrix {} is not a rotation to {}", i,
+                   kRotationTolerance);
+        }
+    }
+}
+
+} // namespace
+
+extern "C"
+{
+
+    uint32_t tactus_abi(void)
+    {
+        return TACTUS_ABI;
+    }
+
+    const char* tactus_version(void)
+    {
+        return TACTUS_VERSION;
+    }
+
+    tactus_result tactus_model_open(uint32_t abi, const char* path, tactus_model** model,
+                                    tactus_error* error)
+    {
+        return guarded(error,
+                       [&]
+                       {
+                           check_abi(abi);
+                           tactus_model*& result = given(model, "model");
+                           const std::string file = &given(path, "path");
+                           auto made = std::make_unique<tactus_model>();
+                           finish(made, serve_from_file(file, "model", {}), result);
+                           result->served.name = file;
+                       });
+    }
+
+    tactus_result tactus_model_find(uint32_t abi, const char* name, uint32_t domain, double wait_s,
+                                    tactus_model** model, tactus_error* error)
+    {
+        return guarded(error,
+                       [&]
+                       {
+                           check_abi(abi);
+                           tactus_model*& result = given(model, "model");
+                           check_range(domain, 0, 232, "domain");
+                           check_range(wait_s, 0.0, 3600.0, "wait_s");
+                           const auto selector = parse_selector(&given(name, "name"));
+                           if (!selector)
+                           {
+                               refuse(TACTUS_BAD_ARGUMENT, "{}", selector.error().text);
+                           }
+                           auto client = dds::DdsClient::create(domain, "library", {});
+                           if (!client)
+                           {
+                               refuse(TACTUS_REFUSED, "{}", client.error().text);
+                           }
+                           auto made = std::make_unique<tactus_model>();
+                           made->client = std::move(client).value();
+                           const std::chrono::milliseconds wait{
+                               static_cast<std::int64_t>(1e3 * wait_s)};
+                           finish(made, made->client->find(selector.value(), wait), result);
+                       });
+    }
+
+    tactus_result tactus_model_info_of(const tactus_model* model, tactus_model_info* info,
+                                       tactus_error* error)
+    {
+        return guarded(error,
+                       [&]
+                       {
+                           const ModelHeader& header = *given(model, "model").header;
+                           check_size(given(info, "info"), "info");
+                           const HeaderFields& fields = header.fields();
+                           for (std::size_t i = 0; i < 3; ++i)
+                           {
+                               info->low_m[i] = fields.origin_m[i];
+                               info->high_m[i] =
+                                   fields.origin_m[i] + static_cast<double>(header.quantum_m()) *
+                                                            fields.extent_quanta[i];
+                           }
+                           info->diagonal_m = header.diagonal_m();
+                           info->faces = fields.source_faces;
+                           info->vertices = fields.source_vertices;
+                           info->is_closed = header.is_closed() ? 1 : 0;
+                           const std::string hash = hash_text(model->served.hash);
+                           std::memcpy(info->hash, hash.c_str(), sizeof(info->hash));
+                       });
+    }
+
+    tactus_result tactus_model_close(tactus_model* model, tactus_error* error)
+    {
+        return guarded(error,
+                       [&]
+                       {
+                           if (model == nullptr)
+                           {
+                               return;
+                           }
+                           {
+                               const std::lock_guard lock(registry_mutex);
+                               if (model->is_taken)
+                               {
+                                   refuse(TACTUS_BUSY, "'{}' serves a frame that has not ended",
+                                          model->served.name);
+                               }
+                           }
+                           delete model;
+                       });
+    }
+
+    void tactus_tool_default(tactus_tool* tool)
+    {
+        if (tool != nullptr)
+        {
+            const ToolSpec spec;
+            *tool = {};
+            tool->size = sizeof(*tool);
+            tool->stiffness_n_per_m = spec.stiffness_n_per_m;
+            tool->force_max_n = spec.force_max_n;
+            tool->torque_max_nm = spec.torque_max_nm;
+            tool->speed_max_m_per_s = spec.speed_max_m_per_s;
+        }
+    }
+
+    void tactus_object_default(tactus_object* object)
+    {
+        if (object != nullptr)
+        {
+            *object = {};
+            object->size = sizeof(*object);
+            object->pose.scale = 1.0;
+            object->pose.rotation[0] = object->pose.rotation[4] = object->pose.rotation[8] = 1.0;
+        }
+    }
+
+    void tactus_setup_default(tactus_setup* setup)
+    {
+        if (setup != nullptr)
+        {
+            *setup = {};
+            setup->size = sizeof(*setup);
+            setup->abi = TACTUS_ABI;
+            setup->period_ns = FrameSetup{}.period_ns;
+        }
+    }
+
+    tactus_result tactus_frame_make(const tactus_setup* setup, void* memory, size_t bytes,
+                                    tactus_frame** frame, tactus_error* error)
+    {
+        return guarded(error,
+                       [&]
+                       {
+                           tactus_frame*& result = given(frame, "frame");
+                           Scene scene;
+                           read_setup(given(setup, "setup"), scene);
+                           auto* first = static_cast<std::byte*>(memory);
+                           given(first, "memory");
+                           if (reinterpret_cast<std::uintptr_t>(first) % TACTUS_ALIGNMENT != 0)
+                           {
+                               refuse(TACTUS_BAD_ARGUMENT,
+                                      "memory: does not start on a multiple of {} bytes",
+                                      TACTUS_ALIGNMENT);
+                           }
+                           plan_pools(*setup, bytes, scene);
+                           auto made = std::make_unique<tactus_frame>(std::span(first, bytes));
+                           made->models.assign(setup->models, setup->models + setup->model_count);
+                           enter(*made);
+                           try
+                           {
+                               start(*made, scene.setup);
+                           }
+                           catch (...)
+                           {
+                               leave(*made);
+                               throw;
+                           }
+                           result = made.release();
+                       });
+    }
+
+    void tactus_frame_end(tactus_frame* frame)
+    {
+        if (frame != nullptr)
+        {
+            leave(*frame);
+            delete frame;
+        }
+    }
+
+    tactus_result tactus_frame_load(tactus_frame* frame, tactus_error* error)
+    {
+        return guarded(error, [&] { load(given(frame, "frame")); });
+    }
+
+    tactus_result tactus_frame_run(tactus_frame* frame, const tactus_poses* poses,
+                                   tactus_error* error)
+    {
+        return guarded(error,
+                       [&]
+                       {
+                           tactus_frame& sut = given(frame, "frame");
+                           check_poses(sut, given(poses, "poses"));
+                           for (std::size_t pose = 0; pose < poses->count; ++pose)
+                           {
+                               place_tools(sut, *poses, pose);
+                               run_one(sut);
+                               for (std::uint32_t round = 1;
+                                    round < poses->rounds && !is_settled(sut.output); ++round)
+                               {
+                                   load(sut);
+                                   run_one(sut);
+                               }
+                               write_answers(sut, *poses, pose);
+                           }
+                       });
+    }
+
+    tactus_result tactus_frame_place(tactus_frame* frame, uint32_t object, const tactus_pose* pose,
+                                     tactus_error* error)
+    {
+        return guarded(error,
+                       [&]
+                       {
+                           tactus_frame& in = given(frame, "frame");
+                           check_range(object, 0, in.objects - 1, "object");
+                           SceneChange change;
+                           change.kind = SceneChangeKind::object_moves;
+                           change.number = object;
+                           change.pose = pose_of(given(pose, "pose"), "pose.");
+                           if (!in.changes.try_push_back(change))
+                           {
+                               refuse(TACTUS_BUSY,
+                                      "{} objects were placed since the last frame; run one",
+                                      in.changes.size());
+                           }
+                       });
+    }
+
+    tactus_result tactus_frame_state_of(const tactus_frame* frame, tactus_frame_state* state,
+                                        tactus_error* error)
+    {
+        return guarded(error,
+                       [&]
+                       {
+                           const tactus_frame& in = given(frame, "frame");
+                           check_size(given(state, "state"), "state");
+                           *state = {};
+                           state->size = sizeof(*state);
+                           state->frames = in.frames;
+                           state->is_whole = in.frames > 0 ? 1 : 0;
+                           for (const ModelOutput& model : in.output.models)
+                           {
+                               state->pages_used += model.pages.used;
+                               state->pages_total += model.pages.capacity;
+                               state->faces_used += model.faces.used;
+                               state->is_whole = model.is_static ? state->is_whole : 0;
+                           }
+                       });
+    }
+
+} // extern "C"

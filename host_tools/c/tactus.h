@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+/* The library for C, and for every language that can call C. Distances and forces of tools at
+ * models, as docs/accuracy.md promises them. Units are SI: m, N, N m, s, rad; frames of reference
+ * are right-handed. A rotation is a 3 x 3 matrix, row by row; a position is x, y, z.
+ *
+ * Calls return TACTUS_DONE or the kind of what was wrong, and write one line about it; nothing has
+ * changed then. No exception leaves a call. Records begin with `size`: set it to sizeof of the
+ * record, so that a library of another version refuses what it does not know.
+ *
+ * Threads: a frame and its models are one thread's at a time, except that tactus_frame_load() may
+ * run on one thread beside tactus_frame_run() on another one. */
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+#define TACTUS_CALL extern "C"
+#else
+#define TACTUS_CALL extern
+#endif
+
+/* Of records and calls; both sides must have the same one. */
+#define TACTUS_ABI 1U
+/* The lent memory of a frame starts on a multiple of it. */
+#define TACTUS_ALIGNMENT 64U
+
+typedef enum tactus_result
+{
+    TACTUS_DONE = 0,
+    TACTUS_BAD_ARGUMENT = 1, /* A null pointer, a number out of range, NaN. */
+    TACTUS_BAD_VERSION = 2,  /* Made for another version of the library. */
+    TACTUS_REFUSED = 3,      /* A file, a host or the memory is not good for it. */
+    TACTUS_BUSY = 4          /* Memory or a model that another frame has. */
+} tactus_result;
+
+/* One line, without a line end; empty after TACTUS_DONE. */
+typedef struct tactus_error
+{
+    char text[512];
+} tactus_error;
+
+typedef struct tactus_model tactus_model;
+typedef struct tactus_frame tactus_frame;
+
+/* The TACTUS_ABI and the version ("0.2.0") of the library that is loaded. */
+TACTUS_CALL uint32_t tactus_abi(void);
+TACTUS_CALL const char* tactus_version(void);
+
+/* ---- Models ---- */
+
+typedef struct tactus_model_info
+{
+    size_t size;
+    double low_m[3]; /* Box of the source mesh, in its own frame. */
+    double high_m[3];
+    double diagonal_m;
+    uint32_t faces;
+    uint32_t vertices;
+    int32_t is_closed; /* Not 0: the surface has an inside. */
+    char hash[33];     /* 32 hexadecimal digits. */
+} tactus_model_info;
+
+/* Opens an .spm file; all but its chunks is checked now, each chunk when it is read. */
+TACTUS_CALL tactus_result tactus_model_open(uint32_t abi, const char* path, tactus_model** model,
+                                            tactus_error* error);
+/* Finds NAME or NAME@HASH on a DDS domain, 0 to 232; waits at most 0 to 3600 seconds. */
+TACTUS_CALL tactus_result tactus_model_find(uint32_t abi, const char* name, uint32_t domain,
+                                            double wait_s, tactus_model** model,
+                                            tactus_error* error);
+TACTUS_CALL tactus_result tactus_model_info_of(const tactus_model* model, tactus_model_info* info,
+                                               tactus_error* error);
+/* Null is nothing to close. TACTUS_BUSY while a frame has it. */
+TACTUS_CALL tactus_result tactus_model_close(tactus_model* model, tactus_error* error);
+
+/* ---- Frames ---- */
+
+typedef enum tactus_shape
+{
+    TACTUS_SPHERE = 0,  /* A point with the radius. */
+    TACTUS_CAPSULE = 1, /* The segment from -half_m to half_m with the radius. */
+    TACTUS_BOX = 2      /* The box of these half extents with the radius. */
+} tactus_shape;
+
+/* What touches. tactus_tool_default() sets all but the radius. */
+typedef struct tactus_tool
+{
+    size_t size;
+    int32_t shape;          /* tactus_shape */
+    int32_t passes_through; /* 0: surfaces stop it and make forces. Else it measures where it is. */
+    double radius_m;        /* Above 0. */
+    double half_m[3];       /* Of a capsule or box, in the tool's frame. */
+    double stiffness_n_per_m;
+    double force_max_n;
+    double torque_max_nm;
+    double speed_max_m_per_s; /* In contact a hand that is faster is followed at this speed. */
+} tactus_tool;
+
+/* Where an object stands: place = translation + scale * rotation * place in the source mesh. */
+typedef struct tactus_pose
+{
+    double rotation[9];
+    double translation_m[3];
+    double scale;
+} tactus_pose;
+
+typedef struct tactus_object
+{
+    size_t size;
+    uint32_t model; /* Index into the set-up's models. */
+    tactus_pose pose;
+    double static_friction;
+    double dynamic_friction;
+} tactus_object;
+
+typedef struct tactus_setup
+{
+    size_t size;
+    uint32_t abi; /* TACTUS_ABI */
+    uint32_t model_count;
+    tactus_model* const* models;
+    const tactus_tool* tools;
+    const tactus_object* objects;
+    uint32_t tool_count;
+    uint32_t object_count;
+    int64_t period_ns;   /* From frame to frame. */
+    int32_t loads_whole; /* Not 0: a model that fits its share of the memory is loaded wholly. */
+} tactus_setup;
+
+/* Identity pose, no friction; a hand of 500 N/m, 8 N, 0.5 N m, 1 m/s; 1 ms. Sizes and abi, too. */
+TACTUS_CALL void tactus_tool_default(tactus_tool* tool);
+TACTUS_CALL void tactus_object_default(tactus_object* object);
+TACTUS_CALL void tactus_setup_default(tactus_setup* setup);
+
+/* Makes a frame in memory that the caller lends until tactus_frame_end(); nothing grows. Each model
+ * serves one frame at a time. */
+TACTUS_CALL tactus_result tactus_frame_make(const tactus_setup* setup, void* memory, size_t bytes,
+                                            tactus_frame** frame, tactus_error* error);
+/* The memory and the models are the caller's again. Null is nothing to end. */
+TACTUS_CALL void tactus_frame_end(tactus_frame* frame);
+
+/* One round of loading: what the last frame asked for comes in with the next one. May wait for a
+ * file, allocates, not for a real-time thread. */
+TACTUS_CALL tactus_result tactus_frame_load(tactus_frame* frame, tactus_error* error);
+
+/* What is true of a tool, flags of tactus_tool_answer. */
+#define TACTUS_IN_CONTACT 1U
+#define TACTUS_FROZEN 2U     /* The surface near it has not come yet; its force must fade. */
+#define TACTUS_SQUEEZED 4U   /* Objects leave it no room; its force must fade. */
+#define TACTUS_CROWDED 8U    /* More touches it than the limits allow. */
+#define TACTUS_HELD_BACK 16U /* It went as far as the surface is known. */
+
+typedef enum tactus_kind
+{
+    TACTUS_EXACT = 0,   /* lower_m and upper_m differ by rounding only. */
+    TACTUS_DECIDED = 1, /* Proven to be out of touch. */
+    TACTUS_BRACKET = 2, /* Lower bound and upper bound, and the question is open. */
+    TACTUS_STALE = 3    /* Of a pose that is too old. */
+} tactus_kind;
+
+/* All arrays are the caller's. N poses, T tools, J objects of the set-up, the last index fastest.
+ * An output that is null is not written. */
+typedef struct tactus_poses
+{
+    size_t size;
+    size_t count;              /* N */
+    const double* positions_m; /* N x T x 3: the tools' centres. */
+    const double* rotations;   /* N x T x 9, or null: none is turned. */
+    double* force_n;           /* N x T x 3. */
+    double* torque_nm;         /* N x T x 3, about the tool's centre. */
+    double* proxy_m;           /* N x T x 3: where the surface lets the tool be. */
+    uint32_t* flags;           /* N x T */
+    /* From the tool's core, its radius not taken off, at its place: the proxy at the start of the
+     * frame. */
+    double* lower_m;   /* N x T x J: no surface is nearer. */
+    double* upper_m;   /* N x T x J: some surface is within it; infinite where none is known. */
+    uint8_t* kind;     /* N x T x J: tactus_kind. */
+    double* nearest_m; /* N x T x J x 3: of the surface; NaN where it is not known. */
+    uint32_t rounds;   /* Frames for each pose, with loading between: until the answers are exact
+                        * or decided, at most so many, 1 to 10000. 0: one frame, no loading. */
+} tactus_poses;
+
+/* Moves the tools through the poses, a frame for each or as many as `rounds` allows; a pose's
+ * answers are those of its last frame. All is checked before the first frame runs. Without `rounds`
+ * it allocates nothing and makes no system call. */
+TACTUS_CALL tactus_result tactus_frame_run(tactus_frame* frame, const tactus_poses* poses,
+                                           tactus_error* error);
+/* With the next frame the object stands there. At most 64 of these between two frames. */
+TACTUS_CALL tactus_result tactus_frame_place(tactus_frame* frame, uint32_t object,
+                                             const tactus_pose* pose, tactus_error* error);
+
+typedef struct tactus_frame_state
+{
+    size_t size;
+    uint64_t frames;
+    uint32_t pages_used; /* Of all models. */
+    uint32_t pages_total;
+    uint32_t faces_used;
+    int32_t is_whole; /* Not 0: all models are here and refined wholly. */
+} tactus_frame_state;
+
+TACTUS_CALL tactus_result tactus_frame_state_of(const tactus_frame* frame,
+                                                tactus_frame_state* state, tactus_error* error);

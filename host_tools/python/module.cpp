@@ -1,0 +1,418 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "host_tools/c/tactus.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <new>
+#include <optional>
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace py = pybind11;
+
+namespace
+{
+
+/// What the library refuses; Python's tactus.Error.
+struct TactusError : std::runtime_error
+{
+    using std::runtime_error::runtime_error;
+};
+
+/// A call of tactus.h, whose line becomes the exception's.
+template <typename Call>
+void check(Call&& call)
+{
+    tactus_error error{};
+    switch (call(&error))
+    {
+    case TACTUS_DONE:
+        return;
+    case TACTUS_BAD_ARGUMENT:
+        throw py::value_error(error.text);
+    default:
+        throw TactusError(error.text);
+    }
+}
+
+// --- Models --------------------------------------------------------------------------------------
+
+class Model
+{
+public:
+    explicit Model(const std::string& path)
+    {
+        check([&](tactus_error* error)
+              { return tactus_model_open(TACTUS_ABI, path.c_str(), &model_, error); });
+        read_info();
+    }
+    Model(const std::string& name, std::uint32_t domain, double wait_s)
+    {
+        check(
+            [&](tactus_error* error)
+            {
+                const py::gil_scoped_release others_may_run;
+                return tactus_model_find(TACTUS_ABI, name.c_str(), domain, wait_s, &model_, error);
+            });
+        read_info();
+    }
+    Model(const Model&) = delete;
+    Model& operator=(const Model&) = delete;
+    ~Model() { tactus_model_close(model_, nullptr); }
+
+    [[nodiscard]] tactus_model* get() const { return model_; }
+    [[nodiscard]] const tactus_model_info& info() const { return info_; }
+
+private:
+    void read_info()
+    {
+        info_.size = sizeof(info_);
+        check([&](tactus_error* error) { return tactus_model_info_of(model_, &info_, error); });
+    }
+
+    tactus_model* model_{nullptr};
+    tactus_model_info info_{};
+};
+
+// --- Arrays --------------------------------------------------------------------------------------
+
+using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+std::string shape_text(const py::array& array)
+{
+    return py::str(py::tuple(array.attr("shape")));
+}
+
+/// Floats or integers, as doubles in C order.
+Numbers numbers_of(const py::object& given, const char* name)
+{
+    const py::array array = py::array::ensure(given);
+    const char kind = array ? array.dtype().kind() : '?';
+    if (std::string_view("fiu").find(kind) == std::string_view::npos)
+    {
+        PyErr_Clear();
+        const std::string type = array ? py::str(array.dtype()) : py::str(py::type::of(given));
+        throw py::type_error(std::string(name) + ": " + type + "; an array of numbers is needed");
+    }
+    return Numbers::ensure(array);
+}
+
+void check_shape(const Numbers& array, const std::vector<py::ssize_t>& shape, const char* name)
+{
+    const std::vector<py::ssize_t> is(array.shape(), array.shape() + array.ndim());
+    if (is != shape)
+    {
+        throw py::value_error(std::string(name) + ": shape " + shape_text(array) + "; " +
+                              std::string(py::str(py::tuple(py::cast(shape)))) + " is needed");
+    }
+}
+
+void read_pose(tactus_pose& pose, const py::object& rotation, const py::object& translation_m,
+               double scale)
+{
+    pose.scale = scale;
+    if (!rotation.is_none())
+    {
+        const Numbers rows = numbers_of(rotation, "rotation");
+        check_shape(rows, {3, 3}, "rotation");
+        std::copy_n(rows.data(), 9, pose.rotation);
+    }
+    if (!translation_m.is_none())
+    {
+        const Numbers place = numbers_of(translation_m, "translation_m");
+        check_shape(place, {3}, "translation_m");
+        std::copy_n(place.data(), 3, pose.translation_m);
+    }
+}
+
+// --- Set-up --------------------------------------------------------------------------------------
+
+tactus_tool make_tool(double radius_m, const std::string& shape, const py::object& half_m,
+                      bool passes_through, const std::optional<double>& stiffness_n_per_m,
+                      const std::optional<double>& force_max_n,
+                      const std::optional<double>& torque_max_nm,
+                      const std::optional<double>& speed_max_m_per_s)
+{
+    tactus_tool tool;
+    tactus_tool_default(&tool);
+    if (shape != "sphere" && shape != "capsule" && shape != "box")
+    {
+        throw py::value_error("shape: '" + shape + "'; sphere, capsule or box is needed");
+    }
+    tool.shape = shape == "sphere"    ? TACTUS_SPHERE
+                 : shape == "capsule" ? TACTUS_CAPSULE
+                                      : TACTUS_BOX;
+    tool.radius_m = radius_m;
+    if (!half_m.is_none())
+    {
+        const Numbers half = numbers_of(half_m, "half_m");
+        check_shape(half, {3}, "half_m");
+        std::copy_n(half.data(), 3, tool.half_m);
+    }
+    tool.passes_through = passes_through ? 1 : 0;
+    tool.stiffness_n_per_m = stiffness_n_per_m.value_or(tool.stiffness_n_per_m);
+    tool.force_max_n = force_max_n.value_or(tool.force_max_n);
+    tool.torque_max_nm = torque_max_nm.value_or(tool.torque_max_nm);
+    tool.speed_max_m_per_s = speed_max_m_per_s.value_or(tool.speed_max_m_per_s);
+    return tool;
+}
+
+tactus_object make_object(std::uint32_t model, const py::object& rotation,
+                          const py::object& translation_m, double scale, double static_friction,
+                          double dynamic_friction)
+{
+    tactus_object object;
+    tactus_object_default(&object);
+    object.model = model;
+    read_pose(object.pose, rotation, translation_m, scale);
+    object.static_friction = static_friction;
+    object.dynamic_friction = dynamic_friction;
+    return object;
+}
+
+/// What a call to run() gives; N poses, T tools, J objects.
+struct Answers
+{
+    py::array_t<double> force_n;
+    py::array_t<double> torque_nm;
+    py::array_t<double> proxy_m;
+    py::array_t<std::uint32_t> flags;
+    py::array_t<double> lower_m;
+    py::array_t<double> upper_m;
+    py::array_t<std::uint8_t> kind;
+    py::array_t<double> nearest_m;
+};
+
+struct AlignedDelete
+{
+    void operator()(std::byte* bytes) const
+    {
+        ::operator delete (bytes, std::align_val_t{TACTUS_ALIGNMENT});
+    }
+};
+
+class Frame
+{
+public:
+    Frame(std::vector<std::shared_ptr<Model>> models, const std::vector<tactus_tool>& tools,
+          const std::vector<tactus_object>& objects, double memory_mib, double period_s,
+          bool loads_whole)
+        : models_(std::move(models)), tools_(tools.size()), objects_(objects.size())
+    {
+        if (!(memory_mib >= 0.1 && memory_mib <= 65'536.0))
+        {
+            throw py::value_error("memory_mib: " + std::to_string(memory_mib) +
+                                  "; 0.1 to 65536 is allowed");
+        }
+        const auto bytes = static_cast<std::size_t>(memory_mib * 1048576.0);
+        memory_.reset(
+            static_cast<std::byte*>(::operator new (bytes, std::align_val_t{TACTUS_ALIGNMENT})));
+        std::vector<tactus_model*> handles;
+        for (const std::shared_ptr<Model>& model : models_)
+        {
+            handles.push_back(model->get());
+        }
+        tactus_setup setup;
+        tactus_setup_default(&setup);
+        setup.models = handles.data();
+        setup.model_count = static_cast<std::uint32_t>(handles.size());
+        setup.tools = tools.data();
+        setup.tool_count = static_cast<std::uint32_t>(tools.size());
+        setup.objects = objects.data();
+        setup.object_count = static_cast<std::uint32_t>(objects.size());
+        if (!(period_s >= 1e-5 && period_s <= 1.0))
+        {
+            throw py::value_error("period_s: " + std::to_string(period_s) +
+                                  "; 1e-5 to 1 is allowed");
+        }
+        setup.period_ns = static_cast<std::int64_t>(period_s * 1e9 + 0.5);
+        setup.loads_whole = loads_whole ? 1 : 0;
+        check([&](tactus_error* error)
+              { return tactus_frame_make(&setup, memory_.get(), bytes, &frame_, error); });
+    }
+    Frame(const Frame&) = delete;
+    Frame& operator=(const Frame&) = delete;
+    ~Frame() { tactus_frame_end(frame_); }
+
+    Answers run(const py::object& positions_m, const py::object& rotations, std::uint32_t rounds)
+    {
+        const Numbers positions = numbers_of(positions_m, "positions_m");
+        const bool is_flat = tools_ == 1 && positions.ndim() == 2; // The tools' axis is left out.
+        const py::ssize_t count = positions.ndim() > 0 ? positions.shape(0) : 0;
+        std::vector<py::ssize_t> shape{count};
+        if (!is_flat)
+        {
+            shape.push_back(static_cast<py::ssize_t>(tools_));
+        }
+        const auto with = [&shape](std::vector<py::ssize_t> more)
+        {
+            more.insert(more.begin(), shape.begin(), shape.end());
+            return more;
+        };
+        check_shape(positions, with({3}), "positions_m");
+        Numbers turned;
+        tactus_poses poses{};
+        if (!rotations.is_none())
+        {
+            turned = numbers_of(rotations, "rotations");
+            check_shape(turned, with({3, 3}), "rotations");
+            poses.rotations = turned.data();
+        }
+        const auto objects = static_cast<py::ssize_t>(objects_);
+        Answers answers{py::array_t<double>(with({3})),
+                        py::array_t<double>(with({3})),
+                        py::array_t<double>(with({3})),
+                        py::array_t<std::uint32_t>(shape),
+                        py::array_t<double>(with({objects})),
+                        py::array_t<double>(with({objects})),
+                        py::array_t<std::uint8_t>(with({objects})),
+                        py::array_t<double>(with({objects, 3}))};
+        poses.size = sizeof(poses);
+        poses.count = static_cast<std::size_t>(count);
+        poses.positions_m = positions.data();
+        poses.force_n = answers.force_n.mutable_data();
+        poses.torque_nm = answers.torque_nm.mutable_data();
+        poses.proxy_m = answers.proxy_m.mutable_data();
+        poses.flags = answers.flags.mutable_data();
+        poses.lower_m = answers.lower_m.mutable_data();
+        poses.upper_m = answers.upper_m.mutable_data();
+        poses.kind = answers.kind.mutable_data();
+        poses.nearest_m = answers.nearest_m.mutable_data();
+        poses.rounds = rounds;
+        check(
+            [&](tactus_error* error)
+            {
+                const py::gil_scoped_release others_may_run;
+                return tactus_frame_run(frame_, &poses, error);
+            });
+        return answers;
+    }
+
+    void load()
+    {
+        check(
+            [&](tactus_error* error)
+            {
+                const py::gil_scoped_release others_may_run;
+                return tactus_frame_load(frame_, error);
+            });
+    }
+
+    void place(std::uint32_t object, const py::object& rotation, const py::object& translation_m,
+               double scale)
+    {
+        tactus_object at;
+        tactus_object_default(&at);
+        read_pose(at.pose, rotation, translation_m, scale);
+        check([&](tactus_error* error)
+              { return tactus_frame_place(frame_, object, &at.pose, error); });
+    }
+
+    [[nodiscard]] py::dict state() const
+    {
+        tactus_frame_state state{};
+        state.size = sizeof(state);
+        check([&](tactus_error* error) { return tactus_frame_state_of(frame_, &state, error); });
+        using namespace py::literals;
+        return py::dict("frames"_a = state.frames, "pages_used"_a = state.pages_used,
+                        "pages_total"_a = state.pages_total, "faces_used"_a = state.faces_used,
+                        "is_whole"_a = state.is_whole != 0);
+    }
+
+private:
+    std::vector<std::shared_ptr<Model>> models_; ///< Outlive the frame, as does the memory.
+    std::size_t tools_;
+    std::size_t objects_;
+    std::unique_ptr<std::byte, AlignedDelete> memory_;
+    tactus_frame* frame_{nullptr};
+};
+
+std::array<double, 3> to_array(const double (&values)[3])
+{
+    return {values[0], values[1], values[2]};
+}
+
+} // namespace
+
+PYBIND11_MODULE(tactus, module)
+{
+    using namespace py::literals;
+    module.doc() = "Distances and forces of tools at triangle meshes, exact or with a proven "
+                   "bound. Units are SI; see docs/python.md.";
+    if (tactus_abi() != TACTUS_ABI)
+    {
+        throw py::import_error("the module was made for another version of libtactus");
+    }
+    module.attr("__version__") = tactus_version();
+    py::register_exception<TactusError>(module, "Error", PyExc_RuntimeError);
+
+    module.attr("EXACT") = static_cast<int>(TACTUS_EXACT);
+    module.attr("DECIDED") = static_cast<int>(TACTUS_DECIDED);
+    module.attr("BRACKET") = static_cast<int>(TACTUS_BRACKET);
+    module.attr("STALE") = static_cast<int>(TACTUS_STALE);
+    module.attr("IN_CONTACT") = TACTUS_IN_CONTACT;
+    module.attr("FROZEN") = TACTUS_FROZEN;
+    module.attr("SQUEEZED") = TACTUS_SQUEEZED;
+    module.attr("CROWDED") = TACTUS_CROWDED;
+    module.attr("HELD_BACK") = TACTUS_HELD_BACK;
+
+    py::class_<Model, std::shared_ptr<Model>>(module, "Model", "An .spm model; serves one Frame.")
+        .def(py::init<const std::string&>(), "path"_a, "Opens a file.")
+        .def_static(
+            "find",
+            [](const std::string& name, std::uint32_t domain, double wait_s)
+            { return std::make_shared<Model>(name, domain, wait_s); },
+            "name"_a, "domain"_a = 0, "wait_s"_a = 10.0,
+            "Finds NAME or NAME@HASH among what is published over DDS.")
+        .def_property_readonly("faces", [](const Model& m) { return m.info().faces; })
+        .def_property_readonly("vertices", [](const Model& m) { return m.info().vertices; })
+        .def_property_readonly("diagonal_m", [](const Model& m) { return m.info().diagonal_m; })
+        .def_property_readonly("low_m", [](const Model& m) { return to_array(m.info().low_m); })
+        .def_property_readonly("high_m", [](const Model& m) { return to_array(m.info().high_m); })
+        .def_property_readonly("is_closed", [](const Model& m) { return m.info().is_closed != 0; })
+        .def_property_readonly("hash", [](const Model& m) { return m.info().hash; });
+
+    py::class_<tactus_tool>(module, "Tool", "What touches: everything within a radius of its core.")
+        .def(py::init(&make_tool), "radius_m"_a, py::kw_only(), "shape"_a = "sphere",
+             "half_m"_a = py::none(), "passes_through"_a = false,
+             "stiffness_n_per_m"_a = py::none(), "force_max_n"_a = py::none(),
+             "torque_max_nm"_a = py::none(), "speed_max_m_per_s"_a = py::none());
+
+    py::class_<tactus_object>(module, "Object", "Where a model stands in the world.")
+        .def(py::init(&make_object), "model"_a = 0, py::kw_only(), "rotation"_a = py::none(),
+             "translation_m"_a = py::none(), "scale"_a = 1.0, "static_friction"_a = 0.0,
+             "dynamic_friction"_a = 0.0);
+
+    py::class_<Answers>(module, "Answers", "Arrays of N poses, T tools, J objects.")
+        .def_readonly("force_n", &Answers::force_n)
+        .def_readonly("torque_nm", &Answers::torque_nm)
+        .def_readonly("proxy_m", &Answers::proxy_m)
+        .def_readonly("flags", &Answers::flags)
+        .def_readonly("lower_m", &Answers::lower_m)
+        .def_readonly("upper_m", &Answers::upper_m)
+        .def_readonly("kind", &Answers::kind)
+        .def_readonly("nearest_m", &Answers::nearest_m);
+
+    py::class_<Frame>(module, "Frame", "Tools at objects, in memory that never grows.")
+        .def(py::init<std::vector<std::shared_ptr<Model>>, const std::vector<tactus_tool>&,
+                      const std::vector<tactus_object>&, double, double, bool>(),
+             "models"_a, "tools"_a, "objects"_a, py::kw_only(), "memory_mib"_a = 16.0,
+             "period_s"_a = 1e-3, "loads_whole"_a = false)
+        .def("run", &Frame::run, "positions_m"_a, "rotations"_a = py::none(), "rounds"_a = 0,
+             "Moves the tools through N poses, one frame each; with `rounds` as many, with loading "
+             "between, until the answers are exact or decided.")
+        .def("load", &Frame::load, "One round of loading.")
+        .def("place", &Frame::place, "object"_a, py::kw_only(), "rotation"_a = py::none(),
+             "translation_m"_a = py::none(), "scale"_a = 1.0,
+             "With the next frame the object stands there.")
+        .def("state", &Frame::state);
+}

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "host_tools/scene/detail/gltf_file.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace tactus::detail
+{
+
+/// accessors[index] of a glTF file, of type SCALAR or VEC3: numbers in a buffer, with a stride and
+/// perhaps some that are replaced (sparse). All bounds are checked when it is made, which costs
+/// nothing an element but for sparse ones; elements are decoded when they are asked for. The file
+/// must outlive it. Functions throw a SceneFault.
+class GltfAccessor
+{
+public:
+    GltfAccessor(GltfFile& file, std::size_t index);
+
+    [[nodiscard]] std::size_t count() const noexcept { return count_; }
+    [[nodiscard]] const JsonAt& json() const noexcept { return json_; }
+
+    /// Throws unless the elements can be indices: unsigned whole numbers.
+    void require_indices() const;
+    /// Throws unless they can be positions: VEC3 of floats, or of small integers where the file
+    /// has the extension KHR_mesh_quantization.
+    void require_positions(const GltfFile& file) const;
+
+    /// Element `i` < count() of an accessor that passed the check above.
+    [[nodiscard]] std::uint32_t index(std::size_t i) const;
+    /// Finite, or it throws.
+    [[nodiscard]] std::array<double, 3> position(std::size_t i) const;
+
+private:
+    /// Codes of the standard, and of OpenGL.
+    enum class Component : std::uint16_t
+    {
+        i8 = 5120,
+        u8 = 5121,
+        i16 = 5122,
+        u16 = 5123,
+        u32 = 5125,
+        f32 = 5126,
+    };
+
+    [[nodiscard]] static Component component_of(const JsonAt& json);
+    [[nodiscard]] static std::size_t bytes_of(Component component);
+    [[nodiscard]] static std::string_view view_of(GltfFile& file, const JsonAt& user,
+                                                  std::size_t& stride);
+    [[nodiscard]] static std::uint32_t whole_at(const char* at, Component component);
+
+    void read_base(GltfFile& file);
+    void read_sparse(GltfFile& file);
+    [[nodiscard]] const char* element(std::size_t i) const;
+    [[nodiscard]] double number_at(const char* at) const;
+
+    JsonAt json_;
+    Component component_;
+    std::size_t width_; ///< Numbers of an element: 1 or 3.
+    std::size_t count_;
+    bool is_normalized_{false};
+    std::string_view base_; ///< From the first element on; empty: all are 0.
+    std::size_t stride_{0};
+    std::size_t sparse_count_{0};
+    Component sparse_component_{Component::u8};
+    std::string_view sparse_indices_; ///< Strictly rising.
+    std::string_view sparse_values_;  ///< One element behind the other.
+};
+
+} // namespace tactus::detail

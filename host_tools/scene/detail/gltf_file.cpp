@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "host_tools/scene/detail/gltf_file.hpp"
+
+#include "platform/base/printable.hpp"
+#include "platform/base/read_file.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <sodium.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstring>
+#include <utility>
+
+namespace tactus::detail
+{
+
+namespace
+{
+
+constexpr std::string_view kGlbMagic = "glTF";
+constexpr std::size_t kGlbHeaderBytes = 12;  ///< Magic, version, length of all.
+constexpr std::size_t kChunkHeaderBytes = 8; ///< Length and type.
+constexpr std::uint32_t kJsonChunk = 0x4E4F'534A;
+constexpr std::uint32_t kBinaryChunk = 0x004E'4942;
+
+/// Those that change no surface or are read here. What compresses meshes is refused where a mesh
+/// that a hand may touch needs it.
+constexpr std::array<std::string_view, 7> kKnownExtensions{"KHR_mesh_quantization",
+                                                           "KHR_draco_mesh_compression",
+                                                           "EXT_meshopt_compression",
+                                                           "KHR_lights_punctual",
+                                                           "KHR_materials_",
+                                                           "KHR_texture_",
+                                                           "EXT_texture_"};
+
+std::uint32_t u32_at(std::string_view bytes, std::size_t at)
+{
+    std::uint32_t value = 0;
+    std::memcpy(&value, bytes.data() + at, sizeof(value));
+    return value;
+}
+
+std::string bytes_of(const std::filesystem::path& path)
+{
+    auto bytes = read_file(path, kMaxGltfBytes);
+    if (!bytes)
+    {
+        throw SceneFault{bytes.error().text};
+    }
+    return std::move(bytes).value();
+}
+
+/// What stands behind "base64," of a data URI; throws where it is something else.
+std::string decoded(std::string_view uri, const JsonAt& buffer)
+{
+    constexpr std::string_view kMark = ";base64,";
+    const std::size_t mark = uri.substr(0, 256).find(kMark);
+    if (mark == std::string_view::npos)
+    {
+        buffer.refuse("has a data URI without ';base64,'");
+    }
+    const std::string_view text = uri.substr(mark + kMark.size());
+    std::string bytes(text.size() / 4 * 3 + 3, '\0');
+    std::size_t length = 0;
+    const char* end = nullptr;
+    const int refused =
+        sodium_base642bin(reinterpret_cast<unsigned char*>(bytes.data()), bytes.size(), text.data(),
+                          text.size(), nullptr, &length, &end, sodium_base64_VARIANT_ORIGINAL);
+    if (refused != 0 || end != text.data() + text.size())
+    {
+        buffer.refuse("has a data URI that is not base64");
+    }
+    bytes.resize(length);
+    return bytes;
+}
+
+/// A relative file name of a URI: "%20" is a blank.
+std::string unescaped(std::string_view uri, const JsonAt& buffer)
+{
+    std::string name;
+    for (std::size_t i = 0; i < uri.size(); ++i)
+    {
+        if (uri[i] != '%')
+        {
+            name += uri[i];
+            continue;
+        }
+        unsigned code = 0;
+        const std::string_view digits = uri.substr(i + 1, 2);
+        const char* end = digits.data() + digits.size();
+        const auto read = std::from_chars(digits.data(), end, code, 16);
+        if (digits.size() != 2 || read.ptr != end || code == 0)
+        {
+            buffer.refuse("has a URI with a '%' that no two hexadecimal digits follow");
+        }
+        name += static_cast<char>(code);
+        i += 2;
+    }
+    return name;
+}
+
+bool is_within_its_folder(const std::filesystem::path& name)
+{
+    return !name.empty() && name.is_relative() &&
+           std::ranges::none_of(name, [](const auto& part) { return part == ".."; });
+}
+
+} // namespace
+
+GltfFile::GltfFile(const std::filesystem::path& path) : folder_(path.parent_path())
+{
+    const std::string bytes = bytes_of(path);
+    if (bytes.starts_with(kGlbMagic))
+    {
+        take_chunks(bytes);
+    }
+    else
+    {
+        json_ = std::make_unique<nlohmann::json>(parse_bounded_json(bytes));
+    }
+    check_asset();
+    check_extensions();
+    buffers_.resize(root().size_of("buffers"));
+}
+
+GltfFile::~GltfFile() = default;
+GltfFile::GltfFile(GltfFile&&) noexcept = default;
+GltfFile& GltfFile::operator=(GltfFile&&) noexcept = default;
+
+JsonAt GltfFile::root() const
+{
+    return {*json_, ""};
+}
+
+/// Header, JSON, and in most files one binary chunk; what follows is of extensions.
+void GltfFile::take_chunks(std::string_view bytes)
+{
+    if (bytes.size() < kGlbHeaderBytes || u32_at(bytes, 8) != bytes.size())
+    {
+        throw SceneFault{
+            fmt::format("is no whole GLB: it has {} bytes, its header says {}", bytes.size(),
+                        bytes.size() < kGlbHeaderBytes ? kGlbHeaderBytes : u32_at(bytes, 8))};
+    }
+    if (u32_at(bytes, 4) != 2)
+    {
+        throw SceneFault{
+            fmt::format("is GLB version {}; only version 2 is read", u32_at(bytes, 4))};
+    }
+    std::size_t at = kGlbHeaderBytes;
+    for (std::size_t number = 0; at < bytes.size(); ++number)
+    {
+        const std::size_t left = bytes.size() - at;
+        if (left < kChunkHeaderBytes || u32_at(bytes, at) > left - kChunkHeaderBytes)
+        {
+            throw SceneFault{
+                fmt::format("chunk {} of the GLB, at byte {}, goes beyond its end", number, at)};
+        }
+        const std::uint32_t type = u32_at(bytes, at + 4);
+        const auto chunk = bytes.substr(at + kChunkHeaderBytes, u32_at(bytes, at));
+        if (number == 0 && type == kJsonChunk)
+        {
+            json_ = std::make_unique<nlohmann::json>(parse_bounded_json(chunk));
+        }
+        if (number == 1 && type == kBinaryChunk)
+        {
+            binary_ = chunk;
+        }
+        at += kChunkHeaderBytes + chunk.size();
+    }
+    if (json_ == nullptr)
+    {
+        throw SceneFault{"the first chunk of the GLB is not JSON"};
+    }
+}
+
+void GltfFile::check_asset() const
+{
+    const JsonAt asset = root().at("asset");
+    const JsonAt version = asset.at("version");
+    if (!version.text().starts_with("2."))
+    {
+        version.refuse(fmt::format("is '{}'; only glTF 2 is read", printable(version.text())));
+    }
+    if (const auto least = asset.find("minVersion"); least && least->text() != "2.0")
+    {
+        least->refuse(fmt::format("is '{}'; only 2.0 is read", printable(least->text())));
+    }
+}
+
+void GltfFile::check_extensions()
+{
+    const std::size_t count = root().size_of("extensionsRequired");
+    for (std::size_t i = 0; i < count; ++i)
+    {
+        const JsonAt entry = root().at("extensionsRequired").at(i);
+        const std::string& name = entry.text();
+        const bool is_known = std::ranges::any_of(
+            kKnownExtensions, [&](std::string_view known)
+            { return known.ends_with('_') ? name.starts_with(known) : name == known; });
+        if (!is_known)
+        {
+            entry.refuse(fmt::format("is '{}', which is not supported", printable(name)));
+        }
+        required_.push_back(name);
+    }
+}
+
+bool GltfFile::requires_extension(std::string_view name) const
+{
+    return std::ranges::find(required_, name) != required_.end();
+}
+
+std::string_view GltfFile::buffer(std::size_t index)
+{
+    std::optional<std::string>& bytes = buffers_.at(index);
+    if (!bytes)
+    {
+        const JsonAt buffer = root().at("buffers").at(index);
+        const std::uint64_t length = buffer.at("byteLength").whole(kMaxGltfBytes);
+        std::string loaded = load(buffer, index, length);
+        if (loaded.size() < length)
+        {
+            buffer.refuse(
+                fmt::format("has {} bytes; its byteLength says {}", loaded.size(), length));
+        }
+        if (length > kMaxGltfBytes - buffer_bytes_)
+        {
+            buffer.refuse(fmt::format("brings the buffers above {} bytes", kMaxGltfBytes));
+        }
+        loaded.resize(length);
+        buffer_bytes_ += length;
+        bytes = std::move(loaded);
+    }
+    return *bytes;
+}
+
+std::string GltfFile::load(const JsonAt& buffer, std::size_t index, std::uint64_t length) const
+{
+    const auto uri = buffer.find("uri");
+    if (!uri)
+    {
+        if (index != 0 || !binary_)
+        {
+            buffer.refuse("has no 'uri', and the file no binary chunk for it");
+        }
+        return *binary_;
+    }
+    if (uri->text().starts_with("data:"))
+    {
+        return decoded(uri->text(), *uri);
+    }
+    const std::string name = unescaped(uri->text(), *uri);
+    if (name.find(':') != std::string::npos || !is_within_its_folder(name))
+    {
+        uri->refuse(fmt::format("is '{}'; it must name a file in the scene file's folder or below",
+                                printable(name)));
+    }
+    auto bytes = read_file(folder_ / name, kMaxGltfBytes);
+    if (!bytes)
+    {
+        uri->refuse(fmt::format("'{}': {}; {} bytes are needed", printable(name),
+                                bytes.error().text, length));
+    }
+    return std::move(bytes).value();
+}
+
+std::string GltfFile::described(const std::string& list, std::size_t index) const
+{
+    const JsonAt thing = root().at(list).at(index);
+    const auto name = thing.find("name");
+    const std::string kind = list == "meshes" ? "mesh" : list.substr(0, list.size() - 1);
+    return name && !name->text().empty()
+               ? fmt::format("{} '{}' ({})", kind, printable(name->text()), thing.place())
+               : thing.place();
+}
+
+} // namespace tactus::detail

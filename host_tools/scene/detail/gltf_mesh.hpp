@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "host_tools/mesh/triangle_mesh.hpp"
+#include "host_tools/scene/detail/gltf_file.hpp"
+
+#include <cstddef>
+#include <cstdint>
+
+namespace tactus::detail
+{
+
+/// How often a file's meshes may read the bytes of its buffers: this many elements of accessors for
+/// each byte, and a million besides. Meshes may share accessors; a small file must not become
+/// gigabytes of triangles by that.
+inline constexpr std::uint64_t kReadsPerByte = 64;
+inline constexpr std::uint64_t kFreeReads = 1'000'000;
+
+/// Reads the meshes of one file; functions throw a SceneFault that names the mesh.
+class GltfMeshes
+{
+public:
+    /// `file` must outlive it.
+    explicit GltfMeshes(GltfFile& file) : file_(file) {}
+
+    /// All triangles of meshes[index], with the positions that they use, in the mesh's own frame.
+    [[nodiscard]] TriangleMesh read(std::size_t index);
+
+private:
+    void charge(std::uint64_t reads, const JsonAt& primitive);
+
+    GltfFile& file_;
+    std::uint64_t reads_{0}; ///< Of all meshes so far.
+};
+
+} // namespace tactus::detail

@@ -1,0 +1,433 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "host_tools/scene/detail/gltf_nodes.hpp"
+
+#include "host_tools/scene/material_ranges.hpp"
+#include "host_tools/scene/unique_names.hpp"
+#include "platform/base/printable.hpp"
+#include "rt_core/limits.hpp"
+#include "rt_core/math/vec3.hpp"
+#include "transport/model_name.hpp"
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace tactus::detail
+{
+
+namespace
+{
+
+/// How far the axes of an object may be from equal in length and from perpendicular, as a share of
+/// their length: files keep single precision, and rounding adds up along a chain of parents.
+constexpr double kShapeTolerance = 1e-5;
+
+constexpr std::size_t kNoParent = std::numeric_limits<std::size_t>::max();
+constexpr std::string_view kModelExtension = ".spm";
+
+/// there = linear x here + translation; from a node's frame to its parent's, or to the world.
+struct Affine
+{
+    Mat3 linear{Mat3::Identity()};
+    Vec3 translation{0.0, 0.0, 0.0};
+
+    [[nodiscard]] Affine after(const Affine& inner) const
+    {
+        return {linear * inner.linear, linear * inner.translation + translation};
+    }
+};
+
+template <std::size_t N>
+std::array<double, N> numbers(const JsonAt& json)
+{
+    if (json.size() != N)
+    {
+        json.refuse(fmt::format("has {} numbers and needs {}", json.size(), N));
+    }
+    std::array<double, N> values{};
+    for (std::size_t i = 0; i < N; ++i)
+    {
+        values[i] = json.at(i).number();
+    }
+    return values;
+}
+
+/// Column by column, as the standard has it.
+Affine read_matrix(const JsonAt& json)
+{
+    const auto m = numbers<16>(json);
+    if (m[3] != 0.0 || m[7] != 0.0 || m[11] != 0.0 || m[15] != 1.0)
+    {
+        json.refuse("must have the last row 0 0 0 1");
+    }
+    Affine affine;
+    for (Eigen::Index column = 0; column < 3; ++column)
+    {
+        for (Eigen::Index row = 0; row < 3; ++row)
+        {
+            affine.linear(row, column) = m[static_cast<std::size_t>(4 * column + row)];
+        }
+    }
+    affine.translation = Vec3(m[12], m[13], m[14]);
+    return affine;
+}
+
+Mat3 read_rotation(const JsonAt& json)
+{
+    const auto [x, y, z, w] = numbers<4>(json);
+    const Eigen::Quaterniond rotation(w, x, y, z);
+    if (!(std::abs(rotation.norm() - 1.0) <= kPoseUnitTolerance))
+    {
+        json.refuse(fmt::format("has the length {}; a unit quaternion has 1", rotation.norm()));
+    }
+    return rotation.normalized().toRotationMatrix();
+}
+
+Affine read_transform(const JsonAt& node)
+{
+    const auto matrix = node.find("matrix");
+    const auto translation = node.find("translation");
+    const auto rotation = node.find("rotation");
+    const auto scale = node.find("scale");
+    if (matrix)
+    {
+        if (translation || rotation || scale)
+        {
+            node.refuse("has both a matrix and translation, rotation or scale");
+        }
+        return read_matrix(*matrix);
+    }
+    Affine affine;
+    if (rotation)
+    {
+        affine.linear = read_rotation(*rotation);
+    }
+    if (scale)
+    {
+        const auto s = numbers<3>(*scale);
+        affine.linear *= Vec3(s[0], s[1], s[2]).asDiagonal();
+    }
+    if (translation)
+    {
+        const auto t = numbers<3>(*translation);
+        affine.translation = Vec3(t[0], t[1], t[2]);
+    }
+    return affine;
+}
+
+/// Who is whose parent, and the nodes in an order in which parents come first.
+class NodeTree
+{
+public:
+    explicit NodeTree(const GltfFile& file) : parents_(count_nodes(file), kNoParent)
+    {
+        const std::size_t count = parents_.size();
+        for (std::size_t i = 0; i < count; ++i)
+        {
+            adopt_children(file, i);
+        }
+        for (std::size_t i = 0; i < count; ++i)
+        {
+            if (parents_[i] == kNoParent)
+            {
+                order_.push_back(i);
+            }
+        }
+        for (std::size_t next = 0; next < order_.size(); ++next)
+        {
+            const std::vector<std::size_t>& children = children_[order_[next]];
+            order_.insert(order_.end(), children.begin(), children.end());
+        }
+        if (order_.size() < count)
+        {
+            refuse_cycle(file);
+        }
+    }
+
+    [[nodiscard]] const std::vector<std::size_t>& order() const noexcept { return order_; }
+    [[nodiscard]] std::size_t parent(std::size_t node) const { return parents_[node]; }
+
+private:
+    static std::size_t count_nodes(const GltfFile& file)
+    {
+        const std::size_t count = file.root().size_of("nodes");
+        if (count > kMaxNodes)
+        {
+            throw SceneFault{fmt::format("has {} nodes; at most {}", count, kMaxNodes)};
+        }
+        return count;
+    }
+
+    void adopt_children(const GltfFile& file, std::size_t node)
+    {
+        const auto list = file.root().at("nodes").at(node).find("children");
+        children_.resize(parents_.size());
+        for (std::size_t i = 0; list && i < list->size(); ++i)
+        {
+            const std::size_t child = list->at(i).index_below(parents_.size(), "nodes");
+            if (parents_[child] != kNoParent)
+            {
+                throw SceneFault{fmt::format("{} has two parents, nodes[{}] and nodes[{}]",
+                                             file.described("nodes", child), parents_[child],
+                                             node)};
+            }
+            parents_[child] = node;
+            children_[node].push_back(child);
+        }
+    }
+
+    /// What no root leads to hangs in a circle.
+    [[noreturn]] void refuse_cycle(const GltfFile& file) const
+    {
+        std::vector<bool> is_reached(parents_.size(), false);
+        for (const std::size_t node : order_)
+        {
+            is_reached[node] = true;
+        }
+        const auto lost =
+            static_cast<std::size_t>(std::ranges::find(is_reached, false) - is_reached.begin());
+        std::size_t node = lost; // Perhaps only below the circle: after so many steps it is in it.
+        for (std::size_t i = 0; i < parents_.size(); ++i)
+        {
+            node = parents_[node];
+        }
+        throw SceneFault{file.described("nodes", node) + " is its own ancestor"};
+    }
+
+    std::vector<std::size_t> parents_;
+    std::vector<std::vector<std::size_t>> children_;
+    std::vector<std::size_t> order_;
+};
+
+/// Which nodes the file's scene shows: its roots and all below them.
+std::vector<bool> find_shown(const GltfFile& file, const NodeTree& tree)
+{
+    const JsonAt root = file.root();
+    const std::size_t scenes = root.size_of("scenes");
+    if (scenes == 0)
+    {
+        throw SceneFault{"has no scene"};
+    }
+    const auto chosen = root.find("scene");
+    const JsonAt scene = root.at("scenes").at(chosen ? chosen->index_below(scenes, "scenes") : 0);
+    std::vector<bool> is_shown(tree.order().size(), false);
+    const auto list = scene.find("nodes");
+    for (std::size_t i = 0; list && i < list->size(); ++i)
+    {
+        const std::size_t node = list->at(i).index_below(is_shown.size(), "nodes");
+        if (tree.parent(node) != kNoParent)
+        {
+            list->at(i).refuse(fmt::format("is {}, which is a child of nodes[{}], no root",
+                                           file.described("nodes", node), tree.parent(node)));
+        }
+        is_shown[node] = true;
+    }
+    for (const std::size_t node : tree.order())
+    {
+        const std::size_t parent = tree.parent(node);
+        is_shown[node] = is_shown[node] || (parent != kNoParent && is_shown[parent]);
+    }
+    return is_shown;
+}
+
+Material read_material(const JsonAt& json)
+{
+    json.require_keys_among("stiffness static dynamic damping");
+    const auto number = [&](const char* key, double otherwise)
+    {
+        const auto value = json.find(key);
+        return value ? value->number() : otherwise;
+    };
+    Material material;
+    material.stiffness_n_per_m = number("stiffness", material.stiffness_n_per_m);
+    material.static_friction = number("static", 0.0);
+    material.dynamic_friction = number("dynamic", material.static_friction);
+    material.damping_n_s_per_m = number("damping", 0.0);
+    if (!is_in_range(material))
+    {
+        json.refuse(fmt::format("must have {}", kMaterialRanges));
+    }
+    return material;
+}
+
+/// The file "x.spm" of a model that can be published as "x".
+std::string read_model(const JsonAt& json)
+{
+    const std::string& name = json.text();
+    if (!name.ends_with(kModelExtension) ||
+        !is_valid_name(std::string_view(name).substr(0, name.size() - kModelExtension.size())))
+    {
+        json.refuse(fmt::format("is '{}'; must be an .spm in the scene file's folder with a name "
+                                "of 1 to 63 characters of A-Z a-z 0-9 . _ -",
+                                printable(name)));
+    }
+    return name;
+}
+
+/// `extras` may hold anything of others; "tactus" is ours.
+void read_extras(const JsonAt& node, SceneObject& object)
+{
+    const auto extras = node.find("extras");
+    const auto ours = extras && extras->json().is_object() ? extras->find("tactus") : std::nullopt;
+    if (!ours)
+    {
+        return;
+    }
+    ours->require_keys_among("model material touch");
+    if (const auto model = ours->find("model"))
+    {
+        object.model = read_model(*model);
+    }
+    if (const auto material = ours->find("material"))
+    {
+        object.material = read_material(*material);
+    }
+    if (const auto touch = ours->find("touch"))
+    {
+        object.is_touched = touch->boolean();
+    }
+}
+
+/// In range but for rounding: 0.001 as a float is a little below.
+double rounded_into_range(double scale)
+{
+    const double nearest = std::clamp(scale, kPoseScaleMin, kPoseScaleMax);
+    return std::abs(scale - nearest) <= kShapeTolerance * nearest ? nearest : scale;
+}
+
+/// Makes a pose of where the node stands, which must be a similarity, mirrored or not.
+void set_pose(const Affine& world, SceneObject& object)
+{
+    const auto refuse = [&](const std::string& what)
+    { throw SceneFault{object.place + " " + what}; };
+    Mat3 axes = world.linear;
+    if (!axes.allFinite() || !world.translation.allFinite())
+    {
+        refuse("stands nowhere: with its parents' transforms a number is not finite");
+    }
+    const bool is_mirrored = axes.determinant() < 0.0;
+    if (is_mirrored)
+    {
+        axes.col(0) = -axes.col(0);
+    }
+    const Vec3 lengths = axes.colwise().norm().transpose();
+    const double scale = lengths.mean();
+    if (!(lengths.minCoeff() > 0.0))
+    {
+        refuse("has a scale of 0 along an axis");
+    }
+    if (lengths.maxCoeff() - lengths.minCoeff() > 2.0 * kShapeTolerance * scale)
+    {
+        refuse(fmt::format("scales its axes by {:.6g}, {:.6g} and {:.6g}; a model keeps its shape, "
+                           "so they must be equal",
+                           lengths.x(), lengths.y(), lengths.z()));
+    }
+    const Mat3 rotation = axes / scale;
+    const Mat3 product = rotation.transpose() * rotation;
+    if ((product - Mat3::Identity()).cwiseAbs().maxCoeff() > 4.0 * kShapeTolerance)
+    {
+        refuse("has axes that are not perpendicular; a model keeps its shape");
+    }
+    const Eigen::Quaterniond turn = Eigen::Quaterniond(rotation).normalized();
+    object.pose.rotation = {turn.x(), turn.y(), turn.z(), turn.w()};
+    std::copy_n(world.translation.data(), 3, object.pose.translation_m.begin());
+    object.pose.scale = rounded_into_range(scale);
+    if (const auto checked = checked_pose(object.pose); !checked)
+    {
+        refuse(checked.error() == PoseRefusal::translation
+                   ? fmt::format("stands farther than {} m from the origin along an axis",
+                                 kPoseReachMax_m)
+                   : fmt::format("has a scale of {:.6g}; {} to {} is allowed", scale, kPoseScaleMin,
+                                 kPoseScaleMax));
+    }
+    if (is_mirrored && !object.model.empty())
+    {
+        refuse("mirrors its model; that would be another model");
+    }
+    if (object.mesh)
+    {
+        object.mesh->is_mirrored = is_mirrored;
+    }
+}
+
+/// None when the node is no object.
+std::optional<SceneObject> read_object(const GltfFile& file, std::size_t index)
+{
+    const JsonAt node = file.root().at("nodes").at(index);
+    SceneObject object;
+    object.place = file.described("nodes", index);
+    read_extras(node, object);
+    if (const auto mesh = node.find("mesh"))
+    {
+        object.mesh = MeshUse{mesh->index_below(file.root().size_of("meshes"), "meshes")};
+    }
+    if (!object.mesh && object.model.empty())
+    {
+        return std::nullopt;
+    }
+    if (node.find("skin") && object.is_touched && object.model.empty())
+    {
+        throw SceneFault{object.place + " has a skin; a model keeps its shape"};
+    }
+    const auto name = node.find("name");
+    object.name = name ? plain_name(name->text()) : "";
+    if (object.name.empty())
+    {
+        object.name = "node" + std::to_string(index);
+    }
+    if (!object.model.empty())
+    {
+        object.mesh.reset(); // The mesh is for eyes then.
+    }
+    return object;
+}
+
+} // namespace
+
+std::vector<SceneObject> read_objects(const GltfFile& file)
+{
+    const NodeTree tree(file);
+    const std::vector<bool> is_shown = find_shown(file, tree);
+    std::vector<Affine> worlds(tree.order().size());
+    for (const std::size_t node : tree.order())
+    {
+        const Affine local = read_transform(file.root().at("nodes").at(node));
+        const std::size_t parent = tree.parent(node);
+        worlds[node] = parent == kNoParent ? local : worlds[parent].after(local);
+    }
+    std::vector<SceneObject> objects;
+    std::vector<std::string> names;
+    for (std::size_t node = 0; node < worlds.size(); ++node)
+    {
+        auto object = is_shown[node] ? read_object(file, node) : std::nullopt;
+        if (!object)
+        {
+            continue;
+        }
+        if (objects.size() == kMaxObjects)
+        {
+            throw SceneFault{fmt::format("has more than {} objects", kMaxObjects)};
+        }
+        if (object->is_touched)
+        {
+            set_pose(worlds[node], *object);
+        }
+        names.push_back(object->name);
+        objects.push_back(std::move(*object));
+    }
+    names = unique_names(names);
+    for (std::size_t i = 0; i < objects.size(); ++i)
+    {
+        objects[i].name = std::move(names[i]);
+    }
+    return objects;
+}
+
+} // namespace tactus::detail

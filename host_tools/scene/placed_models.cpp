@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "host_tools/scene/placed_models.hpp"
+
+#include "host_tools/scene/scene.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <map>
+
+namespace tactus
+{
+
+namespace
+{
+
+nlohmann::ordered_json material_json(const Material& material)
+{
+    nlohmann::ordered_json json = nlohmann::ordered_json::object();
+    if (material.stiffness_n_per_m != Material{}.stiffness_n_per_m)
+    {
+        json["stiffness"] = material.stiffness_n_per_m;
+    }
+    if (material.static_friction != 0.0)
+    {
+        json["static"] = material.static_friction;
+        json["dynamic"] = material.dynamic_friction;
+    }
+    if (material.damping_n_s_per_m != 0.0)
+    {
+        json["damping"] = material.damping_n_s_per_m;
+    }
+    return json;
+}
+
+nlohmann::ordered_json node_json(const PlacedModel& object, const std::string& file)
+{
+    nlohmann::ordered_json ours = {{"model", file}};
+    if (const auto material = material_json(object.material); !material.empty())
+    {
+        ours["material"] = material;
+    }
+    const double s = object.pose.scale;
+    return {{"name", object.name},
+            {"translation", object.pose.translation_m},
+            {"rotation", object.pose.rotation},
+            {"scale", {s, s, s}},
+            {"extras", {{"tactus", ours}}}};
+}
+
+} // namespace
+
+Result<PlacedModels, Refusal> read_placed_models(const std::filesystem::path& path)
+{
+    const auto scene = Scene::open(path);
+    if (!scene)
+    {
+        return scene.error();
+    }
+    PlacedModels placed;
+    std::map<std::string, std::size_t> known;
+    for (const SceneObject& object : scene.value().objects())
+    {
+        if (!object.is_touched)
+        {
+            continue;
+        }
+        if (object.model.empty())
+        {
+            return Refusal{fmt::format("{}: {} names no model in extras.tactus; spm_build makes "
+                                       "models of a scene's meshes",
+                                       path.string(), object.place)};
+        }
+        const auto [model, is_new] = known.try_emplace(object.model, placed.files.size());
+        if (is_new)
+        {
+            placed.files.push_back(path.parent_path() / object.model);
+        }
+        placed.objects.push_back({object.name, model->second, object.pose, object.material});
+    }
+    return placed;
+}
+
+std::string scene_text(const PlacedModels& scene)
+{
+    nlohmann::ordered_json nodes = nlohmann::ordered_json::array();
+    nlohmann::ordered_json roots = nlohmann::ordered_json::array();
+    for (const PlacedModel& object : scene.objects)
+    {
+        roots.push_back(nodes.size());
+        nodes.push_back(node_json(object, scene.files.at(object.model).filename().string()));
+    }
+    const nlohmann::ordered_json text = {{"asset", {{"version", "2.0"}, {"generator", "Tactus"}}},
+                                         {"scene", 0},
+                                         {"scenes", {{{"nodes", roots}}}},
+                                         {"nodes", nodes}};
+    return text.dump(1) + '\n';
+}
+
+} // namespace tactus

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "host_tools/scene/scene.hpp"
+
+#include "host_tools/scene/detail/gltf_mesh.hpp"
+#include "host_tools/scene/detail/gltf_nodes.hpp"
+#include "host_tools/scene/unique_names.hpp"
+#include "rt_core/base/assert.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <new>
+#include <utility>
+
+namespace tactus
+{
+
+namespace
+{
+
+/// What `read` returns, or why it can't with the file's name in front.
+template <typename Read>
+auto refusing(const std::filesystem::path& path, const Read& read)
+    -> Result<decltype(read()), Refusal>
+{
+    try
+    {
+        return read();
+    }
+    catch (const detail::SceneFault& fault)
+    {
+        return Refusal{fmt::format("{}: {}", path.string(), fault.text)};
+    }
+    catch (const std::bad_alloc&)
+    {
+        return Refusal{fmt::format("{}: there is not enough memory to read it", path.string())};
+    }
+}
+
+void mirror(TriangleMesh& mesh)
+{
+    for (auto& position : mesh.positions)
+    {
+        position[0] = -position[0];
+    }
+    for (auto& face : mesh.faces)
+    {
+        std::swap(face[1], face[2]); // The outside stays outside.
+    }
+}
+
+} // namespace
+
+struct Scene::Reader
+{
+    explicit Reader(const std::filesystem::path& path) : file(path), meshes(file) {}
+
+    detail::GltfFile file;
+    detail::GltfMeshes meshes;
+};
+
+bool has_scene_extension(const std::filesystem::path& path)
+{
+    std::string extension = path.extension().string();
+    std::ranges::transform(extension, extension.begin(),
+                           [](char c)
+                           { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+    return extension == ".gltf" || extension == ".glb";
+}
+
+Scene::Scene() = default;
+Scene::~Scene() = default;
+Scene::Scene(Scene&&) noexcept = default;
+Scene& Scene::operator=(Scene&&) noexcept = default;
+
+Result<Scene, Refusal> Scene::open(const std::filesystem::path& path)
+{
+    return refusing(path,
+                    [&]
+                    {
+                        Scene scene;
+                        scene.path_ = path;
+                        scene.reader_ = std::make_unique<Reader>(path);
+                        scene.objects_ = detail::read_objects(scene.reader_->file);
+                        if (std::ranges::none_of(scene.objects_, &SceneObject::is_touched))
+                        {
+                            throw detail::SceneFault{
+                                scene.objects_.empty()
+                                    ? "its scene has no node with a mesh or a model"
+                                    : "every object says that it isn't touched"};
+                        }
+                        return scene;
+                    });
+}
+
+std::string Scene::mesh_name(const MeshUse& use) const
+{
+    const auto mesh = reader_->file.root().at("meshes").at(use.mesh);
+    const auto name = mesh.find("name");
+    const bool has_name = name && name->json().is_string() && !name->text().empty();
+    return (has_name ? plain_name(name->text()) : "mesh" + std::to_string(use.mesh));
+}
+
+Result<TriangleMesh, Refusal> Scene::read_mesh(const MeshUse& use)
+{
+    return refusing(path_,
+                    [&]
+                    {
+                        TriangleMesh mesh = reader_->meshes.read(use.mesh);
+                        if (use.is_mirrored)
+                        {
+                            mirror(mesh);
+                        }
+                        return mesh;
+                    });
+}
+
+} // namespace tactus

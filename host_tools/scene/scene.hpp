@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "host_tools/mesh/triangle_mesh.hpp"
+#include "host_tools/scene/scene_object.hpp"
+#include "platform/base/refusal.hpp"
+#include "rt_core/base/result.hpp"
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace tactus
+{
+
+/// Whether a path ends in .gltf or .glb, in either case of letters.
+[[nodiscard]] bool has_scene_extension(const std::filesystem::path& path);
+
+/// A glTF 2.0 scene (docs/scene-files.md): its objects, and the meshes that they show. Every
+/// refusal is one line that begins with the file's name.
+class Scene
+{
+public:
+    /// Reads .gltf and .glb: 1 to kMaxObjects objects, one of them touched at least. Costs the
+    /// file's bytes and some 100 bytes for each value of its JSON, which are bounded, too; no
+    /// buffer is read yet.
+    [[nodiscard]] static Result<Scene, Refusal> open(const std::filesystem::path& path);
+
+    ~Scene();
+    Scene(Scene&&) noexcept;
+    Scene& operator=(Scene&&) noexcept;
+
+    /// In the order of the file's nodes.
+    [[nodiscard]] const std::vector<SceneObject>& objects() const noexcept { return objects_; }
+
+    /// What a modeller called the mesh, as a valid name; not unique. "mesh7" where it has none.
+    [[nodiscard]] std::string mesh_name(const MeshUse& use) const;
+
+    /// The mesh of an object, in the object's frame: 1 to kMaxFaces faces, finite coordinates,
+    /// indices in range. Buffers that it lies in are read and kept; nothing is welded or repaired.
+    [[nodiscard]] Result<TriangleMesh, Refusal> read_mesh(const MeshUse& use);
+
+private:
+    struct Reader;
+
+    Scene();
+
+    std::filesystem::path path_;
+    std::unique_ptr<Reader> reader_;
+    std::vector<SceneObject> objects_;
+};
+
+} // namespace tactus
