@@ -5,6 +5,7 @@
 #include "platform/haptic_device.hpp"
 #include "rt_core/math/vec3.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -17,24 +18,36 @@ namespace tactus
     return {v.x(), v.y(), v.z()};
 }
 
-/// What a device makes of a written force: none when it isn't finite, else one of at most
-/// `force_max_n` in the same direction. Counts in `status` what it had to change.
-[[nodiscard]] inline Vec3 take_force(const std::array<double, 3>& force_world_n, double force_max_n,
-                                     DeviceStatus& status) noexcept
+[[nodiscard]] inline Vec3 to_vec3(const std::array<double, 3>& v) noexcept
 {
-    const Vec3 force_n{force_world_n[0], force_world_n[1], force_world_n[2]};
+    return {v[0], v[1], v[2]};
+}
+
+/// What a device makes of what is written to it: HapticDevice::write(). Counts in `status` what it
+/// had to change.
+[[nodiscard]] inline Wrench take_wrench(const Wrench& written, const DeviceInfo& info,
+                                        DeviceStatus& status) noexcept
+{
+    const Vec3 force_n = to_vec3(written.force_world_n);
+    const double torque_max_nm = info.limits.turn.torque_max_nm;
+    const Vec3 torque_nm =
+        torque_max_nm > 0.0 ? to_vec3(written.torque_world_nm) : Vec3(Vec3::Zero());
     const double norm_n = force_n.norm();
-    if (!std::isfinite(norm_n))
+    const double norm_nm = torque_nm.norm();
+    const double grip_n =
+        std::clamp(written.gripper_force_n, -info.gripper_force_max_n, info.gripper_force_max_n);
+    if (!std::isfinite(norm_n + norm_nm + written.gripper_force_n))
     {
         ++status.forces_refused;
-        return Vec3::Zero();
+        return {};
     }
-    if (norm_n > force_max_n)
-    {
-        ++status.forces_clamped;
-        return force_n * (force_max_n / norm_n);
-    }
-    return force_n;
+    double share = 1.0;
+    share = norm_n > info.limits.force_max_n ? info.limits.force_max_n / norm_n : share;
+    share = norm_nm > torque_max_nm ? std::min(share, torque_max_nm / norm_nm) : share;
+    const bool is_grip_clamped =
+        info.gripper_force_max_n > 0.0 && grip_n != written.gripper_force_n;
+    status.forces_clamped += share < 1.0 || is_grip_clamped ? 1U : 0U;
+    return {to_array(force_n * share), to_array(torque_nm * share), grip_n};
 }
 
 } // namespace tactus

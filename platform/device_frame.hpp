@@ -5,6 +5,7 @@
 #include "platform/base/refusal.hpp"
 #include "platform/haptic_device.hpp"
 #include "rt_core/base/result.hpp"
+#include "rt_core/math/rotation.hpp"
 #include "rt_core/math/similarity.hpp"
 
 namespace tactus
@@ -13,12 +14,14 @@ namespace tactus
 /// How a device stands in the world:
 ///
 ///     position_world = translation_m + scale x rotation x position_device
-///     force_device   = rotation^T x force_world
+///     rotation_world = rotation x rotation_device
+///     force_device   = rotation^T x force_world, and so the torque
 ///
 /// A scale of 10 makes 1 cm of the hand's way 10 cm of the world. Forces are not scaled: a newton
-/// of the world is a newton on the hand. A device that moves s times as far for the same force is,
-/// seen from the world, one of a s-th of its mass, damping and stiffness; to_world(DeviceInfo)
-/// says so, and the cap of docs/stability.md holds unchanged. The default is no change at all.
+/// of the world is a newton on the hand, and angles stay what they are. A device that moves s times
+/// as far for the same force is, seen from the world, one of a s-th of its mass, damping and
+/// stiffness; to_world(DeviceInfo) says so, and the cap of docs/stability.md holds unchanged. The
+/// default is no change at all.
 class DeviceFrame
 {
 public:
@@ -41,6 +44,19 @@ public:
     [[nodiscard]] Vec3 force_to_device(const Vec3& world_n) const noexcept
     {
         return frame_.rotation.transpose() * world_n;
+    }
+    [[nodiscard]] Quaternion rotation_to_world(const Quaternion& device) const noexcept
+    {
+        return to_quaternion(frame_.rotation * to_rotation(device));
+    }
+    /// In radians per second.
+    [[nodiscard]] Vec3 turning_to_world(const Vec3& device_rad_per_s) const noexcept
+    {
+        return frame_.rotation * device_rad_per_s;
+    }
+    [[nodiscard]] Vec3 torque_to_device(const Vec3& world_nm) const noexcept
+    {
+        return frame_.rotation.transpose() * world_nm;
     }
     /// What the device is in the world, from what it says of itself; rates and delay stay.
     [[nodiscard]] DeviceInfo to_world(const DeviceInfo& device) const;

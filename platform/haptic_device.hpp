@@ -24,6 +24,9 @@ struct DeviceInfo
     double speed_max_m_per_s{0.0};  ///< Faster motion means that nobody holds it.
     std::int64_t rate_min_hz{0};
     std::int64_t rate_max_hz{0};
+    double gripper_force_max_n{0.0}; ///< Either way; 0: it has no gripper that makes a force.
+
+    [[nodiscard]] bool operator==(const DeviceInfo&) const = default;
 };
 
 /// One reading. `position_world_m` is where the hand has moved the device, which may be deep inside
@@ -42,6 +45,26 @@ struct DeviceSample
     bool connected{true};    ///< False: the device does not answer; then nothing is valid.
     bool deadman_held{true}; ///< False: its switch or sensor says that nobody holds it. Without one
                              ///< always true.
+    /// Of what the hand holds, as a unit quaternion x, y, z, w. None when it isn't measured.
+    std::optional<std::array<double, 4>> rotation_world;
+    /// None when the device does not measure it.
+    std::optional<std::array<double, 3>> angular_velocity_world_rad_per_s;
+    std::uint32_t buttons{0};        ///< Bit n is set while button n is pressed.
+    std::optional<double> gripper_m; ///< How far it is open; none when there is none.
+};
+
+/// That DeviceSample tells of.
+inline constexpr std::uint32_t kButtons = 32;
+
+/// What a device is to do to the hand, along the world's axes. A device without a torque takes the
+/// force alone.
+struct Wrench
+{
+    std::array<double, 3> force_world_n{};
+    std::array<double, 3> torque_world_nm{}; ///< About the device's position.
+    double gripper_force_n{0.0};             ///< Above 0 it opens the gripper.
+
+    [[nodiscard]] bool operator==(const Wrench&) const = default;
 };
 
 enum class DeviceState
@@ -55,7 +78,7 @@ struct DeviceStatus
 {
     DeviceState state{DeviceState::idle};
     std::uint64_t frames{0};
-    std::uint64_t forces_clamped{0}; ///< Writes beyond limits.force_max_n.
+    std::uint64_t forces_clamped{0}; ///< Writes beyond what the device makes.
     std::uint64_t forces_refused{0}; ///< Writes that were not finite; zero was written instead.
 };
 
@@ -72,10 +95,11 @@ public:
 
     [[nodiscard]] virtual DeviceSample read() noexcept = 0;
 
-    /// The force on the hand, in newtons along the world's axes, held until the next write. A
-    /// device with a watchdog of its own ends it when no write comes for too long, and is idle
-    /// then.
-    virtual void write(const std::array<double, 3>& force_world_n) noexcept = 0;
+    /// What to do to the hand, held until the next write. A device with a watchdog of its own ends
+    /// it when no write comes for too long, and is idle then. It shortens force and torque by one
+    /// factor to what it makes of both, and the gripper's force by one of its own; where anything
+    /// is not finite it makes nothing.
+    virtual void write(const Wrench& wrench) noexcept = 0;
 
     /// Takes the force away at once and damps the motion, whatever the haptic thread is doing or
     /// failing to do. It latches until release_brake(); braking again changes nothing.

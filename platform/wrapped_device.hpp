@@ -23,10 +23,7 @@ public:
 
     [[nodiscard]] const DeviceInfo& info() const noexcept override { return device_->info(); }
     [[nodiscard]] DeviceSample read() noexcept override { return device_->read(); }
-    void write(const std::array<double, 3>& force_world_n) noexcept override
-    {
-        device_->write(force_world_n);
-    }
+    void write(const Wrench& wrench) noexcept override { device_->write(wrench); }
     void brake() noexcept override { device_->brake(); }
     void release_brake() noexcept override { device_->release_brake(); }
     [[nodiscard]] DeviceStatus status() const noexcept override { return device_->status(); }

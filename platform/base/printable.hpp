@@ -20,8 +20,8 @@ namespace tactus
 /// By default a word may be as long as a model's name.
 [[nodiscard]] std::string printable(std::string_view text, std::size_t longest = 63);
 
-/// A whole line of output: control characters become '?'. It keeps its length and all bytes above
-/// ASCII, since users give their files names in UTF-8.
+/// A whole line of output: control characters, those beyond ASCII (C1, in UTF-8) as well, become
+/// '?'. Other bytes above ASCII stay, since users give their files names in UTF-8.
 [[nodiscard]] std::string printable_line(std::string_view text);
 
 } // namespace tactus

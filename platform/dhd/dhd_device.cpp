@@ -18,6 +18,9 @@ namespace tactus
 namespace
 {
 
+/// How far the SDK's frames may be from orthonormal: they are products of calibrated joints.
+constexpr double kFrameTolerance = 1e-3;
+
 Refusal refuse_device(std::string line)
 {
     return {"dhd device: " + std::move(line)};
@@ -81,6 +84,17 @@ Result<char, Refusal> open_device(const DhdLibrary& library, int index)
     return static_cast<char>(id);
 }
 
+/// What is there of what the options say.
+DeviceInfo fitted(DeviceInfo info, const DhdLibrary& library, char id)
+{
+    info.name = info.name.empty() ? system_name(library, id) : info.name;
+    TurnLimits& turn = info.limits.turn;
+    turn.is_measured = library->dhdHasWrist(id);
+    turn.torque_max_nm = library->dhdHasActiveWrist(id) ? turn.torque_max_nm : 0.0;
+    info.gripper_force_max_n = library->dhdHasActiveGripper(id) ? info.gripper_force_max_n : 0.0;
+    return info;
+}
+
 bool is_usable(const Vec3& v) noexcept
 {
     return std::abs(v.x()) <= kGoalRange_m && std::abs(v.y()) <= kGoalRange_m &&
@@ -90,7 +104,8 @@ bool is_usable(const Vec3& v) noexcept
 } // namespace
 
 /// The omega class of platform/simulated/device_classes.hpp with the force and the stiffness of the
-/// weakest device, and a turn and two transfers of delay.
+/// weakest device, and a turn and two transfers of delay. Its wrist is a light one, with a quarter
+/// of the torque of the maker's.
 DeviceInfo DhdDeviceOptions::default_info()
 {
     DeviceInfo info;
@@ -102,7 +117,17 @@ DeviceInfo DhdDeviceOptions::default_info()
                    .force_max_n = 8.0,
                    .slew_max_n_per_s = 16'000.0,
                    .stiffness_max_n_per_m = 3'000.0,
-                   .added_damping_max_n_s_per_m = 10.0};
+                   .added_damping_max_n_s_per_m = 10.0,
+                   .turn = {.is_measured = true,
+                            .torque_max_nm = 0.1,
+                            .inertia_kg_m2 = 1e-4,
+                            .damping_nm_s_per_rad = 5e-4,
+                            .friction_nm = 0.0,
+                            .quantum_rad = 2e-4,
+                            .slew_max_nm_per_s = 200.0,
+                            .stiffness_max_nm_per_rad = 0.4,
+                            .added_damping_max_nm_s_per_rad = 3e-3}};
+    info.gripper_force_max_n = 4.0;
     info.workspace_radius_m = 0.5;
     info.speed_max_m_per_s = 10.0;
     info.rate_min_hz = 100;
@@ -127,8 +152,7 @@ Result<std::unique_ptr<DhdDevice>, Refusal> DhdDevice::create(const DhdDeviceOpt
     {
         return id.error();
     }
-    DeviceInfo info = options.info;
-    info.name = info.name.empty() ? system_name(library.value(), id.value()) : info.name;
+    const DeviceInfo info = fitted(options.info, library.value(), id.value());
     std::unique_ptr<DhdDevice> device(
         new DhdDevice(std::move(library).value(), id.value(), info, options)); // Closes it, too.
     if (const char* fault = find_fault(info); fault != nullptr)
@@ -150,6 +174,8 @@ DhdDevice::DhdDevice(DhdLibrary library, char id, const DeviceInfo& info,
     , library_(std::move(library))
     , index_(static_cast<char>(options.index))
     , deadman_button_(options.deadman_button)
+    , has_wrist_(library_->dhdHasWrist(id))
+    , has_gripper_(library_->dhdHasGripper(id))
     , period_(options.period)
     , id_(id)
 {
@@ -161,7 +187,7 @@ DhdDevice::~DhdDevice()
     thread_.reset();
     if (is_open_)
     {
-        library_->dhdSetForce(0.0, 0.0, 0.0, id_);
+        static_cast<void>(set_force({}));
         library_->dhdEnableForce(0, id_);
         library_->dhdClose(id_);
     }
@@ -211,8 +237,39 @@ bool DhdDevice::publish_reading() noexcept
         reading.velocity_m_per_s = velocity;
     }
     reading.deadman_held = is_held();
+    reading.buttons = library_->dhdGetButtonMask(id_);
+    read_wrist_and_gripper(reading);
     publish(reading, std::exchange(is_new_, false));
     return true;
+}
+
+/// A wrist without a rotation, or with one that is none, has no place.
+void DhdDevice::read_wrist_and_gripper(DeviceReading& reading) const noexcept
+{
+    if (has_wrist_)
+    {
+        double rows[3][3] = {};
+        const bool is_read = library_->dhdGetOrientationFrame(rows, id_) >= 0;
+        Mat3 frame;
+        frame << rows[0][0], rows[0][1], rows[0][2], rows[1][0], rows[1][1], rows[1][2], rows[2][0],
+            rows[2][1], rows[2][2];
+        const bool is_good = is_read && is_rotation(frame, kFrameTolerance);
+        reading.valid = reading.valid && is_good;
+        reading.rotation =
+            is_good ? std::optional(to_quaternion(orthonormalised(frame))) : std::nullopt;
+        Vec3 turning(0.0, 0.0, 0.0);
+        if (library_->dhdGetAngularVelocityRad(&turning.x(), &turning.y(), &turning.z(), id_) >=
+                0 &&
+            is_usable(turning))
+        {
+            reading.angular_velocity_rad_per_s = turning;
+        }
+    }
+    double gap_m = 0.0;
+    if (has_gripper_ && library_->dhdGetGripperGap(&gap_m, id_) >= 0 && std::isfinite(gap_m))
+    {
+        reading.gripper_m = gap_m;
+    }
 }
 
 /// A button that can't be read isn't held.
@@ -225,11 +282,10 @@ bool DhdDevice::is_held() const noexcept
 bool DhdDevice::obey(const DeviceCommand& command) noexcept
 {
     const DhdFunctions& sdk = *library_;
-    const Vec3& force_n = command.force_n;
     bool is_done = true;
     if (command.state == DeviceState::brake)
     {
-        const bool is_free = sdk.dhdSetForce(0.0, 0.0, 0.0, id_) >= 0;
+        const bool is_free = set_force({});
         const bool is_braked = sdk.dhdSetBrakes(1, id_) >= 0;
         is_done = is_free || is_braked;
     }
@@ -240,10 +296,19 @@ bool DhdDevice::obey(const DeviceCommand& command) noexcept
             static_cast<void>(sdk.dhdSetBrakes(0, id_));
             is_done = sdk.dhdEnableForce(1, id_) >= 0;
         }
-        is_done = is_done && sdk.dhdSetForce(force_n.x(), force_n.y(), force_n.z(), id_) >= 0;
+        is_done = is_done && set_force(command);
     }
     makes_forces_ = is_done && command.state != DeviceState::brake;
     return is_done;
+}
+
+bool DhdDevice::set_force(const DeviceCommand& command) const noexcept
+{
+    const Vec3& force_n = command.force_n;
+    const Vec3& torque_nm = command.torque_nm;
+    return library_->dhdSetForceAndTorqueAndGripperForce(
+               force_n.x(), force_n.y(), force_n.z(), torque_nm.x(), torque_nm.y(), torque_nm.z(),
+               command.gripper_force_n, id_) >= 0;
 }
 
 void DhdDevice::lose() noexcept

@@ -26,8 +26,9 @@ struct DhdDeviceOptions
     std::string library; ///< Path of libdhd.so; empty: where the system's loader finds it.
     int index{0};        ///< Which of the devices that are plugged in, up to kIndexMax.
     /// What the device is, in its own coordinates: the SDK doesn't tell. An empty name becomes the
-    /// SDK's. The default is small and weak enough for any of the maker's devices, and assumes
-    /// their usual delay (docs/dhd-device.md); measure yours.
+    /// SDK's; what the device hasn't, a wrist or a gripper or motors there, is taken off. The
+    /// default is small and weak enough for any of the maker's devices, and assumes their usual
+    /// delay (docs/dhd-device.md); measure yours.
     DeviceInfo info{default_info()};
     /// The button that says that somebody holds it; none: somebody always does.
     std::optional<int> deadman_button;
@@ -72,6 +73,8 @@ private:
     void run() noexcept;
     [[nodiscard]] bool turn() noexcept;
     [[nodiscard]] bool publish_reading() noexcept;
+    void read_wrist_and_gripper(DeviceReading& reading) const noexcept;
+    [[nodiscard]] bool set_force(const DeviceCommand& command) const noexcept;
     [[nodiscard]] bool obey(const DeviceCommand& command) noexcept;
     [[nodiscard]] bool is_held() const noexcept;
     void lose() noexcept;
@@ -80,6 +83,8 @@ private:
     const DhdLibrary library_;
     const char index_;
     const std::optional<int> deadman_button_;
+    const bool has_wrist_;
+    const bool has_gripper_;
     const Duration period_;
     std::atomic<bool> is_stopped_{false};
 

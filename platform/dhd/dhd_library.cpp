@@ -77,7 +77,15 @@ const char* DhdLibrary::find_functions() noexcept
     want("dhdGetPosition", functions_.dhdGetPosition);
     want("dhdGetLinearVelocity", functions_.dhdGetLinearVelocity);
     want("dhdGetButton", functions_.dhdGetButton);
-    want("dhdSetForce", functions_.dhdSetForce);
+    want("dhdGetOrientationFrame", functions_.dhdGetOrientationFrame);
+    want("dhdGetAngularVelocityRad", functions_.dhdGetAngularVelocityRad);
+    want("dhdGetGripperGap", functions_.dhdGetGripperGap);
+    want("dhdHasWrist", functions_.dhdHasWrist);
+    want("dhdHasActiveWrist", functions_.dhdHasActiveWrist);
+    want("dhdHasGripper", functions_.dhdHasGripper);
+    want("dhdHasActiveGripper", functions_.dhdHasActiveGripper);
+    want("dhdGetButtonMask", functions_.dhdGetButtonMask);
+    want("dhdSetForceAndTorqueAndGripperForce", functions_.dhdSetForceAndTorqueAndGripperForce);
     want("dhdSetBrakes", functions_.dhdSetBrakes);
     want("dhdEnableForce", functions_.dhdEnableForce);
     want("dhdErrorGetLastStr", functions_.dhdErrorGetLastStr);

@@ -22,8 +22,20 @@ struct DhdFunctions
     const char* (*dhdGetSystemName)(char id); ///< Null when it doesn't know.
     int (*dhdGetPosition)(double* x_m, double* y_m, double* z_m, char id);
     int (*dhdGetLinearVelocity)(double* x_m_per_s, double* y_m_per_s, double* z_m_per_s, char id);
+    /// By rows; the identity where the device has no wrist.
+    int (*dhdGetOrientationFrame)(double matrix[3][3], char id);
+    int (*dhdGetAngularVelocityRad)(double* x_rad_per_s, double* y_rad_per_s, double* z_rad_per_s,
+                                    char id);
+    int (*dhdGetGripperGap)(double* gap_m, char id);
+    bool (*dhdHasWrist)(char id);
+    bool (*dhdHasActiveWrist)(char id);
+    bool (*dhdHasGripper)(char id);
+    bool (*dhdHasActiveGripper)(char id);
     int (*dhdGetButton)(int index, char id); ///< 1 while it is pressed.
-    int (*dhdSetForce)(double x_n, double y_n, double z_n, char id);
+    unsigned (*dhdGetButtonMask)(char id);   ///< A bit a button.
+    /// Torque and the gripper's force count for nothing where the device makes none.
+    int (*dhdSetForceAndTorqueAndGripperForce)(double fx_n, double fy_n, double fz_n, double tx_nm,
+                                               double ty_nm, double tz_nm, double grip_n, char id);
     int (*dhdSetBrakes)(int on, char id);
     int (*dhdEnableForce)(unsigned char on, char id);
     const char* (*dhdErrorGetLastStr)(); ///< Of the last failure.

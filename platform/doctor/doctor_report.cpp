@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <string_view>
 
 namespace tactus::doctor
@@ -47,15 +48,34 @@ std::string block_of(const Finding& finding)
     return block;
 }
 
+/// The worst first.
+constexpr std::array kShown{Verdict::critical, Verdict::unknown, Verdict::advice, Verdict::good};
+
 std::string counts_in_words(const std::vector<Finding>& findings)
 {
     std::string text;
-    for (std::size_t i = 0; i < kVerdictNames.size(); ++i)
+    for (const Verdict verdict : kShown)
     {
-        text += fmt::format("{}{} {}", i == 0 ? "" : ", ",
-                            count_of(findings, static_cast<Verdict>(i)), kVerdictNames[i]);
+        text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count_of(findings, verdict),
+                            name_of(verdict));
     }
     return text;
+}
+
+/// A line of names.
+std::string good_ones(const std::vector<Finding>& findings)
+{
+    std::string names;
+    for (const Finding& finding : findings)
+    {
+        if (finding.verdict == Verdict::good)
+        {
+            names += (names.empty() ? "" : ", ") + finding.name;
+        }
+    }
+    return names.empty()
+               ? ""
+               : fmt::format("\n{:<9} {:<18} {}\n", name_of(Verdict::good), "", wrapped(names));
 }
 
 } // namespace
@@ -84,14 +104,20 @@ Json make_report(const std::vector<Finding>& findings, std::optional<int> cpu)
     return report;
 }
 
-std::string make_text(const std::vector<Finding>& findings)
+std::string make_text(const std::vector<Finding>& findings, bool shows_good)
 {
-    std::string text;
-    for (const Finding& finding : findings)
+    std::string text = counts_in_words(findings) + '\n';
+    for (const Verdict verdict : kShown)
     {
-        text += block_of(finding) + '\n';
+        for (const Finding& finding : findings)
+        {
+            if (finding.verdict == verdict && (verdict != Verdict::good || shows_good))
+            {
+                text += '\n' + block_of(finding);
+            }
+        }
     }
-    return text + counts_in_words(findings) + '\n';
+    return text + (shows_good ? "" : good_ones(findings));
 }
 
 } // namespace tactus::doctor

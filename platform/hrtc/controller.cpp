@@ -5,6 +5,7 @@
 #include "platform/hrtc/object_pose.hpp"
 #include "platform/simulated/hand_motions.hpp"
 #include "platform/simulated/simulated_device.hpp"
+#include "rt_core/force/angular_stiffness.hpp"
 #include "rt_core/force/stiffness_rule.hpp"
 
 #include <fmt/format.h>
@@ -18,8 +19,6 @@ namespace
 {
 
 constexpr double kBytesPerMib = 1024.0 * 1024.0;
-/// A tool when none is named, as a share of the first model's diagonal.
-constexpr double kDefaultToolShare = 0.01;
 /// Without --follow-speed.
 constexpr double kSpeedMax_diag = 1.0;
 /// The simulated hand flies at two diagonals a second; its device stands twice that.
@@ -48,7 +47,7 @@ Controller::create(const Options& options, std::vector<ServedModel> models, cons
     {
         return *error;
     }
-    controller->make_couriers(log);
+    controller->make_courier(log);
     if (std::optional<Refusal> error = controller->finish_devices(options))
     {
         return *error;
@@ -74,11 +73,23 @@ double Controller::diagonal_world_m() const noexcept
     return headers_.front().diagonal_m() * poses_.front().scale;
 }
 
+std::vector<std::uint32_t> Controller::first_objects() const
+{
+    std::vector<std::uint32_t> first;
+    for (std::uint32_t i = 0; i < models_.size(); ++i)
+    {
+        const auto shows = std::ranges::find(objects_, ModelId{i}, &ObjectSpec::model);
+        first.push_back(static_cast<std::uint32_t>(shows - objects_.begin()));
+    }
+    return first;
+}
+
 void Controller::make_poses(const Options& options)
 {
-    for (std::size_t i = 0; i < models_.size(); ++i)
+    for (const PlacedObject& object : options.objects)
     {
-        poses_.push_back(object_pose(options.placements[i], headers_[i]));
+        poses_.push_back(object_pose(object.place, headers_[object.model]));
+        objects_.push_back({ModelId{static_cast<std::uint32_t>(object.model)}, object.material});
     }
 }
 
@@ -86,7 +97,7 @@ void Controller::make_poses(const Options& options)
 std::optional<Refusal> Controller::open_devices(const Options& options,
                                                 const std::function<bool()>& goes_on)
 {
-    tools_.resize(std::max<std::size_t>(options.tool_radii_m.size(), 1));
+    tools_.resize(options.tools);
     const DeviceWait wait{milliseconds(static_cast<std::int64_t>(options.wait_s * 1e3)), goes_on};
     for (std::size_t i = 0; i < options.devices.size(); ++i)
     {
@@ -113,30 +124,32 @@ std::optional<Refusal> Controller::open_devices(const Options& options,
 
 void Controller::make_tools(const Options& options)
 {
-    std::vector<double> radii_m = options.tool_radii_m;
-    if (radii_m.empty())
-    {
-        radii_m.push_back(kDefaultToolShare * diagonal_world_m());
-    }
+    std::vector<ToolChoice> choices = options.tool_choices;
+    choices.resize(tools_.size(), default_tool(diagonal_world_m()));
     for (std::size_t i = 0; i < tools_.size(); ++i)
     {
         ToolSetup& tool = tools_[i];
         const DeviceLimits limits =
             tool.device != nullptr ? tool.device->info().limits : choice_of(options, i).limits;
-        tool.spec = {radii_m[i], options.stiffness_n_per_m, limits.force_max_n,
+        tool.shape = choices[i].words;
+        tool.spec = {choices[i].radius_m, options.stiffness_n_per_m, limits.force_max_n,
                      options.follow_speed_m_per_s.value_or(kSpeedMax_diag * diagonal_world_m())};
+        tool.spec.core = choices[i].core;
+        const auto* mesh = std::get_if<MeshCore>(&tool.spec.core);
+        tool.hand_radius_m =
+            hand_radius_m(choices[i], mesh != nullptr ? &headers_[mesh->model.value] : nullptr,
+                          diagonal_world_m());
+        tool.spec.torque_max_nm = limits.turn.torque_max_nm;
         tool_specs_.push_back(tool.spec);
     }
 }
 
-/// Every model gets the same share of the memory; what belongs to no model comes off first.
+/// What belongs to no model comes off first.
 std::optional<Refusal> Controller::lay_out_pools(const Options& options)
 {
-    for (std::size_t i = 0; i < models_.size(); ++i)
-    {
-        objects_.push_back({ModelId{static_cast<std::uint32_t>(i)}, options.materials[i]});
-    }
     setup_.objects = objects_;
+    setup_.poses = poses_;
+    setup_.capacities.objects = options.objects_max;
     setup_.tools = tool_specs_;
     setup_.static_when_it_fits = options.static_when_it_fits;
     setup_.prediction = options.prediction;
@@ -147,24 +160,27 @@ std::optional<Refusal> Controller::lay_out_pools(const Options& options)
         shared += Arena::round_up(model.header.size());
     }
     const std::size_t total = memory_.span().size();
-    const std::size_t share = total > shared ? (total - shared) / models_.size() : 0;
-    const auto cache = static_cast<std::size_t>(options.cache_mib * kBytesPerMib) / models_.size();
+    const auto cache = static_cast<std::size_t>(options.cache_mib * kBytesPerMib);
+    std::vector<ModelCapacities> capacities(models_.size());
+    // Planned twice: what the courier needs follows from the number of pages.
+    bool fits = shared < total && try_plan(headers_, total - shared, cache, capacities);
+    const ModelCapacities sum = sum_of(capacities);
+    shared += fits ? Courier::required_bytes(sum.pages, sum.index_pages) : 0;
+    fits = fits && shared < total && try_plan(headers_, total - shared, cache, capacities);
+    if (!fits)
+    {
+        std::uint32_t base_faces = 0;
+        for (const ModelHeader& header : headers_)
+        {
+            base_faces += header.counts().base_faces;
+        }
+        return Refusal{fmt::format("--pool-mib: {} MiB is too small for {} models (their base "
+                                   "meshes have {} faces); give more, or less --cache-mib",
+                                   options.pool_mib, models_.size(), base_faces)};
+    }
     for (std::size_t i = 0; i < models_.size(); ++i)
     {
-        // Planned twice: what the courier needs follows from the number of pages.
-        ModelCapacities capacities = plan_capacities(headers_[i], share, cache);
-        const std::size_t courier =
-            Courier::required_bytes(capacities.pages, capacities.index_pages);
-        capacities = courier < share ? plan_capacities(headers_[i], share - courier, cache)
-                                     : ModelCapacities{};
-        if (capacities.pages == 0)
-        {
-            return Refusal{fmt::format(
-                "--pool-mib: {} MiB is too small for model '{}' (its base mesh has {} faces); "
-                "give more, or less --cache-mib",
-                options.pool_mib, models_[i].name, headers_[i].counts().base_faces)};
-        }
-        sources_.push_back({models_[i].header, models_[i].base, capacities});
+        sources_.push_back({models_[i].header, models_[i].base, capacities[i]});
     }
     setup_.models = sources_;
     if (const auto started = Frame::start(frame_, arena_, setup_); !started)
@@ -175,14 +191,14 @@ std::optional<Refusal> Controller::lay_out_pools(const Options& options)
     return std::nullopt;
 }
 
-void Controller::make_couriers(const Log& log)
+void Controller::make_courier(const Log& log)
 {
+    ModelPools& pools = frame_->pools();
+    courier_.emplace(arena_, pools.slots, pools.cache.door, log);
     for (std::uint32_t i = 0; i < models_.size(); ++i)
     {
         Model& model = frame_->model({i});
-        couriers_.push_back(std::make_unique<Courier>(arena_, model.header, model.slots,
-                                                      model.linker, model.inbox, *models_[i].link,
-                                                      models_[i].name, log));
+        courier_->add(model.header, model.linker, *models_[i].link, models_[i].name);
     }
 }
 
@@ -197,6 +213,7 @@ std::optional<Refusal> Controller::finish_devices(const Options& options)
                 return error;
             }
         }
+        tools_[tool].spec = frame_->tool(static_cast<std::uint32_t>(tool)).spec();
         limit_force(options, tools_[tool]);
     }
     return std::nullopt;
@@ -207,7 +224,7 @@ std::optional<Refusal> Controller::simulate_device(const Options& options, std::
     HandScene scene;
     scene.anchors_world_m = anchors_world_m();
     scene.diagonal_m = diagonal_world_m();
-    scene.tool_radius_m = tools_[tool].spec.radius_m;
+    scene.tool_radius_m = tools_[tool].hand_radius_m;
     scene.period = options.period();
     scene.frames_total = options.frames();
     auto motion = make_motion(options.motion, scene, tool + 1);
@@ -252,7 +269,15 @@ void Controller::limit_force(const Options& options, ToolSetup& tool) const
         stiffness_cap(info.limits, conditioner.period_s, conditioner.surface_damping_max_n_s_per_m);
     tool.limits = {options.speed_limit_m_per_s.value_or(info.speed_max_m_per_s),
                    info.limits.force_max_n, std::min(tool.spec.stiffness_n_per_m, cap_n_per_m),
-                   kDampingShare * info.limits.damping_n_s_per_m};
+                   kDampingShare * info.limits.damping_n_s_per_m, info.limits.turn.torque_max_nm};
+    if (info.limits.turn.torque_max_nm > 0.0)
+    {
+        const DeviceLimits turning = turning_of(info.limits);
+        tool.limits.stiffness_nm_per_rad = std::min(angular_stiffness_nm_per_rad(tool.spec),
+                                                    stiffness_cap(turning, conditioner.period_s));
+        tool.limits.damping_nm_s_per_rad = kDampingShare * turning.damping_n_s_per_m;
+    }
+    tool.clutch_button = options.clutch_button;
 }
 
 /// The first model's base vertices: original vertices, so they lie on its surface.

@@ -23,8 +23,8 @@
 namespace tactus::hrtc
 {
 
-/// Everything between the transport and the devices: the pools, the frame in them, a courier for
-/// each model, the objects' poses and the devices. Assembled before any thread starts.
+/// Everything between the transport and the devices: the pools, the frame in them, the courier,
+/// the objects' poses and the devices. Assembled before any thread starts.
 class Controller
 {
 public:
@@ -37,14 +37,14 @@ public:
            const std::function<bool()>& goes_on);
 
     [[nodiscard]] Frame& frame() noexcept { return *frame_; }
-    [[nodiscard]] std::vector<std::unique_ptr<Courier>>& couriers() noexcept { return couriers_; }
-    [[nodiscard]] const std::vector<std::unique_ptr<Courier>>& couriers() const noexcept
-    {
-        return couriers_;
-    }
+    [[nodiscard]] Courier& courier() noexcept { return *courier_; }
+    [[nodiscard]] const Courier& courier() const noexcept { return *courier_; }
     [[nodiscard]] std::vector<ToolSetup>& tools() noexcept { return tools_; }
     [[nodiscard]] const std::vector<ToolSetup>& tools() const noexcept { return tools_; }
-    /// Where the objects stand at the start.
+    /// By their numbers, with where they stand at the start.
+    [[nodiscard]] const std::vector<ObjectSpec>& objects() const noexcept { return objects_; }
+    /// Of each model the number of the first object that shows it: the one that its host moves.
+    [[nodiscard]] std::vector<std::uint32_t> first_objects() const;
     [[nodiscard]] const std::vector<ObjectPose>& poses() const noexcept { return poses_; }
     [[nodiscard]] const std::vector<ServedModel>& models() const noexcept { return models_; }
     [[nodiscard]] const Budgets& budgets() const noexcept { return budgets_; }
@@ -63,7 +63,7 @@ private:
     [[nodiscard]] std::optional<Refusal> open_devices(const Options& options,
                                                       const std::function<bool()>& goes_on);
     void make_tools(const Options& options);
-    void make_couriers(const Log& log);
+    void make_courier(const Log& log);
     [[nodiscard]] std::optional<Refusal> simulate_device(const Options& options, std::size_t tool);
     [[nodiscard]] std::optional<Refusal> finish_devices(const Options& options);
     void limit_force(const Options& options, ToolSetup& tool) const;
@@ -80,7 +80,7 @@ private:
     PoolMemory memory_;
     Arena arena_;
     std::optional<Frame> frame_;
-    std::vector<std::unique_ptr<Courier>> couriers_;
+    std::optional<Courier> courier_;
     PosixClock clock_; ///< Of the devices that aren't simulated.
     std::vector<ToolSetup> tools_;
 };

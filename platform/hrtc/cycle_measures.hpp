@@ -15,11 +15,14 @@
 namespace tactus::hrtc
 {
 
-/// The force of one tool in one cycle.
+/// Force and torque of one tool in one cycle.
 struct ToolForce
 {
     Vec3 sent_n{0.0, 0.0, 0.0};   ///< That went to the device.
+    Vec3 sent_nm{0.0, 0.0, 0.0};  ///< The torque, likewise.
     ConditionedForce conditioned; ///< How it came about, before the safe state.
+    ConditionedForce turned;      ///< The torque, likewise, in angles.
+    double twist_rad{0.0};        ///< Between device and proxy, in contact.
 };
 
 /// What one cycle of the loop measured besides the frame's own output.

@@ -6,6 +6,7 @@
 #include "platform/clock.hpp"
 #include "platform/haptic_device.hpp"
 #include "platform/hrtc/placement.hpp"
+#include "platform/simulated/device_classes.hpp"
 #include "platform/simulated/faulty_device.hpp"
 #include "platform/udp/udp_device.hpp"
 #include "rt_core/base/result.hpp"
@@ -33,7 +34,7 @@ enum class DeviceKind : std::uint8_t
 struct DeviceChoice
 {
     DeviceKind kind{DeviceKind::simulated};
-    DeviceLimits limits;                             ///< Of the simulated.
+    DeviceLimits limits{kDeskClass};                 ///< Of the simulated.
     std::string address{UdpDeviceOptions{}.address}; ///< Of udp.
     int port{UdpDeviceOptions::kPortDefault};        ///< Of udp.
     int index{0};                                    ///< Of dhd.

@@ -37,8 +37,11 @@ int run_doctor(int argc, char** argv)
                      "critical is missing.");
     std::optional<int> cpu;
     bool as_json = false;
+    bool shows_good = false;
     line.add_option("--cpu", cpu, "Processor that the haptic thread is to have [not chosen]")
         .integer_between(0, 1'023);
+    line.add_flag("--all", shows_good,
+                  "Say of what is good, too, what was found and why it matters");
     line.add_flag("--json", as_json, "Print one JSON object");
     if (const std::optional<int> code = line.parse(argc, argv))
     {
@@ -52,7 +55,7 @@ int run_doctor(int argc, char** argv)
     const doctor::Measured measured = doctor::measure();
     const std::vector<doctor::Finding> findings = doctor::examine({files, measured, cpu});
     fmt::print("{}", as_json ? doctor::make_report(findings, cpu).dump(2) + '\n'
-                             : doctor::make_text(findings));
+                             : doctor::make_text(findings, shows_good));
     if (std::fflush(stdout) != 0)
     {
         return line.fail("the findings can't be written");

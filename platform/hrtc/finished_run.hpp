@@ -10,7 +10,7 @@
 #include "platform/rt_thread.hpp"
 #include "platform/time.hpp"
 #include "transport/dds/dds_client.hpp"
-#include "transport/dds/poses.hpp"
+#include "transport/dds/scene_reader.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -31,7 +31,7 @@ struct FinishedRun
     SafetyRecord safety;
     bool host_was_lost{false};                  ///< Some model's host went away during the run.
     std::vector<PoseUse> pose_uses{};           ///< One an object; none from files.
-    std::vector<dds::PoseCounts> pose_counts{}; ///< One an object; none with --ignore-poses.
+    std::vector<dds::PoseCounts> pose_counts{}; ///< One a model; none with --ignore-poses.
     std::uint64_t telemetry_sent{0};
     std::optional<RecordingResult> recording{};
     std::optional<std::string> recording_error{}; ///< Why a wanted recording is not there.

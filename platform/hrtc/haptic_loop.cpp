@@ -16,12 +16,13 @@ HapticLoop::HapticLoop(const LoopParts& parts, RunStatistics& statistics)
     , statistics_(statistics)
     , states_(parts.tools.size())
     , forces_(parts.tools.size())
-    , stood_(parts.poses.begin(), parts.poses.end())
+    , devices_(parts.tools.size())
     , end_(parts.frames)
 {
     for (const ToolSetup& tool : parts.tools)
     {
         ports_.emplace_back(tool);
+        radii_m_.push_back(tool.spec.radius_m);
     }
     measures_.budgets = parts.governor != nullptr ? parts.governor->budgets() : parts.budgets;
 }
@@ -56,13 +57,13 @@ void HapticLoop::run_period() noexcept
     heartbeat_.beat(start);
     stage_start_ = start;
     read_devices();
-    read_poses(start);
-    const FrameOutput output = run_frame();
+    const FrameInput input = read_scene(start);
+    const FrameOutput output = run_frame(input);
     make_safe(output);
     write_devices();
     last_end_ = parts_.clock->now();
     const ThreadUsage now = read_thread_usage();
-    record(output);
+    record(input, output);
     measures_.frame = last_end_ - start;
     measures_.cpu = now.cpu_time - cpu_before;
     measures_.lateness_of_end = last_end_ - measures_.cycle.deadline;
@@ -113,21 +114,20 @@ void HapticLoop::rehearse() noexcept
     system_call_trap::mark_frame(false);
 }
 
-FrameOutput HapticLoop::run_frame() noexcept
+FrameOutput HapticLoop::run_frame(const FrameInput& input) noexcept
 {
     system_call_trap::mark_frame(true);
-    const FrameOutput output =
-        parts_.frame->run(states_, parts_.poses, measures_.budgets, {&mark_stage, this});
+    const FrameOutput output = parts_.frame->run(input, {&mark_stage, this});
     system_call_trap::mark_frame(false);
     return output;
 }
 
 /// After the forces have gone out and the frame's time was taken.
-void HapticLoop::record(const FrameOutput& output) noexcept
+void HapticLoop::record(const FrameInput& input, const FrameOutput& output) noexcept
 {
     if (parts_.tap != nullptr)
     {
-        parts_.tap->record(states_, parts_.poses, measures_.budgets, output);
+        parts_.tap->record(input, output, devices_);
     }
 }
 
@@ -191,25 +191,21 @@ void HapticLoop::read_devices() noexcept
 }
 
 /// What the network says of the objects enters the frame here and nowhere else.
-void HapticLoop::read_poses(MonotonicTime now) noexcept
+FrameInput HapticLoop::read_scene(MonotonicTime now) noexcept
 {
+    FrameInput input{states_, {}, measures_.budgets, now.ns};
     if (parts_.pose_door != nullptr)
     {
-        parts_.pose_door->refresh(now);
-        parts_.poses = parts_.pose_door->poses();
-        for (ToolPort& port : ports_)
-        {
-            port.see_objects(stood_, parts_.poses);
-        }
-        std::ranges::copy(parts_.poses, stood_.begin());
+        input.changes = parts_.pose_door->refresh(now);
     }
+    return input;
 }
 
 void HapticLoop::show(const FrameOutput& output, MonotonicTime start) noexcept
 {
     if (parts_.telemetry != nullptr)
     {
-        parts_.telemetry->show({start, states_, forces_, parts_.poses, output}, statistics_);
+        parts_.telemetry->show({start, states_, devices_, radii_m_, output}, statistics_);
     }
 }
 
@@ -228,6 +224,7 @@ void HapticLoop::make_safe(const FrameOutput& output) noexcept
         }
         const SafetyOutput safe = ports_[i].make_safe(output.tools[i], context);
         forces_[i] = ports_[i].force();
+        devices_[i] = ports_[i].record();
         if (safe.has_changed)
         {
             note(i, safe.state, safe.causes);
@@ -252,16 +249,9 @@ bool HapticLoop::touches_old_pose(std::uint32_t tool, const FrameOutput& output)
 /// A model that is here as a whole needs nobody to send more of it.
 bool HapticLoop::lacks_a_host(const FrameOutput& output) const noexcept
 {
-    if (parts_.hosts_gone == nullptr)
-    {
-        return false;
-    }
-    std::uint32_t gone = parts_.hosts_gone->load(std::memory_order_relaxed); // Orders nothing.
-    for (std::size_t i = 0; i < output.models.size(); ++i)
-    {
-        gone &= output.models[i].is_static ? ~(1U << i) : ~0U;
-    }
-    return gone != 0;
+    return parts_.hosts_gone != nullptr &&
+           parts_.hosts_gone->any_of([&output](std::size_t model)
+                                     { return !output.models[model].is_static; });
 }
 
 void HapticLoop::write_devices() noexcept

@@ -5,6 +5,7 @@
 #include "platform/budget_governor.hpp"
 #include "platform/clock.hpp"
 #include "platform/heartbeat.hpp"
+#include "platform/hrtc/hosts_gone.hpp"
 #include "platform/hrtc/run_statistics.hpp"
 #include "platform/hrtc/safety_log.hpp"
 #include "platform/hrtc/telemetry_tap.hpp"
@@ -29,17 +30,15 @@ struct LoopParts
 {
     Frame* frame{nullptr};
     std::span<const ToolSetup> tools;
-    std::span<const ObjectPose> poses; ///< Where the objects stand until the door says otherwise.
     PeriodicTimer* timer{nullptr};
     const Clock* clock{nullptr};
-    Budgets budgets;                   ///< Of every frame, when there is no governor.
-    BudgetGovernor* governor{nullptr}; ///< Chooses each frame's budgets; may be none.
-    FrameTap* tap{nullptr};            ///< Takes every frame for a recording; may be none.
-    std::uint64_t frames{0};           ///< How many to run.
-    /// One bit a model whose host is gone; may be none.
-    const std::atomic<std::uint32_t>* hosts_gone{nullptr};
-    PoseDoor* pose_door{nullptr};     ///< Where the objects stand in each frame; may be none.
-    TelemetryTap* telemetry{nullptr}; ///< Shows every frame; may be none.
+    Budgets budgets;                      ///< Of every frame, when there is no governor.
+    BudgetGovernor* governor{nullptr};    ///< Chooses each frame's budgets; may be none.
+    FrameTap* tap{nullptr};               ///< Takes every frame for a recording; may be none.
+    std::uint64_t frames{0};              ///< How many to run.
+    const HostsGone* hosts_gone{nullptr}; ///< May be none.
+    PoseDoor* pose_door{nullptr};         ///< How the objects move; may be none.
+    TelemetryTap* telemetry{nullptr};     ///< Shows every frame; may be none.
 };
 
 /// The haptic thread's work: every period read the devices, run the frame, see that its forces are
@@ -80,13 +79,13 @@ private:
     void wait_for_deadline() noexcept;
     void run_period() noexcept;
     void rehearse() noexcept;
-    [[nodiscard]] FrameOutput run_frame() noexcept;
+    [[nodiscard]] FrameOutput run_frame(const FrameInput& input) noexcept;
     void measure_thread(const ThreadUsage& now) noexcept;
-    void record(const FrameOutput& output) noexcept;
+    void record(const FrameInput& input, const FrameOutput& output) noexcept;
     void choose_budgets(const FrameOutput& output) noexcept;
     [[nodiscard]] bool has_to_end() noexcept;
     void read_devices() noexcept;
-    void read_poses(MonotonicTime now) noexcept;
+    [[nodiscard]] FrameInput read_scene(MonotonicTime now) noexcept;
     void show(const FrameOutput& output, MonotonicTime start) noexcept;
     void make_safe(const FrameOutput& output) noexcept;
     [[nodiscard]] static bool touches_old_pose(std::uint32_t tool,
@@ -100,10 +99,11 @@ private:
 
     LoopParts parts_;
     RunStatistics& statistics_;
-    std::deque<ToolPort> ports_;    ///< One a tool; they are never moved.
-    std::vector<ToolState> states_; ///< Copied from the ports, in one piece for the frame.
-    std::vector<ToolForce> forces_; ///< Likewise, for those who keep figures.
-    std::vector<ObjectPose> stood_; ///< Where the objects stood in the last frame.
+    std::deque<ToolPort> ports_;        ///< One a tool; they are never moved.
+    std::vector<ToolState> states_;     ///< Copied from the ports, in one piece for the frame.
+    std::vector<ToolForce> forces_;     ///< Likewise, for those who keep figures.
+    std::vector<double> radii_m_;       ///< One a tool.
+    std::vector<DeviceRecord> devices_; ///< Likewise, for those who show or record.
     std::uint64_t frame_{0};
     std::uint64_t fade_frames_{0}; ///< That the last forces of a run take.
     std::uint64_t end_;            ///< Frame that is not run any more.

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "platform/hrtc/material_choice.hpp"
 
+#include "host_tools/scene/material_ranges.hpp"
 #include "platform/hrtc/numbers.hpp"
 
 #include <cstddef>
@@ -24,12 +25,7 @@ std::optional<Material> parse_material(std::string_view text)
     material.static_friction = number(1, 0.0);
     material.dynamic_friction = number(2, material.static_friction);
     material.damping_n_s_per_m = number(3, 0.0);
-    const bool in_range =
-        material.stiffness_n_per_m >= 1.0 && material.stiffness_n_per_m <= kStiffest_n_per_m &&
-        material.dynamic_friction >= 0.0 && material.dynamic_friction <= material.static_friction &&
-        material.static_friction <= 3.0 && material.damping_n_s_per_m >= 0.0 &&
-        material.damping_n_s_per_m <= 20.0;
-    return in_range ? std::optional(material) : std::nullopt;
+    return is_in_range(material) ? std::optional(material) : std::nullopt;
 }
 
 } // namespace tactus::hrtc

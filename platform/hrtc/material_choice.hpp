@@ -2,16 +2,13 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "rt_core/records/frame_input.hpp"
+#include "rt_core/records/object_pose.hpp"
 
 #include <optional>
 #include <string_view>
 
 namespace tactus::hrtc
 {
-
-/// Of --stiffness, too.
-inline constexpr double kStiffest_n_per_m = 3'000.0;
 
 /// What parse_material() takes; for messages.
 inline constexpr std::string_view kMaterialForm =

@@ -3,7 +3,7 @@
 #include "platform/hrtc/option_table.hpp"
 
 #include "host_tools/cli/command_line.hpp"
-#include "platform/hrtc/material_choice.hpp"
+#include "host_tools/scene/material_ranges.hpp"
 #include "platform/simulated/simulated_device.hpp"
 #include "rt_core/limits.hpp"
 
@@ -20,24 +20,38 @@ constexpr double kFrameBudgetMax_us = 10'000.0;
 /// The models, the tools that touch them and their devices.
 void declare_scene(CommandLine& line, Options& options, RawOptions& raw)
 {
-    line.add_option("--model", options.models,
+    line.add_option("--model", raw.models,
                     "Model to touch: NAME or NAME@HASH as published, or with --transport file a "
-                    "path; repeatable")
+                    "path; repeatable, the same one for several objects that show it")
         .repeatable();
+    line.add_option("--scene", options.scene_path,
+                    "Instead of --model: the objects of a glTF file, each with its model beside "
+                    "the file, as spm_build writes it; with --transport file");
     line.add_option("--place", raw.places,
-                    "Where the model stands, one for each --model in order: X,Y,Z in m "
+                    "Where the object stands, one for each --model in order, and more for further "
+                    "objects that show the last one: X,Y,Z in m "
                     "[,RX,RY,RZ rotation vector in degrees [,SCALE]]")
         .repeatable();
+    line.add_option("--objects", options.objects_max,
+                    "Room for so many objects, at least those that are placed; 1 to 4096 "
+                    "[as many as are placed]")
+        .integer_between(1U, kMaxObjects);
     line.add_option("--material", raw.materials,
-                    "How the model feels, one for each --model in order: STIFFNESS in N/m, 1 to "
+                    "How the object feels, one for each in order; further ones feel as the last "
+                    "--model: STIFFNESS in N/m, 1 to "
                     "3000, the softer of this and --stiffness counts [,STATIC friction, 0 to 3 "
                     "[,DYNAMIC friction, at most the static one [,DAMPING in N s/m, 0 to 20]]]")
         .repeatable();
     line.add_option(
             "--tool", raw.tools,
-            "Tool: sphere:RADIUS_M, 1e-5 to 1 m; repeatable [one sphere of 1 % of the first "
-            "model's diagonal]")
+            "Tool, in metres: point; sphere:R; capsule:R,L, an axis of length L along z; "
+            "box:X,Y,Z[,R]; hull:FILE[,R], of a mesh file's corners; mesh:NAME[@HASH][,R], a model "
+            "(with --transport file its path); R is a radius all round; repeatable [one sphere of "
+            "1 % of the first model's diagonal]")
         .repeatable();
+    line.add_option("--tools", raw.tool_count,
+                    "So many tools of that size, where no --tool says more; 1 to 16 [1]")
+        .integer_between(1U, kMaxTools);
     line.add_option("--device", raw.devices,
                     "What moves the tool, one for each --tool in order: sim[:CLASS], a simulated "
                     "hand on a device of the class touch, omega or delta; udp[:[ADDRESS:]PORT], a "
@@ -102,6 +116,10 @@ void declare_force(CommandLine& line, Options& options)
     line.add_option("--stiffness", options.stiffness_n_per_m, "Of the virtual wall, in N/m")
         .number_between(1.0, kStiffest_n_per_m)
         .show_default();
+    line.add_option("--clutch", options.clutch_button,
+                    "Button of each device, from 0, that parts hand and tool while it is held: the "
+                    "tool stays, without a force, and goes on from there [none]")
+        .integer_between(0U, kButtons - 1U);
     line.add_option("--speed-limit", options.speed_limit_m_per_s,
                     "Speed of the hand, in m/s, above which its force fades [the device's own]")
         .number_between(0.01, 100.0);

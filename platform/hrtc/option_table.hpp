@@ -14,9 +14,11 @@ namespace tactus::hrtc
 /// Texts of the command line that options.cpp reads once the line is parsed.
 struct RawOptions
 {
+    std::vector<std::string> models;
     std::vector<std::string> places;
     std::vector<std::string> materials;
     std::vector<std::string> tools;
+    std::optional<std::uint32_t> tool_count;
     std::vector<std::string> devices;
     std::vector<std::string> device_frames;
     std::vector<std::string> device_faults;

@@ -23,18 +23,6 @@ namespace
 
 constexpr std::size_t kDeviceFaultsMax = 64; ///< Each reading looks at all of them.
 
-/// "sphere:RADIUS_M".
-std::optional<double> parse_tool(std::string_view text)
-{
-    constexpr std::string_view kSphere = "sphere:";
-    if (!text.starts_with(kSphere))
-    {
-        return std::nullopt;
-    }
-    const std::optional<double> radius = parse_number(text.substr(kSphere.size()));
-    return radius && *radius >= 1e-5 && *radius <= 1.0 ? radius : std::nullopt;
-}
-
 /// Options without a value are shown as comments: no file could set them to nothing.
 std::string without_empty(const std::string& config)
 {
@@ -75,56 +63,87 @@ std::string check_files(const CommandLine& line, const Options& options)
                : "";
 }
 
-/// Where the models stand. Empty when all is well.
-std::string check_places(Options& options, const RawOptions& raw)
-{
-    for (const std::string& text : raw.places)
-    {
-        const std::optional<Similarity> placement = parse_placement(text);
-        if (!placement)
-        {
-            return fmt::format("--place: '{}' is not {}", printable(text), kPlacementForm);
-        }
-        options.placements.push_back(*placement);
-    }
-    options.placements.resize(options.models.size());
-    return {};
-}
-
-/// How the models feel. Empty when all is well.
-std::string check_materials(Options& options, const RawOptions& raw)
-{
-    for (const std::string& text : raw.materials)
-    {
-        const std::optional<Material> material = parse_material(text);
-        if (!material)
-        {
-            return fmt::format("--material: '{}' is not {}", printable(text), kMaterialForm);
-        }
-        options.materials.push_back(*material);
-    }
-    options.materials.resize(options.models.size());
-    return {};
-}
-
-/// How many models there are, and how much is given for them. Empty when all is well.
+/// Each --model is an object; what is placed beyond them shows the last one again. A model that is
+/// named twice is one model of two objects. Empty when all is well.
 std::string check_models(Options& options, const RawOptions& raw)
 {
-    const std::size_t models = options.models.size();
-    if (models == 0)
+    if (!options.scene_path.empty())
+    {
+        const bool has_others =
+            !raw.models.empty() || !raw.places.empty() || !raw.materials.empty();
+        return has_others ? "--scene: takes the place of --model, --place and --material"
+               : raw.transport != "file" ? "--scene: needs --transport file"
+                                         : "";
+    }
+    if (raw.models.empty())
     {
         return "--model is required";
     }
-    if (models > kMaxObjects)
+    const std::size_t objects = std::max(raw.models.size(), raw.places.size());
+    if (objects > kMaxObjects)
     {
-        return fmt::format("--model: at most {} models", kMaxObjects);
+        return fmt::format("--place: {} objects; at most {}", objects, kMaxObjects);
     }
-    for (const auto& [name, given] :
-         {std::pair("--place", raw.places.size()), std::pair("--material", raw.materials.size())})
+    if (raw.materials.size() > objects)
     {
-        if (given > models)
+        return fmt::format("--material: {} given for {} objects", raw.materials.size(), objects);
+    }
+    for (std::size_t i = 0; i < objects; ++i)
+    {
+        const std::string& name = raw.models[std::min(i, raw.models.size() - 1)];
+        const auto known = std::ranges::find(options.models, name);
+        options.objects.push_back(
+            {static_cast<std::size_t>(known - options.models.begin()), {}, {}});
+        if (known == options.models.end())
         {
-            return fmt::format("{}: {} given for {} models", name, given, models);
+            options.models.push_back(name);
+        }
+    }
+    if (options.models.size() > kMaxModels)
+    {
+        return fmt::format("--model: {} models; at most {}", options.models.size(), kMaxModels);
+    }
+    if (options.objects_max != 0 && options.objects_max < objects)
+    {
+        return fmt::format("--objects: {}; {} are there from the start", options.objects_max,
+                           objects);
+    }
+    return {};
+}
+
+/// Where the objects stand. Empty when all is well.
+std::string check_places(Options& options, const RawOptions& raw)
+{
+    for (std::size_t i = 0; i < raw.places.size(); ++i)
+    {
+        const std::optional<Similarity> place = parse_placement(raw.places[i]);
+        if (!place)
+        {
+            return fmt::format("--place: '{}' is not {}", printable(raw.places[i]), kPlacementForm);
+        }
+        options.objects[i].place = *place;
+    }
+    return {};
+}
+
+/// How they feel. Empty when all is well.
+std::string check_materials(Options& options, const RawOptions& raw)
+{
+    for (std::size_t i = 0; i < raw.materials.size(); ++i)
+    {
+        const std::optional<Material> material = parse_material(raw.materials[i]);
+        if (!material)
+        {
+            return fmt::format("--material: '{}' is not {}", printable(raw.materials[i]),
+                               kMaterialForm);
+        }
+        options.objects[i].material = *material;
+    }
+    for (std::size_t i = raw.models.size(); i < options.objects.size(); ++i)
+    {
+        if (i >= raw.materials.size())
+        {
+            options.objects[i].material = options.objects[raw.models.size() - 1].material;
         }
     }
     return {};
@@ -137,15 +156,20 @@ std::string check_tools(Options& options, const RawOptions& raw)
     {
         return fmt::format("--tool: at most {} tools", kMaxTools);
     }
+    if (raw.tool_count && !raw.tools.empty() && *raw.tool_count != raw.tools.size())
+    {
+        return fmt::format("--tools: {}, but --tool is given {} times", *raw.tool_count,
+                           raw.tools.size());
+    }
+    options.tools = raw.tools.empty() ? raw.tool_count.value_or(1) : raw.tools.size();
     for (const std::string& text : raw.tools)
     {
-        const std::optional<double> radius = parse_tool(text);
-        if (!radius)
+        std::optional<ToolChoice> tool = parse_tool(text);
+        if (!tool)
         {
-            return fmt::format("--tool: '{}' is not sphere:RADIUS_M with 1e-5 to 1 m",
-                               printable(text));
+            return fmt::format("--tool: '{}' is not {}", printable(text), kToolForms);
         }
-        options.tool_radii_m.push_back(*radius);
+        options.tool_choices.push_back(*std::move(tool));
     }
     return {};
 }
@@ -174,10 +198,9 @@ std::string check_device_frames(Options& options, const RawOptions& raw)
 /// After the tools: each device moves one. Empty when all is well.
 std::string check_devices(Options& options, const RawOptions& raw)
 {
-    const std::size_t tools = std::max<std::size_t>(raw.tools.size(), 1);
-    if (raw.devices.size() > tools)
+    if (raw.devices.size() > options.tools)
     {
-        return fmt::format("--device: {} given for {} tools", raw.devices.size(), tools);
+        return fmt::format("--device: {} given for {} tools", raw.devices.size(), options.tools);
     }
     if (raw.device_frames.size() > raw.devices.size())
     {
@@ -220,7 +243,7 @@ std::string check_simulated(Options& options, const RawOptions& raw)
     }
     options.motion = *motion;
     const bool has_others_only =
-        options.devices.size() == std::max<std::size_t>(options.tool_radii_m.size(), 1) &&
+        options.devices.size() == options.tools &&
         std::ranges::none_of(options.devices, [](const DeviceChoice& device)
                              { return device.kind == DeviceKind::simulated; });
     if (has_others_only && (raw.motion || !raw.device_faults.empty()))
@@ -239,6 +262,14 @@ std::string check_names(const Options& options)
         if (const auto selector = parse_selector(model); !selector)
         {
             return "--model: " + selector.error().text;
+        }
+    }
+    for (const ToolChoice& tool : options.tool_choices)
+    {
+        if (const auto selector = parse_selector(tool.mesh_model);
+            !tool.mesh_model.empty() && !selector)
+        {
+            return "--tool: " + selector.error().text;
         }
     }
     return {};

@@ -4,6 +4,7 @@
 
 #include "platform/hrtc/device_choice.hpp"
 #include "platform/hrtc/placement.hpp"
+#include "platform/hrtc/tool_choice.hpp"
 #include "platform/rt_thread.hpp"
 #include "platform/simulated/hand_motions.hpp"
 #include "rt_core/records/frame_input.hpp"
@@ -31,14 +32,24 @@ enum class TransportKind : std::uint8_t
     file,
 };
 
+/// An object that is there from the start.
+struct PlacedObject
+{
+    std::size_t model{0}; ///< Of Options::models.
+    Similarity place;
+    Material material;
+};
+
 /// Everything that the command line says; checked, in SI.
 struct Options
 {
-    std::vector<std::string> models;    ///< NAME[@HASH], or paths with the file transport.
-    std::vector<Similarity> placements; ///< One a model.
-    std::vector<Material> materials;    ///< One a model.
-    std::vector<double> tool_radii_m;   ///< Empty: one tool of 1 % of the first model's diagonal.
-    std::vector<DeviceChoice> devices;  ///< One a tool; fewer: the others are simulated.
+    std::vector<std::string> models; ///< NAME[@HASH], or paths with the file transport; each once.
+    std::vector<PlacedObject> objects; ///< By their numbers; each model is shown by one at least.
+    std::string scene_path; ///< Not empty: models and objects are this file's, see take_scene().
+    std::uint32_t objects_max{0}; ///< Room for so many; 0: as many as there are.
+    std::size_t tools{1};
+    std::vector<ToolChoice> tool_choices;   ///< One a tool; none: all are default_tool().
+    std::vector<DeviceChoice> devices;      ///< One a tool; fewer: the others are simulated.
     std::vector<DeviceFault> device_faults; ///< Of every simulated device.
     MotionKind motion{MotionKind::script};  ///< Likewise.
     TransportKind transport{TransportKind::dds};
@@ -57,7 +68,8 @@ struct Options
     bool static_when_it_fits{true};
     Prediction prediction{Prediction::automatic};
     double stiffness_n_per_m{500.0};
-    std::optional<double> speed_limit_m_per_s; ///< None: the device's own.
+    std::optional<double> speed_limit_m_per_s;  ///< None: the device's own.
+    std::optional<std::uint32_t> clutch_button; ///< Of every device.
     /// None: one diagonal of the first model a second.
     std::optional<double> follow_speed_m_per_s;
     bool trap_system_calls{false};

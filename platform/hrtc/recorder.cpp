@@ -16,14 +16,13 @@ constexpr std::chrono::milliseconds kWriterPause{5};
 
 } // namespace
 
-Recorder::Recorder(AtomicFile file, const FrameSetup& setup,
-                   std::vector<std::unique_ptr<Courier>>& couriers)
-    : file_(std::move(file)), couriers_(couriers), writer_(to_recorded(setup))
+Recorder::Recorder(AtomicFile file, const FrameSetup& setup, Courier& courier)
+    : file_(std::move(file)), courier_(courier), writer_(to_recorded(setup))
 {
-    for (std::uint32_t model = 0; model < couriers_.size(); ++model)
+    for (std::uint32_t model = 0; model < courier_.model_count(); ++model)
     {
         sinks_.push_back(std::make_unique<Sink>(*this, model));
-        couriers_[model]->copy_pieces_to(sinks_.back().get());
+        courier_.copy_pieces_to(sinks_.back().get(), model);
     }
     thread_ = std::thread([this] { run(); });
 }
@@ -31,9 +30,9 @@ Recorder::Recorder(AtomicFile file, const FrameSetup& setup,
 Recorder::~Recorder()
 {
     stop();
-    for (const std::unique_ptr<Courier>& courier : couriers_)
+    for (std::uint32_t model = 0; model < courier_.model_count(); ++model)
     {
-        courier->copy_pieces_to(nullptr);
+        courier_.copy_pieces_to(nullptr, model);
     }
 }
 

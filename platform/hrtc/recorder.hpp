@@ -33,9 +33,8 @@ class Recorder
 {
 public:
     /// Starts the thread, so before the haptic thread: threads inherit policy and processor. The
-    /// couriers must outlive the recorder, and nobody may run them while it is made or destroyed.
-    Recorder(AtomicFile file, const FrameSetup& setup,
-             std::vector<std::unique_ptr<Courier>>& couriers);
+    /// courier must outlive the recorder, and nobody may run it while this is made or destroyed.
+    Recorder(AtomicFile file, const FrameSetup& setup, Courier& courier);
     Recorder(const Recorder&) = delete;
     Recorder& operator=(const Recorder&) = delete;
     ~Recorder();
@@ -73,7 +72,7 @@ private:
     void store();
 
     AtomicFile file_;
-    std::vector<std::unique_ptr<Courier>>& couriers_;
+    Courier& courier_;
     std::vector<std::unique_ptr<Sink>> sinks_;
     FrameTap tap_;
     RecordingWriter writer_;

@@ -86,11 +86,11 @@ Json pools_of(const RunRecord& record)
 }
 
 /// How the object moved. All zero from files, and where poses are passed over.
-Json pose_of(const FinishedRun& run, std::size_t object)
+Json pose_of(const FinishedRun& run, std::size_t model, std::size_t object)
 {
     const PoseUse use = run.pose_uses.empty() ? PoseUse{} : run.pose_uses[object];
     const dds::PoseCounts counts =
-        run.pose_counts.empty() ? dds::PoseCounts{} : run.pose_counts[object];
+        run.pose_counts.empty() ? dds::PoseCounts{} : run.pose_counts[model];
     Json refused = Json::object();
     for (std::size_t i = 0; i < kPoseRefusals; ++i)
     {
@@ -105,12 +105,14 @@ Json pose_of(const FinishedRun& run, std::size_t object)
 Json models_of(const RunRecord& record)
 {
     Json list = Json::array();
+    const std::vector<std::uint32_t> first = record.controller.first_objects();
     for (std::size_t i = 0; i < record.controller.models().size(); ++i)
     {
         const ServedModel& served = record.controller.models()[i];
         const ModelHeader header = ModelHeader::parse(served.header).value();
         const ModelOutput& output = record.run.statistics.models[i];
-        const CourierCounters& courier = record.controller.couriers()[i]->counters();
+        const CourierCounters& courier =
+            record.controller.courier().counters(static_cast<std::uint32_t>(i));
         list.push_back({{"name", served.name},
                         {"hash", hash_text(served.hash)},
                         {"faces", header.fields().source_faces},
@@ -122,7 +124,9 @@ Json models_of(const RunRecord& record)
                         {"bytes_received", served.link->bytes_received()},
                         {"pieces_refused", courier.refused()},
                         {"host_connected", served.link->state() == LinkState::connected},
-                        {"pose", pose_of(record.run, i)}});
+                        {"pose", first[i] < record.controller.objects().size()
+                                     ? pose_of(record.run, i, first[i])
+                                     : Json()}});
     }
     return list;
 }
@@ -152,10 +156,13 @@ Json tools_of(const RunRecord& record)
     {
         const ForceCounts& force = record.run.statistics.tools[i];
         list.push_back(
-            {{"shape", "sphere"},
+            {{"shape", record.controller.tools()[i].shape},
              {"radius_m", record.controller.tools()[i].spec.radius_m},
              {"force_max_n", force.max_n},
              {"force_max_step_n", force.max_step_n},
+             {"torque_max_nm", force.torque_max_nm},
+             {"torque_max_step_nm", force.torque_max_step_nm},
+             {"twist_max_rad", force.twist_max_rad},
              {"contact_share", static_cast<double>(force.contact_frames) / frames},
              {"frozen_frames", force.frozen_frames},
              {"held_back_frames", force.held_back_frames},
@@ -169,15 +176,38 @@ Json tools_of(const RunRecord& record)
 Json pairs_of(const RunRecord& record)
 {
     Json list = Json::array();
-    const std::size_t objects = record.controller.poses().size();
+    const std::vector<ObjectSpec>& objects = record.controller.objects();
     for (std::size_t i = 0; i < record.run.statistics.pairs.size(); ++i)
     {
-        list.push_back({{"tool", i / objects},
-                        {"model", record.controller.models()[i % objects].name},
-                        {"answers", answers_of(record.run.statistics.pairs[i],
-                                               record.controller.diagonal_world_m())}});
+        const std::size_t object = i % objects.size();
+        const AnswerCounts& answers = record.run.statistics.pairs[i];
+        if (answers.in_all() == 0)
+        {
+            continue; // They were never near.
+        }
+        list.push_back({{"tool", i / objects.size()},
+                        {"object", object},
+                        {"model", record.controller.models()[objects[object].model.value].name},
+                        {"answers", answers_of(answers, record.controller.diagonal_world_m())}});
     }
     return list;
+}
+
+Json scene_of(const RunStatistics& statistics)
+{
+    Json refused = Json::object();
+    for (std::size_t i = 0; i < kChangeRefusals; ++i)
+    {
+        refused[kChangeRefusalNames[i]] = statistics.changes_refused[i];
+    }
+    return {{"objects", statistics.objects_now},
+            {"objects_max", statistics.objects_max},
+            {"pairs_awake_max", statistics.pairs_awake_max},
+            {"invisible_wall_frames", statistics.invisible_wall_frames},
+            {"crowded_frames", statistics.crowded_frames},
+            {"shed_pairs", statistics.shed_pairs},
+            {"walks", statistics.scene_walks},
+            {"changes_refused", refused}};
 }
 
 Json force_of(const RunStatistics& statistics)
@@ -231,6 +261,20 @@ Json budgets_of(const RunRecord& record)
     return budgets;
 }
 
+Json work_of(const RunStatistics& statistics)
+{
+    Json skipped = Json::object();
+    for (std::size_t i = 0; i < kSkips; ++i)
+    {
+        skipped[kSkipNames[i]] = statistics.skipped[i];
+    }
+    return {{"splits", statistics.splits},
+            {"merges", statistics.merges},
+            {"nodes_visited", statistics.nodes_visited},
+            {"pages_adopted", statistics.pages_adopted},
+            {"skipped", skipped}};
+}
+
 Json faults_of(const RunStatistics& statistics)
 {
     Json faults = Json::object();
@@ -244,9 +288,10 @@ Json faults_of(const RunStatistics& statistics)
 Json cache_of(const RunRecord& record)
 {
     std::uint64_t loads = 0;
-    for (const std::unique_ptr<Courier>& courier : record.controller.couriers())
+    const Courier& courier = record.controller.courier();
+    for (std::uint32_t i = 0; i < courier.model_count(); ++i)
     {
-        loads += courier->counters().delivered;
+        loads += courier.counters(i).delivered;
     }
     const RunStatistics& statistics = record.run.statistics;
     return {{"prediction", prediction_name(record.controller.setup().prediction)},
@@ -263,7 +308,7 @@ Json wire_of(const RunRecord& record)
     for (std::size_t i = 0; i < record.controller.models().size(); ++i)
     {
         bytes_received += record.controller.models()[i].link->bytes_received();
-        waiting += record.controller.couriers()[i]->waiting_times();
+        waiting += record.controller.courier().waiting_times(static_cast<std::uint32_t>(i));
     }
     const auto ms = [&](double value) { return waiting.total() > 0 ? Json(value) : Json(); };
     return {{"bytes_received", bytes_received},
@@ -303,19 +348,16 @@ Json make_report(const Options& options, const Controller& controller, const Fin
     times["cpu"] = times_of(statistics.cpu);
     times["wake"] = times_of(statistics.wake);
     times["response"] = times_of(statistics.deadlines.response());
-    return {{"schema", 1},
+    return {{"schema", 2},
             {"frames", statistics.frames},
             {"period_ns", run.period.ns},
             {"duration_s",
              static_cast<double>(statistics.frames) * static_cast<double>(run.period.ns) * 1e-9},
             {"times_us", times},
             {"answers", answers_of(statistics.answers, record.controller.diagonal_world_m())},
-            {"work",
-             {{"splits", statistics.splits},
-              {"merges", statistics.merges},
-              {"nodes_visited", statistics.nodes_visited},
-              {"pages_adopted", statistics.pages_adopted}}},
+            {"work", work_of(statistics)},
             {"budgets", budgets_of(record)},
+            {"scene", scene_of(statistics)},
             {"pools", pools_of(record)},
             {"cache", cache_of(record)},
             {"wire", wire_of(record)},

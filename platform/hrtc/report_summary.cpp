@@ -39,6 +39,10 @@ void add_poses(const Json& models, SummaryFacts& facts)
     for (const Json& model : models)
     {
         const Json& pose = model["pose"];
+        if (pose.is_null())
+        {
+            continue; // A tool.
+        }
         if (pose["followed"].get<bool>())
         {
             facts.emplace_back(
@@ -165,6 +169,17 @@ void add_models(const Json& report, SummaryFacts& facts)
     }
 }
 
+/// Of tools that turn.
+std::string torque_text(const Json& tools)
+{
+    double most_nm = 0.0;
+    for (const Json& tool : tools)
+    {
+        most_nm = std::max(most_nm, tool["torque_max_nm"].get<double>());
+    }
+    return most_nm > 0.0 ? fmt::format("; torque at most {:.4f} N m", most_nm) : "";
+}
+
 SummaryFacts touch_facts(const Json& report)
 {
     return {{"frames", fmt::format("{} at {:.0f} Hz, in contact {:.1f} %",
@@ -172,9 +187,10 @@ SummaryFacts touch_facts(const Json& report)
                                    1e9 / report["period_ns"].get<double>(),
                                    100.0 * report["force"]["contact_share"].get<double>())},
             {"answers", answers_text(report)},
-            {"force", fmt::format("at most {:.2f} N, largest step {:.3f} N",
+            {"force", fmt::format("at most {:.2f} N, largest step {:.3f} N{}",
                                   report["force"]["max_n"].get<double>(),
-                                  report["force"]["max_step_n"].get<double>())}};
+                                  report["force"]["max_step_n"].get<double>(),
+                                  torque_text(report["tools"]))}};
 }
 
 SummaryFacts run_facts(const Json& report)

@@ -50,11 +50,16 @@ void ForceCounts::add(const ToolOutput& output, const ToolForce& force) noexcept
     contact_frames += output.in_contact ? 1 : 0;
     frozen_frames += output.frozen ? 1 : 0;
     held_back_frames += output.held_back ? 1 : 0;
-    surplus_max_j = std::max(surplus_max_j, force.conditioned.surplus_j);
+    torque_max_nm = std::max(torque_max_nm, force.sent_nm.norm());
+    torque_max_step_nm = std::max(torque_max_step_nm, (force.sent_nm - last_nm_).norm());
+    last_nm_ = force.sent_nm;
+    twist_max_rad = std::max(twist_max_rad, force.twist_rad);
+    surplus_max_j = std::max({surplus_max_j, force.conditioned.surplus_j, force.turned.surplus_j});
     for (std::size_t bit = 0; bit < kForceActions; ++bit)
     {
         const auto action = static_cast<ForceAction>(1U << bit);
-        conditioned[bit] += has_action(force.conditioned.actions, action) ? 1U : 0U;
+        const ForceAction actions = force.conditioned.actions | force.turned.actions;
+        conditioned[bit] += has_action(actions, action) ? 1U : 0U;
     }
 }
 
@@ -65,9 +70,13 @@ void BudgetRange::add(std::uint32_t budget, bool is_first) noexcept
     sum += budget;
 }
 
-RunStatistics::RunStatistics(std::size_t tool_count, std::size_t pair_count,
+RunStatistics::RunStatistics(std::size_t tool_count, std::size_t object_count,
                              std::size_t model_count, Duration period)
-    : deadlines(period), pairs(pair_count), tools(tool_count), models(model_count)
+    : deadlines(period)
+    , objects(object_count)
+    , pairs(tool_count * object_count)
+    , tools(tool_count)
+    , models(model_count)
 {
 }
 
@@ -84,6 +93,7 @@ void RunStatistics::add(const FrameOutput& output, std::span<const ToolForce> fo
     wake.record(measures.cycle.wake_lateness);
     add_answers(output);
     add_work(output);
+    add_scene(output);
     add_budgets(measures);
     deadlines.add(index, measures, is_over_budget(output.work, measures.budgets));
     bool any_contact = false;
@@ -100,11 +110,10 @@ void RunStatistics::add_answers(const FrameOutput& output) noexcept
 {
     AnswerKind worst = AnswerKind::decided;
     double widest_m = 0.0;
-    for (std::size_t i = 0; i < pairs.size(); ++i)
+    for (const PairOutput& pair : output.pairs)
     {
-        const PairOutput& pair = output.pairs[i];
         const double width_m = pair.upper_m - pair.lower_m;
-        pairs[i].add(pair.kind, width_m);
+        pairs[pair.tool * objects + pair.object].add(pair.kind, width_m);
         if (badness(pair.kind) > badness(worst))
         {
             worst = pair.kind;
@@ -126,9 +135,30 @@ void RunStatistics::add_work(const FrameOutput& output) noexcept
     cache_hits += output.work.cache_hits;
     cache_misses += output.work.cache_misses;
     evictions += output.work.evictions;
+    for (std::size_t i = 0; i < kSkips; ++i)
+    {
+        skipped[i] += output.work.skipped.times()[i];
+    }
     for (std::size_t bit = 0; bit < faults.size(); ++bit)
     {
         faults[bit] += (static_cast<std::uint32_t>(output.faults) >> bit) & 1U;
+    }
+}
+
+void RunStatistics::add_scene(const FrameOutput& output) noexcept
+{
+    const SceneOutput& scene = output.scene;
+    objects_now = scene.objects;
+    objects_max = std::max(objects_max, scene.objects);
+    pairs_awake_max = std::max(pairs_awake_max, scene.pairs);
+    crowded_frames += scene.crowded_tools > 0 ? 1 : 0;
+    invisible_wall_frames += scene.walled_tools > 0 ? 1 : 0;
+    scene_walks += scene.walks;
+    shed_pairs += static_cast<std::uint64_t>(
+        std::ranges::count_if(output.pairs, [](const PairOutput& pair) { return pair.is_shed; }));
+    for (std::size_t i = 0; i < kChangeRefusals; ++i)
+    {
+        changes_refused[i] += scene.refused[i];
     }
 }
 
@@ -143,17 +173,12 @@ void RunStatistics::add_budgets(const CycleMeasures& measures) noexcept
 
 bool RunStatistics::is_over_budget(const WorkCounters& work, const Budgets& limits) const noexcept
 {
-    const auto models_count = static_cast<std::uint32_t>(models.size());
-    // Each pair is walked twice: to refine and to answer.
-    const auto walks = static_cast<std::uint32_t>(2 * pairs.size());
-    return work.splits > models_count * limits.splits ||
-           work.merges > models_count * limits.merges ||
-           work.scanned > models_count * limits.scanned ||
-           work.nodes_visited > walks * limits.nodes ||
-           work.triangles_tested > walks * limits.triangles ||
-           work.pages_adopted > models_count * limits.pages ||
-           work.requests > models_count * (limits.requests + limits.regions) ||
-           work.regions_searched > models_count * limits.regions;
+    constexpr std::uint32_t kWalks = 2 * kFrameWalks;
+    return work.splits > limits.splits || work.merges > limits.merges ||
+           work.scanned > limits.scanned || work.nodes_visited > kWalks * limits.nodes ||
+           work.triangles_tested > kWalks * limits.triangles || work.pages_adopted > limits.pages ||
+           work.requests > limits.requests + limits.regions ||
+           work.regions_searched > limits.regions;
 }
 
 } // namespace tactus::hrtc

@@ -28,6 +28,10 @@ struct AnswerCounts
     double width_max_m{0.0}; ///< Widest bracket of a frame that was neither exact nor decided.
 
     void add(AnswerKind kind, double width_m) noexcept;
+    [[nodiscard]] std::uint64_t in_all() const noexcept
+    {
+        return exact + decided + bracket + stale;
+    }
 
 private:
     std::uint64_t inexact_run_{0};
@@ -38,16 +42,20 @@ struct ForceCounts
 {
     double max_n{0.0};
     double max_step_n{0.0}; ///< Largest |F(k) - F(k - 1)|.
+    double torque_max_nm{0.0};
+    double torque_max_step_nm{0.0}; ///< Likewise.
+    double twist_max_rad{0.0};      ///< Largest angle between device and proxy, in contact.
     std::uint64_t contact_frames{0};
     std::uint64_t frozen_frames{0};
     std::uint64_t held_back_frames{0};
-    double surplus_max_j{0.0};                              ///< ConditionedForce::surplus_j.
+    double surplus_max_j{0.0}; ///< ConditionedForce::surplus_j, of force or torque.
     std::array<std::uint64_t, kForceActions> conditioned{}; ///< Frames with each ForceAction.
 
     void add(const ToolOutput& output, const ToolForce& force) noexcept;
 
 private:
     Vec3 last_n_{0.0, 0.0, 0.0};
+    Vec3 last_nm_{0.0, 0.0, 0.0};
 };
 
 /// One budget over the run.
@@ -69,7 +77,7 @@ inline constexpr std::array kGovernedBudgets{&Budgets::splits, &Budgets::merges,
 class RunStatistics
 {
 public:
-    RunStatistics(std::size_t tools, std::size_t pairs, std::size_t models, Duration period);
+    RunStatistics(std::size_t tools, std::size_t objects, std::size_t models, Duration period);
 
     /// `forces`: one a tool.
     void add(const FrameOutput& output, std::span<const ToolForce> forces,
@@ -82,6 +90,8 @@ public:
     LatencyHistogram wake;
     DeadlineAccount deadlines;
     AnswerCounts answers; ///< By each frame's worst pair.
+    std::size_t objects;  ///< Places for them: one more than their largest number.
+    /// Tool by tool, in each the objects by their numbers; counts while they are near.
     std::vector<AnswerCounts> pairs;
     std::vector<ForceCounts> tools;
     std::vector<ModelOutput> models; ///< Of the last frame; `used_max` covers the run.
@@ -94,7 +104,19 @@ public:
     std::uint64_t cache_hits{0};
     std::uint64_t cache_misses{0};
     std::uint64_t evictions{0};
-    std::array<std::uint64_t, 32> faults{}; ///< Frames with each FrameFault bit.
+    std::array<std::uint64_t, kSkips> skipped{}; ///< In the order of Skip.
+    std::array<std::uint64_t, 32> faults{};      ///< Frames with each FrameFault bit.
+
+    std::uint32_t objects_now{0}; ///< In the last frame.
+    std::uint32_t objects_max{0};
+    std::uint32_t pairs_awake_max{0};
+    std::uint64_t crowded_frames{0}; ///< With some tool that is not clear as far as it asks.
+    /// With one of them held where it is proven clear.
+    std::uint64_t invisible_wall_frames{0};
+    std::uint64_t shed_pairs{0};  ///< Pairs that were shed, summed over the frames.
+    std::uint64_t scene_walks{0}; ///< BroadPhase's.
+    /// Changes that were not made, in the order of ChangeRefusal.
+    std::array<std::uint64_t, kChangeRefusals> changes_refused{};
 
     std::array<BudgetRange, kGovernedBudgets.size()> budgets;
     std::uint64_t budgets_at_floor{0}; ///< Frames with the least budgets there are.
@@ -102,6 +124,7 @@ public:
 private:
     void add_answers(const FrameOutput& output) noexcept;
     void add_work(const FrameOutput& output) noexcept;
+    void add_scene(const FrameOutput& output) noexcept;
     void add_budgets(const CycleMeasures& measures) noexcept;
     [[nodiscard]] bool is_over_budget(const WorkCounters& work,
                                       const Budgets& limits) const noexcept;

@@ -5,6 +5,7 @@
 #include "platform/base/atomic_file.hpp"
 #include "platform/hrtc/recorder.hpp"
 #include "platform/hrtc/report.hpp"
+#include "platform/hrtc/scene_choice.hpp"
 #include "platform/hrtc/session_run.hpp"
 #include "platform/hrtc/signals.hpp"
 #include "platform/posix/linux_extras.hpp"
@@ -46,17 +47,16 @@ Result<std::vector<ServedModel>, Refusal> find_in_files(const Options& options)
 Result<std::vector<ServedModel>, Refusal> find_published(const Options& options,
                                                          dds::DdsClient& client)
 {
-    std::vector<ServedModel> models;
     const auto wait = std::chrono::milliseconds(static_cast<std::int64_t>(options.wait_s * 1e3));
+    std::vector<ModelSelector> selectors;
     for (const std::string& text : options.models)
     {
-        auto model =
-            client.find(parse_selector(text).value(), wait, [] { return !was_interrupted(); });
-        if (!model)
-        {
-            return failure(model.error().text);
-        }
-        models.push_back(std::move(model).value());
+        selectors.push_back(parse_selector(text).value());
+    }
+    auto models = client.find_all(selectors, wait, [] { return !was_interrupted(); });
+    if (!models)
+    {
+        return failure(models.error().text);
     }
     return models;
 }
@@ -74,7 +74,7 @@ std::optional<std::string> start_recorder(const Options& options, Controller& co
     {
         return "--record: " + file.error().text;
     }
-    recorder.emplace(std::move(file).value(), controller.setup(), controller.couriers());
+    recorder.emplace(std::move(file).value(), controller.setup(), controller.courier());
     return std::nullopt;
 }
 
@@ -130,6 +130,14 @@ Result<std::unique_ptr<Session>, Refusal> Session::open(const Options& options)
         linux_extras::keep_calling_thread_off(*options.thread.cpu);
     }
     std::unique_ptr<Session> session(new Session(options));
+    if (auto error = take_scene(session->options_))
+    {
+        return *error;
+    }
+    if (auto error = take_tool_files(session->options_))
+    {
+        return *error;
+    }
     if (auto error = session->connect())
     {
         return *error;

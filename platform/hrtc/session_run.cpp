@@ -30,8 +30,8 @@ constexpr std::chrono::milliseconds kLook{20};
 FinishedRun empty_run(const Controller& controller, Duration period)
 {
     const std::size_t tools = controller.tools().size();
-    return {.statistics = RunStatistics(tools, tools * controller.poses().size(),
-                                        controller.models().size(), period),
+    return {.statistics =
+                RunStatistics(tools, controller.poses().size(), controller.models().size(), period),
             .period = period,
             .safety = SafetyRecord(tools)};
 }
@@ -44,9 +44,10 @@ std::optional<BudgetGovernor> make_governor(const Options& options, const Contro
         return std::nullopt;
     }
     const auto budget_ns = static_cast<std::int64_t>(*options.frame_budget_us * 1e3);
-    const std::size_t pairs = controller.tools().size() * controller.poses().size();
-    return BudgetGovernor(nanoseconds(budget_ns), controller.budgets(),
-                          static_cast<std::uint32_t>(2 * pairs));
+    const std::uint32_t pairs = capacities_of(controller.setup()).pairs;
+    // Each pair is walked to refine and to answer, until the frame has no more walks.
+    const auto walks = 2 * std::min(pairs, kFrameWalks);
+    return BudgetGovernor(nanoseconds(budget_ns), controller.budgets(), walks);
 }
 
 /// On the haptic thread; returns why the option can't be had.
@@ -69,7 +70,7 @@ SessionRun::SessionRun(const RunParts& parts)
     , governor_(make_governor(parts.options, parts.controller))
     , door_(parts.controller.poses(), nanoseconds(parts.controller.setup().pose_age_max_ns))
     , telemetry_(period_)
-    , transport_(parts.controller.couriers(), parts.controller.models(), connected_topics())
+    , transport_(parts.controller.courier(), parts.controller.models(), connected_topics())
     , loop_(loop_parts(), done_.statistics)
     , supervisor_({parts.controller.tools(), &loop_.heartbeat(), &clock_, &alarm_, period_})
 {
@@ -98,7 +99,6 @@ LoopParts SessionRun::loop_parts()
     const bool has_topics = parts_.topics != nullptr;
     return {.frame = &controller.frame(),
             .tools = controller.tools(),
-            .poses = controller.poses(),
             .timer = &timer_,
             .clock = &clock_,
             .budgets = controller.budgets(),

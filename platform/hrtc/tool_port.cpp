@@ -2,6 +2,10 @@
 // Copyright the Tactus authors.
 #include "platform/hrtc/tool_port.hpp"
 
+#include "platform/device_force.hpp"
+#include "rt_core/force/angular_stiffness.hpp"
+#include "rt_core/limits.hpp"
+
 #include <algorithm>
 
 namespace tactus::hrtc
@@ -15,50 +19,107 @@ namespace
     return is_so ? cause : ForceOff::none;
 }
 
+constexpr Quaternion kUnturned{0.0, 0.0, 0.0, 1.0};
+
+/// Its part in this direction; 0 when there is none.
+double along(const Vec3& way, const Vec3& direction) noexcept
+{
+    const double norm = direction.norm();
+    return norm > 0.0 ? way.dot(direction) / norm : 0.0;
+}
+
 } // namespace
 
 ToolPort::ToolPort(const ToolSetup& setup) noexcept
     : device_(*setup.device)
+    , clutch_(setup.clutch_button)
     , conditioner_(setup.conditioner)
     , safe_state_(setup.limits)
-    , jump_(setup.limits)
+    , angular_stiffness_nm_per_rad_(angular_stiffness_nm_per_rad(setup.spec))
 {
 }
 
 const ToolState& ToolPort::read(std::uint32_t periods) noexcept
 {
     sample_ = device_.read();
-    const auto& position_m = sample_.position_world_m;
-    state_.position_m = Vec3(position_m[0], position_m[1], position_m[2]);
+    const bool is_turn_known = sample_.rotation_world || !device_.info().limits.turn.is_measured;
+    const Quaternion rotation = sample_.rotation_world.value_or(kUnturned);
+    const bool is_rotation_sound = is_unit(rotation, kRotationTolerance);
+    hand_.position_m = to_vec3(sample_.position_world_m);
     state_.sample_time_ns = sample_.time.ns;
     state_.elapsed_periods = periods;
-    state_.valid = sample_.valid && sample_.connected;
+    state_.valid = sample_.valid && sample_.connected && is_turn_known && is_rotation_sound;
+    // Of a hand that isn't where it says nothing is taken, nor of its button.
+    if (state_.valid && hand_.position_m.allFinite())
+    {
+        turn_hand(orthonormalised(to_rotation(rotation)));
+        const HandPlace tool = clutch_.tool_at(hand_, sample_.buttons);
+        state_.position_m = tool.position_m;
+        state_.rotation = tool.rotation;
+    }
+    else
+    {
+        state_.position_m = hand_.position_m;
+    }
     return state_;
+}
+
+void ToolPort::turn_hand(const Mat3& rotation) noexcept
+{
+    if (rotation != hand_.rotation)
+    {
+        turned_rad_ += rotation_vector(orthonormalised(rotation * hand_.rotation.transpose()));
+        hand_.rotation = rotation;
+    }
+}
+
+DeviceRecord ToolPort::record() const noexcept
+{
+    const auto vector = [](const std::optional<std::array<double, 3>>& v)
+    { return v ? std::optional(to_vec3(*v)) : std::nullopt; };
+    DeviceRecord record;
+    record.connected = sample_.connected;
+    record.deadman_held = sample_.deadman_held;
+    record.hand = clutch_.has_parted() ? std::optional(hand_) : std::nullopt;
+    record.velocity_m_per_s = vector(sample_.velocity_world_m_per_s);
+    record.angular_velocity_rad_per_s = vector(sample_.angular_velocity_world_rad_per_s);
+    record.buttons = sample_.buttons;
+    record.gripper_m = sample_.gripper_m;
+    record.measures_rotation = sample_.rotation_world.has_value();
+    record.sent_n = force_.sent_n;
+    record.sent_nm = force_.sent_nm;
+    return record;
 }
 
 SafetyOutput ToolPort::make_safe(const ToolOutput& output, const PeriodContext& context) noexcept
 {
-    force_.conditioned = conditioner_.condition(wish_of(output));
+    const ConditionedWrench wrench = conditioner_.condition(wish_of(output));
+    force_.conditioned = wrench.force;
+    force_.turned = wrench.torque;
     const SafetyOutput safe = safe_state_.step(safety_input(output, context));
-    if (safe.force_n != force_.conditioned.force_n)
-    {
-        conditioner_.follow(safe.force_n);
-    }
+    conditioner_.follow(safe.force_n, safe.torque_nm);
     force_.sent_n = safe.force_n;
-    jump_.remember(output);
+    force_.sent_nm = safe.torque_nm;
+    force_.twist_rad = output.in_contact ? twist_of(output).norm() : 0.0;
     return safe;
 }
 
-ForceWish ToolPort::wish_of(const ToolOutput& output) const noexcept
+WrenchWish ToolPort::wish_of(const ToolOutput& output) const noexcept
 {
-    const double norm_n = output.force_n.norm();
-    ForceWish wish{output.force_n, state_.position_m, output.stiffness_n_per_m, 0.0,
-                   state_.elapsed_periods};
-    if (norm_n > 0.0)
-    {
-        wish.stretch_m = (output.proxy_m - state_.position_m).dot(output.force_n) / norm_n;
-    }
-    return wish;
+    const double stiffness_nm_per_rad = output.in_contact ? angular_stiffness_nm_per_rad_ : 0.0;
+    return {{output.force_n, hand_.position_m, output.stiffness_n_per_m,
+             along(output.proxy_m - state_.position_m, output.force_n), state_.elapsed_periods},
+            {output.torque_nm, turned_rad_, stiffness_nm_per_rad,
+             along(twist_of(output), output.torque_nm), state_.elapsed_periods}};
+}
+
+/// From the hand to the proxy, about the world's axes.
+Vec3 ToolPort::twist_of(const ToolOutput& output) const noexcept
+{
+    return angular_stiffness_nm_per_rad_ > 0.0 && output.proxy_rotation.allFinite()
+               ? rotation_vector(
+                     orthonormalised(output.proxy_rotation * state_.rotation.transpose()))
+               : Vec3(0.0, 0.0, 0.0);
 }
 
 SafetyInput ToolPort::safety_input(const ToolOutput& output, const PeriodContext& context) noexcept
@@ -67,14 +128,20 @@ SafetyInput ToolPort::safety_input(const ToolOutput& output, const PeriodContext
     input.position_m = state_.position_m;
     if (const auto& velocity = sample_.velocity_world_m_per_s)
     {
-        input.velocity_m_per_s = Vec3((*velocity)[0], (*velocity)[1], (*velocity)[2]);
+        input.velocity_m_per_s = to_vec3(*velocity);
         input.has_velocity = true;
     }
     input.sample_time_ns = state_.sample_time_ns;
     input.elapsed_s = context.elapsed_s;
     input.elapsed_periods = std::max(state_.elapsed_periods, 1U);
     input.force_n = force_.conditioned.force_n;
+    input.torque_nm = force_.turned.force_n;
     input.proxy_m = output.proxy_m;
+    input.twist_rad = twist_of(output).norm();
+    if (const auto& turning = sample_.angular_velocity_world_rad_per_s)
+    {
+        input.turning_rad_per_s = to_vec3(*turning);
+    }
     input.faults = faults_of(output);
     input.causes = context.causes | own_causes();
     input.force_was_lost = take_back();
@@ -83,10 +150,11 @@ SafetyInput ToolPort::safety_input(const ToolOutput& output, const PeriodContext
 
 ForceOff ToolPort::own_causes() const noexcept
 {
-    return when(has_action(force_.conditioned.actions, ForceAction::refused), ForceOff::garbage) |
+    const ForceAction actions = force_.conditioned.actions | force_.turned.actions;
+    return when(has_action(actions, ForceAction::refused), ForceOff::garbage) |
            when(!sample_.connected, ForceOff::disconnect) |
            when(!sample_.deadman_held, ForceOff::deadman) |
-           when(jump_.has_jumped(), ForceOff::jump);
+           when(clutch_.is_held(), ForceOff::clutch);
 }
 
 /// Returns whether the device has dropped the last force: somebody braked it, or its own watchdog
@@ -126,9 +194,9 @@ void ToolPort::brake() noexcept
     device_.brake();
 }
 
-void ToolPort::send(const Vec3& force_n) noexcept
+void ToolPort::send(const Vec3& force_n, const Vec3& torque_nm) noexcept
 {
-    device_.write({force_n.x(), force_n.y(), force_n.z()});
+    device_.write({to_array(force_n), to_array(torque_nm), 0.0});
 }
 
 } // namespace tactus::hrtc

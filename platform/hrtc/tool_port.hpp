@@ -3,8 +3,8 @@
 #pragma once
 
 #include "platform/haptic_device.hpp"
+#include "platform/hrtc/clutch.hpp"
 #include "platform/hrtc/cycle_measures.hpp"
-#include "platform/hrtc/jump_watch.hpp"
 #include "rt_core/force/force_conditioner.hpp"
 #include "rt_core/force/safe_state.hpp"
 #include "rt_core/records/frame_input.hpp"
@@ -13,7 +13,9 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
+#include <string>
 
 namespace tactus::hrtc
 {
@@ -21,10 +23,13 @@ namespace tactus::hrtc
 /// One tool as the controller sets it up before the loop starts.
 struct ToolSetup
 {
-    ToolSpec spec; ///< The frame's part.
+    ToolSpec spec;             ///< The frame's part.
+    std::string shape;         ///< In the words of --tool.
+    double hand_radius_m{0.0}; ///< How far from a surface a simulated hand holds it.
     std::unique_ptr<HapticDevice> device;
     SafetyLimits limits;
     ConditionerSetup conditioner;
+    std::optional<std::uint32_t> clutch_button;
 };
 
 /// What the loop knows about the present period and a port cannot see.
@@ -37,7 +42,7 @@ struct PeriodContext
 /// One tool on the haptic thread: its device, and everything between the frame's force and that
 /// device. The loop calls the methods of one period in this order:
 ///
-///     read -> see_objects -> (frame) -> make_safe -> write
+///     read -> (frame) -> make_safe -> write
 ///
 /// Haptic thread only, except brake(). Allocates nothing.
 class ToolPort
@@ -49,49 +54,52 @@ public:
     /// Reads the device. `periods`: whole periods since the last frame.
     [[nodiscard]] const ToolState& read(std::uint32_t periods) noexcept;
 
-    /// Compares where the objects stand in the coming frame with the frame before.
-    void see_objects(std::span<const ObjectPose> before, std::span<const ObjectPose> now) noexcept
-    {
-        jump_.see(before, now);
-    }
-
     /// Decides which force goes out. Releases the device's brake if somebody has braked it, unless
     /// brake() was called on this port.
     [[nodiscard]] SafetyOutput make_safe(const ToolOutput& output,
                                          const PeriodContext& context) noexcept;
 
-    void write() noexcept { send(force_.sent_n); }
+    void write() noexcept { send(force_.sent_n, force_.sent_nm); }
 
     /// The force that write() sends, and how it came about.
     [[nodiscard]] const ToolForce& force() const noexcept { return force_; }
+
+    /// What passed between it and the device in this period, beside the ToolState.
+    [[nodiscard]] DeviceRecord record() const noexcept;
 
     /// Sends the last force, faded by this much more time. It uses nothing but that force and the
     /// device's write, so it can be called in the middle of a frame that a bug has interrupted.
     void fade(double elapsed_s, ForceOff cause) noexcept
     {
-        send(safe_state_.fade(elapsed_s, cause).force_n);
+        const SafetyOutput safe = safe_state_.fade(elapsed_s, cause);
+        send(safe.force_n, safe.torque_nm);
     }
 
     /// The run is over: no force.
-    void rest() noexcept { send(Vec3(0.0, 0.0, 0.0)); }
+    void rest() noexcept { device_.write({}); }
 
     /// Any thread: brakes the device for good.
     void brake() noexcept;
 
 private:
-    [[nodiscard]] ForceWish wish_of(const ToolOutput& output) const noexcept;
+    [[nodiscard]] WrenchWish wish_of(const ToolOutput& output) const noexcept;
     [[nodiscard]] SafetyInput safety_input(const ToolOutput& output,
                                            const PeriodContext& context) noexcept;
+    [[nodiscard]] Vec3 twist_of(const ToolOutput& output) const noexcept;
+    void turn_hand(const Mat3& rotation) noexcept;
     [[nodiscard]] ForceOff own_causes() const noexcept;
     [[nodiscard]] bool take_back() noexcept;
     void release_brake() noexcept;
-    void send(const Vec3& force_n) noexcept;
+    void send(const Vec3& force_n, const Vec3& torque_nm) noexcept;
 
     HapticDevice& device_;
-    ForceConditioner conditioner_;
+    Clutch clutch_;
+    WrenchConditioner conditioner_;
     SafeState safe_state_;
-    JumpWatch jump_;
     DeviceSample sample_;
+    HandPlace hand_;                 ///< Of the last sample.
+    Vec3 turned_rad_{0.0, 0.0, 0.0}; ///< By the hand, about the world's axes, summed up.
+    double angular_stiffness_nm_per_rad_;
     ToolState state_;
     ToolForce force_;
     std::atomic<bool> is_braked_for_good_{false};

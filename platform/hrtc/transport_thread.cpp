@@ -18,9 +18,9 @@ constexpr std::chrono::microseconds kPollPause{300};
 
 } // namespace
 
-TransportThread::TransportThread(std::vector<std::unique_ptr<Courier>>& couriers,
-                                 const std::vector<ServedModel>& models, HostTopics* topics)
-    : couriers_(couriers), models_(models), topics_(topics), thread_([this] { run(); })
+TransportThread::TransportThread(Courier& courier, const std::vector<ServedModel>& models,
+                                 HostTopics* topics)
+    : courier_(courier), models_(models), topics_(topics), thread_([this] { run(); })
 {
 }
 
@@ -38,10 +38,7 @@ void TransportThread::run()
     const PosixClock clock;
     while (!stopped_.load())
     {
-        for (const std::unique_ptr<Courier>& courier : couriers_)
-        {
-            courier->step(clock.now().ns);
-        }
+        courier_.step(clock.now().ns);
         watch_hosts();
         if (topics_ != nullptr)
         {
@@ -53,13 +50,12 @@ void TransportThread::run()
 
 void TransportThread::watch_hosts()
 {
-    std::uint32_t gone = 0;
     for (std::size_t i = 0; i < models_.size(); ++i)
     {
-        gone |= models_[i].link->state() == LinkState::host_gone ? 1U << i : 0U;
+        const bool is_gone = models_[i].link->state() == LinkState::host_gone;
+        hosts_gone_.set(i, is_gone);
+        host_was_lost_.store(host_was_lost_.load() || is_gone);
     }
-    hosts_gone_.store(gone, std::memory_order_relaxed);
-    host_was_lost_.store(host_was_lost_.load() || gone != 0);
 }
 
 } // namespace tactus::hrtc

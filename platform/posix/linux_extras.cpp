@@ -134,7 +134,8 @@ std::string explain_fifo_refusal(int priority, int error)
     }
     return line + "RLIMIT_RTPRIO is " + (known ? describe_rtprio_limit(limit) : "unknown") +
            "; add '" + posix::user_name() +
-           " - rtprio 98' to /etc/security/limits.conf and log in again, or give CAP_SYS_NICE "
+           " - rtprio 99' to /etc/security/limits.d/tactus.conf and log in again, or give "
+           "CAP_SYS_NICE "
            "(container: --cap-add=SYS_NICE)";
 }
 
@@ -162,7 +163,7 @@ std::string explain_lock_refusal(int error)
         limit == RLIM_INFINITY ? "unlimited" : std::to_string(limit) + " bytes";
     return "mlockall refused (" + posix::name_of_error(error) + "): RLIMIT_MEMLOCK is " + amount +
            " and memory mapped later must fit as well; add '" + posix::user_name() +
-           " - memlock unlimited' to /etc/security/limits.conf and log in again, or give "
+           " - memlock unlimited' to /etc/security/limits.d/tactus.conf and log in again, or give "
            "CAP_IPC_LOCK (container: --cap-add=IPC_LOCK --ulimit memlock=-1)";
 }
 

@@ -2,47 +2,17 @@
 // Copyright the Tactus authors.
 #include "platform/recording/frame_decoder.hpp"
 
+#include "platform/recording/change_coding.hpp"
+#include "platform/recording/device_coding.hpp"
 #include "platform/recording/frame_encoder.hpp"
 
-#include <cmath>
+#include <algorithm>
 
 namespace tactus
 {
 
 namespace
 {
-
-Vec3 read_vector(ByteReader& reader)
-{
-    Vec3 value;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-        value[axis] = reader.read<double>();
-    }
-    return value;
-}
-
-Mat3 read_rotation(ByteReader& reader)
-{
-    Mat3 rotation;
-    for (int row = 0; row < 3; ++row)
-    {
-        rotation.row(row) = read_vector(reader).transpose();
-    }
-    return rotation;
-}
-
-ObjectPose read_pose(ByteReader& reader)
-{
-    ObjectPose pose;
-    pose.rotation = read_rotation(reader);
-    pose.translation_m = read_vector(reader);
-    pose.scale = reader.read<double>();
-    pose.stamp_ns = reader.read<std::int64_t>();
-    pose.age_ns = reader.read<std::int64_t>();
-    pose.revision = reader.read<std::uint32_t>();
-    return pose;
-}
 
 Budgets read_budgets(ByteReader& reader)
 {
@@ -61,8 +31,7 @@ Budgets read_budgets(ByteReader& reader)
 FrameDecoder::FrameDecoder(const FrameShape& shape)
 {
     frame_.tools.resize(shape.tools);
-    frame_.poses.resize(shape.objects);
-    frame_.doors.resize(shape.models);
+    frame_.devices.resize(shape.tools);
     frame_.state_hashes.resize(shape.models);
 }
 
@@ -84,18 +53,20 @@ const char* FrameDecoder::decode(ByteReader& reader)
 const char* FrameDecoder::decode_body(ByteReader& reader)
 {
     const auto flags = reader.read<std::uint8_t>();
-    if (flags > (kHasPoses | kHasBudgets) || (!has_begun_ && flags != (kHasPoses | kHasBudgets)))
+    if (flags > (kHasChanges | kHasBudgets) || (!has_begun_ && (flags & kHasBudgets) == 0))
     {
-        return "has flags that are not 0 to 3, or not 3 in the first frame";
+        return "has flags that are not 0 to 3, or no budgets in the first frame";
     }
     has_begun_ = true;
+    frame_.now_ns = reader.read<std::int64_t>();
     if (!decode_tools(reader))
     {
-        return "has a tool whose validity is not 0 or 1";
+        return "has a tool whose flags are not those of what it says";
     }
-    if ((flags & kHasPoses) != 0 && !decode_poses(reader))
+    frame_.changes.clear();
+    if ((flags & kHasChanges) != 0 && !decode_changes(reader))
     {
-        return "has a pose that is not finite or whose scale is not above 0";
+        return "has not 1 to 64 changes of the scene, or one of unknown kind";
     }
     if ((flags & kHasBudgets) != 0)
     {
@@ -106,12 +77,9 @@ const char* FrameDecoder::decode_body(ByteReader& reader)
             return "allows more than 256 splits or merges";
         }
     }
-    for (RecordedFrame::Door& door : frame_.doors)
+    if (const char* fault = decode_door(reader))
     {
-        if (const char* fault = decode_door(reader, door))
-        {
-            return fault;
-        }
+        return fault;
     }
     for (std::uint64_t& hash : frame_.state_hashes)
     {
@@ -125,19 +93,20 @@ const char* FrameDecoder::decode_body(ByteReader& reader)
     return nullptr;
 }
 
-const char* FrameDecoder::decode_door(ByteReader& reader, RecordedFrame::Door& door)
+const char* FrameDecoder::decode_door(ByteReader& reader)
 {
-    door.wish_room = reader.read<std::uint32_t>();
+    frame_.wish_room = reader.read<std::uint32_t>();
     const auto events = reader.read<std::uint16_t>();
     if (events > kMaxDoorEvents)
     {
-        return "takes more than 128 events from a door";
+        return "takes more than 128 events from the door";
     }
-    door.events.resize(events);
-    for (DoorEvent& event : door.events)
+    frame_.events.resize(events);
+    for (DoorEvent& event : frame_.events)
     {
         const auto kind = reader.read<std::uint8_t>();
         const auto content = reader.read<std::uint8_t>();
+        event.owner = reader.read<std::uint8_t>();
         event.key.number = reader.read<std::uint32_t>();
         event.slot = reader.read<std::uint32_t>();
         event.freed_taken = reader.read<std::uint32_t>();
@@ -150,7 +119,7 @@ const char* FrameDecoder::decode_door(ByteReader& reader, RecordedFrame::Door& d
                 : event.kind == DoorEventKind::link_update && event.key.kind == ContentKind::chunk;
         if (!reader.failed() && !is_known)
         {
-            return "takes an event of unknown kind from a door";
+            return "takes an event of unknown kind from the door";
         }
     }
     return nullptr;
@@ -159,34 +128,21 @@ const char* FrameDecoder::decode_door(ByteReader& reader, RecordedFrame::Door& d
 bool FrameDecoder::decode_tools(ByteReader& reader)
 {
     bool is_sound = true;
-    for (ToolState& tool : frame_.tools)
+    for (std::size_t i = 0; i < frame_.tools.size(); ++i)
     {
-        tool.position_m = read_vector(reader);
-        tool.sample_time_ns = reader.read<std::int64_t>();
-        tool.elapsed_periods = reader.read<std::uint32_t>();
-        const auto flags = reader.read<std::uint8_t>();
-        tool.valid = (flags & kIsValid) != 0;
-        tool.rotation = Mat3::Identity();
-        if ((flags & kHasRotation) != 0)
-        {
-            tool.rotation = read_rotation(reader);
-        }
-        is_sound = is_sound && flags <= (kIsValid | kHasRotation);
+        is_sound = try_read_tool(reader, frame_.tools[i], frame_.devices[i]) && is_sound;
     }
     return is_sound;
 }
 
-bool FrameDecoder::decode_poses(ByteReader& reader)
+/// Whether a change can be made is the frame's to say, as it was when it was recorded.
+bool FrameDecoder::decode_changes(ByteReader& reader)
 {
-    bool is_sound = true;
-    for (ObjectPose& pose : frame_.poses)
-    {
-        pose = read_pose(reader);
-        is_sound = is_sound && (reader.failed() ||
-                                (pose.rotation.allFinite() && pose.translation_m.allFinite() &&
-                                 std::isfinite(pose.scale) && pose.scale > 0.0));
-    }
-    return is_sound;
+    const auto changes = reader.read<std::uint8_t>();
+    frame_.changes.resize(changes);
+    return changes >= 1 && changes <= kMaxSceneChanges &&
+           std::ranges::all_of(frame_.changes,
+                               [&reader](SceneChange& change) { return try_read(reader, change); });
 }
 
 } // namespace tactus

@@ -4,6 +4,7 @@
 
 #include "platform/recording/output_hash.hpp"
 #include "rt_core/base/byte_io.hpp"
+#include "rt_core/records/device_record.hpp"
 #include "rt_core/records/door_event.hpp"
 #include "rt_core/records/frame_input.hpp"
 
@@ -18,25 +19,23 @@ namespace tactus
 struct FrameShape
 {
     std::size_t tools{0};
-    std::size_t objects{0};
     std::size_t models{0};
 };
 
 /// One frame as it was recorded.
 struct RecordedFrame
 {
-    struct Door
-    {
-        std::uint32_t wish_room{0};
-        std::vector<DoorEvent> events;
-    };
-
+    std::int64_t now_ns{0};
     std::vector<ToolState> tools;
-    std::vector<ObjectPose> poses;
+    std::vector<DeviceRecord> devices; ///< One a tool.
+    std::vector<SceneChange> changes;
     Budgets budgets;
-    std::vector<Door> doors;                 ///< One a model.
+    std::uint32_t wish_room{0};
+    std::vector<DoorEvent> events;           ///< That were taken from the door.
     std::vector<std::uint64_t> state_hashes; ///< One a model, after the frame.
     OutputHashes output;
+
+    [[nodiscard]] FrameInput input() const noexcept { return {tools, changes, budgets, now_ns}; }
 };
 
 /// Reads frames that a FrameEncoder coded, in the same order.
@@ -52,9 +51,9 @@ public:
 
 private:
     [[nodiscard]] const char* decode_body(ByteReader& reader);
-    [[nodiscard]] const char* decode_door(ByteReader& reader, RecordedFrame::Door& door);
+    [[nodiscard]] const char* decode_door(ByteReader& reader);
     [[nodiscard]] bool decode_tools(ByteReader& reader);
-    [[nodiscard]] bool decode_poses(ByteReader& reader);
+    [[nodiscard]] bool decode_changes(ByteReader& reader);
 
     RecordedFrame frame_;
     bool has_begun_{false};

@@ -10,14 +10,14 @@ namespace tactus
 
 FrameTap::FrameTap(std::size_t cells) : cells_(cells), queue_(cells_) {}
 
-void FrameTap::record(std::span<const ToolState> tools, std::span<const ObjectPose> poses,
-                      const Budgets& budgets, const FrameOutput& output) noexcept
+void FrameTap::record(const FrameInput& input, const FrameOutput& output,
+                      std::span<const DeviceRecord> devices) noexcept
 {
     if (lost_from_.load(std::memory_order_relaxed) != kNoFrame) // Only this thread writes it.
     {
         return;
     }
-    std::span<const std::byte> coded = encoder_.encode(tools, poses, budgets, output);
+    std::span<const std::byte> coded = encoder_.encode(input, output, devices);
     const std::size_t needed = (coded.size() + sizeof(Cell) - 1) / sizeof(Cell);
     if (queue_.capacity() - queue_.size() < needed)
     {

@@ -22,16 +22,16 @@ namespace tactus
 class FrameTap
 {
 public:
-    /// Room for `cells` of 64 B; a frame of one tool and model takes 3 to 5, an object that
+    /// Room for `cells` of 64 B; a frame of one tool and model takes 3 to 8, an object that
     /// its host moves 2 more, an arrival a third.
     explicit FrameTap(std::size_t cells = kUsualCells);
 
     /// A second or more of usual frames: 1 MiB.
     static constexpr std::size_t kUsualCells = 16'384;
 
-    /// Haptic thread. Allocates nothing.
-    void record(std::span<const ToolState> tools, std::span<const ObjectPose> poses,
-                const Budgets& budgets, const FrameOutput& output) noexcept;
+    /// Haptic thread. Allocates nothing. As FrameEncoder::encode().
+    void record(const FrameInput& input, const FrameOutput& output,
+                std::span<const DeviceRecord> devices = {}) noexcept;
 
     /// The other thread: the next coded frame into `frame`; false when none waits.
     [[nodiscard]] bool try_take(std::vector<std::byte>& frame);

@@ -11,12 +11,13 @@ namespace
 {
 
 // A field that is added to one of these has to be hashed below.
-static_assert(sizeof(ToolOutput) == 168);
+static_assert(sizeof(ToolOutput) == 176);
 static_assert(sizeof(PairOutput) == 120);
 static_assert(sizeof(Contact) == 96);
 static_assert(sizeof(MeshReport) == 8 * kMaxMeetingFaces + 24);
 static_assert(sizeof(ModelOutput) == 80);
-static_assert(sizeof(WorkCounters) == 52);
+static_assert(sizeof(WorkCounters) == 52 + 4 * kSkips);
+static_assert(sizeof(SceneOutput) == 20 + 4 * kChangeRefusals);
 
 class Hash
 {
@@ -66,6 +67,9 @@ std::uint64_t hash_tools(std::span<const ToolOutput> tools) noexcept
         hash.add(std::uint64_t{tool.held_back});
         hash.add(std::uint64_t{tool.under_way});
         hash.add(std::uint64_t{tool.crowded});
+        hash.add(std::uint64_t{tool.lost_object});
+        hash.add(std::uint64_t{tool.is_gone});
+        hash.add(tool.clear_m);
         hash.add(tool.stiffness_n_per_m);
         hash.add(static_cast<std::uint64_t>(tool.sample_fault));
     }
@@ -116,6 +120,8 @@ std::uint64_t hash_pairs(std::span<const PairOutput> pairs) noexcept
         hash.add(std::uint64_t{pair.nearest_face.value});
         hash.add(pair.nearest_point_m);
         hash.add(std::uint64_t{pair.skipped});
+        hash.add(std::uint64_t{pair.is_shed});
+        hash.add(std::uint64_t{pair.is_joined});
         hash.add(static_cast<std::uint64_t>(pair.nearest_feature));
         if (pair.contacts != nullptr)
         {
@@ -146,7 +152,8 @@ std::uint64_t hash_models(std::span<const ModelOutput> models) noexcept
     return hash.value();
 }
 
-std::uint64_t hash_work(const WorkCounters& work, FrameFault faults) noexcept
+std::uint64_t hash_work(const WorkCounters& work, const SceneOutput& scene,
+                        FrameFault faults) noexcept
 {
     Hash hash;
     for (const std::uint32_t count :
@@ -155,6 +162,19 @@ std::uint64_t hash_work(const WorkCounters& work, FrameFault faults) noexcept
           work.blocks_refitted, work.evictions, work.cache_hits, work.cache_misses})
     {
         hash.add(std::uint64_t{count});
+    }
+    for (const std::uint32_t count :
+         {scene.objects, scene.pairs, scene.crowded_tools, scene.walled_tools, scene.walks})
+    {
+        hash.add(std::uint64_t{count});
+    }
+    for (const std::uint32_t times : scene.refused)
+    {
+        hash.add(std::uint64_t{times});
+    }
+    for (const std::uint32_t times : work.skipped.times())
+    {
+        hash.add(std::uint64_t{times});
     }
     hash.add(static_cast<std::uint64_t>(faults));
     return hash.value();
@@ -165,7 +185,7 @@ std::uint64_t hash_work(const WorkCounters& work, FrameFault faults) noexcept
 OutputHashes hash_output(const FrameOutput& output) noexcept
 {
     return {hash_tools(output.tools), hash_pairs(output.pairs), hash_models(output.models),
-            hash_work(output.work, output.faults)};
+            hash_work(output.work, output.scene, output.faults)};
 }
 
 } // namespace tactus

@@ -16,7 +16,7 @@ struct OutputHashes
     std::uint64_t tools{0};
     std::uint64_t pairs{0};
     std::uint64_t models{0}; ///< Pools, refined records and state hash of each model.
-    std::uint64_t work{0};   ///< Work counters and faults.
+    std::uint64_t work{0};   ///< Work counters, scene and faults.
 
     bool operator==(const OutputHashes&) const noexcept = default;
 };

@@ -33,7 +33,7 @@ public:
     [[nodiscard]] const RecordedSetup& setup() const noexcept { return setup_; }
     [[nodiscard]] FrameShape shape() const noexcept
     {
-        return {setup_.tools.size(), setup_.objects.size(), setup_.models.size()};
+        return {setup_.tools.size(), setup_.models.size()};
     }
     /// The coded piece; empty when the recording has none under this key.
     [[nodiscard]] std::span<const std::byte> piece(std::uint32_t model,

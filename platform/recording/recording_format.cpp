@@ -53,6 +53,9 @@ RecordedSetup to_recorded(const FrameSetup& setup)
     recorded.prediction = setup.prediction;
     recorded.tools.assign(setup.tools.begin(), setup.tools.end());
     recorded.objects.assign(setup.objects.begin(), setup.objects.end());
+    recorded.poses.assign(setup.poses.begin(), setup.poses.end());
+    recorded.poses.resize(setup.objects.size());
+    recorded.capacities = capacities_of(setup);
     for (const ModelSource& model : setup.models)
     {
         recorded.models.push_back({model.capacities,

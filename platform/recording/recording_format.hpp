@@ -19,7 +19,7 @@ namespace tactus
 
 /// docs/recording.md describes the file.
 inline constexpr std::array<char, 8> kRecordingMagic{'T', 'A', 'C', 'T', 'R', 'E', 'C', '\n'};
-inline constexpr std::uint32_t kRecordingVersion = 5;
+inline constexpr std::uint32_t kRecordingVersion = 7;
 inline constexpr std::size_t kRecordingPrologueBytes = 12;
 
 enum class SectionKind : std::uint32_t
@@ -54,6 +54,8 @@ struct RecordedSetup
     std::vector<ToolSpec> tools;
     HullVertices hull_vertices; ///< Of tools that were read from a recording.
     std::vector<ObjectSpec> objects;
+    std::vector<ObjectPose> poses; ///< One an object.
+    SceneCapacities capacities;
     std::vector<RecordedModel> models;
     /// For the reader of a difference: how the program that recorded was built, and the kernels it
     /// ran. At most kMaxRecordedNameBytes each.

@@ -72,7 +72,8 @@ private:
         {
             at_ = kRecordingMagic.size();
             return "format version " + std::to_string(version) +
-                   " is unknown; this program reads " + std::to_string(kRecordingVersion);
+                   (version < kRecordingVersion ? " is of an older Tactus" : " is unknown") +
+                   "; this program reads " + std::to_string(kRecordingVersion);
         }
         at_ = kRecordingPrologueBytes;
         return std::nullopt;
@@ -222,24 +223,25 @@ private:
     /// What arrives must have been recorded before.
     Fault check_pieces(const RecordedFrame& frame) const
     {
-        for (std::uint32_t model = 0; model < frame.doors.size(); ++model)
+        std::uint64_t pages = 0;
+        std::uint64_t index_pages = 0;
+        for (const RecordedModel& model : recording_.setup_.models)
         {
-            const ModelCapacities& capacities = recording_.setup_.models[model].capacities;
-            for (const DoorEvent& event : frame.doors[model].events)
+            pages += model.capacities.pages;
+            index_pages += model.capacities.index_pages;
+        }
+        for (const DoorEvent& event : frame.events)
+        {
+            const std::uint64_t slots = event.key.kind == ContentKind::chunk ? pages : index_pages;
+            if (event.slot >= slots)
             {
-                const std::uint32_t slots = event.key.kind == ContentKind::chunk
-                                                ? capacities.pages
-                                                : capacities.index_pages;
-                if (event.slot >= slots)
-                {
-                    return "names slot " + std::to_string(event.slot) + " of " +
-                           std::to_string(slots);
-                }
-                if (recording_.piece(model, event.key).empty())
-                {
-                    return "takes piece " + std::to_string(event.key.number) +
-                           " from the door, which is not in the recording before it";
-                }
+                return "names slot " + std::to_string(event.slot) + " of " + std::to_string(slots);
+            }
+            if (recording_.piece(event.owner, event.key).empty())
+            {
+                return "takes piece " + std::to_string(event.key.number) + " of model " +
+                       std::to_string(event.owner) +
+                       " from the door, which is not in the recording before it";
             }
         }
         return std::nullopt;

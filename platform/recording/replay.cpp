@@ -36,10 +36,7 @@ public:
             return Refusal{std::string("no frame can be made of the recording's setup: ") +
                            refusal_text(started.error())};
         }
-        for (std::uint32_t i = 0; i < replayed->frame_->model_count(); ++i)
-        {
-            replayed->doors_.emplace_back(recording, i, replayed->frame_->model({i}));
-        }
+        replayed->door_.emplace(recording, *replayed->frame_);
         return replayed;
     }
 
@@ -47,19 +44,15 @@ public:
     [[nodiscard]] std::optional<std::string> step(const RecordedFrame& recorded,
                                                   std::uint64_t number, const ReplayWatch& watch)
     {
-        for (std::size_t i = 0; i < doors_.size(); ++i)
+        if (auto fault = door_->open(recorded))
         {
-            if (const auto fault = doors_[i].open(recorded.doors[i]))
-            {
-                return "model " + std::to_string(i) + ": " + *fault;
-            }
+            return fault;
         }
         if (watch.begins)
         {
             watch.begins(number);
         }
-        const FrameOutput output =
-            frame_->run(recorded.tools, recorded.poses, recorded.budgets, {});
+        const FrameOutput output = frame_->run(recorded.input());
         if (watch.ends)
         {
             watch.ends(number, recorded, output);
@@ -77,6 +70,8 @@ private:
         }
         setup_.models = sources_;
         setup_.objects = setup.objects;
+        setup_.poses = setup.poses;
+        setup_.capacities = setup.capacities;
         setup_.tools = setup.tools;
         setup_.period_ns = setup.period_ns;
         setup_.pose_age_max_ns = setup.pose_age_max_ns;
@@ -90,18 +85,16 @@ private:
     [[nodiscard]] static std::optional<std::string> compare(const FrameOutput& output,
                                                             const RecordedFrame& recorded)
     {
-        for (std::size_t i = 0; i < recorded.doors.size(); ++i)
+        if (output.door.events.size() != recorded.events.size())
         {
-            const std::string model = "model " + std::to_string(i);
-            if (output.door[i].events.size() != recorded.doors[i].events.size())
-            {
-                return model + ": " + std::to_string(output.door[i].events.size()) + " of " +
-                       std::to_string(recorded.doors[i].events.size()) +
-                       " events were taken from the door";
-            }
+            return std::to_string(output.door.events.size()) + " of " +
+                   std::to_string(recorded.events.size()) + " events were taken from the door";
+        }
+        for (std::size_t i = 0; i < recorded.state_hashes.size(); ++i)
+        {
             if (output.models[i].state_hash != recorded.state_hashes[i])
             {
-                return model + ": other faces are active (state hash)";
+                return "model " + std::to_string(i) + ": other faces are active (state hash)";
             }
         }
         const OutputHashes hashes = hash_output(output);
@@ -121,7 +114,7 @@ private:
     std::vector<CacheLine> memory_;
     std::optional<Arena> arena_;
     std::optional<Frame> frame_;
-    std::vector<ReplayDoor> doors_;
+    std::optional<ReplayDoor> door_;
 };
 
 } // namespace

@@ -10,30 +10,34 @@
 namespace tactus
 {
 
-ReplayDoor::ReplayDoor(const Recording& recording, std::uint32_t index, Model& model)
+ReplayDoor::ReplayDoor(const Recording& recording, Frame& frame)
     : recording_(recording)
-    , index_(index)
-    , model_(model)
-    , pages_(model.slots.pages.size())
-    , index_pages_(model.slots.index_pages.size())
+    , frame_(frame)
+    , pages_(frame.pools().slots.pages.size())
+    , index_pages_(frame.pools().slots.index_pages.size())
 {
 }
 
-std::optional<std::string> ReplayDoor::open(const RecordedFrame::Door& door)
+std::optional<std::string> ReplayDoor::open(const RecordedFrame& recorded)
 {
-    for (const DoorEvent& event : door.events)
+    for (const DoorEvent& event : recorded.events)
     {
-        Fault fault = event.kind == DoorEventKind::arrival ? arrive(event) : update(event);
-        if (!fault && !model_.inbox.arrived.try_push(event))
+        if (Fault fault = replay(event))
         {
-            fault = "more waits at the door than it has room for";
-        }
-        if (fault)
-        {
-            return fault;
+            return "model " + std::to_string(event.owner) + ": " + *fault;
         }
     }
-    return grant_wishes(door.wish_room);
+    return grant_wishes(recorded.wish_room);
+}
+
+ReplayDoor::Fault ReplayDoor::replay(const DoorEvent& event)
+{
+    Fault fault = event.kind == DoorEventKind::arrival ? arrive(event) : update(event);
+    if (!fault && !frame_.pools().cache.door.arrived.try_push(event))
+    {
+        fault = "more waits at the door than it has room for";
+    }
+    return fault;
 }
 
 ReplayDoor::Fault ReplayDoor::arrive(const DoorEvent& event)
@@ -46,7 +50,8 @@ ReplayDoor::Fault ReplayDoor::arrive(const DoorEvent& event)
     {
         return fault;
     }
-    if (event.key.kind == ContentKind::chunk && model_.linker.linked(event.slot) != event.linked)
+    if (event.key.kind == ContentKind::chunk &&
+        frame_.model({event.owner}).linker.linked(event.slot) != event.linked)
     {
         return "other records of chunk " + std::to_string(event.key.number) + " are linked";
     }
@@ -55,8 +60,9 @@ ReplayDoor::Fault ReplayDoor::arrive(const DoorEvent& event)
 
 ReplayDoor::Fault ReplayDoor::update(const DoorEvent& event)
 {
-    if (pages_[event.slot] != ChunkId{event.key.number} ||
-        model_.linker.linked(event.slot) != event.linked)
+    const Filled<ChunkId>& filled = pages_[event.slot];
+    if (filled.id != ChunkId{event.key.number} || filled.model != event.owner ||
+        frame_.model({event.owner}).linker.linked(event.slot) != event.linked)
     {
         return "other records of chunk " + std::to_string(event.key.number) + " are linked later";
     }
@@ -68,19 +74,20 @@ ReplayDoor::Fault ReplayDoor::take_back_freed(std::uint32_t freed_taken)
 {
     for (; freed_taken_ != freed_taken; ++freed_taken_)
     {
-        ChunkInbox::Freed freed;
-        if (!model_.inbox.freed.try_pop(freed))
+        FreedSlot freed;
+        if (!frame_.pools().cache.door.freed.try_pop(freed))
         {
             return "fewer slots were given back";
         }
         if (freed.kind == ContentKind::chunk)
         {
-            model_.linker.release_page(freed.slot);
+            frame_.model({pages_[freed.slot].model}).linker.release_page(freed.slot);
             pages_[freed.slot] = {};
         }
         else
         {
-            loaded_index_.erase(index_pages_[freed.slot].value);
+            const Filled<IndexPageId>& filled = index_pages_[freed.slot];
+            loaded_index_.erase({filled.model, filled.id.value});
             index_pages_[freed.slot] = {};
         }
     }
@@ -89,50 +96,53 @@ ReplayDoor::Fault ReplayDoor::take_back_freed(std::uint32_t freed_taken)
 
 ReplayDoor::Fault ReplayDoor::fill(const DoorEvent& event)
 {
+    const std::uint32_t index = event.owner;
+    Model& model = frame_.model({index});
     const std::uint32_t number = event.key.number;
     const std::uint32_t slot = event.slot;
-    const std::span<const std::byte> bytes = recording_.piece(index_, event.key);
+    const std::span<const std::byte> bytes = recording_.piece(index, event.key);
     if (event.key.kind == ContentKind::chunk)
     {
-        if (!pages_[slot].is_none() || model_.linker.is_resident({number}))
+        if (!pages_[slot].id.is_none() || model.linker.is_resident({number}))
         {
             return "slot " + std::to_string(slot) + " is in use, or chunk " +
                    std::to_string(number) + " is here already";
         }
-        if (const auto done = parse_chunk(bytes, model_.header, {number}, model_.slots.pages[slot]);
+        if (const auto done = parse_chunk(bytes, model.header, {number}, model.slots.pages[slot]);
             !done)
         {
             return "chunk " + std::to_string(number) + ": " + refusal_text(done.error());
         }
-        model_.linker.link_page({number}, slot);
-        pages_[slot] = {number};
+        model.linker.link_page({number}, slot);
+        pages_[slot] = {ChunkId{number}, index};
         return std::nullopt;
     }
-    if (!index_pages_[slot].is_none() || !loaded_index_.insert(number).second)
+    if (!index_pages_[slot].id.is_none() || !loaded_index_.insert({index, number}).second)
     {
         return "index slot " + std::to_string(slot) + " is in use, or index page " +
                std::to_string(number) + " is here already";
     }
     std::array<ChunkEntry, kChunksPerIndexPage> entries{};
-    if (const auto done = parse_index_page(bytes, model_.header.counts(), {number},
-                                           model_.slots.index_pages[slot], entries);
+    if (const auto done = parse_index_page(bytes, model.header.counts(), {number},
+                                           model.slots.index_pages[slot], entries);
         !done)
     {
         return "index page " + std::to_string(number) + ": " + refusal_text(done.error());
     }
-    index_pages_[slot] = {number};
+    index_pages_[slot] = {IndexPageId{number}, index};
     return std::nullopt;
 }
 
 /// Takes wishes away until there is as much room for more as there was.
 ReplayDoor::Fault ReplayDoor::grant_wishes(std::uint32_t wish_room)
 {
-    ChunkInbox::Wish wish;
-    const std::size_t capacity = model_.inbox.wanted.capacity();
-    while (capacity - model_.inbox.wanted.size() < wish_room && model_.inbox.wanted.try_pop(wish))
+    SpscQueue<PieceWish>& wanted = frame_.pools().cache.door.wanted;
+    PieceWish wish;
+    const std::size_t capacity = wanted.capacity();
+    while (capacity - wanted.size() < wish_room && wanted.try_pop(wish))
     {
     }
-    return capacity - model_.inbox.wanted.size() == wish_room
+    return capacity - wanted.size() == wish_room
                ? std::nullopt
                : Fault("another number of wishes waits at the door");
 }

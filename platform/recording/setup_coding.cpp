@@ -4,11 +4,12 @@
 
 #include "platform/base/printable.hpp"
 #include "platform/recording/byte_append.hpp"
+#include "platform/recording/change_coding.hpp"
 #include "platform/recording/core_coding.hpp"
 #include "rt_core/frame/frame.hpp"
 
 #include <algorithm>
-#include <limits>
+#include <array>
 
 namespace tactus
 {
@@ -104,40 +105,36 @@ Fault parse_tools(ByteReader& reader, std::uint32_t tools, std::uint32_t models,
     return std::nullopt;
 }
 
-bool is_sound(const Material& material)
-{
-    constexpr double kStiffest = std::numeric_limits<double>::infinity();
-    return material.stiffness_n_per_m > 0.0 && material.stiffness_n_per_m <= kStiffest &&
-           is_within(material.static_friction, 0.0, 1e3) &&
-           is_within(material.dynamic_friction, 0.0, material.static_friction) &&
-           is_within(material.damping_n_s_per_m, 0.0, 1e9);
-}
-
 Fault parse_objects(ByteReader& reader, std::uint32_t objects, std::uint32_t models,
                     RecordedSetup& setup)
 {
     for (std::uint32_t i = 0; i < objects; ++i)
     {
-        ObjectSpec object;
-        object.model = ModelId{reader.read<std::uint32_t>()};
-        Material& material = object.material;
-        for (double* const value : {&material.stiffness_n_per_m, &material.static_friction,
-                                    &material.dynamic_friction, &material.damping_n_s_per_m})
+        SceneChange change;
+        const bool is_known = try_read(reader, change);
+        if (!is_known || change.kind != SceneChangeKind::object_comes || change.number != i)
         {
-            *value = reader.read<double>();
+            return "object " + std::to_string(i) + " doesn't come where it should";
         }
-        if (object.model.value >= models)
+        if (change.object.model.value >= models)
         {
             return "object " + std::to_string(i) + " names model " +
-                   std::to_string(object.model.value) + " of " + std::to_string(models);
+                   std::to_string(change.object.model.value) + " of " + std::to_string(models);
         }
-        if (!is_sound(material))
+        if (!is_sound(change.object.material))
         {
             return "object " + std::to_string(i) +
                    " is not of more than 0 N/m, static friction 0 to 1000, dynamic friction 0 to "
                    "the static one, damping 0 to 1e9 N s/m";
         }
-        setup.objects.push_back(object);
+        if (!is_sound(change.pose))
+        {
+            return "object " + std::to_string(i) +
+                   " stands at a pose that is no rotation, beyond 10000 m or of a scale not within "
+                   "0.001 to 1000";
+        }
+        setup.objects.push_back(change.object);
+        setup.poses.push_back(change.pose);
     }
     return std::nullopt;
 }
@@ -164,14 +161,17 @@ Fault check(const ModelCapacities& capacities, std::uint32_t base_faces)
 
 std::vector<std::byte> code_setup(const RecordedSetup& setup)
 {
+    TACTUS_ASSERT(setup.poses.size() == setup.objects.size());
     std::vector<std::byte> bytes;
     append(bytes, setup.period_ns);
     append(bytes, setup.pose_age_max_ns);
     append(bytes, static_cast<std::uint8_t>(setup.static_when_it_fits));
     append(bytes, static_cast<std::uint8_t>(setup.prediction));
     append(bytes, static_cast<std::uint8_t>(setup.tools.size()));
-    append(bytes, static_cast<std::uint8_t>(setup.objects.size()));
-    append(bytes, static_cast<std::uint8_t>(setup.models.size()));
+    append(bytes, static_cast<std::uint16_t>(setup.objects.size()));
+    append(bytes, static_cast<std::uint16_t>(setup.models.size()));
+    append(bytes, static_cast<std::uint16_t>(setup.capacities.objects));
+    append(bytes, static_cast<std::uint8_t>(setup.capacities.pairs));
     for (const ToolSpec& tool : setup.tools)
     {
         append(bytes, tool.radius_m);
@@ -183,13 +183,13 @@ std::vector<std::byte> code_setup(const RecordedSetup& setup)
         append(bytes, static_cast<std::uint8_t>(tool.passes_through));
         append_core(bytes, tool.core);
     }
-    for (const ObjectSpec& object : setup.objects)
+    for (std::size_t i = 0; i < setup.objects.size(); ++i)
     {
-        append(bytes, object.model.value);
-        append(bytes, object.material.stiffness_n_per_m);
-        append(bytes, object.material.static_friction);
-        append(bytes, object.material.dynamic_friction);
-        append(bytes, object.material.damping_n_s_per_m);
+        std::array<std::byte, kSceneChangeBytes> coded;
+        FixedWriter writer(coded);
+        write_change(writer, {SceneChangeKind::object_comes, static_cast<std::uint32_t>(i), 0,
+                              setup.objects[i], setup.poses[i]});
+        append_bytes(bytes, std::span(coded).first(writer.size()));
     }
     append_name(bytes, setup.compiler);
     append_name(bytes, setup.architecture);
@@ -224,14 +224,23 @@ std::optional<std::string> parse_setup(std::span<const std::byte> payload, Recor
     const auto prediction = reader.read<std::uint8_t>();
     setup.prediction = static_cast<Prediction>(prediction);
     const auto tools = reader.read<std::uint8_t>();
-    const auto objects = reader.read<std::uint8_t>();
-    models = reader.read<std::uint8_t>();
-    if (tools < 1 || tools > kMaxTools || objects < 1 || objects > kMaxObjects || models < 1 ||
-        models > kMaxModels)
+    const auto objects = reader.read<std::uint16_t>();
+    models = reader.read<std::uint16_t>();
+    SceneCapacities& capacities = setup.capacities;
+    capacities.objects = reader.read<std::uint16_t>();
+    capacities.pairs = reader.read<std::uint8_t>();
+    if (tools < 1 || tools > kMaxTools || models < 1 || models > kMaxModels)
     {
-        return "the setup has " + std::to_string(tools) + " tools, " + std::to_string(objects) +
-               " objects and " + std::to_string(models) + " models; " + up_to(kMaxTools) + ", " +
-               up_to(kMaxObjects) + " and " + up_to(kMaxModels) + " are allowed";
+        return "the setup has " + std::to_string(tools) + " tools and " + std::to_string(models) +
+               " models; " + up_to(kMaxTools) + " and " + up_to(kMaxModels) + " are allowed";
+    }
+    if (capacities.objects < 1 || capacities.objects > kMaxObjects ||
+        objects > capacities.objects || capacities.pairs < 1 || capacities.pairs > kMaxPairs)
+    {
+        return "the setup has " + std::to_string(objects) + " objects and room for " +
+               std::to_string(capacities.objects) + ", and for " +
+               std::to_string(capacities.pairs) + " pairs; as many as there is room for, " +
+               up_to(kMaxObjects) + " and " + up_to(kMaxPairs) + " are allowed";
     }
     if (is_static > 1)
     {
@@ -300,7 +309,7 @@ std::optional<std::string> parse_model(std::span<const std::byte> payload, Recor
     {
         return fault;
     }
-    const std::size_t needed = required_bytes(parsed.value(), capacities);
+    const std::size_t needed = required_bytes({&parsed.value(), 1}, {&capacities, 1});
     if (needed > bytes_left)
     {
         return "the pools of all models need more than " +

@@ -15,6 +15,7 @@ namespace
 {
 
 constexpr double kForceMax_n = 1'000.0;
+constexpr double kTorqueMax_nm = 100.0;
 constexpr double kDelayMax_s = 0.1;
 constexpr double kPlaceMax_m = 1e4;
 constexpr double kSpeedMax_m_per_s = 1e3;
@@ -46,6 +47,14 @@ const char* find_fault(const DeviceInfo& info) noexcept
     if (info.limits.force_max_n > kForceMax_n)
     {
         return "device: force_max_n must be at most 1000";
+    }
+    if (info.limits.turn.torque_max_nm > kTorqueMax_nm)
+    {
+        return "device: torque_max_nm must be at most 100";
+    }
+    if (!(info.gripper_force_max_n >= 0.0 && info.gripper_force_max_n <= kForceMax_n))
+    {
+        return "device: gripper_force_max_n must be in range 0..1000";
     }
     if (info.limits.delay_s > kDelayMax_s)
     {

@@ -4,6 +4,8 @@
 
 #include "rt_core/base/assert.hpp"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 
 namespace tactus
@@ -11,11 +13,16 @@ namespace tactus
 
 PoseDoor::PoseDoor(std::span<const ObjectPose> placed, Duration age_limit)
     : age_limit_(age_limit)
-    , poses_(placed.begin(), placed.end())
+    , places_(placed.begin(), placed.end())
     , letters_(placed.size())
+    , glides_(placed.size())
     , uses_(placed.size())
+    , numbers_(placed.size())
+    // NOLINTBEGIN(*-avoid-c-arrays)
+    , mailboxes_(std::make_unique<Mailbox<Letter>[]>(placed.size()))
+    , heard_ns_(std::make_unique<std::atomic<std::int64_t>[]>(placed.size()))
+// NOLINTEND(*-avoid-c-arrays)
 {
-    TACTUS_ASSERT(placed.size() <= kMaxObjects);
 }
 
 void PoseDoor::put(std::size_t object, const ObjectPose& pose, MonotonicTime arrival) noexcept
@@ -34,59 +41,129 @@ void PoseDoor::put(std::size_t object, const ObjectPose& pose, MonotonicTime arr
     letter.arrival_ns = arrival.ns;
     letter.number = ++numbers_[object];
     mailboxes_[object].write(letter);
+    hear(object, arrival);
 }
 
-void PoseDoor::refresh(MonotonicTime now) noexcept
+void PoseDoor::hear(std::size_t object, MonotonicTime now) noexcept
 {
-    for (std::size_t i = 0; i < poses_.size(); ++i)
+    TACTUS_ASSERT(object < letters_.size());
+    heard_ns_[object].store(now.ns, std::memory_order_relaxed);
+}
+
+std::span<const SceneChange> PoseDoor::refresh(MonotonicTime now) noexcept
+{
+    const std::size_t objects = letters_.size();
+    std::size_t changes = 0;
+    std::size_t next = first_;
+    if (last_refresh_ == MonotonicTime{})
     {
-        const std::uint64_t known = letters_[i].number;
-        if (mailboxes_[i].try_read(letters_[i]) && letters_[i].number != known)
-        {
-            move_to(i, pose_of(letters_[i]));
-        }
-        if (uses_[i].is_followed)
-        {
-            age(i, now);
-        }
+        last_refresh_ = now;
     }
+    for (std::size_t i = 0; i < objects; ++i)
+    {
+        const std::size_t object = (first_ + i) % objects;
+        Letter letter;
+        if (mailboxes_[object].try_read(letter) && letter.number != letters_[object].number)
+        {
+            begin_glide(object, letter, now);
+            letters_[object] = letter;
+        }
+        PoseUse& use = uses_[object];
+        if (!use.is_followed)
+        {
+            continue;
+        }
+        const Duration age = age_of(object, now);
+        use.age_max = std::max(use.age_max, age);
+        use.old_frames += age > age_limit_ ? 1U : 0U;
+        // Before the limit, so that the frame meets it at the right time.
+        const bool is_silent = age > Duration{age_limit_.ns / 2};
+        Glide& glide = glides_[object];
+        const bool has_news = glide.is_under_way || glide.is_told_old != is_silent;
+        if (!has_news || changes == changes_.size())
+        {
+            continue;
+        }
+        move_to(object, place_at(glide, now));
+        glide.is_under_way = glide.is_under_way && now - glide.start < glide.time;
+        glide.is_told_old = is_silent;
+        SceneChange& change = changes_[changes++];
+        change.kind = SceneChangeKind::object_moves;
+        change.number = static_cast<std::uint32_t>(object);
+        change.pose = ObjectPose{places_[object]};
+        change.pose.stamp_ns = letters_[object].stamp_ns;
+        change.pose.revision = letters_[object].revision;
+        change.pose.arrival_ns = is_silent ? now.ns - age.ns : 0;
+        next = (object + 1) % objects;
+    }
+    first_ = next;
+    last_refresh_ = now;
+    return {changes_.data(), changes};
 }
 
-ObjectPose PoseDoor::pose_of(const Letter& letter) noexcept
+void PoseDoor::begin_glide(std::size_t object, const Letter& letter, MonotonicTime now) noexcept
 {
-    ObjectPose pose;
+    const Letter& before = letters_[object];
+    Glide& glide = glides_[object];
+    glide.from = places_[object];
     for (int i = 0; i < 9; ++i)
     {
-        pose.rotation(i / 3, i % 3) = letter.rotation[static_cast<std::size_t>(i)];
+        glide.to.rotation(i / 3, i % 3) = letter.rotation[static_cast<std::size_t>(i)];
     }
     const auto& at_m = letter.translation_m;
-    pose.translation_m = Vec3(at_m[0], at_m[1], at_m[2]);
-    pose.scale = letter.scale;
-    pose.stamp_ns = letter.stamp_ns;
-    pose.revision = letter.revision;
-    return pose;
+    glide.to.translation_m = Vec3(at_m[0], at_m[1], at_m[2]);
+    glide.to.scale = letter.scale;
+    // The frame has not been told yet of one that was to be there at once: this one is.
+    const bool is_overdue = glide.is_under_way && glide.time == Duration{0};
+    glide.start = std::min(last_refresh_, now); // It was told to be there then.
+    glide.is_under_way = true;
+    const bool has_stamps = letter.stamp_ns != 0 && before.stamp_ns != 0;
+    const std::int64_t between_ns =
+        has_stamps ? letter.stamp_ns - before.stamp_ns : letter.arrival_ns - before.arrival_ns;
+    const bool rested = between_ns <= 0 || between_ns > kGlideMax.ns;
+    const double way_m = (glide.to.translation_m - glide.from.translation_m).norm();
+    const bool is_at_once = !uses_[object].is_followed || is_overdue || (rested && way_m > kJump_m);
+    glide.time = is_at_once ? Duration{0} : rested ? kGlideMax : Duration{between_ns};
+    uses_[object].is_followed = true;
 }
 
-void PoseDoor::move_to(std::size_t object, const ObjectPose& pose) noexcept
+Similarity PoseDoor::place_at(const Glide& glide, MonotonicTime now) const noexcept
 {
-    const ObjectPose& before = poses_[object];
+    const Duration gone = now - glide.start;
+    if (gone >= glide.time)
+    {
+        return glide.to;
+    }
+    const double share = static_cast<double>(gone.ns) / static_cast<double>(glide.time.ns);
+    Similarity place;
+    place.translation_m =
+        glide.from.translation_m + share * (glide.to.translation_m - glide.from.translation_m);
+    place.scale = glide.from.scale + share * (glide.to.scale - glide.from.scale);
+    // The short way round; its speed is even to a twentieth up to 45 degrees.
+    const Eigen::Quaterniond from(glide.from.rotation);
+    const Eigen::Quaterniond to(glide.to.rotation);
+    const double side = from.dot(to) < 0.0 ? -1.0 : 1.0;
+    const Eigen::Quaterniond between((1.0 - share) * from.coeffs() + share * side * to.coeffs());
+    place.rotation = between.normalized().toRotationMatrix();
+    return place;
+}
+
+Duration PoseDoor::age_of(std::size_t object, MonotonicTime now) const noexcept
+{
+    // What came since the frame began is not from the future.
+    const std::int64_t heard_ns = heard_ns_[object].load(std::memory_order_relaxed);
+    return {std::max<std::int64_t>(now.ns - heard_ns, 0)};
+}
+
+void PoseDoor::move_to(std::size_t object, const Similarity& place) noexcept
+{
+    const Similarity& before = places_[object];
     PoseUse& use = uses_[object];
-    const bool has_moved = pose.translation_m != before.translation_m ||
-                           pose.rotation != before.rotation || pose.scale != before.scale;
+    const bool has_moved = place.translation_m != before.translation_m ||
+                           place.rotation != before.rotation || place.scale != before.scale;
     use.moves += has_moved ? 1U : 0U;
-    use.step_max_m = std::max(use.step_max_m, (pose.translation_m - before.translation_m).norm());
-    use.is_followed = true;
-    poses_[object] = pose;
-}
-
-void PoseDoor::age(std::size_t object, MonotonicTime now) noexcept
-{
-    // A pose that came since the frame began is not from the future.
-    const Duration age{std::max<std::int64_t>(now.ns - letters_[object].arrival_ns, 0)};
-    poses_[object].age_ns = age.ns;
-    PoseUse& use = uses_[object];
-    use.age_max = std::max(use.age_max, age);
-    use.old_frames += age > age_limit_ ? 1U : 0U;
+    use.step_max_m = std::max(use.step_max_m, (place.translation_m - before.translation_m).norm());
+    places_[object] = place;
 }
 
 } // namespace tactus

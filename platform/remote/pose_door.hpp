@@ -5,11 +5,13 @@
 #include "platform/time.hpp"
 #include "rt_core/base/mailbox.hpp"
 #include "rt_core/limits.hpp"
-#include "rt_core/records/frame_input.hpp"
+#include "rt_core/records/scene_change.hpp"
 
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -21,33 +23,44 @@ struct PoseUse
 {
     bool is_followed{false};     ///< A pose has come: from then on its age counts.
     std::uint64_t moves{0};      ///< Frames that began with another pose than the one before.
-    Duration age_max{};          ///< Oldest pose that a frame used.
+    Duration age_max{};          ///< Longest silence of its host that a frame met.
     double step_max_m{0.0};      ///< Farthest that the object's origin went between two frames.
-    std::uint64_t old_frames{0}; ///< Frames with a pose older than the limit.
+    std::uint64_t old_frames{0}; ///< Frames in which that was longer than the limit.
 };
 
 /// Carries the newest pose of each object from the transport thread to the haptic thread. Neither
-/// waits for the other, and what nobody looked at in time is overwritten.
+/// waits for the other, and what nobody looked at in time is overwritten. The haptic thread gets
+/// them as changes of the scene.
 ///
-/// A pose's age is the time since it arrived, on this machine's clock: no clock of the host's is
-/// asked. So an object whose poses stop coming grows old. Until its first pose an object stands
-/// where it was placed, and never grows old. Between two poses it stands still: nothing is guessed.
+/// An object glides: from where it is to its newest pose, over the time that lies between that pose
+/// and the one before on the host's clock, at most kGlideMax. So what touches it feels many small
+/// steps and not a few large ones. Nothing is extrapolated: it never goes where its host didn't put
+/// it. After a rest a pose that is farther than kJump_m is taken at once: that is no motion.
+///
+/// An object's age is the time since its host was last heard, on this machine's clock. One that
+/// rests needs no poses, and costs no changes while its host is heard. Until its first pose an
+/// object stands where it was placed, and never grows old.
 class PoseDoor
 {
 public:
-    /// At most kMaxObjects objects, where they stand at the start. `age_limit`: older ones are
-    /// counted; the frame has the same limit.
+    static constexpr Duration kGlideMax = milliseconds(50);
+    static constexpr double kJump_m = 0.02;
+
+    /// Objects by their numbers, of generation 0, where they stand at the start: 0.7 KiB each.
+    /// `age_limit`: older ones are counted; the frame has the same limit.
     PoseDoor(std::span<const ObjectPose> placed, Duration age_limit);
 
-    /// The transport thread. `arrival`: on the clock that refresh() is told.
+    /// The transport thread; the object's host was heard, too. `arrival`: on the clock that
+    /// refresh() is told.
     void put(std::size_t object, const ObjectPose& pose, MonotonicTime arrival) noexcept;
+    /// The transport thread: the object's host was heard.
+    void hear(std::size_t object, MonotonicTime now) noexcept;
 
-    /// The haptic thread, at the start of a frame: the newest poses, aged. Allocates nothing;
-    /// 0.02 us an object.
-    void refresh(MonotonicTime now) noexcept;
-
-    /// The haptic thread: as refresh() left them.
-    [[nodiscard]] std::span<const ObjectPose> poses() const noexcept { return poses_; }
+    /// The haptic thread, at the start of a frame: what moves, and objects whose host fell silent
+    /// or was heard again; at most kMaxSceneChanges. More wait for the next frame, which begins
+    /// with them. Valid until the next call. Allocates nothing; 0.02 us an object, 0.1 us one that
+    /// glides.
+    [[nodiscard]] std::span<const SceneChange> refresh(MonotonicTime now) noexcept;
 
     /// One an object. The haptic thread, or others once it has ended.
     [[nodiscard]] std::span<const PoseUse> uses() const noexcept { return uses_; }
@@ -65,16 +78,35 @@ private:
         std::uint64_t number{0}; ///< From 1, of this object.
     };
 
-    [[nodiscard]] static ObjectPose pose_of(const Letter& letter) noexcept;
-    void move_to(std::size_t object, const ObjectPose& pose) noexcept;
-    void age(std::size_t object, MonotonicTime now) noexcept;
+    /// One object on its way.
+    struct Glide
+    {
+        Similarity from;
+        Similarity to;
+        MonotonicTime start;
+        Duration time{}; ///< 0: it is at once where it goes.
+        bool is_under_way{false};
+        bool is_told_old{false}; ///< The frame knows when its host was last heard.
+    };
+
+    void begin_glide(std::size_t object, const Letter& letter, MonotonicTime now) noexcept;
+    [[nodiscard]] Similarity place_at(const Glide& glide, MonotonicTime now) const noexcept;
+    [[nodiscard]] Duration age_of(std::size_t object, MonotonicTime now) const noexcept;
+    void move_to(std::size_t object, const Similarity& place) noexcept;
 
     Duration age_limit_;
-    std::vector<ObjectPose> poses_;
-    std::vector<Letter> letters_; ///< The last that was read, one an object.
+    std::vector<Similarity> places_; ///< As the frame has them.
+    std::vector<Letter> letters_;    ///< The last that was read, one an object.
+    std::vector<Glide> glides_;
     std::vector<PoseUse> uses_;
-    std::array<std::uint64_t, kMaxObjects> numbers_{}; ///< Last put; the transport thread's.
-    std::array<Mailbox<Letter>, kMaxObjects> mailboxes_;
+    MonotonicTime last_refresh_{};
+    std::size_t first_{0}; ///< Whose turn it is first in the next frame.
+    std::array<SceneChange, kMaxSceneChanges> changes_{};
+    std::vector<std::uint64_t> numbers_; ///< Last put; the transport thread's.
+    // NOLINTBEGIN(*-avoid-c-arrays): they don't move.
+    std::unique_ptr<Mailbox<Letter>[]> mailboxes_;
+    std::unique_ptr<std::atomic<std::int64_t>[]> heard_ns_; ///< Without order to anything else.
+    // NOLINTEND(*-avoid-c-arrays)
 };
 
 } // namespace tactus

@@ -15,6 +15,13 @@ bool is_in_range(Duration time) noexcept
     return time >= RemoteTimes::kMin && time <= RemoteTimes::kMax;
 }
 
+/// Of what is there.
+template <typename T, typename Function>
+auto mapped(const std::optional<T>& value, const Function& function) noexcept
+{
+    return value ? std::optional(function(*value)) : std::nullopt;
+}
+
 } // namespace
 
 RtThreadOptions io_thread_options()
@@ -49,29 +56,21 @@ DeviceSample RemoteDevice::read() noexcept
     // what we have ages and is then told to be so.
     static_cast<void>(readings_.try_read(reading_));
     connected_ = reading_.attached && clock_.now() - reading_.arrival <= times_.silence;
-    DeviceSample sample;
-    sample.position_world_m = reading_.position_world_m;
-    if (reading_.has_velocity)
-    {
-        sample.velocity_world_m_per_s = reading_.velocity_world_m_per_s;
-    }
-    sample.time = reading_.time;
+    DeviceSample sample = reading_.sample;
     sample.frame = status_.frames++;
     sample.connected = connected_;
-    sample.valid = connected_ && reading_.valid;
-    sample.deadman_held = reading_.deadman_held;
+    sample.valid = connected_ && sample.valid;
     return sample;
 }
 
-void RemoteDevice::write(const std::array<double, 3>& force_world_n) noexcept
+void RemoteDevice::write(const Wrench& wrench) noexcept
 {
     if (braked_.load())
     {
         return;
     }
-    const Vec3 force_n = take_force(force_world_n, info_.limits.force_max_n, status_);
-    written_ = {to_array(force_n), clock_.now(), reading_.attachment, releases_.load(),
-                DeviceState::force};
+    written_ = {take_wrench(wrench, info_, status_), clock_.now(), reading_.attachment,
+                releases_.load(), DeviceState::force};
     commands_.write(written_);
 }
 
@@ -117,15 +116,23 @@ void RemoteDevice::publish(const DeviceReading& reading, bool is_new) noexcept
     published_.attachment += is_new ? 1 : 0;
     published_.attached = true;
     published_.arrival = reading.arrival;
-    published_.deadman_held = reading.deadman_held;
-    published_.valid = reading.valid;
+    DeviceSample& sample = published_.sample;
+    sample.deadman_held = reading.deadman_held;
+    sample.buttons = reading.buttons;
+    sample.valid = reading.valid;
     if (reading.valid)
     {
-        const Vec3 velocity = reading.velocity_m_per_s.value_or(Vec3(Vec3::Zero()));
-        published_.position_world_m = to_array(frame_.position_to_world(reading.position_m));
-        published_.velocity_world_m_per_s = to_array(frame_.velocity_to_world(velocity));
-        published_.has_velocity = reading.velocity_m_per_s.has_value();
-        published_.time = reading.time;
+        const auto velocity = [this](const Vec3& v)
+        { return to_array(frame_.velocity_to_world(v)); };
+        const auto turning = [this](const Vec3& v) { return to_array(frame_.turning_to_world(v)); };
+        const auto rotation = [this](const Quaternion& q) { return frame_.rotation_to_world(q); };
+        sample.position_world_m = to_array(frame_.position_to_world(reading.position_m));
+        sample.rotation_world = mapped(reading.rotation, rotation);
+        sample.velocity_world_m_per_s = mapped(reading.velocity_m_per_s, velocity);
+        sample.angular_velocity_world_rad_per_s =
+            mapped(reading.angular_velocity_rad_per_s, turning);
+        sample.gripper_m = reading.gripper_m;
+        sample.time = reading.time;
     }
     readings_.write(published_);
 }
@@ -133,7 +140,7 @@ void RemoteDevice::publish(const DeviceReading& reading, bool is_new) noexcept
 void RemoteDevice::detach() noexcept
 {
     published_.attached = false;
-    published_.valid = false;
+    published_.sample.valid = false;
     readings_.write(published_);
 }
 
@@ -150,8 +157,10 @@ DeviceCommand RemoteDevice::command() noexcept
     now.written = taken_.written;
     if (published_.attached && makes_force(taken_, published_.attachment, clock_.now()))
     {
-        const auto& force_n = taken_.force_world_n;
-        now.force_n = frame_.force_to_device(Vec3(force_n[0], force_n[1], force_n[2]));
+        const Wrench& wrench = taken_.wrench;
+        now.force_n = frame_.force_to_device(to_vec3(wrench.force_world_n));
+        now.torque_nm = frame_.torque_to_device(to_vec3(wrench.torque_world_nm));
+        now.gripper_force_n = wrench.gripper_force_n;
         now.state = DeviceState::force;
     }
     return now;

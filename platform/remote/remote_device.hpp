@@ -42,14 +42,20 @@ struct DeviceReading
     std::optional<Vec3> velocity_m_per_s;
     MonotonicTime time;    ///< When the position was taken, on the controller's clock.
     MonotonicTime arrival; ///< When it was here.
-    bool valid{false};     ///< False: the position counts for nothing; the last good one stays.
+    bool valid{false};     ///< False: the place counts for nothing; the last good one stays.
     bool deadman_held{true};
+    std::optional<Quaternion> rotation; ///< A unit quaternion.
+    std::optional<Vec3> angular_velocity_rad_per_s;
+    std::uint32_t buttons{0};
+    std::optional<double> gripper_m;
 };
 
 /// What the device has to do now, in its own coordinates.
 struct DeviceCommand
 {
-    Vec3 force_n{Vec3::Zero()}; ///< Zero in all states but `force`.
+    Vec3 force_n{Vec3::Zero()}; ///< Zero in all states but `force`, as what follows.
+    Vec3 torque_nm{Vec3::Zero()};
+    double gripper_force_n{0.0};
     DeviceState state{DeviceState::idle};
     MonotonicTime written; ///< Tells one write from the next.
 };
@@ -72,7 +78,7 @@ public:
     [[nodiscard]] const DeviceInfo& info() const noexcept override { return info_; }
     /// The newest reading. When none has come since the last call that one again, with its time.
     [[nodiscard]] DeviceSample read() noexcept override;
-    void write(const std::array<double, 3>& force_world_n) noexcept override;
+    void write(const Wrench& wrench) noexcept override;
     /// The I/O thread acts on it in its next turn; what is done before that, a subclass says.
     void brake() noexcept override;
     void release_brake() noexcept override;
@@ -97,19 +103,14 @@ protected:
 private:
     struct Reading
     {
-        std::array<double, 3> position_world_m{};
-        std::array<double, 3> velocity_world_m_per_s{};
-        MonotonicTime time;
+        DeviceSample sample; ///< In the world; frame and connected are read()'s.
         MonotonicTime arrival;
         std::uint64_t attachment{0}; ///< Counts them from 1; 0: there was none.
-        bool has_velocity{false};
-        bool valid{false};
         bool attached{false};
-        bool deadman_held{true};
     };
     struct Command
     {
-        std::array<double, 3> force_world_n{};
+        Wrench wrench;
         MonotonicTime written;
         std::uint64_t attachment{0}; ///< The one that it was written for.
         std::uint64_t release{0};    ///< Brakes released before; a force from before is void.

@@ -7,12 +7,26 @@
 namespace tactus
 {
 
-/// Three kinds of device to simulate. Force and stiffness are those that makers and users give;
+/// Kinds of device to simulate. Force and stiffness are those that makers and users give;
 /// mass, damping, friction and quantum are assumed, of the order of such mechanisms, with a damping
 /// that carries the stiffness at the rate that such a device is sold for. None is a measurement of
 /// a product: measure your own (docs/stability.md).
 
-/// A small desktop arm with a stylus.
+/// What nobody else is: a desk device that turns and makes a torque. In all its values an angle is
+/// a way on a lever of 3.2 cm (the root of 0.001 m^2) of the default device, but the torque, which
+/// is that of wrists that are sold.
+inline constexpr TurnLimits kDeskTurn{.is_measured = true,
+                                      .torque_max_nm = 0.5,
+                                      .inertia_kg_m2 = 1e-4,
+                                      .damping_nm_s_per_rad = 1e-3,
+                                      .friction_nm = 0.0,
+                                      .quantum_rad = 0.0,
+                                      .slew_max_nm_per_s = 1'000.0,
+                                      .stiffness_max_nm_per_rad = 3.0,
+                                      .added_damping_max_nm_s_per_rad = 5e-3};
+inline constexpr DeviceLimits kDeskClass{.turn = kDeskTurn};
+
+/// A small desktop arm with a stylus, which tells how it is turned and makes no torque.
 inline constexpr DeviceLimits kTouchClass{.mass_kg = 0.045,
                                           .damping_n_s_per_m = 0.25,
                                           .friction_n = 0.1,
@@ -21,9 +35,14 @@ inline constexpr DeviceLimits kTouchClass{.mass_kg = 0.045,
                                           .force_max_n = 3.3,
                                           .slew_max_n_per_s = 6'600.0,
                                           .stiffness_max_n_per_m = 400.0,
-                                          .added_damping_max_n_s_per_m = 2.0};
+                                          .added_damping_max_n_s_per_m = 2.0,
+                                          .turn = {.is_measured = true,
+                                                   .inertia_kg_m2 = 2e-5,
+                                                   .damping_nm_s_per_rad = 5e-5,
+                                                   .friction_nm = 1e-4,
+                                                   .quantum_rad = 1e-3}};
 
-/// A stiff parallel mechanism.
+/// A stiff parallel mechanism. Its handle doesn't turn, nor that of the next.
 inline constexpr DeviceLimits kOmegaClass{.mass_kg = 0.2,
                                           .damping_n_s_per_m = 1.7,
                                           .friction_n = 0.05,

@@ -14,12 +14,23 @@ namespace tactus
 namespace
 {
 
-void set_velocity(DeviceSample& sample, double m_per_s) noexcept
+void set_velocities(DeviceSample& sample, double value) noexcept
 {
-    if (sample.velocity_world_m_per_s)
+    for (auto* velocity :
+         {&sample.velocity_world_m_per_s, &sample.angular_velocity_world_rad_per_s})
     {
-        sample.velocity_world_m_per_s->fill(m_per_s);
+        if (*velocity)
+        {
+            (*velocity)->fill(value);
+        }
     }
+}
+
+/// Of a reading that isn't to be trusted.
+void keep_place(DeviceSample& sample, const DeviceSample& last) noexcept
+{
+    sample.position_world_m = last.position_world_m;
+    sample.rotation_world = last.rotation_world;
 }
 
 } // namespace
@@ -78,11 +89,11 @@ void FaultyDevice::drop_force() noexcept
     }
 }
 
-void FaultyDevice::write(const std::array<double, 3>& force_world_n) noexcept
+void FaultyDevice::write(const Wrench& wrench) noexcept
 {
     if (!is_away_)
     {
-        WrappedDevice::write(force_world_n);
+        WrappedDevice::write(wrench);
     }
 }
 
@@ -98,19 +109,28 @@ void FaultyDevice::spoil(DeviceFaultKind kind, DeviceSample& sample) noexcept
         sample.connected = false;
         [[fallthrough]];
     case DeviceFaultKind::dropout:
-        sample.position_world_m = last_.position_world_m;
+        keep_place(sample, last_);
         sample.velocity_world_m_per_s = last_.velocity_world_m_per_s;
+        sample.angular_velocity_world_rad_per_s = last_.angular_velocity_world_rad_per_s;
         sample.time = last_.time;
         sample.valid = false;
         return;
     case DeviceFaultKind::stuck:
         is_stuck_ = true;
-        sample.position_world_m = last_.position_world_m;
-        set_velocity(sample, 0.0);
+        keep_place(sample, last_);
+        set_velocities(sample, 0.0);
         return;
     case DeviceFaultKind::nan:
         sample.position_world_m.fill(std::numeric_limits<double>::quiet_NaN());
-        set_velocity(sample, std::numeric_limits<double>::quiet_NaN());
+        set_velocities(sample, std::numeric_limits<double>::quiet_NaN());
+        if (sample.rotation_world)
+        {
+            sample.rotation_world->fill(std::numeric_limits<double>::quiet_NaN());
+        }
+        if (sample.gripper_m)
+        {
+            sample.gripper_m = std::numeric_limits<double>::quiet_NaN();
+        }
         return;
     case DeviceFaultKind::time_jump:
         sample.time = sample.time + kTimeJump;

@@ -17,10 +17,11 @@ enum class DeviceFaultKind : std::uint8_t
 {
     jitter,  ///< The position is wrong by up to kJitter_m on each axis, anew in each reading.
     dropout, ///< Nothing trustworthy: not valid, with what was good last.
-    /// The encoders stand still: the last position, velocity 0, while time goes on. In the first
-    /// reading afterwards the whole way is there, and the velocity that it makes in one period.
+    /// The encoders stand still: the last position and rotation, velocity 0, while time goes on. In
+    /// the first reading afterwards the whole way is there, and the velocity that it makes in one
+    /// period.
     stuck,
-    nan,        ///< Position and velocity are no numbers, and it says they were valid.
+    nan,        ///< Place, velocities, gripper are no numbers, and it says they were valid.
     time_jump,  ///< The readings' time is ahead by kTimeJump, and falls back afterwards.
     disconnect, ///< It does not answer and makes no force; idle afterwards, until the next write.
 };
@@ -50,7 +51,7 @@ public:
                  std::uint64_t seed = 1);
 
     [[nodiscard]] DeviceSample read() noexcept override;
-    void write(const std::array<double, 3>& force_world_n) noexcept override;
+    void write(const Wrench& wrench) noexcept override;
 
 private:
     void spoil(DeviceFaultKind kind, DeviceSample& sample) noexcept;

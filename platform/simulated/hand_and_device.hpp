@@ -77,6 +77,15 @@ public:
     /// moves to `target_m` at constant speed. Returns the measured position at its end.
     Vec3 step(const Vec3& force_n, const Vec3& target_m) noexcept;
 
+    /// All at once somewhere else, with the speeds that they have: for HandTurn, whose coordinates
+    /// begin anew each period.
+    void place(const Vec3& device_m, const Vec3& hand_m, const Vec3& target_m) noexcept
+    {
+        device_m_ = device_m;
+        hand_m_ = hand_m;
+        target_m_ = target_m;
+    }
+
     /// Forces under way are dropped, and from now on this much damping comes on top of the device's
     /// own; finite and not negative. It makes a force again by the next step() that gives one.
     void brake(double damping_n_s_per_m) noexcept;

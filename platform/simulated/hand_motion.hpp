@@ -5,6 +5,7 @@
 #include "rt_core/math/vec3.hpp"
 
 #include <cstdint>
+#include <optional>
 
 namespace tactus
 {
@@ -15,6 +16,16 @@ struct HandSense
     std::uint64_t frame{0}; ///< Counts the decisions, from 1: frame 0 is the start itself.
     Vec3 device_world_m{Vec3::Zero()};
     Vec3 force_world_n{Vec3::Zero()};
+    Mat3 device_rotation{Mat3::Identity()};
+    Vec3 torque_world_nm{Vec3::Zero()};
+};
+
+/// What a hand does besides being somewhere.
+struct HandGrip
+{
+    Mat3 rotation{Mat3::Identity()}; ///< Of the wrist, in the world; orthonormal to rounding.
+    std::uint32_t buttons{0};        ///< Bit n is set while it presses button n.
+    std::optional<double> gripper_m; ///< How far it opens the gripper, if it has one.
 };
 
 /// The human end of a simulated device: a place that the hand pulls the device towards through its
@@ -29,6 +40,10 @@ public:
 
     /// Where the hand is at the end of this frame. Called once a frame; allocates nothing.
     [[nodiscard]] virtual Vec3 next_world_m(const HandSense& sense) noexcept = 0;
+
+    /// The rest, at the end of the frame that next_world_m() has decided on last; before the first
+    /// one as it rests at the start. Allocates nothing.
+    [[nodiscard]] virtual HandGrip grip() const noexcept { return {}; }
 
 protected:
     HandMotion() = default;

@@ -15,9 +15,9 @@ namespace tactus
 namespace
 {
 
-bool is_place(const RecordedReading& reading) noexcept
+bool is_place(const DeviceSample& reading) noexcept
 {
-    return reading.valid && std::isfinite(reading.position_world_m.squaredNorm());
+    return reading.valid && to_vec3(reading.position_world_m).allFinite();
 }
 
 /// Null when all options are good.
@@ -44,24 +44,26 @@ const char* find_bad_option(const ReplayDeviceOptions& options)
 
 DeviceInfo describe(const ReplayDeviceOptions& options)
 {
-    Vec3 low = std::ranges::find_if(options.readings, is_place)->position_world_m;
+    Vec3 low = to_vec3(std::ranges::find_if(options.readings, is_place)->position_world_m);
     Vec3 high = low;
-    for (const RecordedReading& reading : options.readings)
+    for (const DeviceSample& reading : options.readings)
     {
         if (is_place(reading))
         {
-            low = low.cwiseMin(reading.position_world_m);
-            high = high.cwiseMax(reading.position_world_m);
+            low = low.cwiseMin(to_vec3(reading.position_world_m));
+            high = high.cwiseMax(to_vec3(reading.position_world_m));
         }
     }
     const double reach_m = std::max(0.5 * (high - low).norm(), ReplayDevice::kReachMin_m);
-    return {"replay",
-            options.limits,
-            to_array(0.5 * (low + high)),
-            reach_m,
-            options.speed_max_m_per_s,
-            options.rate_hz,
-            options.rate_hz};
+    DeviceInfo info;
+    info.name = "replay";
+    info.limits = options.limits;
+    info.workspace_centre_world_m = to_array(0.5 * (low + high));
+    info.workspace_radius_m = reach_m;
+    info.speed_max_m_per_s = options.speed_max_m_per_s;
+    info.rate_min_hz = options.rate_hz;
+    info.rate_max_hz = options.rate_hz;
+    return info;
 }
 
 } // namespace
@@ -82,22 +84,19 @@ ReplayDevice::ReplayDevice(ReplayDeviceOptions options) : info_(describe(options
 
 DeviceSample ReplayDevice::read() noexcept
 {
-    DeviceSample sample;
-    sample.frame = status_.frames++;
-    const RecordedReading& reading =
-        readings_[std::min<std::uint64_t>(sample.frame, readings_.size() - 1)];
-    sample.position_world_m = to_array(reading.position_world_m);
-    sample.time = reading.time;
-    sample.connected = !has_ended();
-    sample.valid = sample.connected && reading.valid;
+    const std::uint64_t frame = status_.frames++;
+    DeviceSample sample = readings_[std::min<std::uint64_t>(frame, readings_.size() - 1)];
+    sample.frame = frame;
+    sample.connected = sample.connected && !has_ended();
+    sample.valid = sample.connected && sample.valid;
     return sample;
 }
 
-void ReplayDevice::write(const std::array<double, 3>& force_world_n) noexcept
+void ReplayDevice::write(const Wrench& wrench) noexcept
 {
     if (!braked_.load())
     {
-        static_cast<void>(take_force(force_world_n, info_.limits.force_max_n, status_));
+        static_cast<void>(take_wrench(wrench, info_, status_));
         status_.state = DeviceState::force;
     }
 }

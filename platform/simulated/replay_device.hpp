@@ -16,26 +16,19 @@
 namespace tactus
 {
 
-/// One reading of a device as it was recorded.
-struct RecordedReading
-{
-    Vec3 position_world_m{Vec3::Zero()};
-    MonotonicTime time; ///< Of the device's clock then.
-    bool valid{true};
-};
-
 struct ReplayDeviceOptions
 {
-    std::vector<RecordedReading> readings; ///< At least one.
-    std::int64_t rate_hz{1'000};           ///< That they were made at; above zero.
-    DeviceLimits limits;                   ///< What it says of itself.
-    double speed_max_m_per_s{10.0};        ///< Finite and above zero.
+    /// As the device gave them then, at least one; their count is made anew.
+    std::vector<DeviceSample> readings;
+    std::int64_t rate_hz{1'000};    ///< That they were made at; above zero.
+    DeviceLimits limits;            ///< What it says of itself.
+    double speed_max_m_per_s{10.0}; ///< Finite and above zero.
 };
 
 /// A hand that was recorded: reading k is the recorded reading k, whatever force is written, how
-/// late the reading comes, and where the recorded position was no number or not valid. The force is
-/// taken as by any device, but moves nothing. After the last reading it is disconnected, at its
-/// last place; its readings still count. The velocity isn't told.
+/// late the reading comes, and where the recorded position was no number or not valid. Forces and
+/// torques are taken as by any device, but move nothing. After the last reading it is disconnected,
+/// at its last place; its readings still count.
 ///
 /// All readings are in memory from the start: read() takes one and no more.
 class ReplayDevice final : public HapticDevice
@@ -51,7 +44,7 @@ public:
 
     [[nodiscard]] const DeviceInfo& info() const noexcept override { return info_; }
     [[nodiscard]] DeviceSample read() noexcept override;
-    void write(const std::array<double, 3>& force_world_n) noexcept override;
+    void write(const Wrench& wrench) noexcept override;
     void brake() noexcept override { braked_.store(true); }
     void release_brake() noexcept override;
     [[nodiscard]] DeviceStatus status() const noexcept override;
@@ -61,7 +54,7 @@ private:
 
     [[nodiscard]] bool has_ended() const noexcept { return status_.frames > readings_.size(); }
 
-    std::vector<RecordedReading> readings_;
+    std::vector<DeviceSample> readings_;
     DeviceInfo info_;
     DeviceStatus status_;
     /// The one field that other threads write. Sequentially consistent: it is rare and orders

@@ -26,16 +26,31 @@ std::string find_bad_option(const SimulatedDeviceOptions& options)
                " Hz is out of range 100..10000 Hz";
     }
     if (!is_positive(options.speed_max_m_per_s) ||
-        !is_not_negative(options.brake_damping_n_s_per_m))
+        !is_not_negative(options.brake_damping_n_s_per_m) ||
+        !is_not_negative(options.brake_damping_nm_s_per_rad) ||
+        !is_not_negative(options.gripper_force_max_n))
     {
         return "simulated device: the largest speed must be finite and above zero, the brake's "
-               "damping finite and not negative";
+               "dampings and the gripper's force finite and not negative";
     }
     if (options.watchdog && (*options.watchdog <= Duration{} || options.clock == nullptr))
     {
         return "simulated device: a watchdog needs a time above zero, and a clock";
     }
     return {};
+}
+
+/// Of a body that moves or turns.
+void set_brake(auto& body, bool is_on, double damping) noexcept
+{
+    if (is_on)
+    {
+        body.brake(damping);
+    }
+    else
+    {
+        body.release_brake();
+    }
 }
 
 } // namespace
@@ -55,11 +70,24 @@ SimulatedDevice::create(const SimulatedDeviceOptions& options, std::unique_ptr<H
     {
         return body.error();
     }
+    std::optional<HandTurn> turn;
+    if (options.device.turn.is_measured)
+    {
+        const auto made =
+            HandTurn::create({options.device.turn, options.device.delay_s, options.wrist,
+                              1.0 / static_cast<double>(options.rate_hz), hand->grip().rotation});
+        if (!made)
+        {
+            return made.error();
+        }
+        turn = made.value();
+    }
     return std::unique_ptr<SimulatedDevice>(
-        new SimulatedDevice(options, body.value(), std::move(hand)));
+        new SimulatedDevice(options, body.value(), turn, std::move(hand)));
 }
 
 SimulatedDevice::SimulatedDevice(const SimulatedDeviceOptions& options, const HandAndDevice& body,
+                                 const std::optional<HandTurn>& turn,
                                  std::unique_ptr<HandMotion> hand)
     : options_(options)
     , info_{"sim",
@@ -68,9 +96,11 @@ SimulatedDevice::SimulatedDevice(const SimulatedDeviceOptions& options, const Ha
             options.workspace_radius_m,
             options.speed_max_m_per_s,
             SimulatedDeviceOptions::kRateMinHz,
-            SimulatedDeviceOptions::kRateMaxHz}
+            SimulatedDeviceOptions::kRateMaxHz,
+            hand->grip().gripper_m ? options.gripper_force_max_n : 0.0}
     , hand_(std::move(hand))
     , body_(body)
+    , turn_(turn)
 {
 }
 
@@ -82,11 +112,23 @@ DeviceSample SimulatedDevice::read() noexcept
         const MonotonicTime time = options_.clock == nullptr ? now() : start_ + period_at(periods_);
         ++periods_;
         integrate_one_period(time.ns >= braked_at_ns_.load(),
-                             makes_force_at(time) ? force_world_n_ : Vec3(Vec3::Zero()));
+                             makes_force_at(time) ? wrench_ : Wrench{});
     }
-    const std::uint64_t frame = status_.frames++;
-    return {to_array(body_.measured_m()), to_array(body_.velocity_m_per_s()),
-            MonotonicTime{period_at(periods_).ns}, frame, true};
+    DeviceSample sample;
+    sample.position_world_m = to_array(body_.measured_m());
+    sample.velocity_world_m_per_s = to_array(body_.velocity_m_per_s());
+    sample.time = MonotonicTime{period_at(periods_).ns};
+    sample.frame = status_.frames++;
+    sample.valid = true;
+    if (turn_)
+    {
+        sample.rotation_world = turn_->measured();
+        sample.angular_velocity_world_rad_per_s = to_array(turn_->velocity_rad_per_s());
+    }
+    const HandGrip grip = hand_->grip();
+    sample.buttons = grip.buttons;
+    sample.gripper_m = grip.gripper_m;
+    return sample;
 }
 
 std::uint64_t SimulatedDevice::periods_due() const noexcept
@@ -129,31 +171,39 @@ bool SimulatedDevice::makes_force_at(MonotonicTime time) const noexcept
 
 Vec3 SimulatedDevice::felt_force_world_n() const noexcept
 {
-    return makes_force_at(now()) ? force_world_n_ : Vec3(Vec3::Zero());
+    return to_vec3(felt_wrench().force_world_n);
 }
 
-void SimulatedDevice::integrate_one_period(bool braked, const Vec3& force_n) noexcept
+Wrench SimulatedDevice::felt_wrench() const noexcept
 {
-    if (braked)
-    {
-        body_.brake(options_.brake_damping_n_s_per_m);
-    }
-    else
-    {
-        body_.release_brake();
-    }
-    const Vec3 target_m = hand_->next_world_m({periods_, body_.position_m(), force_n});
-    static_cast<void>(body_.step(force_n, target_m));
+    return makes_force_at(now()) ? wrench_ : Wrench{};
 }
 
-void SimulatedDevice::write(const std::array<double, 3>& force_world_n) noexcept
+void SimulatedDevice::integrate_one_period(bool braked, const Wrench& wrench) noexcept
+{
+    const Vec3 force_n = to_vec3(wrench.force_world_n);
+    const Vec3 torque_nm = to_vec3(wrench.torque_world_nm);
+    set_brake(body_, braked, options_.brake_damping_n_s_per_m);
+    HandSense sense{periods_, body_.position_m(), force_n};
+    sense.device_rotation = turn_ ? turn_->rotation() : sense.device_rotation;
+    sense.torque_world_nm = torque_nm;
+    const Vec3 target_m = hand_->next_world_m(sense);
+    static_cast<void>(body_.step(force_n, target_m));
+    if (turn_)
+    {
+        set_brake(*turn_, braked, options_.brake_damping_nm_s_per_rad);
+        turn_->step(torque_nm, hand_->grip().rotation);
+    }
+}
+
+void SimulatedDevice::write(const Wrench& wrench) noexcept
 {
     if (braked_at_ns_.load() != kNever)
     {
         return;
     }
     written_ = now();
-    force_world_n_ = take_force(force_world_n, options_.device.force_max_n, status_);
+    wrench_ = take_wrench(wrench, info_, status_);
     status_.state = DeviceState::force;
 }
 
@@ -165,7 +215,7 @@ void SimulatedDevice::brake() noexcept
 
 void SimulatedDevice::release_brake() noexcept
 {
-    force_world_n_.setZero();
+    wrench_ = {};
     status_.state = DeviceState::idle;
     braked_at_ns_.store(kNever);
 }

@@ -5,8 +5,10 @@
 #include "platform/base/refusal.hpp"
 #include "platform/clock.hpp"
 #include "platform/haptic_device.hpp"
+#include "platform/simulated/device_classes.hpp"
 #include "platform/simulated/hand_and_device.hpp"
 #include "platform/simulated/hand_motion.hpp"
+#include "platform/simulated/hand_turn.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/math/vec3.hpp"
 #include "rt_core/records/device_limits.hpp"
@@ -27,11 +29,20 @@ struct SimulatedDeviceOptions
     static constexpr std::int64_t kRateMaxHz = 10'000;
 
     std::int64_t rate_hz{1'000};
-    DeviceLimits device; ///< What it is and what it says of itself; device_classes.hpp has others.
+    /// What it is and what it says of itself; device_classes.hpp has others.
+    DeviceLimits device{kDeskClass};
     /// Fingers with a stylus: lighter than a whole hand, on the default device damped to two thirds
     /// of critical.
     HandLimb hand{.mass_kg = 0.05, .damping_n_s_per_m = 6.0};
-    double brake_damping_n_s_per_m{10.0}; ///< Added while the brake is on; finite, not negative.
+    /// HandTurnOptions::wrist. With the default device damped likewise.
+    HandLimb wrist{.mass_kg = 5e-5,
+                   .stiffness_n_per_m = 0.5,
+                   .damping_n_s_per_m = 0.012,
+                   .grip_stiffness_n_per_m = 5.0,
+                   .grip_damping_n_s_per_m = 0.004};
+    double brake_damping_n_s_per_m{10.0};    ///< Added while the brake is on; finite, not negative.
+    double brake_damping_nm_s_per_rad{0.01}; ///< Likewise.
+    double gripper_force_max_n{8.0};         ///< Of a hand that holds a gripper.
     Vec3 workspace_centre_world_m{Vec3::Zero()};
     double workspace_radius_m{1.0};
     double speed_max_m_per_s{10.0}; ///< No hand is faster. Finite and above zero.
@@ -43,13 +54,14 @@ struct SimulatedDeviceOptions
     std::optional<Duration> watchdog;
 };
 
-/// A device in a hand that feels the written force: HandAndDevice, with its mass, damping,
-/// friction, delay, reach, and steps of the measured position. Each reading integrates one period,
-/// by frame index and never by wall time: the same hand and the same forces give the same
-/// positions, bit for bit, however late the readings come. With a clock it lives in that clock's
-/// time instead: what it does when nobody reads or writes for a while can be seen.
+/// A device in a hand that feels the written force and torque: HandAndDevice and HandTurn, with
+/// mass, damping, friction, delay, reach, and steps of what is measured. A device whose rotation
+/// isn't measured doesn't turn. The gripper and buttons follow the hand at once. Each reading
+/// integrates one period, by frame index and never by wall time: the same hand and the same forces
+/// give the same positions, bit for bit, however late the readings come. With a clock it lives in
+/// that clock's time instead: what it does when nobody reads or writes for a while can be seen.
 ///
-/// It measures its velocity without steps, as by a tachometer.
+/// It measures its velocities without steps, as by a tachometer.
 class SimulatedDevice final : public HapticDevice
 {
 public:
@@ -61,7 +73,7 @@ public:
     [[nodiscard]] const DeviceInfo& info() const noexcept override { return info_; }
     /// The first reading is the hand's start; each later one is a period on.
     [[nodiscard]] DeviceSample read() noexcept override;
-    void write(const std::array<double, 3>& force_world_n) noexcept override;
+    void write(const Wrench& wrench) noexcept override;
     void brake() noexcept override;
     void release_brake() noexcept override;
     [[nodiscard]] DeviceStatus status() const noexcept override;
@@ -69,10 +81,12 @@ public:
     /// What it makes of the last write now: that force, which the hand feels after the delay, or
     /// none after the brake or the watchdog. Haptic thread, or another one while that hangs.
     [[nodiscard]] Vec3 felt_force_world_n() const noexcept;
+    /// Likewise.
+    [[nodiscard]] Wrench felt_wrench() const noexcept;
 
 private:
     SimulatedDevice(const SimulatedDeviceOptions& options, const HandAndDevice& body,
-                    std::unique_ptr<HandMotion> hand);
+                    const std::optional<HandTurn>& turn, std::unique_ptr<HandMotion> hand);
 
     static constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
 
@@ -80,13 +94,14 @@ private:
     [[nodiscard]] Duration period_at(std::uint64_t index) const noexcept;
     [[nodiscard]] MonotonicTime now() const noexcept;
     [[nodiscard]] bool makes_force_at(MonotonicTime time) const noexcept;
-    void integrate_one_period(bool braked, const Vec3& force_n) noexcept;
+    void integrate_one_period(bool braked, const Wrench& wrench) noexcept;
 
     SimulatedDeviceOptions options_;
     DeviceInfo info_;
     std::unique_ptr<HandMotion> hand_;
     HandAndDevice body_;
-    Vec3 force_world_n_{Vec3::Zero()};
+    std::optional<HandTurn> turn_; ///< None: it doesn't turn.
+    Wrench wrench_;                ///< The last write.
     DeviceStatus status_;
     std::uint64_t periods_{0}; ///< Integrated so far.
     MonotonicTime start_;      ///< Of the first reading.

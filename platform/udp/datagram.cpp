@@ -6,6 +6,8 @@
 #include "rt_core/base/assert.hpp"
 #include "rt_core/base/byte_io.hpp"
 #include "rt_core/base/crc32c.hpp"
+#include "rt_core/limits.hpp"
+#include "rt_core/math/rotation.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,6 +15,47 @@
 
 namespace tactus::udp
 {
+
+/// Fills a datagram from its start; close() puts the checksum at its end.
+class DatagramWriter
+{
+public:
+    DatagramWriter(Kind kind, const Address& address, std::uint16_t version) noexcept
+    {
+        TACTUS_ASSERT(is_known(version));
+        datagram_.size_ = kBytes.at(version - 1U).at(static_cast<std::size_t>(kind) - 1U);
+        put(kMagic);
+        put(version);
+        put(kind);
+        put(address.instance);
+        put(address.session);
+        put(address.sequence);
+    }
+
+    template <typename T>
+    void put(const T& value) noexcept
+    {
+        static_assert(std::is_trivially_copyable_v<T>);
+        std::memcpy(datagram_.bytes_.data() + at_, &value, sizeof(T));
+        at_ += sizeof(T);
+    }
+
+    [[nodiscard]] const Datagram& close() noexcept
+    {
+        TACTUS_ASSERT(at_ == datagram_.size_ - 4);
+        put(crc32c(std::span<const std::byte>(datagram_.bytes_).first(datagram_.size_ - 4)));
+        return datagram_;
+    }
+
+    [[nodiscard]] static bool is_known(std::uint16_t version) noexcept
+    {
+        return version == kVersionOfPoints || version == kVersion;
+    }
+
+private:
+    Datagram datagram_;
+    std::size_t at_{0};
+};
 
 namespace
 {
@@ -27,68 +70,45 @@ constexpr double kCoordinateMax = 1e6;
 /// Sums of two such times don't overflow.
 constexpr std::int64_t kTimeMax_ns = std::int64_t{1} << 62;
 
+// A description's flag.
+constexpr std::uint32_t kMeasuresRotation = 1;
+// A sample's flags; the last three are of version 2.
 constexpr std::uint32_t kValid = 1;
 constexpr std::uint32_t kHasVelocity = 2;
 constexpr std::uint32_t kDeadmanHeld = 4;
+constexpr std::uint32_t kHasRotation = 8;
+constexpr std::uint32_t kHasAngularVelocity = 16;
+constexpr std::uint32_t kHasGripper = 32;
 
-/// Fills a datagram from its start; close() puts the checksum at its end.
-template <std::size_t Size>
-class Writer
-{
-public:
-    Writer(Kind kind, const Address& address) noexcept
-    {
-        put(kMagic);
-        put(kVersion);
-        put(kind);
-        put(address.instance);
-        put(address.session);
-        put(address.sequence);
-    }
-
-    template <typename T>
-    void put(const T& value) noexcept
-    {
-        static_assert(std::is_trivially_copyable_v<T>);
-        std::memcpy(bytes_.data() + at_, &value, sizeof(T));
-        at_ += sizeof(T);
-    }
-
-    [[nodiscard]] std::array<std::byte, Size> close() noexcept
-    {
-        TACTUS_ASSERT(at_ == Size - 4);
-        put(crc32c(std::span<const std::byte>(bytes_).first(Size - 4)));
-        return bytes_;
-    }
-
-private:
-    std::array<std::byte, Size> bytes_{};
-    std::size_t at_{0};
-};
+/// As they stand in a description.
+constexpr std::array kLimits{&DeviceLimits::mass_kg,
+                             &DeviceLimits::damping_n_s_per_m,
+                             &DeviceLimits::friction_n,
+                             &DeviceLimits::quantum_m,
+                             &DeviceLimits::delay_s,
+                             &DeviceLimits::force_max_n,
+                             &DeviceLimits::slew_max_n_per_s,
+                             &DeviceLimits::stiffness_max_n_per_m,
+                             &DeviceLimits::added_damping_max_n_s_per_m};
+constexpr std::array kTurnLimits{&TurnLimits::torque_max_nm,
+                                 &TurnLimits::inertia_kg_m2,
+                                 &TurnLimits::damping_nm_s_per_rad,
+                                 &TurnLimits::friction_nm,
+                                 &TurnLimits::quantum_rad,
+                                 &TurnLimits::slew_max_nm_per_s,
+                                 &TurnLimits::stiffness_max_nm_per_rad,
+                                 &TurnLimits::added_damping_max_nm_s_per_rad};
 
 bool are_in_range(const std::array<double, 3>& values, double most) noexcept
 {
     return std::ranges::all_of(values, [most](double value) { return std::abs(value) <= most; });
 }
 
-std::size_t size_of(Kind kind) noexcept
-{
-    switch (kind)
-    {
-    case Kind::describe:
-        return kDescribeBytes;
-    case Kind::sample:
-        return kSampleBytes;
-    case Kind::force:
-        return kForceBytes;
-    }
-    return 0;
-}
-
 struct Envelope
 {
     Kind kind{Kind::describe};
     Address address;
+    std::uint16_t version{0};
 };
 
 /// What all datagrams have in common, checksum included; none when it is sound.
@@ -103,16 +123,18 @@ std::optional<DatagramFault> open(std::span<const std::byte> bytes, Envelope& en
     {
         return DatagramFault::magic;
     }
-    if (reader.read<std::uint16_t>() != kVersion)
+    envelope.version = reader.read<std::uint16_t>();
+    if (!DatagramWriter::is_known(envelope.version))
     {
         return DatagramFault::version;
     }
     envelope.kind = static_cast<Kind>(reader.read<std::uint16_t>());
-    if (size_of(envelope.kind) == 0)
+    if (envelope.kind < Kind::describe || envelope.kind > Kind::force)
     {
         return DatagramFault::kind;
     }
-    if (bytes.size() != size_of(envelope.kind))
+    const auto kind = static_cast<std::size_t>(envelope.kind);
+    if (bytes.size() != kBytes.at(envelope.version - 1U).at(kind - 1U))
     {
         return DatagramFault::size;
     }
@@ -135,108 +157,169 @@ bool read_name(ByteReader& reader, std::string& name)
     return std::all_of(end, field.end(), [](char c) { return c == '\0'; });
 }
 
-FromDevice decode_describe(const Address& address, ByteReader reader)
+FromDevice decode_describe(const Envelope& envelope, ByteReader reader)
 {
-    DescribeDatagram datagram{address, {}};
+    DescribeDatagram datagram{envelope.address, {}, envelope.version};
     DeviceInfo& info = datagram.info;
-    const bool is_name_clean = read_name(reader, info.name);
-    DeviceLimits& limits = info.limits;
-    for (double* value :
-         {&limits.mass_kg, &limits.damping_n_s_per_m, &limits.friction_n, &limits.quantum_m,
-          &limits.delay_s, &limits.force_max_n, &limits.slew_max_n_per_s,
-          &limits.stiffness_max_n_per_m, &limits.added_damping_max_n_s_per_m})
+    bool is_clean = read_name(reader, info.name);
+    for (double DeviceLimits::*const limit : kLimits)
     {
-        *value = reader.read<double>();
+        info.limits.*limit = reader.read<double>();
     }
     info.workspace_centre_world_m = reader.read<std::array<double, 3>>();
     info.workspace_radius_m = reader.read<double>();
     info.speed_max_m_per_s = reader.read<double>();
     info.rate_min_hz = reader.read<std::int64_t>();
     info.rate_max_hz = reader.read<std::int64_t>();
-    const bool is_reserved_clean = reader.read<std::uint32_t>() == 0;
-    if (!is_name_clean || !is_reserved_clean || address.session != 0 || find_fault(info) != nullptr)
+    std::uint32_t known = 0;
+    if (envelope.version >= kVersion)
+    {
+        for (double TurnLimits::*const limit : kTurnLimits)
+        {
+            info.limits.turn.*limit = reader.read<double>();
+        }
+        info.gripper_force_max_n = reader.read<double>();
+        datagram.tag = reader.read<Tag>();
+        known = kMeasuresRotation;
+    }
+    const auto flags = reader.read<std::uint32_t>();
+    info.limits.turn.is_measured = (flags & kMeasuresRotation) != 0;
+    is_clean = is_clean && (flags & ~known) == 0;
+    if (!is_clean || envelope.address.session != 0 || find_fault(info) != nullptr)
     {
         return DatagramFault::content;
     }
     return datagram;
 }
 
-FromDevice decode_sample(const Address& address, ByteReader reader) noexcept
+bool is_sound(const SampleDatagram& datagram) noexcept
+{
+    const auto is_good = [](const std::optional<std::array<double, 3>>& vector)
+    { return !vector || are_in_range(*vector, kCoordinateMax); };
+    return are_in_range(datagram.position_m, kCoordinateMax) &&
+           is_good(datagram.velocity_m_per_s) && is_good(datagram.angular_velocity_rad_per_s) &&
+           (!datagram.rotation || is_unit(*datagram.rotation, kRotationTolerance)) &&
+           (!datagram.gripper_m || std::abs(*datagram.gripper_m) <= kCoordinateMax);
+}
+
+FromDevice decode_sample(const Envelope& envelope, ByteReader reader) noexcept
 {
     SampleDatagram datagram;
-    datagram.address = address;
-    datagram.position_m = reader.read<std::array<double, 3>>();
+    datagram.address = envelope.address;
+    datagram.version = envelope.version;
+    const auto position_m = reader.read<std::array<double, 3>>();
     const auto velocity = reader.read<std::array<double, 3>>();
     datagram.time_ns = reader.read<std::int64_t>();
+    Quaternion rotation{};
+    std::array<double, 3> angular_velocity{};
+    double gripper_m = 0.0;
+    std::uint32_t known = kValid | kHasVelocity | kDeadmanHeld;
+    if (envelope.version >= kVersion)
+    {
+        rotation = reader.read<Quaternion>();
+        angular_velocity = reader.read<std::array<double, 3>>();
+        gripper_m = reader.read<double>();
+        datagram.tag = reader.read<Tag>();
+        datagram.buttons = reader.read<std::uint32_t>();
+        known |= kHasRotation | kHasAngularVelocity | kHasGripper;
+    }
     const auto flags = reader.read<std::uint32_t>();
     datagram.valid = (flags & kValid) != 0;
     datagram.deadman_held = (flags & kDeadmanHeld) != 0;
-    if ((flags & ~(kValid | kHasVelocity | kDeadmanHeld)) != 0 || datagram.time_ns < 0 ||
-        datagram.time_ns > kTimeMax_ns)
+    if ((flags & ~known) != 0 || datagram.time_ns < 0 || datagram.time_ns > kTimeMax_ns)
     {
         return DatagramFault::content;
     }
     if (!datagram.valid)
     {
-        datagram.position_m = {};
         return datagram;
     }
-    if ((flags & kHasVelocity) != 0)
-    {
-        datagram.velocity_m_per_s = velocity;
-    }
-    const bool is_velocity_good =
-        !datagram.velocity_m_per_s || are_in_range(velocity, kCoordinateMax);
-    if (!are_in_range(datagram.position_m, kCoordinateMax) || !is_velocity_good)
-    {
-        return DatagramFault::content;
-    }
-    return datagram;
+    const auto given = [flags](std::uint32_t flag, const auto& value)
+    { return (flags & flag) != 0 ? std::optional(value) : std::nullopt; };
+    datagram.position_m = position_m;
+    datagram.velocity_m_per_s = given(kHasVelocity, velocity);
+    datagram.rotation = given(kHasRotation, rotation);
+    datagram.angular_velocity_rad_per_s = given(kHasAngularVelocity, angular_velocity);
+    datagram.gripper_m = given(kHasGripper, gripper_m);
+    return is_sound(datagram) ? FromDevice(datagram) : FromDevice(DatagramFault::content);
+}
+
+std::uint32_t flag_when(bool is_so, std::uint32_t flag) noexcept
+{
+    return is_so ? flag : 0U;
 }
 
 } // namespace
 
-DescribeBytes encode(const DescribeDatagram& datagram) noexcept
+Datagram encode(const DescribeDatagram& datagram) noexcept
 {
-    Writer<kDescribeBytes> writer(Kind::describe, datagram.address);
+    DatagramWriter writer(Kind::describe, datagram.address, datagram.version);
     std::array<char, kNameBytes> name{};
     const DeviceInfo& info = datagram.info;
     std::ranges::copy(std::string_view(info.name).substr(0, kDeviceNameMax), name.begin());
     writer.put(name);
-    const DeviceLimits& limits = info.limits;
-    for (const double value :
-         {limits.mass_kg, limits.damping_n_s_per_m, limits.friction_n, limits.quantum_m,
-          limits.delay_s, limits.force_max_n, limits.slew_max_n_per_s, limits.stiffness_max_n_per_m,
-          limits.added_damping_max_n_s_per_m})
+    for (double DeviceLimits::*const limit : kLimits)
     {
-        writer.put(value);
+        writer.put(info.limits.*limit);
     }
     writer.put(info.workspace_centre_world_m);
     writer.put(info.workspace_radius_m);
     writer.put(info.speed_max_m_per_s);
     writer.put(info.rate_min_hz);
     writer.put(info.rate_max_hz);
-    writer.put(std::uint32_t{0});
+    if (datagram.version < kVersion)
+    {
+        writer.put(std::uint32_t{0});
+        return writer.close();
+    }
+    for (double TurnLimits::*const limit : kTurnLimits)
+    {
+        writer.put(info.limits.turn.*limit);
+    }
+    writer.put(info.gripper_force_max_n);
+    writer.put(datagram.tag);
+    writer.put(flag_when(info.limits.turn.is_measured, kMeasuresRotation));
     return writer.close();
 }
 
-SampleBytes encode(const SampleDatagram& datagram) noexcept
+Datagram encode(const SampleDatagram& datagram) noexcept
 {
-    Writer<kSampleBytes> writer(Kind::sample, datagram.address);
+    DatagramWriter writer(Kind::sample, datagram.address, datagram.version);
     writer.put(datagram.position_m);
     writer.put(datagram.velocity_m_per_s.value_or(std::array<double, 3>{}));
     writer.put(datagram.time_ns);
-    writer.put((datagram.valid ? kValid : 0U) |
-               (datagram.velocity_m_per_s.has_value() ? kHasVelocity : 0U) |
-               (datagram.deadman_held ? kDeadmanHeld : 0U));
+    std::uint32_t flags = flag_when(datagram.valid, kValid) |
+                          flag_when(datagram.velocity_m_per_s.has_value(), kHasVelocity) |
+                          flag_when(datagram.deadman_held, kDeadmanHeld);
+    if (datagram.version >= kVersion)
+    {
+        writer.put(datagram.rotation.value_or(Quaternion{}));
+        writer.put(datagram.angular_velocity_rad_per_s.value_or(std::array<double, 3>{}));
+        writer.put(datagram.gripper_m.value_or(0.0));
+        writer.put(datagram.tag);
+        writer.put(datagram.buttons);
+        flags |= flag_when(datagram.rotation.has_value(), kHasRotation) |
+                 flag_when(datagram.angular_velocity_rad_per_s.has_value(), kHasAngularVelocity) |
+                 flag_when(datagram.gripper_m.has_value(), kHasGripper);
+    }
+    writer.put(flags);
     return writer.close();
 }
 
-ForceBytes encode(const ForceDatagram& datagram) noexcept
+Datagram encode(const ForceDatagram& datagram) noexcept
 {
-    Writer<kForceBytes> writer(Kind::force, datagram.address);
+    DatagramWriter writer(Kind::force, datagram.address, datagram.version);
     writer.put(datagram.force_n);
+    if (datagram.version >= kVersion)
+    {
+        writer.put(datagram.torque_nm);
+        writer.put(datagram.gripper_force_n);
+    }
     writer.put(datagram.answers);
+    if (datagram.version >= kVersion)
+    {
+        writer.put(datagram.tag);
+    }
     writer.put(static_cast<std::uint32_t>(datagram.state));
     return writer.close();
 }
@@ -268,9 +351,9 @@ FromDevice decode_from_device(std::span<const std::byte> bytes)
     switch (envelope.kind)
     {
     case Kind::describe:
-        return decode_describe(envelope.address, body);
+        return decode_describe(envelope, body);
     case Kind::sample:
-        return decode_sample(envelope.address, body);
+        return decode_sample(envelope, body);
     case Kind::force:
         break;
     }
@@ -291,11 +374,23 @@ FromController decode_from_controller(std::span<const std::byte> bytes)
     ByteReader reader(bytes.subspan(kHeaderBytes));
     ForceDatagram datagram;
     datagram.address = envelope.address;
+    datagram.version = envelope.version;
     datagram.force_n = reader.read<std::array<double, 3>>();
+    if (envelope.version >= kVersion)
+    {
+        datagram.torque_nm = reader.read<std::array<double, 3>>();
+        datagram.gripper_force_n = reader.read<double>();
+    }
     datagram.answers = reader.read<std::uint64_t>();
+    if (envelope.version >= kVersion)
+    {
+        datagram.tag = reader.read<Tag>();
+    }
     const auto state = reader.read<std::uint32_t>();
     if (state > static_cast<std::uint32_t>(DeviceState::brake) ||
-        !are_in_range(datagram.force_n, kCoordinateMax))
+        !are_in_range(datagram.force_n, kCoordinateMax) ||
+        !are_in_range(datagram.torque_nm, kCoordinateMax) ||
+        !(std::abs(datagram.gripper_force_n) <= kCoordinateMax))
     {
         return DatagramFault::content;
     }

@@ -12,17 +12,21 @@
 #include <string_view>
 #include <variant>
 
-/// The datagrams of docs/udp-device.md: fixed sizes, little-endian, each closed by its CRC-32C.
+/// The datagrams of docs/udp-device.md: of a size for each kind and version, little-endian, each
+/// closed by its CRC-32C.
 namespace tactus::udp
 {
 
 inline constexpr std::uint32_t kMagic = 0x44544354; ///< "TCTD".
-inline constexpr std::uint16_t kVersion = 1;
+inline constexpr std::uint16_t kVersion = 2;
+/// Still understood: devices that don't turn, without buttons and gripper.
+inline constexpr std::uint16_t kVersionOfPoints = 1;
 
-inline constexpr std::size_t kDescribeBytes = 200;
-inline constexpr std::size_t kSampleBytes = 96;
-inline constexpr std::size_t kForceBytes = 72;
-inline constexpr std::size_t kDatagramBytesMax = kDescribeBytes;
+/// Of describe, sample and force, in version 1 and 2.
+inline constexpr std::array<std::array<std::size_t, 3>, 2> kBytes{{{200, 96, 72}, {288, 180, 120}}};
+inline constexpr std::size_t kDatagramBytesMax = 288;
+/// Room in version 2 for a proof of who sends. Nobody looks at it yet.
+using Tag = std::array<std::byte, 16>;
 
 enum class Kind : std::uint16_t
 {
@@ -44,6 +48,8 @@ struct DescribeDatagram
 {
     Address address;
     DeviceInfo info;
+    std::uint16_t version{kVersion};
+    Tag tag{};
 };
 
 struct SampleDatagram
@@ -54,6 +60,12 @@ struct SampleDatagram
     std::int64_t time_ns{0}; ///< On the device's own clock, in [0, 2^62].
     bool valid{false};       ///< False: the position is not looked at, whatever it is.
     bool deadman_held{true};
+    std::optional<std::array<double, 4>> rotation; ///< Unit quaternion x, y, z, w.
+    std::optional<std::array<double, 3>> angular_velocity_rad_per_s;
+    std::optional<double> gripper_m;
+    std::uint32_t buttons{0};
+    std::uint16_t version{kVersion};
+    Tag tag{};
 };
 
 struct ForceDatagram
@@ -62,16 +74,32 @@ struct ForceDatagram
     std::array<double, 3> force_n{};
     DeviceState state{DeviceState::idle};
     std::uint64_t answers{0}; ///< Sequence of the device's last datagram that was accepted.
+    std::array<double, 3> torque_nm{};
+    double gripper_force_n{0.0};
+    std::uint16_t version{kVersion};
+    Tag tag{};
 };
 
-using DescribeBytes = std::array<std::byte, kDescribeBytes>;
-using SampleBytes = std::array<std::byte, kSampleBytes>;
-using ForceBytes = std::array<std::byte, kForceBytes>;
+/// A coded datagram, as long as its kind and version say.
+class Datagram
+{
+public:
+    [[nodiscard]] const std::byte* data() const noexcept { return bytes_.data(); }
+    [[nodiscard]] std::size_t size() const noexcept { return size_; }
+    [[nodiscard]] const std::byte* begin() const noexcept { return data(); }
+    [[nodiscard]] const std::byte* end() const noexcept { return data() + size_; }
 
-/// A name longer than 31 bytes is cut.
-[[nodiscard]] DescribeBytes encode(const DescribeDatagram& datagram) noexcept;
-[[nodiscard]] SampleBytes encode(const SampleDatagram& datagram) noexcept;
-[[nodiscard]] ForceBytes encode(const ForceDatagram& datagram) noexcept;
+private:
+    friend class DatagramWriter;
+
+    std::array<std::byte, kDatagramBytesMax> bytes_{};
+    std::size_t size_{0};
+};
+
+/// A name longer than 31 bytes is cut. What its version doesn't know is left out.
+[[nodiscard]] Datagram encode(const DescribeDatagram& datagram) noexcept;
+[[nodiscard]] Datagram encode(const SampleDatagram& datagram) noexcept;
+[[nodiscard]] Datagram encode(const ForceDatagram& datagram) noexcept;
 
 /// Why a datagram counts for nothing. The first six are found by decode().
 enum class DatagramFault : std::uint8_t

@@ -2,39 +2,13 @@
 // Copyright the Tactus authors.
 #include "platform/udp/session.hpp"
 
+#include "platform/device_force.hpp"
+
 #include <algorithm>
 #include <utility>
 
 namespace tactus::udp
 {
-
-namespace
-{
-
-bool are_same(const DeviceLimits& a, const DeviceLimits& b) noexcept
-{
-    return a.mass_kg == b.mass_kg && a.damping_n_s_per_m == b.damping_n_s_per_m &&
-           a.friction_n == b.friction_n && a.quantum_m == b.quantum_m && a.delay_s == b.delay_s &&
-           a.force_max_n == b.force_max_n && a.slew_max_n_per_s == b.slew_max_n_per_s &&
-           a.stiffness_max_n_per_m == b.stiffness_max_n_per_m &&
-           a.added_damping_max_n_s_per_m == b.added_damping_max_n_s_per_m;
-}
-
-bool are_same(const DeviceInfo& a, const DeviceInfo& b) noexcept
-{
-    return a.name == b.name && are_same(a.limits, b.limits) &&
-           a.workspace_centre_world_m == b.workspace_centre_world_m &&
-           a.workspace_radius_m == b.workspace_radius_m &&
-           a.speed_max_m_per_s == b.speed_max_m_per_s && a.rate_min_hz == b.rate_min_hz &&
-           a.rate_max_hz == b.rate_max_hz;
-}
-
-Vec3 to_vec3(const std::array<double, 3>& v) noexcept
-{
-    return {v[0], v[1], v[2]};
-}
-
-} // namespace
 
 std::variant<Described, Sampled, DatagramFault>
 Session::receive(std::span<const std::byte> bytes, const Endpoint& from, MonotonicTime now)
@@ -65,14 +39,14 @@ Session::describe(const DescribeDatagram& datagram, const Endpoint& from, Monoto
     {
         return DatagramFault::stale;
     }
-    if (info_ && !are_same(*info_, datagram.info))
+    if (info_ && *info_ != datagram.info)
     {
         return DatagramFault::other_device;
     }
     if (!peer_.is_attached)
     {
         info_ = datagram.info;
-        begin({from, address.instance, next_, true}, now);
+        begin({from, address.instance, next_, true, datagram.version}, now);
         next_ = std::max<std::uint64_t>(next_ + 1, 1); // 0 is none.
     }
     last_sequence_ = address.sequence;
@@ -109,10 +83,17 @@ Session::sample(const SampleDatagram& datagram, const Endpoint& from, MonotonicT
     sampled.reading.time = on_our_clock(datagram.time_ns, now);
     sampled.reading.valid = datagram.valid;
     sampled.reading.deadman_held = datagram.deadman_held;
+    sampled.reading.buttons = datagram.buttons;
+    sampled.reading.gripper_m = datagram.gripper_m;
     sampled.reading.position_m = to_vec3(datagram.position_m);
+    sampled.reading.rotation = datagram.rotation;
     if (datagram.velocity_m_per_s)
     {
         sampled.reading.velocity_m_per_s = to_vec3(*datagram.velocity_m_per_s);
+    }
+    if (datagram.angular_velocity_rad_per_s)
+    {
+        sampled.reading.angular_velocity_rad_per_s = to_vec3(*datagram.angular_velocity_rad_per_s);
     }
     last_sequence_ = address.sequence;
     heard_ = now;

@@ -29,6 +29,7 @@ struct Peer
     std::uint64_t instance{0};
     std::uint64_t session{0};
     bool is_attached{false};
+    std::uint16_t version{kVersion}; ///< Of its description, and so of all that it is told.
 };
 
 struct Described

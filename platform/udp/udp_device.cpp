@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "platform/udp/udp_device.hpp"
 
+#include "platform/device_force.hpp"
 #include "platform/posix/linux_extras.hpp"
 
 #include <algorithm>
@@ -255,11 +256,14 @@ void UdpDevice::send_due(bool is_asked) noexcept
 void UdpDevice::send(const udp::Peer& peer, std::uint64_t sequence, const DeviceCommand& command,
                      std::uint64_t answers) noexcept
 {
-    const Vec3& force_n = command.force_n;
-    const udp::ForceDatagram datagram{{peer.instance, peer.session, sequence},
-                                      {force_n.x(), force_n.y(), force_n.z()},
-                                      command.state,
-                                      answers};
+    udp::ForceDatagram datagram;
+    datagram.address = {peer.instance, peer.session, sequence};
+    datagram.version = peer.version;
+    datagram.force_n = to_array(command.force_n);
+    datagram.torque_nm = to_array(command.torque_nm);
+    datagram.gripper_force_n = command.gripper_force_n;
+    datagram.state = command.state;
+    datagram.answers = answers;
     ++counts_.forces;
     counts_.unsent += socket_.send(encode(datagram), peer.endpoint) ? 0U : 1U;
 }
@@ -271,8 +275,10 @@ void UdpDevice::brake() noexcept
     udp::Peer peer;
     if (peer_.try_read(peer) && peer.is_attached)
     {
-        const udp::ForceDatagram datagram{
-            {peer.instance, peer.session, sequence_.fetch_add(1) + 1}, {}, DeviceState::brake, 0};
+        udp::ForceDatagram datagram;
+        datagram.address = {peer.instance, peer.session, sequence_.fetch_add(1) + 1};
+        datagram.version = peer.version;
+        datagram.state = DeviceState::brake;
         static_cast<void>(socket_.send(encode(datagram), peer.endpoint)); // It is repeated.
     }
 }

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/math/rotation.hpp"
+#include "rt_core/records/device_record.hpp"
+
+#include <cstdint>
+#include <optional>
+
+namespace tactus::hrtc
+{
+
+/// A button that parts hand and tool: while it is held the tool stays where it is and the hand goes
+/// its own way; when it is let go the tool goes and turns with the hand again, from where it is. So
+/// a small workspace reaches far, as a mouse does that is lifted. Haptic thread.
+class Clutch
+{
+public:
+    /// None: there is no clutch, and the tool is where the hand is.
+    explicit Clutch(std::optional<std::uint32_t> button) noexcept : button_(button) {}
+
+    /// Where the tool is while the hand is there. Both rotations are orthonormal to
+    /// kRotationTolerance.
+    [[nodiscard]] HandPlace tool_at(const HandPlace& hand, std::uint32_t buttons) noexcept
+    {
+        const bool was_held = is_held_;
+        is_held_ = button_ && ((buttons >> *button_) & 1U) != 0;
+        if (!is_held_ && was_held)
+        {
+            offset_m_ = tool_.position_m - hand.position_m;
+            turn_ = orthonormalised(hand.rotation.transpose() * tool_.rotation);
+        }
+        has_parted_ = has_parted_ || is_held_;
+        if (!is_held_ || !has_tool_)
+        {
+            tool_ = moved(hand);
+        }
+        has_tool_ = true;
+        return tool_;
+    }
+
+    [[nodiscard]] bool is_held() const noexcept { return is_held_; }
+    /// Whether hand and tool were ever parted.
+    [[nodiscard]] bool has_parted() const noexcept { return has_parted_; }
+
+private:
+    [[nodiscard]] HandPlace moved(const HandPlace& hand) const noexcept
+    {
+        return has_parted_ ? HandPlace{hand.position_m + offset_m_, hand.rotation * turn_} : hand;
+    }
+
+    std::optional<std::uint32_t> button_;
+    bool is_held_{false};
+    bool has_parted_{false};
+    Vec3 offset_m_{0.0, 0.0, 0.0}; ///< From hand to tool, in the world.
+    Mat3 turn_{Mat3::Identity()};  ///< Of the tool in what the hand holds.
+    HandPlace tool_;               ///< The last one.
+    bool has_tool_{false};
+};
+
+} // namespace tactus::hrtc

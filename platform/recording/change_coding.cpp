@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/recording/change_coding.hpp"
+
+namespace tactus
+{
+
+namespace
+{
+
+/// Whether the change says where the object stands.
+bool has_pose(SceneChangeKind kind) noexcept
+{
+    return kind == SceneChangeKind::object_comes || kind == SceneChangeKind::object_moves;
+}
+
+void write_pose(FixedWriter& writer, const ObjectPose& pose) noexcept
+{
+    writer.write_rotation(pose.rotation);
+    writer.write_vector(pose.translation_m);
+    writer.write(pose.scale);
+    writer.write(pose.stamp_ns);
+    writer.write(pose.arrival_ns);
+    writer.write(pose.revision);
+}
+
+void write_object(FixedWriter& writer, const ObjectSpec& object) noexcept
+{
+    writer.write(object.model.value);
+    writer.write(object.material.stiffness_n_per_m);
+    writer.write(object.material.static_friction);
+    writer.write(object.material.dynamic_friction);
+    writer.write(object.material.damping_n_s_per_m);
+}
+
+ObjectPose read_pose(ByteReader& reader)
+{
+    ObjectPose pose;
+    pose.rotation = read_rotation(reader);
+    pose.translation_m = read_vector(reader);
+    pose.scale = reader.read<double>();
+    pose.stamp_ns = reader.read<std::int64_t>();
+    pose.arrival_ns = reader.read<std::int64_t>();
+    pose.revision = reader.read<std::uint32_t>();
+    return pose;
+}
+
+ObjectSpec read_object(ByteReader& reader)
+{
+    ObjectSpec object;
+    object.model = ModelId{reader.read<std::uint32_t>()};
+    Material& material = object.material;
+    for (double* const value : {&material.stiffness_n_per_m, &material.static_friction,
+                                &material.dynamic_friction, &material.damping_n_s_per_m})
+    {
+        *value = reader.read<double>();
+    }
+    return object;
+}
+
+} // namespace
+
+void write_change(FixedWriter& writer, const SceneChange& change) noexcept
+{
+    writer.write(static_cast<std::uint8_t>(change.kind));
+    writer.write(change.number);
+    writer.write(change.generation);
+    if (change.kind == SceneChangeKind::object_comes)
+    {
+        write_object(writer, change.object);
+    }
+    if (has_pose(change.kind))
+    {
+        write_pose(writer, change.pose);
+    }
+}
+
+bool try_read(ByteReader& reader, SceneChange& change)
+{
+    const auto kind = reader.read<std::uint8_t>();
+    if (kind >= kSceneChangeKinds)
+    {
+        return false;
+    }
+    change.kind = static_cast<SceneChangeKind>(kind);
+    change.number = reader.read<std::uint32_t>();
+    change.generation = reader.read<std::uint32_t>();
+    if (change.kind == SceneChangeKind::object_comes)
+    {
+        change.object = read_object(reader);
+    }
+    if (has_pose(change.kind))
+    {
+        change.pose = read_pose(reader);
+    }
+    return true;
+}
+
+Vec3 read_vector(ByteReader& reader)
+{
+    Vec3 value;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        value[axis] = reader.read<double>();
+    }
+    return value;
+}
+
+Mat3 read_rotation(ByteReader& reader)
+{
+    Mat3 rotation;
+    for (int row = 0; row < 3; ++row)
+    {
+        rotation.row(row) = read_vector(reader).transpose();
+    }
+    return rotation;
+}
+
+} // namespace tactus
