@@ -25,14 +25,16 @@ set(stage_floor
     rt_core/base rt_core/math rt_core/limits.hpp rt_core/geometry rt_core/records rt_core/spm)
 
 tactus_room(rt_core/base)
-tactus_room(rt_core/math rt_core/base)
+tactus_room(rt_core/math rt_core/base rt_core/math/seen_triangle.hpp)
+# A record without inline functions: all of math that a kernel set may see.
+tactus_room(rt_core/math/seen_triangle.hpp rt_core/base)
 tactus_room(rt_core/geometry rt_core/base rt_core/math rt_core/limits.hpp)
 tactus_room(rt_core/limits.hpp rt_core/base)
 tactus_room(rt_core/spm rt_core/base rt_core/math rt_core/limits.hpp)
 tactus_room(rt_core/records
     rt_core/base rt_core/math rt_core/limits.hpp rt_core/geometry rt_core/spm)
 tactus_room(rt_core/cache ${stage_floor})
-tactus_room(rt_core/kernels rt_core/base)
+tactus_room(rt_core/kernels rt_core/base rt_core/limits.hpp rt_core/math/seen_triangle.hpp)
 tactus_room(rt_core/abtree ${stage_floor} rt_core/kernels)
 tactus_room(rt_core/forest ${stage_floor} rt_core/abtree rt_core/kernels)
 tactus_room(rt_core/predict ${stage_floor})
@@ -61,8 +63,10 @@ tactus_room(platform/recording platform/base rt_core)
 tactus_room(platform/doctor platform)
 # Pictures; of what was measured it knows nothing.
 tactus_room(platform/plot)
-# Its command line is read like every other program's: docs/decisions/0003-command-line-room.md.
-tactus_room(platform/hrtc rt_core transport platform host_tools/cli)
+# Its command line and a scene's file are read like every other program's:
+# docs/decisions/0003-command-line-room.md.
+tactus_room(platform/hrtc rt_core transport platform host_tools/cli host_tools/mesh
+    host_tools/scene)
 
 # --- transport: parse and link live in spm; of the cache it knows inbox and page slots.
 tactus_room(transport ${stage_floor} rt_core/cache platform/base)
@@ -72,13 +76,18 @@ set(host_floor platform/base rt_core transport)
 
 tactus_room(host_tools/cli platform/base)
 tactus_room(host_tools/mesh ${host_floor})
+tactus_room(host_tools/scene ${host_floor} host_tools/mesh)
 tactus_room(host_tools/shapes ${host_floor} host_tools/mesh)
 tactus_room(host_tools/simplify ${host_floor} host_tools/mesh)
 tactus_room(host_tools/encode ${host_floor} host_tools/mesh host_tools/simplify)
+# The library for other languages.
+tactus_room(host_tools/c ${host_floor})
+tactus_room(host_tools/python host_tools/c)
 tactus_room(host_tools/spm_build ${host_floor}
-    host_tools/cli host_tools/mesh host_tools/shapes host_tools/simplify host_tools/encode)
+    host_tools/cli host_tools/mesh host_tools/scene host_tools/shapes host_tools/simplify
+    host_tools/encode)
 tactus_room(host_tools/spm_inspect ${host_floor} host_tools/cli host_tools/mesh host_tools/encode)
-tactus_room(host_tools/spm_publish ${host_floor} host_tools/cli)
+tactus_room(host_tools/spm_publish ${host_floor} host_tools/cli host_tools/scene)
 
 tactus_room(tests *)
 
@@ -92,6 +101,7 @@ tactus_outside(fmt platform/doctor platform/plot platform/hrtc transport host_to
 tactus_outside(assimp host_tools/mesh tests)
 tactus_outside(tbb host_tools tests)
 tactus_outside(oneapi host_tools tests)
+tactus_outside(pybind11 host_tools/python)
 tactus_outside(gtest tests)
 tactus_outside(rapidcheck tests)
 # libsodium's one header; rt_core must not hash with it, since it may allocate.

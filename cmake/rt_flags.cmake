@@ -7,6 +7,12 @@ target_compile_options(tactus_numerics INTERFACE -ffp-contract=off)
 target_compile_definitions(tactus_numerics INTERFACE
     EIGEN_DONT_VECTORIZE EIGEN_MAX_ALIGN_BYTES=0 EIGEN_NO_DEBUG)
 
+# One set of objects for shared and static libraries and programs. No function may be replaced by
+# another one of its name, so that calls within a library are as direct as without -fPIC; inline
+# functions of a library are its own, whatever a program's were compiled with.
+add_compile_options(-fPIC -fno-semantic-interposition
+    $<$<COMPILE_LANGUAGE:CXX>:-fvisibility-inlines-hidden>)
+
 if(TACTUS_SANITIZE)
     add_compile_options(
         -fsanitize=${TACTUS_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
