@@ -38,6 +38,7 @@ struct BenchOptions
     bool quick{false};                   ///< Fewer frames and repeats; no case of 4 M faces.
     bool full{false};                    ///< All trials of a suite that usually tries few.
     bool count{false};                   ///< One warm pass, nothing else: for instruction counts.
+    bool instructions{false};            ///< Count them, too, where a suite can.
     std::vector<std::string> only;       ///< Names of cases; empty: all.
     std::filesystem::path cache;         ///< Keeps encoded models; empty: none are kept.
     std::optional<std::uint32_t> frames; ///< Instead of the suite's own numbers.

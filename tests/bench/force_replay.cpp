@@ -67,7 +67,7 @@ std::vector<ToolOutput> replay(const ForceRun& run, test::FrameRig& rig, ForceTr
             [&]
             {
                 timer.begin();
-                output = rig.frame().run(tools, rig.source_poses(), Budgets{}, timer.mark());
+                output = rig.frame().run(rig.input(tools, Budgets{}), timer.mark());
             });
         if (i >= run.lead_in)
         {

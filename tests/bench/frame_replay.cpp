@@ -3,6 +3,7 @@
 #include "tests/bench/frame_replay.hpp"
 
 #include "tests/bench/heap_use.hpp"
+#include "tests/bench/instruction_count.hpp"
 #include "tests/bench/stage_timer.hpp"
 
 #include <fmt/format.h>
@@ -88,7 +89,8 @@ std::optional<std::string> FrameReplay::run_once(CacheState caches, std::size_t 
             [&]
             {
                 timer.begin();
-                output = rig.step_without_delivery(goals, run_.budgets, timer.mark());
+                output = is_counted ? counted_step(rig, goals, run_.budgets, timer.mark())
+                                    : rig.step_without_delivery(goals, run_.budgets, timer.mark());
             });
         if (i == hashes_.size())
         {

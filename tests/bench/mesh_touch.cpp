@@ -24,10 +24,8 @@ constexpr double kTurn_rad_per_s = 1.0;
 constexpr double kLowest_diag = -0.0075;
 constexpr double kHighest_diag = 0.005;
 constexpr double kSwing_s = 1.0;
-/// The next distance is expected to be at most this many times the last one.
-constexpr double kGuess = 1.1;
 /// Nothing is to be cut short.
-constexpr std::uint32_t kUnlimitedSplits = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t kUnlimited = std::numeric_limits<std::uint32_t>::max();
 
 Vec3 vec3_of(const std::array<double, 3>& coordinates)
 {
@@ -73,7 +71,7 @@ std::vector<Triangle> moved(const std::vector<test::Face>& faces, const Vec3& of
 
 } // namespace
 
-NamedMesh make_tool_mesh(const Scene& object)
+NamedMesh make_tool_mesh(const Scene& object, MeshProbe probe)
 {
     TriangleMesh mesh = make_shape(Shape::bumpy_sphere, kToolFaces).value();
     Vec3 low = vec3_of(mesh.positions[0]);
@@ -83,12 +81,14 @@ NamedMesh make_tool_mesh(const Scene& object)
         low = low.cwiseMin(vec3_of(position));
         high = high.cwiseMax(vec3_of(position));
     }
-    const double scale = kAcross_diag * object.model.diagonal_m / (high - low).maxCoeff();
+    const bool is_small = probe == MeshProbe::small;
+    const double own = is_small ? (high - low).norm() : (high - low).maxCoeff();
+    const double scale = kAcross_diag * object.model.diagonal_m / own;
     for (auto& position : mesh.positions)
     {
         std::ranges::transform(position, position.begin(), [&](double x) { return scale * x; });
     }
-    return {"tool-for-" + object.model.name, std::move(mesh)};
+    return {(is_small ? "small-tool-for-" : "tool-for-") + object.model.name, std::move(mesh)};
 }
 
 std::vector<Triangle> faces_in_source_frame(const Scene& scene)
@@ -102,21 +102,27 @@ std::vector<Triangle> faces_in_model_frame(const Scene& scene)
 }
 
 std::vector<Similarity> mesh_touch_motion(const TouchScene& object,
-                                          const std::vector<Triangle>& tool, std::uint32_t frames)
+                                          const std::vector<Triangle>& tool, MeshProbe probe,
+                                          std::uint32_t frames)
 {
-    const std::vector<Vec3> slide = slide_motion(object, kTouch_diag_per_s, frames);
+    const bool is_small = probe == MeshProbe::small;
+    std::vector<Vec3> way =
+        is_small ? touch_motion(object, frames) : slide_motion(object, kTouch_diag_per_s, frames);
+    way.erase(way.begin(), way.end() - frames);
     const Vec3 axis = Vec3(1.0, 2.0, 2.0) / 3.0;
     std::vector<Similarity> places;
     for (std::uint32_t frame = 0; frame < frames; ++frame)
     {
-        const Vec3& above_m = slide[kApproachFrames + frame];
+        const Vec3& above_m = way[frame];
         const Vec3 below_m = object.tree.nearest(above_m).point_m;
-        const Vec3 up = (above_m - below_m).normalized();
+        const double over_m = (above_m - below_m).norm();
+        const Vec3 up = (above_m - below_m) / over_m;
         const Mat3 rotation =
             Eigen::AngleAxisd(kTurn_rad_per_s * kPeriod_s * frame, axis).toRotationMatrix();
         const double lowest_m = extent_along(-(rotation.transpose() * up), tool);
-        const double height_m = lowest_m + height_diag(frame) * object.diagonal_m;
-        places.push_back({rotation, below_m + height_m * up, 1.0});
+        const double height_m = is_small ? over_m - kRadius_diag * object.diagonal_m
+                                         : height_diag(frame) * object.diagonal_m;
+        places.push_back({rotation, below_m + (lowest_m + height_m) * up, 1.0});
     }
     return places;
 }
@@ -158,26 +164,23 @@ void TactusPairQuery::place(const Similarity& tool)
 void TactusPairQuery::forget()
 {
     memory_ = {};
-    guess_m_ = 0.0;
 }
 
-void TactusPairQuery::ask(double reach_m)
+void TactusPairQuery::find_meeting(std::uint32_t enough)
 {
-    OtherSurface surface(object_->tree(), place_, {kUnlimitedSplits, kUnlimitedSplits});
-    query_meshes({tool_->tree(), object_->tree(), place_, reach_m}, surface, memory_, answer_,
-                 report_, contacts_);
+    WalkBudget budget{kUnlimited, kUnlimited};
+    find_meeting_faces({tool_->tree(), object_->tree(), place_}, enough, budget, memory_, report_);
 }
 
 bool TactusPairQuery::do_meet()
 {
-    WalkBudget budget{kUnlimitedSplits, kUnlimitedSplits};
-    find_meeting_faces({tool_->tree(), object_->tree(), place_}, 1, budget, memory_, report_);
+    find_meeting(1);
     return report_.intersection == Intersection::proven;
 }
 
 const std::vector<test::FacePair>& TactusPairQuery::meeting()
 {
-    ask(0.0);
+    find_meeting(kUnlimited);
     pairs_.clear();
     for (const MeetingFaces& faces : report_.meeting)
     {
@@ -188,19 +191,11 @@ const std::vector<test::FacePair>& TactusPairQuery::meeting()
 
 double TactusPairQuery::distance_m()
 {
-    ask(guess_m_);
-    if (answer_.kind != AnswerKind::exact)
-    {
-        ask(answer_.upper_m);
-    }
-    if (answer_.kind != AnswerKind::exact)
-    {
-        return std::numeric_limits<double>::quiet_NaN();
-    }
-    const bool do_meet = report_.intersection == Intersection::proven;
-    const double distance_m = do_meet ? 0.0 : answer_.upper_m;
-    guess_m_ = kGuess * distance_m;
-    return distance_m;
+    OtherSurface surface(object_->tree(), place_, {kUnlimited, kUnlimited});
+    find_nearest_faces({tool_->tree(), object_->tree(), place_}, surface, memory_, answer_,
+                       report_);
+    return answer_.kind == AnswerKind::exact ? answer_.upper_m
+                                             : std::numeric_limits<double>::quiet_NaN();
 }
 
 test::FacePair TactusPairQuery::in_source(const test::FacePair& own) const

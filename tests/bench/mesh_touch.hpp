@@ -16,27 +16,31 @@
 namespace tactus::bench
 {
 
-/// A tool that is a mesh: a bumpy sphere of about 1,000 faces whose longest side is 0.15 of an
-/// object's diagonal, round the origin of its frame.
-[[nodiscard]] NamedMesh make_tool_mesh(const Scene& object);
+/// A tool that is a mesh: a bumpy sphere of about 1,000 faces round the origin of its frame.
+enum class MeshProbe : std::uint8_t
+{
+    large, ///< Its longest side is 0.15 of an object's diagonal.
+    small, ///< Its diagonal is.
+};
+[[nodiscard]] NamedMesh make_tool_mesh(const Scene& object, MeshProbe probe);
 
 /// The faces of a scene in the frame of the mesh that it was made of.
 [[nodiscard]] std::vector<Triangle> faces_in_source_frame(const Scene& scene);
 /// In the model's frame, as every contestant has the object.
 [[nodiscard]] std::vector<Triangle> faces_in_model_frame(const Scene& scene);
 
-/// Places of a tool that slides over the object at 0.1 diag/s and turns at 1 rad/s about one axis.
-/// Along the direction in which the slide's probe has the surface below it, the tool's lowest
-/// corner is between 0.75 % of the diagonal below the surface's nearest point and 0.5 % above it,
-/// there and back once a second.
+/// Places of a tool that turns at 1 rad/s about one axis, and stands above or in the point of the
+/// surface that is nearest to a way's centre, along the direction between the two.
+///
+/// The large tool slides over the object at 0.1 diag/s, its lowest corner between 0.75 % of the
+/// diagonal below the surface's point and 0.5 % above it, there and back once a second. The small
+/// one flies, approaches, slides and retreats (touch_motion); its lowest corner is as high as the
+/// lowest point of that motion's sphere.
 [[nodiscard]] std::vector<Similarity> mesh_touch_motion(const TouchScene& object,
                                                         const std::vector<Triangle>& tool,
-                                                        std::uint32_t frames);
+                                                        MeshProbe probe, std::uint32_t frames);
 
-/// The controller's query of two meshes over two static models. It finds every pair that meets and
-/// bounds the distance: meeting() asks it with no reach. The nearest pair is proven within the
-/// reach only: distance_m() asks with a little more than the last distance and, where that was too
-/// little, again with the bound that it got. do_meet() asks for one pair that meets, and no more.
+/// The controller's queries of two meshes over two static models.
 class TactusPairQuery final : public PairQuery
 {
 public:
@@ -54,20 +58,17 @@ public:
     void forget() override;
 
 private:
+    void find_meeting(std::uint32_t enough);
     TactusPairQuery(std::unique_ptr<StaticModel> tool, std::unique_ptr<StaticModel> object,
                     const Scene& tool_scene, const Scene& object_scene);
-    void ask(double reach_m);
-
     std::unique_ptr<StaticModel> tool_;
     std::unique_ptr<StaticModel> object_;
     test::FaceNames tool_names_;
     test::FaceNames object_names_;
     MeshPlacement place_;
     MeshMemory memory_;
-    double guess_m_{0.0};
     DistanceAnswer answer_;
     MeshReport report_;
-    ContactReport contacts_;
     std::vector<test::FacePair> pairs_;
 };
 

@@ -9,6 +9,9 @@
 #include "tests/bench/peer_cases.hpp"
 
 #include <algorithm>
+#include <array>
+#include <map>
+#include <utility>
 
 namespace tactus::bench
 {
@@ -16,22 +19,88 @@ namespace tactus::bench
 namespace
 {
 
-constexpr const char* kPart = "W2, mesh tool";
+/// What is nearer than this is near, as a share of the diagonal.
+constexpr double kNearMeshes_diag = 0.02;
 
-/// One scene and what every contestant is asked about it.
+/// Frames by what there is to find.
+enum class PairClass : std::uint8_t
+{
+    all,
+    contact, ///< Some faces meet.
+    near,
+    far,
+};
+constexpr std::array kPairClasses{PairClass::all, PairClass::contact, PairClass::near,
+                                  PairClass::far};
+
+/// Before the names of its figures.
+std::string prefix_of(PairClass of)
+{
+    switch (of)
+    {
+    case PairClass::contact:
+        return "contact ";
+    case PairClass::near:
+        return "near ";
+    case PairClass::far:
+        return "far ";
+    case PairClass::all:
+        break;
+    }
+    return "";
+}
+
+/// A goal for a figure of ours, as a share of FCL's.
+struct PeerGoal
+{
+    MeshProbe probe;
+    PairQuestion question;
+    PairClass of;
+    double p50;
+};
+constexpr std::array kPeerGoals{
+    PeerGoal{MeshProbe::large, PairQuestion::any, PairClass::all, 0.011},
+    PeerGoal{MeshProbe::large, PairQuestion::all_pairs, PairClass::contact, 0.075},
+    PeerGoal{MeshProbe::large, PairQuestion::distance, PairClass::near, 0.08},
+    PeerGoal{MeshProbe::small, PairQuestion::all_pairs, PairClass::contact, 0.14},
+};
+/// Of the distance of the small probe, far from the surface, in microseconds.
+constexpr double kFarP99_us = 200.0;
+
+/// One probe over one scene, and what every contestant is asked about the two.
 struct MeshTrial
 {
     const CaseContext& context;
     const Scene& object;
+    MeshProbe probe;
     std::uint32_t passes;
     std::vector<Similarity> places;
     PairTruth truth;
 };
 
+/// By question and class.
+using PairSpreads = std::map<std::pair<PairQuestion, PairClass>, Spread>;
+
+std::vector<bool> frames_of(const MeshTrial& trial, PairClass of)
+{
+    std::vector<bool> frames;
+    for (const double distance_m : trial.truth.distances_m)
+    {
+        const PairClass is = distance_m == 0.0 ? PairClass::contact
+                             : distance_m < kNearMeshes_diag * trial.object.model.diagonal_m
+                                 ? PairClass::near
+                                 : PairClass::far;
+        frames.push_back(of == PairClass::all || of == is);
+    }
+    return frames;
+}
+
 CaseRows rows_of(const MeshTrial& trial, const std::string& by, const char* setting,
                  std::uint64_t hash)
 {
-    Row common = trial.context.common_row(trial.object.model.name, kPart);
+    Row common = trial.context.common_row(trial.object.model.name, trial.probe == MeshProbe::large
+                                                                       ? "W2, mesh tool"
+                                                                       : "W2, small mesh tool");
     common.by = by;
     common.setting = setting;
     common.frames = trial.places.size();
@@ -39,16 +108,29 @@ CaseRows rows_of(const MeshTrial& trial, const std::string& by, const char* sett
     return {trial.context.rows, common};
 }
 
-void add_times(CaseRows& rows, const PairAnswers& answers)
+/// Of each class that has frames.
+void add_times(const MeshTrial& trial, const std::string& name, CaseRows& rows,
+               const PairAnswers& answers, PairQuestion question, PairSpreads& spreads)
 {
-    const Spread times_us = spread_of(answers.us.least());
-    rows.add("p50", times_us.p50, "us");
-    rows.add("p99", times_us.p99, "us");
-    rows.add("max", times_us.max, "us");
+    for (const PairClass of : kPairClasses)
+    {
+        const std::vector<double> times_us = chosen(answers.us.least(), frames_of(trial, of));
+        if (times_us.empty())
+        {
+            continue;
+        }
+        const Spread spread_us = spread_of(times_us);
+        const bool has_goal = question == PairQuestion::distance && of == PairClass::far;
+        rows.add(prefix_of(of) + "p50", spread_us.p50, "us");
+        rows.add(prefix_of(of) + "p99", spread_us.p99, "us",
+                 has_goal ? our_goal(name, kFarP99_us) : std::nullopt);
+        rows.add(prefix_of(of) + "max", spread_us.max, "us");
+        spreads[{question, of}] = spread_us;
+    }
 }
 
 /// The rows of one contestant.
-CaseFailure add_contestant(const MeshTrial& trial, PairQuery& query)
+CaseFailure add_contestant(const MeshTrial& trial, PairQuery& query, PairSpreads& spreads)
 {
     for (const PairQuestion question : kPairQuestions)
     {
@@ -58,7 +140,7 @@ CaseFailure add_contestant(const MeshTrial& trial, PairQuery& query)
             return answers.error().text;
         }
         CaseRows rows = rows_of(trial, query.name(), question_name(question), answers.value().hash);
-        add_times(rows, answers.value());
+        add_times(trial, query.name(), rows, answers.value(), question, spreads);
         const PairErrors errors = judge_pairs(answers.value(), trial.truth, question);
         if (question == PairQuestion::distance)
         {
@@ -85,10 +167,74 @@ void add_truth(const MeshTrial& trial)
         most = std::max(most, meeting.size());
     }
     CaseRows rows = rows_of(trial, "truth", "", pairs);
-    rows.add("frames that meet", static_cast<double>(meet), "");
+    for (const PairClass of : kPairClasses)
+    {
+        rows.add(prefix_of(of) + "frames",
+                 static_cast<double>(std::ranges::count(frames_of(trial, of), true)), "");
+    }
     rows.add("pairs a frame that meets",
              static_cast<double>(pairs) / static_cast<double>(std::max<std::size_t>(meet, 1)), "");
     rows.add("pairs at most", static_cast<double>(most), "");
+}
+
+/// Our times as shares of another's, of the same run.
+void add_shares(const MeshTrial& trial, const std::string& own, const std::string& other,
+                const PairSpreads& ours_us, const PairSpreads& others_us)
+{
+    for (const auto& [of, other_us] : others_us)
+    {
+        const auto& [question, frames] = of;
+        const auto* const goal =
+            std::ranges::find_if(kPeerGoals,
+                                 [&, question = question, frames = frames](const PeerGoal& wanted)
+                                 {
+                                     return wanted.probe == trial.probe &&
+                                            wanted.question == question && wanted.of == frames &&
+                                            other == "FCL";
+                                 });
+        CaseRows rows = rows_of(trial, own, question_name(question), 0);
+        const Spread& own_us = ours_us.at(of);
+        rows.add(prefix_of(frames) + "p50 to " + other, own_us.p50 / other_us.p50, "",
+                 goal == kPeerGoals.end() ? std::nullopt : std::optional(goal->p50));
+        rows.add(prefix_of(frames) + "p99 to " + other, own_us.p99 / other_us.p99, "");
+    }
+}
+
+CaseFailure run_probe(const CaseContext& context, const Scene& object, MeshProbe probe)
+{
+    const auto tool = context.scenes.get(make_tool_mesh(object, probe));
+    if (!tool)
+    {
+        return tool.error().text;
+    }
+    const PairMeshes meshes{faces_in_source_frame(*tool.value()), faces_in_model_frame(object)};
+    MeshTrial trial{context, object, probe, context.options.passes_or(5, 3), {}, {}};
+    const std::uint32_t frames = probe == MeshProbe::small
+                                     ? context.options.frames_or(kCycleFrames, kCycleFrames / 2)
+                                     : context.options.frames_or(kTouchFrames, kTouchFrames / 3);
+    trial.places = mesh_touch_motion(object.touch(), meshes.tool, probe, frames);
+    trial.truth = find_pair_truth(*tool.value(), object, trial.places);
+    add_truth(trial);
+    const auto ours = TactusPairQuery::make(*tool.value(), object);
+    if (!ours)
+    {
+        return ours.error().text;
+    }
+    PairSpreads ours_us;
+    if (auto failure = add_contestant(trial, *ours.value(), ours_us))
+    {
+        return failure;
+    }
+    for (const PairPeer& peer : context.options.count ? std::vector<PairPeer>() : pair_peers())
+    {
+        PairSpreads others_us;
+        if (auto failure = add_contestant(trial, *peer.make(meshes), others_us))
+        {
+            return failure;
+        }
+        add_shares(trial, ours.value()->name(), peer.name, ours_us, others_us);
+    }
+    return std::nullopt;
 }
 
 } // namespace
@@ -100,31 +246,10 @@ CaseFailure run_peer_mesh_case(const CaseContext& context, const PeerMeshCase& t
     {
         return scene.error().text;
     }
-    const Scene& object = *scene.value();
-    const auto tool = context.scenes.get(make_tool_mesh(object));
-    if (!tool)
-    {
-        return tool.error().text;
-    }
     const PinnedCore pinned(context.options.core);
-    const PairMeshes meshes{faces_in_source_frame(*tool.value()), faces_in_model_frame(object)};
-    MeshTrial trial{context, object, context.options.passes_or(5, 3), {}, {}};
-    trial.places = mesh_touch_motion(object.touch(), meshes.tool,
-                                     context.options.frames_or(kTouchFrames, kTouchFrames / 3));
-    trial.truth = find_pair_truth(*tool.value(), object, trial.places);
-    add_truth(trial);
-    const auto ours = TactusPairQuery::make(*tool.value(), object);
-    if (!ours)
+    for (const MeshProbe probe : {MeshProbe::large, MeshProbe::small})
     {
-        return ours.error().text;
-    }
-    if (auto failure = add_contestant(trial, *ours.value()))
-    {
-        return failure;
-    }
-    for (const PairPeer& peer : context.options.count ? std::vector<PairPeer>() : pair_peers())
-    {
-        if (auto failure = add_contestant(trial, *peer.make(meshes)))
+        if (auto failure = run_probe(context, *scene.value(), probe))
         {
             return failure;
         }

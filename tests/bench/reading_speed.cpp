@@ -30,7 +30,7 @@ public:
         , next_(header_.counts().base_faces)
     {
         Arena measure = Arena::measuring();
-        static_cast<void>(Linker(measure, header_, slots()));
+        static_cast<void>(LinkPool(measure, pages_.size()));
         memory_.resize(measure.used() / sizeof(Line));
     }
 
@@ -68,7 +68,8 @@ public:
     {
         std::fill(next_.begin(), next_.end(), kNextPending);
         Arena arena(std::as_writable_bytes(std::span(memory_)));
-        return {arena, header_, slots()};
+        pool_.emplace(arena, pages_.size());
+        return {*pool_, 0, header_, slots()};
     }
 
     /// Whether every record was linked.
@@ -96,6 +97,7 @@ private:
     std::vector<BaseFace> faces_;
     std::vector<std::uint32_t> next_;
     std::vector<Line> memory_;
+    std::optional<LinkPool> pool_;
 };
 
 } // namespace

@@ -39,7 +39,7 @@ using VertexRows = std::map<Vec3f, std::vector<VertexRow>>;
 VertexRows vertex_rows(const AbTree& tree)
 {
     VertexRows rows;
-    for (std::uint32_t block = 0; block < tree.capacities().blocks; ++block)
+    for (std::uint32_t block = 0; block < tree.pool().capacities().blocks; ++block)
     {
         const std::uint32_t used = tree.is_block_in_use(block) ? tree.block(block).vertices : 0U;
         for (std::uint32_t row = 0; row < kBlockVertices; ++row)

@@ -67,7 +67,7 @@ Result<std::unique_ptr<StaticModel>, SceneError> StaticModel::make(const Scene& 
 
 std::size_t StaticModel::bytes()
 {
-    return required_bytes(model().header, model().capacities);
+    return required_bytes({&model().header, 1}, {&model().capacities, 1});
 }
 
 // What a record depends on is split first.
@@ -102,7 +102,8 @@ bool refine_fully(Model& model)
         }
     }
     FrameFault faults = FrameFault::none;
-    model.refit(faults);
+    WorkCounters work;
+    model.refit(work, faults);
     return faults == FrameFault::none;
 }
 

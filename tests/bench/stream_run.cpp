@@ -32,7 +32,7 @@ void StreamCounter::add(const FrameOutput& output)
         ++figures_.taps;
         figures_.late_taps += is_settled(kind) && !tool.frozen && !tool.held_back ? 0U : 1U;
     }
-    count_loads(output.door[0].events);
+    count_loads(output.door.events);
     figures_.hash += output.models[0].state_hash * (2 * figures_.frames + 1);
     ++figures_.frames;
 }

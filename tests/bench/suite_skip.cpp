@@ -5,6 +5,7 @@
 /// answers stay the same to the bit, or the case fails.
 
 #include "tests/bench/frame_replay.hpp"
+#include "tests/bench/instruction_count.hpp"
 #include "tests/bench/suites.hpp"
 
 #include <fmt/format.h>
@@ -37,8 +38,11 @@ void keep_splits(FrameRun& run)
 /// answer is exact.
 constexpr double kFixedRadius = 1.5;
 
-constexpr std::array<Without, 9> kWithout{{
+constexpr std::array<Without, 14> kWithout{{
     {"all shortcuts", [](FrameRun&) {}},
+    {"all objects near", [](FrameRun& run) { run.rig.variant.finds_neighbours = false; }},
+    {"no rest of tools", [](FrameRun& run) { run.rig.variant.lets_tools_rest = false; }},
+    {"no rest of frames", [](FrameRun& run) { run.rig.variant.lets_frames_rest = false; }},
     {"no rest out of reach", [](FrameRun& run) { run.rig.variant.lets_pairs_rest = false; }},
     {"no warm start", [](FrameRun& run) { run.rig.variant.starts_warm = false; }},
     {"no lasting certificates", [](FrameRun& run) { run.rig.variant.keeps_certificates = false; }},
@@ -46,11 +50,23 @@ constexpr std::array<Without, 9> kWithout{{
      [](FrameRun& run) { run.rig.variant.fixed_radius = kFixedRadius; }},
     {"refit of everything", [](FrameRun& run) { run.rig.variant.refits_changed_only = false; }},
     {"no coarsening", keep_splits},
+    {"all models asked for", [](FrameRun& run) { run.rig.variant.asks_near_models_only = false; }},
+    {"a search every frame", [](FrameRun& run) { run.rig.variant.keeps_searches = false; }},
     {"no prefetch", [](FrameRun& run) { run.rig.variant.asks_ahead = false; }},
     {"none of them",
      [](FrameRun& run)
      {
-         run.rig.variant = {false, false, false, false, false, kFixedRadius, 0.0};
+         run.rig.variant = {.finds_neighbours = false,
+                            .lets_tools_rest = false,
+                            .lets_frames_rest = false,
+                            .lets_pairs_rest = false,
+                            .starts_warm = false,
+                            .keeps_certificates = false,
+                            .refits_changed_only = false,
+                            .asks_near_models_only = false,
+                            .keeps_searches = false,
+                            .asks_ahead = false,
+                            .fixed_radius = kFixedRadius};
          keep_splits(run);
      }},
 }};
@@ -144,6 +160,17 @@ CaseFailure run_skip_case(const CaseContext& context, const SkipCase& test_case)
     if (context.options.count)
     {
         return std::nullopt; // The comparison's frames are not to be counted.
+    }
+    const auto counted = count_instructions(context);
+    if (!counted)
+    {
+        return counted.error().text;
+    }
+    if (counted.value())
+    {
+        rows.add("instructions",
+                 static_cast<double>(*counted.value()) / static_cast<double>(run.counted()),
+                 "/frame");
     }
     FrameReplay with_all(usual);
     if (auto failure = with_all.run(1))

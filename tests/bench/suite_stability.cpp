@@ -15,6 +15,7 @@
 #include "tests/stability/garbage_trial.hpp"
 #include "tests/stability/mesh_trial.hpp"
 #include "tests/stability/pop_through_trial.hpp"
+#include "tests/stability/scene_trial.hpp"
 #include "tests/stability/split_merge_trial.hpp"
 #include "tests/stability/trial_models.hpp"
 #include "tests/stability/twin_trial.hpp"
@@ -49,13 +50,14 @@ struct Sizes
     std::uint32_t proxy_frames;     ///< A model and hardship.
     std::uint32_t closing_rounds;
     std::uint32_t force_frames; ///< A model and hardship.
+    std::uint32_t scene_frames; ///< A hardship.
 };
 
-constexpr Sizes kSized{200, 100, 2'000, 100'000, 100, 50'000, 4'000, 40, 150, 40, 10, 500};
+constexpr Sizes kSized{200, 100, 2'000, 100'000, 100, 50'000, 4'000, 40, 150, 40, 10, 500, 400};
 /// A million frames of brackets, of proxies and cases of each kernel, ten million splits and
 /// merges, 24 hours of touching.
-constexpr Sizes kFull{67'000,  4'000, 25'000, 2'500'000, 43'200, 3'600'000,
-                      100'000, 1'000, 25'000, 3'600,     1'000,  10'000};
+constexpr Sizes kFull{67'000, 4'000,  25'000, 2'500'000, 43'200, 3'600'000, 100'000,
+                      1'000,  25'000, 3'600,  1'000,     10'000, 20'000};
 
 constexpr std::uint64_t kStabilitySeed = 20'261'600;
 
@@ -206,6 +208,21 @@ void try_meshes(const Sizes& sizes, bool full, const Report& report)
     }
 }
 
+void try_scenes(const Sizes& sizes, bool /*full*/, const Report& report)
+{
+    std::uint64_t own = kStabilitySeed + 3'000;
+    const std::vector<const test::TestModel*> models = test::small_models();
+    for (const char* hardship : {"usual", "K-1", "starved", "lossy-link", "late-link", "static"})
+    {
+        const test::SceneFigures figures =
+            test::run_scene_trial({models, test::hardship_named(*models[0], hardship), 4,
+                                   test::seed_of(++own), sizes.scene_frames});
+        report(figures.truth);
+        fmt::print(stderr, "{}: {} exact answers, {} changes refused\n", figures.truth.name,
+                   figures.exact, figures.refused);
+    }
+}
+
 void try_pop_through(const Sizes& sizes, bool full, const Report& report)
 {
     std::uint64_t own = kStabilitySeed + 1'000;
@@ -318,11 +335,12 @@ struct Part
     void (*run)(const Sizes& sizes, bool full, const Report& report);
 };
 
-constexpr std::array<Part, 10> kParts{{{"kernels", try_kernels},
+constexpr std::array<Part, 11> kParts{{{"kernels", try_kernels},
                                        {"brackets", try_brackets},
                                        {"liars", try_liars},
                                        {"twins", try_twins},
                                        {"meshes", try_meshes},
+                                       {"scene", try_scenes},
                                        {"pop-through", try_pop_through},
                                        {"force-twins", try_force_twins},
                                        {"splits", try_splits},

@@ -34,6 +34,8 @@ struct Suite
 [[nodiscard]] Suite peers_suite();
 [[nodiscard]] Suite skip_suite();
 [[nodiscard]] Suite stability_suite();
+[[nodiscard]] Suite scene_suite();
+[[nodiscard]] Suite starve_suite();
 [[nodiscard]] Suite stream_suite();
 [[nodiscard]] Suite table1_suite();
 

@@ -46,7 +46,7 @@ public:
         output.tools = {&tool, 1};
         output.pairs = {&pair, 1};
         output.models = {&model, 1};
-        output.door = {&take, 1};
+        output.door = take;
         counter.add(output);
     }
 

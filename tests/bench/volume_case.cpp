@@ -52,9 +52,10 @@ public:
         : capacities_{static_cast<std::uint32_t>(faces.size()),
                       pattern.blocks_used() + 2 * Tree::kReserve,
                       pattern.nodes_used() + 2 * Tree::kReserve}
-        , memory_(required_bytes(capacities_, pattern.quantum_m()) / sizeof(Line))
+        , memory_(required_bytes(capacities_) / sizeof(Line))
         , arena_(std::as_writable_bytes(std::span(memory_)))
-        , tree_(arena_, capacities_, pattern.quantum_m(), portable_kernels())
+        , pool_(arena_, capacities_)
+        , tree_(pool_, ModelId{0}, capacities_, pattern.quantum_m(), portable_kernels())
     {
         for (const ChangedFace& face : faces)
         {
@@ -79,16 +80,17 @@ private:
         std::byte bytes[Arena::kAlignment];
     };
 
-    static std::size_t required_bytes(const TreeCapacities& capacities, float quantum_m)
+    static std::size_t required_bytes(const TreeCapacities& capacities)
     {
         Arena arena = Arena::measuring();
-        const Tree tree(arena, capacities, quantum_m, portable_kernels());
+        const typename Tree::Pool pool(arena, capacities);
         return arena.used();
     }
 
     TreeCapacities capacities_;
     std::vector<Line> memory_;
     Arena arena_;
+    typename Tree::Pool pool_;
     Tree tree_;
 };
 

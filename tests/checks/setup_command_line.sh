@@ -40,9 +40,11 @@ trap 'rm -rf "$scratch"' EXIT
 printf '#!/bin/sh\nexit 1\n' | tee "$scratch/dpkg-query" "$scratch/sudo" >"$scratch/apt-get"
 chmod +x "$scratch"/*
 if ((EUID != 0)); then
-    PATH="$scratch:$PATH" expect 2 'apt-get install --no-install-recommends binutils cmake' packages
+    PATH="$scratch:$PATH" expect 2 \
+        'apt-get install --no-install-recommends assimp-testmodels binutils cmake' packages
 else
-    PATH="$scratch:$PATH" expect 2 'apt-get update failed; still missing: binutils cmake' packages
+    PATH="$scratch:$PATH" expect 2 \
+        'apt-get update failed; still missing: assimp-testmodels binutils cmake' packages
 fi
 
 if ((failures > 0)); then

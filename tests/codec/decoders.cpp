@@ -150,12 +150,12 @@ Reading read_frames(View bytes)
         }
     } while (!reader.at_end());
     const RecordedFrame& frame = decoder.frame();
-    const DoorTake door{frame.doors[0].events, frame.doors[0].wish_room};
+    const DoorTake door{frame.events, frame.wish_room};
     ModelOutput model;
     model.state_hash = frame.state_hashes[0];
     FrameEncoder encoder;
-    const auto again = encoder.encode(frame.tools, frame.poses, frame.budgets,
-                                      {{}, {}, {&model, 1}, {}, FrameFault::none, {&door, 1}});
+    const auto again = encoder.encode(
+        frame.input(), {{}, {}, {&model, 1}, {}, FrameFault::none, door, {}}, frame.devices);
     const std::size_t told = again.size() - sizeof(OutputHashes);
     return {"", again.size() == bytes.size() &&
                     std::ranges::equal(again.first(told), bytes.first(told)) &&
@@ -198,15 +198,24 @@ Bytes bytes_of(const Datagram& datagram)
 }
 
 template <typename Datagram>
+Datagram of_points(Datagram datagram)
+{
+    datagram.version = udp::kVersionOfPoints;
+    return datagram;
+}
+
+template <typename Datagram>
 Reading told(const Datagram& datagram, View bytes)
 {
     return {"", std::ranges::equal(udp::encode(datagram), bytes)};
 }
 
-/// Without its flag a position or velocity isn't looked at, so it doesn't come back.
+/// What its flag doesn't say isn't looked at, so it doesn't come back.
 Reading told(const udp::SampleDatagram& sample, View bytes)
 {
-    const bool has_all = sample.valid && sample.velocity_m_per_s;
+    const bool turns = sample.rotation && sample.angular_velocity_rad_per_s && sample.gripper_m;
+    const bool has_all = sample.valid && sample.velocity_m_per_s &&
+                         (turns || sample.version == udp::kVersionOfPoints);
     const auto is_in_range = [](double x) { return std::abs(x) <= 1e6; };
     return {"", sample.time_ns >= 0 && std::ranges::all_of(sample.position_m, is_in_range) &&
                     (!has_all || std::ranges::equal(udp::encode(sample), bytes))};
@@ -307,21 +316,30 @@ std::vector<Decoder> all_decoders()
          .sees_every_flip = false},
         {"datagram_from_device",
          []
-         { return list(bytes_of(test::example_description()), bytes_of(test::example_sample())); },
+         {
+             return list(bytes_of(test::example_description()), bytes_of(test::example_sample()),
+                         bytes_of(of_points(test::example_description())),
+                         bytes_of(of_points(test::example_sample())));
+         },
          read_datagram<udp::decode_from_device>,
          wrong_size,
          wrong_size,
          fuzz::seal_piece,
          {4, 5},
-         version},
+         version,
+         {1, 2}},
         {"datagram_from_controller",
-         [] { return list(bytes_of(test::example_force())); },
+         [] {
+             return list(bytes_of(test::example_force()),
+                         bytes_of(of_points(test::example_force())));
+         },
          read_datagram<udp::decode_from_controller>,
          wrong_size,
          wrong_size,
          fuzz::seal_piece,
          {4, 5},
-         version},
+         version,
+         {1, 2}},
         {.name = "payload_of_pieces",
          .samples = [] { return list(sample_payload()); },
          .read = read_payload,

@@ -36,6 +36,7 @@ struct Decoder
     void (*seal)(std::span<std::byte> bytes){nullptr};
     std::vector<std::size_t> version_at{}; ///< Bytes of its versions, and
     std::string other_version{};           ///< what is said of any other one.
+    std::vector<unsigned> versions{};      ///< First bytes that are read, where there are several.
     bool sees_every_flip{true};            ///< By a checksum. Otherwise a bit is read as it stands.
     bool tells_its_size{true};             ///< What is cut is refused under a right checksum, too.
     std::vector<std::size_t> whole_at{};   ///< Lengths at which a cut sample is a shorter one.

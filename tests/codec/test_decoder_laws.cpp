@@ -173,7 +173,12 @@ TEST_P(VersionedDecoderLaws, every_other_version_is_refused_by_that_name)
             for (unsigned change = 1; change < 256; ++change)
             {
                 bytes[at] = right ^ static_cast<std::byte>(change);
-                expect_refused(said_of(bytes, at), GetParam().other_version, at);
+                const bool is_first = at == GetParam().version_at.front();
+                const auto version = std::to_integer<unsigned>(bytes[at]);
+                if (!is_first || !std::ranges::count(GetParam().versions, version))
+                {
+                    expect_refused(said_of(bytes, at), GetParam().other_version, at);
+                }
             }
             bytes[at] = right;
         }

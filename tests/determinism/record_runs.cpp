@@ -123,14 +123,14 @@ RigOptions held_mesh(RigOptions options, const MeshCore& core)
 }
 
 /// To and fro, and turning.
-ObjectPose pose_at(std::uint32_t frame, std::size_t object)
+ObjectPose pose_at(std::uint32_t frame, std::size_t object, std::int64_t now_ns)
 {
     const double angle = 0.001 * frame * (object == 0 ? 1.0 : -1.0);
     ObjectPose pose;
     pose.rotation = Eigen::AngleAxisd(angle, Vec3(0.6, 0.0, 0.8)).toRotationMatrix();
     pose.translation_m = 0.01 * std::sin(angle) * Vec3(1.0, 2.0, -1.0);
     pose.scale = object == 0 ? 1.0 : 0.7;
-    pose.age_ns = frame % 100 == 99 ? 200'000'000 : 1'000'000;
+    pose.arrival_ns = now_ns - (frame % 100 == 99 ? 200'000'000 : 1'000'000);
     return pose;
 }
 
@@ -184,7 +184,7 @@ bool record(const Run& run, const std::filesystem::path& folder)
         }
         for (std::size_t object = 0; run.objects_move && object < 2; ++object)
         {
-            rig.place_object(pose_at(frame, object), object);
+            rig.place_object(pose_at(frame, object, rig.now_ns()), object);
         }
         const FrameOutput output = rig.step(tools, run.budgets);
         faces += output.work.splits;

@@ -67,12 +67,13 @@ LinkDesk::LinkDesk(const CodedModel& model)
     , is_stuck_(counts_.records)
 {
     Arena measure = Arena::measuring();
-    static_cast<void>(
-        Linker(measure, model.header, PageSlots::take(measure, counts_, counts_.chunks(), 1)));
+    static_cast<void>(LinkPool(measure, counts_.chunks()));
+    static_cast<void>(PageSlots::take(measure, counts_, counts_.chunks(), 1));
     memory_.resize(measure.used() / sizeof(Line));
     Arena arena(std::as_writable_bytes(std::span(memory_)));
     slots_ = PageSlots::take(arena, counts_, counts_.chunks(), 1);
-    linker_ = std::make_unique<Linker>(arena, model.header, slots_);
+    pool_.emplace(arena, counts_.chunks());
+    linker_ = std::make_unique<Linker>(*pool_, 0, model.header, slots_);
     require(parse_base_mesh(model.base, model.header, slots_.base).has_value() &&
                 is_lawful_base(model.header, slots_.base),
             "the model's own base mesh is accepted");

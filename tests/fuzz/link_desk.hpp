@@ -68,6 +68,7 @@ private:
     ModelCounts counts_;
     std::vector<Line> memory_;
     PageSlots slots_;
+    std::optional<LinkPool> pool_;
     std::unique_ptr<Linker> linker_;
     std::vector<std::uint32_t> slot_of_; ///< By chunk; kAway when it isn't here.
     std::vector<ChunkId> chunk_in_;      ///< By slot; none when it is free.

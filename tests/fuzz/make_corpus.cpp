@@ -15,6 +15,7 @@
 #include <fstream>
 #include <initializer_list>
 #include <string>
+#include <string_view>
 
 namespace tactus::fuzz
 {
@@ -243,6 +244,73 @@ void write_offs(const fs::path& folder, const TriangleMesh& mesh)
                                   "0 1 1e-3 0 0 0 0\n4 0 1 2 3 0.5 0.5 0.5\n3 0 2 3\n");
 }
 
+std::string base64_of(const std::string& bytes)
+{
+    constexpr std::string_view kDigits =
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    require(bytes.size() % 3 == 0, "seeds need no padding");
+    std::string text;
+    for (std::size_t i = 0; i < bytes.size(); i += 3)
+    {
+        const auto byte = [&](std::size_t k)
+        { return std::uint32_t{static_cast<unsigned char>(bytes[i + k])}; };
+        const std::uint32_t bits = (byte(0) << 16U) | (byte(1) << 8U) | byte(2);
+        for (const unsigned shift : {18U, 12U, 6U, 0U})
+        {
+            text += kDigits[(bits >> shift) & 63U];
+        }
+    }
+    return text;
+}
+
+/// 48 bytes of positions, 12 of indices, 12 of a sparse position, 2 of its index, 4 of nothing.
+std::string tetrahedron_bytes()
+{
+    std::string bytes;
+    for (const float c : {0.F, 0.F, 0.F, 1.F, 0.F, 0.F, 0.F, 1.F, 0.F, 0.F, 0.F, 1.F})
+    {
+        bytes += bytes_of(c, false);
+    }
+    bytes += std::string("\0\2\1\0\1\3\1\2\3\2\0\3", 12);
+    bytes += bytes_of(0.5F, false) + bytes_of(0.5F, false) + bytes_of(2.F, false);
+    return bytes + std::string("\3\0\0\0\0\0", 6);
+}
+
+/// Two nodes, one below the other and mirrored, show a mesh of triangles and a strip.
+std::string scene_json(const std::string& buffer)
+{
+    return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[)"
+           R"({"name":"a","mesh":0,"children":[1],"translation":[1,0,2]},)"
+           R"({"name":"a","mesh":0,"scale":[-2,2,2],"rotation":[0,0.6,0,0.8],)"
+           R"("extras":{"tactus":{"material":{"stiffness":9,"static":1}}}}],)"
+           R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1},)"
+           R"({"attributes":{"POSITION":0},"mode":5}]}],"accessors":[)"
+           R"({"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","sparse":{"count":1,)"
+           R"("indices":{"bufferView":0,"byteOffset":72,"componentType":5121},)"
+           R"("values":{"bufferView":0,"byteOffset":60}}},)"
+           R"({"bufferView":0,"byteOffset":48,"componentType":5121,"count":12,"type":"SCALAR"}],)"
+           R"("bufferViews":[{"buffer":0,"byteLength":78}],"buffers":[{)" +
+           buffer + R"("byteLength":78}]})";
+}
+
+void write_scenes(const fs::path& folder)
+{
+    const std::string binary = tetrahedron_bytes();
+    write(folder / "embedded.gltf",
+          scene_json("\"uri\":\"data:;base64," + base64_of(binary) + "\","));
+    std::string json = scene_json("");
+    json.resize((json.size() + 3) / 4 * 4, ' ');
+    const auto u32 = [](std::size_t value)
+    { return bytes_of(std::bit_cast<float>(static_cast<std::uint32_t>(value)), false); };
+    write(folder / "binary.glb", "glTF" + u32(2) + u32(12 + 8 + json.size() + 8 + 80) +
+                                     u32(json.size()) + "JSON" + json + u32(80) +
+                                     std::string("BIN\0", 4) + binary + std::string(2, '\0'));
+    write(folder / "models.gltf",
+          R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0,1]}],"nodes":[{"matrix":)"
+          R"([0,2,0,0,-2,0,0,0,0,0,2,0,5,6,7,1],"extras":{"tactus":{"model":"a.spm"}}},)"
+          R"({"mesh":0,"extras":{"tactus":{"touch":false}}}],"meshes":[{}]})");
+}
+
 } // namespace
 
 } // namespace tactus::fuzz
@@ -263,5 +331,6 @@ int main(int argc, char** argv)
     fuzz::write_objs(folder / "read_obj", lump);
     fuzz::write_stls(folder / "read_stl", lump);
     fuzz::write_offs(folder / "read_off", lump);
+    fuzz::write_scenes(folder / "read_scene");
     return 0;
 }

@@ -17,8 +17,6 @@ namespace
 
 constexpr std::int64_t kStepNs = 1'000'000;
 constexpr CourierOptions kOptions{.open_wishes = 3};
-/// Fewer than the chunks and the index page together, so that the door is full at times.
-constexpr std::uint32_t kWishes = 2;
 constexpr std::array<ChunkId, 3> kAll{ChunkId{0}, ChunkId{1}, ChunkId{2}};
 
 } // namespace
@@ -51,18 +49,23 @@ DoorWorld::DoorWorld(const Truth& truth, std::span<std::byte> memory)
     : truth_(truth)
     , arena_(memory)
     , slots_(PageSlots::take(arena_, truth.model.counts, kPages, 1))
-    , pages_(arena_, slots_)
-    , linker_(arena_, truth.header, slots_)
-    , inbox_(arena_, kPages, 1, kWishes)
-    , cache_(arena_, truth.header, slots_, pages_, inbox_)
+    , pool_(arena_, kPages, 1, 1)
+    , pages_(pool_.pages, 0, slots_)
+    , link_pool_(arena_, kPages)
+    , linker_(link_pool_, 0, truth.header, slots_)
+    , cache_(pool_, {}, truth.header, slots_, pages_)
     , link_(truth.model)
     , ledger_(truth, slots_, pages_)
     , copies_(*this)
-    , courier_(arena_, truth.header, slots_, linker_, inbox_, link_, "world", {}, kOptions)
+    , courier_(arena_, slots_, pool_.door, {}, kOptions)
 {
+    courier_.add(truth.header, linker_, link_, "world");
     const auto loaded = load_base_mesh(truth.model.base, truth.header, slots_.base);
     TACTUS_ASSERT(loaded.has_value());
     courier_.copy_pieces_to(&copies_);
+    FrameVariant every_frame;
+    every_frame.keeps_searches = false; // A want looks for everything, as often as it comes.
+    cache_.set_variant(every_frame);
 }
 
 void DoorWorld::Copies::receive(ContentKey key, std::span<const std::byte> bytes)
@@ -86,7 +89,7 @@ std::vector<Verb> DoorWorld::offered() const
             verbs.push_back(verb);
         }
     };
-    add_if(inbox_.arrived.size() > 0, Verb::adopt);
+    add_if(pool_.door.arrived.size() > 0, Verb::adopt);
     add_if(has_pages, Verb::evict);
     add_if(page_to_pin() < kPages, Verb::pin);
     bool has_pinned = false;
@@ -143,7 +146,7 @@ bool DoorWorld::apply(Verb verb)
         is_new = step(verb);
         break;
     }
-    ledger_.check(courier_, inbox_, cache_);
+    ledger_.check(courier_, pool_.door, cache_);
     return is_new;
 }
 
@@ -166,15 +169,17 @@ bool DoorWorld::step(Verb verb)
 
 void DoorWorld::adopt()
 {
-    cache_.adopt_arrivals(Budgets{}.pages, frame_, work_);
-    ledger_.adopted(cache_.taken());
+    work_ = {};
+    pool_.adopt_arrivals(Budgets{}.pages, frame_, work_);
+    ledger_.adopted(pool_.taken());
 }
 
 /// A frame that adopts nothing: what arrived may wait for the next one, however near it is.
 void DoorWorld::want(std::span<const ChunkId> chunks, std::uint32_t frames)
 {
     frame_ += frames;
-    cache_.adopt_arrivals(0, frame_, work_); // Looks how many wishes the door has room for.
+    work_ = {};
+    pool_.adopt_arrivals(0, frame_, work_); // Looks how many wishes the door has room for.
     std::vector<RankedRegion> regions;
     for (const ChunkId chunk : chunks) // See TinyModelSpec::boxes_in_a_row.
     {
@@ -183,7 +188,6 @@ void DoorWorld::want(std::span<const ChunkId> chunks, std::uint32_t frames)
         const double extent_m = 1'000.0 * static_cast<double>(truth_.header.quantum_m());
         regions.push_back({{}, Vec3(x * extent_m, 0.0, 0.0), 0.01 * extent_m, 0});
     }
-    work_.requests = 0;
     FrameFault faults{};
     cache_.request_missing(regions, {}, frame_, work_, faults);
     ledger_.find_freed();
@@ -236,8 +240,8 @@ void DoorWorld::unpin()
 bool DoorWorld::is_settled() const
 {
     return ledger_.told({0}) == truth_.linkable[0] && ledger_.told({1}) == truth_.linkable[1] &&
-           cache_.wishes_under_way() == 0 && inbox_.arrived.size() == 0 &&
-           inbox_.freed.size() == 0 && inbox_.wanted.size() == 0 &&
+           cache_.wishes_under_way() == 0 && pool_.door.arrived.size() == 0 &&
+           pool_.door.freed.size() == 0 && pool_.door.wanted.size() == 0 &&
            courier_.free_pages() + pages_.used() == kPages;
 }
 

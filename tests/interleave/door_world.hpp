@@ -4,7 +4,7 @@
 
 #include "rt_core/base/arena.hpp"
 #include "rt_core/cache/chunk_cache.hpp"
-#include "rt_core/cache/chunk_inbox.hpp"
+#include "rt_core/cache/slot_door.hpp"
 #include "rt_core/spm/linker.hpp"
 #include "rt_core/spm/page_table.hpp"
 #include "tests/interleave/slot_ledger.hpp"
@@ -107,9 +107,10 @@ private:
     const Truth& truth_;
     Arena arena_;
     PageSlots slots_;
+    CachePool pool_;
     PageTable pages_;
+    LinkPool link_pool_;
     Linker linker_;
-    ChunkInbox inbox_;
     ChunkCache cache_;
     VerbLink link_;
     SlotLedger ledger_;

@@ -148,16 +148,16 @@ void SlotLedger::find_freed()
     }
 }
 
-void SlotLedger::check(const Courier& courier, const ChunkInbox& inbox, const ChunkCache& cache)
+void SlotLedger::check(const Courier& courier, const SlotDoor& door, const ChunkCache& cache)
 {
-    const std::size_t freed = inbox.freed.size(); // Of pages alone: no index page goes back here.
+    const std::size_t freed = door.freed.size(); // Of pages alone: no index page goes back here.
     require(courier.free_pages() + handed_chunks_ + table_.used() + freed == slots_.size(),
             "a page slot is in no place or in two");
     require(courier.free_index_pages() + handed_indices_ + cache.index_pages_used() ==
                 pages_.index_pages.size(),
             "a slot of index pages is in no place or in two");
-    require(inbox.arrived.size() <= inbox.arrived.capacity(), "too many arrivals");
-    require(inbox.wanted.size() <= inbox.wanted.capacity(), "too many wishes");
+    require(door.arrived.size() <= door.arrived.capacity(), "too many arrivals");
+    require(door.wanted.size() <= door.wanted.capacity(), "too many wishes");
     for (std::uint32_t slot = 0; slot < slots_.size(); ++slot)
     {
         const PageTable::Meta& meta = table_.meta(slot);

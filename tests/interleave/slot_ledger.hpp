@@ -49,7 +49,7 @@ public:
     /// After any verb of the haptic thread: pages that are away now were freed.
     void find_freed();
     /// After any verb: every slot is in one place, every page holds what the model says.
-    void check(const Courier& courier, const ChunkInbox& inbox, const ChunkCache& cache);
+    void check(const Courier& courier, const SlotDoor& door, const ChunkCache& cache);
 
     /// Keeps `what` when it does not hold and nothing failed before; `number` is of what it is
     /// about.

@@ -7,6 +7,7 @@
 #include "rt_core/query/surface_query.hpp"
 #include "tests/shared/binary_ab_tree.hpp"
 #include "tests/shared/frame_rig.hpp"
+#include "tests/shared/owned_surface.hpp"
 #include "tests/unit/rt_core/support.hpp"
 
 #include <gtest/gtest.h>
@@ -60,7 +61,8 @@ public:
     void adopt_changes()
     {
         FrameFault faults = FrameFault::none;
-        parts().refit(faults);
+        WorkCounters work;
+        parts().refit(work, faults);
         ASSERT_EQ(faults, FrameFault::none);
         std::map<std::uint32_t, ChangedFace> now;
         for (std::uint32_t i = 0; i < parts().forest.capacity(); ++i)
@@ -190,7 +192,7 @@ private:
     double diagonal_m_;
     BinaryAbTree binary_;
     std::map<std::uint32_t, ChangedFace> active_;
-    LocalSurface surface_;
+    OwnedSurface surface_;
     int merged_{0};
 };
 

@@ -23,11 +23,13 @@ struct Named
     FrameVariant variant;
 };
 
-constexpr std::array<Named, 7> kVariants{{
+constexpr std::array<Named, 9> kVariants{{
     {"no_rest", {.lets_pairs_rest = false}},
     {"cold_start", {.starts_warm = false}},
     {"forgotten_certificates", {.keeps_certificates = false}},
     {"refit_of_everything", {.refits_changed_only = false}},
+    {"all_models_asked_for", {.asks_near_models_only = false}},
+    {"searches_every_frame", {.keeps_searches = false}},
     {"no_prefetch", {.asks_ahead = false}},
     {"fixed_radius", {.fixed_radius = 1.5}},
     {"tolerance", {.tolerance_m = 1e-3}},

@@ -55,12 +55,15 @@ public:
     /// One frame of the refiner alone, for everything within `reach_m` of a point.
     FrameFault refine(const Vec3& point, double reach_m, const Budgets& budgets)
     {
-        FrameFault faults = FrameFault::none;
         const RefineQuestion question{point, reach_m, 1.25 * reach_m, &memory};
         work = WorkCounters{};
-        rig.model().refiner.run({&question, 1}, budgets, ++frame_, work, faults);
+        const RefineRequest request{ModelId{0}, {&question, 1}, &closure, {}};
+        Refiner& refiner = rig.model().refiner;
+        refiner.begin({&request, 1}, budgets, work);
+        const FrameFault found = refiner.refine(
+            request, std::min(budgets.splits, kMaxSplitsPerFrame), budgets, ++frame_, work);
         static_cast<void>(rig.model().tree.refit());
-        return faults;
+        return request.is_late() ? found : FrameFault::none;
     }
     [[nodiscard]] std::uint32_t held() const
     {
@@ -75,6 +78,7 @@ public:
 
     FrameRig rig;
     RefineMemory memory;
+    Closure closure;
     WorkCounters work;
 
 private:
@@ -188,9 +192,67 @@ FrameFault faults_of_long_tools(std::uint32_t tools, std::uint32_t objects)
 TEST(RefineLimits, a_frame_says_when_it_does_not_ask_for_what_a_tool_is_at)
 {
     constexpr std::uint32_t kFive = 5 * kMaxCoverBalls; // Now, and four times ahead.
-    static_assert(4 * kFive < kMaxRankedRegions && 5 * kFive > kMaxRankedRegions);
-    EXPECT_FALSE(has_fault(faults_of_long_tools(2, 2), FrameFault::ranking_full));
-    EXPECT_TRUE(has_fault(faults_of_long_tools(2, 3), FrameFault::ranking_full));
+    static_assert(9 * kFive < kMaxRankedRegions && 10 * kFive > kMaxRankedRegions);
+    EXPECT_FALSE(has_fault(faults_of_long_tools(2, 5), FrameFault::ranking_full));
+    EXPECT_TRUE(has_fault(faults_of_long_tools(3, 4), FrameFault::ranking_full));
+}
+
+TEST(RefineLimits, a_frame_walks_so_often_to_refine_and_no_more_and_says_so)
+{
+    EXPECT_EQ(walk_left(10, 0), 10U);
+    EXPECT_EQ(walk_left(10, 10 * kFrameWalks - 3), 3U);
+    EXPECT_EQ(walk_left(10, 10 * kFrameWalks), 0U);
+    // A node each walk, one walk for each ball, and each tool's query.
+    for (const std::uint32_t tools : {1U, 2U})
+    {
+        const TestModel& model = small_model(0);
+        RigOptions options = with_room_for_all();
+        const double length_m = model.diagonal_m;
+        const Segment segment{{-length_m, 0, 0}, {length_m, 0, 0}};
+        options.tools.assign(tools, {0.01 * length_m, 500.0, 8.0, 1.0, segment});
+        FrameRig rig(model, options);
+        Budgets budgets = unlimited(0);
+        budgets.nodes = 1;
+        const FrameOutput output =
+            rig.step(std::vector<Vec3>(tools, to_vec3(model.faces[0][0])), budgets);
+        EXPECT_EQ(output.work.nodes_visited, kFrameWalks + tools);
+        EXPECT_TRUE(has_fault(output.faults, FrameFault::node_budget_spent));
+    }
+}
+
+/// A tool that has some nine tenths of a surface's room in reach of every object.
+FrameOutput fill_surfaces(FrameRig& rig, const Vec3& place)
+{
+    rig.settle(place, unlimited(kMaxSplitsPerFrame), 400);
+    return rig.step(place, unlimited(kMaxSplitsPerFrame));
+}
+
+TEST(RefineLimits, a_frame_has_room_for_so_many_full_surfaces_and_says_when_it_needs_more)
+{
+    const TestModel& model = WideModel::model();
+    const Vec3 place = to_vec3(model.faces[0][0]);
+    std::vector<double> distances;
+    for (const Face& face : model.faces)
+    {
+        distances.push_back(closest_point_on_triangle(place, to_triangle(face)).gap.norm());
+    }
+    std::ranges::sort(distances);
+    const double reach_m = distances[kMaxLocalTriangles * 9 / 10];
+    for (const std::uint32_t objects : {kLocalSurfaces, kLocalSurfaces + 1})
+    {
+        RigOptions options = with_room_for_all();
+        options.tools = {{reach_m / 1.06, 500.0, 8.0, 1.0}};
+        options.tools[0].passes_through = true;
+        options.objects.assign(objects, ObjectSpec{ModelId{0}});
+        FrameRig rig(model, options);
+        const FrameOutput output = fill_surfaces(rig, place);
+        EXPECT_EQ(has_fault(output.faults, FrameFault::surface_truncated),
+                  objects > kLocalSurfaces);
+        EXPECT_EQ(output.pairs[0].kind, AnswerKind::exact);
+        EXPECT_GE(output.pairs[0].certified_radius_m, reach_m / 1.06);
+        EXPECT_EQ(
+            output.pairs[objects - 1].certified_radius_m<reach_m / 1.06, objects> kLocalSurfaces);
+    }
 }
 
 TEST(RefineLimits, a_tool_that_is_a_mesh_looks_at_so_many_times_the_budget_in_each_walk)

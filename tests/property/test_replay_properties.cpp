@@ -12,6 +12,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 
 namespace tactus::test
@@ -148,6 +150,58 @@ INSTANTIATE_TEST_SUITE_P(Runs, Replay,
                                                           std::size_t{3}, std::size_t{5}),
                                           testing::Range(std::size_t{0}, hardships().size())));
 
+/// Slots go from one model to another and back, in pools that are too small for both.
+TEST(ReplayOfTwoModels, gives_every_frame_again_though_they_take_each_other_s_slots)
+{
+    const TestModel& model = small_model(0);
+    const std::uint64_t seed = seed_of(590);
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random = Random::seeded(seed);
+    Wander wander(model, random);
+    RigOptions options;
+    options.pool_bytes = std::size_t{700} << 10U;
+    options.cache_bytes = 10 * sizeof(Page);
+    options.faults.delay_polls_max = 40;
+    options.faults.seed = seed;
+    options.courier_steps_per_frame = 2;
+    options.objects = {{ModelId{0}}, {ModelId{1}}};
+    options.record = true;
+    FrameRig rig({&model, &model}, options);
+    ObjectPose away;
+    away.translation_m = Vec3(0.0, 0.0, 20.0 * model.diagonal_m);
+    std::array<std::uint32_t, 2> most{};
+    std::uint32_t evictions = 0;
+    for (int frame = 0; frame < 2 * kFrames; ++frame)
+    {
+        const std::size_t touched = static_cast<std::size_t>(frame / 100) % 3;
+        for (std::size_t i = 0; i < 2; ++i)
+        {
+            rig.place_object(touched == i ? away : ObjectPose{}, i); // At times both are there.
+        }
+        const FrameOutput output = rig.step(wander.next(), {});
+        evictions += output.work.evictions;
+        for (std::size_t i = 0; i < 2; ++i)
+        {
+            most[i] = std::max(most[i], output.models[i].pages.used);
+        }
+        ASSERT_LE(output.models[0].pages.used + output.models[1].pages.used, 10U);
+    }
+    EXPECT_GT(evictions, 20U);
+    EXPECT_GT(most[0], rig.model({0}).capacities.pages) << "it had its own pages only";
+    EXPECT_GT(most[1], rig.model({1}).capacities.pages) << "it had its own pages only";
+    const auto recording = Recording::parse(rig.finish_recording(), "rig");
+    ASSERT_TRUE(recording) << recording.error().text;
+
+    const auto replayed = replay(recording.value());
+
+    ASSERT_TRUE(replayed) << replayed.error().text;
+    EXPECT_EQ(replayed.value().frames, std::uint64_t{2 * kFrames});
+    if (const auto& difference = replayed.value().difference)
+    {
+        FAIL() << "frame " << difference->frame << ": " << difference->text;
+    }
+}
+
 void expect_noticed(const std::vector<std::byte>& bytes, std::uint64_t frame)
 {
     const auto recording = Recording::parse(bytes, "altered");
@@ -182,8 +236,9 @@ TEST(ReplayOfAnAlteredRecording, notices_another_budget_once_it_is_spent)
     const TestModel& model = small_model(0);
     const auto recording = Recording::parse(record_run(model, hardships()[0], 900), "rig");
     ASSERT_TRUE(recording) << recording.error().text;
+    constexpr std::size_t kTool = 38; // Not turned, and of no device.
     const auto no_splits = [](std::span<std::byte> coded)
-    { coded[4 + 1 + kToolStateBytes + kObjectPoseBytes] = std::byte{0}; };
+    { coded[4 + 1 + 8 + kTool] = std::byte{0}; };
     const auto parsed = Recording::parse(alter_frame(recording.value(), 0, no_splits), "altered");
     ASSERT_TRUE(parsed) << parsed.error().text;
 

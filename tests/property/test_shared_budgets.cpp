@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// Budgets are kept (I8) and count per model and frame: what one model uses up must not be missing
-/// in another.
+/// Budgets are kept (I8) and are the frame's: what one model uses up is not missing in another for
+/// long. So are pools: what one model brought another may use, but for what is kept for it.
 
 #include "tests/property/frame_checks.hpp"
 
@@ -24,13 +24,18 @@ public:
         const auto address = reinterpret_cast<std::uintptr_t>(memory_.data());
         const std::size_t skip = (Arena::kAlignment - address % Arena::kAlignment) % 64;
         arena_.emplace(std::span(memory_).subspan(skip, kBytes));
+        std::vector<ModelHeader> headers;
+        for (ServedModel& served : served_)
+        {
+            served = serve_from_file(model.path, model.name, {}).value();
+            headers.push_back(ModelHeader::parse(served.header).value());
+        }
+        std::array<ModelCapacities, 2> capacities;
+        EXPECT_TRUE(try_plan(headers, kBytes / 3 * 2, 0, capacities));
         std::array<ModelSource, 2> sources;
         for (std::size_t i = 0; i < 2; ++i)
         {
-            served_[i] = serve_from_file(model.path, model.name, {}).value();
-            const ModelHeader header = ModelHeader::parse(served_[i].header).value();
-            sources[i] = {served_[i].header, served_[i].base,
-                          plan_capacities(header, kBytes / 3, 0)};
+            sources[i] = {served_[i].header, served_[i].base, capacities[i]};
         }
         const std::array<ToolSpec, 1> tools{{{0.03 * model.diagonal_m, 500.0, 8.0, 1.0}}};
         const std::array<ObjectSpec, 2> objects{{{ModelId{0}}, {ModelId{1}}}};
@@ -44,12 +49,11 @@ public:
         {
             pose.translation_m = -origin_m_; // Goals are of the model's frame.
         }
+        courier_.emplace(*arena_, frame_->pools().slots, frame_->pools().cache.door, Log{});
         for (std::uint32_t i = 0; i < 2; ++i)
         {
             Model& parts = frame_->model({i});
-            couriers_[i] =
-                std::make_unique<Courier>(*arena_, parts.header, parts.slots, parts.linker,
-                                          parts.inbox, *served_[i].link, model.name, Log{});
+            courier_->add(parts.header, parts.linker, *served_[i].link, model.name);
         }
     }
 
@@ -58,11 +62,16 @@ public:
         for (int i = 0; i < 4; ++i)
         {
             now_ns_ += 250'000;
-            couriers_[0]->step(now_ns_);
-            couriers_[1]->step(now_ns_);
+            courier_->step(now_ns_);
         }
         tools_[0].position_m = goal_m;
-        return frame_->run(tools_, poses_, budgets, {});
+        std::array<SceneChange, 2> moves;
+        for (std::uint32_t i = 0; i < 2; ++i)
+        {
+            moves[i].number = i;
+            moves[i].pose = poses_[i];
+        }
+        return frame_->run({tools_, moves, budgets});
     }
     void move_away(std::size_t object, double distance_m)
     {
@@ -80,7 +89,7 @@ private:
     std::optional<Arena> arena_;
     std::array<ServedModel, 2> served_;
     std::optional<Frame> frame_;
-    std::array<std::unique_ptr<Courier>, 2> couriers_;
+    std::optional<Courier> courier_;
     std::int64_t now_ns_{0};
     std::array<ToolState, 1> tools_;
     Vec3 origin_m_{0.0, 0.0, 0.0};
@@ -134,6 +143,72 @@ TEST(SharedBudgets, a_model_that_was_left_coarsens_while_another_is_scanned)
             static_cast<void>(sut.step(swinging(model, place, frame), few));
         }
         EXPECT_EQ(sut.refined(which), 0U) << "model " << left;
+    }
+}
+
+TEST(SharedPools, a_touch_uses_faces_that_another_model_brought_and_that_keeps_its_part)
+{
+    const TestModel& model = small_model(0);
+    RigOptions options;
+    options.pool_bytes = std::size_t{1'200} << 10U;
+    options.cache_bytes = std::size_t{600} << 10U;
+    options.objects = {{ModelId{0}}, {ModelId{1}}};
+    options.tools = {{0.3 * model.diagonal_m, 500.0, 8.0, 1.0}};
+    options.tools[0].passes_through = true;
+    FrameRig rig({&model, &model}, options);
+    const Vec3 place = to_vec3(model.faces[0][0]);
+    ObjectPose away;
+    away.translation_m = Vec3(0.0, 0.0, 20.0 * model.diagonal_m);
+    std::array<std::uint32_t, 2> most{};
+    for (std::size_t touched = 0; touched < 2; ++touched)
+    {
+        rig.place_object({}, touched);
+        rig.place_object(away, 1 - touched);
+        for (int frame = 0; frame < 400; ++frame)
+        {
+            const FrameOutput output = rig.step(place);
+            for (std::size_t i = 0; i < 2; ++i)
+            {
+                most[i] = std::max(most[i], output.models[i].faces.used);
+                const PoolUse& faces = output.models[i].faces;
+                const std::uint32_t base = rig.model({0}).header.counts().base_faces;
+                ASSERT_LE(faces.used, 2 * faces.capacity - base - (faces.capacity - base) / 4);
+            }
+        }
+        EXPECT_GT(most[touched], rig.model({0}).capacities.faces) << "it used its own part only";
+    }
+}
+
+TEST(SharedPools, a_touch_takes_pages_that_are_of_no_use_elsewhere_but_for_those_kept_there)
+{
+    const TestModel& model = small_model(0);
+    RigOptions options;
+    options.cache_bytes = 16 * sizeof(Page);
+    options.objects = {{ModelId{0}}, {ModelId{1}}};
+    options.tools = {{0.3 * model.diagonal_m, 500.0, 8.0, 1.0}};
+    options.tools[0].passes_through = true;
+    FrameRig rig({&model, &model}, options);
+    const Vec3 place = to_vec3(model.faces[0][0]);
+    ObjectPose away;
+    away.translation_m = Vec3(0.0, 0.0, 20.0 * model.diagonal_m);
+    const std::uint32_t brought = rig.model({0}).capacities.pages;
+    ASSERT_EQ(brought, 8U);
+    std::array<std::uint32_t, 2> used{};
+    for (std::size_t turn = 0; turn < 4; ++turn)
+    {
+        const std::size_t touched = turn % 2;
+        rig.place_object({}, touched);
+        rig.place_object(away, 1 - touched);
+        const std::uint32_t had = used[1 - touched];
+        for (int frame = 0; frame < 600; ++frame)
+        {
+            const FrameOutput output = rig.step(place);
+            used = {output.models[0].pages.used, output.models[1].pages.used};
+            ASSERT_LE(used[0] + used[1], 2 * brought);
+            ASSERT_GE(used[1 - touched], std::min(had, brought / 4)) << "what is kept was taken";
+        }
+        EXPECT_GT(used[touched], brought) << "turn " << turn;
+        EXPECT_EQ(used[1 - touched], std::min(had, brought / 4)) << "turn " << turn;
     }
 }
 

@@ -178,7 +178,7 @@ TEST_F(Validators, blocks_that_leak_or_are_lost_are_told)
     expect_flaw(tree.side(free).in_use, true, "is in use and free");
     expect_flaw(tree.side(free).parent, free, "is in a free list that is too long");
     expect_flaw(tree.side(free).parent, used, "is in use and free");
-    expect_flaw(tree.side(free).parent, kNoNode, "are in its free list, and it counts others");
+    expect_flaw(tree.side(free).parent, kNoNode, "free list, and it counts others");
     expect_flaw(tree.side(free).parent, 1'000'000U, "is free and not there");
 }
 
@@ -275,8 +275,7 @@ TEST_F(Validators, a_table_whose_index_has_other_pages_is_told)
     // Behind the cache's back.
     const PageTable::Meta before = meta;
     sut().pages.evict(unpinned);
-    EXPECT_NE(flaw().find("slots are used here, and the others are not all at the transport"),
-              std::string::npos)
+    EXPECT_NE(flaw().find("slots are used here, and its pool counts others"), std::string::npos)
         << flaw();
     sut().pages.adopt(before.chunk, unpinned, before.touched, before.linked);
     EXPECT_EQ(flaw(), "");
@@ -287,8 +286,9 @@ TEST_F(Validators, what_is_wished_for_and_here_is_told)
     // Far away, without letting anything come.
     const Vec3 elsewhere = to_vec3(model_.faces[0][0]);
     rig_.step_without_delivery({elsewhere}, {}, {});
-    ChunkInbox::Wish wish;
-    while (sut().inbox.wanted.try_pop(wish) && wish.key.kind != ContentKind::chunk)
+    PieceWish wish;
+    while (rig_.frame().pools().cache.door.wanted.try_pop(wish) &&
+           wish.key.kind != ContentKind::chunk)
     {
     }
     ASSERT_EQ(wish.key.kind, ContentKind::chunk);
@@ -321,7 +321,7 @@ TEST_F(Validators, index_pages_of_a_wrong_size_are_told)
 
 TEST_F(Validators, slots_that_go_back_twice_are_told)
 {
-    while (sut().inbox.freed.try_push({ContentKind::chunk, 0}))
+    while (rig_.frame().pools().cache.door.freed.try_push({ContentKind::chunk, 0}))
     {
     }
     EXPECT_NE(flaw().find("slots are on their way back, more than are not its own"),
@@ -336,7 +336,7 @@ TEST_F(Validators, faces_of_the_forest_that_contradict_their_records_are_told)
     expect_flaw(face.id, FaceId{face.id.value ^ 1U}, "is found elsewhere or nowhere");
     expect_flaw(face.id, FaceId{sut().header.counts().face_ids()},
                 "holds a face that the model does not have");
-    expect_flaw(face.id, FaceId{}, "slots hold no face, and its index has others");
+    expect_flaw(face.id, FaceId{}, "slots hold no face, and its pool counts others");
     expect_flaw(face.state, FaceState::base(), "is in the base state");
     expect_flaw(face.state, FaceState::after(face.state.record(), face.state.place() ^ 1U),
                 "is in a state that its record does not give it");

@@ -29,7 +29,7 @@ TEST(WorstCases, a_full_inbox_is_adopted_a_few_pages_a_frame)
             sut.deliver();
         }
     }
-    const auto waiting = static_cast<std::uint32_t>(sut.model().inbox.arrived.size());
+    const auto waiting = static_cast<std::uint32_t>(sut.frame().pools().cache.door.arrived.size());
     ASSERT_GT(waiting, 12U) << "not enough to fill a frame's share";
     budgets.pages = 3;
     std::uint32_t adopted = 0;

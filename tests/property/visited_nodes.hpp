@@ -82,7 +82,7 @@ private:
     /// 2^41.5 quanta: a box that reaches out of every other.
     static constexpr ErrorCode kFarReaching = 200;
 
-    static AbTree::Capacities capacities(std::uint32_t faces)
+    static TreeCapacities capacities(std::uint32_t faces)
     {
         return {faces, faces / 6 + 2 * AbTree::kReserve, faces / 8 + 2 * AbTree::kReserve};
     }

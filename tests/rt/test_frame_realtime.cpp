@@ -96,6 +96,7 @@ struct Touch
     StageMark mark;
     std::uint32_t leg_frames{200};
     std::uint32_t frames{3'000};
+    bool scene_changes{false}; ///< Objects and tools come, move and go; most of it is refused.
 };
 
 const TestModel& model_to_touch()
@@ -111,6 +112,21 @@ void add_work(WorkCounters& sum, const WorkCounters& work)
     sum.evictions += work.evictions;
 }
 
+/// Of any kind, of anything; a thousand now and then.
+void make_changes(std::uint32_t frame, Random& random, std::vector<SceneChange>& changes)
+{
+    changes.resize(frame % 100 == 99 ? 1'000 : random.below(4U));
+    for (SceneChange& change : changes)
+    {
+        change.kind = static_cast<SceneChangeKind>(random.below(kSceneChangeKinds));
+        change.number = random.below(12U);
+        change.generation = random.below(frame / 50 + 2);
+        change.object.model = ModelId{random.below(2U)};
+        change.pose.translation_m = random.in_cube(model_to_touch().diagonal_m);
+        change.pose.scale = random.between(-0.5, 2.0);
+    }
+}
+
 std::uint64_t heap_calls()
 {
     const allocation_counter::HeapCalls calls = allocation_counter::of_this_thread();
@@ -123,6 +139,7 @@ void watch_frames(FrameRig& rig, const Touch& touch, Random& random, Watched& wa
     const std::size_t tool_count = std::max<std::size_t>(touch.options.tools.size(), 1);
     std::vector<Wander> wanders(tool_count, Wander(model_to_touch(), touch.leg_frames, random));
     std::vector<ToolState> tools(tool_count);
+    std::vector<SceneChange> changes;
     for (std::uint32_t i = 0; i < touch.frames; ++i)
     {
         rig.deliver();
@@ -130,11 +147,15 @@ void watch_frames(FrameRig& rig, const Touch& touch, Random& random, Watched& wa
         {
             tools[tool].position_m = wanders[tool].next();
         }
+        if (touch.scene_changes)
+        {
+            make_changes(i, random, changes);
+        }
+        const FrameInput input{tools, changes, touch.budgets, rig.now_ns()};
         allocation_counter::mark_this_thread(true);
         system_call_trap::mark_frame(true);
         rig.frame().rehearse();
-        const FrameOutput output =
-            rig.frame().run(tools, rig.source_poses(), touch.budgets, touch.mark);
+        const FrameOutput output = rig.frame().run(input, touch.mark);
         system_call_trap::mark_frame(false);
         allocation_counter::mark_this_thread(false);
         add_work(watched.work, output.work);
@@ -201,6 +222,16 @@ TEST(FrameRealtime, nor_with_all_tools_and_the_largest_budgets)
     touch.budgets.merges = kMaxMergesPerFrame;
     touch.leg_frames = 100;
     touch.frames = 500;
+    expect_clean(watch(touch));
+}
+
+TEST(FrameRealtime, nor_while_objects_and_tools_come_and_go_and_changes_are_refused)
+{
+    Touch touch;
+    touch.options.tools.assign(3, ToolSpec{0.01 * model_to_touch().diagonal_m});
+    touch.options.capacities.objects = 10;
+    touch.scene_changes = true;
+    touch.leg_frames = 100;
     expect_clean(watch(touch));
 }
 

@@ -6,7 +6,6 @@
 
 #include <cstdio>
 #include <cstdlib>
-#include <numeric>
 
 namespace tactus::test
 {
@@ -48,32 +47,34 @@ FrameRig::FrameRig(const std::vector<const TestModel*>& models, const RigOptions
     FrameSetup setup;
     setup.tools = tools;
     setup.objects = objects;
+    setup.capacities = options.capacities;
+    std::vector<ObjectPose> source_poses;
+    for (const ObjectSpec& object : objects)
+    {
+        const std::size_t i = source_poses.size();
+        poses_.push_back(i < options.poses.size() ? options.poses[i] : ObjectPose{});
+        shown_.push_back(object.model);
+        source_poses.push_back(source_pose(poses_.back(), object.model));
+    }
+    setup.poses = source_poses;
+    poses_.resize(capacities_of(setup).objects);
+    shown_.resize(poses_.size(), ModelId{0});
     setup.period_ns = options.period_ns;
     setup.static_when_it_fits = options.static_when_it_fits;
     setup.prediction = options.prediction;
     setup.variant = options.variant;
-    const std::vector<ModelSource> sources = share_pools(setup, options);
+    const std::vector<ModelSource> sources = plan_pools(setup, options);
     setup.models = sources;
     if (const auto started = Frame::start(frame_, *arena_, setup); !started)
     {
         give_up(refusal_text(started.error()));
     }
-    make_couriers();
-    poses_.resize(objects.size());
-    source_poses_.resize(objects.size());
-    for (std::size_t i = 0; i < objects.size(); ++i)
-    {
-        shown_.push_back(objects[i].model);
-        place_object({}, i);
-    }
+    make_courier();
     tools_.reserve(tools.size());
     if (options.record)
     {
         recorder_ = std::make_unique<RigRecorder>(setup);
-        for (const Line& line : lines_)
-        {
-            recorder_->follow(*line.courier);
-        }
+        recorder_->follow(*courier_);
     }
 }
 
@@ -94,50 +95,47 @@ void FrameRig::serve(const std::vector<const TestModel*>& models, const Loopback
     }
 }
 
-/// What belongs to no model comes off first, and off each share what its courier takes.
-std::vector<ModelSource> FrameRig::share_pools(const FrameSetup& setup,
-                                               const RigOptions& options) const
+/// What belongs to no model comes off first. Planned twice: what the courier needs follows from the
+/// number of pages.
+std::vector<ModelSource> FrameRig::plan_pools(const FrameSetup& setup,
+                                              const RigOptions& options) const
 {
+    std::vector<ModelHeader> headers;
     std::size_t common = Frame::required_bytes(setup);
     for (const Line& line : lines_)
     {
+        headers.push_back(ModelHeader::parse(line.served.header).value());
         common += Arena::round_up(line.served.header.size());
     }
-    const std::vector<double> shares =
-        options.shares.empty() ? std::vector<double>(lines_.size(), 1.0) : options.shares;
-    TACTUS_ASSERT(shares.size() == lines_.size());
-    const double whole = std::accumulate(shares.begin(), shares.end(), 0.0);
-    const auto left =
-        static_cast<double>(options.pool_bytes > common ? options.pool_bytes - common : 0);
+    std::vector<ModelCapacities> capacities(headers.size());
+    for (int round = 0; round < 2; ++round)
+    {
+        const ModelCapacities sum = sum_of(capacities);
+        const std::size_t taken = common + Courier::required_bytes(sum.pages, sum.index_pages);
+        if (taken >= options.pool_bytes ||
+            !try_plan(headers, options.pool_bytes - taken, options.cache_bytes, capacities))
+        {
+            give_up("the pools are too small for " + lines_[0].served.name);
+        }
+    }
     std::vector<ModelSource> sources;
     for (std::size_t i = 0; i < lines_.size(); ++i)
     {
-        const ServedModel& served = lines_[i].served;
-        const ModelHeader header = ModelHeader::parse(served.header).value();
-        const ModelCounts counts = header.counts();
-        const std::size_t courier = Courier::required_bytes(counts.chunks(), counts.index_pages());
-        const auto share = static_cast<std::size_t>(left * (shares[i] / whole));
-        ModelCapacities capacities =
-            share > courier ? plan_capacities(header, share - courier, options.cache_bytes)
-                            : ModelCapacities{};
-        capacities.cache_off = options.cache_off;
-        if (capacities.pages == 0)
-        {
-            give_up("the pools are too small for " + served.name);
-        }
-        sources.push_back({served.header, served.base, capacities});
+        capacities[i].cache_off = options.cache_off;
+        sources.push_back({lines_[i].served.header, lines_[i].served.base, capacities[i]});
     }
     return sources;
 }
 
-void FrameRig::make_couriers()
+void FrameRig::make_courier()
 {
+    ModelPools& pools = frame_->pools();
+    courier_.emplace(*arena_, pools.slots, pools.cache.door, Log{});
     for (std::uint32_t i = 0; i < lines_.size(); ++i)
     {
         Model& model = frame_->model({i});
         Line& line = lines_[i];
-        line.courier = std::make_unique<Courier>(*arena_, model.header, model.slots, model.linker,
-                                                 model.inbox, *line.link, line.served.name, Log{});
+        courier_->add(model.header, model.linker, *line.link, line.served.name);
     }
 }
 
@@ -164,21 +162,44 @@ FrameOutput FrameRig::step_without_delivery(const std::vector<Vec3>& goals_m,
     return run(tools_, budgets, mark);
 }
 
+ObjectPose FrameRig::source_pose(const ObjectPose& pose, ModelId model) const
+{
+    const Vec3 origin_m = ModelHeader::parse(lines_[model.value].served.header).value().origin_m();
+    ObjectPose source_pose = pose;
+    source_pose.translation_m -= pose.scale * (pose.rotation * origin_m);
+    return source_pose;
+}
+
 void FrameRig::place_object(const ObjectPose& pose, std::size_t object)
 {
-    const Vec3 origin_m = frame_->model(shown_[object]).header.origin_m();
-    source_poses_[object] = pose;
-    source_poses_[object].translation_m -= pose.scale * (pose.rotation * origin_m);
-    poses_[object] = model_pose(source_poses_[object], origin_m);
+    const auto number = static_cast<std::uint32_t>(object);
+    change({SceneChangeKind::object_moves, number, frame_->objects()[number].generation, {}, pose});
+}
+
+/// What the frame will refuse is given to it all the same.
+void FrameRig::change(SceneChange change)
+{
+    const bool comes = change.kind == SceneChangeKind::object_comes;
+    const bool is_placed = comes || change.kind == SceneChangeKind::object_moves;
+    if (is_placed && change.number < shown_.size())
+    {
+        ModelId& shown = shown_[change.number];
+        shown = comes && change.object.model.value < lines_.size() ? change.object.model : shown;
+        change.pose = source_pose(change.pose, shown);
+        poses_[change.number] = model_pose(change.pose, frame_->model(shown).header.origin_m());
+    }
+    changes_.push_back(change);
 }
 
 FrameOutput FrameRig::run(std::span<const ToolState> tools, const Budgets& budgets, StageMark mark)
 {
-    const FrameOutput output = frame_->run(tools, source_poses_, budgets, mark);
+    const FrameInput given = input(tools, budgets);
+    const FrameOutput output = frame_->run(given, mark);
     if (recorder_ != nullptr)
     {
-        recorder_->add(tools, source_poses_, budgets, output);
+        recorder_->add(given, output);
     }
+    changes_.clear();
     validate();
     return output;
 }
@@ -209,10 +230,7 @@ void FrameRig::deliver()
     for (std::uint32_t i = 0; i < courier_steps_; ++i)
     {
         now_ns_ += period_ns_ / courier_steps_;
-        for (Line& line : lines_)
-        {
-            line.courier->step(now_ns_);
-        }
+        courier_->step(now_ns_);
     }
 }
 
@@ -253,18 +271,20 @@ RigOptions with_room_for_all()
 void load_region(FrameRig& rig, const RankedRegion& region)
 {
     Model& model = rig.model(region.model);
+    CachePool& cache = rig.frame().pools().cache;
     Budgets budgets;
     budgets.requests = 64;
     budgets.regions = 64;
     FrameFault faults = FrameFault::none;
     const std::uint32_t frames_a_round = model.header.counts().index_pages() / budgets.regions + 1;
-    // Quiet for two rounds of the index: in the first, pages that came with the last chunks.
+    // Quiet for two rounds of the index and a rest: in the first, pages that came with the last
+    // chunks; after a rest, wishes that went unanswered are asked again.
     std::uint32_t quiet = 0;
     std::uint32_t frame = 1;
-    for (; frame < 10'000 && quiet <= 2 * frames_a_round; ++frame)
+    for (; frame < 10'000 && quiet <= 2 * frames_a_round + IndexSearch::kRestFrames; ++frame)
     {
         WorkCounters work;
-        model.cache.adopt_arrivals(1'000, ChunkCache::kFirstFrame + frame, work);
+        cache.adopt_arrivals(1'000, ChunkCache::kFirstFrame + frame, work);
         model.cache.request_missing({&region, 1}, budgets, ChunkCache::kFirstFrame + frame, work,
                                     faults);
         rig.deliver();
@@ -282,7 +302,7 @@ void load_region(FrameRig& rig, const RankedRegion& region)
     {
         WorkCounters work;
         rig.deliver();
-        model.cache.adopt_arrivals(1'000, ChunkCache::kFirstFrame + 10'000, work);
+        cache.adopt_arrivals(1'000, ChunkCache::kFirstFrame + 10'000, work);
     }
 }
 

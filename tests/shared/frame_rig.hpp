@@ -21,12 +21,13 @@ namespace tactus::test
 struct RigOptions
 {
     std::size_t pool_bytes{std::size_t{8} << 20U}; ///< Of all models.
-    std::size_t cache_bytes{0};                    ///< Of each model.
-    /// What each model gets of the pools, as parts of the sum; empty: the same for all.
-    std::vector<double> shares;
+    std::size_t cache_bytes{0};                    ///< Of all models.
     std::vector<ToolSpec> tools;
     std::vector<ObjectSpec> objects; ///< Empty: one that shows the first model.
-    LoopbackFaults faults;           ///< Of every model's link, each with a seed of its own.
+    /// Where their models stand at first; those without one in the world's frame.
+    std::vector<ObjectPose> poses;
+    SceneCapacities capacities;
+    LoopbackFaults faults; ///< Of every model's link, each with a seed of its own.
     std::uint32_t courier_steps_per_frame{4};
     std::int64_t period_ns{1'000'000};
     bool cache_off{false};
@@ -36,7 +37,7 @@ struct RigOptions
     bool record{false}; ///< Keep a recording; frames must then run through step() only.
 };
 
-/// The controller without clocks, threads and devices: a frame, and for each model the courier that
+/// The controller without clocks, threads and devices: a frame, and the courier that
 /// reads its file through a link that may lose and delay. Steps all in turn.
 class FrameRig
 {
@@ -63,6 +64,8 @@ public:
     FrameOutput step(std::span<const ToolState> tools, const Budgets& budgets);
     /// How an object's model stands from the next frame on; at first its frame is the world's.
     void place_object(const ObjectPose& pose, std::size_t object = 0);
+    /// From the next frame on; of an object that comes, the pose is of its model's frame.
+    void change(SceneChange change);
     /// The same, without letting the transport side work first.
     FrameOutput step_without_delivery(const std::vector<Vec3>& goals_m, const Budgets& budgets,
                                       StageMark mark);
@@ -74,12 +77,16 @@ public:
 
     /// Of the model's frame, as the frame has it.
     [[nodiscard]] const ObjectPose& pose(std::size_t object = 0) const { return poses_[object]; }
-    /// Of the sources' frames, as they are given to Frame::run.
-    [[nodiscard]] std::span<const ObjectPose> source_poses() const { return source_poses_; }
+    /// What the next frame gets, with these tools: for those that run it themselves.
+    [[nodiscard]] FrameInput input(std::span<const ToolState> tools, const Budgets& budgets) const
+    {
+        return {tools, changes_, budgets, now_ns_};
+    }
+    [[nodiscard]] std::int64_t now_ns() const { return now_ns_; }
     [[nodiscard]] Frame& frame() { return *frame_; }
     [[nodiscard]] const Frame& frame() const { return *frame_; }
     [[nodiscard]] Model& model(ModelId id = ModelId{0}) { return frame_->model(id); }
-    [[nodiscard]] Courier& courier(ModelId id = ModelId{0}) { return *lines_[id.value].courier; }
+    [[nodiscard]] Courier& courier() { return *courier_; }
     [[nodiscard]] LoopbackLink& link(ModelId id = ModelId{0}) { return *lines_[id.value].link; }
     /// The recording of all frames so far; once, at the end, and only with RigOptions::record.
     [[nodiscard]] std::vector<std::byte> finish_recording() { return recorder_->finish(); }
@@ -90,13 +97,13 @@ private:
     {
         ServedModel served;
         std::unique_ptr<LoopbackLink> link;
-        std::unique_ptr<Courier> courier;
     };
 
     void serve(const std::vector<const TestModel*>& models, const LoopbackFaults& faults);
-    [[nodiscard]] std::vector<ModelSource> share_pools(const FrameSetup& setup,
-                                                       const RigOptions& options) const;
-    void make_couriers();
+    [[nodiscard]] std::vector<ModelSource> plan_pools(const FrameSetup& setup,
+                                                      const RigOptions& options) const;
+    [[nodiscard]] ObjectPose source_pose(const ObjectPose& pose, ModelId model) const;
+    void make_courier();
     [[nodiscard]] std::uint32_t wishes_under_way() const;
     FrameOutput run(std::span<const ToolState> tools, const Budgets& budgets, StageMark mark);
     void validate();
@@ -105,14 +112,15 @@ private:
     PoolMemory memory_;
     std::optional<Arena> arena_;
     std::optional<Frame> frame_;
+    std::optional<Courier> courier_;
     std::unique_ptr<RigRecorder> recorder_; ///< Null unless it records.
     std::uint32_t courier_steps_;
     std::int64_t period_ns_;
     std::int64_t now_ns_{0};
     std::uint64_t frames_{0};
-    std::vector<ObjectPose> poses_;
-    std::vector<ObjectPose> source_poses_;
-    std::vector<ModelId> shown_; ///< By each object.
+    std::vector<ObjectPose> poses_;    ///< One for each place of an object.
+    std::vector<ModelId> shown_;       ///< By each of them.
+    std::vector<SceneChange> changes_; ///< Of the next frame.
     std::vector<ToolState> tools_;
 };
 

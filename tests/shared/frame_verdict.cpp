@@ -31,18 +31,17 @@ Verdict broken_budget(const FrameOutput& output, const Budgets& budgets)
         std::uint32_t most;
     };
     const WorkCounters& work = output.work;
-    const auto models = static_cast<std::uint32_t>(output.models.size());
-    const std::uint32_t walks = 3 * models + (output.pairs[0].mesh != nullptr ? 4 * 16 : 0);
+    const std::uint32_t walks =
+        2 * kFrameWalks + (output.pairs[0].mesh != nullptr ? 4 * kMeshBudgetFactor : 0);
     const std::array<Count, 8> counts{{
-        {"splits", work.splits, models * budgets.splits},
-        {"merges", work.merges, models * budgets.merges},
-        {"scanned", work.scanned, models * budgets.scanned},
+        {"splits", work.splits, budgets.splits},
+        {"merges", work.merges, budgets.merges},
+        {"scanned", work.scanned, budgets.scanned},
         {"nodes visited", work.nodes_visited, walks * budgets.nodes},
         {"triangles tested", work.triangles_tested, walks * budgets.triangles},
-        {"pages adopted", work.pages_adopted, models * budgets.pages},
-        {"requests", work.requests,
-         models * (budgets.requests + budgets.regions)}, // And index pages.
-        {"regions searched", work.regions_searched, models * budgets.regions},
+        {"pages adopted", work.pages_adopted, budgets.pages},
+        {"requests", work.requests, budgets.requests + budgets.regions}, // And index pages.
+        {"regions searched", work.regions_searched, budgets.regions},
     }};
     for (const Count& count : counts)
     {

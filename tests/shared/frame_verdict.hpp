@@ -14,10 +14,9 @@ namespace tactus::test
 /// What is wrong with a frame, in a line; nothing when it is as it should be.
 using Verdict = std::optional<std::string>;
 
-/// Every counter of a frame with one pair against its budget, every pool against its size. Of each
-/// model the refinement asks two questions at most, and the query one; each has the whole budget of
-/// nodes and triangles. A tool that is a mesh may look at its object, and that at the tool, at two
-/// places, with 16 times the budget each.
+/// Every counter of a frame against its budget, every pool against its size. Refinement and answers
+/// have kFrameWalks budgets of nodes and triangles each. A tool that is a mesh may look at its
+/// object, and that at the tool, at two places, with kMeshBudgetFactor times the budget each.
 [[nodiscard]] Verdict broken_budget(const FrameOutput& output, const Budgets& budgets);
 
 /// A question that is left open although nothing is said to have run out, or a model that

@@ -7,15 +7,16 @@ namespace tactus::test
 
 void RigRecorder::follow(Courier& courier)
 {
-    const auto model = static_cast<std::uint32_t>(lines_.size());
-    lines_.push_back(std::make_unique<Line>(writer_, model));
-    courier.copy_pieces_to(lines_.back().get());
+    for (std::uint32_t model = 0; model < courier.model_count(); ++model)
+    {
+        lines_.push_back(std::make_unique<Line>(writer_, model));
+        courier.copy_pieces_to(lines_.back().get(), model);
+    }
 }
 
-void RigRecorder::add(std::span<const ToolState> tools, std::span<const ObjectPose> poses,
-                      const Budgets& budgets, const FrameOutput& output)
+void RigRecorder::add(const FrameInput& input, const FrameOutput& output)
 {
-    writer_.add_frame(encoder_.encode(tools, poses, budgets, output));
+    writer_.add_frame(encoder_.encode(input, output));
 }
 
 std::vector<std::byte> RigRecorder::finish()

@@ -22,12 +22,11 @@ class RigRecorder
 public:
     explicit RigRecorder(const FrameSetup& setup) : writer_(to_recorded(setup)) {}
 
-    /// Takes a copy of each piece that `courier` hands over from now on, of the next model; the
-    /// courier must not be used any more once the recorder is gone.
+    /// Takes a copy of each piece that `courier` hands over from now on; the courier must not be
+    /// used any more once the recorder is gone.
     void follow(Courier& courier);
 
-    void add(std::span<const ToolState> tools, std::span<const ObjectPose> poses,
-             const Budgets& budgets, const FrameOutput& output);
+    void add(const FrameInput& input, const FrameOutput& output);
     /// The whole recording; nothing may be added afterwards.
     [[nodiscard]] std::vector<std::byte> finish();
 

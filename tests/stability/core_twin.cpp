@@ -4,6 +4,7 @@
 
 #include "rt_core/query/contact_report.hpp"
 #include "rt_core/query/core_query.hpp"
+#include "tests/shared/owned_surface.hpp"
 #include "tests/stability/same_bits.hpp"
 
 #include <Eigen/Geometry>
@@ -16,7 +17,7 @@ namespace
 
 struct Findings
 {
-    LocalSurface surface;
+    OwnedSurface surface;
     ContactReport report;
 
     Findings(const AbTree& tree, const PlacedCore& core, double radius_m, bool is_closed)

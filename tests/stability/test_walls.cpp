@@ -6,16 +6,23 @@
 
 #include "platform/allocation_counter.hpp"
 #include "platform/simulated/device_classes.hpp"
+#include "platform/simulated/hand_turn.hpp"
+#include "rt_core/force/force_conditioner.hpp"
 #include "rt_core/force/stiffness_rule.hpp"
+#include "rt_core/math/infinity.hpp"
 #include "tests/shared/random.hpp"
 #include "tests/stability/wall_trial.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 namespace tactus::test
 {
@@ -369,6 +376,124 @@ TEST(DeviceClasses, have_the_caps_of_the_page)
     EXPECT_DOUBLE_EQ(stiffness_cap(kOmegaClass, 0.25e-3), 5'000.0);
     EXPECT_DOUBLE_EQ(stiffness_cap(kDeltaClass, 1e-3), 3'060.0);
     EXPECT_DOUBLE_EQ(stiffness_cap(kDeltaClass, 0.25e-3), 5'000.0);
+}
+
+namespace
+{
+
+/// A wrist turns a device about an axis into a wall that begins at the angle 0.
+struct TurningTrial
+{
+    DeviceLimits device{kDeskClass};
+    HandLimb wrist{.mass_kg = 0.0,
+                   .stiffness_n_per_m = 0.2,
+                   .damping_n_s_per_m = 0.0,
+                   .grip_stiffness_n_per_m = 100.0,
+                   .grip_damping_n_s_per_m = 0.0};
+    double stiffness_nm_per_rad{1.0};
+    std::size_t late_periods{0}; ///< Of the wall's own torque: makes it active.
+    bool controls_passivity{false};
+    double duration_s{30.0};
+};
+
+struct TurningFigures
+{
+    double swing_rad{0.0}; ///< Peak to peak in the last 0.5 s.
+    double largest_work_j{0.0};
+    double observer_error_j{0.0}; ///< Against the simulation's own ledger.
+    double off_axis_nm{0.0};
+};
+
+TurningFigures turn_into_wall(const TurningTrial& trial)
+{
+    const Vec3 axis = Vec3(2.0, -1.0, 2.0) / 3.0;
+    auto sim = std::move(HandTurn::create({trial.device.turn, trial.device.delay_s, trial.wrist,
+                                           1e-3, Mat3::Identity()}))
+                   .value();
+    ConditionerSetup setup;
+    setup.device = trial.device;
+    setup.controls_passivity = trial.controls_passivity;
+    WrenchConditioner conditioner(setup);
+    const std::function<double(double)> wanted_rad = press(0.1, 0.1);
+    std::vector<double> late_nm(trial.late_periods + 1, 0.0);
+    TurningFigures figures;
+    double least_rad = kInfinity;
+    double most_rad = -kInfinity;
+    Vec3 turned(0.0, 0.0, 0.0);
+    Mat3 last = Mat3::Identity();
+    const auto steps = static_cast<int>(std::lround(trial.duration_s * 1e3));
+    for (int i = 0; i < steps; ++i)
+    {
+        const Mat3 measured = to_rotation(sim.measured());
+        turned += rotation_vector(orthonormalised(measured * last.transpose()));
+        last = measured;
+        const double angle = turned.dot(axis) + 0.1; // It starts so far in front of the wall.
+        std::shift_right(late_nm.begin(), late_nm.end(), 1);
+        late_nm[0] = angle < 0.0 ? -trial.stiffness_nm_per_rad * angle : 0.0;
+        const ConditionedWrench out = conditioner.condition(
+            {{}, {late_nm.back() * axis, turned, trial.stiffness_nm_per_rad, 0.0, 1}});
+        figures.observer_error_j = std::max(
+            figures.observer_error_j, std::abs(out.torque.work_j - sim.energy().force_work_j));
+        figures.off_axis_nm = std::max(figures.off_axis_nm, out.torque.force_n.cross(axis).norm());
+        const double target = wanted_rad(i * 1e-3) - 0.1;
+        sim.step(out.torque.force_n, Eigen::AngleAxisd(target, axis).toRotationMatrix());
+        figures.largest_work_j = std::max(figures.largest_work_j, sim.energy().force_work_j);
+        if (i >= steps - 500)
+        {
+            least_rad = std::min(least_rad, angle);
+            most_rad = std::max(most_rad, angle);
+        }
+    }
+    figures.swing_rad = most_rad - least_rad;
+    return figures;
+}
+
+/// `share` of the rule's limit, whatever the maker allows.
+TurningTrial turned_into(double share)
+{
+    TurningTrial trial;
+    trial.device.turn.stiffness_max_nm_per_rad = 1e3;
+    trial.stiffness_nm_per_rad =
+        share * stiffness_limits(turning_of(trial.device), 1e-3).sampling_n_per_m;
+    return trial;
+}
+
+} // namespace
+
+TEST(TurningWalls, rest_at_nine_tenths_of_the_limit)
+{
+    const TurningFigures rests = turn_into_wall(turned_into(0.9));
+    std::printf(
+        "turning: swing at 0.9 of the limit %.3g rad, work %.3g J, observer off by %.2g J\n",
+        rests.swing_rad, rests.largest_work_j, rests.observer_error_j);
+    EXPECT_LT(rests.swing_rad, 1e-3);
+    EXPECT_LT(rests.largest_work_j, 1e-3);
+    EXPECT_LT(rests.observer_error_j, 1e-6) << "the ledgers agree";
+    EXPECT_LT(rests.off_axis_nm, 1e-9);
+}
+
+/// Above the rule's cap a wall is scaled down to it, so an active one shows what is held.
+TEST(TurningWalls, that_come_late_are_held_by_the_passivity_controller)
+{
+    TurningTrial trial = turned_into(0.9);
+    trial.late_periods = 3;
+    const TurningFigures without = turn_into_wall(trial);
+    trial.controls_passivity = true;
+    const TurningFigures with = turn_into_wall(trial);
+    std::printf("turning, 3 periods late: %.3g J and %.3g rad without, %.3g J and %.3g rad with\n",
+                without.largest_work_j, without.swing_rad, with.largest_work_j, with.swing_rad);
+    EXPECT_GT(without.largest_work_j, 20.0 * with.largest_work_j);
+    EXPECT_GT(without.swing_rad, 10.0 * with.swing_rad);
+}
+
+TEST(TurningWalls, that_are_too_stiff_are_scaled_down_with_their_force)
+{
+    WrenchConditioner sut({.device = kDeskClass});
+    const double cap = stiffness_cap(turning_of(kDeskClass), 1e-3);
+    const ConditionedWrench out = sut.condition(
+        {{Vec3(0.0, 0.0, 4.0), {}, 100.0, 0.0, 1}, {Vec3(0.1, 0.0, 0.0), {}, 2.0 * cap, 0.0, 1}});
+    EXPECT_NEAR(out.torque.force_n.x(), 0.05, 1e-12);
+    EXPECT_NEAR(out.force.force_n.z(), 2.0, 1e-12);
 }
 
 } // namespace tactus::test

@@ -4,6 +4,7 @@
 
 #include "rt_core/query/surface_query.hpp"
 #include "tests/shared/closest_point.hpp"
+#include "tests/shared/owned_surface.hpp"
 #include "tests/shared/random.hpp"
 #include "tests/shared/surface_slide.hpp"
 #include "tests/stability/core_twin.hpp"
@@ -40,9 +41,9 @@ struct NearFace
 using FaceSet = std::vector<NearFace>;
 
 /// The whole query, with budgets that never end it.
-LocalSurface surface_at(const AbTree& tree, const Vec3& center_m, double reach_m)
+OwnedSurface surface_at(const AbTree& tree, const Vec3& center_m, double reach_m)
 {
-    LocalSurface surface;
+    OwnedSurface surface;
     QueryMemory memory;
     WalkBudget budget{1'000'000'000, 1'000'000'000};
     gather_surface(tree, center_m, reach_m, memory, budget, surface);
@@ -73,8 +74,8 @@ FaceSet faces_within(const AbTree& tree, const LocalSurface& surface, double rad
 std::string difference(const AbTree& refined, const AbTree& whole, const Vec3& center_m,
                        double radius_m)
 {
-    const LocalSurface ours = surface_at(refined, center_m, radius_m);
-    const LocalSurface full = surface_at(whole, center_m, radius_m);
+    const OwnedSurface ours = surface_at(refined, center_m, radius_m);
+    const OwnedSurface full = surface_at(whole, center_m, radius_m);
     const DistanceAnswer& a = ours.answer;
     const DistanceAnswer& b = full.answer;
     const double certified = std::min(a.certified_radius_m, b.certified_radius_m);

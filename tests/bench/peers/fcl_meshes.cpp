@@ -40,7 +40,7 @@ fcl::Transform3d to_fcl(const Place& place)
                 place.rotation[static_cast<std::size_t>(3 * column + row)];
         }
     }
-    transform.translation() = to_fcl(place.translation_m);
+    transform.translation() = to_fcl(place.origin);
     return transform;
 }
 

@@ -52,8 +52,8 @@ int main(int argc, char** argv)
 
     // What the transport thread does in hrtc. Here both take turns on one thread.
     Model& parts = frame->model({0});
-    Courier courier(arena, parts.header, parts.slots, parts.linker, parts.inbox, *model.link,
-                    model.name, {});
+    Courier courier(arena, frame->pools().slots, frame->pools().cache.door, {});
+    courier.add(parts.header, parts.linker, *model.link, model.name);
 
     // A model stands where its source mesh stood, unless a pose says otherwise. Its base vertices
     // lie on the surface. Down to the highest one and 0.5 mm into it, in 0.5 s.
@@ -62,7 +62,6 @@ int main(int argc, char** argv)
         header.origin_m() +
         to_vec3(*std::max_element(vertices.begin(), vertices.end(),
                                   [](const Vec3f& a, const Vec3f& b) { return a[2] < b[2]; }));
-    const std::array<ObjectPose, 1> poses{};
     std::array<ToolState, 1> states{};
     SafeState safe({1.0, 8.0, 500.0}); // Fades the force where the frame says that it must.
     FrameOutput output;
@@ -72,7 +71,7 @@ int main(int argc, char** argv)
         const double height_m = 3.0 * radius_m - (3.0 * radius_m + 0.0005) * i / 500.0;
         states[0].position_m = top + Vec3(0.0, 0.0, height_m);
         courier.step(i * setup.period_ns);
-        output = frame->run(states, poses, Budgets{}, StageMark{});
+        output = frame->run({.tools = states, .changes = {}, .budgets = {}, .now_ns = 0});
         SafetyInput input;
         input.position_m = states[0].position_m;
         input.elapsed_s = 1e-9 * static_cast<double>(setup.period_ns);

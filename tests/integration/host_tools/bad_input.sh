@@ -56,7 +56,8 @@ refuse_mesh in/mesh.xyz mesh.xyz
 refuse_mesh in .
 
 expect 2 nowhere/a.spm "$build" in/mesh.obj -o nowhere/a.spm
-expect 2 out "$build" in/mesh.obj -o out
+mkdir out/folder.spm
+expect 2 folder.spm "$build" in/mesh.obj -o out/folder.spm
 if ((EUID != 0)); then # Root may write anywhere.
     chmod u-w out
     expect 2 out/a.spm "$build" in/mesh.obj -o out/a.spm
@@ -93,6 +94,8 @@ expect 2 --region-size "$build" in/mesh.obj --region-size 1e-9 -o out/a.spm
 expect 3 --output "$build" in/mesh.obj
 expect 3 'a mesh to read' "$build" -o out/a.spm
 expect 3 --unit "$build" in/mesh.obj -o out/a.spm --unit furlong
+expect 3 --fit-diag "$build" in/mesh.obj -o out/a.spm --unit mm --fit-diag 0.2
+expect 3 "'out/a.stl' is the name of no model" "$build" in/mesh.obj -o out/a.stl
 expect 3 --fit-diag "$build" in/mesh.obj -o out/a.spm --fit-diag 0
 expect 3 --fit-diag "$build" in/mesh.obj -o out/a.spm --fit-diag -1
 expect 3 --fit-diag "$build" in/mesh.obj -o out/a.spm --fit-diag nan

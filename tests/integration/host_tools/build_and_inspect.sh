@@ -27,7 +27,8 @@ for name in faces vertices records rounds base_faces chunks; do
 done
 keys=$(grep -o '"[a-z_]*":' built.json | tr -d '":' | sort | paste -sd ' ')
 [[ $keys == 'base_faces bytes_per_face chunks e_max_diag faces faces_per_second file_bytes'\
-' hausdorff_diag_sampled peak_bytes quantisation_diag records regions rounds seconds vertices' ]] \
+' hausdorff_diag_sampled metres_per_unit peak_bytes quantisation_diag records regions rounds'\
+' seconds vertices' ]] \
     || fail "the figures are: $keys"
 for name in $keys; do
     [[ -n $(figure "$name" <built.json) ]] || fail "$name is no number"
@@ -37,6 +38,16 @@ awk -v sampled="$(figure hausdorff_diag_sampled <built.json)" \
     -v bound="$(figure e_max_diag <built.json)" \
     'BEGIN { exit !(0 < sampled && sampled <= bound && bound < 10 * sampled) }' \
     || fail 'the sampled distance and the certified bound'
+# A size that is hardly meant is noted, with the unit that would mend it; one that was given is not.
+printf 'v 0 0 0\nv 300 0 0\nv 0 400 0\nf 1 2 3\n' >large.obj
+"$build" large.obj -o large.spm >large.txt 2>notes.txt
+grep -qx 'note: the model is 500 m across; is the mesh in mm? Then give --unit mm' notes.txt \
+    || fail "$(cat notes.txt)"
+"$build" large.obj -o large.spm --unit MM >large.txt 2>notes.txt
+grep -q '^diagonal 0.5 m, a unit of the mesh is 0.001 m' large.txt || fail "$(cat large.txt)"
+"$build" large.obj -o large.spm --fit-diag 20 >large.txt 2>>notes.txt
+grep -q '^diagonal 20 m, a unit of the mesh is 0.04 m' large.txt || fail "$(cat large.txt)"
+[[ ! -s notes.txt ]] || fail "$(cat notes.txt)"
 [[ $(figure file_bytes <built.json) == $(stat -c %s torus.spm) ]] || fail 'file_bytes'
 # Through a file: grep -q would end the pipe, and so the program, too early.
 "$inspect" torus.spm --regions >text.txt

@@ -138,7 +138,7 @@ check() {
 # check_clean FILE: what holds for every run. Under a sanitizer, which allocates and faults on its
 # own account, only that the keys are there.
 check_clean() {
-    check "$1" schema == 1 realtime.allocations '>=' 0 realtime.page_faults '>=' 0 \
+    check "$1" schema == 2 realtime.allocations '>=' 0 realtime.page_faults '>=' 0 \
         deadline.own_fault '>=' 0
     if [[ -z "$sanitizer" ]]; then
         check "$1" realtime.allocations_counted == 1 realtime.allocations == 0

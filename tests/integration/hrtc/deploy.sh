@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# deploy.sh: an install into an empty folder has the programs, the service and an example of its
+# deploy.sh: an install into an empty folder has the programs, their services and an example of the
 # options that hrtc takes; under a service manager hrtc says when it is ready, that it is alive, and
 # that it stops. $4 is the build folder.
 source "$(dirname "$0")/common.sh"
@@ -15,21 +15,24 @@ done
 for file in README.md LICENSE docs/deploy.md examples/hrtc.toml; do
     [[ -s $documents/$file ]] || fault "no $file in the documents"
 done
-[[ $(find root -name '*.a' -o -name 'test_*' -o -name '*.hpp' | wc -l) == 0 ]] \
-    || fault 'more is installed than the programs need'
+[[ $(find root -name 'test_*' -o -name 'tactus_bench' | wc -l) == 0 ]] \
+    || fault 'tests are installed, too'
 
-# The example's options, and the service.
+# The example's options, and the services.
 "$installed/hrtc" --config "$documents/examples/hrtc.toml" --print-config >options.toml \
     || fault 'hrtc does not take the options of its example'
 grep -qx 'duration=86400' options.toml || fault 'the example is not read'
-readonly service=$scratch/root/lib/systemd/system/hrtc.service
-! grep -q '@' "$service" || fault "left as it was in the service: $(grep '@' "$service")"
-if command -v systemd-analyze >/dev/null; then
-    sed "s|^ExecStart=[^ ]*|ExecStart=$installed/hrtc|" "$service" >hrtc.service
-    # It speaks of other units of the machine, too.
-    systemd-analyze verify --man=no ./hrtc.service >verify.log 2>&1 || true
-    ! grep 'hrtc\.service' verify.log || fault 'systemd does not like the service'
-fi
+for unit in hrtc spm_publish; do
+    service=$scratch/root/lib/systemd/system/$unit.service
+    ! grep -q '@' "$service" || fault "left as it was in the service: $(grep '@' "$service")"
+    [[ -s $scratch/root/share/man/man1/$unit.1 ]] || fault "no page of $unit in the manual"
+    if command -v systemd-analyze >/dev/null; then
+        sed -e "s|^ExecStart=[^ ]*|ExecStart=$installed/$unit|" "$service" >"$unit.service"
+        # It speaks of other units of the machine, too.
+        systemd-analyze verify --man=no "./$unit.service" >verify.log 2>&1 || true
+        ! grep "$unit\.service" verify.log || fault "systemd does not like the service $unit"
+    fi
+done
 
 # Under a manager that listens. It waits for the words with patience: the machine may be slow.
 cat >manager.py <<'PYTHON'

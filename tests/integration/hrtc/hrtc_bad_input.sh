@@ -68,6 +68,9 @@ refuse_option --stiffness 3001 '1 .. 3000'
 for value in 0 -1 0.009 101 nan fast ''; do
     refuse_option --speed-limit "$value" '0.01 .. 100'
 done
+for value in -1 32 1.5 left; do
+    refuse_option --clutch "$value" '0 to 31'
+done
 refuse_option --domain -1 '0 to 232'
 refuse_option --domain 233 '0 to 232'
 refuse_option --domain 1.5 '0 to 232'
@@ -94,18 +97,29 @@ refuse_option --motion '' 'script, free, approach'
 refuse 3 '--motion: there is no simulated device' --model a --device udp --motion free
 refuse 3 'extra' --model a extra
 refuse 3 '--device: 2 given for 1 tools' --model a --device sim --device sim
+refuse 3 '--device: 3 given for 2 tools' --model a --tools 2 --device sim --device sim --device sim
 refuse 3 '--device-frame: 1 given for 0' --model a --device-frame 0,0,0
 refuse 3 'in the world already' --model a --device sim --device-frame 0,0,0
 refuse 3 'in the world already' --model a --device replay:a.rec --device-frame 0,0,0
 refuse 3 '1e4 m' --model a --device udp --device-frame 1,2
 refuse_option --transport smtp '{dds,file}'
-for value in cube sphere: sphere:0 sphere:1.1 sphere:nan sphere:1mm $'sphere:\e[2J'; do
+for value in cube sphere: sphere:0 sphere:0.1,1 capsule:0.1 capsule:0,0.1 box:1,1 box:1,1,0 \
+    box:1,1,1,2 hull: hull:a.obj,2 mesh: mesh:,0.1 sphere:1.1 \
+    sphere:nan sphere:1mm $'sphere:\e[2J'; do
     refuse_option --tool "$value" '1e-5 to 1 m'
 done
 for value in 1 1,2 1,2,3,4 1,2,x 1,2,3,400,0,0 1,2,3,0,0,0,0 nan,0,0 2e4,0,0 ''; do
     refuse_option --place "$value" X,Y,Z
 done
-refuse 3 --place --model bumpy --place 0,0,0 --place 0,0,0
+refuse 3 '--objects: 1; 2 are there from the start' --model bumpy --place 0,0,0 --place 1,0,0 \
+    --objects 1
+for value in 0 4097 -1 many; do
+    refuse 3 --objects --model bumpy --objects "$value"
+done
+for value in 0 17 -1; do
+    refuse 3 --tools --model bumpy --tools "$value"
+done
+refuse 3 '--tools: 2, but --tool is given 1 times' --model bumpy --tools 2 --tool sphere:0.01
 for value in 0.5 3001 soft 500,-0.1 500,3.1 500,0.5,0.6 500,1,1,21 500,1,1,1,1 nan '500,' ''; do
     refuse_option --material "$value" '1 to 3000 N/m'
 done

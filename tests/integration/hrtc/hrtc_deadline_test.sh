@@ -42,7 +42,7 @@ pass() {
     local try
     for try in 1 2 3; do
         test_deadlines "$@"
-        check run.json schema == 1 frames == 1000 self_check.injected '>=' 15 duration_s == 1 \
+        check run.json schema == 2 frames == 1000 self_check.injected '>=' 15 duration_s == 1 \
             times_us.cpu.p50 '>' 0 times_us.response.max '>=' '1*times_us.response.p99' \
             deadline.machine_late+deadline.unexplained '<=' '1*deadline.missed'
         [[ -z "$sanitizer" ]] && is_realtime run.json || return 0

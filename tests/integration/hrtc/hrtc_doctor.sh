@@ -11,7 +11,7 @@ examine() {
     local name=$1 verdict code=0
     shift
     ended_with=0
-    "$hrtc" doctor "$@" >"$name.txt" 2>errors.txt || ended_with=$?
+    "$hrtc" doctor --all "$@" >"$name.txt" 2>errors.txt || ended_with=$?
     "$hrtc" doctor --json "$@" >"$name.json" 2>>errors.txt || code=$?
     [[ ! -s errors.txt ]] || fault "doctor $*: $(cat errors.txt)"
     ((code == ended_with)) || fault "doctor $* ended with $ended_with and with --json $code"
@@ -27,6 +27,11 @@ examine() {
     esac
     ! LC_ALL=C grep -q '[^[:print:]]' "$name.txt" || fault "doctor $* prints more than text"
 }
+
+# The counts come first; what is good has a line for all.
+"$hrtc" doctor >short.txt || true
+[[ $(sed -n 1p short.txt) == *' critical, '*' good' ]] || fault "first: $(sed -n 1p short.txt)"
+(($(grep -c '^good ' short.txt) == 1)) || fault 'more than one line is of what is good'
 
 # verdict_of NAME CHECK: what the text says of it.
 verdict_of() { awk -v check="$2" '$2 == check { print $1 }' "$1.txt"; }

@@ -36,7 +36,7 @@ check report.json models.0.pose.followed == 0 models.0.pose.accepted == 0 \
 # Poses that stop: the touched object grows stale and the force fades; they come again, and so does
 # the force. A model that is here as a whole needs no host for anything else.
 start_hrtc --model bumpy --duration 6 --report report.json
-wait_for_line publish.log 'subscribed to model' 10
+wait_for_line publish.log ' subscribed' 10
 sleep 2
 kill -STOP "$publisher"
 sleep 1.5
@@ -77,7 +77,7 @@ printf '0 bumpy 0 0 0 0 0 0 1\n' >still.txt
 refuse 2 'still.txt: --poses-loop needs' --poses still.txt --poses-loop
 bad_line 'is not TIME_S NAME' '1 bumpy 0 0 0'
 bad_line "time '-1'" '-1 bumpy 0 0 0 0 0 0 1'
-bad_line "no model is published as 'bunny'" '1 bunny 0 0 0 0 0 0 1'
+bad_line "no object is called 'bunny'" '1 bunny 0 0 0 0 0 0 1'
 bad_line "'nan' is not a finite" '1 bumpy nan 0 0 0 0 0 1'
 bad_line 'QX QY QZ QW must have a length within 0.001 of 1' '1 bumpy 0 0 0 0 0 0 1.1'
 bad_line 'X Y Z must be' '1 bumpy 2e4 0 0 0 0 0 1'

@@ -24,7 +24,7 @@ end_well() {
 
 start_publisher bumpy.spm
 start_hrtc --model bumpy --duration 3 --report report.json
-wait_for_line publish.log "subscribed to model 'bumpy'" 10
+wait_for_line publish.log ' subscribed' 10
 sleep 1
 stop KILL "$publisher"
 end_well 3000 1
@@ -33,7 +33,7 @@ check report.json models.0.host_connected == 0
 
 start_publisher bumpy.spm
 start_hrtc --model bumpy --duration 5 --report report.json
-wait_for_line publish.log "subscribed to model 'bumpy'" 10
+wait_for_line publish.log ' subscribed' 10
 sleep 1
 stop KILL "$publisher"
 wait_for_line hrtc.log 'is gone' 3

@@ -8,9 +8,8 @@ readonly port=$((20000 + $$ % 20000))
 model bumpy-sphere-20000 bumpy.spm
 # shellcheck disable=SC2016 # The page's own marks.
 sed -n '/^```python$/,/^```$/{/^```/!p}' "$(dirname "$0")/../../../docs/udp-device.md" \
-    | sed -e 's/200 \* x\[i\]/200 * (x[i] - (0.045, 0, 0)[i])/' -e 's/^x, v, /HAND/' \
-        -e 's/^HANDforce, state, last = \[0.0\] \* 3/x, v, force, state, last = [0.08, 0.0, 0.0]/' \
-        >driver.py
+    | sed -e 's/200 \* x\[i\]/200 * (x[i] - (0.045, 0, 0)[i])/' \
+        -e 's/^\(x, v, force, state, last = \)\[0.0\] \* 6/\1[0.08] + [0.0] * 5/' >driver.py
 if ! grep -q '0.045' driver.py || ! grep -q '0.08' driver.py; then
     fail 'the driver of the page is another'
 fi

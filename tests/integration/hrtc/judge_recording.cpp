@@ -75,15 +75,14 @@ test::TestModel source_of(const std::string& path)
 }
 
 void judge(Span& span, const test::CenterOracle& oracle, const std::array<double, 3>& origin_m,
-           std::uint64_t frame, const RecordedFrame& given, const FrameOutput& returned)
+           const ObjectPose& placed, std::uint64_t frame, const FrameOutput& returned)
 {
     const ToolOutput& tool = returned.tools[0];
     ++span.frames;
     span.contact_frames += tool.in_contact ? 1U : 0U;
     span.force_max_n = std::max(span.force_max_n, tool.force_n.norm());
     const auto verdict = test::judge_bracket(
-        oracle, returned.pairs[0],
-        model_pose(given.poses[0], Vec3(origin_m[0], origin_m[1], origin_m[2])));
+        oracle, returned.pairs[0], model_pose(placed, Vec3(origin_m[0], origin_m[1], origin_m[2])));
     if (verdict.error > 1.0)
     {
         ++span.violations;
@@ -117,7 +116,8 @@ int run(const std::string& recorded, const std::string& model, std::vector<Span>
         throw Refused{recording.error().text};
     }
     const FrameShape shape = recording.value().shape();
-    if (shape.tools != 1 || shape.objects != 1)
+    const std::vector<ObjectPose>& placed = recording.value().setup().poses;
+    if (shape.tools != 1 || placed.size() != 1)
     {
         throw Refused{recorded + ": is not of one tool and one object"};
     }
@@ -126,13 +126,13 @@ int run(const std::string& recorded, const std::string& model, std::vector<Span>
     std::size_t current = 0;
     const ReplayWatch watch{
         {},
-        [&](std::uint64_t frame, const RecordedFrame& given, const FrameOutput& returned)
+        [&](std::uint64_t frame, const RecordedFrame& /*given*/, const FrameOutput& returned)
         {
             while (frame >= spans[current].end)
             {
                 ++current;
             }
-            judge(spans[current], oracle, source.origin_m, frame, given, returned);
+            judge(spans[current], oracle, source.origin_m, placed[0], frame, returned);
         }};
     const auto replayed = replay(recording.value(), nullptr, watch);
     if (!replayed || replayed.value().difference)

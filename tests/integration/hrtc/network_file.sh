@@ -19,7 +19,7 @@ touch_while() {
     start_publisher served.spm
     start_hrtc --model served --device sim:touch --pool-mib 2 --no-static --duration 7 \
         --record run.rec --report report.json
-    wait_for_line publish.log "subscribed to model 'served'" 10
+    wait_for_line publish.log ' subscribed' 10
     sleep 2
     "$@"
     wait "$controller" || code=$?

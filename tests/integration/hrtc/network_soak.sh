@@ -36,10 +36,10 @@ guest() {
         --device sim:touch --pool-mib 2 --duration 60 >guest.log 2>&1 &
     guest=$!
     started+=("$guest")
-    wait_for_lines $((2 * $1)) 'subscribed to' publish.log
+    wait_for_lines $((2 * $1)) ' subscribed' publish.log
     sleep 1
     stop "$signal" "$guest"
-    wait_for_lines $((2 * $1 - 1)) 'left model' publish.log
+    wait_for_lines $((2 * $1 - 1)) ' left (' publish.log
 }
 
 start_relay --delay-ms 2 --loss 0.005 --duplicates 0.005 --seed 11
@@ -47,18 +47,18 @@ model bumpy-sphere-100000 large.spm
 start_publisher large.spm
 start_hrtc --model large --device sim:touch --pool-mib 2 --no-static --duration 3600 \
     --record run.rec --report report.json
-wait_for_lines 1 'subscribed to' publish.log
+wait_for_lines 1 ' subscribed' publish.log
 
 served=0
 for ((cycle = 1; cycle <= cycles; ++cycle)); do
     guest "$cycle"
     relay_say cut
     wait_for_lines "$cycle" 'is gone' hrtc.log
-    wait_for_lines $((2 * cycle)) 'left model' publish.log
+    wait_for_lines $((2 * cycle)) ' left (' publish.log
     relay_say mend
     served=$((served + 1))
     wait_for_lines "$served" 'is served again' hrtc.log
-    wait_for_lines $((2 * cycle + 1)) 'subscribed to' publish.log
+    wait_for_lines $((2 * cycle + 1)) ' subscribed' publish.log
     sleep 0.3
     check_holdings host "$publisher" "$cycle"
     check_holdings controller "$controller" "$cycle"
@@ -69,7 +69,7 @@ for ((cycle = 1; cycle <= cycles; ++cycle)); do
     start_publisher large.spm
     served=$((served + 1))
     wait_for_lines "$served" 'is served again' hrtc.log
-    wait_for_lines 1 'subscribed to' publish.log
+    wait_for_lines 1 ' subscribed' publish.log
     sleep 0.7
     check_holdings controller "$controller" $((cycles + cycle))
 done

@@ -124,8 +124,8 @@ lines() { grep -cF -- "$1" "$2" || true; }
 sent_pieces() {
     local i
     for ((i = 0; i < 100; ++i)); do
-        (($(lines ' subscribed to ' publish.log) > $(lines ' left model ' publish.log))) || break
+        (($(lines ' subscribed' publish.log) > $(lines ' left (' publish.log))) || break
         sleep 0.05
     done
-    sed -n 's/.* left model .* (\([0-9]*\) pieces, .*/\1/p' publish.log | tail -n 1
+    sed -n 's/.* left (\([0-9]*\) pieces, .*/\1/p' publish.log | tail -n 1
 }

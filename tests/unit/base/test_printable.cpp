@@ -44,6 +44,9 @@ TEST(Printable, shows_the_control_characters_of_a_line_as_question_marks_and_kee
         EXPECT_EQ(printable_line(std::string(1, c)), std::string(1, stays ? c : '?')) << code;
     }
     const std::string long_line(1'000, 'a');
+    EXPECT_EQ(printable_line("\xc2\x9b" // A terminal takes it for ESC [.
+                             "2J\xc2\xa0\xc3\x9f\xc2"),
+              "?2J\xc2\xa0\xc3\x9f\xc2");
     EXPECT_EQ(printable_line(long_line + "\n\xc3\xbc.stl"), long_line + "?\xc3\xbc.stl");
 }
 

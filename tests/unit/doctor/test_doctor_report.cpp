@@ -55,21 +55,26 @@ TEST(DoctorReport, holds_every_finding)
     EXPECT_TRUE(make_report(findings, std::nullopt)["cpu"].is_null());
 }
 
-TEST(DoctorReport, shows_one_block_for_each_finding)
+TEST(DoctorReport, shows_the_worst_first_and_what_is_good_when_asked)
 {
-    EXPECT_EQ(make_text(one_of_each()), "good      a                  all is well\n"
-                                        "                             It matters.\n\n"
-                                        "advice    b                  so-so\n"
-                                        "                             It helps.\n"
-                                        "                             $ mend b\n"
-                                        "                             $ and b again\n\n"
-                                        "critical  c                  broken\n"
-                                        "                             It must be.\n"
-                                        "                             $ mend c\n\n"
-                                        "unknown   d                  /d is not there\n"
-                                        "                             It may be.\n"
-                                        "                             $ ls -l /d\n\n"
-                                        "1 good, 1 advice, 1 critical, 1 unknown\n");
+    const std::string bad = "1 critical, 1 unknown, 1 advice, 1 good\n\n"
+                            "critical  c                  broken\n"
+                            "                             It must be.\n"
+                            "                             $ mend c\n\n"
+                            "unknown   d                  /d is not there\n"
+                            "                             It may be.\n"
+                            "                             $ ls -l /d\n\n"
+                            "advice    b                  so-so\n"
+                            "                             It helps.\n"
+                            "                             $ mend b\n"
+                            "                             $ and b again\n\n";
+    EXPECT_EQ(make_text(one_of_each(), true), bad + "good      a                  all is well\n"
+                                                    "                             It matters.\n");
+    std::vector<Finding> findings = one_of_each();
+    findings.push_back({"e", Verdict::good, "fine", "It matters, too.", {}});
+    EXPECT_EQ(make_text(findings, false), "1 critical, 1 unknown, 1 advice, 2 good" +
+                                              bad.substr(bad.find('\n')) +
+                                              "good                         a, e\n");
 }
 
 TEST(DoctorReport, fits_100_columns_but_for_commands)
@@ -81,7 +86,7 @@ TEST(DoctorReport, fits_100_columns_but_for_commands)
         {
             make_good(machine);
         }
-        for (const std::string& line : lines_of(make_text(examine(machine.view()))))
+        for (const std::string& line : lines_of(make_text(examine(machine.view()), true)))
         {
             EXPECT_TRUE(line.size() <= 100 || line.find(" $ ") != std::string::npos) << line;
             EXPECT_FALSE(line.ends_with(' ')) << line;
@@ -94,7 +99,8 @@ TEST(DoctorReport, loses_no_letter_where_it_breaks_lines)
     for (const std::size_t length : {1U, 70U, 71U, 72U, 142U, 143U, 500U})
     {
         const std::string word(length, 'x');
-        const std::string text = make_text({{"a", Verdict::good, word, word + " " + word, {}}});
+        const std::string text =
+            make_text({{"a", Verdict::good, word, word + " " + word, {}}}, true);
         EXPECT_EQ(static_cast<std::size_t>(std::ranges::count(text, 'x')), 3 * length);
         for (const std::string& line : lines_of(text))
         {

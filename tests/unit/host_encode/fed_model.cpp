@@ -50,15 +50,17 @@ void FedModel::make_model(std::uint32_t chunks)
     capacities.faces = header.counts().base_faces + 2 * kRecordsPerChunk * chunks;
     capacities.blocks = capacities.faces / 2 + 2 * AbTree::kReserve;
     capacities.nodes = capacities.blocks;
-    memory_.emplace(required_bytes(header, capacities));
+    Arena scratch = Arena::measuring();
+    const RefineScratch beside(scratch, 0);
+    memory_.emplace(scratch.used() + required_bytes({&header, 1}, {&capacities, 1}));
     arena_.emplace(memory_->span());
-    const PageSlots slots =
-        PageSlots::take(*arena_, header.counts(), capacities.pages, capacities.index_pages);
+    pools_.emplace(*arena_, capacities, 1);
+    const PageSlots slots = pools_->slots.of_model(*arena_, header.counts());
     if (!parse_base_mesh(read_piece(store_, {ContentKind::base, 0}), header, slots.base))
     {
         throw std::runtime_error("the base mesh can't be parsed");
     }
-    model_.emplace(*arena_, header, slots, capacities, best_kernels());
+    model_.emplace(*arena_, *pools_, ModelId{0}, header, slots, capacities, best_kernels());
 }
 
 void FedModel::feed(ChunkId chunk, std::uint32_t slot)

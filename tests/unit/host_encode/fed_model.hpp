@@ -34,6 +34,7 @@ private:
     const ModelStore& store_;
     std::optional<PoolMemory> memory_;
     std::optional<Arena> arena_;
+    std::optional<ModelPools> pools_;
     std::optional<Model> model_;
     std::vector<ChunkId> chunks_;
 };

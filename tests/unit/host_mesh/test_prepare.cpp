@@ -47,6 +47,9 @@ TEST(PrepareMesh, knows_the_units)
     EXPECT_EQ(metres_per_unit("cm"), 0.01);
     EXPECT_EQ(metres_per_unit("m"), 1.0);
     EXPECT_EQ(metres_per_unit("in"), 0.0254);
+    EXPECT_EQ(metres_per_unit("inch"), 0.0254);
+    EXPECT_EQ(metres_per_unit("MM"), 0.001);
+    EXPECT_FALSE(metres_per_unit("mmm"));
     EXPECT_FALSE(metres_per_unit("ft"));
     EXPECT_FALSE(metres_per_unit(""));
 }
@@ -105,6 +108,7 @@ TEST(PrepareMesh, scales_by_unit_and_by_diagonal)
     EXPECT_DOUBLE_EQ(prepared(mesh, {.metres_per_unit = 0.001}).diagonal_m, 0.005);
     const auto sut = prepared(mesh, {.metres_per_unit = 0.001, .fit_diagonal_m = 0.25});
     EXPECT_DOUBLE_EQ(sut.diagonal_m, 0.25);
+    EXPECT_DOUBLE_EQ(sut.metres_per_unit, 0.05);
     EXPECT_NEAR(sut.mesh.positions[2][1] * sut.quantum_m, 0.2, sut.quantum_m);
 }
 
@@ -194,12 +198,12 @@ TEST(PrepareMesh, refuses_options_out_of_range_by_name)
         expect_refusal(mesh, {.metres_per_unit = bad}, "metres per unit");
         expect_refusal(mesh, {.fit_diagonal_m = bad}, "fit diagonal");
     }
-    expect_refusal(mesh, {.fit_diagonal_m = 0.99e-4}, "must be 0.0001 .. 1000 m");
-    expect_refusal(mesh, {.fit_diagonal_m = 1001.0}, "must be 0.0001 .. 1000 m");
+    expect_refusal(mesh, {.fit_diagonal_m = 0.99e-6}, "must be 1e-06 .. 1000000 m");
+    expect_refusal(mesh, {.fit_diagonal_m = 1.001e6}, "must be 1e-06 .. 1000000 m");
     expect_refusal(mesh, {.position_bits = 15}, "position bits is 15; must be 16 .. 24");
     expect_refusal(mesh, {.position_bits = 25}, "position bits");
-    prepared(mesh, {.fit_diagonal_m = 1e-4, .position_bits = 24});
-    prepared(mesh, {.fit_diagonal_m = 1e3});
+    prepared(mesh, {.fit_diagonal_m = 1e-6, .position_bits = 24});
+    prepared(mesh, {.fit_diagonal_m = 1e6});
 }
 
 TEST(PrepareMesh, refuses_sources_that_make_no_model)

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "platform/device_force.hpp"
 #include "platform/hrtc/haptic_loop.hpp"
 #include "platform/simulated/faulty_device.hpp"
 #include "platform/simulated/simulated_device.hpp"
@@ -78,10 +79,10 @@ public:
         tamper_(reads_++, sample);
         return sample;
     }
-    void write(const std::array<double, 3>& force_world_n) noexcept override
+    void write(const Wrench& wrench) noexcept override
     {
-        device_->write(force_world_n);
-        written_n.push_back({force_world_n[0], force_world_n[1], force_world_n[2]});
+        device_->write(wrench);
+        written_n.push_back(to_vec3(wrench.force_world_n));
     }
     void brake() noexcept override { device_->brake(); }
     void release_brake() noexcept override
@@ -139,12 +140,11 @@ public:
         LoopParts parts;
         parts.frame = &frames_.frame();
         parts.tools = tools_;
-        parts.poses = frames_.source_poses();
         parts.timer = options_.timer != nullptr ? options_.timer : &timer_;
         parts.clock = &clock();
         parts.frames = options_.frames;
         parts.hosts_gone = &hosts_gone;
-        door_.emplace(parts.poses, kPoseAge);
+        door_.emplace(std::vector{placed()}, kPoseAge);
         parts.pose_door = options_.has_door ? &*door_ : nullptr;
         parts.telemetry = &telemetry;
         parts.budgets.splits = kMaxSplitsPerFrame;
@@ -154,7 +154,12 @@ public:
 
     [[nodiscard]] PoseDoor& door() { return *door_; }
     /// Where the object stands at first.
-    [[nodiscard]] const ObjectPose& placed() const { return frames_.source_poses()[0]; }
+    [[nodiscard]] ObjectPose placed() const
+    {
+        ObjectPose pose;
+        pose.translation_m = -frames_.frame().model({0}).header.origin_m();
+        return pose;
+    }
     [[nodiscard]] const RunStatistics& statistics() const { return statistics_; }
     [[nodiscard]] HapticLoop& loop() { return *loop_; }
     [[nodiscard]] TamperedDevice& device() { return static_cast<TamperedDevice&>(*tool().device); }
@@ -191,7 +196,7 @@ public:
         return most;
     }
 
-    std::atomic<std::uint32_t> hosts_gone{0};
+    HostsGone hosts_gone;
     TelemetryTap telemetry{kPeriod};
 
 private:

@@ -135,9 +135,9 @@ public:
         }
         return WrappedDevice::read();
     }
-    void write(const std::array<double, 3>& force_world_n) noexcept override
+    void write(const Wrench& wrench) noexcept override
     {
-        WrappedDevice::write(force_world_n);
+        WrappedDevice::write(wrench);
         writes_since_bug_ += has_bug_.load() ? 1 : 0;
         if (plan_.bug == Bug::haptic_and_fade && writes_since_bug_ == kFadeFailsAt)
         {
@@ -251,8 +251,7 @@ void run_session(const Plan& plan, const std::string& model, int events)
     Options options;
     options.transport = TransportKind::file;
     options.models = {model};
-    options.placements.resize(1);
-    options.materials.resize(1);
+    options.objects.resize(1);
     options.pool_mib = 8.0;
     options.duration_s = 3'600.0;
     options.record_path = plan.record_path;

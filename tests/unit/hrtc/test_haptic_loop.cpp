@@ -250,7 +250,7 @@ TEST(HapticLoop, a_lost_host_ends_the_force_unless_the_model_is_here_as_a_whole)
         LoopRigOptions options;
         options.static_model = is_static;
         options.tamper = [&](std::uint64_t frame, DeviceSample&)
-        { running->hosts_gone.store(is_bad(frame) ? 1U : 0U); };
+        { running->hosts_gone.set(0, is_bad(frame)); };
         LoopRig rig(options);
         running = &rig;
         rig.loop().run();

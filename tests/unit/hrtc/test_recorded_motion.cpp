@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
+#include "platform/device_force.hpp"
 #include "platform/hrtc/recorded_motion.hpp"
 #include "tests/shared/frame_rig.hpp"
 #include "tests/shared/temporary_folder.hpp"
 #include "tests/shared/test_model.hpp"
+#include "tests/unit/recording/recorded_example.hpp"
 
 #include <gtest/gtest.h>
 
@@ -70,12 +72,35 @@ TEST_F(RecordedMotion, is_that_of_the_tool_of_the_same_number_or_of_the_first)
         ASSERT_EQ(sut.value().readings.size(), 5U);
         for (int frame = 0; frame < 5; ++frame)
         {
-            const RecordedReading& reading = sut.value().readings[static_cast<std::size_t>(frame)];
-            EXPECT_EQ(reading.position_world_m, state_of(played, frame).position_m);
+            const DeviceSample& reading = sut.value().readings[static_cast<std::size_t>(frame)];
+            EXPECT_EQ(to_vec3(reading.position_world_m), state_of(played, frame).position_m);
+            EXPECT_FALSE(reading.rotation_world);
             EXPECT_EQ(reading.time.ns, state_of(played, frame).sample_time_ns);
             EXPECT_EQ(reading.valid, frame != 2);
         }
     }
+}
+
+/// All that the device said, and where a clutch had parted hand and tool the hand.
+TEST_F(RecordedMotion, is_the_hands_with_all_that_its_device_told)
+{
+    const auto model = tactus::test::make_tiny_model({});
+    const tactus::test::ExampleFrame frame;
+    RecordingWriter writer(tactus::test::example_setup(model));
+    writer.add_piece(0, {ContentKind::chunk, 1}, model.piece({ContentKind::chunk, 1}));
+    FrameEncoder encoder;
+    writer.add_frame(frame.code(encoder));
+    writer.finish(kNoFrame);
+    const auto sut = read_recorded_motion(write(writer.take_bytes()), 0);
+    ASSERT_TRUE(sut) << sut.error().text;
+    EXPECT_EQ(sut.value().limits.turn.torque_max_nm, 0.25);
+    const DeviceSample& reading = sut.value().readings.at(0);
+    EXPECT_EQ(reading.position_world_m, (std::array{31.0, 32.0, 33.0}));
+    EXPECT_EQ(reading.rotation_world, (std::array{0.0, 0.0, 0.0, 1.0}));
+    EXPECT_EQ(reading.velocity_world_m_per_s, (std::array{34.0, 35.0, 36.0}));
+    EXPECT_EQ(reading.angular_velocity_world_rad_per_s, (std::array{37.0, 38.0, 39.0}));
+    EXPECT_EQ(reading.buttons, 40U);
+    EXPECT_EQ(reading.gripper_m, 41.0);
 }
 
 TEST_F(RecordedMotion, without_frames_is_empty)

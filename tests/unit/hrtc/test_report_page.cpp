@@ -90,6 +90,7 @@ Json report_of(const std::string& model)
                                  {"diagonal_m", 0.3125},
                                  {"pose", {{"followed", false}, {"moves", 131}}}}})},
         {"tools", Json::array({{{"radius_m", 0.002},
+                                {"torque_max_nm", 0.0625},
                                 {"stiffness_cap_n_per_m", 3'000.5},
                                 {"conditioned", {{"stiffness_capped", 137}, {"damped", 139}}}}})},
         {"pairs", Json::array({{{"tool", 0}, {"model", model}, {"answers", {{"exact", 149}}}}})}};

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "platform/hrtc/telemetry_tap.hpp"
+#include "platform/hrtc/touch_forces.hpp"
 #include "tests/unit/hrtc/loop_rig.hpp"
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstdint>
 
 namespace tactus::hrtc::test
@@ -45,6 +47,58 @@ TEST(TelemetryTap, shows_the_newest_frame_as_the_loop_had_it)
     EXPECT_EQ(telemetry.tools[0].force_n[0], sent_n.x());
     EXPECT_EQ(telemetry.tools[0].force_n[2], sent_n.z());
     EXPECT_GT(telemetry.tools[0].proxy_m[0], telemetry.tools[0].position_m[0]); // Pressed in -x.
+    EXPECT_EQ(telemetry.tools[0].rotation, (std::array{0.0, 0.0, 0.0, 1.0}));
+    ASSERT_EQ(telemetry.pair_count, 1U);
+    EXPECT_EQ(telemetry.pairs[0].tool, 0U);
+    EXPECT_EQ(telemetry.pairs[0].object, 0U);
+    EXPECT_EQ(telemetry.pairs[0].kind, AnswerKind::exact);
+    EXPECT_LE(telemetry.pairs[0].lower_m, telemetry.pairs[0].upper_m);
+    EXPECT_EQ(telemetry.pairs[0].force_n[0], -sent_n.x()); // The whole push is the one object's.
+    EXPECT_EQ(telemetry.pairs[0].force_n[2], -sent_n.z());
+}
+
+/// A pair of a tool at the origin and an object that begins there in that direction.
+PairOutput pair_towards(const Vec3& inward, double distance_m)
+{
+    PairOutput pair;
+    pair.nearest_point_m = distance_m * inward.normalized();
+    pair.lower_m = pair.upper_m = distance_m;
+    return pair;
+}
+
+TEST(SharePush, gives_each_wall_of_a_corner_its_part_and_nothing_to_what_is_not_touched)
+{
+    const std::array pairs{pair_towards(Vec3(1.0, 0.0, 0.0), 0.01),
+                           pair_towards(Vec3(0.0, 1.0, 0.0), 0.01),
+                           pair_towards(Vec3(0.0, 0.0, 1.0), 0.02)};
+    std::array<Vec3, 3> pushes_n;
+    share_push(pairs, 0.01, Vec3(3.0, 2.0, 0.0), pushes_n);
+    EXPECT_LT((pushes_n[0] - Vec3(3.0, 0.0, 0.0)).norm(), 1e-9);
+    EXPECT_LT((pushes_n[1] - Vec3(0.0, 2.0, 0.0)).norm(), 1e-9);
+    EXPECT_EQ(pushes_n[2].norm(), 0.0);
+}
+
+TEST(SharePush, adds_up_to_the_push_whatever_the_normals_are)
+{
+    const std::array pairs{pair_towards(Vec3(1.0, 0.1, 0.0), 0.01),
+                           pair_towards(Vec3(1.0, -0.1, 0.3), 0.01),
+                           pair_towards(Vec3(-1.0, 0.0, 0.0), 0.01)};
+    std::array<Vec3, 3> pushes_n;
+    const Vec3 push_n(3.0, 2.0, -1.0); // With friction.
+    share_push(pairs, 0.01, push_n, pushes_n);
+    EXPECT_LT((pushes_n[0] + pushes_n[1] + pushes_n[2] - push_n).norm(), 1e-12);
+    EXPECT_LT(pushes_n[2].norm(), 1e-12); // It would have to pull.
+}
+
+TEST(SharePush, leaves_a_push_that_no_normal_explains_to_the_nearest)
+{
+    const std::array pairs{pair_towards(Vec3(1.0, 0.0, 0.0), 0.012),
+                           pair_towards(Vec3(1.0, 0.0, 0.0), 0.011)};
+    std::array<Vec3, 2> pushes_n;
+    share_push(pairs, 0.01, Vec3(-1.0, 0.0, 0.0), pushes_n);
+    EXPECT_EQ(pushes_n[0].norm(), 0.0);
+    EXPECT_EQ(pushes_n[1].x(), -1.0);
+    share_push({}, 0.01, Vec3(-1.0, 0.0, 0.0), {});
 }
 
 TEST(TelemetryTap, keeps_the_faults_of_frames_that_nobody_looked_at)

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
+#include "platform/device_force.hpp"
 #include "platform/hrtc/tool_port.hpp"
+#include "platform/simulated/device_classes.hpp"
 #include "tests/unit/hrtc/period.hpp"
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 
 namespace tactus::hrtc
 {
@@ -32,11 +36,18 @@ public:
         DeviceSample sample;
         sample.time.ns = ++reads_ * 1'000'000;
         sample.valid = true;
+        sample.position_world_m = to_array(hand.position_m);
+        if (info_.limits.turn.is_measured)
+        {
+            sample.rotation_world = rotation.value_or(to_quaternion(hand.rotation));
+        }
+        sample.buttons = buttons;
         return sample;
     }
-    void write(const std::array<double, 3>& force_world_n) noexcept override
+    void write(const Wrench& wrench) noexcept override
     {
-        written_n = Vec3(force_world_n[0], force_world_n[1], force_world_n[2]);
+        written_n = to_vec3(wrench.force_world_n);
+        written_nm = to_vec3(wrench.torque_world_nm);
     }
     void brake() noexcept override {}
     void release_brake() noexcept override {}
@@ -45,7 +56,16 @@ public:
         return {DeviceState::force, 0, 0, 0};
     }
 
+    void measure_rotation(const TurnLimits& turn = {.is_measured = true})
+    {
+        info_.limits.turn = turn;
+    }
+
     Vec3 written_n{0.0, 0.0, 0.0};
+    Vec3 written_nm{0.0, 0.0, 0.0};
+    HandPlace hand;
+    std::uint32_t buttons{0};
+    std::optional<Quaternion> rotation; ///< In place of the hand's.
 
 private:
     DeviceInfo info_;
@@ -81,10 +101,7 @@ protected:
         }
         ASSERT_NEAR((device().written_n - pushed_.force_n).norm(), 0.0, 1e-9);
     }
-    [[nodiscard]] const StillDevice& device() const
-    {
-        return static_cast<const StillDevice&>(*setup_.device);
-    }
+    [[nodiscard]] StillDevice& device() const { return static_cast<StillDevice&>(*setup_.device); }
 
     ToolSetup setup_;
     std::unique_ptr<ToolPort> sut_;
@@ -104,6 +121,108 @@ TEST_F(ToolPortTest, what_the_frame_says_of_the_tool_becomes_a_cause)
     bad.force_n.x() = std::numeric_limits<double>::quiet_NaN();
     EXPECT_EQ(step(bad).causes, ForceOff::garbage);
     EXPECT_LT(device().written_n.norm(), pushed_.force_n.norm());
+}
+
+/// About z, by what a unit quaternion says.
+HandPlace turned_place(const Vec3& position_m, double z, double w)
+{
+    return {position_m, to_rotation({0.0, 0.0, z, w})};
+}
+
+TEST_F(ToolPortTest, the_tool_turns_as_the_device_says)
+{
+    device().measure_rotation();
+    device().hand = turned_place(Vec3(1.0, 2.0, 3.0), 0.6, 0.8);
+    const ToolState& state = sut_->read(1);
+    EXPECT_TRUE(state.valid);
+    EXPECT_LT((state.rotation - device().hand.rotation).norm(), 1e-15);
+    EXPECT_FALSE(sut_->record().hand);
+    EXPECT_TRUE(sut_->record().measures_rotation);
+}
+
+TEST_F(ToolPortTest, a_rotation_that_is_none_makes_the_sample_invalid)
+{
+    device().measure_rotation();
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    for (const Quaternion& bad :
+         {Quaternion{}, Quaternion{0.0, 0.0, 0.0, 1.01}, Quaternion{nan, 0.0, 0.0, 1.0}})
+    {
+        device().rotation = bad;
+        EXPECT_FALSE(sut_->read(1).valid) << bad[3];
+    }
+    device().rotation.reset();
+    EXPECT_TRUE(sut_->read(1).valid);
+}
+
+/// A box turned against its proxy, on a device that makes a torque.
+TEST_F(ToolPortTest, a_torque_goes_out_with_the_force_and_fades_with_it)
+{
+    device().measure_rotation(kDeskTurn);
+    setup_.spec.core = Box{Vec3(0.01, 0.01, 0.01)};
+    setup_.conditioner.device = device().info().limits;
+    setup_.limits.torque_max_nm = kDeskTurn.torque_max_nm;
+    sut_ = std::make_unique<ToolPort>(setup_);
+    pushed_.torque_nm = Vec3(0.0, 0.1, 0.0);
+    pushed_.proxy_rotation = to_rotation({0.0, 0.1, 0.0, 1.0});
+    warm_up();
+    EXPECT_LT((device().written_nm - pushed_.torque_nm).norm(), 1e-9);
+    EXPECT_NEAR(sut_->force().twist_rad, 2.0 * std::atan(0.1), 1e-9);
+    EXPECT_EQ(sut_->record().sent_nm, device().written_nm);
+    ToolOutput stuck = pushed_;
+    stuck.sample_fault = FrameFault::tool_stuck;
+    static_cast<void>(step(stuck));
+    const double gain = device().written_n.norm() / pushed_.force_n.norm();
+    EXPECT_LT(gain, 1.0);
+    EXPECT_NEAR(device().written_nm.norm(), gain * pushed_.torque_nm.norm(), 1e-9);
+    ToolOutput bad = pushed_;
+    bad.torque_nm.x() = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_EQ(step(bad).causes, ForceOff::garbage);
+    EXPECT_TRUE(device().written_nm.allFinite());
+}
+
+TEST_F(ToolPortTest, a_held_button_parts_hand_and_tool_without_a_force)
+{
+    device().measure_rotation();
+    setup_.clutch_button = 3;
+    sut_ = std::make_unique<ToolPort>(setup_);
+    warm_up();
+    device().buttons = 4; // Another one.
+    EXPECT_EQ(step(pushed_).causes, ForceOff::none);
+    const ToolState held = sut_->read(1);
+
+    device().buttons = 8;
+    for (int i = 1; i <= 60; ++i)
+    {
+        device().hand = turned_place(Vec3(0.001 * i, 0.0, 0.0), 0.6, 0.8);
+        EXPECT_EQ(step(pushed_).causes, ForceOff::clutch);
+        EXPECT_EQ(sut_->read(1).position_m, held.position_m);
+        EXPECT_EQ(sut_->read(1).rotation, held.rotation);
+    }
+    EXPECT_EQ(device().written_n, Vec3(0.0, 0.0, 0.0));
+    EXPECT_EQ(sut_->record().hand->position_m, device().hand.position_m);
+
+    device().buttons = 0;
+    EXPECT_LT((sut_->read(1).position_m - held.position_m).norm(), 1e-15) << "goes on from there";
+    EXPECT_LT((sut_->read(1).rotation - held.rotation).norm(), 1e-15);
+    EXPECT_EQ(step(pushed_).causes, ForceOff::none);
+    // Back to where the hand began: the tool turns by as much, about the world's axes.
+    const Mat3 way = to_rotation({0.0, 0.0, -0.6, 0.8});
+    device().hand = HandPlace{};
+    EXPECT_LT((sut_->read(1).rotation - way * held.rotation).norm(), 1e-14);
+    EXPECT_LT((sut_->read(1).position_m - held.position_m - Vec3(-0.06, 0.0, 0.0)).norm(), 1e-14);
+}
+
+TEST_F(ToolPortTest, a_sample_that_is_not_to_be_trusted_doesnt_move_the_clutch)
+{
+    setup_.clutch_button = 0;
+    sut_ = std::make_unique<ToolPort>(setup_);
+    device().buttons = 1;
+    static_cast<void>(sut_->read(1));
+    device().buttons = 0;
+    device().hand.position_m.x() = std::numeric_limits<double>::quiet_NaN();
+    static_cast<void>(sut_->read(1));
+    device().hand.position_m = Vec3(5.0, 0.0, 0.0);
+    EXPECT_EQ(sut_->read(1).position_m, Vec3(0.0, 0.0, 0.0)) << "it was let go only now";
 }
 
 } // namespace

@@ -99,10 +99,10 @@ public:
         meanwhile_(reads_++);
         return WrappedDevice::read();
     }
-    void write(const std::array<double, 3>& force_world_n) noexcept override
+    void write(const Wrench& wrench) noexcept override
     {
-        WrappedDevice::write(force_world_n);
-        for (const double force_n : force_world_n)
+        WrappedDevice::write(wrench);
+        for (const double force_n : wrench.force_world_n)
         {
             written.add(force_n);
         }
@@ -144,7 +144,6 @@ public:
         tool.conditioner.period_s = to_seconds(kPeriod);
         loop_.emplace(LoopParts{.frame = &frames_.frame(),
                                 .tools = tools_,
-                                .poses = frames_.source_poses(),
                                 .timer = &timer_,
                                 .clock = &clock_,
                                 .budgets = most(),

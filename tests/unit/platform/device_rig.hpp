@@ -2,7 +2,9 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "platform/device_force.hpp"
 #include "platform/haptic_device.hpp"
+#include "platform/simulated/device_classes.hpp"
 #include "platform/simulated/faulty_device.hpp"
 #include "platform/simulated/hand_motion.hpp"
 #include "platform/simulated/replay_device.hpp"
@@ -34,6 +36,8 @@ public:
     [[nodiscard]] virtual DeviceSample next() = 0;
     /// Whether the hand gives way to a force; where it doesn't it never moves.
     [[nodiscard]] virtual bool gives_way() const { return true; }
+    /// Whether it gives way to a torque, too.
+    [[nodiscard]] virtual bool turns() const { return gives_way(); }
 
 protected:
     DeviceRig() = default;
@@ -45,7 +49,7 @@ protected:
 class SimulatedRig final : public DeviceRig
 {
 public:
-    explicit SimulatedRig(const DeviceLimits& limits = {})
+    explicit SimulatedRig(const DeviceLimits& limits = kDeskClass)
     {
         SimulatedDeviceOptions options;
         options.device = limits;
@@ -73,9 +77,15 @@ private:
     static ReplayDeviceOptions hand_at_rest()
     {
         ReplayDeviceOptions options;
+        options.limits = kDeskClass;
         for (std::int64_t i = 0; i < 1'000; ++i)
         {
-            options.readings.push_back({Vec3(0.1, 0.2, 0.3), MonotonicTime{i * 1'000'000}, true});
+            DeviceSample reading;
+            reading.position_world_m = {0.1, 0.2, 0.3};
+            reading.time = MonotonicTime{i * 1'000'000};
+            reading.valid = true;
+            reading.rotation_world = {0.0, 0.0, 0.0, 1.0};
+            options.readings.push_back(reading);
         }
         return options;
     }

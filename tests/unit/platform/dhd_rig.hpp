@@ -64,6 +64,7 @@ public:
         await_turn();
         return device_->read();
     }
+    [[nodiscard]] bool turns() const override { return false; }
     [[nodiscard]] StandInDhdDevice& hand() { return stand_in_->devices.at(index_); }
     /// A turn begins with a reading: between two that come from here on lies a whole one.
     void await_turn()

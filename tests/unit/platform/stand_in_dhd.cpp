@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 /// A library that exports what platform/dhd takes from Force Dimension's SDK; without
-/// dhdSetForce when STAND_IN_DHD_IS_OLD is defined.
+/// dhdSetForceAndTorqueAndGripperForce when STAND_IN_DHD_IS_OLD is defined.
 #include "tests/unit/platform/stand_in_dhd.hpp"
 
 namespace
@@ -108,10 +108,79 @@ extern "C"
         return pressed;
     }
 
-#ifndef STAND_IN_DHD_IS_OLD
-    int dhdSetForce(double x, double y, double z, char id)
+    unsigned dhdGetButtonMask(char id)
     {
-        return on(id, [&](StandInDhdDevice& device) { device.force_n = {x, y, z}; });
+        unsigned mask = 0;
+        static_cast<void>(on(id,
+                             [&](const StandInDhdDevice& device)
+                             {
+                                 for (std::size_t i = 0; i < device.buttons.size(); ++i)
+                                 {
+                                     mask |= device.buttons.at(i) != 0 ? 1U << i : 0U;
+                                 }
+                             }));
+        return mask;
+    }
+
+    bool dhdHasWrist(char id)
+    {
+        return device_of(id).has_wrist;
+    }
+
+    bool dhdHasActiveWrist(char id)
+    {
+        return device_of(id).has_active_wrist;
+    }
+
+    bool dhdHasGripper(char id)
+    {
+        return device_of(id).has_gripper;
+    }
+
+    bool dhdHasActiveGripper(char id)
+    {
+        return device_of(id).has_gripper;
+    }
+
+    int dhdGetOrientationFrame(double matrix[3][3], char id)
+    {
+        return on(id,
+                  [&](const StandInDhdDevice& device)
+                  {
+                      for (std::size_t i = 0; i < 9; ++i)
+                      {
+                          matrix[i / 3][i % 3] = device.frame.at(i);
+                      }
+                  });
+    }
+
+    int dhdGetAngularVelocityRad(double* x, double* y, double* z, char id)
+    {
+        return on(id,
+                  [&](const StandInDhdDevice& device)
+                  {
+                      *x = device.turning[0];
+                      *y = device.turning[1];
+                      *z = device.turning[2];
+                  });
+    }
+
+    int dhdGetGripperGap(double* gap, char id)
+    {
+        return on(id, [&](const StandInDhdDevice& device) { *gap = device.gap_m; });
+    }
+
+#ifndef STAND_IN_DHD_IS_OLD
+    int dhdSetForceAndTorqueAndGripperForce(double fx, double fy, double fz, double tx, double ty,
+                                            double tz, double grip, char id)
+    {
+        return on(id,
+                  [&](StandInDhdDevice& device)
+                  {
+                      device.force_n = {fx, fy, fz};
+                      device.torque_nm = {tx, ty, tz};
+                      device.grip_n = grip;
+                  });
     }
 #endif
 

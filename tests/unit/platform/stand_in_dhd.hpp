@@ -33,7 +33,15 @@ struct StandInDhdDevice
     std::array<double, 3> force_n{};
     bool brakes{true};
     bool forces_enabled{false};
+    std::array<double, 9> frame{1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0}; ///< By rows.
+    std::array<double, 3> turning{};
+    std::array<double, 3> torque_nm{};
+    double gap_m{0.0};
+    double grip_n{0.0};
     std::array<int, 2> buttons{};
+    std::atomic<bool> has_wrist{true};
+    std::atomic<bool> has_active_wrist{true};
+    std::atomic<bool> has_gripper{false};
     std::atomic<bool> is_open{false};
     std::atomic<bool> is_plugged_in{true};
     std::atomic<bool> has_velocity{true};

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <string>
 
@@ -83,7 +84,8 @@ TEST_F(DhdDeviceTest, says_in_one_line_which_function_is_missing)
 {
     options.library = TACTUS_OLD_STAND_IN_DHD;
     const std::string line = refusal();
-    EXPECT_NE(line.find("has no function dhdSetForce; it takes Force Dimension's SDK 3"),
+    EXPECT_NE(line.find("has no function dhdSetForceAndTorqueAndGripperForce; it takes Force "
+                        "Dimension's SDK 3"),
               std::string::npos)
         << line;
 }
@@ -150,6 +152,57 @@ TEST_F(DhdDeviceTest, reads_position_velocity_and_button)
     await([](const auto& sample) { return sample.deadman_held && !sample.velocity_world_m_per_s; });
 }
 
+TEST_F(DhdDeviceTest, turns_and_grips)
+{
+    hand().frame = {0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0}; // A quarter about z.
+    hand().turning = {4.0, 5.0, 6.0};
+    hand().gap_m = 0.02;
+    hand().has_gripper = true;
+    hand().buttons = {1, 1};
+    open();
+    const DeviceSample sample = await([](const auto& got) { return got.valid; });
+    EXPECT_NEAR((*sample.rotation_world)[2], std::sqrt(0.5), 1e-12);
+    EXPECT_NEAR((*sample.rotation_world)[3], std::sqrt(0.5), 1e-12);
+    EXPECT_EQ(sample.angular_velocity_world_rad_per_s, (std::array{4.0, 5.0, 6.0}));
+    EXPECT_EQ(sample.gripper_m, 0.02);
+    EXPECT_EQ(sample.buttons, 3U);
+    sut->write({{1.0, 2.0, 3.0}, {0.01, 0.02, 0.03}, 0.5});
+    await_turn();
+    {
+        const std::lock_guard lock(hand().mutex);
+        EXPECT_EQ(hand().torque_nm, (std::array{0.01, 0.02, 0.03}));
+        EXPECT_EQ(hand().grip_n, 0.5);
+    }
+    {
+        const std::lock_guard lock(hand().mutex);
+        hand().frame.at(0) = 1.0; // No rotation any more.
+    }
+    EXPECT_TRUE(await([](const auto& got) { return !got.valid; }).connected);
+}
+
+TEST_F(DhdDeviceTest, without_a_wrist_or_its_motors_makes_the_force_alone)
+{
+    hand().has_active_wrist = false;
+    open();
+    EXPECT_TRUE(sut->info().limits.turn.is_measured);
+    EXPECT_EQ(sut->info().limits.turn.torque_max_nm, 0.0);
+    EXPECT_EQ(sut->info().gripper_force_max_n, 0.0);
+    await([](const auto& got) { return got.valid; });
+    sut->write({{1.0, 2.0, 3.0}, {0.01, 0.02, 0.03}, 0.5});
+    await_turn();
+    {
+        const std::lock_guard lock(hand().mutex);
+        EXPECT_EQ(hand().force_n, (std::array{1.0, 2.0, 3.0}));
+        EXPECT_EQ(hand().torque_nm, (std::array{0.0, 0.0, 0.0}));
+        EXPECT_EQ(hand().grip_n, 0.0);
+    }
+    sut.reset();
+    hand().has_wrist = false;
+    open();
+    EXPECT_FALSE(sut->info().limits.turn.is_measured);
+    EXPECT_FALSE(await([](const auto& got) { return got.valid; }).rotation_world);
+}
+
 TEST_F(DhdDeviceTest, takes_no_position_that_is_no_number)
 {
     hand().position_m = {0.01, 0.0, 0.0};
@@ -168,7 +221,7 @@ TEST_F(DhdDeviceTest, sets_the_devices_own_brakes_and_takes_them_off)
 {
     open();
     await([](const DeviceSample& sample) { return sample.valid; });
-    sut->write({1.0, 2.0, 3.0});
+    sut->write({{1.0, 2.0, 3.0}, {}, 0.0});
     await_turn();
     {
         const std::lock_guard lock(hand().mutex);
@@ -195,7 +248,7 @@ TEST_F(DhdDeviceTest, takes_the_force_away_where_there_are_no_brakes)
     hand().has_brakes = false;
     open();
     await([](const DeviceSample& sample) { return sample.valid; });
-    sut->write({1.0, 2.0, 3.0});
+    sut->write({{1.0, 2.0, 3.0}, {}, 0.0});
     await_turn();
     sut->brake();
     await_turn();
@@ -208,7 +261,7 @@ TEST_F(DhdDeviceTest, is_gone_when_unplugged_and_idle_when_it_is_back)
 {
     open();
     await([](const DeviceSample& sample) { return sample.valid; });
-    sut->write({1.0, 0.0, 0.0});
+    sut->write({{1.0, 0.0, 0.0}, {}, 0.0});
     EXPECT_EQ(sut->status().state, DeviceState::force);
     hand().is_plugged_in = false;
     EXPECT_FALSE(await([](const DeviceSample& sample) { return !sample.connected; }).valid);
@@ -226,7 +279,7 @@ TEST_F(DhdDeviceTest, leaves_the_device_without_a_force_and_closed)
 {
     open();
     await([](const DeviceSample& sample) { return sample.valid; });
-    sut->write({1.0, 0.0, 0.0});
+    sut->write({{1.0, 0.0, 0.0}, {}, 0.0});
     await_turn();
     sut.reset();
     EXPECT_EQ(hand().force_n, (std::array{0.0, 0.0, 0.0}));

@@ -170,7 +170,7 @@ TEST(FaultyDevice, disconnected_makes_no_force_and_comes_back_idle)
         EXPECT_EQ(sample.valid, !is_away);
         EXPECT_EQ(sut.status().state,
                   i == 0 || is_away || i == 15 ? DeviceState::idle : DeviceState::force);
-        sut.write({1.0, 0.0, 0.0});
+        sut.write({{1.0, 0.0, 0.0}, {}, 0.0});
         EXPECT_EQ(simulated.felt_force_world_n().x(), is_away ? 0.0 : 1.0);
     }
 }

@@ -79,7 +79,7 @@ struct Play
             const auto& v = *sample.velocity_world_m_per_s;
             const Vec3 force = wall.respond(Vec3(p[0], p[1], p[2]));
             const Vec3 felt = force - drag_n_s_per_m * Vec3(v[0], v[1], v[2]);
-            device->write({felt.x(), felt.y(), felt.z()});
+            device->write({{felt.x(), felt.y(), felt.z()}, {}, 0.0});
             device_m.emplace_back(p[0], p[1], p[2]);
             force_n.push_back(force.norm());
         }

@@ -4,6 +4,7 @@
 #include "platform/haptic_device.hpp"
 #include "platform/simulated/device_classes.hpp"
 #include "platform/system_call_trap.hpp"
+#include "rt_core/math/rotation.hpp"
 #include "tests/unit/platform/dhd_rig.hpp"
 #include "tests/unit/platform/udp_rig.hpp"
 
@@ -68,7 +69,7 @@ protected:
         DeviceSample sample;
         for (int i = 0; i < frames; ++i)
         {
-            rig->device().write(force_n);
+            rig->device().write({force_n, {}, 0.0});
             sample = rig->next();
         }
         const auto end = sample.position_world_m;
@@ -119,7 +120,7 @@ TEST_P(HapticDeviceConformance, is_idle_until_the_first_force)
 {
     static_cast<void>(rig->next());
     EXPECT_EQ(rig->device().status().state, DeviceState::idle);
-    rig->device().write({0.0, 0.0, 0.0});
+    rig->device().write({{0.0, 0.0, 0.0}, {}, 0.0});
     EXPECT_EQ(rig->device().status().state, DeviceState::force);
 }
 
@@ -127,6 +128,48 @@ TEST_P(HapticDeviceConformance, gives_way_to_the_force_it_is_told_to_make_or_not
 {
     const double way_m = drift_m({0.0, 1.0, 0.0}, 300);
     EXPECT_TRUE(rig->gives_way() ? way_m > 1e-3 : way_m == 0.0) << way_m;
+}
+
+/// A device without a torque takes the force alone; one that doesn't turn tells no rotation.
+TEST_P(HapticDeviceConformance, turns_by_the_torque_it_is_told_to_make_or_not_at_all)
+{
+    const TurnLimits& turn = rig->device().info().limits.turn;
+    const DeviceSample start = rig->next();
+    EXPECT_EQ(start.rotation_world.has_value(), turn.is_measured);
+    DeviceSample sample;
+    for (int i = 0; i < 300; ++i)
+    {
+        rig->device().write({{}, {0.02, 0.05, -0.01}, 0.0});
+        sample = rig->next();
+    }
+    ASSERT_EQ(sample.rotation_world.has_value(), turn.is_measured);
+    if (!turn.is_measured)
+    {
+        return;
+    }
+    const Mat3 way =
+        to_rotation(*sample.rotation_world) * to_rotation(*start.rotation_world).transpose();
+    const Vec3 turned = rotation_vector(orthonormalised(way));
+    const bool is_turned = turn.torque_max_nm > 0.0 && rig->turns();
+    EXPECT_TRUE(is_turned ? turned.normalized().dot(Vec3(0.02, 0.05, -0.01).normalized()) > 0.99
+                          : turned.norm() == 0.0)
+        << turned.transpose();
+}
+
+TEST_P(HapticDeviceConformance, shortens_force_and_torque_by_one_factor)
+{
+    const DeviceLimits& limits = rig->device().info().limits;
+    static_cast<void>(rig->next());
+    rig->device().write({{0.1 * limits.force_max_n, 0.0, 0.0}, {0.0, 1e3, 0.0}, 0.0});
+    const bool has_torque = limits.turn.torque_max_nm > 0.0;
+    EXPECT_EQ(rig->device().status().forces_clamped, has_torque ? 1U : 0U);
+    for (const double bad :
+         {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
+    {
+        rig->device().write({{}, {0.0, bad, 0.0}, 0.0});
+        rig->device().write({{}, {}, bad});
+    }
+    EXPECT_EQ(rig->device().status().forces_refused, has_torque ? 4U : 2U);
 }
 
 TEST_P(HapticDeviceConformance, clamps_a_force_beyond_its_limit_and_counts_it)
@@ -152,7 +195,7 @@ TEST_P(HapticDeviceConformance, refuses_a_force_that_is_not_finite_and_makes_non
 
 TEST_P(HapticDeviceConformance, ignores_forces_from_the_brake_to_its_release)
 {
-    rig->device().write({5.0, 0.0, 0.0});
+    rig->device().write({{5.0, 0.0, 0.0}, {}, 0.0});
     std::thread other([&] { rig->device().brake(); });
     other.join();
     EXPECT_EQ(rig->device().status().state, DeviceState::brake);
@@ -178,7 +221,7 @@ TEST_P(HapticDeviceConformance, leaves_the_heap_alone)
     for (int i = 0; i < 100; ++i)
     {
         static_cast<void>(rig->device().read());
-        rig->device().write({0.1, 0.2, 0.3});
+        rig->device().write({{0.1, 0.2, 0.3}, {}, 0.0});
     }
     rig->device().brake();
     rig->device().release_brake();
@@ -209,7 +252,7 @@ TEST_P(HapticDeviceConformance, makes_no_system_call)
             for (int i = 0; i < 100; ++i)
             {
                 static_cast<void>(rig->device().read());
-                rig->device().write({0.1, 0.2, 0.3});
+                rig->device().write({{0.1, 0.2, 0.3}, {}, 0.0});
                 static_cast<void>(rig->device().status());
             }
             rig->device().release_brake();

@@ -2,9 +2,11 @@
 // Copyright the Tactus authors.
 #include "platform/remote/pose_door.hpp"
 
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <cmath>
 #include <cstdint>
 #include <thread>
 #include <vector>
@@ -18,15 +20,14 @@ namespace
 constexpr Duration kLimit = milliseconds(100);
 constexpr MonotonicTime kStart{1'000'000'000};
 
-/// One number in every field.
+/// One number in every field but the rotation, which it turns about z.
 ObjectPose pose_of(double number)
 {
     ObjectPose pose;
-    pose.rotation.setConstant(number);
+    pose.rotation = Eigen::AngleAxisd(number, Eigen::Vector3d::UnitZ()).toRotationMatrix();
     pose.translation_m = Vec3(number, number, number);
     pose.scale = number;
     pose.stamp_ns = static_cast<std::int64_t>(number);
-    pose.revision = static_cast<std::uint32_t>(number);
     return pose;
 }
 
@@ -35,42 +36,70 @@ bool is_whole(const ObjectPose& pose)
     const double number = pose.scale;
     return pose.rotation == pose_of(number).rotation &&
            pose.translation_m == pose_of(number).translation_m &&
-           pose.stamp_ns == pose_of(number).stamp_ns && pose.revision == pose_of(number).revision;
+           pose.stamp_ns == pose_of(number).stamp_ns;
 }
 
-TEST(PoseDoor, leaves_what_nobody_moves_where_it_was_placed_and_young)
+TEST(PoseDoor, tells_of_what_moved_and_of_nothing_else)
 {
     const std::vector<ObjectPose> placed{pose_of(1.0), pose_of(2.0)};
     PoseDoor sut(placed, kLimit);
     sut.put(1, pose_of(5.0), kStart);
-    sut.refresh(kStart + milliseconds(500));
-    EXPECT_EQ(sut.poses()[0].scale, 1.0);
-    EXPECT_EQ(sut.poses()[0].age_ns, 0);
+    const auto changes = sut.refresh(kStart);
+    ASSERT_EQ(changes.size(), 1U);
+    EXPECT_EQ(changes[0].kind, SceneChangeKind::object_moves);
+    EXPECT_EQ(changes[0].number, 1U);
+    EXPECT_EQ(changes[0].generation, 0U);
+    EXPECT_EQ(changes[0].pose.scale, 5.0);
+    EXPECT_TRUE(is_whole(changes[0].pose));
     EXPECT_FALSE(sut.uses()[0].is_followed);
     EXPECT_TRUE(sut.uses()[1].is_followed);
-    EXPECT_EQ(sut.poses()[1].scale, 5.0);
-    EXPECT_TRUE(is_whole(sut.poses()[1]));
+    EXPECT_TRUE(sut.refresh(kStart + milliseconds(1)).empty());
 }
 
-TEST(PoseDoor, counts_the_age_from_the_arrival_on_its_own_clock)
+TEST(PoseDoor, counts_the_age_from_when_the_host_was_heard_on_its_own_clock)
 {
     const std::vector<ObjectPose> placed{pose_of(1.0)};
     PoseDoor sut(placed, kLimit);
     ObjectPose pose = pose_of(2.0);
     pose.stamp_ns = 1; // Whatever the host's clock says.
-    pose.age_ns = 77;
+    pose.arrival_ns = 77;
     sut.put(0, pose, kStart);
-    sut.refresh(kStart + milliseconds(3));
-    EXPECT_EQ(sut.poses()[0].age_ns, 3'000'000);
-    EXPECT_EQ(sut.poses()[0].stamp_ns, 1);
-    sut.refresh(kStart + kLimit);
+    const auto changes = sut.refresh(kStart + milliseconds(3));
+    ASSERT_EQ(changes.size(), 1U);
+    EXPECT_EQ(changes[0].pose.arrival_ns, 0); // While the host is heard it doesn't grow old.
+    EXPECT_EQ(changes[0].pose.stamp_ns, 1);
+    static_cast<void>(sut.refresh(kStart + kLimit));
     EXPECT_EQ(sut.uses()[0].old_frames, 0U);
-    sut.refresh(kStart + kLimit + nanoseconds(1));
+    static_cast<void>(sut.refresh(kStart + kLimit + nanoseconds(1)));
     EXPECT_EQ(sut.uses()[0].old_frames, 1U);
     EXPECT_EQ(sut.uses()[0].age_max.ns, kLimit.ns + 1);
-    sut.put(0, pose, kStart + milliseconds(200));
-    sut.refresh(kStart + milliseconds(201));
-    EXPECT_EQ(sut.poses()[0].age_ns, 1'000'000);
+    sut.hear(0, kStart + milliseconds(200));
+    static_cast<void>(sut.refresh(kStart + milliseconds(201)));
+    EXPECT_EQ(sut.uses()[0].old_frames, 1U);
+}
+
+TEST(PoseDoor, tells_the_frame_of_a_silent_host_before_the_limit_and_of_one_that_is_back)
+{
+    const std::vector<ObjectPose> placed{pose_of(1.0)};
+    PoseDoor sut(placed, kLimit);
+    sut.put(0, pose_of(2.0), kStart);
+    ASSERT_EQ(sut.refresh(kStart).size(), 1U);
+    for (int ms = 20; ms <= 200; ms += 20) // It rests, and its host is heard: no changes.
+    {
+        sut.hear(0, kStart + milliseconds(ms));
+        EXPECT_TRUE(sut.refresh(kStart + milliseconds(ms + 15)).empty());
+    }
+    EXPECT_TRUE(sut.refresh(kStart + milliseconds(250)).empty());
+    const auto silent = sut.refresh(kStart + milliseconds(251));
+    ASSERT_EQ(silent.size(), 1U);
+    EXPECT_EQ(silent[0].pose.arrival_ns, (kStart + milliseconds(200)).ns);
+    EXPECT_EQ(silent[0].pose.scale, 2.0);
+    EXPECT_TRUE(sut.refresh(kStart + milliseconds(400)).empty()); // The frame counts on by itself.
+    sut.hear(0, kStart + milliseconds(401));
+    const auto back = sut.refresh(kStart + milliseconds(402));
+    ASSERT_EQ(back.size(), 1U);
+    EXPECT_EQ(back[0].pose.arrival_ns, 0);
+    EXPECT_EQ(sut.uses()[0].moves, 1U);
 }
 
 TEST(PoseDoor, takes_what_came_after_the_frame_began_as_new)
@@ -78,8 +107,107 @@ TEST(PoseDoor, takes_what_came_after_the_frame_began_as_new)
     const std::vector<ObjectPose> placed{pose_of(1.0)};
     PoseDoor sut(placed, kLimit);
     sut.put(0, pose_of(2.0), kStart + microseconds(5));
-    sut.refresh(kStart);
-    EXPECT_EQ(sut.poses()[0].age_ns, 0);
+    EXPECT_EQ(age_ns(sut.refresh(kStart)[0].pose, kStart.ns), 0);
+    EXPECT_EQ(sut.uses()[0].age_max.ns, 0);
+}
+
+/// A pose at x that is turned about z by 10 x, stamped by the host's clock.
+ObjectPose pose_at(double x_m, Duration stamp)
+{
+    ObjectPose pose;
+    pose.translation_m = Vec3(x_m, 0.0, 0.0);
+    pose.rotation = Eigen::AngleAxisd(10.0 * x_m, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+    pose.stamp_ns = stamp.ns;
+    return pose;
+}
+
+/// 0.1 m/s by 100 poses a second, which arrive when they like: each step of a frame is as small as
+/// the motion, and no step goes beyond what the host said.
+TEST(PoseDoor, lets_an_object_glide_from_pose_to_pose_over_the_time_between_them)
+{
+    const std::vector<ObjectPose> placed{pose_at(0.0, {})};
+    PoseDoor sut(placed, kLimit);
+    sut.put(0, pose_at(0.0, milliseconds(5)), kStart);
+    static_cast<void>(sut.refresh(kStart));
+    double last_m = 0.0;
+    double said_m = 0.0;
+    for (int ms = 10; ms < 500; ++ms)
+    {
+        const MonotonicTime now = kStart + milliseconds(ms);
+        if (ms == 10)
+        {
+            static_cast<void>(sut.refresh(now - milliseconds(1)));
+        }
+        if (ms % 10 == (ms / 10) % 2) // 9 and 11 ms apart in turns.
+        {
+            const int pose = ms / 10;
+            said_m = 1e-3 * pose;
+            sut.put(0, pose_at(said_m, milliseconds(5 + 10 * pose)), now);
+        }
+        for (const SceneChange& change : sut.refresh(now))
+        {
+            const Similarity& at = change.pose;
+            EXPECT_LE(at.translation_m.x(), said_m);
+            EXPECT_GE(at.translation_m.x(), last_m);
+            EXPECT_LT(at.translation_m.x() - last_m, 1.25e-4) << ms;
+            const Mat3 unturned = at.rotation.transpose() * at.rotation;
+            EXPECT_LT((unturned - Mat3::Identity()).norm(), 1e-14);
+            EXPECT_NEAR(std::asin(at.rotation(1, 0)), 10.0 * at.translation_m.x(), 1e-7);
+            last_m = at.translation_m.x();
+        }
+    }
+    EXPECT_GT(last_m, 0.045);
+}
+
+TEST(PoseDoor, ends_a_glide_at_the_pose_and_goes_no_farther)
+{
+    const std::vector<ObjectPose> placed{pose_at(0.0, {})};
+    PoseDoor sut(placed, kLimit);
+    sut.put(0, pose_at(0.0, milliseconds(1)), kStart);
+    static_cast<void>(sut.refresh(kStart));
+    const MonotonicTime later = kStart + milliseconds(40);
+    static_cast<void>(sut.refresh(later)); // From here it goes.
+    sut.put(0, pose_at(0.01, milliseconds(41)), later);
+    EXPECT_NEAR(sut.refresh(later + milliseconds(1))[0].pose.translation_m.x(), 2.5e-4, 1e-15);
+    EXPECT_NEAR(sut.refresh(later + milliseconds(20))[0].pose.translation_m.x(), 0.005, 1e-15);
+    EXPECT_EQ(sut.refresh(later + milliseconds(40))[0].pose.translation_m.x(), 0.01);
+    EXPECT_TRUE(sut.refresh(later + milliseconds(41)).empty());
+    EXPECT_EQ(sut.uses()[0].moves, 3U);
+}
+
+/// Each frame brings one: nothing is left to glide over, and nothing is held back.
+TEST(PoseDoor, keeps_up_with_poses_that_come_as_fast_as_frames)
+{
+    const std::vector<ObjectPose> placed{pose_at(0.0, {})};
+    PoseDoor sut(placed, kLimit);
+    for (int ms = 1; ms < 50; ++ms)
+    {
+        sut.put(0, pose_at(1e-4 * ms, milliseconds(ms)), kStart + milliseconds(ms));
+        const auto changes = sut.refresh(kStart + milliseconds(ms));
+        ASSERT_EQ(changes.size(), 1U);
+        EXPECT_EQ(changes[0].pose.translation_m.x(), 1e-4 * ms);
+    }
+}
+
+TEST(PoseDoor, takes_a_far_pose_after_a_rest_at_once_and_glides_to_a_near_one)
+{
+    const std::vector<ObjectPose> placed{pose_at(0.0, {})};
+    PoseDoor sut(placed, kLimit);
+    sut.put(0, pose_at(0.3, milliseconds(1)), kStart); // The first: it was placed elsewhere.
+    EXPECT_EQ(sut.refresh(kStart)[0].pose.translation_m.x(), 0.3);
+    const MonotonicTime later = kStart + milliseconds(51);
+    sut.put(0, pose_at(0.3 + 1.01 * PoseDoor::kJump_m, milliseconds(52)), later);
+    EXPECT_GT(sut.refresh(later)[0].pose.translation_m.x(), 0.32);
+    const MonotonicTime last = kStart + milliseconds(1'051);
+    sut.put(0, pose_at(0.3, milliseconds(1'052)), last);
+    EXPECT_EQ(sut.refresh(last)[0].pose.translation_m.x(), 0.3);
+    const MonotonicTime near = kStart + milliseconds(2'051);
+    static_cast<void>(sut.refresh(near));
+    sut.put(0, pose_at(0.31, milliseconds(2'052)), near);
+    EXPECT_NEAR(sut.refresh(near + milliseconds(1))[0].pose.translation_m.x(), 0.3002, 1e-12);
+    const MonotonicTime end = near + PoseDoor::kGlideMax;
+    EXPECT_LT(sut.refresh(end - milliseconds(1))[0].pose.translation_m.x(), 0.31);
+    EXPECT_EQ(sut.refresh(end)[0].pose.translation_m.x(), 0.31);
 }
 
 TEST(PoseDoor, keeps_the_newest_of_a_flood_and_counts_frames_that_moved)
@@ -90,54 +218,72 @@ TEST(PoseDoor, keeps_the_newest_of_a_flood_and_counts_frames_that_moved)
     {
         sut.put(0, pose_of(i), kStart);
     }
-    sut.refresh(kStart);
-    sut.refresh(kStart);
-    sut.put(0, pose_of(1'000), kStart); // At rest, said again.
-    sut.refresh(kStart);
-    EXPECT_EQ(sut.poses()[0].scale, 1'000.0);
+    const auto changes = sut.refresh(kStart);
+    ASSERT_EQ(changes.size(), 1U);
+    EXPECT_EQ(changes[0].pose.scale, 1'000.0);
+    EXPECT_TRUE(sut.refresh(kStart).empty());
     EXPECT_EQ(sut.uses()[0].moves, 1U);
     EXPECT_DOUBLE_EQ(sut.uses()[0].step_max_m, (Vec3(999.0, 999.0, 999.0)).norm());
 }
 
-TEST(PoseDoor, holds_as_many_objects_as_a_frame)
+TEST(PoseDoor, gives_a_frame_what_it_takes_and_the_next_one_the_others_first)
 {
-    const std::vector<ObjectPose> placed(kMaxObjects, pose_of(1.0));
+    constexpr std::size_t kObjects = 2 * kMaxSceneChanges + 10;
+    const std::vector<ObjectPose> placed(kObjects, pose_of(1.0));
     PoseDoor sut(placed, kLimit);
-    for (std::size_t i = 0; i < kMaxObjects; ++i)
+    const auto move_all = [&sut](double number)
     {
-        sut.put(i, pose_of(static_cast<double>(i) + 10.0), kStart);
-    }
-    sut.refresh(kStart);
-    for (std::size_t i = 0; i < kMaxObjects; ++i)
+        for (std::size_t i = 0; i < kObjects; ++i)
+        {
+            sut.put(i, pose_of(number + static_cast<double>(i)), kStart);
+        }
+    };
+    move_all(10.0);
+    std::size_t next = 0;
+    for (const std::size_t most : {std::size_t{kMaxSceneChanges}, std::size_t{kMaxSceneChanges}})
     {
-        EXPECT_EQ(sut.poses()[i].scale, static_cast<double>(i) + 10.0);
+        const auto changes = sut.refresh(kStart);
+        ASSERT_EQ(changes.size(), most);
+        for (const SceneChange& change : changes)
+        {
+            ASSERT_EQ(change.number, next++);
+            ASSERT_EQ(change.pose.scale, 10.0 + change.number);
+        }
     }
+    move_all(20.0); // Those that wait come first, and as they are by now.
+    const auto changes = sut.refresh(kStart);
+    ASSERT_EQ(changes.size(), kMaxSceneChanges);
+    EXPECT_EQ(changes[0].number, next);
+    EXPECT_EQ(changes[0].pose.scale, 20.0 + static_cast<double>(next));
 }
 
-/// The writer goes on until enough different poses were seen, so that the two do meet.
+/// The writer goes on until enough different poses were seen, so that the two do meet. Their stamps
+/// are so far apart, and they themselves, that each is taken at once.
 TEST(PoseDoor, never_mixes_two_poses_and_never_goes_back)
 {
     constexpr int kPoses = 2'000;
+    constexpr double kApart = 1e9;
     const std::vector<ObjectPose> placed{pose_of(1.0)};
     PoseDoor sut(placed, kLimit);
     std::atomic<bool> reading{true};
     std::thread writer(
         [&]
         {
-            for (int i = 2; reading; ++i)
+            for (double number = kApart; reading; number += kApart)
             {
-                sut.put(0, pose_of(i), kStart);
+                sut.put(0, pose_of(number), kStart);
             }
         });
     int faults = 0;
     double last = 1.0;
     for (int seen = 0; seen < kPoses;)
     {
-        sut.refresh(kStart);
-        const ObjectPose& pose = sut.poses()[0];
-        faults += !is_whole(pose) || pose.scale < last ? 1 : 0;
-        seen += pose.scale != last ? 1 : 0;
-        last = pose.scale;
+        for (const SceneChange& change : sut.refresh(kStart))
+        {
+            faults += !is_whole(change.pose) || change.pose.scale <= last ? 1 : 0;
+            last = change.pose.scale;
+            ++seen;
+        }
     }
     reading = false;
     writer.join();

@@ -64,7 +64,7 @@ TEST_F(RemoteDeviceTest, is_not_connected_before_the_first_reading)
     const DeviceSample sample = sut.read();
     EXPECT_FALSE(sample.connected);
     EXPECT_FALSE(sample.valid);
-    sut.write({1.0, 0.0, 0.0});
+    sut.write({{1.0, 0.0, 0.0}, {}, 0.0});
     EXPECT_EQ(sut.status().state, DeviceState::idle);
     EXPECT_EQ(sut.command().state, DeviceState::idle);
 }
@@ -122,7 +122,7 @@ TEST_F(RemoteDeviceTest, ends_the_force_of_a_haptic_thread_that_hangs)
 {
     arrive(0.0, true);
     static_cast<void>(sut.read());
-    sut.write({1.0, 2.0, 3.0});
+    sut.write({{1.0, 2.0, 3.0}, {}, 0.0});
     clock.advance(milliseconds(20) - nanoseconds(1));
     EXPECT_EQ(sut.status().state, DeviceState::force);
     EXPECT_EQ(sut.command().state, DeviceState::force);
@@ -137,14 +137,14 @@ TEST_F(RemoteDeviceTest, never_sends_a_force_to_another_attachment_than_it_was_w
 {
     arrive(0.0, true);
     static_cast<void>(sut.read());
-    sut.write({1.0, 0.0, 0.0});
+    sut.write({{1.0, 0.0, 0.0}, {}, 0.0});
     arrive(0.0, true); // Another device, before the haptic thread has seen it.
     EXPECT_EQ(sut.command().state, DeviceState::idle);
-    sut.write({1.0, 0.0, 0.0}); // Still for the one before.
+    sut.write({{1.0, 0.0, 0.0}, {}, 0.0}); // Still for the one before.
     EXPECT_EQ(sut.command().state, DeviceState::idle);
     static_cast<void>(sut.read());
     EXPECT_EQ(sut.status().state, DeviceState::idle);
-    sut.write({1.0, 0.0, 0.0});
+    sut.write({{1.0, 0.0, 0.0}, {}, 0.0});
     EXPECT_EQ(sut.command().state, DeviceState::force);
     EXPECT_EQ(sut.status().state, DeviceState::force);
 }
@@ -153,16 +153,16 @@ TEST_F(RemoteDeviceTest, sends_the_brake_until_its_release_and_then_nothing_from
 {
     arrive(0.0, true);
     static_cast<void>(sut.read());
-    sut.write({1.0, 0.0, 0.0});
+    sut.write({{1.0, 0.0, 0.0}, {}, 0.0});
     EXPECT_EQ(sut.command().state, DeviceState::force);
     sut.brake();
     EXPECT_EQ(sut.command().state, DeviceState::brake);
     EXPECT_EQ(sut.command().force_n, Vec3(0.0, 0.0, 0.0));
-    sut.write({2.0, 0.0, 0.0});
+    sut.write({{2.0, 0.0, 0.0}, {}, 0.0});
     sut.release_brake();
     EXPECT_EQ(sut.command().state, DeviceState::idle);
     EXPECT_EQ(sut.status().state, DeviceState::idle);
-    sut.write({3.0, 0.0, 0.0});
+    sut.write({{3.0, 0.0, 0.0}, {}, 0.0});
     EXPECT_EQ(sut.command().force_n, Vec3(3.0, 0.0, 0.0));
 }
 
@@ -202,7 +202,7 @@ TEST_F(RemoteDeviceTest, brings_no_force_back_from_before_a_release_with_threads
         sut.brake();
         sut.release_brake();
         released = round;
-        sut.write({static_cast<double>(round) / kRounds, 0.0, 0.0});
+        sut.write({{static_cast<double>(round) / kRounds, 0.0, 0.0}, {}, 0.0});
     }
     is_over = true;
     io.join();
@@ -215,10 +215,10 @@ TEST_F(RemoteDeviceTest, tells_each_write_from_the_one_before)
 {
     arrive(0.0, true);
     static_cast<void>(sut.read());
-    sut.write({1.0, 0.0, 0.0});
+    sut.write({{1.0, 0.0, 0.0}, {}, 0.0});
     const MonotonicTime first = sut.command().written;
     clock.advance(milliseconds(1));
-    sut.write({1.0, 0.0, 0.0});
+    sut.write({{1.0, 0.0, 0.0}, {}, 0.0});
     EXPECT_GT(sut.command().written, first);
 }
 

@@ -4,8 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 namespace tactus
 {
@@ -21,10 +23,24 @@ ReplayDeviceOptions four_readings()
     ReplayDeviceOptions options;
     options.rate_hz = 4'000;
     options.limits.force_max_n = 2.0;
-    options.readings = {{Vec3(1.0, 0.0, 0.0), MonotonicTime{5}, true},
-                        {Vec3(9.0, 9.0, 9.0), MonotonicTime{7}, false},
-                        {Vec3(kNan, 0.0, 0.0), MonotonicTime{9}, true},
-                        {Vec3(1.0, 0.5, -0.5), MonotonicTime{500}, true}};
+    const auto add = [&options](const std::array<double, 3>& position_m, std::int64_t time_ns)
+    {
+        DeviceSample reading;
+        reading.position_world_m = position_m;
+        reading.time = MonotonicTime{time_ns};
+        reading.valid = true;
+        options.readings.push_back(reading);
+    };
+    add({1.0, 0.0, 0.0}, 5);
+    add({9.0, 9.0, 9.0}, 7);
+    add({kNan, 0.0, 0.0}, 9);
+    add({1.0, 0.5, -0.5}, 500);
+    options.readings[1].valid = false;
+    options.readings[3].rotation_world = {0.6, 0.0, 0.0, 0.8};
+    options.readings[3].velocity_world_m_per_s = {1.0, 2.0, 3.0};
+    options.readings[3].angular_velocity_world_rad_per_s = {4.0, 5.0, 6.0};
+    options.readings[3].buttons = 5;
+    options.readings[3].gripper_m = 0.03;
     return options;
 }
 
@@ -36,7 +52,7 @@ std::unique_ptr<ReplayDevice> make(ReplayDeviceOptions options)
 TEST(ReplayDevice, gives_each_reading_as_it_was_recorded_whatever_is_written)
 {
     auto sut = make(four_readings());
-    const std::vector<RecordedReading> recorded = four_readings().readings;
+    const std::vector<DeviceSample> recorded = four_readings().readings;
     for (std::size_t i = 0; i < recorded.size(); ++i)
     {
         const DeviceSample sample = sut->read();
@@ -45,10 +61,15 @@ TEST(ReplayDevice, gives_each_reading_as_it_was_recorded_whatever_is_written)
         EXPECT_EQ(sample.valid, recorded[i].valid);
         EXPECT_TRUE(sample.connected);
         EXPECT_TRUE(sample.deadman_held);
-        EXPECT_FALSE(sample.velocity_world_m_per_s.has_value());
+        EXPECT_EQ(sample.velocity_world_m_per_s, recorded[i].velocity_world_m_per_s);
+        EXPECT_EQ(sample.rotation_world, recorded[i].rotation_world);
+        EXPECT_EQ(sample.angular_velocity_world_rad_per_s,
+                  recorded[i].angular_velocity_world_rad_per_s);
+        EXPECT_EQ(sample.buttons, recorded[i].buttons);
+        EXPECT_EQ(sample.gripper_m, recorded[i].gripper_m);
         EXPECT_EQ(std::isnan(sample.position_world_m[0]), i == 2);
-        EXPECT_EQ(sample.position_world_m[1], recorded[i].position_world_m.y());
-        sut->write({-1.0, 0.3, 0.2});
+        EXPECT_EQ(sample.position_world_m[1], recorded[i].position_world_m[1]);
+        sut->write({{-1.0, 0.3, 0.2}, {}, 0.0});
     }
 }
 
@@ -59,7 +80,7 @@ TEST(ReplayDevice, is_disconnected_after_the_last_reading_and_makes_no_force)
     for (int i = 0; i < 4; ++i)
     {
         last = sut->read();
-        sut->write({1.0, 0.0, 0.0});
+        sut->write({{1.0, 0.0, 0.0}, {}, 0.0});
         EXPECT_EQ(sut->status().state, DeviceState::force);
     }
     for (std::uint64_t frame = 4; frame < 8; ++frame)
@@ -69,7 +90,7 @@ TEST(ReplayDevice, is_disconnected_after_the_last_reading_and_makes_no_force)
         EXPECT_FALSE(sample.valid);
         EXPECT_EQ(sample.frame, frame);
         EXPECT_EQ(sample.position_world_m, last.position_world_m);
-        sut->write({1.0, 0.0, 0.0});
+        sut->write({{1.0, 0.0, 0.0}, {}, 0.0});
         EXPECT_EQ(sut->status().state, DeviceState::idle);
     }
     sut->brake();

@@ -337,7 +337,7 @@ TEST(RtThread, says_what_is_missing_for_fifo_to_an_ordinary_user)
             }
             const std::string& line = refused.error().text;
             return contains(line, "SCHED_FIFO 80 refused (EPERM): RLIMIT_RTPRIO is 0; add '") &&
-                           contains(line, " - rtprio 98' to /etc/security/limits.conf") &&
+                           contains(line, " - rtprio 99' to /etc/security/limits.d/tactus.conf") &&
                            contains(line, "CAP_SYS_NICE") && !contains(line, "\n")
                        ? 0
                        : 2;

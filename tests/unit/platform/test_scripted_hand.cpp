@@ -116,7 +116,7 @@ Recording play(const Model& model, double seconds, std::int64_t rate_hz = 1'000,
         allocation_counter::mark_this_thread(false);
         run.heap_calls += allocation_counter::of_this_thread().allocations - before.allocations;
         const Vec3 force = wall.respond(Vec3(p[0], p[1], p[2]));
-        device->write({force.x(), force.y(), force.z()});
+        device->write({{force.x(), force.y(), force.z()}, {}, 0.0});
         run.device.emplace_back(p[0], p[1], p[2]);
         run.force_n.push_back(force.norm());
         run.phase.push_back(script.phase());

@@ -65,7 +65,7 @@ TEST(SimulatedDevice, settles_where_springs_and_force_balance)
     for (int i = 0; i < 3'000; ++i)
     {
         sample = sut->read();
-        sut->write({1.0, 0.0, -2.0});
+        sut->write({{1.0, 0.0, -2.0}, {}, 0.0});
     }
     EXPECT_NEAR(sample.position_world_m[0], 0.01 + kArmAndGrip_m_per_n, 1e-9);
     EXPECT_NEAR(sample.position_world_m[1], 0.02, 1e-9);
@@ -98,7 +98,7 @@ TEST(SimulatedDevice, has_the_friction_the_quantum_and_the_delay_of_its_limits)
         double position_m = sut->read().position_world_m[0];
         for (int i = 0; i < periods; ++i)
         {
-            sut->write({force_n, 0.0, 0.0});
+            sut->write({{force_n, 0.0, 0.0}, {}, 0.0});
             position_m = sut->read().position_world_m[0];
         }
         return position_m;
@@ -120,7 +120,7 @@ TEST(SimulatedDevice, its_brake_drops_a_force_that_is_still_under_way)
     for (int i = 0; i < 3; ++i)
     {
         static_cast<void>(sut->read());
-        sut->write({5.0, 0.0, 0.0});
+        sut->write({{5.0, 0.0, 0.0}, {}, 0.0});
     }
     sut->brake();
     for (int i = 0; i < 20; ++i)
@@ -142,8 +142,8 @@ TEST(SimulatedDevice, repeats_bit_for_bit_and_takes_its_time_from_the_frame)
         ASSERT_EQ(a.position_world_m, b.position_world_m);
         ASSERT_EQ(*a.velocity_world_m_per_s, *b.velocity_world_m_per_s);
         EXPECT_EQ(a.time.ns, i * 1'000'000'000 / 3'000);
-        one->write({0.3, 0.1 * std::sqrt(static_cast<double>(i)), 0.0});
-        two->write({0.3, 0.1 * std::sqrt(static_cast<double>(i)), 0.0});
+        one->write({{0.3, 0.1 * std::sqrt(static_cast<double>(i)), 0.0}, {}, 0.0});
+        two->write({{0.3, 0.1 * std::sqrt(static_cast<double>(i)), 0.0}, {}, 0.0});
     }
 }
 
@@ -215,7 +215,7 @@ double drift_in_a_pause_m(std::optional<Duration> watchdog, Duration pause,
     for (int i = 0; i < 500; ++i)
     {
         before = sut->read();
-        sut->write({2.0, 0.0, 0.0});
+        sut->write({{2.0, 0.0, 0.0}, {}, 0.0});
         clock.advance(milliseconds(1));
     }
     before = sut->read();
@@ -255,14 +255,14 @@ TEST(SimulatedDevice, tells_that_its_watchdog_has_ended_the_force_until_the_next
     options.watchdog = milliseconds(5);
     auto sut = make(options, std::make_unique<HandThatJumps>(Vec3::Zero()));
     static_cast<void>(sut->read());
-    sut->write({1.0, 0.0, 0.0});
+    sut->write({{1.0, 0.0, 0.0}, {}, 0.0});
     clock.advance(milliseconds(5) - nanoseconds(1));
     EXPECT_EQ(sut->status().state, DeviceState::force);
     EXPECT_EQ(sut->felt_force_world_n(), Vec3(1.0, 0.0, 0.0));
     clock.advance(nanoseconds(1));
     EXPECT_EQ(sut->status().state, DeviceState::idle);
     EXPECT_EQ(sut->felt_force_world_n(), Vec3(Vec3::Zero()));
-    sut->write({0.5, 0.0, 0.0});
+    sut->write({{0.5, 0.0, 0.0}, {}, 0.0});
     EXPECT_EQ(sut->status().state, DeviceState::force);
     EXPECT_EQ(sut->felt_force_world_n(), Vec3(0.5, 0.0, 0.0));
 }

@@ -19,10 +19,17 @@ namespace
 
 using Bytes = std::vector<std::byte>;
 
-template <std::size_t Size>
-Bytes to_bytes(const std::array<std::byte, Size>& array)
+Bytes to_bytes(const Datagram& datagram)
 {
-    return {array.begin(), array.end()};
+    return {datagram.begin(), datagram.end()};
+}
+
+/// As a device of version 1 sends it, and as it is answered.
+template <typename Datagram>
+Datagram of_points(Datagram datagram)
+{
+    datagram.version = kVersionOfPoints;
+    return datagram;
 }
 
 template <typename T>
@@ -60,6 +67,83 @@ DatagramFault force_refusal_of(const Bytes& bytes)
 TEST(UdpDatagram, has_the_bytes_of_the_page)
 {
     const Bytes described = to_bytes(encode(test::example_description()));
+    ASSERT_EQ(described.size(), 288U);
+    EXPECT_EQ(std::memcmp(described.data(), "TCTD\2\0\1\0", 8), 0);
+    EXPECT_EQ(value_at<double>(described, 64), 0.1);
+    EXPECT_EQ(value_at<std::int64_t>(described, 184), 16);
+    for (std::size_t i = 0; i < 9; ++i)
+    {
+        EXPECT_EQ(value_at<double>(described, 192 + 8 * i), 17.0 + static_cast<double>(i));
+    }
+    EXPECT_EQ(value_at<std::uint64_t>(described, 264), 0U);
+    EXPECT_EQ(value_at<std::uint64_t>(described, 272), 0U);
+    EXPECT_EQ(value_at<std::uint32_t>(described, 280), 1U);
+    EXPECT_EQ(value_at<std::uint32_t>(described, 284),
+              test::bitwise_crc32c(std::span(described).first(284)));
+
+    const Bytes sampled = to_bytes(encode(test::example_sample()));
+    ASSERT_EQ(sampled.size(), 180U);
+    EXPECT_EQ(std::memcmp(sampled.data(), "TCTD\2\0\2\0", 8), 0);
+    EXPECT_EQ(value_at<double>(sampled, 48), 0.3);
+    EXPECT_EQ(value_at<double>(sampled, 72), -3.0);
+    EXPECT_EQ(value_at<std::int64_t>(sampled, 80), 1'234'567);
+    EXPECT_EQ(value_at<double>(sampled, 88), 0.6);
+    EXPECT_EQ(value_at<double>(sampled, 112), 0.8);
+    EXPECT_EQ(value_at<double>(sampled, 136), -6.0);
+    EXPECT_EQ(value_at<double>(sampled, 144), 0.04);
+    EXPECT_EQ(value_at<std::uint64_t>(sampled, 152), 0U);
+    EXPECT_EQ(value_at<std::uint64_t>(sampled, 160), 0U);
+    EXPECT_EQ(value_at<std::uint32_t>(sampled, 168), 0x8000'0001U);
+    EXPECT_EQ(value_at<std::uint32_t>(sampled, 172), 1U | 2U | 8U | 16U | 32U);
+
+    const Bytes forced = to_bytes(encode(test::example_force()));
+    ASSERT_EQ(forced.size(), 120U);
+    EXPECT_EQ(std::memcmp(forced.data(), "TCTD\2\0\3\0", 8), 0);
+    EXPECT_EQ(value_at<double>(forced, 48), 3.5);
+    EXPECT_EQ(value_at<double>(forced, 72), 0.3);
+    EXPECT_EQ(value_at<double>(forced, 80), -0.4);
+    EXPECT_EQ(value_at<std::uint64_t>(forced, 88), 5U);
+    EXPECT_EQ(value_at<std::uint64_t>(forced, 96), 0U);
+    EXPECT_EQ(value_at<std::uint64_t>(forced, 104), 0U);
+    EXPECT_EQ(value_at<std::uint32_t>(forced, 112), 2U);
+}
+
+/// Later ones will fill the tag; who can't check it doesn't look at it.
+TEST(UdpDatagram, is_taken_whatever_its_tag)
+{
+    const Bytes sample = to_bytes(encode(test::example_sample()));
+    const auto decoded = decode_from_device(with(sample, 155, std::uint64_t{0x1234}));
+    ASSERT_TRUE(std::holds_alternative<SampleDatagram>(decoded));
+    const auto& got = std::get<SampleDatagram>(decoded);
+    EXPECT_EQ(got.rotation, test::example_sample().rotation);
+    EXPECT_EQ(got.angular_velocity_rad_per_s, test::example_sample().angular_velocity_rad_per_s);
+    EXPECT_EQ(got.gripper_m, 0.04);
+    EXPECT_EQ(got.buttons, 0x8000'0001U);
+    EXPECT_EQ(got.tag[3], std::byte{0x34});
+}
+
+/// A device that doesn't turn, as they all were.
+TEST(UdpDatagram, of_version_1_is_still_understood)
+{
+    const auto described = decode_from_device(encode(of_points(test::example_description())));
+    ASSERT_TRUE(std::holds_alternative<DescribeDatagram>(described));
+    const auto& device = std::get<DescribeDatagram>(described);
+    EXPECT_EQ(device.version, 1);
+    EXPECT_EQ(device.info.limits.added_damping_max_n_s_per_m, 9.0);
+    EXPECT_EQ(device.info.limits.turn, TurnLimits{});
+    EXPECT_EQ(device.info.gripper_force_max_n, 0.0);
+    const auto sampled = decode_from_device(encode(of_points(test::example_sample())));
+    ASSERT_TRUE(std::holds_alternative<SampleDatagram>(sampled));
+    const auto& sample = std::get<SampleDatagram>(sampled);
+    EXPECT_EQ(sample.position_m, test::example_sample().position_m);
+    EXPECT_EQ(sample.rotation, std::nullopt);
+    EXPECT_EQ(sample.gripper_m, std::nullopt);
+    EXPECT_EQ(sample.buttons, 0U);
+}
+
+TEST(UdpDatagram, of_version_1_has_its_bytes_of_the_page)
+{
+    const Bytes described = to_bytes(encode(of_points(test::example_description())));
     ASSERT_EQ(described.size(), 200U);
     EXPECT_EQ(std::memcmp(described.data(), "TCTD\1\0\1\0", 8), 0);
     EXPECT_EQ(value_at<std::uint64_t>(described, 8), 3U);
@@ -74,7 +158,7 @@ TEST(UdpDatagram, has_the_bytes_of_the_page)
     EXPECT_EQ(value_at<std::uint32_t>(described, 196),
               test::bitwise_crc32c(std::span(described).first(196)));
 
-    const Bytes sampled = to_bytes(encode(test::example_sample()));
+    const Bytes sampled = to_bytes(encode(of_points(test::example_sample())));
     ASSERT_EQ(sampled.size(), 96U);
     EXPECT_EQ(std::memcmp(sampled.data(), "TCTD\1\0\2\0", 8), 0);
     EXPECT_EQ(value_at<double>(sampled, 48), 0.3);
@@ -82,7 +166,7 @@ TEST(UdpDatagram, has_the_bytes_of_the_page)
     EXPECT_EQ(value_at<std::int64_t>(sampled, 80), 1'234'567);
     EXPECT_EQ(value_at<std::uint32_t>(sampled, 88), 3U);
 
-    const Bytes forced = to_bytes(encode(test::example_force()));
+    const Bytes forced = to_bytes(encode(of_points(test::example_force())));
     ASSERT_EQ(forced.size(), 72U);
     EXPECT_EQ(std::memcmp(forced.data(), "TCTD\1\0\3\0", 8), 0);
     EXPECT_EQ(value_at<double>(forced, 48), 3.5);
@@ -94,7 +178,9 @@ TEST(UdpDatagram, says_what_is_wrong)
 {
     const Bytes sample = to_bytes(encode(test::example_sample()));
     EXPECT_EQ(refusal_of(with(sample, 0, std::uint32_t{0})), DatagramFault::magic);
-    EXPECT_EQ(refusal_of(with(sample, 4, std::uint16_t{2})), DatagramFault::version);
+    EXPECT_EQ(refusal_of(with(sample, 4, std::uint16_t{0})), DatagramFault::version);
+    EXPECT_EQ(refusal_of(with(sample, 4, std::uint16_t{3})), DatagramFault::version);
+    EXPECT_EQ(refusal_of(with(sample, 4, std::uint16_t{1})), DatagramFault::size);
     EXPECT_EQ(refusal_of(with(sample, 6, std::uint16_t{0})), DatagramFault::kind);
     EXPECT_EQ(refusal_of(with(sample, 6, std::uint16_t{4})), DatagramFault::kind);
     EXPECT_EQ(refusal_of(with(sample, 6, std::uint16_t{1})), DatagramFault::size);
@@ -123,13 +209,37 @@ TEST(UdpDatagram, is_refused_for_values_out_of_range)
     }
     EXPECT_EQ(refusal_of(with(sample, 80, std::int64_t{-1})), DatagramFault::content);
     EXPECT_EQ(refusal_of(with(sample, 80, (std::int64_t{1} << 62) + 1)), DatagramFault::content);
-    EXPECT_EQ(refusal_of(with(sample, 88, std::uint32_t{8 | 1})), DatagramFault::content);
+    EXPECT_EQ(refusal_of(with(sample, 172, std::uint32_t{64 | 1})), DatagramFault::content);
+    for (std::size_t at = 120; at < 152; at += 8)
+    {
+        for (const double bad : {nan, infinite, -infinite, 1.000'001e6})
+        {
+            EXPECT_EQ(refusal_of(with(sample, at, bad)), DatagramFault::content) << at;
+        }
+    }
+    for (const double bad : {nan, infinite, 0.0, 0.600'01})
+    {
+        EXPECT_EQ(refusal_of(with(sample, 88, bad)), DatagramFault::content) << "no unit " << bad;
+    }
+    const Bytes of_a_point = to_bytes(encode(of_points(test::example_sample())));
+    EXPECT_EQ(refusal_of(with(of_a_point, 88, std::uint32_t{8 | 1})), DatagramFault::content);
 
     const Bytes described = to_bytes(encode(test::example_description()));
     EXPECT_EQ(refusal_of(with(described, 16, std::uint64_t{1})), DatagramFault::content)
         << "session";
-    EXPECT_EQ(refusal_of(with(described, 192, std::uint32_t{1})), DatagramFault::content)
+    EXPECT_EQ(refusal_of(with(described, 280, std::uint32_t{2})), DatagramFault::content)
         << "reserved";
+    EXPECT_EQ(refusal_of(with(described, 280, std::uint32_t{0})), DatagramFault::content)
+        << "a torque without a rotation";
+    const Bytes point = to_bytes(encode(of_points(test::example_description())));
+    EXPECT_EQ(refusal_of(with(point, 192, std::uint32_t{1})), DatagramFault::content) << "reserved";
+    for (std::size_t at = 192; at < 264; at += 8)
+    {
+        for (const double bad : {nan, infinite, -1.0})
+        {
+            EXPECT_EQ(refusal_of(with(described, at, bad)), DatagramFault::content) << at;
+        }
+    }
     EXPECT_EQ(refusal_of(with(described, 60, 'x')), DatagramFault::content) << "behind the name";
     EXPECT_EQ(refusal_of(with(described, 32, std::array<char, 32>{})), DatagramFault::content);
     for (std::size_t at = 64; at < 176; at += 8)
@@ -142,7 +252,9 @@ TEST(UdpDatagram, is_refused_for_values_out_of_range)
 
     const Bytes force = to_bytes(encode(test::example_force()));
     EXPECT_EQ(force_refusal_of(with(force, 32, nan)), DatagramFault::content);
-    EXPECT_EQ(force_refusal_of(with(force, 64, std::uint32_t{3})), DatagramFault::content);
+    EXPECT_EQ(force_refusal_of(with(force, 64, nan)), DatagramFault::content) << "torque";
+    EXPECT_EQ(force_refusal_of(with(force, 80, infinite)), DatagramFault::content) << "gripper";
+    EXPECT_EQ(force_refusal_of(with(force, 112, std::uint32_t{3})), DatagramFault::content);
 }
 
 /// A device that has no position must be able to say so, whatever stands in its variables.

@@ -199,7 +199,8 @@ TEST_F(UdpDeviceTest, refuses_and_counts_what_is_stale_foreign_or_spoilt)
     peer.send(udp::encode(again)); // The number of the one before.
     again.address = {peer.instance(), session + 1, sequence + 1};
     peer.send(udp::encode(again)); // Another session's.
-    auto spoilt = udp::encode(sample_at(0.03));
+    const auto sound = udp::encode(sample_at(0.03));
+    std::vector<std::byte> spoilt(sound.begin(), sound.end());
     spoilt[50] ^= std::byte{1};
     peer.send(spoilt);
     peer.send(std::span(spoilt).first(95));
@@ -230,7 +231,7 @@ TEST_F(UdpDeviceTest, is_gone_when_the_device_is_silent_and_idle_when_another_is
     peer.say(sample_at(0.01));
     while (sut->read().connected || sut->traffic().lost == 0)
     {
-        sut->write({1.0, 0.0, 0.0});
+        sut->write({{1.0, 0.0, 0.0}, {}, 0.0});
         std::this_thread::yield();
     }
     EXPECT_FALSE(sut->read().valid);
@@ -269,7 +270,7 @@ TEST_F(UdpDeviceTest, ends_a_force_that_nobody_writes_any_more)
     udp::ForceDatagram force;
     do // The machine may stall for as long as a force is held.
     {
-        sut->write({1.0, 2.0, 3.0});
+        sut->write({{1.0, 2.0, 3.0}, {}, 0.0});
         force = await_force(peer, [](const auto&) { return true; });
     } while (force.state != DeviceState::force);
     EXPECT_EQ(force.force_n, (std::array{1.0, 2.0, 3.0}));
@@ -313,7 +314,7 @@ TEST_F(UdpDeviceTest, sends_no_force_with_a_number_beyond_that_of_the_brake)
         sut->release_brake();
         for (int i = 0; i < round % 16; ++i)
         {
-            sut->write({round * 1e-5, 0.0, 0.0});
+            sut->write({{round * 1e-5, 0.0, 0.0}, {}, 0.0});
         }
         sut->brake();
         while (const auto force = peer.receive(Duration{}))
@@ -344,7 +345,7 @@ TEST_F(UdpDeviceTest, tells_the_device_to_be_idle_when_it_ends)
     static_cast<void>(peer.ask());
     peer.say(sample_at(0.0));
     static_cast<void>(sut->read());
-    sut->write({1.0, 0.0, 0.0});
+    sut->write({{1.0, 0.0, 0.0}, {}, 0.0});
     EXPECT_EQ(peer.ask().state, DeviceState::force);
     sut.reset();
     std::optional<udp::ForceDatagram> last;
@@ -384,7 +385,7 @@ TEST_F(UdpDeviceTest, tells_what_each_way_takes)
     {
         const double value = round * 1e-3;
         const MonotonicTime written = clock.now();
-        sut->write({value, 0.0, 0.0});
+        sut->write({{value, 0.0, 0.0}, {}, 0.0});
         static_cast<void>(
             await_force(peer, [value](const auto& force) { return force.force_n[0] == value; }));
         forces.push_back(clock.now() - written);
@@ -400,6 +401,37 @@ TEST_F(UdpDeviceTest, tells_what_each_way_takes)
     print("a force, written to received", forces);
     print("a sample, sent to read", samples);
     EXPECT_EQ(sut->traffic().unsent, 0U);
+}
+
+/// Its tool doesn't turn, and it is told what it knows.
+TEST_F(UdpDeviceTest, of_version_1_is_answered_in_its_version)
+{
+    DeviceInfo old = desk();
+    old.limits.turn = {};
+    udp::DescribeDatagram described{{peer.instance(), 0, 1}, old};
+    described.version = udp::kVersionOfPoints;
+    peer.set_sequence(1);
+    peer.send(udp::encode(described));
+    sut = std::move(UdpDevice::create(std::move(socket), options)).value();
+    EXPECT_FALSE(sut->info().limits.turn.is_measured);
+    udp::ForceDatagram answer;
+    for (bool is_answered = false; !is_answered;)
+    {
+        const auto force = peer.receive(milliseconds(100));
+        is_answered = force.has_value();
+        answer = force.value_or(answer);
+    }
+    EXPECT_EQ(answer.version, udp::kVersionOfPoints);
+    udp::SampleDatagram sample = sample_at(0.25);
+    sample.version = udp::kVersionOfPoints;
+    peer.sample(sample);
+    DeviceSample got;
+    do
+    {
+        got = sut->read();
+    } while (!got.valid);
+    EXPECT_EQ(got.position_world_m[0], 0.25);
+    EXPECT_FALSE(got.rotation_world);
 }
 
 } // namespace

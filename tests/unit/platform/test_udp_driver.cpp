@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <csignal>
 #include <fstream>
 #include <iterator>
@@ -78,10 +79,23 @@ void push_to(UdpDevice& device, const std::array<double, 3>& force_n, double wan
     {
         std::this_thread::yield();
         sample = device.read();
-        device.write(force_n);
+        device.write({force_n, {}, 0.0});
     } while (!sample.valid || std::abs(sample.position_world_m[1] - wanted_m) > 1e-3);
     EXPECT_TRUE(sample.velocity_world_m_per_s);
     EXPECT_TRUE(sample.deadman_held);
+}
+
+/// Likewise: at torque / 0.5 N m.
+void turn_to(UdpDevice& device, const std::array<double, 3>& torque_nm, double wanted_rad)
+{
+    double turned_rad = 0.0;
+    do
+    {
+        std::this_thread::yield();
+        const DeviceSample sample = device.read();
+        device.write({{}, torque_nm, 0.0});
+        turned_rad = sample.rotation_world ? 2.0 * std::asin((*sample.rotation_world)[1]) : 0.0;
+    } while (std::abs(turned_rad - wanted_rad) > 1e-3);
 }
 
 TEST(UdpDriver, of_the_page_attaches_obeys_dies_and_attaches_again)
@@ -109,6 +123,9 @@ TEST(UdpDriver, of_the_page_attaches_obeys_dies_and_attaches_again)
     EXPECT_EQ(sut.info().limits.force_max_n, 8.0);
     EXPECT_EQ(sut.info().workspace_radius_m, 0.2);
     EXPECT_EQ(sut.info().rate_max_hz, 4'000);
+    EXPECT_EQ(sut.info().limits.turn.torque_max_nm, 0.2);
+    EXPECT_TRUE(sut.info().limits.turn.is_measured);
+    turn_to(sut, {0.0, 0.05, 0.0}, 0.1);
     push_to(sut, {0.0, 2.0, 0.0}, 0.01);
     push_to(sut, {0.0, -4.0, 0.0}, -0.02);
 

@@ -28,7 +28,10 @@ protected:
     Result sample(std::uint64_t sequence, std::uint64_t session = kSecret,
                   std::uint64_t instance = 9, Endpoint from = kHome)
     {
-        SampleDatagram datagram{{instance, session, sequence}, {}, {}, device_ns, true, true};
+        SampleDatagram datagram;
+        datagram.address = {instance, session, sequence};
+        datagram.time_ns = device_ns;
+        datagram.valid = true;
         device_ns += 1'000'000;
         return sut.receive(encode(datagram), from, now);
     }

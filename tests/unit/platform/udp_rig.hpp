@@ -16,7 +16,7 @@ class ObedientDevice
 public:
     [[nodiscard]] const DeviceInfo& info() const noexcept { return device_->info(); }
 
-    [[nodiscard]] DeviceSample next(DeviceState state, const std::array<double, 3>& force_n)
+    [[nodiscard]] DeviceSample next(DeviceState state, const Wrench& wrench)
     {
         if (state == DeviceState::brake)
         {
@@ -28,7 +28,7 @@ public:
         }
         if (state == DeviceState::force)
         {
-            device_->write(force_n);
+            device_->write(wrench);
         }
         return device_->read();
     }
@@ -62,13 +62,19 @@ public:
     [[nodiscard]] DeviceSample next() override
     {
         const udp::ForceDatagram force = peer_.ask();
-        const DeviceSample sample = hand_.next(force.state, force.force_n);
-        peer_.say({{},
-                   sample.position_world_m,
-                   sample.velocity_world_m_per_s,
-                   sample.time.ns,
-                   sample.valid,
-                   sample.deadman_held});
+        const DeviceSample sample =
+            hand_.next(force.state, {force.force_n, force.torque_nm, force.gripper_force_n});
+        udp::SampleDatagram said;
+        said.position_m = sample.position_world_m;
+        said.velocity_m_per_s = sample.velocity_world_m_per_s;
+        said.time_ns = sample.time.ns;
+        said.valid = sample.valid;
+        said.deadman_held = sample.deadman_held;
+        said.rotation = sample.rotation_world;
+        said.angular_velocity_rad_per_s = sample.angular_velocity_world_rad_per_s;
+        said.gripper_m = sample.gripper_m;
+        said.buttons = sample.buttons;
+        peer_.say(said);
         return device_->read();
     }
 

@@ -23,27 +23,42 @@ TEST(FrameCoding, writes_the_bytes_that_the_format_page_lists)
     const ExampleFrame frame;
     FrameEncoder sut;
     CodedBytes expected;
-    expected.put(std::uint8_t{3});
-    expected.put(0.5).put(-0.25).put(2.0).put(std::int64_t{77}).put(3U).put(std::uint8_t{3});
+    expected.put(std::uint8_t{3}).put(std::int64_t{123'456'789});
+    expected.put(0.5).put(-0.25).put(2.0).put(std::int64_t{77}).put(3U).put(std::uint16_t{8191});
     for (const double entry : {0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0})
     {
         expected.put(entry);
     }
+    expected.put(31.0).put(32.0).put(33.0);
     for (int i = 0; i < 9; ++i)
     {
         expected.put(i % 4 == 0 ? 1.0 : 0.0);
     }
-    expected.put(0.125).put(4.0).put(-8.0).put(1.5).put(std::int64_t{0}).put(std::int64_t{0});
-    expected.put(21U);
+    expected.put(34.0).put(35.0).put(36.0).put(37.0).put(38.0).put(39.0).put(40U).put(41.0);
+    expected.put(42.0).put(43.0).put(44.0).put(45.0).put(46.0).put(47.0).put(48.0);
+    const auto put_pose = [&expected]
+    {
+        for (int i = 0; i < 9; ++i)
+        {
+            expected.put(i % 4 == 0 ? 1.0 : 0.0);
+        }
+        expected.put(0.125).put(4.0).put(-8.0).put(1.5).put(std::int64_t{0}).put(std::int64_t{0});
+        expected.put(21U);
+    };
+    expected.put(std::uint8_t{2}).put(std::uint8_t{1}).put(0U).put(0U);
+    put_pose();
+    expected.put(std::uint8_t{0}).put(1U).put(7U).put(0U);
+    expected.put(300.0).put(0.4).put(0.3).put(0.5);
+    put_pose();
     for (std::uint32_t budget = 11; budget <= 18; ++budget)
     {
         expected.put(budget);
     }
     expected.put(9U).put(std::uint16_t{2});
     expected.put(std::uint8_t{0}).put(static_cast<std::uint8_t>(ContentKind::chunk));
-    expected.put(1U).put(2U).put(5U).put(std::uint64_t{0xF0F0});
+    expected.put(std::uint8_t{0}).put(1U).put(2U).put(5U).put(std::uint64_t{0xF0F0});
     expected.put(std::uint8_t{1}).put(static_cast<std::uint8_t>(ContentKind::chunk));
-    expected.put(1U).put(2U).put(6U).put(std::uint64_t{0xFFF0});
+    expected.put(std::uint8_t{0}).put(1U).put(2U).put(6U).put(std::uint64_t{0xFFF0});
     expected.put(std::uint64_t{0x1234'5678'9ABC'DEF0ULL});
     const OutputHashes hashes = hash_output(frame.output());
     expected.put(hashes.tools).put(hashes.pairs).put(hashes.models).put(hashes.work);
@@ -53,7 +68,7 @@ TEST(FrameCoding, writes_the_bytes_that_the_format_page_lists)
     EXPECT_EQ(frame.code(sut), all.bytes());
 }
 
-TEST(FrameCoding, repeats_poses_and_budgets_only_when_they_change)
+TEST(FrameCoding, repeats_budgets_only_when_they_change)
 {
     ExampleFrame frame;
     FrameEncoder encoder;
@@ -66,10 +81,10 @@ TEST(FrameCoding, repeats_poses_and_budgets_only_when_they_change)
         return whole - more.size();
     };
 
-    EXPECT_EQ(add(), kObjectPoseBytes + kBudgetsBytes);
+    EXPECT_EQ(add(), kBudgetsBytes);
     frame.budgets.merges = 99;
-    EXPECT_EQ(add(), kObjectPoseBytes);
-    frame.poses[0].age_ns = 5;
+    EXPECT_EQ(add(), 0U);
+    frame.changes[0].pose.arrival_ns = 5;
     EXPECT_EQ(add(), kBudgetsBytes);
 
     FrameDecoder sut(kExampleShape);
@@ -79,7 +94,7 @@ TEST(FrameCoding, repeats_poses_and_budgets_only_when_they_change)
         ASSERT_EQ(sut.decode(reader), nullptr);
     }
     EXPECT_EQ(sut.frame().budgets.merges, 99U);
-    EXPECT_EQ(sut.frame().poses[0].age_ns, 5);
+    EXPECT_EQ(sut.frame().changes[0].pose.arrival_ns, 5);
 }
 
 TEST(FrameCoding, holds_the_largest_frame_there_can_be)
@@ -87,31 +102,65 @@ TEST(FrameCoding, holds_the_largest_frame_there_can_be)
     ToolState turned;
     turned.rotation = -Mat3::Identity();
     const std::vector<ToolState> tools(kMaxTools, turned);
-    const std::vector<ObjectPose> poses(kMaxObjects);
+    std::vector<SceneChange> changes(kMaxSceneChanges);
+    for (SceneChange& change : changes)
+    {
+        change.kind = SceneChangeKind::object_comes;
+    }
     const std::vector<DoorEvent> events(kMaxDoorEvents,
                                         DoorEvent{{ContentKind::chunk, 1}, 0, 0, 1});
-    const std::vector<DoorTake> doors(kMaxModels, DoorTake{events, 0});
     const std::vector<ModelOutput> models(kMaxModels);
     FrameOutput output;
-    output.door = doors;
+    output.door = {events, 0};
     output.models = models;
     FrameEncoder encoder;
 
-    const auto coded = encoder.encode(tools, poses, {}, output);
+    const std::vector<DeviceRecord> devices(kMaxTools, ExampleFrame().devices[0]);
+    const auto coded = encoder.encode({tools, changes, {}}, output, devices);
 
     EXPECT_EQ(coded.size(), kMaxCodedFrameBytes);
-    FrameDecoder sut({kMaxTools, kMaxObjects, kMaxModels});
+    FrameDecoder sut({kMaxTools, kMaxModels});
     ByteReader reader(coded);
     EXPECT_EQ(sut.decode(reader), nullptr);
+}
+
+TEST(FrameCoding, gives_back_what_a_device_said_and_was_told_and_no_more)
+{
+    ExampleFrame frame;
+    FrameEncoder encoder;
+    std::vector<std::byte> bytes = frame.code(encoder);
+    FrameDecoder sut(kExampleShape);
+    ByteReader whole(bytes);
+    ASSERT_EQ(sut.decode(whole), nullptr);
+    const DeviceRecord& got = sut.frame().devices[0];
+    EXPECT_EQ(got.hand->position_m, frame.devices[0].hand->position_m);
+    EXPECT_EQ(got.gripper_m, 41.0);
+    EXPECT_EQ(got.buttons, 40U);
+    EXPECT_EQ(got.sent_nm, Vec3(45.0, 46.0, 47.0));
+    EXPECT_TRUE(got.measures_rotation);
+
+    frame.devices[0] = {};
+    frame.devices[0].connected = false;
+    frame.tools[0].rotation.setIdentity();
+    bytes = frame.code(encoder);
+    ByteReader bare(bytes);
+    ASSERT_EQ(sut.decode(bare), nullptr);
+    EXPECT_FALSE(got.connected);
+    EXPECT_TRUE(got.deadman_held);
+    EXPECT_FALSE(got.hand || got.velocity_m_per_s || got.angular_velocity_rad_per_s);
+    EXPECT_FALSE(got.gripper_m || got.measures_rotation);
+    EXPECT_EQ(got.buttons, 0U);
+    EXPECT_EQ(got.sent_n, Vec3(0.0, 0.0, 0.0));
+    EXPECT_EQ(got.sent_gripper_n, 0.0);
 }
 
 TEST(FrameCoding, refuses_values_that_no_frame_can_have)
 {
     constexpr std::size_t kFlags = 4;
-    constexpr std::size_t kPose = kFlags + 1 + kToolStateBytes;
-    constexpr std::size_t kValid = kPose - 9 * sizeof(double) - 1;
-    constexpr std::size_t kScale = kPose + 12 * sizeof(double);
-    constexpr std::size_t kBudgets = kPose + kObjectPoseBytes;
+    constexpr std::size_t kChanges = kFlags + 1 + 8 + kToolStateBytes;
+    constexpr std::size_t kValid = kFlags + 1 + 8 + 24 + 8 + 4;
+    constexpr std::size_t kMove = 9 + kObjectPoseBytes;
+    constexpr std::size_t kBudgets = kChanges + 1 + kMove + kSceneChangeBytes;
     constexpr std::size_t kEvents = kBudgets + kBudgetsBytes + 4;
     constexpr std::size_t kEvent = kEvents + 2;
     struct Case
@@ -121,10 +170,11 @@ TEST(FrameCoding, refuses_values_that_no_frame_can_have)
         const char* said;
     };
     const std::vector<Case> cases{{kFlags, {4}, "flags"},
-                                  {kFlags, {2}, "flags"}, // The first frame has both.
-                                  {kValid, {4}, "validity"},
-                                  {kPose + 6, {0xF0, 0x7F}, "pose"}, // Infinity.
-                                  {kScale, {0, 0, 0, 0, 0, 0, 0, 0}, "scale"},
+                                  {kFlags, {1}, "flags"},          // The first frame has budgets.
+                                  {kValid, {0xFF, 0x3F}, "flags"}, // An unknown one.
+                                  {kChanges, {0}, "1 to 64 changes"},
+                                  {kChanges, {65}, "1 to 64 changes"},
+                                  {kChanges + 1, {5}, "unknown kind"},
                                   {kBudgets, {1, 1}, "256 splits"},
                                   {kBudgets + 4, {1, 1}, "256 splits"},
                                   {kEvents, {0xFF, 0}, "128 events"},

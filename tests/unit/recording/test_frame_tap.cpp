@@ -15,7 +15,7 @@ namespace
 void record(FrameTap& tap, ExampleFrame& frame, std::int64_t number)
 {
     frame.tools[0].sample_time_ns = number;
-    tap.record(frame.tools, frame.poses, frame.budgets, frame.output());
+    tap.record(frame.input(), frame.output());
 }
 
 /// Takes what waits; the numbers that record() gave the frames.
@@ -57,9 +57,11 @@ TEST(FrameTap, gives_frames_in_order)
 
 TEST(FrameTap, loses_all_frames_from_the_first_that_finds_no_room)
 {
-    FrameTap sut(7); // The first frame takes 5 cells of 64 B, the others 3.
-    FrameDecoder decoder(kExampleShape);
     ExampleFrame frame;
+    FrameEncoder encoder;
+    const std::size_t first_cells = (frame.code(encoder).size() + 63) / 64;
+    FrameTap sut(first_cells + 2); // The others take more than two.
+    FrameDecoder decoder(kExampleShape);
     record(sut, frame, 0);
     EXPECT_EQ(sut.lost_from(), kNoFrame);
     record(sut, frame, 1);
@@ -73,7 +75,7 @@ TEST(FrameTap, loses_all_frames_from_the_first_that_finds_no_room)
 TEST(FrameTap, carries_frames_between_threads)
 {
     constexpr std::int64_t kFrames = 2'000;
-    FrameTap sut(32);
+    FrameTap sut(128);
     FrameDecoder decoder(kExampleShape);
     std::atomic<std::int64_t> taken{0};
     std::thread producer(

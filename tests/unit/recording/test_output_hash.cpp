@@ -21,10 +21,11 @@ struct Outputs
     std::array<ModelOutput, 1> models{};
     WorkCounters work;
     FrameFault faults{FrameFault::none};
+    SceneOutput scene;
 
     [[nodiscard]] OutputHashes hashes() const
     {
-        return hash_output({tools, pairs, models, work, faults, {}});
+        return hash_output({tools, pairs, models, work, faults, {}, scene});
     }
 };
 
@@ -48,7 +49,9 @@ std::vector<Part> parts()
           tool([](auto& t) { t.proxy_m.y() = 1.0; }), tool([](auto& t) { t.in_contact = true; }),
           tool([](auto& t) { t.frozen = true; }), tool([](auto& t) { t.squeezed = true; }),
           tool([](auto& t) { t.held_back = true; }), tool([](auto& t) { t.under_way = true; }),
-          tool([](auto& t) { t.crowded = true; }), tool([](auto& t) { t.stiffness_n_per_m = 1.0; }),
+          tool([](auto& t) { t.crowded = true; }), tool([](auto& t) { t.lost_object = true; }),
+          tool([](auto& t) { t.is_gone = true; }), tool([](auto& t) { t.clear_m = 1.0; }),
+          tool([](auto& t) { t.stiffness_n_per_m = 1.0; }),
           tool([](auto& t) { t.sample_fault = FrameFault::tool_stuck; }),
           tool([](auto& t) { t.torque_nm.y() = 1.0; }),
           tool([](auto& t) { t.proxy_rotation(1, 2) = 1.0; })}},
@@ -59,7 +62,8 @@ std::vector<Part> parts()
           pair([](auto& p) { p.upper_m = 1.0; }), pair([](auto& p) { p.certified_radius_m = 1.0; }),
           pair([](auto& p) { p.nearest_face = FaceId{1}; }),
           pair([](auto& p) { p.nearest_point_m.x() = 1.0; }),
-          pair([](auto& p) { p.skipped = true; })}},
+          pair([](auto& p) { p.skipped = true; }), pair([](auto& p) { p.is_shed = true; }),
+          pair([](auto& p) { p.is_joined = false; })}},
         {&OutputHashes::models,
          {model([](auto& m) { m.pages.used = 1; }), model([](auto& m) { m.pages.used_max = 1; }),
           model([](auto& m) { m.pages.capacity = 1; }),
@@ -68,12 +72,28 @@ std::vector<Part> parts()
           model([](auto& m) { m.refined_records = 1; }), model([](auto& m) { m.state_hash = 1; }),
           model([](auto& m) { m.is_static = true; })}},
         {&OutputHashes::work,
-         {work(&WorkCounters::splits), work(&WorkCounters::merges), work(&WorkCounters::scanned),
-          work(&WorkCounters::nodes_visited), work(&WorkCounters::triangles_tested),
-          work(&WorkCounters::pages_adopted), work(&WorkCounters::requests),
-          work(&WorkCounters::regions_searched), work(&WorkCounters::nodes_refitted),
-          work(&WorkCounters::blocks_refitted), work(&WorkCounters::evictions),
-          work(&WorkCounters::cache_hits), work(&WorkCounters::cache_misses),
+         {work(&WorkCounters::splits),
+          work(&WorkCounters::merges),
+          work(&WorkCounters::scanned),
+          work(&WorkCounters::nodes_visited),
+          work(&WorkCounters::triangles_tested),
+          work(&WorkCounters::pages_adopted),
+          work(&WorkCounters::requests),
+          work(&WorkCounters::regions_searched),
+          work(&WorkCounters::nodes_refitted),
+          work(&WorkCounters::blocks_refitted),
+          work(&WorkCounters::evictions),
+          work(&WorkCounters::cache_hits),
+          work(&WorkCounters::cache_misses),
+          [](O& o) { o.scene.objects = 1; },
+          [](O& o) { o.scene.pairs = 1; },
+          [](O& o) { o.scene.crowded_tools = 1; },
+          [](O& o) { o.scene.walled_tools = 1; },
+          [](O& o) { o.scene.walks = 1; },
+          [](O& o) { o.scene.refused[0] = 1; },
+          [](O& o) { o.scene.refused[7] = 1; },
+          [](O& o) { o.work.skipped.add(Skip::models); },
+          [](O& o) { o.work.skipped.add(Skip::boxes); },
           [](O& o) { o.faults = FrameFault::cache_full; }}}};
 }
 
@@ -99,7 +119,8 @@ TEST(OutputHash, sees_every_field_in_its_part_and_tells_them_apart)
 TEST(OutputHash, is_what_the_format_page_says)
 {
     std::uint64_t state = 0;
-    for (int value = 0; value < 14; ++value) // 13 counters and the faults, all zero.
+    // 13 counters, five of the scene, refusals, the shortcuts' and the faults, all zero.
+    for (std::size_t value = 0; value < 19 + kChangeRefusals + kSkips; ++value)
     {
         state += 0x9E3779B97F4A7C15U;
         state = (state ^ (state >> 30)) * 0xBF58476D1CE4E5B9U;

@@ -113,6 +113,9 @@ TEST(RecordingFile, gives_back_what_was_written)
     EXPECT_EQ(setup.objects[0].material.static_friction, 0.5);
     EXPECT_EQ(setup.objects[0].material.dynamic_friction, 0.25);
     EXPECT_EQ(setup.objects[0].material.damping_n_s_per_m, 1.5);
+    EXPECT_EQ(setup.poses[0].translation_m, Vec3(1.0, 2.0, 3.0));
+    EXPECT_EQ(setup.capacities.objects, 5U);
+    EXPECT_EQ(setup.capacities.pairs, 2U);
     EXPECT_EQ(setup.models[0].header, model().header);
     EXPECT_EQ(setup.models[0].base, model().base);
     EXPECT_EQ(setup.models[0].capacities.pages, 4U);
@@ -131,7 +134,7 @@ TEST(RecordingFile, gives_back_what_was_written)
 TEST(RecordingFile, begins_with_its_magic_and_version)
 {
     const std::vector<std::byte> bytes = example();
-    EXPECT_EQ(std::memcmp(bytes.data(), "TACTREC\n\x05\0\0\0", 12), 0);
+    EXPECT_EQ(std::memcmp(bytes.data(), "TACTREC\n\x07\0\0\0", 12), 0);
 }
 
 TEST(RecordingFile, tells_from_where_frames_were_lost)
@@ -146,7 +149,8 @@ TEST(RecordingFile, is_refused_when_it_is_of_another_kind_or_version)
 {
     std::vector<std::byte> bytes = example();
     bytes[8] = std::byte{2};
-    expect_refusal(bytes, "at byte 8: format version 2 is unknown; this program reads 5");
+    expect_refusal(bytes,
+                   "at byte 8: format version 2 is of an older Tactus; this program reads 7");
     bytes[3] = std::byte{'X'};
     expect_refusal(bytes, "is not a Tactus recording");
     bytes = example();
@@ -179,7 +183,8 @@ TEST(RecordingFile, is_refused_when_sections_are_out_of_order)
     expect_refusal(joined({kSetup, kSetup}), "out of order");
     expect_refusal(joined({kSetup, kModel, kModel}), "out of order");
     expect_refusal(joined({kSetup, kModel, kFrames, kPiece, kEnd}),
-                   "frame 0 takes piece 1 from the door, which is not in the recording before it");
+                   "frame 0 takes piece 1 of model 0 from the door, which is not in the "
+                   "recording before it");
     expect_refusal(joined({kSetup, kModel, kPiece, kPiece}), "a piece is in the recording twice");
     expect_refusal(joined({kSetup, kModel, kPiece, kEnd}),
                    "the end states 3 frames and 1 pieces, but 0 and 1 came before");
@@ -188,31 +193,43 @@ TEST(RecordingFile, is_refused_when_sections_are_out_of_order)
 TEST(RecordingFile, is_refused_when_a_value_is_out_of_its_range)
 {
     // What the checksums vouch for is checked all the same.
-    constexpr std::size_t kTool = 21;
+    constexpr std::size_t kTool = 26;
     constexpr std::size_t kTorque = kTool + 33;
     constexpr std::size_t kCore = kTorque + 9;
     constexpr std::size_t kObject = kCore + 1;
-    constexpr std::size_t kNames = kObject + 36;
+    constexpr std::size_t kSpec = kObject + 9; // After its kind, number and generation.
+    constexpr std::size_t kPose = kSpec + kObjectSpecBytes;
+    constexpr std::size_t kNames = kPose + kObjectPoseBytes;
     expect_refusal(with_bytes(kSetup, 0, {0, 0, 0, 0, 0, 0, 0, 0}), "the period is 0 ns; 1 to");
     expect_refusal(with_bytes(kSetup, 16, {2}), "the static mode is 2; 0 and 1 are allowed");
     expect_refusal(with_bytes(kSetup, 17, {5}), "the prediction is 5; 0 to 4 are allowed");
-    expect_refusal(with_bytes(kSetup, 18, {0}), "0 tools, 1 objects and 1 models; 1 to 4");
-    expect_refusal(with_bytes(kSetup, 18, {5}), "5 tools");
-    expect_refusal(with_bytes(kSetup, 19, {9}), "9 objects");
-    expect_refusal(with_bytes(kSetup, 20, {9}), "9 models");
+    expect_refusal(with_bytes(kSetup, 18, {0}), "0 tools and 1 models; 1 to 16 and 1 to 256");
+    expect_refusal(with_bytes(kSetup, 18, {17}), "17 tools");
+    expect_refusal(with_bytes(kSetup, 21, {9}), "9 models");
+    expect_refusal(with_bytes(kSetup, 19, {6}), "6 objects and room for 5, and for 2 pairs");
+    expect_refusal(with_bytes(kSetup, 23, {0}), "room for 0");
+    expect_refusal(with_bytes(kSetup, 23, {1, 0x10}), "room for 4097");
+    expect_refusal(with_bytes(kSetup, 25, {0}), "for 0 pairs");
+    expect_refusal(with_bytes(kSetup, 25, {65}), "for 65 pairs");
     expect_refusal(with_bytes(kSetup, kTool + 6, {0xF8, 0x7F}), "tool 0 is not within"); // NaN.
     expect_refusal(with_bytes(kSetup, kTorque + 6, {0xF8, 0x7F}), "tool 0 is not within");
     expect_refusal(with_bytes(kSetup, kTorque - 1, {2}), "tool 0 has an unknown core");
     expect_refusal(with_bytes(kSetup, kCore - 1, {2}), "tool 0 has an unknown core");
     expect_refusal(with_bytes(kSetup, kCore, {9}), "tool 0 has an unknown core");
-    expect_refusal(with_bytes(kSetup, kObject, {1}), "object 0 names model 1 of 1");
+    expect_refusal(with_bytes(kSetup, kObject, {1}), "object 0 doesn't come where it should");
+    expect_refusal(with_bytes(kSetup, kObject, {5}), "object 0 doesn't come where it should");
+    expect_refusal(with_bytes(kSetup, kObject + 1, {1}), "object 0 doesn't come where it should");
+    expect_refusal(with_bytes(kSetup, kSpec, {1}), "object 0 names model 1 of 1");
     for (const std::size_t value : {4U, 12U, 20U, 28U}) // NaN, then less than nothing.
     {
         const std::string refusal = "object 0 is not of more than 0 N/m";
-        expect_refusal(with_bytes(kSetup, kObject + value + 6, {0xF8, 0x7F}), refusal);
-        expect_refusal(with_bytes(kSetup, kObject + value + 6, {0xF0, 0xBF}), refusal);
+        expect_refusal(with_bytes(kSetup, kSpec + value + 6, {0xF8, 0x7F}), refusal);
+        expect_refusal(with_bytes(kSetup, kSpec + value + 6, {0xF0, 0xBF}), refusal);
     }
-    expect_refusal(with_bytes(kSetup, kObject + 20 + 6, {0xE8, 0x3F}), "0 to the static one");
+    expect_refusal(with_bytes(kSetup, kSpec + 20 + 6, {0xE8, 0x3F}), "0 to the static one");
+    expect_refusal(with_bytes(kSetup, kPose + 6, {0xF8, 0x7F}), "object 0 stands at a pose that");
+    expect_refusal(with_bytes(kSetup, kPose + 72 + 6, {0xF0, 0x7F}), "object 0 stands at a pose");
+    expect_refusal(with_bytes(kSetup, kPose + 96 + 6, {0, 0}), "object 0 stands at a pose");
     expect_refusal(
         with_section(kSetup,
                      [](auto& payload)
@@ -248,8 +265,10 @@ TEST(RecordingFile, is_refused_when_a_value_is_out_of_its_range)
                    "a frames section has 1048577 bytes; 1 to 1048576 are allowed");
     expect_refusal(with_section(kFrames, [](auto& payload) { payload.pop_back(); }),
                    "frame 2 is cut short by the end of its section");
-    constexpr std::size_t kSlot = 4 + 1 + kToolStateBytes + kObjectPoseBytes + kBudgetsBytes + 12;
+    constexpr std::size_t kChanges = 1 + 9 + kObjectPoseBytes + kSceneChangeBytes;
+    constexpr std::size_t kSlot = 4 + 1 + 8 + kToolStateBytes + kChanges + kBudgetsBytes + 13;
     expect_refusal(with_bytes(kFrames, kSlot, {4}), "frame 0 names slot 4 of 4");
+    expect_refusal(with_bytes(kFrames, kSlot - 5, {9}), "takes piece 1 of model 9 from the door");
     expect_refusal(with_bytes(kEnd, 0, {2}), "the end states 2 frames and 1 pieces, but 3 and 1");
     expect_refusal(with_section(kEnd, [](auto& payload) { payload.push_back({}); }),
                    "the end section has another size than its content");

@@ -4,6 +4,7 @@
 
 #include "rt_core/force/proxy.hpp"
 #include "tests/shared/distance_oracle.hpp"
+#include "tests/shared/owned_surface.hpp"
 #include "tests/unit/rt_core/support.hpp"
 
 #include <algorithm>
@@ -67,10 +68,10 @@ inline void add_square(TriangleList& list, const Vec3& a, const Vec3& b, const V
 }
 
 /// What a query at `center_m` would say of these triangles with everything in `certified_m` exact.
-[[nodiscard]] inline std::unique_ptr<LocalSurface>
+[[nodiscard]] inline std::unique_ptr<OwnedSurface>
 surface_of(const TriangleList& list, const Vec3& center_m, double certified_m)
 {
-    auto surface = std::make_unique<LocalSurface>();
+    auto surface = std::make_unique<OwnedSurface>();
     surface->center_m = center_m;
     surface->answer.certified_radius_m = certified_m;
     surface->answer.lower_m = std::max(0.0, std::min(certified_m, distance_to(list, center_m)));

@@ -36,7 +36,8 @@ public:
     /// A second index page's row of chunks begins here, in quanta.
     static constexpr std::int32_t kPageDistance = 100'000;
 
-    CacheRig(std::uint32_t pages, std::uint32_t index_pages, std::uint32_t records)
+    CacheRig(std::uint32_t pages, std::uint32_t index_pages, std::uint32_t records,
+             std::uint32_t models = 1)
         : parts_(sound_header(records))
     {
         for (std::size_t page = 0; page < parts_.entries.size(); ++page)
@@ -47,9 +48,9 @@ public:
         bytes_ = parts_.write();
         const ModelHeader header = parsed(bytes_);
         slots_ = PageSlots::take(arena_, header.counts(), pages, index_pages);
-        table_.emplace(arena_, slots_);
-        inbox_ = std::make_unique<ChunkInbox>(arena_, pages, index_pages, 256);
-        sut.emplace(arena_, header, slots_, *table_, *inbox_);
+        pool_.emplace(arena_, pages, index_pages, models);
+        table_.emplace(pool_->pages, 0, slots_);
+        sut.emplace(*pool_, ChunkCache::Kept{}, header, slots_, *table_);
         for (std::uint32_t slot = 0; slot < pages; ++slot)
         {
             free_pages_.push_back(slot);
@@ -64,15 +65,20 @@ public:
     std::vector<ContentKey> ask(std::initializer_list<RankedRegion> regions)
     {
         faults = FrameFault::none;
-        sut->adopt_arrivals(budgets.pages, frame, work);
-        sut->request_missing({regions.begin(), regions.size()}, budgets, frame, work, faults);
+        WorkCounters of_frame;
+        pool_->adopt_arrivals(budgets.pages, frame, of_frame);
+        sut->request_missing({regions.begin(), regions.size()}, budgets, frame, of_frame, faults);
+        work += of_frame;
         ++frame;
         collect_freed();
         std::vector<ContentKey> keys;
-        ChunkInbox::Wish wish;
-        while (inbox_->wanted.try_pop(wish))
+        PieceWish wish;
+        while (pool_->door.wanted.try_pop(wish))
         {
-            keys.push_back(wish.key);
+            if (wish.owner == table_->owner())
+            {
+                keys.push_back(wish.key);
+            }
         }
         return keys;
     }
@@ -92,7 +98,7 @@ public:
         ASSERT_FALSE(free_pages_.empty()) << "more was asked for than there are slots";
         slot_of[chunk] = free_pages_.front();
         free_pages_.pop_front();
-        ASSERT_TRUE(inbox_->arrived.try_push({{ContentKind::chunk, chunk}, slot_of[chunk]}));
+        ASSERT_TRUE(pool_->door.arrived.try_push({{ContentKind::chunk, chunk}, slot_of[chunk]}));
     }
     /// One frame in which the whole model is asked for.
     std::vector<ContentKey> fill()
@@ -113,7 +119,7 @@ public:
             const auto low = static_cast<std::uint16_t>(100 * i + 10);
             index.set_box(i, {{low, 10, 10}, {static_cast<std::uint16_t>(low + 50), 60, 60}});
         }
-        ASSERT_TRUE(inbox_->arrived.try_push({{ContentKind::index_page, page}, slot}));
+        ASSERT_TRUE(pool_->door.arrived.try_push({{ContentKind::index_page, page}, slot}));
     }
     /// Asks and delivers until nothing is asked for any more.
     void load(std::initializer_list<RankedRegion> regions)
@@ -133,13 +139,36 @@ public:
     }
     [[nodiscard]] std::size_t free_pages() const { return free_pages_.size(); }
     PageTable& table() { return *table_; }
+    CachePool& pool() { return *pool_; }
+    /// Another model of the same pieces in the same pool, all of whose pages but `kept` anybody may
+    /// have.
+    struct Neighbour
+    {
+        Neighbour(CacheRig& rig, std::uint32_t owner, std::uint32_t kept)
+            : table(rig.pool_->pages, owner, rig.slots_)
+            , cache(*rig.pool_, {kept, 0}, parsed(rig.bytes_), rig.slots_, table)
+        {
+        }
+        PageTable table;
+        ChunkCache cache;
+    };
+    /// A piece of a model comes, which nobody may have asked for.
+    void bring(ContentKey key, std::uint8_t owner)
+    {
+        auto& free = key.kind == ContentKind::chunk ? free_pages_ : free_index_;
+        ASSERT_FALSE(free.empty());
+        DoorEvent event{key, free.front()};
+        event.owner = owner;
+        free.pop_front();
+        ASSERT_TRUE(pool_->door.arrived.try_push(event));
+    }
     [[nodiscard]] bool cache_was_full() const { return has_fault(faults, FrameFault::cache_full); }
 
 private:
     void collect_freed()
     {
-        ChunkInbox::Freed freed;
-        while (inbox_->freed.try_pop(freed))
+        FreedSlot freed;
+        while (pool_->door.freed.try_pop(freed))
         {
             (freed.kind == ContentKind::chunk ? free_pages_ : free_index_).push_back(freed.slot);
         }
@@ -150,8 +179,8 @@ private:
     ArenaMemory memory_{1U << 22U};
     Arena arena_{memory_.bytes()};
     PageSlots slots_;
+    std::optional<CachePool> pool_;
     std::optional<PageTable> table_;
-    std::unique_ptr<ChunkInbox> inbox_;
     std::deque<std::uint32_t> free_pages_;
     std::deque<std::uint32_t> free_index_;
 
@@ -224,6 +253,8 @@ TEST(ChunkCache, a_chunk_that_is_here_is_not_asked_for_again)
     EXPECT_TRUE(rig.has(0));
     EXPECT_TRUE(rig.ask({ball(25, 10)}).empty());
     EXPECT_EQ(rig.sut->loads(), 1U);
+    rig.sut->set_variant({.keeps_searches = false});
+    EXPECT_TRUE(rig.ask({ball(25, 10)}).empty());
     EXPECT_GT(rig.work.cache_hits, 0U);
 }
 
@@ -380,6 +411,67 @@ TEST(ChunkCache, late_arrivals_never_let_more_be_asked_for_than_there_are_slots)
         << under_way << " wishes under way for " << rig.free_pages() << " free slots";
 }
 
+TEST(ChunkCache, asks_for_what_comes_into_a_ball_however_slowly_it_moves)
+{
+    CacheRig sut = one_index_page(8);
+    sut.load({ball(20, 10)});
+    Chunks asked;
+
+    // From chunk 0 to chunk 1, each frame within what was searched for shortly before.
+    for (int i = 0; i <= 800; ++i)
+    {
+        const double x = 20.0 + 0.1 * i;
+        for (const std::uint32_t chunk : sut.ask_chunks({ball(x, 10)}))
+        {
+            asked.insert(chunk);
+            sut.deliver_chunk(chunk);
+        }
+        ASSERT_TRUE(x + 10.0 < 100.0 || asked.contains(1)) << "at " << x;
+    }
+    EXPECT_EQ(asked, Chunks{1});
+    EXPECT_GT(sut.work.skipped.times()[static_cast<std::size_t>(Skip::searches)], 400U);
+}
+
+TEST(ChunkCache, rests_for_no_longer_than_the_pages_may_go_untouched)
+{
+    CacheRig sut = one_index_page(8);
+    sut.load({ball(25, 10)});
+    for (int i = 0; i < 100; ++i)
+    {
+        ASSERT_TRUE(sut.ask({ball(25, 10)}).empty());
+        const std::uint32_t slot = sut.table().find({0});
+        ASSERT_LE(sut.frame - sut.table().meta(slot).touched, 18U);
+    }
+}
+
+TEST(ChunkCache, goes_on_asking_while_something_had_to_wait)
+{
+    CacheRig sut = one_index_page(8);
+    sut.ask({ball(400, 5'000)});
+    sut.deliver_index_page(0);
+    sut.budgets.requests = 1;
+    for (std::uint32_t i = 0; i < kChunks; ++i)
+    {
+        sut.work = {};
+        ASSERT_EQ(sut.ask_chunks({ball(400, 5'000)}), Chunks{i});
+    }
+    EXPECT_TRUE(sut.ask({ball(400, 5'000)}).empty());
+}
+
+TEST(ChunkCache, without_shortcuts_every_frame_is_searched)
+{
+    CacheRig sut = one_index_page(8);
+    sut.sut->set_variant({.asks_near_models_only = false, .keeps_searches = false});
+    sut.load({ball(25, 10)});
+    sut.work = {};
+    for (int i = 0; i < 10; ++i)
+    {
+        sut.ask({ball(25, 10)});
+    }
+    EXPECT_EQ(sut.work.regions_searched, 10U);
+    EXPECT_EQ(sut.work.skipped.times(), (std::array<std::uint32_t, kSkips>{}));
+}
+
 TEST(ChunkCache, an_index_page_gives_way_when_the_balls_have_moved_on)
 {
     CacheRig rig(2, 1, 64 * 64 * 2);
@@ -437,6 +529,85 @@ TEST(ChunkCache, has_no_more_wishes_under_way_for_a_whole_model_than_the_limit)
 
     rig.deliver_chunk(asked.front().number);
     EXPECT_EQ(rig.fill().size(), 1U) << "as soon as one is answered";
+}
+
+TEST(ChunkCache, takes_of_a_model_that_nobody_is_near_all_but_what_is_kept_for_it)
+{
+    for (const bool is_near : {false, true})
+    {
+        SCOPED_TRACE(is_near ? "somebody is near" : "nobody is near");
+        CacheRig sut(4, 2, kChunks * kRecordsPerChunk, 2);
+        CacheRig::Neighbour neighbour(sut, 1, 1);
+        sut.deliver_index_page(0);
+        for (std::uint32_t chunk = 0; chunk < 3; ++chunk)
+        {
+            sut.bring({ContentKind::chunk, chunk}, 1);
+        }
+        Chunks asked;
+        for (int frame = 0; frame < 20; ++frame)
+        {
+            const Chunks more = sut.ask_chunks({ball(400, 5'000)});
+            asked.insert(more.begin(), more.end());
+            for (std::uint32_t slot = 0; slot < 4 && is_near; ++slot)
+            {
+                if (neighbour.table.is_own(slot))
+                {
+                    neighbour.table.touch(slot, sut.frame);
+                }
+            }
+            if (is_near)
+            {
+                neighbour.cache.request_missing(std::array{ball(400, 5'000)}, sut.budgets,
+                                                sut.frame, sut.work, sut.faults);
+            }
+        }
+        EXPECT_EQ(asked.size(), is_near ? 1U : 3U) << "one slot was free";
+        EXPECT_EQ(neighbour.table.used(), is_near ? 3U : 1U);
+        EXPECT_TRUE(sut.cache_was_full());
+    }
+}
+
+TEST(ChunkCache, in_a_large_pool_looks_at_some_pages_a_wish_and_refuses_after_all_of_them)
+{
+    constexpr std::uint32_t kLooks = 128;
+    constexpr std::uint32_t kPages = 3 * kLooks;
+    constexpr std::uint32_t kIndexPages = kPages / kChunksPerIndexPage + 1;
+    for (const bool is_one_free : {true, false})
+    {
+        CacheRig sut(kPages, kIndexPages, (kPages + 1) * kRecordsPerChunk);
+        sut.budgets.pages = kMaxArrivalsPerFrame;
+        for (std::uint32_t chunk = 0; chunk < kPages; ++chunk)
+        {
+            sut.deliver_chunk(chunk);
+        }
+        for (std::uint32_t page = 0; page < kIndexPages; ++page)
+        {
+            sut.deliver_index_page(page);
+        }
+        while (sut.sut->index_pages_used() < kIndexPages)
+        {
+            sut.ask({});
+        }
+        constexpr std::uint32_t kFree = kPages - 5; // Of the last ones that are looked at.
+        for (std::uint32_t chunk = 0; chunk < kPages; ++chunk)
+        {
+            if (chunk != kFree || !is_one_free)
+            {
+                sut.table().set_refined({chunk * kRecordsPerChunk}, true);
+            }
+        }
+        const double place = (kIndexPages - 1.0) * CacheRig::kPageDistance + 25;
+        std::vector<std::size_t> asked;
+        std::vector<bool> refused;
+        for (int frame = 0; frame < 4; ++frame)
+        {
+            asked.push_back(sut.ask({ball(place, 1)}).size());
+            refused.push_back(sut.pool().refused_class() != kUrgencyClasses);
+        }
+        EXPECT_EQ(asked, (std::vector<std::size_t>{0, 0, is_one_free ? 1U : 0U, 0}));
+        EXPECT_EQ(refused, (std::vector<bool>{false, false, !is_one_free, !is_one_free}));
+        EXPECT_EQ(sut.has(kFree), !is_one_free);
+    }
 }
 
 TEST(ChunkCache, adopts_no_more_arrivals_than_the_budget)

@@ -3,6 +3,7 @@
 #include "rt_core/query/contact_report.hpp"
 #include "rt_core/query/convex_contact.hpp"
 #include "rt_core/query/core_query.hpp"
+#include "tests/shared/owned_surface.hpp"
 #include "tests/unit/rt_core/support.hpp"
 #include "tests/unit/rt_core/tree_support.hpp"
 
@@ -141,7 +142,7 @@ struct Placed
     }
 
     TreeRig rig;
-    std::unique_ptr<LocalSurface> surface{std::make_unique<LocalSurface>()};
+    std::unique_ptr<OwnedSurface> surface{std::make_unique<OwnedSurface>()};
 };
 
 const std::array<Vec3, 5> kWedge{Vec3(0, 0, 0), Vec3(0.4, 0, 0), Vec3(0, 0.3, 0), Vec3(0, 0, 0.2),

@@ -3,6 +3,7 @@
 #include "rt_core/math/infinity.hpp"
 #include "rt_core/query/core_query.hpp"
 #include "rt_core/query/surface_query.hpp"
+#include "tests/shared/owned_surface.hpp"
 #include "tests/unit/rt_core/support.hpp"
 #include "tests/unit/rt_core/tree_support.hpp"
 
@@ -86,7 +87,7 @@ struct CoreTruth
 
 struct CoreAnswer
 {
-    std::unique_ptr<LocalSurface> surface{std::make_unique<LocalSurface>()};
+    std::unique_ptr<OwnedSurface> surface{std::make_unique<OwnedSurface>()};
     WalkBudget budget;
 
     [[nodiscard]] const DistanceAnswer& answer() const { return surface->answer; }
@@ -227,7 +228,7 @@ TEST(CoreQuery, a_point_gets_the_answer_of_a_point)
             ask(*rig.sut, PlacedCore(PointCore{}, {Mat3::Identity(), at, 2.0}), 0.2, memory);
         WalkBudget budget{1'000'000, 1'000'000};
         QueryMemory own;
-        auto surface = std::make_unique<LocalSurface>();
+        auto surface = std::make_unique<OwnedSurface>();
         gather_surface(*rig.sut, at, 0.2, own, budget, *surface);
         ASSERT_EQ(asked.answer().lower_m, surface->answer.lower_m);
         ASSERT_EQ(asked.answer().upper_m, surface->answer.upper_m);

@@ -315,4 +315,90 @@ TEST(ForceConditioner, takes_the_same_bits_to_the_same_bits)
     }
 }
 
+namespace
+{
+
+/// Of 10 N and 0.5 N m, with caps of 3,600 N/m and 1.8 N m/rad, slews that limit nothing.
+ConditionerSetup turning_setup()
+{
+    ConditionerSetup setup = plain_setup();
+    setup.device.slew_max_n_per_s = 1e6;
+    setup.device.turn = {.is_measured = true,
+                         .torque_max_nm = 0.5,
+                         .inertia_kg_m2 = 1e-4,
+                         .damping_nm_s_per_rad = 1e-3,
+                         .slew_max_nm_per_s = 1e6,
+                         .stiffness_max_nm_per_rad = 3.0,
+                         .added_damping_max_nm_s_per_rad = 5e-3};
+    return setup;
+}
+
+WrenchWish wrench(const Vec3& force_n, const Vec3& torque_nm, double stiffness = 100.0,
+                  double angular = 0.1)
+{
+    return {{force_n, Vec3(0, 0, 0), stiffness, 0.0, 1},
+            {torque_nm, Vec3(0, 0, 0), angular, 0.0, 1}};
+}
+
+/// What is left of each, which is to be one gain.
+void expect_gain(const WrenchWish& wish, double gain, ForceAction on_force, ForceAction on_torque)
+{
+    WrenchConditioner sut(turning_setup());
+    const ConditionedWrench out = sut.condition(wish);
+    EXPECT_LT((out.force.force_n - gain * wish.force.force_n).norm(), kRounding);
+    EXPECT_LT((out.torque.force_n - gain * wish.torque.force_n).norm(), kRounding);
+    EXPECT_EQ(out.force.actions, on_force);
+    EXPECT_EQ(out.torque.actions, on_torque);
+}
+
+} // namespace
+
+TEST(WrenchConditioner, shortens_force_and_torque_by_one_gain)
+{
+    constexpr ForceAction kNone = ForceAction::none;
+    constexpr ForceAction kCapped = ForceAction::stiffness_capped;
+    constexpr ForceAction kClamped = ForceAction::clamped;
+    const Vec3 force_n(3, 4, 0);
+    const Vec3 torque_nm(0, 0, 0.4);
+    expect_gain(wrench(force_n, torque_nm), 1.0, kNone, kNone);
+    expect_gain(wrench(4.0 * force_n, torque_nm), 0.5, kClamped, kNone);
+    expect_gain(wrench(force_n, 5.0 * torque_nm), 0.25, kNone, kClamped);
+    expect_gain(wrench(force_n, torque_nm, 7'200.0), 0.5, kCapped, kNone);
+    expect_gain(wrench(force_n, torque_nm, 100.0, 9.0), 0.2, kNone, kCapped);
+    expect_gain(wrench(Vec3(0, 0, 0), 5.0 * torque_nm), 0.25, kNone, kClamped);
+    expect_gain(wrench(4.0 * force_n, Vec3(0, 0, 0)), 0.5, kClamped, kNone);
+}
+
+TEST(WrenchConditioner, makes_nothing_of_garbage_in_either)
+{
+    for (const double bad : {kNan, kInfinite})
+    {
+        for (const WrenchWish& wish :
+             {wrench(Vec3(1, bad, 0), Vec3(0, 0, 0.1)), wrench(Vec3(1, 0, 0), Vec3(0, bad, 0.1)),
+              wrench(Vec3(1, 0, 0), Vec3(0, 0, 0.1), 100.0, bad)})
+        {
+            WrenchConditioner sut(turning_setup());
+            const ConditionedWrench out = sut.condition(wish);
+            EXPECT_EQ(out.force.force_n, Vec3(0, 0, 0));
+            EXPECT_EQ(out.torque.force_n, Vec3(0, 0, 0));
+            EXPECT_TRUE(has_action(out.force.actions | out.torque.actions, ForceAction::refused));
+        }
+    }
+}
+
+TEST(WrenchConditioner, leaves_the_force_alone_of_a_device_without_a_torque)
+{
+    ConditionerSetup setup = turning_setup();
+    setup.device.turn.torque_max_nm = 0.0;
+    WrenchConditioner sut(setup);
+    ForceConditioner point(setup);
+    const WrenchWish wish = wrench(Vec3(3, 4, 0), Vec3(0, kNan, 1e9));
+    for (int i = 0; i < 10; ++i)
+    {
+        const ConditionedWrench out = sut.condition(wish);
+        EXPECT_EQ(out.force.force_n, point.condition(wish.force).force_n);
+        EXPECT_EQ(out.torque.force_n, Vec3(0, 0, 0));
+    }
+}
+
 } // namespace tactus::test

@@ -14,7 +14,8 @@ namespace
 {
 
 /// So many of each, all of model 0, whose header is empty.
-std::optional<FrameRefusal> refusal_of(std::size_t tools, std::size_t objects, std::size_t models)
+std::optional<FrameRefusal> refusal_of(std::size_t tools, std::size_t objects, std::size_t models,
+                                       const SceneCapacities& capacities = {})
 {
     static const std::array<ToolSpec, kMaxTools + 1> kTools{};
     std::array<ObjectSpec, kMaxObjects + 1> shown;
@@ -24,6 +25,7 @@ std::optional<FrameRefusal> refusal_of(std::size_t tools, std::size_t objects, s
     setup.tools = std::span(kTools).first(tools);
     setup.objects = std::span(shown).first(objects);
     setup.models = std::span(kModels).first(models);
+    setup.capacities = capacities;
     return find_refusal(setup);
 }
 
@@ -38,8 +40,28 @@ TEST(FrameSetup, takes_as_many_tools_objects_and_models_as_the_limits_and_refuse
     EXPECT_EQ(refusal_of(1, kMaxObjects + 1, 1), FrameRefusal::too_many);
     EXPECT_EQ(refusal_of(1, 1, kMaxModels + 1), FrameRefusal::too_many);
     EXPECT_EQ(refusal_of(0, 1, 1), FrameRefusal::too_many);
-    EXPECT_EQ(refusal_of(1, 0, 1), FrameRefusal::too_many);
+    EXPECT_EQ(refusal_of(1, 0, 1), counts_are_fine); // They may come later.
     EXPECT_EQ(refusal_of(1, 1, 0), FrameRefusal::too_many);
+    EXPECT_EQ(refusal_of(1, 2, 1, {2, kMaxPairs}), counts_are_fine);
+    EXPECT_EQ(refusal_of(1, 2, 1, {kMaxObjects, 1}), counts_are_fine);
+    EXPECT_EQ(refusal_of(1, 2, 1, {1, 0}), FrameRefusal::too_many);
+    EXPECT_EQ(refusal_of(1, 1, 1, {kMaxObjects + 1, 0}), FrameRefusal::too_many);
+    EXPECT_EQ(refusal_of(1, 1, 1, {1, kMaxPairs + 1}), FrameRefusal::too_many);
+}
+
+TEST(FrameSetup, takes_as_many_faces_of_all_models_as_the_limit)
+{
+    std::array<ModelSource, 2> models;
+    const std::array<ObjectSpec, 1> objects{ObjectSpec{ModelId{0}}};
+    const std::array<ToolSpec, 1> tools{};
+    FrameSetup setup;
+    setup.models = models;
+    setup.objects = objects;
+    setup.tools = tools;
+    models[1].capacities.faces = kMaxPoolFaces;
+    EXPECT_EQ(find_refusal(setup), FrameRefusal::header_refused); // It is looked at later.
+    models[0].capacities.faces = 1;
+    EXPECT_EQ(find_refusal(setup), FrameRefusal::too_many_faces);
 }
 
 TEST(FrameSetup, refuses_models_that_are_not_there_and_a_tool_s_model_that_an_object_shows)

@@ -156,6 +156,18 @@ Asked ask_meeting(const TreeRig& tool, const TreeRig& object, const MeshPlacemen
     return asked;
 }
 
+/// The least distance.
+Asked ask_nearest(const TreeRig& tool, const TreeRig& object, const MeshPlacement& place,
+                  MeshMemory& memory, const WalkBudget& budget = kAmple)
+{
+    Asked asked;
+    OtherSurface surface(*object.sut, place, budget);
+    find_nearest_faces({*tool.sut, *object.sut, place}, surface, memory, asked.answer,
+                       asked.report);
+    asked.budget = surface.budget();
+    return asked;
+}
+
 template <typename Faces>
 std::set<MeetingFaces> as_set(const Faces& faces)
 {
@@ -297,7 +309,7 @@ TEST(MeetingFaces, are_those_of_the_whole_query)
         TreeRig object({120, 300, 300});
         fill(tool, random, 1 + random.below(80), round % 3 != 0);
         fill(object, random, 1 + random.below(120), round % 4 != 0);
-        MeshMemory memory{random.below(10), random.below(10)};
+        MeshMemory memory{{random.below(10), random.below(10)}};
         for (int query = 0; query < 10; ++query)
         {
             MeshPlacement place = random_placement(random);
@@ -360,7 +372,7 @@ TEST(MeetingFaces, a_spent_budget_proves_nothing)
         const AllPairs truth(tool.present(), object.present(), place, 0.0);
         for (std::uint32_t share = 0; share < 200; share = 2 * share + 1)
         {
-            MeshMemory memory{random.below(10), random.below(10)};
+            MeshMemory memory{{random.below(10), random.below(10)}};
             const Asked asked = ask_meeting(tool, object, place, 1'000'000, memory,
                                             {share, random.below(10 * share + 1)});
             const auto found = as_set(asked.report.meeting);
@@ -372,6 +384,125 @@ TEST(MeetingFaces, a_spent_budget_proves_nothing)
         }
     }
     EXPECT_GT(open, 50);
+}
+
+TEST(NearestFaces, are_those_of_all_pairs_however_far_and_whatever_is_remembered)
+{
+    Random random(83);
+    int exact = 0;
+    int met = 0;
+    for (int round = 0; round < 50; ++round)
+    {
+        TreeRig tool({80, 200, 200});
+        TreeRig object({120, 300, 300});
+        fill(tool, random, 1 + random.below(80), round % 3 != 0);
+        fill(object, random, 1 + random.below(120), round % 4 != 0);
+        MeshMemory memory{{random.below(10), random.below(10), random.below(20), 0}};
+        for (int query = 0; query < 6; ++query)
+        {
+            MeshPlacement place = random_placement(random);
+            place.place.translation_m.y() +=
+                random.one_in(2) ? 0.0 : random.between(0.0, 1.0) * std::exp2(random.below(8));
+            const AllPairs truth(tool.present(), object.present(), place, 0.0);
+            MeshMemory none;
+
+            const Asked asked = ask_nearest(tool, object, place, memory);
+            const Asked anew = ask_nearest(tool, object, place, none);
+
+            const DistanceAnswer& answer = asked.answer;
+            ASSERT_LE(answer.lower_m, truth.lower + 1e-14);
+            ASSERT_GE(answer.upper_m, truth.lower);
+            ASSERT_EQ(asked.report.intersection, truth.intersection());
+            ASSERT_TRUE(std::ranges::all_of(asked.report.meeting,
+                                            [&truth](const MeetingFaces& faces)
+                                            { return truth.meeting.contains(faces); }));
+            ASSERT_EQ(answer.kind, anew.answer.kind);
+            ASSERT_EQ(answer.lower_m, anew.answer.lower_m);
+            if (answer.kind != AnswerKind::exact)
+            {
+                ASSERT_LE(truth.coarse_lower, answer.upper_m);
+                continue;
+            }
+            ++exact;
+            met += truth.meeting.empty() ? 0 : 1;
+            ASSERT_EQ(answer.upper_m, anew.answer.upper_m);
+            ASSERT_NEAR(answer.upper_m, truth.upper, 1e-13 * (1.0 + truth.upper));
+            ASSERT_NEAR((answer.nearest_point_m - answer.tool_point_m).norm(), truth.upper,
+                        1e-13 * (1.0 + truth.upper));
+            ASSERT_FALSE(answer.nearest_face.is_none());
+            ASSERT_FALSE(asked.report.nearest_tool_face.is_none());
+            if (truth.meeting.empty())
+            {
+                ASSERT_EQ(answer.nearest_face, anew.answer.nearest_face);
+                ASSERT_EQ(asked.report.nearest_tool_face, anew.report.nearest_tool_face);
+            }
+        }
+    }
+    EXPECT_GT(exact, 100);
+    EXPECT_GT(met, 15);
+}
+
+TEST(NearestFaces, are_bracketed_where_the_budget_ends_the_search)
+{
+    Random random(84);
+    int cut = 0;
+    int lower_known = 0;
+    for (int round = 0; round < 40; ++round)
+    {
+        const auto [tool, object] = full_meshes(random);
+        MeshPlacement place = random_placement(random);
+        place.place.translation_m.y() += random.between(0.0, 8.0);
+        const AllPairs truth(tool.present(), object.present(), place, 0.0);
+        for (std::uint32_t nodes = 1; nodes < 3'000; nodes *= 3)
+        {
+            MeshMemory memory{{random.below(10), random.below(10)}};
+            const Asked asked =
+                ask_nearest(tool, object, place, memory, {nodes, random.below(10 * nodes)});
+            const DistanceAnswer& answer = asked.answer;
+            ASSERT_LE(asked.budget.nodes_visited, nodes);
+            ASSERT_LE(answer.lower_m, truth.lower + 1e-14);
+            ASSERT_GE(answer.upper_m, truth.lower);
+            ASSERT_TRUE(asked.report.intersection != Intersection::none || truth.meeting.empty());
+            ASSERT_TRUE(answer.kind != AnswerKind::exact ||
+                        answer.upper_m <= truth.upper + 1e-13 * (1.0 + truth.upper));
+            cut += answer.kind == AnswerKind::bracket ? 1 : 0;
+            lower_known += answer.kind == AnswerKind::bracket && answer.lower_m > 0.0 ? 1 : 0;
+        }
+    }
+    EXPECT_GT(cut, 50);
+    EXPECT_GT(lower_known, 10);
+}
+
+TEST(NearestFaces, are_not_told_by_faces_that_are_gone)
+{
+    // A tree that changes between two questions: what is remembered is measured anew.
+    Random random(85);
+    for (int round = 0; round < 8; ++round)
+    {
+        Meshes meshes = full_meshes(random);
+        TreeRig& tool = meshes.tool;
+        TreeRig& object = meshes.object;
+        const MeshPlacement place = random_placement(random);
+        MeshMemory memory;
+        for (int change = 0; change < 8; ++change)
+        {
+            const AllPairs truth(tool.present(), object.present(), place, 0.0);
+            const Asked asked = ask_nearest(tool, object, place, memory);
+            ASSERT_EQ(asked.report.intersection, truth.intersection());
+            ASSERT_NEAR(asked.answer.upper_m, truth.upper, 1e-13 * (1.0 + truth.upper));
+            ASSERT_EQ(ask_meeting(tool, object, place, 1, memory).report.intersection,
+                      truth.intersection());
+            // The face of the object that was the nearest goes.
+            for (const ChangedFace& face : object.present())
+            {
+                if (face.face == asked.answer.nearest_face)
+                {
+                    object.remove(face.prim.value);
+                }
+            }
+            object.sut->refit();
+        }
+    }
 }
 
 TEST(MeshQuery, faces_that_only_touch_meet)
@@ -415,7 +546,7 @@ TEST(MeshQuery, beyond_single_precision_bounds_what_it_can)
         MeshPlacement place = random_placement(random);
         place.place.translation_m = Vec3(far_m, -far_m, 0.0);
         const AllPairs truth(tool.present(), object.present(), place, -1.0);
-        MeshMemory memory{0, 0};
+        MeshMemory memory{{0, 0}};
 
         const Asked asked = ask(tool, object, place, 0.1, 0.1, memory);
 
@@ -435,7 +566,7 @@ TEST(MeshQuery, a_place_that_is_no_number_proves_nothing)
     const auto [tool, object] = full_meshes(random);
     MeshPlacement place = random_placement(random);
     place.place.translation_m.x() = std::numeric_limits<double>::quiet_NaN();
-    MeshMemory memory{0, 0};
+    MeshMemory memory{{0, 0}};
 
     const Asked asked = ask(tool, object, place, 0.1, 0.1, memory);
 
@@ -457,7 +588,7 @@ TEST(MeshQuery, a_spent_budget_leaves_all_that_it_says_true)
         const AllPairs truth(tool.present(), object.present(), place, 0.05);
         for (std::uint32_t share = 1; share < 3'000; share *= 3)
         {
-            MeshMemory memory{random.below(10), random.below(10)};
+            MeshMemory memory{{random.below(10), random.below(10)}};
             const Asked asked =
                 ask(tool, object, place, 0.05, 0.05, memory, {share, random.below(10 * share)});
             spent += asked.budget.is_spent ? 1 : 0;

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
+#include <vector>
 
 namespace tactus::test
 {
@@ -21,6 +22,16 @@ std::uint32_t index_pages_kept(std::uint32_t index_pages, std::size_t bytes)
     return plan_capacities(parsed(coded), bytes, 0).index_pages;
 }
 
+/// The plan for so many models of so many records in so much memory; empty where there is none.
+std::vector<ModelCapacities> plan_of(std::uint32_t records, std::size_t models, std::size_t bytes)
+{
+    HeaderParts parts = sound_header(records);
+    const auto coded = parts.write();
+    const std::vector<ModelHeader> headers(models, parsed(coded));
+    std::vector<ModelCapacities> capacities(models);
+    return try_plan(headers, bytes, 0, capacities) ? capacities : std::vector<ModelCapacities>{};
+}
+
 } // namespace
 
 TEST(ModelCapacities, keep_the_least_number_of_index_pages_and_more_only_where_there_is_memory)
@@ -32,6 +43,44 @@ TEST(ModelCapacities, keep_the_least_number_of_index_pages_and_more_only_where_t
     EXPECT_EQ(index_pages_kept(kLeast, kLittle), kLeast);
     EXPECT_EQ(index_pages_kept(kLeast + 1, kLittle), kLeast);
     EXPECT_EQ(index_pages_kept(kLeast + 1, kMuch), kLeast + 1);
+}
+
+TEST(ModelCapacities, of_several_models_are_alike_and_fill_the_memory)
+{
+    constexpr std::uint32_t kRecords = 1'000 * kRecordsPerChunk;
+    HeaderParts parts = sound_header(kRecords);
+    const auto coded = parts.write();
+    for (const auto& [models, bytes] : {std::pair<std::size_t, std::size_t>{1, 0x20'0000},
+                                        {2, 0x20'0000},
+                                        {8, 0x20'0000},
+                                        {kMaxModels, 0x400'0000}})
+    {
+        const std::vector<ModelCapacities> plan = plan_of(kRecords, models, bytes);
+        ASSERT_EQ(plan.size(), models);
+        const std::vector<ModelHeader> headers(models, parsed(coded));
+        const std::size_t needed = required_bytes(headers, plan);
+        EXPECT_LE(needed, bytes);
+        EXPECT_GT(needed, bytes - bytes / 50);
+        for (const ModelCapacities& one : plan)
+        {
+            EXPECT_EQ(one.faces, plan[0].faces);
+            EXPECT_LE(one.pages, plan[0].pages + 1);
+            EXPECT_GE(one.pages + 1, plan[0].pages);
+        }
+    }
+}
+
+TEST(ModelCapacities, of_small_models_are_all_that_they_need)
+{
+    constexpr std::uint32_t kRecords = 4 * kRecordsPerChunk;
+    const std::vector<ModelCapacities> plan = plan_of(kRecords, 3, std::size_t{4} << 20U);
+    ASSERT_EQ(plan.size(), 3U);
+    for (const ModelCapacities& one : plan)
+    {
+        EXPECT_EQ(one.pages, 4U);
+        EXPECT_GE(one.faces, 2 * kRecords);
+    }
+    EXPECT_TRUE(plan_of(kRecords, 3, 1'000).empty());
 }
 
 } // namespace tactus::test

@@ -57,6 +57,9 @@ bool is_flag(FrameFault fault)
     case FrameFault::held_records_full:
     case FrameFault::ranking_full:
     case FrameFault::tool_crowded:
+    case FrameFault::pair_shed:
+    case FrameFault::scene_crowded:
+    case FrameFault::object_lost:
         return true;
     }
     return false;

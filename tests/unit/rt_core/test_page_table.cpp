@@ -19,7 +19,8 @@ protected:
     ArenaMemory memory_{1U << 17U};
     Arena arena_{memory_.bytes()};
     PageSlots slots_{PageSlots::take(arena_, {4, 4, 1'000}, kPages, 1)};
-    PageTable sut_{arena_, slots_};
+    PagePool pool_{arena_, kPages};
+    PageTable sut_{pool_, 0, slots_};
 };
 
 } // namespace
@@ -51,6 +52,30 @@ TEST_F(PageTableTest, an_adopted_page_is_found_until_it_is_evicted)
     sut_.adopt({8}, 2, 121);
     EXPECT_EQ(sut_.find({8}), 2U);
     EXPECT_EQ(sut_.find({7}), IdTable::kAbsent);
+}
+
+TEST_F(PageTableTest, two_models_have_chunks_of_the_same_numbers_in_slots_of_one_pool)
+{
+    PageTable other(pool_, kMaxModels - 1, slots_);
+    sut_.adopt({7}, 0, 1, 1);
+    other.adopt({7}, 1, 2, 2);
+
+    EXPECT_EQ(sut_.find({7}), 0U);
+    EXPECT_EQ(other.find({7}), 1U);
+    EXPECT_EQ(sut_.used(), 1U);
+    EXPECT_EQ(other.used(), 1U);
+    EXPECT_TRUE(sut_.is_own(0));
+    EXPECT_FALSE(sut_.is_own(1));
+    EXPECT_FALSE(sut_.is_own(2));
+    other.update_linked({7}, 0, 3); // It had that slot once.
+    EXPECT_EQ(sut_.meta(0).linked, 1U);
+    EXPECT_DEATH(other.evict(0), "");
+    sut_.evict(0);
+    other.adopt({8}, 0, 3);
+    EXPECT_EQ(sut_.find({7}), IdTable::kAbsent);
+    EXPECT_EQ(sut_.find({8}), IdTable::kAbsent);
+    EXPECT_EQ(other.find({8}), 0U);
+    EXPECT_EQ(other.used(), 2U);
 }
 
 TEST_F(PageTableTest, only_linked_records_count)

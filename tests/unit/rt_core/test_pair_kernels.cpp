@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
+#include "rt_core/geometry/crossing.hpp"
 #include "rt_core/geometry/triangle_triangle.hpp"
 #include "rt_core/query/box_view.hpp"
+#include "rt_core/query/face_pair_queue.hpp"
+#include "rt_core/query/pair_walk.hpp"
 #include "tests/unit/rt_core/kernel_scenes.hpp"
 
 #include <Eigen/Geometry>
@@ -136,94 +139,6 @@ double separation(const BoxScene& scene, std::uint32_t child)
     return widest * scene.units_per_m;
 }
 
-/// Two blocks that are near each other, around a point near both.
-struct FacesScene
-{
-    KernelScene first;
-    BlockGeometry other;
-    KernelProbe probe{};
-    TriangleRows rows;
-    TriangleRows other_rows;
-
-    FacesScene(Random& random, const FaceShape& shape, const FaceShape& other_shape)
-        : first(make_scene(random, shape, probe_places()[0]))
-    {
-        const double size = std::exp2(random.between(1.0, 20.0));
-        first.block = block_of(random, shape, size, random.one_in(2), first.quantum_m);
-        other = block_of(random, other_shape, size * std::exp2(random.between(-4.0, 1.0)),
-                         random.one_in(2), first.quantum_m);
-        probe = make_probe(size * static_cast<double>(first.quantum_m) * random.in_cube(1.0),
-                           first.quantum_m);
-        place(portable_kernels());
-    }
-
-    void place(const Kernels& kernels)
-    {
-        kernels.place_triangles(first.coordinates(), first.corners(), probe, rows);
-        kernels.place_triangles(other.coordinates.front().data(), other.corners.front().data(),
-                                probe, other_rows);
-    }
-};
-
-template <typename Check>
-void for_each_pair_of_shapes(std::uint64_t own_seed, int rounds, const Check& check)
-{
-    Random random(own_seed);
-    for (const FaceShape& shape : face_shapes())
-    {
-        for (const FaceShape& other : face_shapes())
-        {
-            for (int round = 0; round < rounds; ++round)
-            {
-                check(random, FacesScene(random, shape, other));
-            }
-        }
-    }
-}
-
-/// Of all rows but those of vertices that are no face's.
-std::vector<std::uint32_t> row_bits(const TriangleRows& rows)
-{
-    std::vector<std::uint32_t> bits;
-    for (std::size_t lane = 0; lane < kBlockFaces; ++lane)
-    {
-        for (std::size_t axis = 0; axis < 3; ++axis)
-        {
-            for (const float value :
-                 {rows.low[axis][lane], rows.high[axis][lane], rows.normal[axis][lane]})
-            {
-                bits.push_back(bits_of(value));
-            }
-            bits.push_back(rows.corners[axis][lane]);
-            bits.push_back(lane < 15 ? bits_of(rows.vertex[axis][lane]) : 0);
-        }
-        bits.push_back(bits_of(rows.plane_low[lane]));
-        bits.push_back(bits_of(rows.plane_high[lane]));
-    }
-    return bits;
-}
-
-/// All that the sets say of two blocks.
-std::vector<std::uint32_t> answer_bits(const Kernels& kernels, const FacesScene& scene,
-                                       const KernelBox& box, std::uint32_t mask, float bound)
-{
-    std::vector<std::uint32_t> bits{kernels.near_faces(scene.rows, box, mask, bound),
-                                    kernels.near_lanes(scene.rows, scene.other_rows, mask | 1U,
-                                                       mask, bound, scene.probe.slack)};
-    for (std::uint32_t lane = 0; lane < kBlockFaces; ++lane)
-    {
-        alignas(64) std::array<float, kBlockFaces> gaps{};
-        const std::uint32_t near = kernels.triangle_gaps(scene.rows, scene.other_rows, lane, mask,
-                                                         bound, scene.probe.slack, gaps.data());
-        bits.push_back(near);
-        for (std::uint32_t lanes = near; lanes != 0; lanes &= lanes - 1)
-        {
-            bits.push_back(bits_of(gaps[static_cast<std::size_t>(std::countr_zero(lanes))]));
-        }
-    }
-    return bits;
-}
-
 Aabb box_of(const BlockGeometry& block, std::uint32_t lanes)
 {
     Aabb box;
@@ -238,18 +153,223 @@ Aabb box_of(const BlockGeometry& block, std::uint32_t lanes)
     return box;
 }
 
-/// In metres.
-double distance(const Aabb& a, const Aabb& b)
+/// A block of the object, and one of the tool, turned and placed near it.
+struct BlocksScene
 {
-    double sum = 0.0;
-    for (std::size_t axis = 0; axis < 3; ++axis)
+    KernelScene object;
+    BlockGeometry tool;
+    MeshPlacement place;
+    KernelBox tool_box{};
+    PlacedBlock placed;
+    VertexRows rows;
+    float slack{0.0F};
+
+    BlocksScene(Random& random, const FaceShape& shape, const FaceShape& tool_shape)
+        : object(make_scene(random, shape, probe_places()[0]))
     {
-        const double gap =
-            std::max({static_cast<double>(a.low[axis]) - static_cast<double>(b.high[axis]),
-                      static_cast<double>(b.low[axis]) - static_cast<double>(a.high[axis]), 0.0});
-        sum += gap * gap;
+        const double size = std::exp2(random.between(1.0, 20.0));
+        const bool is_whole = random.one_in(2);
+        const auto quantum = static_cast<double>(object.quantum_m);
+        object.block = block_of(random, shape, size, is_whole, object.quantum_m);
+        tool = block_of(random, tool_shape, size * std::exp2(random.between(-4.0, 1.0)), is_whole,
+                        object.quantum_m);
+        place.place.rotation = random_rotation(random);
+        place.place.scale = random.one_in(2) ? 1.0 : random.between(0.5, 2.0);
+        place.place.translation_m =
+            random.in_cube(size * quantum * std::exp2(random.between(-8.0, 1.0)));
+        if (is_whole && random.one_in(2)) // Much that only touches.
+        {
+            place = {};
+        }
+        slack = static_cast<float>(
+            (place.place.translation_m.norm() / quantum + 4.0 * size) * 0x1p-45 + 0x1p-40);
+        look(portable_kernels());
     }
-    return std::sqrt(sum);
+
+    [[nodiscard]] double units_per_m() const { return 1.0 / static_cast<double>(object.quantum_m); }
+
+    /// As PlacedBlocks does.
+    void look(const Kernels& kernels)
+    {
+        const Aabb own = box_of(tool, 0xFFFF);
+        const Vec3 middle = 0.5 * (to_vec3(own.low) + to_vec3(own.high));
+        const Vec3f from = to_float(middle);
+        tool_box = BoxView(place, units_per_m(), slack).of(own);
+        std::array<float, 9> turn{};
+        for (std::size_t i = 0; i < 9; ++i)
+        {
+            turn[i] = static_cast<float>(units_per_m() * place.place.scale *
+                                         place.place.rotation(static_cast<Eigen::Index>(i / 3),
+                                                              static_cast<Eigen::Index>(i % 3)));
+        }
+        kernels.place_turned(tool.coordinates.front().data(), tool.corners.front().data(),
+                             from.data(), turn.data(), placed.rows);
+        const double moved = (middle - to_vec3(from)).lpNorm<1>() * units_per_m();
+        const float half = tool_box.half_along[0] + tool_box.half_along[1] + tool_box.half_along[2];
+        placed.off = half * 0x1p-21F + round_up_to_float(4.0 * moved) + slack;
+        static_cast<void>(kernels.near_block(object.coordinates(), object.corners(), tool_box,
+                                             0xFFFF, kUnlimited, rows));
+    }
+
+    [[nodiscard]] Triangle tool_face(std::uint32_t lane) const
+    {
+        Triangle triangle = to_triangle(block_triangle(tool, lane));
+        for (Vec3& corner : triangle)
+        {
+            corner = place.to_there(corner);
+        }
+        return triangle;
+    }
+    [[nodiscard]] Triangle face(std::uint32_t lane) const
+    {
+        return to_triangle(block_triangle(object.block, lane));
+    }
+    /// Between two faces, in quanta.
+    [[nodiscard]] double apart(std::uint32_t tool_lane, std::uint32_t lane) const
+    {
+        const ClosestPoints closest = closest_points(tool_face(tool_lane), face(lane));
+        return (closest.distance + closest.distance_error) * units_per_m();
+    }
+};
+
+template <typename Check>
+void for_each_pair_of_shapes(std::uint64_t own_seed, int rounds, const Check& check)
+{
+    Random random(own_seed);
+    for (const FaceShape& shape : face_shapes())
+    {
+        for (const FaceShape& tool : face_shapes())
+        {
+            for (int round = 0; round < rounds; ++round)
+            {
+                check(random, BlocksScene(random, shape, tool));
+            }
+        }
+    }
+}
+
+/// Not longer than 1.
+Vec3f random_way(Random& random)
+{
+    return to_float((1.0 - 0x1p-20) * random.in_cube(1.0).normalized());
+}
+
+std::array<float, 6> ends_of(const Aabb& box)
+{
+    return {box.low[0], box.low[1], box.low[2], box.high[0], box.high[1], box.high[2]};
+}
+
+/// Of all rows but those of vertices that are no face's.
+std::vector<std::uint32_t> row_bits(const BlocksScene& scene)
+{
+    const TriangleRows& rows = scene.placed.rows;
+    std::vector<std::uint32_t> bits;
+    for (std::size_t lane = 0; lane < kBlockFaces; ++lane)
+    {
+        for (std::size_t axis = 0; axis < 3; ++axis)
+        {
+            for (const float value :
+                 {rows.low[axis][lane], rows.high[axis][lane], rows.normal[axis][lane]})
+            {
+                bits.push_back(bits_of(value));
+            }
+            bits.push_back(rows.corners[axis][lane]);
+            bits.push_back(lane < 15 ? bits_of(rows.vertex[axis][lane]) : 0);
+            bits.push_back(lane < 15 ? bits_of(scene.rows.at[axis][lane]) : 0);
+        }
+        bits.push_back(bits_of(rows.plane_low[lane]));
+        bits.push_back(bits_of(rows.plane_high[lane]));
+        bits.push_back(lane < 15 ? bits_of(scene.rows.size[lane]) : 0);
+    }
+    return bits;
+}
+
+using NearPairs = std::array<std::uint32_t, kBlockFaces>;
+
+NearPairs near_pairs(const Kernels& kernels, const BlocksScene& scene, std::uint32_t mask,
+                     std::uint32_t tool_mask, float bound, const float* way)
+{
+    NearPairs near{};
+    kernels.near_pairs(scene.rows, scene.object.corners(), mask, scene.placed.rows, tool_mask,
+                       bound, 2.0F * scene.placed.off, way, near.data());
+    return near;
+}
+
+std::uint32_t near_rows(const Kernels& kernels, const BlocksScene& scene, const Aabb& box,
+                        std::uint32_t mask, float bound)
+{
+    return kernels.near_rows(scene.placed.rows, ends_of(box).data(), scene.tool_box.center, mask,
+                             bound, 2.0F * scene.placed.off);
+}
+
+/// Eight random pairs of faces.
+FacePairQueue queue_of(Random& random, const BlocksScene& scene)
+{
+    FacePairQueue queue;
+    while (!queue.is_full())
+    {
+        const FacePair pair{0, 0, random.below(kBlockFaces), random.below(kBlockFaces)};
+        queue.add(pair, scene.placed, scene.object.block, scene.rows, scene.slack);
+    }
+    return queue;
+}
+
+/// A face that comes near another one in one of the ways that are hard to decide, all but a little.
+Triangle near_tie(Random& random, const Triangle& face, double size)
+{
+    // A corner, the middle of an edge, or a place in the face.
+    const auto point_of = [&]
+    {
+        const double s = random.below(3) * 0.5;
+        const double t = random.below(3) * 0.5 * (1.0 - s);
+        return Vec3(face[0] + s * (face[1] - face[0]) + t * (face[2] - face[0]));
+    };
+    Triangle other{point_of(), point_of(), random.in_cube(size)};
+    const Vec3 at = other[0];
+    const Vec3 way = random.in_cube(size);
+    const Vec3 across = random.in_cube(size);
+    switch (random.below(4))
+    {
+    case 0: // An edge through the place.
+        other = {at + way, at - random.between(0.1, 1.0) * way, at + across};
+        break;
+    case 1: // The plane, the place inside.
+        other = {at + way, at + across, at - 0.7 * (way + across)};
+        break;
+    case 2: // All in one plane.
+        other[2] = point_of();
+        break;
+    default: // By two corners.
+        break;
+    }
+    const double off = random.one_in(3) ? 0.0 : size * std::exp2(-random.between(8.0, 30.0));
+    for (Vec3& corner : other)
+    {
+        corner += random.in_cube(off);
+    }
+    return other;
+}
+
+void expect_true_sides(const PairSides& sides, std::uint32_t lane, bool do_meet)
+{
+    ASSERT_EQ(sides.meet & sides.apart, 0U);
+    ASSERT_TRUE((sides.meet >> lane & 1U) == 0 || do_meet);
+    ASSERT_TRUE((sides.apart >> lane & 1U) == 0 || !do_meet);
+}
+
+void expect_true_bounds(const PairDistances& distances, std::uint32_t lane,
+                        const ClosestPoints& closest, double quantum)
+{
+    ASSERT_LE(static_cast<double>(distances.lower[lane]) * quantum,
+              closest.distance + closest.distance_error);
+    ASSERT_GE(static_cast<double>(distances.upper[lane]) * quantum,
+              closest.distance + closest.distance_error);
+    double length_sq = 0.0;
+    for (const auto& row : distances.way)
+    {
+        length_sq += static_cast<double>(row[lane]) * static_cast<double>(row[lane]);
+    }
+    ASSERT_LE(length_sq, 1.0 + 0x1p-20);
 }
 
 } // namespace
@@ -258,37 +378,66 @@ TEST(PairKernels, give_the_same_bits_in_every_set)
 {
     for_each_pair_of_shapes(
         81, 12,
-        [](Random& random, FacesScene scene)
+        [](Random& random, BlocksScene scene)
         {
             const BoxScene boxes(random);
             const KernelBox box = boxes.seen();
-            const KernelBox round_other =
-                BoxView({}, 1.0 / static_cast<double>(scene.first.quantum_m), 0.0F)
-                    .of(box_of(scene.other, 0xFFFF));
+            const float* const node = boxes.boxes.low.front().data();
             const std::uint32_t mask = random_mask(random, 16);
+            const std::uint32_t tool_mask = random_mask(random, 16);
+            const Vec3f way = random_way(random);
             const float bound = random.one_in(3)
                                     ? kUnlimited
                                     : static_cast<float>(std::exp2(random.between(-2.0, 20.0)));
-            alignas(32) std::array<float, kNodeChildren> expected_gaps{};
-            const std::uint32_t expected_near = portable_kernels().box_gaps(
-                boxes.boxes.low.front().data(), box, mask & 0xFFU, bound, expected_gaps.data());
-            const auto expected_rows = row_bits(scene.rows);
-            const auto expected = answer_bits(portable_kernels(), scene, round_other, mask, bound);
+            const FacePairQueue queue = queue_of(random, scene);
+            const std::uint32_t count = 1 + random.below(kPairLanes);
+            const auto answers = [&](const Kernels& kernels)
+            {
+                scene.look(kernels);
+                std::vector<std::uint32_t> bits = row_bits(scene);
+                alignas(32) std::array<float, kNodeChildren> gaps{};
+                bits.push_back(kernels.box_gaps(node, box, mask & 0xFFU, bound, gaps.data()));
+                bits.push_back(
+                    kernels.boxes_along(node, box, way.data(), mask & 0xFFU, bound, gaps.data()));
+                for (const float gap : gaps)
+                {
+                    bits.push_back(bits_of(gap));
+                }
+                bits.push_back(bits_of(kernels.highest_along(scene.object.coordinates(),
+                                                             mask & 0x7FFFU ? mask & 0x7FFFU : 1U,
+                                                             scene.tool_box.center, way.data())));
+                bits.push_back(near_rows(kernels, scene, box_of(scene.object.block, mask | 1U),
+                                         tool_mask, bound));
+                VertexRows rows;
+                bits.push_back(kernels.near_block(scene.object.coordinates(),
+                                                  scene.object.corners(), scene.tool_box, mask,
+                                                  bound, rows));
+                for (const float* way_or_none : {way.data(), static_cast<const float*>(nullptr)})
+                {
+                    const NearPairs near =
+                        near_pairs(kernels, scene, mask, tool_mask, bound, way_or_none);
+                    bits.insert(bits.end(), near.begin(), near.end());
+                }
+                const PairSides sides = kernels.decide_pairs(queue.rows(), count);
+                bits.push_back(sides.meet);
+                bits.push_back(sides.apart);
+                PairDistances distances{};
+                kernels.pair_distances(queue.rows(), count, distances);
+                for (std::uint32_t lane = 0; lane < count; ++lane)
+                {
+                    for (const float value :
+                         {distances.lower[lane], distances.upper[lane], distances.way[0][lane],
+                          distances.way[1][lane], distances.way[2][lane]})
+                    {
+                        bits.push_back(bits_of(value));
+                    }
+                }
+                return bits;
+            };
+            const std::vector<std::uint32_t> expected = answers(portable_kernels());
             for (const Kernels* kernels : available_kernels())
             {
-                alignas(32) std::array<float, kNodeChildren> gaps{};
-                ASSERT_EQ(kernels->box_gaps(boxes.boxes.low.front().data(), box, mask & 0xFFU,
-                                            bound, gaps.data()),
-                          expected_near)
-                    << kernels->name;
-                for (std::size_t child = 0; child < kNodeChildren; ++child)
-                {
-                    ASSERT_EQ(bits_of(gaps[child]), bits_of(expected_gaps[child]));
-                }
-                scene.place(*kernels);
-                ASSERT_EQ(row_bits(scene.rows), expected_rows) << kernels->name;
-                ASSERT_EQ(answer_bits(*kernels, scene, round_other, mask, bound), expected)
-                    << kernels->name;
+                ASSERT_EQ(answers(*kernels), expected) << kernels->name;
             }
         });
 }
@@ -343,86 +492,220 @@ TEST(PairKernels, leave_out_no_child_within_the_bound)
     EXPECT_GT(left_out, 5'000U);
 }
 
-TEST(PairKernels, bound_the_distance_of_faces_from_below_and_no_worse_than_their_boxes)
+TEST(PairKernels, bound_boxes_along_a_way_from_below)
 {
-    std::uint32_t by_planes = 0;
-    for_each_pair_of_shapes(
-        84, 8,
-        [&by_planes](Random& random, const FacesScene& scene)
+    Random random(84);
+    std::uint32_t raised = 0;
+    for (int round = 0; round < 20'000; ++round)
+    {
+        const BoxScene scene(random);
+        const Vec3f way = random_way(random);
+        const Vec3 direction = to_vec3(way);
+        const KernelBox box = scene.seen();
+        alignas(32) std::array<float, kNodeChildren> gaps{};
+        const auto bound = static_cast<float>(scene.apart_units + 2.0 * scene.slack_units());
+        const std::uint32_t near = portable_kernels().boxes_along(
+            scene.boxes.low.front().data(), box, way.data(), 0xFF, bound, gaps.data());
+        ASSERT_NE(near >> scene.touched & 1U, 0U);
+        for (std::uint32_t child = 0; child < kNodeChildren; ++child)
         {
-            const auto quantum = static_cast<double>(scene.first.quantum_m);
-            const std::uint32_t lane = random.below(kBlockFaces);
-            alignas(64) std::array<float, kBlockFaces> gaps{};
-            ASSERT_EQ(portable_kernels().triangle_gaps(scene.rows, scene.other_rows, lane, 0xFFFF,
-                                                       kUnlimited, scene.probe.slack, gaps.data()),
-                      0xFFFFU);
-            const Triangle other = to_triangle(block_triangle(scene.other, lane));
-            const Aabb box = box_of(scene.other, 1U << lane);
-            for (std::uint32_t own = 0; own < kBlockFaces; ++own)
-            {
-                const ClosestPoints closest =
-                    closest_points(to_triangle(block_triangle(scene.first.block, own)), other);
-                const double gap = static_cast<double>(gaps[own]) * quantum;
-                ASSERT_LE(gap, closest.distance + closest.distance_error)
-                    << scene.first.shape << " " << own;
-                const double boxes = distance(box_of(scene.first.block, 1U << own), box);
-                const double size = 8.0 * 0x1p21 * quantum;
-                ASSERT_GE(gap, boxes - 2.0 * static_cast<double>(kPairMargin) * size);
-                by_planes += gap > boxes + 0.01 * closest.distance ? 1U : 0U;
-            }
-        });
-    EXPECT_GT(by_planes, 500U);
+            const auto here = extent(scene.boxes.get(child), MeshPlacement{}, direction);
+            const auto there = extent(scene.other, scene.place, direction);
+            const double truth = (there[0] - here[1]) * scene.units_per_m;
+            ASSERT_LE(static_cast<double>(gaps[child]), std::max(truth, 0.0) + scene.slack_units())
+                << round;
+            raised += static_cast<double>(gaps[child]) > 0.9 * truth && truth > 0.0 ? 1U : 0U;
+        }
+    }
+    EXPECT_GT(raised, 10'000U);
 }
 
-TEST(PairKernels, leave_out_no_face_within_the_bound)
+TEST(PairKernels, find_the_highest_vertex_along_a_way)
 {
-    std::uint32_t left_out = 0;
+    for_each_pair_of_shapes(
+        90, 12,
+        [](Random& random, const BlocksScene& scene)
+        {
+            const std::uint32_t mask = 1U << random.below(15) | random_mask(random, 15);
+            const Vec3f way = random_way(random);
+            const KernelProbe& center = scene.tool_box.center;
+            double highest = -1e300;
+            double farthest = 0.0;
+            for (std::uint32_t left = mask; left != 0; left &= left - 1)
+            {
+                const auto row = static_cast<std::size_t>(std::countr_zero(left));
+                Vec3 from(0.0, 0.0, 0.0);
+                for (std::size_t axis = 0; axis < 3; ++axis)
+                {
+                    from[static_cast<Eigen::Index>(axis)] =
+                        (static_cast<double>(scene.object.block.coordinates[axis][row]) -
+                         static_cast<double>(center.high[axis]) -
+                         static_cast<double>(center.low[axis])) *
+                        scene.units_per_m();
+                }
+                highest = std::max(highest, from.dot(to_vec3(way)));
+                farthest = std::max(farthest, from.lpNorm<1>());
+            }
+            const auto told = static_cast<double>(portable_kernels().highest_along(
+                scene.object.coordinates(), mask, center, way.data()));
+            ASSERT_GE(told, highest);
+            ASSERT_LE(told, highest + 2.0 * static_cast<double>(kPairMargin) * farthest);
+        });
+}
+
+TEST(PairKernels, place_turned_vertices_where_they_are)
+{
     for_each_pair_of_shapes(
         85, 8,
-        [&left_out](Random& random, const FacesScene& scene)
+        [](Random& /*random*/, const BlocksScene& scene)
         {
-            const std::uint32_t mask = random_mask(random, 16);
-            const std::uint32_t lane = random.below(kBlockFaces);
-            const Triangle other = to_triangle(block_triangle(scene.other, lane));
-            const std::uint32_t asked = random.below(kBlockFaces);
-            const ClosestPoints closest =
-                closest_points(to_triangle(block_triangle(scene.first.block, asked)), other);
-            const float bound = round_up_to_float((closest.distance + closest.distance_error) /
-                                                  static_cast<double>(scene.first.quantum_m));
-            alignas(64) std::array<float, kBlockFaces> gaps{};
-            const std::uint32_t near = portable_kernels().triangle_gaps(
-                scene.rows, scene.other_rows, lane, mask, bound, scene.probe.slack, gaps.data());
-            const std::uint32_t by_box = portable_kernels().near_lanes(
-                scene.rows, scene.other_rows, 1U << lane, mask, bound, scene.probe.slack);
-            ASSERT_EQ(near & ~mask, 0U);
-            ASSERT_EQ(near & ~by_box, 0U);
-            ASSERT_EQ(near >> asked & 1U, mask >> asked & 1U) << scene.first.shape;
-            left_out += static_cast<std::uint32_t>(std::popcount(mask & ~near));
+            for (std::size_t row = 0; row < 15; ++row)
+            {
+                const Vec3 at = scene.place.to_there(
+                    to_vec3(Vec3f{scene.tool.coordinates[0][row], scene.tool.coordinates[1][row],
+                                  scene.tool.coordinates[2][row]}));
+                for (std::size_t axis = 0; axis < 3; ++axis)
+                {
+                    const KernelProbe& center = scene.tool_box.center;
+                    const double from = static_cast<double>(center.high[axis]) +
+                                        static_cast<double>(center.low[axis]);
+                    ASSERT_NEAR(static_cast<double>(scene.placed.rows.vertex[axis][row]),
+                                (at[static_cast<Eigen::Index>(axis)] - from) * scene.units_per_m(),
+                                static_cast<double>(scene.placed.off));
+                }
+            }
         });
-    EXPECT_GT(left_out, 200U);
 }
 
-TEST(PairKernels, a_box_round_several_faces_leaves_out_what_is_far_of_all)
+TEST(PairKernels, leave_out_no_pair_of_faces_within_the_bound)
 {
     std::uint32_t left_out = 0;
     for_each_pair_of_shapes(
-        86, 8,
-        [&left_out](Random& random, const FacesScene& scene)
+        86, 12,
+        [&left_out](Random& random, const BlocksScene& scene)
         {
-            const auto quantum = static_cast<double>(scene.first.quantum_m);
-            const std::uint32_t others = random_mask(random, 16) | 1U << random.below(kBlockFaces);
-            const Aabb box = box_of(scene.other, others);
-            const auto bound = static_cast<float>(std::exp2(random.between(-4.0, 18.0)));
-            const std::uint32_t near = portable_kernels().near_lanes(
-                scene.rows, scene.other_rows, others, 0xFFFF, bound, scene.probe.slack);
-            for (std::uint32_t own = 0; own < kBlockFaces; ++own)
+            const Kernels& kernels = portable_kernels();
+            const std::uint32_t tool_lane = random.below(kBlockFaces);
+            const std::uint32_t lane = random.below(kBlockFaces);
+            const float bound = round_up_to_float(scene.apart(tool_lane, lane));
+            const std::uint32_t mask = 1U << lane;
+            const Aabb box = box_of(scene.object.block, mask);
+            ASSERT_NE(near_rows(kernels, scene, box, 0xFFFF, bound) >> tool_lane & 1U, 0U);
+            ASSERT_EQ(near_rows(kernels, scene, box, 0, bound), 0U);
+            VertexRows rows;
+            ASSERT_NE(kernels.near_block(scene.object.coordinates(), scene.object.corners(),
+                                         scene.tool_box, 0xFFFF, bound, rows) &
+                          mask,
+                      0U);
+            // The way between the two, any other, and none.
+            const ClosestPoints closest =
+                closest_points(scene.tool_face(tool_lane), scene.face(lane));
+            const Vec3 between = -(1.0 - 0x1p-20) * closest.gap.normalized();
+            const Vec3f along = to_float(closest.distance > 0.0 ? between : Vec3(0.0, 0.0, 0.0));
+            const Vec3f any = random_way(random);
+            for (const float* way : {along.data(), any.data(), static_cast<const float*>(nullptr)})
             {
-                const double apart = distance(box_of(scene.first.block, 1U << own), box) / quantum;
-                ASSERT_TRUE((near >> own & 1U) != 0 || apart > static_cast<double>(bound));
-                left_out += (near >> own & 1U) != 0 ? 0U : 1U;
+                const NearPairs near = near_pairs(kernels, scene, 0xFFFF, 0xFFFF, bound, way);
+                ASSERT_NE(near[tool_lane] & mask, 0U) << scene.object.shape;
+                for (const std::uint32_t lanes : near)
+                {
+                    left_out += static_cast<std::uint32_t>(std::popcount(0xFFFFU & ~lanes));
+                }
             }
         });
-    EXPECT_GT(left_out, 100U);
+    EXPECT_GT(left_out, 50'000U);
+}
+
+TEST(PairKernels, decide_no_pair_otherwise_than_exact_arithmetic)
+{
+    std::uint32_t plain = 0;
+    std::uint32_t decided = 0;
+    for_each_pair_of_shapes(
+        87, 12,
+        [&](Random& random, const BlocksScene& scene)
+        {
+            const FacePairQueue queue = queue_of(random, scene);
+            const PairSides sides = portable_kernels().decide_pairs(queue.rows(), queue.size());
+            for (std::uint32_t i = 0; i < queue.size(); ++i)
+            {
+                const Triangle tool = scene.tool_face(queue[i].tool_lane);
+                const Triangle face = scene.face(queue[i].lane);
+                expect_true_sides(sides, i, meet(tool, face));
+            }
+            if (scene.object.shape == face_shapes()[0].name)
+            {
+                plain += queue.size();
+                decided += static_cast<std::uint32_t>(std::popcount(sides.meet | sides.apart));
+            }
+        });
+    EXPECT_GT(decided, plain / 2);
+}
+
+TEST(PairKernels, decide_and_bound_near_ties_needles_and_faces_in_one_plane)
+{
+    Random random(88);
+    std::array<std::uint32_t, 3> count{}; // Open, apart, meeting.
+    for (int round = 0; round < 40'000; ++round)
+    {
+        const FaceShape& shape = face_shapes()[random.below(6)];
+        const double size = std::exp2(random.between(0.0, 20.0));
+        const bool is_on_grid = random.one_in(3);
+        Triangle face;
+        for (std::size_t i = 0; i < 3; ++i)
+        {
+            face[i] = is_on_grid ? Vec3(random.below(4), random.below(4), random.below(4))
+                                 : Vec3(0.0, 0.0, 0.0);
+        }
+        face = is_on_grid ? face : shape.make(random, size);
+        Triangle tool = near_tie(random, face, size);
+        for (Vec3& corner : tool)
+        {
+            corner = is_on_grid ? Vec3(corner.array().round()) : corner;
+        }
+        FacePairQueue queue;
+        queue.add({}, tool, face, 1.0);
+        const PairSides sides = portable_kernels().decide_pairs(queue.rows(), 1);
+        const ClosestPoints closest = closest_points(tool, face);
+        expect_true_sides(sides, 0, closest.meet);
+        ++count[(sides.apart & 1U) + 2 * (sides.meet & 1U)];
+        PairDistances distances{};
+        portable_kernels().pair_distances(queue.rows(), 1, distances);
+        expect_true_bounds(distances, 0, closest, 1.0);
+    }
+    for (const std::uint32_t some : count)
+    {
+        EXPECT_GT(some, 1'000U);
+    }
+}
+
+TEST(PairKernels, bound_distances_of_faces_from_both_sides_and_closely)
+{
+    std::uint32_t plain = 0;
+    std::uint32_t close = 0;
+    for_each_pair_of_shapes(
+        89, 12,
+        [&](Random& random, const BlocksScene& scene)
+        {
+            const FacePairQueue queue = queue_of(random, scene);
+            PairDistances distances{};
+            portable_kernels().pair_distances(queue.rows(), queue.size(), distances);
+            for (std::uint32_t i = 0; i < queue.size(); ++i)
+            {
+                const ClosestPoints closest =
+                    closest_points(scene.tool_face(queue[i].tool_lane), scene.face(queue[i].lane));
+                const auto quantum = static_cast<double>(scene.object.quantum_m);
+                expect_true_bounds(distances, i, closest, quantum);
+                const double apart = closest.distance / quantum;
+                const bool counts = scene.object.shape == face_shapes()[0].name && apart > 0.0;
+                plain += counts ? 1U : 0U;
+                close += counts && static_cast<double>(distances.lower[i]) > 0.99 * apart &&
+                                 static_cast<double>(distances.upper[i]) < 1.01 * apart
+                             ? 1U
+                             : 0U;
+            }
+        });
+    EXPECT_GT(plain, 200U);
+    EXPECT_GT(close, plain * 9 / 10);
 }
 
 } // namespace tactus::test

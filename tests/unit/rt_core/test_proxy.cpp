@@ -39,6 +39,18 @@ ToolGoal goal_at(const Vec3& position_m, const Vec3& velocity_m_per_s = Vec3(0.0
     return {position_m, velocity_m_per_s, kPeriod_s, Mat3::Identity(), GoalChange::first};
 }
 
+PlacedSurface placed_surface(const ObjectPose& pose, const LocalSurface* surface,
+                             const Material& material, ProxyMemory& memory, double quantum = 1e-6)
+{
+    PlacedSurface placed;
+    placed.pose = &pose;
+    placed.surface = surface;
+    placed.material = &material;
+    placed.quantum_m = quantum;
+    placed.memory = &memory;
+    return placed;
+}
+
 /// A proxy over one object whose surface is certified as far as `certified` (model frame).
 class ProxyRig
 {
@@ -53,13 +65,14 @@ public:
     ToolOutput step(const Vec3& goal, const Vec3& velocity = Vec3(0, 0, 0))
     {
         const auto surface = surface_of(triangles, to_model(pose, sut.position_m()), certified);
-        const PlacedSurface placed{&pose, surface.get(), &material, quantum};
-        return sut.respond(goal_at(goal, velocity), {&placed, 1});
+        const PlacedSurface placed = placed_surface(pose, surface.get(), material, memory, quantum);
+        return sut.respond(goal_at(goal, velocity), {&placed, 1}, clear);
     }
     /// The object moves first.
     ToolOutput step(const Vec3& goal, const ObjectPose& now)
     {
-        sut.carry({&pose, 1}, {&now, 1}, kPeriod_s);
+        const NearObject object{0, &pose, &now, &memory};
+        sut.carry({&object, 1}, kPeriod_s);
         pose = now;
         return step(goal);
     }
@@ -96,6 +109,8 @@ public:
     Material material;
     double quantum{1e-6};
     double certified{0.05};
+    double clear{kInfinity}; ///< Of everything else.
+    ProxyMemory memory;
 };
 
 /// The cosine of the angle between two forces.
@@ -129,7 +144,7 @@ TEST(Proxy, follows_its_goal_in_free_flight_without_a_force)
     for (int i = 0; i < 100; ++i)
     {
         const Vec3 goal = random.in_cube(1.0);
-        const ToolOutput output = sut.respond(goal_at(goal), {});
+        const ToolOutput output = sut.respond(goal_at(goal), {}, kInfinity);
         ASSERT_EQ(output.force_n, Vec3(0, 0, 0));
         ASSERT_FALSE(output.in_contact);
         ASSERT_FALSE(output.frozen);
@@ -390,10 +405,11 @@ ToolOutput leap_among(const TriangleList& triangles, const Vec3& goal, Proxy& su
     const ObjectPose pose;
     const Material material;
     const auto surface = surface_of(triangles, Vec3(0, 0, 0), 100.0);
-    const PlacedSurface placed{&pose, surface.get(), &material, 1e-6};
+    ProxyMemory memory;
+    const PlacedSurface placed = placed_surface(pose, surface.get(), material, memory);
     sut.see(goal_at(Vec3(0, 0, 1'000)));
-    static_cast<void>(sut.respond(goal_at(Vec3(0, 0, 0)), {}));
-    return sut.respond(goal_at(goal), {&placed, 1});
+    static_cast<void>(sut.respond(goal_at(Vec3(0, 0, 0)), {}, kInfinity));
+    return sut.respond(goal_at(goal), {&placed, 1}, kInfinity);
 }
 
 /// The bent top of a prism with `faces` sides on a quarter of a circle of 2 m; a ball lies on its
@@ -528,6 +544,7 @@ TEST(Proxy, two_objects_hold_it_together)
     const ObjectPose pose;
     const Material material;
     Proxy sut(ball_tool());
+    std::array<ProxyMemory, 2> memories;
     sut.see(goal_at(Vec3(0.05, 0, 0.05)));
     ToolOutput output;
     for (int i = 0; i < 300; ++i)
@@ -535,8 +552,9 @@ TEST(Proxy, two_objects_hold_it_together)
         const auto a = surface_of(floor, sut.position_m(), 0.06);
         const auto b = surface_of(wall, sut.position_m(), 0.06);
         const std::array<PlacedSurface, 2> placed{
-            {{&pose, a.get(), &material, 1e-6}, {&pose, b.get(), &material, 1e-6}}};
-        output = sut.respond(goal_at(Vec3(0.004, 0, 0.006)), placed);
+            placed_surface(pose, a.get(), material, memories[0]),
+            placed_surface(pose, b.get(), material, memories[1])};
+        output = sut.respond(goal_at(Vec3(0.004, 0, 0.006)), placed, kInfinity);
         ASSERT_GE(sut.position_m().x(), kRadius * (1.0 - 2e-6));
         ASSERT_GE(sut.position_m().z(), kRadius * (1.0 - 2e-6));
     }
@@ -764,19 +782,23 @@ TEST(Proxy, squeezed_between_objects_says_so)
     const Vec3 hand(0, 0, 0.012);
     sut.see(goal_at(hand));
     std::array<ObjectPose, 2> poses{};
+    std::array<ProxyMemory, 2> memories;
     poses[1].translation_m.z() = 0.03;
     int squeezed = 0;
     for (int i = 0; i < 200; ++i)
     {
         std::array<ObjectPose, 2> now = poses;
         now[1].translation_m.z() -= i < 120 ? 0.0002 : 0.0; // Down to 6 mm over the floor.
-        sut.carry(poses, now, kPeriod_s);
+        const std::array<NearObject, 2> objects{{{0, poses.data(), now.data(), memories.data()},
+                                                 {1, &poses[1], &now[1], &memories[1]}}};
+        sut.carry(objects, kPeriod_s);
         poses = now;
         const auto a = surface_of(floor, to_model(poses[0], sut.position_m()), 0.06);
         const auto b = surface_of(floor, to_model(poses[1], sut.position_m()), 0.06);
         const std::array<PlacedSurface, 2> placed{
-            {{poses.data(), a.get(), &material, 1e-6}, {&poses[1], b.get(), &material, 1e-6}}};
-        const ToolOutput output = sut.respond(goal_at(hand), placed);
+            placed_surface(poses[0], a.get(), material, memories[0]),
+            placed_surface(poses[1], b.get(), material, memories[1])};
+        const ToolOutput output = sut.respond(goal_at(hand), placed, kInfinity);
         ASSERT_TRUE(output.proxy_m.allFinite());
         ASSERT_EQ(output.squeezed, poses[1].translation_m.z() < 2.0 * kRadius * (1.0 - 1e-5))
             << "gap " << poses[1].translation_m.z();

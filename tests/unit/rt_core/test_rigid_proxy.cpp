@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "rt_core/force/rigid_proxy.hpp"
+#include "tests/shared/owned_surface.hpp"
 #include "tests/shared/period.hpp"
 #include "tests/unit/rt_core/surface_support.hpp"
 
@@ -47,9 +48,9 @@ ToolGoal hand_at(const Vec3& position_m, const Mat3& rotation = Mat3::Identity()
 }
 
 /// What a query says that found all there is.
-std::unique_ptr<LocalSurface> exact_surface()
+std::unique_ptr<OwnedSurface> exact_surface()
 {
-    auto surface = std::make_unique<LocalSurface>();
+    auto surface = std::make_unique<OwnedSurface>();
     surface->answer.kind = AnswerKind::exact;
     return surface;
 }
@@ -75,7 +76,7 @@ public:
         const ToolGoal hand = hand_at(goal, rotation);
         sut.see(hand);
         std::vector<TouchReport> reports(objects.size());
-        std::vector<LocalSurface> surfaces(objects.size());
+        std::vector<OwnedSurface> surfaces(objects.size());
         std::vector<PlacedSurface> placed;
         for (std::size_t i = 0; i < objects.size(); ++i)
         {
@@ -87,8 +88,9 @@ public:
             surfaces[i].answer.kind = kind;
             placed.push_back({&objects[i].pose, &surfaces[i], nullptr, 0.0, 0.0,
                               lower_share * lower, &reports[i]});
+            placed.back().object = static_cast<std::uint32_t>(i);
         }
-        return sut.respond(hand, placed);
+        return sut.respond(hand, placed, clear);
     }
     ToolOutput settle(const Vec3& goal, const Mat3& rotation = Mat3::Identity(), int frames = 300)
     {
@@ -113,6 +115,7 @@ public:
 
     std::vector<Solid> objects;
     AnswerKind kind{AnswerKind::exact};
+    double clear{kInfinity}; ///< Of everything else.
     double lower_share{1.0}; ///< Of the true distance, as the proxy is told.
     bool tells_corners{true};
 
@@ -261,18 +264,29 @@ TEST(RigidProxy, pressed_at_an_angle_turns_back_what_the_surface_turns)
     }
 }
 
-TEST(RigidProxy, force_and_torque_are_clamped)
+TEST(RigidProxy, force_and_torque_are_clamped_by_one_gain)
 {
     ToolSpec spec = tool_of(Box{kHalf});
-    spec.force_max_n = 2.0;
-    spec.torque_max_nm = 0.01;
-    Rig rig(spec, {{plane(), {}}});
-    rig.settle(Vec3(0, 0, 0.1));
+    const auto pressed_with = [&spec](double force_max_n, double torque_max_nm)
+    {
+        spec.force_max_n = force_max_n;
+        spec.torque_max_nm = torque_max_nm;
+        Rig rig(spec, {{plane(), {}}});
+        rig.settle(Vec3(0, 0, 0.1));
+        return rig.settle(Vec3(0, 0, -0.05), turn(Vec3(0, 1, 0), 0.5));
+    };
+    const ToolOutput whole = pressed_with(1e3, 1e3);
+    const ToolOutput weak = pressed_with(2.0, 1e3);
+    const ToolOutput unturned = pressed_with(1e3, 0.01);
+    const ToolOutput of_a_point = pressed_with(2.0, 0.0);
 
-    const ToolOutput output = rig.settle(Vec3(0, 0, -0.05), turn(Vec3(0, 1, 0), 0.5));
-
-    EXPECT_NEAR(output.force_n.norm(), 2.0, 1e-12);
-    EXPECT_NEAR(output.torque_nm.norm(), 0.01, 1e-12);
+    const double arm_m = whole.torque_nm.norm() / whole.force_n.norm();
+    EXPECT_NEAR(weak.force_n.norm(), 2.0, 1e-12);
+    EXPECT_NEAR(weak.torque_nm.norm(), 2.0 * arm_m, 1e-6);
+    EXPECT_NEAR(unturned.torque_nm.norm(), 0.01, 1e-12);
+    EXPECT_NEAR(unturned.force_n.norm(), 0.01 / arm_m, 1e-6);
+    EXPECT_NEAR(of_a_point.force_n.norm(), 2.0, 1e-12);
+    EXPECT_EQ(of_a_point.torque_nm, Vec3(0, 0, 0));
 }
 
 TEST(RigidProxy, is_let_go_at_once)
@@ -455,7 +469,7 @@ public:
         const PlacedSurface placed{&pose_, surface_.get(), nullptr, 0.0,
                                    0.0,    kBodyRadius,    &touches};
         sut.see(hand_at(goal));
-        return sut.respond(hand_at(goal), {&placed, 1});
+        return sut.respond(hand_at(goal), {&placed, 1}, kInfinity);
     }
     /// Where the ball's core is, with a surface so far away.
     [[nodiscard]] Contact contact(const Vec3& normal, double distance) const
@@ -467,7 +481,7 @@ public:
 
 private:
     ObjectPose pose_;
-    std::unique_ptr<LocalSurface> surface_ = exact_surface();
+    std::unique_ptr<OwnedSurface> surface_ = exact_surface();
     RigidProxy::Planes planes_;
 
 public:

@@ -213,6 +213,44 @@ TEST(SafeState, a_held_proxy_with_bad_data_fades_as_bad_data_do)
     EXPECT_EQ(tool.last.causes, ForceOff::frozen | ForceOff::garbage);
 }
 
+TEST(SafeState, damps_turning_while_it_fades_and_by_a_share_of_the_torque_at_most)
+{
+    SafetyLimits limits = GuardedTool::kLimits;
+    limits.damping_nm_s_per_rad = 1e-3;
+    for (const double turning : {10.0, 1e6})
+    {
+        GuardedTool tool;
+        tool.sut = SafeState(limits);
+        tool.input.turning_rad_per_s = Vec3(0.0, turning, 0.0);
+        tool.warm_up();
+        EXPECT_EQ(tool.last.torque_nm, Vec3(0.0, 0.0, 0.0)) << "none at the whole gain";
+        tool.input.causes = ForceOff::stale;
+        for (int i = 0; i < 25; ++i)
+        {
+            tool.step();
+        }
+        const double most_nm = kDampingForceShare * limits.torque_max_nm;
+        EXPECT_NEAR(tool.last.torque_nm.y(), -std::min(1e-3 * turning, most_nm), 1e-9);
+        tool.input.turning_rad_per_s.x() = std::numeric_limits<double>::quiet_NaN();
+        EXPECT_EQ(tool.step().torque_nm, Vec3(0.0, 0.0, 0.0)) << "not known";
+    }
+}
+
+TEST(SafeState, begins_only_once_the_twist_is_within_the_devices_torque)
+{
+    SafetyLimits limits = GuardedTool::kLimits;
+    limits.stiffness_nm_per_rad = 2.0;
+    GuardedTool tool;
+    tool.sut = SafeState(limits);
+    tool.input.twist_rad = 0.21;
+    for (int i = 0; i < 200; ++i)
+    {
+        EXPECT_EQ(tool.step().state, SafetyState::idle);
+    }
+    tool.input.twist_rad = 0.19;
+    EXPECT_EQ(tool.step().state, SafetyState::force);
+}
+
 TEST(SafeState, a_torque_goes_as_the_force_goes)
 {
     GuardedTool tool;

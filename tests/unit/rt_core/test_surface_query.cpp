@@ -4,6 +4,7 @@
 #include "rt_core/query/probe.hpp"
 #include "rt_core/query/surface_query.hpp"
 #include "tests/shared/distance_oracle.hpp"
+#include "tests/shared/owned_surface.hpp"
 #include "tests/unit/rt_core/tree_support.hpp"
 
 #include <gtest/gtest.h>
@@ -67,7 +68,7 @@ struct PointTruth
 
 struct PointAnswer
 {
-    std::unique_ptr<LocalSurface> surface{std::make_unique<LocalSurface>()};
+    std::unique_ptr<OwnedSurface> surface{std::make_unique<OwnedSurface>()};
     WalkBudget budget;
 };
 
@@ -326,6 +327,57 @@ TEST(SurfaceQuery, more_triangles_than_fit_keep_the_nearest_and_shrink_the_certi
     }
 }
 
+/// A small face across the way from the origin, about a metre off.
+ChangedFace face_around_origin(Random& random, std::uint32_t prim, bool exact_only)
+{
+    ChangedFace face{PrimId{prim}, FaceId{prim}, prim / 8, 0, {}};
+    const Vec3 way = (random.in_cube(1.0) + Vec3(0.0, 0.0, 1e-3)).normalized();
+    for (Vec3f& corner : face.corners_m)
+    {
+        corner = to_float(way * random.between(0.98, 1.02) + random.in_cube(0.02));
+    }
+    face.error = exact_only || !random.one_in(3) ? 0 : static_cast<ErrorCode>(1 + random.below(10));
+    return face;
+}
+
+TEST(SurfaceQuery, of_more_nodes_and_blocks_than_are_gone_through_in_order_misses_none)
+{
+    constexpr std::uint32_t kFaces = 12'000;
+    Random random(47);
+    for (const bool exact_only : {true, false})
+    {
+        TreeRig rig({kFaces, kFaces, kFaces});
+        for (std::uint32_t prim = 0; prim < kFaces; ++prim)
+        {
+            rig.put(face_around_origin(random, prim, exact_only));
+        }
+        rig.sut->refit();
+        ASSERT_GT(rig.sut->nodes_used() + rig.sut->blocks_used(), 4 * Frontier::kBroad);
+        for (int i = 0; i < 10; ++i)
+        {
+            const Vec3 center = random.in_cube(0.05);
+            const PointTruth truth(rig.present(), center);
+            WalkBudget budget;
+            budget.nodes = 1'000'000;
+            budget.triangles = 1'000'000;
+            QueryMemory memory;
+
+            const DistanceAnswer answer =
+                query_distance(*rig.sut, center, kInfinity, memory, budget);
+
+            ASSERT_LE(answer.lower_m, truth.lower + kSlack) << i;
+            ASSERT_GE(answer.lower_m, truth.lower - kFilterSlack) << i;
+            ASSERT_GE(answer.upper_m, truth.upper - kSlack) << i;
+            if (exact_only)
+            {
+                ASSERT_LE(answer.upper_m - answer.lower_m, kSlack) << i;
+                ASSERT_EQ(answer.nearest_face, truth.nearest) << i;
+                ASSERT_GT(budget.nodes_visited, Frontier::kBroad) << i;
+            }
+        }
+    }
+}
+
 TEST(TreeWalk, visits_exactly_the_coarse_blocks_when_asked_for_coarse_ones)
 {
     Random random(45);
@@ -377,7 +429,7 @@ ChangedFace face_of_path(std::uint32_t prim, std::uint64_t path, float x)
 TEST(TreeWalk, of_the_deepest_tree_leaves_no_more_on_its_stack_than_the_limit)
 {
     constexpr std::uint32_t kFaces = 5; // Of corners of their own, as many as fit into a block.
-    constexpr std::uint32_t kLast = 3 * (kTreeLevels - 1);
+    constexpr std::uint32_t kTopShift = 3 * (kTreeLevels - 1);
     TreeRig rig({1'000, 1'000, 1'000});
     std::uint32_t prim = 0;
     const auto add_block = [&](std::uint64_t path, std::uint32_t faces, float x)
@@ -388,9 +440,9 @@ TEST(TreeWalk, of_the_deepest_tree_leaves_no_more_on_its_stack_than_the_limit)
         }
     };
     // From the root to the last digit but one all have a zero, and beside it all other digits.
-    for (std::uint32_t shift = kLast; shift >= 3; shift -= 3)
+    for (std::uint32_t shift = kTopShift; shift >= 3; shift -= 3)
     {
-        for (std::uint64_t digit = 1; digit < (shift == kLast ? 2 : 8); ++digit)
+        for (std::uint64_t digit = 1; digit < (shift == kTopShift ? 2 : 8); ++digit)
         {
             add_block(digit << shift, shift == 3 ? 4 : kFaces, 1'000.0F);
         }

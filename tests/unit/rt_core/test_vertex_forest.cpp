@@ -79,13 +79,16 @@ protected:
         page(1) = make_record(1, 4, {{0, FaceState::after({0}, 2)}});
         page(2) = make_record(2, 3, {{1, FaceState::base()}, {3, FaceState::base()}});
         table_.adopt({0}, 0, 0, 7);
-        make_forest(kFaces);
+        make_forest({kFaces, 64, 64});
     }
 
-    void make_forest(std::uint32_t faces)
+    void make_forest(const TreeCapacities& capacities)
     {
-        tree_.emplace(arena_, TreeCapacities{faces, 64, 64}, 0x1p-10F);
-        sut_.emplace(arena_, kCounts, slots_, table_, *tree_, faces);
+        tree_pool_.emplace(arena_, capacities);
+        face_pool_.emplace(arena_, capacities.prims);
+        tree_.emplace(*tree_pool_, ModelId{0}, capacities, 0x1p-10F);
+        sut_.emplace(arena_, *face_pool_, ModelId{0}, capacities.prims, kCounts, slots_, table_,
+                     *tree_);
     }
     /// The tree holds what the forest says, face by face.
     void expect_tree_follows()
@@ -153,7 +156,10 @@ protected:
     ArenaMemory memory_{1U << 18U};
     Arena arena_{memory_.bytes()};
     PageSlots slots_{PageSlots::take(arena_, kCounts, 1, 1)};
-    PageTable table_{arena_, slots_};
+    PagePool pages_{arena_, 1};
+    PageTable table_{pages_, 0, slots_};
+    std::optional<TreePool> tree_pool_;
+    std::optional<FacePool> face_pool_;
     std::optional<AbTree> tree_;
     std::optional<VertexForest> sut_;
 };
@@ -308,7 +314,7 @@ TEST_F(VertexForestTest, an_inconsistent_record_changes_nothing)
 
 TEST_F(VertexForestTest, a_full_pool_refuses_and_changes_nothing)
 {
-    make_forest(5); // One free slot; a split wants two.
+    make_forest({5, 64, 64}); // One free slot; a split wants two.
     const std::uint64_t hash = sut_->state_hash();
 
     EXPECT_EQ(sut_->split({0}), VertexForest::SplitOutcome::full);
@@ -316,7 +322,7 @@ TEST_F(VertexForestTest, a_full_pool_refuses_and_changes_nothing)
     EXPECT_EQ(sut_->state_hash(), hash);
     EXPECT_EQ(sut_->active_faces(), 4U);
     EXPECT_FALSE(table_.is_refined({0}));
-    make_forest(6);
+    make_forest({6, 64, 64});
     EXPECT_EQ(sut_->split({0}), VertexForest::SplitOutcome::done);
     EXPECT_EQ(sut_->split({2}), VertexForest::SplitOutcome::full);
     EXPECT_TRUE(sut_->try_merge({0}));
@@ -325,7 +331,8 @@ TEST_F(VertexForestTest, a_full_pool_refuses_and_changes_nothing)
 
 TEST_F(VertexForestTest, an_unlinked_or_absent_record_is_not_found)
 {
-    PageTable table(arena_, slots_);
+    PagePool pages(arena_, 1);
+    PageTable table(pages, 0, slots_);
     table.adopt({0}, 0, 0, 0b101);
     EXPECT_NE(table.find_linked({0}), nullptr);
     EXPECT_EQ(table.find_linked({1}), nullptr);
@@ -347,8 +354,7 @@ TEST_F(VertexForestTest, a_border_record_adds_one_face_only)
 
 TEST_F(VertexForestTest, faces_without_a_place_in_the_tree_are_split_and_merged_all_the_same)
 {
-    tree_.emplace(arena_, TreeCapacities{kFaces, 4, 4}, 0x1p-10F); // Below its reserve.
-    sut_.emplace(arena_, kCounts, slots_, table_, *tree_, kFaces);
+    make_forest({kFaces, 4, 4}); // Below its reserve.
     const auto before = mesh();
     const std::uint64_t hash = sut_->state_hash();
 

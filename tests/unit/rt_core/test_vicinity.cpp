@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
+#include "tests/shared/owned_surface.hpp"
 #include "tests/unit/rt_core/surface_support.hpp"
 
 #include <gtest/gtest.h>
@@ -238,7 +239,7 @@ TEST(Vicinity, halves_what_it_reaches_beyond_the_nearest_so_many_times_and_no_mo
     {
         // One face at a time in reach of the last list, or all of them.
         const double far = kNearest + share * std::ldexp(1.0, -kMaxGatherings);
-        LocalSurface surface;
+        OwnedSurface surface;
         surface.distances_m[surface.count++] = kNearest;
         while (surface.count <= kMaxNearFaces)
         {

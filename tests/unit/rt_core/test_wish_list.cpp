@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "rt_core/cache/chunk_inbox.hpp"
+#include "rt_core/cache/slot_door.hpp"
 #include "rt_core/cache/wish_list.hpp"
 #include "tests/unit/rt_core/support.hpp"
 
 #include <gtest/gtest.h>
 
+#include <optional>
 #include <set>
 
 namespace tactus::test
@@ -20,20 +21,21 @@ protected:
     WishList make(std::uint32_t slots)
     {
         Arena arena(memory_.bytes());
-        return WishList(arena, slots);
+        pool_.emplace(arena, slots);
+        return WishList(*pool_, 0, 0);
+    }
+    /// As often as it takes to look at each wish once.
+    void expire_all(std::uint32_t slots, std::uint32_t frame)
+    {
+        for (std::uint32_t i = 0; i < slots; ++i)
+        {
+            pool_->expire(frame);
+        }
     }
 
     ArenaMemory memory_{1U << 18U};
+    std::optional<WishPool> pool_;
 };
-
-/// As often as it takes to look at each wish once.
-void expire_all(WishList& sut, std::uint32_t slots, std::uint32_t frame)
-{
-    for (std::uint32_t i = 0; i < slots; ++i)
-    {
-        sut.expire(frame);
-    }
-}
 
 } // namespace
 
@@ -48,7 +50,7 @@ TEST_F(WishListTest, looks_at_every_wish_in_time_however_many_slots_there_are)
     EXPECT_EQ(sut.under_way(), kSlots);
     for (std::uint32_t frame = kWishTimeoutFrames + 1; frame <= 2 * kWishTimeoutFrames; ++frame)
     {
-        sut.expire(frame);
+        pool_->expire(frame);
     }
     EXPECT_EQ(sut.under_way(), 0U);
 }
@@ -91,9 +93,9 @@ TEST_F(WishListTest, a_wish_expires_only_after_its_time)
     WishList sut = make(3);
     sut.ask(7, 100);
 
-    expire_all(sut, 3, 100 + kWishTimeoutFrames);
+    expire_all(3, 100 + kWishTimeoutFrames);
     EXPECT_TRUE(sut.is_under_way(7));
-    expire_all(sut, 3, 100 + kWishTimeoutFrames + 1);
+    expire_all(3, 100 + kWishTimeoutFrames + 1);
 
     EXPECT_FALSE(sut.is_under_way(7));
     sut.ask(7, 400);
@@ -106,9 +108,9 @@ TEST_F(WishListTest, a_wish_waits_as_long_as_it_is_told)
     {
         WishList sut = make(1);
         sut.ask(7, 100);
-        sut.expire(100 + timeout, timeout);
+        pool_->expire(100 + timeout, timeout);
         EXPECT_TRUE(sut.is_under_way(7));
-        sut.expire(101 + timeout, timeout);
+        pool_->expire(101 + timeout, timeout);
         EXPECT_FALSE(sut.is_under_way(7));
     }
     EXPECT_EQ(kWishTimeout_ns / 1'000'000, kWishTimeoutFrames) << "at 1 kHz";
@@ -119,9 +121,9 @@ TEST_F(WishListTest, the_frame_counter_may_wrap)
     WishList sut = make(1);
     sut.ask(7, 0xFFFF'FFF0U);
 
-    expire_all(sut, 1, 5);
+    expire_all(1, 5);
     EXPECT_TRUE(sut.is_under_way(7));
-    expire_all(sut, 1, kWishTimeoutFrames);
+    expire_all(1, kWishTimeoutFrames);
     EXPECT_FALSE(sut.is_under_way(7));
 }
 
@@ -129,7 +131,7 @@ TEST_F(WishListTest, what_arrives_after_it_expired_takes_a_slot_all_the_same)
 {
     WishList sut = make(2);
     sut.ask(7, 0);
-    expire_all(sut, 2, kWishTimeoutFrames + 1);
+    expire_all(2, kWishTimeoutFrames + 1);
     ASSERT_FALSE(sut.is_under_way(7));
 
     sut.arrive(7, 0);
@@ -160,11 +162,62 @@ TEST_F(WishListTest, what_expired_does_not_count_as_latency)
 {
     WishList sut = make(2);
     sut.ask(7, 0);
-    expire_all(sut, 2, kWishTimeoutFrames + 1);
+    expire_all(2, kWishTimeoutFrames + 1);
 
     sut.arrive(7, 10'000);
 
     EXPECT_FALSE(sut.latency().is_measured());
+}
+
+TEST_F(WishListTest, one_model_asks_for_what_is_not_kept_for_another_and_not_for_more)
+{
+    Arena arena(memory_.bytes());
+    WishPool pool(arena, 5);
+    WishList greedy(pool, 3, 0);
+    WishList modest(pool, 4, 2);
+    std::uint32_t number = 0;
+    for (; greedy.has_credit(); ++number)
+    {
+        greedy.ask(number, 0);
+    }
+    EXPECT_EQ(number, 3U);
+    EXPECT_DEATH(greedy.ask(number, 0), "");
+    modest.ask(0, 0);
+    modest.ask(1, 0);
+    EXPECT_FALSE(modest.has_credit());
+    EXPECT_FALSE(modest.has_more_than_its_own());
+    EXPECT_TRUE(greedy.has_more_than_its_own());
+    EXPECT_TRUE(greedy.is_under_way(2)); // Numbers are each model's own.
+    EXPECT_FALSE(modest.is_under_way(2));
+
+    greedy.arrive(0, 1); // A slot stays the model's until it is given back.
+    EXPECT_FALSE(modest.has_credit());
+    EXPECT_EQ(greedy.slots_had(), 1U);
+    greedy.give_back_slot();
+    EXPECT_TRUE(modest.has_credit());
+    EXPECT_TRUE(greedy.has_credit());
+    modest.ask(2, 1);
+    EXPECT_TRUE(modest.has_more_than_its_own());
+    EXPECT_FALSE(greedy.has_credit());
+}
+
+TEST_F(WishListTest, a_late_answer_takes_a_slot_though_another_model_has_asked_for_it)
+{
+    WishList late = make(1);
+    WishList other(*pool_, 1, 0);
+    late.ask(3, 0);
+    expire_all(1, kWishTimeoutFrames + 1);
+    other.ask(4, 0);
+
+    late.arrive(3, 1);
+
+    EXPECT_FALSE(late.has_credit());
+    EXPECT_FALSE(other.has_credit());
+    late.give_back_slot();
+    EXPECT_FALSE(late.has_credit()) << "the other's wish waits for the slot";
+    other.arrive(4, 2);
+    other.give_back_slot();
+    EXPECT_TRUE(late.has_credit());
 }
 
 TEST_F(WishListTest, more_arrivals_than_slots_are_a_bug)
@@ -206,11 +259,11 @@ TEST_F(WishListTest, random_use_never_asks_for_more_than_the_slots)
     }
 }
 
-TEST(ChunkInbox, has_room_for_every_slot_the_wishes_it_was_made_for_and_link_updates)
+TEST(SlotDoor, has_room_for_every_slot_the_wishes_it_was_made_for_and_link_updates)
 {
     ArenaMemory memory(1U << 14U);
     Arena arena(memory.bytes());
-    ChunkInbox sut(arena, 3, 2, 4);
+    SlotDoor sut(arena, 5, 4);
 
     // Updates as many as may be pushed, then every slot still finds room.
     for (std::uint32_t i = 0; i < kMaxLinkUpdatesPerFrame; ++i)

@@ -4,6 +4,7 @@
 
 #include "rt_core/abtree/ab_tree.hpp"
 #include "rt_core/records/local_surface.hpp"
+#include "tests/shared/owned_surface.hpp"
 #include "tests/shared/validate_tree.hpp"
 #include "tests/unit/rt_core/support.hpp"
 
@@ -28,7 +29,8 @@ public:
         : memory_(required(capacities)), faces_(capacities.prims)
     {
         Arena arena(memory_.bytes());
-        sut.emplace(arena, capacities, kTreeQuantum);
+        pool_.emplace(arena, capacities);
+        sut.emplace(*pool_, ModelId{0}, capacities, kTreeQuantum);
     }
 
     /// Takes over one face as it is now: new, changed corner by corner, or (face none) gone.
@@ -80,11 +82,12 @@ private:
     static std::size_t required(const TreeCapacities& capacities)
     {
         Arena arena = Arena::measuring();
-        const Tree tree(arena, capacities, kTreeQuantum);
+        const typename Tree::Pool pool(arena, capacities);
         return arena.used();
     }
 
     ArenaMemory memory_;
+    std::optional<typename Tree::Pool> pool_;
     std::vector<ChangedFace> faces_;
 
 public:

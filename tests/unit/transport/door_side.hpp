@@ -3,7 +3,7 @@
 #pragma once
 
 #include "rt_core/base/arena.hpp"
-#include "rt_core/cache/chunk_inbox.hpp"
+#include "rt_core/cache/slot_door.hpp"
 #include "rt_core/spm/linker.hpp"
 #include "rt_core/spm/page_slots.hpp"
 #include "tests/unit/transport/tiny_model.hpp"
@@ -42,8 +42,9 @@ public:
         , arena({memory_.get(), kBytes})
         , header(parse_trusted_header(model.header).value())
         , slots(PageSlots::take(arena, model.counts, pages, index_pages))
-        , linker(arena, header, slots)
-        , inbox(arena, pages, index_pages, wishes)
+        , link_pool(arena, pages)
+        , linker(link_pool, 0, header, slots)
+        , door(arena, std::size_t{pages} + index_pages, wishes)
     {
         const auto loaded = load_base_mesh(model.base, header, slots.base);
         EXPECT_TRUE(loaded.has_value());
@@ -51,7 +52,7 @@ public:
 
     [[nodiscard]] bool wish(ContentKey key, std::uint32_t generation = 0)
     {
-        return inbox.wanted.try_push({key, generation});
+        return door.wanted.try_push({key, generation});
     }
 
     /// Adopts all arrivals; returns how many.
@@ -59,7 +60,7 @@ public:
     {
         std::size_t adopted = 0;
         DoorEvent arrival;
-        while (inbox.arrived.try_pop(arrival))
+        while (door.arrived.try_pop(arrival))
         {
             if (arrival.kind == DoorEventKind::link_update)
             {
@@ -105,7 +106,7 @@ public:
     {
         const auto at = owned_.find({key.kind, key.number});
         ASSERT_NE(at, owned_.end());
-        ASSERT_TRUE(inbox.freed.try_push({key.kind, at->second}));
+        ASSERT_TRUE(door.freed.try_push({key.kind, at->second}));
         owned_.erase(at);
     }
 
@@ -201,8 +202,9 @@ public:
     Arena arena;
     ModelHeader header;
     PageSlots slots;
+    LinkPool link_pool;
     Linker linker;
-    ChunkInbox inbox;
+    SlotDoor door;
 };
 
 } // namespace tactus::test

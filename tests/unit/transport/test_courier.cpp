@@ -47,9 +47,10 @@ struct Road
         , link(store, faults)
         , side(model, pages, index_pages, 64)
         , sut(
-              side.arena, side.header, side.slots, side.linker, side.inbox, link, "road",
+              side.arena, side.slots, side.door,
               [this](const std::string& line) { lines.push_back(line); }, options)
     {
+        sut.add(side.header, side.linker, link, "road");
     }
 
     void step()
@@ -233,7 +234,8 @@ TEST(Courier, refuses_a_sound_piece_under_another_one_s_key)
         std::vector<ContentKey> keys_;
     } liar(model);
     DoorSide side(model, 4, 1, 8);
-    Courier sut(side.arena, side.header, side.slots, side.linker, side.inbox, liar, "liar", {});
+    Courier sut(side.arena, side.slots, side.door, {});
+    sut.add(side.header, side.linker, liar, "liar");
     ASSERT_TRUE(side.wish(index_key(0)));
     sut.step(1);
     ASSERT_EQ(side.adopt(), 1U);
@@ -244,6 +246,46 @@ TEST(Courier, refuses_a_sound_piece_under_another_one_s_key)
     EXPECT_TRUE(side.owns(chunk_key(1)));
     EXPECT_EQ(sut.counters().refused_hash, 1U);
     EXPECT_EQ(sut.free_pages(), 3U);
+}
+
+TEST(Courier, brings_each_model_its_own_pieces_of_the_same_numbers)
+{
+    const TinyModel first = make_tiny_model({.seed = 1, .records = 64 * 2});
+    const TinyModel second = make_tiny_model({.seed = 2, .records = 64 * 2});
+    Road road(first, {}, 8, 2);
+    DoorSide& side = road.side;
+    const ModelHeader header = parse_trusted_header(second.header).value();
+    const PageSlots slots = side.slots.of_model(side.arena, second.counts);
+    ASSERT_TRUE(load_base_mesh(second.base, header, slots.base).has_value());
+    Linker linker(side.link_pool, 1, header, slots);
+    StoreLink store(ModelStore::open(road.folder.write("other.spm", second.file)).value(), {});
+    road.sut.add(header, linker, store, "other");
+    for (const ContentKey key : {index_key(0), chunk_key(0), chunk_key(1)})
+    {
+        for (const std::uint8_t owner : {std::uint8_t{0}, std::uint8_t{1}})
+        {
+            ASSERT_TRUE(side.door.wanted.try_push({key, 0, owner}));
+        }
+        road.step();
+    }
+    std::array<std::uint32_t, 2> arrivals{};
+    for (DoorEvent event; side.door.arrived.try_pop(event);)
+    {
+        arrivals.at(event.owner) += event.kind == DoorEventKind::arrival ? 1U : 0U;
+        const TinyModel& model = event.owner == 0 ? first : second;
+        if (event.key.kind == ContentKind::chunk)
+        {
+            EXPECT_EQ(side.slots.pages[event.slot].records[0].position_m,
+                      model.records[std::size_t{event.key.number} * 64].position_m);
+        }
+    }
+    EXPECT_EQ(arrivals, (std::array<std::uint32_t, 2>{3, 3}));
+    for (const std::uint32_t model : {0U, 1U})
+    {
+        EXPECT_EQ(road.sut.counters(model).delivered, 3U);
+        EXPECT_EQ(road.sut.counters(model).refused(), 0U);
+        EXPECT_EQ(road.sut.waiting_times(model).total(), 3U);
+    }
 }
 
 TEST(Courier, drops_what_nobody_asked_for)

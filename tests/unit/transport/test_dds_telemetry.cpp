@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
+#include "rt_core/math/infinity.hpp"
 #include "tests/unit/transport/dds_rig.hpp"
 #include "transport/dds/telemetry.hpp"
 
@@ -26,7 +27,7 @@ namespace
 using test::eventually;
 
 /// A different value in every field.
-Telemetry some_telemetry(std::uint32_t tools, std::uint32_t models)
+Telemetry some_telemetry(std::uint32_t tools, std::uint32_t models, std::uint32_t pairs = 0)
 {
     Telemetry telemetry;
     double number = 0.5;
@@ -48,8 +49,32 @@ Telemetry some_telemetry(std::uint32_t tools, std::uint32_t models)
     telemetry.model_count = models;
     for (std::uint32_t i = 0; i < tools; ++i)
     {
-        telemetry.tools[i] = {vector(), vector(),      vector(),      vector(),
-                              i == 0,   (i & 1U) != 0, (i & 2U) != 0, i == 3};
+        ToolTelemetry& tool = telemetry.tools[i];
+        tool.position_m = vector();
+        tool.rotation = {0.5, -0.5, 0.5, number += 1.0};
+        tool.proxy_m = vector();
+        tool.proxy_rotation = {-0.5, 0.5, 0.5, number += 1.0};
+        tool.force_n = vector();
+        tool.torque_nm = vector();
+        tool.gripper_m = 0.25 * i;
+        tool.buttons = 7 * i;
+        tool.has_gripper = i == 1;
+        tool.in_contact = i == 0;
+        tool.frozen = (i & 1U) != 0;
+        tool.squeezed = (i & 2U) != 0;
+        tool.held_back = i == 3;
+    }
+    telemetry.pair_count = pairs;
+    for (std::uint32_t i = 0; i < pairs; ++i)
+    {
+        telemetry.pairs[i] = {std::uint64_t{i} << 40U,
+                              1'000 + i,
+                              static_cast<std::uint8_t>(i % tools),
+                              static_cast<AnswerKind>(i % 4),
+                              -0.5 * i,
+                              i % 7 == 0 ? kInfinity : 0.5 * i,
+                              vector(),
+                              vector()};
     }
     for (std::uint32_t i = 0; i < models; ++i)
     {
@@ -84,13 +109,30 @@ std::vector<ModelIdentity> some_models(std::uint32_t count)
 void expect_same(const ToolTelemetry& got, const ToolTelemetry& sent)
 {
     EXPECT_EQ(got.position_m, sent.position_m);
+    EXPECT_EQ(got.rotation, sent.rotation);
     EXPECT_EQ(got.proxy_m, sent.proxy_m);
+    EXPECT_EQ(got.proxy_rotation, sent.proxy_rotation);
     EXPECT_EQ(got.force_n, sent.force_n);
     EXPECT_EQ(got.torque_nm, sent.torque_nm);
+    EXPECT_EQ(got.gripper_m, sent.gripper_m);
+    EXPECT_EQ(got.has_gripper, sent.has_gripper);
+    EXPECT_EQ(got.buttons, sent.buttons);
     EXPECT_EQ(got.in_contact, sent.in_contact);
     EXPECT_EQ(got.frozen, sent.frozen);
     EXPECT_EQ(got.squeezed, sent.squeezed);
     EXPECT_EQ(got.held_back, sent.held_back);
+}
+
+void expect_same(const PairTelemetry& got, const PairTelemetry& sent)
+{
+    EXPECT_EQ(got.host_epoch, sent.host_epoch);
+    EXPECT_EQ(got.object, sent.object);
+    EXPECT_EQ(got.tool, sent.tool);
+    EXPECT_EQ(got.kind, sent.kind);
+    EXPECT_EQ(got.lower_m, sent.lower_m);
+    EXPECT_EQ(got.upper_m, sent.upper_m);
+    EXPECT_EQ(got.point_m, sent.point_m);
+    EXPECT_EQ(got.force_n, sent.force_n);
 }
 
 void expect_same(const ModelTelemetry& got, const ModelTelemetry& sent)
@@ -130,6 +172,11 @@ void expect_same(const Telemetry& got, const Telemetry& sent)
     {
         expect_same(got.tools[i], sent.tools[i]);
     }
+    ASSERT_EQ(got.pair_count, sent.pair_count);
+    for (std::uint32_t i = 0; i < sent.pair_count; ++i)
+    {
+        expect_same(got.pairs[i], sent.pairs[i]);
+    }
     for (std::uint32_t i = 0; i < sent.model_count; ++i)
     {
         expect_same(got.models[i], sent.models[i]);
@@ -142,16 +189,25 @@ protected:
     void SetUp() override
     {
         test::isolate_domains();
-        controllers_.emplace(Domain::join(1).value());
         host_.emplace(Domain::join(2).value());
         sut_ = std::move(TelemetryReader::create(*host_)).value();
     }
-    std::unique_ptr<TelemetryWriter> make_controller(const std::string& name, std::uint32_t models)
+    /// A controller is a participant: each is one of its own.
+    struct Controller
     {
-        return std::move(TelemetryWriter::create(*controllers_, name, some_models(models))).value();
+        Domain domain{Domain::join(1).value()};
+        std::unique_ptr<TelemetryWriter> writer;
+    };
+    static std::unique_ptr<Controller> make_controller(const std::string& name,
+                                                       std::uint32_t models)
+    {
+        auto controller = std::make_unique<Controller>();
+        controller->writer =
+            std::move(TelemetryWriter::create(controller->domain, name, some_models(models)))
+                .value();
+        return controller;
     }
 
-    std::optional<Domain> controllers_;
     std::optional<Domain> host_;
     std::unique_ptr<TelemetryReader> sut_;
 };
@@ -162,16 +218,18 @@ TEST_F(DdsTelemetry, comes_as_it_was_sent)
     {
         std::uint32_t tools;
         std::uint32_t models;
+        std::uint32_t pairs;
     };
-    for (const Size size : {Size{0, 0}, Size{1, 1}, Size{kMaxTools, kMaxObjects}})
+    for (const Size size :
+         {Size{0, 0, 0}, Size{1, 1, 1}, Size{kMaxTools, kMaxShownModels, kMaxPairs}})
     {
         const std::uint32_t models = size.models;
         const auto controller = make_controller("one", models);
-        const Telemetry sent = some_telemetry(size.tools, models);
+        const Telemetry sent = some_telemetry(size.tools, models, size.pairs);
         ASSERT_TRUE(eventually(
             [&]
             {
-                controller->write(sent);
+                controller->writer->write(sent);
                 sut_->poll();
                 return sut_->controllers().size() == 1 &&
                        sut_->controllers()[0].models.size() == models;
@@ -179,7 +237,7 @@ TEST_F(DdsTelemetry, comes_as_it_was_sent)
         const WatchedController& got = sut_->controllers()[0];
         EXPECT_EQ(got.name, "one");
         EXPECT_GT(got.serial, 0U);
-        EXPECT_LE(got.serial, controller->sent());
+        EXPECT_LE(got.serial, controller->writer->sent());
         expect_same(got.telemetry, sent);
         for (std::uint32_t i = 0; i < models; ++i)
         {
@@ -204,7 +262,7 @@ TEST_F(DdsTelemetry, of_a_controller_that_leaves_is_forgotten)
                 {
                     if (*controller != nullptr)
                     {
-                        (*controller)->write(some_telemetry(1, 1));
+                        (*controller)->writer->write(some_telemetry(1, 1));
                     }
                 }
                 sut_->poll();
@@ -220,7 +278,7 @@ TEST_F(DdsTelemetry, of_a_controller_that_leaves_is_forgotten)
 /// 70 at once, each of which goes on as if it were alone.
 TEST_F(DdsTelemetry, of_more_than_64_controllers_is_watched_at_once)
 {
-    std::vector<std::unique_ptr<TelemetryWriter>> controllers;
+    std::vector<std::unique_ptr<Controller>> controllers;
     for (int i = 0; i < 70; ++i)
     {
         controllers.push_back(make_controller("hrtc-" + std::to_string(i), 1));
@@ -230,7 +288,7 @@ TEST_F(DdsTelemetry, of_more_than_64_controllers_is_watched_at_once)
         {
             for (const auto& controller : controllers)
             {
-                controller->write(some_telemetry(1, 1));
+                controller->writer->write(some_telemetry(1, 1));
             }
             sut_->poll();
             return sut_->controllers().size() == controllers.size();
@@ -238,38 +296,37 @@ TEST_F(DdsTelemetry, of_more_than_64_controllers_is_watched_at_once)
     EXPECT_EQ(sut_->refused(), 0U);
 }
 
-/// One writer may say that it is many.
-TEST_F(DdsTelemetry, of_more_controllers_than_it_keeps_is_passed_over)
+/// One writer may say that it is another, or many: none of that gets into the reader.
+TEST_F(DdsTelemetry, of_a_controller_that_it_does_not_come_from_is_not_heard)
 {
-    const auto writer = std::move(make_writer(*controllers_, Topic::telemetry, "")).value();
+    const auto controller = make_controller("good", 0);
+    const Domain stranger = Domain::join(1).value();
+    const auto writer = std::move(make_writer(stranger, Topic::telemetry, "good")).value();
     ASSERT_TRUE(eventually([&] { return is_matched(writer); }));
-    for (std::uint32_t round = 0; round < 10; ++round)
-    {
-        for (std::uint32_t i = 0; i < 2 * kMaxWatched; ++i)
-        {
-            tactus_v1_Telemetry sample = {};
-            std::memcpy(sample.controller, &i, sizeof(i));
-            sample.protocol_version = kProtocolVersion;
-            std::strcpy(static_cast<char*>(sample.controller_name), "many");
-            dds_write(writer.handle, &sample);
-        }
-        sut_->poll();
-        EXPECT_LE(sut_->controllers().size(), kMaxWatched);
-    }
-    EXPECT_TRUE(eventually(
+    ASSERT_TRUE(eventually(
         [&]
         {
+            for (std::uint32_t i = 0; i < 100; ++i)
+            {
+                tactus_v2_Telemetry sample = {};
+                std::memcpy(sample.controller, &i, sizeof(i));
+                std::strcpy(static_cast<char*>(sample.controller_name), "many");
+                dds_write(writer.handle, &sample);
+            }
+            controller->writer->write(some_telemetry(1, 0));
             sut_->poll();
-            return sut_->controllers().size() > 64;
+            return !sut_->controllers().empty();
         }));
+    EXPECT_EQ(sut_->controllers().size(), 1U);
+    EXPECT_EQ(sut_->controllers()[0].name, "good");
+    EXPECT_EQ(sut_->refused(), 0U);
 }
 
 TEST_F(DdsTelemetry, with_a_fault_in_it_is_refused)
 {
-    using Sample = tactus_v1_Telemetry;
+    using Sample = tactus_v2_Telemetry;
     const auto name = [](char* text, const char* value) { std::strcpy(text, value); };
     const std::vector<std::function<void(Sample&)>> faults{
-        [](Sample& s) { s.protocol_version += 1; },
         [&](Sample& s) { name(static_cast<char*>(s.controller_name), ""); },
         [&](Sample& s) { name(static_cast<char*>(s.controller_name), "two words"); },
         [&](Sample& s) { name(static_cast<char*>(s.controller_name), "\x1b[31mred"); },
@@ -277,18 +334,29 @@ TEST_F(DdsTelemetry, with_a_fault_in_it_is_refused)
         [](Sample& s) { s.tools._buffer[0].force_n[1] = std::numeric_limits<double>::quiet_NaN(); },
         [](Sample& s)
         { s.tools._buffer[0].position_m[0] = std::numeric_limits<double>::infinity(); },
+        [](Sample& s) { s.tools._buffer[0].gripper_m = std::numeric_limits<double>::quiet_NaN(); },
+        [](Sample& s) { s.tools._buffer[0].rotation[3] = std::numeric_limits<double>::infinity(); },
+        [](Sample& s) { s.pairs._buffer[0].tool = 1; },
+        [](Sample& s) { s.pairs._buffer[0].kind = 4; },
+        [](Sample& s) { s.pairs._buffer[0].upper_m = std::numeric_limits<double>::quiet_NaN(); },
+        [](Sample& s) { s.pairs._buffer[0].upper_m = -1.0; },
+        [](Sample& s) { s.pairs._buffer[0].force_n[2] = std::numeric_limits<double>::infinity(); },
     };
-    const auto writer = std::move(make_writer(*controllers_, Topic::telemetry, "")).value();
+    const Domain controller = Domain::join(1).value();
+    const ControllerId id = controller.participants().own();
+    const auto writer = std::move(make_writer(controller, Topic::telemetry, "good")).value();
     ASSERT_TRUE(eventually([&] { return is_matched(writer); }));
     for (std::size_t i = 0; i <= faults.size(); ++i)
     {
-        tactus_v1_ToolTelemetry tool = {};
-        tactus_v1_ModelTelemetry model = {};
+        tactus_v2_ToolTelemetry tool = {};
+        tactus_v2_PairTelemetry pair = {};
+        tactus_v2_ModelTelemetry model = {};
         name(static_cast<char*>(model.name), "tiny");
         Sample sample = {};
-        sample.protocol_version = kProtocolVersion;
+        std::memcpy(sample.controller, id.data(), id.size());
         name(static_cast<char*>(sample.controller_name), "good");
         sample.tools = {1, 1, &tool, false};
+        sample.pairs = {1, 1, &pair, false};
         sample.models = {1, 1, &model, false};
         const bool is_good = i == faults.size();
         if (!is_good)
@@ -310,10 +378,10 @@ TEST_F(DdsTelemetry, with_a_fault_in_it_is_refused)
 
 TEST_F(DdsTelemetry, that_holds_more_than_its_bounds_never_leaves)
 {
-    const auto writer = std::move(make_writer(*controllers_, Topic::telemetry, "")).value();
-    std::vector<tactus_v1_ToolTelemetry> tools(kMaxTools + 1);
-    tactus_v1_Telemetry sample = {};
-    sample.protocol_version = kProtocolVersion;
+    const Domain controller = Domain::join(1).value();
+    const auto writer = std::move(make_writer(controller, Topic::telemetry, "long")).value();
+    std::vector<tactus_v2_ToolTelemetry> tools(kMaxTools + 1);
+    tactus_v2_Telemetry sample = {};
     std::strcpy(static_cast<char*>(sample.controller_name), "long");
     sample.tools = {kMaxTools + 1, kMaxTools + 1, tools.data(), false};
     EXPECT_NE(dds_write(writer.handle, &sample), DDS_RETCODE_OK);

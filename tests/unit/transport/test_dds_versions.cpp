@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// Others on the wire that speak another version of the protocol: passed over, in one line, and
-/// nothing that they say touches what speaks ours.
+/// Others on the wire: those that speak another version of the protocol are named and passed over,
+/// those that say that they are somebody else are not heard, and nothing of either touches who
+/// speaks for himself.
 
 #include "tests/shared/count_of.hpp"
 #include "tests/unit/transport/dds_rig.hpp"
@@ -10,17 +11,18 @@
 #include "transport/content_hash.hpp"
 #include "transport/dds/dds_client.hpp"
 #include "transport/dds/dds_host.hpp"
+#include "transport/dds/piece_frame.hpp"
 
 #include <dds/dds.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <chrono>
 #include <cstring>
 #include <functional>
 #include <memory>
 #include <string>
 #include <thread>
+#include <unistd.h>
 #include <vector>
 
 #include "tactus.h"
@@ -38,7 +40,6 @@ using test::TinyModel;
 
 /// What a program waits for something that must not come.
 constexpr auto kMoment = 300ms;
-constexpr std::uint32_t kOtherVersion = kProtocolVersion + 1;
 
 class Nobody final : public PieceSink
 {
@@ -117,49 +118,33 @@ protected:
     }
 
     /// A host's announcement; the writer is to be kept as long as it is to last.
-    [[nodiscard]] Endpoint announce(std::uint64_t epoch, std::uint32_t version) const
+    [[nodiscard]] Endpoint announce(std::uint64_t epoch) const
     {
         Endpoint writer = make_writer(stranger, Topic::catalogue, "").value();
-        tactus_v1_CatalogueEntry entry = {};
+        tactus_v2_CatalogueEntry entry = {};
         std::strcpy(static_cast<char*>(entry.name), "tiny");
         entry.host_epoch = epoch;
-        entry.protocol_version = version;
+        entry.header_bytes = entry.base_bytes = 100;
         const ContentHash hash = model_hash(model.header);
         std::memcpy(entry.model_hash, hash.data(), hash.size());
         EXPECT_EQ(dds_write(writer.handle, &entry), DDS_RETCODE_OK);
         return writer;
     }
-    [[nodiscard]] tactus_v1_Wanted request(std::uint64_t epoch, std::uint32_t version) const
+    [[nodiscard]] tactus_v2_Wanted request(const ControllerId& controller,
+                                           const std::string& name) const
     {
-        tactus_v1_Wanted wanted = {};
-        wanted.controller[0] = 77;
-        const ContentHash hash = model_hash(model.header);
-        std::memcpy(wanted.model_hash, hash.data(), hash.size());
-        std::strcpy(static_cast<char*>(wanted.controller_name), "strange\n\x1b[31m");
-        wanted.protocol_version = version;
-        wanted.host_epoch = epoch;
+        tactus_v2_Wanted wanted = {};
+        std::memcpy(wanted.controller, controller.data(), controller.size());
+        name.copy(static_cast<char*>(wanted.controller_name), kMaxNameBytes);
+        wanted.host_epoch = host->epoch();
         wanted.granted = kCreditPieces;
         return wanted;
     }
-    /// Of the only host that the stranger sees.
-    [[nodiscard]] std::uint64_t host_epoch()
+    /// A topic of another version; its type is of no matter to who only looks at names.
+    [[nodiscard]] Entity topic_of_version(const std::string& name) const
     {
-        const std::string everywhere;
-        const Endpoint reader = make_reader(stranger, Topic::catalogue, {&everywhere, 1}).value();
-        std::uint64_t epoch = 0;
-        EXPECT_TRUE(step_until(
-            [&]
-            {
-                void* sample = nullptr;
-                dds_sample_info_t info = {};
-                if (dds_take(reader.handle, &sample, &info, 1, 1) == 1)
-                {
-                    epoch = static_cast<const tactus_v1_CatalogueEntry*>(sample)->host_epoch;
-                    dds_return_loan(reader.handle, &sample, 1);
-                }
-                return epoch != 0;
-            }));
-        return epoch;
+        return Entity(dds_create_topic(stranger.participant(), &tactus_v2_CatalogueEntry_desc,
+                                       name.c_str(), nullptr, nullptr));
     }
 
     TinyModel model{make_tiny_model({})};
@@ -173,60 +158,94 @@ protected:
     Nobody got;
 };
 
-TEST_F(DdsVersions, a_host_of_another_version_is_reported_and_passed_over)
+TEST_F(DdsVersions, who_speaks_another_version_is_named_once_by_both_sides_and_passed_over)
 {
-    const Endpoint foreign = announce(5, kOtherVersion);
-    const auto alone = client->find({"tiny", std::nullopt}, 1s);
-    ASSERT_FALSE(alone);
-    EXPECT_NE(alone.error().text.find("is not published"), std::string::npos) << alone.error().text;
-    const std::string line =
-        "model 'tiny' is published with protocol version 2; this build speaks 1";
-    EXPECT_EQ(test::count_of(lines, line), 1U) << lines;
     ASSERT_NO_FATAL_FAILURE(start_host());
     ASSERT_NO_FATAL_FAILURE(connect());
+    const Entity catalogue = topic_of_version("tactus/v1/catalogue");
+    const Entity wanted = topic_of_version("tactus/v1/wanted");
+    const Entity other = topic_of_version("other/v1/wanted");
+    const Entity host_writer(
+        dds_create_writer(stranger.participant(), catalogue.get(), nullptr, nullptr));
+    const Entity controller_writer(
+        dds_create_writer(stranger.participant(), wanted.get(), nullptr, nullptr));
+    const Entity foreign(dds_create_writer(stranger.participant(), other.get(), nullptr, nullptr));
+    tactus_v2_CatalogueEntry entry = {};
+    std::strcpy(static_cast<char*>(entry.name), "old");
+    ASSERT_EQ(dds_write(host_writer.get(), &entry), DDS_RETCODE_OK);
+    const std::string line = "is refused: it speaks protocol version 1, this build 2";
+    EXPECT_TRUE(step_until(
+        [&] {
+            return lines.find(line) != std::string::npos &&
+                   host_lines.find(line) != std::string::npos;
+        }));
+    EXPECT_FALSE(step_until([&] { return test::count_of(lines, line) > 1; }, kMoment)) << lines;
+    EXPECT_EQ(test::count_of(host_lines, line), 1U) << host_lines;
+    const std::string who = "(process " + std::to_string(::getpid());
+    EXPECT_NE(lines.find(who), std::string::npos) << lines;
+    EXPECT_EQ(client->catalogue().find({"old", std::nullopt}), nullptr);
     const std::vector<ContentKey> keys{{ContentKind::chunk, 0}};
     link->request(keys, 1);
     EXPECT_TRUE(step_until([&] { return got.count == 1; }));
 }
 
-TEST_F(DdsVersions, when_the_host_goes_one_of_another_version_is_no_successor)
+TEST_F(DdsVersions, who_says_to_be_another_host_is_not_heard)
 {
-    ASSERT_NO_FATAL_FAILURE(start_host());
-    ASSERT_NO_FATAL_FAILURE(connect());
-    const Endpoint foreign = announce(5, kOtherVersion);
-    ASSERT_TRUE(step_until([&] { return lines.find("protocol version 2") != std::string::npos; }));
-    EXPECT_EQ(link->state(), LinkState::connected);
-    host.reset();
-    ASSERT_TRUE(step_until([&] { return link->state() == LinkState::host_gone; }));
-    EXPECT_FALSE(step_until([&] { return link->state() == LinkState::connected; }, kMoment));
-    const Endpoint same = announce(6, kProtocolVersion); // The same entry of our version is one.
-    EXPECT_TRUE(step_until([&] { return link->state() == LinkState::connected; }));
+    const Endpoint lie = announce(stranger.participants().own_epoch() + 1);
+    const auto alone = client->find({"tiny", std::nullopt}, kMoment);
+    ASSERT_FALSE(alone);
+    EXPECT_NE(alone.error().text.find("is not published"), std::string::npos) << alone.error().text;
+    const Endpoint truth = announce(stranger.participants().own_epoch());
+    EXPECT_TRUE(step_until(
+        [&]
+        {
+            client->exchange().step();
+            return client->catalogue().find({"tiny", std::nullopt}) != nullptr;
+        }));
 }
 
-TEST_F(DdsVersions, a_controller_of_another_version_is_refused_and_named_and_ours_is_served)
+TEST_F(DdsVersions, pieces_of_who_says_to_be_the_host_are_not_taken)
 {
     ASSERT_NO_FATAL_FAILURE(start_host());
     ASSERT_NO_FATAL_FAILURE(connect());
-    const std::uint64_t epoch = host_epoch();
+    const ControllerId us = client->domain().participants().own();
     const Endpoint writer =
-        make_writer(stranger, Topic::wanted, model_partition(model_hash(model.header))).value();
-    tactus_v1_Wanted wanted = request(epoch, kOtherVersion);
+        make_writer(stranger, Topic::chunks, controller_partition("ours", us)).value();
     ASSERT_TRUE(step_until([&] { return is_matched(writer); }));
+    std::vector<std::byte> payload;
+    append_piece(payload, {model_hash(model.header), 0, 2, 0}, std::vector<std::byte>(10));
+    tactus_v2_Pieces sample = {};
+    sample.host_epoch = host->epoch();
+    sample.sent = 1'000'000;
+    const auto length = static_cast<std::uint32_t>(payload.size());
+    sample.payload = {length, length, reinterpret_cast<std::uint8_t*>(payload.data()), false};
+    ASSERT_EQ(dds_write(writer.handle, &sample), DDS_RETCODE_OK);
+    EXPECT_FALSE(step_until([&] { return got.count > 0; }, kMoment));
+    const std::vector<ContentKey> keys{{ContentKind::chunk, 0}};
+    link->request(keys, 1); // Our credit was not touched either.
+    EXPECT_TRUE(step_until([&] { return got.count == 1; }));
+}
+
+TEST_F(DdsVersions, a_controller_is_served_under_its_own_id_and_a_valid_name_only)
+{
+    ASSERT_NO_FATAL_FAILURE(start_host());
+    ASSERT_NO_FATAL_FAILURE(connect());
+    const Endpoint writer = make_writer(stranger, Topic::wanted, "stranger").value();
+    ASSERT_TRUE(step_until([&] { return is_matched(writer); }));
+    const ControllerId own = stranger.participants().own();
+    ControllerId other = own;
+    other[3] ^= 1U;
+    tactus_v2_Wanted wanted = request(other, "stranger");
+    ASSERT_EQ(dds_write(writer.handle, &wanted), DDS_RETCODE_OK);
+    wanted = request(own, "strange\n\x1b[31m*");
     ASSERT_EQ(dds_write(writer.handle, &wanted), DDS_RETCODE_OK);
     ASSERT_TRUE(step_until([&] { return host->counters().requests_refused == 1; }));
     EXPECT_EQ(host->subscribers().size(), 1U);
-    EXPECT_EQ(test::count_of(host_lines, "it speaks protocol version 2, this build 1"), 1U)
-        << host_lines;
+    EXPECT_EQ(test::count_of(host_lines, "is refused: its name is not"), 1U) << host_lines;
     EXPECT_EQ(host_lines.find('\x1b'), std::string::npos);
-    EXPECT_EQ(std::ranges::count(host_lines, '\n'), 2) << host_lines; // And that ours subscribed.
-    const std::vector<ContentKey> keys{{ContentKind::chunk, 0}};
-    link->request(keys, 1);
-    EXPECT_TRUE(step_until([&] { return got.count == 1; }));
-
-    wanted = request(epoch, kProtocolVersion); // The same request of our version is served.
+    wanted = request(own, "stranger");
     ASSERT_EQ(dds_write(writer.handle, &wanted), DDS_RETCODE_OK);
     EXPECT_TRUE(step_until([&] { return host->subscribers().size() == 2; }));
-    EXPECT_EQ(host->counters().requests_refused, 1U);
 }
 
 } // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "transport/dds/credit.hpp"
+#include "transport/dds/model_pieces.hpp"
 #include "transport/dds/piece_frame.hpp"
 #include "transport/dds/wish_queue.hpp"
 
@@ -74,7 +75,7 @@ TEST(WishQueue, puts_the_newest_generation_first_and_keeps_its_order)
 {
     WishQueue sut(8);
     const auto add = [&](std::uint32_t number, std::uint32_t generation) {
-        sut.add({ContentKind::chunk, number}, generation);
+        sut.add({number % 2, {ContentKind::chunk, number}}, generation);
     };
     add(1, 5);
     add(2, 5);
@@ -85,22 +86,48 @@ TEST(WishQueue, puts_the_newest_generation_first_and_keeps_its_order)
     std::vector<std::uint32_t> order;
     for (; !sut.empty(); sut.pop_front())
     {
-        order.push_back(sut.front().number);
+        order.push_back(sut.front().key.number);
     }
     EXPECT_EQ(order, (std::vector<std::uint32_t>{3, 4, 1, 2, 5}));
+}
+
+TEST(WishQueue, tells_the_same_piece_of_two_models_apart)
+{
+    WishQueue sut(8);
+    sut.add({0, {ContentKind::chunk, 1}}, 5);
+    sut.add({1, {ContentKind::chunk, 1}}, 5);
+    sut.add({1, {ContentKind::chunk, 1}}, 5);
+    EXPECT_EQ(sut.size(), 2U);
+}
+
+TEST(ModelParts, are_of_one_size_but_the_last_and_make_the_whole)
+{
+    for (const std::size_t bytes : {std::size_t{0}, std::size_t{1}, kPartBytes - 1, kPartBytes,
+                                    kPartBytes + 1, 3 * kPartBytes})
+    {
+        const std::vector<std::byte> whole(bytes);
+        std::size_t sum = 0;
+        for (std::uint32_t part = 0; part < parts_of(bytes); ++part)
+        {
+            EXPECT_EQ(part_of(whole, part).data(), whole.data() + sum);
+            sum += part_of(whole, part).size();
+        }
+        EXPECT_EQ(sum, bytes);
+        EXPECT_TRUE(part_of(whole, parts_of(bytes)).empty());
+    }
 }
 
 TEST(WishQueue, forgets_the_oldest_generation_when_full_and_generations_may_wrap)
 {
     WishQueue sut(2);
-    sut.add({ContentKind::chunk, 1}, 0xFFFF'FFFFU);
-    sut.add({ContentKind::chunk, 2}, 0);
-    sut.add({ContentKind::chunk, 3}, 1);
+    sut.add({0, {ContentKind::chunk, 1}}, 0xFFFF'FFFFU);
+    sut.add({0, {ContentKind::chunk, 2}}, 0);
+    sut.add({0, {ContentKind::chunk, 3}}, 1);
     EXPECT_EQ(sut.size(), 2U);
     EXPECT_EQ(sut.forgotten(), 1U);
-    EXPECT_EQ(sut.front().number, 3U);
+    EXPECT_EQ(sut.front().key.number, 3U);
     sut.pop_front();
-    EXPECT_EQ(sut.front().number, 2U);
+    EXPECT_EQ(sut.front().key.number, 2U);
 }
 
 } // namespace

@@ -33,15 +33,28 @@ TEST(PoseScript, reads_lines_comments_and_empty_lines)
     const PoseLine& cow = lines.value()[0];
     EXPECT_EQ(cow.time_s, 0.0);
     EXPECT_EQ(cow.object, 1U);
-    EXPECT_EQ(cow.pose.translation_m, (std::array{1.0, 2.0, 3.0}));
-    EXPECT_EQ(cow.pose.scale, 1.0);
+    EXPECT_EQ(cow.pose->translation_m, (std::array{1.0, 2.0, 3.0}));
+    EXPECT_EQ(cow.pose->scale, 1.0);
     const PoseLine& bunny = lines.value()[1];
     EXPECT_EQ(bunny.time_s, 0.5);
     EXPECT_EQ(bunny.object, 0U);
-    EXPECT_EQ(bunny.pose.translation_m[0], -0.01);
-    EXPECT_NEAR(bunny.pose.rotation[2], 0.6, 1e-15);
-    EXPECT_NEAR(bunny.pose.rotation[3], 0.8, 1e-15);
-    EXPECT_EQ(bunny.pose.scale, 2.5);
+    EXPECT_EQ(bunny.pose->translation_m[0], -0.01);
+    EXPECT_NEAR(bunny.pose->rotation[2], 0.6, 1e-15);
+    EXPECT_NEAR(bunny.pose->rotation[3], 0.8, 1e-15);
+    EXPECT_EQ(bunny.pose->scale, 2.5);
+}
+
+TEST(PoseScript, an_object_may_go_and_come_again)
+{
+    const auto lines =
+        parse_pose_lines("0 cow 1 2 3 0 0 0 1\n1 cow gone\n2 cow 1 2 3 0 0 0 1", kNames);
+    ASSERT_TRUE(lines) << lines.error().text;
+    EXPECT_TRUE(lines.value()[0].pose);
+    EXPECT_FALSE(lines.value()[1].pose);
+    EXPECT_TRUE(lines.value()[2].pose);
+    EXPECT_EQ(fault_of("0 dog gone"), "line 1: no object is called 'dog'");
+    EXPECT_EQ(fault_of("0 cow went"), "line 1: is not TIME_S NAME X Y Z QX QY QZ QW [SCALE]");
+    EXPECT_EQ(fault_of("0 cow gone 1"), "line 1: is not TIME_S NAME X Y Z QX QY QZ QW [SCALE]");
 }
 
 TEST(PoseScript, names_the_line_and_what_is_wrong_with_it)
@@ -56,8 +69,8 @@ TEST(PoseScript, names_the_line_and_what_is_wrong_with_it)
     EXPECT_EQ(fault_of("-1 cow 1 2 3 0 0 0 1"), "line 1: time '-1' is not 0 to 1000000 s");
     EXPECT_EQ(fault_of("nan cow 1 2 3 0 0 0 1"), "line 1: time 'nan' is not 0 to 1000000 s");
     EXPECT_EQ(fault_of("1e7 cow 1 2 3 0 0 0 1"), "line 1: time '1e7' is not 0 to 1000000 s");
-    EXPECT_EQ(fault_of("0 dog 1 2 3 0 0 0 1"), "line 1: no model is published as 'dog'");
-    EXPECT_EQ(fault_of("0 \x1b[31m 1 2 3 0 0 0 1"), "line 1: no model is published as '?[31m'");
+    EXPECT_EQ(fault_of("0 dog 1 2 3 0 0 0 1"), "line 1: no object is called 'dog'");
+    EXPECT_EQ(fault_of("0 \x1b[31m 1 2 3 0 0 0 1"), "line 1: no object is called '?[31m'");
     EXPECT_EQ(fault_of("0 cow 1 2 x 0 0 0 1"), "line 1: 'x' is not a finite number");
     EXPECT_EQ(fault_of("0 cow 1 2 3 0 0 0 1,0"), "line 1: '1,0' is not a finite number");
     EXPECT_EQ(fault_of("0 cow 1 2 inf 0 0 0 1"), "line 1: 'inf' is not a finite number");
@@ -116,7 +129,7 @@ TEST(PosePlayer, gives_each_line_when_it_is_due_and_once)
     EXPECT_EQ(sut.next_s(), 1.0);
     const auto due = sut.take_due(1.1);
     ASSERT_EQ(due.size(), 1U);
-    EXPECT_EQ(due[0].pose.translation_m[0], 2.0);
+    EXPECT_EQ(due[0].pose->translation_m[0], 2.0);
     EXPECT_EQ(sut.take_due(100.0).size(), 1U);
     EXPECT_FALSE(sut.next_s());
     EXPECT_TRUE(sut.take_due(200.0).empty());
@@ -128,7 +141,7 @@ TEST(PosePlayer, passes_over_what_is_overtaken)
     const auto due = sut.take_due(5.0);
     ASSERT_EQ(due.size(), 2U);
     EXPECT_EQ(due[0].object, 0U);
-    EXPECT_EQ(due[1].pose.translation_m[0], 3.0);
+    EXPECT_EQ(due[1].pose->translation_m[0], 3.0);
 }
 
 TEST(PosePlayer, begins_anew_at_the_last_line_s_time_and_catches_up_after_a_stall)
@@ -137,11 +150,11 @@ TEST(PosePlayer, begins_anew_at_the_last_line_s_time_and_catches_up_after_a_stal
     EXPECT_EQ(sut.take_due(1.5).size(), 2U);
     const auto turn = sut.take_due(2.0); // The last line, and the first ones after it.
     ASSERT_EQ(turn.size(), 2U);
-    EXPECT_EQ(turn[1].pose.translation_m[0], 1.0);
+    EXPECT_EQ(turn[1].pose->translation_m[0], 1.0);
     EXPECT_EQ(sut.next_s(), 3.0);
     const auto late = sut.take_due(2'000'001.5);
     ASSERT_EQ(late.size(), 2U);
-    EXPECT_EQ(late[1].pose.translation_m[0], 2.0);
+    EXPECT_EQ(late[1].pose->translation_m[0], 2.0);
     EXPECT_EQ(sut.next_s(), 2'000'002.0);
 }
 

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "tests/bench/cases.hpp"
+#include "tests/shared/frame_rig.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace tactus::bench
+{
+
+/// rig.step_without_delivery(): a frame that is measured, under a name by which callgrind finds it.
+[[nodiscard]] FrameOutput counted_step(test::FrameRig& rig, const std::vector<Vec3>& goals_m,
+                                       const Budgets& budgets, StageMark mark);
+
+/// Instructions of all calls of counted_step() when the case runs once by itself with --count, in
+/// another process of this program under valgrind's callgrind; some 50 times as long as without.
+/// None unless --instructions asks for it. An error when there is no valgrind, or it fails.
+[[nodiscard]] Result<std::optional<std::uint64_t>, SceneError>
+count_instructions(const CaseContext& context);
+
+} // namespace tactus::bench

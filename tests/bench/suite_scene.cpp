@@ -1,0 +1,364 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+
+/// The suite `scene`: what a touch costs among many objects, and what a scene at rest does; with
+/// the largest error of what is said of distances, against all objects.
+
+#include "host_tools/shapes/shapes.hpp"
+#include "tests/bench/instruction_count.hpp"
+#include "tests/bench/least_times.hpp"
+#include "tests/bench/measuring.hpp"
+#include "tests/bench/random.hpp"
+#include "tests/bench/stage_timer.hpp"
+#include "tests/bench/suites.hpp"
+#include "tests/shared/frame_rig.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <vector>
+
+namespace tactus::bench
+{
+
+namespace
+{
+
+/// How a scene goes without a shortcut.
+struct WithoutShortcut
+{
+    const char* name;
+    bool FrameVariant::*shortcut; ///< Null: with all.
+};
+constexpr std::array<WithoutShortcut, 5> kWithoutShortcut{
+    {{"all shortcuts", nullptr},
+     {"all objects near", &FrameVariant::finds_neighbours},
+     {"no rest out of reach", &FrameVariant::lets_pairs_rest},
+     {"no rest of tools", &FrameVariant::lets_tools_rest},
+     {"no rest of frames", &FrameVariant::lets_frames_rest}}};
+
+struct SceneCase
+{
+    std::uint32_t objects;
+    std::uint32_t tools;
+    std::uint32_t moving;                    ///< Objects that move a little in each frame.
+    const WithoutShortcut* without{nullptr}; ///< Null: with all, and nothing to compare.
+};
+
+constexpr SceneSource kObject{"bumpy-20k", nullptr, 0, 20'000};
+/// Between the middles of neighbours, in diagonals: none touches another.
+constexpr double kApart_diag = 1.5;
+constexpr double kSlide_diag_per_s = 0.5;
+/// How many frames pass between two looks at all distances.
+constexpr std::uint32_t kJudgedEvery = 97;
+
+/// Objects on a grid, the touched one at its corner.
+class Crowd
+{
+public:
+    Crowd(const SceneCase& test_case, const Scene& scene, std::uint32_t frames)
+        : scene_(scene), moving_(test_case.moving)
+    {
+        const double radius_m = 0.01 * scene.model.diagonal_m;
+        options_.pool_bytes = std::size_t{16} << 20U;
+        options_.static_when_it_fits = true;
+        if (test_case.without != nullptr && test_case.without->shortcut != nullptr)
+        {
+            options_.variant.*test_case.without->shortcut = false;
+        }
+        options_.tools.assign(test_case.tools,
+                              ToolSpec{radius_m, 500.0, 8.0, 2.0 * scene.model.diagonal_m});
+        options_.objects.assign(test_case.objects, ObjectSpec{ModelId{0}});
+        const auto side = static_cast<std::uint32_t>(
+            std::ceil(std::cbrt(static_cast<double>(test_case.objects))));
+        for (std::uint32_t i = 0; i < test_case.objects; ++i)
+        {
+            ObjectPose pose;
+            pose.translation_m = kApart_diag * scene.model.diagonal_m *
+                                 Vec3(i % side, i / side % side, i / side / side);
+            options_.poses.push_back(pose);
+        }
+        goals_m_ = slide_motion(scene.touch(), kSlide_diag_per_s, frames);
+    }
+
+    /// Every frame once, timed, or with a look at the truth now and then, which leaves the caches
+    /// cold: the first tool touches the first object, the others are still between
+    /// four objects; or all are still.
+    CaseFailure run(bool touches, std::size_t frames, LeastTimes* us)
+    {
+        test::FrameRig rig(scene_.model, options_);
+        std::vector<Vec3> goals(options_.tools.size());
+        for (std::size_t i = 0; i < goals.size(); ++i)
+        {
+            goals[i] = kApart_diag * scene_.model.diagonal_m *
+                       Vec3(static_cast<double>(i) + 0.5, 0.5, 0.0);
+        }
+        for (int i = 0; i < 3'000 && !rig.model().is_complete(); ++i)
+        {
+            rig.step(goals, {});
+        }
+        if (!rig.model().is_complete())
+        {
+            return "the model is not here as a whole";
+        }
+        for (std::size_t i = 0; i < kApproachFrames && touches; ++i)
+        {
+            goals[0] = goals_m_[i];
+            rig.step(goals, {});
+        }
+        StageTimer timer;
+        for (std::size_t i = 0; i < frames; ++i)
+        {
+            goals[0] = touches ? goals_m_[kApproachFrames + i] : goals[0];
+            move(rig, i);
+            rig.deliver();
+            timer.begin();
+            const FrameOutput output = counted_step(rig, goals, {}, timer.mark());
+            touching_.resize(frames);
+            touching_[i] = output.tools[0].in_contact;
+            hash_ = hash_ * 31 + output.models[0].state_hash + output.pairs.size() +
+                    std::bit_cast<std::uint64_t>(output.pairs[0].lower_m);
+            if (us != nullptr)
+            {
+                us->keep(i, timer.sum_us());
+            }
+            else if (i % kJudgedEvery == 0)
+            {
+                if (auto failure = judge(rig, output))
+                {
+                    return failure;
+                }
+            }
+        }
+        return std::nullopt;
+    }
+
+    [[nodiscard]] double error_m() const { return error_m_; }
+    [[nodiscard]] std::uint64_t hash() const { return hash_; }
+    /// Of the times, those of frames in which the last run's first tool was in contact.
+    [[nodiscard]] std::vector<double> touching(const std::vector<double>& times_us) const
+    {
+        std::vector<double> kept;
+        for (std::size_t i = 0; i < times_us.size(); ++i)
+        {
+            if (touching_[i])
+            {
+                kept.push_back(times_us[i]);
+            }
+        }
+        return kept;
+    }
+
+private:
+    /// The last ones, to and fro.
+    void move(test::FrameRig& rig, std::size_t frame)
+    {
+        const auto objects = static_cast<std::uint32_t>(options_.objects.size());
+        for (std::uint32_t i = 0; i < std::min(moving_, objects - 1); ++i)
+        {
+            const std::uint32_t object = objects - 1 - i;
+            ObjectPose pose = options_.poses[object];
+            pose.translation_m.z() +=
+                1e-3 * scene_.model.diagonal_m * std::sin(0.05 * static_cast<double>(frame));
+            rig.place_object(pose, object);
+        }
+    }
+
+    /// A line when a bracket or a clearance doesn't hold.
+    CaseFailure judge(const test::FrameRig& rig, const FrameOutput& output)
+    {
+        for (std::uint32_t tool = 0; tool < output.tools.size(); ++tool)
+        {
+            const Vec3 center = rig.frame().tool(tool).stance().place.translation_m;
+            double nearest_other_m = kInfinity;
+            for (std::uint32_t object = 0; object < options_.objects.size(); ++object)
+            {
+                const double truth_m =
+                    scene_.tree->nearest(to_model(rig.pose(object), center)).distance_m;
+                const auto pair =
+                    std::ranges::find_if(output.pairs, [tool, object](const PairOutput& one)
+                                         { return one.tool == tool && one.object == object; });
+                if (pair == output.pairs.end())
+                {
+                    nearest_other_m = std::min(nearest_other_m, truth_m);
+                    continue;
+                }
+                const double beyond_m = std::max(pair->lower_m - truth_m, truth_m - pair->upper_m);
+                if (pair->kind == AnswerKind::exact)
+                {
+                    error_m_ = std::max(error_m_, beyond_m);
+                }
+                if (beyond_m > 1e-12 * scene_.model.diagonal_m)
+                {
+                    return fmt::format("tool {} is {} m from object {}, not {} to {}", tool,
+                                       truth_m, object, pair->lower_m, pair->upper_m);
+                }
+            }
+            if (output.tools[tool].clear_m > nearest_other_m * (1.0 + 1e-12))
+            {
+                return fmt::format("tool {} is said to be clear by {} m and has something at {}",
+                                   tool, output.tools[tool].clear_m, nearest_other_m);
+            }
+        }
+        return std::nullopt;
+    }
+
+    const Scene& scene_;
+    std::uint32_t moving_;
+    test::RigOptions options_;
+    std::vector<Vec3> goals_m_;
+    double error_m_{0.0};
+    std::vector<bool> touching_; ///< By frame.
+    std::uint64_t hash_{0};
+};
+
+/// What one more object takes from the pools.
+double bytes_an_object(std::uint32_t tools)
+{
+    const std::vector<ToolSpec> specs(tools);
+    const auto bytes = [&](std::uint32_t objects)
+    {
+        FrameSetup setup;
+        setup.tools = specs;
+        setup.capacities = {objects, kMaxPairs};
+        return static_cast<double>(Frame::required_bytes(setup));
+    };
+    return (bytes(kMaxObjects) - bytes(64)) / (kMaxObjects - 64);
+}
+
+CaseFailure run_scene_case(const CaseContext& context, const SceneCase& test_case)
+{
+    const auto scene = context.scenes.get(kObject);
+    if (!scene)
+    {
+        return scene.error().text;
+    }
+    const PinnedCore pinned(context.options.core);
+    const std::uint32_t frames = context.options.frames_or(2'000, 400);
+    Crowd crowd(test_case, *scene.value(), frames);
+    if (context.options.count)
+    {
+        LeastTimes nobody_reads(frames);
+        const auto failure = crowd.run(true, frames, &nobody_reads);
+        return failure || test_case.without == nullptr ? failure
+                                                       : crowd.run(false, frames, &nobody_reads);
+    }
+    Crowd alone({1, 1, 0}, *scene.value(), frames);
+    LeastTimes touch_us(frames);
+    LeastTimes rest_us(frames);
+    LeastTimes alone_us(frames);
+    const std::uint32_t passes = context.options.passes_or(3, 2);
+    for (const bool touches : {true, false})
+    {
+        if (const auto failure = crowd.run(touches, frames, nullptr))
+        {
+            return failure;
+        }
+    }
+    for (std::uint32_t pass = 0; pass < passes; ++pass)
+    {
+        if (const auto failure = crowd.run(true, frames, &touch_us))
+        {
+            return failure;
+        }
+        if (const auto failure = alone.run(true, frames, &alone_us))
+        {
+            return failure;
+        }
+    }
+    const std::vector<double> crowd_us = crowd.touching(touch_us.least());
+    const std::vector<double> single_us = alone.touching(alone_us.least());
+    if (crowd_us.empty() || crowd_us.size() != single_us.size())
+    {
+        return fmt::format("in contact in {} frames, alone in {}", crowd_us.size(),
+                           single_us.size());
+    }
+    for (std::uint32_t pass = 0; pass < passes; ++pass)
+    {
+        if (const auto failure = crowd.run(false, frames, &rest_us))
+        {
+            return failure;
+        }
+    }
+    Row common = context.common_row(scene.value()->model.name);
+    common.setting = fmt::format("{} tools, {} moving", test_case.tools, test_case.moving);
+    common.test_case = fmt::format("{} objects", test_case.objects);
+    if (test_case.without != nullptr)
+    {
+        common.setting += fmt::format(", {}", test_case.without->name);
+    }
+    common.frames = frames;
+    common.hash = crowd.hash();
+    CaseRows rows(context.rows, common);
+    const Spread touch = spread_of(crowd_us);
+    const Spread rest = spread_of(rest_us.least());
+    const Spread by_itself = spread_of(single_us);
+    const bool has_goal =
+        test_case.objects == 1'000 && test_case.tools == 1 && test_case.moving == 0;
+    rows.add("touch p50", touch.p50, "us");
+    rows.add("touch p99", touch.p99, "us");
+    rows.add("p50 by that of one object", touch.p50 / by_itself.p50, "",
+             goal_if(has_goal ? 1.1 : kNoGoal));
+    rows.add("p99 by that of one object", touch.p99 / by_itself.p99, "",
+             goal_if(has_goal ? 1.15 : kNoGoal));
+    rows.add("rest p50", rest.p50, "us",
+             goal_if(test_case.moving == 0 && test_case.without == nullptr
+                         ? 0.2 + 0.1 * test_case.tools
+                         : kNoGoal));
+    rows.add("rest p99", rest.p99, "us");
+    const auto counted = count_instructions(context);
+    if (!counted)
+    {
+        return counted.error().text;
+    }
+    if (counted.value())
+    {
+        const bool is_compared = test_case.without != nullptr;
+        rows.add(is_compared ? "touch and rest instructions" : "touch instructions",
+                 static_cast<double>(*counted.value()) / (is_compared ? 2 * frames : frames),
+                 "/frame");
+    }
+    rows.add("object", bytes_an_object(test_case.tools), "B", 256.0);
+    rows.add("error max", crowd.error_m() / scene.value()->model.diagonal_m, "diag", 1e-14);
+    return std::nullopt;
+}
+
+std::vector<Case> scene_cases()
+{
+    std::vector<Case> cases;
+    for (const std::uint32_t objects : {1U, 10U, 100U, 1'000U, kMaxObjects})
+    {
+        for (const std::uint32_t tools : {1U, 4U, kMaxTools})
+        {
+            for (const std::uint32_t moving : {0U, 64U})
+            {
+                if (moving == 0 || objects > moving)
+                {
+                    cases.push_back(make_case(
+                        fmt::format("{} objects, {} tools, {} moving", objects, tools, moving),
+                        When::always, run_scene_case, SceneCase{objects, tools, moving}));
+                }
+            }
+        }
+    }
+    for (const WithoutShortcut& without : kWithoutShortcut)
+    {
+        const SceneCase test_case{kMaxPairs / 4, 4, 0, &without}; // All may be near each tool.
+        cases.push_back(
+            make_case(fmt::format("{} objects, 4 tools, {}", test_case.objects, without.name),
+                      When::always, run_scene_case, test_case));
+    }
+    return cases;
+}
+
+} // namespace
+
+Suite scene_suite()
+{
+    return {"scene", scene_cases};
+}
+
+} // namespace tactus::bench

@@ -1,0 +1,205 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# consumer.sh quick|all|aarch64 BUILD PROJECT FOLDER COMPILER: installs the libraries of BUILD into
+# FOLDER, moves them, and lets a project of somebody else's find, link and run them.
+#
+# quick: with COMPILER and the shared libraries. all: with g++ and clang++, shared and static, with
+# our flags and with -march=native -O3, by CMake and by pkg-config; what is refused; and the
+# component core, built alone. aarch64: that component built for aarch64, where Eigen and libccd are
+# all that is there, and a program of it under an emulator; skips (77) without compiler, emulator or
+# mmdebstrap, which fetches those two.
+set -euo pipefail
+readonly extent=$1 build=$2 project=$3 folder=$4 compiler=$5
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+source=$(cd "$here/../.." && pwd)
+readonly here source
+readonly domain=${TACTUS_TEST_DOMAIN:-$(($$ % 231))}
+
+fail() { printf 'FAULT: %s\n' "$*"; exit 1; }
+quietly() { # quietly LOG COMMAND...: its output only when it fails.
+    local log=$1
+    shift
+    "$@" >"$log" 2>&1 || { tail -n 40 "$log"; fail "this failed: $*"; }
+}
+
+if [[ "$extent" == aarch64 ]]; then
+    for tool in aarch64-linux-gnu-g++ qemu-aarch64 mmdebstrap; do
+        command -v "$tool" >/dev/null || {
+            echo "skipped: $tool is missing (cmake/packages-ci.txt)"
+            exit 77
+        }
+    done
+fi
+rm -rf "$folder"
+mkdir -p "$folder/first"
+cd "$folder"
+for component in libtactus0 libtactus-dev; do
+    quietly install.log cmake --install "$build" --prefix "$PWD/first/usr" --component "$component"
+done
+mv first second # Nothing in it may name the place where it was installed.
+readonly prefix=$PWD/second/usr
+if grep -rIlE "$PWD/first|$build|$source" "$prefix"; then
+    fail "these files name folders of this machine"
+fi
+grep -rnE '#include "' "$prefix/include" && fail "a header is included by another name than <...>"
+library=$(dirname "$(find "$prefix" -name libtactus_core.so)")
+readonly library
+launcher=()
+if command -v ccache >/dev/null; then
+    launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+fi
+
+configure() { # configure NAME COMPILER OPTION...
+    cmake -S "$project" -B "$1" -G Ninja -DCMAKE_BUILD_TYPE=None -DCMAKE_CXX_COMPILER="$2" \
+        -DCMAKE_PREFIX_PATH="$prefix" "${launcher[@]}" "${@:3}"
+}
+declare digest=''
+try() { # try NAME COMPILER FLAGS STATIC: builds it; the model and all answers are as before.
+    local said
+    quietly "$1.log" configure "$1" "$2" -DTactus_USE_STATIC_LIBS="$4" \
+        -DCMAKE_CXX_FLAGS="$3" -DCMAKE_C_FLAGS="$3"
+    quietly "$1.log" cmake --build "$1" --parallel 2
+    "$1/serve" "$1/ring.spm" >"$1.txt" || fail "$1: serve ends with $?"
+    [[ -e ring.spm ]] || cp "$1/ring.spm" ring.spm
+    cmp ring.spm "$1/ring.spm" || fail "$1: another model"
+    said=$("$1/touch" ring.spm) || fail "$1: touch ends with $?: $said"
+    [[ -z "$digest" || "$digest" == "$said" ]] || fail "$1: '$said', before '$digest'"
+    digest=$said
+    "$1/ask" ring.spm >"$1.txt" || fail "$1: ask ends with $?"
+    "$1/scene" ring.spm >"$1.txt" || fail "$1: scene ends with $?: $(<"$1.txt")"
+    echo "$1: $said"
+}
+refuses() { # refuses EXPECTED COMMAND...: fails, and says so in this way.
+    local expected=$1
+    shift
+    if "$@" >refused.log 2>&1; then
+        fail "not refused: $*"
+    fi
+    tr '\n' ' ' <refused.log | tr -s ' ' | grep -qF "$expected" \
+        || { cat refused.log; fail "refused without '$expected'"; }
+}
+
+# Each block of code of these pages stands in the project, word for word.
+blocks_are_there() { # blocks_are_there PAGE COUNT: so many blocks at least.
+    local block blocks=0
+    # shellcheck disable=SC2016 # Backquotes as they stand in the page.
+    awk -v RS='```' \
+        'NR % 2 == 0 && /^(c|cpp|cmake)\n/ { sub(/^[a-z]+\n/, ""); printf "%s%c", $0, 0 }' \
+        "$source/docs/$1" >blocks.txt
+    while IFS= read -r -d '' block; do
+        [[ "$(<project.txt)" == *"$block"* ]] || fail "docs/$1 shows what is not there: $block"
+        blocks=$((blocks + 1))
+    done <blocks.txt
+    ((blocks >= $2)) || fail "docs/$1 has $blocks blocks of code"
+}
+if [[ "$extent" != aarch64 ]]; then
+    cat "$project"/CMakeLists.txt "$project"/*.cpp "$project"/*.c >project.txt
+    blocks_are_there library.md 6
+    blocks_are_there how-to.md 6
+fi
+
+# core alone sees nothing but Eigen and libccd.
+core_alone() { # core_alone NAME OPTION...
+    quietly "$1.log" cmake -S "$source" -B "$1" -G Ninja -DTACTUS_ONLY_CORE=ON \
+        -DCMAKE_DISABLE_FIND_PACKAGE_CycloneDDS=ON -DCMAKE_DISABLE_FIND_PACKAGE_fmt=ON \
+        -DCMAKE_DISABLE_FIND_PACKAGE_PkgConfig=ON -DCMAKE_UNITY_BUILD=ON "${launcher[@]}" "${@:2}"
+    quietly "$1.log" cmake --build "$1" --parallel 2
+    quietly "$1.log" cmake --install "$1" --prefix "$PWD/$1/usr"
+    [[ -n $(find "$1/usr" -name libtactus_core.so) ]] || fail "$1: nothing is installed"
+}
+fade() { # fade NAME PREFIX OPTION...: the program of core alone, built.
+    quietly "$1.log" cmake -S "$project" -B "$1" -G Ninja -DCMAKE_BUILD_TYPE=Release \
+        -DCMAKE_PREFIX_PATH="$2" "${launcher[@]}" "${@:3}"
+    quietly "$1.log" cmake --build "$1"
+}
+if [[ "$extent" == aarch64 ]]; then
+    # Debian's packages for that processor, taken apart here; nothing of them is run.
+    release=$(. /etc/os-release && echo "$VERSION_CODENAME")
+    if ! mmdebstrap --variant=extract --architectures=arm64 \
+        --include=libccd-dev,libeigen3-dev "$release" sysroot >sysroot.log 2>&1; then
+        echo "skipped: Debian's packages for arm64 can't be had: $(tail -n 1 sysroot.log)"
+        exit 77
+    fi
+    # The mathematics library, which libccd names by its place, is the compiler's.
+    sed -i "s|/usr/lib/aarch64-linux-gnu/libm.so|m|" \
+        sysroot/usr/lib/aarch64-linux-gnu/ccd/ccd-targets-none.cmake
+    cat >aarch64.cmake <<TOOLCHAIN
+set(CMAKE_SYSTEM_NAME Linux)
+set(CMAKE_SYSTEM_PROCESSOR aarch64)
+set(CMAKE_C_COMPILER aarch64-linux-gnu-gcc)
+set(CMAKE_CXX_COMPILER aarch64-linux-gnu-g++)
+set(CMAKE_LIBRARY_ARCHITECTURE aarch64-linux-gnu)
+set(CMAKE_FIND_ROOT_PATH $PWD/sysroot $PWD/core/usr)
+set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)
+set(CMAKE_FIND_ROOT_PATH_MODE_PACKAGE ONLY)
+TOOLCHAIN
+    core_alone core -DCMAKE_TOOLCHAIN_FILE="$PWD/aarch64.cmake"
+    fade here "$prefix"
+    ./here/fade >here.txt || fail "fade ends with $?"
+    of_core=$(dirname "$(find core/usr -name libtactus_core.so)")
+    for static in OFF ON; do
+        fade "there-$static" "$PWD/core/usr" -DTactus_USE_STATIC_LIBS="$static" \
+            -DCMAKE_TOOLCHAIN_FILE="$PWD/aarch64.cmake" \
+            -DCMAKE_EXE_LINKER_FLAGS="-Wl,-rpath-link,$PWD/sysroot/usr/lib/aarch64-linux-gnu"
+        qemu-aarch64 -L /usr/aarch64-linux-gnu \
+            -E LD_LIBRARY_PATH="$PWD/$of_core:$PWD/sysroot/usr/lib/aarch64-linux-gnu" \
+            "there-$static/fade" >there.txt || fail "fade for aarch64 ends with $?"
+        diff here.txt there.txt || fail 'another processor gives other bits'
+    done
+    [[ $(wc -l <here.txt) == 101 && $(sort -u here.txt | wc -l) -gt 50 ]] \
+        || fail 'fade does not say what it should'
+    echo "core for aarch64: $(tail -n 1 here.txt)"
+    exit
+fi
+
+readonly warnings='-Wall -Wextra -Wpedantic -Wconversion -Werror'
+if [[ "$extent" == quick ]]; then
+    try shared "$compiler" "-O2 $warnings" OFF
+    # Host and controller of somebody else's, over DDS.
+    ./shared/serve ring.spm "$domain" >/dev/null &
+    serving=$!
+    trap 'kill "$serving" 2>/dev/null' EXIT
+    ./shared/touch ring "$domain" || fail "over DDS touch ends with $?"
+    ./shared/touch nobody.spm 2>refused.log && fail "a missing file is not refused"
+    grep -qF 'touch: nobody.spm: ' refused.log || fail "a missing file: $(<refused.log)"
+    refuses "the component 'gui' is not installed; there are: core, transport, platform, host, c" \
+        cmake -DCMAKE_PREFIX_PATH="$prefix" -DPART=gui -P "$here/find_part.cmake"
+    exit
+fi
+
+compilers=(g++)
+if command -v clang++ >/dev/null; then
+    compilers+=(clang++)
+fi
+for each in "${compilers[@]}"; do
+    for static in OFF ON; do
+        try "$each-static-$static" "$each" "-O2 $warnings" "$static"
+        try "$each-static-$static-native" "$each" "-O3 -march=native" "$static"
+    done
+done
+# All public headers; that each compiles by itself is shown in the checkout.
+export PKG_CONFIG_PATH=$library/pkgconfig
+read -ra flags < <(pkg-config --cflags tactus-host tactus-platform)
+find "$prefix/include/tactus" -name '*.hpp' -not -path '*/detail/*' | sort -r \
+    | sed "s|^$prefix/include/\\(.*\\)|#include <\\1>|" >headers.cpp
+quietly headers.log "$compiler" -std=c++20 -fsyntax-only "${flags[@]}" headers.cpp
+echo "$(wc -l <headers.cpp) public headers"
+# By pkg-config; statically where the shared libraries are not there.
+by_pkg_config() { # by_pkg_config NAME OPTION...
+    local libraries
+    read -ra libraries < <(pkg-config "${@:2}" --libs tactus-transport tactus-platform)
+    quietly "$1.log" "$compiler" -std=c++20 -O2 "${flags[@]}" "$project/touch.cpp" -o "$1" \
+        "${libraries[@]}" "-Wl,-rpath,$library"
+    [[ $("./$1" ring.spm) == "$digest" ]] || fail "$1: other answers"
+}
+by_pkg_config pc-shared
+rm "$library"/libtactus_*.so*
+by_pkg_config pc-static --static
+# A component that was left out, and another version.
+rm "$library"/cmake/Tactus/Tactus-host-*.cmake
+refuses "the component 'host' is not installed; there are: core, transport, platform, c" \
+    configure without_host "$compiler"
+refuses 'version: 0.2.0' \
+    cmake -DCMAKE_PREFIX_PATH="$prefix" -DVERSION=0.3 -P "$here/find_part.cmake"
+
+core_alone core

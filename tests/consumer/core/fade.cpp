@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+//
+// fade: what a hand feels of a steady push when its device's samples go bad, as bits: the same on
+// every processor. Then why a frame without memory is refused.
+#include <bit>
+#include <cstdint>
+#include <cstdio>
+#include <optional>
+#include <tactus/rt_core/base/arena.hpp>
+#include <tactus/rt_core/force/safe_state.hpp>
+#include <tactus/rt_core/frame/frame.hpp>
+#include <tactus/version.hpp>
+
+using namespace tactus;
+
+int main()
+{
+    SafeState safe({1.0, 8.0, 500.0});
+    for (int i = 0; i < 100; ++i)
+    {
+        SafetyInput input;
+        input.elapsed_s = 1e-3;
+        input.force_n = Vec3(0.3, 0.1, 1.0 + 0.01 * i);
+        input.causes = i < 60 ? ForceOff::none : ForceOff::garbage;
+        const SafetyOutput output = safe.step(input);
+        std::printf("%016llx\n", static_cast<unsigned long long>(
+                                     std::bit_cast<std::uint64_t>(output.force_n.z())));
+    }
+    Arena none({});
+    std::optional<Frame> frame;
+    const auto started = Frame::start(frame, none, FrameSetup{});
+    std::printf("%s: %s\n", TACTUS_VERSION_STRING,
+                started ? "started" : refusal_text(started.error()));
+    return 0;
+}

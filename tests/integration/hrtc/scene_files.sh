@@ -1,0 +1,91 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# scene_files.sh: a glTF scene becomes models, is touched from files and is served; a second run
+# replaces the first; what is refused leaves everything as it was.
+source "$(dirname "$0")/common.sh"
+
+# A tetrahedron: shown twice, once mirrored; and once more under another name.
+base64 -d >tetra.bin <<<'AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAPgAAgD4AAIA/
+AAACAAEAAAABAAMAAQACAAMAAgAAAAMA'
+cat >scene.gltf <<'GLTF'
+{"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+ "nodes": [
+  {"name": "table", "children": [1, 2, 3, 4], "translation": [0.25, 0, 0]},
+  {"name": "cup", "mesh": 0, "scale": [0.1, 0.1, 0.1],
+   "extras": {"tactus": {"material": {"stiffness": 400, "static": 0.4}}}},
+  {"name": "cup", "mesh": 0, "scale": [0.1, -0.1, 0.1], "translation": [1, 0, 0]},
+  {"name": "jar", "mesh": 1, "scale": [0.2, 0.2, 0.2], "translation": [2, 0, 0]},
+  {"name": "lines", "mesh": 2, "extras": {"tactus": {"touch": false}}}],
+ "meshes": [
+  {"name": "tetra", "primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]},
+  {"name": "same", "primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]},
+  {"name": "lines", "primitives": [{"attributes": {"POSITION": 0}, "mode": 1}]}],
+ "accessors": [
+  {"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3"},
+  {"bufferView": 1, "componentType": 5123, "count": 12, "type": "SCALAR"}],
+ "bufferViews": [{"buffer": 0, "byteLength": 48},
+                 {"buffer": 0, "byteOffset": 48, "byteLength": 24}],
+ "buffers": [{"byteLength": 72, "uri": "tetra.bin"}]}
+GLTF
+"$build" scene.gltf -o made >built.txt || fail 'spm_build refuses the scene'
+grep -qx 'tetra.spm: 4 faces, .*; 2 objects' built.txt || fault 'two objects share a model'
+grep -qx 'made/scene.gltf: 3 objects of 2 models' built.txt || fault 'the last line'
+[[ $(ls -A made) == $'scene.gltf\ntetra-mirrored.spm\ntetra.spm' ]] || fault "made: $(ls -A made)"
+"$inspect" made/tetra-mirrored.spm >inspected.txt || fault 'the mirrored model is not sound'
+
+# Again, of the same: the same bytes. Of another: what is no longer shown stays as a file.
+cp made/scene.gltf first.gltf
+"$build" scene.gltf -o made/ --json >built.json || fail 'spm_build refuses the folder'
+cmp made/scene.gltf first.gltf || fault 'a second run gives another scene'
+check built.json objects == 3 models.0.objects == 2 models.0.faces == 4 models.1.objects == 1
+
+# Touched from files: the first object, which is where the hand goes.
+run_hrtc --transport file --scene made/scene.gltf --duration 2
+check_clean report.json
+check report.json frames == 2000 scene.objects == 3 force.max_n '>' 0
+
+# Served: each model, and where its first object stands.
+start_publisher made/scene.gltf
+grep -q "^serving 'tetra-mirrored' " publish.log || fault 'a model is not served'
+grep -qx 'showing 3 objects' publish.log || fault 'not all objects are shown'
+run_hrtc --model tetra --duration 2
+check report.json models.0.pose.followed == 1 models.0.pose.accepted '>=' 1 \
+    models.0.pose.moves == 1 models.0.pose.old_frames == 0 \
+    models.0.pose.step_max_m '>' 0.2 models.0.pose.refused.scale == 0
+stop TERM "$publisher"
+((stopped_with == 0)) || fault "spm_publish ended with $stopped_with"
+
+# Refused, with nothing left behind and nothing changed.
+names=$(ls -A made)
+before=$(cat made/* | cksum)
+sed 's/"scale": \[0.2, 0.2, 0.2\]/"scale": [0.2, 0.1, 0.2]/' scene.gltf >uneven.gltf
+sed 's/"mode": 1/"mode": 4/; s/"touch": false/"touch": true/; s/"count": 12/"count": 11/' \
+    scene.gltf >corners.gltf
+expect 2 "uneven.gltf: node 'jar' (nodes\[3\]) scales its axes" "$build" uneven.gltf -o made
+expect 2 "corners.gltf: mesh 'tetra' (meshes\[0\]): *11 corners" "$build" corners.gltf -o other
+expect 2 "made/scene.gltf: node 'cup' (nodes\[0\]) names its model already" \
+    "$build" made/scene.gltf -o other
+expect 2 'scene.gltf: can'\''t be written: File exists' "$build" scene.gltf -o scene.gltf
+expect 2 'no/where: can'\''t be written: No such file' "$build" scene.gltf -o no/where
+expect 2 --region-size "$build" scene.gltf -o other --region-size 1e-9
+expect 2 'missing.glb: no such file' "$build" missing.glb -o other
+expect 3 '--output: a glTF scene needs a folder' "$build" scene.gltf -o made.spm
+expect 3 '--unit: a glTF scene is in metres' "$build" scene.gltf -o made --unit mm
+[[ ! -e other && $(ls -A made) == "$names" && $(cat made/* | cksum) == "$before" ]] \
+    || fault 'a refusal left something behind'
+
+refuse_serving() { expect "$1" "$2" "$publish" --domain "$domain" --seconds 5 "${@:3}"; }
+refuse_serving 2 "scene.gltf: node 'cup' (nodes\[1\]) names no model" scene.gltf
+refuse_serving 3 'FILE: a scene is served alone' made/scene.gltf made/tetra.spm
+refuse_serving 3 '--name: a scene is served alone' made/scene.gltf --name a
+refuse() { expect "$1" "$2" "$hrtc" --allow-no-rt "${@:3}"; }
+refuse 3 '--scene: needs --transport file' --scene made/scene.gltf
+refuse 3 '--scene: takes the place of --model' --transport file --scene made/scene.gltf --model a
+refuse 2 "--scene: scene.gltf: node 'cup' (nodes\[1\]) names no model" --transport file \
+    --scene scene.gltf
+refuse 2 '--objects: 2; 3 are there from the start' --transport file --scene made/scene.gltf \
+    --objects 2
+mv made/tetra.spm away.spm
+refuse 2 'made/tetra.spm: cannot be opened' --transport file --scene made/scene.gltf
+refuse_serving 2 'made/tetra.spm: cannot be opened' made/scene.gltf
+finish

@@ -1,0 +1,489 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+
+/// Scenes whose objects and tools come, move and go: every bracket and every clearance holds the
+/// distance that is found by trying all (I5), whatever else happens, and shortcuts change nothing.
+
+#include "tests/shared/face_tree.hpp"
+#include "tests/shared/frame_rig.hpp"
+#include "tests/shared/random.hpp"
+#include "tests/shared/safe_force.hpp"
+#include "tests/shared/surface_points.hpp"
+#include "tests/stability/scene_trial.hpp"
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tactus::test
+{
+namespace
+{
+
+constexpr std::uint32_t kPlaces = 24; ///< Of objects.
+
+RigOptions scene_options(double diagonal_m, std::uint32_t tools)
+{
+    RigOptions options = with_room_for_all();
+    options.tools.assign(tools, ToolSpec{0.01 * diagonal_m, 500.0, 8.0, 1.0});
+    options.capacities.objects = kPlaces;
+    options.faults.delay_polls_max = 8;
+    return options;
+}
+
+TEST(Scene, of_objects_that_come_move_and_go_is_answered_truly_and_refuses_what_it_must)
+{
+    SceneFigures all;
+    for (std::uint64_t trial = 0; trial < 4; ++trial)
+    {
+        const Hardship usual{"late", {}, scene_options(small_model(0).diagonal_m, 3)};
+        all.add(run_scene_trial(
+            {{&small_model(0), &small_model(2)}, usual, 3, seed_of(2'100 + trial), 500}));
+    }
+    EXPECT_TRUE(all.truth.holds()) << all.truth.summary();
+    EXPECT_EQ(all.truth.trials, 2'000U);
+    EXPECT_GT(all.exact, 100U);
+    EXPECT_GT(all.refused, 200U);
+}
+
+/// Each of the shortcuts with 1 in 2.
+FrameVariant any_variant(Random& random)
+{
+    FrameVariant variant;
+    for (bool FrameVariant::*const shortcut :
+         {&FrameVariant::finds_neighbours, &FrameVariant::lets_tools_rest,
+          &FrameVariant::lets_frames_rest, &FrameVariant::lets_pairs_rest,
+          &FrameVariant::starts_warm, &FrameVariant::keeps_certificates,
+          &FrameVariant::refits_changed_only, &FrameVariant::asks_near_models_only,
+          &FrameVariant::keeps_searches})
+    {
+        variant.*shortcut = random.one_in(2);
+    }
+    return variant;
+}
+
+/// A cold start meets the same triangles in another order: forces are sums, and round otherwise.
+bool are_near(const ToolOutput& a, const ToolOutput& b)
+{
+    constexpr double kNear = 1e-9; // Newtons and metres.
+    return (a.force_n - b.force_n).norm() <= kNear && (a.proxy_m - b.proxy_m).norm() <= kNear &&
+           a.in_contact == b.in_contact && a.frozen == b.frozen && a.squeezed == b.squeezed;
+}
+
+/// Tools that rest, wander and press into what is near, among objects that do likewise; models that
+/// are here as a whole, so that each answer that a force rests on is exact.
+void expect_alike(std::uint64_t seed, std::uint32_t& rested, std::uint32_t& frames_rested,
+                  std::uint32_t& contacts, std::uint32_t& compared)
+{
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random = Random::seeded(seed);
+    const std::vector<const TestModel*> models{&small_model(0), &small_model(2)};
+    const double diagonal_m = models[0]->diagonal_m;
+    constexpr std::uint32_t kTools = 3;
+    RigOptions options = scene_options(diagonal_m, kTools);
+    options.static_when_it_fits = true;
+    options.objects.assign(6, ObjectSpec{ModelId{0}, {400.0, 0.4, 0.3, 0.1}});
+    options.objects[1].model = options.objects[4].model = ModelId{1};
+    FrameRig usual(models, options);
+    options.variant = any_variant(random);
+    FrameRig sut(models, options);
+    std::vector<ObjectPose> poses;
+    for (std::uint32_t i = 0; i < options.objects.size(); ++i)
+    {
+        poses.push_back(any_pose(random, 1.2 * diagonal_m));
+        usual.place_object(poses[i], i);
+        sut.place_object(poses[i], i);
+    }
+    std::vector<Vec3> goals;
+    for (std::uint32_t i = 0; i < kTools; ++i)
+    {
+        goals.push_back(random.in_cube(diagonal_m));
+    }
+    std::vector<Vec3> targets = goals;
+    // A proxy that has a way to go goes as far as is known, and that shortcuts do change.
+    std::vector<bool> has_a_way(kTools, false);
+    for (int frame = 0; frame < 900; ++frame)
+    {
+        for (std::uint32_t i = 0; i < kTools && frame > 100; ++i)
+        {
+            if (random.one_in(100)) // To a corner of some object and a little into it.
+            {
+                const auto& face = models[0]->faces[random.below(models[0]->faces.size())];
+                targets[i] = to_world(poses[random.below(poses.size())], 0.99 * to_vec3(face[0]));
+            }
+            const Vec3 way = targets[i] - goals[i];
+            const double step_m = 0.6e-3 * options.tools[0].speed_max_m_per_s;
+            goals[i] =
+                way.norm() > step_m ? Vec3(goals[i] + step_m * way.normalized()) : targets[i];
+        }
+        if (frame > 100 && random.one_in(150))
+        {
+            const std::uint32_t object = random.below(static_cast<std::uint32_t>(poses.size()));
+            poses[object].translation_m += 0.002 * random.in_cube(diagonal_m);
+            usual.place_object(poses[object], object);
+            sut.place_object(poses[object], object);
+        }
+        const FrameOutput expected = usual.step(goals, {});
+        const FrameOutput output = sut.step(goals, {});
+        rested += expected.work.skipped.times()[static_cast<std::size_t>(Skip::tools)];
+        frames_rested += expected.work.skipped.times()[static_cast<std::size_t>(Skip::frames)];
+        for (std::uint32_t i = 0; i < kTools; ++i)
+        {
+            ToolOutput ours = output.tools[i];
+            ours.clear_m = expected.tools[i].clear_m; // Of whatever is no pair.
+            const bool is_alike = options.variant.starts_warm ? ours == expected.tools[i]
+                                                              : are_near(ours, expected.tools[i]);
+            has_a_way[i] =
+                (has_a_way[i] && !is_alike) || ours.under_way || expected.tools[i].under_way;
+            ASSERT_TRUE(is_alike || has_a_way[i]) << "tool " << i << ", frame " << frame;
+            compared += has_a_way[i] ? 0U : 1U;
+            contacts += ours.in_contact && !has_a_way[i] ? 1U : 0U;
+        }
+        for (const PairOutput& pair : expected.pairs)
+        {
+            const auto same = std::ranges::find_if(
+                output.pairs, [&pair](const PairOutput& one)
+                { return one.tool == pair.tool && one.object == pair.object; });
+            if (same == output.pairs.end())
+            {
+                ASSERT_TRUE(has_a_way[pair.tool]) << "frame " << frame;
+                continue;
+            }
+            if (!has_a_way[pair.tool] && same->point_m == pair.point_m &&
+                pair.kind == AnswerKind::exact && same->kind == AnswerKind::exact)
+            {
+                ASSERT_EQ(same->lower_m, pair.lower_m) << "frame " << frame;
+                ASSERT_EQ(same->upper_m, pair.upper_m) << "frame " << frame;
+                ASSERT_EQ(same->nearest_face, pair.nearest_face) << "frame " << frame;
+            }
+        }
+    }
+}
+
+TEST(SceneShortcuts, in_any_set_of_them_change_no_exact_answer_and_no_force)
+{
+    std::uint32_t rested = 0;
+    std::uint32_t frames_rested = 0;
+    std::uint32_t contacts = 0;
+    std::uint32_t compared = 0;
+    for (std::uint64_t trial = 0; trial < 16; ++trial)
+    {
+        ASSERT_NO_FATAL_FAILURE(
+            expect_alike(seed_of(2'200 + trial), rested, frames_rested, contacts, compared));
+    }
+    EXPECT_GT(rested, 1'000U);
+    EXPECT_GT(frames_rested, 500U);
+    EXPECT_GT(contacts, 1'000U);
+    EXPECT_GT(compared, 16U * 900U * 3U / 2U);
+}
+
+/// A ball that is pressed into a cube's top: the highest vertex of the model.
+class Pressed
+{
+public:
+    explicit Pressed(std::uint32_t objects = 1)
+    {
+        RigOptions options = with_room_for_all();
+        options.tools = {{0.02 * model.diagonal_m, 500.0, 8.0, 1.0}};
+        options.capacities.objects = 8;
+        options.objects.assign(objects, ObjectSpec{ModelId{0}});
+        rig.emplace(model, options);
+        force.emplace(options.tools[0], 1e-3);
+        top = to_vec3(
+            std::ranges::max_element(model.faces, {}, [](const Face& face) { return face[0][2]; })
+                ->at(0));
+    }
+    /// With the ball's centre so far above the vertex.
+    ToolOutput step(double height_m)
+    {
+        const Vec3 goal = top + Vec3(0.0, 0.0, height_m);
+        output = rig->step(goal);
+        const Vec3 before_n = sent_n;
+        sent_n = force->step(output.tools[0], goal);
+        step_n = (sent_n - before_n).norm();
+        return output.tools[0];
+    }
+    /// Down from above until it touches, 1 mm deep.
+    void press()
+    {
+        for (int i = 0; i < 400; ++i)
+        {
+            step(std::max(0.06 * model.diagonal_m - 0.0005 * i, pressed_m()));
+        }
+    }
+    [[nodiscard]] double pressed_m() const { return 0.02 * model.diagonal_m - 0.001; }
+    [[nodiscard]] SceneChange change(SceneChangeKind kind, std::uint32_t generation) const
+    {
+        SceneChange change;
+        change.kind = kind;
+        change.generation = generation;
+        change.object.model = ModelId{0};
+        return change;
+    }
+
+    const TestModel& model = small_model(0);
+    std::optional<FrameRig> rig;
+    std::optional<SafeForce> force;
+    Vec3 top{0.0, 0.0, 0.0};
+    FrameOutput output;
+    Vec3 sent_n{0.0, 0.0, 0.0};
+    double step_n{0.0};
+};
+
+/// A brake takes 8 N in kFadeTime_s.
+constexpr double kFadeStep_n = 8.0 * 1e-3 / kFadeTime_s;
+
+TEST(SceneChanges, an_object_that_goes_under_a_tool_lets_its_force_fade)
+{
+    Pressed sut;
+    sut.press();
+    ASSERT_GT(sut.sent_n.norm(), 0.3);
+    sut.rig->change(sut.change(SceneChangeKind::object_goes, 0));
+    EXPECT_TRUE(sut.step(sut.pressed_m()).lost_object);
+    EXPECT_TRUE(has_fault(sut.output.faults, FrameFault::object_lost));
+    EXPECT_TRUE(sut.output.pairs.empty());
+    EXPECT_EQ(sut.output.tools[0].clear_m, kInfinity);
+    EXPECT_GT(sut.sent_n.norm(), 0.3 * 0.9);
+    for (int i = 0; i < 200; ++i)
+    {
+        EXPECT_FALSE(sut.step(sut.pressed_m()).lost_object);
+        ASSERT_LE(sut.step_n, 2.0 * kFadeStep_n);
+    }
+    EXPECT_EQ(sut.sent_n, Vec3(0.0, 0.0, 0.0));
+}
+
+TEST(SceneChanges, an_object_that_comes_round_a_tool_makes_no_force_until_the_tool_is_clear_of_it)
+{
+    Pressed sut;
+    sut.press();
+    sut.rig->change(sut.change(SceneChangeKind::object_goes, 0));
+    sut.step(sut.pressed_m());
+    sut.rig->change(sut.change(SceneChangeKind::object_comes, 1)); // Its pose is the same.
+    for (int i = 0; i < 100; ++i)
+    {
+        sut.step(sut.pressed_m() - 0.002);
+        ASSERT_EQ(sut.output.tools[0].force_n, Vec3(0.0, 0.0, 0.0));
+        ASSERT_FALSE(sut.output.tools[0].in_contact);
+        ASSERT_EQ(sut.output.pairs.size(), 1U);
+        ASSERT_FALSE(sut.output.pairs[0].is_joined);
+    }
+    for (int i = 0; i < 100 && !sut.output.pairs[0].is_joined; ++i)
+    {
+        sut.step(sut.pressed_m() - 0.002 + 0.0002 * i);
+        ASSERT_EQ(sut.output.tools[0].force_n, Vec3(0.0, 0.0, 0.0));
+    }
+    EXPECT_GT(sut.output.pairs[0].lower_m, 0.02 * sut.model.diagonal_m);
+    sut.press();
+    EXPECT_GT(sut.sent_n.norm(), 0.3);
+}
+
+TEST(SceneChanges, an_object_that_comes_beside_a_touch_leaves_its_force_as_it_is)
+{
+    Pressed sut;
+    sut.press();
+    const Vec3 before_n = sut.sent_n;
+    SceneChange change = sut.change(SceneChangeKind::object_comes, 0);
+    change.number = 3;
+    sut.rig->change(change); // Round the tool and the object that it touches.
+    for (int i = 0; i < 50; ++i)
+    {
+        sut.step(sut.pressed_m());
+        ASSERT_NEAR((sut.sent_n - before_n).norm(), 0.0, 1e-9);
+    }
+    EXPECT_EQ(sut.output.pairs.size(), 2U);
+}
+
+TEST(SceneChanges, an_object_that_jumps_under_a_tool_lets_its_force_fade)
+{
+    Pressed sut;
+    sut.press();
+    ObjectPose pose;
+    pose.translation_m = Vec3(0.0, 0.0, -0.05); // More than 8 N / 500 N/m.
+    sut.rig->place_object(pose);
+    EXPECT_TRUE(sut.step(sut.pressed_m()).lost_object);
+    for (int i = 0; i < 200; ++i)
+    {
+        sut.step(sut.pressed_m());
+        ASSERT_LE(sut.step_n, 2.0 * kFadeStep_n);
+    }
+}
+
+TEST(SceneChanges, a_tool_that_goes_and_comes_knows_nothing_of_before)
+{
+    Pressed sut;
+    sut.press();
+    sut.rig->change(sut.change(SceneChangeKind::tool_goes, 0));
+    EXPECT_TRUE(sut.step(sut.pressed_m()).is_gone);
+    EXPECT_EQ(sut.output.tools[0].force_n, Vec3(0.0, 0.0, 0.0));
+    EXPECT_TRUE(sut.output.pairs.empty());
+    sut.rig->change(sut.change(SceneChangeKind::tool_goes, 0));
+    sut.step(sut.pressed_m());
+    EXPECT_EQ(sut.output.scene.refused[static_cast<std::size_t>(ChangeRefusal::not_here)], 1U);
+    sut.rig->change(sut.change(SceneChangeKind::tool_comes, 0));
+    EXPECT_FALSE(sut.step(sut.pressed_m() - 0.002).is_gone);
+    EXPECT_FALSE(sut.output.pairs[0].is_joined);
+    sut.rig->change(sut.change(SceneChangeKind::tool_comes, 0));
+    SceneChange unknown = sut.change(SceneChangeKind::tool_comes, 0);
+    unknown.number = 1;
+    sut.rig->change(unknown);
+    sut.step(sut.pressed_m());
+    EXPECT_EQ(sut.output.scene.refused[static_cast<std::size_t>(ChangeRefusal::already_here)], 1U);
+    EXPECT_EQ(sut.output.scene.refused[static_cast<std::size_t>(ChangeRefusal::number_too_big)],
+              1U);
+    for (int i = 0; i < 200; ++i)
+    {
+        sut.step(sut.pressed_m() + 0.0005 * std::min(i, 100));
+    }
+    sut.press();
+    EXPECT_GT(sut.sent_n.norm(), 0.3);
+}
+
+TEST(SceneChanges, of_one_frame_are_taken_up_to_the_limit_and_the_rest_is_counted)
+{
+    for (const std::uint32_t count : {kMaxSceneChanges, kMaxSceneChanges + 1, 1'000U})
+    {
+        Pressed sut;
+        SceneChange change = sut.change(SceneChangeKind::object_moves, 0);
+        for (std::uint32_t i = 0; i < count; ++i)
+        {
+            change.pose.translation_m.x() = 1e-3 * i;
+            sut.rig->change(change);
+        }
+        sut.step(1.0);
+        EXPECT_EQ(sut.output.scene.refused[static_cast<std::size_t>(ChangeRefusal::too_many)],
+                  count - kMaxSceneChanges);
+        EXPECT_NEAR(sut.rig->frame().objects()[0].pose.translation_m.x(),
+                    1e-3 * (kMaxSceneChanges - 1), 1e-12);
+    }
+}
+
+/// Objects in one place, so that each is near each tool: as many pairs as there is room for.
+FrameOutput crowd(std::uint32_t tools, std::uint32_t objects, std::uint32_t pairs = 0)
+{
+    const TestModel& model = small_model(0);
+    RigOptions options = with_room_for_all();
+    options.tools.assign(tools, ToolSpec{0.01 * model.diagonal_m});
+    options.objects.assign(objects, ObjectSpec{ModelId{0}});
+    options.capacities.pairs = pairs;
+    FrameRig rig(model, options);
+    const std::vector<Vec3> goals(tools, to_vec3(model.faces[0][0]));
+    FrameOutput output;
+    for (std::uint32_t i = 0; i <= tools / kBroadWalks; ++i) // Until each has had its walk.
+    {
+        output = rig.step(goals, Budgets{});
+    }
+    EXPECT_TRUE(std::ranges::is_sorted(output.pairs, {},
+                                       [](const PairOutput& pair)
+                                       { return std::pair(pair.tool, pair.object); }));
+    // The rest is the rig's.
+    output.tools = {};
+    output.pairs = {};
+    output.models = {};
+    return output;
+}
+
+TEST(SceneCrowd, has_a_pair_of_each_tool_and_object_up_to_the_limit_and_says_what_it_leaves_out)
+{
+    const FrameOutput all = crowd(4, kMaxPairs / 4);
+    EXPECT_EQ(all.scene.pairs, kMaxPairs);
+    EXPECT_FALSE(has_fault(all.faults, FrameFault::scene_crowded));
+    const FrameOutput full = crowd(4, kMaxPairs / 4 + 1);
+    EXPECT_TRUE(has_fault(full.faults, FrameFault::scene_crowded));
+    EXPECT_EQ(full.scene.pairs, kMaxPairs); // Though all are as near.
+    EXPECT_FALSE(has_fault(crowd(1, kMaxNear).faults, FrameFault::scene_crowded));
+    const FrameOutput over = crowd(1, kMaxNear + 1);
+    EXPECT_TRUE(has_fault(over.faults, FrameFault::scene_crowded));
+    EXPECT_EQ(over.scene.pairs, kMaxNear);
+    EXPECT_EQ(over.scene.crowded_tools, 1U);
+}
+
+/// Two objects and room for one pair: the ball may not go where it is not followed, and does not.
+TEST(SceneCrowd, stops_a_tool_where_what_is_near_is_not_followed)
+{
+    const TestModel& model = small_model(0);
+    RigOptions options = with_room_for_all();
+    options.tools = {{0.01 * model.diagonal_m, 500.0, 8.0, 1.0}};
+    options.objects.assign(2, ObjectSpec{ModelId{0}});
+    options.capacities.pairs = 1;
+    FrameRig rig(model, options);
+    const double apart_m = 0.001 * model.diagonal_m;
+    ObjectPose beside;
+    beside.translation_m = Vec3(apart_m, 0.0, 0.0);
+    rig.place_object(beside, 1);
+    Vec3 goal(1.5 * model.diagonal_m, 0.0, 0.0);
+    const FaceTree tree(model.faces);
+    bool was_crowded = false;
+    for (int i = 0; i < 3'000; ++i)
+    {
+        goal.x() -= 0.001 * model.diagonal_m;
+        const FrameOutput output = rig.step(goal);
+        for (const double at_m : {0.0, apart_m})
+        {
+            ASSERT_GE(tree.nearest(output.tools[0].proxy_m - Vec3(at_m, 0.0, 0.0)).distance_m,
+                      0.01 * model.diagonal_m * (1.0 - 2.0 * kContactTolerance))
+                << "frame " << i;
+        }
+        ASSERT_EQ(output.scene.pairs, 1U);
+        was_crowded = was_crowded || output.scene.walled_tools > 0;
+    }
+    EXPECT_TRUE(was_crowded);
+}
+
+/// A row of a world of models passes under a tool's hand; the rest of them nobody comes near.
+TEST(Scene, of_the_most_models_only_those_near_a_tool_are_looked_at_and_that_changes_nothing)
+{
+    std::vector<const TestModel*> models;
+    for (std::uint32_t i = 0; i < kMaxModels; ++i)
+    {
+        models.push_back(small_models()[i % kSmallModels]);
+    }
+    const double diagonal_m = models[0]->diagonal_m;
+    const double apart_m = 2.0 * diagonal_m;
+    RigOptions options = scene_options(diagonal_m, 1);
+    options.pool_bytes = std::size_t{48} << 20U;
+    options.capacities = {};
+    for (std::uint32_t i = 0; i < kMaxModels; ++i)
+    {
+        options.objects.push_back({ModelId{i}, {400.0, 0.3, 0.2, 0.0}});
+        options.poses.emplace_back();
+        options.poses.back().translation_m = apart_m * Vec3(i % 16, i / 16, 0.0);
+    }
+    FrameRig::validate_every(200); // Each time all slots for each model.
+    FrameRig usual(models, options);
+    options.variant.asks_near_models_only = false;
+    FrameRig sut(models, options);
+    Vec3 goal_m = to_vec3(models[0]->faces[0][0]);
+    std::uint32_t contacts = 0;
+    for (int frame = 0; frame < 600; ++frame)
+    {
+        goal_m += Vec3(0.002 * apart_m, 0.0, 0.0);
+        const FrameOutput expected = sut.step(goal_m);
+        const FrameOutput output = usual.step(goal_m);
+        const auto skipped = output.work.skipped.times()[static_cast<std::size_t>(Skip::models)];
+        ASSERT_GE(skipped, frame < 2 ? 0U : kMaxModels - 8) << "frame " << frame;
+        ASSERT_EQ(output.pairs.size(), expected.pairs.size());
+        for (std::size_t i = 0; i < output.pairs.size(); ++i)
+        {
+            ASSERT_EQ(output.pairs[i].lower_m, expected.pairs[i].lower_m) << "frame " << frame;
+            ASSERT_EQ(output.pairs[i].upper_m, expected.pairs[i].upper_m) << "frame " << frame;
+        }
+        ASSERT_EQ(output.tools[0].force_n, expected.tools[0].force_n) << "frame " << frame;
+        contacts += output.tools[0].in_contact ? 1U : 0U;
+        for (std::uint32_t i = 0; i < kMaxModels; ++i)
+        {
+            ASSERT_EQ(output.models[i].state_hash, expected.models[i].state_hash)
+                << "frame " << frame << ", model " << i;
+        }
+    }
+    FrameRig::validate_every(TACTUS_VALIDATED_EVERY);
+    EXPECT_GT(contacts, 20U);
+}
+
+} // namespace
+} // namespace tactus::test

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+
+/// A tool in contact feels the same whatever the others do: they share its model, its pools and
+/// the frame's budgets.
+
+#include "host_tools/shapes/shapes.hpp"
+#include "tests/shared/greedy_tools.hpp"
+#include "tests/shared/random.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cctype>
+#include <string>
+
+namespace tactus::test
+{
+namespace
+{
+
+class Starvation : public testing::TestWithParam<GreedyCase>
+{
+};
+
+TEST_P(Starvation, a_touch_stays_exact_and_is_not_held_back)
+{
+    const TestModel& model =
+        test_model("bumpy-200k", make_shape(Shape::bumpy_sphere, 200'000).value(), 500);
+    const std::uint64_t seed = seed_of(2'310);
+    SCOPED_TRACE("seed " + std::to_string(seed));
+
+    const GreedyFigures figures = run_greedy(model, GetParam(), 1'000, seed);
+
+    ASSERT_GT(figures.frames, 300U);
+    EXPECT_EQ(figures.broken, "");
+    EXPECT_LE(figures.splits_max, GetParam().splits);
+    EXPECT_EQ(figures.exact, figures.frames);
+    const bool shares_contact = GetParam().others == GreedyCase::Others::are_held;
+    EXPECT_LE(figures.held_back_percent(), shares_contact ? 5.0 : 0.0);
+    EXPECT_LE(figures.force_step_n, shares_contact ? 0.1 : 0.05);
+}
+
+/// Pools in which one touch hardly has room: the others give theirs up, and the frame says so.
+TEST(Shedding, begins_where_a_touch_finds_no_room_and_is_told)
+{
+    const TestModel& model =
+        test_model("bumpy-200k", make_shape(Shape::bumpy_sphere, 200'000).value(), 500);
+    const std::uint64_t seed = seed_of(2'311);
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    GreedyCase greedy{"tight", GreedyCase::Others::pass, 4.0};
+    greedy.pool_bytes = std::size_t{1'130} << 10U;
+    const GreedyFigures among_others = run_greedy(model, greedy, 1'000, seed);
+    greedy.others = GreedyCase::Others::none;
+    const GreedyFigures alone = run_greedy(model, greedy, 1'000, seed);
+
+    EXPECT_EQ(among_others.broken, "");
+    EXPECT_GT(among_others.shed, 300U);
+    EXPECT_EQ(among_others.exact, among_others.frames);
+    EXPECT_LE(among_others.held_back_percent(), 1.0);
+    EXPECT_EQ(alone.shed, 0U) << "there is nobody else";
+    EXPECT_EQ(alone.exact, alone.frames);
+}
+
+std::string name_of_others(const testing::TestParamInfo<GreedyCase>& info)
+{
+    std::string name = info.param.name;
+    std::ranges::replace_if(
+        name, [](char letter) { return std::isalnum(static_cast<unsigned char>(letter)) == 0; },
+        '_');
+    return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Others, Starvation, testing::ValuesIn(greedy_cases()), name_of_others);
+
+} // namespace
+} // namespace tactus::test

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "tests/shared/greedy_tools.hpp"
+
+#include "tests/shared/face_tree.hpp"
+#include "tests/shared/frame_verdict.hpp"
+#include "tests/shared/random.hpp"
+#include "tests/shared/surface_slide.hpp"
+
+#include <algorithm>
+
+namespace tactus::test
+{
+
+namespace
+{
+
+using Others = GreedyCase::Others;
+
+constexpr std::size_t kOthers = 3;
+constexpr double kRadius_diag = 0.01;
+constexpr double kOwnSpeed_diag_per_s = 0.5;
+constexpr double kPeriod_s = 0.001;
+constexpr std::uint32_t kLeadFrames = 500;
+constexpr std::uint32_t kTeleportFrames = 10;
+constexpr std::size_t kMiB = std::size_t{1} << 20U;
+
+SlideManner manner_of(const TestModel& model, double speed_diag_per_s, std::uint64_t seed)
+{
+    SlideManner manner;
+    manner.diagonal_m = model.diagonal_m;
+    manner.radius_diag = kRadius_diag;
+    manner.step_m = speed_diag_per_s * kPeriod_s * model.diagonal_m;
+    manner.turn_rate = [seed](std::uint64_t turn)
+    { return Random::seeded(1'000 * seed + turn).between(-1.0, 1.0); };
+    return manner;
+}
+
+Vec3 somewhere(const TestModel& model, Random& random)
+{
+    return to_vec3(model.faces[random.below(static_cast<std::uint32_t>(model.faces.size()))][0]);
+}
+
+RigOptions options_of(const TestModel& model, const GreedyCase& greedy)
+{
+    RigOptions options;
+    options.pool_bytes = greedy.all_resident ? 128 * kMiB : greedy.pool_bytes;
+    ToolSpec own;
+    own.radius_m = kRadius_diag * model.diagonal_m;
+    own.speed_max_m_per_s = 1.5 * kOwnSpeed_diag_per_s * model.diagonal_m;
+    options.tools = {own};
+    const std::size_t others = greedy.others == Others::none ? 0 : kOthers;
+    for (std::size_t i = 0; i < others; ++i)
+    {
+        ToolSpec other = own;
+        other.passes_through = greedy.others != Others::are_held;
+        other.speed_max_m_per_s = other.passes_through ? 10.0 : greedy.follow_m_per_s;
+        options.tools.push_back(other);
+    }
+    options.courier_steps_per_frame = 1;
+    options.faults.delay_polls_min = options.faults.delay_polls_max = 10;
+    return options;
+}
+
+} // namespace
+
+const std::vector<GreedyCase>& greedy_cases()
+{
+    static const std::vector<GreedyCase> cases{
+        {"alone", Others::none, 0.0, 0.0, 64},
+        {"pass, 1 diag/s, K 16", Others::pass, 1.0, 0.0, 16},
+        {"pass, 2 diag/s, K 16", Others::pass, 2.0, 0.0, 16},
+        {"pass, 4 diag/s, K 16", Others::pass, 4.0, 0.0, 16},
+        {"pass, 4 diag/s, K 64", Others::pass, 4.0, 0.0, 64},
+        {"teleport, K 64", Others::teleport, 0.0, 0.0, 64},
+        {"teleport, all resident, K 16", Others::teleport, 0.0, 0.0, 16, 0, true},
+        {"held, 2 m/s, hands 8 diag/s, K 64", Others::are_held, 8.0, 2.0, 64},
+        {"held, 2 m/s, hands 4 diag/s, K 16", Others::are_held, 4.0, 2.0, 16},
+        {"held, 0.5 m/s, hands 4 diag/s, K 16", Others::are_held, 4.0, 0.5, 16},
+        {"held, 0.05 m/s, hands 4 diag/s, K 16", Others::are_held, 4.0, 0.05, 16},
+        {"pass, 4 diag/s, K 64, 2 MiB", Others::pass, 4.0, 0.0, 64, 2 * kMiB},
+    };
+    return cases;
+}
+
+GreedyFigures run_greedy(const TestModel& model, const GreedyCase& greedy, std::uint32_t frames,
+                         std::uint64_t seed)
+{
+    const FaceTree tree(model.faces);
+    Random random = Random::seeded(seed);
+    FrameRig rig(model, options_of(model, greedy));
+    const std::size_t tools = greedy.others == Others::none ? 1 : 1 + kOthers;
+    std::vector<SurfaceSlide> slides;
+    for (std::size_t i = 0; i < tools; ++i)
+    {
+        slides.emplace_back(
+            tree,
+            manner_of(model, i == 0 ? kOwnSpeed_diag_per_s : greedy.hands_diag_per_s, seed + i),
+            somewhere(model, random));
+    }
+    if (greedy.all_resident)
+    {
+        load_everything(rig);
+    }
+    Budgets budgets;
+    budgets.splits = budgets.merges = greedy.splits;
+    std::vector<Vec3> goals(tools);
+    GreedyFigures figures;
+    Vec3 last_force(0.0, 0.0, 0.0);
+    for (std::uint32_t frame = 0; frame < kLeadFrames + frames; ++frame)
+    {
+        for (std::size_t i = 0; i < tools; ++i)
+        {
+            if (i == 0 || greedy.others != Others::teleport)
+            {
+                goals[i] = slides[i].next();
+            }
+            else if (frame % kTeleportFrames == 0)
+            {
+                goals[i] = somewhere(model, random);
+            }
+        }
+        const FrameOutput output = rig.step(goals, budgets);
+        if (const Verdict verdict = broken_budget(output, budgets);
+            verdict && figures.broken.empty())
+        {
+            figures.broken = *verdict;
+        }
+        const ToolOutput& own = output.tools[0];
+        const double step_n = (own.force_n - last_force).norm();
+        last_force = own.force_n;
+        if (frame < kLeadFrames)
+        {
+            continue;
+        }
+        figures.splits_max = std::max(figures.splits_max, output.work.splits);
+        figures.force_step_n = std::max(figures.force_step_n, step_n);
+        figures.shed += has_fault(output.faults, FrameFault::pair_shed) ? 1U : 0U;
+        figures.full += has_fault(output.faults, FrameFault::cache_full | FrameFault::forest_full |
+                                                     FrameFault::tree_full)
+                            ? 1U
+                            : 0U;
+        if (SurfaceSlide::wanted_distance_diag(kRadius_diag, frame) < kRadius_diag)
+        {
+            ++figures.frames;
+            figures.exact += output.pairs[0].kind == AnswerKind::exact ? 1U : 0U;
+            figures.held_back += own.held_back ? 1U : 0U;
+        }
+    }
+    return figures;
+}
+
+} // namespace tactus::test

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/limits.hpp"
+#include "rt_core/records/local_surface.hpp"
+
+#include <vector>
+
+namespace tactus::test
+{
+
+/// A local surface with room of its own, as much as a pair can have. May be moved, not copied.
+struct OwnedSurface : LocalSurface
+{
+    OwnedSurface() : own_triangles(kMaxLocalTriangles), own_distances_m(kMaxLocalTriangles)
+    {
+        triangles = own_triangles;
+        distances_m = own_distances_m;
+    }
+    OwnedSurface(const OwnedSurface&) = delete;
+    OwnedSurface& operator=(const OwnedSurface&) = delete;
+    OwnedSurface(OwnedSurface&&) noexcept = default;
+    OwnedSurface& operator=(OwnedSurface&&) noexcept = default;
+    ~OwnedSurface() = default;
+
+    std::vector<LocalTriangle> own_triangles;
+    std::vector<double> own_distances_m;
+};
+
+} // namespace tactus::test

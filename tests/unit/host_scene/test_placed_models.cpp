@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "host_tools/scene/placed_models.hpp"
+#include "tests/unit/host_scene/scene_files.hpp"
+
+/// Scene files whose objects name their models: as they are written, and as they are read.
+
+namespace tactus::test
+{
+
+namespace
+{
+
+PlacedModels three_objects()
+{
+    PlacedModels scene;
+    scene.files = {"cup.spm", "jar.spm"};
+    scene.objects.push_back({"cup", 0, {}, {}});
+    scene.objects.push_back(
+        {"cup-2", 0, {{0.0, 0.6, 0.0, 0.8}, {1.0, -2.0, 3e-9}, 2.5}, {.stiffness_n_per_m = 800.0}});
+    scene.objects.push_back(
+        {"jar", 1, {{0.5, 0.5, 0.5, 0.5}, {0.1, 0.2, 0.3}, 1e-3}, {700.0, 0.5, 0.25, 3.0}});
+    return scene;
+}
+
+TEST(PlacedModels, are_read_as_they_were_written)
+{
+    const PlacedModels scene = three_objects();
+    const SceneFiles files;
+    const auto path = files.folder().write("scene.gltf", scene_text(scene));
+    const auto sut = read_placed_models(path);
+    ASSERT_TRUE(sut) << sut.error().text;
+    ASSERT_EQ(sut.value().files.size(), 2U);
+    EXPECT_EQ(sut.value().files[0], files.folder().path() / "cup.spm");
+    EXPECT_EQ(sut.value().files[1], files.folder().path() / "jar.spm");
+    ASSERT_EQ(sut.value().objects.size(), scene.objects.size());
+    for (std::size_t i = 0; i < scene.objects.size(); ++i)
+    {
+        const PlacedModel& read = sut.value().objects[i];
+        const PlacedModel& written = scene.objects[i];
+        EXPECT_EQ(read.name, written.name);
+        EXPECT_EQ(read.model, written.model);
+        EXPECT_EQ(read.pose.translation_m, written.pose.translation_m);
+        EXPECT_NEAR(read.pose.scale, written.pose.scale, 1e-15 * written.pose.scale);
+        for (std::size_t k = 0; k < 4; ++k)
+        {
+            EXPECT_NEAR(read.pose.rotation[k], written.pose.rotation[k], 1e-15);
+        }
+        EXPECT_EQ(read.material.stiffness_n_per_m, written.material.stiffness_n_per_m);
+        EXPECT_EQ(read.material.static_friction, written.material.static_friction);
+        EXPECT_EQ(read.material.dynamic_friction, written.material.dynamic_friction);
+        EXPECT_EQ(read.material.damping_n_s_per_m, written.material.damping_n_s_per_m);
+    }
+}
+
+TEST(PlacedModels, leave_out_what_is_not_touched)
+{
+    auto document = nlohmann::json::parse(scene_text(three_objects()));
+    document["nodes"][0]["extras"]["tactus"] = {{"touch", false}};
+    const SceneFiles files;
+    const auto sut = read_placed_models(files.folder().write("scene.gltf", document.dump()));
+    ASSERT_TRUE(sut) << sut.error().text;
+    EXPECT_EQ(sut.value().files.size(), 2U);
+    EXPECT_EQ(sut.value().objects.size(), 2U);
+    EXPECT_EQ(sut.value().objects[0].name, "cup-2");
+}
+
+TEST(PlacedModels, need_their_models_named)
+{
+    const SceneFiles files;
+    const auto path = files.folder().write("scene.gltf", tetrahedron_scene().dump());
+    const auto sut = read_placed_models(path);
+    ASSERT_FALSE(sut);
+    EXPECT_EQ(sut.error().text, path.string() + ": node 'thing' (nodes[0]) names no model in "
+                                                "extras.tactus; spm_build makes models of a "
+                                                "scene's meshes");
+}
+
+} // namespace
+
+} // namespace tactus::test

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/hrtc/options.hpp"
+#include "platform/hrtc/tool_choice.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <unistd.h>
+
+namespace tactus::hrtc::test
+{
+
+namespace
+{
+
+TEST(ToolChoice, takes_shapes_by_their_measures)
+{
+    EXPECT_TRUE(std::holds_alternative<PointCore>(parse_tool("point").value().core));
+    EXPECT_EQ(parse_tool("point").value().radius_m, 0.0);
+    EXPECT_EQ(parse_tool("sphere:0.002").value().radius_m, 0.002);
+    const ToolChoice capsule = parse_tool("capsule:0.002,0.05").value();
+    EXPECT_EQ(capsule.radius_m, 0.002);
+    EXPECT_EQ(std::get<Segment>(capsule.core).from, Vec3(0.0, 0.0, -0.025));
+    EXPECT_EQ(std::get<Segment>(capsule.core).to, Vec3(0.0, 0.0, 0.025));
+    const ToolChoice box = parse_tool("box:0.01,0.02,0.03,0.001").value();
+    EXPECT_EQ(std::get<Box>(box.core).half, Vec3(0.005, 0.01, 0.015));
+    EXPECT_EQ(box.radius_m, 0.001);
+    EXPECT_EQ(parse_tool("box:0.01,0.02,0.03").value().radius_m, 0.0);
+    EXPECT_EQ(box.words, "box:0.01,0.02,0.03,0.001");
+}
+
+TEST(ToolChoice, takes_names_with_commas_and_a_radius_behind_the_last_one)
+{
+    const ToolChoice hull = parse_tool("hull:a,b.obj,0.001").value();
+    EXPECT_EQ(hull.hull_file, "a,b.obj");
+    EXPECT_EQ(hull.radius_m, 0.001);
+    EXPECT_EQ(parse_tool("hull:a,b.obj").value().hull_file, "a,b.obj");
+    const ToolChoice mesh = parse_tool("mesh:probe@0123,0").value();
+    EXPECT_EQ(mesh.mesh_model, "probe@0123");
+    EXPECT_EQ(mesh.radius_m, 0.0);
+}
+
+TEST(ToolChoice, refuses_what_is_no_shape_and_measures_out_of_range)
+{
+    for (const char* text : {"",
+                             "ball",
+                             "point:1",
+                             "sphere",
+                             "sphere:",
+                             "sphere:0",
+                             "sphere:1.01",
+                             "sphere:9e-6",
+                             "sphere:nan",
+                             "sphere:0.1,0.1",
+                             "capsule:0.1",
+                             "capsule:0.1,0",
+                             "capsule:0,0.1",
+                             "capsule:0.1,2",
+                             "box:0.1,0.1",
+                             "box:0.1,0.1,0",
+                             "box:0.1,0.1,0.1,-0.1",
+                             "box:0.1,0.1,0.1,1e-6",
+                             "box:0.1,0.1,0.1,0.1,0.1",
+                             "hull:",
+                             "hull:,0.1",
+                             "hull:a.obj,2",
+                             "mesh:",
+                             "mesh:probe,-1"})
+    {
+        EXPECT_FALSE(parse_tool(text)) << text;
+    }
+}
+
+TEST(ToolChoice, is_a_sphere_within_the_range_by_default)
+{
+    EXPECT_EQ(default_tool(0.2).radius_m, 0.002);
+    EXPECT_EQ(default_tool(0.2).words, "sphere:0.002");
+    EXPECT_TRUE(parse_tool(default_tool(1e6).words));
+    EXPECT_TRUE(parse_tool(default_tool(1e-6).words));
+}
+
+TEST(ToolChoice, reaches_as_far_as_its_farthest_point)
+{
+    EXPECT_EQ(reach_m(parse_tool("point").value(), nullptr), 0.0);
+    EXPECT_EQ(reach_m(parse_tool("sphere:0.25").value(), nullptr), 0.25);
+    EXPECT_EQ(reach_m(parse_tool("capsule:0.25,0.5").value(), nullptr), 0.5);
+    EXPECT_DOUBLE_EQ(reach_m(parse_tool("box:0.2,0.2,0.1,0.05").value(), nullptr), 0.2);
+}
+
+TEST(ToolChoice, is_held_where_it_touches)
+{
+    EXPECT_EQ(hand_radius_m(parse_tool("point").value(), nullptr, 0.3), 0.003);
+    EXPECT_EQ(hand_radius_m(parse_tool("sphere:0.25").value(), nullptr, 0.3), 0.25);
+    EXPECT_EQ(hand_radius_m(parse_tool("sphere:0.25").value(), nullptr, 0.2), 0.2);
+    EXPECT_EQ(hand_radius_m(parse_tool("capsule:0.25,0.5").value(), nullptr, 0.3), 0.25);
+}
+
+/// A folder with files, for one test.
+class ToolFiles : public testing::Test
+{
+protected:
+    ToolFiles()
+        : folder_(std::filesystem::temp_directory_path() /
+                  ("tool_files_" + std::to_string(::getpid())))
+    {
+        std::filesystem::create_directories(folder_);
+    }
+    ~ToolFiles() override { std::filesystem::remove_all(folder_); }
+    ToolFiles(const ToolFiles&) = delete;
+    ToolFiles& operator=(const ToolFiles&) = delete;
+    ToolFiles(ToolFiles&&) = delete;
+    ToolFiles& operator=(ToolFiles&&) = delete;
+
+    /// Options of one tool, a hull of the file that gets this text.
+    Options of_hull(const std::string& text)
+    {
+        const std::string path = (folder_ / "hull.off").string();
+        std::ofstream(path) << text;
+        return of("hull:" + path);
+    }
+    static Options of(const std::string& tool)
+    {
+        Options options;
+        options.models = {"cow"};
+        options.objects = {{}};
+        options.tool_choices = {parse_tool(tool).value()};
+        return options;
+    }
+    static std::string refusal_of(Options options)
+    {
+        const auto error = take_tool_files(options);
+        return error ? error->text : "";
+    }
+
+    std::filesystem::path folder_;
+};
+
+TEST_F(ToolFiles, are_the_corners_of_a_hull_each_once)
+{
+    // Corner 3 is corner 0 again.
+    Options options = of_hull("OFF\n4 2 0\n0 0 0\n0.3 0 0\n0 0.4 0\n0 0 0\n3 0 1 2\n3 3 1 2\n");
+    ASSERT_FALSE(take_tool_files(options));
+    const ToolChoice& tool = options.tool_choices.front();
+    EXPECT_EQ(std::get<Hull>(tool.core).vertices().size(), 3U);
+    EXPECT_EQ(reach_m(tool, nullptr), 0.4);
+}
+
+TEST_F(ToolFiles, may_be_flat_or_a_line)
+{
+    Options options = of_hull("OFF\n3 1 0\n0 0 0\n0.1 0 0\n0.2 0 0\n3 0 1 2\n");
+    EXPECT_FALSE(take_tool_files(options));
+}
+
+TEST_F(ToolFiles, are_refused_by_name_when_they_hold_no_hull)
+{
+    std::string many = "OFF\n65 1 0\n";
+    for (int i = 0; i < 65; ++i)
+    {
+        many += "0." + std::to_string(100 + i) + " 0 0\n";
+    }
+    EXPECT_NE(
+        refusal_of(of_hull(many + "3 0 1 2\n")).find("65 corners; the hull of a tool has at most"),
+        std::string::npos);
+    EXPECT_NE(refusal_of(of_hull("OFF\n3 1 0\n0 0 0\n2 0 0\n0 1 0\n3 0 1 2\n")).find("is 2 m from"),
+              std::string::npos);
+    EXPECT_NE(refusal_of(of("hull:" + (folder_ / "none.obj").string())).find("none.obj"),
+              std::string::npos);
+}
+
+TEST_F(ToolFiles, add_what_is_a_mesh_to_the_models_once)
+{
+    Options options = of("mesh:probe");
+    options.tool_choices.push_back(options.tool_choices.front());
+    ASSERT_FALSE(take_tool_files(options));
+    EXPECT_EQ(options.models, (std::vector<std::string>{"cow", "probe"}));
+    EXPECT_EQ(std::get<MeshCore>(options.tool_choices[1].core).model, ModelId{1});
+    EXPECT_EQ(options.objects.size(), 1U);
+}
+
+TEST_F(ToolFiles, refuse_a_mesh_that_is_touched_as_well)
+{
+    EXPECT_NE(refusal_of(of("mesh:cow")).find("'cow' is touched as well"), std::string::npos);
+}
+
+} // namespace
+
+} // namespace tactus::hrtc::test

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "rt_core/refine/split_shares.hpp"
+#include "tests/shared/random.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <vector>
+
+namespace tactus::test
+{
+namespace
+{
+
+constexpr double kSlow = Urgency::kLeastSpeed_m_per_s;
+
+TEST(Urgency, goes_by_the_time_until_contact_at_the_hands_speed)
+{
+    EXPECT_EQ(Urgency::at(0.0, 0.0, false).of, UrgencyClass::touching);
+    EXPECT_EQ(Urgency::at(0.001, 1.0, false).of, UrgencyClass::touching);
+    EXPECT_EQ(Urgency::at(0.0011, 1.0, false).of, UrgencyClass::soon);
+    EXPECT_EQ(Urgency::at(0.05, 1.0, false).of, UrgencyClass::soon);
+    EXPECT_EQ(Urgency::at(0.051, 1.0, false).of, UrgencyClass::later);
+    EXPECT_DOUBLE_EQ(Urgency::at(0.5, 2.0, false).contact_s, 0.25);
+}
+
+TEST(Urgency, counts_a_hand_at_rest_as_one_that_may_move)
+{
+    EXPECT_DOUBLE_EQ(Urgency::at(kSlow, 0.0, false).contact_s, 1.0);
+    EXPECT_EQ(Urgency::at(0.0009 * kSlow, 0.0, false).of, UrgencyClass::touching);
+}
+
+TEST(Urgency, lets_tools_without_a_force_come_a_class_later)
+{
+    EXPECT_EQ(Urgency::at(0.0, 0.0, true).of, UrgencyClass::soon);
+    EXPECT_EQ(Urgency::at(1.0, 0.0, true).of, UrgencyClass::last);
+}
+
+TEST(Urgency, orders_by_class_and_then_by_time)
+{
+    const Urgency passing = Urgency::at(0.0, 1.0, true);
+    const Urgency sooner = Urgency::at(0.01, 1.0, false);
+    const Urgency touching = Urgency::at(0.0, 1.0, false);
+    EXPECT_LT(touching, sooner);
+    EXPECT_LT(Urgency::at(0.01, 1.0, false), Urgency::at(0.02, 1.0, false));
+    EXPECT_LT(sooner, passing) << "of the same class, and not there yet";
+    EXPECT_FALSE(passing < sooner);
+    EXPECT_LT(passing, Urgency::at(0.01, 1.0, true));
+    EXPECT_FALSE(touching < touching);
+}
+
+/// One frame in which everybody takes all that it may, or nothing.
+struct SharedFrame
+{
+    std::uint32_t splits{0};
+    std::uint32_t saved{0};                               ///< By each.
+    std::array<std::vector<bool>, kUrgencyClasses> takes; ///< By class and request.
+    std::array<std::vector<std::uint32_t>, kUrgencyClasses> got;
+
+    std::uint32_t run()
+    {
+        SplitShares sut(splits);
+        for (std::size_t of = 0; of < kUrgencyClasses; ++of)
+        {
+            for (std::size_t i = 0; i < takes[of].size(); ++i)
+            {
+                sut.add(static_cast<UrgencyClass>(of));
+            }
+        }
+        std::uint32_t done = 0;
+        for (std::size_t of = 0; of < kUrgencyClasses; ++of)
+        {
+            got[of].clear();
+            for (const bool takes_all : takes[of])
+            {
+                const auto share = sut.take(static_cast<UrgencyClass>(of), saved, done);
+                EXPECT_GE(share.limit, done + share.equal);
+                got[of].push_back(share.equal);
+                done = takes_all ? share.limit : done;
+            }
+        }
+        return done;
+    }
+};
+
+TEST(SplitShares, one_request_may_take_all)
+{
+    for (const std::uint32_t splits : {0U, 1U, 7U, 64U, 256U})
+    {
+        SharedFrame frame;
+        frame.splits = splits;
+        frame.takes[2] = {true};
+        EXPECT_EQ(frame.run(), splits);
+    }
+}
+
+TEST(SplitShares, equals_of_a_class_get_equal_parts_and_what_one_leaves_goes_on)
+{
+    SharedFrame frame;
+    frame.splits = 64;
+    frame.takes[0] = {true, true, true, true};
+    EXPECT_EQ(frame.run(), 64U);
+    EXPECT_EQ(frame.got[0], (std::vector<std::uint32_t>{16, 16, 16, 16}));
+    frame.takes[0] = {false, false, true, true};
+    frame.run();
+    EXPECT_EQ(frame.got[0], (std::vector<std::uint32_t>{16, 22, 32, 32}));
+}
+
+TEST(SplitShares, keeps_an_eighth_for_each_class_below_in_which_somebody_waits)
+{
+    SharedFrame frame;
+    frame.splits = 64;
+    frame.takes[0] = {true};
+    frame.takes[3] = {true};
+    frame.run();
+    EXPECT_EQ(frame.got[0][0], 56U);
+    EXPECT_EQ(frame.got[3][0], 8U);
+    frame.takes[1] = {true};
+    frame.takes[2] = {true};
+    frame.run();
+    EXPECT_EQ(frame.got[0][0], 40U);
+    for (std::size_t of = 1; of < kUrgencyClasses; ++of)
+    {
+        EXPECT_EQ(frame.got[of][0], 8U) << of;
+    }
+}
+
+TEST(SplitShares, what_was_saved_comes_on_top_but_leaves_one_for_each_other)
+{
+    SplitShares sut(16);
+    for (int i = 0; i < 4; ++i)
+    {
+        sut.add(UrgencyClass::touching);
+    }
+    const auto first = sut.take(UrgencyClass::touching, 6, 0);
+    EXPECT_EQ(first.equal, 4U);
+    EXPECT_EQ(first.limit, 10U);
+    EXPECT_EQ(sut.take(UrgencyClass::touching, 100, 10).limit, 14U) << "two others wait";
+}
+
+TEST(SplitShares, what_is_left_is_saved_and_what_is_used_beyond_is_paid)
+{
+    const SplitShares sut(64);
+    EXPECT_EQ(sut.save(0, 16, 5), 11U);
+    EXPECT_EQ(sut.save(11, 16, 20), 7U);
+    EXPECT_EQ(sut.save(11, 16, 64), 0U);
+    EXPECT_EQ(sut.save(30, 16, 0), 32U) << "half of a frame's at most";
+    EXPECT_EQ(sut.save_all(0), 8U);
+}
+
+/// Whatever the others do: never more than all, and every class that waits gets its eighth while
+/// there are at least eight splits, one split for each of its first requests if it has more.
+TEST(SplitShares, no_class_is_starved_and_no_budget_overdrawn)
+{
+    const std::uint64_t seed = seed_of(2'300);
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random = Random::seeded(seed);
+    for (int round = 0; round < 2'000; ++round)
+    {
+        SharedFrame frame;
+        frame.splits = 8 + random.below(249);
+        frame.saved = random.below(frame.splits);
+        for (auto& takes : frame.takes)
+        {
+            takes.resize(random.below(65));
+            for (std::size_t i = 0; i < takes.size(); ++i)
+            {
+                takes[i] = random.below(4) > 0;
+            }
+        }
+        ASSERT_LE(frame.run(), frame.splits);
+        const std::uint32_t eighth = (frame.splits + 7) / 8;
+        for (std::size_t of = 0; of < kUrgencyClasses; ++of)
+        {
+            std::uint32_t served = 0;
+            for (const std::uint32_t got : frame.got[of])
+            {
+                served += got > 0 ? 1U : 0U;
+            }
+            ASSERT_GE(served, std::min<std::size_t>(eighth, frame.takes[of].size()))
+                << "class " << of << ", " << frame.splits << " splits";
+        }
+    }
+}
+
+} // namespace
+} // namespace tactus::test

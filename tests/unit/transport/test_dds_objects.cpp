@@ -1,0 +1,508 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "rt_core/math/infinity.hpp"
+#include "tests/unit/transport/dds_rig.hpp"
+#include "tests/unit/transport/tiny_model.hpp"
+#include "transport/dds/dds_client.hpp"
+#include "transport/dds/dds_host.hpp"
+#include "transport/dds/placement.hpp"
+#include "transport/dds/scene_reader.hpp"
+
+#include <dds/dds.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tactus.h"
+
+namespace tactus::dds
+{
+namespace
+{
+
+using namespace std::chrono_literals;
+using test::eventually;
+using test::make_tiny_model;
+using test::TemporaryFolder;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+/// A quarter turn about z at some place.
+Pose some_pose(double x_m = 0.25)
+{
+    return {{0.0, 0.0, std::sqrt(0.5), std::sqrt(0.5)}, {x_m, -1.5, 3.0}, 2.0};
+}
+
+/// A controller that follows what it is told to, and keeps the news.
+class Follower
+{
+public:
+    explicit Follower(std::uint32_t domain, const std::string& name = "follower")
+        : client_(std::move(DdsClient::create(domain, name, {})).value())
+        , scene_(client_->domain(), client_->exchange())
+    {
+    }
+
+    void step()
+    {
+        client_->exchange().step();
+        scene_.poll(hosts,
+                    [this](SceneNews what, const SeenObject& object)
+                    {
+                        ++news[static_cast<std::size_t>(what)];
+                        last = object;
+                    });
+    }
+    [[nodiscard]] const SeenObject* find(std::uint64_t host, std::uint32_t object)
+    {
+        const auto at = scene_.objects(host).find(object);
+        return at == scene_.objects(host).end() ? nullptr : &at->second;
+    }
+    [[nodiscard]] std::size_t count(SceneNews what) const
+    {
+        return news.at(static_cast<std::size_t>(what));
+    }
+    [[nodiscard]] DdsClient& client() { return *client_; }
+    [[nodiscard]] SceneReader& scene() { return scene_; }
+
+    std::vector<std::uint64_t> hosts;
+    std::array<std::size_t, 3> news{};
+    SeenObject last;
+
+private:
+    std::unique_ptr<DdsClient> client_;
+    SceneReader scene_;
+};
+
+/// A host of one model and a controller that follows it; each in a domain of its own, in turns.
+class DdsObjects : public ::testing::Test
+{
+protected:
+    static constexpr std::uint32_t kHostDomain = 1;
+    static constexpr std::uint32_t kOtherHostDomain = 2;
+    static constexpr std::uint32_t kClientDomain = 3;
+
+    void SetUp() override
+    {
+        test::isolate_domains();
+        host = make_host(kHostDomain);
+        follower.emplace(kClientDomain);
+        follower->hosts = {host->epoch()};
+    }
+    std::unique_ptr<DdsHost> make_host(std::uint32_t domain)
+    {
+        const auto path =
+            folder.write(("tiny" + std::to_string(domain)).c_str(), make_tiny_model({}).file);
+        std::vector<PublishedModel> models;
+        models.push_back({"tiny", ModelStore::open(path).value()});
+        auto made = DdsHost::create(domain, std::move(models), {});
+        EXPECT_TRUE(made) << made.error().text;
+        return std::move(made).value();
+    }
+    [[nodiscard]] ShownObject object_called(const std::string& name, const Pose& pose = {}) const
+    {
+        return {name, host->models()[0].store().hash(), {}, pose};
+    }
+    bool step_until(const std::function<bool()>& is_so)
+    {
+        return eventually(
+            [&]
+            {
+                host->step();
+                follower->step();
+                return is_so();
+            });
+    }
+    void step_for(std::chrono::milliseconds time)
+    {
+        const auto end = std::chrono::steady_clock::now() + time;
+        while (std::chrono::steady_clock::now() < end)
+        {
+            host->step();
+            follower->step();
+            std::this_thread::sleep_for(1ms);
+        }
+    }
+    [[nodiscard]] const SeenObject* seen(std::uint32_t object)
+    {
+        return follower->find(host->epoch(), object);
+    }
+
+    TemporaryFolder folder;
+    std::unique_ptr<DdsHost> host;
+    std::optional<Follower> follower;
+};
+
+TEST_F(DdsObjects, come_move_and_go_as_the_host_says)
+{
+    ShownObject shown = object_called("cup", some_pose());
+    shown.material = {900.0, 0.5, 0.25, 3.0};
+    const std::uint32_t cup = host->objects().show(shown).value();
+    ASSERT_TRUE(step_until([&] { return seen(cup) != nullptr; }));
+    EXPECT_EQ(seen(cup)->shown.name, "cup");
+    EXPECT_EQ(seen(cup)->shown.model, shown.model);
+    EXPECT_EQ(seen(cup)->shown.material.stiffness_n_per_m, 900.0);
+    EXPECT_EQ(seen(cup)->shown.material.static_friction, 0.5);
+    EXPECT_EQ(seen(cup)->shown.material.dynamic_friction, 0.25);
+    EXPECT_EQ(seen(cup)->shown.material.damping_n_s_per_m, 3.0);
+    EXPECT_EQ(seen(cup)->shown.pose.translation_m, some_pose().translation_m);
+    EXPECT_EQ(seen(cup)->shown.pose.scale, 2.0);
+    EXPECT_EQ(follower->count(SceneNews::comes), 1U);
+
+    ASSERT_TRUE(host->objects().move(cup, some_pose(0.5)));
+    ASSERT_TRUE(step_until([&] { return seen(cup)->shown.pose.translation_m[0] == 0.5; }));
+    EXPECT_GT(seen(cup)->host_time_ns, 0);
+    host->objects().remove(cup);
+    EXPECT_EQ(host->objects().objects(), 0U);
+    ASSERT_TRUE(step_until([&] { return seen(cup) == nullptr; }));
+    EXPECT_EQ(follower->count(SceneNews::goes), 1U);
+
+    const std::uint32_t pot = host->objects().show(object_called("pot")).value();
+    EXPECT_EQ(pot, cup); // It may have its number: it has another generation.
+    ASSERT_TRUE(step_until([&] { return seen(pot) != nullptr; }));
+    EXPECT_EQ(seen(pot)->shown.name, "pot");
+    EXPECT_EQ(seen(pot)->generation, 2U);
+    EXPECT_EQ(seen(pot)->shown.material.stiffness_n_per_m, kInfinity);
+}
+
+TEST_F(DdsObjects, are_heard_of_at_rest_as_often_as_in_motion)
+{
+    const std::uint32_t cup = host->objects().show(object_called("cup")).value();
+    ASSERT_TRUE(
+        step_until([&] { return seen(cup) && follower->scene().was_heard(host->epoch()); }));
+    int heard = 0;
+    const auto end = std::chrono::steady_clock::now() + 1s;
+    while (std::chrono::steady_clock::now() < end)
+    {
+        host->wait(50ms);
+        host->step();
+        follower->step();
+        heard += follower->scene().was_heard(host->epoch()) ? 1 : 0;
+    }
+    EXPECT_GT(heard, 20); // 50 on a machine that has nothing else to do.
+    EXPECT_EQ(follower->count(SceneNews::moves), 0U);
+}
+
+/// The record is what a late joiner gets; what has rested for long is in it.
+TEST_F(DdsObjects, stand_for_a_late_joiner_where_they_came_to_rest)
+{
+    const std::uint32_t cup = host->objects().show(object_called("cup")).value();
+    for (int i = 1; i <= 20; ++i)
+    {
+        ASSERT_TRUE(host->objects().move(cup, some_pose(0.01 * i)));
+        host->step();
+        std::this_thread::sleep_for(2ms);
+    }
+    step_for(700ms);
+    follower.emplace(kClientDomain, "late");
+    follower->hosts = {host->epoch()};
+    ASSERT_TRUE(step_until([&] { return seen(cup) != nullptr; }));
+    EXPECT_NEAR(seen(cup)->shown.pose.translation_m[0], 0.2, 1e-15);
+    EXPECT_EQ(follower->count(SceneNews::moves), 0U);
+}
+
+TEST_F(DdsObjects, many_come_at_once_and_move_together)
+{
+    constexpr std::uint32_t kMany = 1'000;
+    for (std::uint32_t i = 0; i < kMany; ++i)
+    {
+        ASSERT_TRUE(host->objects().show(object_called("o" + std::to_string(i))));
+    }
+    ASSERT_TRUE(step_until([&] { return follower->scene().is_complete(host->epoch()); }));
+    EXPECT_EQ(follower->scene().objects(host->epoch()).size(), kMany);
+    for (std::uint32_t i = 0; i < kMany; ++i)
+    {
+        ASSERT_TRUE(host->objects().move(i, some_pose(1e-3 * i)));
+    }
+    EXPECT_TRUE(step_until(
+        [&]
+        {
+            bool all = true;
+            for (std::uint32_t i = 0; i < kMany && all; ++i)
+            {
+                all = seen(i)->shown.pose.translation_m[0] == 1e-3 * i &&
+                      seen(i)->shown.pose.scale == 2.0;
+            }
+            return all;
+        }));
+}
+
+TEST_F(DdsObjects, that_a_host_must_not_show_never_leave_it)
+{
+    ObjectPublisher& sut = host->objects();
+    const auto refusal = [&](const ShownObject& object)
+    {
+        const auto number = sut.show(object);
+        return number ? std::string() : number.error().text;
+    };
+    EXPECT_NE(refusal(object_called("two words")).find("object 'two words' needs a name"),
+              std::string::npos);
+    ShownObject object = object_called("cup");
+    object.model[0] ^= 1U;
+    EXPECT_NE(refusal(object).find("which isn't served"), std::string::npos);
+    object = object_called("cup");
+    object.pose.scale = kNan;
+    EXPECT_EQ(refusal(object), "object 'cup' stands nowhere: not_finite");
+    object = object_called("cup");
+    object.material.dynamic_friction = 0.5;
+    EXPECT_NE(refusal(object).find("has a material with"), std::string::npos);
+    object.material = {0.0, 0.0, 0.0, 0.0};
+    EXPECT_NE(refusal(object).find("has a material with"), std::string::npos);
+    for (std::uint32_t i = 0; i < kMaxObjects; ++i)
+    {
+        ASSERT_TRUE(sut.show(object_called("cup")));
+    }
+    EXPECT_NE(refusal(object_called("cup")).find("is one too many: 4096 are the limit"),
+              std::string::npos);
+    sut.remove(17);
+    EXPECT_EQ(sut.show(object_called("cup")).value(), 17U);
+    Pose pose = some_pose();
+    pose.rotation[0] = 1.0;
+    EXPECT_EQ(sut.move(0, pose).error(), PoseRefusal::rotation);
+    EXPECT_TRUE(sut.move(0, some_pose()));
+    EXPECT_EQ(sut.find(kMaxObjects), nullptr);
+}
+
+/// Samples of the host's own participant that its program did not make.
+class DdsObjectFaults : public DdsObjects
+{
+protected:
+    void SetUp() override
+    {
+        DdsObjects::SetUp();
+        cup_ = host->objects().show(object_called("cup")).value();
+        ASSERT_TRUE(step_until([&] { return seen(cup_) != nullptr; }));
+        motion_ = make_writer(host->domain(), Topic::motion, host_partition(host->epoch())).value();
+        ASSERT_TRUE(eventually([&] { return is_matched(motion_); }));
+    }
+    void write(std::uint64_t serial, const tactus_v2_MovedObject& moved)
+    {
+        tactus_v2_MovedObject copy = moved;
+        tactus_v2_Motion sample = {};
+        sample.host_epoch = host->epoch();
+        sample.serial = serial;
+        sample.host_time_ns = 1;
+        sample.moved = {1, 1, &copy, false};
+        EXPECT_EQ(dds_write(motion_.handle, &sample), DDS_RETCODE_OK);
+    }
+    [[nodiscard]] tactus_v2_MovedObject good(double x_m = 0.0) const
+    {
+        return {cup_, 1, to_wire(some_pose(x_m))};
+    }
+    /// Best effort promises nothing: written until it was counted.
+    void write_until_counted(std::uint64_t serial, const tactus_v2_MovedObject& moved)
+    {
+        const auto counted = [&]
+        { return seen(cup_)->counts.accepted + seen(cup_)->counts.refused_in_all(); };
+        const std::uint64_t before = counted();
+        EXPECT_TRUE(eventually(
+            [&]
+            {
+                write(serial, moved);
+                for (int i = 0; i < 50 && counted() == before; ++i)
+                {
+                    follower->step();
+                    std::this_thread::sleep_for(1ms);
+                }
+                return counted() > before;
+            }));
+    }
+    [[nodiscard]] std::uint64_t refused(PoseRefusal refusal)
+    {
+        return seen(cup_)->counts.refused.at(static_cast<std::size_t>(refusal));
+    }
+
+    std::uint32_t cup_{0};
+    Endpoint motion_;
+};
+
+TEST_F(DdsObjectFaults, are_refused_under_their_names_and_change_nothing)
+{
+    struct Fault
+    {
+        PoseRefusal refusal;
+        std::function<void(tactus_v2_Placement&)> make;
+    };
+    using Place = tactus_v2_Placement;
+    const std::vector<Fault> faults{
+        {PoseRefusal::not_finite, [](Place& p) { p.rotation[0] = kNan; }},
+        {PoseRefusal::not_finite, [](Place& p) { p.rotation[3] = kInfinity; }},
+        {PoseRefusal::not_finite, [](Place& p) { p.translation_m[1] = -kInfinity; }},
+        {PoseRefusal::not_finite, [](Place& p) { p.scale = kNan; }},
+        {PoseRefusal::rotation, [](Place& p) { p.rotation[3] = 0.0; }},
+        {PoseRefusal::rotation, [](Place& p) { p.rotation[0] = 1e300; }},
+        {PoseRefusal::translation, [](Place& p) { p.translation_m[0] = 10'000.1; }},
+        {PoseRefusal::translation, [](Place& p) { p.translation_m[2] = -10'000.1; }},
+        {PoseRefusal::scale, [](Place& p) { p.scale = 0.0; }},
+        {PoseRefusal::scale, [](Place& p) { p.scale = -1.0; }},
+        {PoseRefusal::scale, [](Place& p) { p.scale = 1'000.1; }},
+    };
+    write_until_counted(1'000, good(0.5));
+    for (std::size_t i = 0; i < faults.size(); ++i)
+    {
+        tactus_v2_MovedObject moved = good(0.75);
+        faults[i].make(moved.pose);
+        const std::uint64_t before = refused(faults[i].refusal);
+        write_until_counted(2'000 + i, moved);
+        EXPECT_GT(refused(faults[i].refusal), before) << i;
+        EXPECT_EQ(seen(cup_)->shown.pose.translation_m[0], 0.5) << i;
+    }
+    write_until_counted(999, good(0.75)); // Late.
+    EXPECT_GE(refused(PoseRefusal::not_newer), 1U);
+    EXPECT_EQ(seen(cup_)->shown.pose.translation_m[0], 0.5);
+    write_until_counted(1'001, good(0.75)); // Nothing of what was refused is remembered.
+    EXPECT_EQ(seen(cup_)->shown.pose.translation_m[0], 0.75);
+}
+
+TEST_F(DdsObjectFaults, of_objects_that_are_not_there_or_were_are_passed_over)
+{
+    tactus_v2_MovedObject moved = good(0.5);
+    moved.object = cup_ + 1;
+    write(1'000, moved);
+    moved = good(0.5);
+    moved.generation = 7;
+    write(1'001, moved);
+    write_until_counted(1'002, good(0.25));
+    EXPECT_EQ(follower->scene().objects(host->epoch()).size(), 1U);
+    EXPECT_EQ(seen(cup_)->shown.pose.translation_m[0], 0.25);
+    EXPECT_EQ(seen(cup_)->counts.refused_in_all(), 0U);
+}
+
+/// Whatever stands in a sample: only a pose passes.
+TEST_F(DdsObjectFaults, of_noise_never_pass_for_a_pose)
+{
+    constexpr std::uint64_t kSeed = 20'261'122;
+    std::mt19937_64 random(kSeed);
+    for (std::uint64_t i = 0; i < 5'000; ++i)
+    {
+        tactus_v2_MovedObject moved = good();
+        for (double* number :
+             {&moved.pose.rotation[0], &moved.pose.rotation[1], &moved.pose.rotation[2],
+              &moved.pose.rotation[3], &moved.pose.translation_m[0], &moved.pose.scale})
+        {
+            const std::uint64_t bits = random();
+            std::memcpy(number, &bits, sizeof(bits));
+        }
+        write(1'000 + i, moved);
+        follower->step();
+        EXPECT_TRUE(checked_pose(seen(cup_)->shown.pose)) << "seed " << kSeed;
+    }
+    EXPECT_TRUE(eventually(
+        [&]
+        {
+            write(1'000'000, good(0.125));
+            follower->step();
+            return seen(cup_)->shown.pose.translation_m[0] == 0.125;
+        }));
+    EXPECT_GT(seen(cup_)->counts.refused_in_all(), 0U);
+}
+
+/// A stranger in the host's partition: writes the host's object anew, moves it and removes it.
+TEST_F(DdsObjectFaults, of_who_is_not_the_host_do_not_get_in)
+{
+    const Domain stranger = Domain::join(kOtherHostDomain).value();
+    const std::string partition = host_partition(host->epoch());
+    const Endpoint records = make_writer(stranger, Topic::objects, partition).value();
+    const Endpoint motion = make_writer(stranger, Topic::motion, partition).value();
+    ASSERT_TRUE(eventually([&] { return is_matched(records) && is_matched(motion); }));
+    tactus_v2_ObjectRecord record = {};
+    record.host_epoch = host->epoch();
+    record.object = cup_;
+    record.generation = 9;
+    record.serial = 1'000'000;
+    std::strcpy(static_cast<char*>(record.name), "false");
+    record.pose = to_wire(some_pose(7.0));
+    ASSERT_EQ(dds_write(records.handle, &record), DDS_RETCODE_OK);
+    record.object = cup_ + 1;
+    ASSERT_EQ(dds_write(records.handle, &record), DDS_RETCODE_OK);
+    record.object = cup_;
+    ASSERT_EQ(dds_dispose(records.handle, &record), DDS_RETCODE_OK);
+    tactus_v2_MovedObject moved = good(7.0);
+    tactus_v2_Motion sample = {};
+    sample.host_epoch = host->epoch();
+    sample.serial = 1'000'000;
+    sample.moved = {1, 1, &moved, false};
+    ASSERT_EQ(dds_write(motion.handle, &sample), DDS_RETCODE_OK);
+    step_for(300ms);
+    ASSERT_NE(seen(cup_), nullptr);
+    EXPECT_EQ(seen(cup_)->shown.name, "cup");
+    EXPECT_EQ(seen(cup_)->shown.pose.translation_m[0], 0.0);
+    EXPECT_EQ(follower->scene().objects(host->epoch()).size(), 1U);
+    write_until_counted(2'000, good(0.5)); // The host itself goes on as before.
+    EXPECT_EQ(seen(cup_)->shown.pose.translation_m[0], 0.5);
+}
+
+TEST_F(DdsObjects, of_a_host_that_is_not_followed_any_more_go)
+{
+    static_cast<void>(host->objects().show(object_called("cup")).value());
+    ASSERT_TRUE(step_until([&] { return follower->count(SceneNews::comes) == 1; }));
+    follower->hosts.clear();
+    follower->step();
+    EXPECT_EQ(follower->count(SceneNews::goes), 1U);
+    EXPECT_TRUE(follower->scene().objects(host->epoch()).empty());
+}
+
+TEST_F(DdsObjects, of_two_hosts_are_told_apart)
+{
+    const auto other = make_host(kOtherHostDomain);
+    follower->hosts.push_back(other->epoch());
+    const std::uint32_t cup = host->objects().show(object_called("cup", some_pose(1.0))).value();
+    const std::uint32_t pot = other->objects().show(object_called("pot", some_pose(2.0))).value();
+    EXPECT_EQ(cup, pot);
+    EXPECT_TRUE(step_until(
+        [&]
+        {
+            other->step();
+            return seen(cup) != nullptr && follower->find(other->epoch(), pot) != nullptr;
+        }));
+    EXPECT_EQ(seen(cup)->shown.name, "cup");
+    EXPECT_EQ(follower->find(other->epoch(), pot)->shown.name, "pot");
+}
+
+/// Eight at the same instant: four get everything at once, the others when these have it.
+TEST_F(DdsObjects, come_to_many_controllers_a_few_at_a_time)
+{
+    constexpr std::uint32_t kMany = 500;
+    for (std::uint32_t i = 0; i < kMany; ++i)
+    {
+        ASSERT_TRUE(host->objects().show(object_called("o" + std::to_string(i))));
+    }
+    std::vector<std::unique_ptr<Follower>> crowd;
+    for (int i = 0; i < 8; ++i)
+    {
+        crowd.push_back(std::make_unique<Follower>(kClientDomain, "c" + std::to_string(i)));
+        crowd.back()->hosts = {host->epoch()};
+    }
+    std::ptrdiff_t joining_max = 0;
+    const auto has_all = [&](const std::unique_ptr<Follower>& each)
+    { return each->scene().objects(host->epoch()).size() == kMany; };
+    EXPECT_TRUE(eventually(
+        [&]
+        {
+            host->step();
+            std::ptrdiff_t joining = 0;
+            for (const auto& each : crowd)
+            {
+                each->step();
+                joining += each->client().exchange().is_let_in(host->epoch()) &&
+                                   !each->scene().is_complete(host->epoch())
+                               ? 1
+                               : 0;
+            }
+            joining_max = std::max(joining_max, joining);
+            return std::ranges::all_of(crowd, has_all);
+        }));
+    EXPECT_LE(joining_max, 4);
+}
+
+} // namespace
+} // namespace tactus::dds
