@@ -14,7 +14,7 @@ namespace
 {
 
 constexpr double kLargestPool_mib = 4'096.0;
-constexpr double kFrameBudgetMin_us = 10.0;
+constexpr double kFrameBudgetMin_us = 1.0;
 constexpr double kFrameBudgetMax_us = 10'000.0;
 
 /// The models, the tools that touch them and their devices.
