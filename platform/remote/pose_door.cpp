@@ -11,23 +11,71 @@
 namespace tactus
 {
 
-PoseDoor::PoseDoor(std::span<const ObjectPose> placed, Duration age_limit)
+PoseDoor::PoseDoor(std::span<const ObjectPose> placed, std::size_t objects, Duration age_limit)
     : age_limit_(age_limit)
     , places_(placed.begin(), placed.end())
-    , letters_(placed.size())
-    , glides_(placed.size())
-    , uses_(placed.size())
-    , numbers_(placed.size())
+    , letters_(objects)
+    , glides_(objects)
+    , uses_(objects)
+    , numbers_(objects)
+    , generations_(objects)
+    , passage_slots_(kWaiting)
+    , passages_(passage_slots_)
     // NOLINTBEGIN(*-avoid-c-arrays)
-    , mailboxes_(std::make_unique<Mailbox<Letter>[]>(placed.size()))
-    , heard_ns_(std::make_unique<std::atomic<std::int64_t>[]>(placed.size()))
+    , mailboxes_(std::make_unique<Mailbox<Letter>[]>(objects))
+    , heard_ns_(std::make_unique<std::atomic<std::int64_t>[]>(objects))
 // NOLINTEND(*-avoid-c-arrays)
 {
+    TACTUS_ASSERT(placed.size() <= objects);
+    places_.resize(objects);
+    for (std::size_t i = 0; i < placed.size(); ++i)
+    {
+        glides_[i].is_here = true;
+    }
+}
+
+bool PoseDoor::try_come(std::size_t object, std::uint32_t generation, const ObjectSpec& spec,
+                        const ObjectPose& pose, MonotonicTime arrival) noexcept
+{
+    TACTUS_ASSERT(object < letters_.size());
+    TACTUS_ASSERT(generation > generations_[object] || numbers_[object] == 0);
+    if (passages_.size() == kWaiting)
+    {
+        return false;
+    }
+    generations_[object] = generation;
+    Passage passage;
+    passage.comes = true;
+    passage.object = static_cast<std::uint32_t>(object);
+    passage.letter = letter_of(object, pose, arrival);
+    passage.model = spec.model.value;
+    passage.stiffness_n_per_m = spec.material.stiffness_n_per_m;
+    passage.static_friction = spec.material.static_friction;
+    passage.dynamic_friction = spec.material.dynamic_friction;
+    passage.damping_n_s_per_m = spec.material.damping_n_s_per_m;
+    hear(object, arrival);
+    return passages_.try_push(passage);
+}
+
+bool PoseDoor::try_go(std::size_t object) noexcept
+{
+    TACTUS_ASSERT(object < letters_.size());
+    Passage passage;
+    passage.object = static_cast<std::uint32_t>(object);
+    passage.letter.generation = generations_[object];
+    return passages_.try_push(passage);
 }
 
 void PoseDoor::put(std::size_t object, const ObjectPose& pose, MonotonicTime arrival) noexcept
 {
     TACTUS_ASSERT(object < letters_.size());
+    mailboxes_[object].write(letter_of(object, pose, arrival));
+    hear(object, arrival);
+}
+
+PoseDoor::Letter PoseDoor::letter_of(std::size_t object, const ObjectPose& pose,
+                                     MonotonicTime arrival) noexcept
+{
     Letter letter;
     for (int i = 0; i < 9; ++i)
     {
@@ -39,9 +87,24 @@ void PoseDoor::put(std::size_t object, const ObjectPose& pose, MonotonicTime arr
     letter.stamp_ns = pose.stamp_ns;
     letter.revision = pose.revision;
     letter.arrival_ns = arrival.ns;
+    letter.generation = generations_[object];
     letter.number = ++numbers_[object];
-    mailboxes_[object].write(letter);
-    hear(object, arrival);
+    return letter;
+}
+
+ObjectPose PoseDoor::pose_of(const Letter& letter) noexcept
+{
+    ObjectPose pose;
+    for (int i = 0; i < 9; ++i)
+    {
+        pose.rotation(i / 3, i % 3) = letter.rotation[static_cast<std::size_t>(i)];
+    }
+    const auto& at_m = letter.translation_m;
+    pose.translation_m = Vec3(at_m[0], at_m[1], at_m[2]);
+    pose.scale = letter.scale;
+    pose.stamp_ns = letter.stamp_ns;
+    pose.revision = letter.revision;
+    return pose;
 }
 
 void PoseDoor::hear(std::size_t object, MonotonicTime now) noexcept
@@ -53,7 +116,7 @@ void PoseDoor::hear(std::size_t object, MonotonicTime now) noexcept
 std::span<const SceneChange> PoseDoor::refresh(MonotonicTime now) noexcept
 {
     const std::size_t objects = letters_.size();
-    std::size_t changes = 0;
+    std::size_t changes = take_passages();
     std::size_t next = first_;
     if (last_refresh_ == MonotonicTime{})
     {
@@ -62,8 +125,16 @@ std::span<const SceneChange> PoseDoor::refresh(MonotonicTime now) noexcept
     for (std::size_t i = 0; i < objects; ++i)
     {
         const std::size_t object = (first_ + i) % objects;
+        Glide& glide = glides_[object];
+        if (!glide.is_here)
+        {
+            continue;
+        }
         Letter letter;
-        if (mailboxes_[object].try_read(letter) && letter.number != letters_[object].number)
+        // What was put for another object under this number came too late, or its own passage
+        // waits.
+        if (mailboxes_[object].try_read(letter) && letter.number > letters_[object].number &&
+            letter.generation == letters_[object].generation)
         {
             begin_glide(object, letter, now);
             letters_[object] = letter;
@@ -78,7 +149,6 @@ std::span<const SceneChange> PoseDoor::refresh(MonotonicTime now) noexcept
         use.old_frames += age > age_limit_ ? 1U : 0U;
         // Before the limit, so that the frame meets it at the right time.
         const bool is_silent = age > Duration{age_limit_.ns / 2};
-        Glide& glide = glides_[object];
         const bool has_news = glide.is_under_way || glide.is_told_old != is_silent;
         if (!has_news || changes == changes_.size())
         {
@@ -90,6 +160,7 @@ std::span<const SceneChange> PoseDoor::refresh(MonotonicTime now) noexcept
         SceneChange& change = changes_[changes++];
         change.kind = SceneChangeKind::object_moves;
         change.number = static_cast<std::uint32_t>(object);
+        change.generation = letters_[object].generation;
         change.pose = ObjectPose{places_[object]};
         change.pose.stamp_ns = letters_[object].stamp_ns;
         change.pose.revision = letters_[object].revision;
@@ -101,18 +172,43 @@ std::span<const SceneChange> PoseDoor::refresh(MonotonicTime now) noexcept
     return {changes_.data(), changes};
 }
 
+/// Before the moves; returns how many changes they make. More wait for the next frame.
+std::size_t PoseDoor::take_passages() noexcept
+{
+    std::size_t changes = 0;
+    Passage passage;
+    while (changes < changes_.size() && passages_.try_pop(passage))
+    {
+        const std::size_t object = passage.object;
+        SceneChange& change = changes_[changes++];
+        change = SceneChange{};
+        change.number = passage.object;
+        change.generation = passage.letter.generation;
+        glides_[object] = Glide{};
+        glides_[object].is_here = passage.comes;
+        uses_[object].is_followed = passage.comes;
+        if (!passage.comes)
+        {
+            change.kind = SceneChangeKind::object_goes;
+            continue;
+        }
+        letters_[object] = passage.letter;
+        change.kind = SceneChangeKind::object_comes;
+        change.object.model = ModelId{passage.model};
+        change.object.material = {passage.stiffness_n_per_m, passage.static_friction,
+                                  passage.dynamic_friction, passage.damping_n_s_per_m};
+        change.pose = pose_of(passage.letter);
+        places_[object] = Similarity{change.pose};
+    }
+    return changes;
+}
+
 void PoseDoor::begin_glide(std::size_t object, const Letter& letter, MonotonicTime now) noexcept
 {
     const Letter& before = letters_[object];
     Glide& glide = glides_[object];
     glide.from = places_[object];
-    for (int i = 0; i < 9; ++i)
-    {
-        glide.to.rotation(i / 3, i % 3) = letter.rotation[static_cast<std::size_t>(i)];
-    }
-    const auto& at_m = letter.translation_m;
-    glide.to.translation_m = Vec3(at_m[0], at_m[1], at_m[2]);
-    glide.to.scale = letter.scale;
+    glide.to = Similarity{pose_of(letter)};
     // The frame has not been told yet of one that was to be there at once: this one is.
     const bool is_overdue = glide.is_under_way && glide.time == Duration{0};
     glide.start = std::min(last_refresh_, now); // It was told to be there then.
