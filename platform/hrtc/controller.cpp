@@ -84,6 +84,16 @@ std::vector<std::uint32_t> Controller::first_objects() const
     return first;
 }
 
+bool Controller::is_of_tool(std::size_t model) const noexcept
+{
+    return std::ranges::any_of(tools_,
+                               [model](const ToolSetup& tool)
+                               {
+                                   const auto* mesh = std::get_if<MeshCore>(&tool.spec.core);
+                                   return mesh != nullptr && mesh->model.value == model;
+                               });
+}
+
 void Controller::make_poses(const Options& options)
 {
     for (const PlacedObject& object : options.objects)

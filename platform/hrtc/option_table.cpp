@@ -14,7 +14,7 @@ namespace
 {
 
 constexpr double kLargestPool_mib = 4'096.0;
-constexpr double kFrameBudgetMin_us = 10.0;
+constexpr double kFrameBudgetMin_us = 1.0;
 constexpr double kFrameBudgetMax_us = 10'000.0;
 
 /// The models, the tools that touch them and their devices.
@@ -24,9 +24,11 @@ void declare_scene(CommandLine& line, Options& options, RawOptions& raw)
                     "Model to touch: NAME or NAME@HASH as published, or with --transport file a "
                     "path; repeatable, the same one for several objects that show it")
         .repeatable();
-    line.add_option("--scene", options.scene_path,
-                    "Instead of --model: the objects of a glTF file, each with its model beside "
-                    "the file, as spm_build writes it; with --transport file");
+    line.add_option(
+        "--scene", options.scene,
+        "Instead of --model: all objects of the host whose scene has this name, as they "
+        "come, move and go; with --transport file those of a glTF file, each with its "
+        "model beside the file, as spm_build writes it");
     line.add_option("--place", raw.places,
                     "Where the object stands, one for each --model in order, and more for further "
                     "objects that show the last one: X,Y,Z in m "
@@ -138,7 +140,8 @@ void declare_transport(CommandLine& line, Options& options, RawOptions& raw)
         .integer_between(0, 232)
         .show_default();
     line.add_flag("--ignore-poses", raw.ignores_poses,
-                  "Leave the models where --place puts them, whatever their hosts say");
+                  "Leave the objects where --place or --scene put them at the start, whatever "
+                  "their hosts say");
     line.add_option("--wait", options.wait_s,
                     "Seconds to wait for a model to be published, and for a device to come")
         .number_between(0.1, 3'600.0)

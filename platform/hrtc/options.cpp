@@ -67,13 +67,21 @@ std::string check_files(const CommandLine& line, const Options& options)
 /// named twice is one model of two objects. Empty when all is well.
 std::string check_models(Options& options, const RawOptions& raw)
 {
-    if (!options.scene_path.empty())
+    if (!options.scene.empty())
     {
         const bool has_others =
             !raw.models.empty() || !raw.places.empty() || !raw.materials.empty();
-        return has_others ? "--scene: takes the place of --model, --place and --material"
-               : raw.transport != "file" ? "--scene: needs --transport file"
-                                         : "";
+        if (has_others)
+        {
+            return "--scene: takes the place of --model, --place and --material";
+        }
+        if (raw.transport == "file" || is_valid_name(options.scene))
+        {
+            return "";
+        }
+        return fmt::format("--scene: '{}' is not 1 to 63 characters of A-Z a-z 0-9 . _ -; a file "
+                           "needs --transport file",
+                           printable(options.scene));
     }
     if (raw.models.empty())
     {

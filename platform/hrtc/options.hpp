@@ -45,7 +45,9 @@ struct Options
 {
     std::vector<std::string> models; ///< NAME[@HASH], or paths with the file transport; each once.
     std::vector<PlacedObject> objects; ///< By their numbers; each model is shown by one at least.
-    std::string scene_path; ///< Not empty: models and objects are this file's, see take_scene().
+    /// Not empty: models and objects are this file's, or with DDS those of the host whose scene has
+    /// this name; see scene_choice.hpp.
+    std::string scene;
     std::uint32_t objects_max{0}; ///< Room for so many; 0: as many as there are.
     std::size_t tools{1};
     std::vector<ToolChoice> tool_choices;   ///< One a tool; none: all are default_tool().

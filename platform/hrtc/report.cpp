@@ -176,25 +176,28 @@ Json tools_of(const RunRecord& record)
 Json pairs_of(const RunRecord& record)
 {
     Json list = Json::array();
-    const std::vector<ObjectSpec>& objects = record.controller.objects();
+    const ObjectTable& objects = record.controller.frame().objects();
+    const std::uint32_t places = objects.capacity();
     for (std::size_t i = 0; i < record.run.statistics.pairs.size(); ++i)
     {
-        const std::size_t object = i % objects.size();
+        const auto object = static_cast<std::uint32_t>(i % places);
         const AnswerCounts& answers = record.run.statistics.pairs[i];
         if (answers.in_all() == 0)
         {
             continue; // They were never near.
         }
-        list.push_back({{"tool", i / objects.size()},
-                        {"object", object},
-                        {"model", record.controller.models()[objects[object].model.value].name},
-                        {"answers", answers_of(answers, record.controller.diagonal_world_m())}});
+        list.push_back(
+            {{"tool", i / places},
+             {"object", object},
+             {"model", record.controller.models()[objects[object].spec.model.value].name},
+             {"answers", answers_of(answers, record.controller.diagonal_world_m())}});
     }
     return list;
 }
 
-Json scene_of(const RunStatistics& statistics)
+Json scene_of(const FinishedRun& run)
 {
+    const RunStatistics& statistics = run.statistics;
     Json refused = Json::object();
     for (std::size_t i = 0; i < kChangeRefusals; ++i)
     {
@@ -206,6 +209,9 @@ Json scene_of(const RunStatistics& statistics)
             {"invisible_wall_frames", statistics.invisible_wall_frames},
             {"crowded_frames", statistics.crowded_frames},
             {"shed_pairs", statistics.shed_pairs},
+            {"came", run.scene_news.came},
+            {"went", run.scene_news.went},
+            {"passed_over", run.scene_news.passed_over},
             {"walks", statistics.scene_walks},
             {"changes_refused", refused}};
 }
@@ -357,7 +363,7 @@ Json make_report(const Options& options, const Controller& controller, const Fin
             {"answers", answers_of(statistics.answers, record.controller.diagonal_world_m())},
             {"work", work_of(statistics)},
             {"budgets", budgets_of(record)},
-            {"scene", scene_of(statistics)},
+            {"scene", scene_of(record.run)},
             {"pools", pools_of(record)},
             {"cache", cache_of(record)},
             {"wire", wire_of(record)},

@@ -130,15 +130,15 @@ Result<std::unique_ptr<Session>, Refusal> Session::open(const Options& options)
         linux_extras::keep_calling_thread_off(*options.thread.cpu);
     }
     std::unique_ptr<Session> session(new Session(options));
-    if (auto error = take_scene(session->options_))
+    if (auto error = session->connect())
+    {
+        return *error;
+    }
+    if (auto error = session->take_scene())
     {
         return *error;
     }
     if (auto error = take_tool_files(session->options_))
-    {
-        return *error;
-    }
-    if (auto error = session->connect())
     {
         return *error;
     }
@@ -165,6 +165,30 @@ std::optional<Refusal> Session::connect()
     return std::nullopt;
 }
 
+/// Of a file or of a host; nothing to do without --scene.
+std::optional<Refusal> Session::take_scene()
+{
+    if (client_ != nullptr && (options_.follows_poses || !options_.scene.empty()))
+    {
+        reader_ = std::make_unique<dds::SceneReader>(client_->domain(), client_->exchange());
+    }
+    if (options_.scene.empty())
+    {
+        return std::nullopt;
+    }
+    if (client_ == nullptr)
+    {
+        return take_scene_file(options_);
+    }
+    auto shown = take_shown_scene(options_, *client_, *reader_, [] { return !was_interrupted(); });
+    if (!shown)
+    {
+        return shown.error();
+    }
+    scene_ = std::move(shown).value();
+    return std::nullopt;
+}
+
 /// The controller from the models, and the topics beside it.
 std::optional<Refusal> Session::assemble()
 {
@@ -182,7 +206,13 @@ std::optional<Refusal> Session::assemble()
     controller_ = std::move(controller).value();
     if (client_ != nullptr)
     {
-        auto topics = HostTopics::create(*client_, *controller_, options_.follows_poses);
+        std::unique_ptr<SceneKeeper> keeper;
+        if (options_.follows_poses)
+        {
+            keeper = std::make_unique<SceneKeeper>(client_->catalogue(), std::move(reader_),
+                                                   *controller_, scene_, log_line);
+        }
+        auto topics = HostTopics::create(*client_, *controller_, std::move(keeper));
         if (!topics)
         {
             return failure(topics.error().text);

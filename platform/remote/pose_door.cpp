@@ -35,26 +35,76 @@ constexpr std::size_t first_of(std::size_t word, std::uint64_t bits) noexcept
 
 } // namespace
 
-PoseDoor::PoseDoor(std::span<const ObjectPose> placed, Duration age_limit)
+PoseDoor::PoseDoor(std::span<const ObjectPose> placed, std::size_t objects, Duration age_limit)
     : age_limit_(age_limit)
     , places_(placed.begin(), placed.end())
-    , letters_(placed.size())
-    , glides_(placed.size())
-    , uses_(placed.size())
-    , unread_(words_of(placed.size()))
-    , awake_(words_of(placed.size()))
-    , numbers_(placed.size())
+    , letters_(objects)
+    , glides_(objects)
+    , uses_(objects)
+    , unread_(words_of(objects))
+    , awake_(words_of(objects))
+    , numbers_(objects)
+    , generations_(objects)
+    , passage_slots_(kWaiting)
+    , passages_(passage_slots_)
     // NOLINTBEGIN(*-avoid-c-arrays)
-    , mailboxes_(std::make_unique<Mailbox<Letter>[]>(placed.size()))
-    , heard_ns_(std::make_unique<std::atomic<std::int64_t>[]>(placed.size()))
-    , came_(std::make_unique<std::atomic<std::uint64_t>[]>(words_of(placed.size())))
+    , mailboxes_(std::make_unique<Mailbox<Letter>[]>(objects))
+    , heard_ns_(std::make_unique<std::atomic<std::int64_t>[]>(objects))
+    , came_(std::make_unique<std::atomic<std::uint64_t>[]>(words_of(objects)))
 // NOLINTEND(*-avoid-c-arrays)
 {
+    TACTUS_ASSERT(placed.size() <= objects);
+    places_.resize(objects);
+    for (std::size_t i = 0; i < placed.size(); ++i)
+    {
+        glides_[i].is_here = true;
+    }
+}
+
+bool PoseDoor::try_come(std::size_t object, std::uint32_t generation, const ObjectSpec& spec,
+                        const ObjectPose& pose, MonotonicTime arrival) noexcept
+{
+    TACTUS_ASSERT(object < letters_.size());
+    TACTUS_ASSERT(generation > generations_[object] || numbers_[object] == 0);
+    if (passages_.size() == kWaiting)
+    {
+        return false;
+    }
+    generations_[object] = generation;
+    Passage passage;
+    passage.comes = true;
+    passage.object = static_cast<std::uint32_t>(object);
+    passage.letter = letter_of(object, pose, arrival);
+    passage.model = spec.model.value;
+    passage.stiffness_n_per_m = spec.material.stiffness_n_per_m;
+    passage.static_friction = spec.material.static_friction;
+    passage.dynamic_friction = spec.material.dynamic_friction;
+    passage.damping_n_s_per_m = spec.material.damping_n_s_per_m;
+    hear(object, arrival);
+    return passages_.try_push(passage);
+}
+
+bool PoseDoor::try_go(std::size_t object) noexcept
+{
+    TACTUS_ASSERT(object < letters_.size());
+    Passage passage;
+    passage.object = static_cast<std::uint32_t>(object);
+    passage.letter.generation = generations_[object];
+    return passages_.try_push(passage);
 }
 
 void PoseDoor::put(std::size_t object, const ObjectPose& pose, MonotonicTime arrival) noexcept
 {
     TACTUS_ASSERT(object < letters_.size());
+    mailboxes_[object].write(letter_of(object, pose, arrival));
+    hear(object, arrival);
+    // Pairs with the acquire in take_letters().
+    came_[object / kWordBits].fetch_or(bit_of(object), std::memory_order_release);
+}
+
+PoseDoor::Letter PoseDoor::letter_of(std::size_t object, const ObjectPose& pose,
+                                     MonotonicTime arrival) noexcept
+{
     Letter letter;
     for (int i = 0; i < 9; ++i)
     {
@@ -66,11 +116,24 @@ void PoseDoor::put(std::size_t object, const ObjectPose& pose, MonotonicTime arr
     letter.stamp_ns = pose.stamp_ns;
     letter.revision = pose.revision;
     letter.arrival_ns = arrival.ns;
+    letter.generation = generations_[object];
     letter.number = ++numbers_[object];
-    mailboxes_[object].write(letter);
-    hear(object, arrival);
-    // Pairs with the acquire in take_letters().
-    came_[object / kWordBits].fetch_or(bit_of(object), std::memory_order_release);
+    return letter;
+}
+
+ObjectPose PoseDoor::pose_of(const Letter& letter) noexcept
+{
+    ObjectPose pose;
+    for (int i = 0; i < 9; ++i)
+    {
+        pose.rotation(i / 3, i % 3) = letter.rotation[static_cast<std::size_t>(i)];
+    }
+    const auto& at_m = letter.translation_m;
+    pose.translation_m = Vec3(at_m[0], at_m[1], at_m[2]);
+    pose.scale = letter.scale;
+    pose.stamp_ns = letter.stamp_ns;
+    pose.revision = letter.revision;
+    return pose;
 }
 
 void PoseDoor::hear(std::size_t object, MonotonicTime now) noexcept
@@ -85,12 +148,12 @@ std::span<const SceneChange> PoseDoor::refresh(MonotonicTime now) noexcept
     {
         last_refresh_ = now;
     }
+    std::size_t changes = take_passages();
     take_letters(now);
     look_at_ages(now);
     // Once round from whose turn it is: the later bits of its word first, the earlier ones last.
     const std::size_t words = awake_.size();
     const std::uint64_t from_first = ~std::uint64_t{0} << first_ % kWordBits;
-    std::size_t changes = 0;
     std::size_t next = first_;
     for (std::size_t i = 0; i <= words && words > 0; ++i)
     {
@@ -100,7 +163,7 @@ std::span<const SceneChange> PoseDoor::refresh(MonotonicTime now) noexcept
         for (; bits != 0 && changes < changes_.size(); bits &= bits - 1)
         {
             const std::size_t object = first_of(word, bits);
-            if (!try_change(object, now, changes_[changes]))
+            if (!try_move(object, now, changes_[changes]))
             {
                 awake_[word] &= ~bit_of(object);
                 continue;
@@ -132,8 +195,15 @@ void PoseDoor::take_letters(MonotonicTime now) noexcept
             {
                 continue; // It is being written all the time: in the next frame.
             }
+            const Letter& last = letters_[object];
+            if (letter.generation > last.generation)
+            {
+                continue; // Its own passage waits.
+            }
             unread_[word] &= ~bit_of(object);
-            if (letter.number != letters_[object].number)
+            // What was put for another object under this number came too late.
+            if (glides_[object].is_here && letter.generation == last.generation &&
+                letter.number > last.number)
             {
                 begin_glide(object, letter, now);
                 letters_[object] = letter;
@@ -168,19 +238,24 @@ void PoseDoor::look_at_ages(MonotonicTime now) noexcept
 }
 
 /// Whether the frame has to be told of the object, and what.
-bool PoseDoor::try_change(std::size_t object, MonotonicTime now, SceneChange& change) noexcept
+bool PoseDoor::try_move(std::size_t object, MonotonicTime now, SceneChange& change) noexcept
 {
     const Duration age = age_of(object, now);
     Glide& glide = glides_[object];
-    if (!glide.is_under_way && glide.is_told_old == is_silent(age))
+    const bool has_news = glide.is_under_way || glide.is_told_old != is_silent(age);
+    if (!has_news || !uses_[object].is_followed)
     {
         return false;
     }
-    move_to(object, place_at(glide, now));
-    glide.is_under_way = glide.is_under_way && now - glide.start < glide.time;
+    if (glide.is_under_way)
+    {
+        move_to(object, place_at(glide, now));
+        glide.is_under_way = now - glide.start < glide.time;
+    }
     glide.is_told_old = is_silent(age);
     change.kind = SceneChangeKind::object_moves;
     change.number = static_cast<std::uint32_t>(object);
+    change.generation = letters_[object].generation;
     change.pose = ObjectPose{places_[object]};
     change.pose.stamp_ns = letters_[object].stamp_ns;
     change.pose.revision = letters_[object].revision;
@@ -188,18 +263,43 @@ bool PoseDoor::try_change(std::size_t object, MonotonicTime now, SceneChange& ch
     return true;
 }
 
+/// Before the moves; returns how many changes they make. More wait for the next frame.
+std::size_t PoseDoor::take_passages() noexcept
+{
+    std::size_t changes = 0;
+    Passage passage;
+    while (changes < changes_.size() && passages_.try_pop(passage))
+    {
+        const std::size_t object = passage.object;
+        SceneChange& change = changes_[changes++];
+        change = SceneChange{};
+        change.number = passage.object;
+        change.generation = passage.letter.generation;
+        glides_[object] = Glide{};
+        glides_[object].is_here = passage.comes;
+        uses_[object].is_followed = passage.comes;
+        if (!passage.comes)
+        {
+            change.kind = SceneChangeKind::object_goes;
+            continue;
+        }
+        letters_[object] = passage.letter;
+        change.kind = SceneChangeKind::object_comes;
+        change.object.model = ModelId{passage.model};
+        change.object.material = {passage.stiffness_n_per_m, passage.static_friction,
+                                  passage.dynamic_friction, passage.damping_n_s_per_m};
+        change.pose = pose_of(passage.letter);
+        places_[object] = Similarity{change.pose};
+    }
+    return changes;
+}
+
 void PoseDoor::begin_glide(std::size_t object, const Letter& letter, MonotonicTime now) noexcept
 {
     const Letter& before = letters_[object];
     Glide& glide = glides_[object];
     glide.from = places_[object];
-    for (int i = 0; i < 9; ++i)
-    {
-        glide.to.rotation(i / 3, i % 3) = letter.rotation[static_cast<std::size_t>(i)];
-    }
-    const auto& at_m = letter.translation_m;
-    glide.to.translation_m = Vec3(at_m[0], at_m[1], at_m[2]);
-    glide.to.scale = letter.scale;
+    glide.to = Similarity{pose_of(letter)};
     // The frame has not been told yet of one that was to be there at once: this one is.
     const bool is_overdue = glide.is_under_way && glide.time == Duration{0};
     glide.start = std::min(last_refresh_, now); // It was told to be there then.

@@ -66,6 +66,7 @@ DdsClient::DdsClient(Domain domain, Catalogue catalogue, std::string controller_
     , catalogue_(std::move(catalogue))
     , controller_name_(std::move(controller_name))
     , log_(std::move(log))
+    , links_log_(log_)
 {
 }
 
@@ -118,7 +119,9 @@ DdsClient::find_all(std::span<const ModelSelector> selectors, std::chrono::milli
         model.hash = search.offer.hash;
         model.header = std::move(search.fetch->header());
         model.base = std::move(search.fetch->base());
-        model.link = std::make_unique<DdsLink>(*exchange_, catalogue_, search.offer, log_);
+        model.link =
+            std::make_unique<DdsLink>(*exchange_, catalogue_, search.offer,
+                                      [this](const std::string& text) { links_log_.write(text); });
     }
     return models;
 }

@@ -61,6 +61,7 @@ private:
     Catalogue catalogue_;
     std::string controller_name_;
     Log log_;
+    RateLimitedLog links_log_; ///< Of all links: a host that goes is that of many models.
     std::unique_ptr<PieceExchange> exchange_; ///< From create() on.
 };
 

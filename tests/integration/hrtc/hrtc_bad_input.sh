@@ -57,8 +57,8 @@ refuse_option --cache-mib 2 'less than --pool-mib'
 for value in 0 -1 1000000 1.5 many; do
     refuse_option --splits "$value" '1 to 256'
 done
-for value in 0 9.9 10001 nan soon ''; do
-    refuse_option --frame-budget-us "$value" '10 .. 10000'
+for value in 0 0.9 10001 nan soon ''; do
+    refuse_option --frame-budget-us "$value" '1 .. 10000'
 done
 refuse 3 '--frame-budget-us: must be less than the period of 1000 us' --model bumpy \
     --frame-budget-us 1000
