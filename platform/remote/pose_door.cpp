@@ -7,9 +7,33 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <bit>
 
 namespace tactus
 {
+
+namespace
+{
+
+constexpr std::size_t kWordBits = 64;
+
+constexpr std::size_t words_of(std::size_t objects) noexcept
+{
+    return (objects + kWordBits - 1) / kWordBits;
+}
+
+constexpr std::uint64_t bit_of(std::size_t object) noexcept
+{
+    return std::uint64_t{1} << object % kWordBits;
+}
+
+/// The object of a word's lowest bit.
+constexpr std::size_t first_of(std::size_t word, std::uint64_t bits) noexcept
+{
+    return word * kWordBits + static_cast<std::size_t>(std::countr_zero(bits));
+}
+
+} // namespace
 
 PoseDoor::PoseDoor(std::span<const ObjectPose> placed, std::size_t objects, Duration age_limit)
     : age_limit_(age_limit)
@@ -17,6 +41,8 @@ PoseDoor::PoseDoor(std::span<const ObjectPose> placed, std::size_t objects, Dura
     , letters_(objects)
     , glides_(objects)
     , uses_(objects)
+    , unread_(words_of(objects))
+    , awake_(words_of(objects))
     , numbers_(objects)
     , generations_(objects)
     , passage_slots_(kWaiting)
@@ -24,6 +50,7 @@ PoseDoor::PoseDoor(std::span<const ObjectPose> placed, std::size_t objects, Dura
     // NOLINTBEGIN(*-avoid-c-arrays)
     , mailboxes_(std::make_unique<Mailbox<Letter>[]>(objects))
     , heard_ns_(std::make_unique<std::atomic<std::int64_t>[]>(objects))
+    , came_(std::make_unique<std::atomic<std::uint64_t>[]>(words_of(objects)))
 // NOLINTEND(*-avoid-c-arrays)
 {
     TACTUS_ASSERT(placed.size() <= objects);
@@ -71,6 +98,8 @@ void PoseDoor::put(std::size_t object, const ObjectPose& pose, MonotonicTime arr
     TACTUS_ASSERT(object < letters_.size());
     mailboxes_[object].write(letter_of(object, pose, arrival));
     hear(object, arrival);
+    // Pairs with the acquire in take_letters().
+    came_[object / kWordBits].fetch_or(bit_of(object), std::memory_order_release);
 }
 
 PoseDoor::Letter PoseDoor::letter_of(std::size_t object, const ObjectPose& pose,
@@ -115,30 +144,84 @@ void PoseDoor::hear(std::size_t object, MonotonicTime now) noexcept
 
 std::span<const SceneChange> PoseDoor::refresh(MonotonicTime now) noexcept
 {
-    const std::size_t objects = letters_.size();
-    std::size_t changes = take_passages();
-    std::size_t next = first_;
     if (last_refresh_ == MonotonicTime{})
     {
         last_refresh_ = now;
     }
-    for (std::size_t i = 0; i < objects; ++i)
+    std::size_t changes = take_passages();
+    take_letters(now);
+    look_at_ages(now);
+    // Once round from whose turn it is: the later bits of its word first, the earlier ones last.
+    const std::size_t words = awake_.size();
+    const std::uint64_t from_first = ~std::uint64_t{0} << first_ % kWordBits;
+    std::size_t next = first_;
+    for (std::size_t i = 0; i <= words && words > 0; ++i)
     {
-        const std::size_t object = (first_ + i) % objects;
-        Glide& glide = glides_[object];
-        if (!glide.is_here)
+        const std::size_t word = (first_ / kWordBits + i) % words;
+        std::uint64_t bits = awake_[word];
+        bits &= i == 0 ? from_first : i == words ? ~from_first : ~std::uint64_t{0};
+        for (; bits != 0 && changes < changes_.size(); bits &= bits - 1)
         {
-            continue;
+            const std::size_t object = first_of(word, bits);
+            if (!try_move(object, now, changes_[changes]))
+            {
+                awake_[word] &= ~bit_of(object);
+                continue;
+            }
+            ++changes;
+            next = (object + 1) % letters_.size();
         }
-        Letter letter;
-        // What was put for another object under this number came too late, or its own passage
-        // waits.
-        if (mailboxes_[object].try_read(letter) && letter.number > letters_[object].number &&
-            letter.generation == letters_[object].generation)
+    }
+    first_ = next;
+    last_refresh_ = now;
+    return {changes_.data(), changes};
+}
+
+/// What came since the last frame.
+void PoseDoor::take_letters(MonotonicTime now) noexcept
+{
+    for (std::size_t word = 0; word < unread_.size(); ++word)
+    {
+        if (came_[word].load(std::memory_order_relaxed) != 0)
         {
-            begin_glide(object, letter, now);
-            letters_[object] = letter;
+            // Pairs with the release in put(): who sees the bit finds the letter.
+            unread_[word] |= came_[word].exchange(0, std::memory_order_acquire);
         }
+        for (std::uint64_t bits = unread_[word]; bits != 0; bits &= bits - 1)
+        {
+            const std::size_t object = first_of(word, bits);
+            Letter letter;
+            if (!mailboxes_[object].try_read(letter))
+            {
+                continue; // It is being written all the time: in the next frame.
+            }
+            const Letter& last = letters_[object];
+            if (letter.generation > last.generation)
+            {
+                continue; // Its own passage waits.
+            }
+            unread_[word] &= ~bit_of(object);
+            // What was put for another object under this number came too late.
+            if (glides_[object].is_here && letter.generation == last.generation &&
+                letter.number > last.number)
+            {
+                begin_glide(object, letter, now);
+                letters_[object] = letter;
+                awake_[word] |= bit_of(object);
+            }
+        }
+    }
+}
+
+void PoseDoor::look_at_ages(MonotonicTime now) noexcept
+{
+    const std::size_t objects = letters_.size();
+    // So often has each its turn.
+    const std::size_t frames = (objects + kAgedAFrame - 1) / kAgedAFrame;
+    for (std::size_t i = 0; i < std::min(objects, kAgedAFrame); ++i)
+    {
+        const std::size_t object = next_aged_;
+        next_aged_ = next_aged_ + 1 == objects ? 0 : next_aged_ + 1;
         PoseUse& use = uses_[object];
         if (!use.is_followed)
         {
@@ -146,30 +229,38 @@ std::span<const SceneChange> PoseDoor::refresh(MonotonicTime now) noexcept
         }
         const Duration age = age_of(object, now);
         use.age_max = std::max(use.age_max, age);
-        use.old_frames += age > age_limit_ ? 1U : 0U;
-        // Before the limit, so that the frame meets it at the right time.
-        const bool is_silent = age > Duration{age_limit_.ns / 2};
-        const bool has_news = glide.is_under_way || glide.is_told_old != is_silent;
-        if (!has_news || changes == changes_.size())
+        use.old_frames += age > age_limit_ ? frames : 0U;
+        if (glides_[object].is_told_old != is_silent(age))
         {
-            continue;
+            awake_[object / kWordBits] |= bit_of(object);
         }
-        move_to(object, place_at(glide, now));
-        glide.is_under_way = glide.is_under_way && now - glide.start < glide.time;
-        glide.is_told_old = is_silent;
-        SceneChange& change = changes_[changes++];
-        change.kind = SceneChangeKind::object_moves;
-        change.number = static_cast<std::uint32_t>(object);
-        change.generation = letters_[object].generation;
-        change.pose = ObjectPose{places_[object]};
-        change.pose.stamp_ns = letters_[object].stamp_ns;
-        change.pose.revision = letters_[object].revision;
-        change.pose.arrival_ns = is_silent ? now.ns - age.ns : 0;
-        next = (object + 1) % objects;
     }
-    first_ = next;
-    last_refresh_ = now;
-    return {changes_.data(), changes};
+}
+
+/// Whether the frame has to be told of the object, and what.
+bool PoseDoor::try_move(std::size_t object, MonotonicTime now, SceneChange& change) noexcept
+{
+    const Duration age = age_of(object, now);
+    Glide& glide = glides_[object];
+    const bool has_news = glide.is_under_way || glide.is_told_old != is_silent(age);
+    if (!has_news || !uses_[object].is_followed)
+    {
+        return false;
+    }
+    if (glide.is_under_way)
+    {
+        move_to(object, place_at(glide, now));
+        glide.is_under_way = now - glide.start < glide.time;
+    }
+    glide.is_told_old = is_silent(age);
+    change.kind = SceneChangeKind::object_moves;
+    change.number = static_cast<std::uint32_t>(object);
+    change.generation = letters_[object].generation;
+    change.pose = ObjectPose{places_[object]};
+    change.pose.stamp_ns = letters_[object].stamp_ns;
+    change.pose.revision = letters_[object].revision;
+    change.pose.arrival_ns = glide.is_told_old ? now.ns - age.ns : 0;
+    return true;
 }
 
 /// Before the moves; returns how many changes they make. More wait for the next frame.

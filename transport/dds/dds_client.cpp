@@ -38,7 +38,7 @@ Result<std::unique_ptr<DdsClient>, Refusal> DdsClient::create(std::uint32_t doma
                                                               std::string controller_name, Log log)
 {
     TACTUS_ASSERT(is_valid_name(controller_name));
-    auto joined = Domain::join(domain);
+    auto joined = Domain::join(domain, Party::controller);
     if (!joined)
     {
         return joined.error();

@@ -27,7 +27,8 @@ namespace tactus::dds
 class DdsClient
 {
 public:
-    /// `controller_name` is shown by hosts; a valid name. Join from an ordinary thread, see Domain.
+    /// `controller_name` is shown by hosts; a valid name. Join from an ordinary thread, and after a
+    /// host of the same process, see Domain.
     [[nodiscard]] static Result<std::unique_ptr<DdsClient>, Refusal>
     create(std::uint32_t domain, std::string controller_name, Log log);
 
