@@ -7,10 +7,12 @@
 #include "platform/simulated/simulated_device.hpp"
 #include "rt_core/force/angular_stiffness.hpp"
 #include "rt_core/force/stiffness_rule.hpp"
+#include "transport/pool_plan.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace tactus::hrtc
 {
@@ -23,6 +25,12 @@ constexpr double kBytesPerMib = 1024.0 * 1024.0;
 constexpr double kSpeedMax_diag = 1.0;
 /// The simulated hand flies at two diagonals a second; its device stands twice that.
 constexpr double kHandSpeed_diag = 4.0;
+
+/// What is told in two decimals is not less.
+double up_to_cents(double value)
+{
+    return std::ceil(100.0 * value) / 100.0;
+}
 
 /// Without one it is simulated.
 DeviceChoice choice_of(const Options& options, std::size_t tool)
@@ -154,7 +162,6 @@ void Controller::make_tools(const Options& options)
     }
 }
 
-/// What belongs to no model comes off first.
 std::optional<Refusal> Controller::lay_out_pools(const Options& options)
 {
     setup_.objects = objects_;
@@ -164,29 +171,17 @@ std::optional<Refusal> Controller::lay_out_pools(const Options& options)
     setup_.static_when_it_fits = options.static_when_it_fits;
     setup_.prediction = options.prediction;
     setup_.period_ns = options.period().ns;
-    std::size_t shared = Frame::required_bytes(setup_);
-    for (const ServedModel& model : models_)
-    {
-        shared += Arena::round_up(model.header.size());
-    }
-    const std::size_t total = memory_.span().size();
     const auto cache = static_cast<std::size_t>(options.cache_mib * kBytesPerMib);
     std::vector<ModelCapacities> capacities(models_.size());
-    // Planned twice: what the courier needs follows from the number of pages.
-    bool fits = shared < total && try_plan(headers_, total - shared, cache, capacities);
-    const ModelCapacities sum = sum_of(capacities);
-    shared += fits ? Courier::required_bytes(sum.pages, sum.index_pages) : 0;
-    fits = fits && shared < total && try_plan(headers_, total - shared, cache, capacities);
-    if (!fits)
+    if (!try_plan_pools(setup_, headers_, memory_.span().size(), cache, capacities))
     {
-        std::uint32_t base_faces = 0;
-        for (const ModelHeader& header : headers_)
-        {
-            base_faces += header.counts().base_faces;
-        }
-        return Refusal{fmt::format("--pool-mib: {} MiB is too small for {} models (their base "
-                                   "meshes have {} faces); give more, or less --cache-mib",
-                                   options.pool_mib, models_.size(), base_faces)};
+        const std::size_t least = least_pool_bytes(setup_, headers_, cache) + sizeof(Frame);
+        return Refusal{
+            fmt::format("--pool-mib: {} MiB is too small for {} models; {:.2f} MiB would "
+                        "do for a start{}",
+                        options.pool_mib, models_.size(),
+                        up_to_cents(static_cast<double>(least) / kBytesPerMib),
+                        options.cache_mib > 0.0 ? ", or less --cache-mib" : "")};
     }
     for (std::size_t i = 0; i < models_.size(); ++i)
     {

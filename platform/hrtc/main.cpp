@@ -46,17 +46,16 @@ int touch(const Options& options)
     const nlohmann::ordered_json report =
         make_report(options, session.value()->controller(), done.value());
     fmt::print("{}", make_summary(report));
-    if (!options.report_path.empty())
+    for (const std::string& path : options.report_paths)
     {
-        const auto error =
-            is_page_name(options.report_path)
-                ? write_text(make_page(report, done.value().statistics), options.report_path)
-                : write_report(report, options.report_path);
+        const auto error = is_page_name(path)
+                               ? write_text(make_page(report, done.value().statistics), path)
+                               : write_report(report, path);
         if (error)
         {
             return leave_with(failure("--report: " + error->text));
         }
-        fmt::print("report      {}\n", options.report_path);
+        fmt::print("report      {}\n", path);
     }
     return done.value().recording_error ? kExitFailed : kExitDone;
 }

@@ -60,7 +60,7 @@ struct Options
     double wait_s{10.0};      ///< For a model that nobody publishes yet, or a device.
     std::int64_t rate_hz{1'000};
     double duration_s{10.0};
-    std::string report_path; ///< Empty: no file.
+    std::vector<std::string> report_paths;
     std::string record_path; ///< Empty: no recording.
     std::string replay_path; ///< Not empty: replay this recording; nothing else is set then.
     double pool_mib{2.0};

@@ -102,13 +102,16 @@ std::optional<Refusal> check_machine(const Options& options)
 /// None when the files that the options name can be written.
 std::optional<Refusal> check_outputs(const Options& options)
 {
-    for (const auto& [option, path] : {std::pair("--report: ", &options.report_path),
-                                       std::pair("--record: ", &options.record_path)})
+    for (const std::string& path : options.report_paths)
     {
-        if (const auto error = probe_output(*path))
+        if (const auto error = probe_output(path))
         {
-            return failure(option + error->text);
+            return failure("--report: " + error->text);
         }
+    }
+    if (const auto error = probe_output(options.record_path))
+    {
+        return failure("--record: " + error->text);
     }
     return std::nullopt;
 }

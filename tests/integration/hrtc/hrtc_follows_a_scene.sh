@@ -70,7 +70,7 @@ refuse() { expect "$1" "$2" "$hrtc" --allow-no-rt --domain "$domain" "${@:3}"; }
 refuse 2 "--scene: 'kitchen' is not shown on domain $domain (scenes there: workshop)" \
     --scene kitchen --wait 0.5
 refuse 2 '--objects: 2; 4 are there from the start' --scene workshop --objects 2
-refuse 3 "--scene: 'a/b.gltf' is not 1 to 63 characters" --scene a/b.gltf
+refuse 3 "--scene: 'a/b.gltf' is not 1 to 63 characters" --transport dds --scene a/b.gltf
 stop TERM "$publisher"
 expect 3 "--scene: 'a b' is not" "$publish" --domain "$domain" --scene 'a b' ball.spm
 start_publisher ball.spm --scene nothing
