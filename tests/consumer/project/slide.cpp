@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 //
 // slide FILE DOMAIN: publishes a model and shows a cup of it, which slides where the tools of all
-// controllers push it, until it is ended.
+// controllers push it, until it is ended. Says each second where the cup is and who pushes it.
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -24,13 +24,15 @@ int fail(const tactus::Refusal& refusal)
     return 2;
 }
 
-/// What the tools of all controllers push an object with, in newtons.
+/// What the tools of all controllers push an object with, in newtons; `pushing` is how many do.
 tactus::Vec3 push_on(std::uint32_t object, const tactus::dds::DdsHost& host,
-                     const tactus::dds::TelemetryReader& watch)
+                     const tactus::dds::TelemetryReader& watch, int& pushing)
 {
     tactus::Vec3 push_n(0.0, 0.0, 0.0);
+    pushing = 0;
     for (const auto& controller : watch.controllers())
     {
+        const tactus::Vec3 before_n = push_n;
         for (std::uint32_t i = 0; i < controller.telemetry.pair_count; ++i)
         {
             const tactus::PairTelemetry& pair = controller.telemetry.pairs[i];
@@ -39,6 +41,7 @@ tactus::Vec3 push_on(std::uint32_t object, const tactus::dds::DdsHost& host,
                 push_n += tactus::Vec3(pair.force_n[0], pair.force_n[1], pair.force_n[2]);
             }
         }
+        pushing += push_n != before_n ? 1 : 0;
     }
     return push_n;
 }
@@ -79,6 +82,8 @@ int main(int argc, char** argv)
         return fail(cup.error());
     }
     tactus::Vec3 velocity_m_per_s(0.0, 0.0, 0.0);
+    int pushing = 0;
+    int steps = 0;
     for (auto next = std::chrono::steady_clock::now();;)
     {
         next += std::chrono::milliseconds(10);
@@ -88,7 +93,8 @@ int main(int argc, char** argv)
             host.step();
         }
         watch.value()->poll();
-        velocity_m_per_s += kStep_s / kMass_kg * push_on(cup.value(), host, *watch.value());
+        velocity_m_per_s +=
+            kStep_s / kMass_kg * push_on(cup.value(), host, *watch.value(), pushing);
         velocity_m_per_s *= 0.95; // It is slowed down.
         pose.translation_m[0] += kStep_s * velocity_m_per_s.x();
         pose.translation_m[1] += kStep_s * velocity_m_per_s.y();
@@ -96,6 +102,13 @@ int main(int argc, char** argv)
         if (!host.objects().move(cup.value(), pose))
         {
             return fail({"the cup is beyond the world"});
+        }
+        if (++steps % 100 == 0)
+        {
+            std::printf("cup at %.1f %.1f %.1f mm, pushed by %d of %zu controllers\n",
+                        1e3 * pose.translation_m[0], 1e3 * pose.translation_m[1],
+                        1e3 * pose.translation_m[2], pushing, watch.value()->controllers().size());
+            std::fflush(stdout);
         }
     }
 }
