@@ -2,7 +2,8 @@
 // Copyright the Tactus authors.
 //
 // slide FILE DOMAIN: publishes a model and shows a cup of it, which slides where the tools of all
-// controllers push it, until it is ended. Says each second where the cup is and who pushes it.
+// controllers push it, on a spring, until it is ended. Says each second where the cup is and who
+// pushes it.
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -15,7 +16,8 @@
 namespace
 {
 
-constexpr double kMass_kg = 0.2;
+constexpr double kMass_kg = 1.0;
+constexpr double kSpring_n_per_m = 50.0; ///< It pulls the cup back to where it was.
 constexpr double kStep_s = 0.01;
 
 int fail(const tactus::Refusal& refusal)
@@ -93,9 +95,11 @@ int main(int argc, char** argv)
             host.step();
         }
         watch.value()->poll();
-        velocity_m_per_s +=
-            kStep_s / kMass_kg * push_on(cup.value(), host, *watch.value(), pushing);
-        velocity_m_per_s *= 0.95; // It is slowed down.
+        const tactus::Vec3 push_n = push_on(cup.value(), host, *watch.value(), pushing);
+        const auto& [x_m, y_m, z_m] = pose.translation_m;
+        const tactus::Vec3 pull_n = -kSpring_n_per_m * tactus::Vec3(x_m, y_m, z_m);
+        velocity_m_per_s += kStep_s / kMass_kg * (push_n + pull_n);
+        velocity_m_per_s *= 0.8; // It is slowed down.
         pose.translation_m[0] += kStep_s * velocity_m_per_s.x();
         pose.translation_m[1] += kStep_s * velocity_m_per_s.y();
         pose.translation_m[2] += kStep_s * velocity_m_per_s.z();
