@@ -13,11 +13,13 @@
 #include "platform/hrtc/report_page.hpp"
 #include "platform/hrtc/session.hpp"
 #include "platform/hrtc/signals.hpp"
+#include "platform/hrtc/start_lines.hpp"
 #include "platform/hrtc/subcommands.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <cstdio>
 #include <variant>
 
 namespace tactus::hrtc
@@ -38,6 +40,8 @@ int touch(const Options& options)
     {
         return leave_with(session.error());
     }
+    fmt::print("{}", start_lines(options, session.value()->controller()));
+    std::fflush(stdout);
     const auto done = session.value()->run("touch");
     if (!done)
     {

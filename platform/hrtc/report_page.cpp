@@ -271,8 +271,8 @@ std::string make_page(const Json& report, const RunStatistics& statistics)
     add_times(report, statistics, page);
     std::vector<plot::TitledTable> sections;
     for (const auto& [key, title] :
-         {std::pair("answers", "Answers, frames"), std::pair("scene", "Scene"),
-          std::pair("cache", "Cache"), std::pair("wire", "Wire"),
+         {std::pair("run", "Run"), std::pair("answers", "Answers, frames"),
+          std::pair("scene", "Scene"), std::pair("cache", "Cache"), std::pair("wire", "Wire"),
           std::pair("deadline", "Deadlines"), std::pair("realtime", "In the loop"),
           std::pair("work", "Work"), std::pair("pools", "Pools"), std::pair("budgets", "Budgets"),
           std::pair("force", "Force"), std::pair("safety", "Safety"),

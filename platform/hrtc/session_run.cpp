@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
+#include <ctime>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -33,6 +34,7 @@ FinishedRun empty_run(const Controller& controller, Duration period)
     return {.statistics = RunStatistics(tools, controller.frame().objects().capacity(),
                                         controller.models().size(), period),
             .period = period,
+            .started = std::time(nullptr),
             .safety = SafetyRecord(tools)};
 }
 

@@ -33,6 +33,11 @@ Json report_of(const std::string& model)
 {
     return {
         {"schema", 1},
+        {"run",
+         {{"version", "1.2.3"},
+          {"started_utc", "2026-01-02T03:04:05Z"},
+          {"devices", {"hand"}},
+          {"options", "rate=1000"}}},
         {"frames", 5'003},
         {"period_ns", 1'000'003},
         {"duration_s", 5.003},
