@@ -15,6 +15,7 @@
 #include "platform/hrtc/signals.hpp"
 #include "platform/hrtc/start_lines.hpp"
 #include "platform/hrtc/subcommands.hpp"
+#include "platform/hrtc/verdict.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -61,7 +62,11 @@ int touch(const Options& options)
         }
         fmt::print("report      {}\n", path);
     }
-    return done.value().recording_error ? kExitFailed : kExitDone;
+    if (done.value().recording_error)
+    {
+        return kExitFailed;
+    }
+    return options.strict && !losses_of(report).empty() ? kExitCriterionNotMet : kExitDone;
 }
 
 int run(int argc, char** argv)

@@ -86,6 +86,9 @@ void declare_run(CommandLine& line, Options& options)
     line.add_option("--duration", options.duration_s, "Seconds to run")
         .number_between(0.1, 86'400.0)
         .show_default();
+    line.add_flag("--strict", options.strict,
+                  "Exit with 1 when a host or a device was lost, a piece came damaged, or nothing "
+                  "was touched");
     line.add_option("--report", options.report_paths,
                     "Write the report to this file: a page when its name ends in .html, else JSON; "
                     "repeatable")

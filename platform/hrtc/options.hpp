@@ -75,6 +75,7 @@ struct Options
     /// None: one diagonal of the first model a second.
     std::optional<double> follow_speed_m_per_s;
     bool trap_system_calls{false};
+    bool strict{false};  ///< What is lost in a run, or comes to nothing, is a failure.
     std::string as_file; ///< All options, as a file for --config.
     RtThreadOptions thread;
 
