@@ -116,6 +116,10 @@ void declare_force(CommandLine& line, Options& options)
     line.add_option("--stiffness", options.stiffness_n_per_m, "Of the virtual wall, in N/m")
         .number_between(1.0, kStiffest_n_per_m)
         .show_default();
+    line.add_option("--angular-stiffness", options.angular_stiffness_nm_per_rad,
+                    "Of the spring that turns tools other than spheres, in N m/rad; the device's "
+                    "own cap holds for it, too [--stiffness times the square of the tool's size]")
+        .number_between(kSoftestTurn_nm_per_rad, kStiffestTurn_nm_per_rad);
     line.add_option("--clutch", options.clutch_button,
                     "Button of each device, from 0, that parts hand and tool while it is held: the "
                     "tool stays, without a force, and goes on from there [none]")

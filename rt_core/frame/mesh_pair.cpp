@@ -97,6 +97,18 @@ void MeshPair::place(const Outlook& outlook, const MeshCore& core, const Model& 
     }
 }
 
+/// The cores stay: what moved since the last frame is told from them. Only the first place is
+/// asked.
+void MeshPair::move(const Similarity& tool, const Budgets& budgets) noexcept
+{
+    placements_[0].place = tool;
+    for (std::size_t i = 0; i < kPlaces; ++i)
+    {
+        objects_[i] = OtherSurface(*object_tree_, placements_[i], budget_of(budgets));
+        tools_[i] = OtherSurface(*tool_tree_, placements_[i].inverse(), budget_of(budgets));
+    }
+}
+
 void MeshPair::rank(const Outlook& outlook, ModelId tool_model, ModelId object_model,
                     const RegionPredictor& predictor, Prediction prediction,
                     RegionRanking& ranking) noexcept

@@ -31,6 +31,9 @@ public:
                const Model& object_model, const Similarity& tool,
                const Budgets& budgets) noexcept TACTUS_NONBLOCKING;
 
+    /// The tool has moved on in the same frame, to be queried there.
+    void move(const Similarity& tool, const Budgets& budgets) noexcept TACTUS_NONBLOCKING;
+
     /// Adds what both models need where the surfaces are near.
     void rank(const Outlook& outlook, ModelId tool_model, ModelId object_model,
               const RegionPredictor& predictor, Prediction prediction,

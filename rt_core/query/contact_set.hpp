@@ -4,6 +4,7 @@
 
 #include "rt_core/base/assert.hpp"
 #include "rt_core/geometry/closest_points.hpp"
+#include "rt_core/math/infinity.hpp"
 #include "rt_core/records/contact.hpp"
 
 #include <algorithm>
@@ -68,6 +69,31 @@ namespace tactus
         std::swap(contacts[i], contacts[i - 1]);
     }
     return !is_full;
+}
+
+/// Adds a face to the slab that it differs least from, or makes one. Without a normal nothing is
+/// proven: the slab is in all directions.
+inline void keep_slab(const Vec3& normal, double distance_m, TouchReport& touches) noexcept
+{
+    constexpr double kSameSlab = 0.05;
+    constexpr double kAnyDirection = 2.0;
+    const bool has_none = normal == Vec3(0.0, 0.0, 0.0);
+    ContactSlab* best = nullptr;
+    double least = kInfinity;
+    for (ContactSlab& slab : touches.slabs)
+    {
+        const double apart = (slab.normal - normal).norm();
+        best = apart < least ? &slab : best;
+        least = std::min(least, apart);
+    }
+    if (!touches.slabs.full() && !(least <= kSameSlab))
+    {
+        touches.slabs.push_back({normal, distance_m, has_none ? kAnyDirection : 0.0});
+        return;
+    }
+    TACTUS_ASSERT(best != nullptr);
+    best->distance_m = std::min(best->distance_m, distance_m);
+    best->spread = std::max(best->spread, has_none ? kAnyDirection : least);
 }
 
 } // namespace tactus

@@ -30,12 +30,27 @@ struct Contact
 /// Nearest first, lower face ids first among equals, then lower ones of the tool's.
 using ContactSet = StaticVector<Contact, kMaxContacts>;
 
-/// Where a tool with a force and a torque may come to touch an object, for the force stage. 6 KiB.
+/// Some faces of one another's kind: each lies behind a plane, and the core before it by at least
+/// `distance_m`. Their planes' normals are within `spread` of this one.
+struct ContactSlab
+{
+    Vec3 normal{0.0, 0.0, 0.0}; ///< Unit length, from the surface to the core.
+    double distance_m{0.0};
+    double spread{0.0}; ///< Length of the difference of two unit vectors.
+};
+/// Slabs of one pair, 40 B each. Enough for six sides in steps of 50 degrees; of more kinds of
+/// faces some share a slab, whose spread grows.
+inline constexpr std::size_t kMaxSlabs = 16;
+
+/// Where a tool with a force and a torque may come to touch an object, for the force stage. 7 KiB.
 struct TouchReport
 {
     ContactSet nearest;       ///< Of each face the nearest point.
     ContactSet corners;       ///< Of a convex core, over a face.
     bool is_truncated{false}; ///< There were more.
+    /// Of all faces nearer than `covered_m`, as far as they are exact.
+    StaticVector<ContactSlab, kMaxSlabs> slabs;
+    double covered_m{0.0};
 
     /// As new, without touching what no contact is in.
     void clear() noexcept
@@ -43,6 +58,8 @@ struct TouchReport
         nearest.clear();
         corners.clear();
         is_truncated = false;
+        slabs.clear();
+        covered_m = 0.0;
     }
 };
 

@@ -150,7 +150,7 @@ TEST(RecordingFile, is_refused_when_it_is_of_another_kind_or_version)
     std::vector<std::byte> bytes = example();
     bytes[8] = std::byte{2};
     expect_refusal(bytes,
-                   "at byte 8: format version 2 is of an older Tactus; this program reads 7");
+                   "at byte 8: format version 2 is of an older Tactus; this program reads 8");
     bytes[3] = std::byte{'X'};
     expect_refusal(bytes, "is not a Tactus recording");
     bytes = example();
