@@ -19,10 +19,13 @@ constexpr double kSamePlane = 1e-3;
 /// An edge of a face that is touched is a seam where it leans by no more than this, and is farther
 /// away by no more than this share of the radius: it leans by its distance along the face over the
 /// radius. A face that really rises by an angle is touched above the other's plane by half of the
-/// angle's square times the radius.
+/// angle's square times the radius. And the tool stands as high over the other's plane there as
+/// where that is touched: an edge that carries it has it lower, by half of the lean's square.
+constexpr double kLeastLean = 1e-3;
 constexpr double kMostLean = 0.8;
 constexpr double kSeamGap = 0.5;
 constexpr double kOnFace = 1e-3;
+constexpr double kAbove = 0.1;
 /// What is within this share of the radius of touching may be held by friction.
 constexpr double kTouchingGap = 0.02;
 /// Slips below this share of the radius are none.
@@ -106,24 +109,6 @@ void BodyPlanes::replace(std::size_t plane, const HalfSpace<6>& space, const Bod
     }
 }
 
-void BodyPlanes::drop_seams() noexcept
-{
-    for (std::size_t i = spaces_.size(); i > 0; --i)
-    {
-        const std::size_t plane = i - 1;
-        if (is_seam(plane))
-        {
-            const std::size_t last = spaces_.size() - 1;
-            spaces_[plane] = spaces_[last];
-            touches_[plane] = touches_[last];
-            grips_[plane] = grips_[last];
-            (void)spaces_.pop_back();
-            (void)touches_.pop_back();
-            (void)grips_.pop_back();
-        }
-    }
-}
-
 bool BodyPlanes::is_seam(std::size_t plane) const noexcept
 {
     const BodyTouch& touch = touches_[plane];
@@ -140,8 +125,11 @@ bool BodyPlanes::is_seam(std::size_t plane) const noexcept
             continue;
         }
         const double lean = (touch.normal - face.normal).norm();
-        const double height_m = face.normal.dot(touch.on_surface_m - face.on_surface_m);
-        if (lean < kMostLean && std::abs(height_m) <= kOnFace * lean * radius_m_)
+        const double edge_m = face.normal.dot(touch.on_surface_m - face.on_surface_m);
+        const double tool_m = face.normal.dot(touch.on_tool_m - face.on_surface_m);
+        if (lean > kLeastLean && lean < kMostLean &&
+            std::abs(edge_m) <= kOnFace * lean * radius_m_ &&
+            tool_m >= radius_m_ * (1.0 - kAbove * lean * lean))
         {
             return true;
         }
@@ -151,7 +139,6 @@ bool BodyPlanes::is_seam(std::size_t plane) const noexcept
 
 BodyMotion BodyPlanes::nearest(const Motion<6>& wanted) noexcept
 {
-    drop_seams();
     BodyMotion answer;
     const NearestMotion<6> held = plain(wanted, answer.is_squeezed);
     answer.motion = held.motion;
@@ -166,7 +153,12 @@ BodyMotion BodyPlanes::nearest(const Motion<6>& wanted) noexcept
     {
         return answer;
     }
-    tilt(choose(held), wanted);
+    const Chosen chosen = choose(held);
+    if (chosen.empty())
+    {
+        return answer; // It comes to the surface in this step.
+    }
+    tilt(chosen, wanted);
     const NearestMotion<6> tilted = nearest_motion<6>(tilted_.view(), wanted);
     if (!tilted.is_feasible || tilted.held_by.empty())
     {
@@ -208,7 +200,7 @@ BodyPlanes::Chosen BodyPlanes::choose(const NearestMotion<6>& plain) const noexc
     for (std::size_t i = 0; i < spaces_.size(); ++i)
     {
         const bool touches = spaces_[i].offset >= -kTouchingGap * radius_m_;
-        nearest[i] = touches && grips_[i].friction > 0.0 ? kInfinity : 0.0;
+        nearest[i] = touches && grips_[i].friction > 0.0 && !is_seam(i) ? kInfinity : 0.0;
     }
     const auto take = [&](std::uint32_t taken)
     {
@@ -222,7 +214,7 @@ BodyPlanes::Chosen BodyPlanes::choose(const NearestMotion<6>& plain) const noexc
     };
     for (const std::uint32_t plane : plain.held_by)
     {
-        if (grips_[plane].friction > 0.0)
+        if (nearest[plane] > 0.0)
         {
             take(plane);
         }

@@ -103,7 +103,6 @@ private:
     };
     using Chosen = StaticVector<std::uint32_t, kTiltedContacts>;
 
-    void drop_seams() noexcept;
     [[nodiscard]] bool is_seam(std::size_t plane) const noexcept;
     void replace(std::size_t plane, const HalfSpace<6>& space, const BodyTouch& touch,
                  const BodyGrip& grip) noexcept;

@@ -14,14 +14,18 @@ namespace
 /// into it has room to come back.
 constexpr double kMostOfDistance = 0.9;
 constexpr double kKeptOfRadius = 0.5;
+/// Below this share of the radius a distance is scarce.
+constexpr double kScarce = 0.1;
 /// Points nearer to one another than this share of the core's radius tell no direction.
 constexpr double kLeastSlab = 1e-5;
 
-/// Of an exact distance.
+/// Of an exact distance. Where little is left, less and less of it is gone: a tool that is wedged
+/// in comes nearer by one over the number of frames, and never to nothing.
 double free_of(double distance_m, double radius_m) noexcept
 {
-    const double beyond_m =
-        std::max(distance_m - kKeptOfRadius * radius_m, (1.0 - kKeptOfRadius) * distance_m);
+    const double scarcity = std::min(1.0, distance_m / (kScarce * radius_m));
+    const double beyond_m = std::max(distance_m - kKeptOfRadius * radius_m,
+                                     (1.0 - kKeptOfRadius) * scarcity * distance_m);
     return std::min(beyond_m, kMostOfDistance * distance_m);
 }
 

@@ -273,17 +273,25 @@ void RigidProxy::gather(const ToolGoal& goal, std::span<const PlacedSurface> sur
     {
         const TouchReport& touches = *surfaces[i].touches;
         is_crowded_ = is_crowded_ || touches.is_truncated;
-        for (const ContactSet* contacts : {&touches.nearest, &touches.corners})
+        add(i, touches.corners.view(), surfaces[i], goal.elapsed_s);
+        if (!touches.ends.is_empty)
         {
-            for (const Contact& contact : *contacts)
-            {
-                add({i, contact.on_tool_m, contact.on_surface_m, contact.normal,
-                     contact.feature == TriangleFeature::interior},
-                    surfaces[i], goal.elapsed_s);
-            }
+            add(i, touches.ends.contacts, surfaces[i], goal.elapsed_s);
         }
+        add(i, touches.nearest.view(), surfaces[i], goal.elapsed_s);
     }
     add_holds(surfaces, goal.elapsed_s);
+}
+
+void RigidProxy::add(std::uint32_t surface, std::span<const Contact> contacts,
+                     const PlacedSurface& placed, double elapsed_s) noexcept
+{
+    for (const Contact& contact : contacts)
+    {
+        add({surface, contact.on_tool_m, contact.on_surface_m, contact.normal,
+             contact.feature == TriangleFeature::interior},
+            placed, elapsed_s);
+    }
 }
 
 void RigidProxy::add(const BodyTouch& touch, const PlacedSurface& placed, double elapsed_s) noexcept

@@ -123,6 +123,8 @@ private:
     void advance(const ToolGoal& goal, const BodyMotion& found, const BodyRoom& room) noexcept;
     void freeze(const ToolGoal& goal, bool is_crossed, ToolOutput& output) noexcept;
     void gather(const ToolGoal& goal, std::span<const PlacedSurface> surfaces) noexcept;
+    void add(std::uint32_t surface, std::span<const Contact> contacts, const PlacedSurface& placed,
+             double elapsed_s) noexcept;
     void add(const BodyTouch& touch, const PlacedSurface& placed, double elapsed_s) noexcept;
     void add_holds(std::span<const PlacedSurface> surfaces, double elapsed_s) noexcept;
     void keep_holds(const BodyMotion& found, std::span<const PlacedSurface> surfaces) noexcept;

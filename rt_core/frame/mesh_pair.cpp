@@ -165,11 +165,11 @@ RefineQuestion MeshPair::question(const Ball& ball, double reach_m, double moved
             ahead_m};
 }
 
-void MeshPair::query(const Outlook& outlook, double contact_m, DistanceAnswer& answer,
-                     ContactReport& contacts) noexcept
+void MeshPair::query(const Outlook& outlook, double contact_m, ContactEnds* ends,
+                     DistanceAnswer& answer, ContactReport& contacts) noexcept
 {
-    const MeshQuestion question{*tool_tree_, *object_tree_, placements_[0], outlook.reach_m(),
-                                contact_m};
+    const MeshQuestion question{*tool_tree_,       *object_tree_, placements_[0],
+                                outlook.reach_m(), contact_m,     ends};
     query_meshes(question, objects_[0], memory_, answer, report_, contacts);
     if (answer.nearest_face.is_none())
     {

@@ -16,7 +16,7 @@ namespace
 {
 
 /// From the model's frame to the world.
-void place_in_world(const ObjectPose& pose, ContactSet& contacts) noexcept
+void place_each_in_world(const ObjectPose& pose, auto& contacts) noexcept
 {
     for (Contact& contact : contacts)
     {
@@ -30,13 +30,17 @@ void place_in_world(const ObjectPose& pose, ContactSet& contacts) noexcept
 void place_in_world(const ObjectPose& pose, ContactReport& report) noexcept
 {
     report.normal = pose.rotation * report.normal;
-    place_in_world(pose, report.contacts);
+    place_each_in_world(pose, report.contacts);
 }
 
 void place_in_world(const ObjectPose& pose, TouchReport& touches) noexcept
 {
-    place_in_world(pose, touches.nearest);
-    place_in_world(pose, touches.corners);
+    place_each_in_world(pose, touches.nearest);
+    place_each_in_world(pose, touches.corners);
+    if (!touches.ends.is_empty)
+    {
+        place_each_in_world(pose, touches.ends.contacts);
+    }
     for (ContactSlab& slab : touches.slabs)
     {
         slab.distance_m *= pose.scale;
@@ -395,7 +399,8 @@ void Pair::query_mesh(WorkCounters& work, FrameFault& faults) noexcept
         const double contact_m = touches != nullptr    ? outlook_.reach_m()
                                  : tool.wants_contacts ? radius_m
                                                        : -1.0;
-        mesh_->query(outlook_, contact_m, answer, contacts);
+        mesh_->query(outlook_, contact_m, touches != nullptr ? &touches->ends : nullptr, answer,
+                     contacts);
         outlook_.remember(answer);
         if (touches != nullptr)
         {

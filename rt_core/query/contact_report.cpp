@@ -317,6 +317,7 @@ void report_touches(const PlacedCore& core, double reach_m, const AbTree& tree,
         {
             const Contact contact = make_contact(closest, triangle, face);
             add_slab(contact.normal, closest, touches);
+            keep_ends(contact, touches.ends);
             const bool has_room = keep_nearest(contact, touches.nearest);
             add_corners(corners, reach_m, triangle, face, touches);
             touches.is_truncated = touches.is_truncated || !has_room;

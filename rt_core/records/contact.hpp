@@ -7,6 +7,8 @@
 #include "rt_core/math/triangle.hpp"
 #include "rt_core/spm/ids.hpp"
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 
 namespace tactus
@@ -42,11 +44,25 @@ struct ContactSlab
 /// faces some share a slab, whose spread grows.
 inline constexpr std::size_t kMaxSlabs = 16;
 
-/// Where a tool with a force and a torque may come to touch an object, for the force stage. 7 KiB.
+/// Directions in which the farthest contacts are kept: along axes, between two and between three.
+inline constexpr std::size_t kContactDirections = 26;
+
+/// The farthest contact in each direction, so that a body that lies on hundreds of faces is held at
+/// the ends of what it lies on. Far is also what would touch after a turn of a tenth: a contact
+/// counts as nearer to the middle by ten times its distance from the core.
+struct ContactEnds
+{
+    std::array<Contact, kContactDirections> contacts{};
+    std::array<double, kContactDirections> reaches_m{};
+    bool is_empty{true};
+};
+
+/// Where a tool with a force and a torque may come to touch an object, for the force stage. 10 KiB.
 struct TouchReport
 {
     ContactSet nearest;       ///< Of each face the nearest point.
     ContactSet corners;       ///< Of a convex core, over a face.
+    ContactEnds ends;         ///< Of those and of all there was no room for.
     bool is_truncated{false}; ///< There were more.
     /// Of all faces nearer than `covered_m`, as far as they are exact.
     StaticVector<ContactSlab, kMaxSlabs> slabs;
@@ -57,6 +73,7 @@ struct TouchReport
     {
         nearest.clear();
         corners.clear();
+        ends.is_empty = true;
         is_truncated = false;
         slabs.clear();
         covered_m = 0.0;

@@ -179,8 +179,10 @@ private:
         const double reach = sut.radius_m() + reach_m;
         report.covered_m = reach;
         double least = std::numeric_limits<double>::infinity();
+        std::uint32_t face = 0;
         for (const auto& corners : solid.triangles)
         {
+            ++face;
             Triangle triangle = to_triangle(corners);
             for (Vec3& corner : triangle)
             {
@@ -189,7 +191,8 @@ private:
             const ClosestPoints closest = core.closest(triangle);
             const double distance = closest.meet ? 0.0 : closest.distance;
             least = std::min(least, distance);
-            keep(closest.on_shape, closest.on_triangle, reach, closest.feature, report.nearest);
+            keep(closest.on_shape, closest.on_triangle, reach, closest.feature, face,
+                 report.nearest, tells_corners ? &report.ends : nullptr);
             if (distance <= reach)
             {
                 keep_slab(unit_or_zero(closest.on_shape - closest.on_triangle), distance, report);
@@ -197,19 +200,29 @@ private:
             for (const Vec3& corner : core.corners())
             {
                 const auto under = closest_point_on_triangle(corner, triangle);
-                keep(corner, under.point, reach, under.feature, report.corners);
+                if (under.feature == TriangleFeature::interior) // It stands over the face.
+                {
+                    keep(corner, under.point, reach, under.feature, face, report.corners, nullptr);
+                }
             }
         }
         return least;
     }
+    /// As the query does: the nearest, and the ends of all.
     static void keep(const Vec3& on_tool, const Vec3& on_surface, double reach,
-                     TriangleFeature feature, ContactSet& set)
+                     TriangleFeature feature, std::uint32_t face, ContactSet& set,
+                     ContactEnds* ends)
     {
         const Vec3 gap = on_tool - on_surface;
         if (gap.norm() > 0.0 && gap.norm() <= reach)
         {
-            (void)set.try_push_back(
-                {FaceId{}, feature, gap.norm(), on_tool, on_surface, gap.normalized(), FaceId{}});
+            const Contact contact{FaceId{face}, feature,          gap.norm(), on_tool,
+                                  on_surface,   gap.normalized(), FaceId{}};
+            (void)keep_nearest(contact, set);
+            if (ends != nullptr)
+            {
+                keep_ends(contact, *ends);
+            }
         }
     }
 
