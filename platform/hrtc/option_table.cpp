@@ -36,11 +36,13 @@ void declare_scene(CommandLine& line, Options& options, RawOptions& raw)
                     "Room for so many objects, at least those that are placed; 1 to 4096 "
                     "[as many as are placed]")
         .integer_between(1U, kMaxObjects);
-    line.add_option("--material", raw.materials,
-                    "How the object feels, one for each in order; further ones feel as the last "
-                    "--model: STIFFNESS in N/m, 1 to "
-                    "3000, the softer of this and --stiffness counts [,STATIC friction, 0 to 3 "
-                    "[,DYNAMIC friction, at most the static one [,DAMPING in N s/m, 0 to 20]]]")
+    line.add_option(
+            "--material", raw.materials,
+            "How the object feels, one for each in order; further ones feel as the last "
+            "--model: STIFFNESS in N/m, 1 to "
+            "3000, the softer of this and --stiffness counts [,STATIC friction, 0 to 3 "
+            "[,DYNAMIC friction, at most the static one [,DAMPING in N s/m, 0 to 20]]]; or any "
+            "of stiffness=, static=, dynamic= and damping=, with commas between")
         .repeatable();
     line.add_option(
             "--tool", raw.tools,
