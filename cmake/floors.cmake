@@ -71,6 +71,10 @@ tactus_room(platform/hrtc rt_core transport platform host_tools/cli host_tools/m
 # --- transport: parse and link live in spm; of the cache it knows inbox and page slots.
 tactus_room(transport ${stage_floor} rt_core/cache platform/base)
 
+# What a frame and the courier beside it take together.
+tactus_room(transport/pool_plan.hpp rt_core)
+tactus_room(transport/pool_plan.cpp rt_core transport)
+
 # --- host_tools: downward only; nothing includes a program.
 set(host_floor platform/base rt_core transport)
 

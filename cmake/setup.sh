@@ -18,7 +18,8 @@ Commands:
             -- -L extended for the long runs or -- -L other_builds for builds by other
             compilers, which are both left out otherwise
   demo      build the programs, make a model, publish it over DDS on this machine and touch it
-            for 10 s at 1 kHz; the report is written to build/demo/report.json
+            for 10 s at 1 kHz; the report is written to build/demo/report.json. With --scene
+            a scene of 200 objects, which two hands touch
   bench     build the benchmarks and run every suite; the results are written to build/bench as
             JSON and as text, BENCH-OPTIONS after -- go to tactus_bench, e.g. -- --core 1
   packages  only install the packages that are missing
@@ -31,6 +32,7 @@ Options:
                 not over those of a full one, and draw its pictures; needs TACTUS_MESHES
   --ci          packages: the packages of .ci/run (cmake/packages-ci.txt) as well
   --bench       packages: the peers of tactus_bench (cmake/packages-bench.txt) as well
+  --scene       demo: a scene instead of one model
   --seconds N   demo: touch for N seconds, 1 to 3600 (default 10)
   --domain N    demo: use DDS domain N, 0 to 232 (default: the programs' own)
   --help        this text
@@ -163,7 +165,7 @@ stop_publisher() {
 
 start_publisher() { # start_publisher OPTION...
     local log="$demo/spm_publish.log"
-    "$build/bin/spm_publish" "$demo/bumpy.spm" "$@" >"$log" 2>&1 &
+    "$build/bin/spm_publish" "$@" >"$log" 2>&1 &
     publisher=$!
     trap stop_publisher EXIT
     trap 'exit 2' INT TERM
@@ -174,8 +176,21 @@ start_publisher() { # start_publisher OPTION...
     fi
 }
 
-run_demo() { # run_demo SECONDS [DOMAIN]
+make_model() {
+    "$build/bin/spm_build" --shape bumpy-sphere --faces 200000 -o "$demo/bumpy.spm" \
+        || fail 2 "spm_build could not make $demo/bumpy.spm"
+}
+
+make_scene() {
+    python3 "$root/cmake/demo_scene.py" "$demo/scene.glb" \
+        || fail 2 "demo_scene.py could not make $demo/scene.glb"
+    "$build/bin/spm_build" "$demo/scene.glb" -o "$demo/scene" | tail -n 1
+    [[ ${PIPESTATUS[0]} == 0 ]] || fail 2 "spm_build could not make $demo/scene"
+}
+
+run_demo() { # run_demo SECONDS [DOMAIN [WITH_SCENE]]
     local code=0 network=() realtime=() report="$demo/report.json" program
+    local served="$demo/bumpy.spm" touched=(--model bumpy)
     for program in spm_build spm_publish hrtc; do
         [[ -x "$build/bin/$program" ]] || fail 2 "$build/bin/$program is not built"
     done
@@ -184,15 +199,20 @@ run_demo() { # run_demo SECONDS [DOMAIN]
     fi
     mkdir -p "$demo"
     rm -f "$report"
-    "$build/bin/spm_build" --shape bumpy-sphere --faces 200000 -o "$demo/bumpy.spm" \
-        || fail 2 "spm_build could not make $demo/bumpy.spm"
+    if [[ -n "${3:-}" ]]; then
+        make_scene
+        served="$demo/scene/scene.gltf"
+        touched=(--scene scene --tools 2 --pool-mib 8)
+    else
+        make_model
+    fi
     if ! may_run_realtime; then
         echo "No right to SCHED_FIFO or locked memory here: running with --allow-no-rt, so the" \
             "times below are those of an ordinary thread."
         realtime=(--allow-no-rt)
     fi
-    start_publisher "${network[@]}"
-    "$build/bin/hrtc" --model bumpy --device sim --rate 1000 --duration "$1" --report "$report" \
+    start_publisher "$served" "${network[@]}"
+    "$build/bin/hrtc" "${touched[@]}" --device sim --rate 1000 --duration "$1" --report "$report" \
         "${realtime[@]}" "${network[@]}" || code=$?
     stop_publisher
     if [[ -f "$report" ]]; then
@@ -236,13 +256,14 @@ number_in() { # number_in OPTION VALUE LOW HIGH
 main() {
     local command='' seconds=10 domain='' more_options=()
     local lists=("$root"/cmake/packages{,-test}.txt)
-    local bench_options=() peers='' kept=''
+    local bench_options=() peers='' kept='' scene=''
     while (($# > 0)); do
         case "$1" in
             build | test | demo | bench | packages)
                 [[ -z "$command" ]] || fail 3 "two commands given: '$command' and '$1'"
                 command=$1
                 ;;
+            --scene) scene=yes ;;
             --quick) bench_options+=(--quick) ;;
             --peers | --docs)
                 [[ "$1" == --peers ]] || kept=$root/docs/benchmarks
@@ -279,6 +300,9 @@ main() {
     if [[ "$command" != bench && (-n "$peers" || ${#bench_options[@]} -gt 0) ]]; then
         fail 3 "--quick, --peers and --docs are for 'bench' only"
     fi
+    if [[ "$command" != demo && -n "$scene" ]]; then
+        fail 3 "--scene is for 'demo' only"
+    fi
     if [[ -n "$kept" && ! -d "${TACTUS_MESHES:-}" ]]; then
         fail 3 "--docs: TACTUS_MESHES must name the folder with the well-known meshes; the results\
  are about them"
@@ -308,7 +332,7 @@ main() {
                 grep -qs '^TACTUS_TESTS:BOOL=ON$' "$build/CMakeCache.txt" || with_tests=OFF
                 build_targets spm_build spm_publish hrtc
             fi
-            run_demo "$seconds" "$domain"
+            run_demo "$seconds" "$domain" "$scene"
             ;;
     esac
 }

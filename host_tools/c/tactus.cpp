@@ -8,6 +8,7 @@
 #include "transport/courier.hpp"
 #include "transport/dds/dds_client.hpp"
 #include "transport/model_name.hpp"
+#include "transport/pool_plan.hpp"
 #include "transport/store/store_link.hpp"
 
 #include <fmt/format.h>
@@ -325,25 +326,13 @@ void read_setup(const tactus_setup& from, Scene& scene)
     scene.setup.static_when_it_fits = from.loads_whole != 0;
 }
 
-/// What belongs to no model comes off first. Twice, since what the courier needs follows from the
-/// number of pages.
 void plan_pools(const tactus_setup& from, std::size_t bytes, Scene& scene)
 {
-    std::size_t common = Frame::required_bytes(scene.setup);
-    for (std::uint32_t i = 0; i < from.model_count; ++i)
-    {
-        common += Arena::round_up(from.models[i]->served.header.size());
-    }
     std::vector<ModelCapacities> capacities(from.model_count);
-    for (int round = 0; round < 2; ++round)
+    if (!try_plan_pools(scene.setup, scene.headers, bytes, 0, capacities))
     {
-        const ModelCapacities sum = sum_of(capacities);
-        const std::size_t taken = common + Courier::required_bytes(sum.pages, sum.index_pages);
-        if (taken >= bytes || !try_plan(scene.headers, bytes - taken, 0, capacities))
-        {
-            refuse(TACTUS_REFUSED,
-                   "memory: {} bytes; base meshes and a few pages of the models need more", bytes);
-        }
+        refuse(TACTUS_REFUSED, "memory: {} bytes; the models need {} at least", bytes,
+               least_pool_bytes(scene.setup, scene.headers, 0));
     }
     for (std::uint32_t i = 0; i < from.model_count; ++i)
     {

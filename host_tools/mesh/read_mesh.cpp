@@ -126,6 +126,11 @@ Result<MeshFile, Refusal> read_mesh_file(const std::filesystem::path& path)
     }
 }
 
+bool is_mesh_file_name(const std::filesystem::path& path)
+{
+    return reader_for(path).has_value();
+}
+
 Result<TriangleMesh, Refusal> read_mesh(const std::filesystem::path& path)
 {
     auto file = read_mesh_file(path);

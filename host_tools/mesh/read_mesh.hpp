@@ -37,4 +37,7 @@ struct MeshFile
 /// The same for callers that don't show notes.
 [[nodiscard]] Result<TriangleMesh, Refusal> read_mesh(const std::filesystem::path& path);
 
+/// Whether the name ends like that of a file that read_mesh() reads, in whatever case.
+[[nodiscard]] bool is_mesh_file_name(const std::filesystem::path& path);
+
 } // namespace tactus

@@ -39,6 +39,7 @@ struct Options
 {
     std::vector<std::string> files;
     std::vector<std::string> names;
+    std::string scene; ///< Empty: the scene file's stem, or no name.
     std::uint32_t domain{0};
     std::optional<double> seconds;
     std::string poses_path; ///< Empty: no file moves anything.
@@ -83,6 +84,9 @@ void declare_options(CommandLine& line, Options& options)
     line.add_option("--name", options.names,
                     "Name of the first model, of the second, ...; without it the file's stem")
         .repeatable_with_more();
+    line.add_option("--scene", options.scene,
+                    "Name under which controllers find all objects together (hrtc --scene); "
+                    "without it the scene file's stem");
     line.add_option("--domain", options.domain, "DDS domain")
         .integer_between(std::uint32_t{0}, dds::kMaxDomain)
         .show_default();
@@ -120,6 +124,10 @@ Result<std::vector<Prop>, Refusal> open_scene(Options& options)
     if (!scene)
     {
         return scene.error();
+    }
+    if (options.scene.empty())
+    {
+        options.scene = std::filesystem::path(options.files.front()).stem().string();
     }
     std::vector<Prop> props;
     for (const PlacedModel& object : scene.value().objects)
@@ -196,7 +204,8 @@ Result<std::vector<dds::PublishedModel>, Refusal> open_models(const Options& opt
     return models;
 }
 
-void print_models(ServingReport& report, dds::DdsHost& host, std::uint32_t domain)
+void print_models(ServingReport& report, dds::DdsHost& host, const std::string& scene,
+                  std::uint32_t domain)
 {
     for (const dds::ModelPieces& model : host.models())
     {
@@ -208,7 +217,8 @@ void print_models(ServingReport& report, dds::DdsHost& host, std::uint32_t domai
     }
     if (const std::size_t objects = host.objects().objects(); objects > 0)
     {
-        report.print_line(fmt::format("showing {} objects", objects));
+        report.print_line(fmt::format("showing {} objects{}", objects,
+                                      scene.empty() ? "" : fmt::format(" as scene '{}'", scene)));
     }
     report.print_line(fmt::format("ready on DDS domain {}; end with Ctrl-C", domain));
 }
@@ -357,6 +367,12 @@ int run(int argc, char** argv)
     {
         return line.fail(names.error().text, kExitUsage);
     }
+    if (!options.scene.empty() && !is_valid_name(options.scene))
+    {
+        return line.fail(fmt::format("--scene: '{}' is not 1 to 63 characters of A-Z a-z 0-9 . _ -",
+                                     printable(options.scene)),
+                         kExitUsage);
+    }
     if (options.poses_loop && options.poses_path.empty())
     {
         return line.fail("--poses-loop: needs --poses", kExitUsage);
@@ -377,9 +393,9 @@ int run(int argc, char** argv)
     }
     stop_on_signals();
     ServingReport report;
-    auto host =
-        dds::DdsHost::create(options.domain, std::move(models).value(),
-                             [&report](const std::string& text) { report.print_line(text); });
+    auto host = dds::DdsHost::create(
+        options.domain, std::move(models).value(),
+        [&report](const std::string& text) { report.print_line(text); }, options.scene);
     if (!host)
     {
         return line.fail(host.error().text);
@@ -389,7 +405,7 @@ int run(int argc, char** argv)
     {
         return line.fail(extras.error().text);
     }
-    print_models(report, *host.value(), options.domain);
+    print_models(report, *host.value(), options.scene, options.domain);
     serve(*host.value(), report, extras.value(), options.seconds);
     const auto counters = host.value()->counters();
     report.print_line(fmt::format("ended; {} chunks, {:.1f} KB sent", counters.pieces_sent,

@@ -7,10 +7,12 @@
 #include "platform/simulated/simulated_device.hpp"
 #include "rt_core/force/angular_stiffness.hpp"
 #include "rt_core/force/stiffness_rule.hpp"
+#include "transport/pool_plan.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace tactus::hrtc
 {
@@ -23,6 +25,14 @@ constexpr double kBytesPerMib = 1024.0 * 1024.0;
 constexpr double kSpeedMax_diag = 1.0;
 /// The simulated hand flies at two diagonals a second; its device stands twice that.
 constexpr double kHandSpeed_diag = 4.0;
+/// It touches what is so many times as large as its tool's radius, if there is such a thing.
+constexpr double kHandRoom = 10.0;
+
+/// What is told in two decimals is not less.
+double up_to_cents(double value)
+{
+    return std::ceil(100.0 * value) / 100.0;
+}
 
 /// Without one it is simulated.
 DeviceChoice choice_of(const Options& options, std::size_t tool)
@@ -70,7 +80,7 @@ Controller::Controller(const Options& options, std::vector<ServedModel> models)
 
 double Controller::diagonal_world_m() const noexcept
 {
-    return headers_.front().diagonal_m() * poses_.front().scale;
+    return diagonal_of(0);
 }
 
 std::vector<std::uint32_t> Controller::first_objects() const
@@ -82,6 +92,16 @@ std::vector<std::uint32_t> Controller::first_objects() const
         first.push_back(static_cast<std::uint32_t>(shows - objects_.begin()));
     }
     return first;
+}
+
+bool Controller::is_of_tool(std::size_t model) const noexcept
+{
+    return std::ranges::any_of(tools_,
+                               [model](const ToolSetup& tool)
+                               {
+                                   const auto* mesh = std::get_if<MeshCore>(&tool.spec.core);
+                                   return mesh != nullptr && mesh->model.value == model;
+                               });
 }
 
 void Controller::make_poses(const Options& options)
@@ -145,7 +165,6 @@ void Controller::make_tools(const Options& options)
     }
 }
 
-/// What belongs to no model comes off first.
 std::optional<Refusal> Controller::lay_out_pools(const Options& options)
 {
     setup_.objects = objects_;
@@ -155,29 +174,17 @@ std::optional<Refusal> Controller::lay_out_pools(const Options& options)
     setup_.static_when_it_fits = options.static_when_it_fits;
     setup_.prediction = options.prediction;
     setup_.period_ns = options.period().ns;
-    std::size_t shared = Frame::required_bytes(setup_);
-    for (const ServedModel& model : models_)
-    {
-        shared += Arena::round_up(model.header.size());
-    }
-    const std::size_t total = memory_.span().size();
     const auto cache = static_cast<std::size_t>(options.cache_mib * kBytesPerMib);
     std::vector<ModelCapacities> capacities(models_.size());
-    // Planned twice: what the courier needs follows from the number of pages.
-    bool fits = shared < total && try_plan(headers_, total - shared, cache, capacities);
-    const ModelCapacities sum = sum_of(capacities);
-    shared += fits ? Courier::required_bytes(sum.pages, sum.index_pages) : 0;
-    fits = fits && shared < total && try_plan(headers_, total - shared, cache, capacities);
-    if (!fits)
+    if (!try_plan_pools(setup_, headers_, memory_.span().size(), cache, capacities))
     {
-        std::uint32_t base_faces = 0;
-        for (const ModelHeader& header : headers_)
-        {
-            base_faces += header.counts().base_faces;
-        }
-        return Refusal{fmt::format("--pool-mib: {} MiB is too small for {} models (their base "
-                                   "meshes have {} faces); give more, or less --cache-mib",
-                                   options.pool_mib, models_.size(), base_faces)};
+        const std::size_t least = least_pool_bytes(setup_, headers_, cache) + sizeof(Frame);
+        return Refusal{
+            fmt::format("--pool-mib: {} MiB is too small for {} models; {:.2f} MiB would "
+                        "do for a start{}",
+                        options.pool_mib, models_.size(),
+                        up_to_cents(static_cast<double>(least) / kBytesPerMib),
+                        options.cache_mib > 0.0 ? ", or less --cache-mib" : "")};
     }
     for (std::size_t i = 0; i < models_.size(); ++i)
     {
@@ -222,9 +229,10 @@ std::optional<Refusal> Controller::finish_devices(const Options& options)
 
 std::optional<Refusal> Controller::simulate_device(const Options& options, std::size_t tool)
 {
+    const std::size_t object = object_of_hand(tool);
     HandScene scene;
-    scene.anchors_world_m = anchors_world_m();
-    scene.diagonal_m = diagonal_world_m();
+    scene.anchors_world_m = anchors_world_m(object);
+    scene.diagonal_m = diagonal_of(object);
     scene.tool_radius_m = tools_[tool].hand_radius_m;
     scene.period = options.period();
     scene.frames_total = options.frames();
@@ -239,7 +247,7 @@ std::optional<Refusal> Controller::simulate_device(const Options& options, std::
     device_options.workspace_centre_world_m = motion.value().centre_world_m;
     device_options.workspace_radius_m = motion.value().reach_m;
     device_options.speed_max_m_per_s =
-        std::max(device_options.speed_max_m_per_s, kHandSpeed_diag * diagonal_world_m());
+        std::max(device_options.speed_max_m_per_s, kHandSpeed_diag * scene.diagonal_m);
     auto device = SimulatedDevice::create(device_options, std::move(motion.value().hand));
     if (!device)
     {
@@ -281,12 +289,32 @@ void Controller::limit_force(const Options& options, ToolSetup& tool) const
     tool.clutch_button = options.clutch_button;
 }
 
-/// The first model's base vertices: original vertices, so they lie on its surface.
-std::vector<Vec3> Controller::anchors_world_m() const
+/// Each touches another object, as far as there are some that are much larger than its tool.
+std::size_t Controller::object_of_hand(std::size_t tool) const
+{
+    for (std::size_t i = 0; i < objects_.size(); ++i)
+    {
+        const std::size_t object = (tool + i) % objects_.size();
+        if (diagonal_of(object) >= kHandRoom * tools_[tool].hand_radius_m)
+        {
+            return object;
+        }
+    }
+    return 0;
+}
+
+double Controller::diagonal_of(std::size_t object) const noexcept
+{
+    return headers_[objects_[object].model.value].diagonal_m() * poses_[object].scale;
+}
+
+/// The base vertices of its model: original vertices, so they lie on its surface.
+std::vector<Vec3> Controller::anchors_world_m(std::size_t object) const
 {
     std::vector<Vec3> anchors;
-    const ObjectPose pose = model_pose(poses_.front(), headers_.front().origin_m());
-    for (const Vec3f& position_m : frame_->model({0}).slots.base.positions_m)
+    const ModelId model = objects_[object].model;
+    const ObjectPose pose = model_pose(poses_[object], headers_[model.value].origin_m());
+    for (const Vec3f& position_m : frame_->model(model).slots.base.positions_m)
     {
         anchors.push_back(to_world(pose, to_vec3(position_m)));
     }

@@ -37,14 +37,18 @@ public:
            const std::function<bool()>& goes_on);
 
     [[nodiscard]] Frame& frame() noexcept { return *frame_; }
+    [[nodiscard]] const Frame& frame() const noexcept { return *frame_; }
     [[nodiscard]] Courier& courier() noexcept { return *courier_; }
     [[nodiscard]] const Courier& courier() const noexcept { return *courier_; }
     [[nodiscard]] std::vector<ToolSetup>& tools() noexcept { return tools_; }
     [[nodiscard]] const std::vector<ToolSetup>& tools() const noexcept { return tools_; }
     /// By their numbers, with where they stand at the start.
     [[nodiscard]] const std::vector<ObjectSpec>& objects() const noexcept { return objects_; }
-    /// Of each model the number of the first object that shows it: the one that its host moves.
+    /// Of each model the number of the first object that shows it: the one that its host moves
+    /// where no scene is followed. That of no object where none shows it at the start.
     [[nodiscard]] std::vector<std::uint32_t> first_objects() const;
+    /// Whether a tool has the model's shape.
+    [[nodiscard]] bool is_of_tool(std::size_t model) const noexcept;
     [[nodiscard]] const std::vector<ObjectPose>& poses() const noexcept { return poses_; }
     [[nodiscard]] const std::vector<ServedModel>& models() const noexcept { return models_; }
     [[nodiscard]] const Budgets& budgets() const noexcept { return budgets_; }
@@ -67,7 +71,9 @@ private:
     [[nodiscard]] std::optional<Refusal> simulate_device(const Options& options, std::size_t tool);
     [[nodiscard]] std::optional<Refusal> finish_devices(const Options& options);
     void limit_force(const Options& options, ToolSetup& tool) const;
-    [[nodiscard]] std::vector<Vec3> anchors_world_m() const;
+    [[nodiscard]] std::size_t object_of_hand(std::size_t tool) const;
+    [[nodiscard]] double diagonal_of(std::size_t object) const noexcept;
+    [[nodiscard]] std::vector<Vec3> anchors_world_m(std::size_t object) const;
 
     std::vector<ServedModel> models_;
     std::vector<ModelHeader> headers_; ///< Views into models_.

@@ -203,12 +203,32 @@ std::optional<Refusal> probe(const ReportFiles& files)
     return std::nullopt;
 }
 
+/// Empty when all is well.
+std::string check_report(const std::vector<std::string>& paths)
+{
+    if (paths.size() > 1)
+    {
+        return "--report: one name is enough, the three files are called by it";
+    }
+    if (paths.empty())
+    {
+        return {};
+    }
+    const ReportFiles files = files_beside(paths.front());
+    if (files.json == files.text || files.json == files.image)
+    {
+        return "--report: must not end in .txt or .svg, which the histograms take";
+    }
+    return is_page_name(paths.front()) ? "--report: must not end in .html: this one is JSON" : "";
+}
+
 int run_test(const Options& options, const std::vector<LoadKind>& loads)
 {
     install_signal_handlers();
     install_assertion_brake();
-    const bool has_files = !options.report_path.empty();
-    const ReportFiles files = has_files ? files_beside(options.report_path) : ReportFiles{};
+    const bool has_files = !options.report_paths.empty();
+    const ReportFiles files =
+        has_files ? files_beside(options.report_paths.front()) : ReportFiles{};
     if (const auto error = probe(files))
     {
         return leave_with(failure("--report: " + error->text));
@@ -279,17 +299,9 @@ int run_deadline_test(int argc, char** argv)
     {
         return leave_with({.text = fault, .is_usage = true});
     }
-    const ReportFiles files = files_beside(options.report_path);
-    if (!files.json.empty() && (files.json == files.text || files.json == files.image))
+    if (const std::string fault = check_report(options.report_paths); !fault.empty())
     {
-        return leave_with(
-            {.text = "--report: must not end in .txt or .svg, which the histograms take",
-             .is_usage = true});
-    }
-    if (is_page_name(options.report_path))
-    {
-        return leave_with(
-            {.text = "--report: must not end in .html: this one is JSON", .is_usage = true});
+        return leave_with({.text = fault, .is_usage = true});
     }
     return run_test(options, loads);
 }

@@ -5,6 +5,7 @@
 #include "platform/hrtc/recorder.hpp"
 #include "platform/hrtc/run_statistics.hpp"
 #include "platform/hrtc/safety_record.hpp"
+#include "platform/hrtc/scene_keeper.hpp"
 #include "platform/periodic_timer.hpp"
 #include "platform/remote/pose_door.hpp"
 #include "platform/rt_thread.hpp"
@@ -13,6 +14,7 @@
 #include "transport/dds/scene_reader.hpp"
 
 #include <cstdint>
+#include <ctime>
 #include <optional>
 #include <string>
 #include <vector>
@@ -28,10 +30,12 @@ struct FinishedRun
     bool supervisor_fifo{false}; ///< The supervisor had SCHED_FIFO.
     TimerCounts timer{};
     Duration period;
+    std::time_t started{0}; ///< Calendar time.
     SafetyRecord safety;
     bool host_was_lost{false};                  ///< Some model's host went away during the run.
     std::vector<PoseUse> pose_uses{};           ///< One an object; none from files.
     std::vector<dds::PoseCounts> pose_counts{}; ///< One a model; none with --ignore-poses.
+    SceneNewsCounts scene_news{};               ///< Of a host's scene.
     std::uint64_t telemetry_sent{0};
     std::optional<RecordingResult> recording{};
     std::optional<std::string> recording_error{}; ///< Why a wanted recording is not there.

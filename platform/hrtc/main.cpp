@@ -13,11 +13,13 @@
 #include "platform/hrtc/report_page.hpp"
 #include "platform/hrtc/session.hpp"
 #include "platform/hrtc/signals.hpp"
+#include "platform/hrtc/start_lines.hpp"
 #include "platform/hrtc/subcommands.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <cstdio>
 #include <variant>
 
 namespace tactus::hrtc
@@ -38,6 +40,8 @@ int touch(const Options& options)
     {
         return leave_with(session.error());
     }
+    fmt::print("{}", start_lines(options, session.value()->controller()));
+    std::fflush(stdout);
     const auto done = session.value()->run("touch");
     if (!done)
     {
@@ -46,17 +50,16 @@ int touch(const Options& options)
     const nlohmann::ordered_json report =
         make_report(options, session.value()->controller(), done.value());
     fmt::print("{}", make_summary(report));
-    if (!options.report_path.empty())
+    for (const std::string& path : options.report_paths)
     {
-        const auto error =
-            is_page_name(options.report_path)
-                ? write_text(make_page(report, done.value().statistics), options.report_path)
-                : write_report(report, options.report_path);
+        const auto error = is_page_name(path)
+                               ? write_text(make_page(report, done.value().statistics), path)
+                               : write_report(report, path);
         if (error)
         {
             return leave_with(failure("--report: " + error->text));
         }
-        fmt::print("report      {}\n", options.report_path);
+        fmt::print("report      {}\n", path);
     }
     return done.value().recording_error ? kExitFailed : kExitDone;
 }

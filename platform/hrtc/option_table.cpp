@@ -14,19 +14,24 @@ namespace
 {
 
 constexpr double kLargestPool_mib = 4'096.0;
-constexpr double kFrameBudgetMin_us = 10.0;
+constexpr double kFrameBudgetMin_us = 1.0;
 constexpr double kFrameBudgetMax_us = 10'000.0;
 
 /// The models, the tools that touch them and their devices.
 void declare_scene(CommandLine& line, Options& options, RawOptions& raw)
 {
+    line.add_option("FILE", raw.files,
+                    "Models to touch without a host (.spm), or a scene (.gltf, .glb): as --model "
+                    "FILE and --scene FILE")
+        .not_in_file();
     line.add_option("--model", raw.models,
-                    "Model to touch: NAME or NAME@HASH as published, or with --transport file a "
-                    "path; repeatable, the same one for several objects that show it")
+                    "Model to touch: NAME or NAME@HASH as published, or a file; repeatable, the "
+                    "same one for several objects that show it")
         .repeatable();
-    line.add_option("--scene", options.scene_path,
-                    "Instead of --model: the objects of a glTF file, each with its model beside "
-                    "the file, as spm_build writes it; with --transport file");
+    line.add_option("--scene", options.scene,
+                    "Instead of --model: all objects of the host whose scene has this name, as "
+                    "they come, move and go; or those of a glTF file, each with its model beside "
+                    "the file, as spm_build writes it");
     line.add_option("--place", raw.places,
                     "Where the object stands, one for each --model in order, and more for further "
                     "objects that show the last one: X,Y,Z in m "
@@ -83,8 +88,10 @@ void declare_run(CommandLine& line, Options& options)
     line.add_option("--duration", options.duration_s, "Seconds to run")
         .number_between(0.1, 86'400.0)
         .show_default();
-    line.add_option("--report", options.report_path,
-                    "Write the report to this file: a page when its name ends in .html, else JSON");
+    line.add_option("--report", options.report_paths,
+                    "Write the report to this file: a page when its name ends in .html, else JSON; "
+                    "repeatable")
+        .repeatable();
 }
 
 /// Memory, and the work of a frame.
@@ -137,14 +144,15 @@ void declare_force(CommandLine& line, Options& options)
 
 void declare_transport(CommandLine& line, Options& options, RawOptions& raw)
 {
-    line.add_option("--transport", raw.transport, "Where models come from")
-        .one_of({"dds", "file"})
-        .show_default();
+    line.add_option("--transport", raw.transport,
+                    "Where models come from [files where they are named, else DDS]")
+        .one_of({"dds", "file"});
     line.add_option("--domain", options.domain, "DDS domain id")
         .integer_between(0, 232)
         .show_default();
     line.add_flag("--ignore-poses", raw.ignores_poses,
-                  "Leave the models where --place puts them, whatever their hosts say");
+                  "Leave the objects where --place or --scene put them at the start, whatever "
+                  "their hosts say");
     line.add_option("--wait", options.wait_s,
                     "Seconds to wait for a model to be published, and for a device to come")
         .number_between(0.1, 3'600.0)

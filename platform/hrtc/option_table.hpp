@@ -14,6 +14,7 @@ namespace tactus::hrtc
 /// Texts of the command line that options.cpp reads once the line is parsed.
 struct RawOptions
 {
+    std::vector<std::string> files; ///< Without an option.
     std::vector<std::string> models;
     std::vector<std::string> places;
     std::vector<std::string> materials;
@@ -23,7 +24,7 @@ struct RawOptions
     std::vector<std::string> device_frames;
     std::vector<std::string> device_faults;
     std::optional<std::string> motion;
-    std::string transport{"dds"};
+    std::optional<std::string> transport;
     std::string prediction{prediction_name(Prediction::automatic)};
     std::optional<int> cpu;
     bool prints_config{false};

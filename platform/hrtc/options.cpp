@@ -4,6 +4,7 @@
 
 #include "host_tools/cli/command_line.hpp"
 #include "platform/base/printable.hpp"
+#include "platform/hrtc/file_choice.hpp"
 #include "platform/hrtc/material_choice.hpp"
 #include "platform/hrtc/numbers.hpp"
 #include "platform/hrtc/option_table.hpp"
@@ -23,14 +24,23 @@ namespace
 
 constexpr std::size_t kDeviceFaultsMax = 64; ///< Each reading looks at all of them.
 
-/// Options without a value are shown as comments: no file could set them to nothing.
-std::string without_empty(const std::string& config)
+/// As an option file. Options without a value are shown as comments: no file could set them to
+/// nothing. Files that stand alone on the command line are what they came to.
+std::string option_file(const CommandLine& line, const Options& options, const RawOptions& raw)
 {
-    std::istringstream lines(config);
+    std::istringstream lines(line.option_file_text());
     std::string text;
-    for (std::string line; std::getline(lines, line);)
+    for (std::string entry; std::getline(lines, entry);)
     {
-        text += (line.ends_with("=\"\"") ? "# " : "") + line + '\n';
+        if (entry.starts_with("model=") && !raw.models.empty())
+        {
+            entry = fmt::format("model=[\"{}\"]", fmt::join(raw.models, "\", \""));
+        }
+        else if (entry.starts_with("scene=") && !options.scene.empty())
+        {
+            entry = fmt::format("scene=\"{}\"", options.scene);
+        }
+        text += (entry.ends_with("=\"\"") ? "# " : "") + entry + '\n';
     }
     return text;
 }
@@ -58,26 +68,51 @@ std::string check_files(const CommandLine& line, const Options& options)
             return std::string(name) + ": a file's name is needed";
         }
     }
-    return !options.record_path.empty() && options.record_path == options.report_path
-               ? "--record: must be another file than --report"
-               : "";
+    for (const std::string& path : options.report_paths)
+    {
+        if (path.empty())
+        {
+            return "--report: a file's name is needed";
+        }
+        if (path.ends_with(".htm"))
+        {
+            return fmt::format("--report: '{}': a page's name ends in .html", printable(path));
+        }
+        if (std::ranges::count(options.report_paths, path) > 1)
+        {
+            return fmt::format("--report: '{}' is given twice", printable(path));
+        }
+        if (path == options.record_path)
+        {
+            return "--record: must be another file than --report";
+        }
+    }
+    return "";
 }
 
 /// Each --model is an object; what is placed beyond them shows the last one again. A model that is
 /// named twice is one model of two objects. Empty when all is well.
 std::string check_models(Options& options, const RawOptions& raw)
 {
-    if (!options.scene_path.empty())
+    if (!options.scene.empty())
     {
         const bool has_others =
             !raw.models.empty() || !raw.places.empty() || !raw.materials.empty();
-        return has_others ? "--scene: takes the place of --model, --place and --material"
-               : raw.transport != "file" ? "--scene: needs --transport file"
-                                         : "";
+        if (has_others)
+        {
+            return "--scene: takes the place of --model, --place and --material";
+        }
+        if (raw.transport == "file" || is_valid_name(options.scene))
+        {
+            return "";
+        }
+        return fmt::format("--scene: '{}' is not 1 to 63 characters of A-Z a-z 0-9 . _ -",
+                           printable(options.scene));
     }
     if (raw.models.empty())
     {
-        return "--model is required";
+        return "a model is required: hrtc FILE.spm, or --model NAME of one that is published; see "
+               "--help";
     }
     const std::size_t objects = std::max(raw.models.size(), raw.places.size());
     if (objects > kMaxObjects)
@@ -295,7 +330,7 @@ std::string check_budgets(const CommandLine& line, Options& options)
 }
 
 /// What one option alone can't tell. Empty when all is well.
-std::string check_together(const CommandLine& line, Options& options, const RawOptions& raw)
+std::string check_together(const CommandLine& line, Options& options, RawOptions& raw)
 {
     if (const std::string fault = check_files(line, options); !fault.empty())
     {
@@ -304,6 +339,10 @@ std::string check_together(const CommandLine& line, Options& options, const RawO
     if (!options.replay_path.empty())
     {
         return check_replay(line);
+    }
+    if (const std::string fault = take_files(options, raw); !fault.empty())
+    {
+        return fault;
     }
     for (const auto check :
          {check_models, check_places, check_materials, check_tools, check_devices, check_simulated})
@@ -343,9 +382,10 @@ std::variant<Options, int> parse_options(int argc, char** argv, const CommandFor
     options.thread.cpu = raw.cpu;
     options.follows_poses = !raw.ignores_poses;
     options.static_when_it_fits = !raw.refines_always;
+    options.as_file = option_file(line, options, raw);
     if (raw.prints_config)
     {
-        fmt::print("{}", without_empty(line.option_file_text()));
+        fmt::print("{}", options.as_file);
         return std::fflush(stdout) == 0 ? kExitDone : line.fail("the options can't be written");
     }
     return options;

@@ -45,7 +45,9 @@ struct Options
 {
     std::vector<std::string> models; ///< NAME[@HASH], or paths with the file transport; each once.
     std::vector<PlacedObject> objects; ///< By their numbers; each model is shown by one at least.
-    std::string scene_path; ///< Not empty: models and objects are this file's, see take_scene().
+    /// Not empty: models and objects are this file's, or with DDS those of the host whose scene has
+    /// this name; see scene_choice.hpp.
+    std::string scene;
     std::uint32_t objects_max{0}; ///< Room for so many; 0: as many as there are.
     std::size_t tools{1};
     std::vector<ToolChoice> tool_choices;   ///< One a tool; none: all are default_tool().
@@ -58,7 +60,7 @@ struct Options
     double wait_s{10.0};      ///< For a model that nobody publishes yet, or a device.
     std::int64_t rate_hz{1'000};
     double duration_s{10.0};
-    std::string report_path; ///< Empty: no file.
+    std::vector<std::string> report_paths;
     std::string record_path; ///< Empty: no recording.
     std::string replay_path; ///< Not empty: replay this recording; nothing else is set then.
     double pool_mib{2.0};
@@ -74,6 +76,7 @@ struct Options
     /// None: one diagonal of the first model a second.
     std::optional<double> follow_speed_m_per_s;
     bool trap_system_calls{false};
+    std::string as_file; ///< All options, as a file for --config.
     RtThreadOptions thread;
 
     [[nodiscard]] Duration period() const noexcept { return nanoseconds(1'000'000'000 / rate_hz); }

@@ -16,7 +16,9 @@
 
 #include <algorithm>
 #include <array>
+#include <ctime>
 #include <span>
+#include <sstream>
 
 namespace tactus::hrtc
 {
@@ -176,25 +178,28 @@ Json tools_of(const RunRecord& record)
 Json pairs_of(const RunRecord& record)
 {
     Json list = Json::array();
-    const std::vector<ObjectSpec>& objects = record.controller.objects();
+    const ObjectTable& objects = record.controller.frame().objects();
+    const std::uint32_t places = objects.capacity();
     for (std::size_t i = 0; i < record.run.statistics.pairs.size(); ++i)
     {
-        const std::size_t object = i % objects.size();
+        const auto object = static_cast<std::uint32_t>(i % places);
         const AnswerCounts& answers = record.run.statistics.pairs[i];
         if (answers.in_all() == 0)
         {
             continue; // They were never near.
         }
-        list.push_back({{"tool", i / objects.size()},
-                        {"object", object},
-                        {"model", record.controller.models()[objects[object].model.value].name},
-                        {"answers", answers_of(answers, record.controller.diagonal_world_m())}});
+        list.push_back(
+            {{"tool", i / places},
+             {"object", object},
+             {"model", record.controller.models()[objects[object].spec.model.value].name},
+             {"answers", answers_of(answers, record.controller.diagonal_world_m())}});
     }
     return list;
 }
 
-Json scene_of(const RunStatistics& statistics)
+Json scene_of(const FinishedRun& run)
 {
+    const RunStatistics& statistics = run.statistics;
     Json refused = Json::object();
     for (std::size_t i = 0; i < kChangeRefusals; ++i)
     {
@@ -206,6 +211,9 @@ Json scene_of(const RunStatistics& statistics)
             {"invisible_wall_frames", statistics.invisible_wall_frames},
             {"crowded_frames", statistics.crowded_frames},
             {"shed_pairs", statistics.shed_pairs},
+            {"came", run.scene_news.came},
+            {"went", run.scene_news.went},
+            {"passed_over", run.scene_news.passed_over},
             {"walks", statistics.scene_walks},
             {"changes_refused", refused}};
 }
@@ -319,6 +327,42 @@ Json wire_of(const RunRecord& record)
               {"max", ms(waiting.longest_ms())}}}};
 }
 
+/// The options that were given or have a value, one a line, without the explanations.
+std::string settings_of(const std::string& option_file)
+{
+    std::istringstream lines(option_file);
+    std::string text;
+    for (std::string line; std::getline(lines, line);)
+    {
+        const bool says_something = !line.empty() && !line.starts_with('#');
+        text += says_something ? (text.empty() ? "" : "\n") + line : "";
+    }
+    return text;
+}
+
+/// As ISO 8601 has it, to the second.
+std::string utc_text(std::time_t time)
+{
+    std::tm parts{};
+    ::gmtime_r(&time, &parts);
+    return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}Z", parts.tm_year + 1900,
+                       parts.tm_mon + 1, parts.tm_mday, parts.tm_hour, parts.tm_min, parts.tm_sec);
+}
+
+/// What it takes to run it again.
+Json run_of(const RunRecord& record)
+{
+    Json devices = Json::array();
+    for (const ToolSetup& tool : record.controller.tools())
+    {
+        devices.push_back(tool.device->info().name);
+    }
+    return {{"version", TACTUS_VERSION},
+            {"started_utc", utc_text(record.run.started)},
+            {"devices", devices},
+            {"options", settings_of(record.options.as_file)}};
+}
+
 Json recording_of(const std::optional<RecordingResult>& recording)
 {
     if (!recording)
@@ -349,6 +393,7 @@ Json make_report(const Options& options, const Controller& controller, const Fin
     times["wake"] = times_of(statistics.wake);
     times["response"] = times_of(statistics.deadlines.response());
     return {{"schema", 2},
+            {"run", run_of(record)},
             {"frames", statistics.frames},
             {"period_ns", run.period.ns},
             {"duration_s",
@@ -357,7 +402,7 @@ Json make_report(const Options& options, const Controller& controller, const Fin
             {"answers", answers_of(statistics.answers, record.controller.diagonal_world_m())},
             {"work", work_of(statistics)},
             {"budgets", budgets_of(record)},
-            {"scene", scene_of(statistics)},
+            {"scene", scene_of(record.run)},
             {"pools", pools_of(record)},
             {"cache", cache_of(record)},
             {"wire", wire_of(record)},

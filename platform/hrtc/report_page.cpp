@@ -271,13 +271,13 @@ std::string make_page(const Json& report, const RunStatistics& statistics)
     add_times(report, statistics, page);
     std::vector<plot::TitledTable> sections;
     for (const auto& [key, title] :
-         {std::pair("answers", "Answers, frames"), std::pair("cache", "Cache"),
-          std::pair("wire", "Wire"), std::pair("deadline", "Deadlines"),
-          std::pair("realtime", "In the loop"), std::pair("work", "Work"),
-          std::pair("pools", "Pools"), std::pair("budgets", "Budgets"), std::pair("force", "Force"),
-          std::pair("safety", "Safety"), std::pair("faults", "Frames with a fault"),
-          std::pair("recording", "Recording"), std::pair("telemetry", "Telemetry"),
-          std::pair("machine", "Machine")})
+         {std::pair("run", "Run"), std::pair("answers", "Answers, frames"),
+          std::pair("scene", "Scene"), std::pair("cache", "Cache"), std::pair("wire", "Wire"),
+          std::pair("deadline", "Deadlines"), std::pair("realtime", "In the loop"),
+          std::pair("work", "Work"), std::pair("pools", "Pools"), std::pair("budgets", "Budgets"),
+          std::pair("force", "Force"), std::pair("safety", "Safety"),
+          std::pair("faults", "Frames with a fault"), std::pair("recording", "Recording"),
+          std::pair("telemetry", "Telemetry"), std::pair("machine", "Machine")})
     {
         if (!report[key].is_null())
         {

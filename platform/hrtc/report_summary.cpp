@@ -33,24 +33,51 @@ std::string budgets_text(const Json& budgets)
                        budgets["at_floor"].get<std::uint64_t>());
 }
 
-/// One for each object that was moved.
+/// With more of them one line tells of all.
+constexpr std::size_t kModelsInLines = 4;
+
+/// Of the objects that hosts move: the first of each model.
 void add_poses(const Json& models, SummaryFacts& facts)
 {
+    SummaryFacts lines;
+    double step_max_m = 0.0;
+    double age_max_s = 0.0;
     for (const Json& model : models)
     {
         const Json& pose = model["pose"];
-        if (pose.is_null())
+        if (pose.is_null() || !pose["followed"].get<bool>()) // Null: a tool.
         {
-            continue; // A tool.
+            continue;
         }
-        if (pose["followed"].get<bool>())
-        {
-            facts.emplace_back(
-                "poses",
-                fmt::format("{}: moved in {} frames, by {:.4g} m at most; oldest {:.3g} s",
-                            model["name"].get<std::string>(), pose["moves"].get<std::uint64_t>(),
-                            pose["step_max_m"].get<double>(), pose["age_max_s"].get<double>()));
-        }
+        const auto step_m = pose["step_max_m"].get<double>();
+        const auto age_s = pose["age_max_s"].get<double>();
+        step_max_m = std::max(step_max_m, step_m);
+        age_max_s = std::max(age_max_s, age_s);
+        lines.emplace_back(
+            "poses", fmt::format("{}: moved in {} frames, by {:.4g} m at most; oldest {:.3g} s",
+                                 model["name"].get<std::string>(),
+                                 pose["moves"].get<std::uint64_t>(), step_m, age_s));
+    }
+    if (lines.size() > kModelsInLines)
+    {
+        lines = {{"poses", fmt::format("{} models: moved by {:.4g} m at most; oldest {:.3g} s",
+                                       lines.size(), step_max_m, age_max_s)}};
+    }
+    facts.insert(facts.end(), lines.begin(), lines.end());
+}
+
+/// Of more than one object.
+void add_scene(const Json& scene, SummaryFacts& facts)
+{
+    if (scene["objects_max"].get<std::uint64_t>() > 1)
+    {
+        facts.emplace_back("scene",
+                           fmt::format("{} objects, {} at most; near a tool at most {} at a time; "
+                                       "{} frames at an invisible wall",
+                                       scene["objects"].get<std::uint64_t>(),
+                                       scene["objects_max"].get<std::uint64_t>(),
+                                       scene["pairs_awake_max"].get<std::uint64_t>(),
+                                       scene["invisible_wall_frames"].get<std::uint64_t>()));
     }
 }
 
@@ -132,6 +159,29 @@ std::string deadlines_text(const Json& report)
         report["realtime"]["page_faults"].get<std::uint64_t>());
 }
 
+/// Models that are here as a whole.
+void add_static(const Json& models, SummaryFacts& facts)
+{
+    SummaryFacts lines;
+    for (const Json& model : models)
+    {
+        if (model["static"].get<bool>())
+        {
+            lines.emplace_back("static", model["name"].get<std::string>() +
+                                             ": all of it is here and refined, nothing is left to "
+                                             "load, refine or refit");
+        }
+    }
+    if (lines.size() > kModelsInLines)
+    {
+        lines = {{"static",
+                  fmt::format("{} of {} models: all of them is here and refined, nothing is left "
+                              "to load, refine or refit",
+                              lines.size(), models.size())}};
+    }
+    facts.insert(facts.end(), lines.begin(), lines.end());
+}
+
 /// How the models came, and what of them is here.
 void add_models(const Json& report, SummaryFacts& facts)
 {
@@ -143,15 +193,7 @@ void add_models(const Json& report, SummaryFacts& facts)
                               pools["pages"]["capacity"].get<std::uint64_t>(),
                               pools["faces"]["used_max"].get<std::uint64_t>(),
                               pools["faces"]["capacity"].get<std::uint64_t>()));
-    for (const Json& model : report["models"])
-    {
-        if (model["static"].get<bool>())
-        {
-            facts.emplace_back("static", model["name"].get<std::string>() +
-                                             ": all of it is here and refined, nothing is left to "
-                                             "load, refine or refit");
-        }
-    }
+    add_static(report["models"], facts);
     facts.emplace_back(
         "streaming",
         fmt::format("{:.1f} KB received, {} pages loaded, {} evicted{}",
@@ -200,6 +242,7 @@ SummaryFacts run_facts(const Json& report)
     {
         facts.emplace_back("budgets", budgets_text(report["budgets"]));
     }
+    add_scene(report["scene"], facts);
     add_models(report, facts);
     facts.emplace_back("deadlines", deadlines_text(report));
     add_poses(report["models"], facts);

@@ -6,34 +6,94 @@
 #include "platform/hrtc/messages.hpp"
 #include "platform/hrtc/object_pose.hpp"
 #include "rt_core/limits.hpp"
+#include "transport/content_hash.hpp"
 
 #include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <string>
+#include <thread>
+#include <vector>
 
 namespace tactus::hrtc
 {
 
-std::optional<Refusal> take_scene(Options& options)
+namespace
 {
-    if (options.scene_path.empty())
+
+constexpr std::chrono::milliseconds kPause{2};
+/// A scene from a host may grow to twice what it is at the start, and to so much at least.
+constexpr std::size_t kRoomLeast = 64;
+
+/// What the host shows by now, as far as it serves the models. None yet: why.
+std::optional<std::string> take_objects(Options& options, std::vector<HostObject>& shown,
+                                        const dds::Catalogue& catalogue, dds::SceneReader& reader)
+{
+    const auto host = catalogue.find_scene(options.scene);
+    if (!host)
     {
-        return std::nullopt;
+        return fmt::format("is not shown on domain {} (scenes there: {})", options.domain,
+                           catalogue.scene_names());
     }
-    const auto scene = read_placed_models(options.scene_path);
+    reader.poll({&*host, 1}, [](dds::SceneNews /*news*/, const dds::SeenObject& /*object*/) {});
+    if (!reader.is_complete(*host))
+    {
+        return fmt::format("is there on domain {}, but not all its objects have come{}{}",
+                           options.domain, reader.fault().empty() ? "" : "; ", reader.fault());
+    }
+    const std::vector<const dds::Catalogue::Offer*> offers = catalogue.offers_of(*host);
+    options.models.clear();
+    for (const dds::Catalogue::Offer* offer : offers)
+    {
+        options.models.push_back(offer->name + "@" + hash_text(offer->hash));
+    }
+    options.objects.clear();
+    shown.clear();
+    for (const auto& [number, object] : reader.objects(*host))
+    {
+        const auto offer =
+            std::ranges::find(offers, object.shown.model, &dds::Catalogue::Offer::hash);
+        if (offer != offers.end()) // Otherwise the keeper names it in the run.
+        {
+            options.objects.push_back({static_cast<std::size_t>(offer - offers.begin()),
+                                       to_similarity(object.shown.pose), object.shown.material});
+            shown.push_back({*host, number});
+        }
+    }
+    return options.objects.empty()
+               ? std::optional(fmt::format("shows no object of a model that its host serves on "
+                                           "domain {}",
+                                           options.domain))
+               : std::nullopt;
+}
+
+std::optional<Refusal> check_counts(const Options& options)
+{
+    if (options.models.size() > kMaxModels)
+    {
+        return failure(fmt::format("--scene: {}: {} models; at most {}", options.scene,
+                                   options.models.size(), kMaxModels));
+    }
+    if (options.objects_max != 0 && options.objects_max < options.objects.size())
+    {
+        return failure(fmt::format("--objects: {}; {} are there from the start",
+                                   options.objects_max, options.objects.size()));
+    }
+    return std::nullopt;
+}
+
+} // namespace
+
+std::optional<Refusal> take_scene_file(Options& options)
+{
+    const auto scene = read_placed_models(options.scene);
     if (!scene)
     {
         return failure("--scene: " + scene.error().text);
     }
     const PlacedModels& placed = scene.value();
-    if (placed.files.size() > kMaxModels)
-    {
-        return failure(fmt::format("--scene: {}: {} models; at most {}", options.scene_path,
-                                   placed.files.size(), kMaxModels));
-    }
-    if (options.objects_max != 0 && options.objects_max < placed.objects.size())
-    {
-        return failure(fmt::format("--objects: {}; {} are there from the start",
-                                   options.objects_max, placed.objects.size()));
-    }
     for (const auto& file : placed.files)
     {
         options.models.push_back(file.string());
@@ -42,7 +102,43 @@ std::optional<Refusal> take_scene(Options& options)
     {
         options.objects.push_back({object.model, to_similarity(object.pose), object.material});
     }
-    return std::nullopt;
+    return check_counts(options);
+}
+
+Result<ShownScene, Refusal> take_shown_scene(Options& options, dds::DdsClient& client,
+                                             dds::SceneReader& reader,
+                                             const std::function<bool()>& goes_on)
+{
+    using Clock = std::chrono::steady_clock;
+    const auto start = Clock::now();
+    const std::chrono::duration<double> longest(options.wait_s);
+    ShownScene scene{options.scene, {}};
+    for (;;)
+    {
+        client.exchange().step();
+        const auto missing = take_objects(options, scene.objects, client.catalogue(), reader);
+        if (!missing)
+        {
+            break;
+        }
+        const std::chrono::duration<double> waited = Clock::now() - start;
+        if (waited >= longest || !goes_on())
+        {
+            return failure(fmt::format("--scene: '{}' {}; waited {:.3g} s", options.scene, *missing,
+                                       waited.count()));
+        }
+        std::this_thread::sleep_for(kPause);
+    }
+    if (const auto refusal = check_counts(options))
+    {
+        return *refusal;
+    }
+    if (options.objects_max == 0)
+    {
+        options.objects_max = static_cast<std::uint32_t>(
+            std::clamp<std::size_t>(2 * options.objects.size(), kRoomLeast, kMaxObjects));
+    }
+    return scene;
 }
 
 } // namespace tactus::hrtc

@@ -4,14 +4,44 @@
 
 #include "platform/base/refusal.hpp"
 #include "platform/hrtc/options.hpp"
+#include "transport/dds/dds_client.hpp"
+#include "transport/dds/scene_reader.hpp"
 
+#include <cstdint>
+#include <functional>
 #include <optional>
+#include <string>
+#include <vector>
 
 namespace tactus::hrtc
 {
 
-/// Reads the scene file that the options name, when they name one, and puts its models and objects
-/// in their places. Returns why it can't be used.
-[[nodiscard]] std::optional<Refusal> take_scene(Options& options);
+/// An object as its host knows it.
+struct HostObject
+{
+    std::uint64_t host_epoch{0};
+    std::uint32_t number{0};
+
+    auto operator<=>(const HostObject&) const noexcept = default;
+};
+
+/// A scene that a host shows.
+struct ShownScene
+{
+    std::string name;
+    std::vector<HostObject> objects; ///< In the order of Options::objects.
+};
+
+/// Reads the scene file that the options name and puts its models and objects in their places.
+/// Returns why it can't be used.
+[[nodiscard]] std::optional<Refusal> take_scene_file(Options& options);
+
+/// Waits, at most Options::wait_s and as long as `goes_on`, until the host whose scene the options
+/// name has shown all its objects to `reader`, and one at least is there. Puts its objects in their
+/// places and all models that it serves, so that later objects find theirs. Returns why there are
+/// none.
+[[nodiscard]] Result<ShownScene, Refusal> take_shown_scene(Options& options, dds::DdsClient& client,
+                                                           dds::SceneReader& reader,
+                                                           const std::function<bool()>& goes_on);
 
 } // namespace tactus::hrtc

@@ -157,7 +157,7 @@ SelfCheck compare_with_plan(DeadlineAccount& deadlines)
 Result<SelfCheck, Refusal> run_self_check(Options options)
 {
     options.devices.clear();
-    options.report_path.clear();
+    options.report_paths.clear();
     options.duration_s = static_cast<double>(InjectionPlan::kFrames + InjectionPlan::kSpacing) /
                          static_cast<double>(options.rate_hz);
     auto session = Session::open(options);

@@ -102,13 +102,16 @@ std::optional<Refusal> check_machine(const Options& options)
 /// None when the files that the options name can be written.
 std::optional<Refusal> check_outputs(const Options& options)
 {
-    for (const auto& [option, path] : {std::pair("--report: ", &options.report_path),
-                                       std::pair("--record: ", &options.record_path)})
+    for (const std::string& path : options.report_paths)
     {
-        if (const auto error = probe_output(*path))
+        if (const auto error = probe_output(path))
         {
-            return failure(option + error->text);
+            return failure("--report: " + error->text);
         }
+    }
+    if (const auto error = probe_output(options.record_path))
+    {
+        return failure("--record: " + error->text);
     }
     return std::nullopt;
 }
@@ -130,15 +133,15 @@ Result<std::unique_ptr<Session>, Refusal> Session::open(const Options& options)
         linux_extras::keep_calling_thread_off(*options.thread.cpu);
     }
     std::unique_ptr<Session> session(new Session(options));
-    if (auto error = take_scene(session->options_))
+    if (auto error = session->connect())
+    {
+        return *error;
+    }
+    if (auto error = session->take_scene())
     {
         return *error;
     }
     if (auto error = take_tool_files(session->options_))
-    {
-        return *error;
-    }
-    if (auto error = session->connect())
     {
         return *error;
     }
@@ -165,6 +168,30 @@ std::optional<Refusal> Session::connect()
     return std::nullopt;
 }
 
+/// Of a file or of a host; nothing to do without --scene.
+std::optional<Refusal> Session::take_scene()
+{
+    if (client_ != nullptr && (options_.follows_poses || !options_.scene.empty()))
+    {
+        reader_ = std::make_unique<dds::SceneReader>(client_->domain(), client_->exchange());
+    }
+    if (options_.scene.empty())
+    {
+        return std::nullopt;
+    }
+    if (client_ == nullptr)
+    {
+        return take_scene_file(options_);
+    }
+    auto shown = take_shown_scene(options_, *client_, *reader_, [] { return !was_interrupted(); });
+    if (!shown)
+    {
+        return shown.error();
+    }
+    scene_ = std::move(shown).value();
+    return std::nullopt;
+}
+
 /// The controller from the models, and the topics beside it.
 std::optional<Refusal> Session::assemble()
 {
@@ -182,7 +209,13 @@ std::optional<Refusal> Session::assemble()
     controller_ = std::move(controller).value();
     if (client_ != nullptr)
     {
-        auto topics = HostTopics::create(*client_, *controller_, options_.follows_poses);
+        std::unique_ptr<SceneKeeper> keeper;
+        if (options_.follows_poses)
+        {
+            keeper = std::make_unique<SceneKeeper>(client_->catalogue(), std::move(reader_),
+                                                   *controller_, scene_, log_line);
+        }
+        auto topics = HostTopics::create(*client_, *controller_, std::move(keeper));
         if (!topics)
         {
             return failure(topics.error().text);

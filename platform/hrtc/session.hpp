@@ -8,7 +8,9 @@
 #include "platform/hrtc/host_topics.hpp"
 #include "platform/hrtc/messages.hpp"
 #include "platform/hrtc/options.hpp"
+#include "platform/hrtc/scene_choice.hpp"
 #include "transport/dds/dds_client.hpp"
+#include "transport/dds/scene_reader.hpp"
 
 #include <memory>
 #include <optional>
@@ -38,10 +40,13 @@ private:
     explicit Session(const Options& options) : options_(options) {}
 
     [[nodiscard]] std::optional<Refusal> connect();
+    [[nodiscard]] std::optional<Refusal> take_scene();
     [[nodiscard]] std::optional<Refusal> assemble();
 
     Options options_;
-    std::unique_ptr<dds::DdsClient> client_; ///< Lives as long as the links of its models.
+    std::unique_ptr<dds::DdsClient> client_;   ///< Lives as long as the links of its models.
+    std::unique_ptr<dds::SceneReader> reader_; ///< Until the topics have it; none unless needed.
+    ShownScene scene_;                         ///< Of a host; empty otherwise.
     std::unique_ptr<Controller> controller_;
     std::unique_ptr<HostTopics> topics_; ///< None from files.
 };

@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
+#include <ctime>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -30,9 +31,10 @@ constexpr std::chrono::milliseconds kLook{20};
 FinishedRun empty_run(const Controller& controller, Duration period)
 {
     const std::size_t tools = controller.tools().size();
-    return {.statistics =
-                RunStatistics(tools, controller.poses().size(), controller.models().size(), period),
+    return {.statistics = RunStatistics(tools, controller.frame().objects().capacity(),
+                                        controller.models().size(), period),
             .period = period,
+            .started = std::time(nullptr),
             .safety = SafetyRecord(tools)};
 }
 
@@ -68,7 +70,8 @@ SessionRun::SessionRun(const RunParts& parts)
     , period_(parts.options.period())
     , done_(empty_run(parts.controller, period_))
     , governor_(make_governor(parts.options, parts.controller))
-    , door_(parts.controller.poses(), nanoseconds(parts.controller.setup().pose_age_max_ns))
+    , door_(parts.controller.poses(), parts.controller.frame().objects().capacity(),
+            nanoseconds(parts.controller.setup().pose_age_max_ns))
     , telemetry_(period_)
     , transport_(parts.controller.courier(), parts.controller.models(), connected_topics())
     , loop_(loop_parts(), done_.statistics)
@@ -88,7 +91,7 @@ HostTopics* SessionRun::connected_topics()
 {
     if (parts_.topics != nullptr)
     {
-        parts_.topics->connect(door_, telemetry_);
+        parts_.topics->connect(door_, telemetry_, clock_.now());
     }
     return parts_.topics;
 }
@@ -248,6 +251,7 @@ void SessionRun::note_topics()
     {
         done_.pose_uses.assign(door_.uses().begin(), door_.uses().end());
         done_.pose_counts = parts_.topics->pose_counts();
+        done_.scene_news = parts_.topics->scene_news();
         done_.telemetry_sent = parts_.topics->telemetry_sent();
     }
 }

@@ -7,27 +7,104 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <bit>
 
 namespace tactus
 {
 
-PoseDoor::PoseDoor(std::span<const ObjectPose> placed, Duration age_limit)
+namespace
+{
+
+constexpr std::size_t kWordBits = 64;
+
+constexpr std::size_t words_of(std::size_t objects) noexcept
+{
+    return (objects + kWordBits - 1) / kWordBits;
+}
+
+constexpr std::uint64_t bit_of(std::size_t object) noexcept
+{
+    return std::uint64_t{1} << object % kWordBits;
+}
+
+/// The object of a word's lowest bit.
+constexpr std::size_t first_of(std::size_t word, std::uint64_t bits) noexcept
+{
+    return word * kWordBits + static_cast<std::size_t>(std::countr_zero(bits));
+}
+
+} // namespace
+
+PoseDoor::PoseDoor(std::span<const ObjectPose> placed, std::size_t objects, Duration age_limit)
     : age_limit_(age_limit)
     , places_(placed.begin(), placed.end())
-    , letters_(placed.size())
-    , glides_(placed.size())
-    , uses_(placed.size())
-    , numbers_(placed.size())
+    , letters_(objects)
+    , glides_(objects)
+    , uses_(objects)
+    , unread_(words_of(objects))
+    , awake_(words_of(objects))
+    , numbers_(objects)
+    , generations_(objects)
+    , passage_slots_(kWaiting)
+    , passages_(passage_slots_)
     // NOLINTBEGIN(*-avoid-c-arrays)
-    , mailboxes_(std::make_unique<Mailbox<Letter>[]>(placed.size()))
-    , heard_ns_(std::make_unique<std::atomic<std::int64_t>[]>(placed.size()))
+    , mailboxes_(std::make_unique<Mailbox<Letter>[]>(objects))
+    , heard_ns_(std::make_unique<std::atomic<std::int64_t>[]>(objects))
+    , came_(std::make_unique<std::atomic<std::uint64_t>[]>(words_of(objects)))
 // NOLINTEND(*-avoid-c-arrays)
 {
+    TACTUS_ASSERT(placed.size() <= objects);
+    places_.resize(objects);
+    for (std::size_t i = 0; i < placed.size(); ++i)
+    {
+        glides_[i].is_here = true;
+    }
+}
+
+bool PoseDoor::try_come(std::size_t object, std::uint32_t generation, const ObjectSpec& spec,
+                        const ObjectPose& pose, MonotonicTime arrival) noexcept
+{
+    TACTUS_ASSERT(object < letters_.size());
+    TACTUS_ASSERT(generation > generations_[object] || numbers_[object] == 0);
+    if (passages_.size() == kWaiting)
+    {
+        return false;
+    }
+    generations_[object] = generation;
+    Passage passage;
+    passage.comes = true;
+    passage.object = static_cast<std::uint32_t>(object);
+    passage.letter = letter_of(object, pose, arrival);
+    passage.model = spec.model.value;
+    passage.stiffness_n_per_m = spec.material.stiffness_n_per_m;
+    passage.static_friction = spec.material.static_friction;
+    passage.dynamic_friction = spec.material.dynamic_friction;
+    passage.damping_n_s_per_m = spec.material.damping_n_s_per_m;
+    hear(object, arrival);
+    return passages_.try_push(passage);
+}
+
+bool PoseDoor::try_go(std::size_t object) noexcept
+{
+    TACTUS_ASSERT(object < letters_.size());
+    Passage passage;
+    passage.object = static_cast<std::uint32_t>(object);
+    passage.letter.generation = generations_[object];
+    return passages_.try_push(passage);
 }
 
 void PoseDoor::put(std::size_t object, const ObjectPose& pose, MonotonicTime arrival) noexcept
 {
     TACTUS_ASSERT(object < letters_.size());
+    mailboxes_[object].write(letter_of(object, pose, arrival));
+    hear(object, arrival);
+    // Pairs with the acquire in take_letters().
+    came_[object / kWordBits].fetch_or(bit_of(object), std::memory_order_release);
+}
+
+PoseDoor::Letter PoseDoor::letter_of(std::size_t object, const ObjectPose& pose,
+                                     MonotonicTime arrival) noexcept
+{
     Letter letter;
     for (int i = 0; i < 9; ++i)
     {
@@ -39,9 +116,24 @@ void PoseDoor::put(std::size_t object, const ObjectPose& pose, MonotonicTime arr
     letter.stamp_ns = pose.stamp_ns;
     letter.revision = pose.revision;
     letter.arrival_ns = arrival.ns;
+    letter.generation = generations_[object];
     letter.number = ++numbers_[object];
-    mailboxes_[object].write(letter);
-    hear(object, arrival);
+    return letter;
+}
+
+ObjectPose PoseDoor::pose_of(const Letter& letter) noexcept
+{
+    ObjectPose pose;
+    for (int i = 0; i < 9; ++i)
+    {
+        pose.rotation(i / 3, i % 3) = letter.rotation[static_cast<std::size_t>(i)];
+    }
+    const auto& at_m = letter.translation_m;
+    pose.translation_m = Vec3(at_m[0], at_m[1], at_m[2]);
+    pose.scale = letter.scale;
+    pose.stamp_ns = letter.stamp_ns;
+    pose.revision = letter.revision;
+    return pose;
 }
 
 void PoseDoor::hear(std::size_t object, MonotonicTime now) noexcept
@@ -52,22 +144,84 @@ void PoseDoor::hear(std::size_t object, MonotonicTime now) noexcept
 
 std::span<const SceneChange> PoseDoor::refresh(MonotonicTime now) noexcept
 {
-    const std::size_t objects = letters_.size();
-    std::size_t changes = 0;
-    std::size_t next = first_;
     if (last_refresh_ == MonotonicTime{})
     {
         last_refresh_ = now;
     }
-    for (std::size_t i = 0; i < objects; ++i)
+    std::size_t changes = take_passages();
+    take_letters(now);
+    look_at_ages(now);
+    // Once round from whose turn it is: the later bits of its word first, the earlier ones last.
+    const std::size_t words = awake_.size();
+    const std::uint64_t from_first = ~std::uint64_t{0} << first_ % kWordBits;
+    std::size_t next = first_;
+    for (std::size_t i = 0; i <= words && words > 0; ++i)
     {
-        const std::size_t object = (first_ + i) % objects;
-        Letter letter;
-        if (mailboxes_[object].try_read(letter) && letter.number != letters_[object].number)
+        const std::size_t word = (first_ / kWordBits + i) % words;
+        std::uint64_t bits = awake_[word];
+        bits &= i == 0 ? from_first : i == words ? ~from_first : ~std::uint64_t{0};
+        for (; bits != 0 && changes < changes_.size(); bits &= bits - 1)
         {
-            begin_glide(object, letter, now);
-            letters_[object] = letter;
+            const std::size_t object = first_of(word, bits);
+            if (!try_move(object, now, changes_[changes]))
+            {
+                awake_[word] &= ~bit_of(object);
+                continue;
+            }
+            ++changes;
+            next = (object + 1) % letters_.size();
         }
+    }
+    first_ = next;
+    last_refresh_ = now;
+    return {changes_.data(), changes};
+}
+
+/// What came since the last frame.
+void PoseDoor::take_letters(MonotonicTime now) noexcept
+{
+    for (std::size_t word = 0; word < unread_.size(); ++word)
+    {
+        if (came_[word].load(std::memory_order_relaxed) != 0)
+        {
+            // Pairs with the release in put(): who sees the bit finds the letter.
+            unread_[word] |= came_[word].exchange(0, std::memory_order_acquire);
+        }
+        for (std::uint64_t bits = unread_[word]; bits != 0; bits &= bits - 1)
+        {
+            const std::size_t object = first_of(word, bits);
+            Letter letter;
+            if (!mailboxes_[object].try_read(letter))
+            {
+                continue; // It is being written all the time: in the next frame.
+            }
+            const Letter& last = letters_[object];
+            if (letter.generation > last.generation)
+            {
+                continue; // Its own passage waits.
+            }
+            unread_[word] &= ~bit_of(object);
+            // What was put for another object under this number came too late.
+            if (glides_[object].is_here && letter.generation == last.generation &&
+                letter.number > last.number)
+            {
+                begin_glide(object, letter, now);
+                letters_[object] = letter;
+                awake_[word] |= bit_of(object);
+            }
+        }
+    }
+}
+
+void PoseDoor::look_at_ages(MonotonicTime now) noexcept
+{
+    const std::size_t objects = letters_.size();
+    // So often has each its turn.
+    const std::size_t frames = (objects + kAgedAFrame - 1) / kAgedAFrame;
+    for (std::size_t i = 0; i < std::min(objects, kAgedAFrame); ++i)
+    {
+        const std::size_t object = next_aged_;
+        next_aged_ = next_aged_ + 1 == objects ? 0 : next_aged_ + 1;
         PoseUse& use = uses_[object];
         if (!use.is_followed)
         {
@@ -75,30 +229,69 @@ std::span<const SceneChange> PoseDoor::refresh(MonotonicTime now) noexcept
         }
         const Duration age = age_of(object, now);
         use.age_max = std::max(use.age_max, age);
-        use.old_frames += age > age_limit_ ? 1U : 0U;
-        // Before the limit, so that the frame meets it at the right time.
-        const bool is_silent = age > Duration{age_limit_.ns / 2};
-        Glide& glide = glides_[object];
-        const bool has_news = glide.is_under_way || glide.is_told_old != is_silent;
-        if (!has_news || changes == changes_.size())
+        use.old_frames += age > age_limit_ ? frames : 0U;
+        if (glides_[object].is_told_old != is_silent(age))
         {
+            awake_[object / kWordBits] |= bit_of(object);
+        }
+    }
+}
+
+/// Whether the frame has to be told of the object, and what.
+bool PoseDoor::try_move(std::size_t object, MonotonicTime now, SceneChange& change) noexcept
+{
+    const Duration age = age_of(object, now);
+    Glide& glide = glides_[object];
+    const bool has_news = glide.is_under_way || glide.is_told_old != is_silent(age);
+    if (!has_news || !uses_[object].is_followed)
+    {
+        return false;
+    }
+    if (glide.is_under_way)
+    {
+        move_to(object, place_at(glide, now));
+        glide.is_under_way = now - glide.start < glide.time;
+    }
+    glide.is_told_old = is_silent(age);
+    change.kind = SceneChangeKind::object_moves;
+    change.number = static_cast<std::uint32_t>(object);
+    change.generation = letters_[object].generation;
+    change.pose = ObjectPose{places_[object]};
+    change.pose.stamp_ns = letters_[object].stamp_ns;
+    change.pose.revision = letters_[object].revision;
+    change.pose.arrival_ns = glide.is_told_old ? now.ns - age.ns : 0;
+    return true;
+}
+
+/// Before the moves; returns how many changes they make. More wait for the next frame.
+std::size_t PoseDoor::take_passages() noexcept
+{
+    std::size_t changes = 0;
+    Passage passage;
+    while (changes < changes_.size() && passages_.try_pop(passage))
+    {
+        const std::size_t object = passage.object;
+        SceneChange& change = changes_[changes++];
+        change = SceneChange{};
+        change.number = passage.object;
+        change.generation = passage.letter.generation;
+        glides_[object] = Glide{};
+        glides_[object].is_here = passage.comes;
+        uses_[object].is_followed = passage.comes;
+        if (!passage.comes)
+        {
+            change.kind = SceneChangeKind::object_goes;
             continue;
         }
-        move_to(object, place_at(glide, now));
-        glide.is_under_way = glide.is_under_way && now - glide.start < glide.time;
-        glide.is_told_old = is_silent;
-        SceneChange& change = changes_[changes++];
-        change.kind = SceneChangeKind::object_moves;
-        change.number = static_cast<std::uint32_t>(object);
-        change.pose = ObjectPose{places_[object]};
-        change.pose.stamp_ns = letters_[object].stamp_ns;
-        change.pose.revision = letters_[object].revision;
-        change.pose.arrival_ns = is_silent ? now.ns - age.ns : 0;
-        next = (object + 1) % objects;
+        letters_[object] = passage.letter;
+        change.kind = SceneChangeKind::object_comes;
+        change.object.model = ModelId{passage.model};
+        change.object.material = {passage.stiffness_n_per_m, passage.static_friction,
+                                  passage.dynamic_friction, passage.damping_n_s_per_m};
+        change.pose = pose_of(passage.letter);
+        places_[object] = Similarity{change.pose};
     }
-    first_ = next;
-    last_refresh_ = now;
-    return {changes_.data(), changes};
+    return changes;
 }
 
 void PoseDoor::begin_glide(std::size_t object, const Letter& letter, MonotonicTime now) noexcept
@@ -106,13 +299,7 @@ void PoseDoor::begin_glide(std::size_t object, const Letter& letter, MonotonicTi
     const Letter& before = letters_[object];
     Glide& glide = glides_[object];
     glide.from = places_[object];
-    for (int i = 0; i < 9; ++i)
-    {
-        glide.to.rotation(i / 3, i % 3) = letter.rotation[static_cast<std::size_t>(i)];
-    }
-    const auto& at_m = letter.translation_m;
-    glide.to.translation_m = Vec3(at_m[0], at_m[1], at_m[2]);
-    glide.to.scale = letter.scale;
+    glide.to = Similarity{pose_of(letter)};
     // The frame has not been told yet of one that was to be there at once: this one is.
     const bool is_overdue = glide.is_under_way && glide.time == Duration{0};
     glide.start = std::min(last_refresh_, now); // It was told to be there then.

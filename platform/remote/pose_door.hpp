@@ -4,6 +4,7 @@
 
 #include "platform/time.hpp"
 #include "rt_core/base/mailbox.hpp"
+#include "rt_core/base/spsc_queue.hpp"
 #include "rt_core/limits.hpp"
 #include "rt_core/records/scene_change.hpp"
 
@@ -28,9 +29,9 @@ struct PoseUse
     std::uint64_t old_frames{0}; ///< Frames in which that was longer than the limit.
 };
 
-/// Carries the newest pose of each object from the transport thread to the haptic thread. Neither
-/// waits for the other, and what nobody looked at in time is overwritten. The haptic thread gets
-/// them as changes of the scene.
+/// Carries the newest pose of each object from the transport thread to the haptic thread, and which
+/// objects come and go. Neither thread waits for the other; a pose that nobody looked at in time is
+/// overwritten. The haptic thread gets them as changes of the scene.
 ///
 /// An object glides: from where it is to its newest pose, over the time that lies between that pose
 /// and the one before on the host's clock, at most kGlideMax. So what touches it feels many small
@@ -40,26 +41,46 @@ struct PoseUse
 /// An object's age is the time since its host was last heard, on this machine's clock. One that
 /// rests needs no poses, and costs no changes while its host is heard. Until its first pose an
 /// object stands where it was placed, and never grows old.
+///
+/// What rests costs a frame next to nothing: poses that came are found by a bit each, and ages are
+/// looked at by kAgedAFrame objects in turn.
 class PoseDoor
 {
 public:
     static constexpr Duration kGlideMax = milliseconds(50);
     static constexpr double kJump_m = 0.02;
+    /// Objects whose age a frame looks at: 4,096 have their turn within 16 frames.
+    static constexpr std::size_t kAgedAFrame = 256;
+    /// Comings and goings that may wait for their frame.
+    static constexpr std::size_t kWaiting = 512;
 
-    /// Objects by their numbers, of generation 0, where they stand at the start: 0.7 KiB each.
-    /// `age_limit`: older ones are counted; the frame has the same limit.
-    PoseDoor(std::span<const ObjectPose> placed, Duration age_limit);
+    /// Objects by their numbers, of generation 0, where they stand at the start, and room for
+    /// `objects` in all: 0.8 KiB each. `age_limit`: older ones are counted; the frame has the same
+    /// limit.
+    PoseDoor(std::span<const ObjectPose> placed, std::size_t objects, Duration age_limit);
+    PoseDoor(std::span<const ObjectPose> placed, Duration age_limit)
+        : PoseDoor(placed, placed.size(), age_limit)
+    {
+    }
 
-    /// The transport thread; the object's host was heard, too. `arrival`: on the clock that
-    /// refresh() is told.
+    /// The transport thread: an object comes under a number that no other has, of a generation that
+    /// is higher than that of the one before. Its host was heard. False when too many wait.
+    [[nodiscard]] bool try_come(std::size_t object, std::uint32_t generation,
+                                const ObjectSpec& spec, const ObjectPose& pose,
+                                MonotonicTime arrival) noexcept;
+    /// The transport thread: the object that came there last goes. False when too many wait.
+    [[nodiscard]] bool try_go(std::size_t object) noexcept;
+
+    /// The transport thread; the object is there and its host was heard, too. `arrival`: on the
+    /// clock that refresh() is told.
     void put(std::size_t object, const ObjectPose& pose, MonotonicTime arrival) noexcept;
     /// The transport thread: the object's host was heard.
     void hear(std::size_t object, MonotonicTime now) noexcept;
 
     /// The haptic thread, at the start of a frame: what moves, and objects whose host fell silent
     /// or was heard again; at most kMaxSceneChanges. More wait for the next frame, which begins
-    /// with them. Valid until the next call. Allocates nothing; 0.02 us an object, 0.1 us one that
-    /// glides.
+    /// with them. Valid until the next call. Allocates nothing; 0.1 us an object that glides,
+    /// 0.6 us for all that rest.
     [[nodiscard]] std::span<const SceneChange> refresh(MonotonicTime now) noexcept;
 
     /// One an object. The haptic thread, or others once it has ended.
@@ -75,23 +96,48 @@ private:
         std::int64_t stamp_ns{0};
         std::uint32_t revision{0};
         std::int64_t arrival_ns{0};
-        std::uint64_t number{0}; ///< From 1, of this object.
+        std::uint32_t generation{0}; ///< Of the object.
+        std::uint64_t number{0};     ///< From 1, of this object.
     };
 
-    /// One object on its way.
+    /// An object that comes or goes, likewise.
+    struct Passage
+    {
+        bool comes{false};
+        std::uint32_t object{0};
+        Letter letter; ///< Where it comes.
+        std::uint32_t model{0};
+        double stiffness_n_per_m{0.0};
+        double static_friction{0.0};
+        double dynamic_friction{0.0};
+        double damping_n_s_per_m{0.0};
+    };
+
+    /// One object, and its way.
     struct Glide
     {
         Similarity from;
         Similarity to;
         MonotonicTime start;
         Duration time{}; ///< 0: it is at once where it goes.
+        bool is_here{false};
         bool is_under_way{false};
         bool is_told_old{false}; ///< The frame knows when its host was last heard.
     };
 
+    [[nodiscard]] Letter letter_of(std::size_t object, const ObjectPose& pose,
+                                   MonotonicTime arrival) noexcept;
+    [[nodiscard]] static ObjectPose pose_of(const Letter& letter) noexcept;
+    [[nodiscard]] std::size_t take_passages() noexcept;
+    void take_letters(MonotonicTime now) noexcept;
+    void look_at_ages(MonotonicTime now) noexcept;
+    [[nodiscard]] bool try_move(std::size_t object, MonotonicTime now,
+                                SceneChange& change) noexcept;
     void begin_glide(std::size_t object, const Letter& letter, MonotonicTime now) noexcept;
     [[nodiscard]] Similarity place_at(const Glide& glide, MonotonicTime now) const noexcept;
     [[nodiscard]] Duration age_of(std::size_t object, MonotonicTime now) const noexcept;
+    /// Before the limit, so that the frame meets it at the right time.
+    [[nodiscard]] bool is_silent(Duration age) const noexcept { return age.ns > age_limit_.ns / 2; }
     void move_to(std::size_t object, const Similarity& place) noexcept;
 
     Duration age_limit_;
@@ -99,13 +145,20 @@ private:
     std::vector<Letter> letters_;    ///< The last that was read, one an object.
     std::vector<Glide> glides_;
     std::vector<PoseUse> uses_;
+    std::vector<std::uint64_t> unread_; ///< A bit an object: its letter was not read yet.
+    std::vector<std::uint64_t> awake_;  ///< Likewise: the frame may have to be told of it.
     MonotonicTime last_refresh_{};
-    std::size_t first_{0}; ///< Whose turn it is first in the next frame.
+    std::size_t first_{0};     ///< Whose turn it is first in the next frame.
+    std::size_t next_aged_{0}; ///< Whose age is looked at first.
     std::array<SceneChange, kMaxSceneChanges> changes_{};
-    std::vector<std::uint64_t> numbers_; ///< Last put; the transport thread's.
+    std::vector<std::uint64_t> numbers_;     ///< Last put; the transport thread's,
+    std::vector<std::uint32_t> generations_; ///< and the object's.
+    std::vector<Passage> passage_slots_;
+    SpscQueue<Passage> passages_;
     // NOLINTBEGIN(*-avoid-c-arrays): they don't move.
     std::unique_ptr<Mailbox<Letter>[]> mailboxes_;
     std::unique_ptr<std::atomic<std::int64_t>[]> heard_ns_; ///< Without order to anything else.
+    std::unique_ptr<std::atomic<std::uint64_t>[]> came_;    ///< A bit an object: put since.
     // NOLINTEND(*-avoid-c-arrays)
 };
 

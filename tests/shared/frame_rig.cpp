@@ -3,6 +3,7 @@
 #include "tests/shared/frame_rig.hpp"
 
 #include "rt_core/frame/validate_model.hpp"
+#include "transport/pool_plan.hpp"
 
 #include <cstdio>
 #include <cstdlib>
@@ -95,28 +96,18 @@ void FrameRig::serve(const std::vector<const TestModel*>& models, const Loopback
     }
 }
 
-/// What belongs to no model comes off first. Planned twice: what the courier needs follows from the
-/// number of pages.
 std::vector<ModelSource> FrameRig::plan_pools(const FrameSetup& setup,
                                               const RigOptions& options) const
 {
     std::vector<ModelHeader> headers;
-    std::size_t common = Frame::required_bytes(setup);
     for (const Line& line : lines_)
     {
         headers.push_back(ModelHeader::parse(line.served.header).value());
-        common += Arena::round_up(line.served.header.size());
     }
     std::vector<ModelCapacities> capacities(headers.size());
-    for (int round = 0; round < 2; ++round)
+    if (!try_plan_pools(setup, headers, options.pool_bytes, options.cache_bytes, capacities))
     {
-        const ModelCapacities sum = sum_of(capacities);
-        const std::size_t taken = common + Courier::required_bytes(sum.pages, sum.index_pages);
-        if (taken >= options.pool_bytes ||
-            !try_plan(headers, options.pool_bytes - taken, options.cache_bytes, capacities))
-        {
-            give_up("the pools are too small for " + lines_[0].served.name);
-        }
+        give_up("the pools are too small for " + lines_[0].served.name);
     }
     std::vector<ModelSource> sources;
     for (std::size_t i = 0; i < lines_.size(); ++i)

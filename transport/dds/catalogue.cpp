@@ -29,6 +29,20 @@ ContentHash hash_from(const std::uint8_t (&bytes)[16]) // NOLINT: idlc's type.
     return hash;
 }
 
+std::string list_of(const std::vector<std::string>& names)
+{
+    std::string text;
+    for (std::size_t i = 0; i < names.size() && i < kMaxNamesShown; ++i)
+    {
+        text += (i > 0 ? ", " : "") + names[i];
+    }
+    if (names.size() > kMaxNamesShown)
+    {
+        text += fmt::format(" and {} more", names.size() - kMaxNamesShown);
+    }
+    return names.empty() ? "none" : text;
+}
+
 } // namespace
 
 Result<Catalogue, Refusal> Catalogue::create(const Domain& domain, Log log)
@@ -54,14 +68,16 @@ void Catalogue::refresh()
         [this](const tactus_v2_CatalogueEntry& entry, const dds_sample_info_t& info)
         {
             const std::string name(entry.name, ::strnlen(entry.name, sizeof(entry.name)));
+            const std::string scene(entry.scene, ::strnlen(entry.scene, sizeof(entry.scene)));
             if (info.instance_state != DDS_ALIVE_INSTANCE_STATE)
             {
                 remove(entry.model, entry.host_epoch);
             }
-            else if (info.valid_data && is_valid_name(name))
+            else if (info.valid_data && is_valid_name(name) &&
+                     (scene.empty() || is_valid_name(scene)))
             {
-                add({name, hash_from(entry.model_hash), entry.host_epoch, entry.model, entry.faces,
-                     entry.header_bytes, entry.base_bytes});
+                add({name, scene, hash_from(entry.model_hash), entry.host_epoch, entry.model,
+                     entry.faces, entry.header_bytes, entry.base_bytes});
             }
         });
 }
@@ -89,18 +105,47 @@ bool Catalogue::has_host(std::uint64_t host_epoch) const
     return std::ranges::find(offers_, host_epoch, &Offer::host_epoch) != offers_.end();
 }
 
+std::optional<std::uint64_t> Catalogue::find_scene(const std::string& name) const
+{
+    const auto at = std::ranges::find(offers_, name, &Offer::scene);
+    return at == offers_.end() ? std::nullopt : std::optional(at->host_epoch);
+}
+
+std::vector<const Catalogue::Offer*> Catalogue::offers_of(std::uint64_t host_epoch) const
+{
+    std::vector<const Offer*> offers;
+    for (const Offer& offer : offers_)
+    {
+        if (offer.host_epoch == host_epoch)
+        {
+            offers.push_back(&offer);
+        }
+    }
+    std::ranges::sort(offers, {}, &Offer::model);
+    return offers;
+}
+
 std::string Catalogue::names() const
 {
-    std::string text;
-    for (std::size_t i = 0; i < offers_.size() && i < kMaxNamesShown; ++i)
+    std::vector<std::string> names;
+    for (const Offer& offer : offers_)
     {
-        text += (i > 0 ? ", " : "") + offers_[i].name;
+        names.push_back(offer.name);
     }
-    if (offers_.size() > kMaxNamesShown)
+    return list_of(names);
+}
+
+std::string Catalogue::scene_names() const
+{
+    std::vector<std::string> names;
+    for (const Offer& offer : offers_)
     {
-        text += fmt::format(" and {} more", offers_.size() - kMaxNamesShown);
+        if (!offer.scene.empty() && std::ranges::find(names, offer.scene) == names.end())
+        {
+            names.push_back(offer.scene);
+        }
     }
-    return offers_.empty() ? "none" : text;
+    return list_of(names);
 }
 
 void Catalogue::add(const Offer& offer)

@@ -9,6 +9,7 @@
 #include "transport/model_name.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,7 @@ public:
     struct Offer
     {
         std::string name;
+        std::string scene; ///< Of its host's objects; may be empty.
         ContentHash hash{};
         std::uint64_t host_epoch{0};
         std::uint32_t model{0}; ///< Its number on that host.
@@ -46,11 +48,18 @@ public:
     /// The offer of one run of one host; null when that is gone.
     [[nodiscard]] const Offer* find(const ContentHash& hash, std::uint64_t host_epoch) const;
 
+    /// The host with a scene of that name that was seen first of those that are there now.
+    [[nodiscard]] std::optional<std::uint64_t> find_scene(const std::string& name) const;
+    /// What a host serves, in the order of its numbers; valid until the next refresh().
+    [[nodiscard]] std::vector<const Offer*> offers_of(std::uint64_t host_epoch) const;
+
     /// Whether that run of a host is there.
     [[nodiscard]] bool has_host(std::uint64_t host_epoch) const;
 
     /// Their names for a message, "none" without any; a long list is cut.
     [[nodiscard]] std::string names() const;
+    /// The same of scenes.
+    [[nodiscard]] std::string scene_names() const;
 
 private:
     Catalogue(Participants& participants, Endpoint reader, Log log);

@@ -38,7 +38,7 @@ Result<std::unique_ptr<DdsClient>, Refusal> DdsClient::create(std::uint32_t doma
                                                               std::string controller_name, Log log)
 {
     TACTUS_ASSERT(is_valid_name(controller_name));
-    auto joined = Domain::join(domain);
+    auto joined = Domain::join(domain, Party::controller);
     if (!joined)
     {
         return joined.error();
@@ -66,6 +66,7 @@ DdsClient::DdsClient(Domain domain, Catalogue catalogue, std::string controller_
     , catalogue_(std::move(catalogue))
     , controller_name_(std::move(controller_name))
     , log_(std::move(log))
+    , links_log_(log_)
 {
 }
 
@@ -118,7 +119,9 @@ DdsClient::find_all(std::span<const ModelSelector> selectors, std::chrono::milli
         model.hash = search.offer.hash;
         model.header = std::move(search.fetch->header());
         model.base = std::move(search.fetch->base());
-        model.link = std::make_unique<DdsLink>(*exchange_, catalogue_, search.offer, log_);
+        model.link =
+            std::make_unique<DdsLink>(*exchange_, catalogue_, search.offer,
+                                      [this](const std::string& text) { links_log_.write(text); });
     }
     return models;
 }

@@ -27,7 +27,8 @@ namespace tactus::dds
 class DdsClient
 {
 public:
-    /// `controller_name` is shown by hosts; a valid name. Join from an ordinary thread, see Domain.
+    /// `controller_name` is shown by hosts; a valid name. Join from an ordinary thread, and after a
+    /// host of the same process, see Domain.
     [[nodiscard]] static Result<std::unique_ptr<DdsClient>, Refusal>
     create(std::uint32_t domain, std::string controller_name, Log log);
 
@@ -60,6 +61,7 @@ private:
     Catalogue catalogue_;
     std::string controller_name_;
     Log log_;
+    RateLimitedLog links_log_; ///< Of all links: a host that goes is that of many models.
     std::unique_ptr<PieceExchange> exchange_; ///< From create() on.
 };
 

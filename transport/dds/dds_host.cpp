@@ -47,8 +47,9 @@ std::string name_of(const tactus_v2_Wanted& wanted)
 
 } // namespace
 
-Result<std::unique_ptr<DdsHost>, Refusal>
-DdsHost::create(std::uint32_t domain, std::vector<PublishedModel> models, Log log)
+Result<std::unique_ptr<DdsHost>, Refusal> DdsHost::create(std::uint32_t domain,
+                                                          std::vector<PublishedModel> models,
+                                                          Log log, std::string scene)
 {
     if (models.size() > kMaxModels)
     {
@@ -70,8 +71,8 @@ DdsHost::create(std::uint32_t domain, std::vector<PublishedModel> models, Log lo
         }
         served.push_back(std::move(pieces).value());
     }
-    std::unique_ptr<DdsHost> host(
-        new DdsHost(std::move(joined).value(), std::move(served), std::move(log)));
+    std::unique_ptr<DdsHost> host(new DdsHost(std::move(joined).value(), std::move(served),
+                                              std::move(log), std::move(scene)));
     if (auto done = host->open_endpoints(); !done)
     {
         return done.error();
@@ -79,9 +80,10 @@ DdsHost::create(std::uint32_t domain, std::vector<PublishedModel> models, Log lo
     return host;
 }
 
-DdsHost::DdsHost(Domain domain, std::vector<ModelPieces> models, Log log)
+DdsHost::DdsHost(Domain domain, std::vector<ModelPieces> models, Log log, std::string scene)
     : domain_(std::move(domain))
     , models_(std::move(models))
+    , scene_(std::move(scene))
     , log_(log ? log : Log([](const std::string& /*line*/) {}))
     , fault_log_(std::move(log))
     , epoch_(domain_.participants().own_epoch())
@@ -188,6 +190,7 @@ void DdsHost::announce()
         entry.host_epoch = epoch_;
         entry.model = i;
         models_[i].model().name.copy(static_cast<char*>(entry.name), kMaxNameBytes);
+        scene_.copy(static_cast<char*>(entry.scene), kMaxNameBytes);
         std::memcpy(entry.model_hash, store.hash().data(), store.hash().size());
         entry.faces = fields.source_faces;
         entry.header_bytes = static_cast<std::uint32_t>(store.header_bytes().size());

@@ -42,9 +42,11 @@ public:
     };
 
     /// Announces the models. `log` gets a line when a controller comes or goes and, at a limited
-    /// rate, one for what can't be served.
+    /// rate, one for what can't be served. `scene`, a valid name, is what controllers call all of
+    /// the host's objects together; empty: nothing.
     [[nodiscard]] static Result<std::unique_ptr<DdsHost>, Refusal>
-    create(std::uint32_t domain, std::vector<PublishedModel> models, Log log);
+    create(std::uint32_t domain, std::vector<PublishedModel> models, Log log,
+           std::string scene = {});
 
     /// Waits until there is something to do, at most `timeout`. Signals don't end it early.
     void wait(std::chrono::milliseconds timeout);
@@ -78,7 +80,7 @@ private:
         Clock::time_point let_in{};
     };
 
-    DdsHost(Domain domain, std::vector<ModelPieces> models, Log log);
+    DdsHost(Domain domain, std::vector<ModelPieces> models, Log log, std::string scene);
 
     [[nodiscard]] Result<Done, Refusal> open_endpoints();
     void announce();
@@ -94,6 +96,7 @@ private:
 
     Domain domain_; ///< First, so that it is left last.
     std::vector<ModelPieces> models_;
+    std::string scene_;
     Log log_;
     RateLimitedLog fault_log_;
     std::uint64_t epoch_;

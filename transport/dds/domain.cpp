@@ -20,23 +20,24 @@ namespace tactus::dds
 namespace
 {
 
-/// Recovery: with Cyclone's defaults one lost sample costs 100 to 200 ms. One receive thread, so
-/// that every thread's stack can be set by name. Index range: 100 participants on one machine.
+/// Hosts have ports that everybody knows, ten on one machine; controllers have any, and look there.
+/// So controllers don't find each other: 64 of them on one machine would do nothing else for a
+/// minute. One lost sample costs up to 100 ms: nothing is lost on loopback but what overflows, and
+/// frequent heartbeats make many readers on few processors lose more and more. One receive thread,
+/// so that every thread's stack can be set by name.
 constexpr const char* kConfiguration = R"(<CycloneDDS><Domain id="any">
 <General>
   <Interfaces><NetworkInterface name="lo" multicast="false"/></Interfaces>
   <AllowMulticast>false</AllowMulticast>
 </General>
 <Discovery>
-  <ParticipantIndex>auto</ParticipantIndex>
-  <MaxAutoParticipantIndex>99</MaxAutoParticipantIndex>
+  <ParticipantIndex>{}</ParticipantIndex>
+  <MaxAutoParticipantIndex>9</MaxAutoParticipantIndex>
   <LeaseDuration>1 s</LeaseDuration>
   <Peers><Peer address="127.0.0.1"/></Peers>
 </Discovery>
 <Internal>
-  <HeartbeatInterval min="2 ms" minsched="2 ms" max="20 ms">5 ms</HeartbeatInterval>
   <NackDelay>1 ms</NackDelay>
-  <PreEmptiveAckDelay>2 ms</PreEmptiveAckDelay>
   <MultipleReceiveThreads>false</MultipleReceiveThreads>
 </Internal>
 <Threads>
@@ -85,20 +86,29 @@ private:
                         { std::fprintf(stderr, "%s\n", line.c_str()); }};
 };
 
+struct ConfiguredDomain
+{
+    std::weak_ptr<Entity> entity;
+    Party party{Party::host}; ///< It was configured for.
+};
+
 /// The domain with our configuration; the same one for everybody in the process, since Cyclone
-/// allows a domain id to be configured once.
-std::shared_ptr<Entity> configured_domain(std::uint32_t id)
+/// allows a domain id to be configured once. Null: nobody would find a host there.
+std::shared_ptr<Entity> configured_domain(std::uint32_t id, Party party)
 {
     static std::mutex mutex;
-    static std::map<std::uint32_t, std::weak_ptr<Entity>> domains;
+    static std::map<std::uint32_t, ConfiguredDomain> domains;
     const std::lock_guard lock(mutex);
-    auto domain = domains[id].lock();
+    ConfiguredDomain& known = domains[id];
+    auto domain = known.entity.lock();
     if (!domain)
     {
-        domain = std::make_shared<Entity>(dds_create_domain(id, kConfiguration));
-        domains[id] = domain;
+        const char* index = party == Party::host ? "auto" : "none";
+        const std::string configuration = fmt::format(kConfiguration, index);
+        domain = std::make_shared<Entity>(dds_create_domain(id, configuration.c_str()));
+        known = {domain, party};
     }
-    return domain;
+    return known.party == Party::controller && party == Party::host ? nullptr : domain;
 }
 
 Refusal join_error(std::uint32_t id, std::int32_t code)
@@ -111,7 +121,7 @@ Refusal join_error(std::uint32_t id, std::int32_t code)
 
 } // namespace
 
-Result<Domain, Refusal> Domain::join(std::uint32_t id)
+Result<Domain, Refusal> Domain::join(std::uint32_t id, Party party)
 {
     if (id > kMaxDomain)
     {
@@ -123,7 +133,13 @@ Result<Domain, Refusal> Domain::join(std::uint32_t id)
     const char* uri = std::getenv("CYCLONEDDS_URI");
     if (uri == nullptr || *uri == '\0')
     {
-        domain.configuration_ = configured_domain(id);
+        domain.configuration_ = configured_domain(id, party);
+        if (domain.configuration_ == nullptr)
+        {
+            return Refusal{fmt::format("DDS domain {} was joined by a controller of this process: "
+                                       "its host must join first, or nobody finds it",
+                                       id)};
+        }
         if (!domain.configuration_->is_valid())
         {
             return join_error(id, domain.configuration_->get());

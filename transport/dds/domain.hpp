@@ -17,11 +17,18 @@ namespace tactus::dds
 /// Domain ids of the DDS port mapping.
 inline constexpr std::uint32_t kMaxDomain = 232;
 
+/// Whom a participant finds in our own configuration, and by whom it is found.
+enum class Party : std::uint8_t
+{
+    host,       ///< Everybody; or one that watches controllers.
+    controller, ///< Hosts. Controllers don't find each other.
+};
+
 /// One participant in one DDS domain.
 ///
 /// Configuration is always explicit: the user's CYCLONEDDS_URI when it is set, else loopback,
-/// unicast, a lease of one second, fast recovery from loss and small thread stacks (the process may
-/// lock its memory). Nothing multicasts or leaves the machine unless the user says so.
+/// unicast, a lease of one second and small thread stacks (the process may lock its memory).
+/// Nothing multicasts or leaves the machine unless the user says so.
 ///
 /// Cyclone's threads inherit policy, priority and affinity of the thread that joins: join before a
 /// real-time thread exists, from an ordinary one. Its messages go to stderr at a limited rate.
@@ -29,8 +36,10 @@ class Domain
 {
 public:
     /// `id` is 0 .. 232. Refused with Cyclone's own reason, e.g. for an unknown element in
-    /// CYCLONEDDS_URI or when no network interface fits.
-    [[nodiscard]] static Result<Domain, Refusal> join(std::uint32_t id);
+    /// CYCLONEDDS_URI or when no network interface fits. In our own configuration a machine has
+    /// room for ten processes with a host or watcher on a domain, and a process that is both host
+    /// and controller must join as a host first: refused else.
+    [[nodiscard]] static Result<Domain, Refusal> join(std::uint32_t id, Party party = Party::host);
 
     [[nodiscard]] std::uint32_t id() const noexcept { return id_; }
     [[nodiscard]] std::int32_t participant() const noexcept { return participant_.get(); }

@@ -78,7 +78,7 @@ Result<std::uint32_t, Refusal> ObjectPublisher::show(const ShownObject& object)
     {
         return refuse("shows model " + hash_text(object.model) + ", which isn't served");
     }
-    if (count_ == kMaxObjects)
+    if (free_.empty() && slots_.size() == kMaxObjects)
     {
         return refuse(fmt::format("is one too many: {} are the limit", kMaxObjects));
     }
@@ -119,20 +119,17 @@ Result<Done, PoseRefusal> ObjectPublisher::move(std::uint32_t object, const Pose
 void ObjectPublisher::remove(std::uint32_t object)
 {
     TACTUS_ASSERT(find(object) != nullptr);
-    tactus_v2_ObjectRecord record = {};
-    record.host_epoch = host_epoch_;
-    record.object = object;
-    dds_dispose(records_.handle, &record);
     Slot& slot = slots_[object];
-    slot.is_shown = slot.has_moved = slot.owes_record = false;
+    slot.is_shown = slot.has_moved = false;
     slot.repeats = 0;
-    free_.push_back(object);
     --count_;
+    write_end(object);
 }
 
 void ObjectPublisher::step()
 {
     const auto now = Clock::now();
+    is_full_ = false;
     due_.clear();
     for (const std::uint32_t object : awake_)
     {
@@ -177,10 +174,17 @@ void ObjectPublisher::wake(std::uint32_t object)
     }
 }
 
-/// One that finds no room in the writer now is written in a later step.
+/// One that finds no room in the writer is written in a later step. Such a write waits for 5 ms, so
+/// there is one in a step at most: a controller that died would else stop all motion.
 void ObjectPublisher::write_record(std::uint32_t object)
 {
     Slot& slot = slots_[object];
+    slot.owes_record = is_full_;
+    if (is_full_)
+    {
+        wake(object);
+        return;
+    }
     const ShownObject& shown = slot.shown;
     tactus_v2_ObjectRecord record = {};
     record.host_epoch = host_epoch_;
@@ -195,11 +199,28 @@ void ObjectPublisher::write_record(std::uint32_t object)
     record.damping_n_s_per_m = shown.material.damping_n_s_per_m;
     record.serial = ++serial_;
     record.pose = to_wire(shown.pose);
-    slot.owes_record = dds_write(records_.handle, &record) != DDS_RETCODE_OK;
+    is_full_ = dds_write(records_.handle, &record) != DDS_RETCODE_OK;
+    slot.owes_record = is_full_;
     if (slot.owes_record)
     {
         wake(object);
     }
+}
+
+/// Likewise. Nobody gets its number before.
+void ObjectPublisher::write_end(std::uint32_t object)
+{
+    tactus_v2_ObjectRecord record = {};
+    record.host_epoch = host_epoch_;
+    record.object = object;
+    is_full_ = is_full_ || dds_dispose(records_.handle, &record) != DDS_RETCODE_OK;
+    slots_[object].owes_record = is_full_;
+    if (is_full_)
+    {
+        wake(object);
+        return;
+    }
+    free_.push_back(object);
 }
 
 void ObjectPublisher::settle(Clock::time_point now)
@@ -208,13 +229,13 @@ void ObjectPublisher::settle(Clock::time_point now)
                   [&](std::uint32_t object)
                   {
                       Slot& slot = slots_[object];
-                      if (now - slot.moved < kRest)
+                      if (slot.is_shown && now - slot.moved < kRest)
                       {
                           return false;
                       }
-                      if (slot.owes_record)
+                      if (slot.owes_record) // It is listed already.
                       {
-                          write_record(object); // It is listed already.
+                          slot.is_shown ? write_record(object) : write_end(object);
                       }
                       slot.is_listed = slot.owes_record;
                       return !slot.is_listed;

@@ -37,7 +37,7 @@ public:
     /// It stands there from the next step() on. Refused, with nothing changed, when the numbers
     /// aren't a pose. There must be such an object.
     [[nodiscard]] Result<Done, PoseRefusal> move(std::uint32_t object, const Pose& pose);
-    /// It is gone; another one may get its number. There must be one.
+    /// It is gone; another one may get its number, once controllers were told. There must be one.
     void remove(std::uint32_t object);
 
     /// Sends what has moved, all in one sample where it fits, and says that the host is there.
@@ -70,6 +70,7 @@ private:
 
     void wake(std::uint32_t object);
     void write_record(std::uint32_t object);
+    void write_end(std::uint32_t object);
     void settle(Clock::time_point now);
     void send(std::span<const std::uint32_t> moved, Clock::time_point now);
 
@@ -84,6 +85,7 @@ private:
     std::size_t count_{0};
     std::uint64_t serial_{0};
     Clock::time_point last_sample_{};
+    bool is_full_{false}; ///< The writer of records had no room since the last step.
 };
 
 } // namespace tactus::dds

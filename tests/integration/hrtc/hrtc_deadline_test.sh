@@ -8,7 +8,7 @@ mkdir temporary
 export TMPDIR=$scratch/temporary
 
 refuse() { expect "$1" "$2" "$hrtc" "${@:3}"; }
-refuse 3 '--model is required' deadline-test
+refuse 3 'a model is required' deadline-test
 refuse 3 '--load: ' deadline-test --model bumpy --load network
 refuse 3 'none goes with no other' deadline-test --model bumpy --load none,cpu
 refuse 3 'must not end in .txt' deadline-test --model bumpy --report run.svg

@@ -13,7 +13,7 @@ for option in --record --replay; do
     grep -q -- "$option " help.txt || fault "hrtc --help does not tell of $option"
     refuse 3 "$option: *name is needed" --model bumpy "$option" ''
 done
-refuse 3 '--model is required' --record run.rec
+refuse 3 'a model is required' --record run.rec
 for option in --model --record --duration --rate --frame-budget-us --splits --report; do
     refuse 3 "--replay: takes no other option; $option was given" --replay run.rec "$option" 100
 done

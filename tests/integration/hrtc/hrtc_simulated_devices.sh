@@ -14,11 +14,21 @@ check report.json frames == 2000 tools.0.stiffness_cap_n_per_m == 400 \
     tools.1.stiffness_cap_n_per_m '>' 3059 tools.1.stiffness_cap_n_per_m '<' 3061 \
     tools.2.stiffness_cap_n_per_m '>' 3059 tools.2.stiffness_cap_n_per_m '<' 3061 \
     tools.3.stiffness_cap_n_per_m == 1800
+grep -q '^touches  *bumpy: 0\.[0-9]* m across, round (0, 0, 0)$' hrtc.log \
+    || fault 'it does not say where the object is'
+grep -q '^tool  *sphere:0.002 on sim, .*: 1 object in reach; a wall of 400 N/m, of 500 asked for' \
+    hrtc.log || fault 'it does not say what the first tool can do'
+grep -q '^tool  *sphere:0.002 on sim, .*: 1 object in reach; a wall of 500 N/m$' hrtc.log \
+    || fault 'it does not say what the second tool can do'
 for i in 0 1 2 3; do
     check report.json tools.$i.force_max_n '<' 3.3
     check_contact report.json tools.$i.contact_share 0.5
 done
 check_clean report.json
+
+# What comes to nothing is said before it runs.
+run_hrtc "${model[@]}" --duration 0.5 --material 500,0,0,2
+grep -q '^tool .*NOTHING WILL BE FELT' hrtc.log || fault 'a wall of nothing is not told'
 
 # Readings that go wrong while the hand slides.
 run_hrtc "${model[@]}" --duration 3 --device-fault jitter@700+50 --device-fault nan@1000+50 \

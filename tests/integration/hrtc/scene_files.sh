@@ -40,14 +40,14 @@ cmp made/scene.gltf first.gltf || fault 'a second run gives another scene'
 check built.json objects == 3 models.0.objects == 2 models.0.faces == 4 models.1.objects == 1
 
 # Touched from files: the first object, which is where the hand goes.
-run_hrtc --transport file --scene made/scene.gltf --duration 2
+run_hrtc made/scene.gltf --duration 2
 check_clean report.json
 check report.json frames == 2000 scene.objects == 3 force.max_n '>' 0
 
 # Served: each model, and where its first object stands.
 start_publisher made/scene.gltf
 grep -q "^serving 'tetra-mirrored' " publish.log || fault 'a model is not served'
-grep -qx 'showing 3 objects' publish.log || fault 'not all objects are shown'
+grep -qx "showing 3 objects as scene 'scene'" publish.log || fault 'not all objects are shown'
 run_hrtc --model tetra --duration 2
 check report.json models.0.pose.followed == 1 models.0.pose.accepted '>=' 1 \
     models.0.pose.moves == 1 models.0.pose.old_frames == 0 \
@@ -79,7 +79,6 @@ refuse_serving 2 "scene.gltf: node 'cup' (nodes\[1\]) names no model" scene.gltf
 refuse_serving 3 'FILE: a scene is served alone' made/scene.gltf made/tetra.spm
 refuse_serving 3 '--name: a scene is served alone' made/scene.gltf --name a
 refuse() { expect "$1" "$2" "$hrtc" --allow-no-rt "${@:3}"; }
-refuse 3 '--scene: needs --transport file' --scene made/scene.gltf
 refuse 3 '--scene: takes the place of --model' --transport file --scene made/scene.gltf --model a
 refuse 2 "--scene: scene.gltf: node 'cup' (nodes\[1\]) names no model" --transport file \
     --scene scene.gltf

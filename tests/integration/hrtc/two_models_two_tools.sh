@@ -33,7 +33,7 @@ places=(--place "0,0,0")
 for i in {1..40}; do
     places+=(--place "$((i % 7)),$((i / 7)),1")
 done
-run_hrtc --model second "${places[@]}" --tools 2 --duration 2 --pool-mib 4
+run_hrtc --model second "${places[@]}" --tools 2 --duration 3 --pool-mib 4
 check report.json models == 1 tools == 2 scene.objects == 41 scene.objects_max == 41 \
     scene.pairs_awake_max '<=' 8 scene.crowded_frames == 0 scene.walks '>' 0 \
     work.skipped.objects '>' '76*frames' pairs.0.object == 0 faults.scene_crowded == 0 \

@@ -33,6 +33,11 @@ Json report_of(const std::string& model)
 {
     return {
         {"schema", 1},
+        {"run",
+         {{"version", "1.2.3"},
+          {"started_utc", "2026-01-02T03:04:05Z"},
+          {"devices", {"hand"}},
+          {"options", "rate=1000"}}},
         {"frames", 5'003},
         {"period_ns", 1'000'003},
         {"duration_s", 5.003},
@@ -55,6 +60,11 @@ Json report_of(const std::string& model)
           {"width_max_diag", 1.234567e-5}}},
         {"work", {{"splits", 29}, {"merges", 31}}},
         {"budgets", {{"frame_us", nullptr}, {"at_floor", 37}, {"splits", {{"min", 41}}}}},
+        {"scene",
+         {{"objects", 811},
+          {"objects_max", 821},
+          {"pairs_awake_max", 823},
+          {"invisible_wall_frames", 827}}},
         {"pools",
          {{"pages", {{"used_max", 43}, {"capacity", 47}}},
           {"faces", {{"used_max", 53}, {"capacity", 59}}},

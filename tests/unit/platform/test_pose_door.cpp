@@ -8,6 +8,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstdint>
+#include <random>
 #include <thread>
 #include <vector>
 
@@ -257,8 +258,172 @@ TEST(PoseDoor, gives_a_frame_what_it_takes_and_the_next_one_the_others_first)
     EXPECT_EQ(changes[0].pose.scale, 20.0 + static_cast<double>(next));
 }
 
+/// More objects than a frame looks at the ages of.
+TEST(PoseDoor, tells_of_each_of_many_silent_objects_before_the_limit_once)
+{
+    constexpr std::size_t kObjects = 1'000;
+    static_assert(kObjects > 2 * PoseDoor::kAgedAFrame);
+    const std::vector<ObjectPose> placed(kObjects, pose_of(1.0));
+    PoseDoor sut(placed, kLimit);
+    for (std::size_t i = 0; i < kObjects; i += 2) // The others are nobody's.
+    {
+        sut.put(i, pose_of(2.0 + static_cast<double>(i)), kStart);
+    }
+    std::vector<int> moved(kObjects);
+    std::vector<int> told(kObjects);
+    for (int ms = 0; ms <= 100; ++ms)
+    {
+        for (const SceneChange& change : sut.refresh(kStart + milliseconds(ms)))
+        {
+            const bool is_old = change.pose.arrival_ns != 0;
+            ++(is_old ? told : moved)[change.number];
+            EXPECT_TRUE(!is_old || ms > 50) << change.number;
+        }
+    }
+    for (std::size_t i = 0; i < kObjects; ++i)
+    {
+        ASSERT_EQ(moved[i] > 0, i % 2 == 0) << i;
+        ASSERT_EQ(told[i], i % 2 == 0 ? 1 : 0) << i;
+    }
+    // Each counts as many frames as there were, within a round.
+    for (int ms = 101; ms <= 140; ++ms)
+    {
+        EXPECT_TRUE(sut.refresh(kStart + milliseconds(ms)).empty());
+    }
+    for (std::size_t i = 0; i < kObjects; ++i)
+    {
+        const std::uint64_t frames = sut.uses()[i].old_frames;
+        ASSERT_TRUE(i % 2 == 0 ? frames >= 36 && frames <= 44 : frames == 0) << i << ' ' << frames;
+        ASSERT_GE(sut.uses()[i].age_max.ns, i % 2 == 0 ? milliseconds(136).ns : 0);
+    }
+}
+
+TEST(PoseDoor, leaves_an_object_that_came_and_whose_host_falls_silent_where_it_stands)
+{
+    PoseDoor sut({}, 3, kLimit);
+    ASSERT_TRUE(sut.try_come(2, 1, {}, pose_of(4.0), kStart));
+    ASSERT_EQ(sut.refresh(kStart).size(), 1U);
+    const auto silent = sut.refresh(kStart + milliseconds(60));
+    ASSERT_EQ(silent.size(), 1U);
+    EXPECT_EQ(silent[0].kind, SceneChangeKind::object_moves);
+    EXPECT_EQ(silent[0].generation, 1U);
+    EXPECT_EQ(silent[0].pose.translation_m, pose_of(4.0).translation_m);
+    EXPECT_EQ(silent[0].pose.scale, 4.0);
+    EXPECT_EQ(silent[0].pose.arrival_ns, kStart.ns);
+    EXPECT_EQ(sut.uses()[2].moves, 0U);
+}
+
+/// Whatever comes in whatever order: each object ends where its last pose put it.
+TEST(PoseDoor, forgets_no_object_of_many_that_move_at_random)
+{
+    constexpr std::size_t kObjects = 4'096;
+    constexpr std::uint64_t kSeed = 20'261'124;
+    std::mt19937_64 random(kSeed);
+    const std::vector<ObjectPose> placed(kObjects, pose_at(0.0, Duration{1}));
+    PoseDoor sut(placed, kLimit);
+    std::vector<double> last_m(kObjects);
+    std::vector<double> seen_m(kObjects);
+    const auto refresh = [&](int ms)
+    {
+        for (const SceneChange& change : sut.refresh(kStart + milliseconds(ms)))
+        {
+            seen_m[change.number] = change.pose.translation_m.x();
+        }
+    };
+    int ms = 0;
+    for (; ms < 300; ++ms)
+    {
+        const MonotonicTime now = kStart + milliseconds(ms);
+        for (std::uint64_t i = random() % 40; i > 0; --i)
+        {
+            const std::size_t object = random() % kObjects;
+            last_m[object] += 1e-4;
+            sut.put(object, pose_at(last_m[object], milliseconds(ms + 1)), now);
+        }
+        refresh(ms);
+    }
+    for (std::size_t i = 0; i < kObjects; ++i)
+    {
+        sut.hear(i, kStart + milliseconds(ms + 400));
+    }
+    for (const int end = ms + 400; ms < end; ++ms)
+    {
+        refresh(ms);
+    }
+    EXPECT_EQ(seen_m, last_m) << "seed " << kSeed;
+}
+
 /// The writer goes on until enough different poses were seen, so that the two do meet. Their stamps
 /// are so far apart, and they themselves, that each is taken at once.
+TEST(PoseDoor, brings_an_object_with_what_it_is_and_takes_it_away)
+{
+    const std::vector<ObjectPose> placed{pose_of(1.0)};
+    PoseDoor sut(placed, 3, kLimit);
+    const ObjectSpec spec{ModelId{7}, {300.0, 0.4, 0.2, 1.5}};
+    ASSERT_TRUE(sut.try_come(2, 1, spec, pose_of(4.0), kStart));
+    sut.put(2, pose_of(5.0), kStart); // Before the frame knows that it is there.
+    const auto came = sut.refresh(kStart);
+    ASSERT_EQ(came.size(), 2U);
+    EXPECT_EQ(came[0].kind, SceneChangeKind::object_comes);
+    EXPECT_EQ(came[0].number, 2U);
+    EXPECT_EQ(came[0].generation, 1U);
+    EXPECT_EQ(came[0].object.model.value, 7U);
+    EXPECT_EQ(came[0].object.material.stiffness_n_per_m, 300.0);
+    EXPECT_EQ(came[0].object.material.static_friction, 0.4);
+    EXPECT_EQ(came[0].object.material.dynamic_friction, 0.2);
+    EXPECT_EQ(came[0].object.material.damping_n_s_per_m, 1.5);
+    EXPECT_TRUE(is_whole(came[0].pose));
+    EXPECT_EQ(came[0].pose.scale, 4.0);
+    EXPECT_EQ(came[1].kind, SceneChangeKind::object_moves);
+    EXPECT_EQ(came[1].generation, 1U);
+    EXPECT_TRUE(sut.uses()[2].is_followed);
+
+    ASSERT_TRUE(sut.try_go(2));
+    sut.put(2, pose_of(6.0), kStart);
+    const auto went = sut.refresh(kStart + milliseconds(1));
+    ASSERT_EQ(went.size(), 1U); // What was put for it is nobody's.
+    EXPECT_EQ(went[0].kind, SceneChangeKind::object_goes);
+    EXPECT_EQ(went[0].number, 2U);
+    EXPECT_EQ(went[0].generation, 1U);
+    EXPECT_TRUE(sut.refresh(kStart + milliseconds(1000)).empty()); // Nor does it grow old.
+}
+
+TEST(PoseDoor, gives_no_object_what_was_put_for_the_one_before)
+{
+    PoseDoor sut({}, 1, kLimit);
+    ASSERT_TRUE(sut.try_come(0, 1, {}, pose_of(1.0), kStart));
+    ASSERT_EQ(sut.refresh(kStart).size(), 1U);
+    sut.put(0, pose_of(2.0), kStart);
+    ASSERT_TRUE(sut.try_go(0));
+    ASSERT_TRUE(sut.try_come(0, 2, {}, pose_of(3.0), kStart));
+    const auto changes = sut.refresh(kStart + milliseconds(1));
+    ASSERT_EQ(changes.size(), 2U);
+    EXPECT_EQ(changes[0].kind, SceneChangeKind::object_goes);
+    EXPECT_EQ(changes[0].generation, 1U);
+    EXPECT_EQ(changes[1].kind, SceneChangeKind::object_comes);
+    EXPECT_EQ(changes[1].generation, 2U);
+    EXPECT_EQ(changes[1].pose.scale, 3.0);
+}
+
+TEST(PoseDoor, takes_no_more_comings_than_may_wait_and_gives_a_frame_what_it_takes)
+{
+    PoseDoor sut({}, PoseDoor::kWaiting + 1, kLimit);
+    for (std::size_t i = 0; i < PoseDoor::kWaiting; ++i)
+    {
+        ASSERT_TRUE(sut.try_come(i, 1, {}, pose_of(1.0), kStart));
+    }
+    EXPECT_FALSE(sut.try_come(PoseDoor::kWaiting, 1, {}, pose_of(1.0), kStart));
+    EXPECT_FALSE(sut.try_go(0));
+    for (std::size_t first = 0; first < PoseDoor::kWaiting; first += kMaxSceneChanges)
+    {
+        const auto changes = sut.refresh(kStart);
+        ASSERT_EQ(changes.size(), kMaxSceneChanges);
+        EXPECT_EQ(changes[0].number, first);
+    }
+    EXPECT_TRUE(sut.refresh(kStart).empty());
+    EXPECT_TRUE(sut.try_come(PoseDoor::kWaiting, 1, {}, pose_of(1.0), kStart));
+}
+
 TEST(PoseDoor, never_mixes_two_poses_and_never_goes_back)
 {
     constexpr int kPoses = 2'000;

@@ -629,6 +629,33 @@ TEST_F(Dds, a_host_that_is_killed_is_noticed_and_its_successor_adopted)
     EXPECT_NE(output.find("ended; "), std::string::npos) << output;
 }
 
+/// Without a configuration of the user controllers have no ports that anybody knows.
+TEST_F(Dds, a_controller_finds_a_host_that_starts_after_it_and_keeps_one_of_its_process_out)
+{
+    ::unsetenv("CYCLONEDDS_URI");
+    const std::uint32_t domain = 200 + static_cast<std::uint32_t>(::getpid()) % 30;
+    auto early = DdsClient::create(domain, "early", {});
+    ASSERT_TRUE(early) << early.error().text;
+    const auto host_beside = DdsHost::create(domain, {}, {});
+    ASSERT_FALSE(host_beside);
+    EXPECT_NE(host_beside.error().text.find("its host must join first"), std::string::npos);
+    const std::string path = folder.write("tiny.spm", make_tiny_model({}).file).string();
+    const Program host({path, "--domain", std::to_string(domain)});
+    const auto found = early.value()->find({"tiny", std::nullopt}, kPatience);
+    EXPECT_TRUE(found) << found.error().text;
+}
+
+TEST_F(Dds, a_process_may_be_a_host_first_and_then_a_controller)
+{
+    ::unsetenv("CYCLONEDDS_URI");
+    const auto first = Domain::join(230, Party::host);
+    const auto second = Domain::join(230, Party::controller);
+    const auto third = Domain::join(230, Party::host);
+    EXPECT_TRUE(first) << first.error().text;
+    EXPECT_TRUE(second) << second.error().text;
+    EXPECT_TRUE(third) << third.error().text;
+}
+
 TEST_F(Dds, spm_publish_refuses_wrong_files_and_names_with_one_line)
 {
     const std::string good = folder.write("good.spm", make_tiny_model({}).file).string();

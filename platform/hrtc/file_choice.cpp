@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/hrtc/file_choice.hpp"
+
+#include "host_tools/mesh/read_mesh.hpp"
+#include "host_tools/scene/scene.hpp"
+#include "platform/base/printable.hpp"
+#include "platform/hrtc/tool_choice.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
+namespace tactus::hrtc
+{
+
+namespace
+{
+
+/// A name, and the option that has it.
+struct Named
+{
+    std::string option;
+    std::string name;
+};
+
+std::vector<Named> names_of(const Options& options, const RawOptions& raw)
+{
+    std::vector<Named> all;
+    for (const std::string& model : raw.models)
+    {
+        all.push_back({"--model", model});
+    }
+    if (!options.scene.empty())
+    {
+        all.push_back({"--scene", options.scene});
+    }
+    for (const std::string& text : raw.tools)
+    {
+        const auto tool = parse_tool(text); // What is no tool is refused later.
+        if (tool && !tool.value().mesh_model.empty())
+        {
+            all.push_back({"--tool", tool.value().mesh_model});
+        }
+    }
+    return all;
+}
+
+std::string place_file(const std::string& file, Options& options, RawOptions& raw)
+{
+    if (!is_file_name(file))
+    {
+        return fmt::format("'{}' is no command and no file; a published model is --model NAME",
+                           printable(file));
+    }
+    if (!has_scene_extension(file))
+    {
+        raw.models.push_back(file);
+        return {};
+    }
+    if (!options.scene.empty())
+    {
+        return fmt::format("'{}': a second scene; one can be touched", printable(file));
+    }
+    options.scene = file;
+    return {};
+}
+
+} // namespace
+
+bool is_file_name(const std::string& text)
+{
+    return text.find('/') != std::string::npos || text.ends_with(".spm") ||
+           is_mesh_file_name(text) || has_scene_extension(text);
+}
+
+std::string take_files(Options& options, RawOptions& raw)
+{
+    for (const std::string& file : raw.files)
+    {
+        if (std::string fault = place_file(file, options, raw); !fault.empty())
+        {
+            return fault;
+        }
+    }
+    const std::vector<Named> all = names_of(options, raw);
+    for (const Named& named : all)
+    {
+        if (is_mesh_file_name(named.name))
+        {
+            return fmt::format("{}: '{}' is a mesh; spm_build {} -o MODEL.spm makes a model of it",
+                               named.option, printable(named.name), printable(named.name));
+        }
+    }
+    if (raw.transport)
+    {
+        return {};
+    }
+    const auto is_file = [](const Named& named) { return is_file_name(named.name); };
+    const auto file = std::ranges::find_if(all, is_file);
+    const auto published = std::ranges::find_if_not(all, is_file);
+    if (file != all.end() && published != all.end())
+    {
+        return fmt::format("{}: '{}' is a file and '{}' a published name; --transport says where "
+                           "all are to come from",
+                           file->option, printable(file->name), printable(published->name));
+    }
+    raw.transport = file != all.end() ? "file" : "dds";
+    return {};
+}
+
+} // namespace tactus::hrtc

@@ -1,0 +1,370 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/hrtc/scene_keeper.hpp"
+
+#include "platform/hrtc/object_pose.hpp"
+#include "transport/content_hash.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace tactus::hrtc
+{
+
+SceneKeeper::SceneKeeper(const dds::Catalogue& catalogue, std::unique_ptr<dds::SceneReader> reader,
+                         const Controller& controller, ShownScene scene, Log log)
+    : catalogue_(catalogue)
+    , reader_(std::move(reader))
+    , controller_(controller)
+    , scene_(std::move(scene.name))
+    , log_(std::move(log))
+    , model_hosts_(controller.models().size())
+    , first_(controller.first_objects())
+    , slots_(controller.frame().objects().capacity())
+    , counts_(controller.models().size())
+    , heard_(controller.models().size())
+{
+    for (const ServedModel& model : controller.models())
+    {
+        headers_.push_back(ModelHeader::parse(model.header).value());
+    }
+    for (std::uint32_t place = 0; place < slots_.size(); ++place)
+    {
+        Slot& slot = slots_[place];
+        if (place >= controller.objects().size())
+        {
+            free_.insert(place);
+            continue;
+        }
+        slot.spec = controller.objects()[place];
+        slot.is_here = true;
+        slot.is_told = true;
+        if (!scene_.empty())
+        {
+            slot.bound = scene.objects[place];
+            places_[scene.objects[place]] = place;
+            hosts_.assign(1, scene.objects[place].host_epoch);
+        }
+    }
+}
+
+void SceneKeeper::connect(PoseDoor& door, MonotonicTime now)
+{
+    door_ = &door;
+    for (const auto& [name, place] : places_) // What has come since comes with the first step.
+    {
+        const auto& objects = reader_->objects(name.host_epoch);
+        if (const auto object = objects.find(name.number); object != objects.end())
+        {
+            move(place, object->second, now);
+        }
+    }
+}
+
+void SceneKeeper::step(MonotonicTime now)
+{
+    if (catalogue_.version() != seen_catalogue_)
+    {
+        seen_catalogue_ = catalogue_.version();
+        if (scene_.empty())
+        {
+            choose_model_hosts(now);
+        }
+        else
+        {
+            choose_scene_host();
+        }
+    }
+    reader_->poll(hosts_, [&](dds::SceneNews news, const dds::SeenObject& object)
+                  { take_news(news, object, now); });
+    pass_on(now);
+    offer_left_out(now);
+    hear(now);
+}
+
+std::optional<HostObject> SceneKeeper::shown_as(std::uint32_t object) const
+{
+    return object < slots_.size() ? slots_[object].bound : std::nullopt;
+}
+
+/// As long as it is there, the same one. When it goes, it takes its objects with it.
+void SceneKeeper::choose_scene_host()
+{
+    if (!hosts_.empty() && catalogue_.has_host(hosts_.front()))
+    {
+        return;
+    }
+    while (!places_.empty())
+    {
+        leave(places_.begin()->second);
+    }
+    passed_over_.clear();
+    left_out_.clear();
+    hosts_.clear();
+    if (const auto epoch = catalogue_.find_scene(scene_))
+    {
+        hosts_.push_back(*epoch);
+    }
+}
+
+/// The offer first seen, as for the model's link: where two hosts serve it, one moves it.
+void SceneKeeper::choose_model_hosts(MonotonicTime now)
+{
+    hosts_.clear();
+    for (std::size_t i = 0; i < model_hosts_.size(); ++i)
+    {
+        const ServedModel& model = controller_.models()[i];
+        const dds::Catalogue::Offer* offer = catalogue_.find({model.name, model.hash});
+        const std::uint64_t epoch = offer != nullptr ? offer->host_epoch : 0;
+        if (model_hosts_[i] != epoch)
+        {
+            model_hosts_[i] = epoch;
+            find_first(i, now);
+        }
+        if (epoch != 0 && std::ranges::find(hosts_, epoch) == hosts_.end())
+        {
+            hosts_.push_back(epoch);
+        }
+    }
+}
+
+void SceneKeeper::take_news(dds::SceneNews news, const dds::SeenObject& object, MonotonicTime now)
+{
+    const HostObject name{object.host_epoch, object.number};
+    const auto bound = places_.find(name);
+    if (news == dds::SceneNews::moves && bound != places_.end())
+    {
+        move(bound->second, object, now);
+        return;
+    }
+    if (scene_.empty())
+    {
+        for (std::size_t i = 0; i < model_hosts_.size(); ++i)
+        {
+            const bool is_of_it = model_hosts_[i] == object.host_epoch &&
+                                  controller_.models()[i].hash == object.shown.model;
+            if (is_of_it && news != dds::SceneNews::moves)
+            {
+                find_first(i, now);
+            }
+        }
+        return;
+    }
+    if (news != dds::SceneNews::goes)
+    {
+        if (bound == places_.end())
+        {
+            offer(object, now);
+        }
+        return;
+    }
+    passed_over_.erase({name, object.generation});
+    left_out_.erase({name, object.generation});
+    if (bound != places_.end())
+    {
+        leave(bound->second);
+    }
+}
+
+/// The one with the least number of those with the model; nothing where none of ours shows it.
+void SceneKeeper::find_first(std::size_t model, MonotonicTime now)
+{
+    const std::uint32_t place = first_[model];
+    if (place == controller_.objects().size())
+    {
+        return;
+    }
+    const auto& objects = reader_->objects(model_hosts_[model]);
+    const auto first = std::ranges::find_if(
+        objects, [&](const auto& entry)
+        { return entry.second.shown.model == controller_.models()[model].hash; });
+    if (first == objects.end())
+    {
+        unbind(place);
+    }
+    else if (slots_[place].bound != HostObject{first->second.host_epoch, first->first})
+    {
+        bind(place, first->second, now);
+    }
+    else
+    {
+        move(place, first->second, now);
+    }
+}
+
+/// With a scene: an object that isn't ours yet.
+void SceneKeeper::offer(const dds::SeenObject& object, MonotonicTime now)
+{
+    const Generation name{{object.host_epoch, object.number}, object.generation};
+    if (passed_over_.contains(name) || left_out_.contains(name))
+    {
+        return;
+    }
+    const auto model = model_of(object.shown.model);
+    if (!model || controller_.is_of_tool(*model))
+    {
+        passed_over_.insert(name);
+        ++news_.passed_over;
+        log_.write(
+            fmt::format("object '{}' is not touched: its model {} is {}", object.shown.name,
+                        hash_text(object.shown.model),
+                        model ? "that of a tool" : "none of those that were there at the start"));
+        return;
+    }
+    if (!free_.empty())
+    {
+        bind(*free_.begin(), object, now);
+        return;
+    }
+    left_out_.insert(name);
+    ++news_.passed_over;
+    log_.write(fmt::format("object '{}' is not touched: there are {} already; --objects makes room "
+                           "for more",
+                           object.shown.name, slots_.size()));
+}
+
+void SceneKeeper::bind(std::uint32_t place, const dds::SeenObject& object, MonotonicTime now)
+{
+    unbind(place);
+    Slot& slot = slots_[place];
+    const HostObject name{object.host_epoch, object.number};
+    places_[name] = place;
+    slot.bound = name;
+    slot.known = {};
+    if (!slot.is_here)
+    {
+        free_.erase(place);
+        slot.spec = {ModelId{static_cast<std::uint32_t>(*model_of(object.shown.model))},
+                     object.shown.material};
+        slot.is_here = true;
+        untold_.push_back(place);
+    }
+    move(place, object, now);
+}
+
+void SceneKeeper::unbind(std::uint32_t place)
+{
+    if (slots_[place].bound)
+    {
+        places_.erase(*slots_[place].bound);
+        slots_[place].bound.reset();
+    }
+}
+
+void SceneKeeper::move(std::uint32_t place, const dds::SeenObject& object, MonotonicTime now)
+{
+    Slot& slot = slots_[place];
+    slot.pose = pose_of(slot.spec.model.value, object);
+    heard_[slot.spec.model.value] = now;
+    if (slot.is_told)
+    {
+        door_->put(place, slot.pose, now);
+    }
+}
+
+void SceneKeeper::leave(std::uint32_t place)
+{
+    unbind(place);
+    slots_[place].is_here = false;
+    untold_.push_back(place);
+}
+
+/// What comes and goes, as far as the door takes it.
+void SceneKeeper::pass_on(MonotonicTime now)
+{
+    while (!untold_.empty())
+    {
+        const std::uint32_t place = untold_.front();
+        Slot& slot = slots_[place];
+        if (slot.is_here && !slot.is_told)
+        {
+            if (!door_->try_come(place, slot.generation + 1, slot.spec, slot.pose, now))
+            {
+                return;
+            }
+            ++slot.generation;
+            ++news_.came;
+        }
+        else if (!slot.is_here && slot.is_told)
+        {
+            if (!door_->try_go(place))
+            {
+                return;
+            }
+            ++news_.went;
+        }
+        slot.is_told = slot.is_here;
+        untold_.pop_front();
+        if (!slot.is_here)
+        {
+            free_.insert(place);
+        }
+    }
+}
+
+/// What had no room before, as far as there is some now.
+void SceneKeeper::offer_left_out(MonotonicTime now)
+{
+    while (!free_.empty() && !left_out_.empty())
+    {
+        const HostObject name = left_out_.begin()->first;
+        left_out_.erase(left_out_.begin());
+        const auto& objects = reader_->objects(name.host_epoch);
+        if (const auto object = objects.find(name.number); object != objects.end())
+        {
+            bind(*free_.begin(), object->second, now);
+        }
+    }
+}
+
+/// The hosts that were heard, and what they counted.
+void SceneKeeper::hear(MonotonicTime now)
+{
+    for (const std::uint64_t epoch : hosts_)
+    {
+        if (!reader_->was_heard(epoch))
+        {
+            continue;
+        }
+        const auto& objects = reader_->objects(epoch);
+        for (auto at = places_.lower_bound({epoch, 0});
+             at != places_.end() && at->first.host_epoch == epoch; ++at)
+        {
+            Slot& slot = slots_[at->second];
+            const std::size_t model = slot.spec.model.value;
+            heard_[model] = now;
+            door_->hear(at->second, now);
+            const auto object = objects.find(at->first.number);
+            if (object == objects.end())
+            {
+                continue;
+            }
+            const dds::PoseCounts& news = object->second.counts;
+            counts_[model].accepted += news.accepted - slot.known.accepted;
+            for (std::size_t k = 0; k < kPoseRefusals; ++k)
+            {
+                counts_[model].refused[k] += news.refused[k] - slot.known.refused[k];
+            }
+            slot.known = news;
+        }
+    }
+}
+
+/// Of the source mesh, as the controller's poses are.
+ObjectPose SceneKeeper::pose_of(std::size_t model, const dds::SeenObject& object) const
+{
+    ObjectPose pose = object_pose(to_similarity(object.shown.pose), headers_[model]);
+    pose.stamp_ns = object.host_time_ns;
+    return pose;
+}
+
+std::optional<std::size_t> SceneKeeper::model_of(const ContentHash& hash) const
+{
+    const auto at = std::ranges::find(controller_.models(), hash, &ServedModel::hash);
+    return at == controller_.models().end()
+               ? std::nullopt
+               : std::optional(static_cast<std::size_t>(at - controller_.models().begin()));
+}
+
+} // namespace tactus::hrtc

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "platform/hrtc/controller.hpp"
+#include "platform/hrtc/scene_choice.hpp"
+#include "platform/remote/pose_door.hpp"
+#include "platform/time.hpp"
+#include "transport/dds/catalogue.hpp"
+#include "transport/dds/scene_reader.hpp"
+#include "transport/log.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace tactus::hrtc
+{
+
+/// What has become of a scene's objects since the start.
+struct SceneNewsCounts
+{
+    std::uint64_t came{0};        ///< Objects that the frame was told of,
+    std::uint64_t went{0};        ///< and that left it.
+    std::uint64_t passed_over{0}; ///< That can't be touched: no such model, or no room.
+};
+
+/// Keeps our objects where the hosts have theirs. Transport thread.
+///
+/// With a scene ours are all objects of the host whose scene has that name: they come, move and go
+/// as it says. When it goes, so do they, and those of another host with the scene come.
+///
+/// Without one, the first object of ours that shows a model moves like an object of the host that
+/// serves the model: the one with the least number of those with that model.
+class SceneKeeper
+{
+public:
+    /// `reader` has followed the scene's host, if there is a scene. Catalogue and controller must
+    /// outlive it. `log` gets a line for what can't be touched.
+    SceneKeeper(const dds::Catalogue& catalogue, std::unique_ptr<dds::SceneReader> reader,
+                const Controller& controller, ShownScene scene, Log log);
+
+    /// Where it puts what it learns; lives as long as the run. First of all.
+    void connect(PoseDoor& door, MonotonicTime now);
+    /// Never waits.
+    void step(MonotonicTime now);
+
+    /// Whose pose our object has; nothing where no host shows it.
+    [[nodiscard]] std::optional<HostObject> shown_as(std::uint32_t object) const;
+    /// Of all objects of ours that show the model.
+    [[nodiscard]] const dds::PoseCounts& counts(std::size_t model) const { return counts_[model]; }
+    /// When a host that shows the model was heard last; 0: never.
+    [[nodiscard]] MonotonicTime heard(std::size_t model) const { return heard_[model]; }
+    [[nodiscard]] const SceneNewsCounts& news() const noexcept { return news_; }
+
+private:
+    /// An object of a host, and which of those under its number.
+    using Generation = std::pair<HostObject, std::uint32_t>;
+
+    /// One object of ours.
+    struct Slot
+    {
+        std::optional<HostObject> bound;
+        ObjectSpec spec;
+        ObjectPose pose;       ///< The newest.
+        dds::PoseCounts known; ///< What is in `counts_` of the host's object.
+        bool is_here{false};   ///< It is to be in the frame's scene,
+        bool is_told{false};   ///< and is, or will be with what waits at the door.
+        std::uint32_t generation{0};
+    };
+
+    void choose_scene_host();
+    void choose_model_hosts(MonotonicTime now);
+    void take_news(dds::SceneNews news, const dds::SeenObject& object, MonotonicTime now);
+    void find_first(std::size_t model, MonotonicTime now);
+    void offer(const dds::SeenObject& object, MonotonicTime now);
+    void offer_left_out(MonotonicTime now);
+    void bind(std::uint32_t place, const dds::SeenObject& object, MonotonicTime now);
+    void unbind(std::uint32_t place);
+    void move(std::uint32_t place, const dds::SeenObject& object, MonotonicTime now);
+    void leave(std::uint32_t place);
+    void pass_on(MonotonicTime now);
+    void hear(MonotonicTime now);
+    [[nodiscard]] ObjectPose pose_of(std::size_t model, const dds::SeenObject& object) const;
+    [[nodiscard]] std::optional<std::size_t> model_of(const ContentHash& hash) const;
+
+    const dds::Catalogue& catalogue_;
+    std::unique_ptr<dds::SceneReader> reader_;
+    const Controller& controller_;
+    std::string scene_;
+    RateLimitedLog log_;
+    std::vector<ModelHeader> headers_; ///< Views into the controller's models.
+    PoseDoor* door_{nullptr};
+    std::uint64_t seen_catalogue_{0};
+    std::vector<std::uint64_t> hosts_;       ///< That are followed.
+    std::vector<std::uint64_t> model_hosts_; ///< Without a scene: of each model, or 0.
+    std::vector<std::uint32_t> first_;       ///< Without a scene: the object of each model.
+    std::vector<Slot> slots_;
+    std::map<HostObject, std::uint32_t> places_; ///< Of what is bound.
+    std::set<std::uint32_t> free_;               ///< Places of no object.
+    std::set<Generation> passed_over_;           ///< Nobody can touch them,
+    std::set<Generation> left_out_;              ///< or there is no room for them.
+    std::deque<std::uint32_t> untold_;           ///< Where is_here and is_told differ.
+    std::vector<dds::PoseCounts> counts_;
+    std::vector<MonotonicTime> heard_;
+    SceneNewsCounts news_;
+};
+
+} // namespace tactus::hrtc

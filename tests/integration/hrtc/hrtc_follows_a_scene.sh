@@ -1,0 +1,79 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# hrtc_follows_a_scene.sh: a host's whole scene is touched: objects that are there, come, move and
+# go; a host that dies and one that steps in; objects that can't be touched; scenes that aren't
+# there.
+source "$(dirname "$0")/common.sh"
+model bumpy-sphere-5000 ball.spm
+model torus-10000 ring.spm
+
+# scene FILE "NAME MODEL X"...
+scene() {
+    local file=$1 nodes='' list='' i=0 name model x
+    shift
+    while read -r name model x; do
+        list+="${list:+, }$i"
+        nodes+="${nodes:+, }{\"name\": \"$name\", \"translation\": [$x, 0, 0],"
+        nodes+=" \"extras\": {\"tactus\": {\"model\": \"$model.spm\"}}}"
+        i=$((i + 1))
+    done < <(printf '%s\n' "$@")
+    printf '{"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [%s]}], "nodes": [%s]}' \
+        "$list" "$nodes" >"$file"
+}
+scene bench.gltf 'ball ball 0' 'ring-1 ring 0.5' 'ring-2 ring 1'
+scene other.gltf 'ball ball 0' 'ring-1 ring 0.6' 'late ball 2' 'later ball 3'
+cat >poses.txt <<'POSES'
+0.5 ring-1 gone
+1.0 ring-1 0.4 0 0 0 0 0 1
+1.2 ring-2 1.2 0 0 0 0 0 1
+1.5 ring-2 1.0 0 0 0 0 0 1
+POSES
+
+# Everything that the host shows is there; what comes and goes does so here as well.
+start_publisher bench.gltf --scene workshop --poses poses.txt --poses-loop
+grep -qx "showing 3 objects as scene 'workshop'" publish.log || fault 'no name of the scene'
+run_hrtc --scene workshop --duration 4 --record scene.rec
+check_answers report.json
+check_clean report.json
+check report.json models == 2 scene.objects_max == 3 scene.came '>=' 2 scene.went '>=' 2 \
+    scene.passed_over == 0 models.0.pose.followed == 1 answers.stale == 0 \
+    scene.changes_refused.not_here == 0 scene.changes_refused.already_here == 0 \
+    scene.changes_refused.old_generation == 0 scene.changes_refused.bad_pose == 0
+"$hrtc" --replay scene.rec >replay.log 2>&1 || fault "another replay: $(cat replay.log)"
+grep -q '^scene .* objects, 3 at most' hrtc.log || fault 'the summary tells no scene'
+
+# Left where they are.
+run_hrtc --scene workshop --duration 1 --ignore-poses
+check report.json scene.objects_max '<=' 3 scene.came == 0 scene.went == 0 \
+    models.0.pose.followed == 0
+
+# The host dies, and its objects are gone; one with the same scene steps in, with one object more
+# than there is room for.
+stop KILL "$publisher"
+start_publisher bench.gltf --scene workshop
+start_hrtc --scene workshop --objects 3 --duration 8 --report report.json
+wait_for_line publish.log ' subscribed' 10
+sleep 1.5
+stop KILL "$publisher"
+sleep 1
+start_publisher other.gltf --scene workshop
+wait "$controller" || fail "hrtc ended badly: $(cat hrtc.log)"
+cat hrtc.log
+check report.json scene.objects == 3 scene.objects_max == 3 scene.came == 3 \
+    scene.went == 3 scene.passed_over == 1 \
+    scene.changes_refused.number_too_big == 0 wire.host_lost == 1 \
+    tools.0.contact_share '>' 0.1 answers.stale '>' 0
+check_clean report.json
+
+# What isn't there, or has no room.
+refuse() { expect "$1" "$2" "$hrtc" --allow-no-rt --domain "$domain" "${@:3}"; }
+refuse 2 "--scene: 'kitchen' is not shown on domain $domain (scenes there: workshop)" \
+    --scene kitchen --wait 0.5
+refuse 2 '--objects: 2; 4 are there from the start' --scene workshop --objects 2
+refuse 3 "--scene: 'a/b.gltf' is not 1 to 63 characters" --transport dds --scene a/b.gltf
+stop TERM "$publisher"
+expect 3 "--scene: 'a b' is not" "$publish" --domain "$domain" --scene 'a b' ball.spm
+start_publisher ball.spm --scene nothing
+refuse 2 "--scene: 'nothing' is there on domain $domain, but not all its objects have come" \
+    --scene nothing --wait 0.5
+finish

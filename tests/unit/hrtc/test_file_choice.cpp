@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/hrtc/file_choice.hpp"
+
+#include <gtest/gtest.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tactus::hrtc
+{
+
+namespace
+{
+
+using Names = std::vector<std::string>;
+
+struct Given
+{
+    Names files{};
+    Names models{};
+    std::string scene{};
+    Names tools{};
+    std::optional<std::string> transport{};
+};
+
+struct Taken
+{
+    std::string fault;
+    Names models;
+    std::string scene;
+    std::string transport;
+};
+
+Taken take(const Given& given)
+{
+    Options options;
+    options.scene = given.scene;
+    RawOptions raw;
+    raw.files = given.files;
+    raw.models = given.models;
+    raw.tools = given.tools;
+    raw.transport = given.transport;
+    const std::string fault = take_files(options, raw);
+    return {fault, raw.models, options.scene, raw.transport.value_or("")};
+}
+
+TEST(FileChoice, tells_files_from_published_names)
+{
+    for (const char* file :
+         {"cow.spm", "models/cow", "./cow", "cow.obj", "cow.STL", "a.gltf", "b.GLB"})
+    {
+        EXPECT_TRUE(is_file_name(file)) << file;
+    }
+    for (const char* name : {"cow", "cow.v2", "cow@0123", "spm", "cow.spm@0123"})
+    {
+        EXPECT_FALSE(is_file_name(name)) << name;
+    }
+}
+
+TEST(FileChoice, takes_files_without_an_option_as_models_or_the_scene)
+{
+    const Taken models = take({.files = {"a.spm", "b/c.spm"}});
+    EXPECT_EQ(models.fault, "");
+    EXPECT_EQ(models.models, (Names{"a.spm", "b/c.spm"}));
+    EXPECT_EQ(models.transport, "file");
+    const Taken scene = take({.files = {"room.glb"}});
+    EXPECT_EQ(scene.fault, "");
+    EXPECT_EQ(scene.scene, "room.glb");
+    EXPECT_EQ(scene.transport, "file");
+    EXPECT_EQ(take({.models = {"cow"}}).transport, "dds");
+    EXPECT_EQ(take({.scene = "room"}).transport, "dds");
+    EXPECT_EQ(take({.models = {"a.spm"}, .tools = {"mesh:d,e.spm,0.001"}}).transport, "file");
+}
+
+TEST(FileChoice, refuses_a_mixture_unless_it_is_told_where_from)
+{
+    EXPECT_EQ(
+        take({.files = {"a.spm"}, .models = {"cow"}}).fault,
+        "--model: 'a.spm' is a file and 'cow' a published name; --transport says where all are "
+        "to come from");
+    EXPECT_EQ(
+        take({.models = {"cow"}, .tools = {"sphere:0.01", "mesh:e.spm"}}).fault,
+        "--tool: 'e.spm' is a file and 'cow' a published name; --transport says where all are "
+        "to come from");
+    const Taken told = take({.models = {"a.spm", "cow"}, .transport = "dds"});
+    EXPECT_EQ(told.fault, "");
+    EXPECT_EQ(told.transport, "dds");
+}
+
+TEST(FileChoice, says_what_to_do_with_a_mesh_and_with_what_is_no_file)
+{
+    EXPECT_EQ(take({.files = {"cow.obj"}}).fault,
+              "--model: 'cow.obj' is a mesh; spm_build cow.obj -o MODEL.spm makes a model of it");
+    EXPECT_EQ(take({.models = {"cow"}, .tools = {"mesh:cow.ply,0.01"}}).fault,
+              "--tool: 'cow.ply' is a mesh; spm_build cow.ply -o MODEL.spm makes a model of it");
+    EXPECT_EQ(take({.files = {"touch"}}).fault,
+              "'touch' is no command and no file; a published model is --model NAME");
+    EXPECT_EQ(take({.files = {"a.glb", "b.glb"}}).fault,
+              "'b.glb': a second scene; one can be touched");
+}
+
+} // namespace
+
+} // namespace tactus::hrtc

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "rt_core/base/arena.hpp"
+#include "rt_core/frame/frame.hpp"
+#include "tests/unit/transport/tiny_model.hpp"
+#include "transport/courier.hpp"
+#include "transport/pool_plan.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace tactus::test
+{
+
+namespace
+{
+
+struct PlannedScene
+{
+    explicit PlannedScene(std::size_t models)
+    {
+        for (std::uint32_t i = 0; i < models; ++i)
+        {
+            tiny.push_back(make_tiny_model({.seed = i + 1, .records = 200 + 700 * i}));
+            objects.push_back({ModelId{i}, {}});
+        }
+        for (const TinyModel& model : tiny)
+        {
+            headers.push_back(ModelHeader::parse(model.header).value());
+        }
+        poses.resize(models);
+        setup.objects = objects;
+        setup.poses = poses;
+        setup.tools = tools;
+        capacities.resize(models);
+    }
+
+    std::vector<TinyModel> tiny;
+    std::vector<ModelHeader> headers;
+    std::vector<ObjectSpec> objects;
+    std::vector<ObjectPose> poses;
+    std::vector<ToolSpec> tools{3};
+    FrameSetup setup;
+    std::vector<ModelCapacities> capacities;
+};
+
+/// Frame and courier take their memory from an arena of exactly that size.
+void expect_room_for_all(PlannedScene& scene, std::size_t bytes)
+{
+    std::vector<ModelSource> sources;
+    for (std::size_t i = 0; i < scene.tiny.size(); ++i)
+    {
+        sources.push_back({scene.tiny[i].header, scene.tiny[i].base, scene.capacities[i]});
+    }
+    scene.setup.models = sources;
+    std::vector<std::byte> memory(bytes + Arena::kAlignment);
+    const auto misplaced = reinterpret_cast<std::uintptr_t>(memory.data()) % Arena::kAlignment;
+    const std::span<std::byte> all = memory;
+    Arena arena(all.subspan(Arena::kAlignment - misplaced, bytes));
+    std::optional<Frame> frame;
+    ASSERT_TRUE(Frame::start(frame, arena, scene.setup).has_value()) << bytes;
+    ModelPools& pools = frame->pools();
+    const Courier courier(arena, pools.slots, pools.cache.door, {});
+    EXPECT_LE(arena.used(), bytes);
+    scene.setup.models = {};
+}
+
+TEST(PoolPlan, leaves_room_for_frame_and_courier_in_what_it_plans_for)
+{
+    for (const std::size_t models : {1U, 2U, 5U})
+    {
+        PlannedScene scene(models);
+        const std::size_t least = least_pool_bytes(scene.setup, scene.headers, 0);
+        ASSERT_GT(least, 0U);
+        for (const std::size_t bytes : {least, least + 4'096, 2 * least, 4 * least})
+        {
+            ASSERT_TRUE(try_plan_pools(scene.setup, scene.headers, bytes, 0, scene.capacities));
+            expect_room_for_all(scene, bytes);
+        }
+    }
+}
+
+TEST(PoolPlan, knows_the_least_that_would_do)
+{
+    PlannedScene scene(3);
+    const std::size_t least = least_pool_bytes(scene.setup, scene.headers, 0);
+    EXPECT_TRUE(try_plan_pools(scene.setup, scene.headers, least, 0, scene.capacities));
+    EXPECT_FALSE(try_plan_pools(scene.setup, scene.headers, least - (std::size_t{64} << 10U), 0,
+                                scene.capacities));
+    EXPECT_FALSE(try_plan_pools(scene.setup, scene.headers, 0, 0, scene.capacities));
+    const std::size_t cache = std::size_t{1} << 20U;
+    EXPECT_GT(least_pool_bytes(scene.setup, scene.headers, cache), 0U);
+}
+
+} // namespace
+
+} // namespace tactus::test
