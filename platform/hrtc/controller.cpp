@@ -160,6 +160,7 @@ void Controller::make_tools(const Options& options)
             hand_radius_m(choices[i], mesh != nullptr ? &headers_[mesh->model.value] : nullptr,
                           diagonal_world_m());
         tool.spec.torque_max_nm = limits.turn.torque_max_nm;
+        tool.spec.angular_stiffness_nm_per_rad = options.angular_stiffness_nm_per_rad;
         tool_specs_.push_back(tool.spec);
     }
 }
