@@ -302,7 +302,9 @@ void PoseDoor::begin_glide(std::size_t object, const Letter& letter, MonotonicTi
     glide.to = Similarity{pose_of(letter)};
     // The frame has not been told yet of one that was to be there at once: this one is.
     const bool is_overdue = glide.is_under_way && glide.time == Duration{0};
-    glide.start = std::min(last_refresh_, now); // It was told to be there then.
+    const MonotonicTime start = std::min(last_refresh_, now); // It was told to be there then.
+    const Duration left = glide.is_under_way ? glide.time - (start - glide.start) : Duration{0};
+    glide.start = start;
     glide.is_under_way = true;
     const bool has_stamps = letter.stamp_ns != 0 && before.stamp_ns != 0;
     const std::int64_t between_ns =
@@ -310,7 +312,12 @@ void PoseDoor::begin_glide(std::size_t object, const Letter& letter, MonotonicTi
     const bool rested = between_ns <= 0 || between_ns > kGlideMax.ns;
     const double way_m = (glide.to.translation_m - glide.from.translation_m).norm();
     const bool is_at_once = !uses_[object].is_followed || is_overdue || (rested && way_m > kJump_m);
-    glide.time = is_at_once ? Duration{0} : rested ? kGlideMax : Duration{between_ns};
+    // A pose that comes early finds the way before not gone yet: with its time the speed stays. A
+    // fifth less, so that what once came late doesn't stay behind for ever.
+    const std::int64_t whole_ns = between_ns + std::max<std::int64_t>(left.ns, 0) * 4 / 5;
+    glide.time = is_at_once ? Duration{0}
+                 : rested   ? kGlideMax
+                            : Duration{std::min(whole_ns, kGlideMax.ns)};
     uses_[object].is_followed = true;
 }
 

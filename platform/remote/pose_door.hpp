@@ -34,8 +34,9 @@ struct PoseUse
 /// overwritten. The haptic thread gets them as changes of the scene.
 ///
 /// An object glides: from where it is to its newest pose, over the time that lies between that pose
-/// and the one before on the host's clock, at most kGlideMax. So what touches it feels many small
-/// steps and not a few large ones. Nothing is extrapolated: it never goes where its host didn't put
+/// and the one before on the host's clock, and most of what was left of the way before, at most
+/// kGlideMax. So what touches it feels many small steps and not a few large ones, also when poses
+/// come early or late. Nothing is extrapolated: it never goes where its host didn't put
 /// it. After a rest a pose that is farther than kJump_m is taken at once: that is no motion.
 ///
 /// An object's age is the time since its host was last heard, on this machine's clock. One that

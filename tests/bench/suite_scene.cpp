@@ -9,6 +9,7 @@
 #include "tests/bench/least_times.hpp"
 #include "tests/bench/measuring.hpp"
 #include "tests/bench/random.hpp"
+#include "tests/bench/scene_cases.hpp"
 #include "tests/bench/stage_timer.hpp"
 #include "tests/bench/suites.hpp"
 #include "tests/shared/frame_rig.hpp"
@@ -19,6 +20,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <iterator>
 #include <vector>
 
 namespace tactus::bench
@@ -351,6 +353,8 @@ std::vector<Case> scene_cases()
             make_case(fmt::format("{} objects, 4 tools, {}", test_case.objects, without.name),
                       When::always, run_scene_case, test_case));
     }
+    std::ranges::move(scene_pose_cases(), std::back_inserter(cases));
+    std::ranges::move(scene_wire_cases(), std::back_inserter(cases));
     return cases;
 }
 

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstdint>
@@ -158,6 +159,48 @@ TEST(PoseDoor, lets_an_object_glide_from_pose_to_pose_over_the_time_between_them
         }
     }
     EXPECT_GT(last_m, 0.045);
+}
+
+/// 100 poses a second, each up to 3 ms under way, one of them 25 ms: an even speed before, and the
+/// object is as near to its newest pose as before soon after.
+TEST(PoseDoor, glides_evenly_though_poses_come_early_or_late)
+{
+    constexpr double kSpeed_m_per_ms = 1e-4;
+    const std::vector<ObjectPose> placed{pose_at(0.0, Duration{1})};
+    PoseDoor sut(placed, kLimit);
+    double at_m = 0.0;
+    double step_max_m = 0.0;
+    double behind_max_m = 0.0;
+    int arrives = 0;
+    for (int ms = 0; ms < 1'000; ++ms)
+    {
+        const int pose = ms / 10;
+        if (ms % 10 == 0)
+        {
+            arrives = ms + pose * 7 % 4;
+        }
+        const bool is_held_up = pose >= 50 && ms < 525; // All that came by then comes at once.
+        if ((ms == arrives && !is_held_up) || ms == 525)
+        {
+            sut.put(0, pose_at(kSpeed_m_per_ms * 10.0 * pose, milliseconds(10 * pose + 1)),
+                    kStart + milliseconds(ms));
+        }
+        sut.hear(0, kStart + milliseconds(ms));
+        double next_m = at_m;
+        for (const SceneChange& change : sut.refresh(kStart + milliseconds(ms)))
+        {
+            next_m = change.pose.translation_m.x();
+        }
+        const bool is_settled = (ms > 100 && ms < 500) || ms > 700;
+        step_max_m = is_settled ? std::max(step_max_m, next_m - at_m) : step_max_m;
+        behind_max_m =
+            is_settled ? std::max(behind_max_m, kSpeed_m_per_ms * ms - next_m) : behind_max_m;
+        EXPECT_GE(next_m, at_m) << ms;
+        at_m = next_m;
+    }
+    EXPECT_LE(step_max_m, 1.1 * kSpeed_m_per_ms);
+    EXPECT_GE(step_max_m, kSpeed_m_per_ms);
+    EXPECT_LE(behind_max_m, 18.0 * kSpeed_m_per_ms); // Interval, delay and what is held back.
 }
 
 TEST(PoseDoor, ends_a_glide_at_the_pose_and_goes_no_farther)

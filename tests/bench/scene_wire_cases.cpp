@@ -1,0 +1,294 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+
+/// What a host's objects cost on the wire and to those who join, between processes, on a loopback
+/// of their own.
+
+#include "host_tools/shapes/shapes.hpp"
+#include "tests/bench/child_process.hpp"
+#include "tests/bench/measuring.hpp"
+#include "tests/bench/own_network.hpp"
+#include "tests/bench/program.hpp"
+#include "tests/bench/scene_cases.hpp"
+#include "tests/bench/showing_host.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <fstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace tactus::bench
+{
+
+namespace
+{
+
+using Json = nlohmann::json;
+using Files = std::vector<std::filesystem::path>;
+using namespace std::chrono_literals;
+
+constexpr std::uint32_t kDomain = 1;
+constexpr std::uint32_t kObjects = 4'096;
+constexpr std::uint32_t kMoving = 100;
+constexpr std::uint32_t kJoiners = 64;
+constexpr std::uint32_t kModels = 256;
+constexpr std::chrono::seconds kJoinTimeout{60};
+
+/// Controllers that begin at the same instant, and stay.
+class Joiners
+{
+public:
+    /// Returns when each has what it wants, which the arguments say.
+    static Result<Joiners, SceneError> join(const std::filesystem::path& folder,
+                                            const std::string& name, std::uint32_t count,
+                                            const std::vector<std::string>& arguments)
+    {
+        constexpr auto kStartOfOne = 25ms;
+        Joiners joiners;
+        const auto at = BenchClock::now() + 500ms + count * kStartOfOne;
+        const auto log = [&](std::uint32_t i)
+        { return folder / fmt::format("{}-{}.log", name, i); };
+        for (std::uint32_t i = 0; i < count; ++i)
+        {
+            ProgramSetup setup;
+            setup.words = {program_path("scene_joiner"),
+                           "--domain",
+                           fmt::format("{}", kDomain),
+                           "--name",
+                           fmt::format("{}-{}", name, i),
+                           "--at",
+                           fmt::format("{}", at.time_since_epoch().count())};
+            setup.words.insert(setup.words.end(), arguments.begin(), arguments.end());
+            setup.output = log(i);
+            auto started = Program::start(setup);
+            if (!started)
+            {
+                return started.error();
+            }
+            joiners.programs_.push_back(std::move(started).value());
+        }
+        std::this_thread::sleep_until(at);
+        const std::uint64_t bytes_before = loopback_bytes();
+        for (std::uint32_t i = 0; i < count; ++i)
+        {
+            if (auto done = joiners.programs_[i].wait_for("}", kJoinTimeout); !done)
+            {
+                return done.error();
+            }
+            std::ifstream file(log(i));
+            std::string line;
+            while (std::getline(file, line) && !line.starts_with('{'))
+            {
+            }
+            joiners.longest_ms_ =
+                std::max(joiners.longest_ms_, Json::parse(line)["ms"].get<double>());
+        }
+        joiners.bytes_ = static_cast<double>(loopback_bytes() - bytes_before);
+        return joiners;
+    }
+
+    [[nodiscard]] double longest_ms() const { return longest_ms_; }
+    /// What went over the network meanwhile.
+    [[nodiscard]] double bytes() const { return bytes_; }
+
+private:
+    std::vector<Program> programs_;
+    double longest_ms_{0.0};
+    double bytes_{0.0};
+};
+
+double kilobytes_per_s()
+{
+    constexpr auto kTime = 4s; // Five rounds of the search for hosts.
+    const std::uint64_t before = loopback_bytes();
+    const auto begin = BenchClock::now();
+    std::this_thread::sleep_for(kTime);
+    return 1e-3 * static_cast<double>(loopback_bytes() - before) /
+           seconds(begin, BenchClock::now());
+}
+
+std::vector<std::string> all_objects()
+{
+    return {"--objects", fmt::format("{}", kObjects)};
+}
+
+/// What every case does, in a process of its own: returns its figures as JSON.
+using Measure = Result<Json, SceneError> (*)(ShowingHost& host,
+                                             const std::filesystem::path& folder);
+
+Result<std::string, SceneError> measured(const Files& files, const std::filesystem::path& folder,
+                                         std::uint32_t objects, Measure measure)
+{
+    if (auto entered = enter_own_network(); !entered)
+    {
+        return entered.error();
+    }
+    ::unsetenv("CYCLONEDDS_URI"); // As for the programs.
+    auto host = ShowingHost::start(kDomain, files, objects);
+    if (!host)
+    {
+        return host.error();
+    }
+    const auto figures = measure(*host.value(), folder);
+    return figures ? Result<std::string, SceneError>(figures.value().dump()) : figures.error();
+}
+
+struct WireCase
+{
+    std::uint32_t models;
+    std::uint32_t objects;
+    Measure measure;
+    /// A row of each figure, with its goal.
+    struct Figure
+    {
+        const char* key;
+        const char* unit;
+        double goal{kNoGoal};
+    };
+    std::vector<Figure> figures;
+};
+
+CaseFailure run_wire_case(const CaseContext& context, const WireCase& test_case)
+{
+    Files files;
+    for (std::uint32_t i = 0; i < test_case.models; ++i)
+    {
+        // Of some hundred faces, each a little larger than the one before.
+        constexpr std::uint32_t kFaces = 1'000;
+        NamedMesh named{fmt::format("wire-{}", i), make_shape(Shape::bumpy_sphere, kFaces).value()};
+        for (auto& position : named.mesh.positions)
+        {
+            for (double& coordinate : position)
+            {
+                coordinate *= 1.0 + 1e-3 * i;
+            }
+        }
+        const auto scene = context.scenes.get(named);
+        if (!scene)
+        {
+            return scene.error().text;
+        }
+        files.push_back(scene.value()->model.path);
+    }
+    const test::TemporaryFolder folder("scene-wire");
+    const auto outcome = run_in_child(
+        [&] { return measured(files, folder.path(), test_case.objects, test_case.measure); });
+    if (!outcome)
+    {
+        return outcome.error().text;
+    }
+    const Json told = Json::parse(outcome.value().text);
+    CaseRows rows(context.rows, context.common_row("bumpy-sphere-1000", "wire"));
+    for (const WireCase::Figure& figure : test_case.figures)
+    {
+        rows.add(figure.key, told[figure.key].get<double>(), figure.unit, goal_if(figure.goal));
+    }
+    return std::nullopt;
+}
+
+constexpr const char* kLateJoin = "late join";
+constexpr const char* kObjectAtStart = "an object at the join";
+constexpr const char* kAtRest = "at rest";
+constexpr const char* kSearch = "of it the search for hosts on this machine";
+constexpr const char* kTold = "at rest, what the two tell each other";
+constexpr const char* kInMotion = "100 moving at 100 Hz";
+
+Result<Json, SceneError> measure_flow(ShowingHost& host, const std::filesystem::path& folder)
+{
+    Json told;
+    const double alone = kilobytes_per_s();
+    const auto late = Joiners::join(folder, "late", 1, all_objects());
+    if (!late)
+    {
+        return late.error();
+    }
+    told[kLateJoin] = late.value().longest_ms();
+    told[kObjectAtStart] = late.value().bytes() / kObjects;
+    std::this_thread::sleep_for(1s);
+    const double at_rest = kilobytes_per_s();
+    told[kAtRest] = at_rest;
+    told[kSearch] = 2.0 * alone; // Each of the two does the same.
+    told[kTold] = at_rest - 2.0 * alone;
+    host.move(kMoving);
+    std::this_thread::sleep_for(1s);
+    told[kInMotion] = kilobytes_per_s();
+    return told;
+}
+
+constexpr const char* kTogether = "64 join at once";
+constexpr const char* kBytes = "bytes by those of 64 single joins";
+constexpr const char* kLoaded = "64 join at once, 100 moving";
+
+Result<Json, SceneError> measure_joins(ShowingHost& host, const std::filesystem::path& folder)
+{
+    Json told;
+    double single_bytes = 0.0;
+    {
+        const auto single = Joiners::join(folder, "single", 1, all_objects());
+        if (!single)
+        {
+            return single.error();
+        }
+        single_bytes = single.value().bytes();
+    }
+    for (const bool moves : {false, true})
+    {
+        std::this_thread::sleep_for(2s); // Those that were killed are gone.
+        host.move(moves ? kMoving : 0);
+        const auto all = Joiners::join(folder, moves ? "loaded" : "all", kJoiners, all_objects());
+        if (!all)
+        {
+            return all.error();
+        }
+        told[moves ? kLoaded : kTogether] = all.value().longest_ms() * 1e-3;
+        if (!moves)
+        {
+            told[kBytes] = all.value().bytes() / (kJoiners * single_bytes);
+        }
+    }
+    return told;
+}
+
+constexpr const char* kStart = "start with 256 models";
+
+Result<Json, SceneError> measure_start(ShowingHost& /*host*/, const std::filesystem::path& folder)
+{
+    const auto one = Joiners::join(folder, "start", 1, {"--models", fmt::format("{}", kModels)});
+    if (!one)
+    {
+        return one.error();
+    }
+    return Json{{kStart, one.value().longest_ms()}};
+}
+
+} // namespace
+
+std::vector<Case> scene_wire_cases()
+{
+    const auto wire = [](const char* name, const WireCase& test_case)
+    { return make_case(name, When::full_only, run_wire_case, test_case); };
+    return {
+        wire("wire, 4096 objects", {1,
+                                    kObjects,
+                                    measure_flow,
+                                    {{kLateJoin, "ms", 500.0},
+                                     {kObjectAtStart, "B", 256.0},
+                                     {kAtRest, "KB/s"},
+                                     {kSearch, "KB/s"},
+                                     {kTold, "KB/s", 20.0},
+                                     {kInMotion, "KB/s", 1'000.0}}}),
+        wire("wire, 64 controllers", {1,
+                                      kObjects,
+                                      measure_joins,
+                                      {{kTogether, "s", 5.0}, {kBytes, "", 2.0}, {kLoaded, "s"}}}),
+        wire("wire, 256 models", {kModels, 1, measure_start, {{kStart, "ms", 500.0}}}),
+    };
+}
+
+} // namespace tactus::bench

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "tests/bench/showing_host.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <utility>
+
+namespace tactus::bench
+{
+
+namespace
+{
+
+constexpr std::chrono::milliseconds kMoveEvery{10};
+constexpr double kStep_m = 0.001; ///< 0.1 m/s.
+
+/// On a grid.
+Pose place_of(std::uint32_t object)
+{
+    Pose pose;
+    pose.translation_m = {0.2 * (object % 16), 0.2 * (object / 16 % 16), 0.2 * (object / 256)};
+    return pose;
+}
+
+} // namespace
+
+Result<std::unique_ptr<ShowingHost>, SceneError>
+ShowingHost::start(std::uint32_t domain, const std::vector<std::filesystem::path>& files,
+                   std::uint32_t objects)
+{
+    std::vector<dds::PublishedModel> models;
+    for (const std::filesystem::path& file : files)
+    {
+        auto store = ModelStore::open(file);
+        if (!store)
+        {
+            return SceneError{store.error().text};
+        }
+        models.push_back({fmt::format("model-{}", models.size()), std::move(store).value()});
+    }
+    auto made = dds::DdsHost::create(domain, std::move(models), {});
+    if (!made)
+    {
+        return SceneError{made.error().text};
+    }
+    std::unique_ptr<ShowingHost> showing(new ShowingHost(std::move(made).value()));
+    dds::DdsHost& host = *showing->host_;
+    for (std::uint32_t i = 0; i < objects; ++i)
+    {
+        ShownObject object;
+        object.name = fmt::format("object-{}", i);
+        object.model = host.models().front().store().hash();
+        object.pose = place_of(i);
+        if (const auto shown = host.objects().show(object); !shown)
+        {
+            return SceneError{shown.error().text};
+        }
+    }
+    showing->thread_ = std::thread([&self = *showing] { self.run(); });
+    return showing;
+}
+
+ShowingHost::~ShowingHost()
+{
+    stop_ = true;
+    if (thread_.joinable())
+    {
+        thread_.join();
+    }
+}
+
+void ShowingHost::run()
+{
+    using Clock = std::chrono::steady_clock;
+    auto due = Clock::now();
+    std::uint32_t steps = 0;
+    while (!stop_)
+    {
+        const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(due - Clock::now());
+        host_->wait(std::max(left, std::chrono::milliseconds(0)));
+        if (Clock::now() >= due)
+        {
+            due += kMoveEvery;
+            ++steps;
+            const std::uint32_t moving = moving_;
+            for (std::uint32_t i = 0; i < moving; ++i)
+            {
+                Pose pose = place_of(i);
+                pose.translation_m[2] += kStep_m * (steps % 100);
+                static_cast<void>(host_->objects().move(i, pose));
+            }
+        }
+        host_->step();
+    }
+}
+
+} // namespace tactus::bench
