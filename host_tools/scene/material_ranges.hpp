@@ -11,7 +11,9 @@ namespace tactus
 
 /// What an object's material may be, whoever says so: an option of hrtc or a scene file.
 inline constexpr double kSoftest_n_per_m = 1.0;
-inline constexpr double kStiffest_n_per_m = 3'000.0; ///< Of --stiffness, too.
+inline constexpr double kStiffest_n_per_m = 3'000.0;    ///< Of --stiffness, too.
+inline constexpr double kSoftestTurn_nm_per_rad = 1e-3; ///< Of --angular-stiffness.
+inline constexpr double kStiffestTurn_nm_per_rad = 100.0;
 inline constexpr double kRoughest = 3.0;
 inline constexpr double kMostDamped_n_s_per_m = 20.0;
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "host_tools/shapes/detail/grid.hpp"
+#include "host_tools/shapes/detail/plate.hpp"
 #include "host_tools/shapes/detail/sine.hpp"
 #include "host_tools/shapes/shapes.hpp"
 #include "platform/base/refusal.hpp"
@@ -15,6 +16,8 @@ namespace tactus
 
 namespace
 {
+
+constexpr double kPlateSide_m = 0.1;
 
 using detail::Grid;
 using detail::kPi;
@@ -111,44 +114,13 @@ Result<TriangleMesh, Refusal> make_uv_sphere(std::uint32_t rings, std::uint32_t 
 
 Result<TriangleMesh, Refusal> make_thin_plate(std::uint32_t cells, double thickness_m)
 {
-    constexpr double kSide_m = 0.1;
-    if (cells < 1 || cells > 1000 || !(thickness_m >= 1e-6 && thickness_m <= kSide_m))
+    if (cells < 1 || cells > 1000 || !(thickness_m >= 1e-6 && thickness_m <= kPlateSide_m))
     {
         return Refusal{fmt::format("{} cells, {} m thick: must be 1 .. 1000 cells and 1e-6 .. "
                                    "{} m",
-                                   cells, thickness_m, kSide_m)};
+                                   cells, thickness_m, kPlateSide_m)};
     }
-    TriangleMesh mesh;
-    const Grid grid{cells + 1, cells + 1, false, false};
-    for (const double z : {0.0, thickness_m})
-    {
-        for (std::uint32_t c = 0; c <= cells; ++c)
-        {
-            for (std::uint32_t r = 0; r <= cells; ++r)
-            {
-                mesh.positions.push_back({kSide_m * static_cast<double>(c) / cells,
-                                          kSide_m * static_cast<double>(r) / cells, z});
-            }
-        }
-    }
-    grid.add_faces(mesh); // The lower side, turned over, and a copy of it above.
-    const std::uint32_t above = grid.columns * grid.rows;
-    const std::size_t below_faces = mesh.faces.size();
-    for (std::size_t f = 0; f < below_faces; ++f)
-    {
-        const auto [a, b, c] = mesh.faces[f];
-        mesh.faces.push_back({a + above, b + above, c + above});
-        mesh.faces[f] = {a, c, b};
-    }
-    const auto border = border_of(grid, cells);
-    for (std::size_t i = 0; i < border.size(); ++i)
-    {
-        const std::uint32_t a = border[i];
-        const std::uint32_t b = border[(i + 1) % border.size()];
-        mesh.faces.push_back({a, b, b + above});
-        mesh.faces.push_back({a, b + above, a + above});
-    }
-    return mesh;
+    return detail::make_plate(cells, thickness_m);
 }
 
 Result<TriangleMesh, Refusal> make_triangle_soup(std::uint32_t triangles, std::uint64_t seed)
@@ -182,3 +154,43 @@ Result<TriangleMesh, Refusal> make_triangle_soup(std::uint32_t triangles, std::u
 }
 
 } // namespace tactus
+
+namespace tactus::detail
+{
+
+TriangleMesh make_plate(std::uint32_t cells, double thickness_m)
+{
+    TriangleMesh mesh;
+    const Grid grid{cells + 1, cells + 1, false, false};
+    for (const double z : {0.0, thickness_m})
+    {
+        for (std::uint32_t c = 0; c <= cells; ++c)
+        {
+            for (std::uint32_t r = 0; r <= cells; ++r)
+            {
+                mesh.positions.push_back({kPlateSide_m * static_cast<double>(c) / cells,
+                                          kPlateSide_m * static_cast<double>(r) / cells, z});
+            }
+        }
+    }
+    grid.add_faces(mesh); // The lower side, turned over, and a copy of it above.
+    const std::uint32_t above = grid.columns * grid.rows;
+    const std::size_t below_faces = mesh.faces.size();
+    for (std::size_t f = 0; f < below_faces; ++f)
+    {
+        const auto [a, b, c] = mesh.faces[f];
+        mesh.faces.push_back({a + above, b + above, c + above});
+        mesh.faces[f] = {a, c, b};
+    }
+    const auto border = border_of(grid, cells);
+    for (std::size_t i = 0; i < border.size(); ++i)
+    {
+        const std::uint32_t a = border[i];
+        const std::uint32_t b = border[(i + 1) % border.size()];
+        mesh.faces.push_back({a, b, b + above});
+        mesh.faces.push_back({a, b + above, a + above});
+    }
+    return mesh;
+}
+
+} // namespace tactus::detail

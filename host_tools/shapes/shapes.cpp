@@ -4,12 +4,15 @@
 
 #include "host_tools/shapes/detail/grid.hpp"
 #include "host_tools/shapes/detail/icosphere.hpp"
+#include "host_tools/shapes/detail/plate.hpp"
 #include "host_tools/shapes/detail/sine.hpp"
+#include "host_tools/shapes/detail/turned.hpp"
 
 #include <fmt/format.h>
 
 #include <array>
 #include <cmath>
+#include <span>
 #include <utility>
 
 namespace tactus
@@ -24,12 +27,15 @@ using detail::portable_cos;
 using detail::portable_sin;
 using Point = std::array<double, 3>;
 
-constexpr std::array<std::pair<std::string_view, Shape>, 5> kNames{
+constexpr std::array<std::pair<std::string_view, Shape>, 8> kNames{
     {{"sphere", Shape::sphere},
      {"bumpy-sphere", Shape::bumpy_sphere},
      {"torus", Shape::torus},
      {"terrain", Shape::terrain},
-     {"gear", Shape::gear}}};
+     {"gear", Shape::gear},
+     {"peg", Shape::peg},
+     {"socket", Shape::socket},
+     {"plate", Shape::plate}}};
 
 double fraction(std::uint32_t part, std::uint32_t whole)
 {
@@ -248,6 +254,38 @@ TriangleMesh make_gear(std::uint32_t faces)
     return mesh;
 }
 
+/// Corners of what a lathe makes, from the axis below to the axis above; in metres.
+constexpr std::array<detail::OutlinePoint, 6> kPegOutline{
+    {{0.0, -0.03}, {0.009, -0.03}, {0.01, -0.029}, {0.01, 0.029}, {0.009, 0.03}, {0.0, 0.03}}};
+constexpr std::array<detail::OutlinePoint, 7> kSocketOutline{{{0.0, -0.03},
+                                                              {0.03, -0.03},
+                                                              {0.03, 0.02},
+                                                              {0.0112, 0.02},
+                                                              {0.0102, 0.019},
+                                                              {0.0102, -0.02},
+                                                              {0.0, -0.02}}};
+
+TriangleMesh make_turned(std::uint32_t faces, std::span<const detail::OutlinePoint> outline)
+{
+    const auto corners = static_cast<std::uint32_t>(outline.size() - 2);
+    const auto [segments, rings] = choose_cells((faces + 1) / 2, 1.0, {8, corners});
+    return detail::make_turned(outline, segments, rings);
+}
+
+/// The cells a side whose 4 c (c + 2) is nearest.
+TriangleMesh make_plate(std::uint32_t faces)
+{
+    constexpr double kThickness_m = 0.01;
+    const auto count = [](std::uint32_t cells) { return 4ULL * cells * (cells + 2ULL); };
+    std::uint32_t cells = 1;
+    while (count(cells + 1) <= faces)
+    {
+        ++cells;
+    }
+    cells += count(cells + 1) - faces < faces - count(cells) ? 1U : 0U;
+    return detail::make_plate(cells, kThickness_m);
+}
+
 } // namespace
 
 double bumpy_radius_m(double u, double v, double w)
@@ -300,6 +338,12 @@ Result<TriangleMesh, Refusal> make_shape(Shape shape, std::uint32_t faces)
         return make_terrain(faces);
     case Shape::gear:
         return make_gear(faces);
+    case Shape::peg:
+        return make_turned(faces, kPegOutline);
+    case Shape::socket:
+        return make_turned(faces, kSocketOutline);
+    case Shape::plate:
+        return make_plate(faces);
     }
     return Refusal{"unknown shape"};
 }

@@ -24,12 +24,16 @@ enum class Shape
     torus,        ///< Radii 50 and 20 mm round the z axis.
     terrain,      ///< A height field of 100 x 100 mm over z = 0, up along z, with a border.
     gear,         ///< Eight teeth, 50 mm outer radius, 20 mm thick, a bore; sharp edges.
+    peg,          ///< A pin of 10 mm radius, 60 mm long along z, its edges broken by 1 mm.
+    socket,       ///< A block of 30 mm radius with a blind hole of 10.2 mm, 40 mm deep from above.
+    plate,        ///< 100 x 100 x 10 mm over z = 0, both sides cut into squares.
 };
 
 inline constexpr std::uint32_t kMinShapeFaces = 100;
 inline constexpr std::uint32_t kMaxShapeFaces = 16'000'000;
 
-/// The names as a user writes them: sphere, bumpy-sphere, torus, terrain, gear.
+/// The names as a user writes them: sphere, bumpy-sphere, torus, terrain, gear, peg, socket,
+/// plate.
 [[nodiscard]] std::vector<std::string_view> shape_names();
 [[nodiscard]] std::optional<Shape> parse_shape(std::string_view name);
 

@@ -25,6 +25,8 @@ constexpr double kBytesPerMib = 1024.0 * 1024.0;
 constexpr double kSpeedMax_diag = 1.0;
 /// The simulated hand flies at two diagonals a second; its device stands twice that.
 constexpr double kHandSpeed_diag = 4.0;
+/// It touches what is so many times as large as its tool's radius, if there is such a thing.
+constexpr double kHandRoom = 10.0;
 
 /// What is told in two decimals is not less.
 double up_to_cents(double value)
@@ -78,7 +80,7 @@ Controller::Controller(const Options& options, std::vector<ServedModel> models)
 
 double Controller::diagonal_world_m() const noexcept
 {
-    return headers_.front().diagonal_m() * poses_.front().scale;
+    return diagonal_of(0);
 }
 
 std::vector<std::uint32_t> Controller::first_objects() const
@@ -158,6 +160,7 @@ void Controller::make_tools(const Options& options)
             hand_radius_m(choices[i], mesh != nullptr ? &headers_[mesh->model.value] : nullptr,
                           diagonal_world_m());
         tool.spec.torque_max_nm = limits.turn.torque_max_nm;
+        tool.spec.angular_stiffness_nm_per_rad = options.angular_stiffness_nm_per_rad;
         tool_specs_.push_back(tool.spec);
     }
 }
@@ -226,9 +229,10 @@ std::optional<Refusal> Controller::finish_devices(const Options& options)
 
 std::optional<Refusal> Controller::simulate_device(const Options& options, std::size_t tool)
 {
+    const std::size_t object = object_of_hand(tool);
     HandScene scene;
-    scene.anchors_world_m = anchors_world_m();
-    scene.diagonal_m = diagonal_world_m();
+    scene.anchors_world_m = anchors_world_m(object);
+    scene.diagonal_m = diagonal_of(object);
     scene.tool_radius_m = tools_[tool].hand_radius_m;
     scene.period = options.period();
     scene.frames_total = options.frames();
@@ -243,7 +247,7 @@ std::optional<Refusal> Controller::simulate_device(const Options& options, std::
     device_options.workspace_centre_world_m = motion.value().centre_world_m;
     device_options.workspace_radius_m = motion.value().reach_m;
     device_options.speed_max_m_per_s =
-        std::max(device_options.speed_max_m_per_s, kHandSpeed_diag * diagonal_world_m());
+        std::max(device_options.speed_max_m_per_s, kHandSpeed_diag * scene.diagonal_m);
     auto device = SimulatedDevice::create(device_options, std::move(motion.value().hand));
     if (!device)
     {
@@ -285,12 +289,32 @@ void Controller::limit_force(const Options& options, ToolSetup& tool) const
     tool.clutch_button = options.clutch_button;
 }
 
-/// The first model's base vertices: original vertices, so they lie on its surface.
-std::vector<Vec3> Controller::anchors_world_m() const
+/// Each touches another object, as far as there are some that are much larger than its tool.
+std::size_t Controller::object_of_hand(std::size_t tool) const
+{
+    for (std::size_t i = 0; i < objects_.size(); ++i)
+    {
+        const std::size_t object = (tool + i) % objects_.size();
+        if (diagonal_of(object) >= kHandRoom * tools_[tool].hand_radius_m)
+        {
+            return object;
+        }
+    }
+    return 0;
+}
+
+double Controller::diagonal_of(std::size_t object) const noexcept
+{
+    return headers_[objects_[object].model.value].diagonal_m() * poses_[object].scale;
+}
+
+/// The base vertices of its model: original vertices, so they lie on its surface.
+std::vector<Vec3> Controller::anchors_world_m(std::size_t object) const
 {
     std::vector<Vec3> anchors;
-    const ObjectPose pose = model_pose(poses_.front(), headers_.front().origin_m());
-    for (const Vec3f& position_m : frame_->model({0}).slots.base.positions_m)
+    const ModelId model = objects_[object].model;
+    const ObjectPose pose = model_pose(poses_[object], headers_[model.value].origin_m());
+    for (const Vec3f& position_m : frame_->model(model).slots.base.positions_m)
     {
         anchors.push_back(to_world(pose, to_vec3(position_m)));
     }

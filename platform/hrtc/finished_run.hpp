@@ -14,6 +14,7 @@
 #include "transport/dds/scene_reader.hpp"
 
 #include <cstdint>
+#include <ctime>
 #include <optional>
 #include <string>
 #include <vector>
@@ -29,6 +30,7 @@ struct FinishedRun
     bool supervisor_fifo{false}; ///< The supervisor had SCHED_FIFO.
     TimerCounts timer{};
     Duration period;
+    std::time_t started{0}; ///< Calendar time.
     SafetyRecord safety;
     bool host_was_lost{false};                  ///< Some model's host went away during the run.
     std::vector<PoseUse> pose_uses{};           ///< One an object; none from files.

@@ -13,11 +13,14 @@
 #include "platform/hrtc/report_page.hpp"
 #include "platform/hrtc/session.hpp"
 #include "platform/hrtc/signals.hpp"
+#include "platform/hrtc/start_lines.hpp"
 #include "platform/hrtc/subcommands.hpp"
+#include "platform/hrtc/verdict.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <cstdio>
 #include <variant>
 
 namespace tactus::hrtc
@@ -38,6 +41,8 @@ int touch(const Options& options)
     {
         return leave_with(session.error());
     }
+    fmt::print("{}", start_lines(options, session.value()->controller()));
+    std::fflush(stdout);
     const auto done = session.value()->run("touch");
     if (!done)
     {
@@ -57,7 +62,11 @@ int touch(const Options& options)
         }
         fmt::print("report      {}\n", path);
     }
-    return done.value().recording_error ? kExitFailed : kExitDone;
+    if (done.value().recording_error)
+    {
+        return kExitFailed;
+    }
+    return options.strict && !losses_of(report).empty() ? kExitCriterionNotMet : kExitDone;
 }
 
 int run(int argc, char** argv)

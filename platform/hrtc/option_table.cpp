@@ -41,11 +41,13 @@ void declare_scene(CommandLine& line, Options& options, RawOptions& raw)
                     "Room for so many objects, at least those that are placed; 1 to 4096 "
                     "[as many as are placed]")
         .integer_between(1U, kMaxObjects);
-    line.add_option("--material", raw.materials,
-                    "How the object feels, one for each in order; further ones feel as the last "
-                    "--model: STIFFNESS in N/m, 1 to "
-                    "3000, the softer of this and --stiffness counts [,STATIC friction, 0 to 3 "
-                    "[,DYNAMIC friction, at most the static one [,DAMPING in N s/m, 0 to 20]]]")
+    line.add_option(
+            "--material", raw.materials,
+            "How the object feels, one for each in order; further ones feel as the last "
+            "--model: STIFFNESS in N/m, 1 to "
+            "3000, the softer of this and --stiffness counts [,STATIC friction, 0 to 3 "
+            "[,DYNAMIC friction, at most the static one [,DAMPING in N s/m, 0 to 20]]]; or any "
+            "of stiffness=, static=, dynamic= and damping=, with commas between")
         .repeatable();
     line.add_option(
             "--tool", raw.tools,
@@ -86,6 +88,9 @@ void declare_run(CommandLine& line, Options& options)
     line.add_option("--duration", options.duration_s, "Seconds to run")
         .number_between(0.1, 86'400.0)
         .show_default();
+    line.add_flag("--strict", options.strict,
+                  "Exit with 1 when a host or a device was lost, a piece came damaged, or nothing "
+                  "was touched");
     line.add_option("--report", options.report_paths,
                     "Write the report to this file: a page when its name ends in .html, else JSON; "
                     "repeatable")
@@ -123,6 +128,10 @@ void declare_force(CommandLine& line, Options& options)
     line.add_option("--stiffness", options.stiffness_n_per_m, "Of the virtual wall, in N/m")
         .number_between(1.0, kStiffest_n_per_m)
         .show_default();
+    line.add_option("--angular-stiffness", options.angular_stiffness_nm_per_rad,
+                    "Of the spring that turns tools other than spheres, in N m/rad; the device's "
+                    "own cap holds for it, too [--stiffness times the square of the tool's size]")
+        .number_between(kSoftestTurn_nm_per_rad, kStiffestTurn_nm_per_rad);
     line.add_option("--clutch", options.clutch_button,
                     "Button of each device, from 0, that parts hand and tool while it is held: the "
                     "tool stays, without a force, and goes on from there [none]")

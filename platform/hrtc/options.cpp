@@ -382,9 +382,10 @@ std::variant<Options, int> parse_options(int argc, char** argv, const CommandFor
     options.thread.cpu = raw.cpu;
     options.follows_poses = !raw.ignores_poses;
     options.static_when_it_fits = !raw.refines_always;
+    options.as_file = option_file(line, options, raw);
     if (raw.prints_config)
     {
-        fmt::print("{}", option_file(line, options, raw));
+        fmt::print("{}", options.as_file);
         return std::fflush(stdout) == 0 ? kExitDone : line.fail("the options can't be written");
     }
     return options;

@@ -70,11 +70,14 @@ struct Options
     bool static_when_it_fits{true};
     Prediction prediction{Prediction::automatic};
     double stiffness_n_per_m{500.0};
-    std::optional<double> speed_limit_m_per_s;  ///< None: the device's own.
+    double angular_stiffness_nm_per_rad{0.0};  ///< 0: as the stiffness and the tool's size make it.
+    std::optional<double> speed_limit_m_per_s; ///< None: the device's own.
     std::optional<std::uint32_t> clutch_button; ///< Of every device.
     /// None: one diagonal of the first model a second.
     std::optional<double> follow_speed_m_per_s;
     bool trap_system_calls{false};
+    bool strict{false};  ///< What is lost in a run, or comes to nothing, is a failure.
+    std::string as_file; ///< All options, as a file for --config.
     RtThreadOptions thread;
 
     [[nodiscard]] Duration period() const noexcept { return nanoseconds(1'000'000'000 / rate_hz); }

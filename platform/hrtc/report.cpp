@@ -16,7 +16,9 @@
 
 #include <algorithm>
 #include <array>
+#include <ctime>
 #include <span>
+#include <sstream>
 
 namespace tactus::hrtc
 {
@@ -325,6 +327,42 @@ Json wire_of(const RunRecord& record)
               {"max", ms(waiting.longest_ms())}}}};
 }
 
+/// The options that were given or have a value, one a line, without the explanations.
+std::string settings_of(const std::string& option_file)
+{
+    std::istringstream lines(option_file);
+    std::string text;
+    for (std::string line; std::getline(lines, line);)
+    {
+        const bool says_something = !line.empty() && !line.starts_with('#');
+        text += says_something ? (text.empty() ? "" : "\n") + line : "";
+    }
+    return text;
+}
+
+/// As ISO 8601 has it, to the second.
+std::string utc_text(std::time_t time)
+{
+    std::tm parts{};
+    ::gmtime_r(&time, &parts);
+    return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}Z", parts.tm_year + 1900,
+                       parts.tm_mon + 1, parts.tm_mday, parts.tm_hour, parts.tm_min, parts.tm_sec);
+}
+
+/// What it takes to run it again.
+Json run_of(const RunRecord& record)
+{
+    Json devices = Json::array();
+    for (const ToolSetup& tool : record.controller.tools())
+    {
+        devices.push_back(tool.device->info().name);
+    }
+    return {{"version", TACTUS_VERSION},
+            {"started_utc", utc_text(record.run.started)},
+            {"devices", devices},
+            {"options", settings_of(record.options.as_file)}};
+}
+
 Json recording_of(const std::optional<RecordingResult>& recording)
 {
     if (!recording)
@@ -355,6 +393,7 @@ Json make_report(const Options& options, const Controller& controller, const Fin
     times["wake"] = times_of(statistics.wake);
     times["response"] = times_of(statistics.deadlines.response());
     return {{"schema", 2},
+            {"run", run_of(record)},
             {"frames", statistics.frames},
             {"period_ns", run.period.ns},
             {"duration_s",

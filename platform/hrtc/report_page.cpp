@@ -4,6 +4,7 @@
 
 #include "platform/hrtc/latency_plot.hpp"
 #include "platform/hrtc/report.hpp"
+#include "platform/hrtc/verdict.hpp"
 #include "platform/plot/bar_plot.hpp"
 #include "platform/plot/page.hpp"
 
@@ -147,42 +148,6 @@ plot::Table times_of(const Json& all_times)
     return table;
 }
 
-/// What nobody wants to see of a run; none when it was as it should be.
-std::vector<std::string> complaints_of(const Json& report)
-{
-    std::vector<std::string> complaints;
-    const auto count = [&](const Json& value, const char* what)
-    {
-        if (const auto number = value.get<std::uint64_t>(); number > 0)
-        {
-            complaints.push_back(fmt::format("{} {}", number, what));
-        }
-    };
-    count(report["deadline"]["own_fault"], "deadlines missed by the loop's own fault");
-    count(report["deadline"]["unexplained"], "missed with nobody to blame");
-    count(report["realtime"]["allocations"], "allocations in the loop");
-    count(report["realtime"]["system_calls_in_frame"], "system calls in frames");
-    count(report["answers"]["stale"], "frames with a stale answer");
-    for (const auto& [cause, times] : report["safety"]["begun"].items())
-    {
-        if (cause != "software") // Of those that end a run at its own time.
-        {
-            count(times, ("times the force was off for: " + cause).c_str());
-        }
-    }
-    count(report["safety"]["supervisor_brakes"], "brakes by the supervisor");
-    if (report["wire"]["host_lost"].get<bool>())
-    {
-        complaints.emplace_back("the host went away");
-    }
-    if (const Json& recording = report["recording"];
-        !recording.is_null() && !recording["lost_from"].is_null())
-    {
-        complaints.emplace_back("the recording is incomplete");
-    }
-    return complaints;
-}
-
 void add_verdict(const Json& report, plot::Page& page)
 {
     const std::vector<std::string> complaints = complaints_of(report);
@@ -271,8 +236,8 @@ std::string make_page(const Json& report, const RunStatistics& statistics)
     add_times(report, statistics, page);
     std::vector<plot::TitledTable> sections;
     for (const auto& [key, title] :
-         {std::pair("answers", "Answers, frames"), std::pair("scene", "Scene"),
-          std::pair("cache", "Cache"), std::pair("wire", "Wire"),
+         {std::pair("run", "Run"), std::pair("answers", "Answers, frames"),
+          std::pair("scene", "Scene"), std::pair("cache", "Cache"), std::pair("wire", "Wire"),
           std::pair("deadline", "Deadlines"), std::pair("realtime", "In the loop"),
           std::pair("work", "Work"), std::pair("pools", "Pools"), std::pair("budgets", "Budgets"),
           std::pair("force", "Force"), std::pair("safety", "Safety"),

@@ -4,6 +4,7 @@
 /// The report for a person: a few lines.
 
 #include "platform/hrtc/report.hpp"
+#include "platform/hrtc/verdict.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -296,7 +297,10 @@ SummaryFacts summary_facts(const Json& report)
 
 std::string make_summary(const Json& report)
 {
-    return to_lines(touch_facts(report)) + times_table(report["times_us"]) +
+    const std::vector<std::string> complaints = complaints_of(report);
+    const SummaryFacts verdict{
+        {"verdict", complaints.empty() ? "ok" : fmt::format("{}", fmt::join(complaints, "; "))}};
+    return to_lines(verdict) + to_lines(touch_facts(report)) + times_table(report["times_us"]) +
            to_lines(run_facts(report));
 }
 

@@ -7,11 +7,14 @@
 #include "platform/posix/service_notify.hpp"
 #include "platform/system_call_trap.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
+#include <ctime>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -33,6 +36,7 @@ FinishedRun empty_run(const Controller& controller, Duration period)
     return {.statistics = RunStatistics(tools, controller.frame().objects().capacity(),
                                         controller.models().size(), period),
             .period = period,
+            .started = std::time(nullptr),
             .safety = SafetyRecord(tools)};
 }
 
@@ -73,6 +77,7 @@ SessionRun::SessionRun(const RunParts& parts)
     , telemetry_(period_)
     , transport_(parts.controller.courier(), parts.controller.models(), connected_topics())
     , loop_(loop_parts(), done_.statistics)
+    , devices_gone_(parts.controller.tools().size())
     , supervisor_({parts.controller.tools(), &loop_.heartbeat(), &clock_, &alarm_, period_})
 {
 }
@@ -189,7 +194,25 @@ void SessionRun::take_events()
     for (const SafetyEvent& event : events)
     {
         done_.safety.add(event);
+        tell_of_device(event);
     }
+}
+
+/// A line when a tool's device goes, and when it is back.
+void SessionRun::tell_of_device(const SafetyEvent& event)
+{
+    const bool is_gone = has_cause(event.causes, ForceOff::disconnect);
+    if (event.by_supervisor || is_gone == devices_gone_[event.tool])
+    {
+        return;
+    }
+    devices_gone_[event.tool] = is_gone;
+    const std::string& name = parts_.controller.tools()[event.tool].device->info().name;
+    device_log_.write(is_gone
+                          ? fmt::format("tool {}: its device, {}, is gone; no force until it is "
+                                        "back",
+                                        event.tool, name)
+                          : fmt::format("tool {}: its device, {}, is back", event.tool, name));
 }
 
 /// No effect when nothing has failed.

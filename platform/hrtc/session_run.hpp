@@ -18,9 +18,11 @@
 #include "platform/posix/posix_periodic_timer.hpp"
 #include "platform/remote/pose_door.hpp"
 #include "platform/rt_thread.hpp"
+#include "transport/log.hpp"
 
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace tactus::hrtc
 {
@@ -61,6 +63,7 @@ private:
     void run_loop();
     void watch(const std::string& what);
     void take_events();
+    void tell_of_device(const SafetyEvent& event);
     void end_after_failure();
     void finish_recording();
     void note_topics();
@@ -76,6 +79,8 @@ private:
     TelemetryTap telemetry_;
     TransportThread transport_;
     HapticLoop loop_;
+    std::vector<bool> devices_gone_; ///< One a tool, as was told.
+    RateLimitedLog device_log_{log_line};
     Supervisor supervisor_;
     std::optional<AssertionBrake> brake_;
     std::optional<RtThread> supervisor_thread_;

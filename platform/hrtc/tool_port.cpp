@@ -19,6 +19,13 @@ namespace
     return is_so ? cause : ForceOff::none;
 }
 
+ConditionerSetup with_lever(const ToolSetup& setup) noexcept
+{
+    ConditionerSetup conditioner = setup.conditioner;
+    conditioner.lever_max_m = angular_lever_m(setup.spec);
+    return conditioner;
+}
+
 constexpr Quaternion kUnturned{0.0, 0.0, 0.0, 1.0};
 
 /// Its part in this direction; 0 when there is none.
@@ -33,9 +40,9 @@ double along(const Vec3& way, const Vec3& direction) noexcept
 ToolPort::ToolPort(const ToolSetup& setup) noexcept
     : device_(*setup.device)
     , clutch_(setup.clutch_button)
-    , conditioner_(setup.conditioner)
+    , conditioner_(with_lever(setup))
     , safe_state_(setup.limits)
-    , angular_stiffness_nm_per_rad_(angular_stiffness_nm_per_rad(setup.spec))
+    , angular_share_m2_(angular_stiffness_nm_per_rad(setup.spec) / setup.spec.stiffness_n_per_m)
 {
 }
 
@@ -106,7 +113,7 @@ SafetyOutput ToolPort::make_safe(const ToolOutput& output, const PeriodContext& 
 
 WrenchWish ToolPort::wish_of(const ToolOutput& output) const noexcept
 {
-    const double stiffness_nm_per_rad = output.in_contact ? angular_stiffness_nm_per_rad_ : 0.0;
+    const double stiffness_nm_per_rad = angular_share_m2_ * output.stiffness_n_per_m;
     return {{output.force_n, hand_.position_m, output.stiffness_n_per_m,
              along(output.proxy_m - state_.position_m, output.force_n), state_.elapsed_periods},
             {output.torque_nm, turned_rad_, stiffness_nm_per_rad,
@@ -116,7 +123,7 @@ WrenchWish ToolPort::wish_of(const ToolOutput& output) const noexcept
 /// From the hand to the proxy, about the world's axes.
 Vec3 ToolPort::twist_of(const ToolOutput& output) const noexcept
 {
-    return angular_stiffness_nm_per_rad_ > 0.0 && output.proxy_rotation.allFinite()
+    return angular_share_m2_ > 0.0 && output.proxy_rotation.allFinite()
                ? rotation_vector(
                      orthonormalised(output.proxy_rotation * state_.rotation.transpose()))
                : Vec3(0.0, 0.0, 0.0);

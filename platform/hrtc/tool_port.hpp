@@ -99,7 +99,8 @@ private:
     DeviceSample sample_;
     HandPlace hand_;                 ///< Of the last sample.
     Vec3 turned_rad_{0.0, 0.0, 0.0}; ///< By the hand, about the world's axes, summed up.
-    double angular_stiffness_nm_per_rad_;
+    /// Of a touched object's stiffness: the spring that turns is softened with the one that pushes.
+    double angular_share_m2_;
     ToolState state_;
     ToolForce force_;
     std::atomic<bool> is_braked_for_good_{false};

@@ -19,7 +19,7 @@ namespace tactus
 
 /// docs/recording.md describes the file.
 inline constexpr std::array<char, 8> kRecordingMagic{'T', 'A', 'C', 'T', 'R', 'E', 'C', '\n'};
-inline constexpr std::uint32_t kRecordingVersion = 7;
+inline constexpr std::uint32_t kRecordingVersion = 8;
 inline constexpr std::size_t kRecordingPrologueBytes = 12;
 
 enum class SectionKind : std::uint32_t

@@ -56,7 +56,8 @@ bool is_sound(const ToolSpec& tool)
 {
     return is_within(tool.radius_m, 0.0, 1e6) && is_within(tool.stiffness_n_per_m, 0.0, 1e9) &&
            is_within(tool.force_max_n, 0.0, 1e9) && is_within(tool.speed_max_m_per_s, 0.0, 1e9) &&
-           is_within(tool.torque_max_nm, 0.0, 1e9);
+           is_within(tool.torque_max_nm, 0.0, 1e9) &&
+           is_within(tool.angular_stiffness_nm_per_rad, 0.0, 1e9);
 }
 
 // What a file says; another number is another format version (docs/recording.md).
@@ -81,6 +82,7 @@ Fault parse_tools(ByteReader& reader, std::uint32_t tools, std::uint32_t models,
         tool.torque_max_nm = reader.read<double>();
         const auto passes_through = reader.read<std::uint8_t>();
         tool.passes_through = passes_through != 0;
+        tool.angular_stiffness_nm_per_rad = reader.read<double>();
         const std::optional<ToolCore> core = read_core(reader, setup.hull_vertices);
         if (!core || wants_contacts > 1 || passes_through > 1)
         {
@@ -98,7 +100,7 @@ Fault parse_tools(ByteReader& reader, std::uint32_t tools, std::uint32_t models,
         {
             return "tool " + std::to_string(i) +
                    " is not within 0 to 1e6 m, 0 to 1e9 N/m, 0 to 1e9 N, 0 to 1e9 m/s, 0 to 1e9 N "
-                   "m";
+                   "m, 0 to 1e9 N m/rad";
         }
         setup.tools.push_back(tool);
     }
@@ -181,6 +183,7 @@ std::vector<std::byte> code_setup(const RecordedSetup& setup)
         append(bytes, static_cast<std::uint8_t>(tool.wants_contacts));
         append(bytes, tool.torque_max_nm);
         append(bytes, static_cast<std::uint8_t>(tool.passes_through));
+        append(bytes, tool.angular_stiffness_nm_per_rad);
         append_core(bytes, tool.core);
     }
     for (std::size_t i = 0; i < setup.objects.size(); ++i)

@@ -38,7 +38,9 @@ ConditionerSetup in_angles(const ConditionerSetup& setup) noexcept
 {
     ConditionerSetup angles = setup;
     angles.device = turning_of(setup.device);
-    angles.surface_damping_max_n_s_per_m = 0.0;
+    angles.surface_damping_max_n_s_per_m =
+        std::min(setup.surface_damping_max_n_s_per_m * setup.lever_max_m * setup.lever_max_m,
+                 kDampingShare * angles.device.damping_n_s_per_m);
     angles.speed_max_m_per_s = kTurnMax_rad_per_s;
     return angles;
 }

@@ -22,6 +22,10 @@ struct ConditionerSetup
     double period_s{1e-3};
     /// Largest surface damping of any object, in N s/m; lowers the stiffness cap.
     double surface_damping_max_n_s_per_m{0.0};
+    /// How far from the device's position a surface may touch the tool: it damps turning by at most
+    /// its damping x the square of this, which lowers the cap of the torque's stiffness. No more
+    /// than half of the device's own is counted; beyond that the passivity controller acts.
+    double lever_max_m{0.0};
     bool controls_passivity{true}; ///< False: observes only.
     /// A device that is faster has jumped: its energy isn't observed.
     double speed_max_m_per_s{kDeviceSpeedMax_m_per_s};

@@ -16,6 +16,7 @@ struct ProxyMemory
     /// It may move by this much before it is on the other side of the object's surface.
     double clearance_m{kInfinity};
     Vec3 velocity_m_per_s{0.0, 0.0, 0.0}; ///< The object's, at the proxy.
+    Vec3 spin_rad_per_s{0.0, 0.0, 0.0};   ///< The object's; only a body's proxy asks for it.
 };
 
 /// An object near a tool as a frame begins: of the model's frame, where it stood and where it

@@ -3,7 +3,6 @@
 #include "rt_core/force/rigid_proxy.hpp"
 
 #include "rt_core/force/angular_stiffness.hpp"
-#include "rt_core/math/infinity.hpp"
 #include "rt_core/math/rotation.hpp"
 
 #include <algorithm>
@@ -15,25 +14,16 @@ namespace tactus
 namespace
 {
 
-/// Never more of the proven distance than this is gone, and of the radius half is kept: what dips
-/// into it has room to come back.
-constexpr double kMostOfDistance = 0.9;
-constexpr double kKeptOfRadius = 0.5;
-/// Planes this alike are one: a share of the arm. The one that holds back most is kept.
-constexpr double kSamePlane = 1e-3;
 /// A hold is kept until the tool has slid this share of its radius. What it bends a motion round an
 /// edge by is half the square of it.
 constexpr double kHoldSlide = 0.05;
 /// Cosine between the normals of holds that are one.
 constexpr double kSameDirection = 0.999;
+/// Motions below this share of the radius are none where friction holds: 0.2 um of 2 mm.
+constexpr double kLeastMotion = 1e-4;
 
-Motion<6> to_motion(const Vec3& translation, const Vec3& rotation) noexcept
-{
-    Motion<6> motion;
-    motion.head<3>() = translation;
-    motion.tail<3>() = rotation;
-    return motion;
-}
+/// After a longer step than this share of the radius other planes hold.
+constexpr double kLongMotion = 0.25;
 
 /// How much of it is no longer than this.
 double share_within(const Vec3& vector, double most) noexcept
@@ -42,24 +32,41 @@ double share_within(const Vec3& vector, double most) noexcept
     return length > most ? most / length : 1.0;
 }
 
+bool turns(const ToolSpec& spec) noexcept
+{
+    return !spec.passes_through && !std::holds_alternative<PointCore>(spec.core);
+}
+
 /// The core's ball and the radius.
-double arm_of(const ToolSpec& spec) noexcept
+double size_of(const ToolSpec& spec) noexcept
 {
     const double core_m = PlacedCore(spec.core, Similarity{}).radius();
     return core_m + std::max(spec.radius_m, kLeastSkin * core_m);
+}
+
+/// Of the metric: its square is the angular stiffness over the stiffness.
+double arm_of(const ToolSpec& spec) noexcept
+{
+    const bool is_set = spec.angular_stiffness_nm_per_rad > 0.0 && spec.stiffness_n_per_m > 0.0;
+    return is_set ? std::sqrt(spec.angular_stiffness_nm_per_rad / spec.stiffness_n_per_m)
+                  : size_of(spec);
 }
 
 } // namespace
 
 double angular_stiffness_nm_per_rad(const ToolSpec& spec) noexcept
 {
-    const bool turns = !spec.passes_through && !std::holds_alternative<PointCore>(spec.core);
-    const double arm_m = turns ? arm_of(spec) : 0.0;
+    const double arm_m = turns(spec) ? arm_of(spec) : 0.0;
     return spec.stiffness_n_per_m * arm_m * arm_m;
 }
 
+double angular_lever_m(const ToolSpec& spec) noexcept
+{
+    return turns(spec) ? PlacedCore(spec.core, Similarity{}).center().norm() + size_of(spec) : 0.0;
+}
+
 RigidProxy::RigidProxy(const ToolSpec& spec, Planes& planes) noexcept
-    : spec_(spec), arm_m_(arm_of(spec)), planes_(&planes)
+    : spec_(spec), size_m_(size_of(spec)), arm_m_(arm_of(spec)), planes_(&planes)
 {
     const PlacedCore core(spec.core, Similarity{});
     center_m_ = core.center();
@@ -69,9 +76,25 @@ RigidProxy::RigidProxy(const ToolSpec& spec, Planes& planes) noexcept
 
 void RigidProxy::see(const ToolGoal& goal) noexcept
 {
+    frame_ = {force_, torque_, frozen_s_};
+    is_on_ = false;
     if (!is_joined_)
     {
         place_ = {goal.rotation, goal.position_m, 1.0};
+    }
+}
+
+void RigidProxy::carry(std::span<const NearObject> objects, double elapsed_s) noexcept
+{
+    for (const NearObject& object : objects)
+    {
+        const ObjectPose& before = *object.before;
+        const ObjectPose& now = *object.now;
+        const Vec3 along_m = to_world(now, to_model(before, place_.translation_m));
+        object.memory->velocity_m_per_s = (along_m - place_.translation_m) / elapsed_s;
+        object.memory->spin_rad_per_s =
+            rotation_vector(orthonormalised(now.rotation * before.rotation.transpose())) /
+            elapsed_s;
     }
 }
 
@@ -91,50 +114,61 @@ void RigidProxy::forget(std::uint32_t object) noexcept
     }
 }
 
-double RigidProxy::way_to_m(const ToolGoal& goal) const noexcept
+void RigidProxy::go_on() noexcept
 {
-    return length_of(way_to(goal));
+    force_ = frame_.force;
+    torque_ = frame_.torque;
+    is_on_ = true;
 }
 
-/// No point of the core goes farther, over a way on which its centre goes straight while it turns
-/// round one axis: chords are shorter than arcs.
-double RigidProxy::length_of(const Motion<6>& motion) const noexcept
+double RigidProxy::way_to_m(const ToolGoal& goal) const noexcept
+{
+    return way_of(way_to(goal)).length_m();
+}
+
+/// The tool's origin and a turn about it, as the centre of its core goes.
+BodyWay RigidProxy::way_of(const Motion<6>& motion) const noexcept
 {
     const Vec3 turn = motion.tail<3>() / arm_m_;
     const Vec3 center = place_.rotation * center_m_;
-    return motion.head<3>().norm() + turn.cross(center).norm() + turn.norm() * core_radius_m_;
+    return {motion.head<3>() + (turned_by(turn, Mat3::Identity()) * center - center), turn,
+            core_radius_m_};
 }
 
 Motion<6> RigidProxy::way_to(const ToolGoal& goal) const noexcept
 {
     const Vec3 turn = rotation_vector(goal.rotation * place_.rotation.transpose());
-    return to_motion(goal.position_m - place_.translation_m, arm_m_ * turn);
+    Motion<6> way;
+    way.head<3>() = goal.position_m - place_.translation_m;
+    way.tail<3>() = arm_m_ * turn;
+    return way;
 }
 
 ToolOutput RigidProxy::respond(const ToolGoal& goal, std::span<const PlacedSurface> surfaces,
                                double clear_m) noexcept
 {
     ToolOutput output;
-    const Room room = find_room(surfaces, clear_m);
-    const bool has_waited = frozen_s_ > 0.0;
+    const BodyRoom room(surfaces, clear_m, radius_m_);
+    const bool has_waited = frame_.frozen_s > 0.0;
     is_squeezed_ = false;
     is_crowded_ = false;
-    is_joined_ = is_joined_ || room.is_clear;
+    goes_on_ = false;
+    went_m_ = 0.0;
+    is_joined_ = is_joined_ || room.is_clear();
     if (!is_joined_)
     {
-        see(goal);
+        place_ = {goal.rotation, goal.position_m, 1.0};
     }
-    else if (room.free_m > 0.0)
+    else if (room.is_free())
     {
         frozen_s_ = 0.0;
-        step(goal, surfaces, room.free_m, output);
+        step(goal, surfaces, room, output);
     }
     else
     {
-        frozen_s_ += goal.elapsed_s;
-        freeze(goal, room.is_crossed, output);
+        frozen_s_ += is_on_ ? 0.0 : goal.elapsed_s;
+        freeze(goal, room.is_crossed(), output);
     }
-    output.stiffness_n_per_m = output.in_contact ? spec_.stiffness_n_per_m : 0.0;
     catch_up(has_waited, goal.elapsed_s, output);
     output.squeezed = is_squeezed_;
     output.crowded = is_crowded_;
@@ -143,64 +177,76 @@ ToolOutput RigidProxy::respond(const ToolGoal& goal, std::span<const PlacedSurfa
     return output;
 }
 
-RigidProxy::Room RigidProxy::find_room(std::span<const PlacedSurface> surfaces,
-                                       double clear_m) const noexcept
+void RigidProxy::step(const ToolGoal& goal, std::span<const PlacedSurface> surfaces,
+                      const BodyRoom& room, ToolOutput& output) noexcept
 {
-    Room room{std::min(clear_m - radius_m_, kMostOfDistance * clear_m), clear_m > 0.0, false};
-    for (const PlacedSurface& placed : surfaces)
-    {
-        const bool is_exact = placed.surface->answer.kind == AnswerKind::exact;
-        const double lower_m = placed.lower_m;
-        const double beyond_m = is_exact ? std::max(lower_m - kKeptOfRadius * radius_m_,
-                                                    (1.0 - kKeptOfRadius) * lower_m)
-                                         : lower_m - radius_m_;
-        room.free_m = std::min({room.free_m, beyond_m, kMostOfDistance * lower_m});
-        room.is_clear = room.is_clear && lower_m > 0.0;
-        room.is_crossed = room.is_crossed || (is_exact && !(lower_m > 0.0));
-    }
-    return room;
+    gather(goal, surfaces);
+    const BodyMotion found = planes_->nearest(way_to(goal));
+    is_squeezed_ = found.is_squeezed;
+    is_crowded_ = is_crowded_ || planes_->is_crowded();
+    sticks_ = found.sticks;
+    slides_ = found.slides;
+    output.in_contact = !found.pushes.empty();
+    add_forces(goal, found, output);
+    keep_holds(found, surfaces);
+    advance(goal, found, room);
 }
 
-void RigidProxy::step(const ToolGoal& goal, std::span<const PlacedSurface> surfaces, double free_m,
-                      ToolOutput& output) noexcept
+/// What sticks stays to the last bit, or it would creep.
+void RigidProxy::advance(const ToolGoal& goal, const BodyMotion& found,
+                         const BodyRoom& room) noexcept
 {
-    const Motion<6> wanted = way_to(goal);
-    gather(surfaces);
-    const NearestMotion<6> nearest = find_motion(wanted);
-    output.in_contact = !nearest.held_by.empty();
-    add_force(nearest.motion - wanted, output);
-    keep_holds(nearest, surfaces);
-    const double length = length_of(nearest.motion);
-    if (!output.in_contact && length <= free_m)
+    const BodyWay way = way_of(found.motion);
+    const double length_m = way.length_m();
+    if (found.sticks && length_m <= kLeastMotion * radius_m_)
+    {
+        return;
+    }
+    const double share = room.share_of(way);
+    went_m_ = share * length_m;
+    goes_on_ = share > 0.0 &&
+               (share < 1.0 || (!found.pushes.empty() && length_m > kLongMotion * radius_m_));
+    if (found.pushes.empty() && share == 1.0)
     {
         place_ = {goal.rotation, goal.position_m, 1.0}; // As the hand has it, to the last bit.
         return;
     }
-    const double share = length > free_m ? free_m / length : 1.0;
-    place_.translation_m += share * nearest.motion.head<3>();
-    place_.rotation = turned_by(nearest.motion.tail<3>() * (share / arm_m_), place_.rotation);
+    const Vec3 center = place_.rotation * center_m_;
+    const Mat3 rotation = turned_by(found.motion.tail<3>() * (share / arm_m_), place_.rotation);
+    place_.translation_m += center + share * way.center_m - rotation * center_m_;
+    place_.rotation = rotation;
 }
 
 /// Where the proxy is the last planes hold what pushes against them. A core that an object came
 /// over has no way out that is known to be clear: when its force has faded it is given up.
 void RigidProxy::freeze(const ToolGoal& goal, bool is_crossed, ToolOutput& output) noexcept
 {
-    planes_->spaces.clear();
-    for (const Motion<6>& normal : last_normals_)
+    StaticVector<HalfSpace<6>, 6> spaces;
+    for (const LastPush& push : last_pushes_)
     {
-        planes_->spaces.push_back({normal, 0.0});
+        spaces.push_back({push.normal, 0.0});
     }
-    const Motion<6> wanted = way_to(goal);
-    const NearestMotion<6> nearest = nearest_motion<6>(planes_->spaces.view(), wanted);
+    const NearestMotion<6> nearest = nearest_motion<6>(spaces.view(), way_to(goal));
     output.frozen = true;
     output.in_contact = !nearest.held_by.empty();
-    add_force(nearest.motion - wanted, output);
+    double reactions = 0.0;
+    for (std::size_t i = 0; i < nearest.held_by.size(); ++i)
+    {
+        const LastPush& push = last_pushes_[nearest.held_by[i]];
+        const Motion<6> held = nearest.reactions[i] * push.stiffness_n_per_m * push.normal;
+        output.force_n += held.head<3>();
+        output.torque_nm += arm_m_ * held.tail<3>();
+        output.stiffness_n_per_m += nearest.reactions[i] * push.stiffness_n_per_m;
+        reactions += nearest.reactions[i];
+    }
+    output.stiffness_n_per_m = reactions > 0.0 ? output.stiffness_n_per_m / reactions : 0.0;
+    clamp(output);
     if (is_crossed && frozen_s_ >= kFadeTime_s)
     {
         is_joined_ = false;
         frozen_s_ = 0.0;
         holds_.clear();
-        last_normals_.clear();
+        last_pushes_.clear();
     }
 }
 
@@ -220,67 +266,51 @@ void RigidProxy::catch_up(bool has_waited, double elapsed_s, ToolOutput& output)
         torque_.next({output.torque_nm, 0.0, spec_.torque_max_nm, rate_nm, elapsed_s, has_waited});
 }
 
-void RigidProxy::gather(std::span<const PlacedSurface> surfaces) noexcept
+void RigidProxy::gather(const ToolGoal& goal, std::span<const PlacedSurface> surfaces) noexcept
 {
-    planes_->spaces.clear();
-    planes_->touches.clear();
+    planes_->begin(place_.translation_m, arm_m_, size_m_, radius_m_);
     for (std::uint32_t i = 0; i < surfaces.size(); ++i)
     {
         const TouchReport& touches = *surfaces[i].touches;
         is_crowded_ = is_crowded_ || touches.is_truncated;
-        for (const ContactSet* contacts : {&touches.nearest, &touches.corners})
+        add(i, touches.corners.view(), surfaces[i], goal.elapsed_s);
+        if (!touches.ends.is_empty)
         {
-            for (const Contact& contact : *contacts)
-            {
-                add({i, contact.on_tool_m, contact.on_surface_m, contact.normal});
-            }
+            add(i, touches.ends.contacts, surfaces[i], goal.elapsed_s);
         }
+        add(i, touches.nearest.view(), surfaces[i], goal.elapsed_s);
     }
-    add_holds(surfaces);
+    add_holds(surfaces, goal.elapsed_s);
 }
 
-/// When there is no room, what holds back least goes.
-void RigidProxy::add(const Touch& touch) noexcept
+void RigidProxy::add(std::uint32_t surface, std::span<const Contact> contacts,
+                     const PlacedSurface& placed, double elapsed_s) noexcept
 {
-    if (touch.normal == Vec3(0.0, 0.0, 0.0))
+    for (const Contact& contact : contacts)
     {
-        return; // Of a face without area: those round it hold.
+        add({surface, contact.on_tool_m, contact.on_surface_m, contact.normal,
+             contact.feature == TriangleFeature::interior},
+            placed, elapsed_s);
     }
-    const Vec3 lever = (touch.on_tool_m - place_.translation_m) / arm_m_;
-    const HalfSpace<6> space{to_motion(touch.normal, lever.cross(touch.normal)),
-                             radius_m_ - touch.normal.dot(touch.on_tool_m - touch.on_surface_m)};
-    std::size_t least = 0;
-    for (std::size_t i = 0; i < planes_->spaces.size(); ++i)
-    {
-        const HalfSpace<6>& other = planes_->spaces[i];
-        if ((other.normal - space.normal).norm() < kSamePlane)
-        {
-            replace(i, space, touch);
-            return;
-        }
-        least = other.offset < planes_->spaces[least].offset ? i : least;
-    }
-    if (!planes_->spaces.full())
-    {
-        planes_->spaces.push_back(space);
-        planes_->touches.push_back(touch);
-        return;
-    }
-    is_crowded_ = true;
-    replace(least, space, touch);
 }
 
-void RigidProxy::replace(std::size_t plane, const HalfSpace<6>& space, const Touch& touch) noexcept
+void RigidProxy::add(const BodyTouch& touch, const PlacedSurface& placed, double elapsed_s) noexcept
 {
-    if (space.offset > planes_->spaces[plane].offset)
-    {
-        planes_->spaces[plane] = space;
-        planes_->touches[plane] = touch;
-    }
+    const Material& material = *placed.material;
+    const ProxyMemory& memory = *placed.memory;
+    BodyGrip grip;
+    grip.stiffness_n_per_m = std::min(spec_.stiffness_n_per_m, material.stiffness_n_per_m);
+    grip.friction = slides_ ? material.dynamic_friction : material.static_friction;
+    grip.dynamic = material.dynamic_friction;
+    grip.damping_n_s_per_m = material.damping_n_s_per_m;
+    grip.velocity_m_per_s = memory.velocity_m_per_s +
+                            memory.spin_rad_per_s.cross(touch.on_surface_m - place_.translation_m);
+    grip.way_m = is_on_ ? Vec3(0.0, 0.0, 0.0) : Vec3(elapsed_s * grip.velocity_m_per_s);
+    planes_->add(touch, grip);
 }
 
 /// Adds what held before, and forgets where the tool is no longer.
-void RigidProxy::add_holds(std::span<const PlacedSurface> surfaces) noexcept
+void RigidProxy::add_holds(std::span<const PlacedSurface> surfaces, double elapsed_s) noexcept
 {
     std::size_t kept = 0;
     for (const Hold& hold : holds_)
@@ -291,9 +321,10 @@ void RigidProxy::add_holds(std::span<const PlacedSurface> surfaces) noexcept
             continue;
         }
         const ObjectPose& pose = *placed->pose;
-        const Touch touch{static_cast<std::uint32_t>(placed - surfaces.begin()),
-                          place_.translation_m + place_.rotation * hold.on_tool_m,
-                          to_world(pose, hold.on_surface_m), pose.rotation * hold.normal};
+        const BodyTouch touch{static_cast<std::uint32_t>(placed - surfaces.begin()),
+                              place_.translation_m + place_.rotation * hold.on_tool_m,
+                              to_world(pose, hold.on_surface_m), pose.rotation * hold.normal,
+                              hold.is_face};
         const Vec3 gap = touch.on_tool_m - touch.on_surface_m;
         const double height = touch.normal.dot(gap);
         const double slid = (gap - height * touch.normal).norm();
@@ -301,7 +332,7 @@ void RigidProxy::add_holds(std::span<const PlacedSurface> surfaces) noexcept
         {
             continue;
         }
-        add(touch);
+        add(touch, *placed, elapsed_s);
         holds_[kept++] = hold;
     }
     while (holds_.size() > kept)
@@ -310,34 +341,19 @@ void RigidProxy::add_holds(std::span<const PlacedSurface> surfaces) noexcept
     }
 }
 
-/// A gap that is too narrow for the tool holds it where it is.
-NearestMotion<6> RigidProxy::find_motion(const Motion<6>& wanted) noexcept
-{
-    NearestMotion<6> nearest = nearest_motion<6>(planes_->spaces.view(), wanted);
-    if (nearest.is_feasible)
-    {
-        return nearest;
-    }
-    is_squeezed_ = true;
-    for (HalfSpace<6>& space : planes_->spaces)
-    {
-        space.offset = std::min(space.offset, 0.0);
-    }
-    return nearest_motion<6>(planes_->spaces.view(), wanted);
-}
-
-void RigidProxy::keep_holds(const NearestMotion<6>& nearest,
+void RigidProxy::keep_holds(const BodyMotion& found,
                             std::span<const PlacedSurface> surfaces) noexcept
 {
-    last_normals_.clear();
-    for (const std::uint32_t plane : nearest.held_by)
+    last_pushes_.clear();
+    for (const BodyPush& push : found.pushes)
     {
-        last_normals_.push_back(planes_->spaces[plane].normal);
-        const Touch& touch = planes_->touches[plane];
+        last_pushes_.push_back({push.normal, planes_->grip(push.touch).stiffness_n_per_m});
+        const BodyTouch& touch = planes_->touch(push.touch);
         const ObjectPose& pose = *surfaces[touch.surface].pose;
         keep({surfaces[touch.surface].object,
               place_.rotation.transpose() * (touch.on_tool_m - place_.translation_m),
-              to_model(pose, touch.on_surface_m), pose.rotation.transpose() * touch.normal});
+              to_model(pose, touch.on_surface_m), pose.rotation.transpose() * touch.normal,
+              touch.is_face});
     }
 }
 
@@ -361,15 +377,58 @@ void RigidProxy::keep(const Hold& hold) noexcept
     holds_[holds_.size() - 1] = hold;
 }
 
-void RigidProxy::add_force(const Motion<6>& held_back, ToolOutput& output) const noexcept
+/// Each push by the spring of its own object; what they make together keeps its line of action.
+void RigidProxy::add_forces(const ToolGoal& goal, const BodyMotion& found,
+                            ToolOutput& output) noexcept
 {
-    const Vec3 force_n = spec_.stiffness_n_per_m * held_back.head<3>();
-    const Vec3 torque_nm = spec_.stiffness_n_per_m * arm_m_ * held_back.tail<3>();
+    double reactions = 0.0;
+    for (const BodyPush& push : found.pushes)
+    {
+        const double stiffness_n_per_m = planes_->grip(push.touch).stiffness_n_per_m;
+        const Motion<6> held = stiffness_n_per_m * push.reaction * push.normal;
+        output.force_n += held.head<3>();
+        output.torque_nm += arm_m_ * held.tail<3>();
+        output.stiffness_n_per_m += stiffness_n_per_m * push.reaction;
+        reactions += push.reaction;
+    }
+    output.stiffness_n_per_m = reactions > 0.0     ? output.stiffness_n_per_m / reactions
+                               : output.in_contact ? spec_.stiffness_n_per_m
+                                                   : 0.0;
+    damp(goal, found, reactions, output);
+    clamp(output);
+}
+
+/// Across the surface at each contact that pushes, each for its part of what pushes; never more
+/// than it pushes, so that nothing pulls.
+void RigidProxy::damp(const ToolGoal& goal, const BodyMotion& found, double reactions,
+                      ToolOutput& output) const noexcept
+{
+    for (const BodyPush& push : found.pushes)
+    {
+        const BodyGrip& grip = planes_->grip(push.touch);
+        if (!(grip.damping_n_s_per_m > 0.0) || !(reactions > 0.0))
+        {
+            continue;
+        }
+        const Vec3& normal = planes_->touch(push.touch).normal;
+        const Vec3 lever_m = planes_->lever_m(push.touch);
+        const Vec3 hand = goal.velocity_m_per_s + goal.spin_rad_per_s.cross(lever_m);
+        const double inward = normal.dot(grip.velocity_m_per_s - hand);
+        const double part = push.reaction / reactions;
+        const double damping_n = std::max(part * grip.damping_n_s_per_m * inward,
+                                          -grip.stiffness_n_per_m * push.reaction);
+        output.force_n += damping_n * normal;
+        output.torque_nm += damping_n * lever_m.cross(normal);
+    }
+}
+
+void RigidProxy::clamp(ToolOutput& output) const noexcept
+{
     const double most_nm = spec_.torque_max_nm;
-    double share = share_within(force_n, spec_.force_max_n);
-    share = most_nm > 0.0 ? std::min(share, share_within(torque_nm, most_nm)) : share;
-    output.force_n = share * force_n;
-    output.torque_nm = most_nm > 0.0 ? Vec3(share * torque_nm) : Vec3(0.0, 0.0, 0.0);
+    double share = share_within(output.force_n, spec_.force_max_n);
+    share = most_nm > 0.0 ? std::min(share, share_within(output.torque_nm, most_nm)) : share;
+    output.force_n *= share;
+    output.torque_nm = most_nm > 0.0 ? Vec3(share * output.torque_nm) : Vec3(0.0, 0.0, 0.0);
 }
 
 } // namespace tactus

@@ -4,8 +4,10 @@
 
 #include "rt_core/base/realtime.hpp"
 #include "rt_core/base/static_vector.hpp"
+#include "rt_core/force/body_planes.hpp"
+#include "rt_core/force/body_room.hpp"
 #include "rt_core/force/catch_up.hpp"
-#include "rt_core/force/half_spaces.hpp"
+#include "rt_core/force/near_object.hpp"
 #include "rt_core/force/placed_surface.hpp"
 #include "rt_core/force/tool_goal.hpp"
 #include "rt_core/geometry/placed_core.hpp"
@@ -21,19 +23,24 @@ namespace tactus
 
 /// The virtual proxy of a tool that is more than a point: a place and a rotation that surfaces let
 /// the tool have, coupled to the hand's (god-object of six degrees of freedom: Ortega, Redon and
-/// Coquillart 2007; virtual coupling: Colgate, Stanley and Brown 1995).
+/// Coquillart 2007; virtual coupling: Colgate, Stanley and Brown 1995; friction: body_planes.hpp).
 ///
-/// Each frame the proxy makes one step towards the hand. What is near it are planes that the step
-/// may not cross (half_spaces.hpp), in the metric of the coupling's energy: |translation|^2 +
-/// |arm x rotation|^2, the arm being what the core's ball and the radius measure together. The step
-/// is then cut so that no point of the core goes as far as the core is proven to be from every
-/// surface, over the whole way: the core never crosses a surface, seen or not. The tool's radius is
-/// what it has to slide with: a core without one keeps a skin, kLeastSkin of its own radius.
+/// Each step goes towards the hand. What is near the proxy are planes that the step may not cross,
+/// in the metric of the coupling's energy: |translation|^2 + |arm x rotation|^2. The square of the
+/// arm is the angular stiffness over the stiffness; where none is set, the arm is what the core's
+/// ball and the radius measure together. The step is then cut to what is proven free
+/// (body_room.hpp): the core never crosses a surface, seen or not, in translation or rotation. The
+/// tool's radius is what it has to slide with: a core without one keeps a skin, kLeastSkin of its
+/// own radius.
 ///
-/// The force is what the planes hold back of the hand's motion, times the stiffness; the torque is
-/// that of the rotation, times stiffness x arm^2. So they never pull, are zero where no plane
-/// holds, and a proxy that lags behind the hand drags at nothing. At rest they are stiffness x
-/// (proxy - hand).
+/// The force is what planes and friction hold back of the hand's motion, each times the softer
+/// stiffness of tool and object; the torque is theirs about the device's position. So they never
+/// pull, are zero where no plane holds, and a proxy that lags behind the hand drags at nothing. At
+/// rest they are the stiffness x (proxy - hand), and the angular stiffness x the turn between them.
+/// An object's damping acts across its surface, where it is touched.
+///
+/// Where it sticks, the proxy does not move by a bit. Objects that move take along what sticks to
+/// them, and push what is in their way, in its next step.
 ///
 /// Where the distance is not exact, the proxy moves no farther than it is proven to be from every
 /// surface, less the radius. When that is nothing it is frozen and says so: the last planes hold
@@ -41,24 +48,13 @@ namespace tactus
 /// kCatchUpShare_per_s. A proxy that nothing is known of yet, or whose core an object has crossed
 /// for kFadeTime_s, is where the hand is, without a force, until it is proven to be clear there.
 ///
-/// Haptic thread. Cost: 1 to 4 us with 8 to 32 contacts.
+/// Haptic thread. Cost: 1 to 4 us with 8 to 32 contacts, with friction up to 10 us more.
 class RigidProxy
 {
 public:
-    /// A plane of the step, and where it comes from; world frame.
-    struct Touch
-    {
-        std::uint32_t surface{0}; ///< Of the step's.
-        Vec3 on_tool_m{0.0, 0.0, 0.0};
-        Vec3 on_surface_m{0.0, 0.0, 0.0};
-        Vec3 normal{0.0, 0.0, 0.0};
-    };
-    /// The planes of one step: scratch, too large for a frame's stack. 9 KiB.
-    struct Planes
-    {
-        StaticVector<HalfSpace<6>, kMaxHalfSpaces> spaces;
-        StaticVector<Touch, kMaxHalfSpaces> touches;
-    };
+    using Planes = BodyPlanes;
+    /// Steps of one frame at most; each asks for the surfaces anew. One is usual below 0.1 m/s.
+    static constexpr std::uint32_t kStepsPerFrame = 4;
 
     /// `planes` may serve many proxies, one after the other, and outlives them.
     RigidProxy(const ToolSpec& spec, Planes& planes) noexcept TACTUS_NONBLOCKING;
@@ -73,14 +69,18 @@ public:
     [[nodiscard]] bool is_squeezed() const noexcept { return is_squeezed_; }
     /// What may hold the tool was left out in the last step, for want of room.
     [[nodiscard]] bool is_crowded() const noexcept { return is_crowded_; }
+    /// Friction holds it, or it slides against it.
+    [[nodiscard]] bool sticks() const noexcept { return sticks_; }
+    [[nodiscard]] bool slides() const noexcept { return slides_; }
+    /// From where it went to, with surfaces that are asked for there, it would go on.
+    [[nodiscard]] bool goes_on() const noexcept { return goes_on_; }
+    /// How far any point of the core has come in the last step, at most.
+    [[nodiscard]] double went_m() const noexcept { return went_m_; }
 
     /// A proxy that is nowhere yet is at the hand; else nothing changes before it responds.
     void see(const ToolGoal& goal) noexcept TACTUS_NONBLOCKING;
-    /// Objects that move push it in its next step.
-    void carry(std::span<const NearObject> /*objects*/,
-               double /*elapsed_s*/) noexcept TACTUS_NONBLOCKING
-    {
-    }
+    /// Tells how the objects move at the proxy: they take it along in its next step.
+    void carry(std::span<const NearObject> objects, double elapsed_s) noexcept TACTUS_NONBLOCKING;
     /// The object is another from now on, or gone.
     void forget(std::uint32_t object) noexcept TACTUS_NONBLOCKING;
 
@@ -88,6 +88,9 @@ public:
     /// everything else its core is at least `clear_m` away there.
     [[nodiscard]] ToolOutput respond(const ToolGoal& goal, std::span<const PlacedSurface> surfaces,
                                      double clear_m) noexcept TACTUS_NONBLOCKING;
+    /// The next respond() is one more step of the same frame, whose force takes the place of the
+    /// last one's.
+    void go_on() noexcept TACTUS_NONBLOCKING;
 
 private:
     /// A place where the tool was held, kept while the tool has not slid away from it.
@@ -97,35 +100,44 @@ private:
         Vec3 on_tool_m{0.0, 0.0, 0.0};    ///< In the tool's frame.
         Vec3 on_surface_m{0.0, 0.0, 0.0}; ///< In the object's.
         Vec3 normal{0.0, 0.0, 0.0};       ///< In the object's.
+        bool is_face{false};
     };
-    /// How far the proxy may go, and what is known.
-    struct Room
+    /// What pushed last, while nothing new is known.
+    struct LastPush
     {
-        double free_m{0.0};
-        bool is_clear{false};   ///< The core is proven to touch nothing.
-        bool is_crossed{false}; ///< The core is known to touch something.
+        Motion<6> normal{Motion<6>::Zero()};
+        double stiffness_n_per_m{0.0};
+    };
+    /// As they were when the frame began.
+    struct Frame
+    {
+        CatchUp force;
+        CatchUp torque;
+        double frozen_s{0.0};
     };
 
-    [[nodiscard]] Room find_room(std::span<const PlacedSurface> surfaces,
-                                 double clear_m) const noexcept;
     [[nodiscard]] Motion<6> way_to(const ToolGoal& goal) const noexcept;
-    [[nodiscard]] double length_of(const Motion<6>& motion) const noexcept;
-    void step(const ToolGoal& goal, std::span<const PlacedSurface> surfaces, double free_m,
+    [[nodiscard]] BodyWay way_of(const Motion<6>& motion) const noexcept;
+    void step(const ToolGoal& goal, std::span<const PlacedSurface> surfaces, const BodyRoom& room,
               ToolOutput& output) noexcept;
+    void advance(const ToolGoal& goal, const BodyMotion& found, const BodyRoom& room) noexcept;
     void freeze(const ToolGoal& goal, bool is_crossed, ToolOutput& output) noexcept;
-    void gather(std::span<const PlacedSurface> surfaces) noexcept;
-    void add(const Touch& touch) noexcept;
-    void replace(std::size_t plane, const HalfSpace<6>& space, const Touch& touch) noexcept;
-    void add_holds(std::span<const PlacedSurface> surfaces) noexcept;
-    [[nodiscard]] NearestMotion<6> find_motion(const Motion<6>& wanted) noexcept;
-    void keep_holds(const NearestMotion<6>& nearest,
-                    std::span<const PlacedSurface> surfaces) noexcept;
+    void gather(const ToolGoal& goal, std::span<const PlacedSurface> surfaces) noexcept;
+    void add(std::uint32_t surface, std::span<const Contact> contacts, const PlacedSurface& placed,
+             double elapsed_s) noexcept;
+    void add(const BodyTouch& touch, const PlacedSurface& placed, double elapsed_s) noexcept;
+    void add_holds(std::span<const PlacedSurface> surfaces, double elapsed_s) noexcept;
+    void keep_holds(const BodyMotion& found, std::span<const PlacedSurface> surfaces) noexcept;
     void keep(const Hold& hold) noexcept;
     void catch_up(bool has_waited, double elapsed_s, ToolOutput& output) noexcept;
-    void add_force(const Motion<6>& held_back, ToolOutput& output) const noexcept;
+    void add_forces(const ToolGoal& goal, const BodyMotion& found, ToolOutput& output) noexcept;
+    void damp(const ToolGoal& goal, const BodyMotion& found, double reactions,
+              ToolOutput& output) const noexcept;
+    void clamp(ToolOutput& output) const noexcept;
 
     ToolSpec spec_;
     double radius_m_{0.0};
+    double size_m_{1.0}; ///< Core and radius together.
     double arm_m_{1.0};
     Vec3 center_m_{0.0, 0.0, 0.0}; ///< Of the core's ball, in the tool's frame.
     double core_radius_m_{0.0};
@@ -133,10 +145,16 @@ private:
     bool is_joined_{false};
     bool is_squeezed_{false};
     bool is_crowded_{false};
+    bool sticks_{false};
+    bool slides_{false};
+    bool goes_on_{false};
+    bool is_on_{false}; ///< The step is not the frame's first.
+    double went_m_{0.0};
     double frozen_s_{0.0};
     CatchUp force_;
     CatchUp torque_;
-    StaticVector<Motion<6>, 6> last_normals_; ///< Of the planes that held last.
+    Frame frame_;
+    StaticVector<LastPush, 6> last_pushes_;
     StaticVector<Hold, kMaxHolds> holds_;
     Planes* planes_;
 };

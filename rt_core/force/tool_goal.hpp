@@ -26,6 +26,7 @@ struct ToolGoal
     double elapsed_s{0.0};           ///< Since the last frame.
     Mat3 rotation{Mat3::Identity()}; ///< Of the tool's frame; orthonormal to rounding.
     GoalChange change{GoalChange::none};
+    Vec3 spin_rad_per_s{0.0, 0.0, 0.0}; ///< Angular velocity.
 
     [[nodiscard]] bool operator==(const ToolGoal&) const = default;
 };

@@ -155,7 +155,7 @@ FrameOutput Frame::run(const FrameInput& input, StageMark mark) noexcept
     mark(Stage::refine);
     refit();
     mark(Stage::refit);
-    query(budgets);
+    query();
     mark(Stage::query);
     respond();
     report();
@@ -537,11 +537,11 @@ bool Frame::try_rest(const FrameInput& input) noexcept
 }
 
 /// The most urgent first: what they leave of the frame's walks is for the others.
-void Frame::query(const Budgets& budgets) noexcept
+void Frame::query() noexcept
 {
-    std::uint32_t nodes = 0;
-    std::uint32_t triangles = 0;
-    SurfaceRoom room = room_;
+    walked_.nodes = 0;
+    walked_.triangles = 0;
+    room_left_ = room_;
     find_resting();
     for (Pair* pair : pairs_.by_urgency())
     {
@@ -549,17 +549,22 @@ void Frame::query(const Budgets& budgets) noexcept
         {
             continue;
         }
-        Budgets left = budgets;
-        left.nodes = walk_left(budgets.nodes, nodes);
-        left.triangles = walk_left(budgets.triangles, triangles);
         const WorkCounters before = work_;
-        room = pair->query(room, left, work_, faults_);
+        room_left_ = pair->query(room_left_, walks_left(), work_, faults_);
         if (!pair->is_of_mesh()) // Those have an allowance of their own: kMeshBudgetFactor.
         {
-            nodes += work_.nodes_visited - before.nodes_visited;
-            triangles += work_.triangles_tested - before.triangles_tested;
+            walked_.nodes += work_.nodes_visited - before.nodes_visited;
+            walked_.triangles += work_.triangles_tested - before.triangles_tested;
         }
     }
+}
+
+Budgets Frame::walks_left() const noexcept
+{
+    Budgets left = budgets_;
+    left.nodes = walk_left(budgets_.nodes, walked_.nodes);
+    left.triangles = walk_left(budgets_.triangles, walked_.triangles);
+    return left;
 }
 
 void Frame::respond() noexcept
@@ -583,7 +588,49 @@ void Frame::respond() noexcept
     }
 }
 
+/// A body goes on while it has a way to go, what is near being asked for where it came to.
 ToolOutput Frame::respond(std::uint32_t tool) noexcept
+{
+    const double clear_m = presences_[tool].clear_m;
+    double clear_left_m = clear_m;
+    ToolOutput output = step(tool, clear_m);
+    for (std::uint32_t i = 1; i < RigidProxy::kStepsPerFrame; ++i)
+    {
+        if (output.squeezed || !tools_[tool].try_go_on(clear_left_m) || !try_query_again(tool))
+        {
+            break;
+        }
+        const ToolOutput next = step(tool, clear_left_m);
+        if (next.frozen)
+        {
+            break; // The last one's force is of a place that is known.
+        }
+        output = next;
+    }
+    return tools_[tool].finish(output, clear_m);
+}
+
+/// False where a walk has no whole budget left: its answer could prove less than the last one's.
+bool Frame::try_query_again(std::uint32_t tool) noexcept
+{
+    const std::span<Pair* const> pairs = pairs_.of(tool);
+    const bool is_of_mesh = is_mesh(tools_[tool].spec());
+    for (Pair* pair : pairs)
+    {
+        const Budgets left = is_of_mesh ? budgets_ : walks_left();
+        if (left.nodes < budgets_.nodes || left.triangles < budgets_.triangles)
+        {
+            return false;
+        }
+        const WorkCounters before = work_;
+        pair->query_again(room_left_, left, work_, faults_);
+        walked_.nodes += is_of_mesh ? 0 : work_.nodes_visited - before.nodes_visited;
+        walked_.triangles += is_of_mesh ? 0 : work_.triangles_tested - before.triangles_tested;
+    }
+    return true;
+}
+
+ToolOutput Frame::step(std::uint32_t tool, double clear_m) noexcept
 {
     StaticVector<PlacedSurface, kMaxNear> near;
     for (Pair* pair : pairs_.of(tool))
@@ -593,7 +640,7 @@ ToolOutput Frame::respond(std::uint32_t tool) noexcept
             near.push_back(pair->placed());
         }
     }
-    return tools_[tool].respond(near.view(), presences_[tool].clear_m);
+    return tools_[tool].step(near.view(), clear_m);
 }
 
 void Frame::report() noexcept

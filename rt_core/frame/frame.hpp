@@ -103,9 +103,12 @@ private:
     void refit() noexcept;
     void find_resting() noexcept;
     [[nodiscard]] bool try_rest(const FrameInput& input) noexcept;
-    void query(const Budgets& budgets) noexcept;
+    void query() noexcept;
     void respond() noexcept;
     [[nodiscard]] ToolOutput respond(std::uint32_t tool) noexcept;
+    [[nodiscard]] ToolOutput step(std::uint32_t tool, double clear_m) noexcept;
+    [[nodiscard]] bool try_query_again(std::uint32_t tool) noexcept;
+    [[nodiscard]] Budgets walks_left() const noexcept;
     void report() noexcept;
     [[nodiscard]] FrameOutput output() const noexcept;
 
@@ -129,6 +132,8 @@ private:
     AwakePairs pairs_;
     std::uint32_t paired_lists_{0}; ///< BroadPhase::lists() that all are pairs of; 0: not all.
     SurfaceRoom room_;
+    SurfaceRoom room_left_; ///< After the queries of this frame.
+    Budgets walked_;        ///< Nodes and triangles of them; the rest is not of use.
 
     std::uint32_t frame_{ChunkCache::kFirstFrame};
     Budgets budgets_;       ///< The last frame's.

@@ -97,6 +97,18 @@ void MeshPair::place(const Outlook& outlook, const MeshCore& core, const Model& 
     }
 }
 
+/// The cores stay: what moved since the last frame is told from them. Only the first place is
+/// asked.
+void MeshPair::move(const Similarity& tool, const Budgets& budgets) noexcept
+{
+    placements_[0].place = tool;
+    for (std::size_t i = 0; i < kPlaces; ++i)
+    {
+        objects_[i] = OtherSurface(*object_tree_, placements_[i], budget_of(budgets));
+        tools_[i] = OtherSurface(*tool_tree_, placements_[i].inverse(), budget_of(budgets));
+    }
+}
+
 void MeshPair::rank(const Outlook& outlook, ModelId tool_model, ModelId object_model,
                     const RegionPredictor& predictor, Prediction prediction,
                     RegionRanking& ranking) noexcept
@@ -153,11 +165,11 @@ RefineQuestion MeshPair::question(const Ball& ball, double reach_m, double moved
             ahead_m};
 }
 
-void MeshPair::query(const Outlook& outlook, double contact_m, DistanceAnswer& answer,
-                     ContactReport& contacts) noexcept
+void MeshPair::query(const Outlook& outlook, double contact_m, ContactEnds* ends,
+                     DistanceAnswer& answer, ContactReport& contacts) noexcept
 {
-    const MeshQuestion question{*tool_tree_, *object_tree_, placements_[0], outlook.reach_m(),
-                                contact_m};
+    const MeshQuestion question{*tool_tree_,       *object_tree_, placements_[0],
+                                outlook.reach_m(), contact_m,     ends};
     query_meshes(question, objects_[0], memory_, answer, report_, contacts);
     if (answer.nearest_face.is_none())
     {

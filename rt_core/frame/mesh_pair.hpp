@@ -31,6 +31,9 @@ public:
                const Model& object_model, const Similarity& tool,
                const Budgets& budgets) noexcept TACTUS_NONBLOCKING;
 
+    /// The tool has moved on in the same frame, to be queried there.
+    void move(const Similarity& tool, const Budgets& budgets) noexcept TACTUS_NONBLOCKING;
+
     /// Adds what both models need where the surfaces are near.
     void rank(const Outlook& outlook, ModelId tool_model, ModelId object_model,
               const RegionPredictor& predictor, Prediction prediction,
@@ -42,8 +45,9 @@ public:
     [[nodiscard]] RefineQuestion ask_tool(std::size_t place,
                                           const Outlook& outlook) noexcept TACTUS_NONBLOCKING;
 
-    /// In the object's frame; contacts within `contact_m`, none when it is negative.
-    void query(const Outlook& outlook, double contact_m, DistanceAnswer& answer,
+    /// In the object's frame; contacts within `contact_m`, none when it is negative. `ends` may be
+    /// null.
+    void query(const Outlook& outlook, double contact_m, ContactEnds* ends, DistanceAnswer& answer,
                ContactReport& contacts) noexcept TACTUS_NONBLOCKING;
 
     /// Instead of a query, while the pair is proven to be apart.

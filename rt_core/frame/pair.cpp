@@ -3,6 +3,7 @@
 #include "rt_core/frame/pair.hpp"
 
 #include "rt_core/query/contact_report.hpp"
+#include "rt_core/query/contact_set.hpp"
 #include "rt_core/query/core_query.hpp"
 #include "rt_core/query/probe.hpp"
 
@@ -15,7 +16,7 @@ namespace
 {
 
 /// From the model's frame to the world.
-void place_in_world(const ObjectPose& pose, ContactSet& contacts) noexcept
+void place_each_in_world(const ObjectPose& pose, auto& contacts) noexcept
 {
     for (Contact& contact : contacts)
     {
@@ -29,7 +30,23 @@ void place_in_world(const ObjectPose& pose, ContactSet& contacts) noexcept
 void place_in_world(const ObjectPose& pose, ContactReport& report) noexcept
 {
     report.normal = pose.rotation * report.normal;
-    place_in_world(pose, report.contacts);
+    place_each_in_world(pose, report.contacts);
+}
+
+void place_in_world(const ObjectPose& pose, TouchReport& touches) noexcept
+{
+    place_each_in_world(pose, touches.nearest);
+    place_each_in_world(pose, touches.corners);
+    if (!touches.ends.is_empty)
+    {
+        place_each_in_world(pose, touches.ends.contacts);
+    }
+    for (ContactSlab& slab : touches.slabs)
+    {
+        slab.distance_m *= pose.scale;
+        slab.normal = pose.rotation * slab.normal;
+    }
+    touches.covered_m *= pose.scale;
 }
 
 /// Of contacts that were looked for farther away: those within the radius.
@@ -92,7 +109,7 @@ void Pair::place(const Budgets& budgets, FrameFault& faults) noexcept
     {
         outlook_.wake();
     }
-    if (touches_ != nullptr && outlook_.is_reached())
+    if (touches_ != nullptr && has_moved() && outlook_.is_reached())
     {
         faults |= FrameFault::proxy_squeezed; // An object came as far as to its core.
     }
@@ -293,6 +310,19 @@ SurfaceRoom Pair::query(const SurfaceRoom& room, const Budgets& budgets, WorkCou
     return room.after(surface.count);
 }
 
+void Pair::query_again(const SurfaceRoom& room, const Budgets& budgets, WorkCounters& work,
+                       FrameFault& faults) noexcept
+{
+    const ToolStance& stance = parts_.tool->stance();
+    const ObjectPose& pose = parts_.object->pose;
+    outlook_.look(parts_.tool->spec(), stance, pose);
+    if (mesh_ != nullptr)
+    {
+        mesh_->move(in_frame(pose, stance.place), budgets);
+    }
+    (void)query(room, budgets, work, faults);
+}
+
 /// Both only grow.
 std::uint32_t Pair::revision() const noexcept
 {
@@ -344,8 +374,7 @@ void Pair::report_core() noexcept
     if (touches_ != nullptr)
     {
         report_touches(outlook_.core(), outlook_.reach_m(), model.tree, surface_, *touches_);
-        place_in_world(pose, touches_->nearest);
-        place_in_world(pose, touches_->corners);
+        place_in_world(pose, *touches_);
     }
 }
 
@@ -370,13 +399,20 @@ void Pair::query_mesh(WorkCounters& work, FrameFault& faults) noexcept
         const double contact_m = touches != nullptr    ? outlook_.reach_m()
                                  : tool.wants_contacts ? radius_m
                                                        : -1.0;
-        mesh_->query(outlook_, contact_m, answer, contacts);
+        mesh_->query(outlook_, contact_m, touches != nullptr ? &touches->ends : nullptr, answer,
+                     contacts);
         outlook_.remember(answer);
         if (touches != nullptr)
         {
             touches->nearest = contacts.contacts;
             touches->is_truncated = contacts.contacts.full() && !contacts.is_complete;
-            place_in_world(pose, touches->nearest);
+            touches->covered_m =
+                touches->is_truncated ? contacts.contacts[kMaxContacts - 1].distance_m : contact_m;
+            for (const Contact& contact : contacts.contacts)
+            {
+                keep_slab(contact.normal, contact.distance_m, *touches);
+            }
+            place_in_world(pose, *touches);
             keep_within(radius_m, answer, contacts);
         }
         place_in_world(pose, contacts);

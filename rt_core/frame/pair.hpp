@@ -128,6 +128,10 @@ public:
                                     WorkCounters& work,
                                     FrameFault& faults) noexcept TACTUS_NONBLOCKING;
 
+    /// Once more in the same frame, from where the tool has come to; nothing is refined between.
+    void query_again(const SurfaceRoom& room, const Budgets& budgets, WorkCounters& work,
+                     FrameFault& faults) noexcept TACTUS_NONBLOCKING;
+
     /// The last frame's query again, over what it kept; see Frame::rehearse().
     void rehearse(const SurfaceRoom& room,
                   const Budgets& budgets) const noexcept TACTUS_NONBLOCKING;
@@ -147,7 +151,11 @@ public:
         return {parts_.object_number, &stood_, &parts_.object->pose, &body_};
     }
     /// The same of one that stands still.
-    void stand() noexcept { body_.velocity_m_per_s = Vec3(0.0, 0.0, 0.0); }
+    void stand() noexcept
+    {
+        body_.velocity_m_per_s = Vec3(0.0, 0.0, 0.0);
+        body_.spin_rad_per_s = Vec3(0.0, 0.0, 0.0);
+    }
     /// Where a tool stands as in the last frame, query() would find what it found then.
     [[nodiscard]] bool is_unchanged() const noexcept TACTUS_NONBLOCKING;
     /// The frame ends: where the object stands is where it stood.

@@ -103,8 +103,16 @@ FrameFault Tool::take(const ToolState& sample) noexcept
     goal_.velocity_m_per_s = goal_.change == GoalChange::motion
                                  ? Vec3((sample.position_m - goal_.position_m) / verdict.since_s)
                                  : Vec3(0.0, 0.0, 0.0);
+    const Mat3 rotation = orthonormalised(sample.rotation);
+    goal_.spin_rad_per_s = Vec3(0.0, 0.0, 0.0);
+    if (goal_.change == GoalChange::motion && rotation != goal_.rotation)
+    {
+        goal_.spin_rad_per_s =
+            rotation_vector(orthonormalised(rotation * goal_.rotation.transpose())) /
+            verdict.since_s;
+    }
     goal_.position_m = sample.position_m;
-    goal_.rotation = orthonormalised(sample.rotation);
+    goal_.rotation = rotation;
     return verdict.fault;
 }
 
@@ -131,10 +139,26 @@ double Tool::near_m() const noexcept
     return ball_.radius + soon_m;
 }
 
-ToolOutput Tool::respond(std::span<const PlacedSurface> surfaces, double clear_m) noexcept
+bool Tool::try_go_on(double& clear_m) noexcept
 {
-    ToolOutput output =
-        with(body_, [&](auto& body) { return body.respond(goal_, surfaces, clear_m); });
+    auto* const body = std::get_if<RigidProxy>(&body_);
+    if (body == nullptr || !body->goes_on())
+    {
+        return false;
+    }
+    clear_m -= body->went_m();
+    body->go_on();
+    stance_.place = body->place();
+    return true;
+}
+
+ToolOutput Tool::step(std::span<const PlacedSurface> surfaces, double clear_m) noexcept
+{
+    return with(body_, [&](auto& body) { return body.respond(goal_, surfaces, clear_m); });
+}
+
+ToolOutput Tool::finish(ToolOutput output, double clear_m) noexcept
+{
     watch_.look_for_return(output, spec_, goal_.position_m);
     output.sample_fault = watch_.fault();
     output.clear_m = std::max(clear_m, 0.0);

@@ -46,7 +46,18 @@ public:
     /// The force, from surfaces that were queried at stance(); from everything else its core is at
     /// least `clear_m` away there.
     [[nodiscard]] ToolOutput respond(std::span<const PlacedSurface> surfaces,
-                                     double clear_m) noexcept TACTUS_NONBLOCKING;
+                                     double clear_m) noexcept TACTUS_NONBLOCKING
+    {
+        return finish(step(surfaces, clear_m), clear_m);
+    }
+
+    /// The same in steps: try_go_on() says whether a body, from where it came to, would go on. Then
+    /// stance() is there, `clear_m` is less by what it went, and the next step() is one more of the
+    /// same frame. finish() ends them, with what the frame began with.
+    [[nodiscard]] ToolOutput step(std::span<const PlacedSurface> surfaces,
+                                  double clear_m) noexcept TACTUS_NONBLOCKING;
+    [[nodiscard]] bool try_go_on(double& clear_m) noexcept TACTUS_NONBLOCKING;
+    [[nodiscard]] ToolOutput finish(ToolOutput output, double clear_m) noexcept TACTUS_NONBLOCKING;
 
     /// In this frame hand and objects are where they were, and the last outputs were alike: with
     /// the same surfaces respond() would say the same.

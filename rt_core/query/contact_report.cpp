@@ -284,6 +284,16 @@ void add_corners(const CoreCorners& corners, double reach_m, const Triangle& tri
     }
 }
 
+/// Between points that are the nearest but for rounding everything is on its own side of the plane
+/// across them; where they are not found as well as that, no direction is proven.
+void add_slab(const Vec3& normal, const ClosestPoints& closest, TouchReport& touches) noexcept
+{
+    constexpr double kWellFound = 1e-6;
+    const double lower_m = std::max(0.0, closest.distance - closest.distance_error);
+    const bool is_found = !closest.meet && closest.distance_error <= kWellFound * closest.distance;
+    keep_slab(is_found ? normal : Vec3(0.0, 0.0, 0.0), lower_m, touches);
+}
+
 } // namespace
 
 void report_touches(const PlacedCore& core, double reach_m, const AbTree& tree,
@@ -292,6 +302,7 @@ void report_touches(const PlacedCore& core, double reach_m, const AbTree& tree,
     TACTUS_ASSERT(reach_m >= 0.0);
     TACTUS_ASSERT(surface.count <= surface.triangles.size());
     touches.clear();
+    touches.covered_m = reach_m;
     const CoreCorners corners = core.corners();
     for (std::uint32_t i = 0; i < surface.count; ++i)
     {
@@ -304,8 +315,10 @@ void report_touches(const PlacedCore& core, double reach_m, const AbTree& tree,
         const ClosestPoints closest = core.closest(triangle);
         if (closest.distance <= reach_m)
         {
-            const bool has_room =
-                keep_nearest(make_contact(closest, triangle, face), touches.nearest);
+            const Contact contact = make_contact(closest, triangle, face);
+            add_slab(contact.normal, closest, touches);
+            keep_ends(contact, touches.ends);
+            const bool has_room = keep_nearest(contact, touches.nearest);
             add_corners(corners, reach_m, triangle, face, touches);
             touches.is_truncated = touches.is_truncated || !has_room;
         }

@@ -4,6 +4,7 @@
 
 #include "rt_core/base/assert.hpp"
 #include "rt_core/geometry/closest_points.hpp"
+#include "rt_core/math/infinity.hpp"
 #include "rt_core/records/contact.hpp"
 
 #include <algorithm>
@@ -68,6 +69,57 @@ namespace tactus
         std::swap(contacts[i], contacts[i - 1]);
     }
     return !is_full;
+}
+
+/// Does not depend on the order of contacts: of equally far ones the first by comes_before() stays.
+inline void keep_ends(const Contact& contact, ContactEnds& ends) noexcept
+{
+    constexpr double kPerDistance = 10.0;
+    std::size_t direction = 0;
+    for (int code = 0; code < 27; ++code)
+    {
+        if (code == 13)
+        {
+            continue; // No direction at all.
+        }
+        const Vec3 along(code % 3 - 1, code / 3 % 3 - 1, code / 9 - 1);
+        const double reach_m =
+            along.dot(contact.on_surface_m) / along.norm() - kPerDistance * contact.distance_m;
+        double& most_m = ends.reaches_m[direction];
+        Contact& kept = ends.contacts[direction];
+        if (ends.is_empty || reach_m > most_m || (reach_m == most_m && comes_before(contact, kept)))
+        {
+            most_m = reach_m;
+            kept = contact;
+        }
+        ++direction;
+    }
+    ends.is_empty = false;
+}
+
+/// Adds a face to the slab that it differs least from, or makes one. Without a normal nothing is
+/// proven: the slab is in all directions.
+inline void keep_slab(const Vec3& normal, double distance_m, TouchReport& touches) noexcept
+{
+    constexpr double kSameSlab = 0.05;
+    constexpr double kAnyDirection = 2.0;
+    const bool has_none = normal == Vec3(0.0, 0.0, 0.0);
+    ContactSlab* best = nullptr;
+    double least = kInfinity;
+    for (ContactSlab& slab : touches.slabs)
+    {
+        const double apart = (slab.normal - normal).norm();
+        best = apart < least ? &slab : best;
+        least = std::min(least, apart);
+    }
+    if (!touches.slabs.full() && !(least <= kSameSlab))
+    {
+        touches.slabs.push_back({normal, distance_m, has_none ? kAnyDirection : 0.0});
+        return;
+    }
+    TACTUS_ASSERT(best != nullptr);
+    best->distance_m = std::min(best->distance_m, distance_m);
+    best->spread = std::max(best->spread, has_none ? kAnyDirection : least);
 }
 
 } // namespace tactus

@@ -146,6 +146,9 @@ enum class Aim : std::uint8_t
 };
 constexpr std::uint32_t kAll = std::numeric_limits<std::uint32_t>::max();
 
+/// Contacts as near as this times the farthest that is kept are asked for their ends.
+constexpr double kEndsAsNear = 1.1;
+
 /// One query: the pairs of blocks that are near, and of each the pairs of faces.
 class MeshSearch
 {
@@ -631,9 +634,11 @@ private:
             return question_.contact_m;
         }
         const ContactSet& kept = contacts_->contacts;
+        const double as_near = question_.ends != nullptr ? kEndsAsNear : 1.0;
         return touching_.size() == kMaxContacts ? -1.0
-               : kept.size() == kMaxContacts    ? kept[kMaxContacts - 1].distance_m
-                                                : question_.contact_m;
+               : kept.size() == kMaxContacts
+                   ? std::min(as_near * kept[kMaxContacts - 1].distance_m, question_.contact_m)
+                   : question_.contact_m;
     }
 
     /// The corners of coarse faces are original vertices.
@@ -738,6 +743,10 @@ private:
         TACTUS_ASSERT(contacts_ != nullptr);
         const Contact contact = make_contact(closest, triangle, faces.face, faces.tool_face);
         has_dropped_ = !keep_nearest(contact, contacts_->contacts) || has_dropped_;
+        if (question_.ends != nullptr)
+        {
+            keep_ends(contact, *question_.ends);
+        }
     }
 
     [[nodiscard]] ClosestPoints closest_of(const Meeting& meeting) const noexcept

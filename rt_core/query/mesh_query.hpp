@@ -20,6 +20,8 @@ struct MeshQuestion
     MeshPlacement place;    ///< Of the tool's model in the object's.
     double reach_m{0.0};    ///< From the tool's faces; in the object's frame, as the radius.
     double contact_m{-1.0}; ///< Pairs of faces this near are contacts; negative: none are wanted.
+    /// Of contacts that are little farther than those there is room for, too; null: not wanted.
+    ContactEnds* ends{nullptr};
 };
 
 /// What a pair of two meshes keeps from one query to the next: the faces that met last, or were the

@@ -7,6 +7,8 @@
 #include "rt_core/math/triangle.hpp"
 #include "rt_core/spm/ids.hpp"
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 
 namespace tactus
@@ -30,19 +32,51 @@ struct Contact
 /// Nearest first, lower face ids first among equals, then lower ones of the tool's.
 using ContactSet = StaticVector<Contact, kMaxContacts>;
 
-/// Where a tool with a force and a torque may come to touch an object, for the force stage. 6 KiB.
+/// Some faces of one another's kind: each lies behind a plane, and the core before it by at least
+/// `distance_m`. Their planes' normals are within `spread` of this one.
+struct ContactSlab
+{
+    Vec3 normal{0.0, 0.0, 0.0}; ///< Unit length, from the surface to the core.
+    double distance_m{0.0};
+    double spread{0.0}; ///< Length of the difference of two unit vectors.
+};
+/// Slabs of one pair, 40 B each. Enough for six sides in steps of 50 degrees; of more kinds of
+/// faces some share a slab, whose spread grows.
+inline constexpr std::size_t kMaxSlabs = 16;
+
+/// Directions in which the farthest contacts are kept: along axes, between two and between three.
+inline constexpr std::size_t kContactDirections = 26;
+
+/// The farthest contact in each direction, so that a body that lies on hundreds of faces is held at
+/// the ends of what it lies on. Far is also what would touch after a turn of a tenth: a contact
+/// counts as nearer to the middle by ten times its distance from the core.
+struct ContactEnds
+{
+    std::array<Contact, kContactDirections> contacts{};
+    std::array<double, kContactDirections> reaches_m{};
+    bool is_empty{true};
+};
+
+/// Where a tool with a force and a torque may come to touch an object, for the force stage. 10 KiB.
 struct TouchReport
 {
     ContactSet nearest;       ///< Of each face the nearest point.
     ContactSet corners;       ///< Of a convex core, over a face.
+    ContactEnds ends;         ///< Of those and of all there was no room for.
     bool is_truncated{false}; ///< There were more.
+    /// Of all faces nearer than `covered_m`, as far as they are exact.
+    StaticVector<ContactSlab, kMaxSlabs> slabs;
+    double covered_m{0.0};
 
     /// As new, without touching what no contact is in.
     void clear() noexcept
     {
         nearest.clear();
         corners.clear();
+        ends.is_empty = true;
         is_truncated = false;
+        slabs.clear();
+        covered_m = 0.0;
     }
 };
 

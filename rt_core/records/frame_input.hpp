@@ -37,6 +37,8 @@ struct ToolSpec
     double torque_max_nm{0.5};       ///< The torque's norm is clamped to it. A sphere has none.
     /// Follows the hand through surfaces, without a force: a tool that measures.
     bool passes_through{false};
+    /// Of the spring that turns the tool; 0: as the stiffness and the tool's own size make it.
+    double angular_stiffness_nm_per_rad{0.0};
 };
 
 [[nodiscard]] inline bool is_mesh(const ToolSpec& tool) noexcept

@@ -15,6 +15,7 @@
 #include "tests/stability/garbage_trial.hpp"
 #include "tests/stability/mesh_trial.hpp"
 #include "tests/stability/pop_through_trial.hpp"
+#include "tests/stability/rigid_trial.hpp"
 #include "tests/stability/scene_trial.hpp"
 #include "tests/stability/split_merge_trial.hpp"
 #include "tests/stability/trial_models.hpp"
@@ -51,13 +52,15 @@ struct Sizes
     std::uint32_t closing_rounds;
     std::uint32_t force_frames; ///< A model and hardship.
     std::uint32_t scene_frames; ///< A hardship.
+    std::uint32_t rigid_frames; ///< A tool and object, of 15.
 };
 
-constexpr Sizes kSized{200, 100, 2'000, 100'000, 100, 50'000, 4'000, 40, 150, 40, 10, 500, 400};
-/// A million frames of brackets, of proxies and cases of each kernel, ten million splits and
-/// merges, 24 hours of touching.
+constexpr Sizes kSized{200, 100, 2'000, 100'000, 100, 50'000, 4'000,
+                       40,  150, 40,    10,      500, 400,    400};
+/// A million frames of brackets, of proxies, of rigid tools and cases of each kernel, ten million
+/// splits and merges, 24 hours of touching.
 constexpr Sizes kFull{67'000, 4'000,  25'000, 2'500'000, 43'200, 3'600'000, 100'000,
-                      1'000,  25'000, 3'600,  1'000,     10'000, 20'000};
+                      1'000,  25'000, 3'600,  1'000,     10'000, 20'000,    70'000};
 
 constexpr std::uint64_t kStabilitySeed = 20'261'600;
 
@@ -255,6 +258,20 @@ void try_pop_through(const Sizes& sizes, bool full, const Report& report)
         test::run_closing_trial({notched, tree, test::seed_of(++own), sizes.closing_rounds}));
 }
 
+void try_rigid_tools(const Sizes& sizes, bool /*full*/, const Report& report)
+{
+    std::uint64_t own = kStabilitySeed + 3'000;
+    for (test::RigidTrial& trial : test::rigid_trials())
+    {
+        trial.seed = test::seed_of(++own);
+        trial.frames = sizes.rigid_frames;
+        const test::RigidFigures figures = test::run_rigid_trial(trial);
+        report(figures.crossings);
+        fmt::print(stderr, "{}: {} frames in contact, {} frozen\n", figures.crossings.name,
+                   figures.contacts, figures.frozen);
+    }
+}
+
 void try_force_twins(const Sizes& sizes, bool full, const Report& report)
 {
     std::uint64_t own = kStabilitySeed + 2'000;
@@ -335,13 +352,14 @@ struct Part
     void (*run)(const Sizes& sizes, bool full, const Report& report);
 };
 
-constexpr std::array<Part, 11> kParts{{{"kernels", try_kernels},
+constexpr std::array<Part, 12> kParts{{{"kernels", try_kernels},
                                        {"brackets", try_brackets},
                                        {"liars", try_liars},
                                        {"twins", try_twins},
                                        {"meshes", try_meshes},
                                        {"scene", try_scenes},
                                        {"pop-through", try_pop_through},
+                                       {"rigid", try_rigid_tools},
                                        {"force-twins", try_force_twins},
                                        {"splits", try_splits},
                                        {"day", try_day},

@@ -7,7 +7,7 @@
 #include "host_tools/shapes/shapes.hpp"
 #include "platform/recording/replay.hpp"
 #include "tests/property/frame_checks.hpp"
-#include "tests/shared/exact_meet.hpp"
+#include "tests/shared/solid_cores.hpp"
 
 #include <gtest/gtest.h>
 
@@ -27,38 +27,6 @@ Mat3 turn(const Vec3& axis, double angle)
     return Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix();
 }
 
-/// What a tool is made of, in its own frame: the faces that are to meet none of the model.
-struct Tool
-{
-    const char* name;
-    ToolCore core;
-    std::vector<Triangle> faces;
-    double radius_m;
-    const TestModel* mesh{nullptr};
-};
-
-std::vector<Triangle> box_faces(const Vec3& half)
-{
-    std::vector<Triangle> faces;
-    for (Eigen::Index axis = 0; axis < 3; ++axis)
-    {
-        for (const double side : {-1.0, 1.0})
-        {
-            const auto corner = [&](double u, double v)
-            {
-                Vec3 at;
-                at[axis] = side;
-                at[(axis + 1) % 3] = u;
-                at[(axis + 2) % 3] = v;
-                return Vec3(at.cwiseProduct(half));
-            };
-            faces.push_back({corner(-1, -1), corner(1, -1), corner(1, 1)});
-            faces.push_back({corner(-1, -1), corner(1, 1), corner(-1, 1)});
-        }
-    }
-    return faces;
-}
-
 /// A tetrahedron; the hull of its corners.
 const std::array<Vec3, 4>& spike()
 {
@@ -67,30 +35,21 @@ const std::array<Vec3, 4>& spike()
     return corners;
 }
 
-std::vector<Tool> tools()
+std::vector<SolidCore> tools()
 {
     const Vec3 half(0.012, 0.008, 0.004);
     const Segment segment{{-0.01, 0, 0}, {0.02, 0, 0.003}};
     const auto& s = spike();
     const TestModel& mesh = test_model("rigid-tool", make_uv_sphere(12, 16).value(), 60);
-    Tool ball{"mesh", MeshCore{ModelId{1}}, {}, 0.0015, &mesh};
-    const Vec3 origin(mesh.origin_m[0], mesh.origin_m[1], mesh.origin_m[2]);
-    for (const Face& face : mesh.faces)
-    {
-        ball.faces.push_back(
-            {origin + to_vec3(face[0]), origin + to_vec3(face[1]), origin + to_vec3(face[2])});
-    }
-    return {{"box", Box{half}, box_faces(half), 0.001},
-            {"capsule", segment, {{segment.from, segment.to, segment.to}}, 0.002},
-            {"hull",
-             Hull::create(s).value(),
-             {{s[0], s[1], s[2]}, {s[0], s[2], s[3]}, {s[0], s[3], s[1]}, {s[1], s[2], s[3]}},
-             0.001},
-            {"skin", Box{2.0 * half}, box_faces(2.0 * half), 0.0},
-            ball};
+    SolidCore hull{"hull",
+                   Hull::create(s).value(),
+                   {{s[0], s[1], s[2]}, {s[0], s[2], s[3]}, {s[0], s[3], s[1]}, {s[1], s[2], s[3]}},
+                   0.001};
+    return {box_core("box", half, 0.001), segment_core("capsule", segment, 0.002), hull,
+            box_core("skin", 2.0 * half, 0.0), mesh_core("mesh", mesh, 0.0015)};
 }
 
-RigOptions options_for(const Tool& tool)
+RigOptions options_for(const SolidCore& tool)
 {
     RigOptions options;
     options.pool_bytes = std::size_t{32} << 20U;
@@ -102,7 +61,7 @@ RigOptions options_for(const Tool& tool)
     return options;
 }
 
-std::vector<const TestModel*> models_for(const Tool& tool, const TestModel& object)
+std::vector<const TestModel*> models_for(const SolidCore& tool, const TestModel& object)
 {
     std::vector<const TestModel*> models{&object};
     if (tool.mesh != nullptr)
@@ -110,41 +69,6 @@ std::vector<const TestModel*> models_for(const Tool& tool, const TestModel& obje
         models.push_back(tool.mesh);
     }
     return models;
-}
-
-/// Faces of the placed core that meet the model's, by exact arithmetic.
-int crossings(const Tool& tool, const Vec3& position, const Mat3& rotation, const TestModel& model)
-{
-    std::vector<Triangle> placed = tool.faces;
-    Vec3 low(1e9, 1e9, 1e9);
-    Vec3 high = -low;
-    for (Triangle& face : placed)
-    {
-        for (Vec3& corner : face)
-        {
-            corner = position + rotation * corner;
-            low = least_of(low, corner);
-            high = greatest_of(high, corner);
-        }
-    }
-    int met = 0;
-    for (const Face& face : model.faces)
-    {
-        const Triangle other = to_triangle(face);
-        const auto is_off = [&](int axis)
-        {
-            const auto [least, most] =
-                std::minmax({other[0][axis], other[1][axis], other[2][axis]});
-            return most < low[axis] || least > high[axis];
-        };
-        if (is_off(0) || is_off(1) || is_off(2))
-        {
-            continue;
-        }
-        met += static_cast<int>(std::ranges::count_if(placed, [&other](const Triangle& own)
-                                                      { return exactly_meet(own, other); }));
-    }
-    return met;
 }
 
 /// A hand that goes from place to place through and around the model, and turns.
@@ -181,23 +105,17 @@ private:
     Vec3 axis_{0, 0, 1};
 };
 
-/// The core on its way between two frames: its poses, some between them.
-void expect_no_crossing(const Tool& tool, const ToolOutput& before, const ToolOutput& after,
-                        const TestModel& model)
+/// The core on its way between two frames.
+void expect_no_crossing(const SolidCore& tool, const Vec3& center, const ToolOutput& before,
+                        const ToolOutput& after, const TestModel& model)
 {
-    const Eigen::AngleAxisd way(after.proxy_rotation * before.proxy_rotation.transpose());
-    for (const double share : {0.25, 0.5, 0.75, 1.0})
-    {
-        const Vec3 position = before.proxy_m + share * (after.proxy_m - before.proxy_m);
-        const Mat3 rotation =
-            Eigen::AngleAxisd(share * way.angle(), way.axis()).toRotationMatrix() *
-            before.proxy_rotation;
-        ASSERT_EQ(crossings(tool, position, rotation, model), 0) << "at " << share << " of a step";
-    }
+    ASSERT_EQ(crossings_on_way(tool, {before.proxy_rotation, before.proxy_m, 1.0},
+                               {after.proxy_rotation, after.proxy_m, 1.0}, center, model, 4),
+              0);
 }
 
 /// Frames with a contact.
-int run_hand(const Tool& tool, const TestModel& model, Random& random, std::uint32_t frames)
+int run_hand(const SolidCore& tool, const TestModel& model, Random& random, std::uint32_t frames)
 {
     RigOptions options = options_for(tool);
     options.faults.loss = 0.1;
@@ -205,20 +123,21 @@ int run_hand(const Tool& tool, const TestModel& model, Random& random, std::uint
     FrameRig rig(models_for(tool, model), options);
     Hand hand(model, random);
     ToolOutput last;
+    const Vec3 center = rig.frame().tool(0).ball().center; // It is where it was made.
     int contacts = 0;
     for (std::uint32_t i = 0; i < frames; ++i)
     {
         const ToolState& state = hand.next();
         const FrameOutput output = rig.step(std::span(&state, 1), {});
         const ToolOutput& now = output.tools[0];
-        SCOPED_TRACE(std::string(tool.name) + " on " + model.name + ", frame " + std::to_string(i));
+        SCOPED_TRACE(tool.name + " on " + model.name + ", frame " + std::to_string(i));
         EXPECT_TRUE(now.force_n.allFinite() && now.torque_nm.allFinite());
         EXPECT_LE(now.force_n.norm(), options.tools[0].force_max_n * (1.0 + 1e-12));
         EXPECT_LE(now.torque_nm.norm(), options.tools[0].torque_max_nm * (1.0 + 1e-12));
         EXPECT_TRUE(now.in_contact || now.force_n.isZero(0.0));
         if (i > 0)
         {
-            expect_no_crossing(tool, last, now, model);
+            expect_no_crossing(tool, center, last, now, model);
         }
         if (testing::Test::HasFailure())
         {
@@ -235,7 +154,7 @@ int run_hand(const Tool& tool, const TestModel& model, Random& random, std::uint
 TEST(RigidTools, never_cross_a_surface_seen_or_not)
 {
     Random random(1);
-    for (const Tool& tool : tools())
+    for (const SolidCore& tool : tools())
     {
         int contacts = 0;
         for (std::size_t i = 0; i < kSmallModels; ++i)
@@ -260,7 +179,7 @@ TEST(RigidTools, pressed_on_a_fine_plate_rest_at_their_radius_and_push_by_their_
             high = greatest_of(high, to_vec3(corner));
         }
     }
-    for (const Tool& tool : tools())
+    for (const SolidCore& tool : tools())
     {
         SCOPED_TRACE(tool.name);
         RigOptions options = options_for(tool);
@@ -305,7 +224,7 @@ TEST(RigidTools, pressed_on_a_fine_plate_rest_at_their_radius_and_push_by_their_
 TEST(RigidTools, a_box_pressed_flat_on_a_fine_plate_is_not_turned)
 {
     const TestModel& model = test_model("rigid-plate", make_thin_plate(24, 0.01).value(), 100);
-    const Tool box = tools()[0];
+    const SolidCore box = tools()[0];
     FrameRig rig(models_for(box, model), options_for(box));
     ToolState state;
     state.position_m = Vec3(0.05, 0.05, 0.1);
@@ -325,7 +244,7 @@ TEST(RigidTools, a_box_pressed_flat_on_a_fine_plate_is_not_turned)
 TEST(RigidTools, replay_bit_for_bit)
 {
     Random random(2);
-    for (const Tool& tool : tools())
+    for (const SolidCore& tool : tools())
     {
         RigOptions options = options_for(tool);
         options.record = true;

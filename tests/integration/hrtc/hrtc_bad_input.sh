@@ -120,10 +120,14 @@ for value in 0 17 -1; do
     refuse 3 --tools --model bumpy --tools "$value"
 done
 refuse 3 '--tools: 2, but --tool is given 1 times' --model bumpy --tools 2 --tool sphere:0.01
-for value in 0.5 3001 soft 500,-0.1 500,3.1 500,0.5,0.6 500,1,1,21 500,1,1,1,1 nan '500,' ''; do
+for value in 0.5 3001 soft 500,-0.1 500,3.1 500,0.5,0.6 500,1,1,21 500,1,1,1,1 nan '500,' '' \
+    stiffness=0 static=0.1,static=0.1 dynamic=0.1 texture=1; do
     refuse_option --material "$value" '1 to 3000 N/m'
 done
 refuse 3 --material --model bumpy --material 100 --material 100
+for value in 0 101 -1 stiff nan; do
+    refuse 3 --angular-stiffness --model bumpy --angular-stiffness "$value"
+done
 
 # A model's name, which is checked before anything is asked for.
 readonly letters='A-Z a-z 0-9 . _ -'

@@ -14,16 +14,36 @@ check report.json frames == 2000 tools.0.stiffness_cap_n_per_m == 400 \
     tools.1.stiffness_cap_n_per_m '>' 3059 tools.1.stiffness_cap_n_per_m '<' 3061 \
     tools.2.stiffness_cap_n_per_m '>' 3059 tools.2.stiffness_cap_n_per_m '<' 3061 \
     tools.3.stiffness_cap_n_per_m == 1800
+grep -q '^touches  *bumpy: 0\.[0-9]* m across, round (0, 0, 0)$' hrtc.log \
+    || fault 'it does not say where the object is'
+grep -q '^tool  *sphere:0.002 on sim, .*: 1 object in reach; a wall of 400 N/m, of 500 asked for' \
+    hrtc.log || fault 'it does not say what the first tool can do'
+grep -q '^tool  *sphere:0.002 on sim, .*: 1 object in reach; a wall of 500 N/m$' hrtc.log \
+    || fault 'it does not say what the second tool can do'
 for i in 0 1 2 3; do
     check report.json tools.$i.force_max_n '<' 3.3
     check_contact report.json tools.$i.contact_share 0.5
 done
 check_clean report.json
 
+# What comes to nothing is said before it runs.
+run_hrtc "${model[@]}" --duration 0.5 --material 500,0,0,2
+grep -q '^tool .*NOTHING WILL BE FELT' hrtc.log || fault 'a wall of nothing is not told'
+
+# A run of which nothing came is a failure for who says so.
+code=0
+"$hrtc" --allow-no-rt "${model[@]}" --duration 0.5 --motion free --strict >strict.log || code=$?
+((code == 1)) || fault "--strict: a run without a touch ended with $code"
+grep -q '^verdict .*nothing was touched' strict.log || fault 'the verdict is silent'
+
 # Readings that go wrong while the hand slides.
 run_hrtc "${model[@]}" --duration 3 --device-fault jitter@700+50 --device-fault nan@1000+50 \
     --device-fault dropout@1300+50 --device-fault disconnect@1600+50 \
     --device-fault time_jump@1900+50 --device-fault stuck@2400+20
+grep -q '^verdict .*force off for: .*disconnect 1.*; devices gone: 1' hrtc.log \
+    || fault 'the verdict does not tell of the device'
+grep -q '^hrtc: tool 0: its device, sim, is gone' hrtc.log || fault 'nobody tells that it is gone'
+grep -q '^hrtc: tool 0: its device, sim, is back' hrtc.log || fault 'nobody tells that it is back'
 check report.json frames == 3000 safety.begun.garbage '>=' 3 safety.begun.disconnect == 1 \
     tools.0.force_max_n '>' 0.5 tools.0.force_max_n '<=' 8
 check_clean report.json

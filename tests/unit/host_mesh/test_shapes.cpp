@@ -35,8 +35,9 @@ void expect_volume(const TriangleMesh& mesh, double volume, double relative)
 
 TEST(Shapes, are_named_both_ways)
 {
-    EXPECT_EQ(shape_names(), (std::vector<std::string_view>{"sphere", "bumpy-sphere", "torus",
-                                                            "terrain", "gear"}));
+    EXPECT_EQ(shape_names(),
+              (std::vector<std::string_view>{"sphere", "bumpy-sphere", "torus", "terrain", "gear",
+                                             "peg", "socket", "plate"}));
     for (const auto name : shape_names())
     {
         EXPECT_TRUE(parse_shape(name)) << name;
@@ -92,12 +93,49 @@ TEST(Shapes, are_watertight_and_turned_outward_at_every_size)
         expect_sound(made(make_shape(Shape::bumpy_sphere, faces)), 2, 0);
         expect_sound(made(make_shape(Shape::torus, faces)), 0, 0);
         expect_sound(made(make_shape(Shape::gear, faces)), 0, 0);
+        expect_sound(made(make_shape(Shape::peg, faces)), 2, 0);
+        expect_sound(made(make_shape(Shape::socket, faces)), 2, 0);
+        expect_sound(made(make_shape(Shape::plate, faces)), 2, 0);
     }
     const double ball = 4.0 / 3.0 * kPi * std::pow(0.05, 3);
     expect_volume(made(make_shape(Shape::sphere, 50'000)), ball, 0.001);
     expect_volume(made(make_shape(Shape::bumpy_sphere, 50'000)), ball, 0.005);
     expect_volume(made(make_shape(Shape::torus, 50'000)), 2.0 * kPi * kPi * 0.05 * 0.02 * 0.02,
                   0.001);
+}
+
+TEST(Shapes, a_peg_has_room_of_a_fifth_of_a_millimetre_in_its_socket)
+{
+    constexpr double kPi = std::numbers::pi;
+    const auto cone = [](double r, double s, double h)
+    { return kPi * h * (r * r + r * s + s * s) / 3.0; };
+    const double pin = kPi * 0.01 * 0.01 * 0.058 + 2.0 * cone(0.01, 0.009, 0.001);
+    const double hole = kPi * 0.0102 * 0.0102 * 0.039 + cone(0.0102, 0.0112, 0.001);
+    expect_volume(made(make_shape(Shape::peg, 50'000)), pin, 0.001);
+    expect_volume(made(make_shape(Shape::socket, 50'000)), kPi * 0.03 * 0.03 * 0.05 - hole, 0.001);
+    expect_volume(made(make_shape(Shape::plate, 50'000)), 0.1 * 0.1 * 0.01, 1e-9);
+
+    // What the peg has farthest from the axis, and the walls of the hole nearest to it.
+    double thickest = 0.0;
+    for (const auto& p : made(make_shape(Shape::peg, 20'000)).positions)
+    {
+        thickest = std::max(thickest, std::hypot(p[0], p[1]));
+    }
+    const auto socket = made(make_shape(Shape::socket, 20'000));
+    double narrowest = 1.0;
+    for (const auto& face : socket.faces)
+    {
+        const auto& a = socket.positions[face[0]];
+        const auto& b = socket.positions[face[1]];
+        const bool is_wall = std::max(a[2], b[2]) < 0.0189 && std::min(a[2], b[2]) > -0.0199;
+        if (is_wall && std::hypot(a[0], a[1]) < 0.02)
+        {
+            narrowest = std::min(narrowest, std::hypot(0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])));
+        }
+    }
+    EXPECT_NEAR(thickest, 0.01, 1e-12);
+    EXPECT_GT(narrowest, 0.01 + 0.00017) << "less what facets take";
+    EXPECT_LE(narrowest, 0.0102);
 }
 
 TEST(Shapes, gear_has_the_volume_of_its_outline_at_every_size)

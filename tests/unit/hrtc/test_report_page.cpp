@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "platform/hrtc/report.hpp"
 #include "platform/hrtc/report_page.hpp"
+#include "platform/hrtc/verdict.hpp"
 #include "platform/plot/markup.hpp"
 #include "tests/shared/count_of.hpp"
 
@@ -33,6 +34,11 @@ Json report_of(const std::string& model)
 {
     return {
         {"schema", 1},
+        {"run",
+         {{"version", "1.2.3"},
+          {"started_utc", "2026-01-02T03:04:05Z"},
+          {"devices", {"hand"}},
+          {"options", "rate=1000"}}},
         {"frames", 5'003},
         {"period_ns", 1'000'003},
         {"duration_s", 5.003},
@@ -86,13 +92,14 @@ Json report_of(const std::string& model)
         {"force", {{"max_n", 1.25}, {"max_step_n", 0.75}, {"contact_share", 0.5}}},
         {"safety",
          {{"supervisor_brakes", 107},
-          {"begun", {{"software", 1}, {"stall", 109}}},
+          {"begun", {{"software", 1}, {"disconnect", 0}, {"stall", 109}}},
           {"events", Json::array({{{"time_s", 0.125}, {"causes", {"stall"}}}})}}},
         {"faults", {{"chunk_late", 113}}},
         {"machine", {{"kernel", "Linux <6> & more"}, {"processors", 127}}},
         {"models", Json::array({{{"name", model},
                                  {"static", false},
                                  {"diagonal_m", 0.3125},
+                                 {"pieces_refused", 0},
                                  {"pose", {{"followed", false}, {"moves", 131}}}}})},
         {"tools", Json::array({{{"radius_m", 0.002},
                                 {"torque_max_nm", 0.0625},
@@ -198,8 +205,15 @@ TEST(ReportPage, says_what_went_wrong)
     report["safety"]["begun"]["stall"] = 3;
     report["safety"]["supervisor_brakes"] = 1;
     EXPECT_TRUE(verdict("bad", "2 deadlines missed by the loop&#39;s own fault; 5 frames with a "
-                               "stale answer; 3 times the force was off for: stall; 1 brakes by "
-                               "the supervisor; the host went away."));
+                               "stale answer; force off for: stall 3; 1 brakes by the "
+                               "supervisor; the host went away."));
+    EXPECT_EQ(losses_of(report), std::vector<std::string>{"the host went away"});
+    report["safety"]["begun"]["disconnect"] = 4;
+    report["models"][0]["pieces_refused"] = 6;
+    report["force"]["contact_share"] = 0.0;
+    EXPECT_EQ(losses_of(report),
+              (std::vector<std::string>{"the host went away", "devices gone: 4",
+                                        "6 damaged pieces of bunny", "nothing was touched"}));
 }
 
 TEST(ReportPage, leaves_out_lists_with_nothing_in_them)

@@ -108,6 +108,7 @@ TEST(RecordingFile, gives_back_what_was_written)
     EXPECT_EQ(setup.tools[0].stiffness_n_per_m, 500.0);
     EXPECT_EQ(setup.tools[0].torque_max_nm, 0.25);
     EXPECT_TRUE(setup.tools[0].passes_through);
+    EXPECT_EQ(setup.tools[0].angular_stiffness_nm_per_rad, 0.75);
     EXPECT_EQ(setup.objects[0].model.value, 0U);
     EXPECT_EQ(setup.objects[0].material.stiffness_n_per_m, 250.0);
     EXPECT_EQ(setup.objects[0].material.static_friction, 0.5);
@@ -134,7 +135,7 @@ TEST(RecordingFile, gives_back_what_was_written)
 TEST(RecordingFile, begins_with_its_magic_and_version)
 {
     const std::vector<std::byte> bytes = example();
-    EXPECT_EQ(std::memcmp(bytes.data(), "TACTREC\n\x07\0\0\0", 12), 0);
+    EXPECT_EQ(std::memcmp(bytes.data(), "TACTREC\n\x08\0\0\0", 12), 0);
 }
 
 TEST(RecordingFile, tells_from_where_frames_were_lost)
@@ -150,7 +151,7 @@ TEST(RecordingFile, is_refused_when_it_is_of_another_kind_or_version)
     std::vector<std::byte> bytes = example();
     bytes[8] = std::byte{2};
     expect_refusal(bytes,
-                   "at byte 8: format version 2 is of an older Tactus; this program reads 7");
+                   "at byte 8: format version 2 is of an older Tactus; this program reads 8");
     bytes[3] = std::byte{'X'};
     expect_refusal(bytes, "is not a Tactus recording");
     bytes = example();
@@ -195,7 +196,8 @@ TEST(RecordingFile, is_refused_when_a_value_is_out_of_its_range)
     // What the checksums vouch for is checked all the same.
     constexpr std::size_t kTool = 26;
     constexpr std::size_t kTorque = kTool + 33;
-    constexpr std::size_t kCore = kTorque + 9;
+    constexpr std::size_t kAngular = kTorque + 9;
+    constexpr std::size_t kCore = kAngular + 8;
     constexpr std::size_t kObject = kCore + 1;
     constexpr std::size_t kSpec = kObject + 9; // After its kind, number and generation.
     constexpr std::size_t kPose = kSpec + kObjectSpecBytes;
@@ -214,7 +216,9 @@ TEST(RecordingFile, is_refused_when_a_value_is_out_of_its_range)
     expect_refusal(with_bytes(kSetup, kTool + 6, {0xF8, 0x7F}), "tool 0 is not within"); // NaN.
     expect_refusal(with_bytes(kSetup, kTorque + 6, {0xF8, 0x7F}), "tool 0 is not within");
     expect_refusal(with_bytes(kSetup, kTorque - 1, {2}), "tool 0 has an unknown core");
-    expect_refusal(with_bytes(kSetup, kCore - 1, {2}), "tool 0 has an unknown core");
+    expect_refusal(with_bytes(kSetup, kAngular - 1, {2}), "tool 0 has an unknown core");
+    expect_refusal(with_bytes(kSetup, kAngular + 6, {0xF8, 0x7F}), "tool 0 is not within");
+    expect_refusal(with_bytes(kSetup, kAngular + 6, {0xF0, 0xBF}), "tool 0 is not within");
     expect_refusal(with_bytes(kSetup, kCore, {9}), "tool 0 has an unknown core");
     expect_refusal(with_bytes(kSetup, kObject, {1}), "object 0 doesn't come where it should");
     expect_refusal(with_bytes(kSetup, kObject, {5}), "object 0 doesn't come where it should");

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/hrtc/start_lines.hpp"
+
+#include "rt_core/spm/header.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+namespace tactus::hrtc
+{
+
+namespace
+{
+
+/// With more objects one line tells of all.
+constexpr std::size_t kObjectsInLines = 4;
+/// No hand feels a softer wall.
+constexpr double kSoftest_n_per_m = 1.0;
+
+/// The ball round an object's box, in the world.
+struct Surroundings
+{
+    Vec3 center_m;
+    double radius_m{0.0};
+};
+
+/// To a tenth of a millimetre.
+std::string text_of(const Vec3& place_m)
+{
+    const auto rounded = [](double value) { return std::round(1e4 * value) / 1e4 + 0.0; };
+    return fmt::format("({:.6g}, {:.6g}, {:.6g})", rounded(place_m.x()), rounded(place_m.y()),
+                       rounded(place_m.z()));
+}
+
+std::vector<Surroundings> surroundings_of(const Controller& controller)
+{
+    std::vector<Surroundings> all;
+    for (std::size_t i = 0; i < controller.objects().size(); ++i)
+    {
+        const ServedModel& model = controller.models()[controller.objects()[i].model.value];
+        const ModelHeader header = ModelHeader::parse(model.header).value();
+        const auto& extent = header.fields().extent_quanta;
+        const Vec3 half_m =
+            0.5 * static_cast<double>(header.quantum_m()) * Vec3(extent[0], extent[1], extent[2]);
+        const ObjectPose pose = model_pose(controller.poses()[i], header.origin_m());
+        all.push_back({to_world(pose, half_m), pose.scale * half_m.norm()});
+    }
+    return all;
+}
+
+std::string object_lines(const Controller& controller, const std::vector<Surroundings>& objects)
+{
+    std::string text;
+    for (std::size_t i = 0; i < objects.size() && objects.size() <= kObjectsInLines; ++i)
+    {
+        const std::size_t model = controller.objects()[i].model.value;
+        text += fmt::format("{:<12}{}: {:.4g} m across, round {}\n", "touches",
+                            controller.models()[model].name, 2.0 * objects[i].radius_m,
+                            text_of(objects[i].center_m));
+    }
+    if (objects.size() > kObjectsInLines)
+    {
+        Vec3 low_m = objects.front().center_m;
+        Vec3 high_m = low_m;
+        for (const Surroundings& object : objects)
+        {
+            low_m = low_m.cwiseMin(object.center_m);
+            high_m = high_m.cwiseMax(object.center_m);
+        }
+        text = fmt::format("{:<12}{} objects of {} models, round {} to {}\n", "touches",
+                           objects.size(), controller.models().size(), text_of(low_m),
+                           text_of(high_m));
+    }
+    return text;
+}
+
+std::string tool_line(const Options& options, const ToolSetup& tool,
+                      const std::vector<Surroundings>& objects)
+{
+    const DeviceInfo& device = tool.device->info();
+    const auto& centre = device.workspace_centre_world_m;
+    const Vec3 centre_m(centre[0], centre[1], centre[2]);
+    const auto reached =
+        std::ranges::count_if(objects,
+                              [&](const Surroundings& object)
+                              {
+                                  return (object.center_m - centre_m).norm() - object.radius_m <=
+                                         device.workspace_radius_m + tool.hand_radius_m;
+                              });
+    const double asked = options.stiffness_n_per_m;
+    const double stiffest = tool.limits.stiffness_n_per_m;
+    const std::string reach = reached == 0   ? "WHERE NO OBJECT IS"
+                              : reached == 1 ? "1 object in reach"
+                                             : fmt::format("{} objects in reach", reached);
+    const std::string wall =
+        stiffest < kSoftest_n_per_m
+            ? "NOTHING WILL BE FELT: the material's damping leaves the device no wall"
+            : fmt::format("a wall of {:.4g} N/m{}", stiffest,
+                          stiffest < asked ? fmt::format(", of {:.4g} asked for", asked) : "");
+    return fmt::format("{:<12}{} on {}, {:.3g} m round {}: {}; {}\n", "tool", tool.shape,
+                       device.name, device.workspace_radius_m, text_of(centre_m), reach, wall);
+}
+
+} // namespace
+
+std::string start_lines(const Options& options, const Controller& controller)
+{
+    const std::vector<Surroundings> objects = surroundings_of(controller);
+    std::string text = object_lines(controller, objects);
+    for (const ToolSetup& tool : controller.tools())
+    {
+        text += tool_line(options, tool, objects);
+    }
+    return text;
+}
+
+} // namespace tactus::hrtc

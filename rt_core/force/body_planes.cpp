@@ -1,0 +1,359 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "rt_core/force/body_planes.hpp"
+
+#include "rt_core/math/infinity.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace tactus
+{
+
+namespace
+{
+
+/// Planes this alike are one: a share of the tool's size. The one that holds back most is kept.
+constexpr double kSamePlane = 1e-3;
+/// An edge of a face that is touched is a seam where it leans by no more than this, and is farther
+/// away by no more than this share of the radius: it leans by its distance along the face over the
+/// radius. A face that really rises by an angle is touched above the other's plane by half of the
+/// angle's square times the radius. And the tool stands as high over the other's plane there as
+/// where that is touched: an edge that carries it has it lower, by half of the lean's square.
+constexpr double kLeastLean = 1e-3;
+constexpr double kMostLean = 0.8;
+constexpr double kSeamGap = 0.5;
+constexpr double kOnFace = 1e-3;
+constexpr double kAbove = 0.1;
+/// What is within this share of the radius of touching may be held by friction.
+constexpr double kTouchingGap = 0.02;
+/// Slips below this share of the radius are none.
+constexpr double kLeastSlip = 1e-4;
+/// Friction that is this near to what the pressure allows is not corrected.
+constexpr double kSameFriction = 1e-4;
+
+Motion<6> to_motion(const Vec3& translation, const Vec3& rotation) noexcept
+{
+    Motion<6> motion;
+    motion.head<3>() = translation;
+    motion.tail<3>() = rotation;
+    return motion;
+}
+
+/// Some unit vector across a unit vector.
+Vec3 across(const Vec3& normal) noexcept
+{
+    const Vec3 axis = std::abs(normal.x()) < 0.6 ? Vec3(1.0, 0.0, 0.0) : Vec3(0.0, 1.0, 0.0);
+    return normal.cross(axis).normalized();
+}
+
+} // namespace
+
+void BodyPlanes::begin(const Vec3& place_m, double arm_m, double size_m, double radius_m) noexcept
+{
+    spaces_.clear();
+    touches_.clear();
+    grips_.clear();
+    place_m_ = place_m;
+    arm_m_ = arm_m;
+    size_m_ = size_m;
+    radius_m_ = radius_m;
+    is_crowded_ = false;
+}
+
+Vec3 BodyPlanes::lever_m(std::uint32_t i) const noexcept
+{
+    return touches_[i].on_tool_m - radius_m_ * touches_[i].normal - place_m_;
+}
+
+void BodyPlanes::add(const BodyTouch& touch, const BodyGrip& grip) noexcept
+{
+    if (touch.normal == Vec3(0.0, 0.0, 0.0))
+    {
+        return; // Of a face without area: those round it hold.
+    }
+    const Vec3 lever = (touch.on_tool_m - place_m_) / arm_m_;
+    const HalfSpace<6> space{to_motion(touch.normal, lever.cross(touch.normal)),
+                             radius_m_ - touch.normal.dot(touch.on_tool_m - touch.on_surface_m)};
+    std::size_t least = 0;
+    for (std::size_t i = 0; i < spaces_.size(); ++i)
+    {
+        const HalfSpace<6>& other = spaces_[i];
+        if (apart_sq(other, space) < kSamePlane * kSamePlane)
+        {
+            replace(i, space, touch, grip);
+            return;
+        }
+        least = other.offset < spaces_[least].offset ? i : least;
+    }
+    if (!spaces_.full())
+    {
+        spaces_.push_back(space);
+        touches_.push_back(touch);
+        grips_.push_back(grip);
+        return;
+    }
+    is_crowded_ = true;
+    replace(least, space, touch, grip);
+}
+
+void BodyPlanes::replace(std::size_t plane, const HalfSpace<6>& space, const BodyTouch& touch,
+                         const BodyGrip& grip) noexcept
+{
+    if (space.offset > spaces_[plane].offset)
+    {
+        spaces_[plane] = space;
+        touches_[plane] = touch;
+        grips_[plane] = grip;
+    }
+}
+
+bool BodyPlanes::is_seam(std::size_t plane) const noexcept
+{
+    const BodyTouch& touch = touches_[plane];
+    if (touch.is_face || spaces_[plane].offset < -kSeamGap * radius_m_)
+    {
+        return false;
+    }
+    for (std::size_t i = 0; i < spaces_.size(); ++i)
+    {
+        const BodyTouch& face = touches_[i];
+        if (!face.is_face || face.surface != touch.surface ||
+            spaces_[i].offset < spaces_[plane].offset)
+        {
+            continue;
+        }
+        const double lean = (touch.normal - face.normal).norm();
+        const double edge_m = face.normal.dot(touch.on_surface_m - face.on_surface_m);
+        const double tool_m = face.normal.dot(touch.on_tool_m - face.on_surface_m);
+        if (lean > kLeastLean && lean < kMostLean &&
+            std::abs(edge_m) <= kOnFace * lean * radius_m_ &&
+            tool_m >= radius_m_ * (1.0 - kAbove * lean * lean))
+        {
+            return true;
+        }
+    }
+    return false;
+}
+
+BodyMotion BodyPlanes::nearest(const Motion<6>& wanted) noexcept
+{
+    BodyMotion answer;
+    const NearestMotion<6> held = plain(wanted, answer.is_squeezed);
+    answer.motion = held.motion;
+    bool rubs = false;
+    for (std::size_t i = 0; i < held.held_by.size(); ++i)
+    {
+        const std::uint32_t plane = held.held_by[i];
+        answer.pushes.push_back({plane, spaces_[plane].normal, held.reactions[i]});
+        rubs = rubs || grips_[plane].friction > 0.0;
+    }
+    if (answer.is_squeezed || !rubs)
+    {
+        return answer;
+    }
+    const Chosen chosen = choose(held);
+    if (chosen.empty())
+    {
+        return answer; // It comes to the surface in this step.
+    }
+    tilt(chosen, wanted);
+    const NearestMotion<6> tilted = nearest_motion<6>(tilted_.view(), wanted);
+    if (!tilted.is_feasible || tilted.held_by.empty())
+    {
+        return answer; // Surfaces that part under the tool: nothing says where it would stick.
+    }
+    return is_stuck(tilted) ? stuck(tilted) : sliding(tilted, wanted);
+}
+
+/// A gap that is too narrow for the tool holds it where it is.
+NearestMotion<6> BodyPlanes::plain(const Motion<6>& wanted, bool& is_squeezed) noexcept
+{
+    NearestMotion<6> nearest = nearest_motion<6>(spaces_.view(), wanted);
+    if (nearest.is_feasible)
+    {
+        return nearest;
+    }
+    is_squeezed = true;
+    for (HalfSpace<6>& space : spaces_)
+    {
+        space.offset = std::min(space.offset, 0.0);
+    }
+    return nearest_motion<6>(spaces_.view(), wanted);
+}
+
+/// The square of how different two planes are, the tool's size being the arm.
+double BodyPlanes::apart_sq(const HalfSpace<6>& a, const HalfSpace<6>& b) const noexcept
+{
+    const double ratio = arm_m_ / size_m_;
+    const Motion<6> between = a.normal - b.normal;
+    return between.head<3>().squaredNorm() + ratio * ratio * between.tail<3>().squaredNorm();
+}
+
+/// What holds, then of what touches always that which differs most from what was chosen: a flat
+/// body needs all its corners to stick, wherever its weight goes.
+BodyPlanes::Chosen BodyPlanes::choose(const NearestMotion<6>& plain) const noexcept
+{
+    Chosen chosen;
+    std::array<double, kMaxHalfSpaces> nearest{};
+    for (std::size_t i = 0; i < spaces_.size(); ++i)
+    {
+        const bool touches = spaces_[i].offset >= -kTouchingGap * radius_m_;
+        nearest[i] = touches && grips_[i].friction > 0.0 && !is_seam(i) ? kInfinity : 0.0;
+    }
+    const auto take = [&](std::uint32_t taken)
+    {
+        chosen.push_back(taken);
+        for (std::size_t i = 0; i < spaces_.size(); ++i)
+        {
+            nearest[i] =
+                nearest[i] > 0.0 ? std::min(nearest[i], apart_sq(spaces_[i], spaces_[taken])) : 0.0;
+        }
+        nearest[taken] = 0.0;
+    };
+    for (const std::uint32_t plane : plain.held_by)
+    {
+        if (nearest[plane] > 0.0)
+        {
+            take(plane);
+        }
+    }
+    while (!chosen.full())
+    {
+        const auto near = std::span(nearest).first(spaces_.size());
+        const auto farthest = std::ranges::max_element(near);
+        if (!(*farthest > kSamePlane * kSamePlane))
+        {
+            break;
+        }
+        take(static_cast<std::uint32_t>(farthest - near.begin()));
+    }
+    return chosen;
+}
+
+/// What finds no room among the tilted ones is left to the plain planes, and to the certificate.
+void BodyPlanes::tilt(const Chosen& chosen, const Motion<6>& wanted) noexcept
+{
+    tilted_.clear();
+    tilts_.clear();
+    untilted_.clear();
+    for (const std::uint32_t touch : chosen)
+    {
+        tilt(touch, wanted);
+    }
+    for (std::uint32_t i = 0; i < spaces_.size() && !tilted_.full(); ++i)
+    {
+        if (std::ranges::find(chosen, i) == chosen.end())
+        {
+            tilted_.push_back({spaces_[i].normal, std::min(spaces_[i].offset, 0.0)});
+            untilted_.push_back(i);
+        }
+    }
+}
+
+/// Offsets are none where the tool is too near: sticking then always is possible. The surface's own
+/// way moves the pyramid's top along with it.
+void BodyPlanes::tilt(std::uint32_t touch, const Motion<6>& wanted) noexcept
+{
+    const BodyGrip& grip = grips_[touch];
+    const Vec3& normal = touches_[touch].normal;
+    const Vec3 lever = lever_m(touch) / arm_m_;
+    const Vec3 way = wanted.head<3>() + wanted.tail<3>().cross(lever) - grip.way_m;
+    const Vec3 along = way - normal.dot(way) * normal;
+    const double length = along.norm();
+    const Vec3 first = length > kLeastSlip * radius_m_ ? Vec3(along / length) : across(normal);
+    const Vec3 second = normal.cross(first);
+    for (const Vec3& tangent : {first, Vec3(-first), second, Vec3(-second)})
+    {
+        const Vec3 drag_m = grip.friction * tangent;
+        const Motion<6> drag = to_motion(drag_m, lever.cross(drag_m));
+        tilted_.push_back({spaces_[touch].normal + drag,
+                           std::min(spaces_[touch].offset, 0.0) + drag_m.dot(grip.way_m)});
+        tilts_.push_back({touch, drag});
+    }
+}
+
+/// A tilted plane that pushes lifts the tool as far as it slips, times the coefficient.
+bool BodyPlanes::is_stuck(const NearestMotion<6>& tilted) const noexcept
+{
+    return std::ranges::all_of(tilted.held_by,
+                               [&](std::uint32_t plane)
+                               {
+                                   if (plane >= tilts_.size())
+                                   {
+                                       return true;
+                                   }
+                                   const std::uint32_t touch = tilts_[plane].touch;
+                                   const double lift_m = spaces_[touch].normal.dot(tilted.motion) -
+                                                         std::min(spaces_[touch].offset, 0.0);
+                                   return lift_m <= grips_[touch].friction * kLeastSlip * radius_m_;
+                               });
+}
+
+BodyMotion BodyPlanes::stuck(const NearestMotion<6>& tilted) noexcept
+{
+    BodyMotion answer;
+    answer.sticks = true;
+    for (std::size_t i = 0; i < tilted.held_by.size(); ++i)
+    {
+        const std::uint32_t plane = tilted.held_by[i];
+        const std::uint32_t touch =
+            plane < tilts_.size() ? tilts_[plane].touch : untilted_[plane - tilts_.size()];
+        answer.pushes.push_back({touch, tilted_[plane].normal, tilted.reactions[i]});
+    }
+    // What found no room above, and what the tool is too near to.
+    const NearestMotion<6> free = plain(tilted.motion, answer.is_squeezed);
+    answer.motion = free.motion;
+    return answer;
+}
+
+/// How much of that friction the planes' pressure makes.
+double BodyPlanes::share_of(const NearestMotion<6>& plain, double most) const noexcept
+{
+    double sum = 0.0;
+    for (std::size_t i = 0; i < plain.held_by.size(); ++i)
+    {
+        sum += grips_[plain.held_by[i]].dynamic * plain.reactions[i];
+    }
+    return sum < most ? sum / most : 1.0;
+}
+
+BodyMotion BodyPlanes::sliding(const NearestMotion<6>& tilted, const Motion<6>& wanted) noexcept
+{
+    Motion<6> drag = Motion<6>::Zero();
+    double most = 0.0;
+    for (std::size_t i = 0; i < tilted.held_by.size(); ++i)
+    {
+        const std::uint32_t plane = tilted.held_by[i];
+        if (plane < tilts_.size())
+        {
+            const BodyGrip& grip = grips_[tilts_[plane].touch];
+            drag += tilted.reactions[i] * grip.dynamic / grip.friction * tilts_[plane].drag;
+            most += tilted.reactions[i] * grip.dynamic;
+        }
+    }
+    BodyMotion answer;
+    answer.slides = true;
+    NearestMotion<6> held = plain(wanted + drag, answer.is_squeezed);
+    if (share_of(held, most) < 1.0 - kSameFriction)
+    {
+        held = plain(wanted + share_of(held, most) * drag, answer.is_squeezed);
+    }
+    answer.motion = held.motion;
+    double pressure = 0.0;
+    for (std::size_t i = 0; i < held.held_by.size(); ++i)
+    {
+        pressure += held.reactions[i];
+    }
+    // Friction goes with the planes that press, so that a push is a normal and its part of it.
+    const double part = pressure > 0.0 ? share_of(held, most) / pressure : 0.0;
+    for (std::size_t i = 0; i < held.held_by.size(); ++i)
+    {
+        const std::uint32_t plane = held.held_by[i];
+        answer.pushes.push_back({plane, spaces_[plane].normal + part * drag, held.reactions[i]});
+    }
+    return answer;
+}
+
+} // namespace tactus
