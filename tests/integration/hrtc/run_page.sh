@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: Apache-2.0
+# shellcheck shell=bash
+# Runs what a page of docs shows; sourced after common.sh.
+
+# run_page PAGE COUNT: the page's COUNT blocks of shell and Python, as they stand there, in its
+# order, in one shell that ends at the first failure. Programs are called as the page calls them,
+# on a domain of this test's, and on any machine. What they print is in page.log.
+run_page() {
+    local program
+    command -v python3 >/dev/null || exit 77
+    mkdir programs
+    cat >programs/hrtc <<SCRIPT
+#!/bin/bash
+[[ "\$1" == --replay ]] || set -- --allow-no-rt --domain $domain "\$@"
+exec "$hrtc" "\$@"
+SCRIPT
+    cat >programs/spm_publish <<SCRIPT
+#!/bin/bash
+exec "$publish" --domain $domain "\$@"
+SCRIPT
+    chmod +x programs/*
+    for program in "$build" "$inspect"; do
+        ln -s "$program" programs/
+    done
+    # One of Python is a document for python3.
+    awk '/^```/ { kind = kind == "" ? substr($0, 4) : ""
+                  blocks += kind == "sh" || kind == "python"
+                  if (kind == "python") print "python3 - <<\"PYTHON\""
+                  if (kind == "" && was == "python") print "PYTHON"
+                  was = kind; next }
+         kind == "sh" || kind == "python"
+         END { print "echo ran " blocks " blocks" }' "$1" >page.sh
+    PATH=$scratch/programs:$PATH bash -eu page.sh >page.log 2>&1 || fail "$1: $(cat page.log)"
+    cat page.log
+    grep -qx "ran $2 blocks" page.log || fail "not $2 blocks were run"
+}
