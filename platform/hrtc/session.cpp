@@ -173,7 +173,8 @@ std::optional<Refusal> Session::take_scene()
 {
     if (client_ != nullptr && (options_.follows_poses || !options_.scene.empty()))
     {
-        reader_ = std::make_unique<dds::SceneReader>(client_->domain(), client_->exchange());
+        reader_ =
+            std::make_unique<dds::SceneReader>(client_->domain(), client_->exchange(), log_line);
     }
     if (options_.scene.empty())
     {

@@ -160,6 +160,25 @@ if [[ "$extent" == quick ]]; then
     serving=$!
     trap 'kill "$serving" 2>/dev/null' EXIT
     ./shared/touch ring "$domain" || fail "over DDS touch ends with $?"
+    kill "$serving"
+    # Two controllers push one cup of somebody else's host, and it gives way to both.
+    ./shared/slide ring.spm "$domain" >slide.txt &
+    serving=$!
+    pushing=()
+    trap 'kill "$serving" "${pushing[@]}" 2>/dev/null' EXIT
+    for name in left right; do
+        "$build/bin/hrtc" --allow-no-rt --domain "$domain" --model cup --device sim:touch \
+            --duration 8 --report "$name.json" >"$name.log" 2>&1 &
+        pushing+=($!)
+    done
+    for id in "${pushing[@]}"; do
+        wait "$id" || fail "a controller ends badly: $(cat left.log right.log)"
+    done
+    grep -q 'pushed by 2 of 2 controllers' slide.txt || fail "two do not push: $(<slide.txt)"
+    for name in left right; do
+        grep -qE '^poses  *cup: moved in [0-9]{3,} frames' "$name.log" \
+            || fail "$name: the cup did not give way: $(<"$name.log")"
+    done
     ./shared/touch nobody.spm 2>refused.log && fail "a missing file is not refused"
     grep -qF 'touch: nobody.spm: ' refused.log || fail "a missing file: $(<refused.log)"
     refuses "the component 'gui' is not installed; there are: core, transport, platform, host, c" \

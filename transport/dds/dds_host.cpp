@@ -27,7 +27,7 @@ constexpr auto kAnnouncement = std::chrono::seconds(1);
 constexpr std::size_t kMaxClients = 1'024;
 /// Controllers that get all objects at the same time: many at once make each other lose what they
 /// get, and it is sent again and again.
-constexpr std::ptrdiff_t kMaxJoining = 4;
+constexpr std::ptrdiff_t kMaxJoining = 2;
 /// Who says nothing about its objects for so long has them, or has other troubles.
 constexpr auto kJoiningMax = std::chrono::seconds(5);
 /// It is told again that it may come in; the first time may have been before it listened.
@@ -320,7 +320,7 @@ void DdsHost::serve()
     has_more_work_ = sent == kSamplesPerStep;
 }
 
-/// A few controllers at a time get all objects.
+/// Two controllers at a time get all objects.
 void DdsHost::let_in()
 {
     const auto now = Clock::now();

@@ -37,7 +37,7 @@ constexpr const char* kConfiguration = R"(<CycloneDDS><Domain id="any">
   <Peers><Peer address="127.0.0.1"/></Peers>
 </Discovery>
 <Internal>
-  <NackDelay>1 ms</NackDelay>
+  <NackDelay>10 ms</NackDelay>
   <MultipleReceiveThreads>false</MultipleReceiveThreads>
 </Internal>
 <Threads>

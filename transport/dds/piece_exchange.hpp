@@ -64,6 +64,8 @@ public:
 
     /// Refreshes the catalogue, hands over what has come, sends wishes and what is due.
     void step();
+    /// What is served now, as of the last step().
+    [[nodiscard]] const Catalogue& catalogue() const noexcept { return catalogue_; }
     /// How often that was called.
     [[nodiscard]] std::uint64_t steps() const noexcept { return steps_; }
 

@@ -2,9 +2,12 @@
 // Copyright the Tactus authors.
 #include "transport/dds/scene_reader.hpp"
 
+#include "transport/content_hash.hpp"
 #include "transport/dds/placement.hpp"
 #include "transport/dds/take.hpp"
 #include "transport/model_name.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cstring>
@@ -24,6 +27,8 @@ constexpr std::size_t kRecordsPerPoll = 1'024;
 constexpr std::size_t kMotionPerPoll = 128;
 /// A host that says how many objects it has should have told of them by then.
 constexpr auto kCompleteMax = std::chrono::seconds(2);
+/// A host tells of its models every second: the model of an object should be known by then.
+constexpr auto kServedMax = std::chrono::seconds(2);
 
 } // namespace
 
@@ -58,6 +63,7 @@ void SceneReader::poll(std::span<const std::uint64_t> hosts, const Take& take)
         }
         take_records(epoch, host, take);
         take_motion(host, take);
+        look_at_strangers(epoch, host, take);
         if (!host.is_complete && Clock::now() - host.since > kCompleteMax)
         {
             host.is_complete = true; // As far as can be told.
@@ -120,6 +126,7 @@ void SceneReader::take_records(std::uint64_t epoch, Host& host, const Take& take
             const bool is_gone = info.instance_state != DDS_ALIVE_INSTANCE_STATE;
             if (is_gone && domain_.participants().is_host(info.publication_handle, epoch))
             {
+                host.strangers.erase(record.object);
                 remove(host, record.object, take);
             }
         });
@@ -156,6 +163,15 @@ void SceneReader::take_record(Host& host, const tactus_v2_ObjectRecord& record, 
         return;
     }
     remove(host, record.object, take);
+    if (exchange_.catalogue().find(news.shown.model, news.host_epoch) == nullptr)
+    {
+        Stranger& stranger = host.strangers[record.object];
+        const bool is_new = stranger.object.generation != news.generation;
+        stranger = is_new ? Stranger{news, Clock::now()}
+                          : Stranger{news, stranger.since, stranger.is_told};
+        return;
+    }
+    host.strangers.erase(record.object);
     take(SceneNews::comes, host.objects.emplace(record.object, std::move(news)).first->second);
 }
 
@@ -177,7 +193,7 @@ void SceneReader::take_motion(Host& host, const Take& take)
                 const auto known = host.objects.find(moved.object);
                 if (known == host.objects.end() || known->second.generation != moved.generation)
                 {
-                    continue; // Its record is on its way, or it is gone.
+                    continue; // Its record is on its way, or it is gone or a stranger.
                 }
                 SeenObject& object = known->second;
                 if (try_move(object, motion.serial, moved.pose))
@@ -186,8 +202,38 @@ void SceneReader::take_motion(Host& host, const Take& take)
                     take(SceneNews::moves, object);
                 }
             }
-            host.is_complete = host.is_complete || host.objects.size() >= motion.objects;
+            host.is_complete =
+                host.is_complete || host.objects.size() + host.strangers.size() >= motion.objects;
         });
+}
+
+/// Those whose model is served by now come; the others are told of once.
+void SceneReader::look_at_strangers(std::uint64_t epoch, Host& host, const Take& take)
+{
+    const auto now = Clock::now();
+    const Catalogue& catalogue = exchange_.catalogue();
+    const bool has_news =
+        std::exchange(host.seen_catalogue, catalogue.version()) != catalogue.version();
+    for (auto at = host.strangers.begin(); at != host.strangers.end();)
+    {
+        Stranger& stranger = at->second;
+        if (has_news && catalogue.find(stranger.object.shown.model, epoch) != nullptr)
+        {
+            take(SceneNews::comes,
+                 host.objects.emplace(at->first, std::move(stranger.object)).first->second);
+            at = host.strangers.erase(at);
+            continue;
+        }
+        if (!stranger.is_told && now - stranger.since > kServedMax)
+        {
+            stranger.is_told = true;
+            log_.write(fmt::format("object '{}' is refused: it shows model {}, which its host "
+                                   "doesn't serve",
+                                   stranger.object.shown.name,
+                                   hash_text(stranger.object.shown.model)));
+        }
+        ++at;
+    }
 }
 
 /// Whether the pose was accepted; counted either way.

@@ -4,6 +4,7 @@
 
 #include "platform/base/refusal.hpp"
 #include "transport/dds/piece_exchange.hpp"
+#include "transport/log.hpp"
 #include "transport/shown_object.hpp"
 
 #include <array>
@@ -14,6 +15,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 
 struct tactus_v2_ObjectRecord; // idlc's types of samples.
 struct tactus_v2_Motion;
@@ -52,14 +54,16 @@ enum class SceneNews : std::uint8_t
 
 /// The controller's side of objects: those of the hosts that it follows, checked. A host lets in a
 /// few controllers at a time, so the objects come a little later than the host is followed. What is
-/// older than what is here, or no pose, is counted and passed over. One thread, that of the
+/// older than what is here, or no pose, is counted and passed over. An object of a model that its
+/// host doesn't serve isn't there: it comes when the host serves it. One thread, that of the
 /// exchange; no call waits.
 class SceneReader
 {
 public:
-    /// Both must outlive it.
-    SceneReader(const Domain& domain, PieceExchange& exchange)
-        : domain_(domain), exchange_(exchange)
+    /// Both must outlive it. `log` gets, at a limited rate, a line for each object of a model that
+    /// its host doesn't serve within two seconds.
+    SceneReader(const Domain& domain, PieceExchange& exchange, Log log = {})
+        : domain_(domain), exchange_(exchange), log_(std::move(log))
     {
     }
 
@@ -83,11 +87,20 @@ public:
 private:
     using Clock = std::chrono::steady_clock;
     using Take = std::function<void(SceneNews, const SeenObject&)>;
+    /// An object of a model that its host doesn't serve.
+    struct Stranger
+    {
+        SeenObject object;
+        Clock::time_point since{};
+        bool is_told{false};
+    };
     struct Host
     {
         Endpoint records; ///< Once it has let us in.
         Endpoint motion;
         std::map<std::uint32_t, SeenObject> objects;
+        std::map<std::uint32_t, Stranger> strangers; ///< By number: none that is an object.
+        std::uint64_t seen_catalogue{0};
         bool was_heard{false};
         bool is_complete{false};
         Clock::time_point since{};
@@ -97,11 +110,13 @@ private:
     void take_records(std::uint64_t epoch, Host& host, const Take& take);
     void take_record(Host& host, const tactus_v2_ObjectRecord& record, const Take& take);
     void take_motion(Host& host, const Take& take);
+    void look_at_strangers(std::uint64_t epoch, Host& host, const Take& take);
     static bool try_move(SeenObject& object, std::uint64_t serial, const tactus_v2_Placement& to);
     static void remove(Host& host, std::uint32_t number, const Take& take);
 
     const Domain& domain_;
     PieceExchange& exchange_;
+    RateLimitedLog log_;
     std::map<std::uint64_t, Host> hosts_;
     std::string fault_;
 };

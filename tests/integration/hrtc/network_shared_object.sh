@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# network_shared_object.sh: two controllers touch one object that moves, 10 ms from its host and with
-# one datagram in a hundred lost. Its host dies and takes it along; another host with the same scene
-# steps in, and both touch its object instead.
+# network_shared_object.sh: two controllers touch one object that moves, 10 ms from its host and
+# with one datagram in a hundred lost. Its host dies and takes it along; another host with the same
+# scene steps in, and both touch its object instead.
 source "$(dirname "$0")/two_networks.sh"
 readonly seconds=12
 

@@ -1,0 +1,48 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# two_machines.sh: the configuration that docs/two-machines.md has for a network, between two
+# networks of their own: a model is found and touched, at the ports that the page names.
+source "$(dirname "$0")/two_networks.sh"
+example=$(cd "$(dirname "$0")/../../.." && pwd)/docs/examples/cyclonedds.xml
+readonly example
+
+start_relay --delay-ms 2 --loss 0.01 --seed 3
+
+# use_example ARRAY: its interface and the peers of the relay's own configuration in the example's.
+use_example() {
+    local -n side=$1
+    local peers interface
+    mapfile -t peers < <(grep -o "Peer address='[^']*'" <<<"${side[3]}" | cut -d "'" -f 2)
+    interface=$(sed -n "s/.*NetworkInterface name='\([^']*\)'.*/\1/p" <<<"${side[3]}")
+    [[ ${#peers[@]} == 2 && -n "$interface" ]] || fail "no configuration: ${side[3]}"
+    sed "s/eth0/$interface/; s/192.168.1.10/${peers[0]}/; s/192.168.1.20/${peers[1]}/" \
+        "$example" >"$1.xml"
+    side[3]="CYCLONEDDS_URI=file://$PWD/$1.xml"
+}
+use_example on_host
+use_example on_controller
+
+touch_large_model
+
+# ports_of COMMAND...: what UDP ports a network hears on that lie in those of the domain.
+readonly first_port=$((7400 + 250 * domain)) next_port=$((7400 + 250 * (domain + 1)))
+ports_of() {
+    "$@" cat /proc/net/udp | awk 'NR > 1 { split($2, at, ":"); print at[2] }' | while read -r port
+    do
+        port=$((16#$port))
+        ((port < first_port || port >= next_port)) || echo "$((port - first_port))"
+    done | sort -n | tr '\n' ' '
+}
+heard=$(ports_of in_host_network)
+[[ "$heard" == '10 11 ' ]] || fault "the host hears on $first_port and: $heard"
+
+# Of another domain nothing comes through, and nothing is found.
+wrong=$(((domain + 7) % 200))
+if in_controller_network "$hrtc" --allow-no-rt --domain "$wrong" --model large --wait 1 \
+    >wrong.log 2>&1; then
+    fault 'another domain is the same'
+fi
+grep -q "model 'large' is not published on domain $wrong" wrong.log || fault "$(cat wrong.log)"
+stop TERM "$publisher"
+((stopped_with == 0)) || fault "spm_publish ended with $stopped_with"
+finish
