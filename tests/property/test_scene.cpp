@@ -485,5 +485,32 @@ TEST(Scene, of_the_most_models_only_those_near_a_tool_are_looked_at_and_that_cha
     EXPECT_GT(contacts, 20U);
 }
 
+/// What a tool leaves behind is merged, and only then nobody looks at it any more.
+TEST(Scene, a_model_that_a_tool_has_left_is_its_base_mesh_again_before_it_rests)
+{
+    const std::vector<const TestModel*> models{&small_model(0), &small_model(1)};
+    const double diagonal_m = models[0]->diagonal_m;
+    RigOptions options = scene_options(diagonal_m, 1);
+    options.objects = {{ModelId{0}, {}}, {ModelId{1}, {}}};
+    options.poses.resize(2);
+    options.poses[1].translation_m = Vec3(10.0 * diagonal_m, 0.0, 0.0);
+    FrameRig sut(models, options);
+    const Vec3 first_m = to_vec3(models[0]->faces[0][0]);
+    const Vec3 second_m = to_vec3(models[1]->faces[0][0]) + options.poses[1].translation_m;
+    FrameOutput output;
+    for (int frame = 0; frame < 400; ++frame)
+    {
+        output = sut.step(first_m);
+    }
+    ASSERT_GT(output.models[0].refined_records, 10U);
+    for (int frame = 0; frame < 2'000; ++frame)
+    {
+        output = sut.step(first_m + std::min(frame / 500.0, 1.0) * (second_m - first_m));
+    }
+    EXPECT_EQ(output.models[0].refined_records, 0U);
+    EXPECT_GT(output.models[1].refined_records, 10U);
+    EXPECT_EQ(output.work.skipped.times()[static_cast<std::size_t>(Skip::models)], 1U);
+}
+
 } // namespace
 } // namespace tactus::test

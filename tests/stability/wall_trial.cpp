@@ -47,7 +47,7 @@ public:
         , sim_(HandAndDevice::create({trial.device, trial.hand, trial.period_s, trial.start_m})
                    .value())
         , conditioner_({trial.device, trial.period_s, std::abs(trial.surface_damping_n_s_per_m),
-                        trial.controls_passivity})
+                        0.0, trial.controls_passivity})
         , late_n_(trial.wall_delay_periods + 1, 0.0)
     {
     }

@@ -37,12 +37,31 @@ TEST(MaterialChoice, by_name_leaves_out_what_is_as_usual)
 
 TEST(MaterialChoice, refuses_other_keys_values_and_ranges)
 {
-    for (const char* text :
-         {"", "stiffness", "stiffness=", "=5", "stiffness=5,", ",stiffness=5", "stiffness=0",
-          "stiffness=3001", "stiffness=nan", "stiffness=inf", "stiffness=5,stiffness=5",
-          "stiff=500", "Stiffness=500", "stiffness =500", "stiffness=500;static=0.1", "static=3.1",
-          "static=-0.1", "static=0.2,dynamic=0.3", "dynamic=0.1", "damping=20.1", "damping=-1",
-          "500,static=0.1", "stiffness=500,0.1", "stiffness=5=6", "500,0.1,0.2"})
+    for (const char* text : {"",
+                             "stiffness",
+                             "stiffness=",
+                             "=5",
+                             "stiffness=5,",
+                             ",stiffness=5",
+                             "stiffness=0",
+                             "stiffness=3001",
+                             "stiffness=nan",
+                             "stiffness=inf",
+                             "stiffness=5,stiffness=5",
+                             "stiff=500",
+                             "Stiffness=500",
+                             "stiffness =500",
+                             "stiffness=500;static=0.1",
+                             "static=3.1",
+                             "static=-0.1",
+                             "static=0.2,dynamic=0.3",
+                             "dynamic=0.1",
+                             "damping=20.1",
+                             "damping=-1",
+                             "500,static=0.1",
+                             "stiffness=500,0.1",
+                             "stiffness=5=6",
+                             "500,0.1,0.2"})
     {
         EXPECT_FALSE(parse_material(text)) << text;
     }
