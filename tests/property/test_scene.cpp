@@ -491,6 +491,7 @@ TEST(Scene, a_model_that_a_tool_has_left_is_its_base_mesh_again_before_it_rests)
     const std::vector<const TestModel*> models{&small_model(0), &small_model(1)};
     const double diagonal_m = models[0]->diagonal_m;
     RigOptions options = scene_options(diagonal_m, 1);
+    options.tools[0].passes_through = true;
     options.objects = {{ModelId{0}, {}}, {ModelId{1}, {}}};
     options.poses.resize(2);
     options.poses[1].translation_m = Vec3(10.0 * diagonal_m, 0.0, 0.0);
