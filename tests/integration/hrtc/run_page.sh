@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# shellcheck shell=bash
+# shellcheck shell=bash disable=SC2154 # What common.sh sets is used here.
 # Runs what a page of docs shows; sourced after common.sh.
 
 # run_page PAGE COUNT: the page's COUNT blocks of shell and Python, as they stand there, in its
