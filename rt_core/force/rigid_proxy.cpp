@@ -84,7 +84,7 @@ void RigidProxy::see(const ToolGoal& goal) noexcept
     }
 }
 
-void RigidProxy::carry(std::span<const NearObject> objects, double elapsed_s) noexcept
+void RigidProxy::carry(std::span<const NearObject> objects, double elapsed_s) const noexcept
 {
     for (const NearObject& object : objects)
     {

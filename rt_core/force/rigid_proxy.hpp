@@ -80,7 +80,8 @@ public:
     /// A proxy that is nowhere yet is at the hand; else nothing changes before it responds.
     void see(const ToolGoal& goal) noexcept TACTUS_NONBLOCKING;
     /// Tells how the objects move at the proxy: they take it along in its next step.
-    void carry(std::span<const NearObject> objects, double elapsed_s) noexcept TACTUS_NONBLOCKING;
+    void carry(std::span<const NearObject> objects,
+               double elapsed_s) const noexcept TACTUS_NONBLOCKING;
     /// The object is another from now on, or gone.
     void forget(std::uint32_t object) noexcept TACTUS_NONBLOCKING;
 

@@ -82,7 +82,9 @@ inline void keep_ends(const Contact& contact, ContactEnds& ends) noexcept
         {
             continue; // No direction at all.
         }
-        const Vec3 along(code % 3 - 1, code / 3 % 3 - 1, code / 9 - 1);
+        const int row = code / 3 % 3;
+        const int layer = code / 9;
+        const Vec3 along(code % 3 - 1, row - 1, layer - 1);
         const double reach_m =
             along.dot(contact.on_surface_m) / along.norm() - kPerDistance * contact.distance_m;
         double& most_m = ends.reaches_m[direction];
