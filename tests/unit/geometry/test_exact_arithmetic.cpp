@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace tactus::test
@@ -135,6 +136,49 @@ TEST(Orientation, side_of_plane_is_exact_where_floating_point_is_not)
         undecided += truth == 0 ? 1 : 0;
     }
     EXPECT_GT(undecided, 10'000);
+}
+
+/// From none to all but a few bits: two ways that are nearly one, and a third that is nearly
+/// theirs.
+TEST(Orientation, a_volume_is_right_however_much_cancels)
+{
+    Random random(65);
+    std::array<int, 3> cases{}; // Of 10, 30 and more bits lost.
+    for (int i = 0; i < 200'000; ++i)
+    {
+        const int beside = 1 + static_cast<int>(random.below(30));
+        const auto point = [&random](int bits) -> GridPoint {
+            return {whole(random, bits), whole(random, bits), whole(random, bits)};
+        };
+        const GridPoint a = point(30);
+        const GridPoint u = point(30);
+        const GridPoint v = point(beside);
+        const GridPoint w = point(beside);
+        const std::int64_t s = whole(random, 6);
+        const std::int64_t t = whole(random, 6);
+        GridPoint b{};
+        GridPoint c{};
+        GridPoint d{};
+        double terms = 1.0; // As long as the ways are wide.
+        for (std::size_t k = 0; k < 3; ++k)
+        {
+            b[k] = a[k] + u[k];
+            c[k] = a[k] + s * u[k] + v[k];
+            d[k] = a[k] + t * u[k] + w[k];
+        }
+        for (const GridPoint& end : {b, c, d})
+        {
+            terms *= (as_vec3(end) - as_vec3(a)).norm();
+        }
+        const auto truth = static_cast<double>(determinant(a, b, c, d));
+        const double found = volume(as_vec3(a), as_vec3(b), as_vec3(c), as_vec3(d));
+        ASSERT_LE(std::abs(found - truth), 4e-16 * std::abs(truth)) << "case " << i;
+        const double left = std::abs(truth) / terms;
+        cases[left > 0x1p-10 ? 0 : (left > 0x1p-30 ? 1 : 2)] += truth == 0.0 ? 0 : 1;
+    }
+    EXPECT_GT(cases[0], 5'000);
+    EXPECT_GT(cases[1], 5'000);
+    EXPECT_GT(cases[2], 5'000);
 }
 
 /// Differences that no double holds: one coordinate of 62 bits beside small ones.
