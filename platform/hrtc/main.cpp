@@ -34,7 +34,7 @@ int touch(const Options& options)
     install_assertion_brake();
     if (!options.replay_path.empty())
     {
-        return replay_file(options.replay_path, log_line);
+        return replay_file(options.replay_path, options.kernels, log_line);
     }
     auto session = Session::open(options);
     if (!session)

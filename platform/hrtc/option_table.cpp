@@ -121,6 +121,9 @@ void declare_budgets(CommandLine& line, Options& options, RawOptions& raw)
                     "auto, whichever erred least of late")
         .one_of({kPredictionNames.begin(), kPredictionNames.end()})
         .show_default();
+    line.add_option("--kernels", raw.kernels,
+                    "Instructions of the processor that queries are made of: portable, or avx2 "
+                    "where there is that; no answer differs [the fastest that there are]");
 }
 
 void declare_force(CommandLine& line, Options& options)
@@ -195,7 +198,7 @@ void declare_recording(CommandLine& line, Options& options)
         "file");
     line.add_option("--replay", options.replay_path,
                     "Instead of a run: give the frames of a recording the same again; exit code 1 "
-                    "when one comes out otherwise. Takes no other option");
+                    "when one comes out otherwise. Takes --kernels and no other option");
 }
 
 } // namespace

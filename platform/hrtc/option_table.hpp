@@ -26,6 +26,7 @@ struct RawOptions
     std::optional<std::string> motion;
     std::optional<std::string> transport;
     std::string prediction{prediction_name(Prediction::automatic)};
+    std::optional<std::string> kernels;
     std::optional<int> cpu;
     bool prints_config{false};
     bool ignores_poses{false};

@@ -5,6 +5,7 @@
 #include "host_tools/cli/command_line.hpp"
 #include "platform/base/printable.hpp"
 #include "platform/hrtc/file_choice.hpp"
+#include "platform/hrtc/kernel_choice.hpp"
 #include "platform/hrtc/material_choice.hpp"
 #include "platform/hrtc/numbers.hpp"
 #include "platform/hrtc/option_table.hpp"
@@ -50,9 +51,9 @@ std::string check_replay(const CommandLine& line)
 {
     for (const std::string& name : line.given())
     {
-        if (name != "--replay")
+        if (name != "--replay" && name != "--kernels")
         {
-            return "--replay: takes no other option; " + name + " was given";
+            return "--replay: takes --kernels and no other option; " + name + " was given";
         }
     }
     return {};
@@ -329,10 +330,30 @@ std::string check_budgets(const CommandLine& line, Options& options)
     return {};
 }
 
+/// Empty when all is well.
+std::string check_kernels(Options& options, const RawOptions& raw)
+{
+    if (!raw.kernels)
+    {
+        return {};
+    }
+    const auto chosen = choose_kernels(*raw.kernels, available_kernels());
+    if (!chosen)
+    {
+        return chosen.error().text;
+    }
+    options.kernels = chosen.value();
+    return {};
+}
+
 /// What one option alone can't tell. Empty when all is well.
 std::string check_together(const CommandLine& line, Options& options, RawOptions& raw)
 {
     if (const std::string fault = check_files(line, options); !fault.empty())
+    {
+        return fault;
+    }
+    if (const std::string fault = check_kernels(options, raw); !fault.empty())
     {
         return fault;
     }

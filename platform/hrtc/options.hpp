@@ -7,6 +7,7 @@
 #include "platform/hrtc/tool_choice.hpp"
 #include "platform/rt_thread.hpp"
 #include "platform/simulated/hand_motions.hpp"
+#include "rt_core/kernels/kernels.hpp"
 #include "rt_core/records/frame_input.hpp"
 #include "rt_core/records/prediction.hpp"
 #include "transport/model_name.hpp"
@@ -62,13 +63,15 @@ struct Options
     double duration_s{10.0};
     std::vector<std::string> report_paths;
     std::string record_path; ///< Empty: no recording.
-    std::string replay_path; ///< Not empty: replay this recording; nothing else is set then.
+    std::string replay_path; ///< Not empty: replay this recording; but for `kernels`, nothing else
+                             ///< is set then.
     double pool_mib{2.0};
     double cache_mib{0.0};                 ///< 0: the usual share of the pool.
     std::uint32_t splits{64};              ///< At most, when there is a frame budget.
     std::optional<double> frame_budget_us; ///< None: budgets are fixed.
     bool static_when_it_fits{true};
     Prediction prediction{Prediction::automatic};
+    const Kernels* kernels{nullptr}; ///< Of the queries; null: the best of the processor.
     double stiffness_n_per_m{500.0};
     double angular_stiffness_nm_per_rad{0.0};  ///< 0: as the stiffness and the tool's size make it.
     std::optional<double> speed_limit_m_per_s; ///< None: the device's own.

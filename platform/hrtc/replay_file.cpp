@@ -11,7 +11,7 @@
 namespace tactus::hrtc
 {
 
-int replay_file(const std::string& path, const Log& log)
+int replay_file(const std::string& path, const Kernels* kernels, const Log& log)
 {
     const auto recording = Recording::read(path);
     if (!recording)
@@ -19,7 +19,7 @@ int replay_file(const std::string& path, const Log& log)
         log(recording.error().text);
         return kExitFailed;
     }
-    const auto replayed = replay(recording.value());
+    const auto replayed = replay(recording.value(), kernels);
     if (!replayed)
     {
         log(path + ": " + replayed.error().text);

@@ -360,6 +360,7 @@ Json run_of(const RunRecord& record)
     return {{"version", TACTUS_VERSION},
             {"started_utc", utc_text(record.run.started)},
             {"devices", devices},
+            {"kernels", record.controller.setup().kernels->name},
             {"options", settings_of(record.options.as_file)}};
 }
 

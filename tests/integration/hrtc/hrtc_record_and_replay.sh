@@ -15,9 +15,9 @@ for option in --record --replay; do
 done
 refuse 3 'a model is required' --record run.rec
 for option in --model --record --duration --rate --frame-budget-us --splits --report; do
-    refuse 3 "--replay: takes no other option; $option was given" --replay run.rec "$option" 100
+    refuse 3 "--replay: takes --kernels and no other option; $option was given" --replay run.rec "$option" 100
 done
-refuse 3 '--replay: takes no other option; --allow-no-rt' --replay run.rec --allow-no-rt
+refuse 3 '--replay: takes --kernels and no other option; --allow-no-rt' --replay run.rec --allow-no-rt
 refuse 3 '--record: must be another file than --report' --model bumpy --record a --report a
 mkdir folder
 for path in nowhere/run.rec folder; do
@@ -41,6 +41,12 @@ stop TERM "$publisher"
 
 said=$("$hrtc" --replay run.rec) || fail "the replay ended with $?: $said"
 [[ "$said" == 'run.rec: 2000 frames agree bit for bit; recorded by '* ]] || fault "it says: $said"
+
+# The same with the instructions that every processor has, and with none that are known.
+said=$("$hrtc" --replay run.rec --kernels portable) || fail "portable: ended with $?: $said"
+[[ "$said" == 'run.rec: 2000 frames agree bit for bit; '* ]] || fault "portable: it says: $said"
+refuse 3 "--kernels: 'sse' is none that this processor runs: portable" --replay run.rec --kernels sse
+refuse 3 "--kernels: 'sse' is none that this processor runs: portable" --model bumpy --kernels sse
 
 # One bit of one input.
 for frame in 0 1234; do
@@ -69,7 +75,7 @@ refuse_file start.rec 'at byte *: the file is cut short: '
 refuse_file cut.rec 'at byte *: the file is cut short: 36 bytes are needed here and 35 are left'
 refuse_file long.rec 'at byte *: the end section is followed by 1 bytes; nothing may follow it'
 refuse_file bent.rec 'at byte *: section of kind 2 and * bytes is damaged: its checksum'
-refuse_file newer.rec 'at byte 8: format version 255 is unknown; this program reads 7'
+refuse_file newer.rec 'at byte 8: format version 255 is unknown; this program reads 8'
 refuse 2 'no?where.rec: cannot be opened' --replay $'no\nwhere.rec'
 
 # A recording that can't be stored does not disturb the run, and is told at its end.
