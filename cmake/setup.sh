@@ -27,7 +27,8 @@ Commands:
 Options:
   --quick       bench: fewer frames and repeats, some three minutes instead of an hour
   --peers       bench: beside ours measure the libraries of cmake/packages-bench.txt, which are
-                installed if need be; some are under the GPL, none becomes part of Tactus
+                installed if need be; some are under the GPL, none becomes part of Tactus. Without
+                --quick also count instructions, by valgrind
   --docs        bench: with --peers; keep the results in docs/benchmarks, too, those of a quick run
                 not over those of a full one, and draw its pictures; needs TACTUS_MESHES
   --ci          packages: the packages of .ci/run (cmake/packages-ci.txt) as well
@@ -323,6 +324,9 @@ main() {
             install_packages "${lists[@]}"
             bench_peers=$peers
             build_targets tactus_bench
+            if [[ -n "$peers" && " ${bench_options[*]} " != *' --quick '* ]]; then
+                bench_options+=(--instructions) # Rows of docs/benchmarks/skip.json and scene.json.
+            fi
             run_bench "$kept" "${bench_options[@]}" "${more_options[@]}"
             ;;
         demo)

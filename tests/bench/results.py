@@ -8,9 +8,10 @@
                                          the files' form and the page's tables of them
 
 A file has what tactus_bench --json writes, a row a line. store leaves and names: a suite that failed;
-one of a full run when the new one is not (--quick, --frames, --only ...); and `counts`, which
-counts.py renews and tests compare with. check: each file, and RESULTS, have the keys of HEADER and
-ROW; the page shows each picture of the folder and no other; and each table that has above it
+one of a full run when the new one is not (--quick, --frames, --only ...) or lacks rows that it has;
+and `counts`, which counts.py renews and tests compare with. check: each file, and RESULTS, have the
+keys of HEADER and ROW; remarks and page name each commit that is not in the history of HEAD, where
+there is one; the page shows each picture of the folder and no other; and each table that has above it
 
     <!-- benchmarks/SUITE.json ... -->
 
@@ -22,11 +23,13 @@ Exit codes: 0 done, 1 faults, or a suite was left as it is, 2 failed, 3 usage.
 import json
 import pathlib
 import re
+import subprocess
 import sys
 
 HEADER = {"schema", "commit", "machine", "quick", "options", "compiler", "rows"}
 MACHINE = {"processor", "processors", "kernel", "date_utc"}
 ROW = {"suite", "case", "metric", "value", "unit"}
+NAME = ("case", "by", "setting", "metric")  # What tells the rows of a suite apart.
 TOGETHER = {"goal": "met", "peer": "peer_value"}  # Neither comes without the other.
 COUNTS = "counts"
 
@@ -60,15 +63,24 @@ def is_full(results):
     return not results["options"]
 
 
+def name_of(row):
+    return " ".join(row[key] for key in NAME if row.get(key))
+
+
 def refusal(suite, results, path):
     """Why the suite's file must stay as it is; None when it can be written."""
     if suite == COUNTS:
         return "what tests compare with; counts.py --write renews it"
     if any(text.startswith(f"{suite} ") for text in results.get("failures", [])):
         return "the suite failed"
-    if path.exists() and is_full(read(path)) and not is_full(results):
+    if not path.exists() or not is_full(kept := read(path)):
+        return None
+    if not is_full(results):
         return "it is of a full run, these results are not"
-    return None
+    found = {name_of(row) for row in results["rows"] if row["suite"] == suite}
+    lost = [name for name in map(name_of, kept["rows"]) if name not in found]
+    return f"{len(lost)} of its rows are not in these results, the first '{lost[0]}'; remove the " \
+           "file if they are not wanted any more" if lost else None
 
 
 def store(folder, path):
@@ -117,6 +129,30 @@ def table_faults(page, folder):
                            f"the line '{cell.strip()}'")
 
 
+def git(folder, *words):
+    try:
+        return subprocess.run(["git", "-C", folder, *words], check=False, capture_output=True,
+                              text=True)
+    except FileNotFoundError:
+        return None
+
+
+def history_faults(page, files, folder):
+    """Commits that nobody can look up must be told as such."""
+    depth = git(folder, "rev-parse", "--is-shallow-repository")
+    if depth is None or depth.stdout.strip() != "false":
+        return  # No repository here, or a part of one.
+    for path in files:
+        results = read(path)
+        commit = results.get("commit", "")
+        if git(folder, "merge-base", "--is-ancestor", commit, "HEAD").returncode == 0:
+            continue
+        if commit not in results.get("remarks", ""):
+            yield f"{path}: commit '{commit}' is not in this history, and no remark says so"
+        if commit not in page:
+            yield f"{path}: commit '{commit}' is not in this history, and the page doesn't say so"
+
+
 def check(folder, page_path, *others):
     page = page_path.read_text(encoding="utf-8")
     files = sorted(folder.glob("*.json"))
@@ -127,6 +163,7 @@ def check(folder, page_path, *others):
     found += [f"{name}: not on the page, or not in the folder"
               for name in sorted(pictures ^ set(PICTURE.findall(page)))]
     found += table_faults(page, folder)
+    found += history_faults(page, files, folder)
     print("\n".join(found) if found else f"{len(files)} files, {len(TABLE.findall(page))} tables, "
           f"{len(pictures)} pictures")
     return 1 if found or not files else 0

@@ -6,6 +6,7 @@
 import json
 import os
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -76,6 +77,35 @@ class Kept(unittest.TestCase):
         for more in ({"options": ["--quick"]}, {"failures": ["slide cow: wrong answers"]}):
             self.assertEqual(self.store(ROWS[:1], **more), 1)
             self.assertEqual(self.file.read_text(), full)
+
+    def test_a_full_run_without_rows_that_are_kept_leaves_them(self):
+        instructions = row("slide", "cow", "instructions", 20_000)
+        self.store([*ROWS, instructions])
+        full = self.file.read_text()
+        self.assertEqual(self.store(), 1)
+        self.assertIn("1 of its rows are not in these results, the first 'cow instructions'", self.said)
+        self.assertEqual(self.file.read_text(), full)
+        self.assertEqual(self.store([*ROWS, instructions | {"value": 2}]), 0, self.said)
+        self.file.unlink()
+        self.assertEqual(self.store(), 0, self.said)
+
+    @unittest.skipUnless(shutil.which("git"), "no git")
+    def test_commits_that_the_history_has_not_must_be_told(self):
+        def git(*words):
+            subprocess.run(["git", "-c", "user.name=a", "-c", "user.email=a@a", *words], check=True,
+                           cwd=self.root, capture_output=True)
+        git("init", "-q")
+        git("commit", "-q", "--allow-empty", "-m", "first")
+        head = subprocess.run(["git", "rev-parse", "HEAD"], cwd=self.root, check=True,
+                              capture_output=True, text=True).stdout.strip()
+        self.store(commit=head)
+        self.assertEqual(self.check(), 0, self.said)
+        for remarks, page, faults in (("", "", 2), ("of abc", "", 1), ("", "of abc\n", 1),
+                                      ("of abc", "of abc\n", 0)):
+            with self.subTest(remarks=remarks, page=page):
+                self.store(remarks=remarks)
+                self.assertEqual(self.check(PAGE + page), min(faults, 1), self.said)
+                self.assertEqual(self.said.count("is not in this history"), faults)
 
     def test_a_full_run_goes_over_a_lesser_one(self):
         self.store(ROWS[:1], options=["--quick"])

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # Copyright the Tactus authors.
-"""check_man.py PROGRAMS PAGES HEADER: each option of a program's --help, with its range and its
+"""check_man.py PROGRAMS PAGES HEADER: each option of a program's --help, with its range, choices and
 default, is in its page of the manual, and the other way round; so are the calls of tactus.h."""
 import pathlib
 import re
@@ -18,7 +18,7 @@ def fault(text):
 
 
 def options_of_help(*command):
-    """Names of an option, joined by a comma -> the numbers of its range and default."""
+    """Names of an option, joined by a comma -> the numbers of its range and default, or choices."""
     said = subprocess.run([programs / command[0], *command[1:], "--help"], check=True,
                           capture_output=True, text=True).stdout
     found = {}
@@ -30,7 +30,8 @@ def options_of_help(*command):
             numbers = [float(number) for number in kind.groups() if number] if kind else []
             if option[1] == "--threads":
                 numbers = numbers[:2]  # Its default is what the machine has.
-            found[option[1]] = numbers
+            choices = re.match(r" TEXT:\{?(\w[\w-]*(?:[,|]\w[\w-]*)+)", option[2])
+            found[option[1]] = numbers + (re.split("[,|]", choices[1]) if choices else [])
     return found
 
 
@@ -43,7 +44,9 @@ def options_of_page(text):
             names = ",".join(re.match(r"(-[\w-]+(?:, -[\w-]+)*)", plain)[1].split(", "))
             bounds = re.search(r"\(([^)]*)\)$", plain)
             numbers = re.findall(r"(?<![\w.])[\d.]+(?:e[+-]?\d+)?", bounds[1]) if bounds else []
-            found[names] = [float(number) for number in numbers]
+            choices = re.search(r" (\w[\w-]*(?:\|\w[\w-]*)+)", plain)
+            found[names] = ([float(number) for number in numbers]
+                            + (choices[1].split("|") if choices else []))
     return found
 
 
