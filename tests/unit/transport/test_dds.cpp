@@ -656,6 +656,27 @@ TEST_F(Dds, a_process_may_be_a_host_first_and_then_a_controller)
     EXPECT_TRUE(third) << third.error().text;
 }
 
+TEST_F(Dds, a_host_looks_for_others_only_when_its_process_joined_as_both)
+{
+    ::unsetenv("CYCLONEDDS_URI");
+    const std::uint32_t domain = 200 + static_cast<std::uint32_t>(::getpid()) % 30;
+    const std::string path = folder.write("tiny.spm", make_tiny_model({}).file).string();
+    const Program host({path, "--domain", std::to_string(domain)});
+    {
+        const auto alone = Domain::join(domain, Party::host);
+        ASSERT_TRUE(alone) << alone.error().text;
+        const auto beside = DdsClient::create(domain, "beside", {});
+        ASSERT_TRUE(beside) << beside.error().text;
+        EXPECT_FALSE(beside.value()->find({"tiny", std::nullopt}, 1'500ms));
+    }
+    const auto joined = Domain::join(domain, Party::both);
+    ASSERT_TRUE(joined) << joined.error().text;
+    const auto sut = DdsClient::create(domain, "both", {});
+    ASSERT_TRUE(sut) << sut.error().text;
+    const auto found = sut.value()->find({"tiny", std::nullopt}, kPatience);
+    EXPECT_TRUE(found) << found.error().text;
+}
+
 TEST_F(Dds, spm_publish_refuses_wrong_files_and_names_with_one_line)
 {
     const std::string good = folder.write("good.spm", make_tiny_model({}).file).string();
