@@ -272,6 +272,59 @@ TEST_F(Dds, a_host_that_goes_in_the_middle_of_a_base_mesh_is_completed_by_anothe
     EXPECT_TRUE(std::ranges::equal(fetch.base(), model.base));
 }
 
+/// Counts the parts of a base mesh that come.
+class PartCounter final : public PieceReceiver
+{
+public:
+    explicit PartCounter(const ContentHash& model) : model_(model) {}
+    [[nodiscard]] const ContentHash& model() const override { return model_; }
+    void receive(ContentKey key, std::span<const std::byte> /*bytes*/) override
+    {
+        times[key.number] += key.kind == ContentKind::base ? 1 : 0;
+    }
+    std::map<std::uint32_t, int> times;
+
+private:
+    ContentHash model_;
+};
+
+TEST_F(Dds, what_came_of_a_base_mesh_before_its_host_went_is_not_asked_of_another)
+{
+    const TinyModel model = make_tiny_model({.base_faces = 12'000});
+    auto first = host_of("tiny", model, kHostDomain);
+    const auto sut = client();
+    PieceExchange& exchange = sut->exchange();
+    const auto stepped_until = [&](const std::function<bool()>& is_so)
+    {
+        return eventually(
+            [&]
+            {
+                exchange.step();
+                return is_so();
+            });
+    };
+    const ModelSelector tiny{"tiny", std::nullopt};
+    ASSERT_TRUE(stepped_until([&] { return sut->catalogue().find(tiny) != nullptr; }));
+    const Catalogue::Offer offer = *sut->catalogue().find(tiny);
+    PartCounter counter(offer.hash);
+    exchange.add(counter);
+    ModelFetch fetch(exchange, sut->catalogue(), offer);
+    const std::vector<ContentKey> some{{ContentKind::base, 0}, {ContentKind::base, 1}};
+    exchange.ask(offer.host_epoch, offer.model, some, 0);
+    ASSERT_TRUE(stepped_until([&] { return counter.times[1] == 1; }));
+    EXPECT_EQ(fetch.step(), ModelFetch::State::under_way);
+    first.reset(); // The rest was asked of it as well: none of that left us.
+    const auto second = host_of("tiny", model, kOtherHostDomain);
+    EXPECT_TRUE(stepped_until([&] { return fetch.step() == ModelFetch::State::done; }));
+    EXPECT_TRUE(std::ranges::equal(fetch.header(), model.header));
+    EXPECT_TRUE(std::ranges::equal(fetch.base(), model.base));
+    EXPECT_EQ(counter.times[0], 1);
+    EXPECT_EQ(counter.times[1], 1);
+    EXPECT_GE(counter.times[2], 1);
+    EXPECT_GE(second->counters().pieces_sent, 2U); // The header and what was left of the base.
+    exchange.remove(counter);
+}
+
 TEST_F(Dds, a_model_that_is_announced_larger_than_any_may_be_is_refused)
 {
     const auto host = host_of("tiny", make_tiny_model({}));
