@@ -536,6 +536,19 @@ TEST_F(Dds, a_controller_that_leaves_is_removed)
     EXPECT_TRUE(host_lines.has("controller test-3 left ("));
 }
 
+TEST_F(Dds, controllers_of_one_name_are_served_each_and_the_host_says_so)
+{
+    const auto host = host_of("tiny", make_tiny_model({}));
+    const auto first = client();
+    ASSERT_TRUE(first->find({"tiny", std::nullopt}, kPatience));
+    EXPECT_FALSE(host_lines.has("of this name"));
+    const auto second = DdsClient::create(kOtherClientDomain, "test-3", lines.log());
+    ASSERT_TRUE(second) << second.error().text;
+    ASSERT_TRUE(second.value()->find({"tiny", std::nullopt}, kPatience));
+    EXPECT_TRUE(host_lines.has("controller test-3 subscribed; another one of this name is here\n"));
+    EXPECT_EQ(host->subscribers().size(), 2U);
+}
+
 TEST_F(Dds, what_the_model_does_not_have_is_refused_and_the_rest_is_served)
 {
     const TinyModel model = make_tiny_model({});
