@@ -22,7 +22,10 @@ class RateLimitedLog
 public:
     static constexpr std::uint32_t kLinesPerSecond = 5;
 
-    explicit RateLimitedLog(Log log) : log_(std::move(log)) {}
+    explicit RateLimitedLog(Log log, std::uint32_t lines_per_second = kLinesPerSecond)
+        : log_(std::move(log)), lines_per_second_(lines_per_second)
+    {
+    }
 
     /// True when one more line may be written now; build the line only then.
     [[nodiscard]] bool try_begin()
@@ -38,7 +41,7 @@ public:
             }
             held_back_ = 0;
         }
-        if (lines_ >= kLinesPerSecond)
+        if (lines_ >= lines_per_second_)
         {
             ++held_back_;
             return false;
@@ -66,6 +69,7 @@ public:
 
 private:
     Log log_;
+    std::uint32_t lines_per_second_;
     std::chrono::steady_clock::time_point second_start_{};
     std::uint32_t lines_{0};
     std::uint64_t held_back_{0};

@@ -11,6 +11,7 @@
 #include "platform/rt_thread.hpp"
 #include "platform/time.hpp"
 #include "transport/dds/dds_client.hpp"
+#include "transport/dds/refusals.hpp"
 #include "transport/dds/scene_reader.hpp"
 
 #include <cstdint>
@@ -36,6 +37,7 @@ struct FinishedRun
     std::vector<PoseUse> pose_uses{};           ///< One an object; none from files.
     std::vector<dds::PoseCounts> pose_counts{}; ///< One a model; none with --ignore-poses.
     SceneNewsCounts scene_news{};               ///< Of a host's scene.
+    std::vector<dds::PeerRefusals> refused{};   ///< Of others on the domain.
     std::uint64_t telemetry_sent{0};
     std::optional<RecordingResult> recording{};
     std::optional<std::string> recording_error{}; ///< Why a wanted recording is not there.

@@ -11,7 +11,7 @@ Result<std::unique_ptr<HostTopics>, Refusal> HostTopics::create(dds::DdsClient& 
                                                                 const Controller& controller,
                                                                 std::unique_ptr<SceneKeeper> keeper)
 {
-    std::unique_ptr<HostTopics> topics(new HostTopics(controller, std::move(keeper)));
+    std::unique_ptr<HostTopics> topics(new HostTopics(client, controller, std::move(keeper)));
     std::vector<ModelIdentity> identities;
     for (std::size_t i = 0; i < controller.models().size() && i < kMaxShownModels; ++i)
     {
@@ -29,8 +29,12 @@ Result<std::unique_ptr<HostTopics>, Refusal> HostTopics::create(dds::DdsClient& 
     return topics;
 }
 
-HostTopics::HostTopics(const Controller& controller, std::unique_ptr<SceneKeeper> keeper)
-    : controller_(controller), keeper_(std::move(keeper)), seen_(controller.models().size())
+HostTopics::HostTopics(const dds::DdsClient& client, const Controller& controller,
+                       std::unique_ptr<SceneKeeper> keeper)
+    : client_(client)
+    , controller_(controller)
+    , keeper_(std::move(keeper))
+    , seen_(controller.models().size())
 {
 }
 

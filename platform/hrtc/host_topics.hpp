@@ -42,6 +42,11 @@ public:
     [[nodiscard]] std::vector<dds::PoseCounts> pose_counts() const;
     /// Of a scene that is followed.
     [[nodiscard]] SceneNewsCounts scene_news() const;
+    /// What others on the domain said in vain.
+    [[nodiscard]] std::vector<dds::PeerRefusals> refused() const
+    {
+        return client_.domain().participants().refusals().list();
+    }
     [[nodiscard]] std::uint64_t telemetry_sent() const noexcept { return telemetry_->sent(); }
 
 private:
@@ -52,12 +57,14 @@ private:
         std::int64_t wait_ns{0};
     };
 
-    HostTopics(const Controller& controller, std::unique_ptr<SceneKeeper> keeper);
+    HostTopics(const dds::DdsClient& client, const Controller& controller,
+               std::unique_ptr<SceneKeeper> keeper);
 
     void send_telemetry(MonotonicTime now);
     void add_transport_side(std::size_t model, ModelTelemetry& telemetry, MonotonicTime now);
     void name_object(PairTelemetry& pair) const;
 
+    const dds::DdsClient& client_;
     const Controller& controller_;
     std::unique_ptr<SceneKeeper> keeper_; ///< May be none.
     std::unique_ptr<dds::TelemetryWriter> telemetry_;

@@ -156,6 +156,9 @@ void declare_transport(CommandLine& line, Options& options, RawOptions& raw)
     line.add_option("--domain", options.domain, "DDS domain id")
         .integer_between(0, 232)
         .show_default();
+    line.add_option("--name", options.name,
+                    "With DDS: the controller's name, 1 to 63 characters of A-Z a-z 0-9 . _ -, "
+                    "that hosts show and by which rights can be given [hrtc-PID]");
     line.add_flag("--ignore-poses", raw.ignores_poses,
                   "Leave the objects where --place or --scene put them at the start, whatever "
                   "their hosts say");

@@ -290,9 +290,15 @@ std::string check_simulated(Options& options, const RawOptions& raw)
     return {};
 }
 
-/// Whether the models' names can be ones that are published. Empty when all is well.
-std::string check_names(const Options& options)
+/// Whether the models' names can be ones that are published, and ours one of a controller. Empty
+/// when all is well.
+std::string check_names(const CommandLine& line, const Options& options)
 {
+    if (line.is_given("--name") && !is_valid_name(options.name))
+    {
+        return fmt::format("--name: '{}' is not 1 to 63 characters of A-Z a-z 0-9 . _ -",
+                           printable(options.name));
+    }
     for (const std::string& model : options.models)
     {
         if (const auto selector = parse_selector(model); !selector)
@@ -380,7 +386,7 @@ std::string check_together(const CommandLine& line, Options& options, RawOptions
     options.prediction = static_cast<Prediction>(
         std::ranges::find(kPredictionNames, raw.prediction) - kPredictionNames.begin());
     options.transport = raw.transport == "file" ? TransportKind::file : TransportKind::dds;
-    return options.transport == TransportKind::dds ? check_names(options) : "";
+    return options.transport == TransportKind::dds ? check_names(line, options) : "";
 }
 
 } // namespace

@@ -10,6 +10,7 @@
 #include "platform/hrtc/options.hpp"
 #include "platform/hrtc/report_events.hpp"
 #include "rt_core/force/stiffness_rule.hpp"
+#include "transport/content_hash.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -327,6 +328,22 @@ Json wire_of(const RunRecord& record)
               {"max", ms(waiting.longest_ms())}}}};
 }
 
+/// What others on the domain said in vain, one entry a participant.
+Json refused_of(const std::vector<dds::PeerRefusals>& peers)
+{
+    Json list = Json::array();
+    for (const dds::PeerRefusals& peer : peers)
+    {
+        Json entry{{"peer", peer.name}, {"id", hash_text(peer.id)}};
+        for (std::size_t i = 0; i < dds::kRefusedKinds; ++i)
+        {
+            entry[dds::refused_names().at(i)] = peer.counts.at(i);
+        }
+        list.push_back(std::move(entry));
+    }
+    return list;
+}
+
 /// The options that were given or have a value, one a line, without the explanations.
 std::string settings_of(const std::string& option_file)
 {
@@ -407,6 +424,7 @@ Json make_report(const Options& options, const Controller& controller, const Fin
             {"pools", pools_of(record)},
             {"cache", cache_of(record)},
             {"wire", wire_of(record)},
+            {"refused", refused_of(run.refused)},
             {"deadline", deadlines_of(run)},
             {"realtime",
              {{"allocations", statistics.deadlines.allocations},

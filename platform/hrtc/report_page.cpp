@@ -254,6 +254,7 @@ std::string make_page(const Json& report, const RunStatistics& statistics)
     add_list("Models", report["models"], columns_of, page);
     add_list("Tools", report["tools"], columns_of, page);
     add_list("Pairs of tool and model", report["pairs"], table_of, page);
+    add_list("Refused of others on the domain", report["refused"], columns_of, page);
     add_list("Safety events", report["safety"]["events"], table_of, page);
     add_list("Cycles of note", report["deadline"]["noted"], table_of, page);
     page.paragraph(fmt::format("Report schema {}, {} frames of {} ns, {} s.",

@@ -183,6 +183,26 @@ void add_static(const Json& models, SummaryFacts& facts)
     facts.insert(facts.end(), lines.begin(), lines.end());
 }
 
+/// A line when others on the domain said what was refused.
+void add_refused(const Json& peers, SummaryFacts& facts)
+{
+    std::uint64_t refused = 0;
+    for (const Json& peer : peers)
+    {
+        for (const Json& figure : peer)
+        {
+            refused += figure.is_number() ? figure.get<std::uint64_t>() : 0;
+        }
+    }
+    if (refused > 0)
+    {
+        facts.emplace_back("refused",
+                           fmt::format("{} {} of {} {} on the domain; the report says why", refused,
+                                       refused == 1 ? "statement" : "statements", peers.size(),
+                                       peers.size() == 1 ? "program" : "programs"));
+    }
+}
+
 /// How the models came, and what of them is here.
 void add_models(const Json& report, SummaryFacts& facts)
 {
@@ -210,6 +230,7 @@ void add_models(const Json& report, SummaryFacts& facts)
                         arrival["p50"].get<double>(), arrival["p99"].get<double>(),
                         arrival["max"].get<double>()));
     }
+    add_refused(report["refused"], facts);
 }
 
 /// Of tools that turn.

@@ -157,8 +157,9 @@ std::optional<Refusal> Session::connect()
 {
     if (options_.transport == TransportKind::dds)
     {
-        auto client =
-            dds::DdsClient::create(options_.domain, fmt::format("hrtc-{}", getpid()), log_line);
+        const std::string name =
+            options_.name.empty() ? fmt::format("hrtc-{}", getpid()) : options_.name;
+        auto client = dds::DdsClient::create(options_.domain, name, log_line);
         if (!client)
         {
             return failure(client.error().text);

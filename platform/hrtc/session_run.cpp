@@ -273,6 +273,7 @@ void SessionRun::note_topics()
         done_.pose_uses.assign(door_.uses().begin(), door_.uses().end());
         done_.pose_counts = parts_.topics->pose_counts();
         done_.scene_news = parts_.topics->scene_news();
+        done_.refused = parts_.topics->refused();
         done_.telemetry_sent = parts_.topics->telemetry_sent();
     }
 }

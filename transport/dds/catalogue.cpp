@@ -62,24 +62,67 @@ Catalogue::Catalogue(Participants& participants, Endpoint reader, Log log)
 
 void Catalogue::refresh()
 {
-    participants_->report_other_versions(log_);
+    participants_->report(log_);
     take_each<tactus_v2_CatalogueEntry>(
         reader_.handle, kMaxOffers,
         [this](const tactus_v2_CatalogueEntry& entry, const dds_sample_info_t& info)
         {
             const std::string name(entry.name, ::strnlen(entry.name, sizeof(entry.name)));
             const std::string scene(entry.scene, ::strnlen(entry.scene, sizeof(entry.scene)));
+            const auto refuse = [&](Refused reason)
+            { participants_->refuse(info.publication_handle, reason, entry.model); };
             if (info.instance_state != DDS_ALIVE_INSTANCE_STATE)
             {
-                remove(entry.model, entry.host_epoch);
+                on_end(entry.model, entry.host_epoch, info.publication_handle);
             }
             else if (info.valid_data && is_valid_name(name) &&
                      (scene.empty() || is_valid_name(scene)))
             {
-                add({name, scene, hash_from(entry.model_hash), entry.host_epoch, entry.model,
-                     entry.faces, entry.header_bytes, entry.base_bytes});
+                if (!try_add({name, scene, hash_from(entry.model_hash), entry.host_epoch,
+                              entry.model, entry.faces, entry.header_bytes, entry.base_bytes,
+                              participants_->writer_of(info.publication_handle)
+                                  .value_or(ParticipantId{})}))
+                {
+                    refuse(Refused::model_room);
+                }
+            }
+            else if (info.valid_data)
+            {
+                refuse(Refused::model_name);
             }
         });
+    look_at_disputed();
+}
+
+/// A host that leaves or falls silent takes its offers with it. Anybody can dispose of an instance,
+/// past the filter: that is no news, but what DDS tells of the instance isn't either from then on.
+void Catalogue::on_end(std::uint32_t model, std::uint64_t host_epoch, std::uint64_t writer)
+{
+    if (participants_->is_host(writer, host_epoch))
+    {
+        remove(model, host_epoch);
+        return;
+    }
+    participants_->refuse(writer, Refused::identity);
+    for (Offer& offer : offers_)
+    {
+        const bool is_it = offer.model == model && offer.host_epoch == host_epoch;
+        offer.is_disputed = offer.is_disputed || is_it;
+    }
+}
+
+/// These go with the participant of their host.
+void Catalogue::look_at_disputed()
+{
+    constexpr auto kEvery = std::chrono::milliseconds(50);
+    const auto now = std::chrono::steady_clock::now();
+    if (now - looked_ < kEvery)
+    {
+        return;
+    }
+    looked_ = now;
+    version_ += std::erase_if(offers_, [this](const Offer& offer)
+                              { return offer.is_disputed && !participants_->is_here(offer.host); });
 }
 
 const Catalogue::Offer* Catalogue::find(const ModelSelector& selector) const
@@ -148,7 +191,8 @@ std::string Catalogue::scene_names() const
     return list_of(names);
 }
 
-void Catalogue::add(const Offer& offer)
+/// False when there is no room.
+bool Catalogue::try_add(const Offer& offer)
 {
     const bool is_known =
         std::any_of(offers_.begin(), offers_.end(),
@@ -159,12 +203,12 @@ void Catalogue::add(const Offer& offer)
                     });
     if (is_known)
     {
-        return; // Written anew every second.
+        return true; // Written anew every second.
     }
     remove(offer.model, offer.host_epoch);
     if (offers_.size() == kMaxOffers)
     {
-        return;
+        return false;
     }
     const Offer* first = find(ModelSelector{offer.name, std::nullopt});
     if (first != nullptr && first->hash != offer.hash)
@@ -175,6 +219,7 @@ void Catalogue::add(const Offer& offer)
     }
     offers_.push_back(offer);
     ++version_;
+    return true;
 }
 
 void Catalogue::remove(std::uint32_t model, std::uint64_t host_epoch)

@@ -8,6 +8,7 @@
 #include "transport/log.hpp"
 #include "transport/model_name.hpp"
 
+#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -30,13 +31,15 @@ public:
         std::uint32_t faces{0};
         std::uint32_t header_bytes{0};
         std::uint32_t base_bytes{0};
+        ParticipantId host{};
+        bool is_disputed{false}; ///< Another program said that it is gone.
     };
 
     /// `domain` must outlive it.
     [[nodiscard]] static Result<Catalogue, Refusal> create(const Domain& domain, Log log);
 
     /// Takes news from DDS: new offers, hosts that left or fell silent, programs that speak another
-    /// version of the protocol. Cheap when there are none.
+    /// version of the protocol; tells what was refused. Cheap when there are none.
     void refresh();
 
     /// Changes with what is there.
@@ -64,14 +67,17 @@ public:
 private:
     Catalogue(Participants& participants, Endpoint reader, Log log);
 
-    void add(const Offer& offer);
+    [[nodiscard]] bool try_add(const Offer& offer);
     void remove(std::uint32_t model, std::uint64_t host_epoch);
+    void on_end(std::uint32_t model, std::uint64_t host_epoch, std::uint64_t writer);
+    void look_at_disputed();
 
     Participants* participants_;
     Endpoint reader_;
     RateLimitedLog log_;
     std::vector<Offer> offers_;
     std::uint64_t version_{0};
+    std::chrono::steady_clock::time_point looked_{}; ///< At what is disputed.
 };
 
 } // namespace tactus::dds

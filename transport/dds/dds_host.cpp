@@ -32,6 +32,8 @@ constexpr std::ptrdiff_t kMaxJoining = 2;
 constexpr auto kJoiningMax = std::chrono::seconds(5);
 /// It is told again that it may come in; the first time may have been before it listened.
 constexpr auto kLetInAgain = std::chrono::milliseconds(100);
+/// Lines a second of controllers that come and go.
+constexpr std::uint32_t kVisitLines = 40;
 /// Samples sent in one step, so that requests are looked at in between.
 constexpr std::size_t kSamplesPerStep = 64;
 constexpr std::size_t kRequestsPerStep = 1'024;
@@ -84,7 +86,7 @@ DdsHost::DdsHost(Domain domain, std::vector<ModelPieces> models, Log log, std::s
     : domain_(std::move(domain))
     , models_(std::move(models))
     , scene_(std::move(scene))
-    , log_(log ? log : Log([](const std::string& /*line*/) {}))
+    , visits_log_(log, kVisitLines)
     , fault_log_(std::move(log))
     , epoch_(domain_.participants().own_epoch())
 {
@@ -181,7 +183,8 @@ Result<Done, Refusal> DdsHost::open_endpoints()
 
 void DdsHost::announce()
 {
-    domain_.participants().report_other_versions(fault_log_);
+    domain_.participants().report(fault_log_);
+    look_at_disputed();
     for (std::uint32_t i = 0; i < models_.size(); ++i)
     {
         const ModelStore& store = models_[i].store();
@@ -210,7 +213,7 @@ void DdsHost::take_requests()
             std::memcpy(controller.data(), wanted.controller, sizeof(wanted.controller));
             if (info.instance_state != DDS_ALIVE_INSTANCE_STATE)
             {
-                on_controller_gone(controller);
+                on_end(controller, info.publication_handle);
             }
             else if (info.valid_data)
             {
@@ -226,7 +229,7 @@ void DdsHost::on_request(const ControllerId& controller, const tactus_v2_Wanted&
     client = client == nullptr ? add_client(controller, wanted) : client;
     if (client == nullptr)
     {
-        ++counters_.requests_refused;
+        refuse(controller, Refused::controller);
         return;
     }
     client->subscription.set_credit({wanted.seen, wanted.granted, wanted.received});
@@ -255,11 +258,17 @@ void DdsHost::take_wishes(Client& client, const tactus_v2_Wanted& wanted)
         const ContentKey key{static_cast<ContentKind>(name.kind), name.number};
         if (name.model >= models_.size() || !models_[name.model].has(key))
         {
-            ++counters_.requests_refused;
+            refuse(client.subscription.controller(), Refused::wish);
             continue;
         }
         client.subscription.wish({name.model, key}, wanted.generation);
     }
+}
+
+void DdsHost::refuse(const ControllerId& controller, Refused reason)
+{
+    ++counters_.requests_refused;
+    domain_.participants().refusals().count(controller, reason);
 }
 
 DdsHost::Client* DdsHost::add_client(const ControllerId& controller, const tactus_v2_Wanted& wanted)
@@ -284,9 +293,43 @@ DdsHost::Client* DdsHost::add_client(const ControllerId& controller, const tactu
         fault_log_.write(created.error().text);
         return nullptr;
     }
+    const bool has_namesake =
+        std::ranges::any_of(clients_, [&](const Client& client)
+                            { return client.subscription.controller_name() == name; });
     clients_.push_back({std::move(created).value()});
-    log_(fmt::format("controller {} subscribed", name));
+    visits_log_.write(fmt::format("controller {} subscribed{}", name,
+                                  has_namesake ? "; another one of this name is here" : ""));
     return &clients_.back();
+}
+
+/// As in Catalogue: who isn't the controller can't end it, but makes its end be looked for.
+void DdsHost::on_end(const ControllerId& controller, std::uint64_t writer)
+{
+    const auto who = domain_.participants().writer_of(writer);
+    if (!who || *who == controller)
+    {
+        on_controller_gone(controller);
+        return;
+    }
+    domain_.participants().refuse(writer, Refused::identity);
+    if (Client* client = find(controller); client != nullptr)
+    {
+        client->is_disputed = true;
+    }
+}
+
+void DdsHost::look_at_disputed()
+{
+    std::vector<ControllerId> gone;
+    for (const Client& client : clients_)
+    {
+        const ControllerId& controller = client.subscription.controller();
+        if (client.is_disputed && !domain_.participants().is_here(controller))
+        {
+            gone.push_back(controller);
+        }
+    }
+    std::ranges::for_each(gone, [this](const ControllerId& each) { on_controller_gone(each); });
 }
 
 void DdsHost::on_controller_gone(const ControllerId& controller)
@@ -299,9 +342,9 @@ void DdsHost::on_controller_gone(const ControllerId& controller)
     const Subscription& subscription = client->subscription;
     counters_.pieces_sent += subscription.pieces_sent();
     counters_.bytes_sent += subscription.bytes_sent();
-    log_(fmt::format("controller {} left ({} pieces, {:.1f} KB sent)",
-                     subscription.controller_name(), subscription.pieces_sent(),
-                     static_cast<double>(subscription.bytes_sent()) / 1e3));
+    visits_log_.write(fmt::format("controller {} left ({} pieces, {:.1f} KB sent)",
+                                  subscription.controller_name(), subscription.pieces_sent(),
+                                  static_cast<double>(subscription.bytes_sent()) / 1e3));
     clients_.erase(clients_.begin() + (client - clients_.data()));
 }
 

@@ -41,9 +41,9 @@ public:
         std::uint64_t bytes_sent{0};
     };
 
-    /// Announces the models. `log` gets a line when a controller comes or goes and, at a limited
-    /// rate, one for what can't be served. `scene`, a valid name, is what controllers call all of
-    /// the host's objects together; empty: nothing.
+    /// Announces the models. `log` gets, at a limited rate, a line when a controller comes or
+    /// goes and one for what can't be served or is refused. `scene`, a valid name, is what
+    /// controllers call all of the host's objects together; empty: nothing.
     [[nodiscard]] static Result<std::unique_ptr<DdsHost>, Refusal>
     create(std::uint32_t domain, std::vector<PublishedModel> models, Log log,
            std::string scene = {});
@@ -78,6 +78,7 @@ private:
         Subscription subscription;
         Joining joining{Joining::not_wanted};
         Clock::time_point let_in{};
+        bool is_disputed{false}; ///< Another program said that it is gone.
     };
 
     DdsHost(Domain domain, std::vector<ModelPieces> models, Log log, std::string scene);
@@ -87,8 +88,11 @@ private:
     void take_requests();
     void on_request(const ControllerId& controller, const tactus_v2_Wanted& wanted);
     void take_wishes(Client& client, const tactus_v2_Wanted& wanted);
+    void refuse(const ControllerId& controller, Refused reason);
     [[nodiscard]] Client* add_client(const ControllerId& controller,
                                      const tactus_v2_Wanted& wanted);
+    void on_end(const ControllerId& controller, std::uint64_t writer);
+    void look_at_disputed();
     void on_controller_gone(const ControllerId& controller);
     void serve();
     void let_in();
@@ -97,7 +101,7 @@ private:
     Domain domain_; ///< First, so that it is left last.
     std::vector<ModelPieces> models_;
     std::string scene_;
-    Log log_;
+    RateLimitedLog visits_log_;
     RateLimitedLog fault_log_;
     std::uint64_t epoch_;
     Endpoint catalogue_;

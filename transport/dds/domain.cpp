@@ -22,9 +22,9 @@ namespace
 
 /// Hosts have ports that everybody knows, ten on one machine; controllers have any, and look there.
 /// So controllers don't find each other: 64 of them on one machine would do nothing else for a
-/// minute. One lost sample costs up to 100 ms: nothing is lost on loopback but what overflows, and
-/// frequent heartbeats make many readers on few processors lose more and more. One receive thread,
-/// so that every thread's stack can be set by name.
+/// minute. Hosts look nowhere. One lost sample costs up to 100 ms: nothing is lost on loopback but
+/// what overflows, and frequent heartbeats make many readers on few processors lose more and more.
+/// One receive thread, so that every thread's stack can be set by name.
 constexpr const char* kConfiguration = R"(<CycloneDDS><Domain id="any">
 <General>
   <Interfaces><NetworkInterface name="lo" multicast="false"/></Interfaces>
@@ -34,7 +34,7 @@ constexpr const char* kConfiguration = R"(<CycloneDDS><Domain id="any">
   <ParticipantIndex>{}</ParticipantIndex>
   <MaxAutoParticipantIndex>9</MaxAutoParticipantIndex>
   <LeaseDuration>1 s</LeaseDuration>
-  <Peers><Peer address="127.0.0.1"/></Peers>
+  <Peers><Peer address="{}"/></Peers>
 </Discovery>
 <Internal>
   <NackDelay>10 ms</NackDelay>
@@ -48,6 +48,10 @@ constexpr const char* kConfiguration = R"(<CycloneDDS><Domain id="any">
   <Thread name="gc"><StackSize>256 kB</StackSize></Thread>
 </Threads>
 </Domain></CycloneDDS>)";
+/// Peers: all ports of hosts; or the one that discards, since without peers Cyclone takes the
+/// first.
+constexpr const char* kLooksForHosts = "127.0.0.1";
+constexpr const char* kLooksNowhere = "127.0.0.1:9";
 
 /// Cyclone's messages of the whole process. A link that is down prints 100 lines a second.
 class MessageSink
@@ -103,12 +107,13 @@ std::shared_ptr<Entity> configured_domain(std::uint32_t id, Party party)
     auto domain = known.entity.lock();
     if (!domain)
     {
-        const char* index = party == Party::host ? "auto" : "none";
-        const std::string configuration = fmt::format(kConfiguration, index);
+        const char* index = party == Party::controller ? "none" : "auto";
+        const char* peers = party == Party::host ? kLooksNowhere : kLooksForHosts;
+        const std::string configuration = fmt::format(kConfiguration, index, peers);
         domain = std::make_shared<Entity>(dds_create_domain(id, configuration.c_str()));
         known = {domain, party};
     }
-    return known.party == Party::controller && party == Party::host ? nullptr : domain;
+    return known.party == Party::controller && party != Party::controller ? nullptr : domain;
 }
 
 Refusal join_error(std::uint32_t id, std::int32_t code)

@@ -20,8 +20,9 @@ inline constexpr std::uint32_t kMaxDomain = 232;
 /// Whom a participant finds in our own configuration, and by whom it is found.
 enum class Party : std::uint8_t
 {
-    host,       ///< Everybody; or one that watches controllers.
-    controller, ///< Hosts. Controllers don't find each other.
+    host,       ///< Is found by controllers, looks for nobody; or one that watches controllers.
+    controller, ///< Finds hosts. Controllers don't find each other.
+    both,       ///< Is found as a host, and finds hosts.
 };
 
 /// One participant in one DDS domain.
@@ -38,7 +39,8 @@ public:
     /// `id` is 0 .. 232. Refused with Cyclone's own reason, e.g. for an unknown element in
     /// CYCLONEDDS_URI or when no network interface fits. In our own configuration a machine has
     /// room for ten processes with a host or watcher on a domain, and a process that is both host
-    /// and controller must join as a host first: refused else.
+    /// and controller must join as a host first: refused else. Its controllers then find its own
+    /// hosts alone; as `both`, and as long as that domain lives, other processes' hosts as well.
     [[nodiscard]] static Result<Domain, Refusal> join(std::uint32_t id, Party party = Party::host);
 
     [[nodiscard]] std::uint32_t id() const noexcept { return id_; }

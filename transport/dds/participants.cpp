@@ -65,6 +65,22 @@ void read_news(std::int32_t reader, Visit&& visit)
     }
 }
 
+/// Calls `visit(about, info)` with what DDS tells of a participant; never for an unknown one.
+template <typename Visit>
+void read_participant(std::int32_t reader, const ParticipantId& who, Visit&& visit)
+{
+    dds_builtintopic_participant_t key = {};
+    std::memcpy(static_cast<std::uint8_t*>(key.key.v), who.data(), who.size());
+    const dds_instance_handle_t handle = dds_lookup_instance(reader, &key);
+    void* sample = nullptr;
+    dds_sample_info_t info = {};
+    if (handle != DDS_HANDLE_NIL && dds_read_instance(reader, &sample, &info, 1, 1, handle) == 1)
+    {
+        visit(*static_cast<const dds_builtintopic_participant_t*>(sample), info);
+        dds_return_loan(reader, &sample, 1);
+    }
+}
+
 std::string property(const dds_qos_t* qos, const char* name)
 {
     char* value = nullptr;
@@ -146,6 +162,20 @@ bool Participants::is_host(std::uint64_t publication_handle, std::uint64_t host_
     return writer && host_epoch_of(*writer) == host_epoch;
 }
 
+void Participants::refuse(std::uint64_t publication_handle, Refused reason, std::uint32_t number)
+{
+    if (const auto writer = writer_of(publication_handle))
+    {
+        refusals_.count(*writer, reason, number);
+    }
+}
+
+void Participants::report(RateLimitedLog& log)
+{
+    report_other_versions(log);
+    refusals_.report(log, [this](const ParticipantId& who) { return name_of(who); });
+}
+
 void Participants::report_other_versions(RateLimitedLog& log)
 {
     const std::string ours = std::to_string(kProtocolVersion);
@@ -160,24 +190,37 @@ void Participants::report_other_versions(RateLimitedLog& log)
             {
                 return;
             }
-            void* sample = nullptr;
-            dds_sample_info_t info = {};
-            std::string name = "a program";
-            if (dds_read_instance(participants_, &sample, &info, 1, 1,
-                                  writer.participant_instance_handle) == 1)
-            {
-                const auto& about = *static_cast<const dds_builtintopic_participant_t*>(sample);
-                const std::string program =
-                    info.valid_data ? property(about.qos, "__ProcessName") : "";
-                const std::string id = info.valid_data ? property(about.qos, "__Pid") : "";
-                const std::string host = info.valid_data ? property(about.qos, "__Hostname") : "";
-                name = program.empty() ? name
-                                       : fmt::format("{} (process {} on {})", program, id, host);
-                dds_return_loan(participants_, &sample, 1);
-            }
             log.write(fmt::format("{} is refused: it speaks protocol version {}, this build {}",
-                                  name, *version, ours));
+                                  name_of(who), *version, ours));
         });
+}
+
+bool Participants::is_here(const ParticipantId& who) const
+{
+    bool is_alive = false;
+    read_participant(
+        participants_, who,
+        [&](const dds_builtintopic_participant_t& /*about*/, const dds_sample_info_t& info)
+        { is_alive = info.instance_state == DDS_ALIVE_INSTANCE_STATE; });
+    return is_alive;
+}
+
+/// The program, its process and machine, as DDS tells them.
+std::string Participants::name_of(const ParticipantId& who) const
+{
+    std::string name = "a program that is gone";
+    read_participant(
+        participants_, who,
+        [&](const dds_builtintopic_participant_t& about, const dds_sample_info_t& info)
+        {
+            const std::string program = info.valid_data ? property(about.qos, "__ProcessName") : "";
+            if (!program.empty())
+            {
+                name = fmt::format("{} (process {} on {})", program, property(about.qos, "__Pid"),
+                                   property(about.qos, "__Hostname"));
+            }
+        });
+    return name;
 }
 
 } // namespace tactus::dds

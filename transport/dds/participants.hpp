@@ -2,20 +2,19 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "transport/dds/refusals.hpp"
 #include "transport/log.hpp"
 
-#include <array>
 #include <cstdint>
 #include <map>
 #include <mutex>
 #include <optional>
 #include <set>
+#include <string>
 
 namespace tactus::dds
 {
 
-/// A participant's GUID: names a controller on the wire.
-using ParticipantId = std::array<std::uint8_t, 16>;
 using ControllerId = ParticipantId;
 
 /// By which a host is named on the wire: nobody else's samples carry it and pass.
@@ -37,11 +36,22 @@ public:
     [[nodiscard]] std::optional<ParticipantId> writer_of(std::uint64_t publication_handle);
     [[nodiscard]] bool is_host(std::uint64_t publication_handle, std::uint64_t host_epoch);
 
+    /// Whether it is on the domain: it was heard within its lease. 10 us.
+    [[nodiscard]] bool is_here(const ParticipantId& who) const;
+
+    /// Counts what the writer behind a publication_handle said under its participant; nothing when
+    /// that is gone and was never seen.
+    void refuse(std::uint64_t publication_handle, Refused reason, std::uint32_t number = 0);
+    [[nodiscard]] Refusals& refusals() noexcept { return refusals_; }
+
     /// Names each participant that has come since the last call and has topics of another version
-    /// of the protocol, once.
-    void report_other_versions(RateLimitedLog& log);
+    /// of the protocol, once; and what was refused, see Refusals::report(). Cheap without news.
+    void report(RateLimitedLog& log);
 
 private:
+    void report_other_versions(RateLimitedLog& log);
+    [[nodiscard]] std::string name_of(const ParticipantId& who) const;
+
     std::int32_t writers_; ///< Readers of what DDS itself publishes; they end with the participant.
     std::int32_t participants_;
     ParticipantId own_{};
@@ -49,6 +59,7 @@ private:
     std::mutex mutex_;
     std::map<std::uint64_t, ParticipantId> known_;
     std::set<ParticipantId> reported_;
+    Refusals refusals_;
 };
 
 } // namespace tactus::dds

@@ -121,7 +121,10 @@ void SceneReader::take_records(std::uint64_t epoch, Host& host, const Take& take
         {
             if (info.valid_data)
             {
-                take_record(host, record, take);
+                if (const auto refused = take_record(host, record, take))
+                {
+                    domain_.participants().refuse(info.publication_handle, *refused, record.object);
+                }
             }
             const bool is_gone = info.instance_state != DDS_ALIVE_INSTANCE_STATE;
             if (is_gone && domain_.participants().is_host(info.publication_handle, epoch))
@@ -132,7 +135,9 @@ void SceneReader::take_records(std::uint64_t epoch, Host& host, const Take& take
         });
 }
 
-void SceneReader::take_record(Host& host, const tactus_v2_ObjectRecord& record, const Take& take)
+/// Why nothing came of it; none when it is fine.
+std::optional<Refused> SceneReader::take_record(Host& host, const tactus_v2_ObjectRecord& record,
+                                                const Take& take)
 {
     const char* const text = static_cast<const char*>(record.name);
     SeenObject news;
@@ -144,9 +149,13 @@ void SceneReader::take_record(Host& host, const tactus_v2_ObjectRecord& record, 
     const bool is_rigid = record.stiffness_n_per_m == 0.0;
     news.shown.material = {is_rigid ? kInfinity : record.stiffness_n_per_m, record.static_friction,
                            record.dynamic_friction, record.damping_n_s_per_m};
-    if (!is_valid_name(news.shown.name) || !is_sound(news.shown.material))
+    if (!is_valid_name(news.shown.name))
     {
-        return;
+        return Refused::object_name;
+    }
+    if (!is_sound(news.shown.material))
+    {
+        return Refused::object_material;
     }
     const auto known = host.objects.find(record.object);
     if (known != host.objects.end() && known->second.generation == record.generation)
@@ -156,11 +165,11 @@ void SceneReader::take_record(Host& host, const tactus_v2_ObjectRecord& record, 
         {
             take(SceneNews::moves, known->second);
         }
-        return;
+        return std::nullopt;
     }
     if (!try_move(news, record.serial, record.pose))
     {
-        return;
+        return Refused::object_pose;
     }
     remove(host, record.object, take);
     if (exchange_.catalogue().find(news.shown.model, news.host_epoch) == nullptr)
@@ -169,10 +178,11 @@ void SceneReader::take_record(Host& host, const tactus_v2_ObjectRecord& record, 
         const bool is_new = stranger.object.generation != news.generation;
         stranger = is_new ? Stranger{news, Clock::now()}
                           : Stranger{news, stranger.since, stranger.is_told};
-        return;
+        return is_new ? std::optional(Refused::not_served) : std::nullopt;
     }
     host.strangers.erase(record.object);
     take(SceneNews::comes, host.objects.emplace(record.object, std::move(news)).first->second);
+    return std::nullopt;
 }
 
 void SceneReader::take_motion(Host& host, const Take& take)

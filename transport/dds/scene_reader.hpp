@@ -4,6 +4,7 @@
 
 #include "platform/base/refusal.hpp"
 #include "transport/dds/piece_exchange.hpp"
+#include "transport/dds/refusals.hpp"
 #include "transport/log.hpp"
 #include "transport/shown_object.hpp"
 
@@ -13,6 +14,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -108,7 +110,8 @@ private:
 
     void join(std::uint64_t epoch, Host& host);
     void take_records(std::uint64_t epoch, Host& host, const Take& take);
-    void take_record(Host& host, const tactus_v2_ObjectRecord& record, const Take& take);
+    [[nodiscard]] std::optional<Refused>
+    take_record(Host& host, const tactus_v2_ObjectRecord& record, const Take& take);
     void take_motion(Host& host, const Take& take);
     void look_at_strangers(std::uint64_t epoch, Host& host, const Take& take);
     static bool try_move(SeenObject& object, std::uint64_t serial, const tactus_v2_Placement& to);

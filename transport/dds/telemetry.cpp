@@ -254,10 +254,14 @@ Result<std::unique_ptr<TelemetryReader>, Refusal> TelemetryReader::create(const 
     {
         return reader.error();
     }
-    return std::unique_ptr<TelemetryReader>(new TelemetryReader(std::move(reader).value()));
+    return std::unique_ptr<TelemetryReader>(
+        new TelemetryReader(domain.participants(), std::move(reader).value()));
 }
 
-TelemetryReader::TelemetryReader(Endpoint reader) : reader_(std::move(reader)) {}
+TelemetryReader::TelemetryReader(Participants& participants, Endpoint reader)
+    : participants_(participants), reader_(std::move(reader))
+{
+}
 
 void TelemetryReader::poll()
 {
@@ -267,17 +271,29 @@ void TelemetryReader::poll()
         {
             if (info.instance_state != DDS_ALIVE_INSTANCE_STATE)
             {
-                std::erase_if(controllers_,
-                              [&](const WatchedController& controller) {
-                                  return std::memcmp(controller.id.data(), sample.controller,
-                                                     controller.id.size()) == 0;
-                              });
+                on_end(sample, info.publication_handle);
             }
-            else if (info.valid_data)
+            else if (info.valid_data && !try_take(sample))
             {
-                refused_ += try_take(sample) ? 0U : 1U;
+                ++refused_;
+                participants_.refuse(info.publication_handle, Refused::telemetry);
             }
         });
+}
+
+/// Of who isn't the controller it is no news.
+void TelemetryReader::on_end(const tactus_v2_Telemetry& sample, std::uint64_t writer)
+{
+    ControllerId controller{};
+    std::memcpy(controller.data(), sample.controller, controller.size());
+    const auto who = participants_.writer_of(writer);
+    if (who && *who != controller)
+    {
+        participants_.refuse(writer, Refused::identity);
+        return;
+    }
+    std::erase_if(controllers_,
+                  [&](const WatchedController& each) { return each.id == controller; });
 }
 
 bool TelemetryReader::try_take(const tactus_v2_Telemetry& sample)

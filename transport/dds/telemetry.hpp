@@ -80,10 +80,12 @@ public:
     [[nodiscard]] std::uint64_t refused() const noexcept { return refused_; }
 
 private:
-    explicit TelemetryReader(Endpoint reader);
+    TelemetryReader(Participants& participants, Endpoint reader);
 
+    void on_end(const tactus_v2_Telemetry& sample, std::uint64_t writer);
     [[nodiscard]] bool try_take(const tactus_v2_Telemetry& sample);
 
+    Participants& participants_;
     Endpoint reader_;
     std::vector<WatchedController> controllers_;
     std::uint64_t refused_{0};

@@ -55,31 +55,42 @@ Participants& participants_of(void* context)
     return *static_cast<Participants*>(context);
 }
 
+bool refuse(const dds_sample_info_t* info, void* context, Refused reason, std::uint32_t number = 0)
+{
+    participants_of(context).refuse(info->publication_handle, reason, number);
+    return false;
+}
+
 /// Whether a sample of a host comes from that host.
 template <typename Sample>
 bool is_of_its_host(const Sample& sample, const dds_sample_info_t* info, void* context)
 {
-    return participants_of(context).is_host(info->publication_handle, sample.host_epoch);
+    return participants_of(context).is_host(info->publication_handle, sample.host_epoch) ||
+           refuse(info, context, Refused::identity);
 }
 
 template <typename Sample>
 bool is_of_its_controller(const Sample& sample, const dds_sample_info_t* info, void* context)
 {
     const auto writer = participants_of(context).writer_of(info->publication_handle);
-    return writer && std::memcmp(static_cast<const std::uint8_t*>(sample.controller),
-                                 writer->data(), writer->size()) == 0;
+    const bool is_it = writer && std::memcmp(static_cast<const std::uint8_t*>(sample.controller),
+                                             writer->data(), writer->size()) == 0;
+    return is_it || refuse(info, context, Refused::identity);
 }
 
 bool is_honest_entry(const void* sample, const dds_sample_info_t* info, void* context)
 {
     const auto& entry = *static_cast<const tactus_v2_CatalogueEntry*>(sample);
-    return entry.model < kMaxModels && is_of_its_host(entry, info, context);
+    return is_of_its_host(entry, info, context) &&
+           (entry.model < kMaxModels || refuse(info, context, Refused::model_number, entry.model));
 }
 
 bool is_honest_record(const void* sample, const dds_sample_info_t* info, void* context)
 {
     const auto& record = *static_cast<const tactus_v2_ObjectRecord*>(sample);
-    return record.object < kMaxObjects && is_of_its_host(record, info, context);
+    return is_of_its_host(record, info, context) &&
+           (record.object < kMaxObjects ||
+            refuse(info, context, Refused::object_number, record.object));
 }
 
 bool is_honest_motion(const void* sample, const dds_sample_info_t* info, void* context)

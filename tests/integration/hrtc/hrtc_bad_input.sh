@@ -133,6 +133,7 @@ done
 readonly letters='A-Z a-z 0-9 . _ -'
 for name in '' 'a b' ä $'a\nb' $'\e[31mred' "$(printf 'n%.0s' {1..64})"; do
     refuse 3 "--model: *$letters" --model "$name"
+    refuse 3 "--name: *$letters" --model bumpy --name "$name"
 done
 refuse 3 'hexadecimal' --model bumpy@12
 refuse 3 'hexadecimal' --model "bumpy@$(printf 'g%.0s' {1..32})"

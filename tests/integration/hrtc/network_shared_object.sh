@@ -12,10 +12,10 @@ awk 'BEGIN {
         printf "%.3f ball %.6f 0 0 0 0 0 1\n", i / 100, 0.003 * sin(i * 3.14159265 / 50)
 }' >swing.txt
 
-# start_controller NAME: its words in NAME.log, its id in $controller.
+# start_controller NAME: it is called so, its words are in NAME.log, its id in $controller.
 start_controller() {
     "${on_controller[@]}" "$hrtc" --allow-no-rt --domain "$domain" --scene shared \
-        --device sim:touch --duration "$seconds" --report "$1.json" >"$1.log" 2>&1 &
+        --name "$1" --device sim:touch --duration "$seconds" --report "$1.json" >"$1.log" 2>&1 &
     controller=$!
     started+=("$controller")
 }
@@ -28,9 +28,9 @@ start_host() {
 
 # check_watched FILE: that host saw each of the two touch its model, with a force.
 check_watched() {
-    local id
-    for id in "$left" "$right"; do
-        grep -q "^watch hrtc-$id: .* N in contact" "$1" || fault "$1: hrtc-$id never touched"
+    local name
+    for name in left right; do
+        grep -q "^watch $name: .* N in contact" "$1" || fault "$1: $name never touched"
     done
 }
 

@@ -75,6 +75,7 @@ Json report_of(const std::string& model)
          {{"bytes_received", 71'000},
           {"host_lost", false},
           {"arrival_ms", {{"p50", 1.5}, {"p99", 2.5}, {"max", 3.5}}}}},
+        {"refused", Json::array({{{"peer", "spm_publish <4>"}, {"id", "00"}, {"identity", 151}}})},
         {"deadline",
          {{"missed", 73},
           {"own_fault", 0},

@@ -272,6 +272,59 @@ TEST_F(Dds, a_host_that_goes_in_the_middle_of_a_base_mesh_is_completed_by_anothe
     EXPECT_TRUE(std::ranges::equal(fetch.base(), model.base));
 }
 
+/// Counts the parts of a base mesh that come.
+class PartCounter final : public PieceReceiver
+{
+public:
+    explicit PartCounter(const ContentHash& model) : model_(model) {}
+    [[nodiscard]] const ContentHash& model() const override { return model_; }
+    void receive(ContentKey key, std::span<const std::byte> /*bytes*/) override
+    {
+        times[key.number] += key.kind == ContentKind::base ? 1 : 0;
+    }
+    std::map<std::uint32_t, int> times;
+
+private:
+    ContentHash model_;
+};
+
+TEST_F(Dds, what_came_of_a_base_mesh_before_its_host_went_is_not_asked_of_another)
+{
+    const TinyModel model = make_tiny_model({.base_faces = 12'000});
+    auto first = host_of("tiny", model, kHostDomain);
+    const auto sut = client();
+    PieceExchange& exchange = sut->exchange();
+    const auto stepped_until = [&](const std::function<bool()>& is_so)
+    {
+        return eventually(
+            [&]
+            {
+                exchange.step();
+                return is_so();
+            });
+    };
+    const ModelSelector tiny{"tiny", std::nullopt};
+    ASSERT_TRUE(stepped_until([&] { return sut->catalogue().find(tiny) != nullptr; }));
+    const Catalogue::Offer offer = *sut->catalogue().find(tiny);
+    PartCounter counter(offer.hash);
+    exchange.add(counter);
+    ModelFetch fetch(exchange, sut->catalogue(), offer);
+    const std::vector<ContentKey> some{{ContentKind::base, 0}, {ContentKind::base, 1}};
+    exchange.ask(offer.host_epoch, offer.model, some, 0);
+    ASSERT_TRUE(stepped_until([&] { return counter.times[1] == 1; }));
+    EXPECT_EQ(fetch.step(), ModelFetch::State::under_way);
+    first.reset(); // The rest was asked of it as well: none of that left us.
+    const auto second = host_of("tiny", model, kOtherHostDomain);
+    EXPECT_TRUE(stepped_until([&] { return fetch.step() == ModelFetch::State::done; }));
+    EXPECT_TRUE(std::ranges::equal(fetch.header(), model.header));
+    EXPECT_TRUE(std::ranges::equal(fetch.base(), model.base));
+    EXPECT_EQ(counter.times[0], 1);
+    EXPECT_EQ(counter.times[1], 1);
+    EXPECT_GE(counter.times[2], 1);
+    EXPECT_GE(second->counters().pieces_sent, 2U); // The header and what was left of the base.
+    exchange.remove(counter);
+}
+
 TEST_F(Dds, a_model_that_is_announced_larger_than_any_may_be_is_refused)
 {
     const auto host = host_of("tiny", make_tiny_model({}));
@@ -483,6 +536,19 @@ TEST_F(Dds, a_controller_that_leaves_is_removed)
     EXPECT_TRUE(host_lines.has("controller test-3 left ("));
 }
 
+TEST_F(Dds, controllers_of_one_name_are_served_each_and_the_host_says_so)
+{
+    const auto host = host_of("tiny", make_tiny_model({}));
+    const auto first = client();
+    ASSERT_TRUE(first->find({"tiny", std::nullopt}, kPatience));
+    EXPECT_FALSE(host_lines.has("of this name"));
+    const auto second = DdsClient::create(kOtherClientDomain, "test-3", lines.log());
+    ASSERT_TRUE(second) << second.error().text;
+    ASSERT_TRUE(second.value()->find({"tiny", std::nullopt}, kPatience));
+    EXPECT_TRUE(host_lines.has("controller test-3 subscribed; another one of this name is here\n"));
+    EXPECT_EQ(host->subscribers().size(), 2U);
+}
+
 TEST_F(Dds, what_the_model_does_not_have_is_refused_and_the_rest_is_served)
 {
     const TinyModel model = make_tiny_model({});
@@ -654,6 +720,27 @@ TEST_F(Dds, a_process_may_be_a_host_first_and_then_a_controller)
     EXPECT_TRUE(first) << first.error().text;
     EXPECT_TRUE(second) << second.error().text;
     EXPECT_TRUE(third) << third.error().text;
+}
+
+TEST_F(Dds, a_host_looks_for_others_only_when_its_process_joined_as_both)
+{
+    ::unsetenv("CYCLONEDDS_URI");
+    const std::uint32_t domain = 200 + static_cast<std::uint32_t>(::getpid()) % 30;
+    const std::string path = folder.write("tiny.spm", make_tiny_model({}).file).string();
+    const Program host({path, "--domain", std::to_string(domain)});
+    {
+        const auto alone = Domain::join(domain, Party::host);
+        ASSERT_TRUE(alone) << alone.error().text;
+        const auto beside = DdsClient::create(domain, "beside", {});
+        ASSERT_TRUE(beside) << beside.error().text;
+        EXPECT_FALSE(beside.value()->find({"tiny", std::nullopt}, 1'500ms));
+    }
+    const auto joined = Domain::join(domain, Party::both);
+    ASSERT_TRUE(joined) << joined.error().text;
+    const auto sut = DdsClient::create(domain, "both", {});
+    ASSERT_TRUE(sut) << sut.error().text;
+    const auto found = sut.value()->find({"tiny", std::nullopt}, kPatience);
+    EXPECT_TRUE(found) << found.error().text;
 }
 
 TEST_F(Dds, spm_publish_refuses_wrong_files_and_names_with_one_line)

@@ -22,6 +22,7 @@
 #include <optional>
 #include <random>
 #include <string>
+#include <unistd.h>
 #include <utility>
 #include <vector>
 
@@ -422,17 +423,22 @@ protected:
         entries_ = make_writer(host->domain(), Topic::catalogue, "").value();
         ASSERT_TRUE(eventually([&] { return is_matched(records_) && is_matched(entries_); }));
     }
-    void show(std::uint32_t number, const std::string& name, const ContentHash& model,
-              std::uint32_t generation = 1)
+    [[nodiscard]] tactus_v2_ObjectRecord record_of(std::uint32_t number, const std::string& name,
+                                                   const ContentHash& model)
     {
         tactus_v2_ObjectRecord record = {};
         record.host_epoch = host->epoch();
         record.object = number;
-        record.generation = generation;
+        record.generation = 1;
         name.copy(static_cast<char*>(record.name), kMaxNameBytes);
         std::memcpy(record.model_hash, model.data(), model.size());
         record.serial = 1'000;
         record.pose = to_wire(some_pose());
+        return record;
+    }
+    void show(std::uint32_t number, const std::string& name, const ContentHash& model)
+    {
+        const tactus_v2_ObjectRecord record = record_of(number, name, model);
         EXPECT_EQ(dds_write(records_.handle, &record), DDS_RETCODE_OK);
     }
     void announce(std::uint32_t number, const std::string& name, const ContentHash& model)
@@ -451,6 +457,18 @@ protected:
         ContentHash hash = host->models()[0].store().hash();
         hash[0] ^= 1U;
         return hash;
+    }
+    [[nodiscard]] std::uint64_t refused_of_host(Refused reason)
+    {
+        const ParticipantId own = host->domain().participants().own();
+        std::uint64_t count = 0;
+        for (const PeerRefusals& peer :
+             follower->client().domain().participants().refusals().list())
+        {
+            EXPECT_EQ(peer.id, own);
+            count += peer.counts.at(static_cast<std::size_t>(reason));
+        }
+        return count;
     }
     [[nodiscard]] std::size_t lines_with(const std::string& part)
     {
@@ -488,6 +506,43 @@ TEST_F(DdsHostFaults, more_objects_and_models_than_a_controller_holds_take_no_ro
     EXPECT_EQ(follower->scene().objects(host->epoch()).size(), 2U);
     EXPECT_FALSE(is_offered("beyond"));
     EXPECT_EQ(seen(cup_)->shown.name, "cup");
+    EXPECT_EQ(refused_of_host(Refused::object_number), 4U);
+    EXPECT_EQ(refused_of_host(Refused::model_number), 5U);
+    const std::string who = "(process " + std::to_string(::getpid()) + " on ";
+    follower->step(); // What was counted between its look and the last take.
+    EXPECT_TRUE(follower->lines.has(who)) << follower->lines.text();
+    EXPECT_EQ(lines_with("object 4096: a host has objects 0 to 4095"), 1U);
+    EXPECT_EQ(lines_with("model 4096: a host has models 0 to 255"), 1U);
+}
+
+/// Records that are none: counted by reason, and named once.
+TEST_F(DdsHostFaults, records_that_are_none_are_named_once_and_change_nothing)
+{
+    const auto write =
+        [&](std::uint32_t number, const std::function<void(tactus_v2_ObjectRecord&)>& spoil)
+    {
+        tactus_v2_ObjectRecord record = record_of(number, "pot", host->models()[0].store().hash());
+        spoil(record);
+        EXPECT_EQ(dds_write(records_.handle, &record), DDS_RETCODE_OK);
+    };
+    for (std::uint32_t i = 1; i < 4; ++i)
+    {
+        write(10 + i, [](auto& record) { std::strcpy(static_cast<char*>(record.name), "a b"); });
+    }
+    write(20, [](auto& record) { record.stiffness_n_per_m = -1.0; });
+    write(21, [](auto& record) { record.dynamic_friction = kNan; });
+    write(30, [](auto& record) { record.pose.translation_m[0] = kNan; });
+    announce(1, "a/b", other_model());
+    show(40, "last", host->models()[0].store().hash());
+    ASSERT_TRUE(step_until(
+        [&] { return seen(40) != nullptr && refused_of_host(Refused::model_name) == 1; }));
+    EXPECT_EQ(refused_of_host(Refused::object_name), 3U);
+    EXPECT_EQ(refused_of_host(Refused::object_material), 2U);
+    EXPECT_EQ(refused_of_host(Refused::object_pose), 1U);
+    EXPECT_EQ(follower->scene().objects(host->epoch()).size(), 2U);
+    follower->step();
+    EXPECT_EQ(lines_with("object 11: its name is not"), 1U) << follower->lines.text();
+    EXPECT_EQ(lines_with("refused of "), 4U) << follower->lines.text();
 }
 
 TEST_F(DdsHostFaults, objects_of_models_that_it_does_not_serve_are_refused_by_name)
@@ -584,6 +639,11 @@ TEST_F(DdsObjectFaults, of_who_is_not_the_host_do_not_get_in)
     EXPECT_EQ(seen(cup_)->shown.name, "cup");
     EXPECT_EQ(seen(cup_)->shown.pose.translation_m[0], 0.0);
     EXPECT_EQ(follower->scene().objects(host->epoch()).size(), 1U);
+    const auto refused = follower->client().domain().participants().refusals().list();
+    ASSERT_EQ(refused.size(), 1U);
+    EXPECT_EQ(refused[0].id, stranger.participants().own());
+    // Both records; motion may get lost.
+    EXPECT_GE(refused[0].counts.at(static_cast<std::size_t>(Refused::identity)), 2U);
     write_until_counted(2'000, good(0.5)); // The host itself goes on as before.
     EXPECT_EQ(seen(cup_)->shown.pose.translation_m[0], 0.5);
 }
@@ -615,7 +675,7 @@ TEST_F(DdsObjects, of_two_hosts_are_told_apart)
     EXPECT_EQ(follower->find(other->epoch(), pot)->shown.name, "pot");
 }
 
-/// Eight at the same instant: four get everything at once, the others when these have it.
+/// Eight at the same instant: two get everything at once, the others when these have it.
 TEST_F(DdsObjects, come_to_many_controllers_a_few_at_a_time)
 {
     constexpr std::uint32_t kMany = 500;

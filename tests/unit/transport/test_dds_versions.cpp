@@ -92,6 +92,11 @@ protected:
         }
         return is_so();
     }
+    /// Until the host has said once more what it serves.
+    void step_for_an_announcement()
+    {
+        static_cast<void>(step_until([] { return false; }, 1'100ms));
+    }
     void step()
     {
         if (host)
@@ -204,6 +209,58 @@ TEST_F(DdsVersions, who_says_to_be_another_host_is_not_heard)
         }));
 }
 
+/// Anybody may dispose of anything, and filters don't see it.
+TEST_F(DdsVersions, who_is_not_the_host_can_not_end_it_nor_hide_its_end)
+{
+    ASSERT_NO_FATAL_FAILURE(start_host());
+    ASSERT_NO_FATAL_FAILURE(connect());
+    const Endpoint writer = make_writer(stranger, Topic::catalogue, "").value();
+    ASSERT_TRUE(step_until([&] { return is_matched(writer); }));
+    tactus_v2_CatalogueEntry entry = {};
+    entry.host_epoch = host->epoch();
+    const auto refused = [&]
+    {
+        for (const PeerRefusals& peer : client->domain().participants().refusals().list())
+        {
+            EXPECT_EQ(peer.id, stranger.participants().own());
+            return peer.counts.at(static_cast<std::size_t>(Refused::identity));
+        }
+        return std::uint64_t{0};
+    };
+    for (std::uint64_t i = 1; i <= 3; ++i)
+    {
+        ASSERT_EQ(dds_dispose(writer.handle, &entry), DDS_RETCODE_OK);
+        ASSERT_TRUE(step_until([&] { return refused() == i; }));
+        EXPECT_EQ(link->state(), LinkState::connected);
+        step_for_an_announcement();
+    }
+    ASSERT_EQ(dds_dispose(writer.handle, &entry), DDS_RETCODE_OK);
+    ASSERT_TRUE(step_until([&] { return refused() == 4; }));
+    EXPECT_EQ(lines.find("gone"), std::string::npos) << lines;
+    host.reset();
+    EXPECT_TRUE(step_until([&] { return link->state() == LinkState::host_gone; }));
+}
+
+TEST_F(DdsVersions, who_is_not_the_controller_can_not_end_it_nor_hide_its_end)
+{
+    ASSERT_NO_FATAL_FAILURE(start_host());
+    ASSERT_NO_FATAL_FAILURE(connect());
+    const Endpoint writer = make_writer(stranger, Topic::wanted, "ours").value();
+    ASSERT_TRUE(step_until([&] { return is_matched(writer); }));
+    const tactus_v2_Wanted wanted = request(client->domain().participants().own(), "ours");
+    ASSERT_EQ(dds_dispose(writer.handle, &wanted), DDS_RETCODE_OK);
+    ASSERT_TRUE(
+        step_until([&] { return !host->domain().participants().refusals().list().empty(); }));
+    EXPECT_EQ(host->subscribers().size(), 1U);
+    const std::vector<ContentKey> keys{{ContentKind::chunk, 0}};
+    link->request(keys, 1);
+    EXPECT_TRUE(step_until([&] { return got.count == 1; }));
+    EXPECT_EQ(host_lines.find("left ("), std::string::npos) << host_lines;
+    link.reset();
+    client.reset();
+    EXPECT_TRUE(step_until([&] { return host->subscribers().empty(); }));
+}
+
 TEST_F(DdsVersions, pieces_of_who_says_to_be_the_host_are_not_taken)
 {
     ASSERT_NO_FATAL_FAILURE(start_host());
@@ -243,6 +300,11 @@ TEST_F(DdsVersions, a_controller_is_served_under_its_own_id_and_a_valid_name_onl
     EXPECT_EQ(host->subscribers().size(), 1U);
     EXPECT_EQ(test::count_of(host_lines, "is refused: its name is not"), 1U) << host_lines;
     EXPECT_EQ(host_lines.find('\x1b'), std::string::npos);
+    const auto refused = host->domain().participants().refusals().list();
+    ASSERT_EQ(refused.size(), 1U);
+    EXPECT_EQ(refused[0].id, own);
+    EXPECT_EQ(refused[0].counts.at(static_cast<std::size_t>(Refused::identity)), 1U);
+    EXPECT_EQ(refused[0].counts.at(static_cast<std::size_t>(Refused::controller)), 1U);
     wanted = request(own, "stranger");
     ASSERT_EQ(dds_write(writer.handle, &wanted), DDS_RETCODE_OK);
     EXPECT_TRUE(step_until([&] { return host->subscribers().size() == 2; }));

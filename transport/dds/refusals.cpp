@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "transport/dds/refusals.hpp"
+
+#include "rt_core/limits.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+#include <utility>
+
+namespace tactus::dds
+{
+
+namespace
+{
+
+/// What a line says; empty where the place that refuses says more.
+std::string text_of(Refused reason, std::uint32_t number)
+{
+    constexpr std::string_view name_form =
+        "its name is not 1 to 63 characters of A-Z a-z 0-9 . _ -";
+    switch (reason)
+    {
+    case Refused::identity:
+        return "a sample that names another host or controller than it comes from";
+    case Refused::object_number:
+        return fmt::format("object {}: a host has objects 0 to {}", number, kMaxObjects - 1);
+    case Refused::model_number:
+        return fmt::format("model {}: a host has models 0 to {}", number, kMaxModels - 1);
+    case Refused::object_name:
+        return fmt::format("object {}: {}", number, name_form);
+    case Refused::object_material:
+        return fmt::format("object {}: its stiffness is not above 0, friction or damping below 0, "
+                           "or dynamic friction above static friction",
+                           number);
+    case Refused::object_pose:
+        return fmt::format("object {}: it stands nowhere", number);
+    case Refused::model_name:
+        return fmt::format("model {}: {}, or its scene's is not", number, name_form);
+    case Refused::model_room:
+        return fmt::format("model {}: there are too many on the domain", number);
+    case Refused::wish:
+        return "a wish for a piece that there is not";
+    case Refused::telemetry:
+        return "telemetry with a name or numbers that are none, or of too many controllers";
+    case Refused::not_served:
+    case Refused::controller:
+        break;
+    }
+    return "";
+}
+
+} // namespace
+
+const std::array<const char*, kRefusedKinds>& refused_names() noexcept
+{
+    static constexpr std::array<const char*, kRefusedKinds> names{
+        "identity",        "object_number", "model_number", "object_name",
+        "object_material", "object_pose",   "not_served",   "model_name",
+        "model_room",      "controller",    "wish",         "telemetry"};
+    return names;
+}
+
+void Refusals::count(const ParticipantId& peer, Refused reason, std::uint32_t number)
+{
+    const std::lock_guard lock(mutex_);
+    auto at =
+        std::ranges::find_if(peers_, [&](const Peer& known) { return known.refused.id == peer; });
+    if (at == peers_.end() && peers_.size() < kMaxPeers)
+    {
+        Peer news;
+        news.refused.id = peers_.size() + 1 < kMaxPeers ? peer : ParticipantId{};
+        at = peers_.insert(peers_.end(), std::move(news));
+    }
+    Peer& known = at == peers_.end() ? peers_.back() : *at;
+    const auto kind = static_cast<std::size_t>(reason);
+    if (known.refused.counts.at(kind)++ == 0)
+    {
+        known.reasons.at(kind).first = number;
+    }
+    has_news_ = true;
+}
+
+void Refusals::report(RateLimitedLog& log,
+                      const std::function<std::string(const ParticipantId&)>& name_of)
+{
+    if (!has_news_.exchange(false))
+    {
+        return;
+    }
+    const std::lock_guard lock(mutex_);
+    for (Peer& peer : peers_)
+    {
+        PeerRefusals& refused = peer.refused;
+        refused.name = refused.name.empty() ? name_of(refused.id) : refused.name;
+        for (std::size_t i = 0; i < kRefusedKinds; ++i)
+        {
+            Reason& reason = peer.reasons.at(i);
+            const std::uint64_t count = refused.counts.at(i);
+            const std::string text = text_of(static_cast<Refused>(i), reason.first);
+            if (text.empty() || count < reason.told_at)
+            {
+                continue;
+            }
+            while (reason.told_at <= count)
+            {
+                reason.told_at *= 10;
+            }
+            log.write(fmt::format("refused of {}: {}{}", refused.name, text,
+                                  count > 1 ? fmt::format(" ({} so far)", count) : ""));
+        }
+    }
+}
+
+std::vector<PeerRefusals> Refusals::list() const
+{
+    const std::lock_guard lock(mutex_);
+    std::vector<PeerRefusals> list;
+    for (const Peer& peer : peers_)
+    {
+        list.push_back(peer.refused);
+    }
+    return list;
+}
+
+} // namespace tactus::dds
