@@ -76,8 +76,8 @@ void declare_scene(CommandLine& line, Options& options, RawOptions& raw)
         .repeatable();
     line.add_option(
         "--motion", raw.motion,
-        "What simulated hands do: script, free, approach, slide, tap, teleport, spin or "
-        "tremor [script]");
+        "What simulated hands do: script, free, approach, slide, tap, teleport, spin, tremor, "
+        "turn, edge or peg [script]");
 }
 
 void declare_run(CommandLine& line, Options& options)

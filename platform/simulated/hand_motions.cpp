@@ -7,6 +7,7 @@
 #include "platform/simulated/landing_sites.hpp"
 #include "platform/simulated/phasor.hpp"
 #include "platform/simulated/seeded_noise.hpp"
+#include "platform/simulated/turning_hands.hpp"
 
 #include <algorithm>
 #include <array>
@@ -20,8 +21,11 @@ namespace tactus
 namespace
 {
 
-constexpr std::string_view kNames[] = {"script", "free",     "approach", "slide",
-                                       "tap",    "teleport", "spin",     "tremor"};
+constexpr std::string_view kNames[] = {"script", "free",   "approach", "slide", "tap", "teleport",
+                                       "spin",   "tremor", "turn",     "edge",  "peg"};
+
+/// Round the start of a hand at least, of its workspace.
+constexpr double kRoom_diag = 0.05;
 
 /// On the sphere on which the gates are.
 class FlyingHand final : public HandMotion
@@ -146,6 +150,12 @@ std::unique_ptr<HandMotion> make_hand(MotionKind kind, const HandScene& scene, s
         return std::make_unique<SpinningHand>(scene);
     case MotionKind::tremor:
         return std::make_unique<TremblingHand>(std::move(script), to_seconds(scene.period), seed);
+    case MotionKind::turn:
+        return std::make_unique<TurningHand>(scene);
+    case MotionKind::edge:
+        return std::make_unique<EdgeHand>(std::move(script), scene);
+    case MotionKind::peg:
+        return std::make_unique<PegHand>(scene);
     case MotionKind::script:
     case MotionKind::slide:
         break;
@@ -166,7 +176,7 @@ std::optional<MotionKind> motion_named(std::string_view name)
 Result<MadeMotion, Refusal> make_motion(MotionKind kind, const HandScene& scene, std::uint64_t seed)
 {
     HandScene played = scene;
-    played.lifts_off = kind != MotionKind::slide;
+    played.lifts_off = kind != MotionKind::slide && kind != MotionKind::edge;
     auto script = ScriptedHand::create(played); // It checks the scene for all of them.
     if (!script)
     {
@@ -176,6 +186,8 @@ Result<MadeMotion, Refusal> make_motion(MotionKind kind, const HandScene& scene,
     made.centre_world_m = script.value()->centre_world_m();
     made.reach_m = script.value()->reach_m();
     made.hand = make_hand(kind, played, seed, std::move(script).value());
+    const double start_m = (made.hand->start_world_m() - made.centre_world_m).norm();
+    made.reach_m = std::max(made.reach_m, start_m + kRoom_diag * scene.diagonal_m);
     return made;
 }
 

@@ -27,11 +27,14 @@ enum class MotionKind : std::uint8_t
     teleport, ///< Twice a second at once to another place, on the model or round it.
     spin,     ///< Presses and circles on one place, twice a second.
     tremor,   ///< The script with a trembling hand.
+    turn,     ///< Presses on one place and turns the tool there about its axes.
+    edge,     ///< As slide, and turns the tool with the surface.
+    peg,      ///< In and out along z, with tilts, a button and a gripper.
 };
 
 /// In the order of MotionKind, for messages.
 inline constexpr std::string_view kMotionNames =
-    "script, free, approach, slide, tap, teleport, spin or tremor";
+    "script, free, approach, slide, tap, teleport, spin, tremor, turn, edge or peg";
 
 /// None when it is no name of a motion.
 [[nodiscard]] std::optional<MotionKind> motion_named(std::string_view name);

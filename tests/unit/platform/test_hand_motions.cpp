@@ -27,11 +27,17 @@ constexpr double kDiagonal_m = 0.2;
 constexpr double kRadius_m = 0.0577;
 constexpr double kTool_m = 0.01 * kDiagonal_m;
 
-const std::pair<const char*, MotionKind> kKinds[] = {
-    {"script", MotionKind::script},     {"free", MotionKind::free},
-    {"approach", MotionKind::approach}, {"slide", MotionKind::slide},
-    {"tap", MotionKind::tap},           {"teleport", MotionKind::teleport},
-    {"spin", MotionKind::spin},         {"tremor", MotionKind::tremor}};
+const std::pair<const char*, MotionKind> kKinds[] = {{"script", MotionKind::script},
+                                                     {"free", MotionKind::free},
+                                                     {"approach", MotionKind::approach},
+                                                     {"slide", MotionKind::slide},
+                                                     {"tap", MotionKind::tap},
+                                                     {"teleport", MotionKind::teleport},
+                                                     {"spin", MotionKind::spin},
+                                                     {"tremor", MotionKind::tremor},
+                                                     {"turn", MotionKind::turn},
+                                                     {"edge", MotionKind::edge},
+                                                     {"peg", MotionKind::peg}};
 
 /// A ball's, for so many frames at 1 kHz.
 HandScene scene_of(std::uint64_t frames)
@@ -54,23 +60,45 @@ MadeMotion make(MotionKind kind, std::uint64_t frames, std::uint64_t seed = 1)
     return std::move(make_motion(kind, scene_of(frames), seed)).value();
 }
 
-/// The default device in that hand, on a ball of 500 N/m or on nothing. With a drag its force damps
-/// the motion, too, as one does that comes back after a fault.
+double nothing(const Vec3& /*place*/)
+{
+    return 1.0;
+}
+
+/// A block with a hole from above.
+constexpr double kHole_m = 0.01;
+constexpr double kHoleBottom_m = 0.01;
+constexpr double kHoleTop_m = 0.05;
+double block_with_a_hole(const Vec3& p)
+{
+    const double to_wall_m = kHole_m - p.head<2>().norm();
+    const double over_m = p.z() - kHoleTop_m;
+    if (over_m > 0.0)
+    {
+        return to_wall_m > 0.0 ? std::hypot(to_wall_m, over_m) : over_m;
+    }
+    return to_wall_m > 0.0 ? std::min(to_wall_m, p.z() - kHoleBottom_m)
+                           : std::max(to_wall_m, over_m);
+}
+
+/// The default device in that hand, on a ball of 500 N/m or another shape. With a drag its force
+/// damps the motion, too, as one does that comes back after a fault.
 struct Play
 {
     std::vector<Vec3> device_m;
     std::vector<double> force_n;
+    std::vector<Vec3> normal; ///< Of the wall that it touches, or zero.
+    std::vector<Mat3> rotation;
+    std::vector<DeviceSample> samples;
 
-    explicit Play(MotionKind kind, std::uint64_t frames = 4'000, bool is_there = true,
-                  double drag_n_s_per_m = 0.0)
+    explicit Play(MotionKind kind, std::uint64_t frames = 4'000,
+                  const test::Shape& shape = test::sphere(kRadius_m), double drag_n_s_per_m = 0.0)
     {
         MadeMotion motion = make(kind, frames);
         SimulatedDeviceOptions options;
         options.workspace_centre_world_m = motion.centre_world_m;
         options.workspace_radius_m = motion.reach_m;
-        test::FakeWall wall(
-            is_there ? test::sphere(kRadius_m) : [](const Vec3&) { return 1.0; }, 500.0, kTool_m,
-            motion.hand->start_world_m());
+        test::FakeWall wall(shape, 500.0, kTool_m, motion.hand->start_world_m());
         auto device = std::move(SimulatedDevice::create(options, std::move(motion.hand))).value();
         for (std::uint64_t frame = 0; frame < frames; ++frame)
         {
@@ -82,6 +110,9 @@ struct Play
             device->write({{felt.x(), felt.y(), felt.z()}, {}, 0.0});
             device_m.emplace_back(p[0], p[1], p[2]);
             force_n.push_back(force.norm());
+            normal.push_back(force.norm() > 0.0 ? Vec3(force.normalized()) : Vec3(0.0, 0.0, 0.0));
+            rotation.push_back(to_rotation(*sample.rotation_world));
+            samples.push_back(sample);
         }
     }
 
@@ -123,10 +154,10 @@ TEST(HandMotions, repeat_bit_for_bit_and_stay_finite_on_a_model_that_is_not_ther
     {
         const Play one(kind, 2'000);
         const Play two(kind, 2'000);
-        const Play nothing(kind, 6'000, false);
-        EXPECT_TRUE(one.device_m == two.device_m) << name;
-        EXPECT_EQ(nothing.contact_share(), 0.0) << name;
-        EXPECT_TRUE(std::ranges::all_of(nothing.device_m,
+        const Play lost(kind, 6'000, nothing);
+        EXPECT_TRUE(one.device_m == two.device_m && one.rotation == two.rotation) << name;
+        EXPECT_EQ(lost.contact_share(), 0.0) << name;
+        EXPECT_TRUE(std::ranges::all_of(lost.device_m,
                                         [](const Vec3& p) { return p.norm() < 3.0 * kDiagonal_m; }))
             << name;
     }
@@ -172,7 +203,7 @@ TEST(HandMotions, are_not_taken_in_by_a_force_that_damps_in_the_air)
 {
     for (const MotionKind kind : {MotionKind::approach, MotionKind::tap, MotionKind::spin})
     {
-        const Play run(kind, 4'000, true, 1.0);
+        const Play run(kind, 4'000, test::sphere(kRadius_m), 1.0);
         EXPECT_GT(run.contact_share(2'000), 0.2) << static_cast<int>(kind);
         EXPECT_GT(*std::ranges::max_element(run.force_n), 0.7) << static_cast<int>(kind);
     }
@@ -215,6 +246,88 @@ TEST(HandMotions, spin_circles_in_contact)
         EXPECT_NEAR(b.norm(), 0.05 * kDiagonal_m, 0.03 * kDiagonal_m);
     }
     EXPECT_NEAR(turned_rad, 4.0 * 2.0 * std::numbers::pi, 0.5);
+}
+
+TEST(HandMotions, turn_turns_the_tool_in_touch_about_one_axis_after_the_other)
+{
+    const Play run(MotionKind::turn, 8'000);
+    EXPECT_EQ(run.landings(), 1);
+    EXPECT_EQ(run.contact_share(2'000), 1.0);
+    Vec3 farthest(0.0, 0.0, 0.0);
+    for (std::size_t i = 0; i < run.rotation.size(); ++i)
+    {
+        const Vec3 turn = rotation_vector(orthonormalised(run.rotation[i])).cwiseAbs();
+        farthest = farthest.cwiseMax(turn);
+        // Where one swing ends and the next begins the wrist rests.
+        EXPECT_LT(turn.norm() - turn.maxCoeff(), 0.02) << i;
+        EXPECT_TRUE(run.force_n[i] > 0.0 || turn.norm() < 0.05) << i;
+    }
+    for (const double angle : farthest)
+    {
+        EXPECT_NEAR(angle, std::numbers::pi / 6.0, 0.08);
+    }
+}
+
+TEST(HandMotions, edge_turns_the_tool_with_the_surface_round_a_ball_and_over_edges)
+{
+    const auto turned_from_first_touch = [](const Play& run, double& slips_rad)
+    {
+        const auto first = static_cast<std::size_t>(
+            std::distance(run.force_n.begin(),
+                          std::ranges::find_if(run.force_n, [](double n) { return n > 0; })));
+        const Vec3 stood = run.rotation[first].transpose() * run.normal[first];
+        double farthest_rad = 0.0;
+        for (std::size_t i = first + 500; i < run.rotation.size(); ++i)
+        {
+            if (run.force_n[i] > 0.1)
+            {
+                const Vec3 up = run.rotation[i] * stood;
+                slips_rad = std::max(slips_rad, up.cross(run.normal[i]).norm());
+                farthest_rad = std::max(farthest_rad,
+                                        rotation_vector(orthonormalised(run.rotation[i])).norm());
+            }
+        }
+        return farthest_rad;
+    };
+    double slips_rad = 0.0;
+    const Play ball(MotionKind::edge, 6'000);
+    EXPECT_GT(turned_from_first_touch(ball, slips_rad), 0.5);
+    EXPECT_LT(slips_rad, 0.15);
+    const Play bar(MotionKind::edge, 8'000,
+                   test::box(Vec3(0.0, 0.0, 0.0), Vec3(kRadius_m, 0.02, 0.02)));
+    EXPECT_GT(turned_from_first_touch(bar, slips_rad), 1.2);
+    EXPECT_GT(bar.contact_share(1'000), 0.6);
+}
+
+TEST(HandMotions, peg_goes_into_a_hole_and_changes_its_grip_outside_of_it)
+{
+    const Play run(MotionKind::peg, 11'500, block_with_a_hole);
+    EXPECT_EQ(run.samples.front().gripper_m, 0.02);
+    double lowest_m = 1.0;
+    int grips = 0;
+    Vec3 farthest(0.0, 0.0, 0.0);
+    for (std::size_t i = 0; i < run.samples.size(); ++i)
+    {
+        lowest_m = std::min(lowest_m, run.device_m[i].z());
+        EXPECT_LT(run.device_m[i].head<2>().norm(), kHole_m);
+        const DeviceSample& now = run.samples[i];
+        EXPECT_TRUE(now.buttons == 1U || (now.buttons == 0U && now.gripper_m == 0.02)) << i;
+        EXPECT_TRUE(now.buttons == 0U || run.force_n[i] == 0.0) << i;
+        grips += i > 0 && now.buttons > run.samples[i - 1].buttons ? 1 : 0;
+        farthest = farthest.cwiseMax(rotation_vector(orthonormalised(run.rotation[i])).cwiseAbs());
+    }
+    // Its tool is a ball of 2 mm, and 1 N on 500 N/m are 2 mm more.
+    EXPECT_NEAR(lowest_m, kHoleBottom_m + kTool_m - 0.002, 1e-3);
+    EXPECT_EQ(grips, 2);
+    EXPECT_EQ(run.landings(), 2);
+    EXPECT_NEAR(*std::ranges::max_element(run.force_n), 1.0, 0.3);
+    EXPECT_NEAR(
+        *std::ranges::max_element(run.samples, {}, [](const auto& s) { return *s.gripper_m; })
+             ->gripper_m,
+        0.05, 1e-4);
+    EXPECT_NEAR(farthest.x(), 0.035, 0.01);
+    EXPECT_NEAR(farthest.y(), 0.035, 0.01);
+    EXPECT_LT(farthest.z(), 1e-3);
 }
 
 TEST(HandMotions, teleport_is_at_places_of_the_model_and_jumps_between_them)
