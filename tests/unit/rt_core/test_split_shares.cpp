@@ -5,7 +5,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
+#include <string>
+#include <tuple>
 #include <vector>
 
 namespace tactus::test
@@ -182,6 +185,126 @@ TEST(SplitShares, no_class_is_starved_and_no_budget_overdrawn)
                 << "class " << of << ", " << frame.splits << " splits";
         }
     }
+}
+
+struct WaitingRequest
+{
+    UrgencyClass of;
+    std::uint32_t saved{0};
+    std::uint32_t waited{0};
+    std::uint32_t longest{0};
+
+    /// The least comes first.
+    [[nodiscard]] auto turn() const { return std::tuple(of, ~waited, ~saved); }
+};
+
+/// Requests that all wait, frame after frame, each in its class. Those go first for which nothing
+/// was left longest, then those that saved most, as Refinement has it; or always the first ones.
+class WaitingRequests
+{
+public:
+    WaitingRequests(std::uint32_t splits, Random random) : splits_(splits), random_(random) {}
+
+    void add(UrgencyClass of) { requests_.push_back({of}); }
+    [[nodiscard]] std::uint32_t count(UrgencyClass of) const
+    {
+        return static_cast<std::uint32_t>(std::ranges::count(requests_, of, &WaitingRequest::of));
+    }
+    /// Frames on end in which nothing was left for one of a class, at most.
+    [[nodiscard]] std::uint32_t longest_wait(UrgencyClass of) const
+    {
+        std::uint32_t longest = 0;
+        for (const WaitingRequest& request : requests_)
+        {
+            longest = request.of == of ? std::max(longest, request.longest) : longest;
+        }
+        return longest;
+    }
+
+    void run_frame(bool by_waiting)
+    {
+        if (by_waiting)
+        {
+            std::ranges::stable_sort(requests_, [](const WaitingRequest& a, const WaitingRequest& b)
+                                     { return a.turn() < b.turn(); });
+        }
+        SplitShares sut(splits_);
+        for (const WaitingRequest& request : requests_)
+        {
+            sut.add(request.of);
+        }
+        std::uint32_t done = 0;
+        for (WaitingRequest& request : requests_)
+        {
+            const auto share = sut.take(request.of, request.saved, done);
+            const std::uint32_t most = share.limit - done;
+            // Most take all that they may.
+            const std::uint32_t used = random_.one_in(4) ? random_.below(most + 1) : most;
+            request.saved = sut.save(request.saved, share.equal, used);
+            request.waited = share.equal == 0 ? request.waited + 1 : 0;
+            request.longest = std::max(request.longest, request.waited);
+            done += used;
+        }
+        ASSERT_LE(done, splits_);
+    }
+
+private:
+    std::uint32_t splits_;
+    Random random_;
+    std::vector<WaitingRequest> requests_; ///< Classes in order.
+};
+
+std::uint32_t share_up(std::uint32_t count, std::uint32_t parts)
+{
+    return (count + parts - 1) / parts;
+}
+
+/// The stated bound: of n requests of a class each may take one in ceil(n / ceil(K / 8)) frames.
+TEST(SplitShares, each_of_64_waiting_requests_has_its_turn_within_the_stated_number_of_frames)
+{
+    const std::uint64_t seed = seed_of(2'301);
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random = Random::seeded(seed);
+    for (const std::uint32_t splits : {8U, 9U, 16U, 20U, 64U, 100U, 256U})
+    {
+        constexpr std::uint32_t classes = kUrgencyClasses;
+        for (std::uint32_t mix = 0; mix < 2 * classes; ++mix) // First all in one class.
+        {
+            WaitingRequests requests(splits, random);
+            for (int i = 0; i < 64; ++i)
+            {
+                requests.add(
+                    static_cast<UrgencyClass>(mix < classes ? mix : random.below(classes)));
+            }
+            for (int frame = 0; frame < 2'000; ++frame)
+            {
+                ASSERT_NO_FATAL_FAILURE(requests.run_frame(true));
+            }
+            for (std::uint32_t i = 0; i < kUrgencyClasses; ++i)
+            {
+                const auto of = static_cast<UrgencyClass>(i);
+                const std::uint32_t count = requests.count(of);
+                ASSERT_LT(requests.longest_wait(of),
+                          std::max(1U, share_up(count, share_up(splits, 8))))
+                    << splits << " splits, " << count << " of class " << i;
+            }
+        }
+    }
+}
+
+/// Without that order the last ones never have one: what the bound rests on.
+TEST(SplitShares, leave_nothing_for_the_last_of_64_whose_turn_never_changes)
+{
+    WaitingRequests requests(16, Random::seeded(1));
+    for (int i = 0; i < 64; ++i)
+    {
+        requests.add(UrgencyClass::soon);
+    }
+    for (int frame = 0; frame < 100; ++frame)
+    {
+        ASSERT_NO_FATAL_FAILURE(requests.run_frame(false));
+    }
+    EXPECT_EQ(requests.longest_wait(UrgencyClass::soon), 100U);
 }
 
 } // namespace
