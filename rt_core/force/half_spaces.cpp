@@ -152,6 +152,7 @@ template <int N>
 class Projection
 {
 public:
+    // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): of the arrays only what is used is set.
     Projection(std::span<const HalfSpace<N>> planes, const Motion<N>& wanted) noexcept
         : planes_(planes), wanted_(wanted), motion_(wanted)
     {
@@ -172,14 +173,14 @@ public:
             {
                 return true;
             }
-            const Projection before = *this;
+            const HoldingPlanes<N> held_before = holding_;
+            const Motion<N> motion_before = motion_;
             if (try_hold(worst))
             {
                 continue;
             }
-            const std::uint32_t rounds = rounds_;
-            *this = before;
-            rounds_ = rounds;
+            holding_ = held_before;
+            motion_ = motion_before;
             if (!try_let_pass(worst))
             {
                 return false;
@@ -302,8 +303,9 @@ private:
     Motion<N> wanted_;
     Motion<N> motion_;
     HoldingPlanes<N> holding_;
-    std::array<double, kMaxHalfSpaces> lengths_{};
-    std::array<double, kMaxHalfSpaces> tolerances_{};
+    // Only the planes' are set: zeros for all would cost more than a search.
+    std::array<double, kMaxHalfSpaces> lengths_;
+    std::array<double, kMaxHalfSpaces> tolerances_;
     std::uint32_t rounds_{kConstraintRounds};
 };
 
