@@ -63,8 +63,11 @@ struct FrameCase
     std::size_t pool_bytes; ///< Tables, inbox and the courier's copies included.
     double p50, p99, max;
     double cold_max{kNoGoal};
+    /// Of T_R + T_B, in instructions.
+    double counted_p99{kNoGoal}, counted_max{kNoGoal};
 };
-/// A tool slides over a model that streams; all of T_R + T_B + T_Q, warm, cold and rehearsed.
+/// A tool slides over a model that streams; all of T_R + T_B + T_Q, warm, cold and rehearsed, and
+/// with --instructions those of T_R + T_B.
 [[nodiscard]] CaseFailure run_frame_case(const CaseContext& context, const FrameCase& test_case);
 
 /// Goal in MiB.

@@ -5,6 +5,7 @@
 
 #include "tests/bench/cases.hpp"
 #include "tests/bench/frame_replay.hpp"
+#include "tests/bench/instruction_count.hpp"
 #include "tests/bench/measuring.hpp"
 #include "tests/bench/random.hpp"
 #include "tests/bench/timed_queries.hpp"
@@ -54,12 +55,14 @@ Result<std::optional<Spread>, SceneError> peer_spread(const FrameRun& run, std::
     return std::optional(spread_of(times.value().us.least()));
 }
 
+constexpr Spread kNoGoals{kNoGoal, kNoGoal, kNoGoal};
+
 void add_spread(CaseRows& rows, const std::string& figure, const Spread& spread,
-                const Spread& goals)
+                const Spread& goals, const char* unit = "us")
 {
-    rows.add(figure + ".p50", spread.p50, "us", goal_if(goals.p50));
-    rows.add(figure + ".p99", spread.p99, "us", goal_if(goals.p99));
-    rows.add(figure + ".max", spread.max, "us", goal_if(goals.max));
+    rows.add(figure + ".p50", spread.p50, unit, goal_if(goals.p50));
+    rows.add(figure + ".p99", spread.p99, unit, goal_if(goals.p99));
+    rows.add(figure + ".max", spread.max, unit, goal_if(goals.max));
 }
 
 void add_warm(CaseRows& rows, const FrameReplay& replay, const FrameCase& test_case,
@@ -84,8 +87,7 @@ void add_warm(CaseRows& rows, const FrameReplay& replay, const FrameCase& test_c
     for (std::size_t stage = 0; stage < kStages; ++stage)
     {
         add_spread(rows, kNames[stage],
-                   spread_of(replay.stage_us(static_cast<Stage>(stage)).least()),
-                   {kNoGoal, kNoGoal, kNoGoal});
+                   spread_of(replay.stage_us(static_cast<Stage>(stage)).least()), kNoGoals);
     }
 }
 
@@ -107,6 +109,7 @@ void add_work(CaseRows& rows, const FrameReplay& replay, std::size_t pool_bytes)
         rows.add("split, all in", split_us, "us", kSplitGoal_us);
     }
     rows.add("splits", work.per_frame(work.counters.splits), "/frame");
+    add_spread(rows, "splits", spread_of(replay.splits()), kNoGoals, "");
     rows.add("nodes", work.per_frame(work.counters.nodes_visited), "/frame");
     rows.add("triangles", work.per_frame(work.counters.triangles_tested), "/frame");
     rows.add("in contact", 100.0 * work.per_frame(work.contacts), "%");
@@ -161,6 +164,16 @@ CaseFailure run_frame_case(const CaseContext& context, const FrameCase& test_cas
                  cold_frames);
     }
     add_work(rows, replay, test_case.pool_bytes);
+    const auto counted = count_refinements(context);
+    if (!counted)
+    {
+        return counted.error().text;
+    }
+    if (!counted.value().empty())
+    {
+        add_spread(rows, "T_R + T_B", spread_of(counted.value()),
+                   {kNoGoal, test_case.counted_p99, test_case.counted_max}, "instructions");
+    }
     return std::nullopt;
 }
 

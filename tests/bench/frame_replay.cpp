@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 
 namespace tactus::bench
 {
@@ -140,16 +141,11 @@ void FrameReplay::count(const FrameOutput& output)
 
 double FrameReplay::split_us() const
 {
-    double time_us = 0.0;
-    double splits = 0.0;
-    for (std::size_t i = 0; i < splits_.size(); ++i)
-    {
-        if (splits_[i] >= kBusySplits)
-        {
-            time_us += stage_us(Stage::refine).least()[i] + stage_us(Stage::refit).least()[i];
-            splits += splits_[i];
-        }
-    }
+    const auto sum = [](const std::vector<double>& each)
+    { return std::accumulate(each.begin(), each.end(), 0.0); };
+    const double splits = sum(splits_);
+    const double time_us =
+        sum(stage_us(Stage::refine).least()) + sum(stage_us(Stage::refit).least());
     return splits > 0.0 ? time_us / splits : std::numeric_limits<double>::quiet_NaN();
 }
 

@@ -92,16 +92,16 @@ public:
     {
         return stage_us_[static_cast<std::size_t>(stage)];
     }
-    /// T_R + T_B of a split, in frames that split at least kBusySplits; NaN when there is none.
+    /// T_R + T_B of all frames by all splits of them; NaN when there is none.
     [[nodiscard]] double split_us() const;
+    /// Of each counted frame.
+    [[nodiscard]] const std::vector<double>& splits() const { return splits_; }
     [[nodiscard]] const FrameWork& work() const { return work_; }
     /// What the counted frames answered, by the first replay.
     [[nodiscard]] const std::vector<PairOutput>& answers() const { return answers_; }
     /// Calls on the heap by the counted frames of the last replay; none where they aren't counted.
     [[nodiscard]] std::optional<std::uint64_t> allocations() const { return allocations_; }
     [[nodiscard]] std::uint64_t hash() const;
-
-    static constexpr std::uint32_t kBusySplits = 16;
 
 private:
     [[nodiscard]] static std::size_t index(CacheState caches)
@@ -117,7 +117,7 @@ private:
     std::array<LeastTimes, 3> sum_us_;
     std::array<LeastTimes, kStages> stage_us_;
     std::vector<std::uint64_t> hashes_; ///< Of each frame's state, by the first replay.
-    std::vector<std::uint32_t> splits_; ///< Of each counted frame, likewise.
+    std::vector<double> splits_;        ///< Of each counted frame, likewise.
     FrameWork work_;
     std::vector<PairOutput> answers_;
     std::optional<std::uint64_t> allocations_;

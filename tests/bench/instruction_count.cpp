@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "tests/bench/instruction_count.hpp"
 
+#include "rt_core/base/realtime.hpp"
 #include "tests/shared/temporary_folder.hpp"
 
 #include <fmt/format.h>
@@ -48,49 +49,61 @@ std::optional<int> run_unheard(std::vector<std::string> words)
     return WEXITSTATUS(status);
 }
 
-/// What callgrind wrote of all that it counted; 0 where it wrote nothing.
-std::uint64_t total_in(const std::filesystem::path& file)
+/// What callgrind wrote of each part that it counted, the rest until the program's end last.
+std::vector<std::uint64_t> totals_in(const std::filesystem::path& file)
 {
+    static const std::string kTotal = "totals: ";
+    std::vector<std::uint64_t> totals;
     std::ifstream stream(file);
     for (std::string line; std::getline(stream, line);)
     {
-        for (const char* const name : {"summary: ", "totals: "})
+        if (line.starts_with(kTotal))
         {
-            if (line.starts_with(name))
-            {
-                return std::stoull(line.substr(std::string(name).size()));
-            }
+            totals.push_back(std::stoull(line.substr(kTotal.size())));
         }
     }
-    return 0;
+    return totals;
 }
 
-} // namespace
-
-[[gnu::noinline]] FrameOutput counted_step(test::FrameRig& rig, const std::vector<Vec3>& goals_m,
-                                           const Budgets& budgets, StageMark mark)
+// Callgrind knows functions by their names. They must be called, though they do nothing.
+[[gnu::noinline]] void refinement_begins() noexcept
 {
-    return rig.step_without_delivery(goals_m, budgets, mark);
+    asm volatile("");
 }
 
-Result<std::optional<std::uint64_t>, SceneError> count_instructions(const CaseContext& context)
+[[gnu::noinline]] void refinement_ended() noexcept
+{
+    asm volatile("");
+}
+
+// Calls what does nothing, and the other mark.
+TACTUS_TRUSTED_BEGIN
+void end_stage(void* context, Stage stage) noexcept TACTUS_NONBLOCKING
+{
+    if (stage == Stage::load)
+    {
+        refinement_begins();
+    }
+    if (stage == Stage::refit)
+    {
+        refinement_ended();
+    }
+    (*static_cast<const StageMark*>(context))(stage);
+}
+TACTUS_TRUSTED_END
+
+/// Runs the case under callgrind, with these options of its own. What it counted, part by part.
+Result<std::vector<std::uint64_t>, SceneError> run_counted(const CaseContext& context,
+                                                           const std::vector<std::string>& how)
 {
     const BenchOptions& options = context.options;
-    if (!options.instructions || options.count)
-    {
-        return std::optional<std::uint64_t>{};
-    }
     const test::TemporaryFolder folder;
     const std::filesystem::path file = folder.path() / "callgrind.out";
-    std::vector<std::string> words{"valgrind",
-                                   "--tool=callgrind",
-                                   "--toggle-collect=tactus::bench::counted_step(*",
-                                   "--callgrind-out-file=" + file.string(),
-                                   std::filesystem::read_symlink("/proc/self/exe").string(),
-                                   context.suite,
-                                   "--only",
-                                   context.name,
-                                   "--count"};
+    std::vector<std::string> words{"valgrind", "--tool=callgrind",
+                                   "--callgrind-out-file=" + file.string()};
+    words.insert(words.end(), how.begin(), how.end());
+    words.insert(words.end(), {std::filesystem::read_symlink("/proc/self/exe").string(),
+                               context.suite, "--only", context.name, "--count"});
     const auto add = [&words](const char* option, const std::string& value) {
         words.insert(words.end(), {option, value});
     };
@@ -107,13 +120,52 @@ Result<std::optional<std::uint64_t>, SceneError> count_instructions(const CaseCo
         words.emplace_back("--quick");
     }
     const std::optional<int> code = run_unheard(words);
-    const std::uint64_t counted = code == 0 ? total_in(file) : 0;
-    if (counted == 0)
+    std::vector<std::uint64_t> totals = code == 0 ? totals_in(file) : std::vector<std::uint64_t>{};
+    if (totals.empty())
     {
         return SceneError{code ? fmt::format("--instructions: valgrind ended with {}", *code)
                                : "--instructions: valgrind can't be run"};
     }
-    return std::optional(counted);
+    return totals;
+}
+
+} // namespace
+
+[[gnu::noinline]] FrameOutput counted_step(test::FrameRig& rig, const std::vector<Vec3>& goals_m,
+                                           const Budgets& budgets, StageMark mark)
+{
+    return rig.step_without_delivery(goals_m, budgets, {&end_stage, &mark});
+}
+
+Result<std::optional<std::uint64_t>, SceneError> count_instructions(const CaseContext& context)
+{
+    if (!context.options.instructions || context.options.count)
+    {
+        return std::optional<std::uint64_t>{};
+    }
+    const auto counted = run_counted(context, {"--toggle-collect=tactus::bench::counted_step(*"});
+    if (!counted)
+    {
+        return counted.error();
+    }
+    return std::optional(counted.value().front());
+}
+
+Result<std::vector<double>, SceneError> count_refinements(const CaseContext& context)
+{
+    if (!context.options.instructions || context.options.count)
+    {
+        return std::vector<double>{};
+    }
+    // Each frame is a part, and what comes after the last one.
+    const auto counted = run_counted(context, {"--zero-before=tactus::bench::*refinement_begins(*",
+                                               "--dump-before=tactus::bench::*refinement_ended(*",
+                                               "--combine-dumps=yes"});
+    if (!counted)
+    {
+        return counted.error();
+    }
+    return std::vector<double>(counted.value().begin(), counted.value().end() - 1);
 }
 
 } // namespace tactus::bench
