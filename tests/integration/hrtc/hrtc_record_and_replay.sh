@@ -15,9 +15,11 @@ for option in --record --replay; do
 done
 refuse 3 'a model is required' --record run.rec
 for option in --model --record --duration --rate --frame-budget-us --splits --report; do
-    refuse 3 "--replay: takes --kernels and no other option; $option was given" --replay run.rec "$option" 100
+    refuse 3 "--replay: takes --kernels and no other option; $option was given" \
+        --replay run.rec "$option" 100
 done
-refuse 3 '--replay: takes --kernels and no other option; --allow-no-rt' --replay run.rec --allow-no-rt
+refuse 3 '--replay: takes --kernels and no other option; --allow-no-rt' \
+    --replay run.rec --allow-no-rt
 refuse 3 '--record: must be another file than --report' --model bumpy --record a --report a
 mkdir folder
 for path in nowhere/run.rec folder; do
@@ -45,8 +47,10 @@ said=$("$hrtc" --replay run.rec) || fail "the replay ended with $?: $said"
 # The same with the instructions that every processor has, and with none that are known.
 said=$("$hrtc" --replay run.rec --kernels portable) || fail "portable: ended with $?: $said"
 [[ "$said" == 'run.rec: 2000 frames agree bit for bit; '* ]] || fault "portable: it says: $said"
-refuse 3 "--kernels: 'sse' is none that this processor runs: portable" --replay run.rec --kernels sse
-refuse 3 "--kernels: 'sse' is none that this processor runs: portable" --model bumpy --kernels sse
+for kind in --replay --model; do
+    refuse 3 "--kernels: 'sse' is none that this processor runs: portable" \
+        "$kind" run.rec --kernels sse
+done
 
 # One bit of one input.
 for frame in 0 1234; do
