@@ -57,7 +57,7 @@ struct Options
     MotionKind motion{MotionKind::script};  ///< Likewise.
     TransportKind transport{TransportKind::dds};
     std::uint32_t domain{0};
-    std::string name; ///< Of the controller, with DDS; empty: hrtc-PID.
+    std::string name;         ///< Of the controller, with DDS; empty: hrtc-PID.
     bool follows_poses{true}; ///< Objects move as the hosts say.
     double wait_s{10.0};      ///< For a model that nobody publishes yet, or a device.
     std::int64_t rate_hz{1'000};

@@ -32,7 +32,7 @@ using Vec2 = std::array<double, 2>;
                                 const Vec3& d) noexcept TACTUS_NONBLOCKING;
 
 /// det[b - a, c - a, d - a] within three units in the last place, however much cancels, for the
-/// same coordinates: double-double, and exact arithmetic where less than 2^-44 of the terms is left.
+/// same coordinates: double-double, or exact arithmetic where less than 2^-44 of the terms is left.
 [[nodiscard]] double volume(const Vec3& a, const Vec3& b, const Vec3& c,
                             const Vec3& d) noexcept TACTUS_NONBLOCKING;
 
