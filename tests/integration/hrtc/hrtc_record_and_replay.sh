@@ -69,7 +69,7 @@ refuse_file start.rec 'at byte *: the file is cut short: '
 refuse_file cut.rec 'at byte *: the file is cut short: 36 bytes are needed here and 35 are left'
 refuse_file long.rec 'at byte *: the end section is followed by 1 bytes; nothing may follow it'
 refuse_file bent.rec 'at byte *: section of kind 2 and * bytes is damaged: its checksum'
-refuse_file newer.rec 'at byte 8: format version 255 is unknown; this program reads 7'
+refuse_file newer.rec 'at byte 8: format version 255 is unknown; this program reads 8'
 refuse 2 'no?where.rec: cannot be opened' --replay $'no\nwhere.rec'
 
 # A recording that can't be stored does not disturb the run, and is told at its end.
@@ -89,7 +89,7 @@ check full.json frames == 1000
 # An interrupted run has recorded its frames so far.
 start_hrtc --transport file --model bumpy.spm --duration 60 --record short.rec
 wait_for_line hrtc.log 'touch: ' 20
-sleep 1
+wait_for_sleeps 1000 "$controller"
 stop INT "$controller"
 ((stopped_with == 0)) || fault "the interrupted run ended with $stopped_with"
 "$hrtc" --replay short.rec >said.txt || fault 'the interrupted run does not replay'
