@@ -8,6 +8,8 @@
 #include "rt_core/math/rotation.hpp"
 #include "rt_core/math/similarity.hpp"
 
+// Any thread: values. The conversions of places and forces, of a frame, neither wait nor allocate;
+// create() and to_world(DeviceInfo) may allocate and are called before the loop.
 namespace tactus
 {
 

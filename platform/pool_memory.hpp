@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <span>
 
+// One thread, before the loop: asks the system for memory. The span may be lent to any thread.
 namespace tactus
 {
 

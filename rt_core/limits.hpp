@@ -13,6 +13,7 @@
 /// algorithm, at the top of its source; the rounding errors of some arithmetic, beside it; sizes
 /// that follow from a layout in memory or in a file, beside that. A test names each constant below
 /// and stands on both sides of it (guard.limits_tested).
+// Any thread: constants.
 namespace tactus
 {
 

@@ -12,6 +12,8 @@
 #include <string>
 #include <string_view>
 
+// Any thread: functions of their arguments alone; a hash takes time by the bytes, so not the haptic
+// one.
 namespace tactus
 {
 

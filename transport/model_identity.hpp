@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <string>
 
+// Any thread: values; their texts allocate.
 namespace tactus
 {
 

@@ -14,6 +14,7 @@
 #include <string>
 #include <string_view>
 
+// Any thread, but not the haptic one: calls allocate, and work on their arguments alone.
 namespace tactus
 {
 

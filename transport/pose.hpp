@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 
+// Any thread: values, and functions of their arguments alone; no call waits or allocates.
 namespace tactus
 {
 

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+// Any thread; the link is one thread's, the transport thread's.
 namespace tactus
 {
 

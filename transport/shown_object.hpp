@@ -9,6 +9,7 @@
 #include <cmath>
 #include <string>
 
+// Any thread: values; their texts allocate.
 namespace tactus
 {
 

@@ -129,8 +129,22 @@ own_header_first() {
     return "$faults"
 }
 
+# A header that is installed says in a comment which thread may use it.
+threads_told() {
+    local faults=0 header headers
+    headers=$(sed 's/#.*//' cmake/components.cmake \
+        | grep -oE '\b(rt_core|transport|platform|host_tools)/[a-z0-9_/]+\.(hpp|h)\b' | sort -u)
+    while IFS= read -r header; do
+        if ! grep -qiE '(//|/\*|^ \*).*thread' "$header"; then
+            echo "$header:1: is installed, and no comment says which thread may use it"
+            faults=1
+        fi
+    done <<<"$headers"
+    return "$faults"
+}
+
 readonly checks=(line_length no_leftovers machine_paths licence files_listed limits_tested
-    own_header_first)
+    own_header_first threads_told)
 if (($# != 2)) || [[ " ${checks[*]} " != *" $1 "* ]]; then
     echo "usage: check_text.sh CHECK ROOT, CHECK being one of: ${checks[*]}" >&2
     exit 3

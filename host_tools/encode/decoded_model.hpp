@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+// One thread makes it, and waits for the file; then any may read it, several at once.
 namespace tactus
 {
 

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <optional>
 
+// Any thread, but not the haptic one: calls allocate, and work on their arguments alone.
 namespace tactus
 {
 

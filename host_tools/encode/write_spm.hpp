@@ -13,6 +13,7 @@
 #include <optional>
 #include <string>
 
+// Any thread, but not the haptic one: it allocates, waits for the file and starts threads.
 namespace tactus
 {
 

@@ -7,6 +7,7 @@
 
 #include <variant>
 
+// Any thread, but not the haptic one: calls allocate, and work on their arguments alone.
 namespace tactus
 {
 

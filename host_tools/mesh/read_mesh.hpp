@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+// Any thread, but not the haptic one: calls allocate and wait for the file.
 namespace tactus
 {
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+// Any thread: values.
 namespace tactus
 {
 

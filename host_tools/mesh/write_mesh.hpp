@@ -8,6 +8,7 @@
 
 #include <filesystem>
 
+// Any thread, but not the haptic one: calls allocate and wait for the file.
 namespace tactus
 {
 

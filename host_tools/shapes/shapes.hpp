@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+// Any thread, but not the haptic one: calls allocate, and work on their arguments alone.
 namespace tactus
 {
 

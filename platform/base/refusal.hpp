@@ -4,6 +4,7 @@
 
 #include <string>
 
+// Any thread, but not the haptic one: texts allocate.
 namespace tactus
 {
 

@@ -4,6 +4,7 @@
 
 #include "platform/clock.hpp"
 
+// Any thread, as Clock says.
 namespace tactus
 {
 

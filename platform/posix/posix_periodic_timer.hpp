@@ -5,6 +5,7 @@
 #include "platform/periodic_timer.hpp"
 #include "platform/posix/posix_clock.hpp"
 
+// One thread, the one that sleeps; as PeriodicTimer says.
 namespace tactus
 {
 

@@ -16,6 +16,8 @@
 #include <tuple>
 #include <vector>
 
+// Any thread, but not the haptic one: reading allocates and waits for the file. A recording may be
+// used by several threads at once.
 namespace tactus
 {
 

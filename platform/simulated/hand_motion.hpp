@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <optional>
 
+// One thread, the one that reads the device: the haptic thread. No call waits or allocates.
 namespace tactus
 {
 

@@ -15,6 +15,7 @@
 #include <memory>
 #include <vector>
 
+// create() allocates, before the loop; the rest is the haptic thread's, as HandMotion says.
 namespace tactus
 {
 

@@ -9,6 +9,7 @@
 #include <new>
 #include <span>
 
+// One thread, before the loop; no call waits or allocates.
 namespace tactus
 {
 

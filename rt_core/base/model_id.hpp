@@ -4,6 +4,7 @@
 
 #include "rt_core/base/strong_id.hpp"
 
+// Any thread: values, and functions of their arguments alone; no call waits or allocates.
 namespace tactus
 {
 

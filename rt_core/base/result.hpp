@@ -7,6 +7,7 @@
 #include <utility>
 #include <variant>
 
+// Any thread; allocates only what a value or an error does itself.
 namespace tactus
 {
 

@@ -13,6 +13,7 @@
 #include <optional>
 #include <span>
 
+// Any thread: Frame::start() reads it on the one that calls it. No call waits or allocates.
 namespace tactus
 {
 

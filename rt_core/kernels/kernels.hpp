@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <span>
 
+// Any thread: functions of their arguments alone; no call waits or allocates.
 namespace tactus
 {
 

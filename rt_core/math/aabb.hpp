@@ -9,6 +9,7 @@
 #include <array>
 #include <limits>
 
+// Any thread: values, and functions of their arguments alone; no call waits or allocates.
 namespace tactus
 {
 

@@ -5,6 +5,7 @@
 #include "rt_core/base/assert.hpp"
 #include "rt_core/math/vec3.hpp"
 
+// Any thread: values, and functions of their arguments alone; no call waits or allocates.
 namespace tactus
 {
 

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 
+// Any thread: values, and functions of their arguments alone; no call waits or allocates.
 namespace tactus
 {
 

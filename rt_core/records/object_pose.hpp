@@ -11,6 +11,7 @@
 
 #include <cstdint>
 
+// Any thread: values, and functions of their arguments alone; no call waits or allocates.
 namespace tactus
 {
 

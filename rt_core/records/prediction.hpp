@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <string_view>
 
+// Any thread: values, and functions of their arguments alone; no call waits or allocates.
 namespace tactus
 {
 

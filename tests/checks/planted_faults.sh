@@ -8,14 +8,16 @@ failures=0
 
 begin_house() {
     rm -rf "$house"
-    mkdir -p "$house"/rt_core/{base,math,forest,abtree} "$house"/{transport,tests/unit}
+    mkdir -p "$house"/rt_core/{base,math,forest,abtree} "$house"/{transport,tests/unit,cmake}
     printf '# SPDX-License-Identifier: Apache-2.0\nadd_subdirectory(rt_core)\n%s\n' \
         'add_subdirectory(tests)' >"$house/CMakeLists.txt"
     printf '# SPDX-License-Identifier: Apache-2.0\nadd_library(core base/good.hpp limits.hpp)\n' \
         >"$house/rt_core/CMakeLists.txt"
     printf '# SPDX-License-Identifier: Apache-2.0\nadd_executable(t unit/test_good.cpp)\n' \
         >"$house/tests/CMakeLists.txt"
-    source_file rt_core/base/good.hpp '#include <array>'
+    printf '# SPDX-License-Identifier: Apache-2.0\ntactus_component(core PUBLIC %s)\n' \
+        rt_core/base/good.hpp >"$house/cmake/components.cmake"
+    source_file rt_core/base/good.hpp $'#include <array>\n// Any thread.'
     source_file rt_core/limits.hpp 'inline constexpr int kMaxGood = 1;'
     source_file tests/unit/test_good.cpp \
         $'#include "rt_core/base/good.hpp"\nstatic_assert(kMaxGood == 1);'
@@ -53,7 +55,7 @@ expect_refusal() { # expect_refusal GUARD TEXT: fails, and the output has TEXT.
 
 begin_house
 for guard in floors line_length no_leftovers machine_paths licence files_listed limits_tested \
-    own_header_first; do
+    own_header_first threads_told; do
     expect_clean "$guard"
 done
 
@@ -102,6 +104,8 @@ source_file tests/unit/rig.hpp 'static_assert(kMaxGood == 1);'
 expect_refusal limits_tested 'rt_core/limits.hpp:4: kMaxGood is named in no tests/*/test_*.cpp'
 source_file rt_core/base/good.cpp '#include <array>'
 expect_refusal own_header_first 'rt_core/base/good.cpp:4: its own header, rt_core/base/good.hpp, is'
+source_file rt_core/base/good.hpp 'int* thread(); // Of a needle.'
+expect_refusal threads_told 'rt_core/base/good.hpp:1: is installed, and no comment says'
 
 # An archive whose one object takes memory from the heap.
 printf 'int* make() { return new int(1); }\n' >"$house/heap.cpp"

@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+// One thread at a time, not the haptic one: opening and reading wait for the file.
 namespace tactus
 {
 

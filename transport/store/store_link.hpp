@@ -10,6 +10,7 @@
 
 #include <vector>
 
+// One thread, the transport thread: poll() waits for the file.
 namespace tactus
 {
 

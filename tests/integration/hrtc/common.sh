@@ -64,6 +64,17 @@ expect() {
     fi
 }
 
+# wait_until SECONDS WHAT COMMAND...: it succeeds; WHAT says what never came.
+wait_until() {
+    local i most_s=$1 what=$2
+    shift 2
+    for ((i = 0; i < most_s * 20; ++i)); do
+        "$@" && return
+        sleep 0.05
+    done
+    fail "no $what after $most_s s"
+}
+
 # wait_for_line FILE TEXT SECONDS
 wait_for_line() {
     local i
@@ -73,6 +84,23 @@ wait_for_line() {
     done
     cat "$1" || true
     fail "no '$2' in $1 after $3 s"
+}
+
+# wait_for_frames COUNT FILE [ID]: the host whose words are in FILE, one with --watch, has heard that
+# a controller, or the one with that id, has run so many. It tells so once a second.
+wait_for_frames() { wait_until 20 "controller with $1 frames in $2" told_frames "$@"; }
+told_frames() {
+    awk -v least="$1" -v name="hrtc-${3:-}" '
+        $1 == "watch" && index($2, name) == 1 && $3 + 0 >= least { found = 1 }
+        END { exit !found }' "$2"
+}
+
+# wait_for_sleeps COUNT ID: a thread of that process has slept so often; hrtc's loop does in each
+# cycle.
+wait_for_sleeps() { wait_until 20 "thread of process $2 that slept $1 times" has_slept "$@"; }
+has_slept() {
+    awk -v least="$1" '$1 == "voluntary_ctxt_switches:" && $2 >= least { found = 1 }
+        END { exit !found }' "/proc/$2/task/"*/status 2>/dev/null
 }
 
 # start_publisher ARGUMENT...: returns when it is ready; its id is in $publisher, its words in

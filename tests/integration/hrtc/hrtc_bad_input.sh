@@ -210,7 +210,7 @@ rm -f out/run.html out/report.json
     >hrtc.log 2>&1 &
 controller=$!
 started+=("$controller")
-sleep 2
+wait_for_sleeps 1000 "$controller"
 stop INT "$controller"
 ((stopped_with == 0)) || fault "the interrupted run ended with $stopped_with"
 check out/report.json frames '>' 0 frames '<' 10000

@@ -50,12 +50,11 @@ check report.json scene.objects_max '<=' 3 scene.came == 0 scene.went == 0 \
 # The host dies, and its objects are gone; one with the same scene steps in, with one object more
 # than there is room for.
 stop KILL "$publisher"
-start_publisher bench.gltf --scene workshop
+start_publisher bench.gltf --scene workshop --watch
 start_hrtc --scene workshop --objects 3 --duration 8 --report report.json
-wait_for_line publish.log ' subscribed' 10
-sleep 1.5
+wait_for_frames 1000 publish.log
 stop KILL "$publisher"
-sleep 1
+wait_for_line hrtc.log 'is gone' 5
 start_publisher other.gltf --scene workshop
 wait "$controller" || fail "hrtc ended badly: $(cat hrtc.log)"
 cat hrtc.log

@@ -99,7 +99,7 @@ check full.json frames == 1000
 # An interrupted run has recorded its frames so far.
 start_hrtc --transport file --model bumpy.spm --duration 60 --record short.rec
 wait_for_line hrtc.log 'touch: ' 20
-sleep 1
+wait_for_sleeps 1000 "$controller"
 stop INT "$controller"
 ((stopped_with == 0)) || fault "the interrupted run ended with $stopped_with"
 "$hrtc" --replay short.rec >said.txt || fault 'the interrupted run does not replay'

@@ -22,19 +22,17 @@ end_well() {
     check_clean report.json
 }
 
-start_publisher bumpy.spm
+start_publisher bumpy.spm --watch
 start_hrtc --model bumpy --duration 3 --report report.json
-wait_for_line publish.log ' subscribed' 10
-sleep 1
+wait_for_frames 500 publish.log
 stop KILL "$publisher"
 end_well 3000 1
 [[ $(lines 'is served again') == 0 ]] || fault 'a host is said to be back that is not'
 check report.json models.0.host_connected == 0
 
-start_publisher bumpy.spm
+start_publisher bumpy.spm --watch
 start_hrtc --model bumpy --duration 5 --report report.json
-wait_for_line publish.log ' subscribed' 10
-sleep 1
+wait_for_frames 500 publish.log
 stop KILL "$publisher"
 wait_for_line hrtc.log 'is gone' 3
 start_publisher bumpy.spm

@@ -23,7 +23,7 @@ readonly run=("$hrtc" --allow-no-rt --transport file --model bumpy.spm)
 expect 2 'no device described itself' "${run[@]}" --device "udp:$port" --wait 0.2
 expect 2 'dhd' "${run[@]}" --device dhd
 start_hrtc --transport file --model bumpy.spm --device "udp:$port" --wait 3600
-sleep 1
+wait_until 10 "program at UDP port $port" grep -qs "$(printf ':%04X 0' "$port")" /proc/net/udp
 stop TERM "$controller" # It waits for a device, and not for an hour.
 ((stopped_with == 2)) || fault "told to end while it waited, hrtc ended with $stopped_with"
 grep -q 'no device described itself' hrtc.log || fault 'it does not say what it waited for'
@@ -31,9 +31,9 @@ grep -q 'no device described itself' hrtc.log || fault 'it does not say what it 
 drive
 start_hrtc --transport file --model bumpy.spm --device "udp:$port" --tool sphere:0.004 \
     --duration 6 --report report.json
-sleep 3
+wait_for_sleeps 3000 "$controller"
 stop KILL "$driver"
-sleep 0.5
+wait_for_line hrtc.log 'is gone; no force until' 5
 drive
 code=0
 wait "$controller" || code=$?

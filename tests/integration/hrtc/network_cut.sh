@@ -5,15 +5,14 @@
 # stays.
 source "$(dirname "$0")/two_networks.sh"
 
-# cut_in_mid_run MODEL ARGUMENT...: hrtc on that model with a cut from about 2.5 to 4.5 s.
+# cut_in_mid_run MODEL ARGUMENT...: hrtc on that model with a cut from about 2 to 4 s.
 cut_in_mid_run() {
     local code=0 model=$1 cut_ms
     shift
-    start_publisher "$model.spm"
-    start_hrtc --model "$model" --device sim:touch --duration 9 --record run.rec \
+    start_publisher "$model.spm" --watch
+    start_hrtc --model "$model" --device sim:touch --duration 8 --record run.rec \
         --report report.json "$@"
-    wait_for_line publish.log ' subscribed' 10
-    sleep 2.5
+    wait_for_frames 1500 publish.log
     relay_say cut
     cut_ms=$(now_ms)
     wait_for_line hrtc.log "host of model '$model' is gone; going on with what is resident" 5
@@ -33,7 +32,7 @@ cut_in_mid_run() {
         || fault 'the controller was not counted in and out twice'
     stop TERM "$publisher"
     ((stopped_with == 0)) || fault "spm_publish ended with $stopped_with"
-    check report.json frames == 9000 wire.host_lost == 1 models.0.host_connected == 1
+    check report.json frames == 8000 wire.host_lost == 1 models.0.host_connected == 1
     check_wire_run report.json
 }
 

@@ -8,25 +8,24 @@ source "$(dirname "$0")/two_networks.sh"
 start_relay --delay-ms 2
 model bumpy-sphere-200000 large.spm
 model bumpy-sphere-190000 other.spm
-readonly changed_at=3000 # The frame after which the file is certainly another one.
+readonly changed_at=2500 # The frame after which the file is certainly another one.
 
 # touch_while COMMAND...: hrtc on served.spm, a fresh copy of large.spm, to which the command is
-# done after about two seconds.
+# done after one to two seconds.
 touch_while() {
     local code=0
     rm -f served.spm
     cp large.spm served.spm
-    start_publisher served.spm
-    start_hrtc --model served --device sim:touch --pool-mib 2 --no-static --duration 7 \
+    start_publisher served.spm --watch
+    start_hrtc --model served --device sim:touch --pool-mib 2 --no-static --duration 6 \
         --record run.rec --report report.json
-    wait_for_line publish.log ' subscribed' 10
-    sleep 2
+    wait_for_frames 1000 publish.log
     "$@"
     wait "$controller" || code=$?
     cat hrtc.log publish.log
     ((code == 0)) || fail "hrtc ended with $code"
     [[ $(lines "model 'served'" hrtc.log) == 0 ]] || fault 'a line about the host, which was there'
-    check report.json frames == 7000 wire.host_lost == 0 safety.begun.host == 0 \
+    check report.json frames == 6000 wire.host_lost == 0 safety.begun.host == 0 \
         models.0.host_connected == 1
     check_wire_run report.json
     judge_run large.spm "$changed_at"

@@ -9,20 +9,19 @@ start_relay --delay-ms 10
 model bumpy-sphere-200000 large.spm
 model bumpy-sphere-190000 other.spm
 
-start_publisher large.spm
+start_publisher large.spm --watch
 start_hrtc --model large --device sim:touch --pool-mib 8 --no-static --duration 10 \
     --record run.rec --report report.json
-wait_for_line publish.log ' subscribed' 10
-sleep 2
+wait_for_frames 1500 publish.log
 killed_ms=$(now_ms)
 stop KILL "$publisher"
 wait_for_line hrtc.log "host of model 'large' is gone; going on with what is resident" 5
 check_notice hrtc.log "$killed_ms"
 
-start_publisher large.spm
+start_publisher large.spm --watch
 wait_for_line hrtc.log 'is served again, by another host or a restarted one with the same file' 5
 wait_for_line publish.log ' subscribed' 5
-sleep 2.5
+wait_for_frames 5500 publish.log
 stop KILL "$publisher"
 for ((i = 0; i < 100; ++i)); do
     (($(lines 'is gone' hrtc.log) < 2)) || break
@@ -58,10 +57,9 @@ judge_run other.spm
 stop TERM "$publisher"
 
 model bumpy-sphere-5000 small.spm
-start_publisher small.spm
+start_publisher small.spm --watch
 start_hrtc --model small --device sim:touch --duration 5 --record run.rec --report report.json
-wait_for_line publish.log ' subscribed' 10
-sleep 2
+wait_for_frames 1000 publish.log
 stop KILL "$publisher"
 wait_for_line hrtc.log "host of model 'small' is gone" 5
 readonly near_the_kill=2500 # Frames; the run's last half, at least, is without a host.

@@ -47,7 +47,8 @@ for try in 1 2 3; do
     right=$controller
     wait_for_lines 2 ' subscribed' first.log
     start_host second.log
-    sleep 4
+    wait_for_frames 3000 first.log "$left"
+    wait_for_frames 3000 first.log "$right"
     [[ $(lines ' subscribed' second.log) != 0 ]] || break
     ((try < 3)) || fail 'the second host was asked'
     echo "held up by the machine, run $try"

@@ -37,14 +37,14 @@ guest() {
     guest=$!
     started+=("$guest")
     wait_for_lines $((2 * $1)) ' subscribed' publish.log
-    sleep 1
+    wait_for_frames 300 publish.log "$guest"
     stop "$signal" "$guest"
     wait_for_lines $((2 * $1 - 1)) ' left (' publish.log
 }
 
 start_relay --delay-ms 2 --loss 0.005 --duplicates 0.005 --seed 11
 model bumpy-sphere-100000 large.spm
-start_publisher large.spm
+start_publisher large.spm --watch
 start_hrtc --model large --device sim:touch --pool-mib 2 --no-static --duration 3600 \
     --record run.rec --report report.json
 wait_for_lines 1 ' subscribed' publish.log

@@ -18,12 +18,11 @@ check_touch() {
 }
 subscriptions() { lines ' subscribed' "$1"; }
 
-start_publisher first.spm --name ball
+start_publisher first.spm --name ball --watch
 first=$publisher
 start_hrtc --model ball --device sim:touch --pool-mib 2 --duration 6 --record run.rec \
     --report report.json
-wait_for_line publish.log ' subscribed' 10
-sleep 1.5
+wait_for_frames 1000 publish.log
 mv publish.log first.log # The host goes on writing there.
 start_publisher second.spm --name ball
 mv publish.log second.log
