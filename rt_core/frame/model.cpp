@@ -76,8 +76,10 @@ template <typename MostOf>
 std::uint32_t divide(std::uint32_t all, std::span<ModelCapacities> models,
                      std::uint32_t ModelCapacities::*part, const MostOf& most_of) noexcept
 {
-    for (std::size_t round = 0; round < models.size(); ++round)
+    std::uint32_t before = all + 1;
+    for (std::size_t round = 0; round < models.size() && all != before; ++round)
     {
+        before = all;
         const std::uint32_t each = std::max(all / static_cast<std::uint32_t>(models.size()), 1U);
         for (std::size_t i = 0; i < models.size(); ++i)
         {
@@ -179,9 +181,17 @@ bool try_plan(std::span<const ModelHeader> headers, std::size_t bytes, std::size
     };
     const std::uint32_t least_more = (kMinFaces + count - 1) / count;
     std::uint32_t pages = share_pages(fitting);
-    while (cache_bytes == 0 && pages > std::max(kMinPages, count) && !plan_faces(least_more))
+    if (cache_bytes == 0 && !plan_faces(least_more)) // As many as leave room for the least faces.
     {
-        pages = share_pages(pages - 1);
+        std::uint32_t too_many = pages;
+        pages = std::min(pages, std::max(kMinPages, count));
+        while (too_many - pages > 1)
+        {
+            const std::uint32_t middle = pages + (too_many - pages) / 2;
+            static_cast<void>(share_pages(middle));
+            (plan_faces(least_more) ? pages : too_many) = middle;
+        }
+        pages = share_pages(pages);
     }
     if (pages < count || !plan_faces(least_more))
     {

@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# demo_shortened.sh SETUP BUILD_DIR: the README's demo with the programs of this build, for 3 s:
-# it ends well, prints the summary, names the report, and leaves no process behind.
+# demo_shortened.sh SETUP BUILD_DIR [--scene]: the README's demo with the programs of this build,
+# for 3 s: it ends well, prints the summary, names the report, and leaves no process behind.
 set -euo pipefail
 readonly setup=$1
 export TACTUS_BUILD_DIR=$2
+readonly scene=${3:-}
 unset CYCLONEDDS_URI
 
 fail() {
@@ -18,14 +19,19 @@ trap 'rm -f "$output"' EXIT
 code=0
 # shellcheck disable=SC2016 # The inner shell expands them.
 setsid --wait bash -c 'echo $$ >"$1"; shift; exec bash "$@"' demo "$output.session" \
-    "$setup" demo --seconds 3 --domain "${TACTUS_TEST_DOMAIN:-$(($$ % 231))}" \
+    "$setup" demo ${scene:+"$scene"} --seconds 3 --domain "${TACTUS_TEST_DOMAIN:-$(($$ % 231))}" \
     >"$output" 2>&1 || code=$?
 session=$(cat "$output.session")
 rm -f "$output.session"
 cat "$output"
 ((code == 0)) || fail "the demo ended with $code"
-for text in 'frames      3000 at 1000 Hz' 'answers     exact' 'times us' 'memory      ' \
-    'deadlines   '; do
+texts=('frames      3000 at 1000 Hz' 'answers     exact' 'times us' 'memory      ' 'deadlines   ')
+if [[ -n "$scene" ]]; then
+    texts+=('scene.gltf: 200 objects of 20 models' 'touches     200 objects of 20 models'
+        'scene       200 objects, 200 at most')
+    [[ $(grep -c '^tool  ' "$output") == 2 ]] || fail 'not two hands'
+fi
+for text in "${texts[@]}"; do
     grep -qF -- "$text" "$output" || fail "no '$text' in what the demo printed"
 done
 report=$(sed -n 's/^Report: //p' "$output")
@@ -35,3 +41,9 @@ for stat in /proc/[0-9]*/stat; do
     read -r _ _ _ of_session _ 2>/dev/null < <(sed 's/.*) //' "$stat" 2>/dev/null) || continue
     [[ "$of_session" != "$session" ]] || fail "left running: $(cat "$stat")"
 done
+
+# A scene is the demo's alone.
+code=0
+refusal=$(unset TACTUS_BUILD_DIR && bash "$setup" bench --scene 2>&1) || code=$?
+[[ $code == 3 && "$refusal" == *"--scene is for 'demo' only"* ]] \
+    || fail "bench --scene: $code, $refusal"

@@ -43,6 +43,8 @@ check built.json objects == 3 models.0.objects == 2 models.0.faces == 4 models.1
 run_hrtc made/scene.gltf --duration 2
 check_clean report.json
 check report.json frames == 2000 scene.objects == 3 force.max_n '>' 0
+run_hrtc --transport file --scene made/scene.gltf --duration 1
+check report.json frames == 1000 scene.objects == 3 models == 2 force.max_n '>' 0
 
 # Served: each model, and where its first object stands.
 start_publisher made/scene.gltf

@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/hrtc/scene_keeper.hpp"
+#include "tests/shared/test_model.hpp"
+#include "tests/unit/transport/dds_rig.hpp"
+#include "transport/dds/dds_client.hpp"
+#include "transport/dds/dds_host.hpp"
+#include "transport/store/store_link.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace tactus::hrtc
+{
+namespace
+{
+
+using tactus::test::eventually;
+using tactus::test::small_model;
+
+constexpr Duration kAgeLimit = milliseconds(100);
+
+/// A host that shows objects, a controller with the same two models, and the keeper between them;
+/// in turns, each DDS domain of its own. The frame's side is a door that is read here.
+class SceneKeeperRig : public ::testing::Test
+{
+protected:
+    static constexpr std::uint32_t kHostDomain = 1;
+    static constexpr std::uint32_t kOtherHostDomain = 2;
+    static constexpr std::uint32_t kClientDomain = 3;
+
+    void SetUp() override
+    {
+        tactus::test::isolate_domains();
+        for (std::size_t i = 0; i < 2; ++i)
+        {
+            files_.push_back(small_model(i).path);
+        }
+        host = make_host(kHostDomain);
+        client_ = std::move(dds::DdsClient::create(kClientDomain, "keeper", {})).value();
+        reader_ = std::make_unique<dds::SceneReader>(client_->domain(), client_->exchange());
+    }
+    void TearDown() override { keeper.reset(); } // Before what it reads from.
+    [[nodiscard]] std::unique_ptr<dds::DdsHost> make_host(std::uint32_t domain)
+    {
+        std::vector<dds::PublishedModel> models;
+        for (std::size_t i = 0; i < files_.size(); ++i)
+        {
+            models.push_back({"m" + std::to_string(i), ModelStore::open(files_[i]).value()});
+        }
+        auto made = dds::DdsHost::create(domain, std::move(models), {}, "workshop");
+        EXPECT_TRUE(made) << made.error().text;
+        return std::move(made).value();
+    }
+    std::uint32_t show(dds::DdsHost& shower, const std::string& name, double x_m,
+                       std::size_t model = 0)
+    {
+        ShownObject object{name, shower.models()[model].store().hash(), {}, {}};
+        object.pose.translation_m = {x_m, 0.0, 0.0};
+        return shower.objects().show(object).value();
+    }
+    /// With what the host shows now, or with the first model alone where no scene is followed.
+    void start(bool follows_scene, std::uint32_t room, std::size_t models = 2)
+    {
+        Options options;
+        options.models = {"m0", "m1"};
+        options.models.resize(models);
+        options.objects_max = room;
+        options.pool_mib = 8.0;
+        ShownScene scene;
+        if (follows_scene)
+        {
+            options.scene = "workshop";
+            auto shown = take_shown_scene(options, *client_, *reader_,
+                                          [&]
+                                          {
+                                              host->step();
+                                              return true;
+                                          });
+            ASSERT_TRUE(shown) << shown.error().text;
+            scene = std::move(shown).value();
+        }
+        else
+        {
+            options.objects = {{0, {}, {}}};
+        }
+        std::vector<ServedModel> served;
+        for (std::size_t i = 0; i < models; ++i)
+        {
+            served.push_back(serve_from_file(files_[i], "m" + std::to_string(i), {}).value());
+        }
+        auto made = Controller::create(options, std::move(served), {}, [] { return true; });
+        ASSERT_TRUE(made) << made.error().text;
+        controller_ = std::move(made).value();
+        const std::size_t capacity = controller_->frame().objects().capacity();
+        door_.emplace(controller_->poses(), capacity, kAgeLimit);
+        keeper.emplace(client_->catalogue(), std::move(reader_), *controller_, std::move(scene),
+                       lines.log());
+        keeper->connect(*door_, now_);
+    }
+    bool step_until(const std::function<bool()>& is_so, dds::DdsHost* other = nullptr)
+    {
+        return eventually(
+            [&]
+            {
+                now_.ns += 1'000'000;
+                for (dds::DdsHost* each : {host.get(), other})
+                {
+                    each != nullptr ? each->step() : void();
+                }
+                client_->exchange().step();
+                keeper->step(now_);
+                for (const SceneChange& change : door_->refresh(now_))
+                {
+                    ++changes[change.kind];
+                    last_[change.kind] = change;
+                }
+                return is_so();
+            });
+    }
+    /// Whose object stands at a place of ours; nobody's without one.
+    [[nodiscard]] std::optional<HostObject> shown_as(std::uint32_t place) const
+    {
+        return keeper->shown_as(place);
+    }
+
+    /// The last object that came.
+    [[nodiscard]] const SceneChange& last_come() { return last_[SceneChangeKind::object_comes]; }
+
+    tactus::test::Lines lines;
+    std::unique_ptr<dds::DdsHost> host;
+    std::optional<SceneKeeper> keeper;
+    std::map<SceneChangeKind, int> changes; ///< As the frame would get them.
+
+private:
+    std::map<SceneChangeKind, SceneChange> last_;
+    std::vector<std::filesystem::path> files_;
+    std::unique_ptr<dds::DdsClient> client_;
+    std::unique_ptr<dds::SceneReader> reader_;
+    std::unique_ptr<Controller> controller_;
+    std::optional<PoseDoor> door_;
+    MonotonicTime now_{1'000'000'000};
+};
+
+class FollowedScene : public SceneKeeperRig
+{
+};
+
+TEST_F(FollowedScene, comes_moves_and_goes_through_the_door)
+{
+    const std::uint32_t cup = show(*host, "cup", 0.0);
+    ASSERT_NO_FATAL_FAILURE(start(true, 4));
+    EXPECT_EQ(shown_as(0), (HostObject{host->epoch(), cup}));
+    EXPECT_EQ(shown_as(1), std::nullopt);
+    const std::uint32_t pot = show(*host, "pot", 1.0, 1);
+    ASSERT_TRUE(step_until([&] { return changes[SceneChangeKind::object_comes] == 1; }));
+    EXPECT_EQ(shown_as(1), (HostObject{host->epoch(), pot}));
+    EXPECT_EQ(last_come().number, 1U);
+    EXPECT_EQ(last_come().object.model.value, 1U);
+    Pose pose;
+    pose.translation_m = {1.5, 0.0, 0.0};
+    ASSERT_TRUE(host->objects().move(pot, pose));
+    ASSERT_TRUE(step_until([&] { return keeper->counts(1).accepted > 1; }));
+    ASSERT_TRUE(step_until([&] { return changes[SceneChangeKind::object_moves] > 0; }));
+    host->objects().remove(cup);
+    ASSERT_TRUE(step_until([&] { return changes[SceneChangeKind::object_goes] == 1; }));
+    EXPECT_EQ(shown_as(0), std::nullopt);
+    EXPECT_EQ(keeper->news().came, 1U);
+    EXPECT_EQ(keeper->news().went, 1U);
+    EXPECT_EQ(keeper->news().passed_over, 0U);
+}
+
+TEST_F(FollowedScene, leaves_out_what_has_no_room_until_there_is_some)
+{
+    const std::uint32_t cup = show(*host, "cup", 0.0);
+    ASSERT_NO_FATAL_FAILURE(start(true, 1));
+    const std::uint32_t pot = show(*host, "pot", 1.0);
+    ASSERT_TRUE(step_until([&] { return keeper->news().passed_over == 1; }));
+    EXPECT_TRUE(lines.has("object 'pot' is not touched: there are 1 already")) << lines.text();
+    EXPECT_EQ(shown_as(0), (HostObject{host->epoch(), cup}));
+    host->objects().remove(cup);
+    ASSERT_TRUE(step_until([&] { return changes[SceneChangeKind::object_comes] == 1; }));
+    EXPECT_EQ(changes[SceneChangeKind::object_goes], 1);
+    EXPECT_EQ(shown_as(0), (HostObject{host->epoch(), pot}));
+}
+
+TEST_F(FollowedScene, goes_with_its_host_and_comes_with_another_one)
+{
+    show(*host, "cup", 0.0);
+    show(*host, "pot", 1.0, 1);
+    ASSERT_NO_FATAL_FAILURE(start(true, 4));
+    const std::uint64_t first = host->epoch();
+    ASSERT_TRUE(step_until([&] { return keeper->heard(0).ns > 0; }));
+    host.reset();
+    ASSERT_TRUE(step_until([&] { return changes[SceneChangeKind::object_goes] == 2; }));
+    EXPECT_EQ(shown_as(0), std::nullopt);
+    EXPECT_EQ(shown_as(1), std::nullopt);
+    const auto second = make_host(kOtherHostDomain);
+    const std::uint32_t jar = show(*second, "jar", 2.0);
+    ASSERT_TRUE(
+        step_until([&] { return changes[SceneChangeKind::object_comes] == 1; }, second.get()));
+    EXPECT_NE(second->epoch(), first);
+    EXPECT_EQ(shown_as(last_come().number), (HostObject{second->epoch(), jar}));
+    EXPECT_EQ(keeper->news().went, 2U);
+}
+
+TEST_F(FollowedScene, passes_over_objects_of_models_that_are_not_here)
+{
+    show(*host, "cup", 0.0);
+    ASSERT_NO_FATAL_FAILURE(start(true, 4, 1));
+    show(*host, "pot", 1.0, 1);
+    ASSERT_TRUE(step_until([&] { return keeper->news().passed_over == 1; }));
+    EXPECT_TRUE(lines.has("object 'pot' is not touched: its model ")) << lines.text();
+    show(*host, "jar", 2.0);
+    ASSERT_TRUE(step_until([&] { return changes[SceneChangeKind::object_comes] == 1; }));
+    EXPECT_EQ(keeper->news().passed_over, 1U);
+    EXPECT_EQ(changes[SceneChangeKind::object_comes], 1);
+}
+
+class FollowedModel : public SceneKeeperRig
+{
+};
+
+TEST_F(FollowedModel, goes_where_the_host_s_object_with_the_least_number_is)
+{
+    const std::uint32_t other = show(*host, "other", 5.0, 1);
+    const std::uint32_t cup = show(*host, "cup", 1.0);
+    const std::uint32_t pot = show(*host, "pot", 2.0);
+    ASSERT_LT(cup, pot);
+    ASSERT_NO_FATAL_FAILURE(start(false, 1));
+    ASSERT_TRUE(step_until([&] { return shown_as(0).has_value(); }));
+    ASSERT_TRUE(step_until([&] { return keeper->counts(0).accepted > 0; }));
+    EXPECT_EQ(shown_as(0), (HostObject{host->epoch(), cup}));
+    EXPECT_EQ(keeper->counts(1).accepted, 0U); // None of ours shows it.
+    host->objects().remove(other);
+    host->objects().remove(cup);
+    ASSERT_TRUE(step_until([&] { return shown_as(0) == HostObject{host->epoch(), pot}; }));
+    host->objects().remove(pot);
+    ASSERT_TRUE(step_until([&] { return !shown_as(0).has_value(); }));
+    EXPECT_EQ(changes[SceneChangeKind::object_goes], 0); // It stays where it is.
+    EXPECT_EQ(changes[SceneChangeKind::object_comes], 0);
+}
+
+} // namespace
+} // namespace tactus::hrtc
