@@ -56,6 +56,9 @@ public:
 
     /// Payload bytes that came in, keys and framing of the link included.
     [[nodiscard]] virtual std::uint64_t bytes_received() const = 0;
+
+    /// Pieces that were asked for and that it knows to be damaged where they lie.
+    [[nodiscard]] virtual std::uint64_t damaged() const { return 0; }
 };
 
 } // namespace tactus

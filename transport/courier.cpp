@@ -39,6 +39,7 @@ Courier::Courier(Arena& arena, const PageSlots& slots, SlotDoor& door, Log log,
     , log_(std::move(log))
     , open_(arena.take<OpenWish>(options.open_wishes))
     , batch_(arena.take<ContentKey>(options.open_wishes))
+    , forgotten_ns_(options.forgotten_ns)
 {
     TACTUS_ASSERT(options.open_wishes > 0);
 }
@@ -89,14 +90,14 @@ void Courier::open_wish(const PieceWish& wish)
     if (OpenWish* open = find_open(side, wish.key); open != nullptr)
     {
         open->generation = wish.generation;
-        ask_again(*open); // The cache has waited long enough for an answer.
+        wish_again(*open);
         return;
     }
     if (open_count_ == open_.size())
     {
         forget_oldest_generation();
     }
-    open_[open_count_++] = {&side, wish.key, wish.generation, false, now_ns_};
+    open_[open_count_++] = {&side, wish.key, wish.generation, false, WishClock(now_ns_)};
     ++side.unasked;
 }
 
@@ -109,6 +110,22 @@ void Courier::forget_oldest_generation()
     }
     ++open_[oldest].side->counters.forgotten;
     remove(open_[oldest]);
+}
+
+/// The cache has waited long enough for an answer.
+void Courier::wish_again(OpenWish& open)
+{
+    Side& side = *open.side;
+    if (side.link.state() == LinkState::host_gone)
+    {
+        open.clock.wait_for_host(now_ns_);
+    }
+    else if (open.clock.wish(now_ns_, forgotten_ns_))
+    {
+        ++side.counters.overdue;
+        tell(side, open.key, "doesn't come; the surface there stays coarse");
+    }
+    ask_again(open);
 }
 
 void Courier::ask_again(OpenWish& open)
@@ -132,6 +149,7 @@ void Courier::ask(Side& side)
         {
             if (wish.side == &side)
             {
+                wish.clock.wait_for_host(now_ns_);
                 ask_again(wish);
             }
         }
@@ -245,7 +263,15 @@ void Courier::hand_over(Side& side, ContentKey key, std::uint32_t slot, std::uin
     }
     const OpenWish* open = find_open(side, key);
     TACTUS_ASSERT(open != nullptr);
-    side.waiting_times.add(now_ns_ - open->opened_ns);
+    const std::int64_t waited_ns = open->clock.waited_ns(now_ns_);
+    side.waiting_times.add(waited_ns);
+    if (open->clock.is_overdue())
+    {
+        ++side.counters.overdue_came;
+        tell(side, key,
+             fmt::format("has come after all, after {:.1f} s",
+                         1e-9 * static_cast<double>(waited_ns)));
+    }
     close_wish(side, key);
     // Room for every slot that the model may have: a slot is in at most one queue.
     const bool pushed =
@@ -275,11 +301,16 @@ void Courier::push_link_updates(Side& side)
 void Courier::refuse(const Side& side, std::uint64_t& counter, ContentKey key, const char* reason)
 {
     ++counter;
+    tell(side, key, reason, "; refused, nothing changed");
+}
+
+void Courier::tell(const Side& side, ContentKey key, std::string_view what, std::string_view more)
+{
     if (log_.try_begin())
     {
-        log_.write_now(fmt::format("model '{}': {} {} {}; refused, nothing changed", side.name,
+        log_.write_now(fmt::format("model '{}': {} {} {}{}", side.name,
                                    key.kind == ContentKind::chunk ? "chunk" : "index page",
-                                   key.number, reason));
+                                   key.number, what, more));
     }
 }
 

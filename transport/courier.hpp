@@ -10,12 +10,14 @@
 #include "transport/log.hpp"
 #include "transport/slot_bank.hpp"
 #include "transport/waiting_times.hpp"
+#include "transport/wish_clock.hpp"
 
 #include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -37,13 +39,18 @@ struct CourierCounters
     std::uint64_t dropped_no_slot{0};  ///< Every slot is with the haptic thread.
     std::uint64_t dropped_no_index{0}; ///< The chunk's index page is not here to verify it.
     std::uint64_t forgotten{0};        ///< Wishes given up because too many were open.
+    std::uint64_t overdue{0};          ///< Wishes that waited for more than a second (WishClock).
+    std::uint64_t overdue_came{0};     ///< Of those, what came after all.
 
     [[nodiscard]] std::uint64_t refused() const noexcept { return refused_hash + refused_content; }
 };
 
 struct CourierOptions
 {
-    std::uint32_t open_wishes{256}; ///< Asked for and not yet here. 32 B each.
+    std::uint32_t open_wishes{256}; ///< Asked for and not yet here. 64 B each.
+    /// Wishes come again within kWishTimeoutFrames, or twice that; after a longer pause than this a
+    /// piece was not wanted meanwhile.
+    std::int64_t forgotten_ns{1'000'000'000};
 };
 
 /// The transport thread's work: takes wishes from the door, asks each model's link, verifies what
@@ -56,6 +63,9 @@ struct CourierOptions
 ///
 /// What a record waited for may come with a later page: the door is told then which records of
 /// pages already handed over are linked, the latest state of a page, once there is room.
+///
+/// A piece that doesn't come for a second is told of and counted, and again when it comes after
+/// all.
 ///
 /// Nothing is allocated after the last add() (the links and the log are their own matter).
 class Courier
@@ -139,13 +149,14 @@ private:
         ContentKey key;
         std::uint32_t generation{0};
         bool is_asked{false};
-        std::int64_t opened_ns{0};
+        WishClock clock;
     };
 
     void receive(Side& side, ContentKey key, std::span<const std::byte> bytes);
     void take_wishes(std::size_t count);
     void open_wish(const PieceWish& wish);
     void forget_oldest_generation();
+    void wish_again(OpenWish& open);
     void ask_again(OpenWish& open);
     void ask(Side& side);
     void adopt_index_page(Side& side, IndexPageId page, std::span<const std::byte> bytes);
@@ -154,6 +165,7 @@ private:
                    std::span<const std::byte> bytes);
     void push_link_updates(Side& side);
     void refuse(const Side& side, std::uint64_t& counter, ContentKey key, const char* reason);
+    void tell(const Side& side, ContentKey key, std::string_view what, std::string_view more = "");
     [[nodiscard]] OpenWish* find_open(const Side& side, ContentKey key) noexcept;
     void close_wish(const Side& side, ContentKey key) noexcept;
     void remove(OpenWish& open) noexcept;
@@ -166,6 +178,7 @@ private:
     std::span<OpenWish> open_; ///< The first `open_count_` are in use.
     std::size_t open_count_{0};
     std::span<ContentKey> batch_;
+    std::int64_t forgotten_ns_;
     std::uint32_t newest_generation_{0};
     std::int64_t now_ns_{0};
     std::vector<std::unique_ptr<Side>> sides_; ///< By owner.

@@ -11,8 +11,11 @@
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
+#include <numeric>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 namespace tactus
 {
@@ -31,17 +34,87 @@ std::string on_one_line(std::string text)
     return text;
 }
 
+std::string trimmed(const std::string& text)
+{
+    const std::size_t first = text.find_first_not_of(" \t");
+    return first == std::string::npos
+               ? ""
+               : text.substr(first, text.find_last_not_of(" \t\r") + 1 - first);
+}
+
+/// FILE:LINE of the first line that has this key, or all of whose text ends in it.
+std::string place_of(const std::string& key, const std::string& path)
+{
+    std::ifstream file(path);
+    int number = 0;
+    for (std::string line; std::getline(file, line);)
+    {
+        ++number;
+        const std::string name = trimmed(line.substr(0, line.find('=')));
+        if (name == key || name == "[" + key + "]" || name.ends_with(" " + key))
+        {
+            return fmt::format("{}:{}", path, number);
+        }
+    }
+    return path;
+}
+
+/// How many letters have to be put in, left out or exchanged to make one of the other
+/// (Levenshtein).
+std::size_t letters_between(std::string_view one, std::string_view other)
+{
+    std::vector<std::size_t> row(other.size() + 1);
+    std::iota(row.begin(), row.end(), std::size_t{0});
+    for (std::size_t i = 0; i < one.size(); ++i)
+    {
+        std::size_t diagonal = std::exchange(row[0], i + 1);
+        for (std::size_t j = 0; j < other.size(); ++j)
+        {
+            const std::size_t exchanged = diagonal + (one[i] == other[j] ? 0 : 1);
+            diagonal = row[j + 1];
+            row[j + 1] = std::min({exchanged, diagonal + 1, row[j] + 1});
+        }
+    }
+    return row.back();
+}
+
+/// The name that is most like the key; empty when none is.
+std::string nearest_key(const CLI::App& app, const std::string& key)
+{
+    std::string nearest;
+    std::size_t least = key.size() / 3 + 2;
+    for (const CLI::Option* option : app.get_options())
+    {
+        for (const std::string& name : option->get_lnames())
+        {
+            const std::size_t letters = letters_between(key, name);
+            if (option->get_configurable() && letters < least)
+            {
+                least = letters;
+                nearest = name;
+            }
+        }
+    }
+    return nearest;
+}
+
 /// The library's own words for a key that no option has end in the key, and in "++" behind the name
 /// of a section.
-std::string unknown_key(const CLI::ConfigError& error)
+std::string unknown_key(const CLI::App& app, const CLI::ConfigError& error)
 {
     std::string key = error.what();
     key = on_one_line(key.substr(key.rfind(' ') + 1));
+    const auto path = app.get_config_ptr()->as<std::string>();
     const std::size_t section = key.find(".++");
-    return section == std::string::npos
-               ? fmt::format("--config: no option is called '{}'", key)
-               : fmt::format("--config: there are no sections; '[{}]' is one",
-                             key.substr(0, section));
+    if (section != std::string::npos)
+    {
+        key.resize(section);
+        return fmt::format("--config: {}: there are no sections; '[{}]' is one",
+                           place_of(key, path), key);
+    }
+    const std::string nearest = nearest_key(app, key);
+    return fmt::format("--config: {}: no option is called '{}'; {}", place_of(key, path), key,
+                       nearest.empty() ? "a line is KEY = VALUE" : "'" + nearest + "'?");
 }
 
 } // namespace
@@ -197,7 +270,13 @@ std::optional<int> CommandLine::parse(int argc, char** argv)
     catch (const CLI::ConfigError& error)
     {
         const bool is_extra = std::string_view(error.what()).find("parse") != std::string::npos;
-        return fail(is_extra ? unknown_key(error) : on_one_line(error.what()), kExitUsage);
+        return fail(is_extra ? unknown_key(*app_, error) : on_one_line(error.what()), kExitUsage);
+    }
+    catch (const CLI::FileError&)
+    {
+        return fail(fmt::format("--config: {}: can't be read, or is no file",
+                                app_->get_config_ptr()->as<std::string>()),
+                    kExitUsage);
     }
     catch (const CLI::ParseError& error)
     {

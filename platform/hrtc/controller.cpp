@@ -3,10 +3,12 @@
 #include "platform/hrtc/controller.hpp"
 
 #include "platform/hrtc/object_pose.hpp"
+#include "platform/hrtc/verdict.hpp"
 #include "platform/simulated/hand_motions.hpp"
 #include "platform/simulated/simulated_device.hpp"
 #include "rt_core/force/angular_stiffness.hpp"
 #include "rt_core/force/stiffness_rule.hpp"
+#include "rt_core/limits.hpp"
 #include "transport/pool_plan.hpp"
 
 #include <fmt/format.h>
@@ -32,6 +34,20 @@ constexpr double kHandRoom = 10.0;
 double up_to_cents(double value)
 {
     return std::ceil(100.0 * value) / 100.0;
+}
+
+/// Surface damping, in N s/m, with which the device may have such a wall; the wall is one that it
+/// may have without. Rounded down to thousandths.
+double largest_damping(const DeviceLimits& device, double period_s, double wall_n_per_m)
+{
+    double enough = 0.0;
+    double too_much = device.damping_n_s_per_m; // As much as it has: no wall.
+    while (too_much - enough > 1e-6)
+    {
+        const double middle = 0.5 * (enough + too_much);
+        (stiffness_cap(device, period_s, middle) >= wall_n_per_m ? enough : too_much) = middle;
+    }
+    return std::floor(1e3 * enough + 1e-2) * 1e-3;
 }
 
 /// Without one it is simulated.
@@ -203,7 +219,10 @@ std::optional<Refusal> Controller::lay_out_pools(const Options& options)
 void Controller::make_courier(const Log& log)
 {
     ModelPools& pools = frame_->pools();
-    courier_.emplace(arena_, pools.slots, pools.cache.door, log);
+    CourierOptions courier;
+    courier.forgotten_ns =
+        std::max(courier.forgotten_ns, 3 * kWishTimeoutFrames * setup_.period_ns);
+    courier_.emplace(arena_, pools.slots, pools.cache.door, log, courier);
     for (std::uint32_t i = 0; i < models_.size(); ++i)
     {
         Model& model = frame_->model({i});
@@ -224,6 +243,38 @@ std::optional<Refusal> Controller::finish_devices(const Options& options)
         }
         tools_[tool].spec = frame_->tool(static_cast<std::uint32_t>(tool)).spec();
         limit_force(options, tools_[tool]);
+        if (auto error = check_damping(options, tools_[tool]))
+        {
+            return error;
+        }
+    }
+    return std::nullopt;
+}
+
+/// An object whose damping leaves the tool's device no wall could never be felt.
+std::optional<Refusal> Controller::check_damping(const Options& options,
+                                                 const ToolSetup& tool) const
+{
+    const DeviceInfo& device = tool.device->info();
+    const double period_s = tool.conditioner.period_s;
+    const double bare_n_per_m = stiffness_cap(device.limits, period_s);
+    for (const ObjectSpec& object : objects_)
+    {
+        const double damping = object.material.damping_n_s_per_m;
+        if (bare_n_per_m < kSoftestFelt_n_per_m ||
+            stiffness_cap(device.limits, period_s, damping) >= kSoftestFelt_n_per_m)
+        {
+            continue;
+        }
+        const double wall_n_per_m = std::min(
+            {tool.spec.stiffness_n_per_m, object.material.stiffness_n_per_m, 0.5 * bare_n_per_m});
+        return Refusal{fmt::format(
+            "{}: a damping of {:.4g} N s/m on '{}' leaves the device {} no wall at {} Hz; "
+            "at most {:.3g} leave it one that is felt, {:.3g} one of {:.4g} N/m",
+            options.scene.empty() ? "--material" : "--scene", damping,
+            models_[object.model.value].name, device.name, options.rate_hz,
+            largest_damping(device.limits, period_s, kSoftestFelt_n_per_m),
+            largest_damping(device.limits, period_s, wall_n_per_m), wall_n_per_m)};
     }
     return std::nullopt;
 }
@@ -270,13 +321,7 @@ void Controller::limit_force(const Options& options, ToolSetup& tool) const
     ConditionerSetup& conditioner = tool.conditioner;
     conditioner.device = info.limits;
     conditioner.period_s = 1.0 / static_cast<double>(options.rate_hz);
-    for (const ObjectSpec& object : objects_)
-    {
-        conditioner.surface_damping_max_n_s_per_m =
-            std::max(conditioner.surface_damping_max_n_s_per_m, object.material.damping_n_s_per_m);
-    }
-    const double cap_n_per_m =
-        stiffness_cap(info.limits, conditioner.period_s, conditioner.surface_damping_max_n_s_per_m);
+    const double cap_n_per_m = stiffness_cap(info.limits, conditioner.period_s);
     tool.limits = {options.speed_limit_m_per_s.value_or(info.speed_max_m_per_s),
                    info.limits.force_max_n, std::min(tool.spec.stiffness_n_per_m, cap_n_per_m),
                    kDampingShare * info.limits.damping_n_s_per_m, info.limits.turn.torque_max_nm};

@@ -71,6 +71,8 @@ private:
     [[nodiscard]] std::optional<Refusal> simulate_device(const Options& options, std::size_t tool);
     [[nodiscard]] std::optional<Refusal> finish_devices(const Options& options);
     void limit_force(const Options& options, ToolSetup& tool) const;
+    [[nodiscard]] std::optional<Refusal> check_damping(const Options& options,
+                                                       const ToolSetup& tool) const;
     [[nodiscard]] std::size_t object_of_hand(std::size_t tool) const;
     [[nodiscard]] double diagonal_of(std::size_t object) const noexcept;
     [[nodiscard]] std::vector<Vec3> anchors_world_m(std::size_t object) const;

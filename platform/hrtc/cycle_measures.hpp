@@ -8,6 +8,7 @@
 #include "rt_core/records/conditioned_force.hpp"
 #include "rt_core/records/frame_input.hpp"
 #include "rt_core/records/frame_output.hpp"
+#include "rt_core/records/safety.hpp"
 
 #include <array>
 #include <cstdint>
@@ -18,11 +19,12 @@ namespace tactus::hrtc
 /// Force and torque of one tool in one cycle.
 struct ToolForce
 {
-    Vec3 sent_n{0.0, 0.0, 0.0};   ///< That went to the device.
-    Vec3 sent_nm{0.0, 0.0, 0.0};  ///< The torque, likewise.
-    ConditionedForce conditioned; ///< How it came about, before the safe state.
-    ConditionedForce turned;      ///< The torque, likewise, in angles.
-    double twist_rad{0.0};        ///< Between device and proxy, in contact.
+    Vec3 sent_n{0.0, 0.0, 0.0};      ///< That went to the device.
+    Vec3 sent_nm{0.0, 0.0, 0.0};     ///< The torque, likewise.
+    ConditionedForce conditioned;    ///< How it came about, before the safe state.
+    ConditionedForce turned;         ///< The torque, likewise, in angles.
+    double twist_rad{0.0};           ///< Between device and proxy, in contact.
+    ForceOff causes{ForceOff::none}; ///< Why less than the frame's went out.
 };
 
 /// What one cycle of the loop measured besides the frame's own output.

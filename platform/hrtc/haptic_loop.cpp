@@ -11,6 +11,14 @@
 namespace tactus::hrtc
 {
 
+namespace
+{
+
+/// What a tool may go in a frame, and the skin of one without a radius.
+constexpr double kTouchSlack_m = 5e-3;
+
+} // namespace
+
 HapticLoop::HapticLoop(const LoopParts& parts, RunStatistics& statistics)
     : parts_(parts)
     , statistics_(statistics)
@@ -222,14 +230,32 @@ void HapticLoop::make_safe(const FrameOutput& output) noexcept
         {
             context.causes |= ForceOff::stale;
         }
+        context.surface_damping_n_s_per_m = damping_touched(i, output);
         const SafetyOutput safe = ports_[i].make_safe(output.tools[i], context);
         forces_[i] = ports_[i].force();
+        forces_[i].causes = safe.causes;
         devices_[i] = ports_[i].record();
         if (safe.has_changed)
         {
             note(i, safe.state, safe.causes);
         }
     }
+}
+
+/// Of all that the tool may touch at the end of the frame: pairs are measured at its beginning.
+double HapticLoop::damping_touched(std::uint32_t tool, const FrameOutput& output) const noexcept
+{
+    double damping_n_s_per_m = 0.0;
+    for (const PairOutput& pair : output.pairs)
+    {
+        if (pair.tool == tool && output.tools[tool].in_contact &&
+            pair.lower_m <= radii_m_[tool] + kTouchSlack_m)
+        {
+            const Material& material = parts_.frame->objects()[pair.object].spec.material;
+            damping_n_s_per_m = std::max(damping_n_s_per_m, material.damping_n_s_per_m);
+        }
+    }
+    return damping_n_s_per_m;
 }
 
 ForceOff HapticLoop::causes_for_all(const FrameOutput& output) const noexcept

@@ -90,6 +90,8 @@ private:
     void make_safe(const FrameOutput& output) noexcept;
     [[nodiscard]] static bool touches_old_pose(std::uint32_t tool,
                                                const FrameOutput& output) noexcept;
+    [[nodiscard]] double damping_touched(std::uint32_t tool,
+                                         const FrameOutput& output) const noexcept;
     [[nodiscard]] ForceOff causes_for_all(const FrameOutput& output) const noexcept;
     [[nodiscard]] bool lacks_a_host(const FrameOutput& output) const noexcept;
     void write_devices() noexcept;

@@ -89,11 +89,11 @@ void declare_run(CommandLine& line, Options& options)
         .number_between(0.1, 86'400.0)
         .show_default();
     line.add_flag("--strict", options.strict,
-                  "Exit with 1 when a host or a device was lost, a piece came damaged, or nothing "
-                  "was touched");
+                  "Exit with 1 when a host or a device was lost, a piece came damaged or didn't "
+                  "come within a second, a wall was too soft to feel, or nothing was touched");
     line.add_option("--report", options.report_paths,
-                    "Write the report to this file: a page when its name ends in .html, else JSON; "
-                    "repeatable")
+                    "Write the report to this file: JSON when its name ends in .json, a page when "
+                    "it ends in .html; repeatable")
         .repeatable();
 }
 

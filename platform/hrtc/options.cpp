@@ -9,6 +9,7 @@
 #include "platform/hrtc/material_choice.hpp"
 #include "platform/hrtc/numbers.hpp"
 #include "platform/hrtc/option_table.hpp"
+#include "platform/hrtc/report_page.hpp"
 #include "rt_core/limits.hpp"
 
 #include <fmt/format.h>
@@ -75,9 +76,10 @@ std::string check_files(const CommandLine& line, const Options& options)
         {
             return "--report: a file's name is needed";
         }
-        if (path.ends_with(".htm"))
+        if (!path.ends_with(".json") && !is_page_name(path))
         {
-            return fmt::format("--report: '{}': a page's name ends in .html", printable(path));
+            return fmt::format("--report: '{}' ends neither in .json nor, for a page, in .html",
+                               printable(path));
         }
         if (std::ranges::count(options.report_paths, path) > 1)
         {

@@ -17,6 +17,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <ctime>
 #include <span>
 #include <sstream>
@@ -125,7 +126,9 @@ Json models_of(const RunRecord& record)
                         {"refined_records", output.refined_records},
                         {"static", output.is_static},
                         {"bytes_received", served.link->bytes_received()},
-                        {"pieces_refused", courier.refused()},
+                        {"pieces_refused", courier.refused() + served.link->damaged()},
+                        {"pieces_overdue", courier.overdue},
+                        {"pieces_missing", courier.overdue - courier.overdue_came},
                         {"host_connected", served.link->state() == LinkState::connected},
                         {"pose", first[i] < record.controller.objects().size()
                                      ? pose_of(record.run, i, first[i])
@@ -136,7 +139,7 @@ Json models_of(const RunRecord& record)
 
 double stiffness_cap_of(const ConditionerSetup& setup)
 {
-    return stiffness_cap(setup.device, setup.period_s, setup.surface_damping_max_n_s_per_m);
+    return stiffness_cap(setup.device, setup.period_s);
 }
 
 /// Frames with each action; the start-up ramp is the SafeState's.
@@ -167,9 +170,13 @@ Json tools_of(const RunRecord& record)
              {"torque_max_step_nm", force.torque_max_step_nm},
              {"twist_max_rad", force.twist_max_rad},
              {"contact_share", static_cast<double>(force.contact_frames) / frames},
+             {"force_share", static_cast<double>(force.force_frames) / frames},
              {"frozen_frames", force.frozen_frames},
              {"held_back_frames", force.held_back_frames},
              {"stiffness_cap_n_per_m", stiffness_cap_of(record.controller.tools()[i].conditioner)},
+             {"softest_wall_n_per_m", std::isfinite(force.softest_wall_n_per_m)
+                                          ? Json(force.softest_wall_n_per_m)
+                                          : Json()},
              {"surplus_max_j", force.surplus_max_j},
              {"conditioned", conditioned_of(force)}});
     }
@@ -230,7 +237,9 @@ Json force_of(const RunStatistics& statistics)
     const double frames = static_cast<double>(std::max<std::uint64_t>(statistics.frames, 1));
     return {{"max_n", worst.max_n},
             {"max_step_n", worst.max_step_n},
-            {"contact_share", static_cast<double>(statistics.contact_frames) / frames}};
+            {"contact_share", static_cast<double>(statistics.contact_frames) / frames},
+            {"force_share", static_cast<double>(statistics.force_frames) / frames},
+            {"held_back_share", static_cast<double>(statistics.held_back_frames) / frames}};
 }
 
 Json machine_of(const RunRecord& record)

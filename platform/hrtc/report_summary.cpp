@@ -92,12 +92,14 @@ void add_stability(const Json& tools, SummaryFacts& facts)
     {
         capped += tool["conditioned"]["stiffness_capped"].get<std::uint64_t>();
         damped += tool["conditioned"]["damped"].get<std::uint64_t>();
-        cap = std::min(cap, tool["stiffness_cap_n_per_m"].get<double>());
+        const Json& softest = tool["softest_wall_n_per_m"];
+        cap = softest.is_null() ? cap : std::min(cap, softest.get<double>());
     }
     if (capped > 0)
     {
-        facts.emplace_back("stability",
-                           fmt::format("{} forces softened to a wall of {:.0f} N/m", capped, cap));
+        facts.emplace_back(
+            "stability",
+            fmt::format("{} forces softened, to a wall of {:.0f} N/m at the softest", capped, cap));
     }
     if (damped > 0)
     {
@@ -122,6 +124,12 @@ void add_safety(const Json& safety, SummaryFacts& facts)
         facts.emplace_back("safety",
                            fmt::format("force off for: {}; {} brakes by the supervisor", causes,
                                        safety["supervisor_brakes"].get<std::uint64_t>()));
+    }
+    // Each of them cuts the force, and that is the machine's doing.
+    if (safety["begun"]["stall"].get<std::uint64_t>() > 0)
+    {
+        facts.emplace_back("machine", "it held the loop up, and each time the force went off: "
+                                      "'hrtc doctor' says why, and what helps");
     }
 }
 
@@ -244,12 +252,22 @@ std::string torque_text(const Json& tools)
     return most_nm > 0.0 ? fmt::format("; torque at most {:.4f} N m", most_nm) : "";
 }
 
+/// That the tool was held back is told where it was: then less was felt than the hand asked for.
+std::string frames_text(const Json& report)
+{
+    const auto percent = [&report](const char* share)
+    { return 100.0 * report["force"][share].get<double>(); };
+    const double held_back = percent("held_back_share");
+    return fmt::format("{} at {:.0f} Hz, in contact {:.1f} %, with a force {:.1f} %{}",
+                       report["frames"].get<std::uint64_t>(),
+                       1e9 / report["period_ns"].get<double>(), percent("contact_share"),
+                       percent("force_share"),
+                       held_back > 0.0 ? fmt::format(", held back {:.1f} %", held_back) : "");
+}
+
 SummaryFacts touch_facts(const Json& report)
 {
-    return {{"frames", fmt::format("{} at {:.0f} Hz, in contact {:.1f} %",
-                                   report["frames"].get<std::uint64_t>(),
-                                   1e9 / report["period_ns"].get<double>(),
-                                   100.0 * report["force"]["contact_share"].get<double>())},
+    return {{"frames", frames_text(report)},
             {"answers", answers_text(report)},
             {"force", fmt::format("at most {:.2f} N, largest step {:.3f} N{}",
                                   report["force"]["max_n"].get<double>(),

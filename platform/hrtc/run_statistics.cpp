@@ -28,6 +28,11 @@ int badness(AnswerKind kind) noexcept
     return 3;
 }
 
+bool is_felt(const ToolOutput& output, const ToolForce& force) noexcept
+{
+    return output.in_contact && force.sent_n.squaredNorm() > 0.0;
+}
+
 } // namespace
 
 void AnswerCounts::add(AnswerKind kind, double width_m) noexcept
@@ -44,16 +49,16 @@ void AnswerCounts::add(AnswerKind kind, double width_m) noexcept
 
 void ForceCounts::add(const ToolOutput& output, const ToolForce& force) noexcept
 {
-    max_n = std::max(max_n, force.sent_n.norm());
-    max_step_n = std::max(max_step_n, (force.sent_n - last_n_).norm());
-    last_n_ = force.sent_n;
+    add_sent(force);
     contact_frames += output.in_contact ? 1 : 0;
+    force_frames += is_felt(output, force) ? 1U : 0U;
     frozen_frames += output.frozen ? 1 : 0;
     held_back_frames += output.held_back ? 1 : 0;
-    torque_max_nm = std::max(torque_max_nm, force.sent_nm.norm());
-    torque_max_step_nm = std::max(torque_max_step_nm, (force.sent_nm - last_nm_).norm());
-    last_nm_ = force.sent_nm;
     twist_max_rad = std::max(twist_max_rad, force.twist_rad);
+    if (has_action(force.conditioned.actions, ForceAction::stiffness_capped))
+    {
+        softest_wall_n_per_m = std::min(softest_wall_n_per_m, force.conditioned.stiffness_n_per_m);
+    }
     surplus_max_j = std::max({surplus_max_j, force.conditioned.surplus_j, force.turned.surplus_j});
     for (std::size_t bit = 0; bit < kForceActions; ++bit)
     {
@@ -61,6 +66,20 @@ void ForceCounts::add(const ToolOutput& output, const ToolForce& force) noexcept
         const ForceAction actions = force.conditioned.actions | force.turned.actions;
         conditioned[bit] += has_action(actions, action) ? 1U : 0U;
     }
+}
+
+/// The end of a run damps the motion, in the air too: that is no force of what was touched.
+void ForceCounts::add_sent(const ToolForce& force) noexcept
+{
+    if (!has_cause(force.causes, ForceOff::software))
+    {
+        max_n = std::max(max_n, force.sent_n.norm());
+        max_step_n = std::max(max_step_n, (force.sent_n - last_n_).norm());
+        torque_max_nm = std::max(torque_max_nm, force.sent_nm.norm());
+        torque_max_step_nm = std::max(torque_max_step_nm, (force.sent_nm - last_nm_).norm());
+    }
+    last_n_ = force.sent_n;
+    last_nm_ = force.sent_nm;
 }
 
 void BudgetRange::add(std::uint32_t budget, bool is_first) noexcept
@@ -97,12 +116,18 @@ void RunStatistics::add(const FrameOutput& output, std::span<const ToolForce> fo
     add_budgets(measures);
     deadlines.add(index, measures, is_over_budget(output.work, measures.budgets));
     bool any_contact = false;
+    bool any_force = false;
+    bool any_held_back = false;
     for (std::size_t i = 0; i < tools.size(); ++i)
     {
         tools[i].add(output.tools[i], forces[i]);
         any_contact = any_contact || output.tools[i].in_contact;
+        any_force = any_force || is_felt(output.tools[i], forces[i]);
+        any_held_back = any_held_back || output.tools[i].held_back;
     }
     contact_frames += any_contact ? 1 : 0;
+    force_frames += any_force ? 1 : 0;
+    held_back_frames += any_held_back ? 1 : 0;
     std::copy(output.models.begin(), output.models.end(), models.begin());
 }
 

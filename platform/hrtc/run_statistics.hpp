@@ -5,6 +5,7 @@
 #include "platform/hrtc/cycle_measures.hpp"
 #include "platform/hrtc/deadline_account.hpp"
 #include "platform/latency_histogram.hpp"
+#include "rt_core/math/infinity.hpp"
 #include "rt_core/records/conditioned_force.hpp"
 #include "rt_core/records/frame_input.hpp"
 #include "rt_core/records/frame_output.hpp"
@@ -37,7 +38,7 @@ private:
     std::uint64_t inexact_run_{0};
 };
 
-/// One tool's forces over the run.
+/// One tool's forces over the run. The largest ones are those before its end, in which forces fade.
 struct ForceCounts
 {
     double max_n{0.0};
@@ -46,14 +47,19 @@ struct ForceCounts
     double torque_max_step_nm{0.0}; ///< Likewise.
     double twist_max_rad{0.0};      ///< Largest angle between device and proxy, in contact.
     std::uint64_t contact_frames{0};
+    std::uint64_t force_frames{0}; ///< Of those, with a force that went out.
     std::uint64_t frozen_frames{0};
     std::uint64_t held_back_frames{0};
+    /// Of the walls that were softened to what the device may have; infinite when none was.
+    double softest_wall_n_per_m{kInfinity};
     double surplus_max_j{0.0}; ///< ConditionedForce::surplus_j, of force or torque.
     std::array<std::uint64_t, kForceActions> conditioned{}; ///< Frames with each ForceAction.
 
     void add(const ToolOutput& output, const ToolForce& force) noexcept;
 
 private:
+    void add_sent(const ToolForce& force) noexcept;
+
     Vec3 last_n_{0.0, 0.0, 0.0};
     Vec3 last_nm_{0.0, 0.0, 0.0};
 };
@@ -96,7 +102,9 @@ public:
     std::vector<ForceCounts> tools;
     std::vector<ModelOutput> models; ///< Of the last frame; `used_max` covers the run.
 
-    std::uint64_t contact_frames{0}; ///< Frames with some tool in contact.
+    std::uint64_t contact_frames{0};   ///< Frames with some tool in contact.
+    std::uint64_t force_frames{0};     ///< Of those, with a force of it that went out.
+    std::uint64_t held_back_frames{0}; ///< Frames with some tool held back.
     std::uint64_t splits{0};
     std::uint64_t merges{0};
     std::uint64_t nodes_visited{0};

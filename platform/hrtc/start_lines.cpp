@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #include "platform/hrtc/start_lines.hpp"
 
+#include "platform/hrtc/verdict.hpp"
+#include "rt_core/force/stiffness_rule.hpp"
 #include "rt_core/spm/header.hpp"
 
 #include <fmt/format.h>
@@ -19,8 +21,6 @@ namespace
 
 /// With more objects one line tells of all.
 constexpr std::size_t kObjectsInLines = 4;
-/// No hand feels a softer wall.
-constexpr double kSoftest_n_per_m = 1.0;
 
 /// The ball round an object's box, in the world.
 struct Surroundings
@@ -93,13 +93,18 @@ std::string tool_line(const Options& options, const ToolSetup& tool,
                                          device.workspace_radius_m + tool.hand_radius_m;
                               });
     const double asked = options.stiffness_n_per_m;
-    const double stiffest = tool.limits.stiffness_n_per_m;
+    double stiffest = tool.limits.stiffness_n_per_m;
+    for (const PlacedObject& object : options.objects)
+    {
+        stiffest = std::min(stiffest, stiffness_cap(device.limits, tool.conditioner.period_s,
+                                                    object.material.damping_n_s_per_m));
+    }
     const std::string reach = reached == 0   ? "WHERE NO OBJECT IS"
                               : reached == 1 ? "1 object in reach"
                                              : fmt::format("{} objects in reach", reached);
     const std::string wall =
-        stiffest < kSoftest_n_per_m
-            ? "NOTHING WILL BE FELT: the material's damping leaves the device no wall"
+        stiffest < kSoftestFelt_n_per_m
+            ? "NOTHING WILL BE FELT: the device's own damping, friction and rate allow no wall"
             : fmt::format("a wall of {:.4g} N/m{}", stiffest,
                           stiffest < asked ? fmt::format(", of {:.4g} asked for", asked) : "");
     return fmt::format("{:<12}{} on {}, {:.3g} m round {}: {}; {}\n", "tool", tool.shape,

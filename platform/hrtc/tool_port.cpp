@@ -100,7 +100,8 @@ DeviceRecord ToolPort::record() const noexcept
 
 SafetyOutput ToolPort::make_safe(const ToolOutput& output, const PeriodContext& context) noexcept
 {
-    const ConditionedWrench wrench = conditioner_.condition(wish_of(output));
+    const ConditionedWrench wrench =
+        conditioner_.condition(wish_of(output, context.surface_damping_n_s_per_m));
     force_.conditioned = wrench.force;
     force_.turned = wrench.torque;
     const SafetyOutput safe = safe_state_.step(safety_input(output, context));
@@ -111,11 +112,13 @@ SafetyOutput ToolPort::make_safe(const ToolOutput& output, const PeriodContext& 
     return safe;
 }
 
-WrenchWish ToolPort::wish_of(const ToolOutput& output) const noexcept
+WrenchWish ToolPort::wish_of(const ToolOutput& output,
+                             double surface_damping_n_s_per_m) const noexcept
 {
     const double stiffness_nm_per_rad = angular_share_m2_ * output.stiffness_n_per_m;
     return {{output.force_n, hand_.position_m, output.stiffness_n_per_m,
-             along(output.proxy_m - state_.position_m, output.force_n), state_.elapsed_periods},
+             along(output.proxy_m - state_.position_m, output.force_n), state_.elapsed_periods,
+             surface_damping_n_s_per_m},
             {output.torque_nm, turned_rad_, stiffness_nm_per_rad,
              along(twist_of(output), output.torque_nm), state_.elapsed_periods}};
 }

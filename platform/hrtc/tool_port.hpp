@@ -37,6 +37,7 @@ struct PeriodContext
 {
     double elapsed_s{0.0}; ///< True time since the last frame.
     ForceOff causes{ForceOff::none};
+    double surface_damping_n_s_per_m{0.0}; ///< ForceWish's.
 };
 
 /// One tool on the haptic thread: its device, and everything between the frame's force and that
@@ -82,7 +83,8 @@ public:
     void brake() noexcept;
 
 private:
-    [[nodiscard]] WrenchWish wish_of(const ToolOutput& output) const noexcept;
+    [[nodiscard]] WrenchWish wish_of(const ToolOutput& output,
+                                     double surface_damping_n_s_per_m) const noexcept;
     [[nodiscard]] SafetyInput safety_input(const ToolOutput& output,
                                            const PeriodContext& context) noexcept;
     [[nodiscard]] Vec3 twist_of(const ToolOutput& output) const noexcept;

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <iterator>
 
@@ -27,10 +28,26 @@ std::vector<std::string> losses_of(const Json& report)
     }
     for (const Json& model : report["models"])
     {
+        const auto name = model["name"].get<std::string>();
         if (const auto refused = model["pieces_refused"].get<std::uint64_t>(); refused > 0)
         {
-            losses.push_back(
-                fmt::format("{} damaged pieces of {}", refused, model["name"].get<std::string>()));
+            losses.push_back(fmt::format("{} damaged pieces of {}", refused, name));
+        }
+        if (const auto overdue = model["pieces_overdue"].get<std::uint64_t>(); overdue > 0)
+        {
+            losses.push_back(fmt::format("{} pieces of {} that didn't come within 1 s, {} never",
+                                         overdue, name,
+                                         model["pieces_missing"].get<std::uint64_t>()));
+        }
+    }
+    const Json& tools = report["tools"];
+    for (std::size_t i = 0; i < tools.size(); ++i)
+    {
+        const Json& softest = tools[i]["softest_wall_n_per_m"]; // Null: none was softened.
+        if (!softest.is_null() && softest.get<double>() < kSoftestFelt_n_per_m)
+        {
+            losses.push_back(fmt::format("tool {}: a wall of {:.2g} N/m, which nobody feels", i,
+                                         softest.get<double>()));
         }
     }
     if (report["force"]["contact_share"].get<double>() == 0.0)

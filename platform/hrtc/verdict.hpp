@@ -10,6 +10,9 @@
 namespace tactus::hrtc
 {
 
+/// No hand feels a softer wall: 0.1 N a centimetre deep.
+inline constexpr double kSoftestFelt_n_per_m = 10.0;
+
 /// What was lost in a run, or came to nothing: with --strict it has failed then. Words, one each.
 [[nodiscard]] std::vector<std::string> losses_of(const nlohmann::ordered_json& report);
 

@@ -38,6 +38,9 @@ constexpr double kStuckShare = 0.3;
 constexpr double kStuckAfterS = 0.2;
 /// Of the set force; below it nothing is felt.
 constexpr double kTouchShare = 0.02;
+/// A device of 1 N s/m damps with half of that at most: 0.16 N where the default model is
+/// approached.
+constexpr double kFirmShare = 0.2;
 
 /// First-order low-pass: the share of the new value.
 double filter_share(double period_s, double time_s) noexcept
@@ -73,6 +76,7 @@ void ContactSlide::begin(const HandSense& sense, const Vec3& heading_wish) noexc
     device_speed_m_per_s_ = speed_m_per_s_;
     speed_factor_ = 1.0;
     untouched_s_ = 0.0;
+    touched_s_ = 0.0;
     stuck_s_ = 0.0;
 }
 
@@ -99,6 +103,11 @@ bool ContactSlide::is_touching(const HandSense& sense) const noexcept
     return sense.force_world_n.norm() > kTouchShare * force_n_;
 }
 
+bool ContactSlide::is_firm(const HandSense& sense) const noexcept
+{
+    return sense.force_world_n.norm() > kFirmShare * force_n_;
+}
+
 /// A triangle wave with rounded corners round the set force.
 double ContactSlide::wanted_force_n() const noexcept
 {
@@ -121,9 +130,11 @@ void ContactSlide::follow_surface(const HandSense& sense, double force_n) noexce
     if (!is_touching(sense))
     {
         untouched_s_ += period_s_;
+        touched_s_ = 0.0;
         return;
     }
     untouched_s_ = 0.0;
+    touched_s_ += period_s_;
     const Vec3 felt = sense.force_world_n / force_n;
     const Vec3 blend = normal_ + (felt - normal_) * filter_share(period_s_, kNormalFilterS);
     // Opposite normals, as at the rim of a sheet, cancel out: then the new one counts.

@@ -35,11 +35,15 @@ public:
     void turn_round() noexcept;
 
     [[nodiscard]] bool is_touching(const HandSense& sense) const noexcept;
+    /// More than damping makes at the speeds of a landing.
+    [[nodiscard]] bool is_firm(const HandSense& sense) const noexcept;
     /// Unit length, out of the surface.
     [[nodiscard]] const Vec3& normal() const noexcept { return normal_; }
     [[nodiscard]] const Vec3& heading() const noexcept { return heading_; }
     /// How long nothing has been felt; 0 while in contact.
     [[nodiscard]] double untouched_s() const noexcept { return untouched_s_; }
+    /// How long something has been felt since begin(), without a gap.
+    [[nodiscard]] double touched_s() const noexcept { return touched_s_; }
 
 private:
     [[nodiscard]] double wanted_force_n() const noexcept;
@@ -59,6 +63,7 @@ private:
     double device_speed_m_per_s_{0.0};
     double speed_factor_{1.0};
     double untouched_s_{0.0};
+    double touched_s_{0.0};
     double stuck_s_{0.0};
     std::uint64_t frames_{0};
 };

@@ -33,6 +33,8 @@ constexpr double kClimbPerS = 20.0;
 /// The hand never stretches its own spring farther once it feels something: at 200 N/m, 4 N.
 constexpr double kLeashM = 0.02;
 constexpr double kLostAfterS = 0.05;
+/// No force fades for longer (SafeState's kFadeTime_s).
+constexpr double kSureAfterS = 0.05;
 constexpr double kGoodContactS = 0.5;
 constexpr std::uint32_t kLossesBeforeBackOff = 4;
 constexpr double kSettleBeforeLiftS = 0.1;
@@ -120,6 +122,7 @@ double ScriptedHand::reach_m() const noexcept
 Vec3 ScriptedHand::next_world_m(const HandSense& sense) noexcept
 {
     ++frames_in_phase_;
+    feel(sense);
     if (sense.frame >= schedule_.retreat_frame && phase_ != HandPhase::retreat)
     {
         enter(HandPhase::retreat);
@@ -179,7 +182,7 @@ Vec3 ScriptedHand::fly() noexcept
 
 Vec3 ScriptedHand::approach(const HandSense& sense) noexcept
 {
-    if (slide_.is_touching(sense))
+    if (meets(sense, approach_direction_))
     {
         land(sense, centre_world_m_ - position_world_m_);
         return Vec3::Zero();
@@ -206,7 +209,7 @@ Vec3 ScriptedHand::slide(const HandSense& sense) noexcept
     {
         lose_contact();
     }
-    else if (slide_.is_touching(sense))
+    else if (is_landing_sure_ && slide_.is_touching(sense))
     {
         remember_place(sense);
         losses_ = seconds_in_phase() > kGoodContactS ? 0 : losses_;
@@ -222,12 +225,16 @@ Vec3 ScriptedHand::slide(const HandSense& sense) noexcept
 }
 
 /// Back to where the surface was still there, and on from there in the other direction; to another
-/// site when that keeps failing.
+/// site when that keeps failing. A touch that was none is passed.
 void ScriptedHand::lose_contact() noexcept
 {
     ++losses_;
-    place_.heading = -place_.heading;
-    enter(losses_ < kLossesBeforeBackOff ? HandPhase::come_back : HandPhase::back_off);
+    if (is_landing_sure_)
+    {
+        place_.heading = -place_.heading;
+    }
+    const HandPhase again = is_landing_sure_ ? HandPhase::come_back : landed_from_;
+    enter(losses_ < kLossesBeforeBackOff ? again : HandPhase::back_off);
 }
 
 Vec3 ScriptedHand::lift(const HandSense& sense) noexcept
@@ -278,7 +285,7 @@ Vec3 ScriptedHand::come_back() noexcept
 
 Vec3 ScriptedHand::descend(const HandSense& sense) noexcept
 {
-    if (slide_.is_touching(sense))
+    if (meets(sense, -place_.normal))
     {
         land(sense, place_.heading);
         return Vec3::Zero();
@@ -316,14 +323,35 @@ void ScriptedHand::enter(HandPhase phase) noexcept
 {
     phase_ = phase;
     frames_in_phase_ = 0;
+    felt_s_ = 0.0;
 }
 
+void ScriptedHand::feel(const HandSense& sense) noexcept
+{
+    felt_s_ = slide_.is_touching(sense) ? felt_s_ + period_s_ : 0.0;
+    if (phase_ == HandPhase::slide && !is_landing_sure_ && slide_.touched_s() >= kSureAfterS)
+    {
+        is_landing_sure_ = true;
+        place_ = place_here(sense);
+        newest_place_ = place_;
+    }
+}
+
+/// A force alone is no touch, for one that fades after a fault damps the motion a little, in the
+/// air too: a surface pushes against the motion, and harder or longer than that.
+bool ScriptedHand::meets(const HandSense& sense, const Vec3& way) const noexcept
+{
+    return slide_.is_touching(sense) && sense.force_world_n.dot(way) < 0.0 &&
+           (slide_.is_firm(sense) || felt_s_ >= kSureAfterS);
+}
+
+/// The last place stays the one to go back to until this touch is sure.
 void ScriptedHand::land(const HandSense& sense, const Vec3& heading_wish) noexcept
 {
     slide_.begin(sense, heading_wish);
     landed_ = true;
-    place_ = place_here(sense);
-    newest_place_ = place_;
+    landed_from_ = phase_;
+    is_landing_sure_ = false;
     enter(HandPhase::slide);
 }
 

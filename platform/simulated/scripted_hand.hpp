@@ -91,6 +91,8 @@ private:
 
     void enter(HandPhase phase) noexcept;
     void lose_contact() noexcept;
+    void feel(const HandSense& sense) noexcept;
+    [[nodiscard]] bool meets(const HandSense& sense, const Vec3& way) const noexcept;
     void land(const HandSense& sense, const Vec3& heading_wish) noexcept;
     void remember_place(const HandSense& sense) noexcept;
     [[nodiscard]] Place place_here(const HandSense& sense) const noexcept;
@@ -115,9 +117,12 @@ private:
     Vec3 velocity_m_per_s_{Vec3::Zero()};
     std::size_t site_{0};
     Vec3 approach_direction_{Vec3::Zero()};
+    double felt_s_{0.0}; ///< How long there has been a force, in this phase.
     ContactSlide slide_;
-    Place place_;        ///< 64 to 128 ms old.
+    Place place_;        ///< 64 to 128 ms old; from before a landing until that is sure.
     Place newest_place_; ///< Up to 64 ms old.
+    HandPhase landed_from_{HandPhase::approach};
+    bool is_landing_sure_{false};
     Vec3 released_world_m_{Vec3::Zero()};
     bool released_{false};
     std::uint32_t lift_offs_{0};

@@ -33,14 +33,11 @@ double spring_energy_j(double force_n, double stiffness_n_per_m, double stretch_
 /// A device that turns faster has jumped: a wrist makes 30 rad/s at most.
 constexpr double kTurnMax_rad_per_s = 60.0;
 
-/// For a device that makes a torque. What damps the surface's motion has no part in turning.
+/// For a device that makes a torque.
 ConditionerSetup in_angles(const ConditionerSetup& setup) noexcept
 {
     ConditionerSetup angles = setup;
     angles.device = turning_of(setup.device);
-    angles.surface_damping_max_n_s_per_m =
-        std::min(setup.surface_damping_max_n_s_per_m * setup.lever_max_m * setup.lever_max_m,
-                 kDampingShare * angles.device.damping_n_s_per_m);
     angles.speed_max_m_per_s = kTurnMax_rad_per_s;
     return angles;
 }
@@ -49,7 +46,7 @@ ConditionerSetup in_angles(const ConditionerSetup& setup) noexcept
 
 ForceConditioner::ForceConditioner(const ConditionerSetup& setup) noexcept
     : setup_(setup)
-    , cap_n_per_m_(stiffness_cap(setup.device, setup.period_s, setup.surface_damping_max_n_s_per_m))
+    , cap_n_per_m_(stiffness_cap(setup.device, setup.period_s))
     , velocity_(setup.device.quantum_m)
     , sent_(setup.device.delay_s / setup.period_s)
     , observer_(setup.device, setup.period_s)
@@ -67,6 +64,7 @@ double ForceConditioner::begin(const ForceWish& wish) noexcept
 {
     wish_ = wish;
     output_ = {};
+    cap_for(wish.surface_damping_n_s_per_m);
     const bool is_observed = observe(wish);
     if (!is_observed || !sent_.knows_delay())
     {
@@ -126,6 +124,16 @@ bool ForceConditioner::observe(const ForceWish& wish) noexcept
         position_m_ = wish.position_m;
     }
     return is_usable;
+}
+
+/// Most frames touch what the last one touched.
+void ForceConditioner::cap_for(double surface_damping_n_s_per_m) noexcept
+{
+    if (surface_damping_n_s_per_m != surface_damping_n_s_per_m_)
+    {
+        surface_damping_n_s_per_m_ = surface_damping_n_s_per_m;
+        cap_n_per_m_ = stiffness_cap(setup_.device, setup_.period_s, surface_damping_n_s_per_m);
+    }
 }
 
 /// How much of the wish is within the device's limits, and what acted, in `output`.
@@ -192,6 +200,8 @@ WrenchConditioner::WrenchConditioner(const ConditionerSetup& setup) noexcept
     : force_(setup)
     , torque_(setup.device.turn.torque_max_nm > 0.0 ? in_angles(setup) : setup)
     , has_torque_(setup.device.turn.torque_max_nm > 0.0)
+    , lever_max_m_(setup.lever_max_m)
+    , turning_damping_max_nm_s_per_rad_(kDampingShare * turning_of(setup.device).damping_n_s_per_m)
 {
 }
 
@@ -199,7 +209,14 @@ ConditionedWrench WrenchConditioner::condition(const WrenchWish& wish) noexcept
 {
     ConditionedWrench output;
     double gain = force_.begin(wish.force);
-    gain = has_torque_ ? std::min(gain, torque_.begin(wish.torque)) : gain;
+    if (has_torque_)
+    {
+        ForceWish turn = wish.torque;
+        turn.surface_damping_n_s_per_m =
+            std::min(wish.force.surface_damping_n_s_per_m * lever_max_m_ * lever_max_m_,
+                     turning_damping_max_nm_s_per_rad_);
+        gain = std::min(gain, torque_.begin(turn));
+    }
     output.force = force_.finish(gain);
     if (has_torque_)
     {

@@ -20,8 +20,6 @@ struct ConditionerSetup
 {
     DeviceLimits device;
     double period_s{1e-3};
-    /// Largest surface damping of any object, in N s/m; lowers the stiffness cap.
-    double surface_damping_max_n_s_per_m{0.0};
     /// How far from the device's position a surface may touch the tool: it damps turning by at most
     /// its damping x the square of this, which lowers the cap of the torque's stiffness. No more
     /// than half of the device's own is counted; beyond that the passivity controller acts.
@@ -68,17 +66,19 @@ public:
     /// from it, and what energy it makes beyond the spring's is forgiven.
     void follow(const Vec3& sent_n) noexcept TACTUS_NONBLOCKING;
 
-    /// The stiffest wall that goes through unscaled.
+    /// The stiffest wall that goes through unscaled, with the surface damping of the last wish.
     [[nodiscard]] double stiffness_cap_n_per_m() const noexcept { return cap_n_per_m_; }
 
 private:
+    void cap_for(double surface_damping_n_s_per_m) noexcept;
     [[nodiscard]] bool observe(const ForceWish& wish) noexcept;
     [[nodiscard]] double limit(const ForceWish& wish, ConditionedForce& output) noexcept;
     void hold(const ForceWish& wish, const Vec3& wall_n, double stiffness_n_per_m) noexcept;
     [[nodiscard]] Vec3 damp(const Vec3& wall_n, ConditionedForce& output) const noexcept;
 
     ConditionerSetup setup_;
-    double cap_n_per_m_;
+    double surface_damping_n_s_per_m_{0.0};
+    double cap_n_per_m_; ///< With that damping.
     VelocityWindow velocity_;
     SentForces sent_;
     PassivityObserver observer_;
@@ -110,6 +110,8 @@ private:
     ForceConditioner force_;
     ForceConditioner torque_;
     bool has_torque_;
+    double lever_max_m_;
+    double turning_damping_max_nm_s_per_rad_; ///< Of a surface's, that is counted.
     Vec3 last_n_{0.0, 0.0, 0.0};
     Vec3 last_nm_{0.0, 0.0, 0.0};
 };

@@ -82,7 +82,10 @@ SafetyOutput SafeState::fade(double elapsed_s, ForceOff cause) noexcept
 
 SafetyOutput SafeState::output(ForceOff causes) noexcept
 {
-    const double share = 4.0 * gain_ * (1.0 - gain_);
+    const bool feels_nothing = base_n_.squaredNorm() <= 0.0 && base_nm_.squaredNorm() <= 0.0;
+    // On the way back in free air there is nothing to soften.
+    const double share =
+        causes == ForceOff::none && feels_nothing ? 0.0 : 4.0 * gain_ * (1.0 - gain_);
     const Vec3 damping_n = shortened(-share * limits_.damping_n_s_per_m * velocity_m_per_s_,
                                      kDampingForceShare * limits_.force_max_n);
     const Vec3 damping_nm = shortened(-share * limits_.damping_nm_s_per_rad * turning_rad_per_s_,

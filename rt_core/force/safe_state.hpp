@@ -79,7 +79,8 @@ struct SafetyOutput
 /// The device is in reset until its first good sample, and again when it is gone.
 ///
 /// The damping works against the hand's velocities while the gain is between 0 and 1, most at 1/2
-/// and none at either end, by at most kDampingForceShare of the largest force or torque.
+/// and none at either end, by at most kDampingForceShare of the largest force or torque. Where
+/// nothing was and nothing is felt there is none on the way back.
 ///
 /// A device that has dropped the force by itself has no ramp left to make: the gain is zero at
 /// once. Haptic thread; some 50 ns.

@@ -23,6 +23,9 @@ struct ForceWish
     /// holds more energy than the force tells; 0: take force / stiffness.
     double stretch_m{0.0};
     std::uint32_t elapsed_periods{1}; ///< Since the last wish; more after a stall. 0 counts as 1.
+    /// The largest surface damping of what the tool touches, in N s/m: it lowers the stiffness cap.
+    /// Finite, >= 0; left alone in the torque's.
+    double surface_damping_n_s_per_m{0.0};
 };
 
 /// Force and torque that are one spring between proxy and hand. `torque` is in angles: N m for N,

@@ -43,7 +43,10 @@ void StoreLink::poll(PieceSink& sink)
         waiting_.pop_back();
         if (auto done = store_.read(key, piece_); !done)
         {
-            log_.write(done.error().text);
+            if (damaged_.emplace(key.kind, key.number).second)
+            {
+                log_.write(done.error().text);
+            }
             continue;
         }
         bytes_received_ += piece_.size();

@@ -8,6 +8,9 @@
 #include "transport/served_model.hpp"
 #include "transport/store/model_store.hpp"
 
+#include <cstdint>
+#include <set>
+#include <utility>
 #include <vector>
 
 // One thread, the transport thread: poll() waits for the file.
@@ -18,7 +21,7 @@ namespace tactus
 class StoreLink final : public ChunkLink
 {
 public:
-    /// `log` gets a line for each kind of piece that can't be read, at a limited rate.
+    /// `log` gets a line for each piece that can't be read, at a limited rate.
     StoreLink(ModelStore store, Log log);
 
     void request(std::span<const ContentKey> keys, std::uint32_t generation) override;
@@ -27,6 +30,8 @@ public:
     [[nodiscard]] std::uint64_t session() const override { return 1; }
     [[nodiscard]] std::uint64_t bytes_received() const override { return bytes_received_; }
 
+    [[nodiscard]] std::uint64_t damaged() const override { return damaged_.size(); }
+
     [[nodiscard]] const ModelStore& store() const noexcept { return store_; }
 
 private:
@@ -34,6 +39,7 @@ private:
     RateLimitedLog log_;
     std::vector<ContentKey> waiting_; ///< Most urgent last.
     std::vector<std::byte> piece_;
+    std::set<std::pair<ContentKind, std::uint32_t>> damaged_;
     std::uint64_t bytes_received_{0};
 };
 

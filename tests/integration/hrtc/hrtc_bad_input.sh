@@ -17,8 +17,11 @@ refuse_config() { # refuse_config PATTERN LINE: of a file with this line.
     printf '%s\n' "$2" >bad.toml
     refuse 3 "$1" --model bumpy --config bad.toml
 }
-refuse_config "no option is called 'speed'" 'speed = 3'
-refuse_config "no sections; '[[]loop]' is one" $'[loop]\nrate = 1000'
+refuse_config "bad.toml:1: no option is called 'torque'; a line is KEY = VALUE" 'torque = 3'
+refuse_config "bad.toml:3: no option is called 'stifness'; 'stiffness'[?]" \
+    $'# Mine.\nrate = 1000\n  stifness = 300'
+refuse_config "bad.toml:2: there are no sections; '[[]loop]' is one" $'\n[loop]\nrate = 1000'
+refuse_config "bad.toml:1: *KEY = VALUE" 'splits: quickly'
 refuse_config '--rate: *fast*100 to 10000' 'rate = "fast"'
 refuse_config '--rate: *99*100 to 10000' 'rate = 99'
 refuse_config '--rate: ' 'rate ='
@@ -28,7 +31,8 @@ refuse_config '--pool-mib: *0.25 .. 4096' 'pool-mib = 0'
 refuse_config 'maybe' 'no-static = "maybe"'
 refuse_config '--device: *udp:ADDRESS:PORT' 'device = "phantom"'
 refuse_config 'not allowed in a configuration file' 'config = "other.toml"'
-refuse 3 'missing.toml' --config missing.toml
+refuse 3 "missing.toml: can't be read" --config missing.toml
+refuse 3 "out: can't be read" --config out
 printf 'model = ["bumpy", "torus"]\nplace = ["0,0,0", "1,0,0"]\nrate = 2000\n' >good.toml
 "$hrtc" --config good.toml --rate 4000 --print-config >all.toml || fault '--print-config'
 grep -qx 'rate=4000' all.toml || fault 'the command line does not go first'
@@ -164,23 +168,34 @@ refuse 2 --pool-mib --transport file --model good.spm --pool-mib 0.25
 
 # A report that can't be written is known before the run.
 start=$SECONDS
-mkfifo pipe
-for path in nowhere/report.json out good.spm/report.json pipe; do
+mkfifo pipe.json
+mkdir folder.json
+for name in run run.htm run.JSON json; do
+    refuse_option --report "$name" 'neither in .json nor, for a page, in .html'
+done
+for path in nowhere/report.json folder.json good.spm/report.json pipe.json; do
     refuse 2 "$path" --transport file --model good.spm --duration 60 --report "$path"
 done
 ((SECONDS - start < 30)) || fault 'it ran before it found out that it could not report'
-[[ -z $(ls -A out) && -p pipe && -z $(compgen -G '*partial*') ]] \
+[[ -z $(ls -A out)$(ls -A folder.json) && -p pipe.json && -z $(compgen -G '*partial*') ]] \
     || fault "left behind: $(ls -A . out)"
 
-# A chunk that is damaged is refused when it comes; the run goes on with what is sound.
+# A chunk that is damaged is refused when it comes; the run goes on with what is sound, says so, and
+# with --strict it has failed.
 "$inspect" good.spm --json >/dev/null
 cp good.spm chunk.spm
 printf '\xff\xfe\xfd' | dd of=chunk.spm bs=1 seek=$((bytes - 50)) conv=notrunc status=none
-code=0
-timeout 30 "$hrtc" --allow-no-rt --transport file --model chunk.spm --duration 3 \
-    --report out/report.json >hrtc.log 2>&1 || code=$?
-((code == 0)) || { cat hrtc.log; fault "a damaged chunk ended the run with $code"; }
-check out/report.json frames == 3000
+damaged() { # damaged CODE ARGUMENT...: ends with that code and names the damage once.
+    local code=0
+    timeout 30 "$hrtc" --allow-no-rt --transport file --model chunk.spm --duration 3 \
+        --report out/report.json "${@:2}" >hrtc.log 2>&1 || code=$?
+    ((code == $1)) || { cat hrtc.log; fault "a damaged chunk ended the run with $code"; }
+    check out/report.json frames == 3000 models.0.pieces_refused == 1
+    grep -q '^verdict .*1 damaged pieces of chunk' hrtc.log || fault 'the verdict does not tell'
+    [[ $(grep -c '^hrtc: chunk.spm: .*damaged' hrtc.log) == 1 ]] || fault 'it is not told once'
+}
+damaged 0
+damaged 1 --strict
 rm -f out/report.json
 
 # A hand that is too fast gets no force, and the report says why.

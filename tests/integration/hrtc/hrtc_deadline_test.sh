@@ -11,8 +11,10 @@ refuse() { expect "$1" "$2" "$hrtc" "${@:3}"; }
 refuse 3 'a model is required' deadline-test
 refuse 3 '--load: ' deadline-test --model bumpy --load network
 refuse 3 'none goes with no other' deadline-test --model bumpy --load none,cpu
-refuse 3 'must not end in .txt' deadline-test --model bumpy --report run.svg
-refuse 3 'must not end in .html' deadline-test --model bumpy --report run.html
+for name in run run.svg run.JSON; do
+    refuse 3 "'$name' ends neither in .json nor" deadline-test --model bumpy --report "$name"
+done
+refuse 3 'must end in .json' deadline-test --model bumpy --report run.html
 refuse 3 '--record' deadline-test --model bumpy --record run.rec
 refuse 3 '--replay' deadline-test --model bumpy --replay run.rec
 refuse 2 'nowhere/run.json' deadline-test --model bumpy --report nowhere/run.json
@@ -50,7 +52,8 @@ pass() {
         echo "not passed, try $try"
     done
     check run.json passed == 1 self_check.passed == 1 self_check.injected == 20 \
-        self_check.flagged == 20 self_check.false_flags == 0 deadline.own_fault == 0
+        self_check.flagged+self_check.disturbed == 20 self_check.false_flags == 0 \
+        deadline.own_fault == 0
     ((ended_with == 0)) || fault "three times it ended with $ended_with"
     grep -q '^verdict     passed: 0 own faults in ' test.log || fault 'no verdict'
 }

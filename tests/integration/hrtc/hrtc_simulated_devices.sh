@@ -26,9 +26,20 @@ for i in 0 1 2 3; do
 done
 check_clean report.json
 
-# What comes to nothing is said before it runs.
-run_hrtc "${model[@]}" --duration 0.5 --material 500,0,0,2
-grep -q '^tool .*NOTHING WILL BE FELT' hrtc.log || fault 'a wall of nothing is not told'
+# A damping that leaves no wall is refused, with what would do; one that leaves some goes.
+expect 2 "--material: a damping of 2 N s/m on 'bumpy' leaves the device sim no wall at 1000 Hz; at \
+most 0.994 leave it one that is felt, 0.722 one of 500 N/m" \
+    "$hrtc" --allow-no-rt "${model[@]}" --duration 0.5 --material 500,0,0,2
+run_hrtc "${model[@]}" --duration 0.5 --material 500,0,0,0.722
+grep -q '^tool .*: 1 object in reach; a wall of 500 N/m$' hrtc.log \
+    || fault 'less than that is not enough'
+
+# It is what a tool touches that softens its wall, and nothing else.
+run_hrtc "${model[@]}" --place 0,0,0 --place 1,0,0 --material 500 --material 500,0,0,0.9 \
+    --tools 2 --pool-mib 4 --duration 2
+check report.json tools.0.conditioned.stiffness_capped == 0 \
+    tools.1.conditioned.stiffness_capped '>' 100 tools.1.softest_wall_n_per_m '>' 179 \
+    tools.1.softest_wall_n_per_m '<' 181
 
 # A run of which nothing came is a failure for who says so.
 code=0
@@ -48,9 +59,23 @@ check report.json frames == 3000 safety.begun.garbage '>=' 3 safety.begun.discon
     tools.0.force_max_n '>' 0.5 tools.0.force_max_n '<=' 8
 check_clean report.json
 
+# A machine on which the force is off again and again: the hand finds the surface again, and the
+# report tells contact from force.
+for length in 5 60; do
+    dropouts=()
+    for ((i = 0; i < 62; ++i)); do
+        dropouts+=(--device-fault "dropout@$((200 + 155 * i))+$length")
+    done
+    run_hrtc "${model[@]}" --duration 10 "${dropouts[@]}"
+    check report.json frames == 10000 force.force_share '>' 0.05
+    check_contact report.json force.contact_share "0.$((80 - length / 2))"
+done
+check report.json force.force_share '<' '0.99*force.contact_share'
+
 # Other motions.
 run_hrtc "${model[@]}" --duration 1 --motion free
 check report.json tools.0.contact_share == 0
+was_held_up report.json || check report.json tools.0.force_max_n == 0 # The run's end is no touch.
 for motion in approach slide tap spin; do
     run_hrtc "${model[@]}" --duration 2 --motion "$motion"
     check report.json tools.0.force_max_n '>' 0.3 tools.0.force_max_n '<' 6

@@ -55,8 +55,17 @@ cp good.spm damaged.spm
 start_publisher damaged.spm
 dd if=/dev/zero of=damaged.spm bs=1 seek=$((bytes / 2)) count=$((bytes - bytes / 2)) \
     conv=notrunc status=none
-run_hrtc --model damaged --duration 2
-check report.json frames == 2000 wire.host_lost == 0
+run_hrtc --model damaged --duration 4
+check report.json frames == 4000 wire.host_lost == 0 models.0.pieces_overdue '>' 0 \
+    models.0.pieces_missing == '1*models.0.pieces_overdue'
+grep -q "^hrtc: model 'damaged': .* doesn't come; the surface there stays coarse" hrtc.log \
+    || fault 'the controller does not tell of what it waits for'
+grep -q "^verdict .*pieces of damaged that didn't come within 1 s" hrtc.log \
+    || fault 'the verdict does not tell'
+code=0
+"$hrtc" --allow-no-rt --domain "$domain" --model damaged --duration 4 --strict >strict.log 2>&1 \
+    || code=$?
+((code == 1)) || fault "--strict: pieces that did not come ended with $code"
 grep -q 'damaged.spm: .* at offset [0-9]* is damaged' publish.log \
     || fault "the host does not name the damage: $(cat publish.log)"
 stop TERM "$publisher"

@@ -90,7 +90,12 @@ Json report_of(const std::string& model)
           {"system_calls_outside", 101}}},
         {"recording", nullptr},
         {"telemetry", {{"sent", 103}}},
-        {"force", {{"max_n", 1.25}, {"max_step_n", 0.75}, {"contact_share", 0.5}}},
+        {"force",
+         {{"max_n", 1.25},
+          {"max_step_n", 0.75},
+          {"contact_share", 0.5},
+          {"force_share", 0.4375},
+          {"held_back_share", 0.03125}}},
         {"safety",
          {{"supervisor_brakes", 107},
           {"begun", {{"software", 1}, {"disconnect", 0}, {"stall", 109}}},
@@ -101,10 +106,13 @@ Json report_of(const std::string& model)
                                  {"static", false},
                                  {"diagonal_m", 0.3125},
                                  {"pieces_refused", 0},
+                                 {"pieces_overdue", 0},
+                                 {"pieces_missing", 0},
                                  {"pose", {{"followed", false}, {"moves", 131}}}}})},
         {"tools", Json::array({{{"radius_m", 0.002},
                                 {"torque_max_nm", 0.0625},
                                 {"stiffness_cap_n_per_m", 3'000.5},
+                                {"softest_wall_n_per_m", 1'500.25},
                                 {"conditioned", {{"stiffness_capped", 137}, {"damped", 139}}}}})},
         {"pairs", Json::array({{{"tool", 0}, {"model", model}, {"answers", {{"exact", 149}}}}})}};
 }
@@ -211,10 +219,18 @@ TEST(ReportPage, says_what_went_wrong)
     EXPECT_EQ(losses_of(report), std::vector<std::string>{"the host went away"});
     report["safety"]["begun"]["disconnect"] = 4;
     report["models"][0]["pieces_refused"] = 6;
+    report["models"][0]["pieces_overdue"] = 8;
+    report["models"][0]["pieces_missing"] = 5;
     report["force"]["contact_share"] = 0.0;
     EXPECT_EQ(losses_of(report),
               (std::vector<std::string>{"the host went away", "devices gone: 4",
-                                        "6 damaged pieces of bunny", "nothing was touched"}));
+                                        "6 damaged pieces of bunny",
+                                        "8 pieces of bunny that didn't come within 1 s, 5 never",
+                                        "nothing was touched"}));
+    report["tools"][0]["softest_wall_n_per_m"] = 0.5;
+    EXPECT_EQ(losses_of(report)[4], "tool 0: a wall of 0.5 N/m, which nobody feels");
+    report["tools"][0]["softest_wall_n_per_m"] = nullptr;
+    EXPECT_EQ(losses_of(report).size(), 5U);
 }
 
 TEST(ReportPage, leaves_out_lists_with_nothing_in_them)

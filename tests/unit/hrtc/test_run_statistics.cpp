@@ -37,6 +37,14 @@ public:
         change(output, measures);
         sut.add(output, forces_, measures);
     }
+    /// One of a tool that touches, or doesn't, and gets this force.
+    void touch(bool in_contact, double force_n, ForceOff causes = ForceOff::none)
+    {
+        tools_[0].in_contact = in_contact;
+        forces_[0].sent_n = Vec3(force_n, 0.0, 0.0);
+        forces_[0].causes = causes;
+        frame([](FrameOutput&, CycleMeasures&) {});
+    }
 
     RunStatistics sut{kTools, kPairs, kModels, kPeriod};
 
@@ -75,6 +83,24 @@ TEST(RunStatistics, counts_a_frame_as_over_budget_from_one_beyond_what_it_may_do
               3U);
     EXPECT_EQ(run.sut.deadlines.own_faults, 3U);
     EXPECT_EQ(run.sut.frames, 5U);
+}
+
+TEST(RunStatistics, tells_contact_from_force_and_leaves_out_the_end_of_the_run)
+{
+    StatisticsRig run;
+    run.touch(false, 0.25, ForceOff::stall); // Damping in the air is a force of no contact.
+    run.touch(true, 0.0, ForceOff::stall);
+    run.touch(true, 0.5);
+    run.touch(true, 1.0);
+    run.touch(true, 3.0, ForceOff::software);
+    run.touch(false, 9.0, ForceOff::software | ForceOff::stall);
+    EXPECT_EQ(run.sut.contact_frames, 4U);
+    EXPECT_EQ(run.sut.force_frames, 3U);
+    const ForceCounts& tool = run.sut.tools[0];
+    EXPECT_EQ(tool.contact_frames, 4U);
+    EXPECT_EQ(tool.force_frames, 3U);
+    EXPECT_EQ(tool.max_n, 1.0);
+    EXPECT_EQ(tool.max_step_n, 0.5);
 }
 
 } // namespace

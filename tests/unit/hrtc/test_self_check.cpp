@@ -9,7 +9,9 @@
 
 #include <map>
 #include <optional>
+#include <span>
 #include <thread>
+#include <vector>
 
 namespace tactus::hrtc::test
 {
@@ -48,7 +50,8 @@ CycleMeasures measures_of(std::optional<InjectedFault> fault)
 
 /// A self-check's run as it should be, but for what `change` does to one frame.
 template <typename Change>
-SelfCheck check_with(std::uint64_t changed, Change change)
+void add_run(InjectionJudge& judge, std::uint64_t changed, Change change,
+             std::span<const MonotonicTime> reads = {})
 {
     DeadlineAccount account(kPeriod);
     for (std::uint64_t frame = 0; frame < InjectionPlan::kFrames; ++frame)
@@ -60,7 +63,31 @@ SelfCheck check_with(std::uint64_t changed, Change change)
         }
         account.add(frame, measures, false);
     }
-    return compare_with_plan(account);
+    judge.judge(account, reads);
+}
+
+template <typename Change>
+SelfCheck check_with(std::uint64_t changed, Change change)
+{
+    InjectionJudge judge;
+    add_run(judge, changed, change);
+    return judge.result();
+}
+
+void hide(CycleMeasures& measures)
+{
+    measures = measures_of(std::nullopt);
+}
+
+/// Readings on the grid, but for that frame's, which is late by a fifth.
+std::vector<MonotonicTime> reads_with_a_late(std::uint64_t frame)
+{
+    std::vector<MonotonicTime> reads(InjectionPlan::kFrames + 1);
+    for (std::size_t i = 0; i < reads.size(); ++i)
+    {
+        reads[i].ns = static_cast<std::int64_t>(i) * kPeriod.ns + (i == frame ? kPeriod.ns / 5 : 0);
+    }
+    return reads;
 }
 
 TEST(InjectionPlan, has_as_many_of_each_kind_as_it_says_with_room_between_them)
@@ -125,8 +152,7 @@ TEST(SelfCheck, fails_when_any_injected_fault_went_unseen_or_was_taken_for_anoth
         {
             continue;
         }
-        const SelfCheck unseen =
-            check_with(frame, [](CycleMeasures& m) { m = measures_of(std::nullopt); });
+        const SelfCheck unseen = check_with(frame, hide);
         EXPECT_FALSE(unseen.is_passed());
         EXPECT_EQ(unseen.flagged + 1, unseen.injected);
         const InjectedFault other =
@@ -134,6 +160,51 @@ TEST(SelfCheck, fails_when_any_injected_fault_went_unseen_or_was_taken_for_anoth
         EXPECT_FALSE(
             check_with(frame, [&](CycleMeasures& m) { m = measures_of(other); }).is_passed());
     }
+}
+
+constexpr std::uint64_t kSpoilt = InjectionPlan::kFirst + 3 * InjectionPlan::kSpacing;
+
+TEST(SelfCheck, judges_what_the_machine_disturbed_by_the_next_run)
+{
+    for (const std::uint64_t late : {kSpoilt - 1, kSpoilt, kSpoilt + 1})
+    {
+        InjectionJudge judge;
+        add_run(judge, kSpoilt, hide, reads_with_a_late(late));
+        EXPECT_FALSE(judge.is_settled());
+        EXPECT_EQ(judge.result().disturbed, 1U);
+        EXPECT_EQ(judge.result().flagged + 1, judge.result().injected);
+        add_run(
+            judge, 0, [](CycleMeasures&) {}, reads_with_a_late(late));
+        EXPECT_TRUE(judge.is_settled());
+        EXPECT_TRUE(judge.result().is_passed());
+        EXPECT_EQ(judge.result().flagged, judge.result().injected);
+    }
+}
+
+TEST(SelfCheck, fails_when_the_repetition_or_an_undisturbed_frame_hides_a_fault)
+{
+    InjectionJudge elsewhere;
+    add_run(elsewhere, kSpoilt, hide, reads_with_a_late(kSpoilt - 5));
+    EXPECT_TRUE(elsewhere.is_settled());
+    EXPECT_FALSE(elsewhere.result().is_passed());
+    InjectionJudge again;
+    add_run(again, kSpoilt, hide, reads_with_a_late(kSpoilt));
+    add_run(again, kSpoilt, hide);
+    EXPECT_TRUE(again.is_settled());
+    EXPECT_FALSE(again.result().is_passed());
+}
+
+/// However disturbed: no kind goes unproven.
+TEST(SelfCheck, fails_when_a_kind_was_never_seen)
+{
+    SelfCheck check{20, 15, 0, true, 5, true};
+    EXPECT_TRUE(check.is_passed());
+    check.has_each_kind = false;
+    EXPECT_FALSE(check.is_passed());
+    InjectionJudge judge;
+    DeadlineAccount nothing(kPeriod);
+    judge.judge(nothing, {});
+    EXPECT_FALSE(judge.result().has_each_kind);
 }
 
 TEST(SelfCheck, fails_when_a_clean_frame_was_flagged)

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "platform/allocation_counter.hpp"
+#include "platform/device_force.hpp"
 #include "platform/simulated/scripted_hand.hpp"
 #include "platform/simulated/simulated_device.hpp"
 #include "tests/unit/platform/fake_wall.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <functional>
 #include <limits>
 #include <ostream>
 
@@ -93,8 +97,28 @@ struct Recording
     }
 };
 
+/// What reaches the device of the wall's force in that frame, at that velocity.
+using ForceLaw = std::function<Vec3(std::uint64_t frame, const Vec3& wall_n, const Vec3& velocity)>;
+
+Vec3 all_of_it(std::uint64_t /*frame*/, const Vec3& wall_n, const Vec3& /*velocity*/)
+{
+    return wall_n;
+}
+
+/// Five times a second the force fades within 50 ms, which damps the motion, in the air as well,
+/// and comes back within 100 ms: SafeState's law.
+Vec3 cut_and_damped(std::uint64_t frame, const Vec3& wall_n, const Vec3& velocity)
+{
+    constexpr double kDamping_n_s_per_m = 0.5;
+    const double since_s = 1e-3 * static_cast<double>(frame % 200);
+    const double fading = std::max(1.0 - since_s / 0.05, 0.0);
+    const double rising = std::clamp((since_s - 0.06) / 0.1, 0.0, 1.0);
+    return (fading + rising) * wall_n -
+           4.0 * fading * (1.0 - fading) * kDamping_n_s_per_m * velocity;
+}
+
 Recording play(const Model& model, double seconds, std::int64_t rate_hz = 1'000,
-               double stiffness = 500.0)
+               double stiffness = 500.0, const ForceLaw& law = all_of_it)
 {
     const auto frames = static_cast<std::uint64_t>(seconds * static_cast<double>(rate_hz));
     auto hand = std::move(ScriptedHand::create({model.anchors, kDiagonalM, kToolRadiusM,
@@ -112,11 +136,13 @@ Recording play(const Model& model, double seconds, std::int64_t rate_hz = 1'000,
     {
         const auto before = allocation_counter::of_this_thread();
         allocation_counter::mark_this_thread(true);
-        const auto p = device->read().position_world_m;
+        const DeviceSample sample = device->read();
+        const auto& p = sample.position_world_m;
         allocation_counter::mark_this_thread(false);
         run.heap_calls += allocation_counter::of_this_thread().allocations - before.allocations;
         const Vec3 force = wall.respond(Vec3(p[0], p[1], p[2]));
-        device->write({{force.x(), force.y(), force.z()}, {}, 0.0});
+        const auto velocity = sample.velocity_world_m_per_s.value_or(std::array<double, 3>{});
+        device->write({to_array(law(frame, force, to_vec3(velocity))), {}, 0.0});
         run.device.emplace_back(p[0], p[1], p[2]);
         run.force_n.push_back(force.norm());
         run.phase.push_back(script.phase());
@@ -163,6 +189,12 @@ TEST_P(ScriptedHandOnModel, flies_touches_lifts_off_now_and_then_and_retreats)
 TEST_P(ScriptedHandOnModel, touches_stiff_walls_at_high_rates_as_well)
 {
     EXPECT_GE(play(GetParam(), 5.0, 10'000, 3'000.0).contact_share(), 0.65);
+}
+
+/// The wall is what it touches, whether its force is on or off.
+TEST_P(ScriptedHandOnModel, finds_the_surface_again_when_the_force_is_cut_and_damps_the_air)
+{
+    EXPECT_GE(play(GetParam(), 10.0, 1'000, 500.0, cut_and_damped).contact_share(), 0.6);
 }
 
 TEST(ScriptedHand, goes_on_to_other_sites_when_the_first_is_empty)

@@ -11,6 +11,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace tactus::test
 {
@@ -367,6 +368,37 @@ TEST(WrenchConditioner, shortens_force_and_torque_by_one_gain)
     expect_gain(wrench(force_n, torque_nm, 100.0, 9.0), 0.2, kNone, kCapped);
     expect_gain(wrench(Vec3(0, 0, 0), 5.0 * torque_nm), 0.25, kNone, kClamped);
     expect_gain(wrench(4.0 * force_n, Vec3(0, 0, 0)), 0.5, kClamped, kNone);
+}
+
+TEST(WrenchConditioner, caps_by_the_damping_of_what_is_touched_and_of_nothing_else)
+{
+    ConditionerSetup setup = turning_setup();
+    setup.lever_max_m = 0.01;
+    WrenchConditioner sut(setup);
+    const auto force_of = [&sut](double damping_n_s_per_m)
+    {
+        WrenchWish wish = wrench(Vec3(1, 0, 0), Vec3(0, 0, 0.1), 3'600.0, 0.1);
+        wish.force.surface_damping_n_s_per_m = damping_n_s_per_m;
+        return sut.condition(wish).force.force_n.x();
+    };
+    EXPECT_NEAR(force_of(0.0), 1.0, kRounding);
+    EXPECT_NEAR(force_of(1.5), 0.25, kRounding); // 0.9 x 2 (2 - 1.5) / T of 3,600 N/m.
+    EXPECT_EQ(force_of(2.0), 0.0);
+    EXPECT_NEAR(force_of(0.0), 1.0, kRounding);
+}
+
+TEST(WrenchConditioner, takes_of_the_damping_what_its_lever_makes_of_it_and_half_of_its_own_at_most)
+{
+    ConditionerSetup setup = turning_setup();
+    setup.lever_max_m = 0.02;
+    // Of 1e-3 N m s/rad: 1.8 N m/rad less 0.9 x 2 x 4e-4 / T, and half of it for all that is more.
+    for (const auto& [damping, cap_nm_per_rad] : {std::pair(1.0, 1.08), std::pair(1.9, 0.9)})
+    {
+        WrenchConditioner sut(setup);
+        WrenchWish wish = wrench(Vec3(1, 0, 0), Vec3(0, 0, 0.1), 100.0, 1.8);
+        wish.force.surface_damping_n_s_per_m = damping;
+        EXPECT_NEAR(sut.condition(wish).torque.force_n.z(), 0.1 * cap_nm_per_rad / 1.8, 1e-9);
+    }
 }
 
 TEST(WrenchConditioner, makes_nothing_of_garbage_in_either)

@@ -424,6 +424,35 @@ TEST(SafeState, damps_the_motion_while_it_fades_and_not_at_either_end)
     EXPECT_EQ(tool.last.force_n.norm(), 0.0);
 }
 
+TEST(SafeState, damps_nothing_on_the_way_back_where_nothing_is_felt)
+{
+    for (const bool is_touching : {false, true})
+    {
+        GuardedTool tool;
+        tool.input.force_n = is_touching ? GuardedTool::kForce_n : Vec3(0.0, 0.0, 0.0);
+        tool.input.has_velocity = true;
+        tool.input.velocity_m_per_s = Vec3(0.8, 0.0, 0.0);
+        for (int i = 0; i < 200; ++i)
+        {
+            tool.step();
+        }
+        tool.input.causes = ForceOff::deadman;
+        for (int i = 0; i < 60; ++i)
+        {
+            tool.step();
+        }
+        tool.input.causes = ForceOff::none;
+        double most_n = 0.0;
+        for (int i = 0; i < 100; ++i)
+        {
+            const Vec3 way_back_n = tool.step().force_n - tool.sut.gain() * tool.input.force_n;
+            most_n = std::max(most_n, way_back_n.norm());
+        }
+        EXPECT_GE(most_n, is_touching ? 0.9 * 0.5 * 0.8 : 0.0);
+        EXPECT_LE(most_n, is_touching ? 0.5 * 0.8 + kRounding_n : 0.0);
+    }
+}
+
 /// Causes at any time and of any length, stalls among them, and a force that wanders: the law of
 /// the header holds in every frame. The hand is still, so nothing is damped.
 TEST(SafeState, never_steps_farther_than_its_law)

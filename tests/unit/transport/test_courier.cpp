@@ -330,6 +330,64 @@ TEST(Courier, has_no_clock_of_its_own_for_a_wish_that_is_never_answered)
     EXPECT_EQ(road.sut.counters().forgotten, 0U);
 }
 
+/// What is asked for comes after 1.6 s; wishes come again as a cache makes them.
+struct OverdueRoad : Road
+{
+    explicit OverdueRoad(const TinyModel& model)
+        : Road(model, {.delay_polls_min = 1'600, .delay_polls_max = 1'600})
+    {
+    }
+
+    void wish_for(int steps, int again = 250)
+    {
+        for (int i = 0; i < steps; ++i)
+        {
+            if (i % again == 0)
+            {
+                ASSERT_TRUE(side.wish(index_key(0)));
+            }
+            step();
+        }
+    }
+    [[nodiscard]] std::uint64_t overdue() const { return sut.counters().overdue; }
+};
+
+TEST(Courier, tells_once_of_a_piece_that_does_not_come_for_a_second_and_when_it_comes)
+{
+    const TinyModel model = make_tiny_model({});
+    OverdueRoad road(model);
+    road.wish_for(1'000);
+    EXPECT_EQ(road.overdue(), 0U);
+    EXPECT_TRUE(road.lines.empty());
+    road.wish_for(550);
+    EXPECT_EQ(road.overdue(), 1U);
+    EXPECT_EQ(road.lines, std::vector<std::string>{
+                              "model 'road': index page 0 doesn't come; the surface there stays "
+                              "coarse"});
+    EXPECT_TRUE(road.comes(index_key(0), 100));
+    EXPECT_EQ(road.sut.counters().overdue_came, 1U);
+    ASSERT_EQ(road.lines.size(), 2U);
+    EXPECT_EQ(road.lines[1], "model 'road': index page 0 has come after all, after 1.6 s");
+}
+
+TEST(Courier, misses_nothing_that_was_not_wanted_meanwhile_or_that_nobody_could_serve)
+{
+    const TinyModel model = make_tiny_model({});
+    OverdueRoad forgotten(model);
+    forgotten.wish_for(1'400, 1'200); // 1.2 s without a wish.
+    EXPECT_EQ(forgotten.overdue(), 0U);
+    OverdueRoad without_host(model);
+    without_host.wish_for(600);
+    without_host.link.lose_host();
+    without_host.wish_for(2'000);
+    without_host.link.regain_host();
+    without_host.wish_for(900);
+    EXPECT_EQ(without_host.overdue(), 0U);
+    without_host.wish_for(300);
+    EXPECT_EQ(without_host.overdue(), 1U);
+    EXPECT_EQ(without_host.sut.counters().overdue_came, 0U);
+}
+
 TEST(Courier, keeps_wishes_while_the_host_is_gone_and_asks_the_next_one_at_once)
 {
     const TinyModel model = make_tiny_model({});

@@ -3,12 +3,16 @@
 #include "tests/unit/transport/tiny_model.hpp"
 #include "transport/content_hash.hpp"
 #include "transport/store/model_store.hpp"
+#include "transport/store/store_link.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
+#include <span>
 #include <string>
+#include <vector>
 
 namespace tactus
 {
@@ -111,6 +115,36 @@ TEST(ModelStore, names_the_chunk_when_the_file_is_cut_while_it_is_served)
     expect_one_clear_line(last.error().text, path);
     EXPECT_NE(last.error().text.find("chunk 3 at offset "), std::string::npos);
     EXPECT_NE(last.error().text.find("cut short"), std::string::npos);
+}
+
+TEST(StoreLink, tells_and_counts_a_damaged_piece_once_however_often_it_is_asked_for)
+{
+    const TinyModel model = make_tiny_model({.records = 200});
+    const TemporaryFolder folder;
+    const auto path = folder.write("linked.spm", model.file);
+    std::vector<std::string> lines;
+    StoreLink sut(ModelStore::open(path).value(),
+                  [&lines](const std::string& line) { lines.push_back(line); });
+    std::filesystem::resize_file(path, model.file.size() - 10);
+    struct Desk final : PieceSink
+    {
+        void receive(ContentKey key, std::span<const std::byte> /*bytes*/) override
+        {
+            got.push_back(key);
+        }
+        std::vector<ContentKey> got;
+    } desk;
+    const std::array<ContentKey, 2> keys{ContentKey{ContentKind::chunk, 3},
+                                         ContentKey{ContentKind::chunk, 0}};
+    for (std::uint32_t generation = 0; generation < 3; ++generation)
+    {
+        sut.request(keys, generation);
+        sut.poll(desk);
+    }
+    EXPECT_EQ(desk.got, std::vector<ContentKey>(3, keys[1]));
+    EXPECT_EQ(sut.damaged(), 1U);
+    ASSERT_EQ(lines.size(), 1U);
+    expect_one_clear_line(lines[0], path);
 }
 
 TEST(ModelStore, can_be_moved_and_assigned)
