@@ -86,8 +86,8 @@ wait_for_line() {
     fail "no '$2' in $1 after $3 s"
 }
 
-# wait_for_frames COUNT FILE [ID]: the host whose words are in FILE, one with --watch, has heard that
-# a controller, or the one with that id, has run so many. It tells so once a second.
+# wait_for_frames COUNT FILE [ID]: the host whose words are in FILE, one with --watch, has heard
+# that a controller, or the one with that id, has run so many. It tells so once a second.
 wait_for_frames() { wait_until 20 "controller with $1 frames in $2" told_frames "$@"; }
 told_frames() {
     awk -v least="$1" -v name="hrtc-${3:-}" '
