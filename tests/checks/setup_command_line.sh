@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # setup_command_line.sh SETUP: cmake/setup.sh refuses wrong usage with exit 3 and one line that
-# names the fault, explains itself with exit 0, and names the packages that it could not install.
+# names the fault, explains itself with exit 0, names the packages that it could not install, and
+# has a full run beside peers count instructions.
 set -euo pipefail
 readonly setup=$1
 failures=0
@@ -46,6 +47,35 @@ else
     PATH="$scratch:$PATH" expect 2 \
         'apt-get update failed; still missing: assimp-testmodels binutils cmake' packages
 fi
+
+# A house with one package, which is installed; its build and its bench say what they are asked.
+mkdir -p "$scratch"/{tools,house/cmake,house/build/release/bin}
+cp "$setup" "$scratch/house/cmake"
+printf 'dpkg\n' | tee "$scratch"/house/cmake/packages{,-test}.txt \
+    >"$scratch/house/cmake/packages-bench.txt"
+printf '#!/bin/sh\nexit 0\n' >"$scratch/tools/cmake"
+bench=$scratch/house/build/release/bin/tactus_bench
+printf '#!/bin/sh\necho "$@" >"%s/asked"\n' "$scratch" >"$bench"
+chmod +x "$scratch/tools/cmake" "$bench"
+counts_instructions() { # counts_instructions YES|NO OPTION...
+    local wanted=$1 asked
+    shift
+    PATH="$scratch/tools:$PATH" bash "$scratch/house/cmake/setup.sh" bench "$@" \
+        >"$scratch/said" 2>&1 || { cat "$scratch/said"; failures=$((failures + 1)); }
+    asked=" $(<"$scratch/asked") "
+    if [[ "$asked" == *' --instructions '* ]]; then
+        asked=YES
+    else
+        asked=NO
+    fi
+    [[ "$asked" == "$wanted" ]] || {
+        printf 'setup.sh bench %s: instructions are counted: %s\n' "$*" "$asked"
+        failures=$((failures + 1))
+    }
+}
+counts_instructions YES --peers
+counts_instructions NO --peers --quick
+counts_instructions NO
 
 if ((failures > 0)); then
     exit 1

@@ -67,6 +67,8 @@ try() { # try NAME COMPILER FLAGS STATIC: builds it; the model and all answers a
     digest=$said
     "$1/ask" ring.spm >"$1.txt" || fail "$1: ask ends with $?"
     "$1/scene" ring.spm >"$1.txt" || fail "$1: scene ends with $?: $(<"$1.txt")"
+    "$1/record" ring.spm run.rec >"$1.txt" || fail "$1: record ends with $?: $(<"$1.txt")"
+    grep -q '^500 frames agree bit for bit; ' "$1.txt" || fail "$1: record says $(<"$1.txt")"
     echo "$1: $said"
 }
 refuses() { # refuses EXPECTED COMMAND...: fails, and says so in this way.
@@ -95,7 +97,7 @@ blocks_are_there() { # blocks_are_there PAGE COUNT: so many blocks at least.
 if [[ "$extent" != aarch64 ]]; then
     cat "$project"/CMakeLists.txt "$project"/*.cpp "$project"/*.c >project.txt
     blocks_are_there library.md 6
-    blocks_are_there how-to.md 6
+    blocks_are_there how-to.md 8
 fi
 
 # core alone sees nothing but Eigen and libccd.
@@ -160,25 +162,60 @@ if [[ "$extent" == quick ]]; then
     serving=$!
     trap 'kill "$serving" 2>/dev/null' EXIT
     ./shared/touch ring "$domain" || fail "over DDS touch ends with $?"
+    ./shared/ask ring "$domain" >ask.txt || fail "over DDS ask ends with $?"
+    ./shared/ask ring.spm | cmp - ask.txt || fail 'over DDS ask says something else'
     kill "$serving"
-    # Two controllers push one cup of somebody else's host, and it gives way to both.
-    ./shared/slide ring.spm "$domain" >slide.txt &
+    # Two controllers push one cup of somebody else's host, and it gives way to both, by the lines
+    # that the page shows.
+    # shellcheck disable=SC2016 # Backquotes as they stand in the page.
+    mapfile -t shown < <(sed -n '/^```console$/,/^```$/{s/ *#.*//;s/^\$ //p}' \
+        "$source/docs/library.md")
+    [[ "${shown[*]}" == 'slide cup.spm 0 hrtc --model cup hrtc --model cup' ]] \
+        || fail "docs/library.md shows other lines: ${shown[*]}"
+    cp ring.spm cup.spm
+    # On a domain of this test's.
+    # shellcheck disable=SC2317 # By the page's lines.
+    slide() { exec ./shared/slide "$1" "$domain" >slide.txt; }
+    # shellcheck disable=SC2317 # By the page's lines.
+    hrtc() {
+        exec "$build/bin/hrtc" --allow-no-rt --domain "$domain" --device sim:touch --duration 8 \
+            --report "$name.json" "$@" >"$name.log" 2>&1
+    }
+    ${shown[0]} &
     serving=$!
     pushing=()
-    trap 'kill "$serving" "${pushing[@]}" 2>/dev/null' EXIT
+    trap 'kill $(jobs -p) 2>/dev/null' EXIT
     for name in left right; do
-        "$build/bin/hrtc" --allow-no-rt --domain "$domain" --model cup --device sim:touch \
-            --duration 8 --report "$name.json" >"$name.log" 2>&1 &
+        ${shown[1]} &
         pushing+=($!)
     done
     for id in "${pushing[@]}"; do
         wait "$id" || fail "a controller ends badly: $(cat left.log right.log)"
     done
-    grep -q 'pushed by 2 of 2 controllers' slide.txt || fail "two do not push: $(<slide.txt)"
+    grep -qE '^cup at( -?[0-9]+\.[0-9]){3} mm, pushed by 2 of 2 controllers$' slide.txt \
+        || fail "two do not push: $(<slide.txt)"
     for name in left right; do
         grep -qE '^poses  *cup: moved in [0-9]{3,} frames' "$name.log" \
             || fail "$name: the cup did not give way: $(<"$name.log")"
     done
+    # The page's line for pkg-config, as it stands there.
+    mkdir by_hand
+    cp "$project/touch.cpp" by_hand
+    # shellcheck disable=SC2016 # Backquotes as they stand in the page.
+    line=$(sed -n '/^```sh$/,/^```$/{/^g++/p}' "$source/docs/library.md")
+    [[ -n "$line" ]] || fail 'docs/library.md shows no line for pkg-config'
+    (cd by_hand && PKG_CONFIG_PATH=$library/pkgconfig quietly log bash -euc "$line")
+    [[ $(LD_LIBRARY_PATH=$library ./by_hand/a.out ring.spm) == "$digest" ]] \
+        || fail 'by pkg-config: other answers'
+    # The lines of docs/install.md for a prefix, with this build folder and this prefix.
+    grep -E '^    cmake --install |`cmake --install ' "$source/docs/install.md" \
+        | grep -oE 'cmake --install build/release( --[a-z]+ [a-z/-]+)*' \
+        | sed "s| build/release| '$build'|;s| /opt/tactus| '$PWD/opt'|" >shown.sh
+    [[ $(wc -l <shown.sh) == 2 ]] || fail "docs/install.md shows other lines: $(<shown.sh)"
+    sed -i "2s|\$| --prefix '$PWD/part'|" shown.sh
+    quietly install.log bash -eu shown.sh
+    opt/bin/hrtc --version >opt.txt || fail 'hrtc of a prefix does not run'
+    [[ -x part/bin/spm_build && ! -e part/bin/hrtc ]] || fail 'one component is another'
     ./shared/touch nobody.spm 2>refused.log && fail "a missing file is not refused"
     grep -qF 'touch: nobody.spm: ' refused.log || fail "a missing file: $(<refused.log)"
     refuses "the component 'gui' is not installed; there are: core, transport, platform, host, c" \
@@ -189,6 +226,8 @@ fi
 compilers=(g++)
 if command -v clang++ >/dev/null; then
     compilers+=(clang++)
+else
+    echo 'not tried: clang++ is missing (cmake/packages-ci.txt)'
 fi
 for each in "${compilers[@]}"; do
     for static in OFF ON; do

@@ -56,6 +56,14 @@ packages=(libtactus0 libtactus-dev tactus-host tactus-controller tactus-doc pyth
 for package in "${packages[@]}"; do
     [[ -f $(echo "new/${package}_${version}"_*.deb) ]] || fail "no package $package $version"
 done
+# docs/install.md names the preset of all three steps, and a package as it is called.
+preset=$(sed -n 's/^    cmake --workflow --preset //p' "$source/docs/install.md")
+presets=$(cd "$source" && cmake --workflow --list-presets)
+[[ -n "$preset" && "$presets" == *"\"$preset\""* ]] || fail "docs/install.md: no preset '$preset'"
+named=$(sed -n 's|^    apt-get install \./build/deb/\([^ ]*\) .*$|\1|p' "$source/docs/install.md")
+made=new/${named%_*}_$(dpkg --print-architecture).deb
+[[ "$named" == *"_${version}_amd64.deb" ]] || fail "docs/install.md names '$named'"
+[[ -f "$made" ]] || fail "docs/install.md names '$named', but there is no $made"
 quietly lintian.log lintian --allow-root --fail-on error,warning --tag-display-limit 0 new/*.deb
 grep -v '^running with root privileges' lintian.log || true
 

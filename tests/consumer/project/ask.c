@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 //
-// ask FILE: distances of a ball to the model `ring`, from C; and what the library refuses.
-#include <tactus/tactus.h>
-
+// ask FILE | ask NAME DOMAIN: distances of a ball, a capsule and a box to the model `ring`, of a
+// file or of a host, forces and torques, from C; and what the library refuses.
+#define _POSIX_C_SOURCE 199309L /* nanosleep() */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <tactus/tactus.h>
+#include <time.h>
 
 static void need(int is_so, const char* what, const tactus_error* error)
 {
@@ -26,12 +28,124 @@ static void refused(tactus_result result, tactus_result expected, const char* wo
     need(result == expected && is_one_line && strstr(error->text, words) != NULL, words, error);
 }
 
+/* All poses are exact; what a host sends takes its time. */
+static void run_until_exact(tactus_frame* frame, const tactus_poses* poses, tactus_error* error)
+{
+    const struct timespec while_s = {0, 2000000};
+    int is_open = 1;
+    for (int i = 0; i < 5000 && is_open; ++i)
+    {
+        need(tactus_frame_run(frame, poses, error) == TACTUS_DONE, "run", error);
+        is_open = 0;
+        for (size_t k = 0; k < poses->count; ++k)
+        {
+            is_open |=
+                poses->kind[k] != TACTUS_EXACT || poses->upper_m[k] > poses->lower_m[k] + 1e-9;
+        }
+        need(nanosleep(&while_s, NULL) == 0 || is_open == 0, "sleep", error);
+    }
+    need(!is_open, "never exact", error);
+}
+
+/* Distances of a tool of this shape that stands upright, 9.8 mm above the top of the ring. */
+static void ask_upright(const tactus_setup* of_ball, tactus_shape shape, const double half_m[3],
+                        void* memory, size_t bytes, tactus_error* error)
+{
+    tactus_tool tool = *of_ball->tools;
+    tool.shape = (int32_t)shape;
+    memcpy(tool.half_m, half_m, sizeof(tool.half_m));
+    tactus_setup setup = *of_ball;
+    setup.tools = &tool;
+    tactus_frame* frame = NULL;
+    need(tactus_frame_make(&setup, memory, bytes, &frame, error) == TACTUS_DONE, "make", error);
+
+    const double place_m[3] = {0.028, 0.0, 0.0228};
+    double lower_m[1];
+    double upper_m[1];
+    uint8_t kind[1];
+    tactus_poses poses;
+    memset(&poses, 0, sizeof(poses));
+    poses.size = sizeof(poses);
+    poses.count = 1;
+    poses.positions_m = place_m;
+    poses.lower_m = lower_m;
+    poses.upper_m = upper_m;
+    poses.kind = kind;
+    poses.rounds = 1000;
+    run_until_exact(frame, &poses, error);
+    printf("shape %d: %.3f mm\n", tool.shape, 1e3 * lower_m[0]);
+    need(fabs(lower_m[0] - (0.0098 - half_m[2])) < 5e-5, "another distance of that shape", error);
+    tactus_frame_end(frame);
+}
+
+/* A capsule that lies across the ring is pressed down with one end. */
+static void press_one_end(const tactus_setup* of_ball, void* memory, size_t bytes,
+                          tactus_error* error)
+{
+    tactus_tool stick;
+    tactus_tool_default(&stick);
+    stick.shape = TACTUS_CAPSULE;
+    stick.radius_m = 0.002;
+    stick.half_m[1] = 0.01; /* Turned by a quarter below, so that it lies along -x. */
+    tactus_setup setup = *of_ball;
+    setup.tools = &stick;
+    tactus_frame* frame = NULL;
+    need(tactus_frame_make(&setup, memory, bytes, &frame, error) == TACTUS_DONE, "make", error);
+
+    /* The end at x = 0.028 m is over the top, 0.013 m high; it is lowered from 5 to -1 mm. */
+    enum
+    {
+        STEPS = 600
+    };
+    static double places_m[STEPS][3];
+    static double rotations[STEPS][9];
+    static double force_n[STEPS][3];
+    static double torque_nm[STEPS][3];
+    static const double quarter[9] = {0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0};
+    for (int i = 0; i < STEPS; ++i)
+    {
+        places_m[i][0] = 0.018;
+        places_m[i][2] = 0.015 + 0.005 - 0.00001 * i;
+        memcpy(rotations[i], quarter, sizeof(quarter));
+    }
+    tactus_poses poses;
+    memset(&poses, 0, sizeof(poses));
+    poses.size = sizeof(poses);
+    poses.count = STEPS;
+    poses.positions_m = &places_m[0][0];
+    poses.rotations = &rotations[0][0];
+    poses.force_n = &force_n[0][0];
+    poses.torque_nm = &torque_nm[0][0];
+    poses.rounds = 100;
+    need(tactus_frame_run(frame, &poses, error) == TACTUS_DONE, "press", error);
+    const double force = force_n[STEPS - 1][2];
+    const double torque = torque_nm[STEPS - 1][1];
+    printf("pressed at one end: %.3f N, %.5f N m\n", force, torque);
+    /* (x, 0, 0) x (0, 0, F) = (0, -x F, 0), with a lever x of 10 mm. */
+    need(force > 0.1 && torque < -0.005 * force && torque > -0.012 * force, "torque", error);
+    need(force_n[0][2] == 0.0 && torque_nm[0][1] == 0.0, "felt before it touches", error);
+    tactus_frame_end(frame);
+}
+
 int main(int argc, char** argv)
 {
     tactus_error error = {""};
     tactus_model* model = NULL;
-    need(argc == 2, "usage: ask FILE", &error);
-    need(tactus_model_open(TACTUS_ABI, argv[1], &model, &error) == TACTUS_DONE, "open", &error);
+    need(argc == 2 || argc == 3, "usage: ask FILE | ask NAME DOMAIN", &error);
+    if (argc == 2)
+    {
+        need(tactus_model_open(TACTUS_ABI, argv[1], &model, &error) == TACTUS_DONE, "open", &error);
+    }
+    else
+    {
+        const uint32_t domain = (uint32_t)strtoul(argv[2], NULL, 10);
+        need(tactus_model_find(TACTUS_ABI, argv[1], domain, 20.0, &model, &error) == TACTUS_DONE,
+             "find", &error);
+    }
+    tactus_model_info info;
+    info.size = sizeof(info);
+    need(tactus_model_info_of(model, &info, &error) == TACTUS_DONE, "info", &error);
+    need(info.faces > 1000 && info.is_closed && strlen(info.hash) == 32, "another model", &error);
 
     tactus_tool ball;
     tactus_tool_default(&ball);
@@ -53,7 +167,7 @@ int main(int argc, char** argv)
     tactus_frame* frame = NULL;
     need(tactus_frame_make(&setup, memory, bytes, &frame, &error) == TACTUS_DONE, "make", &error);
 
-    /* 10 mm above the top of the ring, and in the middle of its hole. */
+    /* 9.8 mm above the top of the ring, and in the middle of its hole. */
     const double places_m[6] = {0.028, 0.0, 0.0228, 0.0, 0.0, 0.0};
     double lower_m[2];
     double upper_m[2];
@@ -67,7 +181,7 @@ int main(int argc, char** argv)
     poses.upper_m = upper_m;
     poses.kind = kind;
     poses.rounds = 1000;
-    need(tactus_frame_run(frame, &poses, &error) == TACTUS_DONE, "run", &error);
+    run_until_exact(frame, &poses, &error);
     for (int i = 0; i < 2; ++i)
     {
         printf("%.3f to %.3f mm, %s\n", 1e3 * lower_m[i], 1e3 * upper_m[i],
@@ -129,9 +243,13 @@ int main(int argc, char** argv)
     need(fabs(lower_m[0] - before_m - 0.005) < 1e-3, "not farther away", &error);
 
     tactus_frame_end(frame);
-    need(tactus_frame_make(&setup, memory, bytes, &frame, &error) == TACTUS_DONE, "make again",
-         &error);
-    tactus_frame_end(frame);
+
+    ring.pose.translation_m[2] = 0.0;
+    const double capsule_half_m[3] = {0.0, 0.0, 0.004};
+    const double box_half_m[3] = {0.001, 0.002, 0.006};
+    ask_upright(&setup, TACTUS_CAPSULE, capsule_half_m, memory, bytes, &error);
+    ask_upright(&setup, TACTUS_BOX, box_half_m, memory, bytes, &error);
+    press_one_end(&setup, memory, bytes, &error);
     need(tactus_model_close(model, &error) == TACTUS_DONE, "close", &error);
     free(memory);
     free(more);

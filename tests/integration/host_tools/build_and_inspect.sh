@@ -118,7 +118,7 @@ grep -q '3000 faces were asked for' notes.txt || fail 'no word about the rounded
 mkdir half
 "$build" --shape bumpy-sphere --faces 400000 -o half/a.spm >/dev/null 2>&1 &
 readonly job=$!
-sleep 1
+sleep 1 # Somewhere in its work, of which it says nothing.
 kill -TERM "$job"
 wait "$job" && fail 'the interrupted run says that it is done'
 [[ -z $(ls -A half) ]] || fail "left behind: $(ls -A half)"

@@ -55,7 +55,7 @@ for try in 1 2 3; do
     for id in "$left" "$right" "$first" "$publisher"; do
         stop KILL "$id"
     done
-    sleep 2
+    sleep 2 # Until nobody believes in them any more.
 done
 killed_ms=$(now_ms)
 stop KILL "$first"

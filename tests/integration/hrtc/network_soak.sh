@@ -59,7 +59,7 @@ for ((cycle = 1; cycle <= cycles; ++cycle)); do
     served=$((served + 1))
     wait_for_lines "$served" 'is served again' hrtc.log
     wait_for_lines $((2 * cycle + 1)) ' subscribed' publish.log
-    sleep 0.3
+    sleep 0.3 # What the two have to say to each other is said: memory is at rest.
     check_holdings host "$publisher" "$cycle"
     check_holdings controller "$controller" "$cycle"
 done
@@ -70,7 +70,7 @@ for ((cycle = 1; cycle <= cycles; ++cycle)); do
     served=$((served + 1))
     wait_for_lines "$served" 'is served again' hrtc.log
     wait_for_lines 1 ' subscribed' publish.log
-    sleep 0.7
+    sleep 0.7 # Likewise, of a new host.
     check_holdings controller "$controller" $((cycles + cycle))
 done
 
