@@ -4,6 +4,7 @@
 /// record_runs FOLDER: makes shapes, touches them in several ways and writes a recording of each
 /// run into the folder. What other builds must replay bit for bit.
 
+#include "host_tools/shapes/shapes.hpp"
 #include "tests/shared/frame_rig.hpp"
 
 #include <Eigen/Geometry>
@@ -83,6 +84,28 @@ Mat3 turn(std::uint32_t frame)
     return Eigen::AngleAxisd(0.002 * frame, axis).toRotationMatrix();
 }
 
+/// A peg above its socket: down into the hole, against the bottom, to and fro across it, and out.
+Vec3 go_in(const TestModel& socket, std::uint32_t frame)
+{
+    constexpr double kInDepth_m = 0.041;
+    constexpr double kAside_m = 0.002;
+    const double in = std::min(frame / 200.0, 1.0) - std::max((frame - 350.0) / 150.0, 0.0);
+    const double angle = 2.0 * std::numbers::pi * frame / 120.0;
+    const bool is_in = frame > 220 && frame < 340;
+    const Vec3 aside_m =
+        is_in ? Vec3(kAside_m * std::sin(angle), kAside_m * std::sin(2.0 * angle), 0.0)
+              : Vec3(0.0, 0.0, 0.0);
+    const Vec3 origin_m(socket.origin_m[0], socket.origin_m[1], socket.origin_m[2]);
+    return Vec3(0.0, 0.0, 0.051 - kInDepth_m * in) + aside_m - origin_m;
+}
+
+/// Turned about its axis while it is in the hole, with tilts.
+Mat3 screw(std::uint32_t frame)
+{
+    const Vec3 axis(0.03 * std::sin(0.05 * frame), 0.03 * std::sin(0.03 * frame), 1.0);
+    return Eigen::AngleAxisd(0.003 * frame, axis.normalized()).toRotationMatrix();
+}
+
 struct Run
 {
     const char* name;
@@ -92,6 +115,7 @@ struct Run
     Budgets budgets;
     std::uint32_t frames{kFrames};
     bool objects_move{false};
+    std::function<Mat3(std::uint32_t)> turning{turn};
 };
 
 /// A tool of this core that wants all there is to know.
@@ -120,6 +144,16 @@ RigOptions held_mesh(RigOptions options, const MeshCore& core)
     options = with_core(options, core);
     options.tools[0].passes_through = false;
     return options;
+}
+
+/// A mesh in a mesh that fits it, with friction.
+Run peg_in_hole(RigOptions options)
+{
+    const TestModel& socket = test_model("socket", make_shape(Shape::socket, 1'200).value());
+    const TestModel& peg = test_model("peg", make_shape(Shape::peg, 300).value());
+    options.tools = {{5e-5, 500.0, 8.0, 1.0, MeshCore{ModelId{1}}}};
+    options.objects = {{ModelId{0}, {500.0, 0.3, 0.2, 0.5}}};
+    return {"peg", {&socket, &peg}, go_in, options, {}, kFrames, false, screw};
 }
 
 /// To and fro, and turning.
@@ -164,7 +198,8 @@ std::vector<Run> runs()
             {"box", {models[3]}, slide, with_core(usual, Box{Vec3(0.004, 0.002, 0.003)}), {}},
             {"mesh", {models[0], models[1]}, land, with_core(usual, mesh), {}, kMeshFrames},
             {"held_mesh", {models[0], models[1]}, land, held_mesh(usual, mesh), {}, kMeshFrames},
-            {"crowd", {models[0], models[1]}, slide, crowd(usual), {}, kFrames, true}};
+            {"crowd", {models[0], models[1]}, slide, crowd(usual), {}, kFrames, true},
+            peg_in_hole(usual)};
 }
 
 /// False when the file can't be written.
@@ -180,7 +215,7 @@ bool record(const Run& run, const std::filesystem::path& folder)
         for (std::uint32_t i = 0; i < tools.size(); ++i)
         {
             tools[i].position_m = run.motion(*run.models[0], frame + 100 * i);
-            tools[i].rotation = turn(frame);
+            tools[i].rotation = run.turning(frame);
         }
         for (std::size_t object = 0; run.objects_move && object < 2; ++object)
         {
