@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "rt_core/base/arena.hpp"
 #include "rt_core/frame/frame.hpp"
+#include "tests/unit/rt_core/coded_bytes.hpp"
 #include "tests/unit/transport/tiny_model.hpp"
 #include "transport/courier.hpp"
 #include "transport/pool_plan.hpp"
@@ -93,6 +94,31 @@ TEST(PoolPlan, knows_the_least_that_would_do)
     EXPECT_FALSE(try_plan_pools(scene.setup, scene.headers, 0, 0, scene.capacities));
     const std::size_t cache = std::size_t{1} << 20U;
     EXPECT_GT(least_pool_bytes(scene.setup, scene.headers, cache), 0U);
+}
+
+/// Of what `hrtc --pool-mib` counts, 2 by default, a frame is part.
+TEST(PoolPlan, of_eight_models_of_200_000_faces_and_four_tools_takes_2_mib_at_most)
+{
+    HeaderParts parts = sound_header((200'000 - 500) / 2);
+    parts.fields.base_vertices = 252;
+    parts.fields.base_faces = 500;
+    const std::vector<std::byte> bytes = parts.write();
+    const std::vector headers(8, ModelHeader::parse(bytes).value());
+    std::vector<ObjectSpec> objects;
+    for (std::uint32_t i = 0; i < headers.size(); ++i)
+    {
+        objects.push_back({ModelId{i}, {}});
+    }
+    const std::vector<ObjectPose> poses(objects.size());
+    const std::vector<ToolSpec> tools(4);
+    FrameSetup setup;
+    setup.objects = objects;
+    setup.poses = poses;
+    setup.tools = tools;
+
+    const std::size_t least = least_pool_bytes(setup, headers, 0);
+    EXPECT_GT(least, 0U);
+    EXPECT_LE(least + sizeof(Frame), std::size_t{2} << 20U);
 }
 
 } // namespace
