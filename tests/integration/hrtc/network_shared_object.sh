@@ -83,7 +83,7 @@ for name in left right; do
         answers.exact+answers.decided+answers.bracket+answers.stale == '1*frames'
     check_contact "$name.json" force.contact_share 0.3
     check_clean "$name.json"
-    # When the host died the object was stale after 100 ms, and then gone: what was felt of it faded.
+    # When the host died the object was stale after 100 ms, and then gone: what was felt faded.
     # No step is more than a landing's, of up to 0.3 N; let go at once, it would be 1 to 2 N.
     check "$name.json" answers.stale '>' 100
     was_held_up "$name.json" || check "$name.json" force.max_step_n '<' 0.5
