@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "transport/dds/domain.hpp"
 
+#include "platform/base/printable.hpp"
 #include "transport/log.hpp"
 
 #include <dds/dds.h>
@@ -65,8 +66,9 @@ public:
 
     static void on_message(void* /*unused*/, const dds_log_data_t* data)
     {
-        std::string_view text(data->message, data->size);
-        text = text.substr(0, text.find_last_not_of('\n') + 1);
+        std::string_view raw(data->message, data->size);
+        raw = raw.substr(0, raw.find_last_not_of('\n') + 1);
+        const std::string text = printable(raw, 1'000); // It quotes what comes over the wire.
         MessageSink& sink = instance();
         const std::lock_guard lock(sink.mutex_);
         if ((data->priority & (DDS_LC_ERROR | DDS_LC_FATAL)) != 0 ||
@@ -74,7 +76,7 @@ public:
         {
             sink.last_ = text;
         }
-        sink.log_.write("dds: " + std::string(text));
+        sink.log_.write("dds: " + text);
     }
 
     [[nodiscard]] std::string last()

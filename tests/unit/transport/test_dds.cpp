@@ -598,6 +598,18 @@ TEST_F(Dds, a_domain_that_cannot_be_joined_is_refused_in_one_line)
     EXPECT_NE(refused.error().text.find("Nonsense"), std::string::npos) << refused.error().text;
 }
 
+TEST_F(Dds, what_cyclone_quotes_is_made_printable)
+{
+    ::setenv("CYCLONEDDS_URI",
+             "<CycloneDDS><Domain><Tracing><Verbosity>\x1b[31mred</Verbosity></Tracing></Domain>"
+             "</CycloneDDS>",
+             1);
+    const auto refused = Domain::join(5);
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.error().text.find("[31mred"), std::string::npos) << refused.error().text;
+    EXPECT_EQ(refused.error().text.find('\x1b'), std::string::npos);
+}
+
 TEST_F(Dds, without_a_configuration_of_the_user_the_built_in_one_works)
 {
     ::unsetenv("CYCLONEDDS_URI");
