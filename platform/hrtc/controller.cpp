@@ -62,7 +62,9 @@ Result<std::unique_ptr<Controller>, Refusal>
 Controller::create(const Options& options, std::vector<ServedModel> models, const Log& log,
                    const std::function<bool()>& goes_on)
 {
-    std::unique_ptr<Controller> controller(new Controller(options, std::move(models)));
+    std::unique_ptr<Controller> controller(new Controller(std::move(models)));
+    controller->budgets_.splits = options.splits;
+    controller->budgets_.merges = options.splits;
     controller->make_poses(options);
     if (std::optional<Refusal> error = controller->open_devices(options, goes_on))
     {
@@ -81,17 +83,12 @@ Controller::create(const Options& options, std::vector<ServedModel> models, cons
     return controller;
 }
 
-Controller::Controller(const Options& options, std::vector<ServedModel> models)
-    : models_(std::move(models))
-    , memory_(static_cast<std::size_t>(options.pool_mib * kBytesPerMib) - sizeof(Frame))
-    , arena_(memory_.span())
+Controller::Controller(std::vector<ServedModel> models) : models_(std::move(models))
 {
     for (const ServedModel& model : models_)
     {
         headers_.push_back(ModelHeader::parse(model.header).value());
     }
-    budgets_.splits = options.splits;
-    budgets_.merges = options.splits;
 }
 
 double Controller::diagonal_world_m() const noexcept
@@ -192,8 +189,10 @@ std::optional<Refusal> Controller::lay_out_pools(const Options& options)
     setup_.kernels = options.kernels != nullptr ? options.kernels : &best_kernels();
     setup_.period_ns = options.period().ns;
     const auto cache = static_cast<std::size_t>(options.cache_mib * kBytesPerMib);
+    const std::size_t most =
+        static_cast<std::size_t>(options.pool_mib * kBytesPerMib) - sizeof(Frame);
     std::vector<ModelCapacities> capacities(models_.size());
-    if (!try_plan_pools(setup_, headers_, memory_.span().size(), cache, capacities))
+    if (!try_plan_pools(setup_, headers_, most, cache, capacities))
     {
         const std::size_t least = least_pool_bytes(setup_, headers_, cache) + sizeof(Frame);
         return Refusal{
@@ -208,7 +207,11 @@ std::optional<Refusal> Controller::lay_out_pools(const Options& options)
         sources_.push_back({models_[i].header, models_[i].base, capacities[i]});
     }
     setup_.models = sources_;
-    if (const auto started = Frame::start(frame_, arena_, setup_); !started)
+    const ModelCapacities sum = sum_of(capacities);
+    memory_.emplace(Frame::required_bytes(setup_) +
+                    Courier::required_bytes(sum.pages, sum.index_pages));
+    arena_.emplace(memory_->span());
+    if (const auto started = Frame::start(frame_, *arena_, setup_); !started)
     {
         return Refusal{
             fmt::format("--pool-mib: {} MiB: {}", options.pool_mib, refusal_text(started.error()))};
@@ -222,7 +225,7 @@ void Controller::make_courier(const Log& log)
     CourierOptions courier;
     courier.forgotten_ns =
         std::max(courier.forgotten_ns, 3 * kWishTimeoutFrames * setup_.period_ns);
-    courier_.emplace(arena_, pools.slots, pools.cache.door, log, courier);
+    courier_.emplace(*arena_, pools.slots, pools.cache.door, log, courier);
     for (std::uint32_t i = 0; i < models_.size(); ++i)
     {
         Model& model = frame_->model({i});

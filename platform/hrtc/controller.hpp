@@ -55,12 +55,12 @@ public:
     /// What the frame was made of.
     [[nodiscard]] const FrameSetup& setup() const noexcept { return setup_; }
     /// The frame itself, its pools and tables, and the transport's side of them.
-    [[nodiscard]] std::size_t pool_bytes() const noexcept { return arena_.used() + sizeof(Frame); }
+    [[nodiscard]] std::size_t pool_bytes() const noexcept { return arena_->used() + sizeof(Frame); }
     /// Of the first model, placed: widths are reported in it.
     [[nodiscard]] double diagonal_world_m() const noexcept;
 
 private:
-    Controller(const Options& options, std::vector<ServedModel> models);
+    explicit Controller(std::vector<ServedModel> models);
 
     [[nodiscard]] std::optional<Refusal> lay_out_pools(const Options& options);
     void make_poses(const Options& options);
@@ -85,8 +85,8 @@ private:
     std::vector<ModelSource> sources_; ///< Views into models_.
     FrameSetup setup_;                 ///< Views into the above.
     Budgets budgets_;
-    PoolMemory memory_;
-    Arena arena_;
+    std::optional<PoolMemory> memory_; ///< As much as the plan needs.
+    std::optional<Arena> arena_;
     std::optional<Frame> frame_;
     std::optional<Courier> courier_;
     PosixClock clock_; ///< Of the devices that aren't simulated.

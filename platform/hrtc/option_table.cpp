@@ -101,7 +101,7 @@ void declare_run(CommandLine& line, Options& options)
 void declare_budgets(CommandLine& line, Options& options, RawOptions& raw)
 {
     line.add_option("--pool-mib", options.pool_mib,
-                    "Memory for all pools of all models, in MiB, everything counted")
+                    "Memory for all pools of all models, in MiB, at most, everything counted")
         .number_between(0.25, kLargestPool_mib)
         .show_default();
     line.add_option("--cache-mib", options.cache_mib,

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
+#include "platform/base/print_assertions.hpp"
 #include "rt_core/force/safe_state.hpp"
 #include "rt_core/frame/frame.hpp"
 #include "transport/courier.hpp"
@@ -17,6 +18,8 @@ alignas(Arena::kAlignment) static std::array<std::byte, std::size_t{4} << 20U> m
 
 int main(int argc, char** argv)
 {
+    print_failed_assertions(); // A call that breaks a promise says so before it stops the program.
+
     // A model of a local file; DdsClient::find() gives the same record of a published one.
     const auto served = serve_from_file(argc > 1 ? argv[1] : "torus.spm", "hello", {});
     if (!served)

@@ -166,6 +166,14 @@ refuse_file bent.spm 'the header (bytes 0 to '
 refuse 2 'no?where.spm: cannot be opened' --transport file --model $'no\nwhere.spm'
 refuse 2 --pool-mib --transport file --model good.spm --pool-mib 0.25
 
+# What nothing needs of the most memory isn't taken, nor locked.
+if [[ -z "$sanitizer" ]]; then
+    (ulimit -v 2000000 \
+        && run_file --pool-mib 4096 --duration 0.5 --report most.json >hrtc.log 2>&1) \
+        || { cat hrtc.log; fault 'it takes all of --pool-mib'; }
+    check most.json frames == 500 pools.total_bytes '<' 20000000
+fi
+
 # A report that can't be written is known before the run.
 start=$SECONDS
 mkfifo pipe.json
