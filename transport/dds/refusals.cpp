@@ -83,6 +83,7 @@ void Refusals::count(const ParticipantId& peer, Refused reason, std::uint32_t nu
     has_news_ = true;
 }
 
+/// Names are looked up and lines written without the lock, for which Cyclone's threads may wait.
 void Refusals::report(RateLimitedLog& log,
                       const std::function<std::string(const ParticipantId&)>& name_of)
 {
@@ -90,15 +91,31 @@ void Refusals::report(RateLimitedLog& log,
     {
         return;
     }
-    const std::lock_guard lock(mutex_);
-    for (Peer& peer : peers_)
+    const std::vector<PeerRefusals> known = list();
+    std::vector<std::string> names;
+    for (const PeerRefusals& peer : known)
     {
-        PeerRefusals& refused = peer.refused;
-        refused.name = refused.name.empty() ? name_of(refused.id) : refused.name;
+        names.push_back(peer.name.empty() ? name_of(peer.id) : peer.name);
+    }
+    for (const std::string& line : take_lines(names))
+    {
+        log.write(line);
+    }
+}
+
+/// Those that are due, of the peers that have a name by now.
+std::vector<std::string> Refusals::take_lines(std::span<const std::string> names)
+{
+    std::vector<std::string> lines;
+    const std::lock_guard lock(mutex_);
+    for (std::size_t k = 0; k < names.size(); ++k)
+    {
+        Peer& peer = peers_[k];
+        peer.refused.name = names[k];
         for (std::size_t i = 0; i < kRefusedKinds; ++i)
         {
             Reason& reason = peer.reasons.at(i);
-            const std::uint64_t count = refused.counts.at(i);
+            const std::uint64_t count = peer.refused.counts.at(i);
             const std::string text = text_of(static_cast<Refused>(i), reason.first);
             if (text.empty() || count < reason.told_at)
             {
@@ -108,10 +125,11 @@ void Refusals::report(RateLimitedLog& log,
             {
                 reason.told_at *= 10;
             }
-            log.write(fmt::format("refused of {}: {}{}", refused.name, text,
-                                  count > 1 ? fmt::format(" ({} so far)", count) : ""));
+            lines.push_back(fmt::format("refused of {}: {}{}", names[k], text,
+                                        count > 1 ? fmt::format(" ({} so far)", count) : ""));
         }
     }
+    return lines;
 }
 
 std::vector<PeerRefusals> Refusals::list() const

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <functional>
 #include <mutex>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -78,6 +79,8 @@ private:
         PeerRefusals refused;
         std::array<Reason, kRefusedKinds> reasons{};
     };
+
+    [[nodiscard]] std::vector<std::string> take_lines(std::span<const std::string> names);
 
     mutable std::mutex mutex_;
     std::vector<Peer> peers_;

@@ -21,11 +21,12 @@ namespace
 
 struct PlannedScene
 {
-    explicit PlannedScene(std::size_t models)
+    /// Each model has so many records more than the one before.
+    explicit PlannedScene(std::size_t models, std::uint32_t more_records = 700)
     {
         for (std::uint32_t i = 0; i < models; ++i)
         {
-            tiny.push_back(make_tiny_model({.seed = i + 1, .records = 200 + 700 * i}));
+            tiny.push_back(make_tiny_model({.seed = i + 1, .records = 200 + more_records * i}));
             objects.push_back({ModelId{i}, {}});
         }
         for (const TinyModel& model : tiny)
@@ -81,6 +82,34 @@ TEST(PoolPlan, leaves_room_for_frame_and_courier_in_what_it_plans_for)
             ASSERT_TRUE(try_plan_pools(scene.setup, scene.headers, bytes, 0, scene.capacities));
             expect_room_for_all(scene, bytes);
         }
+    }
+}
+
+/// What one has no use for is for the others, whatever the memory; with enough each is whole.
+TEST(PoolPlan, of_as_many_models_as_there_may_be_gives_each_its_part)
+{
+    PlannedScene scene(kMaxModels, 1);
+    const std::size_t least = least_pool_bytes(scene.setup, scene.headers, 0);
+    ASSERT_GT(least, 0U);
+    std::uint32_t pages_before = 0;
+    for (const std::size_t bytes : {least, least + (least >> 1U), 2 * least, 4 * least})
+    {
+        ASSERT_TRUE(try_plan_pools(scene.setup, scene.headers, bytes, 0, scene.capacities));
+        for (std::size_t i = 0; i < kMaxModels; ++i)
+        {
+            const ModelCounts counts = scene.headers[i].counts();
+            EXPECT_GE(scene.capacities[i].pages, 1U);
+            EXPECT_LE(scene.capacities[i].pages, counts.chunks());
+            EXPECT_GT(scene.capacities[i].faces, counts.base_faces);
+        }
+        const std::uint32_t pages = sum_of(scene.capacities).pages;
+        EXPECT_GE(pages, pages_before);
+        pages_before = pages;
+        expect_room_for_all(scene, bytes);
+    }
+    for (std::size_t i = 0; i < kMaxModels; ++i)
+    {
+        EXPECT_EQ(scene.capacities[i].pages, scene.headers[i].counts().chunks()) << i;
     }
 }
 
