@@ -148,7 +148,9 @@ SafetyInput ToolPort::safety_input(const ToolOutput& output, const PeriodContext
     if (const auto& turning = sample_.angular_velocity_world_rad_per_s)
     {
         input.turning_rad_per_s = to_vec3(*turning);
+        input.has_turning = true;
     }
+    input.turned_rad = turned_rad_;
     input.faults = faults_of(output);
     input.causes = context.causes | own_causes();
     input.force_was_lost = take_back();

@@ -30,9 +30,6 @@ double spring_energy_j(double force_n, double stiffness_n_per_m, double stretch_
     return force_n * (std::max(stretch_m, least_stretch) - 0.5 * least_stretch);
 }
 
-/// A device that turns faster has jumped: a wrist makes 30 rad/s at most.
-constexpr double kTurnMax_rad_per_s = 60.0;
-
 /// For a device that makes a torque. What damps the surface's motion has no part in turning.
 ConditionerSetup in_angles(const ConditionerSetup& setup) noexcept
 {
@@ -41,7 +38,7 @@ ConditionerSetup in_angles(const ConditionerSetup& setup) noexcept
     angles.surface_damping_max_n_s_per_m =
         std::min(setup.surface_damping_max_n_s_per_m * setup.lever_max_m * setup.lever_max_m,
                  kDampingShare * angles.device.damping_n_s_per_m);
-    angles.speed_max_m_per_s = kTurnMax_rad_per_s;
+    angles.speed_max_m_per_s = kTurningMax_rad_per_s;
     return angles;
 }
 
