@@ -51,7 +51,7 @@ check_clean report.json
 # Other motions.
 run_hrtc "${model[@]}" --duration 1 --motion free
 check report.json tools.0.contact_share == 0
-for motion in approach slide tap spin; do
+for motion in approach slide tap spin turn edge; do
     run_hrtc "${model[@]}" --duration 2 --motion "$motion"
     check report.json tools.0.force_max_n '>' 0.3 tools.0.force_max_n '<' 6
     check_contact report.json tools.0.contact_share 0.2
