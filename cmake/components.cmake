@@ -128,6 +128,7 @@ tactus_component(core
         rt_core/base/realtime.hpp
         rt_core/base/result.hpp
         rt_core/force/force_conditioner.hpp
+        rt_core/force/own_force.hpp
         rt_core/force/safe_state.hpp
         rt_core/frame/frame.hpp
         rt_core/frame/frame_setup.hpp

@@ -227,6 +227,9 @@ inline constexpr double kCatchUp_n_per_s = 40.0;
 inline constexpr double kRiseTime_s = 0.1;
 /// A hand that was too fast gets its force back below this share of the limit.
 inline constexpr double kCalmSpeedShare = 0.5;
+/// A hand that turns faster than this, in rad/s, gets no torque and no force, and what it says
+/// counts for no energy: a wrist makes 30.
+inline constexpr double kTurningMax_rad_per_s = 60.0;
 /// Most damping while a force fades or comes back, as a share of the device's largest force.
 inline constexpr double kDampingForceShare = 0.25;
 /// Share of a device's own damping that may be added by computing it. A sampled damper of b on a
@@ -299,6 +302,8 @@ inline constexpr double kSampleHold_s = 0.02;
 /// A goal that is this many times faster than ToolSpec::speed_max_m_per_s, taken for at least
 /// 1 m/s, has jumped (FrameFault::tool_jumped): a hand makes 10 m/s at most.
 inline constexpr double kJumpSpeeds = 100.0;
+/// Likewise a goal that turns faster than this, in rad/s: at 1 kHz it is 57 degrees in one frame.
+inline constexpr double kJumpTurning_rad_per_s = 1'000.0;
 
 // --- Names ---------------------------------------------------------------------------------------
 

@@ -335,6 +335,7 @@ void Controller::limit_force(const Options& options, ToolSetup& tool) const
                                                     stiffness_cap(turning, conditioner.period_s));
         tool.limits.damping_nm_s_per_rad = kDampingShare * turning.damping_n_s_per_m;
     }
+    tool.limits.turning_max_rad_per_s = kTurningMax_rad_per_s;
     tool.clutch_button = options.clutch_button;
 }
 

@@ -21,6 +21,7 @@ struct ToolForce
 {
     Vec3 sent_n{0.0, 0.0, 0.0};      ///< That went to the device.
     Vec3 sent_nm{0.0, 0.0, 0.0};     ///< The torque, likewise.
+    double sent_gripper_n{0.0};      ///< The gripper's force, likewise.
     ConditionedForce conditioned;    ///< How it came about, before the safe state.
     ConditionedForce turned;         ///< The torque, likewise, in angles.
     double twist_rad{0.0};           ///< Between device and proxy, in contact.

@@ -7,6 +7,7 @@
 #include "rt_core/limits.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace tactus::hrtc
 {
@@ -42,6 +43,7 @@ ToolPort::ToolPort(const ToolSetup& setup) noexcept
     , clutch_(setup.clutch_button)
     , conditioner_(with_lever(setup))
     , safe_state_(setup.limits)
+    , own_source_(setup.own_force)
     , angular_share_m2_(angular_stiffness_nm_per_rad(setup.spec) / setup.spec.stiffness_n_per_m)
 {
 }
@@ -95,21 +97,37 @@ DeviceRecord ToolPort::record() const noexcept
     record.measures_rotation = sample_.rotation_world.has_value();
     record.sent_n = force_.sent_n;
     record.sent_nm = force_.sent_nm;
+    record.sent_gripper_n = force_.sent_gripper_n;
     return record;
 }
 
 SafetyOutput ToolPort::make_safe(const ToolOutput& output, const PeriodContext& context) noexcept
 {
-    const ConditionedWrench wrench =
-        conditioner_.condition(wish_of(output, context.surface_damping_n_s_per_m));
+    const OwnForce own = own_force(output);
+    const ConditionedWrench wrench = conditioner_.condition(
+        with_own(wish_of(output, context.surface_damping_n_s_per_m), own));
     force_.conditioned = wrench.force;
     force_.turned = wrench.torque;
     const SafetyOutput safe = safe_state_.step(safety_input(output, context));
     conditioner_.follow(safe.force_n, safe.torque_nm);
+    gripper_n_ = safe.causes == ForceOff::none ? own.gripper_n : gripper_n_;
+    force_.sent_gripper_n = safe_state_.gain() * gripper_n_;
     force_.sent_n = safe.force_n;
     force_.sent_nm = safe.torque_nm;
     force_.twist_rad = output.in_contact ? twist_of(output).norm() : 0.0;
     return safe;
+}
+
+/// A gripper's force that is no number takes the others with it.
+OwnForce ToolPort::own_force(const ToolOutput& output) noexcept
+{
+    OwnForce own = own_source_ != nullptr ? own_source_->next(sample_, state_, output) : OwnForce{};
+    if (!std::isfinite(own.gripper_n))
+    {
+        own.force_n.setConstant(own.gripper_n);
+        own.gripper_n = 0.0;
+    }
+    return own;
 }
 
 WrenchWish ToolPort::wish_of(const ToolOutput& output,
@@ -151,7 +169,9 @@ SafetyInput ToolPort::safety_input(const ToolOutput& output, const PeriodContext
     if (const auto& turning = sample_.angular_velocity_world_rad_per_s)
     {
         input.turning_rad_per_s = to_vec3(*turning);
+        input.has_turning = true;
     }
+    input.turned_rad = turned_rad_;
     input.faults = faults_of(output);
     input.causes = context.causes | own_causes();
     input.force_was_lost = take_back();
@@ -204,9 +224,9 @@ void ToolPort::brake() noexcept
     device_.brake();
 }
 
-void ToolPort::send(const Vec3& force_n, const Vec3& torque_nm) noexcept
+void ToolPort::send(const Vec3& force_n, const Vec3& torque_nm, double gripper_n) noexcept
 {
-    device_.write({to_array(force_n), to_array(torque_nm), 0.0});
+    device_.write({to_array(force_n), to_array(torque_nm), gripper_n});
 }
 
 } // namespace tactus::hrtc

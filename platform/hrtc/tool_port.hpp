@@ -6,6 +6,7 @@
 #include "platform/hrtc/clutch.hpp"
 #include "platform/hrtc/cycle_measures.hpp"
 #include "rt_core/force/force_conditioner.hpp"
+#include "rt_core/force/own_force.hpp"
 #include "rt_core/force/safe_state.hpp"
 #include "rt_core/records/frame_input.hpp"
 #include "rt_core/records/frame_output.hpp"
@@ -20,6 +21,23 @@
 namespace tactus::hrtc
 {
 
+/// What a program adds to what surfaces do to one tool. It goes through cap, clamp, passivity and
+/// SafeState as theirs does.
+class OwnForceSource
+{
+public:
+    virtual ~OwnForceSource() = default;
+    /// Once a frame, on the haptic thread: it must not block, allocate or throw. Where anything is
+    /// no number there is no force at all.
+    [[nodiscard]] virtual OwnForce next(const DeviceSample& sample, const ToolState& tool,
+                                        const ToolOutput& output) noexcept = 0;
+
+protected:
+    OwnForceSource() = default;
+    OwnForceSource(const OwnForceSource&) = default;
+    OwnForceSource& operator=(const OwnForceSource&) = default;
+};
+
 /// One tool as the controller sets it up before the loop starts.
 struct ToolSetup
 {
@@ -30,6 +48,7 @@ struct ToolSetup
     SafetyLimits limits;
     ConditionerSetup conditioner;
     std::optional<std::uint32_t> clutch_button;
+    OwnForceSource* own_force{nullptr}; ///< Lent; may be none.
 };
 
 /// What the loop knows about the present period and a port cannot see.
@@ -60,7 +79,7 @@ public:
     [[nodiscard]] SafetyOutput make_safe(const ToolOutput& output,
                                          const PeriodContext& context) noexcept;
 
-    void write() noexcept { send(force_.sent_n, force_.sent_nm); }
+    void write() noexcept { send(force_.sent_n, force_.sent_nm, force_.sent_gripper_n); }
 
     /// The force that write() sends, and how it came about.
     [[nodiscard]] const ToolForce& force() const noexcept { return force_; }
@@ -73,7 +92,7 @@ public:
     void fade(double elapsed_s, ForceOff cause) noexcept
     {
         const SafetyOutput safe = safe_state_.fade(elapsed_s, cause);
-        send(safe.force_n, safe.torque_nm);
+        send(safe.force_n, safe.torque_nm, safe_state_.gain() * gripper_n_);
     }
 
     /// The run is over: no force.
@@ -89,15 +108,18 @@ private:
                                            const PeriodContext& context) noexcept;
     [[nodiscard]] Vec3 twist_of(const ToolOutput& output) const noexcept;
     void turn_hand(const Mat3& rotation) noexcept;
+    [[nodiscard]] OwnForce own_force(const ToolOutput& output) noexcept;
     [[nodiscard]] ForceOff own_causes() const noexcept;
     [[nodiscard]] bool take_back() noexcept;
     void release_brake() noexcept;
-    void send(const Vec3& force_n, const Vec3& torque_nm) noexcept;
+    void send(const Vec3& force_n, const Vec3& torque_nm, double gripper_n) noexcept;
 
     HapticDevice& device_;
     Clutch clutch_;
     WrenchConditioner conditioner_;
     SafeState safe_state_;
+    OwnForceSource* own_source_;
+    double gripper_n_{0.0}; ///< Wanted by the last frame in which nothing was wrong.
     DeviceSample sample_;
     HandPlace hand_;                 ///< Of the last sample.
     Vec3 turned_rad_{0.0, 0.0, 0.0}; ///< By the hand, about the world's axes, summed up.

@@ -30,15 +30,12 @@ double spring_energy_j(double force_n, double stiffness_n_per_m, double stretch_
     return force_n * (std::max(stretch_m, least_stretch) - 0.5 * least_stretch);
 }
 
-/// A device that turns faster has jumped: a wrist makes 30 rad/s at most.
-constexpr double kTurnMax_rad_per_s = 60.0;
-
 /// For a device that makes a torque.
 ConditionerSetup in_angles(const ConditionerSetup& setup) noexcept
 {
     ConditionerSetup angles = setup;
     angles.device = turning_of(setup.device);
-    angles.speed_max_m_per_s = kTurnMax_rad_per_s;
+    angles.speed_max_m_per_s = kTurningMax_rad_per_s;
     return angles;
 }
 

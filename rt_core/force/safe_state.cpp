@@ -54,6 +54,7 @@ SafeState::SafeState(const SafetyLimits& limits) noexcept : limits_(limits)
     TACTUS_ASSERT(limits.torque_max_nm >= 0.0);
     TACTUS_ASSERT(limits.stiffness_nm_per_rad >= 0.0);
     TACTUS_ASSERT(limits.damping_nm_s_per_rad >= 0.0);
+    TACTUS_ASSERT(limits.turning_max_rad_per_s >= 0.0);
 }
 
 SafetyOutput SafeState::step(const SafetyInput& input) noexcept
@@ -99,7 +100,8 @@ SafetyOutput SafeState::output(ForceOff causes) noexcept
             has_changed};
 }
 
-/// From the device, or from the ways between new samples over the true times between them.
+/// From the device, or from the ways and turns between new samples over the true times between
+/// them.
 void SafeState::observe_speed(const SafetyInput& input) noexcept
 {
     since_sample_s_ += input.elapsed_s;
@@ -122,14 +124,28 @@ void SafeState::observe_speed(const SafetyInput& input) noexcept
     {
         velocity_m_per_s_ = (input.position_m - position_m_) / since_sample_s_;
     }
-    turning_rad_per_s_ =
-        is_finite(input.turning_rad_per_s) ? input.turning_rad_per_s : Vec3(0.0, 0.0, 0.0);
+    if (input.has_turning && is_finite(input.turning_rad_per_s))
+    {
+        turning_rad_per_s_ = input.turning_rad_per_s;
+    }
+    else if (has_sample_ && since_sample_s_ > 0.0)
+    {
+        turning_rad_per_s_ = (input.turned_rad - turned_rad_) / since_sample_s_;
+    }
     position_m_ = input.position_m;
+    turned_rad_ = input.turned_rad;
     sample_time_ns_ = input.sample_time_ns;
     since_sample_s_ = 0.0;
     has_sample_ = true;
-    const double limit = limits_.speed_max_m_per_s * (is_too_fast_ ? kCalmSpeedShare : 1.0);
-    is_too_fast_ = velocity_m_per_s_.norm() > limit;
+    is_too_fast_ = is_too_fast();
+}
+
+bool SafeState::is_too_fast() const noexcept
+{
+    const double share = is_too_fast_ ? kCalmSpeedShare : 1.0;
+    return velocity_m_per_s_.norm() > share * limits_.speed_max_m_per_s ||
+           (limits_.turning_max_rad_per_s > 0.0 &&
+            turning_rad_per_s_.norm() > share * limits_.turning_max_rad_per_s);
 }
 
 ForceOff SafeState::find_causes(const SafetyInput& input) const noexcept

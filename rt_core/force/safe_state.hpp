@@ -15,14 +15,15 @@ namespace tactus
 /// What one tool's device allows; finite and not negative.
 struct SafetyLimits
 {
-    double speed_max_m_per_s{0.0};    ///< Faster hands get no force.
-    double force_max_n{0.0};          ///< Norm; above zero.
-    double stiffness_n_per_m{0.0};    ///< Of the virtual wall.
-    double damping_n_s_per_m{0.0};    ///< Added while a force fades or comes back: see
-                                      ///< kDampingShare.
-    double torque_max_nm{0.0};        ///< Norm; 0: the device has no torque.
-    double stiffness_nm_per_rad{0.0}; ///< Of the virtual wall against turning.
-    double damping_nm_s_per_rad{0.0}; ///< As damping_n_s_per_m.
+    double speed_max_m_per_s{0.0};     ///< Faster hands get no force.
+    double force_max_n{0.0};           ///< Norm; above zero.
+    double stiffness_n_per_m{0.0};     ///< Of the virtual wall.
+    double damping_n_s_per_m{0.0};     ///< Added while a force fades or comes back: see
+                                       ///< kDampingShare.
+    double torque_max_nm{0.0};         ///< Norm; 0: the device has no torque.
+    double stiffness_nm_per_rad{0.0};  ///< Of the virtual wall against turning.
+    double damping_nm_s_per_rad{0.0};  ///< As damping_n_s_per_m.
+    double turning_max_rad_per_s{0.0}; ///< Hands that turn faster get none; 0: there is no limit.
 };
 
 /// What one frame knows about one tool. World frame, SI.
@@ -30,19 +31,21 @@ struct SafetyInput
 {
     Vec3 position_m{0.0, 0.0, 0.0}; ///< Of the sample; used only while it has no fault.
     Vec3 velocity_m_per_s{0.0, 0.0, 0.0};
-    bool has_velocity{false};              ///< False: from the positions.
-    std::int64_t sample_time_ns{0};        ///< 0: the device has none, every sample is new.
-    double elapsed_s{0.0};                 ///< Since the last frame, the true one after a stall.
-    std::uint32_t elapsed_periods{1};      ///< The same in whole periods.
-    Vec3 force_n{0.0, 0.0, 0.0};           ///< The frame's.
-    Vec3 torque_nm{0.0, 0.0, 0.0};         ///< The frame's.
-    Vec3 proxy_m{0.0, 0.0, 0.0};           ///< The frame's.
-    double twist_rad{0.0};                 ///< Angle between the frame's proxy and the hand.
-    Vec3 turning_rad_per_s{0.0, 0.0, 0.0}; ///< Of the hand, where the device tells it.
-    FrameFault faults{FrameFault::none};   ///< The frame's of this tool: faults_of().
-    ForceOff causes{ForceOff::none};       ///< What the caller knows of by itself.
-    bool force_was_lost{false}; ///< The device has dropped the last force: a brake, or its
-                                ///< own watchdog.
+    bool has_velocity{false};         ///< False: from the positions.
+    std::int64_t sample_time_ns{0};   ///< 0: the device has none, every sample is new.
+    double elapsed_s{0.0};            ///< Since the last frame, the true one after a stall.
+    std::uint32_t elapsed_periods{1}; ///< The same in whole periods.
+    Vec3 force_n{0.0, 0.0, 0.0};      ///< The frame's.
+    Vec3 torque_nm{0.0, 0.0, 0.0};    ///< The frame's.
+    Vec3 proxy_m{0.0, 0.0, 0.0};      ///< The frame's.
+    double twist_rad{0.0};            ///< Angle between the frame's proxy and the hand.
+    Vec3 turned_rad{0.0, 0.0, 0.0};   ///< By the hand about the world's axes, summed up.
+    Vec3 turning_rad_per_s{0.0, 0.0, 0.0};
+    bool has_turning{false};             ///< False: from turned_rad.
+    FrameFault faults{FrameFault::none}; ///< The frame's of this tool: faults_of().
+    ForceOff causes{ForceOff::none};     ///< What the caller knows of by itself.
+    bool force_was_lost{false};          ///< The device has dropped the last force: a brake, or its
+                                         ///< own watchdog.
 };
 
 /// What goes to the device.
@@ -103,6 +106,7 @@ public:
 private:
     [[nodiscard]] ForceOff find_causes(const SafetyInput& input) const noexcept;
     void observe_speed(const SafetyInput& input) noexcept;
+    [[nodiscard]] bool is_too_fast() const noexcept;
     void move_gain(const SafetyInput& input, ForceOff causes) noexcept;
     void follow(const SafetyInput& input, bool was_off) noexcept;
     [[nodiscard]] bool may_begin(const SafetyInput& input) const noexcept;
@@ -120,6 +124,7 @@ private:
     Vec3 position_m_{0.0, 0.0, 0.0}; ///< Of the last new sample.
     std::int64_t sample_time_ns_{0};
     double since_sample_s_{0.0};
+    Vec3 turned_rad_{0.0, 0.0, 0.0};        ///< Likewise.
     Vec3 velocity_m_per_s_{0.0, 0.0, 0.0};  ///< Zero when it isn't known.
     Vec3 turning_rad_per_s_{0.0, 0.0, 0.0}; ///< Likewise.
     bool is_too_fast_{false};

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "rt_core/frame/sample_watch.hpp"
 
+#include "rt_core/force/angular_stiffness.hpp"
 #include "rt_core/limits.hpp"
 #include "rt_core/math/rotation.hpp"
 
@@ -27,18 +28,29 @@ bool tells_time(const ToolState& sample) noexcept
     return sample.sample_time_ns != 0;
 }
 
+bool turns(const ToolSpec& spec) noexcept
+{
+    return !std::holds_alternative<PointCore>(spec.core);
+}
+
+/// In rad. Both are rotations, to kRotationTolerance at least.
+double angle_between(const Mat3& from, const Mat3& to) noexcept
+{
+    return from == to ? 0.0 : rotation_vector(orthonormalised(to * from.transpose())).norm();
+}
+
 } // namespace
 
 SampleWatch::Verdict SampleWatch::judge(const ToolState& sample, const ToolSpec& spec,
-                                        const Vec3& goal_m, double elapsed_s) noexcept
+                                        const ToolGoal& goal, double elapsed_s) noexcept
 {
-    const Verdict verdict = take(sample, spec, goal_m, elapsed_s);
+    const Verdict verdict = take(sample, spec, goal, elapsed_s);
     fault_ = verdict.fault;
     return verdict;
 }
 
 SampleWatch::Verdict SampleWatch::take(const ToolState& sample, const ToolSpec& spec,
-                                       const Vec3& goal_m, double elapsed_s) noexcept
+                                       const ToolGoal& goal, double elapsed_s) noexcept
 {
     Verdict verdict;
     verdict.fault = find_fault(sample);
@@ -53,8 +65,7 @@ SampleWatch::Verdict SampleWatch::take(const ToolState& sample, const ToolSpec& 
     verdict.is_taken = true;
     verdict.is_first = std::isinf(blind_s_);
     verdict.since_s = blind_s_;
-    const double farthest = kJumpSpeeds * std::max(spec.speed_max_m_per_s, 1.0) * blind_s_;
-    if (!verdict.is_first && (sample.position_m - goal_m).norm() > farthest)
+    if (!verdict.is_first && is_jump(sample, spec, goal))
     {
         has_lost_place_ = true;
         verdict.fault = FrameFault::tool_jumped;
@@ -62,6 +73,15 @@ SampleWatch::Verdict SampleWatch::take(const ToolState& sample, const ToolSpec& 
     time_ns_ = sample.sample_time_ns;
     blind_s_ = 0.0;
     return verdict;
+}
+
+bool SampleWatch::is_jump(const ToolState& sample, const ToolSpec& spec,
+                          const ToolGoal& goal) const noexcept
+{
+    const double farthest_m = kJumpSpeeds * std::max(spec.speed_max_m_per_s, 1.0) * blind_s_;
+    return (sample.position_m - goal.position_m).norm() > farthest_m ||
+           (turns(spec) &&
+            angle_between(goal.rotation, sample.rotation) > kJumpTurning_rad_per_s * blind_s_);
 }
 
 FrameFault SampleWatch::find_fault(const ToolState& sample) const noexcept
@@ -74,10 +94,19 @@ FrameFault SampleWatch::find_fault(const ToolState& sample) const noexcept
 }
 
 void SampleWatch::look_for_return(const ToolOutput& output, const ToolSpec& spec,
-                                  const Vec3& goal_m) noexcept
+                                  const ToolGoal& goal) noexcept
 {
-    const double spring_n = spec.stiffness_n_per_m * (output.proxy_m - goal_m).norm();
-    has_lost_place_ = has_lost_place_ && spring_n > spec.force_max_n;
+    if (!has_lost_place_)
+    {
+        return;
+    }
+    const double spring_n = spec.stiffness_n_per_m * (output.proxy_m - goal.position_m).norm();
+    const double spring_nm = turns(spec) && output.proxy_rotation.allFinite()
+                                 ? angular_stiffness_nm_per_rad(spec) *
+                                       angle_between(goal.rotation, output.proxy_rotation)
+                                 : 0.0;
+    has_lost_place_ =
+        spring_n > spec.force_max_n || (spec.torque_max_nm > 0.0 && spring_nm > spec.torque_max_nm);
 }
 
 } // namespace tactus

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "rt_core/base/realtime.hpp"
+#include "rt_core/force/tool_goal.hpp"
 #include "rt_core/math/infinity.hpp"
 #include "rt_core/records/frame_input.hpp"
 #include "rt_core/records/frame_output.hpp"
@@ -18,10 +19,10 @@ namespace tactus
 /// A sample that is not finite, out of range, no rotation or older than the one before is not
 /// taken; the goal stays. Neither is one with the time of the one before: a device may be slower
 /// than the frame. The last sample stands in for what doesn't come during kSampleHold_s; then the
-/// device is stuck. A goal that jumps farther than any hand moves is taken, but it is told as a
-/// jump until it is so near the proxy that the spring between them is within the device's range: a
-/// device that has lost its place must not pull towards where it was.
-/// Haptic thread.
+/// device is stuck. A goal that jumps or turns farther than any hand does is taken, but it is told
+/// as a jump until it is so near the proxy that the springs between them are within the device's
+/// range: a device that has lost its place must not pull towards where it was. A ball's rotation is
+/// nobody's business. Haptic thread.
 class SampleWatch
 {
 public:
@@ -33,16 +34,16 @@ public:
         FrameFault fault{FrameFault::none};
     };
 
-    /// Once a frame and tool. `elapsed_s` since the last frame, `goal_m` of the last taken sample.
+    /// Once a frame and tool. `elapsed_s` since the last frame, `goal` of the last taken sample.
     /// After kSampleHold_s + kFadeTime_s without a sample the clock may have begun anew: then an
     /// earlier time is taken.
-    [[nodiscard]] Verdict judge(const ToolState& sample, const ToolSpec& spec, const Vec3& goal_m,
+    [[nodiscard]] Verdict judge(const ToolState& sample, const ToolSpec& spec, const ToolGoal& goal,
                                 double elapsed_s) noexcept TACTUS_NONBLOCKING;
 
-    /// After the frame's force is known: a goal that had jumped is back where the spring between
-    /// proxy and goal is within the device's range.
+    /// After the frame's force is known: a goal that had jumped is back where the springs between
+    /// proxy and goal are within the device's range.
     void look_for_return(const ToolOutput& output, const ToolSpec& spec,
-                         const Vec3& goal_m) noexcept TACTUS_NONBLOCKING;
+                         const ToolGoal& goal) noexcept TACTUS_NONBLOCKING;
 
     /// What is wrong with the device after this frame: the last verdict's fault, and tool_jumped
     /// until the goal is back where a force may follow it.
@@ -52,8 +53,10 @@ public:
     }
 
 private:
-    [[nodiscard]] Verdict take(const ToolState& sample, const ToolSpec& spec, const Vec3& goal_m,
+    [[nodiscard]] Verdict take(const ToolState& sample, const ToolSpec& spec, const ToolGoal& goal,
                                double elapsed_s) noexcept;
+    [[nodiscard]] bool is_jump(const ToolState& sample, const ToolSpec& spec,
+                               const ToolGoal& goal) const noexcept;
     [[nodiscard]] FrameFault find_fault(const ToolState& sample) const noexcept;
 
     double blind_s_{kInfinity}; ///< Since the last taken sample.

@@ -90,8 +90,7 @@ FrameFault Tool::begin(const ToolState& sample, double period_s,
 
 FrameFault Tool::take(const ToolState& sample) noexcept
 {
-    const SampleWatch::Verdict verdict =
-        watch_.judge(sample, spec_, goal_.position_m, goal_.elapsed_s);
+    const SampleWatch::Verdict verdict = watch_.judge(sample, spec_, goal_, goal_.elapsed_s);
     if (!verdict.is_taken)
     {
         goal_.change = GoalChange::none;
@@ -159,7 +158,7 @@ ToolOutput Tool::step(std::span<const PlacedSurface> surfaces, double clear_m) n
 
 ToolOutput Tool::finish(ToolOutput output, double clear_m) noexcept
 {
-    watch_.look_for_return(output, spec_, goal_.position_m);
+    watch_.look_for_return(output, spec_, goal_);
     output.sample_fault = watch_.fault();
     output.clear_m = std::max(clear_m, 0.0);
     output.lost_object = lost_object_;

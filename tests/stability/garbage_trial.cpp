@@ -38,6 +38,11 @@ using Limits = std::numeric_limits<double>;
 
 void spoil_not_a_number(ToolState& sample, const ToolState& /*good*/, Random& random)
 {
+    if (random.one_in(2))
+    {
+        sample.rotation(random.below(3), random.below(3)) = Limits::quiet_NaN();
+        return;
+    }
     sample.position_m = with_one(sample.position_m, random, Limits::quiet_NaN());
 }
 void spoil_infinite(ToolState& sample, const ToolState& /*good*/, Random& random)

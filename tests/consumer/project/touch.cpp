@@ -14,6 +14,8 @@
 #include <optional>
 #include <span>
 #include <tactus/platform/haptic_device.hpp>
+#include <tactus/rt_core/force/force_conditioner.hpp>
+#include <tactus/rt_core/force/own_force.hpp>
 #include <tactus/rt_core/force/safe_state.hpp>
 #include <tactus/rt_core/frame/frame.hpp>
 #include <tactus/transport/courier.hpp>
@@ -188,6 +190,11 @@ int main(int argc, char** argv)
     courier.add(parts.header, parts.linker, *model.link, model.name);
 
     DescendingHand device(Vec3(0.028, 0.0, 0.03));
+    ConditionerSetup limits;
+    limits.device = device.info().limits;
+    limits.period_s = 1e-9 * static_cast<double>(kPeriod_ns);
+    WrenchConditioner conditioner(limits);
+    const Vec3 middle_m(0.028, 0.0, 0.0);
     SafeState safe({1.0, pen.force_max_n, pen.stiffness_n_per_m, 0.0, pen.torque_max_nm});
     Digest digest;
     std::uint32_t touched = 0;
@@ -207,14 +214,21 @@ int main(int argc, char** argv)
             frame->run({.tools = {&state, 1}, .changes = changes, .budgets = {}, .now_ns = 0});
 
         const ToolOutput& felt = output.tools[0];
+        WrenchWish wish;
+        wish.force = {felt.force_n, state.position_m, felt.stiffness_n_per_m,
+                      (felt.proxy_m - state.position_m).norm()};
+        // A spring of 50 N/m guides the pen towards a point, with 1 N at most.
+        const OwnForce guide = spring_to(middle_m, state.position_m, 50.0, 1.0);
+        const ConditionedWrench wrench = conditioner.condition(with_own(wish, guide));
+
         SafetyInput input;
         input.position_m = state.position_m;
         input.elapsed_s = 1e-9 * static_cast<double>(kPeriod_ns);
-        input.force_n = felt.force_n;
-        input.torque_nm = felt.torque_nm;
+        input.force_n = wrench.force.force_n;
         input.proxy_m = felt.proxy_m;
         input.faults = faults_of(felt);
         const SafetyOutput out = safe.step(input);
+        conditioner.follow(out.force_n, out.torque_nm);
         device.write({{out.force_n.x(), out.force_n.y(), out.force_n.z()}, {}, 0.0});
 
         digest.add(out.force_n);

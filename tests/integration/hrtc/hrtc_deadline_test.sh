@@ -61,6 +61,9 @@ pass() {
 pass --load none
 check run.json load == 0
 ! grep -q 'beside load' test.log || fault 'loaded without being asked to'
+for tool in capsule:0.002,0.02 box:0.02,0.015,0.01,0.001; do
+    pass --load none --tool "$tool"
+done
 pass --load cpu,disk
 check run.json load == 2 alone.load == 0 alone.frames == 1000
 grep -q 'beside load (cpu, disk)' run.txt || fault 'the histogram does not tell of the load'

@@ -42,6 +42,11 @@ check report.json models == 2 scene.objects_max == 3 scene.came '>=' 2 scene.wen
 "$hrtc" --replay scene.rec >replay.log 2>&1 || fault "another replay: $(cat replay.log)"
 grep -q '^scene .* objects, 3 at most' hrtc.log || fault 'the summary tells no scene'
 
+# With a tool that has a shape.
+run_hrtc --scene workshop --duration 2 --tool box:0.02,0.015,0.01,0.001
+check_clean report.json
+check report.json scene.objects_max == 3 tools.0.torque_max_nm '>' 0 tools.0.twist_max_rad '>' 0
+
 # Left where they are.
 run_hrtc --scene workshop --duration 1 --ignore-poses
 check report.json scene.objects_max '<=' 3 scene.came == 0 scene.went == 0 \

@@ -76,7 +76,7 @@ check report.json force.force_share '<' '0.99*force.contact_share'
 run_hrtc "${model[@]}" --duration 1 --motion free
 check report.json tools.0.contact_share == 0
 was_held_up report.json || check report.json tools.0.force_max_n == 0 # The run's end is no touch.
-for motion in approach slide tap spin; do
+for motion in approach slide tap spin turn edge; do
     run_hrtc "${model[@]}" --duration 2 --motion "$motion"
     check report.json tools.0.force_max_n '>' 0.3 tools.0.force_max_n '<' 6
     check_contact report.json tools.0.contact_share 0.2

@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# hrtc_tools.sh: a tool of each form touches a ball, with a torque where it has a shape; one that is
-# a mesh streams like what it touches, and its recording replays; hulls and meshes that can't be
-# tools are refused by name.
+# hrtc_tools.sh: a tool of each form touches a ball, with a torque where it has a shape, in the
+# default pools; hands turn it, go over edges with it, and put a peg into its hole by a clutch; one
+# that is a mesh streams like what it touches, and its recording replays; hulls without a body are
+# held; hulls and meshes that can't be tools are refused by name.
 source "$(dirname "$0")/common.sh"
 
 model bumpy-sphere-20000 ball.spm
@@ -24,7 +25,7 @@ END
 touch() {
     local torque=$1
     shift
-    run_hrtc "$@" --duration 3 --pool-mib 8
+    run_hrtc "$@" --duration "${seconds:-3}"
     check_clean report.json
     check report.json force.contact_share '>' 0 tools.0.force_max_n '>' 0 \
         answers.bracket+answers.stale '<' '0.05*frames'
@@ -47,13 +48,45 @@ done
 # A device without torque gets the force alone.
 touch 0 --transport file --model ball.spm --tool capsule:0.005,0.05 --device sim:omega
 
+# Hulls that are flat, or no more than a line.
+printf 'OFF\n3 1 0\n-0.02 -0.02 0\n0.02 -0.02 0\n0 0.02 0\n3 0 1 2\n' >flat.off
+printf 'OFF\n3 1 0\n0 0 -0.02\n0 0 0\n0 0 0.02\n3 0 1 2\n' >line.off
+for file in flat.off line.off; do
+    touch_file 1 "hull:$file,0.001"
+done
+
+# How hands move tools that turn.
+for motion in turn edge; do
+    touch 1 --transport file --model ball.spm --tool box:0.04,0.03,0.02,0.001 --motion "$motion"
+done
+
+# A peg goes into its hole, and a button parts it from the hand that draws back.
+"$build" --shape socket --faces 500 -o socket.spm >build.log 2>&1
+seconds=8 touch 1 --transport file --model socket.spm --tool capsule:0.0099,0.03 \
+    --material 500,0.3,0.2 --motion peg --clutch 0
+check report.json safety.begun.clutch '>=' 1
+grep -q 'force off for: .*clutch' hrtc.log || fault 'nobody tells of the clutch'
+
 # The probe streams from the same host.
 "$build" --shape torus --faces 3000 --fit-diag 0.1 -o probe.spm >build.log 2>&1
 start_publisher ball.spm probe.spm
-touch 1 --model ball --tool mesh:probe,0.001 --record run.rec
+touch 1 --model ball --tool mesh:probe,0.001 --pool-mib 8 --record run.rec
 check report.json models == 2 models.1.bytes_received '>' 0 scene.objects == 1 pairs == 1
-stop TERM "$publisher"
 "$hrtc" --replay run.rec >replay.log || fault "the recording of a mesh: $(tail -n 1 replay.log)"
+
+# What is touched is a tool as well when it has another name: it is streamed twice.
+hash=$(sed -n "s/^serving 'ball' hash \([0-9a-f]*\):.*/\1/p" publish.log)
+touch 1 --model ball --tool "mesh:ball@$hash,0.001" --pool-mib 8
+check report.json models == 2 models.1.bytes_received '>' 0
+stop TERM "$publisher"
+touch 1 --transport file --model ball.spm --tool mesh:./ball.spm,0.001 --pool-mib 8
+
+# A probe larger than the default pools is as coarse as they allow, and its answers are brackets.
+model bumpy-sphere-200000 large.spm
+run_hrtc --transport file --model ball.spm --tool mesh:large.spm,0.001 --duration 3
+check_clean report.json
+check report.json models.1.pages_used_max '>' 0 answers.exact+answers.decided+answers.bracket '>' \
+    '0.9*frames'
 
 # What is no tool.
 refuse() { expect 2 "$1" "$hrtc" --allow-no-rt --transport file --model ball.spm --tool "$2"; }

@@ -83,6 +83,7 @@ public:
     {
         device_->write(wrench);
         written_n.push_back(to_vec3(wrench.force_world_n));
+        written_nm.push_back(to_vec3(wrench.torque_world_nm));
     }
     void brake() noexcept override { device_->brake(); }
     void release_brake() noexcept override
@@ -95,6 +96,7 @@ public:
     [[nodiscard]] Vec3 felt_n() const noexcept { return simulated_.felt_force_world_n(); }
 
     std::vector<Vec3> written_n; ///< One a frame; the last is the zero at the end.
+    std::vector<Vec3> written_nm;
     std::function<void()> before_release = [] {};
 
 private:
@@ -115,6 +117,8 @@ struct LoopRigOptions
     std::uint64_t frames{2'000};
     double speed_max_m_per_s{10.0};
     double stiffness_n_per_m{500.0};
+    ToolCore core{PointCore{}};
+    double angular_stiffness_nm_per_rad{0.0}; ///< As ToolSpec has it.
     const Clock* clock{nullptr}; ///< Another one than the virtual, with a timer of its own.
     PeriodicTimer* timer{nullptr};
 };
@@ -132,9 +136,11 @@ public:
         load_everything(frames_);
         make_device();
         const DeviceLimits& device_limits = device().info().limits;
-        tool().limits = {options_.speed_max_m_per_s, device_limits.force_max_n,
-                         options_.stiffness_n_per_m,
-                         kDampingShare * device_limits.damping_n_s_per_m};
+        tool().limits = {
+            options_.speed_max_m_per_s, device_limits.force_max_n, options_.stiffness_n_per_m,
+            kDampingShare * device_limits.damping_n_s_per_m, device_limits.turn.torque_max_nm};
+        tool().limits.turning_max_rad_per_s = kTurningMax_rad_per_s;
+        tool().spec = frames_.frame().tool(0).spec();
         tool().conditioner.device = device_limits;
         tool().conditioner.period_s = kPeriod_s;
         LoopParts parts;
@@ -170,6 +176,7 @@ public:
         return options_.clock != nullptr ? *options_.clock : clock_;
     }
     [[nodiscard]] const Vec3& written_n(std::uint64_t frame) { return device().written_n[frame]; }
+    [[nodiscard]] const Vec3& written_nm(std::uint64_t frame) { return device().written_nm[frame]; }
 
     /// What the loop noted, in order; the log is empty afterwards.
     [[nodiscard]] std::vector<SafetyEvent> events()
@@ -188,24 +195,34 @@ public:
     /// The largest step of the force between these frames.
     [[nodiscard]] double largest_step_n(std::uint64_t from, std::uint64_t to)
     {
-        double most = 0.0;
-        for (std::uint64_t i = from; i < to; ++i)
-        {
-            most = std::max(most, (written_n(i + 1) - written_n(i)).norm());
-        }
-        return most;
+        return largest_step(device().written_n, from, to);
+    }
+    [[nodiscard]] double largest_step_nm(std::uint64_t from, std::uint64_t to)
+    {
+        return largest_step(device().written_nm, from, to);
     }
 
     HostsGone hosts_gone;
     TelemetryTap telemetry{kPeriod};
 
 private:
+    static double largest_step(const std::vector<Vec3>& written, std::uint64_t from,
+                               std::uint64_t to)
+    {
+        double most = 0.0;
+        for (std::uint64_t i = from; i < to; ++i)
+        {
+            most = std::max(most, (written[i + 1] - written[i]).norm());
+        }
+        return most;
+    }
     static tactus::test::RigOptions rig_options(const LoopRigOptions& options)
     {
         tactus::test::RigOptions rig = tactus::test::with_room_for_all();
         rig.static_when_it_fits = options.static_model;
-        rig.tools = {
-            {0.01 * tactus::test::small_model(0).diagonal_m, options.stiffness_n_per_m, 8.0, 1.0}};
+        rig.tools = {{0.01 * tactus::test::small_model(0).diagonal_m, options.stiffness_n_per_m,
+                      8.0, 1.0, options.core}};
+        rig.tools.front().angular_stiffness_nm_per_rad = options.angular_stiffness_nm_per_rad;
         return rig;
     }
 

@@ -131,6 +131,101 @@ TEST_P(HapticLoopTrouble, fades_the_force_within_two_periods_and_brings_it_back_
                                     { return event.state == left && event.frame > known; }));
 }
 
+/// Of a device that turns, with a tool that is turned by what it touches.
+const Trouble kTurningTroubles[] = {
+    {"no_rotation", ForceOff::garbage, 0,
+     [](std::uint64_t frame, DeviceSample& sample)
+     {
+         (*sample.rotation_world)[2] =
+             is_bad(frame) ? std::numeric_limits<double>::quiet_NaN() : (*sample.rotation_world)[2];
+     }},
+    {"turned_wildly", ForceOff::garbage, 0,
+     [](std::uint64_t frame, DeviceSample& sample)
+     {
+         // By 1.1 rad about z in every other frame, as encoders that lose their place.
+         if (is_bad(frame) && frame % 2 == 0)
+         {
+             const double half_sine = 0.5226872289306592;
+             const double half_cosine = 0.8525245220595057;
+             const auto [x, y, z, w] = *sample.rotation_world;
+             sample.rotation_world = {
+                 half_cosine * x - half_sine * y, half_cosine * y + half_sine * x,
+                 half_cosine * z + half_sine * w, half_cosine * w - half_sine * z};
+         }
+     }},
+    {"turns_too_fast", ForceOff::velocity, 0,
+     [](std::uint64_t frame, DeviceSample& sample)
+     { (*sample.angular_velocity_world_rad_per_s)[1] += is_bad(frame) ? 70.0 : 0.0; }},
+};
+
+class HapticLoopTorqueTrouble : public testing::TestWithParam<Trouble>
+{
+};
+
+INSTANTIATE_TEST_SUITE_P(Each, HapticLoopTorqueTrouble, testing::ValuesIn(kTroubles),
+                         [](const auto& test) { return std::string(test.param.name); });
+INSTANTIATE_TEST_SUITE_P(Turning, HapticLoopTorqueTrouble, testing::ValuesIn(kTurningTroubles),
+                         [](const auto& test) { return std::string(test.param.name); });
+
+/// Pressed on off its middle, so that the surface turns it.
+LoopRigOptions with_a_lever(const Trouble& trouble)
+{
+    LoopRigOptions options;
+    options.core = Segment{Vec3(0.0, 0.008, 0.0), Vec3(0.0, 0.01, 0.0)};
+    options.angular_stiffness_nm_per_rad = 0.5;
+    options.tamper = trouble.tamper;
+    options.faults = trouble.faults;
+    return options;
+}
+
+TEST_P(HapticLoopTorqueTrouble, fades_the_torque_as_the_force_and_brings_it_back)
+{
+    LoopRig rig(with_a_lever(GetParam()));
+    rig.loop().run();
+    const std::uint64_t known = kSettled + GetParam().notice;
+    const double before_nm = rig.written_nm(kSettled - 1).norm();
+    ASSERT_GT(before_nm, 1e-3);
+    const double own_step_nm = rig.largest_step_nm(kSettled - 200, kSettled - 1);
+    for (std::uint64_t frame = known; frame < known + kFadeFrames; ++frame)
+    {
+        const double left = 1.0 - static_cast<double>(frame - known + 1) * kPeriod_s / kFadeTime_s;
+        EXPECT_LE(rig.written_nm(frame).norm(),
+                  std::max(left, 0.0) * (before_nm + own_step_nm) + kRounding_n)
+            << frame;
+    }
+    for (std::uint64_t frame = known + kFadeFrames; frame < kSettled + kBadFrames; ++frame)
+    {
+        EXPECT_EQ(rig.written_nm(frame).norm(), 0.0) << frame;
+        EXPECT_EQ(rig.written_n(frame).norm(), 0.0) << frame;
+    }
+    const double torque_max_nm = rig.device().info().limits.turn.torque_max_nm;
+    EXPECT_LE(rig.largest_step_nm(kSettled + kBadFrames, 1'900),
+              2.0 * torque_max_nm * kPeriod_s / kRiseTime_s + own_step_nm);
+    EXPECT_NEAR(rig.written_nm(1'900).norm(), before_nm, 0.1 * before_nm);
+    const std::vector<SafetyEvent> events = rig.events();
+    EXPECT_TRUE(std::ranges::any_of(
+        events, [&](const SafetyEvent& event)
+        { return event.frame <= known + 1 && has_cause(event.causes, GetParam().cause); }));
+}
+
+TEST(HapticLoop, a_stall_takes_as_much_of_the_torque_as_of_the_force)
+{
+    LoopRigOptions options = with_a_lever(kTurningTroubles[0]);
+    options.tamper = leave;
+    options.late_wakes = {{kSettled, milliseconds(10)}};
+    LoopRig rig(options);
+    rig.loop().run();
+    const std::vector<SafetyEvent> events = rig.events();
+    const auto noted = std::ranges::find(events, ForceOff::stall, &SafetyEvent::causes);
+    ASSERT_NE(noted, events.end());
+    const double force =
+        rig.written_n(noted->frame).norm() / rig.written_n(noted->frame - 1).norm();
+    const double torque =
+        rig.written_nm(noted->frame).norm() / rig.written_nm(noted->frame - 1).norm();
+    EXPECT_LT(force, 0.85);
+    EXPECT_NEAR(torque, force, 0.02);
+}
+
 /// The states that the loop went through after the first one, up to the run's end.
 std::vector<ForceOff> causes_of(LoopRig& rig)
 {

@@ -7,7 +7,9 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 
 namespace tactus::hrtc::test
 {
@@ -55,6 +57,28 @@ TEST(TelemetryTap, shows_the_newest_frame_as_the_loop_had_it)
     EXPECT_LE(telemetry.pairs[0].lower_m, telemetry.pairs[0].upper_m);
     EXPECT_EQ(telemetry.pairs[0].force_n[0], -sent_n.x()); // The whole push is the one object's.
     EXPECT_EQ(telemetry.pairs[0].force_n[2], -sent_n.z());
+}
+
+TEST(TelemetryTap, sends_no_gripper_that_is_no_number)
+{
+    for (const double gripper_m :
+         {0.03, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
+    {
+        LoopRigOptions options;
+        options.frames = 10;
+        options.tamper = [gripper_m](std::uint64_t, DeviceSample& sample)
+        {
+            sample.buttons = 5;
+            sample.gripper_m = gripper_m;
+        };
+        LoopRig rig(options);
+        rig.loop().run();
+        Telemetry telemetry;
+        ASSERT_TRUE(rig.telemetry.try_read(telemetry));
+        EXPECT_EQ(telemetry.tools[0].buttons, 5U);
+        EXPECT_EQ(telemetry.tools[0].has_gripper, std::isfinite(gripper_m));
+        EXPECT_EQ(telemetry.tools[0].gripper_m, std::isfinite(gripper_m) ? gripper_m : 0.0);
+    }
 }
 
 /// A pair of a tool at the origin and an object that begins there in that direction.

@@ -48,6 +48,7 @@ public:
     {
         written_n = to_vec3(wrench.force_world_n);
         written_nm = to_vec3(wrench.torque_world_nm);
+        written_gripper_n = wrench.gripper_force_n;
     }
     void brake() noexcept override {}
     void release_brake() noexcept override {}
@@ -63,6 +64,7 @@ public:
 
     Vec3 written_n{0.0, 0.0, 0.0};
     Vec3 written_nm{0.0, 0.0, 0.0};
+    double written_gripper_n{0.0};
     HandPlace hand;
     std::uint32_t buttons{0};
     std::optional<Quaternion> rotation; ///< In place of the hand's.
@@ -70,6 +72,23 @@ public:
 private:
     DeviceInfo info_;
     std::int64_t reads_{0};
+};
+
+/// Says what it is told to say.
+class SaidForce final : public OwnForceSource
+{
+public:
+    [[nodiscard]] OwnForce next(const DeviceSample& /*sample*/, const ToolState& tool,
+                                const ToolOutput& output) noexcept override
+    {
+        place_m = tool.position_m;
+        was_in_contact = output.in_contact;
+        return said;
+    }
+
+    OwnForce said;
+    Vec3 place_m{0.0, 0.0, 0.0};
+    bool was_in_contact{false};
 };
 
 class ToolPortTest : public testing::Test
@@ -178,6 +197,77 @@ TEST_F(ToolPortTest, a_torque_goes_out_with_the_force_and_fades_with_it)
     bad.torque_nm.x() = std::numeric_limits<double>::quiet_NaN();
     EXPECT_EQ(step(bad).causes, ForceOff::garbage);
     EXPECT_TRUE(device().written_nm.allFinite());
+}
+
+TEST_F(ToolPortTest, a_force_of_the_programs_own_goes_out_and_fades_as_that_of_surfaces)
+{
+    SaidForce own;
+    own.said.force_n = Vec3(1.0, 0.0, 0.0);
+    own.said.gripper_n = 0.5;
+    setup_.own_force = &own;
+    sut_ = std::make_unique<ToolPort>(setup_);
+    device().hand.position_m = Vec3(0.0, 0.0, 0.001);
+    for (int i = 0; i < 200; ++i)
+    {
+        static_cast<void>(step(pushed_));
+    }
+    const Vec3 both_n = pushed_.force_n + own.said.force_n;
+    EXPECT_LT((device().written_n - both_n).norm(), 1e-9);
+    EXPECT_EQ(device().written_gripper_n, 0.5);
+    EXPECT_EQ(sut_->record().sent_gripper_n, 0.5);
+    EXPECT_EQ(own.place_m, device().hand.position_m);
+    EXPECT_TRUE(own.was_in_contact);
+
+    ToolOutput stuck = pushed_;
+    stuck.sample_fault = FrameFault::tool_stuck;
+    own.said.gripper_n = 7.0; // What is made of bad data doesn't go out.
+    static_cast<void>(step(stuck));
+    const double gain = device().written_n.norm() / both_n.norm();
+    EXPECT_NEAR(gain, 1.0 - kPeriod_s / kFadeTime_s, 1e-9);
+    EXPECT_NEAR(device().written_gripper_n, gain * 0.5, 1e-9);
+    for (int i = 0; i < 60; ++i)
+    {
+        static_cast<void>(step(stuck));
+    }
+    EXPECT_EQ(device().written_n, Vec3(0.0, 0.0, 0.0));
+    EXPECT_EQ(device().written_gripper_n, 0.0);
+}
+
+TEST_F(ToolPortTest, a_force_of_the_programs_own_is_within_the_devices_limits)
+{
+    SaidForce own;
+    own.said.force_n = Vec3(0.0, 50.0, 0.0);
+    setup_.own_force = &own;
+    sut_ = std::make_unique<ToolPort>(setup_);
+    for (int i = 0; i < 200; ++i)
+    {
+        static_cast<void>(step(ToolOutput{}));
+    }
+    EXPECT_NEAR(device().written_n.norm(), 8.0, 1e-9);
+    EXPECT_TRUE(has_action(sut_->force().conditioned.actions, ForceAction::clamped));
+    own.said.stiffness_n_per_m = 4'000.0; // A spring twice as stiff as the device carries.
+    static_cast<void>(step(ToolOutput{}));
+    EXPECT_TRUE(has_action(sut_->force().conditioned.actions, ForceAction::stiffness_capped));
+}
+
+TEST_F(ToolPortTest, a_force_of_the_programs_own_that_is_no_number_is_garbage)
+{
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    for (int part = 0; part < 4; ++part)
+    {
+        SaidForce own;
+        setup_.own_force = &own;
+        sut_ = std::make_unique<ToolPort>(setup_);
+        warm_up();
+        own.said.force_n.x() = part == 0 ? nan : 0.0;
+        own.said.stiffness_n_per_m = part == 1 ? nan : 0.0;
+        own.said.force_n.y() = part == 1 ? 1.0 : 0.0;
+        own.said.gripper_n = part == 2 ? nan : 0.0;
+        own.said.gripper_n = part == 3 ? 1.0 / 0.0 : own.said.gripper_n;
+        EXPECT_EQ(step(pushed_).causes, ForceOff::garbage) << part;
+        EXPECT_TRUE(device().written_n.allFinite() && std::isfinite(device().written_gripper_n));
+        EXPECT_GT(device().written_n.norm(), 0.0) << "the last one fades";
+    }
 }
 
 TEST_F(ToolPortTest, a_held_button_parts_hand_and_tool_without_a_force)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "rt_core/force/force_conditioner.hpp"
+#include "rt_core/force/own_force.hpp"
 #include "rt_core/force/stiffness_rule.hpp"
 #include "tests/shared/period.hpp"
 #include "tests/shared/random.hpp"
@@ -43,6 +44,78 @@ ForceWish force(double x)
 }
 
 } // namespace
+
+TEST(OwnForce, is_a_spring_to_a_point_of_limited_force)
+{
+    const OwnForce near = spring_to(Vec3(0.01, 0, 0), Vec3(0, 0.01, 0), 200.0, 5.0);
+    EXPECT_LT((near.force_n - Vec3(2, -2, 0)).norm(), kRounding);
+    EXPECT_EQ(near.stiffness_n_per_m, 200.0);
+    const OwnForce far = spring_to(Vec3(10, 0, 0), Vec3(0, 0, 0), 200.0, 5.0);
+    EXPECT_LT((far.force_n - Vec3(5, 0, 0)).norm(), kRounding);
+}
+
+TEST(OwnForce, two_springs_hold_together_what_each_holds)
+{
+    constexpr double kWall = 500.0;
+    constexpr double kOwn = 300.0;
+    for (const double own_n : {2.0, -1.0, 0.5})
+    {
+        for (const double over_m : {0.0, 0.004}) // The wall's force may be cut short.
+        {
+            ForceWish wish = force(3.0);
+            wish.stiffness_n_per_m = kWall;
+            wish.stretch_m = 3.0 / kWall + over_m;
+            const Vec3 own(0.3 * own_n, own_n, 0.0);
+            const ForceWish both = with_spring(wish, own, kOwn);
+            EXPECT_EQ(both.force_n, Vec3(wish.force_n + own));
+            EXPECT_EQ(both.stiffness_n_per_m, kWall + kOwn);
+            const double wall_j = 0.5 * 3.0 * 3.0 / kWall + 3.0 * over_m;
+            const double own_j = 0.5 * own.squaredNorm() / kOwn;
+            const double sum_n = both.force_n.norm();
+            const double least_m = sum_n / both.stiffness_n_per_m;
+            EXPECT_GE(both.stretch_m, least_m * (1.0 - kRounding));
+            EXPECT_NEAR(sum_n * (both.stretch_m - 0.5 * least_m), wall_j + own_j, kRounding);
+        }
+    }
+}
+
+TEST(OwnForce, without_one_the_wish_is_as_it_was_and_in_the_air_its_spring_is_alone)
+{
+    ForceWish wish = force(0.0);
+    wish.stiffness_n_per_m = 500.0;
+    wish.stretch_m = 0.25;
+    const ForceWish same = with_own({wish, wish}, {}).force;
+    EXPECT_EQ(same.stiffness_n_per_m, 500.0);
+    EXPECT_EQ(same.stretch_m, 0.25);
+    EXPECT_EQ(same.force_n, wish.force_n);
+    OwnForce own;
+    own.torque_nm = Vec3(0, 0.2, 0);
+    own.stiffness_nm_per_rad = 2.0;
+    const ForceWish torque = with_own({wish, wish}, own).torque;
+    EXPECT_EQ(torque.stiffness_n_per_m, 2.0);
+    EXPECT_NEAR(torque.stretch_m, 0.1, kRounding);
+}
+
+/// A hand goes to and fro across a spring of the program's own. One that comes late makes energy.
+TEST(OwnForce, that_is_a_spring_is_not_damped_and_one_that_makes_energy_is)
+{
+    for (const int late : {0, 40})
+    {
+        ForceConditioner sut(plain_setup());
+        const auto place = [](int frame) { return Vec3(0.02 * std::sin(0.005 * frame), 0, 0); };
+        std::uint32_t damped = 0;
+        for (int i = 0; i < 4'000; ++i)
+        {
+            const OwnForce own = spring_to(Vec3(0, 0, 0), place(i - late), 300.0, 8.0);
+            ForceWish wish;
+            wish.position_m = place(i);
+            const ForceAction actions =
+                sut.condition(with_spring(wish, own.force_n, own.stiffness_n_per_m)).actions;
+            damped += has_action(actions, ForceAction::damped) ? 1U : 0U;
+        }
+        EXPECT_EQ(damped > 0, late > 0) << damped;
+    }
+}
 
 TEST(ForceLimiter, clamps_the_norm_and_keeps_the_direction)
 {

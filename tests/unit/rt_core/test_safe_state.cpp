@@ -49,7 +49,8 @@ public:
     }
 
     static inline const Vec3 kForce_n{1.0, -2.0, 3.0};
-    static inline const SafetyLimits kLimits{1.0, kForceMax_n, 500.0, 0.5, 0.4};
+    static inline const SafetyLimits kLimits{1.0, kForceMax_n, 500.0, 0.5,
+                                             0.4, 0.0,         0.0,   kTurningMax_rad_per_s};
     SafeState sut{kLimits};
     SafetyInput input;
     SafetyOutput last;
@@ -100,6 +101,13 @@ const Cause kCauses[] = {
          input.velocity_m_per_s = Vec3(0.0, 1.5, 0.0);
      },
      [](SafetyInput& input) { input.velocity_m_per_s = Vec3(0.0, 0.1, 0.0); }},
+    {"turning", ForceOff::velocity,
+     [](SafetyInput& input)
+     {
+         input.has_turning = true;
+         input.turning_rad_per_s = Vec3(0.0, 1.01 * kTurningMax_rad_per_s, 0.0);
+     },
+     [](SafetyInput& input) { input.turning_rad_per_s = Vec3(0.0, 1.0, 0.0); }},
     {"no_number", ForceOff::garbage,
      [](SafetyInput& input) { input.force_n.x() = std::numeric_limits<double>::quiet_NaN(); },
      [](SafetyInput& input) { input.force_n = GuardedTool::kForce_n; }},
@@ -217,11 +225,13 @@ TEST(SafeState, damps_turning_while_it_fades_and_by_a_share_of_the_torque_at_mos
 {
     SafetyLimits limits = GuardedTool::kLimits;
     limits.damping_nm_s_per_rad = 1e-3;
+    limits.turning_max_rad_per_s = 0.0; // There is no limit.
     for (const double turning : {10.0, 1e6})
     {
         GuardedTool tool;
         tool.sut = SafeState(limits);
         tool.input.turning_rad_per_s = Vec3(0.0, turning, 0.0);
+        tool.input.has_turning = true;
         tool.warm_up();
         EXPECT_EQ(tool.last.torque_nm, Vec3(0.0, 0.0, 0.0)) << "none at the whole gain";
         tool.input.causes = ForceOff::stale;
@@ -232,7 +242,29 @@ TEST(SafeState, damps_turning_while_it_fades_and_by_a_share_of_the_torque_at_mos
         const double most_nm = kDampingForceShare * limits.torque_max_nm;
         EXPECT_NEAR(tool.last.torque_nm.y(), -std::min(1e-3 * turning, most_nm), 1e-9);
         tool.input.turning_rad_per_s.x() = std::numeric_limits<double>::quiet_NaN();
-        EXPECT_EQ(tool.step().torque_nm, Vec3(0.0, 0.0, 0.0)) << "not known";
+        EXPECT_EQ(tool.step().torque_nm, Vec3(0.0, 0.0, 0.0)) << "it has not turned";
+    }
+}
+
+TEST(SafeState, finds_how_fast_a_device_turns_that_does_not_tell_it)
+{
+    SafetyLimits limits = GuardedTool::kLimits;
+    limits.damping_nm_s_per_rad = 1e-3;
+    for (const double turning : {0.9 * kTurningMax_rad_per_s, 1.1 * kTurningMax_rad_per_s})
+    {
+        GuardedTool tool;
+        tool.sut = SafeState(limits);
+        tool.warm_up();
+        for (const std::uint32_t periods : {1U, 4U}) // By the true time after a stall.
+        {
+            tool.input.turned_rad.z() += turning * kPeriod_s * periods;
+            const ForceOff causes = tool.step(periods).causes;
+            EXPECT_EQ(has_cause(causes, ForceOff::velocity), turning > kTurningMax_rad_per_s);
+        }
+        EXPECT_LT(tool.last.torque_nm.z(), 0.0) << "it fades, so turning is damped";
+        EXPECT_EQ(tool.last.torque_nm.head<2>().norm(), 0.0);
+        const double share = 4.0 * tool.sut.gain() * (1.0 - tool.sut.gain());
+        EXPECT_NEAR(tool.last.torque_nm.z(), -share * 1e-3 * turning, 1e-9);
     }
 }
 
@@ -368,6 +400,18 @@ TEST(SafeState, a_fast_hand_is_calm_again_at_a_share_of_the_limit)
     EXPECT_TRUE(is_off_at(1.01 * kCalmSpeedShare));
     EXPECT_FALSE(is_off_at(0.99 * kCalmSpeedShare));
     EXPECT_FALSE(is_off_at(0.99));
+
+    GuardedTool turned;
+    turned.input.has_turning = true;
+    const auto is_off_turning = [&](double share)
+    {
+        turned.input.turning_rad_per_s = Vec3(share * kTurningMax_rad_per_s, 0.0, 0.0);
+        return turned.step().causes == ForceOff::velocity;
+    };
+    EXPECT_FALSE(is_off_turning(0.99));
+    EXPECT_TRUE(is_off_turning(1.01));
+    EXPECT_TRUE(is_off_turning(1.01 * kCalmSpeedShare));
+    EXPECT_FALSE(is_off_turning(0.99 * kCalmSpeedShare));
 }
 
 TEST(SafeState, finds_the_speed_of_a_device_that_does_not_tell_it)

@@ -4,6 +4,7 @@
 #include "rt_core/limits.hpp"
 #include "tests/shared/period.hpp"
 
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -27,23 +28,37 @@ public:
         sample.position_m = position_m;
         sample.sample_time_ns = time_ns;
         sample.valid = valid;
-        const SampleWatch::Verdict verdict = sut.judge(sample, spec, goal_m, kPeriod_s);
-        goal_m = verdict.is_taken ? position_m : goal_m;
+        sample.rotation = rotation;
+        const SampleWatch::Verdict verdict = sut.judge(sample, spec, goal, kPeriod_s);
+        if (verdict.is_taken)
+        {
+            goal.position_m = position_m;
+            goal.rotation = rotation;
+        }
         return verdict;
+    }
+    /// Where it was, turned.
+    SampleWatch::Verdict turn_to(double angle_rad)
+    {
+        rotation = Eigen::AngleAxisd(angle_rad, Vec3(0.6, 0.0, 0.8)).toRotationMatrix();
+        return give(goal.position_m, 0);
     }
     /// What is wrong once the proxy is there.
     [[nodiscard]] FrameFault fault_with(const Vec3& proxy_m)
     {
         ToolOutput output;
         output.proxy_m = proxy_m;
+        output.proxy_rotation = proxy_rotation;
         output.in_contact = true;
-        sut.look_for_return(output, spec, goal_m);
+        sut.look_for_return(output, spec, goal);
         return sut.fault();
     }
 
     SampleWatch sut;
     ToolSpec spec{0.002, 500.0, 8.0, 1.0};
-    Vec3 goal_m{0.0, 0.0, 0.0};
+    ToolGoal goal;
+    Mat3 rotation{Mat3::Identity()};       ///< That the device says.
+    Mat3 proxy_rotation{Mat3::Identity()}; ///< Of the tool as surfaces hold it.
 };
 
 const Vec3 kHere(0.1, 0.0, 0.0);
@@ -92,7 +107,7 @@ TEST(SampleWatch, takes_no_matrix_that_is_no_rotation)
         SampleWatch sut;
         ToolState sample;
         sample.rotation = bad;
-        const SampleWatch::Verdict verdict = sut.judge(sample, {}, Vec3(0.0, 0.0, 0.0), kPeriod_s);
+        const SampleWatch::Verdict verdict = sut.judge(sample, {}, {}, kPeriod_s);
         EXPECT_FALSE(verdict.is_taken);
         EXPECT_EQ(verdict.fault, FrameFault::tool_invalid);
     }
@@ -105,7 +120,7 @@ TEST(SampleWatch, takes_a_rotation_within_the_tolerance_alone)
         SampleWatch sut;
         ToolState sample;
         sample.rotation(0, 1) = share * kRotationTolerance;
-        const SampleWatch::Verdict verdict = sut.judge(sample, {}, Vec3(0.0, 0.0, 0.0), kPeriod_s);
+        const SampleWatch::Verdict verdict = sut.judge(sample, {}, {}, kPeriod_s);
         EXPECT_EQ(verdict.is_taken, share < 1.0);
         EXPECT_EQ(verdict.fault, share < 1.0 ? FrameFault::none : FrameFault::tool_invalid);
     }
@@ -195,6 +210,42 @@ TEST(SampleWatch, a_goal_has_jumped_that_is_so_many_times_too_fast)
                 << speed_max;
         }
     }
+}
+
+TEST(SampleWatch, a_goal_has_jumped_that_turns_faster_than_any_hand)
+{
+    for (const double share : {0.999, 1.001})
+    {
+        WatchedTool tool;
+        tool.spec.core = Box{Vec3(0.01, 0.02, 0.03)};
+        ASSERT_TRUE(tool.give(kHere, 0).is_taken);
+        EXPECT_EQ(tool.turn_to(share * kJumpTurning_rad_per_s * kPeriod_s).fault,
+                  share < 1.0 ? FrameFault::none : FrameFault::tool_jumped);
+        WatchedTool ball;
+        ASSERT_TRUE(ball.give(kHere, 0).is_taken);
+        EXPECT_EQ(ball.turn_to(share * kJumpTurning_rad_per_s * kPeriod_s).fault, FrameFault::none);
+    }
+}
+
+TEST(SampleWatch, a_jump_of_the_rotation_is_told_until_the_spring_is_within_the_torque)
+{
+    WatchedTool tool;
+    tool.spec.core = Box{Vec3(0.01, 0.02, 0.03)};
+    tool.spec.angular_stiffness_nm_per_rad = 2.0;
+    tool.spec.torque_max_nm = 0.5;
+    ASSERT_TRUE(tool.give(kHere, 0).is_taken);
+    EXPECT_EQ(tool.turn_to(2.0).fault, FrameFault::tool_jumped);
+    EXPECT_EQ(tool.fault_with(kHere), FrameFault::tool_jumped);
+    EXPECT_EQ(tool.turn_to(2.0).fault, FrameFault::none) << "itself it is no jump";
+    EXPECT_EQ(tool.fault_with(kHere), FrameFault::tool_jumped) << "it is still far away";
+    const auto proxy_behind = [&](double twist_rad)
+    {
+        tool.proxy_rotation =
+            Eigen::AngleAxisd(2.0 - twist_rad, Vec3(0.6, 0.0, 0.8)).toRotationMatrix();
+        return tool.fault_with(kHere);
+    };
+    EXPECT_EQ(proxy_behind(0.251), FrameFault::tool_jumped);
+    EXPECT_EQ(proxy_behind(0.249), FrameFault::none);
 }
 
 TEST(SampleWatch, a_gap_in_the_samples_is_no_jump)

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/base/realtime.hpp"
+#include "rt_core/force/force_limiter.hpp"
+#include "rt_core/records/conditioned_force.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tactus
+{
+
+/// What a program wants to do to a hand beside what surfaces do: guidance, a spring to a point, a
+/// gripper that closes. World frame, SI.
+struct OwnForce
+{
+    Vec3 force_n{0.0, 0.0, 0.0};
+    Vec3 torque_nm{0.0, 0.0, 0.0};
+    /// How much the force changes with the way: of the spring that it is. 0: it is none, and what
+    /// work it does on the hand is energy from nowhere, which in touch is damped as such.
+    double stiffness_n_per_m{0.0};
+    double stiffness_nm_per_rad{0.0}; ///< Likewise.
+    double gripper_n{0.0};            ///< Above 0 it opens the gripper.
+};
+
+/// A spring from the tool to a point, at most so strong. Stiffness and largest force finite, not
+/// negative.
+[[nodiscard]] inline OwnForce spring_to(const Vec3& point_m, const Vec3& place_m,
+                                        double stiffness_n_per_m, double force_max_n) noexcept
+{
+    OwnForce spring;
+    spring.force_n = clamp_norm(stiffness_n_per_m * (point_m - place_m), force_max_n);
+    spring.stiffness_n_per_m = stiffness_n_per_m;
+    return spring;
+}
+
+/// Two springs that pull at one hand as the one that they are together: forces and stiffnesses
+/// add, and the stretch is that with which it holds what both hold. A wish without a force of its
+/// own changes no bit.
+[[nodiscard]] inline ForceWish with_spring(const ForceWish& wish, const Vec3& force_n,
+                                           double stiffness_n_per_m) noexcept
+{
+    if (force_n == Vec3(0.0, 0.0, 0.0))
+    {
+        return wish;
+    }
+    const auto energy_j = [](double force, double stiffness, double stretch_m)
+    {
+        const double least_m = stiffness > 0.0 ? force / stiffness : 0.0;
+        return stiffness > 0.0 ? force * (std::max(stretch_m, least_m) - 0.5 * least_m) : 0.0;
+    };
+    const double wall_n = wish.force_n.norm();
+    ForceWish both = wish;
+    both.force_n += force_n;
+    both.stiffness_n_per_m = stiffness_n_per_m + (wall_n > 0.0 ? wish.stiffness_n_per_m : 0.0);
+    const double sum_n = both.force_n.norm();
+    if (sum_n > 0.0 && both.stiffness_n_per_m > 0.0)
+    {
+        const double held_j = energy_j(wall_n, wish.stiffness_n_per_m, wish.stretch_m) +
+                              energy_j(force_n.norm(), stiffness_n_per_m, 0.0);
+        both.stretch_m = held_j / sum_n + 0.5 * sum_n / both.stiffness_n_per_m;
+    }
+    return both;
+}
+
+/// What surfaces want and what the program wants, for the WrenchConditioner.
+[[nodiscard]] inline WrenchWish with_own(const WrenchWish& wish, const OwnForce& own) noexcept
+{
+    return {with_spring(wish.force, own.force_n, own.stiffness_n_per_m),
+            with_spring(wish.torque, own.torque_nm, own.stiffness_nm_per_rad)};
+}
+
+} // namespace tactus
