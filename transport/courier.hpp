@@ -43,7 +43,7 @@ struct CourierCounters
 
 struct CourierOptions
 {
-    std::uint32_t open_wishes{256}; ///< Asked for and not yet here. 32 B each.
+    std::uint32_t open_wishes{SlotDoor::kOpenWishes}; ///< Asked for and not yet here. 32 B each.
 };
 
 /// The transport thread's work: takes wishes from the door, asks each model's link, verifies what
