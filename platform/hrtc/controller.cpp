@@ -3,6 +3,7 @@
 #include "platform/hrtc/controller.hpp"
 
 #include "platform/hrtc/object_pose.hpp"
+#include "platform/hrtc/scene_room.hpp"
 #include "platform/simulated/hand_motions.hpp"
 #include "platform/simulated/simulated_device.hpp"
 #include "rt_core/force/angular_stiffness.hpp"
@@ -67,7 +68,7 @@ Controller::create(const Options& options, std::vector<ServedModel> models, cons
 
 Controller::Controller(const Options& options, std::vector<ServedModel> models)
     : models_(std::move(models))
-    , memory_(static_cast<std::size_t>(options.pool_mib * kBytesPerMib) - sizeof(Frame))
+    , memory_(options.pool_bytes() - sizeof(Frame))
     , arena_(memory_.span())
 {
     for (const ServedModel& model : models_)
@@ -171,6 +172,11 @@ std::optional<Refusal> Controller::lay_out_pools(const Options& options)
     setup_.poses = poses_;
     setup_.capacities.objects = options.objects_max;
     setup_.tools = tool_specs_;
+    if (!options.scene.empty())
+    {
+        setup_.capacities.pairs =
+            std::min(capacities_of(setup_).pairs, SceneRoom::of(options.pool_bytes()).pairs);
+    }
     setup_.static_when_it_fits = options.static_when_it_fits;
     setup_.prediction = options.prediction;
     setup_.period_ns = options.period().ns;
