@@ -47,7 +47,7 @@ struct CourierCounters
 
 struct CourierOptions
 {
-    std::uint32_t open_wishes{256}; ///< Asked for and not yet here. 64 B each.
+    std::uint32_t open_wishes{SlotDoor::kOpenWishes}; ///< Asked for and not yet here. 64 B each.
     /// Wishes come again within kWishTimeoutFrames, or twice that; after a longer pause than this a
     /// piece was not wanted meanwhile.
     std::int64_t forgotten_ns{1'000'000'000};

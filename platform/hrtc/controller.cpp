@@ -3,6 +3,7 @@
 #include "platform/hrtc/controller.hpp"
 
 #include "platform/hrtc/object_pose.hpp"
+#include "platform/hrtc/scene_room.hpp"
 #include "platform/hrtc/verdict.hpp"
 #include "platform/simulated/hand_motions.hpp"
 #include "platform/simulated/simulated_device.hpp"
@@ -184,13 +185,17 @@ std::optional<Refusal> Controller::lay_out_pools(const Options& options)
     setup_.poses = poses_;
     setup_.capacities.objects = options.objects_max;
     setup_.tools = tool_specs_;
+    if (!options.scene.empty())
+    {
+        setup_.capacities.pairs =
+            std::min(capacities_of(setup_).pairs, SceneRoom::of(options.pool_bytes()).pairs);
+    }
     setup_.static_when_it_fits = options.static_when_it_fits;
     setup_.prediction = options.prediction;
     setup_.kernels = options.kernels != nullptr ? options.kernels : &best_kernels();
     setup_.period_ns = options.period().ns;
     const auto cache = static_cast<std::size_t>(options.cache_mib * kBytesPerMib);
-    const std::size_t most =
-        static_cast<std::size_t>(options.pool_mib * kBytesPerMib) - sizeof(Frame);
+    const std::size_t most = options.pool_bytes() - sizeof(Frame);
     std::vector<ModelCapacities> capacities(models_.size());
     if (!try_plan_pools(setup_, headers_, most, cache, capacities))
     {

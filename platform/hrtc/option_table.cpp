@@ -39,7 +39,8 @@ void declare_scene(CommandLine& line, Options& options, RawOptions& raw)
         .repeatable();
     line.add_option("--objects", options.objects_max,
                     "Room for so many objects, at least those that are placed; 1 to 4096 "
-                    "[as many as are placed]")
+                    "[as many as are placed; of a host's scene as many as --pool-mib has of 4 KiB, "
+                    "64 at least]")
         .integer_between(1U, kMaxObjects);
     line.add_option(
             "--material", raw.materials,

@@ -84,6 +84,10 @@ struct Options
     std::string as_file; ///< All options, as a file for --config.
     RtThreadOptions thread;
 
+    [[nodiscard]] std::size_t pool_bytes() const noexcept
+    {
+        return static_cast<std::size_t>(pool_mib * 0x1p20);
+    }
     [[nodiscard]] Duration period() const noexcept { return nanoseconds(1'000'000'000 / rate_hz); }
     [[nodiscard]] std::uint64_t frames() const noexcept
     {

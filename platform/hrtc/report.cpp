@@ -205,9 +205,10 @@ Json pairs_of(const RunRecord& record)
     return list;
 }
 
-Json scene_of(const FinishedRun& run)
+Json scene_of(const RunRecord& record)
 {
-    const RunStatistics& statistics = run.statistics;
+    const RunStatistics& statistics = record.run.statistics;
+    const SceneCapacities room = capacities_of(record.controller.setup());
     Json refused = Json::object();
     for (std::size_t i = 0; i < kChangeRefusals; ++i)
     {
@@ -215,13 +216,15 @@ Json scene_of(const FinishedRun& run)
     }
     return {{"objects", statistics.objects_now},
             {"objects_max", statistics.objects_max},
+            {"objects_room", room.objects},
             {"pairs_awake_max", statistics.pairs_awake_max},
+            {"pairs_room", room.pairs},
             {"invisible_wall_frames", statistics.invisible_wall_frames},
             {"crowded_frames", statistics.crowded_frames},
             {"shed_pairs", statistics.shed_pairs},
-            {"came", run.scene_news.came},
-            {"went", run.scene_news.went},
-            {"passed_over", run.scene_news.passed_over},
+            {"came", record.run.scene_news.came},
+            {"went", record.run.scene_news.went},
+            {"passed_over", record.run.scene_news.passed_over},
             {"walks", statistics.scene_walks},
             {"changes_refused", refused}};
 }
@@ -429,7 +432,7 @@ Json make_report(const Options& options, const Controller& controller, const Fin
             {"answers", answers_of(statistics.answers, record.controller.diagonal_world_m())},
             {"work", work_of(statistics)},
             {"budgets", budgets_of(record)},
-            {"scene", scene_of(record.run)},
+            {"scene", scene_of(record)},
             {"pools", pools_of(record)},
             {"cache", cache_of(record)},
             {"wire", wire_of(record)},

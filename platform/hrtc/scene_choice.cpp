@@ -5,6 +5,7 @@
 #include "host_tools/scene/placed_models.hpp"
 #include "platform/hrtc/messages.hpp"
 #include "platform/hrtc/object_pose.hpp"
+#include "platform/hrtc/scene_room.hpp"
 #include "rt_core/limits.hpp"
 #include "transport/content_hash.hpp"
 
@@ -24,8 +25,6 @@ namespace
 {
 
 constexpr std::chrono::milliseconds kPause{2};
-/// A scene from a host may grow to twice what it is at the start, and to so much at least.
-constexpr std::size_t kRoomLeast = 64;
 
 /// What the host shows by now, as far as it serves the models. None yet: why.
 std::optional<std::string> take_objects(Options& options, std::vector<HostObject>& shown,
@@ -135,8 +134,8 @@ Result<ShownScene, Refusal> take_shown_scene(Options& options, dds::DdsClient& c
     }
     if (options.objects_max == 0)
     {
-        options.objects_max = static_cast<std::uint32_t>(
-            std::clamp<std::size_t>(2 * options.objects.size(), kRoomLeast, kMaxObjects));
+        options.objects_max = std::max(SceneRoom::of(options.pool_bytes()).objects,
+                                       static_cast<std::uint32_t>(options.objects.size()));
     }
     return scene;
 }

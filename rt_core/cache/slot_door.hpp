@@ -41,6 +41,11 @@ struct PieceWish
 /// so what a frame learns is what it popped, however the threads ran.
 struct SlotDoor
 {
+    /// Wishes of all models under way at once: what the transport side remembers. With more it
+    /// would forget the oldest, however urgent, and what it forgets is asked again when it times
+    /// out.
+    static constexpr std::uint32_t kOpenWishes = 256;
+
     /// Room for every slot in both queues, so those never refuse, and for link updates while those
     /// leave arrivals their room (has_room_for_update()); for so many wishes.
     SlotDoor(Arena& arena, std::size_t slots, std::size_t wishes) noexcept

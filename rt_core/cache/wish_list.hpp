@@ -33,6 +33,9 @@ public:
     /// so many a call that each is looked at once in `timeout` calls. `timeout` > 0, in frames.
     void expire(std::uint32_t frame, std::uint32_t timeout = kWishTimeoutFrames) noexcept;
 
+    /// Of all models.
+    [[nodiscard]] std::uint32_t under_way() const noexcept { return place_of_.size(); }
+
 private:
     friend class WishList;
     friend class CacheValidator;

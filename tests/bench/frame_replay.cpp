@@ -27,7 +27,7 @@ FrameRun make_slide(const Scene& scene, double speed_diag_per_s, std::uint32_t s
                     std::size_t pool_bytes, std::uint32_t frames)
 {
     FrameRun run{
-        scene, slide_motion(scene.touch(), speed_diag_per_s, frames), kApproachFrames, {}, {}};
+        scene, slide_motion(scene.touch(), speed_diag_per_s, frames), kApproachFrames, {}, {}, 1};
     ToolSpec tool;
     tool.radius_m = kRadius_diag * scene.model.diagonal_m;
     tool.speed_max_m_per_s = kFollowTimes * speed_diag_per_s * scene.model.diagonal_m;
@@ -72,7 +72,7 @@ std::optional<std::string> FrameReplay::run(CacheState caches, std::uint32_t pas
 
 std::optional<std::string> FrameReplay::run_once(CacheState caches, std::size_t frames)
 {
-    test::FrameRig rig(run_.scene.model, run_.rig);
+    test::FrameRig rig(std::vector(run_.models, &run_.scene.model), run_.rig);
     StageTimer timer;
     std::uint64_t allocations = 0;
     std::uint64_t bytes_before = 0;

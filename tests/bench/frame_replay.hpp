@@ -35,6 +35,7 @@ struct FrameRun
     std::size_t lead_in{0}; ///< Frames at the start that are run and not counted.
     test::RigOptions rig;
     Budgets budgets;
+    std::uint32_t models{1}; ///< That share the pools, all the scene's; rig.objects show them.
 
     [[nodiscard]] std::size_t counted() const { return goals_m.size() - lead_in; }
 };

@@ -15,4 +15,7 @@ namespace tactus::bench
 /// What poses from outside do to a force, and what they cost a frame.
 [[nodiscard]] std::vector<Case> scene_pose_cases();
 
+/// In how much memory scenes start.
+[[nodiscard]] std::vector<Case> scene_memory_cases();
+
 } // namespace tactus::bench

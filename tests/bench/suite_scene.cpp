@@ -353,6 +353,7 @@ std::vector<Case> scene_cases()
             make_case(fmt::format("{} objects, 4 tools, {}", test_case.objects, without.name),
                       When::always, run_scene_case, test_case));
     }
+    std::ranges::move(scene_memory_cases(), std::back_inserter(cases));
     std::ranges::move(scene_pose_cases(), std::back_inserter(cases));
     std::ranges::move(scene_wire_cases(), std::back_inserter(cases));
     return cases;

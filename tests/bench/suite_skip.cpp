@@ -26,6 +26,7 @@ struct Without
 {
     const char* name;
     void (*leave_out)(FrameRun& run);
+    bool is_of_models{false}; ///< Also measured with several models.
 };
 
 void keep_splits(FrameRun& run)
@@ -39,7 +40,7 @@ void keep_splits(FrameRun& run)
 constexpr double kFixedRadius = 1.5;
 
 constexpr std::array<Without, 14> kWithout{{
-    {"all shortcuts", [](FrameRun&) {}},
+    {"all shortcuts", [](FrameRun&) {}, true},
     {"all objects near", [](FrameRun& run) { run.rig.variant.finds_neighbours = false; }},
     {"no rest of tools", [](FrameRun& run) { run.rig.variant.lets_tools_rest = false; }},
     {"no rest of frames", [](FrameRun& run) { run.rig.variant.lets_frames_rest = false; }},
@@ -50,7 +51,8 @@ constexpr std::array<Without, 14> kWithout{{
      [](FrameRun& run) { run.rig.variant.fixed_radius = kFixedRadius; }},
     {"refit of everything", [](FrameRun& run) { run.rig.variant.refits_changed_only = false; }},
     {"no coarsening", keep_splits},
-    {"all models asked for", [](FrameRun& run) { run.rig.variant.asks_near_models_only = false; }},
+    {"all models asked for", [](FrameRun& run) { run.rig.variant.asks_near_models_only = false; },
+     true},
     {"a search every frame", [](FrameRun& run) { run.rig.variant.keeps_searches = false; }},
     {"no prefetch", [](FrameRun& run) { run.rig.variant.asks_ahead = false; }},
     {"none of them",
@@ -75,8 +77,19 @@ struct SkipCase
 {
     SceneSource scene;
     double pool_mib;
+    std::uint32_t models; ///< One object each; the tool touches the first.
     Without without;
 };
+
+/// From the touched object to the next, farther than the tool ever is from the first.
+constexpr double kModelsApart_diag = 4.0;
+
+std::string name_of(const SkipCase& test_case)
+{
+    return test_case.models == 1
+               ? test_case.scene.name
+               : fmt::format("{}, {} models", test_case.scene.name, test_case.models);
+}
 
 /// Half flight, half touch: a shortcut may be for either.
 FrameRun make_run(const CaseContext& context, const SkipCase& test_case, const Scene& scene)
@@ -91,6 +104,13 @@ FrameRun make_run(const CaseContext& context, const SkipCase& test_case, const S
     run.rig.tools[0].passes_through = true; // The same way whatever is known.
     run.rig.courier_steps_per_frame = 1;
     run.rig.faults.delay_polls_min = run.rig.faults.delay_polls_max = 10;
+    run.models = test_case.models;
+    for (std::uint32_t i = 0; i < run.models; ++i)
+    {
+        run.rig.objects.push_back({ModelId{i}});
+        run.rig.poses.emplace_back();
+        run.rig.poses[i].translation_m.x() = kModelsApart_diag * scene.model.diagonal_m * i;
+    }
     return run;
 }
 
@@ -140,7 +160,7 @@ CaseFailure run_skip_case(const CaseContext& context, const SkipCase& test_case)
         return failure;
     }
     Row common = context.common_row(scene.value()->model.name);
-    common.test_case = scene.value()->model.name;
+    common.test_case = test_case.models == 1 ? scene.value()->model.name : name_of(test_case);
     common.setting = test_case.without.name;
     common.frames = run.counted();
     common.hash = replay.hash();
@@ -183,17 +203,25 @@ CaseFailure run_skip_case(const CaseContext& context, const SkipCase& test_case)
 std::vector<Case> skip_cases()
 {
     std::vector<Case> cases;
-    const auto add = [&](When when, const SceneSource& scene, double pool_mib)
+    const auto add = [&](When when, const SkipCase& test_case)
+    {
+        cases.push_back(make_case(fmt::format("{}, {}", name_of(test_case), test_case.without.name),
+                                  when, run_skip_case, test_case));
+    };
+    const auto add_all = [&](When when, const SceneSource& scene, double pool_mib)
     {
         for (const Without& without : kWithout)
         {
-            cases.push_back(make_case(fmt::format("{}, {}", scene.name, without.name), when,
-                                      run_skip_case, SkipCase{scene, pool_mib, without}));
+            add(when, {scene, pool_mib, 1, without});
+            if (without.is_of_models)
+            {
+                add(when, {scene, 2.0 * pool_mib, 8, without});
+            }
         }
     };
-    add(When::always, kBunny, 4.0);
-    add(When::full_only, kFineBunny, 16.0);
-    add(When::named_only, kTiny, 2.0);
+    add_all(When::always, kBunny, 4.0);
+    add_all(When::full_only, kFineBunny, 16.0);
+    add_all(When::named_only, kTiny, 2.0);
     return cases;
 }
 

@@ -114,7 +114,8 @@ struct Run
     RigOptions options;
     Budgets budgets;
     std::uint32_t frames{kFrames};
-    bool objects_move{false};
+    void (*change_scene)(FrameRig& rig, std::uint32_t frame){nullptr}; ///< Before each frame.
+    std::uint32_t refused{0};                                          ///< Changes, in all.
     std::function<Mat3(std::uint32_t)> turning{turn};
 };
 
@@ -138,6 +139,13 @@ RigOptions crowd(RigOptions options)
     return options;
 }
 
+/// For more objects than are there at first.
+RigOptions with_room(RigOptions options)
+{
+    options.capacities.objects = 4;
+    return options;
+}
+
 /// A mesh that surfaces hold back.
 RigOptions held_mesh(RigOptions options, const MeshCore& core)
 {
@@ -153,7 +161,7 @@ Run peg_in_hole(RigOptions options)
     const TestModel& peg = test_model("peg", make_shape(Shape::peg, 300).value());
     options.tools = {{5e-5, 500.0, 8.0, 1.0, MeshCore{ModelId{1}}}};
     options.objects = {{ModelId{0}, {500.0, 0.3, 0.2, 0.5}}};
-    return {"peg", {&socket, &peg}, go_in, options, {}, kFrames, false, screw};
+    return {"peg", {&socket, &peg}, go_in, options, {}, kFrames, nullptr, 0, screw};
 }
 
 /// To and fro, and turning.
@@ -167,6 +175,53 @@ ObjectPose pose_at(std::uint32_t frame, std::size_t object, std::int64_t now_ns)
     pose.arrival_ns = now_ns - (frame % 100 == 99 ? 200'000'000 : 1'000'000);
     return pose;
 }
+
+void move_objects(FrameRig& rig, std::uint32_t frame)
+{
+    for (std::size_t object = 0; object < 2; ++object)
+    {
+        rig.place_object(pose_at(frame, object, rig.now_ns()), object);
+    }
+}
+
+SceneChange change_of(SceneChangeKind kind, std::uint32_t number, std::uint32_t generation = 0)
+{
+    SceneChange change;
+    change.kind = kind;
+    change.number = number;
+    change.generation = generation;
+    change.object = {ModelId{number % 2}, {350.0, 0.4, 0.3, 0.2}};
+    return change;
+}
+
+/// All kinds of changes, of objects under a tool as well, and some that must be refused.
+void come_and_go(FrameRig& rig, std::uint32_t frame)
+{
+    using Kind = SceneChangeKind;
+    const auto at = [&rig, frame](std::uint32_t when, SceneChange change)
+    {
+        if (frame == when)
+        {
+            change.pose.translation_m = Vec3(0.02, 0.0, 0.0) * change.number;
+            rig.change(change);
+        }
+    };
+    at(0, change_of(Kind::object_moves, 1));
+    at(120, change_of(Kind::object_goes, 1));
+    at(150, change_of(Kind::tool_goes, 2));
+    at(180, change_of(Kind::object_comes, 3, 1));
+    at(200, change_of(Kind::object_moves, 1)); // It is not there.
+    at(240, change_of(Kind::tool_comes, 2));
+    at(240, change_of(Kind::tool_comes, 2)); // It is.
+    at(260, change_of(Kind::object_comes, 1, 1));
+    at(300, change_of(Kind::object_goes, 0));
+    at(330, change_of(Kind::object_comes, 0, 1));
+    at(331, change_of(Kind::object_moves, 0)); // The one before.
+    at(350, change_of(Kind::object_comes, 4)); // No such place.
+    at(400, change_of(Kind::tool_goes, 0));
+    at(420, change_of(Kind::tool_comes, 0));
+}
+constexpr std::uint32_t kRefusedOfThose = 4;
 
 std::vector<Run> runs()
 {
@@ -198,11 +253,19 @@ std::vector<Run> runs()
             {"box", {models[3]}, slide, with_core(usual, Box{Vec3(0.004, 0.002, 0.003)}), {}},
             {"mesh", {models[0], models[1]}, land, with_core(usual, mesh), {}, kMeshFrames},
             {"held_mesh", {models[0], models[1]}, land, held_mesh(usual, mesh), {}, kMeshFrames},
-            {"crowd", {models[0], models[1]}, slide, crowd(usual), {}, kFrames, true},
+            {"crowd", {models[0], models[1]}, slide, crowd(usual), {}, kFrames, move_objects},
+            {"comings",
+             {models[0], models[1]},
+             slide,
+             with_room(crowd(usual)),
+             {},
+             kFrames,
+             come_and_go,
+             kRefusedOfThose},
             peg_in_hole(usual)};
 }
 
-/// False when the file can't be written.
+/// False when the file can't be written, or other changes of the scene were refused than must be.
 bool record(const Run& run, const std::filesystem::path& folder)
 {
     FrameRig rig(run.models, run.options);
@@ -210,6 +273,7 @@ bool record(const Run& run, const std::filesystem::path& folder)
     std::uint64_t faces = 0;
     std::uint32_t contacts = 0;
     std::uint32_t static_frames = 0;
+    std::uint32_t refused = 0;
     for (std::uint32_t frame = 0; frame < run.frames; ++frame)
     {
         for (std::uint32_t i = 0; i < tools.size(); ++i)
@@ -217,23 +281,28 @@ bool record(const Run& run, const std::filesystem::path& folder)
             tools[i].position_m = run.motion(*run.models[0], frame + 100 * i);
             tools[i].rotation = run.turning(frame);
         }
-        for (std::size_t object = 0; run.objects_move && object < 2; ++object)
+        if (run.change_scene != nullptr)
         {
-            rig.place_object(pose_at(frame, object, rig.now_ns()), object);
+            run.change_scene(rig, frame);
         }
         const FrameOutput output = rig.step(tools, run.budgets);
         faces += output.work.splits;
         contacts += output.tools[0].in_contact ? 1U : 0U;
         static_frames += output.models[0].is_static ? 1U : 0U;
+        for (const std::uint32_t count : output.scene.refused)
+        {
+            refused += count;
+        }
     }
     const std::vector<std::byte> bytes = rig.finish_recording();
     std::ofstream file(folder / (std::string(run.name) + ".rec"), std::ios::binary);
     file.write(reinterpret_cast<const char*>(bytes.data()),
                static_cast<std::streamsize>(bytes.size()));
-    std::printf("%s: %u frames, %u in contact, %u static, %llu splits, %zu bytes\n", run.name,
-                run.frames, contacts, static_frames, static_cast<unsigned long long>(faces),
-                bytes.size());
-    return static_cast<bool>(file.flush());
+    std::printf("%s: %u frames, %u in contact, %u static, %llu splits, %u changes refused, "
+                "%zu bytes\n",
+                run.name, run.frames, contacts, static_frames,
+                static_cast<unsigned long long>(faces), refused, bytes.size());
+    return static_cast<bool>(file.flush()) && refused == run.refused;
 }
 
 } // namespace

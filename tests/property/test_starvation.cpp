@@ -41,6 +41,33 @@ TEST_P(Starvation, a_touch_stays_exact_and_is_not_held_back)
     EXPECT_LE(figures.force_step_n, shares_contact ? 0.1 : 0.05);
 }
 
+/// As many tools as there may be, all but one greedy, in a scene of 100 objects.
+TEST(StarvationOfMany, sixteen_tools_among_a_hundred_objects_leave_a_touch_as_it_is_when_alone)
+{
+    const TestModel& model =
+        test_model("bumpy-200k", make_shape(Shape::bumpy_sphere, 200'000).value(), 500);
+    const std::uint64_t seed = seed_of(2'312);
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    GreedyCase greedy{"alone", GreedyCase::Others::none};
+    greedy.tools = kMaxTools - 1;
+    greedy.objects = 100;
+    const GreedyFigures alone = run_greedy(model, greedy, 600, seed);
+    ASSERT_GT(alone.frames, 200U);
+    EXPECT_EQ(alone.exact, alone.frames);
+    for (const auto others : {GreedyCase::Others::pass, GreedyCase::Others::teleport})
+    {
+        greedy.others = others;
+        greedy.hands_diag_per_s = 4.0;
+        const GreedyFigures among_others = run_greedy(model, greedy, 600, seed);
+        EXPECT_EQ(among_others.broken, "");
+        EXPECT_EQ(among_others.frames, alone.frames);
+        EXPECT_EQ(among_others.exact, among_others.frames);
+        EXPECT_EQ(among_others.held_back, 0U);
+        EXPECT_LE(among_others.splits_max, greedy.splits);
+        EXPECT_NEAR(among_others.force_step_n, alone.force_step_n, 1e-9);
+    }
+}
+
 /// Pools in which one touch hardly has room: the others give theirs up, and the frame says so.
 TEST(Shedding, begins_where_a_touch_finds_no_room_and_is_told)
 {

@@ -3,6 +3,7 @@
 #include "tests/shared/frame_verdict.hpp"
 
 #include <array>
+#include <span>
 
 namespace tactus::test
 {
@@ -10,14 +11,27 @@ namespace tactus::test
 namespace
 {
 
-Verdict overfull(const PoolUse& use)
+/// Models share their pools: one may have more than its part while another has less.
+Verdict overfull(std::span<const ModelOutput> models, PoolUse ModelOutput::*pool)
 {
-    if (use.used <= use.used_max && use.used_max <= use.capacity)
+    std::uint64_t used = 0;
+    std::uint64_t capacity = 0;
+    for (const ModelOutput& model : models)
     {
-        return std::nullopt;
+        const PoolUse& use = model.*pool;
+        if (use.used > use.used_max || (models.size() == 1 && use.used_max > use.capacity))
+        {
+            return "a pool of " + std::to_string(use.capacity) + " had " +
+                   std::to_string(use.used) + " in use, at most " + std::to_string(use.used_max);
+        }
+        used += use.used;
+        capacity += use.capacity;
     }
-    return "a pool of " + std::to_string(use.capacity) + " had " + std::to_string(use.used) +
-           " in use, at most " + std::to_string(use.used_max);
+    if (used > capacity)
+    {
+        return "pools of " + std::to_string(capacity) + " had " + std::to_string(used) + " in use";
+    }
+    return std::nullopt;
 }
 
 } // namespace
@@ -51,15 +65,13 @@ Verdict broken_budget(const FrameOutput& output, const Budgets& budgets)
                    std::to_string(count.most);
         }
     }
-    for (const ModelOutput& model : output.models)
+    for (PoolUse ModelOutput::*const pool :
+         {&ModelOutput::pages, &ModelOutput::index_pages, &ModelOutput::faces, &ModelOutput::blocks,
+          &ModelOutput::nodes})
     {
-        for (const PoolUse& use :
-             {model.pages, model.index_pages, model.faces, model.blocks, model.nodes})
+        if (const Verdict verdict = overfull(output.models, pool))
         {
-            if (const Verdict verdict = overfull(use))
-            {
-                return verdict;
-            }
+            return verdict;
         }
     }
     return std::nullopt;

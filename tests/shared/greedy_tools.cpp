@@ -8,6 +8,7 @@
 #include "tests/shared/surface_slide.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace tactus::test
 {
@@ -17,13 +18,14 @@ namespace
 
 using Others = GreedyCase::Others;
 
-constexpr std::size_t kOthers = 3;
 constexpr double kRadius_diag = 0.01;
 constexpr double kOwnSpeed_diag_per_s = 0.5;
 constexpr double kPeriod_s = 0.001;
 constexpr std::uint32_t kLeadFrames = 500;
 constexpr std::uint32_t kTeleportFrames = 10;
 constexpr std::size_t kMiB = std::size_t{1} << 20U;
+/// Between the middles of neighbours: none touches another.
+constexpr double kApart_diag = 1.5;
 
 SlideManner manner_of(const TestModel& model, double speed_diag_per_s, std::uint64_t seed)
 {
@@ -41,6 +43,18 @@ Vec3 somewhere(const TestModel& model, Random& random)
     return to_vec3(model.faces[random.below(static_cast<std::uint32_t>(model.faces.size()))][0]);
 }
 
+/// How far an object's model stands from the first's.
+Vec3 place_of(const TestModel& model, const GreedyCase& greedy, std::uint32_t object)
+{
+    const auto side = static_cast<std::uint32_t>(std::ceil(std::sqrt(greedy.objects)));
+    return kApart_diag * model.diagonal_m * Vec3(object % side, object / side, 0.0);
+}
+
+std::uint32_t others_of(const GreedyCase& greedy)
+{
+    return greedy.others == Others::none ? 0 : greedy.tools;
+}
+
 RigOptions options_of(const TestModel& model, const GreedyCase& greedy)
 {
     RigOptions options;
@@ -49,18 +63,78 @@ RigOptions options_of(const TestModel& model, const GreedyCase& greedy)
     own.radius_m = kRadius_diag * model.diagonal_m;
     own.speed_max_m_per_s = 1.5 * kOwnSpeed_diag_per_s * model.diagonal_m;
     options.tools = {own};
-    const std::size_t others = greedy.others == Others::none ? 0 : kOthers;
-    for (std::size_t i = 0; i < others; ++i)
+    for (std::uint32_t i = 0; i < others_of(greedy); ++i)
     {
         ToolSpec other = own;
         other.passes_through = greedy.others != Others::are_held;
         other.speed_max_m_per_s = other.passes_through ? 10.0 : greedy.follow_m_per_s;
         options.tools.push_back(other);
     }
+    for (std::uint32_t i = 0; i < greedy.objects; ++i)
+    {
+        options.objects.push_back({ModelId{i % greedy.models}});
+        options.poses.emplace_back();
+        options.poses.back().translation_m = place_of(model, greedy, i);
+    }
     options.courier_steps_per_frame = 1;
     options.faults.delay_polls_min = options.faults.delay_polls_max = 10;
     return options;
 }
+
+/// Where the tools' hands are, frame by frame: the first one's does not depend on the others'.
+class GreedyHands
+{
+public:
+    GreedyHands(const TestModel& model, const GreedyCase& greedy, std::uint64_t seed)
+        : model_(model)
+        , greedy_(greedy)
+        , tree_(model.faces)
+        , random_(Random::seeded(seed))
+        , goals_(1 + others_of(greedy))
+    {
+        for (std::size_t i = 0; i < goals_.size(); ++i)
+        {
+            const double speed = i == 0 ? kOwnSpeed_diag_per_s : greedy.hands_diag_per_s;
+            slides_.emplace_back(tree_, manner_of(model, speed, seed + i),
+                                 somewhere(model, random_));
+        }
+    }
+    GreedyHands(const GreedyHands&) = delete; // Slides keep the tree's address.
+    GreedyHands& operator=(const GreedyHands&) = delete;
+
+    const std::vector<Vec3>& next()
+    {
+        goals_[0] = slides_[0].next();
+        for (std::uint32_t i = 1; i < goals_.size(); ++i)
+        {
+            if (greedy_.others != Others::teleport)
+            {
+                goals_[i] = slides_[i].next() + place(i % greedy_.objects);
+            }
+            else if (frame_ % kTeleportFrames == 0)
+            {
+                goals_[i] = somewhere(model_, random_);
+                goals_[i] += place(greedy_.objects > 1 ? random_.below(greedy_.objects) : 0);
+            }
+        }
+        ++frame_;
+        return goals_;
+    }
+
+private:
+    [[nodiscard]] Vec3 place(std::uint32_t object) const
+    {
+        return place_of(model_, greedy_, object);
+    }
+
+    const TestModel& model_;
+    const GreedyCase& greedy_;
+    FaceTree tree_;
+    Random random_;
+    std::vector<SurfaceSlide> slides_;
+    std::vector<Vec3> goals_;
+    std::uint32_t frame_{0};
+};
 
 } // namespace
 
@@ -79,6 +153,8 @@ const std::vector<GreedyCase>& greedy_cases()
         {"held, 0.5 m/s, hands 4 diag/s, K 16", Others::are_held, 4.0, 0.5, 16},
         {"held, 0.05 m/s, hands 4 diag/s, K 16", Others::are_held, 4.0, 0.05, 16},
         {"pass, 4 diag/s, K 64, 2 MiB", Others::pass, 4.0, 0.0, 64, 2 * kMiB},
+        {"4 tools teleport on 4 models, K 64", Others::teleport, 0.0, 0.0, 64, 8 * kMiB, false, 4,
+         4, 4},
     };
     return cases;
 }
@@ -86,41 +162,19 @@ const std::vector<GreedyCase>& greedy_cases()
 GreedyFigures run_greedy(const TestModel& model, const GreedyCase& greedy, std::uint32_t frames,
                          std::uint64_t seed)
 {
-    const FaceTree tree(model.faces);
-    Random random = Random::seeded(seed);
-    FrameRig rig(model, options_of(model, greedy));
-    const std::size_t tools = greedy.others == Others::none ? 1 : 1 + kOthers;
-    std::vector<SurfaceSlide> slides;
-    for (std::size_t i = 0; i < tools; ++i)
-    {
-        slides.emplace_back(
-            tree,
-            manner_of(model, i == 0 ? kOwnSpeed_diag_per_s : greedy.hands_diag_per_s, seed + i),
-            somewhere(model, random));
-    }
+    FrameRig rig(std::vector(greedy.models, &model), options_of(model, greedy));
+    GreedyHands hands(model, greedy, seed);
     if (greedy.all_resident)
     {
         load_everything(rig);
     }
     Budgets budgets;
     budgets.splits = budgets.merges = greedy.splits;
-    std::vector<Vec3> goals(tools);
     GreedyFigures figures;
     Vec3 last_force(0.0, 0.0, 0.0);
     for (std::uint32_t frame = 0; frame < kLeadFrames + frames; ++frame)
     {
-        for (std::size_t i = 0; i < tools; ++i)
-        {
-            if (i == 0 || greedy.others != Others::teleport)
-            {
-                goals[i] = slides[i].next();
-            }
-            else if (frame % kTeleportFrames == 0)
-            {
-                goals[i] = somewhere(model, random);
-            }
-        }
-        const FrameOutput output = rig.step(goals, budgets);
+        const FrameOutput output = rig.step(hands.next(), budgets);
         if (const Verdict verdict = broken_budget(output, budgets);
             verdict && figures.broken.empty())
         {

@@ -31,9 +31,14 @@ struct GreedyCase
     std::uint32_t splits{64};
     std::size_t pool_bytes{std::size_t{8} << 20U};
     bool all_resident{false}; ///< Every chunk is here before the first frame.
+    std::uint32_t tools{3};   ///< The others. Each slides over an object of its own if it can;
+                              ///< one that teleports comes to any.
+    std::uint32_t models{1};  ///< All of the same shape.
+    /// On a square grid; they show the models in turn. The first tool slides over the first.
+    std::uint32_t objects{1};
 };
 
-/// The cases of docs/benchmarks.md, three others each.
+/// The cases of docs/benchmarks.md.
 [[nodiscard]] const std::vector<GreedyCase>& greedy_cases();
 
 /// What became of the first tool while its hand is in the surface.

@@ -24,7 +24,8 @@ namespace
 
 constexpr double kRounding_m = 1e-14;
 constexpr double kClearRounding_m = 1e-12;
-constexpr std::uint32_t kScenePlaces = 24; ///< Of objects.
+constexpr std::uint32_t kScenePlaces = 24;  ///< Of objects.
+constexpr std::uint32_t kRoundFrames = 250; ///< Before the scene begins anew.
 
 /// What the scene's maker knows of it.
 class Known
@@ -37,7 +38,8 @@ public:
         ObjectPose pose; ///< Of the model's frame.
     };
 
-    explicit Known(const std::vector<const TestModel*>& models)
+    Known(const std::vector<const TestModel*>& models, std::uint32_t tools)
+        : tools_here(tools, true)
     {
         for (const TestModel* model : models)
         {
@@ -59,6 +61,7 @@ public:
     [[nodiscard]] std::uint32_t models() const { return static_cast<std::uint32_t>(trees_.size()); }
 
     std::map<std::uint32_t, Thing> things;
+    std::vector<bool> tools_here;
 
 private:
     std::vector<FaceTree> trees_;
@@ -68,8 +71,8 @@ private:
 class Story
 {
 public:
-    Story(std::uint64_t seed, double diagonal_m, std::uint32_t tools)
-        : random_(Random::seeded(seed)), diagonal_m_(diagonal_m), goals_(tools)
+    Story(const Random& random, double diagonal_m, std::uint32_t tools)
+        : random_(random), diagonal_m_(diagonal_m), goals_(tools)
     {
         for (Vec3& goal : goals_)
         {
@@ -84,7 +87,7 @@ public:
         const std::uint32_t changes = random_.below(4U);
         for (std::uint32_t i = 0; i < changes; ++i)
         {
-            change(next(known));
+            change(random_.one_in(10) ? next_of_tool(known) : next(known));
         }
     }
     [[nodiscard]] const std::vector<Vec3>& move()
@@ -107,6 +110,28 @@ public:
 private:
     [[nodiscard]] double world_m() const { return 1.5 * diagonal_m_; }
     void refuse(ChangeRefusal refusal) { ++refused_[static_cast<std::size_t>(refusal)]; }
+
+    /// Of one tool more than there are.
+    SceneChange next_of_tool(Known& known)
+    {
+        SceneChange change;
+        change.number = random_.below(static_cast<std::uint32_t>(goals_.size()) + 1);
+        const bool comes = random_.one_in(2);
+        change.kind = comes ? SceneChangeKind::tool_comes : SceneChangeKind::tool_goes;
+        if (change.number == goals_.size())
+        {
+            refuse(ChangeRefusal::number_too_big);
+        }
+        else if (known.tools_here[change.number] == comes)
+        {
+            refuse(comes ? ChangeRefusal::already_here : ChangeRefusal::not_here);
+        }
+        else
+        {
+            known.tools_here[change.number] = comes;
+        }
+        return change;
+    }
 
     SceneChange next(Known& known)
     {
@@ -194,7 +219,12 @@ public:
         }
         for (std::uint32_t i = 0; i < output.tools.size(); ++i)
         {
-            judge_tool(rig, output, i, where);
+            if (output.tools[i].is_gone == known_.tools_here[i])
+            {
+                truth.flag(where + ", tool " + std::to_string(i) + ": is here, or isn't");
+            }
+            known_.tools_here[i] ? judge_tool(rig, output, i, where)
+                                 : judge_absent(output, i, where);
         }
         figures_.exact += static_cast<std::uint64_t>(
             std::ranges::count(output.pairs, AnswerKind::exact, &PairOutput::kind));
@@ -240,6 +270,15 @@ private:
             figures_.truth.flag(where + ": a tool without a pair");
         }
     }
+    void judge_absent(const FrameOutput& output, std::uint32_t tool, const std::string& where)
+    {
+        ++figures_.gone;
+        if (output.tools[tool].force_n != Vec3(0.0, 0.0, 0.0) ||
+            std::ranges::count(output.pairs, tool, &PairOutput::tool) > 0)
+        {
+            figures_.truth.flag(where + ": force or pairs of a tool that is gone");
+        }
+    }
     void observe(long double beyond_m, double allowed_m, const std::string& text)
     {
         const auto error = static_cast<double>(beyond_m) / allowed_m;
@@ -254,6 +293,34 @@ private:
     SceneFigures& figures_;
 };
 
+/// A scene from its beginning on, from so many frames of the trial on.
+void run_round(const SceneTrial& trial, std::uint32_t first, SceneFigures& figures)
+{
+    const double diagonal_m = trial.models[0]->diagonal_m;
+    const std::uint64_t seed = trial.seed + first;
+    Random random = Random::seeded(seed);
+    RigOptions options = trial.hardship.rig;
+    options.tools.assign(trial.tools, ToolSpec{0.01 * diagonal_m, 500.0, 8.0, 1.0});
+    options.capacities.objects = kScenePlaces;
+    if (!random.one_in(4))
+    {
+        options.variant = any_variant(random);
+        ++figures.variants;
+    }
+    FrameRig rig(trial.models, options);
+    Known known(trial.models, trial.tools);
+    known.things[0] = {0, ModelId{0}, {}};
+    Story story(random, diagonal_m, trial.tools);
+    SceneJudge judge(known, figures);
+    for (std::uint32_t frame = 0; frame < std::min(trial.frames - first, kRoundFrames); ++frame)
+    {
+        story.tell(known, [&rig](const SceneChange& change) { rig.change(change); });
+        const FrameOutput output = rig.step(story.move(), trial.hardship.budgets);
+        judge.judge(rig, output, story,
+                    "seed " + std::to_string(seed) + ", frame " + std::to_string(frame));
+    }
+}
+
 } // namespace
 
 ObjectPose any_pose(Random& random, double world_m)
@@ -266,26 +333,29 @@ ObjectPose any_pose(Random& random, double world_m)
     return pose;
 }
 
+FrameVariant any_variant(Random& random)
+{
+    FrameVariant variant;
+    for (bool FrameVariant::*const shortcut :
+         {&FrameVariant::finds_neighbours, &FrameVariant::lets_tools_rest,
+          &FrameVariant::lets_frames_rest, &FrameVariant::lets_pairs_rest,
+          &FrameVariant::starts_warm, &FrameVariant::keeps_certificates,
+          &FrameVariant::refits_changed_only, &FrameVariant::asks_near_models_only,
+          &FrameVariant::keeps_searches, &FrameVariant::asks_ahead})
+    {
+        variant.*shortcut = random.one_in(2);
+    }
+    return variant;
+}
+
 SceneFigures run_scene_trial(const SceneTrial& trial)
 {
-    const double diagonal_m = trial.models[0]->diagonal_m;
     SceneFigures figures;
     figures.truth.name = std::string("scene, ") + trial.hardship.name;
     figures.truth.unit = "of the rounding allowed";
-    RigOptions options = trial.hardship.rig;
-    options.tools.assign(trial.tools, ToolSpec{0.01 * diagonal_m, 500.0, 8.0, 1.0});
-    options.capacities.objects = kScenePlaces;
-    FrameRig rig(trial.models, options);
-    Known known(trial.models);
-    known.things[0] = {0, ModelId{0}, {}};
-    Story story(trial.seed, diagonal_m, trial.tools);
-    SceneJudge judge(known, figures);
-    for (std::uint32_t frame = 0; frame < trial.frames; ++frame)
+    for (std::uint32_t frame = 0; frame < trial.frames; frame += kRoundFrames)
     {
-        story.tell(known, [&rig](const SceneChange& change) { rig.change(change); });
-        const FrameOutput output = rig.step(story.move(), trial.hardship.budgets);
-        judge.judge(rig, output, story,
-                    "seed " + std::to_string(trial.seed) + ", frame " + std::to_string(frame));
+        run_round(trial, frame, figures);
     }
     return figures;
 }

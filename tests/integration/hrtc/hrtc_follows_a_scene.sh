@@ -49,7 +49,8 @@ check report.json scene.objects_max == 3 tools.0.torque_max_nm '>' 0 tools.0.twi
 
 # Left where they are.
 run_hrtc --scene workshop --duration 1 --ignore-poses
-check report.json scene.objects_max '<=' 3 scene.came == 0 scene.went == 0 \
+check report.json scene.objects_room == 512 scene.pairs_room == 32 \
+    scene.objects_max '<=' 3 scene.came == 0 scene.went == 0 \
     models.0.pose.followed == 0
 
 # The host dies, and its objects are gone; one with the same scene steps in, with one object more
@@ -63,7 +64,8 @@ wait_for_line hrtc.log 'is gone' 5
 start_publisher other.gltf --scene workshop
 wait "$controller" || fail "hrtc ended badly: $(cat hrtc.log)"
 cat hrtc.log
-check report.json scene.objects == 3 scene.objects_max == 3 scene.came == 3 \
+check report.json scene.objects == 3 scene.objects_max == 3 scene.objects_room == 3 \
+    scene.pairs_room == 3 scene.came == 3 \
     scene.went == 3 scene.passed_over == 1 \
     scene.changes_refused.number_too_big == 0 wire.host_lost == 1 \
     tools.0.contact_share '>' 0.1 answers.stale '>' 0

@@ -531,6 +531,34 @@ TEST(ChunkCache, has_no_more_wishes_under_way_for_a_whole_model_than_the_limit)
     EXPECT_EQ(rig.fill().size(), 1U) << "as soon as one is answered";
 }
 
+TEST(ChunkCache, has_no_more_wishes_under_way_than_the_transport_side_remembers)
+{
+    constexpr std::uint32_t kPages = 40; // With eight chunks each that the ball meets.
+    constexpr std::uint32_t kSlots = SlotDoor::kOpenWishes + 32;
+    CacheRig rig(kSlots, kPages, kPages * kChunksPerIndexPage * kRecordsPerChunk);
+    rig.budgets.requests = kSlots;
+    for (std::uint32_t page = 0; page < kPages; ++page)
+    {
+        rig.deliver_index_page(page);
+    }
+    const RankedRegion everything = ball(0, kPages * CacheRig::kPageDistance);
+    const auto ask_for_long = [&]
+    {
+        Chunks asked;
+        for (std::uint32_t frame = 0; frame < 2 * kPages; ++frame) // Each page has its turn.
+        {
+            asked.merge(rig.ask_chunks({everything}));
+        }
+        return asked;
+    };
+    const Chunks asked = ask_for_long();
+    EXPECT_EQ(asked.size(), SlotDoor::kOpenWishes);
+    EXPECT_TRUE(ask_for_long().empty());
+
+    rig.deliver_chunk(*asked.begin());
+    EXPECT_EQ(ask_for_long().size(), 1U) << "one is answered";
+}
+
 TEST(ChunkCache, takes_of_a_model_that_nobody_is_near_all_but_what_is_kept_for_it)
 {
     for (const bool is_near : {false, true})

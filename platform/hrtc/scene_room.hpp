@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/limits.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
+namespace tactus::hrtc
+{
+
+/// How large a scene may be, where nobody says: objects and pairs take some 6 % of the pools each.
+/// The objects that are there from the start always have room.
+struct SceneRoom
+{
+    static constexpr std::size_t kPoolAnObject = std::size_t{4} << 10U;
+    static constexpr std::size_t kPoolAPair = std::size_t{64} << 10U;
+    static constexpr std::size_t kLeastObjects = 64;
+    static constexpr std::size_t kLeastPairs = 16;
+
+    std::uint32_t objects{0}; ///< 64 to kMaxObjects.
+    std::uint32_t pairs{0};   ///< 16 to kMaxPairs.
+
+    /// In pools of this size, everything counted.
+    [[nodiscard]] static constexpr SceneRoom of(std::size_t pool_bytes) noexcept
+    {
+        return {static_cast<std::uint32_t>(std::clamp<std::size_t>(pool_bytes / kPoolAnObject,
+                                                                   kLeastObjects, kMaxObjects)),
+                static_cast<std::uint32_t>(
+                    std::clamp<std::size_t>(pool_bytes / kPoolAPair, kLeastPairs, kMaxPairs))};
+    }
+};
+
+} // namespace tactus::hrtc
