@@ -152,7 +152,7 @@ template <int N>
 class Projection
 {
 public:
-    // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): of the arrays only what is used is set.
+    // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): arrays: only what is used is set.
     Projection(std::span<const HalfSpace<N>> planes, const Motion<N>& wanted) noexcept
         : planes_(planes), wanted_(wanted), motion_(wanted)
     {
