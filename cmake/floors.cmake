@@ -38,9 +38,11 @@ tactus_room(rt_core/kernels rt_core/base rt_core/limits.hpp rt_core/math/seen_tr
 tactus_room(rt_core/abtree ${stage_floor} rt_core/kernels)
 tactus_room(rt_core/forest ${stage_floor} rt_core/abtree rt_core/kernels)
 tactus_room(rt_core/predict ${stage_floor})
-tactus_room(rt_core/force ${stage_floor})
+tactus_room(rt_core/force ${stage_floor} rt_core/kernels rt_core/query/probe.hpp)
 tactus_room(rt_core/scene ${stage_floor})
-tactus_room(rt_core/query ${stage_floor} rt_core/abtree rt_core/kernels)
+tactus_room(rt_core/query ${stage_floor} rt_core/abtree rt_core/kernels rt_core/query/probe.hpp)
+# How kernels see a place: what asks a tree and what moves among its faces both do.
+tactus_room(rt_core/query/probe.hpp rt_core/kernels rt_core/limits.hpp rt_core/math)
 tactus_room(rt_core/refine ${stage_floor}
     rt_core/abtree rt_core/forest rt_core/kernels rt_core/cache rt_core/query)
 tactus_room(rt_core/frame rt_core)

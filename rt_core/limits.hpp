@@ -174,20 +174,23 @@ inline constexpr std::uint32_t kMaxLinkUpdatesPerFrame = 64;
 /// After the last it is `under_way` and goes on in the next frame.
 inline constexpr std::uint32_t kProxySteps = 24;
 /// Below this share of the tool's radius a motion isn't worth a step, and the proxy is at rest: 0.1
-/// mN at 500 N/m and 2 mm.
-inline constexpr double kLeastStep = 1e-4;
-/// Triangles that the proxy moves among, 48 B each on the stack. With more in reach it moves less
-/// far in one go.
-inline constexpr std::uint32_t kMaxNearFaces = 768;
-/// How often that list, when it is too long, is made again with half the reach beyond the nearest
-/// face; after it with none, and if that is too much, too, nothing moves: the proxy is `under_way`.
-inline constexpr int kMaxGatherings = 6;
-/// Lists in a frame, each four times as wide as the last, while the proxy comes to the end of one
-/// and is not there yet. After the last it is `under_way`.
-inline constexpr int kMaxVicinities = 4;
+/// uN at 500 N/m and 2 mm.
+inline constexpr double kLeastStep = 1e-7;
+/// The same where friction holds, and what may be missing of a slip: any place in the cone is at
+/// rest, so there is no better one to be near to. 0.1 mN at 500 N/m and 2 mm.
+inline constexpr double kSlipShare = 1e-4;
+/// Triangles this near, as a share of the tool's radius, touch it: they push, rub and may hold.
+/// Wider than a step, or what is just ahead would shorten it to nothing.
+inline constexpr double kTouchShare = 1e-4;
+/// Triangles that the proxy moves among, in batches of eight: 185 B a batch on the stack. With more
+/// in reach those of the farthest batches are left out, and the proxy goes no farther than they are
+/// away: it is `under_way`.
+inline constexpr std::uint32_t kMaxNearBatches = 144;
 /// Times that a step is solved again with the triangle that it would enter; 2 or 3 are usual. What
 /// is still entered after it shortens the step, and the next one begins there. No step is shortened
-/// to nothing: what touches is among the planes from the first, and the rest is kLeastStep away.
+/// to nothing: what touches is among the planes from the first, and the rest is kTouchShare away.
+/// Where friction first touches is found from as many faces in the way, and looks at each; beyond
+/// them from planes seen from afar, in a shorter step.
 inline constexpr std::uint32_t kStepRounds = 16;
 /// How far the proxy may sit inside the tool's radius from the surface, relative to that radius;
 /// what is deeper counts as entered.

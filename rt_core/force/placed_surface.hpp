@@ -3,6 +3,7 @@
 #pragma once
 
 #include "rt_core/force/near_object.hpp"
+#include "rt_core/kernels/kernels.hpp"
 #include "rt_core/math/infinity.hpp"
 #include "rt_core/records/contact.hpp"
 #include "rt_core/records/frame_input.hpp"
@@ -27,6 +28,7 @@ struct PlacedSurface
     double upper_m{kInfinity}; ///< Some surface is within this of the core, in the world.
     std::uint32_t object{0};   ///< Its number in the scene.
     ProxyMemory* memory{nullptr};
+    const Kernels* kernels{&portable_kernels()};
 };
 
 } // namespace tactus

@@ -13,18 +13,10 @@ namespace tactus
 namespace
 {
 
-/// How far beyond the tool's radius triangles are listed: a share of the radius and this many times
-/// the last frame's way. A list that was too short is made again, four times as wide.
-constexpr double kWindow = 0.05;
-constexpr double kWindowWays = 1.5;
 /// Over a curved surface a press turns into a way along it: this share of it within a frame.
 constexpr double kDipShare = 0.1;
 /// A proxy on its way along a surface feels what is this share of the radius below it.
 constexpr double kNearlyTouching = 0.1;
-/// A leap goes this share of the radius along the surface at most, and this share of that above it:
-/// from half-way all triangles are seen below it, on a plane up to 0.8 radii.
-constexpr double kLongestLeap = 0.7;
-constexpr double kLift = 0.1;
 
 /// The planes of one step, and whose they are.
 struct StepPlanes
@@ -118,7 +110,6 @@ ToolOutput Proxy::respond(const ToolGoal& goal, std::span<const PlacedSurface> s
     {
         motion = follow(goal.position_m, travel, surfaces);
     }
-    last_way_m_ = (position_ - anchor_).norm();
     ToolOutput output;
     output.proxy_m = position_;
     output.proxy_rotation = goal.rotation;
@@ -197,43 +188,30 @@ bool Proxy::is_short_of(std::span<const PlacedSurface> surfaces, double travel) 
                                });
 }
 
-/// First straight on as far as nothing is in the way, then among the triangles in reach; where
-/// those end, among those in reach of there.
+/// First straight on as far as nothing is in the way, then among the triangles in reach.
 Proxy::Motion Proxy::follow(const Vec3& goal, double travel,
                             std::span<const PlacedSurface> surfaces) noexcept
 {
     in_contact_ = false;
     has_slid_ = false;
+    held_by_.clear();
     double clear = travel;
     for (const PlacedSurface& placed : surfaces)
     {
-        for (std::uint32_t i = 0; i < placed.surface->count; ++i)
-        {
-            clear = std::min(clear, placed.surface->distances_m[i] * placed.pose->scale - radius_);
-        }
+        clear = std::min(clear, placed.surface->answer.lower_m * placed.pose->scale - radius_);
     }
     go_straight_on(goal, clear);
-    double window = kWindow * radius_ + kWindowWays * last_way_m_;
-    std::uint32_t steps = kProxySteps;
-    for (int round = 1;; ++round)
+    Vicinity near(surfaces, anchor_, radius_ + travel);
+    const Motion motion = follow_among(near, surfaces, goal, travel);
+    if (motion != Motion::at_rest && motion != Motion::squeezed)
     {
-        const double left = travel - (position_ - anchor_).norm();
-        Vicinity near(surfaces, anchor_, position_, radius_ + std::min(left, window));
-        const Motion motion = follow_within(near, surfaces, goal, travel, steps);
-        if (motion != Motion::ran_out || round == kMaxVicinities)
-        {
-            if (motion != Motion::at_rest && motion != Motion::squeezed)
-            {
-                near.stand_at(position_ - near.center_m(), normal_);
-                hold_ = hold_at(near, surfaces, goal - position_, kNearlyTouching * radius_);
-            }
-            in_contact_ = hold_.touches;
-            slides_ = has_slid_ && in_contact_;
-            keep_clearances(surfaces, &near);
-            return motion;
-        }
-        window *= 4.0;
+        near.stand_at(position_ - anchor_, normal_);
+        hold_ = hold_at(near, surfaces, goal - position_, kNearlyTouching * radius_);
     }
+    in_contact_ = hold_.touches;
+    slides_ = has_slid_ && in_contact_;
+    keep_clearances(surfaces, &near);
+    return motion;
 }
 
 void Proxy::go_straight_on(const Vec3& goal, double clear) noexcept
@@ -247,86 +225,71 @@ void Proxy::go_straight_on(const Vec3& goal, double clear) noexcept
     }
 }
 
-Proxy::Motion Proxy::follow_within(Vicinity& near, std::span<const PlacedSurface> surfaces,
-                                   const Vec3& goal, double travel, std::uint32_t& steps) noexcept
+Proxy::Motion Proxy::follow_among(Vicinity& near, std::span<const PlacedSurface> surfaces,
+                                  const Vec3& goal, double travel) noexcept
 {
     const double least_step = kLeastStep * radius_;
-    while (true)
+    for (std::uint32_t steps = 1;; ++steps)
     {
-        near.stand_at(position_ - near.center_m(), normal_);
-        hold_ = hold_at(near, surfaces, goal - position_, least_step);
+        near.stand_at(position_ - anchor_, normal_);
+        hold_ = hold_at(near, surfaces, goal - position_, kTouchShare * radius_);
         const double length = hold_.motion.norm();
         if (hold_.is_squeezed)
         {
             return Motion::squeezed;
         }
-        if (length <= least_step)
+        if (length <= (hold_.static_m > 0.0 ? kSlipShare * radius_ : least_step))
         {
             return Motion::at_rest;
         }
-        if (--steps == 0)
+        if (steps == kProxySteps)
         {
             return Motion::out_of_steps;
         }
-        // What is not in the vicinity, or not certified, is at least this far away.
-        const double unlisted = near.reach_m() - (position_ - near.center_m()).norm() - radius_;
-        const double uncertified = travel - (position_ - anchor_).norm();
-        const double room = std::min(unlisted, uncertified);
+        // What is not among them, or not certified, is at least this far away.
+        const double moved = (position_ - anchor_).norm();
+        const double room = std::min(near.reach_m() - radius_, travel) - moved;
         if (room <= least_step)
         {
-            return uncertified <= least_step ? Motion::held_back : Motion::ran_out;
+            return travel - moved <= least_step ? Motion::held_back : Motion::ran_out;
         }
-        if (!try_leap(near, room))
-        {
-            position_ += hold_.motion * std::min(1.0, room / length);
-            path_.push_back(position_);
-        }
+        position_ += hold_.motion * std::min(1.0, room / length);
+        path_.push_back(position_);
     }
-}
-
-/// Over many small triangles steps are short: each ends where the next triangle's plane, seen from
-/// far, stands in the way. So a way along the surface is first tried a little above it.
-bool Proxy::try_leap(Vicinity& near, double room) noexcept
-{
-    const double slip = hold_.slip.norm();
-    const double leap = std::min({slip, kLongestLeap * radius_, room / (1.0 + kLift)});
-    if (!hold_.touches || hold_.motion.norm() > 0.5 * leap)
-    {
-        return false;
-    }
-    const Vec3 lifted = position_ + normal_ * (kLift * leap);
-    const Vec3 target = lifted + hold_.slip * (leap / slip);
-    const Vec3& center = near.center_m();
-    if (!near.is_free(position_ - center, lifted - center, radius_ * (1.0 - kContactTolerance)) ||
-        !near.is_free(lifted - center, target - center, radius_))
-    {
-        return false;
-    }
-    position_ = target;
-    path_.push_back(lifted);
-    path_.push_back(target);
-    return true;
 }
 
 Proxy::Hold Proxy::hold_at(Vicinity& near, std::span<const PlacedSurface> surfaces,
                            const Vec3& wanted, double gap_m) noexcept
 {
+    std::array<std::uint32_t, kMaxHalfSpaces> faces; // NOLINT(*-member-init): it is written first.
+    const std::size_t found_faces = near.list_within(radius_ + gap_m, faces);
+    is_crowded_ = is_crowded_ || found_faces > faces.size();
     StepPlanes touching;
-    std::uint32_t face = 0;
-    for (; face < near.size() && !touching.planes.full(); ++face)
+    for (const std::uint32_t face : std::span(faces).first(std::min(found_faces, faces.size())))
     {
-        if (near.is_within(face, radius_ + gap_m))
+        touching.add(face, near.half_space(face, radius_));
+    }
+    StepPlanes step = touching;
+    for (const std::uint32_t face : held_by_)
+    {
+        if (!step.planes.full() && !step.has(face))
         {
-            touching.add(face, near.half_space(face, radius_));
+            step.add(face, near.half_space(face, radius_));
         }
     }
-    is_crowded_ = is_crowded_ || face < near.size();
-    StepPlanes step = touching;
+    const std::size_t asked = step.planes.size();
     const NearestMotion<3> found = nearest_free_motion(near, wanted, radius_, step);
+    held_by_.clear();
+    for (const std::uint32_t plane : found.held_by)
+    {
+        held_by_.push_back(step.faces[plane]);
+    }
     Hold hold;
     hold.motion = found.motion;
     hold.is_squeezed = !found.is_feasible;
-    const NearestMotion<3> held = nearest_motion<3>(touching.planes.view(), wanted);
+    const bool is_same = asked == touching.planes.size() && asked == step.planes.size();
+    const NearestMotion<3> held =
+        is_same ? found : nearest_motion<3>(touching.planes.view(), wanted);
     for (std::size_t i = 0; i < held.held_by.size(); ++i)
     {
         const std::uint32_t plane = held.held_by[i];
@@ -371,15 +334,23 @@ void Proxy::press(Hold& hold, const PlacedSurface& placed, const Vec3& depth) co
     hold.velocity += placed.memory->velocity_m_per_s * length;
 }
 
-/// Friction begins where the tool touches, so it goes there straight.
+/// Friction begins where the tool touches, so it goes there straight: to where the first of the
+/// faces in the way is, each looked at from ever nearer.
 Vec3 Proxy::go_to_contact(Vicinity& near, const Vec3& wanted, const Vec3& motion) const noexcept
 {
-    if (!near.find_entered(wanted, radius_))
+    StaticVector<std::uint32_t, kStepRounds> passed;
+    double share = 1.0;
+    while (const auto entered = near.find_entered(wanted * share, radius_, passed.view()))
     {
-        return motion;
+        if (!passed.try_push_back(*entered))
+        {
+            share = std::min(share, near.free_share(wanted, radius_));
+            break;
+        }
+        share = std::min(share, near.share_before(*entered, wanted, radius_));
     }
-    const Vec3 straight = wanted * near.free_share(wanted, radius_);
-    return straight.norm() > kLeastStep * radius_ ? straight : motion;
+    const Vec3 straight = wanted * share;
+    return !passed.empty() && straight.norm() > kLeastStep * radius_ ? straight : motion;
 }
 
 /// Coulomb's cone: the tool sticks while what pulls it along, `slip`, is within the static one, and
@@ -387,7 +358,7 @@ Vec3 Proxy::go_to_contact(Vicinity& near, const Vec3& wanted, const Vec3& motion
 Vec3 Proxy::rub(Hold& hold, const Vec3& slip) noexcept
 {
     const double length = slip.norm();
-    const bool slips = length > (slides_ ? hold.dynamic_m : hold.static_m) + kLeastStep * radius_;
+    const bool slips = length > (slides_ ? hold.dynamic_m : hold.static_m) + kSlipShare * radius_;
     slides_ = slides_ || slips;
     has_slid_ = has_slid_ || slips;
     const double most = slips || slides_ ? hold.dynamic_m : hold.static_m;
@@ -407,7 +378,7 @@ void Proxy::keep_clearances(std::span<const PlacedSurface> surfaces, const Vicin
         double clearance_m = answer.lower_m * scale - moved;
         if (near != nullptr)
         {
-            const Vec3 place = position_ - near->center_m();
+            const Vec3 place = position_ - anchor_;
             const double known = answer.certified_radius_m * scale - moved;
             const double listed =
                 std::min(near->reach_m() - place.norm(), near->bound_of_surface(i, place));

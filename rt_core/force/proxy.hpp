@@ -39,8 +39,8 @@ namespace tactus
 ///
 /// A tool without a radius is a ball of kPointSkin quanta.
 ///
-/// Haptic thread. Cost: a list of the triangles in reach once or twice a frame, 2 to 6 steps as a
-/// rule and kProxySteps at most, each of a few passes over the list.
+/// Haptic thread. Cost: a list of the triangles in reach once a frame, 2 to 6 steps as a rule and
+/// kProxySteps at most, each of a few passes over the list.
 class Proxy
 {
 public:
@@ -80,7 +80,7 @@ private:
     enum class Motion : std::uint8_t
     {
         at_rest,   ///< At the goal, or held by the surface.
-        ran_out,   ///< The vicinity ends here; there may be more behind it.
+        ran_out,   ///< More triangles are near than fit: those that don't may be here.
         held_back, ///< The certified ball ends here.
         out_of_steps,
         squeezed, ///< No place near is free.
@@ -113,10 +113,8 @@ private:
                                    double travel) const noexcept;
     [[nodiscard]] Motion follow(const Vec3& goal, double travel,
                                 std::span<const PlacedSurface> surfaces) noexcept;
-    [[nodiscard]] Motion follow_within(Vicinity& near, std::span<const PlacedSurface> surfaces,
-                                       const Vec3& goal, double travel,
-                                       std::uint32_t& steps) noexcept;
-    [[nodiscard]] bool try_leap(Vicinity& near, double room) noexcept;
+    [[nodiscard]] Motion follow_among(Vicinity& near, std::span<const PlacedSurface> surfaces,
+                                      const Vec3& goal, double travel) noexcept;
     void go_straight_on(const Vec3& goal, double clear) noexcept;
     [[nodiscard]] Hold hold_at(Vicinity& near, std::span<const PlacedSurface> surfaces,
                                const Vec3& wanted, double gap_m) noexcept;
@@ -135,10 +133,10 @@ private:
     ToolSpec spec_;
     double radius_{0.0};
     Vec3 position_{0.0, 0.0, 0.0};
-    Mat3 rotation_{Mat3::Identity()}; ///< The goal's.
-    Vec3 anchor_{0.0, 0.0, 0.0};      ///< Where this frame's surfaces were queried.
-    Vec3 normal_{0.0, 0.0, 1.0};      ///< Of the last contact.
-    double last_way_m_{0.0};          ///< That it went in the last frame.
+    Mat3 rotation_{Mat3::Identity()};        ///< The goal's.
+    Vec3 anchor_{0.0, 0.0, 0.0};             ///< Where this frame's surfaces were queried.
+    Vec3 normal_{0.0, 0.0, 1.0};             ///< Of the last contact.
+    StaticVector<std::uint32_t, 3> held_by_; ///< The faces, at the last stand of this frame.
     Hold hold_;
     CatchUp catch_up_;
     bool waits_{false}; ///< Frozen, squeezed or held back in the last frame.
@@ -147,7 +145,7 @@ private:
     bool has_slid_{false}; ///< In this frame.
     bool was_overrun_{false};
     bool is_crowded_{false};
-    StaticVector<Vec3, 2 * kProxySteps + 2> path_; ///< A leap goes by two places.
+    StaticVector<Vec3, kProxySteps + 2> path_;
 };
 
 } // namespace tactus

@@ -4,9 +4,13 @@
 
 #include "rt_core/base/assert.hpp"
 #include "rt_core/math/infinity.hpp"
+#include "rt_core/math/rounding.hpp"
+#include "rt_core/query/probe.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstddef>
 
 namespace tactus
 {
@@ -14,102 +18,187 @@ namespace tactus
 namespace
 {
 
-double nearest_of(std::span<const PlacedSurface> surfaces) noexcept
+static_assert(sizeof(LocalTriangle) == kTriangleBytes);
+static_assert(offsetof(LocalTriangle, corners_m) == kTriangleCornersAt);
+
+/// Room for what the pairs of a frame have between them.
+constexpr std::size_t kMostBatches =
+    std::size_t{kLocalSurfaces} * kMaxLocalTriangles / kPlaneLanes + kMaxNear;
+
+/// A float's rounding, as a share, and more.
+constexpr double kFloatRounding = 0x1p-22;
+
+std::uint32_t batches_of(const LocalSurface& surface) noexcept
 {
-    double nearest = kInfinity;
-    for (const PlacedSurface& placed : surfaces)
-    {
-        for (std::uint32_t i = 0; i < placed.surface->count; ++i)
-        {
-            nearest = std::min(nearest, placed.surface->distances_m[i] * placed.pose->scale);
-        }
-    }
-    return nearest;
+    return (surface.count + kPlaneLanes - 1) / kPlaneLanes;
 }
 
-/// No more than the distance from `place` to the triangle, and by a side of it less at most.
-double least_distance(const LocalTriangle& triangle, const Vec3& place) noexcept
+std::uint32_t faces_in(const LocalSurface& surface, std::uint32_t batch) noexcept
 {
-    const Vec3 corner = to_vec3(triangle.corners_m[0]);
-    const double side_sq = std::max((to_vec3(triangle.corners_m[1]) - corner).squaredNorm(),
-                                    (to_vec3(triangle.corners_m[2]) - corner).squaredNorm());
-    return (place - corner).norm() - std::sqrt(side_sq);
+    return std::min(kPlaneLanes, surface.count - kPlaneLanes * batch);
+}
+
+/// How far a batch's nearest face is from the core at least, in the world.
+double low_of(const PlacedSurface& placed, std::uint32_t batch) noexcept
+{
+    const auto faces = placed.surface->distances_m.subspan(std::size_t{kPlaneLanes} * batch,
+                                                           faces_in(*placed.surface, batch));
+    return *std::ranges::min_element(faces) * placed.pose->scale;
+}
+
+/// Batches nearer than this fit; infinite when all do.
+double farthest_that_fits(std::span<const PlacedSurface> surfaces) noexcept
+{
+    std::size_t count = 0;
+    for (const PlacedSurface& placed : surfaces)
+    {
+        count += batches_of(*placed.surface);
+    }
+    if (count <= kMaxNearBatches)
+    {
+        return kInfinity;
+    }
+    StaticVector<double, kMostBatches> lows;
+    double beyond = kInfinity;
+    for (const PlacedSurface& placed : surfaces)
+    {
+        for (std::uint32_t batch = 0; batch < batches_of(*placed.surface); ++batch)
+        {
+            const double low = low_of(placed, batch);
+            beyond = lows.try_push_back(low) ? beyond : std::min(beyond, low);
+        }
+    }
+    auto* const first_out = lows.begin() + kMaxNearBatches;
+    std::nth_element(lows.begin(), first_out, lows.end());
+    return std::min(beyond, *first_out);
 }
 
 } // namespace
 
-Vicinity::Vicinity(std::span<const PlacedSurface> surfaces, const Vec3& anchor_m,
-                   const Vec3& center_m, double reach_m) noexcept
+// NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): of the batches only the first are set.
+Vicinity::Vicinity(std::span<const PlacedSurface> surfaces, const Vec3& center_m,
+                   double reach_m) noexcept
     : surfaces_(surfaces), center_m_(center_m), reach_m_(reach_m)
 {
     TACTUS_ASSERT(reach_m >= 0.0);
-    const double moved_m = (center_m - anchor_m).norm();
-    double nearest_m = -1.0;
-    for (int i = 0; !try_gather(moved_m); ++i)
+    const double farthest = farthest_that_fits(surfaces);
+    reach_m_ = std::min(reach_m, farthest);
+    for (const PlacedSurface& placed : surfaces)
     {
-        nearest_m = nearest_m < 0.0 ? nearest_of(surfaces) - moved_m : nearest_m;
-        reach_m_ = i < kMaxGatherings ? 0.5 * (reach_m_ + nearest_m) : nearest_m;
-        if (i > kMaxGatherings || !(reach_m_ > 0.0))
-        {
-            faces_.clear();
-            reach_m_ = 0.0; // Nothing may move: there is no telling the faces apart.
-            return;
-        }
+        add(placed, farthest);
     }
 }
 
-/// False when there are more faces within reach_m_ than fit. The surfaces' distances are from a
-/// place `moved_m` away.
-bool Vicinity::try_gather(double moved_m) noexcept
+void Vicinity::add(const PlacedSurface& placed, double farthest_m) noexcept
 {
-    faces_.clear();
-    for (std::uint32_t s = 0; s < surfaces_.size(); ++s)
+    TACTUS_ASSERT(placed.surface->count <= placed.surface->triangles.size());
+    TACTUS_ASSERT(placed.pose->scale > 0.0);
+    Part part;
+    part.first = batches_;
+    part.unit_m = placed.pose->scale * placed.quantum_m;
+    PlaneTable& table = part.table;
+    table.planes = planes_.data() + batches_;
+    table.seen = seen_.data() + batches_;
+    table.triangles = triangles_.data() + batches_;
+    table.lows = lows_.data();
+    if (!parts_.empty())
     {
-        TACTUS_ASSERT(surfaces_[s].surface != nullptr);
-        TACTUS_ASSERT(surfaces_[s].pose != nullptr);
-        const LocalSurface& surface = *surfaces_[s].surface;
-        TACTUS_ASSERT(surface.count <= surface.triangles.size());
-        TACTUS_ASSERT(surfaces_[s].pose->scale > 0.0);
-        const double scale = surfaces_[s].pose->scale;
-        const double reach = (reach_m_ + moved_m) / scale;
-        const Vec3 center = to_model(*surfaces_[s].pose, center_m_);
-        for (std::uint32_t i = 0; i < surface.count; ++i)
+        const PlaneTable& last = parts_[parts_.size() - 1].table;
+        table.lows = last.lows + (last.count + kPlaneLanes - 1) / kPlaneLanes * kPlaneLanes;
+    }
+    const std::uint32_t count = batches_of(*placed.surface);
+    if (count > 0)
+    {
+        table.center =
+            make_probe(to_model(*placed.pose, center_m_), static_cast<float>(placed.quantum_m));
+    }
+    for (std::uint32_t batch = 0; batch < count; ++batch)
+    {
+        if (farthest_m == kInfinity || low_of(placed, batch) < farthest_m)
         {
-            if (!(surface.distances_m[i] <= reach))
-            {
-                continue;
-            }
-            double distance_m = surface.distances_m[i] * scale - moved_m;
-            if (moved_m > 0.0)
-            {
-                const LocalTriangle& triangle = surface.triangles[i];
-                distance_m = std::max(distance_m, least_distance(triangle, center) * scale);
-                if (distance_m > reach_m_)
-                {
-                    continue;
-                }
-            }
-            if (!faces_.try_push_back(
-                    {&surface.triangles[i], s, 0, Vec3(0.0, 0.0, 0.0), distance_m}))
-            {
-                return false;
-            }
+            add_batch(placed, batch, table);
         }
     }
-    return true;
+    for (std::uint32_t i = table.count; i % kPlaneLanes != 0; ++i)
+    {
+        table.lows[i] = kFarPlane;
+    }
+    parts_.push_back(part);
+}
+
+void Vicinity::add_batch(const PlacedSurface& placed, std::uint32_t batch,
+                         PlaneTable& table) noexcept
+{
+    const std::size_t from = std::size_t{kPlaneLanes} * batch;
+    const std::uint32_t faces = faces_in(*placed.surface, batch);
+    const double by_quantum = (1.0 - kFloatRounding) / placed.quantum_m;
+    PlaneRows& rows = planes_[batches_];
+    float low = kFarPlane;
+    for (std::uint32_t lane = 0; lane < kPlaneLanes; ++lane)
+    {
+        rows.normal[0][lane] = 0.0F;
+        rows.normal[1][lane] = 0.0F;
+        rows.normal[2][lane] = 0.0F;
+        rows.cone[lane] = lane < faces ? 1.0F : 0.0F;
+        rows.offset[lane] =
+            lane < faces ? static_cast<float>(placed.surface->distances_m[from + lane] * by_quantum)
+                         : kFarPlane;
+        low = std::min(low, rows.offset[lane]);
+    }
+    table.lows[table.count++] = low;
+    seen_[batches_] = {0, 0};
+    triangles_[batches_] = &placed.surface->triangles[from];
+    surface_[batches_] = static_cast<std::uint8_t>(parts_.size());
+    faces_[batches_] = static_cast<std::uint8_t>(faces);
+    ++batches_;
+}
+
+bool Vicinity::has(std::uint32_t face) const noexcept
+{
+    return face < size() && face % kPlaneLanes < faces_[face / kPlaneLanes];
+}
+
+std::array<float, 3> Vicinity::in_quanta(const Part& part, const Vec3& place) const noexcept
+{
+    const auto index = static_cast<std::size_t>(&part - parts_.begin());
+    const Vec3 at = (surfaces_[index].pose->rotation.transpose() * place) / part.unit_m;
+    return {static_cast<float>(at.x()), static_cast<float>(at.y()), static_cast<float>(at.z())};
+}
+
+PlaneQuestion Vicinity::question(const Part& part, const Vec3& place) const noexcept
+{
+    const std::array<float, 3> at = in_quanta(part, place);
+    const double drift = (place - part.last_place).norm() / part.unit_m;
+    return {{at[0], at[1], at[2]},
+            {part.stand[0], part.stand[1], part.stand[2]},
+            stand_,
+            static_cast<float>(drift * (1.0 + kFloatRounding)),
+            0.0F};
+}
+
+/// The batches with faces that a ball of radius `least_m` may enter between here and the place.
+Vicinity::Hits Vicinity::find_below(Part& part, const Vec3& place, double least_m) noexcept
+{
+    if (part.table.count == 0)
+    {
+        return {};
+    }
+    PlaneQuestion asked = question(part, place);
+    asked.least = static_cast<float>(least_m / part.unit_m * (1.0 + kFloatRounding));
+    part.last_place = place;
+    const Kernels& kernels = *surfaces_[surface_[part.first]].kernels;
+    return {hits_.data(), kernels.planes_below(part.table, asked, hits_.data())};
 }
 
 double Vicinity::bound_of_surface(std::uint32_t surface, const Vec3& place) const noexcept
 {
-    double least = kInfinity;
-    for (const NearFace& face : faces_)
+    if (surface >= parts_.size() || parts_[surface].table.count == 0)
     {
-        if (face.surface == surface)
-        {
-            least = std::min(least, bound(face, place));
-        }
+        return kInfinity;
     }
-    return least;
+    const Part& part = parts_[surface];
+    const float low = surfaces_[surface].kernels->least_height(part.table, question(part, place));
+    return static_cast<double>(low) * part.unit_m;
 }
 
 void Vicinity::stand_at(const Vec3& place, const Vec3& fallback) noexcept
@@ -117,94 +206,165 @@ void Vicinity::stand_at(const Vec3& place, const Vec3& fallback) noexcept
     place_ = place;
     fallback_ = fallback;
     ++stand_;
+    for (Part& part : parts_)
+    {
+        part.stand = in_quanta(part, place);
+    }
 }
 
-void Vicinity::look_at(NearFace& face) const noexcept
+const LocalTriangle& Vicinity::triangle(std::uint32_t face) const noexcept
 {
-    if (face.stand == stand_)
-    {
-        return;
-    }
-    const ObjectPose& pose = *surfaces_[face.surface].pose;
-    const ClosestPoint closest = closest_point_on_triangle(to_model(pose, center_m_ + place_),
-                                                           to_triangle(face.triangle->corners_m));
+    const auto* const first = static_cast<const LocalTriangle*>(triangles_[face / kPlaneLanes]);
+    return first[face % kPlaneLanes];
+}
+
+/// The face's plane from any place.
+Vicinity::Plane Vicinity::see(std::uint32_t face, const Vec3& place) const noexcept
+{
+    TACTUS_ASSERT(has(face));
+    const PlacedSurface& placed = surfaces_[surface_of(face)];
+    const ObjectPose& pose = *placed.pose;
+    const Vec3 query = to_model(pose, center_m_ + place);
+    const Triangle corners = to_triangle(triangle(face).corners_m);
+    SeenTriangle seen; // NOLINT(cppcoreguidelines-pro-type-member-init): the kernel fills it.
+    placed.kernels->see_triangle(query.data(), corners[0].data(), seen);
+    const ClosestPoint closest = closest_point_seen(query, corners, seen);
     const double length = std::sqrt(closest.distance_sq);
-    face.normal = length > 0.0 ? Vec3(pose.rotation * (closest.gap * (-1.0 / length))) : fallback_;
-    face.offset_m = length * pose.scale - face.normal.dot(place_);
-    face.stand = stand_;
+    Plane plane;
+    plane.normal = length > 0.0 ? Vec3(pose.rotation * (closest.gap * (-1.0 / length))) : fallback_;
+    plane.offset_m = length * pose.scale - plane.normal.dot(place);
+    return plane;
 }
 
-bool Vicinity::is_within(std::uint32_t face, double distance_m) noexcept
+const Vicinity::Plane& Vicinity::look_at(std::uint32_t face) noexcept
 {
-    NearFace& near = faces_[face];
-    if (bound(near, place_) > distance_m)
+    Look& look = looks_[face % kLooks];
+    if (look.face != face || look.stand != stand_)
     {
-        return false;
+        look = {face, stand_, see(face, place_)};
     }
-    look_at(near);
-    return bound(near, place_) <= distance_m;
+    return look.plane;
+}
+
+std::size_t Vicinity::list_within(double distance_m, std::span<std::uint32_t> faces) noexcept
+{
+    std::size_t found = 0;
+    for (Part& part : parts_)
+    {
+        for (const PlaneHit& hit : find_below(part, place_, distance_m * (1.0 + kFloatRounding)))
+        {
+            for (std::uint32_t lanes = hit.lanes; lanes != 0; lanes &= lanes - 1)
+            {
+                const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
+                const std::uint32_t face = (part.first + hit.batch) * kPlaneLanes + lane;
+                if (look_at(face).height_m(place_) <= distance_m)
+                {
+                    if (found < faces.size())
+                    {
+                        faces[found] = face;
+                    }
+                    ++found;
+                }
+            }
+        }
+    }
+    return found;
 }
 
 HalfSpace<3> Vicinity::half_space(std::uint32_t face, double radius_m) noexcept
 {
-    NearFace& near = faces_[face];
-    look_at(near);
-    return {near.normal, radius_m - bound(near, place_)};
+    const Plane& plane = look_at(face);
+    return {plane.normal, radius_m - plane.height_m(place_)};
 }
 
-std::optional<std::uint32_t> Vicinity::find_entered(const Vec3& motion, double radius_m) noexcept
+std::optional<std::uint32_t> Vicinity::find_entered(const Vec3& motion, double radius_m,
+                                                    std::span<const std::uint32_t> passed) noexcept
 {
-    const Vec3 place = place_ + motion;
     TACTUS_ASSERT(radius_m > 0.0);
-    const double least = radius_m * (1.0 - kContactTolerance);
-    double deepest = least;
+    const Vec3 place = place_ + motion;
+    double deepest = radius_m * (1.0 - kContactTolerance);
     std::optional<std::uint32_t> entered;
-    for (std::uint32_t i = 0; i < size(); ++i)
+    for (Part& part : parts_)
     {
-        NearFace& face = faces_[i];
-        if (bound(face, place) >= least)
+        Hits hits = find_below(part, place, radius_m * (1.0 - kContactTolerance));
+        while (!hits.empty())
         {
-            continue;
-        }
-        look_at(face);
-        const double seen = bound(face, place);
-        if (seen < deepest)
-        {
-            deepest = seen;
-            entered = i;
+            const auto lowest = std::ranges::min_element(hits, {}, &PlaneHit::low);
+            if (static_cast<double>(lowest->low) * part.unit_m >= deepest)
+            {
+                break;
+            }
+            const PlaneHit hit = *lowest;
+            *lowest = hits.back();
+            hits = hits.first(hits.size() - 1);
+            for (std::uint32_t lanes = hit.lanes; lanes != 0; lanes &= lanes - 1)
+            {
+                const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
+                const std::uint32_t face = (part.first + hit.batch) * kPlaneLanes + lane;
+                if (static_cast<double>(hit.heights[lane]) * part.unit_m >= deepest ||
+                    std::ranges::find(passed, face) != passed.end())
+                {
+                    continue;
+                }
+                const double height = look_at(face).height_m(place);
+                if (height < deepest || (height == deepest && entered && face < *entered))
+                {
+                    deepest = height;
+                    entered = face;
+                }
+            }
         }
     }
     return entered;
 }
 
-bool Vicinity::is_free(const Vec3& from, const Vec3& to, double radius_m) noexcept
+double Vicinity::free_share(const Vec3& motion, double radius_m) noexcept
 {
-    stand_at(0.5 * (from + to), fallback_);
-    for (NearFace& face : faces_)
+    const double least = radius_m * (1.0 - kContactTolerance);
+    const Vec3 place = place_ + motion;
+    double share = 1.0;
+    for (Part& part : parts_)
     {
-        if (std::min(bound(face, from), bound(face, to)) < radius_m)
+        for (const PlaneHit& hit : find_below(part, place, least))
         {
-            look_at(face);
-            if (std::min(bound(face, from), bound(face, to)) < radius_m)
+            for (std::uint32_t lanes = hit.lanes; lanes != 0; lanes &= lanes - 1)
             {
-                return false;
+                const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
+                const Plane& plane = look_at((part.first + hit.batch) * kPlaneLanes + lane);
+                const double here = plane.height_m(place_);
+                const double there = plane.height_m(place);
+                if (there < least && there < here)
+                {
+                    share = std::min(share, std::max(0.0, here - radius_m) / (here - there));
+                }
             }
         }
     }
-    return true;
+    return share;
 }
 
-double Vicinity::free_share(const Vec3& motion, double radius_m) const noexcept
+/// The distance along the way is convex, so the plane from each place lets the ball go no farther
+/// than the face does.
+double Vicinity::share_before(std::uint32_t face, const Vec3& motion,
+                              double radius_m) const noexcept
 {
-    const double least = radius_m * (1.0 - kContactTolerance);
-    double share = 1.0;
-    for (const NearFace& face : faces_)
+    const double least_step = kLeastStep * radius_m / motion.norm();
+    double share = 0.0;
+    for (std::uint32_t round = 0; round < kStepRounds; ++round)
     {
-        const double here = bound(face, place_);
-        const double there = bound(face, place_ + motion);
-        if (there < least && there < here)
+        const Vec3 place = place_ + share * motion;
+        const Plane plane = see(face, place);
+        const double closing = -plane.normal.dot(motion);
+        const double gap = plane.height_m(place) - radius_m;
+        if (gap >= closing * (1.0 - share))
         {
-            share = std::min(share, std::max(0.0, here - radius_m) / (here - there));
+            return 1.0;
+        }
+        const double step = std::max(0.0, gap) / closing;
+        share += step;
+        if (step <= least_step)
+        {
+            break;
         }
     }
     return share;

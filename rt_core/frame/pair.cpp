@@ -456,7 +456,8 @@ PlacedSurface Pair::placed() noexcept
             touches_,
             upper_m_,
             parts_.object_number,
-            &body_};
+            &body_,
+            &parts_.model.model->tree.kernels()};
 }
 
 PairOutput Pair::output() const noexcept

@@ -139,6 +139,70 @@ struct BlockBatch
     // NOLINTEND(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays)
 };
 
+/// Eight faces, one lane each, with a plane before each of them: nothing of a face is nearer to any
+/// place than the place's height, normal . place + offset. A face that was not looked at has a
+/// distance from the centre instead, `cone` is 1 then: the height is that less the way from there.
+/// A lane without a face is as far as can be. In quanta, around a centre. 160 B.
+inline constexpr std::uint32_t kPlaneLanes = 8;
+struct PlaneRows
+{
+    // NOLINTBEGIN(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays): kernel_source.inc.
+    alignas(32) float normal[3][kPlaneLanes]; ///< From the face to the ball.
+    float offset[kPlaneLanes];
+    float cone[kPlaneLanes];
+    // NOLINTEND(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays)
+};
+static_assert(sizeof(PlaneRows) == 160);
+/// What is farther is no plane's offset.
+inline constexpr float kFarPlane = 0x1p100F;
+
+/// Which lanes' planes were seen from which stand.
+struct PlaneSeen
+{
+    std::uint32_t stand;
+    std::uint32_t lanes;
+};
+
+/// Faces of one model in batches of kPlaneLanes.
+struct PlaneTable
+{
+    KernelProbe center; ///< What all is around.
+    std::uint32_t count;
+    PlaneRows* planes;
+    PlaneSeen* seen;
+    /// No height of a batch was below this at the last question's place; whole eights of them, and
+    /// those without a batch are kFarPlane.
+    float* lows;
+    /// Of each batch: its first face, as LocalTriangle lies in memory.
+    const void* const* triangles;
+};
+
+/// Places are in quanta around the table's centre, rounded to float from double.
+struct PlaneQuestion
+{
+    // NOLINTBEGIN(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays): kernel_source.inc.
+    float place[3];
+    float stand[3]; ///< Where the ball is now.
+    // NOLINTEND(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays)
+    std::uint32_t stand_number; ///< Another one for each stand; not 0.
+    float drift;                ///< How far the place is from the last question's, or more.
+    float least;                ///< Heights below this are asked for.
+};
+
+/// Faces of a batch that are below.
+struct PlaneHit
+{
+    // NOLINTNEXTLINE(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays): likewise.
+    float heights[kPlaneLanes]; ///< Of all lanes, and
+    float low;                  ///< the least of them.
+    std::uint32_t batch;
+    std::uint32_t lanes; ///< Those that are below.
+};
+
+/// A LocalTriangle: its name, then three coordinates of each corner.
+inline constexpr std::size_t kTriangleBytes = 40;
+inline constexpr std::size_t kTriangleCornersAt = 4;
+
 /// A block as the point kernels read it in the tree's array: three rows of 16 floats, three of 16
 /// bytes, and two masks of 16 bits.
 inline constexpr std::size_t kBlockBytes = 256;
@@ -258,6 +322,18 @@ struct Kernels
     void (*near_pairs)(const VertexRows& rows, const std::uint8_t* corners, std::uint32_t mask,
                        const TriangleRows& tool, std::uint32_t tool_mask, float bound, float slack,
                        const float* way, std::uint32_t* near) noexcept TACTUS_NONBLOCKING;
+
+    /// The faces that a ball of radius `least` may enter on its straight way from the stand to the
+    /// place. Planes that are below are found again from the stand first, each once a stand, and
+    /// heights are at the place, or at the stand where that is less. Where the stand was asked
+    /// about before, a face that is not in `hits` has a plane that is not below at either.
+    /// `hits` has room for all batches; returns how many there are, in the batches' order.
+    std::uint32_t (*planes_below)(const PlaneTable& table, const PlaneQuestion& question,
+                                  PlaneHit* hits) noexcept TACTUS_NONBLOCKING;
+
+    /// The least height of all planes at the question's place; kFarPlane when there is none.
+    float (*least_height)(const PlaneTable& table,
+                          const PlaneQuestion& question) noexcept TACTUS_NONBLOCKING;
 
     /// Whether the pairs in the first `count` lanes meet.
     PairSides (*decide_pairs)(const PairRows& rows,

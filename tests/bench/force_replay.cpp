@@ -39,6 +39,7 @@ Result<std::unique_ptr<test::FrameRig>, SceneError> make_rig(const ForceRun& run
 {
     test::RigOptions options = room_for_all(run.scene);
     options.tools = {run.tool};
+    options.objects = {{ModelId{0}, run.material}};
     options.period_ns = run.period_ns;
     options.static_when_it_fits = true;
     auto rig = std::make_unique<test::FrameRig>(run.scene.model, options);

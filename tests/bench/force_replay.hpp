@@ -25,6 +25,7 @@ struct ForceRun
     std::size_t lead_in{0};    ///< Frames at the start that are run and not counted.
     std::int64_t period_ns{1'000'000};
     std::vector<std::uint32_t> elapsed_periods{}; ///< Of each frame; empty: one.
+    Material material{};                          ///< The surface's.
 };
 
 /// What came of the counted frames.

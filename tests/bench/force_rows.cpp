@@ -55,6 +55,7 @@ ForceFigures measure_forces(const ForceTrace& trace, const std::vector<Vec3>& go
         const bool is_stuck =
             output.frozen || !output.in_contact || !((output.proxy_m - rests_m[i]).norm() <= lag_m);
         figures.stuck += is_stuck ? 1U : 0U;
+        figures.without_force += output.force_n.norm() > 0.0 ? 0U : 1U;
         if (i > 0)
         {
             const Vec3 step_n = output.force_n - trace.outputs[i - 1].force_n;
@@ -65,14 +66,15 @@ ForceFigures measure_forces(const ForceTrace& trace, const std::vector<Vec3>& go
     return figures;
 }
 
-void add_force_rows(CaseRows& rows, const ForceTrace& trace, const ForceFigures& figures,
-                    const ForceGoals& goals, std::optional<double> coarser_p99_n)
+namespace
 {
-    const std::optional<double> law = goals.has_laws ? std::optional(0.0) : std::nullopt;
+
+void add_times(CaseRows& rows, const ForceTrace& trace, const ForceGoals& goals)
+{
     const Spread force_us = spread_of(trace.force_us.least());
     const Spread frame_us = spread_of(trace.frame_us.least());
     rows.add("force.p50", force_us.p50, "us");
-    rows.add("force.p99", force_us.p99, "us");
+    rows.add("force.p99", force_us.p99, "us", goal_if(goals.force_p99_us));
     rows.add("frame.p50", frame_us.p50, "us");
     rows.add("frame.p99", frame_us.p99, "us", goal_if(goals.frame_p99_us));
     if (trace.allocations)
@@ -80,8 +82,25 @@ void add_force_rows(CaseRows& rows, const ForceTrace& trace, const ForceFigures&
         rows.add("allocations a call",
                  static_cast<double>(*trace.allocations) /
                      static_cast<double>(trace.outputs.size()),
-                 "", law);
+                 "", goals.has_laws ? std::optional(0.0) : std::nullopt);
     }
+}
+
+} // namespace
+
+void add_felt_rows(CaseRows& rows, const ForceTrace& trace, const ForceFigures& figures,
+                   const ForceGoals& goals)
+{
+    add_times(rows, trace, goals);
+    rows.add("frames without force", static_cast<double>(figures.without_force), "",
+             goals.has_laws ? std::optional(0.0) : std::nullopt);
+}
+
+void add_force_rows(CaseRows& rows, const ForceTrace& trace, const ForceFigures& figures,
+                    const ForceGoals& goals, std::optional<double> coarser_p99_n)
+{
+    add_times(rows, trace, goals);
+    const std::optional<double> law = goals.has_laws ? std::optional(0.0) : std::nullopt;
     rows.add("error.p50", figures.error_n.p50, "N");
     rows.add("error.p99", figures.error_n.p99, "N", goal_if(goals.error_p99_n));
     rows.add("error.max", figures.error_n.max, "N", goal_if(goals.error_max_n));

@@ -4,6 +4,7 @@
 
 #include "tests/bench/bench_row.hpp"
 #include "tests/bench/bumpy_sphere.hpp"
+#include "tests/bench/cases.hpp"
 #include "tests/bench/force_replay.hpp"
 
 #include <cstdint>
@@ -20,6 +21,7 @@ struct ForceFigures
     /// Frames in which the ball hangs: frozen, without contact, or farther from where it would rest
     /// than `lag_m`.
     std::uint64_t stuck{0};
+    std::uint64_t without_force{0}; ///< Frames that press nothing.
 };
 /// `rests_m` of the counted frames, in the frame of the trace.
 [[nodiscard]] ForceFigures measure_forces(const ForceTrace& trace, const std::vector<Vec3>& goals_m,
@@ -34,12 +36,18 @@ struct ForceGoals
     double error_max_n;
     double step_n;
     bool has_laws{true}; ///< No allocation, no stuck frame.
+    double force_p99_us{kNoGoal};
 };
 
 /// `coarser_p99_n` is the same sweep's error on the next coarser mesh, where there is one: the
 /// error must be smaller.
 void add_force_rows(CaseRows& rows, const ForceTrace& trace, const ForceFigures& figures,
                     const ForceGoals& goals, std::optional<double> coarser_p99_n);
+
+/// Of a sweep whose true force is not known: times, allocations and frames without a force, of
+/// which there are to be none.
+void add_felt_rows(CaseRows& rows, const ForceTrace& trace, const ForceFigures& figures,
+                   const ForceGoals& goals);
 
 /// What was recorded of CHAI3D 3.3's finger proxy: elsewhere, on a surface of the same kind whose
 /// constants were not kept; for the order of magnitude.

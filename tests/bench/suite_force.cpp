@@ -36,9 +36,23 @@ constexpr double kForceMax_n = 1'000.0;
 constexpr double kTolerance = 0.02;
 /// Goals in newtons hold up to this speed.
 constexpr double kGoalSpeed_m_per_s = 0.3;
-constexpr double kFrameGoal_us = 20.0; ///< 2 mm on the finest mesh.
 
-constexpr std::array<double, 4> kSpeeds_m_per_s{0.02, 0.1, 0.3, 1.0};
+/// A speed, and the goals of the stage's and the frame's p99: 2 mm on the finest mesh.
+struct SpeedCase
+{
+    double speed_m_per_s;
+    double force_us;
+    double frame_us;
+};
+constexpr std::array<SpeedCase, 4> kSpeeds{
+    {{0.02, 7.0, 20.0}, {0.1, 12.0, 20.0}, {0.3, 16.0, 20.0}, {1.0, 22.0, 40.0}}};
+/// With friction, likewise.
+constexpr double kFriction = 0.3;
+constexpr double kDynamicShare = 0.8;
+constexpr std::array<SpeedCase, 2> kRoughSpeeds{{{0.3, kNoGoal, 35.0}, {1.0, kNoGoal, 60.0}}};
+/// Faster than a hand on a surface is as a rule, and a device that lets the proxy be so fast.
+constexpr SpeedCase kFast{3.0, kNoGoal, kNoGoal};
+constexpr double kFastSpeedMax_m_per_s = 5.0;
 constexpr std::array<double, 2> kRadii_m{0.5e-3, 2e-3};
 
 struct MeshCase
@@ -110,24 +124,35 @@ ForceRun make_run(const Scene& scene, const Sweep& sweep, const Touch& touch, do
     return run;
 }
 
-ForceGoals goals_of(const SweepContext& context, const Touch& touch, double speed_m_per_s)
+/// Whether the mesh and the ball are those that times have goals for.
+bool is_timed(const SweepContext& context, double radius_m)
+{
+    return context.mesh.name == std::string(kFinest) && radius_m > 1e-3;
+}
+
+ForceGoals goals_of(const SweepContext& context, const Touch& touch, const SpeedCase& speed)
 {
     if (!context.mesh.has_goals)
     {
         return {kNoGoal, kNoGoal, kNoGoal, kNoGoal, false};
     }
-    const bool is_timed = context.mesh.name == std::string(kFinest) && touch.radius_m > 1e-3;
+    const bool has_times = is_timed(context, touch.radius_m);
+    const double speed_m_per_s = speed.speed_m_per_s;
     const double error_n = context.faceting.force_error_n(touch) + kTolerance * touch.force_n();
     const double step_n = touch.stiffness_n_per_m * speed_m_per_s * kPeriod_s +
                           touch.force_n() * context.faceting.dihedral_rad;
-    return {is_timed ? kFrameGoal_us : kNoGoal,
-            speed_m_per_s <= kGoalSpeed_m_per_s ? context.mesh.error_p99_n : kNoGoal, error_n,
-            step_n};
+    return {has_times ? speed.frame_us : kNoGoal,
+            speed_m_per_s <= kGoalSpeed_m_per_s ? context.mesh.error_p99_n : kNoGoal,
+            error_n,
+            step_n,
+            true,
+            has_times ? speed.force_us : kNoGoal};
 }
 
-CaseFailure run_sweep(const SweepContext& context, double radius_m, double speed_m_per_s)
+CaseFailure run_sweep(const SweepContext& context, double radius_m, const SpeedCase& speed)
 {
     const Touch touch{radius_m, kDepth_m, kStiffness_n_per_m};
+    const double speed_m_per_s = speed.speed_m_per_s;
     const double step_m = speed_m_per_s * kPeriod_s;
     const Sweep sweep = make_sweep(touch, step_m, context.options.frames_or(10'000, 2'000));
     const ForceRun run = make_run(context.scene, sweep, touch, 1.0);
@@ -136,7 +161,7 @@ CaseFailure run_sweep(const SweepContext& context, double radius_m, double speed
     {
         return trace.error().text;
     }
-    const ForceGoals goals = goals_of(context, touch, speed_m_per_s);
+    const ForceGoals goals = goals_of(context, touch, speed);
     // The ball may be one period behind the device, and off by what the mesh is.
     const double lag_m = step_m + context.faceting.force_error_n(touch) / touch.stiffness_n_per_m +
                          kTolerance * touch.depth_m;
@@ -155,6 +180,50 @@ CaseFailure run_sweep(const SweepContext& context, double radius_m, double speed
                    is_finer ? std::optional(coarser->second) : std::nullopt);
     context.coarser[{speed_m_per_s, radius_m}] = figures.error_n.p99;
     return std::nullopt;
+}
+
+/// A sweep whose true force is not known: under friction, or with a hand that leaves the proxy
+/// behind.
+CaseFailure run_felt_sweep(const SweepContext& context, const SpeedCase& speed, double friction,
+                           double speed_max_m_per_s)
+{
+    const Touch touch{kRadii_m.back(), kDepth_m, kStiffness_n_per_m};
+    const Sweep sweep = make_sweep(touch, speed.speed_m_per_s * kPeriod_s,
+                                   context.options.frames_or(10'000, 2'000));
+    ForceRun run = make_run(context.scene, sweep, touch, 1.0);
+    run.tool.speed_max_m_per_s = speed_max_m_per_s;
+    run.material.static_friction = friction;
+    run.material.dynamic_friction = kDynamicShare * friction;
+    const auto trace = replay_forces(run, context.options.passes_or(5, 3));
+    if (!trace)
+    {
+        return trace.error().text;
+    }
+    const ForceFigures figures = measure_forces(
+        trace.value(), counted(run.goals_m, run.lead_in),
+        counted(in_model(sweep.rests_m, context.scene, 1.0), run.lead_in), touch, kNoGoal);
+    Row common = context.common_row(context.scene.model.name, "Sweeps");
+    common.test_case += fmt::format(", {} m/s, {} mm", speed.speed_m_per_s, 1e3 * touch.radius_m);
+    common.test_case += friction > 0.0 ? fmt::format(", friction {}", friction) : "";
+    common.by = "Tactus";
+    common.frames = trace.value().outputs.size();
+    common.hash = trace.value().hash;
+    CaseRows rows(context.rows, common);
+    add_felt_rows(rows, trace.value(), figures,
+                  {speed.frame_us, kNoGoal, kNoGoal, kNoGoal, true, speed.force_us});
+    return std::nullopt;
+}
+
+CaseFailure run_felt_sweeps(const SweepContext& context)
+{
+    for (const SpeedCase& speed : kRoughSpeeds)
+    {
+        if (auto failure = run_felt_sweep(context, speed, kFriction, kSpeedMax_m_per_s))
+        {
+            return failure;
+        }
+    }
+    return run_felt_sweep(context, kFast, 0.0, kFastSpeedMax_m_per_s);
 }
 
 void add_mesh_rows(const SweepContext& context)
@@ -187,15 +256,15 @@ CaseFailure run_mesh(const CaseContext& of_case, const MeshCase& mesh, CoarserEr
     const PinnedCore pinned(context.options.core);
     for (const double radius_m : kRadii_m)
     {
-        for (const double speed_m_per_s : kSpeeds_m_per_s)
+        for (const SpeedCase& speed : kSpeeds)
         {
-            if (const auto failure = run_sweep(context, radius_m, speed_m_per_s))
+            if (const auto failure = run_sweep(context, radius_m, speed))
             {
                 return failure;
             }
         }
     }
-    return std::nullopt;
+    return is_timed(context, kRadii_m.back()) ? run_felt_sweeps(context) : std::nullopt;
 }
 
 /// The forces of one sweep on the coarsest mesh when all lengths are `scale` times as large and the
@@ -209,7 +278,7 @@ Result<ForceTrace, SceneError> scaled_forces(SceneStore& scenes, std::uint32_t f
     {
         return scene.error();
     }
-    const Sweep sweep = make_sweep(touch, kSpeeds_m_per_s[1] * kPeriod_s, frames);
+    const Sweep sweep = make_sweep(touch, kSpeeds[1].speed_m_per_s * kPeriod_s, frames);
     return replay_forces(make_run(*scene.value(), sweep, touch, scale), 1);
 }
 

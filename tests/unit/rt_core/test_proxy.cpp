@@ -374,32 +374,95 @@ TEST(Proxy, a_motion_is_worth_a_step_above_the_least_one)
     }
 }
 
-TEST(Proxy, at_rest_comes_as_far_in_a_frame_as_its_lists_of_triangles_reach)
+TEST(Proxy, touches_what_is_as_near_as_its_gap)
 {
-    // The first list reaches 0.05 radii farther than the tool, each other one four times as far.
-    double reach = 0.0;
-    double window = 0.05 * kRadius;
-    for (int list = 0; list < kMaxVicinities; ++list, window *= 4.0)
+    Material rough;
+    rough.static_friction = 10.0;
+    rough.dynamic_friction = 10.0;
+    for (const double share : {0.9, 1.1})
     {
-        reach += window;
-    }
-    for (const double share : {0.99, 1.5})
-    {
-        ProxyRig rig(plane(), Vec3(0, 0, kRadius));
-        rig.certified = 1.0;
-        const Vec3 goal(share * reach, 0, 0.005);
-        ToolOutput output = rig.step(goal);
-        EXPECT_EQ(output.under_way, share > 1.0);
-        EXPECT_NEAR(output.proxy_m.x(), std::min(share, 1.0) * reach, 1e-3 * kRadius);
+        ProxyRig rig(plane(), Vec3(0, 0, kRadius * (1.0 + share * kTouchShare)));
+        rig.material = rough;
+        const ToolOutput output = rig.step(Vec3(0.5 * kRadius, 0, 0.9 * kRadius));
         EXPECT_TRUE(output.in_contact);
-
-        output = rig.step(goal);
-        EXPECT_FALSE(output.under_way) << "it goes on in the next frame";
-        EXPECT_NEAR(output.proxy_m.x(), goal.x(), 1e-3 * kRadius);
+        EXPECT_EQ(output.proxy_m.x() > kTouchShare * kRadius, share > 1.0)
+            << "what touches sticks where it is, what doesn't goes straight on to where it does";
     }
 }
 
-/// What a proxy at the origin is told that came here from far away, so that it looks far ahead.
+TEST(Proxy, under_friction_slips_when_that_is_worth_it)
+{
+    Material rough;
+    rough.static_friction = 0.5;
+    rough.dynamic_friction = 0.5;
+    for (const double share : {0.9, 1.1})
+    {
+        ProxyRig rig(plane(), Vec3(0, 0, kRadius));
+        rig.material = rough;
+        const double depth = 0.1 * kRadius;
+        const double way = rough.static_friction * depth + share * kSlipShare * kRadius;
+        const ToolOutput output = rig.step(Vec3(way, 0, kRadius - depth));
+        EXPECT_TRUE(output.in_contact);
+        EXPECT_EQ(output.proxy_m.x() > 0.5 * kSlipShare * kRadius, share > 1.0);
+    }
+}
+
+TEST(Proxy, at_rest_comes_as_far_in_a_frame_as_is_known)
+{
+    ProxyRig rig(plane(), Vec3(0, 0, kRadius));
+    rig.certified = 1.0;
+    const Vec3 goal(0.5, 0, 0.005);
+    const ToolOutput output = rig.step(goal);
+    EXPECT_FALSE(output.under_way);
+    EXPECT_NEAR(output.proxy_m.x(), goal.x(), 1e-6 * kRadius);
+    EXPECT_TRUE(output.in_contact);
+}
+
+TEST(Proxy, among_more_faces_than_fit_goes_as_far_as_those_that_do_and_on_in_the_next_frame)
+{
+    // A floor of small squares, as four objects that lie beside one another.
+    constexpr int kSquares = 22;
+    constexpr double kEdge = 0.1 * kRadius;
+    const ObjectPose pose;
+    const Material material;
+    std::array<TriangleList, 4> lists;
+    for (int i = -kSquares; i < kSquares; ++i)
+    {
+        for (int j = -kSquares; j < kSquares; ++j)
+        {
+            const auto at = [&](int di, int dj)
+            { return Vec3((i + di) * kEdge, (j + dj) * kEdge, 0.0); };
+            add_square(lists[(i < 0 ? 0U : 1U) + (j < 0 ? 0U : 2U)], at(0, 0), at(1, 0), at(1, 1),
+                       at(0, 1));
+        }
+    }
+    Proxy sut(ball_tool());
+    sut.see(goal_at(Vec3(0, 0, kRadius)));
+    const Vec3 goal(kRadius, 0, 0.5 * kRadius);
+    std::array<ProxyMemory, 4> memories;
+    bool was_under_way = false;
+    bool is_in_contact = false;
+    for (int frame = 0; frame < 10; ++frame)
+    {
+        std::array<std::unique_ptr<OwnedSurface>, 4> surfaces;
+        std::vector<PlacedSurface> placed;
+        for (std::size_t i = 0; i < lists.size(); ++i)
+        {
+            surfaces[i] = surface_of(lists[i], sut.position_m(), 2.2 * kRadius);
+            placed.push_back(placed_surface(pose, surfaces[i].get(), material, memories[i]));
+        }
+        const ToolOutput output = sut.respond(goal_at(goal), placed, kInfinity);
+        was_under_way = was_under_way || output.under_way;
+        is_in_contact = output.in_contact;
+        ASSERT_FALSE(output.frozen);
+        ASSERT_GE(sut.position_m().z(), kRadius * (1.0 - 2e-6));
+    }
+    EXPECT_TRUE(was_under_way);
+    EXPECT_TRUE(is_in_contact);
+    EXPECT_NEAR(sut.position_m().x(), goal.x(), 1e-3 * kRadius);
+}
+
+/// What a proxy at the origin is told that came here from far away.
 ToolOutput leap_among(const TriangleList& triangles, const Vec3& goal, Proxy& sut)
 {
     const ObjectPose pose;

@@ -36,6 +36,26 @@ ObjectPose turned()
     return pose;
 }
 
+std::uint32_t count_of(const Vicinity& sut)
+{
+    std::uint32_t count = 0;
+    for (std::uint32_t face = 0; face < sut.size(); ++face)
+    {
+        count += sut.has(face) ? 1U : 0U;
+    }
+    return count;
+}
+
+/// All faces of some surfaces, listed with all sets of kernels.
+void with_each_set(PlacedSurface placed, const auto& check)
+{
+    for (const Kernels* kernels : available_kernels())
+    {
+        placed.kernels = kernels;
+        check(placed);
+    }
+}
+
 /// Of the listed faces, as seen from the place; the nearest one's bound.
 double nearest_seen(Vicinity& sut, const Vec3& place)
 {
@@ -43,8 +63,7 @@ double nearest_seen(Vicinity& sut, const Vec3& place)
     double least = std::numeric_limits<double>::infinity();
     for (std::uint32_t face = 0; face < sut.size(); ++face)
     {
-        const HalfSpace<3> plane = sut.half_space(face, 0.0);
-        least = std::min(least, -plane.offset);
+        least = sut.has(face) ? std::min(least, -sut.half_space(face, 0.0).offset) : least;
     }
     return least;
 }
@@ -53,7 +72,7 @@ double nearest_seen(Vicinity& sut, const Vec3& place)
 
 TEST(Vicinity, of_nothing_lets_everything_go)
 {
-    Vicinity sut({}, Vec3(0, 0, 0), Vec3(0, 0, 0), 1.0);
+    Vicinity sut({}, Vec3(0, 0, 0), 1.0);
 
     EXPECT_EQ(sut.size(), 0U);
     EXPECT_EQ(sut.reach_m(), 1.0);
@@ -62,30 +81,63 @@ TEST(Vicinity, of_nothing_lets_everything_go)
     EXPECT_TRUE(std::isinf(sut.bound_of_surface(0, Vec3(0, 0, 0))));
 }
 
-TEST(Vicinity, lists_the_triangles_within_its_reach)
+TEST(Vicinity, lists_the_triangles_of_its_surfaces)
 {
     Random random(60);
-    const TriangleList list = scattered(random, 200);
     const ObjectPose pose;
     const Material material;
-    const Vec3 anchor = random.in_cube(0.1);
-    const auto surface = surface_of(list, anchor, 10.0);
-    const PlacedSurface placed{&pose, surface.get(), &material, 1e-6};
     for (int i = 0; i < 300; ++i)
     {
+        const TriangleList list = scattered(random, 1 + random.below(200));
         const Vec3 center = random.in_cube(1.0);
-        const double reach = random.between(0.1, 0.6);
-        Vicinity sut({&placed, 1}, anchor, center, reach);
-        ASSERT_EQ(sut.reach_m(), reach);
-        const Vec3 point = center + random.in_cube(0.05);
-        const double truth = distance_to(list, point);
-        const double seen = nearest_seen(sut, point);
-        const double unlisted = reach - (point - center).norm();
-        ASSERT_GE(seen, truth - 1e-12);
-        if (truth < unlisted)
-        {
-            ASSERT_NEAR(seen, truth, 1e-12);
-        }
+        const auto surface = surface_of(list, center, 10.0);
+        const PlacedSurface placed{&pose, surface.get(), &material, 1e-6};
+        Vicinity sut({&placed, 1}, center, 10.0);
+        ASSERT_EQ(sut.reach_m(), 10.0);
+        ASSERT_EQ(count_of(sut), list.size());
+        const Vec3 point = center + random.in_cube(0.5);
+        ASSERT_NEAR(nearest_seen(sut, point), distance_to(list, point), 1e-12);
+    }
+}
+
+TEST(Vicinity, lists_what_is_within_a_distance_of_here_in_order_and_counts_what_has_no_room)
+{
+    Random random(64);
+    const ObjectPose pose = turned();
+    const Material material;
+    for (int i = 0; i < 300; ++i)
+    {
+        const TriangleList list = scattered(random, 100);
+        const Vec3 center = to_world(pose, random.in_cube(0.5));
+        const auto surface = surface_of(list, to_model(pose, center), 10.0);
+        with_each_set({&pose, surface.get(), &material, 1e-6},
+                      [&](const PlacedSurface& placed)
+                      {
+                          Vicinity sut({&placed, 1}, center, 10.0);
+                          const Vec3 place = random.in_cube(0.5);
+                          sut.stand_at(place, Vec3(0, 0, 1));
+                          const double distance = random.between(0.1, 1.5);
+                          std::array<std::uint32_t, 5> faces{};
+                          const std::size_t count = sut.list_within(distance, faces);
+                          std::vector<std::uint32_t> expected;
+                          for (std::uint32_t face = 0; face < list.size(); ++face)
+                          {
+                              const double truth =
+                                  pose.scale *
+                                  distance_to({list[face]}, to_model(pose, center + place));
+                              ASSERT_GT(std::abs(truth - distance), 1e-12);
+                              if (truth <= distance)
+                              {
+                                  expected.push_back(face);
+                              }
+                          }
+                          ASSERT_EQ(count, expected.size());
+                          expected.resize(std::min(count, faces.size()));
+                          for (std::size_t k = 0; k < expected.size(); ++k)
+                          {
+                              ASSERT_EQ(faces[k], expected[k]);
+                          }
+                      });
     }
 }
 
@@ -100,18 +152,18 @@ TEST(Vicinity, a_bound_is_never_more_than_the_distance_wherever_it_was_seen_from
         const Vec3 center = to_world(pose, random.in_cube(1.0));
         const auto surface = surface_of(list, to_model(pose, center), 10.0);
         const PlacedSurface placed{&pose, surface.get(), &material, 1e-6};
-        Vicinity sut({&placed, 1}, center, center, 10.0);
-        ASSERT_EQ(sut.size(), 1U);
+        Vicinity sut({&placed, 1}, center, 10.0);
+        ASSERT_EQ(count_of(sut), 1U);
         for (int look = 0; look < 3; ++look)
         {
             for (int k = 0; k < 10; ++k)
             {
                 const Vec3 place = random.in_cube(2.0);
                 const double truth = pose.scale * distance_to(list, to_model(pose, center + place));
-                ASSERT_LE(sut.bound(0, place), truth + 1e-12);
                 ASSERT_LE(sut.bound_of_surface(0, place), truth + 1e-12);
             }
             sut.stand_at(random.in_cube(1.0), Vec3(0, 0, 1));
+            static_cast<void>(sut.find_entered(random.in_cube(1.0), 0.5));
             ASSERT_NEAR(sut.half_space(0, 0.0).normal.norm(), 1.0, 1e-12);
         }
     }
@@ -130,8 +182,10 @@ TEST(Vicinity, a_motion_enters_nothing_that_it_does_not_name)
         const double truth = distance_to(list, center);
         const double radius = truth * random.between(0.1, 1.0);
         const auto surface = surface_of(list, center, 10.0);
-        const PlacedSurface placed{&pose, surface.get(), &material, 1e-6};
-        Vicinity sut({&placed, 1}, center, center, 10.0);
+        PlacedSurface placed{&pose, surface.get(), &material, 1e-6};
+        placed.kernels = available_kernels()[random.below(
+            static_cast<std::uint32_t>(available_kernels().size()))];
+        Vicinity sut({&placed, 1}, center, 10.0);
         const Vec3 motion = random.in_cube(0.2);
         const auto entered = sut.find_entered(motion, radius);
         const double share = sut.free_share(motion, radius);
@@ -160,10 +214,11 @@ TEST(Vicinity, distances_are_the_worlds_under_pose_and_scale)
     const auto surface = surface_of(plane(), Vec3(0, 0, 0.1), 10.0);
     const PlacedSurface placed{&pose, surface.get(), &material, 1e-6};
     const Vec3 point = pose.translation_m + Vec3(0.05, 0.1, 0.6);
-    Vicinity sut({&placed, 1}, to_world(pose, Vec3(0, 0, 0.1)), point, 5.0);
-    sut.stand_at(Vec3(0, 0, 0), Vec3(1, 0, 0));
+    const Vec3 center = to_world(pose, Vec3(0, 0, 0.1));
+    Vicinity sut({&placed, 1}, center, 5.0);
+    sut.stand_at(point - center, Vec3(1, 0, 0));
 
-    ASSERT_EQ(sut.size(), 2U); // One of the two is straight below.
+    ASSERT_EQ(count_of(sut), 2U); // One of the two is straight below.
     const HalfSpace<3> first = sut.half_space(0, 0.1);
     const HalfSpace<3> second = sut.half_space(1, 0.1);
     const HalfSpace<3>& nearer = first.offset > second.offset ? first : second;
@@ -171,29 +226,35 @@ TEST(Vicinity, distances_are_the_worlds_under_pose_and_scale)
     EXPECT_NEAR((nearer.normal - Vec3(0, 0, 1)).norm(), 0.0, 1e-12);
 }
 
-TEST(Vicinity, says_how_far_it_reaches_when_more_triangles_are_near_than_fit)
+TEST(Vicinity, of_several_surfaces_lists_the_nearest_and_says_how_far_it_reaches)
 {
     Random random(62);
+    const ObjectPose pose;
+    const Material material;
     for (int round = 0; round < 20; ++round)
     {
-        const std::array<TriangleList, 2> lists{scattered(random, 450), scattered(random, 450)};
-        const ObjectPose pose;
-        const Material material;
         const Vec3 center = random.in_cube(0.5);
-        const auto first = surface_of(lists[0], center, 10.0);
-        const auto second = surface_of(lists[1], center, 10.0);
-        const std::array<PlacedSurface, 2> placed{
-            {{&pose, first.get(), &material, 1e-6}, {&pose, second.get(), &material, 1e-6}}};
-
-        Vicinity sut(placed, center, center, 10.0);
+        std::vector<TriangleList> lists;
+        std::vector<std::unique_ptr<OwnedSurface>> surfaces;
+        std::vector<PlacedSurface> placed;
+        for (int i = 0; i < 4; ++i)
+        {
+            lists.push_back(scattered(random, 300 + random.below(500)));
+            surfaces.push_back(surface_of(lists.back(), center, 10.0));
+            placed.push_back({&pose, surfaces.back().get(), &material, 1e-6});
+        }
+        Vicinity sut(placed, center, 10.0);
 
         ASSERT_LT(sut.reach_m(), 10.0);
-        ASSERT_GT(sut.size(), 50U);
+        ASSERT_GT(count_of(sut), 7U * (kMaxNearBatches - 1));
         for (int i = 0; i < 20; ++i)
         {
             const Vec3 point = center + random.in_cube(0.2);
-            const double truth =
-                std::min(distance_to(lists[0], point), distance_to(lists[1], point));
+            double truth = std::numeric_limits<double>::infinity();
+            for (const TriangleList& list : lists)
+            {
+                truth = std::min(truth, distance_to(list, point));
+            }
             const double seen = nearest_seen(sut, point);
             const double unlisted = sut.reach_m() - (point - center).norm();
             ASSERT_GE(seen, truth - 1e-12);
@@ -202,57 +263,36 @@ TEST(Vicinity, says_how_far_it_reaches_when_more_triangles_are_near_than_fit)
     }
 }
 
-TEST(Vicinity, of_more_equally_near_triangles_than_fit_lets_nothing_move)
+TEST(Vicinity, of_more_equally_near_triangles_than_fit_lets_nothing_come_nearer)
 {
-    const TriangleList many(kMaxNearFaces + 1, plane().front());
+    const TriangleList many(kMaxLocalTriangles, plane().front());
     const ObjectPose pose;
     const Material material;
-    const auto surface = surface_of(many, Vec3(0.2, 0.1, 0.05), 10.0);
-    const PlacedSurface placed{&pose, surface.get(), &material, 1e-6};
     const Vec3 center(0.2, 0.1, 0.05);
+    const auto surface = surface_of(many, center, 10.0);
+    const std::array<PlacedSurface, 2> placed{
+        {{&pose, surface.get(), &material, 1e-6}, {&pose, surface.get(), &material, 1e-6}}};
 
-    const Vicinity sut({&placed, 1}, center, center, 1.0);
+    const Vicinity sut(placed, center, 1.0);
 
     EXPECT_LE(sut.reach_m(), 0.05);
+    EXPECT_GT(sut.reach_m(), 0.049);
 }
 
-TEST(Vicinity, reaches_as_far_as_asked_with_as_many_triangles_as_fit)
+TEST(Vicinity, reaches_as_far_as_asked_with_as_many_batches_as_fit)
 {
     const ObjectPose pose;
     const Material material;
     const Vec3 center(0.2, 0.1, 0.05);
-    for (const std::uint32_t count : {kMaxNearFaces, kMaxNearFaces + 1})
+    const auto first = surface_of(TriangleList(kMaxLocalTriangles, plane().front()), center, 10.0);
+    for (const std::uint32_t more : {0U, 1U})
     {
-        const TriangleList many(count, plane().front());
-        const auto surface = surface_of(many, center, 10.0);
-        const PlacedSurface placed{&pose, surface.get(), &material, 1e-6};
-        const Vicinity sut({&placed, 1}, center, center, 1.0);
-        EXPECT_EQ(sut.reach_m() == 1.0, count == kMaxNearFaces);
-    }
-}
-
-TEST(Vicinity, halves_what_it_reaches_beyond_the_nearest_so_many_times_and_no_more)
-{
-    constexpr double kNearest = 0.125;
-    const double last = kNearest + std::ldexp(1.0, -kMaxGatherings);
-    for (const double share : {0.9, 1.1})
-    {
-        // One face at a time in reach of the last list, or all of them.
-        const double far = kNearest + share * std::ldexp(1.0, -kMaxGatherings);
-        OwnedSurface surface;
-        surface.distances_m[surface.count++] = kNearest;
-        while (surface.count <= kMaxNearFaces)
-        {
-            surface.distances_m[surface.count++] = far;
-        }
-        const ObjectPose pose;
-        const Material material;
-        const PlacedSurface placed{&pose, &surface, &material, 1e-6};
-
-        const Vicinity sut({&placed, 1}, Vec3(0, 0, 0), Vec3(0, 0, 0), kNearest + 1.0);
-
-        EXPECT_EQ(sut.size(), 1U);
-        EXPECT_EQ(sut.reach_m(), share > 1.0 ? last : kNearest);
+        const std::uint32_t count = kPlaneLanes * kMaxNearBatches - kMaxLocalTriangles + more;
+        const auto second = surface_of(TriangleList(count, plane().front()), center, 10.0);
+        const std::array<PlacedSurface, 2> placed{
+            {{&pose, first.get(), &material, 1e-6}, {&pose, second.get(), &material, 1e-6}}};
+        const Vicinity sut(placed, center, 1.0);
+        EXPECT_EQ(sut.reach_m() == 1.0, more == 0U);
     }
 }
 
@@ -266,7 +306,7 @@ TEST(Vicinity, a_face_is_entered_by_more_than_the_tolerance)
     const PlacedSurface placed{&pose, surface.get(), &material, 1e-6};
     for (const double share : {0.9, 1.1})
     {
-        Vicinity sut({&placed, 1}, center, center, 1.0);
+        Vicinity sut({&placed, 1}, center, 1.0);
         sut.stand_at(Vec3(0, 0, 0), Vec3(0, 0, 1));
         const Vec3 motion(0, 0, -share * kContactTolerance * radius);
         EXPECT_EQ(sut.find_entered(motion, radius).has_value(), share > 1.0);
@@ -279,13 +319,84 @@ TEST(Vicinity, a_place_on_the_surface_sees_it_along_the_fallback)
     const Material material;
     const auto surface = surface_of(plane(), Vec3(0, 0, 0), 10.0);
     const PlacedSurface placed{&pose, surface.get(), &material, 1e-6};
-    Vicinity sut({&placed, 1}, Vec3(0, 0, 0), Vec3(0, 0, 0), 1.0);
+    Vicinity sut({&placed, 1}, Vec3(0, 0, 0), 1.0);
     sut.stand_at(Vec3(0.25, 0.1, 0), Vec3(0, 0, -1));
 
     const HalfSpace<3> plane_there = sut.half_space(0, 0.1);
 
     EXPECT_EQ(plane_there.normal, Vec3(0, 0, -1));
     EXPECT_NEAR(plane_there.offset, 0.1, 1e-15);
+}
+
+TEST(Vicinity, knows_how_far_a_way_is_free_of_a_face)
+{
+    Random random(65);
+    const ObjectPose pose = turned();
+    const Material material;
+    int touched = 0;
+    for (int i = 0; i < 2'000; ++i)
+    {
+        const TriangleList list = scattered(random, 1);
+        const Vec3 center = to_world(pose, random.in_cube(0.5));
+        const auto surface = surface_of(list, to_model(pose, center), 10.0);
+        const PlacedSurface placed{&pose, surface.get(), &material, 1e-6};
+        Vicinity sut({&placed, 1}, center, 10.0);
+        const auto distance = [&](const Vec3& motion)
+        { return pose.scale * distance_to(list, to_model(pose, center + motion)); };
+        const double radius = distance(Vec3(0, 0, 0)) * random.between(0.2, 1.0);
+        const Vec3 motion = random.in_cube(2.0);
+        const double share = sut.share_before(0, motion, radius);
+        double least = std::numeric_limits<double>::infinity();
+        for (int k = 0; k <= 50; ++k)
+        {
+            least = std::min(least, distance(motion * (share * k / 50.0)));
+        }
+        ASSERT_GE(least, radius * (1.0 - 1e-9));
+        if (share < 1.0)
+        {
+            ++touched;
+            // As near as a few steps come to a grazing touch.
+            ASSERT_LE(distance(motion * share), radius * (1.0 + 1e-3));
+        }
+    }
+    EXPECT_GT(touched, 200);
+    EXPECT_LT(touched, 1'800);
+}
+
+TEST(Vicinity, of_every_set_of_kernels_finds_the_same)
+{
+    Random random(66);
+    const ObjectPose pose = turned();
+    const Material material;
+    for (int i = 0; i < 300; ++i)
+    {
+        const TriangleList list = scattered(random, 200);
+        const Vec3 center = to_world(pose, random.in_cube(0.5));
+        const auto surface = surface_of(list, to_model(pose, center), 10.0);
+        const double radius = pose.scale * distance_to(list, to_model(pose, center)) * 0.9;
+        const std::array<Vec3, 3> motions{random.in_cube(0.5), random.in_cube(0.5),
+                                          random.in_cube(0.5)};
+        std::vector<std::vector<double>> answers;
+        with_each_set({&pose, surface.get(), &material, 1e-6},
+                      [&](const PlacedSurface& placed)
+                      {
+                          Vicinity sut({&placed, 1}, center, 10.0);
+                          std::vector<double> answer;
+                          for (const Vec3& motion : motions)
+                          {
+                              const auto entered = sut.find_entered(motion, radius);
+                              answer.push_back(entered ? static_cast<double>(*entered) : -1.0);
+                              answer.push_back(sut.free_share(motion, radius));
+                              answer.push_back(sut.bound_of_surface(0, motion));
+                              sut.stand_at(0.1 * motion, Vec3(0, 0, 1));
+                          }
+                          answers.push_back(answer);
+                      });
+        for (const std::vector<double>& answer : answers)
+        {
+            ASSERT_EQ(answer, answers.front());
+        }
+    }
 }
 
 } // namespace tactus::test
