@@ -104,8 +104,8 @@ DeviceRecord ToolPort::record() const noexcept
 SafetyOutput ToolPort::make_safe(const ToolOutput& output, const PeriodContext& context) noexcept
 {
     const OwnForce own = own_force(output);
-    const ConditionedWrench wrench = conditioner_.condition(
-        with_own(wish_of(output, context.surface_damping_n_s_per_m), own));
+    const ConditionedWrench wrench =
+        conditioner_.condition(with_own(wish_of(output, context.surface_damping_n_s_per_m), own));
     force_.conditioned = wrench.force;
     force_.turned = wrench.torque;
     const SafetyOutput safe = safe_state_.step(safety_input(output, context));
