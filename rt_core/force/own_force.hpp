@@ -13,7 +13,7 @@ namespace tactus
 {
 
 /// What a program wants to do to a hand beside what surfaces do: guidance, a spring to a point, a
-/// gripper that closes. World frame, SI.
+/// gripper that closes. World frame, SI. Haptic thread.
 struct OwnForce
 {
     Vec3 force_n{0.0, 0.0, 0.0};
