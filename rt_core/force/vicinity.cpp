@@ -104,7 +104,8 @@ void Vicinity::add(const PlacedSurface& placed, double farthest_m) noexcept
     if (!parts_.empty())
     {
         const PlaneTable& last = parts_[parts_.size() - 1].table;
-        table.lows = last.lows + (last.count + kPlaneLanes - 1) / kPlaneLanes * kPlaneLanes;
+        const std::size_t eights = (last.count + kPlaneLanes - 1) / kPlaneLanes;
+        table.lows = last.lows + eights * kPlaneLanes;
     }
     const std::uint32_t count = batches_of(*placed.surface);
     if (count > 0)

@@ -42,7 +42,10 @@ public:
         }
     }
     PlaneRig(const PlaneRig&) = delete;
+    PlaneRig(PlaneRig&&) = delete;
     PlaneRig& operator=(const PlaneRig&) = delete;
+    PlaneRig& operator=(PlaneRig&&) = delete;
+    ~PlaneRig() = default;
 
     void stand_at(const std::array<float, 3>& place)
     {
