@@ -90,6 +90,8 @@ public:
     [[nodiscard]] std::uint32_t active_faces_max() const noexcept { return active_max_; }
     /// Of the pool.
     [[nodiscard]] std::uint32_t capacity() const noexcept { return pool_->capacity(); }
+    /// Active faces of all models of the pool.
+    [[nodiscard]] std::uint32_t active_in_pool() const noexcept { return pool_->used(); }
     [[nodiscard]] std::uint32_t refined_records() const noexcept { return refined_count_; }
 
     /// Commutative sum over (face id, error, corners) of the active faces: the same cut has the

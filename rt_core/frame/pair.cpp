@@ -64,6 +64,9 @@ void keep_within(double radius_m, const DistanceAnswer& answer, ContactReport& r
                          (answer.certified_radius_m >= radius_m || answer.lower_m > radius_m);
 }
 
+/// What lies ahead is looked for this far beyond, a share of the way: once in some two frames.
+constexpr double kWalkedShare = 0.2;
+
 const MeshCore& mesh_core_of(const Tool& tool) noexcept
 {
     const auto* core = std::get_if<MeshCore>(&tool.spec().core);
@@ -215,6 +218,7 @@ void Pair::ask_for_balls() noexcept
 {
     const double fixed_radius = parts_.rules->variant.fixed_radius;
     const CoreCover& cover = outlook_.cover();
+    const bool looks_ahead = outlook_.looks_ahead() && !parts_.model.model->is_complete();
     for (std::size_t i = 0; i < kMaxCoverBalls; ++i)
     {
         const bool is_there = i < cover.size();
@@ -224,10 +228,26 @@ void Pair::ask_for_balls() noexcept
         const double keep_m = Outlook::kKeepFactor * reach_m;
         ask(is_there && !outlook_.is_asleep(), *parts_.model.model,
             {here.center, reach_m, keep_m, &refine_memories_[2 * i]}, of_object_);
-        ask(is_there && outlook_.looks_ahead(), *parts_.model.model,
-            {here.center + outlook_.approach_m(), reach_m, keep_m, &refine_memories_[2 * i + 1]},
-            of_object_);
+        const RefineQuestion ahead{here.center, reach_m, keep_m, &refine_memories_[2 * i + 1]};
+        const bool is_ahead = is_there && looks_ahead;
+        ask(is_ahead, *parts_.model.model, is_ahead ? ahead_of(ahead) : ahead, of_object_);
     }
+}
+
+/// The question where the tool will be. Along a surface that is no farther than the reach, and may
+/// wait; it is looked for at once for some frames.
+RefineQuestion Pair::ahead_of(RefineQuestion question) const noexcept
+{
+    Vec3 way_m = outlook_.approach_m();
+    if (outlook_.is_near_surface())
+    {
+        way_m *= std::min(1.0, question.reach_m / way_m.norm());
+        question.later_m = way_m.norm();
+        question.ahead_m = kWalkedShare * question.later_m;
+        question.keep_m += question.ahead_m;
+    }
+    question.center_m += way_m;
+    return question;
 }
 
 void Pair::ask_for_mesh() noexcept

@@ -185,6 +185,7 @@ private:
     void find_urgency() noexcept;
     [[nodiscard]] PairMotion motion() const noexcept;
     void ask_for_balls() noexcept;
+    [[nodiscard]] RefineQuestion ahead_of(RefineQuestion question) const noexcept;
     void ask_for_mesh() noexcept;
     template <std::size_t Capacity>
     void ask(bool is_asked, const Model& model, const RefineQuestion& question,

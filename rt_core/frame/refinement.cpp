@@ -11,6 +11,15 @@
 namespace tactus
 {
 
+namespace
+{
+
+/// What merges may help against.
+constexpr FrameFault kNoRoom =
+    FrameFault::forest_full | FrameFault::tree_full | FrameFault::cache_full;
+
+} // namespace
+
 std::uint32_t Refinement::run(const RefinementRound& round, std::span<Pair* const> order) noexcept
 {
     const auto& [models, budgets, frame, work, faults] = round;
@@ -21,17 +30,11 @@ std::uint32_t Refinement::run(const RefinementRound& round, std::span<Pair* cons
     }
     std::fill_n(services_.begin(), requests_.size(), Service{});
     group(models);
-    for (std::uint32_t i = 0; i < models.busy().size(); ++i)
-    {
-        ModelSlot& slot = models.slot(models.in_turn(i, frame));
-        slot.model->begin_refinement(requests_of(slot), budgets, work);
-        if (has_meshes_)
-        {
-            slot.model->refit(work, faults);
-        }
-    }
+    merge(round);
     const std::uint32_t splits = std::min(budgets.splits, kMaxSplitsPerFrame);
-    share_splits(round, splits);
+    const SplitLimits limits{splits, pace_.splits_of(splits)};
+    share_splits(round, limits);
+    const std::uint32_t before_filling = work.splits;
     for (const ModelId id : models.busy())
     {
         models[id].fill(splits, frame, work, faults);
@@ -40,20 +43,14 @@ std::uint32_t Refinement::run(const RefinementRound& round, std::span<Pair* cons
             models[id].refit(work, faults);
         }
     }
-    for (std::uint32_t i = 0; i < requests_.size() && work.splits < splits; ++i)
-    {
-        // One that stopped short of the budget gets no farther unless others split since.
-        const Service& last = services_[i];
-        const bool may_go_on = last.limit < splits || last.splits != work.splits;
-        if (may_go_on && requests_[i].is_late())
-        {
-            serve(round, i, splits);
-        }
-    }
+    const std::uint32_t filled = work.splits - before_filling;
+    serve_again(round, limits);
+    pace_.count(work.splits - filled);
     for (std::uint32_t i = 0; i < requests_.size(); ++i)
     {
         faults |= lateness_of(i);
     }
+    had_no_room_ = (faults & kNoRoom) != FrameFault::none;
     const std::uint32_t refused = refused_class();
     for (const ModelId id : models.busy())
     {
@@ -61,6 +58,28 @@ std::uint32_t Refinement::run(const RefinementRound& round, std::span<Pair* cons
         slot.model->end_refinement(requests_of(slot), work);
     }
     return refused;
+}
+
+/// For all models, before any split. Where room is short, all that the budget allows.
+void Refinement::merge(const RefinementRound& round) noexcept
+{
+    const auto& [models, budgets, frame, work, faults] = round;
+    constexpr std::uint32_t kLooksPerMerge = 5;
+    Budgets steady = budgets;
+    steady.merges = pace_.merges_of(std::min(budgets.merges, kMaxMergesPerFrame));
+    steady.scanned = std::min(budgets.scanned, kLooksPerMerge * steady.merges);
+    for (std::uint32_t i = 0; i < models.busy().size(); ++i)
+    {
+        ModelSlot& slot = models.slot(models.in_turn(i, frame));
+        const VertexForest& forest = slot.model->forest;
+        const bool is_crowded =
+            had_no_room_ || forest.active_in_pool() > 3 * (forest.capacity() / 4);
+        slot.model->begin_refinement(requests_of(slot), is_crowded ? budgets : steady, work);
+        if (has_meshes_)
+        {
+            slot.model->refit(work, faults);
+        }
+    }
 }
 
 std::uint32_t Refinement::refused_class() const noexcept
@@ -108,14 +127,14 @@ std::span<const RefineRequest> Refinement::requests_of(const ModelSlot& slot) co
 
 /// Each request that waits gets its part of the splits, class by class: first those that came off
 /// with nothing for longest, then those that saved some.
-void Refinement::share_splits(const RefinementRound& round, std::uint32_t splits) noexcept
+void Refinement::share_splits(const RefinementRound& round, SplitLimits limits) noexcept
 {
-    SplitShares shares(splits);
+    SplitShares shares(limits.now);
     StaticVector<std::uint32_t, kMaxRequests> waiting;
     for (std::uint32_t i = 0; i < requests_.size(); ++i)
     {
         const RefineRequest& request = requests_[i];
-        if (request.is_open())
+        if (request.is_late())
         {
             shares.add(request.urgency.of);
             waiting.push_back(i);
@@ -139,20 +158,45 @@ void Refinement::share_splits(const RefinementRound& round, std::uint32_t splits
         const std::uint32_t before = round.work.splits;
         const SplitShares::Share share =
             shares.take(requests_[i].urgency.of, closure.saved, before);
-        serve(round, i, share.limit);
+        serve(round, i, {share.limit, std::min(share.limit, limits.later)});
         closure.saved = shares.save(closure.saved, share.equal, round.work.splits - before);
         closure.waited = share.equal == 0 ? closure.waited + 1 : 0;
     }
 }
 
+/// First those that are late still, with all that is left; then what may wait.
+void Refinement::serve_again(const RefinementRound& round, SplitLimits limits) noexcept
+{
+    const WorkCounters& work = round.work;
+    for (std::uint32_t i = 0; i < requests_.size() && work.splits < limits.now; ++i)
+    {
+        // One that stopped short of the budget gets no farther unless others split since.
+        const Service& last = services_[i];
+        const bool may_go_on = last.limits.now < limits.now || last.splits != work.splits;
+        if (may_go_on && requests_[i].is_late())
+        {
+            serve(round, i, limits);
+        }
+    }
+    for (std::uint32_t i = 0; i < requests_.size(); ++i)
+    {
+        // With nothing left a closure that nobody wants any more is released all the same.
+        const bool may_wait = requests_[i].is_open() && !requests_[i].is_late();
+        if (may_wait && services_[i].limits.later < limits.later)
+        {
+            serve(round, i, limits);
+        }
+    }
+}
+
 void Refinement::serve(const RefinementRound& round, std::uint32_t request,
-                       std::uint32_t limit) noexcept
+                       SplitLimits limits) noexcept
 {
     const auto& [models, budgets, frame, work, faults] = round;
     Model& model = models[requests_[request].model];
     model.refit(work, faults); // What others split, or was merged, is where it is looked for.
-    const FrameFault found = model.refiner.refine(requests_[request], limit, budgets, frame, work);
-    services_[request] = {limit, work.splits, found};
+    const FrameFault found = model.refiner.refine(requests_[request], limits, budgets, frame, work);
+    services_[request] = {limits, work.splits, found};
     if (has_meshes_)
     {
         model.refit(work, faults);

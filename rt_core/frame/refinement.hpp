@@ -8,6 +8,7 @@
 #include "rt_core/records/frame_input.hpp"
 #include "rt_core/records/frame_output.hpp"
 #include "rt_core/records/work_counters.hpp"
+#include "rt_core/refine/work_pace.hpp"
 
 #include <array>
 #include <cstdint>
@@ -27,7 +28,8 @@ struct RefinementRound
 };
 
 /// A frame's second stage: gathers what its pairs ask of their models, merges what all left behind,
-/// and shares the frame's splits among those that wait (SplitShares). Haptic thread.
+/// and shares the frame's splits among those that wait (SplitShares). What may wait, merges and
+/// splits ahead of the tools, goes on at a steady pace (WorkPace). Haptic thread.
 class Refinement
 {
 public:
@@ -43,18 +45,22 @@ public:
 private:
     void group(ModelSet& models) noexcept;
     [[nodiscard]] std::span<const RefineRequest> requests_of(const ModelSlot& slot) const noexcept;
-    void share_splits(const RefinementRound& round, std::uint32_t splits) noexcept;
-    void serve(const RefinementRound& round, std::uint32_t request, std::uint32_t limit) noexcept;
+    void merge(const RefinementRound& round) noexcept;
+    void share_splits(const RefinementRound& round, SplitLimits limits) noexcept;
+    void serve_again(const RefinementRound& round, SplitLimits limits) noexcept;
+    void serve(const RefinementRound& round, std::uint32_t request, SplitLimits limits) noexcept;
     [[nodiscard]] std::uint32_t refused_class() const noexcept;
     [[nodiscard]] FrameFault lateness_of(std::uint32_t request) const noexcept;
 
     bool has_meshes_{false};
+    WorkPace pace_;
+    bool had_no_room_{false}; ///< The last frame, for something that it wanted.
     RefineRequests requests_; ///< In the order of their pairs.
     RefineRequests by_model_; ///< The same, model by model.
     /// How a request was served last in this frame.
     struct Service
     {
-        std::uint32_t limit{0};  ///< Splits that the frame might have done after it,
+        SplitLimits limits;      ///< Splits that the frame might have done after it,
         std::uint32_t splits{0}; ///< and that it had done.
         FrameFault found{FrameFault::none};
     };

@@ -16,8 +16,8 @@ namespace
 /// a front that lags by a frame or two still holds what the proxy needs.
 constexpr double kReachMargin = 0.05;
 
-/// Before contact a second ball is refined this far ahead in time, so that the front is there when
-/// the tool is: a contact needs some 600 splits at 1 M faces, ten frames of 64.
+/// A second ball is refined this far ahead in time, so that the front is there when the tool is: a
+/// contact needs some 600 splits at 1 M faces, ten frames of 64.
 constexpr double kApproachTime_s = 0.01;
 
 /// What a tool can come to in this time is looked at: chunks of it are asked for that far ahead.
@@ -83,8 +83,9 @@ FrameFault Tool::begin(const ToolState& sample, double period_s,
              stance_.reach_m =
                  body.radius_m() * (1.0 + kReachMargin) + std::min(body.way_to_m(goal_), most_m);
          });
-    stance_.approach_m =
-        output_.in_contact ? Vec3(0.0, 0.0, 0.0) : Vec3(kApproachTime_s * goal_.velocity_m_per_s);
+    // A mesh in contact is refined ahead by what it moves: see MeshPair.
+    const double ahead_s = output_.in_contact && is_mesh(spec_) ? 0.0 : kApproachTime_s;
+    stance_.approach_m = ahead_s * goal_.velocity_m_per_s;
     return fault;
 }
 

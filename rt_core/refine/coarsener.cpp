@@ -3,12 +3,11 @@
 #include "rt_core/refine/coarsener.hpp"
 
 #include "rt_core/base/assert.hpp"
-#include "rt_core/math/infinity.hpp"
 #include "rt_core/spm/error_code.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
+#include <utility>
 
 namespace tactus
 {
@@ -17,8 +16,11 @@ namespace
 {
 
 /// A record may stay while a tool goes this much farther than it has to, as a share of the keep
-/// distance, so that a page has not to be looked at for each of its records.
+/// distance, so that it has not to be looked at at every step.
 constexpr double kPatience = 0.1;
+/// How far the wheel looks ahead, in keep distances of the first question that there is; a record
+/// that may stay longer is looked at once in between.
+constexpr double kHorizon = 4.0;
 
 } // namespace
 
@@ -27,11 +29,10 @@ Coarsener::Coarsener(VertexForest& forest, PageTable& pages, const RefineScratch
     : forest_(&forest)
     , pages_(&pages)
     , quantum_m_(static_cast<double>(quantum_m))
-    , stack_(scratch.stack)
-    , look_at_(scratch.look_at)
-    , needed_(scratch.needed)
+    , waits_(scratch.waits)
 {
-    TACTUS_ASSERT(look_at_.size() == pages.capacity());
+    TACTUS_ASSERT(waits_.size() == pages.capacity());
+    heads_.fill(kNoRecord);
 }
 
 void Coarsener::follow(double farthest_m) noexcept
@@ -40,152 +41,133 @@ void Coarsener::follow(double farthest_m) noexcept
     travel_ += farthest_m;
 }
 
+/// As if the tools had gone farther than any record in the wheel waits for.
 void Coarsener::look_at_all() noexcept
 {
-    for (std::uint32_t slot = 0; slot < pages_->capacity(); ++slot)
-    {
-        look_at_[slot] = is_of_this_model(slot) ? travel_ : look_at_[slot];
-    }
-    next_look_ = travel_;
+    travel_ += horizon_m_;
 }
 
-void Coarsener::look_when_left(std::uint32_t slot, const VsplitRecord& record,
+void Coarsener::look_when_left(std::uint32_t slot, RecordId id, const VsplitRecord& record,
                                std::span<const RefineRequest> requests) noexcept
 {
-    TACTUS_ASSERT(slot < look_at_.size());
-    look_at_[slot] = std::min(look_at_[slot], travel_ + slack_of(record, requests));
-    next_look_ = std::min(next_look_, look_at_[slot]);
+    TACTUS_ASSERT(slot < waits_.size());
+    if (horizon_m_ == 0.0)
+    {
+        set_up_wheel(requests);
+    }
+    const Place place{slot, place_in_chunk(id)};
+    if (pages_->meta(slot).refined == place.bit())
+    {
+        waits_[slot] = PageWaits{}; // Another model may have had the slot.
+    }
+    for (std::uint32_t i = 0; i < record.fan_size; ++i)
+    {
+        if (const FaceState state = record.before[i]; !state.is_base())
+        {
+            const Place before = place_of(state.record());
+            ++waits_[before.slot].dependents[before.record];
+        }
+    }
+    list_when_left(place, slack_of(record, requests));
+}
+
+void Coarsener::set_up_wheel(std::span<const RefineRequest> requests) noexcept
+{
+    double keep_m = quantum_m_;
+    for_each_question(requests, [&](const RefineQuestion& question)
+                      { keep_m = std::max(keep_m, question.keep_m); });
+    horizon_m_ = kHorizon * keep_m;
+    buckets_per_m_ = kBuckets / horizon_m_;
+    cursor_ = bucket_of(travel_);
+}
+
+/// Without slack it is due now, else in the first bucket that begins when it is used up.
+void Coarsener::list_when_left(const Place& place, double slack_m) noexcept
+{
+    list(place, slack_m > 0.0 ? bucket_of(travel_ + slack_m) + 1 : cursor_);
+}
+
+void Coarsener::list(const Place& place, std::int64_t bucket) noexcept
+{
+    PageWaits& waits = waits_[place.slot];
+    if ((waits.listed & place.bit()) != 0)
+    {
+        return; // Looked at sooner.
+    }
+    waits.listed |= place.bit();
+    const std::int64_t within = std::clamp(bucket, cursor_, cursor_ + kBuckets - 1);
+    std::uint32_t& head = heads_[static_cast<std::size_t>(within) % kBuckets];
+    waits.next[place.record] = std::exchange(head, place.slot * kRecordsPerChunk + place.record);
 }
 
 void Coarsener::run(std::span<const RefineRequest> requests, const Budgets& budgets,
                     WorkCounters& work) noexcept
 {
-    if (travel_ < next_look_)
+    const std::int64_t now = bucket_of(travel_);
+    // All that waits is within one turn, so none is passed twice in a frame.
+    cursor_ = std::max(cursor_, now - kBuckets);
+    for (;; ++cursor_)
     {
-        return;
-    }
-    // One round over the pages at most. Most are not due: a comparison each.
-    double next = kInfinity;
-    for (std::uint32_t looked = 0; looked < pages_->capacity(); ++looked)
-    {
-        const bool is_own = is_of_this_model(scan_slot_);
-        if (is_own && look_at_[scan_slot_] <= travel_)
+        std::uint32_t& head = heads_[static_cast<std::size_t>(cursor_) % kBuckets];
+        while (head != kNoRecord)
         {
             if (work.scanned >= budgets.scanned || work.merges >= budgets.merges)
             {
                 return;
             }
-            scan_page(scan_slot_, requests, budgets, work);
+            const Place place{head / kRecordsPerChunk, head % kRecordsPerChunk};
+            head = waits_[place.slot].next[place.record];
+            look_at(place, requests, work);
         }
-        next = is_own ? std::min(next, look_at_[scan_slot_]) : next;
-        scan_slot_ = scan_slot_ == 0 ? pages_->capacity() - 1 : scan_slot_ - 1;
-    }
-    next_look_ = std::max(next, travel_);
-}
-
-/// Looks at the refined records of one page, finest last in first. Unless the budget ends it, the
-/// page is not due again before the tools have come far enough to leave one of them behind.
-void Coarsener::scan_page(std::uint32_t slot, std::span<const RefineRequest> requests,
-                          const Budgets& budgets, WorkCounters& work) noexcept
-{
-    const PageTable::Meta& meta = pages_->meta(slot);
-    look_at_[slot] = kInfinity;
-    needed_[slot] &= meta.refined;
-    std::uint64_t left = meta.refined & ~meta.held & ~needed_[slot];
-    const Page& page = pages_->slots().pages[slot];
-    while (left != 0)
-    {
-        const auto place = static_cast<std::uint32_t>(63 - std::countl_zero(left));
-        left &= ~(std::uint64_t{1} << place);
-        if (work.scanned >= budgets.scanned)
+        if (cursor_ >= now)
         {
-            look_at_[slot] = travel_;
             return;
         }
-        const double slack = slack_of(page.records[place], requests);
-        if (slack > 0.0)
-        {
-            ++work.scanned;
-            look_at_[slot] = std::min(look_at_[slot], travel_ + slack);
-            continue;
-        }
-        if (!merge_back({(meta.chunk.value << kRecordsPerChunkLog2) + place}, requests, budgets,
-                        work))
-        {
-            look_at_[slot] = travel_;
-            return;
-        }
-        left &= meta.refined;
     }
 }
 
-/// Merges a record that was left behind, then those that it was the last to depend on. False when
-/// the budget is spent.
-bool Coarsener::merge_back(RecordId first, std::span<const RefineRequest> requests,
-                           const Budgets& budgets, WorkCounters& work) noexcept
+/// A record that is taken from the wheel: merged, or put where it is due next, or left to whoever
+/// holds or needs it.
+void Coarsener::look_at(const Place& place, std::span<const RefineRequest> requests,
+                        WorkCounters& work) noexcept
 {
-    std::uint32_t depth = 0;
-    stack_[depth++] = first;
-    while (depth > 0)
+    PageWaits& waits = waits_[place.slot];
+    const PageTable::Meta& meta = pages_->meta(place.slot);
+    TACTUS_ASSERT((waits.listed & place.bit()) != 0);
+    TACTUS_ASSERT((meta.refined & place.bit()) != 0);
+    waits.listed &= ~place.bit();
+    if ((meta.held & place.bit()) != 0 || waits.dependents[place.record] != 0)
     {
-        const RecordId id = stack_[--depth];
-        if (!pages_->is_refined(id))
+        return;
+    }
+    ++work.scanned;
+    const VsplitRecord& record = pages_->slots().pages[place.slot].records[place.record];
+    if (const double slack = slack_of(record, requests); slack > 0.0)
+    {
+        list_when_left(place, slack);
+        return;
+    }
+    const bool is_merged =
+        forest_->try_merge({(meta.chunk.value << kRecordsPerChunkLog2) + place.record});
+    TACTUS_ASSERT(is_merged);
+    ++work.merges;
+    for (std::uint32_t i = 0; i < record.fan_size; ++i)
+    {
+        if (const FaceState state = record.before[i]; !state.is_base())
         {
-            continue; // Several faces of one record asked for it; it is merged.
-        }
-        if (work.scanned >= budgets.scanned || work.merges >= budgets.merges)
-        {
-            look_soon(id);
-            for (const RecordId waiting : stack_.first(depth))
+            const Place before = place_of(state.record());
+            TACTUS_ASSERT(waits_[before.slot].dependents[before.record] > 0);
+            if (--waits_[before.slot].dependents[before.record] == 0)
             {
-                look_soon(waiting);
-            }
-            return false;
-        }
-        ++work.scanned;
-        const std::uint32_t slot = pages_->find(chunk_of(id));
-        TACTUS_ASSERT(slot < needed_.size());
-        const VsplitRecord& record = pages_->slots().pages[slot].records[place_in_chunk(id)];
-        const std::uint64_t bit = std::uint64_t{1} << place_in_chunk(id);
-        needed_[slot] &= ~bit;
-        if (const double slack = slack_of(record, requests); slack > 0.0)
-        {
-            look_at_[slot] = std::min(look_at_[slot], travel_ + slack);
-            continue;
-        }
-        if (!forest_->try_merge(id))
-        {
-            needed_[slot] |= bit; // Asked again when the record that needs it is merged.
-            continue;
-        }
-        ++work.merges;
-        for (std::uint32_t i = 0; i < record.fan_size; ++i)
-        {
-            const FaceState state = record.before[i];
-            if (state.is_base() || !pages_->is_refined(state.record()))
-            {
-                continue;
-            }
-            if (depth < stack_.size() && !pages_->is_held(state.record()))
-            {
-                stack_[depth++] = state.record();
-            }
-            else
-            {
-                look_soon(state.record());
+                list(before, cursor_);
             }
         }
     }
-    return true;
 }
 
 void Coarsener::look_soon(RecordId record) noexcept
 {
-    const std::uint32_t slot = pages_->find(chunk_of(record));
-    TACTUS_ASSERT(slot < needed_.size());
-    needed_[slot] &= ~(std::uint64_t{1} << place_in_chunk(record));
-    look_at_[slot] = travel_;
-    next_look_ = travel_;
+    list(place_of(record), cursor_);
 }
 
 /// How much farther the tools have to go before the record is left behind by all of them.

@@ -45,6 +45,9 @@ struct RefineQuestion
     double ahead_m{0.0};      ///< How much farther than usual beyond the reach is refined.
     bool counts_errors{true}; ///< Without: coarse faces are wanted by distance alone.
     double tolerance_m{0.0};  ///< Coarse faces with no larger error are not wanted.
+    /// So far from where it is needed the question is asked, because that is where it will be: what
+    /// only it wants may wait. 0: it is needed now.
+    double later_m{0.0};
 };
 
 /// Whether something within the reach may be coarse.
@@ -73,14 +76,17 @@ struct RefineRequest
     Closure* closure{nullptr};
     Urgency urgency;
 
-    /// Whether something within reach may be coarse.
+    /// Whether something within reach may be coarse that is needed now.
     [[nodiscard]] bool is_late() const noexcept
     {
         return std::ranges::any_of(questions, [](const RefineQuestion& question)
-                                   { return is_wanting(question); });
+                                   { return question.later_m == 0.0 && is_wanting(question); });
     }
-    /// Whether there may be something to split for it.
-    [[nodiscard]] bool is_open() const noexcept { return !closure->target.is_none() || is_late(); }
+    /// Whether there may be something to split for it, now or later.
+    [[nodiscard]] bool is_open() const noexcept
+    {
+        return !closure->target.is_none() || std::ranges::any_of(questions, &is_wanting);
+    }
 };
 
 /// Calls `function` for each question of the requests, in order.

@@ -6,6 +6,7 @@
 #include "rt_core/refine/refine_question.hpp"
 #include "rt_core/spm/page_table.hpp"
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <utility>
@@ -23,16 +24,24 @@ struct HeldRecord
 /// A coarse face that is wanted, and the state in which it was looked at.
 struct RefineCandidate
 {
-    /// Distance minus error minus reach, the least over the questions; above zero it is only
-    /// looked ahead for.
+    /// Distance minus error minus reach, the least over the questions, each with what it is asked
+    /// ahead; above zero it is only looked ahead for.
     double excess_m{0.0};
     PrimId prim{};
     FaceState state;
 };
 
+/// When the records of a page are looked at for merging: see Coarsener. 328 B.
+struct PageWaits
+{
+    std::array<std::uint32_t, kRecordsPerChunk> next{}; ///< In the same bucket, slot x 64 + place.
+    std::array<std::uint8_t, kRecordsPerChunk> dependents{}; ///< Faces that others refined further.
+    std::uint64_t listed{0}; ///< One bit a record: it is in a bucket.
+};
+
 /// What refinement needs while it runs, one for all models of a frame, which take turns; and the
 /// records that their closures hold from frame to frame, kMaxHeldRecords of them in all. 29 KiB,
-/// and 16 B a page slot for when to look at its records, which is its owner's matter.
+/// and 328 B a page slot for when to look at its records, which is its owner's matter.
 ///
 /// Haptic thread only.
 struct RefineScratch
@@ -42,8 +51,7 @@ struct RefineScratch
         , stack(arena.take<RecordId>(kMaxDepth))
         , done(arena.take<RecordId>(kMaxSplitsPerFrame))
         , held(arena.take<HeldRecord>(kMaxHeldRecords))
-        , look_at(arena.take<double>(page_slots))
-        , needed(arena.take<std::uint64_t>(page_slots))
+        , waits(arena.take<PageWaits>(page_slots))
     {
         for (std::uint32_t i = kMaxHeldRecords; i > 0 && !arena.is_measuring(); --i)
         {
@@ -52,11 +60,10 @@ struct RefineScratch
     }
 
     std::span<RefineCandidate> heap;
-    std::span<RecordId> stack; ///< Of a closure, or of what is merged back.
+    std::span<RecordId> stack; ///< Of a closure.
     std::span<RecordId> done;  ///< The records that a closure split.
     std::span<HeldRecord> held;
-    std::span<double> look_at;               ///< See Coarsener.
-    std::span<std::uint64_t> needed;         ///< See Coarsener.
+    std::span<PageWaits> waits;              ///< By page slot of all models.
     std::uint32_t free_held{Closure::kNone}; ///< First of those that are free.
 };
 

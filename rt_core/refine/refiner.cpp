@@ -22,13 +22,17 @@ namespace
 constexpr auto comes_later = [](const auto& a, const auto& b) noexcept
 { return a.excess_m != b.excess_m ? a.excess_m > b.excess_m : a.prim > b.prim; };
 
-/// What is only looked ahead for gets this part of the splits, so that it comes bit by bit.
-constexpr std::uint32_t kAheadShare = 16;
-
 double target_of(const RefineQuestion& question) noexcept
 {
-    return question.reach_m + Refiner::kLookAhead * (question.reach_m - question.span_m) +
-           question.ahead_m;
+    const double look_ahead = question.later_m > 0.0 ? 0.0 : Refiner::kLookAhead;
+    return question.reach_m + look_ahead * (question.reach_m - question.span_m) + question.ahead_m;
+}
+
+/// How much too far a face is for being wanted now, when its distance minus error is `lower_m` from
+/// where the question is: at most what it is from where the tool is.
+double excess_of(const RefineQuestion& question, double lower_m) noexcept
+{
+    return lower_m - question.reach_m + question.later_m;
 }
 
 /// The least distance of something, its error taken off, given one from the question's centre: the
@@ -75,7 +79,7 @@ void leave_at(std::span<const RefineQuestion> questions, double excess_m) noexce
 {
     for (const RefineQuestion& question : questions)
     {
-        leave(question, question.reach_m + excess_m);
+        leave(question, question.reach_m - question.later_m + excess_m);
     }
 }
 
@@ -140,21 +144,27 @@ void Refiner::begin(std::span<const RefineRequest> requests, const Budgets& budg
                       });
 }
 
-FrameFault Refiner::refine(const RefineRequest& request, std::uint32_t limit,
-                           const Budgets& budgets, std::uint32_t frame, WorkCounters& work) noexcept
+FrameFault Refiner::refine(const RefineRequest& request, SplitLimits limits, const Budgets& budgets,
+                           std::uint32_t frame, WorkCounters& work) noexcept
 {
-    TACTUS_ASSERT(limit <= kMaxSplitsPerFrame);
+    TACTUS_ASSERT(limits.now <= kMaxSplitsPerFrame);
+    TACTUS_ASSERT(limits.later <= limits.now);
     FrameFault found = FrameFault::none;
     heap_size_ = 0;
     given_up_ = FrameFault::none;
-    for (const RefineQuestion& question : request.questions)
+    for (const bool may_wait : {false, true})
     {
-        if (is_wanting(question))
+        // Not looked for where what is found already is more than may be split.
+        const bool is_of_use = !may_wait || work.splits + heap_size_ < limits.later;
+        for (const RefineQuestion& question : request.questions)
         {
-            gather(question, budgets, work, found);
+            if (is_of_use && (question.later_m > 0.0) == may_wait && is_wanting(question))
+            {
+                gather(question, budgets, work, found);
+            }
         }
     }
-    split_wanted(request, limit, frame, work, found);
+    split_wanted(request, limits, frame, work, found);
     return found | given_up_;
 }
 
@@ -281,7 +291,7 @@ void Refiner::gather_block(std::uint32_t index, const RefineQuestion& question) 
         if (key <= target)
         {
             const PrimId prim = side.prims[lane];
-            push({key - question.reach_m, prim, forest_->face(prim).state}, {&question, 1});
+            push({excess_of(question, key), prim, forest_->face(prim).state}, {&question, 1});
         }
         else
         {
@@ -290,14 +300,11 @@ void Refiner::gather_block(std::uint32_t index, const RefineQuestion& question) 
     }
 }
 
-void Refiner::split_wanted(const RefineRequest& request, std::uint32_t limit, std::uint32_t frame,
+void Refiner::split_wanted(const RefineRequest& request, SplitLimits limits, std::uint32_t frame,
                            WorkCounters& work, FrameFault& found) noexcept
 {
     const std::span<const RefineQuestion> own = request.questions;
     Closure& closure = *request.closure;
-    const std::uint32_t share = limit - std::min(limit, work.splits);
-    const std::uint32_t limit_ahead =
-        work.splits + std::max(share / kAheadShare, std::min(share, 1U));
     double pending_excess = excess_of_pending(request);
     if (!(pending_excess < kInfinity))
     {
@@ -331,7 +338,7 @@ void Refiner::split_wanted(const RefineRequest& request, std::uint32_t limit, st
             leave_at(own, wanted.excess_m);
             continue;
         }
-        can_go_on = try_advance(wanted, request, wanted.excess_m <= 0.0 ? limit : limit_ahead,
+        can_go_on = try_advance(wanted, request, wanted.excess_m <= 0.0 ? limits.now : limits.later,
                                 frame, work, found);
     }
     // The nearest of those that were not come to.
@@ -355,8 +362,8 @@ double Refiner::excess_of_pending(const RefineRequest& request) const noexcept
         for (const RefineQuestion& question : request.questions)
         {
             const double lower = lower_bound(prim, question);
-            excess =
-                lower <= target_of(question) ? std::min(excess, lower - question.reach_m) : excess;
+            excess = lower <= target_of(question) ? std::min(excess, excess_of(question, lower))
+                                                  : excess;
         }
     }
     return excess;
@@ -441,7 +448,7 @@ Refiner::ClosureOutcome Refiner::split_with_closure(RecordId target,
             TACTUS_ASSERT(done_count_ < done_.size());
             done_[done_count_++] = id;
             --depth;
-            coarsener_.look_when_left(slot, *record,
+            coarsener_.look_when_left(slot, id, *record,
                                       is_filling_ ? std::span<const RefineRequest>{} : requests_);
             consider_star(id, *record, star, own);
         }
@@ -529,7 +536,7 @@ void Refiner::consider_star(RecordId id, const VsplitRecord& record,
                           error, [&] { return ball_of_face(star.geometry, place); });
             if (is_own && key <= target_of(question))
             {
-                excess[place] = std::min(excess[place], key - question.reach_m);
+                excess[place] = std::min(excess[place], excess_of(question, key));
             }
             else
             {
@@ -565,12 +572,13 @@ double Refiner::lower_bound(PrimId prim, const RefineQuestion& question) const n
 }
 
 /// Full: the face waits for the next frame, when nearer ones are done. One that is only looked
-/// ahead for is missed by nobody.
+/// ahead for is missed by nobody, and leaves half of the heap to others.
 void Refiner::push(const Candidate& candidate, std::span<const RefineQuestion> questions) noexcept
 {
     TACTUS_ASSERT(!candidate.prim.is_none());
     TACTUS_ASSERT(candidate.excess_m < kInfinity);
-    if (heap_size_ == heap_.size())
+    const std::size_t room = candidate.excess_m <= 0.0 ? heap_.size() : heap_.size() / 2;
+    if (heap_size_ >= room)
     {
         leave_at(questions, candidate.excess_m);
         given_up_ |= candidate.excess_m <= 0.0 ? FrameFault::refine_heap_full : FrameFault::none;

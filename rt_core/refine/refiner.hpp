@@ -18,6 +18,13 @@
 namespace tactus
 {
 
+/// How many splits a frame may have done when a request was served.
+struct SplitLimits
+{
+    std::uint32_t now{0};
+    std::uint32_t later{0}; ///< Of what may wait, no more than `now`.
+};
+
 /// Moves one model's refined front to what the pairs ask for: first merges what all of them left
 /// behind (Coarsener), then splits pair by pair what each lacks, nearest first, until its
 /// certificate holds or its share of the budget is spent.
@@ -25,10 +32,11 @@ namespace tactus
 /// A face is split while it is coarse and its distance minus its error is within a question's
 /// reach. When none is left every original face in reach is active: the ball is certified. It is
 /// refined a little beyond the reach (kLookAhead), so that a slow tool has frames without any work
-/// here. Records split for a closure that the budget cut short are held: not merged until the
-/// closure is complete or its pair does not want it, so a small budget makes progress in every
-/// frame. A split that one pair asked for takes from every other pair's certificate what it made
-/// coarse there.
+/// here, and where the tool will be (RefineQuestion::later_m). That may wait: it comes after all
+/// that is wanted now, the sooner needed the earlier, and at a steady pace. Records split for a
+/// closure that the budget cut short are held: not merged until the closure is complete or its pair
+/// does not want it, so a small budget makes progress in every frame. A split that one pair asked
+/// for takes from every other pair's certificate what it made coarse there.
 ///
 /// Haptic thread. Every loop is bounded by the budgets and by limits.hpp.
 class Refiner
@@ -44,11 +52,11 @@ public:
     void begin(std::span<const RefineRequest> requests, const Budgets& budgets,
                WorkCounters& work) noexcept TACTUS_NONBLOCKING;
 
-    /// Splits what one of the frame's requests lacks until `work` has `limit` splits, at most
-    /// kMaxSplitsPerFrame. The tree's boxes are those of the last refit. Pages whose records a
-    /// closure needs are touched. Returns what was in the way; it matters while the request
-    /// is_late().
-    [[nodiscard]] FrameFault refine(const RefineRequest& request, std::uint32_t limit,
+    /// Splits what one of the frame's requests lacks until `work` has as many splits as the limits
+    /// say, at most kMaxSplitsPerFrame. The tree's boxes are those of the last refit. Pages whose
+    /// records a closure needs are touched. Returns what was in the way; it matters while the
+    /// request is_late().
+    [[nodiscard]] FrameFault refine(const RefineRequest& request, SplitLimits limits,
                                     const Budgets& budgets, std::uint32_t frame,
                                     WorkCounters& work) noexcept TACTUS_NONBLOCKING;
 
@@ -64,7 +72,7 @@ public:
                                 WorkCounters& work, FrameFault& faults) noexcept TACTUS_NONBLOCKING;
 
     /// How far beyond the reach is refined, as a share of it.
-    static constexpr double kLookAhead = 0.05;
+    static constexpr double kLookAhead = 0.02;
 
     /// What is held for a closure may be merged again: nobody asks for it any more.
     void release(Closure& closure) noexcept TACTUS_NONBLOCKING;
@@ -92,7 +100,7 @@ private:
     void gather_near_ball(const RefineQuestion& question, WalkBudget& budget) noexcept;
     void gather_near_surface(const RefineQuestion& question) noexcept;
     void gather_block(std::uint32_t index, const RefineQuestion& question) noexcept;
-    void split_wanted(const RefineRequest& request, std::uint32_t limit, std::uint32_t frame,
+    void split_wanted(const RefineRequest& request, SplitLimits limits, std::uint32_t frame,
                       WorkCounters& work, FrameFault& found) noexcept;
     [[nodiscard]] double excess_of_pending(const RefineRequest& request) const noexcept;
     [[nodiscard]] double lower_bound(PrimId prim, const RefineQuestion& question) const noexcept;

@@ -43,6 +43,11 @@ bool Outlook::looks_ahead() const noexcept
     return !is_asleep_ && approach_m_.norm() > kLeastApproach * reach_m_;
 }
 
+bool Outlook::is_near_surface() const noexcept
+{
+    return has_known_ && known_.upper_m + motion_m() <= kKeepFactor * reach_m_;
+}
+
 bool Outlook::is_reached() const noexcept
 {
     return has_known_ && known_.lower_m > 0.0 && known_.lower_m <= motion_m();

@@ -15,7 +15,7 @@ struct ToolStance
 {
     Similarity place;               ///< Of the tool's frame.
     double reach_m{0.0};            ///< From the core: what has to be exact for this frame's force.
-    Vec3 approach_m{0.0, 0.0, 0.0}; ///< Expected way until a contact would be refined, 10 ms.
+    Vec3 approach_m{0.0, 0.0, 0.0}; ///< Expected way until a front would be refined, 10 ms.
 };
 
 /// Where a pair's tool is before its object, and how far the pair looks: what its refinement, its
@@ -48,6 +48,9 @@ public:
     [[nodiscard]] bool is_asleep() const noexcept { return is_asleep_; }
     /// Whether the place that the tool comes to is worth refining beside the one where it is.
     [[nodiscard]] bool looks_ahead() const noexcept TACTUS_NONBLOCKING;
+    /// Whether a surface is surely so near that the front goes along with the tool: what lies ahead
+    /// then comes bit by bit. The first contact needs all at once.
+    [[nodiscard]] bool is_near_surface() const noexcept TACTUS_NONBLOCKING;
 
     [[nodiscard]] bool has_known() const noexcept { return has_known_; }
     /// The last answer, taken where the tool was then.

@@ -7,7 +7,9 @@
 #include "tests/property/frame_checks.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
+#include <span>
 #include <vector>
 
 namespace tactus::test
@@ -56,12 +58,17 @@ public:
     FrameFault refine(const Vec3& point, double reach_m, const Budgets& budgets)
     {
         const RefineQuestion question{point, reach_m, 1.25 * reach_m, &memory};
+        const std::uint32_t limit = std::min(budgets.splits, kMaxSplitsPerFrame);
+        return refine({&question, 1}, {limit, limit}, budgets);
+    }
+    FrameFault refine(std::span<const RefineQuestion> questions, SplitLimits limits,
+                      const Budgets& budgets)
+    {
         work = WorkCounters{};
-        const RefineRequest request{ModelId{0}, {&question, 1}, &closure, {}};
+        const RefineRequest request{ModelId{0}, questions, &closure, {}};
         Refiner& refiner = rig.model().refiner;
         refiner.begin({&request, 1}, budgets, work);
-        const FrameFault found = refiner.refine(
-            request, std::min(budgets.splits, kMaxSplitsPerFrame), budgets, ++frame_, work);
+        const FrameFault found = refiner.refine(request, limits, budgets, ++frame_, work);
         static_cast<void>(rig.model().tree.refit());
         return request.is_late() ? found : FrameFault::none;
     }
@@ -133,6 +140,44 @@ TEST(RefineLimits, what_a_full_heap_leaves_out_is_split_in_later_frames)
     EXPECT_GE(sut.memory.certified_m, reach_m);
 }
 
+TEST(RefineLimits, what_may_wait_comes_when_nothing_else_is_wanted_and_has_a_limit_of_its_own)
+{
+    WideModel sut;
+    const Vec3 point = to_vec3(WideModel::model().faces[0][0]);
+    const double reach_m = coarse_distances(sut.rig.model(), point)[kRefineHeap / 2];
+    RefineMemory memory_ahead;
+    const RefineQuestion now{point, reach_m, 2.0 * reach_m, &sut.memory};
+    RefineQuestion ahead = now;
+    ahead.later_m = 0.7 * reach_m;
+    ahead.center_m = point + Vec3(ahead.later_m, 0.0, 0.0);
+    ahead.memory = &memory_ahead;
+    const std::array questions{now, ahead};
+    constexpr SplitLimits kLimits{64, 20};
+    int frames_late = 0;
+    int frames_ahead = 0;
+    while (is_wanting(now) || is_wanting(ahead))
+    {
+        const FrameFault faults = sut.refine(questions, kLimits, unlimited(kLimits.now));
+        ASSERT_EQ(faults == FrameFault::none, !is_wanting(now));
+        if (is_wanting(now))
+        {
+            ++frames_late;
+            ASSERT_GT(sut.work.splits, kLimits.later);
+            ASSERT_TRUE(is_wanting(ahead)) << "before what is wanted now";
+        }
+        else if (is_wanting(ahead))
+        {
+            ++frames_ahead;
+            ASSERT_LE(sut.work.splits, frames_ahead == 1 ? kLimits.now : kLimits.later);
+        }
+        ASSERT_LT(frames_ahead, 10'000);
+    }
+    EXPECT_GT(frames_late, 3);
+    EXPECT_GT(frames_ahead, 3);
+    const std::vector<double> left = coarse_distances(sut.rig.model(), ahead.center_m);
+    EXPECT_GE(left.empty() ? reach_m : left.front(), memory_ahead.certified_m * (1.0 - 1e-12));
+}
+
 TEST(RefineLimits, as_many_records_are_held_as_the_limit_and_the_frame_says_when_one_is_not)
 {
     WideModel sut;
@@ -173,6 +218,31 @@ TEST(RefineLimits, no_more_is_merged_in_a_frame_than_the_limit_whatever_the_budg
     static_cast<void>(sut.refine(WideModel::far_away(), 0.1 * model.diagonal_m, budgets));
 
     EXPECT_EQ(sut.work.merges, kMaxMergesPerFrame);
+}
+
+TEST(RefineLimits, what_is_left_behind_is_merged_without_a_look_in_vain)
+{
+    WideModel sut;
+    const TestModel& model = WideModel::model();
+    const Vec3 point = to_vec3(model.faces[0][0]);
+    for (int frame = 0; frame < 4; ++frame)
+    {
+        static_cast<void>(sut.refine(point, 0.5 * model.diagonal_m, unlimited(kMaxSplitsPerFrame)));
+    }
+    const VertexForest& forest = sut.rig.model().forest;
+    ASSERT_EQ(forest.refined_records(), 4 * kMaxSplitsPerFrame);
+    Budgets budgets = unlimited(0);
+    budgets.merges = 100;
+    budgets.scanned = 100'000;
+    for (int frame = 0; forest.refined_records() > 0; ++frame)
+    {
+        const std::uint32_t before = forest.refined_records();
+        static_cast<void>(sut.refine(WideModel::far_away(), 0.1 * model.diagonal_m, budgets));
+        // In the first frame the closure that the way was split for is held yet.
+        ASSERT_TRUE(frame == 0 || sut.work.merges == std::min(before, 100U));
+        ASSERT_EQ(sut.work.scanned, sut.work.merges);
+        ASSERT_LT(frame, 20);
+    }
 }
 
 /// Tools of eight balls each, near every object.
