@@ -35,7 +35,8 @@ void CachePool::adopt_arrivals(std::uint32_t budget, std::uint32_t frame,
 {
     // Looked at once a frame: the other side makes room at any time, and how many wishes leave must
     // not depend on when.
-    wish_room_at_start_ = static_cast<std::uint32_t>(door.wanted.capacity() - door.wanted.size());
+    wish_room_ = static_cast<std::uint32_t>(door.wanted.capacity() - door.wanted.size());
+    wish_room_at_start_ = wish_room_;
     refused_class_ = kUrgencyClasses;
     taken_count_ = 0;
     const std::uint32_t arrivals_end =
@@ -58,16 +59,14 @@ void CachePool::adopt_arrivals(std::uint32_t budget, std::uint32_t frame,
     work.pages_adopted += arrivals;
     chunk_wishes.expire(frame, wish_timeout_frames_);
     index_wishes.expire(frame, wish_timeout_frames_);
-    const std::uint32_t open = chunk_wishes.under_way() + index_wishes.under_way();
-    wish_room_ = std::min(wish_room_at_start_,
-                          SlotDoor::kOpenWishes - std::min(SlotDoor::kOpenWishes, open));
 }
 
-/// False when the door had no room for one more wish at the start of the frame, or too many were
-/// under way then.
+/// False when the door had no room for one more wish at the start of the frame, or too many are
+/// under way.
 bool CachePool::try_wish(ContentKey key, std::uint32_t owner, std::uint32_t generation) noexcept
 {
-    if (wish_room_ == 0)
+    const std::uint32_t open = chunk_wishes.under_way() + index_wishes.under_way();
+    if (wish_room_ == 0 || open >= SlotDoor::kOpenWishes)
     {
         return false;
     }
