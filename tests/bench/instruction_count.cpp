@@ -65,15 +65,16 @@ std::vector<std::uint64_t> totals_in(const std::filesystem::path& file)
     return totals;
 }
 
-// Callgrind knows functions by their names. They must be called, though they do nothing.
+// Callgrind knows functions by their names. They must be called, though they do nothing, and
+// differ, or the compiler makes one of both.
 [[gnu::noinline]] void refinement_begins() noexcept
 {
-    asm volatile("");
+    asm volatile("" : : "i"(1));
 }
 
 [[gnu::noinline]] void refinement_ended() noexcept
 {
-    asm volatile("");
+    asm volatile("" : : "i"(2));
 }
 
 // Calls what does nothing, and the other mark.
@@ -158,9 +159,10 @@ Result<std::vector<double>, SceneError> count_refinements(const CaseContext& con
         return std::vector<double>{};
     }
     // Each frame is a part, and what comes after the last one.
-    const auto counted = run_counted(context, {"--zero-before=tactus::bench::*refinement_begins(*",
-                                               "--dump-before=tactus::bench::*refinement_ended(*",
-                                               "--combine-dumps=yes"});
+    const auto counted = run_counted(
+        context, {"--zero-before=tactus::bench::(anonymous namespace)::refinement_begins(*",
+                  "--dump-before=tactus::bench::(anonymous namespace)::refinement_ended(*",
+                  "--combine-dumps=yes"});
     if (!counted)
     {
         return counted.error();
