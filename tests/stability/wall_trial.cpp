@@ -46,8 +46,7 @@ public:
         : trial_(trial)
         , sim_(HandAndDevice::create({trial.device, trial.hand, trial.period_s, trial.start_m})
                    .value())
-        , conditioner_({trial.device, trial.period_s, std::abs(trial.surface_damping_n_s_per_m),
-                        0.0, trial.controls_passivity})
+        , conditioner_({trial.device, trial.period_s, 0.0, trial.controls_passivity})
         , late_n_(trial.wall_delay_periods + 1, 0.0)
     {
     }
@@ -98,7 +97,7 @@ private:
         const double claimed = trial_.claimed_stiffness_n_per_m;
         const ConditionedForce out = conditioner_.condition(
             {wished, measured, claimed > 0.0 ? claimed : trial_.stiffness_n_per_m,
-             std::max(0.0, -measured.x()), 1});
+             std::max(0.0, -measured.x()), 1, std::abs(trial_.surface_damping_n_s_per_m)});
         const double true_work_j = sim_.energy().force_work_j;
         figures_.observer_error_j =
             std::max(figures_.observer_error_j, std::abs(out.work_j - true_work_j));
