@@ -6,6 +6,7 @@
 #include "rt_core/frame/frame.hpp"
 #include "transport/courier.hpp"
 
+#include <algorithm>
 #include <vector>
 
 namespace tactus
@@ -28,19 +29,41 @@ bool try_plan_pools(const FrameSetup& setup, std::span<const ModelHeader> header
     {
         common += Arena::round_up(header.fields().header_bytes);
     }
-    // Twice: what the courier needs follows from the number of pages.
-    std::size_t courier = 0;
-    for (int round = 0; round < 2; ++round)
+    if (common >= bytes)
     {
-        if (common + courier >= bytes ||
-            !try_plan(headers, bytes - common - courier, cache_bytes, capacities))
+        return false;
+    }
+    // What the courier needs follows from the number of pages, and that from what is left beside
+    // it: mostly the first guess does, and else halving finds the least that does.
+    std::size_t too_little = 0;
+    std::size_t too_much = bytes - common;
+    std::size_t courier = 0;
+    for (;;)
+    {
+        if (try_plan(headers, bytes - common - courier, cache_bytes, capacities))
+        {
+            const ModelCapacities sum = sum_of(capacities);
+            const std::size_t needed = Courier::required_bytes(sum.pages, sum.index_pages);
+            if (needed <= courier)
+            {
+                return true;
+            }
+            too_little = courier;
+            courier = std::min(needed, too_much);
+        }
+        else
+        {
+            too_much = courier;
+        }
+        if (too_much - too_little <= 1)
         {
             return false;
         }
-        const ModelCapacities sum = sum_of(capacities);
-        courier = Courier::required_bytes(sum.pages, sum.index_pages);
+        if (courier == too_much)
+        {
+            courier = too_little + (too_much - too_little) / 2;
+        }
     }
-    return true;
 }
 
 std::size_t least_pool_bytes(const FrameSetup& setup, std::span<const ModelHeader> headers,
