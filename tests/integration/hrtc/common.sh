@@ -86,12 +86,12 @@ wait_for_line() {
     fail "no '$2' in $1 after $3 s"
 }
 
-# wait_for_frames COUNT FILE [ID]: the host whose words are in FILE, one with --watch, has heard
-# that a controller, or the one with that id, has run so many. It tells so once a second.
+# wait_for_frames COUNT FILE [NAME]: the host whose words are in FILE, one with --watch, has heard
+# that a controller, or the one of that name, has run so many. It tells so once a second.
 wait_for_frames() { wait_until 20 "controller with $1 frames in $2" told_frames "$@"; }
 told_frames() {
-    awk -v least="$1" -v name="hrtc-${3:-}" '
-        $1 == "watch" && index($2, name) == 1 && $3 + 0 >= least { found = 1 }
+    awk -v least="$1" -v name="${3:-}" '
+        $1 == "watch" && (name == "" || $2 == name ":") && $3 + 0 >= least { found = 1 }
         END { exit !found }' "$2"
 }
 

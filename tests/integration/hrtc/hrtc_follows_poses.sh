@@ -36,7 +36,7 @@ check report.json models.0.pose.followed == 0 models.0.pose.accepted == 0 \
 # Poses that stop: the touched object grows stale and the force fades; they come again, and so does
 # the force. A model that is here as a whole needs no host for anything else.
 start_hrtc --model bumpy --duration 6 --report report.json
-wait_for_frames 1000 publish.log "$controller"
+wait_for_frames 1000 publish.log "hrtc-$controller"
 kill -STOP "$publisher"
 sleep 1.5 # Without poses, which is what is tried.
 kill -CONT "$publisher"

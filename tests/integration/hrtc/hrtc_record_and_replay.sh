@@ -14,13 +14,16 @@ for option in --record --replay; do
     refuse 3 "$option: *name is needed" --model bumpy "$option" ''
 done
 refuse 3 'a model is required' --record run.rec
-for option in --model --record --duration --rate --frame-budget-us --splits --report; do
-    refuse 3 "--replay: takes --kernels and no other option; $option was given" \
-        --replay run.rec "$option" 100
+for option in '--model a' '--record a' '--duration 1' '--rate 1000' '--frame-budget-us 100' \
+    '--splits 100' '--report a.json'; do
+    # shellcheck disable=SC2086 # An option and its value.
+    refuse 3 "--replay: takes --kernels and no other option; ${option% *} was given" \
+        --replay run.rec $option
 done
 refuse 3 '--replay: takes --kernels and no other option; --allow-no-rt' \
     --replay run.rec --allow-no-rt
-refuse 3 '--record: must be another file than --report' --model bumpy --record a --report a
+refuse 3 '--record: must be another file than --report' \
+    --model bumpy --record a.json --report a.json
 mkdir folder
 for path in nowhere/run.rec folder; do
     refuse 2 "--record: $path: can't be written" --allow-no-rt --model bumpy --record "$path"
@@ -31,7 +34,7 @@ model bumpy-sphere-60000 bumpy.spm
 model torus-20000 torus.spm
 start_publisher bumpy.spm torus.spm
 run_hrtc --model bumpy --model torus --place 0,0,0 --place 0.3,0,0,0,30,0,2 \
-    --material 300,0.4,0.3,1 --tool sphere:0.002 --tool sphere:0.004 --duration 2 \
+    --material 300,0.4,0.3,0.5 --tool sphere:0.002 --tool sphere:0.004 --duration 2 \
     --pool-mib 1.25 --frame-budget-us 300 --predict quadratic --record run.rec
 check_clean report.json
 check report.json frames == 2000 recording.frames == 2000 recording.bytes '>' 100000

@@ -26,7 +26,7 @@ wait_for_lines 1 ' subscribed' publish.log
 for ((kill = 1; kill <= kills; ++kill)); do
     start_controller killed --duration 60
     wait_for_lines $((1 + kill)) ' subscribed' publish.log
-    wait_for_frames 300 publish.log "$controller"
+    wait_for_frames 300 publish.log "hrtc-$controller"
     killed_ms=$(now_ms)
     stop KILL "$controller"
     wait_for_lines "$kill" ' left (' publish.log

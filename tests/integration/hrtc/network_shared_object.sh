@@ -47,8 +47,8 @@ for try in 1 2 3; do
     right=$controller
     wait_for_lines 2 ' subscribed' first.log
     start_host second.log
-    wait_for_frames 3000 first.log "$left"
-    wait_for_frames 3000 first.log "$right"
+    wait_for_frames 3000 first.log left
+    wait_for_frames 3000 first.log right
     [[ $(lines ' subscribed' second.log) != 0 ]] || break
     ((try < 3)) || fail 'the second host was asked'
     echo "held up by the machine, run $try"

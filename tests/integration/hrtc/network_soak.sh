@@ -37,7 +37,7 @@ guest() {
     guest=$!
     started+=("$guest")
     wait_for_lines $((2 * $1)) ' subscribed' publish.log
-    wait_for_frames 300 publish.log "$guest"
+    wait_for_frames 300 publish.log "hrtc-$guest"
     stop "$signal" "$guest"
     wait_for_lines $((2 * $1 - 1)) ' left (' publish.log
 }
