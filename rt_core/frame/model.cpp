@@ -15,8 +15,6 @@ namespace
 constexpr std::size_t kPageShare = 72;
 /// Index pages beyond the least number get this part of the memory at most.
 constexpr std::size_t kIndexPageShare = 64;
-/// Fewer pages are not worth starting with unless the caller says so.
-constexpr std::uint32_t kMinPages = 16;
 /// The least number of active faces beyond the base mesh that is worth starting with.
 constexpr std::uint32_t kMinFaces = 256;
 
@@ -184,7 +182,7 @@ bool try_plan(std::span<const ModelHeader> headers, std::size_t bytes, std::size
     if (cache_bytes == 0 && !plan_faces(least_more)) // As many as leave room for the least faces.
     {
         std::uint32_t too_many = pages;
-        pages = std::min(pages, std::max(kMinPages, count));
+        pages = std::min(pages, count);
         while (too_many - pages > 1)
         {
             const std::uint32_t middle = pages + (too_many - pages) / 2;

@@ -79,7 +79,8 @@ TEST(PoolPlan, leaves_room_for_frame_and_courier_in_what_it_plans_for)
         ASSERT_GT(least, 0U);
         for (const std::size_t bytes : {least, least + 4'096, 2 * least, 4 * least})
         {
-            ASSERT_TRUE(try_plan_pools(scene.setup, scene.headers, bytes, 0, scene.capacities));
+            ASSERT_TRUE(try_plan_pools(scene.setup, scene.headers, bytes, 0, scene.capacities))
+                << models << " models, " << bytes << " bytes, the least " << least;
             expect_room_for_all(scene, bytes);
         }
     }
