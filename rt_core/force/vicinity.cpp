@@ -11,6 +11,7 @@
 #include <bit>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 namespace tactus
 {
@@ -76,9 +77,8 @@ double farthest_that_fits(std::span<const PlacedSurface> surfaces) noexcept
 } // namespace
 
 // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): of the batches only the first are set.
-Vicinity::Vicinity(std::span<const PlacedSurface> surfaces, const Vec3& center_m,
-                   double reach_m) noexcept
-    : surfaces_(surfaces), center_m_(center_m), reach_m_(reach_m)
+Vicinity::Vicinity(std::span<const PlacedSurface> surfaces, Vec3 center_m, double reach_m) noexcept
+    : surfaces_(surfaces), center_m_(std::move(center_m)), reach_m_(reach_m)
 {
     TACTUS_ASSERT(reach_m >= 0.0);
     const double farthest = farthest_that_fits(surfaces);

@@ -35,7 +35,7 @@ public:
     /// The triangles of the surfaces, which were queried at `center_m` and outlive it; what isn't
     /// among them is at least `reach_m` from there. Where more are in reach than fit, reach_m() is
     /// less. Costs 2 ns a triangle.
-    Vicinity(std::span<const PlacedSurface> surfaces, const Vec3& center_m,
+    Vicinity(std::span<const PlacedSurface> surfaces, Vec3 center_m,
              double reach_m) noexcept TACTUS_NONBLOCKING;
 
     [[nodiscard]] const Vec3& center_m() const noexcept { return center_m_; }
