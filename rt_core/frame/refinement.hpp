@@ -47,7 +47,7 @@ private:
     [[nodiscard]] std::span<const RefineRequest> requests_of(const ModelSlot& slot) const noexcept;
     void merge(const RefinementRound& round) noexcept;
     void share_splits(const RefinementRound& round, SplitLimits limits) noexcept;
-    void serve_again(const RefinementRound& round, SplitLimits limits) noexcept TACTUS_NONBLOCKING;
+    void serve_again(const RefinementRound& round, SplitLimits limits) noexcept;
     void serve(const RefinementRound& round, std::uint32_t request, SplitLimits limits) noexcept;
     [[nodiscard]] std::uint32_t refused_class() const noexcept;
     [[nodiscard]] FrameFault lateness_of(std::uint32_t request) const noexcept;

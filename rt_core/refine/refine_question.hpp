@@ -85,7 +85,9 @@ struct RefineRequest
     /// Whether there may be something to split for it, now or later.
     [[nodiscard]] bool is_open() const noexcept
     {
-        return !closure->target.is_none() || std::ranges::any_of(questions, &is_wanting);
+        return !closure->target.is_none() ||
+               std::ranges::any_of(questions, [](const RefineQuestion& question)
+                                   { return is_wanting(question); });
     }
 };
 
