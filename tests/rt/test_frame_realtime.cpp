@@ -101,7 +101,9 @@ struct Touch
 
 const TestModel& model_to_touch()
 {
-    return test_model("realtime", make_shape(Shape::bumpy_sphere, 20'000).value());
+    static const TestModel& model =
+        test_model("realtime", make_shape(Shape::bumpy_sphere, 20'000).value());
+    return model;
 }
 
 void add_work(WorkCounters& sum, const WorkCounters& work)
