@@ -121,6 +121,7 @@ tactus_component(core
     PC_REQUIRES eigen3
     PC_REQUIRES_PRIVATE ccd
     PUBLIC
+        platform/base/print_assertions.hpp
         platform/base/refusal.hpp
         rt_core/base/arena.hpp
         rt_core/base/assert.hpp
@@ -128,6 +129,7 @@ tactus_component(core
         rt_core/base/realtime.hpp
         rt_core/base/result.hpp
         rt_core/force/force_conditioner.hpp
+        rt_core/force/gravity_compensation.hpp
         rt_core/force/own_force.hpp
         rt_core/force/safe_state.hpp
         rt_core/frame/frame.hpp
@@ -148,11 +150,13 @@ tactus_component(core
         rt_core/records/frame_input.hpp
         rt_core/records/frame_output.hpp
         rt_core/records/local_surface.hpp
+        rt_core/records/material.hpp
         rt_core/records/mesh_report.hpp
         rt_core/records/object_pose.hpp
         rt_core/records/prediction.hpp
         rt_core/records/safety.hpp
         rt_core/records/scene_change.hpp
+        rt_core/records/tool_load.hpp
         rt_core/records/work_counters.hpp
         rt_core/spm/base_mesh.hpp
         rt_core/spm/error_code.hpp
@@ -184,6 +188,7 @@ tactus_component(transport
         transport/shown_object.hpp
         transport/slot_bank.hpp
         transport/store/model_store.hpp
+        transport/store/static_model.hpp
         transport/store/store_link.hpp
         transport/telemetry.hpp)
 
@@ -201,6 +206,7 @@ tactus_component(platform
         platform/heartbeat.hpp
         platform/latency_histogram.hpp
         platform/periodic_timer.hpp
+        platform/plugin/device_plugin.hpp
         platform/pool_memory.hpp
         platform/posix/memory_lock.hpp
         platform/posix/posix_clock.hpp

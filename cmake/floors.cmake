@@ -20,7 +20,8 @@ macro(tactus_outside prefix)
 endmacro()
 
 # --- rt_core: stages are siblings and never include one another; they meet in query, refine, frame.
-# Except that the forest hands each change straight to the tree (docs/decisions/0005-the-frame.md).
+# Except that the forest hands each change straight to the tree
+# (docs/internals/decisions/0005-the-frame.md).
 set(stage_floor
     rt_core/base rt_core/math rt_core/limits.hpp rt_core/geometry rt_core/records rt_core/spm)
 
@@ -59,14 +60,17 @@ tactus_room(platform ${platform_floor})
 tactus_room(platform/remote platform ${platform_floor} rt_core/force)
 tactus_room(platform/udp platform ${platform_floor})
 tactus_room(platform/dhd platform ${platform_floor})
+tactus_room(platform/plugin platform ${platform_floor})
 # Frames and what they were given; of the machine it knows nothing.
 tactus_room(platform/recording platform/base rt_core)
+# Recordings for other tools.
+tactus_room(platform/export platform/base platform/recording rt_core)
 # What the machine is like; of frames and models it knows nothing.
 tactus_room(platform/doctor platform)
 # Pictures; of what was measured it knows nothing.
 tactus_room(platform/plot)
 # Its command line and a scene's file are read like every other program's:
-# docs/decisions/0003-command-line-room.md.
+# docs/internals/decisions/0003-command-line-room.md.
 tactus_room(platform/hrtc rt_core transport platform host_tools/cli host_tools/mesh
     host_tools/scene)
 
@@ -76,6 +80,8 @@ tactus_room(transport ${stage_floor} rt_core/cache platform/base)
 # What a frame and the courier beside it take together.
 tactus_room(transport/pool_plan.hpp rt_core)
 tactus_room(transport/pool_plan.cpp rt_core transport)
+# A frame that refines all of a model, once.
+tactus_room(transport/store/static_model.cpp rt_core transport platform/base)
 
 # --- host_tools: downward only; nothing includes a program.
 set(host_floor platform/base rt_core transport)
@@ -86,6 +92,7 @@ tactus_room(host_tools/scene ${host_floor} host_tools/mesh)
 tactus_room(host_tools/shapes ${host_floor} host_tools/mesh)
 tactus_room(host_tools/simplify ${host_floor} host_tools/mesh)
 tactus_room(host_tools/encode ${host_floor} host_tools/mesh host_tools/simplify)
+tactus_room(host_tools/web ${host_floor})
 # The library for other languages.
 tactus_room(host_tools/c ${host_floor})
 tactus_room(host_tools/python host_tools/c)
@@ -93,7 +100,12 @@ tactus_room(host_tools/spm_build ${host_floor}
     host_tools/cli host_tools/mesh host_tools/scene host_tools/shapes host_tools/simplify
     host_tools/encode)
 tactus_room(host_tools/spm_inspect ${host_floor} host_tools/cli host_tools/mesh host_tools/encode)
-tactus_room(host_tools/spm_publish ${host_floor} host_tools/cli host_tools/scene)
+tactus_room(host_tools/spm_publish ${host_floor} host_tools/cli host_tools/mesh host_tools/scene
+    host_tools/web)
+
+# It plays recordings.
+tactus_room(host_tools/spm_view ${host_floor} host_tools/cli host_tools/mesh host_tools/encode
+    host_tools/web platform/recording)
 
 tactus_room(tests *)
 
@@ -103,9 +115,12 @@ tactus_outside(ccd rt_core/query tests)
 tactus_outside(Eigen rt_core platform transport host_tools tests)
 tactus_outside(CLI host_tools/cli)
 tactus_outside(nlohmann platform/doctor platform/hrtc host_tools tests)
-tactus_outside(fmt platform/doctor platform/plot platform/hrtc transport host_tools tests)
+tactus_outside(fmt platform/doctor platform/export platform/plot platform/hrtc transport host_tools
+    tests)
 tactus_outside(assimp host_tools/mesh tests)
 tactus_outside(tbb host_tools tests)
+# The only doors that speak HTTP.
+tactus_outside(httplib.h host_tools/spm_view host_tools/web)
 tactus_outside(oneapi host_tools tests)
 tactus_outside(pybind11 host_tools/python)
 tactus_outside(gtest tests)

@@ -101,6 +101,7 @@ and the files of pkg-config.")
 tactus_package(tactus-host
     SECTION science
     SERVICE spm_publish.service
+    DEPENDS libjs-three libjs-dygraphs
     SUGGESTS tactus-doc
     DESCRIPTION "haptic touch of huge triangle meshes - programs of the host
 Tactus lets a hand feel triangle meshes that are larger than the memory of
@@ -108,7 +109,8 @@ the machine that computes the force.
 .
 spm_build turns meshes into models, spm_inspect checks and shows them,
 spm_publish serves them to controllers over DDS, as a service if wanted. The
-service is not enabled: /etc/default/spm_publish first says what to serve.")
+service is not enabled: /etc/default/spm_publish first says what to serve.
+spm_view shows in a browser what controllers touch.")
 tactus_package(tactus-controller
     SECTION science
     SERVICE hrtc.service

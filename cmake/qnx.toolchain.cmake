@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-# For QNX's Software Development Platform 8.0 (7.1: docs/porting.md), which must be in the
+# For QNX's Software Development Platform 8.0 (7.1: docs/internals/porting.md), which must be in the
 # environment: source its qnxsdp-env.sh, then
 #
 #   cmake -S . -B build/qnx -G Ninja --toolchain cmake/qnx.toolchain.cmake -DTACTUS_ONLY_PORTABLE=ON
 #
-# Never run with the real compilers by us: docs/porting.md says what was tried instead.
+# Never run with the real compilers by us: docs/internals/porting.md says what was tried instead.
 foreach(variable QNX_HOST QNX_TARGET)
     if(NOT IS_DIRECTORY "$ENV{${variable}}")
         message(FATAL_ERROR "${variable} names no folder; source qnxsdp-env.sh of QNX's SDP first")

@@ -14,26 +14,33 @@ Usage: bash cmake/setup.sh COMMAND [OPTIONS] [-- CTEST-OPTIONS | -- BENCH-OPTION
 
 Commands:
   build     install the packages that are missing and build everything into build/release
+  programs  the same for the programs alone, in a fraction of the time
   test      build, then run the tests; CTEST-OPTIONS after -- go to ctest, e.g. -- -R Arena, or
             -- -L extended for the long runs or -- -L other_builds for builds by other
             compilers, which are both left out otherwise
   demo      build the programs, make a model, publish it over DDS on this machine and touch it
             for 10 s at 1 kHz; the report is written to build/demo/report.json. With --scene
-            a scene of 200 objects, which two hands touch
+            a scene of 200 objects, which two hands touch; with --view a browser shows it
   bench     build the benchmarks and run every suite; the results are written to build/bench as
             JSON and as text, BENCH-OPTIONS after -- go to tactus_bench, e.g. -- --core 1
+  rt-machine  make the Debian packages and a Debian 12 with them and a PREEMPT_RT kernel, and run it
+            in QEMU, its time counted in instructions: services, deadline tests, faults; figures
+            and logs are written to build/rt_machine
   packages  only install the packages that are missing
 
 Options:
-  --quick       bench: fewer frames and repeats, some three minutes instead of an hour
+  --quick       bench: fewer frames and repeats, some three minutes instead of an hour;
+                rt-machine: seconds instead of minutes of virtual time
   --peers       bench: beside ours measure the libraries of cmake/packages-bench.txt, which are
                 installed if need be; some are under the GPL, none becomes part of Tactus. Without
                 --quick also count instructions, by valgrind
   --docs        bench: with --peers; keep the results in docs/benchmarks, too, those of a quick run
-                not over those of a full one, and draw its pictures; needs TACTUS_MESHES
+                not over those of a full one, and draw its pictures; needs TACTUS_MESHES.
+                rt-machine: keep its results there
   --ci          packages: the packages of .ci/run (cmake/packages-ci.txt) as well
   --bench       packages: the peers of tactus_bench (cmake/packages-bench.txt) as well
   --scene       demo: a scene instead of one model
+  --view        demo: serve a live view beside it, at the address that is printed
   --seconds N   demo: touch for N seconds, 1 to 3600 (default 10)
   --domain N    demo: use DDS domain N, 0 to 232 (default: the programs' own)
   --help        this text
@@ -118,6 +125,13 @@ build_targets() { # build_targets TARGET...
     cmake --build "$build" --parallel "$(job_count)" --target "$@" || fail 2 "the build failed"
 }
 
+build_programs() { # build_programs PROGRAM...
+    install_packages "$root/cmake/packages.txt"
+    # The tests' packages may be missing; a folder that has them keeps them.
+    grep -qs '^TACTUS_TESTS:BOOL=ON$' "$build/CMakeCache.txt" || with_tests=OFF
+    build_targets "$@"
+}
+
 # --- test ----------------------------------------------------------------------------------------
 
 # Names of the tests that ctest did not run, one per line, from its JUnit file.
@@ -130,7 +144,7 @@ run_tests() { # run_tests CTEST-OPTION...: without options all but long runs and
     local code=0 junit="$build/tests.xml"
     (($# > 0)) || set -- --label-exclude '^(extended|other_builds)$'
     rm -f "$junit"
-    ctest --test-dir "$build" --output-on-failure --no-tests=error --parallel "$(nproc)" \
+    ctest --test-dir "$build" --output-on-failure --no-tests=error --parallel $((2 * $(nproc))) \
         --output-junit "$junit" "$@" || code=1
     if [[ -f "$junit" ]]; then
         skipped_tests "$junit" >"$build/skipped_tests.txt"
@@ -149,31 +163,41 @@ may_run_realtime() {
     (((0x$capabilities >> 14) & 1)) # CAP_IPC_LOCK
 }
 
-publisher=
-stop_publisher() {
-    [[ -n "$publisher" ]] || return 0
-    kill -TERM "$publisher" 2>/dev/null || true
-    for _ in {1..50}; do
-        if ! kill -0 "$publisher" 2>/dev/null; then
-            publisher=
-            return 0
-        fi
-        sleep 0.1
+programs=() # Process ids of what runs beside hrtc.
+stop_programs() {
+    local program
+    for program in "${programs[@]}"; do
+        kill -TERM "$program" 2>/dev/null || continue
+        for _ in {1..50}; do
+            kill -0 "$program" 2>/dev/null || continue 2
+            sleep 0.1
+        done
+        kill -KILL "$program" 2>/dev/null || true
     done
-    kill -KILL "$publisher" 2>/dev/null || true
-    publisher=
+    programs=()
 }
 
-start_publisher() { # start_publisher OPTION...
-    local log="$demo/spm_publish.log"
-    "$build/bin/spm_publish" "$@" >"$log" 2>&1 &
-    publisher=$!
-    trap stop_publisher EXIT
+start_program() { # start_program NAME OPTION...
+    local name=$1
+    local log="$demo/$name.log"
+    "$build/bin/$name" "${@:2}" >"$log" 2>&1 &
+    programs+=("$!")
+    trap stop_programs EXIT
     trap 'exit 2' INT TERM
     sleep 0.5 # Long enough for a wrong file or network set-up to show.
-    if ! kill -0 "$publisher" 2>/dev/null; then
+    if ! kill -0 "${programs[-1]}" 2>/dev/null; then
         cat "$log" >&2
-        fail 2 "spm_publish ended at once; its last words are above"
+        fail 2 "$name ended at once; its last words are above"
+    fi
+}
+
+start_view() { # start_view OPTION...: tells where, and opens a browser where there is a screen.
+    start_program spm_view "$@" --port 0 # A free one.
+    local url
+    url=$(sed -n 's/^\(http[^ ]*\) shows .*/\1/p' "$demo/spm_view.log")
+    echo "View: $url"
+    if [[ -n "${DISPLAY:-}${WAYLAND_DISPLAY:-}" ]] && command -v xdg-open >/dev/null; then
+        xdg-open "$url" >/dev/null 2>&1 || true
     fi
 }
 
@@ -189,10 +213,10 @@ make_scene() {
     [[ ${PIPESTATUS[0]} == 0 ]] || fail 2 "spm_build could not make $demo/scene"
 }
 
-run_demo() { # run_demo SECONDS [DOMAIN [WITH_SCENE]]
+run_demo() { # run_demo SECONDS [DOMAIN [WITH_SCENE [WITH_VIEW]]]
     local code=0 network=() realtime=() report="$demo/report.json" program
-    local served="$demo/bumpy.spm" touched=(--model bumpy)
-    for program in spm_build spm_publish hrtc; do
+    local served="$demo/bumpy.spm" touched=(--model bumpy) models=("$demo/bumpy.spm")
+    for program in spm_build spm_publish hrtc ${4:+spm_view}; do
         [[ -x "$build/bin/$program" ]] || fail 2 "$build/bin/$program is not built"
     done
     if [[ -n "${2:-}" ]]; then
@@ -204,6 +228,7 @@ run_demo() { # run_demo SECONDS [DOMAIN [WITH_SCENE]]
         make_scene
         served="$demo/scene/scene.gltf"
         touched=(--scene scene --tools 2 --pool-mib 8)
+        models=("$demo"/scene/*.spm)
     else
         make_model
     fi
@@ -212,10 +237,13 @@ run_demo() { # run_demo SECONDS [DOMAIN [WITH_SCENE]]
             "times below are those of an ordinary thread."
         realtime=(--allow-no-rt)
     fi
-    start_publisher "$served" "${network[@]}"
+    start_program spm_publish "$served" "${network[@]}"
+    if [[ -n "${4:-}" ]]; then
+        start_view "${models[@]}" "${network[@]}"
+    fi
     "$build/bin/hrtc" "${touched[@]}" --device sim --rate 1000 --duration "$1" --report "$report" \
         "${realtime[@]}" "${network[@]}" || code=$?
-    stop_publisher
+    stop_programs
     if [[ -f "$report" ]]; then
         echo "Report: $report"
     fi
@@ -246,6 +274,23 @@ run_bench() { # run_bench KEPT OPTION...: all suites, as tactus_bench takes opti
     return "$code"
 }
 
+# --- rt-machine ----------------------------------------------------------------------------------
+
+run_rt_machine() { # run_rt_machine KEPT OPTION...
+    local code=0 results=$root/build/rt_machine kept=$1
+    shift
+    if command -v ccache >/dev/null; then
+        export CMAKE_C_COMPILER_LAUNCHER=ccache CMAKE_CXX_COMPILER_LAUNCHER=ccache
+    fi
+    (cd "$root" && cmake --workflow --preset deb) || fail 2 "the packages could not be built"
+    bash "$root/tests/rt_machine/rt_machine.sh" "$results" "$root/build/deb" "$@" || code=$?
+    ((code != 77)) || code=2 # What it lacks it has said.
+    if [[ -n "$kept" && $code -lt 2 ]]; then
+        "$python" "$root/tests/bench/results.py" store "$kept" "$results/rt.json" || code=$?
+    fi
+    return "$code"
+}
+
 # --- command line --------------------------------------------------------------------------------
 
 number_in() { # number_in OPTION VALUE LOW HIGH
@@ -257,18 +302,18 @@ number_in() { # number_in OPTION VALUE LOW HIGH
 main() {
     local command='' seconds=10 domain='' more_options=()
     local lists=("$root"/cmake/packages{,-test}.txt)
-    local bench_options=() peers='' kept='' scene=''
+    local bench_options=() peers='' kept='' scene='' view=''
     while (($# > 0)); do
         case "$1" in
-            build | test | demo | bench | packages)
+            build | programs | test | demo | bench | rt-machine | packages)
                 [[ -z "$command" ]] || fail 3 "two commands given: '$command' and '$1'"
                 command=$1
                 ;;
             --scene) scene=yes ;;
+            --view) view=spm_view ;;
             --quick) bench_options+=(--quick) ;;
             --peers | --docs)
                 [[ "$1" == --peers ]] || kept=$root/docs/benchmarks
-                lists+=("$root/cmake/packages-bench.txt")
                 peers='bullet;cgal;embree;fcl;meshoptimizer;openmesh'
                 ;;
             --ci | --bench) lists+=("$root/cmake/packages-${1#--}.txt") ;;
@@ -295,48 +340,53 @@ main() {
         esac
         shift
     done
-    if [[ -n "${TACTUS_BUILD_DIR:-}" && "$command" == @(build|test|bench) ]]; then
+    if [[ -n "${TACTUS_BUILD_DIR:-}" && "$command" != @(|demo|packages) ]]; then
         fail 3 "TACTUS_BUILD_DIR is for the demo only; unset it for '$command'"
     fi
-    if [[ "$command" != bench && (-n "$peers" || ${#bench_options[@]} -gt 0) ]]; then
-        fail 3 "--quick, --peers and --docs are for 'bench' only"
+    if [[ "$command" == rt-machine ]]; then
+        [[ -z "$peers" || -n "$kept" ]] || fail 3 "--peers is for 'bench' only"
+    elif [[ "$command" != bench && (-n "$peers" || ${#bench_options[@]} -gt 0) ]]; then
+        fail 3 "--quick, --peers and --docs are for 'bench' and 'rt-machine' only"
     fi
-    if [[ "$command" != demo && -n "$scene" ]]; then
-        fail 3 "--scene is for 'demo' only"
+    if [[ "$command" != demo && -n "$scene$view" ]]; then
+        fail 3 "--scene and --view are for 'demo' only"
     fi
-    if [[ -n "$kept" && ! -d "${TACTUS_MESHES:-}" ]]; then
+    if [[ "$command" == bench && -n "$kept" && ! -d "${TACTUS_MESHES:-}" ]]; then
         fail 3 "--docs: TACTUS_MESHES must name the folder with the well-known meshes; the results\
  are about them"
     fi
     case "$command" in
-        '') fail 3 "no command given; use build, test, demo, bench or --help" ;;
+        '') fail 3 "no command given; use build, programs, test, demo, bench or --help" ;;
         packages) install_packages "${lists[@]}" ;;
         build)
             install_packages "${lists[@]}"
             build_targets all
             ;;
+        programs) build_programs spm_build spm_inspect spm_publish spm_view hrtc ;;
         test)
             install_packages "${lists[@]}"
             build_targets all
             run_tests "${more_options[@]}"
             ;;
+        rt-machine)
+            install_packages "$root"/cmake/packages{,-rt}.txt
+            run_rt_machine "$kept" "${bench_options[@]}"
+            ;;
         bench)
+            [[ -z "$peers" ]] || lists+=("$root/cmake/packages-bench.txt")
             install_packages "${lists[@]}"
             bench_peers=$peers
             build_targets tactus_bench
             if [[ -n "$peers" && " ${bench_options[*]} " != *' --quick '* ]]; then
-                bench_options+=(--instructions) # Rows of docs/benchmarks/skip.json and scene.json.
+                bench_options+=(--instructions) # Rows of skip.json and scene.json there.
             fi
             run_bench "$kept" "${bench_options[@]}" "${more_options[@]}"
             ;;
         demo)
             if [[ -z "${TACTUS_BUILD_DIR:-}" ]]; then
-                install_packages "$root/cmake/packages.txt"
-                # The tests' packages may be missing; a folder that has them keeps them.
-                grep -qs '^TACTUS_TESTS:BOOL=ON$' "$build/CMakeCache.txt" || with_tests=OFF
-                build_targets spm_build spm_publish hrtc
+                build_programs spm_build spm_publish hrtc ${view:+"$view"}
             fi
-            run_demo "$seconds" "$domain" "$scene"
+            run_demo "$seconds" "$domain" "$scene" "$view"
             ;;
     esac
 }

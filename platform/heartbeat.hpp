@@ -11,7 +11,8 @@
 namespace tactus
 {
 
-/// The sign of life of one thread, for whoever watches it: when it last came round. Wait-free.
+/// The sign of life of one thread, for whoever watches it: when it last came round. Wait-free, and
+/// allocates nothing.
 class Heartbeat
 {
 public:

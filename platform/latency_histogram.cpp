@@ -22,6 +22,7 @@ namespace
 {
 
 constexpr unsigned kSubBits = 10;
+static_assert(LatencyHistogram::kSubBuckets == 2U << kSubBits);
 
 constexpr unsigned octave_of(std::uint64_t value) noexcept
 {
@@ -146,6 +147,18 @@ Duration LatencyHistogram::quantile(double q) const noexcept
 double LatencyHistogram::mean_ns() const noexcept
 {
     return count_ == 0 ? 0.0 : static_cast<double>(sum_ns_) / static_cast<double>(count_);
+}
+
+double LatencyHistogram::standard_deviation_ns() const noexcept
+{
+    const double mean = mean_ns();
+    double sum = 0.0;
+    for (std::size_t i = 0; i < counters_.size(); ++i)
+    {
+        const double away = static_cast<double>(longest_of(i).ns) - mean;
+        sum += static_cast<double>(counters_[i]) * away * away;
+    }
+    return count_ == 0 ? 0.0 : std::sqrt(sum / static_cast<double>(count_));
 }
 
 } // namespace tactus

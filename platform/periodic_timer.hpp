@@ -66,7 +66,8 @@ public:
     virtual ~PeriodicTimer() = default;
 
     /// The first deadline is one period from now. Starting again forgets the counts.
-    /// `period` must be in [kPeriodMin, kPeriodMax], `margin` in [0, period).
+    /// `period` must be in [kPeriodMin, kPeriodMax], `margin` in [0, period); others are refused.
+    /// The two calls below come after it (asserted).
     Result<Done, Refusal> start(Duration period, Duration margin);
 
     /// Sleeps until `margin` before the deadline. Returns at once when that has passed.

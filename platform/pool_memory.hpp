@@ -9,7 +9,8 @@
 namespace tactus
 {
 
-/// The memory that all pools are made of: one allocation at start-up, touched, on a cache line.
+/// The memory that all pools are made of: one allocation at start-up, all zero and so touched, on a
+/// huge page's boundary. Throws std::bad_alloc where there is none.
 ///
 /// On huge pages where the system grants them: a walk through pools of many megabytes otherwise
 /// misses the translation cache at nearly every block, and a frame with cold caches walks the page
@@ -19,6 +20,7 @@ class PoolMemory
 public:
     static constexpr std::size_t kHugePage = std::size_t{2} << 20U;
 
+    /// Rounded up to whole cache lines.
     explicit PoolMemory(std::size_t bytes);
     PoolMemory(const PoolMemory&) = delete;
     PoolMemory& operator=(const PoolMemory&) = delete;

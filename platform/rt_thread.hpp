@@ -26,6 +26,7 @@ struct RtThreadOptions
     int priority{80};                     ///< Of SCHED_FIFO, in [kPriorityMin, kPriorityMax].
     std::optional<int> cpu;               ///< Pin to this processor; none leaves it to the system.
     std::size_t stack_bytes{1024 * 1024}; ///< Touched before the body runs; rounded up to pages.
+    bool is_realtime{true};               ///< False: with the policy of ordinary threads.
     bool lock_memory{true};               ///< All memory of the process, present and future.
     bool allow_no_rt{false};              ///< Run with what is granted and list what was refused.
     bool is_supervisor{false};            ///< One above kPriorityMax is in range, too.
@@ -50,6 +51,8 @@ struct RtThreadReport
 /// in memory, with all signals blocked (they belong to the main thread) and the default
 /// floating-point control. Joined on destruction.
 ///
+/// One ordinary thread starts, joins and destroys it.
+///
 /// Locking memory concerns the whole process and stays in force afterwards. Threads started from
 /// inside the body inherit its policy and processor: start others elsewhere.
 class RtThread
@@ -59,7 +62,7 @@ public:
     /// is refused and says exactly what is missing, one line for each thing; no body has run then.
     /// With `allow_no_rt` it runs all the same and report() has those lines. `body` must not throw.
     /// A value out of range or a processor that this process may not use is refused as usage
-    /// (`Refusal::is_usage`) in both cases.
+    /// (`Refusal::is_usage`) in both cases. Without memory or a thread it is refused as a failure.
     [[nodiscard]] static Result<RtThread, Refusal> start(const RtThreadOptions& options,
                                                          std::function<void()> body);
 
@@ -70,6 +73,7 @@ public:
     /// Waits until the body has returned. No effect the second time.
     void join() noexcept;
 
+    /// Lives as long as this; any thread.
     [[nodiscard]] const RtThreadReport& report() const noexcept;
 
 private:

@@ -12,7 +12,7 @@ namespace tactus
 /// What the system has counted for one thread since it started; subtract two readings to judge a
 /// cycle. In a clean cycle of the haptic loop no fault and no switch but the one of its own sleep
 /// occurs; an involuntary switch is the machine's doing. Where the system does not count them for
-/// a thread (docs/porting.md), faults and switches stay 0.
+/// a thread (docs/internals/porting.md), faults and switches stay 0.
 struct ThreadUsage
 {
     std::int64_t minor_faults{0}; ///< Pages mapped without reading a disk.

@@ -61,8 +61,8 @@ struct Duration
     return static_cast<double>(duration.ns) * 1e-3;
 }
 
-/// A point on a clock that never jumps, counted from an arbitrary start. Deadlines and latencies
-/// are made of it; it means nothing on another machine or after a reboot.
+/// A point on a clock that never jumps, in nanoseconds from an arbitrary start. Deadlines and
+/// latencies are made of it; it means nothing on another machine or after a reboot.
 struct MonotonicTime
 {
     std::int64_t ns{0};

@@ -15,7 +15,7 @@ namespace tactus
 class WrappedDevice : public HapticDevice
 {
 public:
-    /// `device` is not null.
+    /// `device` is not null (asserted).
     explicit WrappedDevice(std::unique_ptr<HapticDevice> device) : device_(std::move(device))
     {
         TACTUS_ASSERT(device_ != nullptr);
@@ -25,6 +25,7 @@ public:
     [[nodiscard]] DeviceSample read() noexcept override { return device_->read(); }
     void write(const Wrench& wrench) noexcept override { device_->write(wrench); }
     void brake() noexcept override { device_->brake(); }
+    void brake_softly() noexcept override { device_->brake_softly(); }
     void release_brake() noexcept override { device_->release_brake(); }
     [[nodiscard]] DeviceStatus status() const noexcept override { return device_->status(); }
 

@@ -44,8 +44,10 @@ inline constexpr std::uint32_t kMaxPositionBits = 24;
 static_assert(kMinPositionBits <= kMaxPositionBits);
 static_assert(kMaxPositionBits <= 24, "a float's mantissa holds a coordinate exactly");
 
-/// Places of a model's frame and vertices of a hull are refused beyond this: differences would
-/// overflow.
+/// Places in a model's source frame are refused beyond this. A mesh in map coordinates is within;
+/// one farther away could be touched nowhere (kGoalRange_m).
+inline constexpr double kModelReachMax_m = 1e7;
+/// Vertices of a hull are refused beyond this: differences would overflow.
 inline constexpr double kCoordinateRange = 1e300;
 /// The quantum is 2^-60 .. 2^20 m: from a micrometre-sized model at 24 bits to 10^6 m at 16.
 inline constexpr std::int32_t kMinQuantumLog2 = -60;
@@ -59,15 +61,15 @@ inline constexpr std::size_t kMaxCodedChunkBytes = 8'448;
 
 // --- The scene -----------------------------------------------------------------------------------
 
-/// Tools of one frame; 2.6 KiB each. Frame::start refuses more.
+/// Tools of one frame; 3 KiB each. Frame::start refuses more.
 inline constexpr std::uint32_t kMaxTools = 16;
 /// Objects that a scene may have at once, some 250 B each; their capacity is chosen when a frame
 /// starts, which refuses more.
 inline constexpr std::uint32_t kMaxObjects = 4'096;
-/// Models that share the pools: 7 KiB each beside their header and base mesh. A byte says whose a
+/// Models that share the pools: 8 KiB each beside their header and base mesh. A byte says whose a
 /// slot is.
 inline constexpr std::uint32_t kMaxModels = 256;
-/// Pairs of a tool and an object near it that are followed at once: 4.6 KiB each, 3 KiB more with
+/// Pairs of a tool and an object near it that are followed at once: 4.9 KiB each, 3 KiB more with
 /// contacts and 10 KiB more where a tool is a mesh. Of more the nearest are followed, and a tool
 /// goes no farther than it is clear of the others: FrameFault::scene_crowded.
 inline constexpr std::uint32_t kMaxPairs = 64;
@@ -77,7 +79,7 @@ inline constexpr std::uint32_t kMaxNear = 32;
 /// us where all are near it. A tool that waits for its own goes no farther than it is known to be
 /// clear.
 inline constexpr std::uint32_t kBroadWalks = 4;
-/// Changes of the scene that a frame takes, 184 B each. Later ones of the same frame are refused:
+/// Changes of the scene that a frame takes, 208 B each. Later ones of the same frame are refused:
 /// ChangeRefusal::too_many.
 inline constexpr std::uint32_t kMaxSceneChanges = 64;
 /// Active faces of all models together: beside the owner's byte there are so many places; 108 B
@@ -85,7 +87,7 @@ inline constexpr std::uint32_t kMaxSceneChanges = 64;
 inline constexpr std::uint32_t kMaxPoolFaces = (1U << 24) - 1;
 
 /// Balls that a tool's core is covered with, each a question to the refinement: around a capsule
-/// as long as sixteen radii no farther than 2.5 radii from its axis is refined. 240 B each for a
+/// as long as sixteen radii no farther than 2.5 radii from its axis is refined. 370 B each for a
 /// pair. A longer core has larger balls, and one of a mesh's grows: more is refined than needed.
 inline constexpr std::uint32_t kMaxCoverBalls = 8;
 
@@ -116,6 +118,9 @@ inline constexpr std::uint32_t kMaxMergesPerFrame = 256;
 /// Faces that wait to be split in one frame; 16 B each. Faces beyond it wait for the next frame,
 /// no certificate reaches that far, and the frame says FrameFault::refine_heap_full.
 inline constexpr std::uint32_t kRefineHeap = 1'024;
+/// Blocks with coarse faces near another surface that one search keeps; 72 B each. Beyond it faces
+/// wait for the next frame, and no certificate reaches that far.
+inline constexpr std::uint32_t kMaxNearBlocks = 64;
 /// Records split for closures that are not complete yet, kept from being merged, of all models of a
 /// frame; 8 B each. Records beyond it may be merged and split again: FrameFault::held_records_full.
 inline constexpr std::uint32_t kMaxHeldRecords = 1'024;
@@ -168,6 +173,13 @@ inline constexpr std::int64_t kWishTimeout_ns = 250'000'000;
 inline constexpr std::uint32_t kMaxArrivalsPerFrame = 64;
 inline constexpr std::uint32_t kMaxLinkUpdatesPerFrame = 64;
 
+/// Faces of base meshes that enter their trees in one frame, of all models that come: 10 us.
+inline constexpr std::uint32_t kEnteringFacesPerFrame = 128;
+/// Faces that models which go take out of their trees in one frame, and page slots that are looked
+/// at for theirs.
+inline constexpr std::uint32_t kLeavingFacesPerFrame = 512;
+inline constexpr std::uint32_t kLeavingSlotsPerFrame = 256;
+
 // --- Force ---------------------------------------------------------------------------------------
 
 /// Steps of the proxy in one frame: each ends where another triangle takes over. 2 to 6 are usual.
@@ -182,7 +194,7 @@ inline constexpr double kSlipShare = 1e-4;
 /// Triangles this near, as a share of the tool's radius, touch it: they push, rub and may hold.
 /// Wider than a step, or what is just ahead would shorten it to nothing.
 inline constexpr double kTouchShare = 1e-4;
-/// Triangles that the proxy moves among, in batches of eight: 185 B a batch on the stack. With more
+/// Triangles that the proxy moves among, in batches of eight: 226 B a batch on the stack. With more
 /// in reach those of the farthest batches are left out, and the proxy goes no farther than they are
 /// away: it is `under_way`.
 inline constexpr std::uint32_t kMaxNearBatches = 144;
@@ -199,6 +211,11 @@ inline constexpr double kContactTolerance = 1e-6;
 /// that hold a tool back least are left out, or a sphere's later ones, from its force only:
 /// FrameFault::tool_crowded.
 inline constexpr std::uint32_t kMaxHalfSpaces = 64;
+/// Faces that are looked at in double at a stand to find what touches there, and, when
+/// Budgets::planes are used up, as many to find how far a step is free; 300 instructions each. With
+/// more near a ball feels those that were looked at (FrameFault::tool_crowded), and of a step what
+/// single precision proves is left.
+inline constexpr std::uint32_t kMaxTouchLooks = 4 * kMaxHalfSpaces;
 /// Steps of a search for the nearest motion, in each of which a plane joins those that hold it or
 /// leaves them. Awkward planes took 72 in the worst of a million searches; after half of them
 /// kSqueezeTolerance is enough. After all of them no motion counts as allowed: the tool is
@@ -213,7 +230,7 @@ inline constexpr double kParallelPlanes = 1e-7;
 inline constexpr double kSqueezeTolerance = 1e-6;
 /// A tool without a radius is a ball of this many quanta, so that it has an outside.
 inline constexpr double kPointSkin = 0.25;
-/// Past contact points kept while a tool rests, 80 B each. Six planes suffice to hold a body; the
+/// Past contact points kept while a tool rests, 88 B each. Six planes suffice to hold a body; the
 /// rest are candidates. Beyond it the oldest is forgotten: FrameFault::tool_crowded.
 inline constexpr std::uint32_t kMaxHolds = 16;
 /// A tool without a radius keeps this share of its core's, so that it can slide.
@@ -285,6 +302,15 @@ inline constexpr double kPoseScaleMax = 1e3;
 /// What a material may say: more is nobody's, and would leave the range of what is computed of it.
 inline constexpr double kFrictionMax = 1e3;
 inline constexpr double kDampingMax_n_s_per_m = 1e9;
+/// Length of a texture's bumps, and their height as a share of it. Steeper ones would make a wall
+/// more than 1.2 times as stiff as it is, and could pull: docs/stability.md. Other materials are
+/// ChangeRefusal::bad_material.
+inline constexpr double kTextureLengthMin_m = 1e-4;
+inline constexpr double kTextureLengthMax_m = 1.0;
+inline constexpr double kTextureSteepest = 0x1p-5;
+/// Time in which a material that changes while it is touched becomes the new one: fifty steps at
+/// 1 kHz, so that a wall's force changes by a fiftieth of what the new stiffness makes of it.
+inline constexpr double kMaterialGlide_s = 0.05;
 /// How far R^T R of a tool's or a device frame's rotation may be from the identity, in each entry;
 /// it is made orthonormal. Beyond it a sample is FrameFault::tool_invalid, a device frame refused.
 inline constexpr double kRotationTolerance = 1e-6;

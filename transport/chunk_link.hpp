@@ -12,7 +12,8 @@ namespace tactus
 {
 
 /// Takes what a link delivers. The bytes are the piece's coded form, not verified, and valid only
-/// during the call.
+/// during the call. Of a base mesh they are one part (transport/piece_parts.hpp), which is the
+/// key's number.
 class PieceSink
 {
 public:
@@ -28,8 +29,9 @@ enum class LinkState : std::uint8_t
     host_gone, ///< Nobody serves this model at present; it may come back.
 };
 
-/// Where one model's index pages and chunks come from: a local file, a host on the network, or a
-/// stand-in for one. Used by one thread, the transport thread; no call waits.
+/// Where one model's base mesh, index pages and chunks come from: a local file, a host on the
+/// network, or a stand-in for one. Used by one thread, the transport thread; no call waits but for
+/// a file's disk.
 ///
 /// A link may lose, repeat, reorder and damage: the courier verifies and asks again.
 class ChunkLink
@@ -42,7 +44,8 @@ public:
     ChunkLink(ChunkLink&&) = delete;
     ChunkLink& operator=(ChunkLink&&) = delete;
 
-    /// Asks for pieces, most urgent first. A newer generation goes before what is still waiting.
+    /// Asks for pieces that the model has, most urgent first. A newer generation goes before what
+    /// is still waiting.
     virtual void request(std::span<const ContentKey> keys, std::uint32_t generation) = 0;
 
     /// Hands over what has come in. Also the place for the link's own upkeep: call it often (a few

@@ -27,10 +27,10 @@ using RootHash = std::array<std::uint8_t, kRootHashBytes>;
 [[nodiscard]] ContentHash content_hash(std::span<const std::byte> bytes) noexcept;
 
 /// The hash that names a model: the first half of the root hash that its header carries.
-/// `header` is exactly one header; nothing is verified.
+/// `header` is exactly one header, of 36 bytes at least (asserted); nothing is verified.
 [[nodiscard]] ContentHash model_hash(std::span<const std::byte> header) noexcept;
 
-/// Whether the root hash that a header carries is the hash of what stands before it.
+/// Whether the root hash that a header carries, likewise, is the hash of what stands before it.
 [[nodiscard]] bool has_sound_root_hash(std::span<const std::byte> header) noexcept;
 
 /// A hash as people write it: 32 lower-case hexadecimal digits.

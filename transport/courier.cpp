@@ -48,6 +48,7 @@ void Courier::add(const ModelHeader& header, Linker& linker, ChunkLink& link, st
 {
     TACTUS_ASSERT(linker.owner() == sides_.size());
     sides_.push_back(std::make_unique<Side>(*this, header, linker, link, std::move(name)));
+    bank_.add(linker);
 }
 
 void Courier::step(std::int64_t now_ns)
@@ -61,6 +62,7 @@ void Courier::step(std::int64_t now_ns)
     for (const std::unique_ptr<Side>& side : sides_)
     {
         ask(*side);
+        bring_base(*side);
         side->link.poll(*side);
         push_link_updates(*side);
     }
@@ -79,8 +81,13 @@ void Courier::open_wish(const PieceWish& wish)
 {
     TACTUS_ASSERT(wish.owner < sides_.size());
     Side& side = *sides_[wish.owner];
-    TACTUS_ASSERT(is_key_of(side.counts, wish.key));
     ++side.counters.wishes;
+    if (wish.key.kind == ContentKind::base)
+    {
+        want_base(side, wish);
+        return;
+    }
+    TACTUS_ASSERT(is_key_of(side.counts, wish.key));
     newest_generation_ =
         is_older(newest_generation_, wish.generation) ? wish.generation : newest_generation_;
     if (is_resident(side, wish.key))
@@ -123,6 +130,7 @@ void Courier::wish_again(OpenWish& open)
     else if (open.clock.wish(now_ns_, forgotten_ns_))
     {
         ++side.counters.overdue;
+        ++side.overdue;
         tell(side, open.key, "doesn't come; the surface there stays coarse");
     }
     ask_again(open);
@@ -145,6 +153,7 @@ void Courier::ask(Side& side)
     if (side.link.session() != side.session)
     {
         side.session = side.link.session();
+        side.is_base_asked = false;
         for (OpenWish& wish : open)
         {
             if (wish.side == &side)
@@ -175,8 +184,19 @@ void Courier::receive(Side& side, ContentKey key, std::span<const std::byte> byt
 {
     ++side.counters.pieces;
     side.counters.coded_bytes += bytes.size();
-    if (find_open(side, key) == nullptr)
+    if (side.base.receive(key, bytes))
     {
+        side.base_progress_ns = now_ns_;
+        if (side.base.missing() == 0 && side.base_cell)
+        {
+            adopt_base(side);
+        }
+        return;
+    }
+    const bool is_gone = !side.linker.has_base();
+    if (is_gone || find_open(side, key) == nullptr)
+    {
+        close_wish(side, key);
         ++side.counters.dropped_unasked;
         return;
     }
@@ -188,6 +208,98 @@ void Courier::receive(Side& side, ContentKey key, std::span<const std::byte> byt
     {
         adopt_chunk(side, {key.number}, bytes);
     }
+}
+
+void Courier::want_base(Side& side, const PieceWish& wish)
+{
+    if (side.linker.has_base() || bank_.is_outdated(wish.owner, wish.generation))
+    {
+        return; // On its way through the door, or not wanted any more: it was wished for twice.
+    }
+    if (side.base.bytes().empty())
+    {
+        side.base = PartIntake(ContentKind::base, side.header.fields().base_bytes);
+    }
+    side.base_progress_ns = side.base_cell ? side.base_progress_ns : now_ns_;
+    side.base_cell = wish.key.number;
+    side.is_base_asked = false;
+}
+
+void Courier::bring_base(Side& side)
+{
+    if (!side.base_cell)
+    {
+        return;
+    }
+    if (side.base.missing() == 0)
+    {
+        adopt_base(side);
+    }
+    else if (now_ns_ - side.base_progress_ns > forgotten_ns_)
+    {
+        ++side.counters.overdue;
+        tell(side, {ContentKind::base, 0}, "doesn't come; its room is for others until then");
+        give_cells_back(side);
+    }
+    else if (!side.is_base_asked && side.link.state() == LinkState::connected)
+    {
+        side.is_base_asked = true;
+        std::vector<ContentKey> parts;
+        side.base.list_missing(parts, parts_of(side.base.bytes().size()));
+        side.link.request(parts, newest_generation_);
+    }
+}
+
+/// Waits while pages are here that were linked to the one before. What is refused gives the cells
+/// back: a host that goes on sending it would keep them for ever.
+void Courier::adopt_base(Side& side)
+{
+    if (side.linker.pages_here() > 0)
+    {
+        return;
+    }
+    const ContentKey key{ContentKind::base, 0};
+    const std::vector<std::byte>& bytes = side.base.bytes();
+    const BaseMesh mesh = slots_.base.part(*side.base_cell, side.counts);
+    const bool is_true = content_hash(bytes) == side.header.fields().base_hash;
+    const auto parsed = is_true ? parse_base_mesh(bytes, side.header, mesh)
+                                : Result<Done, SpmRefusal>(SpmRefusal::wrong_identity);
+    if (!parsed)
+    {
+        refuse(side, is_true ? side.counters.refused_content : side.counters.refused_hash, key,
+               is_true ? refusal_text(parsed.error())
+                       : "does not have the hash that the header names");
+        side.base = {};
+        give_cells_back(side);
+        return;
+    }
+    side.linker.set_base(mesh);
+    if (side.copies != nullptr)
+    {
+        side.copies->receive(key, bytes);
+    }
+    hand_over_cells(side, DoorEventKind::arrival);
+    ++side.counters.delivered;
+    side.base = {};
+}
+
+/// Others may need the room.
+void Courier::give_cells_back(Side& side)
+{
+    bank_.expect_news_of(side.linker.owner());
+    hand_over_cells(side, DoorEventKind::base_back);
+}
+
+void Courier::hand_over_cells(Side& side, DoorEventKind kind)
+{
+    const bool pushed = door_.arrived.try_push({{ContentKind::base, 0},
+                                                *side.base_cell,
+                                                bank_.freed_taken(),
+                                                0,
+                                                kind,
+                                                static_cast<std::uint8_t>(side.linker.owner())});
+    TACTUS_ASSERT(pushed);
+    side.base_cell.reset();
 }
 
 void Courier::adopt_index_page(Side& side, IndexPageId page, std::span<const std::byte> bytes)
@@ -309,9 +421,20 @@ void Courier::tell(const Side& side, ContentKey key, std::string_view what, std:
     if (log_.try_begin())
     {
         log_.write_now(fmt::format("model '{}': {} {} {}{}", side.name,
-                                   key.kind == ContentKind::chunk ? "chunk" : "index page",
+                                   key.kind == ContentKind::chunk        ? "chunk"
+                                   : key.kind == ContentKind::index_page ? "index page"
+                                                                         : "base mesh",
                                    key.number, what, more));
     }
+}
+
+bool Courier::is_starved(std::uint32_t model) const noexcept
+{
+    const Side* const side = sides_[model].get();
+    return side->overdue > 0 &&
+           std::ranges::any_of(
+               open_.first(open_count_), [this, side](const OpenWish& open)
+               { return open.side == side && open.clock.is_missed(now_ns_, forgotten_ns_); });
 }
 
 Courier::OpenWish* Courier::find_open(const Side& side, ContentKey key) noexcept
@@ -333,6 +456,7 @@ void Courier::close_wish(const Side& side, ContentKey key) noexcept
 void Courier::remove(OpenWish& open) noexcept
 {
     open.side->unasked -= open.is_asked ? 0 : 1;
+    open.side->overdue -= open.clock.is_overdue() ? 1U : 0U;
     open = open_[--open_count_];
 }
 

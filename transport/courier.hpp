@@ -8,6 +8,7 @@
 #include "rt_core/spm/page_slots.hpp"
 #include "transport/chunk_link.hpp"
 #include "transport/log.hpp"
+#include "transport/part_intake.hpp"
 #include "transport/slot_bank.hpp"
 #include "transport/waiting_times.hpp"
 #include "transport/wish_clock.hpp"
@@ -15,6 +16,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -47,7 +49,8 @@ struct CourierCounters
 
 struct CourierOptions
 {
-    std::uint32_t open_wishes{SlotDoor::kOpenWishes}; ///< Asked for and not yet here. 64 B each.
+    /// Asked for and not yet here, 64 B each; above 0 (asserted).
+    std::uint32_t open_wishes{SlotDoor::kOpenWishes};
     /// Wishes come again within kWishTimeoutFrames, or twice that; after a longer pause than this a
     /// piece was not wanted meanwhile.
     std::int64_t forgotten_ns{1'000'000'000};
@@ -67,7 +70,15 @@ struct CourierOptions
 /// A piece that doesn't come for a second is told of and counted, and again when it comes after
 /// all.
 ///
-/// Nothing is allocated after the last add() (the links and the log are their own matter).
+/// A guest's base mesh comes in parts and is checked as a whole against the hash that the header
+/// names, parsed into the cells that came with the wish, and handed over; the model's pages come
+/// after it. When it is given back all that was linked to it has been. Where nothing of it comes
+/// for a second, whether its host is gone or silent, the cells are given back; what had come is
+/// kept for the next wish, which may find another host. They are given back at once when it is
+/// refused, and it is asked for anew with the next wish.
+///
+/// Nothing is allocated after the last add() but for base meshes on their way (the links and the
+/// log are their own matter).
 class Courier
 {
 public:
@@ -81,14 +92,17 @@ public:
                                                     const CourierOptions& options = {}) noexcept;
 
     /// One model more, the linker's owner: they come in the order of their numbers, from 0. All
-    /// must outlive the courier. `name` stands in front of log lines.
+    /// must outlive the courier. `name` stands in front of log lines. A linker without a base mesh
+    /// is a guest's: the mesh is brought when it is wished for.
     void add(const ModelHeader& header, Linker& linker, ChunkLink& link, std::string name);
 
-    /// One round: freed slots, wishes, repeats, arrivals, link updates. `now_ns` is monotonic.
+    /// One round: freed slots, wishes, repeats, arrivals, link updates. `now_ns` is monotonic, of
+    /// one clock. In time by what has come; a link of a file waits for its disk.
     void step(std::int64_t now_ns);
 
     /// From now on `copies` gets every piece of the model that is handed over, in its coded form
-    /// and right before; null ends it. It must outlive the courier.
+    /// and right before; null ends it. It must outlive the courier. Here and below there must be
+    /// such a model.
     void copy_pieces_to(PieceSink* copies, std::uint32_t model = 0) noexcept
     {
         sides_[model]->copies = copies;
@@ -107,6 +121,8 @@ public:
     {
         return sides_[model]->waiting_times;
     }
+    /// Whether a piece of the model is still wished for that hasn't come for more than a second.
+    [[nodiscard]] bool is_starved(std::uint32_t model = 0) const noexcept;
     [[nodiscard]] std::size_t open_wishes() const noexcept { return open_count_; }
     [[nodiscard]] std::size_t free_pages() const noexcept { return bank_.free_pages(); }
     [[nodiscard]] std::size_t free_index_pages() const noexcept { return bank_.free_index_pages(); }
@@ -139,6 +155,12 @@ private:
         std::string name;
         std::uint64_t session;
         std::size_t unasked{0}; ///< Of the open wishes.
+        std::size_t overdue{0}; ///< Likewise.
+        /// Of a guest whose base mesh is wanted: where it is to lie, and what has come of it.
+        std::optional<std::uint32_t> base_cell;
+        PartIntake base;
+        bool is_base_asked{false};
+        std::int64_t base_progress_ns{0}; ///< Wished for or some of it come, for the last time.
         PieceSink* copies{nullptr};
         CourierCounters counters;
         WaitingTimes waiting_times;
@@ -153,6 +175,11 @@ private:
     };
 
     void receive(Side& side, ContentKey key, std::span<const std::byte> bytes);
+    void want_base(Side& side, const PieceWish& wish);
+    void bring_base(Side& side);
+    void adopt_base(Side& side);
+    void give_cells_back(Side& side);
+    void hand_over_cells(Side& side, DoorEventKind kind);
     void take_wishes(std::size_t count);
     void open_wish(const PieceWish& wish);
     void forget_oldest_generation();

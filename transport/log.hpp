@@ -16,7 +16,8 @@ namespace tactus
 using Log = std::function<void(const std::string&)>;
 
 /// Lets through a few lines a second and says how many it held back: a fault that repeats a
-/// thousand times a second must not flood the terminal or stall its thread.
+/// thousand times a second must not flood the terminal or stall its thread. One thread; reads the
+/// clock, and what it writes allocates.
 class RateLimitedLog
 {
 public:

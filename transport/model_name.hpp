@@ -18,7 +18,8 @@
 namespace tactus
 {
 
-/// Whether a model's or tool's name may appear on the wire and on a terminal: 1 to 63 bytes of
+/// Whether a model's or tool's name may appear on the wire and on a terminal, and is a "valid" one
+/// wherever these headers ask for that: 1 to kMaxNameBytes bytes of
 /// [A-Za-z0-9._-], so no control characters, no separators, no surprises in a log.
 [[nodiscard]] constexpr bool is_valid_name(std::string_view name) noexcept
 {
@@ -38,7 +39,7 @@ struct ModelSelector
     std::optional<ContentHash> hash;
 };
 
-/// Reads NAME or NAME@HASH, HASH being 32 hexadecimal digits.
+/// Reads NAME or NAME@HASH, HASH being 32 hexadecimal digits. Other texts are refused in one line.
 [[nodiscard]] inline Result<ModelSelector, Refusal> parse_selector(std::string_view text)
 {
     const std::size_t at = text.find('@');

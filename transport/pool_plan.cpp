@@ -16,6 +16,10 @@ namespace
 {
 
 constexpr std::size_t kStep = std::size_t{64} << 10U;
+/// Of what guests need not have, in percent.
+constexpr std::size_t kPagesOfGuests = 60;
+/// Index pages get this part of the memory, as of models that stay.
+constexpr std::size_t kIndexShare = 64;
 constexpr std::size_t kMostSteps = (std::size_t{1} << 40U) / kStep;
 
 } // namespace
@@ -64,6 +68,49 @@ bool try_plan_pools(const FrameSetup& setup, std::span<const ModelHeader> header
             courier = too_little + (too_much - too_little) / 2;
         }
     }
+}
+
+bool try_plan_guests(const FrameSetup& setup, std::span<const ModelHeader> headers,
+                     std::size_t bytes, std::size_t cache_bytes, ModelCapacities& room)
+{
+    std::uint32_t largest = 0;
+    std::uint64_t sum = 0;
+    for (const ModelHeader& header : headers)
+    {
+        const std::uint32_t cells = BaseMesh::cells_of(header.counts());
+        largest = std::max(largest, cells);
+        sum += cells;
+    }
+    const auto count = static_cast<std::uint32_t>(headers.size());
+    const auto mean = static_cast<std::uint32_t>((sum + count - 1) / count);
+    const auto index_pages = std::max<std::uint32_t>(
+        kLeastResidentIndexPages,
+        static_cast<std::uint32_t>(bytes / kIndexShare / sizeof(IndexPage)));
+    const auto needed_for = [&](std::uint32_t meshes, std::uint32_t pages)
+    {
+        room = guest_room(meshes, std::max(largest, meshes * mean), pages, index_pages);
+        FrameSetup with_room = setup;
+        with_room.for_guests = room;
+        return Frame::required_bytes(with_room) + Courier::required_bytes(pages, index_pages);
+    };
+    const std::size_t least = needed_for(1, 1);
+    if (least > bytes)
+    {
+        return false;
+    }
+    const std::size_t a_page = needed_for(1, 2) - std::min(needed_for(1, 1), needed_for(1, 2));
+    const std::size_t for_pages = cache_bytes > 0 ? cache_bytes / sizeof(Page) * a_page
+                                                  : (bytes - least) / 100 * kPagesOfGuests;
+    const auto pages = static_cast<std::uint32_t>(1 + std::min(for_pages, bytes - least) /
+                                                          std::max<std::size_t>(a_page, 1));
+    std::uint32_t fits = 0;
+    std::uint32_t too_many = count + 1;
+    while (too_many - fits > 1)
+    {
+        const std::uint32_t middle = fits + (too_many - fits) / 2;
+        (needed_for(middle, pages) <= bytes ? fits : too_many) = middle;
+    }
+    return fits > 0 && needed_for(fits, pages) <= bytes;
 }
 
 std::size_t least_pool_bytes(const FrameSetup& setup, std::span<const ModelHeader> headers,

@@ -17,6 +17,13 @@ namespace tactus
                                   std::size_t bytes, std::size_t cache_bytes,
                                   std::span<ModelCapacities> capacities);
 
+/// The same where none of `setup.models`, which have headers alone, is here at the start, and all
+/// come and go: the room for guests. As many base meshes at once as fit beside the pages, which get
+/// three fifths of what is left; the largest one at least.
+[[nodiscard]] bool try_plan_guests(const FrameSetup& setup, std::span<const ModelHeader> headers,
+                                   std::size_t bytes, std::size_t cache_bytes,
+                                   ModelCapacities& room);
+
 /// The least bytes for which try_plan_pools() has a plan, rounded up to 64 KiB; 0 when even a
 /// tebibyte has none.
 [[nodiscard]] std::size_t least_pool_bytes(const FrameSetup& setup,

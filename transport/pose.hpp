@@ -20,6 +20,8 @@ struct Pose
     std::array<double, 4> rotation{0.0, 0.0, 0.0, 1.0}; ///< Unit quaternion x, y, z, w.
     std::array<double, 3> translation_m{};
     double scale{1.0};
+
+    bool operator==(const Pose&) const = default;
 };
 
 /// Why a pose isn't used.

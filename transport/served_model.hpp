@@ -17,24 +17,26 @@
 namespace tactus
 {
 
-/// Everything that a controller needs to start on a model, whatever it comes through: `header` has
-/// passed ModelHeader::parse, its root hash and `base`'s hash were verified.
+/// What a controller needs to start on a model, whatever it comes through: `header` has passed
+/// ModelHeader::parse, its root hash and `base`'s hash were verified.
 struct ServedModel
 {
     std::string name;
     ContentHash hash{};
     std::vector<std::byte> header;
-    std::vector<std::byte> base; ///< Coded.
+    std::vector<std::byte> base; ///< Coded; empty until it was fetched (base_fetch.hpp).
     std::unique_ptr<ChunkLink> link;
 };
 
-/// Verifies the base mesh's hash against the header, then parses it into `mesh`, whose spans have
-/// the header's counts (PageSlots::take). On refusal the content of `mesh` is unspecified.
+/// Verifies the base mesh's hash against the header (SpmRefusal::wrong_checksum), then parses it
+/// into `mesh`, whose spans have the header's counts (PageSlots::take; asserted). On refusal the
+/// content of `mesh` is unspecified.
 [[nodiscard]] Result<Done, SpmRefusal> load_base_mesh(std::span<const std::byte> bytes,
                                                       const ModelHeader& header,
                                                       const BaseMesh& mesh) noexcept;
 
-/// Checks one header from outside as far as a reader can: parse, then root hash.
+/// Checks one header from outside as far as a reader can: parse, then root hash
+/// (SpmRefusal::wrong_checksum). The bytes must outlive the result.
 [[nodiscard]] Result<ModelHeader, SpmRefusal>
 parse_trusted_header(std::span<const std::byte> bytes) noexcept;
 

@@ -6,7 +6,6 @@
 #include "rt_core/spm/header.hpp"
 #include "transport/pose.hpp"
 
-#include <cmath>
 #include <string>
 
 // Any thread: values; their texts allocate.
@@ -21,14 +20,5 @@ struct ShownObject
     Material material;
     Pose pose;
 };
-
-/// Whether a frame takes it.
-[[nodiscard]] inline bool is_sound(const Material& material) noexcept
-{
-    return material.stiffness_n_per_m > 0.0 && std::isfinite(material.static_friction) &&
-           material.dynamic_friction >= 0.0 &&
-           material.dynamic_friction <= material.static_friction &&
-           std::isfinite(material.damping_n_s_per_m) && material.damping_n_s_per_m >= 0.0;
-}
 
 } // namespace tactus

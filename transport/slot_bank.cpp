@@ -44,6 +44,14 @@ void SlotBank::take_back_freed()
     while (door_.freed.try_pop(freed))
     {
         ++freed_taken_;
+        if (freed.kind == ContentKind::base)
+        {
+            TACTUS_ASSERT(freed.slot < models_.size());
+            models_[freed.slot].linker->set_base({});
+            models_[freed.slot].base_went = freed.generation;
+            models_[freed.slot].is_news_due = false;
+            continue;
+        }
         const bool is_page = freed.kind == ContentKind::chunk;
         Slots& free = is_page ? pages_ : index_pages_;
         TACTUS_ASSERT(free.count < free.stack.size());
@@ -60,6 +68,14 @@ void SlotBank::take_back_freed()
         }
         free.stack[free.count++] = freed.slot;
     }
+}
+
+/// Generations count up and may wrap.
+bool SlotBank::is_outdated(std::uint32_t owner, std::uint32_t generation) const noexcept
+{
+    const KnownModel& model = models_[owner];
+    return model.is_news_due ||
+           (model.base_went && static_cast<std::int32_t>(generation - *model.base_went) < 0);
 }
 
 void SlotBank::take_page(Linker& linker) noexcept

@@ -11,7 +11,9 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
+#include <vector>
 
 namespace tactus
 {
@@ -28,8 +30,11 @@ public:
     [[nodiscard]] static std::size_t required_bytes(std::size_t pages,
                                                     std::size_t index_pages) noexcept;
 
+    /// One model more, by its owner's number; it must outlive the bank.
+    void add(Linker& linker) { models_.push_back({&linker, {}, false}); }
+
     /// Slots that the haptic thread has no more use for are free again, in its order, and unknown
-    /// to those who filled them.
+    /// to those who filled them; models whose base mesh went have none any more.
     void take_back_freed();
     /// How many were, modulo 2^32, as in DoorEvent.
     [[nodiscard]] std::uint32_t freed_taken() const noexcept { return freed_taken_; }
@@ -37,7 +42,13 @@ public:
     [[nodiscard]] std::size_t free_pages() const noexcept { return pages_.count; }
     [[nodiscard]] std::size_t free_index_pages() const noexcept { return index_pages_.count; }
 
-    /// The slot that take_page() gives; one is free.
+    /// The cells for the model's base mesh were given back: wishes for it are outdated until the
+    /// haptic thread says that it has them.
+    void expect_news_of(std::uint32_t owner) { models_[owner].is_news_due = true; }
+    /// Whether a wish for the model's base mesh is of the time before it, or its cells, went.
+    [[nodiscard]] bool is_outdated(std::uint32_t owner, std::uint32_t generation) const noexcept;
+
+    /// The slot that take_page() gives; one is free (asserted).
     [[nodiscard]] std::uint32_t next_page() const noexcept { return pages_.next(); }
     /// `linker` is told when the slot is taken back.
     void take_page(Linker& linker) noexcept;
@@ -50,7 +61,7 @@ public:
     {
         return index_slot_of_.find(PagePool::first_key(owner) + page.value);
     }
-    /// What verifies the chunks of an index page, in its slot.
+    /// What verifies the chunks of an index page, in its slot, which there must be.
     [[nodiscard]] std::span<ChunkEntry, kChunksPerIndexPage> entries(std::uint32_t slot) noexcept
     {
         return index_[slot].entries;
@@ -75,7 +86,15 @@ private:
         std::array<ChunkEntry, kChunksPerIndexPage> entries{};
     };
 
+    struct KnownModel
+    {
+        Linker* linker{nullptr};
+        std::optional<std::uint32_t> base_went; ///< The generation of that.
+        bool is_news_due{false};
+    };
+
     SlotDoor& door_;
+    std::vector<KnownModel> models_; ///< By owner.
     Slots pages_;
     Slots index_pages_;
     std::span<Linker*> linkers_; ///< By page slot; null while it is free.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "rt_core/limits.hpp"
+#include "rt_core/records/frame_output.hpp"
 #include "rt_core/records/local_surface.hpp"
 
 #include <array>
@@ -10,6 +11,7 @@
 #include <cstdint>
 #include <type_traits>
 
+// Any thread: values; no call waits or allocates.
 namespace tactus
 {
 
@@ -39,8 +41,8 @@ struct PairTelemetry
     std::uint32_t object{0}; ///< Its number on that host, or on the controller.
     std::uint8_t tool{0};
     AnswerKind kind{AnswerKind::bracket};
-    double lower_m{0.0}; ///< Proven bounds of the distance from the tool's core.
-    double upper_m{0.0};
+    double lower_m{0.0};             ///< Proven bounds of the distance from the tool's core.
+    double upper_m{0.0};             ///< Infinite where nothing is known yet.
     std::array<double, 3> point_m{}; ///< Nearest on the object, in the world.
     std::array<double, 3> force_n{}; ///< By which the tool pushes the object; estimated where it
                                      ///< touches several.
@@ -51,15 +53,18 @@ struct PoolTelemetry
 {
     std::uint32_t used{0};
     std::uint32_t capacity{0};
+
+    bool operator==(const PoolTelemetry&) const = default;
 };
 
 /// One model on a controller, and the object that its host moves.
 struct ModelTelemetry
 {
-    PoolTelemetry pages;
+    PoolTelemetry pages; ///< Here and below the capacity of one that comes and goes is 0.
     PoolTelemetry faces;
     PoolTelemetry blocks;
     PoolTelemetry nodes;
+    ModelStage stage{ModelStage::resident};
     bool host_gone{false};
     bool is_static{false};       ///< All of it is there and refined.
     bool follows_poses{false};   ///< Its host shows it.
@@ -67,6 +72,8 @@ struct ModelTelemetry
     std::uint64_t poses_refused{0};
     std::uint64_t pieces{0};       ///< Index pages and chunks handed over since the start.
     std::int64_t piece_wait_ns{0}; ///< From wish to hand-over: mean since the last sample; 0: none.
+
+    bool operator==(const ModelTelemetry&) const = default;
 };
 
 /// Models that telemetry tells of: those of the least numbers.

@@ -13,7 +13,7 @@ namespace tactus
 {
 
 /// How long pieces were waited for: counts in steps of a quarter of a millisecond, up to half a
-/// second; the longest is kept beside them. 16 KiB, nothing allocated.
+/// second; the longest is kept beside them. 16 KiB, nothing allocated. One thread.
 class WaitingTimes
 {
 public:

@@ -37,6 +37,11 @@ public:
     void wait_for_host(std::int64_t now_ns) { hosted_ns_ = now_ns; }
 
     [[nodiscard]] bool is_overdue() const { return is_overdue_; }
+    /// Overdue, and wished for within the last `forgotten_ns`.
+    [[nodiscard]] bool is_missed(std::int64_t now_ns, std::int64_t forgotten_ns) const
+    {
+        return is_overdue_ && now_ns - wished_ns_ <= forgotten_ns;
+    }
     [[nodiscard]] std::int64_t waited_ns(std::int64_t now_ns) const { return now_ns - opened_ns_; }
 
 private:

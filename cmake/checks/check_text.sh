@@ -143,8 +143,92 @@ threads_told() {
     return "$faults"
 }
 
+has_heading() { # has_heading PAGE ANCHOR, as GitHub makes them
+    sed -n 's/^##* //p' "$1" | tr '[:upper:]' '[:lower:]' | sed 's/[^a-z0-9 _-]//g; s/ /-/g' \
+        | grep -qxF -e "$2"
+}
+
+# A link of a page leads to a file that is there, and to a heading of it; a page of docs/ that a
+# source, a script or another page names is there.
+links() {
+    local faults=0 file line target path
+    # shellcheck disable=SC2016 # The program of awk.
+    while IFS=$'\t' read -r file line target; do
+        path=${target%%#*}
+        path=${path:+$(dirname "$file")/$path}
+        path=${path:-$file}
+        if [[ ! -e "$path" ]] \
+            || { [[ "$target" == *#* ]] && ! has_heading "$path" "${target#*#}"; }; then
+            echo "$file:$line: a link to '$target', which is not there"
+            faults=1
+        fi
+    done < <(project_files '*.md' | tr '\n' '\0' | xargs -0 -r awk '
+        /^ *```/ { in_code = !in_code }
+        FNR == 1 { in_code = 0 }
+        !in_code {
+            rest = $0
+            while (match(rest, /\]\([^() ]+\)/)) {
+                target = substr(rest, RSTART + 2, RLENGTH - 3)
+                if (target !~ /:/) print FILENAME "\t" FNR "\t" target
+                rest = substr(rest, RSTART + RLENGTH)
+            }
+        }')
+    while IFS=: read -r file line target; do
+        if [[ ! -e "$target" ]]; then
+            echo "$file:$line: names '$target', which is not there"
+            faults=1
+        fi
+    done < <(project_files "${cpp[@]}" "${scripts[@]}" '*.md' '*.py' '*.txt' | tr '\n' '\0' \
+        | xargs -0 -r grep -onE '\bdocs/[a-z0-9_/-]+\.(md|py|cpp|xml)\b' -- /dev/null)
+    return "$faults"
+}
+
+# A test that a page names is there: `KIND.NAME`, which a CMakeLists.txt of tests/ gives to add_test
+# in one word, or as KIND.${...} with the NAME, or what is behind its part_${...}, among its words;
+# `test_PROGRAM`, or a source of that name, and the suites behind it.
+# shellcheck disable=SC2016 # CMake's marks, and the pages'.
+named_tests() {
+    local faults=0 file line words kind name whole='' composed='' suites sources
+    sources=$(project_files 'tests/*.cpp' 'tests/*.hpp')
+    suites=$(tr '\n' '\0' <<<"$sources" | xargs -0 -r sed -nE \
+        -e 's/^ *(TYPED_|RC_GTEST_)?(TEST|PROP|FIXTURE_PROP)[A-Z_]*\(([A-Za-z0-9]+).*/\3/p')
+    sources=$(sed -n 's|.*/\(test_[a-z0-9_]*\)\.cpp$|\1|p' <<<"$sources")
+    # Names in one word, and KIND/WORD for every word of a list that makes names of that KIND.
+    while IFS= read -r file; do
+        words=$(sed 's/#.*//' "$file")
+        whole+=$(sed -nE -e 's/.*NAME ([a-z_]+\.[a-z0-9_]+).*/\1/p' \
+            -e 's/.*tactus_(test|program)\(([a-z0-9_]+).*/\2/p' <<<"$words")$'\n'
+        while IFS= read -r kind; do
+            for name in '' $(grep -oE '[a-z0-9_]+_\$\{' <<<"$words" | tr -d '${'); do
+                composed+=$(grep -oE '[a-z0-9_]+' <<<"$words" | sort -u \
+                    | sed "s|^|$kind/$name|")$'\n'
+            done
+        done < <(sed -nE -e 's/.*NAME ([a-z_]+)\.\$.*/\1/p' -e 's/.*(guard)\(.*/\1/p' \
+            <<<"$words" | sort -u)
+    done < <(project_files 'tests/*CMakeLists.txt')
+    while IFS=: read -r file line words; do
+        words=${words//'`'/}
+        name=${words%% *}
+        kind=${name%%.*}
+        if [[ "$name" == test_* && "$name" != *.* ]]; then
+            grep -qxF -- "$name" <<<"$whole$sources" \
+                || { echo "$file:$line: no test is called '$name'"; faults=1; }
+        elif grep -qE "^${kind}[./]" <<<"$whole$composed"; then # Else something with a dot in it.
+            grep -qxF -e "$name" -e "${name/./\/}" <<<"$whole$composed" \
+                || { echo "$file:$line: no test is called '$name'"; faults=1; }
+        fi
+        [[ "$words" == *' '* ]] || continue
+        for name in ${words#* }; do
+            grep -qxF -- "${name%,}" <<<"$suites" \
+                || { echo "$file:$line: no suite of tests is called '${name%,}'"; faults=1; }
+        done
+    done < <(project_files '*.md' | tr '\n' '\0' | xargs -0 -r grep -onE \
+        '`(test_[a-z0-9_]+`( [A-Z][A-Za-z0-9]+,?)*|[a-z_]+\.[a-z0-9_]+`)' -- /dev/null)
+    return "$faults"
+}
+
 readonly checks=(line_length no_leftovers machine_paths licence files_listed limits_tested
-    own_header_first threads_told)
+    own_header_first threads_told links named_tests)
 if (($# != 2)) || [[ " ${checks[*]} " != *" $1 "* ]]; then
     echo "usage: check_text.sh CHECK ROOT, CHECK being one of: ${checks[*]}" >&2
     exit 3

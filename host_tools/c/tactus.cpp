@@ -9,6 +9,7 @@
 #include "transport/dds/dds_client.hpp"
 #include "transport/model_name.hpp"
 #include "transport/pool_plan.hpp"
+#include "transport/store/static_model.hpp"
 #include "transport/store/store_link.hpp"
 
 #include <fmt/format.h>
@@ -38,6 +39,11 @@ struct tactus_model
     ServedModel served;
     std::optional<ModelHeader> header; ///< A view into `served`.
     bool is_taken{false};              ///< By a frame; under `registry`.
+};
+
+struct tactus_static_model
+{
+    std::unique_ptr<StaticModel> model;
 };
 
 struct tactus_frame
@@ -259,7 +265,10 @@ ToolSpec tool_of(const tactus_tool& tool, std::size_t index)
 ObjectPose pose_of(const tactus_pose& pose, const std::string& name)
 {
     check_finite(pose.rotation, 9, (name + "rotation").c_str());
-    check_finite(pose.translation_m, 3, (name + "translation_m").c_str());
+    for (const double coordinate_m : pose.translation_m)
+    {
+        check_range(coordinate_m, -kPoseReachMax_m, kPoseReachMax_m, name + "translation_m");
+    }
     check_range(pose.scale, kPoseScaleMin, kPoseScaleMax, name + "scale");
     ObjectPose place;
     place.rotation = to_rotation(pose.rotation);
@@ -271,6 +280,43 @@ ObjectPose pose_of(const tactus_pose& pose, const std::string& name)
     place.translation_m = to_vec(pose.translation_m);
     place.scale = pose.scale;
     return place;
+}
+
+Material material_of(const tactus_material& from)
+{
+    check_size(from, "material");
+    Material material;
+    if (from.stiffness_n_per_m != 0.0)
+    {
+        check_range(from.stiffness_n_per_m, 1e-3, 1e6, "material.stiffness_n_per_m");
+        material.stiffness_n_per_m = from.stiffness_n_per_m;
+    }
+    check_range(from.static_friction, 0.0, 10.0, "material.static_friction");
+    check_range(from.dynamic_friction, 0.0, from.static_friction, "material.dynamic_friction");
+    check_range(from.damping_n_s_per_m, 0.0, 20.0, "material.damping_n_s_per_m");
+    check_range(from.viscosity_n_s_per_m, 0.0, 20.0, "material.viscosity_n_s_per_m");
+    check_range(from.texture_length_m, from.texture_height_m > 0.0 ? kTextureLengthMin_m : 0.0,
+                kTextureLengthMax_m, "material.texture_length_m");
+    check_range(from.texture_height_m, 0.0, kTextureSteepest * from.texture_length_m,
+                "material.texture_height_m");
+    material.static_friction = from.static_friction;
+    material.dynamic_friction = from.dynamic_friction;
+    material.damping_n_s_per_m = from.damping_n_s_per_m;
+    material.viscosity_n_s_per_m = from.viscosity_n_s_per_m;
+    material.texture_height_m = from.texture_height_m;
+    material.texture_length_m = from.texture_length_m;
+    return material;
+}
+
+/// With the next frame; of an object that is in the set-up.
+void add_change(tactus_frame& frame, const SceneChange& change)
+{
+    check_range(change.number, 0, frame.objects - 1, "object");
+    if (!frame.changes.try_push_back(change))
+    {
+        refuse(TACTUS_BUSY, "{} objects were placed or changed since the last frame; run one",
+               frame.changes.size());
+    }
 }
 
 /// The records of the library for those of the caller, who keeps the models.
@@ -435,10 +481,9 @@ void place_tools(tactus_frame& frame, const tactus_poses& poses, std::size_t pos
     {
         const std::size_t index = pose * frame.states.size() + tool;
         frame.states[tool].position_m = to_vec(poses.positions_m + 3 * index);
-        if (poses.rotations != nullptr)
-        {
-            frame.states[tool].rotation = to_rotation(poses.rotations + 9 * index);
-        }
+        frame.states[tool].rotation = poses.rotations == nullptr
+                                          ? Mat3(Mat3::Identity())
+                                          : to_rotation(poses.rotations + 9 * index);
     }
 }
 
@@ -487,13 +532,25 @@ static_assert(static_cast<int>(AnswerKind::exact) == TACTUS_EXACT);
 static_assert(static_cast<int>(AnswerKind::decided) == TACTUS_DECIDED);
 static_assert(static_cast<int>(AnswerKind::bracket) == TACTUS_BRACKET);
 static_assert(static_cast<int>(AnswerKind::stale) == TACTUS_STALE);
+static_assert(static_cast<int>(Side::unsigned_distance) == TACTUS_UNSIGNED);
+static_assert(static_cast<int>(Side::outside) == TACTUS_OUTSIDE);
+static_assert(static_cast<int>(Side::inside) == TACTUS_INSIDE);
 
 void check_poses(const tactus_frame& frame, const tactus_poses& poses)
 {
     check_size(poses, "poses");
     check_range(poses.rounds, 0, 10'000, "poses.rounds");
     const std::size_t places = poses.count * frame.states.size();
-    check_finite(&given(poses.positions_m, "poses.positions_m"), 3 * places, "poses.positions_m");
+    const double* positions_m = &given(poses.positions_m, "poses.positions_m");
+    for (std::size_t i = 0; i < 3 * places; ++i)
+    {
+        if (!(std::abs(positions_m[i]) < kGoalRange_m)) // So that NaN is refused.
+        {
+            refuse(TACTUS_BAD_ARGUMENT,
+                   "poses.positions_m: element {} is {}; below {} m is allowed", i, positions_m[i],
+                   kGoalRange_m);
+        }
+    }
     if (poses.rotations == nullptr)
     {
         return;
@@ -613,6 +670,57 @@ extern "C"
                        });
     }
 
+    tactus_result tactus_static_model_open(uint32_t abi, const char* path,
+                                           tactus_static_model** model, tactus_error* error)
+    {
+        return guarded(error,
+                       [&]
+                       {
+                           check_abi(abi);
+                           tactus_static_model*& result = given(model, "model");
+                           auto opened = StaticModel::open(&given(path, "path"));
+                           if (!opened)
+                           {
+                               refuse(TACTUS_REFUSED, "{}", opened.error().text);
+                           }
+                           result = new tactus_static_model{std::move(opened).value()};
+                       });
+    }
+
+    tactus_result tactus_static_model_distances(const tactus_static_model* model, size_t count,
+                                                const double* points_m, double* lower_m,
+                                                double* upper_m, uint8_t* side, double* nearest_m,
+                                                tactus_error* error)
+    {
+        return guarded(error,
+                       [&]
+                       {
+                           const StaticModel& asked = *given(model, "model").model;
+                           std::vector<Vec3> places_m(count);
+                           for (std::size_t i = 0; i < count; ++i)
+                           {
+                               places_m[i] = to_vec(&given(points_m, "points_m") + 3 * i);
+                           }
+                           std::vector<PointDistance> answers(count);
+                           if (const auto done = asked.distances(places_m, answers); !done)
+                           {
+                               refuse(TACTUS_BAD_ARGUMENT, "points_m: {}", done.error().text);
+                           }
+                           for (std::size_t i = 0; i < count; ++i)
+                           {
+                               write(lower_m, i, answers[i].lower_m);
+                               write(upper_m, i, answers[i].upper_m);
+                               write(side, i, static_cast<std::uint8_t>(answers[i].side));
+                               write(nearest_m, i, answers[i].nearest_m);
+                           }
+                       });
+    }
+
+    void tactus_static_model_close(tactus_static_model* model)
+    {
+        delete model;
+    }
+
     void tactus_tool_default(tactus_tool* tool)
     {
         if (tool != nullptr)
@@ -635,6 +743,15 @@ extern "C"
             object->size = sizeof(*object);
             object->pose.scale = 1.0;
             object->pose.rotation[0] = object->pose.rotation[4] = object->pose.rotation[8] = 1.0;
+        }
+    }
+
+    void tactus_material_default(tactus_material* material)
+    {
+        if (material != nullptr)
+        {
+            *material = {};
+            material->size = sizeof(*material);
         }
     }
 
@@ -727,17 +844,26 @@ extern "C"
                        [&]
                        {
                            tactus_frame& in = given(frame, "frame");
-                           check_range(object, 0, in.objects - 1, "object");
                            SceneChange change;
                            change.kind = SceneChangeKind::object_moves;
                            change.number = object;
                            change.pose = pose_of(given(pose, "pose"), "pose.");
-                           if (!in.changes.try_push_back(change))
-                           {
-                               refuse(TACTUS_BUSY,
-                                      "{} objects were placed since the last frame; run one",
-                                      in.changes.size());
-                           }
+                           add_change(in, change);
+                       });
+    }
+
+    tactus_result tactus_frame_feel(tactus_frame* frame, uint32_t object,
+                                    const tactus_material* material, tactus_error* error)
+    {
+        return guarded(error,
+                       [&]
+                       {
+                           tactus_frame& in = given(frame, "frame");
+                           SceneChange change;
+                           change.kind = SceneChangeKind::object_feels;
+                           change.number = object;
+                           change.object.material = material_of(given(material, "material"));
+                           add_change(in, change);
                        });
     }
 

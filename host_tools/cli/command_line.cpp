@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #include "host_tools/cli/command_line.hpp"
 
-#include "platform/base/printable.hpp"
+#include "platform/base/program_log.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -12,7 +12,9 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <numeric>
+#include <sstream>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -78,8 +80,8 @@ std::size_t letters_between(std::string_view one, std::string_view other)
     return row.back();
 }
 
-/// The name that is most like the key; empty when none is.
-std::string nearest_key(const CLI::App& app, const std::string& key)
+/// The option's name, without its dashes, that is most like the key; empty when none is.
+std::string nearest_name(const CLI::App& app, const std::string& key, bool is_in_file)
 {
     std::string nearest;
     std::size_t least = key.size() / 3 + 2;
@@ -88,7 +90,7 @@ std::string nearest_key(const CLI::App& app, const std::string& key)
         for (const std::string& name : option->get_lnames())
         {
             const std::size_t letters = letters_between(key, name);
-            if (option->get_configurable() && letters < least)
+            if ((option->get_configurable() || !is_in_file) && letters < least)
             {
                 least = letters;
                 nearest = name;
@@ -112,10 +114,103 @@ std::string unknown_key(const CLI::App& app, const CLI::ConfigError& error)
         return fmt::format("--config: {}: there are no sections; '[{}]' is one",
                            place_of(key, path), key);
     }
-    const std::string nearest = nearest_key(app, key);
+    const std::string nearest = nearest_name(app, key, true);
     return fmt::format("--config: {}: no option is called '{}'; {}", place_of(key, path), key,
                        nearest.empty() ? "a line is KEY = VALUE" : "'" + nearest + "'?");
 }
+
+/// The first word that no option took, an option's before others.
+std::string unknown_word(const CLI::App& app)
+{
+    const std::vector<std::string> words = app.remaining();
+    const auto option = std::ranges::find_if(words, [](const std::string& word)
+                                             { return word.size() > 1 && word[0] == '-'; });
+    if (option == words.end())
+    {
+        return fmt::format("'{}': nothing takes this word; see --help", words.front());
+    }
+    const std::string name = option->substr(0, option->find('='));
+    const std::string letters = name.substr(std::min(name.find_first_not_of('-'), name.size()));
+    const std::string nearest = letters.empty() ? "" : nearest_name(app, letters, false);
+    return fmt::format("{}: no option is called so; {}", name,
+                       nearest.empty() ? "see --help" : "--" + nearest + "?");
+}
+
+/// The library's own words begin with the option's name, and go on with how many values it had.
+std::string wrong_count(const CLI::ArgumentMismatch& error)
+{
+    const std::string_view text = error.what();
+    const std::string_view name = text.substr(0, text.find(':'));
+    return fmt::format("{}: {}; see --help", name,
+                       text.find("At Most") == std::string_view::npos ? "a value is missing"
+                                                                      : "is given twice");
+}
+
+/// "a, b or c".
+std::string either(const std::vector<std::string>& names)
+{
+    std::string text;
+    for (std::size_t i = 0; i < names.size(); ++i)
+    {
+        text += (i == 0 ? "" : i + 1 == names.size() ? " or " : ", ") + names[i];
+    }
+    return text;
+}
+
+/// Breaks lines between words, where they would be longer.
+std::string wrapped(const std::string& text, std::size_t longest)
+{
+    std::istringstream words(text);
+    std::string lines;
+    std::size_t length = 0;
+    for (std::string word; words >> word;)
+    {
+        const bool fits = length + 1 + word.size() <= longest;
+        lines += (lines.empty() ? "" : fits ? " " : "\n") + word;
+        length = fits ? length + 1 + word.size() : word.size();
+    }
+    return lines;
+}
+
+/// --help in lines of a terminal's width, each task with its example.
+class TaskFormatter : public CLI::Formatter
+{
+public:
+    std::map<std::string, std::string> examples; ///< By the tasks' names.
+
+    [[nodiscard]] std::string make_option_desc(const CLI::Option* option) const override
+    {
+        return wrapped(option->get_description(), kWidth - get_column_width());
+    }
+
+    [[nodiscard]] std::string make_group(std::string task, bool is_positional,
+                                         std::vector<const CLI::Option*> options) const override
+    {
+        const auto example = examples.find(task);
+        if (example == examples.end())
+        {
+            return CLI::Formatter::make_group(std::move(task), is_positional, std::move(options));
+        }
+        task += ", as in  " + example->second;
+        const std::string text =
+            CLI::Formatter::make_group(std::move(task), is_positional, std::move(options));
+        return text.substr(1); // The library has put a blank line before it already.
+    }
+
+    [[nodiscard]] std::string make_footer(const CLI::App* app) const override
+    {
+        std::istringstream lines(app->get_footer());
+        std::string text;
+        for (std::string line; std::getline(lines, line);)
+        {
+            text += (line.starts_with(' ') ? line : wrapped(line, kWidth)) + '\n';
+        }
+        return text;
+    }
+
+private:
+    static constexpr std::size_t kWidth = 100;
+};
 
 } // namespace
 
@@ -160,8 +255,17 @@ CommandOption CommandOption::number_between(double least, double most) const
 template <typename T>
 CommandOption CommandOption::integer_between(T least, T most) const
 {
-    option_->check(CLI::Range(least, most));
-    return *this;
+    const std::string range = fmt::format("{} .. {}", least, most);
+    return check(
+        [=](const std::string& text)
+        {
+            T number{};
+            const bool fits =
+                CLI::detail::lexical_cast(text, number) && number >= least && number <= most;
+            return fits ? std::string()
+                        : fmt::format("'{}' is not a whole number in {}", text, range);
+        },
+        range);
 }
 template CommandOption CommandOption::integer_between(int, int) const;
 template CommandOption CommandOption::integer_between(std::uint32_t, std::uint32_t) const;
@@ -169,8 +273,15 @@ template CommandOption CommandOption::integer_between(std::int64_t, std::int64_t
 
 CommandOption CommandOption::one_of(std::vector<std::string> names) const
 {
-    option_->check(CLI::IsMember(std::move(names)));
-    return *this;
+    const std::string choices = fmt::format("{{{}}}", fmt::join(names, ","));
+    return check(
+        [names = std::move(names)](const std::string& text)
+        {
+            return std::ranges::count(names, text) > 0
+                       ? std::string()
+                       : fmt::format("'{}' is not {}", text, either(names));
+        },
+        choices);
 }
 
 CommandOption CommandOption::existing_directory() const
@@ -213,6 +324,7 @@ CommandOption CommandOption::not_in_file() const
 CommandLine::CommandLine(const std::string& name, const std::string& description)
     : app_(std::make_unique<CLI::App>(description, name))
 {
+    app_->formatter(std::make_shared<TaskFormatter>());
 }
 
 CommandLine::~CommandLine() = default;
@@ -255,16 +367,47 @@ void CommandLine::add_option_file(const std::string& name, const std::string& de
     app_->allow_config_extras(CLI::config_extras_mode::error);
 }
 
+void CommandLine::begin_task(const std::string& task, const std::string& example)
+{
+    app_->option_defaults()->group(task);
+    std::dynamic_pointer_cast<TaskFormatter>(app_->get_formatter())->examples[task] = example;
+}
+
 void CommandLine::set_footer(const std::string& text)
 {
     app_->footer(text);
 }
 
+void CommandLine::add_log_options()
+{
+    begin_task("What is told on stderr", app_->get_name() + " ... --log-level warning --json-log");
+    add_option("--log-level", log_level_, "Only what matters as much as this")
+        .one_of({kLogLevelNames.begin(), kLogLevelNames.end()})
+        .show_default();
+    add_flag("--json-log", logs_json_,
+             "Each line as a JSON object with the keys time (UTC), level, program and text");
+}
+
+void CommandLine::choose_log_style()
+{
+    const auto level = std::ranges::find(kLogLevelNames, log_level_) - kLogLevelNames.begin();
+    set_log_style({static_cast<LogLevel>(level), logs_json_});
+}
+
 std::optional<int> CommandLine::parse(int argc, char** argv)
 {
+    words_.assign(argv + std::min(argc, 1), argv + argc);
+    // Already for what is wrong with the others.
+    set_log_style({LogLevel::info, app_->get_option_no_throw("--json-log") != nullptr &&
+                                       std::ranges::count(words_, "--json-log") > 0});
+    if (const std::string name = option_without_value(); !name.empty())
+    {
+        return fail(fmt::format("{}: a value is missing; see --help", name), kExitUsage);
+    }
     try
     {
         app_->parse(argc, argv);
+        choose_log_style();
         return std::nullopt;
     }
     catch (const CLI::ConfigError& error)
@@ -278,6 +421,14 @@ std::optional<int> CommandLine::parse(int argc, char** argv)
                                 app_->get_config_ptr()->as<std::string>()),
                     kExitUsage);
     }
+    catch (const CLI::ExtrasError&)
+    {
+        return fail(unknown_word(*app_), kExitUsage);
+    }
+    catch (const CLI::ArgumentMismatch& error)
+    {
+        return fail(wrong_count(error), kExitUsage);
+    }
     catch (const CLI::ParseError& error)
     {
         if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success))
@@ -286,6 +437,25 @@ std::optional<int> CommandLine::parse(int argc, char** argv)
         }
         return fail(on_one_line(error.what()) + "; see --help", kExitUsage);
     }
+}
+
+/// The library would take the option that follows for the value, behind '--option=', too.
+std::string CommandLine::option_without_value() const
+{
+    const auto named = [this](const std::string& word)
+    { return word.starts_with("--") ? app_->get_option_no_throw(word) : nullptr; };
+    for (std::size_t i = 0; i < words_.size(); ++i)
+    {
+        const bool is_empty = words_[i].ends_with('=');
+        const std::string name = words_[i].substr(0, words_[i].size() - (is_empty ? 1 : 0));
+        const CLI::Option* option = named(name);
+        const bool is_followed = i + 1 < words_.size() && named(words_[i + 1]) != nullptr;
+        if (option != nullptr && option->get_items_expected_min() > 0 && (is_empty || is_followed))
+        {
+            return name;
+        }
+    }
+    return {};
 }
 
 std::vector<std::string> CommandLine::given() const
@@ -314,8 +484,27 @@ std::string CommandLine::option_file_text() const
 
 int CommandLine::fail(const std::string& text, int code) const
 {
-    fmt::print(stderr, "{}: {}\n", app_->get_name(), printable_line(text));
+    const std::string place = code == kExitUsage ? place_in_file(text) : "";
+    log_message(LogLevel::error, app_->get_name(), place + text);
     return code;
+}
+
+std::string CommandLine::place_in_file(const std::string& text) const
+{
+    const std::string name = text.substr(0, text.find(':'));
+    const CLI::Option* file = app_->get_config_ptr();
+    const CLI::Option* option = app_->get_option_no_throw(name);
+    const bool is_on_the_line =
+        std::ranges::any_of(words_, [&](const std::string& word)
+                            { return word == name || word.starts_with(name + "="); });
+    if (option == nullptr || !option->get_configurable() || file == nullptr || file->count() == 0 ||
+        !name.starts_with("--") || is_on_the_line)
+    {
+        return {};
+    }
+    const auto path = file->as<std::string>();
+    const std::string place = place_of(name.substr(2), path);
+    return place == path ? "" : place + ": "; // Else it is no line of the file.
 }
 
 } // namespace tactus

@@ -60,7 +60,7 @@ private:
 };
 
 /// The options of a program. The only door to CLI11, whose headers take long to compile:
-/// docs/decisions/0003-command-line-room.md.
+/// docs/internals/decisions/0003-command-line-room.md.
 class CommandLine
 {
 public:
@@ -80,7 +80,13 @@ public:
     /// An option that names a TOML file of options: keys are their names without the dashes. The
     /// command line goes first; a key that no option has is wrong usage.
     void add_option_file(const std::string& name, const std::string& description);
-    /// Text below the options of --help.
+    /// --log-level and --json-log: how much is told on stderr, and how. parse() puts them into
+    /// effect.
+    void add_log_options();
+    /// What is declared from here on is for this task; --help shows it by tasks, each with its
+    /// example.
+    void begin_task(const std::string& task, const std::string& example);
+    /// Text below the options of --help; lines that begin with a blank stay as they are.
     void set_footer(const std::string& text);
 
     /// Returns the code to leave with after --help or --version, and after wrong usage, which gets
@@ -94,10 +100,19 @@ public:
     [[nodiscard]] std::string option_file_text() const;
 
     /// Says in one line on stderr, behind the program's name, why it fails; returns `code`. Control
-    /// characters of file names and the like are shown as '?'.
+    /// characters of file names and the like are shown as '?'. Where the text of wrong usage begins
+    /// with an option that stands in the option file, its place there goes before.
     int fail(const std::string& text, int code = kExitFailed) const;
 
 private:
+    [[nodiscard]] std::string option_without_value() const;
+    [[nodiscard]] std::string place_in_file(const std::string& text) const;
+
+    void choose_log_style();
+
+    std::string log_level_{"info"};
+    bool logs_json_{false};
+    std::vector<std::string> words_; ///< Of the command line, behind the program's name.
     std::unique_ptr<CLI::App> app_;
 };
 

@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #include "host_tools/cli/progress.hpp"
 
+#include "platform/base/program_log.hpp"
+
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -20,10 +22,11 @@ constexpr std::chrono::milliseconds kTerminalPeriod{200};
 
 } // namespace
 
-Progress::Progress(std::string what, std::string items)
-    : what_(std::move(what))
+Progress::Progress(std::string program, std::string what, std::string items)
+    : program_(std::move(program))
+    , what_(std::move(what))
     , items_(std::move(items))
-    , is_terminal_(::isatty(STDERR_FILENO) == 1)
+    , is_terminal_(::isatty(STDERR_FILENO) == 1 && !log_style().is_json)
     , start_(Clock::now())
     , last_(start_)
 {
@@ -53,13 +56,18 @@ void Progress::update(std::size_t done, std::size_t total)
         fmt::format("{}: {:.0f} %, {:.0f} {} per second, {:.0f} s left", what_,
                     100.0 * static_cast<double>(done) / static_cast<double>(total), rate, items_,
                     static_cast<double>(total - done) / rate);
-    fmt::print(stderr, "{}{}{}", is_terminal_ ? "\r" : "", line, is_terminal_ ? "\x1b[K" : "\n");
+    if (!is_terminal_)
+    {
+        log_message(LogLevel::info, program_, line);
+        return;
+    }
+    fmt::print(stderr, "\r{}\x1b[K", line);
     std::fflush(stderr);
 }
 
 bool Progress::is_due(Clock::time_point now) const
 {
-    if (now - start_ < kQuiet)
+    if (now - start_ < kQuiet || !is_logged(LogLevel::info))
     {
         return false;
     }

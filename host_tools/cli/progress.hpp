@@ -10,13 +10,13 @@ namespace tactus
 {
 
 /// Tells on stderr how far a long piece of work has come: percent, items a second, time left. Says
-/// nothing in the first two seconds; then on a terminal one line that is written over, elsewhere a
-/// plain line every ten seconds.
+/// nothing in the first two seconds; then on a terminal one line that is written over, elsewhere,
+/// and in JSON, a line every ten seconds. Its level is info.
 class Progress
 {
 public:
-    /// `what` is done to `items`, e.g. "simplify" and "faces".
-    Progress(std::string what, std::string items);
+    /// `what` is done to `items`, e.g. "simplify" and "faces", by the program of that name.
+    Progress(std::string program, std::string what, std::string items);
     /// Clears the line on a terminal.
     ~Progress();
     Progress(const Progress&) = delete;
@@ -30,6 +30,7 @@ private:
 
     [[nodiscard]] bool is_due(Clock::time_point now) const;
 
+    std::string program_;
     std::string what_;
     std::string items_;
     bool is_terminal_;

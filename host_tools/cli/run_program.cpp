@@ -3,13 +3,11 @@
 #include "host_tools/cli/run_program.hpp"
 
 #include "host_tools/cli/command_line.hpp"
-#include "platform/base/printable.hpp"
+#include "platform/base/program_log.hpp"
 
-#include <fmt/format.h>
-
-#include <cstdio>
 #include <exception>
 #include <new>
+#include <string>
 
 namespace tactus
 {
@@ -23,12 +21,13 @@ int run_program(std::string_view name, std::string_view memory_hint,
     }
     catch (const std::bad_alloc& error)
     {
-        memory_hint.empty() ? fmt::print(stderr, "{}: {}\n", name, error.what())
-                            : fmt::print(stderr, "{}: not enough memory; {}\n", name, memory_hint);
+        log_message(LogLevel::error, name,
+                    memory_hint.empty() ? error.what()
+                                        : "not enough memory; " + std::string(memory_hint));
     }
     catch (const std::exception& error)
     {
-        fmt::print(stderr, "{}: {}\n", name, printable_line(error.what()));
+        log_message(LogLevel::error, name, error.what());
     }
     return kExitFailed;
 }

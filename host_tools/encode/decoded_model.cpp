@@ -13,57 +13,81 @@
 namespace tactus
 {
 
-DecodedModel::DecodedModel(const ModelHeader& header)
+DecodedModel::DecodedModel(const ModelHeader& header, std::span<const FrontPage> pages)
     : header_(header)
-    , pages_(header.counts().chunks())
+    , pages_(pages.size())
+    , slots_(header.counts().chunks())
     , base_positions_m_(header.counts().base_vertices)
     , base_faces_(header.counts().base_faces)
     , base_next_(header.counts().base_faces)
 {
+    for (std::uint32_t slot = 0; slot < pages.size(); ++slot)
+    {
+        TACTUS_ASSERT(pages[slot].chunk.value < slots_.size());
+        slots_[pages[slot].chunk.value] = slot;
+    }
 }
 
 DecodedModel DecodedModel::decode(const ModelStore& store, std::vector<std::string>& damage)
 {
-    DecodedModel model(store.header());
-    model.parse_pieces(store, damage);
-    if (damage.empty() && model.header_.counts().records > 0)
+    const ModelCounts counts = store.header().counts();
+    std::vector<FrontPage> pages;
+    for (std::uint32_t chunk = 0; chunk < counts.chunks(); ++chunk)
     {
-        model.link_all(store, damage);
+        const std::uint32_t records = records_in_chunk(counts, {chunk});
+        pages.push_back({{chunk}, ~std::uint64_t{0} >> (kRecordsPerChunk - records)});
+    }
+    return decode_pages(
+        store.header(), pages,
+        [&](ContentKey key, std::vector<std::byte>& coded) { return store.read(key, coded); },
+        store.path().string(), damage);
+}
+
+DecodedModel DecodedModel::decode_pages(const ModelHeader& header, std::span<const FrontPage> pages,
+                                        const ReadPiece& read, const std::string& name,
+                                        std::vector<std::string>& damage)
+{
+    DecodedModel model(header, pages);
+    model.parse_pieces(pages, read, name, damage);
+    if (damage.empty() && !pages.empty())
+    {
+        model.link_all(pages, name, damage);
     }
     return model;
 }
 
-void DecodedModel::parse_pieces(const ModelStore& store, std::vector<std::string>& damage)
+void DecodedModel::parse_pieces(std::span<const FrontPage> pages, const ReadPiece& read,
+                                const std::string& name, std::vector<std::string>& damage)
 {
     std::vector<std::byte> coded;
-    const auto take = [&](ContentKey key, const std::string& name, auto&& parse)
+    const auto take = [&](ContentKey key, const std::string& piece, auto&& parse)
     {
-        if (const auto read = store.read(key, coded); !read)
+        if (const auto done = read(key, coded); !done)
         {
-            damage.push_back(read.error().text);
+            damage.push_back(done.error().text);
         }
         else if (const Result<Done, SpmRefusal> parsed = parse(); !parsed)
         {
-            damage.push_back(fmt::format("{}: {} {}", store.path().string(), name,
-                                         refusal_text(parsed.error())));
+            damage.push_back(fmt::format("{}: {} {}", name, piece, refusal_text(parsed.error())));
         }
     };
     take({ContentKind::base, 0}, "the base mesh",
          [&] {
              return parse_base_mesh(coded, header_, {base_positions_m_, base_faces_, base_next_});
          });
-    for (std::uint32_t chunk = 0; chunk < pages_.size(); ++chunk)
+    for (std::uint32_t slot = 0; slot < pages.size(); ++slot)
     {
-        take({ContentKind::chunk, chunk}, fmt::format("chunk {}", chunk),
-             [&] { return parse_chunk(coded, header_, {chunk}, pages_[chunk]); });
+        const ChunkId chunk = pages[slot].chunk;
+        take({ContentKind::chunk, chunk.value}, fmt::format("chunk {}", chunk.value),
+             [&] { return parse_chunk(coded, header_, chunk, pages_[slot]); });
         chunk_bytes_ += coded.size();
     }
 }
 
 /// With memory for all pages nothing waits for long: a record is linked, or it can't be.
-void DecodedModel::link_all(const ModelStore& store, std::vector<std::string>& damage)
+void DecodedModel::link_all(std::span<const FrontPage> pages, const std::string& name,
+                            std::vector<std::string>& damage)
 {
-    const ModelCounts counts = header_.counts();
     struct alignas(Arena::kAlignment) Line
     {
         std::array<std::byte, Arena::kAlignment> bytes;
@@ -75,19 +99,18 @@ void DecodedModel::link_all(const ModelStore& store, std::vector<std::string>& d
     Arena arena(std::as_writable_bytes(std::span(memory)));
     LinkPool pool(arena, pages_.size());
     Linker linker(pool, 0, header_, slots);
-    for (std::uint32_t chunk = 0; chunk < pages_.size(); ++chunk)
+    for (std::uint32_t slot = 0; slot < pages.size(); ++slot)
     {
-        linker.link_page({chunk}, chunk);
+        linker.link_page(pages[slot].chunk, slot);
     }
-    for (std::uint32_t chunk = 0; chunk < pages_.size(); ++chunk)
+    for (std::uint32_t slot = 0; slot < pages.size(); ++slot)
     {
-        const auto linked = static_cast<std::uint32_t>(std::popcount(linker.linked(chunk)));
-        if (linked < records_in_chunk(counts, {chunk}))
+        const std::uint64_t lacking = pages[slot].refined & ~linker.linked(slot);
+        if (lacking != 0)
         {
             damage.push_back(fmt::format("{}: chunk {}: {} of its records don't fit those that "
                                          "they depend on",
-                                         store.path().string(), chunk,
-                                         records_in_chunk(counts, {chunk}) - linked));
+                                         name, pages[slot].chunk.value, std::popcount(lacking)));
         }
     }
 }

@@ -19,7 +19,7 @@ struct ExtractRequest
     /// Splits what matters most while the mesh has at most so many faces. The other demands come
     /// first and may need more, and the base mesh may have more.
     std::optional<std::uint32_t> faces;
-    std::optional<double> error_m; ///< No face's bound is to exceed this; 0 or more.
+    std::optional<double> error_m; ///< No face's bound is to exceed this; 0 or more (unchecked).
     std::optional<Zone> zone;      ///< Full resolution in here; in the source's frame.
 };
 

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace tactus
 {
@@ -16,21 +15,6 @@ namespace
 
 using GridPoint = std::array<std::int32_t, 3>;
 using Corners = std::array<std::uint32_t, 3>;
-
-constexpr QuantumBox kEmptyBox{
-    {std::numeric_limits<std::int32_t>::max(), std::numeric_limits<std::int32_t>::max(),
-     std::numeric_limits<std::int32_t>::max()},
-    {std::numeric_limits<std::int32_t>::min(), std::numeric_limits<std::int32_t>::min(),
-     std::numeric_limits<std::int32_t>::min()}};
-
-void join(QuantumBox& box, const QuantumBox& other)
-{
-    for (std::size_t axis = 0; axis < 3; ++axis)
-    {
-        box.low[axis] = std::min(box.low[axis], other.low[axis]);
-        box.high[axis] = std::max(box.high[axis], other.high[axis]);
-    }
-}
 
 /// The bound as whole quanta, with one more for the rounding of whoever tests a ball against the
 /// box. No bound of a real mesh comes near the cap; it only keeps boxes inside 32 bits.
@@ -169,6 +153,15 @@ Influence find_influence(const QuantisedMesh& mesh, const Simplification& simpli
                          const Numbering& numbering, const FaceHistory& history)
 {
     return Sweep(mesh, simplification, numbering, history).run();
+}
+
+void join(QuantumBox& box, const QuantumBox& other)
+{
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+        box.low[axis] = std::min(box.low[axis], other.low[axis]);
+        box.high[axis] = std::max(box.high[axis], other.high[axis]);
+    }
 }
 
 QuantumBox union_of(std::span<const QuantumBox> boxes)

@@ -10,6 +10,7 @@
 #include "rt_core/spm/star_resolver.hpp"
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -33,6 +34,16 @@ struct Influence
 [[nodiscard]] Influence find_influence(const QuantisedMesh& mesh,
                                        const Simplification& simplification,
                                        const Numbering& numbering, const FaceHistory& history);
+
+/// Holds nothing; joined with a box it is that box.
+inline constexpr QuantumBox kEmptyBox{
+    {std::numeric_limits<std::int32_t>::max(), std::numeric_limits<std::int32_t>::max(),
+     std::numeric_limits<std::int32_t>::max()},
+    {std::numeric_limits<std::int32_t>::min(), std::numeric_limits<std::int32_t>::min(),
+     std::numeric_limits<std::int32_t>::min()}};
+
+/// Grows `box` until it holds the other one, too.
+void join(QuantumBox& box, const QuantumBox& other);
 
 /// The least box that holds all of `boxes`, which are at least one.
 [[nodiscard]] QuantumBox union_of(std::span<const QuantumBox> boxes);

@@ -142,6 +142,16 @@ Result<double, Refusal> choose_scale(const Box& box, const PrepareOptions& optio
                                    "unit, or fit it to a diagonal)",
                                    out.diagonal_m, kMinDiagonal_m, kMaxDiagonal_m)};
     }
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+        const double far_m = out.origin_m[axis] + out.diagonal_m; // Beyond any grid place.
+        if (out.origin_m[axis] < -kModelReachMax_m || far_m > kModelReachMax_m)
+        {
+            return Refusal{fmt::format("the model lies at {} m on an axis; at most {} m from the "
+                                       "origin are supported: move it there",
+                                       out.origin_m[axis], kModelReachMax_m)};
+        }
+    }
     return scale;
 }
 

@@ -60,6 +60,8 @@ struct PreparedMesh
 /// vertices and faces keep their order, copies of vertices come last. A face's opposite is kept:
 /// together they are a two-sided sheet and part into two.
 /// Nearly linear in the mesh: 4 M faces take 4 s and, with the source, 70 B a face at the peak.
+/// Refused, by name and place: an option out of range, an index or coordinate that is none, a
+/// diagonal out of range, and a mesh of which no face is left.
 [[nodiscard]] Result<PreparedMesh, Refusal> prepare_mesh(const TriangleMesh& source,
                                                          const PrepareOptions& options);
 

@@ -3,6 +3,7 @@
 #include "host_tools/mesh/read_mesh.hpp"
 
 #include "host_tools/mesh/detail/readers.hpp"
+#include "platform/base/printable.hpp"
 #include "platform/base/read_file.hpp"
 
 #include <fmt/format.h>
@@ -20,6 +21,8 @@ namespace
 
 /// Indices are 32-bit and the largest value is kept free to mean "none".
 constexpr std::size_t kMaxVertices = 0xFFFF'FFFE;
+/// Of UTF-8; some editors write it before a text.
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 using Reader = Result<MeshFile, Refusal> (*)(std::string_view);
 
@@ -95,7 +98,12 @@ Result<MeshFile, Refusal> read_without_name(const std::filesystem::path& path)
     {
         return Refusal{"unknown kind of mesh file; must end in .ply, .obj, .stl or .off"};
     }
-    auto file = (*reader)(bytes.value());
+    std::string_view text = bytes.value();
+    if (text.starts_with(kByteOrderMark) && *reader != detail::read_stl) // That may be binary.
+    {
+        text.remove_prefix(kByteOrderMark.size());
+    }
+    auto file = (*reader)(text);
     if (!file)
     {
         return file;
@@ -129,6 +137,12 @@ Result<MeshFile, Refusal> read_mesh_file(const std::filesystem::path& path)
 bool is_mesh_file_name(const std::filesystem::path& path)
 {
     return reader_for(path).has_value();
+}
+
+std::string mesh_is_no_model(const std::string& path)
+{
+    return fmt::format("'{0}' is a mesh; spm_build {0} -o MODEL.spm makes a model of it",
+                       printable(path));
 }
 
 Result<TriangleMesh, Refusal> read_mesh(const std::filesystem::path& path)

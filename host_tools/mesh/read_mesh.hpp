@@ -30,9 +30,9 @@ struct MeshFile
 /// double precision. Vertices and faces keep the file's order; nothing is welded or repaired.
 /// Guarantees: every coordinate is finite, every index names a vertex, there are 1 .. kMaxFaces
 /// faces. A file that is shorter than it says is refused; where the format can't say (OBJ, a last
-/// number without line end) there is a note.
-/// Costs the file's bytes plus the mesh in memory; a count in a header allocates nothing that the
-/// file's size doesn't support.
+/// number without line end) there is a note, and for lines of an OBJ that aren't understood. A
+/// UTF-8 byte-order mark is passed over, but in an STL. Costs the file's bytes plus the mesh in
+/// memory; a count in a header allocates nothing that the file's size doesn't support.
 [[nodiscard]] Result<MeshFile, Refusal> read_mesh_file(const std::filesystem::path& path);
 
 /// The same for callers that don't show notes.
@@ -40,5 +40,8 @@ struct MeshFile
 
 /// Whether the name ends like that of a file that read_mesh() reads, in whatever case.
 [[nodiscard]] bool is_mesh_file_name(const std::filesystem::path& path);
+
+/// What a program says that was given a mesh where a model belongs.
+[[nodiscard]] std::string mesh_is_no_model(const std::string& path);
 
 } // namespace tactus

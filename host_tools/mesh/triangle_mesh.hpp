@@ -10,13 +10,14 @@
 namespace tactus
 {
 
-/// An indexed triangle mesh as read from a file or made by a generator. Lengths in whatever unit
-/// the source used until `import` has scaled them; metres after that. Faces are counter-clockwise
-/// seen from outside where the source has an outside.
+/// An indexed triangle mesh as read from a file or made by a generator, in the source's frame. Its
+/// lengths are in whatever unit the file has, and in metres where the library made it:
+/// prepare_mesh() scales. Faces are counter-clockwise seen from outside where the source has an
+/// outside.
 struct TriangleMesh
 {
     std::vector<std::array<double, 3>> positions;
-    std::vector<std::array<std::uint32_t, 3>> faces;
+    std::vector<std::array<std::uint32_t, 3>> faces; ///< Places in `positions`, from 0.
 };
 
 } // namespace tactus

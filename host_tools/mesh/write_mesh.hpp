@@ -22,7 +22,8 @@ namespace tactus
 /// .obj: text with as many digits as it takes; reads back bit for bit.
 /// .stl: binary, loose triangles; coordinates are rounded to float. Refused when that would put two
 /// vertices of different positions into one place.
-/// Refused when the path ends otherwise or can't be written.
+/// Refused, in one line with the path, when that ends otherwise or can't be written. Faces must
+/// name vertices that there are.
 [[nodiscard]] Result<Done, Refusal> write_mesh(const std::filesystem::path& path,
                                                const TriangleMesh& mesh);
 

@@ -317,6 +317,23 @@ public:
               { return tactus_frame_place(frame_, object, &at.pose, error); });
     }
 
+    void feel(std::uint32_t object, double stiffness_n_per_m, double static_friction,
+              double dynamic_friction, double damping_n_s_per_m, double viscosity_n_s_per_m,
+              double texture_height_m, double texture_length_m)
+    {
+        tactus_material material;
+        tactus_material_default(&material);
+        material.stiffness_n_per_m = stiffness_n_per_m;
+        material.static_friction = static_friction;
+        material.dynamic_friction = dynamic_friction;
+        material.damping_n_s_per_m = damping_n_s_per_m;
+        material.viscosity_n_s_per_m = viscosity_n_s_per_m;
+        material.texture_height_m = texture_height_m;
+        material.texture_length_m = texture_length_m;
+        check([&](tactus_error* error)
+              { return tactus_frame_feel(frame_, object, &material, error); });
+    }
+
     [[nodiscard]] py::dict state() const
     {
         tactus_frame_state state{};
@@ -334,6 +351,58 @@ private:
     std::size_t objects_;
     std::unique_ptr<std::byte, AlignedDelete> memory_;
     tactus_frame* frame_{nullptr};
+};
+
+/// Of N points.
+struct Distances
+{
+    py::array_t<double> lower_m;
+    py::array_t<double> upper_m;
+    py::array_t<std::uint8_t> side;
+    py::array_t<double> nearest_m; ///< N x 3.
+};
+
+class StaticModel
+{
+public:
+    explicit StaticModel(const std::string& path)
+    {
+        check(
+            [&](tactus_error* error)
+            {
+                const py::gil_scoped_release others_may_run;
+                return tactus_static_model_open(TACTUS_ABI, path.c_str(), &model_, error);
+            });
+    }
+    StaticModel(const StaticModel&) = delete;
+    StaticModel& operator=(const StaticModel&) = delete;
+    ~StaticModel() { tactus_static_model_close(model_); }
+
+    [[nodiscard]] Distances distances(const py::object& points_m) const
+    {
+        const Numbers points = numbers_of(points_m, "points_m");
+        const py::ssize_t count = points.ndim() > 0 ? points.shape(0) : 0;
+        check_shape(points, {count, 3}, "points_m");
+        Distances answers{py::array_t<double>(count), py::array_t<double>(count),
+                          py::array_t<std::uint8_t>(count),
+                          py::array_t<double>(std::vector<py::ssize_t>{count, 3})};
+        double* const lower_m = answers.lower_m.mutable_data();
+        double* const upper_m = answers.upper_m.mutable_data();
+        std::uint8_t* const side = answers.side.mutable_data();
+        double* const nearest_m = answers.nearest_m.mutable_data();
+        check(
+            [&](tactus_error* error)
+            {
+                const py::gil_scoped_release others_may_run;
+                return tactus_static_model_distances(model_, static_cast<std::size_t>(count),
+                                                     points.data(), lower_m, upper_m, side,
+                                                     nearest_m, error);
+            });
+        return answers;
+    }
+
+private:
+    tactus_static_model* model_{nullptr};
 };
 
 std::array<double, 3> to_array(const double (&values)[3])
@@ -381,6 +450,19 @@ PYBIND11_MODULE(tactus, module)
         .def_property_readonly("is_closed", [](const Model& m) { return m.info().is_closed != 0; })
         .def_property_readonly("hash", [](const Model& m) { return m.info().hash; });
 
+    module.attr("UNSIGNED") = static_cast<int>(TACTUS_UNSIGNED);
+    module.attr("OUTSIDE") = static_cast<int>(TACTUS_OUTSIDE);
+    module.attr("INSIDE") = static_cast<int>(TACTUS_INSIDE);
+    py::class_<Distances>(module, "Distances", "Arrays of N points.")
+        .def_readonly("lower_m", &Distances::lower_m)
+        .def_readonly("upper_m", &Distances::upper_m)
+        .def_readonly("side", &Distances::side)
+        .def_readonly("nearest_m", &Distances::nearest_m);
+    py::class_<StaticModel>(module, "StaticModel", "All of a model, refined to its source mesh.")
+        .def(py::init<const std::string&>(), "path"_a)
+        .def("distances", &StaticModel::distances, "points_m"_a,
+             "From N x 3 points of the source's frame to its surface.");
+
     py::class_<tactus_tool>(module, "Tool", "What touches: everything within a radius of its core.")
         .def(py::init(&make_tool), "radius_m"_a, py::kw_only(), "shape"_a = "sphere",
              "half_m"_a = py::none(), "passes_through"_a = false,
@@ -414,5 +496,9 @@ PYBIND11_MODULE(tactus, module)
         .def("place", &Frame::place, "object"_a, py::kw_only(), "rotation"_a = py::none(),
              "translation_m"_a = py::none(), "scale"_a = 1.0,
              "With the next frame the object stands there.")
+        .def("feel", &Frame::feel, "object"_a, py::kw_only(), "stiffness_n_per_m"_a = 0.0,
+             "static_friction"_a = 0.0, "dynamic_friction"_a = 0.0, "damping_n_s_per_m"_a = 0.0,
+             "viscosity_n_s_per_m"_a = 0.0, "texture_height_m"_a = 0.0, "texture_length_m"_a = 0.0,
+             "From the next frame on the object feels so; what touches it goes there within 50 ms.")
         .def("state", &Frame::state);
 }

@@ -9,17 +9,20 @@
 namespace tactus
 {
 
-/// What an object's material may be, whoever says so: an option of hrtc or a scene file.
+/// What an object's material may be, whoever says so: an option of hrtc, a scene file or a file of
+/// poses.
 inline constexpr double kSoftest_n_per_m = 1.0;
 inline constexpr double kStiffest_n_per_m = 3'000.0;    ///< Of --stiffness, too.
 inline constexpr double kSoftestTurn_nm_per_rad = 1e-3; ///< Of --angular-stiffness.
 inline constexpr double kStiffestTurn_nm_per_rad = 100.0;
 inline constexpr double kRoughest = 3.0;
-inline constexpr double kMostDamped_n_s_per_m = 20.0;
+inline constexpr double kMostDamped_n_s_per_m = 20.0; ///< And most viscous.
 
 /// The same in words, for messages.
 inline constexpr std::string_view kMaterialRanges =
-    "1 to 3000 N/m, friction of 0 to 3, the dynamic one at most the static one, and 0 to 20 N s/m";
+    "1 to 3000 N/m, friction of 0 to 3, the dynamic one at most the static one, damping and "
+    "viscosity of 0 to 20 N s/m, and a texture's height of at most 1/32 of its length of 0.0001 to "
+    "1 m";
 
 /// A material that names no stiffness has that of the tool.
 [[nodiscard]] constexpr bool is_in_range(const Material& material) noexcept
@@ -30,7 +33,10 @@ inline constexpr std::string_view kMaterialRanges =
            material.dynamic_friction >= 0.0 &&
            material.dynamic_friction <= material.static_friction &&
            material.static_friction <= kRoughest && material.damping_n_s_per_m >= 0.0 &&
-           material.damping_n_s_per_m <= kMostDamped_n_s_per_m;
+           material.damping_n_s_per_m <= kMostDamped_n_s_per_m &&
+           material.viscosity_n_s_per_m >= 0.0 &&
+           material.viscosity_n_s_per_m <= kMostDamped_n_s_per_m &&
+           is_texture(material.texture_height_m, material.texture_length_m);
 }
 
 } // namespace tactus

@@ -36,6 +36,7 @@ inline constexpr std::uint32_t kMaxShapeFaces = 16'000'000;
 /// The names as a user writes them: sphere, bumpy-sphere, torus, terrain, gear, peg, socket,
 /// plate.
 [[nodiscard]] std::vector<std::string_view> shape_names();
+/// None for other names.
 [[nodiscard]] std::optional<Shape> parse_shape(std::string_view name);
 
 /// The shape with the face count nearest to `faces` that it can have at a sensible aspect ratio:
@@ -48,7 +49,8 @@ inline constexpr std::uint32_t kMaxShapeFaces = 16'000'000;
 [[nodiscard]] double bumpy_radius_m(double u, double v, double w);
 
 /// A sphere of 50 mm with poles of valence `segments`; 2 x segments x (rings - 1) faces. Few rings
-/// and many segments make needles. At least 2 rings and 3 segments, at most kMaxShapeFaces faces.
+/// and many segments make needles. At least 2 rings and 3 segments, at most kMaxShapeFaces faces;
+/// others are refused, as below.
 [[nodiscard]] Result<TriangleMesh, Refusal> make_uv_sphere(std::uint32_t rings,
                                                            std::uint32_t segments);
 
@@ -58,7 +60,7 @@ inline constexpr std::uint32_t kMaxShapeFaces = 16'000'000;
                                                             double thickness_m);
 
 /// Loose triangles of up to 5 mm in a cube of 100 mm, each with three vertices of its own.
-/// At most kMaxShapeFaces.
+/// 1 .. kMaxShapeFaces; the same seed gives the same mesh.
 [[nodiscard]] Result<TriangleMesh, Refusal> make_triangle_soup(std::uint32_t triangles,
                                                                std::uint64_t seed);
 

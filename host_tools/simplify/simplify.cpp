@@ -33,6 +33,10 @@ constexpr std::size_t kStarvedShare = 64;
 /// Below this share of the faces the measured error ranks the candidates.
 constexpr double kMeasuredShare = 0.3;
 
+/// After so many rounds each that are left are compared with the pace of the last ones. Meshes of
+/// which something can be made need less in all.
+constexpr std::uint32_t kPaceRounds = 64;
+
 constexpr unsigned kMaxThreads = 256;
 constexpr std::size_t kVertexBlock = 256;
 constexpr std::size_t kStarBlock = 32;
@@ -59,6 +63,7 @@ public:
         , stale_(mesh.positions.size(), 1)
         , touched_(mesh.faces.size(), 0)
         , components_(count_components(current_))
+        , paced_faces_(current_.faces_left())
         , scratch_(options.threads)
     {
         result_.collapses.reserve(mesh.positions.size());
@@ -72,6 +77,7 @@ private:
     void find_candidates();
     void pick_candidates();
     void collapse_disjoint();
+    [[nodiscard]] bool is_hopeless() noexcept;
     [[nodiscard]] bool is_untouched(const VertexRing& ring) const noexcept;
     bool absorb_components();
     [[nodiscard]] double allowed_absorption_cost();
@@ -98,6 +104,9 @@ private:
     std::size_t components_;
     std::size_t stuck_faces_{0};    ///< In components that can't shrink, at the round before.
     double cheapest_absorption_{0}; ///< Of what was left of them.
+    std::uint32_t paced_rounds_{0}; ///< Where the pace is taken from,
+    std::size_t paced_faces_;       ///< and the faces left then.
+    bool is_hopeless_{false};
     std::vector<CandidateScratch> scratch_;
     Simplification result_;
 };
@@ -113,6 +122,10 @@ Result<Simplification, Refusal> Simplifier::run()
         }
         find_candidates();
         pick_candidates();
+        if (is_hopeless())
+        {
+            break;
+        }
         if (components_ > 1 && absorb_components())
         {
             continue;
@@ -126,6 +139,22 @@ Result<Simplification, Refusal> Simplifier::run()
     }
     collect_base();
     return std::move(result_);
+}
+
+/// At the present pace the rounds that are left don't suffice: a crowd of pieces at one place, of
+/// which a few vanish in each round.
+bool Simplifier::is_hopeless() noexcept
+{
+    const std::size_t rounds = result_.rounds - paced_rounds_;
+    if (rounds >= kPaceRounds)
+    {
+        const std::size_t left = current_.faces_left() - options_.base_faces;
+        const std::size_t removed = paced_faces_ - current_.faces_left();
+        is_hopeless_ = is_hopeless_ || removed * (kMaxDepth - result_.rounds) < left * rounds;
+        paced_rounds_ = result_.rounds;
+        paced_faces_ = current_.faces_left();
+    }
+    return is_hopeless_;
 }
 
 void Simplifier::measure_from_now_on()

@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+// Any thread, but not the haptic one: it allocates, starts threads and works on its arguments
+// alone.
 namespace tactus
 {
 
@@ -47,9 +49,10 @@ struct Simplification
 
 struct SimplifyOptions
 {
-    std::uint32_t base_faces{500}; ///< Stop at or below this many faces.
-    unsigned threads{1};           ///< The result does not depend on it.
-    /// Called between rounds with faces left and faces at the start; return false to cancel.
+    std::uint32_t base_faces{500}; ///< Stop at or below this many faces; 1 or more.
+    unsigned threads{1};           ///< 1 to 256; the result does not depend on it.
+    /// Called between rounds, on the calling thread, with faces left and faces at the start; return
+    /// false to cancel.
     std::function<bool(std::size_t faces_left, std::size_t faces_total)> progress;
 };
 

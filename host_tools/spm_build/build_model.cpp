@@ -27,7 +27,7 @@ constexpr std::uint64_t kSampleSeed = 1;
 Result<Simplification, Refusal> simplify_with_progress(const QuantisedMesh& mesh,
                                                        const ModelOptions& options)
 {
-    Progress progress("simplify", "faces");
+    Progress progress("spm_build", "simplify", "faces");
     SimplifyOptions simplify_options;
     simplify_options.base_faces = options.base_faces;
     simplify_options.threads = options.threads;

@@ -9,6 +9,7 @@
 #include "host_tools/spm_build/build_model.hpp"
 #include "host_tools/spm_build/build_scene.hpp"
 #include "platform/base/atomic_file.hpp"
+#include "platform/base/program_log.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -42,6 +43,7 @@ struct Options
 void declare_options(CommandLine& line, Options& options)
 {
     line.add_version(std::string("spm_build ") + TACTUS_VERSION);
+    line.begin_task("From what to where", "spm_build part.stl --unit mm -o part.spm");
     const auto input = line.add_option(
         "IN", options.input, "Mesh to read: .ply, .obj, .stl or .off; or scene: .gltf or .glb");
     line.add_option("-o,--output", options.output,
@@ -57,6 +59,7 @@ void declare_options(CommandLine& line, Options& options)
                            .number_between(kMinShapeFaces, kMaxShapeFaces)
                            .needs(shape);
     shape.needs(faces);
+    line.begin_task("Size", "spm_build scan.ply --fit-diag 0.2 -o scan.spm");
     const auto unit =
         line.add_option("--unit", options.unit, "Unit of the mesh's coordinates")
             .check([](const std::string& name)
@@ -67,6 +70,7 @@ void declare_options(CommandLine& line, Options& options)
                     "Scale the model to this bounding-box diagonal, in metres, whatever its size")
         .number_between(kMinDiagonal_m, kMaxDiagonal_m)
         .excludes(unit);
+    line.begin_task("Encoding", "spm_build part.stl --unit mm --position-bits 20 -o part.spm");
     line.add_option("--position-bits", options.model.position_bits, "Bits of a coordinate")
         .number_between(kMinPositionBits, kMaxPositionBits)
         .show_default();
@@ -80,6 +84,7 @@ void declare_options(CommandLine& line, Options& options)
         .number_between(1, 1024)
         .show_default();
     line.add_flag("--json", options.json, "Print the figures as one JSON object");
+    line.add_log_options();
 }
 
 Result<TriangleMesh, Refusal> load_source(const Options& options, std::vector<std::string>& notes)
@@ -235,7 +240,7 @@ int make_scene(const CommandLine& line, const Options& options)
     {
         for (const std::string& note : model.notes)
         {
-            fmt::print(stderr, "note: {}: {}\n", model.name, note);
+            log_message(LogLevel::info, "spm_build", fmt::format("note: {}: {}", model.name, note));
         }
     }
     print_scene_summary(options, outcome.value());
@@ -280,7 +285,7 @@ int run(int argc, char** argv)
     }
     for (const std::string& note : notes)
     {
-        fmt::print(stderr, "note: {}\n", note);
+        log_message(LogLevel::info, "spm_build", "note: " + note);
     }
     print_summary(options, outcome.value());
     return kExitDone;

@@ -5,6 +5,7 @@
 #include "host_tools/cli/command_line.hpp"
 #include "host_tools/mesh/write_mesh.hpp"
 #include "host_tools/spm_inspect/zone_option.hpp"
+#include "platform/base/program_log.hpp"
 
 #include <fmt/format.h>
 
@@ -30,6 +31,21 @@ std::string fault_in_zone(const std::string& text)
     return zone ? "" : zone.error().text;
 }
 
+std::string bounds_text(const ModelHeader& header)
+{
+    const HeaderFields& fields = header.fields();
+    std::string text;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+        const double low_m = fields.origin_m[axis];
+        const double high_m =
+            low_m + fields.extent_quanta[axis] * static_cast<double>(header.quantum_m());
+        text +=
+            fmt::format("{}{} {:.6g} .. {:.6g}", axis == 0 ? "" : ", ", "xyz"[axis], low_m, high_m);
+    }
+    return text + " m";
+}
+
 constexpr const char* kRule = "--extract writes the coarsest mesh that meets what is asked for. "
                               "Inside --region every face of "
                               "the source is there; outside, the mesh is as coarse as --error "
@@ -44,6 +60,7 @@ constexpr const char* kRule = "--extract writes the coarsest mesh that meets wha
 
 void Extractor::declare_options(CommandLine& line)
 {
+    line.begin_task("A mesh", "spm_inspect ball.spm --extract --error 0.0005 -o ball.stl");
     const auto extract = line.add_flag(
         "--extract", wanted_, "Write a mesh, coarse or fine as --faces, --error, --region ask");
     const auto faces =
@@ -85,15 +102,21 @@ std::optional<std::string> Extractor::run(const DecodedModel& model) const
         request.zone = parse_zone(region_).value();
     }
     const Extraction extraction = extract(model, request);
+    if (request.zone && extraction.zone_faces == 0)
+    {
+        return "--region: meets nothing of the model, which lies in " + bounds_text(model.header());
+    }
     if (const auto written = write_mesh(output_, extraction.mesh); !written)
     {
         return written.error().text;
     }
-    fmt::print(stderr, "{}: {} faces\n", output_, extraction.mesh.faces.size());
-    fmt::print(stderr, "error bound   {:.3g} m at most\n", extraction.error_max_m);
+    const auto tell = [](const std::string& text)
+    { log_message(LogLevel::info, "spm_inspect", text); };
+    tell(fmt::format("{}: {} faces", output_, extraction.mesh.faces.size()));
+    tell(fmt::format("error bound   {:.3g} m at most", extraction.error_max_m));
     if (request.zone)
     {
-        fmt::print(stderr, "region        {} faces of the source\n", extraction.zone_faces);
+        tell(fmt::format("region        {} faces of the source", extraction.zone_faces));
     }
     return std::nullopt;
 }

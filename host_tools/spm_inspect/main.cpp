@@ -4,8 +4,10 @@
 #include "host_tools/cli/progress.hpp"
 #include "host_tools/cli/run_program.hpp"
 #include "host_tools/encode/decoded_model.hpp"
-#include "host_tools/encode/replay.hpp"
+#include "host_tools/encode/false_claims.hpp"
+#include "host_tools/mesh/read_mesh.hpp"
 #include "host_tools/spm_inspect/extraction.hpp"
+#include "host_tools/spm_inspect/point_distances.hpp"
 #include "transport/content_hash.hpp"
 #include "transport/store/model_store.hpp"
 
@@ -28,16 +30,23 @@ struct Options
     std::string file;
     bool json{false};
     bool regions{false};
+    std::string points; ///< File of those whose distances are asked for; empty: none.
     Extractor extractor;
 };
 
 void declare_options(CommandLine& line, Options& options)
 {
     line.add_version(std::string("spm_inspect ") + TACTUS_VERSION);
+    line.begin_task("What is printed", "spm_inspect ball.spm --distances points.txt");
     line.add_option("FILE", options.file, "Model to look at (.spm)").required();
     line.add_flag("--json", options.json, "Print as one JSON object");
-    line.add_flag("--regions", options.regions, "List the occupied regions");
+    const auto regions = line.add_flag("--regions", options.regions, "List the occupied regions");
+    line.add_option("--distances", options.points,
+                    "Print, instead, how far the points of this file are from the surface: lines "
+                    "x y z in metres and the source's frame")
+        .excludes(regions);
     options.extractor.declare_options(line);
+    line.add_log_options();
 }
 
 /// The least and largest corner of the model in the source's frame.
@@ -56,28 +65,6 @@ Bounds bounds_of(const ModelHeader& header)
         bounds.high_m[axis] += fields.extent_quanta[axis] * static_cast<double>(header.quantum_m());
     }
     return bounds;
-}
-
-/// Refines the whole model and returns what contradicts itself, in words.
-std::optional<std::string> find_contradiction(const DecodedModel& model)
-{
-    const ModelCounts counts = model.header().counts();
-    Replay replay(model);
-    Progress progress("check", "records");
-    for (std::size_t done = 0; const RecordId record : in_dependency_order(model))
-    {
-        if (auto fault = replay.split(record))
-        {
-            return fault;
-        }
-        progress.update(++done, counts.records);
-    }
-    if (replay.face_count() != model.header().fields().source_faces)
-    {
-        return fmt::format("it refines to {} faces, its header states {}", replay.face_count(),
-                           model.header().fields().source_faces);
-    }
-    return std::nullopt;
 }
 
 nlohmann::json regions_of(const ModelHeader& header)
@@ -191,6 +178,18 @@ void print_text(const nlohmann::json& all)
     }
 }
 
+ClaimsFound check_claims(const ModelStore& store, const DecodedModel& model)
+{
+    Progress progress("spm_inspect", "check", "records");
+    ClaimCheck check;
+    check.progress = [&](std::size_t done)
+    {
+        const std::size_t records = model.header().counts().records;
+        progress.update(done, records + records / 2);
+    };
+    return find_false_claims(store, model, check);
+}
+
 int report_damage(const CommandLine& line, const std::vector<std::string>& damage)
 {
     constexpr std::size_t kShown = 20;
@@ -214,9 +213,22 @@ int run(int argc, char** argv)
     {
         return *code;
     }
+    if (is_mesh_file_name(options.file))
+    {
+        return line.fail(fmt::format("FILE: {}", mesh_is_no_model(options.file)), kExitUsage);
+    }
     if (const auto reason = options.extractor.wrong_usage())
     {
         return line.fail(*reason, kExitUsage);
+    }
+    if (!options.points.empty() && options.extractor.is_wanted())
+    {
+        return line.fail("--distances and --extract: one at a time", kExitUsage);
+    }
+    if (!options.points.empty())
+    {
+        const auto fault = print_distances(options.file, options.points, options.json);
+        return fault ? line.fail(*fault) : kExitDone;
     }
     const auto store = ModelStore::open(options.file);
     if (!store)
@@ -229,9 +241,19 @@ int run(int argc, char** argv)
     {
         return report_damage(line, damage);
     }
-    if (const auto fault = find_contradiction(model))
+    const ClaimsFound claims = check_claims(store.value(), model);
+    if (!claims.contradiction.empty())
     {
-        return line.fail(fmt::format("{}: contradicts itself: {}", options.file, *fault));
+        return line.fail(
+            fmt::format("{}: contradicts itself: {}", options.file, claims.contradiction));
+    }
+    for (const std::string& claim : claims.false_claims)
+    {
+        line.fail(fmt::format("{}: false claim: {}", options.file, claim));
+    }
+    if (!claims.false_claims.empty())
+    {
+        return kExitCriterionNotMet;
     }
     if (options.extractor.is_wanted())
     {

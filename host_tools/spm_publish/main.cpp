@@ -2,8 +2,11 @@
 // Copyright the Tactus authors.
 #include "host_tools/cli/command_line.hpp"
 #include "host_tools/cli/run_program.hpp"
+#include "host_tools/mesh/read_mesh.hpp"
+#include "host_tools/scene/material_text.hpp"
 #include "host_tools/scene/placed_models.hpp"
 #include "host_tools/scene/scene.hpp"
+#include "host_tools/spm_publish/host_metrics.hpp"
 #include "host_tools/spm_publish/pose_script.hpp"
 #include "host_tools/spm_publish/serving_report.hpp"
 #include "host_tools/spm_publish/watch.hpp"
@@ -44,7 +47,9 @@ struct Options
     std::optional<double> seconds;
     std::string poses_path; ///< Empty: no file moves anything.
     bool poses_loop{false};
+    std::optional<double> poses_rate_hz;
     bool watch{false};
+    std::optional<std::uint32_t> metrics_port;
 };
 
 /// An object that may be shown.
@@ -61,7 +66,9 @@ struct Extras
 {
     std::vector<Prop> props;
     std::optional<PosePlayer> player;
+    std::unique_ptr<dds::TelemetryReader> controllers; ///< Where somebody wants to know of them.
     std::optional<Watch> watch;
+    std::optional<HostMetrics> metrics;
 };
 
 std::atomic<bool> stop_requested{false};
@@ -78,6 +85,7 @@ void stop_on_signals()
 void declare_options(CommandLine& line, Options& options)
 {
     line.add_version(std::string("spm_publish ") + TACTUS_VERSION);
+    line.begin_task("What is served", "spm_publish ball.spm --name toy --domain 7");
     line.add_option("FILE", options.files,
                     "Models to serve (.spm), or one scene (.gltf, .glb) whose objects name theirs")
         .required();
@@ -90,23 +98,45 @@ void declare_options(CommandLine& line, Options& options)
     line.add_option("--domain", options.domain, "DDS domain")
         .integer_between(std::uint32_t{0}, dds::kMaxDomain)
         .show_default();
-    line.add_option("--seconds", options.seconds, "End by itself after this long")
+    line.begin_task("The run", "spm_publish ball.spm --watch --seconds 60");
+    line.add_option("--seconds,--duration", options.seconds, "End by itself after this long")
         .number_between(0.1, 1e9);
+    line.add_flag(
+        "--watch", options.watch,
+        "Print each second what each controller on the domain does, what this host sends to "
+        "each, and of whom something was refused");
+    line.add_option("--metrics", options.metrics_port,
+                    "Port of 127.0.0.1 for Prometheus, 0: any that is free: /metrics tells what is "
+                    "served and what each controller on the domain does")
+        .integer_between(std::uint32_t{0}, std::uint32_t{65'535});
+    line.begin_task("Objects that move", "spm_publish ball.spm --poses path.txt --poses-loop");
     line.add_option("--poses", options.poses_path,
                     fmt::format("Move objects as this text file says, in real time: lines {} in "
                                 "order of time, in s and m, with a scene's object or the name of a "
                                 "model and a unit quaternion; '{}' in place of the numbers removes "
-                                "one; # begins a comment",
-                                kPoseLineForm, kGoneWord));
+                                "one, '{}' and then {} gives it another material; # begins a "
+                                "comment",
+                                kPoseLineForm, kGoneWord, kMaterialWord, kMaterialKeysForm));
     line.add_flag("--poses-loop", options.poses_loop,
                   "Begin the file anew at the time of its last line, again and again");
-    line.add_flag("--watch", options.watch,
-                  "Print what each controller on the domain does, a line a second");
+    line.add_option("--poses-rate", options.poses_rate_hz,
+                    "So many poses a second between the lines of an object, evenly [none: an "
+                    "object stands still between its lines]")
+        .number_between(kPosesRateMin_hz, kPosesRateMax_hz);
+    line.add_log_options();
 }
 
-/// Whether a scene is served. It has a refusal when something else is asked for besides.
-Result<bool, Refusal> check_scene(const Options& options)
+/// Whether a scene is served. It has a refusal when something else is asked for besides, and for
+/// files that are no models.
+Result<bool, Refusal> check_files(const Options& options)
 {
+    for (const std::string& file : options.files)
+    {
+        if (is_mesh_file_name(file))
+        {
+            return Refusal{fmt::format("FILE: {}", mesh_is_no_model(file))};
+        }
+    }
     const bool has_scene = std::ranges::any_of(options.files, has_scene_extension);
     if (has_scene && (options.files.size() > 1 || !options.names.empty()))
     {
@@ -188,6 +218,20 @@ Result<std::vector<std::string>, Refusal> choose_names(const Options& options)
     return names;
 }
 
+/// Reads all chunks; the rest was looked at when the file was opened.
+std::optional<Refusal> find_damage(const ModelStore& store)
+{
+    std::vector<std::byte> coded;
+    for (std::uint32_t chunk = 0; chunk < store.header().counts().chunks(); ++chunk)
+    {
+        if (const auto read = store.read({ContentKind::chunk, chunk}, coded); !read)
+        {
+            return read.error();
+        }
+    }
+    return std::nullopt;
+}
+
 Result<std::vector<dds::PublishedModel>, Refusal> open_models(const Options& options,
                                                               const std::vector<std::string>& names)
 {
@@ -198,6 +242,10 @@ Result<std::vector<dds::PublishedModel>, Refusal> open_models(const Options& opt
         if (!store)
         {
             return store.error();
+        }
+        if (const auto damage = find_damage(store.value()))
+        {
+            return *damage;
         }
         models.push_back({names[i], std::move(store).value()});
     }
@@ -237,7 +285,9 @@ Result<std::vector<PoseLine>, Refusal> read_poses(const Options& options,
         return Refusal{options.poses_path + ": --poses-loop needs a last line with a time "
                                             "above 0 s"};
     }
-    return lines;
+    return lines && options.poses_rate_hz
+               ? interpolated(lines.value(), names.size(), *options.poses_rate_hz)
+               : std::move(lines);
 }
 
 Result<Extras, Refusal> make_extras(const Options& options, dds::DdsHost& host,
@@ -263,16 +313,41 @@ Result<Extras, Refusal> make_extras(const Options& options, dds::DdsHost& host,
         extras.player.emplace(std::move(lines), props.size(), options.poses_loop);
     }
     extras.props = std::move(props);
-    if (options.watch)
+    if (options.watch || options.metrics_port)
     {
         auto reader = dds::TelemetryReader::create(host.domain());
         if (!reader)
         {
             return reader.error();
         }
-        extras.watch.emplace(std::move(reader).value());
+        extras.controllers = std::move(reader).value();
+    }
+    if (options.watch)
+    {
+        extras.watch.emplace();
     }
     return extras;
+}
+
+/// With --metrics. Tells where they are.
+std::optional<Refusal> start_metrics(const Options& options, dds::DdsHost& host, Extras& extras,
+                                     ServingReport& report)
+{
+    if (!options.metrics_port)
+    {
+        return std::nullopt;
+    }
+    auto server =
+        web::MetricsServer::start(static_cast<std::uint16_t>(*options.metrics_port), "--metrics");
+    if (!server)
+    {
+        return server.error();
+    }
+    report.print_line(
+        fmt::format("metrics on http://127.0.0.1:{}/metrics", server.value()->port()));
+    extras.metrics.emplace(std::move(server).value());
+    extras.metrics->update(host, *extras.controllers); // Before anybody asks.
+    return std::nullopt;
 }
 
 /// How long the host may wait: until a pose is due.
@@ -290,28 +365,50 @@ std::chrono::milliseconds longest_wait(const Extras& extras, double now_s)
     return std::clamp(left, least, most);
 }
 
-/// What the file says by now: objects come, move and go.
+void feel(Prop& prop, const Material& material, dds::ObjectPublisher& objects)
+{
+    prop.shown.material = material;
+    if (prop.number)
+    {
+        const auto feels = objects.feel(*prop.number, material);
+        TACTUS_ASSERT(feels.has_value()); // The file was checked.
+    }
+}
+
+void stand(Prop& prop, const std::optional<Pose>& pose, dds::ObjectPublisher& objects)
+{
+    if (pose && prop.number)
+    {
+        const auto moved = objects.move(*prop.number, *pose);
+        TACTUS_ASSERT(moved.has_value()); // Likewise.
+    }
+    else if (pose)
+    {
+        prop.shown.pose = *pose;
+        const auto number = objects.show(prop.shown);
+        TACTUS_ASSERT(number.has_value()); // There are no more props than a host may show.
+        prop.number = number.value();
+    }
+    else if (prop.number)
+    {
+        objects.remove(*prop.number);
+        prop.number.reset();
+    }
+}
+
+/// What the file says by now: objects come, move, feel otherwise and go.
 void play(Extras& extras, dds::ObjectPublisher& objects, double now_s)
 {
     for (const PoseLine& line : extras.player->take_due(now_s))
     {
         Prop& prop = extras.props[line.object];
-        if (line.pose && prop.number)
+        if (line.material)
         {
-            const auto moved = objects.move(*prop.number, *line.pose);
-            TACTUS_ASSERT(moved.has_value()); // The file was checked.
+            feel(prop, *line.material, objects);
         }
-        else if (line.pose)
+        else
         {
-            prop.shown.pose = *line.pose;
-            const auto number = objects.show(prop.shown);
-            TACTUS_ASSERT(number.has_value()); // There are no more props than a host may show.
-            prop.number = number.value();
-        }
-        else if (prop.number)
-        {
-            objects.remove(*prop.number);
-            prop.number.reset();
+            stand(prop, line.pose, objects);
         }
     }
 }
@@ -330,9 +427,17 @@ void serve(dds::DdsHost& host, ServingReport& report, Extras& extras,
             play(extras, host.objects(), now_s());
         }
         host.step();
+        if (extras.controllers != nullptr)
+        {
+            extras.controllers->poll();
+        }
         if (extras.watch)
         {
-            extras.watch->update(report);
+            extras.watch->update(*extras.controllers, host, report);
+        }
+        if (extras.metrics)
+        {
+            extras.metrics->update(host, *extras.controllers);
         }
         report.update(host);
     }
@@ -347,7 +452,7 @@ int run(int argc, char** argv)
     {
         return *code;
     }
-    const auto is_scene = check_scene(options);
+    const auto is_scene = check_files(options);
     if (!is_scene)
     {
         return line.fail(is_scene.error().text, kExitUsage);
@@ -373,9 +478,11 @@ int run(int argc, char** argv)
                                      printable(options.scene)),
                          kExitUsage);
     }
-    if (options.poses_loop && options.poses_path.empty())
+    if (options.poses_path.empty() && (options.poses_loop || options.poses_rate_hz))
     {
-        return line.fail("--poses-loop: needs --poses", kExitUsage);
+        return line.fail(
+            fmt::format("{}: needs --poses", options.poses_loop ? "--poses-loop" : "--poses-rate"),
+            kExitUsage);
     }
     auto models = open_models(options, names.value());
     if (!models)
@@ -395,7 +502,8 @@ int run(int argc, char** argv)
     ServingReport report;
     auto host = dds::DdsHost::create(
         options.domain, std::move(models).value(),
-        [&report](const std::string& text) { report.print_line(text); }, options.scene);
+        [&report](const std::string& text) { report.print_line(text, LogLevel::warning); },
+        options.scene);
     if (!host)
     {
         return line.fail(host.error().text);
@@ -404,6 +512,10 @@ int run(int argc, char** argv)
     if (!extras)
     {
         return line.fail(extras.error().text);
+    }
+    if (const auto refusal = start_metrics(options, *host.value(), extras.value(), report))
+    {
+        return line.fail(refusal->text);
     }
     print_models(report, *host.value(), options.scene, options.domain);
     serve(*host.value(), report, extras.value(), options.seconds);

@@ -2,14 +2,17 @@
 // Copyright the Tactus authors.
 #include "host_tools/spm_publish/pose_script.hpp"
 
+#include "host_tools/scene/material_ranges.hpp"
+#include "host_tools/scene/material_text.hpp"
+#include "platform/base/numbers.hpp"
 #include "platform/base/printable.hpp"
 
+#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -41,14 +44,6 @@ std::vector<std::string_view> fields_of(std::string_view line)
         line.remove_prefix(end);
     }
     return fields;
-}
-
-std::optional<double> parse_number(std::string_view text)
-{
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    const bool is_whole = error == std::errc{} && end == text.data() + text.size();
-    return is_whole && std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
 std::string refusal_text(PoseRefusal refusal)
@@ -91,13 +86,42 @@ Result<Pose, Refusal> parse_pose(std::span<const std::string_view> fields)
     return checked.value();
 }
 
+Pose pose_between(const Pose& from, const Pose& to, double share)
+{
+    Pose pose = from;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+        pose.translation_m[axis] += share * (to.translation_m[axis] - from.translation_m[axis]);
+    }
+    const auto& [ax, ay, az, aw] = from.rotation;
+    const auto& [bx, by, bz, bw] = to.rotation;
+    const Eigen::Quaterniond turned = Eigen::Quaterniond(aw, ax, ay, az)
+                                          .slerp(share, Eigen::Quaterniond(bw, bx, by, bz))
+                                          .normalized();
+    pose.rotation = {turned.x(), turned.y(), turned.z(), turned.w()};
+    pose.scale += share * (to.scale - from.scale);
+    return pose;
+}
+
+Result<Material, Refusal> parse_feel(std::string_view text)
+{
+    const std::optional<Material> material = parse_material_keys(text);
+    if (!material)
+    {
+        return Refusal{fmt::format("material '{}' is not {}, with {}", printable(text),
+                                   kMaterialKeysForm, kMaterialRanges)};
+    }
+    return *material;
+}
+
 Result<PoseLine, Refusal> parse_line(std::string_view text, std::span<const std::string> names)
 {
     const std::vector<std::string_view> fields = fields_of(text);
     const bool goes = fields.size() == 3 && fields[2] == kGoneWord;
-    if (!goes && (fields.size() < kFieldsMin || fields.size() > kFieldsMax))
+    const bool feels = fields.size() == 4 && fields[2] == kMaterialWord;
+    if (!goes && !feels && (fields.size() < kFieldsMin || fields.size() > kFieldsMax))
     {
-        return Refusal{fmt::format("is not {}", kPoseLineForm)};
+        return Refusal{fmt::format("is not {} nor {}", kPoseLineForm, kMaterialLineForm)};
     }
     const std::optional<double> time_s = parse_number(fields[0]);
     if (!time_s || *time_s < 0.0 || *time_s > kPoseTimeMax_s)
@@ -110,8 +134,17 @@ Result<PoseLine, Refusal> parse_line(std::string_view text, std::span<const std:
     {
         return Refusal{fmt::format("no object is called '{}'", printable(fields[1]))};
     }
-    PoseLine line{*time_s, static_cast<std::size_t>(name - names.begin()), std::nullopt};
-    if (!goes)
+    PoseLine line{*time_s, static_cast<std::size_t>(name - names.begin()), {}, {}};
+    if (feels)
+    {
+        auto material = parse_feel(fields[3]);
+        if (!material)
+        {
+            return material.error();
+        }
+        line.material = material.value();
+    }
+    else if (!goes)
     {
         auto pose = parse_pose(std::span(fields).subspan(2));
         if (!pose)
@@ -192,6 +225,38 @@ Result<std::vector<PoseLine>, Refusal> read_pose_file(const std::filesystem::pat
     return lines;
 }
 
+Result<std::vector<PoseLine>, Refusal> interpolated(std::span<const PoseLine> lines,
+                                                    std::size_t objects, double rate_hz)
+{
+    std::vector<PoseLine> all;
+    std::vector<const PoseLine*> before(objects, nullptr);
+    for (const PoseLine& line : lines)
+    {
+        // What an object feels like does not move it.
+        const PoseLine* last = line.material ? nullptr : std::exchange(before[line.object], &line);
+        const bool is_between = last != nullptr && last->pose && line.pose;
+        const double steps = is_between ? std::floor((line.time_s - last->time_s) * rate_hz) : 0.0;
+        if (static_cast<double>(all.size()) + steps >= static_cast<double>(kInterpolatedLinesMax))
+        {
+            return Refusal{fmt::format("--poses-rate: {} poses a second are more than {} in all",
+                                       rate_hz, kInterpolatedLinesMax)};
+        }
+        for (double step = 1.0; step <= steps; ++step)
+        {
+            const double time_s = last->time_s + step / rate_hz;
+            if (time_s < line.time_s) // Not beside the line itself.
+            {
+                const double share = (time_s - last->time_s) / (line.time_s - last->time_s);
+                all.push_back(
+                    {time_s, line.object, pose_between(*last->pose, *line.pose, share), {}});
+            }
+        }
+        all.push_back(line);
+    }
+    std::ranges::stable_sort(all, {}, &PoseLine::time_s);
+    return all;
+}
+
 PosePlayer::PosePlayer(std::vector<PoseLine> lines, std::size_t objects, bool loops)
     : lines_(std::move(lines)), objects_(objects), loops_(loops)
 {
@@ -202,7 +267,7 @@ PosePlayer::PosePlayer(std::vector<PoseLine> lines, std::size_t objects, bool lo
 std::vector<PoseLine> PosePlayer::take_due(double now_s)
 {
     const double round_s = lines_.back().time_s;
-    std::vector<const PoseLine*> newest(objects_, nullptr);
+    std::vector<const PoseLine*> newest(2 * objects_, nullptr); // Of feeling, then of standing.
     if (loops_ && now_s - round_start_s_ > 2.0 * round_s)
     {
         // A stall of whole rounds: they aren't made up for.
@@ -210,7 +275,8 @@ std::vector<PoseLine> PosePlayer::take_due(double now_s)
     }
     for (auto due_s = next_s(); due_s && *due_s <= now_s; due_s = next_s())
     {
-        newest[lines_[next_].object] = &lines_[next_];
+        const PoseLine& line = lines_[next_];
+        newest[2 * line.object + (line.material ? 0 : 1)] = &line;
         ++next_;
         if (loops_ && next_ == lines_.size())
         {

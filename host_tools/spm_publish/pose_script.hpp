@@ -4,6 +4,7 @@
 
 #include "platform/base/refusal.hpp"
 #include "rt_core/base/result.hpp"
+#include "rt_core/records/material.hpp"
 #include "transport/pose.hpp"
 
 #include <cstddef>
@@ -21,6 +22,9 @@ namespace tactus
 inline constexpr std::string_view kPoseLineForm = "TIME_S NAME X Y Z QX QY QZ QW [SCALE]";
 /// What takes the place of the pose where the object goes.
 inline constexpr std::string_view kGoneWord = "gone";
+/// What takes its place where the object feels otherwise, and what follows it.
+inline constexpr std::string_view kMaterialWord = "material";
+inline constexpr std::string_view kMaterialLineForm = "TIME_S NAME material KEY=VALUE[,...]";
 
 /// Largest pose file, and the latest time in one.
 inline constexpr std::size_t kPoseFileBytesMax = 64U << 20U;
@@ -29,12 +33,13 @@ inline constexpr double kPoseTimeMax_s = 1e6;
 /// One line of a pose file, checked.
 struct PoseLine
 {
-    double time_s{0.0};       ///< From the start of play.
-    std::size_t object{0};    ///< Of the names.
-    std::optional<Pose> pose; ///< None: it is gone from then on.
+    double time_s{0.0};               ///< From the start of play.
+    std::size_t object{0};            ///< Of the names.
+    std::optional<Pose> pose;         ///< None: it is gone from then on, or
+    std::optional<Material> material; ///< feels so, and stands where it stood.
 };
 
-/// Reads a pose file's text: lines of kPoseLineForm in the order of their times; empty ones and
+/// Reads a pose file's text: lines of these forms in the order of their times; empty ones and
 /// those that begin with # are passed over. `names` are the objects'. The error begins with
 /// the line's number.
 [[nodiscard]] Result<std::vector<PoseLine>, Refusal>
@@ -44,14 +49,28 @@ parse_pose_lines(std::string_view text, std::span<const std::string> names);
 [[nodiscard]] Result<std::vector<PoseLine>, Refusal>
 read_pose_file(const std::filesystem::path& path, std::span<const std::string> names);
 
-/// Plays lines in real time. Where several of one object are due only the newest is sent.
+/// Most lines that `interpolated` makes.
+inline constexpr std::size_t kInterpolatedLinesMax = 2'000'000;
+/// Rates of it, in Hz.
+inline constexpr double kPosesRateMin_hz = 1.0;
+inline constexpr double kPosesRateMax_hz = 1'000.0;
+
+/// Lines between those of each object that follow one another, `rate_hz` a second: places and
+/// scales on straight lines, rotations by the shortest way at an even speed. Nothing is put between
+/// lines where the object is gone. Refused where that makes more than kInterpolatedLinesMax.
+[[nodiscard]] Result<std::vector<PoseLine>, Refusal>
+interpolated(std::span<const PoseLine> lines, std::size_t objects, double rate_hz);
+
+/// Plays lines in real time. Where several of one object are due only the newest of where it stands
+/// and the newest of how it feels are sent.
 class PosePlayer
 {
 public:
     /// `lines` aren't empty; with `loops` the last one's time, where it begins anew, is above 0.
     PosePlayer(std::vector<PoseLine> lines, std::size_t objects, bool loops);
 
-    /// The newest line that is due and was not given yet, of each object; `now_s` never falls.
+    /// The newest lines that are due and were not given yet: of each object how it feels, then
+    /// where it stands. `now_s` never falls.
     [[nodiscard]] std::vector<PoseLine> take_due(double now_s);
 
     /// When the next line is due; none when all have been played.

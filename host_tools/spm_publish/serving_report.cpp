@@ -18,17 +18,28 @@ constexpr auto kPlainPeriod = std::chrono::seconds(5);
 
 } // namespace
 
-ServingReport::ServingReport() : is_terminal_(::isatty(STDOUT_FILENO) == 1) {}
+ServingReport::ServingReport()
+    : is_terminal_(::isatty(STDOUT_FILENO) == 1 && !log_style().is_json &&
+                   is_logged(LogLevel::info))
+{
+}
 
 ServingReport::~ServingReport()
 {
     clear_line();
 }
 
-void ServingReport::print_line(const std::string& line)
+void ServingReport::print_line(const std::string& line, LogLevel level)
 {
+    if (!is_logged(level))
+    {
+        return;
+    }
     clear_line();
-    fmt::print("{}\n", line);
+    // What goes wrong in serving is no failure of the program: it has no name before it.
+    const LogLevel shown = log_style().is_json ? level : LogLevel::info;
+    fmt::print("{}\n",
+               log_text(log_style(), shown, "spm_publish", line, std::chrono::system_clock::now()));
     std::fflush(stdout); // Read by scripts as it comes.
 }
 

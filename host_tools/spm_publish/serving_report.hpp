@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "platform/base/program_log.hpp"
 #include "transport/dds/dds_host.hpp"
 
 #include <chrono>
@@ -22,8 +23,8 @@ public:
     ServingReport(const ServingReport&) = delete;
     ServingReport& operator=(const ServingReport&) = delete;
 
-    /// Prints a line of its own, above the one that is written over.
-    void print_line(const std::string& line);
+    /// Prints a line of its own, above the one that is written over, in the style of the log.
+    void print_line(const std::string& line, LogLevel level = LogLevel::info);
     /// Call it often; it prints when it is due.
     void update(const dds::DdsHost& host);
 

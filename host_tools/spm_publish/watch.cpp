@@ -5,7 +5,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 
 namespace tactus
 {
@@ -41,8 +44,15 @@ std::string tool_text(const ToolTelemetry& tool)
 
 std::string model_text(const ModelIdentity& identity, const ModelTelemetry& model)
 {
-    std::string text =
-        fmt::format("; {} {}/{} pages", identity.name, model.pages.used, model.pages.capacity);
+    std::string text = fmt::format("; {} ", identity.name);
+    if (model.stage != ModelStage::resident)
+    {
+        return text + kModelStageNames[static_cast<std::size_t>(model.stage)] +
+               (model.host_gone ? " host gone" : "");
+    }
+    text += model.pages.capacity > 0
+                ? fmt::format("{}/{} pages", model.pages.used, model.pages.capacity)
+                : fmt::format("{} pages", model.pages.used);
     if (model.piece_wait_ns > 0)
     {
         text += fmt::format(" {:.1f} ms", static_cast<double>(model.piece_wait_ns) * 1e-6);
@@ -52,6 +62,26 @@ std::string model_text(const ModelIdentity& identity, const ModelTelemetry& mode
         text += fmt::format(" pose {:.1f} ms old", static_cast<double>(model.pose_age_ns) * 1e-6);
     }
     return text + (model.host_gone ? " host gone" : "");
+}
+
+/// Of those that are told of; none where all are here.
+std::string stages_text(const Telemetry& telemetry)
+{
+    std::array<std::uint32_t, kModelStages> counts{};
+    for (std::size_t i = 0; i < telemetry.model_count; ++i)
+    {
+        ++counts[static_cast<std::size_t>(telemetry.models[i].stage)];
+    }
+    if (counts[static_cast<std::size_t>(ModelStage::resident)] == telemetry.model_count)
+    {
+        return "";
+    }
+    std::string text = fmt::format("; of {} models", telemetry.model_count);
+    for (std::size_t i = 0; i < kModelStages; ++i)
+    {
+        text += counts[i] > 0 ? fmt::format(" {} {}", counts[i], kModelStageNames[i]) : "";
+    }
+    return text;
 }
 
 } // namespace
@@ -69,6 +99,7 @@ std::string watch_line(const dds::WatchedController& controller)
     {
         text += tool_text(telemetry.tools[i]);
     }
+    text += stages_text(telemetry);
     for (std::size_t i = 0; i < telemetry.model_count; ++i)
     {
         text += model_text(controller.models[i], telemetry.models[i]);
@@ -76,18 +107,75 @@ std::string watch_line(const dds::WatchedController& controller)
     return text;
 }
 
-void Watch::update(ServingReport& report)
+void Watch::update(const dds::TelemetryReader& controllers, const dds::DdsHost& host,
+                   ServingReport& report)
 {
-    reader_->poll();
     const auto now = Clock::now();
-    if (now - last_ < kWatchPeriod)
+    const std::chrono::duration<double> passed = now - last_;
+    if (passed < kWatchPeriod)
     {
         return;
     }
     last_ = now;
-    for (const dds::WatchedController& controller : reader_->controllers())
+    for (const dds::WatchedController& controller : controllers.controllers())
     {
         report.print_line(watch_line(controller));
+    }
+    print_served(host, passed.count(), report);
+    print_refused(host, report);
+}
+
+/// Controllers of one name together.
+void Watch::print_served(const dds::DdsHost& host, double seconds, ServingReport& report)
+{
+    std::map<std::string, dds::DdsHost::Subscriber> all;
+    for (const dds::DdsHost::Subscriber& one : host.subscribers())
+    {
+        dds::DdsHost::Subscriber& named = all[one.controller];
+        named.pieces_sent += one.pieces_sent;
+        named.bytes_sent += one.bytes_sent;
+    }
+    for (const auto& [name, now] : all)
+    {
+        const dds::DdsHost::Subscriber& before = served_[name];
+        const auto since = [&](std::uint64_t total, std::uint64_t then)
+        { return static_cast<double>(total - std::min(then, total)) / seconds; };
+        report.print_line(fmt::format("served {}: {:.0f} pieces/s, {:.1f} KB/s, {} pieces in all",
+                                      name, since(now.pieces_sent, before.pieces_sent),
+                                      since(now.bytes_sent, before.bytes_sent) * 1e-3,
+                                      now.pieces_sent));
+    }
+    served_ = std::move(all);
+}
+
+/// Of the first few; the rest of a crowd is counted.
+void Watch::print_refused(const dds::DdsHost& host, ServingReport& report)
+{
+    constexpr std::size_t kMostLines = 8;
+    std::size_t lines = 0;
+    for (const dds::PeerRefusals& peer : host.domain().participants().refusals().list())
+    {
+        std::uint64_t total = 0;
+        std::string reasons;
+        for (std::size_t i = 0; i < dds::kRefusedKinds; ++i)
+        {
+            total += peer.counts[i];
+            reasons += peer.counts[i] > 0
+                           ? fmt::format(", {} {}", dds::refused_names()[i], peer.counts[i])
+                           : "";
+        }
+        std::uint64_t& before = refused_[peer.id];
+        if (total > before && ++lines <= kMostLines)
+        {
+            report.print_line(fmt::format("refusals of {}: {} more{}",
+                                          peer.name.empty() ? "somebody" : peer.name,
+                                          total - before, reasons));
+        }
+        before = total;
+    }
+    if (lines > kMostLines)
+    {
+        report.print_line(fmt::format("refusals of {} more participants", lines - kMostLines));
     }
 }
 

@@ -6,9 +6,9 @@
 #include "transport/dds/telemetry.hpp"
 
 #include <chrono>
-#include <memory>
+#include <cstdint>
+#include <map>
 #include <string>
-#include <utility>
 
 namespace tactus
 {
@@ -16,20 +16,24 @@ namespace tactus
 /// What a controller does at present, in one line: the names in it are valid ones.
 [[nodiscard]] std::string watch_line(const dds::WatchedController& controller);
 
-/// Prints one line a second for each controller on the domain.
+/// Prints once a second: a line for each controller on the domain, one for each that this host
+/// sends to, and one for each participant of which something was refused in that second.
 class Watch
 {
 public:
-    explicit Watch(std::unique_ptr<dds::TelemetryReader> reader) : reader_(std::move(reader)) {}
-
-    /// Call it often; it prints when it is due.
-    void update(ServingReport& report);
+    /// Call it often, after the reader's poll(); it prints when it is due.
+    void update(const dds::TelemetryReader& controllers, const dds::DdsHost& host,
+                ServingReport& report);
 
 private:
     using Clock = std::chrono::steady_clock;
 
-    std::unique_ptr<dds::TelemetryReader> reader_;
+    void print_served(const dds::DdsHost& host, double seconds, ServingReport& report);
+    void print_refused(const dds::DdsHost& host, ServingReport& report);
+
     Clock::time_point last_{Clock::now()};
+    std::map<std::string, dds::DdsHost::Subscriber> served_; ///< As printed last, by name;
+    std::map<dds::ParticipantId, std::uint64_t> refused_;    ///< likewise, of each in all.
 };
 
 } // namespace tactus

@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+// Any thread, but not the haptic one: texts allocate.
 namespace tactus
 {
 

@@ -30,7 +30,7 @@ struct DhdDeviceOptions
     /// default is small and weak enough for any of the maker's devices, and assumes their usual
     /// delay (docs/dhd-device.md); measure yours.
     DeviceInfo info{default_info()};
-    /// The button that says that somebody holds it; none: somebody always does.
+    /// The button, 0 to 15, that says that somebody holds it; none: somebody always does.
     std::optional<int> deadman_button;
     /// Of the I/O thread's turns, in [kPeriodMin, kPeriodMax]; the SDK's calls may make them
     /// longer.
@@ -53,8 +53,9 @@ struct DhdDeviceOptions
 class DhdDevice final : public RemoteDevice
 {
 public:
-    /// Loads the SDK and opens the device. Refuses options out of range, and a missing
-    /// SDK or device, in one line.
+    /// Loads the SDK, opens the device and starts the I/O thread; waits for the bus. Refuses
+    /// options out of range, a missing SDK or device, an `info` beyond the ranges of DeviceLimits
+    /// and what RtThread::start() refuses. A null clock is a bug (asserted).
     [[nodiscard]] static Result<std::unique_ptr<DhdDevice>, Refusal>
     create(const DhdDeviceOptions& options);
 

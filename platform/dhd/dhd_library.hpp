@@ -13,7 +13,8 @@ namespace tactus
 /// The functions of Force Dimension's SDK (3.x) that we use, by their public C names; written from
 /// its documentation, none of its files is needed to build this. Those that return an int give a
 /// negative one when they fail; 0 and small positive ones are success with or without a remark.
-/// `id` is what dhdOpenID() gave.
+/// `id` is what dhdOpenID() gave. One thread, the I/O thread: they wait for the device's bus. In
+/// the device's coordinates.
 struct DhdFunctions
 {
     int (*dhdGetDeviceCount)();
@@ -46,8 +47,7 @@ class DhdLibrary
 {
 public:
     /// `path` is a file, or a name for the system's loader to look up; empty: the names that the
-    /// SDK is installed by. A library that isn't there or lacks a function is `system`, in one
-    /// line.
+    /// SDK is installed by. A library that isn't there or lacks a function is refused in one line.
     [[nodiscard]] static Result<DhdLibrary, Refusal> load(const std::string& path);
 
     DhdLibrary(DhdLibrary&& other) noexcept;

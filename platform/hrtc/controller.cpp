@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #include "platform/hrtc/controller.hpp"
 
+#include "platform/base/printable.hpp"
+#include "platform/hrtc/following_hand.hpp"
 #include "platform/hrtc/object_pose.hpp"
 #include "platform/hrtc/scene_room.hpp"
 #include "platform/hrtc/verdict.hpp"
@@ -10,12 +12,16 @@
 #include "rt_core/force/angular_stiffness.hpp"
 #include "rt_core/force/stiffness_rule.hpp"
 #include "rt_core/limits.hpp"
+#include "transport/base_fetch.hpp"
 #include "transport/pool_plan.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <set>
+#include <utility>
 
 namespace tactus::hrtc
 {
@@ -57,17 +63,24 @@ DeviceChoice choice_of(const Options& options, std::size_t tool)
     return tool < options.devices.size() ? options.devices[tool] : DeviceChoice{};
 }
 
+/// Without one it is the last one's.
+HandChoice hand_choice_of(const Options& options, std::size_t tool)
+{
+    return options.hands.empty() ? HandChoice{}
+                                 : options.hands[std::min(tool, options.hands.size() - 1)];
+}
+
 } // namespace
 
 Result<std::unique_ptr<Controller>, Refusal>
 Controller::create(const Options& options, std::vector<ServedModel> models, const Log& log,
                    const std::function<bool()>& goes_on)
 {
-    std::unique_ptr<Controller> controller(new Controller(std::move(models)));
+    std::unique_ptr<Controller> controller(new Controller(std::move(models), goes_on));
     controller->budgets_.splits = options.splits;
     controller->budgets_.merges = options.splits;
     controller->make_poses(options);
-    if (std::optional<Refusal> error = controller->open_devices(options, goes_on))
+    if (std::optional<Refusal> error = controller->open_devices(options))
     {
         return *error;
     }
@@ -84,7 +97,8 @@ Controller::create(const Options& options, std::vector<ServedModel> models, cons
     return controller;
 }
 
-Controller::Controller(std::vector<ServedModel> models) : models_(std::move(models))
+Controller::Controller(std::vector<ServedModel> models, const std::function<bool()>& goes_on)
+    : goes_on_(goes_on), models_(std::move(models))
 {
     for (const ServedModel& model : models_)
     {
@@ -128,11 +142,11 @@ void Controller::make_poses(const Options& options)
 }
 
 /// Those that aren't simulated; before the tools, which need to know what the devices can do.
-std::optional<Refusal> Controller::open_devices(const Options& options,
-                                                const std::function<bool()>& goes_on)
+std::optional<Refusal> Controller::open_devices(const Options& options)
 {
     tools_.resize(options.tools);
-    const DeviceWait wait{milliseconds(static_cast<std::int64_t>(options.wait_s * 1e3)), goes_on};
+    const DeviceWait wait{milliseconds(static_cast<std::int64_t>(options.wait_s * 1e3)), goes_on_,
+                          options.rate_hz};
     for (std::size_t i = 0; i < options.devices.size(); ++i)
     {
         if (options.devices[i].kind == DeviceKind::simulated)
@@ -173,6 +187,12 @@ void Controller::make_tools(const Options& options)
         tool.hand_radius_m =
             hand_radius_m(choices[i], mesh != nullptr ? &headers_[mesh->model.value] : nullptr,
                           diagonal_world_m());
+        if (i < options.guides.size() && options.guides[i])
+        {
+            guides_.push_back(std::make_unique<Guide>(*options.guides[i]));
+            tool.own_force = guides_.back().get();
+            tool.guide = options.guides[i]->words;
+        }
         tool.spec.torque_max_nm = limits.turn.torque_max_nm;
         tool.spec.angular_stiffness_nm_per_rad = options.angular_stiffness_nm_per_rad;
         tool_specs_.push_back(tool.spec);
@@ -197,7 +217,8 @@ std::optional<Refusal> Controller::lay_out_pools(const Options& options)
     const auto cache = static_cast<std::size_t>(options.cache_mib * kBytesPerMib);
     const std::size_t most = options.pool_bytes() - sizeof(Frame);
     std::vector<ModelCapacities> capacities(models_.size());
-    if (!try_plan_pools(setup_, headers_, most, cache, capacities))
+    const bool fits = try_plan_pools(setup_, headers_, most, cache, capacities);
+    if (!fits && !try_plan_as_guests(options, most, cache))
     {
         const std::size_t least = least_pool_bytes(setup_, headers_, cache) + sizeof(Frame);
         return Refusal{
@@ -207,12 +228,19 @@ std::optional<Refusal> Controller::lay_out_pools(const Options& options)
                         up_to_cents(static_cast<double>(least) / kBytesPerMib),
                         options.cache_mib > 0.0 ? ", or less --cache-mib" : "")};
     }
-    for (std::size_t i = 0; i < models_.size(); ++i)
+    if (fits)
+    {
+        if (auto error = fetch_bases(models_, options))
+        {
+            return error;
+        }
+    }
+    for (std::size_t i = 0; i < models_.size() && fits; ++i)
     {
         sources_.push_back({models_[i].header, models_[i].base, capacities[i]});
     }
     setup_.models = sources_;
-    const ModelCapacities sum = sum_of(capacities);
+    const ModelCapacities sum = pool_capacities(setup_);
     memory_.emplace(Frame::required_bytes(setup_) +
                     Courier::required_bytes(sum.pages, sum.index_pages));
     arena_.emplace(memory_->span());
@@ -222,6 +250,36 @@ std::optional<Refusal> Controller::lay_out_pools(const Options& options)
             fmt::format("--pool-mib: {} MiB: {}", options.pool_mib, refusal_text(started.error()))};
     }
     return std::nullopt;
+}
+
+/// Nothing to do for those that are here.
+std::optional<Refusal> Controller::fetch_bases(std::span<ServedModel> models,
+                                               const Options& options) const
+{
+    const auto wait = std::chrono::milliseconds(static_cast<std::int64_t>(options.wait_s * 1e3));
+    return bring_bases(models, wait, goes_on_);
+}
+
+/// A scene of more models than there is room for at once.
+bool Controller::try_plan_as_guests(const Options& options, std::size_t bytes, std::size_t cache)
+{
+    if (options.scene.empty() || std::ranges::any_of(tool_specs_, &is_mesh))
+    {
+        return false;
+    }
+    for (const ServedModel& model : models_)
+    {
+        sources_.push_back({model.header, {}, {}});
+    }
+    setup_.models = sources_;
+    if (try_plan_guests(setup_, headers_, bytes, cache, setup_.for_guests))
+    {
+        return true;
+    }
+    sources_.clear();
+    setup_.models = {};
+    setup_.for_guests = {};
+    return false;
 }
 
 void Controller::make_courier(const Log& log)
@@ -251,52 +309,116 @@ std::optional<Refusal> Controller::finish_devices(const Options& options)
         }
         tools_[tool].spec = frame_->tool(static_cast<std::uint32_t>(tool)).spec();
         limit_force(options, tools_[tool]);
-        if (auto error = check_damping(options, tools_[tool]))
+        if (auto error = hang_load(options, tool))
         {
             return error;
         }
     }
-    return std::nullopt;
+    return check_damping(options);
 }
 
-/// An object whose damping leaves the tool's device no wall could never be felt.
-std::optional<Refusal> Controller::check_damping(const Options& options,
-                                                 const ToolSetup& tool) const
+/// No more than half of what the device can make, so that walls are felt beside it.
+std::optional<Refusal> Controller::hang_load(const Options& options, std::size_t tool)
 {
-    const DeviceInfo& device = tool.device->info();
-    const double period_s = tool.conditioner.period_s;
-    const double bare_n_per_m = stiffness_cap(device.limits, period_s);
-    for (const ObjectSpec& object : objects_)
+    if (tool >= options.tool_loads.size())
     {
-        const double damping = object.material.damping_n_s_per_m;
-        if (bare_n_per_m < kSoftestFelt_n_per_m ||
-            stiffness_cap(device.limits, period_s, damping) >= kSoftestFelt_n_per_m)
-        {
-            continue;
-        }
-        const double wall_n_per_m = std::min(
-            {tool.spec.stiffness_n_per_m, object.material.stiffness_n_per_m, 0.5 * bare_n_per_m});
-        return Refusal{fmt::format(
-            "{}: a damping of {:.4g} N s/m on '{}' leaves the device {} no wall at {} Hz; "
-            "at most {:.3g} leave it one that is felt, {:.3g} one of {:.4g} N/m",
-            options.scene.empty() ? "--material" : "--scene", damping,
-            models_[object.model.value].name, device.name, options.rate_hz,
-            largest_damping(device.limits, period_s, kSoftestFelt_n_per_m),
-            largest_damping(device.limits, period_s, wall_n_per_m), wall_n_per_m)};
+        return std::nullopt;
+    }
+    ToolLoad& load = tools_[tool].load;
+    load = options.tool_loads[tool];
+    load.down_world = choice_of(options, tool).frame.rotation * load.down_world;
+    const DeviceInfo& device = tools_[tool].device->info();
+    const double torque_max_nm = device.limits.turn.torque_max_nm;
+    if (load.weight_n() > 0.5 * device.limits.force_max_n)
+    {
+        return Refusal{fmt::format("--tool-mass: {:.4g} kg weigh {:.3g} N; the device {} carries "
+                                   "half of its {:.3g} N, {:.3g} kg, at most",
+                                   load.mass_kg, load.weight_n(), device.name,
+                                   device.limits.force_max_n,
+                                   0.5 * device.limits.force_max_n / kGravity_m_per_s2)};
+    }
+    if (torque_max_nm > 0.0 && load.torque_max_nm() > 0.5 * torque_max_nm)
+    {
+        return Refusal{fmt::format("--tool-mass: {:.4g} kg at {:.3g} m turn with {:.3g} N m; the "
+                                   "device {} carries half of its {:.3g} N m at most",
+                                   load.mass_kg, load.centre_m.norm(), load.torque_max_nm(),
+                                   device.name, torque_max_nm)};
     }
     return std::nullopt;
 }
 
+/// An object whose damping leaves a tool's device no wall could never be felt.
+std::optional<Refusal> Controller::check_damping(const Options& options) const
+{
+    for (const ObjectSpec& object : objects_)
+    {
+        if (const auto why = why_unfelt(models_[object.model.value].name, object.material))
+        {
+            return Refusal{
+                fmt::format("{}: {}", options.scene.empty() ? "--material" : "--scene", *why)};
+        }
+    }
+    return std::nullopt;
+}
+
+std::optional<std::string> Controller::why_unfelt(const std::string& name,
+                                                  const Material& material) const
+{
+    std::optional<std::string> why;
+    for (std::size_t i = 0; i < tools_.size() && !why; ++i)
+    {
+        why = wall_refused(tools_[i], name, material);
+    }
+    return why;
+}
+
+std::optional<std::string> Controller::wall_refused(const ToolSetup& tool, const std::string& name,
+                                                    const Material& material) const
+{
+    const DeviceInfo& device = tool.device->info();
+    const double period_s = tool.conditioner.period_s;
+    const double bare_n_per_m = stiffness_cap(device.limits, period_s);
+    const double damping = material.damping_n_s_per_m;
+    if (bare_n_per_m < kSoftestFelt_n_per_m ||
+        stiffness_cap(device.limits, period_s, damping) >= kSoftestFelt_n_per_m)
+    {
+        return std::nullopt;
+    }
+    const double wall_n_per_m =
+        std::min({tool.spec.stiffness_n_per_m, material.stiffness_n_per_m, 0.5 * bare_n_per_m});
+    return fmt::format("a damping of {:.4g} N s/m on '{}' leaves the device {} no wall at {:.6g} "
+                       "Hz; at most {:.3g} leave it one that is felt, {:.3g} one of {:.4g} N/m",
+                       damping, name, device.name, 1.0 / period_s,
+                       largest_damping(device.limits, period_s, kSoftestFelt_n_per_m),
+                       largest_damping(device.limits, period_s, wall_n_per_m), wall_n_per_m);
+}
+
 std::optional<Refusal> Controller::simulate_device(const Options& options, std::size_t tool)
 {
-    const std::size_t object = object_of_hand(tool);
+    const auto chosen = object_of_hand(options, tool);
+    if (!chosen)
+    {
+        return chosen.error();
+    }
+    const std::size_t object = chosen.value();
+    if (auto error = fetch_bases({&models_[objects_[object].model.value], 1}, options))
+    {
+        return error;
+    }
     HandScene scene;
     scene.anchors_world_m = anchors_world_m(object);
+    if (scene.anchors_world_m.empty())
+    {
+        return Refusal{fmt::format("model '{}': its base mesh is damaged",
+                                   models_[objects_[object].model.value].name)};
+    }
     scene.diagonal_m = diagonal_of(object);
     scene.tool_radius_m = tools_[tool].hand_radius_m;
     scene.period = options.period();
     scene.frames_total = options.frames();
-    auto motion = make_motion(options.motion, scene, tool + 1);
+    scene.hands_before = static_cast<std::size_t>(std::ranges::count(objects_of_hands_, object));
+    objects_of_hands_.push_back(object);
+    auto motion = make_motion(hand_choice_of(options, tool).motion, scene, tool + 1);
     if (!motion)
     {
         return Refusal{"--tool: " + motion.error().text};
@@ -304,10 +426,22 @@ std::optional<Refusal> Controller::simulate_device(const Options& options, std::
     SimulatedDeviceOptions device_options;
     device_options.rate_hz = options.rate_hz;
     device_options.device = choice_of(options, tool).limits;
+    if (tool < options.tool_loads.size())
+    {
+        device_options.load = options.tool_loads[tool];
+    }
     device_options.workspace_centre_world_m = motion.value().centre_world_m;
     device_options.workspace_radius_m = motion.value().reach_m;
     device_options.speed_max_m_per_s =
         std::max(device_options.speed_max_m_per_s, kHandSpeed_diag * scene.diagonal_m);
+    if (is_followed(options, object))
+    {
+        device_options.workspace_radius_m = kPoseReachMax_m;
+        motion.value().hand = std::make_unique<FollowingHand>(
+            std::move(motion.value().hand), frame_->objects(), static_cast<std::uint32_t>(object),
+            model_pose(poses_[object], headers_[objects_[object].model.value].origin_m()),
+            0.5 * kHandSpeed_diag * scene.diagonal_m * to_seconds(options.period()));
+    }
     auto device = SimulatedDevice::create(device_options, std::move(motion.value().hand));
     if (!device)
     {
@@ -344,9 +478,28 @@ void Controller::limit_force(const Options& options, ToolSetup& tool) const
     tool.clutch_button = options.clutch_button;
 }
 
-/// Each touches another object, as far as there are some that are much larger than its tool.
-std::size_t Controller::object_of_hand(std::size_t tool) const
+/// Where no model is named each touches another object, as far as there are some that are much
+/// larger than its tool.
+Result<std::size_t, Refusal> Controller::object_of_hand(const Options& options,
+                                                        std::size_t tool) const
 {
+    if (const std::string& name = hand_choice_of(options, tool).model; !name.empty())
+    {
+        const auto shows = [&](const ObjectSpec& object)
+        { return models_[object.model.value].name == name; };
+        const auto found = std::ranges::find_if(objects_, shows);
+        if (found != objects_.end())
+        {
+            return static_cast<std::size_t>(found - objects_.begin());
+        }
+        std::set<std::string> names;
+        for (const ObjectSpec& object : objects_)
+        {
+            names.insert(models_[object.model.value].name);
+        }
+        return Refusal{fmt::format("--motion: '{}' is no model that is touched; there are: {}",
+                                   printable(name), fmt::join(names, ", "))};
+    }
     for (std::size_t i = 0; i < objects_.size(); ++i)
     {
         const std::size_t object = (tool + i) % objects_.size();
@@ -358,18 +511,36 @@ std::size_t Controller::object_of_hand(std::size_t tool) const
     return 0;
 }
 
+bool Controller::is_followed(const Options& options, std::size_t object) const
+{
+    const bool may_move = options.transport == TransportKind::dds && options.follows_poses;
+    return may_move &&
+           (!options.scene.empty() ||
+            std::ranges::count(first_objects(), static_cast<std::uint32_t>(object)) > 0);
+}
+
 double Controller::diagonal_of(std::size_t object) const noexcept
 {
     return headers_[objects_[object].model.value].diagonal_m() * poses_[object].scale;
 }
 
-/// The base vertices of its model: original vertices, so they lie on its surface.
+/// The base vertices of its model: original vertices, so they lie on its surface. None where the
+/// base mesh is damaged.
 std::vector<Vec3> Controller::anchors_world_m(std::size_t object) const
 {
     std::vector<Vec3> anchors;
     const ModelId model = objects_[object].model;
     const ObjectPose pose = model_pose(poses_[object], headers_[model.value].origin_m());
-    for (const Vec3f& position_m : frame_->model(model).slots.base.positions_m)
+    const ModelHeader& header = headers_[model.value];
+    const ModelCounts counts = header.counts();
+    std::vector<Vec3f> positions_m(counts.base_vertices);
+    std::vector<BaseFace> faces(counts.base_faces);
+    std::vector<std::uint32_t> next(counts.base_faces);
+    if (!parse_base_mesh(models_[model.value].base, header, {positions_m, faces, next}))
+    {
+        return {};
+    }
+    for (const Vec3f& position_m : positions_m)
     {
         anchors.push_back(to_world(pose, to_vec3(position_m)));
     }

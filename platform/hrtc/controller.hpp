@@ -17,6 +17,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -29,9 +30,11 @@ class Controller
 {
 public:
     /// Opens the devices, waiting for those that have to come as long as `goes_on`, lays out all
-    /// pools inside options.pool_mib, makes the frame, and a simulated device for each tool without
-    /// another. Refused when a device isn't there or doesn't run at that rate, or when the pools
-    /// are too small, with the size that would do for a start.
+    /// pools inside options.pool_mib, brings the base meshes that aren't here, makes the frame, and
+    /// a simulated device for each tool without another. Of guests it brings the base meshes that
+    /// simulated hands need alone. Refused when a device isn't there or doesn't run at that rate,
+    /// when a base mesh doesn't come in options.wait_s, or when the pools are too small, with the
+    /// size that would do for a start.
     [[nodiscard]] static Result<std::unique_ptr<Controller>, Refusal>
     create(const Options& options, std::vector<ServedModel> models, const Log& log,
            const std::function<bool()>& goes_on);
@@ -54,29 +57,42 @@ public:
     [[nodiscard]] const Budgets& budgets() const noexcept { return budgets_; }
     /// What the frame was made of.
     [[nodiscard]] const FrameSetup& setup() const noexcept { return setup_; }
+    /// Why the object of this name, and of this material, gives a tool no wall: its damping leaves
+    /// that tool's device none. Nothing where every tool feels it that feels anything.
+    [[nodiscard]] std::optional<std::string> why_unfelt(const std::string& name,
+                                                        const Material& material) const;
     /// The frame itself, its pools and tables, and the transport's side of them.
     [[nodiscard]] std::size_t pool_bytes() const noexcept { return arena_->used() + sizeof(Frame); }
     /// Of the first model, placed: widths are reported in it.
     [[nodiscard]] double diagonal_world_m() const noexcept;
 
 private:
-    explicit Controller(std::vector<ServedModel> models);
+    Controller(std::vector<ServedModel> models, const std::function<bool()>& goes_on);
 
     [[nodiscard]] std::optional<Refusal> lay_out_pools(const Options& options);
+    [[nodiscard]] std::optional<Refusal> fetch_bases(std::span<ServedModel> models,
+                                                     const Options& options) const;
+    [[nodiscard]] bool try_plan_as_guests(const Options& options, std::size_t bytes,
+                                          std::size_t cache);
     void make_poses(const Options& options);
-    [[nodiscard]] std::optional<Refusal> open_devices(const Options& options,
-                                                      const std::function<bool()>& goes_on);
+    [[nodiscard]] std::optional<Refusal> open_devices(const Options& options);
     void make_tools(const Options& options);
     void make_courier(const Log& log);
     [[nodiscard]] std::optional<Refusal> simulate_device(const Options& options, std::size_t tool);
     [[nodiscard]] std::optional<Refusal> finish_devices(const Options& options);
     void limit_force(const Options& options, ToolSetup& tool) const;
-    [[nodiscard]] std::optional<Refusal> check_damping(const Options& options,
-                                                       const ToolSetup& tool) const;
-    [[nodiscard]] std::size_t object_of_hand(std::size_t tool) const;
+    [[nodiscard]] std::optional<Refusal> check_damping(const Options& options) const;
+    [[nodiscard]] std::optional<std::string>
+    wall_refused(const ToolSetup& tool, const std::string& name, const Material& material) const;
+    [[nodiscard]] std::optional<Refusal> hang_load(const Options& options, std::size_t tool);
+    [[nodiscard]] Result<std::size_t, Refusal> object_of_hand(const Options& options,
+                                                              std::size_t tool) const;
+    /// Whether its host may move it.
+    [[nodiscard]] bool is_followed(const Options& options, std::size_t object) const;
     [[nodiscard]] double diagonal_of(std::size_t object) const noexcept;
     [[nodiscard]] std::vector<Vec3> anchors_world_m(std::size_t object) const;
 
+    std::function<bool()> goes_on_;
     std::vector<ServedModel> models_;
     std::vector<ModelHeader> headers_; ///< Views into models_.
     std::vector<ObjectPose> poses_;
@@ -89,8 +105,10 @@ private:
     std::optional<Arena> arena_;
     std::optional<Frame> frame_;
     std::optional<Courier> courier_;
-    PosixClock clock_; ///< Of the devices that aren't simulated.
+    PosixClock clock_;                           ///< Of the devices that aren't simulated.
+    std::vector<std::unique_ptr<Guide>> guides_; ///< Lent to the tools.
     std::vector<ToolSetup> tools_;
+    std::vector<std::size_t> objects_of_hands_; ///< Of the simulated ones, so far.
 };
 
 } // namespace tactus::hrtc

@@ -4,6 +4,7 @@
 
 #include "platform/dhd/dhd_device.hpp"
 #include "platform/hrtc/recorded_motion.hpp"
+#include "platform/plugin/device_plugin.hpp"
 #include "platform/simulated/device_classes.hpp"
 
 #include <algorithm>
@@ -77,6 +78,7 @@ std::optional<DeviceChoice> parse_dhd(std::string_view text)
 {
     DeviceChoice choice;
     choice.kind = DeviceKind::dhd;
+    choice.limits = DhdDeviceOptions::default_info().limits;
     const std::optional<int> index = parse_int(text, 0, DhdDeviceOptions::kIndexMax);
     choice.index = index.value_or(0);
     return index ? std::optional(choice) : std::nullopt;
@@ -111,21 +113,47 @@ Result<std::unique_ptr<HapticDevice>, Refusal> open_replay(const std::string& pa
 
 } // namespace
 
+std::string device_forms_like(std::string_view text)
+{
+    constexpr std::pair<std::string_view, std::string_view> kForms[] = {
+        {"sim", "sim, or sim:CLASS with touch, omega or delta"},
+        {"udp", "udp, udp:PORT, or udp:ADDRESS:PORT with a numeric IPv4 address and a port of 1024 "
+                "to 65535"},
+        {"dhd", "dhd, or dhd:INDEX with 0 to 63"},
+        {"plugin", "plugin:FILE[,WORDS] with a library that has a TACTUS_DEVICE_PLUGIN"},
+        {"replay", "replay:FILE with what hrtc --record wrote"}};
+    std::string all;
+    for (const auto& [kind, forms] : kForms)
+    {
+        if (text.starts_with(kind))
+        {
+            return std::string(forms);
+        }
+        all += (all.empty() ? "" : "; ") + std::string(forms);
+    }
+    return all;
+}
+
 std::optional<DeviceChoice> parse_device(std::string_view text)
 {
     constexpr std::string_view kSimulated = "sim:";
     constexpr std::string_view kUdp = "udp:";
     constexpr std::string_view kDhd = "dhd:";
     constexpr std::string_view kReplay = "replay:";
+    constexpr std::string_view kPlugin = "plugin:";
     DeviceChoice choice;
     if (text == "sim")
     {
         return choice;
     }
-    if (text == "udp" || text == "dhd")
+    if (text == "udp")
     {
-        choice.kind = text == "udp" ? DeviceKind::udp : DeviceKind::dhd;
+        choice.kind = DeviceKind::udp;
         return choice;
+    }
+    if (text == "dhd")
+    {
+        return parse_dhd("0");
     }
     if (text.starts_with(kSimulated))
     {
@@ -139,6 +167,14 @@ std::optional<DeviceChoice> parse_device(std::string_view text)
     {
         choice.kind = DeviceKind::replay;
         choice.recording = text.substr(kReplay.size());
+        return choice;
+    }
+    if (text.starts_with(kPlugin) && text.size() > kPlugin.size() && text[kPlugin.size()] != ',')
+    {
+        const std::size_t comma = std::min(text.find(','), text.size());
+        choice.kind = DeviceKind::plugin;
+        choice.library = text.substr(kPlugin.size(), comma - kPlugin.size());
+        choice.words = text.substr(std::min(comma + 1, text.size()));
         return choice;
     }
     return text.starts_with(kDhd) ? parse_dhd(text.substr(kDhd.size())) : std::nullopt;
@@ -177,11 +213,16 @@ Result<std::unique_ptr<HapticDevice>, Refusal> open_device(const DeviceChoice& c
     {
         return frame.error();
     }
+    if (choice.kind == DeviceKind::plugin)
+    {
+        return load_device(choice.library, {wait.rate_hz, frame.value(), choice.words.c_str()});
+    }
     if (choice.kind == DeviceKind::udp)
     {
         UdpDeviceOptions options;
         options.address = choice.address;
         options.port = choice.port;
+        options.seal = choice.seal.get();
         options.wait = wait.most;
         options.goes_on = wait.goes_on;
         options.frame = frame.value();
@@ -190,6 +231,7 @@ Result<std::unique_ptr<HapticDevice>, Refusal> open_device(const DeviceChoice& c
     }
     DhdDeviceOptions options;
     options.index = choice.index;
+    options.info.limits = choice.limits;
     options.frame = frame.value();
     options.clock = &clock;
     return as_device(DhdDevice::create(options));

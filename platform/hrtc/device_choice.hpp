@@ -28,27 +28,29 @@ enum class DeviceKind : std::uint8_t
     udp,
     dhd,
     replay,
+    plugin,
 };
 
-/// What --device and --device-frame say of one tool's device.
+/// What --device, --device-limits and --device-frame say of one tool's device.
 struct DeviceChoice
 {
     DeviceKind kind{DeviceKind::simulated};
-    DeviceLimits limits{kDeskClass};                 ///< Of the simulated.
+    DeviceLimits limits{kDeskClass};                 ///< Of the simulated and of dhd.
     std::string address{UdpDeviceOptions{}.address}; ///< Of udp.
     int port{UdpDeviceOptions::kPortDefault};        ///< Of udp.
+    std::shared_ptr<const udp::Seal> seal;           ///< Of udp; null without --device-key.
     int index{0};                                    ///< Of dhd.
     std::string recording;                           ///< Of replay: the file.
+    std::string library;                             ///< Of plugin: the file,
+    std::string words;                               ///< and what is for its device.
     Similarity frame;                                ///< Device coordinates in the world.
 };
 
-/// What the texts mean that `parse_device` takes; for messages.
-inline constexpr std::string_view kDeviceForms =
-    "sim, sim:CLASS with touch, omega or delta, udp, udp:PORT, udp:ADDRESS:PORT with a numeric "
-    "IPv4 address and a port of 1024 to 65535, "
-    "dhd, dhd:INDEX with 0 to 63, or replay:FILE with what hrtc --record wrote";
+/// What the texts mean that `parse_device` takes, for messages: of the kind that the text begins
+/// with, or of all kinds.
+[[nodiscard]] std::string device_forms_like(std::string_view text);
 
-/// None when the text is none of kDeviceForms.
+/// None when the text is no device.
 [[nodiscard]] std::optional<DeviceChoice> parse_device(std::string_view text);
 
 /// What the texts mean that `parse_device_fault` takes; for messages.
@@ -59,15 +61,16 @@ inline constexpr std::string_view kDeviceFaultForms =
 /// None when the text is none of kDeviceFaultForms.
 [[nodiscard]] std::optional<DeviceFault> parse_device_fault(std::string_view text);
 
-/// For a device that has to come.
+/// For a device that has to come or to be made.
 struct DeviceWait
 {
     Duration most;
     std::function<bool()> goes_on; ///< Asked meanwhile: false ends the wait. Empty: never.
+    std::int64_t rate_hz{1'000};   ///< Of the loop.
 };
 
 /// Opens a device that isn't simulated, for the tool with that index; waits for one that comes by
-/// udp, reads a recording as a whole. `clock` is lent and outlives it.
+/// udp, reads a recording as a whole. `choice` and `clock` are lent and outlive it.
 [[nodiscard]] Result<std::unique_ptr<HapticDevice>, Refusal> open_device(const DeviceChoice& choice,
                                                                          std::size_t tool,
                                                                          const DeviceWait& wait,

@@ -5,11 +5,18 @@
 #include "host_tools/cli/command_line.hpp"
 #include "platform/doctor/doctor.hpp"
 #include "platform/doctor/doctor_report.hpp"
+#include "platform/hrtc/domain_check.hpp"
 #include "platform/rt_thread.hpp"
+#include "transport/dds/domain.hpp"
 
 #include <fmt/format.h>
 
+#include <chrono>
+#include <cstdint>
 #include <cstdio>
+#include <optional>
+#include <string>
+#include <vector>
 
 namespace tactus::hrtc
 {
@@ -36,10 +43,21 @@ int run_doctor(int argc, char** argv)
                      "why it matters, and the command that mends it. Exit code 1 when something "
                      "critical is missing.");
     std::optional<int> cpu;
+    std::optional<std::uint32_t> domain;
+    double wait_s = 3.0;
     bool as_json = false;
     bool shows_good = false;
     line.add_option("--cpu", cpu, "Processor that the haptic thread is to have [not chosen]")
         .integer_between(0, 1'023);
+    const CommandOption of_domain =
+        line.add_option("--domain", domain,
+                        "DDS domain to join, too: who is heard there, and which models are "
+                        "published [none]")
+            .integer_between(0U, dds::kMaxDomain);
+    line.add_option("--wait", wait_s, "Seconds to listen there")
+        .number_between(0.1, 3'600.0)
+        .show_default()
+        .needs(of_domain);
     line.add_flag("--all", shows_good,
                   "Say of what is good, too, what was found and why it matters");
     line.add_flag("--json", as_json, "Print one JSON object");
@@ -53,7 +71,12 @@ int run_doctor(int argc, char** argv)
     }
     const doctor::SystemFiles files("/");
     const doctor::Measured measured = doctor::measure();
-    const std::vector<doctor::Finding> findings = doctor::examine({files, measured, cpu});
+    std::vector<doctor::Finding> findings = doctor::examine({files, measured, cpu});
+    if (domain)
+    {
+        findings.push_back(check_domain(
+            *domain, std::chrono::milliseconds(static_cast<std::int64_t>(wait_s * 1e3))));
+    }
     fmt::print("{}", as_json ? doctor::make_report(findings, cpu).dump(2) + '\n'
                              : doctor::make_text(findings, shows_good));
     if (std::fflush(stdout) != 0)

@@ -5,11 +5,13 @@
 #include "host_tools/mesh/read_mesh.hpp"
 #include "host_tools/scene/scene.hpp"
 #include "platform/base/printable.hpp"
+#include "platform/hrtc/subcommands.hpp"
 #include "platform/hrtc/tool_choice.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <vector>
 
 namespace tactus::hrtc
@@ -51,8 +53,12 @@ std::string place_file(const std::string& file, Options& options, RawOptions& ra
 {
     if (!is_file_name(file))
     {
-        return fmt::format("'{}' is no command and no file; a published model is --model NAME",
-                           printable(file));
+        const std::string shown = printable(file);
+        return std::filesystem::exists(file + ".spm")
+                   ? fmt::format("'{}': the file is called '{}.spm'", shown, shown)
+                   : fmt::format("'{}' is no command ({}) and no model's or scene's file (.spm, "
+                                 ".gltf, .glb); a published model is --model NAME",
+                                 shown, subcommand_names());
     }
     if (!has_scene_extension(file))
     {
@@ -89,9 +95,16 @@ std::string take_files(Options& options, RawOptions& raw)
     {
         if (is_mesh_file_name(named.name))
         {
-            return fmt::format("{}: '{}' is a mesh; spm_build {} -o MODEL.spm makes a model of it",
-                               named.option, printable(named.name), printable(named.name));
+            return fmt::format("{}: {}", named.option, mesh_is_no_model(named.name));
         }
+    }
+    const bool are_files = raw.transport == "file";
+    const auto pinned = std::ranges::find_if(
+        all, [](const Named& named) { return named.name.find(".spm@") != std::string::npos; });
+    if (are_files && pinned != all.end())
+    {
+        return fmt::format("{}: '{}': a hash is of published models; a file is given without",
+                           pinned->option, printable(pinned->name));
     }
     if (raw.transport)
     {

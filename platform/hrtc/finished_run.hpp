@@ -6,6 +6,7 @@
 #include "platform/hrtc/run_statistics.hpp"
 #include "platform/hrtc/safety_record.hpp"
 #include "platform/hrtc/scene_keeper.hpp"
+#include "platform/hrtc/trace_file.hpp"
 #include "platform/periodic_timer.hpp"
 #include "platform/remote/pose_door.hpp"
 #include "platform/rt_thread.hpp"
@@ -28,7 +29,8 @@ struct FinishedRun
 {
     RunStatistics statistics;
     RtThreadReport thread{};
-    bool supervisor_fifo{false}; ///< The supervisor had SCHED_FIFO.
+    bool supervisor_fifo{false};         ///< The supervisor had SCHED_FIFO.
+    std::uint32_t supervisor_periods{0}; ///< Of silence, after which it brakes.
     TimerCounts timer{};
     Duration period;
     std::time_t started{0}; ///< Calendar time.
@@ -39,8 +41,11 @@ struct FinishedRun
     SceneNewsCounts scene_news{};               ///< Of a host's scene.
     std::vector<dds::PeerRefusals> refused{};   ///< Of others on the domain.
     std::uint64_t telemetry_sent{0};
+    std::uint64_t fronts_sent{0};
     std::optional<RecordingResult> recording{};
     std::optional<std::string> recording_error{}; ///< Why a wanted recording is not there.
+    std::optional<TraceResult> trace{};
+    std::optional<std::string> trace_error{}; ///< Likewise.
 };
 
 } // namespace tactus::hrtc

@@ -40,7 +40,7 @@ void HapticLoop::run() noexcept
     allocation_counter::mark_this_thread(true);
     haptic_thread_.store(std::this_thread::get_id());
     fade_frames_ = static_cast<std::uint64_t>(kFadeTime_s / to_seconds(parts_.timer->period())) + 1;
-    usage_ = read_thread_usage();
+    usage_ = thread_usage();
     allocations_ = allocation_counter::of_this_thread().allocations;
     last_end_ = parts_.clock->now();
     for (; !has_to_end(); ++frame_)
@@ -60,7 +60,7 @@ void HapticLoop::run() noexcept
 
 void HapticLoop::run_period() noexcept
 {
-    const Duration cpu_before = read_thread_cpu_time();
+    const Duration cpu_before = cpu_time();
     const MonotonicTime start = parts_.clock->now();
     heartbeat_.beat(start);
     stage_start_ = start;
@@ -70,7 +70,7 @@ void HapticLoop::run_period() noexcept
     make_safe(output);
     write_devices();
     last_end_ = parts_.clock->now();
-    const ThreadUsage now = read_thread_usage();
+    const ThreadUsage now = thread_usage();
     record(input, output);
     measures_.frame = last_end_ - start;
     measures_.cpu = now.cpu_time - cpu_before;
@@ -78,7 +78,18 @@ void HapticLoop::run_period() noexcept
     measure_thread(now);
     statistics_.add(output, forces_, measures_);
     show(output, start);
+    trace(output, start);
     choose_budgets(output);
+}
+
+ThreadUsage HapticLoop::thread_usage() const noexcept
+{
+    return parts_.is_virtual ? ThreadUsage{} : read_thread_usage();
+}
+
+Duration HapticLoop::cpu_time() const noexcept
+{
+    return parts_.is_virtual ? Duration{} : read_thread_cpu_time();
 }
 
 /// What the thread has used since the last cycle.
@@ -104,13 +115,13 @@ bool HapticLoop::has_to_end() noexcept
 void HapticLoop::wait_for_deadline() noexcept
 {
     measures_.beside = parts_.clock->now() - last_end_;
-    measures_.beside_cpu = read_thread_cpu_time() - usage_.cpu_time;
+    measures_.beside_cpu = cpu_time() - usage_.cpu_time;
     parts_.timer->sleep_until_margin();
-    const Duration cpu_awake = read_thread_cpu_time();
+    const Duration cpu_awake = cpu_time();
     const MonotonicTime awake = parts_.clock->now();
     rehearse();
     measures_.beside += parts_.clock->now() - awake;
-    measures_.beside_cpu += read_thread_cpu_time() - cpu_awake;
+    measures_.beside_cpu += cpu_time() - cpu_awake;
     measures_.cycle = parts_.timer->spin_until_deadline();
 }
 
@@ -137,6 +148,35 @@ void HapticLoop::record(const FrameInput& input, const FrameOutput& output) noex
     {
         parts_.tap->record(input, output, devices_);
     }
+}
+
+void HapticLoop::trace(const FrameOutput& output, MonotonicTime start) noexcept
+{
+    if (parts_.trace == nullptr)
+    {
+        return;
+    }
+    TracedFrame traced{.frame = frame_,
+                       .deadline = measures_.cycle.deadline,
+                       .start = start,
+                       .end = last_end_,
+                       .stage = measures_.stage,
+                       .wake_lateness = measures_.cycle.wake_lateness,
+                       .periods = measures_.cycle.periods,
+                       .wishes = output.work.requests,
+                       .splits = output.work.splits,
+                       .merges = output.work.merges,
+                       .triangles = output.work.triangles_tested,
+                       .faults = output.faults};
+    for (const DoorEvent& event : output.door.events)
+    {
+        ++(event.kind == DoorEventKind::arrival ? traced.arrivals : traced.link_updates);
+    }
+    for (const ToolOutput& tool : output.tools)
+    {
+        traced.in_contact = traced.in_contact || tool.in_contact;
+    }
+    parts_.trace->add(traced);
 }
 
 /// Between frames, so that the frame that follows takes its budgets as an input like any other.
@@ -204,7 +244,7 @@ FrameInput HapticLoop::read_scene(MonotonicTime now) noexcept
     FrameInput input{states_, {}, measures_.budgets, now.ns};
     if (parts_.pose_door != nullptr)
     {
-        input.changes = parts_.pose_door->refresh(now);
+        input.changes = parts_.pose_door->refresh(now, touches_.view());
     }
     return input;
 }
@@ -214,6 +254,11 @@ void HapticLoop::show(const FrameOutput& output, MonotonicTime start) noexcept
     if (parts_.telemetry != nullptr)
     {
         parts_.telemetry->show({start, states_, devices_, radii_m_, output}, statistics_);
+    }
+    if (parts_.front != nullptr)
+    {
+        parts_.front->show({frame_, start, *parts_.frame, output, forces_, measures_.budgets},
+                           statistics_);
     }
 }
 
@@ -230,9 +275,12 @@ void HapticLoop::make_safe(const FrameOutput& output) noexcept
         {
             context.causes |= ForceOff::stale;
         }
+        context.causes |= touches_what_outruns(i) ? ForceOff::jump : ForceOff::none;
+        context.causes |= starves(i, output) ? ForceOff::starved : ForceOff::none;
         context.surface_damping_n_s_per_m = damping_touched(i, output);
         const SafetyOutput safe = ports_[i].make_safe(output.tools[i], context);
         forces_[i] = ports_[i].force();
+        forces_[i].state = safe.state;
         forces_[i].causes = safe.causes;
         devices_[i] = ports_[i].record();
         if (safe.has_changed)
@@ -240,19 +288,73 @@ void HapticLoop::make_safe(const FrameOutput& output) noexcept
             note(i, safe.state, safe.causes);
         }
     }
+    note_touches(output);
 }
 
-/// Of all that the tool may touch at the end of the frame: pairs are measured at its beginning.
+/// At the end of the frame: pairs are measured at its beginning.
+bool HapticLoop::is_in_reach(const PairOutput& pair) const noexcept
+{
+    return pair.lower_m <= radii_m_[pair.tool] + kTouchSlack_m;
+}
+
+bool HapticLoop::may_touch(const PairOutput& pair, const FrameOutput& output) const noexcept
+{
+    return output.tools[pair.tool].in_contact && is_in_reach(pair);
+}
+
+/// For the poses that the next frame begins with.
+void HapticLoop::note_touches(const FrameOutput& output) noexcept
+{
+    touches_.clear();
+    touching_.clear();
+    for (const PairOutput& pair : output.pairs)
+    {
+        if (may_touch(pair, output))
+        {
+            touches_.push_back({pair.object, pair.point_m});
+            touching_.push_back(pair.tool);
+        }
+    }
+}
+
+/// As the frame found it.
+bool HapticLoop::touches_what_outruns(std::uint32_t tool) const noexcept
+{
+    for (std::size_t i = 0; i < touches_.size() && parts_.pose_door != nullptr; ++i)
+    {
+        if (touching_[i] == tool && parts_.pose_door->outruns(touches_[i].object))
+        {
+            return true;
+        }
+    }
+    return false;
+}
+
+/// Whether the tool waits, and a piece doesn't come of a model that it is at.
+bool HapticLoop::starves(std::uint32_t tool, const FrameOutput& output) const noexcept
+{
+    if (parts_.starved == nullptr || !(output.tools[tool].held_back || output.tools[tool].frozen))
+    {
+        return false;
+    }
+    return std::ranges::any_of(
+        output.pairs,
+        [&](const PairOutput& pair)
+        {
+            const ModelId model = parts_.frame->objects()[pair.object].spec.model;
+            return pair.tool == tool && is_in_reach(pair) && parts_.starved->has(model.value);
+        });
+}
+
+/// Of all that the tool may touch.
 double HapticLoop::damping_touched(std::uint32_t tool, const FrameOutput& output) const noexcept
 {
     double damping_n_s_per_m = 0.0;
     for (const PairOutput& pair : output.pairs)
     {
-        if (pair.tool == tool && output.tools[tool].in_contact &&
-            pair.lower_m <= radii_m_[tool] + kTouchSlack_m)
+        if (pair.tool == tool && may_touch(pair, output))
         {
-            const Material& material = parts_.frame->objects()[pair.object].spec.material;
-            damping_n_s_per_m = std::max(damping_n_s_per_m, material.damping_n_s_per_m);
+            damping_n_s_per_m = std::max(damping_n_s_per_m, pair.damping_n_s_per_m);
         }
     }
     return damping_n_s_per_m;

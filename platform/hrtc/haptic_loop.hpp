@@ -5,11 +5,13 @@
 #include "platform/budget_governor.hpp"
 #include "platform/clock.hpp"
 #include "platform/heartbeat.hpp"
-#include "platform/hrtc/hosts_gone.hpp"
+#include "platform/hrtc/front_tap.hpp"
+#include "platform/hrtc/model_marks.hpp"
 #include "platform/hrtc/run_statistics.hpp"
 #include "platform/hrtc/safety_log.hpp"
 #include "platform/hrtc/telemetry_tap.hpp"
 #include "platform/hrtc/tool_port.hpp"
+#include "platform/hrtc/trace_tap.hpp"
 #include "platform/periodic_timer.hpp"
 #include "platform/recording/frame_tap.hpp"
 #include "platform/remote/pose_door.hpp"
@@ -32,13 +34,17 @@ struct LoopParts
     std::span<const ToolSetup> tools;
     PeriodicTimer* timer{nullptr};
     const Clock* clock{nullptr};
-    Budgets budgets;                      ///< Of every frame, when there is no governor.
-    BudgetGovernor* governor{nullptr};    ///< Chooses each frame's budgets; may be none.
-    FrameTap* tap{nullptr};               ///< Takes every frame for a recording; may be none.
-    std::uint64_t frames{0};              ///< How many to run.
-    const HostsGone* hosts_gone{nullptr}; ///< May be none.
-    PoseDoor* pose_door{nullptr};         ///< How the objects move; may be none.
-    TelemetryTap* telemetry{nullptr};     ///< Shows every frame; may be none.
+    Budgets budgets;                       ///< Of every frame, when there is no governor.
+    BudgetGovernor* governor{nullptr};     ///< Chooses each frame's budgets; may be none.
+    FrameTap* tap{nullptr};                ///< Takes every frame for a recording; may be none.
+    std::uint64_t frames{0};               ///< How many to run.
+    bool is_virtual{false};                ///< No time is measured: others work on the thread, too.
+    const ModelMarks* hosts_gone{nullptr}; ///< May be none.
+    const ModelMarks* starved{nullptr};    ///< Likewise.
+    PoseDoor* pose_door{nullptr};          ///< How the objects move; may be none.
+    TelemetryTap* telemetry{nullptr};      ///< Shows every frame; may be none.
+    FrontTap* front{nullptr};              ///< Shows what is refined; may be none.
+    TraceTap* trace{nullptr};              ///< Takes every frame's times; may be none.
 };
 
 /// The haptic thread's work: every period read the devices, run the frame, see that its forces are
@@ -80,8 +86,11 @@ private:
     void run_period() noexcept;
     void rehearse() noexcept;
     [[nodiscard]] FrameOutput run_frame(const FrameInput& input) noexcept;
+    [[nodiscard]] ThreadUsage thread_usage() const noexcept;
+    [[nodiscard]] Duration cpu_time() const noexcept;
     void measure_thread(const ThreadUsage& now) noexcept;
     void record(const FrameInput& input, const FrameOutput& output) noexcept;
+    void trace(const FrameOutput& output, MonotonicTime start) noexcept;
     void choose_budgets(const FrameOutput& output) noexcept;
     [[nodiscard]] bool has_to_end() noexcept;
     void read_devices() noexcept;
@@ -90,6 +99,11 @@ private:
     void make_safe(const FrameOutput& output) noexcept;
     [[nodiscard]] static bool touches_old_pose(std::uint32_t tool,
                                                const FrameOutput& output) noexcept;
+    [[nodiscard]] bool is_in_reach(const PairOutput& pair) const noexcept;
+    [[nodiscard]] bool may_touch(const PairOutput& pair, const FrameOutput& output) const noexcept;
+    void note_touches(const FrameOutput& output) noexcept;
+    [[nodiscard]] bool touches_what_outruns(std::uint32_t tool) const noexcept;
+    [[nodiscard]] bool starves(std::uint32_t tool, const FrameOutput& output) const noexcept;
     [[nodiscard]] double damping_touched(std::uint32_t tool,
                                          const FrameOutput& output) const noexcept;
     [[nodiscard]] ForceOff causes_for_all(const FrameOutput& output) const noexcept;
@@ -106,6 +120,9 @@ private:
     std::vector<ToolForce> forces_;     ///< Likewise, for those who keep figures.
     std::vector<double> radii_m_;       ///< One a tool.
     std::vector<DeviceRecord> devices_; ///< Likewise, for those who show or record.
+    /// After the last frame: what tools may touch, and whose touch each is.
+    StaticVector<ObjectTouch, kMaxPairs> touches_;
+    StaticVector<std::uint32_t, kMaxPairs> touching_;
     std::uint64_t frame_{0};
     std::uint64_t fade_frames_{0}; ///< That the last forces of a run take.
     std::uint64_t end_;            ///< Frame that is not run any more.

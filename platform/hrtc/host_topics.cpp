@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #include "platform/hrtc/host_topics.hpp"
 
+#include "rt_core/base/assert.hpp"
+
 #include <utility>
 
 namespace tactus::hrtc
@@ -9,7 +11,8 @@ namespace tactus::hrtc
 
 Result<std::unique_ptr<HostTopics>, Refusal> HostTopics::create(dds::DdsClient& client,
                                                                 const Controller& controller,
-                                                                std::unique_ptr<SceneKeeper> keeper)
+                                                                std::unique_ptr<SceneKeeper> keeper,
+                                                                bool shows_front)
 {
     std::unique_ptr<HostTopics> topics(new HostTopics(client, controller, std::move(keeper)));
     std::vector<ModelIdentity> identities;
@@ -26,6 +29,15 @@ Result<std::unique_ptr<HostTopics>, Refusal> HostTopics::create(dds::DdsClient& 
         return telemetry.error();
     }
     topics->telemetry_ = std::move(telemetry).value();
+    if (shows_front)
+    {
+        auto front = FrontSender::create(client, controller);
+        if (!front)
+        {
+            return front.error();
+        }
+        topics->front_ = std::move(front).value();
+    }
     return topics;
 }
 
@@ -38,9 +50,15 @@ HostTopics::HostTopics(const dds::DdsClient& client, const Controller& controlle
 {
 }
 
-void HostTopics::connect(PoseDoor& door, const TelemetryTap& tap, MonotonicTime now)
+void HostTopics::connect(PoseDoor& door, const TelemetryTap& tap, FrontTap* front,
+                         MonotonicTime now)
 {
     tap_ = &tap;
+    if (front_ != nullptr)
+    {
+        TACTUS_ASSERT(front != nullptr);
+        front_->connect(*front);
+    }
     if (keeper_ != nullptr)
     {
         keeper_->connect(door, now);
@@ -57,6 +75,10 @@ void HostTopics::step(MonotonicTime now)
     {
         last_sent_ = now;
         send_telemetry(now);
+    }
+    if (front_ != nullptr)
+    {
+        front_->step(now, keeper_.get());
     }
 }
 

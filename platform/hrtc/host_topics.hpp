@@ -4,6 +4,7 @@
 
 #include "platform/base/refusal.hpp"
 #include "platform/hrtc/controller.hpp"
+#include "platform/hrtc/front_sender.hpp"
 #include "platform/hrtc/scene_keeper.hpp"
 #include "platform/hrtc/telemetry_tap.hpp"
 #include "platform/remote/pose_door.hpp"
@@ -26,16 +27,19 @@ public:
     /// How often the controller's state is sent.
     static constexpr Duration kTelemetryPeriod = milliseconds(10);
 
-    /// `client` and `controller` must outlive it. What hosts show is passed over without `keeper`.
+    /// `client` and `controller` must outlive it. What hosts show is passed over without `keeper`,
+    /// what is refined is told unless `shows_front` is false.
     [[nodiscard]] static Result<std::unique_ptr<HostTopics>, Refusal>
     create(dds::DdsClient& client, const Controller& controller,
-           std::unique_ptr<SceneKeeper> keeper);
+           std::unique_ptr<SceneKeeper> keeper, bool shows_front);
 
-    /// Between these two and the haptic thread; both live as long as the run.
-    void connect(PoseDoor& door, const TelemetryTap& tap, MonotonicTime now);
+    /// Between these and the haptic thread; all live as long as the run. `front` may be null where
+    /// shows_front() is false.
+    void connect(PoseDoor& door, const TelemetryTap& tap, FrontTap* front, MonotonicTime now);
+    [[nodiscard]] bool shows_front() const noexcept { return front_ != nullptr; }
 
-    /// The transport thread, after the couriers' round: poses to the door, telemetry when it is
-    /// due.
+    /// The transport thread, after the couriers' round: poses to the door, telemetry and front when
+    /// they are due.
     void step(MonotonicTime now);
 
     /// One a model; none when what hosts show is passed over. While no step is under way.
@@ -48,6 +52,10 @@ public:
         return client_.domain().participants().refusals().list();
     }
     [[nodiscard]] std::uint64_t telemetry_sent() const noexcept { return telemetry_->sent(); }
+    [[nodiscard]] std::uint64_t fronts_sent() const noexcept
+    {
+        return front_ != nullptr ? front_->sent() : 0;
+    }
 
 private:
     /// What of one model's pieces was known when telemetry was last sent.
@@ -68,6 +76,7 @@ private:
     const Controller& controller_;
     std::unique_ptr<SceneKeeper> keeper_; ///< May be none.
     std::unique_ptr<dds::TelemetryWriter> telemetry_;
+    std::unique_ptr<FrontSender> front_; ///< Likewise.
     const TelemetryTap* tap_{nullptr};
     MonotonicTime last_sent_{};
     std::vector<Seen> seen_;

@@ -73,4 +73,9 @@ Machine describe_machine()
     return machine;
 }
 
+std::uint32_t silent_periods(const Machine& machine)
+{
+    return machine.preemption == "PREEMPT_RT" ? 3 : 10;
+}
+
 } // namespace tactus::hrtc

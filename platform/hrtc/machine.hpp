@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 namespace tactus::hrtc
@@ -19,5 +20,9 @@ struct Machine
 };
 
 [[nodiscard]] Machine describe_machine();
+
+/// For how many periods a loop may be silent here before that is a hang: a kernel without
+/// PREEMPT_RT keeps a thread waiting for some milliseconds again and again.
+[[nodiscard]] std::uint32_t silent_periods(const Machine& machine);
 
 } // namespace tactus::hrtc

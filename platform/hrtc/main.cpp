@@ -7,6 +7,7 @@
 #include "host_tools/cli/command_line.hpp"
 #include "host_tools/cli/run_program.hpp"
 #include "platform/hrtc/assertion_brake.hpp"
+#include "platform/hrtc/histogram_files.hpp"
 #include "platform/hrtc/options.hpp"
 #include "platform/hrtc/replay_file.hpp"
 #include "platform/hrtc/report.hpp"
@@ -21,6 +22,7 @@
 #include <nlohmann/json.hpp>
 
 #include <cstdio>
+#include <string_view>
 #include <variant>
 
 namespace tactus::hrtc
@@ -34,7 +36,7 @@ int touch(const Options& options)
     install_assertion_brake();
     if (!options.replay_path.empty())
     {
-        return replay_file(options.replay_path, options.kernels, log_line);
+        return replay_file(options.replay_path, options.kernels, options.export_paths, log_error);
     }
     auto session = Session::open(options);
     if (!session)
@@ -62,7 +64,15 @@ int touch(const Options& options)
         }
         fmt::print("report      {}\n", path);
     }
-    if (done.value().recording_error)
+    if (!options.histograms_folder.empty())
+    {
+        if (const auto error = write_histograms(done.value().statistics, options.histograms_folder))
+        {
+            return leave_with(failure("--histograms: " + error->text));
+        }
+        fmt::print("histograms  {}\n", options.histograms_folder);
+    }
+    if (done.value().recording_error || done.value().trace_error)
     {
         return kExitFailed;
     }
@@ -71,6 +81,11 @@ int touch(const Options& options)
 
 int run(int argc, char** argv)
 {
+    char help[] = "--help";
+    if (argc > 1 && std::string_view(argv[1]) == "help")
+    {
+        argv[1] = help;
+    }
     if (const auto* subcommand = find_subcommand(argc, argv))
     {
         return subcommand->run(argc - 1, argv + 1);

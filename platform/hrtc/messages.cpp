@@ -3,11 +3,8 @@
 #include "platform/hrtc/messages.hpp"
 
 #include "host_tools/cli/command_line.hpp"
-#include "platform/base/printable.hpp"
+#include "platform/base/program_log.hpp"
 
-#include <fmt/format.h>
-
-#include <cstdio>
 #include <utility>
 
 namespace tactus::hrtc
@@ -25,13 +22,18 @@ Refusal interruption()
 
 int leave_with(const Refusal& error)
 {
-    log_line(error.text);
+    log_error(error.text);
     return error.is_usage ? kExitUsage : kExitFailed;
 }
 
-void log_line(std::string line)
+void log_error(const std::string& line)
 {
-    fmt::print(stderr, "hrtc: {}\n", printable_line(line));
+    log_message(LogLevel::error, "hrtc", line);
+}
+
+void log_line(const std::string& line)
+{
+    log_message(LogLevel::warning, "hrtc", line);
 }
 
 } // namespace tactus::hrtc

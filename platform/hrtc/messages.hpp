@@ -15,11 +15,13 @@ namespace tactus::hrtc
 /// Why a run that SIGINT or SIGTERM ended can't be judged.
 [[nodiscard]] Refusal interruption();
 
-/// Prints it as one line on stderr; returns the code to leave with.
+/// Logs it as an error; returns the code to leave with.
 int leave_with(const Refusal& error);
 
-/// Prints one line on stderr behind the program's name, whatever is in it: file names may hold
-/// control characters.
-void log_line(std::string line);
+/// Logs what the program couldn't do.
+void log_error(const std::string& line);
+
+/// Logs a warning, whatever is in it: file names may hold control characters.
+void log_line(const std::string& line);
 
 } // namespace tactus::hrtc

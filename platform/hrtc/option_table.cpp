@@ -20,6 +20,7 @@ constexpr double kFrameBudgetMax_us = 10'000.0;
 /// The models, the tools that touch them and their devices.
 void declare_scene(CommandLine& line, Options& options, RawOptions& raw)
 {
+    line.begin_task("What is touched", "hrtc ball.spm --place 0,0,0.1 --material 800,0.6,0.4");
     line.add_option("FILE", raw.files,
                     "Models to touch without a host (.spm), or a scene (.gltf, .glb): as --model "
                     "FILE and --scene FILE")
@@ -48,14 +49,30 @@ void declare_scene(CommandLine& line, Options& options, RawOptions& raw)
             "--model: STIFFNESS in N/m, 1 to "
             "3000, the softer of this and --stiffness counts [,STATIC friction, 0 to 3 "
             "[,DYNAMIC friction, at most the static one [,DAMPING in N s/m, 0 to 20]]]; or any "
-            "of stiffness=, static=, dynamic= and damping=, with commas between")
+            "of stiffness=, static=, dynamic=, damping=, viscosity= (drag along the surface in N "
+            "s/m, 0 to 20), texture_height= and texture_length= (bumps that points and balls feel, "
+            "in m, at most 1/32 as high as long), with commas between")
         .repeatable();
+    line.begin_task("Hands, tools and devices",
+                    "hrtc ball.spm --tool sphere:0.002 --device udp:48500");
     line.add_option(
             "--tool", raw.tools,
             "Tool, in metres: point; sphere:R; capsule:R,L, an axis of length L along z; "
             "box:X,Y,Z[,R]; hull:FILE[,R], of a mesh file's corners; mesh:NAME[@HASH][,R], a model "
             "(with --transport file its path); R is a radius all round; repeatable [one sphere of "
             "1 % of the first model's diagonal]")
+        .repeatable();
+    line.add_option("--tool-mass", raw.tool_masses,
+                    "What hangs on the device and is to weigh nothing in the hand, one for each "
+                    "tool in order: KG, 0 to 5 [,X,Y,Z of its centre in the tool's frame, within "
+                    "1 m]; down is the device's -z; repeatable [0]")
+        .repeatable();
+    line.add_option("--guide", raw.guides,
+                    "A spring of its own that guides the tool, one for each in order; world "
+                    "coordinates in m: point:X,Y,Z pulls it there; line:X,Y,Z,DX,DY,DZ to the line "
+                    "through X,Y,Z along D; plane:X,Y,Z,NX,NY,NZ pushes it back to the side where "
+                    "N points; each with [,STIFFNESS in N/m, 1 to 3000 [100] [,FORCE at most, in "
+                    "N, 0.01 to 100 [1]]]; none for a tool without; repeatable [none]")
         .repeatable();
     line.add_option("--tools", raw.tool_count,
                     "So many tools of that size, where no --tool says more; 1 to 16 [1]")
@@ -64,7 +81,19 @@ void declare_scene(CommandLine& line, Options& options, RawOptions& raw)
                     "What moves the tool, one for each --tool in order: sim[:CLASS], a simulated "
                     "hand on a device of the class touch, omega or delta; udp[:[ADDRESS:]PORT], a "
                     "driver of your own; dhd[:INDEX], a device of Force "
-                    "Dimension's; replay:FILE, the hand of a recording; repeatable [sim]")
+                    "Dimension's; replay:FILE, the hand of a recording; plugin:FILE[,WORDS], a "
+                    "library of your own; "
+                    "repeatable [sim]")
+        .repeatable();
+    line.add_option("--device-key", raw.device_key,
+                    "File with the key that udp devices and their drivers seal their datagrams "
+                    "with: 64 hexadecimal digits, readable by its owner or group alone [no seal: "
+                    "whoever sends is believed]");
+    line.add_option("--device-limits", raw.device_limits,
+                    "What is true of a device that doesn't tell it, one for each sim or dhd in "
+                    "order: KEY=VALUE with commas between, as mass_kg=0.2,damping_n_s_per_m=1.5; "
+                    "what stability depends on, so measure it; repeatable [as the class; of dhd "
+                    "what is safe for most]")
         .repeatable();
     line.add_option("--device-frame", raw.device_frames,
                     "Where the device's coordinates are in the world, one for each --device in "
@@ -76,13 +105,17 @@ void declare_scene(CommandLine& line, Options& options, RawOptions& raw)
                     "from that frame on for so many; repeatable")
         .repeatable();
     line.add_option(
-        "--motion", raw.motion,
-        "What simulated hands do: script, free, approach, slide, tap, teleport, spin, tremor, "
-        "turn, edge or peg [script]");
+            "--motion", raw.motions,
+            "What simulated hands do: script, free, approach, slide, tap, teleport, spin, tremor, "
+            "turn, edge or peg; with :MODEL behind it, on the first object that shows this model; "
+            "one for each tool in order, others as the last; repeatable [script, each hand on "
+            "another object]")
+        .repeatable();
 }
 
-void declare_run(CommandLine& line, Options& options)
+void declare_run(CommandLine& line, Options& options, const CommandForm& form)
 {
+    line.begin_task("The run", "hrtc ball.spm --duration 5 --report run.html --report run.json");
     line.add_option("--rate", options.rate_hz, "Frames a second")
         .integer_between(SimulatedDeviceOptions::kRateMinHz, SimulatedDeviceOptions::kRateMaxHz)
         .show_default();
@@ -96,11 +129,22 @@ void declare_run(CommandLine& line, Options& options)
                     "Write the report to this file: JSON when its name ends in .json, a page when "
                     "it ends in .html; repeatable")
         .repeatable();
+    if (!form.records)
+    {
+        return;
+    }
+    line.add_option("--histograms", options.histograms_folder,
+                    "Write the percentiles of each time of the report into this folder, as "
+                    "HdrHistogram prints them: frame.hgrm and so on");
+    line.add_option("--trace", options.trace_path,
+                    "Write when each frame, its stages, the door and the courier did what, in "
+                    "Chrome's trace format (.json), which Perfetto opens; some 0.7 MB a second");
 }
 
 /// Memory, and the work of a frame.
 void declare_budgets(CommandLine& line, Options& options, RawOptions& raw)
 {
+    line.begin_task("Memory and work", "hrtc large.spm --pool-mib 16 --frame-budget-us 500");
     line.add_option("--pool-mib", options.pool_mib,
                     "Memory for all pools of all models, in MiB, at most, everything counted")
         .number_between(0.25, kLargestPool_mib)
@@ -129,6 +173,7 @@ void declare_budgets(CommandLine& line, Options& options, RawOptions& raw)
 
 void declare_force(CommandLine& line, Options& options)
 {
+    line.begin_task("How it feels", "hrtc ball.spm --stiffness 1000");
     line.add_option("--stiffness", options.stiffness_n_per_m, "Of the virtual wall, in N/m")
         .number_between(1.0, kStiffest_n_per_m)
         .show_default();
@@ -143,6 +188,11 @@ void declare_force(CommandLine& line, Options& options)
     line.add_option("--speed-limit", options.speed_limit_m_per_s,
                     "Speed of the hand, in m/s, above which its force fades [the device's own]")
         .number_between(0.01, 100.0);
+    line.add_option("--object-speed", options.object_speed_m_per_s,
+                    "In m/s, the most that is believed of an object that a tool touches: it is "
+                    "carried no faster, and the force fades while its host moves it farther")
+        .number_between(0.001, 100.0)
+        .show_default();
     line.add_option("--follow-speed", options.follow_speed_m_per_s,
                     "In m/s, at which a tool in contact follows a faster hand; what it needs round "
                     "itself grows with it [a diagonal of the first model a second]")
@@ -151,10 +201,11 @@ void declare_force(CommandLine& line, Options& options)
 
 void declare_transport(CommandLine& line, Options& options, RawOptions& raw)
 {
+    line.begin_task("Where models come from", "hrtc --model ball --domain 7 --wait 60");
     line.add_option("--transport", raw.transport,
                     "Where models come from [files where they are named, else DDS]")
         .one_of({"dds", "file"});
-    line.add_option("--domain", options.domain, "DDS domain id")
+    line.add_option("--domain", options.domain, "DDS domain")
         .integer_between(0, 232)
         .show_default();
     line.add_option("--name", options.name,
@@ -163,6 +214,8 @@ void declare_transport(CommandLine& line, Options& options, RawOptions& raw)
     line.add_flag("--ignore-poses", raw.ignores_poses,
                   "Leave the objects where --place or --scene put them at the start, whatever "
                   "their hosts say");
+    line.add_flag("--no-front", raw.hides_front,
+                  "With DDS: do not tell viewers (spm_view) which parts of the models are refined");
     line.add_option("--wait", options.wait_s,
                     "Seconds to wait for a model to be published, and for a device to come")
         .number_between(0.1, 3'600.0)
@@ -171,10 +224,15 @@ void declare_transport(CommandLine& line, Options& options, RawOptions& raw)
 
 void declare_thread(CommandLine& line, Options& options, RawOptions& raw)
 {
+    line.begin_task("The machine", "hrtc ball.spm --cpu 1 --priority 90");
     line.add_option("--priority", options.thread.priority,
                     "SCHED_FIFO priority of the haptic thread")
         .integer_between(RtThreadOptions::kPriorityMin, RtThreadOptions::kPriorityMax)
         .show_default();
+    line.add_option("--supervisor-periods", options.supervisor_periods,
+                    "Periods that the haptic loop may be silent until the supervisor takes the "
+                    "forces away [3 on a PREEMPT_RT kernel, 10 elsewhere]")
+        .integer_between(2U, 1'000U);
     line.add_option("--cpu", raw.cpu, "Processor of the haptic thread [left to the system]")
         .integer_between(0, 1'023);
     line.add_flag("--allow-no-rt", options.thread.allow_no_rt,
@@ -187,6 +245,8 @@ void declare_thread(CommandLine& line, Options& options, RawOptions& raw)
 /// The file's keys are the options' names without the dashes.
 void declare_config(CommandLine& line, RawOptions& raw)
 {
+    line.begin_task("Options from a file",
+                    "hrtc ball.spm --print-config >my.toml; hrtc --config my.toml");
     line.add_option_file("--config",
                          "Read options from this TOML file; the command line goes first");
     line.add_flag("--print-config", raw.prints_config,
@@ -196,13 +256,24 @@ void declare_config(CommandLine& line, RawOptions& raw)
 
 void declare_recording(CommandLine& line, Options& options)
 {
+    line.begin_task("Runs that can be repeated",
+                    "hrtc ball.spm --record run.rec; hrtc --replay run.rec");
+    line.add_flag("--virtual-time", options.virtual_time,
+                  "With models from files and simulated or recorded hands: a clock that stands "
+                  "still while anything is computed, so that the run is as fast as the machine "
+                  "goes, comes out the same each time, and says nothing of deadlines");
     line.add_option(
         "--record", options.record_path,
         "Record all that goes into every frame, and hashes of what comes out, into this "
         "file");
     line.add_option("--replay", options.replay_path,
                     "Instead of a run: give the frames of a recording the same again; exit code 1 "
-                    "when one comes out otherwise. Takes --kernels and no other option");
+                    "when one comes out otherwise. Takes --kernels, --export and no other option");
+    line.add_option("--export", options.export_paths,
+                    "With --replay: write its frames for other tools, with all that went in and "
+                    "came out: a table when the name ends in .csv, JSON lines when in .jsonl, for "
+                    "PlotJuggler and Foxglove when in .mcap; repeatable")
+        .repeatable();
 }
 
 } // namespace
@@ -211,7 +282,7 @@ void declare_options(CommandLine& line, Options& options, RawOptions& raw, const
 {
     line.add_version(std::string("hrtc ") + TACTUS_VERSION);
     declare_scene(line, options, raw);
-    declare_run(line, options);
+    declare_run(line, options, form);
     declare_budgets(line, options, raw);
     declare_force(line, options);
     declare_transport(line, options, raw);
@@ -221,6 +292,7 @@ void declare_options(CommandLine& line, Options& options, RawOptions& raw, const
     {
         declare_recording(line, options);
     }
+    line.add_log_options();
     if (form.declare)
     {
         form.declare(line);

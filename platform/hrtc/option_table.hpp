@@ -19,17 +19,22 @@ struct RawOptions
     std::vector<std::string> places;
     std::vector<std::string> materials;
     std::vector<std::string> tools;
+    std::vector<std::string> tool_masses;
+    std::vector<std::string> guides;
     std::optional<std::uint32_t> tool_count;
     std::vector<std::string> devices;
+    std::optional<std::string> device_key;
+    std::vector<std::string> device_limits;
     std::vector<std::string> device_frames;
     std::vector<std::string> device_faults;
-    std::optional<std::string> motion;
+    std::vector<std::string> motions;
     std::optional<std::string> transport;
     std::string prediction{prediction_name(Prediction::automatic)};
     std::optional<std::string> kernels;
     std::optional<int> cpu;
     bool prints_config{false};
     bool ignores_poses{false};
+    bool hides_front{false};
     bool refines_always{false};
 };
 

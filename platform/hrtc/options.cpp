@@ -3,11 +3,15 @@
 #include "platform/hrtc/options.hpp"
 
 #include "host_tools/cli/command_line.hpp"
+#include "host_tools/scene/material_ranges.hpp"
+#include "host_tools/scene/material_text.hpp"
+#include "platform/base/numbers.hpp"
 #include "platform/base/printable.hpp"
+#include "platform/export/frame_export.hpp"
+#include "platform/hrtc/device_key.hpp"
+#include "platform/hrtc/device_limits_text.hpp"
 #include "platform/hrtc/file_choice.hpp"
 #include "platform/hrtc/kernel_choice.hpp"
-#include "platform/hrtc/material_choice.hpp"
-#include "platform/hrtc/numbers.hpp"
 #include "platform/hrtc/option_table.hpp"
 #include "platform/hrtc/report_page.hpp"
 #include "rt_core/limits.hpp"
@@ -52,23 +56,56 @@ std::string check_replay(const CommandLine& line)
 {
     for (const std::string& name : line.given())
     {
-        if (name != "--replay" && name != "--kernels")
+        if (name != "--replay" && name != "--kernels" && name != "--export" &&
+            name != "--log-level" && name != "--json-log")
         {
-            return "--replay: takes --kernels and no other option; " + name + " was given";
+            return "--replay: takes --kernels, --export and no other option; " + name +
+                   " was given";
         }
     }
     return {};
 }
 
+std::string check_exports(const Options& options)
+{
+    for (const std::string& path : options.export_paths)
+    {
+        if (options.replay_path.empty())
+        {
+            return "--export: needs --replay";
+        }
+        if (!is_export_name(path))
+        {
+            return fmt::format("--export: '{}' ends neither in .csv nor in .jsonl or .mcap",
+                               printable(path));
+        }
+        if (std::ranges::count(options.export_paths, path) > 1)
+        {
+            return fmt::format("--export: '{}' is given twice", printable(path));
+        }
+        if (path == options.replay_path)
+        {
+            return "--export: must be another file than --replay";
+        }
+    }
+    return "";
+}
+
 std::string check_files(const CommandLine& line, const Options& options)
 {
     for (const auto& [name, path] :
-         {std::pair("--record", &options.record_path), std::pair("--replay", &options.replay_path)})
+         {std::pair("--record", &options.record_path), std::pair("--replay", &options.replay_path),
+          std::pair("--trace", &options.trace_path),
+          std::pair("--histograms", &options.histograms_folder)})
     {
         if (line.is_given(name) && path->empty())
         {
             return std::string(name) + ": a file's name is needed";
         }
+    }
+    if (const std::string fault = check_exports(options); !fault.empty())
+    {
+        return fault;
     }
     for (const std::string& path : options.report_paths)
     {
@@ -85,10 +122,18 @@ std::string check_files(const CommandLine& line, const Options& options)
         {
             return fmt::format("--report: '{}' is given twice", printable(path));
         }
-        if (path == options.record_path)
+        for (const auto& [name, other] : {std::pair("--record", &options.record_path),
+                                          std::pair("--trace", &options.trace_path)})
         {
-            return "--record: must be another file than --report";
+            if (path == *other)
+            {
+                return fmt::format("{}: must be another file than --report", name);
+            }
         }
+    }
+    if (!options.trace_path.empty() && options.trace_path == options.record_path)
+    {
+        return "--trace: must be another file than --record";
     }
     return "";
 }
@@ -160,6 +205,7 @@ std::string check_places(Options& options, const RawOptions& raw)
             return fmt::format("--place: '{}' is not {}", printable(raw.places[i]), kPlacementForm);
         }
         options.objects[i].place = *place;
+        options.objects[i].has_place = true;
     }
     return {};
 }
@@ -172,16 +218,19 @@ std::string check_materials(Options& options, const RawOptions& raw)
         const std::optional<Material> material = parse_material(raw.materials[i]);
         if (!material)
         {
-            return fmt::format("--material: '{}' is not {}", printable(raw.materials[i]),
-                               kMaterialForm);
+            return fmt::format("--material: '{}' is not {}, with {}", printable(raw.materials[i]),
+                               kMaterialForm, kMaterialRanges);
         }
         options.objects[i].material = *material;
+        options.objects[i].has_material = true;
     }
     for (std::size_t i = raw.models.size(); i < options.objects.size(); ++i)
     {
         if (i >= raw.materials.size())
         {
-            options.objects[i].material = options.objects[raw.models.size() - 1].material;
+            const PlacedObject& last = options.objects[raw.models.size() - 1];
+            options.objects[i].material = last.material;
+            options.objects[i].has_material = last.has_material;
         }
     }
     return {};
@@ -212,6 +261,46 @@ std::string check_tools(Options& options, const RawOptions& raw)
     return {};
 }
 
+/// After the tools. Empty when all is well.
+std::string check_tool_masses(Options& options, const RawOptions& raw)
+{
+    if (raw.tool_masses.size() > options.tools)
+    {
+        return fmt::format("--tool-mass: {} given for {} tools", raw.tool_masses.size(),
+                           options.tools);
+    }
+    for (const std::string& text : raw.tool_masses)
+    {
+        const std::optional<ToolLoad> load = parse_tool_mass(text);
+        if (!load)
+        {
+            return fmt::format("--tool-mass: '{}' is not {}", printable(text), kToolMassForm);
+        }
+        options.tool_loads.push_back(*load);
+    }
+    return {};
+}
+
+/// After the tools. Empty when all is well.
+std::string check_guides(Options& options, const RawOptions& raw)
+{
+    if (raw.guides.size() > options.tools)
+    {
+        return fmt::format("--guide: {} given for {} tools", raw.guides.size(), options.tools);
+    }
+    for (const std::string& text : raw.guides)
+    {
+        const bool is_none = text == "none";
+        std::optional<GuideChoice> guide = is_none ? std::nullopt : parse_guide(text);
+        if (!guide && !is_none)
+        {
+            return fmt::format("--guide: '{}' is not {}", printable(text), kGuideForm);
+        }
+        options.guides.push_back(std::move(guide));
+    }
+    return {};
+}
+
 /// Where the devices are in the world. Empty when all is well.
 std::string check_device_frames(Options& options, const RawOptions& raw)
 {
@@ -233,6 +322,61 @@ std::string check_device_frames(Options& options, const RawOptions& raw)
     return {};
 }
 
+/// Of those that don't tell them: tools without a --device have a simulated one. Empty when all is
+/// well.
+std::string check_device_limits(Options& options, const RawOptions& raw)
+{
+    std::size_t device = 0;
+    for (const std::string& text : raw.device_limits)
+    {
+        while (device < options.devices.size() &&
+               options.devices[device].kind != DeviceKind::simulated &&
+               options.devices[device].kind != DeviceKind::dhd)
+        {
+            ++device;
+        }
+        if (device == options.devices.size() && device < options.tools)
+        {
+            options.devices.emplace_back();
+        }
+        if (device == options.devices.size())
+        {
+            return fmt::format("--device-limits: '{}': no sim or dhd device is left; others tell "
+                               "their own",
+                               printable(text));
+        }
+        if (const std::string fault = set_device_limits(text, options.devices[device].limits);
+            !fault.empty())
+        {
+            return "--device-limits: " + fault;
+        }
+        ++device;
+    }
+    return {};
+}
+
+/// Of all that are driven over datagrams. Empty when all is well.
+std::string check_device_key(Options& options, const RawOptions& raw)
+{
+    if (!raw.device_key)
+    {
+        return {};
+    }
+    auto seal = read_device_key(*raw.device_key);
+    if (!seal)
+    {
+        return seal.error().text;
+    }
+    bool has_any = false;
+    for (DeviceChoice& device : options.devices)
+    {
+        const bool is_udp = device.kind == DeviceKind::udp;
+        device.seal = is_udp ? seal.value() : nullptr;
+        has_any = has_any || is_udp;
+    }
+    return has_any ? "" : "--device-key: there is no udp device";
+}
+
 /// After the tools: each device moves one. Empty when all is well.
 std::string check_devices(Options& options, const RawOptions& raw)
 {
@@ -250,11 +394,19 @@ std::string check_devices(Options& options, const RawOptions& raw)
         const std::optional<DeviceChoice> device = parse_device(text);
         if (!device)
         {
-            return fmt::format("--device: '{}' is not {}", printable(text), kDeviceForms);
+            return fmt::format("--device: '{}' is not {}", printable(text),
+                               device_forms_like(text));
         }
         options.devices.push_back(*device);
     }
-    return check_device_frames(options, raw);
+    for (const auto check : {check_device_limits, check_device_key, check_device_frames})
+    {
+        if (std::string fault = check(options, raw); !fault.empty())
+        {
+            return fault;
+        }
+    }
+    return {};
 }
 
 /// What is said of simulated devices only. Empty when all is well.
@@ -274,20 +426,30 @@ std::string check_simulated(Options& options, const RawOptions& raw)
         }
         options.device_faults.push_back(*fault);
     }
-    const std::optional<MotionKind> motion = motion_named(raw.motion.value_or("script"));
-    if (!motion)
+    if (raw.motions.size() > options.tools)
     {
-        return fmt::format("--motion: '{}' is not {}", printable(*raw.motion), kMotionNames);
+        return fmt::format("--motion: {} given for {} tools", raw.motions.size(), options.tools);
     }
-    options.motion = *motion;
+    for (const std::string& text : raw.motions)
+    {
+        const std::size_t colon = std::min(text.find(':'), text.size());
+        const std::optional<MotionKind> motion = motion_named(text.substr(0, colon));
+        if (!motion || colon + 1 == text.size())
+        {
+            return fmt::format("--motion: '{}' is not {}, perhaps with :MODEL behind it",
+                               printable(text), kMotionNames);
+        }
+        options.hands.push_back(
+            {*motion, colon < text.size() ? text.substr(colon + 1) : std::string()});
+    }
     const bool has_others_only =
         options.devices.size() == options.tools &&
         std::ranges::none_of(options.devices, [](const DeviceChoice& device)
                              { return device.kind == DeviceKind::simulated; });
-    if (has_others_only && (raw.motion || !raw.device_faults.empty()))
+    if (has_others_only && (!raw.motions.empty() || !raw.device_faults.empty()))
     {
         return fmt::format("{}: there is no simulated device",
-                           raw.motion ? "--motion" : "--device-fault");
+                           !raw.motions.empty() ? "--motion" : "--device-fault");
     }
     return {};
 }
@@ -338,6 +500,39 @@ std::string check_budgets(const CommandLine& line, Options& options)
     return {};
 }
 
+/// Only what the program itself moves and reads can wait for it. Empty when all is well.
+std::string check_virtual_time(Options& options)
+{
+    if (!options.virtual_time)
+    {
+        return {};
+    }
+    if (options.transport != TransportKind::file)
+    {
+        return "--virtual-time: takes models from files; hosts keep to the time of day";
+    }
+    if (std::ranges::any_of(
+            options.devices, [](const DeviceChoice& device)
+            { return device.kind != DeviceKind::simulated && device.kind != DeviceKind::replay; }))
+    {
+        return "--virtual-time: takes devices that are simulated or recorded; others keep to the "
+               "time of day";
+    }
+    if (options.frame_budget_us)
+    {
+        return "--virtual-time: a frame takes no time there that --frame-budget-us could limit";
+    }
+    if (!options.trace_path.empty() || !options.histograms_folder.empty())
+    {
+        return fmt::format("--virtual-time: takes no time that {} could tell of",
+                           options.trace_path.empty() ? "--histograms" : "--trace");
+    }
+    options.thread.is_realtime = false;
+    options.thread.lock_memory = false;
+    options.thread.processors_awake = false;
+    return {};
+}
+
 /// Empty when all is well.
 std::string check_kernels(Options& options, const RawOptions& raw)
 {
@@ -373,8 +568,8 @@ std::string check_together(const CommandLine& line, Options& options, RawOptions
     {
         return fault;
     }
-    for (const auto check :
-         {check_models, check_places, check_materials, check_tools, check_devices, check_simulated})
+    for (const auto check : {check_models, check_places, check_materials, check_tools,
+                             check_tool_masses, check_guides, check_devices, check_simulated})
     {
         if (const std::string fault = check(options, raw); !fault.empty())
         {
@@ -388,6 +583,10 @@ std::string check_together(const CommandLine& line, Options& options, RawOptions
     options.prediction = static_cast<Prediction>(
         std::ranges::find(kPredictionNames, raw.prediction) - kPredictionNames.begin());
     options.transport = raw.transport == "file" ? TransportKind::file : TransportKind::dds;
+    if (const std::string fault = check_virtual_time(options); !fault.empty())
+    {
+        return fault;
+    }
     return options.transport == TransportKind::dds ? check_names(line, options) : "";
 }
 
@@ -410,6 +609,7 @@ std::variant<Options, int> parse_options(int argc, char** argv, const CommandFor
     }
     options.thread.cpu = raw.cpu;
     options.follows_poses = !raw.ignores_poses;
+    options.shows_front = !raw.hides_front;
     options.static_when_it_fits = !raw.refines_always;
     options.as_file = option_file(line, options, raw);
     if (raw.prints_config)

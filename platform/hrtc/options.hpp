@@ -3,6 +3,7 @@
 #pragma once
 
 #include "platform/hrtc/device_choice.hpp"
+#include "platform/hrtc/guide.hpp"
 #include "platform/hrtc/placement.hpp"
 #include "platform/hrtc/tool_choice.hpp"
 #include "platform/rt_thread.hpp"
@@ -39,6 +40,15 @@ struct PlacedObject
     std::size_t model{0}; ///< Of Options::models.
     Similarity place;
     Material material;
+    bool has_place{false}; ///< Of --place.
+    bool has_material{false};
+};
+
+/// What a simulated hand does, and on what.
+struct HandChoice
+{
+    MotionKind motion{MotionKind::script};
+    std::string model; ///< By its name; empty: each hand has another object.
 };
 
 /// Everything that the command line says; checked, in SI.
@@ -51,21 +61,27 @@ struct Options
     std::string scene;
     std::uint32_t objects_max{0}; ///< Room for so many; 0: as many as there are.
     std::size_t tools{1};
-    std::vector<ToolChoice> tool_choices;   ///< One a tool; none: all are default_tool().
+    std::vector<ToolChoice> tool_choices; ///< One a tool; none: all are default_tool().
+    std::vector<ToolLoad> tool_loads;     ///< One a tool; fewer: the others weigh nothing.
+    std::vector<std::optional<GuideChoice>> guides; ///< One a tool; fewer: the others have none.
     std::vector<DeviceChoice> devices;      ///< One a tool; fewer: the others are simulated.
     std::vector<DeviceFault> device_faults; ///< Of every simulated device.
-    MotionKind motion{MotionKind::script};  ///< Likewise.
+    std::vector<HandChoice> hands;          ///< One a tool; fewer: the others as the last.
     TransportKind transport{TransportKind::dds};
     std::uint32_t domain{0};
     std::string name;         ///< Of the controller, with DDS; empty: hrtc-PID.
     bool follows_poses{true}; ///< Objects move as the hosts say.
+    bool shows_front{true};   ///< With DDS: tells which records are split.
     double wait_s{10.0};      ///< For a model that nobody publishes yet, or a device.
     std::int64_t rate_hz{1'000};
     double duration_s{10.0};
     std::vector<std::string> report_paths;
-    std::string record_path; ///< Empty: no recording.
-    std::string replay_path; ///< Not empty: replay this recording; but for `kernels`, nothing else
-                             ///< is set then.
+    std::string record_path;       ///< Empty: no recording.
+    std::string trace_path;        ///< Empty: no trace.
+    std::string histograms_folder; ///< Empty: no histograms.
+    std::string replay_path; ///< Not empty: replay this recording; but for `kernels` and the next
+                             ///< one, nothing else is set then.
+    std::vector<std::string> export_paths; ///< Of a replay, for other tools.
     double pool_mib{2.0};
     double cache_mib{0.0};                 ///< 0: the usual share of the pool.
     std::uint32_t splits{64};              ///< At most, when there is a frame budget.
@@ -76,12 +92,16 @@ struct Options
     double stiffness_n_per_m{500.0};
     double angular_stiffness_nm_per_rad{0.0};  ///< 0: as the stiffness and the tool's size make it.
     std::optional<double> speed_limit_m_per_s; ///< None: the device's own.
+    double object_speed_m_per_s{0.5};          ///< Believed of an object that is touched.
     std::optional<std::uint32_t> clutch_button; ///< Of every device.
+    /// Of a silent loop, until the supervisor brakes. None: as the kernel can promise.
+    std::optional<std::uint32_t> supervisor_periods;
     /// None: one diagonal of the first model a second.
     std::optional<double> follow_speed_m_per_s;
     bool trap_system_calls{false};
-    bool strict{false};  ///< What is lost in a run, or comes to nothing, is a failure.
-    std::string as_file; ///< All options, as a file for --config.
+    bool virtual_time{false}; ///< See LoopTime; with files and hands that the program moves alone.
+    bool strict{false};       ///< What is lost in a run, or comes to nothing, is a failure.
+    std::string as_file;      ///< All options, as a file for --config.
     RtThreadOptions thread;
 
     [[nodiscard]] std::size_t pool_bytes() const noexcept
@@ -101,7 +121,7 @@ struct CommandForm
     std::string name{"hrtc"};
     std::string description{"Haptic real-time controller: touches models that a host publishes, "
                             "every period, exactly or with a proven bound."};
-    bool records{true}; ///< Takes --record and --replay, too.
+    bool records{true}; ///< Takes --record, --replay, --trace and --histograms, too.
     double duration_s{10.0};
     std::function<void(CommandLine&)> declare; ///< Its own options; none when empty.
     std::string footer;                        ///< Of --help.

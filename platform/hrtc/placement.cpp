@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #include "platform/hrtc/placement.hpp"
 
-#include "platform/hrtc/numbers.hpp"
+#include "platform/base/numbers.hpp"
 #include "rt_core/limits.hpp"
 
 #include <Eigen/Geometry>

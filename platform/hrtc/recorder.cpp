@@ -2,21 +2,12 @@
 // Copyright the Tactus authors.
 #include "platform/hrtc/recorder.hpp"
 
-#include <chrono>
 #include <utility>
 
 namespace tactus::hrtc
 {
 
-namespace
-{
-
-/// Pause between two rounds; the tap holds some 300 ms at the highest rate.
-constexpr std::chrono::milliseconds kWriterPause{5};
-
-} // namespace
-
-Recorder::Recorder(AtomicFile file, const FrameSetup& setup, Courier& courier)
+Recorder::Recorder(AtomicFile file, const FrameSetup& setup, Courier& courier, Worker worker)
     : file_(std::move(file)), courier_(courier), writer_(to_recorded(setup))
 {
     for (std::uint32_t model = 0; model < courier_.model_count(); ++model)
@@ -24,7 +15,10 @@ Recorder::Recorder(AtomicFile file, const FrameSetup& setup, Courier& courier)
         sinks_.push_back(std::make_unique<Sink>(*this, model));
         courier_.copy_pieces_to(sinks_.back().get(), model);
     }
-    thread_ = std::thread([this] { run(); });
+    if (worker == Worker::own_thread)
+    {
+        thread_.emplace([this] { step(); });
+    }
 }
 
 Recorder::~Recorder()
@@ -55,22 +49,14 @@ Result<RecordingResult, Refusal> Recorder::finish()
 
 void Recorder::stop()
 {
-    stopped_.store(true);
-    if (thread_.joinable())
-    {
-        thread_.join();
-        take_frames();
-    }
+    thread_.reset();
+    take_frames();
 }
 
-void Recorder::run()
+void Recorder::step()
 {
-    while (!stopped_.load())
-    {
-        take_frames();
-        store();
-        std::this_thread::sleep_for(kWriterPause);
-    }
+    take_frames();
+    store();
 }
 
 /// A piece is copied before it goes through the door, so those of a frame that has run are here.

@@ -4,16 +4,15 @@
 
 #include "platform/base/atomic_file.hpp"
 #include "platform/base/refusal.hpp"
+#include "platform/hrtc/writer_thread.hpp"
 #include "platform/recording/frame_tap.hpp"
 #include "platform/recording/recording_writer.hpp"
 #include "transport/courier.hpp"
 
-#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <thread>
 #include <vector>
 
 namespace tactus::hrtc
@@ -27,20 +26,29 @@ struct RecordingResult
     std::uint64_t lost_from{kNoFrame}; ///< First frame that is missing; kNoFrame: none is.
 };
 
-/// Writes a run's recording on a thread of its own, of ordinary priority. Frames come from the
-/// haptic thread through a FrameTap, which never waits; pieces from the transport thread.
+/// Writes a run's recording, on a thread of its own, of ordinary priority, or where somebody calls
+/// step(). Frames come from the haptic thread through a FrameTap, which never waits; pieces from
+/// the transport thread.
 class Recorder
 {
 public:
-    /// Starts the thread, so before the haptic thread: threads inherit policy and processor. The
-    /// courier must outlive the recorder, and nobody may run it while this is made or destroyed.
-    Recorder(AtomicFile file, const FrameSetup& setup, Courier& courier);
+    enum class Worker : std::uint8_t
+    {
+        own_thread, ///< Starts here, so before the haptic thread: it inherits policy and processor.
+        caller,     ///< Of step(), at least twice in the time that the tap holds.
+    };
+    /// The courier must outlive the recorder, and nobody may run it while this is made or
+    /// destroyed.
+    Recorder(AtomicFile file, const FrameSetup& setup, Courier& courier, Worker worker);
     Recorder(const Recorder&) = delete;
     Recorder& operator=(const Recorder&) = delete;
     ~Recorder();
 
     /// What the haptic thread records through.
     [[nodiscard]] FrameTap& tap() noexcept { return tap_; }
+
+    /// Writes what waits. The caller's thread, if that is the worker.
+    void step();
 
     /// Writes what waits, ends the recording and gives the file its name. Once, when no frame runs
     /// any more.
@@ -65,7 +73,6 @@ private:
         std::uint32_t model_;
     };
 
-    void run();
     void stop();
     void take_frames();
     void take_pieces();
@@ -79,8 +86,7 @@ private:
     std::mutex mutex_;
     std::vector<Piece> pieces_; ///< Not yet in the writer; under the mutex.
     Result<Done, Refusal> stored_{Done{}};
-    std::atomic<bool> stopped_{false};
-    std::thread thread_; ///< Last: it uses the others.
+    std::optional<WriterThread> thread_; ///< Last: it uses the others.
 };
 
 } // namespace tactus::hrtc

@@ -4,14 +4,73 @@
 
 #include "host_tools/cli/command_line.hpp"
 #include "platform/base/printable.hpp"
+#include "platform/export/frame_export.hpp"
 #include "platform/recording/replay.hpp"
 
 #include <fmt/format.h>
 
+#include <cstdint>
+#include <memory>
+#include <utility>
+
 namespace tactus::hrtc
 {
 
-int replay_file(const std::string& path, const Kernels* kernels, const Log& log)
+namespace
+{
+
+/// The files that a replay is exported to.
+class Exports
+{
+public:
+    /// Opens all. Returns why one can't be written.
+    [[nodiscard]] std::optional<Refusal> open(const std::vector<std::string>& paths,
+                                              const RecordedSetup& setup)
+    {
+        for (const std::string& path : paths)
+        {
+            auto file = FrameExport::create(path, setup);
+            if (!file)
+            {
+                return Refusal{"--export: " + file.error().text};
+            }
+            files_.emplace_back(path, std::move(file).value());
+        }
+        return std::nullopt;
+    }
+
+    void add(std::uint64_t number, const RecordedFrame& given, const FrameOutput& returned)
+    {
+        first_time_ns_ = number == 0 ? given.now_ns : first_time_ns_;
+        for (const auto& [path, file] : files_)
+        {
+            file->add({number, first_time_ns_, given, returned});
+        }
+    }
+
+    /// Gives all their names. Returns why one can't be written.
+    [[nodiscard]] std::optional<Refusal> commit()
+    {
+        for (const auto& [path, file] : files_)
+        {
+            if (const auto written = file->commit(); !written)
+            {
+                return Refusal{"--export: " + written.error().text};
+            }
+            fmt::print("export      {}\n", printable_line(path));
+        }
+        return std::nullopt;
+    }
+
+private:
+    std::vector<std::pair<std::string, std::unique_ptr<FrameExport>>> files_;
+    std::int64_t first_time_ns_{0};
+};
+
+} // namespace
+
+int replay_file(const std::string& path, const Kernels* kernels,
+                const std::vector<std::string>& exports, const Log& log)
 {
     const auto recording = Recording::read(path);
     if (!recording)
@@ -19,7 +78,16 @@ int replay_file(const std::string& path, const Kernels* kernels, const Log& log)
         log(recording.error().text);
         return kExitFailed;
     }
-    const auto replayed = replay(recording.value(), kernels);
+    Exports files;
+    if (const auto error = files.open(exports, recording.value().setup()))
+    {
+        log(error->text);
+        return kExitFailed;
+    }
+    ReplayWatch watch;
+    watch.ends = [&](std::uint64_t number, const RecordedFrame& given, const FrameOutput& returned)
+    { files.add(number, given, returned); };
+    const auto replayed = replay(recording.value(), kernels, watch);
     if (!replayed)
     {
         log(path + ": " + replayed.error().text);
@@ -32,6 +100,11 @@ int replay_file(const std::string& path, const Kernels* kernels, const Log& log)
         return kExitCriterionNotMet;
     }
     fmt::print("{}: {}\n", printable(path), line);
+    if (const auto error = files.commit())
+    {
+        log(error->text);
+        return kExitFailed;
+    }
     return kExitDone;
 }
 

@@ -9,6 +9,7 @@
 #include "platform/hrtc/machine.hpp"
 #include "platform/hrtc/options.hpp"
 #include "platform/hrtc/report_events.hpp"
+#include "platform/udp/udp_device.hpp"
 #include "rt_core/force/stiffness_rule.hpp"
 #include "transport/content_hash.hpp"
 
@@ -62,9 +63,12 @@ Json pool_of(const PoolUse& use, std::size_t bytes_each)
             {"bytes", use.capacity * bytes_each}};
 }
 
-PoolUse sum_of(const std::vector<ModelOutput>& models, PoolUse ModelOutput::*pool)
+/// `for_guests` is what no model brings.
+PoolUse sum_of(const std::vector<ModelOutput>& models, PoolUse ModelOutput::*pool,
+               std::uint32_t for_guests)
 {
     PoolUse sum;
+    sum.capacity = for_guests;
     for (const ModelOutput& model : models)
     {
         sum.used_max += (model.*pool).used_max;
@@ -80,12 +84,14 @@ Json pools_of(const RunRecord& record)
     constexpr std::size_t kFaceBytes =
         sizeof(VertexForest::ActiveFace) + 2 * sizeof(IdTable::Entry);
     const std::vector<ModelOutput>& models = record.run.statistics.models;
-    return {{"pages", pool_of(sum_of(models, &ModelOutput::pages), sizeof(Page))},
-            {"index_pages", pool_of(sum_of(models, &ModelOutput::index_pages), sizeof(IndexPage))},
-            {"faces", pool_of(sum_of(models, &ModelOutput::faces), kFaceBytes)},
-            {"blocks", pool_of(sum_of(models, &ModelOutput::blocks),
+    const ModelCapacities& guests = record.controller.setup().for_guests;
+    return {{"pages", pool_of(sum_of(models, &ModelOutput::pages, guests.pages), sizeof(Page))},
+            {"index_pages", pool_of(sum_of(models, &ModelOutput::index_pages, guests.index_pages),
+                                    sizeof(IndexPage))},
+            {"faces", pool_of(sum_of(models, &ModelOutput::faces, guests.faces), kFaceBytes)},
+            {"blocks", pool_of(sum_of(models, &ModelOutput::blocks, guests.blocks),
                                sizeof(BlockGeometry) + sizeof(BlockSide))},
-            {"nodes", pool_of(sum_of(models, &ModelOutput::nodes), sizeof(AbNode))},
+            {"nodes", pool_of(sum_of(models, &ModelOutput::nodes, guests.nodes), sizeof(AbNode))},
             {"total_bytes", record.controller.pool_bytes()}};
 }
 
@@ -103,7 +109,7 @@ Json pose_of(const FinishedRun& run, std::size_t model, std::size_t object)
     return {{"followed", use.is_followed},  {"accepted", counts.accepted},
             {"refused", refused},           {"moves", use.moves},
             {"step_max_m", use.step_max_m}, {"age_max_s", to_seconds(use.age_max)},
-            {"old_frames", use.old_frames}};
+            {"old_frames", use.old_frames}, {"outran_frames", use.outran_frames}};
 }
 
 Json models_of(const RunRecord& record)
@@ -125,6 +131,7 @@ Json models_of(const RunRecord& record)
                         {"faces_used_max", output.faces.used_max},
                         {"refined_records", output.refined_records},
                         {"static", output.is_static},
+                        {"stage", kModelStageNames[static_cast<std::size_t>(output.stage)]},
                         {"bytes_received", served.link->bytes_received()},
                         {"pieces_refused", courier.refused() + served.link->damaged()},
                         {"pieces_overdue", courier.overdue},
@@ -153,6 +160,29 @@ Json conditioned_of(const ForceCounts& force)
     return json;
 }
 
+/// What came and went between a tool's device and its driver; null of devices without one.
+Json traffic_of(const HapticDevice& device)
+{
+    const auto* udp = dynamic_cast<const UdpDevice*>(&device);
+    if (udp == nullptr)
+    {
+        return {};
+    }
+    const UdpTraffic traffic = udp->traffic();
+    Json refused = Json::object();
+    for (std::size_t i = 0; i < udp::kDatagramFaults; ++i)
+    {
+        refused[udp::kDatagramFaultNames[i]] = traffic.refused[i];
+    }
+    return {{"described", traffic.described},
+            {"samples", traffic.samples},
+            {"sessions", traffic.sessions},
+            {"lost", traffic.lost},
+            {"forces", traffic.forces},
+            {"unsent", traffic.unsent},
+            {"refused", refused}};
+}
+
 Json tools_of(const RunRecord& record)
 {
     Json list = Json::array();
@@ -161,6 +191,7 @@ Json tools_of(const RunRecord& record)
     for (std::size_t i = 0; i < record.controller.tools().size(); ++i)
     {
         const ForceCounts& force = record.run.statistics.tools[i];
+        const std::string& guide = record.controller.tools()[i].guide;
         list.push_back(
             {{"shape", record.controller.tools()[i].shape},
              {"radius_m", record.controller.tools()[i].spec.radius_m},
@@ -169,16 +200,23 @@ Json tools_of(const RunRecord& record)
              {"torque_max_nm", force.torque_max_nm},
              {"torque_max_step_nm", force.torque_max_step_nm},
              {"twist_max_rad", force.twist_max_rad},
+             {"guide", guide.empty() ? Json() : Json(guide)},
+             {"guide_max_n", force.guide_max_n},
+             {"mass_kg", record.controller.tools()[i].load.mass_kg},
+             {"load_max_n", force.load_max_n},
+             {"load_max_nm", force.load_max_nm},
              {"contact_share", static_cast<double>(force.contact_frames) / frames},
              {"force_share", static_cast<double>(force.force_frames) / frames},
              {"frozen_frames", force.frozen_frames},
              {"held_back_frames", force.held_back_frames},
+             {"lag_max_m", force.lag_max_m},
              {"stiffness_cap_n_per_m", stiffness_cap_of(record.controller.tools()[i].conditioner)},
              {"softest_wall_n_per_m", std::isfinite(force.softest_wall_n_per_m)
                                           ? Json(force.softest_wall_n_per_m)
                                           : Json()},
              {"surplus_max_j", force.surplus_max_j},
-             {"conditioned", conditioned_of(force)}});
+             {"conditioned", conditioned_of(force)},
+             {"traffic", traffic_of(*record.controller.tools()[i].device)}});
     }
     return list;
 }
@@ -214,6 +252,13 @@ Json scene_of(const RunRecord& record)
     {
         refused[kChangeRefusalNames[i]] = statistics.changes_refused[i];
     }
+    Json models = Json::object();
+    for (std::size_t i = 0; i < kModelStages; ++i)
+    {
+        const auto is_there = [i](const ModelOutput& model)
+        { return static_cast<std::size_t>(model.stage) == i; };
+        models[kModelStageNames[i]] = std::ranges::count_if(statistics.models, is_there);
+    }
     return {{"objects", statistics.objects_now},
             {"objects_max", statistics.objects_max},
             {"objects_room", room.objects},
@@ -224,8 +269,11 @@ Json scene_of(const RunRecord& record)
             {"shed_pairs", statistics.shed_pairs},
             {"came", record.run.scene_news.came},
             {"went", record.run.scene_news.went},
+            {"feels", record.run.scene_news.feels},
+            {"unfelt", record.run.scene_news.unfelt},
             {"passed_over", record.run.scene_news.passed_over},
             {"walks", statistics.scene_walks},
+            {"models", models},
             {"changes_refused", refused}};
 }
 
@@ -407,6 +455,15 @@ Json recording_of(const std::optional<RecordingResult>& recording)
     return json;
 }
 
+Json trace_of(const std::optional<TraceResult>& trace)
+{
+    return !trace ? Json(nullptr)
+                  : Json{{"frames", trace->frames},
+                         {"rounds", trace->rounds},
+                         {"bytes", trace->bytes},
+                         {"lost", trace->lost}};
+}
+
 } // namespace
 
 Json make_report(const Options& options, const Controller& controller, const FinishedRun& run)
@@ -414,14 +471,10 @@ Json make_report(const Options& options, const Controller& controller, const Fin
     const RunRecord record{options, controller, run};
     const RunStatistics& statistics = run.statistics;
     Json times = Json::object();
-    for (std::size_t i = 0; i < kStages; ++i)
+    for (const auto& [name, histogram] : statistics.times())
     {
-        times[kStageNames[i]] = times_of(statistics.stages[i]);
+        times[name] = times_of(histogram);
     }
-    times["frame"] = times_of(statistics.frame);
-    times["cpu"] = times_of(statistics.cpu);
-    times["wake"] = times_of(statistics.wake);
-    times["response"] = times_of(statistics.deadlines.response());
     return {{"schema", 2},
             {"run", run_of(record)},
             {"frames", statistics.frames},
@@ -442,13 +495,16 @@ Json make_report(const Options& options, const Controller& controller, const Fin
              {{"allocations", statistics.deadlines.allocations},
               {"allocations_counted", allocation_counter::available()},
               {"page_faults", statistics.deadlines.page_faults},
+              {"virtual_time", record.options.virtual_time},
               {"system_calls_trapped", record.options.trap_system_calls},
               {"system_calls_in_frame", statistics.deadlines.calls.in_frame},
               {"system_calls_outside", statistics.deadlines.calls.outside}}},
             {"recording", recording_of(record.run.recording)},
-            {"telemetry", {{"sent", record.run.telemetry_sent}}},
+            {"trace", trace_of(record.run.trace)},
+            {"telemetry",
+             {{"sent", record.run.telemetry_sent}, {"fronts_sent", record.run.fronts_sent}}},
             {"force", force_of(statistics)},
-            {"safety", safety_of(run.safety, run.supervisor_fifo)},
+            {"safety", safety_of(run)},
             {"faults", faults_of(statistics)},
             {"machine", machine_of(record)},
             {"models", models_of(record)},

@@ -87,8 +87,9 @@ Json deadlines_of(const FinishedRun& run)
             {"noted_left_out", deadlines.noted().size() - noted.size() + deadlines.not_kept}};
 }
 
-Json safety_of(const SafetyRecord& safety, bool supervisor_fifo)
+Json safety_of(const FinishedRun& run)
 {
+    const SafetyRecord& safety = run.safety;
     Json begun = Json::object();
     for (std::size_t bit = 0; bit < kForceOffs; ++bit)
     {
@@ -99,7 +100,8 @@ Json safety_of(const SafetyRecord& safety, bool supervisor_fifo)
     {
         events.push_back(event_of(event, safety.events().front().time));
     }
-    return {{"supervisor_fifo", supervisor_fifo},
+    return {{"supervisor_fifo", run.supervisor_fifo},
+            {"supervisor_periods", run.supervisor_periods},
             {"supervisor_brakes", safety.brakes()},
             {"begun", begun},
             {"events", events},

@@ -7,13 +7,12 @@
 namespace tactus::hrtc
 {
 
-class SafetyRecord;
 struct FinishedRun;
 
 /// What the report says of a run's deadlines, and of single cycles of it.
 [[nodiscard]] nlohmann::ordered_json deadlines_of(const FinishedRun& run);
 
 /// What it says of the force that was off, when and why.
-[[nodiscard]] nlohmann::ordered_json safety_of(const SafetyRecord& safety, bool supervisor_fifo);
+[[nodiscard]] nlohmann::ordered_json safety_of(const FinishedRun& run);
 
 } // namespace tactus::hrtc

@@ -4,6 +4,7 @@
 
 #include "platform/hrtc/latency_plot.hpp"
 #include "platform/hrtc/report.hpp"
+#include "platform/hrtc/report_words.hpp"
 #include "platform/hrtc/verdict.hpp"
 #include "platform/plot/bar_plot.hpp"
 #include "platform/plot/page.hpp"
@@ -242,13 +243,21 @@ std::string make_page(const Json& report, const RunStatistics& statistics)
           std::pair("work", "Work"), std::pair("pools", "Pools"), std::pair("budgets", "Budgets"),
           std::pair("force", "Force"), std::pair("safety", "Safety"),
           std::pair("faults", "Frames with a fault"), std::pair("recording", "Recording"),
-          std::pair("telemetry", "Telemetry"), std::pair("machine", "Machine")})
+          std::pair("trace", "Trace"), std::pair("telemetry", "Telemetry"),
+          std::pair("machine", "Machine")})
     {
         if (!report[key].is_null())
         {
             sections.push_back({title, facts_of(report[key])});
         }
     }
+    SummaryFacts words;
+    for (const auto& [word, meaning] : report_words())
+    {
+        words.emplace_back(word, meaning);
+    }
+    page.heading("The words");
+    page.table(plot::facts(words));
     page.heading("Every figure");
     page.tables(sections);
     add_list("Models", report["models"], columns_of, page);

@@ -67,6 +67,20 @@ void add_poses(const Json& models, SummaryFacts& facts)
     facts.insert(facts.end(), lines.begin(), lines.end());
 }
 
+/// At the end; nothing where all models are here.
+std::string stages_text(const Json& models)
+{
+    std::string text;
+    bool are_all_here = true;
+    for (const auto& [stage, json] : models.items())
+    {
+        const auto count = json.get<std::uint64_t>();
+        text += count > 0 ? fmt::format(" {} {}", count, stage) : "";
+        are_all_here = are_all_here && (count == 0 || stage == "resident");
+    }
+    return are_all_here ? "" : "; models at the end:" + text;
+}
+
 /// Of more than one object.
 void add_scene(const Json& scene, SummaryFacts& facts)
 {
@@ -74,11 +88,12 @@ void add_scene(const Json& scene, SummaryFacts& facts)
     {
         facts.emplace_back("scene",
                            fmt::format("{} objects, {} at most; near a tool at most {} at a time; "
-                                       "{} frames at an invisible wall",
+                                       "{} frames at an invisible wall{}",
                                        scene["objects"].get<std::uint64_t>(),
                                        scene["objects_max"].get<std::uint64_t>(),
                                        scene["pairs_awake_max"].get<std::uint64_t>(),
-                                       scene["invisible_wall_frames"].get<std::uint64_t>()));
+                                       scene["invisible_wall_frames"].get<std::uint64_t>(),
+                                       stages_text(scene["models"])));
     }
 }
 
@@ -299,6 +314,13 @@ SummaryFacts run_facts(const Json& report)
     {
         facts.emplace_back("recording", recording_text(report["recording"]));
     }
+    if (const Json& trace = report["trace"]; !trace.is_null())
+    {
+        facts.emplace_back("trace", fmt::format("{} frames, {:.1f} MB, {} times left out",
+                                                trace["frames"].get<std::uint64_t>(),
+                                                trace["bytes"].get<double>() / 1e6,
+                                                trace["lost"].get<std::uint64_t>()));
+    }
     return facts;
 }
 
@@ -339,8 +361,11 @@ std::string make_summary(const Json& report)
     const std::vector<std::string> complaints = complaints_of(report);
     const SummaryFacts verdict{
         {"verdict", complaints.empty() ? "ok" : fmt::format("{}", fmt::join(complaints, "; "))}};
-    return to_lines(verdict) + to_lines(touch_facts(report)) + times_table(report["times_us"]) +
-           to_lines(run_facts(report));
+    const std::string times =
+        report["realtime"]["virtual_time"].get<bool>()
+            ? to_lines({{"times", "none: in virtual time a frame takes none"}})
+            : times_table(report["times_us"]);
+    return to_lines(verdict) + to_lines(touch_facts(report)) + times + to_lines(run_facts(report));
 }
 
 } // namespace tactus::hrtc

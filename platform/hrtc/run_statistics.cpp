@@ -54,7 +54,11 @@ void ForceCounts::add(const ToolOutput& output, const ToolForce& force) noexcept
     force_frames += is_felt(output, force) ? 1U : 0U;
     frozen_frames += output.frozen ? 1 : 0;
     held_back_frames += output.held_back ? 1 : 0;
+    lag_max_m = std::max(lag_max_m, output.lag_m);
     twist_max_rad = std::max(twist_max_rad, force.twist_rad);
+    guide_max_n = std::max(guide_max_n, force.own_n);
+    load_max_n = std::max(load_max_n, force.load_n.norm());
+    load_max_nm = std::max(load_max_nm, force.load_nm.norm());
     if (has_action(force.conditioned.actions, ForceAction::stiffness_capped))
     {
         softest_wall_n_per_m = std::min(softest_wall_n_per_m, force.conditioned.stiffness_n_per_m);
@@ -201,9 +205,24 @@ bool RunStatistics::is_over_budget(const WorkCounters& work, const Budgets& limi
     constexpr std::uint32_t kWalks = 2 * kFrameWalks;
     return work.splits > limits.splits || work.merges > limits.merges ||
            work.scanned > limits.scanned || work.nodes_visited > kWalks * limits.nodes ||
-           work.triangles_tested > kWalks * limits.triangles || work.pages_adopted > limits.pages ||
-           work.requests > limits.requests + limits.regions ||
+           work.triangles_tested > kWalks * limits.triangles ||
+           work.planes_looked_at > kFrameWalks * limits.planes ||
+           work.pages_adopted > limits.pages || work.requests > limits.requests + limits.regions ||
            work.regions_searched > limits.regions;
+}
+
+std::vector<std::pair<const char*, LatencyHistogram>> RunStatistics::times() const
+{
+    std::vector<std::pair<const char*, LatencyHistogram>> all;
+    for (std::size_t i = 0; i < kStages; ++i)
+    {
+        all.emplace_back(kStageNames[i], stages[i]);
+    }
+    all.emplace_back("frame", frame);
+    all.emplace_back("cpu", cpu);
+    all.emplace_back("wake", wake);
+    all.emplace_back("response", deadlines.response());
+    return all;
 }
 
 } // namespace tactus::hrtc

@@ -13,6 +13,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace tactus::hrtc
@@ -46,10 +47,14 @@ struct ForceCounts
     double torque_max_nm{0.0};
     double torque_max_step_nm{0.0}; ///< Likewise.
     double twist_max_rad{0.0};      ///< Largest angle between device and proxy, in contact.
+    double guide_max_n{0.0};        ///< Largest force that --guide wanted, before it was limited.
+    double load_max_n{0.0};         ///< Largest force that carried a load, not in the others.
+    double load_max_nm{0.0};        ///< Largest torque, likewise.
     std::uint64_t contact_frames{0};
     std::uint64_t force_frames{0}; ///< Of those, with a force that went out.
     std::uint64_t frozen_frames{0};
     std::uint64_t held_back_frames{0};
+    double lag_max_m{0.0}; ///< ToolOutput::lag_m.
     /// Of the walls that were softened to what the device may have; infinite when none was.
     double softest_wall_n_per_m{kInfinity};
     double surplus_max_j{0.0}; ///< ConditionedForce::surplus_j, of force or torque.
@@ -88,6 +93,9 @@ public:
     /// `forces`: one a tool.
     void add(const FrameOutput& output, std::span<const ToolForce> forces,
              const CycleMeasures& measures) noexcept;
+
+    /// All that were measured, by the report's names. Allocates; for once the loop has ended.
+    [[nodiscard]] std::vector<std::pair<const char*, LatencyHistogram>> times() const;
 
     std::uint64_t frames{0};
     std::array<LatencyHistogram, kStages> stages;

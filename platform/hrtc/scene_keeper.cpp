@@ -58,6 +58,10 @@ void SceneKeeper::connect(PoseDoor& door, MonotonicTime now)
         if (const auto object = objects.find(name.number); object != objects.end())
         {
             move(place, object->second, now);
+            if (object->second.shown.material != slots_[place].spec.material)
+            {
+                feel(place, object->second.shown);
+            }
         }
     }
 }
@@ -136,6 +140,14 @@ void SceneKeeper::take_news(dds::SceneNews news, const dds::SeenObject& object, 
     if (news == dds::SceneNews::moves && bound != places_.end())
     {
         move(bound->second, object, now);
+        return;
+    }
+    if (news == dds::SceneNews::feels)
+    {
+        if (!scene_.empty() && bound != places_.end())
+        {
+            feel(bound->second, object.shown);
+        }
         return;
     }
     if (scene_.empty())
@@ -238,6 +250,7 @@ void SceneKeeper::bind(std::uint32_t place, const dds::SeenObject& object, Monot
         slot.spec = {ModelId{static_cast<std::uint32_t>(*model_of(object.shown.model))},
                      object.shown.material};
         slot.is_here = true;
+        check_wall(object.shown.name, object.shown.material);
         untold_.push_back(place);
     }
     move(place, object, now);
@@ -263,6 +276,29 @@ void SceneKeeper::move(std::uint32_t place, const dds::SeenObject& object, Monot
     }
 }
 
+/// The newest counts, however many came while the door was full.
+void SceneKeeper::feel(std::uint32_t place, const ShownObject& shown)
+{
+    Slot& slot = slots_[place];
+    check_wall(shown.name, shown.material);
+    slot.spec.material = shown.material;
+    if (slot.is_told && !slot.owes_feel)
+    {
+        slot.owes_feel = true;
+        untold_.push_back(place);
+    }
+}
+
+/// It is touched all the same, softer than can be felt: the device's cap sees to that.
+void SceneKeeper::check_wall(const std::string& name, const Material& material)
+{
+    if (const auto why = controller_.why_unfelt(name, material))
+    {
+        ++news_.unfelt;
+        log_.write(*why);
+    }
+}
+
 void SceneKeeper::leave(std::uint32_t place)
 {
     unbind(place);
@@ -285,6 +321,7 @@ void SceneKeeper::pass_on(MonotonicTime now)
             }
             ++slot.generation;
             ++news_.came;
+            slot.owes_feel = false; // It comes with the newest.
         }
         else if (!slot.is_here && slot.is_told)
         {
@@ -293,6 +330,15 @@ void SceneKeeper::pass_on(MonotonicTime now)
                 return;
             }
             ++news_.went;
+        }
+        else if (slot.is_here && slot.owes_feel)
+        {
+            if (!door_->try_feel(place, slot.spec.material))
+            {
+                return;
+            }
+            ++news_.feels;
+            slot.owes_feel = false;
         }
         slot.is_told = slot.is_here;
         untold_.pop_front();

@@ -29,6 +29,8 @@ struct SceneNewsCounts
 {
     std::uint64_t came{0};        ///< Objects that the frame was told of,
     std::uint64_t went{0};        ///< and that left it.
+    std::uint64_t feels{0};       ///< Other materials that it was told of.
+    std::uint64_t unfelt{0};      ///< Materials whose damping leaves a tool's device no wall.
     std::uint64_t passed_over{0}; ///< That can't be touched: no such model, or no room.
 };
 
@@ -43,7 +45,8 @@ class SceneKeeper
 {
 public:
     /// `reader` has followed the scene's host, if there is a scene. Catalogue and controller must
-    /// outlive it. `log` gets a line for what can't be touched.
+    /// outlive it. `log` gets a line for what can't be touched, and
+    /// for what can't be felt.
     SceneKeeper(const dds::Catalogue& catalogue, std::unique_ptr<dds::SceneReader> reader,
                 const Controller& controller, ShownScene scene, Log log);
 
@@ -73,6 +76,7 @@ private:
         dds::PoseCounts known; ///< What is in `counts_` of the host's object.
         bool is_here{false};   ///< It is to be in the frame's scene,
         bool is_told{false};   ///< and is, or will be with what waits at the door.
+        bool owes_feel{false}; ///< That it has another material the frame wasn't told.
         std::uint32_t generation{0};
     };
 
@@ -85,6 +89,8 @@ private:
     void bind(std::uint32_t place, const dds::SeenObject& object, MonotonicTime now);
     void unbind(std::uint32_t place);
     void move(std::uint32_t place, const dds::SeenObject& object, MonotonicTime now);
+    void feel(std::uint32_t place, const ShownObject& shown);
+    void check_wall(const std::string& name, const Material& material);
     void leave(std::uint32_t place);
     void pass_on(MonotonicTime now);
     void hear(MonotonicTime now);
@@ -107,7 +113,7 @@ private:
     std::set<std::uint32_t> free_;               ///< Places of no object.
     std::set<Generation> passed_over_;           ///< Nobody can touch them,
     std::set<Generation> left_out_;              ///< or there is no room for them.
-    std::deque<std::uint32_t> untold_;           ///< Where is_here and is_told differ.
+    std::deque<std::uint32_t> untold_; ///< Where is_here and is_told differ, or a feel is owed.
     std::vector<dds::PoseCounts> counts_;
     std::vector<MonotonicTime> heard_;
     SceneNewsCounts news_;

@@ -3,11 +3,13 @@
 #include "platform/hrtc/session.hpp"
 
 #include "platform/base/atomic_file.hpp"
+#include "platform/hrtc/histogram_files.hpp"
 #include "platform/hrtc/recorder.hpp"
 #include "platform/hrtc/report.hpp"
 #include "platform/hrtc/scene_choice.hpp"
 #include "platform/hrtc/session_run.hpp"
 #include "platform/hrtc/signals.hpp"
+#include "platform/hrtc/trace_file.hpp"
 #include "platform/posix/linux_extras.hpp"
 #include "transport/store/store_link.hpp"
 
@@ -43,7 +45,8 @@ Result<std::vector<ServedModel>, Refusal> find_in_files(const Options& options)
     return models;
 }
 
-/// The client must live as long as the models' links.
+/// The client must live as long as the models' links. Their base meshes are the controller's to
+/// bring, which knows whether it needs them all.
 Result<std::vector<ServedModel>, Refusal> find_published(const Options& options,
                                                          dds::DdsClient& client)
 {
@@ -53,7 +56,7 @@ Result<std::vector<ServedModel>, Refusal> find_published(const Options& options,
     {
         selectors.push_back(parse_selector(text).value());
     }
-    auto models = client.find_all(selectors, wait, [] { return !was_interrupted(); });
+    auto models = client.find_headers(selectors, wait, [] { return !was_interrupted(); });
     if (!models)
     {
         return failure(models.error().text);
@@ -74,7 +77,25 @@ std::optional<std::string> start_recorder(const Options& options, Controller& co
     {
         return "--record: " + file.error().text;
     }
-    recorder.emplace(std::move(file).value(), controller.setup(), controller.courier());
+    recorder.emplace(std::move(file).value(), controller.setup(), controller.courier(),
+                     options.virtual_time ? Recorder::Worker::caller
+                                          : Recorder::Worker::own_thread);
+    return std::nullopt;
+}
+
+/// Likewise.
+std::optional<std::string> start_trace(const Options& options, std::optional<TraceFile>& trace)
+{
+    if (options.trace_path.empty())
+    {
+        return std::nullopt;
+    }
+    auto file = AtomicFile::create(options.trace_path);
+    if (!file)
+    {
+        return "--trace: " + file.error().text;
+    }
+    trace.emplace(std::move(file).value(), options.period());
     return std::nullopt;
 }
 
@@ -92,7 +113,7 @@ std::optional<Refusal> check_machine(const Options& options)
     {
         for (const std::string& line : refused.value())
         {
-            log_line(line);
+            log_error(line);
         }
         return failure("not run; --allow-no-rt runs it without");
     }
@@ -112,6 +133,16 @@ std::optional<Refusal> check_outputs(const Options& options)
     if (const auto error = probe_output(options.record_path))
     {
         return failure("--record: " + error->text);
+    }
+    if (const auto error = probe_output(options.trace_path))
+    {
+        return failure("--trace: " + error->text);
+    }
+    if (const auto error = options.histograms_folder.empty()
+                               ? std::nullopt
+                               : probe_histograms(options.histograms_folder))
+    {
+        return failure("--histograms: " + error->text);
     }
     return std::nullopt;
 }
@@ -217,7 +248,8 @@ std::optional<Refusal> Session::assemble()
             keeper = std::make_unique<SceneKeeper>(client_->catalogue(), std::move(reader_),
                                                    *controller_, scene_, log_line);
         }
-        auto topics = HostTopics::create(*client_, *controller_, std::move(keeper));
+        auto topics =
+            HostTopics::create(*client_, *controller_, std::move(keeper), options_.shows_front);
         if (!topics)
         {
             return failure(topics.error().text);
@@ -234,10 +266,16 @@ Result<FinishedRun, Refusal> Session::run(const std::string& what)
     {
         return failure(*error);
     }
+    std::optional<TraceFile> trace;
+    if (const auto error = start_trace(options_, trace))
+    {
+        return failure(*error);
+    }
     SessionRun run({.options = options_,
                     .controller = *controller_,
                     .topics = topics_.get(),
-                    .recorder = recorder ? &*recorder : nullptr});
+                    .recorder = recorder ? &*recorder : nullptr,
+                    .trace = trace ? &*trace : nullptr});
     if (auto error = run.start())
     {
         return *error;

@@ -3,9 +3,12 @@
 #include "platform/hrtc/session_run.hpp"
 
 #include "host_tools/cli/progress.hpp"
+#include "platform/allocation_counter.hpp"
+#include "platform/hrtc/machine.hpp"
 #include "platform/hrtc/signals.hpp"
 #include "platform/posix/service_notify.hpp"
 #include "platform/system_call_trap.hpp"
+#include "platform/udp/udp_device.hpp"
 
 #include <fmt/format.h>
 
@@ -15,6 +18,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <ctime>
+#include <numeric>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -30,11 +34,14 @@ constexpr Duration kMarginMost = microseconds(100);
 /// Between two looks at the loop.
 constexpr std::chrono::milliseconds kLook{20};
 
-FinishedRun empty_run(const Controller& controller, Duration period)
+FinishedRun empty_run(const Controller& controller, const Options& options)
 {
+    const Duration period = options.period();
     const std::size_t tools = controller.tools().size();
     return {.statistics = RunStatistics(tools, controller.frame().objects().capacity(),
                                         controller.models().size(), period),
+            .supervisor_periods =
+                options.supervisor_periods.value_or(silent_periods(describe_machine())),
             .period = period,
             .started = std::time(nullptr),
             .safety = SafetyRecord(tools)};
@@ -70,16 +77,33 @@ std::optional<std::string> trap_calls(const Options& options)
 SessionRun::SessionRun(const RunParts& parts)
     : parts_(parts)
     , period_(parts.options.period())
-    , done_(empty_run(parts.controller, period_))
+    , done_(empty_run(parts.controller, parts.options))
+    , time_(parts.options.virtual_time)
     , governor_(make_governor(parts.options, parts.controller))
     , door_(parts.controller.poses(), parts.controller.frame().objects().capacity(),
-            nanoseconds(parts.controller.setup().pose_age_max_ns))
+            nanoseconds(parts.controller.setup().pose_age_max_ns),
+            parts.options.object_speed_m_per_s)
     , telemetry_(period_)
-    , transport_(parts.controller.courier(), parts.controller.models(), connected_topics())
+    , transport_(parts.controller.courier(), parts.controller.models(), connected_topics(),
+                 parts.trace != nullptr ? &parts.trace->tap() : nullptr)
     , loop_(loop_parts(), done_.statistics)
     , devices_gone_(parts.controller.tools().size())
-    , supervisor_({parts.controller.tools(), &loop_.heartbeat(), &clock_, &alarm_, period_})
+    , strangers_(parts.controller.tools().size())
+    , supervisor_({.tools = parts.controller.tools(),
+                   .heartbeat = &loop_.heartbeat(),
+                   .clock = &time_.clock(),
+                   .timer = &alarm_,
+                   .period = period_,
+                   .silent_periods = done_.supervisor_periods})
 {
+    if (time_.is_virtual())
+    {
+        time_.set_meanwhile([this] { work_between_frames(); });
+    }
+    else
+    {
+        transport_thread_.emplace(transport_);
+    }
 }
 
 /// Of a run that was left before its end: the supervisor watches until the loop has ended.
@@ -94,9 +118,19 @@ HostTopics* SessionRun::connected_topics()
 {
     if (parts_.topics != nullptr)
     {
-        parts_.topics->connect(door_, telemetry_, clock_.now());
+        parts_.topics->connect(door_, telemetry_, make_front(), time_.clock().now());
     }
     return parts_.topics;
+}
+
+/// Null where nobody is to see it.
+FrontTap* SessionRun::make_front()
+{
+    if (parts_.topics->shows_front())
+    {
+        front_.emplace(parts_.controller.frame().pools().cache.pages.metas.size());
+    }
+    return front_ ? &*front_ : nullptr;
 }
 
 LoopParts SessionRun::loop_parts()
@@ -105,27 +139,31 @@ LoopParts SessionRun::loop_parts()
     const bool has_topics = parts_.topics != nullptr;
     return {.frame = &controller.frame(),
             .tools = controller.tools(),
-            .timer = &timer_,
-            .clock = &clock_,
+            .timer = &time_.timer(),
+            .clock = &time_.clock(),
             .budgets = controller.budgets(),
             .governor = governor_ ? &*governor_ : nullptr,
             .tap = parts_.recorder != nullptr ? &parts_.recorder->tap() : nullptr,
             .frames = parts_.options.frames(),
+            .is_virtual = time_.is_virtual(),
             .hosts_gone = &transport_.hosts_gone(),
+            .starved = &transport_.starved(),
             .pose_door = has_topics ? &door_ : nullptr,
-            .telemetry = has_topics ? &telemetry_ : nullptr};
+            .telemetry = has_topics ? &telemetry_ : nullptr,
+            .front = front_ ? &*front_ : nullptr,
+            .trace = parts_.trace != nullptr ? &parts_.trace->tap() : nullptr};
 }
 
 std::optional<Refusal> SessionRun::start()
 {
     brake_.emplace(loop_);
-    auto supervising = RtThread::start(Supervisor::thread_beside(parts_.options.thread),
-                                       [this] { supervisor_.run(); });
-    if (!supervising)
+    if (!time_.is_virtual())
     {
-        return failure("supervisor: " + supervising.error().text);
+        if (auto error = start_supervisor())
+        {
+            return error;
+        }
     }
-    supervisor_thread_ = std::move(supervising).value();
     auto haptic = RtThread::start(parts_.options.thread, [this] { run_loop(); });
     if (!haptic)
     {
@@ -135,19 +173,48 @@ std::optional<Refusal> SessionRun::start()
     return std::nullopt;
 }
 
+std::optional<Refusal> SessionRun::start_supervisor()
+{
+    auto supervising = RtThread::start(Supervisor::thread_beside(parts_.options.thread),
+                                       [this] { supervisor_.run(); });
+    if (!supervising)
+    {
+        return failure("supervisor: " + supervising.error().text);
+    }
+    supervisor_thread_ = std::move(supervising).value();
+    return std::nullopt;
+}
+
+/// In virtual time: what other threads do in a period, as often as they would, on the haptic one.
+void SessionRun::work_between_frames()
+{
+    allocation_counter::mark_this_thread(false);
+    const MonotonicTime now = time_.clock().now();
+    for (Duration since{}; since < period_; since = since + kRoundPause)
+    {
+        transport_.run(now);
+    }
+    if (parts_.recorder != nullptr)
+    {
+        parts_.recorder->step();
+    }
+    take_events();
+    allocation_counter::mark_this_thread(true);
+}
+
 /// The haptic thread's body.
 void SessionRun::run_loop()
 {
     if (const auto error = trap_calls(parts_.options))
     {
-        log_line(*error);
+        log_error(*error);
         loop_.fail();
         return;
     }
     const Duration margin = std::min(kMarginMost, {period_.ns / 5});
-    if (const auto started = timer_.start(period_, margin); !started)
+    if (const auto started = time_.timer().start(period_, margin); !started)
     {
-        log_line(started.error().text);
+        log_error(started.error().text);
         loop_.fail();
         return;
     }
@@ -162,7 +229,7 @@ void SessionRun::wait(const std::string& what)
 
 void SessionRun::watch(const std::string& what)
 {
-    Progress progress(what, "frames");
+    Progress progress("hrtc", what, "frames");
     ServiceNotify manager;
     manager.ready();
     std::uint64_t seen = 0;
@@ -175,11 +242,15 @@ void SessionRun::watch(const std::string& what)
         const std::uint64_t done = loop_.frames_done();
         if (done > seen)
         {
-            manager.alive(clock_.now());
+            manager.alive(PosixClock().now());
         }
         seen = done;
         progress.update(done, parts_.options.frames());
-        take_events();
+        if (!time_.is_virtual())
+        {
+            take_events();
+            tell_of_strangers();
+        }
         std::this_thread::sleep_for(kLook);
     }
     manager.stopping();
@@ -215,12 +286,37 @@ void SessionRun::tell_of_device(const SafetyEvent& event)
                           : fmt::format("tool {}: its device, {}, is back", event.tool, name));
 }
 
+/// A line when the first datagram to a device's port was refused, at ten, at a hundred, and so on.
+void SessionRun::tell_of_strangers()
+{
+    for (std::size_t tool = 0; tool < strangers_.size(); ++tool)
+    {
+        const auto* udp =
+            dynamic_cast<const UdpDevice*>(parts_.controller.tools()[tool].device.get());
+        if (udp == nullptr)
+        {
+            continue;
+        }
+        const auto refused = udp->traffic().refused;
+        const auto all = std::accumulate(refused.begin(), refused.end(), std::uint64_t{0});
+        if (all >= std::max<std::uint64_t>(10 * strangers_[tool], 1))
+        {
+            strangers_[tool] = all;
+            const auto most = std::ranges::max_element(refused) - refused.begin();
+            device_log_.write(
+                fmt::format("tool {}: {} datagrams to its device's port refused, most of them: {}",
+                            tool, all, udp::text_of(static_cast<udp::DatagramFault>(most))));
+        }
+    }
+}
+
 /// No effect when nothing has failed.
 void SessionRun::end_after_failure()
 {
     if (loop_.has_failed() || AssertionBrake::has_failed())
     {
         finish_recording(); // Up to the frame that failed.
+        finish_trace();
         std::fflush(nullptr);
         AssertionBrake::end_process();
     }
@@ -231,14 +327,19 @@ FinishedRun SessionRun::finish()
     haptic_thread_->join();
     brake_.reset();
     supervisor_.stop();
-    supervisor_thread_->join();
+    const bool is_supervised = supervisor_thread_.has_value();
+    if (is_supervised)
+    {
+        supervisor_thread_->join();
+    }
     take_events();
     done_.safety.finish(supervisor_.brakes(), loop_.safety_log().lost() + supervisor_.log().lost());
-    transport_.stop();
+    transport_thread_.reset();
     finish_recording();
+    finish_trace();
     done_.thread = haptic_thread_->report();
-    done_.supervisor_fifo = supervisor_thread_->report().fifo;
-    done_.timer = timer_.counts();
+    done_.supervisor_fifo = is_supervised && supervisor_thread_->report().fifo;
+    done_.timer = time_.timer().counts();
     done_.host_was_lost = transport_.host_was_lost();
     note_topics();
     for (const std::string& line : done_.thread.refused)
@@ -259,10 +360,27 @@ void SessionRun::finish_recording()
     if (!recording)
     {
         done_.recording_error = recording.error().text;
-        log_line("--record: " + *done_.recording_error);
+        log_error("--record: " + *done_.recording_error);
         return;
     }
     done_.recording = recording.value();
+}
+
+/// Likewise.
+void SessionRun::finish_trace()
+{
+    if (parts_.trace == nullptr)
+    {
+        return;
+    }
+    const auto trace = parts_.trace->finish();
+    if (!trace)
+    {
+        done_.trace_error = trace.error().text;
+        log_error("--trace: " + *done_.trace_error);
+        return;
+    }
+    done_.trace = trace.value();
 }
 
 /// What hosts and controller told each other; the threads between which it went have ended.
@@ -275,6 +393,7 @@ void SessionRun::note_topics()
         done_.scene_news = parts_.topics->scene_news();
         done_.refused = parts_.topics->refused();
         done_.telemetry_sent = parts_.topics->telemetry_sent();
+        done_.fronts_sent = parts_.topics->fronts_sent();
     }
 }
 

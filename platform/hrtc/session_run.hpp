@@ -6,20 +6,23 @@
 #include "platform/hrtc/assertion_brake.hpp"
 #include "platform/hrtc/controller.hpp"
 #include "platform/hrtc/finished_run.hpp"
+#include "platform/hrtc/front_tap.hpp"
 #include "platform/hrtc/haptic_loop.hpp"
 #include "platform/hrtc/host_topics.hpp"
+#include "platform/hrtc/loop_time.hpp"
 #include "platform/hrtc/messages.hpp"
 #include "platform/hrtc/options.hpp"
 #include "platform/hrtc/recorder.hpp"
 #include "platform/hrtc/supervisor.hpp"
 #include "platform/hrtc/telemetry_tap.hpp"
+#include "platform/hrtc/trace_file.hpp"
 #include "platform/hrtc/transport_thread.hpp"
-#include "platform/posix/posix_clock.hpp"
 #include "platform/posix/posix_periodic_timer.hpp"
 #include "platform/remote/pose_door.hpp"
 #include "platform/rt_thread.hpp"
 #include "transport/log.hpp"
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,11 +37,13 @@ struct RunParts
     Controller& controller;
     HostTopics* topics{nullptr}; ///< None from files.
     Recorder* recorder{nullptr}; ///< None unless --record.
+    TraceFile* trace{nullptr};   ///< None unless --trace.
 };
 
-/// One run of the loop on its real-time thread, the supervisor and the transport beside it. The
-/// main thread calls start(), wait() and finish() in this order, each once. The transport thread
-/// runs from construction on.
+/// One run of the loop on its real-time thread, the supervisor and the transport beside it; in
+/// virtual time nobody has to be supervised, and the loop's thread does all of it in turn. The main
+/// thread calls start(), wait() and finish() in this order, each once. The transport thread runs
+/// from construction on.
 class SessionRun
 {
 public:
@@ -59,27 +64,34 @@ public:
 
 private:
     [[nodiscard]] HostTopics* connected_topics();
+    [[nodiscard]] FrontTap* make_front();
     [[nodiscard]] LoopParts loop_parts();
+    [[nodiscard]] std::optional<Refusal> start_supervisor();
     void run_loop();
+    void work_between_frames();
     void watch(const std::string& what);
     void take_events();
     void tell_of_device(const SafetyEvent& event);
+    void tell_of_strangers();
     void end_after_failure();
     void finish_recording();
+    void finish_trace();
     void note_topics();
 
     RunParts parts_;
     Duration period_;
     FinishedRun done_;
-    PosixClock clock_;
-    PosixPeriodicTimer timer_;
+    LoopTime time_;
     PosixPeriodicTimer alarm_; ///< The supervisor's.
     std::optional<BudgetGovernor> governor_;
     PoseDoor door_;
     TelemetryTap telemetry_;
-    TransportThread transport_;
+    std::optional<FrontTap> front_; ///< None with --no-front.
+    TransportRounds transport_;
+    std::optional<TransportThread> transport_thread_;
     HapticLoop loop_;
-    std::vector<bool> devices_gone_; ///< One a tool, as was told.
+    std::vector<bool> devices_gone_;       ///< One a tool, as was told.
+    std::vector<std::uint64_t> strangers_; ///< Likewise: datagrams refused at its device's port.
     RateLimitedLog device_log_{log_line};
     Supervisor supervisor_;
     std::optional<AssertionBrake> brake_;

@@ -4,6 +4,7 @@
 
 #include "platform/hrtc/verdict.hpp"
 #include "rt_core/force/stiffness_rule.hpp"
+#include "rt_core/limits.hpp"
 #include "rt_core/spm/header.hpp"
 
 #include <fmt/format.h>
@@ -11,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 namespace tactus::hrtc
@@ -53,15 +55,43 @@ std::vector<Surroundings> surroundings_of(const Controller& controller)
     return all;
 }
 
-std::string object_lines(const Controller& controller, const std::vector<Surroundings>& objects)
+const std::string& name_of(const Controller& controller, std::size_t object)
+{
+    return controller.models()[controller.objects()[object].model.value].name;
+}
+
+/// What was left to its default, of so many of the objects, where others were not; in words.
+std::string defaults_of(const Options& options, std::span<const PlacedObject> objects)
+{
+    const auto left_by = [&](bool PlacedObject::*given) -> std::string
+    {
+        const auto left = std::ranges::count(objects, false, given);
+        const bool is_mixed = left > 0 && std::ranges::any_of(options.objects, given);
+        return !is_mixed ? "" : objects.size() == 1 ? "; no" : fmt::format("; {} without", left);
+    };
+    const std::string places = left_by(&PlacedObject::has_place);
+    const std::string materials = left_by(&PlacedObject::has_material);
+    return (places.empty() ? "" : places + " --place: as in the file") +
+           (materials.empty() ? "" : materials + " --material: as stiff as --stiffness, smooth");
+}
+
+/// What the options say of an object; nothing of a scene's.
+std::span<const PlacedObject> placed_object(const Options& options, std::size_t object)
+{
+    return object < options.objects.size() ? std::span(options.objects).subspan(object, 1)
+                                           : std::span<const PlacedObject>();
+}
+
+std::string object_lines(const Options& options, const Controller& controller,
+                         const std::vector<Surroundings>& objects)
 {
     std::string text;
     for (std::size_t i = 0; i < objects.size() && objects.size() <= kObjectsInLines; ++i)
     {
-        const std::size_t model = controller.objects()[i].model.value;
-        text += fmt::format("{:<12}{}: {:.4g} m across, round {}\n", "touches",
-                            controller.models()[model].name, 2.0 * objects[i].radius_m,
-                            text_of(objects[i].center_m));
+        text += fmt::format("{:<12}{}: {:.4g} m across, round {}{}\n", "touches",
+                            name_of(controller, i), 2.0 * objects[i].radius_m,
+                            text_of(objects[i].center_m),
+                            defaults_of(options, placed_object(options, i)));
     }
     if (objects.size() > kObjectsInLines)
     {
@@ -72,26 +102,47 @@ std::string object_lines(const Controller& controller, const std::vector<Surroun
             low_m = low_m.cwiseMin(object.center_m);
             high_m = high_m.cwiseMax(object.center_m);
         }
-        text = fmt::format("{:<12}{} objects of {} models, round {} to {}\n", "touches",
+        text = fmt::format("{:<12}{} objects of {} models, round {} to {}{}\n", "touches",
                            objects.size(), controller.models().size(), text_of(low_m),
-                           text_of(high_m));
+                           text_of(high_m), defaults_of(options, options.objects));
     }
     return text;
 }
 
-std::string tool_line(const Options& options, const ToolSetup& tool,
-                      const std::vector<Surroundings>& objects)
+/// What the tool comes to where its device reaches; of nothing, how far the nearest object is away.
+std::string reach_of(const ToolSetup& tool, const Controller& controller,
+                     const std::vector<Surroundings>& objects)
 {
     const DeviceInfo& device = tool.device->info();
     const auto& centre = device.workspace_centre_world_m;
     const Vec3 centre_m(centre[0], centre[1], centre[2]);
+    std::vector<double> beyond_m;
+    for (const Surroundings& object : objects)
+    {
+        beyond_m.push_back((object.center_m - centre_m).norm() - object.radius_m -
+                           device.workspace_radius_m - tool.hand_radius_m);
+    }
     const auto reached =
-        std::ranges::count_if(objects,
-                              [&](const Surroundings& object)
-                              {
-                                  return (object.center_m - centre_m).norm() - object.radius_m <=
-                                         device.workspace_radius_m + tool.hand_radius_m;
-                              });
+        std::ranges::count_if(beyond_m, [](double distance_m) { return distance_m <= 0.0; });
+    if (reached > 0)
+    {
+        return reached == 1 ? "1 object in reach" : fmt::format("{} objects in reach", reached);
+    }
+    if (objects.empty())
+    {
+        return "WHERE NO OBJECT IS";
+    }
+    const auto nearest = std::ranges::min_element(beyond_m);
+    return fmt::format("WHERE NO OBJECT IS: {} is {:.3g} m beyond its reach",
+                       name_of(controller, static_cast<std::size_t>(nearest - beyond_m.begin())),
+                       *nearest);
+}
+
+std::string tool_line(const Options& options, const ToolSetup& tool, const Controller& controller,
+                      const std::vector<Surroundings>& objects)
+{
+    const DeviceInfo& device = tool.device->info();
+    const auto& centre = device.workspace_centre_world_m;
     const double asked = options.stiffness_n_per_m;
     double stiffest = tool.limits.stiffness_n_per_m;
     for (const PlacedObject& object : options.objects)
@@ -99,16 +150,17 @@ std::string tool_line(const Options& options, const ToolSetup& tool,
         stiffest = std::min(stiffest, stiffness_cap(device.limits, tool.conditioner.period_s,
                                                     object.material.damping_n_s_per_m));
     }
-    const std::string reach = reached == 0   ? "WHERE NO OBJECT IS"
-                              : reached == 1 ? "1 object in reach"
-                                             : fmt::format("{} objects in reach", reached);
     const std::string wall =
         stiffest < kSoftestFelt_n_per_m
             ? "NOTHING WILL BE FELT: the device's own damping, friction and rate allow no wall"
             : fmt::format("a wall of {:.4g} N/m{}", stiffest,
                           stiffest < asked ? fmt::format(", of {:.4g} asked for", asked) : "");
-    return fmt::format("{:<12}{} on {}, {:.3g} m round {}: {}; {}\n", "tool", tool.shape,
-                       device.name, device.workspace_radius_m, text_of(centre_m), reach, wall);
+    const std::string where = device.workspace_radius_m < kPoseReachMax_m
+                                  ? fmt::format("{:.3g} m round {}", device.workspace_radius_m,
+                                                text_of(Vec3(centre[0], centre[1], centre[2])))
+                                  : "anywhere"; // A simulated hand that follows an object.
+    return fmt::format("{:<12}{} on {}, {}: {}; {}\n", "tool", tool.shape, device.name, where,
+                       reach_of(tool, controller, objects), wall);
 }
 
 } // namespace
@@ -116,10 +168,10 @@ std::string tool_line(const Options& options, const ToolSetup& tool,
 std::string start_lines(const Options& options, const Controller& controller)
 {
     const std::vector<Surroundings> objects = surroundings_of(controller);
-    std::string text = object_lines(controller, objects);
+    std::string text = object_lines(options, controller, objects);
     for (const ToolSetup& tool : controller.tools())
     {
-        text += tool_line(options, tool, objects);
+        text += tool_line(options, tool, controller, objects);
     }
     return text;
 }

@@ -11,7 +11,8 @@ namespace tactus::hrtc
 {
 
 /// What is to be touched, where, and what each tool can do there: a line for each object, or one
-/// for many, and one for each tool. What will come to nothing says so.
+/// for many, and one for each tool. What will come to nothing says so, as does what was left to its
+/// default where others were not.
 [[nodiscard]] std::string start_lines(const Options& options, const Controller& controller);
 
 } // namespace tactus::hrtc

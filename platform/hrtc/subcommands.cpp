@@ -35,10 +35,21 @@ std::span<const Subcommand> subcommands() noexcept
 
 const Subcommand* find_subcommand(int argc, char** argv) noexcept
 {
-    const std::string_view word = argc > 1 ? argv[1] : "";
+    std::string_view word = argc > 1 ? argv[1] : "";
+    word.remove_prefix(word.starts_with("--") ? 2 : 0); // Some write --doctor.
     const auto* const found = std::ranges::find(
         kSubcommands, word, [](const Subcommand& each) { return std::string_view(each.name); });
     return found == kSubcommands.end() ? nullptr : found;
+}
+
+std::string subcommand_names()
+{
+    std::string text;
+    for (const Subcommand& each : subcommands())
+    {
+        text += fmt::format("{}{}", text.empty() ? "" : ", ", each.name);
+    }
+    return text;
 }
 
 std::string describe_subcommands()

@@ -18,8 +18,11 @@ struct Subcommand
 
 [[nodiscard]] std::span<const Subcommand> subcommands() noexcept;
 
-/// The one that the first argument names; null when it names none.
+/// The one that the first argument names, with or without two dashes; null when it names none.
 [[nodiscard]] const Subcommand* find_subcommand(int argc, char** argv) noexcept;
+
+/// With commas between.
+[[nodiscard]] std::string subcommand_names();
 
 /// A paragraph for the end of --help.
 [[nodiscard]] std::string describe_subcommands();

@@ -23,7 +23,7 @@ void Supervisor::run() noexcept
 
 MonotonicTime Supervisor::look() noexcept
 {
-    const Duration patience = parts_.period * kSilentPeriods;
+    const Duration patience = parts_.period * parts_.silent_periods;
     const std::optional<MonotonicTime> last = parts_.heartbeat->last();
     const MonotonicTime now = parts_.clock->now(); // After the beat, so that it is never earlier.
     if (!last)
@@ -37,16 +37,29 @@ MonotonicTime Supervisor::look() noexcept
     if (noticed_ != last)
     {
         noticed_ = last;
-        brake(now);
+        noticed_at_ = now;
+        brake_softly(now);
+    }
+    else if (now - noticed_at_ >= kBrakeFade)
+    {
+        brake(); // Also where a device's own thread, which fades, didn't run.
     }
     return now + parts_.period;
 }
 
-void Supervisor::brake(MonotonicTime now) noexcept
+void Supervisor::brake() noexcept
 {
     for (const ToolSetup& tool : parts_.tools)
     {
         tool.device->brake();
+    }
+}
+
+void Supervisor::brake_softly(MonotonicTime now) noexcept
+{
+    for (const ToolSetup& tool : parts_.tools)
+    {
+        tool.device->brake_softly();
     }
     brakes_.fetch_add(1, std::memory_order_relaxed);
     for (std::uint32_t tool = 0; tool < parts_.tools.size(); ++tool)

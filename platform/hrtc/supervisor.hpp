@@ -22,25 +22,27 @@ struct SupervisorParts
 {
     std::span<const ToolSetup> tools; ///< Whose devices it brakes.
     const Heartbeat* heartbeat{nullptr};
-    const Clock* clock{nullptr};   ///< The one that the heartbeat's times are of.
-    PeriodicTimer* timer{nullptr}; ///< Its own; used as an alarm.
-    Duration period;               ///< Of the watched loop.
+    const Clock* clock{nullptr};     ///< The one that the heartbeat's times are of.
+    PeriodicTimer* timer{nullptr};   ///< Its own; used as an alarm.
+    Duration period;                 ///< Of the watched loop.
+    std::uint32_t silent_periods{3}; ///< Without a beat; then it brakes. At least 1.
 };
 
-/// Brakes all devices when the haptic loop has given no sign of life for kSilentPeriods, whatever
-/// it hangs in: the device's own read, an endless loop, a processor that somebody else has taken.
+/// Brakes all devices when the haptic loop has given no sign of life for so many periods (here 3),
+/// whatever it hangs in: the device's own read, an endless loop, a processor that somebody else
+/// has taken.
 ///
 ///     beat    beat    beat                              beat
 ///      |-------|-------|-------.-------.-------|  . . .  |
-///                                       brake()           the loop releases it and fades in
+///                                   brake_softly()        the loop releases it and goes on from
+///                                                         what is left of the force, or from zero
 ///
-/// It sleeps until the silence would be long enough and looks then, so it costs a wake-up in three
-/// periods. It does not release: the loop does, when it is back.
+/// When the fade should be over it calls brake(), in case that a device's own thread hangs, too.
+/// It sleeps until the silence would be long enough and looks then, so it costs one wake-up in
+/// that time. It does not release: the loop does, when it is back.
 class Supervisor
 {
 public:
-    static constexpr std::int64_t kSilentPeriods = 3;
-
     explicit Supervisor(const SupervisorParts& parts) noexcept : parts_(parts) {}
 
     /// Looks and sleeps by turns until stop(). Allocates nothing.
@@ -50,7 +52,7 @@ public:
     /// when to look again.
     [[nodiscard]] MonotonicTime look() noexcept;
 
-    /// Any thread: ends run() within kSilentPeriods.
+    /// Any thread: ends run() within the silence that it allows.
     void stop() noexcept { stopped_.store(true, std::memory_order_relaxed); }
 
     /// Any thread: how many silences it has ended with the brake.
@@ -67,10 +69,12 @@ public:
     [[nodiscard]] static RtThreadOptions thread_beside(const RtThreadOptions& loop);
 
 private:
-    void brake(MonotonicTime now) noexcept;
+    void brake() noexcept;
+    void brake_softly(MonotonicTime now) noexcept;
 
     SupervisorParts parts_;
-    std::optional<MonotonicTime> noticed_; ///< The last beat before a silence that was ended.
+    std::optional<MonotonicTime> noticed_; ///< The last beat before a silence that was ended,
+    MonotonicTime noticed_at_;             ///< and when that was.
     SafetyLog log_;
     std::atomic<bool> stopped_{false};     ///< Relaxed: it orders nothing else.
     std::atomic<std::uint64_t> brakes_{0}; ///< Relaxed: shown, nothing more.

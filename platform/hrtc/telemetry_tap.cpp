@@ -4,80 +4,15 @@
 
 #include "platform/hrtc/touch_forces.hpp"
 #include "rt_core/base/assert.hpp"
+#include "transport/told_frame.hpp"
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
 namespace tactus::hrtc
 {
-
-namespace
-{
-
-std::array<double, 3> parts_of(const Vec3& vector) noexcept
-{
-    return {vector.x(), vector.y(), vector.z()};
-}
-
-std::array<double, 4> quaternion_of(const Mat3& rotation) noexcept
-{
-    const Eigen::Quaterniond q(rotation);
-    return {q.x(), q.y(), q.z(), q.w()};
-}
-
-PoolTelemetry pool_of(const PoolUse& use) noexcept
-{
-    return {use.used, use.capacity};
-}
-
-ToolTelemetry tool_of(const ToolState& state, const DeviceRecord& device,
-                      const ToolOutput& output) noexcept
-{
-    ToolTelemetry tool;
-    tool.position_m = parts_of(state.position_m);
-    tool.rotation = quaternion_of(state.rotation);
-    tool.proxy_m = parts_of(output.proxy_m);
-    tool.proxy_rotation = quaternion_of(output.proxy_rotation);
-    tool.force_n = parts_of(device.sent_n);
-    tool.torque_nm = parts_of(device.sent_nm);
-    tool.buttons = device.buttons;
-    // Nobody sends what is no number.
-    tool.has_gripper = device.gripper_m && std::isfinite(*device.gripper_m);
-    tool.gripper_m = tool.has_gripper ? *device.gripper_m : 0.0;
-    tool.in_contact = output.in_contact;
-    tool.frozen = output.frozen;
-    tool.squeezed = output.squeezed;
-    tool.held_back = output.held_back;
-    return tool;
-}
-
-PairTelemetry pair_of(const PairOutput& output) noexcept
-{
-    PairTelemetry pair;
-    pair.object = output.object;
-    pair.tool = static_cast<std::uint8_t>(output.tool);
-    pair.kind = output.kind;
-    pair.lower_m = output.lower_m;
-    pair.upper_m = output.upper_m;
-    pair.point_m = parts_of(output.nearest_point_m);
-    return pair;
-}
-
-ModelTelemetry model_of(const ModelOutput& output) noexcept
-{
-    ModelTelemetry model;
-    model.pages = pool_of(output.pages);
-    model.faces = pool_of(output.faces);
-    model.blocks = pool_of(output.blocks);
-    model.nodes = pool_of(output.nodes);
-    model.is_static = output.is_static;
-    return model;
-}
-
-} // namespace
 
 void TelemetryTap::show(const ShownFrame& frame, const RunStatistics& statistics) noexcept
 {
@@ -100,11 +35,11 @@ void TelemetryTap::show(const ShownFrame& frame, const RunStatistics& statistics
         std::min<std::size_t>(frame.output.models.size(), kMaxShownModels));
     for (std::size_t i = 0; i < frame.tools.size(); ++i)
     {
-        news_.tools[i] = tool_of(frame.tools[i], frame.devices[i], frame.output.tools[i]);
+        news_.tools[i] = telemetry_of(frame.tools[i], frame.devices[i], frame.output.tools[i]);
     }
     for (std::size_t i = 0; i < news_.model_count; ++i)
     {
-        news_.models[i] = model_of(frame.output.models[i]);
+        news_.models[i] = telemetry_of(frame.output.models[i]);
     }
     show_pairs(frame);
     mailbox_.write(news_);
@@ -130,7 +65,7 @@ void TelemetryTap::show_pairs(const ShownFrame& frame) noexcept
     }
     for (std::size_t i = 0; i < pairs.size(); ++i)
     {
-        news_.pairs[i] = pair_of(pairs[i]);
+        news_.pairs[i] = telemetry_of(pairs[i]);
         news_.pairs[i].force_n = parts_of(pushes_n[i]);
     }
 }

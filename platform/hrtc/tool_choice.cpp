@@ -3,8 +3,8 @@
 #include "platform/hrtc/tool_choice.hpp"
 
 #include "host_tools/mesh/read_mesh.hpp"
+#include "platform/base/numbers.hpp"
 #include "platform/hrtc/messages.hpp"
-#include "platform/hrtc/numbers.hpp"
 #include "platform/hrtc/options.hpp"
 #include "rt_core/limits.hpp"
 
@@ -25,6 +25,7 @@ namespace
 constexpr double kLengthMin_m = 1e-5;
 constexpr double kLengthMax_m = 1.0;
 constexpr double kDefaultShare = 0.01;
+constexpr double kToolMassMax_kg = 5.0;
 
 bool is_length(double value_m)
 {
@@ -163,6 +164,24 @@ std::optional<ToolChoice> parse_tool(std::string_view text)
                    (form == "box" && take_box(*numbers, tool));
     }
     return is_right ? std::optional(std::move(tool)) : std::nullopt;
+}
+
+std::optional<ToolLoad> parse_tool_mass(std::string_view text)
+{
+    const std::optional<std::vector<double>> numbers = parse_numbers(text);
+    if (!numbers || (numbers->size() != 1 && numbers->size() != 4))
+    {
+        return std::nullopt;
+    }
+    ToolLoad load;
+    load.mass_kg = numbers->front();
+    if (numbers->size() == 4)
+    {
+        load.centre_m = Vec3((*numbers)[1], (*numbers)[2], (*numbers)[3]);
+    }
+    const bool is_right = load.mass_kg >= 0.0 && load.mass_kg <= kToolMassMax_kg &&
+                          load.centre_m.norm() <= kLengthMax_m;
+    return is_right ? std::optional(load) : std::nullopt;
 }
 
 ToolChoice default_tool(double diagonal_m)

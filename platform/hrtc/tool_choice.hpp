@@ -4,6 +4,7 @@
 
 #include "platform/base/refusal.hpp"
 #include "rt_core/records/frame_input.hpp"
+#include "rt_core/records/tool_load.hpp"
 #include "rt_core/spm/header.hpp"
 
 #include <memory>
@@ -36,6 +37,12 @@ inline constexpr const char* kToolForms =
 /// in metres: R is the radius, L the length of the axis, which is the tool's z, without its caps,
 /// X, Y and Z are whole edges before R. None when it is anything else.
 [[nodiscard]] std::optional<ToolChoice> parse_tool(std::string_view text);
+
+inline constexpr const char* kToolMassForm =
+    "KG[,X,Y,Z]: 0 to 5 kg, and its centre in metres, within 1 m";
+
+/// KG[,X,Y,Z]; down is -z. None when the text is nothing of that.
+[[nodiscard]] std::optional<ToolLoad> parse_tool_mass(std::string_view text);
 
 /// The sphere of tools that nothing is said of: 1 % of a diagonal, within what parse_tool() takes.
 [[nodiscard]] ToolChoice default_tool(double diagonal_m);

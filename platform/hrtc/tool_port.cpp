@@ -43,6 +43,7 @@ ToolPort::ToolPort(const ToolSetup& setup) noexcept
     , clutch_(setup.clutch_button)
     , conditioner_(with_lever(setup))
     , safe_state_(setup.limits)
+    , gravity_(setup.load, {setup.limits.force_max_n, setup.limits.torque_max_nm})
     , own_source_(setup.own_force)
     , angular_share_m2_(angular_stiffness_nm_per_rad(setup.spec) / setup.spec.stiffness_n_per_m)
 {
@@ -106,14 +107,19 @@ SafetyOutput ToolPort::make_safe(const ToolOutput& output, const PeriodContext& 
     const OwnForce own = own_force(output);
     const ConditionedWrench wrench =
         conditioner_.condition(with_own(wish_of(output, context.surface_damping_n_s_per_m), own));
+    force_.own_n = own.force_n.norm();
     force_.conditioned = wrench.force;
     force_.turned = wrench.torque;
-    const SafetyOutput safe = safe_state_.step(safety_input(output, context));
-    conditioner_.follow(safe.force_n, safe.torque_nm);
+    const SafetyInput input = safety_input(output, context);
+    const SafetyOutput safe = safe_state_.step(input);
+    const LoadedWrench sent = carry(safe, context.elapsed_s, input.force_left);
+    conditioner_.follow(sent.force_n, sent.torque_nm);
     gripper_n_ = safe.causes == ForceOff::none ? own.gripper_n : gripper_n_;
     force_.sent_gripper_n = safe_state_.gain() * gripper_n_;
-    force_.sent_n = safe.force_n;
-    force_.sent_nm = safe.torque_nm;
+    force_.sent_n = sent.force_n;
+    force_.sent_nm = sent.torque_nm;
+    force_.load_n = sent.load_n;
+    force_.load_nm = sent.load_nm;
     force_.twist_rad = output.in_contact ? twist_of(output).norm() : 0.0;
     return safe;
 }
@@ -174,7 +180,7 @@ SafetyInput ToolPort::safety_input(const ToolOutput& output, const PeriodContext
     input.turned_rad = turned_rad_;
     input.faults = faults_of(output);
     input.causes = context.causes | own_causes();
-    input.force_was_lost = take_back();
+    input.force_left = take_back();
     return input;
 }
 
@@ -187,21 +193,23 @@ ForceOff ToolPort::own_causes() const noexcept
            when(clutch_.is_held(), ForceOff::clutch);
 }
 
-/// Returns whether the device has dropped the last force: somebody braked it, or its own watchdog
-/// ended the force.
-bool ToolPort::take_back() noexcept
+/// Returns how much the device has left of the last force: less than all when somebody braked it,
+/// nothing when its own watchdog ended the force.
+double ToolPort::take_back() noexcept
 {
-    switch (device_.status().state)
+    static_assert(to_seconds(kBrakeFade) == kFadeTime_s);
+    const DeviceStatus status = device_.status();
+    switch (status.state)
     {
     case DeviceState::brake:
         release_brake();
-        return true;
+        return status.force_left;
     case DeviceState::idle:
-        return safe_state_.gain() > 0.0;
+        return safe_state_.gain() > 0.0 ? 0.0 : 1.0;
     case DeviceState::force:
         break;
     }
-    return false;
+    return 1.0;
 }
 
 /// Another thread may call brake() between the look at the flag and the release, so it looks again.
@@ -224,9 +232,17 @@ void ToolPort::brake() noexcept
     device_.brake();
 }
 
-void ToolPort::send(const Vec3& force_n, const Vec3& torque_nm, double gripper_n) noexcept
+/// A load hangs on the device: it turns with the hand, even where a clutch has parted the tool.
+LoadedWrench ToolPort::carry(const SafetyOutput& safe, double elapsed_s, double force_left) noexcept
 {
-    device_.write({to_array(force_n), to_array(torque_nm), gripper_n});
+    return gravity_.carry({safe.force_n, safe.torque_nm, safe.causes, hand_.rotation,
+                           safe.state != SafetyState::reset, force_left, elapsed_s});
+}
+
+void ToolPort::send(const LoadedWrench& wrench, double gripper_n) noexcept
+{
+    device_.write({to_array(wrench.force_n + wrench.load_n),
+                   to_array(wrench.torque_nm + wrench.load_nm), gripper_n});
 }
 
 } // namespace tactus::hrtc

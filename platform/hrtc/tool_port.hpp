@@ -6,6 +6,7 @@
 #include "platform/hrtc/clutch.hpp"
 #include "platform/hrtc/cycle_measures.hpp"
 #include "rt_core/force/force_conditioner.hpp"
+#include "rt_core/force/gravity_compensation.hpp"
 #include "rt_core/force/own_force.hpp"
 #include "rt_core/force/safe_state.hpp"
 #include "rt_core/records/frame_input.hpp"
@@ -43,12 +44,14 @@ struct ToolSetup
 {
     ToolSpec spec;             ///< The frame's part.
     std::string shape;         ///< In the words of --tool.
+    std::string guide;         ///< In the words of --guide; empty: none.
     double hand_radius_m{0.0}; ///< How far from a surface a simulated hand holds it.
     std::unique_ptr<HapticDevice> device;
     SafetyLimits limits;
     ConditionerSetup conditioner;
     std::optional<std::uint32_t> clutch_button;
     OwnForceSource* own_force{nullptr}; ///< Lent; may be none.
+    ToolLoad load;                      ///< Its weight no more than the device's largest force.
 };
 
 /// What the loop knows about the present period and a port cannot see.
@@ -79,7 +82,10 @@ public:
     [[nodiscard]] SafetyOutput make_safe(const ToolOutput& output,
                                          const PeriodContext& context) noexcept;
 
-    void write() noexcept { send(force_.sent_n, force_.sent_nm, force_.sent_gripper_n); }
+    void write() noexcept
+    {
+        send({force_.sent_n, force_.sent_nm, force_.load_n, force_.load_nm}, force_.sent_gripper_n);
+    }
 
     /// The force that write() sends, and how it came about.
     [[nodiscard]] const ToolForce& force() const noexcept { return force_; }
@@ -92,7 +98,7 @@ public:
     void fade(double elapsed_s, ForceOff cause) noexcept
     {
         const SafetyOutput safe = safe_state_.fade(elapsed_s, cause);
-        send(safe.force_n, safe.torque_nm, safe_state_.gain() * gripper_n_);
+        send(carry(safe, elapsed_s, 1.0), safe_state_.gain() * gripper_n_);
     }
 
     /// The run is over: no force.
@@ -110,14 +116,17 @@ private:
     void turn_hand(const Mat3& rotation) noexcept;
     [[nodiscard]] OwnForce own_force(const ToolOutput& output) noexcept;
     [[nodiscard]] ForceOff own_causes() const noexcept;
-    [[nodiscard]] bool take_back() noexcept;
+    [[nodiscard]] double take_back() noexcept;
     void release_brake() noexcept;
-    void send(const Vec3& force_n, const Vec3& torque_nm, double gripper_n) noexcept;
+    [[nodiscard]] LoadedWrench carry(const SafetyOutput& safe, double elapsed_s,
+                                     double force_left) noexcept;
+    void send(const LoadedWrench& wrench, double gripper_n) noexcept;
 
     HapticDevice& device_;
     Clutch clutch_;
     WrenchConditioner conditioner_;
     SafeState safe_state_;
+    GravityCompensation gravity_;
     OwnForceSource* own_source_;
     double gripper_n_{0.0}; ///< Wanted by the last frame in which nothing was wrong.
     DeviceSample sample_;

@@ -3,7 +3,9 @@
 #pragma once
 
 #include "platform/hrtc/host_topics.hpp"
-#include "platform/hrtc/hosts_gone.hpp"
+#include "platform/hrtc/model_marks.hpp"
+#include "platform/hrtc/trace_tap.hpp"
+#include "platform/time.hpp"
 #include "transport/courier.hpp"
 #include "transport/served_model.hpp"
 
@@ -14,35 +16,63 @@
 namespace tactus::hrtc
 {
 
-/// Runs the courier on one thread of ordinary priority, a few thousand rounds a
-/// second. Start it before the haptic thread: threads inherit policy and processor. When a host
-/// goes away or comes back, the model's link says so; the loop goes on with what is resident.
-class TransportThread
+/// What the transport does again and again: the courier's round, a look at the hosts, and what the
+/// topics have to say. When a host goes away or comes back, the model's link says so; the loop goes
+/// on with what is resident.
+class TransportRounds
 {
 public:
-    /// Courier and models must outlive the thread; nobody else touches them or the models' links
-    /// while it runs. `topics` has its turn after each round of the courier; it may be none.
-    TransportThread(Courier& courier, const std::vector<ServedModel>& models, HostTopics* topics);
-    TransportThread(const TransportThread&) = delete;
-    TransportThread& operator=(const TransportThread&) = delete;
-    ~TransportThread() { stop(); }
+    /// Courier and models outlive this; nobody else touches them or the models' links while rounds
+    /// are run. `topics` has its turn after each round of the courier; `trace` takes the times of
+    /// those rounds of the courier that do something. Either may be none.
+    TransportRounds(Courier& courier, const std::vector<ServedModel>& models, HostTopics* topics,
+                    TraceTap* trace = nullptr) noexcept
+        : courier_(courier), models_(models), topics_(topics), trace_(trace)
+    {
+    }
 
-    /// Waits for the present round to end. No effect the second time.
-    void stop();
+    /// One thread at a time.
+    void run(MonotonicTime now);
 
     /// Any thread: whether some model's host went away since the start.
     [[nodiscard]] bool host_was_lost() const noexcept { return host_was_lost_.load(); }
-    [[nodiscard]] const HostsGone& hosts_gone() const noexcept { return hosts_gone_; }
+    /// Models whose host is gone now.
+    [[nodiscard]] const ModelMarks& hosts_gone() const noexcept { return hosts_gone_; }
+    /// Models of which something that is wished for doesn't come (Courier::is_starved).
+    [[nodiscard]] const ModelMarks& starved() const noexcept { return starved_; }
 
 private:
-    void run();
-    void watch_hosts();
+    void run_courier(MonotonicTime now);
+    void watch_models();
 
     Courier& courier_;
     const std::vector<ServedModel>& models_;
     HostTopics* topics_;
+    TraceTap* trace_;
+    TracedRound told_; ///< Sums since the start, as of the last round that was traced.
     std::atomic<bool> host_was_lost_{false};
-    HostsGone hosts_gone_;
+    ModelMarks hosts_gone_;
+    ModelMarks starved_;
+};
+
+/// Pause between two rounds: a wish waits this long at most before it leaves.
+inline constexpr Duration kRoundPause = microseconds(300);
+
+/// Runs rounds on one thread of ordinary priority, a few thousand a second. Start it before the
+/// haptic thread: threads inherit policy and processor.
+class TransportThread
+{
+public:
+    /// The rounds must outlive the thread.
+    explicit TransportThread(TransportRounds& rounds);
+    TransportThread(const TransportThread&) = delete;
+    TransportThread& operator=(const TransportThread&) = delete;
+    ~TransportThread();
+
+private:
+    void run();
+
+    TransportRounds& rounds_;
     std::atomic<bool> stopped_{false};
     std::thread thread_;
 };

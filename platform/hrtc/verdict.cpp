@@ -50,6 +50,10 @@ std::vector<std::string> losses_of(const Json& report)
                                          softest.get<double>()));
         }
     }
+    if (const auto unfelt = report["scene"]["unfelt"].get<std::uint64_t>(); unfelt > 0)
+    {
+        losses.push_back(fmt::format("{} materials whose damping leaves no wall", unfelt));
+    }
     if (report["force"]["contact_share"].get<double>() == 0.0)
     {
         losses.emplace_back("nothing was touched");

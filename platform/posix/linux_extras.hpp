@@ -11,7 +11,7 @@
 
 /// The only calls that Linux has and other POSIX systems do not, or have in another form. One
 /// source of two is built: linux_extras.cpp on Linux, generic_extras.cpp, which can do none of it
-/// and says so, everywhere else. A port may bring a third (docs/porting.md).
+/// and says so, everywhere else. A port may bring a third (docs/internals/porting.md).
 namespace tactus::linux_extras
 {
 

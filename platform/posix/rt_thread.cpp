@@ -204,11 +204,14 @@ void RtThread::Running::lock_memory()
 /// Returns 0 or the errno.
 int RtThread::Running::create_thread()
 {
-    int error = create_with(SCHED_FIFO, options.priority);
+    int error = options.is_realtime ? create_with(SCHED_FIFO, options.priority) : EPERM;
     report.fifo = error == 0;
-    if (error == EPERM)
+    if (error == EPERM && options.is_realtime)
     {
         report.refused.push_back(linux_extras::explain_fifo_refusal(options.priority, error));
+    }
+    if (error == EPERM)
+    {
         error = create_with(SCHED_OTHER, sched_get_priority_min(SCHED_OTHER)); // On Linux 0.
     }
     if (error == 0)

@@ -2,17 +2,13 @@
 // Copyright the Tactus authors.
 #include "platform/recording/change_coding.hpp"
 
+#include <array>
+
 namespace tactus
 {
 
 namespace
 {
-
-/// Whether the change says where the object stands.
-bool has_pose(SceneChangeKind kind) noexcept
-{
-    return kind == SceneChangeKind::object_comes || kind == SceneChangeKind::object_moves;
-}
 
 void write_pose(FixedWriter& writer, const ObjectPose& pose) noexcept
 {
@@ -24,13 +20,18 @@ void write_pose(FixedWriter& writer, const ObjectPose& pose) noexcept
     writer.write(pose.revision);
 }
 
-void write_object(FixedWriter& writer, const ObjectSpec& object) noexcept
+/// In the order of the format.
+constexpr std::array kMaterialValues{&Material::stiffness_n_per_m,   &Material::static_friction,
+                                     &Material::dynamic_friction,    &Material::damping_n_s_per_m,
+                                     &Material::viscosity_n_s_per_m, &Material::texture_height_m,
+                                     &Material::texture_length_m};
+
+void write_material(FixedWriter& writer, const Material& material) noexcept
 {
-    writer.write(object.model.value);
-    writer.write(object.material.stiffness_n_per_m);
-    writer.write(object.material.static_friction);
-    writer.write(object.material.dynamic_friction);
-    writer.write(object.material.damping_n_s_per_m);
+    for (const auto value : kMaterialValues)
+    {
+        writer.write(material.*value);
+    }
 }
 
 ObjectPose read_pose(ByteReader& reader)
@@ -45,17 +46,14 @@ ObjectPose read_pose(ByteReader& reader)
     return pose;
 }
 
-ObjectSpec read_object(ByteReader& reader)
+Material read_material(ByteReader& reader)
 {
-    ObjectSpec object;
-    object.model = ModelId{reader.read<std::uint32_t>()};
-    Material& material = object.material;
-    for (double* const value : {&material.stiffness_n_per_m, &material.static_friction,
-                                &material.dynamic_friction, &material.damping_n_s_per_m})
+    Material material;
+    for (const auto value : kMaterialValues)
     {
-        *value = reader.read<double>();
+        material.*value = reader.read<double>();
     }
-    return object;
+    return material;
 }
 
 } // namespace
@@ -67,7 +65,11 @@ void write_change(FixedWriter& writer, const SceneChange& change) noexcept
     writer.write(change.generation);
     if (change.kind == SceneChangeKind::object_comes)
     {
-        write_object(writer, change.object);
+        writer.write(change.object.model.value);
+    }
+    if (has_material(change.kind))
+    {
+        write_material(writer, change.object.material);
     }
     if (has_pose(change.kind))
     {
@@ -87,7 +89,11 @@ bool try_read(ByteReader& reader, SceneChange& change)
     change.generation = reader.read<std::uint32_t>();
     if (change.kind == SceneChangeKind::object_comes)
     {
-        change.object = read_object(reader);
+        change.object.model = ModelId{reader.read<std::uint32_t>()};
+    }
+    if (has_material(change.kind))
+    {
+        change.object.material = read_material(reader);
     }
     if (has_pose(change.kind))
     {

@@ -11,7 +11,7 @@ namespace tactus
 
 /// Bytes of a change at most.
 inline constexpr std::size_t kObjectPoseBytes = 124;
-inline constexpr std::size_t kObjectSpecBytes = 36;
+inline constexpr std::size_t kObjectSpecBytes = 60;
 inline constexpr std::size_t kSceneChangeBytes = 9 + kObjectSpecBytes + kObjectPoseBytes;
 
 /// Allocates nothing. docs/recording.md lists the fields.

@@ -19,7 +19,7 @@ Budgets read_budgets(ByteReader& reader)
     Budgets budgets;
     for (std::uint32_t* budget :
          {&budgets.splits, &budgets.merges, &budgets.scanned, &budgets.nodes, &budgets.triangles,
-          &budgets.pages, &budgets.requests, &budgets.regions})
+          &budgets.pages, &budgets.requests, &budgets.regions, &budgets.planes})
     {
         *budget = reader.read<std::uint32_t>();
     }
@@ -113,10 +113,14 @@ const char* FrameDecoder::decode_door(ByteReader& reader)
         event.linked = reader.read<std::uint64_t>();
         event.kind = static_cast<DoorEventKind>(kind);
         event.key.kind = static_cast<ContentKind>(content);
-        const bool is_known =
-            event.kind == DoorEventKind::arrival
-                ? event.key.kind == ContentKind::chunk || event.key.kind == ContentKind::index_page
-                : event.kind == DoorEventKind::link_update && event.key.kind == ContentKind::chunk;
+        const bool is_known = event.kind == DoorEventKind::arrival
+                                  ? event.key.kind == ContentKind::chunk ||
+                                        event.key.kind == ContentKind::index_page ||
+                                        event.key.kind == ContentKind::base
+                                  : (event.kind == DoorEventKind::link_update &&
+                                     event.key.kind == ContentKind::chunk) ||
+                                        (event.kind == DoorEventKind::base_back &&
+                                         event.key.kind == ContentKind::base);
         if (!reader.failed() && !is_known)
         {
             return "takes an event of unknown kind from the door";

@@ -38,7 +38,8 @@ struct RecordedFrame
     [[nodiscard]] FrameInput input() const noexcept { return {tools, changes, budgets, now_ns}; }
 };
 
-/// Reads frames that a FrameEncoder coded, in the same order.
+/// Reads frames that a FrameEncoder coded, in the same order. One thread, not the haptic one: it
+/// allocates.
 class FrameDecoder
 {
 public:

@@ -29,11 +29,13 @@ public:
     /// A second or more of usual frames: 1 MiB.
     static constexpr std::size_t kUsualCells = 16'384;
 
-    /// Haptic thread. Allocates nothing. As FrameEncoder::encode().
+    /// Haptic thread, after each run. Allocates nothing. At most kMaxSceneChanges changes;
+    /// `devices` one a tool, or none.
     void record(const FrameInput& input, const FrameOutput& output,
                 std::span<const DeviceRecord> devices = {}) noexcept;
 
-    /// The other thread: the next coded frame into `frame`; false when none waits.
+    /// The other thread, one: the next coded frame into `frame`, as FrameEncoder coded it; false
+    /// when none waits. Allocates.
     [[nodiscard]] bool try_take(std::vector<std::byte>& frame);
 
     /// Any thread: the first frame that was lost, from 0, or kNoFrame.

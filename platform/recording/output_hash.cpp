@@ -11,12 +11,12 @@ namespace
 {
 
 // A field that is added to one of these has to be hashed below.
-static_assert(sizeof(ToolOutput) == 176);
-static_assert(sizeof(PairOutput) == 120);
+static_assert(sizeof(ToolOutput) == 192);
+static_assert(sizeof(PairOutput) == 128);
 static_assert(sizeof(Contact) == 96);
 static_assert(sizeof(MeshReport) == 8 * kMaxMeetingFaces + 24);
 static_assert(sizeof(ModelOutput) == 80);
-static_assert(sizeof(WorkCounters) == 52 + 4 * kSkips);
+static_assert(sizeof(WorkCounters) == 56 + 4 * kSkips);
 static_assert(sizeof(SceneOutput) == 20 + 4 * kChangeRefusals);
 
 class Hash
@@ -66,11 +66,13 @@ std::uint64_t hash_tools(std::span<const ToolOutput> tools) noexcept
         hash.add(std::uint64_t{tool.squeezed});
         hash.add(std::uint64_t{tool.held_back});
         hash.add(std::uint64_t{tool.under_way});
+        hash.add(std::uint64_t{tool.cut_short});
         hash.add(std::uint64_t{tool.crowded});
         hash.add(std::uint64_t{tool.lost_object});
         hash.add(std::uint64_t{tool.is_gone});
         hash.add(tool.clear_m);
         hash.add(tool.stiffness_n_per_m);
+        hash.add(tool.lag_m);
         hash.add(static_cast<std::uint64_t>(tool.sample_fault));
     }
     return hash.value();
@@ -122,6 +124,7 @@ std::uint64_t hash_pairs(std::span<const PairOutput> pairs) noexcept
         hash.add(std::uint64_t{pair.skipped});
         hash.add(std::uint64_t{pair.is_shed});
         hash.add(std::uint64_t{pair.is_joined});
+        hash.add(pair.damping_n_s_per_m);
         hash.add(static_cast<std::uint64_t>(pair.nearest_feature));
         if (pair.contacts != nullptr)
         {
@@ -148,6 +151,10 @@ std::uint64_t hash_models(std::span<const ModelOutput> models) noexcept
         hash.add(std::uint64_t{model.refined_records});
         hash.add(model.state_hash);
         hash.add(std::uint64_t{model.is_static});
+        if (model.stage != ModelStage::resident)
+        {
+            hash.add(static_cast<std::uint64_t>(model.stage));
+        }
     }
     return hash.value();
 }
@@ -158,8 +165,9 @@ std::uint64_t hash_work(const WorkCounters& work, const SceneOutput& scene,
     Hash hash;
     for (const std::uint32_t count :
          {work.splits, work.merges, work.scanned, work.nodes_visited, work.triangles_tested,
-          work.pages_adopted, work.requests, work.regions_searched, work.nodes_refitted,
-          work.blocks_refitted, work.evictions, work.cache_hits, work.cache_misses})
+          work.planes_looked_at, work.pages_adopted, work.requests, work.regions_searched,
+          work.nodes_refitted, work.blocks_refitted, work.evictions, work.cache_hits,
+          work.cache_misses})
     {
         hash.add(std::uint64_t{count});
     }

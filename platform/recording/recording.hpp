@@ -26,13 +26,16 @@ namespace tactus
 class Recording
 {
 public:
-    /// Reads a file, whole; it takes as much memory as the file has bytes.
+    /// Reads a file, whole; it takes as much memory as the file has bytes. Refused in one line with
+    /// the file's name.
     [[nodiscard]] static Result<Recording, Refusal> read(const std::string& path);
     /// The same for bytes in memory; `name` stands for the file's in messages.
     [[nodiscard]] static Result<Recording, Refusal> parse(std::span<const std::byte> bytes,
                                                           const std::string& name);
 
+    /// All that is returned by reference or as a span is the recording's.
     [[nodiscard]] const RecordedSetup& setup() const noexcept { return setup_; }
+    /// For a FrameDecoder.
     [[nodiscard]] FrameShape shape() const noexcept
     {
         return {setup_.tools.size(), setup_.models.size()};

@@ -14,12 +14,13 @@
 #include <string>
 #include <vector>
 
+// Any thread, but not the haptic one: values; their texts and bytes allocate.
 namespace tactus
 {
 
 /// docs/recording.md describes the file.
 inline constexpr std::array<char, 8> kRecordingMagic{'T', 'A', 'C', 'T', 'R', 'E', 'C', '\n'};
-inline constexpr std::uint32_t kRecordingVersion = 8;
+inline constexpr std::uint32_t kRecordingVersion = 11;
 inline constexpr std::size_t kRecordingPrologueBytes = 12;
 
 enum class SectionKind : std::uint32_t
@@ -41,7 +42,7 @@ struct RecordedModel
 {
     ModelCapacities capacities;
     std::vector<std::byte> header; ///< Coded, as ModelSource takes them.
-    std::vector<std::byte> base;
+    std::vector<std::byte> base;   ///< Empty: a guest, which comes and goes.
 };
 
 /// What the frame was made of.
@@ -56,6 +57,7 @@ struct RecordedSetup
     std::vector<ObjectSpec> objects;
     std::vector<ObjectPose> poses; ///< One an object.
     SceneCapacities capacities;
+    ModelCapacities for_guests;
     std::vector<RecordedModel> models;
     /// For the reader of a difference: how the program that recorded was built, and the kernels it
     /// ran. At most kMaxRecordedNameBytes each.
@@ -65,6 +67,8 @@ struct RecordedSetup
 };
 
 inline constexpr std::size_t kMaxRecordedNameBytes = 63;
+/// No host serves a larger base mesh.
+inline constexpr std::size_t kMaxRecordedBaseBytes = std::size_t{1} << 20U;
 /// As much as `hrtc --pool-mib` can be; a recording that needs more was never made.
 inline constexpr std::size_t kMaxRecordedPoolBytes = std::size_t{4'096} << 20U;
 
@@ -74,7 +78,8 @@ inline constexpr std::uint64_t kNoFrame = std::numeric_limits<std::uint64_t>::ma
 /// How this program was built: compiler and whether it optimised, processor.
 [[nodiscard]] std::string this_build();
 
-/// The setup of a frame that this program makes, as a recording keeps it.
+/// The setup of a frame that this program makes, as a recording keeps it: copies all of it but the
+/// vertices of hulls.
 [[nodiscard]] RecordedSetup to_recorded(const FrameSetup& setup);
 
 } // namespace tactus

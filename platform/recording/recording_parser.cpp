@@ -3,7 +3,9 @@
 #include "platform/base/refusal.hpp"
 #include "platform/recording/recording.hpp"
 #include "platform/recording/setup_coding.hpp"
+#include "rt_core/base/arena.hpp"
 #include "rt_core/base/crc32c.hpp"
+#include "rt_core/frame/model.hpp"
 
 #include <algorithm>
 #include <cstring>
@@ -135,7 +137,7 @@ private:
         {
         case SectionKind::setup:
             has_setup_ = true;
-            return parse_setup(payload, recording_.setup_, model_count_);
+            return parse_setup_section(payload);
         case SectionKind::model:
             return add_model(payload);
         case SectionKind::piece:
@@ -148,11 +150,35 @@ private:
         return std::nullopt;
     }
 
+    Fault parse_setup_section(std::span<const std::byte> payload)
+    {
+        if (Fault fault = parse_setup(payload, recording_.setup_, model_count_))
+        {
+            return fault;
+        }
+        Arena measuring = Arena::measuring();
+        const ModelPools pools(measuring, recording_.setup_.for_guests, model_count_);
+        static_cast<void>(pools);
+        if (measuring.used() > pool_bytes_left_)
+        {
+            return "the pools of models that come and go need more than " +
+                   std::to_string(kMaxRecordedPoolBytes >> 20U) + " MiB, which is the most allowed";
+        }
+        pool_bytes_left_ -= recording_.setup_.for_guests.base_cells > 0 ? measuring.used() : 0;
+        return std::nullopt;
+    }
+
+    [[nodiscard]] bool is_guest(std::size_t model) const
+    {
+        return recording_.setup_.models[model].base.empty();
+    }
+
     Fault add_model(std::span<const std::byte> payload)
     {
         RecordedModel model;
         ModelCounts counts;
-        if (Fault fault = parse_model(payload, model, counts, pool_bytes_left_))
+        if (Fault fault = parse_model(payload, recording_.setup_.for_guests.base_cells > 0, model,
+                                      counts, pool_bytes_left_))
         {
             return fault;
         }
@@ -172,19 +198,22 @@ private:
         const auto kind = static_cast<ContentKind>(reader.read<std::uint8_t>());
         const auto number = reader.read<std::uint32_t>();
         const auto bytes = reader.read_bytes(reader.remaining());
-        const bool is_chunk = kind == ContentKind::chunk;
+        const bool is_base = kind == ContentKind::base;
         const bool is_known =
             !reader.failed() && model < model_count_ &&
-            (is_chunk ? number < counts_[model].chunks()
-                      : kind == ContentKind::index_page && number < counts_[model].index_pages());
+            (kind == ContentKind::chunk        ? number < counts_[model].chunks()
+             : kind == ContentKind::index_page ? number < counts_[model].index_pages()
+                                               : is_base && is_guest(model) && number == 0);
         if (!is_known)
         {
-            return "a piece is not a chunk or index page of one of the recording's models";
+            return "a piece is not a chunk or index page of one of the recording's models, nor the "
+                   "base mesh of one that comes and goes";
         }
-        if (bytes.empty() || bytes.size() > kMaxCodedChunkBytes)
+        const std::size_t most = is_base ? kMaxRecordedBaseBytes : kMaxCodedChunkBytes;
+        if (bytes.empty() || bytes.size() > most)
         {
             return "a piece has " + std::to_string(bytes.size()) + " bytes; 1 to " +
-                   std::to_string(kMaxCodedChunkBytes) + " are allowed";
+                   std::to_string(most) + " are allowed";
         }
         const bool is_new = recording_.pieces_
                                 .try_emplace({model, kind, number},
@@ -223,8 +252,8 @@ private:
     /// What arrives must have been recorded before.
     Fault check_pieces(const RecordedFrame& frame) const
     {
-        std::uint64_t pages = 0;
-        std::uint64_t index_pages = 0;
+        std::uint64_t pages = recording_.setup_.for_guests.pages;
+        std::uint64_t index_pages = recording_.setup_.for_guests.index_pages;
         for (const RecordedModel& model : recording_.setup_.models)
         {
             pages += model.capacities.pages;
@@ -232,12 +261,16 @@ private:
         }
         for (const DoorEvent& event : frame.events)
         {
-            const std::uint64_t slots = event.key.kind == ContentKind::chunk ? pages : index_pages;
+            const std::uint64_t slots = event.key.kind == ContentKind::chunk ? pages
+                                        : event.key.kind == ContentKind::index_page
+                                            ? index_pages
+                                            : recording_.setup_.for_guests.base_cells;
             if (event.slot >= slots)
             {
                 return "names slot " + std::to_string(event.slot) + " of " + std::to_string(slots);
             }
-            if (recording_.piece(event.owner, event.key).empty())
+            if (event.kind != DoorEventKind::base_back &&
+                recording_.piece(event.owner, event.key).empty())
             {
                 return "takes piece " + std::to_string(event.key.number) + " of model " +
                        std::to_string(event.owner) +

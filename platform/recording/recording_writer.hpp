@@ -17,19 +17,21 @@ namespace tactus
 
 /// Lays out a recording's bytes in the order in which they are given; whoever owns it takes them
 /// away and stores them. A piece must be added before the frame that takes it from the door.
-/// Not for the haptic thread.
+/// One thread, not the haptic one: it allocates. It keeps what take_bytes() doesn't take.
 class RecordingWriter
 {
 public:
     explicit RecordingWriter(const RecordedSetup& setup);
 
-    /// A coded chunk or index page; a second one under the same key is the same and left out.
+    /// A coded chunk or index page of one of the set-up's models; a second one under the same key
+    /// is the same and left out.
     void add_piece(std::uint32_t model, ContentKey key, std::span<const std::byte> bytes);
 
     /// One frame as FrameEncoder coded it.
     void add_frame(std::span<const std::byte> coded);
 
-    /// Closes the recording. `lost_from`: the first frame that is not in it, else kNoFrame.
+    /// Closes the recording, once, as the last call but take_bytes(). `lost_from`: the first frame
+    /// that is not in it, else kNoFrame.
     void finish(std::uint64_t lost_from);
 
     [[nodiscard]] std::uint64_t frames() const noexcept { return frames_; }

@@ -40,6 +40,7 @@ public:
         return replayed;
     }
 
+    [[nodiscard]] Frame& frame() noexcept { return *frame_; }
     /// What differs in this frame, if anything.
     [[nodiscard]] std::optional<std::string> step(const RecordedFrame& recorded,
                                                   std::uint64_t number, const ReplayWatch& watch)
@@ -72,6 +73,7 @@ private:
         setup_.objects = setup.objects;
         setup_.poses = setup.poses;
         setup_.capacities = setup.capacities;
+        setup_.for_guests = setup.for_guests;
         setup_.tools = setup.tools;
         setup_.period_ns = setup.period_ns;
         setup_.pose_age_max_ns = setup.pose_age_max_ns;
@@ -127,6 +129,10 @@ Result<ReplayReport, Refusal> replay(const Recording& recording, const Kernels* 
     {
         return replayed.error();
     }
+    if (watch.made)
+    {
+        watch.made(replayed.value()->frame());
+    }
     ReplayReport report;
     FrameDecoder decoder(recording.shape());
     for (ByteReader reader(recording.frames()); !reader.at_end();)
@@ -137,6 +143,10 @@ Result<ReplayReport, Refusal> replay(const Recording& recording, const Kernels* 
         if (auto difference = replayed.value()->step(decoder.frame(), frame, watch))
         {
             report.difference = {frame, std::move(*difference)};
+            break;
+        }
+        if (watch.goes_on && !watch.goes_on())
+        {
             break;
         }
     }

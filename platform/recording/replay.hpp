@@ -5,6 +5,7 @@
 #include "platform/base/refusal.hpp"
 #include "platform/recording/frame_decoder.hpp"
 #include "platform/recording/recording.hpp"
+#include "rt_core/frame/frame.hpp"
 #include "rt_core/kernels/kernels.hpp"
 #include "rt_core/records/frame_output.hpp"
 
@@ -29,19 +30,24 @@ struct ReplayReport
     std::optional<ReplayDifference> difference;
 };
 
-/// Called with a frame's number, from 0, right before and right after it runs; the door is open and
-/// pages are linked by then. Either may be empty.
+/// Called with a frame's number, from 0, right before and right after it runs, on the thread that
+/// replays; the door is open and pages are linked by then. Any may be empty.
 struct ReplayWatch
 {
     using Ends = void(std::uint64_t, const RecordedFrame& given, const FrameOutput& returned);
 
-    std::function<void(std::uint64_t)> begins;
-    std::function<Ends> ends; ///< Both are valid during the call.
+    std::function<void(std::uint64_t)> begins{};
+    std::function<Ends> ends{}; ///< Both are valid during the call.
+    /// Once, before all: the frame that will run, there until the replay ends. Only to be read.
+    std::function<void(Frame&)> made{};
+    /// Asked after each frame: false ends the replay there.
+    std::function<bool()> goes_on{};
 };
 
 /// Makes a frame as the recorded one was made, gives it the recorded inputs, arrivals and link
 /// updates of every frame, and compares what comes out with the recorded hashes. Stops at the first
-/// difference. Needs no device, network, timer or thread; takes the pools' memory.
+/// difference. Needs no device, network, timer or thread; takes the pools' memory, and the time of
+/// the frames. Refused when no frame can be made of the set-up.
 ///
 /// Pages are linked here anew, by the same Linker in the recorded order, and compared, too.
 /// `kernels` run the queries, null the best of this processor; it makes no difference.

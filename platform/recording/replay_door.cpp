@@ -15,6 +15,7 @@ ReplayDoor::ReplayDoor(const Recording& recording, Frame& frame)
     , frame_(frame)
     , pages_(frame.pools().slots.pages.size())
     , index_pages_(frame.pools().slots.index_pages.size())
+    , gives_cells_back_(recording.setup().models.size())
 {
 }
 
@@ -32,7 +33,9 @@ std::optional<std::string> ReplayDoor::open(const RecordedFrame& recorded)
 
 ReplayDoor::Fault ReplayDoor::replay(const DoorEvent& event)
 {
-    Fault fault = event.kind == DoorEventKind::arrival ? arrive(event) : update(event);
+    Fault fault = event.kind == DoorEventKind::arrival     ? arrive(event)
+                  : event.kind == DoorEventKind::base_back ? give_back(event)
+                                                           : update(event);
     if (!fault && !frame_.pools().cache.door.arrived.try_push(event))
     {
         fault = "more waits at the door than it has room for";
@@ -69,6 +72,26 @@ ReplayDoor::Fault ReplayDoor::update(const DoorEvent& event)
     return std::nullopt;
 }
 
+ReplayDoor::Fault ReplayDoor::give_back(const DoorEvent& event)
+{
+    Fault fault = take_back_freed(event.freed_taken);
+    if (!fault && !has_cells_for(event))
+    {
+        fault = "cells are given back that weren't lent";
+    }
+    gives_cells_back_[event.owner] = true;
+    return fault;
+}
+
+/// Cells that were given back may be lent anew once the frame has said that it knows, and not
+/// before.
+bool ReplayDoor::has_cells_for(const DoorEvent& event) const
+{
+    const Model& model = frame_.model({event.owner});
+    return model.awaits_base(event.slot) && !model.linker.has_base() &&
+           !gives_cells_back_[event.owner];
+}
+
 /// Linking looks at every page that is here, so a page goes exactly when it went in the recording.
 ReplayDoor::Fault ReplayDoor::take_back_freed(std::uint32_t freed_taken)
 {
@@ -79,7 +102,12 @@ ReplayDoor::Fault ReplayDoor::take_back_freed(std::uint32_t freed_taken)
         {
             return "fewer slots were given back";
         }
-        if (freed.kind == ContentKind::chunk)
+        if (freed.kind == ContentKind::base)
+        {
+            frame_.model({freed.slot}).linker.set_base({});
+            gives_cells_back_[freed.slot] = false;
+        }
+        else if (freed.kind == ContentKind::chunk)
         {
             frame_.model({pages_[freed.slot].model}).linker.release_page(freed.slot);
             pages_[freed.slot] = {};
@@ -101,6 +129,14 @@ ReplayDoor::Fault ReplayDoor::fill(const DoorEvent& event)
     const std::uint32_t number = event.key.number;
     const std::uint32_t slot = event.slot;
     const std::span<const std::byte> bytes = recording_.piece(index, event.key);
+    if (event.key.kind == ContentKind::base)
+    {
+        return bring_base(event);
+    }
+    if (!model.linker.has_base())
+    {
+        return "a piece comes before the base mesh";
+    }
     if (event.key.kind == ContentKind::chunk)
     {
         if (!pages_[slot].id.is_none() || model.linker.is_resident({number}))
@@ -130,6 +166,25 @@ ReplayDoor::Fault ReplayDoor::fill(const DoorEvent& event)
         return "index page " + std::to_string(number) + ": " + refusal_text(done.error());
     }
     index_pages_[slot] = {IndexPageId{number}, index};
+    return std::nullopt;
+}
+
+/// Into the cells that the frame lent for it, and nowhere else.
+ReplayDoor::Fault ReplayDoor::bring_base(const DoorEvent& event)
+{
+    Model& model = frame_.model({event.owner});
+    if (!has_cells_for(event) || model.linker.pages_here() > 0)
+    {
+        return "its base mesh comes where it isn't wanted";
+    }
+    const BaseMesh mesh = frame_.pools().slots.base.part(event.slot, model.header.counts());
+    if (const auto done =
+            parse_base_mesh(recording_.piece(event.owner, event.key), model.header, mesh);
+        !done)
+    {
+        return std::string("its base mesh: ") + refusal_text(done.error());
+    }
+    model.linker.set_base(mesh);
     return std::nullopt;
 }
 

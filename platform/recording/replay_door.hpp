@@ -33,8 +33,11 @@ private:
     [[nodiscard]] Fault replay(const DoorEvent& event);
     [[nodiscard]] Fault arrive(const DoorEvent& event);
     [[nodiscard]] Fault update(const DoorEvent& event);
+    [[nodiscard]] Fault give_back(const DoorEvent& event);
+    [[nodiscard]] bool has_cells_for(const DoorEvent& event) const;
     [[nodiscard]] Fault take_back_freed(std::uint32_t freed_taken);
     [[nodiscard]] Fault fill(const DoorEvent& event);
+    [[nodiscard]] Fault bring_base(const DoorEvent& event);
     [[nodiscard]] Fault grant_wishes(std::uint32_t wish_room);
 
     /// What is in a slot; none: the slot is here.
@@ -49,6 +52,8 @@ private:
     Frame& frame_;
     std::vector<Filled<ChunkId>> pages_;
     std::vector<Filled<IndexPageId>> index_pages_;
+    std::vector<bool>
+        gives_cells_back_; ///< By model: given back, and the frame hasn't said so yet.
     std::set<std::pair<std::uint32_t, std::uint32_t>> loaded_index_; ///< Model and page in a slot.
     std::uint32_t freed_taken_{0};
 };

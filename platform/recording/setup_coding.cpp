@@ -127,7 +127,8 @@ Fault parse_objects(ByteReader& reader, std::uint32_t objects, std::uint32_t mod
         {
             return "object " + std::to_string(i) +
                    " is not of more than 0 N/m, static friction 0 to 1000, dynamic friction 0 to "
-                   "the static one, damping 0 to 1e9 N s/m";
+                   "the static one, damping and viscosity 0 to 1e9 N s/m, a texture at most 1/32 "
+                   "as high as it is long, 0.0001 to 1 m";
         }
         if (!is_sound(change.pose))
         {
@@ -197,6 +198,12 @@ std::vector<std::byte> code_setup(const RecordedSetup& setup)
     append_name(bytes, setup.compiler);
     append_name(bytes, setup.architecture);
     append_name(bytes, setup.kernels);
+    const ModelCapacities& guests = setup.for_guests;
+    for (const std::uint32_t capacity : {guests.pages, guests.index_pages, guests.faces,
+                                         guests.blocks, guests.nodes, guests.base_cells})
+    {
+        append(bytes, capacity);
+    }
     return bytes;
 }
 
@@ -275,11 +282,29 @@ std::optional<std::string> parse_setup(std::span<const std::byte> payload, Recor
             return "a name in the setup is not of at most 63 printable characters";
         }
     }
-    return unless_whole(reader, "setup");
+    ModelCapacities& guests = setup.for_guests;
+    for (std::uint32_t* capacity : {&guests.pages, &guests.index_pages, &guests.faces,
+                                    &guests.blocks, &guests.nodes, &guests.base_cells})
+    {
+        *capacity = reader.read<std::uint32_t>();
+    }
+    if (Fault fault = unless_whole(reader, "setup"))
+    {
+        return fault;
+    }
+    if (guests.base_cells == 0)
+    {
+        return guests == ModelCapacities{}
+                   ? std::nullopt
+                   : Fault("there are pools for models that come and go, and no base meshes");
+    }
+    const Fault fault = check(guests, 0);
+    return fault || guests.base_cells <= kMaxCapacity ? fault : Fault("too many base meshes");
 }
 
-std::optional<std::string> parse_model(std::span<const std::byte> payload, RecordedModel& model,
-                                       ModelCounts& counts, std::size_t& bytes_left)
+std::optional<std::string> parse_model(std::span<const std::byte> payload, bool has_guests,
+                                       RecordedModel& model, ModelCounts& counts,
+                                       std::size_t& bytes_left)
 {
     ByteReader reader(payload);
     ModelCapacities& capacities = model.capacities;
@@ -307,6 +332,11 @@ std::optional<std::string> parse_model(std::span<const std::byte> payload, Recor
     if (cache_off > 1)
     {
         return "the cache's switch is " + std::to_string(cache_off) + "; 0 and 1 are allowed";
+    }
+    if (has_guests && model.base.empty())
+    {
+        return capacities == ModelCapacities{} ? std::nullopt
+                                               : Fault("a model that comes and goes has pools");
     }
     if (Fault fault = check(capacities, counts.base_faces))
     {

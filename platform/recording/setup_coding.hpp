@@ -27,8 +27,8 @@ namespace tactus
 /// Reads a model section. `bytes_left` is what all pools may still need, and is lowered by this
 /// model's. Returns what is wrong, or nothing.
 [[nodiscard]] std::optional<std::string> parse_model(std::span<const std::byte> payload,
-                                                     RecordedModel& model, ModelCounts& counts,
-                                                     std::size_t& bytes_left);
+                                                     bool has_guests, RecordedModel& model,
+                                                     ModelCounts& counts, std::size_t& bytes_left);
 
 /// What is wrong when a section's content ends before or after its payload does.
 [[nodiscard]] std::optional<std::string> unless_whole(const ByteReader& reader,

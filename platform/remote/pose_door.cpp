@@ -27,6 +27,20 @@ constexpr std::uint64_t bit_of(std::size_t object) noexcept
     return std::uint64_t{1} << object % kWordBits;
 }
 
+Similarity between(const Similarity& from, const Similarity& to, double share) noexcept
+{
+    Similarity place;
+    place.translation_m = from.translation_m + share * (to.translation_m - from.translation_m);
+    place.scale = from.scale + share * (to.scale - from.scale);
+    // The short way round; its speed is even to a twentieth up to 45 degrees.
+    const Eigen::Quaterniond first(from.rotation);
+    const Eigen::Quaterniond last(to.rotation);
+    const double side = first.dot(last) < 0.0 ? -1.0 : 1.0;
+    const Eigen::Quaterniond turned((1.0 - share) * first.coeffs() + share * side * last.coeffs());
+    place.rotation = turned.normalized().toRotationMatrix();
+    return place;
+}
+
 /// The object of a word's lowest bit.
 constexpr std::size_t first_of(std::size_t word, std::uint64_t bits) noexcept
 {
@@ -35,8 +49,10 @@ constexpr std::size_t first_of(std::size_t word, std::uint64_t bits) noexcept
 
 } // namespace
 
-PoseDoor::PoseDoor(std::span<const ObjectPose> placed, std::size_t objects, Duration age_limit)
+PoseDoor::PoseDoor(std::span<const ObjectPose> placed, std::size_t objects, Duration age_limit,
+                   double speed_max_m_per_s)
     : age_limit_(age_limit)
+    , speed_max_m_per_s_(speed_max_m_per_s)
     , places_(placed.begin(), placed.end())
     , letters_(objects)
     , glides_(objects)
@@ -72,14 +88,11 @@ bool PoseDoor::try_come(std::size_t object, std::uint32_t generation, const Obje
     }
     generations_[object] = generation;
     Passage passage;
-    passage.comes = true;
+    passage.kind = SceneChangeKind::object_comes;
     passage.object = static_cast<std::uint32_t>(object);
     passage.letter = letter_of(object, pose, arrival);
     passage.model = spec.model.value;
-    passage.stiffness_n_per_m = spec.material.stiffness_n_per_m;
-    passage.static_friction = spec.material.static_friction;
-    passage.dynamic_friction = spec.material.dynamic_friction;
-    passage.damping_n_s_per_m = spec.material.damping_n_s_per_m;
+    passage.material = spec.material;
     hear(object, arrival);
     return passages_.try_push(passage);
 }
@@ -90,6 +103,17 @@ bool PoseDoor::try_go(std::size_t object) noexcept
     Passage passage;
     passage.object = static_cast<std::uint32_t>(object);
     passage.letter.generation = generations_[object];
+    return passages_.try_push(passage);
+}
+
+bool PoseDoor::try_feel(std::size_t object, const Material& material) noexcept
+{
+    TACTUS_ASSERT(object < letters_.size());
+    Passage passage;
+    passage.kind = SceneChangeKind::object_feels;
+    passage.object = static_cast<std::uint32_t>(object);
+    passage.letter.generation = generations_[object];
+    passage.material = material;
     return passages_.try_push(passage);
 }
 
@@ -142,8 +166,15 @@ void PoseDoor::hear(std::size_t object, MonotonicTime now) noexcept
     heard_ns_[object].store(now.ns, std::memory_order_relaxed);
 }
 
-std::span<const SceneChange> PoseDoor::refresh(MonotonicTime now) noexcept
+std::span<const SceneChange> PoseDoor::refresh(MonotonicTime now,
+                                               std::span<const ObjectTouch> touches) noexcept
 {
+    TACTUS_ASSERT(touches.size() <= kMaxPairs);
+    touches_ = touches;
+    for (const ObjectTouch& touch : touches)
+    {
+        glides_[touch.object].outruns = false;
+    }
     if (last_refresh_ == MonotonicTime{})
     {
         last_refresh_ = now;
@@ -151,6 +182,20 @@ std::span<const SceneChange> PoseDoor::refresh(MonotonicTime now) noexcept
     std::size_t changes = take_passages();
     take_letters(now);
     look_at_ages(now);
+    // What is touched has its turn in every frame, or the surface would jump under the tool; it
+    // leaves the others half of the room.
+    const std::size_t passed = changes;
+    for (const ObjectTouch& touch : touches)
+    {
+        std::uint64_t& bits = awake_[touch.object / kWordBits];
+        const bool has_room = changes < changes_.size() && changes - passed < changes_.size() / 2;
+        if (has_room && (bits & bit_of(touch.object)) != 0)
+        {
+            changes += try_move(touch.object, now, changes_[changes]) ? 1U : 0U;
+            bits &= ~bit_of(touch.object); // It has had its turn.
+        }
+    }
+    const std::size_t touched = changes;
     // Once round from whose turn it is: the later bits of its word first, the earlier ones last.
     const std::size_t words = awake_.size();
     const std::uint64_t from_first = ~std::uint64_t{0} << first_ % kWordBits;
@@ -171,6 +216,10 @@ std::span<const SceneChange> PoseDoor::refresh(MonotonicTime now) noexcept
             ++changes;
             next = (object + 1) % letters_.size();
         }
+    }
+    for (std::size_t i = passed; i < touched; ++i)
+    {
+        awake_[changes_[i].number / kWordBits] |= bit_of(changes_[i].number);
     }
     first_ = next;
     last_refresh_ = now;
@@ -249,9 +298,9 @@ bool PoseDoor::try_move(std::size_t object, MonotonicTime now, SceneChange& chan
     }
     if (glide.is_under_way)
     {
-        move_to(object, place_at(glide, now));
-        glide.is_under_way = now - glide.start < glide.time;
+        move_on(object, now);
     }
+    glide.moved = now;
     glide.is_told_old = is_silent(age);
     change.kind = SceneChangeKind::object_moves;
     change.number = static_cast<std::uint32_t>(object);
@@ -275,19 +324,22 @@ std::size_t PoseDoor::take_passages() noexcept
         change = SceneChange{};
         change.number = passage.object;
         change.generation = passage.letter.generation;
-        glides_[object] = Glide{};
-        glides_[object].is_here = passage.comes;
-        uses_[object].is_followed = passage.comes;
-        if (!passage.comes)
+        change.kind = passage.kind;
+        change.object.material = passage.material;
+        if (passage.kind == SceneChangeKind::object_feels)
         {
-            change.kind = SceneChangeKind::object_goes;
+            continue;
+        }
+        const bool comes = passage.kind == SceneChangeKind::object_comes;
+        glides_[object] = Glide{};
+        glides_[object].is_here = comes;
+        uses_[object].is_followed = comes;
+        if (!comes)
+        {
             continue;
         }
         letters_[object] = passage.letter;
-        change.kind = SceneChangeKind::object_comes;
         change.object.model = ModelId{passage.model};
-        change.object.material = {passage.stiffness_n_per_m, passage.static_friction,
-                                  passage.dynamic_friction, passage.damping_n_s_per_m};
         change.pose = pose_of(passage.letter);
         places_[object] = Similarity{change.pose};
     }
@@ -302,7 +354,11 @@ void PoseDoor::begin_glide(std::size_t object, const Letter& letter, MonotonicTi
     glide.to = Similarity{pose_of(letter)};
     // The frame has not been told yet of one that was to be there at once: this one is.
     const bool is_overdue = glide.is_under_way && glide.time == Duration{0};
-    const MonotonicTime start = std::min(last_refresh_, now); // It was told to be there then.
+    if (!glide.is_under_way)
+    {
+        glide.moved = last_refresh_;
+    }
+    const MonotonicTime start = std::min(glide.moved, now); // It was told to be there then.
     const Duration left = glide.is_under_way ? glide.time - (start - glide.start) : Duration{0};
     glide.start = start;
     glide.is_under_way = true;
@@ -321,25 +377,53 @@ void PoseDoor::begin_glide(std::size_t object, const Letter& letter, MonotonicTi
     uses_[object].is_followed = true;
 }
 
-Similarity PoseDoor::place_at(const Glide& glide, MonotonicTime now) const noexcept
+/// A frame's motion of an object on its way.
+void PoseDoor::move_on(std::size_t object, MonotonicTime now) noexcept
+{
+    Glide& glide = glides_[object];
+    const Duration since = now - glide.moved;
+    if (glide.is_held && !way_touched_m(object, glide.to))
+    {
+        glide.from = places_[object];
+        glide.start = glide.moved;
+        glide.time = kGlideMax;
+    }
+    const Similarity wanted = place_at(glide, now);
+    const double way_m = way_touched_m(object, wanted).value_or(0.0);
+    const double most_m = speed_max_m_per_s_ * to_seconds(since);
+    const bool is_too_fast = way_m > most_m;
+    glide.outruns = way_m > most_m + speed_max_m_per_s_ * to_seconds(kBelief);
+    uses_[object].outran_frames += is_too_fast ? 1U : 0U;
+    glide.is_held = is_too_fast && glide.time > Duration{0};
+    move_to(object, glide.is_held ? between(places_[object], wanted, most_m / way_m) : wanted);
+    glide.is_under_way = glide.is_held || now - glide.start < glide.time;
+}
+
+/// How far the object would carry what touches it; none where nothing does.
+std::optional<double> PoseDoor::way_touched_m(std::size_t object,
+                                              const Similarity& to) const noexcept
+{
+    std::optional<double> way_m;
+    for (const ObjectTouch& touch : touches_)
+    {
+        if (touch.object == object)
+        {
+            const Vec3 carried_m = to.to_there(places_[object].to_here(touch.place_m));
+            way_m = std::max(way_m.value_or(0.0), (carried_m - touch.place_m).norm());
+        }
+    }
+    return way_m;
+}
+
+Similarity PoseDoor::place_at(const Glide& glide, MonotonicTime now) noexcept
 {
     const Duration gone = now - glide.start;
     if (gone >= glide.time)
     {
         return glide.to;
     }
-    const double share = static_cast<double>(gone.ns) / static_cast<double>(glide.time.ns);
-    Similarity place;
-    place.translation_m =
-        glide.from.translation_m + share * (glide.to.translation_m - glide.from.translation_m);
-    place.scale = glide.from.scale + share * (glide.to.scale - glide.from.scale);
-    // The short way round; its speed is even to a twentieth up to 45 degrees.
-    const Eigen::Quaterniond from(glide.from.rotation);
-    const Eigen::Quaterniond to(glide.to.rotation);
-    const double side = from.dot(to) < 0.0 ? -1.0 : 1.0;
-    const Eigen::Quaterniond between((1.0 - share) * from.coeffs() + share * side * to.coeffs());
-    place.rotation = between.normalized().toRotationMatrix();
-    return place;
+    return between(glide.from, glide.to,
+                   static_cast<double>(gone.ns) / static_cast<double>(glide.time.ns));
 }
 
 Duration PoseDoor::age_of(std::size_t object, MonotonicTime now) const noexcept

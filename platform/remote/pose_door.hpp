@@ -6,6 +6,7 @@
 #include "rt_core/base/mailbox.hpp"
 #include "rt_core/base/spsc_queue.hpp"
 #include "rt_core/limits.hpp"
+#include "rt_core/math/infinity.hpp"
 #include "rt_core/records/scene_change.hpp"
 
 #include <array>
@@ -13,6 +14,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -27,17 +29,31 @@ struct PoseUse
     Duration age_max{};          ///< Longest silence of its host that a frame met.
     double step_max_m{0.0};      ///< Farthest that the object's origin went between two frames.
     std::uint64_t old_frames{0}; ///< Frames in which that was longer than the limit.
+    /// Frames in which a tool touched it and its poses moved it faster than is believed.
+    std::uint64_t outran_frames{0};
+};
+
+/// Where a tool touches an object, in the world.
+struct ObjectTouch
+{
+    std::uint32_t object{0};
+    Vec3 place_m{0.0, 0.0, 0.0};
 };
 
 /// Carries the newest pose of each object from the transport thread to the haptic thread, and which
-/// objects come and go. Neither thread waits for the other; a pose that nobody looked at in time is
-/// overwritten. The haptic thread gets them as changes of the scene.
+/// objects come, go and feel otherwise. Neither thread waits for the other; a pose that nobody
+/// looked at in time is overwritten. The haptic thread gets them as changes of the scene.
 ///
 /// An object glides: from where it is to its newest pose, over the time that lies between that pose
 /// and the one before on the host's clock, and most of what was left of the way before, at most
 /// kGlideMax. So what touches it feels many small steps and not a few large ones, also when poses
 /// come early or late. Nothing is extrapolated: it never goes where its host didn't put
 /// it. After a rest a pose that is farther than kJump_m is taken at once: that is no motion.
+///
+/// Where a tool touches it, an object is carried no faster than is believed, whatever its host
+/// says: a force can't change faster by that than by stiffness x speed. It catches up when it may.
+/// One that is behind by more than it may go in kBelief outruns its belief: the tool's force has to
+/// go. What is taken at once isn't held back, and outruns likewise.
 ///
 /// An object's age is the time since its host was last heard, on this machine's clock. One that
 /// rests needs no poses, and costs no changes while its host is heard. Until its first pose an
@@ -50,15 +66,17 @@ class PoseDoor
 public:
     static constexpr Duration kGlideMax = milliseconds(50);
     static constexpr double kJump_m = 0.02;
+    static constexpr Duration kBelief = milliseconds(20);
     /// Objects whose age a frame looks at: 4,096 have their turn within 16 frames.
     static constexpr std::size_t kAgedAFrame = 256;
-    /// Comings and goings that may wait for their frame.
+    /// Comings, goings and other materials that may wait for their frame.
     static constexpr std::size_t kWaiting = 512;
 
     /// Objects by their numbers, of generation 0, where they stand at the start, and room for
     /// `objects` in all: 0.8 KiB each. `age_limit`: older ones are counted; the frame has the same
-    /// limit.
-    PoseDoor(std::span<const ObjectPose> placed, std::size_t objects, Duration age_limit);
+    /// limit. `speed_max_m_per_s`: believed of an object that is touched; above 0.
+    PoseDoor(std::span<const ObjectPose> placed, std::size_t objects, Duration age_limit,
+             double speed_max_m_per_s = kInfinity);
     PoseDoor(std::span<const ObjectPose> placed, Duration age_limit)
         : PoseDoor(placed, placed.size(), age_limit)
     {
@@ -71,6 +89,8 @@ public:
                                 MonotonicTime arrival) noexcept;
     /// The transport thread: the object that came there last goes. False when too many wait.
     [[nodiscard]] bool try_go(std::size_t object) noexcept;
+    /// The transport thread: that object has another material. False when too many wait.
+    [[nodiscard]] bool try_feel(std::size_t object, const Material& material) noexcept;
 
     /// The transport thread; the object is there and its host was heard, too. `arrival`: on the
     /// clock that refresh() is told.
@@ -80,9 +100,18 @@ public:
 
     /// The haptic thread, at the start of a frame: what moves, and objects whose host fell silent
     /// or was heard again; at most kMaxSceneChanges. More wait for the next frame, which begins
-    /// with them. Valid until the next call. Allocates nothing; 0.1 us an object that glides,
-    /// 0.6 us for all that rest.
-    [[nodiscard]] std::span<const SceneChange> refresh(MonotonicTime now) noexcept;
+    /// with them; up to half of the room is for what is touched, in every frame. `touches`: as the
+    /// last frame left the tools, at most kMaxPairs. Valid until the next call. Allocates nothing;
+    /// 0.1 us an object that glides, 0.6 us for all that rest.
+    [[nodiscard]] std::span<const SceneChange>
+    refresh(MonotonicTime now, std::span<const ObjectTouch> touches = {}) noexcept;
+
+    /// The haptic thread: whether in the last refresh() this object, which was touched, was moved
+    /// faster than is believed for longer than kBelief.
+    [[nodiscard]] bool outruns(std::size_t object) const noexcept
+    {
+        return glides_[object].outruns;
+    }
 
     /// One an object. The haptic thread, or others once it has ended.
     [[nodiscard]] std::span<const PoseUse> uses() const noexcept { return uses_; }
@@ -101,17 +130,14 @@ private:
         std::uint64_t number{0};     ///< From 1, of this object.
     };
 
-    /// An object that comes or goes, likewise.
+    /// An object that comes, goes or feels otherwise, likewise.
     struct Passage
     {
-        bool comes{false};
+        SceneChangeKind kind{SceneChangeKind::object_goes};
         std::uint32_t object{0};
-        Letter letter; ///< Where it comes.
-        std::uint32_t model{0};
-        double stiffness_n_per_m{0.0};
-        double static_friction{0.0};
-        double dynamic_friction{0.0};
-        double damping_n_s_per_m{0.0};
+        Letter letter;          ///< Where it comes; else only its generation counts.
+        std::uint32_t model{0}; ///< When it comes.
+        Material material;      ///< When it comes or feels.
     };
 
     /// One object, and its way.
@@ -120,10 +146,13 @@ private:
         Similarity from;
         Similarity to;
         MonotonicTime start;
-        Duration time{}; ///< 0: it is at once where it goes.
+        MonotonicTime moved; ///< When the frame was last told where it is, or it began to move.
+        Duration time{};     ///< 0: it is at once where it goes.
         bool is_here{false};
         bool is_under_way{false};
         bool is_told_old{false}; ///< The frame knows when its host was last heard.
+        bool is_held{false};     ///< Behind where it would be, since a tool touches it.
+        bool outruns{false};     ///< As outruns() tells.
     };
 
     [[nodiscard]] Letter letter_of(std::size_t object, const ObjectPose& pose,
@@ -135,15 +164,20 @@ private:
     [[nodiscard]] bool try_move(std::size_t object, MonotonicTime now,
                                 SceneChange& change) noexcept;
     void begin_glide(std::size_t object, const Letter& letter, MonotonicTime now) noexcept;
-    [[nodiscard]] Similarity place_at(const Glide& glide, MonotonicTime now) const noexcept;
+    void move_on(std::size_t object, MonotonicTime now) noexcept;
+    [[nodiscard]] std::optional<double> way_touched_m(std::size_t object,
+                                                      const Similarity& to) const noexcept;
+    [[nodiscard]] static Similarity place_at(const Glide& glide, MonotonicTime now) noexcept;
     [[nodiscard]] Duration age_of(std::size_t object, MonotonicTime now) const noexcept;
     /// Before the limit, so that the frame meets it at the right time.
     [[nodiscard]] bool is_silent(Duration age) const noexcept { return age.ns > age_limit_.ns / 2; }
     void move_to(std::size_t object, const Similarity& place) noexcept;
 
     Duration age_limit_;
-    std::vector<Similarity> places_; ///< As the frame has them.
-    std::vector<Letter> letters_;    ///< The last that was read, one an object.
+    double speed_max_m_per_s_;
+    std::span<const ObjectTouch> touches_; ///< During refresh().
+    std::vector<Similarity> places_;       ///< As the frame has them.
+    std::vector<Letter> letters_;          ///< The last that was read, one an object.
     std::vector<Glide> glides_;
     std::vector<PoseUse> uses_;
     std::vector<std::uint64_t> unread_; ///< A bit an object: its letter was not read yet.

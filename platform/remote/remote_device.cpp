@@ -65,7 +65,7 @@ DeviceSample RemoteDevice::read() noexcept
 
 void RemoteDevice::write(const Wrench& wrench) noexcept
 {
-    if (braked_.load())
+    if (!brake_.lets_through())
     {
         return;
     }
@@ -76,30 +76,39 @@ void RemoteDevice::write(const Wrench& wrench) noexcept
 
 void RemoteDevice::brake() noexcept
 {
-    braked_.store(true);
+    brake_.brake(clock_.now());
+}
+
+void RemoteDevice::brake_softly() noexcept
+{
+    brake_.brake_softly(clock_.now());
 }
 
 /// The count makes all forces from before void, even where the I/O thread can't read the mailbox at
 /// the moment and goes on with what it has.
 void RemoteDevice::release_brake() noexcept
 {
+    if (brake_.try_yield(clock_.now()))
+    {
+        return;
+    }
     written_ = {};
     releases_.fetch_add(1);
     commands_.write(written_);
-    braked_.store(false);
+    brake_.release();
 }
 
 DeviceStatus RemoteDevice::status() const noexcept
 {
     DeviceStatus status = status_;
-    status.state = DeviceState::idle;
-    if (braked_.load())
+    const MonotonicTime now = clock_.now();
+    const bool has_force =
+        connected_ && makes_force(written_, reading_.attachment, brake_.before(now));
+    status.state = has_force ? DeviceState::force : DeviceState::idle;
+    if (brake_.is_on())
     {
         status.state = DeviceState::brake;
-    }
-    else if (connected_ && makes_force(written_, reading_.attachment, clock_.now()))
-    {
-        status.state = DeviceState::force;
+        status.force_left = has_force ? brake_.share_at(now) : 0.0;
     }
     return status;
 }
@@ -147,20 +156,22 @@ void RemoteDevice::detach() noexcept
 DeviceCommand RemoteDevice::command() noexcept
 {
     DeviceCommand now;
-    if (braked_.load())
+    const MonotonicTime time = clock_.now();
+    const double share = brake_.share_at(time);
+    if (share == 0.0)
     {
         now.state = DeviceState::brake;
         return now;
     }
     // In vain while the haptic thread is stopped in the middle of a write: then the last one ages.
     static_cast<void>(commands_.try_read(taken_));
-    now.written = taken_.written;
-    if (published_.attached && makes_force(taken_, published_.attachment, clock_.now()))
+    now.written = share < 1.0 ? time : taken_.written; // A fade is another force all the time.
+    if (published_.attached && makes_force(taken_, published_.attachment, brake_.before(time)))
     {
         const Wrench& wrench = taken_.wrench;
-        now.force_n = frame_.force_to_device(to_vec3(wrench.force_world_n));
-        now.torque_nm = frame_.torque_to_device(to_vec3(wrench.torque_world_nm));
-        now.gripper_force_n = wrench.gripper_force_n;
+        now.force_n = share * frame_.force_to_device(to_vec3(wrench.force_world_n));
+        now.torque_nm = share * frame_.torque_to_device(to_vec3(wrench.torque_world_nm));
+        now.gripper_force_n = share * wrench.gripper_force_n;
         now.state = DeviceState::force;
     }
     return now;

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "platform/brake_latch.hpp"
 #include "platform/clock.hpp"
 #include "platform/device_frame.hpp"
 #include "platform/haptic_device.hpp"
@@ -81,6 +82,8 @@ public:
     void write(const Wrench& wrench) noexcept override;
     /// The I/O thread acts on it in its next turn; what is done before that, a subclass says.
     void brake() noexcept override;
+    /// The I/O thread fades the force.
+    void brake_softly() noexcept override;
     void release_brake() noexcept override;
     [[nodiscard]] DeviceStatus status() const noexcept override;
 
@@ -95,9 +98,6 @@ protected:
     void detach() noexcept;
     /// I/O thread, just before it sends.
     [[nodiscard]] DeviceCommand command() noexcept;
-    /// Any thread.
-    [[nodiscard]] bool is_braked() const noexcept { return braked_.load(); }
-
     [[nodiscard]] const Clock& clock() const noexcept { return clock_; }
 
 private:
@@ -127,9 +127,8 @@ private:
 
     Mailbox<Reading> readings_; ///< Written by the I/O thread.
     Mailbox<Command> commands_; ///< Written by the haptic thread.
-    // Sequentially consistent: they are rare and order nothing else.
-    std::atomic<bool> braked_{false};
-    std::atomic<std::uint64_t> releases_{0};
+    BrakeLatch brake_;
+    std::atomic<std::uint64_t> releases_{0}; ///< Sequentially consistent: it is rare.
 
     // The haptic thread's.
     Reading reading_;

@@ -37,7 +37,7 @@ constexpr double kSpeedFactorMax = 1.5;
 constexpr double kStuckShare = 0.3;
 constexpr double kStuckAfterS = 0.2;
 /// Of the set force; below it nothing is felt.
-constexpr double kTouchShare = 0.02;
+constexpr double kFeltShare = 0.02;
 /// A device of 1 N s/m damps with half of that at most: 0.16 N where the default model is
 /// approached.
 constexpr double kFirmShare = 0.2;
@@ -100,7 +100,7 @@ void ContactSlide::turn_round() noexcept
 
 bool ContactSlide::is_touching(const HandSense& sense) const noexcept
 {
-    return sense.force_world_n.norm() > kTouchShare * force_n_;
+    return sense.force_world_n.norm() > kFeltShare * force_n_;
 }
 
 bool ContactSlide::is_firm(const HandSense& sense) const noexcept

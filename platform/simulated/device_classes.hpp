@@ -4,6 +4,7 @@
 
 #include "rt_core/records/device_limits.hpp"
 
+// Any thread: values, and functions of their arguments alone; no call waits or allocates.
 namespace tactus
 {
 

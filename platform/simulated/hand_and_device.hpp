@@ -61,7 +61,7 @@ struct HandAndDeviceEnergy
 /// Each period is integrated in kSubSteps equal steps by the implicit midpoint rule: it changes the
 /// energy of the linear part by exactly the work that was done and lost, so that a model of what
 /// feeds a limit cycle feeds none itself. The same forces and targets give the same bits; time
-/// counts in periods. Allocates nothing.
+/// counts in periods. Allocates nothing. One thread, the one that reads the device.
 class HandAndDevice
 {
 public:

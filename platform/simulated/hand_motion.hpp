@@ -16,9 +16,9 @@ struct HandSense
 {
     std::uint64_t frame{0}; ///< Counts the decisions, from 1: frame 0 is the start itself.
     Vec3 device_world_m{Vec3::Zero()};
-    Vec3 force_world_n{Vec3::Zero()};
-    Mat3 device_rotation{Mat3::Identity()};
-    Vec3 torque_world_nm{Vec3::Zero()};
+    Vec3 force_world_n{Vec3::Zero()};       ///< On the hand.
+    Mat3 device_rotation{Mat3::Identity()}; ///< In the world.
+    Vec3 torque_world_nm{Vec3::Zero()};     ///< On the hand.
 };
 
 /// What a hand does besides being somewhere.

@@ -33,7 +33,8 @@ class FlyingHand final : public HandMotion
 public:
     explicit FlyingHand(const HandScene& scene)
         : centre_world_m_(centre_of(scene.anchors_world_m))
-        , first_m_(find_landing_sites(scene.anchors_world_m, scene.diagonal_m, scene.tool_radius_m)
+        , first_m_(find_landing_sites(scene.anchors_world_m, scene.diagonal_m, scene.tool_radius_m,
+                                      scene.hands_before)
                        .front()
                        .gate_world_m -
                    centre_world_m_)
@@ -68,8 +69,8 @@ public:
         : frames_between_(HandSchedule::frames_in(kRest_s, to_seconds(scene.period)) + 1)
         , seed_(seed)
     {
-        for (const LandingSite& site :
-             find_landing_sites(scene.anchors_world_m, scene.diagonal_m, scene.tool_radius_m))
+        for (const LandingSite& site : find_landing_sites(scene.anchors_world_m, scene.diagonal_m,
+                                                          scene.tool_radius_m, scene.hands_before))
         {
             places_world_m_.push_back(site.gate_world_m);
             places_world_m_.push_back(site.aim_world_m);

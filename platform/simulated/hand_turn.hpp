@@ -27,7 +27,7 @@ struct HandTurnOptions
 /// one axis this is exact, and so is the balance of energy; about several the springs' energy
 /// changes at a new period by the square of how much they are stretched.
 ///
-/// Until something turns it nothing is computed. Allocates nothing.
+/// Until something turns it nothing is computed. Allocates nothing. One thread, as HandAndDevice.
 class HandTurn
 {
 public:

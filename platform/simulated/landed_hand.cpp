@@ -37,7 +37,7 @@ LandedHand::LandedHand(const HandScene& scene)
     , feeling_(scene.diagonal_m, period_s_)
 {
     const std::vector<LandingSite> sites =
-        find_landing_sites(scene.anchors_world_m, diagonal_m_, tool_radius_m_);
+        find_landing_sites(scene.anchors_world_m, diagonal_m_, tool_radius_m_, scene.hands_before);
     const Vec3 way_m = sites.front().aim_world_m - sites.front().gate_world_m;
     start_world_m_ = sites.front().gate_world_m;
     last_device_world_m_ = start_world_m_;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 
 namespace tactus
 {
@@ -70,7 +71,8 @@ Vec3 centre_of(std::span<const Vec3> anchors_world_m) noexcept
 }
 
 std::vector<LandingSite> find_landing_sites(std::span<const Vec3> anchors_world_m,
-                                            double diagonal_m, double tool_radius_m)
+                                            double diagonal_m, double tool_radius_m,
+                                            std::size_t turned)
 {
     const Bounds bounds = bounds_of(anchors_world_m);
     const Vec3 centre = centre_of(anchors_world_m);
@@ -94,6 +96,8 @@ std::vector<LandingSite> find_landing_sites(std::span<const Vec3> anchors_world_
             add_site(anchor, direction, Vec3::Zero());
         }
     }
+    const auto first = static_cast<std::ptrdiff_t>(2 * turned % sites.size());
+    std::rotate(sites.begin(), sites.begin() + first, sites.end());
     return sites;
 }
 

@@ -4,6 +4,7 @@
 
 #include "rt_core/math/vec3.hpp"
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -26,9 +27,11 @@ struct LandingSite
 /// An anchor that is extreme in a direction d has the whole model on one side of its plane, so
 /// everything on the other side is free; a gate above that plane and a straight way down are safe.
 /// The directions are those of the axes, the box's shortest first: there the widest faces look out,
-/// with the most room to slide. Extreme anchors tend to be corners, so a first try aims a twentieth
+/// with the most room to slide. `turned` hands before this one took those that it begins behind,
+/// going round. Extreme anchors tend to be corners, so a first try aims a twentieth
 /// of the diagonal further in, which may miss a thin model; the anchor itself follows.
 [[nodiscard]] std::vector<LandingSite> find_landing_sites(std::span<const Vec3> anchors_world_m,
-                                                          double diagonal_m, double tool_radius_m);
+                                                          double diagonal_m, double tool_radius_m,
+                                                          std::size_t turned = 0);
 
 } // namespace tactus

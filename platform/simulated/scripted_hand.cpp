@@ -101,7 +101,8 @@ ScriptedHand::ScriptedHand(const HandScene& scene)
     , schedule_(static_cast<double>(scene.frames_total) * period_s_, period_s_, scene.lifts_off)
     , place_spacing_frames_(HandSchedule::frames_in(kPlaceSpacingS, period_s_) + 1)
     , centre_world_m_(centre_of(scene.anchors_world_m))
-    , sites_(find_landing_sites(scene.anchors_world_m, diagonal_m_, tool_radius_m_))
+    , sites_(find_landing_sites(scene.anchors_world_m, diagonal_m_, tool_radius_m_,
+                                scene.hands_before))
     , start_world_m_(orbit_start(sites_.front(), centre_world_m_,
                                  kMeanSpeedShare * pace_.flight_m_per_s * schedule_.flight_s))
     , position_world_m_(start_world_m_)

@@ -24,11 +24,12 @@ struct HandScene
 {
     /// Points on the surface, for instance the vertices of the coarse mesh; world frame, metres.
     std::vector<Vec3> anchors_world_m;
-    double diagonal_m{0.0}; ///< Of the model's bounding box.
-    double tool_radius_m{0.0};
-    Duration period;
-    std::uint64_t frames_total{0};
-    bool lifts_off{true}; ///< Now and then while it slides.
+    double diagonal_m{0.0};        ///< Of the model's bounding box, in the world.
+    double tool_radius_m{0.0};     ///< Above 0, up to the diagonal.
+    Duration period;               ///< From one decision to the next.
+    std::uint64_t frames_total{0}; ///< Of the run; the script retreats for the last of them.
+    bool lifts_off{true};          ///< Now and then while it slides.
+    std::size_t hands_before{0};   ///< On the same model; each begins at another place.
 };
 
 enum class HandPhase

@@ -28,10 +28,10 @@ std::string find_bad_option(const SimulatedDeviceOptions& options)
     if (!is_positive(options.speed_max_m_per_s) ||
         !is_not_negative(options.brake_damping_n_s_per_m) ||
         !is_not_negative(options.brake_damping_nm_s_per_rad) ||
-        !is_not_negative(options.gripper_force_max_n))
+        !is_not_negative(options.gripper_force_max_n) || !is_not_negative(options.load.mass_kg))
     {
         return "simulated device: the largest speed must be finite and above zero, the brake's "
-               "dampings and the gripper's force finite and not negative";
+               "dampings, the gripper's force and the load's mass finite and not negative";
     }
     if (options.watchdog && (*options.watchdog <= Duration{} || options.clock == nullptr))
     {
@@ -111,9 +111,9 @@ DeviceSample SimulatedDevice::read() noexcept
     {
         const MonotonicTime time = options_.clock == nullptr ? now() : start_ + period_at(periods_);
         ++periods_;
-        integrate_one_period(time.ns >= braked_at_ns_.load(),
-                             makes_force_at(time) ? wrench_ : Wrench{});
+        integrate_one_period(brake_.is_on_at(time), wrench_at(time));
     }
+    read_at_ns_.store(period_at(periods_).ns, std::memory_order_relaxed);
     DeviceSample sample;
     sample.position_world_m = to_array(body_.measured_m());
     sample.velocity_world_m_per_s = to_array(body_.velocity_m_per_s());
@@ -160,13 +160,26 @@ Duration SimulatedDevice::period_at(std::uint64_t index) const noexcept
 
 MonotonicTime SimulatedDevice::now() const noexcept
 {
-    return options_.clock == nullptr ? MonotonicTime{} : options_.clock->now();
+    return options_.clock == nullptr ? MonotonicTime{read_at_ns_.load(std::memory_order_relaxed)}
+                                     : options_.clock->now();
 }
 
-bool SimulatedDevice::makes_force_at(MonotonicTime time) const noexcept
+/// Its own watchdog has ended the force.
+bool SimulatedDevice::is_watched_out(MonotonicTime time) const noexcept
 {
-    const bool watched = options_.watchdog && time - written_ >= *options_.watchdog;
-    return time.ns < braked_at_ns_.load() && !watched;
+    return options_.watchdog && time - written_ >= *options_.watchdog;
+}
+
+/// What it makes of the last write then.
+Wrench SimulatedDevice::wrench_at(MonotonicTime time) const noexcept
+{
+    const double share = is_watched_out(time) ? 0.0 : brake_.share_at(time);
+    if (share == 1.0)
+    {
+        return wrench_;
+    }
+    return {to_array(share * to_vec3(wrench_.force_world_n)),
+            to_array(share * to_vec3(wrench_.torque_world_nm)), share * wrench_.gripper_force_n};
 }
 
 Vec3 SimulatedDevice::felt_force_world_n() const noexcept
@@ -176,13 +189,16 @@ Vec3 SimulatedDevice::felt_force_world_n() const noexcept
 
 Wrench SimulatedDevice::felt_wrench() const noexcept
 {
-    return makes_force_at(now()) ? wrench_ : Wrench{};
+    return wrench_at(now());
 }
 
 void SimulatedDevice::integrate_one_period(bool braked, const Wrench& wrench) noexcept
 {
-    const Vec3 force_n = to_vec3(wrench.force_world_n);
-    const Vec3 torque_nm = to_vec3(wrench.torque_world_nm);
+    const Mat3 rotation = turn_ ? turn_->rotation() : Mat3::Identity();
+    const Vec3 weight_n = options_.load.weight_n() * options_.load.down_world;
+    const Vec3 force_n = to_vec3(wrench.force_world_n) + weight_n;
+    const Vec3 torque_nm =
+        to_vec3(wrench.torque_world_nm) + (rotation * options_.load.centre_m).cross(weight_n);
     set_brake(body_, braked, options_.brake_damping_n_s_per_m);
     HandSense sense{periods_, body_.position_m(), force_n};
     sense.device_rotation = turn_ ? turn_->rotation() : sense.device_rotation;
@@ -198,7 +214,7 @@ void SimulatedDevice::integrate_one_period(bool braked, const Wrench& wrench) no
 
 void SimulatedDevice::write(const Wrench& wrench) noexcept
 {
-    if (braked_at_ns_.load() != kNever)
+    if (!brake_.lets_through())
     {
         return;
     }
@@ -209,25 +225,35 @@ void SimulatedDevice::write(const Wrench& wrench) noexcept
 
 void SimulatedDevice::brake() noexcept
 {
-    std::int64_t never = kNever;
-    braked_at_ns_.compare_exchange_strong(never, now().ns);
+    brake_.brake(now());
+}
+
+void SimulatedDevice::brake_softly() noexcept
+{
+    brake_.brake_softly(now());
 }
 
 void SimulatedDevice::release_brake() noexcept
 {
+    if (brake_.try_yield(now()))
+    {
+        return;
+    }
     wrench_ = {};
     status_.state = DeviceState::idle;
-    braked_at_ns_.store(kNever);
+    brake_.release();
 }
 
 DeviceStatus SimulatedDevice::status() const noexcept
 {
     DeviceStatus status = status_;
-    if (braked_at_ns_.load() != kNever)
+    if (brake_.is_on())
     {
+        const bool has_force = status.state == DeviceState::force && !is_watched_out(now());
+        status.force_left = has_force ? brake_.share_at(now()) : 0.0;
         status.state = DeviceState::brake;
     }
-    else if (!makes_force_at(now()))
+    else if (is_watched_out(now()))
     {
         status.state = DeviceState::idle;
     }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "platform/base/refusal.hpp"
+#include "platform/brake_latch.hpp"
 #include "platform/clock.hpp"
 #include "platform/haptic_device.hpp"
 #include "platform/simulated/device_classes.hpp"
@@ -12,10 +13,10 @@
 #include "rt_core/base/result.hpp"
 #include "rt_core/math/vec3.hpp"
 #include "rt_core/records/device_limits.hpp"
+#include "rt_core/records/tool_load.hpp"
 
 #include <atomic>
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <optional>
 
@@ -42,6 +43,7 @@ struct SimulatedDeviceOptions
                    .grip_damping_n_s_per_m = 0.004};
     double brake_damping_n_s_per_m{10.0};    ///< Added while the brake is on; finite, not negative.
     double brake_damping_nm_s_per_rad{0.01}; ///< Likewise.
+    ToolLoad load;                           ///< Hangs on it; without inertia.
     double gripper_force_max_n{8.0};         ///< Of a hand that holds a gripper.
     Vec3 workspace_centre_world_m{Vec3::Zero()};
     double workspace_radius_m{1.0};
@@ -66,7 +68,8 @@ class SimulatedDevice final : public HapticDevice
 {
 public:
     /// Refuses a rate out of [kRateMinHz, kRateMaxHz], other values out of range, what
-    /// HandAndDevice refuses, and a hand that starts outside the workspace.
+    /// HandAndDevice refuses, and a hand that starts outside the workspace. Before the loop; a null
+    /// hand is a bug (asserted).
     [[nodiscard]] static Result<std::unique_ptr<SimulatedDevice>, Refusal>
     create(const SimulatedDeviceOptions& options, std::unique_ptr<HandMotion> hand);
 
@@ -75,6 +78,7 @@ public:
     [[nodiscard]] DeviceSample read() noexcept override;
     void write(const Wrench& wrench) noexcept override;
     void brake() noexcept override;
+    void brake_softly() noexcept override;
     void release_brake() noexcept override;
     [[nodiscard]] DeviceStatus status() const noexcept override;
 
@@ -88,12 +92,11 @@ private:
     SimulatedDevice(const SimulatedDeviceOptions& options, const HandAndDevice& body,
                     const std::optional<HandTurn>& turn, std::unique_ptr<HandMotion> hand);
 
-    static constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
-
     [[nodiscard]] std::uint64_t periods_due() const noexcept;
     [[nodiscard]] Duration period_at(std::uint64_t index) const noexcept;
     [[nodiscard]] MonotonicTime now() const noexcept;
-    [[nodiscard]] bool makes_force_at(MonotonicTime time) const noexcept;
+    [[nodiscard]] bool is_watched_out(MonotonicTime time) const noexcept;
+    [[nodiscard]] Wrench wrench_at(MonotonicTime time) const noexcept;
     void integrate_one_period(bool braked, const Wrench& wrench) noexcept;
 
     SimulatedDeviceOptions options_;
@@ -106,9 +109,9 @@ private:
     std::uint64_t periods_{0}; ///< Integrated so far.
     MonotonicTime start_;      ///< Of the first reading.
     MonotonicTime written_;    ///< The last write.
-    /// When the brake came; kNever while it is off. The one field that other threads write.
-    /// Sequentially consistent: it is rare and orders nothing else.
-    std::atomic<std::int64_t> braked_at_ns_{kNever};
+    /// Of the last reading: without a clock that is the time. Relaxed: who brakes needs no other.
+    std::atomic<std::int64_t> read_at_ns_{0};
+    BrakeLatch brake_; ///< The one field that other threads write.
 };
 
 } // namespace tactus

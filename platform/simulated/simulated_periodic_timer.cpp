@@ -14,6 +14,7 @@ void SimulatedPeriodicTimer::sleep_until(MonotonicTime wake) noexcept
         ++script_at_;
     }
     ++sleeps_;
+    meanwhile_();
 }
 
 MonotonicTime SimulatedPeriodicTimer::spin_until(MonotonicTime deadline) noexcept

@@ -6,7 +6,9 @@
 #include "platform/simulated/simulated_clock.hpp"
 
 #include <cstddef>
+#include <functional>
 #include <span>
+#include <utility>
 
 namespace tactus
 {
@@ -31,6 +33,10 @@ public:
     {
     }
 
+    /// What else happens while the loop sleeps: called in each sleep, at its end in virtual time,
+    /// on the loop's thread. It must not throw and may take as long as it likes: no time passes.
+    void set_meanwhile(std::function<void()> meanwhile) { meanwhile_ = std::move(meanwhile); }
+
 private:
     [[nodiscard]] MonotonicTime now() noexcept override { return clock_.now(); }
     void sleep_until(MonotonicTime wake) noexcept override;
@@ -40,6 +46,7 @@ private:
     std::span<const LateWake> script_;
     std::size_t script_at_{0};
     std::uint64_t sleeps_{0};
+    std::function<void()> meanwhile_ = [] {};
 };
 
 } // namespace tactus

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <tuple>
 
 namespace tactus::udp
 {
@@ -63,6 +64,10 @@ namespace
 constexpr std::size_t kHeaderBytes = 32;
 constexpr std::size_t kNameBytes = 32;
 static_assert(kNameBytes == kDeviceNameMax + 1);
+
+/// Of describe, sample and force in version 2.
+constexpr std::array<std::size_t, 3> kTagAt{264, 152, 96};
+constexpr std::size_t kKindAt = 6;
 
 /// Beyond it no sample is usable anyway (docs/conventions.md).
 constexpr double kCoordinateMax = 1e6;
@@ -249,7 +254,47 @@ std::uint32_t flag_when(bool is_so, std::uint32_t flag) noexcept
     return is_so ? flag : 0U;
 }
 
+/// Of a whole datagram of version 2.
+std::size_t tag_at(std::span<const std::byte> bytes) noexcept
+{
+    const auto kind = ByteReader(bytes.subspan(kKindAt)).read<std::uint16_t>();
+    return kTagAt.at(kind - 1U);
+}
+
 } // namespace
+
+Datagram sealed(Datagram datagram, const Seal& seal) noexcept
+{
+    const std::size_t end = datagram.size() - 4;
+    TACTUS_ASSERT(end + 4 == kBytes[1][0] || end + 4 == kBytes[1][1] || end + 4 == kBytes[1][2]);
+    const std::span<std::byte> covered = std::span(datagram.bytes_).first(end);
+    const std::span<std::byte> place = covered.subspan(tag_at(covered), std::tuple_size_v<Tag>);
+    std::ranges::fill(place, std::byte{0});
+    std::ranges::copy(seal.tag_of(covered), place.begin());
+    const std::uint32_t checksum = crc32c(covered);
+    std::memcpy(datagram.bytes_.data() + end, &checksum, sizeof(checksum));
+    return datagram;
+}
+
+bool is_sealed(std::span<const std::byte> bytes, const Seal& seal) noexcept
+{
+    if (std::ranges::find(kBytes[1], bytes.size()) == kBytes[1].end())
+    {
+        return false;
+    }
+    std::array<std::byte, kDatagramBytesMax> copy{};
+    std::ranges::copy(bytes, copy.begin());
+    const std::size_t at = tag_at(bytes);
+    std::fill_n(copy.begin() + static_cast<std::ptrdiff_t>(at), std::tuple_size_v<Tag>,
+                std::byte{0});
+    const Tag right = seal.tag_of(std::span(copy).first(bytes.size() - 4));
+    std::byte differs{0}; // In the same time wherever they differ.
+    for (std::size_t i = 0; i < right.size(); ++i)
+    {
+        differs |= right[i] ^ bytes[at + i];
+    }
+    return differs == std::byte{0};
+}
 
 Datagram encode(const DescribeDatagram& datagram) noexcept
 {
@@ -336,7 +381,8 @@ std::string_view text_of(DatagramFault fault) noexcept
         "from somebody else while a device is attached",
         "of another session",
         "not newer than the last one",
-        "another device than the first one"};
+        "another device than the first one",
+        "not sealed by the key"};
     return kTexts.at(static_cast<std::size_t>(fault));
 }
 

@@ -13,7 +13,8 @@
 #include <variant>
 
 /// The datagrams of docs/udp-device.md: of a size for each kind and version, little-endian, each
-/// closed by its CRC-32C.
+/// closed by its CRC-32C. Any thread: values, and functions of their arguments alone; a
+/// description's name allocates, nothing else does.
 namespace tactus::udp
 {
 
@@ -25,7 +26,7 @@ inline constexpr std::uint16_t kVersionOfPoints = 1;
 /// Of describe, sample and force, in version 1 and 2.
 inline constexpr std::array<std::array<std::size_t, 3>, 2> kBytes{{{200, 96, 72}, {288, 180, 120}}};
 inline constexpr std::size_t kDatagramBytesMax = 288;
-/// Room in version 2 for a proof of who sends. Nobody looks at it yet.
+/// Room in version 2 for a proof of who sends: see Seal.
 using Tag = std::array<std::byte, 16>;
 
 enum class Kind : std::uint16_t
@@ -80,6 +81,8 @@ struct ForceDatagram
     Tag tag{};
 };
 
+class Seal;
+
 /// A coded datagram, as long as its kind and version say.
 class Datagram
 {
@@ -91,10 +94,27 @@ public:
 
 private:
     friend class DatagramWriter;
+    friend Datagram sealed(Datagram datagram, const Seal& seal) noexcept;
 
     std::array<std::byte, kDatagramBytesMax> bytes_{};
     std::size_t size_{0};
 };
+
+/// Proves who sent a datagram, by a key that both sides have (docs/udp-device.md).
+class Seal
+{
+public:
+    virtual ~Seal() = default;
+
+    /// Of a datagram up to its checksum, with a tag of zeros. Any thread; allocates nothing and
+    /// waits for nothing.
+    [[nodiscard]] virtual Tag tag_of(std::span<const std::byte> bytes) const noexcept = 0;
+};
+
+/// With its tag, and the checksum of that. Only of version 2 (asserted).
+[[nodiscard]] Datagram sealed(Datagram datagram, const Seal& seal) noexcept;
+/// Whether a datagram that decodes has the right tag; false for one of version 1.
+[[nodiscard]] bool is_sealed(std::span<const std::byte> bytes, const Seal& seal) noexcept;
 
 /// A name longer than 31 bytes is cut. What its version doesn't know is left out.
 [[nodiscard]] Datagram encode(const DescribeDatagram& datagram) noexcept;
@@ -114,8 +134,13 @@ enum class DatagramFault : std::uint8_t
     session,      ///< A sample of another session.
     stale,        ///< Not newer than what was accepted before.
     other_device, ///< Describes another device than the first one: limits never change.
+    tag,          ///< Not sealed by the key.
 };
-inline constexpr std::size_t kDatagramFaults = 10;
+inline constexpr std::size_t kDatagramFaults = 11;
+/// In the order of DatagramFault.
+inline constexpr std::array<const char*, kDatagramFaults> kDatagramFaultNames{
+    "size",    "magic",   "version", "kind",         "checksum", "content",
+    "foreign", "session", "stale",   "other_device", "tag"};
 
 /// "wrong size", ready to stand behind a colon.
 [[nodiscard]] std::string_view text_of(DatagramFault fault) noexcept;

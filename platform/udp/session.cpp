@@ -14,6 +14,11 @@ std::variant<Described, Sampled, DatagramFault>
 Session::receive(std::span<const std::byte> bytes, const Endpoint& from, MonotonicTime now)
 {
     const FromDevice datagram = decode_from_device(bytes);
+    if (seal_ != nullptr && !std::holds_alternative<DatagramFault>(datagram) &&
+        !is_sealed(bytes, *seal_))
+    {
+        return DatagramFault::tag;
+    }
     if (const auto* described = std::get_if<DescribeDatagram>(&datagram))
     {
         return describe(*described, from, now);
@@ -31,7 +36,7 @@ Session::describe(const DescribeDatagram& datagram, const Endpoint& from, Monoto
 {
     const Address& address = datagram.address;
     const bool is_known = from == peer_.endpoint && address.instance == peer_.instance;
-    if (peer_.is_attached && !is_known)
+    if (is_taken(now) && !is_known)
     {
         return DatagramFault::foreign;
     }
@@ -51,6 +56,12 @@ Session::describe(const DescribeDatagram& datagram, const Endpoint& from, Monoto
     }
     last_sequence_ = address.sequence;
     return Described{};
+}
+
+/// By the device that is attached, or was not long ago and had sent samples.
+bool Session::is_taken(MonotonicTime now) const noexcept
+{
+    return peer_.is_attached || (last_time_ns_ >= 0 && now - heard_ <= place_);
 }
 
 void Session::begin(const Peer& peer, MonotonicTime now) noexcept

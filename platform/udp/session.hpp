@@ -47,7 +47,9 @@ struct Sampled
 /// A device that describes itself when none is attached is, from then on, the only one that is
 /// heard, until it is silent for too long. It is given a session number that nobody could have
 /// known before, and its samples have to carry it: what was recorded in another session, or sent to
-/// another controller, is refused. A device that comes back within its session goes on with it.
+/// another controller, is refused. A device that comes back within its session goes on with it, and
+/// one that has sent samples keeps its place for a while: nobody takes it from a driver that only
+/// stumbled. With a seal nobody is heard who hasn't the key.
 class Session
 {
 public:
@@ -55,8 +57,13 @@ public:
     /// anew.
     static constexpr Duration kClockDrift = milliseconds(100);
 
-    /// `secret` is the first session's number; later ones count up from there.
-    Session(std::uint64_t secret, Duration silence) noexcept : next_(secret), silence_(silence) {}
+    /// `secret` is the first session's number; later ones count up from there. `place`: for so long
+    /// after its last sample a device keeps its place. `seal` is lent; null: all are believed.
+    Session(std::uint64_t secret, Duration silence, Duration place = {},
+            const Seal* seal = nullptr) noexcept
+        : next_(secret), silence_(silence), place_(place), seal_(seal)
+    {
+    }
 
     /// Takes in one datagram that came at `now`; a refusal changes nothing. Allocates for the
     /// first device's name at most.
@@ -78,11 +85,14 @@ private:
     describe(const DescribeDatagram& datagram, const Endpoint& from, MonotonicTime now);
     [[nodiscard]] std::variant<Described, Sampled, DatagramFault>
     sample(const SampleDatagram& datagram, const Endpoint& from, MonotonicTime now) noexcept;
+    [[nodiscard]] bool is_taken(MonotonicTime now) const noexcept;
     void begin(const Peer& peer, MonotonicTime now) noexcept;
     [[nodiscard]] MonotonicTime on_our_clock(std::int64_t time_ns, MonotonicTime now) noexcept;
 
     std::uint64_t next_;
     Duration silence_;
+    Duration place_;
+    const Seal* seal_;
     std::optional<DeviceInfo> info_;
     Peer peer_;
     std::uint64_t last_sequence_{0};

@@ -31,6 +31,10 @@ std::string find_bad_option(const UdpDeviceOptions& options)
     {
         return "udp device: the wait for a device must be in range 0..3600 s";
     }
+    if (options.place < Duration{} || options.place > Options::kWaitMax)
+    {
+        return "udp device: the time that a device keeps its place must be in range 0..3600 s";
+    }
     if (options.transport_delay < Duration{} || options.transport_delay > Options::kDelayMax)
     {
         return "udp device: the transport delay must be in range 0..100 ms";
@@ -131,7 +135,7 @@ Result<std::unique_ptr<UdpDevice>, Refusal> UdpDevice::create(udp::Socket socket
     {
         return secret.error();
     }
-    udp::Session session(secret.value(), options.times.silence);
+    udp::Session session(secret.value(), options.times.silence, options.place, options.seal);
     if (auto nobody = await_device(socket, session, options))
     {
         return std::move(*nobody);
@@ -153,6 +157,7 @@ UdpDevice::UdpDevice(udp::Socket socket, udp::Session session, const DeviceInfo&
     : RemoteDevice(info, options.frame, options.times, *options.clock)
     , socket_(std::move(socket))
     , poll_(options.poll)
+    , seal_(options.seal)
     , session_(std::move(session))
 {
     counts_.described = 1;
@@ -265,7 +270,13 @@ void UdpDevice::send(const udp::Peer& peer, std::uint64_t sequence, const Device
     datagram.state = command.state;
     datagram.answers = answers;
     ++counts_.forces;
-    counts_.unsent += socket_.send(encode(datagram), peer.endpoint) ? 0U : 1U;
+    counts_.unsent += send(datagram, peer.endpoint) ? 0U : 1U;
+}
+
+bool UdpDevice::send(const udp::ForceDatagram& datagram, const udp::Endpoint& to) const noexcept
+{
+    const udp::Datagram plain = encode(datagram);
+    return socket_.send(seal_ != nullptr ? sealed(plain, *seal_) : plain, to);
 }
 
 /// `answers` is 0: what was accepted last only the I/O thread knows.
@@ -279,7 +290,7 @@ void UdpDevice::brake() noexcept
         datagram.address = {peer.instance, peer.session, sequence_.fetch_add(1) + 1};
         datagram.version = peer.version;
         datagram.state = DeviceState::brake;
-        static_cast<void>(socket_.send(encode(datagram), peer.endpoint)); // It is repeated.
+        static_cast<void>(send(datagram, peer.endpoint)); // It is repeated.
     }
 }
 

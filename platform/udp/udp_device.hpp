@@ -29,7 +29,8 @@ struct UdpDeviceOptions
     static constexpr Duration kDelayMax = milliseconds(100);
     static constexpr Duration kAskEvery = milliseconds(50);
 
-    /// Numeric IPv4. Whoever reaches it can move the tool: leave it where only this machine is.
+    /// Numeric IPv4. Without a seal whoever reaches it can move the tool: leave it where only this
+    /// machine is.
     std::string address{"127.0.0.1"};
     int port{kPortDefault}; ///< As udp::Socket::open().
     /// For a device to describe itself, up to kWaitMax.
@@ -43,6 +44,11 @@ struct UdpDeviceOptions
     /// is what loopback takes with the default poll: docs/udp-device.md.
     Duration transport_delay{microseconds(400)};
     RemoteTimes times;
+    /// A device that has fallen silent keeps its place for so long, up to kWaitMax.
+    Duration place{milliseconds(3'000)};
+    /// By the key that the driver has; lent, it outlives the device; null: whoever speaks is
+    /// believed.
+    const udp::Seal* seal{nullptr};
     DeviceFrame frame;
     RtThreadOptions thread{io_thread_options()}; ///< The I/O thread.
     const Clock* clock{nullptr};                 ///< Lent; it outlives the device. Not null.
@@ -66,7 +72,8 @@ class UdpDevice final : public RemoteDevice
 {
 public:
     /// Waits until a device has described itself, on the calling thread. Refuses options out of
-    /// range, and that nobody came within the time or before the wait was ended.
+    /// range, what udp::Socket::open() and RtThread::start() refuse, and that nobody came within
+    /// the time or before the wait was ended. A null clock is a bug (asserted).
     [[nodiscard]] static Result<std::unique_ptr<UdpDevice>, Refusal>
     create(const UdpDeviceOptions& options);
     /// The same with a socket that is open already; the options' address and port aren't read.
@@ -103,11 +110,13 @@ private:
     [[nodiscard]] bool receive_all() noexcept;
     [[nodiscard]] bool receive_one(std::span<const std::byte> bytes, const udp::Endpoint& from);
     void send_due(bool is_asked) noexcept;
+    bool send(const udp::ForceDatagram& datagram, const udp::Endpoint& to) const noexcept;
     void send(const udp::Peer& peer, std::uint64_t sequence, const DeviceCommand& command,
               std::uint64_t answers) noexcept;
 
     udp::Socket socket_;
     const Duration poll_;
+    const udp::Seal* const seal_;
     std::atomic<std::uint64_t> sequence_{0}; ///< Of the last datagram sent; see send_due().
     Mailbox<udp::Peer> peer_;                ///< For brake(); written by the I/O thread.
     Mailbox<UdpTraffic> traffic_;            ///< Written by the I/O thread.

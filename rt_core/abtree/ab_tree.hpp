@@ -43,7 +43,7 @@ enum class NodeStatus : std::uint8_t
 /// holds its faces inflated by their error bounds, so a face's distance minus its error is never
 /// less than the distance of any box around it.
 ///
-/// When the pool has no more for it a face stays *unplaced*: the tree is then incomplete() and a
+/// When the pool has no more for it a face stays *unplaced*: is_complete() is false then and a
 /// query may prove nothing; unplaced faces are offered again by the caller in later frames.
 ///
 /// A block or node that is freed while it waits for refit is the pool's again after that.
@@ -121,6 +121,17 @@ public:
             index = next;
         }
     }
+    /// A face that is in the tree, placed or not: whichever is found at once. None when it is
+    /// empty.
+    [[nodiscard]] PrimId any_prim() const noexcept TACTUS_NONBLOCKING;
+    /// Keeps blocks and nodes in the pool for a tree that is empty and had nothing kept. False,
+    /// with nothing changed, where the pool has no room.
+    [[nodiscard]] bool try_promise(const TreeCapacities& least) noexcept TACTUS_NONBLOCKING
+    {
+        return pool_->try_promise(share_, least);
+    }
+    /// The tree is empty, and was refitted since: nothing is kept for it any more.
+    void end_promise() noexcept TACTUS_NONBLOCKING { pool_->end_promise(share_); }
     /// Blocks and nodes that one more changed face may need at worst.
     static constexpr std::uint32_t kReserve = kBlockFaces + 1;
     [[nodiscard]] bool has_room_for(std::uint32_t changed_faces) const noexcept TACTUS_NONBLOCKING;
@@ -231,7 +242,8 @@ private:
     void mark(TreeRef ref) noexcept;
     void enqueue(std::uint32_t index) noexcept;
     [[nodiscard]] Box refitted_box(std::uint32_t index) noexcept;
-    void pass_up(std::uint32_t parent, std::uint32_t child, const Box& box, bool coarse) noexcept;
+    void pass_up(std::uint32_t parent, std::uint32_t child, const Box& box,
+                 FacesBelow faces) noexcept;
     void keep_unplaced(PrimId prim) noexcept;
     void drop_unplaced(PrimId prim) noexcept;
 

@@ -37,7 +37,8 @@ typename BasicAbTree<Volume>::RefitWork BasicAbTree<Volume>::refit() noexcept
         if (side.in_use)
         {
             ++work.blocks;
-            pass_up(side.parent, side.child, refitted_box(index), side.coarse != 0);
+            pass_up(side.parent, side.child, refitted_box(index),
+                    {side.coarse != 0, side.coarse != blocks_[index].faces});
         }
         else
         {
@@ -58,7 +59,7 @@ typename BasicAbTree<Volume>::RefitWork BasicAbTree<Volume>::refit() noexcept
             {
                 TACTUS_ASSERT(nodes_[node.parent].shift > node.shift);
                 pass_up(node.parent, node.child,
-                        Volume::of_children(*kernels_, node.volumes, node.mask), node.coarse != 0);
+                        Volume::of_children(*kernels_, node.volumes, node.mask), node.below());
             }
         }
     }
@@ -77,7 +78,7 @@ typename Volume::Box BasicAbTree<Volume>::refitted_box(std::uint32_t index) noex
 
 template <typename Volume>
 void BasicAbTree<Volume>::pass_up(std::uint32_t parent, std::uint32_t child, const Box& box,
-                                  bool coarse) noexcept
+                                  FacesBelow faces) noexcept
 {
     if (parent == kNoNode)
     {
@@ -85,13 +86,12 @@ void BasicAbTree<Volume>::pass_up(std::uint32_t parent, std::uint32_t child, con
     }
     Node& node = nodes_[parent];
     TACTUS_ASSERT(((std::uint32_t{node.mask} >> child) & 1U) != 0);
-    const bool was_coarse = ((std::uint32_t{node.coarse} >> child) & 1U) != 0;
-    if (node.box_of(child) == box && was_coarse == coarse)
+    if (node.box_of(child) == box && node.below(child) == faces)
     {
         return;
     }
     node.volumes.set(child, box);
-    node.set_coarse(child, coarse);
+    node.set_below(child, faces);
     enqueue(parent);
 }
 

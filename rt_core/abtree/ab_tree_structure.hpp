@@ -6,6 +6,8 @@
 #include "rt_core/base/assert.hpp"
 #include "rt_core/base/static_vector.hpp"
 
+#include <bit>
+
 /// How the AB-Tree grows and shrinks: included where the tree is instantiated for a volume.
 namespace tactus
 {
@@ -100,6 +102,25 @@ void BasicAbTree<Volume>::remove(PrimId prim) noexcept
         take_out(prim);
     }
     prims_[prim.value] = Prim{};
+}
+
+template <typename Volume>
+PrimId BasicAbTree<Volume>::any_prim() const noexcept
+{
+    if (!is_complete())
+    {
+        return PrimId{first_unplaced_};
+    }
+    TreeRef ref = root_;
+    while (!ref.is_none() && !ref.is_block())
+    {
+        const Node& node = nodes_[ref.index()];
+        ref = node.children[static_cast<std::size_t>(std::countr_zero(node.mask))];
+    }
+    return ref.is_none()
+               ? PrimId{}
+               : sides_[ref.index()]
+                     .prims[static_cast<std::size_t>(std::countr_zero(blocks_[ref.index()].faces))];
 }
 
 template <typename Volume>
@@ -470,7 +491,7 @@ void BasicAbTree<Volume>::attach(std::uint32_t node_index, DigitRange digits, Tr
     node.mask = static_cast<std::uint8_t>(node.mask | (1U << child));
     node.children[child] = ref;
     node.volumes.set(child, Box{});
-    node.set_coarse(child, false);
+    node.set_below(child, {});
     TACTUS_ASSERT(node.only_child_in(digits) == Node::kNoChild);
     node.assign(digits, child);
     set_link(ref, node_index, child);
@@ -485,7 +506,7 @@ void BasicAbTree<Volume>::detach(std::uint32_t node_index, std::uint32_t child) 
     TACTUS_ASSERT(((std::uint32_t{node.mask} >> child) & 1U) != 0);
     node.mask = static_cast<std::uint8_t>(node.mask & ~(1U << child));
     node.children[child] = TreeRef{};
-    node.set_coarse(child, false);
+    node.set_below(child, {});
     node.assign(node.range_of(child), Node::kNoChild);
     mark(TreeRef::to_node(node_index));
 }

@@ -40,6 +40,15 @@ struct DigitRange
     std::uint32_t width{0};
 };
 
+/// What faces there are below a child.
+struct FacesBelow
+{
+    bool some_coarse{false};
+    bool some_exact{false};
+
+    bool operator==(const FacesBelow&) const noexcept = default;
+};
+
 /// An 8-wide node of the AB-Tree over a bounding volume. It stands for one octal digit of the
 /// faces' paths, at bit `shift`; all paths below it agree above that digit. A child is a node (one
 /// digit value) or a block (an aligned range of 1, 2 or 4 digit values: the binary levels are
@@ -65,6 +74,7 @@ struct alignas(64) BasicAbNode
     bool is_marked{false}; ///< In the list of marked nodes, even once freed.
     bool is_queued{false}; ///< In refit's list of its level.
     std::uint8_t owner{0}; ///< Whose tree it is in.
+    std::uint8_t exact{0}; ///< Children below which some face is exact.
 
     [[nodiscard]] std::uint32_t digit_of(std::uint64_t path) const noexcept
     {
@@ -125,11 +135,20 @@ struct alignas(64) BasicAbNode
         TACTUS_ASSERT(index < kNodeChildren);
         return volumes.get(index);
     }
-    void set_coarse(std::uint32_t index, bool is_coarse) noexcept
+    /// Of all children.
+    [[nodiscard]] FacesBelow below() const noexcept { return {coarse != 0, exact != 0}; }
+    [[nodiscard]] FacesBelow below(std::uint32_t index) const noexcept
+    {
+        TACTUS_ASSERT(index < kNodeChildren);
+        return {((std::uint32_t{coarse} >> index) & 1U) != 0,
+                ((std::uint32_t{exact} >> index) & 1U) != 0};
+    }
+    void set_below(std::uint32_t index, FacesBelow faces) noexcept
     {
         TACTUS_ASSERT(index < kNodeChildren);
         const std::uint32_t bit = 1U << index;
-        coarse = static_cast<std::uint8_t>(is_coarse ? coarse | bit : coarse & ~bit);
+        coarse = static_cast<std::uint8_t>(faces.some_coarse ? coarse | bit : coarse & ~bit);
+        exact = static_cast<std::uint8_t>(faces.some_exact ? exact | bit : exact & ~bit);
     }
 };
 

@@ -87,6 +87,25 @@ public:
     {
         return {block_room_.promise(least.blocks), node_room_.promise(least.nodes)};
     }
+    /// See PoolRoom::try_promise() and end_promise().
+    [[nodiscard]] bool try_promise(TreeShare& share, const TreeCapacities& least) noexcept
+    {
+        if (!block_room_.try_promise(share.blocks, least.blocks))
+        {
+            return false;
+        }
+        if (!node_room_.try_promise(share.nodes, least.nodes))
+        {
+            block_room_.end_promise(share.blocks);
+            return false;
+        }
+        return true;
+    }
+    void end_promise(TreeShare& share) noexcept
+    {
+        block_room_.end_promise(share.blocks);
+        node_room_.end_promise(share.nodes);
+    }
     /// Whether a tree may take so many of either.
     [[nodiscard]] bool has_room_for(const TreeShare& share, std::uint32_t count) const noexcept
     {

@@ -206,8 +206,8 @@ private:
         {
             const Node& parent = tree_.nodes_[side.parent];
             block(parent.box_of(side.child) == box, index, "has another box at its parent");
-            block(((parent.coarse >> side.child) & 1U) == (coarse != 0 ? 1U : 0U), index,
-                  "has a wrong coarse bit at its parent");
+            block(parent.below(side.child) == FacesBelow{coarse != 0, coarse != geometry.faces},
+                  index, "has a wrong coarse or exact bit at its parent");
         }
     }
 
@@ -270,7 +270,8 @@ private:
         }
         node(own.shift % 3 == 0 && own.shift / 3U < kTreeLevels, index, "has no octal digit");
         node(own.child_count() >= 2, index, "has fewer than two children");
-        node((own.coarse & ~own.mask) == 0, index, "has a coarse child that is not there");
+        node(((own.coarse | own.exact) & ~own.mask) == 0, index,
+             "has faces below a child that is not there");
         check_children(index);
         check_digits(index);
         if (!node(is_linked(TreeRef::to_node(index), own.parent, own.child), index,
@@ -285,8 +286,8 @@ private:
         node(parent.box_of(own.child) ==
                  Volume::of_children(*tree_.kernels_, own.volumes, own.mask),
              index, "has another box at its parent");
-        node(((parent.coarse >> own.child) & 1U) == (own.coarse != 0 ? 1U : 0U), index,
-             "has a wrong coarse bit at its parent");
+        node(parent.below(own.child) == own.below(), index,
+             "has a wrong coarse or exact bit at its parent");
     }
 
     void check_children(std::uint32_t index) noexcept

@@ -13,8 +13,8 @@ namespace tactus
 namespace detail
 {
 
-/// Table of the reflected Castagnoli polynomial 0x82F63B78 (RFC 3720, appendix B.4).
-constexpr std::array<std::uint32_t, 256> make_crc32c_table() noexcept
+/// Of a reflected polynomial.
+constexpr std::array<std::uint32_t, 256> make_crc32_table(std::uint32_t polynomial) noexcept
 {
     std::array<std::uint32_t, 256> table{};
     for (std::uint32_t byte = 0; byte < 256; ++byte)
@@ -22,29 +22,39 @@ constexpr std::array<std::uint32_t, 256> make_crc32c_table() noexcept
         std::uint32_t value = byte;
         for (int bit = 0; bit < 8; ++bit)
         {
-            value = (value >> 1U) ^ ((value & 1U) != 0 ? 0x82F6'3B78U : 0U);
+            value = (value >> 1U) ^ ((value & 1U) != 0 ? polynomial : 0U);
         }
         table[byte] = value;
     }
     return table;
 }
 
-inline constexpr std::array<std::uint32_t, 256> kCrc32cTable = make_crc32c_table();
+template <std::uint32_t kPolynomial>
+inline constexpr std::array<std::uint32_t, 256> kCrc32Table = make_crc32_table(kPolynomial);
 
 } // namespace detail
 
-/// CRC-32C (Castagnoli) of the bytes: guards against noise, not against forgery. `before` is that
-/// of bytes in front of them.
-[[nodiscard]] constexpr std::uint32_t crc32c(std::span<const std::byte> bytes,
-                                             std::uint32_t before = 0) noexcept
+/// CRC-32 of the bytes, by a reflected polynomial: guards against noise, not against forgery.
+/// `before` is that of bytes in front of them.
+template <std::uint32_t kPolynomial>
+[[nodiscard]] constexpr std::uint32_t crc32_by(std::span<const std::byte> bytes,
+                                               std::uint32_t before = 0) noexcept
 {
     std::uint32_t state = ~before;
     for (const std::byte byte : bytes)
     {
-        state = detail::kCrc32cTable[(state ^ static_cast<std::uint32_t>(byte)) & 0xFFU] ^
-                (state >> 8U);
+        state =
+            detail::kCrc32Table<kPolynomial>[(state ^ static_cast<std::uint32_t>(byte)) & 0xFFU] ^
+            (state >> 8U);
     }
     return ~state;
+}
+
+/// CRC-32C (Castagnoli; RFC 3720, appendix B.4).
+[[nodiscard]] constexpr std::uint32_t crc32c(std::span<const std::byte> bytes,
+                                             std::uint32_t before = 0) noexcept
+{
+    return crc32_by<0x82F6'3B78U>(bytes, before);
 }
 
 } // namespace tactus

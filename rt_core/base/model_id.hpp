@@ -8,7 +8,7 @@
 namespace tactus
 {
 
-/// A model's place in the controller's list.
+/// A model's place in the controller's list, FrameSetup::models, from 0.
 using ModelId = StrongId<struct ModelTag>;
 
 } // namespace tactus

@@ -32,6 +32,27 @@ public:
         kept_ += share.promised;
         return share;
     }
+    /// Promises all of `slots` to an owner that has nothing so far. False, with nothing changed,
+    /// where fewer are neither taken nor promised.
+    [[nodiscard]] bool try_promise(PoolShare& share, std::uint32_t slots) noexcept
+    {
+        TACTUS_ASSERT(share.promised == 0);
+        TACTUS_ASSERT(share.used == 0);
+        if (free_ - kept_ < slots)
+        {
+            return false;
+        }
+        share.promised = slots;
+        kept_ += slots;
+        return true;
+    }
+    /// The owner has nothing any more, and nothing is kept for it.
+    void end_promise(PoolShare& share) noexcept
+    {
+        TACTUS_ASSERT(share.used == 0);
+        kept_ -= share.promised;
+        share.promised = 0;
+    }
     /// How many more the owner may take.
     [[nodiscard]] std::uint32_t left_for(const PoolShare& share) const noexcept
     {

@@ -10,11 +10,13 @@
 #include <span>
 #include <type_traits>
 
+// Any thread: values, and functions of their arguments alone; no call waits or allocates.
 namespace tactus
 {
 
 /// At most `Capacity` values in place. For small lists on the stack or inside records. Costs
-/// nothing to make: room that isn't used is not initialised.
+/// nothing to make: room that isn't used is not initialised. An index beyond the size is a bug, as
+/// is pop_back() of an empty one (both asserted).
 template <typename T, std::size_t Capacity>
 class StaticVector // NOLINT(cppcoreguidelines-special-member-functions): moving is copying.
 {
@@ -46,7 +48,7 @@ public:
         return true;
     }
 
-    /// Appends where the caller knows that there is room; a bug when there is none.
+    /// Appends where the caller knows that there is room; a bug when there is none (asserted).
     void push_back(const T& value) noexcept
     {
         const bool pushed = try_push_back(value);

@@ -5,6 +5,7 @@
 #include <compare>
 #include <cstdint>
 
+// Any thread: values, and functions of their arguments alone; no call waits or allocates.
 namespace tactus
 {
 

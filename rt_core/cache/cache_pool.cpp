@@ -11,13 +11,14 @@ namespace tactus
 {
 
 CachePool::CachePool(Arena& arena, std::uint32_t page_slots, std::uint32_t index_slots,
-                     std::uint32_t models) noexcept
+                     std::uint32_t models, std::uint32_t guests) noexcept
     : pages(arena, page_slots)
     , index_slot_of(arena, index_slots)
     , index_metas(arena.take<IndexMeta>(index_slots))
     , chunk_wishes(arena, page_slots)
     , index_wishes(arena, index_slots)
-    , door(arena, std::size_t{page_slots} + index_slots, std::size_t{page_slots} + index_slots)
+    , door(arena, std::size_t{page_slots} + index_slots + guests,
+           std::size_t{page_slots} + index_slots + guests)
     , caches_(arena.take<ChunkCache*>(models))
     , taken_(arena.take<DoorEvent>(kMaxArrivalsPerFrame + kMaxLinkUpdatesPerFrame))
 {

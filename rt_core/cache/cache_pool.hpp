@@ -27,9 +27,10 @@ class ChunkCache;
 class CachePool
 {
 public:
-    /// Of up to `models` models; with a door of so many slots that has room for as many wishes.
+    /// Of up to `models` models, of which `guests` may come and go; with a door of so many slots
+    /// and their base meshes that has room for as many wishes.
     CachePool(Arena& arena, std::uint32_t page_slots, std::uint32_t index_slots,
-              std::uint32_t models) noexcept;
+              std::uint32_t models, std::uint32_t guests = 0) noexcept;
 
     /// How long a frame is; a period of 1 ms unless told. Wishes wait for answers kWishTimeout_ns.
     void set_period(std::int64_t period_ns) noexcept;

@@ -31,16 +31,20 @@ QuantumBox extent_of(const ModelHeader& header) noexcept
     return extent;
 }
 
-bool meets(const QuantumBall& ball, const QuantumBox& box) noexcept
+/// Of a chunk of an index page.
+QuantumBox box_of(const IndexPage& index, const QuantumBox& page_box, std::size_t chunk) noexcept
 {
-    double distance_sq = 0.0;
+    const InfluenceBox steps = index.box(chunk);
+    QuantumBox box;
     for (std::size_t axis = 0; axis < 3; ++axis)
     {
-        const double gap = std::max({static_cast<double>(box.low[axis]) - ball.center[axis],
-                                     ball.center[axis] - static_cast<double>(box.high[axis]), 0.0});
-        distance_sq += gap * gap;
+        const std::uint32_t step = index_step(page_box.low[axis], page_box.high[axis]);
+        const auto at = [&](std::uint16_t steps_up)
+        { return page_box.low[axis] + static_cast<std::int32_t>(step * steps_up); };
+        box.low[axis] = at(steps.low[axis]);
+        box.high[axis] = at(steps.high[axis]);
     }
-    return distance_sq <= ball.radius * ball.radius;
+    return box;
 }
 
 } // namespace
@@ -67,9 +71,100 @@ void ChunkCache::take(const DoorEvent& event, std::uint32_t frame) noexcept
     if (event.kind == DoorEventKind::link_update)
     {
         pages_->update_linked({event.key.number}, event.slot, event.linked);
-        return;
     }
-    adopt(event, frame);
+    else if (event.key.kind == ContentKind::base)
+    {
+        TACTUS_ASSERT(!is_open_);
+        TACTUS_ASSERT(!has_base_);
+        has_base_ = event.kind == DoorEventKind::arrival;
+        if (!has_base_)
+        {
+            has_cells_back_ = true;
+            cells_back_ = frame;
+            end_base(frame);
+        }
+    }
+    else if (is_open_)
+    {
+        adopt(event, frame);
+    }
+    else
+    {
+        send_back(event, frame);
+    }
+}
+
+/// The model went while the piece was on its way.
+void ChunkCache::send_back(const DoorEvent& arrival, std::uint32_t frame) noexcept
+{
+    WishList& wishes = arrival.key.kind == ContentKind::chunk ? chunk_wishes_ : index_wishes_;
+    wishes.arrive(arrival.key.number, frame);
+    wishes.give_back_slot();
+    const bool freed = pool_->door.freed.try_push({arrival.key.kind, arrival.slot});
+    TACTUS_ASSERT(freed);
+}
+
+void ChunkCache::open() noexcept
+{
+    TACTUS_ASSERT(has_base_);
+    is_open_ = true;
+    fill_cursor_ = 0;
+    urgent_.begin_anew();
+    patient_.begin_anew();
+}
+
+void ChunkCache::want_base(std::uint32_t first_cell, std::uint32_t frame) noexcept
+{
+    TACTUS_ASSERT(!is_open_);
+    const bool is_under_way =
+        base_asked_ != 0 && frame - base_asked_ <= pool_->wish_timeout_frames_;
+    if (!has_base_ && !is_under_way &&
+        pool_->try_wish({ContentKind::base, first_cell}, pages_->owner(), frame))
+    {
+        base_asked_ = frame;
+    }
+}
+
+bool ChunkCache::try_empty(std::uint32_t most, std::uint32_t frame, WorkCounters& work) noexcept
+{
+    TACTUS_ASSERT(!is_open_);
+    TACTUS_ASSERT(has_base_);
+    const std::uint32_t pages = pages_->capacity();
+    const auto all = static_cast<std::uint32_t>(pages + index_meta_.size());
+    const std::uint32_t end = std::min(all, empty_cursor_ + most);
+    for (; empty_cursor_ < std::min(end, pages); ++empty_cursor_)
+    {
+        if (pages_->is_own(empty_cursor_))
+        {
+            pages_->forget_refined(empty_cursor_);
+            evict(empty_cursor_, work);
+        }
+    }
+    for (; empty_cursor_ < end; ++empty_cursor_)
+    {
+        const IndexMeta& meta = index_meta_[empty_cursor_ - pages];
+        if (!meta.page.is_none() && meta.owner == pages_->owner())
+        {
+            evict_index_page(empty_cursor_ - pages);
+        }
+    }
+    if (empty_cursor_ < all)
+    {
+        return false;
+    }
+    TACTUS_ASSERT(pages_->used() == 0);
+    empty_cursor_ = 0;
+    end_base(frame);
+    return true;
+}
+
+/// Wishes for it that are older are of no use to the transport thread from here on.
+void ChunkCache::end_base(std::uint32_t frame) noexcept
+{
+    has_base_ = false;
+    base_asked_ = 0;
+    const bool freed = pool_->door.freed.try_push({ContentKind::base, pages_->owner(), frame});
+    TACTUS_ASSERT(freed);
 }
 
 void ChunkCache::adopt(const DoorEvent& arrival, std::uint32_t frame) noexcept
@@ -115,7 +210,9 @@ void ChunkCache::request_missing(std::span<const RankedRegion> regions, const Bu
         most.requests -= budgets.requests / kPatientShare;
         most.regions -= budgets.regions / kPatientShare;
     }
+    ask_beside(urgent_, most, work, faults);
     search(urgent_, most, work, faults);
+    ask_beside(patient_, budgets, work, faults);
     search(patient_, budgets, work, faults);
 }
 
@@ -145,6 +242,20 @@ IndexSearch::Balls ChunkCache::to_quanta(std::span<const RankedRegion> regions,
         }
     }
     return balls;
+}
+
+/// What the round left out because only its wider balls met it.
+void ChunkCache::ask_beside(IndexSearch& search, const Budgets& most, WorkCounters& work,
+                            FrameFault& faults) noexcept
+{
+    for (auto met = search.take_met(); met; met = search.take_met())
+    {
+        const Want want = want_of(met->ball, &search);
+        if (!try_touch(met->chunk, want, work))
+        {
+            want_chunk(met->chunk, want, most, work, faults);
+        }
+    }
 }
 
 /// Some of the pages of a search's round, until the frame has done `most`.
@@ -237,17 +348,15 @@ void ChunkCache::search_page(IndexPageId page, IndexSearch& search, const Budget
                 continue;
             }
             // What only the wider balls of the round meet is not asked for yet.
-            const std::uint64_t others = ~(std::uint64_t{1} << i);
-            if (std::ranges::any_of(search.aimed_at(),
-                                    [&](const WantedBall& aimed) {
-                                        return ~chunks_meeting(index, box, aimed.ball, others) == 0;
-                                    }))
+            const QuantumBox chunk_box = box_of(index, box, i);
+            if (std::ranges::any_of(search.aimed_at(), [&chunk_box](const WantedBall& aimed)
+                                    { return meets(aimed.ball, chunk_box); }))
             {
                 want_chunk(chunk, want, most, work, faults);
             }
             else
             {
-                search.begin_anew();
+                search.add_beside({chunk, chunk_box});
             }
         }
         known = meeting;

@@ -14,6 +14,7 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 
 namespace tactus
 {
@@ -69,6 +70,30 @@ public:
     void request_everything(const Budgets& budgets, WorkCounters& work,
                             FrameFault& faults) noexcept TACTUS_NONBLOCKING;
 
+    /// A model that comes and goes has a cache that is closed at first: what arrives goes back at
+    /// once.
+    void close() noexcept { is_open_ = false; }
+    void open() noexcept TACTUS_NONBLOCKING;
+    /// Asks for the base mesh of a closed cache, and again where it doesn't come; it is to lie from
+    /// this cell on. Until it has come the cells are the transport thread's.
+    void want_base(std::uint32_t first_cell, std::uint32_t frame) noexcept TACTUS_NONBLOCKING;
+    [[nodiscard]] bool has_base() const noexcept { return has_base_; }
+    /// Whether its cells were given back instead since it was last asked. A while later it may be
+    /// wanted again.
+    [[nodiscard]] bool try_take_cells_back() noexcept
+    {
+        return std::exchange(has_cells_back_, false);
+    }
+    [[nodiscard]] bool may_want_base(std::uint32_t frame) const noexcept
+    {
+        return cells_back_ == 0 || frame - cells_back_ > pool_->wish_timeout_frames_;
+    }
+    /// Gives back what a closed cache has, looking at up to `most` slots from where the last call
+    /// ended: the pages, in none of which a record counts as refined any more, the index pages and
+    /// at last the base mesh. False until then.
+    [[nodiscard]] bool try_empty(std::uint32_t most, std::uint32_t frame,
+                                 WorkCounters& work) noexcept TACTUS_NONBLOCKING;
+
     /// Frame numbers start here, so that ages can be subtracted.
     static constexpr std::uint32_t kFirstFrame = 4'096;
 
@@ -100,11 +125,15 @@ private:
 
     void take(const DoorEvent& event, std::uint32_t frame) noexcept TACTUS_NONBLOCKING;
     void adopt(const DoorEvent& arrival, std::uint32_t frame) noexcept;
+    void send_back(const DoorEvent& arrival, std::uint32_t frame) noexcept;
+    void end_base(std::uint32_t frame) noexcept;
     [[nodiscard]] IndexSearch::Balls to_quanta(std::span<const RankedRegion> regions,
                                                bool are_urgent) const noexcept;
     [[nodiscard]] Want want_of(const WantedBall& ball, IndexSearch* search) const noexcept;
     void search(IndexSearch& search, const Budgets& most, WorkCounters& work,
                 FrameFault& faults) noexcept;
+    void ask_beside(IndexSearch& search, const Budgets& most, WorkCounters& work,
+                    FrameFault& faults) noexcept;
     void search_page(IndexPageId page, IndexSearch& search, const Budgets& most, WorkCounters& work,
                      FrameFault& faults) noexcept;
     [[nodiscard]] bool try_touch(ChunkId chunk, const Want& want, WorkCounters& work) noexcept;
@@ -145,6 +174,12 @@ private:
     /// Others may take what was not touched since, where no more than that is kept.
     std::uint32_t lends_before_{kFirstFrame};
     std::uint32_t fill_cursor_{0}; ///< Next chunk of request_everything().
+    bool is_open_{true};
+    bool has_base_{false};          ///< Of one that comes and goes: its base mesh is here.
+    bool has_cells_back_{false};    ///< Those lent for it, and nobody has asked yet.
+    std::uint32_t base_asked_{0};   ///< In this frame; 0: not since it went.
+    std::uint32_t cells_back_{0};   ///< In this frame for the last time; 0: never.
+    std::uint32_t empty_cursor_{0}; ///< Next slot of try_empty().
     std::uint32_t frame_{kFirstFrame};
     std::uint64_t loads_{0};
     std::uint64_t evictions_{0};

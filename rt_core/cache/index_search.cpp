@@ -26,6 +26,18 @@ bool holds(const WantedBall& outer, const WantedBall& inner) noexcept
 
 } // namespace
 
+bool meets(const QuantumBall& ball, const QuantumBox& box) noexcept
+{
+    double distance_sq = 0.0;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+        const double gap = std::max({static_cast<double>(box.low[axis]) - ball.center[axis],
+                                     ball.center[axis] - static_cast<double>(box.high[axis]), 0.0});
+        distance_sq += gap * gap;
+    }
+    return distance_sq <= ball.radius * ball.radius;
+}
+
 void IndexSearch::aim(const Balls& balls, std::uint32_t pages, std::uint32_t frame,
                       bool keeps_rounds) noexcept
 {
@@ -35,6 +47,7 @@ void IndexSearch::aim(const Balls& balls, std::uint32_t pages, std::uint32_t fra
     {
         // Nothing is of use here: whatever was touched before is not.
         is_kept_ = false;
+        beside_.clear();
         balls_ = {};
         pages_left_ = 0;
         round_began_ = frame;
@@ -48,6 +61,7 @@ void IndexSearch::aim(const Balls& balls, std::uint32_t pages, std::uint32_t fra
     }
     is_kept_ = keeps_rounds && balls.size() <= kKeptBalls;
     balls_ = balls.view();
+    beside_.clear();
     pages_left_ = pages;
     ended_ = frame;
     if (is_kept_)
@@ -67,6 +81,23 @@ bool IndexSearch::holds(const Balls& balls) const noexcept
     return std::ranges::equal(kept_, balls,
                               [](const WantedBall& outer, const WantedBall& inner)
                               { return tactus::holds(outer, inner); });
+}
+
+std::optional<IndexSearch::Met> IndexSearch::take_met() noexcept
+{
+    for (Beside& beside : beside_)
+    {
+        const auto met = std::ranges::find_if(aimed_at_, [&beside](const WantedBall& aimed)
+                                              { return meets(aimed.ball, beside.box); });
+        if (met != aimed_at_.end())
+        {
+            const ChunkId chunk = beside.chunk;
+            beside = beside_[beside_.size() - 1];
+            beside_.pop_back();
+            return Met{chunk, *met};
+        }
+    }
+    return std::nullopt;
 }
 
 IndexPageId IndexSearch::next(std::uint32_t frame) noexcept

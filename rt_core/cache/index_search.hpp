@@ -9,6 +9,7 @@
 #include "rt_core/spm/index_page.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <span>
 
 namespace tactus
@@ -32,11 +33,14 @@ struct WantedBall
 }
 inline constexpr std::uint32_t kWantedLevels = 2 * kUrgencyClasses;
 
+[[nodiscard]] bool meets(const QuantumBall& ball,
+                         const QuantumBox& box) noexcept TACTUS_NONBLOCKING;
+
 /// The model's chunks that some balls need, found by going round and round over its index pages.
 ///
 /// A round is for balls a little wider than they are. While the balls stay within them, and the
-/// round found all that they meet on its way or here, the next one waits kRestFrames. Haptic
-/// thread.
+/// round found all that they meet on its way or here, the next one waits kRestFrames. What only the
+/// wider balls meet is looked at alone meanwhile. Haptic thread.
 class IndexSearch
 {
 public:
@@ -66,6 +70,26 @@ public:
     /// frame begins a round.
     void begin_anew() noexcept { is_kept_ = false; }
 
+    /// A chunk that is not here, and that no ball of the frame met when the round came to it.
+    struct Beside
+    {
+        ChunkId chunk;
+        QuantumBox box;
+    };
+    /// Until the next round; there is one at once when there are too many.
+    void add_beside(const Beside& beside) noexcept
+    {
+        is_kept_ = beside_.try_push_back(beside) && is_kept_;
+    }
+    /// One of them that a ball of this frame meets now, and the most urgent of those balls; none
+    /// when there is no more. It is no longer beside.
+    struct Met
+    {
+        ChunkId chunk;
+        WantedBall ball;
+    };
+    [[nodiscard]] std::optional<Met> take_met() noexcept TACTUS_NONBLOCKING;
+
     /// A page that was of use at least once in two rounds was touched in this frame or later.
     [[nodiscard]] std::uint32_t last_round_began() const noexcept { return last_round_began_; }
 
@@ -76,11 +100,15 @@ public:
     static constexpr double kMargin = 0.1;
     /// Balls that a round is kept for: twelve spheres that move. With more every frame begins one.
     static constexpr std::size_t kKeptBalls = 64;
+    /// Chunks beside, of which each model keeps room for twice as many: a slide of a mesh looks at
+    /// 3,161 pages with so many, at 4,036 with 8, and at 8,810 without.
+    static constexpr std::size_t kMaxBeside = 12;
 
 private:
     [[nodiscard]] bool holds(const Balls& balls) const noexcept;
 
     StaticVector<WantedBall, kKeptBalls> kept_;
+    StaticVector<Beside, kMaxBeside> beside_;
     std::span<const WantedBall> balls_;
     std::span<const WantedBall> aimed_at_;
     bool is_kept_{false};

@@ -14,17 +14,19 @@
 namespace tactus
 {
 
-/// A slot that the haptic thread has no more use for. Kind base never occurs.
+/// A slot that the haptic thread has no more use for. A model's base mesh goes after all its pages,
+/// and so do cells that were given back for it.
 struct FreedSlot
 {
     ContentKind kind{ContentKind::chunk};
-    std::uint32_t slot{0};
+    std::uint32_t slot{0};       ///< Of a base mesh: the model that it is of.
+    std::uint32_t generation{0}; ///< Of a base mesh: older wishes for it are of no use any more.
 };
 
 /// A piece that the haptic thread wants. Wishes of an older generation may be dropped.
 struct PieceWish
 {
-    ContentKey key;
+    ContentKey key; ///< Of a base mesh, the number is the first cell of those that are lent for it.
     std::uint32_t generation{0};
     std::uint8_t owner{0}; ///< The model that the piece is of.
 };
@@ -32,10 +34,14 @@ struct PieceWish
 /// The one door between the transport thread and the haptic thread, for all models. Slots, words of
 /// linked bits and wishes cross it, each kind in one order, and nothing else.
 ///
-/// A slot of PageSlots (a page, or an index page) has one owner at a time:
+/// A slot of PageSlots (a page, or an index page), and the cells of a base mesh, which the haptic
+/// thread lends with its wish, have one owner at a time:
 ///
 ///     transport: loan (parse into it) -> fill -> hand over (`arrived`)
 ///     haptic:    adopt -> use -> evict -> free (`freed`) -> the transport's again
+///
+/// Cells that no base mesh came for are given back through `arrived`, and the haptic thread says
+/// that it knows through `freed`, so that no older wish lends them again.
 ///
 /// At start every slot is the transport's. `arrived` keeps arrivals and link updates in one order,
 /// so what a frame learns is what it popped, however the threads ran.
@@ -46,8 +52,9 @@ struct SlotDoor
     /// out.
     static constexpr std::uint32_t kOpenWishes = 256;
 
-    /// Room for every slot in both queues, so those never refuse, and for link updates while those
-    /// leave arrivals their room (has_room_for_update()); for so many wishes.
+    /// `slots` are all that may cross it. Room for each in both queues, so those never refuse, and
+    /// for link updates while those leave arrivals their room (has_room_for_update()); for so many
+    /// wishes.
     SlotDoor(Arena& arena, std::size_t slots, std::size_t wishes) noexcept
         : arrived(arena.take<DoorEvent>(slots + kMaxLinkUpdatesPerFrame))
         , freed(arena.take<FreedSlot>(std::max<std::size_t>(slots, 1)))

@@ -30,7 +30,8 @@ public:
     }
 
 private:
-    /// Freed slots are on their way to the transport thread, which may take them meanwhile.
+    /// Freed slots and base meshes are on their way to the transport thread, which may take them
+    /// meanwhile.
     void check_freed() noexcept
     {
         const CachePool& pool = *cache_.pool_;
@@ -40,7 +41,7 @@ private:
             std::ranges::count_if(pool.index_metas, [](const CachePool::IndexMeta& meta)
                                   { return meta.page.is_none(); }));
         const std::size_t on_the_way = pool.door.freed.size();
-        finder_.expect(on_the_way <= pages + index_pages, "cache",
+        finder_.expect(on_the_way <= pages + index_pages + pool.caches_.size(), "cache",
                        static_cast<std::uint32_t>(on_the_way),
                        "slots are on their way back, more than are not its own");
     }

@@ -41,6 +41,16 @@ Motion<6> to_motion(const Vec3& translation, const Vec3& rotation) noexcept
     return motion;
 }
 
+double pressure_of(const NearestMotion<6>& held) noexcept
+{
+    double pressure = 0.0;
+    for (std::size_t i = 0; i < held.held_by.size(); ++i)
+    {
+        pressure += held.reactions[i];
+    }
+    return pressure;
+}
+
 /// Some unit vector across a unit vector.
 Vec3 across(const Vec3& normal) noexcept
 {
@@ -50,7 +60,8 @@ Vec3 across(const Vec3& normal) noexcept
 
 } // namespace
 
-void BodyPlanes::begin(const Vec3& place_m, double arm_m, double size_m, double radius_m) noexcept
+void BodyPlanes::begin(const Vec3& place_m, double arm_m, double size_m, double radius_m,
+                       const Motion<6>& gone) noexcept
 {
     spaces_.clear();
     touches_.clear();
@@ -59,6 +70,7 @@ void BodyPlanes::begin(const Vec3& place_m, double arm_m, double size_m, double 
     arm_m_ = arm_m;
     size_m_ = size_m;
     radius_m_ = radius_m;
+    gone_ = gone;
     is_crowded_ = false;
 }
 
@@ -149,14 +161,15 @@ BodyMotion BodyPlanes::nearest(const Motion<6>& wanted) noexcept
         answer.pushes.push_back({plane, spaces_[plane].normal, held.reactions[i]});
         rubs = rubs || grips_[plane].friction > 0.0;
     }
-    if (answer.is_squeezed || !rubs)
+    if (answer.is_squeezed)
     {
         return answer;
     }
-    const Chosen chosen = choose(held);
-    if (chosen.empty())
+    const Chosen chosen = rubs ? choose(held) : Chosen{};
+    if (chosen.empty()) // Without friction, or it comes to the surface in this step.
     {
-        return answer; // It comes to the surface in this step.
+        rub(held, wanted, Motion<6>::Zero(), answer);
+        return answer;
     }
     tilt(chosen, wanted);
     const NearestMotion<6> tilted = nearest_motion<6>(tilted_.view(), wanted);
@@ -340,20 +353,80 @@ BodyMotion BodyPlanes::sliding(const NearestMotion<6>& tilted, const Motion<6>& 
     {
         held = plain(wanted + share_of(held, most) * drag, answer.is_squeezed);
     }
-    answer.motion = held.motion;
-    double pressure = 0.0;
-    for (std::size_t i = 0; i < held.held_by.size(); ++i)
+    rub(held, wanted, share_of(held, most) * drag, answer);
+    return answer;
+}
+
+/// What holds back a body that the planes hold so and `drag` along them, and what viscosity adds.
+void BodyPlanes::rub(const NearestMotion<6>& held, const Motion<6>& wanted, const Motion<6>& drag,
+                     BodyMotion& answer) noexcept
+{
+    NearestMotion<6> rubbed = held;
+    Motion<6> all = drag;
+    if (const Viscosity viscosity = viscosity_of(held); viscosity.is_any)
     {
-        pressure += held.reactions[i];
+        tilted_.clear();
+        for (const HalfSpace<6>& space : spaces_)
+        {
+            tilted_.push_back({viscosity.factor.forward(space.normal), space.offset});
+        }
+        const Motion<6> target = viscosity.factor.forward(wanted + drag - viscosity.gone);
+        const NearestMotion<6> found = nearest_motion<6>(tilted_.view(), target);
+        if (found.is_feasible)
+        {
+            rubbed = found;
+            rubbed.motion = viscosity.factor.backward(found.motion);
+            all = drag - (viscosity.factor.times(rubbed.motion) - rubbed.motion + viscosity.gone);
+        }
     }
-    // Friction goes with the planes that press, so that a push is a normal and its part of it.
-    const double part = pressure > 0.0 ? share_of(held, most) / pressure : 0.0;
+    answer.motion = rubbed.motion;
+    const double pressure = pressure_of(rubbed);
+    // It goes with the planes that press, so that a push is a normal and its part of it.
+    const Motion<6> part = pressure > 0.0 ? Motion<6>(all / pressure) : Motion<6>::Zero();
+    answer.pushes.clear();
+    for (std::size_t i = 0; i < rubbed.held_by.size(); ++i)
+    {
+        const std::uint32_t plane = rubbed.held_by[i];
+        answer.pushes.push_back({plane, spaces_[plane].normal + part, rubbed.reactions[i]});
+    }
+}
+
+/// Each contact that presses has its part of it.
+BodyPlanes::Viscosity BodyPlanes::viscosity_of(const NearestMotion<6>& held) const noexcept
+{
+    Viscosity viscosity;
+    const double pressure = pressure_of(held);
+    SymmetricFactor::Matrix metric = SymmetricFactor::Matrix::Identity();
     for (std::size_t i = 0; i < held.held_by.size(); ++i)
     {
         const std::uint32_t plane = held.held_by[i];
-        answer.pushes.push_back({plane, spaces_[plane].normal + part * drag, held.reactions[i]});
+        const bool touches = spaces_[plane].offset >= -kTouchingGap * radius_m_;
+        if (!touches || !(grips_[plane].viscous * held.reactions[i] > 0.0))
+        {
+            continue;
+        }
+        viscosity.is_any = true;
+        const double part = grips_[plane].viscous * held.reactions[i] / pressure;
+        const Vec3 lever = lever_m(plane) / arm_m_;
+        const Vec3& normal = touches_[plane].normal;
+        const auto held_back = [&](const Vec3& way)
+        {
+            const Vec3 along = part * (way - normal.dot(way) * normal);
+            return to_motion(along, lever.cross(along));
+        };
+        for (int column = 0; column < 6; ++column)
+        {
+            const Motion<6> unit = Motion<6>::Unit(column);
+            metric.col(column) += held_back(unit.head<3>() + unit.tail<3>().cross(lever));
+        }
+        viscosity.gone +=
+            held_back(gone_.head<3>() + gone_.tail<3>().cross(lever) - grips_[plane].frame_way_m);
     }
-    return answer;
+    if (viscosity.is_any)
+    {
+        viscosity.factor = SymmetricFactor(metric);
+    }
+    return viscosity;
 }
 
 } // namespace tactus

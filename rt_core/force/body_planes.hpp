@@ -5,6 +5,7 @@
 #include "rt_core/base/realtime.hpp"
 #include "rt_core/base/static_vector.hpp"
 #include "rt_core/force/half_spaces.hpp"
+#include "rt_core/force/symmetric_factor.hpp"
 #include "rt_core/limits.hpp"
 #include "rt_core/math/vec3.hpp"
 
@@ -35,8 +36,11 @@ struct BodyGrip
     double friction{0.0}; ///< The coefficient that holds now.
     double dynamic{0.0};  ///< While it slides.
     double damping_n_s_per_m{0.0};
+    /// Of the way along the surface in this frame, as a share of the stretch that holds it back.
+    double viscous{0.0};
     Vec3 velocity_m_per_s{0.0, 0.0, 0.0}; ///< Of the surface.
     Vec3 way_m{0.0, 0.0, 0.0};            ///< That the surface went, and friction takes along.
+    Vec3 frame_way_m{0.0, 0.0, 0.0};      ///< That it went in all of the frame.
 };
 
 /// What pushes a body: `reaction` x `normal` is the motion that it holds back.
@@ -70,19 +74,23 @@ struct BodyMotion
 /// wanted motion and the plain planes answer, once more with the friction that belongs to their
 /// pressure.
 ///
+/// Viscosity: where the body slides, each contact that presses is a damper, implicit as in Proxy. A
+/// motion then costs what they take of it beside the springs' energy, and the nearest one is found
+/// in that metric: the planes and what is wanted are taken there and back by its Cholesky factor.
+///
 /// Where a tool stands over one face, the next one seems to lean against it: its nearest point is
 /// the edge that both share. Such a plane is left out, or the tool would catch on the seams of a
 /// mesh.
 ///
-/// Scratch, too large for a frame's stack: 18 KiB. Haptic thread. Cost: 0.7 to 5 us without
+/// Scratch, too large for a frame's stack: 23 KiB. Haptic thread. Cost: 0.7 to 5 us without
 /// friction, at most 10 us more with it.
 class BodyPlanes
 {
 public:
     /// Empties it for a step of a tool that is `place_m` there: `arm_m` is the metric's, `size_m`
-    /// the tool's own.
-    void begin(const Vec3& place_m, double arm_m, double size_m,
-               double radius_m) noexcept TACTUS_NONBLOCKING;
+    /// the tool's own. `gone` is the motion that it has made in the frame's steps before.
+    void begin(const Vec3& place_m, double arm_m, double size_m, double radius_m,
+               const Motion<6>& gone) noexcept TACTUS_NONBLOCKING;
     /// Where there is no room, what holds back least goes; then it is crowded.
     void add(const BodyTouch& touch, const BodyGrip& grip) noexcept TACTUS_NONBLOCKING;
 
@@ -115,6 +123,17 @@ private:
     [[nodiscard]] BodyMotion stuck(const NearestMotion<6>& tilted) noexcept;
     [[nodiscard]] BodyMotion sliding(const NearestMotion<6>& tilted,
                                      const Motion<6>& wanted) noexcept;
+    /// What dampers take of a motion: metric - 1 of it, and what they take of the way before.
+    struct Viscosity
+    {
+        SymmetricFactor factor; ///< Of the metric.
+        Motion<6> gone{Motion<6>::Zero()};
+        bool is_any{false};
+    };
+
+    [[nodiscard]] Viscosity viscosity_of(const NearestMotion<6>& held) const noexcept;
+    void rub(const NearestMotion<6>& held, const Motion<6>& wanted, const Motion<6>& drag,
+             BodyMotion& answer) noexcept;
     [[nodiscard]] double share_of(const NearestMotion<6>& plain, double most) const noexcept;
 
     StaticVector<HalfSpace<6>, kMaxHalfSpaces> spaces_;
@@ -124,6 +143,7 @@ private:
     StaticVector<Tilt, kMaxHalfSpaces> tilts_;          ///< Of the first of those.
     StaticVector<std::uint32_t, kMaxHalfSpaces> untilted_; ///< Touches of the others.
     Vec3 place_m_{0.0, 0.0, 0.0};
+    Motion<6> gone_{Motion<6>::Zero()};
     double arm_m_{1.0};
     double size_m_{1.0};
     double radius_m_{0.0};

@@ -43,7 +43,10 @@ ConditionerSetup in_angles(const ConditionerSetup& setup) noexcept
 
 ForceConditioner::ForceConditioner(const ConditionerSetup& setup) noexcept
     : setup_(setup)
-    , cap_n_per_m_(stiffness_cap(setup.device, setup.period_s))
+    , cap_step_n_per_m_(stiffness_cap(setup.device, setup.period_s) * setup.period_s /
+                        kMaterialGlide_s)
+    , allowed_n_per_m_(stiffness_cap(setup.device, setup.period_s))
+    , cap_n_per_m_(allowed_n_per_m_)
     , velocity_(setup.device.quantum_m)
     , sent_(setup.device.delay_s / setup.period_s)
     , observer_(setup.device, setup.period_s)
@@ -61,7 +64,7 @@ double ForceConditioner::begin(const ForceWish& wish) noexcept
 {
     wish_ = wish;
     output_ = {};
-    cap_for(wish.surface_damping_n_s_per_m);
+    cap_for(wish);
     const bool is_observed = observe(wish);
     if (!is_observed || !sent_.knows_delay())
     {
@@ -123,13 +126,21 @@ bool ForceConditioner::observe(const ForceWish& wish) noexcept
     return is_usable;
 }
 
-/// Most frames touch what the last one touched.
-void ForceConditioner::cap_for(double surface_damping_n_s_per_m) noexcept
+/// Most frames touch what the last one touched. Where a surface damps less than before, the wall
+/// that its damping had forbidden comes back step by step; in free air it may at once.
+void ForceConditioner::cap_for(const ForceWish& wish) noexcept
 {
-    if (surface_damping_n_s_per_m != surface_damping_n_s_per_m_)
+    if (wish.surface_damping_n_s_per_m != surface_damping_n_s_per_m_)
     {
-        surface_damping_n_s_per_m_ = surface_damping_n_s_per_m;
-        cap_n_per_m_ = stiffness_cap(setup_.device, setup_.period_s, surface_damping_n_s_per_m);
+        surface_damping_n_s_per_m_ = wish.surface_damping_n_s_per_m;
+        allowed_n_per_m_ =
+            stiffness_cap(setup_.device, setup_.period_s, surface_damping_n_s_per_m_);
+    }
+    if (cap_n_per_m_ != allowed_n_per_m_)
+    {
+        const bool is_touching = wish.force_n != Vec3(0.0, 0.0, 0.0);
+        cap_n_per_m_ = is_touching ? std::min(allowed_n_per_m_, cap_n_per_m_ + cap_step_n_per_m_)
+                                   : allowed_n_per_m_;
     }
 }
 

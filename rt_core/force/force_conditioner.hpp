@@ -18,11 +18,11 @@ namespace tactus
 /// Fixed while the loop runs.
 struct ConditionerSetup
 {
-    DeviceLimits device;
-    double period_s{1e-3};
+    DeviceLimits device;   ///< In world coordinates, as DeviceInfo has them.
+    double period_s{1e-3}; ///< Of the loop; above 0.
     /// How far from the device's position a surface may touch the tool: it damps turning by at most
     /// its damping x the square of this, which lowers the cap of the torque's stiffness. No more
-    /// than half of the device's own is counted; beyond that the passivity controller acts.
+    /// than half of the device's own is counted; beyond that the passivity controller acts. >= 0.
     double lever_max_m{0.0};
     bool controls_passivity{true}; ///< False: observes only.
     /// A device that is faster has jumped: its energy isn't observed.
@@ -32,7 +32,9 @@ struct ConditionerSetup
 /// What stands between the force that one tool's frame wants and its device. In this order:
 ///
 ///     usable?   a force or stiffness that is no number: zero
-///     cap       a wall stiffer than the device may have at this rate: scaled down to the cap
+///     cap       a wall stiffer than the device may have at this rate: scaled down to the cap,
+///     which
+///               under a force rises by its own within kMaterialGlide_s when a damping goes
 ///     clamp     to the device's largest force
 ///     growth    at most slew x period a frame
 ///     damping   against the velocity, when the port has given away energy (PassivityObserver)
@@ -49,8 +51,8 @@ struct ConditionerSetup
 class ForceConditioner
 {
 public:
-    /// - `setup.device` has no find_fault().
-    /// - `setup.period_s` > 0.
+    /// - `setup.device` is within the ranges of DeviceLimits (asserted).
+    /// - `setup.period_s` > 0 (asserted).
     explicit ForceConditioner(const ConditionerSetup& setup) noexcept;
 
     /// The force to write now: the energy of the next period is its.
@@ -62,15 +64,15 @@ public:
     [[nodiscard]] double begin(const ForceWish& wish) noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] ConditionedForce finish(double gain) noexcept TACTUS_NONBLOCKING;
 
-    /// This went out in place of the force that condition() has just returned. The next one grows
-    /// from it, and what energy it makes beyond the spring's is forgiven.
+    /// This went out in place of the force that condition() has just returned; finite. The next one
+    /// grows from it, and what energy it makes beyond the spring's is forgiven.
     void follow(const Vec3& sent_n) noexcept TACTUS_NONBLOCKING;
 
     /// The stiffest wall that goes through unscaled, with the surface damping of the last wish.
     [[nodiscard]] double stiffness_cap_n_per_m() const noexcept { return cap_n_per_m_; }
 
 private:
-    void cap_for(double surface_damping_n_s_per_m) noexcept;
+    void cap_for(const ForceWish& wish) noexcept;
     [[nodiscard]] bool observe(const ForceWish& wish) noexcept;
     [[nodiscard]] double limit(const ForceWish& wish, ConditionedForce& output) noexcept;
     void hold(const ForceWish& wish, const Vec3& wall_n, double stiffness_n_per_m) noexcept;
@@ -78,7 +80,9 @@ private:
 
     ConditionerSetup setup_;
     double surface_damping_n_s_per_m_{0.0};
-    double cap_n_per_m_; ///< With that damping.
+    double cap_step_n_per_m_; ///< By which a period may raise the cap under a force.
+    double allowed_n_per_m_;  ///< The rule's, with that damping.
+    double cap_n_per_m_;      ///< In force: that, or on its way up to it.
     VelocityWindow velocity_;
     SentForces sent_;
     PassivityObserver observer_;

@@ -25,8 +25,8 @@ struct OwnForce
     double gripper_n{0.0};            ///< Above 0 it opens the gripper.
 };
 
-/// A spring from the tool to a point, at most so strong. Stiffness and largest force finite, not
-/// negative.
+/// A spring from the tool, which is at `place_m`, to a point, at most so strong. Stiffness and
+/// largest force finite, not negative.
 [[nodiscard]] inline OwnForce spring_to(const Vec3& point_m, const Vec3& place_m,
                                         double stiffness_n_per_m, double force_max_n) noexcept
 {

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "rt_core/force/proxy.hpp"
 
+#include "rt_core/force/texture.hpp"
 #include "rt_core/math/infinity.hpp"
 
 #include <algorithm>
@@ -15,6 +16,8 @@ namespace
 
 /// Over a curved surface a press turns into a way along it: this share of it within a frame.
 constexpr double kDipShare = 0.1;
+/// A further list is asked for where the last one brought the proxy on by this share of the radius.
+constexpr double kWorthAList = 0.05;
 /// A proxy on its way along a surface feels what is this share of the radius below it.
 constexpr double kNearlyTouching = 0.1;
 
@@ -54,14 +57,26 @@ struct StepPlanes
     }
 };
 
-/// The motion nearest to `wanted` that enters no triangle. `step` holds its planes then.
-NearestMotion<3> nearest_free_motion(Vicinity& near, const Vec3& wanted, double radius,
-                                     StepPlanes& step) noexcept
+/// nearest_motion(), counted: a search goes through its planes some eight times.
+NearestMotion<3> search(Vicinity& near, const StepPlanes& step, const Vec3& wanted) noexcept
 {
-    NearestMotion<3> found = nearest_motion<3>(step.planes.view(), wanted);
-    for (std::uint32_t round = 0; round < kStepRounds && found.is_feasible; ++round)
+    near.use(1 + static_cast<std::uint32_t>(step.planes.size()) / 8);
+    return nearest_motion<3>(step.planes.view(), wanted);
+}
+
+/// The motion nearest to `wanted` that enters no triangle, or what of the way towards it is proven
+/// to be free. `step` holds its planes then, of which `found` is what they alone allow.
+NearestMotion<3> nearest_free_motion(Vicinity& near, const Vec3& wanted, double radius,
+                                     StepPlanes& step, NearestMotion<3> found) noexcept
+{
+    for (std::uint32_t round = 0; round < kStepRounds && found.is_feasible && !near.is_spent();
+         ++round)
     {
         const std::optional<std::uint32_t> entered = near.find_entered(found.motion, radius);
+        if (!entered && near.is_spent())
+        {
+            break;
+        }
         if (!entered || step.has(*entered))
         {
             return found;
@@ -71,13 +86,37 @@ NearestMotion<3> nearest_free_motion(Vicinity& near, const Vec3& wanted, double 
             step.compact(found);
         }
         step.add(*entered, near.half_space(*entered, radius));
-        found = nearest_motion<3>(step.planes.view(), wanted);
+        found = search(near, step, wanted);
     }
     if (found.is_feasible)
     {
         found.motion *= near.free_share(found.motion, radius);
     }
     return found;
+}
+
+/// What of a vector lies along all planes that hold: they are independent.
+Vec3 along_all(const Vec3& vector, const StepPlanes& planes,
+               std::span<const std::uint32_t> held_by) noexcept
+{
+    if (held_by.size() > 2)
+    {
+        return {0.0, 0.0, 0.0};
+    }
+    if (held_by.size() == 2)
+    {
+        const Vec3 edge = planes.planes[held_by[0]].normal.cross(planes.planes[held_by[1]].normal);
+        return edge * (edge.dot(vector) / edge.squaredNorm());
+    }
+    const Vec3& normal = planes.planes[held_by[0]].normal;
+    return vector - normal * normal.dot(vector);
+}
+
+/// Whether something of the material holds back what moves along it.
+bool rubs(const Material& material) noexcept
+{
+    return material.static_friction > 0.0 || material.viscosity_n_s_per_m > 0.0 ||
+           material.texture_height_m > 0.0;
 }
 
 /// How far round the tool's centre all of the surface is known, in the world.
@@ -89,18 +128,41 @@ double known(const PlacedSurface& placed) noexcept
 
 } // namespace
 
+/// What holds the proxy at one place, before anything is looked for that a motion would enter.
+struct Proxy::Touch
+{
+    Hold hold;
+    StepPlanes planes;        ///< Of what touches.
+    NearestMotion<3> held;    ///< What they let go of the way.
+    Vec3 kept{0.0, 0.0, 0.0}; ///< What friction and bumps keep of the slip.
+};
+
 Proxy::Proxy(ToolSpec spec) noexcept : spec_(std::move(spec)), radius_(spec_.radius_m) {}
 
 ToolOutput Proxy::respond(const ToolGoal& goal, std::span<const PlacedSurface> surfaces,
-                          double clear_m) noexcept
+                          double clear_m, std::uint32_t planes) noexcept
 {
     anchor_ = position_;
+    elapsed_s_ = goal.elapsed_s;
     radius_ = find_radius(surfaces);
-    is_crowded_ = false;
-    path_.clear();
-    path_.push_back(position_);
     const double travel = free_travel(surfaces, clear_m);
     const bool frozen = !(travel > 0.0);
+    goes_on_ = false;
+    if (!is_on_)
+    {
+        begin_frame();
+    }
+    else if (frozen)
+    {
+        is_on_ = false;
+        ToolOutput nothing;
+        nothing.frozen = true;
+        return nothing;
+    }
+    is_on_ = false;
+    catch_up_ = catch_up_before_;
+    ++lists_;
+    planes_left_ = planes;
     Motion motion = Motion::held_back;
     if (frozen)
     {
@@ -109,6 +171,7 @@ ToolOutput Proxy::respond(const ToolGoal& goal, std::span<const PlacedSurface> s
     else
     {
         motion = follow(goal.position_m, travel, surfaces);
+        goes_on_ = is_worth_going_on(motion, surfaces);
     }
     ToolOutput output;
     output.proxy_m = position_;
@@ -119,7 +182,10 @@ ToolOutput Proxy::respond(const ToolGoal& goal, std::span<const PlacedSurface> s
     output.crowded = is_crowded_;
     output.held_back = motion == Motion::held_back && !frozen && is_short_of(surfaces, travel);
     output.under_way = !frozen && motion != Motion::at_rest && motion != Motion::squeezed;
-    output.stiffness_n_per_m = in_contact_ ? hold_.stiffness / hold_.depth_m : 0.0;
+    output.cut_short = motion == Motion::out_of_planes;
+    output.lag_m = frozen || output.under_way ? way_to_m(goal) : 0.0;
+    output.stiffness_n_per_m =
+        in_contact_ ? hold_.stiffness / hold_.depth_m * (hold_.stiffening / hold_.depth_m) : 0.0;
     const bool is_held = frozen || output.squeezed;
     if (in_contact_ && !is_held)
     {
@@ -130,13 +196,38 @@ ToolOutput Proxy::respond(const ToolGoal& goal, std::span<const PlacedSurface> s
         output.force_n = in_contact_ ? held_force(goal.position_m) : Vec3(0.0, 0.0, 0.0);
         catch_up_.follow(output.force_n);
     }
-    waits_ = is_held || output.held_back;
+    waits_ = is_held || output.held_back || output.cut_short;
     return output;
+}
+
+void Proxy::begin_frame() noexcept
+{
+    catch_up_before_ = catch_up_;
+    has_waited_ = waits_;
+    is_crowded_ = false;
+    has_slid_ = false;
+    rubbed_m_ = 0.0;
+    lists_ = 0;
+    steps_ = 0;
+    path_.clear();
+    path_.push_back(position_);
+}
+
+/// What ends for want of data ends there whatever is asked.
+bool Proxy::is_worth_going_on(Motion motion, std::span<const PlacedSurface> surfaces) const noexcept
+{
+    const bool is_cut =
+        motion == Motion::ran_out || (motion == Motion::held_back &&
+                                      std::ranges::any_of(surfaces, [](const PlacedSurface& placed)
+                                                          { return placed.surface->is_cut; }));
+    return is_cut && lists_ < kListsPerFrame && steps_ < kProxySteps &&
+           went_m() > kWorthAList * radius_;
 }
 
 void Proxy::see(const ToolGoal& goal) noexcept
 {
     rotation_ = goal.rotation;
+    is_on_ = false; // The last frame may have had no budget left for another list.
     if (goal.change == GoalChange::first)
     {
         position_ = goal.position_m;
@@ -193,7 +284,6 @@ Proxy::Motion Proxy::follow(const Vec3& goal, double travel,
                             std::span<const PlacedSurface> surfaces) noexcept
 {
     in_contact_ = false;
-    has_slid_ = false;
     held_by_.clear();
     double clear = travel;
     for (const PlacedSurface& placed : surfaces)
@@ -201,16 +291,17 @@ Proxy::Motion Proxy::follow(const Vec3& goal, double travel,
         clear = std::min(clear, placed.surface->answer.lower_m * placed.pose->scale - radius_);
     }
     go_straight_on(goal, clear);
-    Vicinity near(surfaces, anchor_, radius_ + travel);
+    Vicinity near(surfaces, anchor_, radius_ + travel, planes_left_);
     const Motion motion = follow_among(near, surfaces, goal, travel);
     if (motion != Motion::at_rest && motion != Motion::squeezed)
     {
         near.stand_at(position_ - anchor_, normal_);
-        hold_ = hold_at(near, surfaces, goal - position_, kNearlyTouching * radius_);
+        hold_ = feel_at(near, surfaces, goal - position_, kNearlyTouching * radius_).hold;
     }
     in_contact_ = hold_.touches;
     slides_ = has_slid_ && in_contact_;
     keep_clearances(surfaces, &near);
+    planes_left_ = near.planes_left();
     return motion;
 }
 
@@ -229,20 +320,25 @@ Proxy::Motion Proxy::follow_among(Vicinity& near, std::span<const PlacedSurface>
                                   const Vec3& goal, double travel) noexcept
 {
     const double least_step = kLeastStep * radius_;
-    for (std::uint32_t steps = 1;; ++steps)
+    for (;;)
     {
+        if (near.is_spent())
+        {
+            return Motion::out_of_planes;
+        }
+        ++steps_;
         near.stand_at(position_ - anchor_, normal_);
-        hold_ = hold_at(near, surfaces, goal - position_, kTouchShare * radius_);
+        hold_ = hold_at(near, surfaces, goal - position_);
         const double length = hold_.motion.norm();
         if (hold_.is_squeezed)
         {
             return Motion::squeezed;
         }
-        if (length <= (hold_.static_m > 0.0 ? kSlipShare * radius_ : least_step))
+        if (length <= (hold_.rubs ? kSlipShare * radius_ : least_step))
         {
             return Motion::at_rest;
         }
-        if (steps == kProxySteps)
+        if (steps_ == kProxySteps)
         {
             return Motion::out_of_steps;
         }
@@ -253,23 +349,19 @@ Proxy::Motion Proxy::follow_among(Vicinity& near, std::span<const PlacedSurface>
         {
             return travel - moved <= least_step ? Motion::held_back : Motion::ran_out;
         }
-        position_ += hold_.motion * std::min(1.0, room / length);
+        const double share = std::min(1.0, room / length);
+        position_ += share * hold_.motion;
+        rubbed_m_ += hold_.touches ? share * length : 0.0;
         path_.push_back(position_);
     }
 }
 
 Proxy::Hold Proxy::hold_at(Vicinity& near, std::span<const PlacedSurface> surfaces,
-                           const Vec3& wanted, double gap_m) noexcept
+                           const Vec3& wanted) noexcept
 {
-    std::array<std::uint32_t, kMaxHalfSpaces> faces; // NOLINT(*-member-init): it is written first.
-    const std::size_t found_faces = near.list_within(radius_ + gap_m, faces);
-    is_crowded_ = is_crowded_ || found_faces > faces.size();
-    StepPlanes touching;
-    for (const std::uint32_t face : std::span(faces).first(std::min(found_faces, faces.size())))
-    {
-        touching.add(face, near.half_space(face, radius_));
-    }
-    StepPlanes step = touching;
+    Touch touch = feel_at(near, surfaces, wanted, kTouchShare * radius_);
+    Hold& hold = touch.hold;
+    StepPlanes step = touch.planes;
     for (const std::uint32_t face : held_by_)
     {
         if (!step.planes.full() && !step.has(face))
@@ -277,43 +369,65 @@ Proxy::Hold Proxy::hold_at(Vicinity& near, std::span<const PlacedSurface> surfac
             step.add(face, near.half_space(face, radius_));
         }
     }
-    const std::size_t asked = step.planes.size();
-    const NearestMotion<3> found = nearest_free_motion(near, wanted, radius_, step);
+    const bool is_same = !hold.rubs && step.planes.size() == touch.planes.planes.size();
+    const Vec3 let = hold.rubs ? Vec3(wanted - touch.kept) : wanted;
+    const NearestMotion<3> found = nearest_free_motion(
+        near, let, radius_, step, is_same ? touch.held : search(near, step, let));
     held_by_.clear();
     for (const std::uint32_t plane : found.held_by)
     {
         held_by_.push_back(step.faces[plane]);
     }
-    Hold hold;
     hold.motion = found.motion;
     hold.is_squeezed = !found.is_feasible;
-    const bool is_same = asked == touching.planes.size() && asked == step.planes.size();
-    const NearestMotion<3> held =
-        is_same ? found : nearest_motion<3>(touching.planes.view(), wanted);
-    for (std::size_t i = 0; i < held.held_by.size(); ++i)
-    {
-        const std::uint32_t plane = held.held_by[i];
-        press(hold, surfaces[near.surface_of(touching.faces[plane])],
-              held.reactions[i] * touching.planes[plane].normal);
-    }
-    if (hold.touches)
-    {
-        normal_ = hold.push_n.normalized();
-        hold.slip = held.motion - touching.way_out(kContactTolerance * radius_);
-        const Vec3 kept = rub(hold, hold.slip);
-        hold.slip -= kept;
-        if (hold.static_m > 0.0)
-        {
-            hold.motion = nearest_free_motion(near, wanted - kept, radius_, step).motion;
-        }
-        return hold;
-    }
-    if (std::ranges::any_of(surfaces, [](const PlacedSurface& placed)
-                            { return placed.material->static_friction > 0.0; }))
+    if (!hold.touches && std::ranges::any_of(surfaces, [](const PlacedSurface& placed)
+                                             { return rubs(*placed.material); }))
     {
         hold.motion = go_to_contact(near, wanted, hold.motion);
     }
     return hold;
+}
+
+/// What touches the proxy where it stands, to within the gap, and how that pushes and rubs.
+Proxy::Touch Proxy::feel_at(Vicinity& near, std::span<const PlacedSurface> surfaces,
+                            const Vec3& wanted, double gap_m) noexcept
+{
+    std::array<std::uint32_t, kMaxHalfSpaces> faces; // NOLINT(*-member-init): it is written first.
+    const Vicinity::Listed listed = near.list_within(radius_ + gap_m, faces);
+    is_crowded_ = is_crowded_ || !listed.is_all;
+    Touch touch;
+    for (const std::uint32_t face : std::span(faces).first(listed.count))
+    {
+        touch.planes.add(face, near.half_space(face, radius_));
+    }
+    touch.held = search(near, touch.planes, wanted);
+    const NearestMotion<3>& held = touch.held;
+    Hold& hold = touch.hold;
+    const auto surface_of = [&](std::size_t i) -> const PlacedSurface&
+    { return surfaces[near.surface_of(touch.planes.faces[held.held_by[i]])]; };
+    for (std::size_t i = 0; i < held.held_by.size(); ++i)
+    {
+        press(hold, surface_of(i), held.reactions[i] * touch.planes.planes[held.held_by[i]].normal);
+    }
+    if (!hold.touches)
+    {
+        return touch;
+    }
+    if (hold.has_texture)
+    {
+        for (std::size_t i = 0; i < held.held_by.size(); ++i)
+        {
+            press_into_texture(hold, surface_of(i), held.motion - wanted,
+                               held.reactions[i] / hold.depth_m);
+        }
+        hold.bump_m = along_all(hold.bump_m, touch.planes, held.held_by.view());
+    }
+    normal_ = hold.push_n.normalized();
+    if (hold.rubs)
+    {
+        touch.kept = rub(hold, held.motion - touch.planes.way_out(kContactTolerance * radius_));
+    }
+    return touch;
 }
 
 /// Adds one plane that touches; `depth` is how far the goal is behind it, along its normal.
@@ -331,7 +445,25 @@ void Proxy::press(Hold& hold, const PlacedSurface& placed, const Vec3& depth) co
     hold.static_m += material.static_friction * length;
     hold.dynamic_m += material.dynamic_friction * length;
     hold.damping += material.damping_n_s_per_m * length;
+    hold.viscosity += material.viscosity_n_s_per_m * length;
+    hold.stiffening += Texture::stiffening(material) * length;
+    hold.has_texture = hold.has_texture || material.texture_height_m > 0.0;
+    hold.rubs = hold.rubs || rubs(material);
     hold.velocity += placed.memory->velocity_m_per_s * length;
+}
+
+/// Adds the texture of one that touches, by its share of what presses: `pressed` is all of that.
+void Proxy::press_into_texture(Hold& hold, const PlacedSurface& placed, const Vec3& pressed,
+                               double share) const noexcept
+{
+    const double depth_m = pressed.norm();
+    if (depth_m > 0.0)
+    {
+        const Texture texture = Texture::at(*placed.material, *placed.pose, position_, depth_m);
+        const double stiffness = share * hold.stiffness / hold.depth_m;
+        hold.push_n += stiffness * texture.push_m / depth_m * pressed;
+        hold.bump_m += share * texture.slope_m;
+    }
 }
 
 /// Friction begins where the tool touches, so it goes there straight: to where the first of the
@@ -349,21 +481,36 @@ Vec3 Proxy::go_to_contact(Vicinity& near, const Vec3& wanted, const Vec3& motion
         }
         share = std::min(share, near.share_before(*entered, wanted, radius_));
     }
+    if (near.is_spent())
+    {
+        return motion; // What it enters first isn't known: as far as is proven without friction.
+    }
     const Vec3 straight = wanted * share;
     return !passed.empty() && straight.norm() > kLeastStep * radius_ ? straight : motion;
 }
 
-/// Coulomb's cone: the tool sticks while what pulls it along, `slip`, is within the static one, and
-/// slides until it is within the dynamic one. Returns the part of it that friction takes.
+/// Coulomb's cone: the tool sticks while what pulls it along, `slip` less what bumps do, is within
+/// the static one, and slides until it is within the dynamic one. What a viscous surface holds back
+/// then is viscosity x way / time, of the way that the proxy has gone in this frame and goes now:
+/// an implicit damper, which takes what it has to of the motion and no more. Returns the part of
+/// the slip that all of them take.
 Vec3 Proxy::rub(Hold& hold, const Vec3& slip) noexcept
 {
-    const double length = slip.norm();
+    const Vec3 pull = slip - hold.bump_m;
+    const double length = pull.norm();
+    const double stiffness = hold.stiffness / hold.depth_m;
     const bool slips = length > (slides_ ? hold.dynamic_m : hold.static_m) + kSlipShare * radius_;
     slides_ = slides_ || slips;
     has_slid_ = has_slid_ || slips;
-    const double most = slips || slides_ ? hold.dynamic_m : hold.static_m;
-    const Vec3 kept = length > most ? Vec3(slip * (most / length)) : slip;
-    hold.drag_n = kept * (-hold.stiffness / hold.depth_m);
+    double most = slips || slides_ ? hold.dynamic_m : hold.static_m;
+    if (slides_ && hold.viscosity > 0.0)
+    {
+        const double viscosity = hold.viscosity / hold.depth_m;
+        const double held = stiffness * elapsed_s_;
+        most = (held * most + viscosity * (rubbed_m_ + length)) / (held + viscosity);
+    }
+    const Vec3 kept = hold.bump_m + (length > most ? Vec3(pull * (most / length)) : pull);
+    hold.drag_n = -stiffness * kept;
     return kept;
 }
 
@@ -453,7 +600,7 @@ Vec3 Proxy::caught_up(const ToolGoal& goal) noexcept
     const double by_hand_n = hold_.stiffness / hold_.depth_m * velocity.norm() * goal.elapsed_s;
     const double rate = std::min(kCatchUp_n_per_s, kCatchUpShare_per_s * spec_.force_max_n);
     return catch_up_.next(
-        {force(goal), by_hand_n, spec_.force_max_n, rate, goal.elapsed_s, waits_});
+        {force(goal), by_hand_n, spec_.force_max_n, rate, goal.elapsed_s, has_waited_});
 }
 
 /// Along the last normal, never pulling.

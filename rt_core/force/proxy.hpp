@@ -31,19 +31,27 @@ namespace tactus
 /// (L - tool radius), of where they were queried.
 ///
 /// The force is the spring between goal and proxy, of the softer of tool and object; never a
-/// penalty on a distance. Without a certified surface, and where objects leave no room, the proxy
-/// is frozen or squeezed and says so: SafeState fades the force, which is along the last normal and
-/// never pulls.
-/// After a frame in which the proxy had to wait for data the force catches up by
-/// kCatchUp_n_per_s, beside what the hand does.
+/// penalty on a distance. Friction, viscosity and a texture (texture.hpp) say where along the
+/// surface the proxy comes to rest, so all that they do is stretch that spring. Without a certified
+/// surface, and where objects leave no room, the proxy is frozen or squeezed and says so: SafeState
+/// fades the force, which is along the last normal and never pulls. After a frame in which the
+/// proxy had to wait for data the force catches up by kCatchUp_n_per_s, beside what the hand does.
+///
+/// A fast hand asks for more triangles than fit in a list. The proxy goes as far as those that are
+/// listed prove, then on from there with another list of the same frame, kListsPerFrame at most.
+///
+/// What it looks at is bounded by Budgets::planes. Where they are used up it stays, `under_way`,
+/// and goes on in the next frame.
 ///
 /// A tool without a radius is a ball of kPointSkin quanta.
 ///
-/// Haptic thread. Cost: a list of the triangles in reach once a frame, 2 to 6 steps as a rule and
+/// Haptic thread. Cost: a list of the triangles in reach once a frame as a rule, 2 to 6 steps and
 /// kProxySteps at most, each of a few passes over the list.
 class Proxy
 {
 public:
+    static constexpr std::uint32_t kListsPerFrame = 4;
+
     Proxy() noexcept = default;
     explicit Proxy(ToolSpec spec) noexcept TACTUS_NONBLOCKING;
 
@@ -70,9 +78,21 @@ public:
     void forget(std::uint32_t object) noexcept TACTUS_NONBLOCKING;
 
     /// Moves towards the goal and returns the force. `surfaces` were queried at position_m(); from
-    /// everything else it is at least `clear_m` away there.
-    [[nodiscard]] ToolOutput respond(const ToolGoal& goal, std::span<const PlacedSurface> surfaces,
-                                     double clear_m) noexcept TACTUS_NONBLOCKING;
+    /// everything else it is at least `clear_m` away there. `planes` are what is left of
+    /// Budgets::planes: with none left it stays where it has come to, and feels what touches there.
+    [[nodiscard]] ToolOutput
+    respond(const ToolGoal& goal, std::span<const PlacedSurface> surfaces, double clear_m,
+            std::uint32_t planes = Vicinity::kUnlimited) noexcept TACTUS_NONBLOCKING;
+    /// Of them, after respond().
+    [[nodiscard]] std::uint32_t planes_left() const noexcept { return planes_left_; }
+    /// It came to the end of a list that room or budget had cut short: from where it is now, with
+    /// surfaces that are asked for there, it would go on.
+    [[nodiscard]] bool goes_on() const noexcept { return goes_on_; }
+    /// How far it came by the last respond(), at most.
+    [[nodiscard]] double went_m() const noexcept { return (position_ - anchor_).norm(); }
+    /// The next respond() is of the same frame; its force takes the place of the last one's.
+    /// Where it is frozen it changes nothing.
+    void go_on() noexcept { is_on_ = true; }
 
 private:
     static constexpr std::uint32_t kNoObject = 0xFFFF'FFFFU;
@@ -83,7 +103,8 @@ private:
         ran_out,   ///< More triangles are near than fit: those that don't may be here.
         held_back, ///< The certified ball ends here.
         out_of_steps,
-        squeezed, ///< No place near is free.
+        out_of_planes, ///< Nothing more may be looked at.
+        squeezed,      ///< No place near is free.
     };
 
     /// What the surfaces do at one place. Sums are over the planes that touch, each by how deep the
@@ -91,7 +112,6 @@ private:
     struct Hold
     {
         Vec3 motion{0.0, 0.0, 0.0}; ///< As far as planes and friction let it go.
-        Vec3 slip{0.0, 0.0, 0.0};   ///< As far as those planes let it go that touch.
         Vec3 push_n{0.0, 0.0, 0.0}; ///< Of the planes.
         Vec3 drag_n{0.0, 0.0, 0.0}; ///< Of friction.
         double depth_m{0.0};
@@ -99,26 +119,40 @@ private:
         double static_m{0.0};
         double dynamic_m{0.0};
         double damping{0.0};
+        double viscosity{0.0};
+        Vec3 bump_m{0.0, 0.0, 0.0};   ///< What textures move the proxy along by.
+        double stiffening{0.0};       ///< By textures, likewise a sum.
         Vec3 velocity{0.0, 0.0, 0.0}; ///< The objects'.
         double deepest_m{0.0};
         std::uint32_t object{kNoObject}; ///< Whose plane that is.
         bool touches{false};
+        bool rubs{false};        ///< Something holds it back along the surface.
+        bool has_texture{false}; ///< One that presses is bumpy.
         bool is_squeezed{false};
     };
+
+    struct Touch;
 
     [[nodiscard]] double find_radius(std::span<const PlacedSurface> surfaces) const noexcept;
     [[nodiscard]] double free_travel(std::span<const PlacedSurface> surfaces,
                                      double clear_m) const noexcept;
     [[nodiscard]] bool is_short_of(std::span<const PlacedSurface> surfaces,
                                    double travel) const noexcept;
+    [[nodiscard]] bool is_worth_going_on(Motion motion,
+                                         std::span<const PlacedSurface> surfaces) const noexcept;
     [[nodiscard]] Motion follow(const Vec3& goal, double travel,
                                 std::span<const PlacedSurface> surfaces) noexcept;
     [[nodiscard]] Motion follow_among(Vicinity& near, std::span<const PlacedSurface> surfaces,
                                       const Vec3& goal, double travel) noexcept;
+    void begin_frame() noexcept;
     void go_straight_on(const Vec3& goal, double clear) noexcept;
     [[nodiscard]] Hold hold_at(Vicinity& near, std::span<const PlacedSurface> surfaces,
-                               const Vec3& wanted, double gap_m) noexcept;
+                               const Vec3& wanted) noexcept;
+    [[nodiscard]] Touch feel_at(Vicinity& near, std::span<const PlacedSurface> surfaces,
+                                const Vec3& wanted, double gap_m) noexcept;
     void press(Hold& hold, const PlacedSurface& placed, const Vec3& depth) const noexcept;
+    void press_into_texture(Hold& hold, const PlacedSurface& placed, const Vec3& pressed,
+                            double share) const noexcept;
     [[nodiscard]] Vec3 go_to_contact(Vicinity& near, const Vec3& wanted,
                                      const Vec3& motion) const noexcept;
     [[nodiscard]] Vec3 rub(Hold& hold, const Vec3& slip) noexcept;
@@ -139,13 +173,22 @@ private:
     StaticVector<std::uint32_t, 3> held_by_; ///< The faces, at the last stand of this frame.
     Hold hold_;
     CatchUp catch_up_;
-    bool waits_{false}; ///< Frozen, squeezed or held back in the last frame.
+    CatchUp catch_up_before_; ///< As the frame found it, and
+    bool has_waited_{false};  ///< the same of
+    bool waits_{false};       ///< frozen, squeezed, held back or cut short in the last frame.
+    bool is_on_{false};       ///< A further list of the same frame.
+    bool goes_on_{false};
+    std::uint32_t lists_{0}; ///< Of this frame, as are
+    std::uint32_t steps_{0}; ///< these.
+    std::uint32_t planes_left_{0};
     bool in_contact_{false};
-    bool slides_{false};   ///< From the last frame on: the dynamic cone holds.
-    bool has_slid_{false}; ///< In this frame.
+    bool slides_{false};    ///< From the last frame on: the dynamic cone holds.
+    bool has_slid_{false};  ///< In this frame.
+    double rubbed_m_{0.0};  ///< How far it went in touch, in this frame,
+    double elapsed_s_{0.0}; ///< and the frame's time.
     bool was_overrun_{false};
     bool is_crowded_{false};
-    StaticVector<Vec3, kProxySteps + 2> path_;
+    StaticVector<Vec3, kProxySteps + kListsPerFrame + 1> path_;
 };
 
 } // namespace tactus

@@ -22,6 +22,9 @@ constexpr double kSameDirection = 0.999;
 /// Motions below this share of the radius are none where friction holds: 0.2 um of 2 mm.
 constexpr double kLeastMotion = 1e-4;
 
+/// Of a way's stretch: more is as good as sticking, and would leave the range of what is computed.
+constexpr double kMostViscous = 1e6;
+
 /// After a longer step than this share of the radius other planes hold.
 constexpr double kLongMotion = 0.25;
 
@@ -77,6 +80,7 @@ RigidProxy::RigidProxy(const ToolSpec& spec, Planes& planes) noexcept
 void RigidProxy::see(const ToolGoal& goal) noexcept
 {
     frame_ = {force_, torque_, frozen_s_};
+    gone_ = Motion<6>::Zero();
     is_on_ = false;
     if (!is_joined_)
     {
@@ -189,7 +193,9 @@ void RigidProxy::step(const ToolGoal& goal, std::span<const PlacedSurface> surfa
     output.in_contact = !found.pushes.empty();
     add_forces(goal, found, output);
     keep_holds(found, surfaces);
+    const double way_m = way_of(found.motion).length_m();
     advance(goal, found, room);
+    output.lag_m = goes_on_ ? std::max(0.0, way_m - went_m_) : 0.0;
 }
 
 /// What sticks stays to the last bit, or it would creep.
@@ -204,6 +210,7 @@ void RigidProxy::advance(const ToolGoal& goal, const BodyMotion& found,
     }
     const double share = room.share_of(way);
     went_m_ = share * length_m;
+    gone_ += share * found.motion;
     goes_on_ = share > 0.0 &&
                (share < 1.0 || (!found.pushes.empty() && length_m > kLongMotion * radius_m_));
     if (found.pushes.empty() && share == 1.0)
@@ -268,7 +275,7 @@ void RigidProxy::catch_up(bool has_waited, double elapsed_s, ToolOutput& output)
 
 void RigidProxy::gather(const ToolGoal& goal, std::span<const PlacedSurface> surfaces) noexcept
 {
-    planes_->begin(place_.translation_m, arm_m_, size_m_, radius_m_);
+    planes_->begin(place_.translation_m, arm_m_, size_m_, radius_m_, gone_);
     for (std::uint32_t i = 0; i < surfaces.size(); ++i)
     {
         const TouchReport& touches = *surfaces[i].touches;
@@ -305,7 +312,10 @@ void RigidProxy::add(const BodyTouch& touch, const PlacedSurface& placed, double
     grip.damping_n_s_per_m = material.damping_n_s_per_m;
     grip.velocity_m_per_s = memory.velocity_m_per_s +
                             memory.spin_rad_per_s.cross(touch.on_surface_m - place_.translation_m);
-    grip.way_m = is_on_ ? Vec3(0.0, 0.0, 0.0) : Vec3(elapsed_s * grip.velocity_m_per_s);
+    grip.viscous =
+        std::min(material.viscosity_n_s_per_m / (grip.stiffness_n_per_m * elapsed_s), kMostViscous);
+    grip.frame_way_m = elapsed_s * grip.velocity_m_per_s;
+    grip.way_m = is_on_ ? Vec3(0.0, 0.0, 0.0) : grip.frame_way_m;
     planes_->add(touch, grip);
 }
 

@@ -37,7 +37,9 @@ namespace tactus
 /// stiffness of tool and object; the torque is theirs about the device's position. So they never
 /// pull, are zero where no plane holds, and a proxy that lags behind the hand drags at nothing. At
 /// rest they are the stiffness x (proxy - hand), and the angular stiffness x the turn between them.
-/// An object's damping acts across its surface, where it is touched.
+/// An object's damping acts across its surface, where it is touched, its viscosity along it. Its
+/// texture a body doesn't feel: which of its contacts bear changes from frame to frame, and with
+/// them the energy of the bumps would.
 ///
 /// Where it sticks, the proxy does not move by a bit. Objects that move take along what sticks to
 /// them, and push what is in their way, in its next step.
@@ -151,6 +153,7 @@ private:
     bool goes_on_{false};
     bool is_on_{false}; ///< The step is not the frame's first.
     double went_m_{0.0};
+    Motion<6> gone_{Motion<6>::Zero()}; ///< In this frame.
     double frozen_s_{0.0};
     CatchUp force_;
     CatchUp torque_;

@@ -19,7 +19,7 @@ constexpr FrameFault kSampleFaults =
     FrameFault::tool_invalid | FrameFault::tool_stuck | FrameFault::tool_jumped;
 
 /// While nothing else is wrong the frame's force is that of a proxy held where it is.
-constexpr ForceOff kHeldProxy = ForceOff::frozen | ForceOff::squeezed;
+constexpr ForceOff kHeldProxy = ForceOff::frozen | ForceOff::squeezed | ForceOff::starved;
 
 bool is_trusted(ForceOff causes) noexcept
 {
@@ -152,7 +152,7 @@ ForceOff SafeState::find_causes(const SafetyInput& input) const noexcept
 {
     const auto when = [](bool is_so, ForceOff cause) { return is_so ? cause : ForceOff::none; };
     return input.causes | when(is_too_fast_, ForceOff::velocity) |
-           when(input.force_was_lost, ForceOff::watchdog) |
+           when(input.force_left < 1.0, ForceOff::watchdog) |
            when(has_fault(input.faults, FrameFault::tool_stuck), ForceOff::stale) |
            when(has_fault(input.faults, FrameFault::tool_invalid | FrameFault::tool_jumped) ||
                     !is_finite(input.force_n) || !is_finite(input.torque_nm),
@@ -165,13 +165,14 @@ ForceOff SafeState::find_causes(const SafetyInput& input) const noexcept
 
 void SafeState::move_gain(const SafetyInput& input, ForceOff causes) noexcept
 {
-    if (input.force_was_lost || !has_sample_)
+    if (!has_sample_)
     {
         gain_ = 0.0;
     }
     else if (causes != ForceOff::none)
     {
-        gain_ = std::max(gain_ - input.elapsed_s / kFadeTime_s, 0.0);
+        const double left = gain_ * input.force_left;
+        gain_ = std::max(std::min(gain_ - input.elapsed_s / kFadeTime_s, left), 0.0);
     }
     else if (gain_ > 0.0 || may_begin(input))
     {

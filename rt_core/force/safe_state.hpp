@@ -12,7 +12,7 @@
 namespace tactus
 {
 
-/// What one tool's device allows; finite and not negative.
+/// What one tool's device allows; finite and not negative, which SafeState asserts.
 struct SafetyLimits
 {
     double speed_max_m_per_s{0.0};     ///< Faster hands get no force.
@@ -38,14 +38,14 @@ struct SafetyInput
     Vec3 force_n{0.0, 0.0, 0.0};      ///< The frame's.
     Vec3 torque_nm{0.0, 0.0, 0.0};    ///< The frame's.
     Vec3 proxy_m{0.0, 0.0, 0.0};      ///< The frame's.
-    double twist_rad{0.0};            ///< Angle between the frame's proxy and the hand.
+    double twist_rad{0.0};            ///< Angle between the frame's proxy and the hand, 0 .. pi.
     Vec3 turned_rad{0.0, 0.0, 0.0};   ///< By the hand about the world's axes, summed up.
     Vec3 turning_rad_per_s{0.0, 0.0, 0.0};
     bool has_turning{false};             ///< False: from turned_rad.
     FrameFault faults{FrameFault::none}; ///< The frame's of this tool: faults_of().
     ForceOff causes{ForceOff::none};     ///< What the caller knows of by itself.
-    bool force_was_lost{false};          ///< The device has dropped the last force: a brake, or its
-                                         ///< own watchdog.
+    double force_left{1.0};              ///< Of the last force, 0 to 1: less than all after a
+                                         ///< brake or the device's own watchdog.
 };
 
 /// What goes to the device.
@@ -85,18 +85,21 @@ struct SafetyOutput
 /// and none at either end, by at most kDampingForceShare of the largest force or torque. Where
 /// nothing was and nothing is felt there is none on the way back.
 ///
-/// A device that has dropped the force by itself has no ramp left to make: the gain is zero at
-/// once. Haptic thread; some 50 ns.
+/// A device that has dropped the force by itself, or some of it, has no ramp left to make of that:
+/// the gain is at once what is left. Haptic thread; some 50 ns.
 class SafeState
 {
 public:
+    /// Of no device: all forces are zero.
     SafeState() noexcept = default;
     explicit SafeState(const SafetyLimits& limits) noexcept;
 
     /// Once a frame, after the force is computed and before it is written.
+    /// - `input.elapsed_s` >= 0 (asserted).
     [[nodiscard]] SafetyOutput step(const SafetyInput& input) noexcept TACTUS_NONBLOCKING;
 
     /// Instead of step() where there is no frame to go by: the last force fades on.
+    /// - `elapsed_s` >= 0; `cause` is not none (asserted).
     [[nodiscard]] SafetyOutput fade(double elapsed_s, ForceOff cause) noexcept TACTUS_NONBLOCKING;
 
     [[nodiscard]] SafetyState state() const noexcept { return state_; }

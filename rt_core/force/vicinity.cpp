@@ -3,7 +3,6 @@
 #include "rt_core/force/vicinity.hpp"
 
 #include "rt_core/base/assert.hpp"
-#include "rt_core/math/infinity.hpp"
 #include "rt_core/math/rounding.hpp"
 #include "rt_core/query/probe.hpp"
 
@@ -28,6 +27,10 @@ constexpr std::size_t kMostBatches =
 
 /// A float's rounding, as a share, and more.
 constexpr double kFloatRounding = 0x1p-22;
+/// A proposed direction is not longer than 1 by more than this share (docs/accuracy.md).
+constexpr double kDirectionRounding = 0x1p-20;
+/// A ball that is deeper in a face than to this share of its radius goes by what double says.
+constexpr double kDeepest = 0x1p-6;
 
 std::uint32_t batches_of(const LocalSurface& surface) noexcept
 {
@@ -77,8 +80,9 @@ double farthest_that_fits(std::span<const PlacedSurface> surfaces) noexcept
 } // namespace
 
 // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): of the batches only the first are set.
-Vicinity::Vicinity(std::span<const PlacedSurface> surfaces, Vec3 center_m, double reach_m) noexcept
-    : surfaces_(surfaces), center_m_(std::move(center_m)), reach_m_(reach_m)
+Vicinity::Vicinity(std::span<const PlacedSurface> surfaces, Vec3 center_m, double reach_m,
+                   std::uint32_t planes) noexcept
+    : surfaces_(surfaces), center_m_(std::move(center_m)), reach_m_(reach_m), planes_left_(planes)
 {
     TACTUS_ASSERT(reach_m >= 0.0);
     const double farthest = farthest_that_fits(surfaces);
@@ -159,10 +163,14 @@ bool Vicinity::has(std::uint32_t face) const noexcept
     return face < size() && face % kPlaneLanes < faces_[face / kPlaneLanes];
 }
 
+const ObjectPose& Vicinity::pose_of(const Part& part) const noexcept
+{
+    return *surfaces_[static_cast<std::size_t>(&part - parts_.begin())].pose;
+}
+
 std::array<float, 3> Vicinity::in_quanta(const Part& part, const Vec3& place) const noexcept
 {
-    const auto index = static_cast<std::size_t>(&part - parts_.begin());
-    const Vec3 at = (surfaces_[index].pose->rotation.transpose() * place) / part.unit_m;
+    const Vec3 at = (pose_of(part).rotation.transpose() * place) / part.unit_m;
     return {static_cast<float>(at.x()), static_cast<float>(at.y()), static_cast<float>(at.z())};
 }
 
@@ -174,7 +182,14 @@ PlaneQuestion Vicinity::question(const Part& part, const Vec3& place) const noex
             {part.stand[0], part.stand[1], part.stand[2]},
             stand_,
             static_cast<float>(drift * (1.0 + kFloatRounding)),
+            0.0F,
             0.0F};
+}
+
+/// What is this high at the stand does not hold back a ball on its way out of others.
+double Vicinity::least_here_m(double radius_m) const noexcept
+{
+    return std::min(radius_m, std::max(clear_m_, kDeepest * radius_m));
 }
 
 /// The batches with faces that a ball of radius `least_m` may enter between here and the place.
@@ -186,9 +201,16 @@ Vicinity::Hits Vicinity::find_below(Part& part, const Vec3& place, double least_
     }
     PlaneQuestion asked = question(part, place);
     asked.least = static_cast<float>(least_m / part.unit_m * (1.0 + kFloatRounding));
+    asked.least_here = asked.least;
+    if (clear_m_ < least_m)
+    {
+        asked.least_here = static_cast<float>(least_here_m(least_m) / part.unit_m);
+    }
     part.last_place = place;
     const Kernels& kernels = *surfaces_[surface_[part.first]].kernels;
-    return {hits_.data(), kernels.planes_below(part.table, asked, hits_.data())};
+    const PlaneCounts counts = kernels.planes_below(part.table, asked, hits_.data());
+    use(counts.looked);
+    return {hits_.data(), counts.hits};
 }
 
 double Vicinity::bound_of_surface(std::uint32_t surface, const Vec3& place) const noexcept
@@ -206,6 +228,7 @@ void Vicinity::stand_at(const Vec3& place, const Vec3& fallback) noexcept
 {
     place_ = place;
     fallback_ = fallback;
+    clear_m_ = kInfinity;
     ++stand_;
     for (Part& part : parts_)
     {
@@ -237,39 +260,55 @@ Vicinity::Plane Vicinity::see(std::uint32_t face, const Vec3& place) const noexc
     return plane;
 }
 
+/// In double, from here.
+bool Vicinity::is_seen(std::uint32_t face) const noexcept
+{
+    const Look& look = looks_[face % kLooks];
+    return look.face == face && look.stand == stand_;
+}
+
 const Vicinity::Plane& Vicinity::look_at(std::uint32_t face) noexcept
 {
     Look& look = looks_[face % kLooks];
-    if (look.face != face || look.stand != stand_)
+    if (!is_seen(face))
     {
+        use(1);
         look = {face, stand_, see(face, place_)};
     }
     return look.plane;
 }
 
-std::size_t Vicinity::list_within(double distance_m, std::span<std::uint32_t> faces) noexcept
+Vicinity::Listed Vicinity::list_within(double distance_m, std::span<std::uint32_t> faces) noexcept
 {
-    std::size_t found = 0;
+    Listed listed;
+    std::uint32_t looks = 0;
+    double clear_m = kInfinity;
     for (Part& part : parts_)
     {
         for (const PlaneHit& hit : find_below(part, place_, distance_m * (1.0 + kFloatRounding)))
         {
-            for (std::uint32_t lanes = hit.lanes; lanes != 0; lanes &= lanes - 1)
+            clear_m = std::min(clear_m, static_cast<double>(hit.low) * part.unit_m);
+            for (std::uint32_t lanes = hit.lanes; lanes != 0 && listed.is_all; lanes &= lanes - 1)
             {
                 const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
                 const std::uint32_t face = (part.first + hit.batch) * kPlaneLanes + lane;
-                if (look_at(face).height_m(place_) <= distance_m)
+                listed.is_all = looks < kMaxTouchLooks;
+                ++looks;
+                if (!listed.is_all || look_at(face).height_m(place_) > distance_m)
                 {
-                    if (found < faces.size())
-                    {
-                        faces[found] = face;
-                    }
-                    ++found;
+                    continue;
+                }
+                listed.is_all = listed.count < faces.size();
+                if (listed.is_all)
+                {
+                    faces[listed.count] = face;
+                    ++listed.count;
                 }
             }
         }
     }
-    return found;
+    clear_m_ = clear_m;
+    return listed;
 }
 
 HalfSpace<3> Vicinity::half_space(std::uint32_t face, double radius_m) noexcept
@@ -307,6 +346,10 @@ std::optional<std::uint32_t> Vicinity::find_entered(const Vec3& motion, double r
                 {
                     continue;
                 }
+                if (is_spent() && !is_seen(face))
+                {
+                    return std::nullopt;
+                }
                 const double height = look_at(face).height_m(place);
                 if (height < deepest || (height == deepest && entered && face < *entered))
                 {
@@ -319,24 +362,62 @@ std::optional<std::uint32_t> Vicinity::find_entered(const Vec3& motion, double r
     return entered;
 }
 
+/// How much of the motion the face's plane in single precision lets a ball go, or a smaller share
+/// of what double would say. `here` and `way` are the stand and the motion as the model has them,
+/// in double: nothing of a way along the face is rounded to one towards it.
+double Vicinity::proven_share(std::uint32_t face, const Vec3& here, const Vec3& way,
+                              double radius_m) const noexcept
+{
+    const std::uint32_t lane = face % kPlaneLanes;
+    const PlaneRows& rows = planes_[face / kPlaneLanes];
+    const Vec3 normal(static_cast<double>(rows.normal[0][lane]),
+                      static_cast<double>(rows.normal[1][lane]),
+                      static_cast<double>(rows.normal[2][lane]));
+    const double offset_m =
+        static_cast<double>(rows.offset[lane]) * parts_[surface_of(face)].unit_m;
+    const double height_m = (normal.dot(here) + offset_m) * (1.0 - kDirectionRounding);
+    const double closing_m = -normal.dot(way);
+    if (closing_m <= 0.0)
+    {
+        return height_m >= least_here_m(radius_m) * (1.0 - 4.0 * kDirectionRounding) ? 1.0 : 0.0;
+    }
+    return std::clamp((height_m - radius_m) / closing_m, 0.0, 1.0);
+}
+
 double Vicinity::free_share(const Vec3& motion, double radius_m) noexcept
 {
     const double least = radius_m * (1.0 - kContactTolerance);
     const Vec3 place = place_ + motion;
     double share = 1.0;
+    std::uint32_t looks = 0;
     for (Part& part : parts_)
     {
+        const Mat3& rotation = pose_of(part).rotation;
+        const Vec3 here = rotation.transpose() * place_;
+        const Vec3 way = rotation.transpose() * motion;
         for (const PlaneHit& hit : find_below(part, place, least))
         {
             for (std::uint32_t lanes = hit.lanes; lanes != 0; lanes &= lanes - 1)
             {
                 const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
-                const Plane& plane = look_at((part.first + hit.batch) * kPlaneLanes + lane);
-                const double here = plane.height_m(place_);
-                const double there = plane.height_m(place);
-                if (there < least && there < here)
+                const std::uint32_t face = (part.first + hit.batch) * kPlaneLanes + lane;
+                const double proven = proven_share(face, here, way, radius_m);
+                if (proven >= share)
                 {
-                    share = std::min(share, std::max(0.0, here - radius_m) / (here - there));
+                    continue;
+                }
+                looks += is_spent() && !is_seen(face) ? 1U : 0U;
+                if (looks > kMaxTouchLooks)
+                {
+                    share = proven;
+                    continue;
+                }
+                const Plane& plane = look_at(face);
+                const double height = plane.height_m(place_);
+                const double there = plane.height_m(place);
+                if (there < least && there < height)
+                {
+                    share = std::min(share, std::max(0.0, height - radius_m) / (height - there));
                 }
             }
         }
@@ -346,14 +427,14 @@ double Vicinity::free_share(const Vec3& motion, double radius_m) noexcept
 
 /// The distance along the way is convex, so the plane from each place lets the ball go no farther
 /// than the face does.
-double Vicinity::share_before(std::uint32_t face, const Vec3& motion,
-                              double radius_m) const noexcept
+double Vicinity::share_before(std::uint32_t face, const Vec3& motion, double radius_m) noexcept
 {
     const double least_step = kLeastStep * radius_m / motion.norm();
     double share = 0.0;
     for (std::uint32_t round = 0; round < kStepRounds; ++round)
     {
         const Vec3 place = place_ + share * motion;
+        use(1);
         const Plane plane = see(face, place);
         const double closing = -plane.normal.dot(motion);
         const double gap = plane.height_m(place) - radius_m;

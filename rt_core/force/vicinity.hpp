@@ -8,7 +8,9 @@
 #include "rt_core/force/placed_surface.hpp"
 #include "rt_core/kernels/kernels.hpp"
 #include "rt_core/limits.hpp"
+#include "rt_core/math/infinity.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -28,15 +30,20 @@ namespace tactus
 /// precision proposes planes and proves that a motion is free (PlaneTable); of what it can't prove
 /// double decides.
 ///
-/// Lengths in metres, in the world; places relative to the centre. Haptic thread. 35 KiB.
+/// What is looked at is counted against an allowance (Budgets::planes). When that is used up the
+/// search for what a motion enters ends, and only what single precision proves is free.
+///
+/// Lengths in metres, in the world; places relative to the centre. Haptic thread. 38 KiB.
 class Vicinity
 {
 public:
+    static constexpr std::uint32_t kUnlimited = 0xFFFF'FFFFU;
+
     /// The triangles of the surfaces, which were queried at `center_m` and outlive it; what isn't
     /// among them is at least `reach_m` from there. Where more are in reach than fit, reach_m() is
-    /// less. Costs 2 ns a triangle.
-    Vicinity(std::span<const PlacedSurface> surfaces, Vec3 center_m,
-             double reach_m) noexcept TACTUS_NONBLOCKING;
+    /// less. `planes` is what it may look at. Costs 2 ns a triangle.
+    Vicinity(std::span<const PlacedSurface> surfaces, Vec3 center_m, double reach_m,
+             std::uint32_t planes = kUnlimited) noexcept TACTUS_NONBLOCKING;
 
     [[nodiscard]] const Vec3& center_m() const noexcept { return center_m_; }
     /// Every triangle that isn't in the list is at least this far from the centre.
@@ -49,6 +56,10 @@ public:
     {
         return surface_[face / kPlaneLanes];
     }
+    /// Counts work that somebody else did among its planes.
+    void use(std::uint32_t planes) noexcept { planes_left_ -= std::min(planes, planes_left_); }
+    [[nodiscard]] std::uint32_t planes_left() const noexcept { return planes_left_; }
+    [[nodiscard]] bool is_spent() const noexcept { return planes_left_ == 0; }
     /// No more than the distance from `place` to any face of a surface; infinite when none is
     /// listed.
     [[nodiscard]] double bound_of_surface(std::uint32_t surface,
@@ -57,27 +68,35 @@ public:
     /// The ball's centre is at `place` now. A place on a face sees it along `fallback` (unit
     /// length).
     void stand_at(const Vec3& place, const Vec3& fallback) noexcept TACTUS_NONBLOCKING;
-    /// How many faces are within this distance of here; `faces` are the first of them, in order, as
-    /// many as have room.
-    [[nodiscard]] std::size_t
-    list_within(double distance_m, std::span<std::uint32_t> faces) noexcept TACTUS_NONBLOCKING;
+    /// Faces within this distance of here, in order; what has no room in `faces` is left out.
+    /// Whatever was looked at before, kMaxTouchLooks faces are. From now on find_entered() knows
+    /// how deep the ball is in faces here.
+    struct Listed
+    {
+        std::size_t count{0};
+        bool is_all{true};
+    };
+    [[nodiscard]] Listed list_within(double distance_m,
+                                     std::span<std::uint32_t> faces) noexcept TACTUS_NONBLOCKING;
     /// The motions from here that keep a ball of this radius on its side of the face; looks at the
     /// face first. 40 ns.
     [[nodiscard]] HalfSpace<3> half_space(std::uint32_t face,
                                           double radius_m) noexcept TACTUS_NONBLOCKING;
     /// Of the faces that a ball of this radius, seen from here, enters on this motion, the one
-    /// that it enters deepest; none when the way is free. `passed` are not looked at. Some 10 ns
-    /// for each batch that is near, and 40 ns for each face that single precision can't tell.
+    /// that it enters deepest; none when the way is free, or the allowance is used up. `passed` are
+    /// not looked at. Some 10 ns for each batch that is near, and 40 ns for each face that single
+    /// precision can't tell.
     [[nodiscard]] std::optional<std::uint32_t>
     find_entered(const Vec3& motion, double radius_m,
                  std::span<const std::uint32_t> passed = {}) noexcept TACTUS_NONBLOCKING;
-    /// How much of the motion, 0 .. 1, is free as far as the planes seen from here say.
+    /// How much of the motion, 0 .. 1, is free as far as the planes seen from here say. Whatever
+    /// was looked at before, no batch is passed over.
     [[nodiscard]] double free_share(const Vec3& motion,
                                     double radius_m) noexcept TACTUS_NONBLOCKING;
     /// How much of the motion, 0 .. 1, a ball of this radius can go before it touches the face: no
     /// more than that, and as a rule less by kLeastStep radii at most.
     [[nodiscard]] double share_before(std::uint32_t face, const Vec3& motion,
-                                      double radius_m) const noexcept TACTUS_NONBLOCKING;
+                                      double radius_m) noexcept TACTUS_NONBLOCKING;
 
 private:
     static constexpr std::uint32_t kLooks = 32;
@@ -111,6 +130,7 @@ private:
 
     void add(const PlacedSurface& placed, double farthest_m) noexcept;
     void add_batch(const PlacedSurface& placed, std::uint32_t batch, PlaneTable& table) noexcept;
+    [[nodiscard]] const ObjectPose& pose_of(const Part& part) const noexcept;
     [[nodiscard]] std::array<float, 3> in_quanta(const Part& part,
                                                  const Vec3& place) const noexcept;
     [[nodiscard]] PlaneQuestion question(const Part& part, const Vec3& place) const noexcept;
@@ -118,7 +138,11 @@ private:
                                   double least_m) noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] const LocalTriangle& triangle(std::uint32_t face) const noexcept;
     [[nodiscard]] Plane see(std::uint32_t face, const Vec3& place) const noexcept;
+    [[nodiscard]] bool is_seen(std::uint32_t face) const noexcept;
     [[nodiscard]] const Plane& look_at(std::uint32_t face) noexcept TACTUS_NONBLOCKING;
+    [[nodiscard]] double least_here_m(double radius_m) const noexcept;
+    [[nodiscard]] double proven_share(std::uint32_t face, const Vec3& here, const Vec3& way,
+                                      double radius_m) const noexcept;
 
     std::span<const PlacedSurface> surfaces_;
     Vec3 center_m_;
@@ -126,6 +150,8 @@ private:
     Vec3 place_{0.0, 0.0, 0.0};
     Vec3 fallback_{0.0, 0.0, 1.0};
     std::uint32_t stand_{1};
+    double clear_m_{kInfinity}; ///< No face is nearer to the stand, as far as list_within() knows.
+    std::uint32_t planes_left_;
     std::uint32_t batches_{0};
     StaticVector<Part, kMaxNear> parts_; ///< Of the surfaces, in their order.
     std::array<PlaneRows, kMaxNearBatches> planes_;

@@ -45,6 +45,12 @@ public:
 
     /// Keeps as many faces for a new owner, or what is not kept for others.
     [[nodiscard]] PoolShare promise(std::uint32_t faces) noexcept { return room_.promise(faces); }
+    /// See PoolRoom::try_promise() and end_promise().
+    [[nodiscard]] bool try_promise(PoolShare& share, std::uint32_t faces) noexcept
+    {
+        return room_.try_promise(share, faces);
+    }
+    void end_promise(PoolShare& share) noexcept { room_.end_promise(share); }
     /// How many more an owner may take.
     [[nodiscard]] std::uint32_t left_for(const PoolShare& share) const noexcept
     {

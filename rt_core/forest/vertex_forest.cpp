@@ -4,6 +4,7 @@
 
 #include "rt_core/base/assert.hpp"
 
+#include <algorithm>
 #include <bit>
 
 namespace tactus
@@ -27,6 +28,7 @@ void lay_out(BlockGeometry& star, const VsplitRecord& record) noexcept
     star.corners[1] = {1, static_cast<std::uint8_t>(2 + record.fan_size), 2, 3, 4, 5, 6, 7};
     star.corners[2] = {2, 1, 3, 4, 5, 6, 7, 8};
     const std::uint32_t fan = ((1U << record.fan_size) - 1U) << 2U;
+    star.vertices = static_cast<std::uint16_t>((1U << (3 + record.fan_size)) - 1);
     star.faces = static_cast<std::uint16_t>(fan | (record.has_face(0) ? 1U : 0U) |
                                             (record.has_face(1) ? 2U : 0U));
 }
@@ -59,15 +61,31 @@ VertexForest::VertexForest(const Arena& arena, FacePool& faces, ModelId owner, s
     , owner_(owner.value)
     , share_(faces.promise(least))
 {
-    if (arena.is_measuring())
+    if (arena.is_measuring() || slots.base.faces.empty())
     {
         return;
     }
-    TACTUS_ASSERT(slots.base.faces.size() == counts.base_faces);
-    TACTUS_ASSERT(tree.root().is_none());
-    TACTUS_ASSERT(faces.left_for(share_) >= counts.base_faces);
-    TACTUS_ASSERT(tree.pool().prims().size() >= faces.capacity());
-    for (std::uint32_t i = 0; i < counts.base_faces; ++i)
+    begin(slots.base);
+    static_cast<void>(enter(counts.base_faces));
+    tree.refit();
+}
+
+void VertexForest::begin(const BaseMesh& base) noexcept
+{
+    TACTUS_ASSERT(base.faces.size() == counts_.base_faces);
+    TACTUS_ASSERT(tree_->root().is_none());
+    TACTUS_ASSERT(active_faces() == 0);
+    TACTUS_ASSERT(pool_->left_for(share_) >= counts_.base_faces);
+    TACTUS_ASSERT(tree_->pool().prims().size() >= pool_->capacity());
+    slots_.base = base;
+    entered_ = 0;
+}
+
+std::uint32_t VertexForest::enter(std::uint32_t most) noexcept
+{
+    const std::uint32_t first = entered_;
+    entered_ += std::min(most, counts_.base_faces - entered_);
+    for (std::uint32_t i = first; i < entered_; ++i)
     {
         const BaseFace& face = slots_.base.faces[i];
         static_cast<void>(add_face({FaceId{i}, face.corners, FaceState::base()}, face.error,
@@ -75,7 +93,24 @@ VertexForest::VertexForest(const Arena& arena, FacePool& faces, ModelId owner, s
                                    {position_of(face.corners[0]), position_of(face.corners[1]),
                                     position_of(face.corners[2])}));
     }
-    tree.refit();
+    return entered_ - first;
+}
+
+std::uint32_t VertexForest::leave(std::uint32_t most) noexcept
+{
+    std::uint32_t left = 0;
+    for (; left < most && active_faces() > 0; ++left)
+    {
+        remove_face(tree_->any_prim());
+    }
+    if (active_faces() == 0)
+    {
+        TACTUS_ASSERT(hash_ == 0);
+        refined_count_ = 0;
+        entered_ = 0;
+        slots_.base = {};
+    }
+    return left;
 }
 
 /// Odd multipliers spread the ids over the word; the finalizer is SplitMix64's.

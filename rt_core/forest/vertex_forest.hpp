@@ -48,10 +48,28 @@ public:
 
     /// The base mesh must be in `slots.base` already and enters the tree, which is empty and the
     /// same owner's, and whose pool has as many prims as `faces` has faces. `least` of these are
-    /// kept for the forest; the base mesh has room. Nothing enters on a `measuring` arena.
+    /// kept for the forest; the base mesh has room. Nothing enters on a `measuring` arena, nor
+    /// where `slots` have no base mesh: that comes by begin().
     VertexForest(const Arena& arena, FacePool& faces, ModelId owner, std::uint32_t least,
                  const ModelCounts& counts, PageSlots slots, PageTable& pages,
                  AbTree& tree) noexcept;
+
+    /// Keeps faces in the pool for a forest that has none and had none kept. False, with nothing
+    /// changed, where the pool has no room.
+    [[nodiscard]] bool try_promise(std::uint32_t faces) noexcept TACTUS_NONBLOCKING
+    {
+        return pool_->try_promise(share_, faces);
+    }
+    /// The forest has no face: nothing is kept for it any more.
+    void end_promise() noexcept TACTUS_NONBLOCKING { pool_->end_promise(share_); }
+    /// The base mesh of a forest without faces: enter() brings it into the tree.
+    void begin(const BaseMesh& base) noexcept TACTUS_NONBLOCKING;
+    /// Up to `most` more of its faces; returns how many. Room for all is kept.
+    [[nodiscard]] std::uint32_t enter(std::uint32_t most) noexcept TACTUS_NONBLOCKING;
+    [[nodiscard]] bool has_entered() const noexcept { return entered_ == counts_.base_faces; }
+    /// The way back, whatever is refined: takes up to `most` faces out and returns how many. Before
+    /// the last one nothing may be split or merged; after it the pages may go.
+    [[nodiscard]] std::uint32_t leave(std::uint32_t most) noexcept TACTUS_NONBLOCKING;
 
     /// Undoes the record's collapse. The record is linked and not refined, and every record it
     /// depends on is refined (see missing_dependency()).
@@ -137,6 +155,7 @@ private:
     std::span<ActiveFace> faces_; ///< All of the pool's.
     std::uint32_t owner_;
     PoolShare share_;
+    std::uint32_t entered_{0}; ///< Faces of the base mesh that are in, or were split.
     std::uint32_t refined_count_{0};
     std::uint32_t active_max_{0};
     std::uint64_t hash_{0};

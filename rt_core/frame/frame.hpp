@@ -7,6 +7,7 @@
 #include "rt_core/base/result.hpp"
 #include "rt_core/frame/awake_pairs.hpp"
 #include "rt_core/frame/frame_setup.hpp"
+#include "rt_core/frame/model_life.hpp"
 #include "rt_core/frame/model_set.hpp"
 #include "rt_core/frame/pair_shedding.hpp"
 #include "rt_core/frame/refinement.hpp"
@@ -33,10 +34,12 @@ namespace tactus
 class Frame
 {
 public:
-    /// Reads headers and base meshes and lays out all pools. Not on the haptic thread.
+    /// Reads headers and base meshes and lays out all pools. Not on the haptic thread. Refused with
+    /// nothing changed, but base_refused: then there is no frame, and the memory is used up. The
+    /// arena's memory outlives the frame.
     [[nodiscard]] static Result<Done, FrameRefusal> start(std::optional<Frame>& frame, Arena& arena,
                                                           const FrameSetup& setup) noexcept;
-    /// Bytes that start() takes from the arena for headers that parse.
+    /// Bytes that start() takes from the arena for headers that parse (asserted).
     [[nodiscard]] static std::size_t required_bytes(const FrameSetup& setup) noexcept;
 
     Frame(const Frame&) = delete;
@@ -45,8 +48,8 @@ public:
     Frame& operator=(Frame&&) = delete;
     ~Frame() = default;
 
-    /// One period. A change that can't be made is refused, counted by its reason, and changes
-    /// nothing. The output is valid until the next run.
+    /// One period, on the haptic thread. A change that can't be made is refused, counted by its
+    /// reason, and changes nothing. The output is valid until the next run.
     [[nodiscard]] FrameOutput run(const FrameInput& input,
                                   StageMark mark = {}) noexcept TACTUS_NONBLOCKING;
 
@@ -55,6 +58,7 @@ public:
     /// result.
     void rehearse() noexcept TACTUS_NONBLOCKING;
 
+    /// In set-up order; there must be such a tool, which nothing checks. Likewise with models.
     [[nodiscard]] const Tool& tool(std::uint32_t index) const noexcept { return tools_[index]; }
     /// The scene's objects by their numbers, as the last frame left them.
     [[nodiscard]] const ObjectTable& objects() const noexcept { return objects_; }
@@ -106,7 +110,8 @@ private:
     void query() noexcept;
     void respond() noexcept;
     [[nodiscard]] ToolOutput respond(std::uint32_t tool) noexcept;
-    [[nodiscard]] ToolOutput step(std::uint32_t tool, double clear_m) noexcept;
+    [[nodiscard]] ToolOutput step(std::uint32_t tool, double clear_m,
+                                  std::uint32_t& planes) noexcept;
     [[nodiscard]] bool try_query_again(std::uint32_t tool) noexcept;
     [[nodiscard]] Budgets walks_left() const noexcept;
     void report() noexcept;
@@ -140,6 +145,8 @@ private:
     RegionRanking ranking_; ///< The last one that was made.
     Refinement refinement_;
     PairShedding shedding_;
+    ModelLife life_;
+    bool has_guests_{false};
 
     std::array<ToolOutput, kMaxTools> tool_outputs_{};
     std::array<PairOutput, kMaxPairs> pair_outputs_{};

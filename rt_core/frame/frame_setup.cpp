@@ -30,10 +30,10 @@ const char* refusal_text(FrameRefusal refusal) noexcept
     return "the frame can't be made";
 }
 
-ModelCapacities pool_capacities(std::span<const ModelSource> models) noexcept
+ModelCapacities pool_capacities(const FrameSetup& setup) noexcept
 {
-    ModelCapacities sum;
-    for (const ModelSource& model : models)
+    ModelCapacities sum = setup.for_guests;
+    for (const ModelSource& model : setup.models)
     {
         sum = sum_of(std::array{sum, model.capacities});
     }
@@ -52,15 +52,17 @@ bool try_take_model(std::optional<Model>& model, Arena& arena, ModelPools& pools
         kept = header_bytes;
     }
     const ModelHeader header = ModelHeader::parse(kept).value();
-    const PageSlots slots = pools.slots.of_model(arena, header.counts());
-    if (!arena.is_measuring() && !parse_base_mesh(source.base, header, slots.base))
+    const bool comes_later = is_guest(setup, id.value);
+    const PageSlots slots =
+        comes_later ? pools.slots.without_base() : pools.slots.of_model(arena, header.counts());
+    if (!comes_later && !arena.is_measuring() && !parse_base_mesh(source.base, header, slots.base))
     {
         return false;
     }
     const Kernels& kernels = setup.kernels != nullptr ? *setup.kernels : best_kernels();
     model.emplace(arena, pools, id, header, slots, source.capacities, kernels);
     model->cache.set_variant(setup.variant);
-    if (setup.static_when_it_fits && model->fits())
+    if (setup.static_when_it_fits && !comes_later && model->fits())
     {
         model->residence = Residence::filling;
     }
@@ -102,7 +104,7 @@ std::optional<FrameRefusal> find_refusal(const FrameSetup& setup) noexcept
     {
         return FrameRefusal::too_many;
     }
-    std::uint64_t faces = 0;
+    std::uint64_t faces = setup.for_guests.faces;
     for (const ModelSource& source : setup.models)
     {
         faces += source.capacities.faces;
@@ -121,7 +123,8 @@ std::optional<FrameRefusal> find_refusal(const FrameSetup& setup) noexcept
     for (const ToolSpec& tool : setup.tools)
     {
         const auto* mesh = std::get_if<MeshCore>(&tool.core);
-        if (mesh != nullptr && mesh->model.value >= setup.models.size())
+        if (mesh != nullptr &&
+            (mesh->model.value >= setup.models.size() || is_guest(setup, mesh->model.value)))
         {
             return FrameRefusal::unknown_model;
         }

@@ -3,6 +3,7 @@
 #include "rt_core/frame/mesh_pair.hpp"
 
 #include "rt_core/limits.hpp"
+#include "rt_core/math/infinity.hpp"
 #include "rt_core/math/rounding.hpp"
 
 #include <algorithm>
@@ -16,8 +17,9 @@ namespace
 /// Faces this near are exact whatever the tool's radius, a share of the tool's: surfaces that slide
 /// along each other part and meet in every frame.
 constexpr double kLeastReach = 0.002;
-/// Beyond the reach is refined by what the tool moves in so many frames, but by no more than the
-/// reach: so long a front is certified without looking.
+/// Beyond the reach is refined by what the tool moves in so many frames, and along a surface by the
+/// way that a contact takes to be refined, but by no more than the reach: so long a front is
+/// certified without looking.
 constexpr double kFramesAhead = 4.0;
 /// The cover for prefetching is looked for once in so many frames.
 constexpr std::uint32_t kCoverFrames = 8;
@@ -64,7 +66,7 @@ CoreCover cover_near(const AbTree& tree, OtherSurface& other, double near_m) noe
 {
     Cover cover;
     SurfaceWalk walk(tree, other);
-    while (walk.next_block(near_m, false) != kNoNode)
+    while (walk.next_block(near_m) != kNoNode)
     {
         cover.add(walk.ball());
     }
@@ -81,16 +83,17 @@ void MeshPair::place(const Outlook& outlook, const MeshCore& core, const Model& 
                      const Model& object_model, const Similarity& tool,
                      const Budgets& budgets) noexcept
 {
-    tool_tree_ = &tool_model.tree;
-    object_tree_ = &object_model.tree;
+    tool_model_ = &tool_model;
+    object_model_ = &object_model;
+    has_moved_on_ = false;
     own_ball_ = {0.5 * core.extent_m, 0.5 * core.extent_m.norm() * kRoundedUp};
     for (std::size_t i = 0; i < kPlaces; ++i)
     {
         Similarity placed = tool;
         placed.translation_m += static_cast<double>(i) * outlook.approach_m();
         placements_[i] = {placed, core.origin_m};
-        objects_[i] = OtherSurface(*object_tree_, placements_[i], budget_of(budgets));
-        tools_[i] = OtherSurface(*tool_tree_, placements_[i].inverse(), budget_of(budgets));
+        objects_[i] = OtherSurface(object_model_->tree, placements_[i], budget_of(budgets));
+        tools_[i] = OtherSurface(tool_model_->tree, placements_[i].inverse(), budget_of(budgets));
         const PlacedCore now(core, placed);
         moved_m_[i] = now.motion_since(cores_[i]);
         cores_[i] = now;
@@ -102,10 +105,11 @@ void MeshPair::place(const Outlook& outlook, const MeshCore& core, const Model& 
 void MeshPair::move(const Similarity& tool, const Budgets& budgets) noexcept
 {
     placements_[0].place = tool;
+    has_moved_on_ = true;
     for (std::size_t i = 0; i < kPlaces; ++i)
     {
-        objects_[i] = OtherSurface(*object_tree_, placements_[i], budget_of(budgets));
-        tools_[i] = OtherSurface(*tool_tree_, placements_[i].inverse(), budget_of(budgets));
+        objects_[i] = OtherSurface(object_model_->tree, placements_[i], budget_of(budgets));
+        tools_[i] = OtherSurface(tool_model_->tree, placements_[i].inverse(), budget_of(budgets));
     }
 }
 
@@ -118,7 +122,7 @@ void MeshPair::rank(const Outlook& outlook, ModelId tool_model, ModelId object_m
     const double near_m = reach_m + kPrefetchAhead * outlook.approach_m().norm();
     if (frames_until_cover_ == 0)
     {
-        cover_ = cover_near(*tool_tree_, objects_[0], near_m / scale);
+        cover_ = cover_near(tool_model_->tree, objects_[0], near_m / scale);
         frames_until_cover_ = kCoverFrames;
     }
     --frames_until_cover_;
@@ -136,25 +140,35 @@ double MeshPair::refine_reach_m(const Outlook& outlook) noexcept
     return std::max(outlook.reach_m(), kLeastReach * outlook.core().radius());
 }
 
+bool MeshPair::goes_along(const Outlook& outlook) noexcept
+{
+    return outlook.is_near_surface() && outlook.approach_m().norm() <= refine_reach_m(outlook);
+}
+
+double MeshPair::ahead_m(std::size_t place, const Outlook& outlook) const noexcept
+{
+    const double way_m = goes_along(outlook) ? outlook.approach_m().norm() : 0.0;
+    return std::min(std::max(kFramesAhead * moved_m_[place], way_m), refine_reach_m(outlook));
+}
+
 RefineQuestion MeshPair::ask_object(std::size_t place, const Outlook& outlook,
                                     RefineMemory& memory) noexcept
 {
     return question({cores_[place].center(), cores_[place].radius()}, refine_reach_m(outlook),
-                    moved_m_[place], tools_[place], memory);
+                    moved_m_[place], ahead_m(place, outlook), tools_[place], memory);
 }
 
 RefineQuestion MeshPair::ask_tool(std::size_t place, const Outlook& outlook) noexcept
 {
     const double scale = placements_[place].place.scale;
     return question(own_ball_, refine_reach_m(outlook) / scale, moved_m_[place] / scale,
-                    objects_[place], tool_memories_[place]);
+                    ahead_m(place, outlook) / scale, objects_[place], tool_memories_[place]);
 }
 
 /// For the faces within `reach_m` of a surface that is in a ball, in that ball's frame.
-RefineQuestion MeshPair::question(const Ball& ball, double reach_m, double moved_m,
+RefineQuestion MeshPair::question(const Ball& ball, double reach_m, double moved_m, double ahead_m,
                                   OtherSurface& surface, RefineMemory& memory) noexcept
 {
-    const double ahead_m = std::min(kFramesAhead * moved_m, reach_m);
     return {ball.center,
             ball.radius + reach_m,
             ball.radius + Outlook::kKeepFactor * (reach_m + ahead_m),
@@ -165,11 +179,29 @@ RefineQuestion MeshPair::question(const Ball& ball, double reach_m, double moved
             ahead_m};
 }
 
-void MeshPair::query(const Outlook& outlook, double contact_m, ContactEnds* ends,
-                     DistanceAnswer& answer, ContactReport& contacts) noexcept
+double MeshPair::certified_m(const RefineMemory& of_object) const noexcept
 {
-    const MeshQuestion question{*tool_tree_,       *object_tree_, placements_[0],
-                                outlook.reach_m(), contact_m,     ends};
+    if (has_moved_on_)
+    {
+        return 0.0;
+    }
+    const auto beyond_m = [](const Model& model, const RefineMemory& memory, double span_m)
+    {
+        return model.is_complete() ? kInfinity
+               : memory.is_known   ? memory.certified_m / kRoundedUp - span_m * kRoundedUp
+                                   : 0.0;
+    };
+    const double object_m = beyond_m(*object_model_, of_object, cores_[0].radius());
+    const double tool_m = beyond_m(*tool_model_, tool_memories_[0], own_ball_.radius);
+    return std::max(0.0, std::min(object_m, tool_m * placements_[0].place.scale / kRoundedUp));
+}
+
+void MeshPair::query(const Outlook& outlook, double certified_m, double contact_m,
+                     ContactEnds* ends, DistanceAnswer& answer, ContactReport& contacts) noexcept
+{
+    const MeshQuestion question{tool_model_->tree, object_model_->tree, placements_[0],
+                                outlook.reach_m(), contact_m,           ends,
+                                certified_m};
     query_meshes(question, objects_[0], memory_, answer, report_, contacts);
     if (answer.nearest_face.is_none())
     {

@@ -39,16 +39,25 @@ public:
               const RegionPredictor& predictor, Prediction prediction,
               RegionRanking& ranking) noexcept TACTUS_NONBLOCKING;
 
+    /// Whether the tool is at a surface and comes no farther than is refined beyond the reach
+    /// there: where it will be needs no questions of its own.
+    [[nodiscard]] static bool goes_along(const Outlook& outlook) noexcept TACTUS_NONBLOCKING;
     /// What a place asks of the object, and of the tool.
     [[nodiscard]] RefineQuestion ask_object(std::size_t place, const Outlook& outlook,
                                             RefineMemory& memory) noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] RefineQuestion ask_tool(std::size_t place,
                                           const Outlook& outlook) noexcept TACTUS_NONBLOCKING;
 
+    /// How far from the other surface this frame's refinement has proven all that is not exact to
+    /// be, by what is known of the first place's questions: `of_object` is the object's. In the
+    /// object's frame; 0 where nothing is.
+    [[nodiscard]] double
+    certified_m(const RefineMemory& of_object) const noexcept TACTUS_NONBLOCKING;
+
     /// In the object's frame; contacts within `contact_m`, none when it is negative. `ends` may be
-    /// null.
-    void query(const Outlook& outlook, double contact_m, ContactEnds* ends, DistanceAnswer& answer,
-               ContactReport& contacts) noexcept TACTUS_NONBLOCKING;
+    /// null, and `certified_m` is as above.
+    void query(const Outlook& outlook, double certified_m, double contact_m, ContactEnds* ends,
+               DistanceAnswer& answer, ContactReport& contacts) noexcept TACTUS_NONBLOCKING;
 
     /// Instead of a query, while the pair is proven to be apart.
     void rest(ContactReport& contacts) noexcept TACTUS_NONBLOCKING;
@@ -60,12 +69,14 @@ public:
 
 private:
     [[nodiscard]] static double refine_reach_m(const Outlook& outlook) noexcept;
+    [[nodiscard]] double ahead_m(std::size_t place, const Outlook& outlook) const noexcept;
     [[nodiscard]] static RefineQuestion question(const Ball& ball, double reach_m, double moved_m,
-                                                 OtherSurface& surface,
+                                                 double ahead_m, OtherSurface& surface,
                                                  RefineMemory& memory) noexcept;
 
-    const AbTree* tool_tree_{nullptr};
-    const AbTree* object_tree_{nullptr};
+    const Model* tool_model_{nullptr};
+    const Model* object_model_{nullptr};
+    bool has_moved_on_{false};                        ///< Since it was refined for the first place.
     std::array<MeshPlacement, kPlaces> placements_{}; ///< Of the tool's model in the object's.
     std::array<PlacedCore, kPlaces> cores_{};
     std::array<double, kPlaces> moved_m_{};       ///< Since the last frame, in the object's frame.

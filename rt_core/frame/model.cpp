@@ -57,6 +57,10 @@ bool brings_all(const ModelCounts& counts, const ModelCapacities& capacities) no
 ModelCapacities kept_for(const ModelHeader& header, const ModelCapacities& capacities) noexcept
 {
     const ModelCounts counts = header.counts();
+    if (capacities.faces == 0)
+    {
+        return {}; // A guest: its room is kept from when it is wanted.
+    }
     if (brings_all(counts, capacities))
     {
         return capacities;
@@ -96,8 +100,11 @@ ModelPools::ModelPools(Arena& arena, const ModelCapacities& all, std::uint32_t m
     : scratch(arena, all.pages)
     , faces(arena, all.faces)
     , tree(arena, tree_part(all))
-    , slots{arena.take<Page>(all.pages), arena.take<IndexPage>(all.index_pages), {}}
-    , cache(arena, all.pages, all.index_pages, models)
+    , slots{arena.take<Page>(all.pages), arena.take<IndexPage>(all.index_pages),
+            BaseMesh{arena.take<Vec3f>(all.base_cells), arena.take<BaseFace>(all.base_cells),
+                     arena.take<std::uint32_t>(all.base_cells)}}
+    , base_room(all.base_cells)
+    , cache(arena, all.pages, all.index_pages, models, all.base_cells > 0 ? models : 0)
     , links(arena, all.pages)
 {
 }
@@ -112,6 +119,7 @@ ModelCapacities sum_of(std::span<const ModelCapacities> each) noexcept
         sum.faces += one.faces;
         sum.blocks += one.blocks;
         sum.nodes += one.nodes;
+        sum.base_cells += one.base_cells;
     }
     return sum;
 }
@@ -133,6 +141,19 @@ std::size_t required_bytes(std::span<const ModelHeader> headers,
     static_cast<void>(arena.take<bool>(headers.size()));
     static_cast<void>(arena.take<ModelOutput>(headers.size()));
     return arena.used() - scratch.used();
+}
+
+ModelCapacities guest_room(std::uint32_t meshes, std::uint32_t cells, std::uint32_t pages,
+                           std::uint32_t index_pages) noexcept
+{
+    ModelCapacities room = with_faces({}, 2 * cells + kMinFaces);
+    // Each tree has its own reserve of blocks, and of nodes half as many and one more.
+    room.blocks += meshes * 2 * AbTree::kReserve;
+    room.nodes += meshes * 3 * AbTree::kReserve;
+    room.pages = pages;
+    room.index_pages = index_pages;
+    room.base_cells = cells;
+    return room;
 }
 
 bool try_plan(std::span<const ModelHeader> headers, std::size_t bytes, std::size_t cache_bytes,
@@ -225,7 +246,109 @@ Model::Model(Arena& arena, ModelPools& shared, ModelId id, const ModelHeader& mo
     , forest(arena, shared.faces, id, kept_for(header, capacities).faces, header.counts(), slots,
              pages, tree)
     , refiner(forest, pages, tree, shared.scratch, header.quantum_m())
+    , is_guest(model_slots.base.faces.empty())
+    , stage(is_guest ? ModelStage::known : ModelStage::resident)
+    , shared_(&shared)
 {
+    if (is_guest)
+    {
+        cache.close();
+    }
+}
+
+bool Model::try_want() noexcept
+{
+    TACTUS_ASSERT(stage == ModelStage::known);
+    const ModelCounts counts = header.counts();
+    const auto first = shared_->base_room.try_take(BaseMesh::cells_of(counts));
+    if (!first)
+    {
+        return false;
+    }
+    const ModelCapacities least = with_faces({}, counts.base_faces);
+    const bool has_faces = forest.try_promise(least.faces);
+    if (!has_faces || !tree.try_promise(tree_part(least)))
+    {
+        if (has_faces)
+        {
+            forest.end_promise();
+        }
+        shared_->base_room.give_back(*first);
+        return false;
+    }
+    first_cell_ = *first;
+    stage = ModelStage::wanted;
+    return true;
+}
+
+void Model::go_on(std::uint32_t& entering, std::uint32_t& leaving, std::uint32_t frame,
+                  WorkCounters& work) noexcept
+{
+    if (stage == ModelStage::leaving)
+    {
+        dissolve(leaving, frame, work);
+    }
+    if (stage == ModelStage::wanted && cache.try_take_cells_back())
+    {
+        end_stay();
+    }
+    if (stage == ModelStage::wanted)
+    {
+        cache.want_base(first_cell_, frame);
+        if (cache.has_base())
+        {
+            slots.base = shared_->slots.base.part(first_cell_, header.counts());
+            forest.begin(slots.base);
+            stage = ModelStage::arriving;
+        }
+    }
+    if (stage == ModelStage::arriving)
+    {
+        entering -= forest.enter(entering);
+        if (forest.has_entered())
+        {
+            cache.open();
+            stage = ModelStage::resident;
+            ++revision; // Whatever answered for it has to look again.
+        }
+    }
+}
+
+void Model::leave() noexcept
+{
+    TACTUS_ASSERT(is_guest);
+    TACTUS_ASSERT(is_here());
+    cache.close();
+    stage = ModelStage::leaving;
+    residence = Residence::partial;
+    is_refined = false;
+    ++revision;
+}
+
+/// Faces, a refit, pages, and then what was kept for it.
+void Model::dissolve(std::uint32_t& leaving, std::uint32_t frame, WorkCounters& work) noexcept
+{
+    if (forest.active_faces() > 0)
+    {
+        leaving -= forest.leave(leaving);
+        return;
+    }
+    if (!cache.try_empty(kLeavingSlotsPerFrame, frame, work))
+    {
+        return;
+    }
+    refiner.forget_all();
+    end_stay();
+}
+
+/// What was kept for it is for others.
+void Model::end_stay() noexcept
+{
+    forest.end_promise();
+    tree.end_promise();
+    shared_->base_room.give_back(first_cell_);
+    slots.base = {};
+    stage = ModelStage::known;
 }
 
 double Model::lead_s(std::int64_t period_ns) const noexcept
@@ -238,7 +361,7 @@ void Model::load(ModelId id, const RegionRanking& ranking, const Budgets& budget
                  std::uint32_t frame, WorkCounters& work, FrameFault& faults) noexcept
 {
     pages_used_max = std::max(pages_used_max, pages.used());
-    if (is_complete())
+    if (is_complete() || !is_here())
     {
         return;
     }
@@ -270,7 +393,7 @@ bool Model::fits() const noexcept
 void Model::begin_refinement(std::span<const RefineRequest> requests, const Budgets& budgets,
                              WorkCounters& work) noexcept
 {
-    if (is_complete() && requests.empty())
+    if (!is_here() || (is_complete() && requests.empty()))
     {
         return;
     }
@@ -319,7 +442,8 @@ ModelOutput Model::output() const noexcept
             {tree.nodes_used(), tree.nodes_used_max(), capacities.nodes},
             forest.refined_records(),
             forest.state_hash(),
-            is_complete()};
+            is_complete(),
+            stage};
 }
 
 void Model::refit(WorkCounters& work, FrameFault& faults) noexcept

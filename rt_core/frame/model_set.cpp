@@ -14,8 +14,13 @@ void ModelSet::add(std::uint32_t frame) noexcept
 
 void ModelSet::wake(ModelId id, std::uint32_t frame) noexcept
 {
+    slots_[id.value].paired_frame = frame;
+    keep_busy(id);
+}
+
+void ModelSet::keep_busy(ModelId id) noexcept
+{
     ModelSlot& slot = slots_[id.value];
-    slot.paired_frame = frame;
     if (!slot.is_busy)
     {
         slot.is_busy = true;

@@ -38,6 +38,7 @@ public:
         return *slots_[id.value].model;
     }
     [[nodiscard]] ModelSlot& slot(ModelId id) noexcept { return slots_[id.value]; }
+    [[nodiscard]] const ModelSlot& slot(ModelId id) const noexcept { return slots_[id.value]; }
 
     /// By their numbers.
     [[nodiscard]] std::span<const ModelId> busy() const noexcept { return busy_.view(); }
@@ -46,6 +47,8 @@ public:
     {
         return busy_[(frame + busy) % busy_.size()];
     }
+    /// It is looked at, whether a pair is of it or not.
+    void keep_busy(ModelId id) noexcept TACTUS_NONBLOCKING;
     /// A pair is of it in this frame.
     void wake(ModelId id, std::uint32_t frame) noexcept TACTUS_NONBLOCKING;
     /// The frame ends: those that no pair was of in it, and that have nothing left to do, rest.

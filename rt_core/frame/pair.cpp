@@ -67,6 +67,9 @@ void keep_within(double radius_m, const DistanceAnswer& answer, ContactReport& r
 /// What lies ahead is looked for this far beyond, a share of the way: once in some two frames.
 constexpr double kWalkedShare = 0.2;
 
+/// More than four roundings of the distance to a box are off.
+constexpr double kBoxRoundedDown = 1.0 - 0x1p-49;
+
 const MeshCore& mesh_core_of(const Tool& tool) noexcept
 {
     const auto* core = std::get_if<MeshCore>(&tool.spec().core);
@@ -92,7 +95,10 @@ PairMemory PairMemory::take(Arena& arena, std::span<const ToolSpec> tools,
 }
 
 Pair::Pair(const PairParts& parts, const PairMemory& memory, std::size_t index) noexcept
-    : parts_(parts), is_joined_(!parts.begins_apart), stood_(parts.object->pose)
+    : parts_(parts)
+    , is_joined_(!parts.begins_apart)
+    , stood_(parts.object->pose)
+    , feel_(parts.object->spec.material)
 {
     const ToolSpec& tool = parts.tool->spec();
     contacts_ = wants_contacts(tool) ? &memory.contacts[index] : nullptr;
@@ -107,6 +113,10 @@ Pair::Pair(const PairParts& parts, const PairMemory& memory, std::size_t index) 
 void Pair::place(const Budgets& budgets, FrameFault& faults) noexcept
 {
     const ToolStance& stance = parts_.tool->stance();
+    is_model_here_ = parts_.model.model->is_here();
+    feels_otherwise_ =
+        feel_.step(parts_.object->spec.material, parts_.tool->spec().stiffness_n_per_m,
+                   static_cast<double>(parts_.rules->period_ns) * 1e-9);
     outlook_.look(parts_.tool->spec(), stance, parts_.object->pose);
     if (!parts_.rules->variant.lets_pairs_rest)
     {
@@ -117,7 +127,7 @@ void Pair::place(const Budgets& budgets, FrameFault& faults) noexcept
         faults |= FrameFault::proxy_squeezed; // An object came as far as to its core.
     }
     find_urgency();
-    if (mesh_ != nullptr)
+    if (mesh_ != nullptr && is_model_here_)
     {
         mesh_->place(outlook_, mesh_core_of(*parts_.tool), *parts_.tool_model.model,
                      *parts_.model.model, in_frame(parts_.object->pose, stance.place), budgets);
@@ -165,7 +175,7 @@ PairMotion Pair::motion() const noexcept
 
 void Pair::rank(RegionRanking& ranking) noexcept
 {
-    if (is_shed_)
+    if (is_shed_ || !is_model_here_)
     {
         return;
     }
@@ -202,6 +212,10 @@ void Pair::ask(RefineRequests& requests) noexcept
 {
     of_object_.questions.clear();
     of_tool_.questions.clear();
+    if (!is_model_here_)
+    {
+        return; // Nothing has been asked yet, or lose_model() has forgotten it.
+    }
     if (mesh_ != nullptr)
     {
         ask_for_mesh();
@@ -255,7 +269,9 @@ void Pair::ask_for_mesh() noexcept
     MeshPair& mesh = *mesh_;
     for (std::size_t place = 0; place < MeshPair::kPlaces; ++place)
     {
-        const bool is_asked = place == 0 ? !outlook_.is_asleep() : outlook_.looks_ahead();
+        const bool is_asked = place == 0
+                                  ? !outlook_.is_asleep()
+                                  : outlook_.looks_ahead() && !MeshPair::goes_along(outlook_);
         ask(is_asked, *parts_.model.model,
             mesh.ask_object(place, outlook_, refine_memories_[place]), of_object_);
         ask(is_asked, *parts_.tool_model.model, mesh.ask_tool(place, outlook_), of_tool_);
@@ -307,7 +323,11 @@ SurfaceRoom Pair::query(const SurfaceRoom& room, const Budgets& budgets, WorkCou
         work.skipped.add(Skip::pairs);
     }
     FrameFault found = FrameFault::none;
-    if (mesh_ != nullptr)
+    if (!is_model_here_)
+    {
+        query_box();
+    }
+    else if (mesh_ != nullptr)
     {
         query_mesh(work, found);
     }
@@ -324,23 +344,35 @@ SurfaceRoom Pair::query(const SurfaceRoom& room, const Budgets& budgets, WorkCou
     lower_m_ = std::max(0.0, surface.answer.lower_m * pose.scale - rounding);
     upper_m_ = surface.answer.upper_m * pose.scale + rounding;
     is_joined_ = is_joined_ || lower_m_ > parts_.tool->radius_m();
-    was_answered_ = found == FrameFault::none;
+    was_answered_ = found == FrameFault::none && is_model_here_;
     answered_revision_ = revision();
     faults |= found;
     return room.after(surface.count);
 }
 
-void Pair::query_again(const SurfaceRoom& room, const Budgets& budgets, WorkCounters& work,
-                       FrameFault& faults) noexcept
+SurfaceRoom Pair::query_again(const SurfaceRoom& room, const Budgets& budgets, WorkCounters& work,
+                              FrameFault& faults) noexcept
 {
     const ToolStance& stance = parts_.tool->stance();
     const ObjectPose& pose = parts_.object->pose;
     outlook_.look(parts_.tool->spec(), stance, pose);
-    if (mesh_ != nullptr)
+    if (mesh_ != nullptr && is_model_here_)
     {
         mesh_->move(in_frame(pose, stance.place), budgets);
     }
-    (void)query(room, budgets, work, faults);
+    if (touches_ != nullptr)
+    {
+        (void)query(room, budgets, work, faults);
+        return room;
+    }
+    const SurfaceRoom own{surface_.triangles.first(surface_.count),
+                          surface_.distances_m.first(surface_.count)};
+    if (own.triangles.size() < room.triangles.size())
+    {
+        return query(room, budgets, work, faults);
+    }
+    (void)query(own, budgets, work, faults);
+    return room;
 }
 
 /// Both only grow.
@@ -353,8 +385,72 @@ std::uint32_t Pair::revision() const noexcept
 /// A pose that a host repeats may grow too old.
 bool Pair::is_unchanged() const noexcept
 {
-    return was_answered_ && !has_moved() && parts_.object->pose.arrival_ns == 0 &&
-           answered_revision_ == revision();
+    return was_answered_ && !has_moved() && !feels_otherwise_ &&
+           parts_.object->pose.arrival_ns == 0 && answered_revision_ == revision();
+}
+
+bool Pair::can_spare_model() const noexcept
+{
+    return mesh_ == nullptr && urgency_.of >= UrgencyClass::later &&
+           gap_to_box().lower_m > outlook_.reach_m();
+}
+
+void Pair::lose_model() noexcept
+{
+    TACTUS_ASSERT(mesh_ == nullptr);
+    TACTUS_ASSERT(of_object_.closure.target.is_none());
+    is_model_here_ = false;
+    for (RefineMemory& memory : refine_memories_)
+    {
+        memory.is_known = false;
+    }
+}
+
+/// All of the surface is in its box, and there is some at each of the box's sides.
+Pair::BoxGap Pair::gap_to_box() const noexcept
+{
+    const ModelHeader& header = parts_.model.model->header;
+    const auto quantum_m = static_cast<double>(header.quantum_m());
+    const auto& extent = header.fields().extent_quanta;
+    const Vec3 center_m = outlook_.core().center();
+    Vec3 outside_m(0.0, 0.0, 0.0);
+    Vec3 farthest_m(0.0, 0.0, 0.0);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        const double here_m = center_m[axis];
+        const double high_m = quantum_m * extent[static_cast<std::size_t>(axis)];
+        outside_m[axis] = std::max({0.0, -here_m, here_m - high_m});
+        farthest_m[axis] = std::max(std::abs(here_m), std::abs(high_m - here_m));
+    }
+    return {std::max(0.0, outside_m.norm() * kBoxRoundedDown - outlook_.core().radius()),
+            farthest_m.norm() / kBoxRoundedDown + outlook_.core().radius()};
+}
+
+void Pair::query_box() noexcept
+{
+    const Vec3 center_m = outlook_.core().center();
+    DistanceAnswer& answer = surface_.answer;
+    if (!outlook_.is_asleep())
+    {
+        const BoxGap gap = gap_to_box();
+        answer.lower_m = gap.lower_m;
+        answer.upper_m = gap.upper_m;
+        answer.kind =
+            answer.lower_m > outlook_.reach_m() ? AnswerKind::decided : AnswerKind::bracket;
+        answer.tool_point_m = center_m;
+        outlook_.remember(answer);
+    }
+    surface_.center_m = center_m;
+    if (contacts_ != nullptr)
+    {
+        contacts_->clear();
+        contacts_->is_complete =
+            answer.lower_m * parts_.object->pose.scale > parts_.tool->spec().radius_m;
+    }
+    if (touches_ != nullptr)
+    {
+        touches_->clear();
+    }
 }
 
 void Pair::query_core(const Budgets& budgets, WorkCounters& work, FrameFault& faults) noexcept
@@ -419,8 +515,10 @@ void Pair::query_mesh(WorkCounters& work, FrameFault& faults) noexcept
         const double contact_m = touches != nullptr    ? outlook_.reach_m()
                                  : tool.wants_contacts ? radius_m
                                                        : -1.0;
-        mesh_->query(outlook_, contact_m, touches != nullptr ? &touches->ends : nullptr, answer,
-                     contacts);
+        const FrameVariant& variant = parts_.rules->variant;
+        const bool is_proven = variant.fixed_radius == 0.0 && variant.tolerance_m == 0.0;
+        mesh_->query(outlook_, is_proven ? mesh_->certified_m(refine_memories_[0]) : 0.0, contact_m,
+                     touches != nullptr ? &touches->ends : nullptr, answer, contacts);
         outlook_.remember(answer);
         if (touches != nullptr)
         {
@@ -453,7 +551,7 @@ double Pair::rounding_m() const noexcept
 
 void Pair::rehearse(const SurfaceRoom& room, const Budgets& budgets) const noexcept
 {
-    if (outlook_.has_known() && !outlook_.is_asleep() && mesh_ == nullptr)
+    if (outlook_.has_known() && !outlook_.is_asleep() && mesh_ == nullptr && is_model_here_)
     {
         WalkBudget budget{budgets.nodes, budgets.triangles};
         QueryMemory memory = query_memory_;
@@ -469,7 +567,7 @@ PlacedSurface Pair::placed() noexcept
     const ObjectPose& pose = parts_.object->pose;
     return {&pose,
             &surface_,
-            &parts_.object->spec.material,
+            &feel_.felt(),
             quantum_m,
             outlook_.reach_m() * pose.scale,
             lower_m_,
@@ -497,6 +595,7 @@ PairOutput Pair::output() const noexcept
             answer.nearest_feature,
             is_shed_,
             is_joined_,
+            feel_.felt().damping_n_s_per_m,
             parts_.tool->spec().wants_contacts ? contacts_ : nullptr,
             mesh_ == nullptr ? nullptr : &mesh_->report()};
 }

@@ -4,6 +4,7 @@
 
 #include "rt_core/base/arena.hpp"
 #include "rt_core/base/realtime.hpp"
+#include "rt_core/force/material_glide.hpp"
 #include "rt_core/frame/mesh_pair.hpp"
 #include "rt_core/frame/model.hpp"
 #include "rt_core/frame/tool.hpp"
@@ -92,7 +93,7 @@ inline constexpr std::size_t kMaxRequests = std::size_t{2} * kMaxPairs;
 using RefineRequests = StaticVector<RefineRequest, kMaxRequests>;
 
 /// One tool and one object: where they are to each other, and what is known of it from frame to
-/// frame. Haptic thread; the functions in the frame's order. 4.6 KiB beside its parts.
+/// frame. Haptic thread; the functions in the frame's order. 4.9 KiB beside its parts.
 class Pair
 {
 public:
@@ -128,13 +129,30 @@ public:
                                     WorkCounters& work,
                                     FrameFault& faults) noexcept TACTUS_NONBLOCKING;
 
-    /// Once more in the same frame, from where the tool has come to; nothing is refined between.
-    void query_again(const SurfaceRoom& room, const Budgets& budgets, WorkCounters& work,
-                     FrameFault& faults) noexcept TACTUS_NONBLOCKING;
+    /// Once more in the same frame, from where the tool has come to; nothing is refined between. A
+    /// proxy's triangles need a room of their own: what it had before, or the one given. Returns
+    /// what is left of that.
+    [[nodiscard]] SurfaceRoom query_again(const SurfaceRoom& room, const Budgets& budgets,
+                                          WorkCounters& work,
+                                          FrameFault& faults) noexcept TACTUS_NONBLOCKING;
 
     /// The last frame's query again, over what it kept; see Frame::rehearse().
     void rehearse(const SurfaceRoom& room,
                   const Budgets& budgets) const noexcept TACTUS_NONBLOCKING;
+
+    /// Whether, in this frame, the object's model isn't resident and its box is in the tool's
+    /// reach: the tool stops there.
+    [[nodiscard]] bool is_wall() const noexcept
+    {
+        return !is_model_here_ && lower_m_ <= parts_.tool->stance().reach_m;
+    }
+
+    /// Whether the object's model may go though the pair is of it: no touch is near, and the tool
+    /// has nothing of its box in reach.
+    [[nodiscard]] bool can_spare_model() const noexcept TACTUS_NONBLOCKING;
+    /// It goes in this frame, and what was open in it has been released: the pair answers from the
+    /// box.
+    void lose_model() noexcept TACTUS_NONBLOCKING;
 
     /// Whether the tool's body knows of the object.
     [[nodiscard]] bool is_joined() const noexcept { return is_joined_; }
@@ -193,6 +211,14 @@ private:
     template <std::size_t Capacity>
     void request(const NamedModel& model, Inquiry<Capacity>& inquiry,
                  RefineRequests& requests) const noexcept;
+    /// Of the tool's core from the model's box, of its frame: nearest and farthest.
+    struct BoxGap
+    {
+        double lower_m{0.0};
+        double upper_m{0.0};
+    };
+    [[nodiscard]] BoxGap gap_to_box() const noexcept TACTUS_NONBLOCKING;
+    void query_box() noexcept TACTUS_NONBLOCKING;
     void query_core(const Budgets& budgets, WorkCounters& work, FrameFault& faults) noexcept;
     void report_core() noexcept;
     void query_mesh(WorkCounters& work, FrameFault& faults) noexcept;
@@ -208,8 +234,11 @@ private:
     Urgency urgency_;
     bool is_shed_{false};
     bool is_joined_{true};
-    ObjectPose stood_; ///< The object's, in the last frame.
+    bool is_model_here_{true}; ///< In this frame.
+    ObjectPose stood_;         ///< The object's, in the last frame.
     ProxyMemory body_;
+    MaterialGlide feel_;
+    bool feels_otherwise_{false};        ///< Than in the last frame.
     bool was_answered_{false};           ///< By the last query, and within its budgets.
     std::uint32_t answered_revision_{0}; ///< Of its models, at that time.
     RegionPredictor predictor_;

@@ -78,15 +78,21 @@ FrameFault Tool::begin(const ToolState& sample, double period_s,
          {
              body.see(goal_);
              body.carry(objects, goal_.elapsed_s);
-             const double most_m = spec_.speed_max_m_per_s * goal_.elapsed_s;
-             stance_.place = body.place();
-             stance_.reach_m =
-                 body.radius_m() * (1.0 + kReachMargin) + std::min(body.way_to_m(goal_), most_m);
+             way_left_m_ = spec_.speed_max_m_per_s * goal_.elapsed_s;
+             stand(body);
          });
     // A mesh in contact is refined ahead by what it moves: see MeshPair.
     const double ahead_s = output_.in_contact && is_mesh(spec_) ? 0.0 : kApproachTime_s;
     stance_.approach_m = ahead_s * goal_.velocity_m_per_s;
     return fault;
+}
+
+/// Where the body is now it looks as far as it may go for the goal.
+void Tool::stand(const auto& body) noexcept
+{
+    stance_.place = body.place();
+    stance_.reach_m =
+        body.radius_m() * (1.0 + kReachMargin) + std::min(body.way_to_m(goal_), way_left_m_);
 }
 
 FrameFault Tool::take(const ToolState& sample) noexcept
@@ -141,6 +147,18 @@ double Tool::near_m() const noexcept
 
 bool Tool::try_go_on(double& clear_m) noexcept
 {
+    if (auto* const proxy = std::get_if<Proxy>(&body_); proxy != nullptr)
+    {
+        way_left_m_ -= proxy->went_m();
+        if (!proxy->goes_on() || way_left_m_ <= 0.0)
+        {
+            return false;
+        }
+        clear_m -= proxy->went_m();
+        proxy->go_on();
+        stand(*proxy);
+        return true;
+    }
     auto* const body = std::get_if<RigidProxy>(&body_);
     if (body == nullptr || !body->goes_on())
     {
@@ -152,8 +170,15 @@ bool Tool::try_go_on(double& clear_m) noexcept
     return true;
 }
 
-ToolOutput Tool::step(std::span<const PlacedSurface> surfaces, double clear_m) noexcept
+ToolOutput Tool::step(std::span<const PlacedSurface> surfaces, double clear_m,
+                      std::uint32_t& planes) noexcept
 {
+    if (auto* const proxy = std::get_if<Proxy>(&body_); proxy != nullptr)
+    {
+        const ToolOutput output = proxy->respond(goal_, surfaces, clear_m, planes);
+        planes = proxy->planes_left();
+        return output;
+    }
     return with(body_, [&](auto& body) { return body.respond(goal_, surfaces, clear_m); });
 }
 

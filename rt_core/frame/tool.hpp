@@ -21,7 +21,7 @@ namespace tactus
 ///
 /// What kind of tool it is, is decided once, by what becomes its body: a point that surfaces hold
 /// back is a Proxy, another core a RigidProxy, a tool that passes through a Follower. Haptic
-/// thread. 2.6 KiB.
+/// thread. 3 KiB.
 class Tool
 {
 public:
@@ -45,17 +45,18 @@ public:
 
     /// The force, from surfaces that were queried at stance(); from everything else its core is at
     /// least `clear_m` away there.
-    [[nodiscard]] ToolOutput respond(std::span<const PlacedSurface> surfaces,
-                                     double clear_m) noexcept TACTUS_NONBLOCKING
+    [[nodiscard]] ToolOutput respond(std::span<const PlacedSurface> surfaces, double clear_m,
+                                     std::uint32_t planes) noexcept TACTUS_NONBLOCKING
     {
-        return finish(step(surfaces, clear_m), clear_m);
+        return finish(step(surfaces, clear_m, planes), clear_m);
     }
 
-    /// The same in steps: try_go_on() says whether a body, from where it came to, would go on. Then
+    /// The same in steps: try_go_on() says whether a tool, from where it came to, would go on. Then
     /// stance() is there, `clear_m` is less by what it went, and the next step() is one more of the
-    /// same frame. finish() ends them, with what the frame began with.
-    [[nodiscard]] ToolOutput step(std::span<const PlacedSurface> surfaces,
-                                  double clear_m) noexcept TACTUS_NONBLOCKING;
+    /// same frame. finish() ends them, with what the frame began with. `planes` are what is left of
+    /// Budgets::planes; a step takes away what it used.
+    [[nodiscard]] ToolOutput step(std::span<const PlacedSurface> surfaces, double clear_m,
+                                  std::uint32_t& planes) noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] bool try_go_on(double& clear_m) noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] ToolOutput finish(ToolOutput output, double clear_m) noexcept TACTUS_NONBLOCKING;
 
@@ -92,6 +93,7 @@ private:
     [[nodiscard]] static Body make_body(const ToolSpec& spec, RigidProxy::Planes* planes) noexcept;
     template <typename Function>
     static auto with(auto& body, const Function& function) noexcept;
+    void stand(const auto& body) noexcept;
     [[nodiscard]] FrameFault take(const ToolState& sample) noexcept;
     [[nodiscard]] bool is_jump(const NearObject& object) const noexcept;
 
@@ -101,7 +103,8 @@ private:
     ToolGoal goal_;
     Body body_;
     ToolStance stance_;
-    ToolOutput output_; ///< The last frame's.
+    double way_left_m_{0.0}; ///< In this frame, by the speed limit.
+    ToolOutput output_;      ///< The last frame's.
     bool is_still_{false};
     std::uint32_t equal_outputs_{0};
     bool lost_object_{false}; ///< In this one, while it was: an object went or jumped.

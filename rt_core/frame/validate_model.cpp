@@ -15,7 +15,19 @@ Flaw find_flaw(const Model& model) noexcept
     Flaw flaw = find_flaw(model.pages, model.header.counts());
     flaw = flaw.is_none() ? find_flaw(model.cache) : flaw;
     flaw = flaw.is_none() ? find_flaw(model.tree) : flaw;
-    return flaw.is_none() ? find_flaw(model.forest) : flaw;
+    if (model.stage == ModelStage::known)
+    {
+        FlawFinder finder;
+        finder.expect(model.forest.active_faces() == 0, "known model", model.pages.owner(),
+                      "has faces");
+        finder.expect(model.tree.blocks_used() + model.tree.nodes_used() == 0, "known model",
+                      model.pages.owner(), "has a tree");
+        finder.expect(model.pages.used() + model.cache.index_pages_used() == 0, "known model",
+                      model.pages.owner(), "has pages");
+        flaw = flaw.is_none() ? finder.first() : flaw;
+    }
+    // What comes or goes is not whole.
+    return flaw.is_none() && model.is_here() ? find_flaw(model.forest) : flaw;
 }
 
 void require_sound(const Model& model) noexcept

@@ -20,7 +20,8 @@ namespace tactus
 /// body's frame and the point back.
 inline constexpr double kSupportError = 1e-15;
 
-/// A convex and closed body, known by its farthest points.
+/// A convex and closed body, known by its farthest points. Lengths have any one unit: metres where
+/// it is a tool's core.
 struct ConvexBody
 {
     /// A point of the body than which none is farther in a direction, relative to `center`: so
@@ -29,17 +30,17 @@ struct ConvexBody
     using Support = Vec3 (*)(const void* context,
                              const Vec3& direction) noexcept TACTUS_NONBLOCKING;
 
-    Support support{nullptr};
-    const void* context{nullptr};
-    Vec3 center{0.0, 0.0, 0.0}; ///< Of the body, and well inside where it has an inside.
-    double radius{0.0};         ///< Of a ball round the centre that holds the body.
+    Support support{nullptr};     ///< Not null; on the haptic thread where the body is a tool's.
+    const void* context{nullptr}; ///< Handed to `support`; outlives the body.
+    Vec3 center{0.0, 0.0, 0.0};   ///< Of the body, and well inside where it has an inside.
+    double radius{0.0};           ///< Of a ball round the centre that holds the body.
 };
 
 enum class HullError : std::uint8_t
 {
     no_vertex,
     too_many_vertices, ///< More than kMaxHullVertices.
-    vertex_not_finite, ///< Or beyond 1e300 in a coordinate.
+    vertex_not_finite, ///< Or beyond kCoordinateRange.
 };
 
 /// The convex hull of vertices, which may be a point, a segment or a polygon; vertices inside of it

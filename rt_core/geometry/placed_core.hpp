@@ -26,7 +26,7 @@ using CoreCorners = StaticVector<Vec3, kMaxHullVertices>;
 
 /// A tool's core in a model's frame, from where distances are measured. What is computed from it
 /// takes its placed coordinates, which are rounded once, for exact. A mesh is here no more than the
-/// oriented box round it. 0.3 KiB.
+/// oriented box round it. 0.2 KiB.
 class PlacedCore
 {
 public:

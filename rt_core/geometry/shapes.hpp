@@ -9,8 +9,8 @@
 namespace tactus
 {
 
-// Shapes that meet triangles, closed and in the triangle's frame. Any of them may be flat: a
-// segment a point, a box a rectangle, a radius zero.
+// Shapes that meet triangles, closed, in the triangle's frame and unit of length. Any of them may
+// be flat: a segment a point, a box a rectangle, a radius zero.
 
 struct Segment
 {
@@ -18,7 +18,8 @@ struct Segment
     Vec3 to{0.0, 0.0, 0.0};
 };
 
-/// Rounded from the nearer end, so that the ends come out as they are.
+/// At `parameter`, 0 .. 1 (asserted), of the way. Rounded from the nearer end, so that the ends
+/// come out as they are.
 [[nodiscard]] inline Vec3 point_at(const Segment& segment, double parameter) noexcept
 {
     TACTUS_ASSERT(parameter >= 0.0);
@@ -36,13 +37,13 @@ struct Box
 struct Sphere
 {
     Vec3 center{0.0, 0.0, 0.0};
-    double radius{0.0};
+    double radius{0.0}; ///< Not negative.
 };
 
 struct Capsule
 {
     Segment core;
-    double radius{0.0};
+    double radius{0.0}; ///< Not negative.
 };
 
 } // namespace tactus

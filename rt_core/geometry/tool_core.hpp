@@ -13,6 +13,7 @@
 namespace tactus
 {
 
+/// The origin of the tool's frame.
 struct PointCore
 {
 };
@@ -28,7 +29,8 @@ struct MeshCore
 
 /// What is left of a tool when its radius is taken off: a tool is everything within its radius of
 /// its core. A sphere is a point with a radius, a capsule a segment with one, a box may have
-/// rounded edges. In the tool's own frame, metres. What a hull or body refers to outlives the tool.
+/// rounded edges. In the tool's own frame, metres; finite, which nothing checks. What a hull or
+/// body refers to outlives the tool.
 using ToolCore = std::variant<PointCore, Segment, Box, Hull, ConvexBody, MeshCore>;
 
 } // namespace tactus

@@ -53,7 +53,7 @@ struct KernelBox
 };
 
 /// The faces of a block, one lane each, with all that bounds the distance of two faces from below.
-/// In quanta, around some point. 960 B.
+/// In quanta, around some point. 1 KiB.
 struct TriangleRows
 {
     // NOLINTBEGIN(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays): kernel_source.inc.
@@ -63,6 +63,7 @@ struct TriangleRows
     float normal[3][16]; ///< Of unit length to rounding, or zero of a face that has none.
     float plane_low[16]; ///< Least and greatest height of the face's own corners along it.
     float plane_high[16];
+    float error[16];             ///< How far the surface that a face stands for may be from it.
     std::uint8_t corners[3][16]; ///< Row of each corner.
     // NOLINTEND(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays)
 };
@@ -122,7 +123,7 @@ struct Frontier
     // NOLINTEND(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays)
 };
 
-/// Blocks whose faces are all exact, looked at together. 3.7 KB on the stack.
+/// Blocks whose faces are all exact, looked at together. 4.2 KB on the stack.
 struct BlockBatch
 {
     static constexpr std::uint32_t kFull = 32; ///< With more it is looked at before it grows.
@@ -187,6 +188,16 @@ struct PlaneQuestion
     std::uint32_t stand_number; ///< Another one for each stand; not 0.
     float drift;                ///< How far the place is from the last question's, or more.
     float least;                ///< Heights below this are asked for.
+    /// Likewise at the stand. Less than `least` where the ball is deep in faces: then a way out of
+    /// them is free that nowhere comes nearer than this.
+    float least_here;
+};
+
+/// What planes_below() found and did.
+struct PlaneCounts
+{
+    std::uint32_t hits;
+    std::uint32_t looked; ///< Batches of which it found planes anew.
 };
 
 /// Faces of a batch that are below.
@@ -211,9 +222,14 @@ inline constexpr std::size_t kBlockFacesAt = 240;
 inline constexpr std::size_t kBlockVerticesAt = 242;
 
 static_assert(sizeof(FaceBounds) == 128);
-static_assert(sizeof(TriangleRows) == 960);
+static_assert(sizeof(TriangleRows) == 1024);
 
-/// The inner loops of query and refit, in one set for each instruction set.
+/// The inner loops of query and refit, in one set for each instruction set. A program chooses a set
+/// (FrameSetup::kernels) and calls none of them.
+///
+/// `boxes` are six rows of eight floats, low x, y, z, high x, y, z; `coordinates` three rows of 16
+/// floats; both in metres. `corners` are three rows of 16 rows' numbers, `gaps` eight floats in
+/// quanta. Bit n of a mask is child, face, vertex or lane n. Nothing is checked.
 ///
 /// They filter, they do not decide: bounds are conservative by a stated margin, and what lies
 /// within it is decided in double precision elsewhere. Every set does the same IEEE operations in
@@ -221,7 +237,7 @@ static_assert(sizeof(TriangleRows) == 960);
 /// a box bound that is zero, but for its sign).
 struct Kernels
 {
-    const char* name;
+    const char* name; ///< As reports call it; static.
 
     /// Lower bounds on the distances to the boxes of a node's eight children: `boxes` is AbNode's
     /// six rows. Returns the children in `mask` whose bound is not above `bound`.
@@ -301,10 +317,10 @@ struct Kernels
     float (*highest_along)(const float* coordinates, std::uint32_t mask, const KernelProbe& probe,
                            const float* way) noexcept TACTUS_NONBLOCKING;
 
-    /// The faces in `mask` that are not proven to be farther than `bound` from a box, along the
-    /// frame's axes and their normals. `box` is low x, y, z, high x, y, z in metres, and `center`
-    /// what the rows are around; `slack` is how far their vertices are off beyond 2^-22 of
-    /// themselves.
+    /// The faces in `mask` that are not proven to be farther than `bound` and their error from a
+    /// box, along the frame's axes and their normals. `box` is low x, y, z, high x, y, z in metres,
+    /// and `center` what the rows are around; `slack` is how far their vertices are off beyond
+    /// 2^-22 of themselves.
     std::uint32_t (*near_rows)(const TriangleRows& rows, const float* box,
                                const KernelProbe& center, std::uint32_t mask, float bound,
                                float slack) noexcept TACTUS_NONBLOCKING;
@@ -316,20 +332,20 @@ struct Kernels
                                 VertexRows& rows) noexcept TACTUS_NONBLOCKING;
 
     /// For each face in `tool_mask`, the faces in `mask` that are not proven to be farther than
-    /// `bound` from it, along the frame's axes, its own normal and `way`: not longer than 1, from
-    /// the object to the tool, null where none is known. Both rows are around the same point;
-    /// `slack` is as above.
+    /// `bound` and its error from it, along the frame's axes, its own normal and `way`: not longer
+    /// than 1, from the object to the tool, null where none is known. Both rows are around the same
+    /// point; `slack` is as above.
     void (*near_pairs)(const VertexRows& rows, const std::uint8_t* corners, std::uint32_t mask,
                        const TriangleRows& tool, std::uint32_t tool_mask, float bound, float slack,
                        const float* way, std::uint32_t* near) noexcept TACTUS_NONBLOCKING;
 
     /// The faces that a ball of radius `least` may enter on its straight way from the stand to the
     /// place. Planes that are below are found again from the stand first, each once a stand, and
-    /// heights are at the place, or at the stand where that is less. Where the stand was asked
-    /// about before, a face that is not in `hits` has a plane that is not below at either.
-    /// `hits` has room for all batches; returns how many there are, in the batches' order.
-    std::uint32_t (*planes_below)(const PlaneTable& table, const PlaneQuestion& question,
-                                  PlaneHit* hits) noexcept TACTUS_NONBLOCKING;
+    /// heights are at the place, or at the stand where that is below `least_here` and less. Where
+    /// the stand was asked about before, a face that is not in `hits` has a plane that is not below
+    /// at either. `hits` has room for all batches; they are in the batches' order.
+    PlaneCounts (*planes_below)(const PlaneTable& table, const PlaneQuestion& question,
+                                PlaneHit* hits) noexcept TACTUS_NONBLOCKING;
 
     /// The least height of all planes at the question's place; kFarPlane when there is none.
     float (*least_height)(const PlaneTable& table,
@@ -346,8 +362,9 @@ struct Kernels
 };
 
 /// What single precision rounds in the bounds between boxes and between faces, as a share of the
-/// sum of their coordinates around the common point; more than all roundings together.
-inline constexpr float kPairMargin = 0x1p-20F;
+/// sum of their coordinates around the common point; more than all roundings together, which
+/// kernel_pairs.inc counts.
+inline constexpr float kPairMargin = 0x1p-19F;
 
 /// Faces with a larger (longest edge squared / twice the area) are bounded by their edges alone.
 inline constexpr float kThinAspect = 128.0F;
@@ -360,10 +377,11 @@ inline constexpr float kSquareMargin = 0x1p-15F;
 /// cube of the longest edge.
 inline constexpr float kInsideMargin = 0x1p-17F;
 
-/// Runs everywhere.
+/// Runs everywhere. All sets are static.
 [[nodiscard]] const Kernels& portable_kernels() noexcept;
 /// The sets that this processor runs, the fastest last. Looks at the processor: for start-up.
 [[nodiscard]] std::span<const Kernels* const> available_kernels() noexcept;
+/// The fastest; for start-up, too.
 [[nodiscard]] inline const Kernels& best_kernels() noexcept
 {
     return *available_kernels().back();

@@ -7,11 +7,12 @@
 #include <cmath>
 #include <numbers>
 
+// Any thread: values, and functions of their arguments alone; no call waits or allocates.
 namespace tactus
 {
 
-/// Of a number that is not negative; right to some 1e-16. By IEEE operations alone: libm's differ
-/// between platforms.
+/// In rad, of a number that is not negative (asserted); right to some 1e-16. By IEEE operations
+/// alone: libm's differ between platforms.
 [[nodiscard]] inline double arc_tangent(double t) noexcept
 {
     TACTUS_ASSERT(t >= 0.0);

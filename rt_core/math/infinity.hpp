@@ -4,6 +4,7 @@
 
 #include <limits>
 
+// Any thread: a constant.
 namespace tactus
 {
 

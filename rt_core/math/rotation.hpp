@@ -40,7 +40,8 @@ inline constexpr double kOrthonormalRounding = 1e-9;
     return is_orthonormal(matrix, tolerance) && matrix.determinant() > 0.0;
 }
 
-/// Orthonormal to rounding; an axis that is so already keeps its bits.
+/// Orthonormal to rounding; an axis that is so already keeps its bits. The first two columns are
+/// not zero (asserted of the first) nor parallel.
 [[nodiscard]] inline Mat3 orthonormalised(const Mat3& matrix) noexcept
 {
     TACTUS_ASSERT(matrix.col(0).squaredNorm() > 0.0);
@@ -63,7 +64,7 @@ using Quaternion = std::array<double, 4>;
     return std::abs(std::sqrt(square) - 1.0) <= tolerance; // So that NaN is not.
 }
 
-/// Its length is divided out; it is not zero.
+/// Its length is divided out; it is not zero, which nothing checks.
 [[nodiscard]] inline Mat3 to_rotation(const Quaternion& quaternion) noexcept
 {
     const auto [x, y, z, w] = quaternion;
@@ -75,7 +76,7 @@ using Quaternion = std::array<double, 4>;
     return rotation;
 }
 
-/// Of a rotation that is orthonormal to rounding; its sign is either.
+/// Of a rotation that is orthonormal to rounding (asserted); its sign is either.
 [[nodiscard]] inline Quaternion to_quaternion(const Mat3& rotation) noexcept
 {
     TACTUS_ASSERT(is_orthonormal(rotation, kOrthonormalRounding));
@@ -83,7 +84,7 @@ using Quaternion = std::array<double, 4>;
     return {turn.x(), turn.y(), turn.z(), turn.w()};
 }
 
-/// Axis times angle, 0 .. pi, of a rotation that is orthonormal to rounding.
+/// Axis times angle, 0 .. pi rad, of a rotation that is orthonormal to rounding (asserted).
 [[nodiscard]] inline Vec3 rotation_vector(const Mat3& rotation) noexcept
 {
     TACTUS_ASSERT(is_orthonormal(rotation, kOrthonormalRounding));
@@ -99,8 +100,9 @@ using Quaternion = std::array<double, 4>;
     return way * (angle / sine);
 }
 
-/// Round the axis of `turn` by twice the arc tangent of half its length (Cayley): its length for
-/// a small one, never more. By IEEE operations alone.
+/// Round the axis of `turn`, in rad and in the frame that `rotation` leads to, by twice the arc
+/// tangent of half its length (Cayley): its length for a small one, never more. By IEEE operations
+/// alone. The rotation is orthonormal to rounding (asserted).
 [[nodiscard]] inline Mat3 turned_by(const Vec3& turn, const Mat3& rotation) noexcept
 {
     TACTUS_ASSERT(is_orthonormal(rotation, kOrthonormalRounding));
@@ -116,8 +118,7 @@ using Quaternion = std::array<double, 4>;
     return orthonormalised(result);
 }
 
-/// Round the axis of `turn` by its length, to rounding for lengths up to 0.1 (8e-11 there, by the
-/// 7th power); by IEEE operations alone.
+/// Likewise by its length, to rounding for lengths up to 0.1 (8e-11 there, by the 7th power).
 [[nodiscard]] inline Mat3 turned_exactly_by(const Vec3& turn, const Mat3& rotation) noexcept
 {
     // Twice the tangent of half the angle, which turned_by() takes: t + t^3/12 + t^5/120.

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstdint>
 
+// Any thread: values, and functions of their arguments alone; no call waits or allocates.
 namespace tactus
 {
 

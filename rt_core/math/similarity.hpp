@@ -10,7 +10,7 @@ namespace tactus
 {
 
 /// Where a frame lies in another one: there = translation + scale x rotation x here. Metres; the
-/// rotation is orthonormal to rounding and right-handed, the scale above 0.
+/// rotation is orthonormal to rounding and right-handed, the scale above 0; nothing here checks it.
 struct Similarity
 {
     Mat3 rotation{Mat3::Identity()};
@@ -29,7 +29,8 @@ struct Similarity
     }
 };
 
-/// Where the frame `here` lies in `other`, both in a third one.
+/// Where the frame `here` lies in `other`, both in a third one. The other's scale is above 0
+/// (asserted).
 [[nodiscard]] inline Similarity in_frame(const Similarity& other, const Similarity& here) noexcept
 {
     TACTUS_ASSERT(other.scale > 0.0);

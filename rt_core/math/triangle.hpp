@@ -11,9 +11,11 @@
 #include <cstddef>
 #include <cstdint>
 
+// Any thread: values, and functions of their arguments alone; no call waits or allocates.
 namespace tactus
 {
 
+/// Corners, in any one frame and unit of length.
 using Triangle = std::array<Vec3, 3>;
 static_assert(sizeof(Triangle) == 9 * sizeof(double), "nine coordinates, corner by corner");
 
@@ -34,9 +36,10 @@ enum class TriangleFeature : std::uint8_t
     interior,
 };
 
+/// In the triangle's frame and unit.
 struct ClosestPoint
 {
-    Vec3 point{0.0, 0.0, 0.0};
+    Vec3 point{0.0, 0.0, 0.0}; ///< Of the triangle.
     /// From the query point to `point`, free of the rounding that large coordinates bring.
     Vec3 gap{0.0, 0.0, 0.0};
     double distance_sq{0.0};

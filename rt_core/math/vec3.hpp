@@ -16,7 +16,7 @@ namespace tactus
 #error "Tactus needs EIGEN_DONT_VECTORIZE: Eigen's explicit FMA would change bits between builds."
 #endif
 
-/// Decisions are made in double precision.
+/// Decisions are made in double precision. Made without values they hold any.
 using Vec3 = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3d;
 

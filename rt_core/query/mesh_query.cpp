@@ -199,6 +199,14 @@ public:
         if (is_near)
         {
             search_all();
+            if (needs_coarse())
+            {
+                bound_queued_coarse();
+            }
+            else
+            {
+                leave(question_.certified_m);
+            }
             decide_queued();
             measure_candidates();
         }
@@ -311,6 +319,13 @@ private:
         const double nearest_m = bound_m_ > 0.0 ? bound_m_ + doubt_m_ : -1.0;
         return std::min(worth_m(), std::max(kept_contact_m(), nearest_m));
     }
+    /// Whether coarse faces may be near enough to change something; where they aren't they never
+    /// will be, as what matters never grows.
+    [[nodiscard]] bool needs_coarse() const noexcept
+    {
+        const double matters_m = aim_ == Aim::meeting ? 0.0 : std::max(worth_m(), bound_m_);
+        return !(question_.certified_m > matters_m * kRoundedUp);
+    }
     /// Something was not looked at that is at least this far away.
     void leave(double gap_m) noexcept { open_m_ = std::min(open_m_, gap_m); }
     [[nodiscard]] bool is_enough() const noexcept { return found_ >= enough_; }
@@ -349,6 +364,9 @@ private:
         remembered_.object = TreeRef::to_block(pair.block);
         remembered_.object_box = AabbVolume::of_vertices(
             question_.object.kernels(), block.coordinates.front().data(), block.vertices);
+        const float error = largest_error_quanta(question_.object.side(pair.block));
+        remembered_.object_box =
+            remembered_.object_box.inflated(error * question_.object.quantum_m());
         test_blocks(remembered_);
         decide_queued();
     }
@@ -358,8 +376,8 @@ private:
         PairWalk walk(question_.tool, question_.object, views_, budget_);
         while (!is_enough() && !has_stopped_)
         {
-            const PairWalk::Item* near =
-                walk.next_blocks(bound_quanta(worth_m()), way_number_ != 0 ? &way_ : nullptr);
+            const PairWalk::Item* near = walk.next_blocks(
+                {bound_quanta(worth_m()), way_number_ != 0 ? &way_ : nullptr, !needs_coarse()});
             if (near == nullptr)
             {
                 break;
@@ -398,30 +416,39 @@ private:
         const Kernels& kernels = question_.object.kernels();
         const PlacedBlock& tool = placed_.get(pair.tool_block);
         const BlockSide& side = question_.object.side(pair.block);
-        if (!budget_.take_triangles(static_cast<std::uint32_t>(std::popcount(tool.faces))))
+        const bool takes_coarse = needs_coarse();
+        std::uint32_t tool_lanes = takes_coarse ? tool.faces : tool.faces & ~tool.coarse;
+        if (!budget_.take_triangles(static_cast<std::uint32_t>(std::popcount(tool_lanes))))
         {
             stop_at(item);
             return;
         }
-        const float bound = bound_of(tool, side);
+        // Errors are in the box, and not in the block.
+        const float box_bound = bound_of(tool, side, takes_coarse);
+        const float bound =
+            takes_coarse ? (box_bound + largest_error_quanta(side)) * kSumRoundedUp : box_bound;
+        const auto with_error = [&tool, bound](std::uint32_t lanes)
+        { return (bound + tool.largest_error(lanes)) * kSumRoundedUp; };
         const BlockGeometry& block = question_.object.block(pair.block);
         const Aabb& object_box = item.object_box;
-        if (way_number_ != 0 && are_parted_along_way(tool, object_box, block, bound))
+        if (way_number_ != 0 &&
+            are_parted_along_way(tool, object_box, block, with_error(tool_lanes)))
         {
             return;
         }
         const std::array<float, 6> box{object_box.low[0],  object_box.low[1],  object_box.low[2],
                                        object_box.high[0], object_box.high[1], object_box.high[2]};
-        std::uint32_t tool_lanes = kernels.near_rows(tool.rows, box.data(), tool.box.center,
-                                                     tool.faces, bound, tool.slack());
+        tool_lanes = kernels.near_rows(tool.rows, box.data(), tool.box.center, tool_lanes,
+                                       box_bound, tool.slack());
         if (tool_lanes == 0)
         {
             return;
         }
         const std::uint8_t* corners = block.corners.front().data();
         VertexRows rows; // NOLINT(cppcoreguidelines-pro-type-member-init): the kernel fills it.
-        const std::uint32_t lanes = kernels.near_block(block.coordinates.front().data(), corners,
-                                                       tool.box, block.faces, bound, rows);
+        const std::uint32_t lanes = kernels.near_block(
+            block.coordinates.front().data(), corners, tool.box,
+            takes_coarse ? block.faces : block.faces & ~side.coarse, with_error(tool_lanes), rows);
         if (lanes == 0)
         {
             return;
@@ -440,15 +467,13 @@ private:
                     stop_at(item);
                     break;
                 }
-                if (((tool.coarse >> pair.tool_lane | side.coarse >> pair.lane) & 1U) != 0)
+                const bool is_coarse =
+                    ((tool.coarse >> pair.tool_lane | side.coarse >> pair.lane) & 1U) != 0;
+                FacePairQueue& queue = is_coarse ? coarse_queue_ : queue_;
+                queue.add(pair, tool, block, rows, views_.slack());
+                if (queue.is_full())
                 {
-                    test_coarse(pair);
-                    continue;
-                }
-                queue_.add(pair, tool, block, rows, views_.slack());
-                if (queue_.is_full())
-                {
-                    decide_queued();
+                    is_coarse ? bound_queued_coarse() : decide_queued();
                 }
             }
         }
@@ -475,26 +500,45 @@ private:
                             block.coordinates.front().data(), block.vertices, center, way_.data());
     }
 
-    /// In quanta, what pairs of faces of two blocks have to be within.
-    [[nodiscard]] float bound_of(const PlacedBlock& tool, const BlockSide& side) const noexcept
+    /// In quanta, what pairs of faces of two blocks have to be within, errors taken off.
+    [[nodiscard]] float bound_of(const PlacedBlock& tool, const BlockSide& side,
+                                 bool takes_coarse) const noexcept
     {
-        if ((tool.coarse | side.coarse) == 0)
-        {
-            return bound_quanta(std::max(measured_m(), 0.0));
-        }
-        const double error_m = static_cast<double>(largest_error_quanta(side)) * quantum_m_;
-        return bound_quanta(worth_m() + tool.largest_error_m + error_m);
+        const bool has_coarse = takes_coarse && (tool.coarse | side.coarse) != 0;
+        return bound_quanta(has_coarse ? worth_m() : std::max(measured_m(), 0.0));
     }
 
-    void test_coarse(const FacePair& pair) noexcept
+    /// Of queued pairs of which a face is coarse: those that may lower a bound, in double
+    /// precision.
+    void bound_queued_coarse() noexcept
     {
-        const MeshFace tool = tool_face(pair);
-        const MeshFace face = object_face(pair);
-        const double lower = box_gap_m(tool, face) - tool.error_m - face.error_m;
-        if (lower <= worth_m() && lower < open_m_)
+        const std::uint32_t count = coarse_queue_.size();
+        if (count == 0)
         {
-            bound_by_coarse(tool, face);
+            return;
         }
+        question_.object.kernels().pair_distances(coarse_queue_.rows(), count, distances_);
+        for (std::uint32_t lane = 0; lane < count; ++lane)
+        {
+            const FacePair& pair = coarse_queue_[lane];
+            const double gap_m = static_cast<double>(distances_.lower[lane]) * quantum_m_;
+            const double lower_m = gap_m - (tool_error_m(pair) + object_error_m(pair)) * kRoundedUp;
+            if (lower_m > worth_m() || (lower_m >= open_m_ && gap_m >= bound_m_))
+            {
+                continue;
+            }
+            const MeshFace tool = tool_face(pair);
+            const MeshFace face = object_face(pair);
+            if (lower_m < open_m_)
+            {
+                leave_coarse(tool, face);
+            }
+            if (gap_m < bound_m_)
+            {
+                bound_by_corners(tool, face);
+            }
+        }
+        coarse_queue_.clear();
     }
 
     /// Signs in single precision, and exactly where they are in doubt.
@@ -607,19 +651,25 @@ private:
         candidates_.clear();
     }
 
+    [[nodiscard]] double tool_error_m(const FacePair& pair) const noexcept
+    {
+        const ErrorCode error = question_.tool.side(pair.tool_block).errors[pair.tool_lane];
+        return static_cast<double>(error_in_quanta(error)) * tool_quantum_m_ * kRoundedUp;
+    }
+    [[nodiscard]] double object_error_m(const FacePair& pair) const noexcept
+    {
+        const ErrorCode error = question_.object.side(pair.block).errors[pair.lane];
+        return static_cast<double>(error_in_quanta(error)) * quantum_m_;
+    }
     [[nodiscard]] MeshFace tool_face(const FacePair& pair) const noexcept
     {
-        const BlockSide& side = question_.tool.side(pair.tool_block);
-        const auto error = static_cast<double>(error_in_quanta(side.errors[pair.tool_lane]));
-        const PrimId prim = side.prims[pair.tool_lane];
-        return {tool_triangle(prim), question_.tool, prim, error * tool_quantum_m_ * kRoundedUp};
+        const PrimId prim = question_.tool.side(pair.tool_block).prims[pair.tool_lane];
+        return {tool_triangle(prim), question_.tool, prim, tool_error_m(pair)};
     }
     [[nodiscard]] MeshFace object_face(const FacePair& pair) const noexcept
     {
-        const BlockSide& side = question_.object.side(pair.block);
-        const auto error = static_cast<double>(error_in_quanta(side.errors[pair.lane]));
-        const PrimId prim = side.prims[pair.lane];
-        return {object_triangle(prim), question_.object, prim, error * quantum_m_};
+        const PrimId prim = question_.object.side(pair.block).prims[pair.lane];
+        return {object_triangle(prim), question_.object, prim, object_error_m(pair)};
     }
 
     /// Contacts that are farther apart change nothing; negative when none does.
@@ -641,12 +691,15 @@ private:
                    : question_.contact_m;
     }
 
-    /// The corners of coarse faces are original vertices.
-    void bound_by_coarse(const MeshFace& tool_face, const MeshFace& face) noexcept
+    void leave_coarse(const MeshFace& tool_face, const MeshFace& face) noexcept
     {
         const ClosestPoints closest = closest_points(tool_face.triangle, face.triangle);
-        open_m_ = std::min(open_m_, closest.distance - closest.distance_error - tool_face.error_m -
-                                        face.error_m);
+        leave(closest.distance - closest.distance_error - tool_face.error_m - face.error_m);
+    }
+
+    /// Those of coarse faces are original vertices.
+    void bound_by_corners(const MeshFace& tool_face, const MeshFace& face) noexcept
+    {
         double nearest_sq = kInfinity;
         for (const Vec3& tool_corner : tool_face.triangle)
         {
@@ -780,7 +833,8 @@ private:
     std::uint32_t found_{0};    ///< Pairs that meet.
     PairWalk::Item remembered_; ///< What was looked at first.
     FacePairQueue queue_;       ///< Exact ones.
-    PairDistances distances_;   ///< Of the queue.
+    FacePairQueue coarse_queue_;
+    PairDistances distances_; ///< Of the queue.
     StaticVector<Candidate, kMaxCandidates> candidates_;
     std::uint32_t way_number_{0};     ///< 0: none was found.
     Vec3f way_{};                     ///< Between the nearest that were found.

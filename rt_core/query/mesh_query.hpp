@@ -22,6 +22,9 @@ struct MeshQuestion
     double contact_m{-1.0}; ///< Pairs of faces this near are contacts; negative: none are wanted.
     /// Of contacts that are little farther than those there is room for, too; null: not wanted.
     ContactEnds* ends{nullptr};
+    /// What is not exact is known to be at least this far from the other's original surface, in the
+    /// object's frame; 0: nothing is known of it.
+    double certified_m{0.0};
 };
 
 /// What a pair of two meshes keeps from one query to the next: the faces that met last, or were the
@@ -42,7 +45,8 @@ struct MeshMemory
 ///
 /// L is the least of (distance - both errors) over pairs of faces of which one is coarse, and of
 /// the distances of exact pairs lowered by the kernel's law; faces meet by an exact decision. The
-/// same pairs are found in whatever state the trees are where all near pairs are exact.
+/// same pairs are found in whatever state the trees are where all near pairs are exact. Coarse
+/// faces are not looked at where the question's `certified_m` is beyond all that matters.
 ///
 /// `object` is the object's surface as the tool's model sees it, with the budget. 30 us where 100
 /// pairs meet and no contacts are asked for.

@@ -17,11 +17,6 @@
 namespace tactus
 {
 
-namespace
-{
-
-} // namespace
-
 MeshPlacement MeshPlacement::inverse() const noexcept
 {
     TACTUS_ASSERT(place.scale > 0.0);
@@ -125,7 +120,7 @@ SurfaceWalk::SurfaceWalk(const AbTree& tree, OtherSurface& other) noexcept
     }
 }
 
-std::uint32_t SurfaceWalk::next_block(double bound_m, bool coarse_only) noexcept
+std::uint32_t SurfaceWalk::next_block(double bound_m) noexcept
 {
     while (!stack_.empty())
     {
@@ -145,18 +140,16 @@ std::uint32_t SurfaceWalk::next_block(double bound_m, bool coarse_only) noexcept
             ball_ = item.ball;
             return item.ref.index();
         }
-        push_children(tree_.node(item.ref.index()), item.gap_m, bound_m, coarse_only);
+        push_children(tree_.node(item.ref.index()), item.gap_m, bound_m);
     }
     return kNoNode;
 }
 
-void SurfaceWalk::push_children(const AbNode& node, double least_m, double bound_m,
-                                bool coarse_only) noexcept
+void SurfaceWalk::push_children(const AbNode& node, double least_m, double bound_m) noexcept
 {
     TACTUS_ASSERT(node.in_use);
-    const std::uint32_t wanted = coarse_only ? node.mask & node.coarse : node.mask;
     const std::size_t first = stack_.size();
-    for (std::uint32_t left = wanted; left != 0; left &= left - 1)
+    for (std::uint32_t left = node.mask; left != 0; left &= left - 1)
     {
         const auto child = static_cast<std::uint32_t>(std::countr_zero(left));
         const Ball ball = ball_round(node.box_of(child));

@@ -51,6 +51,9 @@ public:
     /// ball holds any of what is asked for.
     [[nodiscard]] double upper_bound_m(const Ball& ball) noexcept TACTUS_NONBLOCKING;
 
+    [[nodiscard]] const AbTree& tree() const noexcept { return *other_; }
+    /// Of the frame here in the other's.
+    [[nodiscard]] const MeshPlacement& placement() const noexcept { return there_; }
     [[nodiscard]] WalkBudget& budget() noexcept { return budget_; }
 
 private:
@@ -80,9 +83,8 @@ public:
     SurfaceWalk(const AbTree& tree, OtherSurface& other) noexcept TACTUS_NONBLOCKING;
 
     /// The next block of which something may be within `bound_m`, or kNoNode when there is none or
-    /// the budget is spent. With `coarse_only`, exact subtrees are left out.
-    [[nodiscard]] std::uint32_t next_block(double bound_m,
-                                           bool coarse_only) noexcept TACTUS_NONBLOCKING;
+    /// the budget is spent.
+    [[nodiscard]] std::uint32_t next_block(double bound_m) noexcept TACTUS_NONBLOCKING;
 
     /// Round the block that next_block() gave last.
     [[nodiscard]] const Ball& ball() const noexcept { return ball_; }
@@ -90,8 +92,8 @@ public:
     [[nodiscard]] std::span<const Item> left() const noexcept { return stack_.view(); }
 
 private:
-    void push_children(const AbNode& node, double least_m, double bound_m,
-                       bool coarse_only) noexcept TACTUS_NONBLOCKING;
+    void push_children(const AbNode& node, double least_m,
+                       double bound_m) noexcept TACTUS_NONBLOCKING;
 
     const AbTree& tree_;
     OtherSurface& other_;

@@ -73,25 +73,32 @@ float MeshViews::slack_of(const AbTree& tool, const AbTree& object,
 }
 
 PairWalk::PairWalk(const AbTree& tool, const AbTree& object, const MeshViews& views,
-                   WalkBudget& budget) noexcept
-    : tool_(tool), object_(object), views_(views), budget_(budget)
+                   WalkBudget& budget, const Start& start) noexcept
+    : tool_(tool), object_(object), views_(views), budget_(budget), coarse_only_(start.coarse_only)
 {
     TACTUS_ASSERT(!views.is_beyond_kernels());
     for (Seen& seen : seen_)
     {
         seen.ref = {};
     }
-    if (!tool.root().is_none() && !object.root().is_none())
+    if (!start.tool.is_none() && !object.root().is_none() && is_wanted(start.tool))
     {
-        stack_.push_back({tool.root(), object.root(), tool.box(), object.box(), 0.0F});
+        stack_.push_back({start.tool, object.root(), start.box, object.box(), 0.0F});
     }
 }
 
-const PairWalk::Item* PairWalk::next_blocks(float bound, const Vec3f* way) noexcept
+/// Whether anything below is.
+bool PairWalk::is_wanted(TreeRef tool) const noexcept
+{
+    return !coarse_only_ || (tool.is_block() ? tool_.side(tool.index()).coarse
+                                             : tool_.node(tool.index()).coarse) != 0;
+}
+
+const PairWalk::Item* PairWalk::next_blocks(const Sought& sought) noexcept
 {
     while (!stack_.empty())
     {
-        if (stack_[stack_.size() - 1].gap > bound)
+        if (stack_[stack_.size() - 1].gap > sought.bound)
         {
             stack_.pop_back();
             continue;
@@ -105,7 +112,7 @@ const PairWalk::Item* PairWalk::next_blocks(float bound, const Vec3f* way) noexc
         {
             return &current_;
         }
-        open(current_, bound, way);
+        open(current_, sought);
     }
     return nullptr;
 }
@@ -126,7 +133,7 @@ const KernelBox& PairWalk::seen(const Item& item) noexcept
     return seen.box;
 }
 
-void PairWalk::open(const Item& item, float bound, const Vec3f* way) noexcept
+void PairWalk::open(const Item& item, const Sought& sought) noexcept
 {
     TACTUS_ASSERT(!item.tool.is_block() || !item.object.is_block());
     const bool opens_tool =
@@ -137,11 +144,15 @@ void PairWalk::open(const Item& item, float bound, const Vec3f* way) noexcept
     const KernelBox& other = opens_tool ? views_.of_object().of(item.object_box) : seen(item);
     const float* boxes = node.volumes.low.front().data();
     alignas(32) std::array<float, kNodeChildren> gaps; // NOLINT: the kernel fills it.
-    std::uint32_t near = tree.kernels().box_gaps(boxes, other, node.mask, bound, gaps.data());
-    if (way != nullptr && near != 0)
+    const std::uint32_t wanted = (opens_tool && coarse_only_ ? node.coarse : node.mask) &
+                                 (sought.exact_only ? node.exact : node.mask);
+    std::uint32_t near = tree.kernels().box_gaps(boxes, other, wanted, sought.bound, gaps.data());
+    if (sought.way != nullptr && near != 0)
     {
-        const Vec3f turned = opens_tool ? seen_from_tool(*way, views_.of_tool()) : *way;
-        near = tree.kernels().boxes_along(boxes, other, turned.data(), near, bound, gaps.data());
+        const Vec3f turned =
+            opens_tool ? seen_from_tool(*sought.way, views_.of_tool()) : *sought.way;
+        near = tree.kernels().boxes_along(boxes, other, turned.data(), near, sought.bound,
+                                          gaps.data());
     }
     const std::size_t first = stack_.size();
     for (; near != 0; near &= near - 1)

@@ -56,15 +56,37 @@ public:
         float gap{0.0F}; ///< They are at least this far apart, errors taken off.
     };
 
-    /// Both trees' boxes must be right (AbTree::refit). `views` must not be beyond the kernels.
-    PairWalk(const AbTree& tool, const AbTree& object, const MeshViews& views,
-             WalkBudget& budget) noexcept TACTUS_NONBLOCKING;
+    /// What is walked of the tool.
+    struct Start
+    {
+        TreeRef tool; ///< A block is never looked into: it may be any that is in no tree.
+        Aabb box;     ///< Round it, errors added.
+        bool coarse_only{false}; ///< Exact subtrees are left out.
+    };
 
-    /// The next pair of blocks of which something may be within `bound` quanta; null when there is
-    /// none or the budget is spent. Good until the next call. `way` is one more direction to
-    /// measure along, not longer than 1 and from the object to the tool; null when none is known.
-    [[nodiscard]] const Item* next_blocks(float bound,
-                                          const Vec3f* way) noexcept TACTUS_NONBLOCKING;
+    /// What is looked for next.
+    struct Sought
+    {
+        float bound{0.0F}; ///< In quanta: something of two blocks may be within it.
+        /// One more direction to measure along, not longer than 1 and from the object to the tool;
+        /// null when none is known.
+        const Vec3f* way{nullptr};
+        bool exact_only{false}; ///< Subtrees without an exact face are left out, of both trees.
+    };
+
+    /// Both trees' boxes must be right (AbTree::refit). `views` must not be beyond the kernels.
+    PairWalk(const AbTree& tool, const AbTree& object, const MeshViews& views, WalkBudget& budget,
+             const Start& start) noexcept TACTUS_NONBLOCKING;
+    /// Of all of the tool.
+    PairWalk(const AbTree& tool, const AbTree& object, const MeshViews& views,
+             WalkBudget& budget) noexcept TACTUS_NONBLOCKING
+        : PairWalk(tool, object, views, budget, {tool.root(), tool.box()})
+    {
+    }
+
+    /// The next pair of blocks; null when there is none or the budget is spent. Good until the next
+    /// call.
+    [[nodiscard]] const Item* next_blocks(const Sought& sought) noexcept TACTUS_NONBLOCKING;
 
     /// What was not visited when the budget was spent; empty after a complete walk.
     [[nodiscard]] std::span<const Item> left() const noexcept { return stack_.view(); }
@@ -78,7 +100,8 @@ private:
     };
     static constexpr std::uint32_t kSeen = 32;
 
-    void open(const Item& item, float bound, const Vec3f* way) noexcept TACTUS_NONBLOCKING;
+    [[nodiscard]] bool is_wanted(TreeRef tool) const noexcept TACTUS_NONBLOCKING;
+    void open(const Item& item, const Sought& sought) noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] bool is_tool_larger(const Item& item) const noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] const KernelBox& seen(const Item& item) noexcept TACTUS_NONBLOCKING;
 
@@ -86,6 +109,7 @@ private:
     const AbTree& object_;
     const MeshViews& views_;
     WalkBudget& budget_;
+    bool coarse_only_; ///< Of the tool.
     Item current_;
     std::array<Seen, kSeen> seen_; ///< Asked for last, many times each; at its place modulo kSeen.
     StaticVector<Item, std::size_t{2} * kTreeStack> stack_;

@@ -5,7 +5,9 @@
 #include "rt_core/base/assert.hpp"
 #include "rt_core/math/rounding.hpp"
 
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 
@@ -19,6 +21,16 @@ namespace
 constexpr float kTurnRounding = 0x1p-21F;
 
 } // namespace
+
+float PlacedBlock::largest_error(std::uint32_t lanes) const noexcept
+{
+    float largest = 0.0F;
+    for (std::uint32_t left = coarse & lanes; left != 0; left &= left - 1)
+    {
+        largest = std::max(largest, rows.error[std::countr_zero(left)]);
+    }
+    return largest;
+}
 
 PlacedBlocks::PlacedBlocks(const AbTree& tool, const AbTree& object, const MeshPlacement& place,
                            const MeshViews& views) noexcept
@@ -56,19 +68,48 @@ float PlacedBlocks::lowest_along(const Vec3f& way, std::uint32_t number) noexcep
 
 void PlacedBlocks::put(std::uint32_t index, PlacedBlock& placed) const noexcept
 {
-    const BlockGeometry& block = tool_.block(index);
+    put(tool_.block(index), placed);
+    placed.index = index;
+    const BlockSide& side = tool_.side(index);
+    placed.coarse = side.coarse;
+    const double quanta =
+        static_cast<double>(tool_.quantum_m()) * views_.scale() / object_quantum_m();
+    for (std::uint32_t lanes = side.coarse; lanes != 0; lanes &= lanes - 1)
+    {
+        const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
+        const auto error = static_cast<double>(error_in_quanta(side.errors[lane]));
+        placed.rows.error[lane] = round_up_to_float(error * quanta * kRoundedUp);
+    }
+}
+
+void PlacedBlocks::put_loose(const BlockGeometry& faces, std::uint32_t coarse,
+                             const std::array<double, kBlockFaces>& errors_m) noexcept
+{
+    last_ = 0;
+    PlacedBlock& placed = blocks_[last_];
+    put(faces, placed);
+    placed.index = kNoNode;
+    placed.coarse = coarse;
+    const double quanta_per_m = views_.scale() / object_quantum_m();
+    for (std::uint32_t lanes = coarse; lanes != 0; lanes &= lanes - 1)
+    {
+        const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
+        placed.rows.error[lane] = round_up_to_float(errors_m[lane] * quanta_per_m * kRoundedUp);
+    }
+}
+
+/// All but what it is and the errors of its faces.
+void PlacedBlocks::put(const BlockGeometry& block, PlacedBlock& placed) const noexcept
+{
     const Aabb own =
         AabbVolume::of_vertices(tool_.kernels(), block.coordinates.front().data(), block.vertices);
-    placed.index = index;
     placed.box = views_.of_tool().of(own);
     placed.way = 0;
+    std::ranges::fill(placed.rows.error, 0.0F);
     placed.vertices = block.vertices;
     placed.faces = block.faces;
-    placed.coarse = tool_.side(index).coarse;
-    placed.largest_error_m = static_cast<double>(largest_error_quanta(tool_.side(index))) *
-                             static_cast<double>(tool_.quantum_m()) * views_.scale() * kRoundedUp;
     // Rows are turned round the centre as a float has it, which is seldom off.
-    const double units_per_m = place_.place.scale / static_cast<double>(object_.quantum_m());
+    const double units_per_m = place_.place.scale / object_quantum_m();
     const Vec3 middle = 0.5 * (to_vec3(own.low) + to_vec3(own.high));
     std::array<float, 3> from{};
     std::array<float, 9> turn{};

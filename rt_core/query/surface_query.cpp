@@ -36,7 +36,8 @@ public:
         , reach_(reach_m)
         , budget_(budget)
         , probe_(make_probe(center_m, tree.quantum_m()))
-        , floor_(surface == nullptr ? 0.0F : to_quanta(reach_m))
+        , reach_quanta_(surface == nullptr ? 0.0F : to_quanta(reach_m))
+        , floor_(reach_quanta_)
         , limit_(to_quanta(band_m))
     {
         if (surface != nullptr)
@@ -100,10 +101,14 @@ private:
         float lower;
     };
 
-    /// Beyond this nothing changes the answer. Never grows: what was left out stays beyond it.
+    /// Beyond this nothing changes the answer. Never grows: what was left out stays beyond it. A
+    /// surface within reach is measured, also where the list has room for nearer faces only.
     [[nodiscard]] float bound() const noexcept
     {
-        return nearest_triangles_ ? std::max(floor_, kProofShare * limit_) : limit_;
+        return nearest_triangles_
+                   ? std::max(floor_,
+                              std::min(limit_, std::max(reach_quanta_, kProofShare * limit_)))
+                   : limit_;
     }
 
     void leave(float gap) noexcept { unproven_ = std::min(unproven_, static_cast<double>(gap)); }
@@ -133,7 +138,8 @@ private:
         return ref.is_none() ? kNoNode : ref.index();
     }
 
-    /// Breadth first no visit waits for the one before; `known` was looked at.
+    /// Breadth first no visit waits for the one before; `known` was looked at. With half the budget
+    /// gone the nearest come first, so that what it doesn't suffice for is far away.
     void walk(std::uint32_t known, BlockBatch& batch) noexcept
     {
         Frontier frontier; // NOLINT(cppcoreguidelines-pro-type-member-init): likewise.
@@ -141,12 +147,11 @@ private:
         frontier.refs[0] = tree_.root().value;
         frontier.gaps[0] = 0.0F;
         std::uint32_t next = 0;
-        while (next < frontier.count)
+        while (next < frontier.count && !budget_.is_spent)
         {
-            const bool is_broad = frontier.count < Frontier::kBroad;
-            const std::uint32_t at = is_broad ? next++ : --frontier.count;
-            const TreeRef ref{frontier.refs[at]};
-            const float gap = frontier.gaps[at];
+            const WalkItem item = take_next(frontier, next);
+            const TreeRef ref = item.ref;
+            const float gap = item.gap;
             if (gap > bound() || (ref.is_block() && ref.index() == known))
             {
                 continue;
@@ -170,6 +175,40 @@ private:
         {
             leave(frontier.gaps[next]);
         }
+    }
+
+    /// Of the items from `next` on: in order, then the nearest; of too many the last, whatever it
+    /// is.
+    [[nodiscard]] WalkItem take_next(Frontier& frontier, std::uint32_t& next) const noexcept
+    {
+        const bool is_ordered = !budget_.is_half_spent();
+        if (!is_ordered && next > 0)
+        {
+            forget_first(frontier, std::exchange(next, 0));
+        }
+        if (is_ordered && frontier.count < Frontier::kBroad)
+        {
+            const std::uint32_t at = next++;
+            return {TreeRef{frontier.refs[at]}, frontier.gaps[at]};
+        }
+        const std::uint32_t last = frontier.count - 1;
+        std::uint32_t at = last;
+        for (std::uint32_t i = 0; i < last && last < Frontier::kBroad - 1; ++i)
+        {
+            at = frontier.gaps[i] < frontier.gaps[at] ? i : at;
+        }
+        const WalkItem item{TreeRef{frontier.refs[at]}, frontier.gaps[at]};
+        frontier.refs[at] = frontier.refs[last];
+        frontier.gaps[at] = frontier.gaps[last];
+        frontier.count = last;
+        return item;
+    }
+
+    static void forget_first(Frontier& frontier, std::uint32_t gone) noexcept
+    {
+        frontier.count -= gone;
+        std::copy_n(&frontier.refs[gone], frontier.count, &frontier.refs[0]);
+        std::copy_n(&frontier.gaps[gone], frontier.count, &frontier.gaps[0]);
     }
 
     void enter(const AbNode& node, Frontier& frontier, BlockBatch& batch) noexcept
@@ -327,6 +366,10 @@ private:
             nearest_triangles_->add({tree_.side(candidate.block).prims[candidate.lane],
                                      block_triangle(tree_.block(candidate.block), candidate.lane)},
                                     std::max(0.0, to_metres(candidate.lower)));
+            if (nearest_triangles_->dropped_m() < kInfinity)
+            {
+                floor_ = std::min(floor_, to_quanta(nearest_triangles_->dropped_m()));
+            }
         }
         if (candidate.lower > limit_)
         {
@@ -376,7 +419,10 @@ private:
     WalkBudget& budget_;
     std::optional<NearestTriangles> nearest_triangles_; ///< None when nothing is collected.
     KernelProbe probe_;
-    float floor_; ///< Faces this near are looked at whatever else is found; in quanta, as are:
+    float reach_quanta_; ///< The same, rounded up; 0 where nothing is collected.
+    /// Faces this near are looked at whatever else is found: within reach, and nearer than what the
+    /// list had no room for. In quanta, as are:
+    float floor_;
     float limit_; ///< something of the surface is not farther than this, or the band;
     float corner_{kInfiniteQuanta}; ///< the nearest corner of a coarse face;
     double unproven_{kInfinity};    ///< what is not known exactly is at least this far away.
@@ -435,6 +481,7 @@ void gather_surface(const AbTree& tree, const Vec3& center_m, double reach_m, Qu
     surface.count = 0;
     surface.truncated = false;
     surface.answer = search(tree, center_m, reach_m, kInfinity, memory, budget, &surface);
+    surface.is_cut = surface.truncated || budget.is_spent;
 }
 
 DistanceAnswer query_distance(const AbTree& tree, const Vec3& center_m, double band_m,

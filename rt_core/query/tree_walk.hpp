@@ -46,6 +46,10 @@ struct WalkBudget
         ++nodes_visited;
         return true;
     }
+    [[nodiscard]] bool is_half_spent() const noexcept
+    {
+        return nodes_visited > nodes / 2 || triangles_tested > triangles / 2;
+    }
     /// As many of `count` as are left.
     [[nodiscard]] std::uint32_t take_nodes(std::uint32_t count) noexcept
     {

@@ -17,7 +17,8 @@ struct ForceWish
 {
     Vec3 force_n{0.0, 0.0, 0.0};    ///< On the hand.
     Vec3 position_m{0.0, 0.0, 0.0}; ///< Of the device, from this frame's sample.
-    /// Of the wall that the force comes from. 0: it comes from no wall and its energy isn't judged.
+    /// Of the wall that the force comes from; finite, >= 0, else ForceAction::refused. 0: it comes
+    /// from no wall and its energy isn't judged.
     double stiffness_n_per_m{0.0};
     /// Between proxy and device. Where the force was cut to a limit before it came here, the spring
     /// holds more energy than the force tells; 0: take force / stiffness.
@@ -41,7 +42,7 @@ enum class ForceAction : std::uint8_t
 {
     none = 0,
     refused = 1U << 0U,          ///< Force or stiffness was no usable number: the force is zero.
-    stiffness_capped = 1U << 1U, ///< Stiffer than stiffness_cap(): scaled down to it.
+    stiffness_capped = 1U << 1U, ///< Stiffer than stiffness_cap_n_per_m(): scaled down to it.
     clamped = 1U << 2U,          ///< Longer than DeviceLimits::force_max_n.
     slew_limited = 1U << 3U,     ///< Grew faster than DeviceLimits::slew_max_n_per_s.
     damped = 1U << 4U,           ///< The passivity controller added damping.

@@ -89,7 +89,7 @@ enum class Side : std::uint8_t
     inside,
 };
 
-/// What a tool that wants contacts gets of a pair.
+/// What a tool that wants contacts gets of a pair; of a PairOutput in the world, metres. 3 KiB.
 struct ContactReport
 {
     ContactSet contacts;

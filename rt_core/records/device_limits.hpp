@@ -28,7 +28,8 @@ struct TurnLimits
 /// What a device is and may be asked for, as far as stability depends on it; fixed while it runs.
 /// SI, at the tool's tip, the least favourable place and direction of the workspace. All values are
 /// finite and not negative; mass, force_max_n, slew_max_n_per_s and stiffness_max_n_per_m are
-/// greater than zero. find_fault() in force/stiffness_rule.hpp says what is wrong.
+/// greater than zero. A ForceConditioner asserts it; this library's devices refuse other values
+/// when they are made.
 struct DeviceLimits
 {
     double mass_kg{0.1}; ///< Moving mass without the hand.

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <optional>
 
+// Any thread: values, and functions of their arguments alone; no call waits or allocates.
 namespace tactus
 {
 
@@ -30,7 +31,8 @@ struct DeviceRecord
     std::uint32_t buttons{0};
     std::optional<double> gripper_m;
     bool measures_rotation{false}; ///< Else the ToolState's rotation is none of the device's.
-    Vec3 sent_n{0.0, 0.0, 0.0};    ///< To the device, as what follows.
+    /// To the device, as what follows; beside what carries a load.
+    Vec3 sent_n{0.0, 0.0, 0.0};
     Vec3 sent_nm{0.0, 0.0, 0.0};
     double sent_gripper_n{0.0};
 };

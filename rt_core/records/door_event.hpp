@@ -16,6 +16,7 @@ enum class DoorEventKind : std::uint8_t
 {
     arrival,     ///< A filled slot, handed over.
     link_update, ///< More records of a page that was handed over before are linked now.
+    base_back,   ///< A base mesh doesn't come: the cells that were lent for it are given back.
 };
 
 /// What the transport thread tells the haptic thread about one slot, in order. Together these are
@@ -23,7 +24,7 @@ enum class DoorEventKind : std::uint8_t
 struct DoorEvent
 {
     ContentKey key;
-    std::uint32_t slot{0};
+    std::uint32_t slot{0}; ///< Of a base mesh: the first of its cells.
     /// For an arrival: slots that the transport thread had taken back in all when it linked the
     /// page (modulo 2^32). Linking depends on it, so a replay waits for the same number.
     std::uint32_t freed_taken{0};

@@ -17,16 +17,22 @@ namespace tactus
 {
 
 /// One tool as its device reports it at the start of a frame. World frame, SI.
+///
+/// A coordinate that isn't below kGoalRange_m, a matrix that is no rotation to kRotationTolerance
+/// or a time before the last one's is FrameFault::tool_invalid, and the last sample stays. One of
+/// the same time isn't new: for longer than kSampleHold_s that is FrameFault::tool_stuck.
 struct ToolState
 {
     Vec3 position_m{0.0, 0.0, 0.0};   ///< Centre of the tool as the hand holds it (the goal).
     std::int64_t sample_time_ns{0};   ///< Monotonic time of the sample; 0: the device has none.
     std::uint32_t elapsed_periods{1}; ///< Whole periods since the last frame; more after a stall.
+                                      ///< 0 counts as 1.
     bool valid{true};                 ///< False: no sample; the frame keeps the last one.
-    Mat3 rotation{Mat3::Identity()};  ///< Of the tool's frame; orthonormal to 1e-6.
+    Mat3 rotation{Mat3::Identity()};  ///< Of the tool's frame.
 };
 
-/// A tool's shape and what its device allows; fixed when the frame is made.
+/// A tool's shape and what its device allows; fixed when the frame is made. Finite and not
+/// negative, which a frame doesn't check; up to 1e6 m, and 1e9 of the rest, may be recorded.
 struct ToolSpec
 {
     double radius_m{0.0};            ///< The tool is everything within it of `core`.
@@ -49,25 +55,32 @@ struct ToolSpec
 
 /// What one frame may do at most. Inputs of the frame, chosen outside and recorded, so a replay is
 /// exact. Counts are the frame's, whatever is in the scene; `nodes` and `triangles` are those of
-/// one traversal, of which a frame does kFrameWalks to refine and as many to answer.
+/// one traversal, of which a frame does kFrameWalks to refine and as many to answer; `planes` are
+/// those of one proxy, and kFrameWalks times as many in all.
 struct Budgets
 {
-    std::uint32_t splits{64};       ///< K, at most kMaxSplitsPerFrame.
-    std::uint32_t merges{64};       ///< K, at most kMaxMergesPerFrame.
+    std::uint32_t splits{64};       ///< K; of more kMaxSplitsPerFrame are used.
+    std::uint32_t merges{64};       ///< K; of more kMaxMergesPerFrame are used.
     std::uint32_t scanned{512};     ///< S, refined records looked at for merging.
     std::uint32_t nodes{2'048};     ///< N, tree nodes and blocks visited.
     std::uint32_t triangles{8'192}; ///< P, triangles tested.
     std::uint32_t pages{8};         ///< A, arrivals adopted.
     std::uint32_t requests{32};     ///< Q, wishes sent.
     std::uint32_t regions{8}; ///< G, index pages searched for chunks that ranked regions need.
+    /// F, what the proxy of a ball looks at to find its way, some 300 instructions each: a plane
+    /// before a triangle in double, eight in single precision, or a search among up to eight. What
+    /// was begun is ended, and what touches where it stops is looked at whatever is left.
+    std::uint32_t planes{1'024};
 };
 
 /// All that a frame gets, beside what its models' doors bring: the same inputs give the same bits.
+/// The spans are read during Frame::run() only.
 struct FrameInput
 {
-    std::span<const ToolState> tools;     ///< One for each tool of the set-up; of one that is gone
-                                          ///< it is not looked at.
-    std::span<const SceneChange> changes; ///< In their order, before anything else.
+    std::span<const ToolState> tools;     ///< One for each tool of the set-up (asserted); of one
+                                          ///< that is gone it is not looked at.
+    std::span<const SceneChange> changes; ///< In their order, before anything else; at most
+                                          ///< kMaxSceneChanges are made.
     Budgets budgets;
     std::int64_t now_ns{0}; ///< On the clock of ObjectPose::arrival_ns.
 };

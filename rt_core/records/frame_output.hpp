@@ -29,6 +29,9 @@ struct ToolOutput
     Vec3 torque_nm{0.0, 0.0, 0.0};         ///< About the device's position. Zero for a sphere.
     Mat3 proxy_rotation{Mat3::Identity()}; ///< Of the tool's frame; a sphere's is the hand's.
     double stiffness_n_per_m{0.0}; ///< Of the spring that makes the force; 0 without contact.
+    /// How far the proxy is behind: its way to the goal, along the surface where it touches; 0
+    /// where it has come to rest.
+    double lag_m{0.0};
     bool in_contact{false};
     bool frozen{false};   ///< The proxy waits for data, held where it is.
     bool squeezed{false}; ///< Objects leave the tool no room.
@@ -37,6 +40,7 @@ struct ToolOutput
     bool held_back{false};
     /// The proxy is still on its way: it came to the end of what is known, or of a frame's steps.
     bool under_way{false};
+    bool cut_short{false};   ///< On its way: what it may look at in a frame was used up.
     bool crowded{false};     ///< More touches it than limits allow: force and torque may lack some.
     bool lost_object{false}; ///< In touch, and an object near it went or jumped in this frame.
     bool is_gone{false};     ///< SceneChangeKind::tool_goes: everything else is as it was made.
@@ -54,6 +58,7 @@ struct ToolOutput
     return output.sample_fault | (output.frozen ? FrameFault::proxy_frozen : FrameFault::none) |
            (output.squeezed ? FrameFault::proxy_squeezed : FrameFault::none) |
            (output.crowded ? FrameFault::tool_crowded : FrameFault::none) |
+           (output.cut_short ? FrameFault::plane_budget_spent : FrameFault::none) |
            (output.lost_object ? FrameFault::object_lost : FrameFault::none);
 }
 
@@ -78,16 +83,18 @@ struct PairOutput
     /// From where: of the tool's core, at its proxy at the start of the frame, the point that is
     /// nearest to the surface, or the centre where that is not known.
     Vec3 point_m{0.0, 0.0, 0.0};
-    double lower_m{0.0}; ///< From the core; the tool's radius is not taken off.
-    double upper_m{0.0};
+    double lower_m{0.0}; ///< From the core, >= 0; the tool's radius is not taken off.
+    double upper_m{0.0}; ///< Likewise; infinite where nothing is known yet.
+    /// All original faces within it of the core are active and exact.
     double certified_radius_m{0.0};
-    FaceId nearest_face{};
-    Vec3 nearest_point_m{0.0, 0.0, 0.0};
-    bool skipped{false}; ///< Answered from the last distance and the motion since.
+    FaceId nearest_face{};               ///< None when there is no exact one in reach.
+    Vec3 nearest_point_m{0.0, 0.0, 0.0}; ///< On that face; without one of no meaning.
+    bool skipped{false};                 ///< Answered from the last distance and the motion since.
     TriangleFeature nearest_feature{TriangleFeature::interior}; ///< Of the nearest face.
     bool is_shed{false}; ///< Nothing is loaded or refined for it: more urgent pairs had no room.
     /// False: one came round the other, and there is no force until they are proven apart.
     bool is_joined{true};
+    double damping_n_s_per_m{0.0};          ///< Of the object's material, as it is felt now.
     const ContactReport* contacts{nullptr}; ///< Null unless the tool wants them.
     const MeshReport* mesh{nullptr};        ///< Null unless the tool is a mesh.
 };
@@ -98,19 +105,34 @@ struct SceneOutput
     std::uint32_t objects{0};       ///< That are there.
     std::uint32_t pairs{0};         ///< Awake: those that have a PairOutput.
     std::uint32_t crowded_tools{0}; ///< That are not proven clear as far as they ask.
-    std::uint32_t walled_tools{0};  ///< Of those, with a hand that is farther.
-    std::uint32_t walks{0};         ///< Over all objects: at most kBroadWalks.
+    /// Of those, and of tools before a model that isn't resident: with a hand that is farther.
+    std::uint32_t walled_tools{0};
+    std::uint32_t walks{0}; ///< Over all objects: at most kBroadWalks.
     /// Changes that were not made, in the order of ChangeRefusal.
     std::array<std::uint32_t, kChangeRefusals> refused{};
 };
 
-/// Use of one pool now.
+/// Use of one pool now, in slots.
 struct PoolUse
 {
     std::uint32_t used{0};
-    std::uint32_t used_max{0};
-    std::uint32_t capacity{0};
+    std::uint32_t used_max{0}; ///< Since the start; of index pages what is used now.
+    std::uint32_t capacity{0}; ///< What the model brought: it may use more.
 };
+
+/// Where a model is in its life. Those with which a frame starts as a whole stay `resident`.
+enum class ModelStage : std::uint8_t
+{
+    known,    ///< Its header is here. No tool is near, or the pools have no room for it.
+    wanted,   ///< A tool is near: its base mesh was asked for.
+    arriving, ///< It is here and enters the tree.
+    resident, ///< Its surface answers.
+    leaving,  ///< No tool is near: it is taken out of the pools.
+};
+inline constexpr std::uint32_t kModelStages = 5;
+/// In the order of ModelStage.
+inline constexpr std::array<const char*, kModelStages> kModelStageNames{
+    "known", "wanted", "arriving", "resident", "leaving"};
 
 /// One model's state after the frame.
 struct ModelOutput
@@ -121,17 +143,18 @@ struct ModelOutput
     PoolUse blocks;
     PoolUse nodes;
     std::uint32_t refined_records{0};
-    std::uint64_t state_hash{0};
-    bool is_static{false}; ///< Refined fully: nothing is left to load, refine or refit.
+    std::uint64_t state_hash{0}; ///< Names the active faces: the same cut has the same.
+    bool is_static{false};       ///< Refined fully: nothing is left to load, refine or refit.
+    ModelStage stage{ModelStage::resident};
 };
 
 /// What a frame returns: spans into the frame's own memory, valid until the next run.
 struct FrameOutput
 {
-    std::span<const ToolOutput> tools;
-    std::span<const PairOutput> pairs; ///< Of what is near: tool by tool, in each the objects by
-                                       ///< their numbers; the nearest one always.
-    std::span<const ModelOutput> models;
+    std::span<const ToolOutput> tools;   ///< In set-up order.
+    std::span<const PairOutput> pairs;   ///< Of what is near: tool by tool, in each the objects by
+                                         ///< their numbers; the nearest one always.
+    std::span<const ModelOutput> models; ///< In set-up order.
     WorkCounters work;
     FrameFault faults{FrameFault::none};
     DoorTake door; ///< An input of the frame, kept for recordings.

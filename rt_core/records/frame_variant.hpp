@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+// Any thread: values, and functions of their arguments alone; no call waits or allocates.
 namespace tactus
 {
 

@@ -58,6 +58,8 @@ struct LocalSurface
     std::span<double> distances_m;      ///< As much; lower bounds, from the core.
     std::uint32_t count{0};
     bool truncated{false}; ///< More triangles were in reach; the certified radius says how far.
+    /// Room or budget ended the search of a point: from nearer, more may be known.
+    bool is_cut{false};
 };
 static_assert(sizeof(LocalTriangle) == 40);
 

@@ -4,9 +4,9 @@
 
 #include "rt_core/base/assert.hpp"
 #include "rt_core/limits.hpp"
-#include "rt_core/math/infinity.hpp"
 #include "rt_core/math/similarity.hpp"
 #include "rt_core/math/vec3.hpp"
+#include "rt_core/records/material.hpp"
 #include "rt_core/spm/ids.hpp"
 
 #include <cstdint>
@@ -16,24 +16,16 @@ namespace tactus
 {
 
 /// Where an object stands: how the frame of its source mesh lies in the world. The default is where
-/// the source stood. Inside the frame, from model_pose() on, it is that of the model's frame.
+/// the source stood. Inside the frame, from model_pose() on, it is that of the model's frame. A
+/// SceneChange beyond kPoseReachMax_m, kPoseScaleMin to kPoseScaleMax or kRotationTolerance is
+/// ChangeRefusal::bad_pose.
 struct ObjectPose : Similarity
 {
-    std::int64_t stamp_ns{0};
+    std::int64_t stamp_ns{0}; ///< The sender's; a frame doesn't look at it.
     /// On the clock of FrameInput::now_ns. A pose that is older than FrameSetup::pose_age_max_ns
     /// makes answers stale; 0: it never grows old.
     std::int64_t arrival_ns{0};
-    std::uint32_t revision{0}; ///< Of the model that the pose was made for.
-};
-
-/// How an object feels to a tool that touches it.
-struct Material
-{
-    /// The tool's or this, whichever is softer; > 0.
-    double stiffness_n_per_m{kInfinity};
-    double static_friction{0.0};   ///< Coulomb's coefficient while the tool sticks; >= 0.
-    double dynamic_friction{0.0};  ///< While it slides; at most the static one.
-    double damping_n_s_per_m{0.0}; ///< Of the motion across the surface, in touch; >= 0.
+    std::uint32_t revision{0}; ///< Of the model that the pose was made for; another is stale.
 };
 
 /// Which model an object shows, and how it feels.

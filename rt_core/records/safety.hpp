@@ -37,13 +37,14 @@ enum class ForceOff : std::uint32_t
     stall = 1U << 7U,      ///< Frames were missed.
     host = 1U << 8U,       ///< A host is lost that may still have to send parts of its model.
     assertion = 1U << 9U,  ///< The haptic thread found a bug in itself.
-    jump = 1U << 10U,     ///< An object went, or moved too far at once, while the tool touched one.
-    frozen = 1U << 11U,   ///< The proxy waits for data of the surface.
-    squeezed = 1U << 12U, ///< Objects leave the tool no room.
-    clutch = 1U << 13U,   ///< A button has parted hand and tool.
+    jump = 1U << 10U,      ///< An object went, or moved too fast, while the tool touched one.
+    frozen = 1U << 11U,    ///< The proxy waits for data of the surface.
+    squeezed = 1U << 12U,  ///< Objects leave the tool no room.
+    clutch = 1U << 13U,    ///< A button has parted hand and tool.
+    starved = 1U << 14U,   ///< The proxy waits for a piece that hasn't come for a second.
 };
-inline constexpr std::size_t kForceOffs = 14;
-static_assert(static_cast<std::uint32_t>(ForceOff::clutch) == 1U << (kForceOffs - 1));
+inline constexpr std::size_t kForceOffs = 15;
+static_assert(static_cast<std::uint32_t>(ForceOff::starved) == 1U << (kForceOffs - 1));
 
 [[nodiscard]] constexpr ForceOff operator|(ForceOff a, ForceOff b) noexcept
 {
@@ -67,7 +68,7 @@ inline constexpr std::array<const char*, kSafetyStates> kSafetyStateNames{"reset
                                                                           "brake"};
 /// In the order of ForceOff's bits.
 inline constexpr std::array<const char*, kForceOffs> kForceOffNames{
-    "velocity", "watchdog", "software",  "disconnect", "deadman", "stale",    "garbage",
-    "stall",    "host",     "assertion", "jump",       "frozen",  "squeezed", "clutch"};
+    "velocity", "watchdog",  "software", "disconnect", "deadman",  "stale",  "garbage", "stall",
+    "host",     "assertion", "jump",     "frozen",     "squeezed", "clutch", "starved"};
 
 } // namespace tactus

@@ -20,8 +20,19 @@ enum class SceneChangeKind : std::uint8_t
     object_goes,
     tool_comes,
     tool_goes,
+    object_feels, ///< Otherwise from now on; what touches it feels that come within a while.
 };
-inline constexpr std::size_t kSceneChangeKinds = 5;
+inline constexpr std::size_t kSceneChangeKinds = 6;
+
+/// Whether such a change says where an object stands, or how it feels.
+[[nodiscard]] constexpr bool has_pose(SceneChangeKind kind) noexcept
+{
+    return kind == SceneChangeKind::object_comes || kind == SceneChangeKind::object_moves;
+}
+[[nodiscard]] constexpr bool has_material(SceneChangeKind kind) noexcept
+{
+    return kind == SceneChangeKind::object_comes || kind == SceneChangeKind::object_feels;
+}
 
 /// One thing that changes in a scene, an input of a frame. Whoever makes the changes numbers the
 /// objects: below the capacity, and with a generation that is higher each time that another object
@@ -31,7 +42,7 @@ struct SceneChange
     SceneChangeKind kind{SceneChangeKind::object_moves};
     std::uint32_t number{0};     ///< Of the object, or of the tool in set-up order.
     std::uint32_t generation{0}; ///< Of the object.
-    ObjectSpec object;           ///< When it comes.
+    ObjectSpec object;           ///< When it comes; when it feels, its material alone.
     ObjectPose pose;             ///< When it comes or moves: of the source mesh.
 };
 
@@ -44,7 +55,7 @@ enum class ChangeRefusal : std::uint8_t
     not_here,       ///< There is no object of that number, or the tool is gone.
     old_generation, ///< The object that was meant is gone; or it comes with a number used before.
     unknown_model,  ///< The object shows a model that isn't there, or that is a tool.
-    bad_material,   ///< Stiffness not above 0, friction or damping below 0, dynamic above static.
+    bad_material,   ///< Out of the ranges of Material.
     bad_pose,       ///< No rotation to kRotationTolerance, or beyond kPoseReachMax_m or a scale's.
 };
 inline constexpr std::size_t kChangeRefusals = 8;

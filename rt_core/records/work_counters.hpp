@@ -50,7 +50,7 @@ private:
     std::array<std::uint32_t, kSkips> times_{};
 };
 
-/// What a frame did, in the units of its budgets. Sums over models and pairs.
+/// What a frame did, in the units of its budgets: counts. Sums over models and pairs.
 struct WorkCounters
 {
     std::uint32_t splits{0};
@@ -58,6 +58,7 @@ struct WorkCounters
     std::uint32_t scanned{0};
     std::uint32_t nodes_visited{0};
     std::uint32_t triangles_tested{0};
+    std::uint32_t planes_looked_at{0};
     std::uint32_t pages_adopted{0};
     std::uint32_t requests{0};
     std::uint32_t regions_searched{0};
@@ -75,6 +76,7 @@ struct WorkCounters
         scanned += other.scanned;
         nodes_visited += other.nodes_visited;
         triangles_tested += other.triangles_tested;
+        planes_looked_at += other.planes_looked_at;
         pages_adopted += other.pages_adopted;
         requests += other.requests;
         regions_searched += other.regions_searched;
@@ -112,15 +114,17 @@ enum class FrameFault : std::uint32_t
     pair_shed = 1U << 17U,         ///< A pair waits: its room went to a touch. More `--pool-mib`.
     scene_crowded = 1U << 18U,     ///< A tool waits: too much is near it. See kMaxPairs.
     object_lost = 1U << 19U,       ///< What a tool touched went or jumped; SafeState fades a force.
+    plane_budget_spent = 1U << 20U, ///< A proxy stopped on its way. Raise `Budgets::planes`.
 };
-inline constexpr std::size_t kFrameFaults = 20;
+inline constexpr std::size_t kFrameFaults = 21;
 /// In the order of FrameFault's bits.
 inline constexpr std::array<const char*, kFrameFaults> kFrameFaultNames{
     "split_budget_spent", "forest_full",       "tree_full",         "chunk_late",
     "cache_full",         "node_budget_spent", "surface_truncated", "model_inconsistent",
     "tool_invalid",       "proxy_frozen",      "tool_stuck",        "tool_jumped",
     "proxy_squeezed",     "refine_heap_full",  "held_records_full", "ranking_full",
-    "tool_crowded",       "pair_shed",         "scene_crowded",     "object_lost"};
+    "tool_crowded",       "pair_shed",         "scene_crowded",     "object_lost",
+    "plane_budget_spent"};
 
 [[nodiscard]] constexpr FrameFault operator|(FrameFault a, FrameFault b) noexcept
 {

@@ -47,6 +47,15 @@ void Coarsener::look_at_all() noexcept
     travel_ += horizon_m_;
 }
 
+void Coarsener::forget_all() noexcept
+{
+    heads_.fill(kNoRecord);
+    horizon_m_ = 0.0;
+    buckets_per_m_ = 0.0;
+    cursor_ = 0;
+    travel_ = 0.0;
+}
+
 void Coarsener::look_when_left(std::uint32_t slot, RecordId id, const VsplitRecord& record,
                                std::span<const RefineRequest> requests) noexcept
 {

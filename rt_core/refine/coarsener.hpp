@@ -47,6 +47,9 @@ public:
     /// The record is not held any more, and due.
     void look_soon(RecordId record) noexcept TACTUS_NONBLOCKING;
 
+    /// The forest has left: nothing is refined any more.
+    void forget_all() noexcept TACTUS_NONBLOCKING;
+
     /// One frame: looks at up to `budgets.scanned` refined records and merges up to
     /// `budgets.merges`.
     void run(std::span<const RefineRequest> requests, const Budgets& budgets,

@@ -6,6 +6,7 @@
 #include "rt_core/math/infinity.hpp"
 #include "rt_core/math/rounding.hpp"
 #include "rt_core/math/triangle.hpp"
+#include "rt_core/query/near_faces.hpp"
 #include "rt_core/query/probe.hpp"
 
 #include <algorithm>
@@ -35,27 +36,6 @@ double excess_of(const RefineQuestion& question, double lower_m) noexcept
     return lower_m - question.reach_m + question.later_m;
 }
 
-/// The least distance of something, its error taken off, given one from the question's centre: the
-/// surface says it better, if there is one and that matters. `ball_of()` holds the thing.
-template <typename BallOf>
-double sharpened(const RefineQuestion& question, double lower_m, double error_m,
-                 BallOf ball_of) noexcept
-{
-    const double target = target_of(question);
-    if (question.surface == nullptr || lower_m > target)
-    {
-        return lower_m;
-    }
-    const double enough = target - question.span_m + error_m;
-    return std::max(lower_m,
-                    question.surface->lower_bound_m(ball_of(), enough) - error_m + question.span_m);
-}
-
-Ball ball_of_face(const BlockGeometry& block, std::size_t lane) noexcept
-{
-    return ball_round(to_triangle(block_triangle(block, static_cast<std::uint32_t>(lane))));
-}
-
 /// Whether a coarse face of this error may stay as it is.
 bool is_good_enough(const RefineQuestion& question, double error_m) noexcept
 {
@@ -66,6 +46,12 @@ bool is_good_enough(const RefineQuestion& question, double error_m) noexcept
 double counted(const RefineQuestion& question, double error_m) noexcept
 {
     return question.counts_errors ? error_m : 0.0;
+}
+
+/// And what of it doesn't.
+double not_counted(const RefineQuestion& question, double error_m) noexcept
+{
+    return error_m - counted(question, error_m);
 }
 
 /// A coarse face whose distance minus its error is `lower` stays as it is for now.
@@ -114,6 +100,12 @@ Refiner::Refiner(VertexForest& forest, PageTable& pages, const AbTree& tree, Ref
     , stack_(scratch.stack)
     , done_(scratch.done)
 {
+}
+
+void Refiner::forget_all() noexcept
+{
+    coarsener_.forget_all();
+    next_record_ = 0;
 }
 
 void Refiner::begin(std::span<const RefineRequest> requests, const Budgets& budgets,
@@ -256,16 +248,24 @@ void Refiner::gather_near_ball(const RefineQuestion& question, WalkBudget& budge
 
 void Refiner::gather_near_surface(const RefineQuestion& question) noexcept
 {
-    const double bound_m = target_of(question) - question.span_m;
-    SurfaceWalk walk(*tree_, *question.surface);
-    for (std::uint32_t block = walk.next_block(bound_m, true); block != kNoNode;
-         block = walk.next_block(bound_m, true))
+    NearFaces near(*tree_, *question.surface);
+    near.find(target_of(question) - question.span_m);
+    leave(question, near.rest_m() + question.span_m);
+    for (const NearFaces::Block& block : near.blocks())
     {
-        gather_block(block, question);
-    }
-    for (const SurfaceWalk::Item& item : walk.left())
-    {
-        leave(question, item.gap_m + question.span_m);
+        const BlockSide& side = tree_->side(block.index);
+        for (std::uint32_t lanes = block.lanes; lanes != 0; lanes &= lanes - 1)
+        {
+            const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
+            const double bound =
+                static_cast<double>(error_in_quanta(side.errors[lane])) * quantum_m_;
+            if (!is_good_enough(question, bound))
+            {
+                take(side.prims[lane],
+                     near.gap_m(block, lane) + not_counted(question, bound) + question.span_m,
+                     question);
+            }
+        }
     }
 }
 
@@ -275,28 +275,29 @@ void Refiner::gather_block(std::uint32_t index, const RefineQuestion& question) 
     const BlockSide& side = tree_->side(index);
     FaceBounds bounds; // NOLINT(cppcoreguidelines-pro-type-member-init): the kernel fills it.
     bound_faces(tree_->kernels(), block, side.coarse, question.memory->probe, bounds);
-    const double target = target_of(question);
     for (std::uint32_t lanes = side.coarse; lanes != 0; lanes &= lanes - 1)
     {
         const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
         const double bound = static_cast<double>(error_in_quanta(side.errors[lane])) * quantum_m_;
-        if (is_good_enough(question, bound))
+        if (!is_good_enough(question, bound))
         {
-            continue;
+            take(side.prims[lane],
+                 static_cast<double>(bounds.lower[lane]) * quantum_m_ - counted(question, bound),
+                 question);
         }
-        const double error = counted(question, bound);
-        const double key =
-            sharpened(question, static_cast<double>(bounds.lower[lane]) * quantum_m_ - error, error,
-                      [&] { return ball_of_face(block, lane); });
-        if (key <= target)
-        {
-            const PrimId prim = side.prims[lane];
-            push({excess_of(question, key), prim, forest_->face(prim).state}, {&question, 1});
-        }
-        else
-        {
-            leave(question, key);
-        }
+    }
+}
+
+/// A coarse face whose distance minus its error is not less than that: wanted, or left for now.
+void Refiner::take(PrimId prim, double lower_m, const RefineQuestion& question) noexcept
+{
+    if (lower_m <= target_of(question))
+    {
+        push({excess_of(question, lower_m), prim, forest_->face(prim).state}, {&question, 1});
+    }
+    else
+    {
+        leave(question, lower_m);
     }
 }
 
@@ -487,17 +488,19 @@ void Refiner::consider_star(RecordId id, const VsplitRecord& record,
                             const VertexForest::StarGeometry& star,
                             std::span<const RefineQuestion> own) noexcept
 {
-    std::uint32_t coarse = 0;
+    LooseFaces coarse{star.geometry};
     for (std::uint32_t place = 0; place < kMaxStarFaces; ++place)
     {
-        coarse |= record.error[place] != 0 ? 1U << place : 0U;
+        coarse.errors_m[place] =
+            static_cast<double>(error_in_quanta(record.error[place])) * quantum_m_;
+        coarse.lanes |= record.error[place] != 0 ? 1U << place : 0U;
     }
-    coarse &= star.geometry.faces;
-    if (coarse == 0)
+    coarse.lanes &= star.geometry.faces;
+    if (coarse.lanes == 0)
     {
         return;
     }
-    std::array<double, kMaxStarFaces> excess{};
+    StarBounds excess{};
     excess.fill(kInfinity);
     const Vec3 vertex = to_vec3(record.position_m);
     const double reach = static_cast<double>(error_in_quanta(record.reach)) * quantum_m_;
@@ -508,39 +511,30 @@ void Refiner::consider_star(RecordId id, const VsplitRecord& record,
             leave(question, 0.0); // Asked anew, in one walk for all.
             return;
         }
-        const double nearest =
-            sharpened(question, (vertex - question.center_m).norm() * kRootRoundedDown - reach, 0.0,
-                      [&] {
-                          return Ball{vertex, reach};
-                      });
+        const double nearest = (vertex - question.center_m).norm() * kRootRoundedDown - reach;
         if (nearest > target_of(question))
         {
             leave(question, nearest);
             return;
         }
         const bool is_own = &question >= own.data() && &question < own.data() + own.size();
-        FaceBounds bounds; // NOLINT(cppcoreguidelines-pro-type-member-init): the kernel fills it.
-        bound_faces(tree_->kernels(), star.geometry, coarse, question.memory->probe, bounds);
-        for (std::uint32_t lanes = coarse; lanes != 0; lanes &= lanes - 1)
+        StarBounds lower; // NOLINT(cppcoreguidelines-pro-type-member-init): it is filled.
+        question.surface != nullptr ? bound_star_near_surface(question, coarse, lower)
+                                    : bound_star_near_ball(question, coarse, lower);
+        for (std::uint32_t lanes = coarse.lanes; lanes != 0; lanes &= lanes - 1)
         {
             const auto place = static_cast<std::size_t>(std::countr_zero(lanes));
-            const double bound =
-                static_cast<double>(error_in_quanta(record.error[place])) * quantum_m_;
-            if (is_good_enough(question, bound))
+            if (is_good_enough(question, coarse.errors_m[place]))
             {
                 continue;
             }
-            const double error = counted(question, bound);
-            const double key =
-                sharpened(question, static_cast<double>(bounds.lower[place]) * quantum_m_ - error,
-                          error, [&] { return ball_of_face(star.geometry, place); });
-            if (is_own && key <= target_of(question))
+            if (is_own && lower[place] <= target_of(question))
             {
-                excess[place] = std::min(excess[place], excess_of(question, key));
+                excess[place] = std::min(excess[place], excess_of(question, lower[place]));
             }
             else
             {
-                leave(question, key);
+                leave(question, lower[place]);
             }
         }
     };
@@ -550,6 +544,40 @@ void Refiner::consider_star(RecordId id, const VsplitRecord& record,
         if (excess[place] < kInfinity)
         {
             push({excess[place], star.prims[place], FaceState::after(id, place)}, own);
+        }
+    }
+}
+
+/// Distances minus errors of a star's coarse faces, or less.
+void Refiner::bound_star_near_ball(const RefineQuestion& question, const LooseFaces& coarse,
+                                   StarBounds& lower_m) const noexcept
+{
+    FaceBounds bounds; // NOLINT(cppcoreguidelines-pro-type-member-init): the kernel fills it.
+    bound_faces(tree_->kernels(), coarse.geometry, coarse.lanes, question.memory->probe, bounds);
+    for (std::uint32_t lanes = coarse.lanes; lanes != 0; lanes &= lanes - 1)
+    {
+        const auto place = static_cast<std::size_t>(std::countr_zero(lanes));
+        lower_m[place] = static_cast<double>(bounds.lower[place]) * quantum_m_ -
+                         counted(question, coarse.errors_m[place]);
+    }
+}
+
+/// The same; infinity beyond both the target and what is certified.
+void Refiner::bound_star_near_surface(const RefineQuestion& question, const LooseFaces& coarse,
+                                      StarBounds& lower_m) const noexcept
+{
+    const double farthest = std::max(target_of(question), question.memory->certified_m);
+    NearFaces near(*tree_, *question.surface);
+    near.find(coarse, farthest - question.span_m);
+    leave(question, near.rest_m() + question.span_m);
+    lower_m.fill(kInfinity);
+    for (const NearFaces::Block& block : near.blocks())
+    {
+        for (std::uint32_t lanes = block.lanes; lanes != 0; lanes &= lanes - 1)
+        {
+            const auto place = static_cast<std::uint32_t>(std::countr_zero(lanes));
+            const double gap = near.gap_m(block, place) + question.span_m;
+            lower_m[place] = gap + not_counted(question, coarse.errors_m[place]);
         }
     }
 }
@@ -567,8 +595,14 @@ double Refiner::lower_bound(PrimId prim, const RefineQuestion& question) const n
         return box_lower;
     }
     const ClosestPoint closest = closest_point_on_triangle(question.center_m, triangle);
-    return sharpened(question, std::sqrt(closest.distance_sq) - closest.distance_error - error,
-                     error, [&] { return ball_round(triangle); });
+    const double lower = std::sqrt(closest.distance_sq) - closest.distance_error - error;
+    if (question.surface == nullptr || lower > target_of(question))
+    {
+        return lower;
+    }
+    const double enough = target_of(question) - question.span_m + error;
+    const double from_surface = question.surface->lower_bound_m(ball_round(triangle), enough);
+    return std::max(lower, from_surface - error + question.span_m);
 }
 
 /// Full: the face waits for the next frame, when nearer ones are done. One that is only looked

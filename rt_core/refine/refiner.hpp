@@ -5,6 +5,7 @@
 #include "rt_core/abtree/ab_tree.hpp"
 #include "rt_core/base/realtime.hpp"
 #include "rt_core/forest/vertex_forest.hpp"
+#include "rt_core/query/near_faces.hpp"
 #include "rt_core/query/tree_walk.hpp"
 #include "rt_core/records/frame_input.hpp"
 #include "rt_core/records/work_counters.hpp"
@@ -12,6 +13,7 @@
 #include "rt_core/refine/refine_question.hpp"
 #include "rt_core/refine/refine_scratch.hpp"
 
+#include <array>
 #include <cstdint>
 #include <span>
 
@@ -77,6 +79,9 @@ public:
     /// What is held for a closure may be merged again: nobody asks for it any more.
     void release(Closure& closure) noexcept TACTUS_NONBLOCKING;
 
+    /// The forest has left, and no closure is open: as new.
+    void forget_all() noexcept TACTUS_NONBLOCKING;
+
 private:
     using Candidate = RefineCandidate;
     /// A record whose split a face of that excess waits for.
@@ -102,6 +107,7 @@ private:
     void gather_block(std::uint32_t index, const RefineQuestion& question) noexcept;
     void split_wanted(const RefineRequest& request, SplitLimits limits, std::uint32_t frame,
                       WorkCounters& work, FrameFault& found) noexcept;
+    void take(PrimId prim, double lower_m, const RefineQuestion& question) noexcept;
     [[nodiscard]] double excess_of_pending(const RefineRequest& request) const noexcept;
     [[nodiscard]] double lower_bound(PrimId prim, const RefineQuestion& question) const noexcept;
     [[nodiscard]] bool try_advance(const Wanted& wanted, const RefineRequest& request,
@@ -117,6 +123,11 @@ private:
     void consider_star(RecordId id, const VsplitRecord& record,
                        const VertexForest::StarGeometry& star,
                        std::span<const RefineQuestion> own) noexcept;
+    using StarBounds = std::array<double, kMaxStarFaces>;
+    void bound_star_near_ball(const RefineQuestion& question, const LooseFaces& coarse,
+                              StarBounds& lower_m) const noexcept;
+    void bound_star_near_surface(const RefineQuestion& question, const LooseFaces& coarse,
+                                 StarBounds& lower_m) const noexcept;
     void hold(RecordId record, Closure& closure) noexcept;
 
     VertexForest* forest_;

@@ -28,14 +28,6 @@ bool is_sound(const ObjectPose& pose) noexcept
            is_rotation(pose.rotation, kRotationTolerance);
 }
 
-bool is_sound(const Material& material) noexcept
-{
-    return material.stiffness_n_per_m > 0.0 && material.static_friction >= 0.0 &&
-           material.static_friction <= kFrictionMax && material.dynamic_friction >= 0.0 &&
-           material.dynamic_friction <= material.static_friction &&
-           material.damping_n_s_per_m >= 0.0 && material.damping_n_s_per_m <= kDampingMax_n_s_per_m;
-}
-
 std::optional<ChangeRefusal>
 ObjectTable::find_refusal(const SceneChange& change, std::span<const bool> is_shown) const noexcept
 {
@@ -69,12 +61,12 @@ ObjectTable::find_refusal(const SceneChange& change, std::span<const bool> is_sh
         {
             return ChangeRefusal::unknown_model;
         }
-        if (!is_sound(change.object.material))
-        {
-            return ChangeRefusal::bad_material;
-        }
     }
-    if (change.kind != SceneChangeKind::object_goes && !is_sound(change.pose))
+    if (has_material(change.kind) && !is_sound(change.object.material))
+    {
+        return ChangeRefusal::bad_material;
+    }
+    if (has_pose(change.kind) && !is_sound(change.pose))
     {
         return ChangeRefusal::bad_pose;
     }
@@ -89,6 +81,11 @@ void ObjectTable::make(const SceneChange& change, const Vec3& origin_m,
     object.is_here = change.kind != SceneChangeKind::object_goes;
     if (!object.is_here)
     {
+        return;
+    }
+    if (change.kind == SceneChangeKind::object_feels)
+    {
+        object.spec.material = change.object.material;
         return;
     }
     if (change.kind == SceneChangeKind::object_comes)

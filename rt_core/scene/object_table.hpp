@@ -15,8 +15,6 @@ namespace tactus
 
 /// Whether an object can stand so; false for what is no number, too.
 [[nodiscard]] bool is_sound(const ObjectPose& pose) noexcept TACTUS_NONBLOCKING;
-/// Whether an object can feel so: within the ranges of Material and limits.hpp.
-[[nodiscard]] bool is_sound(const Material& material) noexcept TACTUS_NONBLOCKING;
 
 /// An object of the scene.
 struct Object

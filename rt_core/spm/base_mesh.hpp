@@ -7,6 +7,7 @@
 #include "rt_core/spm/error_code.hpp"
 #include "rt_core/spm/header.hpp"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
@@ -24,7 +25,7 @@ struct BaseFace
     ErrorCode error{0};
 };
 
-/// The base mesh as a reader sees it.
+/// The base mesh as a reader sees it; in the model's frame.
 struct BaseView
 {
     std::span<const Vec3f> positions_m;
@@ -40,6 +41,17 @@ struct BaseMesh
     std::span<std::uint32_t> next;
 
     [[nodiscard]] BaseView view() const noexcept { return {positions_m, faces}; }
+    /// One mesh of several that lie in these spans, in cells of its own from `first` on.
+    [[nodiscard]] BaseMesh part(std::uint32_t first, const ModelCounts& counts) const noexcept
+    {
+        return {positions_m.subspan(first, counts.base_vertices),
+                faces.subspan(first, counts.base_faces), next.subspan(first, counts.base_faces)};
+    }
+    /// Cells that a mesh of these counts takes: of a vertex, a face and its `next` each.
+    [[nodiscard]] static std::uint32_t cells_of(const ModelCounts& counts) noexcept
+    {
+        return std::max(counts.base_vertices, counts.base_faces);
+    }
 };
 
 /// How many bits each field of a coded base mesh takes: as many as its largest value.
@@ -62,7 +74,7 @@ struct BaseLayout
     }
 };
 
-/// Bytes of the coded base mesh: the bits of all fields, a checksum.
+/// Bytes of the coded base mesh: the bits of all fields, a checksum. Of a header that parses.
 [[nodiscard]] constexpr std::uint64_t coded_base_bytes(const HeaderFields& fields) noexcept
 {
     const BaseLayout layout(fields);
@@ -71,8 +83,8 @@ struct BaseLayout
     return (fields.base_vertices * vertex + fields.base_faces * face + 7) / 8 + kChecksumBytes;
 }
 
-/// Reads a coded base mesh into `mesh`, whose spans have the header's counts. On refusal the
-/// content of `mesh` is unspecified, nothing else is touched.
+/// Reads a coded base mesh into `mesh`, whose spans have the header's counts (asserted). On refusal
+/// the content of `mesh` is unspecified, nothing else is touched. Time by the bytes.
 [[nodiscard]] Result<Done, SpmRefusal> parse_base_mesh(std::span<const std::byte> bytes,
                                                        const ModelHeader& header,
                                                        const BaseMesh& mesh) noexcept;

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 
+// Any thread: values, and functions of their arguments alone; no call waits or allocates.
 namespace tactus
 {
 

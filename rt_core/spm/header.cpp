@@ -7,7 +7,6 @@
 #include "rt_core/math/vec3.hpp"
 
 #include <bit>
-#include <cmath>
 
 namespace tactus
 {
@@ -23,11 +22,6 @@ bool counts_are_in_range(const HeaderFields& fields) noexcept
            (fields.records == 0) == (fields.max_depth == 0);
 }
 
-bool is_finite(double value) noexcept
-{
-    return std::abs(value) <= kCoordinateRange;
-}
-
 bool geometry_is_in_range(const HeaderFields& fields) noexcept
 {
     if (fields.position_bits < kMinPositionBits || fields.position_bits > kMaxPositionBits ||
@@ -39,14 +33,26 @@ bool geometry_is_in_range(const HeaderFields& fields) noexcept
     bool has_extent = false;
     for (std::size_t axis = 0; axis < 3; ++axis)
     {
-        if (fields.extent_quanta[axis] >= (1U << fields.position_bits) ||
-            !is_finite(fields.origin_m[axis]))
+        if (fields.extent_quanta[axis] >= (1U << fields.position_bits))
         {
             return false;
         }
         has_extent = has_extent || fields.extent_quanta[axis] > 0;
     }
-    return has_extent && is_finite(fields.quantisation_m) && fields.quantisation_m >= 0.0;
+    return has_extent;
+}
+
+/// No coordinate is NaN, either.
+bool is_in_reach(const HeaderFields& fields, double quantum_m) noexcept
+{
+    bool is = true;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+        const double low_m = fields.origin_m[axis];
+        const double high_m = low_m + fields.extent_quanta[axis] * quantum_m;
+        is = is && low_m >= -kModelReachMax_m && high_m <= kModelReachMax_m;
+    }
+    return is;
 }
 
 bool regions_are_in_range(const HeaderFields& fields) noexcept
@@ -88,6 +94,8 @@ const char* refusal_text(SpmRefusal refusal) noexcept
         return "names an id that the model does not have";
     case SpmRefusal::value_out_of_range:
         return "holds a value outside its range";
+    case SpmRefusal::too_far:
+        return "lies farther than 10,000 km from the origin of its coordinates";
     case SpmRefusal::trailing_bytes:
         return "is followed by bytes that do not belong to it";
     case SpmRefusal::wrong_identity:
@@ -119,6 +127,16 @@ Result<ModelHeader, SpmRefusal> ModelHeader::parse(std::span<const std::byte> by
         return SpmRefusal::count_out_of_range;
     }
     if (!geometry_is_in_range(fields) || !regions_are_in_range(fields))
+    {
+        return SpmRefusal::value_out_of_range;
+    }
+    if (!is_in_reach(fields, static_cast<double>(header.quantum_m())))
+    {
+        return SpmRefusal::too_far;
+    }
+    const bool is_fine =
+        fields.quantisation_m >= 0.0 && fields.quantisation_m <= header.diagonal_m();
+    if (!is_fine)
     {
         return SpmRefusal::value_out_of_range;
     }

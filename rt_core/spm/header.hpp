@@ -19,30 +19,32 @@ namespace tactus
 
 /// The first 128 bits of BLAKE2b-256 over a chunk, index page or base mesh in its coded form, or,
 /// for a model, over its header: headers name the hashes of index pages, index pages those of
-/// chunks, so a model's hash covers every byte of it (docs/spm-format.md).
+/// chunks, so a model's hash covers every byte of it (docs/internals/spm-format.md).
 using ContentHash = std::array<std::uint8_t, 16>;
 
 /// Why bytes were refused. `refusal_text` gives the words for a message.
 enum class SpmRefusal : std::uint8_t
 {
-    too_short,
+    too_short, ///< Fewer bytes than are stated.
     wrong_magic,
-    unknown_version,
-    wrong_checksum,
-    wrong_size,
+    unknown_version, ///< Not kFormatVersion and kCoderVersion.
+    wrong_checksum,  ///< Or, where hashes are verified, another hash.
+    wrong_size,      ///< A size that is stated is not what the counts make.
     count_out_of_range,
-    id_out_of_range,
+    id_out_of_range, ///< A vertex, face or record that the model doesn't have.
     value_out_of_range,
-    trailing_bytes,
+    too_far,        ///< Beyond kModelReachMax_m.
+    trailing_bytes, ///< More bytes than are stated.
     wrong_identity, ///< Sound bytes, but of another model, page or chunk than was asked for.
 };
 
+/// Words that follow what was refused, such as a file's name; static.
 [[nodiscard]] const char* refusal_text(SpmRefusal refusal) noexcept;
 
 inline constexpr std::array<char, 8> kSpmMagic{'T', 'A', 'C', 'T', 'S', 'P', 'M', '\n'};
 inline constexpr std::uint16_t kFormatVersion = 1;
 /// Version 1 wrote every field of a record explicitly, version 2 had no pair contractions;
-/// docs/decisions/0006-chunk-coder.md.
+/// docs/internals/decisions/0006-chunk-coder.md.
 inline constexpr std::uint16_t kCoderVersion = 3;
 
 /// Whether every edge of the source has two faces of like winding: then a distance has a sign.
@@ -66,9 +68,9 @@ struct HeaderFields
     std::uint16_t topology{0};                    ///< kOpenTopology or kClosedTopology.
     std::array<std::uint32_t, 3> extent_quanta{}; ///< Largest coordinate; the smallest is 0.
     std::uint32_t max_depth{0};                   ///< Largest dependency depth of a record.
-    std::array<double, 3> origin_m{};             ///< Source position of coordinate (0, 0, 0).
-    double quantisation_m{0.0};                   ///< Largest |source - grid| of a vertex.
-    std::uint32_t source_vertices{0};             ///< Of the quantised mesh.
+    std::array<double, 3> origin_m{};             ///< Of (0, 0, 0), in the source's frame.
+    double quantisation_m{0.0};       ///< Largest |source - grid| of a vertex, up to the diagonal.
+    std::uint32_t source_vertices{0}; ///< Of the quantised mesh.
     std::uint32_t source_faces{0};
     std::uint32_t rounds{0};             ///< Rounds of collapses.
     std::uint32_t max_error_quanta{0};   ///< Largest bound of any face state, rounded up.
@@ -103,13 +105,14 @@ struct IndexPageEntry
 
 static_assert(sizeof(IndexPageEntry) == 48);
 
-/// A header that passed every check. `index` and `regions` are views into the parsed bytes: the
-/// bytes must outlive it.
+/// A header that passed every check; a default one has no model. It is a view into the parsed
+/// bytes: they must outlive it and its copies.
 class ModelHeader
 {
 public:
     /// Checks everything: magic, versions, sizes (in 64 bits), counts, ranges and the checksum.
-    /// `bytes` is exactly one header. Does not verify hashes (rt_core has no cryptography).
+    /// `bytes` is exactly one header. Does not verify hashes (rt_core has no cryptography). Time by
+    /// the bytes.
     [[nodiscard]] static Result<ModelHeader, SpmRefusal>
     parse(std::span<const std::byte> bytes) noexcept;
 
@@ -120,6 +123,7 @@ public:
     }
     /// Metres in one quantum; a power of two, so products with grid integers are exact floats.
     [[nodiscard]] float quantum_m() const noexcept TACTUS_NONBLOCKING;
+    /// Of the model's bounding box.
     [[nodiscard]] double diagonal_m() const noexcept;
     /// Where the source mesh has the origin of the model's frame; the axes are parallel.
     [[nodiscard]] Vec3 origin_m() const noexcept
@@ -128,11 +132,14 @@ public:
     }
     [[nodiscard]] bool is_closed() const noexcept { return fields_.topology == kClosedTopology; }
 
+    /// - There is such a page (asserted).
     [[nodiscard]] IndexPageEntry index_entry(IndexPageId page) const noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] std::uint32_t region_count() const noexcept
     {
         return fields_.region_grid[0] * fields_.region_grid[1] * fields_.region_grid[2];
     }
+    /// Whether any face meets the region.
+    /// - There is such a region (asserted).
     [[nodiscard]] bool is_occupied(RegionId region) const noexcept;
     /// The region that holds a point of the model's frame; the nearest one for points outside.
     [[nodiscard]] RegionId region_at(const std::array<double, 3>& point_m) const noexcept;
@@ -150,6 +157,7 @@ private:
 /// checksum.
 inline constexpr std::size_t kRootHashBytes = 32;
 inline constexpr std::size_t kChecksumBytes = 4;
+/// Of a whole header, up to and with the checksum.
 [[nodiscard]] constexpr std::uint64_t header_bytes(std::uint64_t index_pages,
                                                    std::uint64_t regions) noexcept
 {

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <span>
 
+// Any thread: values, and functions of their arguments alone; no call waits or allocates.
 namespace tactus
 {
 

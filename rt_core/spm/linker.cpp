@@ -54,8 +54,16 @@ Linker::Linker(LinkPool& pool, std::uint32_t owner, const ModelHeader& header,
     TACTUS_ASSERT(residents_.size() == slots.pages.size());
 }
 
+void Linker::set_base(const BaseMesh& base) noexcept
+{
+    TACTUS_ASSERT(pages_here_ == 0);
+    slots_.base = base;
+}
+
 void Linker::link_page(ChunkId chunk, std::uint32_t slot) noexcept
 {
+    TACTUS_ASSERT(has_base());
+    ++pages_here_;
     TACTUS_ASSERT(chunk.value < counts_.chunks());
     TACTUS_ASSERT(slot < residents_.size());
     TACTUS_ASSERT(residents_[slot].chunk.is_none());
@@ -74,6 +82,8 @@ void Linker::release_page(std::uint32_t slot) noexcept
     TACTUS_ASSERT(slot < residents_.size());
     TACTUS_ASSERT(!residents_[slot].chunk.is_none());
     TACTUS_ASSERT(residents_[slot].owner == owner_);
+    TACTUS_ASSERT(pages_here_ > 0);
+    --pages_here_;
     const ChunkId chunk = residents_[slot].chunk;
     for (std::uint32_t place = 0; place < records_in_chunk(counts_, chunk); ++place)
     {

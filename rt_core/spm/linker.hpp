@@ -95,6 +95,12 @@ public:
     Linker(LinkPool& pool, std::uint32_t owner, const ModelHeader& header,
            PageSlots slots) noexcept;
 
+    /// The base mesh of a model that comes, or none of one that goes. No page is here then.
+    void set_base(const BaseMesh& base) noexcept;
+    [[nodiscard]] bool has_base() const noexcept { return !slots_.base.faces.empty(); }
+    /// Of this model.
+    [[nodiscard]] std::uint32_t pages_here() const noexcept { return pages_here_; }
+
     /// A page was parsed into `slot`: links what can be linked now, in it and in waiting pages.
     /// Cost: per record, and per waiting record that one of them was the last thing missing for.
     void link_page(ChunkId chunk, std::uint32_t slot) noexcept;
@@ -185,6 +191,7 @@ private:
     std::span<Seat> lists_;
     Seat ready_{kNoSeat}; ///< Records to look at, a list of the same kind.
     Owing owing_;
+    std::uint32_t pages_here_{0};
     std::uint64_t linked_count_{0};
     std::uint64_t looks_{0};
     std::uint64_t refused_count_{0};

@@ -15,7 +15,8 @@ namespace tactus
 {
 
 /// The memory in which a model's pages live, seen by both threads. Pages and index pages are those
-/// of all models, each slot of one at a time; the base mesh is the model's own.
+/// of all models, each slot of one at a time; the base mesh is the model's own. Before models it is
+/// the memory in which those that come and go have theirs.
 ///
 /// The transport thread alone writes it: a page's content while the slot is on loan to it, and
 /// later only `next` (through std::atomic_ref). The haptic thread reads slots that were handed over
@@ -37,6 +38,8 @@ struct PageSlots
         return slots.of_model(arena, counts);
     }
 
+    /// The same pages, without a base mesh so far.
+    [[nodiscard]] PageSlots without_base() const noexcept { return {pages, index_pages, {}}; }
     /// The same pages, with a base mesh of its own.
     [[nodiscard]] PageSlots of_model(Arena& arena, const ModelCounts& counts) const noexcept
     {

@@ -70,6 +70,14 @@ public:
         --used_;
     }
 
+    /// The forest has left: no record of the page is refined or held any more.
+    void forget_refined(std::uint32_t slot) noexcept
+    {
+        TACTUS_ASSERT(is_own(slot));
+        meta_[slot].refined = 0;
+        meta_[slot].held = 0;
+    }
+
     /// The chunk's slot, or IdTable::kAbsent.
     [[nodiscard]] std::uint32_t find(ChunkId chunk) const noexcept
     {

@@ -38,7 +38,7 @@ struct LinkedStar
 /// faces, are among what its record depends on, so whoever has that can resolve it.
 ///
 /// `Lookup` has `LinkedStar find(RecordId) const`, for records of the model. Bounded by the star's
-/// size; whole numbers but for one root. Source: docs/spm-format.md, section 6.
+/// size; whole numbers but for one root. Source: docs/internals/spm-format.md, section 6.
 template <typename Lookup>
 class StarResolver
 {

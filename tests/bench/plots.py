@@ -365,29 +365,30 @@ def svg(picture, data):
     return re.sub(r"\n\s*(?!<g id=|\s)", " ", text.getvalue()).rstrip() + "\n"
 
 
-def main(arguments):
+def run(arguments, usage, pictures, data_of):
+    """Draws or checks them in a folder; each is drawn from what `data_of` makes of that folder."""
     if len(arguments) != 2 or arguments[0] not in ("draw", "check"):
-        print(__doc__, file=sys.stderr)
+        print(usage, file=sys.stderr)
         return 3
     command, folder = arguments[0], pathlib.Path(arguments[1])
     is_check = command == "check"
     if matplotlib is None or (is_check and matplotlib.__version__ != DRAWN_BY):
         print(f"plots.py: there is no python3-matplotlib{' ' + DRAWN_BY if is_check else ''}")
         return 77 if is_check else 2
-    data, code = Results(folder), 0
-    for picture in PICTURES:
-        path, text = folder / f"{picture.__name__}.svg", svg(picture, data)
-        if not is_check:
-            path.write_text(text, encoding="utf-8")
-        elif not path.exists() or path.read_text(encoding="utf-8") != text:
-            print(f"{path}: not what the results beside it give; draw it anew")
-            code = 1
+    try:
+        data, code = data_of(folder), 0
+        for picture in pictures:
+            path, text = folder / f"{picture.__name__}.svg", svg(picture, data)
+            if not is_check:
+                path.write_text(text, encoding="utf-8")
+            elif not path.exists() or path.read_text(encoding="utf-8") != text:
+                print(f"{path}: not what would be drawn now; draw it anew")
+                code = 1
+    except (results.Failure, OSError) as error:
+        print(f"plots.py: {error}", file=sys.stderr)
+        return 2
     return code
 
 
 if __name__ == "__main__":
-    try:
-        sys.exit(main(sys.argv[1:]))
-    except (results.Failure, OSError) as error:
-        print(f"plots.py: {error}", file=sys.stderr)
-        sys.exit(2)
+    sys.exit(run(sys.argv[1:], __doc__, PICTURES, Results))

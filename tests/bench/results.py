@@ -5,7 +5,8 @@
 
     results.py store FOLDER RESULTS      files of a run of tactus_bench --json, one for each suite
     results.py check FOLDER PAGE [RESULTS...]
-                                         the files' form and the page's tables of them
+                                         the files' form, and the tables of them in the page and in
+                                         FOLDER's own pages (*.md)
 
 A file has what tactus_bench --json writes, a row a line. store leaves and names: a suite that failed;
 one of a full run when the new one is not (--quick, --frames, --only ...) or lacks rows that it has;
@@ -35,7 +36,7 @@ COUNTS = "counts"
 
 TABLE = re.compile(r"<!--((?: benchmarks/\w+\.json)+) -->\n\n((?:\|.*\|\n)+)")
 NUMBER = re.compile(r"(?<![\w.,-])-?\d+(?:,\d{3})*(?:\.\d+)?(?:e-?\d+)?(?![\w.])")
-PICTURE = re.compile(r"!\[[^\]]*\]\(benchmarks/(\w+\.svg)\)")
+PICTURE = re.compile(r"!\[[^\]]*\]\((?:benchmarks/)?(\w+\.svg)\)")
 
 
 class Failure(Exception):
@@ -154,7 +155,8 @@ def history_faults(page, files, folder):
 
 
 def check(folder, page_path, *others):
-    page = page_path.read_text(encoding="utf-8")
+    page = "\n".join(path.read_text(encoding="utf-8")
+                     for path in [page_path, *sorted(folder.glob("*.md"))])
     files = sorted(folder.glob("*.json"))
     found = [f"{path}: {fault}" for path in [*files, *others] for fault in form_faults(read(path))]
     found += [f"{path}: a row of another suite" for path in files

@@ -56,8 +56,7 @@ int run(int argc, char** argv)
     line.add_option("--name", options.name, "Its own, for the host").show_default();
     line.add_option("--domain", options.domain, "DDS domain id").integer_between(0, 232);
     line.add_option("--objects", options.objects, "How many there are to have");
-    line.add_option("--models", options.models,
-                    "Instead: header and base mesh of so many, model-0 and so on");
+    line.add_option("--models", options.models, "Instead: headers of so many, model-0 and so on");
     line.add_option("--at", options.at_ns, "When to begin, on the monotonic clock, in ns");
     if (const std::optional<int> code = line.parse(argc, argv))
     {
@@ -84,7 +83,7 @@ int run(int argc, char** argv)
         {
             selectors.push_back({fmt::format("model-{}", i), std::nullopt});
         }
-        const auto models = client.value()->find_all(selectors, std::chrono::seconds(60));
+        const auto models = client.value()->find_headers(selectors, std::chrono::seconds(60));
         if (!models)
         {
             return line.fail(models.error().text);

@@ -9,6 +9,8 @@
 #include "tests/bench/measuring.hpp"
 #include "tests/bench/own_network.hpp"
 #include "tests/bench/program.hpp"
+#include "tests/bench/published.hpp"
+#include "tests/bench/relayed_networks.hpp"
 #include "tests/bench/scene_cases.hpp"
 #include "tests/bench/showing_host.hpp"
 
@@ -139,6 +141,22 @@ Result<std::string, SceneError> measured(const Files& files, const std::filesyst
     return figures ? Result<std::string, SceneError>(figures.value().dump()) : figures.error();
 }
 
+/// Of some hundred faces or more, each a little larger than the one before.
+Result<const Scene*, SceneError> wire_scene(const CaseContext& context, std::uint32_t number,
+                                            std::uint32_t faces)
+{
+    NamedMesh named{fmt::format("wire-{}-{}", faces, number),
+                    make_shape(Shape::bumpy_sphere, faces).value()};
+    for (auto& position : named.mesh.positions)
+    {
+        for (double& coordinate : position)
+        {
+            coordinate *= 1.0 + 1e-3 * number;
+        }
+    }
+    return context.scenes.get(named);
+}
+
 struct WireCase
 {
     std::uint32_t models;
@@ -159,17 +177,7 @@ CaseFailure run_wire_case(const CaseContext& context, const WireCase& test_case)
     Files files;
     for (std::uint32_t i = 0; i < test_case.models; ++i)
     {
-        // Of some hundred faces, each a little larger than the one before.
-        constexpr std::uint32_t kFaces = 1'000;
-        NamedMesh named{fmt::format("wire-{}", i), make_shape(Shape::bumpy_sphere, kFaces).value()};
-        for (auto& position : named.mesh.positions)
-        {
-            for (double& coordinate : position)
-            {
-                coordinate *= 1.0 + 1e-3 * i;
-            }
-        }
-        const auto scene = context.scenes.get(named);
+        const auto scene = wire_scene(context, i, 1'000);
         if (!scene)
         {
             return scene.error().text;
@@ -252,21 +260,19 @@ Result<Json, SceneError> measure_joins(ShowingHost& host, const std::filesystem:
 }
 
 constexpr const char* kStart = "start with 256 models";
-constexpr const char* kLoop = "hrtc with 256 models, until its loop begins";
+constexpr const char* kFarModel = "a far model at the start";
+constexpr const char* kLoop = "hrtc with 256 guests, until its loop begins";
+constexpr const char* kWhole = "hrtc with 256 whole models, until its loop begins";
 
 /// From the start of the program to the line that tells what it touches, in ms.
-Result<double, SceneError> start_of_hrtc(const std::filesystem::path& folder)
+Result<double, SceneError> start_of_hrtc(const std::filesystem::path& folder,
+                                         const std::vector<std::string>& arguments)
 {
     ProgramSetup setup;
-    setup.words = {program_path("hrtc"), "--allow-no-rt",
-                   "--domain",           fmt::format("{}", kDomain),
-                   "--pool-mib",         "64",
-                   "--duration",         "1"};
-    for (std::uint32_t i = 0; i < kModels; ++i)
-    {
-        setup.words.insert(setup.words.end(), {"--model", fmt::format("model-{}", i)});
-    }
-    setup.output = folder / "hrtc.log";
+    setup.words = {program_path("hrtc"),       "--allow-no-rt", "--domain",
+                   fmt::format("{}", kDomain), "--duration",    "1"};
+    setup.words.insert(setup.words.end(), arguments.begin(), arguments.end());
+    setup.output = folder / fmt::format("hrtc-{}.log", arguments.size()); // A fresh one.
     const auto begin = BenchClock::now();
     auto started = Program::start(setup);
     if (!started)
@@ -289,12 +295,124 @@ Result<Json, SceneError> measure_start(ShowingHost& /*host*/, const std::filesys
     {
         return one.error();
     }
-    const auto loop = start_of_hrtc(folder);
+    const auto loop = start_of_hrtc(folder, {"--scene", "bench", "--pool-mib", "8"});
     if (!loop)
     {
         return loop.error();
     }
-    return Json{{kStart, one.value().longest_ms()}, {kLoop, loop.value()}};
+    std::vector<std::string> all{"--pool-mib", "64"};
+    for (std::uint32_t i = 0; i < kModels; ++i)
+    {
+        all.insert(all.end(), {"--model", fmt::format("model-{}", i)});
+    }
+    const auto whole = start_of_hrtc(folder, all);
+    if (!whole)
+    {
+        return whole.error();
+    }
+    return Json{{kStart, one.value().longest_ms()},
+                {kFarModel, one.value().bytes() / kModels},
+                {kLoop, loop.value()},
+                {kWhole, whole.value()}};
+}
+
+struct GuestCase
+{
+    std::uint32_t models;
+    std::uint32_t objects;
+    std::uint32_t visits; ///< Of objects, one after the other.
+    const char* pool_mib;
+};
+
+/// A scene file in the folder, of small objects on a grid that show the files in turn.
+std::filesystem::path write_scene(const Files& files, double diagonal_m, std::uint32_t objects,
+                                  const std::filesystem::path& folder)
+{
+    constexpr double kSize_m = 0.08;
+    constexpr double kApart_m = 0.15;
+    for (std::size_t i = 0; i < files.size(); ++i)
+    {
+        std::filesystem::create_symlink(files[i], folder / fmt::format("model-{}.spm", i));
+    }
+    Json scene{{"asset", {{"version", "2.0"}}}, {"scene", 0}, {"scenes", {{{"nodes", {}}}}}};
+    for (std::uint32_t i = 0; i < objects; ++i)
+    {
+        const double scale = kSize_m / diagonal_m;
+        const std::string model = fmt::format("model-{}.spm", i % files.size());
+        scene["scenes"][0]["nodes"].push_back(i);
+        scene["nodes"].push_back({{"name", fmt::format("object-{}", i)},
+                                  {"translation", {kApart_m * (i % 15), kApart_m * (i / 15), 0.0}},
+                                  {"scale", {scale, scale, scale}},
+                                  {"extras", {{"tactus", {{"model", model}}}}}});
+    }
+    const std::filesystem::path path = folder / "scene.gltf";
+    std::ofstream(path) << scene.dump();
+    return path;
+}
+
+/// A hand at 2 m/s over 20 ms, in pools that don't hold all models.
+CaseFailure run_guest_case(const CaseContext& context, const GuestCase& test_case)
+{
+    Files files;
+    double diagonal_m = 0.0;
+    for (std::uint32_t i = 0; i < test_case.models; ++i)
+    {
+        const auto scene = wire_scene(context, i, 2'000);
+        if (!scene)
+        {
+            return scene.error().text;
+        }
+        files.push_back(scene.value()->model.path);
+        diagonal_m = scene.value()->model.diagonal_m;
+    }
+    const test::TemporaryFolder folder("scene-guests");
+    const auto path = write_scene(files, diagonal_m, test_case.objects, folder.path());
+    auto networks = RelayedNetworks::make({10.0}, folder.path());
+    if (!networks)
+    {
+        return networks.error().text;
+    }
+    auto host = start_at(networks.value().host(), "spm_publish", folder.path(),
+                         {path.string(), "--scene", "bench"});
+    if (!host)
+    {
+        return host.error().text;
+    }
+    if (const auto ready = host.value().wait_for("ready on DDS domain", kStartTimeout); !ready)
+    {
+        return ready.error().text;
+    }
+    auto rider = start_at(networks.value().controller(), "scene_rider", folder.path(),
+                          {"--scene", "bench", "--pool-mib", test_case.pool_mib, "--visits",
+                           fmt::format("{}", test_case.visits)});
+    if (!rider)
+    {
+        return rider.error().text;
+    }
+    if (const auto ended = rider.value().wait(); !ended)
+    {
+        return ended.error().text;
+    }
+    std::ifstream log(folder.path() / "scene_rider.log");
+    std::string line;
+    while (std::getline(log, line) && !line.starts_with('{'))
+    {
+    }
+    const Json told = Json::parse(line);
+    if (told["touched"] != told["visits"] || told["are_guests"] == 0)
+    {
+        return "not every object was touched, or all models are here: " + line;
+    }
+    Row common = context.common_row("bumpy-sphere-2000", "guests");
+    common.setting = fmt::format("{} MiB", test_case.pool_mib);
+    CaseRows rows(context.rows, common);
+    rows.add("start", told["start_ms"].get<double>(), "ms", 500.0);
+    rows.add("invisible wall frames, 2 m/s, 20 ms", told["invisible_wall_frames"].get<double>(), "",
+             0.0);
+    rows.add("wanted to resident, max", told["came_ms_max"].get<double>(), "ms");
+    rows.add("base meshes that came", told["came"].get<double>(), "");
+    rows.add("models here at once", told["here_max"].get<double>(), "");
+    return std::nullopt;
 }
 
 } // namespace
@@ -317,7 +435,12 @@ std::vector<Case> scene_wire_cases()
                                       measure_joins,
                                       {{kTogether, "s", 5.0}, {kBytes, "", 2.0}, {kLoaded, "s"}}}),
         wire("wire, 256 models",
-             {kModels, 1, measure_start, {{kStart, "ms", 500.0}, {kLoop, "ms", 500.0}}}),
+             {kModels,
+              kModels,
+              measure_start,
+              {{kStart, "ms", 500.0}, {kFarModel, "B"}, {kLoop, "ms", 500.0}, {kWhole, "ms"}}}),
+        make_case("guests, 200 objects of 200 models", When::full_only, run_guest_case,
+                  GuestCase{200, 200, 60, "8"}),
     };
 }
 

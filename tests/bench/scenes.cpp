@@ -3,6 +3,8 @@
 #include "tests/bench/scenes.hpp"
 
 #include "host_tools/cli/progress.hpp"
+#include "host_tools/encode/decoded_model.hpp"
+#include "host_tools/encode/extract.hpp"
 #include "host_tools/encode/write_spm.hpp"
 #include "host_tools/mesh/prepare.hpp"
 #include "host_tools/mesh/read_mesh.hpp"
@@ -11,6 +13,7 @@
 #include "tests/bench/mesh_refinement.hpp"
 #include "tests/bench/random.hpp"
 #include "transport/content_hash.hpp"
+#include "transport/store/model_store.hpp"
 
 #include <fmt/format.h>
 
@@ -51,7 +54,7 @@ std::string encoded_name(const std::string& name, const PreparedMesh& prepared)
 std::optional<SceneError> encode(const test::TestModel& model, const PreparedMesh& prepared,
                                  std::uint32_t position_bits)
 {
-    Progress progress("encode " + model.name, "faces");
+    Progress progress("tactus_bench", "encode " + model.name, "faces");
     SimplifyOptions options;
     options.base_faces = kBaseFaces;
     options.threads = std::max(1U, std::thread::hardware_concurrency());
@@ -98,6 +101,23 @@ Result<NamedMesh, SceneError> source_mesh(const SceneSource& source)
         fine = with_normal_noise(fine, kNoiseShare, kSeed);
     }
     return NamedMesh{source.name, std::move(fine)};
+}
+
+Result<NamedMesh, SceneError> coarser_mesh(const std::string& name, const test::TestModel& model,
+                                           std::uint32_t faces)
+{
+    const auto store = ModelStore::open(model.path);
+    if (!store)
+    {
+        return SceneError{store.error().text};
+    }
+    std::vector<std::string> damage;
+    const DecodedModel decoded = DecodedModel::decode(store.value(), damage);
+    if (!damage.empty())
+    {
+        return SceneError{damage.front()};
+    }
+    return NamedMesh{name, extract(decoded, {faces, {}, {}}).mesh};
 }
 
 SceneStore::SceneStore(std::filesystem::path cache) : folder_(std::move(cache))

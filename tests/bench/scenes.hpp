@@ -61,6 +61,9 @@ struct NamedMesh
 /// The well-known mesh where it is at hand, a generated stand-in of about its size elsewhere, which
 /// its name says.
 [[nodiscard]] Result<NamedMesh, SceneError> source_mesh(const SceneSource& source);
+/// The finest mesh of at most so many faces that a model has, or its base mesh.
+[[nodiscard]] Result<NamedMesh, SceneError>
+coarser_mesh(const std::string& name, const test::TestModel& model, std::uint32_t faces);
 
 /// Makes scenes when they are first asked for and keeps them. Encoded models go into the cache
 /// folder, under a name made of the mesh and of the encoder's sources, or into a folder that goes

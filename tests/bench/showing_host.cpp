@@ -40,7 +40,7 @@ ShowingHost::start(std::uint32_t domain, const std::vector<std::filesystem::path
         }
         models.push_back({fmt::format("model-{}", models.size()), std::move(store).value()});
     }
-    auto made = dds::DdsHost::create(domain, std::move(models), {});
+    auto made = dds::DdsHost::create(domain, std::move(models), {}, "bench");
     if (!made)
     {
         return SceneError{made.error().text};
@@ -51,7 +51,7 @@ ShowingHost::start(std::uint32_t domain, const std::vector<std::filesystem::path
     {
         ShownObject object;
         object.name = fmt::format("object-{}", i);
-        object.model = host.models().front().store().hash();
+        object.model = host.models()[i % host.models().size()].store().hash();
         object.pose = place_of(i);
         if (const auto shown = host.objects().show(object); !shown)
         {

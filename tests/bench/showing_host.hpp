@@ -20,7 +20,8 @@ namespace tactus::bench
 class ShowingHost
 {
 public:
-    /// Serves these files as "model-0" and so on; the objects are of the first one.
+    /// Serves these files as "model-0" and so on; the objects, in the scene "bench", show them in
+    /// turn.
     [[nodiscard]] static Result<std::unique_ptr<ShowingHost>, SceneError>
     start(std::uint32_t domain, const std::vector<std::filesystem::path>& files,
           std::uint32_t objects);

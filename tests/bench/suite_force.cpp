@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// The suite `force`: forces on a surface where they are known, docs/benchmarks.md#force. A device
-/// sweeps round the bumpy sphere, held 1 mm below where the proxy's centre rests.
+/// The suite `force`: forces on a surface where they are known (docs/benchmarks.md). A
+/// device sweeps round the bumpy sphere, held 1 mm below where the proxy's centre rests.
 
 #include "host_tools/shapes/shapes.hpp"
 #include "tests/bench/force_rows.hpp"
 #include "tests/bench/measuring.hpp"
+#include "tests/bench/rigid_sweeps.hpp"
 #include "tests/bench/suites.hpp"
 
 #include <fmt/format.h>
@@ -333,6 +334,7 @@ std::vector<Case> force_cases()
                              return run_mesh(context, mesh, *coarser);
                          }});
     }
+    cases.push_back({"rigid", When::always, run_rigid_sweeps});
     cases.push_back({"units", When::always, run_units});
     cases.push_back({"recorded", When::always,
                      [](const CaseContext& context) -> CaseFailure

@@ -15,6 +15,7 @@
 #include "tests/stability/garbage_trial.hpp"
 #include "tests/stability/mesh_trial.hpp"
 #include "tests/stability/pop_through_trial.hpp"
+#include "tests/stability/rigid_garbage_trial.hpp"
 #include "tests/stability/rigid_trial.hpp"
 #include "tests/stability/scene_trial.hpp"
 #include "tests/stability/split_merge_trial.hpp"
@@ -342,6 +343,13 @@ void try_garbage(const Sizes& sizes, bool /*full*/, const Report& report)
         TrialFigures figures = test::run_garbage_trial(model, oracle, garbage, sizes.garbage_frames,
                                                        test::seed_of(kStabilitySeed));
         figures.name = std::string("device garbage, ") + garbage.name;
+        report(figures);
+    }
+    for (const test::Garbage& garbage : test::rigid_garbage_kinds())
+    {
+        TrialFigures figures = test::run_rigid_garbage_trial(garbage, sizes.garbage_frames / 4,
+                                                             test::seed_of(kStabilitySeed));
+        figures.name = std::string("device garbage, box, ") + garbage.name;
         report(figures);
     }
 }

@@ -4,7 +4,6 @@
 /// The suite `table1`: the models of the paper's Table 1, encoded by us, and how high the AB-Tree
 /// over each is when it is fully refined.
 
-#include "host_tools/encode/extract.hpp"
 #include "host_tools/shapes/shapes.hpp"
 #include "tests/bench/scenes.hpp"
 #include "tests/bench/static_model.hpp"
@@ -57,18 +56,7 @@ Result<NamedMesh, SceneError> small_bunny()
     }
     const std::string name = fmt::format("{}-of-{}", kSmallBunnyFaces, named.value().name);
     const test::TestModel& scan = test::test_model("for-" + name, named.value().mesh, 500);
-    const auto store = ModelStore::open(scan.path);
-    if (!store)
-    {
-        return SceneError{store.error().text};
-    }
-    std::vector<std::string> damage;
-    const DecodedModel decoded = DecodedModel::decode(store.value(), damage);
-    if (!damage.empty())
-    {
-        return SceneError{damage.front()};
-    }
-    return NamedMesh{name, extract(decoded, {kSmallBunnyFaces, {}, {}}).mesh};
+    return coarser_mesh(name, scan, kSmallBunnyFaces);
 }
 
 constexpr std::array<Table1Case, 4> kCases{{{"sphere", 50, sphere},

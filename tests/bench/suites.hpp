@@ -38,6 +38,7 @@ struct Suite
 [[nodiscard]] Suite starve_suite();
 [[nodiscard]] Suite stream_suite();
 [[nodiscard]] Suite table1_suite();
+[[nodiscard]] Suite table2_suite();
 
 /// In the order in which they are told.
 [[nodiscard]] std::vector<Suite> all_suites();

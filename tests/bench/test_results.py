@@ -119,6 +119,13 @@ class Kept(unittest.TestCase):
             with self.subTest(new):
                 self.assertEqual(self.check(PAGE.replace(old, new)), 1)
 
+    def test_pages_of_the_folder_are_checked_too(self):
+        self.store()
+        more = self.folder / "more.md"
+        for text, code in ((PAGE, 0), (PAGE.replace("1.23,", "1.24,"), 1)):
+            more.write_text(text.replace("](benchmarks/", "]("))
+            self.assertEqual(self.check(PAGE), code, self.said)
+
     def test_files_of_another_form_are_found(self):
         for change in (lambda kept: kept.pop("commit"), lambda kept: kept["machine"].pop("date_utc"),
                        lambda kept: kept["rows"][0].pop("unit"),

@@ -55,7 +55,7 @@ expect_refusal() { # expect_refusal GUARD TEXT: fails, and the output has TEXT.
 
 begin_house
 for guard in floors line_length no_leftovers machine_paths licence files_listed limits_tested \
-    own_header_first threads_told; do
+    own_header_first threads_told links named_tests; do
     expect_clean "$guard"
 done
 
@@ -106,6 +106,34 @@ source_file rt_core/base/good.cpp '#include <array>'
 expect_refusal own_header_first 'rt_core/base/good.cpp:4: its own header, rt_core/base/good.hpp, is'
 source_file rt_core/base/good.hpp 'int* thread(); // Of a needle.'
 expect_refusal threads_told 'rt_core/base/good.hpp:1: is installed, and no comment says'
+# Spelt in two parts, so that this file passes.
+source_file rt_core/base/good.hpp '// See docs/''nowhere.md; a thread.'
+expect_refusal links "rt_core/base/good.hpp:4: names 'docs/""nowhere.md', which is not there"
+printf '# One way\n[a](page.md#one-way) [b](page.md#another)\n' >"$house/page.md"
+expect_refusal links "page.md:2: a link to 'page.md#another', which is not there"
+printf '[a](../nowhere.md)\n' >"$house/page.md"
+expect_refusal links "page.md:1: a link to '../nowhere.md', which is not there"
+
+# shellcheck disable=SC2016 # CMake's marks, and the pages'.
+printf '# SPDX-License-Identifier: Apache-2.0\n%s\n' 'add_executable(t unit/test_good.cpp)' \
+    'foreach(name one two)' 'add_test(NAME good.${name} COMMAND t)' 'endforeach()' \
+    'add_test(NAME good.whole COMMAND t)' 'tactus_test(test_all SOURCES unit/test_good.cpp)' \
+    >"$house/tests/CMakeLists.txt"
+source_file tests/unit/test_good.cpp 'TEST_F(GoodSuite, says_so) {}'
+# shellcheck disable=SC2016
+named='`good.one`, `good.whole`, `page.md`, `test_all` GoodSuite and `test_good`'
+printf '%s\n' "$named" >"$house/page.md"
+expect_clean named_tests
+# shellcheck disable=SC2016
+for fault in '`good.three`|good.three' '`test_none`|test_none' '`test_all` GoodSuite, Bad|Bad'; do
+    printf '%s\n' "$named" "${fault%|*}" >"$house/page.md"
+    output=$(run_guard named_tests) && code=0 || code=$?
+    if ((code == 0)) || [[ "$output" != *"page.md:2: no "*"called '${fault#*|}'"* ]]; then
+        printf 'named_tests: %s: exit %d and:\n%s\n' "$fault" "$code" "$output"
+        failures=$((failures + 1))
+    fi
+done
+begin_house
 
 # An archive whose one object takes memory from the heap.
 printf 'int* make() { return new int(1); }\n' >"$house/heap.cpp"

@@ -30,9 +30,10 @@ expect 3 "--seconds 'ten'" demo --seconds ten
 expect 3 "--seconds '0'" demo --seconds 0
 expect 3 "--seconds ''" demo --seconds
 expect 3 "--domain '233'" demo --domain 233
-expect 3 "--quick, --peers and --docs are for 'bench' only" test --quick
-expect 3 "--quick, --peers and --docs are for 'bench' only" packages --peers
-expect 3 "--quick, --peers and --docs are for 'bench' only" build --docs
+expect 3 "--quick, --peers and --docs are for 'bench' and 'rt-machine' only" test --quick
+expect 3 "--quick, --peers and --docs are for 'bench' and 'rt-machine' only" packages --peers
+expect 3 "--quick, --peers and --docs are for 'bench' and 'rt-machine' only" build --docs
+expect 3 "--peers is for 'bench' only" rt-machine --peers
 TACTUS_MESHES=nowhere expect 3 'TACTUS_MESHES must name the folder' bench --docs
 
 # A dpkg that knows nothing and a sudo that refuses stand in for a user without packages and root.
@@ -53,7 +54,7 @@ mkdir -p "$scratch"/{tools,house/cmake,house/build/release/bin}
 cp "$setup" "$scratch/house/cmake"
 printf 'dpkg\n' | tee "$scratch"/house/cmake/packages{,-test}.txt \
     >"$scratch/house/cmake/packages-bench.txt"
-printf '#!/bin/sh\nexit 0\n' >"$scratch/tools/cmake"
+printf '#!/bin/sh\necho "$@" >>"%s/built"\n' "$scratch" >"$scratch/tools/cmake"
 bench=$scratch/house/build/release/bin/tactus_bench
 printf '#!/bin/sh\necho "$@" >"%s/asked"\n' "$scratch" >"$bench"
 chmod +x "$scratch/tools/cmake" "$bench"
@@ -76,6 +77,16 @@ counts_instructions() { # counts_instructions YES|NO OPTION...
 counts_instructions YES --peers
 counts_instructions NO --peers --quick
 counts_instructions NO
+
+# The programs alone, without tests and what is for them.
+rm "$scratch/built"
+PATH="$scratch/tools:$PATH" bash "$scratch/house/cmake/setup.sh" programs >"$scratch/said" 2>&1 \
+    || { cat "$scratch/said"; failures=$((failures + 1)); }
+if ! grep -q -e '-DTACTUS_TESTS=OFF' "$scratch/built" || ! grep -q ' --target .*hrtc' \
+    "$scratch/built" || grep -qE ' (all|test_[a-z]+)( |$)' "$scratch/built"; then
+    printf 'setup.sh programs: %s\n' "$(<"$scratch/built")"
+    failures=$((failures + 1))
+fi
 
 if ((failures > 0)); then
     exit 1

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# python_reader.sh SPM_BUILD: a second reader, which follows docs/spm-format.md, must find in the
+# python_reader.sh SPM_BUILD: a second reader, by docs/internals/spm-format.md, must find in the
 # files of spm_build what they were made from, and refuse them when one byte is another.
 set -euo pipefail
 readonly build=$1

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""read_spm.py FILE [TABLE]: a second reader of SPM models, in the order of docs/spm-format.md.
+"""read_spm.py FILE [TABLE]: a second reader of SPM models, in the order of docs/internals/spm-format.md.
 
 It shares no code with the C++ reader, but its author knew that one: it guards page and files
 against slips, not against one misreading in both. TABLE holds the probabilities that a chunk starts
@@ -12,6 +12,7 @@ the mesh as one JSON object. Exit codes: 0 sound, 1 refused with one line on std
 
 import hashlib
 import json
+import math
 import os
 import struct
 import sys
@@ -185,8 +186,10 @@ def read_header(data):
     require(-60 <= header.quantum_log2 <= 20, "header: quantum")
     extent = (header.ex, header.ey, header.ez)
     require(max(extent) > 0 and max(extent) < 1 << header.position_bits, "header: extent")
-    require(all(abs(v) <= 1e300 for v in (header.ox, header.oy, header.oz)), "header: origin")
-    require(0.0 <= header.quantisation_m <= 1e300, "header: quantisation")
+    extent_m = [e * 2.0**header.quantum_log2 for e in extent]
+    require(all(-1e7 <= o and o + e <= 1e7 for o, e in zip((header.ox, header.oy, header.oz), extent_m)),
+            "header: origin")
+    require(0.0 <= header.quantisation_m <= math.hypot(*extent_m), "header: quantisation")
     regions = check_regions(header, extent)
     pages = page_count(header)
     require(header.header_bytes == HEADER.size + 48 * pages + (regions + 7) // 8 + 36,

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# consumer.sh quick|all|aarch64 BUILD PROJECT FOLDER COMPILER: installs the libraries of BUILD into
-# FOLDER, moves them, and lets a project of somebody else's find, link and run them.
+# consumer.sh quick|all|aarch64 BUILD PROJECT FOLDER COMPILER EXAMPLES: installs the libraries of
+# BUILD into FOLDER, moves them, and lets projects of somebody else's find, link and run them.
 #
 # quick: with COMPILER and the shared libraries. all: with g++ and clang++, shared and static, with
 # our flags and with -march=native -O3, by CMake and by pkg-config; what is refused; and the
@@ -9,7 +9,7 @@
 # all that is there, and a program of it under an emulator; skips (77) without compiler, emulator or
 # mmdebstrap, which fetches those two.
 set -euo pipefail
-readonly extent=$1 build=$2 project=$3 folder=$4 compiler=$5
+readonly extent=$1 build=$2 project=$3 folder=$4 compiler=$5 examples=$6
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 source=$(cd "$here/../.." && pwd)
 readonly here source
@@ -49,16 +49,21 @@ if command -v ccache >/dev/null; then
     launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
 fi
 
-configure() { # configure NAME COMPILER OPTION...
-    cmake -S "$project" -B "$1" -G Ninja -DCMAKE_BUILD_TYPE=None -DCMAKE_CXX_COMPILER="$2" \
-        -DCMAKE_PREFIX_PATH="$prefix" "${launcher[@]}" "${@:3}"
+configure() { configure_in "$project" "$@"; } # configure NAME COMPILER OPTION...
+configure_in() { # configure_in PROJECT NAME COMPILER OPTION...
+    cmake -S "$1" -B "$2" -G Ninja -DCMAKE_BUILD_TYPE=None -DCMAKE_CXX_COMPILER="$3" \
+        -DCMAKE_PREFIX_PATH="$prefix" "${launcher[@]}" "${@:4}"
 }
 declare digest=''
+printf '%s\n' '0 0 0' '0.03 0 0.001' '1 2 3' >points.txt
 try() { # try NAME COMPILER FLAGS STATIC: builds it; the model and all answers are as before.
     local said
     quietly "$1.log" configure "$1" "$2" -DTactus_USE_STATIC_LIBS="$4" \
         -DCMAKE_CXX_FLAGS="$3" -DCMAKE_C_FLAGS="$3"
     quietly "$1.log" cmake --build "$1" --parallel 2
+    quietly "$1.log" configure_in "$examples" "$1/examples" "$2" \
+        -DTactus_USE_STATIC_LIBS="$4" -DCMAKE_CXX_FLAGS="$3"
+    quietly "$1.log" cmake --build "$1/examples" --parallel 2
     "$1/serve" "$1/ring.spm" >"$1.txt" || fail "$1: serve ends with $?"
     [[ -e ring.spm ]] || cp "$1/ring.spm" ring.spm
     cmp ring.spm "$1/ring.spm" || fail "$1: another model"
@@ -69,6 +74,9 @@ try() { # try NAME COMPILER FLAGS STATIC: builds it; the model and all answers a
     "$1/scene" ring.spm >"$1.txt" || fail "$1: scene ends with $?: $(<"$1.txt")"
     "$1/record" ring.spm run.rec >"$1.txt" || fail "$1: record ends with $?: $(<"$1.txt")"
     grep -q '^500 frames agree bit for bit; ' "$1.txt" || fail "$1: record says $(<"$1.txt")"
+    "$1/examples/distances" ring.spm <points.txt >"$1.txt" || fail "$1: distances: $(<"$1.txt")"
+    [[ -e distances.txt ]] || cp "$1.txt" distances.txt
+    cmp distances.txt "$1.txt" || fail "$1: other distances"
     echo "$1: $said"
 }
 refuses() { # refuses EXPECTED COMMAND...: fails, and says so in this way.
@@ -95,9 +103,11 @@ blocks_are_there() { # blocks_are_there PAGE COUNT: so many blocks at least.
     ((blocks >= $2)) || fail "docs/$1 has $blocks blocks of code"
 }
 if [[ "$extent" != aarch64 ]]; then
-    cat "$project"/CMakeLists.txt "$project"/*.cpp "$project"/*.c >project.txt
-    blocks_are_there library.md 6
+    cat "$project"/CMakeLists.txt "$project"/*.cpp "$project"/*.c \
+        "$examples"/CMakeLists.txt "$examples"/*.cpp >project.txt
+    blocks_are_there library.md 7
     blocks_are_there how-to.md 9
+    blocks_are_there devices.md 2
 fi
 
 # core alone sees nothing but Eigen and libccd.
@@ -198,6 +208,19 @@ if [[ "$extent" == quick ]]; then
         grep -qE '^poses  *cup: moved in [0-9]{3,} frames' "$name.log" \
             || fail "$name: the cup did not give way: $(<"$name.log")"
     done
+    # The device of the examples, in the loop of hrtc, up and down over the thick of the ring.
+    cp shared/examples/libmy_device.so .
+    "$build/bin/hrtc" --allow-no-rt ring.spm --device plugin:libmy_device.so,0.03 \
+        --device-frame 0.028,0,0 --duration 4 >rail.log 2>&1 \
+        || fail "with the examples' device: $(<rail.log)"
+    grep -qE '^tool .* on rail, 0.03 m round' rail.log || fail "another device: $(<rail.log)"
+    grep -qE '^frames +4000 .*in contact +[1-9]' rail.log || fail "it touches nothing: $(<rail.log)"
+    refuses 'libmy_device.so: give its height' \
+        "$build/bin/hrtc" --allow-no-rt ring.spm --device plugin:libmy_device.so
+    refuses 'is no device: it has no TACTUS_DEVICE_PLUGIN' \
+        "$build/bin/hrtc" --allow-no-rt ring.spm --device "plugin:$library/libtactus_core.so"
+    refuses "nobody.so: can't be loaded" \
+        "$build/bin/hrtc" --allow-no-rt ring.spm --device plugin:nobody.so
     # The page's line for pkg-config, as it stands there.
     mkdir by_hand
     cp "$project/touch.cpp" by_hand

@@ -190,7 +190,7 @@ SceneChange change_of(SceneChangeKind kind, std::uint32_t number, std::uint32_t 
     change.kind = kind;
     change.number = number;
     change.generation = generation;
-    change.object = {ModelId{number % 2}, {350.0, 0.4, 0.3, 0.2}};
+    change.object = {ModelId{number % 2}, {350.0, 0.4, 0.3, 0.2, 0.5, 2e-5, 1e-3}};
     return change;
 }
 
@@ -207,6 +207,8 @@ void come_and_go(FrameRig& rig, std::uint32_t frame)
         }
     };
     at(0, change_of(Kind::object_moves, 1));
+    at(60, change_of(Kind::object_feels, 0));
+    at(90, change_of(Kind::object_feels, 0, 1)); // Another generation.
     at(120, change_of(Kind::object_goes, 1));
     at(150, change_of(Kind::tool_goes, 2));
     at(180, change_of(Kind::object_comes, 3, 1));
@@ -221,7 +223,7 @@ void come_and_go(FrameRig& rig, std::uint32_t frame)
     at(400, change_of(Kind::tool_goes, 0));
     at(420, change_of(Kind::tool_comes, 0));
 }
-constexpr std::uint32_t kRefusedOfThose = 4;
+constexpr std::uint32_t kRefusedOfThose = 5;
 
 std::vector<Run> runs()
 {

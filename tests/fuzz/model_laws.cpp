@@ -27,16 +27,21 @@ bool has_lawful_counts(const HeaderFields& f)
 
 bool has_lawful_geometry(const HeaderFields& f)
 {
-    bool is_lawful = is_in(f.quantum_log2, -60, 20) && is_in(f.position_bits, 16, 24) &&
-                     f.topology < 2 && is_in(f.quantisation_m, 0.0, 1e300);
+    bool is_lawful =
+        is_in(f.quantum_log2, -60, 20) && is_in(f.position_bits, 16, 24) && f.topology < 2;
+    const double quantum_m = std::ldexp(1.0, f.quantum_log2);
+    double diagonal_sq = 0.0;
     std::uint32_t largest = 0;
     for (std::size_t axis = 0; axis < 3 && is_lawful; ++axis)
     {
-        is_lawful = is_in(f.origin_m[axis], -1e300, 1e300) &&
+        const double extent_m = f.extent_quanta[axis] * quantum_m;
+        diagonal_sq += extent_m * extent_m;
+        is_lawful = is_in(f.origin_m[axis], -1e7, 1e7 - extent_m) &&
                     (f.extent_quanta[axis] >> f.position_bits) == 0;
         largest = std::max(largest, f.extent_quanta[axis]);
     }
-    return is_lawful && largest > 0;
+    return is_lawful && largest > 0 &&
+           is_in(f.quantisation_m, 0.0, std::sqrt(diagonal_sq) * (1.0 + 1e-12));
 }
 
 bool has_lawful_regions(const ModelHeader& header)

@@ -9,7 +9,7 @@
 #include <cstddef>
 #include <span>
 
-/// What holds of every piece that a parser accepts: docs/spm-format.md, sections 2, 6 and 8,
+/// What holds of every piece that a parser accepts: docs/internals/spm-format.md, sections 2, 6, 8,
 /// written down a second time, with the numbers of that page.
 namespace tactus::fuzz
 {

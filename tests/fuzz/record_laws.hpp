@@ -6,7 +6,7 @@
 #include "rt_core/spm/page.hpp"
 
 /// What holds of every record that a parser accepts and of every one that is linked:
-/// docs/spm-format.md, sections 6 and 8, written down a second time, with the numbers of that page.
+/// docs/internals/spm-format.md, sections 6 and 8, written down a second time, with its numbers.
 namespace tactus::fuzz
 {
 

@@ -16,7 +16,7 @@ namespace tactus::fuzz
 namespace
 {
 
-// Sizes and places of docs/spm-format.md, sections 2 and 5.
+// Sizes and places of docs/internals/spm-format.md, sections 2 and 5.
 constexpr std::uint64_t kFixedBytes = 168;
 constexpr std::uint64_t kPageEntryBytes = 48;
 constexpr std::uint64_t kFullPageBytes = 1'928;

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// attacker DOMAIN SECONDS ATTACK: a stranger on a domain where a host and a controller are. It
-/// needs no rights and nothing of ours but the topics' types. Waits until it has seen both, then
-/// does one thing again and again for so long, and tells how often. Exits 2 when it saw nobody.
+/// attacker DOMAIN SECONDS ATTACK [PORT...]: a stranger on a domain where a host and a controller
+/// are. It needs no rights and nothing of ours but the topics' types, and those that begin with
+/// rtps_ nothing but the others' UDP ports. Waits until it has seen both, then does one thing again
+/// and again, at least 20 times and for so long, and tells how often. Exits 2 when it saw nobody.
 
+#include "tests/hostile/raw_rtps.hpp"
+#include "transport/content_hash.hpp"
 #include "transport/dds/participants.hpp"
 
 #include <dds/dds.h>
@@ -17,8 +20,10 @@
 #include <cstring>
 #include <functional>
 #include <map>
+#include <memory>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "tactus.h"
 
@@ -45,8 +50,8 @@ class Attacker
 public:
     explicit Attacker(std::uint32_t domain)
         : participant_(checked(dds_create_participant(domain, nullptr, nullptr)))
-        , catalogue_(reader("tactus/v2/catalogue", tactus_v2_CatalogueEntry_desc))
-        , wanted_(reader("tactus/v2/wanted", tactus_v2_Wanted_desc))
+        , catalogue_(reader("tactus/v3/catalogue", tactus_v3_CatalogueEntry_desc))
+        , wanted_(reader("tactus/v3/wanted", tactus_v3_Wanted_desc))
     {
         dds_guid_t guid = {};
         dds_get_guid(participant_, &guid);
@@ -101,27 +106,39 @@ public:
     {
         return static_cast<const char*>(victim.controller_name);
     }
+    /// Where the host sends the victim its pieces.
+    [[nodiscard]] std::string victim_partition() const
+    {
+        tactus::ContentHash id{};
+        std::memcpy(id.data(), victim.controller, id.size());
+        return victim_name() + "." + tactus::hash_text(id);
+    }
     /// Under which the others' filters believe us to be a host.
     [[nodiscard]] std::uint64_t own_epoch() const { return tactus::dds::host_epoch_of(own_); }
     [[nodiscard]] const std::array<std::uint8_t, 16>& own() const { return own_; }
 
-    tactus_v2_CatalogueEntry host{}; ///< What was seen.
-    tactus_v2_Wanted victim{};
-
-private:
-    std::int32_t reader(const char* topic, const dds_topic_descriptor_t& type) const
+    /// Also of what is for others.
+    [[nodiscard]] std::int32_t reader(const char* topic, const dds_topic_descriptor_t& type) const
     {
         dds_qos_t* qos = dds_create_qos();
         const char* everywhere = "*";
         dds_qset_partition(qos, 1, &everywhere);
         const auto subscriber = checked(dds_create_subscriber(participant_, qos, nullptr));
         dds_reset_qos(qos);
-        dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, DDS_MSECS(5));
+        dds_qset_reliability(qos, DDS_RELIABILITY_BEST_EFFORT, 0);
+        dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, 16);
         const auto of = checked(dds_create_topic(participant_, &type, topic, nullptr, nullptr));
         const auto made = checked(dds_create_reader(subscriber, of, qos, nullptr));
         dds_delete_qos(qos);
         return made;
     }
+
+    std::vector<std::uint16_t> ports; ///< The others'.
+    std::shared_ptr<RawRtps> raw;     ///< For attacks without DDS.
+    tactus_v3_CatalogueEntry host{};  ///< What was seen.
+    tactus_v3_Wanted victim{};
+
+private:
     /// Without what is behind pointers.
     template <typename Sample>
     static void take(std::int32_t reader, Sample& out)
@@ -145,9 +162,9 @@ private:
 /// Returns what is done again and again.
 using Attack = std::function<std::function<void(std::uint64_t turn)>(Attacker&)>;
 
-tactus_v2_Placement placement(double x_m)
+tactus_v3_Placement placement(double x_m)
 {
-    tactus_v2_Placement place = {};
+    tactus_v3_Placement place = {};
     place.rotation[3] = 1.0;
     place.translation_m[0] = x_m;
     place.scale = 1.0;
@@ -160,20 +177,20 @@ Attack move_object(std::uint64_t serial, double x_m)
     return [=](Attacker& self)
     {
         const auto motion =
-            self.writer("tactus/v2/motion", tactus_v2_Motion_desc, self.host_partition(), true);
+            self.writer("tactus/v3/motion", tactus_v3_Motion_desc, self.host_partition(), true);
         const auto records =
-            self.writer("tactus/v2/objects", tactus_v2_ObjectRecord_desc, self.host_partition());
+            self.writer("tactus/v3/objects", tactus_v3_ObjectRecord_desc, self.host_partition());
         return [=, &self](std::uint64_t turn)
         {
-            tactus_v2_MovedObject moved{0, 1, placement(turn % 2 == 0 ? x_m : 0.0)};
-            tactus_v2_Motion sample = {};
+            tactus_v3_MovedObject moved{0, 1, placement(turn % 2 == 0 ? x_m : 0.0)};
+            tactus_v3_Motion sample = {};
             sample.host_epoch = self.host.host_epoch;
             sample.serial = serial == 0 ? 1'000'000 + turn : serial;
             sample.host_time_ns = static_cast<std::int64_t>(turn) * 4'000'000;
             sample.objects = 1;
             sample.moved = {1, 1, &moved, false};
             dds_write(motion, &sample);
-            tactus_v2_ObjectRecord record = {};
+            tactus_v3_ObjectRecord record = {};
             record.host_epoch = self.host.host_epoch;
             record.generation = 1;
             record.serial = sample.serial;
@@ -189,7 +206,7 @@ Attack dispose_catalogue()
 {
     return [](Attacker& self)
     {
-        const auto writer = self.writer("tactus/v2/catalogue", tactus_v2_CatalogueEntry_desc, "");
+        const auto writer = self.writer("tactus/v3/catalogue", tactus_v3_CatalogueEntry_desc, "");
         return [=, &self](std::uint64_t) { dds_dispose(writer, &self.host); };
     };
 }
@@ -199,10 +216,10 @@ Attack forge_catalogue()
 {
     return [](Attacker& self)
     {
-        const auto writer = self.writer("tactus/v2/catalogue", tactus_v2_CatalogueEntry_desc, "");
+        const auto writer = self.writer("tactus/v3/catalogue", tactus_v3_CatalogueEntry_desc, "");
         return [=, &self](std::uint64_t)
         {
-            tactus_v2_CatalogueEntry entry = self.host;
+            tactus_v3_CatalogueEntry entry = self.host;
             entry.model_hash[0] ^= 1U;
             dds_write(writer, &entry);
         };
@@ -214,10 +231,10 @@ Attack spam_catalogue()
 {
     return [](Attacker& self)
     {
-        const auto writer = self.writer("tactus/v2/catalogue", tactus_v2_CatalogueEntry_desc, "");
+        const auto writer = self.writer("tactus/v3/catalogue", tactus_v3_CatalogueEntry_desc, "");
         return [=, &self](std::uint64_t turn)
         {
-            tactus_v2_CatalogueEntry entry = self.host;
+            tactus_v3_CatalogueEntry entry = self.host;
             std::snprintf(static_cast<char*>(entry.name), sizeof(entry.name), "bogus-%llu",
                           static_cast<unsigned long long>(turn));
             entry.model = static_cast<std::uint32_t>(turn);
@@ -233,10 +250,10 @@ Attack spam_wanted(bool right_epoch)
 {
     return [=](Attacker& self)
     {
-        const auto writer = self.writer("tactus/v2/wanted", tactus_v2_Wanted_desc, "stranger");
+        const auto writer = self.writer("tactus/v3/wanted", tactus_v3_Wanted_desc, "stranger");
         return [=, &self](std::uint64_t turn)
         {
-            tactus_v2_Wanted wanted = {};
+            tactus_v3_Wanted wanted = {};
             std::memcpy(wanted.controller, self.own().data(), self.own().size());
             std::memcpy(wanted.controller, &turn, sizeof(turn));
             wanted.host_epoch = self.host.host_epoch + (right_epoch ? 0 : 1 + turn);
@@ -253,15 +270,15 @@ Attack forge_wanted()
     return [](Attacker& self)
     {
         const auto writer =
-            self.writer("tactus/v2/wanted", tactus_v2_Wanted_desc, self.victim_name());
+            self.writer("tactus/v3/wanted", tactus_v3_Wanted_desc, self.victim_name());
         return [=, &self](std::uint64_t turn)
         {
-            std::array<tactus_v2_PieceName, 200> names{};
+            std::array<tactus_v3_PieceName, 200> names{};
             for (std::uint32_t i = 0; i < names.size(); ++i)
             {
                 names.at(i) = {0, 2, i};
             }
-            tactus_v2_Wanted wanted = self.victim;
+            tactus_v3_Wanted wanted = self.victim;
             wanted.generation = static_cast<std::uint32_t>(1'000'000 + turn);
             wanted.seen = wanted.received = 0;
             wanted.granted = UINT64_MAX;
@@ -276,12 +293,177 @@ Attack dispose_wanted()
     return [](Attacker& self)
     {
         const auto writer =
-            self.writer("tactus/v2/wanted", tactus_v2_Wanted_desc, self.victim_name());
+            self.writer("tactus/v3/wanted", tactus_v3_Wanted_desc, self.victim_name());
         return [=, &self](std::uint64_t)
         {
-            tactus_v2_Wanted wanted = self.victim;
+            tactus_v3_Wanted wanted = self.victim;
             wanted.pieces = {};
             dds_dispose(writer, &wanted);
+        };
+    };
+}
+
+/// The first object is said to be gone.
+Attack dispose_object()
+{
+    return [](Attacker& self)
+    {
+        const auto writer =
+            self.writer("tactus/v3/objects", tactus_v3_ObjectRecord_desc, self.host_partition());
+        return [=, &self](std::uint64_t)
+        {
+            tactus_v3_ObjectRecord record = {};
+            record.host_epoch = self.host.host_epoch;
+            dds_dispose(writer, &record);
+        };
+    };
+}
+
+/// Objects of many numbers, under the host's epoch and our own.
+Attack spam_objects()
+{
+    return [](Attacker& self)
+    {
+        const auto writer =
+            self.writer("tactus/v3/objects", tactus_v3_ObjectRecord_desc, self.host_partition());
+        return [=, &self](std::uint64_t turn)
+        {
+            tactus_v3_ObjectRecord record = {};
+            record.host_epoch = self.host.host_epoch;
+            record.object = static_cast<std::uint32_t>(turn);
+            record.generation = 1'000;
+            record.serial = 1;
+            std::strcpy(static_cast<char*>(record.name), "false");
+            std::memcpy(record.model_hash, self.host.model_hash, sizeof(record.model_hash));
+            record.pose = placement(0.0);
+            dds_write(writer, &record);
+            record.host_epoch = self.own_epoch();
+            dds_write(writer, &record);
+        };
+    };
+}
+
+/// Pieces to the victim, in the host's name and in our own, whose counts give all credit away.
+Attack forge_pieces()
+{
+    return [](Attacker& self)
+    {
+        const auto writer =
+            self.writer("tactus/v3/chunks", tactus_v3_Pieces_desc, self.victim_partition());
+        return [=, &self](std::uint64_t turn)
+        {
+            std::array<std::uint8_t, 4'000> bytes{};
+            std::memcpy(bytes.data(), self.host.model_hash, sizeof(self.host.model_hash));
+            bytes[20] = 2; // A chunk.
+            bytes[24] = static_cast<std::uint8_t>(turn);
+            bytes[28] = 100;
+            tactus_v3_Pieces pieces = {};
+            pieces.sent = UINT64_MAX;
+            pieces.payload = {bytes.size(), bytes.size(), bytes.data(), false};
+            for (const std::uint64_t epoch : {self.host.host_epoch, self.own_epoch()})
+            {
+                pieces.host_epoch = epoch;
+                dds_write(writer, &pieces);
+            }
+        };
+    };
+}
+
+/// What the host sends the victim, again and again.
+Attack replay_pieces()
+{
+    return [](Attacker& self)
+    {
+        const auto from = self.reader("tactus/v3/chunks", tactus_v3_Pieces_desc);
+        const auto writer =
+            self.writer("tactus/v3/chunks", tactus_v3_Pieces_desc, self.victim_partition());
+        return [=](std::uint64_t)
+        {
+            std::array<void*, 4> samples{};
+            std::array<dds_sample_info_t, 4> infos{};
+            const auto count = dds_read(from, samples.data(), infos.data(), 4, 4);
+            for (std::int32_t i = 0; i < count; ++i)
+            {
+                if (infos.at(static_cast<std::size_t>(i)).valid_data)
+                {
+                    dds_write(writer, samples.at(static_cast<std::size_t>(i)));
+                }
+            }
+            if (count > 0)
+            {
+                dds_return_loan(from, samples.data(), count);
+            }
+        };
+    };
+}
+
+/// Telemetry in the victim's name, and in names that are none.
+Attack forge_telemetry()
+{
+    return [](Attacker& self)
+    {
+        const auto writer =
+            self.writer("tactus/v3/telemetry", tactus_v3_Telemetry_desc, self.victim_name(), true);
+        return [=, &self](std::uint64_t turn)
+        {
+            tactus_v3_Telemetry news = {};
+            std::memcpy(news.controller, self.victim.controller, sizeof(news.controller));
+            std::strcpy(static_cast<char*>(news.controller_name), "victim");
+            news.serial = UINT64_MAX;
+            news.frame = 77'777'777;
+            dds_write(writer, &news);
+            std::memcpy(news.controller, self.own().data(), self.own().size());
+            std::strcpy(static_cast<char*>(news.controller_name), "\x1b[31mred\x07");
+            news.serial = turn;
+            dds_write(writer, &news);
+        };
+    };
+}
+
+/// A controller that comes and goes.
+Attack visit()
+{
+    return [](Attacker& self)
+    {
+        const auto writer = self.writer("tactus/v3/wanted", tactus_v3_Wanted_desc, "stranger");
+        return [=, &self](std::uint64_t)
+        {
+            tactus_v3_Wanted wanted = {};
+            std::memcpy(wanted.controller, self.own().data(), self.own().size());
+            wanted.host_epoch = self.host.host_epoch;
+            wanted.granted = 128;
+            std::strcpy(static_cast<char*>(wanted.controller_name), "stranger");
+            dds_write(writer, &wanted);
+            std::this_thread::sleep_for(1ms); // Or the two are one piece of news.
+            dds_dispose(writer, &wanted);
+        };
+    };
+}
+
+/// Datagrams to all ports of the others, made by `make`.
+Attack send_raw(RawRtps::Datagram (*make)(RawRtps&))
+{
+    return [=](Attacker& self)
+    {
+        const auto raw = self.raw;
+        for (const auto end = Clock::now() + kPatience; !raw->has_heard() && Clock::now() < end;
+             std::this_thread::sleep_for(5ms))
+        {
+            raw->listen();
+        }
+        raw->speak_as(self.victim.controller);
+        if (!raw->has_heard() || self.ports.empty())
+        {
+            std::fprintf(stderr, "attacker: heard nobody, or was told no ports\n");
+            std::exit(2);
+        }
+        return [=, &self](std::uint64_t)
+        {
+            raw->listen();
+            for (const std::uint16_t port : self.ports)
+            {
+                raw->send(make(*raw), port);
+            }
         };
     };
 }
@@ -295,7 +477,7 @@ struct Habit
 const std::map<std::string, Habit>& habits()
 {
     static const std::map<std::string, Habit> all{
-        {"pose_lock", {move_object(UINT64_MAX, 0.0), 100ms}},
+        {"pose_lock", {move_object(UINT64_MAX, 0.0), 50ms}},
         {"pose_swing", {move_object(0, 0.005), 4ms}},
         {"catalogue_disposed", {dispose_catalogue(), 50ms}},
         {"catalogue_forged", {forge_catalogue(), 50ms}},
@@ -304,6 +486,15 @@ const std::map<std::string, Habit>& habits()
         {"wanted_flooded_epochs", {spam_wanted(false), 200us}},
         {"wanted_forged", {forge_wanted(), 5ms}},
         {"wanted_disposed", {dispose_wanted(), 50ms}},
+        {"object_disposed", {dispose_object(), 2ms}},
+        {"objects_flooded", {spam_objects(), 200us}},
+        {"pieces_forged", {forge_pieces(), 5ms}},
+        {"pieces_replayed", {replay_pieces(), 5ms}},
+        {"telemetry_forged", {forge_telemetry(), 5ms}},
+        {"log_flooded", {visit(), 1ms}},
+        {"rtps_garbled", {send_raw([](RawRtps& raw) { return raw.any_garbled(); }), 2ms}},
+        {"rtps_replayed", {send_raw([](RawRtps& raw) { return raw.any_heard(); }), 1ms}},
+        {"rtps_nonsense", {send_raw([](RawRtps& raw) { return raw.nonsense(); }), 100us}},
     };
     return all;
 }
@@ -312,10 +503,10 @@ const std::map<std::string, Habit>& habits()
 
 int main(int argc, char** argv)
 {
-    const auto habit = argc == 4 ? habits().find(argv[3]) : habits().end();
+    const auto habit = argc >= 4 ? habits().find(argv[3]) : habits().end();
     if (habit == habits().end())
     {
-        std::fprintf(stderr, "attacker DOMAIN SECONDS ATTACK; attacks:");
+        std::fprintf(stderr, "attacker DOMAIN SECONDS ATTACK [PORT...]; attacks:");
         for (const auto& [name, unused] : habits())
         {
             std::fprintf(stderr, " %s", name.c_str());
@@ -323,16 +514,25 @@ int main(int argc, char** argv)
         std::fprintf(stderr, "\n");
         return 3;
     }
-    Attacker attacker(static_cast<std::uint32_t>(std::atoi(argv[1])));
+    const auto domain = static_cast<std::uint32_t>(std::atoi(argv[1]));
+    // Before our participant says to all ports who it is: that is what it begins with.
+    const auto raw = habit->first.starts_with("rtps_") ? std::make_shared<RawRtps>(domain)
+                                                       : std::shared_ptr<RawRtps>();
+    Attacker attacker(domain);
+    attacker.raw = raw;
     if (!attacker.sees_both())
     {
         std::fprintf(stderr, "attacker: saw no host and controller\n");
         return 2;
     }
+    for (int i = 4; i < argc; ++i)
+    {
+        attacker.ports.push_back(static_cast<std::uint16_t>(std::atoi(argv[i])));
+    }
     const auto act = habit->second.attack(attacker);
-    const auto end = Clock::now() + std::chrono::seconds(std::atoi(argv[2]));
+    const auto end = Clock::now() + std::chrono::duration<double>(std::atof(argv[2]));
     std::uint64_t turn = 0;
-    for (; Clock::now() < end; ++turn)
+    for (; turn < 20 || Clock::now() < end; ++turn)
     {
         act(turn);
         std::this_thread::sleep_for(habit->second.every);

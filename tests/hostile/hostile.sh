@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # hostile.sh BIN CHECK_REPORT SANITIZER ATTACKER ATTACK: a stranger on the domain attacks a host and
-# a controller in contact; both go on as if it were not there, and name it.
+# a controller in contact; both go on as if it were not there, and name it. What it floods has room
+# for another controller, which comes meanwhile.
 source "$(dirname "$0")/../integration/hrtc/common.sh"
 readonly attacker=$4 attack=$5
-readonly attacked_for=3
+readonly attacked_for=1.5
 # It is found by everybody and finds hosts.
 readonly attacker_uri='<CycloneDDS><Domain id="any"><General><Interfaces><NetworkInterface name="lo"
 multicast="false"/></Interfaces><AllowMulticast>false</AllowMulticast></General><Discovery>
@@ -12,50 +13,116 @@ multicast="false"/></Interfaces><AllowMulticast>false</AllowMulticast></General>
 <LeaseDuration>1 s</LeaseDuration><Peers><Peer address="127.0.0.1"/></Peers></Discovery></Domain>
 </CycloneDDS>'
 
+# udp_ports ID: the process has sockets there.
+udp_ports() {
+    local link inode
+    for link in "/proc/$1/fd/"*; do
+        inode=$(readlink "$link" || true)
+        [[ "$inode" == 'socket:['* ]] || continue
+        inode=${inode#'socket:['}
+        awk -v inode="${inode%]}" \
+            '$10 == inode { sub(/.*:/, "", $2); print $2 }' /proc/net/udp
+    done | while read -r hex; do echo $((16#$hex)); done
+}
+only_printable() { # only_printable FILE
+    if LC_ALL=C grep -q '[^[:print:][:space:]]' "$1"; then
+        fault "$1 holds what is not text"
+    fi
+}
+memory_kib() { awk '$1 == "VmHWM:" { print $2 }' "/proc/$1/status"; }
+
 # Large enough for pieces to come all the time; it moves, so the force follows its poses.
 model bumpy-sphere-20000 bumpy.spm
 awk 'BEGIN {
     for (i = 0; i <= 200; ++i)
         printf "%.3f bumpy %.6f 0 0 0 0 0 1\n", i / 100, 0.001 * sin(i * 3.14159265 / 100)
 }' >swing.txt
-start_publisher bumpy.spm --poses swing.txt --poses-loop
-start_hrtc --model bumpy --no-static --name victim --device sim:touch --duration 6 \
+start_publisher bumpy.spm --poses swing.txt --poses-loop --watch
+start_hrtc --model bumpy --no-static --name victim --device sim:touch --duration 4 \
     --report report.json
 wait_for_line publish.log 'controller victim subscribed' 10
-sleep 1
-CYCLONEDDS_URI=$attacker_uri "$attacker" "$domain" "$attacked_for" "$attack" >attacker.log 2>&1 \
-    || fail "the attacker ended badly: $(cat attacker.log)"
+wait_for_frames 500 publish.log victim
+ports=()
+[[ "$attack" != rtps_* ]] || mapfile -t ports < <(udp_ports "$publisher" && udp_ports "$controller")
+CYCLONEDDS_URI=$attacker_uri "$attacker" "$domain" "$attacked_for" "$attack" "${ports[@]}" \
+    >attacker.log 2>&1 &
+attacking=$!
+started+=("$attacking")
+if [[ "$attack" == *_flooded* ]]; then
+    code=0
+    "$hrtc" --allow-no-rt --domain "$domain" --model bumpy --no-static --name late \
+        --device sim:touch --duration 0.5 --report late.json >late.log 2>&1 || code=$?
+    ((code == 0)) || fault "a controller that came meanwhile ended with $code: $(cat late.log)"
+    check late.json frames == 500
+fi
+code=0
+wait "$attacking" || code=$?
+((code == 0)) || fail "the attacker ended badly: $(cat attacker.log)"
 grep -Eq '^done [1-9][0-9]+ times' attacker.log || fault "the attacker: $(cat attacker.log)"
 code=0
 wait "$controller" || code=$?
+# A host takes its time while it is flooded. What comes and goes all the time uses up the lines of
+# that second, so that of the victim's end may be left out.
+goes=1
+[[ "$attack" != log_flooded ]] || goes=0
+((goes == 0)) || wait_for_line publish.log 'controller victim left' 10
 cat hrtc.log publish.log
 ((code == 0)) || fail "hrtc ended with $code"
+check_clean report.json
+only_printable hrtc.log
+only_printable publish.log
+taken_kib=$(memory_kib "$publisher")
+[[ -n "$sanitizer" ]] || ((taken_kib < 60000)) || fault "the host took $taken_kib KiB"
+# 40 lines a second at most, and what --watch says.
+(($(wc -l <hrtc.log) < 100 && $(wc -l <publish.log) < 400)) || fault 'the logs are full'
+
+# The identity of somebody else can be forged on the wire: then what was said in it may end a
+# service, and the force fades.
+if [[ "$attack" == rtps_* ]]; then
+    check report.json frames == 4000 force.max_n '>' 0 force.max_n '<=' 3.3
+    was_held_up report.json || check report.json force.max_step_n '<' 0.45
+    stop TERM "$publisher"
+    ((stopped_with == 0)) || fault "spm_publish ended with $stopped_with"
+    finish
+    exit 0
+fi
 
 # Nobody went, nothing was dropped, no pose but the host's was taken.
-check report.json frames == 6000 wire.host_lost == 0 models.0.pose.followed == 1 \
-    models.0.pose.accepted '>' 100 models.0.pose.accepted '<' 1500 \
+check report.json frames == 4000 models.0.pose.followed == 1 \
+    models.0.pose.accepted '>' 50 models.0.pose.accepted '<' 1500 \
     models.0.pose.step_max_m '<' 0.002 models.0.pose.refused.not_newer '<=' 3 \
-    models.0.pieces_refused == 0 safety.begun.host == 0 safety.begun.jump == 0 \
+    models.0.pieces_refused == 0 safety.begun.jump == 0 \
     scene.objects == 1 force.max_n '>' 0 force.max_n '<=' 3.3
-# What is felt is what is felt without it: 1.13 N at most, in steps of 0.09 N.
-was_held_up report.json || check report.json force.max_n '<' 1.4 force.max_step_n '<' 0.2
+# What is felt is what is felt without it: 1.13 N at most, in steps of 0.09 N. Where the machine
+# kept loop or host waiting the force fades, and the hand sinks in meanwhile; it may hold the host
+# up for longer than its lease.
+if ! was_held_up report.json && "$check_report" report.json safety.begun.stale == 0 >/dev/null; then
+    check report.json force.max_n '<' 1.4 force.max_step_n '<' 0.2 wire.host_lost == 0 \
+        safety.begun.host == 0
+fi
 check_contact report.json force.contact_share 0.3
-check_clean report.json
 [[ $(grep -c 'controller victim subscribed' publish.log) == 1 ]] || fault 'it was subscribed again'
-[[ $(grep -c 'controller victim left' publish.log) == 1 ]] || fault 'it was dropped'
-(($(wc -l <hrtc.log) < 60 && $(wc -l <publish.log) < 60)) || fault 'the logs are full'
+left=$(grep -c 'controller victim left' publish.log) || true
+((left >= goes && left <= 1)) || fault 'it was dropped'
+grep -q '^served victim: [0-9]* pieces/s' publish.log || fault '--watch tells no rates'
 
 # Who meets a lie counts it and names who told it.
 case $attack in
     wanted_flooded_epochs) ;; # To hosts that aren't there: nobody's business.
-    wanted_*)
+    log_flooded) # It may come and go; the log says so 40 times a second at most.
+        grep -q 'controller stranger subscribed' publish.log || fault 'no stranger came'
+        ;;
+    wanted_* | telemetry_*)
         grep -q 'refused of attacker (process [0-9]* on ' publish.log \
             || fault 'the host names nobody'
+        grep -q '^refusals of attacker.*: [0-9]* more, ' publish.log \
+            || fault '--watch names nobody'
+        ! grep -q '77777777' publish.log || fault 'forged telemetry is shown'
         ;;
     *)
-        # What is disposed of already can't be again until its host speaks, once a second.
+        # What is disposed of already can't be again until its host speaks.
         least=10
-        [[ $attack != catalogue_disposed ]] || least=2
+        [[ $attack != *_disposed ]] || least=1
         check report.json refused == 1 refused.0.identity '>=' "$least"
         grep -q 'refused of attacker (process [0-9]* on ' hrtc.log || fault 'hrtc names nobody'
         ;;

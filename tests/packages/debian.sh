@@ -24,11 +24,10 @@ for tool in dpkg-deb dpkg-shlibdeps file lintian mmdebstrap unshare; do
     command -v "$tool" >/dev/null || skip "$tool is missing (cmake/packages-ci.txt)"
 done
 ((EUID == 0)) || skip 'only root can make a system of its own'
-# shellcheck disable=SC2016 # It is apt-get that knows these names.
-mapfile -t apt_sources < <(apt-get indextargets \
-    --format '$(CREATED_BY) $(ORIGIN) deb $(REPO_URI) $(RELEASE) $(COMPONENT)' 2>/dev/null \
-    | sed -n 's/^Packages Debian //p' | sort -u)
-((${#apt_sources[@]} > 0)) || skip "this machine has no apt sources of Debian's"
+# shellcheck source=apt_sources.sh
+source "$here/apt_sources.sh"
+mapfile -t sources < <(apt_sources)
+((${#sources[@]} > 0)) || skip "this machine has no apt sources of Debian's"
 mkdir -p "$folder"
 cd "$folder"
 
@@ -108,7 +107,7 @@ needed=$(for package in new/*.deb; do dpkg-deb --field "$package" Depends; done 
     | tr ',' '\n' | awk 'NF > 0 { print $1 }' | grep -v tactus | sort -u | paste -sd,)
 readonly root=$folder/root
 trap 'rm -rf --one-file-system "$root"' EXIT
-printf '%s\n' "${apt_sources[@]}" \
+printf '%s\n' "${sources[@]}" \
     | quietly mmdebstrap.log mmdebstrap --variant=minbase --include="$needed" \
         "$(. /etc/os-release && echo "$VERSION_CODENAME")" "$root" -
 mkdir -p "$root/packages"

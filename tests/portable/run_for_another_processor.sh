@@ -17,15 +17,7 @@ if [[ ! -r /usr/src/googletest/CMakeLists.txt ]]; then
     echo "skipped: GoogleTest's sources are missing (cmake/packages-ci.txt)"
     exit 77
 fi
-options=(-DCMAKE_SYSTEM_NAME=Linux -DCMAKE_SYSTEM_PROCESSOR="$processor"
-    -DCMAKE_C_COMPILER="${compiler/g++/gcc}" -DCMAKE_CXX_COMPILER="$compiler"
-    -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O1 -DTACTUS_ONLY_PORTABLE=ON
-    -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=16)
-if command -v ccache >/dev/null; then
-    options+=(-DCMAKE_C_COMPILER_LAUNCHER=ccache -DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
-fi
-cmake -S "$source" -B "$build" -G Ninja "${options[@]}" >"$build.log" 2>&1 \
-    || { cat "$build.log"; exit 1; }
+bash "$source/tests/portable/configure_for_another_processor.sh" "$source" "$build" "$processor"
 cmake --build "$build" --parallel 2 --target portable_tests tactus_platform >>"$build.log" 2>&1 \
     || { tail -50 "$build.log"; exit 1; }
 bash "$source/cmake/checks/check_platform_symbols.sh" "$build/platform/libtactus_platform.a" \

@@ -234,6 +234,49 @@ TEST(SceneChanges, an_object_that_jumps_under_a_tool_lets_its_force_fade)
     }
 }
 
+TEST(SceneChanges, an_object_that_feels_otherwise_changes_the_force_in_small_steps)
+{
+    Pressed sut;
+    sut.press();
+    for (int i = 0; i < 100; ++i) // It comes to rest: nothing would be asked any more.
+    {
+        sut.step(sut.pressed_m());
+    }
+    const double before_n = sut.output.tools[0].force_n.norm();
+    const double depth_m = before_n / 500.0;
+    SceneChange change = sut.change(SceneChangeKind::object_feels, 0);
+    change.object.material.stiffness_n_per_m = 100.0;
+    const auto feel = [&](double stiffness_n_per_m)
+    {
+        const double from_n = sut.output.tools[0].force_n.norm();
+        change.object.material.stiffness_n_per_m = stiffness_n_per_m;
+        sut.rig->change(change);
+        // The pressing hand rests: the material alone makes steps, a fiftieth of the change each.
+        const double most_n =
+            1.05 * 1e-3 / kMaterialGlide_s * std::abs(stiffness_n_per_m * depth_m - from_n);
+        Vec3 last_n = sut.output.tools[0].force_n;
+        for (int i = 0; i < 60; ++i)
+        {
+            sut.step(sut.pressed_m());
+            const Vec3 now_n = sut.output.tools[0].force_n;
+            ASSERT_LE((now_n - last_n).norm(), most_n + 1e-6) << i;
+            last_n = now_n;
+        }
+        EXPECT_NEAR(last_n.norm(), stiffness_n_per_m * depth_m, 1e-3 * before_n);
+    };
+    feel(100.0);
+    feel(400.0);
+    change.object.material.static_friction = -1.0;
+    sut.rig->change(change);
+    sut.step(sut.pressed_m());
+    EXPECT_EQ(sut.output.scene.refused[static_cast<std::size_t>(ChangeRefusal::bad_material)], 1U);
+    EXPECT_NEAR(sut.output.tools[0].force_n.norm(), 400.0 * depth_m, 1e-3 * before_n);
+    change.object.material.static_friction = 0.0;
+    change.object.material.damping_n_s_per_m = 5.0;
+    feel(400.0);
+    EXPECT_EQ(sut.output.pairs[0].damping_n_s_per_m, 5.0);
+}
+
 TEST(SceneChanges, a_tool_that_goes_and_comes_knows_nothing_of_before)
 {
     Pressed sut;

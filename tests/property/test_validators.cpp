@@ -205,7 +205,9 @@ TEST_F(Validators, nodes_that_contradict_themselves_are_told)
     const auto first = static_cast<std::uint32_t>(std::countr_zero(node.mask));
     const std::uint32_t digit = node.range_of(first).first;
     expect_flaw(node.shift, static_cast<std::uint8_t>(node.shift + 1), "lies off its path");
-    expect_flaw(node.coarse, flipped(node.coarse, first), "has a wrong coarse bit at its parent");
+    const std::string wrong_bits = "has a wrong coarse or exact bit at its parent";
+    expect_flaw(node.coarse, flipped(node.coarse, first), wrong_bits);
+    expect_flaw(node.exact, flipped(node.exact, first), wrong_bits);
     expect_flaw(node.digit_map, node.digit_map ^ (1U << (4 * digit)), "lies off its path");
     expect_flaw(node.prefix, ~node.prefix, "lies off its path");
     expect_flaw(node.mask, flipped(node.mask, first), "is not where its parent has it");
@@ -221,8 +223,11 @@ TEST_F(Validators, boxes_that_are_not_their_faces_are_told)
                 "has another box at its parent");
     expect_flaw(parent.volumes.high[2][child], parent.volumes.high[2][child] + 1.0F,
                 "has another box at its parent");
-    expect_flaw(parent.coarse, flipped(parent.coarse, static_cast<unsigned>(child)),
-                "has a wrong coarse bit at its parent");
+    for (const std::uint8_t AbNode::*const bits : {&AbNode::coarse, &AbNode::exact})
+    {
+        expect_flaw(parent.*bits, flipped(parent.*bits, static_cast<unsigned>(child)),
+                    "has a wrong coarse or exact bit at its parent");
+    }
     expect_flaw(tree.block(block).vertices, std::uint16_t{0},
                 "has a box that does not hold a face");
 }

@@ -109,6 +109,29 @@ def check_distances(path, corners):
     expect(np.max(np.abs(moved.lower_m[:, 1, 1] - truth[near])) < 1e-6, "of an object that moved")
 
 
+def check_static(path, corners):
+    """Any point, however far; sides of a torus by its equation, away from its facets."""
+    rng = np.random.default_rng(7)
+    model = tactus.StaticModel(path)
+    low, high = corners.min((0, 1)), corners.max((0, 1))
+    places = np.vstack([rng.uniform(low, high, (300, 3)), 100 * rng.uniform(low, high, (20, 3))])
+    answer = model.distances(places)
+    truth = np.array([distance(place, corners).min() for place in places])
+    slack = 1e-6 * np.linalg.norm(high - low)  # Of the STL's 32-bit corners.
+    expect(np.all(np.abs(answer.lower_m - truth) < slack)
+           and np.all(answer.upper_m - answer.lower_m < 1e-12), "distances of the whole model")
+    expect(np.allclose(np.linalg.norm(places - answer.nearest_m, axis=1), truth, atol=slack),
+           "nearest points of the whole model")
+    expect(set(answer.side) == {tactus.OUTSIDE, tactus.INSIDE}
+           and np.all(answer.side[300:] == tactus.OUTSIDE), "sides of the whole model")
+    expect(len(model.distances(np.zeros((0, 3))).lower_m) == 0, "no points, no answers")
+    refuses(ValueError, "points_m: shape (3,); (3, 3) is needed", lambda: model.distances([1, 2, 3]))
+    refuses(ValueError, "points_m: point 1 (0 nan 0): not within",
+            lambda: model.distances([[0, 0, 0], [0, np.nan, 0]]))
+    refuses(TypeError, "points_m", lambda: model.distances("here"))
+    refuses(tactus.Error, "nobody.spm", lambda: tactus.StaticModel("nobody.spm"))
+
+
 def check_loop(path, scratch, count):
     """A call for many poses gives the bits of a loop in C++."""
     angle = np.linspace(0, 40 * np.pi, count)
@@ -195,6 +218,25 @@ def check_torque(path):
     expect(free[0] and np.all(answers.torque_nm[free] == 0), "a torque without touch")
 
 
+def check_feel(path):
+    """A hand that presses a surface feels what it becomes, and gets there without a step."""
+    frame = tactus.Frame([tactus.Model(path)], [tactus.Tool(0.002, stiffness_n_per_m=500)],
+                         [tactus.Object()], memory_mib=32, loads_whole=True)
+    load_whole(frame, [[0.05, 0, 0.03]])
+    down = np.stack([np.full(200, 0.05), np.zeros(200), np.linspace(0.03, 0.021, 200)], axis=1)
+    hard = np.linalg.norm(frame.run(np.vstack([down, down[-1:]])).force_n[-1])
+    frame.feel(0, stiffness_n_per_m=250, static_friction=0.5, dynamic_friction=0.5)
+    softer = np.linalg.norm(frame.run(np.repeat(down[-1:], 60, axis=0)).force_n, axis=1)
+    expect(hard > 0.1 and abs(softer[-1] - hard / 2) < 1e-3 * hard, "not half as stiff")
+    expect(np.all(np.abs(np.diff(softer)) < hard / 50), "a step where it becomes softer")
+    aside = frame.run(down[-1:] + [[0, 1e-4, 0]]).force_n[-1]
+    expect(aside[1] < -0.02, "it doesn't stick where it has become rough")
+    frame.feel(0)
+    aside = frame.run(np.repeat(down[-1:] + [[0, 1e-4, 0]], 60, axis=0)).force_n[-1]
+    expect(abs(np.linalg.norm(aside) - hard) < 1e-2 * hard and abs(aside[1]) < 0.01 * hard,
+           "it isn't as it was")
+
+
 def check_host(path):
     """A model that a host publishes answers as its file does."""
     host = subprocess.Popen([spm_publish, "--domain", str(DOMAIN), path],
@@ -234,11 +276,27 @@ def check_refusals(path):
     refuses(TypeError, "positions_m", lambda: frame.run(None))
     refuses(ValueError, "element 2 is nan", lambda: frame.run([[0, 0, np.nan]]))
     refuses(ValueError, "element 0 is inf", lambda: frame.run([[np.inf, 0, 0]]))
+    refuses(ValueError, "element 1 is -1000000; below 1000000 m",
+            lambda: frame.run([[0, -1e6, 0]]))
+    refuses(ValueError, "pose.translation_m: 20000; -10000 to 10000",
+            lambda: frame.place(0, translation_m=[0, 2e4, 0]))
     refuses(ValueError, "rotations: shape (3, 3)", lambda: frame.run(one, np.eye(3)))
     refuses(ValueError, "matrix 0 is not a rotation", lambda: frame.run(one, -np.eye(3)[None]))
     refuses(ValueError, "poses.rounds: 10001", lambda: frame.run(one, rounds=10_001))
     refuses(ValueError, "object: 1; 0 to 0", lambda: frame.place(1))
     refuses(ValueError, "pose.scale: 0", lambda: frame.place(0, scale=0))
+    for name, value, allowed in (("stiffness_n_per_m", -1, "0.001 to 1000000"),
+                                 ("static_friction", np.nan, "0 to 10"),
+                                 ("dynamic_friction", 0.1, "0 to 0"),
+                                 ("damping_n_s_per_m", 21, "0 to 20"),
+                                 ("viscosity_n_s_per_m", -1, "0 to 20"),
+                                 ("texture_length_m", 2, "0 to 1"),
+                                 ("texture_height_m", -1, "0 to 0")):
+        refuses(ValueError, f"material.{name}: {value}; {allowed}",
+                lambda name=name, value=value: frame.feel(0, **{name: value}))
+    refuses(ValueError, "material.texture_height_m: 0.1; 0 to 0.03125",
+            lambda: frame.feel(0, texture_height_m=0.1, texture_length_m=1))
+    refuses(ValueError, "object: 1; 0 to 0", lambda: frame.feel(1))
     refuses(ValueError, "rotation: shape (3,)", lambda: frame.place(0, rotation=[1, 2, 3]))
     refuses(ValueError, "shape: 'cone'", lambda: tactus.Tool(0.1, shape="cone"))
     refuses(ValueError, "tools[0].radius_m: -1",
@@ -293,9 +351,11 @@ def main():
                and np.allclose(model.high_m, corners.max((0, 1)), atol=1e-6), "box of the model")
         expect(re.fullmatch("[0-9a-f]{32}", model.hash), "hash of the model")
         check_distances(path, corners)
+        check_static(path, corners)
         check_loop(path, scratch, int(os.environ.get("TACTUS_POSES", "100000")))
         check_shapes(path, corners)
         check_torque(path)
+        check_feel(path)
         check_host(path)
         check_refusals(path)
         check_page(scratch)

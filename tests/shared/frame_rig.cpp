@@ -64,6 +64,7 @@ FrameRig::FrameRig(const std::vector<const TestModel*>& models, const RigOptions
     setup.static_when_it_fits = options.static_when_it_fits;
     setup.prediction = options.prediction;
     setup.variant = options.variant;
+    setup.for_guests = options.for_guests;
     const std::vector<ModelSource> sources = plan_pools(setup, options);
     setup.models = sources;
     if (const auto started = Frame::start(frame_, *arena_, setup); !started)
@@ -99,6 +100,15 @@ void FrameRig::serve(const std::vector<const TestModel*>& models, const Loopback
 std::vector<ModelSource> FrameRig::plan_pools(const FrameSetup& setup,
                                               const RigOptions& options) const
 {
+    std::vector<ModelSource> sources;
+    if (options.for_guests.faces > 0)
+    {
+        for (const Line& line : lines_)
+        {
+            sources.push_back({line.served.header, {}, {}});
+        }
+        return sources;
+    }
     std::vector<ModelHeader> headers;
     for (const Line& line : lines_)
     {
@@ -109,7 +119,6 @@ std::vector<ModelSource> FrameRig::plan_pools(const FrameSetup& setup,
     {
         give_up("the pools are too small for " + lines_[0].served.name);
     }
-    std::vector<ModelSource> sources;
     for (std::size_t i = 0; i < lines_.size(); ++i)
     {
         capacities[i].cache_off = options.cache_off;

@@ -27,6 +27,8 @@ struct RigOptions
     /// Where their models stand at first; those without one in the world's frame.
     std::vector<ObjectPose> poses;
     SceneCapacities capacities;
+    /// With faces in it all models are guests, and come and go in this.
+    ModelCapacities for_guests;
     LoopbackFaults faults; ///< Of every model's link, each with a seed of its own.
     std::uint32_t courier_steps_per_frame{4};
     std::int64_t period_ns{1'000'000};

@@ -47,12 +47,13 @@ Verdict broken_budget(const FrameOutput& output, const Budgets& budgets)
     const WorkCounters& work = output.work;
     const std::uint32_t walks =
         2 * kFrameWalks + (output.pairs[0].mesh != nullptr ? 4 * kMeshBudgetFactor : 0);
-    const std::array<Count, 8> counts{{
+    const std::array<Count, 9> counts{{
         {"splits", work.splits, budgets.splits},
         {"merges", work.merges, budgets.merges},
         {"scanned", work.scanned, budgets.scanned},
         {"nodes visited", work.nodes_visited, walks * budgets.nodes},
         {"triangles tested", work.triangles_tested, walks * budgets.triangles},
+        {"planes looked at", work.planes_looked_at, kFrameWalks * budgets.planes},
         {"pages adopted", work.pages_adopted, budgets.pages},
         {"requests", work.requests, budgets.requests + budgets.regions}, // And index pages.
         {"regions searched", work.regions_searched, budgets.regions},

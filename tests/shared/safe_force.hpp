@@ -8,7 +8,7 @@
 namespace tactus::test
 {
 
-/// The force of one tool as it reaches its device: the frame's through SafeState.
+/// Force and torque of one tool as they reach its device: the frame's through SafeState.
 class SafeForce
 {
 public:
@@ -20,6 +20,12 @@ public:
 
     [[nodiscard]] Vec3 step(const ToolOutput& output, const Vec3& position_m)
     {
+        return both(output, position_m).force_n;
+    }
+
+    /// And the torque.
+    [[nodiscard]] SafetyOutput both(const ToolOutput& output, const Vec3& position_m)
+    {
         SafetyInput input;
         input.position_m = position_m;
         input.elapsed_s = period_s_;
@@ -27,8 +33,10 @@ public:
         input.torque_nm = output.torque_nm;
         input.proxy_m = output.proxy_m;
         input.faults = faults_of(output);
-        return safe_.step(input).force_n;
+        return safe_.step(input);
     }
+
+    [[nodiscard]] double gain() const { return safe_.gain(); }
 
 private:
     SafeState safe_;

@@ -43,6 +43,7 @@ private:
     {
         Box box;
         bool coarse{false};
+        bool exact{false};
     };
 
     TreeOracle(const Tree& tree, std::span<const ChangedFace> faces) : tree_(tree)
@@ -114,7 +115,10 @@ private:
             check(node.box_of(i) == below.box, "node ", index, " child ", i, " has another box");
             check((((node.coarse >> i) & 1U) != 0) == below.coarse, "node ", index, " child ", i,
                   " has a wrong coarse bit");
+            check((((node.exact >> i) & 1U) != 0) == below.exact, "node ", index, " child ", i,
+                  " has a wrong exact bit");
             subtree.coarse = subtree.coarse || below.coarse;
+            subtree.exact = subtree.exact || below.exact;
             Boxes::unite(subtree.box, below.box);
         }
         return subtree;
@@ -131,6 +135,7 @@ private:
             if (((block.faces >> lane) & 1U) != 0)
             {
                 largest = std::max(largest, side.errors[lane]);
+                subtree.exact = subtree.exact || side.errors[lane] == 0;
                 check_lane(index, lane, subtree.box);
             }
         }

@@ -6,6 +6,7 @@
 #include "tests/shared/safe_force.hpp"
 #include "tests/shared/surface_slide.hpp"
 #include "tests/stability/bracket_trial.hpp"
+#include "tests/stability/garbage_episodes.hpp"
 #include "tests/stability/hardships.hpp"
 #include "tests/stability/trial_terms.hpp"
 
@@ -21,9 +22,6 @@ namespace
 {
 
 constexpr std::int64_t kFrame_ns = 1'000'000;
-constexpr std::uint32_t kHeldFrames = 20; ///< kSampleHold_s.
-constexpr std::uint32_t kGoneFrames = 72; ///< And kFadeTime_s, and one on either side.
-constexpr std::uint32_t kRecoveryFrames = 200;
 constexpr double kPressed = 0.7;
 constexpr double kForceRounding = 1e-15;
 
@@ -109,7 +107,7 @@ public:
             ToolState sample;
             sample.position_m = slide_.next();
             sample.sample_time_ns = kFrame_ns * (frame_ + 1'000);
-            if (!is_good())
+            if (!episodes_.begin_good_frame(random_))
             {
                 garbage_.spoil(sample, good_, random_);
             }
@@ -138,23 +136,6 @@ private:
                Vec3(0.0, 0.0, kRadius_diag * model.diagonal_m);
     }
 
-    /// Some frames, or so many that all force is gone; then long good times, in which everything
-    /// must be well again.
-    [[nodiscard]] bool is_good()
-    {
-        if (frames_left_ == 0)
-        {
-            in_episode_ = frame_ > 0 && !in_episode_;
-            const std::uint32_t episode =
-                random_.one_in(2) ? 1 + random_.below(5) : kGoneFrames + 20;
-            frames_left_ = in_episode_ ? episode : kRecoveryFrames + 50;
-            age_ = 0;
-        }
-        --frames_left_;
-        ++age_;
-        return !in_episode_;
-    }
-
     void check(const FrameOutput& output, const Vec3& position_m)
     {
         ++figures_.trials;
@@ -167,16 +148,17 @@ private:
         expect(tool.proxy_m.allFinite(), "the proxy is nowhere");
         const BracketVerdict verdict = judge_bracket(oracle_, output.pairs[0], rig_.pose());
         expect(verdict.error <= 1.0, verdict.text);
-        in_episode_ ? check_episode(output, force_n) : check_recovery(output);
+        episodes_.is_one() ? check_episode(output, force_n) : check_recovery(output);
     }
 
     void check_episode(const FrameOutput& output, double force_n)
     {
         const auto tells = [&](FrameFault fault)
         { return fault == FrameFault::none || has_fault(output.faults, fault); };
-        expect(age_ > 1 || tells(garbage_.fault), "the first frame tells no fault");
-        expect(age_ <= kHeldFrames || tells(garbage_.lasting_fault), "no fault is told any more");
-        expect(!garbage_.fades || age_ < kGoneFrames || force_n == 0.0,
+        expect(episodes_.age() > 1 || tells(garbage_.fault), "the first frame tells no fault");
+        expect(episodes_.age() <= kHeldFrames || tells(garbage_.lasting_fault),
+               "no fault is told any more");
+        expect(!garbage_.fades || episodes_.age() < kGoneFrames || force_n == 0.0,
                "there is force without a sample");
         const bool has_jumped = has_fault(output.faults, FrameFault::tool_jumped);
         expect(!has_jumped || force_n < kForceMax_n, "a jump pulls with all force");
@@ -184,7 +166,7 @@ private:
 
     void check_recovery(const FrameOutput& output)
     {
-        if (frame_ < kRecoveryFrames || age_ < kRecoveryFrames)
+        if (frame_ < kRecoveryFrames || episodes_.age() < kRecoveryFrames)
         {
             return;
         }
@@ -201,8 +183,7 @@ private:
         if (!holds)
         {
             figures_.flag(figures_.name + ", TACTUS_SEED=" + std::to_string(seed_) + ", frame " +
-                          std::to_string(frame_) + ", " + std::to_string(age_) +
-                          (in_episode_ ? " into an episode: " : " after an episode: ") + otherwise);
+                          std::to_string(frame_) + ", " + episodes_.text() + otherwise);
         }
     }
 
@@ -216,9 +197,7 @@ private:
     TrialFigures figures_;
     ToolState good_;
     std::uint32_t frame_{0};
-    std::uint32_t age_{0}; ///< Frames of this episode, or since it.
-    std::uint32_t frames_left_{0};
-    bool in_episode_{true};
+    GarbageEpisodes episodes_;
 };
 
 } // namespace

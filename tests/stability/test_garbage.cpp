@@ -5,6 +5,7 @@
 
 #include "tests/stability/bracket_trial.hpp"
 #include "tests/stability/garbage_trial.hpp"
+#include "tests/stability/rigid_garbage_trial.hpp"
 
 #include <gtest/gtest.h>
 
@@ -35,6 +36,15 @@ TEST_P(DeviceGarbage, gets_a_safe_force_and_is_told_of)
 }
 
 INSTANTIATE_TEST_SUITE_P(kinds, DeviceGarbage, testing::Range<std::size_t>(0, kGarbageKinds));
+
+TEST(DeviceGarbageOfABody, gets_a_safe_force_and_torque_and_is_told_of)
+{
+    for (const Garbage& garbage : rigid_garbage_kinds())
+    {
+        const TrialFigures sut = run_rigid_garbage_trial(garbage, 600, seed_of(20'261'540));
+        EXPECT_TRUE(sut.holds()) << sut.summary();
+    }
+}
 
 #if defined(__x86_64__)
 /// A library built with -ffast-math may set both; the haptic thread mends and reports it, and a

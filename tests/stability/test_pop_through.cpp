@@ -5,6 +5,7 @@
 /// plates, sharp and concave edges, objects that move, data that is late or lost. Where objects
 /// leave no room the frame says so. And that what holds it can fail.
 
+#include "tests/shared/frame_rig.hpp"
 #include "tests/shared/random.hpp"
 #include "tests/shared/worst_shapes.hpp"
 #include "tests/stability/pop_through_trial.hpp"
@@ -14,7 +15,9 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <cstdio>
+#include <vector>
 
 namespace tactus::test
 {
@@ -76,6 +79,83 @@ TEST(PopThroughClosing, objects_that_leave_no_room_are_told_and_the_force_fades)
     EXPECT_TRUE(sut.crossings.holds()) << sut.crossings.summary();
     EXPECT_GT(sut.squeezed, 200U);
     EXPECT_GT(sut.faded, 100U);
+}
+
+/// A controller that starts while a hand leans into a model, as deep as three radii, and moves on.
+/// The ball is deep in hundreds of faces when the first of them are known.
+struct LeaningStart
+{
+    const TestModel& model;
+    std::uint32_t planes; ///< Of a frame's budget.
+    std::uint64_t seed;
+    std::uint32_t cut_short{0}; ///< Frames.
+    std::uint32_t in_contact{0};
+
+    void run(const FaceTree& tree)
+    {
+        Random random = Random::seeded(seed);
+        const double radius_m = random.between(0.005, 0.06) * model.diagonal_m;
+        RigOptions options;
+        options.tools = {{radius_m, 500.0, 8.0, 60.0 * model.diagonal_m}};
+        options.objects = {{ModelId{0}, {500.0, 0.4, 0.3}}};
+        options.static_when_it_fits = random.one_in(2);
+        FrameRig rig(model, options);
+        const Face& face = model.faces[random.below(model.faces.size())];
+        const Vec3 at_m = to_vec3(face[0]);
+        const Vec3 way = random.in_cube(1.0);
+        const Vec3 in = random.in_cube(1.0).normalized() * (radius_m * random.between(0.0, 3.0));
+        Budgets budgets;
+        budgets.planes = planes;
+        ProxyTrail trail(model, tree);
+        for (std::uint32_t frame = 0; frame < 80; ++frame)
+        {
+            const double turn = 0.05 * frame; // To the other side of the surface and back.
+            const Vec3 goal_m = at_m + std::cos(turn) * in + (1e-3 * turn * radius_m) * way;
+            const FrameOutput output = rig.step({goal_m}, budgets);
+            const ToolOutput& tool = output.tools[0];
+            const auto crossed = trail.follow(rig.frame().tool(0).path_m(), rig.pose(0));
+            ASSERT_FALSE(crossed.moved) << crossed.moved->text() << ", frame " << frame;
+            ASSERT_LE(output.work.planes_looked_at, budgets.planes);
+            ASSERT_LE(tool.force_n.norm(), 8.0 * (1.0 + 1e-12));
+            ASSERT_EQ(has_fault(output.faults, FrameFault::plane_budget_spent), tool.cut_short);
+            ASSERT_TRUE(tool.under_way || !tool.cut_short);
+            cut_short += tool.cut_short ? 1 : 0;
+            in_contact += tool.in_contact ? 1 : 0;
+        }
+    }
+};
+
+TEST(PopThroughLeaning, never_happens_at_a_start_within_a_surface_whatever_may_be_looked_at)
+{
+    std::vector<const TestModel*> models{&worst_model(0), &worst_model(3), &small_model(0)};
+    for (const std::size_t known : {std::size_t{0}, std::size_t{3}}) // Cow and bunny.
+    {
+        if (const TestModel* model = known_model(kKnownMeshes[known]); model != nullptr)
+        {
+            models.push_back(model);
+        }
+    }
+    std::uint32_t cut_short = 0;
+    std::uint32_t in_contact = 0;
+    std::uint64_t own = 20'261'900;
+    for (const TestModel* model : models)
+    {
+        const FaceTree tree(model->faces);
+        for (const std::uint32_t planes : {2U, 40U, Budgets{}.planes})
+        {
+            for (int start = 0; start < 3; ++start)
+            {
+                LeaningStart sut{*model, planes, seed_of(++own)};
+                sut.run(tree);
+                ASSERT_FALSE(testing::Test::HasFatalFailure())
+                    << model->name << ", TACTUS_SEED=" << sut.seed << ", planes " << planes;
+                cut_short += sut.cut_short;
+                in_contact += sut.in_contact;
+            }
+        }
+    }
+    EXPECT_GT(cut_short, 20U);
+    EXPECT_GT(in_contact, 200U);
 }
 
 /// Two faces in z = 0 that make a square, with x and y from 0 to 1.

@@ -63,30 +63,34 @@ Catalogue::Catalogue(Participants& participants, Endpoint reader, Log log)
 void Catalogue::refresh()
 {
     participants_->report(log_);
-    take_each<tactus_v2_CatalogueEntry>(
+    take_each<tactus_v3_CatalogueEntry>(
         reader_.handle, kMaxOffers,
-        [this](const tactus_v2_CatalogueEntry& entry, const dds_sample_info_t& info)
+        [this](const tactus_v3_CatalogueEntry& entry, const dds_sample_info_t& info)
         {
             const std::string name(entry.name, ::strnlen(entry.name, sizeof(entry.name)));
             const std::string scene(entry.scene, ::strnlen(entry.scene, sizeof(entry.scene)));
             const auto refuse = [&](Refused reason)
             { participants_->refuse(info.publication_handle, reason, entry.model); };
-            if (info.instance_state != DDS_ALIVE_INSTANCE_STATE)
+            if (tells_end(info))
             {
                 on_end(entry.model, entry.host_epoch, info.publication_handle);
             }
-            else if (info.valid_data && is_valid_name(name) &&
-                     (scene.empty() || is_valid_name(scene)))
+            else if (is_valid_name(name) && (scene.empty() || is_valid_name(scene)))
             {
                 if (!try_add({name, scene, hash_from(entry.model_hash), entry.host_epoch,
                               entry.model, entry.faces, entry.header_bytes, entry.base_bytes,
                               participants_->writer_of(info.publication_handle)
-                                  .value_or(ParticipantId{})}))
+                                  .value_or(ParticipantId{}),
+                              info.publication_handle}))
                 {
                     refuse(Refused::model_room);
                 }
+                if (info.instance_state != DDS_ALIVE_INSTANCE_STATE)
+                {
+                    dispute(entry.model, entry.host_epoch);
+                }
             }
-            else if (info.valid_data)
+            else
             {
                 refuse(Refused::model_name);
             }
@@ -104,6 +108,11 @@ void Catalogue::on_end(std::uint32_t model, std::uint64_t host_epoch, std::uint6
         return;
     }
     participants_->refuse(writer, Refused::identity);
+    dispute(model, host_epoch);
+}
+
+void Catalogue::dispute(std::uint32_t model, std::uint64_t host_epoch)
+{
     for (Offer& offer : offers_)
     {
         const bool is_it = offer.model == model && offer.host_epoch == host_epoch;
@@ -111,7 +120,7 @@ void Catalogue::on_end(std::uint32_t model, std::uint64_t host_epoch, std::uint6
     }
 }
 
-/// These go with the participant of their host.
+/// These go with the writer or the participant of their host.
 void Catalogue::look_at_disputed()
 {
     constexpr auto kEvery = std::chrono::milliseconds(50);
@@ -121,8 +130,13 @@ void Catalogue::look_at_disputed()
         return;
     }
     looked_ = now;
-    version_ += std::erase_if(offers_, [this](const Offer& offer)
-                              { return offer.is_disputed && !participants_->is_here(offer.host); });
+    version_ +=
+        std::erase_if(offers_,
+                      [this](const Offer& offer)
+                      {
+                          return offer.is_disputed && !(participants_->is_writing(offer.writer) &&
+                                                        participants_->is_here(offer.host));
+                      });
 }
 
 const Catalogue::Offer* Catalogue::find(const ModelSelector& selector) const
@@ -132,6 +146,12 @@ const Catalogue::Offer* Catalogue::find(const ModelSelector& selector) const
                                      return offer.name == selector.name &&
                                             (!selector.hash || offer.hash == *selector.hash);
                                  });
+    return at == offers_.end() ? nullptr : &*at;
+}
+
+const Catalogue::Offer* Catalogue::find(const ContentHash& hash) const
+{
+    const auto at = std::ranges::find(offers_, hash, &Offer::hash);
     return at == offers_.end() ? nullptr : &*at;
 }
 

@@ -17,7 +17,9 @@
 namespace tactus::dds
 {
 
-/// What a controller sees of the models that are published on its domain at present.
+/// What a controller sees of the models that are published on its domain at present. One thread,
+/// that of the client; no call waits. An offer that is pointed at is there until the next
+/// refresh().
 class Catalogue
 {
 public:
@@ -32,7 +34,8 @@ public:
         std::uint32_t header_bytes{0};
         std::uint32_t base_bytes{0};
         ParticipantId host{};
-        bool is_disputed{false}; ///< Another program said that it is gone.
+        std::uint64_t writer{0}; ///< Handle of that one's writer.
+        bool is_disputed{false}; ///< Somebody said that it is gone, perhaps another program.
     };
 
     /// `domain` must outlive it.
@@ -48,12 +51,14 @@ public:
     /// The offer first seen of those that are there now; null when there is none. With a hash in
     /// the selector only that one counts.
     [[nodiscard]] const Offer* find(const ModelSelector& selector) const;
+    /// The same of a hash, under whatever name.
+    [[nodiscard]] const Offer* find(const ContentHash& hash) const;
     /// The offer of one run of one host; null when that is gone.
     [[nodiscard]] const Offer* find(const ContentHash& hash, std::uint64_t host_epoch) const;
 
     /// The host with a scene of that name that was seen first of those that are there now.
     [[nodiscard]] std::optional<std::uint64_t> find_scene(const std::string& name) const;
-    /// What a host serves, in the order of its numbers; valid until the next refresh().
+    /// What a host serves, in the order of its numbers.
     [[nodiscard]] std::vector<const Offer*> offers_of(std::uint64_t host_epoch) const;
 
     /// Whether that run of a host is there.
@@ -70,6 +75,7 @@ private:
     [[nodiscard]] bool try_add(const Offer& offer);
     void remove(std::uint32_t model, std::uint64_t host_epoch);
     void on_end(std::uint32_t model, std::uint64_t host_epoch, std::uint64_t writer);
+    void dispute(std::uint32_t model, std::uint64_t host_epoch);
     void look_at_disputed();
 
     Participants* participants_;

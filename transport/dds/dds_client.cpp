@@ -2,9 +2,10 @@
 // Copyright the Tactus authors.
 #include "transport/dds/dds_client.hpp"
 
+#include "transport/base_fetch.hpp"
 #include "transport/content_hash.hpp"
 #include "transport/dds/dds_link.hpp"
-#include "transport/dds/model_fetch.hpp"
+#include "transport/dds/header_fetch.hpp"
 
 #include <fmt/format.h>
 
@@ -29,8 +30,8 @@ constexpr auto kQuiet = std::chrono::seconds(2);
 struct DdsClient::Search
 {
     ModelSelector selector;
-    Catalogue::Offer offer;            ///< Once there is a fetch.
-    std::unique_ptr<ModelFetch> fetch; ///< Once it is published.
+    Catalogue::Offer offer;             ///< Once there is a fetch.
+    std::unique_ptr<HeaderFetch> fetch; ///< Once it is published.
     bool is_done{false};
 };
 
@@ -71,8 +72,8 @@ DdsClient::DdsClient(Domain domain, Catalogue catalogue, std::string controller_
 }
 
 Result<std::vector<ServedModel>, Refusal>
-DdsClient::find_all(std::span<const ModelSelector> selectors, std::chrono::milliseconds timeout,
-                    const std::function<bool()>& go_on)
+DdsClient::find_headers(std::span<const ModelSelector> selectors, std::chrono::milliseconds timeout,
+                        const std::function<bool()>& go_on)
 {
     using Clock = std::chrono::steady_clock;
     std::vector<Search> searches;
@@ -118,7 +119,6 @@ DdsClient::find_all(std::span<const ModelSelector> selectors, std::chrono::milli
         model.name = search.offer.name;
         model.hash = search.offer.hash;
         model.header = std::move(search.fetch->header());
-        model.base = std::move(search.fetch->base());
         model.link =
             std::make_unique<DdsLink>(*exchange_, catalogue_, search.offer,
                                       [this](const std::string& text) { links_log_.write(text); });
@@ -130,10 +130,14 @@ Result<ServedModel, Refusal> DdsClient::find(const ModelSelector& selector,
                                              std::chrono::milliseconds timeout,
                                              const std::function<bool()>& go_on)
 {
-    auto models = find_all({&selector, 1}, timeout, go_on);
+    auto models = find_headers({&selector, 1}, timeout, go_on);
     if (!models)
     {
         return models.error();
+    }
+    if (const auto refusal = bring_bases(models.value(), timeout, go_on))
+    {
+        return *refusal;
     }
     return std::move(models.value().front());
 }
@@ -149,11 +153,11 @@ std::optional<Refusal> DdsClient::step(Search& search)
             return std::nullopt;
         }
         search.offer = *offer;
-        search.fetch = std::make_unique<ModelFetch>(*exchange_, catalogue_, *offer);
+        search.fetch = std::make_unique<HeaderFetch>(*exchange_, catalogue_, *offer);
     }
     const auto state = search.fetch->step();
-    search.is_done = state == ModelFetch::State::done;
-    if (state == ModelFetch::State::refused)
+    search.is_done = state == HeaderFetch::State::done;
+    if (state == HeaderFetch::State::refused)
     {
         return Refusal{fmt::format("model '{}' from domain {} {}", search.offer.name, domain_.id(),
                                    search.fetch->objection())};
@@ -166,8 +170,8 @@ Refusal DdsClient::not_found(const Search& search, const std::string& waited) co
     const ModelSelector& selector = search.selector;
     if (search.fetch != nullptr)
     {
-        return {fmt::format("model '{}' is published on domain {}, but its header and base mesh "
-                            "did not come ({})",
+        return {fmt::format("model '{}' is published on domain {}, but its header did not come "
+                            "({})",
                             selector.name, domain_.id(), waited)};
     }
     const std::string pin = selector.hash ? "@" + hash_text(*selector.hash) : "";

@@ -27,23 +27,26 @@ namespace tactus::dds
 class DdsClient
 {
 public:
-    /// `controller_name` is shown by hosts; a valid name. Join from an ordinary thread, and after a
-    /// host of the same process, see Domain.
+    /// `controller_name` is shown by hosts; a valid name (asserted). Join from an ordinary thread,
+    /// and after a host of the same process, see Domain, which also says what is refused.
     [[nodiscard]] static Result<std::unique_ptr<DdsClient>, Refusal>
     create(std::uint32_t domain, std::string controller_name, Log log);
 
-    /// Waits until all these models are published and their headers and base meshes came;
-    /// everything is verified. The only call here that waits: at most `timeout`, or until `go_on`
-    /// (asked every few milliseconds) returns false. The client must outlive the models' links.
+    /// Waits until all these models are published and their headers came, verified. What it
+    /// returns, in the order of the selectors, has no base meshes: bring_bases() fetches them, or a
+    /// courier those of guests. Waits at most `timeout`, or until `go_on` (asked every few
+    /// milliseconds) returns false; then it is refused, as it is at once where a header is damaged.
+    /// The client must outlive the models' links.
     [[nodiscard]] Result<std::vector<ServedModel>, Refusal>
-    find_all(std::span<const ModelSelector> selectors, std::chrono::milliseconds timeout,
-             const std::function<bool()>& go_on = {});
-    /// The same for one.
+    find_headers(std::span<const ModelSelector> selectors, std::chrono::milliseconds timeout,
+                 const std::function<bool()>& go_on = {});
+    /// The same for one, with its base mesh.
     [[nodiscard]] Result<ServedModel, Refusal> find(const ModelSelector& selector,
                                                     std::chrono::milliseconds timeout,
                                                     const std::function<bool()>& go_on = {});
 
     [[nodiscard]] const Catalogue& catalogue() const noexcept { return catalogue_; }
+    /// For a SceneReader. Polling a link steps it; without links call its step().
     [[nodiscard]] PieceExchange& exchange() noexcept { return *exchange_; }
     /// For further topics of the same controller; lives as long as the client.
     [[nodiscard]] const Domain& domain() const noexcept { return domain_; }

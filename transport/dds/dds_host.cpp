@@ -23,6 +23,7 @@ namespace
 
 /// The catalogue is written anew this often: after a stall a host may have been taken for dead.
 constexpr auto kAnnouncement = std::chrono::seconds(1);
+constexpr auto kLookAtDisputed = std::chrono::milliseconds(50);
 /// Each has up to four DDS writers, about 400 KB.
 constexpr std::size_t kMaxClients = 1'024;
 /// Controllers that get all objects at the same time: many at once make each other lose what they
@@ -41,7 +42,7 @@ constexpr std::size_t kRequestsPerStep = 1'024;
 constexpr auto kMatchWait = std::chrono::milliseconds(2);
 
 /// What a controller calls itself, fit to be printed.
-std::string name_of(const tactus_v2_Wanted& wanted)
+std::string name_of(const tactus_v3_Wanted& wanted)
 {
     const char* const text = static_cast<const char*>(wanted.controller_name);
     return printable({text, ::strnlen(text, sizeof(wanted.controller_name))});
@@ -117,6 +118,10 @@ void DdsHost::wait(std::chrono::milliseconds timeout)
 void DdsHost::step()
 {
     take_requests();
+    if (Clock::now() - last_looked_ >= kLookAtDisputed)
+    {
+        look_for_gone(false);
+    }
     let_in();
     serve();
     objects_->step();
@@ -184,12 +189,12 @@ Result<Done, Refusal> DdsHost::open_endpoints()
 void DdsHost::announce()
 {
     domain_.participants().report(fault_log_);
-    look_at_disputed();
+    look_for_gone(true);
     for (std::uint32_t i = 0; i < models_.size(); ++i)
     {
         const ModelStore& store = models_[i].store();
         const HeaderFields& fields = store.header().fields();
-        tactus_v2_CatalogueEntry entry = {};
+        tactus_v3_CatalogueEntry entry = {};
         entry.host_epoch = epoch_;
         entry.model = i;
         models_[i].model().name.copy(static_cast<char*>(entry.name), kMaxNameBytes);
@@ -205,25 +210,29 @@ void DdsHost::announce()
 
 void DdsHost::take_requests()
 {
-    take_each<tactus_v2_Wanted>(
+    take_each<tactus_v3_Wanted>(
         wanted_.handle, kRequestsPerStep,
-        [this](const tactus_v2_Wanted& wanted, const dds_sample_info_t& info)
+        [this](const tactus_v3_Wanted& wanted, const dds_sample_info_t& info)
         {
             ControllerId controller{};
             std::memcpy(controller.data(), wanted.controller, sizeof(wanted.controller));
-            if (info.instance_state != DDS_ALIVE_INSTANCE_STATE)
+            if (tells_end(info))
             {
                 on_end(controller, info.publication_handle);
+                return;
             }
-            else if (info.valid_data)
+            ++counters_.requests;
+            on_request(controller, wanted);
+            if (Client* client = find(controller))
             {
-                ++counters_.requests;
-                on_request(controller, wanted);
+                client->writer = info.publication_handle;
+                client->is_disputed =
+                    client->is_disputed || info.instance_state != DDS_ALIVE_INSTANCE_STATE;
             }
         });
 }
 
-void DdsHost::on_request(const ControllerId& controller, const tactus_v2_Wanted& wanted)
+void DdsHost::on_request(const ControllerId& controller, const tactus_v3_Wanted& wanted)
 {
     Client* client = find(controller);
     client = client == nullptr ? add_client(controller, wanted) : client;
@@ -250,11 +259,11 @@ void DdsHost::on_request(const ControllerId& controller, const tactus_v2_Wanted&
     take_wishes(*client, wanted);
 }
 
-void DdsHost::take_wishes(Client& client, const tactus_v2_Wanted& wanted)
+void DdsHost::take_wishes(Client& client, const tactus_v3_Wanted& wanted)
 {
     for (std::uint32_t i = 0; i < wanted.pieces._length; ++i)
     {
-        const tactus_v2_PieceName& name = wanted.pieces._buffer[i];
+        const tactus_v3_PieceName& name = wanted.pieces._buffer[i];
         const ContentKey key{static_cast<ContentKind>(name.kind), name.number};
         if (name.model >= models_.size() || !models_[name.model].has(key))
         {
@@ -271,7 +280,7 @@ void DdsHost::refuse(const ControllerId& controller, Refused reason)
     domain_.participants().refusals().count(controller, reason);
 }
 
-DdsHost::Client* DdsHost::add_client(const ControllerId& controller, const tactus_v2_Wanted& wanted)
+DdsHost::Client* DdsHost::add_client(const ControllerId& controller, const tactus_v3_Wanted& wanted)
 {
     const std::string name = name_of(wanted);
     if (!is_valid_name(name)) // It would name a partition.
@@ -305,26 +314,27 @@ DdsHost::Client* DdsHost::add_client(const ControllerId& controller, const tactu
 /// As in Catalogue: who isn't the controller can't end it, but makes its end be looked for.
 void DdsHost::on_end(const ControllerId& controller, std::uint64_t writer)
 {
-    const auto who = domain_.participants().writer_of(writer);
-    if (!who || *who == controller)
+    if (domain_.participants().writer_of(writer) == controller)
     {
         on_controller_gone(controller);
         return;
     }
     domain_.participants().refuse(writer, Refused::identity);
-    if (Client* client = find(controller); client != nullptr)
+    if (Client* client = find(controller))
     {
         client->is_disputed = true;
     }
 }
 
-void DdsHost::look_at_disputed()
+void DdsHost::look_for_gone(bool at_all)
 {
+    last_looked_ = Clock::now();
     std::vector<ControllerId> gone;
     for (const Client& client : clients_)
     {
         const ControllerId& controller = client.subscription.controller();
-        if (client.is_disputed && !domain_.participants().is_here(controller))
+        if ((at_all || client.is_disputed) && !(domain_.participants().is_writing(client.writer) &&
+                                                domain_.participants().is_here(controller)))
         {
             gone.push_back(controller);
         }

@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-struct tactus_v2_Wanted; // idlc's type of a sample.
+struct tactus_v3_Wanted; // idlc's type of a sample.
 
 namespace tactus::dds
 {
@@ -41,17 +41,19 @@ public:
         std::uint64_t bytes_sent{0};
     };
 
-    /// Announces the models. `log` gets, at a limited rate, a line when a controller comes or
-    /// goes and one for what can't be served or is refused. `scene`, a valid name, is what
-    /// controllers call all of the host's objects together; empty: nothing.
+    /// Announces the models. Refused: more than kMaxModels, one whose base mesh can't be read or
+    /// whose header is too long for the wire, and what Domain::join() refuses. `log` gets, at a
+    /// limited rate, a line when a controller comes or goes and one for what can't be served or is
+    /// refused. `scene`, a valid name (unchecked), is what controllers call all of the host's
+    /// objects together; empty: nothing.
     [[nodiscard]] static Result<std::unique_ptr<DdsHost>, Refusal>
     create(std::uint32_t domain, std::vector<PublishedModel> models, Log log,
            std::string scene = {});
 
     /// Waits until there is something to do, at most `timeout`. Signals don't end it early.
     void wait(std::chrono::milliseconds timeout);
-    /// Takes requests, serves a bounded number of samples round-robin, announces when due, and
-    /// steps the objects.
+    /// Takes requests, serves a bounded number of samples round-robin, which reads the models'
+    /// files, announces when due, and steps the objects.
     void step();
 
     [[nodiscard]] Counters counters() const;
@@ -78,7 +80,8 @@ private:
         Subscription subscription;
         Joining joining{Joining::not_wanted};
         Clock::time_point let_in{};
-        bool is_disputed{false}; ///< Another program said that it is gone.
+        std::uint64_t writer{0}; ///< Handle of the last request's.
+        bool is_disputed{false}; ///< Somebody said that it is gone, perhaps another program.
     };
 
     DdsHost(Domain domain, std::vector<ModelPieces> models, Log log, std::string scene);
@@ -86,13 +89,16 @@ private:
     [[nodiscard]] Result<Done, Refusal> open_endpoints();
     void announce();
     void take_requests();
-    void on_request(const ControllerId& controller, const tactus_v2_Wanted& wanted);
-    void take_wishes(Client& client, const tactus_v2_Wanted& wanted);
+    void on_request(const ControllerId& controller, const tactus_v3_Wanted& wanted);
+    void take_wishes(Client& client, const tactus_v3_Wanted& wanted);
     void refuse(const ControllerId& controller, Refused reason);
     [[nodiscard]] Client* add_client(const ControllerId& controller,
-                                     const tactus_v2_Wanted& wanted);
+                                     const tactus_v3_Wanted& wanted);
     void on_end(const ControllerId& controller, std::uint64_t writer);
-    void look_at_disputed();
+    /// Of what a stranger wrote in a controller's name too, DDS tells no end while the stranger is
+    /// here: a controller goes with its writer or its participant. `at_all`: not at those alone of
+    /// which somebody said so.
+    void look_for_gone(bool at_all);
     void on_controller_gone(const ControllerId& controller);
     void serve();
     void let_in();
@@ -112,6 +118,7 @@ private:
     std::size_t next_turn_{0};
     bool has_more_work_{false};
     Clock::time_point last_announced_{};
+    Clock::time_point last_looked_{};
     PieceBuffers room_;
     Counters counters_;
 };

@@ -50,7 +50,7 @@ void DdsLink::poll(PieceSink& sink)
 
 void DdsLink::receive(ContentKey key, std::span<const std::byte> bytes)
 {
-    if (key.kind == ContentKind::index_page || key.kind == ContentKind::chunk)
+    if (key.kind != ContentKind::header)
     {
         append_piece(arrived_, {offer_.hash, 0, static_cast<std::uint32_t>(key.kind), key.number},
                      bytes);

@@ -3,6 +3,7 @@
 #include "transport/dds/domain.hpp"
 
 #include "platform/base/printable.hpp"
+#include "platform/base/program_log.hpp"
 #include "transport/log.hpp"
 
 #include <dds/dds.h>
@@ -54,6 +55,12 @@ constexpr const char* kConfiguration = R"(<CycloneDDS><Domain id="any">
 constexpr const char* kLooksForHosts = "127.0.0.1";
 constexpr const char* kLooksNowhere = "127.0.0.1:9";
 
+/// By the specification of RTPS: what the first participant takes of domain 0, how far the domains
+/// are apart; and what ten hosts take.
+constexpr std::uint32_t kFirstPort = 7'410;
+constexpr std::uint32_t kPortsOfDomain = 250;
+constexpr std::uint32_t kPortsOfHosts = 20;
+
 /// Cyclone's messages of the whole process. A link that is down prints 100 lines a second.
 class MessageSink
 {
@@ -76,7 +83,7 @@ public:
         {
             sink.last_ = text;
         }
-        sink.log_.write("dds: " + text);
+        sink.log_.write(text);
     }
 
     [[nodiscard]] std::string last()
@@ -89,7 +96,7 @@ private:
     std::mutex mutex_;
     std::string last_;
     RateLimitedLog log_{[](const std::string& line)
-                        { std::fprintf(stderr, "%s\n", line.c_str()); }};
+                        { log_message(LogLevel::warning, "dds", line); }};
 };
 
 struct ConfiguredDomain
@@ -121,9 +128,17 @@ std::shared_ptr<Entity> configured_domain(std::uint32_t id, Party party)
 Refusal join_error(std::uint32_t id, std::int32_t code)
 {
     const std::string reason = MessageSink::instance().last();
-    return {fmt::format(
-        "DDS domain {} cannot be joined: {}{}", id, reason.empty() ? dds_strretcode(code) : reason,
-        std::getenv("CYCLONEDDS_URI") != nullptr ? " (configured by CYCLONEDDS_URI)" : "")};
+    const bool is_configured = std::getenv("CYCLONEDDS_URI") != nullptr;
+    const bool has_no_port = reason.find("free participant index") != std::string::npos;
+    std::string more = is_configured ? " (configured by CYCLONEDDS_URI)" : "";
+    if (has_no_port && !is_configured)
+    {
+        const std::uint32_t first = kFirstPort + kPortsOfDomain * id;
+        more = fmt::format(" (others have its UDP ports {} to {}; 'ss -ulpn' names them)", first,
+                           first + kPortsOfHosts - 1);
+    }
+    return {fmt::format("DDS domain {} cannot be joined: {}{}", id,
+                        reason.empty() ? dds_strretcode(code) : reason, more)};
 }
 
 } // namespace

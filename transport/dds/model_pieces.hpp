@@ -5,6 +5,7 @@
 #include "platform/base/refusal.hpp"
 #include "rt_core/spm/content_key.hpp"
 #include "transport/dds/topics.hpp"
+#include "transport/piece_parts.hpp"
 #include "transport/store/model_store.hpp"
 
 #include <cstddef>
@@ -18,12 +19,12 @@ namespace tactus::dds
 /// A model under the name by which controllers ask for it.
 struct PublishedModel
 {
-    std::string name; ///< Valid, and no other model of this host has it.
+    std::string name; ///< Valid, and no other model of this host has it; nothing checks that.
     ModelStore store;
 };
 
 /// A published model in the pieces that go over the wire: index pages, chunks, and header and base
-/// mesh in parts.
+/// mesh in parts. One thread, that of the host; reading waits for the file.
 class ModelPieces
 {
 public:
@@ -49,19 +50,5 @@ private:
     PublishedModel model_;
     std::vector<std::byte> base_;
 };
-
-/// Parts of something of that size.
-[[nodiscard]] constexpr std::uint32_t parts_of(std::size_t bytes) noexcept
-{
-    return static_cast<std::uint32_t>((bytes + kPartBytes - 1) / kPartBytes);
-}
-
-/// One part of it; empty beyond its end.
-[[nodiscard]] constexpr std::span<const std::byte> part_of(std::span<const std::byte> whole,
-                                                           std::uint32_t part) noexcept
-{
-    const std::size_t begin = std::min(part * kPartBytes, whole.size());
-    return whole.subspan(begin, std::min(kPartBytes, whole.size() - begin));
-}
 
 } // namespace tactus::dds

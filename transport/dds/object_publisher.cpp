@@ -27,6 +27,11 @@ namespace
 constexpr int kRepeats = 3;
 /// An object that has rested for this long gets its record anew, for late joiners.
 constexpr auto kRest = std::chrono::milliseconds(500);
+/// What it has.
+constexpr const char* kBadMaterial =
+    "has a material with stiffness not above 0, friction, damping or viscosity below 0, dynamic "
+    "friction above static friction, or a texture higher than a thirty-second of its length of "
+    "0.0001 to 1 m";
 
 } // namespace
 
@@ -71,8 +76,7 @@ Result<std::uint32_t, Refusal> ObjectPublisher::show(const ShownObject& object)
     }
     if (!is_sound(object.material))
     {
-        return refuse("has a material with stiffness not above 0, friction or damping below 0, or "
-                      "dynamic friction above static friction");
+        return refuse(kBadMaterial);
     }
     if (std::ranges::find(models_, object.model) == models_.end())
     {
@@ -113,6 +117,22 @@ Result<Done, PoseRefusal> ObjectPublisher::move(std::uint32_t object, const Pose
     slot.repeats = kRepeats;
     slot.moved = Clock::now();
     wake(object);
+    return Done{};
+}
+
+Result<Done, Refusal> ObjectPublisher::feel(std::uint32_t object, const Material& material)
+{
+    TACTUS_ASSERT(find(object) != nullptr);
+    Slot& slot = slots_[object];
+    if (!is_sound(material))
+    {
+        return Refusal{fmt::format("object '{}' {}", slot.shown.name, kBadMaterial)};
+    }
+    if (material != slot.shown.material)
+    {
+        slot.shown.material = material;
+        write_record(object);
+    }
     return Done{};
 }
 
@@ -186,17 +206,13 @@ void ObjectPublisher::write_record(std::uint32_t object)
         return;
     }
     const ShownObject& shown = slot.shown;
-    tactus_v2_ObjectRecord record = {};
+    tactus_v3_ObjectRecord record = {};
     record.host_epoch = host_epoch_;
     record.object = object;
     record.generation = slot.generation;
     shown.name.copy(static_cast<char*>(record.name), kMaxNameBytes);
     std::memcpy(record.model_hash, shown.model.data(), shown.model.size());
-    const bool is_rigid = shown.material.stiffness_n_per_m == kInfinity;
-    record.stiffness_n_per_m = is_rigid ? 0.0 : shown.material.stiffness_n_per_m;
-    record.static_friction = shown.material.static_friction;
-    record.dynamic_friction = shown.material.dynamic_friction;
-    record.damping_n_s_per_m = shown.material.damping_n_s_per_m;
+    put_material(shown.material, record);
     record.serial = ++serial_;
     record.pose = to_wire(shown.pose);
     is_full_ = dds_write(records_.handle, &record) != DDS_RETCODE_OK;
@@ -210,7 +226,7 @@ void ObjectPublisher::write_record(std::uint32_t object)
 /// Likewise. Nobody gets its number before.
 void ObjectPublisher::write_end(std::uint32_t object)
 {
-    tactus_v2_ObjectRecord record = {};
+    tactus_v3_ObjectRecord record = {};
     record.host_epoch = host_epoch_;
     record.object = object;
     is_full_ = is_full_ || dds_dispose(records_.handle, &record) != DDS_RETCODE_OK;
@@ -244,13 +260,13 @@ void ObjectPublisher::settle(Clock::time_point now)
 
 void ObjectPublisher::send(std::span<const std::uint32_t> moved, Clock::time_point now)
 {
-    std::array<tactus_v2_MovedObject, kMaxMoved> objects{};
+    std::array<tactus_v3_MovedObject, kMaxMoved> objects{};
     for (std::size_t i = 0; i < moved.size(); ++i)
     {
         const Slot& slot = slots_[moved[i]];
         objects.at(i) = {moved[i], slot.generation, to_wire(slot.shown.pose)};
     }
-    tactus_v2_Motion sample = {};
+    tactus_v3_Motion sample = {};
     sample.host_epoch = host_epoch_;
     sample.serial = ++serial_;
     sample.host_time_ns =

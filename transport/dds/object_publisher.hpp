@@ -22,7 +22,8 @@ namespace tactus::dds
 inline constexpr std::chrono::milliseconds kMotionBeat{20};
 
 /// Shows objects to controllers while a program runs: they come, move and go. DdsHost has one, and
-/// steps it. No call waits. One thread.
+/// steps it. One thread. move() never waits; the others may, for 5 ms and once a step, where
+/// controllers don't take what was written.
 class ObjectPublisher
 {
 public:
@@ -35,9 +36,12 @@ public:
     /// model that isn't served, or kMaxObjects are there.
     [[nodiscard]] Result<std::uint32_t, Refusal> show(const ShownObject& object);
     /// It stands there from the next step() on. Refused, with nothing changed, when the numbers
-    /// aren't a pose. There must be such an object.
+    /// aren't a pose. There must be such an object (asserted), as for remove().
     [[nodiscard]] Result<Done, PoseRefusal> move(std::uint32_t object, const Pose& pose);
-    /// It is gone; another one may get its number, once controllers were told. There must be one.
+    /// It feels so from now on. Refused, with nothing changed, when the numbers aren't a material.
+    /// May wait as show(), where nobody took what was said before.
+    [[nodiscard]] Result<Done, Refusal> feel(std::uint32_t object, const Material& material);
+    /// It is gone; another one may get its number, once controllers were told.
     void remove(std::uint32_t object);
 
     /// Sends what has moved, all in one sample where it fits, and says that the host is there.

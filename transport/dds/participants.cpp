@@ -14,6 +14,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace tactus::dds
 {
@@ -195,6 +196,18 @@ void Participants::report_other_versions(RateLimitedLog& log)
         });
 }
 
+bool Participants::is_writing(std::uint64_t publication_handle) const
+{
+    void* sample = nullptr;
+    dds_sample_info_t info = {};
+    if (dds_read_instance(writers_, &sample, &info, 1, 1, publication_handle) != 1)
+    {
+        return false;
+    }
+    dds_return_loan(writers_, &sample, 1);
+    return info.valid_data && info.instance_state == DDS_ALIVE_INSTANCE_STATE;
+}
+
 bool Participants::is_here(const ParticipantId& who) const
 {
     bool is_alive = false;
@@ -203,6 +216,32 @@ bool Participants::is_here(const ParticipantId& who) const
         [&](const dds_builtintopic_participant_t& /*about*/, const dds_sample_info_t& info)
         { is_alive = info.instance_state == DDS_ALIVE_INSTANCE_STATE; });
     return is_alive;
+}
+
+std::set<std::string> Participants::names() const
+{
+    constexpr std::uint32_t kMost = 1'024;
+    std::vector<void*> samples(kMost, nullptr);
+    std::vector<dds_sample_info_t> infos(kMost);
+    const dds_return_t count =
+        dds_read_mask(participants_, samples.data(), infos.data(), kMost, kMost,
+                      DDS_ANY_SAMPLE_STATE | DDS_ANY_VIEW_STATE | DDS_ALIVE_INSTANCE_STATE);
+    std::set<std::string> names;
+    for (dds_return_t i = 0; i < count; ++i)
+    {
+        const auto at = static_cast<std::size_t>(i);
+        const ParticipantId who =
+            id_of(static_cast<const dds_builtintopic_participant_t*>(samples[at])->key);
+        if (infos[at].valid_data && who != own_)
+        {
+            names.insert(name_of(who));
+        }
+    }
+    if (count > 0)
+    {
+        dds_return_loan(participants_, samples.data(), count);
+    }
+    return names;
 }
 
 /// The program, its process and machine, as DDS tells them.

@@ -36,8 +36,13 @@ public:
     [[nodiscard]] std::optional<ParticipantId> writer_of(std::uint64_t publication_handle);
     [[nodiscard]] bool is_host(std::uint64_t publication_handle, std::uint64_t host_epoch);
 
+    /// Whether the writer that a sample's publication_handle names is there. 10 us.
+    [[nodiscard]] bool is_writing(std::uint64_t publication_handle) const;
     /// Whether it is on the domain: it was heard within its lease. 10 us.
     [[nodiscard]] bool is_here(const ParticipantId& who) const;
+
+    /// All but us that are: program, process and machine, in order; each once. Some 10 us each.
+    [[nodiscard]] std::set<std::string> names() const;
 
     /// Counts what the writer behind a publication_handle said under its participant; nothing when
     /// that is gone and was never seen.

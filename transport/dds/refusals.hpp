@@ -35,7 +35,7 @@ enum class Refused : std::uint8_t
     model_room,  ///< More models than are remembered.
     controller,  ///< Its name is none, or there are too many.
     wish,        ///< For a piece that there isn't.
-    telemetry,   ///< Names that are none, numbers that aren't finite, or too many to watch.
+    telemetry,   ///< Or a front: names or numbers that are none, or too many to watch.
 };
 inline constexpr std::size_t kRefusedKinds = 12;
 

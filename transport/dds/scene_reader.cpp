@@ -29,6 +29,8 @@ constexpr std::size_t kMotionPerPoll = 128;
 constexpr auto kCompleteMax = std::chrono::seconds(2);
 /// A host tells of its models every second: the model of an object should be known by then.
 constexpr auto kServedMax = std::chrono::seconds(2);
+/// What a host says of its objects after so long, it says after what it said before.
+constexpr auto kDispute = std::chrono::milliseconds(40);
 
 } // namespace
 
@@ -115,9 +117,9 @@ void SceneReader::join(std::uint64_t epoch, Host& host)
 
 void SceneReader::take_records(std::uint64_t epoch, Host& host, const Take& take)
 {
-    take_each<tactus_v2_ObjectRecord>(
+    take_each<tactus_v3_ObjectRecord>(
         host.records.handle, kRecordsPerPoll,
-        [&](const tactus_v2_ObjectRecord& record, const dds_sample_info_t& info)
+        [&](const tactus_v3_ObjectRecord& record, const dds_sample_info_t& info)
         {
             if (info.valid_data)
             {
@@ -126,17 +128,29 @@ void SceneReader::take_records(std::uint64_t epoch, Host& host, const Take& take
                     domain_.participants().refuse(info.publication_handle, *refused, record.object);
                 }
             }
-            const bool is_gone = info.instance_state != DDS_ALIVE_INSTANCE_STATE;
-            if (is_gone && domain_.participants().is_host(info.publication_handle, epoch))
+            if (info.instance_state == DDS_ALIVE_INSTANCE_STATE)
             {
+                host.disputed.erase(record.object);
+            }
+            else if (!tells_end(info))
+            {
+                host.disputed.emplace(record.object, Clock::now());
+            }
+            else if (domain_.participants().is_host(info.publication_handle, epoch))
+            {
+                host.disputed.erase(record.object);
                 host.strangers.erase(record.object);
                 remove(host, record.object, take);
+            }
+            else
+            {
+                domain_.participants().refuse(info.publication_handle, Refused::identity);
             }
         });
 }
 
 /// Why nothing came of it; none when it is fine.
-std::optional<Refused> SceneReader::take_record(Host& host, const tactus_v2_ObjectRecord& record,
+std::optional<Refused> SceneReader::take_record(Host& host, const tactus_v3_ObjectRecord& record,
                                                 const Take& take)
 {
     const char* const text = static_cast<const char*>(record.name);
@@ -146,9 +160,7 @@ std::optional<Refused> SceneReader::take_record(Host& host, const tactus_v2_Obje
     news.generation = record.generation;
     news.shown.name.assign(text, ::strnlen(text, sizeof(record.name)));
     std::memcpy(news.shown.model.data(), record.model_hash, news.shown.model.size());
-    const bool is_rigid = record.stiffness_n_per_m == 0.0;
-    news.shown.material = {is_rigid ? kInfinity : record.stiffness_n_per_m, record.static_friction,
-                           record.dynamic_friction, record.damping_n_s_per_m};
+    news.shown.material = material_of(record);
     if (!is_valid_name(news.shown.name))
     {
         return Refused::object_name;
@@ -164,6 +176,11 @@ std::optional<Refused> SceneReader::take_record(Host& host, const tactus_v2_Obje
             try_move(known->second, record.serial, record.pose))
         {
             take(SceneNews::moves, known->second);
+        }
+        if (news.shown.material != known->second.shown.material)
+        {
+            known->second.shown.material = news.shown.material;
+            take(SceneNews::feels, known->second);
         }
         return std::nullopt;
     }
@@ -188,9 +205,9 @@ std::optional<Refused> SceneReader::take_record(Host& host, const tactus_v2_Obje
 void SceneReader::take_motion(Host& host, const Take& take)
 {
     host.was_heard = false;
-    take_each<tactus_v2_Motion>(
+    take_each<tactus_v3_Motion>(
         host.motion.handle, kMotionPerPoll,
-        [&](const tactus_v2_Motion& motion, const dds_sample_info_t& info)
+        [&](const tactus_v3_Motion& motion, const dds_sample_info_t& info)
         {
             if (!info.valid_data)
             {
@@ -199,7 +216,7 @@ void SceneReader::take_motion(Host& host, const Take& take)
             host.was_heard = true;
             for (std::uint32_t i = 0; i < motion.moved._length; ++i)
             {
-                const tactus_v2_MovedObject& moved = motion.moved._buffer[i];
+                const tactus_v3_MovedObject& moved = motion.moved._buffer[i];
                 const auto known = host.objects.find(moved.object);
                 if (known == host.objects.end() || known->second.generation != moved.generation)
                 {
@@ -212,9 +229,31 @@ void SceneReader::take_motion(Host& host, const Take& take)
                     take(SceneNews::moves, object);
                 }
             }
+            settle_disputed(host, motion.objects, take);
             host.is_complete =
                 host.is_complete || host.objects.size() + host.strangers.size() >= motion.objects;
         });
+}
+
+/// The host says how many there are.
+void SceneReader::settle_disputed(Host& host, std::uint32_t objects, const Take& take)
+{
+    const auto now = Clock::now();
+    for (auto at = host.disputed.begin(); at != host.disputed.end();)
+    {
+        const auto [number, since] = *at;
+        if (now - since < kDispute)
+        {
+            ++at;
+            continue;
+        }
+        at = host.disputed.erase(at);
+        if (host.objects.size() + host.strangers.size() > objects)
+        {
+            host.strangers.erase(number);
+            remove(host, number, take);
+        }
+    }
 }
 
 /// Those whose model is served by now come; the others are told of once.
@@ -247,7 +286,7 @@ void SceneReader::look_at_strangers(std::uint64_t epoch, Host& host, const Take&
 }
 
 /// Whether the pose was accepted; counted either way.
-bool SceneReader::try_move(SeenObject& object, std::uint64_t serial, const tactus_v2_Placement& to)
+bool SceneReader::try_move(SeenObject& object, std::uint64_t serial, const tactus_v3_Placement& to)
 {
     const auto refuse = [&](PoseRefusal refusal)
     {

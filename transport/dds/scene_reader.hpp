@@ -19,9 +19,9 @@
 #include <string>
 #include <utility>
 
-struct tactus_v2_ObjectRecord; // idlc's types of samples.
-struct tactus_v2_Motion;
-struct tactus_v2_Placement;
+struct tactus_v3_ObjectRecord; // idlc's types of samples.
+struct tactus_v3_Motion;
+struct tactus_v3_Placement;
 
 namespace tactus::dds
 {
@@ -51,6 +51,7 @@ enum class SceneNews : std::uint8_t
 {
     comes,
     moves,
+    feels, ///< Otherwise than before.
     goes,
 };
 
@@ -70,7 +71,8 @@ public:
     }
 
     /// Follows these hosts and no others, and tells what has become of their objects; an object
-    /// that is another one under its number goes and comes. Bounded.
+    /// that is another one under its number goes and comes. Bounded. What `take`, not empty, gets
+    /// is valid during its call.
     void poll(std::span<const std::uint64_t> hosts,
               const std::function<void(SceneNews, const SeenObject&)>& take);
 
@@ -79,7 +81,7 @@ public:
     /// Whether all that the host shows is here.
     [[nodiscard]] bool is_complete(std::uint64_t host_epoch) const;
 
-    /// By number; empty for a host that isn't followed.
+    /// By number, until the next poll(); empty for a host that isn't followed.
     [[nodiscard]] const std::map<std::uint32_t, SeenObject>&
     objects(std::uint64_t host_epoch) const;
 
@@ -102,6 +104,8 @@ private:
         Endpoint motion;
         std::map<std::uint32_t, SeenObject> objects;
         std::map<std::uint32_t, Stranger> strangers; ///< By number: none that is an object.
+        /// Of which somebody said that they went, perhaps another program, and when.
+        std::map<std::uint32_t, Clock::time_point> disputed;
         std::uint64_t seen_catalogue{0};
         bool was_heard{false};
         bool is_complete{false};
@@ -111,10 +115,11 @@ private:
     void join(std::uint64_t epoch, Host& host);
     void take_records(std::uint64_t epoch, Host& host, const Take& take);
     [[nodiscard]] std::optional<Refused>
-    take_record(Host& host, const tactus_v2_ObjectRecord& record, const Take& take);
+    take_record(Host& host, const tactus_v3_ObjectRecord& record, const Take& take);
     void take_motion(Host& host, const Take& take);
+    static void settle_disputed(Host& host, std::uint32_t objects, const Take& take);
     void look_at_strangers(std::uint64_t epoch, Host& host, const Take& take);
-    static bool try_move(SeenObject& object, std::uint64_t serial, const tactus_v2_Placement& to);
+    static bool try_move(SeenObject& object, std::uint64_t serial, const tactus_v3_Placement& to);
     static void remove(Host& host, std::uint32_t number, const Take& take);
 
     const Domain& domain_;

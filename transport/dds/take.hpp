@@ -11,6 +11,14 @@
 namespace tactus::dds
 {
 
+/// Whether a sample tells that its instance ended, and who ended it: its own writer, if that was a
+/// true one. The last data of an instance that anybody ended before they were taken only show that
+/// somebody did: not who, since they name who wrote them.
+[[nodiscard]] inline bool tells_end(const dds_sample_info_t& info) noexcept
+{
+    return info.instance_state != DDS_ALIVE_INSTANCE_STATE && !info.valid_data;
+}
+
 /// Takes up to `samples_max` samples and calls `visit(const Sample&, const dds_sample_info_t&)` for
 /// each. The samples are Cyclone's own, on loan: a buffer of ours would be silently truncated to
 /// or, with `_release` set, freed by Cyclone. In a sample without valid_data only key fields are

@@ -30,6 +30,22 @@ constexpr unsigned kHasGripper = 16;
 constexpr unsigned kHostGone = 1;
 constexpr unsigned kStatic = 2;
 constexpr unsigned kFollowsPoses = 4;
+/// And its stage from this bit on. One that is here is 0, as it is with who tells no stages.
+constexpr unsigned kStageShift = 3;
+
+/// There and back: the stages go round, and so often round is where they began.
+constexpr unsigned stage_code(ModelStage stage)
+{
+    return (static_cast<unsigned>(stage) + kModelStages -
+            static_cast<unsigned>(ModelStage::resident)) %
+           kModelStages;
+}
+constexpr ModelStage stage_of(unsigned code)
+{
+    return static_cast<ModelStage>((code + static_cast<unsigned>(ModelStage::resident)) %
+                                   kModelStages);
+}
+static_assert(stage_of(0) == ModelStage::resident && stage_code(ModelStage::leaving) == 1);
 
 constexpr unsigned bit_when(bool is_so, unsigned bit)
 {
@@ -42,9 +58,9 @@ std::string text_of(const char (&text)[Size]) // NOLINT: idlc's type.
     return {static_cast<const char*>(text), ::strnlen(static_cast<const char*>(text), Size)};
 }
 
-tactus_v2_ToolTelemetry to_wire(const ToolTelemetry& tool)
+tactus_v3_ToolTelemetry to_wire(const ToolTelemetry& tool)
 {
-    tactus_v2_ToolTelemetry wire = {};
+    tactus_v3_ToolTelemetry wire = {};
     std::ranges::copy(tool.position_m, std::begin(wire.position_m));
     std::ranges::copy(tool.rotation, std::begin(wire.rotation));
     std::ranges::copy(tool.proxy_m, std::begin(wire.proxy_m));
@@ -60,7 +76,7 @@ tactus_v2_ToolTelemetry to_wire(const ToolTelemetry& tool)
     return wire;
 }
 
-ToolTelemetry from_wire(const tactus_v2_ToolTelemetry& wire)
+ToolTelemetry from_wire(const tactus_v3_ToolTelemetry& wire)
 {
     ToolTelemetry tool;
     std::ranges::copy(wire.position_m, tool.position_m.begin());
@@ -79,9 +95,9 @@ ToolTelemetry from_wire(const tactus_v2_ToolTelemetry& wire)
     return tool;
 }
 
-tactus_v2_PairTelemetry to_wire(const PairTelemetry& pair)
+tactus_v3_PairTelemetry to_wire(const PairTelemetry& pair)
 {
-    tactus_v2_PairTelemetry wire = {};
+    tactus_v3_PairTelemetry wire = {};
     wire.host_epoch = pair.host_epoch;
     wire.object = pair.object;
     wire.tool = pair.tool;
@@ -93,7 +109,7 @@ tactus_v2_PairTelemetry to_wire(const PairTelemetry& pair)
     return wire;
 }
 
-PairTelemetry from_wire(const tactus_v2_PairTelemetry& wire)
+PairTelemetry from_wire(const tactus_v3_PairTelemetry& wire)
 {
     PairTelemetry pair{wire.host_epoch, wire.object,  wire.tool, static_cast<AnswerKind>(wire.kind),
                        wire.lower_m,    wire.upper_m, {},        {}};
@@ -102,18 +118,18 @@ PairTelemetry from_wire(const tactus_v2_PairTelemetry& wire)
     return pair;
 }
 
-tactus_v2_ModelTelemetry to_wire(const ModelIdentity& identity, const ModelTelemetry& model)
+tactus_v3_ModelTelemetry to_wire(const ModelIdentity& identity, const ModelTelemetry& model)
 {
     const auto pool = [](const PoolTelemetry& use) {
-        return tactus_v2_PoolTelemetry{use.used, use.capacity};
+        return tactus_v3_PoolTelemetry{use.used, use.capacity};
     };
-    tactus_v2_ModelTelemetry wire = {};
+    tactus_v3_ModelTelemetry wire = {};
     identity.name.copy(static_cast<char*>(wire.name), kMaxNameBytes);
     std::memcpy(wire.hash, identity.hash.data(), identity.hash.size());
     wire.revision = identity.revision;
-    wire.state = static_cast<std::uint8_t>(bit_when(model.host_gone, kHostGone) |
-                                           bit_when(model.is_static, kStatic) |
-                                           bit_when(model.follows_poses, kFollowsPoses));
+    wire.state = static_cast<std::uint8_t>(
+        bit_when(model.host_gone, kHostGone) | bit_when(model.is_static, kStatic) |
+        bit_when(model.follows_poses, kFollowsPoses) | stage_code(model.stage) << kStageShift);
     wire.pages = pool(model.pages);
     wire.faces = pool(model.faces);
     wire.blocks = pool(model.blocks);
@@ -125,9 +141,9 @@ tactus_v2_ModelTelemetry to_wire(const ModelIdentity& identity, const ModelTelem
     return wire;
 }
 
-ModelTelemetry from_wire(const tactus_v2_ModelTelemetry& wire)
+ModelTelemetry from_wire(const tactus_v3_ModelTelemetry& wire)
 {
-    const auto pool = [](const tactus_v2_PoolTelemetry& use) {
+    const auto pool = [](const tactus_v3_PoolTelemetry& use) {
         return PoolTelemetry{use.used, use.capacity};
     };
     ModelTelemetry model;
@@ -138,6 +154,7 @@ ModelTelemetry from_wire(const tactus_v2_ModelTelemetry& wire)
     model.host_gone = (wire.state & kHostGone) != 0;
     model.is_static = (wire.state & kStatic) != 0;
     model.follows_poses = (wire.state & kFollowsPoses) != 0;
+    model.stage = stage_of(wire.state >> kStageShift);
     model.pose_age_ns = wire.pose_age_ns;
     model.poses_refused = wire.poses_refused;
     model.pieces = wire.pieces;
@@ -164,7 +181,7 @@ bool is_sound(const PairTelemetry& pair, std::uint32_t tools)
            all_finite(pair.point_m) && all_finite(pair.force_n);
 }
 
-ModelIdentity identity_of(const tactus_v2_ModelTelemetry& wire)
+ModelIdentity identity_of(const tactus_v3_ModelTelemetry& wire)
 {
     ModelIdentity identity{text_of(wire.name), {}, wire.revision};
     std::memcpy(identity.hash.data(), wire.hash, identity.hash.size());
@@ -221,9 +238,9 @@ void TelemetryWriter::write(const Telemetry& telemetry)
     TACTUS_ASSERT(telemetry.tool_count <= kMaxTools);
     TACTUS_ASSERT(telemetry.pair_count <= kMaxPairs);
     TACTUS_ASSERT(telemetry.model_count == models_.size());
-    std::array<tactus_v2_PairTelemetry, kMaxPairs> pairs{};
-    std::array<tactus_v2_ToolTelemetry, kMaxTools> tools{};
-    std::array<tactus_v2_ModelTelemetry, kMaxShownModels> models{};
+    std::array<tactus_v3_PairTelemetry, kMaxPairs> pairs{};
+    std::array<tactus_v3_ToolTelemetry, kMaxTools> tools{};
+    std::array<tactus_v3_ModelTelemetry, kMaxShownModels> models{};
     for (std::uint32_t i = 0; i < telemetry.tool_count; ++i)
     {
         tools[i] = to_wire(telemetry.tools[i]);
@@ -236,7 +253,7 @@ void TelemetryWriter::write(const Telemetry& telemetry)
     {
         models[i] = to_wire(models_[i], telemetry.models[i]);
     }
-    tactus_v2_Telemetry sample = {};
+    tactus_v3_Telemetry sample = {};
     std::memcpy(sample.controller, controller_.data(), controller_.size());
     controller_name_.copy(static_cast<char*>(sample.controller_name), kMaxNameBytes);
     sample.serial = ++sent_;
@@ -265,24 +282,26 @@ TelemetryReader::TelemetryReader(Participants& participants, Endpoint reader)
 
 void TelemetryReader::poll()
 {
-    take_each<tactus_v2_Telemetry>(
+    take_each<tactus_v3_Telemetry>(
         reader_.handle, kMaxWatched,
-        [this](const tactus_v2_Telemetry& sample, const dds_sample_info_t& info)
+        [this](const tactus_v3_Telemetry& sample, const dds_sample_info_t& info)
         {
-            if (info.instance_state != DDS_ALIVE_INSTANCE_STATE)
+            if (tells_end(info))
             {
                 on_end(sample, info.publication_handle);
             }
-            else if (info.valid_data && !try_take(sample))
+            else if (!try_take(sample, info))
             {
                 ++refused_;
                 participants_.refuse(info.publication_handle, Refused::telemetry);
             }
         });
+    std::erase_if(controllers_, [this](const WatchedController& each)
+                  { return each.is_disputed && !participants_.is_writing(each.writer); });
 }
 
 /// Of who isn't the controller it is no news.
-void TelemetryReader::on_end(const tactus_v2_Telemetry& sample, std::uint64_t writer)
+void TelemetryReader::on_end(const tactus_v3_Telemetry& sample, std::uint64_t writer)
 {
     ControllerId controller{};
     std::memcpy(controller.data(), sample.controller, controller.size());
@@ -296,9 +315,11 @@ void TelemetryReader::on_end(const tactus_v2_Telemetry& sample, std::uint64_t wr
                   [&](const WatchedController& each) { return each.id == controller; });
 }
 
-bool TelemetryReader::try_take(const tactus_v2_Telemetry& sample)
+bool TelemetryReader::try_take(const tactus_v3_Telemetry& sample, const dds_sample_info_t& info)
 {
     WatchedController news;
+    news.writer = info.publication_handle;
+    news.is_disputed = info.instance_state != DDS_ALIVE_INSTANCE_STATE;
     std::memcpy(news.id.data(), sample.controller, news.id.size());
     news.name = text_of(sample.controller_name);
     news.serial = sample.serial;
@@ -333,7 +354,8 @@ bool TelemetryReader::try_take(const tactus_v2_Telemetry& sample)
     {
         news.models.push_back(identity_of(sample.models._buffer[i]));
         news.telemetry.models[i] = from_wire(sample.models._buffer[i]);
-        if (!is_valid_name(news.models.back().name))
+        const bool has_stage = sample.models._buffer[i].state >> kStageShift < kModelStages;
+        if (!is_valid_name(news.models.back().name) || !has_stage)
         {
             return false;
         }

@@ -14,7 +14,8 @@
 #include <string>
 #include <vector>
 
-struct tactus_v2_Telemetry; // idlc's type of a sample.
+struct dds_sample_info;
+struct tactus_v3_Telemetry; // idlc's type of a sample.
 
 namespace tactus::dds
 {
@@ -26,12 +27,13 @@ inline constexpr std::size_t kMaxWatched = 256;
 class TelemetryWriter
 {
 public:
-    /// `domain` must outlive it; `models` in the order of Telemetry::models, at most
-    /// kMaxShownModels.
+    /// `domain` must outlive it; `controller_name` is valid and `models`, in the order of
+    /// Telemetry::models, are at most kMaxShownModels (both asserted).
     [[nodiscard]] static Result<std::unique_ptr<TelemetryWriter>, Refusal>
     create(const Domain& domain, std::string controller_name, std::vector<ModelIdentity> models);
 
-    /// Sends it to whoever watches; never waits. `telemetry.model_count` is that of the models.
+    /// Sends it to whoever watches; never waits. `telemetry.model_count` is that of the models,
+    /// tools and pairs are within its arrays (asserted).
     void write(const Telemetry& telemetry);
 
     /// How many were sent.
@@ -56,6 +58,8 @@ struct WatchedController
     std::uint64_t serial{0};
     std::vector<ModelIdentity> models; ///< In the order of Telemetry::models.
     Telemetry telemetry;
+    std::uint64_t writer{0}; ///< Handle of the last sample's.
+    bool is_disputed{false}; ///< Somebody said that it is gone, perhaps another program.
 };
 
 /// The host's side: the controllers on a domain, each at its newest. One thread.
@@ -70,7 +74,7 @@ public:
     /// never waits.
     void poll();
 
-    /// In the order in which they were first seen; at most kMaxWatched.
+    /// In the order in which they were first seen; at most kMaxWatched. Until the next poll().
     [[nodiscard]] const std::vector<WatchedController>& controllers() const noexcept
     {
         return controllers_;
@@ -82,8 +86,8 @@ public:
 private:
     TelemetryReader(Participants& participants, Endpoint reader);
 
-    void on_end(const tactus_v2_Telemetry& sample, std::uint64_t writer);
-    [[nodiscard]] bool try_take(const tactus_v2_Telemetry& sample);
+    void on_end(const tactus_v3_Telemetry& sample, std::uint64_t writer);
+    [[nodiscard]] bool try_take(const tactus_v3_Telemetry& sample, const dds_sample_info& info);
 
     Participants& participants_;
     Endpoint reader_;

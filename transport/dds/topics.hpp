@@ -14,7 +14,7 @@ namespace tactus::dds
 {
 
 /// In the topics' names: who speaks another one is not heard.
-inline constexpr std::uint32_t kProtocolVersion = 2;
+inline constexpr std::uint32_t kProtocolVersion = 3;
 
 /// Names of pieces in one request.
 inline constexpr std::uint32_t kMaxWishes = 256;
@@ -27,9 +27,7 @@ inline constexpr std::uint32_t kMaxMoved = 64;
 inline constexpr std::uint32_t kCreditPieces = 128;
 /// Payload of one sample, in bytes: fits the type's bound and leaves a UDP datagram room.
 inline constexpr std::size_t kPayloadBytes = 60'000;
-/// Header and base mesh go in parts of this size; the last one is smaller.
-inline constexpr std::size_t kPartBytes = std::size_t{28} << 10U;
-/// Most of them that a controller fetches.
+/// Most bytes of a header and of a base mesh that a controller fetches.
 inline constexpr std::size_t kMaxHeaderBytes = std::size_t{8} << 20U;
 inline constexpr std::size_t kMaxBaseBytes = std::size_t{1} << 20U;
 
@@ -40,7 +38,8 @@ enum class Topic : std::uint8_t
     motion,
     wanted,
     chunks,
-    telemetry
+    telemetry,
+    front
 };
 
 /// Creates a writer or reader with the topic's quality of service (docs/protocol.md). No call on it

@@ -27,7 +27,8 @@ class ModelStore
 {
 public:
     /// Checks everything but the chunks' content: size, header, root hash, base mesh, index pages,
-    /// and that all extents lie within the file. Cost: reads header, base and index.
+    /// and that all extents lie within the file. Cost: reads header, base and index. Refused in one
+    /// line with the path, as is read().
     [[nodiscard]] static Result<ModelStore, Refusal> open(const std::filesystem::path& path);
 
     ModelStore(ModelStore&& other) noexcept;
@@ -37,6 +38,7 @@ public:
     ~ModelStore();
 
     [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
+    /// Header and bytes are the store's, and go with it where it is moved to.
     [[nodiscard]] const ModelHeader& header() const noexcept { return header_; }
     [[nodiscard]] std::span<const std::byte> header_bytes() const noexcept { return bytes_; }
     [[nodiscard]] const ContentHash& hash() const noexcept { return hash_; }
@@ -44,7 +46,7 @@ public:
 
     /// Whether the model has a piece of this name.
     [[nodiscard]] bool has(ContentKey key) const noexcept;
-    /// Bytes of a piece's coded form. The key must be one that the model has.
+    /// Bytes of a piece's coded form. The key must be one that the model has (asserted).
     [[nodiscard]] std::size_t coded_bytes(ContentKey key) const noexcept;
 
     /// Reads a piece in its coded form into `out` (resized; no allocation once it is large enough)

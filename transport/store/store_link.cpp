@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #include "transport/store/store_link.hpp"
 
+#include "transport/piece_parts.hpp"
+
 #include <algorithm>
 #include <utility>
 
@@ -41,17 +43,27 @@ void StoreLink::poll(PieceSink& sink)
     {
         const ContentKey key = waiting_.back();
         waiting_.pop_back();
-        if (auto done = store_.read(key, piece_); !done)
+        if (!try_read(key))
         {
-            if (damaged_.emplace(key.kind, key.number).second)
-            {
-                log_.write(done.error().text);
-            }
             continue;
         }
-        bytes_received_ += piece_.size();
-        sink.receive(key, piece_);
+        const auto piece = key.kind == ContentKind::base ? part_of(piece_, key.number)
+                                                         : std::span(std::as_const(piece_));
+        bytes_received_ += piece.size();
+        sink.receive(key, piece);
     }
+}
+
+/// A base mesh is read as a whole for each of its parts, mostly one.
+bool StoreLink::try_read(ContentKey key)
+{
+    const bool is_base = key.kind == ContentKind::base;
+    const auto done = store_.read({key.kind, is_base ? 0 : key.number}, piece_);
+    if (!done && damaged_.emplace(key.kind, key.number).second)
+    {
+        log_.write(done.error().text);
+    }
+    return static_cast<bool>(done);
 }
 
 Result<ServedModel, Refusal> serve_from_file(const std::filesystem::path& path,

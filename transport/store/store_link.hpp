@@ -24,7 +24,9 @@ public:
     /// `log` gets a line for each piece that can't be read, at a limited rate.
     StoreLink(ModelStore store, Log log);
 
+    /// 1,024 pieces may wait for poll(): of more the oldest are forgotten.
     void request(std::span<const ContentKey> keys, std::uint32_t generation) override;
+    /// Reads all that wait.
     void poll(PieceSink& sink) override;
     [[nodiscard]] LinkState state() const override { return LinkState::connected; }
     [[nodiscard]] std::uint64_t session() const override { return 1; }
@@ -35,6 +37,8 @@ public:
     [[nodiscard]] const ModelStore& store() const noexcept { return store_; }
 
 private:
+    [[nodiscard]] bool try_read(ContentKey key);
+
     ModelStore store_;
     RateLimitedLog log_;
     std::vector<ContentKey> waiting_; ///< Most urgent last.
@@ -43,7 +47,8 @@ private:
     std::uint64_t bytes_received_{0};
 };
 
-/// Opens a file as the model `name`, which the caller has checked.
+/// Opens a file as the model `name`, a valid one, which nothing checks. Refused as
+/// ModelStore::open(). Allocates; on any thread but the haptic one.
 [[nodiscard]] Result<ServedModel, Refusal> serve_from_file(const std::filesystem::path& path,
                                                            const std::string& name, Log log);
 

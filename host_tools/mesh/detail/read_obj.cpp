@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <optional>
 
@@ -17,6 +18,14 @@ namespace tactus::detail
 
 namespace
 {
+
+/// What a line may begin with that says nothing of the surface.
+constexpr std::array<std::string_view, 37> kPassedOver{
+    "vt",        "vn",     "vp",     "g",      "o",        "s",        "mg",   "usemtl",
+    "mtllib",    "usemap", "maplib", "bevel",  "c_interp", "d_interp", "lod",  "shadow_obj",
+    "trace_obj", "ctech",  "stech",  "cstype", "deg",      "bmat",     "step", "parm",
+    "trim",      "hole",   "scrv",   "sp",     "end",      "con",      "call", "csh",
+    "bsp",       "bzp",    "cdc",    "cdp",    "res"};
 
 class ObjReader
 {
@@ -43,6 +52,11 @@ public:
         {
             file_.notes.push_back(
                 fmt::format("{} points, lines, curves or free-form surfaces left out", left_out_));
+        }
+        if (not_understood_ > 0)
+        {
+            file_.notes.push_back(fmt::format("{} lines not understood, the first is line {}",
+                                              not_understood_, first_not_understood_));
         }
         note_missing_line_end(text_, file_.notes);
         return std::move(file_);
@@ -74,6 +88,12 @@ private:
             keyword == "surf")
         {
             ++left_out_;
+        }
+        else if (!keyword.empty() && keyword[0] != '#' &&
+                 std::ranges::find(kPassedOver, keyword) == kPassedOver.end())
+        {
+            first_not_understood_ = not_understood_ == 0 ? cursor_.line() : first_not_understood_;
+            ++not_understood_;
         }
         return std::nullopt;
     }
@@ -137,6 +157,8 @@ private:
     std::uint64_t largest_index_{0};
     std::size_t largest_line_{0};
     std::uint64_t left_out_{0};
+    std::uint64_t not_understood_{0};
+    std::size_t first_not_understood_{0};
 };
 
 } // namespace

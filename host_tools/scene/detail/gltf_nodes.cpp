@@ -3,6 +3,7 @@
 #include "host_tools/scene/detail/gltf_nodes.hpp"
 
 #include "host_tools/scene/material_ranges.hpp"
+#include "host_tools/scene/material_text.hpp"
 #include "host_tools/scene/unique_names.hpp"
 #include "platform/base/printable.hpp"
 #include "rt_core/limits.hpp"
@@ -239,17 +240,14 @@ std::vector<bool> find_shown(const GltfFile& file, const NodeTree& tree)
 
 Material read_material(const JsonAt& json)
 {
-    json.require_keys_among("stiffness static dynamic damping");
-    const auto number = [&](const char* key, double otherwise)
-    {
-        const auto value = json.find(key);
-        return value ? value->number() : otherwise;
-    };
-    Material material;
-    material.stiffness_n_per_m = number("stiffness", material.stiffness_n_per_m);
-    material.static_friction = number("static", 0.0);
-    material.dynamic_friction = number("dynamic", material.static_friction);
-    material.damping_n_s_per_m = number("damping", 0.0);
+    json.require_keys_among(
+        "stiffness static dynamic damping viscosity texture_height texture_length");
+    const Material material = material_of(
+        [&json](std::string_view key)
+        {
+            const auto value = json.find(std::string(key).c_str());
+            return value ? std::optional(value->number()) : std::nullopt;
+        });
     if (!is_in_range(material))
     {
         json.refuse(fmt::format("must have {}", kMaterialRanges));

@@ -233,6 +233,20 @@ int main(int argc, char** argv)
             &error);
     ring.pose.scale = 1.0;
 
+    tactus_material rough;
+    tactus_material_default(&rough);
+    rough.static_friction = 11.0;
+    refused(tactus_frame_feel(frame, 0, &rough, &error), TACTUS_BAD_ARGUMENT,
+            "material.static_friction: 11; 0 to 10 is allowed", &error);
+    rough.static_friction = 0.5;
+    refused(tactus_frame_feel(frame, 1, &rough, &error), TACTUS_BAD_ARGUMENT,
+            "object: 1; 0 to 0 is allowed", &error);
+    rough.size -= 8;
+    refused(tactus_frame_feel(frame, 0, &rough, &error), TACTUS_BAD_VERSION,
+            "material: its size is", &error);
+    rough.size += 8;
+    need(tactus_frame_feel(frame, 0, &rough, &error) == TACTUS_DONE, "feel", &error);
+
     /* An object that moves away by 5 mm is 5 mm farther away. */
     poses.positions_m = places_m;
     poses.count = 1;

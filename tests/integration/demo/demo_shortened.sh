@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# demo_shortened.sh SETUP BUILD_DIR [--scene]: the README's demo with the programs of this build,
-# for 3 s: it ends well, prints the summary, names the report, and leaves no process behind.
+# demo_shortened.sh SETUP BUILD_DIR [--scene | --view]: the README's demo with the programs of this
+# build, for 3 s: it ends well, prints the summary, names the report, and leaves no process behind.
 set -euo pipefail
 readonly setup=$1
 export TACTUS_BUILD_DIR=$2
-readonly scene=${3:-}
+readonly more=${3:-}
 unset CYCLONEDDS_URI
 
 fail() {
@@ -19,14 +19,16 @@ trap 'rm -f "$output"' EXIT
 code=0
 # shellcheck disable=SC2016 # The inner shell expands them.
 setsid --wait bash -c 'echo $$ >"$1"; shift; exec bash "$@"' demo "$output.session" \
-    "$setup" demo ${scene:+"$scene"} --seconds 3 --domain "${TACTUS_TEST_DOMAIN:-$(($$ % 231))}" \
+    "$setup" demo ${more:+"$more"} --seconds 3 --domain "${TACTUS_TEST_DOMAIN:-$(($$ % 231))}" \
     >"$output" 2>&1 || code=$?
 session=$(cat "$output.session")
 rm -f "$output.session"
 cat "$output"
 ((code == 0)) || fail "the demo ended with $code"
 texts=('frames      3000 at 1000 Hz' 'answers     exact' 'times us' 'memory      ' 'deadlines   ')
-if [[ -n "$scene" ]]; then
+if [[ "$more" == --view ]]; then
+    texts+=('View: http://127.0.0.1:')
+elif [[ "$more" == --scene ]]; then
     texts+=('scene.gltf: 200 objects of 20 models' 'touches     200 objects of 20 models'
         'scene       200 objects, 200 at most')
     [[ $(grep -c '^tool  ' "$output") == 2 ]] || fail 'not two hands'
@@ -42,8 +44,8 @@ for stat in /proc/[0-9]*/stat; do
     [[ "$of_session" != "$session" ]] || fail "left running: $(cat "$stat")"
 done
 
-# A scene is the demo's alone.
+# A scene and a view are the demo's alone.
 code=0
 refusal=$(unset TACTUS_BUILD_DIR && bash "$setup" bench --scene 2>&1) || code=$?
-[[ $code == 3 && "$refusal" == *"--scene is for 'demo' only"* ]] \
+[[ $code == 3 && "$refusal" == *"--scene and --view are for 'demo' only"* ]] \
     || fail "bench --scene: $code, $refusal"

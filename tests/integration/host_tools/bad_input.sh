@@ -113,13 +113,13 @@ expect 3 --shape "$build" in/mesh.obj --faces 1000 -o out/a.spm
 expect 3 --shape "$build" in/mesh.obj --shape sphere --faces 1000 -o out/a.spm
 expect 3 --fast "$build" in/mesh.obj -o out/a.spm --fast
 expect 3 FILE "$inspect"
-expect 3 --faces "$inspect" in/mesh.obj --extract -o out/a.ply
-expect 3 --output "$inspect" in/mesh.obj --extract --faces 100
-expect 3 --extract "$inspect" in/mesh.obj --faces 100
-expect 3 --extract "$inspect" in/mesh.obj --error 1
-expect 3 --extract "$inspect" in/mesh.obj --region sphere:0,0,0,1
+expect 3 --faces "$inspect" in/mesh.spm --extract -o out/a.ply
+expect 3 --output "$inspect" in/mesh.spm --extract --faces 100
+expect 3 --extract "$inspect" in/mesh.spm --faces 100
+expect 3 --extract "$inspect" in/mesh.spm --error 1
+expect 3 --extract "$inspect" in/mesh.spm --region sphere:0,0,0,1
 # refuse_extract TEXT ARGUMENT...: refused before the model is read.
-refuse_extract() { expect 3 "$1" "$inspect" in/mesh.obj --extract -o out/a.ply "${@:2}"; }
+refuse_extract() { expect 3 "$1" "$inspect" in/mesh.spm --extract -o out/a.ply "${@:2}"; }
 refuse_extract '--extract needs --faces, --error or --region'
 refuse_extract "--faces: '0' is not a number in 1 .. 4294967295" --faces 0
 refuse_extract '--faces: ' --faces many
@@ -141,12 +141,12 @@ refuse_extract "'' is not a number in" --region sphere:0,0,0,1,
 refuse_extract "'box:0,0,0,1,1': has 5 numbers and needs 6" --region box:0,0,0,1,1
 refuse_extract 'y1 = -1 is not in y0 .. 1000000000, y0 being 0' --region box:0,0,0,1,-1,1
 expect 3 "'out/a.off' does not end in .ply, .obj or .stl" \
-    "$inspect" in/mesh.obj --extract --faces 100 -o out/a.off
-expect 3 "'out/stl' does not end in" "$inspect" in/mesh.obj --extract --faces 100 -o out/stl
+    "$inspect" in/mesh.spm --extract --faces 100 -o out/a.off
+expect 3 "'out/stl' does not end in" "$inspect" in/mesh.spm --extract --faces 100 -o out/stl
 
 expect 2 in/missing.spm "$inspect" in/missing.spm
-expect 2 in/empty.obj "$inspect" in/empty.obj
-expect 2 in/mesh.obj "$inspect" in/mesh.obj
+expect 3 in/empty.obj "$inspect" in/empty.obj
+expect 3 in/mesh.obj "$inspect" in/mesh.obj
 expect 2 'in: ' "$inspect" in
 "$build" --shape sphere --faces 2000 -o out/sphere.spm >/dev/null 2>&1
 bytes=$(stat -c %s out/sphere.spm)
@@ -157,8 +157,26 @@ cp out/sphere.spm in/bent.spm
 printf '\xff' | dd of=in/bent.spm bs=1 seek=$((bytes - 100)) conv=notrunc status=none
 expect 2 'in/bent.spm: chunk' "$inspect" in/bent.spm
 expect 2 nowhere/a.ply "$inspect" out/sphere.spm --json --extract --faces 100 -o nowhere/a.ply
+
+# refuse_points TEXT LINE...: points of a file, by the number of the line or of the point.
+refuse_points() {
+    printf '%s\n' "${@:2}" >in/points.txt
+    expect 2 "in/points.txt: $1" "$inspect" out/sphere.spm --distances in/points.txt
+}
+refuse_points 'line 2: has fewer than the three numbers' '0 0 0' '1 2'
+refuse_points 'line 3: has more than the three numbers' '# two' '' '1 2 3 4'
+refuse_points "line 1: '1mm' is not a finite number" '1mm 0 0'
+refuse_points "line 1: 'nan' is not a finite number" '0 nan 0'
+refuse_points "line 1: 'inf' is not a finite number" '0 0 inf'
+refuse_points 'point 1 (0 0 1e+300): not within' '0 0 0' '0 0 1e300'
+expect 2 'in/nowhere.txt: no such file' "$inspect" out/sphere.spm --distances in/nowhere.txt
+echo '0 0 0' >in/point.txt
+expect 2 'in/bent.spm: 1 piece is damaged' "$inspect" in/bent.spm --distances in/point.txt
+expect 3 'one at a time' \
+    "$inspect" out/sphere.spm --distances in/points.txt --extract --faces 100 -o out/a.ply
+expect 3 --regions "$inspect" out/sphere.spm --distances in/points.txt --regions
 # So far from the origin that floats can't tell the vertices apart.
-awk '/^v/ { printf "v %.3f %s %s\n", $2 + 1e9, $3, $4; next } 1' in/mesh.obj >in/far.obj
+awk '/^v/ { printf "v %.3f %s %s\n", $2 + 5e7, $3, $4; next } 1' in/mesh.obj >in/far.obj
 "$build" in/far.obj --fit-diag 0.1 -o in/far.spm >/dev/null 2>&1
 expect 2 "out/a.stl: STL's 32-bit coordinates" \
     "$inspect" in/far.spm --extract --error 0 -o out/a.stl

@@ -54,6 +54,15 @@ grep -q '^diagonal 20 m, a unit of the mesh is 0.04 m' large.txt || fail "$(cat 
 grep -q 'chunks sound' text.txt || fail 'the text says nothing of sound chunks'
 grep -q '^region [0-9]*: cell' text.txt || fail '--regions'
 
+# Outside of a ring: its middle, and a point far above.
+printf '# three\n0 0 0\n\n0 0 10\n' >points.txt
+"$inspect" torus.spm --distances points.txt >distances.txt
+[[ $(grep -c ' outside ' distances.txt) == 2 ]] || fail "$(cat distances.txt)"
+awk '/^#/ { next } { if ($2 - $1 > 1e-12 * $2) exit 1; d[++n] = $1 }
+    END { exit !(n == 2 && d[2] > 9.9 && d[2] < 10) }' distances.txt || fail "$(cat distances.txt)"
+"$inspect" torus.spm --distances points.txt --json >distances.json
+[[ $(grep -c '"side": "outside"' distances.json) == 2 ]] || fail "$(cat distances.json)"
+
 # At, below and above what the model has, and between.
 faces=$(figure faces <built.json)
 base=$(figure base_faces <built.json)
@@ -102,8 +111,6 @@ extract few.ply --region sphere:0.05,0,0,0.02 --faces 1
 cmp ball.ply few.ply || fail 'a ball and too few faces'
 extract close.ply --region box:0,-1,-1,1,1,1 --error 5e-4
 ((has > some && has < faces)) || fail "a box and an error: $has faces"
-extract beside.ply --region sphere:9,0,0,1
-((has == base)) || fail "a region beside the model: $has faces"
 
 # The same input gives the same file, whatever the threads; an old file is replaced.
 printf 'old' >one.spm

@@ -34,6 +34,14 @@ for unit in hrtc spm_publish; do
     fi
 done
 
+# What the example of docs/two-machines.md lets the publisher's service serve.
+model bumpy-sphere-5000 ball.spm
+options=$(sed -n 's/^OPTIONS="\(.*\)"$/\1/p' "$documents/docs/examples/spm_publish.default")
+read -ra options <<<"${options/--domain 0/--domain $domain}"
+"$installed/spm_publish" "${options[@]}" --seconds 1 >publish.log \
+    || fault 'the example of the service'
+grep -q "^serving 'ball'" publish.log || fault "the example serves: $(cat publish.log)"
+
 # Under a manager that listens. It waits for the words with patience: the machine may be slow.
 cat >manager.py <<'PYTHON'
 import os, signal, socket, subprocess, sys

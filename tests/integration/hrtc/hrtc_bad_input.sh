@@ -17,16 +17,16 @@ refuse_config() { # refuse_config PATTERN LINE: of a file with this line.
     printf '%s\n' "$2" >bad.toml
     refuse 3 "$1" --model bumpy --config bad.toml
 }
-refuse_config "bad.toml:1: no option is called 'torque'; a line is KEY = VALUE" 'torque = 3'
+refuse_config "bad.toml:1: no option is called 'buoyancy'; a line is KEY = VALUE" 'buoyancy = 3'
 refuse_config "bad.toml:3: no option is called 'stifness'; 'stiffness'[?]" \
     $'# Mine.\nrate = 1000\n  stifness = 300'
 refuse_config "bad.toml:2: there are no sections; '[[]loop]' is one" $'\n[loop]\nrate = 1000'
 refuse_config "bad.toml:1: *KEY = VALUE" 'splits: quickly'
-refuse_config '--rate: *fast*100 to 10000' 'rate = "fast"'
-refuse_config '--rate: *99*100 to 10000' 'rate = 99'
+refuse_config '--rate: *fast*100 .. 10000' 'rate = "fast"'
+refuse_config '--rate: *99*100 .. 10000' 'rate = 99'
 refuse_config '--rate: ' 'rate ='
 refuse_config '--rate: ' 'rate = [1000, 2000]'
-refuse_config '--cpu: *1.5*0 to 1023' 'cpu = 1.5'
+refuse_config '--cpu: *1.5*0 .. 1023' 'cpu = 1.5'
 refuse_config '--pool-mib: *0.25 .. 4096' 'pool-mib = 0'
 refuse_config 'maybe' 'no-static = "maybe"'
 refuse_config '--device: *udp:ADDRESS:PORT' 'device = "phantom"'
@@ -46,7 +46,7 @@ grep -q -- --pool-mib help.txt || fault 'hrtc --help'
 ! LC_ALL=C grep -q '[^[:print:]]' help.txt || fault 'hrtc --help prints more than text'
 refuse 3 --model
 refuse 3 --fast --model bumpy --fast
-readonly rates='100 to 10000'
+readonly rates='100 .. 10000'
 for value in 0 -1 99 10001 1e300 nan fast 1000.5 ''; do
     refuse_option --rate "$value" "$rates"
 done
@@ -59,7 +59,7 @@ done
 refuse_option --cache-mib 0 '0.05 .. 4096'
 refuse_option --cache-mib 2 'less than --pool-mib'
 for value in 0 -1 1000000 1.5 many; do
-    refuse_option --splits "$value" '1 to 256'
+    refuse_option --splits "$value" '1 .. 256'
 done
 for value in 0 0.9 10001 nan soon ''; do
     refuse_option --frame-budget-us "$value" '1 .. 10000'
@@ -73,20 +73,24 @@ for value in 0 -1 0.009 101 nan fast ''; do
     refuse_option --speed-limit "$value" '0.01 .. 100'
 done
 for value in -1 32 1.5 left; do
-    refuse_option --clutch "$value" '0 to 31'
+    refuse_option --clutch "$value" '0 .. 31'
 done
-refuse_option --domain -1 '0 to 232'
-refuse_option --domain 233 '0 to 232'
-refuse_option --domain 1.5 '0 to 232'
+refuse_option --domain -1 '0 .. 232'
+refuse_option --domain 233 '0 .. 232'
+refuse_option --domain 1.5 '0 .. 232'
 refuse_option --wait 0 '0.1 .. 3600'
-refuse_option --priority 0 '1 to 98'
-refuse_option --priority 99 '1 to 98'
-refuse_option --cpu -1 '0 to 1023'
-refuse_option --cpu 1024 '0 to 1023'
+refuse_option --priority 0 '1 .. 98'
+refuse_option --priority 99 '1 .. 98'
+refuse_option --supervisor-periods 1 '2 .. 1000'
+refuse_option --supervisor-periods 1001 '2 .. 1000'
+refuse_option --cpu -1 '0 .. 1023'
+refuse_option --cpu 1024 '0 .. 1023'
 (($(nproc --all) > 1023)) || refuse_option --cpu 1023 'it may use'
-for value in phantom sim: sim:sigma replay replay: udp: udp:80 udp:65536 udp:5x udp::48500 dhd: \
-    dhd:64 dhd:-1 ''; do
+for value in phantom udp: udp:80 udp:65536 udp:5x udp::48500 ''; do
     refuse_option --device "$value" 'udp:ADDRESS:PORT'
+done
+for value in sim: sim:sigma replay replay: dhd: dhd:64 dhd:-1; do
+    refuse_option --device "$value" "${value%%:*}:[A-Z]"
 done
 for value in nan nan@1 nan@1+0 nan@-1+1 nan@1+2000000000 late@1+1 ''; do
     refuse_option --device-fault "$value" 'KIND@FRAME+LENGTH'
@@ -106,12 +110,20 @@ refuse 3 '--device-frame: 1 given for 0' --model a --device-frame 0,0,0
 refuse 3 'in the world already' --model a --device sim --device-frame 0,0,0
 refuse 3 'in the world already' --model a --device replay:a.rec --device-frame 0,0,0
 refuse 3 '1e4 m' --model a --device udp --device-frame 1,2
-refuse_option --transport smtp '{dds,file}'
+refuse_option --transport smtp 'is not dds or file'
 for value in cube sphere: sphere:0 sphere:0.1,1 capsule:0.1 capsule:0,0.1 box:1,1 box:1,1,0 \
     box:1,1,1,2 hull: hull:a.obj,2 mesh: mesh:,0.1 sphere:1.1 \
     sphere:nan sphere:1mm $'sphere:\e[2J'; do
     refuse_option --tool "$value" '1e-5 to 1 m'
 done
+for value in -1 5.1 1,2 1,0,0,2 nan 1kg ''; do
+    refuse_option --tool-mass "$value" '0 to 5 kg'
+done
+refuse 3 '--tool-mass: 2 given for 1 tools' --model a --tool-mass 1 --tool-mass 1
+for value in point:1,2 line:0,0,0 plane:0,0,0,0,0,0 cone:1,2,3 point:0,0,0,5000 ''; do
+    refuse_option --guide "$value" 'a direction that is not zero'
+done
+refuse 3 '--guide: 2 given for 1 tools' --model a --guide none --guide none
 for value in 1 1,2 1,2,3,4 1,2,x 1,2,3,400,0,0 1,2,3,0,0,0,0 nan,0,0 2e4,0,0 ''; do
     refuse_option --place "$value" X,Y,Z
 done

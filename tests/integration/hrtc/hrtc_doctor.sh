@@ -49,6 +49,24 @@ wanted=advice
 [[ $(uname -v) != *PREEMPT_RT* ]] || wanted=good
 [[ $(verdict_of plain preemption) == "$wanted" ]] || fault "preemption is not $wanted"
 
+# Who is heard on a domain, and what is published there; by nobody at first.
+domain_of() { # domain_of PATTERN SECONDS: of the check, which is the 18th, in one more try each s
+    local i
+    for ((i = 0; i < $2; ++i)); do
+        "$hrtc" doctor --all --domain "$domain" --wait 1 >domain.txt || true
+        ! grep -A 3 -E "^(good|advice) +dds-domain" domain.txt | tr -s ' \n' ' ' | grep -q "$1" \
+            || return 0
+    done
+    fault "doctor --domain: no '$1' in: $(cat domain.txt)"
+}
+domain_of "^advice dds-domain nobody is heard on domain $domain within 1 s" 1
+model bumpy-sphere-5000 ball.spm
+"$publish" ball.spm --domain "$domain" >publish.log 2>&1 &
+started+=("$!")
+domain_of "^good dds-domain .*spm_publish (process $! on $(uname -n)).*models published: ball" 30
+"$hrtc" doctor --json --domain "$domain" --wait 0.5 >domain.json || true
+check domain.json checks == 18
+
 # What is critical of DDS is what hrtc does fail with.
 readonly interface='<Interfaces><NetworkInterface name="nowhere0"/></Interfaces>'
 for uri in "file://$scratch/missing.xml" \
@@ -69,7 +87,7 @@ done
 # The command line.
 refuse() { expect 3 "$1" "$hrtc" doctor "${@:2}"; } # refuse PATTERN ARGUMENT...
 for value in -1 1024 all 1.5 ''; do
-    refuse '--cpu: *0 to 1023' --cpu "$value"
+    refuse '--cpu: *0 .. 1023' --cpu "$value"
 done
 refuse --cpu --cpu
 (($(nproc --all) > 1023)) || refuse 'it may use' --cpu 1023

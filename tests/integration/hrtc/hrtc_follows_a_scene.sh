@@ -25,7 +25,9 @@ scene other.gltf 'ball ball 0' 'ring-1 ring 0.6' 'late ball 2' 'later ball 3'
 cat >poses.txt <<'POSES'
 0.5 ring-1 gone
 1.0 ring-1 0.4 0 0 0 0 0 1
+1.1 ball material stiffness=300,static=0.4,viscosity=1
 1.2 ring-2 1.2 0 0 0 0 0 1
+1.4 ball material stiffness=800,texture_height=2e-5,texture_length=1e-3
 1.5 ring-2 1.0 0 0 0 0 0 1
 POSES
 
@@ -36,9 +38,11 @@ run_hrtc --scene workshop --duration 4 --record scene.rec
 check_answers report.json
 check_clean report.json
 check report.json models == 2 scene.objects_max == 3 scene.came '>=' 2 scene.went '>=' 2 \
-    scene.passed_over == 0 models.0.pose.followed == 1 answers.stale == 0 \
+    scene.feels '>=' 3 scene.passed_over == 0 models.0.pose.followed == 1 \
+    answers.stale '<' '0.2*frames' \
     scene.changes_refused.not_here == 0 scene.changes_refused.already_here == 0 \
-    scene.changes_refused.old_generation == 0 scene.changes_refused.bad_pose == 0
+    scene.changes_refused.old_generation == 0 scene.changes_refused.bad_pose == 0 \
+    scene.changes_refused.bad_material == 0
 "$hrtc" --replay scene.rec >replay.log 2>&1 || fault "another replay: $(cat replay.log)"
 grep -q '^scene .* objects, 3 at most' hrtc.log || fault 'the summary tells no scene'
 

@@ -63,6 +63,18 @@ check report.json safety.begun.jump '>=' 1 models.0.pose.step_max_m '>' 0.039 fr
 check_clean report.json
 stop TERM "$publisher"
 
+# Half a metre from where it was looked for at the start, told in lines a second apart: the hand
+# comes after, and the object glides.
+printf '%s\n' '0 bumpy 0.5 0 0 0 0 0 1' '1 bumpy 0.5 0.03 0 0 0 0.1 0.995' \
+    '2 bumpy 0.5 0 0 0 0 0 1' >far.txt
+start_publisher bumpy.spm --poses far.txt --poses-loop --poses-rate 100
+run_hrtc --model bumpy --duration 5
+check report.json models.0.pose.accepted '>' 400 models.0.pose.moves '>' 400 \
+    models.0.pose.step_max_m '>' 0.49 safety.begun.jump '<=' 1
+check_contact report.json force.contact_share 0.4
+check_clean report.json
+stop TERM "$publisher"
+
 refuse() { expect "$1" "$2" "$publish" --domain "$domain" --seconds 5 bumpy.spm "${@:3}"; }
 bad_line() {
     printf '0 bumpy 0 0 0 0 0 0 1\n%s\n' "$2" >bad.txt

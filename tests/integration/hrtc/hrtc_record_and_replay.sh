@@ -3,27 +3,42 @@
 # hrtc_record_and_replay.sh: a run over DDS with governed budgets is recorded and replays bit for
 # bit without DDS; another input is told by its frame; damaged and foreign files, and options that
 # exclude each other, are refused in one line. $4 is the program that alters a recording.
-source "$(dirname "$0")/common.sh"
+here=$(cd "$(dirname "$0")" && pwd)
+readonly here
+source "$here/common.sh"
 readonly alter=$4
 
 # The command line, before anything runs.
 refuse() { expect "$1" "$2" "$hrtc" "${@:3}"; }
 "$hrtc" --help >help.txt
-for option in --record --replay; do
+for option in --record --replay --export --trace --histograms; do
     grep -q -- "$option " help.txt || fault "hrtc --help does not tell of $option"
-    refuse 3 "$option: *name is needed" --model bumpy "$option" ''
+    [[ $option == --export ]] || refuse 3 "$option: *name is needed" --model bumpy "$option" ''
 done
 refuse 3 'a model is required' --record run.rec
 for option in '--model a' '--record a' '--duration 1' '--rate 1000' '--frame-budget-us 100' \
     '--splits 100' '--report a.json'; do
     # shellcheck disable=SC2086 # An option and its value.
-    refuse 3 "--replay: takes --kernels and no other option; ${option% *} was given" \
+    refuse 3 "--replay: takes --kernels, --export and no other option; ${option% *} was given" \
         --replay run.rec $option
 done
-refuse 3 '--replay: takes --kernels and no other option; --allow-no-rt' \
+refuse 3 '--replay: takes --kernels, --export and no other option; --allow-no-rt' \
     --replay run.rec --allow-no-rt
 refuse 3 '--record: must be another file than --report' \
     --model bumpy --record a.json --report a.json
+refuse 3 '--export: needs --replay' --model bumpy --export a.csv
+refuse 3 "--export: 'a.xml' ends neither in .csv nor in .jsonl or .mcap" --replay a --export a.xml
+refuse 3 "--export: 'a.csv' is given twice" --replay a --export a.csv --export a.csv
+refuse 3 '--export: must be another file than --replay' --replay a.csv --export a.csv
+for option in --trace --histograms; do
+    refuse 3 "--virtual-time: takes no time that $option could tell of" \
+        --transport file --model a.spm --virtual-time "$option" a
+done
+refuse 3 '--trace: must be another file than --record' --model a --record a --trace a
+refuse 3 '--trace: must be another file than --report' --model a --report a.json --trace a.json
+refuse 2 "--trace: nowhere/a: can't be written" --allow-no-rt --model a --trace nowhere/a
+refuse 2 "--histograms: nowhere/frame.hgrm: can't be written" --allow-no-rt --model a \
+    --histograms nowhere
 mkdir folder
 for path in nowhere/run.rec folder; do
     refuse 2 "--record: $path: can't be written" --allow-no-rt --model bumpy --record "$path"
@@ -33,15 +48,23 @@ done
 model bumpy-sphere-60000 bumpy.spm
 model torus-20000 torus.spm
 start_publisher bumpy.spm torus.spm
+mkdir times
 run_hrtc --model bumpy --model torus --place 0,0,0 --place 0.3,0,0,0,30,0,2 \
     --material 300,0.4,0.3,0.5 --tool sphere:0.002 --tool sphere:0.004 --duration 2 \
-    --pool-mib 1.25 --frame-budget-us 300 --predict quadratic --record run.rec
+    --pool-mib 1.25 --frame-budget-us 300 --predict quadratic --record run.rec \
+    --trace run.trace --histograms times
 check_clean report.json
 check report.json frames == 2000 recording.frames == 2000 recording.bytes '>' 100000
 grep -q '"prediction": *"quadratic"' report.json || fault 'the report tells of another prediction'
 grep -q '^recording   2000 frames, ' hrtc.log || fault 'the summary has no recording'
 ! grep -q 'incomplete' hrtc.log || fault 'frames of the recording are lost'
-[[ -z $(compgen -G '*.partial') ]] || fault 'left behind: a partial file'
+python3 "$here/read_trace.py" run.trace report.json || fault 'the trace, see above'
+for time in load refine refit query force frame cpu wake response; do
+    grep -Eq '^#\[Max +=.*, Total count += +[0-9]+\]$' "times/$time.hgrm" \
+        || fault "times/$time.hgrm"
+done
+grep -Eq '^#\[Max +=.*, Total count += +2000\]$' times/frame.hgrm || fault 'not each frame counts'
+[[ -z $(compgen -G '*.partial' times/*.partial) ]] || fault 'left behind: a partial file'
 stop TERM "$publisher"
 
 said=$("$hrtc" --replay run.rec) || fail "the replay ended with $?: $said"
@@ -54,6 +77,28 @@ for kind in --replay --model; do
     refuse 3 "--kernels: 'sse' is none that this processor runs: portable" \
         "$kind" run.rec --kernels sse
 done
+
+# For other tools, as readers of our own take it.
+"$hrtc" --replay run.rec --export run.csv --export run.jsonl --export run.mcap >said.txt \
+    || fail "the export ended with $?"
+grep -qx 'export      run.mcap' said.txt || fault "it says: $(<said.txt)"
+python3 "$here/read_exports.py" run 2000 report.json || fault 'the exports, see above'
+refuse 2 "--export: nowhere/a.csv: can't be written" --replay run.rec --export nowhere/a.csv
+code=0
+(
+    trap '' XFSZ
+    ulimit -f 64
+    exec "$hrtc" --replay run.rec --export folder/a.mcap
+) >said.txt 2>&1 || code=$?
+if ((code != 2)) || ! grep -q "^hrtc: --export: folder/a.mcap: can't be written: File" \
+    said.txt; then
+    fault "an export that could not be stored ended with $code: $(<said.txt)"
+fi
+"$alter" run.rec altered.rec 1234
+code=0
+"$hrtc" --replay altered.rec --export folder/a.csv >said.txt 2>&1 || code=$?
+((code == 1)) || fault "the export of a replay that differs ended with $code"
+[[ -z $(ls -A folder) ]] || fault "an export was left behind: $(ls -A folder)"
 
 # One bit of one input.
 for frame in 0 1234; do
@@ -82,7 +127,7 @@ refuse_file start.rec 'at byte *: the file is cut short: '
 refuse_file cut.rec 'at byte *: the file is cut short: 36 bytes are needed here and 35 are left'
 refuse_file long.rec 'at byte *: the end section is followed by 1 bytes; nothing may follow it'
 refuse_file bent.rec 'at byte *: section of kind 2 and * bytes is damaged: its checksum'
-refuse_file newer.rec 'at byte 8: format version 255 is unknown; this program reads 8'
+refuse_file newer.rec 'at byte 8: format version 255 is unknown; this program reads 11'
 refuse 2 'no?where.rec: cannot be opened' --replay $'no\nwhere.rec'
 
 # A recording that can't be stored does not disturb the run, and is told at its end.

@@ -3,7 +3,8 @@
 # hrtc_tools.sh: a tool of each form touches a ball, with a torque where it has a shape, in the
 # default pools; hands turn it, go over edges with it, and put a peg into its hole by a clutch; one
 # that is a mesh streams like what it touches, and its recording replays; hulls without a body are
-# held; hulls and meshes that can't be tools are refused by name.
+# held; hulls and meshes that can't be tools are refused by name. What needs no host is in virtual
+# time.
 source "$(dirname "$0")/common.sh"
 
 model bumpy-sphere-20000 ball.spm
@@ -36,7 +37,7 @@ touch() {
         check report.json tools.0.torque_max_nm == 0
     fi
 }
-touch_file() { touch "$1" --transport file --model ball.spm --tool "$2"; }
+touch_file() { touch "$1" --virtual-time --model ball.spm --tool "$2" "${@:3}"; }
 for tool in point sphere:0.02; do
     touch_file 0 "$tool"
     grep -q "\"shape\": *\"$tool\"" report.json || fault "the report does not name $tool"
@@ -46,7 +47,7 @@ for tool in capsule:0.005,0.05 box:0.04,0.03,0.02,0.001 hull:wedge.off,0.001; do
 done
 
 # A device without torque gets the force alone.
-touch 0 --transport file --model ball.spm --tool capsule:0.005,0.05 --device sim:omega
+touch_file 0 capsule:0.005,0.05 --device sim:omega
 
 # Hulls that are flat, or no more than a line.
 printf 'OFF\n3 1 0\n-0.02 -0.02 0\n0.02 -0.02 0\n0 0.02 0\n3 0 1 2\n' >flat.off
@@ -55,14 +56,19 @@ for file in flat.off line.off; do
     touch_file 1 "hull:$file,0.001"
 done
 
-# How hands move tools that turn.
+# How hands move tools that turn; these have a mass that the hand doesn't feel, and a
+# spring to the middle of the ball pulls at them, by its most.
 for motion in turn edge; do
-    touch 1 --transport file --model ball.spm --tool box:0.04,0.03,0.02,0.001 --motion "$motion"
+    touch_file 1 box:0.04,0.03,0.02,0.001 --motion "$motion" --tool-mass 0.1,0,0.01,0 \
+        --guide point:0,0,0,100,0.25
+    check report.json tools.0.mass_kg == 0.1 tools.0.load_max_n '>' 0.98 \
+        tools.0.load_max_n '<' 0.981 tools.0.load_max_nm '>' 0.0095 \
+        tools.0.guide_max_n '>' 0.249 tools.0.guide_max_n '<' 0.251
 done
 
 # A peg goes into its hole, and a button parts it from the hand that draws back.
 "$build" --shape socket --faces 500 -o socket.spm >build.log 2>&1
-seconds=8 touch 1 --transport file --model socket.spm --tool capsule:0.0099,0.03 \
+seconds=8 touch 1 --virtual-time --model socket.spm --tool capsule:0.0099,0.03 \
     --material 500,0.3,0.2 --motion peg --clutch 0
 check report.json safety.begun.clutch '>=' 1
 grep -q 'force off for: .*clutch' hrtc.log || fault 'nobody tells of the clutch'
@@ -79,11 +85,11 @@ hash=$(sed -n "s/^serving 'ball' hash \([0-9a-f]*\):.*/\1/p" publish.log)
 touch 1 --model ball --tool "mesh:ball@$hash,0.001" --pool-mib 8
 check report.json models == 2 models.1.bytes_received '>' 0
 stop TERM "$publisher"
-touch 1 --transport file --model ball.spm --tool mesh:./ball.spm,0.001 --pool-mib 8
+touch_file 1 mesh:./ball.spm,0.001 --pool-mib 8
 
 # A probe larger than the default pools is as coarse as they allow, and its answers are brackets.
 model bumpy-sphere-200000 large.spm
-run_hrtc --transport file --model ball.spm --tool mesh:large.spm,0.001 --duration 3
+run_hrtc --virtual-time --model ball.spm --tool mesh:large.spm,0.001 --duration 3
 check_clean report.json
 check report.json models.1.pages_used_max '>' 0 answers.exact+answers.decided+answers.bracket '>' \
     '0.9*frames'
@@ -93,6 +99,10 @@ refuse() { expect 2 "$1" "$hrtc" --allow-no-rt --transport file --model ball.spm
 refuse 'none.off' hull:none.off
 refuse 'none.spm' mesh:none.spm
 refuse "'ball.spm' is touched as well" mesh:ball.spm
+expect 2 'kg weigh 9.81 N; the device sim carries half of' "$hrtc" --allow-no-rt \
+    --transport file --model ball.spm --tool-mass 1
+expect 2 'turn with 0.392 N m' "$hrtc" --allow-no-rt --transport file --model ball.spm \
+    --tool box:0.04,0.03,0.02 --tool-mass 0.2,0.2,0,0
 {
     printf 'OFF\n65 1 0\n'
     for ((i = 100; i < 165; ++i)); do

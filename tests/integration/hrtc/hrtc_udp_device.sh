@@ -1,22 +1,19 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# hrtc_udp_device.sh: a program in another language moves the tool. The driver of
-# docs/udp-device.md, with a hand that leans on the model, is killed; another one takes over.
+# hrtc_udp_device.sh: a program in another language moves the tool. The driver of docs/examples,
+# whose hand goes up and down, is killed; another one takes over. With a key one that has another is
+# not heard. What docs/udp-device.md shows of it is run as it stands there.
+docs=$(cd "$(dirname "$0")/../../../docs" && pwd)
+readonly docs
 source "$(dirname "$0")/common.sh"
+source "$(dirname "$0")/run_page.sh"
 
 readonly port=$((20000 + $$ % 20000))
 model bumpy-sphere-20000 bumpy.spm
-# shellcheck disable=SC2016 # The page's own marks.
-sed -n '/^```python$/,/^```$/{/^```/!p}' "$(dirname "$0")/../../../docs/udp-device.md" \
-    | sed -e 's/200 \* x\[i\]/200 * (x[i] - (0.045, 0, 0)[i])/' \
-        -e 's/^\(x, v, force, state, last = \)\[0.0\] \* 6/\1[0.08] + [0.0] * 5/' >driver.py
-if ! grep -q '0.045' driver.py || ! grep -q '0.08' driver.py; then
-    fail 'the driver of the page is another'
-fi
-drive() {
-    python3 driver.py "$port" >driver.log 2>&1 &
-    driver=$!
-    started+=("$driver")
+drive() { # drive [KEY]
+    python3 "$docs/examples/udp_driver.py" "$port" 0.02 "$@" >driver.log 2>&1 &
+    driving=$!
+    started+=("$driving")
 }
 
 readonly run=("$hrtc" --allow-no-rt --transport file --model bumpy.spm)
@@ -29,17 +26,53 @@ stop TERM "$controller" # It waits for a device, and not for an hour.
 grep -q 'no device described itself' hrtc.log || fault 'it does not say what it waited for'
 
 drive
-start_hrtc --transport file --model bumpy.spm --device "udp:$port" --tool sphere:0.004 \
-    --duration 6 --report report.json
-wait_for_sleeps 3000 "$controller"
-stop KILL "$driver"
+start_hrtc --transport file --model bumpy.spm --device "udp:$port" --device-frame 0,0,0.06 \
+    --duration 10 --report report.json # The second driver has to wait for the place of the first.
+wait_for_sleeps 500 "$controller" # The first hand is still above; the second touches.
+stop KILL "$driving"
 wait_for_line hrtc.log 'is gone; no force until' 5
 drive
 code=0
 wait "$controller" || code=$?
 cat hrtc.log
 ((code == 0)) || fail "hrtc ended with $code"
-check_contact report.json tools.0.contact_share 0.3
-check report.json frames == 6000 safety.begun.disconnect '>=' 1 \
-    tools.0.force_max_n '>' 0.2 tools.0.force_max_n '<=' 8
+check report.json frames == 10000 safety.begun.disconnect '>=' 1 tools.0.contact_share '>' 0.05 \
+    tools.0.force_max_n '>' 0.2 tools.0.force_max_n '<=' 8 tools.0.traffic.sessions '>=' 2 \
+    tools.0.traffic.samples '>' 300 tools.0.traffic.refused.tag == 0
+stop KILL "$driving"
+
+# With a key: a driver with another one, and one without, send all the time.
+(umask 077 && printf '%064x\n' 7 >device.key && printf '%064x\n' 8 >other.key)
+drive other.key
+stranger=$driving
+drive
+plain=$driving
+drive device.key
+start_hrtc --transport file --model bumpy.spm --device "udp:$port" --device-key device.key \
+    --device-frame 0,0,0.06 --duration 4 --report report.json
+code=0
+wait "$controller" || code=$?
+cat hrtc.log
+((code == 0)) || fail "hrtc with a key ended with $code"
+check report.json frames == 4000 tools.0.traffic.sessions '>=' 1 tools.0.traffic.samples '>' 100 \
+    tools.0.traffic.refused.tag '>' 10 tools.0.traffic.refused.foreign == 0
+grep -q "tool 0: [0-9]* datagrams .* refused, most of them: not sealed by the key" hrtc.log \
+    || fault 'no line tells of the strangers'
+for id in "$stranger" "$plain" "$driving"; do stop KILL "$id"; done
+
+refuse_key() { expect 3 "$2" "${run[@]}" --device udp --device-key "$1"; }
+refuse_key missing.key 'no such file'
+chmod 644 other.key
+refuse_key other.key 'chmod 600'
+for text in ' ' 12 "$(printf '%063x' 7)" "$(printf '%065x' 7)" "$(printf '%063xg' 7)"; do
+    (umask 077 && printf '%s' "$text" >bad.key)
+    refuse_key bad.key '64 hexadecimal digits'
+done
+expect 3 'there is no udp device' "${run[@]}" --device-key device.key
+
+cp "$docs/examples/udp_driver.py" .
+sed "s/48500/$((port + 1))/" "$docs/udp-device.md" >page.md
+run_page page.md 1
+check driven.json frames == 8000 force.max_n '>' 0.8 force.max_n '<' 3 \
+    tools.0.contact_share '>' 0.05
 finish

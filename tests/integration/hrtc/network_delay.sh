@@ -16,10 +16,10 @@ for option in --delay-ms --jitter-ms; do
     done
 done
 for value in -1 4294967296 1.5 any ''; do
-    expect 3 '--seed: *0 to 4294967295' "$network_relay" --seed "$value"
+    expect 3 '--seed: *0 .. 4294967295' "$network_relay" --seed "$value"
 done
 for value in 575 9001 large; do
-    expect 3 '--mtu: *576 to 9000' "$network_relay" --mtu "$value"
+    expect 3 '--mtu: *576 .. 9000' "$network_relay" --mtu "$value"
 done
 expect 3 extra "$network_relay" extra
 

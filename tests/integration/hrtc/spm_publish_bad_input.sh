@@ -11,9 +11,9 @@ refuse() { expect "$1" "$2" "$publish" --domain "$domain" --seconds 5 "${@:3}"; 
 [[ $("$publish" --help) == *--domain* ]] || fault 'spm_publish --help'
 refuse 3 FILE
 refuse 3 --fast good.spm --fast
-expect 3 '0 to 232' "$publish" good.spm --domain 233
-expect 3 '0 to 232' "$publish" good.spm --domain -1
-expect 3 '0 to 232' "$publish" good.spm --domain 1.5
+expect 3 '0 .. 232' "$publish" good.spm --domain 233
+expect 3 '0 .. 232' "$publish" good.spm --domain -1
+expect 3 '0 .. 232' "$publish" good.spm --domain 1.5
 expect 3 '0.1 .. ' "$publish" good.spm --seconds 0
 expect 3 '0.1 .. ' "$publish" good.spm --seconds nan
 

@@ -36,6 +36,13 @@ ports_of() {
 heard=$(ports_of in_host_network)
 [[ "$heard" == '10 11 ' ]] || fault "the host hears on $first_port and: $heard"
 
+# The doctor hears the host, and what it publishes.
+for ((i = 0; i < 20; ++i)); do
+    in_controller_network "$hrtc" doctor --json --domain "$domain" --wait 1 >doctor.json || true
+    ! grep -q 'spm_publish (process .*models published: large' doctor.json || break
+done
+((i < 20)) || fault "the doctor hears nobody: $(grep -A 2 dds-domain doctor.json)"
+
 # Of another domain nothing comes through, and nothing is found.
 wrong=$(((domain + 7) % 200))
 if in_controller_network "$hrtc" --allow-no-rt --domain "$wrong" --model large --wait 1 \

@@ -40,4 +40,15 @@ check report.json models == 1 tools == 2 scene.objects == 41 scene.objects_max =
     pools.total_bytes '<=' 4194304
 check_answers report.json
 check_clean report.json
+# Each hand as it is told, on the model that is named; where none is, on one of its own.
+run_hrtc --transport file --model first.spm --model second.spm --place 0,0,0 --place 0.5,0,0 \
+    --tools 3 --motion tap:second --motion slide:second --motion slide:first --duration 3 \
+    --pool-mib 4
+check report.json pairs == 3 pairs.0.object == 1 pairs.1.object == 1 pairs.2.object == 0
+run_hrtc --transport file --model first.spm --model second.spm --place 0,0,0 --place 0.5,0,0 \
+    --tools 3 --duration 3 --pool-mib 4
+check report.json pairs.0.object == 0 pairs.1.object == 1 pairs.2.object == 0
+for i in 0 1 2; do
+    check_contact report.json tools.$i.contact_share 0.3
+done
 finish

@@ -60,6 +60,7 @@ struct Form
         line.add_option("--motion", motion, "Of the hand")
             .check([](const std::string& text) { return text == "tap" ? "" : "no " + text; },
                    "tap");
+        line.begin_task("Where", "try in.ply --model a");
         line.add_option("--model", models, "To touch").repeatable();
         line.add_option("--name", names, "Of the models").repeatable_with_more();
         line.add_option("--load", loads, "Beside").separated_by(',');
@@ -141,15 +142,22 @@ TEST(CommandLine, a_repeatable_option_leaves_the_next_word_alone_unless_it_may_t
 TEST(CommandLine, refuses_wrong_usage_in_one_line_that_names_the_option)
 {
     EXPECT_EQ(refusal_of({}), "try: FILE is required; see --help\n");
-    EXPECT_EQ(refusal_of({"f", "--fast"}),
-              "try: The following argument was not expected: --fast; see --help\n");
+    EXPECT_EQ(refusal_of({"f", "--fast"}), "try: --fast: no option is called so; see --help\n");
+    EXPECT_EQ(refusal_of({"f", "m", "--seconsd=3"}),
+              "try: --seconsd: no option is called so; --seconds?\n");
+    EXPECT_EQ(refusal_of({"f", "m"}), "try: 'm': nothing takes this word; see --help\n");
+    EXPECT_EQ(refusal_of({"f", "--rate", "--share", "1"}),
+              "try: --rate: a value is missing; see --help\n");
+    EXPECT_EQ(refusal_of({"f", "--rate"}), "try: --rate: a value is missing; see --help\n");
+    EXPECT_EQ(refusal_of({"f", "--rate", "1", "--rate", "2"}),
+              "try: --rate: is given twice; see --help\n");
     EXPECT_EQ(refusal_of({"f", "-n", "10"}),
-              "try: --count: Value 10 not in range -2 to 9; see --help\n");
+              "try: --count: '10' is not a whole number in -2 .. 9; see --help\n");
     EXPECT_EQ(refusal_of({"f", "--domain", "-1"}),
-              "try: --domain: Value -1 not in range 0 to 232; see --help\n");
+              "try: --domain: '-1' is not a whole number in 0 .. 232; see --help\n");
     EXPECT_EQ(refusal_of({"f", "--share", "nan"}),
               "try: --share: 'nan' is not a number in 0 .. 1; see --help\n");
-    EXPECT_EQ(refusal_of({"f", "--unit", "in"}), "try: --unit: in not in {mm,m}; see --help\n");
+    EXPECT_EQ(refusal_of({"f", "--unit", "in"}), "try: --unit: 'in' is not mm or m; see --help\n");
     EXPECT_EQ(refusal_of({"f", "--folder", "/none"}),
               "try: --folder: Directory does not exist: /none; see --help\n");
     EXPECT_EQ(refusal_of({"f", "--faces", "1"}), "try: --faces requires --cpu; see --help\n");
@@ -163,9 +171,10 @@ TEST(CommandLine, shows_its_version_and_how_it_is_used)
     EXPECT_EQ(shown_by({"--version"}), "try 7\n");
     const std::string help = shown_by({"--help"});
     for (const char* part :
-         {"Tries options.\nUsage: try [OPTIONS] FILE\n", "-n,--count INT:INT in [-2 - 9]=3\n",
-          "--domain UINT:UINT in [0 - 232]\n", "--share FLOAT:0 .. 1=0.5 ", "--unit TEXT:{mm,m} ",
-          "--motion TEXT:tap ", "--name TEXT ", "\nThe end.\n"})
+         {"Tries options.\nUsage: try [OPTIONS] FILE\n", "-n,--count INT:-2 .. 9=3",
+          "--domain UINT:0 .. 232", "--share FLOAT:0 .. 1=0.5 ", "--unit TEXT:{mm,m} ",
+          "--motion TEXT:tap ", "--name TEXT ", "\nThe end.\n",
+          "\nWhere, as in  try in.ply --model a:\n  --model TEXT                To touch\n"})
     {
         EXPECT_NE(help.find(part), std::string::npos) << part << "\n" << help;
     }
@@ -200,6 +209,11 @@ TEST(CommandLine, reads_a_file_of_options_behind_the_line)
     EXPECT_EQ(refusal_behind_the_path(), ":3: no option is called 'cuont'; 'count'?\n");
     write("\n[loop]\ncount = 1\n");
     EXPECT_EQ(refusal_behind_the_path(), ":2: there are no sections; '[loop]' is one\n");
+    write("share = 1\n count = x\n");
+    EXPECT_EQ(refusal_of({"f", "--config", path}),
+              "try: " + path + ":2: --count: 'x' is not a whole number in -2 .. 9; see --help\n");
+    EXPECT_EQ(refusal_of({"f", "--config", path, "--count=y"}),
+              "try: --count: 'y' is not a whole number in -2 .. 9; see --help\n");
     write("print = true\n");
     EXPECT_NE(refusal_of({"f", "--config", path}).find("not allowed in a configuration file"),
               std::string::npos);

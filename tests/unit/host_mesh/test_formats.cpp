@@ -58,6 +58,32 @@ TEST(ReadObj, notes_points_lines_and_free_forms_that_it_leaves_out)
     EXPECT_EQ(sut.value().notes.size(), 1U);
 }
 
+TEST(ReadObj, notes_lines_that_it_does_not_understand)
+{
+    using namespace std::string_literals;
+    const auto sut = read_bytes("a.obj", kObjSquare + "garbage here\nf 1 2 3\n\0f 1 2 4\n"s);
+    ASSERT_TRUE(sut);
+    EXPECT_EQ(sut.value().mesh.faces, (std::vector<Face>{{0, 1, 2}}));
+    EXPECT_EQ(sut.value().notes,
+              std::vector<std::string>{"2 lines not understood, the first is line 5"});
+}
+
+TEST(ReadText, passes_over_a_byte_order_mark)
+{
+    const std::string mark = "\xEF\xBB\xBF";
+    const auto obj = read_bytes("a.obj", mark + kObjSquare + "f 1 2 3\n");
+    ASSERT_TRUE(obj);
+    EXPECT_EQ(obj.value().mesh.positions.size(), 4U);
+    EXPECT_TRUE(obj.value().notes.empty());
+    EXPECT_EQ(faces_of("a.off", mark + "OFF 3 1 0\n0 0 0\n1 0 0\n1 1 0\n3 0 1 2\n"),
+              (std::vector<Face>{{0, 1, 2}}));
+    EXPECT_EQ(faces_of("a.ply", mark + "ply\nformat ascii 1.0\nelement vertex 3\n"
+                                       "property float x\nproperty float y\nproperty float z\n"
+                                       "element face 1\nproperty list uchar int vertex_indices\n"
+                                       "end_header\n0 0 0\n1 0 0\n1 1 0\n3 0 1 2\n"),
+              (std::vector<Face>{{0, 1, 2}}));
+}
+
 TEST(ReadObj, refuses_a_face_of_two_corners_and_a_vertex_of_two_coordinates)
 {
     EXPECT_NE(refusal(read_bytes("a.obj", kObjSquare + "f 1 2\n")).find("line 5"),

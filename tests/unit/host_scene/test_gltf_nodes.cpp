@@ -206,11 +206,16 @@ TEST(GltfNodes, belong_to_the_files_scene_or_to_the_first)
 TEST(GltfNodes, say_in_their_extras_how_they_feel)
 {
     json scene = tetrahedron_scene();
-    scene["nodes"][0]["extras"] = {
-        {"anything", 1},
-        {"tactus",
-         {{"material", {{"stiffness", 800}, {"static", 0.5}, {"damping", 2}}},
-          {"model", "cup.1.spm"}}}};
+    scene["nodes"][0]["extras"] = {{"anything", 1},
+                                   {"tactus",
+                                    {{"material",
+                                      {{"stiffness", 800},
+                                       {"static", 0.5},
+                                       {"damping", 2},
+                                       {"viscosity", 3},
+                                       {"texture_height", 1e-4},
+                                       {"texture_length", 0.01}}},
+                                     {"model", "cup.1.spm"}}}};
     const SceneObject object = objects_of(scene).front();
     EXPECT_EQ(object.model, "cup.1.spm");
     EXPECT_FALSE(object.mesh) << "the mesh is for eyes";
@@ -218,6 +223,9 @@ TEST(GltfNodes, say_in_their_extras_how_they_feel)
     EXPECT_EQ(object.material.static_friction, 0.5);
     EXPECT_EQ(object.material.dynamic_friction, 0.5);
     EXPECT_EQ(object.material.damping_n_s_per_m, 2.0);
+    EXPECT_EQ(object.material.viscosity_n_s_per_m, 3.0);
+    EXPECT_EQ(object.material.texture_height_m, 1e-4);
+    EXPECT_EQ(object.material.texture_length_m, 0.01);
     scene["nodes"][0]["extras"] = "a text";
     EXPECT_EQ(objects_of(scene).front().material.stiffness_n_per_m, Material{}.stiffness_n_per_m);
 }

@@ -172,6 +172,10 @@ const std::vector<Case>& spoilt_scenes()
          [](json& s) {
              ours(s)["material"] = {{"stiffness", 3001}};
          }},
+        {"material_texture", "nodes[0].extras.tactus.material must have",
+         [](json& s) {
+             ours(s)["material"] = {{"texture_height", 0.001}, {"texture_length", 0.001}};
+         }},
         {"material_friction", "nodes[0].extras.tactus.material must have",
          [](json& s) {
              ours(s)["material"] = {{"static", 0.1}, {"dynamic", 0.2}};

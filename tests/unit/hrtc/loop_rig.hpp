@@ -27,6 +27,8 @@ namespace tactus::hrtc::test
 inline constexpr Duration kPoseAge = milliseconds(100);
 /// Deep enough for 1.7 N; without a force the hand sinks to where the spring makes 6 of 8 N.
 inline constexpr double kPress_m = 0.012;
+/// Of the model's diagonal: where the hand starts above its place.
+inline constexpr double kStartHeight = 0.05;
 /// From here on the hand is at rest in the surface and the whole force goes out.
 inline constexpr std::uint64_t kSettled = 1'000;
 /// Of the pressed force, from frame to frame, when nobody interferes.
@@ -86,6 +88,7 @@ public:
         written_nm.push_back(to_vec3(wrench.torque_world_nm));
     }
     void brake() noexcept override { device_->brake(); }
+    void brake_softly() noexcept override { device_->brake_softly(); }
     void release_brake() noexcept override
     {
         before_release();
@@ -113,7 +116,8 @@ struct LoopRigOptions
     std::vector<LateWake> late_wakes;
     std::optional<Duration> watchdog; ///< The device's own.
     bool static_model{false};
-    bool has_door{false}; ///< Objects stand where door() says.
+    bool has_door{false};                   ///< Objects stand where door() says.
+    double object_speed_m_per_s{kInfinity}; ///< Believed of them.
     std::uint64_t frames{2'000};
     double speed_max_m_per_s{10.0};
     double stiffness_n_per_m{500.0};
@@ -121,6 +125,10 @@ struct LoopRigOptions
     double angular_stiffness_nm_per_rad{0.0}; ///< As ToolSpec has it.
     const Clock* clock{nullptr}; ///< Another one than the virtual, with a timer of its own.
     PeriodicTimer* timer{nullptr};
+    FrontTap* front{nullptr}; ///< Likewise lent.
+    bool is_coarse{false};    ///< Nothing comes but the base mesh.
+    /// An object of a second model, so far beyond the place where the hand starts.
+    std::optional<double> neighbour_m;
 };
 
 class LoopRig
@@ -129,11 +137,14 @@ public:
     explicit LoopRig(LoopRigOptions options)
         : options_(std::move(options))
         , model_(tactus::test::small_model(0))
-        , frames_(model_, rig_options(options_))
+        , frames_(rig_models(options_), rig_options(options_))
         , timer_(clock_, options_.late_wakes)
-        , statistics_(1, 1, 1, kPeriod)
+        , statistics_(1, objects(options_), objects(options_), kPeriod)
     {
-        load_everything(frames_);
+        if (!options_.is_coarse)
+        {
+            load_everything(frames_);
+        }
         make_device();
         const DeviceLimits& device_limits = device().info().limits;
         tool().limits = {
@@ -150,9 +161,11 @@ public:
         parts.clock = &clock();
         parts.frames = options_.frames;
         parts.hosts_gone = &hosts_gone;
-        door_.emplace(std::vector{placed()}, kPoseAge);
+        parts.starved = &starved;
+        door_.emplace(std::vector{placed()}, 1, kPoseAge, options_.object_speed_m_per_s);
         parts.pose_door = options_.has_door ? &*door_ : nullptr;
         parts.telemetry = &telemetry;
+        parts.front = options_.front;
         parts.budgets.splits = kMaxSplitsPerFrame;
         loop_.emplace(parts, statistics_);
         static_cast<void>(parts.timer->start(kPeriod, {}));
@@ -168,6 +181,7 @@ public:
     }
     [[nodiscard]] const RunStatistics& statistics() const { return statistics_; }
     [[nodiscard]] HapticLoop& loop() { return *loop_; }
+    [[nodiscard]] Frame& frame() { return frames_.frame(); }
     [[nodiscard]] TamperedDevice& device() { return static_cast<TamperedDevice&>(*tool().device); }
     [[nodiscard]] std::span<const ToolSetup> tools() const { return tools_; }
     [[nodiscard]] SimulatedClock& virtual_clock() { return clock_; }
@@ -202,7 +216,8 @@ public:
         return largest_step(device().written_nm, from, to);
     }
 
-    HostsGone hosts_gone;
+    ModelMarks hosts_gone;
+    ModelMarks starved;
     TelemetryTap telemetry{kPeriod};
 
 private:
@@ -216,6 +231,31 @@ private:
         }
         return most;
     }
+    static std::size_t objects(const LoopRigOptions& options)
+    {
+        return options.neighbour_m ? 2 : 1;
+    }
+    static std::vector<const tactus::test::TestModel*> rig_models(const LoopRigOptions& options)
+    {
+        std::vector models{&tactus::test::small_model(0), &tactus::test::small_model(1)};
+        models.resize(objects(options));
+        return models;
+    }
+    /// Of a model's vertices in x, the least and the most.
+    static std::pair<double, double> span_x(const tactus::test::TestModel& model)
+    {
+        double least = kInfinity;
+        double most = -kInfinity;
+        for (const tactus::test::Face& face : model.faces)
+        {
+            for (const Vec3f& corner : face)
+            {
+                least = std::min(least, static_cast<double>(corner[0]));
+                most = std::max(most, static_cast<double>(corner[0]));
+            }
+        }
+        return {least, most};
+    }
     static tactus::test::RigOptions rig_options(const LoopRigOptions& options)
     {
         tactus::test::RigOptions rig = tactus::test::with_room_for_all();
@@ -223,6 +263,15 @@ private:
         rig.tools = {{0.01 * tactus::test::small_model(0).diagonal_m, options.stiffness_n_per_m,
                       8.0, 1.0, options.core}};
         rig.tools.front().angular_stiffness_nm_per_rad = options.angular_stiffness_nm_per_rad;
+        if (options.neighbour_m)
+        {
+            const double start_m = span_x(tactus::test::small_model(0)).second +
+                                   kStartHeight * tactus::test::small_model(0).diagonal_m;
+            rig.objects = {{ModelId{0}}, {ModelId{1}}};
+            rig.poses.resize(2);
+            rig.poses[1].translation_m.x() =
+                start_m + *options.neighbour_m - span_x(tactus::test::small_model(1)).first;
+        }
         return rig;
     }
 
@@ -237,7 +286,8 @@ private:
         device.clock = &clock();
         device.watchdog = options_.watchdog;
         device.workspace_centre_world_m = place;
-        auto hand = std::make_unique<PressingHand>(place, Vec3::UnitX(), 0.05 * model_.diagonal_m);
+        auto hand =
+            std::make_unique<PressingHand>(place, Vec3::UnitX(), kStartHeight * model_.diagonal_m);
         tool().device = std::make_unique<TamperedDevice>(
             std::move(SimulatedDevice::create(device, std::move(hand))).value(), options_.faults,
             options_.tamper);

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "platform/hrtc/device_choice.hpp"
+#include "platform/hrtc/device_limits_text.hpp"
 #include "platform/simulated/device_classes.hpp"
 
 #include <gtest/gtest.h>
 
 #include <string>
+#include <utility>
 
 namespace tactus::hrtc::test
 {
@@ -42,14 +44,72 @@ TEST(DeviceChoice, takes_places_of_devices_that_are_not_simulated)
     ASSERT_TRUE(replay.has_value());
     EXPECT_EQ(replay->kind, DeviceKind::replay);
     EXPECT_EQ(replay->recording, "a:b.rec");
+    const std::optional<DeviceChoice> plugin = parse_device("plugin:a/b.so,/dev/x,9600");
+    ASSERT_TRUE(plugin.has_value());
+    EXPECT_EQ(plugin->kind, DeviceKind::plugin);
+    EXPECT_EQ(plugin->library, "a/b.so");
+    EXPECT_EQ(plugin->words, "/dev/x,9600");
+    EXPECT_EQ(parse_device("plugin:b.so")->words, "");
 }
 
 TEST(DeviceChoice, refuses_what_is_no_device)
 {
-    for (const char* text : {"", "simulated", "sim:", "sim:Touch", "sim:touch ", "sim:sigma",
-                             "udp:80", "udp:", "dhd:64", "dhd:-1", "replay", "replay:"})
+    for (const char* text :
+         {"", "simulated", "sim:", "sim:Touch", "sim:touch ", "sim:sigma", "udp:80",
+          "udp:", "dhd:64", "dhd:-1", "replay", "replay:", "plugin", "plugin:", "plugin:,a"})
     {
         EXPECT_FALSE(parse_device(text).has_value()) << text;
+    }
+}
+
+TEST(DeviceLimitsText, sets_what_it_names_and_nothing_else)
+{
+    DeviceLimits limits = kDeskClass;
+    EXPECT_EQ(set_device_limits("mass_kg=0.2,turn.inertia_kg_m2=3e-4,delay_s=0", limits), "");
+    DeviceLimits wanted = kDeskClass;
+    wanted.mass_kg = 0.2;
+    wanted.turn.inertia_kg_m2 = 3e-4;
+    EXPECT_EQ(limits, wanted);
+}
+
+TEST(DeviceLimitsText, has_a_key_for_each_number)
+{
+    DeviceLimits limits = kDeskClass;
+    EXPECT_EQ(set_device_limits("mass_kg=1,damping_n_s_per_m=2,friction_n=3,quantum_m=4,"
+                                "delay_s=0.05,force_max_n=6,slew_max_n_per_s=7,"
+                                "stiffness_max_n_per_m=8,added_damping_max_n_s_per_m=9,"
+                                "turn.torque_max_nm=10,turn.inertia_kg_m2=11,"
+                                "turn.damping_nm_s_per_rad=12,turn.friction_nm=13,"
+                                "turn.quantum_rad=14,turn.slew_max_nm_per_s=15,"
+                                "turn.stiffness_max_nm_per_rad=16,"
+                                "turn.added_damping_max_nm_s_per_rad=17",
+                                limits),
+              "");
+    const TurnLimits turn{true, 10.0, 11.0, 12.0, 13.0, 14.0, 15.0, 16.0, 17.0};
+    EXPECT_EQ(limits, (DeviceLimits{1.0, 2.0, 3.0, 4.0, 0.05, 6.0, 7.0, 8.0, 9.0, turn}));
+}
+
+TEST(DeviceLimitsText, changes_nothing_when_it_refuses)
+{
+    for (const auto& [text, fault] :
+         {std::pair("", "is not KEY=VALUE with one of mass_kg, "),
+          std::pair("mass_kg", "'mass_kg' is not KEY=VALUE"),
+          std::pair("friction_n=1,", "'' is not KEY=VALUE"),
+          std::pair("friction_n=1,mass=2", "'mass=2' is not KEY=VALUE"),
+          std::pair("inertia_kg_m2=1", "turn.inertia_kg_m2"),
+          std::pair("mass_kg=", "mass_kg: '' is not a number"),
+          std::pair("mass_kg=1kg", "mass_kg: '1kg' is not a number"),
+          std::pair("mass_kg=nan", "mass_kg: 'nan' is not a number"),
+          std::pair("mass_kg=1,mass_kg=1", "mass_kg is given twice"),
+          std::pair("friction_n=1,mass_kg=0", "mass_kg must be finite and > 0"),
+          std::pair("force_max_n=2000", "force_max_n must be at most 1000"),
+          std::pair("delay_s=1", "delay_s must be at most 0.1"),
+          std::pair("turn.inertia_kg_m2=0", "inertia_kg_m2 must be finite and > 0")})
+    {
+        DeviceLimits limits = kDeskClass;
+        EXPECT_NE(set_device_limits(text, limits).find(fault), std::string::npos)
+            << text << ": " << set_device_limits(text, limits);
+        EXPECT_EQ(limits, kDeskClass) << text;
     }
 }
 

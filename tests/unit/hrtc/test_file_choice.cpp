@@ -96,7 +96,13 @@ TEST(FileChoice, says_what_to_do_with_a_mesh_and_with_what_is_no_file)
     EXPECT_EQ(take({.models = {"cow"}, .tools = {"mesh:cow.ply,0.01"}}).fault,
               "--tool: 'cow.ply' is a mesh; spm_build cow.ply -o MODEL.spm makes a model of it");
     EXPECT_EQ(take({.files = {"touch"}}).fault,
-              "'touch' is no command and no file; a published model is --model NAME");
+              "'touch' is no command (doctor, deadline-test, load) and no model's or scene's file "
+              "(.spm, .gltf, .glb); a published model is --model NAME");
+    const std::string hash(32, '0');
+    EXPECT_EQ(take({.models = {"cow.spm@" + hash}, .transport = "file"}).fault,
+              "--model: 'cow.spm@" + hash +
+                  "': a hash is of published models; a file is given without");
+    EXPECT_EQ(take({.models = {"cow.spm@" + hash}}).transport, "dds");
     EXPECT_EQ(take({.files = {"a.glb", "b.glb"}}).fault,
               "'b.glb': a second scene; one can be touched");
 }

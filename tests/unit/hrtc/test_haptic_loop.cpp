@@ -360,6 +360,28 @@ TEST(HapticLoop, a_lost_host_ends_the_force_unless_the_model_is_here_as_a_whole)
     }
 }
 
+/// A tool is held back at the coarse surface of the first model, and the second one is near.
+TEST(HapticLoop, a_piece_that_does_not_come_ends_the_force_where_the_tool_is_at_its_model)
+{
+    for (const std::uint32_t starved : {0U, 1U})
+    {
+        LoopRigOptions options;
+        options.frames = kSettled;
+        options.is_coarse = true;
+        options.neighbour_m = 0.02;
+        LoopRig rig(options);
+        rig.starved.set(starved, true);
+        rig.loop().run();
+        EXPECT_GT(rig.statistics().pairs[1].in_all(), 500U);
+        EXPECT_GT(rig.statistics().held_back_frames, 100U);
+        const std::vector<SafetyEvent> events = rig.events();
+        EXPECT_EQ(std::ranges::any_of(events, [](const SafetyEvent& event)
+                                      { return has_cause(event.causes, ForceOff::starved); }),
+                  starved == 0)
+            << starved;
+    }
+}
+
 TEST(HapticLoop, the_first_frame_after_a_stall_counts_its_true_time)
 {
     for (const std::int64_t lost : {1, 4, 30, 80})

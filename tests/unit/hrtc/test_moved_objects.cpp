@@ -27,8 +27,8 @@ public:
     using Shift = std::function<std::optional<double>(std::uint64_t frame)>;
 
     /// `flood`: poses from anywhere that come in each frame before the last one.
-    explicit MovedObject(Shift shift, int flood = 0)
-        : shift_(std::move(shift)), flood_(flood), rig_(options())
+    explicit MovedObject(Shift shift, int flood = 0, double speed_m_per_s = kInfinity)
+        : shift_(std::move(shift)), flood_(flood), rig_(options(speed_m_per_s))
     {
     }
 
@@ -51,9 +51,10 @@ public:
     }
 
 private:
-    LoopRigOptions options()
+    LoopRigOptions options(double speed_m_per_s)
     {
         LoopRigOptions options;
+        options.object_speed_m_per_s = speed_m_per_s;
         options.has_door = true;
         options.tamper = [this](std::uint64_t frame, DeviceSample&)
         {
@@ -169,6 +170,61 @@ TEST(MovedObject, that_goes_15_mm_at_once_is_followed)
     EXPECT_FALSE(MovedObject::has(sut.rig().events(), ForceOff::jump));
     EXPECT_NEAR(sut.rig().written_n(1'800).norm(), 0.0, kRounding_n); // It has left the hand.
     EXPECT_GT(sut.rig().largest_step_n(kSettled - 1, 1'900), kFadeStep_n);
+}
+
+/// 500 N/m: half a metre a second changes the force by 0.25 N a frame.
+TEST(MovedObject, that_is_swung_is_carried_no_faster_than_is_believed)
+{
+    const auto swing = [](std::uint64_t frame) -> std::optional<double> {
+        return frame < kSettled || frame > 1'200 ? 0.0 : frame / 4 % 2 == 0 ? 0.004 : -0.004;
+    };
+    MovedObject believed(swing);
+    MovedObject sut(swing, 0, 0.5);
+    believed.run();
+    sut.run();
+    EXPECT_GT(believed.rig().largest_step_n(kSettled, 1'200), 1.5);
+    EXPECT_LE(sut.rig().largest_step_n(kSettled, 1'900), 1.3 * 500.0 * 0.5 * kPeriod_s);
+    EXPECT_GT(sut.rig().door().uses()[0].outran_frames, 100U);
+    EXPECT_EQ(believed.rig().door().uses()[0].outran_frames, 0U);
+    EXPECT_LE(sut.rig().door().uses()[0].step_max_m, 0.5 * kPeriod_s * 1.001);
+}
+
+/// 60 mm at 2 m/s, towards the hand and away from it.
+TEST(MovedObject, that_outruns_what_is_believed_lets_the_force_fade)
+{
+    for (const double speed_m_per_s : {2.0, -2.0})
+    {
+        const auto run_away = [=](std::uint64_t frame)
+        {
+            const double since = std::clamp(static_cast<double>(frame) - kSettled, 0.0, 30.0);
+            return std::optional(speed_m_per_s * kPeriod_s * since);
+        };
+        MovedObject sut(run_away, 0, 0.5);
+        sut.run();
+        EXPECT_LE(sut.rig().largest_step_n(kSettled, 1'900),
+                  1.3 * 500.0 * 0.5 * kPeriod_s + kFadeStep_n)
+            << speed_m_per_s;
+        const std::vector<SafetyEvent> events = sut.rig().events();
+        const auto first =
+            std::ranges::find_if(events, [](const SafetyEvent& event)
+                                 { return has_cause(event.causes, ForceOff::jump); });
+        ASSERT_NE(first, events.end()) << speed_m_per_s;
+        EXPECT_LE(first->frame, kSettled + 10U) << speed_m_per_s; // 10 mm ahead by then.
+    }
+}
+
+TEST(MovedObject, of_an_honest_host_is_felt_as_if_all_were_believed)
+{
+    const auto shift = [](std::uint64_t frame) { return swing(frame, 0.02); }; // 0.16 m/s.
+    MovedObject believed(shift);
+    MovedObject sut(shift, 0, 0.5);
+    believed.run();
+    sut.run();
+    for (std::uint64_t frame = 0; frame < 2'000; ++frame)
+    {
+        ASSERT_EQ(sut.rig().written_n(frame), believed.rig().written_n(frame)) << frame;
+    }
+    EXPECT_EQ(sut.rig().door().uses()[0].outran_frames, 0U);
 }
 
 } // namespace

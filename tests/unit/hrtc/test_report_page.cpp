@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "platform/hrtc/report.hpp"
 #include "platform/hrtc/report_page.hpp"
+#include "platform/hrtc/report_words.hpp"
 #include "platform/hrtc/verdict.hpp"
 #include "platform/plot/markup.hpp"
 #include "tests/shared/count_of.hpp"
@@ -65,7 +66,9 @@ Json report_of(const std::string& model)
          {{"objects", 811},
           {"objects_max", 821},
           {"pairs_awake_max", 823},
-          {"invisible_wall_frames", 827}}},
+          {"invisible_wall_frames", 827},
+          {"unfelt", 0},
+          {"models", {{"known", 829}, {"resident", 839}}}}},
         {"pools",
          {{"pages", {{"used_max", 43}, {"capacity", 47}}},
           {"faces", {{"used_max", 53}, {"capacity", 59}}},
@@ -85,10 +88,12 @@ Json report_of(const std::string& model)
         {"realtime",
          {{"allocations", 0},
           {"page_faults", 97},
+          {"virtual_time", false},
           {"system_calls_trapped", true},
           {"system_calls_in_frame", 0},
           {"system_calls_outside", 101}}},
         {"recording", nullptr},
+        {"trace", nullptr},
         {"telemetry", {{"sent", 103}}},
         {"force",
          {{"max_n", 1.25},
@@ -182,6 +187,38 @@ TEST(ReportPage, holds_every_figure_of_the_report)
     }
 }
 
+TEST(ReportPage, explains_every_answer_time_and_cause)
+{
+    const Json report = report_of("bunny");
+    const std::string page = make_page(report, statistics_of(1));
+    const auto meaning_of = [](const std::string& name)
+    {
+        for (const auto& [word, meaning] : report_words())
+        {
+            const std::string words = std::string(" ") + word + ",";
+            if (words.find(" " + name + ",") != std::string::npos)
+            {
+                return std::string(meaning);
+            }
+        }
+        return std::string();
+    };
+    std::vector<std::string> names(kForceOffNames.begin(), kForceOffNames.end());
+    for (const auto& [name, times] : report["times_us"].items())
+    {
+        names.push_back(name);
+    }
+    for (const char* name : {"exact", "decided", "bracket", "stale", "own fault", "machine late"})
+    {
+        names.emplace_back(name);
+    }
+    for (const std::string& name : names)
+    {
+        EXPECT_FALSE(meaning_of(name).empty()) << name;
+        EXPECT_TRUE(has_text(page, meaning_of(name))) << name;
+    }
+}
+
 TEST(ReportPage, a_hostile_name_stays_text)
 {
     const std::string name = "</title></td><script>alert('\"')</script>&\x1B[31m";
@@ -229,6 +266,9 @@ TEST(ReportPage, says_what_went_wrong)
                                         "nothing was touched"}));
     report["tools"][0]["softest_wall_n_per_m"] = 0.5;
     EXPECT_EQ(losses_of(report)[4], "tool 0: a wall of 0.5 N/m, which nobody feels");
+    report["scene"]["unfelt"] = 2;
+    EXPECT_EQ(losses_of(report)[5], "2 materials whose damping leaves no wall");
+    report["scene"]["unfelt"] = 0;
     report["tools"][0]["softest_wall_n_per_m"] = nullptr;
     EXPECT_EQ(losses_of(report).size(), 5U);
 }

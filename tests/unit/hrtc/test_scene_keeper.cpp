@@ -178,6 +178,45 @@ TEST_F(FollowedScene, comes_moves_and_goes_through_the_door)
     EXPECT_EQ(keeper->news().passed_over, 0U);
 }
 
+TEST_F(FollowedScene, feels_as_its_host_says)
+{
+    const std::uint32_t cup = show(*host, "cup", 0.0);
+    ASSERT_NO_FATAL_FAILURE(start(true, 4));
+    const std::uint32_t pot = show(*host, "pot", 1.0, 1);
+    ASSERT_TRUE(step_until([&] { return changes[SceneChangeKind::object_comes] == 1; }));
+    const Material honey{300.0, 0.4, 0.2, 1.5, 2.5};
+    ASSERT_TRUE(host->objects().feel(cup, honey));
+    ASSERT_TRUE(step_until([&] { return keeper->news().feels == 1; }));
+    ASSERT_TRUE(step_until([&] { return changes[SceneChangeKind::object_feels] == 1; }));
+    ASSERT_TRUE(host->objects().feel(pot, honey));
+    ASSERT_TRUE(step_until([&] { return changes[SceneChangeKind::object_feels] == 2; }));
+    host->objects().remove(pot);
+    ASSERT_TRUE(step_until([&] { return changes[SceneChangeKind::object_goes] == 1; }));
+    EXPECT_EQ(keeper->news().feels, 2U);
+}
+
+TEST_F(FollowedScene, tells_what_leaves_a_device_no_wall_and_lets_it_come)
+{
+    const std::uint32_t cup = show(*host, "cup", 0.0);
+    ASSERT_NO_FATAL_FAILURE(start(true, 4));
+    Material thick;
+    thick.damping_n_s_per_m = 5.0; // The simulated device has less itself.
+    ASSERT_TRUE(host->objects().feel(cup, thick));
+    ASSERT_TRUE(step_until([&] { return changes[SceneChangeKind::object_feels] == 1; }));
+    EXPECT_TRUE(lines.has("a damping of 5 N s/m on 'cup' leaves the device sim no wall at 1000 Hz; "
+                          "at most "))
+        << lines.text();
+    EXPECT_EQ(keeper->news().unfelt, 1U);
+    ShownObject pot{"pot", host->models()[1].store().hash(), {}, {}};
+    pot.material = thick;
+    ASSERT_TRUE(host->objects().show(pot));
+    ASSERT_TRUE(step_until([&] { return changes[SceneChangeKind::object_comes] == 1; }));
+    EXPECT_TRUE(lines.has("a damping of 5 N s/m on 'pot' leaves")) << lines.text();
+    ASSERT_TRUE(host->objects().feel(cup, {}));
+    ASSERT_TRUE(step_until([&] { return changes[SceneChangeKind::object_feels] == 2; }));
+    EXPECT_EQ(keeper->news().unfelt, 2U);
+}
+
 TEST_F(FollowedScene, leaves_out_what_has_no_room_until_there_is_some)
 {
     const std::uint32_t cup = show(*host, "cup", 0.0);

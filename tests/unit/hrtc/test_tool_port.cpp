@@ -302,6 +302,36 @@ TEST_F(ToolPortTest, a_held_button_parts_hand_and_tool_without_a_force)
     EXPECT_LT((sut_->read(1).position_m - held.position_m - Vec3(-0.06, 0.0, 0.0)).norm(), 1e-14);
 }
 
+/// What surfaces do is the same to the last bit, the passivity observer's part too.
+TEST_F(ToolPortTest, a_load_is_carried_beside_the_force_and_while_the_proxy_is_frozen)
+{
+    setup_.load.mass_kg = 0.2;
+    ToolSetup bare;
+    bare.device = std::make_unique<StillDevice>();
+    bare.limits = setup_.limits;
+    bare.conditioner = setup_.conditioner;
+    sut_ = std::make_unique<ToolPort>(setup_);
+    ToolPort without(bare);
+    for (int i = 0; i < 400; ++i)
+    {
+        pushed_.stiffness_n_per_m = 500.0;
+        pushed_.frozen = i > 300;
+        device().hand.position_m = Vec3(0.0, 0.0, 1e-3 * std::sin(0.1 * i));
+        static_cast<StillDevice&>(*bare.device).hand = device().hand;
+        static_cast<void>(step(pushed_));
+        static_cast<void>(without.read(1));
+        static_cast<void>(without.make_safe(pushed_, {kPeriod_s, ForceOff::none}));
+        ASSERT_EQ(sut_->force().sent_n, without.force().sent_n) << i;
+        ASSERT_EQ(sut_->force().conditioned.work_j, without.force().conditioned.work_j) << i;
+    }
+    EXPECT_EQ(sut_->force().sent_n, Vec3(0.0, 0.0, 0.0)) << "frozen";
+    EXPECT_NEAR(device().written_n.z(), setup_.load.weight_n(), 1e-12);
+    sut_->fade(0.025, ForceOff::assertion);
+    EXPECT_NEAR(device().written_n.z(), 0.5 * setup_.load.weight_n(), 1e-12);
+    sut_->fade(0.025, ForceOff::assertion);
+    EXPECT_EQ(device().written_n, Vec3(0.0, 0.0, 0.0));
+}
+
 TEST_F(ToolPortTest, a_sample_that_is_not_to_be_trusted_doesnt_move_the_clutch)
 {
     setup_.clutch_button = 0;

@@ -12,6 +12,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <functional>
@@ -26,7 +27,7 @@ namespace tactus::hrtc::test
 namespace
 {
 
-constexpr std::uint64_t kFrames = 60'000 * TACTUS_VIRTUAL_MINUTES;
+constexpr std::uint64_t kFrames = 1'000 * TACTUS_VIRTUAL_SECONDS;
 constexpr std::uint64_t kHangSpacing = 7'919;
 constexpr Duration kHang = milliseconds(8); ///< Long enough for the supervisor.
 
@@ -317,8 +318,8 @@ TEST(VirtualRun, minutes_of_the_whole_controller_are_the_same_each_time)
     EXPECT_EQ(figures.frames, kFrames);
     EXPECT_GE(first.lasted(), kPeriod * static_cast<std::int64_t>(kFrames));
     EXPECT_GT(figures.contact_frames, kFrames / 4);
-    EXPECT_GT(figures.evictions, 50U);
-    EXPECT_GT(figures.splits, 5'000U);
+    EXPECT_GT(figures.evictions, std::min<std::uint64_t>(50U, kFrames / 600));
+    EXPECT_GT(figures.splits, std::min<std::uint64_t>(5'000U, kFrames / 12));
     EXPECT_GT(figures.tools.front().max_n, 0.5);
     EXPECT_GE(first.supervisor().brakes(), kFrames / kHangSpacing);
     EXPECT_GT(first.timer_counts().episodes, kFrames / kHangSpacing);

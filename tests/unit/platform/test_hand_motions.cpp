@@ -357,6 +357,11 @@ TEST(HandMotions, teleport_is_at_places_of_the_model_and_jumps_between_them)
             sites, [&](const LandingSite& site)
             { return site.aim_world_m == place || site.gate_world_m == place; }));
     }
+    // Later hands begin elsewhere, of the same places.
+    std::vector<LandingSite> turned =
+        find_landing_sites(scene_of(1).anchors_world_m, kDiagonal_m, kTool_m, 7);
+    EXPECT_EQ(turned.size(), sites.size());
+    EXPECT_EQ(turned.front().gate_world_m, sites[2].gate_world_m); // 6 pairs of them.
     EXPECT_TRUE(places == places_of(1));
     EXPECT_FALSE(places == places_of(2));
 }

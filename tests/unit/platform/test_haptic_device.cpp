@@ -210,6 +210,21 @@ TEST_P(HapticDeviceConformance, ignores_forces_from_the_brake_to_its_release)
     EXPECT_EQ(rig->device().status().state, DeviceState::force);
 }
 
+TEST_P(HapticDeviceConformance, brakes_softly_at_once_or_by_a_fade)
+{
+    rig->device().write({{5.0, 0.0, 0.0}, {}, 0.0});
+    rig->device().brake_softly();
+    const DeviceStatus braked = rig->device().status();
+    EXPECT_EQ(braked.state, DeviceState::brake);
+    EXPECT_GE(braked.force_left, 0.0);
+    EXPECT_LE(braked.force_left, 1.0);
+    rig->device().brake();
+    EXPECT_EQ(rig->device().status().force_left, 0.0);
+    EXPECT_EQ(drift_m({5.0, 0.0, 0.0}, 100), 0.0);
+    rig->device().release_brake();
+    EXPECT_EQ(rig->device().status().state, DeviceState::idle);
+}
+
 TEST_P(HapticDeviceConformance, leaves_the_heap_alone)
 {
     if (!allocation_counter::available())

@@ -301,6 +301,60 @@ TEST(PoseDoor, gives_a_frame_what_it_takes_and_the_next_one_the_others_first)
     EXPECT_EQ(changes[0].pose.scale, 20.0 + static_cast<double>(next));
 }
 
+/// 300 objects at 0.3 m/s, of which a frame takes 64; tools go from object to object.
+TEST(PoseDoor, moves_what_is_touched_in_every_frame_however_many_move)
+{
+    constexpr std::size_t kObjects = 300;
+    constexpr double kSpeed_m_per_s = 0.3;
+    std::vector<ObjectPose> placed(kObjects);
+    PoseDoor sut(placed, kObjects, kLimit, 0.5);
+    std::vector<int> moves(kObjects);
+    std::vector<Vec3> places_m(kObjects, Vec3::Zero());
+    for (int ms = 0; ms < 2'000; ++ms)
+    {
+        const MonotonicTime now = kStart + milliseconds(ms);
+        if (ms % 10 == 0)
+        {
+            ObjectPose pose;
+            pose.translation_m = Vec3(1e-3 * kSpeed_m_per_s * ms, 0.0, 0.0);
+            pose.stamp_ns = now.ns;
+            for (std::size_t i = 0; i < kObjects; ++i)
+            {
+                sut.put(i, pose, now);
+            }
+        }
+        const auto first = static_cast<std::uint32_t>(ms / 100 * 7 % 200);
+        std::vector<ObjectTouch> touches; // Two of the first: a tool each.
+        for (const std::uint32_t object : {first, first, first + 1, first + 90})
+        {
+            touches.push_back({object, places_m[object]});
+        }
+        std::vector<int> told(kObjects);
+        for (const SceneChange& change : sut.refresh(now, touches))
+        {
+            ++told[change.number];
+            ++moves[change.number];
+            const double step_m = (change.pose.translation_m - places_m[change.number]).norm();
+            const bool is_long_touched = ms % 100 > 1 && ms > 100;
+            const bool is_touched =
+                std::ranges::find(touches, change.number, &ObjectTouch::object) != touches.end();
+            // A frame's way, and not that of the frames since its last turn.
+            ASSERT_LE(step_m, is_long_touched && is_touched ? 4e-4 : 2.2e-3) << change.number;
+            places_m[change.number] = change.pose.translation_m;
+        }
+        for (const ObjectTouch& touch : touches)
+        {
+            ASSERT_FALSE(sut.outruns(touch.object)) << ms;
+        }
+        ASSERT_LE(std::ranges::max(told), 1) << ms;
+    }
+    for (std::size_t i = 0; i < kObjects; ++i)
+    {
+        EXPECT_EQ(sut.uses()[i].outran_frames, 0U) << i;
+        EXPECT_GT(moves[i], 300) << "each has its turn: " << i;
+    }
+}
+
 /// More objects than a frame looks at the ages of.
 TEST(PoseDoor, tells_of_each_of_many_silent_objects_before_the_limit_once)
 {
@@ -429,6 +483,36 @@ TEST(PoseDoor, brings_an_object_with_what_it_is_and_takes_it_away)
     EXPECT_EQ(went[0].number, 2U);
     EXPECT_EQ(went[0].generation, 1U);
     EXPECT_TRUE(sut.refresh(kStart + milliseconds(1000)).empty()); // Nor does it grow old.
+}
+
+TEST(PoseDoor, tells_that_an_object_feels_otherwise_in_its_turn)
+{
+    const std::vector<ObjectPose> placed{pose_of(1.0)};
+    PoseDoor sut(placed, 2, kLimit);
+    const Material honey{300.0, 0.4, 0.2, 1.5, 2.5, 1e-5, 1e-3};
+    ASSERT_TRUE(sut.try_feel(0, honey));
+    ASSERT_TRUE(sut.try_come(1, 5, {}, pose_of(2.0), kStart));
+    ASSERT_TRUE(sut.try_feel(1, honey));
+    ASSERT_TRUE(sut.try_go(1));
+    const auto changes = sut.refresh(kStart);
+    ASSERT_EQ(changes.size(), 4U);
+    EXPECT_EQ(changes[0].kind, SceneChangeKind::object_feels);
+    EXPECT_EQ(changes[0].number, 0U);
+    EXPECT_EQ(changes[0].generation, 0U);
+    EXPECT_EQ(changes[0].object.material, honey);
+    EXPECT_EQ(changes[1].kind, SceneChangeKind::object_comes);
+    EXPECT_EQ(changes[2].kind, SceneChangeKind::object_feels);
+    EXPECT_EQ(changes[2].generation, 5U);
+    EXPECT_EQ(changes[3].kind, SceneChangeKind::object_goes);
+    EXPECT_FALSE(sut.uses()[0].is_followed) << "what it feels like says nothing of where it is";
+    std::size_t waiting = 0;
+    while (sut.try_feel(0, honey))
+    {
+        ++waiting;
+    }
+    EXPECT_EQ(waiting, PoseDoor::kWaiting);
+    EXPECT_EQ(sut.refresh(kStart).size(), kMaxSceneChanges);
+    EXPECT_TRUE(sut.try_feel(0, honey));
 }
 
 TEST(PoseDoor, gives_no_object_what_was_put_for_the_one_before)

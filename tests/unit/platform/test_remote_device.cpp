@@ -166,6 +166,48 @@ TEST_F(RemoteDeviceTest, sends_the_brake_until_its_release_and_then_nothing_from
     EXPECT_EQ(sut.command().force_n, Vec3(3.0, 0.0, 0.0));
 }
 
+TEST_F(RemoteDeviceTest, fades_softly_whatever_the_hold_and_goes_on_with_the_next_write)
+{
+    arrive(0.0, true);
+    static_cast<void>(sut.read());
+    sut.write({{1.0, 0.0, 0.0}, {}, 0.0});
+    clock.advance(milliseconds(10));
+    sut.brake_softly();
+    for (int ms = 0; ms < 50; ++ms)
+    {
+        const DeviceCommand command = sut.command();
+        EXPECT_EQ(command.state, DeviceState::force);
+        EXPECT_NEAR(command.force_n.x(), 1.0 - ms / 50.0, 1e-9);
+        EXPECT_TRUE(ms == 0 || command.written == clock.now()); // So that it is sent.
+        EXPECT_EQ(sut.status().state, DeviceState::brake);
+        arrive(0.0);
+        static_cast<void>(sut.read());
+        EXPECT_NEAR(sut.status().force_left, 1.0 - ms / 50.0, 1e-9);
+        sut.write({{7.0, 0.0, 0.0}, {}, 0.0}); // Ignored.
+        clock.advance(milliseconds(1));
+    }
+    EXPECT_EQ(sut.command().state, DeviceState::brake);
+    EXPECT_EQ(sut.status().force_left, 0.0);
+    sut.release_brake();
+    EXPECT_EQ(sut.command().state, DeviceState::idle);
+
+    sut.write({{1.0, 0.0, 0.0}, {}, 0.0});
+    sut.brake_softly();
+    clock.advance(milliseconds(20));
+    sut.release_brake(); // It fades on until the next write.
+    EXPECT_NEAR(sut.command().force_n.x(), 0.6, 1e-9);
+    sut.write({{0.5, 0.0, 0.0}, {}, 0.0});
+    EXPECT_EQ(sut.command().force_n.x(), 0.5);
+    EXPECT_EQ(sut.status().state, DeviceState::force);
+
+    sut.brake_softly();
+    sut.release_brake();
+    sut.brake(); // At once, for all that was released.
+    sut.write({{0.5, 0.0, 0.0}, {}, 0.0});
+    EXPECT_EQ(sut.command().state, DeviceState::brake);
+    EXPECT_EQ(sut.status().force_left, 0.0);
+}
+
 /// More threads than processors, so that the haptic thread is stopped in the middle of a write now
 /// and then: the I/O thread must not fall back on what it had before the brake. A fault here is
 /// rare.

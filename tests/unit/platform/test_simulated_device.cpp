@@ -72,6 +72,32 @@ TEST(SimulatedDevice, settles_where_springs_and_force_balance)
     EXPECT_NEAR(sample.position_world_m[2], -0.03 - 2.0 * kArmAndGrip_m_per_n, 1e-9);
 }
 
+TEST(SimulatedDevice, a_load_hangs_on_the_hand_until_it_is_carried)
+{
+    SimulatedDeviceOptions options;
+    options.load = {0.1, Vec3(0.02, 0.0, 0.0), Vec3(0.0, 0.0, -1.0)};
+    auto sut = make(options, std::make_unique<HandThatJumps>(Vec3::Zero()));
+    const auto settle = [&](const Wrench& wrench)
+    {
+        DeviceSample sample;
+        for (int i = 0; i < 3'000; ++i)
+        {
+            sample = sut->read();
+            sut->write(wrench);
+        }
+        return sample;
+    };
+    const double weight_n = 0.1 * 9.80665;
+    const DeviceSample hangs = settle({});
+    EXPECT_NEAR(hangs.position_world_m[2], -weight_n * kArmAndGrip_m_per_n, 1e-9);
+    EXPECT_GT(hangs.rotation_world->at(1), 1e-3) << "x goes down";
+    const DeviceSample carried = settle({{0.0, 0.0, weight_n}, {0.0, -0.02 * weight_n, 0.0}, 0.0});
+    EXPECT_NEAR(carried.position_world_m[2], 0.0, 1e-9);
+    EXPECT_NEAR(carried.rotation_world->at(1), 0.0, 1e-4);
+    options.load.mass_kg = -1.0;
+    EXPECT_NE(refusal(options).find("mass"), std::string::npos);
+}
+
 TEST(SimulatedDevice, trails_a_moving_hand_by_its_own_drag)
 {
     SimulatedDeviceOptions options;

@@ -2,14 +2,11 @@
 // Copyright the Tactus authors.
 #include "platform/posix/posix_clock.hpp"
 #include "platform/udp/udp_device.hpp"
-#include "tests/shared/temporary_folder.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <csignal>
-#include <fstream>
-#include <iterator>
 #include <string>
 #include <sys/wait.h>
 #include <thread>
@@ -20,18 +17,6 @@ namespace tactus
 
 namespace
 {
-
-/// The driver that docs/udp-device.md shows, word for word.
-std::string driver_of_the_page()
-{
-    std::ifstream file(TACTUS_SOURCE_DIR "/docs/udp-device.md");
-    const std::string page{std::istreambuf_iterator<char>(file), {}};
-    const std::string fence = "```python\n";
-    const std::size_t begin = page.find(fence) + fence.size();
-    const std::size_t end = page.find("```\n", begin);
-    EXPECT_NE(end, std::string::npos);
-    return page.substr(begin, end - begin);
-}
 
 bool has_python()
 {
@@ -98,15 +83,13 @@ void turn_to(UdpDevice& device, const std::array<double, 3>& torque_nm, double w
     } while (std::abs(turned_rad - wanted_rad) > 1e-3);
 }
 
-TEST(UdpDriver, of_the_page_attaches_obeys_dies_and_attaches_again)
+TEST(UdpDriver, of_the_examples_attaches_obeys_dies_and_attaches_again)
 {
     if (!has_python())
     {
         GTEST_SKIP() << "no python3 of version 3.8 or later here";
     }
-    const test::TemporaryFolder folder("udp_driver");
-    const std::string script = (folder.path() / "driver.py").string();
-    std::ofstream(script) << driver_of_the_page();
+    const std::string script = TACTUS_SOURCE_DIR "/docs/examples/udp_driver.py";
     const PosixClock clock;
     UdpDeviceOptions options;
     options.clock = &clock;

@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cstddef>
+#include <cstdint>
+#include <span>
 #include <vector>
 
 namespace tactus::udp
@@ -141,6 +144,100 @@ TEST_F(UdpSession, lets_another_instance_in_when_the_first_is_silent)
     EXPECT_TRUE(is(sample(3), DatagramFault::foreign)) << "the one before is out";
     EXPECT_TRUE(is(sample(2, kSecret, 10, kElsewhere), DatagramFault::session));
     EXPECT_TRUE(std::get<Sampled>(sample(2, kSecret + 1, 10, kElsewhere)).is_new);
+}
+
+/// A driver that stumbles is back in its place, whoever knocked meanwhile.
+TEST_F(UdpSession, keeps_the_place_of_a_device_that_has_sent_samples)
+{
+    sut = Session(kSecret, milliseconds(20), milliseconds(3'000));
+    EXPECT_TRUE(is_described(describe(1)));
+    EXPECT_TRUE(is_sampled(sample(2)));
+    be_silent();
+    EXPECT_TRUE(is(describe(1, 10, kElsewhere), DatagramFault::foreign));
+    EXPECT_TRUE(is(describe(1, 10, kHome), DatagramFault::foreign));
+    EXPECT_TRUE(std::get<Sampled>(sample(3)).is_new) << "back within its session";
+    now = now + milliseconds(3'000);
+    EXPECT_TRUE(sut.lapse(now));
+    EXPECT_TRUE(is(describe(1, 10, kElsewhere), DatagramFault::foreign)) << "just in time";
+    EXPECT_TRUE(is_described(describe(4))) << "the device itself may begin anew";
+    be_silent();
+    now = now + milliseconds(1);
+    EXPECT_TRUE(is_described(describe(1, 10, kElsewhere))) << "a new session, without samples";
+    EXPECT_TRUE(is_sampled(sample(2, kSecret + 2, 10, kElsewhere)));
+    be_silent();
+    now = now + milliseconds(2'980);
+    EXPECT_TRUE(is_described(describe(1, 11, kHome))) << "later than that";
+}
+
+/// A tag that the test can make: the sum of the bytes, and a secret.
+class Sum final : public Seal
+{
+public:
+    explicit Sum(std::uint8_t secret) : secret_(secret) {}
+    [[nodiscard]] Tag tag_of(std::span<const std::byte> bytes) const noexcept override
+    {
+        std::uint8_t sum = secret_;
+        for (std::size_t i = 0; i < bytes.size(); ++i)
+        {
+            sum = static_cast<std::uint8_t>(sum * 31U + std::to_integer<std::uint8_t>(bytes[i]));
+        }
+        Tag tag{};
+        tag.front() = tag.back() = std::byte{sum};
+        return tag;
+    }
+
+private:
+    std::uint8_t secret_;
+};
+
+TEST_F(UdpSession, with_a_seal_hears_nobody_without_the_key)
+{
+    const Sum seal(7);
+    const Sum other(8);
+    sut = Session(kSecret, milliseconds(20), {}, &seal);
+    const DescribeDatagram described{{9, 0, 1}, info};
+    DescribeDatagram old = described;
+    old.version = kVersionOfPoints;
+    for (const Datagram& bytes : {encode(described), sealed(encode(described), other), encode(old)})
+    {
+        EXPECT_TRUE(is(sut.receive(bytes, kHome, now), DatagramFault::tag));
+        EXPECT_FALSE(sut.info());
+    }
+    EXPECT_TRUE(is_described(sut.receive(sealed(encode(described), seal), kHome, now)));
+    SampleDatagram datagram;
+    datagram.address = {9, kSecret, 2};
+    datagram.time_ns = 1;
+    EXPECT_TRUE(is(sut.receive(encode(datagram), kHome, now), DatagramFault::tag));
+    EXPECT_TRUE(is(sut.receive(sealed(encode(datagram), other), kHome, now), DatagramFault::tag));
+    EXPECT_TRUE(is_sampled(sut.receive(sealed(encode(datagram), seal), kHome, now)));
+}
+
+/// Whatever byte before the checksum is another, the tag is wrong.
+TEST_F(UdpSession, a_seal_covers_every_byte)
+{
+    const Sum seal(7);
+    ForceDatagram force;
+    force.address = {9, kSecret, 1};
+    force.state = DeviceState::force;
+    SampleDatagram sampled;
+    sampled.address = {9, kSecret, 2};
+    for (const Datagram& whole :
+         {encode(DescribeDatagram{{9, 0, 1}, info}), encode(sampled), encode(force)})
+    {
+        const Datagram right = sealed(whole, seal);
+        EXPECT_TRUE(is_sealed(right, seal));
+        std::vector<std::byte> bytes(right.begin(), right.end());
+        for (std::size_t i = 0; i + 4 < bytes.size(); ++i)
+        {
+            if (i == 6 || i == 7)
+            {
+                continue; // The kind, which a datagram that decodes has right.
+            }
+            bytes[i] ^= std::byte{1};
+            EXPECT_FALSE(is_sealed(bytes, seal)) << i;
+            bytes[i] ^= std::byte{1};
+        }
+    }
 }
 
 /// What was recorded of a session is of no use in a later one.

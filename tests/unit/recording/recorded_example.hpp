@@ -19,8 +19,8 @@ struct ExampleFrame
 {
     std::array<ToolState, 1> tools{ToolState{Vec3(0.5, -0.25, 2.0), 77, 3, true}};
     std::array<DeviceRecord, 1> devices{};
-    std::array<SceneChange, 2> changes{};
-    Budgets budgets{11, 12, 13, 14, 15, 16, 17, 18};
+    std::array<SceneChange, 3> changes{};
+    Budgets budgets{11, 12, 13, 14, 15, 16, 17, 18, 19};
     std::array<DoorEvent, 2> events{
         DoorEvent{{ContentKind::chunk, 1}, 2, 5, 0xF0F0, DoorEventKind::arrival},
         DoorEvent{{ContentKind::chunk, 1}, 2, 6, 0xFFF0, DoorEventKind::link_update}};
@@ -49,7 +49,9 @@ struct ExampleFrame
         changes[1].kind = SceneChangeKind::object_comes;
         changes[1].number = 1;
         changes[1].generation = 7;
-        changes[1].object = {ModelId{0}, {300.0, 0.4, 0.3, 0.5}};
+        changes[1].object = {ModelId{0}, {300.0, 0.4, 0.3, 0.5, 0.6, 1e-5, 1e-3}};
+        changes[2] = changes[1];
+        changes[2].kind = SceneChangeKind::object_feels;
         model_outputs[0].state_hash = 0x1234'5678'9ABC'DEF0ULL;
         tool_outputs[0].force_n = Vec3(0.0, 0.0, 1.0);
     }

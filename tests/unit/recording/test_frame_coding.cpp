@@ -45,12 +45,16 @@ TEST(FrameCoding, writes_the_bytes_that_the_format_page_lists)
         expected.put(0.125).put(4.0).put(-8.0).put(1.5).put(std::int64_t{0}).put(std::int64_t{0});
         expected.put(21U);
     };
-    expected.put(std::uint8_t{2}).put(std::uint8_t{1}).put(0U).put(0U);
+    expected.put(std::uint8_t{3}).put(std::uint8_t{1}).put(0U).put(0U);
     put_pose();
     expected.put(std::uint8_t{0}).put(1U).put(7U).put(0U);
-    expected.put(300.0).put(0.4).put(0.3).put(0.5);
+    const auto put_material = [&expected]
+    { expected.put(300.0).put(0.4).put(0.3).put(0.5).put(0.6).put(1e-5).put(1e-3); };
+    put_material();
     put_pose();
-    for (std::uint32_t budget = 11; budget <= 18; ++budget)
+    expected.put(std::uint8_t{5}).put(1U).put(7U);
+    put_material();
+    for (std::uint32_t budget = 11; budget <= 19; ++budget)
     {
         expected.put(budget);
     }
@@ -160,7 +164,8 @@ TEST(FrameCoding, refuses_values_that_no_frame_can_have)
     constexpr std::size_t kChanges = kFlags + 1 + 8 + kToolStateBytes;
     constexpr std::size_t kValid = kFlags + 1 + 8 + 24 + 8 + 4;
     constexpr std::size_t kMove = 9 + kObjectPoseBytes;
-    constexpr std::size_t kBudgets = kChanges + 1 + kMove + kSceneChangeBytes;
+    constexpr std::size_t kFeel = 9 + kObjectSpecBytes - 4; // It names no model.
+    constexpr std::size_t kBudgets = kChanges + 1 + kMove + kSceneChangeBytes + kFeel;
     constexpr std::size_t kEvents = kBudgets + kBudgetsBytes + 4;
     constexpr std::size_t kEvent = kEvents + 2;
     struct Case
@@ -174,7 +179,7 @@ TEST(FrameCoding, refuses_values_that_no_frame_can_have)
                                   {kValid, {0xFF, 0x3F}, "flags"}, // An unknown one.
                                   {kChanges, {0}, "1 to 64 changes"},
                                   {kChanges, {65}, "1 to 64 changes"},
-                                  {kChanges + 1, {5}, "unknown kind"},
+                                  {kChanges + 1, {6}, "unknown kind"},
                                   {kBudgets, {1, 1}, "256 splits"},
                                   {kBudgets + 4, {1, 1}, "256 splits"},
                                   {kEvents, {0xFF, 0}, "128 events"},

@@ -49,9 +49,10 @@ std::vector<Part> parts()
           tool([](auto& t) { t.proxy_m.y() = 1.0; }), tool([](auto& t) { t.in_contact = true; }),
           tool([](auto& t) { t.frozen = true; }), tool([](auto& t) { t.squeezed = true; }),
           tool([](auto& t) { t.held_back = true; }), tool([](auto& t) { t.under_way = true; }),
-          tool([](auto& t) { t.crowded = true; }), tool([](auto& t) { t.lost_object = true; }),
-          tool([](auto& t) { t.is_gone = true; }), tool([](auto& t) { t.clear_m = 1.0; }),
-          tool([](auto& t) { t.stiffness_n_per_m = 1.0; }),
+          tool([](auto& t) { t.cut_short = true; }), tool([](auto& t) { t.crowded = true; }),
+          tool([](auto& t) { t.lost_object = true; }), tool([](auto& t) { t.is_gone = true; }),
+          tool([](auto& t) { t.clear_m = 1.0; }), tool([](auto& t) { t.stiffness_n_per_m = 1.0; }),
+          tool([](auto& t) { t.lag_m = 1.0; }),
           tool([](auto& t) { t.sample_fault = FrameFault::tool_stuck; }),
           tool([](auto& t) { t.torque_nm.y() = 1.0; }),
           tool([](auto& t) { t.proxy_rotation(1, 2) = 1.0; })}},
@@ -63,20 +64,24 @@ std::vector<Part> parts()
           pair([](auto& p) { p.nearest_face = FaceId{1}; }),
           pair([](auto& p) { p.nearest_point_m.x() = 1.0; }),
           pair([](auto& p) { p.skipped = true; }), pair([](auto& p) { p.is_shed = true; }),
-          pair([](auto& p) { p.is_joined = false; })}},
+          pair([](auto& p) { p.is_joined = false; }),
+          pair([](auto& p) { p.damping_n_s_per_m = 1.0; })}},
         {&OutputHashes::models,
          {model([](auto& m) { m.pages.used = 1; }), model([](auto& m) { m.pages.used_max = 1; }),
           model([](auto& m) { m.pages.capacity = 1; }),
           model([](auto& m) { m.index_pages.used = 1; }), model([](auto& m) { m.faces.used = 1; }),
           model([](auto& m) { m.blocks.used = 1; }), model([](auto& m) { m.nodes.used = 1; }),
           model([](auto& m) { m.refined_records = 1; }), model([](auto& m) { m.state_hash = 1; }),
-          model([](auto& m) { m.is_static = true; })}},
+          model([](auto& m) { m.is_static = true; }),
+          model([](auto& m) { m.stage = ModelStage::known; }),
+          model([](auto& m) { m.stage = ModelStage::wanted; })}},
         {&OutputHashes::work,
          {work(&WorkCounters::splits),
           work(&WorkCounters::merges),
           work(&WorkCounters::scanned),
           work(&WorkCounters::nodes_visited),
           work(&WorkCounters::triangles_tested),
+          work(&WorkCounters::planes_looked_at),
           work(&WorkCounters::pages_adopted),
           work(&WorkCounters::requests),
           work(&WorkCounters::regions_searched),
@@ -119,8 +124,8 @@ TEST(OutputHash, sees_every_field_in_its_part_and_tells_them_apart)
 TEST(OutputHash, is_what_the_format_page_says)
 {
     std::uint64_t state = 0;
-    // 13 counters, five of the scene, refusals, the shortcuts' and the faults, all zero.
-    for (std::size_t value = 0; value < 19 + kChangeRefusals + kSkips; ++value)
+    // 14 counters, five of the scene, refusals, the shortcuts' and the faults, all zero.
+    for (std::size_t value = 0; value < 20 + kChangeRefusals + kSkips; ++value)
     {
         state += 0x9E3779B97F4A7C15U;
         state = (state ^ (state >> 30)) * 0xBF58476D1CE4E5B9U;

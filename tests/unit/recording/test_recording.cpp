@@ -135,7 +135,7 @@ TEST(RecordingFile, gives_back_what_was_written)
 TEST(RecordingFile, begins_with_its_magic_and_version)
 {
     const std::vector<std::byte> bytes = example();
-    EXPECT_EQ(std::memcmp(bytes.data(), "TACTREC\n\x08\0\0\0", 12), 0);
+    EXPECT_EQ(std::memcmp(bytes.data(), "TACTREC\n\x0B\0\0\0", 12), 0);
 }
 
 TEST(RecordingFile, tells_from_where_frames_were_lost)
@@ -151,7 +151,7 @@ TEST(RecordingFile, is_refused_when_it_is_of_another_kind_or_version)
     std::vector<std::byte> bytes = example();
     bytes[8] = std::byte{2};
     expect_refusal(bytes,
-                   "at byte 8: format version 2 is of an older Tactus; this program reads 8");
+                   "at byte 8: format version 2 is of an older Tactus; this program reads 11");
     bytes[3] = std::byte{'X'};
     expect_refusal(bytes, "is not a Tactus recording");
     bytes = example();
@@ -224,7 +224,8 @@ TEST(RecordingFile, is_refused_when_a_value_is_out_of_its_range)
     expect_refusal(with_bytes(kSetup, kObject, {5}), "object 0 doesn't come where it should");
     expect_refusal(with_bytes(kSetup, kObject + 1, {1}), "object 0 doesn't come where it should");
     expect_refusal(with_bytes(kSetup, kSpec, {1}), "object 0 names model 1 of 1");
-    for (const std::size_t value : {4U, 12U, 20U, 28U}) // NaN, then less than nothing.
+    for (const std::size_t value :
+         {4U, 12U, 20U, 28U, 36U, 44U, 52U}) // NaN, then less than nothing.
     {
         const std::string refusal = "object 0 is not of more than 0 N/m";
         expect_refusal(with_bytes(kSetup, kSpec + value + 6, {0xF8, 0x7F}), refusal);
@@ -269,7 +270,8 @@ TEST(RecordingFile, is_refused_when_a_value_is_out_of_its_range)
                    "a frames section has 1048577 bytes; 1 to 1048576 are allowed");
     expect_refusal(with_section(kFrames, [](auto& payload) { payload.pop_back(); }),
                    "frame 2 is cut short by the end of its section");
-    constexpr std::size_t kChanges = 1 + 9 + kObjectPoseBytes + kSceneChangeBytes;
+    constexpr std::size_t kFeel = 9 + kObjectSpecBytes - 4; // It names no model.
+    constexpr std::size_t kChanges = 1 + 9 + kObjectPoseBytes + kSceneChangeBytes + kFeel;
     constexpr std::size_t kSlot = 4 + 1 + 8 + kToolStateBytes + kChanges + kBudgetsBytes + 13;
     expect_refusal(with_bytes(kFrames, kSlot, {4}), "frame 0 names slot 4 of 4");
     expect_refusal(with_bytes(kFrames, kSlot - 5, {9}), "takes piece 1 of model 9 from the door");

@@ -457,6 +457,17 @@ TEST(WrenchConditioner, caps_by_the_damping_of_what_is_touched_and_of_nothing_el
     EXPECT_NEAR(force_of(0.0), 1.0, kRounding);
     EXPECT_NEAR(force_of(1.5), 0.25, kRounding); // 0.9 x 2 (2 - 1.5) / T of 3,600 N/m.
     EXPECT_EQ(force_of(2.0), 0.0);
+    // Back within the time that a material takes to change, step by step; in free air at once.
+    double before = 0.0;
+    for (int ms = 1; ms <= 50; ++ms)
+    {
+        const double force = force_of(0.0);
+        EXPECT_NEAR(force - before, 0.02, 1e-9) << ms;
+        before = force;
+    }
+    EXPECT_EQ(force_of(0.0), before);
+    EXPECT_EQ(force_of(2.0), 0.0);
+    static_cast<void>(sut.condition(wrench(Vec3(0, 0, 0), Vec3(0, 0, 0))));
     EXPECT_NEAR(force_of(0.0), 1.0, kRounding);
 }
 

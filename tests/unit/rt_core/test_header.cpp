@@ -100,12 +100,10 @@ TEST(ModelHeader, values_out_of_range_are_refused)
             f.extent_quanta = {0, 0, 0};
         },
         [](HeaderFields& f) { f.extent_quanta[1] = 1U << 16U; },
-        [](HeaderFields& f) { f.origin_m[0] = kNaN; },
-        [](HeaderFields& f) { f.origin_m[1] = -kInfinity; },
-        [](HeaderFields& f) { f.origin_m[1] = std::nextafter(kCoordinateRange, kInfinity); },
         [](HeaderFields& f) { f.quantisation_m = kNaN; },
         [](HeaderFields& f) { f.quantisation_m = kInfinity; },
         [](HeaderFields& f) { f.quantisation_m = -1e-9; },
+        [](HeaderFields& f) { f.quantisation_m = 1e3; }, // Beyond the diagonal.
         [](HeaderFields& f) { f.region_grid[0] = 0; },
         [](HeaderFields& f) {
             f.region_grid = {0xFFFF'FFFFU, 0xFFFF'FFFFU, 0xFFFF'FFFFU};
@@ -128,11 +126,34 @@ TEST(ModelHeader, values_out_of_range_are_refused)
     }
 }
 
+TEST(ModelHeader, what_can_be_touched_nowhere_is_refused)
+{
+    for (const double far_m : {std::numeric_limits<double>::quiet_NaN(), -kInfinity, 1e300, 1e9,
+                               std::nextafter(-kModelReachMax_m, -kInfinity), kModelReachMax_m})
+    {
+        EXPECT_EQ(refusal_after([=](HeaderFields& f) { f.origin_m[1] = far_m; }),
+                  SpmRefusal::too_far)
+            << far_m;
+    }
+    EXPECT_EQ(refusal_after([](HeaderFields& f) { f.quantum_log2 = kMaxQuantumLog2; }),
+              SpmRefusal::too_far); // Its far corner is.
+}
+
 TEST(ModelHeader, the_ends_of_each_range_are_accepted)
 {
-    EXPECT_EQ(refusal_after([](HeaderFields& f) { f.quantum_log2 = kMinQuantumLog2; }),
+    EXPECT_EQ(refusal_after(
+                  [](HeaderFields& f)
+                  {
+                      f.quantum_log2 = kMinQuantumLog2;
+                      f.quantisation_m = 0.0;
+                  }),
               SpmRefusal{255});
-    EXPECT_EQ(refusal_after([](HeaderFields& f) { f.quantum_log2 = kMaxQuantumLog2; }),
+    EXPECT_EQ(refusal_after(
+                  [](HeaderFields& f)
+                  {
+                      f.quantum_log2 = kMaxQuantumLog2;
+                      f.extent_quanta = {0, 0, 1};
+                  }),
               SpmRefusal{255});
     for (const std::uint32_t bits : {kMinPositionBits, kMaxPositionBits})
     {
@@ -140,7 +161,7 @@ TEST(ModelHeader, the_ends_of_each_range_are_accepted)
                                 { f.position_bits = static_cast<std::uint16_t>(bits); }),
                   SpmRefusal{255});
     }
-    EXPECT_EQ(refusal_after([](HeaderFields& f) { f.origin_m[1] = -kCoordinateRange; }),
+    EXPECT_EQ(refusal_after([](HeaderFields& f) { f.origin_m[1] = -kModelReachMax_m; }),
               SpmRefusal{255});
     EXPECT_EQ(refusal_after([](HeaderFields& f) { f.extent_quanta = {0, 0, 1}; }), SpmRefusal{255});
     EXPECT_EQ(refusal_after([](HeaderFields& f) { f.base_faces = kMaxBaseFaces; }),

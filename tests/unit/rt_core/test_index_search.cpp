@@ -94,6 +94,47 @@ TEST(IndexSearch, begins_anew_when_told)
     EXPECT_EQ(rig.look(one_ball(0)).size(), kPagesInRound);
 }
 
+/// A small box there, and its chunk.
+IndexSearch::Beside beside_at(std::int32_t x)
+{
+    return {ChunkId{static_cast<std::uint32_t>(x)}, {{x, 0, 0}, {x, 0, 0}}};
+}
+
+TEST(IndexSearch, gives_each_chunk_beside_once_when_a_ball_has_come_to_it)
+{
+    SearchRig rig;
+    const IndexSearch::Balls here = one_ball(0, 100.0);
+    const IndexSearch::Balls there = one_ball(5.5, 100.0);
+    rig.look(here);
+    rig.sut.add_beside(beside_at(108));
+    rig.sut.add_beside(beside_at(105));
+    EXPECT_FALSE(rig.sut.take_met()) << "no ball of the frame meets them";
+    EXPECT_TRUE(rig.look(there).empty());
+    const auto met = rig.sut.take_met();
+    ASSERT_TRUE(met);
+    EXPECT_EQ(met->chunk, ChunkId{105});
+    EXPECT_EQ(met->ball.ball.center[0], 5.5);
+    EXPECT_FALSE(rig.sut.take_met()) << "the other one is not met yet";
+}
+
+TEST(IndexSearch, forgets_what_is_beside_when_a_round_begins_and_begins_one_when_it_is_too_much)
+{
+    SearchRig rig;
+    const IndexSearch::Balls near = one_ball(0);
+    const IndexSearch::Balls far = one_ball(20);
+    rig.look(near);
+    rig.sut.add_beside(beside_at(25));
+    EXPECT_EQ(rig.look(far).size(), kPagesInRound);
+    EXPECT_FALSE(rig.sut.take_met());
+    for (std::size_t i = 0; i < IndexSearch::kMaxBeside; ++i)
+    {
+        rig.sut.add_beside(beside_at(40));
+    }
+    EXPECT_TRUE(rig.look(far).empty());
+    rig.sut.add_beside(beside_at(40));
+    EXPECT_EQ(rig.look(far).size(), kPagesInRound);
+}
+
 TEST(IndexSearch, is_for_wider_balls_and_knows_those_of_the_frame)
 {
     SearchRig rig;

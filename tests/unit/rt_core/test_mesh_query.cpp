@@ -4,6 +4,7 @@
 #include "rt_core/geometry/triangle_triangle.hpp"
 #include "rt_core/math/infinity.hpp"
 #include "rt_core/query/mesh_query.hpp"
+#include "rt_core/query/near_faces.hpp"
 #include "tests/unit/rt_core/support.hpp"
 #include "tests/unit/rt_core/tree_support.hpp"
 
@@ -136,12 +137,13 @@ struct Asked
 };
 
 Asked ask(const TreeRig& tool, const TreeRig& object, const MeshPlacement& place, double reach,
-          double contact, MeshMemory& memory, const WalkBudget& budget = kAmple)
+          double contact, MeshMemory& memory, const WalkBudget& budget = kAmple,
+          double certified = 0.0)
 {
     Asked asked;
     OtherSurface surface(*object.sut, place, budget);
-    query_meshes({*tool.sut, *object.sut, place, reach, contact}, surface, memory, asked.answer,
-                 asked.report, asked.contacts);
+    query_meshes({*tool.sut, *object.sut, place, reach, contact, nullptr, certified}, surface,
+                 memory, asked.answer, asked.report, asked.contacts);
     asked.budget = surface.budget();
     return asked;
 }
@@ -175,6 +177,177 @@ std::set<MeetingFaces> as_set(const Faces& faces)
 }
 
 } // namespace
+
+/// The least distance from a face of the tool to any of the object, less both errors, in the tool's
+/// frame.
+double gap_of(const ChangedFace& own, std::span<const ChangedFace> object,
+              const MeshPlacement& place)
+{
+    const double scale = place.place.scale;
+    double gap = kInfinity;
+    for (const ChangedFace& face : object)
+    {
+        const ClosestPoints closest =
+            closest_points(placed(own, place), to_triangle(face.corners_m));
+        gap = std::min(gap, (closest.distance - error_of(face)) / scale - error_of(own));
+    }
+    return gap;
+}
+
+/// What is told of a lane: infinity when it is beyond the bound.
+double told_gap(const NearFaces& near, std::uint32_t block, std::uint32_t lane)
+{
+    for (const NearFaces::Block& found : near.blocks())
+    {
+        if (found.index == block && (found.lanes >> lane & 1U) != 0)
+        {
+            return near.gap_m(found, lane);
+        }
+    }
+    return kInfinity;
+}
+
+/// Faces of the tool as a star has them, not more than there is room for.
+struct LooseStar
+{
+    BlockGeometry geometry;
+    BlockSide side;
+    std::vector<ChangedFace> faces;
+
+    explicit LooseStar(std::span<const ChangedFace> from)
+    {
+        for (const ChangedFace& face : from)
+        {
+            if (add_to_block(geometry, side, face) < kBlockFaces)
+            {
+                faces.push_back(face);
+            }
+        }
+    }
+};
+
+/// A lower bound, and not far below; of what may meet already no more is told.
+void expect_told(double told, double truth, double bound)
+{
+    ASSERT_TRUE(told < kInfinity || truth > bound);
+    ASSERT_LE(std::min(told, bound), std::max(truth, 0.0));
+    ASSERT_TRUE(told == kInfinity || told >= truth - 0.01);
+}
+
+TEST(NearFaces, are_all_coarse_ones_within_the_bound_with_their_gaps)
+{
+    Random random(84);
+    int near_ones = 0;
+    int far_ones = 0;
+    for (int round = 0; round < 60; ++round)
+    {
+        TreeRig tool({80, 200, 200});
+        TreeRig object({120, 300, 300});
+        fill(tool, random, 1 + random.below(80), false);
+        fill(object, random, 1 + random.below(120), round % 3 == 0);
+        const auto faces = object.present();
+        for (int query = 0; query < 4; ++query)
+        {
+            MeshPlacement place = random_placement(random);
+            place.place.translation_m.y() += random.between(0.0, 1.5);
+            const double bound = random.between(0.0, 0.5);
+            OtherSurface other(*object.sut, place, kAmple);
+            NearFaces sut(*tool.sut, other);
+            sut.find(bound);
+            ASSERT_EQ(sut.rest_m(), kInfinity);
+            for (const ChangedFace& own : tool.present())
+            {
+                const std::uint32_t leaf = tool.sut->leaf_of(own.prim);
+                const double told = told_gap(sut, leaf / kBlockFaces, leaf % kBlockFaces);
+                const double truth = own.error == 0 ? kInfinity : gap_of(own, faces, place);
+                expect_told(told, truth, bound);
+                near_ones += truth <= bound ? 1 : 0;
+                far_ones += truth > bound ? 1 : 0;
+            }
+
+            const LooseStar star(tool.present());
+            LooseFaces loose{star.geometry};
+            for (std::uint32_t lane = 0; lane < star.faces.size(); ++lane)
+            {
+                loose.lanes |= star.faces[lane].error != 0 ? 1U << lane : 0U;
+                loose.errors_m[lane] = error_of(star.faces[lane]);
+            }
+            if (loose.lanes == 0)
+            {
+                continue;
+            }
+            NearFaces of_star(*tool.sut, other);
+            of_star.find(loose, bound);
+            ASSERT_EQ(of_star.rest_m(), kInfinity);
+            for (std::uint32_t lane = 0; lane < star.faces.size(); ++lane)
+            {
+                const ChangedFace& own = star.faces[lane];
+                expect_told(told_gap(of_star, kNoNode, lane),
+                            own.error == 0 ? kInfinity : gap_of(own, faces, place), bound);
+            }
+        }
+    }
+    EXPECT_GT(near_ones, 200);
+    EXPECT_GT(far_ones, 500);
+}
+
+/// Of all coarse faces of the tool something is told that is not above the truth.
+void expect_nothing_missed(const NearFaces& near, const TreeRig& tool, const TreeRig& object,
+                           const MeshPlacement& place, double bound)
+{
+    const auto faces = object.present();
+    for (const ChangedFace& own : tool.present())
+    {
+        const std::uint32_t leaf = tool.sut->leaf_of(own.prim);
+        const double told = std::min(told_gap(near, leaf / kBlockFaces, leaf % kBlockFaces),
+                                     std::min(near.rest_m(), bound));
+        ASSERT_TRUE(own.error == 0 || told <= std::max(gap_of(own, faces, place), 0.0));
+    }
+}
+
+TEST(NearFaces, are_left_where_a_budget_ends_the_search_or_a_face_may_be_anywhere)
+{
+    Random random(85);
+    int cut_short = 0;
+    for (int round = 0; round < 40; ++round)
+    {
+        const bool lacks_room = round % 4 == 0;
+        TreeRig tool({80, 200, 200});
+        TreeRig object({60, lacks_room ? 4U : 200U, lacks_room ? 2U : 200U});
+        const bool is_one_block = round % 2 == 1; // Each: nothing else is left then.
+        fill(tool, random, 1 + random.below(is_one_block ? 5 : 80), false);
+        fill(object, random, is_one_block ? 5 : 60, false);
+        const MeshPlacement place = random_placement(random);
+        const std::uint32_t share = random.below(is_one_block ? 20 : 300);
+        // Of nodes or, so that it ends between two blocks, of triangles.
+        const WalkBudget budget =
+            is_one_block ? WalkBudget{10'000, share} : WalkBudget{share, 10 * share};
+        OtherSurface other(*object.sut, place, budget);
+        NearFaces sut(*tool.sut, other);
+        const double bound = is_one_block ? 3.0 : 0.3;
+        sut.find(bound);
+        expect_nothing_missed(sut, tool, object, place, bound);
+        cut_short += sut.rest_m() < kInfinity ? 1 : 0;
+        ASSERT_TRUE(object.sut->is_complete() || sut.rest_m() <= 0.0);
+    }
+    EXPECT_GT(cut_short, 5);
+}
+
+TEST(NearFaces, are_left_where_there_are_more_blocks_of_them_than_kMaxNearBlocks)
+{
+    Random random(86);
+    constexpr std::uint32_t kMany = 1'600;
+    TreeRig tool({kMany, kMany, kMany});
+    TreeRig object({4, 20, 20});
+    fill(tool, random, kMany, false);
+    fill(object, random, 4, true);
+    OtherSurface other(*object.sut, MeshPlacement{}, kAmple);
+    NearFaces sut(*tool.sut, other);
+    sut.find(9.0);
+    EXPECT_EQ(sut.blocks().size(), kMaxNearBlocks);
+    EXPECT_LE(sut.rest_m(), 9.0);
+    expect_nothing_missed(sut, tool, object, MeshPlacement{}, 9.0);
+}
 
 TEST(OtherSurface, is_no_nearer_than_all_of_its_faces_less_their_errors)
 {
@@ -296,6 +469,77 @@ TEST(MeshQuery, finds_what_measuring_all_pairs_finds)
     EXPECT_GT(exact, 60);
     EXPECT_GT(decided, 100);
     EXPECT_GT(met, 60);
+}
+
+/// The coarse faces of a rig moved away from all else.
+void part_coarse(TreeRig& rig, float by)
+{
+    for (ChangedFace face : rig.present())
+    {
+        for (Vec3f& corner : face.corners_m)
+        {
+            corner[2] += face.error != 0 ? by : 0.0F;
+        }
+        rig.put(face);
+    }
+    rig.sut->refit();
+}
+
+TEST(MeshQuery, is_the_same_with_less_work_where_coarse_faces_are_known_to_be_far)
+{
+    Random random(88);
+    int known = 0;
+    int met = 0;
+    std::uint64_t tested = 0;
+    std::uint64_t tested_knowing = 0;
+    for (int round = 0; round < 60; ++round)
+    {
+        Meshes meshes;
+        fill(meshes.tool, random, 80, round % 3 == 0);
+        fill(meshes.object, random, 120, round % 3 == 1);
+        const float by = random.one_in(2) ? 0.0F : static_cast<float>(random.between(0.5, 4.0));
+        part_coarse(meshes.tool, by);
+        part_coarse(meshes.object, -by);
+        const auto tool_faces = meshes.tool.present();
+        const auto faces = meshes.object.present();
+        for (int query = 0; query < 4; ++query)
+        {
+            MeshPlacement place = random_placement(random);
+            place.place.translation_m.y() += random.between(0.0, 0.5);
+            const double reach = random.between(0.0, 0.1);
+            const double contact = random.one_in(2) ? -1.0 : reach;
+            const AllPairs truth(tool_faces, faces, place, contact);
+            MeshMemory memory{{random.below(10), random.below(10)}};
+            MeshMemory same = memory;
+            const Asked plain = ask(meshes.tool, meshes.object, place, reach, contact, memory);
+
+            const Asked asked = ask(meshes.tool, meshes.object, place, reach, contact, same, kAmple,
+                                    std::max(0.0, truth.coarse_lower - 1e-9));
+
+            ASSERT_EQ(as_set(asked.report.meeting), truth.meeting) << round << " " << query;
+            ASSERT_EQ(asked.report.intersection, plain.report.intersection);
+            ASSERT_EQ(asked.report.is_complete, plain.report.is_complete);
+            ASSERT_EQ(asked.report.nearest_tool_face, plain.report.nearest_tool_face);
+            ASSERT_EQ(asked.answer.kind, plain.answer.kind);
+            ASSERT_GE(asked.answer.upper_m, truth.lower);
+            ASSERT_TRUE(asked.answer.kind != AnswerKind::exact ||
+                        asked.answer.upper_m == plain.answer.upper_m);
+            ASSERT_EQ(asked.answer.nearest_face, plain.answer.nearest_face);
+            ASSERT_LE(asked.answer.lower_m, truth.lower + 1e-14);
+            ASSERT_EQ(asked.answer.certified_radius_m, plain.answer.certified_radius_m);
+            ASSERT_EQ(asked.contacts.is_complete, plain.contacts.is_complete);
+            ASSERT_EQ(asked.contacts.contacts.size(), plain.contacts.contacts.size());
+            const bool is_known = truth.coarse_lower > 1.0 && truth.coarse_lower < kInfinity &&
+                                  plain.answer.upper_m < truth.coarse_lower - 1e-9;
+            known += is_known ? 1 : 0;
+            met += is_known && !truth.meeting.empty() ? 1 : 0;
+            tested += is_known ? plain.budget.triangles_tested : 0;
+            tested_knowing += is_known ? asked.budget.triangles_tested : 0;
+        }
+    }
+    EXPECT_GT(known, 30);
+    EXPECT_GT(met, 10);
+    EXPECT_LT(tested_knowing, tested);
 }
 
 TEST(MeetingFaces, are_those_of_the_whole_query)

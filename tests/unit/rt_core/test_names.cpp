@@ -60,6 +60,7 @@ bool is_flag(FrameFault fault)
     case FrameFault::pair_shed:
     case FrameFault::scene_crowded:
     case FrameFault::object_lost:
+    case FrameFault::plane_budget_spent:
         return true;
     }
     return false;

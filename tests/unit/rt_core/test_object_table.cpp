@@ -162,16 +162,53 @@ TEST_F(ObjectTableTest, refuses_materials_out_of_range)
         [](Material& m) { m.static_friction = 1.001 * kFrictionMax; },
         [](Material& m) { m.dynamic_friction = 0.1; }, // Above the static one.
         [](Material& m) { m.damping_n_s_per_m = -1.0; },
-        [](Material& m) { m.damping_n_s_per_m = 1.001 * kDampingMax_n_s_per_m; }};
+        [](Material& m) { m.damping_n_s_per_m = 1.001 * kDampingMax_n_s_per_m; },
+        [](Material& m) { m.viscosity_n_s_per_m = -1.0; },
+        [](Material& m) { m.viscosity_n_s_per_m = 1.001 * kDampingMax_n_s_per_m; },
+        [](Material& m) { m.texture_height_m = 1e-6; }, // Of no length.
+        [](Material& m) { m.texture_length_m = kNotANumber; },
+        [](Material& m) { m.texture_length_m = 1.001 * kTextureLengthMax_m; },
+        [](Material& m)
+        {
+            m.texture_length_m = 0.999 * kTextureLengthMin_m;
+            m.texture_height_m = 1e-6;
+        },
+        [](Material& m)
+        {
+            m.texture_length_m = 0.01;
+            m.texture_height_m = 1.001 * 0.01 * kTextureSteepest;
+        }};
+    ASSERT_EQ(change(comes(1, 0)), std::nullopt);
     for (std::size_t i = 0; i < wrong.size(); ++i)
     {
         SceneChange object = comes(0, 0);
         wrong[i](object.object.material);
         EXPECT_EQ(change(object), ChangeRefusal::bad_material) << i;
+        object = with(comes(1, 0), SceneChangeKind::object_feels);
+        wrong[i](object.object.material);
+        EXPECT_EQ(change(object), ChangeRefusal::bad_material) << i;
+        EXPECT_EQ(sut[1].spec.material, Material{}) << i;
     }
     SceneChange edge = comes(0, 0);
-    edge.object.material = {kInfinity, kFrictionMax, kFrictionMax, kDampingMax_n_s_per_m};
+    edge.object.material = {kInfinity,
+                            kFrictionMax,
+                            kFrictionMax,
+                            kDampingMax_n_s_per_m,
+                            kDampingMax_n_s_per_m,
+                            kTextureSteepest * kTextureLengthMin_m,
+                            kTextureLengthMin_m};
     EXPECT_EQ(change(edge), std::nullopt);
+    EXPECT_EQ(change(with(edge, SceneChangeKind::object_goes)), std::nullopt);
+    edge = with(edge, SceneChangeKind::object_feels);
+    EXPECT_EQ(change(edge), ChangeRefusal::not_here);
+    edge.number = 1;
+    edge.generation = 9;
+    EXPECT_EQ(change(edge), ChangeRefusal::old_generation);
+    edge.generation = 0;
+    edge.pose.scale = kNotANumber; // Nobody looks at the pose of what only feels otherwise.
+    EXPECT_EQ(change(edge), std::nullopt);
+    EXPECT_EQ(sut[1].spec.material, edge.object.material);
+    EXPECT_EQ(sut[1].pose.scale, 1.0);
 }
 
 } // namespace

@@ -16,6 +16,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace tactus::test
@@ -160,6 +161,7 @@ struct BlocksScene
     BlockGeometry tool;
     MeshPlacement place;
     KernelBox tool_box{};
+    std::array<float, kBlockFaces> errors{}; ///< Of the tool's faces, in quanta.
     PlacedBlock placed;
     VertexRows rows;
     float slack{0.0F};
@@ -180,6 +182,12 @@ struct BlocksScene
         if (is_whole && random.one_in(2)) // Much that only touches.
         {
             place = {};
+        }
+        for (float& error : errors)
+        {
+            error = random.one_in(2)
+                        ? 0.0F
+                        : static_cast<float>(size * std::exp2(-random.between(0.0, 10.0)));
         }
         slack = static_cast<float>(
             (place.place.translation_m.norm() / quantum + 4.0 * size) * 0x1p-45 + 0x1p-40);
@@ -206,6 +214,7 @@ struct BlocksScene
                              from.data(), turn.data(), placed.rows);
         const double moved = (middle - to_vec3(from)).lpNorm<1>() * units_per_m();
         const float half = tool_box.half_along[0] + tool_box.half_along[1] + tool_box.half_along[2];
+        std::ranges::copy(errors, std::begin(placed.rows.error));
         placed.off = half * 0x1p-21F + round_up_to_float(4.0 * moved) + slack;
         static_cast<void>(kernels.near_block(object.coordinates(), object.corners(), tool_box,
                                              0xFFFF, kUnlimited, rows));
@@ -587,14 +596,16 @@ TEST(PairKernels, leave_out_no_pair_of_faces_within_the_bound)
             const Kernels& kernels = portable_kernels();
             const std::uint32_t tool_lane = random.below(kBlockFaces);
             const std::uint32_t lane = random.below(kBlockFaces);
-            const float bound = round_up_to_float(scene.apart(tool_lane, lane));
+            const double apart = scene.apart(tool_lane, lane);
+            const double error = static_cast<double>(scene.errors[tool_lane]);
+            const float bound = round_up_to_float(std::max(0.0, apart - error));
             const std::uint32_t mask = 1U << lane;
             const Aabb box = box_of(scene.object.block, mask);
             ASSERT_NE(near_rows(kernels, scene, box, 0xFFFF, bound) >> tool_lane & 1U, 0U);
             ASSERT_EQ(near_rows(kernels, scene, box, 0, bound), 0U);
             VertexRows rows;
             ASSERT_NE(kernels.near_block(scene.object.coordinates(), scene.object.corners(),
-                                         scene.tool_box, 0xFFFF, bound, rows) &
+                                         scene.tool_box, 0xFFFF, round_up_to_float(apart), rows) &
                           mask,
                       0U);
             // The way between the two, any other, and none.
@@ -632,7 +643,7 @@ TEST(PairKernels, decide_no_pair_otherwise_than_exact_arithmetic)
                 const Triangle face = scene.face(queue[i].lane);
                 expect_true_sides(sides, i, meet(tool, face));
             }
-            if (scene.object.shape == face_shapes()[0].name)
+            if (std::string_view(scene.object.shape) == face_shapes()[0].name)
             {
                 plain += queue.size();
                 decided += static_cast<std::uint32_t>(std::popcount(sides.meet | sides.apart));
@@ -696,7 +707,8 @@ TEST(PairKernels, bound_distances_of_faces_from_both_sides_and_closely)
                 const auto quantum = static_cast<double>(scene.object.quantum_m);
                 expect_true_bounds(distances, i, closest, quantum);
                 const double apart = closest.distance / quantum;
-                const bool counts = scene.object.shape == face_shapes()[0].name && apart > 0.0;
+                const bool counts =
+                    std::string_view(scene.object.shape) == face_shapes()[0].name && apart > 0.0;
                 plain += counts ? 1U : 0U;
                 close += counts && static_cast<double>(distances.lower[i]) > 0.99 * apart &&
                                  static_cast<double>(distances.upper[i]) < 1.01 * apart

@@ -60,7 +60,7 @@ public:
             std::fill_n(lows_.begin(), kBatches, -kFarPlane);
         }
         std::vector<PlaneHit> hits(kBatches);
-        hits.resize(kernels.planes_below(table_, question(place, least), hits.data()));
+        hits.resize(kernels.planes_below(table_, question(place, least), hits.data()).hits);
         last_ = place;
         return hits;
     }
@@ -113,6 +113,7 @@ private:
                 {stand_[0], stand_[1], stand_[2]},
                 stand_number_,
                 static_cast<float>(std::sqrt(drift_sq) * (1.0 + 0x1p-22)),
+                least,
                 least};
     }
 

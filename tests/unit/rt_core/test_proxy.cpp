@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "rt_core/limits.hpp"
-#include "tests/shared/period.hpp"
-#include "tests/unit/rt_core/surface_support.hpp"
+#include "tests/unit/rt_core/proxy_rig.hpp"
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
@@ -18,112 +17,6 @@ namespace tactus::test
 
 namespace
 {
-
-constexpr double kRadius = 0.01;
-constexpr double kStiffness = 500.0;
-/// What the proxy leaves between itself and the goal it could reach, relative to the radius.
-constexpr double kRest = 3e-3;
-
-ToolSpec ball_tool()
-{
-    ToolSpec spec;
-    spec.radius_m = kRadius;
-    spec.stiffness_n_per_m = kStiffness;
-    spec.force_max_n = 8.0;
-    return spec;
-}
-
-/// A first goal: seen, the proxy begins there.
-ToolGoal goal_at(const Vec3& position_m, const Vec3& velocity_m_per_s = Vec3(0.0, 0.0, 0.0))
-{
-    return {position_m, velocity_m_per_s, kPeriod_s, Mat3::Identity(), GoalChange::first};
-}
-
-PlacedSurface placed_surface(const ObjectPose& pose, const LocalSurface* surface,
-                             const Material& material, ProxyMemory& memory, double quantum = 1e-6)
-{
-    PlacedSurface placed;
-    placed.pose = &pose;
-    placed.surface = surface;
-    placed.material = &material;
-    placed.quantum_m = quantum;
-    placed.memory = &memory;
-    return placed;
-}
-
-/// A proxy over one object whose surface is certified as far as `certified` (model frame).
-class ProxyRig
-{
-public:
-    ProxyRig(TriangleList list, const Vec3& start, const ObjectPose& object_pose = {},
-             const ToolSpec& tool = ball_tool())
-        : triangles(std::move(list)), pose(object_pose), sut(tool)
-    {
-        sut.see(goal_at(start));
-    }
-
-    ToolOutput step(const Vec3& goal, const Vec3& velocity = Vec3(0, 0, 0))
-    {
-        const auto surface = surface_of(triangles, to_model(pose, sut.position_m()), certified);
-        const PlacedSurface placed = placed_surface(pose, surface.get(), material, memory, quantum);
-        return sut.respond(goal_at(goal, velocity), {&placed, 1}, clear);
-    }
-    /// The object moves first.
-    ToolOutput step(const Vec3& goal, const ObjectPose& now)
-    {
-        const NearObject object{0, &pose, &now, &memory};
-        sut.carry({&object, 1}, kPeriod_s);
-        pose = now;
-        return step(goal);
-    }
-    ToolOutput settle(const Vec3& goal, int frames = 200)
-    {
-        ToolOutput output;
-        for (int i = 0; i < frames; ++i)
-        {
-            output = step(goal);
-        }
-        return output;
-    }
-    /// The surface's point that is nearest.
-    [[nodiscard]] Vec3 nearest(const Vec3& point) const
-    {
-        ClosestPoint best;
-        best.distance_sq = std::numeric_limits<double>::infinity();
-        for (const auto& corners : triangles)
-        {
-            const ClosestPoint closest =
-                closest_point_on_triangle(to_model(pose, point), to_triangle(corners));
-            best = closest.distance_sq < best.distance_sq ? closest : best;
-        }
-        return to_world(pose, best.point);
-    }
-    [[nodiscard]] double clearance() const
-    {
-        return distance_to(triangles, to_model(pose, sut.position_m())) * pose.scale;
-    }
-
-    TriangleList triangles;
-    ObjectPose pose;
-    Proxy sut;
-    Material material;
-    double quantum{1e-6};
-    double certified{0.05};
-    double clear{kInfinity}; ///< Of everything else.
-    ProxyMemory memory;
-};
-
-/// The cosine of the angle between two forces.
-double cosine(const Vec3& a, const Vec3& b)
-{
-    return a.dot(b) / (a.norm() * b.norm());
-}
-
-void expect_vector(const Vec3& is, const Vec3& should, double tolerance)
-{
-    EXPECT_NEAR((is - should).norm(), 0.0, tolerance)
-        << is.transpose() << " instead of " << should.transpose();
-}
 
 /// A room's corner: three planes that meet at the origin, free where all coordinates are positive.
 TriangleList room_corner()
@@ -536,6 +429,57 @@ TEST(Proxy, among_more_faces_than_a_step_has_rounds_enters_none_and_comes_to_res
     }
 }
 
+TEST(Proxy, of_few_planes_a_frame_gets_to_the_same_place_later_and_says_so)
+{
+    const Vec3 start(0, 0, 0);
+    const Vec3 goal(0.3, 0, -0.05);
+    ProxyRig whole(bent_top(60), start);
+    whole.certified = 1.0;
+    const ToolOutput rest = whole.settle(goal, 20);
+    ASSERT_FALSE(rest.under_way);
+    for (const std::uint32_t planes : {1U, 12U, 40U})
+    {
+        ProxyRig rig(bent_top(60), start);
+        rig.certified = 1.0;
+        rig.planes = planes;
+        ToolOutput output;
+        double force_n = 0.0;
+        int cut = 0;
+        for (int frame = 0; frame < 2'000; ++frame)
+        {
+            const Vec3 before_n = output.force_n;
+            output = rig.step(goal);
+            ASSERT_LE(rig.sut.planes_left(), planes);
+            ASSERT_EQ(output.cut_short,
+                      has_fault(frame_faults(output), FrameFault::plane_budget_spent));
+            ASSERT_TRUE(output.under_way || !output.cut_short);
+            ASSERT_GE(rig.clearance(), kRadius * (1.0 - 2e-6));
+            const double step_n = (output.force_n - before_n).norm();
+            force_n = cut > 0 ? std::max(force_n, step_n) : force_n;
+            cut += output.cut_short ? 1 : 0;
+            if (!output.under_way)
+            {
+                break;
+            }
+        }
+        EXPECT_GT(cut, 0) << planes;
+        EXPECT_LE(force_n, kCatchUp_n_per_s * kPeriod_s * (1.0 + 1e-9)) << planes;
+        EXPECT_FALSE(output.under_way) << planes;
+        EXPECT_LT((output.proxy_m - rest.proxy_m).norm(), 1e-4 * kRadius) << planes;
+    }
+}
+
+TEST(Proxy, without_any_plane_stays_and_feels_what_touches)
+{
+    ProxyRig rig(plane(), Vec3(0, 0, kRadius));
+    rig.planes = 0;
+    const ToolOutput output = rig.step(Vec3(0.1, 0, kRadius - 0.002));
+    EXPECT_TRUE(output.cut_short);
+    EXPECT_EQ(output.proxy_m, Vec3(0, 0, kRadius));
+    EXPECT_NEAR(output.force_n.z(), kStiffness * 0.002, 1e-6);
+    EXPECT_GT(output.lag_m, 0.09);
+}
+
 TEST(Proxy, says_that_it_is_crowded_when_more_touches_than_planes_fit)
 {
     for (const std::size_t count : {std::size_t{kMaxHalfSpaces}, std::size_t{kMaxHalfSpaces} + 1})
@@ -912,6 +856,90 @@ TEST(Proxy, crosses_many_small_triangles_in_one_frame)
             expect_vector(output.force_n, kStiffness * 0.002 * goal.normalized(), 0.02);
         }
     }
+}
+
+TEST(Proxy, of_a_fast_hand_goes_on_with_further_lists_of_the_same_frame)
+{
+    ProxyRig rig(plane(), Vec3(0, 0, kRadius));
+    rig.settle(Vec3(0, 0, 0.5 * kRadius));
+    rig.certified = 1.4 * kRadius;
+    const Vec3 start = rig.sut.position_m();
+    const Vec3 near(kRadius, 0, 0.5 * kRadius);
+    const ToolOutput there = rig.step_on(near, near / kPeriod_s);
+    EXPECT_EQ(rig.lists, 3U);
+    EXPECT_NEAR(there.proxy_m.x(), kRadius, 1e-6 * kRadius);
+    EXPECT_FALSE(there.under_way);
+    EXPECT_EQ(there.lag_m, 0.0);
+    // Of one frame: from where it began.
+    EXPECT_EQ(rig.sut.path_m().front(), start);
+    EXPECT_EQ(rig.sut.path_m().back(), rig.sut.position_m());
+
+    const Vec3 far = near + Vec3(10 * kRadius, 0, 0);
+    const ToolOutput behind = rig.step_on(far, (far - near) / kPeriod_s);
+    EXPECT_EQ(rig.lists, Proxy::kListsPerFrame);
+    EXPECT_NEAR(behind.proxy_m.x(), kRadius * (1.0 + 0.4 * Proxy::kListsPerFrame), 0.01 * kRadius);
+    EXPECT_TRUE(behind.under_way);
+    EXPECT_NEAR(behind.lag_m, rig.sut.way_to_m(goal_at(far)), 1e-12);
+    EXPECT_NEAR(behind.lag_m, far.x() - behind.proxy_m.x(), 0.1 * kRadius);
+}
+
+TEST(Proxy, does_not_go_on_where_data_is_missing_or_a_list_brings_it_no_farther)
+{
+    ProxyRig rig(plane(), Vec3(0, 0, kRadius));
+    rig.settle(Vec3(0, 0, 0.5 * kRadius));
+    rig.certified = 1.4 * kRadius;
+    const Vec3 goal(kRadius, 0, 0.5 * kRadius);
+    EXPECT_TRUE(rig.step(goal).under_way);
+    EXPECT_FALSE(rig.sut.goes_on());
+    rig.certified = 1.01 * kRadius;
+    EXPECT_TRUE(rig.step_on(goal, Vec3(0, 0, 0)).under_way);
+    EXPECT_EQ(rig.lists, 1U);
+}
+
+TEST(Proxy, frozen_when_it_goes_on_stays_as_it_was)
+{
+    ProxyRig rig(plane(), Vec3(0, 0, kRadius));
+    ProxyRig other(plane(), Vec3(0, 0, kRadius));
+    const Vec3 goal(kRadius, 0, 0.5 * kRadius);
+    for (ProxyRig* each : {&rig, &other})
+    {
+        each->settle(Vec3(0, 0, 0.5 * kRadius));
+        each->certified = 1.4 * kRadius;
+        static_cast<void>(each->step(goal));
+    }
+    rig.certified = 0.0;
+    rig.sut.go_on();
+    EXPECT_TRUE(rig.step(goal).frozen);
+    rig.certified = 1.4 * kRadius;
+    EXPECT_EQ(rig.step(goal).force_n, other.step(goal).force_n);
+    EXPECT_EQ(rig.sut.position_m(), other.sut.position_m());
+}
+
+TEST(Proxy, behind_a_fast_hand_is_never_without_force_and_on_it_again_when_that_slows)
+{
+    ProxyRig rig(plane(), Vec3(0, 0, kRadius));
+    rig.settle(Vec3(0, 0, 0.5 * kRadius));
+    rig.certified = 1.06 * kRadius; // 0.6 mm a list
+    Vec3 goal(0, 0, 0.5 * kRadius);
+    double lag_m = 0.0;
+    for (int frame = 0; frame < 100; ++frame)
+    {
+        goal.x() += 0.003;
+        const ToolOutput output = rig.step_on(goal, Vec3(3, 0, 0));
+        ASSERT_GT(output.force_n.norm(), 0.0) << frame;
+        ASSERT_FALSE(output.frozen);
+        ASSERT_GE(output.lag_m, lag_m);
+        lag_m = output.lag_m;
+    }
+    EXPECT_NEAR(lag_m, 0.06, 0.01);
+    int frames = 0;
+    for (; lag_m > 0.0 && frames < 50; ++frames)
+    {
+        goal.x() += 0.001;
+        lag_m = rig.step_on(goal, Vec3(1, 0, 0)).lag_m;
+    }
+    EXPECT_EQ(lag_m, 0.0) << frames;
+    EXPECT_NEAR(rig.sut.position_m().x(), goal.x(), 1e-6 * kRadius);
 }
 
 TEST(Proxy, a_press_is_little_of_a_way_but_a_pull_is)

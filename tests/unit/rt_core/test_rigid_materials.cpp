@@ -314,4 +314,49 @@ TEST(RigidMaterials, friction_never_drives_the_tool)
     }
 }
 
+TEST(RigidMaterials, viscosity_drags_a_sliding_and_a_turning_body)
+{
+    for (const double viscosity : {1.0, 8.0})
+    {
+        for (const double friction : {0.0, 0.2})
+        {
+            Material material;
+            material.viscosity_n_s_per_m = viscosity;
+            material.static_friction = material.dynamic_friction = friction;
+            Rig rig = box_on_plane(material);
+            rig.takes_steps = true;
+            constexpr double kDepth = 0.002;
+            constexpr double kSpeed = 0.05;
+            const double height_m = rig.sut.place().translation_m.z() - kDepth;
+            ToolOutput output;
+            for (int i = 0; i < 600; ++i)
+            {
+                output = rig.step(Vec3(kSpeed * kPeriod_s * i, 0.0, height_m));
+            }
+            const double drag_n = viscosity * kSpeed + friction * output.force_n.z();
+            EXPECT_NEAR(output.force_n.x(), -drag_n, 0.02 * drag_n);
+            EXPECT_NEAR(output.force_n.z(), kBodyStiffness * kDepth, 0.02);
+            // The hand stands: what was held is let go, without a push beyond.
+            for (int i = 0; i < 400; ++i)
+            {
+                output = rig.step(Vec3(kSpeed * kPeriod_s * 600, 0.0, height_m));
+                EXPECT_LE(output.force_n.x(), 1e-3);
+            }
+            EXPECT_LE(-output.force_n.x(), friction * output.force_n.z() + 2e-3);
+        }
+    }
+    Material honey;
+    honey.viscosity_n_s_per_m = 5.0;
+    Rig rig = box_on_plane(honey);
+    const Vec3 hand = rig.sut.place().translation_m - Vec3(0, 0, 0.002);
+    rig.settle(hand, Mat3::Identity(), 50);
+    ToolOutput output;
+    for (int i = 0; i < 300; ++i)
+    {
+        output = rig.step(hand, turn(Vec3(0, 0, 1), 1e-3 * i));
+    }
+    EXPECT_LT(output.torque_nm.z(), -1e-4) << "it turns on corners that drag";
+    EXPECT_LT(output.force_n.head<2>().norm(), 0.1 * output.force_n.z());
+}
+
 } // namespace tactus::test

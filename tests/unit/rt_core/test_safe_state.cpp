@@ -350,15 +350,30 @@ TEST(SafeState, a_stall_takes_as_much_of_the_force_as_its_true_time_says)
     }
 }
 
+TEST(SafeState, goes_on_from_what_the_device_has_left_of_the_force)
+{
+    GuardedTool tool;
+    tool.warm_up();
+    tool.input.force_left = 0.7;
+    EXPECT_EQ(tool.step().causes, ForceOff::watchdog);
+    EXPECT_NEAR(tool.sut.gain(), 0.7, 1e-12);
+    tool.input.force_left = 0.999; // Its own fall is the steeper one.
+    tool.step();
+    EXPECT_NEAR(tool.sut.gain(), 0.7 - kPeriod_s / kFadeTime_s, 1e-12);
+    tool.input.force_left = 1.0;
+    EXPECT_EQ(tool.step().causes, ForceOff::none);
+    EXPECT_GT(tool.sut.gain(), 0.7 - kPeriod_s / kFadeTime_s);
+}
+
 TEST(SafeState, a_force_that_the_device_has_dropped_starts_again_from_zero)
 {
     GuardedTool tool;
     tool.warm_up();
-    tool.input.force_was_lost = true;
+    tool.input.force_left = 0.0;
     EXPECT_EQ(tool.step().causes, ForceOff::watchdog);
     EXPECT_EQ(tool.last.state, SafetyState::idle);
     EXPECT_EQ(tool.last.force_n.norm(), 0.0);
-    tool.input.force_was_lost = false;
+    tool.input.force_left = 1.0;
     Vec3 last_n = tool.last.force_n;
     for (int i = 0; i < 100; ++i)
     {

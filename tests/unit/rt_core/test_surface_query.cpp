@@ -11,6 +11,7 @@
 
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <set>
 
 namespace tactus::test
@@ -338,6 +339,69 @@ ChangedFace face_around_origin(Random& random, std::uint32_t prim, bool exact_on
     }
     face.error = exact_only || !random.one_in(3) ? 0 : static_cast<ErrorCode>(1 + random.below(10));
     return face;
+}
+
+/// The even bits of a number, beside one another.
+std::uint32_t even_bits(std::uint32_t number)
+{
+    std::uint32_t bits = 0;
+    for (std::uint32_t bit = 0; bit < 16; ++bit)
+    {
+        bits |= (number >> (2 * bit) & 1U) << bit;
+    }
+    return bits;
+}
+
+/// A sheet of small exact faces around the origin, 2 m wide; near ones are near in the tree.
+constexpr std::uint32_t kSheetSide = 128;
+constexpr std::uint32_t kSheetFaces = kSheetSide * kSheetSide;
+void put_sheet(TreeRig& rig)
+{
+    constexpr double kEdge = 2.0 / kSheetSide;
+    for (std::uint32_t i = 0; i < kSheetFaces; ++i)
+    {
+        const Vec3 at(-1.0 + kEdge * even_bits(i), -1.0 + kEdge * even_bits(i >> 1U), 0.0);
+        rig.put(
+            {PrimId{i},
+             FaceId{i},
+             i / 8,
+             0,
+             {to_float(at), to_float(at + Vec3(kEdge, 0, 0)), to_float(at + Vec3(0, kEdge, 0))}});
+    }
+    rig.sut->refit();
+}
+
+/// The radius of a disc with so many of its faces.
+double sheet_disc(double faces)
+{
+    return std::sqrt(faces * 4.0 / kSheetFaces / std::numbers::pi);
+}
+
+TEST(SurfaceQuery, once_the_list_is_full_looks_no_farther_than_what_is_in_it)
+{
+    TreeRig rig({kSheetFaces, kSheetFaces, kSheetFaces});
+    put_sheet(rig);
+    const PointAnswer asked = ask(*rig.sut, Vec3(0, 0, 0.1), 2.0);
+    EXPECT_TRUE(asked.surface->is_cut);
+    EXPECT_EQ(asked.surface->count, kMaxLocalTriangles);
+    EXPECT_LT(asked.budget.triangles_tested, kSheetFaces / 2);
+    const double disc = sheet_disc(kMaxLocalTriangles);
+    EXPECT_NEAR(asked.surface->answer.certified_radius_m, std::hypot(disc, 0.1), 0.1 * disc);
+}
+
+TEST(SurfaceQuery, what_a_spent_budget_leaves_is_far_away)
+{
+    TreeRig rig({kSheetFaces, kSheetFaces, kSheetFaces});
+    put_sheet(rig);
+    for (const std::uint32_t triangles : {1'600U, 3'200U})
+    {
+        const PointAnswer asked = ask(*rig.sut, Vec3(0, 0, 0), 2.0, 1'000'000, triangles);
+        EXPECT_TRUE(asked.surface->is_cut);
+        const double half = sheet_disc(0.5 * triangles);
+        EXPECT_GT(asked.surface->answer.certified_radius_m, 0.5 * half) << triangles;
+        EXPECT_LT(asked.surface->answer.certified_radius_m, 2.0 * half) << triangles;
+    }
+    EXPECT_FALSE(ask(*rig.sut, Vec3(0, 0, 0), 0.05).surface->is_cut);
 }
 
 TEST(SurfaceQuery, of_more_nodes_and_blocks_than_are_gone_through_in_order_misses_none)

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
 #include <map>
 #include <optional>
 #include <set>
@@ -200,6 +201,33 @@ TEST_F(VertexForestTest, a_split_writes_the_star_as_the_record_says)
     EXPECT_EQ(side_b.bucket, 200U);
     EXPECT_EQ(side_b.error, 0);
     EXPECT_EQ(side_b.corners_m[0], page(0).position_m);
+}
+
+/// The star of a split is laid out as a block: its faces as they are afterwards, and the rows that
+/// they use, no more and no fewer.
+TEST_F(VertexForestTest, a_split_lays_its_star_out_as_a_block)
+{
+    for (const std::uint32_t record : {0U, 1U, 2U})
+    {
+        SCOPED_TRACE(record);
+        VertexForest::StarGeometry star;
+        ASSERT_EQ(sut_->split({record}, page(record), star), VertexForest::SplitOutcome::done);
+
+        std::uint32_t rows = 0;
+        for (std::uint32_t lanes = star.geometry.faces; lanes != 0; lanes &= lanes - 1)
+        {
+            const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
+            for (const auto& corners : star.geometry.corners)
+            {
+                rows |= 1U << corners[lane];
+            }
+            const auto laid_out = block_triangle(star.geometry, lane);
+            const auto active = sut_->describe(star.prims[lane]).corners_m;
+            EXPECT_TRUE(std::is_permutation(laid_out.begin(), laid_out.end(), active.begin()));
+        }
+        EXPECT_EQ(std::popcount(star.geometry.faces), page(record).fan_size + 2);
+        EXPECT_EQ(star.geometry.vertices, rows);
+    }
 }
 
 TEST_F(VertexForestTest, a_split_round_two_fan_faces_stays_manifold)

@@ -100,7 +100,7 @@ TEST(Vicinity, lists_the_triangles_of_its_surfaces)
     }
 }
 
-TEST(Vicinity, lists_what_is_within_a_distance_of_here_in_order_and_counts_what_has_no_room)
+TEST(Vicinity, lists_what_is_within_a_distance_of_here_in_order_and_says_when_some_has_no_room)
 {
     Random random(64);
     const ObjectPose pose = turned();
@@ -118,7 +118,7 @@ TEST(Vicinity, lists_what_is_within_a_distance_of_here_in_order_and_counts_what_
                           sut.stand_at(place, Vec3(0, 0, 1));
                           const double distance = random.between(0.1, 1.5);
                           std::array<std::uint32_t, 5> faces{};
-                          const std::size_t count = sut.list_within(distance, faces);
+                          const Vicinity::Listed listed = sut.list_within(distance, faces);
                           std::vector<std::uint32_t> expected;
                           for (std::uint32_t face = 0; face < list.size(); ++face)
                           {
@@ -131,8 +131,9 @@ TEST(Vicinity, lists_what_is_within_a_distance_of_here_in_order_and_counts_what_
                                   expected.push_back(face);
                               }
                           }
-                          ASSERT_EQ(count, expected.size());
-                          expected.resize(std::min(count, faces.size()));
+                          ASSERT_EQ(listed.is_all, expected.size() <= faces.size());
+                          ASSERT_EQ(listed.count, std::min(expected.size(), faces.size()));
+                          expected.resize(listed.count);
                           for (std::size_t k = 0; k < expected.size(); ++k)
                           {
                               ASSERT_EQ(faces[k], expected[k]);
@@ -205,6 +206,67 @@ TEST(Vicinity, a_motion_enters_nothing_that_it_does_not_name)
     }
     EXPECT_GT(named, 200);
     EXPECT_LT(named, 1'800);
+}
+
+TEST(Vicinity, with_any_allowance_and_however_deep_the_ball_is_lets_it_come_no_nearer)
+{
+    Random random(65);
+    const ObjectPose pose = turned();
+    const Material material;
+    int spent = 0;
+    int deep = 0;
+    int went = 0;
+    for (int i = 0; i < 2'000; ++i)
+    {
+        const TriangleList list = scattered(random, 60);
+        const Vec3 center = random.in_cube(0.5);
+        const double truth = pose.scale * distance_to(list, to_model(pose, center));
+        const double radius = truth * random.between(0.2, 3.0);
+        const auto surface = surface_of(list, to_model(pose, center), 10.0);
+        PlacedSurface placed{&pose, surface.get(), &material, 1e-6};
+        placed.kernels = available_kernels()[random.below(available_kernels().size())];
+        const std::uint32_t planes = random.one_in(4) ? Vicinity::kUnlimited : random.below(40U);
+        Vicinity sut({&placed, 1}, center, 10.0, planes);
+        sut.stand_at(Vec3(0, 0, 0), Vec3(0, 0, 1));
+        std::array<std::uint32_t, 64> faces{};
+        static_cast<void>(sut.list_within(radius * 1.001, faces));
+        const Vec3 motion = random.in_cube(0.4);
+        static_cast<void>(sut.find_entered(motion, radius));
+        const double share = sut.free_share(motion, radius);
+        const double least = std::min(radius, truth) * (1.0 - 1e-5);
+        for (int k = 0; k <= 20; ++k)
+        {
+            const Vec3 at = center + motion * (share * k / 20.0);
+            ASSERT_GE(pose.scale * distance_to(list, to_model(pose, at)), least) << i;
+        }
+        ASSERT_LE(sut.planes_left(), planes);
+        spent += sut.is_spent() ? 1 : 0;
+        deep += radius > truth ? 1 : 0;
+        went += sut.is_spent() && share > 0.0 ? 1 : 0;
+    }
+    EXPECT_GT(spent, 100);
+    EXPECT_GT(deep, 500);
+    EXPECT_GT(went, 50) << "what is proven must not be given up";
+}
+
+TEST(Vicinity, among_many_that_touch_looks_at_a_bounded_number_of_them)
+{
+    // All as far away, so that single precision can't tell which of them touch.
+    const TriangleList list(2 * kMaxTouchLooks, plane().front());
+    const ObjectPose pose;
+    const Material material;
+    const auto surface = surface_of(list, Vec3(0.5, 0, 1), 10.0);
+    const PlacedSurface placed{&pose, surface.get(), &material, 1e-6};
+    const std::uint32_t planes = 4 * kMaxTouchLooks;
+    Vicinity sut({&placed, 1}, Vec3(0.5, 0, 1), 10.0, planes);
+    sut.stand_at(Vec3(0, 0, 0), Vec3(0, 0, 1));
+    std::vector<std::uint32_t> faces(list.size());
+    const Vicinity::Listed touching = sut.list_within(1.0, faces);
+    EXPECT_EQ(touching.count, kMaxTouchLooks);
+    EXPECT_FALSE(touching.is_all);
+    EXPECT_LE(planes - sut.planes_left(), kMaxTouchLooks + list.size() / kPlaneLanes);
+    EXPECT_EQ(sut.list_within(0.5, faces).count, 0U);
+    EXPECT_TRUE(sut.list_within(0.5, faces).is_all);
 }
 
 TEST(Vicinity, distances_are_the_worlds_under_pose_and_scale)

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <memory>
 #include <random>
@@ -109,6 +110,155 @@ TEST(Courier, brings_an_index_page_and_then_its_chunks)
     EXPECT_EQ(road.sut.open_wishes(), 0U);
     EXPECT_EQ(road.sut.free_pages(), 11U);
     EXPECT_TRUE(road.lines.empty());
+}
+
+TEST(Courier, brings_a_base_mesh_but_not_for_a_wish_older_than_its_going)
+{
+    const TinyModel model = make_tiny_model({.records = 300});
+    Road road(model);
+    const std::vector<Vec3f> positions_m(road.side.slots.base.positions_m.begin(),
+                                         road.side.slots.base.positions_m.end());
+    const ContentKey base{ContentKind::base, 0};
+    ASSERT_TRUE(road.side.door.freed.try_push({ContentKind::base, 0, 7}));
+    ASSERT_TRUE(road.side.wish(base, 6));
+    DoorEvent event;
+    for (int i = 0; i < 10; ++i)
+    {
+        road.step();
+        ASSERT_FALSE(road.side.door.arrived.try_pop(event));
+    }
+    EXPECT_FALSE(road.side.linker.has_base());
+
+    std::ranges::fill(road.side.slots.base.positions_m, Vec3f{});
+    ASSERT_TRUE(road.side.wish(base, 7));
+    for (int i = 0; i < 10; ++i)
+    {
+        road.step();
+    }
+    ASSERT_TRUE(road.side.door.arrived.try_pop(event));
+    EXPECT_EQ(event.key, base);
+    EXPECT_TRUE(road.side.linker.has_base());
+    EXPECT_TRUE(std::ranges::equal(road.side.slots.base.positions_m, positions_m));
+    ASSERT_TRUE(road.side.wish(base, 8)); // It is here.
+    road.step();
+    EXPECT_FALSE(road.side.door.arrived.try_pop(event));
+}
+
+/// Of a host that is gone, and of one that is there and silent.
+TEST(Courier, gives_the_room_of_a_base_mesh_back_that_does_not_come_for_a_second)
+{
+    const TinyModel model = make_tiny_model({.base_faces = 12'000});
+    for (const bool is_gone : {true, false})
+    {
+        SCOPED_TRACE(is_gone);
+        Road road(model, {.loss = is_gone ? 0.0 : 1.0});
+        const ContentKey base{ContentKind::base, 0};
+        DoorEvent event;
+        ASSERT_TRUE(road.side.door.freed.try_push({ContentKind::base, 0, 1}));
+        ASSERT_TRUE(road.side.wish(base, 1));
+        if (is_gone)
+        {
+            road.link.lose_host();
+        }
+        road.step();
+        const std::int64_t wished_ns = road.now_ns;
+        while (!road.side.door.arrived.try_pop(event))
+        {
+            ASSERT_LT(road.now_ns - wished_ns, 2'000'000'000);
+            ASSERT_TRUE(road.side.wish(base, 1)); // It is still wanted, which changes nothing.
+            road.step();
+        }
+        EXPECT_GT(road.now_ns - wished_ns, 1'000'000'000);
+        EXPECT_EQ(event.kind, DoorEventKind::base_back);
+        EXPECT_EQ(event.key, base);
+        EXPECT_EQ(event.slot, 0U);
+        EXPECT_EQ(road.sut.counters().overdue, 1U);
+        EXPECT_FALSE(road.side.linker.has_base());
+        EXPECT_NE(road.lines.at(0).find("base mesh 0 doesn't come"), std::string::npos)
+            << road.lines.at(0);
+        // Until the haptic thread says that it knows, and of the time before that, a wish lends
+        // nothing, whatever its generation.
+        road.link.lose_host();
+        ASSERT_TRUE(road.side.wish(base, 900));
+        for (int i = 0; i < 3'000; ++i)
+        {
+            road.step();
+            ASSERT_FALSE(road.side.door.arrived.try_pop(event));
+        }
+        ASSERT_TRUE(road.side.door.freed.try_push({ContentKind::base, 0, 1'000}));
+        ASSERT_TRUE(road.side.wish(base, 999));
+        for (int i = 0; i < 3'000; ++i)
+        {
+            road.step();
+            ASSERT_FALSE(road.side.door.arrived.try_pop(event));
+        }
+    }
+}
+
+/// Else a host that sends a wrong mesh again and again would keep it for ever.
+TEST(Courier, gives_the_room_of_a_base_mesh_back_that_it_refuses_and_asks_for_it_anew)
+{
+    const TinyModel model = make_tiny_model({.base_faces = 12'000});
+    const std::uint32_t parts = parts_of(model.base.size());
+    ASSERT_GE(parts, 3U);
+    Road road(model, {.damage = 1.0});
+    const ContentKey base{ContentKind::base, 0};
+    ASSERT_TRUE(road.side.door.freed.try_push({ContentKind::base, 0, 1}));
+    DoorEvent event;
+    for (std::uint32_t time = 1; time <= 3; ++time)
+    {
+        ASSERT_TRUE(road.side.wish(base, 1'000 * time));
+        for (int i = 0; i < 10; ++i)
+        {
+            road.step();
+        }
+        ASSERT_TRUE(road.side.door.arrived.try_pop(event)) << time;
+        EXPECT_EQ(event.kind, DoorEventKind::base_back);
+        EXPECT_EQ(road.sut.counters().refused_hash, time);
+        EXPECT_EQ(road.sut.counters().pieces, std::uint64_t{time} * parts);
+        ASSERT_TRUE(road.side.wish(base, 1'000 * time + 1)); // Before it knows.
+        road.step();
+        ASSERT_FALSE(road.side.door.arrived.try_pop(event)) << time;
+        ASSERT_TRUE(road.side.door.freed.try_push({ContentKind::base, 0, 1'000 * time + 2}));
+    }
+    EXPECT_EQ(road.sut.counters().overdue, 0U);
+    EXPECT_FALSE(road.side.linker.has_base());
+}
+
+/// The second host is asked for the rest alone.
+TEST(Courier, keeps_what_came_of_a_base_mesh_whose_room_was_given_back)
+{
+    const TinyModel model = make_tiny_model({.base_faces = 12'000});
+    const std::uint32_t parts = parts_of(model.base.size());
+    ASSERT_GE(parts, 3U);
+    Road road(model, {.loss = 0.5});
+    const ContentKey base{ContentKind::base, 0};
+    ASSERT_TRUE(road.side.door.freed.try_push({ContentKind::base, 0, 1}));
+    ASSERT_TRUE(road.side.wish(base, 1));
+    for (int i = 0; i < 5; ++i)
+    {
+        road.step();
+    }
+    const std::uint64_t before = road.sut.counters().pieces;
+    ASSERT_GT(before, 0U);
+    ASSERT_LT(before, parts);
+    road.link.lose_host();
+    DoorEvent event;
+    while (!road.side.door.arrived.try_pop(event))
+    {
+        road.step();
+    }
+    ASSERT_EQ(event.kind, DoorEventKind::base_back);
+    ASSERT_TRUE(road.side.door.freed.try_push({ContentKind::base, 0, 1'000}));
+    road.link.regain_host();
+    for (std::uint32_t generation = 1'000; !road.side.linker.has_base(); ++generation)
+    {
+        ASSERT_LT(generation, 1'200U);
+        ASSERT_TRUE(road.side.wish(base, generation));
+        road.step();
+    }
+    EXPECT_EQ(road.sut.counters().pieces, parts);
+    EXPECT_EQ(road.sut.counters().dropped_unasked, 0U);
 }
 
 TEST(Courier, counts_how_long_each_piece_was_waited_for)
@@ -330,11 +480,11 @@ TEST(Courier, has_no_clock_of_its_own_for_a_wish_that_is_never_answered)
     EXPECT_EQ(road.sut.counters().forgotten, 0U);
 }
 
-/// What is asked for comes after 1.6 s; wishes come again as a cache makes them.
+/// What is asked for comes after 1.6 s, or so many; wishes come again as a cache makes them.
 struct OverdueRoad : Road
 {
-    explicit OverdueRoad(const TinyModel& model)
-        : Road(model, {.delay_polls_min = 1'600, .delay_polls_max = 1'600})
+    explicit OverdueRoad(const TinyModel& model, std::uint32_t delay_ms = 1'600)
+        : Road(model, {.delay_polls_min = delay_ms, .delay_polls_max = delay_ms})
     {
     }
 
@@ -359,15 +509,37 @@ TEST(Courier, tells_once_of_a_piece_that_does_not_come_for_a_second_and_when_it_
     road.wish_for(1'000);
     EXPECT_EQ(road.overdue(), 0U);
     EXPECT_TRUE(road.lines.empty());
+    EXPECT_FALSE(road.sut.is_starved());
     road.wish_for(550);
     EXPECT_EQ(road.overdue(), 1U);
+    EXPECT_TRUE(road.sut.is_starved());
     EXPECT_EQ(road.lines, std::vector<std::string>{
                               "model 'road': index page 0 doesn't come; the surface there stays "
                               "coarse"});
     EXPECT_TRUE(road.comes(index_key(0), 100));
+    EXPECT_FALSE(road.sut.is_starved());
     EXPECT_EQ(road.sut.counters().overdue_came, 1U);
     ASSERT_EQ(road.lines.size(), 2U);
     EXPECT_EQ(road.lines[1], "model 'road': index page 0 has come after all, after 1.6 s");
+}
+
+TEST(Courier, is_not_starved_any_more_of_what_nobody_wishes_for)
+{
+    const TinyModel model = make_tiny_model({});
+    OverdueRoad road(model, 10'000);
+    road.wish_for(1'300);
+    ASSERT_TRUE(road.sut.is_starved());
+    for (int i = 0; i < 800; ++i)
+    {
+        road.step(); // The wish stays open.
+    }
+    ASSERT_TRUE(road.sut.is_starved());
+    for (int i = 0; i < 250; ++i)
+    {
+        road.step();
+    }
+    EXPECT_FALSE(road.sut.is_starved());
+    EXPECT_EQ(road.sut.open_wishes(), 1U);
 }
 
 TEST(Courier, misses_nothing_that_was_not_wanted_meanwhile_or_that_nobody_could_serve)

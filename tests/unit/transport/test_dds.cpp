@@ -3,15 +3,17 @@
 #include "tests/unit/transport/dds_rig.hpp"
 #include "tests/unit/transport/door_side.hpp"
 #include "tests/unit/transport/tiny_model.hpp"
+#include "transport/base_fetch.hpp"
 #include "transport/content_hash.hpp"
 #include "transport/courier.hpp"
 #include "transport/dds/dds_client.hpp"
 #include "transport/dds/dds_host.hpp"
-#include "transport/dds/model_fetch.hpp"
+#include "transport/dds/header_fetch.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <csignal>
@@ -21,7 +23,9 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <netinet/in.h>
 #include <string>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <thread>
 #include <unistd.h>
@@ -40,6 +44,8 @@ using test::Lines;
 using test::make_tiny_model;
 using test::TemporaryFolder;
 using test::TinyModel;
+
+const std::array<ModelSelector, 1> kTiny{ModelSelector{"tiny", std::nullopt}};
 
 /// A host with a thread of its own, in a DDS domain of its own that meets the client's on the
 /// network: samples take the way over loopback sockets, as between processes.
@@ -217,8 +223,13 @@ TEST_F(Dds, many_models_start_at_once_and_a_base_mesh_of_several_parts_comes_who
     ASSERT_GT(models[7].base.size(), 2 * kPartBytes);
     HostThread host(kHostDomain, std::move(served), host_lines.log());
     const auto sut = client();
-    auto found = sut->find_all(selectors, kPatience);
+    auto found = sut->find_headers(selectors, kPatience);
     ASSERT_TRUE(found) << found.error().text;
+    EXPECT_TRUE(std::ranges::all_of(found.value(),
+                                    [](const ServedModel& model) { return model.base.empty(); }));
+    const std::uint64_t pieces = host.counters().pieces_sent;
+    EXPECT_EQ(pieces, models.size()); // Their headers, and nothing else.
+    EXPECT_FALSE(bring_bases(found.value(), kPatience));
     for (std::size_t i = 0; i < models.size(); ++i)
     {
         EXPECT_TRUE(std::ranges::equal(found.value()[i].header, models[i].header)) << i;
@@ -249,27 +260,41 @@ TEST_F(Dds, a_host_that_goes_in_the_middle_of_a_base_mesh_is_completed_by_anothe
     const TinyModel model = make_tiny_model({.base_faces = 12'000});
     auto first = host_of("tiny", model, kHostDomain);
     const auto sut = client();
+    auto found = sut->find_headers(kTiny, kPatience);
+    ASSERT_TRUE(found) << found.error().text;
+    BaseFetch fetch(found.value()[0]);
+    EXPECT_EQ(fetch.step(), BaseFetch::State::under_way);
+    first.reset(); // Asked, and gone before it could answer.
+    const auto second = host_of("tiny", model, kOtherHostDomain);
+    EXPECT_TRUE(eventually([&] { return fetch.step() == BaseFetch::State::done; }));
+    EXPECT_TRUE(std::ranges::equal(found.value()[0].base, model.base));
+}
+
+TEST_F(Dds, a_host_that_goes_in_the_middle_of_a_header_is_completed_by_another)
+{
+    const TinyModel model = make_tiny_model({});
+    auto first = host_of("tiny", model, kHostDomain);
+    const auto sut = client();
     Catalogue::Offer offer;
     ASSERT_TRUE(eventually(
         [&]
         {
             sut->exchange().step();
-            const Catalogue::Offer* seen = sut->catalogue().find({"tiny", std::nullopt});
+            const Catalogue::Offer* seen = sut->catalogue().find(kTiny[0]);
             offer = seen != nullptr ? *seen : offer;
             return seen != nullptr;
         }));
-    ModelFetch fetch(sut->exchange(), sut->catalogue(), offer);
-    EXPECT_EQ(fetch.step(), ModelFetch::State::under_way);
+    HeaderFetch fetch(sut->exchange(), sut->catalogue(), offer);
+    EXPECT_EQ(fetch.step(), HeaderFetch::State::under_way);
     first.reset(); // Asked, and gone before it could answer.
     const auto second = host_of("tiny", model, kOtherHostDomain);
     EXPECT_TRUE(eventually(
         [&]
         {
             sut->exchange().step();
-            return fetch.step() == ModelFetch::State::done;
+            return fetch.step() == HeaderFetch::State::done;
         }));
     EXPECT_TRUE(std::ranges::equal(fetch.header(), model.header));
-    EXPECT_TRUE(std::ranges::equal(fetch.base(), model.base));
 }
 
 /// Counts the parts of a base mesh that come.
@@ -294,34 +319,29 @@ TEST_F(Dds, what_came_of_a_base_mesh_before_its_host_went_is_not_asked_of_anothe
     auto first = host_of("tiny", model, kHostDomain);
     const auto sut = client();
     PieceExchange& exchange = sut->exchange();
-    const auto stepped_until = [&](const std::function<bool()>& is_so)
-    {
-        return eventually(
-            [&]
-            {
-                exchange.step();
-                return is_so();
-            });
-    };
-    const ModelSelector tiny{"tiny", std::nullopt};
-    ASSERT_TRUE(stepped_until([&] { return sut->catalogue().find(tiny) != nullptr; }));
-    const Catalogue::Offer offer = *sut->catalogue().find(tiny);
-    PartCounter counter(offer.hash);
+    auto found = sut->find_headers(kTiny, kPatience);
+    ASSERT_TRUE(found) << found.error().text;
+    ServedModel& served = found.value()[0];
+    PartCounter counter(served.hash);
     exchange.add(counter);
-    ModelFetch fetch(exchange, sut->catalogue(), offer);
+    BaseFetch fetch(served);
     const std::vector<ContentKey> some{{ContentKind::base, 0}, {ContentKind::base, 1}};
-    exchange.ask(offer.host_epoch, offer.model, some, 0);
-    ASSERT_TRUE(stepped_until([&] { return counter.times[1] == 1; }));
-    EXPECT_EQ(fetch.step(), ModelFetch::State::under_way);
+    served.link->request(some, 0);
+    ASSERT_TRUE(eventually(
+        [&]
+        {
+            exchange.step();
+            return counter.times[1] == 1;
+        }));
+    EXPECT_EQ(fetch.step(), BaseFetch::State::under_way);
     first.reset(); // The rest was asked of it as well: none of that left us.
     const auto second = host_of("tiny", model, kOtherHostDomain);
-    EXPECT_TRUE(stepped_until([&] { return fetch.step() == ModelFetch::State::done; }));
-    EXPECT_TRUE(std::ranges::equal(fetch.header(), model.header));
-    EXPECT_TRUE(std::ranges::equal(fetch.base(), model.base));
+    EXPECT_TRUE(eventually([&] { return fetch.step() == BaseFetch::State::done; }));
+    EXPECT_TRUE(std::ranges::equal(served.base, model.base));
     EXPECT_EQ(counter.times[0], 1);
     EXPECT_EQ(counter.times[1], 1);
     EXPECT_GE(counter.times[2], 1);
-    EXPECT_GE(second->counters().pieces_sent, 2U); // The header and what was left of the base.
+    EXPECT_GE(second->counters().pieces_sent, 1U); // What was left of the base.
     exchange.remove(counter);
 }
 
@@ -332,9 +352,27 @@ TEST_F(Dds, a_model_that_is_announced_larger_than_any_may_be_is_refused)
     ASSERT_TRUE(sut->find({"tiny", std::nullopt}, kPatience));
     Catalogue::Offer offer = *sut->catalogue().find({"tiny", std::nullopt});
     offer.base_bytes = static_cast<std::uint32_t>(kMaxBaseBytes) + 1;
-    ModelFetch fetch(sut->exchange(), sut->catalogue(), offer);
-    EXPECT_EQ(fetch.step(), ModelFetch::State::refused);
+    HeaderFetch fetch(sut->exchange(), sut->catalogue(), offer);
+    EXPECT_EQ(fetch.step(), HeaderFetch::State::refused);
     EXPECT_NE(fetch.objection().find("a base mesh of 1048577; at most"), std::string::npos)
+        << fetch.objection();
+}
+
+TEST_F(Dds, a_base_mesh_that_is_announced_with_another_size_than_its_header_names_is_refused)
+{
+    const auto host = host_of("tiny", make_tiny_model({}));
+    const auto sut = client();
+    ASSERT_TRUE(sut->find({"tiny", std::nullopt}, kPatience));
+    Catalogue::Offer offer = *sut->catalogue().find({"tiny", std::nullopt});
+    offer.base_bytes += 1;
+    HeaderFetch fetch(sut->exchange(), sut->catalogue(), offer);
+    ASSERT_TRUE(eventually(
+        [&]
+        {
+            sut->exchange().step();
+            return fetch.step() == HeaderFetch::State::refused;
+        }));
+    EXPECT_NE(fetch.objection().find("but its header names one of"), std::string::npos)
         << fetch.objection();
 }
 
@@ -345,12 +383,12 @@ TEST_F(Dds, parts_of_another_size_than_announced_are_passed_over)
     const auto sut = client();
     ASSERT_TRUE(sut->find({"tiny", std::nullopt}, kPatience));
     Catalogue::Offer offer = *sut->catalogue().find({"tiny", std::nullopt});
-    offer.base_bytes -= 1; // A part of another size is passed over.
-    ModelFetch fetch(sut->exchange(), sut->catalogue(), offer);
+    offer.header_bytes -= 1; // A part of another size is passed over.
+    HeaderFetch fetch(sut->exchange(), sut->catalogue(), offer);
     for (int i = 0; i < 200; ++i)
     {
         sut->exchange().step();
-        EXPECT_EQ(fetch.step(), ModelFetch::State::under_way);
+        EXPECT_EQ(fetch.step(), HeaderFetch::State::under_way);
         std::this_thread::sleep_for(1ms);
     }
 }
@@ -596,6 +634,28 @@ TEST_F(Dds, a_domain_that_cannot_be_joined_is_refused_in_one_line)
     EXPECT_EQ(refused.error().text.find('\n'), std::string::npos);
     EXPECT_NE(refused.error().text.find("DDS domain 5 cannot be joined: "), std::string::npos);
     EXPECT_NE(refused.error().text.find("Nonsense"), std::string::npos) << refused.error().text;
+}
+
+TEST_F(Dds, a_domain_whose_ports_others_have_is_refused_with_their_numbers)
+{
+    ::unsetenv("CYCLONEDDS_URI");
+    std::vector<int> sockets;
+    for (std::uint16_t port = 64'910; port < 64'930; ++port)
+    {
+        sockaddr_in address{};
+        address.sin_family = AF_INET;
+        address.sin_port = htons(port);
+        sockets.push_back(::socket(AF_INET, SOCK_DGRAM, 0));
+        // Where that fails somebody has it already.
+        static_cast<void>(
+            ::bind(sockets.back(), reinterpret_cast<const sockaddr*>(&address), sizeof(address)));
+    }
+    const auto refused = Domain::join(230);
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.error().text.find("UDP ports 64910 to 64929"), std::string::npos)
+        << refused.error().text;
+    std::ranges::for_each(sockets, ::close);
+    EXPECT_TRUE(Domain::join(230));
 }
 
 TEST_F(Dds, what_cyclone_quotes_is_made_printable)

@@ -126,7 +126,7 @@ protected:
     [[nodiscard]] Endpoint announce(std::uint64_t epoch) const
     {
         Endpoint writer = make_writer(stranger, Topic::catalogue, "").value();
-        tactus_v2_CatalogueEntry entry = {};
+        tactus_v3_CatalogueEntry entry = {};
         std::strcpy(static_cast<char*>(entry.name), "tiny");
         entry.host_epoch = epoch;
         entry.header_bytes = entry.base_bytes = 100;
@@ -135,10 +135,10 @@ protected:
         EXPECT_EQ(dds_write(writer.handle, &entry), DDS_RETCODE_OK);
         return writer;
     }
-    [[nodiscard]] tactus_v2_Wanted request(const ControllerId& controller,
+    [[nodiscard]] tactus_v3_Wanted request(const ControllerId& controller,
                                            const std::string& name) const
     {
-        tactus_v2_Wanted wanted = {};
+        tactus_v3_Wanted wanted = {};
         std::memcpy(wanted.controller, controller.data(), controller.size());
         name.copy(static_cast<char*>(wanted.controller_name), kMaxNameBytes);
         wanted.host_epoch = host->epoch();
@@ -148,7 +148,7 @@ protected:
     /// A topic of another version; its type is of no matter to who only looks at names.
     [[nodiscard]] Entity topic_of_version(const std::string& name) const
     {
-        return Entity(dds_create_topic(stranger.participant(), &tactus_v2_CatalogueEntry_desc,
+        return Entity(dds_create_topic(stranger.participant(), &tactus_v3_CatalogueEntry_desc,
                                        name.c_str(), nullptr, nullptr));
     }
 
@@ -175,10 +175,10 @@ TEST_F(DdsVersions, who_speaks_another_version_is_named_once_by_both_sides_and_p
     const Entity controller_writer(
         dds_create_writer(stranger.participant(), wanted.get(), nullptr, nullptr));
     const Entity foreign(dds_create_writer(stranger.participant(), other.get(), nullptr, nullptr));
-    tactus_v2_CatalogueEntry entry = {};
+    tactus_v3_CatalogueEntry entry = {};
     std::strcpy(static_cast<char*>(entry.name), "old");
     ASSERT_EQ(dds_write(host_writer.get(), &entry), DDS_RETCODE_OK);
-    const std::string line = "is refused: it speaks protocol version 1, this build 2";
+    const std::string line = "is refused: it speaks protocol version 1, this build 3";
     EXPECT_TRUE(step_until(
         [&] {
             return lines.find(line) != std::string::npos &&
@@ -216,7 +216,7 @@ TEST_F(DdsVersions, who_is_not_the_host_can_not_end_it_nor_hide_its_end)
     ASSERT_NO_FATAL_FAILURE(connect());
     const Endpoint writer = make_writer(stranger, Topic::catalogue, "").value();
     ASSERT_TRUE(step_until([&] { return is_matched(writer); }));
-    tactus_v2_CatalogueEntry entry = {};
+    tactus_v3_CatalogueEntry entry = {};
     entry.host_epoch = host->epoch();
     const auto refused = [&]
     {
@@ -247,7 +247,7 @@ TEST_F(DdsVersions, who_is_not_the_controller_can_not_end_it_nor_hide_its_end)
     ASSERT_NO_FATAL_FAILURE(connect());
     const Endpoint writer = make_writer(stranger, Topic::wanted, "ours").value();
     ASSERT_TRUE(step_until([&] { return is_matched(writer); }));
-    const tactus_v2_Wanted wanted = request(client->domain().participants().own(), "ours");
+    const tactus_v3_Wanted wanted = request(client->domain().participants().own(), "ours");
     ASSERT_EQ(dds_dispose(writer.handle, &wanted), DDS_RETCODE_OK);
     ASSERT_TRUE(
         step_until([&] { return !host->domain().participants().refusals().list().empty(); }));
@@ -256,6 +256,49 @@ TEST_F(DdsVersions, who_is_not_the_controller_can_not_end_it_nor_hide_its_end)
     link->request(keys, 1);
     EXPECT_TRUE(step_until([&] { return got.count == 1; }));
     EXPECT_EQ(host_lines.find("left ("), std::string::npos) << host_lines;
+    link.reset();
+    client.reset();
+    EXPECT_TRUE(step_until([&] { return host->subscribers().empty(); }));
+}
+
+/// What a host or a controller said and nobody took yet then tells of an end, in its own name.
+TEST_F(DdsVersions, an_end_that_a_stranger_put_on_what_was_not_taken_yet_is_not_believed)
+{
+    ASSERT_NO_FATAL_FAILURE(start_host());
+    ASSERT_NO_FATAL_FAILURE(connect());
+    const Endpoint wants = make_writer(stranger, Topic::wanted, "ours").value();
+    const Endpoint shows = make_writer(stranger, Topic::catalogue, "").value();
+    ASSERT_TRUE(step_until([&] { return is_matched(wants) && is_matched(shows); }));
+    const tactus_v3_Wanted wanted = request(client->domain().participants().own(), "ours");
+    tactus_v3_CatalogueEntry entry = {};
+    entry.host_epoch = host->epoch();
+    constexpr auto kOnItsWay = std::chrono::milliseconds(20);
+    for (std::uint32_t i = 1; i <= 10; ++i)
+    {
+        const std::vector<ContentKey> keys{{ContentKind::chunk, 0}};
+        link->request(keys, i);
+        link->poll(got);
+        std::this_thread::sleep_for(kOnItsWay);
+        ASSERT_EQ(dds_dispose(wants.handle, &wanted), DDS_RETCODE_OK);
+        std::this_thread::sleep_for(kOnItsWay);
+        host->step();
+        ASSERT_EQ(host->subscribers().size(), 1U) << i << host_lines;
+    }
+    for (int i = 0; i < 2; ++i)
+    {
+        const auto start = std::chrono::steady_clock::now();
+        while (std::chrono::steady_clock::now() - start < std::chrono::milliseconds(1'100))
+        {
+            host->step(); // It announces itself once a second.
+            std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        }
+        ASSERT_EQ(dds_dispose(shows.handle, &entry), DDS_RETCODE_OK);
+        std::this_thread::sleep_for(kOnItsWay);
+        link->poll(got);
+        EXPECT_EQ(link->state(), LinkState::connected) << lines;
+    }
+    EXPECT_EQ(host_lines.find("left ("), std::string::npos) << host_lines;
+    EXPECT_EQ(lines.find("gone"), std::string::npos) << lines;
     link.reset();
     client.reset();
     EXPECT_TRUE(step_until([&] { return host->subscribers().empty(); }));
@@ -271,7 +314,7 @@ TEST_F(DdsVersions, pieces_of_who_says_to_be_the_host_are_not_taken)
     ASSERT_TRUE(step_until([&] { return is_matched(writer); }));
     std::vector<std::byte> payload;
     append_piece(payload, {model_hash(model.header), 0, 2, 0}, std::vector<std::byte>(10));
-    tactus_v2_Pieces sample = {};
+    tactus_v3_Pieces sample = {};
     sample.host_epoch = host->epoch();
     sample.sent = 1'000'000;
     const auto length = static_cast<std::uint32_t>(payload.size());
@@ -292,7 +335,7 @@ TEST_F(DdsVersions, a_controller_is_served_under_its_own_id_and_a_valid_name_onl
     const ControllerId own = stranger.participants().own();
     ControllerId other = own;
     other[3] ^= 1U;
-    tactus_v2_Wanted wanted = request(other, "stranger");
+    tactus_v3_Wanted wanted = request(other, "stranger");
     ASSERT_EQ(dds_write(writer.handle, &wanted), DDS_RETCODE_OK);
     wanted = request(own, "strange\n\x1b[31m*");
     ASSERT_EQ(dds_write(writer.handle, &wanted), DDS_RETCODE_OK);

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <span>
 #include <string>
 #include <vector>
@@ -15,6 +17,8 @@ namespace
 {
 
 const std::vector<std::string> kNames{"bunny", "cow"};
+const std::string kNoLine = "is not TIME_S NAME X Y Z QX QY QZ QW [SCALE] nor TIME_S NAME material "
+                            "KEY=VALUE[,...]";
 
 /// What is said against a text; empty when it is fine.
 std::string fault_of(std::string_view text)
@@ -53,8 +57,66 @@ TEST(PoseScript, an_object_may_go_and_come_again)
     EXPECT_FALSE(lines.value()[1].pose);
     EXPECT_TRUE(lines.value()[2].pose);
     EXPECT_EQ(fault_of("0 dog gone"), "line 1: no object is called 'dog'");
-    EXPECT_EQ(fault_of("0 cow went"), "line 1: is not TIME_S NAME X Y Z QX QY QZ QW [SCALE]");
-    EXPECT_EQ(fault_of("0 cow gone 1"), "line 1: is not TIME_S NAME X Y Z QX QY QZ QW [SCALE]");
+    EXPECT_EQ(fault_of("0 cow went"), "line 1: " + kNoLine);
+    EXPECT_EQ(fault_of("0 cow gone 1"), "line 1: " + kNoLine);
+}
+
+TEST(PoseScript, an_object_may_feel_otherwise)
+{
+    const auto lines = parse_pose_lines(
+        "0 cow material stiffness=300,static=0.5,viscosity=2\n1 cow material static=0\n", kNames);
+    ASSERT_TRUE(lines) << lines.error().text;
+    EXPECT_FALSE(lines.value()[0].pose);
+    EXPECT_EQ(lines.value()[0].material, (Material{300.0, 0.5, 0.5, 0.0, 2.0}));
+    EXPECT_EQ(lines.value()[1].material, Material{}) << "what is left out is as usual";
+    EXPECT_EQ(fault_of("0 cow material"), "line 1: " + kNoLine);
+    EXPECT_EQ(fault_of("0 cow material static=1 dynamic=1"), "line 1: " + kNoLine);
+    for (const char* text :
+         {"300,0.5", "static=4", "viscosity=21", "texture_height=1e-4",
+          "texture_height=1e-4,texture_length=1e-3", "static=0,static=0", "gone"})
+    {
+        const std::string fault = fault_of("0 cow material " + std::string(text));
+        EXPECT_EQ(
+            fault.find("line 1: material '" + std::string(text) + "' is not any of stiffness=,"),
+            0U)
+            << fault;
+    }
+}
+
+TEST(PoseScript, puts_poses_between_the_lines_of_an_object)
+{
+    const auto lines = parse_pose_lines("0 cow 0 0 0 0 0 0 1\n"
+                                        "0.1 bunny 5 0 0 0 0 0 1\n"
+                                        "0.4 cow 4 0 8 0 0 -1 0 3\n"
+                                        "0.6 cow gone\n"
+                                        "0.9 cow 0 0 0 0 0 0 1\n",
+                                        kNames);
+    ASSERT_TRUE(lines) << lines.error().text;
+    const auto made = interpolated(lines.value(), kNames.size(), 10.0);
+    ASSERT_TRUE(made) << made.error().text;
+    const std::vector<PoseLine>& all = made.value();
+    ASSERT_EQ(all.size(), 5U + 3U); // Nothing for the bunny, nothing where the cow is gone.
+    EXPECT_TRUE(std::ranges::is_sorted(all, {}, &PoseLine::time_s));
+    // A quarter of the way; half a turn the other way about z, so an eighth of a turn.
+    const auto quarter = std::ranges::find_if(all, [](const PoseLine& line)
+                                              { return line.object == 1 && line.time_s > 0.0; });
+    EXPECT_NEAR(quarter->time_s, 0.1, 1e-15);
+    EXPECT_NEAR(quarter->pose->translation_m[0], 1.0, 1e-15);
+    EXPECT_NEAR(quarter->pose->translation_m[2], 2.0, 1e-15);
+    EXPECT_NEAR(quarter->pose->scale, 1.5, 1e-15);
+    EXPECT_NEAR(std::abs(quarter->pose->rotation[2]), std::sin(M_PI / 8.0), 1e-12);
+    EXPECT_NEAR(std::abs(quarter->pose->rotation[3]), std::cos(M_PI / 8.0), 1e-12);
+    EXPECT_EQ(interpolated(lines.value(), kNames.size(), 1.0).value().size(), 5U);
+}
+
+TEST(PoseScript, refuses_more_poses_between_lines_than_there_is_room_for)
+{
+    const auto lines = parse_pose_lines("0 cow 0 0 0 0 0 0 1\n1000000 cow 1 0 0 0 0 0 1\n", kNames);
+    ASSERT_TRUE(lines);
+    EXPECT_TRUE(interpolated(lines.value(), kNames.size(), 1.0));
+    const auto refused = interpolated(lines.value(), kNames.size(), 3.0);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().text, "--poses-rate: 3 poses a second are more than 2000000 in all");
 }
 
 TEST(PoseScript, names_the_line_and_what_is_wrong_with_it)
@@ -62,7 +124,7 @@ TEST(PoseScript, names_the_line_and_what_is_wrong_with_it)
     const std::string good = "0 cow 1 2 3 0 0 0 1\n";
     EXPECT_EQ(fault_of(""), "holds no line TIME_S NAME X Y Z QX QY QZ QW [SCALE]");
     EXPECT_EQ(fault_of("# nothing\n"), "holds no line TIME_S NAME X Y Z QX QY QZ QW [SCALE]");
-    const std::string form = "is not TIME_S NAME X Y Z QX QY QZ QW [SCALE]";
+    const std::string& form = kNoLine;
     EXPECT_EQ(fault_of(good + "1 cow 1 2 3 0 0 0\n"), "line 2: " + form);
     EXPECT_EQ(fault_of("1 cow 1 2 3 0 0 0 1 1 1\n"), "line 1: " + form);
     EXPECT_EQ(fault_of("\n# x\n1\n"), "line 3: " + form);
@@ -108,8 +170,7 @@ TEST(PoseScript, a_file_is_named_in_what_is_said)
     const auto path = folder.write("bad.txt", std::as_bytes(std::span(text)));
     const auto bad = read_pose_file(path, kNames);
     ASSERT_FALSE(bad);
-    EXPECT_EQ(bad.error().text, path.string() + ": line 2: is not TIME_S NAME X Y Z QX QY QZ QW "
-                                                "[SCALE]");
+    EXPECT_EQ(bad.error().text, path.string() + ": line 2: " + kNoLine);
 }
 
 std::vector<PoseLine> played()
@@ -133,6 +194,22 @@ TEST(PosePlayer, gives_each_line_when_it_is_due_and_once)
     EXPECT_EQ(sut.take_due(100.0).size(), 1U);
     EXPECT_FALSE(sut.next_s());
     EXPECT_TRUE(sut.take_due(200.0).empty());
+}
+
+TEST(PosePlayer, sends_how_an_object_feels_beside_where_it_stands)
+{
+    const auto lines = parse_pose_lines("0 cow 1 0 0 0 0 0 1\n1 cow material static=0.1\n"
+                                        "2 cow material static=0.2\n3 cow 2 0 0 0 0 0 1\n"
+                                        "4 bunny material static=0.3\n",
+                                        kNames);
+    PosePlayer sut(lines.value(), 2, false);
+    const auto due = sut.take_due(5.0);
+    ASSERT_EQ(due.size(), 3U);
+    EXPECT_EQ(due[0].object, 0U);
+    EXPECT_EQ(due[0].material->static_friction, 0.3);
+    EXPECT_EQ(due[1].object, 1U);
+    EXPECT_EQ(due[1].material->static_friction, 0.2);
+    EXPECT_EQ(due[2].pose->translation_m[0], 2.0);
 }
 
 TEST(PosePlayer, passes_over_what_is_overtaken)

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "host_tools/spm_view/cut.hpp"
+
+#include "rt_core/spm/error_code.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace tactus::view
+{
+
+namespace
+{
+
+static_assert(std::endian::native == std::endian::little);
+
+template <typename T>
+void append(std::string& bytes, const T& value)
+{
+    bytes.append(reinterpret_cast<const char*>(&value), sizeof(value));
+}
+
+/// Refused where the model has no such records.
+std::optional<Refusal> look_at(const ModelCounts& counts, std::span<const FrontPage> pages)
+{
+    for (const FrontPage& page : pages)
+    {
+        if (page.refined == 0)
+        {
+            continue;
+        }
+        const auto last = static_cast<std::uint32_t>(std::bit_width(page.refined)) - 1;
+        if (page.chunk.value >= counts.chunks() ||
+            page.chunk.value * kRecordsPerChunk + last >= counts.records)
+        {
+            return Refusal{fmt::format("the front has record {} of chunk {}, the model has not",
+                                       last, page.chunk.value)};
+        }
+    }
+    return std::nullopt;
+}
+
+/// In an order in which they can be split: by depth, then by number.
+std::vector<RecordId> split_records(const DecodedModel& model, std::span<const FrontPage> pages)
+{
+    std::vector<RecordId> records;
+    for (const FrontPage& page : pages)
+    {
+        for (std::uint64_t bits = page.refined; bits != 0; bits &= bits - 1)
+        {
+            const auto place = static_cast<std::uint32_t>(std::countr_zero(bits));
+            records.push_back({page.chunk.value * kRecordsPerChunk + place});
+        }
+    }
+    std::ranges::sort(records, {},
+                      [&](RecordId id) { return std::pair(model.record(id).depth, id.value); });
+    return records;
+}
+
+/// Those that some face uses, and where each id is among them.
+std::vector<std::uint32_t> append_vertices(const DecodedModel& model, const Replay& replay,
+                                           std::string& bytes)
+{
+    const ModelCounts counts = model.header().counts();
+    constexpr std::uint32_t none = VertexId::kNoneValue;
+    std::vector<std::uint32_t> places(counts.vertices(), none);
+    for (std::uint32_t face = 0; face < counts.face_ids(); ++face)
+    {
+        if (replay.is_active({face}))
+        {
+            for (const VertexId corner : replay.corners({face}))
+            {
+                places[corner.value] = 0;
+            }
+        }
+    }
+    std::uint32_t count = 0;
+    for (std::uint32_t& place : places)
+    {
+        place = place == none ? none : count++;
+    }
+    append(bytes, count);
+    append(bytes, replay.face_count());
+    for (std::uint32_t vertex = 0; vertex < places.size(); ++vertex)
+    {
+        if (places[vertex] != none)
+        {
+            append(bytes, model.position_m({vertex}));
+        }
+    }
+    return places;
+}
+
+} // namespace
+
+std::uint64_t cut_id(std::span<const FrontPage> pages) noexcept
+{
+    std::uint64_t hash = 0xCBF2'9CE4'8422'2325U;
+    const auto add = [&hash](std::uint64_t value)
+    {
+        for (int shift = 0; shift < 64; shift += 8)
+        {
+            hash = (hash ^ ((value >> shift) & 0xFFU)) * 0x0000'0100'0000'01B3U;
+        }
+    };
+    for (const FrontPage& page : pages)
+    {
+        if (page.refined != 0)
+        {
+            add(page.chunk.value);
+            add(page.refined);
+        }
+    }
+    return hash;
+}
+
+Result<DecodedModel, Refusal> decode_cut(KnownModel& model, std::span<const FrontPage> pages)
+{
+    if (auto refusal = look_at(model.header().counts(), pages))
+    {
+        return *refusal;
+    }
+    std::vector<FrontPage> needed;
+    std::vector<ContentKey> keys;
+    for (const FrontPage& page : pages)
+    {
+        if (page.refined != 0)
+        {
+            needed.push_back(page);
+            keys.push_back({ContentKind::chunk, page.chunk.value});
+        }
+    }
+    if (auto refusal = model.bring(keys))
+    {
+        return *refusal;
+    }
+    std::vector<std::string> damage;
+    DecodedModel decoded = DecodedModel::decode_pages(
+        model.header(), needed,
+        [&](ContentKey key, std::vector<std::byte>& coded) { return model.read(key, coded); },
+        model.name(), damage);
+    if (!damage.empty())
+    {
+        return Refusal{damage.front()};
+    }
+    return decoded;
+}
+
+std::optional<Refusal> split_all(Replay& replay, const DecodedModel& model,
+                                 std::span<const FrontPage> pages)
+{
+    if (auto refusal = look_at(model.header().counts(), pages))
+    {
+        return *refusal;
+    }
+    for (const RecordId id : split_records(model, pages))
+    {
+        if (const auto fault = replay.split(id))
+        {
+            return Refusal{"the front contradicts the model: " + *fault};
+        }
+    }
+    return std::nullopt;
+}
+
+Result<std::string, Refusal> cut_bytes(const DecodedModel& model, std::span<const FrontPage> pages)
+{
+    Replay replay(model);
+    if (auto refusal = split_all(replay, model, pages))
+    {
+        return *refusal;
+    }
+    std::string bytes;
+    const std::vector<std::uint32_t> places = append_vertices(model, replay, bytes);
+    std::string errors;
+    std::string levels;
+    const float quantum_m = model.header().quantum_m();
+    for (std::uint32_t face = 0; face < model.header().counts().face_ids(); ++face)
+    {
+        if (!replay.is_active({face}))
+        {
+            continue;
+        }
+        for (const VertexId corner : replay.corners({face}))
+        {
+            append(bytes, places[corner.value]);
+        }
+        const FaceState state = replay.state({face});
+        append(errors, error_in_quanta(model.error_of({face}, state)) * quantum_m);
+        append(levels, state.is_base() ? std::uint16_t{0} : model.record(state.record()).depth);
+    }
+    if (replay.face_count() % 2 != 0)
+    {
+        append(levels, std::uint16_t{0});
+    }
+    return bytes + errors + levels;
+}
+
+} // namespace tactus::view

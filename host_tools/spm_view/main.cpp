@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "host_tools/cli/command_line.hpp"
+#include "host_tools/cli/run_program.hpp"
+#include "host_tools/spm_view/film.hpp"
+#include "host_tools/spm_view/live_state.hpp"
+#include "host_tools/spm_view/model_fetcher.hpp"
+#include "host_tools/spm_view/model_shelf.hpp"
+#include "host_tools/spm_view/web_server.hpp"
+#include "platform/base/program_log.hpp"
+#include "transport/dds/front.hpp"
+#include "transport/dds/telemetry.hpp"
+
+#include <fmt/format.h>
+
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+namespace tactus::view
+{
+
+namespace
+{
+
+/// Between two looks at what has come over DDS, and while pieces of models are on their way.
+constexpr std::chrono::milliseconds kLook{25};
+constexpr std::chrono::milliseconds kBusyLook{1};
+
+struct Options
+{
+    std::vector<std::string> files;
+    std::vector<std::string> recordings;
+    std::uint32_t port{7'300};
+    std::uint32_t domain{0};
+    std::optional<double> seconds;
+};
+
+std::atomic<bool> stop_requested{false};
+static_assert(std::atomic<bool>::is_always_lock_free); // Set in a signal handler.
+
+void stop_on_signals()
+{
+    struct sigaction action = {};
+    action.sa_handler = [](int) { stop_requested.store(true, std::memory_order_relaxed); };
+    ::sigaction(SIGINT, &action, nullptr);
+    ::sigaction(SIGTERM, &action, nullptr);
+}
+
+void declare_options(CommandLine& line, Options& options)
+{
+    line.add_version(std::string("spm_view ") + TACTUS_VERSION);
+    line.begin_task("Watch controllers", "spm_view bunny.spm --domain 3");
+    line.add_option("FILE", options.files,
+                    "Models that controllers touch (.spm), found by their hashes. Others are "
+                    "fetched from their hosts, as far as controllers refine them");
+    const auto domain = line.add_option("--domain", options.domain, "DDS domain")
+                            .integer_between(std::uint32_t{0}, dds::kMaxDomain)
+                            .show_default();
+    line.begin_task("Play a recording, or compare two",
+                    "spm_view --replay run.rec --replay again.rec");
+    line.add_option("--replay", options.recordings,
+                    "Recording of hrtc --record, in place of what is live; a second one is "
+                    "compared with it. Needs no model file")
+        .repeatable()
+        .excludes(domain);
+    line.begin_task("Serve the page", "spm_view --port 8080 --seconds 3600");
+    line.add_option("--port", options.port, "Port of 127.0.0.1; 0: any that is free")
+        .integer_between(std::uint32_t{0}, std::uint32_t{65'535})
+        .show_default();
+    line.add_option("--seconds", options.seconds, "End by itself after this long")
+        .number_between(0.1, 1e9);
+    line.add_log_options();
+}
+
+/// Since the program began to serve.
+class Stay
+{
+public:
+    explicit Stay(const std::optional<double>& seconds) : seconds_(seconds) {}
+
+    [[nodiscard]] bool is_over() const
+    {
+        const double passed_s = std::chrono::duration<double>(Clock::now() - start_).count();
+        return stop_requested.load(std::memory_order_relaxed) ||
+               (seconds_ && passed_s >= *seconds_);
+    }
+
+private:
+    using Clock = std::chrono::steady_clock;
+    std::optional<double> seconds_;
+    Clock::time_point start_{Clock::now()};
+};
+
+/// What is heard over DDS.
+struct Ears
+{
+    std::unique_ptr<dds::TelemetryReader> telemetry;
+    std::unique_ptr<dds::FrontReader> fronts;
+    std::unique_ptr<ModelFetcher> models; ///< Null where hosts may not be asked.
+};
+
+void look(Ears& ears, LiveState& live)
+{
+    ears.telemetry->poll();
+    ears.fronts->poll();
+    for (const dds::SeenFront& seen : ears.fronts->fronts())
+    {
+        for (const FrontModel& model : seen.front.models)
+        {
+            if (ears.models != nullptr)
+            {
+                ears.models->look_for(model.hash);
+            }
+        }
+    }
+    live.publish(ears.telemetry->controllers(), ears.fronts->fronts());
+}
+
+void watch(Ears& ears, LiveState& live, const Stay& stay)
+{
+    using Clock = std::chrono::steady_clock;
+    auto looked = Clock::now() - kLook;
+    while (!stay.is_over())
+    {
+        if (const auto now = Clock::now(); now - looked >= kLook)
+        {
+            looked = now;
+            look(ears, live);
+        }
+        bool is_busy = false;
+        if (ears.models != nullptr)
+        {
+            ears.models->step();
+            is_busy = ears.models->is_busy();
+        }
+        std::this_thread::sleep_for(is_busy ? kBusyLook : kLook);
+    }
+}
+
+Result<Ears, Refusal> listen(const dds::Domain& domain, ModelShelf& shelf)
+{
+    auto telemetry = dds::TelemetryReader::create(domain);
+    auto fronts = dds::FrontReader::create(domain);
+    auto models = ModelFetcher::create(domain, shelf,
+                                       [](const std::string& text)
+                                       { log_message(LogLevel::warning, "spm_view", text); });
+    if (!telemetry || !fronts)
+    {
+        return telemetry ? fronts.error() : telemetry.error();
+    }
+    Ears ears{std::move(telemetry).value(), std::move(fronts).value(), nullptr};
+    if (models)
+    {
+        ears.models = std::move(models).value();
+    }
+    else // One may be allowed to watch, and not to wish for pieces.
+    {
+        log_message(LogLevel::warning, "spm_view",
+                    fmt::format("no models but those of files: {}", models.error().text));
+    }
+    return ears;
+}
+
+/// The page, until the program is to end; `what` it shows, in words.
+Result<std::unique_ptr<WebServer>, Refusal> serve(const WebServer::Parts& parts,
+                                                  const Options& options, const std::string& what)
+{
+    auto server = WebServer::start(parts, static_cast<std::uint16_t>(options.port));
+    if (server)
+    {
+        log_message(LogLevel::info, "spm_view",
+                    fmt::format("http://127.0.0.1:{}/ shows {}; end with Ctrl-C",
+                                server.value()->port(), what));
+    }
+    return server;
+}
+
+int show_live(const CommandLine& line, const Options& options, ModelShelf& shelf)
+{
+    const auto domain = dds::Domain::join(options.domain, dds::Party::both);
+    if (!domain)
+    {
+        return line.fail(domain.error().text);
+    }
+    auto ears = listen(domain.value(), shelf);
+    if (!ears)
+    {
+        return line.fail(ears.error().text);
+    }
+    LiveState live;
+    const auto server = serve({live, shelf, options.domain, TACTUS_JAVASCRIPT_DIR}, options,
+                              fmt::format("DDS domain {}", options.domain));
+    if (!server)
+    {
+        return line.fail(server.error().text);
+    }
+    watch(ears.value(), live, Stay(options.seconds));
+    return kExitDone;
+}
+
+int show_recordings(const CommandLine& line, const Options& options, ModelShelf& shelf)
+{
+    std::vector<std::unique_ptr<Film>> developed;
+    for (const std::string& path : options.recordings)
+    {
+        auto film = Film::develop(path, static_cast<std::uint8_t>(developed.size() + 1), shelf,
+                                  [] { return !stop_requested.load(std::memory_order_relaxed); });
+        if (!film)
+        {
+            return line.fail(film.error().text);
+        }
+        developed.push_back(std::move(film).value());
+    }
+    const Films films(std::move(developed));
+    const LiveState live;
+    const auto server =
+        serve({live, shelf, options.domain, TACTUS_JAVASCRIPT_DIR, &films}, options,
+              fmt::format("{} frames of {}", films.frames(),
+                          options.recordings.size() == 1 ? options.recordings.front()
+                                                         : "two recordings"));
+    if (!server)
+    {
+        return line.fail(server.error().text);
+    }
+    for (const Stay stay(options.seconds); !stay.is_over();)
+    {
+        std::this_thread::sleep_for(kLook);
+    }
+    return kExitDone;
+}
+
+int run(int argc, char** argv)
+{
+    CommandLine line("spm_view", "Shows in a browser of this machine what controllers touch, and "
+                                 "why a force is withheld.");
+    Options options;
+    declare_options(line, options);
+    if (const auto code = line.parse(argc, argv))
+    {
+        return *code;
+    }
+    if (options.recordings.size() > 2)
+    {
+        return line.fail(fmt::format("--replay: {} recordings, two at most are compared",
+                                     options.recordings.size()),
+                         kExitUsage);
+    }
+    const auto shelf = ModelShelf::open(options.files);
+    if (!shelf)
+    {
+        return line.fail(shelf.error().text);
+    }
+    stop_on_signals();
+    return options.recordings.empty() ? show_live(line, options, *shelf.value())
+                                      : show_recordings(line, options, *shelf.value());
+}
+
+} // namespace
+
+} // namespace tactus::view
+
+int main(int argc, char** argv)
+{
+    return tactus::run_program("spm_view", "", [&] { return tactus::view::run(argc, argv); });
+}

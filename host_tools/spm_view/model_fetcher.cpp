@@ -1,0 +1,330 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "host_tools/spm_view/model_fetcher.hpp"
+
+#include "rt_core/spm/index_page.hpp"
+#include "transport/base_fetch.hpp"
+#include "transport/content_hash.hpp"
+#include "transport/dds/dds_link.hpp"
+#include "transport/dds/header_fetch.hpp"
+#include "transport/served_model.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <utility>
+#include <vector>
+
+namespace tactus::view
+{
+
+namespace
+{
+
+using Clock = std::chrono::steady_clock;
+
+/// Nothing came for so long: asked again.
+constexpr std::chrono::milliseconds kAgain{100};
+/// For pieces to come to who asks for them.
+constexpr std::chrono::milliseconds kPatience{1'500};
+/// Asked for at once.
+constexpr std::size_t kPiecesAtOnce = 256;
+/// By which hosts know it.
+constexpr const char* kName = "spm_view";
+
+struct KeyOrder
+{
+    bool operator()(ContentKey a, ContentKey b) const noexcept
+    {
+        return std::pair(a.kind, a.number) < std::pair(b.kind, b.number);
+    }
+};
+
+} // namespace
+
+/// What came of it stays, at most the model's file.
+class FetchedModel final : public KnownModel, private PieceSink
+{
+public:
+    /// `served` has its base mesh.
+    explicit FetchedModel(ServedModel served)
+        : served_(std::move(served)), header_(ModelHeader::parse(served_.header).value())
+    {
+        pieces_[{ContentKind::base, 0}] = std::move(served_.base);
+    }
+
+    [[nodiscard]] const std::string& name() const noexcept override { return served_.name; }
+    [[nodiscard]] const ContentHash& hash() const noexcept override { return served_.hash; }
+    [[nodiscard]] const ModelHeader& header() const noexcept override { return header_; }
+
+    [[nodiscard]] std::optional<Refusal> bring(std::span<const ContentKey> keys) override
+    {
+        std::unique_lock lock(mutex_);
+        for (const ContentKey key : keys)
+        {
+            want(key);
+        }
+        const auto is_here = [&](ContentKey key) { return pieces_.contains(key); };
+        if (came_.wait_for(lock, kPatience, [&] { return std::ranges::all_of(keys, is_here); }))
+        {
+            return std::nullopt;
+        }
+        const auto here = std::ranges::count_if(keys, is_here);
+        return Refusal{fmt::format("{} of {} pieces of the model {} have come from its host{}",
+                                   here, keys.size(), served_.name,
+                                   is_gone_ ? ", which is gone" : "; the others are on their way")};
+    }
+    [[nodiscard]] Result<Done, Refusal> read(ContentKey key, std::vector<std::byte>& coded) override
+    {
+        const std::lock_guard lock(mutex_);
+        const auto found = pieces_.find(key);
+        if (found == pieces_.end())
+        {
+            return Refusal{fmt::format("the model {} has not come whole", served_.name)};
+        }
+        coded = found->second;
+        return Done{};
+    }
+
+    /// The fetcher's thread alone, as what follows.
+    void step()
+    {
+        served_.link->poll(*this);
+        const std::lock_guard lock(mutex_);
+        is_gone_ = served_.link->state() == LinkState::host_gone;
+        const auto now = Clock::now();
+        const bool is_stuck =
+            now - progress_ >= kAgain || served_.link->session() != session_ || asked_.empty();
+        if (wanted_.empty() || is_gone_ || !is_stuck)
+        {
+            return;
+        }
+        session_ = served_.link->session();
+        progress_ = now;
+        asked_.assign(wanted_.begin(), wanted_.end());
+        asked_.resize(std::min(asked_.size(), kPiecesAtOnce));
+        served_.link->request(asked_, ++generation_);
+    }
+    [[nodiscard]] bool is_busy() const
+    {
+        const std::lock_guard lock(mutex_);
+        return !wanted_.empty() && !is_gone_;
+    }
+    /// What isn't here won't come.
+    void leave_host()
+    {
+        served_.link.reset();
+        const std::lock_guard lock(mutex_);
+        is_gone_ = true;
+    }
+
+private:
+    using Entries = std::array<ChunkEntry, kChunksPerIndexPage>;
+
+    /// A chunk's index page comes first: it says which bytes are the chunk's.
+    void want(ContentKey key)
+    {
+        if (!pieces_.contains(key))
+        {
+            const ContentKey index{ContentKind::index_page, key.number >> kChunksPerIndexPageLog2};
+            const bool is_ready = key.kind != ContentKind::chunk || pieces_.contains(index);
+            wanted_.insert(is_ready ? key : index);
+            if (!is_ready)
+            {
+                waiting_.insert(key);
+            }
+        }
+    }
+
+    void receive(ContentKey key, std::span<const std::byte> bytes) override
+    {
+        const std::lock_guard lock(mutex_);
+        if (!wanted_.contains(key) || !is_sound(key, bytes))
+        {
+            return;
+        }
+        pieces_[key].assign(bytes.begin(), bytes.end());
+        wanted_.erase(key);
+        std::erase(asked_, key);
+        progress_ = Clock::now();
+        if (key.kind == ContentKind::index_page)
+        {
+            for (const ContentKey chunk : std::exchange(waiting_, {}))
+            {
+                want(chunk);
+            }
+        }
+        came_.notify_all();
+    }
+
+    [[nodiscard]] bool is_sound(ContentKey key, std::span<const std::byte> bytes)
+    {
+        if (key.kind == ContentKind::index_page)
+        {
+            IndexPage page;
+            return content_hash(bytes) == header_.index_entry({key.number}).hash &&
+                   parse_index_page(bytes, header_.counts(), {key.number}, page,
+                                    entries_[key.number])
+                       .has_value();
+        }
+        const ChunkEntry& entry =
+            entries_.at(key.number >> kChunksPerIndexPageLog2)[key.number % kChunksPerIndexPage];
+        return bytes.size() == entry.coded_bytes && content_hash(bytes) == entry.hash;
+    }
+
+    ServedModel served_; ///< Of the link only the fetcher's thread knows.
+    ModelHeader header_;
+    std::uint64_t session_{0};
+    std::uint32_t generation_{0};
+    Clock::time_point progress_{};
+
+    mutable std::mutex mutex_; ///< For what follows.
+    std::condition_variable came_;
+    bool is_gone_{false};
+    std::map<ContentKey, std::vector<std::byte>, KeyOrder> pieces_;
+    std::map<std::uint32_t, Entries> entries_; ///< By index page.
+    std::set<ContentKey, KeyOrder> wanted_;    ///< Can be asked for.
+    std::set<ContentKey, KeyOrder> waiting_;   ///< Chunks whose index pages aren't here.
+    std::vector<ContentKey> asked_;            ///< Last, and not come.
+};
+
+/// For one model.
+struct ModelFetcher::Search
+{
+    dds::Catalogue::Offer offer;             ///< Once it is published.
+    std::unique_ptr<dds::HeaderFetch> fetch; ///< Until the header is here.
+    ServedModel served;                      ///< From then on until the base mesh is.
+    std::unique_ptr<BaseFetch> base;
+    std::shared_ptr<FetchedModel> model; ///< In the end.
+    std::uint64_t refused_epoch{0};      ///< A host whose pieces were damaged.
+};
+
+Result<std::unique_ptr<ModelFetcher>, Refusal> ModelFetcher::create(const dds::Domain& domain,
+                                                                    ModelShelf& shelf, Log log)
+{
+    auto catalogue = dds::Catalogue::create(domain, log);
+    if (!catalogue)
+    {
+        return catalogue.error();
+    }
+    std::unique_ptr<ModelFetcher> fetcher(
+        new ModelFetcher(std::move(catalogue).value(), shelf, std::move(log)));
+    auto exchange = dds::PieceExchange::create(domain, fetcher->catalogue_, kName);
+    if (!exchange)
+    {
+        return exchange.error();
+    }
+    fetcher->exchange_ = std::move(exchange).value();
+    return fetcher;
+}
+
+ModelFetcher::ModelFetcher(dds::Catalogue catalogue, ModelShelf& shelf, Log log)
+    : catalogue_(std::move(catalogue)), shelf_(shelf), log_(std::move(log))
+{
+}
+
+ModelFetcher::~ModelFetcher()
+{
+    for (auto& [hash, search] : searches_)
+    {
+        if (search->model != nullptr) // The shelf keeps it.
+        {
+            search->model->leave_host();
+        }
+    }
+}
+
+void ModelFetcher::look_for(const ContentHash& hash)
+{
+    if (!searches_.contains(hash) && searches_.size() < kMaxModels && !shelf_.has(hash))
+    {
+        searches_[hash] = std::make_unique<Search>();
+    }
+}
+
+void ModelFetcher::step()
+{
+    exchange_->step();
+    for (auto& [hash, search] : searches_)
+    {
+        step(hash, *search);
+    }
+}
+
+bool ModelFetcher::is_busy() const
+{
+    return std::ranges::any_of(searches_,
+                               [](const auto& each)
+                               {
+                                   const Search& search = *each.second;
+                                   return search.model != nullptr ? search.model->is_busy()
+                                                                  : search.offer.header_bytes != 0;
+                               });
+}
+
+void ModelFetcher::step(const ContentHash& hash, Search& search)
+{
+    if (search.model != nullptr)
+    {
+        search.model->step();
+    }
+    else if (search.base != nullptr)
+    {
+        const auto state = search.base->step();
+        if (state == BaseFetch::State::done)
+        {
+            search.base.reset();
+            search.model = std::make_shared<FetchedModel>(std::move(search.served));
+            shelf_.add(search.model);
+        }
+        else if (state == BaseFetch::State::refused)
+        {
+            log_(fmt::format("model '{}' has a base mesh of another hash than its header names",
+                             search.offer.name));
+            const std::uint64_t epoch = search.offer.host_epoch;
+            search = Search{};
+            search.refused_epoch = epoch;
+        }
+    }
+    else if (search.fetch != nullptr)
+    {
+        take_header(hash, search);
+    }
+    else if (const auto* offer = catalogue_.find(hash);
+             offer != nullptr && offer->host_epoch != search.refused_epoch)
+    {
+        search.offer = *offer;
+        search.fetch = std::make_unique<dds::HeaderFetch>(*exchange_, catalogue_, *offer);
+        shelf_.announce(hash);
+    }
+}
+
+void ModelFetcher::take_header(const ContentHash& hash, Search& search)
+{
+    const auto state = search.fetch->step();
+    if (state == dds::HeaderFetch::State::done)
+    {
+        search.served.name = search.offer.name;
+        search.served.hash = hash;
+        search.served.header = std::move(search.fetch->header());
+        search.fetch.reset();
+        search.served.link =
+            std::make_unique<dds::DdsLink>(*exchange_, catalogue_, search.offer, log_);
+        search.base = std::make_unique<BaseFetch>(search.served);
+    }
+    else if (state == dds::HeaderFetch::State::refused)
+    {
+        log_(fmt::format("model '{}' {}", search.offer.name, search.fetch->objection()));
+        const std::uint64_t epoch = search.offer.host_epoch;
+        search = Search{};
+        search.refused_epoch = epoch;
+    }
+}
+
+} // namespace tactus::view

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include <span>
+
+namespace tactus::view
+{
+
+/// A file of the page, as it is in host_tools/spm_view/page.
+struct PageFile
+{
+    const char* url;
+    const char* type;
+    const char* text;
+};
+
+/// All of them. Any thread.
+[[nodiscard]] std::span<const PageFile> page_files() noexcept;
+
+} // namespace tactus::view

@@ -1,0 +1,320 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+import { History } from "./history.js";
+import { Player } from "./player.js";
+import { Plots } from "./plots.js";
+import { NoView, View, ramp } from "./scene.js";
+
+const by_id = (id) => document.getElementById(id);
+const now_s = () => performance.now() / 1e3;
+const PLOT_PERIOD_S = 0.5;
+
+const history = new History();
+const view = make_view();
+const plots = new Plots(by_id("plots"));
+const choice = { controller: "", object: "", tool: 0, shells: false, level: "",
+  loaded: false };
+let events = null;
+let frozen_s = null; // The moment that is looked at; null: now.
+let plot_again_s = 0;
+let connection = "connecting to spm_view";
+let player = null; // Of recordings; null: what is live is shown.
+
+function make_view() {
+  try {
+    return new View(by_id("canvas"), () => show());
+  } catch (fault) {
+    return new NoView();
+  }
+}
+
+function listen() {
+  if (events) {
+    events.close();
+  }
+  const source = new EventSource(`/events?controller=${encodeURIComponent(choice.controller)}`);
+  events = source;
+  source.onmessage = (event) => {
+    connection = "";
+    history.add(JSON.parse(event.data), now_s());
+    if (frozen_s === null) {
+      show();
+    } else {
+      show_when(frozen_s);
+    }
+  };
+  source.onerror = async () => {
+    connection = "spm_view does not answer; trying again";
+    if (source.readyState === EventSource.CLOSED && source === events) {
+      connection = "4 viewers are watching already; close one";
+      setTimeout(() => source === events && listen(), 5000);
+    }
+    show();
+  };
+}
+
+/// Options of a select, without touching one that is open and right.
+function offer(select, entries, chosen) {
+  const wanted = JSON.stringify(entries);
+  if (select.dataset.entries !== wanted) {
+    select.dataset.entries = wanted;
+    select.replaceChildren(...entries.map(([value, text]) => new Option(text, value)));
+  }
+  select.value = chosen;
+}
+
+function figure(list, name, value) {
+  const card = document.createElement("div");
+  const term = document.createElement("dt");
+  const text = document.createElement("dd");
+  term.textContent = name;
+  text.textContent = value;
+  card.append(term, text);
+  list.push(card);
+}
+
+const micro = (times, name) => (times ? `${times[name][0].toFixed(1)} µs` : "-");
+const NO_DEADLINES = { missed: "-", own_faults: "-", machine_late: "-" };
+
+function show_figures(controller) {
+  const list = [];
+  if (controller) {
+    const times = controller.front && controller.front.times_us;
+    const answers = controller.answers;
+    const frames = Math.max(controller.frame, 1);
+    const percent = (count) => `${(100 * count / frames).toFixed(2)} %`;
+    figure(list, "frames", controller.frame.toLocaleString("en"));
+    figure(list, "rate", `${(1e6 / controller.period_us).toFixed(0)} Hz`);
+    figure(list, "frame, mean", micro(times, "frame"));
+    figure(list, "frame, longest", times ? `${times.frame[1].toFixed(0)} µs` : "-");
+    figure(list, "exact", percent(answers.exact));
+    figure(list, "decided", percent(answers.decided));
+    figure(list, "bracket", percent(answers.bracket));
+    figure(list, "stale", percent(answers.stale));
+    const deadlines = controller.deadlines || NO_DEADLINES;
+    figure(list, "missed", deadlines.missed);
+    figure(list, "own faults", deadlines.own_faults);
+    figure(list, "machine late", deadlines.machine_late);
+    figure(list, "flags", controller.faults.join(", ") || "none");
+  }
+  by_id("figures").replaceChildren(...list);
+}
+
+function show_words(controller) {
+  const tool = controller && controller.tools[choice.tool];
+  const words = by_id("words");
+  if (!tool) {
+    words.textContent = controller ? "no tool" : "no controller";
+    words.dataset.state = "none";
+    return;
+  }
+  const newton = Math.hypot(...tool.force_n).toFixed(2);
+  words.textContent = tool.words === null ? `force ${newton} N` :
+    `force ${newton} N, ${tool.words}`;
+  words.dataset.state = tool.words === null ? "none" : tool.words.slice(0, 3).trim()
+    .replace(":", "");
+}
+
+function show_choices(state) {
+  const controller = state.controller;
+  offer(by_id("controller"),
+    state.controllers.length > 0 ? state.controllers.map((c) => [c.id, c.name]) : [["", "none"]],
+    controller ? controller.id : choice.controller);
+  const front = controller && controller.front;
+  const objects = front ? front.objects : [];
+  const name_of = (object) => {
+    const model = controller.models.find((m) => m.hash === object.model);
+    return `${object.object}: ${model ? model.name : object.model.slice(0, 8)}`;
+  };
+  offer(by_id("object"),
+    [["", "all"], ...objects.map((o) => [`${o.host}/${o.object}`, name_of(o)])], choice.object);
+  const tools = controller ? controller.tools : [];
+  offer(by_id("tool"), tools.map((tool, i) => [i, tool.shape ? `${i}: ${tool.shape}` : `${i}`]),
+    choice.tool);
+}
+
+function show_legend(waits) {
+  const { scale, faces, boxes, fault } = view.summary();
+  by_id("legend").hidden = !scale;
+  by_id("least").textContent = scale ? scale.least : "";
+  by_id("most").textContent = scale ? scale.most : "";
+  by_id("faces").textContent = faces > 0 ? `${faces.toLocaleString("en")} faces` +
+    (boxes > 0 ? `, ${boxes.toLocaleString("en")} boxes` : "") : "";
+  by_id("waits").textContent = connection || fault || (waits ? `waits for ${waits}` : "");
+}
+
+function show_when(time_s) {
+  by_id("when").textContent = frozen_s === null ? "live" :
+    `${(time_s - now_s()).toFixed(1)} s`;
+}
+
+/// The moment that is looked at.
+function shown_s() {
+  return player ? player.time_s() : frozen_s === null ? now_s() : frozen_s;
+}
+
+function show_player() {
+  const { frame, film } = player;
+  by_id("play").textContent = player.plays ? "stop" : "play";
+  by_id("play").setAttribute("aria-pressed", String(player.plays));
+  by_id("frame").value = String(frame);
+  by_id("place").textContent = `${player.time_s().toFixed(3)} s, frame ` +
+    `${frame.toLocaleString("en")} of ${film.frames.toLocaleString("en")}`;
+}
+
+function show() {
+  const time_s = shown_s();
+  const entry = history.at(time_s);
+  const state = entry ? entry.state : { controllers: [], controller: null, waits_for: "" };
+  show_choices(state);
+  show_figures(state.controller);
+  show_words(state.controller);
+  view.show(state.controller, choice);
+  show_legend(state.waits_for);
+  show_when(time_s);
+  if (player) {
+    show_player();
+  }
+  if (now_s() > plot_again_s) {
+    const begin_s = now_s();
+    plots.show(history.entries, choice.tool, time_s);
+    const end_s = now_s();
+    plot_again_s = end_s + Math.max(PLOT_PERIOD_S, 3 * (end_s - begin_s));
+  }
+}
+
+function look_at(time_s) {
+  frozen_s = time_s;
+  by_id("freeze").setAttribute("aria-pressed", String(time_s !== null));
+  by_id("freeze").textContent = time_s === null ? "freeze" : "go on";
+  if (time_s === null) {
+    by_id("back").value = "0";
+  }
+  plot_again_s = 0;
+  show();
+}
+
+/// What differs between two recordings, each with a way to it, and why one ends early.
+function show_notes(film) {
+  const notes = by_id("film-notes");
+  const lines = film.films.filter((each) => each.note !== "").map((each) =>
+    `${each.name}: ${each.note}`);
+  if (film.films.length > 1) {
+    const names = film.films.map((each) => each.name).join(" and ");
+    lines.unshift(film.differences.length > 0 ? `${names} differ, first in:` :
+      `${names}: every frame is the same`);
+  }
+  const paragraphs = lines.map((line) => {
+    const paragraph = document.createElement("p");
+    paragraph.textContent = line;
+    return paragraph;
+  });
+  const ways = film.differences.map((difference) => {
+    const way = document.createElement("button");
+    way.type = "button";
+    way.textContent = `frame ${difference.frame.toLocaleString("en")}: ${difference.what}, ` +
+      difference.how;
+    way.addEventListener("click", () => {
+      player.play(false);
+      player.go_to(difference.frame);
+    });
+    return way;
+  });
+  notes.replaceChildren(...paragraphs, ...ways);
+  notes.hidden = lines.length === 0;
+}
+
+function play(state) {
+  connection = "";
+  player = new Player(state.film, (states, is_leap, fault) => {
+    connection = fault;
+    if (is_leap) {
+      history.clear();
+      plot_again_s = 0;
+    }
+    for (const each of states) {
+      history.add(each, player.time_s(each.serial));
+    }
+    show();
+  });
+  by_id("live-bar").hidden = true;
+  by_id("film-bar").hidden = false;
+  by_id("frame").max = String(state.film.frames - 1);
+  show_notes(state.film);
+  by_id("play").addEventListener("click", () => { player.play(!player.plays); show(); });
+  by_id("step-back").addEventListener("click", () => player.step(-1));
+  by_id("step-on").addEventListener("click", () => player.step(1));
+  by_id("speed").addEventListener("change", (event) => { player.speed = Number(event.target.value); });
+  by_id("frame").addEventListener("input", (event) => player.go_to(Number(event.target.value)));
+  document.addEventListener("keydown", (event) => {
+    const ways = { ArrowLeft: () => player.step(-1), ArrowRight: () => player.step(1),
+      " ": () => { player.play(!player.plays); show(); } };
+    if (ways[event.key] && !/^(SELECT|INPUT|BUTTON)$/.test(event.target.tagName)) {
+      event.preventDefault();
+      ways[event.key]();
+    }
+  });
+  player.go_to(0);
+}
+
+/// What is live, or recordings: the first answer says which.
+function begin() {
+  fetch("/state").then((answer) => answer.json()).then((state) => {
+    if (state.film) {
+      play(state);
+    } else {
+      listen();
+    }
+  }).catch(() => {
+    connection = "spm_view does not answer; trying again";
+    show();
+    setTimeout(begin, 2000);
+  });
+}
+
+function paint_ramp() {
+  const canvas = by_id("ramp");
+  const pen = canvas.getContext("2d");
+  for (let x = 0; x < canvas.width; ++x) {
+    pen.fillStyle = `rgb(${ramp(x / canvas.width).map((c) => Math.round(255 * c)).join(",")})`;
+    pen.fillRect(x, 0, 1, canvas.height);
+  }
+}
+
+function take_theme(theme) {
+  document.documentElement.dataset.theme = theme;
+  plots.take_colours();
+}
+
+by_id("controller").addEventListener("change", (event) => {
+  Object.assign(choice, { controller: event.target.value, object: "", tool: 0 });
+  if (player) {
+    player.choose(choice.controller);
+    return;
+  }
+  history.clear();
+  view.forget();
+  listen();
+});
+by_id("object").addEventListener("change", (event) => { choice.object = event.target.value; show(); });
+by_id("tool").addEventListener("change", (event) => { choice.tool = Number(event.target.value); show(); });
+by_id("colour").addEventListener("change", (event) => { view.recolour(event.target.value); show(); });
+by_id("edges").addEventListener("change", (event) => { view.edges = event.target.checked; show(); });
+by_id("shells").addEventListener("change", (event) => { choice.shells = event.target.checked; show(); });
+by_id("loaded").addEventListener("change", (event) => { choice.loaded = event.target.checked; show(); });
+by_id("level").addEventListener("change", (event) => { choice.level = event.target.value; show(); });
+by_id("fit").addEventListener("click", () => view.fit());
+by_id("near").addEventListener("click", () => view.follow(choice.tool));
+by_id("theme").addEventListener("click", () =>
+  take_theme(document.documentElement.dataset.theme === "dark" ? "light" : "dark"));
+by_id("freeze").addEventListener("click", () => look_at(frozen_s === null ? now_s() : null));
+by_id("back").addEventListener("input", (event) => {
+  const back_s = Number(event.target.value);
+  look_at(back_s === 0 ? null : now_s() + back_s);
+});
+
+take_theme(new URLSearchParams(location.search).get("theme") ||
+  (window.matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light"));
+paint_ramp();
+begin();
+show();

@@ -1,0 +1,317 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "host_tools/spm_view/state_text.hpp"
+
+#include "host_tools/spm_view/cut.hpp"
+#include "host_tools/spm_view/force_words.hpp"
+#include "host_tools/web/prometheus_text.hpp"
+#include "rt_core/records/work_counters.hpp"
+#include "transport/content_hash.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace tactus::view
+{
+
+namespace
+{
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::array kKindNames{"exact", "decided", "bracket", "stale"};
+
+/// Names of FrontTimes after the stages.
+const char* time_name(std::size_t i)
+{
+    constexpr std::array<const char*, 2> others{"frame", "cpu"};
+    return i < kStages ? kStageNames[i] : others[i - kStages];
+}
+
+/// JSON has no infinity.
+Json number_of(double value)
+{
+    return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+Json faults_of(std::uint32_t bits)
+{
+    Json names = Json::array();
+    for (std::size_t i = 0; i < kFrameFaults; ++i)
+    {
+        if ((bits >> i & 1U) != 0)
+        {
+            names.push_back(kFrameFaultNames[i]);
+        }
+    }
+    return names;
+}
+
+Json tool_json(const LiveController& controller, std::size_t i)
+{
+    const Telemetry& telemetry = controller.told.telemetry;
+    const ToolTelemetry& tool = telemetry.tools[i];
+    Json json{{"position_m", tool.position_m},
+              {"rotation", tool.rotation},
+              {"proxy_m", tool.proxy_m},
+              {"proxy_rotation", tool.proxy_rotation},
+              {"force_n", tool.force_n},
+              {"torque_nm", tool.torque_nm},
+              {"in_contact", tool.in_contact},
+              {"frozen", tool.frozen},
+              {"squeezed", tool.squeezed},
+              {"held_back", tool.held_back},
+              {"buttons", tool.buttons},
+              {"words", nullptr},
+              {"state", nullptr},
+              {"shape", nullptr},
+              {"radius_m", nullptr}};
+    if (controller.front != nullptr && i < controller.front->front.tools.size())
+    {
+        const FrontTool& front = controller.front->front.tools[i];
+        if (!controller.is_recorded)
+        {
+            json["state"] = kSafetyStateNames[static_cast<std::size_t>(front.state)];
+            json["words"] =
+                force_words(front, tool, std::span(telemetry.models).first(telemetry.model_count));
+        }
+        json["shape"] = front.shape;
+        json["radius_m"] = front.radius_m;
+    }
+    return json;
+}
+
+Json pairs_json(const Telemetry& telemetry)
+{
+    Json pairs = Json::array();
+    for (std::size_t i = 0; i < telemetry.pair_count; ++i)
+    {
+        const PairTelemetry& pair = telemetry.pairs[i];
+        pairs.push_back({{"tool", pair.tool},
+                         {"host", fmt::format("{:016x}", pair.host_epoch)},
+                         {"object", pair.object},
+                         {"kind", kKindNames[static_cast<std::size_t>(pair.kind)]},
+                         {"lower_m", number_of(pair.lower_m)},
+                         {"upper_m", number_of(pair.upper_m)},
+                         {"point_m", pair.point_m},
+                         {"force_n", pair.force_n}});
+    }
+    return pairs;
+}
+
+Json models_json(const dds::WatchedController& told)
+{
+    Json models = Json::array();
+    const auto pool = [](const PoolTelemetry& use) { return Json{use.used, use.capacity}; };
+    for (std::size_t i = 0; i < told.models.size(); ++i)
+    {
+        const ModelTelemetry& model = told.telemetry.models[i];
+        models.push_back({{"name", told.models[i].name},
+                          {"hash", hash_text(told.models[i].hash)},
+                          {"pages", pool(model.pages)},
+                          {"faces", pool(model.faces)},
+                          {"host_gone", model.host_gone},
+                          {"is_static", model.is_static},
+                          {"pieces", model.pieces},
+                          {"piece_wait_ms", static_cast<double>(model.piece_wait_ns) * 1e-6}});
+    }
+    return models;
+}
+
+Json cuts_json(const Front& front, const ModelShelf& shelf)
+{
+    Json cuts = Json::array();
+    for (const FrontModel& model : front.models)
+    {
+        int refined = 0;
+        for (const FrontPage& page : model.pages)
+        {
+            refined += std::popcount(page.refined);
+        }
+        cuts.push_back({{"hash", hash_text(model.hash)},
+                        {"is_here", shelf.has(model.hash)},
+                        {"cut", fmt::format("{:016x}", cut_id(model.pages))},
+                        {"pages", model.pages.size()},
+                        {"refined", refined}});
+    }
+    return cuts;
+}
+
+Json objects_json(const LiveController& controller)
+{
+    Json objects = Json::array();
+    for (const SeenObject& seen : controller.objects)
+    {
+        objects.push_back({{"host", fmt::format("{:016x}", seen.object.host_epoch)},
+                           {"object", seen.object.object},
+                           {"number", seen.object.number},
+                           {"model", hash_text(seen.model)},
+                           {"rotation", seen.object.pose.rotation},
+                           {"translation_m", seen.object.pose.translation_m},
+                           {"scale", seen.object.pose.scale}});
+    }
+    return objects;
+}
+
+Json front_json(const LiveController& controller, const ModelShelf& shelf)
+{
+    if (controller.front == nullptr)
+    {
+        return nullptr;
+    }
+    const Front& front = controller.front->front;
+    Json times = nullptr;
+    for (std::size_t i = 0; i < kFrontTimes && !controller.is_recorded; ++i)
+    {
+        times[time_name(i)] = {front.times[i].mean_ns * 1e-3, front.times[i].max_ns * 1e-3};
+    }
+    return {{"serial", controller.front->serial},
+            {"frame", front.frame},
+            {"times_us", times},
+            {"budgets",
+             {{"splits", front.budgets.splits},
+              {"merges", front.budgets.merges},
+              {"nodes", front.budgets.nodes},
+              {"triangles", front.budgets.triangles},
+              {"pages", front.budgets.pages},
+              {"requests", front.budgets.requests}}},
+            {"slots_left_out", front.slots_left_out},
+            {"models", cuts_json(front, shelf)},
+            {"objects", objects_json(controller)}};
+}
+
+Json deadlines_json(const Telemetry& telemetry)
+{
+    return {{"missed", telemetry.missed},
+            {"own_faults", telemetry.own_faults},
+            {"machine_late", telemetry.machine_late}};
+}
+
+Json controller_json(const LiveController& controller, const ModelShelf& shelf)
+{
+    const Telemetry& telemetry = controller.told.telemetry;
+    Json tools = Json::array();
+    for (std::size_t i = 0; i < telemetry.tool_count; ++i)
+    {
+        tools.push_back(tool_json(controller, i));
+    }
+    return {{"id", id_text(controller.told.id)},
+            {"name", controller.told.name},
+            {"serial", controller.told.serial},
+            {"frame", telemetry.frame},
+            {"time_s", static_cast<double>(telemetry.time_ns) * 1e-9},
+            {"period_us", static_cast<double>(telemetry.period_ns) * 1e-3},
+            {"answers",
+             {{"exact", telemetry.exact},
+              {"decided", telemetry.decided},
+              {"bracket", telemetry.bracket},
+              {"stale", telemetry.stale}}},
+            {"deadlines", controller.is_recorded ? Json(nullptr) : deadlines_json(telemetry)},
+            {"faults", faults_of(telemetry.faults_now)},
+            {"faults_seen", faults_of(telemetry.faults_seen)},
+            {"tools", tools},
+            {"pairs", pairs_json(telemetry)},
+            {"models", models_json(controller.told)},
+            {"front", front_json(controller, shelf)}};
+}
+
+/// What there is nothing to see for want of; empty: nothing.
+std::string waits_for(const LiveController* controller, const ModelShelf& shelf,
+                      const std::string& chosen, std::uint32_t domain_id)
+{
+    if (controller == nullptr)
+    {
+        return chosen.empty() ? fmt::format("a controller on DDS domain {}: start hrtc", domain_id)
+                              : "the chosen controller, which has gone";
+    }
+    if (controller->front == nullptr)
+    {
+        return fmt::format("{} to tell what it has refined: it runs with --no-front or is older "
+                           "than this viewer",
+                           controller->told.name);
+    }
+    for (const FrontModel& model : controller->front->front.models)
+    {
+        if (!shelf.has(model.hash))
+        {
+            return shelf.is_coming(model.hash)
+                       ? fmt::format("the base mesh of model {}, from its host",
+                                     hash_text(model.hash))
+                       : fmt::format("the model {}: nobody publishes it here; give its file to "
+                                     "spm_view",
+                                     hash_text(model.hash));
+        }
+    }
+    return "";
+}
+
+Json films_json(const Films& films)
+{
+    Json each = Json::array();
+    for (const auto& film : films.films())
+    {
+        each.push_back(
+            {{"name", film->name()}, {"frames", film->frames()}, {"note", film->note()}});
+    }
+    Json differences = Json::array();
+    for (const FilmDifference& difference : films.differences())
+    {
+        differences.push_back(
+            {{"what", difference.what}, {"how", difference.how}, {"frame", difference.frame}});
+    }
+    return {{"frames", films.frames()},
+            {"period_s", static_cast<double>(films.films().front()->period_ns()) * 1e-9},
+            {"films", each},
+            {"differences", differences}};
+}
+
+} // namespace
+
+std::string state_json(const Snapshot& snapshot, const ModelShelf& shelf, const std::string& chosen,
+                       std::uint32_t domain_id, const Films* films)
+{
+    const LiveController* controller = snapshot.find(chosen);
+    Json controllers = Json::array();
+    for (const LiveController& each : snapshot.controllers)
+    {
+        controllers.push_back({{"id", id_text(each.told.id)}, {"name", each.told.name}});
+    }
+    Json models = Json::array();
+    for (const ModelShelf::Label& label : shelf.labels())
+    {
+        models.push_back(
+            {{"hash", hash_text(label.hash)}, {"name", label.name}, {"faces", label.faces}});
+    }
+    const Json state{{"serial", snapshot.serial},
+                     {"domain", domain_id},
+                     {"waits_for", waits_for(controller, shelf, chosen, domain_id)},
+                     {"controllers", controllers},
+                     {"models", models},
+                     {"film", films == nullptr ? Json(nullptr) : films_json(*films)},
+                     {"controller",
+                      controller == nullptr ? Json(nullptr) : controller_json(*controller, shelf)}};
+    // A file's name may be no UTF-8.
+    return state.dump(-1, ' ', true, Json::error_handler_t::replace);
+}
+
+std::string metrics_text(const Snapshot& snapshot)
+{
+    std::vector<const dds::WatchedController*> controllers;
+    for (const LiveController& controller : snapshot.controllers)
+    {
+        controllers.push_back(&controller.told);
+    }
+    web::PrometheusText text;
+    web::tell_controllers(text, controllers);
+    return text.text();
+}
+
+} // namespace tactus::view

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <functional>
+#include <iterator>
+#include <utility>
+#include <vector>
+
+// Any thread: a value; setting allocates.
+namespace tactus::view
+{
+
+/// Something that changes now and then, by the frames in which it does.
+template <typename T, typename Equal = std::equal_to<T>>
+class Timeline
+{
+public:
+    /// From this frame on, which is none before the last one that was set.
+    void set(std::uint64_t frame, const T& value)
+    {
+        if (steps_.empty() || !Equal{}(steps_.back().second, value))
+        {
+            steps_.emplace_back(frame, value);
+        }
+    }
+    /// Null before the first.
+    [[nodiscard]] const T* at(std::uint64_t frame) const
+    {
+        const auto next =
+            std::ranges::upper_bound(steps_, frame, {}, &std::pair<std::uint64_t, T>::first);
+        return next == steps_.begin() ? nullptr : &std::prev(next)->second;
+    }
+
+private:
+    std::vector<std::pair<std::uint64_t, T>> steps_;
+};
+
+} // namespace tactus::view

@@ -1,0 +1,368 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "host_tools/spm_view/web_server.hpp"
+
+#include "host_tools/spm_view/boxes.hpp"
+#include "host_tools/spm_view/cut.hpp"
+#include "host_tools/spm_view/page.hpp"
+#include "host_tools/spm_view/state_text.hpp"
+#include "host_tools/web/loopback_server.hpp"
+#include "transport/content_hash.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <charconv>
+#include <chrono>
+#include <deque>
+#include <fstream>
+#include <functional>
+#include <httplib.h>
+#include <iterator>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+
+namespace tactus::view
+{
+
+namespace
+{
+
+using std::chrono::milliseconds;
+using web::answer;
+using web::LoopbackServer;
+using Clock = std::chrono::steady_clock;
+
+/// Between two events of one viewer.
+constexpr milliseconds kEventPeriod{50};
+/// Without news, so that a gone viewer is noticed.
+constexpr milliseconds kHeartbeat{1'000};
+/// Between two looks for the end.
+constexpr milliseconds kLook{100};
+/// States of one answer of /states.
+constexpr std::uint64_t kStatesMax = 200;
+/// Answers about fronts that are kept for other viewers.
+constexpr std::size_t kKeptAnswers = 16;
+
+struct Library
+{
+    const char* url;
+    const char* file; ///< Below Parts::libraries.
+    const char* type;
+};
+
+constexpr std::array<Library, 4> kLibraries{{
+    {"/lib/three.min.js", "three/three.min.js", "text/javascript"},
+    {"/lib/OrbitControls.js", "three/examples/js/controls/OrbitControls.js", "text/javascript"},
+    {"/lib/dygraph.min.js", "dygraphs/dygraph.min.js", "text/javascript"},
+    {"/lib/dygraph.min.css", "dygraphs/dygraph.min.css", "text/css"},
+}};
+
+template <typename Number>
+std::optional<Number> number_in(const std::string& text)
+{
+    Number number{};
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    return error == std::errc{} && end == text.data() + text.size() ? std::optional(number)
+                                                                    : std::nullopt;
+}
+
+} // namespace
+
+struct WebServer::Inside
+{
+    explicit Inside(const Parts& of) : parts(of) {}
+
+    [[nodiscard]] std::optional<Refusal> read_libraries();
+    void declare_answers();
+    [[nodiscard]] std::string state_for(const httplib::Request& request) const;
+    void send_states(const httplib::Request& request, httplib::Response& response) const;
+    void send_events(const httplib::Request& request, httplib::Response& response);
+    bool send_next(httplib::DataSink& sink, const std::string& chosen, std::uint64_t& seen);
+    /// What is built of one model of a front, and a name that tells it from all else.
+    using Build = std::function<Result<std::string, Refusal>(KnownModel&, const FrontModel&)>;
+    void send_built(const httplib::Request& request, httplib::Response& response,
+                    const std::string& what, const Build& build);
+    [[nodiscard]] Result<std::shared_ptr<const std::string>, Refusal>
+    built(const std::string& name, KnownModel& model, const FrontModel& front, const Build& build);
+    [[nodiscard]] std::shared_ptr<const std::string> find_kept(const std::string& name);
+
+    Parts parts;
+    std::map<std::string, std::string> libraries; ///< By url.
+    std::atomic<bool> ends{false};
+    std::atomic<std::size_t> viewers{0};
+    std::mutex kept_mutex; ///< Of what follows.
+    std::deque<std::pair<std::string, std::shared_ptr<const std::string>>> kept;
+    LoopbackServer local{kThreads}; ///< Last: its threads use the others.
+    httplib::Server& server{local.server()};
+};
+
+std::optional<Refusal> WebServer::Inside::read_libraries()
+{
+    for (const Library& library : kLibraries)
+    {
+        const std::filesystem::path path = parts.libraries / library.file;
+        std::ifstream file(path, std::ios::binary);
+        std::string text{std::istreambuf_iterator<char>(file), {}};
+        if (!file || text.empty())
+        {
+            return Refusal{path.string() + " can't be read; it is of Debian's libjs-three and "
+                                           "libjs-dygraphs"};
+        }
+        libraries[library.url] = std::move(text);
+    }
+    return std::nullopt;
+}
+
+void WebServer::Inside::declare_answers()
+{
+    using httplib::Request;
+    using httplib::Response;
+    for (const PageFile& file : page_files())
+    {
+        server.Get(file.url, [&file](const Request&, Response& response)
+                   { response.set_content(file.text, file.type); });
+    }
+    // Browsers ask for it by themselves.
+    server.Get("/favicon.ico", [](const Request&, Response& response) { response.status = 204; });
+    for (const Library& library : kLibraries)
+    {
+        server.Get(library.url, [this, &library](const Request&, Response& response)
+                   { response.set_content(libraries.at(library.url), library.type); });
+    }
+    server.Get("/state", [this](const Request& request, Response& response)
+               { response.set_content(state_for(request), "application/json"); });
+    server.Get("/states", [this](const Request& request, Response& response)
+               { send_states(request, response); });
+    server.Get("/metrics",
+               [this](const Request&, Response& response)
+               {
+                   response.set_content(metrics_text(parts.films != nullptr
+                                                         ? parts.films->at(parts.films->frames())
+                                                         : *parts.live.newest()),
+                                        web::kMetricsType);
+               });
+    server.Get("/events", [this](const Request& request, Response& response)
+               { send_events(request, response); });
+    server.Get("/front",
+               [this](const Request& request, Response& response)
+               {
+                   send_built(request, response, "faces",
+                              [](KnownModel& model, const FrontModel& front)
+                              {
+                                  const auto decoded = decode_cut(model, front.pages);
+                                  return decoded ? cut_bytes(decoded.value(), front.pages)
+                                                 : decoded.error();
+                              });
+               });
+    server.Get("/loaded",
+               [this](const Request& request, Response& response)
+               {
+                   send_built(request, response, "loaded",
+                              [](KnownModel& model, const FrontModel& front)
+                              { return chunk_box_bytes(model, front.pages); });
+               });
+    server.Get("/boxes",
+               [this](const Request& request, Response& response)
+               {
+                   const auto level =
+                       number_in<std::uint32_t>(request.get_param_value("level")).value_or(0);
+                   send_built(request, response, fmt::format("boxes{}", level),
+                              [level](KnownModel& model, const FrontModel& front)
+                              {
+                                  const auto decoded = decode_cut(model, front.pages);
+                                  return decoded
+                                             ? tree_box_bytes(decoded.value(), front.pages, level)
+                                             : decoded.error();
+                              });
+               });
+}
+
+std::string WebServer::Inside::state_for(const httplib::Request& request) const
+{
+    const std::string chosen = request.get_param_value("controller");
+    if (parts.films == nullptr)
+    {
+        return state_json(*parts.live.newest(), parts.shelf, chosen, parts.domain);
+    }
+    const auto frame = number_in<std::uint64_t>(request.get_param_value("frame")).value_or(0);
+    return state_json(parts.films->at(frame), parts.shelf, chosen, parts.domain, parts.films);
+}
+
+/// Frames of the films before one, and that one, some apart from one another.
+void WebServer::Inside::send_states(const httplib::Request& request,
+                                    httplib::Response& response) const
+{
+    const auto number = [&request](const char* name)
+    { return number_in<std::uint64_t>(request.get_param_value(name)); };
+    const auto frame = number("frame");
+    const auto step = number("step");
+    const auto count = number("count");
+    const bool is_right = frame && step && *step > 0 && count && *count > 0 && *count <= kStatesMax;
+    if (parts.films == nullptr || !is_right)
+    {
+        answer(
+            response, parts.films == nullptr ? 404 : 400,
+            fmt::format("/states needs a recording and frame=N&step=N&count=1 to {}", kStatesMax));
+        return;
+    }
+    const std::uint64_t last = std::min(*frame, parts.films->frames() - 1);
+    std::string states;
+    for (std::uint64_t before = *count; before-- > 0;)
+    {
+        if (before <= last / *step)
+        {
+            states += states.empty() ? "[" : ",";
+            states += state_json(parts.films->at(last - before * *step), parts.shelf,
+                                 request.get_param_value("controller"), parts.domain, parts.films);
+        }
+    }
+    response.set_content(states + "]", "application/json");
+}
+
+void WebServer::Inside::send_events(const httplib::Request& request, httplib::Response& response)
+{
+    if (viewers.fetch_add(1) >= kViewersMax)
+    {
+        viewers.fetch_sub(1);
+        response.set_header("Retry-After", "5");
+        answer(response, 503, fmt::format("{} viewers are watching; close one", kViewersMax));
+        return;
+    }
+    const std::string chosen = request.get_param_value("controller");
+    response.set_chunked_content_provider(
+        "text/event-stream",
+        [this, chosen, seen = std::uint64_t{0}](std::size_t, httplib::DataSink& sink) mutable
+        { return send_next(sink, chosen, seen); },
+        [this](bool) { viewers.fetch_sub(1); });
+}
+
+/// One event, the first one at once. Each is the whole state, so that a slow viewer misses some and
+/// reads no old news. `seen`: the serial of the last one.
+bool WebServer::Inside::send_next(httplib::DataSink& sink, const std::string& chosen,
+                                  std::uint64_t& seen)
+{
+    const auto start = Clock::now();
+    std::shared_ptr<const Snapshot> news;
+    do
+    {
+        news = parts.live.wait_newer(seen, kLook);
+        if (ends.load())
+        {
+            sink.done();
+            return true;
+        }
+    } while (news->serial <= seen && Clock::now() - start < kHeartbeat);
+    std::string event = ": no news\n\n";
+    if (news->serial > seen)
+    {
+        std::this_thread::sleep_until(start + kEventPeriod);
+        news = parts.live.newest();
+        seen = news->serial;
+        event = fmt::format("data: {}\n\n", state_json(*news, parts.shelf, chosen, parts.domain));
+    }
+    return sink.write(event.data(), event.size());
+}
+
+void WebServer::Inside::send_built(const httplib::Request& request, httplib::Response& response,
+                                   const std::string& what, const Build& build)
+{
+    const auto serial = number_in<std::uint64_t>(request.get_param_value("serial"));
+    const auto hash = parse_hash(request.get_param_value("model"));
+    if (!serial || !hash)
+    {
+        answer(response, 400, "this needs controller=ID&serial=NUMBER&model=HASH");
+        return;
+    }
+    const std::string controller = request.get_param_value("controller");
+    const FrontPointer seen = parts.films != nullptr ? parts.films->front(controller, *serial)
+                                                     : parts.live.front(controller, *serial);
+    const auto model = parts.shelf.find(*hash);
+    if (seen == nullptr || model == nullptr)
+    {
+        answer(response, 404,
+               seen == nullptr ? "this front isn't kept any more" : "the model isn't here");
+        return;
+    }
+    const auto found = std::ranges::find(seen->front.models, *hash, &FrontModel::hash);
+    const FrontModel front = found == seen->front.models.end() ? FrontModel{*hash, {}} : *found;
+    // Pages without a split record count where what is loaded is asked for.
+    std::uint64_t resident = 0;
+    for (const FrontPage& page : front.pages)
+    {
+        resident = (resident ^ page.chunk.value) * 0x0000'0100'0000'01B3U;
+    }
+    const std::string name = fmt::format("{} {} {:016x} {:016x}", what, hash_text(*hash),
+                                         cut_id(front.pages), what == "loaded" ? resident : 0);
+    const auto bytes = built(name, *model, front, build);
+    if (!bytes)
+    {
+        answer(response, 409, bytes.error().text);
+        return;
+    }
+    response.set_content(*bytes.value(), "application/octet-stream");
+}
+
+std::shared_ptr<const std::string> WebServer::Inside::find_kept(const std::string& name)
+{
+    const std::lock_guard lock(kept_mutex);
+    const auto found = std::ranges::find(kept, name, &decltype(kept)::value_type::first);
+    return found == kept.end() ? nullptr : found->second;
+}
+
+Result<std::shared_ptr<const std::string>, Refusal>
+WebServer::Inside::built(const std::string& name, KnownModel& model, const FrontModel& front,
+                         const Build& build)
+{
+    if (auto known = find_kept(name))
+    {
+        return known;
+    }
+    auto bytes = build(model, front);
+    if (!bytes)
+    {
+        return bytes.error();
+    }
+    const std::lock_guard lock(kept_mutex);
+    kept.emplace_back(name, std::make_shared<const std::string>(std::move(bytes).value()));
+    if (kept.size() > kKeptAnswers)
+    {
+        kept.pop_front();
+    }
+    return kept.back().second;
+}
+
+Result<std::unique_ptr<WebServer>, Refusal> WebServer::start(const Parts& parts, std::uint16_t port)
+{
+    auto inside = std::make_unique<Inside>(parts);
+    if (auto refusal = inside->read_libraries())
+    {
+        return *refusal;
+    }
+    inside->declare_answers();
+    if (auto refusal = inside->local.start(port, "--port"))
+    {
+        return *refusal;
+    }
+    return std::unique_ptr<WebServer>(new WebServer(std::move(inside)));
+}
+
+WebServer::WebServer(std::unique_ptr<Inside> inside) : inside_(std::move(inside)) {}
+
+WebServer::~WebServer()
+{
+    inside_->ends.store(true);
+}
+
+std::uint16_t WebServer::port() const noexcept
+{
+    return inside_->local.port();
+}
+
+} // namespace tactus::view

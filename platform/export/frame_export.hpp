@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "platform/base/refusal.hpp"
+#include "platform/export/frame_fields.hpp"
+#include "platform/recording/recording_format.hpp"
+#include "rt_core/base/result.hpp"
+
+#include <memory>
+#include <string>
+#include <string_view>
+
+namespace tactus
+{
+
+/// Whether the name ends in one of the formats' endings: .csv, .jsonl or .mcap.
+[[nodiscard]] bool is_export_name(std::string_view path) noexcept;
+
+/// Writes replayed frames into a file for other tools, in the format that its name's ending tells
+/// (docs/recording.md). The file appears whole or not at all. One thread, not the haptic one: it
+/// allocates and waits for the file.
+class FrameExport
+{
+public:
+    /// Refused in one line where the file can't be written. The name is_export_name() (asserted);
+    /// the set-up must outlive the export.
+    [[nodiscard]] static Result<std::unique_ptr<FrameExport>, Refusal>
+    create(const std::string& path, const RecordedSetup& setup);
+    FrameExport(const FrameExport&) = delete;
+    FrameExport& operator=(const FrameExport&) = delete;
+    virtual ~FrameExport() = default;
+
+    /// The next frame. After an error frames are dropped; commit() tells of it.
+    virtual void add(const ReplayedFrameView& frame) = 0;
+    /// Gives the file its name. Once, as the last call; without it nothing is left.
+    [[nodiscard]] virtual Result<Done, Refusal> commit() = 0;
+
+protected:
+    FrameExport() = default;
+};
+
+} // namespace tactus

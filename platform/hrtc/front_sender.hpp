@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "platform/base/refusal.hpp"
+#include "platform/hrtc/controller.hpp"
+#include "platform/hrtc/front_tap.hpp"
+#include "platform/hrtc/scene_keeper.hpp"
+#include "platform/time.hpp"
+#include "transport/dds/dds_client.hpp"
+#include "transport/dds/front.hpp"
+
+#include <cstdint>
+#include <memory>
+
+namespace tactus::hrtc
+{
+
+/// What of a front only this side of the tap knows: which models and tools the numbers mean.
+/// `before` are the times of the copy before, for the means; objects are named as the hosts do
+/// where `keeper`, which may be none, knows them. Any thread; allocates.
+[[nodiscard]] Front front_of(const FrontCopy& copy, const FrontCopy::AllTimes& before,
+                             const Controller& controller, const SceneKeeper* keeper);
+
+/// Sends the controller's front. On the transport thread.
+class FrontSender
+{
+public:
+    /// The shortest time between two fronts.
+    static constexpr Duration kPeriod = milliseconds(100);
+
+    /// `client` and `controller` must outlive it.
+    [[nodiscard]] static Result<std::unique_ptr<FrontSender>, Refusal>
+    create(const dds::DdsClient& client, const Controller& controller);
+
+    /// To the haptic thread, before the first step; the tap lives as long as the run.
+    void connect(FrontTap& tap) noexcept { tap_ = &tap; }
+
+    /// Sends the newest front when one is due and there. While nobody watches the copy stays out,
+    /// so that the haptic thread makes none.
+    void step(MonotonicTime now, const SceneKeeper* keeper);
+
+    [[nodiscard]] std::uint64_t sent() const noexcept { return writer_->sent(); }
+
+private:
+    explicit FrontSender(const Controller& controller) : controller_(controller) {}
+
+    const Controller& controller_;
+    std::unique_ptr<dds::FrontWriter> writer_;
+    FrontTap* tap_{nullptr};
+    FrontCopy::AllTimes last_{};
+    MonotonicTime last_sent_{};
+    bool is_old_{true}; ///< The copy that is out was made before anybody watched.
+};
+
+} // namespace tactus::hrtc

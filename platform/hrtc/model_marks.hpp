@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/limits.hpp"
+
+#include <array>
+#include <atomic>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+
+namespace tactus::hrtc
+{
+
+/// Which models something holds of now: that their host is gone, for instance. One thread writes,
+/// any reads, without order to anything else; what is read while it changes is old for some models
+/// and new for others.
+class ModelMarks
+{
+public:
+    void set(std::size_t model, bool is_so) noexcept
+    {
+        const std::uint64_t bit = std::uint64_t{1} << model % 64;
+        std::atomic<std::uint64_t>& word = words_[model / 64];
+        const std::uint64_t others = word.load(std::memory_order_relaxed) & ~bit;
+        word.store(others | (is_so ? bit : 0), std::memory_order_relaxed);
+    }
+
+    [[nodiscard]] bool has(std::size_t model) const noexcept
+    {
+        return (words_[model / 64].load(std::memory_order_relaxed) >> model % 64 & 1U) != 0;
+    }
+    /// Whether `matters(model)` holds of one of them.
+    template <typename Matters>
+    [[nodiscard]] bool any_of(const Matters& matters) const noexcept
+    {
+        for (std::size_t i = 0; i < words_.size(); ++i)
+        {
+            for (std::uint64_t left = words_[i].load(std::memory_order_relaxed); left != 0;
+                 left &= left - 1)
+            {
+                if (matters(64 * i + static_cast<std::size_t>(std::countr_zero(left))))
+                {
+                    return true;
+                }
+            }
+        }
+        return false;
+    }
+
+private:
+    std::array<std::atomic<std::uint64_t>, (kMaxModels + 63) / 64> words_{};
+};
+
+} // namespace tactus::hrtc

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <thread>
+#include <utility>
+
+namespace tactus::hrtc
+{
+
+/// Writes what waits in a queue, again and again, on a thread of ordinary priority. Start it before
+/// the haptic thread: threads inherit policy and processor.
+class WriterThread
+{
+public:
+    /// Between two rounds; the queues hold some 300 ms at the highest rate.
+    static constexpr std::chrono::milliseconds kPause{5};
+
+    /// `step` does a round; what it uses must outlive the thread.
+    explicit WriterThread(std::function<void()> step)
+        : step_(std::move(step)), thread_([this] { run(); })
+    {
+    }
+    WriterThread(const WriterThread&) = delete;
+    WriterThread& operator=(const WriterThread&) = delete;
+    /// Waits for the present round to end.
+    ~WriterThread()
+    {
+        stopped_.store(true);
+        thread_.join();
+    }
+
+private:
+    void run()
+    {
+        while (!stopped_.load())
+        {
+            step_();
+            std::this_thread::sleep_for(kPause);
+        }
+    }
+
+    std::function<void()> step_;
+    std::atomic<bool> stopped_{false};
+    std::thread thread_;
+};
+
+} // namespace tactus::hrtc

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "platform/base/refusal.hpp"
+#include "platform/device_frame.hpp"
+#include "platform/haptic_device.hpp"
+#include "rt_core/base/result.hpp"
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+// A device of one's own in a shared library, for `hrtc --device plugin:FILE[,WORDS]`. Before the
+// loop, on the thread that assembles the controller; the device itself is used as HapticDevice
+// says.
+namespace tactus
+{
+
+/// What the device is to be.
+struct DeviceWish
+{
+    std::int64_t rate_hz{1'000}; ///< Of the loop; info() has to allow it.
+    DeviceFrame frame;           ///< --device-frame: the device applies it.
+    const char* words{""};       ///< What stands behind the file's name, for the device to read.
+};
+
+using MakeDevice = Result<std::unique_ptr<HapticDevice>, Refusal> (*)(const DeviceWish&);
+
+/// Of what passes between program and library; a library of other sizes is refused. The first
+/// number counts what sizes don't show.
+using PluginLayout = std::array<std::uint32_t, 6>;
+inline constexpr PluginLayout kPluginLayout{2,
+                                            sizeof(DeviceInfo),
+                                            sizeof(DeviceSample),
+                                            sizeof(Wrench),
+                                            sizeof(DeviceStatus),
+                                            sizeof(DeviceWish)};
+
+/// What a library tells of itself, under the name tactus_device_plugin.
+struct DevicePlugin
+{
+    PluginLayout layout{};
+    MakeDevice make{nullptr};
+};
+
+/// Loads the library, which stays for the life of the process, and makes its device. One without a
+/// folder in its name is looked for where the program was started. Refused in a line that names the
+/// file: what can't be loaded, has another layout, refuses itself, makes nothing or throws, or says
+/// of itself what no device may (find_fault()).
+[[nodiscard]] Result<std::unique_ptr<HapticDevice>, Refusal> load_device(const std::string& path,
+                                                                         const DeviceWish& wish);
+
+} // namespace tactus
+
+extern "C"
+{
+    /// Defined by TACTUS_DEVICE_PLUGIN, once in a library.
+    __attribute__((visibility("default"))) extern const tactus::DevicePlugin tactus_device_plugin;
+}
+
+/// Makes a library of the source that says it: `make` is a MakeDevice.
+#define TACTUS_DEVICE_PLUGIN(make)                                                                 \
+    const tactus::DevicePlugin tactus_device_plugin                                                \
+    {                                                                                              \
+        tactus::kPluginLayout, (make)                                                              \
+    }

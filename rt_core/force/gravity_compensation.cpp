@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "rt_core/force/gravity_compensation.hpp"
+
+#include "rt_core/base/assert.hpp"
+#include "rt_core/force/force_limiter.hpp"
+#include "rt_core/limits.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tactus
+{
+
+namespace
+{
+
+/// Of the scene and of time, not of the device.
+constexpr ForceOff kOfTheScene = ForceOff::host | ForceOff::stall | ForceOff::jump |
+                                 ForceOff::frozen | ForceOff::squeezed | ForceOff::clutch |
+                                 ForceOff::starved;
+
+/// The largest share of `wall` that with `load` is no longer than `most`: where the line from
+/// `load` along `wall` leaves the ball.
+double share_beside(const Vec3& wall, const Vec3& load, double most) noexcept
+{
+    if ((wall + load).norm() <= most)
+    {
+        return 1.0;
+    }
+    const double a = wall.squaredNorm();
+    const double b = wall.dot(load);
+    const double c = std::max(0.0, most * most - load.squaredNorm());
+    return a > 0.0 ? std::clamp((std::sqrt(b * b + a * c) - b) / a, 0.0, 1.0) : 0.0;
+}
+
+} // namespace
+
+GravityCompensation::GravityCompensation(const ToolLoad& load, const WrenchLimits& limits) noexcept
+    : load_(load), limits_(limits)
+{
+    TACTUS_ASSERT(load.mass_kg >= 0.0);
+    TACTUS_ASSERT(load.weight_n() <= limits.force_max_n);
+    TACTUS_ASSERT(limits.torque_max_nm <= 0.0 || load.torque_max_nm() <= limits.torque_max_nm);
+}
+
+LoadedWrench GravityCompensation::carry(const Input& input) noexcept
+{
+    LoadedWrench sent{input.force_n, input.torque_nm, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
+    if (!(load_.mass_kg > 0.0))
+    {
+        return sent;
+    }
+    const bool is_trusted = input.has_sample && (input.causes | kOfTheScene) == kOfTheScene;
+    if (is_trusted)
+    {
+        turn_lever(input.rotation, input.elapsed_s);
+    }
+    const double left = input.force_left < 1.0 ? gain_ * input.force_left : 1.0;
+    gain_ = is_trusted ? std::min(gain_ + input.elapsed_s / kRiseTime_s, 1.0)
+                       : std::max(gain_ - input.elapsed_s / kFadeTime_s, 0.0);
+    gain_ = input.has_sample ? std::min(gain_, left) : 0.0;
+    sent.load_n = -gain_ * load_.weight_n() * load_.down_world;
+    double share = share_beside(sent.force_n, sent.load_n, limits_.force_max_n);
+    if (limits_.torque_max_nm > 0.0)
+    {
+        sent.load_nm = lever_m_.cross(sent.load_n);
+        share = std::min(share, share_beside(sent.torque_nm, sent.load_nm, limits_.torque_max_nm));
+    }
+    sent.force_n *= share;
+    sent.torque_nm *= share;
+    return sent;
+}
+
+/// Where nothing is carried there is nothing to jump.
+void GravityCompensation::turn_lever(const Mat3& rotation, double elapsed_s) noexcept
+{
+    const Vec3 way = rotation * load_.centre_m - lever_m_;
+    const double most_m = kTurningMax_rad_per_s * load_.centre_m.norm() * elapsed_s;
+    lever_m_ += gain_ > 0.0 ? clamp_norm(way, most_m) : way;
+}
+
+} // namespace tactus

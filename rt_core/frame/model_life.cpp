@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "rt_core/frame/model_life.hpp"
+
+#include "rt_core/limits.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace tactus
+{
+
+namespace
+{
+
+/// A hand that goes back and forth doesn't have a model brought again and again.
+constexpr std::int64_t kLinger_ns = 2'000'000'000;
+
+} // namespace
+
+ModelLife::ModelLife(std::int64_t period_ns) noexcept
+    : linger_frames_(static_cast<std::uint32_t>(std::clamp<std::int64_t>(
+          kLinger_ns / period_ns, 1, std::numeric_limits<std::uint32_t>::max())))
+{
+}
+
+void ModelLife::go_on(ModelSet& models, std::span<Pair* const> pairs, std::uint32_t frame,
+                      WorkCounters& work) noexcept
+{
+    Turn turn{kEnteringFacesPerFrame, kLeavingFacesPerFrame};
+    for (const Pair* pair : pairs)
+    {
+        Model& model = models[pair->parts().model.id];
+        want(models, *pair, frame, turn);
+        // One that leaves goes on below, once a frame: a refit lies between its steps.
+        if (model.stage != ModelStage::leaving)
+        {
+            go_on(model, turn, frame, work);
+        }
+    }
+    for (const ModelId id : models.busy())
+    {
+        go_on(models[id], turn, frame, work);
+    }
+    let_go(models, frame);
+    if (turn.waits != nullptr && !turn.gave_room)
+    {
+        make_room(models, pairs, *turn.waits, frame);
+    }
+}
+
+void ModelLife::go_on(Model& model, Turn& turn, std::uint32_t frame, WorkCounters& work) noexcept
+{
+    const bool had_room = model.stage != ModelStage::known;
+    model.go_on(turn.entering, turn.leaving, frame, work);
+    turn.gave_room = turn.gave_room || (had_room && model.stage == ModelStage::known);
+}
+
+void ModelLife::want(ModelSet& models, const Pair& pair, std::uint32_t frame, Turn& turn) noexcept
+{
+    Model& model = models[pair.parts().model.id];
+    // One that is less urgent doesn't take what there is.
+    if (model.may_come(frame) && turn.waits == nullptr && !model.try_want())
+    {
+        turn.waits = &pair;
+    }
+}
+
+/// One model's turn each frame.
+void ModelLife::let_go(ModelSet& models, std::uint32_t frame) const noexcept
+{
+    const ModelId turn{frame % models.size()};
+    if (Model& model = models[turn]; model.is_guest && model.is_here() &&
+                                     frame - models.slot(turn).paired_frame > linger_frames_)
+    {
+        model.leave();
+        models.keep_busy(turn);
+    }
+}
+
+/// One that goes at a time.
+void ModelLife::make_room(ModelSet& models, std::span<Pair* const> pairs, const Pair& waits,
+                          std::uint32_t frame) noexcept
+{
+    for (std::uint32_t i = 0; i < models.size(); ++i)
+    {
+        if (models[{i}].stage == ModelStage::leaving)
+        {
+            return;
+        }
+    }
+    std::optional<ModelId> goes = find_left(models, frame);
+    goes = goes ? goes : find_spare(models, pairs, waits);
+    if (!goes)
+    {
+        return;
+    }
+    for (Pair* pair : pairs)
+    {
+        if (pair->parts().model.id == *goes)
+        {
+            models[*goes].refiner.release(pair->object_closure());
+            pair->lose_model();
+        }
+    }
+    models[*goes].leave();
+    models.keep_busy(*goes);
+}
+
+/// The one that no pair has been of for longest.
+std::optional<ModelId> ModelLife::find_left(const ModelSet& models, std::uint32_t frame) noexcept
+{
+    std::uint32_t longest = 0;
+    std::optional<ModelId> left;
+    for (std::uint32_t i = 0; i < models.size(); ++i)
+    {
+        const Model& model = models[{i}];
+        const std::uint32_t since = frame - models.slot({i}).paired_frame;
+        if (model.is_guest && model.is_here() && since > longest)
+        {
+            longest = since;
+            left = ModelId{i};
+        }
+    }
+    return left;
+}
+
+/// The one whose most urgent pair comes last, if all its pairs can spare it and that one is so much
+/// less urgent that the two won't change places the next moment.
+std::optional<ModelId> ModelLife::find_spare(const ModelSet& models, std::span<Pair* const> pairs,
+                                             const Pair& waits) noexcept
+{
+    constexpr double kLessUrgent = 2.0;
+    for (std::size_t i = pairs.size(); i-- > 0;)
+    {
+        const ModelId id = pairs[i]->parts().model.id;
+        const auto is_of_it = [id](const Pair* pair) { return pair->parts().model.id == id; };
+        const bool is_less_urgent =
+            pairs[i]->urgency().contact_s > kLessUrgent * waits.urgency().contact_s;
+        if (!is_less_urgent)
+        {
+            return std::nullopt; // Nor are those before it.
+        }
+        if (models[id].is_guest && models[id].is_here() &&
+            std::ranges::none_of(pairs.first(i), is_of_it) &&
+            std::ranges::all_of(pairs.subspan(i), [&](const Pair* pair)
+                                { return !is_of_it(pair) || pair->can_spare_model(); }))
+        {
+            return id;
+        }
+    }
+    return std::nullopt;
+}
+
+} // namespace tactus

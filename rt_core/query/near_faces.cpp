@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "rt_core/query/near_faces.hpp"
+
+#include "rt_core/base/assert.hpp"
+#include "rt_core/math/rounding.hpp"
+
+#include <algorithm>
+#include <bit>
+
+namespace tactus
+{
+
+namespace
+{
+
+/// The name that a walk has for loose faces: no other block of the tool is in it.
+constexpr TreeRef kLoose = TreeRef::to_block(0);
+
+} // namespace
+
+// NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): distances are written before each look.
+NearFaces::NearFaces(const AbTree& own, OtherSurface& other) noexcept
+    : own_(own)
+    , other_(other)
+    , views_(own, other.tree(), other.placement())
+    , placed_(own, other.tree(), other.placement(), views_)
+    , quanta_per_m_(views_.scale() / static_cast<double>(other.tree().quantum_m()))
+{
+}
+
+void NearFaces::find(double bound_m) noexcept
+{
+    search(bound_m, {own_.root(), own_.box(), true}, nullptr);
+}
+
+void NearFaces::find(const LooseFaces& faces, double bound_m) noexcept
+{
+    TACTUS_ASSERT(faces.lanes != 0);
+    double largest_m = 0.0;
+    for (std::uint32_t left = faces.lanes; left != 0; left &= left - 1)
+    {
+        largest_m =
+            std::max(largest_m, faces.errors_m[static_cast<std::size_t>(std::countr_zero(left))]);
+    }
+    const Aabb box =
+        AabbVolume::of_vertices(own_.kernels(), faces.geometry.coordinates.front().data(),
+                                faces.geometry.vertices)
+            .inflated(round_up_to_float(largest_m));
+    if (!views_.is_beyond_kernels())
+    {
+        placed_.put_loose(faces.geometry, faces.lanes, faces.errors_m);
+    }
+    search(bound_m, {kLoose, box, false}, &faces);
+}
+
+void NearFaces::search(double bound_m, const PairWalk::Start& start,
+                       const LooseFaces* loose) noexcept
+{
+    TACTUS_ASSERT(bound_m >= 0.0);
+    loose_ = loose;
+    const double bound = bound_m * quanta_per_m_ * kRoundedUp;
+    bound_ = bound < kFarQuanta ? round_up_to_float(bound) : kNothingLeft;
+    if (!other_.tree().is_complete())
+    {
+        leave(0.0F); // What it lacks may be anywhere.
+    }
+    if (views_.is_beyond_kernels())
+    {
+        const double gap_m = other_.lower_bound_m(ball_round(start.box), bound_m);
+        leave(round_down_to_float(gap_m * quanta_per_m_ / kRoundedUp));
+        return;
+    }
+    PairWalk walk(own_, other_.tree(), views_, other_.budget(), start);
+    for (const PairWalk::Item* near = walk.next_blocks({bound_}); near != nullptr;
+         near = walk.next_blocks({bound_}))
+    {
+        if (!try_test(*near, loose != nullptr ? placed_.loose() : placed_.get(near->tool.index())))
+        {
+            leave(near->gap);
+            break;
+        }
+    }
+    measure();
+    for (const PairWalk::Item& item : walk.left())
+    {
+        leave(item.gap);
+    }
+}
+
+/// False when the budget is spent before all was looked at.
+bool NearFaces::try_test(const PairWalk::Item& item, const PlacedBlock& own) noexcept
+{
+    WalkBudget& budget = other_.budget();
+    const Kernels& kernels = own_.kernels();
+    const BlockGeometry& block = other_.tree().block(item.object.index());
+    const Aabb& box = item.object_box;
+    const std::array<float, 6> ends{box.low[0],  box.low[1],  box.low[2],
+                                    box.high[0], box.high[1], box.high[2]};
+    std::uint32_t lanes = open_lanes(own.index, own.coarse);
+    if (!budget.take_triangles(static_cast<std::uint32_t>(std::popcount(lanes))))
+    {
+        return false;
+    }
+    lanes = kernels.near_rows(own.rows, ends.data(), own.box.center, lanes, bound_, own.slack());
+    if (lanes == 0)
+    {
+        return true;
+    }
+    // Errors of the other's faces are in the box, and not in the block.
+    const float bound =
+        (bound_ + largest_error_quanta(other_.tree().side(item.object.index()))) * kSumRoundedUp;
+    VertexRows rows; // NOLINT(cppcoreguidelines-pro-type-member-init): the kernel fills it.
+    const std::uint8_t* corners = block.corners.front().data();
+    const std::uint32_t others =
+        kernels.near_block(block.coordinates.front().data(), corners, own.box, block.faces,
+                           (bound + own.largest_error(lanes)) * kSumRoundedUp, rows);
+    std::array<std::uint32_t, kBlockFaces> near; // NOLINT: the kernel fills what is read.
+    kernels.near_pairs(rows, corners, others, own.rows, lanes, bound, own.slack(), nullptr,
+                       near.data());
+    FacePair pair{own.index, item.object.index()};
+    for (; lanes != 0; lanes &= lanes - 1)
+    {
+        pair.tool_lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
+        for (std::uint32_t left = near[pair.tool_lane]; left != 0; left &= left - 1)
+        {
+            if (!budget.take_triangles(1))
+            {
+                return false;
+            }
+            pair.lane = static_cast<std::uint32_t>(std::countr_zero(left));
+            queue_.add(pair, own, block, rows, views_.slack());
+            if (queue_.is_full())
+            {
+                measure();
+            }
+        }
+    }
+    return true;
+}
+
+/// Without those that may meet the other surface: no nearer face of it is looked for.
+std::uint32_t NearFaces::open_lanes(std::uint32_t block, std::uint32_t lanes) noexcept
+{
+    const Block* known = find_block(block);
+    for (std::uint32_t left = known != nullptr ? known->lanes : 0; left != 0; left &= left - 1)
+    {
+        const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
+        lanes &= known->gaps[lane] <= 0.0F ? ~(1U << lane) : ~0U;
+    }
+    return lanes;
+}
+
+void NearFaces::measure() noexcept
+{
+    own_.kernels().pair_distances(queue_.rows(), queue_.size(), distances_);
+    for (std::uint32_t lane = 0; lane < queue_.size(); ++lane)
+    {
+        take(queue_[lane], static_cast<double>(distances_.lower[lane]) - errors_of(queue_[lane]));
+    }
+    queue_.clear();
+}
+
+/// In quanta of the other.
+double NearFaces::errors_of(const FacePair& pair) const noexcept
+{
+    const double own_m = loose_ != nullptr
+                             ? loose_->errors_m[pair.tool_lane]
+                             : static_cast<double>(error_in_quanta(
+                                   own_.side(pair.tool_block).errors[pair.tool_lane])) *
+                                   static_cast<double>(own_.quantum_m());
+    return own_m * quanta_per_m_ * kRoundedUp +
+           static_cast<double>(error_in_quanta(other_.tree().side(pair.block).errors[pair.lane]));
+}
+
+void NearFaces::take(const FacePair& pair, double gap) noexcept
+{
+    const float lower = round_down_to_float(gap);
+    if (lower > bound_)
+    {
+        return;
+    }
+    Block* block = find_block(pair.tool_block);
+    if (block == nullptr && blocks_.full())
+    {
+        leave(lower);
+        return;
+    }
+    if (block == nullptr)
+    {
+        last_ = static_cast<std::uint32_t>(blocks_.size());
+        blocks_.push_back({pair.tool_block, 0, {}});
+        block = &blocks_[last_];
+    }
+    const std::uint32_t bit = 1U << pair.tool_lane;
+    float& kept = block->gaps[pair.tool_lane];
+    kept = (block->lanes & bit) != 0 ? std::min(kept, lower) : lower;
+    block->lanes |= bit;
+}
+
+/// Null when nothing of it is near so far.
+NearFaces::Block* NearFaces::find_block(std::uint32_t index) noexcept
+{
+    if (last_ < blocks_.size() && blocks_[last_].index == index)
+    {
+        return &blocks_[last_];
+    }
+    const auto* const found = std::ranges::find(blocks_, index, &Block::index);
+    if (found == blocks_.end())
+    {
+        return nullptr;
+    }
+    last_ = static_cast<std::uint32_t>(found - blocks_.begin());
+    return &blocks_[last_];
+}
+
+double NearFaces::to_m(float quanta) const noexcept
+{
+    const double nearest_m = static_cast<double>(quanta) / quanta_per_m_;
+    return quanta > 0.0F ? nearest_m / kRoundedUp : nearest_m * kRoundedUp;
+}
+
+} // namespace tactus

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/query/face_pair_queue.hpp"
+#include "rt_core/query/pair_walk.hpp"
+#include "rt_core/query/placed_blocks.hpp"
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <span>
+
+namespace tactus
+{
+
+/// Faces that are in no tree yet: lanes of a block by itself.
+struct LooseFaces
+{
+    const BlockGeometry& geometry;
+    std::uint32_t lanes{0};                     ///< Those that are meant; at least one,
+    std::array<double, kBlockFaces> errors_m{}; ///< and their errors.
+};
+
+/// How far coarse faces of a model are from another surface: lower bounds on the distances of
+/// active faces, both errors taken off. Lengths are of the model's own frame.
+///
+/// Pairs of boxes are walked as in a query, but of the model only where something is coarse: near a
+/// surface that is refined there is little to look at. The boxes of both must be right
+/// (AbTree::refit). Haptic thread; good for one search. 50 KiB.
+class NearFaces // NOLINT(cppcoreguidelines-pro-type-member-init): distances_ are written first.
+{
+public:
+    /// Coarse faces of one block that may be within the bound.
+    struct Block
+    {
+        std::uint32_t index{kNoNode}; ///< Of loose faces there is none.
+        std::uint32_t lanes{0};
+        std::array<float, kBlockFaces> gaps{}; ///< Of these lanes, in quanta of the other.
+    };
+
+    /// `other` is the surface as the model sees it; its budget bounds the work.
+    NearFaces(const AbTree& own, OtherSurface& other) noexcept TACTUS_NONBLOCKING;
+
+    /// Looks for all faces of the model within `bound_m`.
+    void find(double bound_m) noexcept TACTUS_NONBLOCKING;
+    /// The same of faces that will be the model's.
+    void find(const LooseFaces& faces, double bound_m) noexcept TACTUS_NONBLOCKING;
+
+    [[nodiscard]] std::span<const Block> blocks() const noexcept { return blocks_.view(); }
+    [[nodiscard]] double gap_m(const Block& block, std::uint32_t lane) const noexcept
+    {
+        TACTUS_ASSERT((block.lanes >> lane & 1U) != 0);
+        return to_m(block.gaps[lane]);
+    }
+    /// All that is coarse and in no block is beyond the bound, or no nearer than this: infinity
+    /// when everything was looked at.
+    [[nodiscard]] double rest_m() const noexcept { return to_m(rest_); }
+
+private:
+    void search(double bound_m, const PairWalk::Start& start, const LooseFaces* loose) noexcept;
+    [[nodiscard]] bool try_test(const PairWalk::Item& item, const PlacedBlock& own) noexcept;
+    [[nodiscard]] std::uint32_t open_lanes(std::uint32_t block, std::uint32_t lanes) noexcept;
+    void measure() noexcept;
+    void take(const FacePair& pair, double gap) noexcept;
+    [[nodiscard]] double errors_of(const FacePair& pair) const noexcept;
+    [[nodiscard]] Block* find_block(std::uint32_t index) noexcept;
+    void leave(float gap) noexcept { rest_ = std::min(rest_, gap); }
+    [[nodiscard]] double to_m(float quanta) const noexcept;
+
+    static constexpr float kNothingLeft = std::numeric_limits<float>::infinity();
+
+    const AbTree& own_;
+    OtherSurface& other_;
+    MeshViews views_;
+    PlacedBlocks placed_;
+    double quanta_per_m_; ///< Of the other, a length in the own frame.
+    float bound_{0.0F};
+    float rest_{kNothingLeft};
+    const LooseFaces* loose_{nullptr};
+    FacePairQueue queue_;
+    PairDistances distances_; ///< Of the queue.
+    StaticVector<Block, kMaxNearBlocks> blocks_;
+    std::uint32_t last_{0}; ///< The block that was looked up last.
+};
+
+} // namespace tactus

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "tests/bench/pair_replay.hpp"
+
+#include "tests/bench/stage_timer.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <span>
+
+namespace tactus::bench
+{
+
+namespace
+{
+
+/// At the first place, before anything is measured: a local model comes and is refined there.
+constexpr std::uint32_t kLeadIn = 500;
+/// A whole model of a million faces is filled in some 10,000.
+constexpr std::uint32_t kMostFillFrames = 100'000;
+
+test::RigOptions options_of(const PairRun& run)
+{
+    test::RigOptions options;
+    options.pool_bytes = run.pool_bytes;
+    options.static_when_it_fits = run.is_static;
+    ToolSpec tool;
+    tool.radius_m = run.radius_m;
+    tool.speed_max_m_per_s = run.speed_m_per_s;
+    tool.core = MeshCore{ModelId{1}};
+    tool.passes_through = true;
+    options.tools = {tool};
+    return options;
+}
+
+bool try_fill(test::FrameRig& rig, const ToolState& place)
+{
+    Budgets ample;
+    ample.splits = kMaxSplitsPerFrame;
+    ample.pages = ample.requests = ample.regions = 64;
+    const auto is_complete = [&rig](std::uint32_t model)
+    { return rig.model(ModelId{model}).is_complete(); };
+    for (std::uint32_t i = 0; i < kMostFillFrames; ++i)
+    {
+        rig.step(std::span(&place, 1), ample);
+        if (is_complete(0) && is_complete(1))
+        {
+            return true;
+        }
+    }
+    return false;
+}
+
+std::uint64_t bits_of(const FrameOutput& output)
+{
+    const PairOutput& pair = output.pairs[0];
+    return std::bit_cast<std::uint64_t>(pair.lower_m) +
+           3 * std::bit_cast<std::uint64_t>(pair.upper_m) + 5 * pair.mesh->meeting.size() +
+           7 * output.models[0].state_hash + 11 * output.models[1].state_hash;
+}
+
+void keep(const StageTimer& timer, std::size_t frame, PairFrames& frames)
+{
+    double sum_us = 0.0;
+    for (const Stage stage : {Stage::load, Stage::refine, Stage::refit, Stage::query})
+    {
+        frames.stage_us[static_cast<std::size_t>(stage)].keep(frame, timer.us(stage));
+        sum_us += timer.us(stage);
+    }
+    frames.sum_us.keep(frame, sum_us);
+}
+
+/// None when a model did not get as far as it should.
+std::optional<std::uint64_t> replay_once(const PairRun& run, PairFrames& frames)
+{
+    test::FrameRig rig({&run.object.model, &run.tool.model}, options_of(run));
+    if (run.is_static && !try_fill(rig, run.places.front()))
+    {
+        return std::nullopt;
+    }
+    for (std::uint32_t i = 0; i < kLeadIn; ++i)
+    {
+        rig.step(std::span(run.places).first(1), {});
+    }
+    const bool is_first = frames.answers.empty();
+    StageTimer timer;
+    std::uint64_t hash = 0;
+    for (std::size_t i = 0; i < run.places.size(); ++i)
+    {
+        rig.deliver();
+        const FrameInput input = rig.input(std::span(run.places).subspan(i, 1), {});
+        timer.begin();
+        const FrameOutput output = rig.frame().run(input, timer.mark());
+        keep(timer, i, frames);
+        hash += bits_of(output) * (2 * i + 1);
+        if (is_first)
+        {
+            frames.answers.push_back(output.pairs[0]);
+            frames.work += output.work;
+            frames.meeting_pairs += output.pairs[0].mesh->meeting.size();
+            frames.active_faces = std::max(frames.active_faces, rig.model().forest.active_faces());
+        }
+    }
+    return hash;
+}
+
+} // namespace
+
+Result<PairFrames, SceneError> replay_pair(const PairRun& run, std::uint32_t passes)
+{
+    PairFrames frames;
+    frames.stage_us.fill(LeastTimes(run.places.size()));
+    frames.sum_us = LeastTimes(run.places.size());
+    for (std::uint32_t pass = 0; pass < passes; ++pass)
+    {
+        const auto hash = replay_once(run, frames);
+        if (!hash)
+        {
+            return SceneError{fmt::format("{} and {} are not whole after {} frames",
+                                          run.object.model.name, run.tool.model.name,
+                                          kMostFillFrames)};
+        }
+        if (pass > 0 && *hash != frames.hash)
+        {
+            return SceneError{run.object.model.name + ": replays gave other answers"};
+        }
+        frames.hash = *hash;
+    }
+    return frames;
+}
+
+} // namespace tactus::bench

@@ -1,0 +1,290 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+
+/// The suite `table2`: the paper's Table 2, a mesh that touches a mesh. The same motion against the
+/// whole object, its base mesh alone, and the object refined where the tool is.
+
+#include "rt_core/math/vec3.hpp"
+#include "tests/bench/measuring.hpp"
+#include "tests/bench/mesh_touch.hpp"
+#include "tests/bench/pair_replay.hpp"
+#include "tests/bench/pair_trial.hpp"
+#include "tests/bench/peer_cases.hpp"
+#include "tests/bench/static_model.hpp"
+#include "tests/bench/suites.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+namespace tactus::bench
+{
+
+namespace
+{
+
+constexpr std::size_t kTable2MiB = std::size_t{1} << 20U;
+constexpr SceneSource kTable2Igea{"igea-269k", "igea.ply", 0, 268'686};
+constexpr double kSkin_diag = 0.001;
+/// The motion's slide and turn together, and more.
+constexpr double kFastest_diag_per_s = 0.5;
+/// Room for what the tool needs beside the object, and for tables.
+constexpr std::size_t kToolBytes = 8 * kTable2MiB;
+constexpr double kActiveGoal_percent = 5.0;
+
+struct Table2Case
+{
+    SceneSource scene;
+    std::size_t local_bytes; ///< Pools of the object that is refined locally, and of the tool.
+    double refine_us{kNoGoal};
+    double query_to_static{kNoGoal};
+    double frame_to_static{kNoGoal};
+    bool is_in_paper{false};
+};
+
+/// What the paper measured, in microseconds; its bunny has 37,576 faces.
+struct PaperTimes
+{
+    const char* by;
+    Stage stage;
+    double us;
+};
+constexpr std::array kPaperTimes{
+    PaperTimes{"original static", Stage::query, 5'700.0},
+    PaperTimes{"base static", Stage::query, 2'750.0},
+    PaperTimes{"local", Stage::query, 2'870.0},
+    PaperTimes{"local", Stage::refine, 5'400.0},
+    PaperTimes{"local", Stage::refit, 1'800.0},
+};
+
+/// What one of the three is to reach.
+struct Table2Goals
+{
+    double refine_us{kNoGoal};
+    double active_percent{kNoGoal};
+    double error_diag{kNoGoal};
+};
+
+class Table2
+{
+public:
+    Table2(const CaseContext& context, const Table2Case& test_case, const Scene& object,
+           const Scene& tool)
+        : context_(context), case_(test_case), object_(object), tool_(tool)
+    {
+        const auto places =
+            mesh_touch_motion(object.touch(), faces_in_source_frame(tool), MeshProbe::large,
+                              context.options.frames_or(2'000, 500));
+        truth_ = find_pair_truth(tool, object, places);
+        for (const Similarity& place : places)
+        {
+            ToolState& state = places_.emplace_back();
+            state.position_m = place.translation_m;
+            state.rotation = place.rotation;
+        }
+    }
+
+    CaseFailure run()
+    {
+        const auto base = base_scene();
+        if (!base)
+        {
+            return base.error().text;
+        }
+        CaseFailure failure = add("original static", object_, room_for_all(object_).pool_bytes,
+                                  true, {kNoGoal, kNoGoal, kOurError_diag});
+        if (!failure)
+        {
+            failure =
+                add("base static", *base.value(), room_for_all(*base.value()).pool_bytes, true, {});
+        }
+        if (!failure)
+        {
+            failure = add("local", object_, case_.local_bytes, false,
+                          {case_.refine_us, kActiveGoal_percent, kOurError_diag});
+        }
+        return failure;
+    }
+
+private:
+    /// The base mesh of the object as a model of its own.
+    Result<const Scene*, SceneError> base_scene() const
+    {
+        auto base = coarser_mesh("base-of-" + object_.model.name, object_.model, 1);
+        if (!base)
+        {
+            return base.error();
+        }
+        return context_.scenes.get(base.value());
+    }
+
+    CaseFailure add(const char* by, const Scene& object, std::size_t object_bytes, bool is_static,
+                    const Table2Goals& goals)
+    {
+        const double diagonal_m = object_.model.diagonal_m;
+        PairRun run{tool_,
+                    object,
+                    places_,
+                    kSkin_diag * diagonal_m,
+                    kFastest_diag_per_s * diagonal_m,
+                    object_bytes + (is_static ? kToolBytes : 0),
+                    is_static};
+        for (ToolState& place : run.places)
+        {
+            for (std::size_t axis = 0; axis < 3; ++axis)
+            {
+                place.position_m[static_cast<Eigen::Index>(axis)] +=
+                    object_.model.origin_m[axis] - object.model.origin_m[axis];
+            }
+        }
+        const auto frames = replay_pair(run, context_.options.passes_or(5, 3));
+        if (!frames)
+        {
+            return frames.error().text;
+        }
+        return add_rows(by, run, frames.value(), goals);
+    }
+
+    CaseFailure add_rows(const char* by, const PairRun& run, const PairFrames& frames,
+                         const Table2Goals& goals)
+    {
+        Row common = context_.common_row(run.object.model.name);
+        common.by = by;
+        common.frames = run.places.size();
+        common.hash = frames.hash;
+        CaseRows rows(context_.rows, common);
+        add_times(rows, by, frames, goals);
+        const auto faces = static_cast<double>(object_.model.faces.size());
+        rows.add("active faces", 100.0 * frames.active_faces / faces, "%",
+                 goal_if(goals.active_percent));
+        const auto error_m = largest_error_m(run, frames, goals.error_diag < kNoGoal);
+        if (!error_m)
+        {
+            return fmt::format("{}: an answer does not hold the truth", by);
+        }
+        rows.add("error max", *error_m / object_.model.diagonal_m, "diag",
+                 goal_if(goals.error_diag));
+        rows.add("open answers", percent_open(frames), "%");
+        rows.add("meeting pairs",
+                 static_cast<double>(frames.meeting_pairs) / static_cast<double>(run.places.size()),
+                 "/frame");
+        rows.add("splits", frames.work.splits / static_cast<double>(run.places.size()), "/frame");
+        rows.add("pools", static_cast<double>(run.pool_bytes) / kTable2MiB, "MiB");
+        return std::nullopt;
+    }
+
+    void add_times(CaseRows& rows, const std::string& by, const PairFrames& frames,
+                   const Table2Goals& goals)
+    {
+        constexpr std::array kNames{std::pair(Stage::query, "T_Q"), std::pair(Stage::refit, "T_B"),
+                                    std::pair(Stage::refine, "T_R"), std::pair(Stage::load, "T_L")};
+        for (const auto& [stage, name] : kNames)
+        {
+            const Spread us = spread_of(frames.stage_us[static_cast<std::size_t>(stage)].least());
+            const bool has_goal = stage == Stage::refine;
+            Row& row = rows.add(fmt::format("{}.p50", name), us.p50, "us",
+                                has_goal ? goal_if(goals.refine_us) : std::nullopt);
+            const auto* const paper =
+                std::ranges::find_if(kPaperTimes, [&, stage = stage](const PaperTimes& times)
+                                     { return by == times.by && stage == times.stage; });
+            if (case_.is_in_paper && paper != kPaperTimes.end())
+            {
+                row.peer = "paper";
+                row.peer_value = paper->us;
+            }
+            rows.add(fmt::format("{}.p99", name), us.p99, "us");
+            query_us_ = by == "original static" && stage == Stage::query ? us.p50 : query_us_;
+            if (by == "local" && stage == Stage::query)
+            {
+                rows.add("T_Q.p50 to static", us.p50 / query_us_, "",
+                         goal_if(case_.query_to_static));
+            }
+        }
+        const Spread sum_us = spread_of(frames.sum_us.least());
+        rows.add("T.p50", sum_us.p50, "us");
+        rows.add("T.p99", sum_us.p99, "us");
+        if (by == "local")
+        {
+            rows.add("T.p50 to static T_Q", sum_us.p50 / query_us_, "",
+                     goal_if(case_.frame_to_static));
+        }
+    }
+
+    static double percent_open(const PairFrames& frames)
+    {
+        const auto open = std::ranges::count_if(
+            frames.answers, [](const PairOutput& answer)
+            { return answer.kind != AnswerKind::exact && answer.kind != AnswerKind::decided; });
+        return 100.0 * static_cast<double>(open) / static_cast<double>(frames.answers.size());
+    }
+
+    /// How far answers are off the object's own surface. One that is decided says that nothing is
+    /// within the skin. None when one that is to hold the truth doesn't.
+    [[nodiscard]] std::optional<double>
+    largest_error_m(const PairRun& run, const PairFrames& frames, bool holds_truth) const
+    {
+        double largest = 0.0;
+        for (std::size_t i = 0; i < frames.answers.size(); ++i)
+        {
+            const PairOutput& answer = frames.answers[i];
+            const double truth = truth_.distances_m[i];
+            const double rounding = kOurError_diag * object_.model.diagonal_m;
+            if (holds_truth &&
+                (answer.lower_m > truth + rounding || answer.upper_m < truth - rounding))
+            {
+                return std::nullopt;
+            }
+            const double error = answer.kind == AnswerKind::decided
+                                     ? run.radius_m - truth
+                                     : std::max(answer.upper_m - truth, truth - answer.lower_m);
+            largest = std::max(largest, error);
+        }
+        return largest;
+    }
+
+    const CaseContext& context_;
+    const Table2Case& case_;
+    const Scene& object_;
+    const Scene& tool_;
+    std::vector<ToolState> places_;
+    PairTruth truth_;
+    double query_us_{0.0}; ///< T_Q against the whole object.
+};
+
+CaseFailure run_table2_case(const CaseContext& context, const Table2Case& test_case)
+{
+    const auto object = context.scenes.get(test_case.scene);
+    if (!object)
+    {
+        return object.error().text;
+    }
+    const auto tool = context.scenes.get(make_tool_mesh(*object.value(), MeshProbe::large));
+    if (!tool)
+    {
+        return tool.error().text;
+    }
+    const PinnedCore pinned(context.options.core);
+    return Table2(context, test_case, *object.value(), *tool.value()).run();
+}
+
+std::vector<Case> table2_cases()
+{
+    const auto one = [](const char* name, When when, const Table2Case& test_case)
+    { return make_case(name, when, run_table2_case, test_case); };
+    return {
+        one("bunny", When::always, {kBunny, 3 * kTable2MiB, 40.0, 1.35, 2.1, true}),
+        one("igea", When::full_only, {kTable2Igea, 16 * kTable2MiB}),
+        one("1.1M", When::full_only, {kFineBunny, 32 * kTable2MiB, kNoGoal, 1.3}),
+        one("tiny", When::named_only, {kTiny, kTable2MiB}),
+    };
+}
+
+} // namespace
+
+Suite table2_suite()
+{
+    return {"table2", table2_cases};
+}
+
+} // namespace tactus::bench

@@ -1,0 +1,78 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# at_the_door.sh BIN CHECK_REPORT SANITIZER ATTACK: strangers at the port of a udp device, and a
+# mesh that is made to keep spm_build busy.
+docs=$(cd "$(dirname "$0")/../../docs" && pwd)
+flood=$(cd "$(dirname "$0")" && pwd)/datagrams.py
+readonly docs flood
+source "$(dirname "$0")/../integration/hrtc/common.sh"
+readonly attack=$4
+readonly port=$((20000 + $$ % 20000))
+
+drive() { # drive: a driver of its own; its id is in $driving.
+    python3 "$docs/examples/udp_driver.py" "$port" 0.02 >driver.log 2>&1 &
+    driving=$!
+    started+=("$driving")
+}
+# What it names; no force from it above the device's, no own fault.
+end_well() { # end_well REFUSAL
+    stop TERM "$controller"
+    cat hrtc.log
+    ((stopped_with == 0)) || fail "hrtc ended with $stopped_with"
+    check report.json frames '>' 300 force.max_n '<=' 8 "tools.0.traffic.refused.$1" '>=' 3
+    check_clean report.json
+    grep -q 'tool 0: [0-9]* datagrams .* refused, most of them: ' hrtc.log \
+        || fault 'no line tells of the strangers'
+    (($(wc -l <hrtc.log) < 100)) || fault 'the log is full'
+}
+touch_by_udp() {
+    model bumpy-sphere-20000 bumpy.spm
+    drive
+    start_hrtc --transport file --model bumpy.spm --device "udp:$port" \
+        --device-frame 0,0,0.06 --duration 60 --report report.json
+    wait_for_sleeps 300 "$controller"
+}
+
+case $attack in
+    udp_impostor)
+        # It describes itself ten times a second, and waits for the driver to stumble.
+        touch_by_udp
+        true_one=$driving
+        drive
+        sleep 1.5
+        kill -STOP "$true_one"
+        sleep 0.2
+        kill -CONT "$true_one"
+        sleep 1
+        end_well foreign
+        # The true one's instance alone, however often it stumbled: no force for the other.
+        check report.json tools.0.traffic.samples '>' 100
+        ;;
+    udp_flooded)
+        touch_by_udp
+        python3 "$flood" "$port" 1.5 >flood.log || fault "the flood: $(cat flood.log)"
+        end_well size
+        check report.json tools.0.traffic.samples '>' 100
+        ;;
+    edge_faces)
+        # 3,000 faces round one edge.
+        awk 'BEGIN {
+            print "v 0 0 0\nv 0 0 1"
+            for (i = 0; i < 3000; ++i) {
+                a = 6.283185307 * i / 3000
+                printf "v %.9f %.9f 0.5\n", cos(a), sin(a)
+                printf "f 1 2 %d\n", i + 3
+            }
+        }' >fan.obj
+        # What is left can't vanish in the rounds that are left; no more than a minute of processor
+        # time. It may tell how far it is before.
+        code=0
+        (ulimit -t 60 && "$build" fan.obj --unit m -o fan.spm) >build.log 2>&1 || code=$?
+        { ((code == 2)) && tail -n 1 build.log | grep -Eq \
+            "not written: the mesh can't be simplified below 2[0-9]{3} faces"; } \
+            || fault "spm_build ended with $code: $(cat build.log)"
+        [[ ! -e fan.spm ]] || fault 'it wrote a model'
+        ;;
+    *) fail "there is no attack $attack" ;;
+esac
+finish

@@ -1,0 +1,54 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# dds_security.sh BIN CHECK_REPORT SANITIZER ATTACKER KEYS: the recipe of docs/security.md, made by
+# KEYS. Host and controller with certificates work as without; a program without one sees nobody,
+# and one with a controller's can't speak as a host.
+source "$(dirname "$0")/../integration/hrtc/common.sh"
+readonly attacker=$4 keys=$5
+if [[ -z "$(find /usr/lib -name libdds_security_auth.so -print -quit)" ]]; then
+    echo 'skipped: Cyclone DDS is here without its security plugins'
+    exit 77
+fi
+command -v openssl >/dev/null || {
+    echo 'skipped: openssl is needed to make certificates'
+    exit 77
+}
+readonly plain='<CycloneDDS><Domain id="any"><General><Interfaces><NetworkInterface name="lo"
+multicast="false"/></Interfaces><AllowMulticast>false</AllowMulticast></General><Discovery>
+<ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>9</MaxAutoParticipantIndex>
+<LeaseDuration>1 s</LeaseDuration><Peers><Peer address="127.0.0.1"/></Peers></Discovery></Domain>
+</CycloneDDS>'
+
+bash "$keys" roles >keys.log || fail "the keys: $(cat keys.log)"
+model bumpy-sphere-20000 bumpy.spm
+CYCLONEDDS_URI=file://$PWD/roles/host.xml start_publisher bumpy.spm
+CYCLONEDDS_URI=file://$PWD/roles/controller.xml start_hrtc --model bumpy --name hand --no-static \
+    --device sim:touch --duration 12 --wait 30 --report report.json
+wait_for_line publish.log 'controller hand subscribed' 30
+
+expect 2 "is not published" "$hrtc" --domain "$domain" --model bumpy --allow-no-rt --wait 2
+code=0
+CYCLONEDDS_URI=$plain "$attacker" "$domain" 1 catalogue_forged >outsider.log 2>&1 || code=$?
+{ [[ $code == 2 ]] && grep -q 'saw no host and controller' outsider.log; } \
+    || fault "an outsider ended with $code: $(cat outsider.log)"
+
+# A controller's certificate reads what controllers do and writes no more than they do.
+for attack in catalogue_forged pose_swing; do
+    code=0
+    CYCLONEDDS_URI=file://$PWD/roles/controller.xml "$attacker" "$domain" 1 "$attack" \
+        >insider.log 2>&1 || code=$?
+    { [[ $code == 2 ]] && grep -q 'Not Allowed By Security' insider.log; } \
+        || fault "$attack with a controller's certificate ended with $code: $(cat insider.log)"
+done
+
+code=0
+wait "$controller" || code=$?
+cat hrtc.log publish.log
+((code == 0)) || fail "hrtc ended with $code"
+check report.json frames == 12000 wire.host_lost == 0 models.0.pieces_refused == 0 \
+    models.0.bytes_received '>' 10000 refused == 0
+check_contact report.json force.contact_share 0.3
+check_clean report.json
+stop TERM "$publisher"
+((stopped_with == 0)) || fault "spm_publish ended with $stopped_with"
+finish

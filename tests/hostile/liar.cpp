@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+
+/// liar MODEL OUT LIE: writes a model that says of itself what isn't so, with all checksums and
+/// hashes as they should be. Exits 3 for a lie that it doesn't know.
+
+#include "rt_core/spm/base_mesh.hpp"
+#include "rt_core/spm/header.hpp"
+#include "tests/fuzz/seal_model.hpp"
+
+#include <cstdint>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace
+{
+
+using namespace tactus;
+
+using File = std::vector<char>;
+using Lie = std::function<void(HeaderFields&, File&)>;
+
+constexpr std::size_t kBoxesAt = sizeof(HeaderFields);
+
+std::size_t regions_at(const HeaderFields& fields)
+{
+    const ModelCounts counts{fields.base_vertices, fields.base_faces, fields.records};
+    return sizeof(HeaderFields) + counts.index_pages() * sizeof(IndexPageEntry);
+}
+
+void put_bits(File& file, std::uint64_t at_bit, std::uint32_t bits, std::uint32_t value)
+{
+    for (std::uint32_t i = 0; i < bits; ++i, ++at_bit)
+    {
+        const auto mask = static_cast<unsigned>(1U << (at_bit % 8));
+        const auto byte = static_cast<unsigned>(static_cast<unsigned char>(file[at_bit / 8]));
+        file[at_bit / 8] = static_cast<char>((value >> i & 1U) != 0 ? byte | mask : byte & ~mask);
+    }
+}
+
+/// Of each base face the field that begins `from_end` bits before the face's end.
+void put_in_base_faces(const HeaderFields& fields, File& file, std::uint32_t from_end,
+                       std::uint32_t bits, std::uint32_t value)
+{
+    const BaseLayout layout(fields);
+    const std::uint64_t vertex = layout.axis_bits[0] + layout.axis_bits[1] + layout.axis_bits[2];
+    const std::uint64_t face = 3ULL * layout.vertex_bits + layout.bucket_bits + 8;
+    for (std::uint64_t i = 1; i <= fields.base_faces; ++i)
+    {
+        put_bits(file, 8 * fields.base_offset + fields.base_vertices * vertex + i * face - from_end,
+                 bits, value);
+    }
+}
+
+/// All chunks' boxes are the low corner of their page's.
+void shrink_boxes(HeaderFields& fields, File& file)
+{
+    const ModelCounts counts{fields.base_vertices, fields.base_faces, fields.records};
+    for (std::uint32_t chunk = 0; chunk < counts.chunks(); ++chunk)
+    {
+        std::memset(file.data() + fields.index_offset + 1'928 * (chunk / 64) + 4 +
+                        30 * (chunk % 64),
+                    0, 12);
+    }
+}
+
+const std::map<std::string, Lie>& lies()
+{
+    static const std::map<std::string, Lie> all{
+        {"faces", [](HeaderFields& f, File&) { ++f.source_faces; }},
+        {"vertices", [](HeaderFields& f, File&) { --f.source_vertices; }},
+        {"depth", [](HeaderFields& f, File&) { ++f.max_depth; }},
+        {"open", [](HeaderFields& f, File&) { f.topology = kOpenTopology; }},
+        {"extent", [](HeaderFields& f, File&) { ++f.extent_quanta[1]; }},
+        {"no_error", [](HeaderFields& f, File&) { f.max_error_quanta = 0; }},
+        {"most_error", [](HeaderFields& f, File&) { f.max_error_quanta = UINT32_MAX; }},
+        {"regions",
+         [](HeaderFields& f, File& file)
+         {
+             f.occupied_regions = 1;
+             const std::size_t bytes =
+                 f.header_bytes - regions_at(f) - kRootHashBytes - kChecksumBytes;
+             std::memset(file.data() + regions_at(f), 0, bytes);
+             file[regions_at(f)] = 1;
+         }},
+        {"boxes", shrink_boxes},
+        {"page_boxes", [](HeaderFields&, File& file)
+         { std::memcpy(file.data() + kBoxesAt + 12, file.data() + kBoxesAt, 12); }},
+        {"base_errors", [](HeaderFields& f, File& file) { put_in_base_faces(f, file, 8, 8, 1); }},
+        {"buckets",
+         [](HeaderFields& f, File& file) {
+             put_in_base_faces(f, file, 8 + BaseLayout(f).bucket_bits, BaseLayout(f).bucket_bits,
+                               0);
+         }},
+        {"origin", [](HeaderFields& f, File&) { f.origin_m[0] = 1e300; }},
+        {"far", [](HeaderFields& f, File&) { f.origin_m[2] = -1e9; }},
+        {"quantum", [](HeaderFields& f, File&) { f.quantum_log2 = kMaxQuantumLog2; }},
+        {"quantisation", [](HeaderFields& f, File&) { f.quantisation_m = 1e300; }},
+    };
+    return all;
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+    const auto lie = argc == 4 ? lies().find(argv[3]) : lies().end();
+    if (lie == lies().end())
+    {
+        std::fprintf(stderr, "liar MODEL OUT LIE; lies:");
+        for (const auto& [name, unused] : lies())
+        {
+            std::fprintf(stderr, " %s", name.c_str());
+        }
+        std::fprintf(stderr, "\n");
+        return 3;
+    }
+    std::ifstream in(argv[1], std::ios::binary);
+    File file{std::istreambuf_iterator<char>(in), {}};
+    HeaderFields fields;
+    std::memcpy(&fields, file.data(), sizeof(fields));
+    lie->second(fields, file);
+    std::memcpy(file.data(), &fields, sizeof(fields));
+    fuzz::seal_model(std::as_writable_bytes(std::span(file)));
+    std::ofstream(argv[2], std::ios::binary).write(file.data(), std::ssize(file));
+    return 0;
+}

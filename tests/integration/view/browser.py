@@ -1,0 +1,360 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
+# browser.py BIN_DIR: the page of spm_view in headless Chromium, clicked at through WebDriver, while
+# hrtc touches a model. Exit code 77 without Debian's chromium and chromium-driver.
+# With VIEW_PICTURES it leaves pictures of the page in that folder.
+#
+# Every wait has an end and says what never came; whatever happens, all that was started is ended,
+# browsers that have left their parents included.
+import base64
+import ctypes
+import json
+import os
+import pathlib
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import urllib.error
+import urllib.request
+
+PATIENCE_S = 90  # Only what is broken waits this long,
+ALL_S = 400  # and all of it together this long.
+CALL_S = 90  # One answer of the driver.
+LOAD_S = 30  # For a page to be there.
+END_S = 10  # For killed processes to be gone.
+# No message bus, no network, no shared memory that a container may lack, and no watchdog that takes
+# a busy machine for a broken graphics card.
+FLAGS = ["--headless", "--no-sandbox", "--no-proxy-server", "--use-gl=angle",
+         "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-gpu-watchdog",
+         "--disable-dev-shm-usage", "--disable-background-networking", "--disable-sync",
+         "--disable-component-update", "--disable-default-apps", "--disable-extensions",
+         "--disable-breakpad", "--no-first-run", "--password-store=basic"]
+PR_SET_PDEATHSIG = 1
+PR_SET_CHILD_SUBREAPER = 36
+
+began_s = time.monotonic()
+system = ctypes.CDLL(None)
+browsers = []
+started = {}  # By their logs.
+
+
+def start(*command, log):
+    quiet = {"DBUS_SESSION_BUS_ADDRESS": "disabled:", "DBUS_SYSTEM_BUS_ADDRESS": "disabled:",
+             "HOME": os.getcwd(), "TMPDIR": os.getcwd()}
+    with open(log, "wb") as file:
+        process = subprocess.Popen(
+            command, stdin=subprocess.DEVNULL, stdout=file, stderr=subprocess.STDOUT,
+            env=os.environ | quiet,  # They end with this process, even if that is killed.
+            preexec_fn=lambda: system.prctl(PR_SET_PDEATHSIG, signal.SIGKILL, 0, 0, 0))
+    started[log] = process
+    return process
+
+
+def children_of(parent):
+    """Of all that are there, and theirs."""
+    parents = {}
+    for status in pathlib.Path("/proc").glob("[0-9]*/stat"):
+        try:
+            fields = status.read_text(errors="replace").rpartition(")")[2].split()
+            parents[int(status.parent.name)] = int(fields[1])
+        except OSError:
+            pass  # It has ended.
+    found = {parent}
+    while True:
+        more = {child for child, of in parents.items() if of in found} - found
+        if not more:
+            return found - {parent}
+        found |= more
+
+
+def end_all():
+    """Whatever was started, and what that has started: orphans are this process's children."""
+    end = time.monotonic() + END_S
+    while left := children_of(os.getpid()):
+        for child in left:
+            try:
+                os.kill(child, signal.SIGKILL)
+            except ProcessLookupError:
+                pass
+        try:
+            while os.waitpid(-1, os.WNOHANG)[0] != 0:
+                pass
+        except ChildProcessError:
+            pass
+        if time.monotonic() > end:
+            print("still there after SIGKILL:", sorted(left), flush=True)
+            return
+        time.sleep(0.02)
+
+
+def fail(what):
+    looked = browsers.pop() if browsers else None  # Once: asking may fail as well.
+    if looked:
+        print("--- the page:", looked.run(
+            "return [document.readyState, document.body.innerText, performance.getEntries()"
+            ".map((entry) => `${entry.name} ${entry.duration} ${entry.responseStatus}`)]"))
+        print("--- its complaints:", looked.complaints(), flush=True)
+    for log, process in started.items():
+        lines = pathlib.Path(log).read_text(errors="replace").splitlines()
+        code = process.poll()
+        state = "runs" if code is None else f"has ended with {code}"
+        print(f"--- {log}, whose program {state}; its last lines", *lines[-12:], sep="\n")
+    sys.exit(f"FAULT after {time.monotonic() - began_s:.0f} s: {what}")
+
+
+def line_in(log, pattern):
+    """What the pattern's group is in a line of the file, once it is there."""
+    return eventually(lambda: re.search(pattern, pathlib.Path(log).read_text(errors="replace")),
+                      f"'{pattern}' in {log}").group(1)
+
+
+def eventually(ask, what):
+    print(f"{time.monotonic() - began_s:5.1f} s: waits for {what}", flush=True)
+    end = min(time.monotonic() + PATIENCE_S, began_s + ALL_S)
+    while True:
+        answer = ask()
+        if answer:
+            return answer
+        if time.monotonic() > end:
+            fail(f"never came: {what}")
+        time.sleep(0.1)
+
+
+class Browser:
+    def __init__(self, driver):
+        port = line_in(driver, r"successfully on port (\d+)")
+        self.root = f"http://127.0.0.1:{port}/session"
+        folder = f"--user-data-dir={os.getcwd()}/profile"
+        limits = {"pageLoad": CALL_S * 900, "script": CALL_S * 900}  # In ms.
+        # Waiting for a page to be loaded is ours: the driver's may never end on a busy machine.
+        wanted = {"alwaysMatch": {"pageLoadStrategy": "none", "goog:chromeOptions": {"args": [*FLAGS, folder]},
+                                  "goog:loggingPrefs": {"browser": "ALL"}, "timeouts": limits}}
+        self.root += "/" + self.call("POST", "", {"capabilities": wanted})["sessionId"]
+        browsers.append(self)
+
+    def ask(self, method, path, body=None):
+        data = None if body is None else json.dumps(body).encode()
+        request = urllib.request.Request(self.root + path, data, method=method)
+        opener = urllib.request.build_opener(urllib.request.ProxyHandler({}))
+        return json.load(opener.open(request, timeout=CALL_S))["value"]
+
+    def call(self, method, path, body=None):
+        try:
+            return self.ask(method, path, body)
+        except urllib.error.HTTPError as error:
+            fail(f"{method} {path}: {error.read().decode()[:400]}")
+        except (OSError, ValueError) as error:
+            fail(f"chromedriver's answer to {method} {path or 'a new session'} never came: {error}")
+
+    def open(self, url, is_there, what):
+        """Loads it again where it doesn't come: browsers lose a connection now and then."""
+        begun_s = [0.0]
+
+        def try_it():
+            if time.monotonic() - begun_s[0] > LOAD_S:
+                begun_s[0] = time.monotonic()
+                self.call("POST", "/url", {"url": url})
+            return is_there()
+        eventually(try_it, what)
+
+    def run(self, script):
+        return self.call("POST", "/execute/sync", {"script": script, "args": []})
+
+    def text(self, name):
+        return self.run(f"const found = document.getElementById('{name}');"
+                        "return found ? found.textContent : '';")
+
+    def element(self, name):
+        found = self.call("POST", "/element", {"using": "css selector", "value": f"#{name}"})
+        return "/element/" + next(iter(found.values()))
+
+    def click(self, name):
+        self.call("POST", self.element(name) + "/click", {})
+
+    def press(self, name, pressed):
+        """Clicks until it is so: a click that comes while the page moves may miss."""
+        def is_so():
+            return self.run(f"return document.getElementById('{name}').ariaPressed") == pressed
+
+        def try_it():
+            if not is_so():
+                self.click(name)
+            return is_so()
+        eventually(try_it, f"'{name}' pressed: {pressed}")
+
+    def resize(self, width, height):
+        self.call("POST", "/goog/cdp/execute", {  # A window can't be as narrow as a telephone.
+            "cmd": "Emulation.setDeviceMetricsOverride",
+            "params": {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}})
+        eventually(lambda: self.run("return innerWidth") == width, f"a page {width} px wide")
+
+    def picture(self, name):
+        folder = os.environ.get("VIEW_PICTURES")
+        if folder:
+            try:
+                data = base64.b64decode(self.ask("GET", "/screenshot"))
+                pathlib.Path(folder, name + ".png").write_bytes(data)
+            except OSError as error:  # A busy machine draws none in the driver's 10 s.
+                print(f"no picture {name}: {error}", flush=True)
+
+    def complaints(self):
+        """But those of fronts that aren't kept any more: of a controller that was silent."""
+        entries = self.call("POST", "/se/log", {"type": "browser"})
+        return {entry["message"] for entry in entries if entry["level"] == "SEVERE" and
+                not re.search(r"/(front|boxes|loaded)\?.* 4\d\d ", entry["message"])}
+
+
+def expect(is_so, what):
+    if not is_so:
+        fail(what)
+
+
+def look(browser, url, serve):
+    browser.resize(1440, 900)
+    browser.open(f"{url}?theme=light",
+                 lambda: "waits for a controller on DDS domain" in browser.text("waits"),
+                 "what the page waits for")
+    hand = serve()
+    eventually(lambda: browser.text("faces").endswith("faces"), "the controller's faces")
+    eventually(lambda: browser.text("words").startswith("force "), "the force in words")
+    expect(browser.text("waits") == "", "it still waits: " + browser.text("waits"))
+    eventually(lambda: browser.run("return document.querySelector('.names').textContent")
+               .startswith("T_L "), "stage times")
+    for theme in ("light", "dark"):
+        time.sleep(1.0)
+        browser.picture(theme)
+        before = browser.run("return getComputedStyle(document.body).backgroundColor")
+        browser.click("theme")
+        after = browser.run("return getComputedStyle(document.body).backgroundColor")
+        expect(before != after, "the theme stays")
+    boxes(browser)
+    frozen_page(browser)
+    browser.press("freeze", "true")  # A machine without a graphics card draws slowly.
+    for width in (400, 900, 2560):
+        browser.resize(width, 1000)
+        wide = browser.run("return document.documentElement.scrollWidth - innerWidth")
+        expect(wide <= 0, f"{wide} pixels too wide at {width}")
+        browser.picture(f"wide-{width}")
+    browser.resize(900, 700)
+    browser.press("freeze", "false")
+    hand.terminate()
+    eventually(lambda: hand.poll() is not None, "hrtc's end")
+    eventually(lambda: "waits for" in browser.text("waits"), "that the controller has gone")
+    expect(not browser.complaints(), f"the browser complains: {sorted(browser.complaints())[:3]}")
+
+
+def choose(browser, name, value):
+    browser.run(f"const by = document.getElementById('{name}'); by.value = '{value}';"
+                "by.dispatchEvent(new Event('change'));")
+
+
+def box_count(browser):
+    found = re.search(r", ([\d,]+) box", browser.text("faces"))
+    return int(found[1].replace(",", "")) if found else 0
+
+
+def boxes(browser):
+    """Of the tree, level by level: one at the root, more and more below it."""
+    counts = []
+    for level in ("0", "2", "24"):
+        choose(browser, "level", level)
+        least = counts[-1] if counts else 0
+        eventually(lambda: box_count(browser) > least, f"boxes of level {level}, after {counts}")
+        counts.append(box_count(browser))
+    expect(counts[0] == 1, f"{counts[0]} boxes at the root")
+    choose(browser, "level", "")
+    browser.click("loaded")
+    eventually(lambda: "box" in browser.text("faces"), "boxes of what is loaded")
+    browser.picture("loaded")
+    browser.click("loaded")
+
+
+def played(browser, url):
+    """Two recordings, of which the second one ends early and lifts its tool before."""
+    def frame():
+        found = re.search(r"frame ([\d,]+) of 500", browser.text("place"))
+        return int(found[1].replace(",", "")) if found else -1
+    browser.resize(1440, 900)
+    browser.open(url, lambda: "the length" in browser.text("film-notes"), "what differs")
+    first = re.search(r"frame (\d+): the hands, in \d+ of 300 frames", browser.text("film-notes"))
+    expect(first is not None, "it doesn't say where hands differ: " + browser.text("film-notes"))
+    eventually(lambda: browser.text("faces").endswith("faces"), "a recording's faces")
+    browser.click("play")
+    eventually(lambda: frame() > 10, "that it plays")
+    browser.press("play", "false")
+    seen = frame()
+    browser.click("step-back")
+    eventually(lambda: frame() == seen - 1, f"frame {seen - 1}")
+    browser.run("document.querySelector('#film-notes button').click()")
+    eventually(lambda: frame() == int(first[1]), "the frame in which they differ")
+    figure = "return document.querySelector('#figures dd').textContent"
+    eventually(lambda: browser.run(figure) == str(int(first[1]) + 1), "what that frame shows")
+    browser.picture("recordings")
+
+
+def frozen_page(browser):
+    frames = "return document.querySelector('#figures dd').textContent"
+    browser.press("freeze", "true")
+    seen = browser.run(frames)
+    time.sleep(1.0)
+    expect(browser.run(frames) == seen, "a frozen page goes on")
+    browser.run("const back = document.getElementById('back'); back.value = '-30';"
+                "back.dispatchEvent(new Event('input'));")
+    earlier = browser.run("const first = document.querySelector('#figures dd');"
+                          "return first ? first.textContent : '';")
+    expect(earlier == "" or int(earlier.replace(",", "")) < int(seen.replace(",", "")),
+           f"half a minute back is frame {earlier}, after {seen}")
+    browser.click("near")
+    browser.click("shells")
+    choose(browser, "colour", "error")
+    eventually(lambda: browser.text("most") == "exact", "colours of the error bound")
+    browser.picture("near")
+    browser.press("freeze", "false")
+    eventually(lambda: browser.run(frames) != seen, "newer frames")
+
+
+def main():
+    programs = pathlib.Path(sys.argv[1]).resolve()
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # So that nothing is left running.
+    for needed in ("chromium", "chromedriver"):
+        if shutil.which(needed) is None:
+            print(f"no {needed}: install chromium and chromium-driver")
+            sys.exit(77)
+    domain = os.environ.get("TACTUS_TEST_DOMAIN", str(os.getpid() % 231))
+    os.environ.pop("CYCLONEDDS_URI", None)
+    system.prctl(PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
+        os.chdir(folder)
+        try:
+            subprocess.run([programs / "spm_build", "--shape", "bumpy-sphere", "--faces", "20000",
+                            "-o", "bumpy.spm"], check=True, timeout=PATIENCE_S,
+                           stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            start("chromedriver", "--port=0", log="driver.log")
+            start(programs / "spm_publish", "bumpy.spm", "--domain", domain, log="publish.log")
+            start(programs / "spm_view", "--domain", domain, "--port", "0",
+                  log="view.log")
+            url = line_in("view.log", r"(http://\S+) shows")
+            there = json.load(urllib.request.urlopen(url + "state", timeout=CALL_S))["controllers"]
+            expect(not there, f"DDS domain {domain} has controllers already: {there}")
+            for name, seconds in (("one.rec", "0.5"), ("two.rec", "0.3")):
+                subprocess.run([programs / "hrtc", "bumpy.spm", "--no-static", "--device", "sim",
+                                "--virtual-time", "--allow-no-rt", "--duration", seconds,
+                                "--record", name], check=True, timeout=PATIENCE_S,
+                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            start(programs / "spm_view", "--replay", "one.rec", "--replay", "two.rec", "--port",
+                  "0", log="film.log")
+            browser = Browser("driver.log")
+            played(browser, line_in("film.log", r"(http://\S+) shows"))
+            look(browser, url, lambda: start(
+                programs / "hrtc", "--model", "bumpy", "--no-static", "--device", "sim",
+                "--allow-no-rt", "--domain", domain, "--duration", "600", log="hrtc.log"))
+        finally:
+            end_all()
+            os.chdir("/")
+
+
+main()

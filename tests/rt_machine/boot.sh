@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: Apache-2.0
+# shellcheck shell=bash disable=SC2154 # What rt_machine.sh sets is used here.
+# Starts the machine; sourced after common.sh, with $folder holding image and kernel.
+
+readonly machine_exit_port=0x501 # As in guest.sh.
+
+# What QEMU counts is instructions: one is a nanosecond, time in which the machine has nothing to do
+# is skipped, and nothing of this machine shows. All threads are on one processor, there is no disk,
+# network or monitor, and seeds and clock are given. What is left is when QEMU's own threads take
+# turns: with $in_turn, where that is granted, only when one waits.
+in_turn=()
+# shellcheck disable=SC2054 # QEMU's own commas.
+readonly machine_options=(-accel tcg -cpu max -icount shift=0,sleep=off -smp 1 -m 2048
+    -nodefaults -machine "pc,hpet=off" -display none -monitor none -nic none -no-reboot
+    -rtc "base=2026-12-01T00:00:00,clock=vm" -seed 1
+    -device "isa-debug-exit,iobase=$machine_exit_port,iosize=1")
+readonly machine_kernel_line="rdinit=/sbin/init console=ttyS0 quiet systemd.show_status=0 panic=-1 \
+mitigations=off nokaslr"
+
+# boot NAME SCENARIO[,ARGUMENT...] [QEMU-OPTION...]: runs a scenario of guest.sh. What it says is in
+# $folder/NAME/log, what it kept in the same folder. Its exit code is that of the scenario, or 2
+# where the machine did not come to an end of it.
+boot() {
+    local out=$folder/$1 code ended=0 processor scenario=$2
+    shift 2
+    rm -rf "$out"
+    mkdir -p "$out"
+    processor=$(taskset -cp $$ | sed 's/.*[ ,-]//')
+    await "${in_turn[@]}" taskset -c "$processor" qemu-system-x86_64 "${machine_options[@]}" \
+        -kernel "$folder/kernel" -initrd "$folder/initrd" \
+        -append "$machine_kernel_line tactus=$scenario" \
+        -serial "file:$out/console" -serial "file:$out/log" -serial "file:$out/kept" "$@" \
+        >"$out/qemu" 2>&1 || ended=$?
+    # Code 1 is what the machine ends QEMU with, or QEMU's own of a wrong option.
+    if ((ended > 1)) || [[ $ended == 1 && -s "$out/qemu" ]]; then
+        fail "QEMU ended with an error: $(tail -n 1 "$out/qemu")"
+    fi
+    # Progress is many words on one line, each over the last one.
+    sed -i -e 's/\r$//' -e 's/.*\r//' -e 's/\x1b\[K//g' "$out"/{console,log}
+    [[ ! -s "$out/kept" ]] || base64 -di "$out/kept" | tar -xzC "$out"
+    code=$(sed -n 's/^the scenario ended with //p' "$out/log")
+    return "${code:-2}"
+}
+
+# make_initrd SCENARIOS: the image, and the scenarios of that folder.
+make_initrd() {
+    local overlay=$folder/overlay
+    rm -rf "$overlay"
+    mkdir -p "$overlay"/rt_machine "$overlay"/etc/systemd/system/multi-user.target.wants
+    cp "$1"/*.sh "$overlay/rt_machine"
+    cp "$1"/rt_machine.service "$overlay/etc/systemd/system/"
+    ln -s /etc/systemd/system/rt_machine.service \
+        "$overlay/etc/systemd/system/multi-user.target.wants/"
+    find "$overlay" -exec touch -hd @1700000000 {} +
+    (cat "$folder/image" && cd "$overlay" && find . | LC_ALL=C sort \
+        | cpio --quiet -o -H newc -R 0:0 --reproducible) >"$folder/initrd"
+}

@@ -1,0 +1,114 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# refusals.sh: rt_machine.sh says in one line what is missing, leaves no image that is half made and
+# nothing running. Stand-ins say what the tools would.
+set -euo pipefail
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+readonly here
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+mkdir "$scratch"/{tools,packages}
+touch "$scratch"/packages/tactus-{host,controller,doc}_0.2.0_amd64.deb "$scratch/file"
+failures=0
+
+tool() { # tool NAME LINE...: a stand-in.
+    rm -f "$scratch/tools/$1" # It may be a link to the true one.
+    printf '%s\n' '#!/bin/bash' "${@:2}" >"$scratch/tools/$1"
+    chmod +x "$scratch/tools/$1"
+}
+# A stand-in of everything that this machine may lack.
+for name in qemu-system-x86_64 cpio bsdtar mke2fs mmdebstrap; do
+    tool "$name" 'exit 0'
+done
+tool cpio 'cat >/dev/null'
+tool df 'echo Avail; echo 99000000'
+# shellcheck disable=SC2016 # It is apt-get that knows these names.
+tool apt-get 'echo "Packages Debian deb http://example.org bookworm main"'
+for name in bash basename cat chmod cut dirname env grep id mkdir printf python3 rm sed sha256sum \
+    sleep sort tail taskset tr unshare; do
+    [[ -e "$scratch/tools/$name" ]] || ln -s "$(command -v "$name")" "$scratch/tools/$name"
+done
+
+run() { # run ARGUMENT...: with the stand-ins alone.
+    code=0
+    said=$(PATH=$scratch/tools bash "$here/rt_machine.sh" "$@" 2>&1) || code=$?
+}
+expect() { # expect CODE TEXT ARGUMENT...
+    local wanted=$1 text=$2
+    shift 2
+    run "$@"
+    if [[ $code != "$wanted" || "$said" != *"$text"* || "$said" == *$'\n'* ]]; then
+        printf 'rt_machine.sh %s: expected exit %d and "%s"; exit %d and:\n%s\n' \
+            "$*" "$wanted" "$text" "$code" "$said"
+        failures=$((failures + 1))
+    fi
+}
+nothing_made() { # Neither an image nor a part of one.
+    local left
+    left=$(find "$scratch/out" -name 'image*' -o -name root.tar -o -name initrd)
+    [[ -z "$left" ]] || { echo "left: $left"; failures=$((failures + 1)); }
+}
+readonly both=("$scratch/out" "$scratch/packages")
+
+expect 3 'Usage' one
+expect 2 "can't be written" "$scratch/file/out" "$scratch/packages"
+expect 2 'no folder' "$scratch/out" "$scratch/nowhere"
+expect 2 'not one package tactus-host' "$scratch/out" "$scratch/tools"
+for name in qemu-system-x86_64 mmdebstrap; do
+    mv "$scratch/tools/$name" "$scratch/kept"
+    expect 77 "$name is missing (cmake/packages-rt.txt)" "${both[@]}"
+    mv "$scratch/kept" "$scratch/tools/$name"
+done
+tool df 'echo Avail; echo 1000000'
+expect 2 'has 1000 MB free, this needs 3 GB' "${both[@]}"
+tool df 'echo Avail; echo 99000000'
+if ((EUID != 0)); then
+    tool unshare 'exit 1'
+    expect 77 'neither root nor user namespaces' "${both[@]}"
+    tool unshare 'exit 0'
+fi
+tool mmdebstrap 'echo E: no such host; exit 1'
+expect 2 'E: no such host' "${both[@]}"
+nothing_made
+
+# Ended while the image is made: nothing runs on, and the next run begins anew and says so.
+# shellcheck disable=SC2016 # It is the stand-in's shell that knows $$.
+tool mmdebstrap 'echo $$ >"'"$scratch"'/id"' 'touch "'"$scratch"'/out/root.tar"' 'exec sleep 30'
+PATH=$scratch/tools bash "$here/rt_machine.sh" "${both[@]}" >"$scratch/said" 2>&1 &
+machine=$!
+until [[ -s "$scratch/id" ]]; do
+    sleep 0.05
+done
+kill -TERM "$machine"
+code=0
+wait "$machine" || code=$?
+if ((code == 0)) || kill -0 "$(<"$scratch/id")" 2>/dev/null; then
+    echo "ended by a signal: code $code, and mmdebstrap runs on"
+    failures=$((failures + 1))
+    kill "$(<"$scratch/id")" || true
+fi
+nothing_made
+touch "$scratch/out/root.tar"
+tool mmdebstrap 'echo E: no such host; exit 1'
+run "${both[@]}"
+[[ "$said" == *'half made'* ]] || { echo "not said that it was half made: $said"; failures=1; }
+
+# The machine is ended with the script that started it.
+tool mmdebstrap 'exit 0'
+# shellcheck disable=SC2016 # It is the stand-in's shell that knows $$.
+tool qemu-system-x86_64 'echo $$ >"'"$scratch"'/qemu"' 'exec sleep 30'
+tool bsdtar 'echo x; touch "'"$scratch"'/out/image.partial"'
+PATH=$scratch/tools:$PATH bash "$here/rt_machine.sh" "${both[@]}" >"$scratch/said" 2>&1 &
+machine=$!
+until [[ -s "$scratch/qemu" ]]; do
+    kill -0 "$machine" 2>/dev/null || { cat "$scratch/said"; exit 1; }
+    sleep 0.05
+done
+kill -TERM "$machine"
+wait "$machine" || true
+if kill -0 "$(<"$scratch/qemu")" 2>/dev/null; then
+    echo 'QEMU runs on'
+    failures=$((failures + 1))
+    kill "$(<"$scratch/qemu")"
+fi
+exit $((failures > 0))

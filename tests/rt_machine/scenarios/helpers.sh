@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: Apache-2.0
+# shellcheck shell=bash disable=SC2034 # The scenarios use what is set here.
+# What the scenarios share; sourced first.
+set -euo pipefail
+
+fail() { printf 'FAULT: %s\n' "$*"; exit 1; }
+now() { cut -d' ' -f1 /proc/uptime; } # Seconds since the boot.
+# wait_until SECONDS WHAT COMMAND...: it succeeds.
+wait_until() {
+    local i most_s=$1 what=$2
+    shift 2
+    for ((i = 0; i < most_s * 20; ++i)); do
+        "$@" && return
+        sleep 0.05
+    done
+    fail "no $what after $most_s s"
+}
+# expect CODE TEXT COMMAND...: that exit code, and TEXT in what it says last.
+expect() {
+    local code=0 wanted=$1 text=$2 output
+    shift 2
+    output=$("$@" 2>&1) || code=$?
+    [[ $code == "$wanted" && "${output##*$'\n'}" == *"$text"* ]] \
+        || fail "$*: code $code and '$output'; expected $wanted and '$text'"
+}
+
+# The services as docs/deploy.md has them, with what they serve and touch.
+serve() { # serve MODEL OPTION...
+    printf 'OPTIONS="%s"\n' "$*" >/etc/default/spm_publish
+    systemctl start spm_publish
+}
+touch_it() { # touch_it LINE...: of hrtc.toml
+    printf '%s\n' "$@" 'report = "/var/log/tactus/hrtc.json"' >/etc/tactus/hrtc.toml
+    systemctl start hrtc
+}
+take_model() { # take_model FACES: one of those of the image, as /var/lib/tactus/bumpy.spm
+    cp "/usr/share/tactus_models/bumpy-$1.spm" /var/lib/tactus/bumpy.spm
+}
+
+# A hand on the device of docs/udp-device.md that leans on the model and lets it go, once a second.
+# hand.log has a line with the time, in s since the boot, whenever a force comes or goes.
+start_hand() {
+    # shellcheck disable=SC2016 # The page's own marks.
+    sed -n '/^```python$/,/^```$/{/^```/!p}' /usr/share/doc/tactus/docs/udp-device.md \
+        | sed -e 's/200 \* x\[i\]/200 * (x[i] - (0.055 + 0.012 * math.cos(6.28 * now), 0, 0)[i])/' \
+            -e 's/^\(x, v, force, state, last = \)\[0.0\] \* 6/was = False\n\1[0.08] + [0.0] * 5/' \
+            -e '/^    for i in range(3):/{' -e 'i\    is_felt = state == 1 and any(force[:3])' \
+            -e 'i\    if is_felt != was:' -e 'i\        was = is_felt' \
+            -e 'i\        print("%.3f %s" % (now, "on" if was else "off"), flush=True)' -e '}' \
+            >hand.py
+    [[ $(grep -cE '0\.055|^was = False|is_felt != was' hand.py) == 3 ]] \
+        || fail 'the driver of docs/udp-device.md is another'
+    python3 hand.py 48500 >hand.log &
+    hand=$! # Process of it.
+}
+feels() { [[ "$(tail -n 1 hand.log)" == *" on" ]]; }

@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "host_tools/encode/extract.hpp"
+#include "host_tools/encode/replay.hpp"
+#include "host_tools/spm_view/cut.hpp"
+#include "host_tools/spm_view/model_shelf.hpp"
+#include "rt_core/spm/error_code.hpp"
+#include "tests/shared/frame_rig.hpp"
+#include "tests/shared/test_model.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace tactus::view
+{
+namespace
+{
+
+using Corner = std::array<float, 3>;
+using Triangle3 = std::array<Corner, 3>;
+
+/// What the page reads.
+struct ReadCut
+{
+    std::vector<Triangle3> faces;
+    std::vector<float> errors_m;
+    std::vector<std::uint16_t> levels;
+};
+
+ReadCut read(const std::string& bytes)
+{
+    std::size_t at = 0;
+    const auto take = [&]<typename T>(T example, std::size_t count)
+    {
+        std::vector<T> values(count, example);
+        EXPECT_LE(at + count * sizeof(T), bytes.size());
+        std::memcpy(values.data(), bytes.data() + at, count * sizeof(T));
+        at += count * sizeof(T);
+        return values;
+    };
+    const auto counts = take(std::uint32_t{}, 2);
+    const auto positions = take(Corner{}, counts[0]);
+    const auto corners = take(std::array<std::uint32_t, 3>{}, counts[1]);
+    ReadCut cut;
+    cut.errors_m = take(float{}, counts[1]);
+    cut.levels = take(std::uint16_t{}, counts[1]);
+    EXPECT_EQ(bytes.size() - at, counts[1] % 2 * 2);
+    for (const auto& face : corners)
+    {
+        cut.faces.push_back({positions.at(face[0]), positions.at(face[1]), positions.at(face[2])});
+    }
+    return cut;
+}
+
+/// The same from whichever corner it begins.
+Triangle3 from_least_corner(Triangle3 face)
+{
+    std::rotate(face.begin(), std::ranges::min_element(face), face.end());
+    return face;
+}
+
+struct Opened
+{
+    explicit Opened(const test::TestModel& model)
+        : store(std::move(ModelStore::open(model.path)).value())
+        , decoded(DecodedModel::decode(store, damage))
+    {
+        EXPECT_TRUE(damage.empty());
+    }
+    ModelStore store;
+    std::vector<std::string> damage;
+    DecodedModel decoded;
+};
+
+std::vector<FrontPage> pages_of(const std::set<std::uint32_t>& records)
+{
+    std::map<std::uint32_t, std::uint64_t> bits;
+    for (const std::uint32_t record : records)
+    {
+        bits[record / kRecordsPerChunk] |= std::uint64_t{1} << (record % kRecordsPerChunk);
+    }
+    std::vector<FrontPage> pages;
+    for (const auto& [chunk, refined] : bits)
+    {
+        pages.push_back({{chunk}, refined});
+    }
+    return pages;
+}
+
+/// Splits whatever face has a larger bound, with what that depends on, until there is none.
+std::set<std::uint32_t> records_for(const DecodedModel& model, double error_m)
+{
+    constexpr std::uint32_t base = 0xFFFF'FFFFU;
+    const double quantum_m = static_cast<double>(model.header().quantum_m());
+    const auto made_by = [](FaceState state)
+    { return state.is_base() ? base : state.record().value; };
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> next; // By face and its maker.
+    for (std::uint32_t id = 0; id < model.header().counts().records; ++id)
+    {
+        const VsplitRecord& record = model.record({id});
+        for (std::uint32_t i = 0; i < record.fan_size; ++i)
+        {
+            next[{record.star[2 + i].value, made_by(record.before[i])}] = id;
+        }
+    }
+    std::set<std::uint32_t> taken;
+    std::vector<std::uint32_t> open;
+    const auto leave_if_coarse = [&](FaceId face, FaceState state)
+    {
+        const float error = error_in_quanta(model.error_of(face, state));
+        if (static_cast<double>(error) * quantum_m > error_m)
+        {
+            open.push_back(next.at({face.value, made_by(state)}));
+        }
+    };
+    for (std::uint32_t face = 0; face < model.header().counts().base_faces; ++face)
+    {
+        leave_if_coarse({face}, FaceState::base());
+    }
+    while (!open.empty())
+    {
+        const std::uint32_t id = open.back();
+        open.pop_back();
+        if (!taken.insert(id).second)
+        {
+            continue;
+        }
+        const VsplitRecord& record = model.record({id});
+        for (std::uint32_t i = 0; i < record.fan_size; ++i)
+        {
+            if (!record.before[i].is_base())
+            {
+                open.push_back(record.before[i].record().value);
+            }
+        }
+        for (std::uint32_t place = 0; place < record.star_end(); ++place)
+        {
+            if (!record.star[place].is_none())
+            {
+                leave_if_coarse(record.star[place], FaceState::after({id}, place));
+            }
+        }
+    }
+    return taken;
+}
+
+TEST(Cut, is_face_for_face_what_spm_inspect_extracts)
+{
+    for (const test::TestModel* model : test::small_models())
+    {
+        const Opened opened(*model);
+        for (const double share : {0.0, 1e-4, 1e-3, 1e-2, 1.0})
+        {
+            SCOPED_TRACE(model->name + " " + std::to_string(share));
+            const double error_m = share * model->diagonal_m;
+            const Extraction expected = extract(opened.decoded, {{}, error_m, {}});
+            const auto bytes =
+                cut_bytes(opened.decoded, pages_of(records_for(opened.decoded, error_m)));
+            ASSERT_TRUE(bytes.has_value()) << bytes.error().text;
+            const ReadCut cut = read(bytes.value());
+            ASSERT_EQ(cut.faces.size(), expected.mesh.faces.size());
+            for (std::size_t i = 0; i < cut.faces.size(); ++i)
+            {
+                for (std::size_t corner = 0; corner < 3; ++corner)
+                {
+                    const auto& at = expected.mesh.positions[expected.mesh.faces[i][corner]];
+                    for (std::size_t axis = 0; axis < 3; ++axis)
+                    {
+                        ASSERT_EQ(model->origin_m[axis] +
+                                      static_cast<double>(cut.faces[i][corner][axis]),
+                                  at[axis])
+                            << i;
+                    }
+                }
+            }
+            EXPECT_DOUBLE_EQ(static_cast<double>(*std::ranges::max_element(cut.errors_m)),
+                             expected.error_max_m);
+        }
+    }
+}
+
+/// From the page table of a frame at work to the faces of its forest.
+TEST(Cut, is_face_for_face_what_the_controller_has)
+{
+    const test::TestModel& model = test::small_model(0);
+    const Opened opened(model);
+    test::RigOptions options = test::with_room_for_all();
+    options.static_when_it_fits = false;
+    options.tools = {{0.01 * model.diagonal_m, 500.0}};
+    test::FrameRig rig(model, options);
+    const Vec3 goal_m = to_vec3(model.faces.front()[0]);
+    rig.settle(goal_m, {}, 2'000);
+    const Model& made = rig.frame().model({0});
+    std::set<std::uint32_t> records;
+    for (std::uint32_t slot = 0; slot < made.pages.capacity(); ++slot)
+    {
+        for (std::uint32_t place = 0; made.pages.is_own(slot) && place < kRecordsPerChunk; ++place)
+        {
+            if ((made.pages.meta(slot).refined >> place & 1U) != 0)
+            {
+                records.insert(made.pages.meta(slot).chunk.value * kRecordsPerChunk + place);
+            }
+        }
+    }
+    ASSERT_EQ(records.size(), made.forest.refined_records());
+    ASSERT_FALSE(records.empty());
+    const auto bytes = cut_bytes(opened.decoded, pages_of(records));
+    ASSERT_TRUE(bytes.has_value()) << bytes.error().text;
+    std::vector<Triangle3> shown;
+    for (const Triangle3& face : read(bytes.value()).faces)
+    {
+        shown.push_back(from_least_corner(face));
+    }
+    std::vector<Triangle3> touched;
+    for (std::uint32_t id = 0; id < made.header.counts().face_ids(); ++id)
+    {
+        if (const PrimId prim = made.forest.find(FaceId{id}); !prim.is_none())
+        {
+            Triangle3 face;
+            for (std::size_t corner = 0; corner < 3; ++corner)
+            {
+                const Vec3f& at = opened.decoded.position_m(made.forest.face(prim).corners[corner]);
+                face[corner] = {at[0], at[1], at[2]};
+            }
+            touched.push_back(from_least_corner(face));
+        }
+    }
+    std::ranges::sort(shown);
+    std::ranges::sort(touched);
+    EXPECT_EQ(shown.size(), made.forest.active_faces());
+    EXPECT_EQ(shown, touched);
+}
+
+TEST(Cut, refuses_records_that_the_model_does_not_have_or_that_lack_what_they_depend_on)
+{
+    const Opened opened(test::small_model(0));
+    const std::uint32_t records = opened.decoded.header().counts().records;
+    const auto last = in_dependency_order(opened.decoded).back().value;
+    EXPECT_TRUE(cut_bytes(opened.decoded, {}).has_value());
+    EXPECT_FALSE(cut_bytes(opened.decoded, pages_of({records})).has_value());
+    EXPECT_FALSE(cut_bytes(opened.decoded, pages_of({0xFFFF'FF00U})).has_value());
+    EXPECT_FALSE(cut_bytes(opened.decoded, pages_of({last})).has_value());
+    const std::vector<std::string> files{test::small_model(0).path.string()};
+    const auto shelf = std::move(ModelShelf::open(files)).value();
+    const auto known = shelf->find(shelf->labels().front().hash);
+    EXPECT_TRUE(decode_cut(*known, {}).has_value());
+    EXPECT_FALSE(decode_cut(*known, pages_of({records})).has_value());
+    EXPECT_FALSE(decode_cut(*known, pages_of({0xFFFF'FF00U})).has_value());
+    EXPECT_FALSE(decode_cut(*known, pages_of({last})).has_value());
+}
+
+TEST(Cut, has_a_name_that_pages_without_split_records_do_not_change)
+{
+    const std::vector<FrontPage> one{{{1}, 5}};
+    EXPECT_EQ(cut_id(one), cut_id(std::vector<FrontPage>{{{0}, 0}, {{1}, 5}, {{7}, 0}}));
+    EXPECT_NE(cut_id(one), cut_id(std::vector<FrontPage>{{{1}, 4}}));
+    EXPECT_NE(cut_id(one), cut_id(std::vector<FrontPage>{{{2}, 5}}));
+    EXPECT_NE(cut_id(one), cut_id({}));
+}
+
+} // namespace
+} // namespace tactus::view

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "host_tools/spm_view/cut.hpp"
+#include "host_tools/spm_view/film.hpp"
+#include "tests/shared/frame_rig.hpp"
+#include "tests/shared/temporary_folder.hpp"
+#include "tests/shared/test_model.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace tactus::view
+{
+namespace
+{
+
+constexpr std::uint32_t kFrames = 160;
+
+/// What the rig itself had in a frame.
+struct Had
+{
+    Vec3 proxy_m;
+    std::vector<double> lower_m; ///< By pair.
+    std::vector<FrontPage> pages;
+    std::uint32_t active_faces{0};
+};
+
+std::vector<FrontPage> pages_of(const Model& model)
+{
+    std::vector<FrontPage> pages;
+    for (std::uint32_t slot = 0; slot < model.pages.capacity(); ++slot)
+    {
+        if (model.pages.is_own(slot))
+        {
+            pages.push_back({model.pages.meta(slot).chunk, model.pages.meta(slot).refined});
+        }
+    }
+    std::ranges::sort(pages, {}, &FrontPage::chunk);
+    return pages;
+}
+
+/// A hand goes to a corner of the model and away, from frame `aside_from` on a little beside it.
+std::vector<Had> record(const std::filesystem::path& path, std::uint32_t frames,
+                        std::uint32_t aside_from = kFrames)
+{
+    const test::TestModel& model = test::small_model(0);
+    test::RigOptions options;
+    options.record = true;
+    options.tools = {{0.01 * model.diagonal_m, 500.0}};
+    test::FrameRig rig(model, options);
+    std::vector<Had> had;
+    for (std::uint32_t frame = 0; frame < frames; ++frame)
+    {
+        const double way = 0.02 * model.diagonal_m * (1.0 - std::abs(1.0 - frame / 80.0));
+        const double aside_m = frame < aside_from ? 0.0 : 1e-3;
+        const Vec3 goal_m =
+            to_vec3(model.faces.front()[0]) + Vec3(0.02 * model.diagonal_m - way, aside_m, 0.0);
+        const FrameOutput output = rig.step(goal_m);
+        Had& now = had.emplace_back();
+        now.proxy_m = output.tools[0].proxy_m;
+        for (const PairOutput& pair : output.pairs)
+        {
+            now.lower_m.push_back(pair.lower_m);
+        }
+        now.pages = pages_of(rig.model());
+        now.active_faces = rig.model().forest.active_faces();
+    }
+    const std::vector<std::byte> bytes = rig.finish_recording();
+    std::ofstream(path, std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes.data()),
+               static_cast<std::streamsize>(bytes.size()));
+    return had;
+}
+
+std::unique_ptr<Film> develop(const std::filesystem::path& path, ModelShelf& shelf,
+                              std::uint8_t number = 1)
+{
+    auto film = Film::develop(path.string(), number, shelf, {});
+    EXPECT_TRUE(film.has_value()) << film.error().text;
+    return std::move(film).value();
+}
+
+TEST(Film, has_of_each_frame_what_the_frame_had_and_its_faces_without_a_model_file)
+{
+    const test::TemporaryFolder folder;
+    const auto had = record(folder.path() / "run.rec", kFrames);
+    ModelShelf shelf;
+    const auto sut = develop(folder.path() / "run.rec", shelf);
+    ASSERT_EQ(sut->frames(), kFrames);
+    EXPECT_EQ(sut->note(), "");
+    std::size_t cuts = 0;
+    for (const std::uint32_t frame : {159U, 0U, 80U, 81U, 79U, 40U, 120U}) // In any order.
+    {
+        SCOPED_TRACE(frame);
+        const LiveController shown = sut->at(frame);
+        const Telemetry& telemetry = shown.told.telemetry;
+        EXPECT_EQ(telemetry.frame, frame + 1);
+        EXPECT_EQ(telemetry.tools[0].proxy_m[0], had[frame].proxy_m.x());
+        ASSERT_EQ(telemetry.pair_count, had[frame].lower_m.size());
+        for (std::size_t i = 0; i < had[frame].lower_m.size(); ++i)
+        {
+            EXPECT_EQ(telemetry.pairs[i].lower_m, had[frame].lower_m[i]);
+        }
+        ASSERT_EQ(shown.front->front.models.size(), 1U);
+        const FrontModel& model = shown.front->front.models[0];
+        ASSERT_EQ(model.pages.size(), had[frame].pages.size());
+        for (std::size_t i = 0; i < model.pages.size(); ++i)
+        {
+            EXPECT_EQ(model.pages[i].chunk, had[frame].pages[i].chunk);
+            EXPECT_EQ(model.pages[i].refined, had[frame].pages[i].refined);
+        }
+        const auto known = shelf.find(model.hash);
+        ASSERT_NE(known, nullptr);
+        const auto decoded = decode_cut(*known, model.pages);
+        ASSERT_TRUE(decoded.has_value()) << decoded.error().text;
+        const auto bytes = cut_bytes(decoded.value(), model.pages);
+        ASSERT_TRUE(bytes.has_value()) << bytes.error().text;
+        std::uint32_t faces = 0;
+        bytes.value().copy(reinterpret_cast<char*>(&faces), sizeof(faces), 4);
+        EXPECT_EQ(faces, had[frame].active_faces);
+        cuts += model.pages.empty() ? 0U : 1U;
+        ASSERT_EQ(shown.objects.size(), 1U);
+    }
+    EXPECT_GT(cuts, 2U);
+    EXPECT_EQ(sut->at(9'999).told.telemetry.frame, kFrames);
+    EXPECT_EQ(sut->front(kFrames), nullptr);
+}
+
+TEST(Films, tell_where_two_recordings_first_differ_and_how)
+{
+    const test::TemporaryFolder folder;
+    record(folder.path() / "one.rec", kFrames);
+    record(folder.path() / "same.rec", kFrames);
+    record(folder.path() / "other.rec", 150, 90);
+    ModelShelf shelf;
+    const auto compare = [&](const char* second)
+    {
+        std::vector<std::unique_ptr<Film>> films;
+        films.push_back(develop(folder.path() / "one.rec", shelf, 1));
+        films.push_back(develop(folder.path() / second, shelf, 2));
+        return Films(std::move(films));
+    };
+    EXPECT_TRUE(compare("same.rec").differences().empty());
+    const Films sut = compare("other.rec");
+    ASSERT_FALSE(sut.differences().empty());
+    EXPECT_EQ(sut.differences().front().what, "the hands");
+    EXPECT_EQ(sut.differences().front().frame, 90U);
+    EXPECT_NE(sut.differences().front().how.find("in 60 of 150 frames, by 1 mm at first"),
+              std::string::npos)
+        << sut.differences().front().how;
+    for (const FilmDifference& difference : sut.differences())
+    {
+        EXPECT_GE(difference.frame, 90U) << difference.what;
+    }
+    EXPECT_EQ(sut.differences().back().what, "the length");
+    EXPECT_EQ(sut.frames(), kFrames);
+    ASSERT_EQ(sut.at(155).controllers.size(), 2U);
+    EXPECT_EQ(sut.at(155).controllers[1].told.telemetry.frame, 150U); // Stays at its last.
+    EXPECT_NE(sut.front(id_text(sut.films()[1]->id()), 149), nullptr);
+    EXPECT_EQ(sut.front("another", 0), nullptr);
+}
+
+TEST(Film, refuses_a_recording_that_is_cut_short_and_ends_when_it_is_told_to)
+{
+    const test::TemporaryFolder folder;
+    const auto path = folder.path() / "run.rec";
+    record(path, 20);
+    ModelShelf shelf;
+    int asked = 0;
+    const auto part = Film::develop(path.string(), 1, shelf, [&] { return ++asked < 7; });
+    ASSERT_TRUE(part.has_value());
+    EXPECT_EQ(part.value()->frames(), 7U);
+    std::filesystem::resize_file(path, std::filesystem::file_size(path) - 1);
+    const auto refused = Film::develop(path.string(), 1, shelf, {});
+    ASSERT_FALSE(refused.has_value());
+    EXPECT_NE(refused.error().text.find("run.rec"), std::string::npos);
+}
+
+} // namespace
+} // namespace tactus::view

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "host_tools/spm_view/force_words.hpp"
+#include "host_tools/spm_view/live_state.hpp"
+#include "host_tools/spm_view/state_text.hpp"
+#include "tests/unit/host_view/live_rig.hpp"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <string>
+#include <vector>
+
+namespace tactus::view
+{
+namespace
+{
+
+using test::front;
+using test::told;
+
+TEST(LiveState, keeps_the_fronts_of_a_minute_and_no_more)
+{
+    LiveState sut;
+    const std::string id = id_text(front(1, 0).id);
+    for (std::uint64_t serial = 1; serial <= LiveState::kFronts + 1; ++serial)
+    {
+        sut.publish({told(1, "one")}, {front(1, serial)});
+        const std::uint64_t news = sut.newest()->serial;
+        sut.publish({told(1, "one")}, {front(1, serial)}); // No news.
+        EXPECT_EQ(sut.newest()->serial, news);
+    }
+    EXPECT_EQ(sut.front(id, 1), nullptr);
+    ASSERT_NE(sut.front(id, 2), nullptr);
+    EXPECT_EQ(sut.front(id, LiveState::kFronts + 1)->serial, LiveState::kFronts + 1);
+    EXPECT_EQ(sut.front("another", 2), nullptr);
+    const std::uint64_t before = sut.newest()->serial;
+    sut.publish({}, {});
+    EXPECT_EQ(sut.front(id, 2), nullptr);
+    EXPECT_GT(sut.newest()->serial, before) << "it has gone";
+}
+
+TEST(LiveState, keeps_no_more_bytes_than_it_may)
+{
+    LiveState sut;
+    dds::SeenFront large = front(1, 0);
+    large.front.models.emplace_back().pages.resize(kMaxFrontPages);
+    const std::size_t least = kMaxFrontPages * sizeof(FrontPage);
+    std::size_t kept = 0;
+    for (large.serial = 1; large.serial <= LiveState::kFronts; ++large.serial)
+    {
+        for (std::uint8_t id = 1; id <= 4; ++id)
+        {
+            large.id.fill(id);
+            sut.publish({}, {large});
+        }
+    }
+    std::vector<dds::SeenFront> all;
+    for (std::uint8_t id = 1; id <= 4; ++id)
+    {
+        large.id.fill(id);
+        all.push_back(large);
+    }
+    for (large.serial = 1; large.serial <= LiveState::kFronts; ++large.serial)
+    {
+        for (dds::SeenFront& each : all)
+        {
+            each.serial = large.serial;
+        }
+        sut.publish({}, all);
+    }
+    for (const dds::SeenFront& each : all)
+    {
+        for (std::uint64_t serial = 1; serial <= LiveState::kFronts; ++serial)
+        {
+            kept += sut.front(id_text(each.id), serial) != nullptr ? 1U : 0U;
+        }
+    }
+    EXPECT_GT(kept, 4U);
+    EXPECT_LE(kept * least, LiveState::kFrontBytes);
+}
+
+TEST(LiveState, gathers_objects_turn_by_turn_and_forgets_those_that_went)
+{
+    LiveState sut;
+    dds::SeenFront seen = front(1, 1);
+    const auto publish = [&](std::uint32_t begin, std::vector<std::uint32_t> numbers)
+    {
+        ++seen.serial;
+        seen.front.sweep_begin = begin;
+        seen.front.sweep_end = begin + 2;
+        seen.front.models = {FrontModel{}};
+        seen.front.objects.clear();
+        for (const std::uint32_t number : numbers)
+        {
+            FrontObject& object = seen.front.objects.emplace_back();
+            object.object = object.number = number;
+        }
+        sut.publish({told(1, "one")}, {seen});
+        std::vector<std::uint32_t> there;
+        for (const SeenObject& each : sut.newest()->controllers[0].objects)
+        {
+            there.push_back(each.object.number);
+        }
+        return there;
+    };
+    EXPECT_EQ(publish(0, {0, 1}), (std::vector<std::uint32_t>{0, 1}));
+    EXPECT_EQ(publish(2, {3, 1}), (std::vector<std::uint32_t>{0, 1, 3}));
+    EXPECT_EQ(publish(0, {1}), (std::vector<std::uint32_t>{1, 3}));
+    EXPECT_EQ(publish(2, {}), (std::vector<std::uint32_t>{1}));
+}
+
+TEST(StateJson, says_what_it_waits_for)
+{
+    const auto shelf = std::move(ModelShelf::open({})).value();
+    LiveState live;
+    const auto waits = [&](const std::string& chosen = "")
+    {
+        return nlohmann::json::parse(state_json(*live.newest(), *shelf, chosen, 7))["waits_for"]
+            .get<std::string>();
+    };
+    EXPECT_EQ(waits(), "a controller on DDS domain 7: start hrtc");
+    live.publish({told(1, "one")}, {});
+    EXPECT_NE(waits().find("--no-front"), std::string::npos);
+    EXPECT_NE(waits("01").find("gone"), std::string::npos);
+    dds::SeenFront seen = front(1, 1);
+    live.publish({told(1, "one")}, {seen});
+    EXPECT_EQ(waits(), "");
+    ++seen.serial;
+    seen.front.models.emplace_back().hash.fill(0xAB);
+    live.publish({told(1, "one")}, {seen});
+    EXPECT_NE(waits().find("abababab"), std::string::npos);
+}
+
+TEST(StateJson, shows_the_chosen_controller_and_lists_all)
+{
+    const auto shelf = std::move(ModelShelf::open({})).value();
+    LiveState live;
+    live.publish({told(1, "one"), told(2, "two")}, {front(2, 5)});
+    const auto state =
+        nlohmann::json::parse(state_json(*live.newest(), *shelf, id_text(front(2, 0).id), 0));
+    EXPECT_EQ(state["controllers"].size(), 2U);
+    EXPECT_EQ(state["controller"]["name"], "two");
+    EXPECT_EQ(state["controller"]["front"]["serial"], 5);
+    EXPECT_EQ(state["controller"]["tools"][0]["words"], "on: no contact, so none is due");
+    EXPECT_TRUE(state["controller"]["pairs"][0]["upper_m"].is_null());
+}
+
+TEST(ForceWords, name_every_cause_and_what_brings_the_force_back)
+{
+    ToolTelemetry tool;
+    tool.in_contact = true;
+    EXPECT_EQ(force_words({SafetyState::force, ForceOff::none, "", 0.0}, tool, {}), "on");
+    std::vector<std::string> all;
+    for (std::size_t cause = 0; cause < kForceOffs; ++cause)
+    {
+        const auto one = static_cast<ForceOff>(1U << cause);
+        const std::string words = force_words({SafetyState::brake, one, "", 0.0}, tool, {});
+        EXPECT_TRUE(words.starts_with("off: ")) << words;
+        EXPECT_NE(words.find("; comes back "), std::string::npos) << words;
+        EXPECT_EQ(std::ranges::count(all, words), 0) << words;
+        all.push_back(words);
+    }
+    ModelTelemetry gone;
+    gone.host_gone = true;
+    gone.pose_age_ns = 600'000'000;
+    const std::vector models{gone};
+    EXPECT_EQ(
+        force_words({SafetyState::brake, ForceOff::host | ForceOff::stall, "", 0.0}, tool, models),
+        "off: frames were missed; comes back when they are in time again. Also: the host is "
+        "silent for 0.6 s; comes back when the model is served again");
+}
+
+TEST(Metrics, are_text_that_prometheus_reads)
+{
+    LiveState live;
+    live.publish({told(1, "one"), told(2, "two")}, {});
+    const std::string text = metrics_text(*live.newest());
+    EXPECT_NE(text.find("tactus_controllers 2\n"), std::string::npos);
+    EXPECT_NE(text.find("# TYPE tactus_force_newtons gauge\n"
+                        "tactus_force_newtons{controller=\"one\",id=\"01010101010101010101010101"
+                        "010101\"} 5\n"),
+              std::string::npos)
+        << text;
+    EXPECT_TRUE(text.ends_with("\n"));
+}
+
+} // namespace
+} // namespace tactus::view

@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+
+/// The server over real sockets, spoken to byte by byte: a client library would mend what is sent.
+
+#include "host_tools/spm_view/web_server.hpp"
+#include "tests/shared/test_model.hpp"
+#include "tests/unit/host_view/live_rig.hpp"
+#include "transport/content_hash.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <arpa/inet.h>
+#include <atomic>
+#include <memory>
+#include <netinet/in.h>
+#include <string>
+#include <sys/socket.h>
+#include <thread>
+#include <unistd.h>
+#include <utility>
+#include <vector>
+
+namespace tactus::view
+{
+namespace
+{
+
+class Connection
+{
+public:
+    explicit Connection(std::uint16_t port) : socket_(::socket(AF_INET, SOCK_STREAM, 0))
+    {
+        sockaddr_in address = {};
+        address.sin_family = AF_INET;
+        address.sin_port = htons(port);
+        address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+        EXPECT_EQ(::connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof(address)),
+                  0);
+    }
+    Connection(const Connection&) = delete;
+    Connection& operator=(const Connection&) = delete;
+    ~Connection() { ::close(socket_); }
+
+    void send(const std::string& text) const
+    {
+        // The other side may have had enough already.
+        static_cast<void>(::send(socket_, text.data(), text.size(), MSG_NOSIGNAL));
+    }
+    void end_sending() const { ::shutdown(socket_, SHUT_WR); }
+    /// Until the other side closes, or `until` has come.
+    std::string read(const std::string& until = "")
+    {
+        std::string all;
+        char bytes[4096];
+        for (ssize_t count = 1; count > 0;)
+        {
+            count = ::recv(socket_, static_cast<char*>(bytes), sizeof(bytes), 0);
+            all.append(static_cast<char*>(bytes), count > 0 ? static_cast<std::size_t>(count) : 0);
+            if (!until.empty() && all.find(until) != std::string::npos)
+            {
+                break;
+            }
+        }
+        return all;
+    }
+
+private:
+    int socket_;
+};
+
+class WebServerTest : public ::testing::Test
+{
+protected:
+    void SetUp() override
+    {
+        const std::vector<std::string> files{tactus::test::small_model(0).path.string()};
+        shelf_ = std::move(ModelShelf::open(files)).value();
+        sut_ = std::move(WebServer::start({live_, *shelf_, 3, TACTUS_JAVASCRIPT_DIR}, 0)).value();
+    }
+    [[nodiscard]] std::string ask(const std::string& request) const
+    {
+        Connection connection(sut_->port());
+        connection.send(request);
+        return connection.read();
+    }
+    [[nodiscard]] std::string host() const { return fmt::format("127.0.0.1:{}", sut_->port()); }
+    [[nodiscard]] std::string get(const std::string& path, const std::string& more = "") const
+    {
+        return ask(fmt::format("GET {} HTTP/1.1\r\nHost: {}\r\n{}\r\n", path, host(), more));
+    }
+    static int status_of(const std::string& answer)
+    {
+        return answer.starts_with("HTTP/1.1 ") ? std::stoi(answer.substr(9, 3)) : 0;
+    }
+
+    LiveState live_;
+    std::unique_ptr<ModelShelf> shelf_;
+    std::unique_ptr<WebServer> sut_;
+};
+
+TEST_F(WebServerTest, serves_the_page_and_all_that_it_names)
+{
+    const std::string page = get("/");
+    EXPECT_EQ(status_of(page), 200);
+    EXPECT_NE(page.find("Content-Security-Policy: default-src 'self'"), std::string::npos);
+    EXPECT_EQ(page.find("http://"), std::string::npos);
+    EXPECT_EQ(page.find("https://"), std::string::npos);
+    for (const char* path : {"/view.css", "/view.js", "/scene.js", "/plots.js", "/history.js",
+                             "/player.js", "/lib/three.min.js", "/lib/OrbitControls.js",
+                             "/lib/dygraph.min.js", "/lib/dygraph.min.css", "/state", "/metrics"})
+    {
+        EXPECT_EQ(status_of(get(path)), 200) << path;
+    }
+    for (const char* path : {"/nothing", "/lib/../main.cpp", "/../../etc/passwd", "/lib/"})
+    {
+        EXPECT_EQ(status_of(get(path)), 404) << path;
+    }
+}
+
+TEST_F(WebServerTest, answers_only_get)
+{
+    for (const char* method : {"POST", "PUT", "DELETE", "OPTIONS", "HEAD", "PATCH"})
+    {
+        const std::string answer = ask(fmt::format("{} /state HTTP/1.1\r\nHost: {}\r\n"
+                                                   "Content-Length: 0\r\n\r\n",
+                                                   method, host()));
+        EXPECT_EQ(status_of(answer), 405) << method;
+    }
+}
+
+TEST_F(WebServerTest, answers_only_to_its_own_name)
+{
+    const auto status = [&](const std::string& lines)
+    { return status_of(ask("GET /state HTTP/1.1\r\n" + lines + "\r\n")); };
+    EXPECT_EQ(status(fmt::format("Host: localhost:{}\r\n", sut_->port())), 200);
+    for (const std::string& wrong :
+         {std::string("evil.example"), std::string("127.0.0.1"), host() + ".evil.example",
+          std::string("127.0.0.1:1"), std::string()})
+    {
+        EXPECT_EQ(status("Host: " + wrong + "\r\n"), 421) << wrong;
+    }
+    EXPECT_EQ(status(""), 421);
+    EXPECT_EQ(status("Host: " + host() + "\r\nHost: evil.example\r\n"), 421);
+}
+
+TEST_F(WebServerTest, answers_no_page_of_others)
+{
+    EXPECT_EQ(status_of(get("/state", "Origin: http://" + host() + "\r\n")), 200);
+    for (const std::string& wrong :
+         {std::string("http://evil.example"), std::string("null"), "https://" + host(), host()})
+    {
+        EXPECT_EQ(status_of(get("/state", "Origin: " + wrong + "\r\n")), 403) << wrong;
+    }
+}
+
+TEST_F(WebServerTest, survives_requests_that_are_none)
+{
+    for (const std::string& broken :
+         {std::string("\r\n\r\n"), std::string("GET\r\n\r\n"), std::string("GET / HTTP/9\r\n\r\n"),
+          std::string(100'000, 'a'), "GET /" + std::string(20'000, 'a') + " HTTP/1.1\r\n\r\n",
+          std::string("\0\xFF\r\n\r\n", 6), std::string("GET /state HTTP/1.1\r\nHost"),
+          "GET /front?serial=1&model=zz HTTP/1.1\r\nHost: " + host() + "\r\n\r\n"})
+    {
+        Connection connection(sut_->port());
+        connection.send(broken);
+        connection.end_sending();
+        EXPECT_NE(status_of(connection.read()), 200);
+    }
+    EXPECT_EQ(status_of(get("/state")), 200);
+}
+
+TEST_F(WebServerTest, lets_four_viewers_watch_and_goes_on_answering)
+{
+    const std::string request = fmt::format("GET /events HTTP/1.1\r\nHost: {}\r\n\r\n", host());
+    std::vector<std::unique_ptr<Connection>> viewers;
+    for (std::size_t i = 0; i < WebServer::kViewersMax; ++i)
+    {
+        viewers.push_back(std::make_unique<Connection>(sut_->port()));
+        viewers.back()->send(request);
+        EXPECT_NE(viewers.back()->read("no news").find("text/event-stream"), std::string::npos);
+    }
+    EXPECT_EQ(status_of(ask(request)), 503);
+    EXPECT_EQ(status_of(get("/state")), 200);
+    std::atomic<bool> is_over{false};
+    std::thread hears(
+        [&]
+        {
+            while (!is_over.load())
+            {
+                live_.publish({test::told(1, "one")}, {});
+                std::this_thread::sleep_for(std::chrono::milliseconds(5));
+            }
+        });
+    for (const auto& viewer : viewers)
+    {
+        EXPECT_NE(viewer->read("\"one\"").find("data: {"), std::string::npos);
+    }
+    viewers.pop_back(); // Its thread is free once that is noticed.
+    std::string again;
+    while (again.find("data: {") == std::string::npos)
+    {
+        Connection next(sut_->port());
+        next.send(request);
+        again = next.read("data: {"); // Or to the end of a refusal.
+    }
+    is_over.store(true);
+    hears.join();
+}
+
+TEST_F(WebServerTest, sends_the_faces_of_a_front)
+{
+    const ContentHash hash = shelf_->labels().front().hash;
+    dds::SeenFront seen = test::front(1, 9);
+    seen.front.models.push_back({hash, {}});
+    live_.publish({test::told(1, "one")}, {seen});
+    const std::string controller = id_text(seen.id);
+    const auto status =
+        [&](const std::string& id, const std::string& serial, const std::string& model)
+    {
+        return status_of(
+            get(fmt::format("/front?controller={}&serial={}&model={}", id, serial, model)));
+    };
+    EXPECT_EQ(status(controller, "9", hash_text(hash)), 200);
+    EXPECT_EQ(status(controller, "8", hash_text(hash)), 404);
+    EXPECT_EQ(status("another", "9", hash_text(hash)), 404);
+    EXPECT_EQ(status(controller, "9", std::string(32, '0')), 404);
+    EXPECT_EQ(status(controller, "-9", hash_text(hash)), 400);
+    EXPECT_EQ(status(controller, "9x", hash_text(hash)), 400);
+    ++seen.serial;
+    seen.front.models[0].pages = {{{0xFFFFU}, 1}}; // A chunk that the model hasn't.
+    live_.publish({test::told(1, "one")}, {seen});
+    EXPECT_EQ(status(controller, "10", hash_text(hash)), 409);
+}
+
+TEST_F(WebServerTest, refuses_a_port_that_another_has)
+{
+    const auto second = WebServer::start({live_, *shelf_, 3, TACTUS_JAVASCRIPT_DIR}, sut_->port());
+    ASSERT_FALSE(second.has_value());
+    EXPECT_NE(second.error().text.find(std::to_string(sut_->port())), std::string::npos);
+    const auto without = WebServer::start({live_, *shelf_, 3, "/nonexistent"}, 0);
+    ASSERT_FALSE(without.has_value());
+    EXPECT_NE(without.error().text.find("three.min.js"), std::string::npos);
+}
+
+} // namespace
+} // namespace tactus::view

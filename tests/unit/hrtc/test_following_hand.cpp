@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/hrtc/following_hand.hpp"
+#include "rt_core/base/arena.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <optional>
+
+namespace tactus::hrtc
+{
+
+namespace
+{
+
+/// Tells what it was asked with, and goes 1 mm along x each time.
+struct StraightHand final : public HandMotion
+{
+    HandSense* sensed;
+    int frames{0};
+
+    explicit StraightHand(HandSense& into) : sensed(&into) {}
+    [[nodiscard]] Vec3 start_world_m() const noexcept override { return {1.0, 0.0, 0.0}; }
+    [[nodiscard]] Vec3 next_world_m(const HandSense& sense) noexcept override
+    {
+        *sensed = sense;
+        return {1.0 + 1e-3 * ++frames, 0.0, 0.0};
+    }
+    [[nodiscard]] HandGrip grip() const noexcept override
+    {
+        return {Mat3::Identity(), 5, std::nullopt};
+    }
+};
+
+/// An object that stood at (0, 0, 1), and the hand that follows it at up to 0.1 m a step.
+struct Rig
+{
+    alignas(64) std::array<std::byte, 4096> memory{};
+    Arena arena{memory};
+    ObjectTable objects{arena, 1};
+    HandSense sensed;
+    Similarity start;
+    std::unique_ptr<FollowingHand> hand;
+
+    Rig()
+    {
+        start.translation_m = {0.0, 0.0, 1.0};
+        tell(SceneChangeKind::object_comes, start);
+        hand = std::make_unique<FollowingHand>(std::make_unique<StraightHand>(sensed), objects, 0,
+                                               start, 0.1);
+    }
+    void tell(SceneChangeKind kind, const Similarity& place)
+    {
+        SceneChange change;
+        change.kind = kind;
+        static_cast<Similarity&>(change.pose) = place;
+        objects.make(change, Vec3::Zero(), 1);
+    }
+    void move(const Similarity& place) { tell(SceneChangeKind::object_moves, place); }
+};
+
+/// A quarter turn about z.
+Mat3 quarter()
+{
+    Mat3 rotation;
+    rotation << 0, -1, 0, 1, 0, 0, 0, 0, 1;
+    return rotation;
+}
+
+TEST(FollowingHand, is_the_other_hand_while_the_object_stays)
+{
+    Rig rig;
+    HandSense sense;
+    sense.device_world_m = {0.1, 0.2, 0.3};
+    EXPECT_EQ(rig.hand->start_world_m(), Vec3(1.0, 0.0, 0.0));
+    EXPECT_EQ(rig.hand->next_world_m(sense), Vec3(1.001, 0.0, 0.0));
+    EXPECT_EQ(rig.sensed.device_world_m, sense.device_world_m);
+    EXPECT_EQ(rig.hand->grip().rotation, Mat3::Identity());
+    EXPECT_EQ(rig.hand->grip().buttons, 5U);
+}
+
+TEST(FollowingHand, goes_turns_and_grows_with_the_object)
+{
+    Rig rig;
+    Similarity place = rig.start;
+    place.translation_m = {0.0, 0.05, 1.0}; // By less than a step.
+    place.rotation = quarter();
+    place.scale = 2.0;
+    rig.move(place);
+    HandSense sense;
+    sense.device_world_m = {0.0, 2.05, 1.0};
+    sense.force_world_n = {0.0, 3.0, 0.0};
+    // What was at (x, 0, 0), one below the object, is now two below it and turned to y.
+    EXPECT_NEAR((rig.hand->next_world_m(sense) - Vec3(0.0, 0.05 + 2.002, -1.0)).norm(), 0.0, 1e-12);
+    EXPECT_NEAR((rig.sensed.device_world_m - Vec3(1.0, 0.0, 1.0)).norm(), 0.0, 1e-12);
+    EXPECT_NEAR((rig.sensed.force_world_n - Vec3(3.0, 0.0, 0.0)).norm(), 0.0, 1e-12);
+    EXPECT_EQ(rig.hand->grip().rotation, quarter());
+}
+
+TEST(FollowingHand, comes_after_a_jump_step_by_step)
+{
+    Rig rig;
+    Similarity place = rig.start;
+    place.translation_m.x() += 0.25;
+    rig.move(place);
+    Vec3 before = rig.hand->start_world_m();
+    for (const double way_m : {0.1, 0.1, 0.05, 0.0, 0.0})
+    {
+        const Vec3 now = rig.hand->next_world_m({});
+        EXPECT_NEAR((now - before).x(), way_m + 1e-3, 1e-12);
+        before = now;
+    }
+    EXPECT_NEAR(before.x(), 1.0 + 0.25 + 5e-3, 1e-12);
+}
+
+TEST(FollowingHand, stays_where_an_object_was_that_has_gone)
+{
+    Rig rig;
+    Similarity place = rig.start;
+    place.translation_m.x() += 0.05;
+    rig.move(place);
+    static_cast<void>(rig.hand->next_world_m({}));
+    rig.tell(SceneChangeKind::object_goes, {});
+    EXPECT_NEAR(rig.hand->next_world_m({}).x(), 1.052, 1e-12);
+}
+
+} // namespace
+
+} // namespace tactus::hrtc

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/hrtc/front_tap.hpp"
+#include "tests/unit/hrtc/loop_rig.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace tactus::hrtc::test
+{
+
+namespace
+{
+
+/// Pages of a frame that has ended.
+std::vector<std::pair<std::uint32_t, std::uint64_t>> pages_of(Frame& frame)
+{
+    std::vector<std::pair<std::uint32_t, std::uint64_t>> pages;
+    const PageTable& table = frame.model({0}).pages;
+    for (std::uint32_t slot = 0; slot < table.capacity(); ++slot)
+    {
+        if (table.is_own(slot))
+        {
+            pages.emplace_back(table.meta(slot).chunk.value, table.meta(slot).refined);
+        }
+    }
+    return pages;
+}
+
+LoopRigOptions options_of(FrontTap* front, std::uint64_t frames)
+{
+    LoopRigOptions options;
+    options.front = front;
+    options.frames = frames;
+    return options;
+}
+
+/// More than the model needs.
+constexpr std::size_t kSlots = 1'000;
+/// The last one is the first of a hundred.
+constexpr std::uint64_t kFrames = 9 * FrontTap::kFrames + 1;
+
+TEST(FrontTap, copies_the_pages_of_one_frame_in_a_hundred_with_what_is_split)
+{
+    FrontTap sut(kSlots);
+    EXPECT_EQ(sut.take(), nullptr);
+    LoopRigOptions options = options_of(&sut, kFrames);
+    options.tamper = [&sut](std::uint64_t frame, DeviceSample&)
+    {
+        if (frame == kFrames - 2)
+        {
+            sut.give_back(); // What the first frame left; the last one makes the next.
+        }
+    };
+    LoopRig rig(options);
+    rig.loop().run();
+    const FrontCopy* copy = sut.take();
+    ASSERT_NE(copy, nullptr);
+    EXPECT_EQ(copy->frame, kFrames);
+    std::vector<std::pair<std::uint32_t, std::uint64_t>> pages;
+    std::uint64_t split = 0;
+    for (const PageMeta& slot : copy->slots)
+    {
+        if (!slot.chunk.is_none())
+        {
+            EXPECT_EQ(slot.owner, 0U);
+            pages.emplace_back(slot.chunk.value, slot.refined);
+            split |= slot.refined;
+        }
+    }
+    EXPECT_EQ(pages, pages_of(rig.frame()));
+    EXPECT_NE(split, 0U);
+    EXPECT_EQ(copy->slots_left_out, 0U);
+    ASSERT_EQ(copy->objects.size(), 1U);
+    EXPECT_EQ(copy->objects[0].pose.translation_m, rig.frame().objects()[0].pose.translation_m);
+    ASSERT_EQ(copy->tools.size(), 1U);
+    EXPECT_EQ(copy->times[kStages].count, kFrames);
+}
+
+TEST(FrontTap, leaves_a_copy_alone_until_it_is_given_back)
+{
+    FrontTap sut(kSlots);
+    LoopRig first(options_of(&sut, 250));
+    first.loop().run();
+    ASSERT_NE(sut.take(), nullptr);
+    EXPECT_EQ(sut.take()->frame, 1U);
+    sut.give_back();
+    EXPECT_EQ(sut.take(), nullptr);
+    LoopRig second(options_of(&sut, 101));
+    second.loop().run();
+    EXPECT_EQ(sut.take()->frame, 1U); // And not the 101st.
+}
+
+TEST(FrontTap, counts_slots_for_which_it_has_no_room)
+{
+    FrontTap sut(2);
+    LoopRig rig(options_of(&sut, 1));
+    rig.loop().run();
+    ASSERT_NE(sut.take(), nullptr);
+    EXPECT_EQ(sut.take()->slots.size(), 2U);
+    EXPECT_EQ(sut.take()->slots_left_out, rig.frame().pools().cache.pages.metas.size() - 2);
+}
+
+TEST(FrontTap, changes_nothing_that_the_loop_does)
+{
+    FrontTap front(kSlots);
+    LoopRig with(options_of(&front, 500));
+    LoopRig without(options_of(nullptr, 500));
+    const auto run = [](LoopRig& rig)
+    {
+        rig.loop().run();
+        return std::pair(rig.device().written_n, rig.statistics().models.front().state_hash);
+    };
+    EXPECT_EQ(run(with), run(without));
+    EXPECT_EQ(with.statistics().deadlines.allocations, without.statistics().deadlines.allocations);
+}
+
+} // namespace
+
+} // namespace tactus::hrtc::test

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+
+/// A library for --device plugin that fails as its words say.
+
+#include "platform/plugin/device_plugin.hpp"
+
+#include <stdexcept>
+#include <string_view>
+
+namespace
+{
+
+#ifndef PLUGIN_IS_EMPTY
+tactus::Result<std::unique_ptr<tactus::HapticDevice>, tactus::Refusal>
+make_faulty(const tactus::DeviceWish& wish)
+{
+    const std::string_view words = wish.words;
+    if (words == "throws")
+    {
+        throw std::runtime_error("no such port");
+    }
+    if (words == "throws a number")
+    {
+        throw 7;
+    }
+    if (words == "refuses")
+    {
+        return tactus::Refusal{"is not plugged in"};
+    }
+    return std::unique_ptr<tactus::HapticDevice>();
+}
+#else
+constexpr tactus::MakeDevice make_faulty = nullptr;
+#endif
+
+} // namespace
+
+TACTUS_DEVICE_PLUGIN(make_faulty);

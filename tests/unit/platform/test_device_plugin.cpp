@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/plugin/device_plugin.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+namespace tactus::test
+{
+namespace
+{
+
+/// What is said of it, without the file's name, which stands in front.
+std::string refusal_of(const std::string& path, const char* words)
+{
+    const auto device = load_device(path, {1'000, {}, words});
+    if (device)
+    {
+        return "not refused";
+    }
+    const std::string& text = device.error().text;
+    EXPECT_TRUE(text.starts_with(path + ": ")) << text;
+    return text.substr(std::min(text.size(), path.size() + 2));
+}
+
+TEST(DevicePlugin, a_library_that_makes_no_device_is_refused_with_its_name)
+{
+    EXPECT_EQ(refusal_of(TACTUS_FAULTY_PLUGIN, "refuses"), "is not plugged in");
+    EXPECT_EQ(refusal_of(TACTUS_FAULTY_PLUGIN, ""),
+              "its TACTUS_DEVICE_PLUGIN makes no device and says no reason");
+    EXPECT_EQ(refusal_of(TACTUS_FAULTY_PLUGIN, "throws"),
+              "its TACTUS_DEVICE_PLUGIN threw: no such port");
+    EXPECT_EQ(refusal_of(TACTUS_FAULTY_PLUGIN, "throws a number"),
+              "its TACTUS_DEVICE_PLUGIN threw what is no std::exception");
+    EXPECT_EQ(refusal_of(TACTUS_EMPTY_PLUGIN, ""),
+              "is no device: its TACTUS_DEVICE_PLUGIN has no function");
+}
+
+} // namespace
+} // namespace tactus::test

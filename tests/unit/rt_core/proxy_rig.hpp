@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/limits.hpp"
+#include "tests/shared/period.hpp"
+#include "tests/unit/rt_core/surface_support.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <utility>
+
+namespace tactus::test
+{
+
+inline constexpr double kRadius = 0.01;
+inline constexpr double kStiffness = 500.0;
+/// What the proxy leaves between itself and the goal it could reach, relative to the radius.
+inline constexpr double kRest = 3e-3;
+
+[[nodiscard]] inline ToolSpec ball_tool()
+{
+    ToolSpec spec;
+    spec.radius_m = kRadius;
+    spec.stiffness_n_per_m = kStiffness;
+    spec.force_max_n = 8.0;
+    return spec;
+}
+
+/// A first goal: seen, the proxy begins there.
+[[nodiscard]] inline ToolGoal goal_at(const Vec3& position_m,
+                                      const Vec3& velocity_m_per_s = Vec3(0.0, 0.0, 0.0))
+{
+    return {position_m, velocity_m_per_s, kPeriod_s, Mat3::Identity(), GoalChange::first};
+}
+
+[[nodiscard]] inline PlacedSurface placed_surface(const ObjectPose& pose,
+                                                  const LocalSurface* surface,
+                                                  const Material& material, ProxyMemory& memory,
+                                                  double quantum = 1e-6)
+{
+    PlacedSurface placed;
+    placed.pose = &pose;
+    placed.surface = surface;
+    placed.material = &material;
+    placed.quantum_m = quantum;
+    placed.memory = &memory;
+    return placed;
+}
+
+/// A proxy over one object whose surface is certified as far as `certified` (model frame).
+class ProxyRig
+{
+public:
+    ProxyRig(TriangleList list, const Vec3& start, const ObjectPose& object_pose = {},
+             const ToolSpec& tool = ball_tool())
+        : triangles(std::move(list)), pose(object_pose), sut(tool)
+    {
+        sut.see(goal_at(start));
+    }
+
+    ToolOutput step(const Vec3& goal, const Vec3& velocity = Vec3(0, 0, 0))
+    {
+        const auto surface = surface_of(triangles, to_model(pose, sut.position_m()), certified);
+        const PlacedSurface placed = placed_surface(pose, surface.get(), material, memory, quantum);
+        return sut.respond(goal_at(goal, velocity), {&placed, 1}, clear, planes);
+    }
+    /// The object moves first.
+    ToolOutput step(const Vec3& goal, const ObjectPose& now)
+    {
+        const NearObject object{0, &pose, &now, &memory};
+        sut.carry({&object, 1}, kPeriod_s);
+        pose = now;
+        return step(goal);
+    }
+    /// A frame of several lists, each cut short at `certified`, as the frame has it.
+    ToolOutput step_on(const Vec3& goal, const Vec3& velocity)
+    {
+        ToolOutput output;
+        lists = 0;
+        do
+        {
+            if (lists++ > 0)
+            {
+                sut.go_on();
+            }
+            else
+            {
+                sut.see({goal, velocity, kPeriod_s, Mat3::Identity(), GoalChange::motion});
+            }
+            const auto surface = surface_of(triangles, to_model(pose, sut.position_m()), certified);
+            surface->is_cut = true;
+            const PlacedSurface placed = placed_surface(pose, surface.get(), material, memory);
+            output = sut.respond(goal_at(goal, velocity), {&placed, 1}, clear);
+        } while (sut.goes_on());
+        return output;
+    }
+    ToolOutput settle(const Vec3& goal, int frames = 200)
+    {
+        ToolOutput output;
+        for (int i = 0; i < frames; ++i)
+        {
+            output = step(goal);
+        }
+        return output;
+    }
+    /// The surface's point that is nearest.
+    [[nodiscard]] Vec3 nearest(const Vec3& point) const
+    {
+        ClosestPoint best;
+        best.distance_sq = std::numeric_limits<double>::infinity();
+        for (const auto& corners : triangles)
+        {
+            const ClosestPoint closest =
+                closest_point_on_triangle(to_model(pose, point), to_triangle(corners));
+            best = closest.distance_sq < best.distance_sq ? closest : best;
+        }
+        return to_world(pose, best.point);
+    }
+    [[nodiscard]] double clearance() const
+    {
+        return distance_to(triangles, to_model(pose, sut.position_m())) * pose.scale;
+    }
+
+    TriangleList triangles;
+    ObjectPose pose;
+    Proxy sut;
+    Material material;
+    double quantum{1e-6};
+    double certified{0.05};
+    double clear{kInfinity};                    ///< Of everything else.
+    std::uint32_t planes{Vicinity::kUnlimited}; ///< That it may look at in a frame.
+    std::uint32_t lists{0};                     ///< Of the last step_on().
+    ProxyMemory memory;
+};
+
+/// The cosine of the angle between two forces.
+[[nodiscard]] inline double cosine(const Vec3& a, const Vec3& b)
+{
+    return a.dot(b) / (a.norm() * b.norm());
+}
+
+inline void expect_vector(const Vec3& is, const Vec3& should, double tolerance)
+{
+    EXPECT_NEAR((is - should).norm(), 0.0, tolerance)
+        << is.transpose() << " instead of " << should.transpose();
+}
+
+} // namespace tactus::test

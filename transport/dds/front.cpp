@@ -1,0 +1,338 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "transport/dds/front.hpp"
+
+#include "platform/base/printable.hpp"
+#include "transport/dds/placement.hpp"
+#include "transport/dds/take.hpp"
+#include "transport/model_name.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <iterator>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "tactus.h"
+
+namespace tactus::dds
+{
+
+namespace
+{
+
+/// In the order of the wire.
+constexpr std::array kBudgetOrder{&Budgets::splits,   &Budgets::merges,    &Budgets::scanned,
+                                  &Budgets::nodes,    &Budgets::triangles, &Budgets::pages,
+                                  &Budgets::requests, &Budgets::regions};
+static_assert(std::size(tactus_v3_Front{}.budgets) == kBudgetOrder.size());
+// All but what proxies look at.
+static_assert(sizeof(Budgets) == (kBudgetOrder.size() + 1) * sizeof(std::uint32_t));
+static_assert(std::size(tactus_v3_Front{}.times) == kFrontTimes);
+
+template <std::size_t Size>
+std::string_view characters_of(const char (&text)[Size]) // NOLINT: idlc's type.
+{
+    return {static_cast<const char*>(text), ::strnlen(static_cast<const char*>(text), Size)};
+}
+
+ControllerId controller_of(const tactus_v3_Front& sample)
+{
+    ControllerId id{};
+    std::memcpy(id.data(), sample.controller, id.size());
+    return id;
+}
+
+template <typename From, typename To>
+void copy_head(const From& from, To& to)
+{
+    to.frame = from.frame;
+    to.time_ns = from.time_ns;
+    to.sweep_begin = from.sweep_begin;
+    to.sweep_end = from.sweep_end;
+    to.slots_left_out = from.slots_left_out;
+    for (std::size_t i = 0; i < kFrontTimes; ++i)
+    {
+        to.times[i] = {from.times[i].mean_ns, from.times[i].max_ns};
+    }
+}
+
+bool is_time(double ns)
+{
+    return std::isfinite(ns) && ns >= 0.0;
+}
+
+std::optional<FrontTool> tool_from(const tactus_v3_FrontTool& wire)
+{
+    const std::string_view shape = characters_of(wire.shape);
+    constexpr std::uint32_t known = (1U << kForceOffs) - 1;
+    if (wire.state >= kSafetyStates || (wire.causes & ~known) != 0 || !is_time(wire.radius_m) ||
+        !std::ranges::all_of(shape, is_printable))
+    {
+        return std::nullopt;
+    }
+    return FrontTool{static_cast<SafetyState>(wire.state), static_cast<ForceOff>(wire.causes),
+                     std::string(shape), wire.radius_m};
+}
+
+std::optional<FrontObject> object_from(const tactus_v3_FrontObject& wire, std::uint32_t models)
+{
+    // A model may lie farther from its frame's origin than an object may be moved.
+    const Pose told = from_wire(wire.pose);
+    const auto pose = checked_pose(told);
+    const bool is_sound = pose || pose.error() == PoseRefusal::translation;
+    if (wire.model >= models || wire.number >= kMaxObjects || !is_sound)
+    {
+        return std::nullopt;
+    }
+    return FrontObject{wire.host_epoch, wire.object, wire.number, wire.model,
+                       pose ? pose.value() : told};
+}
+
+/// The models with their pages; none where these don't add up or aren't in order.
+std::optional<std::vector<FrontModel>> models_from(const tactus_v3_Front& sample)
+{
+    std::vector<FrontModel> models;
+    std::uint32_t next = 0;
+    for (std::uint32_t i = 0; i < sample.models._length; ++i)
+    {
+        const tactus_v3_FrontModel& wire = sample.models._buffer[i];
+        FrontModel& model = models.emplace_back();
+        std::memcpy(model.hash.data(), wire.hash, model.hash.size());
+        if (wire.pages > sample.chunks._length - next)
+        {
+            return std::nullopt;
+        }
+        for (const std::uint32_t end = next + wire.pages; next < end; ++next)
+        {
+            const ChunkId chunk{sample.chunks._buffer[next]};
+            const bool is_next = model.pages.empty() || chunk > model.pages.back().chunk;
+            if (!is_next || chunk.value > kMaxRecords >> kRecordsPerChunkLog2)
+            {
+                return std::nullopt;
+            }
+            model.pages.push_back({chunk, sample.refined._buffer[next]});
+        }
+    }
+    return next == sample.chunks._length ? std::optional(std::move(models)) : std::nullopt;
+}
+
+std::optional<Front> front_from(const tactus_v3_Front& sample)
+{
+    const bool is_in_bounds =
+        sample.tools._length <= kMaxTools && sample.models._length <= kMaxModels &&
+        sample.objects._length <= kMaxFrontObjects && sample.chunks._length <= kMaxFrontPages &&
+        sample.refined._length == sample.chunks._length && sample.sweep_begin <= sample.sweep_end &&
+        sample.sweep_end <= kMaxObjects;
+    if (!is_in_bounds || !is_valid_name(std::string(characters_of(sample.controller_name))))
+    {
+        return std::nullopt;
+    }
+    Front front;
+    copy_head(sample, front);
+    for (std::size_t i = 0; i < kBudgetOrder.size(); ++i)
+    {
+        front.budgets.*kBudgetOrder[i] = sample.budgets[i];
+    }
+    auto models = models_from(sample);
+    const auto is_sound = [](const FrontTimes& t)
+    { return is_time(t.mean_ns) && is_time(t.max_ns); };
+    if (!models || !std::ranges::all_of(front.times, is_sound))
+    {
+        return std::nullopt;
+    }
+    front.models = *std::move(models);
+    for (std::uint32_t i = 0; i < sample.tools._length; ++i)
+    {
+        auto tool = tool_from(sample.tools._buffer[i]);
+        if (!tool)
+        {
+            return std::nullopt;
+        }
+        front.tools.push_back(*std::move(tool));
+    }
+    for (std::uint32_t i = 0; i < sample.objects._length; ++i)
+    {
+        const auto object = object_from(sample.objects._buffer[i], sample.models._length);
+        if (!object)
+        {
+            return std::nullopt;
+        }
+        front.objects.push_back(*object);
+    }
+    return front;
+}
+
+tactus_v3_FrontTool to_wire(const FrontTool& tool)
+{
+    tactus_v3_FrontTool wire = {};
+    wire.state = static_cast<std::uint8_t>(tool.state);
+    wire.causes = static_cast<std::uint32_t>(tool.causes);
+    tool.shape.copy(static_cast<char*>(wire.shape), kMaxShapeBytes);
+    wire.radius_m = tool.radius_m;
+    return wire;
+}
+
+tactus_v3_FrontObject to_wire(const FrontObject& object)
+{
+    tactus_v3_FrontObject wire = {};
+    wire.host_epoch = object.host_epoch;
+    wire.object = object.object;
+    wire.number = object.number;
+    wire.model = static_cast<std::uint16_t>(object.model);
+    wire.pose = dds::to_wire(object.pose);
+    return wire;
+}
+
+template <typename Sequence, typename Element>
+Sequence sequence_of(std::vector<Element>& elements)
+{
+    const auto count = static_cast<std::uint32_t>(elements.size());
+    return {count, count, elements.data(), false};
+}
+
+} // namespace
+
+Result<std::unique_ptr<FrontWriter>, Refusal> FrontWriter::create(const Domain& domain,
+                                                                  std::string controller_name)
+{
+    auto endpoint = make_writer(domain, Topic::front, controller_name);
+    if (!endpoint)
+    {
+        return endpoint.error();
+    }
+    std::unique_ptr<FrontWriter> writer(
+        new FrontWriter(domain.participants().own(), std::move(controller_name)));
+    writer->writer_ = std::move(endpoint).value();
+    return writer;
+}
+
+FrontWriter::FrontWriter(const ControllerId& controller, std::string controller_name)
+    : controller_(controller), controller_name_(std::move(controller_name))
+{
+    TACTUS_ASSERT(is_valid_name(controller_name_));
+}
+
+void FrontWriter::write(const Front& front)
+{
+    TACTUS_ASSERT(front.tools.size() <= kMaxTools);
+    TACTUS_ASSERT(front.models.size() <= kMaxModels);
+    TACTUS_ASSERT(front.objects.size() <= kMaxFrontObjects);
+    std::vector<tactus_v3_FrontTool> tools;
+    std::vector<tactus_v3_FrontModel> models;
+    std::vector<tactus_v3_FrontObject> objects;
+    std::vector<std::uint32_t> chunks;
+    std::vector<std::uint64_t> refined;
+    for (const FrontTool& tool : front.tools)
+    {
+        tools.push_back(to_wire(tool));
+    }
+    for (const FrontModel& model : front.models)
+    {
+        tactus_v3_FrontModel& wire = models.emplace_back();
+        std::memcpy(wire.hash, model.hash.data(), model.hash.size());
+        wire.pages = static_cast<std::uint32_t>(model.pages.size());
+        for (const FrontPage& page : model.pages)
+        {
+            chunks.push_back(page.chunk.value);
+            refined.push_back(page.refined);
+        }
+    }
+    TACTUS_ASSERT(chunks.size() <= kMaxFrontPages);
+    for (const FrontObject& object : front.objects)
+    {
+        TACTUS_ASSERT(object.model < front.models.size());
+        objects.push_back(to_wire(object));
+    }
+    tactus_v3_Front sample = {};
+    std::memcpy(sample.controller, controller_.data(), controller_.size());
+    controller_name_.copy(static_cast<char*>(sample.controller_name), kMaxNameBytes);
+    sample.serial = ++sent_;
+    copy_head(front, sample);
+    for (std::size_t i = 0; i < kBudgetOrder.size(); ++i)
+    {
+        sample.budgets[i] = front.budgets.*kBudgetOrder[i];
+    }
+    sample.tools = sequence_of<decltype(sample.tools)>(tools);
+    sample.models = sequence_of<decltype(sample.models)>(models);
+    sample.objects = sequence_of<decltype(sample.objects)>(objects);
+    sample.chunks = sequence_of<decltype(sample.chunks)>(chunks);
+    sample.refined = sequence_of<decltype(sample.refined)>(refined);
+    dds_write(writer_.handle, &sample); // One that fails is a lost one: the next is as good.
+}
+
+Result<std::unique_ptr<FrontReader>, Refusal> FrontReader::create(const Domain& domain)
+{
+    auto reader = make_reader(domain, Topic::front, kAnyPartition);
+    if (!reader)
+    {
+        return reader.error();
+    }
+    return std::unique_ptr<FrontReader>(
+        new FrontReader(domain.participants(), std::move(reader).value()));
+}
+
+FrontReader::FrontReader(Participants& participants, Endpoint reader)
+    : participants_(participants), reader_(std::move(reader))
+{
+}
+
+void FrontReader::poll()
+{
+    take_each<tactus_v3_Front>(reader_.handle, kMaxSeen,
+                               [this](const tactus_v3_Front& sample, const dds_sample_info_t& info)
+                               {
+                                   if (tells_end(info))
+                                   {
+                                       on_end(sample, info.publication_handle);
+                                   }
+                                   else if (!try_take(sample, info))
+                                   {
+                                       ++refused_;
+                                       participants_.refuse(info.publication_handle,
+                                                            Refused::telemetry);
+                                   }
+                               });
+    std::erase_if(fronts_, [this](const SeenFront& each)
+                  { return each.is_disputed && !participants_.is_writing(each.writer); });
+}
+
+/// Of who isn't the controller it is no news.
+void FrontReader::on_end(const tactus_v3_Front& sample, std::uint64_t writer)
+{
+    const ControllerId controller = controller_of(sample);
+    const auto who = participants_.writer_of(writer);
+    if (who && *who != controller)
+    {
+        participants_.refuse(writer, Refused::identity);
+        return;
+    }
+    std::erase_if(fronts_, [&](const SeenFront& each) { return each.id == controller; });
+}
+
+bool FrontReader::try_take(const tactus_v3_Front& sample, const dds_sample_info_t& info)
+{
+    auto front = front_from(sample);
+    const ControllerId id = controller_of(sample);
+    const auto known = std::ranges::find(fronts_, id, &SeenFront::id);
+    if (!front || (known == fronts_.end() && fronts_.size() == kMaxSeen))
+    {
+        return false;
+    }
+    SeenFront news{id, sample.serial, *std::move(front), info.publication_handle,
+                   info.instance_state != DDS_ALIVE_INSTANCE_STATE};
+    if (known != fronts_.end())
+    {
+        *known = std::move(news);
+    }
+    else
+    {
+        fronts_.push_back(std::move(news));
+    }
+    return true;
+}
+
+} // namespace tactus::dds

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace tactus
+{
+
+/// Header and base mesh come in parts of this size; the last one is what is left.
+inline constexpr std::size_t kPartBytes = std::size_t{28} << 10U;
+
+/// Parts of something of that size.
+[[nodiscard]] constexpr std::uint32_t parts_of(std::size_t bytes) noexcept
+{
+    return static_cast<std::uint32_t>((bytes + kPartBytes - 1) / kPartBytes);
+}
+
+/// One part of it; empty beyond its end.
+[[nodiscard]] constexpr std::span<const std::byte> part_of(std::span<const std::byte> whole,
+                                                           std::uint32_t part) noexcept
+{
+    const std::size_t begin = std::min(part * kPartBytes, whole.size());
+    return whole.subspan(begin, std::min(kPartBytes, whole.size() - begin));
+}
+
+} // namespace tactus

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/records/device_record.hpp"
+#include "rt_core/records/frame_input.hpp"
+#include "rt_core/records/frame_output.hpp"
+#include "transport/pose.hpp"
+#include "transport/telemetry.hpp"
+
+// Any thread, the haptic one too: functions of their arguments alone; no call waits or allocates.
+namespace tactus
+{
+
+/// What telemetry tells of one tool, one pair and one model of a frame. What only the transport
+/// knows (hosts, poses, pieces) is left zero, objects have the controller's numbers.
+[[nodiscard]] ToolTelemetry telemetry_of(const ToolState& state, const DeviceRecord& device,
+                                         const ToolOutput& output) noexcept;
+[[nodiscard]] PairTelemetry telemetry_of(const PairOutput& output) noexcept;
+[[nodiscard]] ModelTelemetry telemetry_of(const ModelOutput& output) noexcept;
+
+/// An object's place as it goes over the wire.
+[[nodiscard]] Pose pose_of(const Similarity& place) noexcept;
+
+[[nodiscard]] inline std::array<double, 3> parts_of(const Vec3& vector) noexcept
+{
+    return {vector.x(), vector.y(), vector.z()};
+}
+
+} // namespace tactus
