@@ -37,11 +37,12 @@ TEST(ThreadUsage, counts_a_fault_for_every_page_touched_first)
 TEST(ThreadUsage, counts_a_voluntary_switch_for_every_sleep)
 {
     const ThreadUsage before = read_thread_usage();
-    for (int i = 0; i < 5; ++i)
+    for (int i = 0; i < 20; ++i)
     {
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
-    EXPECT_GE((read_thread_usage() - before).voluntary_switches, 5);
+    // Who is held up on the way to a sleep finds it over and doesn't switch.
+    EXPECT_GE((read_thread_usage() - before).voluntary_switches, 10);
 }
 
 TEST(ThreadUsage, counts_time_on_the_processor_and_none_for_sleep)

@@ -47,8 +47,9 @@ private:
 };
 
 /// Domains of this process meet each other on the network, over loopback sockets as between
-/// processes, and nobody else's; those of each call another time no earlier call's.
-inline void isolate_domains()
+/// processes, and nobody else's; those of each call another time no earlier call's. Who says
+/// nothing for `lease_s` seconds is gone: a processor may well be away for one.
+inline void isolate_domains(int lease_s = 20)
 {
     static int calls = 0;
     const auto wire =
@@ -58,8 +59,9 @@ inline void isolate_domains()
         "multicast=\"false\"/></Interfaces><AllowMulticast>false</AllowMulticast></General>"
         "<Discovery><ExternalDomainId>" +
         std::to_string(wire) +
-        "</ExternalDomainId><ParticipantIndex>auto</ParticipantIndex><LeaseDuration>1 "
-        "s</LeaseDuration><Peers><Peer address=\"127.0.0.1\"/></Peers></Discovery>"
+        "</ExternalDomainId><ParticipantIndex>auto</ParticipantIndex><LeaseDuration>" +
+        std::to_string(lease_s) +
+        " s</LeaseDuration><Peers><Peer address=\"127.0.0.1\"/></Peers></Discovery>"
         "<Internal><HeartbeatInterval min=\"2 ms\" minsched=\"2 ms\" max=\"20 ms\">5 ms"
         "</HeartbeatInterval><NackDelay>1 ms</NackDelay></Internal></Domain></CycloneDDS>";
     ::setenv("CYCLONEDDS_URI", uri.c_str(), 1);

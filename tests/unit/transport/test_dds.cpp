@@ -746,6 +746,7 @@ private:
 
 TEST_F(Dds, a_host_that_is_killed_is_noticed_and_its_successor_adopted)
 {
+    test::isolate_domains(1);
     const TinyModel model = make_tiny_model({});
     const std::string path = folder.write("tiny.spm", model.file).string();
     const auto program = [&] { return std::make_unique<Program>(std::vector<std::string>{path}); };
