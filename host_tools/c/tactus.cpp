@@ -250,6 +250,7 @@ ToolSpec tool_of(const tactus_tool& tool, std::size_t index)
     spec.speed_max_m_per_s = tool.speed_max_m_per_s;
     spec.torque_max_nm = tool.torque_max_nm;
     spec.passes_through = tool.passes_through != 0;
+    spec.wants_distance = tool.wants_distance != 0;
     const Vec3 half_m = to_vec(tool.half_m);
     if (tool.shape == TACTUS_CAPSULE)
     {
@@ -466,11 +467,16 @@ void run_one(tactus_frame& frame)
     ++frame.frames;
 }
 
-bool is_settled(const FrameOutput& output)
+bool is_settled(const tactus_frame& frame)
 {
-    return std::ranges::all_of(
-               output.pairs, [](const PairOutput& pair)
-               { return pair.kind == AnswerKind::exact || pair.kind == AnswerKind::decided; }) &&
+    const FrameOutput& output = frame.output;
+    return std::ranges::all_of(output.pairs,
+                               [&frame](const PairOutput& pair)
+                               {
+                                   return pair.kind == AnswerKind::exact ||
+                                          (pair.kind == AnswerKind::decided &&
+                                           !frame.frame->tool(pair.tool).spec().wants_distance);
+                               }) &&
            std::ranges::none_of(output.tools, [](const ToolOutput& tool)
                                 { return tool.frozen || tool.held_back || tool.under_way; });
 }
@@ -827,7 +833,7 @@ extern "C"
                                place_tools(sut, *poses, pose);
                                run_one(sut);
                                for (std::uint32_t round = 1;
-                                    round < poses->rounds && !is_settled(sut.output); ++round)
+                                    round < poses->rounds && !is_settled(sut); ++round)
                                {
                                    load(sut);
                                    run_one(sut);

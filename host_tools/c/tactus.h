@@ -27,7 +27,7 @@
 #endif
 
 /* Of records and calls; both sides must have the same one. */
-#define TACTUS_ABI 1U
+#define TACTUS_ABI 2U
 /* The lent memory of a frame starts on a multiple of it. */
 #define TACTUS_ALIGNMENT 64U
 
@@ -130,6 +130,9 @@ typedef struct tactus_tool
     double torque_max_nm;     /* 0 to 1e6, likewise. A sphere has no torque. */
     double speed_max_m_per_s; /* 1e-6 to 1e6. In contact a hand that is faster is followed at this
                                * speed. */
+    int32_t wants_distance;   /* Not 0: distances become exact however far off, too, in frames
+                               * that do so bit by bit behind what a force needs; a BRACKET or
+                               * DECIDED until then, or where the memory is too little. */
 } tactus_tool;
 
 /* Where an object stands: place = translation + scale * rotation * place in the source mesh. */
@@ -229,8 +232,9 @@ typedef struct tactus_poses
     uint8_t* kind;     /* N x T x J: tactus_kind. */
     double* nearest_m; /* N x T x J x 3: of the surface; NaN where kind isn't TACTUS_EXACT. */
     uint32_t rounds;   /* Frames for each pose, with loading between: until the answers are exact
-                        * or decided and no tool waits for the surface or is on its way, at most
-                        * so many, 1 to 10000. 0: one frame, no loading. */
+                        * (or decided, of a tool without wants_distance) and no tool waits for the
+                        * surface or is on its way, at most so many, 1 to 10000. 0: one frame, no
+                        * loading. */
 } tactus_poses;
 
 /* Moves the tools through the poses, a frame for each or as many as `rounds` allows; a pose's

@@ -137,7 +137,8 @@ void read_pose(tactus_pose& pose, const py::object& rotation, const py::object& 
 // --- Set-up --------------------------------------------------------------------------------------
 
 tactus_tool make_tool(double radius_m, const std::string& shape, const py::object& half_m,
-                      bool passes_through, const std::optional<double>& stiffness_n_per_m,
+                      bool passes_through, bool wants_distance,
+                      const std::optional<double>& stiffness_n_per_m,
                       const std::optional<double>& force_max_n,
                       const std::optional<double>& torque_max_nm,
                       const std::optional<double>& speed_max_m_per_s)
@@ -159,6 +160,7 @@ tactus_tool make_tool(double radius_m, const std::string& shape, const py::objec
         std::copy_n(half.data(), 3, tool.half_m);
     }
     tool.passes_through = passes_through ? 1 : 0;
+    tool.wants_distance = wants_distance ? 1 : 0;
     tool.stiffness_n_per_m = stiffness_n_per_m.value_or(tool.stiffness_n_per_m);
     tool.force_max_n = force_max_n.value_or(tool.force_max_n);
     tool.torque_max_nm = torque_max_nm.value_or(tool.torque_max_nm);
@@ -465,7 +467,7 @@ PYBIND11_MODULE(tactus, module)
 
     py::class_<tactus_tool>(module, "Tool", "What touches: everything within a radius of its core.")
         .def(py::init(&make_tool), "radius_m"_a, py::kw_only(), "shape"_a = "sphere",
-             "half_m"_a = py::none(), "passes_through"_a = false,
+             "half_m"_a = py::none(), "passes_through"_a = false, "wants_distance"_a = false,
              "stiffness_n_per_m"_a = py::none(), "force_max_n"_a = py::none(),
              "torque_max_nm"_a = py::none(), "speed_max_m_per_s"_a = py::none());
 

@@ -93,6 +93,17 @@ def check_distances(path, corners):
     expect(np.all(kinds == tactus.EXACT), f"in reach, but of kind {kinds.max()}")
     off = np.linalg.norm(answers.nearest_m[near, 0] - places[near], axis=1) - truth[near]
     expect(np.max(np.abs(off)) < 1e-6, f"nearest points are off by {np.max(np.abs(off))}")
+    # A small tool that asks has the distance from anywhere, one that doesn't only in reach.
+    for wants in (True, False):
+        small = tactus.Frame([tactus.Model(path)],
+                             [tactus.Tool(0.001, passes_through=True, wants_distance=wants)],
+                             [tactus.Object()], memory_mib=8)
+        answers = small.run(places[:60] * 3, rounds=3000)
+        exact = answers.kind[:, 0] == tactus.EXACT
+        expect(np.all(exact) if wants else exact.sum() < 30, f"{exact.sum()} exact of wants {wants}")
+        far = np.array([distance(place, corners) for place in places[:60] * 3])
+        off = np.abs(answers.lower_m[exact, 0] - far[exact])
+        expect(np.max(off, initial=0) < 1e-6, f"distances from afar are off by {np.max(off, initial=0)}")
     # Two tools, two objects that stand apart, one moved: the same distances, farther by nothing.
     shift = np.array([0.3, 0.0, 0.0])
     two = tactus.Frame([tactus.Model(path)], [tactus.Tool(0.02, passes_through=True)] * 2,

@@ -47,6 +47,49 @@ static void run_until_exact(tactus_frame* frame, const tactus_poses* poses, tact
     need(!is_open, "never exact", error);
 }
 
+/* Half a metre above the top of the ring, by a small tool that asks, or that doesn't. */
+static void ask_from_afar(const tactus_setup* of_ball, int wants_distance, void* memory,
+                          size_t bytes, tactus_error* error)
+{
+    tactus_tool tool = *of_ball->tools;
+    tool.radius_m = 0.001;
+    tool.wants_distance = wants_distance;
+    tactus_setup setup = *of_ball;
+    setup.tools = &tool;
+    tactus_frame* frame = NULL;
+    need(tactus_frame_make(&setup, memory, bytes, &frame, error) == TACTUS_DONE, "make", error);
+
+    const double place_m[3] = {0.028, 0.0, 0.513};
+    double lower_m[1];
+    double upper_m[1];
+    double nearest_m[3];
+    uint8_t kind[1];
+    tactus_poses poses;
+    memset(&poses, 0, sizeof(poses));
+    poses.size = sizeof(poses);
+    poses.count = 1;
+    poses.positions_m = place_m;
+    poses.lower_m = lower_m;
+    poses.upper_m = upper_m;
+    poses.nearest_m = nearest_m;
+    poses.kind = kind;
+    poses.rounds = 1000;
+    if (wants_distance)
+    {
+        run_until_exact(frame, &poses, error);
+        need(fabs(lower_m[0] - 0.5) < 5e-5 && fabs(nearest_m[2] - 0.013) < 5e-5,
+             "another distance from afar", error);
+    }
+    else
+    {
+        need(tactus_frame_run(frame, &poses, error) == TACTUS_DONE, "run", error);
+        need(kind[0] == TACTUS_DECIDED && upper_m[0] - lower_m[0] > 0.01,
+             "exact though nobody asked", error);
+    }
+    printf("from afar: %.3f to %.3f mm\n", 1e3 * lower_m[0], 1e3 * upper_m[0]);
+    tactus_frame_end(frame);
+}
+
 /* Distances of a tool of this shape that stands upright, 9.8 mm above the top of the ring. */
 static void ask_upright(const tactus_setup* of_ball, tactus_shape shape, const double half_m[3],
                         void* memory, size_t bytes, tactus_error* error)
@@ -194,10 +237,10 @@ int main(int argc, char** argv)
     tactus_model* other = NULL;
     tactus_frame* second = NULL;
     refused(tactus_model_open(TACTUS_ABI + 1, argv[1], &other, &error), TACTUS_BAD_VERSION,
-            "made for ABI version 2; this library has 1", &error);
+            "made for ABI version 3; this library has 2", &error);
     setup.abi = TACTUS_ABI + 1;
     refused(tactus_frame_make(&setup, memory, bytes, &second, &error), TACTUS_BAD_VERSION,
-            "made for ABI version 2", &error);
+            "made for ABI version 3", &error);
     setup.abi = TACTUS_ABI;
     ball.size -= 8;
     refused(tactus_frame_make(&setup, memory, bytes, &second, &error), TACTUS_BAD_VERSION,
@@ -263,6 +306,8 @@ int main(int argc, char** argv)
     const double box_half_m[3] = {0.001, 0.002, 0.006};
     ask_upright(&setup, TACTUS_CAPSULE, capsule_half_m, memory, bytes, &error);
     ask_upright(&setup, TACTUS_BOX, box_half_m, memory, bytes, &error);
+    ask_from_afar(&setup, 1, memory, bytes, &error);
+    ask_from_afar(&setup, 0, memory, bytes, &error);
     press_one_end(&setup, memory, bytes, &error);
     need(tactus_model_close(model, &error) == TACTUS_DONE, "close", &error);
     free(memory);
