@@ -207,7 +207,7 @@ class Frame
 public:
     Frame(std::vector<std::shared_ptr<Model>> models, const std::vector<tactus_tool>& tools,
           const std::vector<tactus_object>& objects, double memory_mib, double period_s,
-          bool loads_whole)
+          bool loads_whole, double object_speed_max_m_per_s)
         : models_(std::move(models)), tools_(tools.size()), objects_(objects.size())
     {
         if (!(memory_mib >= 0.1 && memory_mib <= 65'536.0))
@@ -238,6 +238,7 @@ public:
         }
         setup.period_ns = static_cast<std::int64_t>(period_s * 1e9 + 0.5);
         setup.loads_whole = loads_whole ? 1 : 0;
+        setup.object_speed_max_m_per_s = object_speed_max_m_per_s;
         check([&](tactus_error* error)
               { return tactus_frame_make(&setup, memory_.get(), bytes, &frame_, error); });
     }
@@ -434,6 +435,7 @@ PYBIND11_MODULE(tactus, module)
     module.attr("FROZEN") = TACTUS_FROZEN;
     module.attr("SQUEEZED") = TACTUS_SQUEEZED;
     module.attr("CROWDED") = TACTUS_CROWDED;
+    module.attr("OUTRUN") = TACTUS_OUTRUN;
     module.attr("HELD_BACK") = TACTUS_HELD_BACK;
 
     py::class_<Model, std::shared_ptr<Model>>(module, "Model", "An .spm model; serves one Frame.")
@@ -488,9 +490,9 @@ PYBIND11_MODULE(tactus, module)
 
     py::class_<Frame>(module, "Frame", "Tools at objects, in memory that never grows.")
         .def(py::init<std::vector<std::shared_ptr<Model>>, const std::vector<tactus_tool>&,
-                      const std::vector<tactus_object>&, double, double, bool>(),
+                      const std::vector<tactus_object>&, double, double, bool, double>(),
              "models"_a, "tools"_a, "objects"_a, py::kw_only(), "memory_mib"_a = 16.0,
-             "period_s"_a = 1e-3, "loads_whole"_a = false)
+             "period_s"_a = 1e-3, "loads_whole"_a = false, "object_speed_max_m_per_s"_a = 0.5)
         .def("run", &Frame::run, "positions_m"_a, "rotations"_a = py::none(), "rounds"_a = 0,
              "Moves the tools through N poses, one frame each; with `rounds` as many, with loading "
              "between, until the answers are exact or decided.")
