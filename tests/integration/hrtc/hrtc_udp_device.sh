@@ -60,7 +60,7 @@ grep -q "tool 0: [0-9]* datagrams .* refused, most of them: not sealed by the ke
     || fault 'no line tells of the strangers'
 for id in "$stranger" "$plain" "$driving"; do stop KILL "$id"; done
 
-refuse_key() { expect 3 "$2" "${run[@]}" --device udp --device-key "$1"; }
+refuse_key() { expect 2 "$2" "${run[@]}" --device udp --device-key "$1"; }
 refuse_key missing.key 'no such file'
 chmod 644 other.key
 refuse_key other.key 'chmod 600'
