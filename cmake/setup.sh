@@ -193,8 +193,14 @@ start_program() { # start_program NAME OPTION...
 
 start_view() { # start_view OPTION...: tells where, and opens a browser where there is a screen.
     start_program spm_view "$@" --port 0 # A free one.
-    local url
-    url=$(sed -n 's/^\(http[^ ]*\) shows .*/\1/p' "$demo/spm_view.log")
+    local url=''
+    while url=$(sed -n 's/^\(http[^ ]*\) shows .*/\1/p' "$demo/spm_view.log") && [[ -z "$url" ]]; do
+        kill -0 "${programs[-1]}" 2>/dev/null || {
+            cat "$demo/spm_view.log" >&2
+            fail 2 'spm_view ended before it showed anything; its last words are above'
+        }
+        sleep 0.1 # It reads the models first.
+    done
     echo "View: $url"
     if [[ -n "${DISPLAY:-}${WAYLAND_DISPLAY:-}" ]] && command -v xdg-open >/dev/null; then
         xdg-open "$url" >/dev/null 2>&1 || true

@@ -4,7 +4,9 @@
 
 #include "platform/base/refusal.hpp"
 #include "rt_core/frame/frame.hpp"
+#include "rt_core/geometry/believed_motion.hpp"
 #include "rt_core/math/rotation.hpp"
+#include "rt_core/records/object_touch.hpp"
 #include "transport/courier.hpp"
 #include "transport/dds/dds_client.hpp"
 #include "transport/model_name.hpp"
@@ -15,6 +17,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -56,8 +59,15 @@ struct tactus_frame
     std::optional<Frame> frame;
     std::optional<Courier> courier;
     std::vector<ToolState> states;
+    /// What the next frame begins with. Of an object that moves it says where it is to be: it stays
+    /// until the object is there.
     StaticVector<SceneChange, kMaxSceneChanges> changes;
     std::uint32_t objects{0};
+    std::vector<Similarity> places;                  ///< Of the objects, as the frame has them.
+    StaticVector<ObjectTouch, kMaxPairs> touches;    ///< After the last frame,
+    std::array<std::uint32_t, kMaxPairs> touching{}; ///< and the tools that do.
+    std::array<bool, kMaxTools> is_outrun{};         ///< Of tools, in the last frame.
+    BelievedSpeed belief;
     std::int64_t period_ns{0};
     std::atomic<std::int64_t> now_ns{0}; ///< Written where frames run, read where they load.
     std::uint64_t frames{0};
@@ -250,6 +260,7 @@ ToolSpec tool_of(const tactus_tool& tool, std::size_t index)
     spec.speed_max_m_per_s = tool.speed_max_m_per_s;
     spec.torque_max_nm = tool.torque_max_nm;
     spec.passes_through = tool.passes_through != 0;
+    spec.wants_distance = tool.wants_distance != 0;
     const Vec3 half_m = to_vec(tool.half_m);
     if (tool.shape == TACTUS_CAPSULE)
     {
@@ -312,9 +323,16 @@ Material material_of(const tactus_material& from)
 void add_change(tactus_frame& frame, const SceneChange& change)
 {
     check_range(change.number, 0, frame.objects - 1, "object");
-    if (!frame.changes.try_push_back(change))
+    const auto is_the_same = [&change](const SceneChange& other)
+    { return other.kind == change.kind && other.number == change.number; };
+    auto* const before = std::ranges::find_if(frame.changes, is_the_same);
+    if (before != frame.changes.end())
     {
-        refuse(TACTUS_BUSY, "{} objects were placed or changed since the last frame; run one",
+        *before = change;
+    }
+    else if (!frame.changes.try_push_back(change))
+    {
+        refuse(TACTUS_BUSY, "{} objects were placed or changed, or are being carried; run a frame",
                frame.changes.size());
     }
 }
@@ -338,6 +356,7 @@ void read_setup(const tactus_setup& from, Scene& scene)
     check_range(from.tool_count, 1, kMaxTools, "setup.tool_count");
     check_range(from.object_count, 1, kMaxObjects, "setup.object_count");
     check_range(static_cast<double>(from.period_ns), 1e4, 1e9, "setup.period_ns");
+    check_range(from.object_speed_max_m_per_s, 1e-6, 1e6, "setup.object_speed_max_m_per_s");
     for (std::uint32_t i = 0; i < from.model_count; ++i)
     {
         const tactus_model& model = given(given(from.models, "setup.models") == nullptr
@@ -445,6 +464,7 @@ void start(tactus_frame& frame, const FrameSetup& setup)
     frame.states.resize(setup.tools.size());
     frame.objects = static_cast<std::uint32_t>(setup.objects.size());
     frame.period_ns = setup.period_ns;
+    frame.places.assign(setup.poses.begin(), setup.poses.end());
 }
 
 // --- Frames --------------------------------------------------------------------------------------
@@ -454,23 +474,90 @@ void load(tactus_frame& frame)
     frame.courier->step(frame.now_ns.load(std::memory_order_relaxed));
 }
 
+/// An object's move of this frame. False where it has to go on with the next one.
+bool carry(tactus_frame& frame, SceneChange& move)
+{
+    const double since_s = 1e-9 * static_cast<double>(frame.period_ns);
+    Similarity& place = frame.places[move.number];
+    double way_m = 0.0;
+    for (const ObjectTouch& touch : frame.touches)
+    {
+        if (touch.object == move.number)
+        {
+            way_m = std::max(way_m, carried_m(place, move.pose, touch.place_m));
+        }
+    }
+    for (std::size_t i = 0; i < frame.touches.size(); ++i)
+    {
+        frame.is_outrun[frame.touching[i]] |=
+            frame.touches[i].object == move.number && frame.belief.outruns(way_m, since_s);
+    }
+    const bool is_held = frame.belief.is_too_fast(way_m, since_s);
+    if (is_held)
+    {
+        static_cast<Similarity&>(move.pose) = frame.belief.held(place, move.pose, way_m, since_s);
+    }
+    place = move.pose;
+    return !is_held;
+}
+
+/// The changes of this frame; what can't be done at once stays for the next one.
+StaticVector<SceneChange, kMaxSceneChanges> take_changes(tactus_frame& frame)
+{
+    StaticVector<SceneChange, kMaxSceneChanges> changes = frame.changes;
+    frame.changes.clear();
+    frame.is_outrun.fill(false);
+    for (SceneChange& change : changes)
+    {
+        const SceneChange whole = change;
+        if (change.kind == SceneChangeKind::object_moves && !carry(frame, change))
+        {
+            frame.changes.push_back(whole);
+        }
+    }
+    return changes;
+}
+
+/// For the changes of the next frame.
+void note_touches(tactus_frame& frame)
+{
+    frame.touches.clear();
+    for (const PairOutput& pair : frame.output.pairs)
+    {
+        const double radius_m = frame.frame->tool(pair.tool).spec().radius_m;
+        if (may_touch(pair, frame.output.tools[pair.tool], radius_m))
+        {
+            frame.touching[frame.touches.size()] = pair.tool;
+            frame.touches.push_back({pair.object, pair.point_m});
+        }
+    }
+}
+
 void run_one(tactus_frame& frame)
 {
     const std::int64_t now_ns = frame.now_ns.load(std::memory_order_relaxed) + frame.period_ns;
     frame.now_ns.store(now_ns, std::memory_order_relaxed);
-    frame.output = frame.frame->run({.tools = frame.states,
-                                     .changes = {frame.changes.begin(), frame.changes.size()},
-                                     .budgets = {},
-                                     .now_ns = now_ns});
-    frame.changes.clear();
+    const auto changes = take_changes(frame);
+    frame.output = frame.frame->run(
+        {.tools = frame.states, .changes = changes.view(), .budgets = {}, .now_ns = now_ns});
+    note_touches(frame);
     ++frame.frames;
 }
 
-bool is_settled(const FrameOutput& output)
+bool is_settled(const tactus_frame& frame)
 {
-    return std::ranges::all_of(
-               output.pairs, [](const PairOutput& pair)
-               { return pair.kind == AnswerKind::exact || pair.kind == AnswerKind::decided; }) &&
+    const FrameOutput& output = frame.output;
+    const bool is_any_on_its_way =
+        std::ranges::any_of(frame.changes, [](const SceneChange& change)
+                            { return change.kind == SceneChangeKind::object_moves; });
+    return !is_any_on_its_way &&
+           std::ranges::all_of(output.pairs,
+                               [&frame](const PairOutput& pair)
+                               {
+                                   return pair.kind == AnswerKind::exact ||
+                                          (pair.kind == AnswerKind::decided &&
+                                           !frame.frame->tool(pair.tool).spec().wants_distance);
+                               }) &&
            std::ranges::none_of(output.tools, [](const ToolOutput& tool)
                                 { return tool.frozen || tool.held_back || tool.under_way; });
 }
@@ -487,11 +574,11 @@ void place_tools(tactus_frame& frame, const tactus_poses& poses, std::size_t pos
     }
 }
 
-std::uint32_t flags_of(const ToolOutput& tool)
+std::uint32_t flags_of(const ToolOutput& tool, bool is_outrun)
 {
-    return (tool.in_contact ? TACTUS_IN_CONTACT : 0U) | (tool.frozen ? TACTUS_FROZEN : 0U) |
-           (tool.squeezed ? TACTUS_SQUEEZED : 0U) | (tool.crowded ? TACTUS_CROWDED : 0U) |
-           (tool.held_back ? TACTUS_HELD_BACK : 0U);
+    return (is_outrun ? TACTUS_OUTRUN : 0U) | (tool.in_contact ? TACTUS_IN_CONTACT : 0U) |
+           (tool.frozen ? TACTUS_FROZEN : 0U) | (tool.squeezed ? TACTUS_SQUEEZED : 0U) |
+           (tool.crowded ? TACTUS_CROWDED : 0U) | (tool.held_back ? TACTUS_HELD_BACK : 0U);
 }
 
 void write_answers(const tactus_frame& frame, const tactus_poses& poses, std::size_t pose)
@@ -505,7 +592,7 @@ void write_answers(const tactus_frame& frame, const tactus_poses& poses, std::si
         write(poses.force_n, first + t, tool.force_n);
         write(poses.torque_nm, first + t, tool.torque_nm);
         write(poses.proxy_m, first + t, tool.proxy_m);
-        write(poses.flags, first + t, flags_of(tool));
+        write(poses.flags, first + t, flags_of(tool, frame.is_outrun[t]));
         // Of an object that no pair is of the tool is proven clear.
         for (std::size_t k = 0; k < frame.objects; ++k)
         {
@@ -763,6 +850,7 @@ extern "C"
             setup->size = sizeof(*setup);
             setup->abi = TACTUS_ABI;
             setup->period_ns = FrameSetup{}.period_ns;
+            setup->object_speed_max_m_per_s = 0.5;
         }
     }
 
@@ -786,6 +874,7 @@ extern "C"
                            plan_pools(*setup, bytes, scene);
                            auto made = std::make_unique<tactus_frame>(std::span(first, bytes));
                            made->models.assign(setup->models, setup->models + setup->model_count);
+                           made->belief.speed_max_m_per_s = setup->object_speed_max_m_per_s;
                            enter(*made);
                            try
                            {
@@ -827,7 +916,7 @@ extern "C"
                                place_tools(sut, *poses, pose);
                                run_one(sut);
                                for (std::uint32_t round = 1;
-                                    round < poses->rounds && !is_settled(sut.output); ++round)
+                                    round < poses->rounds && !is_settled(sut); ++round)
                                {
                                    load(sut);
                                    run_one(sut);

@@ -27,7 +27,7 @@
 #endif
 
 /* Of records and calls; both sides must have the same one. */
-#define TACTUS_ABI 1U
+#define TACTUS_ABI 2U
 /* The lent memory of a frame starts on a multiple of it. */
 #define TACTUS_ALIGNMENT 64U
 
@@ -130,6 +130,9 @@ typedef struct tactus_tool
     double torque_max_nm;     /* 0 to 1e6, likewise. A sphere has no torque. */
     double speed_max_m_per_s; /* 1e-6 to 1e6. In contact a hand that is faster is followed at this
                                * speed. */
+    int32_t wants_distance;   /* Not 0: distances become exact however far off, too, in frames
+                               * that do so bit by bit behind what a force needs; a BRACKET or
+                               * DECIDED until then, or where the memory is too little. */
 } tactus_tool;
 
 /* Where an object stands: place = translation + scale * rotation * place in the source mesh. */
@@ -174,10 +177,11 @@ typedef struct tactus_setup
     uint32_t object_count; /* 1 to 4096. */
     int64_t period_ns;     /* From frame to frame, 1e4 to 1e9. */
     int32_t loads_whole;   /* Not 0: a model that fits its share of the memory is loaded wholly. */
+    double object_speed_max_m_per_s; /* 1e-6 to 1e6: see tactus_frame_place(). */
 } tactus_setup;
 
-/* Identity pose, no friction; a hand of 500 N/m, 8 N, 0.5 N m, 1 m/s; 1 ms. Sizes and abi, too; all
- * else 0. Null is nothing to fill. */
+/* Identity pose, no friction; a hand of 500 N/m, 8 N, 0.5 N m, 1 m/s; 1 ms, objects of 0.5 m/s.
+ * Sizes and abi, too; all else 0. Null is nothing to fill. */
 TACTUS_CALL void tactus_tool_default(tactus_tool* tool);
 TACTUS_CALL void tactus_object_default(tactus_object* object);
 TACTUS_CALL void tactus_material_default(tactus_material* material);
@@ -201,6 +205,7 @@ TACTUS_CALL tactus_result tactus_frame_load(tactus_frame* frame, tactus_error* e
 #define TACTUS_SQUEEZED 4U   /* Objects leave it no room; its force must fade. */
 #define TACTUS_CROWDED 8U    /* More touches it than the limits allow. */
 #define TACTUS_HELD_BACK 16U /* It went as far as the surface is known. */
+#define TACTUS_OUTRUN 32U    /* What it touches is placed too far from where it is, likewise. */
 
 typedef enum tactus_kind
 {
@@ -229,8 +234,9 @@ typedef struct tactus_poses
     uint8_t* kind;     /* N x T x J: tactus_kind. */
     double* nearest_m; /* N x T x J x 3: of the surface; NaN where kind isn't TACTUS_EXACT. */
     uint32_t rounds;   /* Frames for each pose, with loading between: until the answers are exact
-                        * or decided and no tool waits for the surface or is on its way, at most
-                        * so many, 1 to 10000. 0: one frame, no loading. */
+                        * (or decided, of a tool without wants_distance) and no tool waits for the
+                        * surface and nothing is on its way, at most so many, 1 to 10000. 0: one
+                        * frame, no loading. */
 } tactus_poses;
 
 /* Moves the tools through the poses, a frame for each or as many as `rounds` allows; a pose's
@@ -239,9 +245,12 @@ typedef struct tactus_poses
  * and wait for a file. */
 TACTUS_CALL tactus_result tactus_frame_run(tactus_frame* frame, const tactus_poses* poses,
                                            tactus_error* error);
-/* With the next frame the object stands there. At most 64 of these, and of tactus_frame_feel(),
- * between two frames, of more TACTUS_BUSY. On the thread of tactus_frame_run(), as is
- * tactus_frame_state_of(). */
+/* With the next frame the object stands there; while a tool touches it, it is carried there, by at
+ * most object_speed_max_m_per_s where the tool is, with that frame and those after it: so no step
+ * of a pose makes a force change faster than by stiffness x speed. Behind by more than 20 ms of
+ * that, TACTUS_OUTRUN is true of the tool. The last place that was said counts. At most 64 of
+ * these, of objects that are being carried, and of tactus_frame_feel() wait for one frame, of more
+ * TACTUS_BUSY. On the thread of tactus_frame_run(), as is tactus_frame_state_of(). */
 TACTUS_CALL tactus_result tactus_frame_place(tactus_frame* frame, uint32_t object,
                                              const tactus_pose* pose, tactus_error* error);
 

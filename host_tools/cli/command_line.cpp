@@ -418,8 +418,7 @@ std::optional<int> CommandLine::parse(int argc, char** argv)
     catch (const CLI::FileError&)
     {
         return fail(fmt::format("--config: {}: can't be read, or is no file",
-                                app_->get_config_ptr()->as<std::string>()),
-                    kExitUsage);
+                                app_->get_config_ptr()->as<std::string>()));
     }
     catch (const CLI::ExtrasError&)
     {

@@ -78,7 +78,8 @@ public:
     CommandOption add_option(const std::string& names, T& value, const std::string& description);
     CommandOption add_flag(const std::string& name, bool& value, const std::string& description);
     /// An option that names a TOML file of options: keys are their names without the dashes. The
-    /// command line goes first; a key that no option has is wrong usage.
+    /// command line goes first; a key that no option has is wrong usage, a file that can't be read
+    /// is not.
     void add_option_file(const std::string& name, const std::string& description);
     /// --log-level and --json-log: how much is told on stderr, and how. parse() puts them into
     /// effect.
@@ -89,8 +90,9 @@ public:
     /// Text below the options of --help; lines that begin with a blank stay as they are.
     void set_footer(const std::string& text);
 
-    /// Returns the code to leave with after --help or --version, and after wrong usage, which gets
-    /// one line on stderr; nothing when the program should go on.
+    /// Returns the code to leave with after --help or --version, and after wrong usage or an option
+    /// file that can't be read, which gets one line on stderr; nothing when the program should go
+    /// on.
     [[nodiscard]] std::optional<int> parse(int argc, char** argv);
 
     /// The names of the options that the user gave, in the order of their declaration.

@@ -137,7 +137,8 @@ void read_pose(tactus_pose& pose, const py::object& rotation, const py::object& 
 // --- Set-up --------------------------------------------------------------------------------------
 
 tactus_tool make_tool(double radius_m, const std::string& shape, const py::object& half_m,
-                      bool passes_through, const std::optional<double>& stiffness_n_per_m,
+                      bool passes_through, bool wants_distance,
+                      const std::optional<double>& stiffness_n_per_m,
                       const std::optional<double>& force_max_n,
                       const std::optional<double>& torque_max_nm,
                       const std::optional<double>& speed_max_m_per_s)
@@ -159,6 +160,7 @@ tactus_tool make_tool(double radius_m, const std::string& shape, const py::objec
         std::copy_n(half.data(), 3, tool.half_m);
     }
     tool.passes_through = passes_through ? 1 : 0;
+    tool.wants_distance = wants_distance ? 1 : 0;
     tool.stiffness_n_per_m = stiffness_n_per_m.value_or(tool.stiffness_n_per_m);
     tool.force_max_n = force_max_n.value_or(tool.force_max_n);
     tool.torque_max_nm = torque_max_nm.value_or(tool.torque_max_nm);
@@ -205,7 +207,7 @@ class Frame
 public:
     Frame(std::vector<std::shared_ptr<Model>> models, const std::vector<tactus_tool>& tools,
           const std::vector<tactus_object>& objects, double memory_mib, double period_s,
-          bool loads_whole)
+          bool loads_whole, double object_speed_max_m_per_s)
         : models_(std::move(models)), tools_(tools.size()), objects_(objects.size())
     {
         if (!(memory_mib >= 0.1 && memory_mib <= 65'536.0))
@@ -236,6 +238,7 @@ public:
         }
         setup.period_ns = static_cast<std::int64_t>(period_s * 1e9 + 0.5);
         setup.loads_whole = loads_whole ? 1 : 0;
+        setup.object_speed_max_m_per_s = object_speed_max_m_per_s;
         check([&](tactus_error* error)
               { return tactus_frame_make(&setup, memory_.get(), bytes, &frame_, error); });
     }
@@ -432,6 +435,7 @@ PYBIND11_MODULE(tactus, module)
     module.attr("FROZEN") = TACTUS_FROZEN;
     module.attr("SQUEEZED") = TACTUS_SQUEEZED;
     module.attr("CROWDED") = TACTUS_CROWDED;
+    module.attr("OUTRUN") = TACTUS_OUTRUN;
     module.attr("HELD_BACK") = TACTUS_HELD_BACK;
 
     py::class_<Model, std::shared_ptr<Model>>(module, "Model", "An .spm model; serves one Frame.")
@@ -465,7 +469,7 @@ PYBIND11_MODULE(tactus, module)
 
     py::class_<tactus_tool>(module, "Tool", "What touches: everything within a radius of its core.")
         .def(py::init(&make_tool), "radius_m"_a, py::kw_only(), "shape"_a = "sphere",
-             "half_m"_a = py::none(), "passes_through"_a = false,
+             "half_m"_a = py::none(), "passes_through"_a = false, "wants_distance"_a = false,
              "stiffness_n_per_m"_a = py::none(), "force_max_n"_a = py::none(),
              "torque_max_nm"_a = py::none(), "speed_max_m_per_s"_a = py::none());
 
@@ -486,9 +490,9 @@ PYBIND11_MODULE(tactus, module)
 
     py::class_<Frame>(module, "Frame", "Tools at objects, in memory that never grows.")
         .def(py::init<std::vector<std::shared_ptr<Model>>, const std::vector<tactus_tool>&,
-                      const std::vector<tactus_object>&, double, double, bool>(),
+                      const std::vector<tactus_object>&, double, double, bool, double>(),
              "models"_a, "tools"_a, "objects"_a, py::kw_only(), "memory_mib"_a = 16.0,
-             "period_s"_a = 1e-3, "loads_whole"_a = false)
+             "period_s"_a = 1e-3, "loads_whole"_a = false, "object_speed_max_m_per_s"_a = 0.5)
         .def("run", &Frame::run, "positions_m"_a, "rotations"_a = py::none(), "rounds"_a = 0,
              "Moves the tools through N poses, one frame each; with `rounds` as many, with loading "
              "between, until the answers are exact or decided.")

@@ -180,6 +180,7 @@ void tell_tool_spec(FieldSink& sink, const ToolSpec& tool)
     sink.number("speed_max_m_per_s", tool.speed_max_m_per_s);
     sink.flag("wants_contacts", tool.wants_contacts);
     sink.flag("passes_through", tool.passes_through);
+    sink.flag("wants_distance", tool.wants_distance);
 }
 
 void tell_object(FieldSink& sink, const RecordedSetup& setup, std::size_t number)

@@ -11,14 +11,6 @@
 namespace tactus::hrtc
 {
 
-namespace
-{
-
-/// What a tool may go in a frame, and the skin of one without a radius.
-constexpr double kTouchSlack_m = 5e-3;
-
-} // namespace
-
 HapticLoop::HapticLoop(const LoopParts& parts, RunStatistics& statistics)
     : parts_(parts)
     , statistics_(statistics)
@@ -291,15 +283,9 @@ void HapticLoop::make_safe(const FrameOutput& output) noexcept
     note_touches(output);
 }
 
-/// At the end of the frame: pairs are measured at its beginning.
-bool HapticLoop::is_in_reach(const PairOutput& pair) const noexcept
-{
-    return pair.lower_m <= radii_m_[pair.tool] + kTouchSlack_m;
-}
-
 bool HapticLoop::may_touch(const PairOutput& pair, const FrameOutput& output) const noexcept
 {
-    return output.tools[pair.tool].in_contact && is_in_reach(pair);
+    return tactus::may_touch(pair, output.tools[pair.tool], radii_m_[pair.tool]);
 }
 
 /// For the poses that the next frame begins with.
@@ -337,13 +323,14 @@ bool HapticLoop::starves(std::uint32_t tool, const FrameOutput& output) const no
     {
         return false;
     }
-    return std::ranges::any_of(
-        output.pairs,
-        [&](const PairOutput& pair)
-        {
-            const ModelId model = parts_.frame->objects()[pair.object].spec.model;
-            return pair.tool == tool && is_in_reach(pair) && parts_.starved->has(model.value);
-        });
+    return std::ranges::any_of(output.pairs,
+                               [&](const PairOutput& pair)
+                               {
+                                   const ModelId model =
+                                       parts_.frame->objects()[pair.object].spec.model;
+                                   return pair.tool == tool && is_in_reach(pair, radii_m_[tool]) &&
+                                          parts_.starved->has(model.value);
+                               });
 }
 
 /// Of all that the tool may touch.

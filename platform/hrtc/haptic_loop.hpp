@@ -99,7 +99,6 @@ private:
     void make_safe(const FrameOutput& output) noexcept;
     [[nodiscard]] static bool touches_old_pose(std::uint32_t tool,
                                                const FrameOutput& output) noexcept;
-    [[nodiscard]] bool is_in_reach(const PairOutput& pair) const noexcept;
     [[nodiscard]] bool may_touch(const PairOutput& pair, const FrameOutput& output) const noexcept;
     void note_touches(const FrameOutput& output) noexcept;
     [[nodiscard]] bool touches_what_outruns(std::uint32_t tool) const noexcept;

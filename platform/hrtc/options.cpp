@@ -355,26 +355,33 @@ std::string check_device_limits(Options& options, const RawOptions& raw)
     return {};
 }
 
-/// Of all that are driven over datagrams. Empty when all is well.
+/// Empty when all is well.
 std::string check_device_key(Options& options, const RawOptions& raw)
+{
+    const bool is_of_use =
+        !raw.device_key || std::ranges::any_of(options.devices, [](const DeviceChoice& device)
+                                               { return device.kind == DeviceKind::udp; });
+    return is_of_use ? "" : "--device-key: there is no udp device";
+}
+
+/// For all devices that are driven over datagrams. Once the options are right: a file that isn't is
+/// no wrong usage. Empty when all is well.
+std::string take_device_key(Options& options, const RawOptions& raw)
 {
     if (!raw.device_key)
     {
         return {};
     }
-    auto seal = read_device_key(*raw.device_key);
+    const auto seal = read_device_key(*raw.device_key);
     if (!seal)
     {
         return seal.error().text;
     }
-    bool has_any = false;
     for (DeviceChoice& device : options.devices)
     {
-        const bool is_udp = device.kind == DeviceKind::udp;
-        device.seal = is_udp ? seal.value() : nullptr;
-        has_any = has_any || is_udp;
+        device.seal = device.kind == DeviceKind::udp ? seal.value() : nullptr;
     }
-    return has_any ? "" : "--device-key: there is no udp device";
+    return {};
 }
 
 /// After the tools: each device moves one. Empty when all is well.
@@ -501,7 +508,7 @@ std::string check_budgets(const CommandLine& line, Options& options)
 }
 
 /// Only what the program itself moves and reads can wait for it. Empty when all is well.
-std::string check_virtual_time(Options& options)
+std::string check_virtual_time(Options& options, const RawOptions& raw)
 {
     if (!options.virtual_time)
     {
@@ -526,6 +533,17 @@ std::string check_virtual_time(Options& options)
     {
         return fmt::format("--virtual-time: takes no time that {} could tell of",
                            options.trace_path.empty() ? "--histograms" : "--trace");
+    }
+    // What --print-config shows of --priority is no wish.
+    const char* of_real_time = raw.cpu                      ? "--cpu"
+                               : options.supervisor_periods ? "--supervisor-periods"
+                               : options.thread.priority != RtThreadOptions{}.priority
+                                   ? "--priority"
+                                   : nullptr;
+    if (of_real_time != nullptr)
+    {
+        return fmt::format("--virtual-time: there is no real-time thread that {} could be for",
+                           of_real_time);
     }
     options.thread.is_realtime = false;
     options.thread.lock_memory = false;
@@ -583,7 +601,7 @@ std::string check_together(const CommandLine& line, Options& options, RawOptions
     options.prediction = static_cast<Prediction>(
         std::ranges::find(kPredictionNames, raw.prediction) - kPredictionNames.begin());
     options.transport = raw.transport == "file" ? TransportKind::file : TransportKind::dds;
-    if (const std::string fault = check_virtual_time(options); !fault.empty())
+    if (const std::string fault = check_virtual_time(options, raw); !fault.empty())
     {
         return fault;
     }
@@ -606,6 +624,10 @@ std::variant<Options, int> parse_options(int argc, char** argv, const CommandFor
     if (const std::string fault = check_together(line, options, raw); !fault.empty())
     {
         return line.fail(fault, kExitUsage);
+    }
+    if (const std::string fault = take_device_key(options, raw); !fault.empty())
+    {
+        return line.fail(fault);
     }
     options.thread.cpu = raw.cpu;
     options.follows_poses = !raw.ignores_poses;

@@ -67,6 +67,10 @@ static_assert(static_cast<int>(Prediction::quadratic) == 2);
 static_assert(static_cast<int>(Prediction::distance_query) == 3);
 static_assert(static_cast<int>(Prediction::automatic) == 4);
 
+/// Bits of a tool's byte.
+constexpr std::uint8_t kPassesThrough = 1;
+constexpr std::uint8_t kWantsDistance = 2;
+
 Fault parse_tools(ByteReader& reader, std::uint32_t tools, std::uint32_t models,
                   RecordedSetup& setup)
 {
@@ -80,11 +84,12 @@ Fault parse_tools(ByteReader& reader, std::uint32_t tools, std::uint32_t models,
         const auto wants_contacts = reader.read<std::uint8_t>();
         tool.wants_contacts = wants_contacts != 0;
         tool.torque_max_nm = reader.read<double>();
-        const auto passes_through = reader.read<std::uint8_t>();
-        tool.passes_through = passes_through != 0;
+        const auto wishes = reader.read<std::uint8_t>();
+        tool.passes_through = (wishes & kPassesThrough) != 0;
+        tool.wants_distance = (wishes & kWantsDistance) != 0;
         tool.angular_stiffness_nm_per_rad = reader.read<double>();
         const std::optional<ToolCore> core = read_core(reader, setup.hull_vertices);
-        if (!core || wants_contacts > 1 || passes_through > 1)
+        if (!core || wants_contacts > 1 || wishes > (kPassesThrough | kWantsDistance))
         {
             return "tool " + std::to_string(i) +
                    " has an unknown core, one beyond 1e6 m or a hull of not 1 to 64 vertices";
@@ -183,7 +188,8 @@ std::vector<std::byte> code_setup(const RecordedSetup& setup)
         append(bytes, tool.speed_max_m_per_s);
         append(bytes, static_cast<std::uint8_t>(tool.wants_contacts));
         append(bytes, tool.torque_max_nm);
-        append(bytes, static_cast<std::uint8_t>(tool.passes_through));
+        append(bytes, static_cast<std::uint8_t>((tool.passes_through ? kPassesThrough : 0U) |
+                                                (tool.wants_distance ? kWantsDistance : 0U)));
         append(bytes, tool.angular_stiffness_nm_per_rad);
         append_core(bytes, tool.core);
     }

@@ -4,8 +4,6 @@
 
 #include "rt_core/base/assert.hpp"
 
-#include <Eigen/Geometry>
-
 #include <algorithm>
 #include <bit>
 
@@ -27,20 +25,6 @@ constexpr std::uint64_t bit_of(std::size_t object) noexcept
     return std::uint64_t{1} << object % kWordBits;
 }
 
-Similarity between(const Similarity& from, const Similarity& to, double share) noexcept
-{
-    Similarity place;
-    place.translation_m = from.translation_m + share * (to.translation_m - from.translation_m);
-    place.scale = from.scale + share * (to.scale - from.scale);
-    // The short way round; its speed is even to a twentieth up to 45 degrees.
-    const Eigen::Quaterniond first(from.rotation);
-    const Eigen::Quaterniond last(to.rotation);
-    const double side = first.dot(last) < 0.0 ? -1.0 : 1.0;
-    const Eigen::Quaterniond turned((1.0 - share) * first.coeffs() + share * side * last.coeffs());
-    place.rotation = turned.normalized().toRotationMatrix();
-    return place;
-}
-
 /// The object of a word's lowest bit.
 constexpr std::size_t first_of(std::size_t word, std::uint64_t bits) noexcept
 {
@@ -52,7 +36,7 @@ constexpr std::size_t first_of(std::size_t word, std::uint64_t bits) noexcept
 PoseDoor::PoseDoor(std::span<const ObjectPose> placed, std::size_t objects, Duration age_limit,
                    double speed_max_m_per_s)
     : age_limit_(age_limit)
-    , speed_max_m_per_s_(speed_max_m_per_s)
+    , belief_{speed_max_m_per_s}
     , places_(placed.begin(), placed.end())
     , letters_(objects)
     , glides_(objects)
@@ -390,12 +374,12 @@ void PoseDoor::move_on(std::size_t object, MonotonicTime now) noexcept
     }
     const Similarity wanted = place_at(glide, now);
     const double way_m = way_touched_m(object, wanted).value_or(0.0);
-    const double most_m = speed_max_m_per_s_ * to_seconds(since);
-    const bool is_too_fast = way_m > most_m;
-    glide.outruns = way_m > most_m + speed_max_m_per_s_ * to_seconds(kBelief);
+    const double since_s = to_seconds(since);
+    const bool is_too_fast = belief_.is_too_fast(way_m, since_s);
+    glide.outruns = belief_.outruns(way_m, since_s);
     uses_[object].outran_frames += is_too_fast ? 1U : 0U;
     glide.is_held = is_too_fast && glide.time > Duration{0};
-    move_to(object, glide.is_held ? between(places_[object], wanted, most_m / way_m) : wanted);
+    move_to(object, glide.is_held ? belief_.held(places_[object], wanted, way_m, since_s) : wanted);
     glide.is_under_way = glide.is_held || now - glide.start < glide.time;
 }
 
@@ -408,8 +392,7 @@ std::optional<double> PoseDoor::way_touched_m(std::size_t object,
     {
         if (touch.object == object)
         {
-            const Vec3 carried_m = to.to_there(places_[object].to_here(touch.place_m));
-            way_m = std::max(way_m.value_or(0.0), (carried_m - touch.place_m).norm());
+            way_m = std::max(way_m.value_or(0.0), carried_m(places_[object], to, touch.place_m));
         }
     }
     return way_m;

@@ -5,8 +5,10 @@
 #include "platform/time.hpp"
 #include "rt_core/base/mailbox.hpp"
 #include "rt_core/base/spsc_queue.hpp"
+#include "rt_core/geometry/believed_motion.hpp"
 #include "rt_core/limits.hpp"
 #include "rt_core/math/infinity.hpp"
+#include "rt_core/records/object_touch.hpp"
 #include "rt_core/records/scene_change.hpp"
 
 #include <array>
@@ -33,13 +35,6 @@ struct PoseUse
     std::uint64_t outran_frames{0};
 };
 
-/// Where a tool touches an object, in the world.
-struct ObjectTouch
-{
-    std::uint32_t object{0};
-    Vec3 place_m{0.0, 0.0, 0.0};
-};
-
 /// Carries the newest pose of each object from the transport thread to the haptic thread, and which
 /// objects come, go and feel otherwise. Neither thread waits for the other; a pose that nobody
 /// looked at in time is overwritten. The haptic thread gets them as changes of the scene.
@@ -50,10 +45,9 @@ struct ObjectTouch
 /// come early or late. Nothing is extrapolated: it never goes where its host didn't put
 /// it. After a rest a pose that is farther than kJump_m is taken at once: that is no motion.
 ///
-/// Where a tool touches it, an object is carried no faster than is believed, whatever its host
-/// says: a force can't change faster by that than by stiffness x speed. It catches up when it may.
-/// One that is behind by more than it may go in kBelief outruns its belief: the tool's force has to
-/// go. What is taken at once isn't held back, and outruns likewise.
+/// Where a tool touches it, an object is carried no faster than is believed (BelievedSpeed),
+/// whatever its host says. It catches up when it may. What is taken at once isn't held back, and
+/// outruns its belief likewise.
 ///
 /// An object's age is the time since its host was last heard, on this machine's clock. One that
 /// rests needs no poses, and costs no changes while its host is heard. Until its first pose an
@@ -66,7 +60,6 @@ class PoseDoor
 public:
     static constexpr Duration kGlideMax = milliseconds(50);
     static constexpr double kJump_m = 0.02;
-    static constexpr Duration kBelief = milliseconds(20);
     /// Objects whose age a frame looks at: 4,096 have their turn within 16 frames.
     static constexpr std::size_t kAgedAFrame = 256;
     /// Comings, goings and other materials that may wait for their frame.
@@ -107,7 +100,7 @@ public:
     refresh(MonotonicTime now, std::span<const ObjectTouch> touches = {}) noexcept;
 
     /// The haptic thread: whether in the last refresh() this object, which was touched, was moved
-    /// faster than is believed for longer than kBelief.
+    /// faster than is believed for longer than BelievedSpeed::kPatience_s.
     [[nodiscard]] bool outruns(std::size_t object) const noexcept
     {
         return glides_[object].outruns;
@@ -174,7 +167,7 @@ private:
     void move_to(std::size_t object, const Similarity& place) noexcept;
 
     Duration age_limit_;
-    double speed_max_m_per_s_;
+    BelievedSpeed belief_;
     std::span<const ObjectTouch> touches_; ///< During refresh().
     std::vector<Similarity> places_;       ///< As the frame has them.
     std::vector<Letter> letters_;          ///< The last that was read, one an object.

@@ -309,7 +309,9 @@ void Frame::find_neighbours() noexcept
     {
         if (presences_[i].is_here)
         {
-            double near_m = rules_.variant.finds_neighbours ? tools_[i].near_m() : kInfinity;
+            const bool is_far_of_use =
+                tools_[i].spec().wants_distance || !rules_.variant.finds_neighbours;
+            double near_m = is_far_of_use ? kInfinity : tools_[i].near_m();
             near_m = has_guests_ ? std::max(near_m, tools_[i].ball().radius +
                                                         tools_[i].stance().reach_m + kGuestLead_m)
                                  : near_m;
@@ -463,6 +465,10 @@ void Frame::load(const Budgets& budgets) noexcept
     for (Pair* pair : pairs_.by_urgency())
     {
         pair->rank(ranking_);
+    }
+    for (const Pair* pair : pairs_.by_urgency())
+    {
+        pair->rank_distance(ranking_);
     }
     faults_ |= ranking_.lacks_present ? FrameFault::ranking_full : FrameFault::none;
     pools_.cache.adopt_arrivals(budgets.pages, frame_, work_);

@@ -117,11 +117,7 @@ void Pair::place(const Budgets& budgets, FrameFault& faults) noexcept
     feels_otherwise_ =
         feel_.step(parts_.object->spec.material, parts_.tool->spec().stiffness_n_per_m,
                    static_cast<double>(parts_.rules->period_ns) * 1e-9);
-    outlook_.look(parts_.tool->spec(), stance, parts_.object->pose);
-    if (!parts_.rules->variant.lets_pairs_rest)
-    {
-        outlook_.wake();
-    }
+    look();
     if (touches_ != nullptr && has_moved() && outlook_.is_reached())
     {
         faults |= FrameFault::proxy_squeezed; // An object came as far as to its core.
@@ -131,6 +127,15 @@ void Pair::place(const Budgets& budgets, FrameFault& faults) noexcept
     {
         mesh_->place(outlook_, mesh_core_of(*parts_.tool), *parts_.tool_model.model,
                      *parts_.model.model, in_frame(parts_.object->pose, stance.place), budgets);
+    }
+}
+
+void Pair::look() noexcept
+{
+    outlook_.look(parts_.tool->spec(), parts_.tool->stance(), parts_.object->pose);
+    if (!parts_.rules->variant.lets_pairs_rest || tells_distance())
+    {
+        outlook_.wake();
     }
 }
 
@@ -192,7 +197,7 @@ void Pair::rank(RegionRanking& ranking) noexcept
         mesh_->rank(outlook_, parts_.tool_model.id, parts_.model.id, predictor_, rules.prediction,
                     ranking);
     }
-    else if (rules.variant.asks_ahead)
+    else if (rules.variant.asks_ahead && !measures_from_afar())
     {
         predictor_.rank(rules.prediction, parts_.model.id, outlook_.cover(), outlook_.reach_m(),
                         ranking);
@@ -205,6 +210,36 @@ void Pair::rank(RegionRanking& ranking) noexcept
     for (std::size_t i = before; i < ranking.size(); ++i)
     {
         ranking[i].of = urgency_.of;
+    }
+}
+
+/// What may be the nearest: within it of the core's centre, beyond the pair's reach. 0 where that
+/// is not wanted or nothing is known.
+double Pair::distance_reach_m() const noexcept
+{
+    if (!tells_distance() || !outlook_.has_known())
+    {
+        return 0.0;
+    }
+    const double upper_m = outlook_.from_motion().upper_m;
+    return upper_m > outlook_.reach_m() && upper_m < kInfinity ? outlook_.core().radius() + upper_m
+                                                               : 0.0;
+}
+
+/// Then what its distance needs is all that lies ahead: the ranking has room for many such pairs.
+bool Pair::measures_from_afar() const noexcept
+{
+    return parts_.tool->spec().passes_through && distance_reach_m() > 0.0;
+}
+
+/// What has no room only waits.
+void Pair::rank_distance(RegionRanking& ranking) const noexcept
+{
+    const double reach_m = distance_reach_m();
+    if (reach_m > 0.0 && !is_shed_ && is_model_here_ && !parts_.model.model->is_complete())
+    {
+        (void)ranking.try_push_back(
+            {parts_.model.id, outlook_.core().center(), reach_m, 0, UrgencyClass::last});
     }
 }
 
@@ -246,6 +281,22 @@ void Pair::ask_for_balls() noexcept
         const bool is_ahead = is_there && looks_ahead;
         ask(is_ahead, *parts_.model.model, is_ahead ? ahead_of(ahead) : ahead, of_object_);
     }
+    if (tells_distance())
+    {
+        ask_for_distance();
+    }
+}
+
+/// All that may be nearer than what is known to be there; it may wait. Kept is hardly more, or a
+/// far tool would keep all that it ever passed by.
+void Pair::ask_for_distance() noexcept
+{
+    RefineQuestion question{outlook_.core().center(), distance_reach_m(), 0.0,
+                            &refine_memories_.back()};
+    question.later_m = question.reach_m - outlook_.core().radius() - outlook_.reach_m();
+    question.keep_m = question.reach_m + (Outlook::kKeepFactor - 1.0) * outlook_.reach_m();
+    ask(question.reach_m > 0.0 && question.later_m > 0.0, *parts_.model.model, question,
+        of_object_);
 }
 
 /// The question where the tool will be. Along a surface that is no farther than the reach, and may
@@ -355,7 +406,7 @@ SurfaceRoom Pair::query_again(const SurfaceRoom& room, const Budgets& budgets, W
 {
     const ToolStance& stance = parts_.tool->stance();
     const ObjectPose& pose = parts_.object->pose;
-    outlook_.look(parts_.tool->spec(), stance, pose);
+    look();
     if (mesh_ != nullptr && is_model_here_)
     {
         mesh_->move(in_frame(pose, stance.place), budgets);
@@ -465,7 +516,7 @@ void Pair::query_core(const Budgets& budgets, WorkCounters& work, FrameFault& fa
         }
         work.skipped.add(Skip::starts, query_memory_.block != kNoNode ? 1 : 0);
         gather_surface(parts_.model.model->tree, outlook_.core(), outlook_.reach_m(), query_memory_,
-                       budget, surface);
+                       budget, surface, proof_share());
         work.nodes_visited += budget.nodes_visited;
         work.triangles_tested += budget.triangles_tested;
         faults |= budget.is_spent ? FrameFault::node_budget_spent : FrameFault::none;
@@ -557,7 +608,7 @@ void Pair::rehearse(const SurfaceRoom& room, const Budgets& budgets) const noexc
         QueryMemory memory = query_memory_;
         LocalSurface surface = room.surface();
         gather_surface(parts_.model.model->tree, outlook_.core(), outlook_.reach_m(), memory,
-                       budget, surface);
+                       budget, surface, proof_share());
     }
 }
 
@@ -582,9 +633,12 @@ PairOutput Pair::output() const noexcept
 {
     const ObjectPose& pose = parts_.object->pose;
     const DistanceAnswer& answer = surface_.answer;
+    // Beyond reach as well; the force has no use for that.
+    const bool is_exact =
+        answer.kind == AnswerKind::decided && tells_distance() && !answer.nearest_face.is_none();
     return {parts_.tool_index,
             parts_.object_number,
-            answer.kind,
+            is_exact ? AnswerKind::exact : answer.kind,
             to_world(pose, answer.tool_point_m),
             lower_m_,
             upper_m_,

@@ -10,6 +10,7 @@
 #include "rt_core/frame/tool.hpp"
 #include "rt_core/predict/region_predictor.hpp"
 #include "rt_core/query/block_search.hpp"
+#include "rt_core/query/surface_query.hpp"
 #include "rt_core/records/frame_variant.hpp"
 #include "rt_core/refine/refine_question.hpp"
 #include "rt_core/scene/object_table.hpp"
@@ -86,14 +87,15 @@ struct PairMemory
                                          std::size_t pairs) noexcept;
 };
 
-/// What a pair asks of its object's model in a frame.
-inline constexpr std::size_t kPairQuestions = std::size_t{2} * kMaxCoverBalls;
+/// What a pair asks of its object's model in a frame: of each ball where it is and where it will
+/// be, and once for the distance.
+inline constexpr std::size_t kPairQuestions = std::size_t{2} * kMaxCoverBalls + 1;
 /// One a pair, and one more of a tool that is a mesh.
 inline constexpr std::size_t kMaxRequests = std::size_t{2} * kMaxPairs;
 using RefineRequests = StaticVector<RefineRequest, kMaxRequests>;
 
 /// One tool and one object: where they are to each other, and what is known of it from frame to
-/// frame. Haptic thread; the functions in the frame's order. 4.9 KiB beside its parts.
+/// frame. Haptic thread; the functions in the frame's order. 5.1 KiB beside its parts.
 class Pair
 {
 public:
@@ -118,6 +120,8 @@ public:
 
     /// Adds what the pair may touch soon to the ranking, unless its models are here as a whole.
     void rank(RegionRanking& ranking) noexcept TACTUS_NONBLOCKING;
+    /// And, behind what all pairs may touch, what its distance needs (ToolSpec::wants_distance).
+    void rank_distance(RegionRanking& ranking) const noexcept TACTUS_NONBLOCKING;
 
     /// Adds what the pair asks of its models: where the tool is and, coming nearer, where it will
     /// be. Certificates of questions that it does not ask are forgotten: a model may coarsen there.
@@ -200,9 +204,21 @@ private:
     };
 
     [[nodiscard]] std::uint32_t revision() const noexcept;
+    void look() noexcept;
     void find_urgency() noexcept;
     [[nodiscard]] PairMotion motion() const noexcept;
     void ask_for_balls() noexcept;
+    void ask_for_distance() noexcept;
+    [[nodiscard]] bool tells_distance() const noexcept
+    {
+        return parts_.tool->spec().wants_distance && mesh_ == nullptr;
+    }
+    [[nodiscard]] ProofShare proof_share() const noexcept
+    {
+        return tells_distance() ? ProofShare::all : ProofShare::most;
+    }
+    [[nodiscard]] double distance_reach_m() const noexcept;
+    [[nodiscard]] bool measures_from_afar() const noexcept;
     [[nodiscard]] RefineQuestion ahead_of(RefineQuestion question) const noexcept;
     void ask_for_mesh() noexcept;
     template <std::size_t Capacity>

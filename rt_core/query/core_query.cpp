@@ -6,7 +6,6 @@
 #include "rt_core/math/infinity.hpp"
 #include "rt_core/query/nearest_triangles.hpp"
 #include "rt_core/query/probe.hpp"
-#include "rt_core/query/surface_query.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -22,12 +21,13 @@ namespace
 class CoreSearch
 {
 public:
-    CoreSearch(const AbTree& tree, const PlacedCore& core, double reach_m, WalkBudget& budget,
-               LocalSurface& surface) noexcept
+    CoreSearch(const AbTree& tree, const PlacedCore& core, double reach_m, ProofShare share,
+               WalkBudget& budget, LocalSurface& surface) noexcept
         : tree_(tree)
         , core_(core)
         , quantum_(static_cast<double>(tree.quantum_m()))
         , reach_(reach_m)
+        , share_(static_cast<double>(share_of(share)))
         , budget_(budget)
         , probe_(make_probe(core.center(), tree.quantum_m()))
         , triangles_(surface)
@@ -102,10 +102,7 @@ private:
     };
 
     /// What is farther changes nothing. Never grows: what was left out stays farther.
-    [[nodiscard]] double worth_m() const noexcept
-    {
-        return std::max(reach_, static_cast<double>(kProofShare) * upper_);
-    }
+    [[nodiscard]] double worth_m() const noexcept { return std::max(reach_, share_ * upper_); }
 
     /// Both roundings are relative and far below the margin of the kernels.
     [[nodiscard]] double from_core(float quanta) const noexcept
@@ -174,6 +171,7 @@ private:
     const PlacedCore& core_;
     double quantum_;
     double reach_;
+    double share_; ///< Of the best distance: what is farther is not looked at.
     WalkBudget& budget_;
     KernelProbe probe_;
     NearestTriangles triangles_;
@@ -188,16 +186,16 @@ private:
 } // namespace
 
 void gather_surface(const AbTree& tree, const PlacedCore& core, double reach_m, QueryMemory& memory,
-                    WalkBudget& budget, LocalSurface& surface) noexcept
+                    WalkBudget& budget, LocalSurface& surface, ProofShare share) noexcept
 {
     if (core.is_point())
     {
-        gather_surface(tree, core.center(), reach_m, memory, budget, surface);
+        gather_surface(tree, core.center(), reach_m, memory, budget, surface, share);
         return;
     }
     if (is_beyond_kernels(core.center(), tree.quantum_m()))
     {
-        gather_surface(tree, core.center(), reach_m, memory, budget, surface);
+        gather_surface(tree, core.center(), reach_m, memory, budget, surface, share);
         DistanceAnswer& answer = surface.answer;
         answer.lower_m = std::max(0.0, answer.lower_m - core.radius());
         answer.kind = answer.lower_m > reach_m ? AnswerKind::decided : AnswerKind::bracket;
@@ -205,7 +203,7 @@ void gather_surface(const AbTree& tree, const PlacedCore& core, double reach_m, 
     }
     TACTUS_ASSERT(!core.is_mesh());
     surface.center_m = core.center();
-    CoreSearch search(tree, core, reach_m, budget, surface);
+    CoreSearch search(tree, core, reach_m, share, budget, surface);
     search.run(memory);
     surface.answer = search.answer();
 }

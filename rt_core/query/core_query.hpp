@@ -4,6 +4,7 @@
 
 #include "rt_core/geometry/placed_core.hpp"
 #include "rt_core/query/block_search.hpp"
+#include "rt_core/query/surface_query.hpp"
 
 namespace tactus
 {
@@ -16,6 +17,7 @@ namespace tactus
 /// Writes `surface` completely. Haptic thread; cost: the nodes near the ball round the core, some
 /// 30 ns for each triangle there and 1 to 2 us for each in reach or among the nearest.
 void gather_surface(const AbTree& tree, const PlacedCore& core, double reach_m, QueryMemory& memory,
-                    WalkBudget& budget, LocalSurface& surface) noexcept TACTUS_NONBLOCKING;
+                    WalkBudget& budget, LocalSurface& surface,
+                    ProofShare share = ProofShare::most) noexcept TACTUS_NONBLOCKING;
 
 } // namespace tactus

@@ -29,11 +29,12 @@ class SurfaceSearch
 public:
     /// `surface` is null when only the distance is asked for; then nothing is collected.
     SurfaceSearch(const AbTree& tree, const Vec3& center_m, double reach_m, double band_m,
-                  WalkBudget& budget, LocalSurface* surface) noexcept
+                  ProofShare share, WalkBudget& budget, LocalSurface* surface) noexcept
         : tree_(tree)
         , center_(center_m)
         , quantum_(static_cast<double>(tree.quantum_m()))
         , reach_(reach_m)
+        , share_(share_of(share))
         , budget_(budget)
         , probe_(make_probe(center_m, tree.quantum_m()))
         , reach_quanta_(surface == nullptr ? 0.0F : to_quanta(reach_m))
@@ -106,8 +107,7 @@ private:
     [[nodiscard]] float bound() const noexcept
     {
         return nearest_triangles_
-                   ? std::max(floor_,
-                              std::min(limit_, std::max(reach_quanta_, kProofShare * limit_)))
+                   ? std::max(floor_, std::min(limit_, std::max(reach_quanta_, share_ * limit_)))
                    : limit_;
     }
 
@@ -416,6 +416,7 @@ private:
     Vec3 center_;
     double quantum_;
     double reach_;
+    float share_; ///< Of the limit: what is farther is not looked at without a face in reach.
     WalkBudget& budget_;
     std::optional<NearestTriangles> nearest_triangles_; ///< None when nothing is collected.
     KernelProbe probe_;
@@ -460,14 +461,14 @@ DistanceAnswer answer_from_afar(const AbTree& tree, const Vec3& center_m, double
 
 /// Not inlined: a rehearsal must run the same machine code as the query.
 [[gnu::noinline]] DistanceAnswer search(const AbTree& tree, const Vec3& center_m, double reach_m,
-                                        double band_m, QueryMemory& memory, WalkBudget& budget,
-                                        LocalSurface* surface) noexcept
+                                        double band_m, ProofShare share, QueryMemory& memory,
+                                        WalkBudget& budget, LocalSurface* surface) noexcept
 {
     if (is_beyond_kernels(center_m, tree.quantum_m()))
     {
         return answer_from_afar(tree, center_m, reach_m);
     }
-    SurfaceSearch search(tree, center_m, reach_m, band_m, budget, surface);
+    SurfaceSearch search(tree, center_m, reach_m, band_m, share, budget, surface);
     search.run(memory);
     return search.answer();
 }
@@ -475,19 +476,19 @@ DistanceAnswer answer_from_afar(const AbTree& tree, const Vec3& center_m, double
 } // namespace
 
 void gather_surface(const AbTree& tree, const Vec3& center_m, double reach_m, QueryMemory& memory,
-                    WalkBudget& budget, LocalSurface& surface) noexcept
+                    WalkBudget& budget, LocalSurface& surface, ProofShare share) noexcept
 {
     surface.center_m = center_m;
     surface.count = 0;
     surface.truncated = false;
-    surface.answer = search(tree, center_m, reach_m, kInfinity, memory, budget, &surface);
+    surface.answer = search(tree, center_m, reach_m, kInfinity, share, memory, budget, &surface);
     surface.is_cut = surface.truncated || budget.is_spent;
 }
 
 DistanceAnswer query_distance(const AbTree& tree, const Vec3& center_m, double band_m,
                               QueryMemory& memory, WalkBudget& budget) noexcept
 {
-    return search(tree, center_m, 0.0, band_m, memory, budget, nullptr);
+    return search(tree, center_m, 0.0, band_m, ProofShare::all, memory, budget, nullptr);
 }
 
 } // namespace tactus

@@ -46,6 +46,11 @@ struct ToolSpec
     bool passes_through{false};
     /// Of the spring that turns the tool; 0: as the stiffness and the tool's own size make it.
     double angular_stiffness_nm_per_rad{0.0};
+    /// Its pairs answer exactly however far they are, once the surface that may be the nearest is
+    /// here and refined. Frames do that bit by bit, behind all that a force needs and as far as the
+    /// pools have room; until then the bracket narrows. Some microseconds a pair and frame. Not of
+    /// a tool that is a mesh: it changes nothing.
+    bool wants_distance{false};
 };
 
 [[nodiscard]] inline bool is_mesh(const ToolSpec& tool) noexcept

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// attacker DOMAIN SECONDS ATTACK [PORT...]: a stranger on a domain where a host and a controller
-/// are. It needs no rights and nothing of ours but the topics' types, and those that begin with
-/// rtps_ nothing but the others' UDP ports. Waits until it has seen both, then does one thing again
-/// and again, at least 20 times and for so long, and tells how often. Exits 2 when it saw nobody.
+/// attacker DOMAIN SECONDS ATTACK[@MICROSECONDS] [PORT...]: a stranger on a domain where a host and
+/// a controller are. It needs no rights and nothing of ours but the topics' types, and those that
+/// begin with rtps_ nothing but the others' UDP ports. Waits until it has seen both, then does one
+/// thing again and again, with its own or the given pause (0: none), at least 20 times and for so
+/// long, and tells how often. Exits 2 when it saw nobody.
 
 #include "tests/hostile/raw_rtps.hpp"
 #include "transport/content_hash.hpp"
@@ -12,6 +13,7 @@
 
 #include <dds/dds.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstdint>
@@ -226,6 +228,13 @@ Attack forge_catalogue()
     };
 }
 
+/// Every other one is a number that no model or object may have.
+std::uint32_t number_in(std::uint64_t turn)
+{
+    constexpr std::uint64_t kBeyond = 1'000'000;
+    return static_cast<std::uint32_t>(turn % 2 == 0 ? turn / 2 : kBeyond + turn);
+}
+
 /// Models of many names, under the host's epoch and our own.
 Attack spam_catalogue()
 {
@@ -237,7 +246,7 @@ Attack spam_catalogue()
             tactus_v3_CatalogueEntry entry = self.host;
             std::snprintf(static_cast<char*>(entry.name), sizeof(entry.name), "bogus-%llu",
                           static_cast<unsigned long long>(turn));
-            entry.model = static_cast<std::uint32_t>(turn);
+            entry.model = number_in(turn);
             dds_write(writer, &entry);
             entry.host_epoch = self.own_epoch();
             dds_write(writer, &entry);
@@ -330,7 +339,7 @@ Attack spam_objects()
         {
             tactus_v3_ObjectRecord record = {};
             record.host_epoch = self.host.host_epoch;
-            record.object = static_cast<std::uint32_t>(turn);
+            record.object = number_in(turn);
             record.generation = 1'000;
             record.serial = 1;
             std::strcpy(static_cast<char*>(record.name), "false");
@@ -420,19 +429,20 @@ Attack forge_telemetry()
     };
 }
 
-/// A controller that comes and goes.
+/// A controller that comes and goes, now and then under a name that is none.
 Attack visit()
 {
     return [](Attacker& self)
     {
         const auto writer = self.writer("tactus/v3/wanted", tactus_v3_Wanted_desc, "stranger");
-        return [=, &self](std::uint64_t)
+        return [=, &self](std::uint64_t turn)
         {
             tactus_v3_Wanted wanted = {};
             std::memcpy(wanted.controller, self.own().data(), self.own().size());
             wanted.host_epoch = self.host.host_epoch;
             wanted.granted = 128;
-            std::strcpy(static_cast<char*>(wanted.controller_name), "stranger");
+            std::strcpy(static_cast<char*>(wanted.controller_name),
+                        turn % 8 == 0 ? "\x1b[31mred\x07" : "stranger");
             dds_write(writer, &wanted);
             std::this_thread::sleep_for(1ms); // Or the two are one piece of news.
             dds_dispose(writer, &wanted);
@@ -503,10 +513,12 @@ const std::map<std::string, Habit>& habits()
 
 int main(int argc, char** argv)
 {
-    const auto habit = argc >= 4 ? habits().find(argv[3]) : habits().end();
+    const std::string attack = argc >= 4 ? argv[3] : "";
+    const std::size_t at = std::min(attack.find('@'), attack.size());
+    const auto habit = habits().find(attack.substr(0, at));
     if (habit == habits().end())
     {
-        std::fprintf(stderr, "attacker DOMAIN SECONDS ATTACK [PORT...]; attacks:");
+        std::fprintf(stderr, "attacker DOMAIN SECONDS ATTACK[@MICROSECONDS] [PORT...]; attacks:");
         for (const auto& [name, unused] : habits())
         {
             std::fprintf(stderr, " %s", name.c_str());
@@ -530,13 +542,23 @@ int main(int argc, char** argv)
         attacker.ports.push_back(static_cast<std::uint16_t>(std::atoi(argv[i])));
     }
     const auto act = habit->second.attack(attacker);
-    const auto end = Clock::now() + std::chrono::duration<double>(std::atof(argv[2]));
+    const std::chrono::microseconds pause =
+        at < attack.size() ? std::chrono::microseconds(std::atoi(attack.c_str() + at + 1))
+                           : habit->second.every;
+    std::printf("begun\n");
+    std::fflush(stdout);
+    const auto start = Clock::now();
+    const auto end = start + std::chrono::duration<double>(std::atof(argv[2]));
     std::uint64_t turn = 0;
     for (; turn < 20 || Clock::now() < end; ++turn)
     {
         act(turn);
-        std::this_thread::sleep_for(habit->second.every);
+        if (pause.count() > 0)
+        {
+            std::this_thread::sleep_for(pause);
+        }
     }
-    std::printf("done %llu times\n", static_cast<unsigned long long>(turn));
+    std::printf("done %llu times in %.2f s\n", static_cast<unsigned long long>(turn),
+                std::chrono::duration<double>(Clock::now() - start).count());
     return 0;
 }

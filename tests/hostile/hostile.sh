@@ -5,7 +5,8 @@
 # for another controller, which comes meanwhile.
 source "$(dirname "$0")/../integration/hrtc/common.sh"
 readonly attacker=$4 attack=$5
-readonly attacked_for=1.5
+attacked_for=1.5
+[[ "$attack" != log_flooded ]] || attacked_for=2.5
 # It is found by everybody and finds hosts.
 readonly attacker_uri='<CycloneDDS><Domain id="any"><General><Interfaces><NetworkInterface name="lo"
 multicast="false"/></Interfaces><AllowMulticast>false</AllowMulticast></General><Discovery>
@@ -111,6 +112,8 @@ case $attack in
     wanted_flooded_epochs) ;; # To hosts that aren't there: nobody's business.
     log_flooded) # It may come and go; the log says so 40 times a second at most.
         grep -q 'controller stranger subscribed' publish.log || fault 'no stranger came'
+        said=$(grep -c 'controller stranger' publish.log)
+        ((said <= 160)) || fault "$said lines of a stranger's visits"
         ;;
     wanted_* | telemetry_*)
         grep -q 'refused of attacker (process [0-9]* on ' publish.log \
@@ -120,10 +123,15 @@ case $attack in
         ! grep -q '77777777' publish.log || fault 'forged telemetry is shown'
         ;;
     *)
-        # What is disposed of already can't be again until its host speaks.
+        # What is disposed of already can't be again until its host speaks. Of a flood each is
+        # refused where it comes in, and not at its end; of its own names those beyond the limit.
         least=10
+        turns=$(sed -n 's/^done \([0-9]*\) times.*/\1/p' attacker.log)
         [[ $attack != *_disposed ]] || least=1
+        [[ $attack != *_flooded ]] || least=$((turns / 2))
         check report.json refused == 1 refused.0.identity '>=' "$least"
+        [[ $attack != catalogue_flooded ]] || check report.json refused.0.model_number '>=' 1
+        [[ $attack != objects_flooded ]] || check report.json refused.0.object_number '>=' 1
         grep -q 'refused of attacker (process [0-9]* on ' hrtc.log || fault 'hrtc names nobody'
         ;;
 esac

@@ -93,6 +93,17 @@ def check_distances(path, corners):
     expect(np.all(kinds == tactus.EXACT), f"in reach, but of kind {kinds.max()}")
     off = np.linalg.norm(answers.nearest_m[near, 0] - places[near], axis=1) - truth[near]
     expect(np.max(np.abs(off)) < 1e-6, f"nearest points are off by {np.max(np.abs(off))}")
+    # A small tool that asks has the distance from anywhere, one that doesn't only in reach.
+    for wants in (True, False):
+        small = tactus.Frame([tactus.Model(path)],
+                             [tactus.Tool(0.001, passes_through=True, wants_distance=wants)],
+                             [tactus.Object()], memory_mib=8)
+        answers = small.run(places[:60] * 3, rounds=3000)
+        exact = answers.kind[:, 0] == tactus.EXACT
+        expect(np.all(exact) if wants else exact.sum() < 30, f"{exact.sum()} exact of wants {wants}")
+        far = np.array([distance(place, corners) for place in places[:60] * 3])
+        off = np.abs(answers.lower_m[exact, 0] - far[exact])
+        expect(np.max(off, initial=0) < 1e-6, f"distances from afar are off by {np.max(off, initial=0)}")
     # Two tools, two objects that stand apart, one moved: the same distances, farther by nothing.
     shift = np.array([0.3, 0.0, 0.0])
     two = tactus.Frame([tactus.Model(path)], [tactus.Tool(0.02, passes_through=True)] * 2,
@@ -237,6 +248,66 @@ def check_feel(path):
            "it isn't as it was")
 
 
+def forces_when_shaken(path, speed_m_per_s):
+    """Of a hand 3 mm deep, under which the object goes up and down by 2 mm every four frames."""
+    frame = tactus.Frame([tactus.Model(path)], [tactus.Tool(0.002, stiffness_n_per_m=500)],
+                         [tactus.Object()], memory_mib=32, loads_whole=True,
+                         object_speed_max_m_per_s=speed_m_per_s)
+    load_whole(frame, [[0.05, 0, 0.03]])
+    down = np.stack([np.full(200, 0.05), np.zeros(200), np.linspace(0.03, 0.019, 200)], axis=1)
+    forces, flags = [frame.run(down).force_n[-1]], []
+    for i in range(200):
+        frame.place(0, translation_m=[0, 0, 0.002 if i // 4 % 2 == 0 else -0.002])
+        answers = frame.run(down[-1:])
+        forces.append(answers.force_n[0])
+        flags.append(answers.flags[0])
+    return np.linalg.norm(np.diff(forces, axis=0), axis=1).max(), np.array(flags)
+
+
+def check_carried(path):
+    """An object that is touched is carried no faster than is believed, and gets where it is put."""
+    believed, flags = forces_when_shaken(path, 1e6)
+    expect(believed > 1.5 and not np.any(flags & tactus.OUTRUN), f"a step of {believed} N")
+    held, flags = forces_when_shaken(path, 0.5)
+    expect(held <= 1.3 * 500 * 0.5 * 1e-3, f"a step of {held} N at 0.5 m/s")
+    expect(not np.any(flags & tactus.OUTRUN), "4 mm are no 20 ms of 0.5 m/s")
+    # A hand 1 mm deep, and a probe above it that tells how high the top of the ring is.
+    probe = tactus.Tool(0.001, passes_through=True, wants_distance=True)
+    frame = tactus.Frame([tactus.Model(path)], [tactus.Tool(0.002), probe], [tactus.Object()],
+                         memory_mib=32, loads_whole=True)
+
+    def run(heights):
+        places = [[[0.05, 0, height], [0.05, 0, 0.2]] for height in heights]
+        answers = frame.run(places)
+        expect(np.all(answers.kind[:, 1] == tactus.EXACT), "a height that isn't exact")
+        return 0.18 - answers.lower_m[:, 1, 0], answers.flags[:, 0]
+
+    load_whole(frame, [[[0.05, 0, 0.03], [0.05, 0, 0.2]]])
+    _, flags = run(np.linspace(0.03, 0.021, 200))
+    expect(flags[-1] & tactus.IN_CONTACT, "no touch")
+    frame.place(0, translation_m=[0, 0, 0.012])
+    height, flags = run(np.full(60, 0.021))
+    outrun = flags & tactus.OUTRUN != 0
+    expect(np.any(outrun[:8]) and not np.any(outrun[8:]), f"outrun in {np.flatnonzero(outrun)}")
+    rise = np.diff(np.concatenate([[0], height]))
+    expect(np.all(rise < 0.501e-3), f"carried by {rise.max()} m in a frame")
+    expect(abs(height[-1] - 0.012) < 1e-5, f"it is at {height[-1]} m, not where it was put")
+    run(np.linspace(0.021, 0.1, 300))
+    for where in (-0.5, 0.0, -0.2):  # What nobody touches goes at once.
+        frame.place(0, translation_m=[0, 0, 1])  # The last place of an object counts.
+        frame.place(0, translation_m=[0, 0, where])
+        height, _ = run([0.1])
+        expect(abs(height[0] - where) < 1e-5, f"it is at {height[0]} m, not at once at {where}")
+    many = tactus.Frame([tactus.Model(path)], [tactus.Tool(0.01)], [tactus.Object()] * 65,
+                        memory_mib=32)
+    for i in [*range(64), 63, 0]:  # The last place of an object counts.
+        many.place(i)
+    refuses(tactus.Error, "64 objects were placed or changed, or are being carried; run a frame",
+            lambda: many.place(64))
+    many.run([[0, 0, 1]])
+    many.place(64)
+
+
 def check_host(path):
     """A model that a host publishes answers as its file does."""
     host = subprocess.Popen([spm_publish, "--domain", str(DOMAIN), path],
@@ -356,6 +427,7 @@ def main():
         check_shapes(path, corners)
         check_torque(path)
         check_feel(path)
+        check_carried(path)
         check_host(path)
         check_refusals(path)
         check_page(scratch)

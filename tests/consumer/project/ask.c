@@ -47,6 +47,49 @@ static void run_until_exact(tactus_frame* frame, const tactus_poses* poses, tact
     need(!is_open, "never exact", error);
 }
 
+/* Half a metre above the top of the ring, by a small tool that asks, or that doesn't. */
+static void ask_from_afar(const tactus_setup* of_ball, int wants_distance, void* memory,
+                          size_t bytes, tactus_error* error)
+{
+    tactus_tool tool = *of_ball->tools;
+    tool.radius_m = 0.001;
+    tool.wants_distance = wants_distance;
+    tactus_setup setup = *of_ball;
+    setup.tools = &tool;
+    tactus_frame* frame = NULL;
+    need(tactus_frame_make(&setup, memory, bytes, &frame, error) == TACTUS_DONE, "make", error);
+
+    const double place_m[3] = {0.028, 0.0, 0.513};
+    double lower_m[1];
+    double upper_m[1];
+    double nearest_m[3];
+    uint8_t kind[1];
+    tactus_poses poses;
+    memset(&poses, 0, sizeof(poses));
+    poses.size = sizeof(poses);
+    poses.count = 1;
+    poses.positions_m = place_m;
+    poses.lower_m = lower_m;
+    poses.upper_m = upper_m;
+    poses.nearest_m = nearest_m;
+    poses.kind = kind;
+    poses.rounds = 1000;
+    if (wants_distance)
+    {
+        run_until_exact(frame, &poses, error);
+        need(fabs(lower_m[0] - 0.5) < 5e-5 && fabs(nearest_m[2] - 0.013) < 5e-5,
+             "another distance from afar", error);
+    }
+    else
+    {
+        need(tactus_frame_run(frame, &poses, error) == TACTUS_DONE, "run", error);
+        need(kind[0] == TACTUS_DECIDED && upper_m[0] - lower_m[0] > 0.01,
+             "exact though nobody asked", error);
+    }
+    printf("from afar: %.3f to %.3f mm\n", 1e3 * lower_m[0], 1e3 * upper_m[0]);
+    tactus_frame_end(frame);
+}
+
 /* Distances of a tool of this shape that stands upright, 9.8 mm above the top of the ring. */
 static void ask_upright(const tactus_setup* of_ball, tactus_shape shape, const double half_m[3],
                         void* memory, size_t bytes, tactus_error* error)
@@ -127,6 +170,54 @@ static void press_one_end(const tactus_setup* of_ball, void* memory, size_t byte
     tactus_frame_end(frame);
 }
 
+/* The largest step of the force of a hand 3 mm deep, under which the ring goes up and down by 2 mm
+ * every four frames; of a ring that is believed to move at that speed at most. */
+static double shake(const tactus_setup* of_ball, double speed_m_per_s, void* memory, size_t bytes,
+                    tactus_error* error)
+{
+    tactus_tool hand;
+    tactus_tool_default(&hand);
+    hand.radius_m = 0.002;
+    tactus_setup setup = *of_ball;
+    setup.tools = &hand;
+    setup.object_speed_max_m_per_s = speed_m_per_s;
+    tactus_frame* frame = NULL;
+    need(tactus_frame_make(&setup, memory, bytes, &frame, error) == TACTUS_DONE, "make", error);
+    double place_m[3] = {0.028, 0.0, 0.025};
+    double force_n[3] = {0.0, 0.0, 0.0};
+    uint32_t flags[1] = {0};
+    tactus_poses poses;
+    memset(&poses, 0, sizeof(poses));
+    poses.size = sizeof(poses);
+    poses.count = 1;
+    poses.positions_m = place_m;
+    poses.force_n = force_n;
+    poses.flags = flags;
+    poses.rounds = 100;
+    for (; place_m[2] > 0.012; place_m[2] -= 0.0001)
+    {
+        need(tactus_frame_run(frame, &poses, error) == TACTUS_DONE, "come down", error);
+    }
+    need(force_n[2] > 1.2 && (flags[0] & TACTUS_IN_CONTACT) != 0, "no touch", error);
+    poses.rounds = 0;
+    double step_max_n = 0.0;
+    tactus_object ring;
+    tactus_object_default(&ring);
+    for (int i = 0; i < 200; ++i)
+    {
+        ring.pose.translation_m[2] = i / 4 % 2 == 0 ? 0.002 : -0.002;
+        need(tactus_frame_place(frame, 0, &ring.pose, error) == TACTUS_DONE, "place", error);
+        const double before_n = force_n[2];
+        need(tactus_frame_load(frame, error) == TACTUS_DONE, "load", error);
+        need(tactus_frame_run(frame, &poses, error) == TACTUS_DONE, "run", error);
+        step_max_n = fmax(step_max_n, fabs(force_n[2] - before_n));
+        need((flags[0] & TACTUS_OUTRUN) == 0, "4 mm are more than 20 ms", error);
+    }
+    tactus_frame_end(frame);
+    printf("shaken at %g m/s: %.3f N at once\n", speed_m_per_s, step_max_n);
+    return step_max_n;
+}
+
 int main(int argc, char** argv)
 {
     tactus_error error = {""};
@@ -194,10 +285,10 @@ int main(int argc, char** argv)
     tactus_model* other = NULL;
     tactus_frame* second = NULL;
     refused(tactus_model_open(TACTUS_ABI + 1, argv[1], &other, &error), TACTUS_BAD_VERSION,
-            "made for ABI version 2; this library has 1", &error);
+            "made for ABI version 3; this library has 2", &error);
     setup.abi = TACTUS_ABI + 1;
     refused(tactus_frame_make(&setup, memory, bytes, &second, &error), TACTUS_BAD_VERSION,
-            "made for ABI version 2", &error);
+            "made for ABI version 3", &error);
     setup.abi = TACTUS_ABI;
     ball.size -= 8;
     refused(tactus_frame_make(&setup, memory, bytes, &second, &error), TACTUS_BAD_VERSION,
@@ -245,6 +336,10 @@ int main(int argc, char** argv)
     refused(tactus_frame_feel(frame, 0, &rough, &error), TACTUS_BAD_VERSION,
             "material: its size is", &error);
     rough.size += 8;
+    setup.object_speed_max_m_per_s = 0.0;
+    refused(tactus_frame_make(&setup, more, bytes, &second, &error), TACTUS_BAD_ARGUMENT,
+            "setup.object_speed_max_m_per_s: 0; 1e-06 to 1000000 is allowed", &error);
+    setup.object_speed_max_m_per_s = 0.5;
     need(tactus_frame_feel(frame, 0, &rough, &error) == TACTUS_DONE, "feel", &error);
 
     /* An object that moves away by 5 mm is 5 mm farther away. */
@@ -263,7 +358,12 @@ int main(int argc, char** argv)
     const double box_half_m[3] = {0.001, 0.002, 0.006};
     ask_upright(&setup, TACTUS_CAPSULE, capsule_half_m, memory, bytes, &error);
     ask_upright(&setup, TACTUS_BOX, box_half_m, memory, bytes, &error);
+    ask_from_afar(&setup, 1, memory, bytes, &error);
+    ask_from_afar(&setup, 0, memory, bytes, &error);
     press_one_end(&setup, memory, bytes, &error);
+    /* 500 N/m: half a metre a second changes the force by 0.25 N a frame. */
+    need(shake(&setup, 0.5, memory, bytes, &error) < 0.33, "a step of the force", &error);
+    need(shake(&setup, 1e6, memory, bytes, &error) > 1.5, "no step though all is believed", &error);
     need(tactus_model_close(model, &error) == TACTUS_DONE, "close", &error);
     free(memory);
     free(more);

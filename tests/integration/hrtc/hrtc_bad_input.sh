@@ -31,8 +31,8 @@ refuse_config '--pool-mib: *0.25 .. 4096' 'pool-mib = 0'
 refuse_config 'maybe' 'no-static = "maybe"'
 refuse_config '--device: *udp:ADDRESS:PORT' 'device = "phantom"'
 refuse_config 'not allowed in a configuration file' 'config = "other.toml"'
-refuse 3 "missing.toml: can't be read" --config missing.toml
-refuse 3 "out: can't be read" --config out
+refuse 2 "missing.toml: can't be read" --config missing.toml
+refuse 2 "out: can't be read" --config out
 printf 'model = ["bumpy", "torus"]\nplace = ["0,0,0", "1,0,0"]\nrate = 2000\n' >good.toml
 "$hrtc" --config good.toml --rate 4000 --print-config >all.toml || fault '--print-config'
 grep -qx 'rate=4000' all.toml || fault 'the command line does not go first'

@@ -32,6 +32,7 @@ fi
 code=0
 output=$(unprivileged ./hrtc --transport file --model good.spm --duration 60 2>&1) || code=$?
 ((code == 2)) || fault "without privilege it ended with $code"
+refused=$output
 [[ "$output" == *SCHED_FIFO*CAP_SYS_NICE* ]] || fault "no word about SCHED_FIFO: $output"
 [[ "$output" == *mlockall*RLIMIT_MEMLOCK* ]] || fault "no word about locked memory: $output"
 [[ "$output" == *--allow-no-rt* ]] || fault "no word about --allow-no-rt: $output"
@@ -52,4 +53,11 @@ check doctor.json counts.critical '>=' 2
 output=$(unprivileged ./hrtc doctor 2>&1) || true
 [[ "$output" == *critical*priority*refused*rtprio* && "$output" == *critical*memlock*refused* ]] \
     || fault "hrtc doctor does not say what is missing: $output"
+# Both say the same line for the same file.
+for line in ' - rtprio 99' ' - memlock unlimited'; do
+    for said in "$refused" "$output"; do
+        [[ "$said" == *"$line"*/etc/security/limits.d/tactus.conf* ]] \
+            || fault "no '$line' for limits.d: $said"
+    done
+done
 finish

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/base/realtime.hpp"
+#include "rt_core/math/infinity.hpp"
+#include "rt_core/math/similarity.hpp"
+
+// Any thread: values, and functions of their arguments alone; no call waits or allocates.
+namespace tactus
+{
+
+/// Part of the way from one place to another; the rotation by the short way round, at a speed that
+/// is even to a twentieth up to 45 degrees.
+[[nodiscard]] Similarity between(const Similarity& from, const Similarity& to,
+                                 double share) noexcept TACTUS_NONBLOCKING;
+
+/// How far an object that goes from one place to another carries what is at `touch_m`, which is
+/// where it touches it in the world.
+[[nodiscard]] double carried_m(const Similarity& from, const Similarity& to,
+                               const Vec3& touch_m) noexcept TACTUS_NONBLOCKING;
+
+/// How fast an object that a tool touches is believed to move, whatever is said of it: a force
+/// can't change faster by that than by stiffness x speed.
+struct BelievedSpeed
+{
+    /// An object that is behind by more than it may go in this time outruns its belief: the force
+    /// of what touches it has to go.
+    static constexpr double kPatience_s = 0.02;
+
+    double speed_max_m_per_s{kInfinity}; ///< Above 0.
+
+    [[nodiscard]] double most_m(double since_s) const noexcept
+    {
+        return speed_max_m_per_s * since_s;
+    }
+    /// Of a way that it would carry what touches it within `since_s`.
+    [[nodiscard]] bool is_too_fast(double way_m, double since_s) const noexcept
+    {
+        return way_m > most_m(since_s);
+    }
+    [[nodiscard]] bool outruns(double way_m, double since_s) const noexcept
+    {
+        return way_m > most_m(since_s + kPatience_s);
+    }
+    /// Where it is carried in that time. The way of what touches it is `way_m`, which is too fast.
+    [[nodiscard]] Similarity held(const Similarity& from, const Similarity& to, double way_m,
+                                  double since_s) const noexcept
+    {
+        return between(from, to, most_m(since_s) / way_m);
+    }
+};
+
+} // namespace tactus
