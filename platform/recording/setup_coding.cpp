@@ -67,6 +67,10 @@ static_assert(static_cast<int>(Prediction::quadratic) == 2);
 static_assert(static_cast<int>(Prediction::distance_query) == 3);
 static_assert(static_cast<int>(Prediction::automatic) == 4);
 
+/// Bits of what a tool wants.
+constexpr std::uint32_t kWantsContacts = 1;
+constexpr std::uint32_t kWantsPairs = 2;
+
 Fault parse_tools(ByteReader& reader, std::uint32_t tools, std::uint32_t models,
                   RecordedSetup& setup)
 {
@@ -77,14 +81,15 @@ Fault parse_tools(ByteReader& reader, std::uint32_t tools, std::uint32_t models,
         tool.stiffness_n_per_m = reader.read<double>();
         tool.force_max_n = reader.read<double>();
         tool.speed_max_m_per_s = reader.read<double>();
-        const auto wants_contacts = reader.read<std::uint8_t>();
-        tool.wants_contacts = wants_contacts != 0;
+        const auto wants = reader.read<std::uint8_t>();
+        tool.wants_contacts = (wants & kWantsContacts) != 0;
+        tool.wants_pairs = (wants & kWantsPairs) != 0;
         tool.torque_max_nm = reader.read<double>();
         const auto passes_through = reader.read<std::uint8_t>();
         tool.passes_through = passes_through != 0;
         tool.angular_stiffness_nm_per_rad = reader.read<double>();
         const std::optional<ToolCore> core = read_core(reader, setup.hull_vertices);
-        if (!core || wants_contacts > 1 || passes_through > 1)
+        if (!core || wants > (kWantsContacts | kWantsPairs) || passes_through > 1)
         {
             return "tool " + std::to_string(i) +
                    " has an unknown core, one beyond 1e6 m or a hull of not 1 to 64 vertices";
@@ -181,7 +186,8 @@ std::vector<std::byte> code_setup(const RecordedSetup& setup)
         append(bytes, tool.stiffness_n_per_m);
         append(bytes, tool.force_max_n);
         append(bytes, tool.speed_max_m_per_s);
-        append(bytes, static_cast<std::uint8_t>(tool.wants_contacts));
+        append(bytes, static_cast<std::uint8_t>((tool.wants_contacts ? kWantsContacts : 0U) |
+                                                (tool.wants_pairs ? kWantsPairs : 0U)));
         append(bytes, tool.torque_max_nm);
         append(bytes, static_cast<std::uint8_t>(tool.passes_through));
         append(bytes, tool.angular_stiffness_nm_per_rad);

@@ -140,7 +140,7 @@ std::optional<Witness> find_witness(const MeshQuestion& question, const FacePair
 /// What a search is for.
 enum class Aim : std::uint8_t
 {
-    all,     ///< Distance within the reach, all that meets, contacts.
+    all,     ///< Distance within the reach, what meets, contacts.
     nearest, ///< The distance.
     meeting, ///< What meets, which needs no measuring.
 };
@@ -227,7 +227,7 @@ public:
         found.exact_lower_m = exact_lower_m_;
         found.upper_m = std::min(upper_m_, bound_m_);
         found.open_m = is_all_there() ? open_m_ : std::min(open_m_, 0.0);
-        if (aim_ == Aim::nearest)
+        if (enough_ == 1)
         {
             found.open_m = std::max(found.open_m, 0.0); // Nothing is nearer than what meets.
         }
@@ -875,6 +875,19 @@ bool try_report(const std::optional<Witness>& witness, MeshReport& report) noexc
     return true;
 }
 
+/// The same, where the distance is asked for.
+bool try_answer(const std::optional<Witness>& witness, DistanceAnswer& answer,
+                MeshReport& report) noexcept
+{
+    if (!try_report(witness, report))
+    {
+        return false;
+    }
+    answer = answer_of_meeting(*witness);
+    report.nearest_tool_face = witness->meeting.faces.tool_face;
+    return true;
+}
+
 } // namespace
 
 void query_meshes(const MeshQuestion& question, OtherSurface& object, MeshMemory& memory,
@@ -883,7 +896,12 @@ void query_meshes(const MeshQuestion& question, OtherSurface& object, MeshMemory
     report.clear();
     contacts.clear();
     const std::optional<Witness> witness = find_witness(question, memory.faces, object.budget());
-    MeshSearch search(question, Aim::all, kAll, object.budget(), memory, report, &contacts);
+    const std::uint32_t enough = question.wants_pairs || question.contact_m >= 0.0 ? kAll : 1;
+    if (enough == 1 && try_answer(witness, answer, report))
+    {
+        return;
+    }
+    MeshSearch search(question, Aim::all, enough, object.budget(), memory, report, &contacts);
     search.run(&object, witness);
     answer = search.answer();
     search.report_meeting();
@@ -895,10 +913,8 @@ void find_nearest_faces(const MeshQuestion& question, OtherSurface& object, Mesh
 {
     report.clear();
     const std::optional<Witness> witness = find_witness(question, memory.faces, object.budget());
-    if (try_report(witness, report))
+    if (try_answer(witness, answer, report))
     {
-        answer = answer_of_meeting(*witness);
-        report.nearest_tool_face = witness->meeting.faces.tool_face;
         return;
     }
     MeshSearch search(question, Aim::nearest, 1, object.budget(), memory, report, nullptr);

@@ -46,6 +46,9 @@ struct ToolSpec
     bool passes_through{false};
     /// Of the spring that turns the tool; 0: as the stiffness and the tool's own size make it.
     double angular_stiffness_nm_per_rad{0.0};
+    /// Of a mesh: all pairs of faces that meet (MeshReport), some 30 us where 100 do. A tool that
+    /// has contacts, or a force, gets them in any case; of others the first that is found is told.
+    bool wants_pairs{false};
 };
 
 [[nodiscard]] inline bool is_mesh(const ToolSpec& tool) noexcept
