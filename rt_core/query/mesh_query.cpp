@@ -146,6 +146,9 @@ enum class Aim : std::uint8_t
 };
 constexpr std::uint32_t kAll = std::numeric_limits<std::uint32_t>::max();
 
+/// Blocks that are apart by more than what counts over this are measured along their own way, too.
+constexpr float kFarBlocks = 1.25F;
+
 /// Contacts as near as this times the farthest that is kept are asked for their ends.
 constexpr double kEndsAsNear = 1.1;
 
@@ -431,8 +434,7 @@ private:
         { return (bound + tool.largest_error(lanes)) * kSumRoundedUp; };
         const BlockGeometry& block = question_.object.block(pair.block);
         const Aabb& object_box = item.object_box;
-        if (way_number_ != 0 &&
-            are_parted_along_way(tool, object_box, block, with_error(tool_lanes)))
+        if (are_parted(tool, item, block, box_bound, with_error(tool_lanes)))
         {
             return;
         }
@@ -479,6 +481,15 @@ private:
         }
     }
 
+    /// Along some way two blocks are farther apart than `bound`.
+    [[nodiscard]] bool are_parted(const PlacedBlock& tool, const PairWalk::Item& item,
+                                  const BlockGeometry& block, float box_bound, float bound) noexcept
+    {
+        const bool are_far = item.gap > 0.0F && kFarBlocks * item.gap > box_bound;
+        return (way_number_ != 0 && are_parted_along_way(tool, item.object_box, block, bound)) ||
+               (are_far && are_parted_along_own_way(tool, item.object_box, block, bound));
+    }
+
     /// Along the way between the nearest two blocks are farther apart than they may be: by the
     /// object's box, or by all vertices of both.
     [[nodiscard]] bool are_parted_along_way(const PlacedBlock& tool, const Aabb& object_box,
@@ -498,6 +509,33 @@ private:
         return lowest > highest + size * kPairMargin ||
                lowest > question_.object.kernels().highest_along(
                             block.coordinates.front().data(), block.vertices, center, way_.data());
+    }
+
+    /// The same along the way between the two: elsewhere something may be as near as the nearest.
+    [[nodiscard]] bool are_parted_along_own_way(const PlacedBlock& tool, const Aabb& object_box,
+                                                const BlockGeometry& block,
+                                                float bound) const noexcept
+    {
+        const KernelProbe& center = tool.box.center;
+        const Vec3f way = way_between(center, object_box);
+        return placed_.lowest_along(way) - center.slack - bound >
+               question_.object.kernels().highest_along(block.coordinates.front().data(),
+                                                        block.vertices, center, way.data());
+    }
+
+    /// From the object's box to the tool's, as the centres lie; not longer than 1.
+    [[nodiscard]] static Vec3f way_between(const KernelProbe& center, const Aabb& box) noexcept
+    {
+        Vec3f way{};
+        float length_sq = 0.0F;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+        {
+            const float middle = 0.5F * (box.low[axis] + box.high[axis]);
+            way[axis] = -(((middle - center.high[axis]) - center.low[axis]) * center.scale);
+            length_sq += way[axis] * way[axis];
+        }
+        const float share = length_sq > 0.0F ? (1.0F - 0x1p-20F) / std::sqrt(length_sq) : 0.0F;
+        return {way[0] * share, way[1] * share, way[2] * share};
     }
 
     /// In quanta, what pairs of faces of two blocks have to be within, errors taken off.
