@@ -179,6 +179,7 @@ void tell_tool_spec(FieldSink& sink, const ToolSpec& tool)
     sink.number("torque_max_nm", tool.torque_max_nm);
     sink.number("speed_max_m_per_s", tool.speed_max_m_per_s);
     sink.flag("wants_contacts", tool.wants_contacts);
+    sink.flag("wants_pairs", tool.wants_pairs);
     sink.flag("passes_through", tool.passes_through);
     sink.flag("wants_distance", tool.wants_distance);
 }

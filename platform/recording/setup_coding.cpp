@@ -67,9 +67,11 @@ static_assert(static_cast<int>(Prediction::quadratic) == 2);
 static_assert(static_cast<int>(Prediction::distance_query) == 3);
 static_assert(static_cast<int>(Prediction::automatic) == 4);
 
-/// Bits of a tool's byte.
-constexpr std::uint8_t kPassesThrough = 1;
-constexpr std::uint8_t kWantsDistance = 2;
+/// Bits of what a tool wants, and of what else it is told.
+constexpr std::uint32_t kWantsContacts = 1;
+constexpr std::uint32_t kWantsPairs = 2;
+constexpr std::uint32_t kPassesThrough = 1;
+constexpr std::uint32_t kWantsDistance = 2;
 
 Fault parse_tools(ByteReader& reader, std::uint32_t tools, std::uint32_t models,
                   RecordedSetup& setup)
@@ -81,15 +83,17 @@ Fault parse_tools(ByteReader& reader, std::uint32_t tools, std::uint32_t models,
         tool.stiffness_n_per_m = reader.read<double>();
         tool.force_max_n = reader.read<double>();
         tool.speed_max_m_per_s = reader.read<double>();
-        const auto wants_contacts = reader.read<std::uint8_t>();
-        tool.wants_contacts = wants_contacts != 0;
+        const auto wants = reader.read<std::uint8_t>();
+        tool.wants_contacts = (wants & kWantsContacts) != 0;
+        tool.wants_pairs = (wants & kWantsPairs) != 0;
         tool.torque_max_nm = reader.read<double>();
         const auto wishes = reader.read<std::uint8_t>();
         tool.passes_through = (wishes & kPassesThrough) != 0;
         tool.wants_distance = (wishes & kWantsDistance) != 0;
         tool.angular_stiffness_nm_per_rad = reader.read<double>();
         const std::optional<ToolCore> core = read_core(reader, setup.hull_vertices);
-        if (!core || wants_contacts > 1 || wishes > (kPassesThrough | kWantsDistance))
+        if (!core || wants > (kWantsContacts | kWantsPairs) ||
+            wishes > (kPassesThrough | kWantsDistance))
         {
             return "tool " + std::to_string(i) +
                    " has an unknown core, one beyond 1e6 m or a hull of not 1 to 64 vertices";
@@ -186,7 +190,8 @@ std::vector<std::byte> code_setup(const RecordedSetup& setup)
         append(bytes, tool.stiffness_n_per_m);
         append(bytes, tool.force_max_n);
         append(bytes, tool.speed_max_m_per_s);
-        append(bytes, static_cast<std::uint8_t>(tool.wants_contacts));
+        append(bytes, static_cast<std::uint8_t>((tool.wants_contacts ? kWantsContacts : 0U) |
+                                                (tool.wants_pairs ? kWantsPairs : 0U)));
         append(bytes, tool.torque_max_nm);
         append(bytes, static_cast<std::uint8_t>((tool.passes_through ? kPassesThrough : 0U) |
                                                 (tool.wants_distance ? kWantsDistance : 0U)));

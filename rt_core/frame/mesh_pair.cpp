@@ -196,12 +196,12 @@ double MeshPair::certified_m(const RefineMemory& of_object) const noexcept
     return std::max(0.0, std::min(object_m, tool_m * placements_[0].place.scale / kRoundedUp));
 }
 
-void MeshPair::query(const Outlook& outlook, double certified_m, double contact_m,
+void MeshPair::query(const Outlook& outlook, double certified_m, double contact_m, bool wants_pairs,
                      ContactEnds* ends, DistanceAnswer& answer, ContactReport& contacts) noexcept
 {
     const MeshQuestion question{tool_model_->tree, object_model_->tree, placements_[0],
                                 outlook.reach_m(), contact_m,           ends,
-                                certified_m};
+                                certified_m,       wants_pairs};
     query_meshes(question, objects_[0], memory_, answer, report_, contacts);
     if (answer.nearest_face.is_none())
     {

@@ -54,10 +54,12 @@ public:
     [[nodiscard]] double
     certified_m(const RefineMemory& of_object) const noexcept TACTUS_NONBLOCKING;
 
-    /// In the object's frame; contacts within `contact_m`, none when it is negative. `ends` may be
-    /// null, and `certified_m` is as above.
-    void query(const Outlook& outlook, double certified_m, double contact_m, ContactEnds* ends,
-               DistanceAnswer& answer, ContactReport& contacts) noexcept TACTUS_NONBLOCKING;
+    /// In the object's frame; contacts within `contact_m`, none when it is negative, and without
+    /// `wants_pairs` then the first pair that meets. `ends` may be null, and `certified_m` is as
+    /// above.
+    void query(const Outlook& outlook, double certified_m, double contact_m, bool wants_pairs,
+               ContactEnds* ends, DistanceAnswer& answer,
+               ContactReport& contacts) noexcept TACTUS_NONBLOCKING;
 
     /// Instead of a query, while the pair is proven to be apart.
     void rest(ContactReport& contacts) noexcept TACTUS_NONBLOCKING;

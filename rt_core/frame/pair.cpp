@@ -569,7 +569,8 @@ void Pair::query_mesh(WorkCounters& work, FrameFault& faults) noexcept
         const FrameVariant& variant = parts_.rules->variant;
         const bool is_proven = variant.fixed_radius == 0.0 && variant.tolerance_m == 0.0;
         mesh_->query(outlook_, is_proven ? mesh_->certified_m(refine_memories_[0]) : 0.0, contact_m,
-                     touches != nullptr ? &touches->ends : nullptr, answer, contacts);
+                     tool.wants_pairs, touches != nullptr ? &touches->ends : nullptr, answer,
+                     contacts);
         outlook_.remember(answer);
         if (touches != nullptr)
         {

@@ -140,11 +140,14 @@ std::optional<Witness> find_witness(const MeshQuestion& question, const FacePair
 /// What a search is for.
 enum class Aim : std::uint8_t
 {
-    all,     ///< Distance within the reach, all that meets, contacts.
+    all,     ///< Distance within the reach, what meets, contacts.
     nearest, ///< The distance.
     meeting, ///< What meets, which needs no measuring.
 };
 constexpr std::uint32_t kAll = std::numeric_limits<std::uint32_t>::max();
+
+/// Blocks that are apart by more than what counts over this are measured along their own way, too.
+constexpr float kFarBlocks = 1.25F;
 
 /// Contacts as near as this times the farthest that is kept are asked for their ends.
 constexpr double kEndsAsNear = 1.1;
@@ -227,7 +230,7 @@ public:
         found.exact_lower_m = exact_lower_m_;
         found.upper_m = std::min(upper_m_, bound_m_);
         found.open_m = is_all_there() ? open_m_ : std::min(open_m_, 0.0);
-        if (aim_ == Aim::nearest)
+        if (enough_ == 1)
         {
             found.open_m = std::max(found.open_m, 0.0); // Nothing is nearer than what meets.
         }
@@ -431,8 +434,7 @@ private:
         { return (bound + tool.largest_error(lanes)) * kSumRoundedUp; };
         const BlockGeometry& block = question_.object.block(pair.block);
         const Aabb& object_box = item.object_box;
-        if (way_number_ != 0 &&
-            are_parted_along_way(tool, object_box, block, with_error(tool_lanes)))
+        if (are_parted(tool, item, block, box_bound, with_error(tool_lanes)))
         {
             return;
         }
@@ -479,6 +481,15 @@ private:
         }
     }
 
+    /// Along some way two blocks are farther apart than `bound`.
+    [[nodiscard]] bool are_parted(const PlacedBlock& tool, const PairWalk::Item& item,
+                                  const BlockGeometry& block, float box_bound, float bound) noexcept
+    {
+        const bool are_far = item.gap > 0.0F && kFarBlocks * item.gap > box_bound;
+        return (way_number_ != 0 && are_parted_along_way(tool, item.object_box, block, bound)) ||
+               (are_far && are_parted_along_own_way(tool, item.object_box, block, bound));
+    }
+
     /// Along the way between the nearest two blocks are farther apart than they may be: by the
     /// object's box, or by all vertices of both.
     [[nodiscard]] bool are_parted_along_way(const PlacedBlock& tool, const Aabb& object_box,
@@ -498,6 +509,33 @@ private:
         return lowest > highest + size * kPairMargin ||
                lowest > question_.object.kernels().highest_along(
                             block.coordinates.front().data(), block.vertices, center, way_.data());
+    }
+
+    /// The same along the way between the two: elsewhere something may be as near as the nearest.
+    [[nodiscard]] bool are_parted_along_own_way(const PlacedBlock& tool, const Aabb& object_box,
+                                                const BlockGeometry& block,
+                                                float bound) const noexcept
+    {
+        const KernelProbe& center = tool.box.center;
+        const Vec3f way = way_between(center, object_box);
+        return placed_.lowest_along(way) - center.slack - bound >
+               question_.object.kernels().highest_along(block.coordinates.front().data(),
+                                                        block.vertices, center, way.data());
+    }
+
+    /// From the object's box to the tool's, as the centres lie; not longer than 1.
+    [[nodiscard]] static Vec3f way_between(const KernelProbe& center, const Aabb& box) noexcept
+    {
+        Vec3f way{};
+        float length_sq = 0.0F;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+        {
+            const float middle = 0.5F * (box.low[axis] + box.high[axis]);
+            way[axis] = -(((middle - center.high[axis]) - center.low[axis]) * center.scale);
+            length_sq += way[axis] * way[axis];
+        }
+        const float share = length_sq > 0.0F ? (1.0F - 0x1p-20F) / std::sqrt(length_sq) : 0.0F;
+        return {way[0] * share, way[1] * share, way[2] * share};
     }
 
     /// In quanta, what pairs of faces of two blocks have to be within, errors taken off.
@@ -875,6 +913,19 @@ bool try_report(const std::optional<Witness>& witness, MeshReport& report) noexc
     return true;
 }
 
+/// The same, where the distance is asked for.
+bool try_answer(const std::optional<Witness>& witness, DistanceAnswer& answer,
+                MeshReport& report) noexcept
+{
+    if (!try_report(witness, report))
+    {
+        return false;
+    }
+    answer = answer_of_meeting(*witness);
+    report.nearest_tool_face = witness->meeting.faces.tool_face;
+    return true;
+}
+
 } // namespace
 
 void query_meshes(const MeshQuestion& question, OtherSurface& object, MeshMemory& memory,
@@ -883,7 +934,12 @@ void query_meshes(const MeshQuestion& question, OtherSurface& object, MeshMemory
     report.clear();
     contacts.clear();
     const std::optional<Witness> witness = find_witness(question, memory.faces, object.budget());
-    MeshSearch search(question, Aim::all, kAll, object.budget(), memory, report, &contacts);
+    const std::uint32_t enough = question.wants_pairs || question.contact_m >= 0.0 ? kAll : 1;
+    if (enough == 1 && try_answer(witness, answer, report))
+    {
+        return;
+    }
+    MeshSearch search(question, Aim::all, enough, object.budget(), memory, report, &contacts);
     search.run(&object, witness);
     answer = search.answer();
     search.report_meeting();
@@ -895,10 +951,8 @@ void find_nearest_faces(const MeshQuestion& question, OtherSurface& object, Mesh
 {
     report.clear();
     const std::optional<Witness> witness = find_witness(question, memory.faces, object.budget());
-    if (try_report(witness, report))
+    if (try_answer(witness, answer, report))
     {
-        answer = answer_of_meeting(*witness);
-        report.nearest_tool_face = witness->meeting.faces.tool_face;
         return;
     }
     MeshSearch search(question, Aim::nearest, 1, object.budget(), memory, report, nullptr);

@@ -56,14 +56,20 @@ float PlacedBlocks::lowest_along(const Vec3f& way, std::uint32_t number) noexcep
     PlacedBlock& placed = blocks_[last_];
     if (placed.way != number)
     {
-        const KernelProbe here{{0.0F, 0.0F, 0.0F}, {0.0F, 0.0F, 0.0F}, 1.0F, 0.0F};
-        const Vec3f back{-way[0], -way[1], -way[2]};
-        placed.lowest = -tool_.kernels().highest_along(&placed.rows.vertex[0][0], placed.vertices,
-                                                       here, back.data()) -
-                        placed.slack();
+        placed.lowest = lowest_along(way);
         placed.way = number;
     }
     return placed.lowest;
+}
+
+float PlacedBlocks::lowest_along(const Vec3f& way) const noexcept
+{
+    const PlacedBlock& placed = blocks_[last_];
+    const KernelProbe here{{0.0F, 0.0F, 0.0F}, {0.0F, 0.0F, 0.0F}, 1.0F, 0.0F};
+    const Vec3f back{-way[0], -way[1], -way[2]};
+    return -tool_.kernels().highest_along(&placed.rows.vertex[0][0], placed.vertices, here,
+                                          back.data()) -
+           placed.slack();
 }
 
 void PlacedBlocks::put(std::uint32_t index, PlacedBlock& placed) const noexcept

@@ -51,6 +51,8 @@ public:
     /// centre. Ways differ by their number, which is not 0.
     [[nodiscard]] float lowest_along(const Vec3f& way,
                                      std::uint32_t number) noexcept TACTUS_NONBLOCKING;
+    /// The same of a way that is asked for once.
+    [[nodiscard]] float lowest_along(const Vec3f& way) const noexcept TACTUS_NONBLOCKING;
 
 private:
     [[nodiscard]] double object_quantum_m() const noexcept

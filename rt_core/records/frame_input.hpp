@@ -51,6 +51,9 @@ struct ToolSpec
     /// pools have room; until then the bracket narrows. Some microseconds a pair and frame. Not of
     /// a tool that is a mesh: it changes nothing.
     bool wants_distance{false};
+    /// Of a mesh: all pairs of faces that meet (MeshReport), some 30 us where 100 do. A tool that
+    /// has contacts, or a force, gets them in any case; of others the first that is found is told.
+    bool wants_pairs{false};
 };
 
 [[nodiscard]] inline bool is_mesh(const ToolSpec& tool) noexcept

@@ -135,6 +135,7 @@ TactusPairQuery::TactusPairQuery(std::unique_ptr<StaticModel> tool,
     , tool_names_(tool_scene.model.faces)
     , object_names_(object_scene.model.faces)
     , place_{{}, vec3_of(tool_scene.model.origin_m)}
+    , skin_m_(kMeshSkin_diag * object_scene.model.diagonal_m)
 {
     pairs_.reserve(kMaxMeetingFaces);
 }
@@ -181,6 +182,20 @@ bool TactusPairQuery::do_meet()
 const std::vector<test::FacePair>& TactusPairQuery::meeting()
 {
     find_meeting(kUnlimited);
+    return pairs_of_report();
+}
+
+const std::vector<test::FacePair>& TactusPairQuery::contacts()
+{
+    OtherSurface surface(object_->tree(), place_, {kUnlimited, kUnlimited});
+    ends_.is_empty = true;
+    query_meshes({tool_->tree(), object_->tree(), place_, skin_m_, skin_m_, &ends_}, surface,
+                 memory_, answer_, report_, contacts_);
+    return pairs_of_report();
+}
+
+const std::vector<test::FacePair>& TactusPairQuery::pairs_of_report()
+{
     pairs_.clear();
     for (const MeetingFaces& faces : report_.meeting)
     {

@@ -22,6 +22,8 @@ enum class MeshProbe : std::uint8_t
     large, ///< Its longest side is 0.15 of an object's diagonal.
     small, ///< Its diagonal is.
 };
+/// Of a tool that is a mesh, in diagonals of the object.
+inline constexpr double kMeshSkin_diag = 0.001;
 [[nodiscard]] NamedMesh make_tool_mesh(const Scene& object, MeshProbe probe);
 
 /// The faces of a scene in the frame of the mesh that it was made of.
@@ -52,6 +54,9 @@ public:
     [[nodiscard]] bool do_meet() override;
     /// Those with the lowest ids when there are more than kMaxMeetingFaces.
     [[nodiscard]] const std::vector<test::FacePair>& meeting() override;
+    /// The frame's question, with contacts within the skin and those at the
+    /// ends of what the tool lies on, as the force needs them.
+    [[nodiscard]] const std::vector<test::FacePair>& contacts() override;
     /// NaN when the answer is not proven to rounding.
     [[nodiscard]] double distance_m() override;
     [[nodiscard]] test::FacePair in_source(const test::FacePair& own) const override;
@@ -59,6 +64,7 @@ public:
 
 private:
     void find_meeting(std::uint32_t enough);
+    [[nodiscard]] const std::vector<test::FacePair>& pairs_of_report();
     TactusPairQuery(std::unique_ptr<StaticModel> tool, std::unique_ptr<StaticModel> object,
                     const Scene& tool_scene, const Scene& object_scene);
     std::unique_ptr<StaticModel> tool_;
@@ -69,6 +75,9 @@ private:
     MeshMemory memory_;
     DistanceAnswer answer_;
     MeshReport report_;
+    double skin_m_;
+    ContactReport contacts_;
+    ContactEnds ends_;
     std::vector<test::FacePair> pairs_;
 };
 

@@ -31,6 +31,7 @@ test::RigOptions options_of(const PairRun& run)
     tool.speed_max_m_per_s = run.speed_m_per_s;
     tool.core = MeshCore{ModelId{1}};
     tool.passes_through = true;
+    tool.wants_pairs = true;
     options.tools = {tool};
     return options;
 }

@@ -65,8 +65,10 @@ std::uint64_t answer(PairQuery& query, PairQuestion question, std::size_t frame,
         return do_meet ? 1 : 0;
     }
     case PairQuestion::all_pairs:
+    case PairQuestion::contacts:
     {
-        const std::vector<test::FacePair>& pairs = query.meeting();
+        const std::vector<test::FacePair>& pairs =
+            question == PairQuestion::contacts ? query.contacts() : query.meeting();
         answers.us.keep(frame, microseconds(start, BenchClock::now()));
         answers.meeting[frame].clear();
         std::uint64_t sum = pairs.size();
@@ -86,11 +88,16 @@ std::uint64_t answer(PairQuery& query, PairQuestion question, std::size_t frame,
     return std::bit_cast<std::uint64_t>(distance_m);
 }
 
+bool asks_for_pairs(PairQuestion question)
+{
+    return question == PairQuestion::all_pairs || question == PairQuestion::contacts;
+}
+
 PairAnswers room_for(PairQuestion question, std::size_t frames)
 {
     PairAnswers answers{LeastTimes(frames), {}, {}, {}};
     answers.do_meet.resize(question == PairQuestion::any ? frames : 0);
-    answers.meeting.resize(question == PairQuestion::all_pairs ? frames : 0);
+    answers.meeting.resize(asks_for_pairs(question) ? frames : 0);
     answers.distances_m.resize(question == PairQuestion::distance ? frames : 0);
     return answers;
 }
@@ -101,6 +108,7 @@ const char* question_name(PairQuestion question)
 {
     return question == PairQuestion::any         ? "any"
            : question == PairQuestion::all_pairs ? "all pairs"
+           : question == PairQuestion::contacts  ? "contacts"
                                                  : "distance";
 }
 
@@ -164,7 +172,7 @@ PairErrors judge_pairs(const PairAnswers& answers, const PairTruth& truth, PairQ
             errors.missed += do_meet && !answers.do_meet[i] ? 1U : 0U;
             errors.invented += !do_meet && answers.do_meet[i] ? 1U : 0U;
         }
-        else if (question == PairQuestion::all_pairs)
+        else if (asks_for_pairs(question))
         {
             const std::vector<test::FacePair> told = named(answers.meeting[i], truth);
             errors.missed += missing_from(told, truth.meeting[i]);

@@ -19,10 +19,11 @@ enum class PairQuestion : std::uint8_t
 {
     any,
     all_pairs,
+    contacts,
     distance,
 };
 inline constexpr std::array kPairQuestions{PairQuestion::any, PairQuestion::all_pairs,
-                                           PairQuestion::distance};
+                                           PairQuestion::contacts, PairQuestion::distance};
 [[nodiscard]] const char* question_name(PairQuestion question);
 
 /// For each place of the tool: the pairs that meet, decided exactly, and the least distance. Faces
@@ -54,8 +55,8 @@ struct PairAnswers
                                                            PairQuestion question,
                                                            std::uint32_t passes);
 
-/// Frames for `any`, pairs for `all_pairs`; the largest error of a distance, infinite for one that
-/// is not a number.
+/// Frames for `any`, pairs for `all_pairs` and `contacts`; the largest error of a distance,
+/// infinite for one that is not a number.
 struct PairErrors
 {
     std::uint64_t missed{0};

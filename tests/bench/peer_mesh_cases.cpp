@@ -8,6 +8,8 @@
 #include "tests/bench/pair_trial.hpp"
 #include "tests/bench/peer_cases.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <map>
@@ -50,22 +52,39 @@ std::string prefix_of(PairClass of)
     return "";
 }
 
-/// A goal for a figure of ours, as a share of FCL's.
-struct PeerGoal
+/// The last commit before faces were decided and bounded in single precision.
+constexpr const char* kCommitBefore = "9e4f313";
+
+/// What a figure of ours is to be at most: a share of FCL's, or of what it was at kCommitBefore, or
+/// microseconds.
+struct PairGoal
 {
+    const char* scene;
     MeshProbe probe;
     PairQuestion question;
     PairClass of;
-    double p50;
+    const char* figure;
+    double goal;
+    double before_us{0.0}; ///< At kCommitBefore, on the processor of docs/benchmarks.
 };
-constexpr std::array kPeerGoals{
-    PeerGoal{MeshProbe::large, PairQuestion::any, PairClass::all, 0.011},
-    PeerGoal{MeshProbe::large, PairQuestion::all_pairs, PairClass::contact, 0.075},
-    PeerGoal{MeshProbe::large, PairQuestion::distance, PairClass::near, 0.08},
-    PeerGoal{MeshProbe::small, PairQuestion::all_pairs, PairClass::contact, 0.14},
+constexpr const char* kFineScene = kFineBunny.name;
+constexpr std::array kPairGoals{
+    PairGoal{kBunny.name, MeshProbe::large, PairQuestion::any, PairClass::all, "p50 to FCL", 0.011},
+    PairGoal{kBunny.name, MeshProbe::large, PairQuestion::all_pairs, PairClass::contact,
+             "p50 to FCL", 0.075},
+    PairGoal{kBunny.name, MeshProbe::large, PairQuestion::distance, PairClass::near, "p50 to FCL",
+             0.08},
+    PairGoal{kBunny.name, MeshProbe::small, PairQuestion::all_pairs, PairClass::contact,
+             "p50 to FCL", 0.14},
+    PairGoal{kBunny.name, MeshProbe::small, PairQuestion::distance, PairClass::far, "p99", 200.0},
+    PairGoal{kBunny.name, MeshProbe::large, PairQuestion::contacts, PairClass::contact, "p50",
+             50.0},
+    PairGoal{kBunny.name, MeshProbe::large, PairQuestion::contacts, PairClass::contact, "p99",
+             90.0},
+    PairGoal{kFineScene, MeshProbe::large, PairQuestion::all_pairs, PairClass::contact, "p50", 0.3,
+             454.0},
+    PairGoal{kFineScene, MeshProbe::large, PairQuestion::any, PairClass::near, "p99", 0.3, 174.0},
 };
-/// Of the distance of the small probe, far from the surface, in microseconds.
-constexpr double kFarP99_us = 200.0;
 
 /// One probe over one scene, and what every contestant is asked about the two.
 struct MeshTrial
@@ -108,6 +127,35 @@ CaseRows rows_of(const MeshTrial& trial, const std::string& by, const char* sett
     return {trial.context.rows, common};
 }
 
+/// None when nothing is asked of this figure.
+const PairGoal* goal_of(const MeshTrial& trial, PairQuestion question, PairClass of,
+                        const std::string& figure)
+{
+    const auto* const found = std::ranges::find_if(
+        kPairGoals,
+        [&](const PairGoal& wanted)
+        {
+            return trial.object.model.name == wanted.scene && wanted.probe == trial.probe &&
+                   wanted.question == question && wanted.of == of && figure == wanted.figure;
+        });
+    return found == kPairGoals.end() ? nullptr : found;
+}
+
+/// A time of ours with what is asked of it.
+void add_own_time(CaseRows& rows, const std::string& metric, double us, const PairGoal* goal)
+{
+    if (goal == nullptr || goal->before_us == 0.0)
+    {
+        rows.add(metric, us, "us", goal == nullptr ? std::nullopt : std::optional(goal->goal));
+        return;
+    }
+    rows.add(metric, us, "us");
+    Row& row = rows.add(fmt::format("{} to {}", metric, kCommitBefore), us / goal->before_us, "",
+                        goal->goal);
+    row.peer = kCommitBefore;
+    row.peer_value = goal->before_us;
+}
+
 /// Of each class that has frames.
 void add_times(const MeshTrial& trial, const std::string& name, CaseRows& rows,
                const PairAnswers& answers, PairQuestion question, PairSpreads& spreads)
@@ -120,10 +168,12 @@ void add_times(const MeshTrial& trial, const std::string& name, CaseRows& rows,
             continue;
         }
         const Spread spread_us = spread_of(times_us);
-        const bool has_goal = question == PairQuestion::distance && of == PairClass::far;
-        rows.add(prefix_of(of) + "p50", spread_us.p50, "us");
-        rows.add(prefix_of(of) + "p99", spread_us.p99, "us",
-                 has_goal ? our_goal(name, kFarP99_us) : std::nullopt);
+        for (const auto& [figure, us] : {std::pair("p50", spread_us.p50), {"p99", spread_us.p99}})
+        {
+            const bool is_ours = our_goal(name, 0.0).has_value();
+            add_own_time(rows, prefix_of(of) + figure, us,
+                         is_ours ? goal_of(trial, question, of, figure) : nullptr);
+        }
         rows.add(prefix_of(of) + "max", spread_us.max, "us");
         spreads[{question, of}] = spread_us;
     }
@@ -184,19 +234,15 @@ void add_shares(const MeshTrial& trial, const std::string& own, const std::strin
     for (const auto& [of, other_us] : others_us)
     {
         const auto& [question, frames] = of;
-        const auto* const goal =
-            std::ranges::find_if(kPeerGoals,
-                                 [&, question = question, frames = frames](const PeerGoal& wanted)
-                                 {
-                                     return wanted.probe == trial.probe &&
-                                            wanted.question == question && wanted.of == frames &&
-                                            other == "FCL";
-                                 });
         CaseRows rows = rows_of(trial, own, question_name(question), 0);
         const Spread& own_us = ours_us.at(of);
-        rows.add(prefix_of(frames) + "p50 to " + other, own_us.p50 / other_us.p50, "",
-                 goal == kPeerGoals.end() ? std::nullopt : std::optional(goal->p50));
-        rows.add(prefix_of(frames) + "p99 to " + other, own_us.p99 / other_us.p99, "");
+        for (const auto& [figure, share] : {std::pair("p50 to ", own_us.p50 / other_us.p50),
+                                            {"p99 to ", own_us.p99 / other_us.p99}})
+        {
+            const PairGoal* goal = goal_of(trial, question, frames, figure + other);
+            rows.add(prefix_of(frames) + figure + other, share, "",
+                     goal == nullptr ? std::nullopt : std::optional(goal->goal));
+        }
     }
 }
 

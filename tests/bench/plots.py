@@ -259,13 +259,15 @@ def peers(data):
         names = data.names("by", "peers", case=case, metric="near p50")
         values = [data.quantiles("peers", "near {}", case=case, by=by) for by in names]
         ranges(one, f"W1, {case}", "us", names, [("", [colour(name) for name in names], values)])
-    meshes = data.names("case", "peers", part="W2, mesh tool", metric="p50")
+    part = "W2, mesh tool"
+    meshes = data.names("case", "peers", part=part, metric="p50")
     lines = [(case, question) for case in meshes
-             for question in data.names("setting", "peers", case=case, metric="p50")]
+             for question in data.names("setting", "peers", part=part, case=case, metric="p50")]
     ranges(axes[2], "W2, a mesh as the tool", "us",
            [f"{case.removeprefix('mesh-')}, {question}" for case, question in lines],
-           [(by, COLOURS[by], [data.quantiles("peers", case=case, setting=question, by=by)
-                               for case, question in lines]) for by in ("Tactus", "FCL")])
+           [(by, COLOURS[by],
+             [data.quantiles("peers", part=part, case=case, setting=question, by=by)
+              for case, question in lines]) for by in ("Tactus", "FCL")])
     legend_below(figure, axes[2:])
     return figure
 

@@ -37,6 +37,7 @@ std::vector<Case> peers_cases()
         touch("touch-igea", When::full_only, kPeersIgea, 4 * kPeersMiB),
         mesh("mesh-bunny", When::always, kBunny),
         mesh("mesh-igea", When::full_only, kPeersIgea),
+        mesh("mesh-1.1M", When::full_only, kFineBunny),
         scale("scale-4k", When::always, 4'000, "4 k faces"),
         scale("scale-40k", When::always, 40'000, "40 k faces"),
         scale("scale-400k", When::full_only, 400'000, "400 k faces"),

@@ -26,7 +26,6 @@ namespace
 
 constexpr std::size_t kTable2MiB = std::size_t{1} << 20U;
 constexpr SceneSource kTable2Igea{"igea-269k", "igea.ply", 0, 268'686};
-constexpr double kSkin_diag = 0.001;
 /// The motion's slide and turn together, and more.
 constexpr double kFastest_diag_per_s = 0.5;
 /// Room for what the tool needs beside the object, and for tables.
@@ -126,7 +125,7 @@ private:
         PairRun run{tool_,
                     object,
                     places_,
-                    kSkin_diag * diagonal_m,
+                    kMeshSkin_diag * diagonal_m,
                     kFastest_diag_per_s * diagonal_m,
                     object_bytes + (is_static ? kToolBytes : 0),
                     is_static};

@@ -34,6 +34,7 @@ TEST(JudgePairs, counts_what_is_planted)
     EXPECT_EQ(any.invented, 1U);
     EXPECT_EQ(all.missed, 0U); // The twins stand for the first faces.
     EXPECT_EQ(all.invented, 2U);
+    EXPECT_EQ(judge_pairs(answers, truth, PairQuestion::contacts).invented, 2U);
     EXPECT_EQ(distance.largest_m, 0.25);
     answers.meeting[0].clear();
     EXPECT_EQ(judge_pairs(answers, truth, PairQuestion::all_pairs).missed, 2U);

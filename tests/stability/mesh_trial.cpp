@@ -30,6 +30,7 @@ RigOptions rig_options(const MeshTrial& trial)
     tool.radius_m = skin_m(trial);
     tool.core = MeshCore{ModelId{1}};
     tool.wants_contacts = true;
+    tool.wants_pairs = true;
     tool.passes_through = true; // Where it is held back nothing meets.
     options.tools = {tool};
     return options;
@@ -177,6 +178,43 @@ std::unique_ptr<FrameRig> whole_models(const MeshTrial& trial)
     return rig;
 }
 
+/// A tool that wants no contacts, and all pairs or none.
+std::unique_ptr<FrameRig> rig_without_contacts(const MeshTrial& trial, bool wants_pairs)
+{
+    RigOptions options = rig_options(trial);
+    options.tools[0].wants_contacts = false;
+    options.tools[0].wants_pairs = wants_pairs;
+    return std::make_unique<FrameRig>(std::vector{&trial.object, &trial.tool}, options);
+}
+
+/// What differs although pairs alone are not wanted; empty when nothing does.
+std::string difference_without_pairs(const PairOutput& all, const PairOutput& first)
+{
+    // Beyond the reach brackets hang on what is remembered.
+    const bool are_exact = all.kind == AnswerKind::exact && first.kind == AnswerKind::exact;
+    if (are_exact &&
+        (!same_bits(all.lower_m, first.lower_m) || !same_bits(all.upper_m, first.upper_m)))
+    {
+        return "the distances differ: " + std::to_string(first.lower_m) + ", with pairs " +
+               std::to_string(all.lower_m);
+    }
+    const bool are_known = all.mesh->intersection != Intersection::open &&
+                           first.mesh->intersection != Intersection::open;
+    if (are_known && all.mesh->intersection != first.mesh->intersection)
+    {
+        return "whether they meet differs";
+    }
+    if (first.mesh->intersection == Intersection::proven && first.kind != AnswerKind::exact)
+    {
+        return "they meet, and the distance is not known";
+    }
+    if (first.mesh->meeting.size() > 1)
+    {
+        return "pairs that nobody wants: " + std::to_string(first.mesh->meeting.size());
+    }
+    return "";
+}
+
 } // namespace
 
 MeshFigures run_mesh_trial(const MeshTrial& trial)
@@ -220,6 +258,29 @@ TrialFigures run_mesh_twin(const MeshTrial& trial)
         {
             figures.flag(where(trial, frame, motion.activity()) + text);
             figures.observe(static_cast<double>(figures.violations));
+        }
+    }
+    return figures;
+}
+
+PairlessFigures run_mesh_without_pairs(const MeshTrial& trial)
+{
+    Random random = Random::seeded(trial.seed);
+    RandomMeshMotion motion(trial.tool, trial.object, trial.tree, trial.scale, random);
+    const auto with = rig_without_contacts(trial, true);
+    const auto without = rig_without_contacts(trial, false);
+    PairlessFigures figures{{name_of(trial) + ", without pairs", 0, 0.0, 0.0, "frames", 0, {}}};
+    for (std::uint32_t frame = 0; frame < trial.frames; ++frame)
+    {
+        const MeshMoment moment = motion.next();
+        const PairOutput all = step(*with, moment, trial.hardship.budgets).pairs[0];
+        const PairOutput first = step(*without, moment, trial.hardship.budgets).pairs[0];
+        ++figures.same.trials;
+        figures.met += all.mesh->meeting.size() > 1 ? 1U : 0U;
+        if (const std::string text = difference_without_pairs(all, first); !text.empty())
+        {
+            figures.same.flag(where(trial, frame, motion.activity()) + text);
+            figures.same.observe(static_cast<double>(figures.same.violations));
         }
     }
     return figures;

@@ -57,4 +57,15 @@ inline constexpr double kMeshOpenShare = 0.05;
 /// the number of frames that differ.
 [[nodiscard]] TrialFigures run_mesh_twin(const MeshTrial& trial);
 
+/// The same motion with all pairs wanted, and with neither pairs nor contacts: in frames in which
+/// both answers are exact they are the same to the last bit, whether any faces meet is the same
+/// where both know, and where some do the distance is known. The error is the number of frames that
+/// differ.
+struct PairlessFigures
+{
+    TrialFigures same;
+    std::uint64_t met{0}; ///< Frames in which more than one pair met.
+};
+[[nodiscard]] PairlessFigures run_mesh_without_pairs(const MeshTrial& trial);
+
 } // namespace tactus::test

@@ -143,6 +143,58 @@ TEST(CoincidentMeshes, share_faces_by_the_exact_decision_and_the_lowest_ids_are_
     }
 }
 
+/// 1,000 faces each: some ten times as many pairs as are told.
+TEST(CoincidentMeshes, of_many_faces_are_told_to_be_too_many_within_the_budgets)
+{
+    const TriangleMesh mesh = make_shape(Shape::bumpy_sphere, 1'000).value();
+    const TestModel& object = test_model("overlapped-object", mesh);
+    const TestModel& tool = test_model("overlapping-tool", mesh);
+    const FaceTree tree(object.faces);
+    for (const std::size_t hardship : {0U, 2U, 5U})
+    {
+        const MeshFigures sut = run_coincident_meshes(
+            {tool, object, tree, hardship_of(object, hardship, 0), 1.0, 0, 24});
+        print(0, sut);
+        EXPECT_TRUE(sut.truth.holds());
+        EXPECT_EQ(sut.meeting, 24U);
+        EXPECT_TRUE(sut.truncated > 3U || hardship != 5U); // Of models that are there as a whole.
+    }
+}
+
+/// Twenty times as large, on it and with it inside.
+TEST(MeasuringMeshTools, that_are_larger_than_the_object_agree_with_all_faces_of_both)
+{
+    for (std::size_t i = 0; i < 3; ++i)
+    {
+        const TestModel& object = small_model(i);
+        const FaceTree tree(object.faces);
+        const std::uint64_t seed = seed_of(20'261'510 + i);
+        const MeshFigures sut = run_mesh_trial(
+            {tool_model(i), object, tree, hardship_of(object, 0, i),
+             0.05 * tool_model(i).diagonal_m / object.diagonal_m, seed, kMeshSettling});
+        print(seed, sut);
+        EXPECT_TRUE(sut.truth.holds());
+        EXPECT_GT(sut.meeting, 20U);
+    }
+}
+
+TEST(MeasuringMeshTools, that_want_no_pairs_have_the_same_answers)
+{
+    std::uint64_t met = 0;
+    for (std::size_t i = 0; i < 3; ++i)
+    {
+        const TestModel& object = small_model(i);
+        const FaceTree tree(object.faces);
+        const PairlessFigures sut =
+            run_mesh_without_pairs({tool_model(i), object, tree, hardship_of(object, 0, i),
+                                    kScales[i], seed_of(20'261'520 + i), 250});
+        std::printf("%s\n", sut.same.summary().c_str());
+        met += sut.met;
+        EXPECT_TRUE(sut.same.holds());
+    }
+    EXPECT_GT(met, 50U);
+}
+
 TEST(MeshToolTwins, exact_answers_are_those_of_the_full_meshes_to_the_last_bit)
 {
     std::uint64_t exact = 0;

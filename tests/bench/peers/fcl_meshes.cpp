@@ -120,12 +120,12 @@ bool Mesh::does_meet(const Place& place, const Mesh& other) const
                         fcl::CollisionRequestd(1, false), result) > 0;
 }
 
-void Mesh::find_meeting(const Place& place, const Mesh& other,
+void Mesh::find_meeting(const Place& place, const Mesh& other, bool with_contacts,
                         std::vector<std::array<std::uint32_t, 2>>& pairs) const
 {
     fcl::CollisionResultd result;
     fcl::collide(&content_->model, to_fcl(place), &other.content_->model, nowhere_else(),
-                 fcl::CollisionRequestd(kAllContacts, false), result);
+                 fcl::CollisionRequestd(kAllContacts, with_contacts), result);
     pairs.clear();
     for (std::size_t i = 0; i < result.numContacts(); ++i)
     {

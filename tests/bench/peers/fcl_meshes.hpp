@@ -44,8 +44,9 @@ public:
     [[nodiscard]] Nearest nearest_to_sphere(const Point& center, double radius) const;
 
     [[nodiscard]] bool does_meet(const Place& place, const Mesh& other) const;
-    /// Places of faces of this mesh and of the other that meet.
-    void find_meeting(const Place& place, const Mesh& other,
+    /// Places of faces of this mesh and of the other that meet; FCL computes where each two touch,
+    /// and how deep, when it is asked to.
+    void find_meeting(const Place& place, const Mesh& other, bool with_contacts,
                       std::vector<std::array<std::uint32_t, 2>>& pairs) const;
     [[nodiscard]] double distance_to(const Place& place, const Mesh& other) const;
 

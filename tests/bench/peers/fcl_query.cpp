@@ -81,9 +81,17 @@ public:
     }
 
     [[nodiscard]] bool do_meet() override { return tool_.does_meet(place_, object_); }
-    [[nodiscard]] const std::vector<test::FacePair>& meeting() override
+    [[nodiscard]] const std::vector<test::FacePair>& meeting() override { return find(false); }
+    [[nodiscard]] const std::vector<test::FacePair>& contacts() override { return find(true); }
+    [[nodiscard]] double distance_m() override
     {
-        tool_.find_meeting(place_, object_, found_);
+        return std::max(tool_.distance_to(place_, object_), 0.0);
+    }
+
+private:
+    const std::vector<test::FacePair>& find(bool with_contacts)
+    {
+        tool_.find_meeting(place_, object_, with_contacts, found_);
         pairs_.clear();
         for (const auto& [tool_face, face] : found_)
         {
@@ -91,12 +99,7 @@ public:
         }
         return pairs_;
     }
-    [[nodiscard]] double distance_m() override
-    {
-        return std::max(tool_.distance_to(place_, object_), 0.0);
-    }
 
-private:
     fcl_meshes::Mesh tool_;
     fcl_meshes::Mesh object_;
     fcl_meshes::Place place_;

@@ -13,7 +13,7 @@
 namespace tactus::bench
 {
 
-/// Two meshes, one of them moving: the three questions as every contestant answers them. One
+/// Two meshes, one of them moving: the questions as every contestant answers them. One
 /// virtual call is in each one's time.
 class PairQuery
 {
@@ -32,6 +32,8 @@ public:
     /// All pairs that do, in any order, named as the contestant has it; valid until the next
     /// question.
     [[nodiscard]] virtual const std::vector<test::FacePair>& meeting() = 0;
+    /// The same, and of each where the two touch, as far as the contestant keeps that.
+    [[nodiscard]] virtual const std::vector<test::FacePair>& contacts() = 0;
     /// The least distance of two faces; 0 where some meet.
     [[nodiscard]] virtual double distance_m() = 0;
 

@@ -107,6 +107,8 @@ TEST(RecordingFile, gives_back_what_was_written)
     const RecordedSetup& setup = sut.value().setup();
     EXPECT_EQ(setup.tools[0].stiffness_n_per_m, 500.0);
     EXPECT_EQ(setup.tools[0].torque_max_nm, 0.25);
+    EXPECT_FALSE(setup.tools[0].wants_contacts);
+    EXPECT_TRUE(setup.tools[0].wants_pairs);
     EXPECT_TRUE(setup.tools[0].passes_through);
     EXPECT_TRUE(setup.tools[0].wants_distance);
     EXPECT_EQ(setup.tools[0].angular_stiffness_nm_per_rad, 0.75);
@@ -216,7 +218,7 @@ TEST(RecordingFile, is_refused_when_a_value_is_out_of_its_range)
     expect_refusal(with_bytes(kSetup, 25, {65}), "for 65 pairs");
     expect_refusal(with_bytes(kSetup, kTool + 6, {0xF8, 0x7F}), "tool 0 is not within"); // NaN.
     expect_refusal(with_bytes(kSetup, kTorque + 6, {0xF8, 0x7F}), "tool 0 is not within");
-    expect_refusal(with_bytes(kSetup, kTorque - 1, {2}), "tool 0 has an unknown core");
+    expect_refusal(with_bytes(kSetup, kTorque - 1, {4}), "tool 0 has an unknown core");
     expect_refusal(with_bytes(kSetup, kAngular - 1, {4}), "tool 0 has an unknown core");
     expect_refusal(with_bytes(kSetup, kAngular + 6, {0xF8, 0x7F}), "tool 0 is not within");
     expect_refusal(with_bytes(kSetup, kAngular + 6, {0xF0, 0xBF}), "tool 0 is not within");

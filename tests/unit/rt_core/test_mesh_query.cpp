@@ -148,6 +148,18 @@ Asked ask(const TreeRig& tool, const TreeRig& object, const MeshPlacement& place
     return asked;
 }
 
+/// Pairs are not wanted.
+Asked ask_without_pairs(const TreeRig& tool, const TreeRig& object, const MeshPlacement& place,
+                        double reach, double contact, MeshMemory& memory)
+{
+    Asked asked;
+    OtherSurface surface(*object.sut, place, kAmple);
+    query_meshes({*tool.sut, *object.sut, place, reach, contact, nullptr, 0.0, false}, surface,
+                 memory, asked.answer, asked.report, asked.contacts);
+    asked.budget = surface.budget();
+    return asked;
+}
+
 /// Up to `enough` pairs that meet.
 Asked ask_meeting(const TreeRig& tool, const TreeRig& object, const MeshPlacement& place,
                   std::uint32_t enough, MeshMemory& memory, const WalkBudget& budget = kAmple)
@@ -469,6 +481,59 @@ TEST(MeshQuery, finds_what_measuring_all_pairs_finds)
     EXPECT_GT(exact, 60);
     EXPECT_GT(decided, 100);
     EXPECT_GT(met, 60);
+}
+
+TEST(MeshQuery, that_wants_no_pairs_ends_with_the_first_and_is_else_the_same)
+{
+    Random random(89);
+    int met = 0;
+    int apart = 0;
+    for (int round = 0; round < 80; ++round)
+    {
+        Meshes meshes;
+        fill(meshes.tool, random, 80, round % 3 != 0);
+        fill(meshes.object, random, 120, round % 3 != 1);
+        MeshPlacement place = random_placement(random);
+        place.place.translation_m.y() += random.between(0.0, 1.0);
+        const double reach = random.between(0.0, 0.1);
+        const AllPairs truth(meshes.tool.present(), meshes.object.present(), place, reach);
+        MeshMemory memory{{random.below(10), random.below(10)}};
+        MeshMemory same = memory;
+        const Asked all = ask(meshes.tool, meshes.object, place, reach, -1.0, memory);
+        for (int again = 0; again < 2; ++again)
+        {
+            const Asked sut =
+                ask_without_pairs(meshes.tool, meshes.object, place, reach, -1.0, same);
+
+            ASSERT_EQ(sut.report.intersection, truth.intersection()) << round;
+            if (truth.meeting.empty())
+            {
+                ++apart;
+                // Beyond the reach brackets hang on what is remembered.
+                ASSERT_TRUE(again == 1 || sut.answer.lower_m == all.answer.lower_m);
+                ASSERT_TRUE(again == 1 || sut.answer.upper_m == all.answer.upper_m);
+                ASSERT_EQ(sut.answer.kind, all.answer.kind);
+                ASSERT_EQ(sut.report.is_complete, all.report.is_complete);
+                continue;
+            }
+            ASSERT_EQ(sut.answer.lower_m, 0.0);
+            ASSERT_EQ(sut.answer.upper_m, 0.0);
+            ++met;
+            ASSERT_EQ(sut.answer.kind, AnswerKind::exact);
+            ASSERT_EQ(sut.report.meeting.size(), 1U);
+            ASSERT_TRUE(truth.meeting.contains(sut.report.meeting[0]));
+            ASSERT_EQ(sut.report.nearest_tool_face, sut.report.meeting[0].tool_face);
+            ASSERT_EQ(sut.answer.nearest_face, sut.report.meeting[0].face);
+            ASSERT_FALSE(sut.report.is_complete);
+            ASSERT_TRUE(again == 0 || sut.budget.nodes_visited == 1);
+        }
+        // Contacts need them.
+        const Asked touching =
+            ask_without_pairs(meshes.tool, meshes.object, place, reach, reach, same);
+        ASSERT_EQ(as_set(touching.report.meeting), truth.meeting);
+    }
+    EXPECT_GT(met, 40);
+    EXPECT_GT(apart, 40);
 }
 
 /// The coarse faces of a rig moved away from all else.
