@@ -130,6 +130,8 @@ typedef struct tactus_tool
     double torque_max_nm;     /* 0 to 1e6, likewise. A sphere has no torque. */
     double speed_max_m_per_s; /* 1e-6 to 1e6. In contact a hand that is faster is followed at this
                                * speed. */
+    double smooth_m;          /* 0, or 1e-4 to 0.1: a sphere feels facets within this width as one
+                               * smooth surface; it is within an eighth of it of the mesh. */
 } tactus_tool;
 
 /* Where an object stands: place = translation + scale * rotation * place in the source mesh. */
