@@ -160,7 +160,7 @@ typedef struct tactus_material
     double dynamic_friction;    /* 0 to the static one. */
     double damping_n_s_per_m;   /* 0 to 20, across the surface. */
     double viscosity_n_s_per_m; /* 0 to 20, along it. */
-    double texture_height_m;    /* 0, or bumps that spheres feel, at most 1/32 of their length. */
+    double texture_height_m;    /* 0, or bumps, at most 1/32 of their length. */
     double texture_length_m;    /* With bumps 1e-4 to 1; else 0 to 1. */
 } tactus_material;
 

@@ -50,8 +50,8 @@ void declare_scene(CommandLine& line, Options& options, RawOptions& raw)
             "3000, the softer of this and --stiffness counts [,STATIC friction, 0 to 3 "
             "[,DYNAMIC friction, at most the static one [,DAMPING in N s/m, 0 to 20]]]; or any "
             "of stiffness=, static=, dynamic=, damping=, viscosity= (drag along the surface in N "
-            "s/m, 0 to 20), texture_height= and texture_length= (bumps that points and balls feel, "
-            "in m, at most 1/32 as high as long), with commas between")
+            "s/m, 0 to 20), texture_height= and texture_length= (bumps, in m, at most 1/32 as high "
+            "as long, felt where the middle of a tool is), with commas between")
         .repeatable();
     line.begin_task("Hands, tools and devices",
                     "hrtc ball.spm --tool sphere:0.002 --device udp:48500");

@@ -3,6 +3,7 @@
 #include "rt_core/force/rigid_proxy.hpp"
 
 #include "rt_core/force/angular_stiffness.hpp"
+#include "rt_core/force/texture.hpp"
 #include "rt_core/math/rotation.hpp"
 
 #include <algorithm>
@@ -185,13 +186,19 @@ void RigidProxy::step(const ToolGoal& goal, std::span<const PlacedSurface> surfa
                       const BodyRoom& room, ToolOutput& output) noexcept
 {
     gather(goal, surfaces);
-    const BodyMotion found = planes_->nearest(way_to(goal));
+    const Motion<6> wanted = way_to(goal);
+    BodyMotion found = planes_->nearest(wanted);
+    const Bumps bumps = bumps_of(found, surfaces);
+    if (bumps.are_there)
+    {
+        found = planes_->nearest(wanted - bumps.aside);
+    }
     is_squeezed_ = found.is_squeezed;
     is_crowded_ = is_crowded_ || planes_->is_crowded();
     sticks_ = found.sticks;
     slides_ = found.slides;
     output.in_contact = !found.pushes.empty();
-    add_forces(goal, found, output);
+    add_forces(goal, found, bumps, output);
     keep_holds(found, surfaces);
     const double way_m = way_of(found.motion).length_m();
     advance(goal, found, room);
@@ -387,8 +394,53 @@ void RigidProxy::keep(const Hold& hold) noexcept
     holds_[holds_.size() - 1] = hold;
 }
 
+/// The springs' energy has K e(d) h beside K d^2 / 2: d is what the planes hold back of the motion,
+/// in its metric, and h of the place of the core's middle.
+RigidProxy::Bumps RigidProxy::bumps_of(const BodyMotion& held,
+                                       std::span<const PlacedSurface> surfaces) const noexcept
+{
+    Bumps bumps;
+    Motion<6> pressed = Motion<6>::Zero();
+    double reactions = 0.0;
+    for (const BodyPush& push : held.pushes)
+    {
+        const BodyTouch& touch = planes_->touch(push.touch);
+        const Vec3 lever = planes_->lever_m(push.touch) / arm_m_;
+        pressed.head<3>() += push.reaction * touch.normal;
+        pressed.tail<3>() += push.reaction * lever.cross(touch.normal);
+        reactions += push.reaction;
+        bumps.are_there =
+            bumps.are_there || surfaces[touch.surface].material->texture_height_m > 0.0;
+    }
+    const double depth_m = pressed.norm();
+    bumps.are_there = bumps.are_there && depth_m > 0.0 && !held.is_squeezed;
+    if (!bumps.are_there)
+    {
+        return bumps;
+    }
+    const Vec3 middle = place_.rotation * center_m_;
+    double push_m = 0.0;
+    Vec3 slope_m(0.0, 0.0, 0.0);
+    bumps.stiffening = 0.0;
+    for (const BodyPush& push : held.pushes)
+    {
+        const PlacedSurface& placed = surfaces[planes_->touch(push.touch).surface];
+        const double share = push.reaction / reactions;
+        const Texture texture =
+            Texture::at(*placed.material, *placed.pose, place_.translation_m + middle, depth_m);
+        push_m += share * texture.push_m;
+        slope_m += share * texture.slope_m;
+        bumps.stiffness_n_per_m += share * planes_->grip(push.touch).stiffness_n_per_m;
+        bumps.stiffening += share * Texture::stiffening(*placed.material);
+    }
+    bumps.aside.head<3>() = slope_m;
+    bumps.aside.tail<3>() = middle.cross(slope_m) / arm_m_;
+    bumps.held = push_m / depth_m * pressed - bumps.aside;
+    return bumps;
+}
+
 /// Each push by the spring of its own object; what they make together keeps its line of action.
-void RigidProxy::add_forces(const ToolGoal& goal, const BodyMotion& found,
+void RigidProxy::add_forces(const ToolGoal& goal, const BodyMotion& found, const Bumps& bumps,
                             ToolOutput& output) noexcept
 {
     double reactions = 0.0;
@@ -404,6 +456,12 @@ void RigidProxy::add_forces(const ToolGoal& goal, const BodyMotion& found,
     output.stiffness_n_per_m = reactions > 0.0     ? output.stiffness_n_per_m / reactions
                                : output.in_contact ? spec_.stiffness_n_per_m
                                                    : 0.0;
+    if (bumps.are_there && output.in_contact)
+    {
+        output.force_n += bumps.stiffness_n_per_m * bumps.held.head<3>();
+        output.torque_nm += bumps.stiffness_n_per_m * arm_m_ * bumps.held.tail<3>();
+        output.stiffness_n_per_m *= bumps.stiffening;
+    }
     damp(goal, found, reactions, output);
     clamp(output);
 }
