@@ -200,20 +200,18 @@ void RigidProxy::step(const ToolGoal& goal, std::span<const PlacedSurface> surfa
     output.in_contact = !found.pushes.empty();
     add_forces(goal, found, bumps, output);
     keep_holds(found, surfaces);
-    const double way_m = way_of(found.motion).length_m();
-    advance(goal, found, room);
-    output.lag_m = goes_on_ ? std::max(0.0, way_m - went_m_) : 0.0;
+    output.lag_m = advance(goal, found, room);
 }
 
-/// What sticks stays to the last bit, or it would creep.
-void RigidProxy::advance(const ToolGoal& goal, const BodyMotion& found,
-                         const BodyRoom& room) noexcept
+/// What sticks stays to the last bit, or it would creep. Returns what is left of the way.
+double RigidProxy::advance(const ToolGoal& goal, const BodyMotion& found,
+                           const BodyRoom& room) noexcept
 {
     const BodyWay way = way_of(found.motion);
     const double length_m = way.length_m();
     if (found.sticks && length_m <= kLeastMotion * radius_m_)
     {
-        return;
+        return 0.0;
     }
     const double share = room.share_of(way);
     went_m_ = share * length_m;
@@ -223,12 +221,13 @@ void RigidProxy::advance(const ToolGoal& goal, const BodyMotion& found,
     if (found.pushes.empty() && share == 1.0)
     {
         place_ = {goal.rotation, goal.position_m, 1.0}; // As the hand has it, to the last bit.
-        return;
+        return 0.0;
     }
     const Vec3 center = place_.rotation * center_m_;
     const Mat3 rotation = turned_by(found.motion.tail<3>() * (share / arm_m_), place_.rotation);
     place_.translation_m += center + share * way.center_m - rotation * center_m_;
     place_.rotation = rotation;
+    return length_m - went_m_;
 }
 
 /// Where the proxy is the last planes hold what pushes against them. A core that an object came
@@ -242,6 +241,7 @@ void RigidProxy::freeze(const ToolGoal& goal, bool is_crossed, ToolOutput& outpu
     }
     const NearestMotion<6> nearest = nearest_motion<6>(spaces.view(), way_to(goal));
     output.frozen = true;
+    output.lag_m = way_of(nearest.motion).length_m();
     output.in_contact = !nearest.held_by.empty();
     double reactions = 0.0;
     for (std::size_t i = 0; i < nearest.held_by.size(); ++i)

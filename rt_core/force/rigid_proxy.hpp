@@ -132,7 +132,8 @@ private:
     [[nodiscard]] BodyWay way_of(const Motion<6>& motion) const noexcept;
     void step(const ToolGoal& goal, std::span<const PlacedSurface> surfaces, const BodyRoom& room,
               ToolOutput& output) noexcept;
-    void advance(const ToolGoal& goal, const BodyMotion& found, const BodyRoom& room) noexcept;
+    [[nodiscard]] double advance(const ToolGoal& goal, const BodyMotion& found,
+                                 const BodyRoom& room) noexcept;
     void freeze(const ToolGoal& goal, bool is_crossed, ToolOutput& output) noexcept;
     void gather(const ToolGoal& goal, std::span<const PlacedSurface> surfaces) noexcept;
     void add(std::uint32_t surface, std::span<const Contact> contacts, const PlacedSurface& placed,
