@@ -228,6 +228,12 @@ inline constexpr double kPlaneTolerance = 1e-12;
 inline constexpr double kParallelPlanes = 1e-7;
 /// Planes squeeze when their gap is too narrow by this share of the lengths; by less they fit.
 inline constexpr double kSqueezeTolerance = 1e-6;
+/// Faces round a ball that its smooth normals are a mean of, 300 instructions each at a stand. With
+/// more within their width that is narrower: beside such faces it is wide still.
+inline constexpr std::uint32_t kMaxSmoothFaces = 64;
+/// What a tool's smooth normals may be a mean over.
+inline constexpr double kSmoothWidthMin_m = 1e-4;
+inline constexpr double kSmoothWidthMax_m = 0.1;
 /// A tool without a radius is a ball of this many quanta, so that it has an outside.
 inline constexpr double kPointSkin = 0.25;
 /// Past contact points kept while a tool rests, 88 B each. Six planes suffice to hold a body; the

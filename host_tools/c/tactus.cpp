@@ -249,6 +249,13 @@ ToolSpec tool_of(const tactus_tool& tool, std::size_t index)
     check_range(tool.force_max_n, 1e-3, 1e6, name + "force_max_n");
     check_range(tool.torque_max_nm, 0.0, 1e6, name + "torque_max_nm");
     check_range(tool.speed_max_m_per_s, 1e-6, 1e6, name + "speed_max_m_per_s");
+    check_range(tool.smooth_m, tool.smooth_m == 0.0 ? 0.0 : kSmoothWidthMin_m, kSmoothWidthMax_m,
+                name + "smooth_m");
+    if (tool.smooth_m != 0.0 && tool.shape != TACTUS_SPHERE)
+    {
+        refuse(TACTUS_BAD_ARGUMENT, "{}smooth_m: {:g}; only a sphere feels it", name,
+               tool.smooth_m);
+    }
     for (const double half_m : tool.half_m)
     {
         check_range(half_m, tool.shape == TACTUS_BOX ? 0.0 : -1e3, 1e3, name + "half_m");
@@ -260,6 +267,7 @@ ToolSpec tool_of(const tactus_tool& tool, std::size_t index)
     spec.speed_max_m_per_s = tool.speed_max_m_per_s;
     spec.torque_max_nm = tool.torque_max_nm;
     spec.passes_through = tool.passes_through != 0;
+    spec.smooth_m = tool.smooth_m;
     spec.wants_distance = tool.wants_distance != 0;
     const Vec3 half_m = to_vec(tool.half_m);
     if (tool.shape == TACTUS_CAPSULE)

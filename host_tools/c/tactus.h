@@ -130,6 +130,8 @@ typedef struct tactus_tool
     double torque_max_nm;     /* 0 to 1e6, likewise. A sphere has no torque. */
     double speed_max_m_per_s; /* 1e-6 to 1e6. In contact a hand that is faster is followed at this
                                * speed. */
+    double smooth_m;          /* 0, or 1e-4 to 0.1: a sphere feels facets within this width as one
+                               * smooth surface; it is within an eighth of it of the mesh. */
     int32_t wants_distance;   /* Not 0: distances become exact however far off, too, in frames
                                * that do so bit by bit behind what a force needs; a BRACKET or
                                * DECIDED until then, or where the memory is too little. */
@@ -161,7 +163,7 @@ typedef struct tactus_material
     double dynamic_friction;    /* 0 to the static one. */
     double damping_n_s_per_m;   /* 0 to 20, across the surface. */
     double viscosity_n_s_per_m; /* 0 to 20, along it. */
-    double texture_height_m;    /* 0, or bumps that spheres feel, at most 1/32 of their length. */
+    double texture_height_m;    /* 0, or bumps, at most 1/32 of their length. */
     double texture_length_m;    /* With bumps 1e-4 to 1; else 0 to 1. */
 } tactus_material;
 

@@ -141,7 +141,7 @@ tactus_tool make_tool(double radius_m, const std::string& shape, const py::objec
                       const std::optional<double>& stiffness_n_per_m,
                       const std::optional<double>& force_max_n,
                       const std::optional<double>& torque_max_nm,
-                      const std::optional<double>& speed_max_m_per_s)
+                      const std::optional<double>& speed_max_m_per_s, double smooth_m)
 {
     tactus_tool tool;
     tactus_tool_default(&tool);
@@ -165,6 +165,7 @@ tactus_tool make_tool(double radius_m, const std::string& shape, const py::objec
     tool.force_max_n = force_max_n.value_or(tool.force_max_n);
     tool.torque_max_nm = torque_max_nm.value_or(tool.torque_max_nm);
     tool.speed_max_m_per_s = speed_max_m_per_s.value_or(tool.speed_max_m_per_s);
+    tool.smooth_m = smooth_m;
     return tool;
 }
 
@@ -471,7 +472,8 @@ PYBIND11_MODULE(tactus, module)
         .def(py::init(&make_tool), "radius_m"_a, py::kw_only(), "shape"_a = "sphere",
              "half_m"_a = py::none(), "passes_through"_a = false, "wants_distance"_a = false,
              "stiffness_n_per_m"_a = py::none(), "force_max_n"_a = py::none(),
-             "torque_max_nm"_a = py::none(), "speed_max_m_per_s"_a = py::none());
+             "torque_max_nm"_a = py::none(), "speed_max_m_per_s"_a = py::none(),
+             "smooth_m"_a = 0.0);
 
     py::class_<tactus_object>(module, "Object", "Where a model stands in the world.")
         .def(py::init(&make_object), "model"_a = 0, py::kw_only(), "rotation"_a = py::none(),

@@ -175,6 +175,7 @@ void tell_tool_spec(FieldSink& sink, const ToolSpec& tool)
     sink.number("radius_m", tool.radius_m);
     sink.number("stiffness_n_per_m", tool.stiffness_n_per_m);
     sink.number("angular_stiffness_nm_per_rad", tool.angular_stiffness_nm_per_rad);
+    sink.number("smooth_m", tool.smooth_m);
     sink.number("force_max_n", tool.force_max_n);
     sink.number("torque_max_nm", tool.torque_max_nm);
     sink.number("speed_max_m_per_s", tool.speed_max_m_per_s);

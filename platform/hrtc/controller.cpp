@@ -195,6 +195,7 @@ void Controller::make_tools(const Options& options)
         }
         tool.spec.torque_max_nm = limits.turn.torque_max_nm;
         tool.spec.angular_stiffness_nm_per_rad = options.angular_stiffness_nm_per_rad;
+        tool.spec.smooth_m = Tool::is_held_as_body(tool.spec) ? 0.0 : options.smooth_m;
         tool_specs_.push_back(tool.spec);
     }
 }

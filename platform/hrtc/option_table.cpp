@@ -50,8 +50,8 @@ void declare_scene(CommandLine& line, Options& options, RawOptions& raw)
             "3000, the softer of this and --stiffness counts [,STATIC friction, 0 to 3 "
             "[,DYNAMIC friction, at most the static one [,DAMPING in N s/m, 0 to 20]]]; or any "
             "of stiffness=, static=, dynamic=, damping=, viscosity= (drag along the surface in N "
-            "s/m, 0 to 20), texture_height= and texture_length= (bumps that points and balls feel, "
-            "in m, at most 1/32 as high as long), with commas between")
+            "s/m, 0 to 20), texture_height= and texture_length= (bumps, in m, at most 1/32 as high "
+            "as long, felt where the middle of a tool is), with commas between")
         .repeatable();
     line.begin_task("Hands, tools and devices",
                     "hrtc ball.spm --tool sphere:0.002 --device udp:48500");
@@ -181,6 +181,11 @@ void declare_force(CommandLine& line, Options& options)
                     "Of the spring that turns tools other than spheres, in N m/rad; the device's "
                     "own cap holds for it, too [--stiffness times the square of the tool's size]")
         .number_between(kSoftestTurn_nm_per_rad, kStiffestTurn_nm_per_rad);
+    line.add_option("--smooth", options.smooth_m,
+                    "Points and balls feel facets within this width, in metres, as one smooth "
+                    "surface, which is within an eighth of it of the mesh; edges of more than "
+                    "25 degrees stay [each facet is felt]")
+        .number_between(kSmoothWidthMin_m, kSmoothWidthMax_m);
     line.add_option("--clutch", options.clutch_button,
                     "Button of each device, from 0, that parts hand and tool while it is held: the "
                     "tool stays, without a force, and goes on from there [none]")

@@ -258,6 +258,13 @@ std::string check_tools(Options& options, const RawOptions& raw)
         }
         options.tool_choices.push_back(*std::move(tool));
     }
+    const auto is_ball = [](const ToolChoice& tool)
+    { return std::holds_alternative<PointCore>(tool.core) && tool.hull_file.empty(); };
+    if (options.smooth_m > 0.0 && !options.tool_choices.empty() &&
+        std::ranges::none_of(options.tool_choices, is_ball))
+    {
+        return "--smooth: no --tool is a point or a sphere, and others feel each facet";
+    }
     return {};
 }
 

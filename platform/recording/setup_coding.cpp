@@ -57,7 +57,8 @@ bool is_sound(const ToolSpec& tool)
     return is_within(tool.radius_m, 0.0, 1e6) && is_within(tool.stiffness_n_per_m, 0.0, 1e9) &&
            is_within(tool.force_max_n, 0.0, 1e9) && is_within(tool.speed_max_m_per_s, 0.0, 1e9) &&
            is_within(tool.torque_max_nm, 0.0, 1e9) &&
-           is_within(tool.angular_stiffness_nm_per_rad, 0.0, 1e9);
+           is_within(tool.angular_stiffness_nm_per_rad, 0.0, 1e9) &&
+           is_within(tool.smooth_m, 0.0, 1e6);
 }
 
 // What a file says; another number is another format version (docs/recording.md).
@@ -91,6 +92,7 @@ Fault parse_tools(ByteReader& reader, std::uint32_t tools, std::uint32_t models,
         tool.passes_through = (wishes & kPassesThrough) != 0;
         tool.wants_distance = (wishes & kWantsDistance) != 0;
         tool.angular_stiffness_nm_per_rad = reader.read<double>();
+        tool.smooth_m = reader.read<double>();
         const std::optional<ToolCore> core = read_core(reader, setup.hull_vertices);
         if (!core || wants > (kWantsContacts | kWantsPairs) ||
             wishes > (kPassesThrough | kWantsDistance))
@@ -196,6 +198,7 @@ std::vector<std::byte> code_setup(const RecordedSetup& setup)
         append(bytes, static_cast<std::uint8_t>((tool.passes_through ? kPassesThrough : 0U) |
                                                 (tool.wants_distance ? kWantsDistance : 0U)));
         append(bytes, tool.angular_stiffness_nm_per_rad);
+        append(bytes, tool.smooth_m);
         append_core(bytes, tool.core);
     }
     for (std::size_t i = 0; i < setup.objects.size(); ++i)

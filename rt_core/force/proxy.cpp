@@ -133,7 +133,8 @@ struct Proxy::Touch
 {
     Hold hold;
     StepPlanes planes;        ///< Of what touches.
-    NearestMotion<3> held;    ///< What they let go of the way.
+    Vec3 wanted;              ///< The way: to the hand, or to where smooth normals raise it.
+    NearestMotion<3> held;    ///< What the planes let go of it.
     Vec3 kept{0.0, 0.0, 0.0}; ///< What friction and bumps keep of the slip.
 };
 
@@ -292,6 +293,10 @@ Proxy::Motion Proxy::follow(const Vec3& goal, double travel,
     }
     go_straight_on(goal, clear);
     Vicinity near(surfaces, anchor_, radius_ + travel, planes_left_);
+    if (spec_.smooth_m > 0.0)
+    {
+        normals_ = SmoothNormals(spec_.smooth_m, surfaces, radius_ + travel);
+    }
     const Motion motion = follow_among(near, surfaces, goal, travel);
     if (motion != Motion::at_rest && motion != Motion::squeezed)
     {
@@ -302,6 +307,7 @@ Proxy::Motion Proxy::follow(const Vec3& goal, double travel,
     slides_ = has_slid_ && in_contact_;
     keep_clearances(surfaces, &near);
     planes_left_ = near.planes_left();
+    normals_ = {};
     return motion;
 }
 
@@ -334,7 +340,7 @@ Proxy::Motion Proxy::follow_among(Vicinity& near, std::span<const PlacedSurface>
         {
             return Motion::squeezed;
         }
-        if (length <= (hold_.rubs ? kSlipShare * radius_ : least_step))
+        if (length <= (hold_.rubs || hold_.is_smooth ? kSlipShare * radius_ : least_step))
         {
             return Motion::at_rest;
         }
@@ -370,7 +376,7 @@ Proxy::Hold Proxy::hold_at(Vicinity& near, std::span<const PlacedSurface> surfac
         }
     }
     const bool is_same = !hold.rubs && step.planes.size() == touch.planes.planes.size();
-    const Vec3 let = hold.rubs ? Vec3(wanted - touch.kept) : wanted;
+    const Vec3 let = hold.rubs ? Vec3(touch.wanted - touch.kept) : touch.wanted;
     const NearestMotion<3> found = nearest_free_motion(
         near, let, radius_, step, is_same ? touch.held : search(near, step, let));
     held_by_.clear();
@@ -400,7 +406,10 @@ Proxy::Touch Proxy::feel_at(Vicinity& near, std::span<const PlacedSurface> surfa
     {
         touch.planes.add(face, near.half_space(face, radius_));
     }
+    touch.wanted = wanted;
     touch.held = search(near, touch.planes, wanted);
+    const Vec3 pressed = touch.held.motion - wanted;
+    const SmoothNormals::Felt felt = hold_smoothly(near, touch, pressed);
     const NearestMotion<3>& held = touch.held;
     Hold& hold = touch.hold;
     const auto surface_of = [&](std::size_t i) -> const PlacedSurface&
@@ -413,12 +422,15 @@ Proxy::Touch Proxy::feel_at(Vicinity& near, std::span<const PlacedSurface> surfa
     {
         return touch;
     }
+    if (felt.raised_m > 0.0)
+    {
+        press_smoothly(hold, felt, pressed);
+    }
     if (hold.has_texture)
     {
         for (std::size_t i = 0; i < held.held_by.size(); ++i)
         {
-            press_into_texture(hold, surface_of(i), held.motion - wanted,
-                               held.reactions[i] / hold.depth_m);
+            press_into_texture(hold, surface_of(i), pressed, held.reactions[i] / hold.depth_m);
         }
         hold.bump_m = along_all(hold.bump_m, touch.planes, held.held_by.view());
     }
@@ -428,6 +440,43 @@ Proxy::Touch Proxy::feel_at(Vicinity& near, std::span<const PlacedSurface> surfa
         touch.kept = rub(hold, held.motion - touch.planes.way_out(kContactTolerance * radius_));
     }
     return touch;
+}
+
+/// The planes hold a hand that is raised towards the surface, along its smooth normal.
+SmoothNormals::Felt Proxy::hold_smoothly(Vicinity& near, Touch& touch,
+                                         const Vec3& pressed) const noexcept
+{
+    const double depth_m = pressed.norm();
+    if (!normals_.are_on() || !touch.held.is_feasible || !(depth_m > 0.0))
+    {
+        return {};
+    }
+    const double moved_m = (position_ - anchor_).norm();
+    const SmoothNormals::Felt felt =
+        normals_.at({position_, pressed / depth_m, radius_, moved_m}, depth_m);
+    near.use(felt.looks);
+    const Vec3 raised = touch.wanted + felt.raise_m;
+    const NearestMotion<3> held = search(near, touch.planes, raised);
+    if (held.held_by.empty())
+    {
+        return {}; // Nothing would hold it: it is held as it is.
+    }
+    touch.wanted = raised;
+    touch.held = held;
+    return felt;
+}
+
+/// What the raise took from the push comes back along the smooth normal, and so does its energy.
+void Proxy::press_smoothly(Hold& hold, const SmoothNormals::Felt& felt,
+                           const Vec3& pressed) noexcept
+{
+    const double depth_m = pressed.norm();
+    const double whole = depth_m / (depth_m - felt.raised_m);
+    hold.static_m *= whole;
+    hold.dynamic_m *= whole;
+    hold.push_n += hold.stiffness / hold.depth_m * (felt.raise_m + felt.push_m / depth_m * pressed);
+    hold.stiffening *= felt.stiffening;
+    hold.is_smooth = true;
 }
 
 /// Adds one plane that touches; `depth` is how far the goal is behind it, along its normal.

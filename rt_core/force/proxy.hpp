@@ -6,6 +6,7 @@
 #include "rt_core/base/static_vector.hpp"
 #include "rt_core/force/catch_up.hpp"
 #include "rt_core/force/near_object.hpp"
+#include "rt_core/force/smooth_normals.hpp"
 #include "rt_core/force/tool_goal.hpp"
 #include "rt_core/force/vicinity.hpp"
 #include "rt_core/limits.hpp"
@@ -31,8 +32,9 @@ namespace tactus
 /// (L - tool radius), of where they were queried.
 ///
 /// The force is the spring between goal and proxy, of the softer of tool and object; never a
-/// penalty on a distance. Friction, viscosity and a texture (texture.hpp) say where along the
-/// surface the proxy comes to rest, so all that they do is stretch that spring. Without a certified
+/// penalty on a distance. Friction, viscosity, a texture (texture.hpp) and smooth normals
+/// (smooth_normals.hpp) say where along the surface the proxy comes to rest, so all that they do is
+/// stretch that spring. Without a certified
 /// surface, and where objects leave no room, the proxy is frozen or squeezed and says so: SafeState
 /// fades the force, which is along the last normal and never pulls. After a frame in which the
 /// proxy had to wait for data the force catches up by kCatchUp_n_per_s, beside what the hand does.
@@ -62,6 +64,11 @@ public:
     [[nodiscard]] Similarity place() const noexcept { return {rotation_, position_, 1.0}; }
     /// The tool's, or a point's skin.
     [[nodiscard]] double radius_m() const noexcept { return radius_; }
+    /// How far beyond its radius it looks for what it may feel.
+    [[nodiscard]] double feels_beyond_m() const noexcept
+    {
+        return SmoothNormals::reach_beyond_m(radius_, spec_.smooth_m);
+    }
     /// How far it may have to go for this goal: what presses it against what it touches is no way.
     [[nodiscard]] double way_to_m(const ToolGoal& goal) const noexcept TACTUS_NONBLOCKING;
     /// The places that it went by in this frame, the first and the last included: straight lines.
@@ -121,13 +128,14 @@ private:
         double damping{0.0};
         double viscosity{0.0};
         Vec3 bump_m{0.0, 0.0, 0.0};   ///< What textures move the proxy along by.
-        double stiffening{0.0};       ///< By textures, likewise a sum.
+        double stiffening{0.0};       ///< By textures and smooth normals, likewise a sum.
         Vec3 velocity{0.0, 0.0, 0.0}; ///< The objects'.
         double deepest_m{0.0};
         std::uint32_t object{kNoObject}; ///< Whose plane that is.
         bool touches{false};
         bool rubs{false};        ///< Something holds it back along the surface.
         bool has_texture{false}; ///< One that presses is bumpy.
+        bool is_smooth{false};   ///< It is held as a hand is that is raised.
         bool is_squeezed{false};
     };
 
@@ -151,6 +159,10 @@ private:
     [[nodiscard]] Touch feel_at(Vicinity& near, std::span<const PlacedSurface> surfaces,
                                 const Vec3& wanted, double gap_m) noexcept;
     void press(Hold& hold, const PlacedSurface& placed, const Vec3& depth) const noexcept;
+    [[nodiscard]] SmoothNormals::Felt hold_smoothly(Vicinity& near, Touch& touch,
+                                                    const Vec3& pressed) const noexcept;
+    static void press_smoothly(Hold& hold, const SmoothNormals::Felt& felt,
+                               const Vec3& pressed) noexcept;
     void press_into_texture(Hold& hold, const PlacedSurface& placed, const Vec3& pressed,
                             double share) const noexcept;
     [[nodiscard]] Vec3 go_to_contact(Vicinity& near, const Vec3& wanted,
@@ -170,6 +182,7 @@ private:
     Mat3 rotation_{Mat3::Identity()};        ///< The goal's.
     Vec3 anchor_{0.0, 0.0, 0.0};             ///< Where this frame's surfaces were queried.
     Vec3 normal_{0.0, 0.0, 1.0};             ///< Of the last contact.
+    SmoothNormals normals_;                  ///< While the proxy moves.
     StaticVector<std::uint32_t, 3> held_by_; ///< The faces, at the last stand of this frame.
     Hold hold_;
     CatchUp catch_up_;

@@ -3,6 +3,7 @@
 #include "rt_core/force/rigid_proxy.hpp"
 
 #include "rt_core/force/angular_stiffness.hpp"
+#include "rt_core/force/texture.hpp"
 #include "rt_core/math/rotation.hpp"
 
 #include <algorithm>
@@ -16,7 +17,7 @@ namespace
 
 /// A hold is kept until the tool has slid this share of its radius. What it bends a motion round an
 /// edge by is half the square of it.
-constexpr double kHoldSlide = 0.05;
+constexpr double kHoldSlide = 0.01;
 /// Cosine between the normals of holds that are one.
 constexpr double kSameDirection = 0.999;
 /// Motions below this share of the radius are none where friction holds: 0.2 um of 2 mm.
@@ -185,28 +186,32 @@ void RigidProxy::step(const ToolGoal& goal, std::span<const PlacedSurface> surfa
                       const BodyRoom& room, ToolOutput& output) noexcept
 {
     gather(goal, surfaces);
-    const BodyMotion found = planes_->nearest(way_to(goal));
+    const Motion<6> wanted = way_to(goal);
+    BodyMotion found = planes_->nearest(wanted);
+    const Bumps bumps = bumps_of(found, surfaces);
+    if (bumps.are_there)
+    {
+        found = planes_->nearest(wanted - bumps.aside);
+    }
     is_squeezed_ = found.is_squeezed;
     is_crowded_ = is_crowded_ || planes_->is_crowded();
     sticks_ = found.sticks;
     slides_ = found.slides;
     output.in_contact = !found.pushes.empty();
-    add_forces(goal, found, output);
+    add_forces(goal, found, bumps, output);
     keep_holds(found, surfaces);
-    const double way_m = way_of(found.motion).length_m();
-    advance(goal, found, room);
-    output.lag_m = goes_on_ ? std::max(0.0, way_m - went_m_) : 0.0;
+    output.lag_m = advance(goal, found, room);
 }
 
-/// What sticks stays to the last bit, or it would creep.
-void RigidProxy::advance(const ToolGoal& goal, const BodyMotion& found,
-                         const BodyRoom& room) noexcept
+/// What sticks stays to the last bit, or it would creep. Returns what is left of the way.
+double RigidProxy::advance(const ToolGoal& goal, const BodyMotion& found,
+                           const BodyRoom& room) noexcept
 {
     const BodyWay way = way_of(found.motion);
     const double length_m = way.length_m();
     if (found.sticks && length_m <= kLeastMotion * radius_m_)
     {
-        return;
+        return 0.0;
     }
     const double share = room.share_of(way);
     went_m_ = share * length_m;
@@ -216,12 +221,13 @@ void RigidProxy::advance(const ToolGoal& goal, const BodyMotion& found,
     if (found.pushes.empty() && share == 1.0)
     {
         place_ = {goal.rotation, goal.position_m, 1.0}; // As the hand has it, to the last bit.
-        return;
+        return 0.0;
     }
     const Vec3 center = place_.rotation * center_m_;
     const Mat3 rotation = turned_by(found.motion.tail<3>() * (share / arm_m_), place_.rotation);
     place_.translation_m += center + share * way.center_m - rotation * center_m_;
     place_.rotation = rotation;
+    return length_m - went_m_;
 }
 
 /// Where the proxy is the last planes hold what pushes against them. A core that an object came
@@ -235,6 +241,7 @@ void RigidProxy::freeze(const ToolGoal& goal, bool is_crossed, ToolOutput& outpu
     }
     const NearestMotion<6> nearest = nearest_motion<6>(spaces.view(), way_to(goal));
     output.frozen = true;
+    output.lag_m = way_of(nearest.motion).length_m();
     output.in_contact = !nearest.held_by.empty();
     double reactions = 0.0;
     for (std::size_t i = 0; i < nearest.held_by.size(); ++i)
@@ -387,8 +394,53 @@ void RigidProxy::keep(const Hold& hold) noexcept
     holds_[holds_.size() - 1] = hold;
 }
 
+/// The springs' energy has K e(d) h beside K d^2 / 2: d is what the planes hold back of the motion,
+/// in its metric, and h of the place of the core's middle.
+RigidProxy::Bumps RigidProxy::bumps_of(const BodyMotion& held,
+                                       std::span<const PlacedSurface> surfaces) const noexcept
+{
+    Bumps bumps;
+    Motion<6> pressed = Motion<6>::Zero();
+    double reactions = 0.0;
+    for (const BodyPush& push : held.pushes)
+    {
+        const BodyTouch& touch = planes_->touch(push.touch);
+        const Vec3 lever = planes_->lever_m(push.touch) / arm_m_;
+        pressed.head<3>() += push.reaction * touch.normal;
+        pressed.tail<3>() += push.reaction * lever.cross(touch.normal);
+        reactions += push.reaction;
+        bumps.are_there =
+            bumps.are_there || surfaces[touch.surface].material->texture_height_m > 0.0;
+    }
+    const double depth_m = pressed.norm();
+    bumps.are_there = bumps.are_there && depth_m > 0.0 && !held.is_squeezed;
+    if (!bumps.are_there)
+    {
+        return bumps;
+    }
+    const Vec3 middle = place_.rotation * center_m_;
+    double push_m = 0.0;
+    Vec3 slope_m(0.0, 0.0, 0.0);
+    bumps.stiffening = 0.0;
+    for (const BodyPush& push : held.pushes)
+    {
+        const PlacedSurface& placed = surfaces[planes_->touch(push.touch).surface];
+        const double share = push.reaction / reactions;
+        const Texture texture =
+            Texture::at(*placed.material, *placed.pose, place_.translation_m + middle, depth_m);
+        push_m += share * texture.push_m;
+        slope_m += share * texture.slope_m;
+        bumps.stiffness_n_per_m += share * planes_->grip(push.touch).stiffness_n_per_m;
+        bumps.stiffening += share * Texture::stiffening(*placed.material);
+    }
+    bumps.aside.head<3>() = slope_m;
+    bumps.aside.tail<3>() = middle.cross(slope_m) / arm_m_;
+    bumps.held = push_m / depth_m * pressed - bumps.aside;
+    return bumps;
+}
+
 /// Each push by the spring of its own object; what they make together keeps its line of action.
-void RigidProxy::add_forces(const ToolGoal& goal, const BodyMotion& found,
+void RigidProxy::add_forces(const ToolGoal& goal, const BodyMotion& found, const Bumps& bumps,
                             ToolOutput& output) noexcept
 {
     double reactions = 0.0;
@@ -404,6 +456,12 @@ void RigidProxy::add_forces(const ToolGoal& goal, const BodyMotion& found,
     output.stiffness_n_per_m = reactions > 0.0     ? output.stiffness_n_per_m / reactions
                                : output.in_contact ? spec_.stiffness_n_per_m
                                                    : 0.0;
+    if (bumps.are_there && output.in_contact)
+    {
+        output.force_n += bumps.stiffness_n_per_m * bumps.held.head<3>();
+        output.torque_nm += bumps.stiffness_n_per_m * arm_m_ * bumps.held.tail<3>();
+        output.stiffness_n_per_m *= bumps.stiffening;
+    }
     damp(goal, found, reactions, output);
     clamp(output);
 }

@@ -38,8 +38,8 @@ namespace tactus
 /// pull, are zero where no plane holds, and a proxy that lags behind the hand drags at nothing. At
 /// rest they are the stiffness x (proxy - hand), and the angular stiffness x the turn between them.
 /// An object's damping acts across its surface, where it is touched, its viscosity along it. Its
-/// texture a body doesn't feel: which of its contacts bear changes from frame to frame, and with
-/// them the energy of the bumps would.
+/// texture is felt where the middle of the core is (texture.hpp): which of its contacts bear
+/// changes from frame to frame, and with them the energy of the bumps would.
 ///
 /// Where it sticks, the proxy does not move by a bit. Objects that move take along what sticks to
 /// them, and push what is in their way, in its next step.
@@ -111,6 +111,15 @@ private:
         Motion<6> normal{Motion<6>::Zero()};
         double stiffness_n_per_m{0.0};
     };
+    /// What textures do to the spring: shares of what presses.
+    struct Bumps
+    {
+        Motion<6> aside{Motion<6>::Zero()}; ///< The hand is drawn along by it, for the proxy.
+        Motion<6> held{Motion<6>::Zero()};  ///< Times K, what they add to what is held back.
+        double stiffness_n_per_m{0.0};      ///< K
+        double stiffening{1.0};
+        bool are_there{false};
+    };
     /// As they were when the frame began.
     struct Frame
     {
@@ -123,7 +132,8 @@ private:
     [[nodiscard]] BodyWay way_of(const Motion<6>& motion) const noexcept;
     void step(const ToolGoal& goal, std::span<const PlacedSurface> surfaces, const BodyRoom& room,
               ToolOutput& output) noexcept;
-    void advance(const ToolGoal& goal, const BodyMotion& found, const BodyRoom& room) noexcept;
+    [[nodiscard]] double advance(const ToolGoal& goal, const BodyMotion& found,
+                                 const BodyRoom& room) noexcept;
     void freeze(const ToolGoal& goal, bool is_crossed, ToolOutput& output) noexcept;
     void gather(const ToolGoal& goal, std::span<const PlacedSurface> surfaces) noexcept;
     void add(std::uint32_t surface, std::span<const Contact> contacts, const PlacedSurface& placed,
@@ -133,7 +143,10 @@ private:
     void keep_holds(const BodyMotion& found, std::span<const PlacedSurface> surfaces) noexcept;
     void keep(const Hold& hold) noexcept;
     void catch_up(bool has_waited, double elapsed_s, ToolOutput& output) noexcept;
-    void add_forces(const ToolGoal& goal, const BodyMotion& found, ToolOutput& output) noexcept;
+    [[nodiscard]] Bumps bumps_of(const BodyMotion& held,
+                                 std::span<const PlacedSurface> surfaces) const noexcept;
+    void add_forces(const ToolGoal& goal, const BodyMotion& found, const Bumps& bumps,
+                    ToolOutput& output) noexcept;
     void damp(const ToolGoal& goal, const BodyMotion& found, double reactions,
               ToolOutput& output) const noexcept;
     void clamp(ToolOutput& output) const noexcept;

@@ -93,6 +93,10 @@ void Tool::stand(const auto& body) noexcept
     stance_.place = body.place();
     stance_.reach_m =
         body.radius_m() * (1.0 + kReachMargin) + std::min(body.way_to_m(goal_), way_left_m_);
+    if constexpr (requires { body.feels_beyond_m(); })
+    {
+        stance_.reach_m += body.feels_beyond_m();
+    }
 }
 
 FrameFault Tool::take(const ToolState& sample) noexcept

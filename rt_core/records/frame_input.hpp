@@ -46,6 +46,10 @@ struct ToolSpec
     bool passes_through{false};
     /// Of the spring that turns the tool; 0: as the stiffness and the tool's own size make it.
     double angular_stiffness_nm_per_rad{0.0};
+    /// A point or ball feels facets that lie within this of where it touches as one smooth surface,
+    /// by normals that go over (force/smooth_normals.hpp); 0: it feels each. The surface that is
+    /// felt is within an eighth of it of the mesh. kSmoothWidthMin_m .. kSmoothWidthMax_m.
+    double smooth_m{0.0};
     /// Its pairs answer exactly however far they are, once the surface that may be the nearest is
     /// here and refined. Frames do that bit by bit, behind all that a force needs and as far as the
     /// pools have room; until then the bracket narrows. Some microseconds a pair and frame. Not of

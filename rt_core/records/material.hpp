@@ -23,7 +23,7 @@ struct Material
     /// Of the motion along the surface, in touch; 0 .. kDampingMax_n_s_per_m.
     double viscosity_n_s_per_m{0.0};
     /// Bumps of the surface, from trough to crest along an axis of the object; 0: it is smooth.
-    /// At most kTextureSteepest of their length. Felt by points and balls (force/texture.hpp).
+    /// At most kTextureSteepest of their length (force/texture.hpp).
     double texture_height_m{0.0};
     /// From crest to crest; where there are bumps kTextureLengthMin_m .. kTextureLengthMax_m.
     double texture_length_m{0.0};

@@ -372,6 +372,13 @@ def check_refusals(path):
     refuses(ValueError, "shape: 'cone'", lambda: tactus.Tool(0.1, shape="cone"))
     refuses(ValueError, "tools[0].radius_m: -1",
             lambda: tactus.Frame([tactus.Model(path)], [tactus.Tool(-1)], [tactus.Object()]))
+    refuses(ValueError, "tools[0].smooth_m: 1; 0.0001 to 0.1",
+            lambda: tactus.Frame([tactus.Model(path)], [tactus.Tool(1, smooth_m=1)],
+                                 [tactus.Object()]))
+    refuses(ValueError, "tools[0].smooth_m: 0.01; only a sphere feels it",
+            lambda: tactus.Frame([tactus.Model(path)],
+                                 [tactus.Tool(1, shape="box", half_m=[1, 1, 1], smooth_m=0.01)],
+                                 [tactus.Object()]))
     refuses(ValueError, "objects[0].model: 1; 0 to 0",
             lambda: tactus.Frame([tactus.Model(path)], [tactus.Tool(1)], [tactus.Object(1)]))
     refuses(ValueError, "setup.tool_count: 0", lambda: tactus.Frame([model], [], [tactus.Object()]))

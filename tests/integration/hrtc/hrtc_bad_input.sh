@@ -144,6 +144,11 @@ refuse 3 --material --model bumpy --material 100 --material 100
 for value in 0 101 -1 stiff nan; do
     refuse 3 --angular-stiffness --model bumpy --angular-stiffness "$value"
 done
+for value in 0 0.2 -1 soft nan; do
+    refuse 3 --smooth --model bumpy --smooth "$value"
+done
+refuse 3 '--smooth: no --tool is a point or a sphere' --model bumpy --smooth 0.005 \
+    --tool box:0.01,0.01,0.01
 
 # A model's name, which is checked before anything is asked for.
 readonly letters='A-Z a-z 0-9 . _ -'

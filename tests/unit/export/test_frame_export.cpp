@@ -217,6 +217,7 @@ TEST(FrameExport, tells_every_value_under_its_name)
     EXPECT_EQ(setup.at("compiler"), "some compiler");
     EXPECT_EQ(setup.at("tools").at(0).at("core"), "point");
     EXPECT_EQ(setup.at("tools").at(0).at("angular_stiffness_nm_per_rad"), 0.75);
+    EXPECT_EQ(setup.at("tools").at(0).at("smooth_m"), 0.002);
     EXPECT_EQ(setup.at("objects").at(0).at("translation_world_m"), Json({1.0, 2.0, 3.0}));
     EXPECT_EQ(setup.at("objects").at(0).at("dynamic_friction"), 0.25);
     EXPECT_EQ(setup.at("models").at(0).at("faces"), 400);

@@ -77,7 +77,8 @@ inline constexpr FrameShape kExampleShape{1, 1};
 inline RecordedSetup example_setup(const TinyModel& model)
 {
     RecordedSetup setup;
-    setup.tools = {{0.01, 500.0, 8.0, 1.0, PointCore{}, false, 0.25, true, 0.75, true}};
+    setup.tools = {
+        {0.01, 500.0, 8.0, 1.0, PointCore{}, false, 0.25, true, 0.75, 0.002, true, true}};
     setup.objects = {{ModelId{0}, {250.0, 0.5, 0.25, 1.5}}};
     setup.poses.resize(1);
     setup.poses[0].translation_m = Vec3(1.0, 2.0, 3.0);

@@ -112,6 +112,7 @@ TEST(RecordingFile, gives_back_what_was_written)
     EXPECT_TRUE(setup.tools[0].passes_through);
     EXPECT_TRUE(setup.tools[0].wants_distance);
     EXPECT_EQ(setup.tools[0].angular_stiffness_nm_per_rad, 0.75);
+    EXPECT_EQ(setup.tools[0].smooth_m, 0.002);
     EXPECT_EQ(setup.objects[0].model.value, 0U);
     EXPECT_EQ(setup.objects[0].material.stiffness_n_per_m, 250.0);
     EXPECT_EQ(setup.objects[0].material.static_friction, 0.5);
@@ -200,7 +201,8 @@ TEST(RecordingFile, is_refused_when_a_value_is_out_of_its_range)
     constexpr std::size_t kTool = 26;
     constexpr std::size_t kTorque = kTool + 33;
     constexpr std::size_t kAngular = kTorque + 9;
-    constexpr std::size_t kCore = kAngular + 8;
+    constexpr std::size_t kSmooth = kAngular + 8;
+    constexpr std::size_t kCore = kSmooth + 8;
     constexpr std::size_t kObject = kCore + 1;
     constexpr std::size_t kSpec = kObject + 9; // After its kind, number and generation.
     constexpr std::size_t kPose = kSpec + kObjectSpecBytes;
@@ -222,6 +224,8 @@ TEST(RecordingFile, is_refused_when_a_value_is_out_of_its_range)
     expect_refusal(with_bytes(kSetup, kAngular - 1, {4}), "tool 0 has an unknown core");
     expect_refusal(with_bytes(kSetup, kAngular + 6, {0xF8, 0x7F}), "tool 0 is not within");
     expect_refusal(with_bytes(kSetup, kAngular + 6, {0xF0, 0xBF}), "tool 0 is not within");
+    expect_refusal(with_bytes(kSetup, kSmooth + 6, {0xF8, 0x7F}), "tool 0 is not within");
+    expect_refusal(with_bytes(kSetup, kSmooth + 6, {0xF0, 0xBF}), "tool 0 is not within");
     expect_refusal(with_bytes(kSetup, kCore, {9}), "tool 0 has an unknown core");
     expect_refusal(with_bytes(kSetup, kObject, {1}), "object 0 doesn't come where it should");
     expect_refusal(with_bytes(kSetup, kObject, {5}), "object 0 doesn't come where it should");

@@ -11,6 +11,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 
 namespace tactus::test
@@ -357,6 +358,115 @@ TEST(RigidMaterials, viscosity_drags_a_sliding_and_a_turning_body)
     }
     EXPECT_LT(output.torque_nm.z(), -1e-4) << "it turns on corners that drag";
     EXPECT_LT(output.force_n.head<2>().norm(), 0.1 * output.force_n.z());
+}
+
+/// Over the stiffness: what bumps add to the spring, at one place and depth.
+double bump_energy(const Material& material, const Vec3& at_m, double depth_m)
+{
+    double height_m = 0.0;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        const double turns = at_m[axis] / material.texture_length_m;
+        const double t = turns - std::floor(turns);
+        height_m += material.texture_height_m * (16.0 * std::pow(t * (1.0 - t), 2) - 0.5);
+    }
+    const double most_m =
+        std::pow(material.texture_length_m, 2) / (64.0 * material.texture_height_m);
+    return most_m * std::pow(depth_m / (most_m + depth_m), 2) * height_m;
+}
+
+Material bumpy_material()
+{
+    Material material;
+    material.texture_height_m = 6e-5;
+    material.texture_length_m = 3e-3;
+    return material;
+}
+
+TEST(RigidMaterials, a_texture_is_felt_where_the_middle_of_the_body_is)
+{
+    const Material material = bumpy_material();
+    constexpr double kDepth = 1.5e-3;
+    double most_n = 0.0;
+    for (int i = 0; i < 30; ++i)
+    {
+        Rig rig = box_on_plane(material);
+        const double height_m = rig.sut.place().translation_m.z();
+        const Vec3 hand(1.3e-4 * i, 0.0, height_m - kDepth);
+        const ToolOutput output = rig.settle(hand, Mat3::Identity(), 200);
+        const auto slope_at = [&](double x)
+        {
+            return (bump_energy(material, Vec3(x + 1e-8, 0.0, output.proxy_m.z()), kDepth) -
+                    bump_energy(material, Vec3(x - 1e-8, 0.0, output.proxy_m.z()), kDepth)) /
+                   2e-8;
+        };
+        double proxy_m = hand.x();
+        for (int round = 0; round < 100; ++round)
+        {
+            proxy_m += 0.5 * (hand.x() - slope_at(proxy_m) - proxy_m);
+        }
+        EXPECT_NEAR(output.proxy_m.x(), proxy_m, 2e-6) << i;
+        EXPECT_NEAR(output.force_n.x(), kBodyStiffness * (proxy_m - hand.x()), 1e-3) << i;
+        const double rise = (bump_energy(material, output.proxy_m, kDepth + 1e-8) -
+                             bump_energy(material, output.proxy_m, kDepth - 1e-8)) /
+                            2e-8;
+        EXPECT_NEAR(output.force_n.z(), kBodyStiffness * (kDepth + rise), 1e-2) << i;
+        EXPECT_GT(output.stiffness_n_per_m, kBodyStiffness);
+        most_n = std::max(most_n, std::abs(output.force_n.x()));
+    }
+    EXPECT_GT(most_n, 0.005) << "bumps that are felt";
+}
+
+/// Once round a closed way of the hand and a closed turn: what force and torque did on the hand.
+double work_of_turning_rounds(const Material& material, std::uint64_t seed)
+{
+    Random random(seed);
+    const double wide_m = random.between(5e-4, 2e-3);
+    const double phase = random.between(0.0, 6.0);
+    const double tilt_rad = random.between(0.005, 0.02);
+    Rig rig = box_on_plane(material);
+    rig.takes_steps = true;
+    const double height_m = rig.sut.place().translation_m.z();
+    constexpr int kRound = 4'000;
+    const auto hand_of = [&](int step)
+    {
+        const double angle = 2.0 * std::numbers::pi * step / kRound;
+        const Mat3 rotation = turn(Vec3(1, 0.4, 0), tilt_rad * std::sin(angle + 1.0)) *
+                              turn(Vec3(0, 0, 1), 0.05 * std::cos(angle));
+        return hand_at(Vec3(wide_m * std::cos(angle), wide_m * std::sin(angle),
+                            height_m - 1e-3 + 5e-4 * std::sin(angle + phase)),
+                       rotation);
+    };
+    for (int i = 0; i < 200; ++i)
+    {
+        (void)rig.step(hand_of(0));
+    }
+    double work_j = 0.0;
+    ToolOutput last = rig.step(hand_of(0));
+    ToolGoal before = hand_of(0);
+    for (int step = 1; step <= 2 * kRound; ++step)
+    {
+        const ToolGoal hand = hand_of(step);
+        const ToolOutput now = rig.step(hand);
+        const Eigen::AngleAxisd turned(hand.rotation * before.rotation.transpose());
+        work_j += 0.5 * (now.force_n + last.force_n).dot(hand.position_m - before.position_m) +
+                  0.5 * (now.torque_nm + last.torque_nm).dot(turned.angle() * turned.axis());
+        last = now;
+        before = hand;
+    }
+    return work_j;
+}
+
+TEST(RigidMaterials, a_texture_makes_no_energy_on_closed_ways_and_turns)
+{
+    for (std::uint64_t seed = 1; seed <= 3; ++seed)
+    {
+        const double smooth_j = work_of_turning_rounds({}, seed);
+        const double bumpy_j = work_of_turning_rounds(bumpy_material(), seed);
+        std::printf("work on the hand, twice round: %.3g J smooth, %.3g J with bumps\n", smooth_j,
+                    bumpy_j);
+        EXPECT_LT(bumpy_j, 1e-7) << seed;
+    }
 }
 
 } // namespace tactus::test

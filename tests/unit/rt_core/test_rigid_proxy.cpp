@@ -242,8 +242,10 @@ TEST(RigidProxy, frozen_stays_with_its_force_says_so_and_never_pulls)
         ASSERT_TRUE(has_fault(faults_of(output), FrameFault::proxy_frozen));
         ASSERT_NEAR(output.force_n.z(), held.force_n.z(), 1e-9) << i;
         ASSERT_EQ(output.proxy_m, held.proxy_m);
+        ASSERT_LE(output.lag_m, 1e-6) << "what presses it is no way";
     }
     const ToolOutput pulled = rig.step(Vec3(0, 0, 0.1));
+    EXPECT_NEAR(pulled.lag_m, 0.1 - held.proxy_m.z(), 1e-4);
     EXPECT_EQ(pulled.force_n, Vec3(0, 0, 0));
     EXPECT_EQ(pulled.proxy_m, held.proxy_m) << "what lies between is not known";
 
