@@ -67,7 +67,7 @@ tactus_room(platform/recording platform/base rt_core)
 tactus_room(platform/export platform/base platform/recording rt_core)
 # What the machine is like; of frames and models it knows nothing.
 tactus_room(platform/doctor platform)
-# Pictures; of what was measured it knows nothing.
+# Pages; of what was measured it knows nothing.
 tactus_room(platform/plot)
 # Its command line and a scene's file are read like every other program's:
 # docs/internals/decisions/0003-command-line-room.md.
@@ -114,7 +114,7 @@ tactus_outside(dds transport/dds tests)
 tactus_outside(ccd rt_core/query tests)
 tactus_outside(Eigen rt_core platform transport host_tools tests)
 tactus_outside(CLI host_tools/cli)
-tactus_outside(nlohmann platform/doctor platform/hrtc host_tools tests)
+tactus_outside(nlohmann platform/doctor platform/hrtc platform/plot host_tools tests)
 tactus_outside(fmt platform/doctor platform/export platform/plot platform/hrtc transport host_tools
     tests)
 tactus_outside(assimp host_tools/mesh tests)

@@ -31,18 +31,20 @@ set(CPACK_PROJECT_CONFIG_FILE ${PROJECT_SOURCE_DIR}/cmake/debian/check.cmake)
 set(CPACK_PRE_BUILD_SCRIPTS ${PROJECT_SOURCE_DIR}/cmake/debian/stage.cmake)
 
 # tactus_package(<name> SECTION <section> [ARCHITECTURE all] [DEPENDS <package>...]
-#     [SUGGESTS <package>...] [SERVICE <unit>] DESCRIPTION <first line and paragraphs>)
+#     [RECOMMENDS <package>...] [SUGGESTS <package>...] [SERVICE <unit>]
+#     DESCRIPTION <first line and paragraphs>)
 # Depends of what is linked come from dpkg-shlibdeps. With SERVICE the maintainer scripts of the
 # package have @on_configure@, @on_remove@ and @after_removal@ in the place of what looks after it.
 macro(tactus_package name)
-    cmake_parse_arguments(ARG "" "SECTION;ARCHITECTURE;SERVICE;DESCRIPTION" "DEPENDS;SUGGESTS"
-        ${ARGN})
+    cmake_parse_arguments(ARG "" "SECTION;ARCHITECTURE;SERVICE;DESCRIPTION"
+        "DEPENDS;RECOMMENDS;SUGGESTS" ${ARGN})
     string(TOUPPER ${name} upper)
     list(APPEND CPACK_COMPONENTS_ALL ${name})
     set(CPACK_DEBIAN_${upper}_PACKAGE_NAME ${name})
     set(CPACK_DEBIAN_${upper}_PACKAGE_SECTION ${ARG_SECTION})
     set(CPACK_DEBIAN_${upper}_DESCRIPTION "${ARG_DESCRIPTION}")
     list(JOIN ARG_DEPENDS ", " CPACK_DEBIAN_${upper}_PACKAGE_DEPENDS)
+    list(JOIN ARG_RECOMMENDS ", " CPACK_DEBIAN_${upper}_PACKAGE_RECOMMENDS)
     list(JOIN ARG_SUGGESTS ", " CPACK_DEBIAN_${upper}_PACKAGE_SUGGESTS)
     if(ARG_ARCHITECTURE)
         set(CPACK_DEBIAN_${upper}_PACKAGE_ARCHITECTURE ${ARG_ARCHITECTURE})
@@ -115,6 +117,7 @@ tactus_package(tactus-controller
     SECTION science
     SERVICE hrtc.service
     DEPENDS adduser
+    RECOMMENDS libjs-dygraphs
     SUGGESTS tactus-doc tactus-host
     DESCRIPTION "haptic touch of huge triangle meshes - real-time controller
 Tactus lets a hand feel triangle meshes that are larger than the memory of

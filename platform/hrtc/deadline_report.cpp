@@ -2,7 +2,8 @@
 // Copyright the Tactus authors.
 #include "platform/hrtc/deadline_report.hpp"
 
-#include "platform/hrtc/latency_plot.hpp"
+#include "platform/hrtc/latency_chart.hpp"
+#include "platform/plot/page.hpp"
 
 #include <fmt/format.h>
 
@@ -95,6 +96,47 @@ std::string table_of(std::span<const DeadlinePhase> phases)
                             us(phase.response, 0.99), to_us(phase.response.max()));
     }
     return text;
+}
+
+/// The same for a page.
+plot::Table figures_of(std::span<const DeadlinePhase> phases)
+{
+    plot::Table table{{{"", false},
+                       {"cycles"},
+                       {"deadlines missed"},
+                       {"own"},
+                       {"machine"},
+                       {"other"},
+                       {"cpu p99, us"},
+                       {"wake p99, us"},
+                       {"response p99, us"},
+                       {"response max, us"}},
+                      {}};
+    const auto us = [](Duration time) { return fmt::format("{:.0f}", to_us(time)); };
+    for (const DeadlinePhase& phase : phases)
+    {
+        std::vector<std::string>& line = table.lines.emplace_back();
+        line = {loads_of(phase), fmt::format("{}", cycles_of(phase))};
+        for (const char* key : {"missed", "own_fault", "machine_late", "unexplained"})
+        {
+            line.push_back(fmt::format("{}", count_of(phase, key)));
+        }
+        for (const Duration time : {phase.cpu.quantile(0.99), phase.wake.quantile(0.99),
+                                    phase.response.quantile(0.99), phase.response.max()})
+        {
+            line.push_back(us(time));
+        }
+    }
+    return table;
+}
+
+std::string machine_line(const DeadlinePhase& phase)
+{
+    const Json& machine = phase.report["machine"];
+    return fmt::format(
+        "{}; {}; {}, {} processors; {}", machine["kernel"].get<std::string>(),
+        machine["preemption"].get<std::string>(), machine["processor"].get<std::string>(),
+        machine["processors"].get<unsigned>(), machine["date_utc"].get<std::string>());
 }
 
 /// As `cyclictest` prints a thread: priority, interval, cycles, latencies, all in us.
@@ -197,11 +239,7 @@ std::string make_histogram_text(std::span<const DeadlinePhase> phases)
             edges.push_back(step * decade);
         }
     }
-    const Json& machine = phases.front().report["machine"];
-    std::string text = fmt::format(
-        "{}; {}; {}, {} processors; {}\n", machine["kernel"].get<std::string>(),
-        machine["preemption"].get<std::string>(), machine["processor"].get<std::string>(),
-        machine["processors"].get<unsigned>(), machine["date_utc"].get<std::string>());
+    std::string text = machine_line(phases.front()) + '\n';
     for (const Quantity& quantity : kQuantities)
     {
         std::vector<std::vector<double>> counts;
@@ -236,20 +274,26 @@ std::string make_histogram_text(std::span<const DeadlinePhase> phases)
     return text;
 }
 
-std::string make_histogram_image(std::span<const DeadlinePhase> phases,
-                                 const DeadlineSetting& setting)
+std::string make_histogram_page(const SelfCheck& check, std::span<const DeadlinePhase> phases,
+                                const DeadlineSetting& setting, plot::ChartLibrary library)
 {
-    std::vector<plot::Panel> panels;
+    plot::Page page("hrtc deadline-test", std::move(library));
+    page.verdict(verdict_of(check, phases), is_passed(check, phases));
+    page.table(figures_of(phases));
+    std::vector<plot::Chart> charts;
     for (const Quantity& quantity : kQuantities)
     {
-        plot::Panel panel{quantity.title, "us", "cycles", {}, {{to_us(setting.period), "period"}}};
+        NamedHistograms histograms;
         for (const DeadlinePhase& phase : phases)
         {
-            panel.steps.push_back(steps_of(loads_of(phase), phase.*quantity.histogram));
+            histograms.emplace_back(loads_of(phase), &(phase.*quantity.histogram));
         }
-        panels.push_back(std::move(panel));
+        charts.push_back(latency_chart(quantity.title, "cycles", histograms, setting.period));
     }
-    return plot::make_svg(panels);
+    page.charts(charts);
+    page.table(plot::facts(
+        {{"self-check", self_check_line(check)}, {"machine", machine_line(phases.front())}}));
+    return page.html();
 }
 
 } // namespace tactus::hrtc

@@ -4,6 +4,7 @@
 
 #include "platform/hrtc/self_check.hpp"
 #include "platform/latency_histogram.hpp"
+#include "platform/plot/chart.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -49,9 +50,11 @@ struct DeadlineSetting
 /// The histograms as text, all phases side by side.
 [[nodiscard]] std::string make_histogram_text(std::span<const DeadlinePhase> phases);
 
-/// The same as an SVG image.
-[[nodiscard]] std::string make_histogram_image(std::span<const DeadlinePhase> phases,
-                                               const DeadlineSetting& setting);
+/// Verdict, figures and the histograms as an HTML page.
+[[nodiscard]] std::string make_histogram_page(const SelfCheck& check,
+                                              std::span<const DeadlinePhase> phases,
+                                              const DeadlineSetting& setting,
+                                              plot::ChartLibrary library);
 
 /// No own fault, few misses that nothing explains, and a self-check that saw all.
 [[nodiscard]] bool is_passed(const SelfCheck& check, std::span<const DeadlinePhase> phases);

@@ -144,19 +144,19 @@ Result<DeadlinePhase, Refusal> run_phase(Options options, const std::vector<Load
     return phase;
 }
 
-/// The JSON file, and beside it the same name with .txt and .svg.
+/// The JSON file, and beside it the same name with .txt and .html.
 struct ReportFiles
 {
     std::string json;
     std::string text;
-    std::string image;
+    std::string page;
 };
 
 ReportFiles files_beside(const std::string& path)
 {
     const auto with = [&path](const char* extension)
     { return std::filesystem::path(path).replace_extension(extension).string(); };
-    return {path, with(".txt"), with(".svg")};
+    return {path, with(".txt"), with(".html")};
 }
 
 std::optional<Refusal> write_files(const ReportFiles& files, const SelfCheck& check,
@@ -171,7 +171,8 @@ std::optional<Refusal> write_files(const ReportFiles& files, const SelfCheck& ch
     {
         return error;
     }
-    return write_text(make_histogram_image(phases, setting), files.image);
+    return write_text(make_histogram_page(check, phases, setting, plot::ChartLibrary::packaged()),
+                      files.page);
 }
 
 /// Empty when all is well.
@@ -193,7 +194,7 @@ std::string check_load(const std::vector<std::string>& names, std::vector<LoadKi
 
 std::optional<Refusal> probe(const ReportFiles& files)
 {
-    for (const std::string* path : {&files.json, &files.text, &files.image})
+    for (const std::string* path : {&files.json, &files.text, &files.page})
     {
         if (auto error = probe_output(*path))
         {
@@ -211,7 +212,7 @@ std::string check_report(const std::vector<std::string>& paths)
         return "--report: one name is enough, the three files are called by it";
     }
     return !paths.empty() && is_page_name(paths.front())
-               ? "--report: must end in .json; a .txt and an .svg of the same name go beside it"
+               ? "--report: must end in .json; a .txt and an .html of the same name go beside it"
                : "";
 }
 
@@ -254,7 +255,7 @@ int run_test(const Options& options, const std::vector<LoadKind>& loads)
         {
             return leave_with(failure("--report: " + error->text));
         }
-        fmt::print("report      {}, {}, {}\n", files.json, files.text, files.image);
+        fmt::print("report      {}, {}, {}\n", files.json, files.text, files.page);
     }
     return is_passed(check.value(), phases) ? kExitDone : kExitCriterionNotMet;
 }
@@ -269,7 +270,7 @@ int run_deadline_test(int argc, char** argv)
     form.description = "Runs the loop alone and beside load, and tells whose fault each missed "
                        "deadline was. First faults are injected to prove that they are seen. Exit "
                        "code 1 after a fault of the loop's own. Takes the options of hrtc; "
-                       "--report FILE.json writes FILE.txt and FILE.svg, too.";
+                       "--report FILE.json writes FILE.txt and FILE.html, too.";
     form.records = false;
     form.duration_s = kDuration_s;
     form.declare = [&load_names](CommandLine& line)

@@ -56,7 +56,9 @@ int touch(const Options& options)
     for (const std::string& path : options.report_paths)
     {
         const auto error = is_page_name(path)
-                               ? write_text(make_page(report, done.value().statistics), path)
+                               ? write_text(make_page(report, done.value().statistics,
+                                                      plot::ChartLibrary::packaged()),
+                                            path)
                                : write_report(report, path);
         if (error)
         {

@@ -2,18 +2,16 @@
 // Copyright the Tactus authors.
 #include "platform/hrtc/report_page.hpp"
 
-#include "platform/hrtc/latency_plot.hpp"
+#include "platform/hrtc/latency_chart.hpp"
 #include "platform/hrtc/report.hpp"
 #include "platform/hrtc/report_words.hpp"
 #include "platform/hrtc/verdict.hpp"
-#include "platform/plot/bar_plot.hpp"
 #include "platform/plot/page.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
-#include <array>
+#include <utility>
 
 namespace tactus::hrtc
 {
@@ -165,40 +163,110 @@ void add_verdict(const Json& report, plot::Page& page)
                  true);
 }
 
-plot::Drawing stage_bars(const Json& times)
+/// Vertical lines where a deadline was missed or a force withheld.
+std::vector<plot::Mark> marks_of(const Json& report, const RunStatistics& statistics)
 {
-    plot::BarPlot bars{
-        "Where a frame's time goes", "us", {{"p50 of each stage", {}}, {"p99 of each stage", {}}}};
+    const double period_s = report["period_ns"].get<double>() * 1e-9;
+    std::vector<plot::Mark> marks;
+    for (const NotedCycle& cycle : statistics.deadlines.noted())
+    {
+        const double time_s = static_cast<double>(cycle.frame) * period_s;
+        if (has_any(cycle.flags, kOwnFaults))
+        {
+            marks.push_back({time_s, "own fault", plot::MarkKind::fault});
+        }
+        else if (has_any(cycle.flags, CycleFlag::missed))
+        {
+            marks.push_back(
+                {time_s,
+                 has_any(cycle.flags, kMachinesDoing) ? "machine late" : "missed, nobody to blame",
+                 plot::MarkKind::warning});
+        }
+    }
+    for (const Json& event : report["safety"]["events"])
+    {
+        const Json& frame = event["frame"]; // None of the supervisor's.
+        if (frame.is_number() && !event["causes"].empty())
+        {
+            marks.push_back({frame.get<double>() * period_s,
+                             fmt::format("force withheld for {}", text_of(event["causes"])),
+                             plot::MarkKind::plain});
+        }
+    }
+    return marks;
+}
+
+/// Force, bracket and stage times over the run.
+std::vector<plot::Chart> series_of(const Json& report, const RunStatistics& statistics)
+{
+    const std::vector<SeriesPoint> points = statistics.series.points();
+    const double step_s =
+        static_cast<double>(statistics.series.stride()) * report["period_ns"].get<double>() * 1e-9;
+    const std::vector<plot::Mark> marks = marks_of(report, statistics);
+    const auto chart = [&](const char* title, const char* unit)
+    {
+        plot::Chart made{.title = title,
+                         .x_label = "s",
+                         .y_label = unit,
+                         .kind = plot::Chart::Kind::series,
+                         .x = {},
+                         .lines = {},
+                         .marks = marks};
+        for (std::size_t i = 0; i < points.size(); ++i)
+        {
+            made.x.push_back(static_cast<double>(i) * step_s);
+        }
+        return made;
+    };
+    const auto line = [&points](const char* name, const auto& value_of)
+    {
+        plot::Line made{name, {}};
+        for (const SeriesPoint& point : points)
+        {
+            made.y.push_back(static_cast<double>(value_of(point)));
+        }
+        return made;
+    };
+    std::vector<plot::Chart> charts{
+        chart("Force on the device", "N"),
+        chart("Widest bracket; 0 where every answer is exact or decided", "mm"),
+        chart("Times of the stages", "us")};
+    charts[0].lines = {line("force", [](const SeriesPoint& point) { return point.force_n; })};
+    charts[1].lines = {
+        line("bracket", [](const SeriesPoint& point) { return 1e3F * point.width_m; })};
     for (std::size_t stage = 0; stage < kStages; ++stage)
     {
-        const Json& of_stage = times[kStageNames.at(stage)];
-        bars.groups[0].bars.push_back({kStageNames.at(stage), of_stage["p50"].get<double>()});
-        bars.groups[1].bars.push_back({kStageNames.at(stage), of_stage["p99"].get<double>()});
+        charts[2].lines.push_back(line(kStageNames.at(stage), [stage](const SeriesPoint& point)
+                                       { return point.stage_us.at(stage); }));
     }
-    return draw(bars);
+    charts[2].lines.push_back(
+        line("frame", [](const SeriesPoint& point) { return point.frame_us; }));
+    return charts;
 }
 
 void add_times(const Json& report, const RunStatistics& statistics, plot::Page& page)
 {
+    page.heading("Over the run");
+    page.paragraph(fmt::format("Each point is the worst of {} neighbouring frames.",
+                               statistics.series.stride()));
+    page.charts(series_of(report, statistics));
     page.heading("Times");
     page.table(times_of(report["times_us"]));
-    const plot::Mark period{report["period_ns"].get<double>() * 1e-3, "period"};
-    const auto panel = [&](const char* title) {
-        return plot::Panel{title, "us", "frames", {}, {period}};
-    };
-    std::array panels{panel("A frame"), panel("Its stages"),
-                      panel("Waking, and the force's delay")};
-    panels[0].steps = {steps_of("frame, device included", statistics.frame),
-                       steps_of("processor time of it", statistics.cpu)};
+    const Duration period{report["period_ns"].get<std::int64_t>()};
+    NamedHistograms stages;
     for (std::size_t stage = 0; stage < kStages; ++stage)
     {
-        panels[1].steps.push_back(steps_of(kStageNames.at(stage), statistics.stages.at(stage)));
+        stages.emplace_back(kStageNames.at(stage), &statistics.stages.at(stage));
     }
-    panels[2].steps = {steps_of("woken late", statistics.wake),
-                       steps_of("deadline to force", statistics.deadlines.response())};
-    std::vector<plot::Drawing> drawings = draw(panels);
-    drawings.push_back(stage_bars(report["times_us"]));
-    page.drawings(drawings);
+    const LatencyHistogram response = statistics.deadlines.response();
+    page.charts({latency_chart("A frame", "frames",
+                               {{"frame, device included", &statistics.frame},
+                                {"processor time of it", &statistics.cpu}},
+                               period),
+                 latency_chart("Its stages", "frames", stages, period),
+                 latency_chart("Waking, and the force's delay", "frames",
+                               {{"woken late", &statistics.wake}, {"deadline to force", &response}},
+                               period)});
 }
 
 /// A list in a section of its own, unless it is empty.
@@ -229,9 +297,10 @@ bool is_page_name(const std::string& path)
     return path.ends_with(".html");
 }
 
-std::string make_page(const Json& report, const RunStatistics& statistics)
+std::string make_page(const Json& report, const RunStatistics& statistics,
+                      plot::ChartLibrary library)
 {
-    plot::Page page(title_of(report));
+    plot::Page page(title_of(report), std::move(library));
     add_verdict(report, page);
     page.table(plot::facts(summary_facts(report)));
     add_times(report, statistics, page);

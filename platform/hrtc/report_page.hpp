@@ -3,6 +3,7 @@
 #pragma once
 
 #include "platform/hrtc/run_statistics.hpp"
+#include "platform/plot/chart.hpp"
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -14,9 +15,10 @@ namespace tactus::hrtc
 /// Whether a report that is to have this name is a page: it ends in .html.
 [[nodiscard]] bool is_page_name(const std::string& path);
 
-/// A run's report as an HTML page: what it comes to, every figure of the report, and histograms of
-/// the times in `statistics`, those that the report is made from.
+/// A run's report as an HTML page: what it comes to, every figure of the report, and charts of
+/// `statistics`, those that the report is made from: force, bracket and stage times over the run,
+/// and histograms of the times.
 [[nodiscard]] std::string make_page(const nlohmann::ordered_json& report,
-                                    const RunStatistics& statistics);
+                                    const RunStatistics& statistics, plot::ChartLibrary library);
 
 } // namespace tactus::hrtc

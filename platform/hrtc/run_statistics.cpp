@@ -114,7 +114,7 @@ void RunStatistics::add(const FrameOutput& output, std::span<const ToolForce> fo
     frame.record(measures.frame);
     cpu.record(measures.cpu);
     wake.record(measures.cycle.wake_lateness);
-    add_answers(output);
+    add_point(measures, forces, add_answers(output));
     add_work(output);
     add_scene(output);
     add_budgets(measures);
@@ -135,7 +135,7 @@ void RunStatistics::add(const FrameOutput& output, std::span<const ToolForce> fo
     std::copy(output.models.begin(), output.models.end(), models.begin());
 }
 
-void RunStatistics::add_answers(const FrameOutput& output) noexcept
+double RunStatistics::add_answers(const FrameOutput& output) noexcept
 {
     AnswerKind worst = AnswerKind::decided;
     double widest_m = 0.0;
@@ -153,6 +153,24 @@ void RunStatistics::add_answers(const FrameOutput& output) noexcept
         }
     }
     answers.add(worst, widest_m);
+    return widest_m;
+}
+
+void RunStatistics::add_point(const CycleMeasures& measures, std::span<const ToolForce> forces,
+                              double width_m) noexcept
+{
+    SeriesPoint point;
+    for (const ToolForce& force : forces)
+    {
+        point.force_n = std::max(point.force_n, static_cast<float>(force.sent_n.norm()));
+    }
+    point.width_m = static_cast<float>(width_m);
+    point.frame_us = static_cast<float>(to_us(measures.frame));
+    for (std::size_t i = 0; i < kStages; ++i)
+    {
+        point.stage_us[i] = static_cast<float>(to_us(measures.stage[i]));
+    }
+    series.add(point);
 }
 
 void RunStatistics::add_work(const FrameOutput& output) noexcept

@@ -4,6 +4,7 @@
 
 #include "platform/hrtc/cycle_measures.hpp"
 #include "platform/hrtc/deadline_account.hpp"
+#include "platform/hrtc/run_series.hpp"
 #include "platform/latency_histogram.hpp"
 #include "rt_core/math/infinity.hpp"
 #include "rt_core/records/conditioned_force.hpp"
@@ -102,6 +103,7 @@ public:
     LatencyHistogram frame;
     LatencyHistogram cpu; ///< Processor time of a frame.
     LatencyHistogram wake;
+    RunSeries series;
     DeadlineAccount deadlines;
     AnswerCounts answers; ///< By each frame's worst pair.
     std::size_t objects;  ///< Places for them: one more than their largest number.
@@ -138,7 +140,10 @@ public:
     std::uint64_t budgets_at_floor{0}; ///< Frames with the least budgets there are.
 
 private:
-    void add_answers(const FrameOutput& output) noexcept;
+    /// The width of the widest bracket, in m.
+    double add_answers(const FrameOutput& output) noexcept;
+    void add_point(const CycleMeasures& measures, std::span<const ToolForce> forces,
+                   double width_m) noexcept;
     void add_work(const FrameOutput& output) noexcept;
     void add_scene(const FrameOutput& output) noexcept;
     void add_budgets(const CycleMeasures& measures) noexcept;

@@ -83,27 +83,4 @@ std::string escaped(std::string_view text)
     return result;
 }
 
-std::string shortened(const std::string& text, std::size_t most)
-{
-    if (characters_of(text) <= most)
-    {
-        return text;
-    }
-    std::size_t end = 0;
-    for (std::size_t count = 0; end < text.size(); ++end)
-    {
-        count += continues(text[end]) ? 0U : 1U;
-        if (count == most)
-        {
-            break;
-        }
-    }
-    return text.substr(0, end) + "\u2026";
-}
-
-std::size_t characters_of(std::string_view text)
-{
-    return text.size() - static_cast<std::size_t>(std::ranges::count_if(text, continues));
-}
-
 } // namespace tactus::plot

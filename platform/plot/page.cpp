@@ -2,11 +2,17 @@
 // Copyright the Tactus authors.
 #include "platform/plot/page.hpp"
 
+#include "platform/plot/charts_script.hpp"
 #include "platform/plot/markup.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <iterator>
+#include <string_view>
 #include <utility>
 
 namespace tactus::plot
@@ -16,9 +22,12 @@ namespace
 {
 
 constexpr const char* kPageStyle =
-    ":root { --good: #00704f; --bad: #b34700; --stripe: #f4f4f4; }\n"
+    ":root { --ink: #222; --grid: #d8d8d8; --paper: #fff;\n"
+    "  --good: #00704f; --bad: #b34700; --stripe: #f4f4f4; }\n"
+    "@media screen { :root { color-scheme: light dark; } }\n"
     "@media screen and (prefers-color-scheme: dark) {\n"
-    "  :root { --good: #4fd3a5; --bad: #ff9a57; --stripe: #232323; }\n"
+    "  :root { --ink: #e8e8e8; --grid: #444; --paper: #181818;\n"
+    "    --good: #4fd3a5; --bad: #ff9a57; --stripe: #232323; }\n"
     "}\n"
     "* { box-sizing: border-box; }\n"
     "body { margin: 0 auto; padding: 1rem; max-width: 80rem; background: var(--paper);\n"
@@ -40,12 +49,16 @@ constexpr const char* kPageStyle =
     "tbody tr:nth-child(even) { background: var(--stripe); }\n"
     ".number { text-align: right; padding-left: 0.7rem; }\n"
     "td.number { white-space: nowrap; }\n"
-    ".drawings { display: grid; gap: 1rem; margin: 0.5rem 0;\n"
+    ".charts { display: grid; gap: 1rem; margin: 0.5rem 0;\n"
     "  grid-template-columns: repeat(auto-fit, minmax(min(100%, 30rem), 1fr)); }\n"
     ".tables { columns: 22rem auto; column-gap: 2rem; }\n"
     ".tables section { break-inside: avoid; padding-top: 0.1rem; }\n"
-    "figure { margin: 0; max-width: 44rem; }\n"
-    ".plot { display: block; width: 100%; height: auto; }\n"
+    "figure { margin: 0; min-width: 0; }\n"
+    "figcaption { font-weight: 600; }\n"
+    ".legend, .marks { font-size: 0.8rem; min-height: 1.2em; }\n"
+    ".chart { width: 100%; height: 17rem; }\n"
+    ".dygraph-label, .dygraph-axis-label { color: var(--ink); font-size: 0.8rem; }\n"
+    ".note { font-size: 0.875rem; }\n"
     "@media screen and (max-width: 40rem) {\n"
     "  th[scope=row] { white-space: normal; min-width: 7.5rem; }\n"
     "  thead th.number { min-width: 3rem; }\n"
@@ -64,6 +77,91 @@ constexpr const char* kPageStyle =
     "  figure, tr, .verdict { break-inside: avoid; }\n"
     "  h1, h2, h3 { break-after: avoid; }\n"
     "}\n";
+
+const char* name_of(MarkKind kind)
+{
+    switch (kind)
+    {
+    case MarkKind::plain:
+        return "plain";
+    case MarkKind::warning:
+        return "warning";
+    case MarkKind::fault:
+        return "fault";
+    }
+    return "plain";
+}
+
+/// To as many digits as a reader of a chart can use.
+double rounded(double value)
+{
+    return std::isfinite(value) ? std::strtod(fmt::format("{:.6g}", value).c_str(), nullptr)
+                                : value; // Which JSON has as null.
+}
+
+std::vector<double> rounded(const std::vector<double>& values)
+{
+    std::vector<double> result;
+    std::ranges::transform(values, std::back_inserter(result),
+                           [](double value) { return rounded(value); });
+    return result;
+}
+
+/// JSON that can stand in any element: no character in it has a meaning in HTML or XML.
+std::string to_json(const Chart& chart)
+{
+    using Json = nlohmann::ordered_json;
+    Json lines = Json::array();
+    for (const Line& line : chart.lines)
+    {
+        lines.push_back({{"name", line.name}, {"y", rounded(line.y)}});
+    }
+    Json marks = Json::array(); // Those of one name together: there may be thousands.
+    for (const Mark& mark : chart.marks)
+    {
+        auto of_name = std::ranges::find_if(marks, [&](const Json& known)
+                                            { return known["name"] == mark.name; });
+        if (of_name == marks.end())
+        {
+            marks.push_back(
+                {{"name", mark.name}, {"kind", name_of(mark.kind)}, {"x", Json::array()}});
+            of_name = std::prev(marks.end());
+        }
+        (*of_name)["x"].push_back(rounded(mark.x));
+    }
+    const Json json{{"title", chart.title},
+                    {"x_label", chart.x_label},
+                    {"y_label", chart.y_label},
+                    {"kind", chart.kind == Chart::Kind::series ? "series" : "histogram"},
+                    {"x", rounded(chart.x)},
+                    {"lines", lines},
+                    {"marks", marks}};
+    std::string safe;
+    for (const char c : json.dump(-1, ' ', true, Json::error_handler_t::replace))
+    {
+        switch (c)
+        {
+        case '<':
+            safe += "\\u003c";
+            break;
+        case '>':
+            safe += "\\u003e";
+            break;
+        case '&':
+            safe += "\\u0026";
+            break;
+        default:
+            safe += c;
+        }
+    }
+    return safe;
+}
+
+/// Text that is no markup, for XML and, as a comment of the script's, for HTML.
+std::string script_of(std::string_view text)
+{
+    return fmt::format("<script>//<![CDATA[\n{}\n//]]></script>\n", text);
+}
 
 std::string head_of(const Table& table)
 {
@@ -95,7 +193,10 @@ std::string line_of(const std::vector<std::string>& cells, const std::vector<Col
 
 } // namespace
 
-Page::Page(const std::string& title) : title_(escaped(title)) {}
+Page::Page(const std::string& title, ChartLibrary library)
+    : title_(escaped(title)), library_(std::move(library))
+{
+}
 
 void Page::heading(const std::string& text)
 {
@@ -135,28 +236,59 @@ void Page::tables(const std::vector<TitledTable>& tables)
     body_ += "</div>\n";
 }
 
-void Page::drawings(const std::vector<Drawing>& drawings)
+void Page::charts(const std::vector<Chart>& charts)
 {
-    if (drawings.empty())
+    if (charts.empty())
     {
         return;
     }
-    body_ += "<div class=\"drawings\">\n";
-    for (const Drawing& drawing : drawings)
+    if (!library_.missing.empty())
     {
-        body_ += "<figure>\n" + to_svg_element(drawing) + "</figure>\n";
+        body_ += fmt::format("<p class=\"note\">{} charts are left out: {}</p>\n", charts.size(),
+                             escaped(library_.missing));
+        return;
+    }
+    if (charts_.empty())
+    {
+        body_ += "<p class=\"note\">Drag to zoom in, with the shift key to move; a double click "
+                 "shows all again.</p>\n<noscript><p>Charts need scripts to be allowed.</p>"
+                 "</noscript>\n";
+    }
+    body_ += "<div class=\"charts\">\n";
+    for (const Chart& chart : charts)
+    {
+        charts_.push_back(to_json(chart));
+        body_ +=
+            fmt::format("<figure>\n<figcaption>{}</figcaption>\n<div class=\"legend\"></div>\n"
+                        "<div class=\"chart\"></div>\n<div class=\"marks\"></div>\n</figure>\n",
+                        escaped(chart.title));
     }
     body_ += "</div>\n";
 }
 
+std::string Page::scripts() const
+{
+    if (charts_.empty())
+    {
+        return {};
+    }
+    return fmt::format("<script type=\"application/json\" id=\"chart-data\">[{}]</script>\n{}{}",
+                       fmt::join(charts_, ",\n"), script_of(library_.script),
+                       script_of(charts_script()));
+}
+
 std::string Page::html() const
 {
-    return fmt::format("<!DOCTYPE html>\n<html lang=\"en\" xmlns=\"http://www.w3.org/1999/xhtml\">"
-                       "\n<head>\n<meta charset=\"utf-8\"/>\n<meta name=\"viewport\" "
-                       "content=\"width=device-width, initial-scale=1\"/>\n<title>{0}</title>\n"
-                       "<style>\n{1}{2}{3}</style>\n</head>\n<body>\n<h1>{0}</h1>\n{4}</body>\n"
-                       "</html>\n",
-                       title_, drawing_colours(), drawing_style(), kPageStyle, body_);
+    const std::string style =
+        charts_.empty() ? "" : fmt::format("/*<![CDATA[*/\n{}\n/*]]>*/\n", library_.style);
+    return fmt::format(
+        "<!DOCTYPE html>\n<html lang=\"en\" xmlns=\"http://www.w3.org/1999/xhtml\">\n<head>\n"
+        "<meta charset=\"utf-8\"/>\n<meta http-equiv=\"Content-Security-Policy\" "
+        "content=\"default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'\"/>\n"
+        "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n"
+        "<title>{0}</title>\n<style>\n{1}{2}</style>\n</head>\n<body>\n<h1>{0}</h1>\n{3}{4}"
+        "</body>\n</html>\n",
+        title_, style, kPageStyle, body_, scripts());
 }
 
 Table facts(const std::vector<std::pair<std::string, std::string>>& pairs)

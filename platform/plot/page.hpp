@@ -28,14 +28,17 @@ struct TitledTable
     Table table;
 };
 
-/// One HTML file that needs nothing but itself, no script either, and is well-formed XML as well.
-/// It is read on a screen, light or dark as the reader has it, on a phone and on paper: drawings
-/// shrink with the page, and what is too wide of a table moves inside its own box. All text may be
-/// anything. The same calls make the same bytes.
+/// One HTML file that needs nothing but itself and is well-formed XML as well. It is read on a
+/// screen, light or dark as the reader has it, on a phone and on paper: charts shrink with the
+/// page, and what is too wide of a table moves inside its own box. All text may be anything. The
+/// same calls make the same bytes. Scripts draw charts and nothing else: a reader without them has
+/// the rest.
 class Page
 {
 public:
-    explicit Page(const std::string& title);
+    /// `library` is inlined once if there are charts. Where it is missing, the page says so
+    /// instead.
+    Page(const std::string& title, ChartLibrary library);
 
     void heading(const std::string& text);
     void paragraph(const std::string& text);
@@ -45,13 +48,17 @@ public:
     /// Small ones, side by side where there is room.
     void tables(const std::vector<TitledTable>& tables);
     /// Side by side where there is room.
-    void drawings(const std::vector<Drawing>& drawings);
+    void charts(const std::vector<Chart>& charts);
 
     [[nodiscard]] std::string html() const;
 
 private:
+    [[nodiscard]] std::string scripts() const;
+
     std::string title_;
+    ChartLibrary library_;
     std::string body_;
+    std::vector<std::string> charts_; ///< The JSON of each.
 };
 
 /// A table of names and what they come to.

@@ -58,7 +58,7 @@ hrtc deadline-test --allow-no-rt --transport file --model torus.spm --duration 2
 cat test.log
 # 1: a fault of the loop's own, on a machine that is busy with this.
 ((code <= 1)) || fail "deadline-test ends with $code"
-[[ -s test.json && -s test.svg ]] || fail 'deadline-test writes no report'
+[[ -s test.json && -s test.html ]] || fail 'deadline-test writes no report'
 python3 -c '
 import tactus
 model = tactus.Model("torus.spm")

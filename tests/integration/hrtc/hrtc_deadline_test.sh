@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # hrtc_deadline_test.sh: the accounting flags what is injected, alone and beside load; report,
-# histograms and image are written and agree; nothing is left behind; wrong options are refused.
+# histograms and page are written and agree; nothing is left behind; wrong options are refused.
 source "$(dirname "$0")/common.sh"
 model bumpy-sphere-5000 good.spm
 mkdir temporary
@@ -11,7 +11,7 @@ refuse() { expect "$1" "$2" "$hrtc" "${@:3}"; }
 refuse 3 'a model is required' deadline-test
 refuse 3 '--load: ' deadline-test --model bumpy --load network
 refuse 3 'none goes with no other' deadline-test --model bumpy --load none,cpu
-for name in run run.svg run.JSON; do
+for name in run run.txt run.JSON; do
     refuse 3 "'$name' ends neither in .json nor" deadline-test --model bumpy --report "$name"
 done
 refuse 3 'must end in .json' deadline-test --model bumpy --report run.html
@@ -69,9 +69,9 @@ check run.json load == 2 alone.load == 0 alone.frames == 1000
 grep -q 'beside load (cpu, disk)' run.txt || fault 'the histogram does not tell of the load'
 for title in 'Woken' 'Processor time' 'From the deadline'; do
     grep -q "^$title" run.txt || fault "no histogram '$title'"
-    grep -q "class=\"title\".*>$title" run.svg || fault "no image '$title'"
+    grep -q "<figcaption>$title" run.html || fault "no chart '$title'"
 done
-[[ $(tail -n 1 run.svg) == '</svg>' ]] || fault 'the image has no end'
+[[ $(tail -n 1 run.html) == '</html>' ]] || fault 'the page has no end'
 
 # Ended early it judges nothing, writes nothing and leaves no load behind.
 # Meanwhile the loop has its processor to itself: the last one allowed, with which a list of allowed

@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-# browser.py BIN_DIR: the page of spm_view in headless Chromium, clicked at through WebDriver, while
-# hrtc touches a model. Exit code 77 without Debian's chromium and chromium-driver.
+# browser.py BIN_DIR: the page of hrtc's report and that of spm_view, while hrtc touches a model, in
+# headless Chromium, clicked at through WebDriver. Exit code 77 without Debian's chromium and
+# chromium-driver.
 # With VIEW_PICTURES it leaves pictures of the page in that folder.
 #
 # Every wait has an end and says what never came; whatever happens, all that was started is ended,
@@ -175,6 +176,16 @@ class Browser:
     def click(self, name):
         self.call("POST", self.element(name) + "/click", {})
 
+    def drag(self, selector, sideways):
+        """Presses the button in the middle of the first such element, moves so far, lets go."""
+        found = self.call("POST", "/element", {"using": "css selector", "value": selector})
+        moves = [{"type": "pointerMove", "origin": found, "x": 0, "y": 0},
+                 {"type": "pointerDown", "button": 0},
+                 {"type": "pointerMove", "origin": found, "x": sideways, "y": 0, "duration": 100},
+                 {"type": "pointerUp", "button": 0}]
+        self.call("POST", "/actions", {"actions": [{"type": "pointer", "id": "mouse",
+                                                    "actions": moves}]})
+
     def press(self, name, pressed):
         """Clicks until it is so: a click that comes while the page moves may miss."""
         def is_so():
@@ -244,6 +255,39 @@ def look(browser, url, serve):
     hand.terminate()
     eventually(lambda: hand.poll() is not None, "hrtc's end")
     eventually(lambda: "waits for" in browser.text("waits"), "that the controller has gone")
+    expect(not browser.complaints(), f"the browser complains: {sorted(browser.complaints())[:3]}")
+
+
+# Of each chart whether something is drawn, and as far as it is zoomed in what it shows.
+CHARTS = """return charts.map((graph) => ({
+  is_drawn: [...graph.graphDiv.querySelectorAll("canvas")].some((canvas) => canvas.getContext("2d")
+    .getImageData(0, 0, canvas.width, canvas.height).data.some((value) => value !== 0)),
+  range: graph.isZoomed("x") ? graph.xAxisRange() : null,
+  marks: graph.graphDiv.closest("figure").querySelector(".marks").textContent}))"""
+
+
+def reported(browser):
+    """One file: charts, those over the run zoomed together."""
+    browser.resize(1440, 1000)
+    browser.open(pathlib.Path("run.html").absolute().as_uri(),
+                 lambda: browser.run("return document.querySelectorAll('.chart canvas').length")
+                 >= 12, "the charts of a report")
+    expect(all(chart["is_drawn"] for chart in browser.run(CHARTS)), "charts with nothing in them")
+    expect("period" in browser.run(CHARTS)[3]["marks"], "the period isn't marked")
+    browser.picture("report")
+    browser.run("document.querySelector('.charts').scrollIntoView()")
+    browser.drag(".chart", 120)
+    ranges = [chart["range"] for chart in browser.run(CHARTS)]
+    expect(ranges[0] is not None and 0 < ranges[0][0] < ranges[0][1],
+           f"dragged over, a chart shows {ranges}")
+    expect(ranges[1] == ranges[0] and ranges[2] == ranges[0] and ranges[3:] == [None] * 3,
+           f"the charts over the run show different times: {ranges}")
+    browser.run("charts[1].resetZoom()")
+    expect([chart["range"] for chart in browser.run(CHARTS)] == [None] * 6, "it stays zoomed in")
+    browser.resize(400, 1000)
+    wide = browser.run("return document.documentElement.scrollWidth - innerWidth")
+    expect(wide <= 0, f"the report is {wide} pixels too wide")
+    browser.picture("report-narrow")
     expect(not browser.complaints(), f"the browser complains: {sorted(browser.complaints())[:3]}")
 
 
@@ -345,9 +389,14 @@ def main():
                                 "--virtual-time", "--allow-no-rt", "--duration", seconds,
                                 "--record", name], check=True, timeout=PATIENCE_S,
                                stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            subprocess.run([programs / "hrtc", "bumpy.spm", "--no-static", "--device", "sim",
+                            "--allow-no-rt", "--duration", "3", "--report", "run.html"],
+                           check=True, timeout=PATIENCE_S, stdout=subprocess.DEVNULL,
+                           stderr=subprocess.DEVNULL)
             start(programs / "spm_view", "--replay", "one.rec", "--replay", "two.rec", "--port",
                   "0", log="film.log")
             browser = Browser("driver.log")
+            reported(browser)
             played(browser, line_in("film.log", r"(http://\S+) shows"))
             look(browser, url, lambda: start(
                 programs / "hrtc", "--model", "bumpy", "--no-static", "--device", "sim",

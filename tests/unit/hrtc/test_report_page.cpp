@@ -104,7 +104,7 @@ Json report_of(const std::string& model)
         {"safety",
          {{"supervisor_brakes", 107},
           {"begun", {{"software", 1}, {"disconnect", 0}, {"stall", 109}}},
-          {"events", Json::array({{{"time_s", 0.125}, {"causes", {"stall"}}}})}}},
+          {"events", Json::array({{{"time_s", 0.125}, {"frame", 157}, {"causes", {"stall"}}}})}}},
         {"faults", {{"chunk_late", 113}}},
         {"machine", {{"kernel", "Linux <6> & more"}, {"processors", 127}}},
         {"models", Json::array({{{"name", model},
@@ -120,6 +120,12 @@ Json report_of(const std::string& model)
                                 {"softest_wall_n_per_m", 1'500.25},
                                 {"conditioned", {{"stiffness_capped", 137}, {"damped", 139}}}}})},
         {"pairs", Json::array({{{"tool", 0}, {"model", model}, {"answers", {{"exact", 149}}}}})}};
+}
+
+/// Stands for the chart library, which nothing here runs.
+plot::ChartLibrary library()
+{
+    return {"the library's script", "its style", ""};
 }
 
 RunStatistics statistics_of(std::size_t frames)
@@ -177,10 +183,11 @@ std::vector<std::string> lacking(const Json& report, const std::string& page)
 TEST(ReportPage, holds_every_figure_of_the_report)
 {
     const Json report = report_of("bunny");
-    const std::string page = make_page(report, statistics_of(5'003));
+    const std::string page = make_page(report, statistics_of(5'003), library());
     EXPECT_EQ(lacking(report, page), std::vector<std::string>{});
     EXPECT_TRUE(has_text(page, "Report schema 1, 5003 frames of 1000003 ns, 5.003 s."));
-    EXPECT_EQ(count_of(page, "<svg "), 4U); // A frame, its stages, waking; the stages' bars.
+    // Force, bracket, stages over time; histograms of a frame, its stages, waking.
+    EXPECT_EQ(count_of(page, "<div class=\"chart\">"), 6U);
     for (const auto& [name, fact] : summary_facts(report))
     {
         EXPECT_TRUE(has_text(page, name) && has_text(page, fact)) << name;
@@ -190,7 +197,7 @@ TEST(ReportPage, holds_every_figure_of_the_report)
 TEST(ReportPage, explains_every_answer_time_and_cause)
 {
     const Json report = report_of("bunny");
-    const std::string page = make_page(report, statistics_of(1));
+    const std::string page = make_page(report, statistics_of(1), library());
     const auto meaning_of = [](const std::string& name)
     {
         for (const auto& [word, meaning] : report_words())
@@ -222,12 +229,65 @@ TEST(ReportPage, explains_every_answer_time_and_cause)
 TEST(ReportPage, a_hostile_name_stays_text)
 {
     const std::string name = "</title></td><script>alert('\"')</script>&\x1B[31m";
-    const std::string page = make_page(report_of(name), statistics_of(1));
-    EXPECT_EQ(page.find("<script"), std::string::npos);
+    const std::string page = make_page(report_of(name), statistics_of(1), library());
+    EXPECT_EQ(count_of(page, "</script>"), 3U); // Data, library, what draws.
+    EXPECT_EQ(count_of(page, "alert("), count_of(page, "&lt;script&gt;alert("));
     EXPECT_EQ(count_of(page, "</title>"), 1U);
     EXPECT_NE(page.find(">&lt;/title&gt;&lt;/td&gt;&lt;script&gt;alert(&#39;&quot;&#39;)"
                         "&lt;/script&gt;&amp;\uFFFD[31m<"),
               std::string::npos);
+}
+
+/// The charts' data, as the page's script parses them.
+Json charts_of(const std::string& page)
+{
+    const std::string begin = "id=\"chart-data\">";
+    const std::size_t at = page.find(begin) + begin.size();
+    return Json::parse(page.substr(at, page.find("</script>", at) - at));
+}
+
+TEST(ReportPage, marks_faults_where_they_were)
+{
+    Json report = report_of("bunny");
+    report["period_ns"] = 1'000'000;
+    report["safety"]["events"] = Json::array({{{"frame", 3}, {"causes", {"stall"}}},
+                                              {{"frame", 4}, {"causes", Json::array()}},
+                                              {{"frame", nullptr}, {"causes", {"watchdog"}}}});
+    RunStatistics statistics(0, 0, 0, milliseconds(1));
+    for (std::uint64_t frame = 0; frame < 7; ++frame)
+    {
+        CycleMeasures measures;
+        measures.allocations = frame == 2 ? 1 : 0;
+        measures.frame = microseconds(10 + static_cast<std::int64_t>(frame));
+        measures.cycle.wake_lateness = milliseconds(frame == 5 ? 2 : 0);
+        measures.lateness_of_end = milliseconds(frame == 5 ? 2 : 0);
+        statistics.add(FrameOutput{}, {}, measures);
+    }
+    const Json charts = charts_of(make_page(report, statistics, library()));
+    ASSERT_EQ(charts.size(), 6U);
+    for (std::size_t i = 0; i < 3; ++i)
+    {
+        const Json& marks = charts[i]["marks"];
+        ASSERT_EQ(marks.size(), 3U) << marks;
+        EXPECT_EQ(marks[0], Json::parse(R"({"name": "own fault", "kind": "fault", "x": [0.002]})"));
+        EXPECT_EQ(marks[1],
+                  Json::parse(R"({"name": "machine late", "kind": "warning", "x": [0.005]})"));
+        EXPECT_EQ(marks[2], Json::parse(R"({"name": "force withheld for stall", "kind": "plain",
+                                            "x": [0.003]})"));
+    }
+    EXPECT_EQ(charts[2]["lines"].back()["y"], Json({10.0, 11.0, 12.0, 13.0, 14.0, 15.0, 16.0}));
+    EXPECT_EQ(charts[2]["x"].size(), 7U);
+}
+
+TEST(ReportPage, is_whole_without_the_chart_library)
+{
+    const Json report = report_of("bunny");
+    const std::string page = make_page(report, statistics_of(5'003),
+                                       {.script = {}, .style = {}, .missing = "x <is> gone"});
+    EXPECT_EQ(lacking(report, page), std::vector<std::string>{});
+    EXPECT_EQ(count_of(page, "3 charts are left out: x &lt;is&gt; gone"), 2U);
+    EXPECT_EQ(count_of(page, "<script") + count_of(page, "class=\"chart\""), 0U);
+    EXPECT_TRUE(page.ends_with("</html>\n"));
 }
 
 TEST(ReportPage, says_what_went_wrong)
@@ -238,7 +298,7 @@ TEST(ReportPage, says_what_went_wrong)
     const auto verdict = [&report](const std::string& kind, const std::string& words)
     {
         const std::string wanted = "<p class=\"verdict " + kind + "\">" + words + "</p>";
-        return make_page(report, statistics_of(1)).find(wanted) != std::string::npos;
+        return make_page(report, statistics_of(1), library()).find(wanted) != std::string::npos;
     };
     EXPECT_TRUE(verdict("good", "No deadline missed by the loop&#39;s own fault, 79 by the "
                                 "machine&#39;s; every answer exact or decided."));
@@ -278,7 +338,7 @@ TEST(ReportPage, leaves_out_lists_with_nothing_in_them)
     Json report = report_of("bunny");
     report["deadline"]["noted"] = Json::array();
     report["safety"]["events"] = Json::array();
-    const std::string page = make_page(report, statistics_of(0));
+    const std::string page = make_page(report, statistics_of(0), library());
     EXPECT_FALSE(has_text(page, "Cycles of note"));
     EXPECT_FALSE(has_text(page, "Safety events"));
 }

@@ -4,14 +4,19 @@
 /// That a page is well-formed is looked at by an XML parser, in integration.hrtc_bad_input; here,
 /// that no text can make it otherwise.
 
-#include "platform/plot/bar_plot.hpp"
 #include "platform/plot/markup.hpp"
 #include "platform/plot/page.hpp"
 #include "tests/shared/count_of.hpp"
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
 #include <string>
+#include <vector>
 
 namespace tactus::plot::test
 {
@@ -42,45 +47,132 @@ TEST(Escaped, replaces_what_is_no_character)
     EXPECT_EQ(escaped("\t\n\r"), "\t\n\uFFFD");
 }
 
-TEST(Shortened, cuts_between_characters)
-{
-    EXPECT_EQ(shortened("abcd", 4), "abcd");
-    EXPECT_EQ(shortened("abcde", 4), "abc\u2026");
-    EXPECT_EQ(shortened("\u00E4\u00F6\u00FC\u00DF", 3), "\u00E4\u00F6\u2026");
-    EXPECT_EQ(characters_of("\u00E4b\u20AC"), 3U);
-}
-
 Page full_page(const std::string& text)
 {
-    Page page(text);
+    Page page(text, {"draw();", "p { order: 0; }", ""});
     page.verdict(text, false);
     page.heading(text);
     page.paragraph(text);
     page.table({{{text, false}, {text}}, {{text, text}, {text}}});
     page.tables({{text, facts({{text, text}})}});
-    page.drawings({draw(BarPlot{text, text, {{text, {{text, 1.0}}}}})});
+    page.charts({{.title = text,
+                  .x_label = text,
+                  .y_label = text,
+                  .kind = Chart::Kind::series,
+                  .x = {0.0, 1.0},
+                  .lines = {{text, {1.0 / 3.0, std::numeric_limits<double>::quiet_NaN()}}},
+                  .marks = {{0.5, text, MarkKind::fault}}}});
     return page;
+}
+
+/// The text of the element that begins so.
+std::string element(const std::string& html, const std::string& begin)
+{
+    const std::size_t at = html.find(begin) + begin.size();
+    return html.substr(at, html.find("</script>", at) - at);
 }
 
 TEST(Page, escapes_whatever_is_in_it)
 {
-    const std::string html = full_page("</td>\"<script>").html();
-    EXPECT_EQ(html.find("<script>"), std::string::npos);
+    const std::string text = "</td>\"</script><!-- ]]> &amp; \x1B\xFF";
+    const std::string html = full_page(text).html();
+    EXPECT_EQ(count_of(html, "</script>"), 3U); // Data, library, what draws.
+    EXPECT_EQ(count_of(html, "]]>"), 3U);       // Style, library, what draws.
+    EXPECT_EQ(html.find("<!--"), std::string::npos);
     EXPECT_EQ(count_of(html, "</td>"), count_of(html, "<td"));
-    EXPECT_EQ(count_of(html, "&lt;/td&gt;&quot;&lt;script&gt;"), 18U); // Each text that it takes.
+    EXPECT_EQ(count_of(html, "&lt;/td&gt;&quot;"), 14U); // Each text that it takes.
+    const std::string json = element(html, "id=\"chart-data\">");
+    EXPECT_EQ(json.find_first_of("<>&"), std::string::npos) << json;
+    const auto charts = nlohmann::json::parse(json);
+    EXPECT_EQ(charts[0]["title"], "</td>\"</script><!-- ]]> &amp; \x1B\uFFFD");
+    EXPECT_EQ(charts[0]["title"], charts[0]["marks"][0]["name"]);
+    EXPECT_EQ(charts[0]["lines"][0]["y"], nlohmann::json({0.333333, nullptr}));
+}
+
+TEST(Page, has_the_library_once_and_only_for_charts)
+{
+    Page twice = full_page("text");
+    twice.charts({Chart{}});
+    EXPECT_EQ(count_of(twice.html(), "draw();"), 1U);
+    EXPECT_EQ(count_of(twice.html(), "<div class=\"chart\">"), 2U);
+    Page none("text", {"draw();", "p { order: 0; }", ""});
+    none.charts({});
+    EXPECT_EQ(count_of(none.html(), "<script") + count_of(none.html(), "order: 0"), 0U);
+}
+
+TEST(Page, says_why_it_has_no_charts)
+{
+    Page page("text", {"draw();", "", "a & b is missing"});
+    page.charts({Chart{}, Chart{}});
+    EXPECT_EQ(count_of(page.html(), "2 charts are left out: a &amp; b is missing"), 1U);
+    EXPECT_EQ(count_of(page.html(), "<script"), 0U);
 }
 
 TEST(Page, needs_nothing_from_elsewhere)
 {
     const std::string html = full_page("text").html();
-    for (const char* way : {"<script", "<link", "<img", "@import", "url(", "href", " src="})
+    for (const char* way : {"<link", "<img", "@import", "url(", "href", " src="})
     {
         EXPECT_EQ(html.find(way), std::string::npos) << way;
     }
+    EXPECT_EQ(count_of(html, "content=\"default-src 'none';"), 1U); // Nor could a script get it.
     std::size_t addresses = count_of(html, "http");
     addresses -= count_of(html, "\"http://www.w3.org/1999/xhtml\"");
-    addresses -= count_of(html, "\"http://www.w3.org/2000/svg\"");
+    addresses -= count_of(html, "http-equiv");
     EXPECT_EQ(addresses, 0U); // What is left are names of languages.
+}
+
+class LibraryFolder
+{
+public:
+    LibraryFolder()
+        : path_(std::filesystem::path(testing::TempDir()) /
+                testing::UnitTest::GetInstance()->current_test_info()->name())
+    {
+        std::filesystem::create_directories(path_ / "dygraphs");
+    }
+    ~LibraryFolder() { std::filesystem::remove_all(path_); }
+    LibraryFolder(const LibraryFolder&) = delete;
+    LibraryFolder& operator=(const LibraryFolder&) = delete;
+
+    ChartLibrary read(const std::string& script, const std::string& style) const
+    {
+        std::ofstream(path_ / "dygraphs/dygraph.min.js") << script;
+        std::ofstream(path_ / "dygraphs/dygraph.min.css") << style;
+        return ChartLibrary::read(path_);
+    }
+    const std::filesystem::path& path() const { return path_; }
+
+private:
+    std::filesystem::path path_;
+};
+
+TEST(ChartLibrary, is_refused_where_it_would_end_its_element)
+{
+    const LibraryFolder folder;
+    EXPECT_EQ(folder.read("a </div>", "b").missing, "");
+    EXPECT_EQ(folder.read("a </div>", "b").script, "a </div>");
+    EXPECT_EQ(folder.read("a </div>", "b").style, "b");
+    for (const char* end : {"</script>", "</SCRIPT >", "</Style>", "<!--", "]]>"})
+    {
+        const std::string hostile = std::string("a ") + end + " b";
+        EXPECT_NE(folder.read(hostile, "b").missing, "") << end;
+        EXPECT_NE(folder.read("a", hostile).missing, "") << end;
+    }
+}
+
+TEST(ChartLibrary, that_is_not_there_is_told_by_its_file_and_package)
+{
+    const LibraryFolder folder;
+    for (const char* file : {"dygraph.min.js", "dygraph.min.css"})
+    {
+        ASSERT_EQ(folder.read("a", "b").missing, "");
+        std::filesystem::remove(folder.path() / "dygraphs" / file);
+        const std::string missing = ChartLibrary::read(folder.path()).missing;
+        EXPECT_NE(missing.find(file), std::string::npos) << missing;
+        EXPECT_NE(missing.find("libjs-dygraphs"), std::string::npos) << missing;
+    }
+    EXPECT_NE(folder.read("", "b").missing, "");
 }
 
 } // namespace

@@ -3,9 +3,10 @@
 #pragma once
 
 #include "platform/latency_histogram.hpp"
-#include "platform/plot/step_plot.hpp"
+#include "platform/plot/chart.hpp"
 
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace tactus::hrtc
@@ -18,7 +19,12 @@ namespace tactus::hrtc
 [[nodiscard]] std::vector<double> counts_between(const LatencyHistogram& histogram,
                                                  const std::vector<double>& edges);
 
-/// A histogram as a plot has it, in microseconds.
-[[nodiscard]] plot::Steps steps_of(const std::string& name, const LatencyHistogram& histogram);
+/// Histograms of one chart, with the names of their lines.
+using NamedHistograms = std::vector<std::pair<std::string, const LatencyHistogram*>>;
+
+/// Counts of what `what` names over microseconds, as far as there are any, and with the period,
+/// which is marked.
+[[nodiscard]] plot::Chart latency_chart(const std::string& title, const std::string& what,
+                                        const NamedHistograms& histograms, Duration period);
 
 } // namespace tactus::hrtc

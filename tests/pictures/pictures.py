@@ -1,0 +1,524 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+# Copyright the Tactus authors.
+"""Makes the pictures of the pages from what the programs do.
+
+    pictures.py [--quick] [--scratch DIR] BIN_DIR FOLDER [NAME...]    FOLDER/NAME, by default all
+
+A run of hrtc in virtual time is recorded; spm_view replays it and tells each frame's faces, boxes
+and forces; spm_inspect tells the true distances and coarser meshes. --quick takes a small model and
+few frames, to see that all still works; models and recordings that are in DIR are taken as they
+are. Needs python3-matplotlib, which brings Pillow.
+Exit codes: 0 done, 2 failed, 3 usage, 77 matplotlib is not here.
+"""
+
+import argparse
+import csv
+import io
+import json
+import pathlib
+import re
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+import urllib.parse
+import urllib.request
+
+try:
+    import matplotlib
+    matplotlib.use("agg")
+    from matplotlib import collections, pyplot
+    import numpy
+    from PIL import Image
+except ImportError:
+    print("no python3-matplotlib")
+    sys.exit(77)
+
+PATIENCE_S = 900
+# As on spm_view's page: base mesh to finest level.
+RAMP = numpy.array([[168, 178, 196], [96, 146, 208], [46, 168, 158], [244, 190, 66],
+                    [222, 88, 62]]) / 255
+TOOL, FORCE, TREE, SPLIT, MERGE = "#d8822b", "#c94c4c", "#3b78d8", "#2f9e6e", "#a855c7"
+RADIUS_M = 0.002
+LIGHT = numpy.array([0.35, 0.45, 0.82])
+
+
+def run(*command):
+    done = subprocess.run([str(word) for word in command], capture_output=True, text=True,
+                          timeout=PATIENCE_S)
+    if done.returncode != 0:
+        sys.exit(f"pictures: {command[0]} ended with {done.returncode}: {done.stderr.strip()}")
+    return done.stdout
+
+
+class Cut:
+    """Faces of a model: corners as points, each face's level."""
+
+    def __init__(self, points, corners, levels):
+        self.triangles = points[corners]
+        self.levels = levels
+
+    @classmethod
+    def of_answer(cls, data):
+        """/front of spm_view, described in host_tools/spm_view/cut.hpp."""
+        vertices, faces = struct.unpack_from("<II", data)
+        at = 8
+        points = numpy.frombuffer(data, "<f4", 3 * vertices, at).reshape(-1, 3).astype(float)
+        at += 12 * vertices
+        corners = numpy.frombuffer(data, "<u4", 3 * faces, at).reshape(-1, 3)
+        at += 12 * faces + 4 * faces
+        return cls(points, corners, numpy.frombuffer(data, "<u2", faces, at).astype(float))
+
+    @classmethod
+    def of_obj(cls, path):
+        points, corners = [], []
+        for line in path.read_text().splitlines():
+            kind, *rest = line.split() or [""]
+            if kind == "v":
+                points.append([float(word) for word in rest[:3]])
+            elif kind == "f":
+                corners.append([int(word.split("/")[0]) - 1 for word in rest[:3]])
+        return cls(numpy.array(points), numpy.array(corners), numpy.zeros(len(corners)))
+
+
+class Film:
+    """A recording, as spm_view shows it."""
+
+    def __init__(self, programs, recording):
+        self.log = recording.with_suffix(".log")
+        with open(self.log, "wb") as log:
+            self.process = subprocess.Popen([programs / "spm_view", "--replay", recording, "--port",
+                                             "0"], stdout=log, stderr=subprocess.STDOUT)
+        end = time.monotonic() + PATIENCE_S
+        while not (found := re.search(r"(http://\S+) shows", self.log.read_text())):
+            if self.process.poll() is not None or time.monotonic() > end:
+                sys.exit(f"pictures: spm_view doesn't show {recording}: {self.log.read_text()}")
+            time.sleep(0.1)
+        self.url = found.group(1)
+
+    def end(self):
+        self.process.terminate()
+        self.process.wait()
+
+    def get(self, path, **asked):
+        query = urllib.parse.urlencode(asked)
+        with urllib.request.urlopen(f"{self.url}{path}?{query}", timeout=PATIENCE_S) as answer:
+            return answer.read()
+
+    def state(self, frame):
+        return json.loads(self.get("state", frame=frame))["controller"]
+
+    def of_model(self, path, state, model, **more):
+        return self.get(path, controller=state["id"], serial=state["front"]["serial"], model=model,
+                        **more)
+
+    def cut(self, state, model):
+        return Cut.of_answer(self.of_model("front", state, model))
+
+    def boxes(self, path, state, model, **more):
+        """Low and high corners, one pair a box."""
+        data = self.of_model(path, state, model, **more)
+        count, = struct.unpack_from("<I", data)
+        return numpy.frombuffer(data, "<f4", 6 * count, 4).reshape(-1, 2, 3).astype(float)
+
+
+class Camera:
+    """Without perspective: x to the right, y up, z towards the eye."""
+
+    def __init__(self, towards_eye, up=(0.0, 0.0, 1.0)):
+        z = numpy.array(towards_eye, float)
+        z /= numpy.linalg.norm(z)
+        x = numpy.cross(up, z)
+        x /= numpy.linalg.norm(x)
+        self.axes = numpy.array([x, numpy.cross(z, x), z])
+
+    def see(self, points):
+        return numpy.asarray(points) @ self.axes.T
+
+
+def turned(points, object_):
+    """From the model's frame to the world's."""
+    x, y, z, w = object_["rotation"]
+    matrix = numpy.array([
+        [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+        [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+        [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)]])
+    return object_["scale"] * (points @ matrix.T) + numpy.array(object_["translation_m"])
+
+
+def ramp(shares):
+    place = numpy.clip(shares, 0, 1) * (len(RAMP) - 1)
+    left = numpy.minimum(place.astype(int), len(RAMP) - 2)
+    part = (place - left)[:, None]
+    return RAMP[left] * (1 - part) + RAMP[left + 1] * part
+
+
+def faces(axes, camera, triangles, colours, edge=0.15, within=None):
+    """Those that look towards the eye, the nearest last. `within`: of points seen, low and high."""
+    seen = camera.see(triangles)
+    normals = numpy.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+    lengths = numpy.linalg.norm(normals, axis=1)
+    normals = normals / numpy.maximum(lengths, 1e-30)[:, None]
+    shown = (normals @ camera.axes[2] > 0) & (lengths > 0)
+    if within is not None:
+        low, high = within
+        shown &= (seen[:, :, :2].max(axis=1) >= low).all(axis=1)
+        shown &= (seen[:, :, :2].min(axis=1) <= high).all(axis=1)
+    seen, normals, colours = seen[shown], normals[shown], colours[shown]
+    order = numpy.argsort(seen[:, :, 2].mean(axis=1))
+    light = 0.45 + 0.55 * numpy.clip(camera.see(normals) @ (LIGHT / numpy.linalg.norm(LIGHT)), 0, 1)
+    shaded = numpy.clip(colours * light[:, None], 0, 1)[order]
+    drawn = collections.PolyCollection(
+        seen[order][:, :, :2], facecolors=shaded,
+        edgecolors=shaded * 0.72 if edge > 0 else shaded, linewidths=edge if edge > 0 else 0.1)
+    axes.add_collection(drawn)
+
+
+def box_lines(axes, camera, boxes, colour, width=0.6, alpha=0.8):
+    edges = []
+    for axis in range(3):
+        for corner in range(4):
+            ends = []
+            for end in range(2):
+                side = [0, 0, 0]
+                side[axis] = end
+                side[(axis + 1) % 3] = corner & 1
+                side[(axis + 2) % 3] = corner >> 1
+                ends.append(numpy.stack([boxes[:, side[i], i] for i in range(3)], axis=1))
+            edges.append(numpy.stack(ends, axis=1))
+    lines = camera.see(numpy.concatenate(edges))[:, :, :2]
+    axes.add_collection(collections.LineCollection(lines, colors=colour, linewidths=width,
+                                                   alpha=alpha))
+
+
+def frame_axes(axes, middle, half, ratio=1.0):
+    """Shows so much round a point that is seen."""
+    axes.set(xlim=(middle[0] - half * ratio, middle[0] + half * ratio),
+             ylim=(middle[1] - half, middle[1] + half), aspect="equal")
+    axes.axis("off")
+
+
+def window(middle, half, ratio=1.0):
+    return (numpy.array([middle[0] - half * ratio, middle[1] - half]),
+            numpy.array([middle[0] + half * ratio, middle[1] + half]))
+
+
+def tool_mark(axes, camera, tool, scale_m_per_n):
+    """The proxy, and the force on the hand as an arrow."""
+    place = camera.see(tool["proxy_m"])
+    axes.add_patch(pyplot.Circle(place[:2], tool["radius_m"], facecolor=TOOL, edgecolor="#5c3510",
+                                 linewidth=0.8, zorder=4))
+    force = camera.see(tool["force_n"]) * scale_m_per_n
+    if numpy.linalg.norm(force) > 1e-9:
+        axes.annotate("", place[:2] + force[:2], place[:2], zorder=5,
+                      arrowprops={"arrowstyle": "-|>", "color": FORCE, "linewidth": 2.2,
+                                  "shrinkA": 0, "shrinkB": 0, "mutation_scale": 14})
+
+
+def to_image(figure, dpi=100):
+    data = io.BytesIO()
+    figure.savefig(data, format="png", dpi=dpi, facecolor="white")
+    pyplot.close(figure)
+    return Image.open(io.BytesIO(data.getvalue())).convert("RGB")
+
+
+def save(figure, path, dpi=110):
+    """As few bytes as a picture of few colours needs."""
+    image = to_image(figure, dpi).quantize(128, dither=Image.Dither.NONE)
+    image.save(path, optimize=True)
+
+
+class Studio:
+    """Models, recordings and what came of them, made when they are first asked for."""
+
+    def __init__(self, programs, folder, quick):
+        self.programs, self.folder, self.quick = programs, folder, quick
+        self.made = {}
+        self.films = []
+
+    def file(self, name, make):
+        """Of the scratch folder, made by `make(path)` unless it is there."""
+        path = self.folder / name
+        if not path.exists():
+            make(path)
+        return path
+
+    def once(self, name, make):
+        if name not in self.made:
+            self.made[name] = make()
+        return self.made[name]
+
+    def model(self):
+        return self.file("bumpy.spm", lambda path: run(
+            self.programs / "spm_build", "--shape", "bumpy-sphere", "--faces",
+            5_000 if self.quick else 40_000, "-o", path))
+
+    def faces(self):
+        """Of the model, as its source has them."""
+        def make():
+            told = run(self.programs / "spm_inspect", self.model())
+            return int(re.search(r"^mesh .*?(\d+) faces", told, re.MULTILINE).group(1))
+        return self.once("faces", make)
+
+    def recording(self):
+        """A hand flies, lands, slides and lifts off, as in the demo."""
+        return self.file("touch.rec", lambda path: run(
+            self.programs / "hrtc", self.model(), "--no-static", "--device", "sim", "--tool",
+            f"sphere:{RADIUS_M}", "--virtual-time", "--allow-no-rt", "--duration",
+            "1" if self.quick else "3", "--record", path))
+
+    def film_of(self, recording):
+        def make():
+            self.films.append(Film(self.programs, recording))
+            return self.films[-1]
+        return self.once(f"film {recording}", make)
+
+    def film(self):
+        return self.film_of(self.recording())
+
+    def rows(self):
+        """The run frame by frame."""
+        def make():
+            path = self.file("touch.csv", lambda to: run(
+                self.programs / "hrtc", "--replay", self.recording(), "--export", to))
+            with open(path, newline="") as file:
+                return list(csv.DictReader(file))
+        return self.once("rows", make)
+
+    def column(self, name):
+        return numpy.array([float(row[name] or "nan") for row in self.rows()])
+
+    def points(self, name):
+        return numpy.stack([self.column(f"{name}.{axis}") for axis in "xyz"], axis=1)
+
+    def forces(self):
+        return numpy.linalg.norm(self.points("tool0.sent_force_world_n"), axis=1)
+
+    def pressing(self):
+        """A frame in the middle of the longest touch."""
+        touching = numpy.concatenate([[0], (self.forces() > 0.2).astype(int), [0]])
+        begins = numpy.flatnonzero(numpy.diff(touching) == 1)
+        ends = numpy.flatnonzero(numpy.diff(touching) == -1)
+        if len(begins) == 0:
+            sys.exit("pictures: the hand touched nothing")
+        longest = numpy.argmax(ends - begins)
+        return int((begins[longest] + ends[longest]) // 2)
+
+    def end(self):
+        for film in self.films:
+            film.end()
+
+
+def shown(film, frame):
+    """State, its only object, the cut in the world and its colours."""
+    state = film.state(frame)
+    object_ = state["front"]["objects"][0]
+    cut = film.cut(state, object_["model"])
+    colours = ramp(cut.levels / max(cut.levels.max(), 1))
+    return state, object_, turned(cut.triangles, object_), colours
+
+
+def camera_on(tool):
+    """From where the tool is, a little aside: it stands at the right of the model's middle."""
+    outward = numpy.array(tool["proxy_m"], float)
+    outward /= numpy.linalg.norm(outward)
+    aside = numpy.cross((0.0, 0.0, 1.0), outward)
+    return Camera(outward + 0.45 * aside / max(numpy.linalg.norm(aside), 1e-9) +
+                  numpy.array([0.0, 0.0, 0.3]))
+
+
+def touch(studio, path):
+    """The moving picture: the cut follows the tool; below, force and faces over time."""
+    film, forces = studio.film(), studio.forces()
+    middle = studio.pressing()
+    count, step = (4, 40) if studio.quick else (50, 40)
+    first = max(0, min(middle - count * step // 2, len(forces) - count * step - 1))
+    frames = [first + i * step for i in range(count)]
+    states = [shown(film, frame) for frame in frames]
+    camera = camera_on(film.state(middle)["tools"][0])
+    centre = camera.see(film.state(middle)["tools"][0]["proxy_m"])
+    radius_m = numpy.linalg.norm(states[0][2].reshape(-1, 3), axis=1).max()
+    half, ratio = 0.42 * radius_m, 1.62
+    active = numpy.array([len(triangles) for _, _, triangles, _ in states])
+    seconds = numpy.arange(frames[0], frames[-1] + 1) * 1e-3
+    images = []
+    for i, (state, _, triangles, colours) in enumerate(states):
+        figure = pyplot.figure(figsize=(7.2, 5.4))
+        axes = figure.add_axes((0, 0.2, 1, 0.8))
+        faces(axes, camera, triangles, colours, edge=0.25, within=window(centre, half, ratio))
+        tool_mark(axes, camera, state["tools"][0], 0.15 * radius_m)
+        frame_axes(axes, centre, half, ratio)
+        axes.text(0.015, 0.955, f"{active[i]:,} of {studio.faces():,} faces", fontsize=11,
+                  transform=axes.transAxes)
+        plot = figure.add_axes((0.075, 0.075, 0.905, 0.125))
+        plot.plot(seconds, forces[frames[0]:frames[-1] + 1], color="#d9b3b3", linewidth=1)
+        until = frames[i] - frames[0] + 1
+        plot.plot(seconds[:until], forces[frames[0]:frames[i] + 1], color=FORCE, linewidth=1.4)
+        plot.set(xlim=(seconds[0], seconds[-1]), ylim=(0, None))
+        plot.set_ylabel("force, N", fontsize=8)
+        plot.tick_params(labelsize=8)
+        plot.spines[["top", "right"]].set_visible(False)
+        images.append(to_image(figure))
+    palette = images[len(images) // 2].quantize(64, dither=Image.Dither.NONE)
+    images = [image.quantize(palette=palette, dither=Image.Dither.NONE) for image in images]
+    images[0].save(path, save_all=True, append_images=images[1:], duration=80, loop=0,
+                   optimize=True)
+
+
+def cut(studio, path):
+    """The whole cut, and a part of it at the tool."""
+    frame = studio.pressing()
+    state, _, triangles, colours = shown(studio.film(), frame)
+    tool = state["tools"][0]
+    camera = camera_on(tool)
+    radius_m = numpy.linalg.norm(triangles.reshape(-1, 3), axis=1).max()
+    place = camera.see(tool["proxy_m"])
+    figure, axes = pyplot.subplots(1, 2, figsize=(9.6, 4.9))
+    figure.subplots_adjust(0.005, 0.0, 0.995, 0.93, wspace=0.02)
+    faces(axes[0], camera, triangles, colours)
+    frame_axes(axes[0], (0, 0), 1.05 * radius_m)
+    tool_mark(axes[0], camera, tool, 0.25 * radius_m)
+    half = 7 * RADIUS_M
+    faces(axes[1], camera, triangles, colours, edge=0.5, within=window(place, half))
+    tool_mark(axes[1], camera, tool, 4 * RADIUS_M)
+    frame_axes(axes[1], place, half)
+    axes[0].add_patch(pyplot.Rectangle(place[:2] - half, 2 * half, 2 * half, fill=False,
+                                       linewidth=1))
+    axes[0].set_title(f"{len(triangles):,} active faces of {studio.faces():,}", fontsize=11)
+    axes[1].set_title(f"{2e3 * half:.0f} mm of it, at a tool of {1e3 * RADIUS_M:.0f} mm",
+                      fontsize=11)
+    save(figure, path)
+
+
+def levels(studio, path):
+    """One model at four sizes."""
+    counts = [0, 2_000, 10_000, studio.faces()]
+    figure, axes = pyplot.subplots(1, 4, figsize=(9.6, 2.75))
+    figure.subplots_adjust(0.0, 0.0, 1.0, 0.9, wspace=0.0)
+    camera = Camera((0.6, -0.7, 0.45))
+    for one, count in zip(axes, counts):
+        out = studio.folder / f"{count}.obj"
+        run(studio.programs / "spm_inspect", studio.model(), "--extract", "--faces",
+            max(count, 1_000 if studio.quick else 500), "-o", out)
+        mesh = Cut.of_obj(out)
+        triangles = mesh.triangles - mesh.triangles.reshape(-1, 3).mean(axis=0)
+        radius_m = numpy.linalg.norm(triangles.reshape(-1, 3), axis=1).max()
+        grey = numpy.tile(RAMP[1], (len(triangles), 1))
+        faces(one, camera, triangles, grey, edge=0.3 if len(triangles) < 10_000 else
+              0.08 if len(triangles) < 50_000 else 0)
+        frame_axes(one, (0, 0), 1.02 * radius_m)
+        one.set_title(f"{len(triangles):,} faces", fontsize=11)
+    save(figure, path)
+
+
+def tree(studio, path):
+    """Boxes of the AB-Tree at some levels over the cut."""
+    film = studio.film()
+    state, object_, triangles, colours = shown(film, studio.pressing())
+    camera = camera_on(state["tools"][0])
+    radius_m = numpy.linalg.norm(triangles.reshape(-1, 3), axis=1).max()
+    figure, axes = pyplot.subplots(1, 4, figsize=(9.6, 2.85))
+    figure.subplots_adjust(0.0, 0.0, 1.0, 0.88, wspace=0.0)
+    pale = 0.5 + 0.5 * colours
+    for one, level in zip(axes, (1, 2, 3, 24)):
+        boxes = film.boxes("boxes", state, object_["model"], level=level)
+        # The object isn't turned: its boxes stay boxes.
+        moved = turned(boxes.reshape(-1, 3), object_).reshape(-1, 2, 3)
+        faces(one, camera, triangles, pale, edge=0)
+        box_lines(one, camera, moved, TREE, 0.7 if len(boxes) < 200 else 0.25)
+        frame_axes(one, (0, 0), 1.25 * radius_m)
+        name = "leaves" if level == 24 else f"level {level}"
+        one.set_title(f"{name}: {len(boxes):,} boxes", fontsize=11)
+    save(figure, path)
+
+
+def bracket(studio, path):
+    """L and U against the true distance while the tool comes near."""
+    lower = studio.column("tool0.nearest.lower_m")
+    upper = studio.column("tool0.nearest.upper_m")
+    kinds = numpy.array([row["tool0.nearest.answer"] for row in studio.rows()])
+    landed = int(numpy.argmax(studio.forces() > 0.05))
+    begin, end = max(0, landed - (300 if studio.quick else 700)), landed + 150
+    frames = numpy.arange(begin, min(end, len(lower)))
+    frames = frames[numpy.isfinite(lower[frames]) & numpy.isfinite(upper[frames])]
+    places = studio.folder / "places.txt"
+    places.write_text("".join(" ".join(repr(float(x)) for x in point) + "\n" for point in
+                              studio.points("tool0.nearest.point_world_m")[frames]))
+    told = run(studio.programs / "spm_inspect", studio.model(), "--distances", places)
+    true = numpy.array([float(line.split()[0]) for line in told.splitlines()
+                        if not line.startswith("#")])
+    rounding = 1e-9
+    if not ((lower[frames] <= true + rounding) & (true <= upper[frames] + rounding)).all():
+        sys.exit("pictures: a bracket doesn't hold the true distance")
+    seconds = frames * 1e-3
+    figure, axes = pyplot.subplots(2, 1, figsize=(9.0, 4.6), sharex=True,
+                                   gridspec_kw={"height_ratios": [2, 1]})
+    figure.subplots_adjust(0.075, 0.1, 0.985, 0.97, hspace=0.12)
+    axes[0].fill_between(seconds, 1e3 * lower[frames], 1e3 * upper[frames], color="#a8c4ea",
+                         label="between the proven bounds L and U", linewidth=0)
+    axes[0].plot(seconds, 1e3 * true, color="black", linewidth=1, label="the true distance")
+    axes[0].set_ylabel("distance of the centre, mm")
+    axes[0].legend(frameon=False)
+    for kind, colour in (("decided", "#3b78d8"), ("exact", "#2f9e6e"), ("bracket", "#d8822b")):
+        of_kind = kinds[frames] == kind
+        if of_kind.any():
+            axes[1].plot(seconds[of_kind], 1e3 * (upper - lower)[frames][of_kind], ".",
+                         markersize=3, color=colour, label=kind)
+    axes[1].set(xlabel="s", ylabel="U - L, mm")
+    axes[1].legend(frameon=False, ncol=3)
+    for one in axes:
+        one.grid(color="#dddddd")
+    save(figure, path)
+
+
+def force(studio, path):
+    """What the hand feels, and what the frame did for it."""
+    seconds = numpy.arange(len(studio.rows())) * 1e-3
+    figure, axes = pyplot.subplots(3, 1, figsize=(9.0, 4.6), sharex=True)
+    figure.subplots_adjust(0.075, 0.1, 0.985, 0.97, hspace=0.14)
+    axes[0].plot(seconds, studio.forces(), color=FORCE, linewidth=1)
+    axes[0].set_ylabel("force, N")
+    axes[1].plot(seconds, studio.column("model0.faces_used"), color=TREE, linewidth=1)
+    axes[1].set_ylabel("active faces")
+    axes[2].plot(seconds, studio.column("splits"), color=SPLIT, linewidth=0.8, label="splits")
+    axes[2].plot(seconds, studio.column("merges"), color=MERGE, linewidth=0.8, label="merges")
+    axes[2].set(xlabel="s", ylabel="a frame")
+    axes[2].legend(frameon=False, ncol=2)
+    for one in axes:
+        one.grid(color="#dddddd")
+    save(figure, path)
+
+
+PICTURES = {"touch.gif": touch, "cut.png": cut, "levels.png": levels, "tree.png": tree,
+            "bracket.png": bracket, "force.png": force}
+
+
+def main():
+    parser = argparse.ArgumentParser(add_help=False)
+    parser.add_argument("--quick", action="store_true")
+    parser.add_argument("--scratch", type=pathlib.Path)
+    parser.add_argument("programs", type=pathlib.Path)
+    parser.add_argument("folder", type=pathlib.Path)
+    parser.add_argument("names", nargs="*", metavar="NAME")
+    try:
+        asked = parser.parse_args()
+    except SystemExit:
+        sys.exit(3)
+    names = asked.names or list(PICTURES)
+    if unknown := [name for name in names if name not in PICTURES]:
+        print(f"pictures: no picture {unknown[0]}; there are {', '.join(PICTURES)}")
+        sys.exit(3)
+    with tempfile.TemporaryDirectory() as scratch:
+        folder = asked.scratch or pathlib.Path(scratch)
+        studio = Studio(asked.programs.resolve(), folder.resolve(), asked.quick)
+        try:
+            for name in names:
+                PICTURES[name](studio, asked.folder / name)
+                print(f"{name} {(asked.folder / name).stat().st_size} bytes", flush=True)
+        finally:
+            studio.end()
+
+
+main()
