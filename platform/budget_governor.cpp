@@ -19,6 +19,7 @@ constexpr double kStepsPerNode = 2.0;
 /// Records looked at for each merge that is allowed; eight is the ratio of the usual budgets.
 constexpr std::uint32_t kScannedPerMerge = 8;
 constexpr double kFirstSteps = 100.0;
+constexpr double kFirstPlanes = 60.0;
 /// The reserve takes at most this share of the set time, whatever the machine does.
 constexpr double kScatterShare = 0.5;
 
@@ -50,21 +51,25 @@ std::uint32_t towards(std::uint32_t now, std::uint32_t wanted) noexcept
 
 } // namespace
 
-BudgetGovernor::BudgetGovernor(Duration frame_budget, const Budgets& most,
-                               std::uint32_t walks) noexcept
+BudgetGovernor::BudgetGovernor(Duration frame_budget, const Budgets& most, std::uint32_t walks,
+                               std::uint32_t proxies) noexcept
     : frame_budget_ns_(static_cast<double>(frame_budget.ns))
     , most_(most)
     , walks_(static_cast<double>(walks))
+    , proxies_(static_cast<double>(proxies))
     , budgets_(most)
     , rest_ns_(frame_budget_ns_ / 2.0) // Nothing is known yet.
     , scatter_ns_(0.0)
     , steps_(kFirstSteps)
+    , planes_(kFirstPlanes)
 {
     TACTUS_ASSERT(frame_budget > Duration{});
     TACTUS_ASSERT(walks > 0);
+    TACTUS_ASSERT(proxies > 0);
     TACTUS_ASSERT(most.splits >= kSplitsLeast && most.merges >= kSplitsLeast);
     TACTUS_ASSERT(most.scanned >= kScannedLeast && most.nodes >= kNodesLeast);
     TACTUS_ASSERT(most.triangles >= kTrianglesPerNode * kNodesLeast);
+    TACTUS_ASSERT(most.planes >= kPlanesLeast);
     choose();
 }
 
@@ -89,15 +94,20 @@ bool BudgetGovernor::is_stall(Duration frame) noexcept
 void BudgetGovernor::learn(const FrameCost& cost) noexcept
 {
     const auto frame_ns = static_cast<double>(cost.frame.ns);
-    const auto governed_ns = static_cast<double>(cost.governed.ns);
+    const auto walked_ns = static_cast<double>(cost.walked.ns);
+    const auto force_ns = static_cast<double>(cost.force.ns);
     const double edits = edits_of(cost.work);
     const double steps = steps_of(cost.work);
+    const auto planes = static_cast<double>(cost.work.planes_looked_at);
     const bool is_first = frames_ <= 0.0;
     frames_ = std::min(frames_ + 1.0, FrameCostModel::kWindowFrames);
-    const double expected_ns = rest_ns_ + model_.predict_ns(edits, steps);
-    rest_ns_ += (frame_ns - governed_ns - rest_ns_) / frames_;
-    model_.observe(governed_ns, edits, steps);
+    const double expected_ns =
+        rest_ns_ + model_.predict_ns(edits, steps) + force_model_.predict_ns(0.0, planes);
+    rest_ns_ += (frame_ns - walked_ns - force_ns - rest_ns_) / frames_;
+    model_.observe(walked_ns, edits, steps);
+    force_model_.observe(force_ns, 0.0, planes);
     steps_.observe(steps);
+    planes_.observe(planes);
     if (!is_first) // Nothing was expected of the first.
     {
         scatter_ns_.observe(
@@ -108,8 +118,11 @@ void BudgetGovernor::learn(const FrameCost& cost) noexcept
 void BudgetGovernor::choose() noexcept
 {
     const double steps = steps_.level();
-    const double fixed_ns = rest_ns_ + scatter_ns_.level();
-    const double room_ns = frame_budget_ns_ - fixed_ns - model_.predict_ns(0.0, steps);
+    const double plane_ns = force_model_.per_step_ns();
+    const double planes_ns = planes_.level() * plane_ns;
+    const double fixed_ns = rest_ns_ + scatter_ns_.level() + force_model_.predict_ns(0.0, 0.0);
+    const double open_ns = frame_budget_ns_ - fixed_ns - model_.predict_ns(0.0, steps);
+    const double room_ns = open_ns - planes_ns;
     const double pair_ns = 2.0 * model_.per_edit_ns(); // A split and a merge.
     Budgets wanted = most_;
     wanted.splits = fitting(room_ns, pair_ns, kSplitsLeast, most_.splits);
@@ -122,6 +135,9 @@ void BudgetGovernor::choose() noexcept
     const double node_ns = walks_ * kStepsPerNode * model_.per_step_ns();
     wanted.nodes = fitting(walk_ns, node_ns, kNodesLeast, most_.nodes);
     wanted.triangles = std::min(kTrianglesPerNode * wanted.nodes, most_.triangles);
+    // Proxies that use all of their half leave edits the other one.
+    wanted.planes = fitting(std::max(open_ns / 2.0, open_ns - spent_ns), proxies_ * plane_ns,
+                            kPlanesLeast, most_.planes);
 
     is_at_floor_ = room_ns < pair_ns;
     budgets_.splits = towards(budgets_.splits, wanted.splits);
@@ -129,6 +145,7 @@ void BudgetGovernor::choose() noexcept
     budgets_.scanned = towards(budgets_.scanned, wanted.scanned);
     budgets_.nodes = towards(budgets_.nodes, wanted.nodes);
     budgets_.triangles = towards(budgets_.triangles, wanted.triangles);
+    budgets_.planes = towards(budgets_.planes, wanted.planes);
 }
 
 } // namespace tactus

@@ -96,8 +96,8 @@ inline constexpr std::uint32_t kMaxCoverBalls = 8;
 inline constexpr std::uint32_t kLocalSurfaces = 4;
 /// Exact triangles handed to the force stage for one pair; 76 are usual at 1.1 M faces and a tool
 /// of 1 % of the diagonal, 750 for a ball of eight edges that moves four edges a frame. 48 B each.
-/// Of more the nearest are kept, the certified radius ends at the first one left out, and the frame
-/// says FrameFault::surface_truncated.
+/// Of more the nearest are kept, seven eighths of them at least; the certified radius ends at the
+/// first one left out, and the frame says FrameFault::surface_truncated.
 inline constexpr std::uint32_t kMaxLocalTriangles = 1'024;
 
 /// Contacts of one pair, the nearest ones; 96 B each. With more the report is not complete and says

@@ -179,7 +179,7 @@ void HapticLoop::choose_budgets(const FrameOutput& output) noexcept
         const auto stage = [this](Stage s) { return measures_.stage[static_cast<std::size_t>(s)]; };
         parts_.governor->observe({measures_.frame,
                                   stage(Stage::refine) + stage(Stage::refit) + stage(Stage::query),
-                                  output.work});
+                                  stage(Stage::force), output.work});
         measures_.budgets = parts_.governor->budgets();
         measures_.budgets_at_floor = parts_.governor->is_at_floor();
     }

@@ -311,8 +311,8 @@ Json machine_of(const RunRecord& record)
 
 Json budgets_of(const RunRecord& record)
 {
-    constexpr std::array<const char*, kGovernedBudgets.size()> kNames{"splits", "merges", "scanned",
-                                                                      "nodes", "triangles"};
+    constexpr std::array<const char*, kGovernedBudgets.size()> kNames{
+        "splits", "merges", "scanned", "nodes", "triangles", "planes"};
     Json budgets{{"frame_us", nullptr}, {"at_floor", record.run.statistics.budgets_at_floor}};
     if (record.options.frame_budget_us)
     {

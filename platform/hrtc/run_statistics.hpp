@@ -81,8 +81,9 @@ struct BudgetRange
 };
 
 /// The budgets that follow a frame's cost, in the order of kGovernedBudgets.
-inline constexpr std::array kGovernedBudgets{&Budgets::splits, &Budgets::merges, &Budgets::scanned,
-                                             &Budgets::nodes, &Budgets::triangles};
+inline constexpr std::array kGovernedBudgets{&Budgets::splits,    &Budgets::merges,
+                                             &Budgets::scanned,   &Budgets::nodes,
+                                             &Budgets::triangles, &Budgets::planes};
 
 /// Everything a run's report is made of. Filled by the haptic thread without allocating; read by
 /// others once the loop has ended.

@@ -58,7 +58,9 @@ std::optional<BudgetGovernor> make_governor(const Options& options, const Contro
     const std::uint32_t pairs = capacities_of(controller.setup()).pairs;
     // Each pair is walked to refine and to answer, until the frame has no more walks.
     const auto walks = 2 * std::min(pairs, kFrameWalks);
-    return BudgetGovernor(nanoseconds(budget_ns), controller.budgets(), walks);
+    const auto tools = static_cast<std::uint32_t>(controller.setup().tools.size());
+    return BudgetGovernor(nanoseconds(budget_ns), controller.budgets(), walks,
+                          std::min(tools, kFrameWalks));
 }
 
 /// On the haptic thread; returns why the option can't be had.

@@ -64,11 +64,20 @@ NearestMotion<3> search(Vicinity& near, const StepPlanes& step, const Vec3& want
     return nearest_motion<3>(step.planes.view(), wanted);
 }
 
-/// The motion nearest to `wanted` that enters no triangle, or what of the way towards it is proven
-/// to be free. `step` holds its planes then, of which `found` is what they alone allow.
-NearestMotion<3> nearest_free_motion(Vicinity& near, const Vec3& wanted, double radius,
+/// As much of the motion as leads `room` far.
+Vec3 within(const Vec3& motion, double room) noexcept
+{
+    const double length = motion.norm();
+    return length > room ? Vec3(motion * (room / length)) : motion;
+}
+
+/// The motion nearest to `wanted` that enters no triangle within `room`, as far as there is room,
+/// or what of the way towards it is proven to be free. `step` holds its planes then, of which
+/// `found` is what they alone allow. What a way beyond the room would enter is not asked.
+NearestMotion<3> nearest_free_motion(Vicinity& near, const Vec3& wanted, double radius, double room,
                                      StepPlanes& step, NearestMotion<3> found) noexcept
 {
+    found.motion = within(found.motion, room);
     for (std::uint32_t round = 0; round < kStepRounds && found.is_feasible && !near.is_spent();
          ++round)
     {
@@ -87,6 +96,7 @@ NearestMotion<3> nearest_free_motion(Vicinity& near, const Vec3& wanted, double 
         }
         step.add(*entered, near.half_space(*entered, radius));
         found = search(near, step, wanted);
+        found.motion = within(found.motion, room);
     }
     if (found.is_feasible)
     {
@@ -334,7 +344,10 @@ Proxy::Motion Proxy::follow_among(Vicinity& near, std::span<const PlacedSurface>
         }
         ++steps_;
         near.stand_at(position_ - anchor_, normal_);
-        hold_ = hold_at(near, surfaces, goal - position_);
+        // What is not among them, or not certified, is at least this far away.
+        const double moved = (position_ - anchor_).norm();
+        const double room = std::min(near.reach_m() - radius_, travel) - moved;
+        hold_ = hold_at(near, surfaces, goal - position_, room);
         const double length = hold_.motion.norm();
         if (hold_.is_squeezed)
         {
@@ -348,25 +361,22 @@ Proxy::Motion Proxy::follow_among(Vicinity& near, std::span<const PlacedSurface>
         {
             return Motion::out_of_steps;
         }
-        // What is not among them, or not certified, is at least this far away.
-        const double moved = (position_ - anchor_).norm();
-        const double room = std::min(near.reach_m() - radius_, travel) - moved;
         if (room <= least_step)
         {
             return travel - moved <= least_step ? Motion::held_back : Motion::ran_out;
         }
-        const double share = std::min(1.0, room / length);
-        position_ += share * hold_.motion;
-        rubbed_m_ += hold_.touches ? share * length : 0.0;
+        position_ += hold_.motion;
+        rubbed_m_ += hold_.touches ? length : 0.0;
         path_.push_back(position_);
     }
 }
 
 Proxy::Hold Proxy::hold_at(Vicinity& near, std::span<const PlacedSurface> surfaces,
-                           const Vec3& wanted) noexcept
+                           const Vec3& wanted, double room) noexcept
 {
     Touch touch = feel_at(near, surfaces, wanted, kTouchShare * radius_);
     Hold& hold = touch.hold;
+    const bool may_go = room > kLeastStep * radius_;
     StepPlanes step = touch.planes;
     for (const std::uint32_t face : held_by_)
     {
@@ -377,8 +387,11 @@ Proxy::Hold Proxy::hold_at(Vicinity& near, std::span<const PlacedSurface> surfac
     }
     const bool is_same = !hold.rubs && step.planes.size() == touch.planes.planes.size();
     const Vec3 let = hold.rubs ? Vec3(touch.wanted - touch.kept) : touch.wanted;
-    const NearestMotion<3> found = nearest_free_motion(
-        near, let, radius_, step, is_same ? touch.held : search(near, step, let));
+    NearestMotion<3> found = is_same ? touch.held : search(near, step, let);
+    if (may_go)
+    {
+        found = nearest_free_motion(near, let, radius_, room, step, found);
+    }
     held_by_.clear();
     for (const std::uint32_t plane : found.held_by)
     {
@@ -386,10 +399,11 @@ Proxy::Hold Proxy::hold_at(Vicinity& near, std::span<const PlacedSurface> surfac
     }
     hold.motion = found.motion;
     hold.is_squeezed = !found.is_feasible;
-    if (!hold.touches && std::ranges::any_of(surfaces, [](const PlacedSurface& placed)
-                                             { return rubs(*placed.material); }))
+    if (may_go && !hold.touches &&
+        std::ranges::any_of(surfaces,
+                            [](const PlacedSurface& placed) { return rubs(*placed.material); }))
     {
-        hold.motion = go_to_contact(near, wanted, hold.motion);
+        hold.motion = go_to_contact(near, within(wanted, room), hold.motion);
     }
     return hold;
 }

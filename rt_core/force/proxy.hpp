@@ -155,7 +155,7 @@ private:
     void begin_frame() noexcept;
     void go_straight_on(const Vec3& goal, double clear) noexcept;
     [[nodiscard]] Hold hold_at(Vicinity& near, std::span<const PlacedSurface> surfaces,
-                               const Vec3& wanted) noexcept;
+                               const Vec3& wanted, double room) noexcept;
     [[nodiscard]] Touch feel_at(Vicinity& near, std::span<const PlacedSurface> surfaces,
                                 const Vec3& wanted, double gap_m) noexcept;
     void press(Hold& hold, const PlacedSurface& placed, const Vec3& depth) const noexcept;

@@ -81,7 +81,8 @@ struct Budgets
     std::uint32_t regions{8}; ///< G, index pages searched for chunks that ranked regions need.
     /// F, what the proxy of a ball looks at to find its way, some 300 instructions each: a plane
     /// before a triangle in double, eight in single precision, or a search among up to eight. What
-    /// was begun is ended, and what touches where it stops is looked at whatever is left.
+    /// was begun is ended, and what touches where it stops is looked at whatever is left. Tools of
+    /// other shapes need none: kMaxHalfSpaces bounds each of their steps.
     std::uint32_t planes{1'024};
 };
 

@@ -200,6 +200,11 @@ double largest_dihedral_rad(const std::vector<test::Face>& faces)
 
 Sweep make_sweep(const Touch& touch, double step_m, std::uint32_t frames)
 {
+    return make_sweep(touch, std::vector<double>(frames, step_m));
+}
+
+Sweep make_sweep(const Touch& touch, std::span<const double> steps_m)
+{
     Sweep sweep;
     sweep.lead_in = kLeadIn;
     const double held_m = touch.radius_m - touch.depth_m;
@@ -212,7 +217,7 @@ Sweep make_sweep(const Touch& touch, double step_m, std::uint32_t frames)
         sweep.rests_m.push_back(above(start, touch.radius_m));
     }
     Vec3 last = above(start, held_m);
-    for (std::uint32_t i = 0; i < frames; ++i)
+    for (const double step_m : steps_m)
     {
         double turn = step_m / kRadius_m;
         for (int round = 0; round < 8; ++round) // Each leaves some per cent of the error.

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 /// The surface on which forces are known: the bumpy sphere of make_shape(),
@@ -86,8 +87,10 @@ struct Sweep
     std::vector<Vec3> rests_m; ///< Of the ball's centre, were the mesh the surface.
     std::size_t lead_in{0};    ///< Frames at the start that come down on the surface.
 };
-/// After the lead-in, `frames` steps of `step_m` each in the device's straight distance, round and
-/// round a circle that lies askew to the icosahedron and to the bumps.
+/// After the lead-in a frame for each of `steps_m`, so far in the device's straight distance, round
+/// and round a circle that lies askew to the icosahedron and to the bumps.
+[[nodiscard]] Sweep make_sweep(const Touch& touch, std::span<const double> steps_m);
+/// `frames` equal steps.
 [[nodiscard]] Sweep make_sweep(const Touch& touch, double step_m, std::uint32_t frames);
 
 } // namespace tactus::bench

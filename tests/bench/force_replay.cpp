@@ -52,13 +52,14 @@ Result<std::unique_ptr<test::FrameRig>, SceneError> make_rig(const ForceRun& run
     return rig;
 }
 
-/// One replay; its outputs in the order of the counted frames.
+/// One replay; its outputs and planes in the order of the counted frames.
 std::vector<ToolOutput> replay(const ForceRun& run, test::FrameRig& rig, ForceTrace& trace)
 {
     std::vector<ToolOutput> outputs;
     std::uint64_t allocations = 0;
     StageTimer timer;
     std::array<ToolState, 1> tools;
+    trace.planes.clear();
     for (std::size_t i = 0; i < run.goals_m.size(); ++i)
     {
         tools[0].position_m = run.goals_m[i];
@@ -73,6 +74,7 @@ std::vector<ToolOutput> replay(const ForceRun& run, test::FrameRig& rig, ForceTr
         if (i >= run.lead_in)
         {
             outputs.push_back(output.tools[0]);
+            trace.planes.push_back(static_cast<double>(output.work.planes_looked_at));
             trace.force_us.keep(i - run.lead_in, timer.us(Stage::force));
             trace.frame_us.keep(i - run.lead_in, timer.sum_us());
         }

@@ -32,8 +32,9 @@ struct ForceRun
 struct ForceTrace
 {
     std::vector<ToolOutput> outputs;
-    LeastTimes force_us; ///< Of the stage alone.
-    LeastTimes frame_us; ///< Of all stages.
+    std::vector<double> planes; ///< That the proxy looked at (Budgets::planes).
+    LeastTimes force_us;        ///< Of the stage alone.
+    LeastTimes frame_us;        ///< Of all stages.
     /// By all frames of the replay that had most; nothing where they can't be counted.
     std::optional<std::uint64_t> allocations;
     std::uint64_t hash{0}; ///< Over the bits of all forces and proxies.

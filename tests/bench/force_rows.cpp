@@ -96,6 +96,31 @@ void add_felt_rows(CaseRows& rows, const ForceTrace& trace, const ForceFigures& 
              goals.has_laws ? std::optional(0.0) : std::nullopt);
 }
 
+void add_lag_rows(CaseRows& rows, const ForceTrace& trace, std::size_t slows_at,
+                  std::int64_t period_ns)
+{
+    double largest_m = 0.0;
+    double cut_short = 0.0;
+    double back_ms = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < trace.outputs.size(); ++i)
+    {
+        const ToolOutput& output = trace.outputs[i];
+        largest_m = std::max(largest_m, output.lag_m);
+        cut_short += output.cut_short ? 1.0 : 0.0;
+        if (i >= slows_at && output.in_contact && !output.frozen && !output.under_way)
+        {
+            back_ms = std::min(back_ms, 1e-6 * static_cast<double>(period_ns) *
+                                            static_cast<double>(i - slows_at));
+        }
+    }
+    const Spread planes = spread_of(trace.planes);
+    rows.add("frames cut short", cut_short, "");
+    rows.add("planes.p99", planes.p99, "");
+    rows.add("planes.max", planes.max, "");
+    rows.add("largest lag", 1e3 * largest_m, "mm");
+    rows.add("on the hand again after", back_ms, "ms", kReturn_ms);
+}
+
 void add_force_rows(CaseRows& rows, const ForceTrace& trace, const ForceFigures& figures,
                     const ForceGoals& goals, std::optional<double> coarser_p99_n)
 {

@@ -38,6 +38,8 @@ struct ForceGoals
     bool has_laws{true}; ///< No allocation, no stuck frame.
     double force_p99_us{kNoGoal};
 };
+/// Within this a proxy that a fast hand left behind is on it again when that slows.
+inline constexpr double kReturn_ms = 50.0;
 
 /// `coarser_p99_n` is the same sweep's error on the next coarser mesh, where there is one: the
 /// error must be smaller.
@@ -48,6 +50,11 @@ void add_force_rows(CaseRows& rows, const ForceTrace& trace, const ForceFigures&
 /// which there are to be none.
 void add_felt_rows(CaseRows& rows, const ForceTrace& trace, const ForceFigures& figures,
                    const ForceGoals& goals);
+
+/// How far behind a fast hand the proxy is, and what that costs. From the counted frame `slows_at`
+/// on, one a period, the hand is slow: kReturn_ms later the proxy is to be on it again.
+void add_lag_rows(CaseRows& rows, const ForceTrace& trace, std::size_t slows_at,
+                  std::int64_t period_ns);
 
 /// What was recorded of CHAI3D 3.3's finger proxy: elsewhere, on a surface of the same kind whose
 /// constants were not kept; for the order of magnitude.

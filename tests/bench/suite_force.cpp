@@ -51,8 +51,11 @@ constexpr std::array<SpeedCase, 4> kSpeeds{
 constexpr double kFriction = 0.3;
 constexpr double kDynamicShare = 0.8;
 constexpr std::array<SpeedCase, 2> kRoughSpeeds{{{0.3, kNoGoal, 35.0}, {1.0, kNoGoal, 60.0}}};
-/// Faster than a hand on a surface is as a rule, and a device that lets the proxy be so fast.
+/// Faster than a hand on a surface is as a rule, and a device that lets the proxy be so fast. Then
+/// the hand slows.
 constexpr SpeedCase kFast{3.0, kNoGoal, kNoGoal};
+constexpr double kSlow_m_per_s = 1.0;
+constexpr std::uint32_t kSlowFrames = 200;
 constexpr double kFastSpeedMax_m_per_s = 5.0;
 constexpr std::array<double, 2> kRadii_m{0.5e-3, 2e-3};
 
@@ -189,8 +192,12 @@ CaseFailure run_felt_sweep(const SweepContext& context, const SpeedCase& speed, 
                            double speed_max_m_per_s)
 {
     const Touch touch{kRadii_m.back(), kDepth_m, kStiffness_n_per_m};
-    const Sweep sweep = make_sweep(touch, speed.speed_m_per_s * kPeriod_s,
-                                   context.options.frames_or(10'000, 2'000));
+    const bool is_fast = speed.speed_m_per_s > kSpeedMax_m_per_s;
+    std::vector<double> steps_m(context.options.frames_or(10'000, 2'000),
+                                speed.speed_m_per_s * kPeriod_s);
+    const std::size_t slows_at = steps_m.size();
+    steps_m.insert(steps_m.end(), is_fast ? kSlowFrames : 0, kSlow_m_per_s * kPeriod_s);
+    const Sweep sweep = make_sweep(touch, steps_m);
     ForceRun run = make_run(context.scene, sweep, touch, 1.0);
     run.tool.speed_max_m_per_s = speed_max_m_per_s;
     run.material.static_friction = friction;
@@ -212,6 +219,10 @@ CaseFailure run_felt_sweep(const SweepContext& context, const SpeedCase& speed, 
     CaseRows rows(context.rows, common);
     add_felt_rows(rows, trace.value(), figures,
                   {speed.frame_us, kNoGoal, kNoGoal, kNoGoal, true, speed.force_us});
+    if (is_fast)
+    {
+        add_lag_rows(rows, trace.value(), slows_at, run.period_ns);
+    }
     return std::nullopt;
 }
 
@@ -224,7 +235,14 @@ CaseFailure run_felt_sweeps(const SweepContext& context)
             return failure;
         }
     }
-    return run_felt_sweep(context, kFast, 0.0, kFastSpeedMax_m_per_s);
+    for (const double friction : {0.0, kFriction})
+    {
+        if (auto failure = run_felt_sweep(context, kFast, friction, kFastSpeedMax_m_per_s))
+        {
+            return failure;
+        }
+    }
+    return std::nullopt;
 }
 
 void add_mesh_rows(const SweepContext& context)

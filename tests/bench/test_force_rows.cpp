@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 
 namespace tactus::bench
@@ -90,6 +91,36 @@ TEST(ForceRows, each_law_that_is_broken_misses_its_goal)
     EXPECT_EQ(missed(sut), 6U); // And it is more than on the coarser mesh.
     sut.trace.outputs[9].force_n.x() = std::numeric_limits<double>::quiet_NaN();
     EXPECT_EQ(missed(sut), 6U);
+}
+
+TEST(ForceRows, tell_how_far_behind_a_fast_hand_a_ball_was_and_when_it_is_on_it_again)
+{
+    PlaneTouch sut;
+    sut.trace.planes = {1, 2, 3, 4, 5, 6, 7, 8, 9, 99};
+    for (std::size_t i = 2; i < 7; ++i)
+    {
+        sut.trace.outputs[i].under_way = true;
+        sut.trace.outputs[i].cut_short = i < 5;
+        sut.trace.outputs[i].lag_m = 1e-3 * static_cast<double>(8 - i);
+    }
+    const auto value_of = [&](const char* metric, std::int64_t period_ns = 1'000'000)
+    {
+        Rows rows;
+        CaseRows lines(rows, Row{});
+        add_lag_rows(lines, sut.trace, 4, period_ns);
+        const auto found = std::ranges::find(rows, metric, &Row::metric);
+        return found == rows.end() ? -1.0 : found->value;
+    };
+    EXPECT_EQ(value_of("frames cut short"), 3.0);
+    EXPECT_EQ(value_of("planes.max"), 99.0);
+    EXPECT_NEAR(value_of("largest lag"), 6.0, 1e-12);
+    EXPECT_NEAR(value_of("on the hand again after"), 3.0, 1e-12);
+    EXPECT_NEAR(value_of("on the hand again after", 2'000'000), 6.0, 1e-12);
+    for (ToolOutput& output : sut.trace.outputs)
+    {
+        output.under_way = true;
+    }
+    EXPECT_FALSE(value_of("on the hand again after") <= kReturn_ms);
 }
 
 } // namespace

@@ -19,6 +19,7 @@ check report.json budgets.frame_us == 60 budgets.splits.min '>=' 1 budgets.split
     budgets.splits.max '>' '1*budgets.splits.min' budgets.splits.mean '<' 64 \
     budgets.scanned.min '>=' 32 budgets.scanned.max '<=' 512 budgets.nodes.min '>=' 128 \
     budgets.nodes.max '<=' 2048 budgets.triangles.min '>=' 512 budgets.triangles.max '<=' 8192 \
+    budgets.planes.min '>=' 128 budgets.planes.max '<=' 1024 \
     deadline.over_budget == 0 answers.stale == 0 frames == 4000
 check_clean report.json
 

@@ -134,7 +134,7 @@ public:
         : frames_(model(), small_pools_and_a_bad_link())
         , late_wakes_(late_wakes(seed))
         , timer_(clock_, late_wakes_)
-        , governor_(microseconds(100), most(), 2)
+        , governor_(microseconds(100), most(), 2, 1)
         , statistics_(1, 1, 1, kPeriod)
     {
         make_device();

@@ -17,15 +17,17 @@ namespace
 {
 
 constexpr std::uint32_t kWalks = 2;
+constexpr std::uint32_t kProxies = 1;
 constexpr Duration kBudget = microseconds(60);
 
 /// A machine on which a frame takes what its work costs, with some scatter.
 struct Machine
 {
-    double rest_us{12.0};     ///< Load and force.
+    double rest_us{8.0};      ///< Load, and the force but for its planes.
     double idle_us{6.0};      ///< Refine, refit and query with nothing to do.
     double per_edit_us{0.30}; ///< Split or merge.
     double per_step_us{0.02}; ///< Node, or four triangles.
+    double per_plane_us{0.08};
     double scatter_us{4.0};
 };
 
@@ -48,7 +50,7 @@ class Simulation
 {
 public:
     Simulation(Duration frame_budget, const Machine& start, Demand wanted)
-        : machine(start), demand(wanted), sut(frame_budget, most_budgets(), kWalks)
+        : machine(start), demand(wanted), sut(frame_budget, most_budgets(), kWalks, kProxies)
     {
     }
 
@@ -63,13 +65,17 @@ public:
         cost.work.merges = used(budgets.merges, all ? 1e9 : few);
         cost.work.nodes_visited = used(kWalks * budgets.nodes, 60.0 + 60.0 * any(random));
         cost.work.triangles_tested = used(kWalks * budgets.triangles, 200.0 + 300.0 * any(random));
+        cost.work.planes_looked_at =
+            used(budgets.planes, is_fast ? 1e9 : 30.0 + 40.0 * any(random));
         const double edits = cost.work.splits + cost.work.merges;
         const double steps = cost.work.nodes_visited + cost.work.triangles_tested / 4.0;
-        const double governed_us = machine.idle_us + machine.per_edit_us * edits +
-                                   machine.per_step_us * steps + machine.scatter_us * any(random);
+        const double walked_us = machine.idle_us + machine.per_edit_us * edits +
+                                 machine.per_step_us * steps + machine.scatter_us * any(random);
+        const double force_us = machine.per_plane_us * cost.work.planes_looked_at;
         const double frame_us =
-            governed_us + machine.rest_us + machine.scatter_us * any(random) + stall_us;
-        cost.governed = nanoseconds(static_cast<std::int64_t>(governed_us * 1e3));
+            walked_us + force_us + machine.rest_us + machine.scatter_us * any(random) + stall_us;
+        cost.walked = nanoseconds(static_cast<std::int64_t>(walked_us * 1e3));
+        cost.force = nanoseconds(static_cast<std::int64_t>(force_us * 1e3));
         cost.frame = nanoseconds(static_cast<std::int64_t>(frame_us * 1e3));
         sut.observe(cost);
         return frame_us;
@@ -94,6 +100,7 @@ public:
     Machine machine;
     Demand demand;
     BudgetGovernor sut;
+    bool is_fast{false};         ///< Its proxy would use all planes.
     std::uint32_t splits_min{0}; ///< Budgets of the last run().
     std::uint32_t splits_max{0};
 
@@ -119,20 +126,24 @@ void expect_within_limits(const Budgets& budgets, const Budgets& most)
     EXPECT_LE(budgets.nodes, most.nodes);
     EXPECT_GE(budgets.triangles, 4 * BudgetGovernor::kNodesLeast);
     EXPECT_LE(budgets.triangles, most.triangles);
+    EXPECT_GE(budgets.planes, BudgetGovernor::kPlanesLeast);
+    EXPECT_LE(budgets.planes, most.planes);
 }
 
 /// Splits that would fill the set time to the last: both edits of each, after all else.
 double splits_that_fill(const Machine& machine, double budget_us)
 {
     const double steps = 90.0 + 350.0 / 4.0;
+    const double planes = 70.0; // At most.
     const double fixed_us = machine.rest_us + machine.idle_us + machine.scatter_us +
-                            steps * machine.per_step_us; // Half the scatter, twice.
+                            steps * machine.per_step_us + // Half the scatter, twice.
+                            planes * machine.per_plane_us;
     return (budget_us - fixed_us) / (2.0 * machine.per_edit_us);
 }
 
 TEST(BudgetGovernor, starts_with_budgets_that_usual_costs_would_keep)
 {
-    const BudgetGovernor sut(kBudget, most_budgets(), kWalks);
+    const BudgetGovernor sut(kBudget, most_budgets(), kWalks, kProxies);
     expect_within_limits(sut.budgets(), most_budgets());
     EXPECT_GE(sut.budgets().splits, 8U);
     EXPECT_LE(sut.budgets().splits, 64U);
@@ -145,7 +156,7 @@ TEST(BudgetGovernor, leaves_alone_what_it_does_not_govern)
     most.pages = 3;
     most.requests = 17;
     most.regions = 5;
-    const BudgetGovernor sut(kBudget, most, kWalks);
+    const BudgetGovernor sut(kBudget, most, kWalks, kProxies);
     EXPECT_EQ(sut.budgets().pages, 3U);
     EXPECT_EQ(sut.budgets().requests, 17U);
     EXPECT_EQ(sut.budgets().regions, 5U);
@@ -252,6 +263,7 @@ TEST(BudgetGovernor, gives_all_there_is_where_time_is_plenty)
     EXPECT_EQ(simulation.sut.budgets().nodes, most.nodes);
     EXPECT_EQ(simulation.sut.budgets().triangles, most.triangles);
     EXPECT_EQ(simulation.sut.budgets().scanned, most.scanned);
+    EXPECT_EQ(simulation.sut.budgets().planes, most.planes);
 }
 
 TEST(BudgetGovernor, learns_nothing_from_one_stall_of_the_machine)
@@ -288,28 +300,50 @@ TEST(BudgetGovernor, lets_a_traversal_grow_that_its_budget_cut)
         cost.work.nodes_visited = kWalks * simulation.sut.budgets().nodes;
         cost.work.triangles_tested = kWalks * simulation.sut.budgets().triangles;
         const double steps = cost.work.nodes_visited + cost.work.triangles_tested / 4.0;
-        cost.governed = nanoseconds(static_cast<std::int64_t>(6'000.0 + 20.0 * steps));
-        cost.frame = cost.governed + microseconds(12);
+        cost.walked = nanoseconds(static_cast<std::int64_t>(6'000.0 + 20.0 * steps));
+        cost.frame = cost.walked + microseconds(12);
         simulation.sut.observe(cost);
     }
     EXPECT_GT(simulation.sut.budgets().nodes, most_budgets().nodes / 2);
+}
+
+TEST(BudgetGovernor, a_fast_hand_s_proxy_gets_the_planes_that_fit)
+{
+    for (const double per_plane_us : {0.04, 0.08, 0.2})
+    {
+        Machine machine;
+        machine.per_plane_us = per_plane_us;
+        Simulation simulation(kBudget, machine, Demand::sliding);
+        simulation.is_fast = true;
+        simulation.run(1'000);
+        EXPECT_LT(simulation.run(2'000), 1.1 * 60.0) << per_plane_us;
+        expect_within_limits(simulation.sut.budgets(), most_budgets());
+        const std::uint32_t fast = simulation.sut.budgets().planes;
+        EXPECT_LT(fast, most_budgets().planes) << per_plane_us;
+        simulation.is_fast = false;
+        simulation.run(2'000);
+        EXPECT_FALSE(simulation.sut.is_at_floor());
+        EXPECT_GT(simulation.sut.budgets().splits, 10U) << per_plane_us;
+    }
 }
 
 RC_GTEST_PROP(BudgetGovernor, never_leaves_its_limits_and_gives_the_same_for_the_same, ())
 {
     const Duration budget = microseconds(*rc::gen::inRange(10, 2'000));
     const Budgets most = most_budgets();
-    BudgetGovernor sut(budget, most, kWalks);
-    BudgetGovernor twin(budget, most, kWalks);
+    BudgetGovernor sut(budget, most, kWalks, kProxies);
+    BudgetGovernor twin(budget, most, kWalks, kProxies);
     for (int i = 0; i < 100; ++i)
     {
         FrameCost cost;
-        cost.governed = nanoseconds(*rc::gen::inRange(0, 4'000'000));
-        cost.frame = cost.governed + nanoseconds(*rc::gen::inRange(0, 400'000));
+        cost.walked = nanoseconds(*rc::gen::inRange(0, 4'000'000));
+        cost.force = nanoseconds(*rc::gen::inRange(0, 1'000'000));
+        cost.frame = cost.walked + cost.force + nanoseconds(*rc::gen::inRange(0, 400'000));
         cost.work.splits = *rc::gen::inRange(0U, sut.budgets().splits + 1);
         cost.work.merges = *rc::gen::inRange(0U, sut.budgets().merges + 1);
         cost.work.nodes_visited = *rc::gen::inRange(0U, kWalks * sut.budgets().nodes + 1);
         cost.work.triangles_tested = *rc::gen::inRange(0U, kWalks * sut.budgets().triangles + 1);
+        cost.work.planes_looked_at = *rc::gen::inRange(0U, kProxies * sut.budgets().planes + 1);
         sut.observe(cost);
         twin.observe(cost);
         const Budgets& b = sut.budgets();
@@ -320,7 +354,8 @@ RC_GTEST_PROP(BudgetGovernor, never_leaves_its_limits_and_gives_the_same_for_the
         RC_ASSERT(b.nodes >= BudgetGovernor::kNodesLeast && b.nodes <= most.nodes);
         RC_ASSERT(b.triangles >= 4 * BudgetGovernor::kNodesLeast && b.triangles <= most.triangles);
         RC_ASSERT(b.splits == t.splits && b.merges == t.merges && b.scanned == t.scanned);
-        RC_ASSERT(b.nodes == t.nodes && b.triangles == t.triangles);
+        RC_ASSERT(b.planes >= BudgetGovernor::kPlanesLeast && b.planes <= most.planes);
+        RC_ASSERT(b.nodes == t.nodes && b.triangles == t.triangles && b.planes == t.planes);
     }
 }
 

@@ -78,6 +78,7 @@ public:
     ToolOutput step_on(const Vec3& goal, const Vec3& velocity)
     {
         ToolOutput output;
+        std::uint32_t left = planes;
         lists = 0;
         do
         {
@@ -92,7 +93,8 @@ public:
             const auto surface = surface_of(triangles, to_model(pose, sut.position_m()), certified);
             surface->is_cut = true;
             const PlacedSurface placed = placed_surface(pose, surface.get(), material, memory);
-            output = sut.respond(goal_at(goal, velocity), {&placed, 1}, clear);
+            output = sut.respond(goal_at(goal, velocity), {&placed, 1}, clear, left);
+            left = planes == Vicinity::kUnlimited ? planes : sut.planes_left();
         } while (sut.goes_on());
         return output;
     }

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 #include <span>
@@ -466,6 +467,47 @@ TEST(Proxy, of_few_planes_a_frame_gets_to_the_same_place_later_and_says_so)
         EXPECT_LE(force_n, kCatchUp_n_per_s * kPeriod_s * (1.0 + 1e-9)) << planes;
         EXPECT_FALSE(output.under_way) << planes;
         EXPECT_LT((output.proxy_m - rest.proxy_m).norm(), 1e-4 * kRadius) << planes;
+    }
+}
+
+/// Waves, three tenths of the radius high, in squares of a fifth of it; along x.
+TriangleList waves()
+{
+    constexpr int kHalf = 12;
+    const auto at = [](int i, int j)
+    {
+        const double height = std::sin(0.3 * i) * std::cos(0.3 * j) - 1.0;
+        return Vec3(0.2 * kRadius * i, 0.2 * kRadius * j, 0.3 * kRadius * height);
+    };
+    TriangleList list;
+    for (int i = -kHalf; i < 70; ++i)
+    {
+        for (int j = -kHalf; j < kHalf; ++j)
+        {
+            add_square(list, at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1));
+        }
+    }
+    return list;
+}
+
+/// What a hand wants is far beyond what a list lets the proxy go. Were it asked what the whole way
+/// enters, a proxy that is behind would look at ever more, and fall behind by ever more.
+TEST(Proxy, behind_a_fast_hand_asks_no_farther_than_it_may_go)
+{
+    ProxyRig rig(waves(), Vec3(0, 0, kRadius));
+    rig.material.static_friction = 0.3;
+    rig.material.dynamic_friction = 0.24;
+    rig.certified = 1.5 * kRadius;
+    rig.settle(Vec3(0, 0, 0.5 * kRadius), 3);
+    rig.planes = 700;
+    Vec3 goal(0, 0, 0.4 * kRadius);
+    for (int frame = 0; frame < 8; ++frame)
+    {
+        goal.x() += 1.5 * kRadius;
+        const ToolOutput output = rig.step_on(goal, Vec3(1.5 * kRadius / kPeriod_s, 0, 0));
+        EXPECT_FALSE(output.cut_short) << frame;
+        EXPECT_GT(output.force_n.norm(), 0.0) << frame;
+        EXPECT_LT(output.lag_m, 0.5 * kRadius) << frame;
     }
 }
 
