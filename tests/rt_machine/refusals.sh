@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # refusals.sh: rt_machine.sh says in one line what is missing, leaves no image that is half made and
-# nothing running. Stand-ins say what the tools would.
+# nothing running. Stand-ins say what the tools would. And the hand of its scenarios can be made.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 readonly here
@@ -131,4 +131,13 @@ while read -r id; do
         kill "$id"
     fi
 done <"$scratch/qemu"
+
+# The hand of its scenarios can be made of the driver that the documentation has.
+(
+    cd "$scratch"
+    # shellcheck source=scenarios/helpers.sh
+    source "$here/scenarios/helpers.sh"
+    make_hand "$here/../../docs/examples/udp_driver.py"
+    python3 -c 'import ast, sys; ast.parse(open(sys.argv[1]).read())' hand.py
+) || failures=$((failures + 1))
 exit $((failures > 0))
