@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-# shellcheck shell=bash disable=SC2154 # What rt_machine.sh sets is used here.
-# Starts the machine; sourced after common.sh, with $folder holding image and kernel.
+# shellcheck shell=bash disable=SC2154 # What rt_machine.sh and job.sh set is used here.
+# Starts the machine; sourced after common.sh, with $folder holding image and kernel, and
+# $architecture what Debian calls its processor.
 
 readonly machine_exit_port=0x501 # As in guest.sh.
 
@@ -10,26 +11,44 @@ readonly machine_exit_port=0x501 # As in guest.sh.
 # turns: with $in_turn, where that is granted, only when one waits.
 in_turn=()
 # shellcheck disable=SC2054 # QEMU's own commas.
-readonly machine_options=(-accel tcg -cpu max -icount shift=0,sleep=off -smp 1 -m 2048
-    -nodefaults -machine "pc,hpet=off" -display none -monitor none -nic none -no-reboot
-    -rtc "base=2026-12-01T00:00:00,clock=vm" -seed 1
-    -device "isa-debug-exit,iobase=$machine_exit_port,iosize=1")
-readonly machine_kernel_line="rdinit=/sbin/init console=ttyS0 quiet systemd.show_status=0 panic=-1 \
-mitigations=off nokaslr"
+machine_options=(-accel tcg -icount shift=0,sleep=off -smp 1 -m 2048 -nodefaults -display none
+    -monitor none -nic none -no-reboot -rtc "base=2026-12-01T00:00:00,clock=vm" -seed 1)
+# shellcheck disable=SC2054 # QEMU's own commas.
+case "$architecture" in
+    amd64)
+        readonly machine_program=qemu-system-x86_64 machine_console=ttyS0
+        machine_options+=(-cpu max -machine "pc,hpet=off"
+            -device "isa-debug-exit,iobase=$machine_exit_port,iosize=1")
+        ;;
+    arm64)
+        readonly machine_program=qemu-system-aarch64 machine_console=ttyAMA0
+        machine_options+=(-cpu cortex-a76 -machine virt)
+        ;;
+    *) fail "packages for $architecture; there are machines for amd64 and arm64" ;;
+esac
+readonly machine_kernel_line="rdinit=/sbin/init console=$machine_console quiet \
+systemd.show_status=0 panic=-1 mitigations=off nokaslr"
 
 # boot NAME SCENARIO[,ARGUMENT...] [QEMU-OPTION...]: runs a scenario of guest.sh. What it says is in
 # $folder/NAME/log, what it kept in the same folder. Its exit code is that of the scenario, or 2
 # where the machine did not come to an end of it.
 boot() {
-    local out=$folder/$1 code ended=0 processor scenario=$2
+    local out=$folder/$1 code ended=0 line lines processor scenario=$2
     shift 2
     rm -rf "$out"
     mkdir -p "$out"
+    lines=(-serial "file:$out/console")
+    for line in log kept; do
+        if [[ "$architecture" == amd64 ]]; then
+            lines+=(-serial "file:$out/$line")
+        else # That board has one line of its own.
+            lines+=(-chardev "file,id=$line,path=$out/$line" -device "pci-serial,chardev=$line")
+        fi
+    done
     processor=$(taskset -cp $$ | sed 's/.*[ ,-]//')
-    await "${in_turn[@]}" taskset -c "$processor" qemu-system-x86_64 "${machine_options[@]}" \
+    await "${in_turn[@]}" taskset -c "$processor" "$machine_program" "${machine_options[@]}" \
         -kernel "$folder/kernel" -initrd "$folder/initrd" \
-        -append "$machine_kernel_line tactus=$scenario" \
-        -serial "file:$out/console" -serial "file:$out/log" -serial "file:$out/kept" "$@" \
+        -append "$machine_kernel_line tactus=$scenario" "${lines[@]}" "$@" \
         >"$out/qemu" 2>&1 || ended=$?
     # Code 1 is what the machine ends QEMU with, or QEMU's own of a wrong option.
     if ((ended > 1)) || [[ $ended == 1 && -s "$out/qemu" ]]; then

@@ -13,7 +13,7 @@ skip() {
 need_tools() { # need_tools TOOL...
     local tool
     for tool; do
-        command -v "$tool" >/dev/null || skip "$tool is missing (cmake/packages-rt.txt)"
+        command -v "$tool" >/dev/null || skip "$tool is missing (cmake/packages-rt*.txt)"
     done
 }
 need_space() { # need_space FOLDER GB

@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# make_image.sh FOLDER PACKAGE.deb...: a Debian 12 with the RT kernel and these packages, as
-# FOLDER/image (an initramfs) and FOLDER/kernel. It does nothing where they are of the same packages
-# already. Neither is there before it is whole. An initramfs, since what a disk does takes the
-# host's time: without one two runs are the same to the bit.
+# make_image.sh FOLDER ARCHITECTURE PACKAGE.deb...: a Debian 12 for that architecture with the RT
+# kernel and these packages, as FOLDER/image (an initramfs) and FOLDER/kernel. It does nothing where
+# they are of the same packages already. Neither is there before it is whole. An initramfs, since
+# what a disk does takes the host's time: without one two runs are the same to the bit.
 # Exit codes: 0 done, 2 failed, 77 something is missing here.
 set -euo pipefail
-readonly folder=$1
-shift
+readonly folder=$1 architecture=$2
+shift 2
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 readonly here
 # shellcheck source=common.sh
@@ -18,7 +18,7 @@ source "$here/../packages/apt_sources.sh"
 # What the machine has besides: to look at it, to change its network, to drive its device.
 readonly more=systemd-sysv,udev,kmod,dbus,iproute2,procps,rt-tests,python3-minimal,e2fsprogs
 # Drivers that stay: of its network, of the disk whose power is cut.
-readonly modules='sch_netem veth virtio_pci virtio_blk ext4 crc32c_intel'
+readonly modules='sch_netem veth virtio_pci virtio_blk ext4 crypto-crc32c'
 
 need_tools mmdebstrap bsdtar mke2fs
 if ! mkdir -p "$folder" 2>/dev/null || [[ ! -w "$folder" ]]; then
@@ -33,6 +33,11 @@ rm -f "$folder"/{image,kernel,made_of,root.tar}
 need_space "$folder" 3
 ((EUID == 0)) || unshare --user --map-auto --map-root-user true 2>/dev/null \
     || skip 'neither root nor user namespaces with uidmap: mmdebstrap makes no system here'
+if [[ "$architecture" != "$(dpkg --print-architecture)" ]]; then
+    need_tools arch-test
+    arch-test "$architecture" >/dev/null || skip "programs for $architecture don't run here; as \
+root: mount -t binfmt_misc none /proc/sys/fs/binfmt_misc; update-binfmts --import qemu-aarch64"
+fi
 mapfile -t sources < <(apt_sources)
 ((${#sources[@]} > 0)) || skip "this machine has no apt sources of Debian's"
 trap 'end_child; rm -f "$folder"/{root.tar,image.partial}' EXIT
@@ -61,8 +66,9 @@ find "\$root"/usr/share/doc -mindepth 1 -maxdepth 1 ! -name 'tactus*' -exec rm -
 # As on a machine that was booted before: services are those that somebody enabled.
 echo 0123456789abcdef0123456789abcdef >"\$root/etc/machine-id"
 echo controller >"\$root/etc/hostname"
-ln -sf /dev/null "\$root/etc/systemd/system/serial-getty@ttyS0.service"
-ln -sf /dev/null "\$root/etc/systemd/system/getty@tty1.service"
+for getty in serial-getty@ttyS0 serial-getty@ttyAMA0 getty@tty1; do
+    ln -sf /dev/null "\$root/etc/systemd/system/\$getty.service"
+done
 ln -sf /sbin/init "\$root/init"
 STRIP
 
@@ -70,8 +76,8 @@ STRIP
 debs=$(printf '%q ' "$@")
 printf '%s\n' "${sources[@]}" >"$folder/sources"
 readonly install='apt-get -q install --yes --no-install-recommends'
-await mmdebstrap --variant=minbase --include="$more" \
-    --customize-hook="INITRD=No chroot \"\$1\" $install linux-image-rt-amd64" \
+await mmdebstrap --variant=minbase --architectures="$architecture" --include="$more" \
+    --customize-hook="INITRD=No chroot \"\$1\" $install linux-image-rt-$architecture" \
     --customize-hook="mkdir \"\$1/packages\"" --customize-hook="copy-in $debs /packages" \
     --customize-hook="chroot \"\$1\" sh -c '$install /packages/*.deb'" \
     --customize-hook="sh $(printf %q "$folder/strip.sh") \"\$1\"" \

@@ -1,14 +1,19 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # refusals.sh: rt_machine.sh says in one line what is missing, leaves no image that is half made and
-# nothing running. Stand-ins say what the tools would.
+# nothing running. Stand-ins say what the tools would. And the hand of its scenarios can be made.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 readonly here
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
-mkdir "$scratch"/{tools,packages}
-touch "$scratch"/packages/tactus-{host,controller,doc}_0.2.0_amd64.deb "$scratch/file"
+mkdir "$scratch/tools"
+for architecture in amd64 arm64 riscv64; do
+    mkdir "$scratch/$architecture"
+    touch "$scratch/$architecture"/tactus-{host,controller}_0.2.0_"$architecture".deb \
+        "$scratch/$architecture"/tactus-doc_0.2.0_all.deb
+done
+touch "$scratch/file"
 failures=0
 
 tool() { # tool NAME LINE...: a stand-in.
@@ -17,10 +22,12 @@ tool() { # tool NAME LINE...: a stand-in.
     chmod +x "$scratch/tools/$1"
 }
 # A stand-in of everything that this machine may lack.
-for name in qemu-system-x86_64 cpio bsdtar mke2fs mmdebstrap; do
+for name in qemu-system-{x86_64,aarch64} cpio bsdtar mke2fs mmdebstrap; do
     tool "$name" 'exit 0'
 done
 tool cpio 'cat >/dev/null'
+tool dpkg 'echo amd64'
+tool arch-test 'exit 1'
 tool df 'echo Avail; echo 99000000'
 # shellcheck disable=SC2016 # It is apt-get that knows these names.
 tool apt-get 'echo "Packages Debian deb http://example.org bookworm main"'
@@ -48,20 +55,23 @@ nothing_made() { # Neither an image nor a part of one.
     left=$(find "$scratch/out" -name 'image*' -o -name root.tar -o -name initrd)
     [[ -z "$left" ]] || { echo "left: $left"; failures=$((failures + 1)); }
 }
-readonly both=("$scratch/out" "$scratch/packages")
+readonly both=("$scratch/out" "$scratch/amd64")
 
 expect 3 'Usage' one
-expect 2 "can't be written" "$scratch/file/out" "$scratch/packages"
+expect 2 "can't be written" "$scratch/file/out" "$scratch/amd64"
 expect 2 'no folder' "$scratch/out" "$scratch/nowhere"
 expect 2 'not one package tactus-host' "$scratch/out" "$scratch/tools"
 for name in qemu-system-x86_64 mmdebstrap; do
     mv "$scratch/tools/$name" "$scratch/kept"
-    expect 77 "$name is missing (cmake/packages-rt.txt)" "${both[@]}"
+    expect 77 "$name is missing (cmake/packages-rt*.txt)" "${both[@]}"
     mv "$scratch/kept" "$scratch/tools/$name"
 done
 tool df 'echo Avail; echo 1000000'
 expect 2 'has 1000 MB free, this needs 3 GB' "${both[@]}"
 tool df 'echo Avail; echo 99000000'
+expect 2 'packages for riscv64; there are machines for amd64 and arm64' "$scratch/out" \
+    "$scratch/riscv64"
+expect 77 "programs for arm64 don't run here; as root: mount" "$scratch/out" "$scratch/arm64"
 if ((EUID != 0)); then
     tool unshare 'exit 1'
     expect 77 'neither root nor user namespaces' "${both[@]}"
@@ -93,11 +103,19 @@ tool mmdebstrap 'echo E: no such host; exit 1'
 run "${both[@]}"
 [[ "$said" == *'half made'* ]] || { echo "not said that it was half made: $said"; failures=1; }
 
-# The machine is ended with the script that started it.
+# The machine does not start; all machines are ended with the script that started them.
 tool mmdebstrap 'exit 0'
+tool bsdtar 'touch "'"$scratch"'/out/image.partial"'
+tool qemu-system-x86_64 'echo no such board; exit 1'
+code=0
+said=$(PATH=$scratch/tools:$PATH bash "$here/rt_machine.sh" "${both[@]}" 2>&1) || code=$?
+if [[ $code != 2 || "$said" != *'QEMU ended with an error: no such board' || "$said" == *$'\n'* ]]
+then
+    echo "QEMU fails: exit $code and $said"
+    failures=$((failures + 1))
+fi
 # shellcheck disable=SC2016 # It is the stand-in's shell that knows $$.
-tool qemu-system-x86_64 'echo $$ >"'"$scratch"'/qemu"' 'exec sleep 30'
-tool bsdtar 'echo x; touch "'"$scratch"'/out/image.partial"'
+tool qemu-system-x86_64 'echo $$ >>"'"$scratch"'/qemu"' 'exec sleep 30'
 PATH=$scratch/tools:$PATH bash "$here/rt_machine.sh" "${both[@]}" >"$scratch/said" 2>&1 &
 machine=$!
 until [[ -s "$scratch/qemu" ]]; do
@@ -106,9 +124,20 @@ until [[ -s "$scratch/qemu" ]]; do
 done
 kill -TERM "$machine"
 wait "$machine" || true
-if kill -0 "$(<"$scratch/qemu")" 2>/dev/null; then
-    echo 'QEMU runs on'
-    failures=$((failures + 1))
-    kill "$(<"$scratch/qemu")"
-fi
+while read -r id; do
+    if kill -0 "$id" 2>/dev/null; then
+        echo 'QEMU runs on'
+        failures=$((failures + 1))
+        kill "$id"
+    fi
+done <"$scratch/qemu"
+
+# The hand of its scenarios can be made of the driver that the documentation has.
+(
+    cd "$scratch"
+    # shellcheck source=scenarios/helpers.sh
+    source "$here/scenarios/helpers.sh"
+    make_hand "$here/../../docs/examples/udp_driver.py"
+    python3 -c 'import ast, sys; ast.parse(open(sys.argv[1]).read())' hand.py
+) || failures=$((failures + 1))
 exit $((failures > 0))

@@ -37,19 +37,20 @@ take_model() { # take_model FACES: one of those of the image, as /var/lib/tactus
     cp "/usr/share/tactus_models/bumpy-$1.spm" /var/lib/tactus/bumpy.spm
 }
 
-# A hand on the device of docs/udp-device.md that leans on the model and lets it go, once a second.
-# hand.log has a line with the time, in s since the boot, whenever a force comes or goes.
+# A hand on the device of docs/examples/udp_driver.py that leans on the model and lets it go, once
+# a second. hand.log has a line with the time, in s since the boot, whenever a force comes or goes.
+make_hand() { # make_hand DRIVER: as hand.py
+    sed -e 's/^    hand = .*/    hand = [0.055 + 0.012 * math.cos(6.28 * now), 0.0, 0.0]/' \
+        -e 's/\[0.0, 0.0, height_m\]/[0.08, 0.0, 0.0]/' -e 's/^heard = /was = False\n&/' \
+        -e '/^    for i in range(3):/{' -e 'i\    is_felt = state == 1 and any(force[:3])' \
+        -e 'i\    if is_felt != was:' -e 'i\        was = is_felt' \
+        -e 'i\        print("%.3f %s" % (now, "on" if was else "off"), flush=True)' -e '}' \
+        "$1" >hand.py
+    [[ $(grep -cE '0\.055|\[0\.08|^was = False|is_felt != was' hand.py) == 4 ]] \
+        || fail "$1 is another driver"
+}
 start_hand() {
-    # shellcheck disable=SC2016 # The page's own marks.
-    sed -n '/^```python$/,/^```$/{/^```/!p}' /usr/share/doc/tactus/docs/udp-device.md \
-        | sed -e 's/200 \* x\[i\]/200 * (x[i] - (0.055 + 0.012 * math.cos(6.28 * now), 0, 0)[i])/' \
-            -e 's/^\(x, v, force, state, last = \)\[0.0\] \* 6/was = False\n\1[0.08] + [0.0] * 5/' \
-            -e '/^    for i in range(3):/{' -e 'i\    is_felt = state == 1 and any(force[:3])' \
-            -e 'i\    if is_felt != was:' -e 'i\        was = is_felt' \
-            -e 'i\        print("%.3f %s" % (now, "on" if was else "off"), flush=True)' -e '}' \
-            >hand.py
-    [[ $(grep -cE '0\.055|^was = False|is_felt != was' hand.py) == 3 ]] \
-        || fail 'the driver of docs/udp-device.md is another'
+    make_hand /usr/share/doc/tactus/docs/examples/udp_driver.py
     python3 hand.py 48500 >hand.log &
     hand=$! # Process of it.
 }
