@@ -65,7 +65,7 @@ struct PairGoal
     PairClass of;
     const char* figure;
     double goal;
-    double before_us{0.0}; ///< At kCommitBefore, on the processor of docs/benchmarks.
+    double before_us{0.0}; ///< At kCommitBefore when the goals were set: a run of its own.
 };
 constexpr const char* kFineScene = kFineBunny.name;
 constexpr std::array kPairGoals{
