@@ -17,7 +17,7 @@ namespace
 
 /// A hold is kept until the tool has slid this share of its radius. What it bends a motion round an
 /// edge by is half the square of it.
-constexpr double kHoldSlide = 0.01;
+constexpr double kHoldSlide = 0.05;
 /// Cosine between the normals of holds that are one.
 constexpr double kSameDirection = 0.999;
 /// Motions below this share of the radius are none where friction holds: 0.2 um of 2 mm.

@@ -4,7 +4,7 @@
 /// Force and torque of rigid tools at rest on encoded models, streamed and refined by whole frames,
 /// beside those of a brute-force search over the source's faces (rest_oracle.hpp). On one face or
 /// edge they are those of the springs; on curved surfaces a place that held before may still hold
-/// while the tool has slid by a hundredth of its radius, which turns the force by as much of a
+/// while the tool has slid by a twentieth of its radius, which turns the force by as much of a
 /// facet's angle.
 
 #include "host_tools/shapes/shapes.hpp"
