@@ -914,8 +914,8 @@ bool try_report(const std::optional<Witness>& witness, MeshReport& report) noexc
 }
 
 /// The same, where the distance is asked for.
-bool try_answer(const std::optional<Witness>& witness, DistanceAnswer& answer,
-                MeshReport& report) noexcept
+[[gnu::noinline]] bool try_answer(const std::optional<Witness>& witness, DistanceAnswer& answer,
+                                  MeshReport& report) noexcept
 {
     if (!try_report(witness, report))
     {

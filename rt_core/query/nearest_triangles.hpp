@@ -10,6 +10,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <numeric>
 
 namespace tactus
 {
@@ -61,14 +62,16 @@ private:
         }
         const std::uint32_t kept = surface_.count - std::max(surface_.count / 8, 1U);
         const auto listed = surface_.distances_m.first(surface_.count);
-        std::array<double, kMaxLocalTriangles> sorted; // NOLINT(*-member-init): written first.
-        const auto end = std::ranges::copy(listed, sorted.begin()).out;
-        std::nth_element(sorted.begin(), sorted.begin() + kept, end);
-        const double first_out = sorted[kept];
-        auto equals =
-            static_cast<std::uint32_t>(kept - std::count_if(sorted.begin(), sorted.begin() + kept,
-                                                            [first_out](double distance_m)
-                                                            { return distance_m < first_out; }));
+        std::array<std::uint16_t, kMaxLocalTriangles> order; // NOLINT(*-member-init): set below.
+        const auto end = order.begin() + surface_.count;
+        std::iota(order.begin(), end, std::uint16_t{0});
+        std::nth_element(order.begin(), order.begin() + kept, end,
+                         [listed](std::uint16_t a, std::uint16_t b)
+                         { return listed[a] < listed[b]; });
+        const double first_out = listed[order[kept]];
+        auto equals = static_cast<std::uint32_t>(
+            kept - std::ranges::count_if(listed, [first_out](double distance_m)
+                                         { return distance_m < first_out; }));
         surface_.count = 0;
         for (std::size_t i = 0; i < listed.size(); ++i)
         {

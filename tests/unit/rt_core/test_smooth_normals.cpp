@@ -5,6 +5,7 @@
 /// energy, written down here once more with other distances, and derived by differences.
 
 #include "rt_core/force/smooth_normals.hpp"
+#include "rt_core/limits.hpp"
 #include "tests/shared/closest_point.hpp"
 #include "tests/shared/random.hpp"
 #include "tests/unit/rt_core/proxy_rig.hpp"
@@ -251,6 +252,27 @@ TEST(SmoothNormals, are_the_derivative_of_their_energy_and_keep_within_their_bou
         }
     }
     EXPECT_GT(steepest, 0.02) << "hills that are felt";
+}
+
+TEST(SmoothNormals, look_at_no_more_faces_than_they_may_in_the_widest_and_the_narrowest)
+{
+    Random random = Random::seeded(3203);
+    const TriangleList list = hills(1e-4, random);
+    ASSERT_GT(list.size(), 4U * kMaxSmoothFaces);
+    const Vec3 place(0, 0, kBall);
+    const auto surface = surface_of(list, place, 0.05);
+    const ObjectPose pose;
+    const Material material;
+    ProxyMemory memory;
+    const PlacedSurface placed = placed_surface(pose, surface.get(), material, memory);
+    const auto looks = [&](double width_m)
+    {
+        return SmoothNormals(width_m, {&placed, 1}, kInfinity)
+            .at({place, Vec3::UnitZ(), kBall, 0.0}, 1e-3)
+            .looks;
+    };
+    EXPECT_LE(looks(kSmoothWidthMin_m), 8U);
+    EXPECT_EQ(looks(kSmoothWidthMax_m), kMaxSmoothFaces);
 }
 
 TEST(SmoothNormals, take_steps_from_a_sphere_of_5000_faces_and_keep_the_ball_out)
