@@ -466,7 +466,7 @@ SmoothNormals::Felt Proxy::hold_smoothly(Vicinity& near, Touch& touch,
         return {};
     }
     const double moved_m = (position_ - anchor_).norm();
-    const SmoothNormals::Felt felt =
+    SmoothNormals::Felt felt =
         normals_.at({position_, pressed / depth_m, radius_, moved_m}, depth_m);
     near.use(felt.looks);
     const Vec3 raised = touch.wanted + felt.raise_m;

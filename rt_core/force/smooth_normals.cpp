@@ -74,10 +74,10 @@ SmoothNormals::SmoothNormals(double width_m, std::span<const PlacedSurface> surf
                 continue;
             }
             nearest.push_back(distance_m);
-            std::push_heap(nearest.begin(), nearest.end());
+            std::ranges::push_heap(nearest);
             if (nearest.full())
             {
-                std::pop_heap(nearest.begin(), nearest.end());
+                std::ranges::pop_heap(nearest);
                 known_m_ = nearest.pop_back();
             }
         }

@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
+#include <span>
 
 namespace tactus
 {
@@ -63,12 +64,12 @@ private:
         const std::uint32_t kept = surface_.count - std::max(surface_.count / 8, 1U);
         const auto listed = surface_.distances_m.first(surface_.count);
         std::array<std::uint16_t, kMaxLocalTriangles> order; // NOLINT(*-member-init): set below.
-        const auto end = order.begin() + surface_.count;
-        std::iota(order.begin(), end, std::uint16_t{0});
-        std::nth_element(order.begin(), order.begin() + kept, end,
-                         [listed](std::uint16_t a, std::uint16_t b)
-                         { return listed[a] < listed[b]; });
-        const double first_out = listed[order[kept]];
+        const auto nearest_first = std::span(order).first(surface_.count);
+        std::iota(nearest_first.begin(), nearest_first.end(), std::uint16_t{0});
+        std::ranges::nth_element(nearest_first, nearest_first.begin() + kept,
+                                 [listed](std::uint16_t a, std::uint16_t b)
+                                 { return listed[a] < listed[b]; });
+        const double first_out = listed[nearest_first[kept]];
         auto equals = static_cast<std::uint32_t>(
             kept - std::ranges::count_if(listed, [first_out](double distance_m)
                                          { return distance_m < first_out; }));
