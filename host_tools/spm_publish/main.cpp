@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "host_tools/cli/command_line.hpp"
 #include "host_tools/cli/run_program.hpp"
+#include "host_tools/cli/stop_signals.hpp"
 #include "host_tools/mesh/read_mesh.hpp"
 #include "host_tools/scene/material_text.hpp"
 #include "host_tools/scene/placed_models.hpp"
@@ -20,9 +21,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
-#include <csignal>
 #include <cstdint>
 #include <filesystem>
 #include <iterator>
@@ -70,17 +69,6 @@ struct Extras
     std::optional<Watch> watch;
     std::optional<HostMetrics> metrics;
 };
-
-std::atomic<bool> stop_requested{false};
-static_assert(std::atomic<bool>::is_always_lock_free); // Set in a signal handler.
-
-void stop_on_signals()
-{
-    struct sigaction action = {};
-    action.sa_handler = [](int) { stop_requested.store(true, std::memory_order_relaxed); };
-    ::sigaction(SIGINT, &action, nullptr);
-    ::sigaction(SIGTERM, &action, nullptr);
-}
 
 void declare_options(CommandLine& line, Options& options)
 {
@@ -419,7 +407,7 @@ void serve(dds::DdsHost& host, ServingReport& report, Extras& extras,
     using Clock = std::chrono::steady_clock;
     const auto start = Clock::now();
     const auto now_s = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
-    while (!stop_requested.load(std::memory_order_relaxed) && !(seconds && now_s() >= *seconds))
+    while (!is_stop_requested() && !(seconds && now_s() >= *seconds))
     {
         host.wait(longest_wait(extras, now_s()));
         if (extras.player)

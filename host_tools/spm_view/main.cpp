@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "host_tools/cli/command_line.hpp"
 #include "host_tools/cli/run_program.hpp"
+#include "host_tools/cli/stop_signals.hpp"
 #include "host_tools/spm_view/film.hpp"
 #include "host_tools/spm_view/live_state.hpp"
 #include "host_tools/spm_view/model_fetcher.hpp"
@@ -13,9 +14,7 @@
 
 #include <fmt/format.h>
 
-#include <atomic>
 #include <chrono>
-#include <csignal>
 #include <cstdint>
 #include <cstdio>
 #include <memory>
@@ -43,17 +42,6 @@ struct Options
     std::uint32_t domain{0};
     std::optional<double> seconds;
 };
-
-std::atomic<bool> stop_requested{false};
-static_assert(std::atomic<bool>::is_always_lock_free); // Set in a signal handler.
-
-void stop_on_signals()
-{
-    struct sigaction action = {};
-    action.sa_handler = [](int) { stop_requested.store(true, std::memory_order_relaxed); };
-    ::sigaction(SIGINT, &action, nullptr);
-    ::sigaction(SIGTERM, &action, nullptr);
-}
 
 void declare_options(CommandLine& line, Options& options)
 {
@@ -90,8 +78,7 @@ public:
     [[nodiscard]] bool is_over() const
     {
         const double passed_s = std::chrono::duration<double>(Clock::now() - start_).count();
-        return stop_requested.load(std::memory_order_relaxed) ||
-               (seconds_ && passed_s >= *seconds_);
+        return is_stop_requested() || (seconds_ && passed_s >= *seconds_);
     }
 
 private:
@@ -213,7 +200,7 @@ int show_recordings(const CommandLine& line, const Options& options, ModelShelf&
     for (const std::string& path : options.recordings)
     {
         auto film = Film::develop(path, static_cast<std::uint8_t>(developed.size() + 1), shelf,
-                                  [] { return !stop_requested.load(std::memory_order_relaxed); });
+                                  [] { return !is_stop_requested(); });
         if (!film)
         {
             return line.fail(film.error().text);

@@ -30,8 +30,8 @@ public:
         surface.truncated = false;
     }
 
-    /// `distance_m` is a lower bound and not negative. Some nanoseconds; 2 us where there is no
-    /// room.
+    /// `distance_m` is a lower bound and not negative. Some nanoseconds; where there is no room,
+    /// which is once for an eighth of it, a pass over all that is listed.
     void add(const LocalTriangle& triangle, double distance_m) noexcept
     {
         TACTUS_ASSERT(distance_m >= 0.0);
