@@ -277,11 +277,13 @@ def reported(browser):
     browser.open(pathlib.Path("run.html").absolute().as_uri(),
                  lambda: browser.run("return document.querySelectorAll('.chart canvas').length")
                  >= 12, "the charts of a report")
-    expect(all(chart["is_drawn"] for chart in browser.run(CHARTS)), "charts with nothing in them")
+    eventually(lambda: all(chart["is_drawn"] for chart in browser.run(CHARTS)),
+               "something in each chart")
     expect("period" in browser.run(CHARTS)[3]["marks"], "the period isn't marked")
     browser.picture("report")
     browser.run("document.querySelector('.charts').scrollIntoView()")
     browser.drag(".chart", 120)
+    eventually(lambda: browser.run(CHARTS)[0]["range"], "the time that was dragged over")
     ranges = [chart["range"] for chart in browser.run(CHARTS)]
     expect(ranges[0] is not None and 0 < ranges[0][0] < ranges[0][1],
            f"dragged over, a chart shows {ranges}")
