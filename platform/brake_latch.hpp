@@ -23,89 +23,103 @@ namespace tactus
 ///          brake_softly()   |      release
 ///                        or brake() here
 ///
-/// Atomics are sequentially consistent: they are rare and order nothing else.
+/// All of it is one word, so that nobody sees a half of one brake and a half of the next. It is
+/// sequentially consistent: it is rare and orders nothing else.
 class BrakeLatch
 {
 public:
-    /// Any thread.
+    /// Any thread. Where a fade had begun, it is one that began then; where it was released
+    /// meanwhile, one without a beginning.
     void brake(MonotonicTime now) noexcept
     {
-        is_at_once_.store(true);
-        begin(now);
+        if (!begin(at_once(now)))
+        {
+            word_.fetch_and(~kOff);
+        }
     }
     /// Any thread.
-    void brake_softly(MonotonicTime now) noexcept { begin(now); }
+    void brake_softly(MonotonicTime now) noexcept { begin(at_once(now) | kFades); }
 
     /// Any thread.
-    [[nodiscard]] bool is_on() const noexcept { return began_ns_.load() != kNever; }
+    [[nodiscard]] bool is_on() const noexcept { return is_on(word_.load()); }
     /// Any thread: whether it was on at that time.
     [[nodiscard]] bool is_on_at(MonotonicTime time) const noexcept
     {
-        return time.ns >= began_ns_.load();
+        return time >= began(word_.load());
     }
     /// Any thread: that time, or when the brake came, whichever is earlier.
     [[nodiscard]] MonotonicTime before(MonotonicTime time) const noexcept
     {
-        return {std::min(time.ns, began_ns_.load())};
+        return std::min(time, began(word_.load()));
     }
     /// Any thread: what is left of the last force at that time, 0 to 1.
     [[nodiscard]] double share_at(MonotonicTime time) const noexcept
     {
-        const std::int64_t began_ns = began_ns_.load();
-        if (time.ns < began_ns)
-        {
-            return 1.0;
-        }
-        const std::int64_t gone_ns = time.ns - began_ns;
-        const double left = 1.0 - static_cast<double>(gone_ns) / static_cast<double>(kBrakeFade.ns);
-        return is_at_once_.load() || gone_ns >= kBrakeFade.ns ? 0.0 : left;
+        return share_at(time, word_.load());
     }
 
     /// The haptic thread: whether it is a fade that isn't over. Then the next write ends it.
     [[nodiscard]] bool try_yield(MonotonicTime now) noexcept
     {
-        is_yielding_ = is_on() && share_at(now) > 0.0;
+        const std::uint64_t word = word_.load();
+        is_yielding_ = is_on(word) && share_at(now, word) > 0.0;
         return is_yielding_;
     }
     /// The haptic thread.
-    void release() noexcept
-    {
-        began_ns_.store(kNever);
-        is_at_once_.store(false);
-    }
+    void release() noexcept { word_.store(kOff); }
 
     /// The haptic thread, in a write: whether it counts.
     [[nodiscard]] bool lets_through() noexcept
     {
-        if (!is_on())
+        std::uint64_t word = word_.load();
+        if (!is_on(word))
         {
             return true;
         }
-        if (!is_yielding_ || is_at_once_.load())
+        if (!is_yielding_ || !fades(word))
         {
             return false;
         }
         is_yielding_ = false;
-        const std::int64_t began_ns = began_ns_.exchange(kNever);
-        if (is_at_once_.load()) // A brake that has come since found it on.
-        {
-            begin({began_ns});
-            return false;
-        }
-        return true;
+        return word_.compare_exchange_strong(word, kOff); // Unless a brake at once has come since.
     }
 
 private:
-    static constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
+    /// When it began, in ns, over two bits. Without the upper bit the brake is on, without both at
+    /// once: so one operation turns whatever is there into that.
+    static constexpr std::uint64_t kFades = 1;
+    static constexpr std::uint64_t kOff = 3;
 
-    void begin(MonotonicTime now) noexcept
+    static std::uint64_t at_once(MonotonicTime now) noexcept
     {
-        std::int64_t never = kNever;
-        began_ns_.compare_exchange_strong(never, now.ns);
+        return static_cast<std::uint64_t>(now.ns) << 2;
+    }
+    static bool is_on(std::uint64_t word) noexcept { return (word & kOff) != kOff; }
+    static bool fades(std::uint64_t word) noexcept { return (word & kOff) == kFades; }
+    static MonotonicTime began(std::uint64_t word) noexcept
+    {
+        constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
+        return {is_on(word) ? static_cast<std::int64_t>(word >> 2) : kNever};
+    }
+    static double share_at(MonotonicTime time, std::uint64_t word) noexcept
+    {
+        if (time < began(word))
+        {
+            return 1.0;
+        }
+        const Duration gone = time - began(word);
+        const double left = 1.0 - static_cast<double>(gone.ns) / static_cast<double>(kBrakeFade.ns);
+        return fades(word) && gone < kBrakeFade ? left : 0.0;
     }
 
-    std::atomic<std::int64_t> began_ns_{kNever}; ///< kNever: it is off.
-    std::atomic<bool> is_at_once_{false};
+    /// False when it was on.
+    bool begin(std::uint64_t on) noexcept
+    {
+        std::uint64_t off = kOff;
+        return word_.compare_exchange_strong(off, on);
+    }
+
+    std::atomic<std::uint64_t> word_{kOff};
     bool is_yielding_{false}; ///< The haptic thread's.
 };
 

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/brake_latch.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <barrier>
+#include <cstdint>
+#include <cstdio>
+#include <thread>
+
+namespace tactus
+{
+
+namespace
+{
+
+constexpr MonotonicTime kBegan{1'000'000'000};
+
+MonotonicTime after_ms(std::int64_t ms)
+{
+    return kBegan + milliseconds(ms);
+}
+
+TEST(BrakeLatch, takes_all_at_once_or_fades)
+{
+    BrakeLatch latch;
+    EXPECT_FALSE(latch.is_on());
+    EXPECT_FALSE(latch.is_on_at(after_ms(1'000'000)));
+    EXPECT_EQ(latch.share_at(after_ms(1'000'000)), 1.0);
+    EXPECT_EQ(latch.before(after_ms(7)), after_ms(7));
+
+    latch.brake_softly(kBegan);
+    EXPECT_TRUE(latch.is_on());
+    EXPECT_FALSE(latch.is_on_at(after_ms(-1)));
+    EXPECT_EQ(latch.share_at(after_ms(-1)), 1.0);
+    EXPECT_EQ(latch.share_at(kBegan), 1.0);
+    EXPECT_NEAR(latch.share_at(after_ms(10)), 0.8, 1e-9);
+    EXPECT_EQ(latch.share_at(after_ms(50)), 0.0);
+    EXPECT_EQ(latch.before(after_ms(7)), kBegan);
+    latch.brake_softly(after_ms(20));
+    EXPECT_NEAR(latch.share_at(after_ms(30)), 0.4, 1e-9) << "a second one begins nothing";
+
+    latch.brake(after_ms(30));
+    EXPECT_EQ(latch.share_at(after_ms(30)), 0.0);
+    EXPECT_EQ(latch.before(after_ms(40)), kBegan) << "it began with the fade";
+    latch.brake_softly(after_ms(40));
+    EXPECT_EQ(latch.share_at(after_ms(40)), 0.0) << "at once stays at once";
+    latch.release();
+    EXPECT_FALSE(latch.is_on());
+}
+
+TEST(BrakeLatch, yields_a_fade_to_one_write_and_no_brake_at_once)
+{
+    BrakeLatch latch;
+    EXPECT_TRUE(latch.lets_through());
+    EXPECT_FALSE(latch.try_yield(kBegan)) << "it is off";
+    latch.brake_softly(kBegan);
+    EXPECT_FALSE(latch.lets_through()) << "nobody has released it";
+    EXPECT_TRUE(latch.try_yield(after_ms(49)));
+    EXPECT_TRUE(latch.lets_through());
+    EXPECT_FALSE(latch.is_on());
+
+    latch.brake_softly(kBegan);
+    EXPECT_TRUE(latch.try_yield(after_ms(10)));
+    latch.brake(after_ms(11));
+    EXPECT_FALSE(latch.lets_through());
+    EXPECT_FALSE(latch.try_yield(after_ms(12)));
+    latch.release();
+
+    latch.brake_softly(kBegan);
+    EXPECT_FALSE(latch.try_yield(after_ms(50))) << "the fade is over";
+    EXPECT_FALSE(latch.lets_through());
+}
+
+/// One brake's beginning with the next one's kind would be a fade that nobody asked for.
+TEST(BrakeLatch, shows_no_fade_while_others_brake_at_once_and_release)
+{
+    constexpr int kRounds = 500'000;
+    BrakeLatch latch;
+    std::atomic<bool> is_over{false};
+    std::atomic<int> shares_between{0};
+    std::thread reader(
+        [&]
+        {
+            while (!is_over)
+            {
+                const double share = latch.share_at(after_ms(1));
+                shares_between += share != 0.0 && share != 1.0 ? 1 : 0;
+            }
+        });
+    for (int round = 0; round < kRounds; ++round)
+    {
+        latch.brake(kBegan);
+        latch.release();
+    }
+    is_over = true;
+    reader.join();
+    EXPECT_EQ(shares_between, 0);
+}
+
+/// Whichever comes last; a brake at once never becomes a fade, nor is it half released.
+TEST(BrakeLatch, ends_on_at_once_or_off_when_a_brake_and_a_release_meet)
+{
+    constexpr int kRounds = 20'000;
+    BrakeLatch latch;
+    std::barrier both(2);
+    std::thread braker(
+        [&]
+        {
+            for (int round = 0; round < kRounds; ++round)
+            {
+                both.arrive_and_wait();
+                latch.brake(after_ms(1));
+                both.arrive_and_wait();
+            }
+        });
+    int on = 0;
+    int wrong = 0;
+    for (int round = 0; round < kRounds; ++round)
+    {
+        latch.brake_softly(kBegan);
+        both.arrive_and_wait();
+        for (int spin = round % 64; spin > 0; --spin)
+        {
+            static_cast<void>(latch.is_on());
+        }
+        latch.release();
+        both.arrive_and_wait();
+        on += latch.is_on() ? 1 : 0;
+        wrong += latch.share_at(after_ms(2)) != (latch.is_on() ? 0.0 : 1.0) ? 1 : 0;
+        latch.release();
+    }
+    braker.join();
+    EXPECT_EQ(wrong, 0);
+    std::printf("[ meetings ] the brake came last in %d of %d\n", on, kRounds);
+}
+
+} // namespace
+
+} // namespace tactus
