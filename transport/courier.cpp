@@ -428,6 +428,17 @@ void Courier::tell(const Side& side, ContentKey key, std::string_view what, std:
     }
 }
 
+void Courier::add_wished_chunks(std::uint32_t model, std::vector<ChunkId>& chunks) const
+{
+    for (const OpenWish& open : open_.first(open_count_))
+    {
+        if (open.side == sides_[model].get() && open.key.kind == ContentKind::chunk)
+        {
+            chunks.push_back({open.key.number});
+        }
+    }
+}
+
 bool Courier::is_starved(std::uint32_t model) const noexcept
 {
     const Side* const side = sides_[model].get();

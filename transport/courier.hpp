@@ -124,6 +124,8 @@ public:
     /// Whether a piece of the model is still wished for that hasn't come for more than a second.
     [[nodiscard]] bool is_starved(std::uint32_t model = 0) const noexcept;
     [[nodiscard]] std::size_t open_wishes() const noexcept { return open_count_; }
+    /// Adds the chunks of the model that are wished for and haven't come, in any order.
+    void add_wished_chunks(std::uint32_t model, std::vector<ChunkId>& chunks) const;
     [[nodiscard]] std::size_t free_pages() const noexcept { return bank_.free_pages(); }
     [[nodiscard]] std::size_t free_index_pages() const noexcept { return bank_.free_index_pages(); }
 

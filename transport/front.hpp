@@ -4,6 +4,7 @@
 
 #include "rt_core/limits.hpp"
 #include "rt_core/records/frame_input.hpp"
+#include "rt_core/records/region_ranking.hpp"
 #include "rt_core/records/safety.hpp"
 #include "rt_core/spm/header.hpp"
 #include "rt_core/spm/ids.hpp"
@@ -25,6 +26,10 @@ inline constexpr std::size_t kMaxFrontPages = 4'096;
 inline constexpr std::uint32_t kFrontSweep = 16;
 /// Most objects of one front.
 inline constexpr std::size_t kMaxFrontObjects = 2 * kFrontSweep;
+/// Most wishes of one front, those of all models together: a courier has no more open.
+inline constexpr std::size_t kMaxFrontWishes = 256;
+/// Most regions of one front; a ball that moves has five.
+inline constexpr std::size_t kMaxFrontRegions = 64;
 /// Most bytes of FrontTool::shape.
 inline constexpr std::size_t kMaxShapeBytes = 63;
 
@@ -41,6 +46,18 @@ struct FrontModel
 {
     ContentHash hash{};
     std::vector<FrontPage> pages; ///< By their chunks.
+    std::vector<ChunkId> wished;  ///< Asked for and not here yet; ascending.
+};
+
+/// A ball that a tool may touch: where its chunks are looked for. Model frame, metres.
+struct FrontRegion
+{
+    std::uint32_t model{0};  ///< Of Front::models.
+    bool is_foretold{false}; ///< Else a tool is there.
+    std::array<float, 3> center_m{};
+    float radius_m{0.0F};
+
+    bool operator==(const FrontRegion&) const = default;
 };
 
 /// Where an object stood at the end of the frame.
@@ -54,6 +71,18 @@ struct FrontObject
 
     bool operator==(const FrontObject&) const = default;
 };
+
+/// With the controller's own number of the model.
+[[nodiscard]] inline FrontRegion front_region_of(const RankedRegion& region) noexcept
+{
+    FrontRegion shown{
+        region.model.value, region.lead_ns > 0, {}, static_cast<float>(region.radius_m)};
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+        shown.center_m[axis] = static_cast<float>(region.center_m[static_cast<int>(axis)]);
+    }
+    return shown;
+}
 
 struct FrontTool
 {
@@ -84,10 +113,12 @@ struct Front
     /// Of the numbers from here up to `sweep_end` on the controller all objects are listed.
     std::uint32_t sweep_begin{0};
     std::uint32_t sweep_end{0};
-    std::uint32_t slots_left_out{0}; ///< Of pages, beyond kMaxFrontPages.
+    std::uint32_t slots_left_out{0};   ///< Of pages, beyond kMaxFrontPages.
+    std::uint32_t regions_left_out{0}; ///< Less urgent ones, beyond kMaxFrontRegions.
     std::vector<FrontTool> tools;
-    std::vector<FrontModel> models; ///< Those with pages, and those of `objects`.
+    std::vector<FrontModel> models; ///< Those with pages or wishes, of `objects` or `regions`.
     std::vector<FrontObject> objects;
+    std::vector<FrontRegion> regions; ///< Most urgent first.
 };
 
 } // namespace tactus

@@ -16,6 +16,7 @@ namespace tactus
 DecodedModel::DecodedModel(const ModelHeader& header, std::span<const FrontPage> pages)
     : header_(header)
     , pages_(pages.size())
+    , linked_(pages.size())
     , slots_(header.counts().chunks())
     , base_positions_m_(header.counts().base_vertices)
     , base_faces_(header.counts().base_faces)
@@ -105,7 +106,8 @@ void DecodedModel::link_all(std::span<const FrontPage> pages, const std::string&
     }
     for (std::uint32_t slot = 0; slot < pages.size(); ++slot)
     {
-        const std::uint64_t lacking = pages[slot].refined & ~linker.linked(slot);
+        linked_[slot] = linker.linked(slot);
+        const std::uint64_t lacking = pages[slot].refined & ~linked_[slot];
         if (lacking != 0)
         {
             damage.push_back(fmt::format("{}: chunk {}: {} of its records don't fit those that "

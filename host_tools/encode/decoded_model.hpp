@@ -28,9 +28,8 @@ class DecodedModel
 {
 public:
     /// The base mesh and the chunks of these pages, which are the model's and each there once
-    /// (asserted). What a page's `refined` names must be linked, with all that it depends on, for
-    /// the rest nothing is promised: no record beyond these may be asked for. `name` is for
-    /// `damage`, as below.
+    /// (asserted). What a page's `refined` names must be linked, for the rest nothing is promised:
+    /// no record that isn't linked may be asked for. `name` is for `damage`, as below.
     [[nodiscard]] static DecodedModel decode_pages(const ModelHeader& header,
                                                    std::span<const FrontPage> pages,
                                                    const ReadPiece& read, const std::string& name,
@@ -47,6 +46,11 @@ public:
         return page(chunk_of(id)).records[place_in_chunk(id)];
     }
     [[nodiscard]] const Page& page(ChunkId id) const noexcept { return pages_[slots_[id.value]]; }
+    /// Of a chunk that is here a bit for each record that is linked, with all that it depends on.
+    [[nodiscard]] std::uint64_t linked(ChunkId id) const noexcept
+    {
+        return linked_[slots_[id.value]];
+    }
     /// Where a vertex is, in the model's frame.
     [[nodiscard]] const Vec3f& position_m(VertexId vertex) const noexcept
     {
@@ -74,7 +78,8 @@ private:
 
     ModelHeader header_;
     std::vector<Page> pages_;
-    std::vector<std::uint32_t> slots_; ///< By chunk: where its page is, if it is here.
+    std::vector<std::uint64_t> linked_; ///< One each a page.
+    std::vector<std::uint32_t> slots_;  ///< By chunk: where its page is, if it is here.
     std::vector<Vec3f> base_positions_m_;
     std::vector<BaseFace> base_faces_;
     std::vector<std::uint32_t> base_next_;

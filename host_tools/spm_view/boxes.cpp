@@ -12,6 +12,7 @@
 #include <array>
 #include <bit>
 #include <cstring>
+#include <iterator>
 #include <map>
 #include <utility>
 #include <vector>
@@ -112,18 +113,18 @@ Result<std::string, Refusal> tree_box_bytes(const DecodedModel& model,
     return bytes_of(boxes);
 }
 
-Result<std::string, Refusal> chunk_box_bytes(KnownModel& model, std::span<const FrontPage> pages)
+Result<std::string, Refusal> chunk_box_bytes(KnownModel& model, std::span<const ChunkId> chunks)
 {
     const ModelCounts counts = model.header().counts();
     std::vector<ContentKey> keys;
-    for (const FrontPage& page : pages)
+    for (const ChunkId chunk : chunks)
     {
-        if (page.chunk.value >= counts.chunks())
+        if (chunk.value >= counts.chunks())
         {
             return Refusal{"the front has a chunk that the model has not"};
         }
-        const ContentKey key{ContentKind::index_page, page.chunk.value >> kChunksPerIndexPageLog2};
-        if (keys.empty() || keys.back() != key) // Pages are in the order of their chunks.
+        const ContentKey key{ContentKind::index_page, chunk.value >> kChunksPerIndexPageLog2};
+        if (keys.empty() || keys.back() != key) // They are ascending.
         {
             keys.push_back(key);
         }
@@ -145,11 +146,11 @@ Result<std::string, Refusal> chunk_box_bytes(KnownModel& model, std::span<const 
     }
     std::vector<Aabb> boxes;
     const float quantum_m = model.header().quantum_m();
-    for (const FrontPage& page : pages)
+    for (const ChunkId chunk : chunks)
     {
-        const std::uint32_t number = page.chunk.value >> kChunksPerIndexPageLog2;
+        const std::uint32_t number = chunk.value >> kChunksPerIndexPageLog2;
         const QuantumBox whole = model.header().index_entry({number}).box;
-        const InfluenceBox part = index[number].box(page.chunk.value % kChunksPerIndexPage);
+        const InfluenceBox part = index[number].box(chunk.value % kChunksPerIndexPage);
         Aabb& box = boxes.emplace_back();
         for (std::size_t axis = 0; axis < 3; ++axis)
         {
@@ -160,6 +161,13 @@ Result<std::string, Refusal> chunk_box_bytes(KnownModel& model, std::span<const 
         }
     }
     return bytes_of(boxes);
+}
+
+std::vector<ChunkId> chunks_of(std::span<const FrontPage> pages)
+{
+    std::vector<ChunkId> chunks;
+    std::ranges::transform(pages, std::back_inserter(chunks), &FrontPage::chunk);
+    return chunks;
 }
 
 } // namespace tactus::view

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
 // Any thread, but not the haptic one: calls allocate, and work on their arguments alone.
 //
@@ -25,9 +26,12 @@ inline constexpr std::uint32_t kTreeLevelsMax = 24;
 [[nodiscard]] Result<std::string, Refusal>
 tree_box_bytes(const DecodedModel& model, std::span<const FrontPage> pages, std::uint32_t level);
 
-/// The influence boxes of the pages' chunks: where what a controller has loaded is of use. Waits
-/// for index pages (KnownModel::bring). Refused where the pages aren't the model's.
+/// The influence boxes of chunks, which are ascending: where what a controller has loaded, or
+/// wishes for, is of use. Waits for index pages (KnownModel::bring). Refused where the chunks
+/// aren't the model's.
 [[nodiscard]] Result<std::string, Refusal> chunk_box_bytes(KnownModel& model,
-                                                           std::span<const FrontPage> pages);
+                                                           std::span<const ChunkId> chunks);
+/// The chunks of the pages.
+[[nodiscard]] std::vector<ChunkId> chunks_of(std::span<const FrontPage> pages);
 
 } // namespace tactus::view

@@ -120,7 +120,8 @@ std::uint64_t cut_id(std::span<const FrontPage> pages) noexcept
     return hash;
 }
 
-Result<DecodedModel, Refusal> decode_cut(KnownModel& model, std::span<const FrontPage> pages)
+Result<DecodedModel, Refusal> decode_cut(KnownModel& model, std::span<const FrontPage> pages,
+                                         bool whole)
 {
     if (auto refusal = look_at(model.header().counts(), pages))
     {
@@ -132,7 +133,7 @@ Result<DecodedModel, Refusal> decode_cut(KnownModel& model, std::span<const Fron
     {
         if (page.refined != 0)
         {
-            needed.push_back(page);
+            needed.push_back({page.chunk, whole ? page.refined : 0});
             keys.push_back({ContentKind::chunk, page.chunk.value});
         }
     }
@@ -167,6 +168,28 @@ std::optional<Refusal> split_all(Replay& replay, const DecodedModel& model,
         }
     }
     return std::nullopt;
+}
+
+std::vector<FrontPage> splittable_part(const DecodedModel& model, std::span<const FrontPage> pages)
+{
+    std::vector<FrontPage> linked(pages.begin(), pages.end());
+    std::vector<FrontPage> part = linked;
+    for (std::size_t i = 0; i < part.size(); ++i)
+    {
+        linked[i].refined =
+            part[i].refined == 0 ? 0 : part[i].refined & model.linked(part[i].chunk);
+        part[i].refined = 0;
+    }
+    Replay replay(model);
+    for (const RecordId id : split_records(model, linked))
+    {
+        if (!replay.split(id))
+        {
+            const auto page = std::ranges::lower_bound(part, chunk_of(id), {}, &FrontPage::chunk);
+            page->refined |= std::uint64_t{1} << place_in_chunk(id);
+        }
+    }
+    return part;
 }
 
 Result<std::string, Refusal> cut_bytes(const DecodedModel& model, std::span<const FrontPage> pages)

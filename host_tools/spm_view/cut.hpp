@@ -12,6 +12,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 // Any thread, but not the haptic one: calls allocate, and work on their arguments alone.
 namespace tactus::view
@@ -23,14 +24,21 @@ namespace tactus::view
 
 /// What of a model the pages' split records need: base mesh and their chunks. Waits for what is
 /// still to come (KnownModel::bring). Refused, in words, where the pages aren't the model's, or its
-/// pieces aren't here or don't fit together. Must not outlive the model.
-[[nodiscard]] Result<DecodedModel, Refusal> decode_cut(KnownModel& model,
-                                                       std::span<const FrontPage> pages);
+/// pieces aren't here or don't fit together; unless the pages are the `whole` of the front's cut, a
+/// record may lack what it depends on. Must not outlive the model.
+[[nodiscard]] Result<DecodedModel, Refusal>
+decode_cut(KnownModel& model, std::span<const FrontPage> pages, bool whole = true);
 
 /// Splits all records of the pages. Refused, in words, where the pages aren't the model's: a chunk
 /// that it doesn't have, a record without those that it depends on.
 [[nodiscard]] std::optional<Refusal> split_all(Replay& replay, const DecodedModel& model,
                                                std::span<const FrontPage> pages);
+
+/// The pages with those of their split records that can be split without others: what there is to
+/// show of a front that leaves page slots out (Front::slots_left_out). Takes the model as
+/// decode_cut() makes it of pages that aren't the whole.
+[[nodiscard]] std::vector<FrontPage> splittable_part(const DecodedModel& model,
+                                                     std::span<const FrontPage> pages);
 
 /// The faces of a controller, rebuilt from the model: the base mesh with the pages' records split.
 /// Refused as split_all(). In time by the faces of the model and the split records.

@@ -15,6 +15,7 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <iterator>
 #include <type_traits>
 #include <variant>
 
@@ -215,6 +216,9 @@ struct Film::Maker
             film.pairs_.push_back(telemetry_of(pair));
         }
         moment.pairs_end = static_cast<std::uint32_t>(film.pairs_.size());
+        std::ranges::transform(frame->regions(), std::back_inserter(film.regions_),
+                               front_region_of);
+        moment.regions_end = static_cast<std::uint32_t>(film.regions_.size());
         film.budgets_.set(number, given.budgets);
         take_pages(number);
         take_objects(number, given);
@@ -350,6 +354,12 @@ std::span<const PairTelemetry> Film::pairs(std::uint64_t frame) const
     return std::span(pairs_).subspan(begin, moments_[frame].pairs_end - begin);
 }
 
+std::span<const FrontRegion> Film::regions(std::uint64_t frame) const
+{
+    const std::uint32_t begin = frame == 0 ? 0 : moments_[frame - 1].regions_end;
+    return std::span(regions_).subspan(begin, moments_[frame].regions_end - begin);
+}
+
 LiveController Film::at(std::uint64_t frame) const
 {
     frame = std::min<std::uint64_t>(frame, frames() - 1);
@@ -410,9 +420,10 @@ FrontPointer Film::front(std::uint64_t frame) const
     seen->front.time_ns = moments_[frame].time_ns;
     seen->front.budgets = *budgets_.at(frame);
     seen->front.tools = shapes_;
+    seen->front.regions.assign(regions(frame).begin(), regions(frame).end());
     for (const ModelIdentity& model : models_)
     {
-        seen->front.models.push_back({model.hash, {}});
+        seen->front.models.push_back({model.hash, {}, {}});
     }
     for (const auto& [name, steps] : pages_)
     {

@@ -80,6 +80,7 @@ private:
         std::uint32_t faults{0};
         std::uint32_t faults_seen{0};
         std::uint32_t pairs_end{0};
+        std::uint32_t regions_end{0};
         AnswerKind kind{AnswerKind::decided};
     };
     /// A page's split records; none while it isn't here.
@@ -99,6 +100,7 @@ private:
 
     [[nodiscard]] std::span<const ToolTelemetry> tools(std::uint64_t frame) const;
     [[nodiscard]] std::span<const PairTelemetry> pairs(std::uint64_t frame) const;
+    [[nodiscard]] std::span<const FrontRegion> regions(std::uint64_t frame) const;
     void add_models(std::uint64_t frame, LiveController& controller) const;
 
     dds::ControllerId id_{};
@@ -111,6 +113,7 @@ private:
     std::vector<Moment> moments_;       ///< One a frame.
     std::vector<ToolTelemetry> tools_;  ///< tool_count_ a frame.
     std::vector<PairTelemetry> pairs_;  ///< Up to a moment's pairs_end.
+    std::vector<FrontRegion> regions_;  ///< Up to a moment's regions_end.
     Timeline<Budgets, SameBudgets> budgets_;
     std::vector<Timeline<ModelTelemetry>> model_states_; ///< One a model.
     std::map<PageName, Timeline<Page>> pages_;

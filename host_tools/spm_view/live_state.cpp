@@ -16,10 +16,12 @@ namespace
 std::size_t bytes_of(const Front& front)
 {
     std::size_t bytes = sizeof(dds::SeenFront) + front.objects.size() * sizeof(FrontObject) +
-                        front.tools.size() * sizeof(FrontTool);
+                        front.tools.size() * sizeof(FrontTool) +
+                        front.regions.size() * sizeof(FrontRegion);
     for (const FrontModel& model : front.models)
     {
-        bytes += sizeof(model) + model.pages.size() * sizeof(FrontPage);
+        bytes += sizeof(model) + model.pages.size() * sizeof(FrontPage) +
+                 model.wished.size() * sizeof(ChunkId);
     }
     return bytes;
 }

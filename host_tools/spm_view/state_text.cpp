@@ -140,9 +140,23 @@ Json cuts_json(const Front& front, const ModelShelf& shelf)
                         {"is_here", shelf.has(model.hash)},
                         {"cut", fmt::format("{:016x}", cut_id(model.pages))},
                         {"pages", model.pages.size()},
-                        {"refined", refined}});
+                        {"refined", refined},
+                        {"wished", model.wished.size()}});
     }
     return cuts;
+}
+
+Json regions_json(const Front& front)
+{
+    Json regions = Json::array();
+    for (const FrontRegion& region : front.regions)
+    {
+        regions.push_back({{"model", hash_text(front.models[region.model].hash)},
+                           {"is_foretold", region.is_foretold},
+                           {"center_m", region.center_m},
+                           {"radius_m", region.radius_m}});
+    }
+    return regions;
 }
 
 Json objects_json(const LiveController& controller)
@@ -184,7 +198,9 @@ Json front_json(const LiveController& controller, const ModelShelf& shelf)
               {"pages", front.budgets.pages},
               {"requests", front.budgets.requests}}},
             {"slots_left_out", front.slots_left_out},
+            {"regions_left_out", front.regions_left_out},
             {"models", cuts_json(front, shelf)},
+            {"regions", regions_json(front)},
             {"objects", objects_json(controller)}};
 }
 

@@ -24,6 +24,7 @@
 #include <map>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <string>
 #include <thread>
 #include <utility>
@@ -49,6 +50,20 @@ constexpr milliseconds kLook{100};
 constexpr std::uint64_t kStatesMax = 200;
 /// Answers about fronts that are kept for other viewers.
 constexpr std::size_t kKeptAnswers = 16;
+
+/// What `tell` makes of the front's cut of the model, or of as much of it as can be told.
+template <typename Tell>
+Result<std::string, Refusal> with_cut(KnownModel& model, const FrontModel& front, bool is_whole,
+                                      const Tell& tell)
+{
+    const auto decoded = decode_cut(model, front.pages, is_whole);
+    if (!decoded)
+    {
+        return decoded.error();
+    }
+    return is_whole ? tell(decoded.value(), std::span<const FrontPage>(front.pages))
+                    : tell(decoded.value(), splittable_part(decoded.value(), front.pages));
+}
 
 struct Library
 {
@@ -86,11 +101,13 @@ struct WebServer::Inside
     void send_events(const httplib::Request& request, httplib::Response& response);
     bool send_next(httplib::DataSink& sink, const std::string& chosen, std::uint64_t& seen);
     /// What is built of one model of a front, and a name that tells it from all else.
-    using Build = std::function<Result<std::string, Refusal>(KnownModel&, const FrontModel&)>;
+    /// `is_whole`: the front has all pages of the controller.
+    using Build =
+        std::function<Result<std::string, Refusal>(KnownModel&, const FrontModel&, bool is_whole)>;
     void send_built(const httplib::Request& request, httplib::Response& response,
                     const std::string& what, const Build& build);
     [[nodiscard]] Result<std::shared_ptr<const std::string>, Refusal>
-    built(const std::string& name, KnownModel& model, const FrontModel& front, const Build& build);
+    built(const std::string& name, const std::function<Result<std::string, Refusal>()>& build);
     [[nodiscard]] std::shared_ptr<const std::string> find_kept(const std::string& name);
 
     Parts parts;
@@ -154,19 +171,22 @@ void WebServer::Inside::declare_answers()
                [this](const Request& request, Response& response)
                {
                    send_built(request, response, "faces",
-                              [](KnownModel& model, const FrontModel& front)
-                              {
-                                  const auto decoded = decode_cut(model, front.pages);
-                                  return decoded ? cut_bytes(decoded.value(), front.pages)
-                                                 : decoded.error();
-                              });
+                              [](KnownModel& model, const FrontModel& front, bool is_whole)
+                              { return with_cut(model, front, is_whole, &cut_bytes); });
                });
     server.Get("/loaded",
                [this](const Request& request, Response& response)
                {
                    send_built(request, response, "loaded",
-                              [](KnownModel& model, const FrontModel& front)
-                              { return chunk_box_bytes(model, front.pages); });
+                              [](KnownModel& model, const FrontModel& front, bool)
+                              { return chunk_box_bytes(model, chunks_of(front.pages)); });
+               });
+    server.Get("/wished",
+               [this](const Request& request, Response& response)
+               {
+                   send_built(request, response, "wished",
+                              [](KnownModel& model, const FrontModel& front, bool)
+                              { return chunk_box_bytes(model, front.wished); });
                });
     server.Get("/boxes",
                [this](const Request& request, Response& response)
@@ -174,12 +194,13 @@ void WebServer::Inside::declare_answers()
                    const auto level =
                        number_in<std::uint32_t>(request.get_param_value("level")).value_or(0);
                    send_built(request, response, fmt::format("boxes{}", level),
-                              [level](KnownModel& model, const FrontModel& front)
+                              [level](KnownModel& model, const FrontModel& front, bool is_whole)
                               {
-                                  const auto decoded = decode_cut(model, front.pages);
-                                  return decoded
-                                             ? tree_box_bytes(decoded.value(), front.pages, level)
-                                             : decoded.error();
+                                  return with_cut(model, front, is_whole,
+                                                  [level](const DecodedModel& decoded,
+                                                          std::span<const FrontPage> pages) {
+                                                      return tree_box_bytes(decoded, pages, level);
+                                                  });
                               });
                });
 }
@@ -291,16 +312,19 @@ void WebServer::Inside::send_built(const httplib::Request& request, httplib::Res
         return;
     }
     const auto found = std::ranges::find(seen->front.models, *hash, &FrontModel::hash);
-    const FrontModel front = found == seen->front.models.end() ? FrontModel{*hash, {}} : *found;
-    // Pages without a split record count where what is loaded is asked for.
-    std::uint64_t resident = 0;
-    for (const FrontPage& page : front.pages)
+    const FrontModel front = found == seen->front.models.end() ? FrontModel{*hash, {}, {}} : *found;
+    // Where boxes of chunks are asked for these count, split records or not.
+    std::uint64_t chunks = 0xCBF2'9CE4'8422'2325U;
+    for (const ChunkId chunk : what == "loaded"   ? chunks_of(front.pages)
+                               : what == "wished" ? front.wished
+                                                  : std::vector<ChunkId>{})
     {
-        resident = (resident ^ page.chunk.value) * 0x0000'0100'0000'01B3U;
+        chunks = (chunks ^ chunk.value) * 0x0000'0100'0000'01B3U;
     }
-    const std::string name = fmt::format("{} {} {:016x} {:016x}", what, hash_text(*hash),
-                                         cut_id(front.pages), what == "loaded" ? resident : 0);
-    const auto bytes = built(name, *model, front, build);
+    const std::string name =
+        fmt::format("{} {} {:016x} {:016x}", what, hash_text(*hash), cut_id(front.pages), chunks);
+    const auto bytes =
+        built(name, [&] { return build(*model, front, seen->front.slots_left_out == 0); });
     if (!bytes)
     {
         answer(response, 409, bytes.error().text);
@@ -317,14 +341,14 @@ std::shared_ptr<const std::string> WebServer::Inside::find_kept(const std::strin
 }
 
 Result<std::shared_ptr<const std::string>, Refusal>
-WebServer::Inside::built(const std::string& name, KnownModel& model, const FrontModel& front,
-                         const Build& build)
+WebServer::Inside::built(const std::string& name,
+                         const std::function<Result<std::string, Refusal>()>& build)
 {
     if (auto known = find_kept(name))
     {
         return known;
     }
-    auto bytes = build(model, front);
+    auto bytes = build();
     if (!bytes)
     {
         return bytes.error();

@@ -26,12 +26,26 @@ FrontTimes times_since(const FrontCopy::Times& now, const FrontCopy::Times& befo
     return {std::max(mean_ns, 0.0), static_cast<double>(now.max.ns)}; // Rounding may go below 0.
 }
 
-/// By model, those with pages or an object: where each is among Front::models.
+static_assert(SlotDoor::kOpenWishes <= kMaxFrontWishes);
+
+/// What is asked for and not here yet, by model.
+std::vector<std::vector<ChunkId>> wished_of(const Controller& controller)
+{
+    std::vector<std::vector<ChunkId>> wished(controller.models().size());
+    for (std::uint32_t model = 0; model < wished.size(); ++model)
+    {
+        controller.courier().add_wished_chunks(model, wished[model]);
+        std::ranges::sort(wished[model]);
+    }
+    return wished;
+}
+
+/// By model, those of which the front tells something: where each is among Front::models.
 std::vector<std::uint32_t> add_models(const FrontCopy& copy, const Controller& controller,
                                       Front& front)
 {
     std::vector<std::uint32_t> places(controller.models().size(), 0);
-    for (const PageMeta& slot : copy.slots)
+    for (const ShownPage& slot : copy.slots)
     {
         places[slot.owner] |= slot.chunk.is_none() ? 0U : 1U;
     }
@@ -39,15 +53,20 @@ std::vector<std::uint32_t> add_models(const FrontCopy& copy, const Controller& c
     {
         places[object.model] = 1;
     }
+    for (const FrontRegion& region : copy.regions)
+    {
+        places[region.model] = 1;
+    }
+    std::vector<std::vector<ChunkId>> wished = wished_of(controller);
     for (std::size_t model = 0; model < places.size(); ++model)
     {
-        if (places[model] != 0)
+        if (places[model] != 0 || !wished[model].empty())
         {
             places[model] = static_cast<std::uint32_t>(front.models.size());
-            front.models.push_back({controller.models()[model].hash, {}});
+            front.models.push_back({controller.models()[model].hash, {}, std::move(wished[model])});
         }
     }
-    for (const PageMeta& slot : copy.slots)
+    for (const ShownPage& slot : copy.slots)
     {
         if (!slot.chunk.is_none())
         {
@@ -73,6 +92,7 @@ Front front_of(const FrontCopy& copy, const FrontCopy::AllTimes& before,
     front.sweep_begin = copy.sweep_begin;
     front.sweep_end = copy.sweep_end;
     front.slots_left_out = copy.slots_left_out;
+    front.regions_left_out = copy.regions_left_out;
     std::ranges::transform(copy.times, before, front.times.begin(), times_since);
     for (std::size_t i = 0; i < copy.tools.size(); ++i)
     {
@@ -87,6 +107,11 @@ Front front_of(const FrontCopy& copy, const FrontCopy::AllTimes& before,
         front.objects.push_back({shown ? shown->host_epoch : 0,
                                  shown ? shown->number : object.number, object.number,
                                  places[object.model], pose_of(object.pose)});
+    }
+    for (const FrontRegion& region : copy.regions)
+    {
+        front.regions.push_back(region);
+        front.regions.back().model = places[region.model];
     }
     return front;
 }

@@ -18,7 +18,8 @@ namespace tactus::hrtc
 
 /// What of a front only this side of the tap knows: which models and tools the numbers mean.
 /// `before` are the times of the copy before, for the means; objects are named as the hosts do
-/// where `keeper`, which may be none, knows them. Any thread; allocates.
+/// where `keeper`, which may be none, knows them, and the courier tells what is wished for. The
+/// transport thread; allocates.
 [[nodiscard]] Front front_of(const FrontCopy& copy, const FrontCopy::AllTimes& before,
                              const Controller& controller, const SceneKeeper* keeper);
 

@@ -25,6 +25,7 @@ void FrontTap::copy(const ShownFront& shown, const RunStatistics& statistics) no
     copy_times(statistics);
     copy_pages(shown.made);
     copy_objects(shown);
+    copy_regions(shown.made.regions());
 }
 
 void FrontTap::copy_times(const RunStatistics& statistics) noexcept
@@ -41,7 +42,7 @@ void FrontTap::copy_pages(Frame& frame) noexcept
 {
     const std::span<const PageMeta> metas = frame.pools().cache.pages.metas;
     const std::size_t shown = std::min(metas.size(), copy_.slots.size());
-    std::ranges::copy(metas.first(shown), copy_.slots.begin());
+    std::copy_n(metas.begin(), shown, copy_.slots.begin()); // What of them is shown.
     copy_.slots_left_out = static_cast<std::uint32_t>(metas.size() - shown);
 }
 
@@ -66,6 +67,17 @@ void FrontTap::copy_objects(const ShownFront& shown) noexcept
             copy_object(objects, pair.object);
         }
     }
+}
+
+void FrontTap::copy_regions(std::span<const RankedRegion> regions) noexcept
+{
+    const std::size_t shown = std::min(regions.size(), kMaxFrontRegions);
+    copy_.regions.clear();
+    for (const RankedRegion& region : regions.first(shown))
+    {
+        copy_.regions.push_back(front_region_of(region));
+    }
+    copy_.regions_left_out = static_cast<std::uint32_t>(regions.size() - shown);
 }
 
 void FrontTap::copy_object(const ObjectTable& objects, std::uint32_t number) noexcept

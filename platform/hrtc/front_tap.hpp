@@ -50,8 +50,10 @@ struct FrontCopy
     std::uint32_t sweep_begin{0};
     std::uint32_t sweep_end{0};
     StaticVector<Object, kMaxFrontObjects> objects;
-    std::vector<PageMeta> slots;     ///< Of all models; at most kMaxFrontPages.
-    std::uint32_t slots_left_out{0}; ///< Those beyond.
+    StaticVector<FrontRegion, kMaxFrontRegions> regions; ///< The most urgent ones.
+    std::uint32_t regions_left_out{0};                   ///< The others.
+    std::vector<ShownPage> slots;                        ///< Of all models; at most kMaxFrontPages.
+    std::uint32_t slots_left_out{0};                     ///< Those beyond.
 };
 
 /// One frame in a hundred, copied for whoever looks at what the controller has refined. One copy
@@ -63,7 +65,7 @@ public:
     /// A copy is made at most every so many frames.
     static constexpr std::uint64_t kFrames = 100;
 
-    /// `page_slots`: of all models. Allocates 40 bytes each.
+    /// `page_slots`: of all models. Allocates 16 bytes each.
     explicit FrontTap(std::size_t page_slots);
 
     struct ShownFront
@@ -77,8 +79,8 @@ public:
     };
 
     /// The haptic thread, after a frame. Nothing but a comparison in 99 frames of a hundred and
-    /// while the last copy is out; else it allocates nothing, copies all page slots in one piece
-    /// and goes through awake pairs and kFrontSweep objects once.
+    /// while the last copy is out; else it allocates nothing, copies 16 bytes of each page slot and
+    /// goes through awake pairs, kMaxFrontRegions regions and kFrontSweep objects once.
     void show(const ShownFront& shown, const RunStatistics& statistics) noexcept
     {
         // Pairs with the release in give_back().
@@ -104,6 +106,7 @@ private:
     void copy_times(const RunStatistics& statistics) noexcept;
     void copy_pages(Frame& frame) noexcept;
     void copy_objects(const ShownFront& shown) noexcept;
+    void copy_regions(std::span<const RankedRegion> regions) noexcept;
     void copy_object(const ObjectTable& objects, std::uint32_t number) noexcept;
 
     std::atomic<bool> is_out_{false};

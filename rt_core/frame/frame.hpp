@@ -62,6 +62,8 @@ public:
     [[nodiscard]] const Tool& tool(std::uint32_t index) const noexcept { return tools_[index]; }
     /// The scene's objects by their numbers, as the last frame left them.
     [[nodiscard]] const ObjectTable& objects() const noexcept { return objects_; }
+    /// What tools may touch, most urgent first: where pages were looked for last.
+    [[nodiscard]] std::span<const RankedRegion> regions() const noexcept { return ranking_.view(); }
     /// The transport thread's parts of a model: its inbox, linker and slots.
     [[nodiscard]] Model& model(ModelId id) noexcept { return models_[id]; }
     [[nodiscard]] const Model& model(ModelId id) const noexcept { return models_[id]; }

@@ -12,16 +12,22 @@
 namespace tactus
 {
 
-/// What the haptic thread knows of a page slot.
-struct PageMeta
+/// What of a page slot is shown to viewers: one register's worth, so that copying all is cheap.
+struct ShownPage
 {
-    ChunkId chunk{};          ///< None: the slot is the transport thread's.
-    std::uint32_t touched{0}; ///< Frame number of the last use.
+    ChunkId chunk{};        ///< None: the slot is the transport thread's.
+    std::uint32_t owner{0}; ///< The model that had the slot last.
     static_assert(kRecordsPerChunk <= 64);
     std::uint64_t refined{0}; ///< One bit a record. The page is pinned while any is set.
+};
+static_assert(sizeof(ShownPage) == 16);
+
+/// What the haptic thread knows of a page slot.
+struct PageMeta : ShownPage
+{
     std::uint64_t held{0};    ///< Refined for a closure that isn't complete; not to be merged.
     std::uint64_t linked{0};  ///< As the inbox has told so far; the linker may know of more.
-    std::uint32_t owner{0};   ///< The model that had the slot last.
+    std::uint32_t touched{0}; ///< Frame number of the last use.
 };
 
 /// Which chunk of which model is in which slot, for the page tables of all models. 56 B a page.

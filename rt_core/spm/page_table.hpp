@@ -39,7 +39,7 @@ public:
         TACTUS_ASSERT(!chunk.is_none());
         TACTUS_ASSERT(slot < meta_.size());
         TACTUS_ASSERT(meta_[slot].chunk.is_none());
-        meta_[slot] = Meta{chunk, frame, 0, 0, linked, owner_};
+        meta_[slot] = Meta{{chunk, owner_, 0}, 0, linked, frame};
         const bool inserted = pool_->slot_of.try_insert(first_key_ + chunk.value, slot);
         TACTUS_ASSERT(inserted);
         ++used_;

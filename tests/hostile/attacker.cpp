@@ -52,8 +52,8 @@ class Attacker
 public:
     explicit Attacker(std::uint32_t domain)
         : participant_(checked(dds_create_participant(domain, nullptr, nullptr)))
-        , catalogue_(reader("tactus/v3/catalogue", tactus_v3_CatalogueEntry_desc))
-        , wanted_(reader("tactus/v3/wanted", tactus_v3_Wanted_desc))
+        , catalogue_(reader("tactus/v4/catalogue", tactus_v4_CatalogueEntry_desc))
+        , wanted_(reader("tactus/v4/wanted", tactus_v4_Wanted_desc))
     {
         dds_guid_t guid = {};
         dds_get_guid(participant_, &guid);
@@ -137,8 +137,8 @@ public:
 
     std::vector<std::uint16_t> ports; ///< The others'.
     std::shared_ptr<RawRtps> raw;     ///< For attacks without DDS.
-    tactus_v3_CatalogueEntry host{};  ///< What was seen.
-    tactus_v3_Wanted victim{};
+    tactus_v4_CatalogueEntry host{};  ///< What was seen.
+    tactus_v4_Wanted victim{};
 
 private:
     /// Without what is behind pointers.
@@ -164,9 +164,9 @@ private:
 /// Returns what is done again and again.
 using Attack = std::function<std::function<void(std::uint64_t turn)>(Attacker&)>;
 
-tactus_v3_Placement placement(double x_m)
+tactus_v4_Placement placement(double x_m)
 {
-    tactus_v3_Placement place = {};
+    tactus_v4_Placement place = {};
     place.rotation[3] = 1.0;
     place.translation_m[0] = x_m;
     place.scale = 1.0;
@@ -179,20 +179,20 @@ Attack move_object(std::uint64_t serial, double x_m)
     return [=](Attacker& self)
     {
         const auto motion =
-            self.writer("tactus/v3/motion", tactus_v3_Motion_desc, self.host_partition(), true);
+            self.writer("tactus/v4/motion", tactus_v4_Motion_desc, self.host_partition(), true);
         const auto records =
-            self.writer("tactus/v3/objects", tactus_v3_ObjectRecord_desc, self.host_partition());
+            self.writer("tactus/v4/objects", tactus_v4_ObjectRecord_desc, self.host_partition());
         return [=, &self](std::uint64_t turn)
         {
-            tactus_v3_MovedObject moved{0, 1, placement(turn % 2 == 0 ? x_m : 0.0)};
-            tactus_v3_Motion sample = {};
+            tactus_v4_MovedObject moved{0, 1, placement(turn % 2 == 0 ? x_m : 0.0)};
+            tactus_v4_Motion sample = {};
             sample.host_epoch = self.host.host_epoch;
             sample.serial = serial == 0 ? 1'000'000 + turn : serial;
             sample.host_time_ns = static_cast<std::int64_t>(turn) * 4'000'000;
             sample.objects = 1;
             sample.moved = {1, 1, &moved, false};
             dds_write(motion, &sample);
-            tactus_v3_ObjectRecord record = {};
+            tactus_v4_ObjectRecord record = {};
             record.host_epoch = self.host.host_epoch;
             record.generation = 1;
             record.serial = sample.serial;
@@ -208,7 +208,7 @@ Attack dispose_catalogue()
 {
     return [](Attacker& self)
     {
-        const auto writer = self.writer("tactus/v3/catalogue", tactus_v3_CatalogueEntry_desc, "");
+        const auto writer = self.writer("tactus/v4/catalogue", tactus_v4_CatalogueEntry_desc, "");
         return [=, &self](std::uint64_t) { dds_dispose(writer, &self.host); };
     };
 }
@@ -218,10 +218,10 @@ Attack forge_catalogue()
 {
     return [](Attacker& self)
     {
-        const auto writer = self.writer("tactus/v3/catalogue", tactus_v3_CatalogueEntry_desc, "");
+        const auto writer = self.writer("tactus/v4/catalogue", tactus_v4_CatalogueEntry_desc, "");
         return [=, &self](std::uint64_t)
         {
-            tactus_v3_CatalogueEntry entry = self.host;
+            tactus_v4_CatalogueEntry entry = self.host;
             entry.model_hash[0] ^= 1U;
             dds_write(writer, &entry);
         };
@@ -240,10 +240,10 @@ Attack spam_catalogue()
 {
     return [](Attacker& self)
     {
-        const auto writer = self.writer("tactus/v3/catalogue", tactus_v3_CatalogueEntry_desc, "");
+        const auto writer = self.writer("tactus/v4/catalogue", tactus_v4_CatalogueEntry_desc, "");
         return [=, &self](std::uint64_t turn)
         {
-            tactus_v3_CatalogueEntry entry = self.host;
+            tactus_v4_CatalogueEntry entry = self.host;
             std::snprintf(static_cast<char*>(entry.name), sizeof(entry.name), "bogus-%llu",
                           static_cast<unsigned long long>(turn));
             entry.model = number_in(turn);
@@ -259,10 +259,10 @@ Attack spam_wanted(bool right_epoch)
 {
     return [=](Attacker& self)
     {
-        const auto writer = self.writer("tactus/v3/wanted", tactus_v3_Wanted_desc, "stranger");
+        const auto writer = self.writer("tactus/v4/wanted", tactus_v4_Wanted_desc, "stranger");
         return [=, &self](std::uint64_t turn)
         {
-            tactus_v3_Wanted wanted = {};
+            tactus_v4_Wanted wanted = {};
             std::memcpy(wanted.controller, self.own().data(), self.own().size());
             std::memcpy(wanted.controller, &turn, sizeof(turn));
             wanted.host_epoch = self.host.host_epoch + (right_epoch ? 0 : 1 + turn);
@@ -279,15 +279,15 @@ Attack forge_wanted()
     return [](Attacker& self)
     {
         const auto writer =
-            self.writer("tactus/v3/wanted", tactus_v3_Wanted_desc, self.victim_name());
+            self.writer("tactus/v4/wanted", tactus_v4_Wanted_desc, self.victim_name());
         return [=, &self](std::uint64_t turn)
         {
-            std::array<tactus_v3_PieceName, 200> names{};
+            std::array<tactus_v4_PieceName, 200> names{};
             for (std::uint32_t i = 0; i < names.size(); ++i)
             {
                 names.at(i) = {0, 2, i};
             }
-            tactus_v3_Wanted wanted = self.victim;
+            tactus_v4_Wanted wanted = self.victim;
             wanted.generation = static_cast<std::uint32_t>(1'000'000 + turn);
             wanted.seen = wanted.received = 0;
             wanted.granted = UINT64_MAX;
@@ -302,10 +302,10 @@ Attack dispose_wanted()
     return [](Attacker& self)
     {
         const auto writer =
-            self.writer("tactus/v3/wanted", tactus_v3_Wanted_desc, self.victim_name());
+            self.writer("tactus/v4/wanted", tactus_v4_Wanted_desc, self.victim_name());
         return [=, &self](std::uint64_t)
         {
-            tactus_v3_Wanted wanted = self.victim;
+            tactus_v4_Wanted wanted = self.victim;
             wanted.pieces = {};
             dds_dispose(writer, &wanted);
         };
@@ -318,10 +318,10 @@ Attack dispose_object()
     return [](Attacker& self)
     {
         const auto writer =
-            self.writer("tactus/v3/objects", tactus_v3_ObjectRecord_desc, self.host_partition());
+            self.writer("tactus/v4/objects", tactus_v4_ObjectRecord_desc, self.host_partition());
         return [=, &self](std::uint64_t)
         {
-            tactus_v3_ObjectRecord record = {};
+            tactus_v4_ObjectRecord record = {};
             record.host_epoch = self.host.host_epoch;
             dds_dispose(writer, &record);
         };
@@ -334,10 +334,10 @@ Attack spam_objects()
     return [](Attacker& self)
     {
         const auto writer =
-            self.writer("tactus/v3/objects", tactus_v3_ObjectRecord_desc, self.host_partition());
+            self.writer("tactus/v4/objects", tactus_v4_ObjectRecord_desc, self.host_partition());
         return [=, &self](std::uint64_t turn)
         {
-            tactus_v3_ObjectRecord record = {};
+            tactus_v4_ObjectRecord record = {};
             record.host_epoch = self.host.host_epoch;
             record.object = number_in(turn);
             record.generation = 1'000;
@@ -358,7 +358,7 @@ Attack forge_pieces()
     return [](Attacker& self)
     {
         const auto writer =
-            self.writer("tactus/v3/chunks", tactus_v3_Pieces_desc, self.victim_partition());
+            self.writer("tactus/v4/chunks", tactus_v4_Pieces_desc, self.victim_partition());
         return [=, &self](std::uint64_t turn)
         {
             std::array<std::uint8_t, 4'000> bytes{};
@@ -366,7 +366,7 @@ Attack forge_pieces()
             bytes[20] = 2; // A chunk.
             bytes[24] = static_cast<std::uint8_t>(turn);
             bytes[28] = 100;
-            tactus_v3_Pieces pieces = {};
+            tactus_v4_Pieces pieces = {};
             pieces.sent = UINT64_MAX;
             pieces.payload = {bytes.size(), bytes.size(), bytes.data(), false};
             for (const std::uint64_t epoch : {self.host.host_epoch, self.own_epoch()})
@@ -383,9 +383,9 @@ Attack replay_pieces()
 {
     return [](Attacker& self)
     {
-        const auto from = self.reader("tactus/v3/chunks", tactus_v3_Pieces_desc);
+        const auto from = self.reader("tactus/v4/chunks", tactus_v4_Pieces_desc);
         const auto writer =
-            self.writer("tactus/v3/chunks", tactus_v3_Pieces_desc, self.victim_partition());
+            self.writer("tactus/v4/chunks", tactus_v4_Pieces_desc, self.victim_partition());
         return [=](std::uint64_t)
         {
             std::array<void*, 4> samples{};
@@ -412,10 +412,10 @@ Attack forge_telemetry()
     return [](Attacker& self)
     {
         const auto writer =
-            self.writer("tactus/v3/telemetry", tactus_v3_Telemetry_desc, self.victim_name(), true);
+            self.writer("tactus/v4/telemetry", tactus_v4_Telemetry_desc, self.victim_name(), true);
         return [=, &self](std::uint64_t turn)
         {
-            tactus_v3_Telemetry news = {};
+            tactus_v4_Telemetry news = {};
             std::memcpy(news.controller, self.victim.controller, sizeof(news.controller));
             std::strcpy(static_cast<char*>(news.controller_name), "victim");
             news.serial = UINT64_MAX;
@@ -434,10 +434,10 @@ Attack visit()
 {
     return [](Attacker& self)
     {
-        const auto writer = self.writer("tactus/v3/wanted", tactus_v3_Wanted_desc, "stranger");
+        const auto writer = self.writer("tactus/v4/wanted", tactus_v4_Wanted_desc, "stranger");
         return [=, &self](std::uint64_t turn)
         {
-            tactus_v3_Wanted wanted = {};
+            tactus_v4_Wanted wanted = {};
             std::memcpy(wanted.controller, self.own().data(), self.own().size());
             wanted.host_epoch = self.host.host_epoch;
             wanted.granted = 128;

@@ -63,9 +63,9 @@ Catalogue::Catalogue(Participants& participants, Endpoint reader, Log log)
 void Catalogue::refresh()
 {
     participants_->report(log_);
-    take_each<tactus_v3_CatalogueEntry>(
+    take_each<tactus_v4_CatalogueEntry>(
         reader_.handle, kMaxOffers,
-        [this](const tactus_v3_CatalogueEntry& entry, const dds_sample_info_t& info)
+        [this](const tactus_v4_CatalogueEntry& entry, const dds_sample_info_t& info)
         {
             const std::string name(entry.name, ::strnlen(entry.name, sizeof(entry.name)));
             const std::string scene(entry.scene, ::strnlen(entry.scene, sizeof(entry.scene)));

@@ -42,7 +42,7 @@ constexpr std::size_t kRequestsPerStep = 1'024;
 constexpr auto kMatchWait = std::chrono::milliseconds(2);
 
 /// What a controller calls itself, fit to be printed.
-std::string name_of(const tactus_v3_Wanted& wanted)
+std::string name_of(const tactus_v4_Wanted& wanted)
 {
     const char* const text = static_cast<const char*>(wanted.controller_name);
     return printable({text, ::strnlen(text, sizeof(wanted.controller_name))});
@@ -194,7 +194,7 @@ void DdsHost::announce()
     {
         const ModelStore& store = models_[i].store();
         const HeaderFields& fields = store.header().fields();
-        tactus_v3_CatalogueEntry entry = {};
+        tactus_v4_CatalogueEntry entry = {};
         entry.host_epoch = epoch_;
         entry.model = i;
         models_[i].model().name.copy(static_cast<char*>(entry.name), kMaxNameBytes);
@@ -210,9 +210,9 @@ void DdsHost::announce()
 
 void DdsHost::take_requests()
 {
-    take_each<tactus_v3_Wanted>(
+    take_each<tactus_v4_Wanted>(
         wanted_.handle, kRequestsPerStep,
-        [this](const tactus_v3_Wanted& wanted, const dds_sample_info_t& info)
+        [this](const tactus_v4_Wanted& wanted, const dds_sample_info_t& info)
         {
             ControllerId controller{};
             std::memcpy(controller.data(), wanted.controller, sizeof(wanted.controller));
@@ -232,7 +232,7 @@ void DdsHost::take_requests()
         });
 }
 
-void DdsHost::on_request(const ControllerId& controller, const tactus_v3_Wanted& wanted)
+void DdsHost::on_request(const ControllerId& controller, const tactus_v4_Wanted& wanted)
 {
     Client* client = find(controller);
     client = client == nullptr ? add_client(controller, wanted) : client;
@@ -259,11 +259,11 @@ void DdsHost::on_request(const ControllerId& controller, const tactus_v3_Wanted&
     take_wishes(*client, wanted);
 }
 
-void DdsHost::take_wishes(Client& client, const tactus_v3_Wanted& wanted)
+void DdsHost::take_wishes(Client& client, const tactus_v4_Wanted& wanted)
 {
     for (std::uint32_t i = 0; i < wanted.pieces._length; ++i)
     {
-        const tactus_v3_PieceName& name = wanted.pieces._buffer[i];
+        const tactus_v4_PieceName& name = wanted.pieces._buffer[i];
         const ContentKey key{static_cast<ContentKind>(name.kind), name.number};
         if (name.model >= models_.size() || !models_[name.model].has(key))
         {
@@ -280,7 +280,7 @@ void DdsHost::refuse(const ControllerId& controller, Refused reason)
     domain_.participants().refusals().count(controller, reason);
 }
 
-DdsHost::Client* DdsHost::add_client(const ControllerId& controller, const tactus_v3_Wanted& wanted)
+DdsHost::Client* DdsHost::add_client(const ControllerId& controller, const tactus_v4_Wanted& wanted)
 {
     const std::string name = name_of(wanted);
     if (!is_valid_name(name)) // It would name a partition.

@@ -28,10 +28,10 @@ namespace
 constexpr std::array kBudgetOrder{&Budgets::splits,   &Budgets::merges,    &Budgets::scanned,
                                   &Budgets::nodes,    &Budgets::triangles, &Budgets::pages,
                                   &Budgets::requests, &Budgets::regions};
-static_assert(std::size(tactus_v3_Front{}.budgets) == kBudgetOrder.size());
+static_assert(std::size(tactus_v4_Front{}.budgets) == kBudgetOrder.size());
 // All but what proxies look at.
 static_assert(sizeof(Budgets) == (kBudgetOrder.size() + 1) * sizeof(std::uint32_t));
-static_assert(std::size(tactus_v3_Front{}.times) == kFrontTimes);
+static_assert(std::size(tactus_v4_Front{}.times) == kFrontTimes);
 
 template <std::size_t Size>
 std::string_view characters_of(const char (&text)[Size]) // NOLINT: idlc's type.
@@ -39,7 +39,7 @@ std::string_view characters_of(const char (&text)[Size]) // NOLINT: idlc's type.
     return {static_cast<const char*>(text), ::strnlen(static_cast<const char*>(text), Size)};
 }
 
-ControllerId controller_of(const tactus_v3_Front& sample)
+ControllerId controller_of(const tactus_v4_Front& sample)
 {
     ControllerId id{};
     std::memcpy(id.data(), sample.controller, id.size());
@@ -54,6 +54,7 @@ void copy_head(const From& from, To& to)
     to.sweep_begin = from.sweep_begin;
     to.sweep_end = from.sweep_end;
     to.slots_left_out = from.slots_left_out;
+    to.regions_left_out = from.regions_left_out;
     for (std::size_t i = 0; i < kFrontTimes; ++i)
     {
         to.times[i] = {from.times[i].mean_ns, from.times[i].max_ns};
@@ -65,7 +66,7 @@ bool is_time(double ns)
     return std::isfinite(ns) && ns >= 0.0;
 }
 
-std::optional<FrontTool> tool_from(const tactus_v3_FrontTool& wire)
+std::optional<FrontTool> tool_from(const tactus_v4_FrontTool& wire)
 {
     const std::string_view shape = characters_of(wire.shape);
     constexpr std::uint32_t known = (1U << kForceOffs) - 1;
@@ -78,7 +79,7 @@ std::optional<FrontTool> tool_from(const tactus_v3_FrontTool& wire)
                      std::string(shape), wire.radius_m};
 }
 
-std::optional<FrontObject> object_from(const tactus_v3_FrontObject& wire, std::uint32_t models)
+std::optional<FrontObject> object_from(const tactus_v4_FrontObject& wire, std::uint32_t models)
 {
     // A model may lie farther from its frame's origin than an object may be moved.
     const Pose told = from_wire(wire.pose);
@@ -92,41 +93,74 @@ std::optional<FrontObject> object_from(const tactus_v3_FrontObject& wire, std::u
                        pose ? pose.value() : told};
 }
 
-/// The models with their pages; none where these don't add up or aren't in order.
-std::optional<std::vector<FrontModel>> models_from(const tactus_v3_Front& sample)
+/// Whether it is a chunk that a model may have, and comes after the last one of its list.
+template <typename Last>
+bool is_next_chunk(ChunkId chunk, const Last& last)
+{
+    return chunk.value <= kMaxRecords >> kRecordsPerChunkLog2 && (!last || chunk > *last);
+}
+
+/// The models with their pages and wishes; none where these don't add up or aren't in order.
+std::optional<std::vector<FrontModel>> models_from(const tactus_v4_Front& sample)
 {
     std::vector<FrontModel> models;
     std::uint32_t next = 0;
+    std::uint32_t next_wish = 0;
     for (std::uint32_t i = 0; i < sample.models._length; ++i)
     {
-        const tactus_v3_FrontModel& wire = sample.models._buffer[i];
+        const tactus_v4_FrontModel& wire = sample.models._buffer[i];
         FrontModel& model = models.emplace_back();
         std::memcpy(model.hash.data(), wire.hash, model.hash.size());
-        if (wire.pages > sample.chunks._length - next)
+        if (wire.pages > sample.chunks._length - next ||
+            wire.wished > sample.wished._length - next_wish)
         {
             return std::nullopt;
         }
         for (const std::uint32_t end = next + wire.pages; next < end; ++next)
         {
             const ChunkId chunk{sample.chunks._buffer[next]};
-            const bool is_next = model.pages.empty() || chunk > model.pages.back().chunk;
-            if (!is_next || chunk.value > kMaxRecords >> kRecordsPerChunkLog2)
+            if (!is_next_chunk(chunk, model.pages.empty()
+                                          ? std::nullopt
+                                          : std::optional(model.pages.back().chunk)))
             {
                 return std::nullopt;
             }
             model.pages.push_back({chunk, sample.refined._buffer[next]});
         }
+        for (const std::uint32_t end = next_wish + wire.wished; next_wish < end; ++next_wish)
+        {
+            const ChunkId chunk{sample.wished._buffer[next_wish]};
+            if (!is_next_chunk(chunk, model.wished.empty() ? std::nullopt
+                                                           : std::optional(model.wished.back())))
+            {
+                return std::nullopt;
+            }
+            model.wished.push_back(chunk);
+        }
     }
-    return next == sample.chunks._length ? std::optional(std::move(models)) : std::nullopt;
+    return next == sample.chunks._length && next_wish == sample.wished._length
+               ? std::optional(std::move(models))
+               : std::nullopt;
 }
 
-std::optional<Front> front_from(const tactus_v3_Front& sample)
+std::optional<FrontRegion> region_from(const tactus_v4_FrontRegion& wire, std::uint32_t models)
+{
+    FrontRegion region{wire.model, wire.is_foretold, {}, wire.radius_m};
+    std::ranges::copy(wire.center_m, region.center_m.begin());
+    const bool is_sound =
+        wire.model < models && is_time(region.radius_m) &&
+        std::ranges::all_of(region.center_m, [](float x) { return std::isfinite(x); });
+    return is_sound ? std::optional(region) : std::nullopt;
+}
+
+std::optional<Front> front_from(const tactus_v4_Front& sample)
 {
     const bool is_in_bounds =
         sample.tools._length <= kMaxTools && sample.models._length <= kMaxModels &&
         sample.objects._length <= kMaxFrontObjects && sample.chunks._length <= kMaxFrontPages &&
-        sample.refined._length == sample.chunks._length && sample.sweep_begin <= sample.sweep_end &&
-        sample.sweep_end <= kMaxObjects;
+        sample.refined._length == sample.chunks._length &&
+        sample.wished._length <= kMaxFrontWishes && sample.regions._length <= kMaxFrontRegions &&
+        sample.sweep_begin <= sample.sweep_end && sample.sweep_end <= kMaxObjects;
     if (!is_in_bounds || !is_valid_name(std::string(characters_of(sample.controller_name))))
     {
         return std::nullopt;
@@ -163,12 +197,21 @@ std::optional<Front> front_from(const tactus_v3_Front& sample)
         }
         front.objects.push_back(*object);
     }
+    for (std::uint32_t i = 0; i < sample.regions._length; ++i)
+    {
+        const auto region = region_from(sample.regions._buffer[i], sample.models._length);
+        if (!region)
+        {
+            return std::nullopt;
+        }
+        front.regions.push_back(*region);
+    }
     return front;
 }
 
-tactus_v3_FrontTool to_wire(const FrontTool& tool)
+tactus_v4_FrontTool to_wire(const FrontTool& tool)
 {
-    tactus_v3_FrontTool wire = {};
+    tactus_v4_FrontTool wire = {};
     wire.state = static_cast<std::uint8_t>(tool.state);
     wire.causes = static_cast<std::uint32_t>(tool.causes);
     tool.shape.copy(static_cast<char*>(wire.shape), kMaxShapeBytes);
@@ -176,14 +219,24 @@ tactus_v3_FrontTool to_wire(const FrontTool& tool)
     return wire;
 }
 
-tactus_v3_FrontObject to_wire(const FrontObject& object)
+tactus_v4_FrontObject to_wire(const FrontObject& object)
 {
-    tactus_v3_FrontObject wire = {};
+    tactus_v4_FrontObject wire = {};
     wire.host_epoch = object.host_epoch;
     wire.object = object.object;
     wire.number = object.number;
     wire.model = static_cast<std::uint16_t>(object.model);
     wire.pose = dds::to_wire(object.pose);
+    return wire;
+}
+
+tactus_v4_FrontRegion to_wire(const FrontRegion& region)
+{
+    tactus_v4_FrontRegion wire = {};
+    wire.model = static_cast<std::uint16_t>(region.model);
+    wire.is_foretold = region.is_foretold;
+    std::ranges::copy(region.center_m, std::begin(wire.center_m));
+    wire.radius_m = region.radius_m;
     return wire;
 }
 
@@ -221,18 +274,21 @@ void FrontWriter::write(const Front& front)
     TACTUS_ASSERT(front.tools.size() <= kMaxTools);
     TACTUS_ASSERT(front.models.size() <= kMaxModels);
     TACTUS_ASSERT(front.objects.size() <= kMaxFrontObjects);
-    std::vector<tactus_v3_FrontTool> tools;
-    std::vector<tactus_v3_FrontModel> models;
-    std::vector<tactus_v3_FrontObject> objects;
+    TACTUS_ASSERT(front.regions.size() <= kMaxFrontRegions);
+    std::vector<tactus_v4_FrontTool> tools;
+    std::vector<tactus_v4_FrontModel> models;
+    std::vector<tactus_v4_FrontObject> objects;
     std::vector<std::uint32_t> chunks;
     std::vector<std::uint64_t> refined;
+    std::vector<std::uint32_t> wished;
+    std::vector<tactus_v4_FrontRegion> regions;
     for (const FrontTool& tool : front.tools)
     {
         tools.push_back(to_wire(tool));
     }
     for (const FrontModel& model : front.models)
     {
-        tactus_v3_FrontModel& wire = models.emplace_back();
+        tactus_v4_FrontModel& wire = models.emplace_back();
         std::memcpy(wire.hash, model.hash.data(), model.hash.size());
         wire.pages = static_cast<std::uint32_t>(model.pages.size());
         for (const FrontPage& page : model.pages)
@@ -240,14 +296,22 @@ void FrontWriter::write(const Front& front)
             chunks.push_back(page.chunk.value);
             refined.push_back(page.refined);
         }
+        wire.wished = static_cast<std::uint32_t>(model.wished.size());
+        std::ranges::transform(model.wished, std::back_inserter(wished), &ChunkId::value);
     }
     TACTUS_ASSERT(chunks.size() <= kMaxFrontPages);
+    TACTUS_ASSERT(wished.size() <= kMaxFrontWishes);
     for (const FrontObject& object : front.objects)
     {
         TACTUS_ASSERT(object.model < front.models.size());
         objects.push_back(to_wire(object));
     }
-    tactus_v3_Front sample = {};
+    for (const FrontRegion& region : front.regions)
+    {
+        TACTUS_ASSERT(region.model < front.models.size());
+        regions.push_back(to_wire(region));
+    }
+    tactus_v4_Front sample = {};
     std::memcpy(sample.controller, controller_.data(), controller_.size());
     controller_name_.copy(static_cast<char*>(sample.controller_name), kMaxNameBytes);
     sample.serial = ++sent_;
@@ -261,6 +325,8 @@ void FrontWriter::write(const Front& front)
     sample.objects = sequence_of<decltype(sample.objects)>(objects);
     sample.chunks = sequence_of<decltype(sample.chunks)>(chunks);
     sample.refined = sequence_of<decltype(sample.refined)>(refined);
+    sample.wished = sequence_of<decltype(sample.wished)>(wished);
+    sample.regions = sequence_of<decltype(sample.regions)>(regions);
     dds_write(writer_.handle, &sample); // One that fails is a lost one: the next is as good.
 }
 
@@ -282,8 +348,8 @@ FrontReader::FrontReader(Participants& participants, Endpoint reader)
 
 void FrontReader::poll()
 {
-    take_each<tactus_v3_Front>(reader_.handle, kMaxSeen,
-                               [this](const tactus_v3_Front& sample, const dds_sample_info_t& info)
+    take_each<tactus_v4_Front>(reader_.handle, kMaxSeen,
+                               [this](const tactus_v4_Front& sample, const dds_sample_info_t& info)
                                {
                                    if (tells_end(info))
                                    {
@@ -301,7 +367,7 @@ void FrontReader::poll()
 }
 
 /// Of who isn't the controller it is no news.
-void FrontReader::on_end(const tactus_v3_Front& sample, std::uint64_t writer)
+void FrontReader::on_end(const tactus_v4_Front& sample, std::uint64_t writer)
 {
     const ControllerId controller = controller_of(sample);
     const auto who = participants_.writer_of(writer);
@@ -313,7 +379,7 @@ void FrontReader::on_end(const tactus_v3_Front& sample, std::uint64_t writer)
     std::erase_if(fronts_, [&](const SeenFront& each) { return each.id == controller; });
 }
 
-bool FrontReader::try_take(const tactus_v3_Front& sample, const dds_sample_info_t& info)
+bool FrontReader::try_take(const tactus_v4_Front& sample, const dds_sample_info_t& info)
 {
     auto front = front_from(sample);
     const ControllerId id = controller_of(sample);

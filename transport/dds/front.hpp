@@ -14,7 +14,7 @@
 #include <vector>
 
 struct dds_sample_info;
-struct tactus_v3_Front; // idlc's type of a sample.
+struct tactus_v4_Front; // idlc's type of a sample.
 
 namespace tactus::dds
 {
@@ -79,8 +79,8 @@ public:
 private:
     FrontReader(Participants& participants, Endpoint reader);
 
-    void on_end(const tactus_v3_Front& sample, std::uint64_t writer);
-    [[nodiscard]] bool try_take(const tactus_v3_Front& sample, const dds_sample_info& info);
+    void on_end(const tactus_v4_Front& sample, std::uint64_t writer);
+    [[nodiscard]] bool try_take(const tactus_v4_Front& sample, const dds_sample_info& info);
 
     Participants& participants_;
     Endpoint reader_;

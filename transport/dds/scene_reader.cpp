@@ -117,9 +117,9 @@ void SceneReader::join(std::uint64_t epoch, Host& host)
 
 void SceneReader::take_records(std::uint64_t epoch, Host& host, const Take& take)
 {
-    take_each<tactus_v3_ObjectRecord>(
+    take_each<tactus_v4_ObjectRecord>(
         host.records.handle, kRecordsPerPoll,
-        [&](const tactus_v3_ObjectRecord& record, const dds_sample_info_t& info)
+        [&](const tactus_v4_ObjectRecord& record, const dds_sample_info_t& info)
         {
             if (info.valid_data)
             {
@@ -150,7 +150,7 @@ void SceneReader::take_records(std::uint64_t epoch, Host& host, const Take& take
 }
 
 /// Why nothing came of it; none when it is fine.
-std::optional<Refused> SceneReader::take_record(Host& host, const tactus_v3_ObjectRecord& record,
+std::optional<Refused> SceneReader::take_record(Host& host, const tactus_v4_ObjectRecord& record,
                                                 const Take& take)
 {
     const char* const text = static_cast<const char*>(record.name);
@@ -205,9 +205,9 @@ std::optional<Refused> SceneReader::take_record(Host& host, const tactus_v3_Obje
 void SceneReader::take_motion(Host& host, const Take& take)
 {
     host.was_heard = false;
-    take_each<tactus_v3_Motion>(
+    take_each<tactus_v4_Motion>(
         host.motion.handle, kMotionPerPoll,
-        [&](const tactus_v3_Motion& motion, const dds_sample_info_t& info)
+        [&](const tactus_v4_Motion& motion, const dds_sample_info_t& info)
         {
             if (!info.valid_data)
             {
@@ -216,7 +216,7 @@ void SceneReader::take_motion(Host& host, const Take& take)
             host.was_heard = true;
             for (std::uint32_t i = 0; i < motion.moved._length; ++i)
             {
-                const tactus_v3_MovedObject& moved = motion.moved._buffer[i];
+                const tactus_v4_MovedObject& moved = motion.moved._buffer[i];
                 const auto known = host.objects.find(moved.object);
                 if (known == host.objects.end() || known->second.generation != moved.generation)
                 {
@@ -286,7 +286,7 @@ void SceneReader::look_at_strangers(std::uint64_t epoch, Host& host, const Take&
 }
 
 /// Whether the pose was accepted; counted either way.
-bool SceneReader::try_move(SeenObject& object, std::uint64_t serial, const tactus_v3_Placement& to)
+bool SceneReader::try_move(SeenObject& object, std::uint64_t serial, const tactus_v4_Placement& to)
 {
     const auto refuse = [&](PoseRefusal refusal)
     {

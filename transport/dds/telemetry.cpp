@@ -58,9 +58,9 @@ std::string text_of(const char (&text)[Size]) // NOLINT: idlc's type.
     return {static_cast<const char*>(text), ::strnlen(static_cast<const char*>(text), Size)};
 }
 
-tactus_v3_ToolTelemetry to_wire(const ToolTelemetry& tool)
+tactus_v4_ToolTelemetry to_wire(const ToolTelemetry& tool)
 {
-    tactus_v3_ToolTelemetry wire = {};
+    tactus_v4_ToolTelemetry wire = {};
     std::ranges::copy(tool.position_m, std::begin(wire.position_m));
     std::ranges::copy(tool.rotation, std::begin(wire.rotation));
     std::ranges::copy(tool.proxy_m, std::begin(wire.proxy_m));
@@ -76,7 +76,7 @@ tactus_v3_ToolTelemetry to_wire(const ToolTelemetry& tool)
     return wire;
 }
 
-ToolTelemetry from_wire(const tactus_v3_ToolTelemetry& wire)
+ToolTelemetry from_wire(const tactus_v4_ToolTelemetry& wire)
 {
     ToolTelemetry tool;
     std::ranges::copy(wire.position_m, tool.position_m.begin());
@@ -95,9 +95,9 @@ ToolTelemetry from_wire(const tactus_v3_ToolTelemetry& wire)
     return tool;
 }
 
-tactus_v3_PairTelemetry to_wire(const PairTelemetry& pair)
+tactus_v4_PairTelemetry to_wire(const PairTelemetry& pair)
 {
-    tactus_v3_PairTelemetry wire = {};
+    tactus_v4_PairTelemetry wire = {};
     wire.host_epoch = pair.host_epoch;
     wire.object = pair.object;
     wire.tool = pair.tool;
@@ -109,7 +109,7 @@ tactus_v3_PairTelemetry to_wire(const PairTelemetry& pair)
     return wire;
 }
 
-PairTelemetry from_wire(const tactus_v3_PairTelemetry& wire)
+PairTelemetry from_wire(const tactus_v4_PairTelemetry& wire)
 {
     PairTelemetry pair{wire.host_epoch, wire.object,  wire.tool, static_cast<AnswerKind>(wire.kind),
                        wire.lower_m,    wire.upper_m, {},        {}};
@@ -118,12 +118,12 @@ PairTelemetry from_wire(const tactus_v3_PairTelemetry& wire)
     return pair;
 }
 
-tactus_v3_ModelTelemetry to_wire(const ModelIdentity& identity, const ModelTelemetry& model)
+tactus_v4_ModelTelemetry to_wire(const ModelIdentity& identity, const ModelTelemetry& model)
 {
     const auto pool = [](const PoolTelemetry& use) {
-        return tactus_v3_PoolTelemetry{use.used, use.capacity};
+        return tactus_v4_PoolTelemetry{use.used, use.capacity};
     };
-    tactus_v3_ModelTelemetry wire = {};
+    tactus_v4_ModelTelemetry wire = {};
     identity.name.copy(static_cast<char*>(wire.name), kMaxNameBytes);
     std::memcpy(wire.hash, identity.hash.data(), identity.hash.size());
     wire.revision = identity.revision;
@@ -141,9 +141,9 @@ tactus_v3_ModelTelemetry to_wire(const ModelIdentity& identity, const ModelTelem
     return wire;
 }
 
-ModelTelemetry from_wire(const tactus_v3_ModelTelemetry& wire)
+ModelTelemetry from_wire(const tactus_v4_ModelTelemetry& wire)
 {
-    const auto pool = [](const tactus_v3_PoolTelemetry& use) {
+    const auto pool = [](const tactus_v4_PoolTelemetry& use) {
         return PoolTelemetry{use.used, use.capacity};
     };
     ModelTelemetry model;
@@ -181,7 +181,7 @@ bool is_sound(const PairTelemetry& pair, std::uint32_t tools)
            all_finite(pair.point_m) && all_finite(pair.force_n);
 }
 
-ModelIdentity identity_of(const tactus_v3_ModelTelemetry& wire)
+ModelIdentity identity_of(const tactus_v4_ModelTelemetry& wire)
 {
     ModelIdentity identity{text_of(wire.name), {}, wire.revision};
     std::memcpy(identity.hash.data(), wire.hash, identity.hash.size());
@@ -238,9 +238,9 @@ void TelemetryWriter::write(const Telemetry& telemetry)
     TACTUS_ASSERT(telemetry.tool_count <= kMaxTools);
     TACTUS_ASSERT(telemetry.pair_count <= kMaxPairs);
     TACTUS_ASSERT(telemetry.model_count == models_.size());
-    std::array<tactus_v3_PairTelemetry, kMaxPairs> pairs{};
-    std::array<tactus_v3_ToolTelemetry, kMaxTools> tools{};
-    std::array<tactus_v3_ModelTelemetry, kMaxShownModels> models{};
+    std::array<tactus_v4_PairTelemetry, kMaxPairs> pairs{};
+    std::array<tactus_v4_ToolTelemetry, kMaxTools> tools{};
+    std::array<tactus_v4_ModelTelemetry, kMaxShownModels> models{};
     for (std::uint32_t i = 0; i < telemetry.tool_count; ++i)
     {
         tools[i] = to_wire(telemetry.tools[i]);
@@ -253,7 +253,7 @@ void TelemetryWriter::write(const Telemetry& telemetry)
     {
         models[i] = to_wire(models_[i], telemetry.models[i]);
     }
-    tactus_v3_Telemetry sample = {};
+    tactus_v4_Telemetry sample = {};
     std::memcpy(sample.controller, controller_.data(), controller_.size());
     controller_name_.copy(static_cast<char*>(sample.controller_name), kMaxNameBytes);
     sample.serial = ++sent_;
@@ -282,9 +282,9 @@ TelemetryReader::TelemetryReader(Participants& participants, Endpoint reader)
 
 void TelemetryReader::poll()
 {
-    take_each<tactus_v3_Telemetry>(
+    take_each<tactus_v4_Telemetry>(
         reader_.handle, kMaxWatched,
-        [this](const tactus_v3_Telemetry& sample, const dds_sample_info_t& info)
+        [this](const tactus_v4_Telemetry& sample, const dds_sample_info_t& info)
         {
             if (tells_end(info))
             {
@@ -301,7 +301,7 @@ void TelemetryReader::poll()
 }
 
 /// Of who isn't the controller it is no news.
-void TelemetryReader::on_end(const tactus_v3_Telemetry& sample, std::uint64_t writer)
+void TelemetryReader::on_end(const tactus_v4_Telemetry& sample, std::uint64_t writer)
 {
     ControllerId controller{};
     std::memcpy(controller.data(), sample.controller, controller.size());
@@ -315,7 +315,7 @@ void TelemetryReader::on_end(const tactus_v3_Telemetry& sample, std::uint64_t wr
                   [&](const WatchedController& each) { return each.id == controller; });
 }
 
-bool TelemetryReader::try_take(const tactus_v3_Telemetry& sample, const dds_sample_info_t& info)
+bool TelemetryReader::try_take(const tactus_v4_Telemetry& sample, const dds_sample_info_t& info)
 {
     WatchedController news;
     news.writer = info.publication_handle;

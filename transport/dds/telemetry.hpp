@@ -15,7 +15,7 @@
 #include <vector>
 
 struct dds_sample_info;
-struct tactus_v3_Telemetry; // idlc's type of a sample.
+struct tactus_v4_Telemetry; // idlc's type of a sample.
 
 namespace tactus::dds
 {
@@ -86,8 +86,8 @@ public:
 private:
     TelemetryReader(Participants& participants, Endpoint reader);
 
-    void on_end(const tactus_v3_Telemetry& sample, std::uint64_t writer);
-    [[nodiscard]] bool try_take(const tactus_v3_Telemetry& sample, const dds_sample_info& info);
+    void on_end(const tactus_v4_Telemetry& sample, std::uint64_t writer);
+    [[nodiscard]] bool try_take(const tactus_v4_Telemetry& sample, const dds_sample_info& info);
 
     Participants& participants_;
     Endpoint reader_;

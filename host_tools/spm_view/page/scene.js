@@ -34,7 +34,7 @@ export function read_cut(buffer) {
   };
 }
 
-/// The answer of /boxes or /loaded (host_tools/spm_view/boxes.hpp) as lines along their edges.
+/// The answer of /boxes, /loaded or /wished (host_tools/spm_view/boxes.hpp): lines along edges.
 export function read_boxes(buffer) {
   const count = new Uint32Array(buffer, 0, 1)[0];
   const ends = new Float32Array(buffer, 4, 6 * count);
@@ -62,10 +62,17 @@ export function read_boxes(buffer) {
 
 /// Sets of boxes on a model that are shown on demand: where they come from and in which colour.
 const BOX_SETS = [
-  { name: "boxes", colour: 0xa855c7, wanted: (choice) => choice.level !== "",
-    more: (choice) => ({ level: choice.level }) },
-  { name: "loaded", colour: 0x2f9e6e, wanted: (choice) => choice.loaded, more: () => ({}) },
+  { name: "boxes", colour: 0x3b78d8, wanted: (choice) => choice.level !== "",
+    state: (cut) => cut.cut, more: (choice) => ({ level: choice.level }) },
+  { name: "loaded", colour: 0x2f9e6e, wanted: (choice) => choice.regions,
+    state: (cut) => `${cut.cut} ${cut.pages}`, more: () => ({}) },
+  { name: "wished", colour: 0xd8822b, wanted: (choice) => choice.regions,
+    state: (cut, front) => (cut.wished > 0 ? front.serial : "none"), more: () => ({}) },
 ];
+
+/// Where chunks are looked for: a tool is there, or is foretold to come there.
+const REGION_COLOURS = { present: 0xc94c4c, foretold: 0xa855c7 };
+const REGION_BALL = new THREE.WireframeGeometry(new THREE.IcosahedronBufferGeometry(1, 1));
 
 /// Of a face 0 (coarse) to 1 (fine), and the ends of the scale in words.
 function scale_of(cut, by) {
@@ -191,7 +198,8 @@ export class NoView {
   fit() {}
   follow() {}
   summary() {
-    return { scale: null, faces: 0, boxes: 0, fault: "no picture: this browser has no WebGL" };
+    return { scale: null, faces: 0, boxes: 0, regions: null,
+      fault: "no picture: this browser has no WebGL" };
   }
 }
 
@@ -226,11 +234,12 @@ export class View {
     this.is_wanted = false; // A picture, after the one that is being drawn.
     this.rest_ms = 0;
     this.radius_m = 0.1;
+    this.regions = null; // How many of each kind are shown.
     this.followed = null; // The number of a tool.
     new ResizeObserver(() => this.resize()).observe(canvas.parentElement);
   }
 
-  /// `choice`: {object, tool, shells, level, loaded}.
+  /// `choice`: {object, tool, shells, level, regions}.
   show(controller, choice) {
     const front = controller && controller.front;
     if (!front) {
@@ -244,7 +253,10 @@ export class View {
       this.want(controller, front, object.model, cut);
       this.want_boxes(controller, front, object.model, cut, choice);
       this.place(key, object, choice.object === "" || choice.object === key);
+      this.place_regions(this.objects.get(key), choice.regions ?
+        front.regions.filter((region) => region.model === object.model) : []);
     }
+    this.regions = choice.regions && front ? this.count_regions(front) : null;
     for (const [key, mesh] of this.objects) {
       if (!seen.has(key)) {
         this.scene.remove(mesh);
@@ -323,7 +335,7 @@ export class View {
       const mine = model.boxes[i];
       mine.visible = set.wanted(choice);
       const more = set.more(choice);
-      const key = `${cut ? `${cut.cut} ${cut.pages}` : "base"} ${more.level}`;
+      const key = `${cut ? set.state(cut, front) : "base"} ${more.level}`;
       if (!mine.visible || mine.busy || mine.key === key || !cut || !cut.is_here) {
         return;
       }
@@ -383,6 +395,8 @@ export class View {
         mesh.add(new THREE.LineSegments(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({
           color: set.colour, transparent: true, opacity: 0.7 })));
       }
+      mesh.balls = new THREE.Group();
+      mesh.add(mesh.balls);
       mesh.geometry_is_there = false;
       this.objects.set(key, mesh);
       this.scene.add(mesh);
@@ -406,7 +420,32 @@ export class View {
     mesh.scale.setScalar(object.scale);
   }
 
-  /// The first model's scale, faces of all and what is wrong.
+  /// Balls on an object, as many as there are regions.
+  place_regions(mesh, regions) {
+    while (mesh.balls.children.length < regions.length) {
+      mesh.balls.add(new THREE.LineSegments(REGION_BALL, new THREE.LineBasicMaterial({
+        transparent: true, opacity: 0.5 })));
+    }
+    mesh.balls.children.forEach((ball, i) => {
+      ball.visible = i < regions.length;
+      if (ball.visible) {
+        const region = regions[i];
+        ball.material.color.set(REGION_COLOURS[region.is_foretold ? "foretold" : "present"]);
+        ball.position.copy(vector(region.center_m));
+        ball.scale.setScalar(region.radius_m);
+      }
+    });
+  }
+
+  count_regions(front) {
+    const foretold = front.regions.filter((region) => region.is_foretold).length;
+    const sum = (name) => front.models.reduce((all, model) => all + model[name], 0);
+    return { loaded: sum("pages"), wished: sum("wished"),
+      present: front.regions.length - foretold, foretold,
+      untold: front.regions_left_out > 0 ? `${front.regions_left_out} less urgent not told` : "" };
+  }
+
+  /// The first model's scale, faces of all, regions where they are shown, and what is wrong.
   summary() {
     const models = [...this.models.values()];
     const shown = models.find((model) => model.scale);
@@ -415,6 +454,7 @@ export class View {
       faces: models.reduce((sum, model) => sum + (model.data ? model.data.faces : 0), 0),
       boxes: models.reduce((sum, model) => sum + (model.boxes || []).reduce(
         (all, boxes) => all + (boxes.visible && boxes.count ? boxes.count : 0), 0), 0),
+      regions: this.regions,
       fault: models.map((model) => model.fault).find((fault) => fault) || "",
     };
   }

@@ -13,7 +13,7 @@ const history = new History();
 const view = make_view();
 const plots = new Plots(by_id("plots"));
 const choice = { controller: "", object: "", tool: 0, shells: false, level: "",
-  loaded: false };
+  regions: false };
 let events = null;
 let frozen_s = null; // The moment that is looked at; null: now.
 let plot_again_s = 0;
@@ -133,13 +133,19 @@ function show_choices(state) {
     choice.tool);
 }
 
-function show_legend(waits) {
-  const { scale, faces, boxes, fault } = view.summary();
+function show_legend(waits, left_out) {
+  const { scale, faces, boxes, regions, fault } = view.summary();
   by_id("legend").hidden = !scale;
+  by_id("regions-legend").hidden = !regions;
+  for (const [name, text] of Object.entries(regions || {})) {
+    by_id(`regions-${name}`).textContent = text;
+  }
   by_id("least").textContent = scale ? scale.least : "";
   by_id("most").textContent = scale ? scale.most : "";
   by_id("faces").textContent = faces > 0 ? `${faces.toLocaleString("en")} faces` +
-    (boxes > 0 ? `, ${boxes.toLocaleString("en")} boxes` : "") : "";
+    (boxes > 0 ? `, ${boxes.toLocaleString("en")} boxes` : "") +
+    (left_out > 0 ? `; coarser than the controller's where pages are of its ` +
+      `${left_out.toLocaleString("en")} slots that are not told` : "") : "";
   by_id("waits").textContent = connection || fault || (waits ? `waits for ${waits}` : "");
 }
 
@@ -170,7 +176,8 @@ function show() {
   show_figures(state.controller);
   show_words(state.controller);
   view.show(state.controller, choice);
-  show_legend(state.waits_for);
+  const front = state.controller && state.controller.front;
+  show_legend(state.waits_for, front ? front.slots_left_out : 0);
   show_when(time_s);
   if (player) {
     show_player();
@@ -301,7 +308,7 @@ by_id("tool").addEventListener("change", (event) => { choice.tool = Number(event
 by_id("colour").addEventListener("change", (event) => { view.recolour(event.target.value); show(); });
 by_id("edges").addEventListener("change", (event) => { view.edges = event.target.checked; show(); });
 by_id("shells").addEventListener("change", (event) => { choice.shells = event.target.checked; show(); });
-by_id("loaded").addEventListener("change", (event) => { choice.loaded = event.target.checked; show(); });
+by_id("regions").addEventListener("change", (event) => { choice.regions = event.target.checked; show(); });
 by_id("level").addEventListener("change", (event) => { choice.level = event.target.value; show(); });
 by_id("fit").addEventListener("click", () => view.fit());
 by_id("near").addEventListener("click", () => view.follow(choice.tool));

@@ -216,7 +216,7 @@ class Browser:
         """But those of fronts that aren't kept any more: of a controller that was silent."""
         entries = self.call("POST", "/se/log", {"type": "browser"})
         return {entry["message"] for entry in entries if entry["level"] == "SEVERE" and
-                not re.search(r"/(front|boxes|loaded)\?.* 4\d\d ", entry["message"])}
+                not re.search(r"/(front|boxes|loaded|wished)\?.* 4\d\d ", entry["message"])}
 
 
 def expect(is_so, what):
@@ -317,10 +317,15 @@ def boxes(browser):
         counts.append(box_count(browser))
     expect(counts[0] == 1, f"{counts[0]} boxes at the root")
     choose(browser, "level", "")
-    browser.click("loaded")
+    browser.click("regions")
     eventually(lambda: "box" in browser.text("faces"), "boxes of what is loaded")
-    browser.picture("loaded")
-    browser.click("loaded")
+    for name, least in (("loaded", 1), ("wished", 0), ("present", 1), ("foretold", 1)):
+        eventually(lambda: browser.text(f"regions-{name}") != "" and
+                   int(browser.text(f"regions-{name}")) >= least, f"regions that are {name}")
+    browser.picture("regions")
+    browser.click("regions")
+    eventually(lambda: browser.run("return document.getElementById('regions-legend').hidden"),
+               "an end of the regions' legend")
 
 
 def played(browser, url):

@@ -108,7 +108,7 @@ TEST_F(Boxes, of_the_tree_are_the_controllers_own_at_each_level)
 
 TEST_F(Boxes, of_chunks_hold_the_vertices_that_these_bring)
 {
-    const auto bytes = chunk_box_bytes(*known_, pages_);
+    const auto bytes = chunk_box_bytes(*known_, chunks_of(pages_));
     ASSERT_TRUE(bytes.has_value()) << bytes.error().text;
     const std::vector<Box> boxes = read_boxes(bytes.value());
     ASSERT_EQ(boxes.size(), pages_.size());
@@ -134,7 +134,7 @@ TEST_F(Boxes, of_chunks_hold_the_vertices_that_these_bring)
         }
     }
     EXPECT_GT(looked, 20U);
-    EXPECT_FALSE(chunk_box_bytes(*known_, std::vector<FrontPage>{{{0xFFFFU}, 0}}).has_value());
+    EXPECT_FALSE(chunk_box_bytes(*known_, std::vector<ChunkId>{{0xFFFFU}}).has_value());
     EXPECT_TRUE(chunk_box_bytes(*known_, {}).has_value());
 }
 

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstring>
 #include <map>
 #include <set>
@@ -254,6 +255,53 @@ TEST(Cut, refuses_records_that_the_model_does_not_have_or_that_lack_what_they_de
     EXPECT_FALSE(decode_cut(*known, pages_of({records})).has_value());
     EXPECT_FALSE(decode_cut(*known, pages_of({0xFFFF'FF00U})).has_value());
     EXPECT_FALSE(decode_cut(*known, pages_of({last})).has_value());
+}
+
+/// Every fourth page is missing: as much as can be split without it, and not one record less.
+TEST(Cut, of_a_part_of_the_pages_is_all_that_can_be_split_with_them)
+{
+    const test::TestModel& model = test::small_model(0);
+    const Opened opened(model);
+    const std::vector<FrontPage> whole =
+        pages_of(records_for(opened.decoded, 1e-3 * model.diagonal_m));
+    EXPECT_EQ(cut_id(splittable_part(opened.decoded, whole)), cut_id(whole));
+    std::vector<FrontPage> told;
+    for (std::size_t i = 0; i < whole.size(); ++i)
+    {
+        if (i % 4 != 1)
+        {
+            told.push_back(whole[i]);
+        }
+    }
+    EXPECT_FALSE(cut_bytes(opened.decoded, told).has_value());
+    const std::vector<std::string> files{model.path.string()};
+    const auto shelf = std::move(ModelShelf::open(files)).value();
+    const auto known = shelf->find(shelf->labels().front().hash);
+    EXPECT_FALSE(decode_cut(*known, told).has_value());
+    const auto decoded = decode_cut(*known, told, false); // Without the pages that are missing.
+    ASSERT_TRUE(decoded.has_value()) << decoded.error().text;
+    const std::vector<FrontPage> part = splittable_part(decoded.value(), told);
+    const auto shown = cut_bytes(decoded.value(), part);
+    ASSERT_TRUE(shown.has_value()) << shown.error().text;
+    EXPECT_EQ(shown.value(), cut_bytes(opened.decoded, part).value());
+    ASSERT_EQ(part.size(), told.size());
+    std::size_t split = 0;
+    std::size_t left = 0;
+    for (std::size_t i = 0; i < part.size(); ++i)
+    {
+        EXPECT_EQ(part[i].chunk, told[i].chunk);
+        EXPECT_EQ(part[i].refined & ~told[i].refined, 0U);
+        split += static_cast<std::size_t>(std::popcount(part[i].refined));
+        for (std::uint64_t bits = told[i].refined & ~part[i].refined; bits != 0; bits &= bits - 1)
+        {
+            std::vector<FrontPage> more = part;
+            more[i].refined |= bits & -bits;
+            EXPECT_FALSE(cut_bytes(opened.decoded, more).has_value()) << i;
+            ++left;
+        }
+    }
+    EXPECT_GT(split, 0U);
+    EXPECT_GT(left, 0U);
 }
 
 TEST(Cut, has_a_name_that_pages_without_split_records_do_not_change)

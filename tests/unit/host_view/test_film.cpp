@@ -8,9 +8,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <memory>
 #include <string>
 #include <vector>
@@ -28,6 +30,7 @@ struct Had
     Vec3 proxy_m;
     std::vector<double> lower_m; ///< By pair.
     std::vector<FrontPage> pages;
+    std::vector<FrontRegion> regions;
     std::uint32_t active_faces{0};
 };
 
@@ -69,6 +72,8 @@ std::vector<Had> record(const std::filesystem::path& path, std::uint32_t frames,
             now.lower_m.push_back(pair.lower_m);
         }
         now.pages = pages_of(rig.model());
+        std::ranges::transform(rig.frame().regions(), std::back_inserter(now.regions),
+                               front_region_of);
         now.active_faces = rig.model().forest.active_faces();
     }
     const std::vector<std::byte> bytes = rig.finish_recording();
@@ -107,6 +112,7 @@ TEST(Film, has_of_each_frame_what_the_frame_had_and_its_faces_without_a_model_fi
         {
             EXPECT_EQ(telemetry.pairs[i].lower_m, had[frame].lower_m[i]);
         }
+        EXPECT_EQ(shown.front->front.regions, had[frame].regions);
         ASSERT_EQ(shown.front->front.models.size(), 1U);
         const FrontModel& model = shown.front->front.models[0];
         ASSERT_EQ(model.pages.size(), had[frame].pages.size());
@@ -128,6 +134,7 @@ TEST(Film, has_of_each_frame_what_the_frame_had_and_its_faces_without_a_model_fi
         ASSERT_EQ(shown.objects.size(), 1U);
     }
     EXPECT_GT(cuts, 2U);
+    EXPECT_FALSE(had[80].regions.empty());
     EXPECT_EQ(sut->at(9'999).told.telemetry.frame, kFrames);
     EXPECT_EQ(sut->front(kFrames), nullptr);
 }

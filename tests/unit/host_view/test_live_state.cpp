@@ -136,12 +136,21 @@ TEST(StateJson, shows_the_chosen_controller_and_lists_all)
 {
     const auto shelf = std::move(ModelShelf::open({})).value();
     LiveState live;
-    live.publish({told(1, "one"), told(2, "two")}, {front(2, 5)});
+    dds::SeenFront shown = front(2, 5);
+    FrontModel& model = shown.front.models.emplace_back();
+    model.hash.fill(0xAB);
+    model.wished = {{3}, {7}};
+    shown.front.regions = {{0, true, {0.5F, 1.0F, 2.0F}, 0.25F}};
+    live.publish({told(1, "one"), told(2, "two")}, {shown});
     const auto state =
         nlohmann::json::parse(state_json(*live.newest(), *shelf, id_text(front(2, 0).id), 0));
     EXPECT_EQ(state["controllers"].size(), 2U);
     EXPECT_EQ(state["controller"]["name"], "two");
     EXPECT_EQ(state["controller"]["front"]["serial"], 5);
+    EXPECT_EQ(state["controller"]["front"]["models"].back()["wished"], 2);
+    EXPECT_EQ(state["controller"]["front"]["regions"],
+              nlohmann::json::parse(R"([{"model": "abababababababababababababababab",
+                  "is_foretold": true, "center_m": [0.5, 1.0, 2.0], "radius_m": 0.25}])"));
     EXPECT_EQ(state["controller"]["tools"][0]["words"], "on: no contact, so none is due");
     EXPECT_TRUE(state["controller"]["pairs"][0]["upper_m"].is_null());
 }

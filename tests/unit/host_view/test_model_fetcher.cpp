@@ -95,9 +95,9 @@ public:
     void step()
     {
         announce();
-        dds::take_each<tactus_v3_Wanted>(
+        dds::take_each<tactus_v4_Wanted>(
             wanted_.handle, 100,
-            [this](const tactus_v3_Wanted& sample, const dds_sample_info_t& info)
+            [this](const tactus_v4_Wanted& sample, const dds_sample_info_t& info)
             {
                 if (info.valid_data && sample.host_epoch == epoch_)
                 {
@@ -111,7 +111,7 @@ public:
 private:
     void announce()
     {
-        tactus_v3_CatalogueEntry entry = {};
+        tactus_v4_CatalogueEntry entry = {};
         entry.host_epoch = epoch_;
         std::strcpy(static_cast<char*>(entry.name), "tiny");
         const ContentHash hash = model_hash(model_.header);
@@ -122,7 +122,7 @@ private:
         dds_write(catalogue_.handle, &entry);
     }
 
-    void answer(const tactus_v3_Wanted& wanted)
+    void answer(const tactus_v4_Wanted& wanted)
     {
         dds::ControllerId id{};
         std::memcpy(id.data(), wanted.controller, id.size());
@@ -139,7 +139,7 @@ private:
         }
         for (std::uint32_t i = 0; i < wanted.pieces._length; ++i)
         {
-            const tactus_v3_PieceName& name = wanted.pieces._buffer[i];
+            const tactus_v4_PieceName& name = wanted.pieces._buffer[i];
             send({static_cast<ContentKind>(name.kind), name.number});
         }
     }
@@ -156,7 +156,7 @@ private:
             payload,
             {model_hash(model_.header), 0, static_cast<std::uint32_t>(key.kind), key.number},
             bytes);
-        tactus_v3_Pieces sample = {};
+        tactus_v4_Pieces sample = {};
         sample.host_epoch = epoch_;
         sample.sent = ++sent_;
         const auto count = static_cast<std::uint32_t>(payload.size());

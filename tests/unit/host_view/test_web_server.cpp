@@ -213,7 +213,7 @@ TEST_F(WebServerTest, sends_the_faces_of_a_front)
 {
     const ContentHash hash = shelf_->labels().front().hash;
     dds::SeenFront seen = test::front(1, 9);
-    seen.front.models.push_back({hash, {}});
+    seen.front.models.push_back({hash, {}, {}});
     live_.publish({test::told(1, "one")}, {seen});
     const std::string controller = id_text(seen.id);
     const auto status =
@@ -232,6 +232,49 @@ TEST_F(WebServerTest, sends_the_faces_of_a_front)
     seen.front.models[0].pages = {{{0xFFFFU}, 1}}; // A chunk that the model hasn't.
     live_.publish({test::told(1, "one")}, {seen});
     EXPECT_EQ(status(controller, "10", hash_text(hash)), 409);
+}
+
+TEST_F(WebServerTest, sends_what_can_be_split_of_a_front_that_leaves_pages_out)
+{
+    const ContentHash hash = shelf_->labels().front().hash;
+    const ChunkId last{shelf_->find(hash)->header().counts().chunks() - 1};
+    dds::SeenFront seen = test::front(1, 9);
+    seen.front.models.push_back({hash, {{last, 1}}, {}}); // Its records depend on others.
+    const auto status = [&](const char* path)
+    {
+        return status_of(get(fmt::format("{}?controller={}&serial={}&model={}", path,
+                                         id_text(seen.id), seen.serial, hash_text(hash))));
+    };
+    live_.publish({test::told(1, "one")}, {seen});
+    EXPECT_EQ(status("/front"), 409);
+    EXPECT_EQ(status("/boxes"), 409);
+    ++seen.serial;
+    seen.front.slots_left_out = 1;
+    live_.publish({test::told(1, "one")}, {seen});
+    EXPECT_EQ(status("/front"), 200);
+    EXPECT_EQ(status("/boxes"), 200);
+}
+
+TEST_F(WebServerTest, sends_the_boxes_of_what_is_wished_for)
+{
+    const ContentHash hash = shelf_->labels().front().hash;
+    dds::SeenFront seen = test::front(1, 9);
+    seen.front.models.push_back({hash, {}, {}});
+    const auto boxes = [&]
+    {
+        ++seen.serial;
+        live_.publish({test::told(1, "one")}, {seen});
+        return get(fmt::format("/wished?controller={}&serial={}&model={}", id_text(seen.id),
+                               seen.serial, hash_text(hash)));
+    };
+    const std::string none = boxes();
+    EXPECT_EQ(status_of(none), 200);
+    seen.front.models.back().wished = {{0}};
+    const std::string one = boxes(); // The same cut: by that alone they would be the old ones.
+    EXPECT_EQ(status_of(one), 200);
+    EXPECT_EQ(one.size(), none.size() + 6 * sizeof(float) + 1); // And 28 for 4 in the head.
+    seen.front.models.back().wished = {{0xFFFFU}};
+    EXPECT_EQ(status_of(boxes()), 409);
 }
 
 TEST_F(WebServerTest, refuses_a_port_that_another_has)

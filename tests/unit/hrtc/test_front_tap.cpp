@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <utility>
@@ -63,7 +65,7 @@ TEST(FrontTap, copies_the_pages_of_one_frame_in_a_hundred_with_what_is_split)
     EXPECT_EQ(copy->frame, kFrames);
     std::vector<std::pair<std::uint32_t, std::uint64_t>> pages;
     std::uint64_t split = 0;
-    for (const PageMeta& slot : copy->slots)
+    for (const ShownPage& slot : copy->slots)
     {
         if (!slot.chunk.is_none())
         {
@@ -103,6 +105,31 @@ TEST(FrontTap, counts_slots_for_which_it_has_no_room)
     ASSERT_NE(sut.take(), nullptr);
     EXPECT_EQ(sut.take()->slots.size(), 2U);
     EXPECT_EQ(sut.take()->slots_left_out, rig.frame().pools().cache.pages.metas.size() - 2);
+}
+
+TEST(FrontTap, copies_where_chunks_are_looked_for)
+{
+    FrontTap sut(kSlots);
+    LoopRigOptions options = options_of(&sut, 1);
+    options.is_coarse = true; // Of a model that is here as a whole nothing is looked for.
+    LoopRig rig(options);
+    rig.loop().run();
+    ASSERT_NE(sut.take(), nullptr);
+    const std::span<const RankedRegion> regions = rig.frame().regions();
+    ASSERT_FALSE(regions.empty());
+    ASSERT_EQ(sut.take()->regions.size(), std::min(regions.size(), kMaxFrontRegions));
+    for (std::size_t i = 0; i < sut.take()->regions.size(); ++i)
+    {
+        const FrontRegion& copy = sut.take()->regions[i];
+        EXPECT_EQ(copy.model, regions[i].model.value);
+        EXPECT_EQ(copy.is_foretold, regions[i].lead_ns > 0);
+        EXPECT_EQ(copy.radius_m, static_cast<float>(regions[i].radius_m));
+        for (std::size_t axis = 0; axis < 3; ++axis)
+        {
+            EXPECT_EQ(copy.center_m[axis],
+                      static_cast<float>(regions[i].center_m[static_cast<int>(axis)]));
+        }
+    }
 }
 
 TEST(FrontTap, changes_nothing_that_the_loop_does)

@@ -480,6 +480,21 @@ TEST(Courier, has_no_clock_of_its_own_for_a_wish_that_is_never_answered)
     EXPECT_EQ(road.sut.counters().forgotten, 0U);
 }
 
+TEST(Courier, tells_which_chunks_are_wished_for)
+{
+    const TinyModel model = make_tiny_model({});
+    Road road(model, {.loss = 1.0});
+    std::vector<ChunkId> chunks;
+    road.sut.add_wished_chunks(0, chunks);
+    EXPECT_TRUE(chunks.empty());
+    ASSERT_TRUE(road.side.wish(index_key(0)));
+    ASSERT_TRUE(road.side.wish({ContentKind::chunk, 1}));
+    road.step();
+    ASSERT_EQ(road.sut.open_wishes(), 2U);
+    road.sut.add_wished_chunks(0, chunks);
+    EXPECT_EQ(chunks, std::vector<ChunkId>{{1}});
+}
+
 /// What is asked for comes after 1.6 s, or so many; wishes come again as a cache makes them.
 struct OverdueRoad : Road
 {

@@ -41,6 +41,7 @@ Front some_front(std::size_t tools, std::size_t models, std::size_t pages, std::
     front.sweep_begin = 40;
     front.sweep_end = 56;
     front.slots_left_out = 3;
+    front.regions_left_out = 4;
     for (std::size_t i = 0; i < tools; ++i)
     {
         front.tools.push_back({static_cast<SafetyState>(i % kSafetyStates),
@@ -56,6 +57,18 @@ Front some_front(std::size_t tools, std::size_t models, std::size_t pages, std::
         {
             model.pages.push_back({ChunkId{3 * page + 1}, std::uint64_t{count++} << 20U});
         }
+        for (std::uint32_t wish = 0; wish < kMaxFrontWishes / models; ++wish)
+        {
+            model.wished.push_back(ChunkId{3 * wish + 2});
+        }
+    }
+    for (std::uint32_t i = 0; models > 0 && i < kMaxFrontRegions; ++i)
+    {
+        const auto place = static_cast<float>(number += 1.0);
+        front.regions.push_back({static_cast<std::uint32_t>(i % models),
+                                 i % 3 != 0,
+                                 {place, -place, 2.0F * place},
+                                 0.25F * place});
     }
     for (std::uint32_t i = 0; i < objects; ++i)
     {
@@ -83,6 +96,7 @@ void expect_same(const Front& got, const Front& sent)
     EXPECT_EQ(got.sweep_begin, sent.sweep_begin);
     EXPECT_EQ(got.sweep_end, sent.sweep_end);
     EXPECT_EQ(got.slots_left_out, sent.slots_left_out);
+    EXPECT_EQ(got.regions_left_out, sent.regions_left_out);
     ASSERT_EQ(got.tools.size(), sent.tools.size());
     for (std::size_t i = 0; i < sent.tools.size(); ++i)
     {
@@ -101,7 +115,9 @@ void expect_same(const Front& got, const Front& sent)
             EXPECT_EQ(got.models[i].pages[page].chunk, sent.models[i].pages[page].chunk);
             EXPECT_EQ(got.models[i].pages[page].refined, sent.models[i].pages[page].refined);
         }
+        EXPECT_EQ(got.models[i].wished, sent.models[i].wished);
     }
+    EXPECT_EQ(got.regions, sent.regions);
     ASSERT_EQ(got.objects.size(), sent.objects.size());
     for (std::size_t i = 0; i < sent.objects.size(); ++i)
     {
@@ -173,7 +189,7 @@ TEST_F(DdsFront, of_a_controller_that_it_does_not_come_from_is_not_heard)
         {
             for (std::uint32_t i = 0; i < 100; ++i)
             {
-                tactus_v3_Front sample = {};
+                tactus_v4_Front sample = {};
                 std::memcpy(sample.controller, &i, sizeof(i));
                 std::strcpy(static_cast<char*>(sample.controller_name), "many");
                 dds_write(writer.handle, &sample);
@@ -188,7 +204,7 @@ TEST_F(DdsFront, of_a_controller_that_it_does_not_come_from_is_not_heard)
 
 TEST_F(DdsFront, with_a_fault_in_it_is_refused)
 {
-    using Sample = tactus_v3_Front;
+    using Sample = tactus_v4_Front;
     constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
     const std::vector<std::function<void(Sample&)>> faults{
         [](Sample& s) { std::strcpy(static_cast<char*>(s.controller_name), "two words"); },
@@ -209,6 +225,14 @@ TEST_F(DdsFront, with_a_fault_in_it_is_refused)
         [](Sample& s) { s.refined._length = 1; },
         [](Sample& s) { s.chunks._buffer[1] = s.chunks._buffer[0]; },
         [](Sample& s) { s.chunks._buffer[1] = 0xFFFF'FFFFU; },
+        [](Sample& s) { s.models._buffer[0].wished = 1; },
+        [](Sample& s) { s.models._buffer[0].wished = 0xFFFF'FFFFU; },
+        [](Sample& s) { s.wished._buffer[1] = s.wished._buffer[0]; },
+        [](Sample& s) { s.wished._buffer[1] = 0xFFFF'FFFFU; },
+        [](Sample& s) { s.regions._buffer[0].model = 1; },
+        [](Sample& s) { s.regions._buffer[0].center_m[1] = static_cast<float>(kNan); },
+        [](Sample& s) { s.regions._buffer[0].radius_m = static_cast<float>(kNan); },
+        [](Sample& s) { s.regions._buffer[0].radius_m = -1.0F; },
     };
     const Domain controller = Domain::join(1).value();
     const ControllerId id = controller.participants().own();
@@ -216,12 +240,15 @@ TEST_F(DdsFront, with_a_fault_in_it_is_refused)
     ASSERT_TRUE(eventually([&] { return is_matched(writer); }));
     for (std::size_t i = 0; i <= faults.size(); ++i)
     {
-        tactus_v3_FrontTool tool = {};
-        tactus_v3_FrontModel model = {};
-        tactus_v3_FrontObject object = {};
+        tactus_v4_FrontTool tool = {};
+        tactus_v4_FrontModel model = {};
+        tactus_v4_FrontObject object = {};
         std::array<std::uint32_t, 2> chunks{3, 4};
         std::array<std::uint64_t, 2> refined{};
+        std::array<std::uint32_t, 2> wished{5, 6};
+        tactus_v4_FrontRegion region = {};
         model.pages = 2;
+        model.wished = 2;
         object.pose.rotation[3] = 1.0;
         object.pose.scale = 1.0;
         Sample sample = {};
@@ -232,6 +259,8 @@ TEST_F(DdsFront, with_a_fault_in_it_is_refused)
         sample.objects = {1, 1, &object, false};
         sample.chunks = {2, 2, chunks.data(), false};
         sample.refined = {2, 2, refined.data(), false};
+        sample.wished = {2, 2, wished.data(), false};
+        sample.regions = {1, 1, &region, false};
         const bool is_good = i == faults.size();
         if (!is_good)
         {

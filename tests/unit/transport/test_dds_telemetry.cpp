@@ -310,7 +310,7 @@ TEST_F(DdsTelemetry, of_a_controller_that_it_does_not_come_from_is_not_heard)
         {
             for (std::uint32_t i = 0; i < 100; ++i)
             {
-                tactus_v3_Telemetry sample = {};
+                tactus_v4_Telemetry sample = {};
                 std::memcpy(sample.controller, &i, sizeof(i));
                 std::strcpy(static_cast<char*>(sample.controller_name), "many");
                 dds_write(writer.handle, &sample);
@@ -326,7 +326,7 @@ TEST_F(DdsTelemetry, of_a_controller_that_it_does_not_come_from_is_not_heard)
 
 TEST_F(DdsTelemetry, with_a_fault_in_it_is_refused)
 {
-    using Sample = tactus_v3_Telemetry;
+    using Sample = tactus_v4_Telemetry;
     const auto name = [](char* text, const char* value) { std::strcpy(text, value); };
     const std::vector<std::function<void(Sample&)>> faults{
         [&](Sample& s) { name(static_cast<char*>(s.controller_name), ""); },
@@ -350,9 +350,9 @@ TEST_F(DdsTelemetry, with_a_fault_in_it_is_refused)
     ASSERT_TRUE(eventually([&] { return is_matched(writer); }));
     for (std::size_t i = 0; i <= faults.size(); ++i)
     {
-        tactus_v3_ToolTelemetry tool = {};
-        tactus_v3_PairTelemetry pair = {};
-        tactus_v3_ModelTelemetry model = {};
+        tactus_v4_ToolTelemetry tool = {};
+        tactus_v4_PairTelemetry pair = {};
+        tactus_v4_ModelTelemetry model = {};
         name(static_cast<char*>(model.name), "tiny");
         Sample sample = {};
         std::memcpy(sample.controller, id.data(), id.size());
@@ -382,8 +382,8 @@ TEST_F(DdsTelemetry, that_holds_more_than_its_bounds_never_leaves)
 {
     const Domain controller = Domain::join(1).value();
     const auto writer = std::move(make_writer(controller, Topic::telemetry, "long")).value();
-    std::vector<tactus_v3_ToolTelemetry> tools(kMaxTools + 1);
-    tactus_v3_Telemetry sample = {};
+    std::vector<tactus_v4_ToolTelemetry> tools(kMaxTools + 1);
+    tactus_v4_Telemetry sample = {};
     std::strcpy(static_cast<char*>(sample.controller_name), "long");
     sample.tools = {kMaxTools + 1, kMaxTools + 1, tools.data(), false};
     EXPECT_NE(dds_write(writer.handle, &sample), DDS_RETCODE_OK);

@@ -126,7 +126,7 @@ protected:
     [[nodiscard]] Endpoint announce(std::uint64_t epoch) const
     {
         Endpoint writer = make_writer(stranger, Topic::catalogue, "").value();
-        tactus_v3_CatalogueEntry entry = {};
+        tactus_v4_CatalogueEntry entry = {};
         std::strcpy(static_cast<char*>(entry.name), "tiny");
         entry.host_epoch = epoch;
         entry.header_bytes = entry.base_bytes = 100;
@@ -135,10 +135,10 @@ protected:
         EXPECT_EQ(dds_write(writer.handle, &entry), DDS_RETCODE_OK);
         return writer;
     }
-    [[nodiscard]] tactus_v3_Wanted request(const ControllerId& controller,
+    [[nodiscard]] tactus_v4_Wanted request(const ControllerId& controller,
                                            const std::string& name) const
     {
-        tactus_v3_Wanted wanted = {};
+        tactus_v4_Wanted wanted = {};
         std::memcpy(wanted.controller, controller.data(), controller.size());
         name.copy(static_cast<char*>(wanted.controller_name), kMaxNameBytes);
         wanted.host_epoch = host->epoch();
@@ -148,7 +148,7 @@ protected:
     /// A topic of another version; its type is of no matter to who only looks at names.
     [[nodiscard]] Entity topic_of_version(const std::string& name) const
     {
-        return Entity(dds_create_topic(stranger.participant(), &tactus_v3_CatalogueEntry_desc,
+        return Entity(dds_create_topic(stranger.participant(), &tactus_v4_CatalogueEntry_desc,
                                        name.c_str(), nullptr, nullptr));
     }
 
@@ -175,10 +175,10 @@ TEST_F(DdsVersions, who_speaks_another_version_is_named_once_by_both_sides_and_p
     const Entity controller_writer(
         dds_create_writer(stranger.participant(), wanted.get(), nullptr, nullptr));
     const Entity foreign(dds_create_writer(stranger.participant(), other.get(), nullptr, nullptr));
-    tactus_v3_CatalogueEntry entry = {};
+    tactus_v4_CatalogueEntry entry = {};
     std::strcpy(static_cast<char*>(entry.name), "old");
     ASSERT_EQ(dds_write(host_writer.get(), &entry), DDS_RETCODE_OK);
-    const std::string line = "is refused: it speaks protocol version 1, this build 3";
+    const std::string line = "is refused: it speaks protocol version 1, this build 4";
     EXPECT_TRUE(step_until(
         [&] {
             return lines.find(line) != std::string::npos &&
@@ -216,7 +216,7 @@ TEST_F(DdsVersions, who_is_not_the_host_can_not_end_it_nor_hide_its_end)
     ASSERT_NO_FATAL_FAILURE(connect());
     const Endpoint writer = make_writer(stranger, Topic::catalogue, "").value();
     ASSERT_TRUE(step_until([&] { return is_matched(writer); }));
-    tactus_v3_CatalogueEntry entry = {};
+    tactus_v4_CatalogueEntry entry = {};
     entry.host_epoch = host->epoch();
     const auto refused = [&]
     {
@@ -247,7 +247,7 @@ TEST_F(DdsVersions, who_is_not_the_controller_can_not_end_it_nor_hide_its_end)
     ASSERT_NO_FATAL_FAILURE(connect());
     const Endpoint writer = make_writer(stranger, Topic::wanted, "ours").value();
     ASSERT_TRUE(step_until([&] { return is_matched(writer); }));
-    const tactus_v3_Wanted wanted = request(client->domain().participants().own(), "ours");
+    const tactus_v4_Wanted wanted = request(client->domain().participants().own(), "ours");
     ASSERT_EQ(dds_dispose(writer.handle, &wanted), DDS_RETCODE_OK);
     ASSERT_TRUE(
         step_until([&] { return !host->domain().participants().refusals().list().empty(); }));
@@ -269,8 +269,8 @@ TEST_F(DdsVersions, an_end_that_a_stranger_put_on_what_was_not_taken_yet_is_not_
     const Endpoint wants = make_writer(stranger, Topic::wanted, "ours").value();
     const Endpoint shows = make_writer(stranger, Topic::catalogue, "").value();
     ASSERT_TRUE(step_until([&] { return is_matched(wants) && is_matched(shows); }));
-    const tactus_v3_Wanted wanted = request(client->domain().participants().own(), "ours");
-    tactus_v3_CatalogueEntry entry = {};
+    const tactus_v4_Wanted wanted = request(client->domain().participants().own(), "ours");
+    tactus_v4_CatalogueEntry entry = {};
     entry.host_epoch = host->epoch();
     constexpr auto kOnItsWay = std::chrono::milliseconds(20);
     for (std::uint32_t i = 1; i <= 10; ++i)
@@ -314,7 +314,7 @@ TEST_F(DdsVersions, pieces_of_who_says_to_be_the_host_are_not_taken)
     ASSERT_TRUE(step_until([&] { return is_matched(writer); }));
     std::vector<std::byte> payload;
     append_piece(payload, {model_hash(model.header), 0, 2, 0}, std::vector<std::byte>(10));
-    tactus_v3_Pieces sample = {};
+    tactus_v4_Pieces sample = {};
     sample.host_epoch = host->epoch();
     sample.sent = 1'000'000;
     const auto length = static_cast<std::uint32_t>(payload.size());
@@ -335,7 +335,7 @@ TEST_F(DdsVersions, a_controller_is_served_under_its_own_id_and_a_valid_name_onl
     const ControllerId own = stranger.participants().own();
     ControllerId other = own;
     other[3] ^= 1U;
-    tactus_v3_Wanted wanted = request(other, "stranger");
+    tactus_v4_Wanted wanted = request(other, "stranger");
     ASSERT_EQ(dds_write(writer.handle, &wanted), DDS_RETCODE_OK);
     wanted = request(own, "strange\n\x1b[31m*");
     ASSERT_EQ(dds_write(writer.handle, &wanted), DDS_RETCODE_OK);

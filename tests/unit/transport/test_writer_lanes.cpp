@@ -39,9 +39,9 @@ protected:
     /// What has come, by the count in the sample and who wrote it.
     void take_from(const Endpoint& reader)
     {
-        take_each<tactus_v3_Pieces>(
+        take_each<tactus_v4_Pieces>(
             reader.handle, 100,
-            [this](const tactus_v3_Pieces& sample, const dds_sample_info_t& info)
+            [this](const tactus_v4_Pieces& sample, const dds_sample_info_t& info)
             {
                 if (info.valid_data)
                 {
@@ -60,7 +60,7 @@ protected:
 TEST_F(Lanes, without_a_reader_are_not_matched_and_write_to_nobody)
 {
     auto sut = WriterLanes::create(*host_, Topic::chunks, kPartition).value();
-    tactus_v3_Pieces sample = {};
+    tactus_v4_Pieces sample = {};
 
     EXPECT_FALSE(sut.is_matched());
     for (std::uint64_t i = 0; i < 10 * WriterLanes::kSamplesALane; ++i)
@@ -79,9 +79,9 @@ TEST_F(Lanes, join_one_by_one_and_take_turns_and_everything_comes)
     std::uint64_t sent = 0;
     const auto write = [&]
     {
-        tactus_v3_Pieces sample = {};
+        tactus_v4_Pieces sample = {};
         sample.host_epoch = host_->participants().own_epoch(); // Or the reader would refuse it.
-        tactus_v3_Pieces probe = sample;
+        tactus_v4_Pieces probe = sample;
         sample.sent = ++sent;
         EXPECT_TRUE(sut.write(&sample, &probe));
         take_from(in);
