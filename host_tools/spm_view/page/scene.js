@@ -559,6 +559,7 @@ export class View {
     const begin_ms = performance.now();
     this.is_wanted = false;
     this.render();
+    ++this.canvas.dataset.pictures;
     requestAnimationFrame(() => requestAnimationFrame(() => {
       const took_ms = performance.now() - begin_ms;
       this.rest_ms = Math.min(2 * took_ms, 2000);

@@ -129,7 +129,9 @@ function show_choices(state) {
   offer(by_id("object"),
     [["", "all"], ...objects.map((o) => [`${o.host}/${o.object}`, name_of(o)])], choice.object);
   const tools = controller ? controller.tools : [];
-  offer(by_id("tool"), tools.map((tool, i) => [i, tool.shape ? `${i}: ${tool.shape}` : `${i}`]),
+  const shape_of = (tool) => tool.shape.replace(/\d+\.\d+/g, (size) =>
+    Number(Number(size).toPrecision(3)));
+  offer(by_id("tool"), tools.map((tool, i) => [i, tool.shape ? `${i}: ${shape_of(tool)}` : `${i}`]),
     choice.tool);
 }
 

@@ -230,6 +230,13 @@ def fits(browser, what):
                what)
 
 
+def drawn(browser):
+    """Two pictures of the surface more: the first one may have been begun before."""
+    pictures = "return Number(document.getElementById('canvas').dataset.pictures)"
+    seen = browser.run(pictures)
+    eventually(lambda: browser.run(pictures) >= seen + 2, "pictures of the surface")
+
+
 def look(browser, url, serve):
     browser.resize(1440, 900)
     browser.open(f"{url}?theme=light",
@@ -241,8 +248,10 @@ def look(browser, url, serve):
     expect(browser.text("waits") == "", "it still waits: " + browser.text("waits"))
     eventually(lambda: browser.run("return document.querySelector('.names').textContent")
                .startswith("T_L "), "stage times")
+    eventually(lambda: re.match(r"force (?!0\.00)", browser.text("words")), "a touch")
+    browser.click("fit")  # Towards the tool.
     for theme in ("light", "dark"):
-        time.sleep(1.0)
+        drawn(browser)
         browser.picture(theme)
         before = browser.run("return getComputedStyle(document.body).backgroundColor")
         browser.click("theme")
@@ -322,6 +331,7 @@ def boxes(browser):
     for name, least in (("loaded", 1), ("wished", 0), ("present", 1), ("foretold", 1)):
         eventually(lambda: browser.text(f"regions-{name}") != "" and
                    int(browser.text(f"regions-{name}")) >= least, f"regions that are {name}")
+    drawn(browser)
     browser.picture("regions")
     browser.click("regions")
     eventually(lambda: browser.run("return document.getElementById('regions-legend').hidden"),
@@ -363,13 +373,14 @@ def frozen_page(browser):
                           "return first ? first.textContent : '';")
     expect(earlier == "" or int(earlier.replace(",", "")) < int(seen.replace(",", "")),
            f"half a minute back is frame {earlier}, after {seen}")
+    browser.press("freeze", "false")
+    eventually(lambda: browser.run(frames) != seen, "newer frames")
     browser.click("near")
     browser.click("shells")
     choose(browser, "colour", "error")
     eventually(lambda: browser.text("most") == "exact", "colours of the error bound")
+    drawn(browser)
     browser.picture("near")
-    browser.press("freeze", "false")
-    eventually(lambda: browser.run(frames) != seen, "newer frames")
 
 
 def main():
