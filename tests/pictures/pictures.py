@@ -40,7 +40,8 @@ PATIENCE_S = 900
 # As on spm_view's page: base mesh to finest level.
 RAMP = numpy.array([[168, 178, 196], [96, 146, 208], [46, 168, 158], [244, 190, 66],
                     [222, 88, 62]]) / 255
-TOOL, FORCE, TREE, SPLIT, MERGE = "#d8822b", "#c94c4c", "#3b78d8", "#2f9e6e", "#a855c7"
+TOOL, FORCE = "#d8822b", "#c94c4c"
+LOADED, FORETOLD, PRESENT, TREE = "#2f9e6e", "#a855c7", "#c94c4c", "#3b78d8"
 RADIUS_M = 0.002
 LIGHT = numpy.array([0.35, 0.45, 0.82])
 
@@ -225,9 +226,14 @@ def to_image(figure, dpi=100):
 
 
 def save(figure, path, dpi=110):
-    """As few bytes as a picture of few colours needs."""
-    image = to_image(figure, dpi).quantize(128, dither=Image.Dither.NONE)
-    image.save(path, optimize=True)
+    """As few bytes as a picture of few colours needs. Those that mean something stay."""
+    image = to_image(figure, dpi)
+    colours = [*RAMP, *map(matplotlib.colors.to_rgb, (
+        "white", "black", TOOL, FORCE, LOADED, FORETOLD, PRESENT, TREE))]
+    palette = Image.new("P", (1, 1))
+    palette.putpalette([round(255 * part) for colour in colours for part in colour] +
+                       image.quantize(160).getpalette()[:3 * 160])
+    image.quantize(palette=palette, dither=Image.Dither.NONE).save(path, optimize=True)
 
 
 class Studio:
@@ -434,6 +440,34 @@ def tree(studio, path):
     save(figure, path)
 
 
+def regions(studio, path):
+    """Where chunks are looked for, and the boxes of those that are loaded."""
+    film = studio.film()
+    state, object_, triangles, colours = shown(film, studio.pressing())
+    camera = camera_on(state["tools"][0])
+    place = camera.see(state["tools"][0]["proxy_m"])
+    radius_m = numpy.linalg.norm(triangles.reshape(-1, 3), axis=1).max()
+    loaded = film.boxes("loaded", state, object_["model"])
+    moved = turned(loaded.reshape(-1, 3), object_).reshape(-1, 2, 3)
+    figure, axes = pyplot.subplots(1, 2, figsize=(9.6, 4.9))
+    figure.subplots_adjust(0.005, 0.0, 0.995, 0.93, wspace=0.02)
+    half = 3 * RADIUS_M
+    faces(axes[0], camera, triangles, 0.4 + 0.6 * colours)
+    box_lines(axes[0], camera, moved, LOADED, 0.5, 0.6)
+    frame_axes(axes[0], (0, 0), 1.1 * radius_m)
+    axes[0].set_title(f"boxes of the {len(loaded)} chunks that are loaded", fontsize=11)
+    faces(axes[1], camera, triangles, 0.4 + 0.6 * colours, edge=0.4, within=window(place, half))
+    for region in state["front"]["regions"][::-1]:
+        centre = camera.see(turned(numpy.array([region["center_m"]]), object_)[0])
+        axes[1].add_patch(pyplot.Circle(
+            centre[:2], region["radius_m"], fill=False, linewidth=1.8, zorder=6,
+            color=FORETOLD if region["is_foretold"] else PRESENT))
+    tool_mark(axes[1], camera, state["tools"][0], 0)
+    frame_axes(axes[1], place, half)
+    axes[1].set_title("where chunks are looked for: at the tool, foretold", fontsize=11)
+    save(figure, path)
+
+
 def bracket(studio, path):
     """L and U against the true distance while the tool comes near."""
     lower = studio.column("tool0.nearest.lower_m")
@@ -482,8 +516,8 @@ def force(studio, path):
     axes[0].set_ylabel("force, N")
     axes[1].plot(seconds, studio.column("model0.faces_used"), color=TREE, linewidth=1)
     axes[1].set_ylabel("active faces")
-    axes[2].plot(seconds, studio.column("splits"), color=SPLIT, linewidth=0.8, label="splits")
-    axes[2].plot(seconds, studio.column("merges"), color=MERGE, linewidth=0.8, label="merges")
+    axes[2].plot(seconds, studio.column("splits"), color=LOADED, linewidth=0.8, label="splits")
+    axes[2].plot(seconds, studio.column("merges"), color=FORETOLD, linewidth=0.8, label="merges")
     axes[2].set(xlabel="s", ylabel="a frame")
     axes[2].legend(frameon=False, ncol=2)
     for one in axes:
@@ -491,8 +525,52 @@ def force(studio, path):
     save(figure, path)
 
 
+def scene(studio, path):
+    """Objects of a scene, coarse but where a hand is."""
+    root = pathlib.Path(__file__).resolve().parents[2]
+    size = ("--models", "4", "--objects", "12", "--faces", "2000") if studio.quick else ()
+    glb = studio.file("scene.glb", lambda to: run(sys.executable, root / "cmake/demo_scene.py", to,
+                                                  *size))
+    folder = studio.file("scene", lambda to: run(studio.programs / "spm_build", glb, "-o", to))
+    recording = studio.file("scene.rec", lambda to: run(
+        studio.programs / "hrtc", folder / "scene.gltf", "--tools", "2", "--pool-mib", "8",
+        "--device", "sim", "--virtual-time", "--allow-no-rt", "--duration",
+        "1" if studio.quick else "3", "--record", to))
+    film = studio.film_of(recording)
+    frame = json.loads(film.get("state"))["film"]["frames"] * 3 // 5
+    state = film.state(frame)
+    camera = Camera((0.15, -0.75, 0.8))
+    triangles, colours = [], []
+    cuts = {}
+    for object_ in state["front"]["objects"]:
+        model = object_["model"]
+        if model not in cuts:
+            cuts[model] = film.cut(state, model)
+        levels_of = cuts[model].levels
+        triangles.append(turned(cuts[model].triangles, object_))
+        colours.append(ramp(levels_of / 12))
+    triangles, colours = numpy.concatenate(triangles), numpy.concatenate(colours)
+    seen = camera.see(triangles.reshape(-1, 3))
+    low, high = seen[:, :2].min(axis=0), seen[:, :2].max(axis=0)
+    near, near_half = camera.see(state["tools"][0]["proxy_m"])[:2], 0.03
+    figure, axes = pyplot.subplots(1, 2, figsize=(9.6, 4.9))
+    figure.subplots_adjust(0.005, 0.0, 0.995, 0.93, wspace=0.02)
+    faces(axes[0], camera, triangles, colours, edge=0.1)
+    frame_axes(axes[0], (low + high) / 2, 1.03 * max((high - low) / 2))
+    axes[0].add_patch(pyplot.Rectangle(near - near_half, 2 * near_half, 2 * near_half, fill=False,
+                                       linewidth=1))
+    axes[0].set_title(f"{len(state['front']['objects'])} objects, {len(triangles):,} faces",
+                      fontsize=11)
+    faces(axes[1], camera, triangles, colours, edge=0.4, within=window(near, near_half))
+    for tool in state["tools"]:
+        tool_mark(axes[1], camera, tool, 0.02)
+    frame_axes(axes[1], near, near_half)
+    axes[1].set_title(f"{2e3 * near_half:.0f} mm of it, at a tool", fontsize=11)
+    save(figure, path)
+
+
 PICTURES = {"touch.gif": touch, "cut.png": cut, "levels.png": levels, "tree.png": tree,
-            "bracket.png": bracket, "force.png": force}
+            "regions.png": regions, "bracket.png": bracket, "force.png": force, "scene.png": scene}
 
 
 def main():
