@@ -3,8 +3,8 @@
 #include "transport/dds/front.hpp"
 
 #include "platform/base/printable.hpp"
+#include "transport/dds/newest.hpp"
 #include "transport/dds/placement.hpp"
-#include "transport/dds/take.hpp"
 #include "transport/model_name.hpp"
 
 #include <algorithm>
@@ -37,13 +37,6 @@ template <std::size_t Size>
 std::string_view characters_of(const char (&text)[Size]) // NOLINT: idlc's type.
 {
     return {static_cast<const char*>(text), ::strnlen(static_cast<const char*>(text), Size)};
-}
-
-ControllerId controller_of(const tactus_v4_Front& sample)
-{
-    ControllerId id{};
-    std::memcpy(id.data(), sample.controller, id.size());
-    return id;
 }
 
 template <typename From, typename To>
@@ -348,57 +341,15 @@ FrontReader::FrontReader(Participants& participants, Endpoint reader)
 
 void FrontReader::poll()
 {
-    take_each<tactus_v4_Front>(reader_.handle, kMaxSeen,
-                               [this](const tactus_v4_Front& sample, const dds_sample_info_t& info)
-                               {
-                                   if (tells_end(info))
-                                   {
-                                       on_end(sample, info.publication_handle);
-                                   }
-                                   else if (!try_take(sample, info))
-                                   {
-                                       ++refused_;
-                                       participants_.refuse(info.publication_handle,
-                                                            Refused::telemetry);
-                                   }
-                               });
-    std::erase_if(fronts_, [this](const SeenFront& each)
-                  { return each.is_disputed && !participants_.is_writing(each.writer); });
-}
-
-/// Of who isn't the controller it is no news.
-void FrontReader::on_end(const tactus_v4_Front& sample, std::uint64_t writer)
-{
-    const ControllerId controller = controller_of(sample);
-    const auto who = participants_.writer_of(writer);
-    if (who && *who != controller)
-    {
-        participants_.refuse(writer, Refused::identity);
-        return;
-    }
-    std::erase_if(fronts_, [&](const SeenFront& each) { return each.id == controller; });
-}
-
-bool FrontReader::try_take(const tactus_v4_Front& sample, const dds_sample_info_t& info)
-{
-    auto front = front_from(sample);
-    const ControllerId id = controller_of(sample);
-    const auto known = std::ranges::find(fronts_, id, &SeenFront::id);
-    if (!front || (known == fronts_.end() && fronts_.size() == kMaxSeen))
-    {
-        return false;
-    }
-    SeenFront news{id, sample.serial, *std::move(front), info.publication_handle,
-                   info.instance_state != DDS_ALIVE_INSTANCE_STATE};
-    if (known != fronts_.end())
-    {
-        *known = std::move(news);
-    }
-    else
-    {
-        fronts_.push_back(std::move(news));
-    }
-    return true;
+    refused_ += take_newest<tactus_v4_Front>(
+        reader_, participants_, kMaxSeen, fronts_,
+        [](const tactus_v4_Front& sample) -> std::optional<SeenFront>
+        {
+            auto front = front_from(sample);
+            return front ? std::optional<SeenFront>(
+                               {controller_of(sample), sample.serial, *std::move(front)})
+                         : std::nullopt;
+        });
 }
 
 } // namespace tactus::dds

@@ -13,9 +13,6 @@
 #include <string>
 #include <vector>
 
-struct dds_sample_info;
-struct tactus_v4_Front; // idlc's type of a sample.
-
 namespace tactus::dds
 {
 
@@ -78,9 +75,6 @@ public:
 
 private:
     FrontReader(Participants& participants, Endpoint reader);
-
-    void on_end(const tactus_v4_Front& sample, std::uint64_t writer);
-    [[nodiscard]] bool try_take(const tactus_v4_Front& sample, const dds_sample_info& info);
 
     Participants& participants_;
     Endpoint reader_;

@@ -2,13 +2,14 @@
 // Copyright the Tactus authors.
 #include "transport/dds/telemetry.hpp"
 
-#include "transport/dds/take.hpp"
+#include "transport/dds/newest.hpp"
 #include "transport/model_name.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -206,6 +207,53 @@ void copy_counts(const From& from, To& to)
     to.faults_seen = from.faults_seen;
 }
 
+/// None where a name is none, a number can't be, or there is too much of something.
+std::optional<WatchedController> watched_from(const tactus_v4_Telemetry& sample)
+{
+    WatchedController news;
+    news.id = controller_of(sample);
+    news.name = text_of(sample.controller_name);
+    news.serial = sample.serial;
+    const bool is_in_bounds = sample.tools._length <= kMaxTools &&
+                              sample.pairs._length <= kMaxPairs &&
+                              sample.models._length <= kMaxShownModels;
+    if (!is_valid_name(news.name) || !is_in_bounds)
+    {
+        return std::nullopt;
+    }
+    copy_counts(sample, news.telemetry);
+    news.telemetry.tool_count = sample.tools._length;
+    news.telemetry.pair_count = sample.pairs._length;
+    news.telemetry.model_count = sample.models._length;
+    for (std::uint32_t i = 0; i < sample.tools._length; ++i)
+    {
+        news.telemetry.tools[i] = from_wire(sample.tools._buffer[i]);
+        if (!is_sound(news.telemetry.tools[i]))
+        {
+            return std::nullopt;
+        }
+    }
+    for (std::uint32_t i = 0; i < sample.pairs._length; ++i)
+    {
+        news.telemetry.pairs[i] = from_wire(sample.pairs._buffer[i]);
+        if (!is_sound(news.telemetry.pairs[i], sample.tools._length))
+        {
+            return std::nullopt;
+        }
+    }
+    for (std::uint32_t i = 0; i < sample.models._length; ++i)
+    {
+        news.models.push_back(identity_of(sample.models._buffer[i]));
+        news.telemetry.models[i] = from_wire(sample.models._buffer[i]);
+        const bool has_stage = sample.models._buffer[i].state >> kStageShift < kModelStages;
+        if (!is_valid_name(news.models.back().name) || !has_stage)
+        {
+            return std::nullopt;
+        }
+    }
+    return news;
+}
+
 } // namespace
 
 Result<std::unique_ptr<TelemetryWriter>, Refusal>
@@ -282,96 +330,8 @@ TelemetryReader::TelemetryReader(Participants& participants, Endpoint reader)
 
 void TelemetryReader::poll()
 {
-    take_each<tactus_v4_Telemetry>(
-        reader_.handle, kMaxWatched,
-        [this](const tactus_v4_Telemetry& sample, const dds_sample_info_t& info)
-        {
-            if (tells_end(info))
-            {
-                on_end(sample, info.publication_handle);
-            }
-            else if (!try_take(sample, info))
-            {
-                ++refused_;
-                participants_.refuse(info.publication_handle, Refused::telemetry);
-            }
-        });
-    std::erase_if(controllers_, [this](const WatchedController& each)
-                  { return each.is_disputed && !participants_.is_writing(each.writer); });
-}
-
-/// Of who isn't the controller it is no news.
-void TelemetryReader::on_end(const tactus_v4_Telemetry& sample, std::uint64_t writer)
-{
-    ControllerId controller{};
-    std::memcpy(controller.data(), sample.controller, controller.size());
-    const auto who = participants_.writer_of(writer);
-    if (who && *who != controller)
-    {
-        participants_.refuse(writer, Refused::identity);
-        return;
-    }
-    std::erase_if(controllers_,
-                  [&](const WatchedController& each) { return each.id == controller; });
-}
-
-bool TelemetryReader::try_take(const tactus_v4_Telemetry& sample, const dds_sample_info_t& info)
-{
-    WatchedController news;
-    news.writer = info.publication_handle;
-    news.is_disputed = info.instance_state != DDS_ALIVE_INSTANCE_STATE;
-    std::memcpy(news.id.data(), sample.controller, news.id.size());
-    news.name = text_of(sample.controller_name);
-    news.serial = sample.serial;
-    const bool is_in_bounds = sample.tools._length <= kMaxTools &&
-                              sample.pairs._length <= kMaxPairs &&
-                              sample.models._length <= kMaxShownModels;
-    if (!is_valid_name(news.name) || !is_in_bounds)
-    {
-        return false;
-    }
-    copy_counts(sample, news.telemetry);
-    news.telemetry.tool_count = sample.tools._length;
-    news.telemetry.pair_count = sample.pairs._length;
-    news.telemetry.model_count = sample.models._length;
-    for (std::uint32_t i = 0; i < sample.tools._length; ++i)
-    {
-        news.telemetry.tools[i] = from_wire(sample.tools._buffer[i]);
-        if (!is_sound(news.telemetry.tools[i]))
-        {
-            return false;
-        }
-    }
-    for (std::uint32_t i = 0; i < sample.pairs._length; ++i)
-    {
-        news.telemetry.pairs[i] = from_wire(sample.pairs._buffer[i]);
-        if (!is_sound(news.telemetry.pairs[i], sample.tools._length))
-        {
-            return false;
-        }
-    }
-    for (std::uint32_t i = 0; i < sample.models._length; ++i)
-    {
-        news.models.push_back(identity_of(sample.models._buffer[i]));
-        news.telemetry.models[i] = from_wire(sample.models._buffer[i]);
-        const bool has_stage = sample.models._buffer[i].state >> kStageShift < kModelStages;
-        if (!is_valid_name(news.models.back().name) || !has_stage)
-        {
-            return false;
-        }
-    }
-    const auto known = std::ranges::find(controllers_, news.id, &WatchedController::id);
-    if (known != controllers_.end())
-    {
-        *known = std::move(news);
-        return true;
-    }
-    if (controllers_.size() == kMaxWatched)
-    {
-        return false;
-    }
-    controllers_.push_back(std::move(news));
-    return true;
+    refused_ += take_newest<tactus_v4_Telemetry>(reader_, participants_, kMaxWatched, controllers_,
+                                                 watched_from);
 }
 
 } // namespace tactus::dds

@@ -14,9 +14,6 @@
 #include <string>
 #include <vector>
 
-struct dds_sample_info;
-struct tactus_v4_Telemetry; // idlc's type of a sample.
-
 namespace tactus::dds
 {
 
@@ -85,9 +82,6 @@ public:
 
 private:
     TelemetryReader(Participants& participants, Endpoint reader);
-
-    void on_end(const tactus_v4_Telemetry& sample, std::uint64_t writer);
-    [[nodiscard]] bool try_take(const tactus_v4_Telemetry& sample, const dds_sample_info& info);
 
     Participants& participants_;
     Endpoint reader_;
