@@ -141,6 +141,8 @@ TEST(StateJson, shows_the_chosen_controller_and_lists_all)
     model.hash.fill(0xAB);
     model.wished = {{3}, {7}};
     shown.front.regions = {{0, true, {0.5F, 1.0F, 2.0F}, 0.25F}};
+    shown.front.regions_left_out = 6;
+    shown.front.slots_left_out = 7;
     live.publish({told(1, "one"), told(2, "two")}, {shown});
     const auto state =
         nlohmann::json::parse(state_json(*live.newest(), *shelf, id_text(front(2, 0).id), 0));
@@ -148,6 +150,8 @@ TEST(StateJson, shows_the_chosen_controller_and_lists_all)
     EXPECT_EQ(state["controller"]["name"], "two");
     EXPECT_EQ(state["controller"]["front"]["serial"], 5);
     EXPECT_EQ(state["controller"]["front"]["models"].back()["wished"], 2);
+    EXPECT_EQ(state["controller"]["front"]["regions_left_out"], 6);
+    EXPECT_EQ(state["controller"]["front"]["slots_left_out"], 7);
     EXPECT_EQ(state["controller"]["front"]["regions"],
               nlohmann::json::parse(R"([{"model": "abababababababababababababababab",
                   "is_foretold": true, "center_m": [0.5, 1.0, 2.0], "radius_m": 0.25}])"));
