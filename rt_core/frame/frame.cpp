@@ -155,7 +155,7 @@ FrameOutput Frame::run(const FrameInput& input, StageMark mark) noexcept
     find_neighbours();
     for (Pair* pair : pairs_.all())
     {
-        pair->place(budgets, faults_);
+        pair->place(budgets);
     }
     pairs_.order();
     faults_ |= shedding_.shed(pairs_.by_urgency()) ? FrameFault::pair_shed : FrameFault::none;
@@ -296,6 +296,16 @@ void Frame::begin(std::span<const ToolState> tools) noexcept
             else if (pair->is_joined())
             {
                 near.push_back(pair->near());
+            }
+        }
+        if (!near.empty()) // What moved may take the tool along, past what stands.
+        {
+            for (Pair* pair : pairs_.of(i))
+            {
+                if (!pair->has_moved() && pair->is_joined())
+                {
+                    near.push_back(pair->near());
+                }
             }
         }
         faults_ |= tools_[i].begin(tools[i], period_s, near.view());
