@@ -20,13 +20,15 @@ struct ProxyMemory
 };
 
 /// An object near a tool as a frame begins: of the model's frame, where it stood and where it
-/// stands now.
+/// stands now; the same pose where it has not moved.
 struct NearObject
 {
     std::uint32_t object{0}; ///< Its number.
     const ObjectPose* before{nullptr};
     const ObjectPose* now{nullptr};
     ProxyMemory* memory{nullptr};
+
+    [[nodiscard]] bool has_moved() const noexcept { return before != now; }
 };
 
 } // namespace tactus

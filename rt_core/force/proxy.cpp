@@ -154,6 +154,7 @@ ToolOutput Proxy::respond(const ToolGoal& goal, std::span<const PlacedSurface> s
                           double clear_m, std::uint32_t planes) noexcept
 {
     anchor_ = position_;
+    clear_m_ = clear_m;
     elapsed_s_ = goal.elapsed_s;
     radius_ = find_radius(surfaces);
     const double travel = free_travel(surfaces, clear_m);
@@ -600,30 +601,25 @@ void Proxy::keep_clearances(std::span<const PlacedSurface> surfaces, const Vicin
 
 void Proxy::carry(std::span<const NearObject> objects, double elapsed_s) noexcept
 {
+    was_overrun_ = false;
+    if (objects.empty())
+    {
+        return;
+    }
     const auto along = [this](const NearObject& object)
     { return to_world(*object.now, to_model(*object.before, position_)); };
-    const Vec3 stays = position_;
-    Vec3 target = stays;
     for (const NearObject& object : objects)
     {
-        object.memory->velocity_m_per_s = (along(object) - position_) / elapsed_s;
-        target = in_contact_ && object.object == hold_.object ? along(object) : target;
-    }
-    was_overrun_ = is_overrun(target, objects);
-    if (was_overrun_ && !is_overrun(stays, objects))
-    {
-        target = stays;
-        was_overrun_ = false;
-    }
-    for (std::size_t i = 0; i < objects.size() && was_overrun_; ++i)
-    {
-        if (!is_overrun(along(objects[i]), objects))
+        if (object.has_moved())
         {
-            target = along(objects[i]);
-            was_overrun_ = false;
+            object.memory->velocity_m_per_s = (along(object) - position_) / elapsed_s;
         }
     }
-    position_ = target;
+    const Carried<Vec3> target =
+        carried(position_, objects, in_contact_ ? hold_.object : kNoObject, along,
+                [&](const Vec3& place) { return is_overrun(place, objects); });
+    was_overrun_ = target.is_overrun;
+    position_ = target.place;
 }
 
 void Proxy::forget(std::uint32_t object) noexcept
@@ -635,6 +631,11 @@ void Proxy::forget(std::uint32_t object) noexcept
 /// objects move.
 bool Proxy::is_overrun(const Vec3& target, std::span<const NearObject> objects) const noexcept
 {
+    const double goes_m = (target - position_).norm();
+    if (goes_m > 0.0 && goes_m >= clear_m_ - went_m())
+    {
+        return true; // Past what is no object here.
+    }
     return std::ranges::any_of(
         objects,
         [&](const NearObject& object)

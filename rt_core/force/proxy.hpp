@@ -4,6 +4,7 @@
 
 #include "rt_core/base/realtime.hpp"
 #include "rt_core/base/static_vector.hpp"
+#include "rt_core/force/carried.hpp"
 #include "rt_core/force/catch_up.hpp"
 #include "rt_core/force/near_object.hpp"
 #include "rt_core/force/smooth_normals.hpp"
@@ -102,8 +103,6 @@ public:
     void go_on() noexcept { is_on_ = true; }
 
 private:
-    static constexpr std::uint32_t kNoObject = 0xFFFF'FFFFU;
-
     enum class Motion : std::uint8_t
     {
         at_rest,   ///< At the goal, or held by the surface.
@@ -181,6 +180,7 @@ private:
     Vec3 position_{0.0, 0.0, 0.0};
     Mat3 rotation_{Mat3::Identity()};        ///< The goal's.
     Vec3 anchor_{0.0, 0.0, 0.0};             ///< Where this frame's surfaces were queried.
+    double clear_m_{kInfinity};              ///< There, of everything else.
     Vec3 normal_{0.0, 0.0, 1.0};             ///< Of the last contact.
     SmoothNormals normals_;                  ///< While the proxy moves.
     StaticVector<std::uint32_t, 3> held_by_; ///< The faces, at the last stand of this frame.

@@ -82,6 +82,9 @@ void RigidProxy::see(const ToolGoal& goal) noexcept
 {
     frame_ = {force_, torque_, frozen_s_};
     gone_ = Motion<6>::Zero();
+    carried_m_per_s_ = Vec3(0.0, 0.0, 0.0);
+    carried_rad_per_s_ = Vec3(0.0, 0.0, 0.0);
+    was_overrun_ = false;
     is_on_ = false;
     if (!is_joined_)
     {
@@ -89,17 +92,92 @@ void RigidProxy::see(const ToolGoal& goal) noexcept
     }
 }
 
-void RigidProxy::carry(std::span<const NearObject> objects, double elapsed_s) const noexcept
+void RigidProxy::carry(std::span<const NearObject> objects, double elapsed_s) noexcept
 {
     for (const NearObject& object : objects)
     {
-        const ObjectPose& before = *object.before;
-        const ObjectPose& now = *object.now;
-        const Vec3 along_m = to_world(now, to_model(before, place_.translation_m));
-        object.memory->velocity_m_per_s = (along_m - place_.translation_m) / elapsed_s;
-        object.memory->spin_rad_per_s =
-            rotation_vector(orthonormalised(now.rotation * before.rotation.transpose())) /
-            elapsed_s;
+        if (object.has_moved())
+        {
+            const ObjectPose& before = *object.before;
+            const ObjectPose& now = *object.now;
+            const Vec3 along_m = to_world(now, to_model(before, place_.translation_m));
+            object.memory->velocity_m_per_s = (along_m - place_.translation_m) / elapsed_s;
+            object.memory->spin_rad_per_s =
+                rotation_vector(orthonormalised(now.rotation * before.rotation.transpose())) /
+                elapsed_s;
+        }
+    }
+    if (!is_joined_ || objects.empty())
+    {
+        return;
+    }
+    const Carried<Similarity> target = carried(
+        place_, objects, held_by_, [this](const NearObject& object) { return along(object); },
+        [&](const Similarity& place) { return is_overrun(place, objects); });
+    was_overrun_ = target.is_overrun;
+    if (target.by != nullptr)
+    {
+        place_ = target.place;
+        carried_m_per_s_ = target.by->memory->velocity_m_per_s;
+        carried_rad_per_s_ = target.by->memory->spin_rad_per_s;
+        gone_.head<3>() = elapsed_s * carried_m_per_s_;
+        gone_.tail<3>() = arm_m_ * elapsed_s * carried_rad_per_s_;
+    }
+}
+
+/// The centre of its core and its turn are to the object as they were.
+Similarity RigidProxy::along(const NearObject& object) const noexcept
+{
+    const ObjectPose& before = *object.before;
+    const ObjectPose& now = *object.now;
+    const Mat3 rotation =
+        orthonormalised(now.rotation * (before.rotation.transpose() * place_.rotation));
+    const Vec3 center_m = to_world(now, to_model(before, place_.to_there(center_m_)));
+    return {rotation, center_m - rotation * center_m_, 1.0};
+}
+
+/// No point of the core goes farther between two places, in the frame that both are of. The
+/// largest singular value of a difference of two scaled rotations is not above its norm / sqrt(2):
+/// two are alike, and the third, along the axis, is no more than they.
+double RigidProxy::way_m(const Similarity& from, const Similarity& to) const noexcept
+{
+    constexpr double kOverSqrt2 = 0.7071067811865476;
+    const double turned = (to.scale * to.rotation - from.scale * from.rotation).norm();
+    return (to.to_there(center_m_) - from.to_there(center_m_)).norm() +
+           kOverSqrt2 * turned * core_radius_m_;
+}
+
+/// Whether some point of the core could be on another side of a surface if it goes to `target`
+/// while the objects move. A way that is no more than the poses' rounding is none.
+bool RigidProxy::is_overrun(const Similarity& target,
+                            std::span<const NearObject> objects) const noexcept
+{
+    const double goes_m = way_m(place_, target);
+    if (goes_m > 0.0 && goes_m >= clear_m_)
+    {
+        return true; // Past what is no object here.
+    }
+    return std::ranges::any_of(
+        objects,
+        [&](const NearObject& object)
+        {
+            const double way =
+                way_m(in_frame(*object.before, place_), in_frame(*object.now, target));
+            const double relative_m = way * std::max(object.before->scale, object.now->scale);
+            const double rounding_m =
+                pose_rounding_m(*object.now, target.to_there(center_m_), core_radius_m_);
+            return relative_m > 4.0 * rounding_m &&
+                   relative_m * (1.0 + kContactTolerance) >= object.memory->clearance_m;
+        });
+}
+
+/// For the next frame: what the core is away from surfaces at least, after this step.
+void RigidProxy::keep_clearances(std::span<const PlacedSurface> surfaces, double clear_m) noexcept
+{
+    clear_m_ = clear_m - went_m_;
+    for (const PlacedSurface& placed : surfaces)
+    {
+        placed.memory->clearance_m = placed.lower_m - went_m_;
     }
 }
 
@@ -117,6 +195,7 @@ void RigidProxy::forget(std::uint32_t object) noexcept
     {
         (void)holds_.pop_back();
     }
+    held_by_ = held_by_ == object ? kNoObject : held_by_;
 }
 
 void RigidProxy::go_on() noexcept
@@ -175,6 +254,8 @@ ToolOutput RigidProxy::respond(const ToolGoal& goal, std::span<const PlacedSurfa
         freeze(goal, room.is_crossed(), output);
     }
     catch_up(has_waited, goal.elapsed_s, output);
+    keep_clearances(surfaces, clear_m);
+    is_squeezed_ = is_squeezed_ || was_overrun_;
     output.squeezed = is_squeezed_;
     output.crowded = is_crowded_;
     output.proxy_m = place_.translation_m;
@@ -198,6 +279,8 @@ void RigidProxy::step(const ToolGoal& goal, std::span<const PlacedSurface> surfa
     sticks_ = found.sticks;
     slides_ = found.slides;
     output.in_contact = !found.pushes.empty();
+    const auto* const most = std::ranges::max_element(found.pushes, {}, &BodyPush::reaction);
+    held_by_ = output.in_contact ? surfaces[planes_->touch(most->touch).surface].object : kNoObject;
     add_forces(goal, found, bumps, output);
     keep_holds(found, surfaces);
     output.lag_m = advance(goal, found, room);
@@ -322,7 +405,10 @@ void RigidProxy::add(const BodyTouch& touch, const PlacedSurface& placed, double
     grip.viscous =
         std::min(material.viscosity_n_s_per_m / (grip.stiffness_n_per_m * elapsed_s), kMostViscous);
     grip.frame_way_m = elapsed_s * grip.velocity_m_per_s;
-    grip.way_m = is_on_ ? Vec3(0.0, 0.0, 0.0) : grip.frame_way_m;
+    const Vec3 carried_m_per_s =
+        carried_m_per_s_ + carried_rad_per_s_.cross(touch.on_surface_m - place_.translation_m);
+    grip.way_m =
+        is_on_ ? Vec3(0.0, 0.0, 0.0) : Vec3(elapsed_s * (grip.velocity_m_per_s - carried_m_per_s));
     planes_->add(touch, grip);
 }
 

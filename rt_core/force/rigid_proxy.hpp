@@ -6,6 +6,7 @@
 #include "rt_core/base/static_vector.hpp"
 #include "rt_core/force/body_planes.hpp"
 #include "rt_core/force/body_room.hpp"
+#include "rt_core/force/carried.hpp"
 #include "rt_core/force/catch_up.hpp"
 #include "rt_core/force/near_object.hpp"
 #include "rt_core/force/placed_surface.hpp"
@@ -41,8 +42,9 @@ namespace tactus
 /// texture is felt where the middle of the core is (texture.hpp): which of its contacts bear
 /// changes from frame to frame, and with them the energy of the bumps would.
 ///
-/// Where it sticks, the proxy does not move by a bit. Objects that move take along what sticks to
-/// them, and push what is in their way, in its next step.
+/// Where it sticks, the proxy does not move by a bit. Before its first step in a frame the proxy
+/// goes along with an object that moves, if that one holds it or would run over it (carried.hpp):
+/// of what moves only that counts by which objects move to one another.
 ///
 /// Where the distance is not exact, the proxy moves no farther than it is proven to be from every
 /// surface, less the radius. When that is nothing it is frozen and says so: the last planes hold
@@ -67,7 +69,7 @@ public:
     [[nodiscard]] const Similarity& place() const noexcept { return place_; }
     /// How far a point of the tool may have to go from here to the hand, at most.
     [[nodiscard]] double way_to_m(const ToolGoal& goal) const noexcept TACTUS_NONBLOCKING;
-    /// No motion was allowed by all planes in the last step.
+    /// No motion was allowed by all planes in the last step, or an object may have come over it.
     [[nodiscard]] bool is_squeezed() const noexcept { return is_squeezed_; }
     /// What may hold the tool was left out in the last step, for want of room.
     [[nodiscard]] bool is_crowded() const noexcept { return is_crowded_; }
@@ -81,9 +83,8 @@ public:
 
     /// A proxy that is nowhere yet is at the hand; else nothing changes before it responds.
     void see(const ToolGoal& goal) noexcept TACTUS_NONBLOCKING;
-    /// Tells how the objects move at the proxy: they take it along in its next step.
-    void carry(std::span<const NearObject> objects,
-               double elapsed_s) const noexcept TACTUS_NONBLOCKING;
+    /// The objects move. Once a frame, before the surfaces are queried.
+    void carry(std::span<const NearObject> objects, double elapsed_s) noexcept TACTUS_NONBLOCKING;
     /// The object is another from now on, or gone.
     void forget(std::uint32_t object) noexcept TACTUS_NONBLOCKING;
 
@@ -128,6 +129,11 @@ private:
         double frozen_s{0.0};
     };
 
+    [[nodiscard]] Similarity along(const NearObject& object) const noexcept;
+    [[nodiscard]] bool is_overrun(const Similarity& target,
+                                  std::span<const NearObject> objects) const noexcept;
+    [[nodiscard]] double way_m(const Similarity& from, const Similarity& to) const noexcept;
+    void keep_clearances(std::span<const PlacedSurface> surfaces, double clear_m) noexcept;
     [[nodiscard]] Motion<6> way_to(const ToolGoal& goal) const noexcept;
     [[nodiscard]] BodyWay way_of(const Motion<6>& motion) const noexcept;
     void step(const ToolGoal& goal, std::span<const PlacedSurface> surfaces, const BodyRoom& room,
@@ -166,7 +172,12 @@ private:
     bool goes_on_{false};
     bool is_on_{false}; ///< The step is not the frame's first.
     double went_m_{0.0};
-    Motion<6> gone_{Motion<6>::Zero()}; ///< In this frame.
+    Motion<6> gone_{Motion<6>::Zero()};     ///< In this frame.
+    std::uint32_t held_by_{kNoObject};      ///< Which pushed most in the last step.
+    bool was_overrun_{false};               ///< As the frame began.
+    double clear_m_{kInfinity};             ///< Of what is no object here, after the last step.
+    Vec3 carried_m_per_s_{0.0, 0.0, 0.0};   ///< It went along so as the frame began,
+    Vec3 carried_rad_per_s_{0.0, 0.0, 0.0}; ///< and turned so.
     double frozen_s_{0.0};
     CatchUp force_;
     CatchUp torque_;

@@ -16,6 +16,15 @@ namespace
 /// a round trip of 20 ms and what asking, sending and entering take beside it.
 constexpr double kGuestLead_m = 0.16;
 
+/// Round a model's box, in its frame.
+Ball model_ball(const ModelHeader& header) noexcept
+{
+    const auto& extent = header.fields().extent_quanta;
+    const auto quantum_m = static_cast<double>(header.quantum_m());
+    const Vec3 half_m = 0.5 * quantum_m * Vec3(extent[0], extent[1], extent[2]);
+    return {half_m, half_m.norm()};
+}
+
 } // namespace
 
 Result<Done, FrameRefusal> Frame::start(std::optional<Frame>& frame, Arena& arena,
@@ -155,7 +164,7 @@ FrameOutput Frame::run(const FrameInput& input, StageMark mark) noexcept
     find_neighbours();
     for (Pair* pair : pairs_.all())
     {
-        pair->place(budgets, faults_);
+        pair->place(budgets);
     }
     pairs_.order();
     faults_ |= shedding_.shed(pairs_.by_urgency()) ? FrameFault::pair_shed : FrameFault::none;
@@ -211,12 +220,17 @@ std::optional<ChangeRefusal> Frame::try_change(const SceneChange& change) noexce
     }
     const bool comes = change.kind == SceneChangeKind::object_comes;
     const ModelId model = comes ? change.object.model : objects_[change.number].spec.model;
+    const ObjectPose before = objects_[change.number].pose;
     objects_.make(change, models_[model].header.origin_m(), frame_);
     if (change.kind != SceneChangeKind::object_goes)
     {
         if (has_pose(change.kind))
         {
             place(change.number);
+        }
+        if (change.kind == SceneChangeKind::object_moves)
+        {
+            look_for_leap(change.number, before);
         }
         return std::nullopt;
     }
@@ -265,14 +279,26 @@ void Frame::place(std::uint32_t object) noexcept
 {
     const ObjectPose& pose = objects_[object].pose;
     const ModelHeader& header = models_[objects_[object].spec.model].header;
-    const auto& extent = header.fields().extent_quanta;
-    const auto quantum_m = static_cast<double>(header.quantum_m());
-    const Vec3 half_m = 0.5 * quantum_m * Vec3(extent[0], extent[1], extent[2]);
-    const Vec3 center_m = to_world(pose, half_m);
-    const double radius_m = pose.scale * half_m.norm();
+    const Ball ball = model_ball(header);
+    const Vec3 center_m = to_world(pose, ball.center);
+    const double radius_m = pose.scale * ball.radius;
     const double off_m = pose_rounding_m(pose, center_m, radius_m) +
                          kOriginRounding * header.origin_m().norm() * pose.scale;
     broad_.place(object, {center_m, radius_m + off_m});
+}
+
+/// Of tools that have no eye on the object: it was too far away in the last frame.
+void Frame::look_for_leap(std::uint32_t object, const ObjectPose& before) noexcept
+{
+    const Ball ball = model_ball(models_[objects_[object].spec.model].header);
+    for (std::uint32_t i = 0; i < tools_.size(); ++i)
+    {
+        if (presences_[i].is_here && std::ranges::none_of(pairs_.of(i), [object](const Pair* pair)
+                                                          { return pair->object() == object; }))
+        {
+            tools_[i].look_for_leap(before, objects_[object].pose, ball);
+        }
+    }
 }
 
 /// Places the tools, before anything is asked where they are.
@@ -296,6 +322,16 @@ void Frame::begin(std::span<const ToolState> tools) noexcept
             else if (pair->is_joined())
             {
                 near.push_back(pair->near());
+            }
+        }
+        if (!near.empty()) // What moved may take the tool along, past what stands.
+        {
+            for (Pair* pair : pairs_.of(i))
+            {
+                if (!pair->has_moved() && pair->is_joined())
+                {
+                    near.push_back(pair->near());
+                }
             }
         }
         faults_ |= tools_[i].begin(tools[i], period_s, near.view());

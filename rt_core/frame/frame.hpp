@@ -94,6 +94,7 @@ private:
     [[nodiscard]] std::optional<ChangeRefusal> try_change(const SceneChange& change) noexcept;
     [[nodiscard]] std::optional<ChangeRefusal> try_change_tool(const SceneChange& change) noexcept;
     void place(std::uint32_t object) noexcept;
+    void look_for_leap(std::uint32_t object, const ObjectPose& before) noexcept;
     void begin(std::span<const ToolState> tools) noexcept;
     void find_neighbours() noexcept;
     void wake_models() noexcept;

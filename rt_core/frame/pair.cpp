@@ -110,7 +110,7 @@ Pair::Pair(const PairParts& parts, const PairMemory& memory, std::size_t index) 
     }
 }
 
-void Pair::place(const Budgets& budgets, FrameFault& faults) noexcept
+void Pair::place(const Budgets& budgets) noexcept
 {
     const ToolStance& stance = parts_.tool->stance();
     is_model_here_ = parts_.model.model->is_here();
@@ -118,10 +118,6 @@ void Pair::place(const Budgets& budgets, FrameFault& faults) noexcept
         feel_.step(parts_.object->spec.material, parts_.tool->spec().stiffness_n_per_m,
                    static_cast<double>(parts_.rules->period_ns) * 1e-9);
     look();
-    if (touches_ != nullptr && has_moved() && outlook_.is_reached())
-    {
-        faults |= FrameFault::proxy_squeezed; // An object came as far as to its core.
-    }
     find_urgency();
     if (mesh_ != nullptr && is_model_here_)
     {

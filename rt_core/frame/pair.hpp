@@ -108,7 +108,7 @@ public:
     [[nodiscard]] std::uint32_t object() const noexcept { return parts_.object_number; }
 
     /// Fits the pair to where tool and object are in this frame.
-    void place(const Budgets& budgets, FrameFault& faults) noexcept TACTUS_NONBLOCKING;
+    void place(const Budgets& budgets) noexcept TACTUS_NONBLOCKING;
     /// As place() found it.
     [[nodiscard]] const Urgency& urgency() const noexcept { return urgency_; }
 
@@ -170,7 +170,8 @@ public:
     /// The object before and after the changes of this frame.
     [[nodiscard]] NearObject near() noexcept
     {
-        return {parts_.object_number, &stood_, &parts_.object->pose, &body_};
+        const ObjectPose& now = parts_.object->pose;
+        return {parts_.object_number, has_moved() ? &stood_ : &now, &now, &body_};
     }
     /// The same of one that stands still.
     void stand() noexcept

@@ -71,8 +71,8 @@ FrameFault Tool::begin(const ToolState& sample, double period_s,
     const ToolGoal last = goal_;
     goal_.elapsed_s = period_s * static_cast<double>(std::max(sample.elapsed_periods, 1U));
     const FrameFault fault = take(sample);
-    is_still_ = fault == FrameFault::none && objects.empty() && !lost_object_ && goal_ == last &&
-                goal_.velocity_m_per_s == Vec3(0.0, 0.0, 0.0);
+    is_still_ = fault == FrameFault::none && objects.empty() && !lost_object_ && !leapt_by_ &&
+                goal_ == last && goal_.velocity_m_per_s == Vec3(0.0, 0.0, 0.0);
     with(body_,
          [&](auto& body)
          {
@@ -141,6 +141,24 @@ void Tool::forget(const PlacedSurface& gone) noexcept
     with(body_, [&gone](auto& body) { body.forget(gone.object); });
 }
 
+/// Seen from the object, the core's ball goes straight.
+void Tool::look_for_leap(const ObjectPose& before, const ObjectPose& now,
+                         const Ball& object) noexcept
+{
+    if (spec_.passes_through || goal_.elapsed_s == 0.0)
+    {
+        return; // It is not held, or is nowhere yet.
+    }
+    const Vec3 center_m = output_.proxy_m + output_.proxy_rotation * ball_.center;
+    const Vec3 from_m = to_model(before, center_m) - object.center;
+    const Vec3 way_m = to_model(now, center_m) - object.center - from_m;
+    const double length_sq = way_m.squaredNorm();
+    const double share =
+        length_sq > 0.0 ? std::clamp(-from_m.dot(way_m) / length_sq, 0.0, 1.0) : 0.0;
+    const double radius_m = object.radius + ball_.radius / std::min(before.scale, now.scale);
+    leapt_by_ = leapt_by_ || (from_m + share * way_m).norm() <= radius_m;
+}
+
 double Tool::near_m() const noexcept
 {
     const double soon_m =
@@ -193,6 +211,8 @@ ToolOutput Tool::finish(ToolOutput output, double clear_m) noexcept
     output.clear_m = std::max(clear_m, 0.0);
     output.lost_object = lost_object_;
     lost_object_ = false;
+    output.squeezed = output.squeezed || leapt_by_;
+    leapt_by_ = false;
     equal_outputs_ = is_still_ && output == output_ ? equal_outputs_ + 1 : 0;
     output_ = output;
     return output;

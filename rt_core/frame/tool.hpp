@@ -42,6 +42,10 @@ public:
 
     /// An object that it was near to is gone; before begin().
     void forget(const PlacedSurface& gone) noexcept TACTUS_NONBLOCKING;
+    /// One that it was not near to has moved, all of it in this ball of its model's frame; before
+    /// begin(). Where it may have come by the tool in that leap the next output is squeezed.
+    void look_for_leap(const ObjectPose& before, const ObjectPose& now,
+                       const Ball& object) noexcept TACTUS_NONBLOCKING;
 
     /// The force, from surfaces that were queried at stance(); from everything else its core is at
     /// least `clear_m` away there.
@@ -108,6 +112,7 @@ private:
     bool is_still_{false};
     std::uint32_t equal_outputs_{0};
     bool lost_object_{false}; ///< In this one, while it was: an object went or jumped.
+    bool leapt_by_{false};    ///< An object that it was not near to, in this frame.
 };
 
 } // namespace tactus

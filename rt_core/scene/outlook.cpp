@@ -48,11 +48,6 @@ bool Outlook::is_near_surface() const noexcept
     return has_known_ && known_.upper_m + motion_m() <= kKeepFactor * reach_m_;
 }
 
-bool Outlook::is_reached() const noexcept
-{
-    return has_known_ && known_.lower_m > 0.0 && known_.lower_m <= motion_m();
-}
-
 DistanceAnswer Outlook::from_motion() const noexcept
 {
     TACTUS_ASSERT(has_known_);

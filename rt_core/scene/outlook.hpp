@@ -55,8 +55,6 @@ public:
     [[nodiscard]] bool has_known() const noexcept { return has_known_; }
     /// The last answer, taken where the tool was then.
     [[nodiscard]] const DistanceAnswer& known() const noexcept { return known_; }
-    /// The tool may have come to the surface since the last answer, which had it apart.
-    [[nodiscard]] bool is_reached() const noexcept TACTUS_NONBLOCKING;
     /// What the last answer says of the present place, without looking: a valid bracket.
     [[nodiscard]] DistanceAnswer from_motion() const noexcept TACTUS_NONBLOCKING;
 

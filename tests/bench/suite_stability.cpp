@@ -262,14 +262,21 @@ void try_pop_through(const Sizes& sizes, bool full, const Report& report)
 void try_rigid_tools(const Sizes& sizes, bool /*full*/, const Report& report)
 {
     std::uint64_t own = kStabilitySeed + 3'000;
-    for (test::RigidTrial& trial : test::rigid_trials())
+    for (const test::RigidStage stage : {test::RigidStage::still, test::RigidStage::turning,
+                                         test::RigidStage::far, test::RigidStage::closing})
     {
-        trial.seed = test::seed_of(++own);
-        trial.frames = sizes.rigid_frames;
-        const test::RigidFigures figures = test::run_rigid_trial(trial);
-        report(figures.crossings);
-        fmt::print(stderr, "{}: {} frames in contact, {} frozen\n", figures.crossings.name,
-                   figures.contacts, figures.frozen);
+        for (test::RigidTrial& trial : test::rigid_trials(stage))
+        {
+            trial.seed = test::seed_of(++own);
+            trial.frames =
+                stage == test::RigidStage::still ? sizes.rigid_frames : sizes.rigid_frames / 4;
+            const test::RigidFigures figures = test::run_rigid_trial(trial);
+            report(figures.crossings);
+            fmt::print(stderr,
+                       "{}: {} frames in contact, {} frozen, {} squeezed, {} run over and told\n",
+                       figures.crossings.name, figures.contacts, figures.frozen, figures.squeezed,
+                       figures.run_over);
+        }
     }
 }
 

@@ -99,7 +99,8 @@ int crossings_on_way(const SolidCore& solid, const Similarity& from, const Simil
             place.rotation =
                 Eigen::AngleAxisd(share * turned.angle(), turned.axis()).toRotationMatrix() *
                 from.rotation;
-            place.translation_m = from.to_there(center) + share * way - place.rotation * center;
+            place.translation_m =
+                from.to_there(center) + share * way - place.scale * (place.rotation * center);
         }
         met += crossings(solid, place, model);
     }

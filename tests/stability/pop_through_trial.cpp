@@ -10,6 +10,7 @@
 
 #include <array>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,8 @@ constexpr double kForceRounding_n = 1e-9;
 /// Of closing in: the tool's radius, and how long the objects stay where they are.
 constexpr double kSqueezedRadius_diag = 0.05;
 constexpr std::uint32_t kRestFrames = 100;
+/// Of one that comes alone: by more than a tool sees ahead in a frame.
+constexpr double kFastestJaw_m_per_s = 20.0;
 
 /// What the frames say of one tool, held against the trail that it leaves past each object.
 class PopThroughJudge
@@ -133,12 +136,15 @@ PopThroughFigures run_pop_through_trial(const PopThroughTrial& trial)
 namespace
 {
 
-/// Two objects on a line through the origin, one on either side, turned at random.
+/// Two objects on a line through the origin, one on either side, turned at random. They come to
+/// one another, or one of them to the other, which stays where it is when they are open.
 class Jaws
 {
 public:
-    Jaws(const FaceTree& tree, double scale, Random& random)
-        : middle_m_(0.5 * (tree.low_m() + tree.high_m())), axis_(random.in_cube(1.0).normalized())
+    Jaws(const FaceTree& tree, double scale, std::optional<double> stays_m, Random& random)
+        : middle_m_(0.5 * (tree.low_m() + tree.high_m()))
+        , axis_(random.in_cube(1.0).normalized())
+        , stays_m_(stays_m)
     {
         for (ObjectPose& pose : poses_)
         {
@@ -150,21 +156,32 @@ public:
         }
     }
 
-    /// Puts the middle of each object so far from the origin.
+    /// What one alone takes along so fast it may run over, or leave where there is no room.
+    [[nodiscard]] bool come_together() const { return !stays_m_; }
+    /// Puts the middles of the objects twice so far from one another.
     void open_to(double half_gap_m, FrameRig& rig)
     {
-        for (std::size_t i = 0; i < poses_.size(); ++i)
+        const double first_m = stays_m_.value_or(half_gap_m);
+        if (!stays_m_ || !is_placed_)
         {
-            ObjectPose& pose = poses_[i];
-            const Vec3 middle = (i == 0 ? half_gap_m : -half_gap_m) * axis_;
-            pose.translation_m = middle - pose.scale * (pose.rotation * middle_m_);
-            rig.place_object(pose, i);
+            place(0, first_m, rig);
         }
+        place(1, first_m - 2.0 * half_gap_m, rig);
+        is_placed_ = true;
     }
 
 private:
+    void place(std::size_t object, double along_m, FrameRig& rig)
+    {
+        ObjectPose& pose = poses_[object];
+        pose.translation_m = along_m * axis_ - pose.scale * (pose.rotation * middle_m_);
+        rig.place_object(pose, object);
+    }
+
     Vec3 middle_m_;
     Vec3 axis_;
+    std::optional<double> stays_m_;
+    bool is_placed_{false};
     std::array<ObjectPose, 2> poses_;
 };
 
@@ -198,12 +215,19 @@ public:
         if (squeezed_s_ > kFadeTime_s + kPeriod_s)
         {
             ++judge_.figures().faded;
-            if (safe_n.norm() > kForceRounding_n)
+            if (safe_n.norm() > kForceRounding_n && jaws_.come_together())
             {
                 judge_.flag("there is still a force");
             }
         }
         return tool.squeezed;
+    }
+    void end()
+    {
+        if (squeezed_s_ > 0.0 && jaws_.come_together())
+        {
+            judge_.flag("there is room again, but not for the tool");
+        }
     }
 
 private:
@@ -214,8 +238,7 @@ private:
     double squeezed_s_{0.0};
 };
 
-void close_and_open(ClosingRound& round, double open_m, double speed_m_per_s,
-                    PopThroughJudge& judge)
+void close_and_open(ClosingRound& round, double open_m, double speed_m_per_s)
 {
     for (std::uint32_t frame = 0; frame < kRestFrames; ++frame)
     {
@@ -239,12 +262,9 @@ void close_and_open(ClosingRound& round, double open_m, double speed_m_per_s,
     }
     for (std::uint32_t frame = 0; frame < kRestFrames; ++frame)
     {
-        is_squeezed = round.step(open_m, "open again");
+        round.step(open_m, "open again");
     }
-    if (is_squeezed)
-    {
-        judge.flag("there is room again, but not for the tool");
-    }
+    round.end();
 }
 
 } // namespace
@@ -259,9 +279,12 @@ PopThroughFigures run_closing_trial(const ClosingTrial& trial)
     {
         const double diagonal_m = random.between(kSmallest_m, kLargest_m);
         const double radius_m = kSqueezedRadius_diag * diagonal_m;
-        Jaws jaws(trial.tree, diagonal_m / trial.model.diagonal_m, random);
+        const double open_m = 0.5 * diagonal_m + 2.0 * radius_m;
+        const std::optional<double> stays_m = i % 2 == 1 ? std::optional(open_m) : std::nullopt;
+        Jaws jaws(trial.tree, diagonal_m / trial.model.diagonal_m, stays_m, random);
         ClosingRound round(trial, with_tool(options, radius_m), jaws, judge);
-        close_and_open(round, 0.5 * diagonal_m + 2.0 * radius_m, random.between(0.05, 1.0), judge);
+        const double fastest_m_per_s = stays_m ? kFastestJaw_m_per_s : 1.0;
+        close_and_open(round, open_m, random.between(0.05, fastest_m_per_s));
     }
     return judge.figures();
 }

@@ -4,11 +4,14 @@
 
 #include "host_tools/shapes/shapes.hpp"
 #include "tests/shared/frame_rig.hpp"
+#include "tests/shared/period.hpp"
 #include "tests/shared/random.hpp"
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <string>
 
 namespace tactus::test
@@ -18,6 +21,8 @@ namespace
 {
 
 constexpr double kTrialStiffness = 500.0;
+/// Of a frame's way, that are looked at.
+constexpr int kPlacesOnWay = 2;
 
 Vec3 middle_of(const TestModel& model)
 {
@@ -77,6 +82,72 @@ private:
     double pace_{0.04};
 };
 
+constexpr double kFastestTurn_rad_per_s = 0.3;
+
+/// Of what closes in: how far it is away in the middle of its way, and how far it goes from there.
+constexpr double kClosingMiddle_diag = 0.45;
+constexpr double kClosingWay_diag = 0.45;
+
+/// Where the objects stand in each frame.
+class Stage
+{
+public:
+    Stage(const RigidTrial& trial, Random random)
+        : stage_(trial.stage)
+        , middle_m_(middle_of(*trial.object))
+        , size_m_(trial.object->diagonal_m)
+    {
+        axis_ = (random.in_cube(1.0) + Vec3(0, 0, 1e-3)).normalized();
+        if (stage_ == RigidStage::closing)
+        {
+            axis_ = -axis_.cwiseAbs(); // Not from where the hand begins.
+        }
+        if (stage_ == RigidStage::far)
+        {
+            rest_.rotation = Eigen::AngleAxisd(random.between(0.0, 3.0), axis_).toRotationMatrix();
+            rest_.scale = random.between(0.5, 2.0);
+            rest_.translation_m = random.between(100.0, 1'000.0) * random.in_cube(1.0).normalized();
+        }
+        period_frames_ = random.between(500.0, 2'000.0);
+        sway_m_ = stage_ == RigidStage::turning ? 2e-4 * random.in_cube(1.0) : Vec3(0, 0, 0);
+    }
+
+    /// The first object's, and the hand's: it goes about that as it stood at first.
+    [[nodiscard]] const ObjectPose& at_rest() const { return rest_; }
+    /// If anything moves, it is the last one.
+    [[nodiscard]] std::size_t objects() const { return stage_ == RigidStage::closing ? 2 : 1; }
+    [[nodiscard]] bool moves() const
+    {
+        return stage_ == RigidStage::turning || stage_ == RigidStage::closing;
+    }
+    [[nodiscard]] ObjectPose at(std::uint32_t frame) const
+    {
+        ObjectPose pose = rest_;
+        const double phase = 2.0 * std::numbers::pi * frame / period_frames_;
+        if (stage_ == RigidStage::closing)
+        {
+            pose.translation_m =
+                (kClosingMiddle_diag + kClosingWay_diag * std::cos(phase)) * size_m_ * axis_;
+            return pose;
+        }
+        const double most_rad =
+            kFastestTurn_rad_per_s * kPeriod_s * period_frames_ / (2.0 * std::numbers::pi);
+        pose.rotation = Eigen::AngleAxisd(most_rad * std::sin(phase), axis_).toRotationMatrix();
+        pose.translation_m =
+            middle_m_ - pose.rotation * middle_m_ + std::sin(3.0 * phase) * sway_m_;
+        return pose;
+    }
+
+private:
+    RigidStage stage_;
+    Vec3 middle_m_;
+    double size_m_;
+    ObjectPose rest_;
+    Vec3 axis_{0, 0, 1};
+    Vec3 sway_m_{0, 0, 0};
+    double period_frames_{1'000.0};
+};
+
 RigOptions options_of(const RigidTrial& trial)
 {
     RigOptions options;
@@ -88,7 +159,6 @@ RigOptions options_of(const RigidTrial& trial)
     spec.force_max_n = 1e6;
     spec.torque_max_nm = 1e6;
     options.tools = {spec};
-    options.objects = {{ModelId{0}, trial.material}};
     options.faults.loss = 0.05;
     options.faults.delay_polls_max = 10;
     options.faults.seed = trial.seed;
@@ -98,10 +168,12 @@ RigOptions options_of(const RigidTrial& trial)
 class RigidRun
 {
 public:
-    explicit RigidRun(const RigidTrial& trial) : trial_(trial), hand_(*trial.object, trial.seed)
+    explicit RigidRun(const RigidTrial& trial)
+        : trial_(trial)
+        , hand_(*trial.object, trial.seed)
+        , stage_(trial, Random::seeded(trial.seed + 1))
     {
-        const std::string name = trial.tool.name + " on " + trial.object->name;
-        figures_.crossings = {"never through, " + name, 0, 0.0, 0.0, "faces", 0, {}};
+        figures_.crossings = {"never through, " + name_of(trial), 0, 0.0, 0.0, "faces", 0, {}};
     }
 
     RigidFigures run()
@@ -111,49 +183,90 @@ public:
         {
             models.push_back(trial_.tool.mesh);
         }
-        FrameRig rig(models, options_of(trial_));
+        RigOptions options = options_of(trial_);
+        options.objects.assign(stage_.objects(), {ModelId{0}, trial_.material});
+        options.poses = {stage_.at_rest(), stage_.at(0)};
+        options.poses.resize(stage_.objects());
+        last_places_.resize(stage_.objects());
+        FrameRig rig(models, options);
         center_ = rig.frame().tool(0).ball().center; // At its start the tool is in its own frame.
         for (std::uint32_t i = 0; i < trial_.frames; ++i)
         {
-            const ToolState& state = hand_.next();
+            ToolState state = hand_.next();
+            state.position_m = stage_.at_rest().to_there(state.position_m);
+            state.rotation = stage_.at_rest().rotation * state.rotation;
+            if (stage_.moves())
+            {
+                rig.place_object(stage_.at(i), stage_.objects() - 1);
+            }
             const FrameOutput output = rig.step(std::span(&state, 1), {});
-            judge(i, output.tools[0]);
+            judge(i, output.tools[0], rig);
         }
         return figures_;
     }
 
 private:
-    void judge(std::uint32_t frame, const ToolOutput& output)
+    static std::string name_of(const RigidTrial& trial)
     {
-        const Similarity now{output.proxy_rotation, output.proxy_m, 1.0};
+        return trial.tool.name + " on " + trial.object->name + ", " + name_of(trial.stage);
+    }
+    static std::string name_of(RigidStage stage)
+    {
+        switch (stage)
+        {
+        case RigidStage::still:
+            return "still";
+        case RigidStage::turning:
+            return "turning";
+        case RigidStage::far:
+            return "far away";
+        case RigidStage::closing:
+            return "closing in";
+        }
+        return "";
+    }
+
+    /// In each object's frame: the way there begins where the last frame left the tool.
+    void judge(std::uint32_t frame, const ToolOutput& output, const FrameRig& rig)
+    {
         figures_.contacts += output.in_contact ? 1 : 0;
         figures_.frozen += output.frozen ? 1 : 0;
-        if (frame > 0)
+        figures_.squeezed += output.squeezed ? 1 : 0;
+        int met = 0;
+        for (std::size_t i = 0; i < last_places_.size(); ++i)
         {
-            ++figures_.crossings.trials;
-            const int met =
-                crossings_on_way(trial_.tool, last_place_, now, center_, *trial_.object, 2);
-            figures_.crossings.observe(met);
-            if (met > 0)
-            {
-                figures_.crossings.flag(where(frame) + std::to_string(met) + " faces are crossed");
-            }
+            const Similarity now =
+                in_frame(rig.pose(i), Similarity{output.proxy_rotation, output.proxy_m, 1.0});
+            met += frame == 0 ? 0
+                              : crossings_on_way(trial_.tool, last_places_[i], now, center_,
+                                                 *trial_.object, kPlacesOnWay);
+            last_places_[i] = now;
         }
-        last_place_ = now;
+        const bool may_be = trial_.stage == RigidStage::closing; // One object leaves room always.
+        is_run_over_ = met > 0 ? may_be && (is_run_over_ || output.squeezed)
+                               : is_run_over_ && (output.frozen || !output.in_contact);
+        figures_.run_over += met > 0 && is_run_over_ ? 1 : 0;
+        figures_.crossings.trials += frame > 0 ? 1 : 0;
+        figures_.crossings.observe(is_run_over_ ? 0 : met);
+        if (met > 0 && !is_run_over_)
+        {
+            figures_.crossings.flag(where(frame) + std::to_string(met) + " faces are crossed");
+        }
     }
 
     [[nodiscard]] std::string where(std::uint32_t frame) const
     {
-        return trial_.tool.name + " on " + trial_.object->name +
-               ", TACTUS_SEED=" + std::to_string(trial_.seed) + ", frame " + std::to_string(frame) +
-               ": ";
+        return name_of(trial_) + ", TACTUS_SEED=" + std::to_string(trial_.seed) + ", frame " +
+               std::to_string(frame) + ": ";
     }
 
     const RigidTrial& trial_;
     BodyHand hand_;
+    Stage stage_;
     RigidFigures figures_;
+    bool is_run_over_{false}; ///< And has not been clear since.
     Vec3 center_{0, 0, 0};
-    Similarity last_place_;
+    std::vector<Similarity> last_places_; ///< Before each object.
 };
 
 } // namespace
@@ -161,11 +274,13 @@ private:
 void RigidFigures::add(const RigidFigures& other)
 {
     crossings.add(other.crossings);
+    run_over += other.run_over;
+    squeezed += other.squeezed;
     contacts += other.contacts;
     frozen += other.frozen;
 }
 
-std::vector<RigidTrial> rigid_trials()
+std::vector<RigidTrial> rigid_trials(RigidStage stage)
 {
     const auto shape = [](const char* name, Shape made, std::uint32_t faces) -> const TestModel&
     { return test_model(name, make_shape(made, faces).value(), 200); };
@@ -186,7 +301,8 @@ std::vector<RigidTrial> rigid_trials()
     {
         for (const TestModel* object : {&socket, &plate, &gear})
         {
-            trials.push_back({tool, object, trials.size() % 2 == 0 ? Material{} : rough, 0, 0});
+            trials.push_back(
+                {tool, object, trials.size() % 2 == 0 ? Material{} : rough, stage, 0, 0});
         }
     }
     return trials;

@@ -12,6 +12,15 @@
 namespace tactus::test
 {
 
+/// What the object does meanwhile.
+enum class RigidStage : std::uint8_t
+{
+    still,   ///< It stands in its model's frame.
+    turning, ///< It turns to and fro about its middle by 0.3 rad/s at most, and sways.
+    far,     ///< It stands 100 to 1,000 m away, turned, half to twice as large.
+    closing, ///< Another one of its kind comes near it, and into it, and goes away, to and fro.
+};
+
 /// Frames of a tool that is held as a body, whose hand goes from place to place through and round
 /// an object and turns.
 struct RigidTrial
@@ -19,6 +28,7 @@ struct RigidTrial
     SolidCore tool;
     const TestModel* object{nullptr};
     Material material;
+    RigidStage stage{RigidStage::still};
     std::uint64_t seed{0};
     std::uint32_t frames{0};
 };
@@ -27,6 +37,10 @@ struct RigidFigures
 {
     /// Faces of the core that met the object's on the way of a frame, by exact arithmetic.
     TrialFigures crossings;
+    /// Frames with such faces that are no violation: objects had left the tool no room and run over
+    /// it, and the frame in which they did had said so (squeezed).
+    std::uint64_t run_over{0};
+    std::uint64_t squeezed{0};
     std::uint64_t contacts{0};
     std::uint64_t frozen{0};
 
@@ -35,7 +49,7 @@ struct RigidFigures
 
 /// Pegs, plates, gears and needles on sockets, plates, gears and what tests have else; models are
 /// made once a process.
-[[nodiscard]] std::vector<RigidTrial> rigid_trials();
+[[nodiscard]] std::vector<RigidTrial> rigid_trials(RigidStage stage = RigidStage::still);
 
 [[nodiscard]] RigidFigures run_rigid_trial(const RigidTrial& trial);
 

@@ -130,18 +130,20 @@ public:
 private:
     void carry()
     {
-        std::vector<NearObject> moved;
+        std::vector<NearObject> near;
+        bool has_any_moved = false;
         for (std::size_t i = 0; i < objects.size(); ++i)
         {
-            memories_[i] = ProxyMemory{};
+            memories_[i].velocity_m_per_s = Vec3(0.0, 0.0, 0.0);
+            memories_[i].spin_rad_per_s = Vec3(0.0, 0.0, 0.0);
             const ObjectPose& now = objects[i].pose;
-            if (stood_[i].translation_m != now.translation_m || stood_[i].rotation != now.rotation)
-            {
-                moved.push_back(
-                    {static_cast<std::uint32_t>(i), &stood_[i], &objects[i].pose, &memories_[i]});
-            }
+            const bool has_moved =
+                stood_[i].translation_m != now.translation_m || stood_[i].rotation != now.rotation;
+            near.push_back({static_cast<std::uint32_t>(i), has_moved ? &stood_[i] : &now, &now,
+                            &memories_[i]});
+            has_any_moved = has_any_moved || has_moved;
         }
-        sut.carry(moved, kPeriod_s);
+        sut.carry(has_any_moved ? near : std::vector<NearObject>{}, kPeriod_s);
         for (std::size_t i = 0; i < objects.size(); ++i)
         {
             stood_[i] = objects[i].pose;

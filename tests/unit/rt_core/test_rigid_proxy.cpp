@@ -318,14 +318,59 @@ TEST(RigidProxy, that_starts_across_a_surface_is_where_the_hand_is_until_it_is_c
     EXPECT_NEAR(rig.settle(Vec3(0, 0, 0.0)).proxy_m.z(), 0.012, 1e-7);
 }
 
+TEST(RigidProxy, is_not_run_over_by_an_object_that_turns_and_leaps)
+{
+    for (const double height_m : {0.009, 0.0125}) // Pressed, and only near.
+    {
+        Rig rig = on_plane(Box{kHalf});
+        const Vec3 over(0.2, 0, height_m);
+        rig.settle(Vec3(0, 0, 0.05));
+        rig.settle(over);
+        Random random(3);
+        for (int i = 0; i < 200; ++i)
+        {
+            ObjectPose& pose = rig.objects[0].pose;
+            pose.rotation = turn(random.in_cube(1.0), random.between(0.0, 0.05)) * pose.rotation;
+            pose.translation_m += random.in_cube(0.004);
+            const ToolOutput output = rig.step(to_world(pose, over), pose.rotation);
+            ASSERT_FALSE(output.frozen) << i;
+            ASSERT_FALSE(output.squeezed) << i;
+            ASSERT_GT(rig.distance(), 0.0) << i;
+            ASSERT_GT(to_model(pose, output.proxy_m).z(), 0.0) << i; // On the side that it was on.
+        }
+    }
+}
+
+TEST(RigidProxy, held_by_an_object_that_moves_is_not_taken_through_one_that_stands)
+{
+    for (const double leap_m : {0.0005, 0.003, 0.02})
+    {
+        Rig rig(tool_of(Box{kHalf}), {{plane(), {}}, {plane(), {}}});
+        rig.objects[1].pose.translation_m.z() = 0.03;
+        rig.settle(Vec3(0, 0, 0.015));
+        bool was_squeezed = false;
+        for (int i = 0; i < 60; ++i)
+        {
+            rig.objects[0].pose.translation_m.z() += leap_m;
+            const ToolOutput output = rig.step(Vec3(0, 0, 0.0));
+            was_squeezed = was_squeezed || output.squeezed;
+            ASSERT_TRUE(was_squeezed || rig.distance() > 0.0) << leap_m << ", " << i;
+        }
+        EXPECT_TRUE(was_squeezed);
+    }
+}
+
 TEST(RigidProxy, that_an_object_came_over_is_given_up_when_its_force_has_faded)
 {
-    Rig rig = on_plane(Box{kHalf});
-    rig.settle(Vec3(0, 0, 0.05));
+    Rig rig(tool_of(Box{kHalf}), {{plane(), {}}, {plane(), {}}});
+    rig.objects[1].pose.translation_m.z() = 0.03;
+    rig.settle(Vec3(0, 0, 0.015));
     rig.settle(Vec3(0, 0, 0.0));
-    rig.objects[0].pose.translation_m.z() = 0.012;
+    rig.objects[0].pose.translation_m.z() = 0.025;
 
-    EXPECT_TRUE(rig.step(Vec3(0, 0, 0.0)).frozen);
+    const ToolOutput over = rig.step(Vec3(0, 0, 0.0));
+    EXPECT_TRUE(over.frozen);
+    EXPECT_TRUE(over.squeezed);
     const ToolOutput output = rig.settle(Vec3(0, 0, 0.1));
 
     EXPECT_EQ(output.proxy_m, Vec3(0, 0, 0.1));
