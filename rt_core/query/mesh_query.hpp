@@ -34,6 +34,7 @@ struct MeshQuestion
 struct MeshMemory
 {
     FacePair faces;
+    bool is_crowded{false}; ///< More met than there is room for contacts; so it may be again.
 
     bool operator==(const MeshMemory&) const noexcept = default;
 };
