@@ -73,30 +73,43 @@ namespace tactus
     return !is_full;
 }
 
-/// Of the first half of kContactDirections and their opposites: (0, 0, 0), which is none, would be
-/// in the middle.
+/// A direction of ContactEnds, not of unit length.
 struct EndDirection
 {
-    Vec3 along;
-    double length;
+    std::array<double, 3> along{};
+    double length{0.0};
 
-    explicit EndDirection(std::size_t direction) noexcept
-    {
-        // With so many coordinates that are not 0.
-        constexpr std::array kLengths{0.0, 1.0, std::numbers::sqrt2, std::numbers::sqrt3};
-        const auto code = static_cast<int>(direction);
-        along = Vec3(code % 3 - 1, code / 3 % 3 - 1, code / 9 - 1);
-        length = kLengths[static_cast<std::size_t>(along.squaredNorm())];
-    }
     [[nodiscard]] double height_m(const Vec3& point_m) const noexcept
     {
-        return along.dot(point_m) / length;
-    }
-    [[nodiscard]] static std::size_t opposite(std::size_t direction) noexcept
-    {
-        return kContactDirections - 1 - direction;
+        return along[0] * point_m[0] + (along[1] * point_m[1] + along[2] * point_m[2]);
     }
 };
+
+/// The first half: (0, 0, 0), which is none, would be in the middle of all.
+inline constexpr auto kEndDirections = []
+{
+    // Of so many coordinates that are not 0.
+    constexpr std::array kLengths{0.0, 1.0, std::numbers::sqrt2, std::numbers::sqrt3};
+    std::array<EndDirection, kContactDirections / 2> directions{};
+    int code = 0;
+    for (EndDirection& direction : directions)
+    {
+        std::size_t axes = 0;
+        int rest = code++;
+        for (double& coordinate : direction.along)
+        {
+            coordinate = rest % 3 - 1;
+            axes += rest % 3 != 1 ? 1U : 0U;
+            rest /= 3;
+        }
+        direction.length = kLengths[axes];
+    }
+    return directions;
+}();
+[[nodiscard]] constexpr std::size_t opposite_end(std::size_t direction) noexcept
+{
+    return kContactDirections - 1 - direction;
+}
 inline constexpr double kEndPerDistance = 10.0;
 
 /// Does not depend on the order of contacts: of equally far ones the first by comes_before() stays.
@@ -113,11 +126,12 @@ inline void keep_ends(const Contact& contact, ContactEnds& ends) noexcept
             kept = contact;
         }
     };
-    for (std::size_t direction = 0; direction < kContactDirections / 2; ++direction)
+    for (std::size_t i = 0; i < kEndDirections.size(); ++i)
     {
-        const double height_m = EndDirection(direction).height_m(contact.on_surface_m);
-        keep(direction, height_m - less_m);
-        keep(EndDirection::opposite(direction), -height_m - less_m);
+        const EndDirection& direction = kEndDirections[i];
+        const double height_m = direction.height_m(contact.on_surface_m) / direction.length;
+        keep(i, height_m - less_m);
+        keep(opposite_end(i), -height_m - less_m);
     }
     ends.is_empty = false;
 }
@@ -138,16 +152,15 @@ inline void keep_ends(const Contact& contact, ContactEnds& ends) noexcept
         size_m = std::max({size_m, std::abs(corner[0]), std::abs(corner[1]), std::abs(corner[2])});
     }
     const double less_m = kEndPerDistance * distance_m - kRounding * size_m;
-    for (std::size_t direction = 0; direction < kContactDirections / 2; ++direction)
+    for (std::size_t i = 0; i < kEndDirections.size(); ++i)
     {
-        const EndDirection way(direction);
-        const double a = way.along.dot(triangle[0]);
-        const double b = way.along.dot(triangle[1]);
-        const double c = way.along.dot(triangle[2]);
-        const double highest_m = std::max({a, b, c}) / way.length;
-        const double lowest_m = std::min({a, b, c}) / way.length;
-        if (highest_m - less_m >= ends.reaches_m[direction] ||
-            -lowest_m - less_m >= ends.reaches_m[EndDirection::opposite(direction)])
+        const EndDirection& direction = kEndDirections[i];
+        const double a = direction.height_m(triangle[0]);
+        const double b = direction.height_m(triangle[1]);
+        const double c = direction.height_m(triangle[2]);
+        const double least_m = direction.length * (ends.reaches_m[i] + less_m);
+        const double least_back_m = direction.length * (ends.reaches_m[opposite_end(i)] + less_m);
+        if (std::max({a, b, c}) >= least_m || -std::min({a, b, c}) >= least_back_m)
         {
             return true;
         }

@@ -247,7 +247,7 @@ public:
         found.exact_lower_m = exact_lower_m_;
         found.upper_m = std::min(upper_m_, bound_m_);
         found.open_m = is_all_there() ? open_m_ : std::min(open_m_, 0.0);
-        if (enough_ == 1)
+        if (enough_ == 1 || is_enough())
         {
             found.open_m = std::max(found.open_m, 0.0); // Nothing is nearer than what meets.
         }
@@ -1056,7 +1056,9 @@ void query_meshes(const MeshQuestion& question, OtherSurface& object, MeshMemory
     report.clear();
     contacts.clear();
     const std::optional<Witness> witness = find_witness(question, memory.faces, object.budget());
-    const std::uint32_t enough = question.wants_pairs || question.contact_m >= 0.0 ? kAll : 1;
+    const std::uint32_t enough = question.wants_pairs        ? kAll
+                                 : question.contact_m >= 0.0 ? kEnoughMeetingFaces
+                                                             : 1;
     if (enough == 1 && try_answer(witness, answer, report))
     {
         return;

@@ -1017,6 +1017,41 @@ TEST(MeshQuery, keeps_the_nearest_contacts_whatever_met_before)
     EXPECT_GT(apart, 10);
 }
 
+TEST(MeshQuery, ends_where_enough_meets_for_a_tool_that_is_felt)
+{
+    // A mesh on itself, each face ten times: 2,000 pairs meet.
+    TreeRig tool({200, 400, 400});
+    TreeRig object({200, 400, 400});
+    for (std::uint32_t i = 0; i < 200; ++i)
+    {
+        const float x = static_cast<float>(i / 10);
+        for (TreeRig* rig : {&tool, &object})
+        {
+            rig->put({PrimId{i},
+                      FaceId{i},
+                      i * 2'654'435'761U,
+                      0,
+                      {Vec3f{x, 0.0F, 0.0F}, Vec3f{x + 0.5F, 0.0F, 0.0F}, Vec3f{x, 0.5F, 0.0F}}});
+        }
+    }
+    tool.sut->refit();
+    object.sut->refit();
+    MeshMemory memory;
+    for (int again = 0; again < 2; ++again)
+    {
+        const Asked asked = ask_without_pairs(tool, object, MeshPlacement{}, 0.01, 0.01, memory);
+
+        EXPECT_EQ(asked.report.meeting.size(), kEnoughMeetingFaces);
+        EXPECT_FALSE(asked.report.is_complete);
+        EXPECT_EQ(asked.report.intersection, Intersection::proven);
+        EXPECT_EQ(asked.answer.kind, AnswerKind::exact);
+        EXPECT_EQ(asked.answer.upper_m, 0.0);
+        EXPECT_EQ(asked.contacts.contacts.size(), kMaxContacts);
+        EXPECT_FALSE(asked.contacts.is_complete);
+        EXPECT_TRUE(memory.is_crowded);
+    }
+}
+
 TEST(MeshQuery, an_empty_tree_is_infinitely_far)
 {
     TreeRig tool({8, 50, 50});
