@@ -3,9 +3,8 @@
 # hrtc_tools.sh: a tool of each form touches a ball, with a torque where it has a shape, in the
 # default pools; hands turn it, go over edges with it, and put a peg into its hole by a clutch; one
 # that is a mesh streams like what it touches, and its recording replays; one larger than that, and
-# one in its very place, are no more than a frame stands; hulls without a body are
-# held; hulls and meshes that can't be tools are refused by name. What needs no host is in virtual
-# time.
+# one in its very place, end well; hulls without a body are held; hulls and meshes that can't be
+# tools are refused by name. What needs no host is in virtual time.
 docs=$(cd "$(dirname "$0")/../../../docs" && pwd)
 readonly docs
 source "$(dirname "$0")/common.sh"
