@@ -25,11 +25,8 @@ namespace
 
 std::array<int, 3> sides_of_plane(const Triangle& triangle, const Triangle& points) noexcept
 {
-    std::array<int, 3> sides{};
-    std::ranges::transform(points, sides.begin(),
-                           [&triangle](const Vec3& point)
-                           { return side_of_plane(triangle[0], triangle[1], triangle[2], point); });
-    return sides;
+    const PlaneSides plane(triangle[0], triangle[1], triangle[2]);
+    return {plane.side_of(points[0]), plane.side_of(points[1]), plane.side_of(points[2])};
 }
 
 bool are_all_on_one_side(const std::array<int, 3>& sides) noexcept
@@ -48,10 +45,18 @@ bool do_boxes_overlap(std::span<const Vec3> first, std::span<const Vec3> second)
 {
     for (Eigen::Index axis = 0; axis < 3; ++axis)
     {
-        const auto less = [axis](const Vec3& a, const Vec3& b) { return a[axis] < b[axis]; };
-        const auto [low, high] = std::ranges::minmax_element(first, less);
-        const auto [other_low, other_high] = std::ranges::minmax_element(second, less);
-        if ((*high)[axis] < (*other_low)[axis] || (*other_high)[axis] < (*low)[axis])
+        const auto extent = [axis](std::span<const Vec3> points)
+        {
+            std::array<double, 2> ends{points[0][axis], points[0][axis]};
+            for (const Vec3& point : points.subspan(1))
+            {
+                ends = {std::min(ends[0], point[axis]), std::max(ends[1], point[axis])};
+            }
+            return ends;
+        };
+        const auto [low, high] = extent(first);
+        const auto [other_low, other_high] = extent(second);
+        if (high < other_low || other_high < low)
         {
             return false;
         }
@@ -144,14 +149,6 @@ bool meet_in_plane(const Segment& segment, const Triangle& triangle) noexcept
                          [](const Segment& a, const Segment& b) { return do_segments_meet(a, b); });
 }
 
-/// On which side of each edge the line through the segment passes.
-std::array<int, 3> sides_of_edges(const Segment& segment, const Triangle& triangle) noexcept
-{
-    return {side_of_plane(segment.from, segment.to, triangle[0], triangle[1]),
-            side_of_plane(segment.from, segment.to, triangle[1], triangle[2]),
-            side_of_plane(segment.from, segment.to, triangle[2], triangle[0])};
-}
-
 /// `from` and `to`: on which sides of the triangle's plane the ends lie.
 bool meets_from_sides(const Segment& segment, int from, int to, const Triangle& triangle) noexcept
 {
@@ -160,7 +157,7 @@ bool meets_from_sides(const Segment& segment, int from, int to, const Triangle& 
         return false;
     }
     return from == 0 && to == 0 ? meet_in_plane(segment, triangle)
-                                : do_not_differ(sides_of_edges(segment, triangle));
+                                : do_not_differ(sides_of_edges(segment.from, segment.to, triangle));
 }
 
 /// `sides`: of the triangle's corners, seen from the other's plane.
@@ -194,6 +191,44 @@ TriangleFeature feature_of_zeros(const std::array<int, 3>& sides) noexcept
     return TriangleFeature::interior;
 }
 
+/// `from` and `to`: on which sides of the triangle's plane the ends lie.
+std::optional<Piercing> find_piercing_from_sides(const Segment& segment, int from, int to,
+                                                 const Triangle& triangle) noexcept
+{
+    if (from * to > 0 || (from == 0 && to == 0))
+    {
+        return std::nullopt;
+    }
+    const std::array<int, 3> sides = sides_of_edges(segment.from, segment.to, triangle);
+    if (!do_not_differ(sides))
+    {
+        return std::nullopt;
+    }
+    const PlaneVolumes plane(triangle[0], triangle[1], triangle[2]);
+    const double from_volume = plane.volume(segment.from);
+    const double to_volume = plane.volume(segment.to);
+    // Out of range both may vanish.
+    const double share = from_volume == to_volume ? 0.0 : from_volume / (from_volume - to_volume);
+    return Piercing{share, feature_of_zeros(sides)};
+}
+
+/// The first of the triangle's edges that pierces the other one.
+std::optional<EdgePiercing> find_piercing_edge(const Triangle& triangle,
+                                               const Triangle& other) noexcept
+{
+    const std::array<int, 3> sides = sides_of_plane(other, triangle);
+    for (std::size_t i = 0; i < 3; ++i)
+    {
+        const std::size_t next = (i + 1) % 3;
+        if (const auto piercing = find_piercing_from_sides({triangle[i], triangle[next]}, sides[i],
+                                                           sides[next], other))
+        {
+            return EdgePiercing{&triangle, i, *piercing};
+        }
+    }
+    return std::nullopt;
+}
+
 } // namespace
 
 bool meet(const Segment& segment, const Triangle& triangle) noexcept
@@ -202,9 +237,9 @@ bool meet(const Segment& segment, const Triangle& triangle) noexcept
     {
         return false;
     }
-    return meets_from_sides(
-        segment, side_of_plane(triangle[0], triangle[1], triangle[2], segment.from),
-        side_of_plane(triangle[0], triangle[1], triangle[2], segment.to), triangle);
+    const PlaneSides plane(triangle[0], triangle[1], triangle[2]);
+    return meets_from_sides(segment, plane.side_of(segment.from), plane.side_of(segment.to),
+                            triangle);
 }
 
 bool meet(const Triangle& first, const Triangle& second) noexcept
@@ -225,21 +260,16 @@ bool meet(const Triangle& first, const Triangle& second) noexcept
 
 std::optional<Piercing> find_piercing(const Segment& segment, const Triangle& triangle) noexcept
 {
-    const int from_side = side_of_plane(triangle[0], triangle[1], triangle[2], segment.from);
-    const int to_side = side_of_plane(triangle[0], triangle[1], triangle[2], segment.to);
-    if (from_side * to_side > 0 || (from_side == 0 && to_side == 0))
-    {
-        return std::nullopt;
-    }
-    const std::array<int, 3> sides = sides_of_edges(segment, triangle);
-    if (!do_not_differ(sides))
-    {
-        return std::nullopt;
-    }
-    const double from = volume(triangle[0], triangle[1], triangle[2], segment.from);
-    const double to = volume(triangle[0], triangle[1], triangle[2], segment.to);
-    // Out of range both may vanish.
-    return Piercing{from == to ? 0.0 : from / (from - to), feature_of_zeros(sides)};
+    const PlaneSides plane(triangle[0], triangle[1], triangle[2]);
+    return find_piercing_from_sides(segment, plane.side_of(segment.from), plane.side_of(segment.to),
+                                    triangle);
+}
+
+std::optional<EdgePiercing> find_edge_piercing(const Triangle& first,
+                                               const Triangle& second) noexcept
+{
+    const auto of_first = find_piercing_edge(first, second);
+    return of_first ? of_first : find_piercing_edge(second, first);
 }
 
 } // namespace tactus

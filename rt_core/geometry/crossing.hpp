@@ -33,4 +33,17 @@ struct Piercing
 [[nodiscard]] std::optional<Piercing>
 find_piercing(const Segment& segment, const Triangle& triangle) noexcept TACTUS_NONBLOCKING;
 
+/// Where an edge of a triangle pierces another triangle.
+struct EdgePiercing
+{
+    const Triangle* triangle; ///< Whose edge it is: one of those that were asked about.
+    std::size_t edge;
+    Piercing piercing;
+};
+
+/// find_piercing() of the first edge that does, those of `first` before those of `second`; none
+/// where the two don't meet, and where they do so in one plane.
+[[nodiscard]] std::optional<EdgePiercing>
+find_edge_piercing(const Triangle& first, const Triangle& second) noexcept TACTUS_NONBLOCKING;
+
 } // namespace tactus

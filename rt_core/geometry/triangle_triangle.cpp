@@ -11,48 +11,49 @@ namespace tactus
 namespace
 {
 
-Segment edge_of(const Triangle& triangle, std::size_t edge) noexcept
-{
-    return {triangle[edge], triangle[(edge + 1) % 3]};
-}
-
 /// Triangles that meet.
 ClosestPoints find_shared_point(const Triangle& first, const Triangle& second) noexcept
 {
-    for (std::size_t i = 0; i < 3; ++i)
+    if (const auto found = find_edge_piercing(first, second))
     {
-        const Segment edge = edge_of(first, i);
-        if (const auto piercing = find_piercing(edge, second))
-        {
-            return meeting_at(point_at(edge, piercing->parameter),
-                              feature_of_edge(i, piercing->parameter), piercing->feature);
-        }
-    }
-    for (std::size_t i = 0; i < 3; ++i)
-    {
-        const Segment edge = edge_of(second, i);
-        if (const auto piercing = find_piercing(edge, first))
-        {
-            return meeting_at(point_at(edge, piercing->parameter), piercing->feature,
-                              feature_of_edge(i, piercing->parameter));
-        }
+        const Triangle& triangle = *found->triangle;
+        const double parameter = found->piercing.parameter;
+        const Vec3 point =
+            point_at({triangle[found->edge], triangle[(found->edge + 1) % 3]}, parameter);
+        const TriangleFeature on_edge = feature_of_edge(found->edge, parameter);
+        return found->triangle == &first ? meeting_at(point, on_edge, found->piercing.feature)
+                                         : meeting_at(point, found->piercing.feature, on_edge);
     }
     const ClosestPoints nearest = nearest_boundary_points(first, second);
     return meeting_at(nearest.on_shape, nearest.shape_feature, nearest.feature);
+}
+
+template <typename DoMeet>
+ClosestPoints find_closest(const Triangle& first, const Triangle& second, DoMeet do_meet) noexcept
+{
+    return solve_in_range(std::array{first[0], first[1], first[2], second[0], second[1], second[2]},
+                          [do_meet](const auto& points) noexcept
+                          {
+                              const Triangle a{points[0], points[1], points[2]};
+                              const Triangle b{points[3], points[4], points[5]};
+                              return do_meet(a, b) ? find_shared_point(a, b)
+                                                   : nearest_boundary_points(a, b);
+                          });
 }
 
 } // namespace
 
 ClosestPoints closest_points(const Triangle& first, const Triangle& second) noexcept
 {
-    return solve_in_range(std::array{first[0], first[1], first[2], second[0], second[1], second[2]},
-                          [](const auto& points) noexcept
-                          {
-                              const Triangle a{points[0], points[1], points[2]};
-                              const Triangle b{points[3], points[4], points[5]};
-                              return meet(a, b) ? find_shared_point(a, b)
-                                                : nearest_boundary_points(a, b);
-                          });
+    return find_closest(first, second,
+                        [](const Triangle& a, const Triangle& b) noexcept { return meet(a, b); });
+}
+
+ClosestPoints closest_points(const Triangle& first, const Triangle& second, bool do_meet) noexcept
+{
+    return find_closest(first, second,
+                        [do_meet](const Triangle& /*a*/, const Triangle& /*b*/) noexcept
+                        { return do_meet; });
 }
 
 } // namespace tactus

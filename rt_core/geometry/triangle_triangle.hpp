@@ -13,4 +13,8 @@ namespace tactus
 [[nodiscard]] ClosestPoints closest_points(const Triangle& first,
                                            const Triangle& second) noexcept TACTUS_NONBLOCKING;
 
+/// The same, to the bit, where it is known whether they meet: what meet() says.
+[[nodiscard]] ClosestPoints closest_points(const Triangle& first, const Triangle& second,
+                                           bool do_meet) noexcept TACTUS_NONBLOCKING;
+
 } // namespace tactus

@@ -46,13 +46,23 @@ Expansion<192> exact_volume(const Vec3& a, const Vec3& b, const Vec3& c, const V
            exact_minor(u.x, u.y, v.x, v.y) * w.z;
 }
 
-/// Of the determinant of the three, each as large as it can be.
-double size_of_terms(const Triple<double>& u, const Triple<double>& v,
-                     const Triple<double>& w) noexcept
+/// Of the cross product, each term as large as it can be.
+Triple<double> cross_terms(const Triple<double>& u, const Triple<double>& v) noexcept
 {
-    return std::abs(w.x) * (std::abs(u.y * v.z) + std::abs(u.z * v.y)) +
-           std::abs(w.y) * (std::abs(u.z * v.x) + std::abs(u.x * v.z)) +
-           std::abs(w.z) * (std::abs(u.x * v.y) + std::abs(u.y * v.x));
+    return {std::abs(u.y * v.z) + std::abs(u.z * v.y), std::abs(u.z * v.x) + std::abs(u.x * v.z),
+            std::abs(u.x * v.y) + std::abs(u.y * v.x)};
+}
+
+/// Of the determinant.
+double size_of_terms(const Triple<double>& terms, const Triple<double>& w) noexcept
+{
+    return std::abs(w.x) * terms.x + std::abs(w.y) * terms.y + std::abs(w.z) * terms.z;
+}
+
+/// Sign of a determinant that was computed, where its rounding does not reach it.
+bool is_sign_known(double value, double size) noexcept
+{
+    return std::abs(value) > kVolumeError * size && size > kLeastTrusted;
 }
 
 Triple<double> to_high(const Triple<DoubleDouble>& a) noexcept
@@ -62,32 +72,69 @@ Triple<double> to_high(const Triple<DoubleDouble>& a) noexcept
 
 } // namespace
 
-int side_of_plane(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) noexcept
+PlaneSides::PlaneSides(const Vec3& a, const Vec3& b, const Vec3& c) noexcept : a_(a), b_(b), c_(c)
 {
     const auto u = difference<double>(b, a);
     const auto v = difference<double>(c, a);
-    const auto w = difference<double>(d, a);
-    const double value = dot(cross(u, v), w);
-    const double size = size_of_terms(u, v, w);
-    if (std::abs(value) > kVolumeError * size && size > kLeastTrusted)
+    normal_ = cross(u, v);
+    terms_ = cross_terms(u, v);
+}
+
+int PlaneSides::side_of(const Vec3& d) const noexcept
+{
+    const auto w = difference<double>(d, a_);
+    const double value = dot(normal_, w);
+    return is_sign_known(value, size_of_terms(terms_, w)) ? sign_of(value)
+                                                          : exact_volume(a_, b_, c_, d).sign();
+}
+
+int side_of_plane(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) noexcept
+{
+    return PlaneSides(a, b, c).side_of(d);
+}
+
+std::array<int, 3> sides_of_edges(const Vec3& a, const Vec3& b,
+                                  const std::array<Vec3, 3>& triangle) noexcept
+{
+    const auto u = difference<double>(b, a);
+    const std::array<Triple<double>, 3> corner{difference<double>(triangle[0], a),
+                                               difference<double>(triangle[1], a),
+                                               difference<double>(triangle[2], a)};
+    std::array<int, 3> sides{};
+    for (std::size_t i = 0; i < 3; ++i)
     {
-        return sign_of(value);
+        const std::size_t next = (i + 1) % 3;
+        const double value = dot(cross(u, corner[i]), corner[next]);
+        const double size = size_of_terms(cross_terms(u, corner[i]), corner[next]);
+        sides[i] = is_sign_known(value, size)
+                       ? sign_of(value)
+                       : exact_volume(a, b, triangle[i], triangle[next]).sign();
     }
-    return exact_volume(a, b, c, d).sign();
+    return sides;
+}
+
+PlaneVolumes::PlaneVolumes(const Vec3& a, const Vec3& b, const Vec3& c) noexcept
+    : a_(a), b_(b), c_(c)
+{
+    const auto u = difference<DoubleDouble>(b, a);
+    const auto v = difference<DoubleDouble>(c, a);
+    normal_ = cross(u, v);
+    terms_ = cross_terms(to_high(u), to_high(v));
+}
+
+double PlaneVolumes::volume(const Vec3& d) const noexcept
+{
+    const auto w = difference<DoubleDouble>(d, a_);
+    const double value = to_double(dot(normal_, w));
+    const double size = size_of_terms(terms_, to_high(w));
+    return std::abs(value) > kLeastVolumeLeft * size && size > kLeastTrusted
+               ? value
+               : exact_volume(a_, b_, c_, d).rounded();
 }
 
 double volume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) noexcept
 {
-    const auto u = difference<DoubleDouble>(b, a);
-    const auto v = difference<DoubleDouble>(c, a);
-    const auto w = difference<DoubleDouble>(d, a);
-    const double value = to_double(dot(cross(u, v), w));
-    const double size = size_of_terms(to_high(u), to_high(v), to_high(w));
-    if (std::abs(value) > kLeastVolumeLeft * size && size > kLeastTrusted)
-    {
-        return value;
-    }
-    return exact_volume(a, b, c, d).rounded();
+    return PlaneVolumes(a, b, c).volume(d);
 }
 
 int side_of_line(const Vec2& a, const Vec2& b, const Vec2& c) noexcept

@@ -4,6 +4,8 @@
 
 #include "rt_core/base/assert.hpp"
 #include "rt_core/base/realtime.hpp"
+#include "rt_core/math/double_double.hpp"
+#include "rt_core/math/triple.hpp"
 #include "rt_core/math/vec3.hpp"
 
 #include <array>
@@ -35,6 +37,45 @@ using Vec2 = std::array<double, 2>;
 /// same coordinates: double-double, or exact arithmetic where less than 2^-44 of the terms is left.
 [[nodiscard]] double volume(const Vec3& a, const Vec3& b, const Vec3& c,
                             const Vec3& d) noexcept TACTUS_NONBLOCKING;
+
+/// side_of_plane() of one plane and many points, which share two thirds of the work. Refers to its
+/// three points. About 6 ns, and 3 ns a point.
+class PlaneSides
+{
+public:
+    PlaneSides(const Vec3& a, const Vec3& b, const Vec3& c) noexcept TACTUS_NONBLOCKING;
+
+    [[nodiscard]] int side_of(const Vec3& d) const noexcept TACTUS_NONBLOCKING;
+
+private:
+    const Vec3& a_;
+    const Vec3& b_;
+    const Vec3& c_;
+    Triple<double> normal_; ///< (b - a) x (c - a), and
+    Triple<double> terms_;  ///< the same of sizes, all added.
+};
+
+/// volume() of one plane and many points, to the bit. Refers to its three points.
+class PlaneVolumes
+{
+public:
+    PlaneVolumes(const Vec3& a, const Vec3& b, const Vec3& c) noexcept TACTUS_NONBLOCKING;
+
+    [[nodiscard]] double volume(const Vec3& d) const noexcept TACTUS_NONBLOCKING;
+
+private:
+    const Vec3& a_;
+    const Vec3& b_;
+    const Vec3& c_;
+    Triple<DoubleDouble> normal_;
+    Triple<double> terms_;
+};
+
+/// On which side of each of a triangle's edges the line from a to b passes: side_of_plane() of a, b
+/// and the edge's two ends.
+[[nodiscard]] std::array<int, 3>
+sides_of_edges(const Vec3& a, const Vec3& b,
+               const std::array<Vec3, 3>& triangle) noexcept TACTUS_NONBLOCKING;
 
 /// On which side of the line from a to b the point c lies: 1 on the left, -1 on the right, 0 on it,
 /// and also where a = b. Exact for the same coordinates.

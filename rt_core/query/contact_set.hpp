@@ -8,7 +8,9 @@
 #include "rt_core/records/contact.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numbers>
 #include <tuple>
 #include <utility>
 
@@ -71,22 +73,51 @@ namespace tactus
     return !is_full;
 }
 
+/// A direction of ContactEnds, not of unit length.
+struct EndDirection
+{
+    std::array<double, 3> along{};
+    double length{0.0};
+
+    [[nodiscard]] double height_m(const Vec3& point_m) const noexcept
+    {
+        return along[0] * point_m[0] + (along[1] * point_m[1] + along[2] * point_m[2]);
+    }
+};
+
+/// The first half: (0, 0, 0), which is none, would be in the middle of all.
+inline constexpr auto kEndDirections = []
+{
+    // Of so many coordinates that are not 0.
+    constexpr std::array kLengths{0.0, 1.0, std::numbers::sqrt2, std::numbers::sqrt3};
+    std::array<EndDirection, kContactDirections / 2> directions{};
+    int code = 0;
+    for (EndDirection& direction : directions)
+    {
+        std::size_t axes = 0;
+        int rest = code++;
+        for (double& coordinate : direction.along)
+        {
+            coordinate = rest % 3 - 1;
+            axes += rest % 3 != 1 ? 1U : 0U;
+            rest /= 3;
+        }
+        direction.length = kLengths[axes];
+    }
+    return directions;
+}();
+[[nodiscard]] constexpr std::size_t opposite_end(std::size_t direction) noexcept
+{
+    return kContactDirections - 1 - direction;
+}
+inline constexpr double kEndPerDistance = 10.0;
+
 /// Does not depend on the order of contacts: of equally far ones the first by comes_before() stays.
 inline void keep_ends(const Contact& contact, ContactEnds& ends) noexcept
 {
-    constexpr double kPerDistance = 10.0;
-    std::size_t direction = 0;
-    for (int code = 0; code < 27; ++code)
+    const double less_m = kEndPerDistance * contact.distance_m;
+    const auto keep = [&contact, &ends](std::size_t direction, double reach_m)
     {
-        if (code == 13)
-        {
-            continue; // No direction at all.
-        }
-        const int row = code / 3 % 3;
-        const int layer = code / 9;
-        const Vec3 along(code % 3 - 1, row - 1, layer - 1);
-        const double reach_m =
-            along.dot(contact.on_surface_m) / along.norm() - kPerDistance * contact.distance_m;
         double& most_m = ends.reaches_m[direction];
         Contact& kept = ends.contacts[direction];
         if (ends.is_empty || reach_m > most_m || (reach_m == most_m && comes_before(contact, kept)))
@@ -94,9 +125,47 @@ inline void keep_ends(const Contact& contact, ContactEnds& ends) noexcept
             most_m = reach_m;
             kept = contact;
         }
-        ++direction;
+    };
+    for (std::size_t i = 0; i < kEndDirections.size(); ++i)
+    {
+        const EndDirection& direction = kEndDirections[i];
+        const double height_m = direction.height_m(contact.on_surface_m) / direction.length;
+        keep(i, height_m - less_m);
+        keep(opposite_end(i), -height_m - less_m);
     }
     ends.is_empty = false;
+}
+
+/// Whether keep_ends() may keep a contact on this triangle that is at least so far from the core.
+[[nodiscard]] inline bool may_be_end(const Triangle& triangle, double distance_m,
+                                     const ContactEnds& ends) noexcept
+{
+    /// Many times what a contact's place and distance, and all of this, are rounded by.
+    constexpr double kRounding = 1e-12;
+    if (ends.is_empty)
+    {
+        return true;
+    }
+    double size_m = distance_m;
+    for (const Vec3& corner : triangle)
+    {
+        size_m = std::max({size_m, std::abs(corner[0]), std::abs(corner[1]), std::abs(corner[2])});
+    }
+    const double less_m = kEndPerDistance * distance_m - kRounding * size_m;
+    for (std::size_t i = 0; i < kEndDirections.size(); ++i)
+    {
+        const EndDirection& direction = kEndDirections[i];
+        const double a = direction.height_m(triangle[0]);
+        const double b = direction.height_m(triangle[1]);
+        const double c = direction.height_m(triangle[2]);
+        const double least_m = direction.length * (ends.reaches_m[i] + less_m);
+        const double least_back_m = direction.length * (ends.reaches_m[opposite_end(i)] + less_m);
+        if (std::max({a, b, c}) >= least_m || -std::min({a, b, c}) >= least_back_m)
+        {
+            return true;
+        }
+    }
+    return false;
 }
 
 /// Adds a face to the slab that it differs least from, or makes one. Without a normal nothing is

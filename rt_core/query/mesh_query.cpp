@@ -105,6 +105,14 @@ bool is_exact_face(const AbTree& tree, std::uint32_t block, std::uint32_t lane) 
            (tree.block(block).faces & ~tree.side(block).coarse & 1U << lane) != 0;
 }
 
+/// Whether any face of a tree is not exact.
+bool has_coarse(const AbTree& tree) noexcept
+{
+    const TreeRef root = tree.root();
+    return !root.is_none() &&
+           (root.is_block() ? tree.side(root.index()).coarse : tree.node(root.index()).coarse) != 0;
+}
+
 /// The faces that are remembered, where they are now.
 struct Witness
 {
@@ -174,10 +182,19 @@ public:
         , views_(question.tool, question.object, question.place)
         , placed_(question.tool, question.object, question.place, views_)
         , doubt_m_(kSpanError * 2.0 * views_.farthest() * quantum_m_)
+        , has_coarse_(has_coarse(question.tool) || has_coarse(question.object))
     {
         TACTUS_ASSERT(question.reach_m >= 0.0);
         TACTUS_ASSERT(enough > 0);
         TACTUS_ASSERT(aim != Aim::all || contacts != nullptr);
+    }
+
+    /// Contacts that are apart are not looked for: good only where is_crowded() in the end.
+    void expect_crowd() noexcept { expects_crowd_ = true; }
+    /// What meets leaves no room for other contacts.
+    [[nodiscard]] bool is_crowded() const noexcept
+    {
+        return touching_.size() == kMaxContacts && found_ > kMaxContacts;
     }
 
     /// `object` is asked how far away it is where nothing is remembered; null when that is not
@@ -206,7 +223,7 @@ public:
             {
                 bound_queued_coarse();
             }
-            else
+            else if (has_coarse_)
             {
                 leave(question_.certified_m);
             }
@@ -230,7 +247,7 @@ public:
         found.exact_lower_m = exact_lower_m_;
         found.upper_m = std::min(upper_m_, bound_m_);
         found.open_m = is_all_there() ? open_m_ : std::min(open_m_, 0.0);
-        if (enough_ == 1)
+        if (enough_ == 1 || is_enough())
         {
             found.open_m = std::max(found.open_m, 0.0); // Nothing is nearer than what meets.
         }
@@ -283,6 +300,11 @@ public:
         {
             return;
         }
+        if (is_crowded()) // However many were found before.
+        {
+            contacts_->contacts.clear();
+            drop_ends();
+        }
         for (const Meeting& meeting : touching_)
         {
             keep_contact(meeting.faces, object_triangle(meeting.prim), closest_of(meeting));
@@ -293,6 +315,13 @@ public:
     }
 
 private:
+    void drop_ends() const noexcept
+    {
+        if (question_.ends != nullptr)
+        {
+            question_.ends->is_empty = true;
+        }
+    }
     [[nodiscard]] bool is_all_there() const noexcept
     {
         return question_.tool.is_complete() && question_.object.is_complete();
@@ -320,14 +349,19 @@ private:
             return -1.0;
         }
         const double nearest_m = bound_m_ > 0.0 ? bound_m_ + doubt_m_ : -1.0;
-        return std::min(worth_m(), std::max(kept_contact_m(), nearest_m));
+        return std::min(worth_m(), std::max(asked_contact_m(), nearest_m));
     }
     /// Whether coarse faces may be near enough to change something; where they aren't they never
     /// will be, as what matters never grows.
     [[nodiscard]] bool needs_coarse() const noexcept
     {
         const double matters_m = aim_ == Aim::meeting ? 0.0 : std::max(worth_m(), bound_m_);
-        return !(question_.certified_m > matters_m * kRoundedUp);
+        return has_coarse_ && !(question_.certified_m > matters_m * kRoundedUp);
+    }
+    /// What is farther apart in space needs no look, whether exact or not.
+    [[nodiscard]] double walked_m() const noexcept
+    {
+        return needs_coarse() ? worth_m() : std::max(measured_m(), 0.0);
     }
     /// Something was not looked at that is at least this far away.
     void leave(double gap_m) noexcept { open_m_ = std::min(open_m_, gap_m); }
@@ -380,7 +414,7 @@ private:
         while (!is_enough() && !has_stopped_)
         {
             const PairWalk::Item* near = walk.next_blocks(
-                {bound_quanta(worth_m()), way_number_ != 0 ? &way_ : nullptr, !needs_coarse()});
+                {bound_quanta(walked_m()), way_number_ != 0 ? &way_ : nullptr, !needs_coarse()});
             if (near == nullptr)
             {
                 break;
@@ -641,12 +675,34 @@ private:
             }
             const Candidate candidate{queue_[lane], gap};
             take_bound(lane, candidate.pair);
+            count_contact(distances_.upper[lane]);
             if (candidates_.full())
             {
                 measure_candidates();
             }
             candidates_.push_back(candidate);
         }
+    }
+
+    /// Of a pair that is no farther apart. Of more contacts than there is room for those are not
+    /// kept that all of `nearest_contacts_` are nearer than: the search need not go there.
+    void count_contact(float upper) noexcept
+    {
+        if (aim_ != Aim::all || static_cast<double>(upper) * quantum_m_ > question_.contact_m)
+        {
+            return;
+        }
+        if (nearest_contacts_.full())
+        {
+            if (upper >= nearest_contacts_[0])
+            {
+                return;
+            }
+            std::ranges::pop_heap(nearest_contacts_);
+            nearest_contacts_.pop_back();
+        }
+        nearest_contacts_.push_back(upper);
+        std::ranges::push_heap(nearest_contacts_);
     }
 
     /// What is farther than this pair, in space or along the way between the two, is not the
@@ -668,25 +724,43 @@ private:
         }
     }
 
-    /// In double precision, those that may be the nearest or contacts.
+    /// In double precision, those that may be the nearest or contacts. The nearest come first: they
+    /// leave the least to measure.
     void measure_candidates() noexcept
     {
-        for (const Candidate& candidate : candidates_)
+        const auto is_farther = [](const Candidate& a, const Candidate& b)
+        { return a.gap > b.gap; };
+        std::ranges::make_heap(candidates_, is_farther);
+        while (!candidates_.empty())
         {
-            const double gap_m = static_cast<double>(candidate.gap) * quantum_m_;
+            const double gap_m = static_cast<double>(candidates_[0].gap) * quantum_m_;
             if (gap_m > measured_m())
+            {
+                break;
+            }
+            std::ranges::pop_heap(candidates_, is_farther);
+            const FacePair pair = candidates_.pop_back().pair;
+            const MeshFace face = object_face(pair);
+            if (changes_nothing(gap_m, face.triangle))
             {
                 continue;
             }
-            const MeshFace tool = tool_face(candidate.pair);
-            const MeshFace face = object_face(candidate.pair);
+            const MeshFace tool = tool_face(pair);
             if (box_gap_m(tool, face) <= measured_m())
             {
                 add_apart({tool.id, face.id}, face.triangle,
-                          closest_points(tool.triangle, face.triangle));
+                          closest_points(tool.triangle, face.triangle, false));
             }
         }
         candidates_.clear();
+    }
+
+    /// A pair so far apart is not the nearest, no contact that is kept and none of their ends.
+    [[nodiscard]] bool changes_nothing(double gap_m, const Triangle& triangle) const noexcept
+    {
+        return question_.ends != nullptr &&
+               gap_m > std::max(kept_contact_m(), bound_m_ + doubt_m_) &&
+               !may_be_end(triangle, gap_m, *question_.ends);
     }
 
     [[nodiscard]] double tool_error_m(const FacePair& pair) const noexcept
@@ -710,23 +784,33 @@ private:
         return {object_triangle(prim), question_.object, prim, object_error_m(pair)};
     }
 
-    /// Contacts that are farther apart change nothing; negative when none does.
+    /// No contact that is farther apart is kept; negative when none is.
     [[nodiscard]] double kept_contact_m() const noexcept
     {
-        if (aim_ != Aim::all)
+        if (aim_ != Aim::all || expects_crowd_)
         {
             return -1.0;
         }
-        if (!has_dropped_)
+        // What meets comes before all that is apart.
+        const ContactSet& apart = contacts_->contacts;
+        const std::size_t room = kMaxContacts - touching_.size();
+        double farthest_m = question_.contact_m;
+        if (nearest_contacts_.full())
         {
-            return question_.contact_m;
+            farthest_m = std::min(farthest_m, static_cast<double>(nearest_contacts_[0]) *
+                                                  quantum_m_ * kRoundedUp);
         }
-        const ContactSet& kept = contacts_->contacts;
+        if (!has_dropped_ && apart.size() <= room)
+        {
+            return farthest_m;
+        }
+        return room == 0 ? -1.0 : std::min(apart[room - 1].distance_m, farthest_m);
+    }
+    /// Nor does it count among the ends.
+    [[nodiscard]] double asked_contact_m() const noexcept
+    {
         const double as_near = question_.ends != nullptr ? kEndsAsNear : 1.0;
-        return touching_.size() == kMaxContacts ? -1.0
-               : kept.size() == kMaxContacts
-                   ? std::min(as_near * kept[kMaxContacts - 1].distance_m, question_.contact_m)
-                   : question_.contact_m;
+        return std::min(as_near * kept_contact_m(), question_.contact_m);
     }
 
     void leave_coarse(const MeshFace& tool_face, const MeshFace& face) noexcept
@@ -761,7 +845,7 @@ private:
         exact_lower_m_ =
             std::min(exact_lower_m_, std::max(0.0, closest.distance - closest.distance_error));
         take_upper(closest.distance + closest.distance_error);
-        if (aim_ == Aim::all && closest.distance <= question_.contact_m)
+        if (aim_ == Aim::all && !expects_crowd_ && closest.distance <= question_.contact_m)
         {
             keep_contact(faces, triangle, closest);
         }
@@ -842,7 +926,8 @@ private:
 
     [[nodiscard]] ClosestPoints closest_of(const Meeting& meeting) const noexcept
     {
-        return closest_points(tool_triangle(meeting.tool_prim), object_triangle(meeting.prim));
+        return closest_points(tool_triangle(meeting.tool_prim), object_triangle(meeting.prim),
+                              true);
     }
 
     [[nodiscard]] Triangle tool_triangle(PrimId prim) const noexcept
@@ -866,7 +951,8 @@ private:
     double quantum_m_;
     MeshViews views_;
     PlacedBlocks placed_;
-    double doubt_m_; ///< Twice the error law of the kernels that measure, for any two faces.
+    double doubt_m_;  ///< Twice the error law of the kernels that measure, for any two faces.
+    bool has_coarse_; ///< Either tree has a coarse face.
     bool has_stopped_{false};   ///< No more can be looked at.
     std::uint32_t found_{0};    ///< Pairs that meet.
     PairWalk::Item remembered_; ///< What was looked at first.
@@ -874,7 +960,8 @@ private:
     FacePairQueue coarse_queue_;
     PairDistances distances_; ///< Of the queue.
     StaticVector<Candidate, kMaxCandidates> candidates_;
-    std::uint32_t way_number_{0};     ///< 0: none was found.
+    StaticVector<float, kMaxContacts + 1> nearest_contacts_; ///< A heap, the farthest on top.
+    std::uint32_t way_number_{0};                            ///< 0: none was found.
     Vec3f way_{};                     ///< Between the nearest that were found.
     double bound_m_{kInfinity};       ///< Some pair is not farther apart, in single precision.
     double open_m_{kInfinity};        ///< Pairs that are not exact or not seen are this far apart;
@@ -885,11 +972,12 @@ private:
     MeetingFaces nearest_faces_;
     bool has_nearest_{false};
     bool has_dropped_{false}; ///< A contact found no room.
+    bool expects_crowd_{false};
 };
 
 DistanceAnswer answer_of_meeting(const Witness& witness) noexcept
 {
-    const ClosestPoints closest = closest_points(witness.tool, witness.triangle);
+    const ClosestPoints closest = closest_points(witness.tool, witness.triangle, true);
     DistanceAnswer answer;
     answer.kind = AnswerKind::exact;
     answer.lower_m = 0.0;
@@ -926,6 +1014,40 @@ bool try_report(const std::optional<Witness>& witness, MeshReport& report) noexc
     return true;
 }
 
+/// Of query_meshes().
+struct MeshAnswers
+{
+    DistanceAnswer& answer;
+    MeshReport& report;
+    ContactReport& contacts;
+};
+
+/// Where a crowd is expected what meets is looked for alone, in half of the time; without one that
+/// says too little, and is false. The answers are the same whatever is expected.
+[[gnu::noinline]] bool search_meshes(const MeshQuestion& question, bool expects_crowd,
+                                     std::uint32_t enough, OtherSurface& object, MeshMemory& memory,
+                                     const std::optional<Witness>& witness,
+                                     MeshAnswers& answers) noexcept
+{
+    MeshSearch search(question, Aim::all, enough, object.budget(), memory, answers.report,
+                      &answers.contacts);
+    if (expects_crowd)
+    {
+        search.expect_crowd();
+    }
+    search.run(&object, witness);
+    memory.is_crowded = search.is_crowded();
+    if (expects_crowd && !memory.is_crowded)
+    {
+        answers.report.clear();
+        return false;
+    }
+    answers.answer = search.answer();
+    search.report_meeting();
+    search.report_contacts(answers.answer);
+    return true;
+}
+
 } // namespace
 
 void query_meshes(const MeshQuestion& question, OtherSurface& object, MeshMemory& memory,
@@ -934,16 +1056,19 @@ void query_meshes(const MeshQuestion& question, OtherSurface& object, MeshMemory
     report.clear();
     contacts.clear();
     const std::optional<Witness> witness = find_witness(question, memory.faces, object.budget());
-    const std::uint32_t enough = question.wants_pairs || question.contact_m >= 0.0 ? kAll : 1;
+    const std::uint32_t enough = question.wants_pairs        ? kAll
+                                 : question.contact_m >= 0.0 ? kEnoughMeetingFaces
+                                                             : 1;
     if (enough == 1 && try_answer(witness, answer, report))
     {
         return;
     }
-    MeshSearch search(question, Aim::all, enough, object.budget(), memory, report, &contacts);
-    search.run(&object, witness);
-    answer = search.answer();
-    search.report_meeting();
-    search.report_contacts(answer);
+    MeshAnswers answers{answer, report, contacts};
+    if (!(question.contact_m >= 0.0 && memory.is_crowded &&
+          search_meshes(question, true, enough, object, memory, witness, answers)))
+    {
+        search_meshes(question, false, enough, object, memory, witness, answers);
+    }
 }
 
 void find_nearest_faces(const MeshQuestion& question, OtherSurface& object, MeshMemory& memory,

@@ -25,7 +25,8 @@ struct MeshQuestion
     /// What is not exact is known to be at least this far from the other's original surface, in the
     /// object's frame; 0: nothing is known of it.
     double certified_m{0.0};
-    /// False: the first pair that meets is enough where no contacts are wanted either.
+    /// False: where no contacts are wanted either the first pair that meets is enough, and with
+    /// contacts kEnoughMeetingFaces are.
     bool wants_pairs{true};
 };
 
@@ -34,6 +35,7 @@ struct MeshQuestion
 struct MeshMemory
 {
     FacePair faces;
+    bool is_crowded{false}; ///< More met than there is room for contacts; so it may be again.
 
     bool operator==(const MeshMemory&) const noexcept = default;
 };
@@ -50,7 +52,8 @@ struct MeshMemory
 /// same pairs are found in whatever state the trees are where all near pairs are exact. Coarse
 /// faces are not looked at where the question's `certified_m` is beyond all that matters. Where
 /// neither pairs nor contacts are wanted the search ends with the first pair that meets: L and U
-/// are 0, and the report has that pair alone and is not complete.
+/// are 0, and the report has that pair alone and is not complete. With contacts it ends when
+/// kEnoughMeetingFaces meet, and contacts are those of what was found.
 ///
 /// `object` is the object's surface as the tool's model sees it, with the budget. 30 us where 100
 /// pairs meet and no contacts are asked for; 0.2 us without pairs, where those that met last do.

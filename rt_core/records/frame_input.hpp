@@ -56,7 +56,8 @@ struct ToolSpec
     /// a tool that is a mesh: it changes nothing.
     bool wants_distance{false};
     /// Of a mesh: all pairs of faces that meet (MeshReport), some 30 us where 100 do. A tool that
-    /// has contacts, or a force, gets them in any case; of others the first that is found is told.
+    /// has contacts, or a force, gets kEnoughMeetingFaces in any case; of others the first that is
+    /// found is told.
     bool wants_pairs{false};
 };
 

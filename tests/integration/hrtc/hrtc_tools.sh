@@ -2,9 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 # hrtc_tools.sh: a tool of each form touches a ball, with a torque where it has a shape, in the
 # default pools; hands turn it, go over edges with it, and put a peg into its hole by a clutch; one
-# that is a mesh streams like what it touches, and its recording replays; hulls without a body are
-# held; hulls and meshes that can't be tools are refused by name. What needs no host is in virtual
-# time.
+# that is a mesh streams like what it touches, and its recording replays; one larger than that, and
+# one in its very place, end well; hulls without a body are held; hulls and meshes that can't be
+# tools are refused by name. What needs no host is in virtual time.
+docs=$(cd "$(dirname "$0")/../../../docs" && pwd)
+readonly docs
 source "$(dirname "$0")/common.sh"
 
 model bumpy-sphere-20000 ball.spm
@@ -93,6 +95,21 @@ run_hrtc --virtual-time --model ball.spm --tool mesh:large.spm,0.001 --duration 
 check_clean report.json
 check report.json models.1.pages_used_max '>' 0 answers.exact+answers.decided+answers.bracket '>' \
     '0.9*frames'
+
+# One larger than what it touches.
+"$build" --shape bumpy-sphere --faces 5000 --fit-diag 1.5 -o wide.spm >build.log 2>&1
+run_hrtc --virtual-time --model ball.spm --tool mesh:wide.spm,0.001 --pool-mib 8 --duration 2
+check_clean report.json
+check report.json tools.0.force_max_n '<=' 8 answers.exact+answers.decided '>' '0.9*frames'
+
+# One equal to what it touches, in its place from the start: a device at rest in the middle.
+readonly port=$((20000 + $$ % 20000))
+python3 "$docs/examples/udp_driver.py" "$port" >driver.log 2>&1 &
+started+=("$!")
+"$hrtc" --allow-no-rt --transport file --model ball.spm --tool mesh:./ball.spm,0.001 \
+    --pool-mib 16 --device "udp:$port" --duration 2 --report report.json >hrtc.log 2>&1 \
+    || fault 'two models in one place are more than it can stand'
+check report.json tools.0.force_max_n '<=' 8 realtime.allocations '>=' 0 answers.exact '>' 0
 
 # What is no tool.
 refuse() { expect 2 "$1" "$hrtc" --allow-no-rt --transport file --model ball.spm --tool "$2"; }

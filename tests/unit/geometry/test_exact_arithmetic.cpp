@@ -138,6 +138,33 @@ TEST(Orientation, side_of_plane_is_exact_where_floating_point_is_not)
     EXPECT_GT(undecided, 10'000);
 }
 
+TEST(Orientation, sides_of_edges_are_those_of_planes_through_them)
+{
+    Random random(66);
+    int undecided = 0;
+    for (int i = 0; i < 100'000; ++i)
+    {
+        const auto point = [&random]
+        {
+            const int bits = random.one_in(2) ? 2 : 30; // Small ones touch.
+            return GridPoint{whole(random, bits), whole(random, bits), whole(random, bits)};
+        };
+        const std::array<GridPoint, 5> points{point(), point(), point(), point(), point()};
+        const Vec3 a = as_vec3(points[0]);
+        const Vec3 b = as_vec3(points[1]);
+        const auto sides =
+            sides_of_edges(a, b, {as_vec3(points[2]), as_vec3(points[3]), as_vec3(points[4])});
+        for (std::size_t edge = 0; edge < 3; ++edge)
+        {
+            const Integer truth =
+                determinant(points[0], points[1], points[2 + edge], points[2 + (edge + 1) % 3]);
+            ASSERT_EQ(sides[edge], sign_of(truth)) << "case " << i;
+            undecided += truth == 0 ? 1 : 0;
+        }
+    }
+    EXPECT_GT(undecided, 1'000);
+}
+
 /// From none to all but a few bits: two ways that are nearly one, and a third that is nearly
 /// theirs.
 TEST(Orientation, a_volume_is_right_however_much_cancels)

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "rt_core/geometry/box_triangle.hpp"
 #include "rt_core/geometry/crossing.hpp"
+#include "rt_core/geometry/triangle_triangle.hpp"
 #include "tests/shared/shape_scenes.hpp"
 #include "tests/unit/geometry/grid.hpp"
 #include "tests/unit/geometry/integer_oracle.hpp"
@@ -9,9 +10,45 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
+#include <utility>
 
 namespace tactus::test
 {
+
+namespace
+{
+
+/// By find_piercing() of one edge after the other.
+std::optional<EdgePiercing> first_piercing(const Triangle& first, const Triangle& second)
+{
+    for (const auto& [own, other] : {std::pair(&first, &second), {&second, &first}})
+    {
+        for (std::size_t edge = 0; edge < 3; ++edge)
+        {
+            const Segment segment{(*own)[edge], (*own)[(edge + 1) % 3]};
+            if (const auto piercing = find_piercing(segment, *other))
+            {
+                return EdgePiercing{own, edge, *piercing};
+            }
+        }
+    }
+    return std::nullopt;
+}
+
+void expect_same(const ClosestPoints& a, const ClosestPoints& b)
+{
+    ASSERT_EQ(a.on_shape, b.on_shape);
+    ASSERT_EQ(a.on_triangle, b.on_triangle);
+    ASSERT_EQ(a.gap, b.gap);
+    ASSERT_EQ(a.distance, b.distance);
+    ASSERT_EQ(a.distance_error, b.distance_error);
+    ASSERT_EQ(a.meet, b.meet);
+    ASSERT_EQ(a.feature, b.feature);
+    ASSERT_EQ(a.shape_feature, b.shape_feature);
+}
+
+} // namespace
 
 TEST(Meet, of_triangles_is_what_exact_linear_algebra_says)
 {
@@ -48,6 +85,35 @@ TEST(Meet, of_a_segment_and_a_triangle_is_what_exact_linear_algebra_says)
         ASSERT_TRUE(expected || !piercing) << "case " << i;
     }
     tally.expect_both();
+}
+
+TEST(Meet, the_first_edge_that_pierces_is_found_and_nothing_changes_where_meeting_is_known)
+{
+    Random random(53);
+    int pierced = 0;
+    int touching = 0;
+    for (int i = 0; i < kClasses * cases_per_class() / 8; ++i)
+    {
+        Grid grid(random);
+        const Triangle a = grid.placed(grid.triangle());
+        const Triangle b = grid.placed(grid.triangle());
+        const auto truth = first_piercing(a, b);
+        const auto found = find_edge_piercing(a, b);
+        ASSERT_EQ(found.has_value(), truth.has_value()) << "case " << i;
+        if (found)
+        {
+            ASSERT_EQ(found->triangle, truth->triangle) << "case " << i;
+            ASSERT_EQ(found->edge, truth->edge) << "case " << i;
+            ASSERT_EQ(found->piercing.parameter, truth->piercing.parameter) << "case " << i;
+            ASSERT_EQ(found->piercing.feature, truth->piercing.feature) << "case " << i;
+        }
+        const bool do_meet = meet(a, b);
+        expect_same(closest_points(a, b, do_meet), closest_points(a, b));
+        pierced += found ? 1 : 0;
+        touching += do_meet && !found ? 1 : 0;
+    }
+    EXPECT_GT(pierced, 1'000);
+    EXPECT_GT(touching, 10);
 }
 
 TEST(Meet, of_a_box_and_a_triangle_is_what_exact_linear_algebra_says)

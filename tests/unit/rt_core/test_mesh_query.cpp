@@ -14,6 +14,8 @@
 #include <algorithm>
 #include <limits>
 #include <set>
+#include <tuple>
+#include <vector>
 
 namespace tactus::test
 {
@@ -81,6 +83,7 @@ struct AllPairs
     double coarse_lower{kInfinity};
     std::set<MeetingFaces> meeting;
     std::set<MeetingFaces> in_contact;
+    std::vector<std::tuple<double, FaceId, FaceId>> contacts; ///< In no order.
 
     AllPairs(std::span<const ChangedFace> tool, std::span<const ChangedFace> object,
              const MeshPlacement& place, double contact)
@@ -124,6 +127,7 @@ private:
         if (closest.distance <= contact)
         {
             in_contact.insert({tool_face.face, face.face});
+            contacts.emplace_back(closest.distance, face.face, tool_face.face);
         }
     }
 };
@@ -957,6 +961,94 @@ TEST(MeshQuery, keeps_the_lowest_of_too_many_meeting_faces_and_contacts)
         EXPECT_EQ(contact.tool_face, FaceId{i});
         EXPECT_EQ(contact.distance_m, 0.0);
         EXPECT_LT((contact.on_tool_m - contact.on_surface_m).norm(), 1e-15);
+    }
+}
+
+TEST(MeshQuery, keeps_the_nearest_contacts_whatever_met_before)
+{
+    Random random(89);
+    int crowded = 0;
+    int apart = 0;
+    for (int round = 0; round < 120; ++round)
+    {
+        const auto [tool, object] = full_meshes(random);
+        const MeshPlacement place = random_placement(random);
+        const double reach = random.between(0.0, 0.4);
+        AllPairs truth(tool.present(), object.present(), place, reach);
+        const std::size_t count = std::min<std::size_t>(truth.contacts.size(), kMaxContacts);
+        std::ranges::sort(truth.contacts);
+        DistanceAnswer first;
+        for (const bool was_crowded : {false, true})
+        {
+            MeshMemory memory{{random.below(10), random.below(10)}, was_crowded};
+            Asked asked;
+            ContactEnds ends;
+            OtherSurface surface(*object.sut, place, kAmple);
+            query_meshes({*tool.sut, *object.sut, place, reach, reach, &ends}, surface, memory,
+                         asked.answer, asked.report, asked.contacts);
+
+            ASSERT_EQ(as_set(asked.report.meeting), truth.meeting) << round;
+            ASSERT_TRUE(asked.report.is_complete);
+            ASSERT_EQ(asked.contacts.is_complete, truth.contacts.size() <= kMaxContacts) << round;
+            ASSERT_EQ(memory.is_crowded, truth.meeting.size() > kMaxContacts) << round;
+            ASSERT_EQ(asked.contacts.contacts.size(), count) << round;
+            for (std::size_t i = 0; i < count; ++i)
+            {
+                const Contact& contact = asked.contacts.contacts[i];
+                ASSERT_EQ(std::tuple(contact.distance_m, contact.face, contact.tool_face),
+                          truth.contacts[i])
+                    << round << " " << i;
+            }
+            ASSERT_EQ(ends.is_empty, count == 0);
+            for (const Contact& end : ends.contacts)
+            {
+                ASSERT_LE(end.distance_m, count == 0 ? 0.0 : reach);
+            }
+            first = was_crowded ? first : asked.answer;
+            ASSERT_EQ(asked.answer.kind, first.kind);
+            ASSERT_TRUE(first.kind != AnswerKind::exact || asked.answer.upper_m == first.upper_m);
+            ASSERT_EQ(asked.answer.certified_radius_m, first.certified_radius_m);
+            ASSERT_EQ(asked.answer.nearest_face, first.nearest_face);
+        }
+        crowded += truth.meeting.size() > kMaxContacts ? 1 : 0;
+        apart += truth.meeting.size() < kMaxContacts && truth.contacts.size() > kMaxContacts;
+    }
+    EXPECT_GT(crowded, 2);
+    EXPECT_GT(apart, 10);
+}
+
+TEST(MeshQuery, ends_where_enough_meets_for_a_tool_that_is_felt)
+{
+    // A mesh on itself, each face ten times: 2,000 pairs meet.
+    TreeRig tool({200, 400, 400});
+    TreeRig object({200, 400, 400});
+    for (std::uint32_t i = 0; i < 200; ++i)
+    {
+        const float x = static_cast<float>(i / 10);
+        for (TreeRig* rig : {&tool, &object})
+        {
+            rig->put({PrimId{i},
+                      FaceId{i},
+                      i * 2'654'435'761U,
+                      0,
+                      {Vec3f{x, 0.0F, 0.0F}, Vec3f{x + 0.5F, 0.0F, 0.0F}, Vec3f{x, 0.5F, 0.0F}}});
+        }
+    }
+    tool.sut->refit();
+    object.sut->refit();
+    MeshMemory memory;
+    for (int again = 0; again < 2; ++again)
+    {
+        const Asked asked = ask_without_pairs(tool, object, MeshPlacement{}, 0.01, 0.01, memory);
+
+        EXPECT_EQ(asked.report.meeting.size(), kEnoughMeetingFaces);
+        EXPECT_FALSE(asked.report.is_complete);
+        EXPECT_EQ(asked.report.intersection, Intersection::proven);
+        EXPECT_EQ(asked.answer.kind, AnswerKind::exact);
+        EXPECT_EQ(asked.answer.upper_m, 0.0);
+        EXPECT_EQ(asked.contacts.contacts.size(), kMaxContacts);
+        EXPECT_FALSE(asked.contacts.is_complete);
+        EXPECT_TRUE(memory.is_crowded);
     }
 }
 
