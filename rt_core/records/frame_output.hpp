@@ -62,15 +62,14 @@ struct ToolOutput
            (output.lost_object ? FrameFault::object_lost : FrameFault::none);
 }
 
-/// Why a tool's force must fade; none while nothing is wrong. A proxy that waits without a force
-/// has nothing to fade.
+/// Why a tool's force must fade; none while nothing is wrong. A proxy that waits for data without a
+/// force has nothing to fade; one that has no room will have a force, as soon as it touches.
 [[nodiscard]] constexpr FrameFault faults_of(const ToolOutput& output) noexcept
 {
-    const auto in_contact = [&output](bool is_so, FrameFault fault)
-    { return is_so && output.in_contact ? fault : FrameFault::none; };
+    const bool is_held = output.frozen && output.in_contact;
     return output.sample_fault | (output.lost_object ? FrameFault::object_lost : FrameFault::none) |
-           in_contact(output.frozen, FrameFault::proxy_frozen) |
-           in_contact(output.squeezed, FrameFault::proxy_squeezed);
+           (is_held ? FrameFault::proxy_frozen : FrameFault::none) |
+           (output.squeezed ? FrameFault::proxy_squeezed : FrameFault::none);
 }
 
 /// What one pair of tool and object got. World frame, metres: the model's distances times the
