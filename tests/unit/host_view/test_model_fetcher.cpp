@@ -283,14 +283,15 @@ TEST_F(ModelFetcherTest, asks_a_host_no_more_whose_header_or_base_mesh_is_forged
 {
     for (const ContentKind kind : {ContentKind::header, ContentKind::base})
     {
+        sut_.reset(); // Both: a new one must hear nothing of the host before.
+        stranger_.reset();
         shelf_ = std::move(ModelShelf::open({})).value();
-        sut_.reset();
         sut_ = std::move(ModelFetcher::create(*viewer_, *shelf_, lines_.log())).value();
         stranger_ = std::make_unique<Stranger>(1, model_);
         stranger_->forge(kind, Forgery::another_byte);
         sut_->look_for(hash_);
         const std::string before = lines_.text();
-        ASSERT_TRUE(stepped_until([&] { return lines_.text() != before; }));
+        ASSERT_TRUE(stepped_until([&] { return lines_.text() != before; })) << before;
         EXPECT_NE(lines_.text().find("model 'tiny'", before.size()), std::string::npos);
         const int sent = stranger_->sent(kind);
         EXPECT_GE(sent, 1);
