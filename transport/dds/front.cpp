@@ -54,16 +54,16 @@ void copy_head(const From& from, To& to)
     }
 }
 
-bool is_time(double ns)
+bool is_amount(double x)
 {
-    return std::isfinite(ns) && ns >= 0.0;
+    return std::isfinite(x) && x >= 0.0;
 }
 
 std::optional<FrontTool> tool_from(const tactus_v4_FrontTool& wire)
 {
     const std::string_view shape = characters_of(wire.shape);
     constexpr std::uint32_t known = (1U << kForceOffs) - 1;
-    if (wire.state >= kSafetyStates || (wire.causes & ~known) != 0 || !is_time(wire.radius_m) ||
+    if (wire.state >= kSafetyStates || (wire.causes & ~known) != 0 || !is_amount(wire.radius_m) ||
         !std::ranges::all_of(shape, is_printable))
     {
         return std::nullopt;
@@ -141,7 +141,7 @@ std::optional<FrontRegion> region_from(const tactus_v4_FrontRegion& wire, std::u
     FrontRegion region{wire.model, wire.is_foretold, {}, wire.radius_m};
     std::ranges::copy(wire.center_m, region.center_m.begin());
     const bool is_sound =
-        wire.model < models && is_time(region.radius_m) &&
+        wire.model < models && is_amount(static_cast<double>(region.radius_m)) &&
         std::ranges::all_of(region.center_m, [](float x) { return std::isfinite(x); });
     return is_sound ? std::optional(region) : std::nullopt;
 }
@@ -166,7 +166,7 @@ std::optional<Front> front_from(const tactus_v4_Front& sample)
     }
     auto models = models_from(sample);
     const auto is_sound = [](const FrontTimes& t)
-    { return is_time(t.mean_ns) && is_time(t.max_ns); };
+    { return is_amount(t.mean_ns) && is_amount(t.max_ns); };
     if (!models || !std::ranges::all_of(front.times, is_sound))
     {
         return std::nullopt;
