@@ -23,9 +23,9 @@ namespace tactus
 namespace
 {
 
-std::array<int, 3> sides_of_plane(const Triangle& triangle, const Triangle& points) noexcept
+std::array<int, 3> sides_of_plane(const Triangle& face, const Triangle& points) noexcept
 {
-    const PlaneSides plane(triangle[0], triangle[1], triangle[2]);
+    const PlaneSides plane(face[0], face[1], face[2]);
     return {plane.side_of(points[0]), plane.side_of(points[1]), plane.side_of(points[2])};
 }
 

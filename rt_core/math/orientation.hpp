@@ -51,8 +51,8 @@ private:
     const Vec3& a_;
     const Vec3& b_;
     const Vec3& c_;
-    Triple<double> normal_; ///< (b - a) x (c - a), and
-    Triple<double> terms_;  ///< the same of sizes, all added.
+    Triple<double> normal_{}; ///< (b - a) x (c - a), and
+    Triple<double> terms_{};  ///< the same of sizes, all added.
 };
 
 /// volume() of one plane and many points, to the bit. Refers to its three points.
@@ -67,8 +67,8 @@ private:
     const Vec3& a_;
     const Vec3& b_;
     const Vec3& c_;
-    Triple<DoubleDouble> normal_;
-    Triple<double> terms_;
+    Triple<DoubleDouble> normal_{};
+    Triple<double> terms_{};
 };
 
 /// On which side of each of a triangle's edges the line from a to b passes: side_of_plane() of a, b

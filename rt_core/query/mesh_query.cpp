@@ -1064,11 +1064,12 @@ void query_meshes(const MeshQuestion& question, OtherSurface& object, MeshMemory
         return;
     }
     MeshAnswers answers{answer, report, contacts};
-    if (!(question.contact_m >= 0.0 && memory.is_crowded &&
-          search_meshes(question, true, enough, object, memory, witness, answers)))
+    const bool may_be_full = question.contact_m >= 0.0 && memory.is_crowded;
+    if (may_be_full && search_meshes(question, true, enough, object, memory, witness, answers))
     {
-        search_meshes(question, false, enough, object, memory, witness, answers);
+        return;
     }
+    search_meshes(question, false, enough, object, memory, witness, answers);
 }
 
 void find_nearest_faces(const MeshQuestion& question, OtherSurface& object, MeshMemory& memory,
