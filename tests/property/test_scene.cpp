@@ -44,11 +44,11 @@ TEST(Scene, of_objects_that_come_move_and_go_is_answered_truly_and_refuses_what_
     {
         const Hardship usual{"late", {}, scene_options(small_model(0).diagonal_m, 3)};
         all.add(run_scene_trial(
-            {{&small_model(0), &small_model(2)}, usual, 3, seed_of(2'100 + trial), 500}));
+            {{&small_model(0), &small_model(2)}, usual, 3, seed_of(2'100 + trial), 800}));
     }
     EXPECT_TRUE(all.truth.holds()) << all.truth.summary();
-    EXPECT_EQ(all.truth.trials, 2'000U);
-    EXPECT_GT(all.exact, 50U);
+    EXPECT_EQ(all.truth.trials, 3'200U);
+    EXPECT_GT(all.exact, 100U);
     EXPECT_GT(all.refused, 200U);
     EXPECT_GT(all.gone, 500U);
     EXPECT_GT(all.variants, 3U);

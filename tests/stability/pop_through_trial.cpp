@@ -156,8 +156,6 @@ public:
         }
     }
 
-    /// What one alone takes along so fast it may run over, or leave where there is no room.
-    [[nodiscard]] bool come_together() const { return !stays_m_; }
     /// Puts the middles of the objects twice so far from one another.
     void open_to(double half_gap_m, FrameRig& rig)
     {
@@ -215,7 +213,7 @@ public:
         if (squeezed_s_ > kFadeTime_s + kPeriod_s)
         {
             ++judge_.figures().faded;
-            if (safe_n.norm() > kForceRounding_n && jaws_.come_together())
+            if (safe_n.norm() > kForceRounding_n)
             {
                 judge_.flag("there is still a force");
             }
@@ -224,7 +222,7 @@ public:
     }
     void end()
     {
-        if (squeezed_s_ > 0.0 && jaws_.come_together())
+        if (squeezed_s_ > 0.0)
         {
             judge_.flag("there is room again, but not for the tool");
         }

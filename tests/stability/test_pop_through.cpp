@@ -73,7 +73,7 @@ TEST(PopThroughClosing, objects_that_leave_no_room_are_told_and_the_force_fades)
     const TestModel& model = notched_cube();
     const FaceTree tree(model.faces);
 
-    const PopThroughFigures sut = run_closing_trial({model, tree, seed_of(20'261'790), 12});
+    const PopThroughFigures sut = run_closing_trial({model, tree, seed_of(20'261'790), 40});
 
     std::printf("%s\n", sut.crossings.summary().c_str());
     EXPECT_TRUE(sut.crossings.holds()) << sut.crossings.summary();
