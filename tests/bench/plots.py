@@ -275,13 +275,15 @@ def peers(data):
 def force(data):
     figure, axes = axes_of(2, 4.2)
     figure.subplots_adjust(bottom=0.27)
-    sweeps = [case.split(", ") for case in data.names("case", "force", part="Sweeps", by="Tactus")]
-    for mesh, ball in dict.fromkeys((mesh, ball) for mesh, _, ball in sweeps):
-        speeds = [speed for one, speed, other in sweeps if (one, other) == (mesh, ball)]
-        cases = [f"{mesh}, {speed}, {ball}" for speed in speeds]
-        x = [float(speed.split()[0]) for speed in speeds]
-        for one, metric in zip(axes, ("error.p99", "frame.p99")):
-            curves(one, "", "speed, m/s", "", [(f"{mesh} triangles, ball of {ball}", None, x,
+    for one, metric in zip(axes, ("error.p99", "frame.p99")):
+        sweeps = [case.split(", ", 2) for case in data.names(
+            "case", "force", part="Sweeps", by="Tactus", metric=metric)]
+        for mesh, ball in dict.fromkeys((mesh, ball) for mesh, _, ball in sweeps):
+            speeds = [speed for a, speed, b in sweeps if (a, b) == (mesh, ball)]
+            cases = [f"{mesh}, {speed}, {ball}" for speed in speeds]
+            x = [float(speed.split()[0]) for speed in speeds]
+            curves(one, "", "speed, m/s", "", [(f"{mesh} triangles, ball of {ball}",
+                   "#444444" if "friction" in ball else None, x,
                    data.line("force", "case", cases, by="Tactus", metric=metric))])
     axes[1].axhline(20, color=COLOURS["goal"], linestyle="--", linewidth=1,
                     label="goal of 1.3M, 2 mm")
