@@ -37,6 +37,8 @@ Options:
   --docs        bench: with --peers; keep the results in docs/benchmarks, too, those of a quick run
                 not over those of a full one, and draw its pictures; needs TACTUS_MESHES.
                 rt-machine: keep its results there
+  --arm64       rt-machine: with programs and a kernel for that processor, built by Debian's cross
+                compiler; in build/rt_machine_arm64
   --ci          packages: the packages of .ci/run (cmake/packages-ci.txt) as well
   --bench       packages: the peers of tactus_bench (cmake/packages-bench.txt) as well
   --scene       demo: a scene instead of one model
@@ -282,14 +284,20 @@ run_bench() { # run_bench KEPT OPTION...: all suites, as tactus_bench takes opti
 
 # --- rt-machine ----------------------------------------------------------------------------------
 
-run_rt_machine() { # run_rt_machine KEPT OPTION...
-    local code=0 results=$root/build/rt_machine kept=$1
-    shift
+run_rt_machine() { # run_rt_machine KEPT ARCHITECTURE OPTION...: of this machine's where it is empty.
+    local code=0 kept=$1 architecture=$2 results=$root/build/rt_machine packages=$root/build/deb
+    shift 2
     if command -v ccache >/dev/null; then
         export CMAKE_C_COMPILER_LAUNCHER=ccache CMAKE_CXX_COMPILER_LAUNCHER=ccache
     fi
     (cd "$root" && cmake --workflow --preset deb) || fail 2 "the packages could not be built"
-    bash "$root/tests/rt_machine/rt_machine.sh" "$results" "$root/build/deb" "$@" || code=$?
+    if [[ -n "$architecture" ]]; then
+        results+=_$architecture
+        bash "$root/tests/rt_machine/cross_packages.sh" "$architecture" "$packages" \
+            "$packages-$architecture" || fail 2 "the packages for $architecture could not be built"
+        packages+=-$architecture
+    fi
+    bash "$root/tests/rt_machine/rt_machine.sh" "$results" "$packages" "$@" || code=$?
     ((code != 77)) || code=2 # What it lacks it has said.
     if [[ -n "$kept" && $code -lt 2 ]]; then
         "$python" "$root/tests/bench/results.py" store "$kept" "$results/rt.json" || code=$?
@@ -308,7 +316,7 @@ number_in() { # number_in OPTION VALUE LOW HIGH
 main() {
     local command='' seconds=10 domain='' more_options=()
     local lists=("$root"/cmake/packages{,-test}.txt)
-    local bench_options=() peers='' kept='' scene='' view=''
+    local bench_options=() peers='' kept='' scene='' view='' architecture=''
     while (($# > 0)); do
         case "$1" in
             build | programs | test | demo | bench | rt-machine | packages)
@@ -316,6 +324,7 @@ main() {
                 command=$1
                 ;;
             --scene) scene=yes ;;
+            --arm64) architecture=arm64 ;;
             --view) view=spm_view ;;
             --quick) bench_options+=(--quick) ;;
             --peers | --docs)
@@ -354,6 +363,9 @@ main() {
     elif [[ "$command" != bench && (-n "$peers" || ${#bench_options[@]} -gt 0) ]]; then
         fail 3 "--quick, --peers and --docs are for 'bench' and 'rt-machine' only"
     fi
+    if [[ "$command" != rt-machine && -n "$architecture" ]]; then
+        fail 3 "--arm64 is for 'rt-machine' only"
+    fi
     if [[ "$command" != demo && -n "$scene$view" ]]; then
         fail 3 "--scene and --view are for 'demo' only"
     fi
@@ -375,8 +387,10 @@ main() {
             run_tests "${more_options[@]}"
             ;;
         rt-machine)
-            install_packages "$root"/cmake/packages{,-rt}.txt
-            run_rt_machine "$kept" "${bench_options[@]}"
+            lists=("$root"/cmake/packages{,-rt}.txt)
+            [[ -z "$architecture" ]] || lists+=("$root/cmake/packages-rt-$architecture.txt")
+            install_packages "${lists[@]}"
+            run_rt_machine "$kept" "$architecture" "${bench_options[@]}"
             ;;
         bench)
             [[ -z "$peers" ]] || lists+=("$root/cmake/packages-bench.txt")

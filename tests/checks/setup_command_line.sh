@@ -34,6 +34,7 @@ expect 3 "--quick, --peers and --docs are for 'bench' and 'rt-machine' only" tes
 expect 3 "--quick, --peers and --docs are for 'bench' and 'rt-machine' only" packages --peers
 expect 3 "--quick, --peers and --docs are for 'bench' and 'rt-machine' only" build --docs
 expect 3 "--peers is for 'bench' only" rt-machine --peers
+expect 3 "--arm64 is for 'rt-machine' only" bench --arm64
 TACTUS_MESHES=nowhere expect 3 'TACTUS_MESHES must name the folder' bench --docs
 
 # A dpkg that knows nothing and a sudo that refuses stand in for a user without packages and root.
