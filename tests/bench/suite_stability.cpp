@@ -281,6 +281,10 @@ void try_rigid_tools(const Sizes& sizes, bool /*full*/, const Report& report)
                 stage == test::RigidStage::still ? sizes.rigid_frames : sizes.rigid_frames / 4;
             const test::RigidFigures figures = test::run_rigid_trial(trial);
             report(figures.crossings);
+            if (stage == test::RigidStage::closing)
+            {
+                report(figures.steps);
+            }
             fmt::print(stderr,
                        "{}: {} frames in contact, {} frozen, {} squeezed, {} run over and told\n",
                        figures.crossings.name, figures.contacts, figures.frozen, figures.squeezed,
