@@ -195,6 +195,7 @@ Json tools_of(const RunRecord& record)
         list.push_back(
             {{"shape", record.controller.tools()[i].shape},
              {"radius_m", record.controller.tools()[i].spec.radius_m},
+             {"smooth_m", record.controller.tools()[i].spec.smooth_m},
              {"force_max_n", force.max_n},
              {"force_max_step_n", force.max_step_n},
              {"torque_max_nm", force.torque_max_nm},

@@ -68,7 +68,8 @@ void BodyPlanes::begin(const Vec3& place_m, double arm_m, double size_m, double 
     grips_.clear();
     place_m_ = place_m;
     arm_m_ = arm_m;
-    size_m_ = size_m;
+    const double ratio = arm_m / size_m;
+    turn_weight_ = ratio * ratio;
     radius_m_ = radius_m;
     gone_ = gone;
     is_crowded_ = false;
@@ -199,9 +200,8 @@ NearestMotion<6> BodyPlanes::plain(const Motion<6>& wanted, bool& is_squeezed) n
 /// The square of how different two planes are, the tool's size being the arm.
 double BodyPlanes::apart_sq(const HalfSpace<6>& a, const HalfSpace<6>& b) const noexcept
 {
-    const double ratio = arm_m_ / size_m_;
     const Motion<6> between = a.normal - b.normal;
-    return between.head<3>().squaredNorm() + ratio * ratio * between.tail<3>().squaredNorm();
+    return between.head<3>().squaredNorm() + turn_weight_ * between.tail<3>().squaredNorm();
 }
 
 /// What holds, then of what touches always that which differs most from what was chosen: a flat
@@ -209,38 +209,52 @@ double BodyPlanes::apart_sq(const HalfSpace<6>& a, const HalfSpace<6>& b) const 
 BodyPlanes::Chosen BodyPlanes::choose(const NearestMotion<6>& plain) const noexcept
 {
     Chosen chosen;
-    std::array<double, kMaxHalfSpaces> nearest{};
-    for (std::size_t i = 0; i < spaces_.size(); ++i)
+    struct Candidate
     {
-        const bool touches = spaces_[i].offset >= -kTouchingGap * radius_m_;
-        nearest[i] = touches && grips_[i].friction > 0.0 && !is_seam(i) ? kInfinity : 0.0;
-    }
-    const auto take = [&](std::uint32_t taken)
+        std::uint32_t plane{0};
+        double apart_sq{kInfinity}; ///< From all that are chosen; 0: it is out.
+    };
+    StaticVector<Candidate, kMaxHalfSpaces> candidates;
+    for (std::uint32_t i = 0; i < spaces_.size(); ++i)
     {
-        chosen.push_back(taken);
-        for (std::size_t i = 0; i < spaces_.size(); ++i)
+        if (spaces_[i].offset >= -kTouchingGap * radius_m_ && grips_[i].friction > 0.0)
         {
-            nearest[i] =
-                nearest[i] > 0.0 ? std::min(nearest[i], apart_sq(spaces_[i], spaces_[taken])) : 0.0;
+            candidates.push_back({i});
         }
-        nearest[taken] = 0.0;
+    }
+    const auto take = [&](Candidate& taken)
+    {
+        taken.apart_sq = 0.0;
+        if (is_seam(taken.plane))
+        {
+            return;
+        }
+        chosen.push_back(taken.plane);
+        for (Candidate& other : candidates)
+        {
+            if (other.apart_sq > 0.0)
+            {
+                other.apart_sq =
+                    std::min(other.apart_sq, apart_sq(spaces_[other.plane], spaces_[taken.plane]));
+            }
+        }
     };
     for (const std::uint32_t plane : plain.held_by)
     {
-        if (nearest[plane] > 0.0)
+        auto* const candidate = std::ranges::find(candidates, plane, &Candidate::plane);
+        if (candidate != candidates.end() && candidate->apart_sq > 0.0)
         {
-            take(plane);
+            take(*candidate);
         }
     }
-    while (!chosen.full())
+    while (!chosen.full() && !candidates.empty())
     {
-        const auto near = std::span(nearest).first(spaces_.size());
-        const auto farthest = std::ranges::max_element(near);
-        if (!(*farthest > kSamePlane * kSamePlane))
+        auto* const farthest = std::ranges::max_element(candidates, {}, &Candidate::apart_sq);
+        if (!(farthest->apart_sq > kSamePlane * kSamePlane))
         {
             break;
         }
-        take(static_cast<std::uint32_t>(farthest - near.begin()));
+        take(*farthest);
     }
     return chosen;
 }
@@ -363,20 +377,21 @@ void BodyPlanes::rub(const NearestMotion<6>& held, const Motion<6>& wanted, cons
 {
     NearestMotion<6> rubbed = held;
     Motion<6> all = drag;
-    if (const Viscosity viscosity = viscosity_of(held); viscosity.is_any)
+    if (const std::optional<Viscosity> viscosity = viscosity_of(held))
     {
+        const SymmetricFactor& factor = viscosity->factor;
         tilted_.clear();
         for (const HalfSpace<6>& space : spaces_)
         {
-            tilted_.push_back({viscosity.factor.forward(space.normal), space.offset});
+            tilted_.push_back({factor.forward(space.normal), space.offset});
         }
-        const Motion<6> target = viscosity.factor.forward(wanted + drag - viscosity.gone);
+        const Motion<6> target = factor.forward(wanted + drag - viscosity->gone);
         const NearestMotion<6> found = nearest_motion<6>(tilted_.view(), target);
         if (found.is_feasible)
         {
             rubbed = found;
-            rubbed.motion = viscosity.factor.backward(found.motion);
-            all = drag - (viscosity.factor.times(rubbed.motion) - rubbed.motion + viscosity.gone);
+            rubbed.motion = factor.backward(found.motion);
+            all = drag - (factor.times(rubbed.motion) - rubbed.motion + viscosity->gone);
         }
     }
     answer.motion = rubbed.motion;
@@ -391,21 +406,37 @@ void BodyPlanes::rub(const NearestMotion<6>& held, const Motion<6>& wanted, cons
     }
 }
 
-/// Each contact that presses has its part of it.
-BodyPlanes::Viscosity BodyPlanes::viscosity_of(const NearestMotion<6>& held) const noexcept
+/// Whether the plane touches, presses, and is viscous.
+bool BodyPlanes::drags(const NearestMotion<6>& held, std::size_t i) const noexcept
 {
+    const std::uint32_t plane = held.held_by[i];
+    return grips_[plane].viscous * held.reactions[i] > 0.0 &&
+           spaces_[plane].offset >= -kTouchingGap * radius_m_;
+}
+
+/// Each contact that presses has its part of it; none where none drags.
+std::optional<BodyPlanes::Viscosity>
+BodyPlanes::viscosity_of(const NearestMotion<6>& held) const noexcept
+{
+    std::size_t first = 0;
+    while (first < held.held_by.size() && !drags(held, first))
+    {
+        ++first;
+    }
+    if (first == held.held_by.size())
+    {
+        return std::nullopt;
+    }
     Viscosity viscosity;
     const double pressure = pressure_of(held);
     SymmetricFactor::Matrix metric = SymmetricFactor::Matrix::Identity();
-    for (std::size_t i = 0; i < held.held_by.size(); ++i)
+    for (std::size_t i = first; i < held.held_by.size(); ++i)
     {
-        const std::uint32_t plane = held.held_by[i];
-        const bool touches = spaces_[plane].offset >= -kTouchingGap * radius_m_;
-        if (!touches || !(grips_[plane].viscous * held.reactions[i] > 0.0))
+        if (!drags(held, i))
         {
             continue;
         }
-        viscosity.is_any = true;
+        const std::uint32_t plane = held.held_by[i];
         const double part = grips_[plane].viscous * held.reactions[i] / pressure;
         const Vec3 lever = lever_m(plane) / arm_m_;
         const Vec3& normal = touches_[plane].normal;
@@ -422,10 +453,7 @@ BodyPlanes::Viscosity BodyPlanes::viscosity_of(const NearestMotion<6>& held) con
         viscosity.gone +=
             held_back(gone_.head<3>() + gone_.tail<3>().cross(lever) - grips_[plane].frame_way_m);
     }
-    if (viscosity.is_any)
-    {
-        viscosity.factor = SymmetricFactor(metric);
-    }
+    viscosity.factor = SymmetricFactor(metric);
     return viscosity;
 }
 

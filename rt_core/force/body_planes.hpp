@@ -11,6 +11,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 namespace tactus
@@ -128,10 +129,11 @@ private:
     {
         SymmetricFactor factor; ///< Of the metric.
         Motion<6> gone{Motion<6>::Zero()};
-        bool is_any{false};
     };
 
-    [[nodiscard]] Viscosity viscosity_of(const NearestMotion<6>& held) const noexcept;
+    [[nodiscard]] bool drags(const NearestMotion<6>& held, std::size_t i) const noexcept;
+    [[nodiscard]] std::optional<Viscosity>
+    viscosity_of(const NearestMotion<6>& held) const noexcept;
     void rub(const NearestMotion<6>& held, const Motion<6>& wanted, const Motion<6>& drag,
              BodyMotion& answer) noexcept;
     [[nodiscard]] double share_of(const NearestMotion<6>& plain, double most) const noexcept;
@@ -145,7 +147,7 @@ private:
     Vec3 place_m_{0.0, 0.0, 0.0};
     Motion<6> gone_{Motion<6>::Zero()};
     double arm_m_{1.0};
-    double size_m_{1.0};
+    double turn_weight_{1.0}; ///< Of turns where planes are compared: the tool's size is the arm.
     double radius_m_{0.0};
     bool is_crowded_{false};
 };

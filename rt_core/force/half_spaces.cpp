@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace tactus
 {
@@ -154,13 +155,8 @@ class Projection
 public:
     // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): arrays: only what is used is set.
     Projection(std::span<const HalfSpace<N>> planes, const Motion<N>& wanted) noexcept
-        : planes_(planes), wanted_(wanted), motion_(wanted)
+        : planes_(planes), wanted_(wanted), motion_(wanted), wanted_length_(wanted.norm())
     {
-        for (std::size_t i = 0; i < planes.size(); ++i)
-        {
-            lengths_[i] = planes[i].normal.norm();
-            tolerances_[i] = kPlaneTolerance;
-        }
     }
 
     /// False when there is none.
@@ -173,15 +169,7 @@ public:
             {
                 return true;
             }
-            const HoldingPlanes<N> held_before = holding_;
-            const Motion<N> motion_before = motion_;
-            if (try_hold(worst))
-            {
-                continue;
-            }
-            holding_ = held_before;
-            motion_ = motion_before;
-            if (!try_let_pass(worst))
+            if (!try_hold(worst) && !try_let_pass(worst))
             {
                 return false;
             }
@@ -203,18 +191,21 @@ public:
 
 private:
     /// The number of planes when there is none.
-    [[nodiscard]] std::uint32_t most_violated() const noexcept
+    [[nodiscard]] std::uint32_t most_violated() noexcept
     {
-        const double size = wanted_.norm() + motion_.norm();
+        const double size = wanted_length_ + motion_.norm();
         auto worst = static_cast<std::uint32_t>(planes_.size());
         double most = 0.0;
         for (std::uint32_t i = 0; i < planes_.size(); ++i)
         {
             const double violation = planes_[i].offset - planes_[i].normal.dot(motion_);
-            // What takes so long goes round in a circle, over what dependent normals leave open.
-            const double share =
-                rounds_ < kConstraintRounds / 2 ? kSqueezeTolerance : tolerances_[i];
-            const double rounding = share * (std::abs(planes_[i].offset) + lengths_[i] * size);
+            if (!(violation > 0.0))
+            {
+                continue; // As most planes are.
+            }
+            lengths_[i] = planes_[i].normal.norm();
+            const double rounding =
+                tolerance(i) * (std::abs(planes_[i].offset) + lengths_[i] * size);
             if (violation > rounding && violation > most * lengths_[i] && !holding_.has(i))
             {
                 worst = i;
@@ -224,10 +215,20 @@ private:
         return worst;
     }
 
-    /// Pushes the motion out of a plane; planes that hold it no longer are let go on the way.
+    /// What takes so long goes round in a circle, over what dependent normals leave open.
+    [[nodiscard]] double tolerance(std::uint32_t plane) const noexcept
+    {
+        const bool is_wide = rounds_ < kConstraintRounds / 2 || (let_pass_ >> plane & 1U) != 0;
+        return is_wide ? kSqueezeTolerance : kPlaneTolerance;
+    }
+
+    /// Pushes the motion out of a plane; planes that hold it no longer are let go on the way. Where
+    /// that can't be, all is as it was.
     [[nodiscard]] bool try_hold(std::uint32_t plane) noexcept
     {
         const Motion<N>& normal = planes_[plane].normal;
+        std::optional<HoldingPlanes<N>> held_before; // Before any was let go.
+        const Motion<N> motion_before = motion_;
         double multiplier = 0.0;
         while (rounds_ > 0)
         {
@@ -242,21 +243,31 @@ private:
             const double step = std::min(whole, first.step);
             if (!(step < kInfinity))
             {
-                return false; // Holding planes and this one exclude each other.
+                break; // Holding planes and this one exclude each other.
             }
             multiplier += step;
-            holding_.lower(split.shares, step);
             if (whole <= first.step)
             {
+                holding_.lower(split.shares, step);
                 holding_.add(plane, normal, multiplier, split);
                 motion_ = holding_.settle(planes_, wanted_);
                 return true;
             }
+            if (!held_before)
+            {
+                held_before = holding_;
+            }
+            holding_.lower(split.shares, step);
             if (is_free)
             {
                 motion_ += step * split.across;
             }
             holding_.drop(first.index);
+        }
+        if (held_before)
+        {
+            holding_ = *held_before;
+            motion_ = motion_before;
         }
         return false;
     }
@@ -265,11 +276,12 @@ private:
     [[nodiscard]] bool try_let_pass(std::uint32_t plane) noexcept
     {
         const double violation = planes_[plane].offset - planes_[plane].normal.dot(motion_);
-        const double size = wanted_.norm() + motion_.norm();
-        const bool passes = tolerances_[plane] < kSqueezeTolerance &&
+        const double size = wanted_length_ + motion_.norm();
+        const std::uint64_t bit = std::uint64_t{1} << plane;
+        const bool passes = (let_pass_ & bit) == 0 &&
                             violation <= kSqueezeTolerance * (std::abs(planes_[plane].offset) +
                                                               lengths_[plane] * size);
-        tolerances_[plane] = kSqueezeTolerance;
+        let_pass_ |= bit;
         return passes;
     }
 
@@ -303,9 +315,11 @@ private:
     Motion<N> wanted_;
     Motion<N> motion_;
     HoldingPlanes<N> holding_;
-    // Only the planes' are set: zeros for all would cost more than a search.
+    double wanted_length_;
+    // Of the normals of planes that were violated: zeros for all would cost more than a search.
     std::array<double, kMaxHalfSpaces> lengths_;
-    std::array<double, kMaxHalfSpaces> tolerances_;
+    static_assert(kMaxHalfSpaces <= 64);
+    std::uint64_t let_pass_{0}; ///< A bit for each plane.
     std::uint32_t rounds_{kConstraintRounds};
 };
 

@@ -378,7 +378,8 @@ Proxy::Hold Proxy::hold_at(Vicinity& near, std::span<const PlacedSurface> surfac
     Touch touch = feel_at(near, surfaces, wanted, kTouchShare * radius_);
     Hold& hold = touch.hold;
     const bool may_go = room > kLeastStep * radius_;
-    StepPlanes step = touch.planes;
+    StepPlanes& step = touch.planes;
+    const std::size_t touching = step.planes.size();
     for (const std::uint32_t face : held_by_)
     {
         if (!step.planes.full() && !step.has(face))
@@ -386,7 +387,7 @@ Proxy::Hold Proxy::hold_at(Vicinity& near, std::span<const PlacedSurface> surfac
             step.add(face, near.half_space(face, radius_));
         }
     }
-    const bool is_same = !hold.rubs && step.planes.size() == touch.planes.planes.size();
+    const bool is_same = !hold.rubs && step.planes.size() == touching;
     const Vec3 let = hold.rubs ? Vec3(touch.wanted - touch.kept) : touch.wanted;
     NearestMotion<3> found = is_same ? touch.held : search(near, step, let);
     if (may_go)
@@ -424,7 +425,8 @@ Proxy::Touch Proxy::feel_at(Vicinity& near, std::span<const PlacedSurface> surfa
     touch.wanted = wanted;
     touch.held = search(near, touch.planes, wanted);
     const Vec3 pressed = touch.held.motion - wanted;
-    const SmoothNormals::Felt felt = hold_smoothly(near, touch, pressed);
+    const SmoothNormals::Felt felt =
+        normals_.are_on() ? hold_smoothly(near, touch, pressed) : SmoothNormals::Felt{};
     const NearestMotion<3>& held = touch.held;
     Hold& hold = touch.hold;
     const auto surface_of = [&](std::size_t i) -> const PlacedSurface&
@@ -462,7 +464,7 @@ SmoothNormals::Felt Proxy::hold_smoothly(Vicinity& near, Touch& touch,
                                          const Vec3& pressed) const noexcept
 {
     const double depth_m = pressed.norm();
-    if (!normals_.are_on() || !touch.held.is_feasible || !(depth_m > 0.0))
+    if (!touch.held.is_feasible || !(depth_m > 0.0))
     {
         return {};
     }

@@ -68,7 +68,7 @@ public:
     /// How far beyond its radius it looks for what it may feel.
     [[nodiscard]] double feels_beyond_m() const noexcept
     {
-        return SmoothNormals::reach_beyond_m(radius_, spec_.smooth_m);
+        return spec_.smooth_m > 0.0 ? SmoothNormals::reach_beyond_m(radius_, spec_.smooth_m) : 0.0;
     }
     /// How far it may have to go for this goal: what presses it against what it touches is no way.
     [[nodiscard]] double way_to_m(const ToolGoal& goal) const noexcept TACTUS_NONBLOCKING;

@@ -80,7 +80,7 @@ RigidProxy::RigidProxy(const ToolSpec& spec, Planes& planes) noexcept
 
 void RigidProxy::see(const ToolGoal& goal) noexcept
 {
-    frame_ = {force_, torque_, frozen_s_};
+    frame_ = {force_, torque_, frozen_s_, is_squeezed_};
     gone_ = Motion<6>::Zero();
     carried_m_per_s_ = Vec3(0.0, 0.0, 0.0);
     carried_rad_per_s_ = Vec3(0.0, 0.0, 0.0);
@@ -233,7 +233,6 @@ ToolOutput RigidProxy::respond(const ToolGoal& goal, std::span<const PlacedSurfa
 {
     ToolOutput output;
     const BodyRoom room(surfaces, clear_m, radius_m_);
-    const bool has_waited = frame_.frozen_s > 0.0;
     is_squeezed_ = false;
     is_crowded_ = false;
     goes_on_ = false;
@@ -253,9 +252,9 @@ ToolOutput RigidProxy::respond(const ToolGoal& goal, std::span<const PlacedSurfa
         frozen_s_ += is_on_ ? 0.0 : goal.elapsed_s;
         freeze(goal, room.is_crossed(), output);
     }
-    catch_up(has_waited, goal.elapsed_s, output);
-    keep_clearances(surfaces, clear_m);
     is_squeezed_ = is_squeezed_ || was_overrun_;
+    catch_up(goal, output);
+    keep_clearances(surfaces, clear_m);
     output.squeezed = is_squeezed_;
     output.crowded = is_crowded_;
     output.proxy_m = place_.translation_m;
@@ -347,7 +346,9 @@ void RigidProxy::freeze(const ToolGoal& goal, bool is_crossed, ToolOutput& outpu
     }
 }
 
-void RigidProxy::catch_up(bool has_waited, double elapsed_s, ToolOutput& output) noexcept
+/// What the hand's way may change is told only where the tool was squeezed: one that was frozen
+/// goes on from a force that the hand's way has made already.
+void RigidProxy::catch_up(const ToolGoal& goal, ToolOutput& output) noexcept
 {
     if (output.frozen || !output.in_contact)
     {
@@ -357,10 +358,15 @@ void RigidProxy::catch_up(bool has_waited, double elapsed_s, ToolOutput& output)
     }
     const double rate_n = std::min(kCatchUp_n_per_s, kCatchUpShare_per_s * spec_.force_max_n);
     const double rate_nm = kCatchUpShare_per_s * spec_.torque_max_nm;
-    output.force_n =
-        force_.next({output.force_n, 0.0, spec_.force_max_n, rate_n, elapsed_s, has_waited});
-    output.torque_nm =
-        torque_.next({output.torque_nm, 0.0, spec_.torque_max_nm, rate_nm, elapsed_s, has_waited});
+    const bool has_no_room = is_squeezed_ || frame_.was_squeezed;
+    const bool has_waited = frame_.frozen_s > 0.0 || has_no_room;
+    const double way_m =
+        goal.elapsed_s * (goal.velocity_m_per_s.norm() + arm_m_ * goal.spin_rad_per_s.norm());
+    const double by_hand_n = has_no_room ? spec_.stiffness_n_per_m * way_m : 0.0;
+    output.force_n = force_.next(
+        {output.force_n, by_hand_n, spec_.force_max_n, rate_n, goal.elapsed_s, has_waited});
+    output.torque_nm = torque_.next({output.torque_nm, arm_m_ * by_hand_n, spec_.torque_max_nm,
+                                     rate_nm, goal.elapsed_s, has_waited});
 }
 
 void RigidProxy::gather(const ToolGoal& goal, std::span<const PlacedSurface> surfaces) noexcept

@@ -49,8 +49,10 @@ namespace tactus
 /// Where the distance is not exact, the proxy moves no farther than it is proven to be from every
 /// surface, less the radius. When that is nothing it is frozen and says so: the last planes hold
 /// what pushes against them, and SafeState fades that; afterwards force and torque catch up by
-/// kCatchUpShare_per_s. A proxy that nothing is known of yet, or whose core an object has crossed
-/// for kFadeTime_s, is where the hand is, without a force, until it is proven to be clear there.
+/// kCatchUpShare_per_s. So they do, beside what the hand does, while objects leave it no room and
+/// in the frame after that: planes hold then what went free before. A proxy that nothing is known
+/// of yet, or whose core an object has crossed for kFadeTime_s, is where the hand is, without a
+/// force, until it is proven to be clear there.
 ///
 /// Haptic thread. Cost: 1 to 4 us with 8 to 32 contacts, with friction up to 10 us more.
 class RigidProxy
@@ -127,6 +129,7 @@ private:
         CatchUp force;
         CatchUp torque;
         double frozen_s{0.0};
+        bool was_squeezed{false};
     };
 
     [[nodiscard]] Similarity along(const NearObject& object) const noexcept;
@@ -148,7 +151,7 @@ private:
     void add_holds(std::span<const PlacedSurface> surfaces, double elapsed_s) noexcept;
     void keep_holds(const BodyMotion& found, std::span<const PlacedSurface> surfaces) noexcept;
     void keep(const Hold& hold) noexcept;
-    void catch_up(bool has_waited, double elapsed_s, ToolOutput& output) noexcept;
+    void catch_up(const ToolGoal& goal, ToolOutput& output) noexcept;
     [[nodiscard]] Bumps bumps_of(const BodyMotion& held,
                                  std::span<const PlacedSurface> surfaces) const noexcept;
     void add_forces(const ToolGoal& goal, const BodyMotion& found, const Bumps& bumps,

@@ -254,10 +254,9 @@ Vicinity::Plane Vicinity::see(std::uint32_t face, const Vec3& place) const noexc
     placed.kernels->see_triangle(query.data(), corners[0].data(), seen);
     const ClosestPoint closest = closest_point_seen(query, corners, seen);
     const double length = std::sqrt(closest.distance_sq);
-    Plane plane;
-    plane.normal = length > 0.0 ? Vec3(pose.rotation * (closest.gap * (-1.0 / length))) : fallback_;
-    plane.offset_m = length * pose.scale - plane.normal.dot(place);
-    return plane;
+    const Vec3 normal =
+        length > 0.0 ? Vec3(pose.rotation * (closest.gap * (-1.0 / length))) : fallback_;
+    return {normal, length * pose.scale - normal.dot(place)};
 }
 
 /// In double, from here.
@@ -269,13 +268,14 @@ bool Vicinity::is_seen(std::uint32_t face) const noexcept
 
 const Vicinity::Plane& Vicinity::look_at(std::uint32_t face) noexcept
 {
-    Look& look = looks_[face % kLooks];
+    const std::uint32_t slot = face % kLooks;
     if (!is_seen(face))
     {
         use(1);
-        look = {face, stand_, see(face, place_)};
+        look_planes_[slot] = see(face, place_);
+        looks_[slot] = {face, stand_};
     }
-    return look.plane;
+    return look_planes_[slot];
 }
 
 Vicinity::Listed Vicinity::list_within(double distance_m, std::span<std::uint32_t> faces) noexcept

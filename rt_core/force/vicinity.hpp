@@ -112,8 +112,8 @@ private:
     };
     struct Plane
     {
-        Vec3 normal{0.0, 0.0, 0.0}; ///< From the face to the ball; unit length.
-        double offset_m{0.0};       ///< Of the centre from the plane.
+        Vec3 normal;     ///< From the face to the ball; unit length.
+        double offset_m; ///< Of the centre from the plane.
 
         [[nodiscard]] double height_m(const Vec3& place) const noexcept
         {
@@ -122,9 +122,8 @@ private:
     };
     struct Look
     {
-        std::uint32_t face{0xFFFF'FFFFU};
-        std::uint32_t stand{0};
-        Plane plane;
+        std::uint32_t face{0};
+        std::uint32_t stand{0}; ///< 0: at nothing yet.
     };
     using Hits = std::span<PlaneHit>;
 
@@ -161,7 +160,8 @@ private:
     std::array<std::uint8_t, kMaxNearBatches> surface_;
     std::array<std::uint8_t, kMaxNearBatches> faces_; ///< How many of a batch's lanes have one.
     std::array<PlaneHit, kMaxNearBatches> hits_;
-    std::array<Look, kLooks> looks_{}; ///< In double, from here.
+    std::array<Look, kLooks> looks_{};      ///< In double, from here:
+    std::array<Plane, kLooks> look_planes_; ///< what was seen there.
 };
 
 } // namespace tactus

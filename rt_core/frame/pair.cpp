@@ -259,23 +259,25 @@ void Pair::ask(RefineRequests& requests) noexcept
     request(parts_.model, of_object_, requests);
 }
 
+/// What has no ball has nothing to know.
 void Pair::ask_for_balls() noexcept
 {
     const double fixed_radius = parts_.rules->variant.fixed_radius;
-    const CoreCover& cover = outlook_.cover();
-    const bool looks_ahead = outlook_.looks_ahead() && !parts_.model.model->is_complete();
-    for (std::size_t i = 0; i < kMaxCoverBalls; ++i)
+    const Model& model = *parts_.model.model;
+    const bool looks_ahead = outlook_.looks_ahead() && !model.is_complete();
+    auto* memory = refine_memories_.data();
+    for (const Ball& here : outlook_.cover())
     {
-        const bool is_there = i < cover.size();
-        const Ball here = is_there ? cover[i] : Ball{};
         const double reach_m =
             (here.radius + outlook_.reach_m()) * (fixed_radius > 0.0 ? fixed_radius : 1.0);
-        const double keep_m = Outlook::kKeepFactor * reach_m;
-        ask(is_there && !outlook_.is_asleep(), *parts_.model.model,
-            {here.center, reach_m, keep_m, &refine_memories_[2 * i]}, of_object_);
-        const RefineQuestion ahead{here.center, reach_m, keep_m, &refine_memories_[2 * i + 1]};
-        const bool is_ahead = is_there && looks_ahead;
-        ask(is_ahead, *parts_.model.model, is_ahead ? ahead_of(ahead) : ahead, of_object_);
+        RefineQuestion question{here.center, reach_m, Outlook::kKeepFactor * reach_m, memory++};
+        ask(!outlook_.is_asleep(), model, question, of_object_);
+        question.memory = memory++;
+        ask(looks_ahead, model, looks_ahead ? ahead_of(question) : question, of_object_);
+    }
+    for (const auto* const end = &refine_memories_.back(); memory != end; ++memory)
+    {
+        memory->is_known = false;
     }
     if (tells_distance())
     {

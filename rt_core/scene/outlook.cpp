@@ -26,7 +26,8 @@ void Outlook::look(const ToolSpec& tool, const ToolStance& stance, const ObjectP
     reach_m_ = stance.reach_m / pose.scale;
     approach_m_ = (pose.rotation.transpose() * stance.approach_m) / pose.scale;
     const double awake_m = kKeepFactor * reach_m_ + approach_m_.norm();
-    is_asleep_ = has_known_ && known_.lower_m - motion_m() > awake_m;
+    motion_m_ = has_known_ ? core_.motion_since(known_core_) : 0.0;
+    is_asleep_ = has_known_ && known_.lower_m - motion_m_ > awake_m;
 }
 
 void Outlook::remember(const DistanceAnswer& answer) noexcept
@@ -35,6 +36,7 @@ void Outlook::remember(const DistanceAnswer& answer) noexcept
     TACTUS_ASSERT(answer.lower_m <= answer.upper_m);
     known_ = answer;
     known_core_ = core_;
+    motion_m_ = 0.0;
     has_known_ = true;
 }
 
@@ -45,16 +47,15 @@ bool Outlook::looks_ahead() const noexcept
 
 bool Outlook::is_near_surface() const noexcept
 {
-    return has_known_ && known_.upper_m + motion_m() <= kKeepFactor * reach_m_;
+    return has_known_ && known_.upper_m + motion_m_ <= kKeepFactor * reach_m_;
 }
 
 DistanceAnswer Outlook::from_motion() const noexcept
 {
     TACTUS_ASSERT(has_known_);
-    const double motion = motion_m();
     DistanceAnswer answer;
-    answer.lower_m = std::max(0.0, known_.lower_m - motion);
-    answer.upper_m = known_.upper_m + motion;
+    answer.lower_m = std::max(0.0, known_.lower_m - motion_m_);
+    answer.upper_m = known_.upper_m + motion_m_;
     answer.kind = answer.lower_m > reach_m_ ? AnswerKind::decided : AnswerKind::bracket;
     answer.tool_point_m = core_.center();
     return answer;

@@ -59,15 +59,14 @@ public:
     [[nodiscard]] DistanceAnswer from_motion() const noexcept TACTUS_NONBLOCKING;
 
 private:
-    [[nodiscard]] double motion_m() const noexcept { return core_.motion_since(known_core_); }
-
     PlacedCore core_;
     CoreCover cover_;
     double reach_m_{0.0};
     Vec3 approach_m_{0.0, 0.0, 0.0};
     bool is_asleep_{false};
     bool has_known_{false};
-    PlacedCore known_core_; ///< Where `known_` was taken.
+    PlacedCore known_core_; ///< Where `known_` was taken, and
+    double motion_m_{0.0};  ///< how far it has moved since.
     DistanceAnswer known_;
 };
 

@@ -58,8 +58,8 @@ struct Sizes
 
 constexpr Sizes kSized{200, 100, 2'000, 100'000, 100, 50'000, 4'000,
                        40,  150, 40,    10,      500, 400,    400};
-/// A million frames of brackets, of proxies, of rigid tools and cases of each kernel, ten million
-/// splits and merges, 24 hours of touching.
+/// A million frames of brackets, of proxies without and with smooth normals, of rigid tools and
+/// cases of each kernel, ten million splits and merges, 24 hours of touching.
 constexpr Sizes kFull{67'000, 4'000,  25'000, 2'500'000, 43'200, 3'600'000, 100'000,
                       1'000,  25'000, 3'600,  1'000,     10'000, 20'000,    70'000};
 
@@ -237,26 +237,35 @@ void try_pop_through(const Sizes& sizes, bool full, const Report& report)
     {
         report(all.crossings);
         report(all.run_over);
-        fmt::print(stderr, "{}: {} frames in contact, {} frozen, {} squeezed, {} run over\n",
-                   all.crossings.name, all.in_contact, all.frozen, all.squeezed,
+        fmt::print(stderr,
+                   "{}: {} frames in contact, {} felt smooth, {} frozen, {} squeezed, {} run "
+                   "over\n",
+                   all.crossings.name, all.in_contact, all.felt_smooth, all.frozen, all.squeezed,
                    all.run_over.trials);
     };
-    for (const test::TestModel* model : models)
+    for (const bool is_smooth : {false, true})
     {
-        const test::FaceTree tree(model->faces);
-        test::PopThroughFigures all;
-        all.crossings = {"pop-through, " + model->name, 0, 0.0, 0.0, "frames", 0, {}};
-        all.run_over = {"run over and not told, " + model->name, 0, 0.0, 0.0, "frames", 0, {}};
-        for (const test::Hardship& hardship : test::hardships(*model))
+        const std::string how = is_smooth ? ", smooth, " : ", ";
+        for (const test::TestModel* model : models)
         {
-            all.add(test::run_pop_through_trial(
-                {*model, tree, hardship, test::seed_of(++own), sizes.proxy_frames}));
+            const test::FaceTree tree(model->faces);
+            test::PopThroughFigures all;
+            all.crossings.name = "pop-through" + how + model->name;
+            all.crossings.unit = "frames";
+            all.crossings.bound = 0.0;
+            all.run_over = all.crossings;
+            all.run_over.name = "run over and not told" + how + model->name;
+            for (const test::Hardship& hardship : test::hardships(*model))
+            {
+                all.add(test::run_pop_through_trial(
+                    {*model, tree, hardship, test::seed_of(++own), sizes.proxy_frames, is_smooth}));
+            }
+            report_both(all);
         }
-        report_both(all);
+        const test::FaceTree tree(notched.faces);
+        report_both(test::run_closing_trial(
+            {notched, tree, test::seed_of(++own), sizes.closing_rounds, is_smooth}));
     }
-    const test::FaceTree tree(notched.faces);
-    report_both(
-        test::run_closing_trial({notched, tree, test::seed_of(++own), sizes.closing_rounds}));
 }
 
 void try_rigid_tools(const Sizes& sizes, bool /*full*/, const Report& report)
@@ -272,6 +281,10 @@ void try_rigid_tools(const Sizes& sizes, bool /*full*/, const Report& report)
                 stage == test::RigidStage::still ? sizes.rigid_frames : sizes.rigid_frames / 4;
             const test::RigidFigures figures = test::run_rigid_trial(trial);
             report(figures.crossings);
+            if (stage == test::RigidStage::closing)
+            {
+                report(figures.steps);
+            }
             fmt::print(stderr,
                        "{}: {} frames in contact, {} frozen, {} squeezed, {} run over and told\n",
                        figures.crossings.name, figures.contacts, figures.frozen, figures.squeezed,

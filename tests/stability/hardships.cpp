@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #include "tests/stability/hardships.hpp"
 
+#include "tests/stability/trial_terms.hpp"
+
 #include <cstdlib>
 
 namespace tactus::test
@@ -110,7 +112,7 @@ Hardship hardship_named(const TestModel& model, std::string_view name)
 
 RigOptions with_tool(RigOptions options, double radius_m)
 {
-    options.tools = {{radius_m, 500.0, 8.0, 1.0}};
+    options.tools = {{radius_m, kWall_n_per_m, kForceMax_n, 1.0}};
     return options;
 }
 

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "tests/stability/pop_through_trial.hpp"
 
+#include "rt_core/limits.hpp"
 #include "tests/shared/period.hpp"
 #include "tests/shared/safe_force.hpp"
 #include "tests/stability/proxy_trail.hpp"
@@ -21,12 +22,20 @@ namespace
 {
 
 constexpr double kForceRounding_n = 1e-9;
+constexpr double kStiffnessRounding = 1e-9;
 
 /// Of closing in: the tool's radius, and how long the objects stay where they are.
 constexpr double kSqueezedRadius_diag = 0.05;
 constexpr std::uint32_t kRestFrames = 100;
 /// Of one that comes alone: by more than a tool sees ahead in a frame.
 constexpr double kFastestJaw_m_per_s = 20.0;
+
+/// As often within each power of ten.
+double any_smooth_width_m(Random& random)
+{
+    return kSmoothWidthMin_m *
+           std::pow(kSmoothWidthMax_m / kSmoothWidthMin_m, random.between(0.0, 1.0));
+}
 
 /// What the frames say of one tool, held against the trail that it leaves past each object.
 class PopThroughJudge
@@ -53,6 +62,8 @@ public:
         figures_.in_contact += tool.in_contact ? 1 : 0;
         figures_.frozen += tool.frozen ? 1 : 0;
         figures_.squeezed += tool.squeezed ? 1 : 0;
+        figures_.felt_smooth +=
+            tool.stiffness_n_per_m > kWall_n_per_m * (1.0 + kStiffnessRounding) ? 1 : 0;
         for (std::size_t object = 0; object < trails_.size(); ++object)
         {
             const ProxyTrail::Crossings found =
@@ -102,11 +113,17 @@ private:
     std::string activity_;
 };
 
-RigOptions options_of(const PopThroughTrial& trial, double diagonal_m)
+RigOptions options_of(const PopThroughTrial& trial, double diagonal_m, Random& random)
 {
     RigOptions options = with_tool(trial.hardship.rig, trial.hardship.radius_diag * diagonal_m);
+    options.tools[0].smooth_m = trial.is_smooth ? any_smooth_width_m(random) : 0.0;
     options.faults.seed = trial.seed + 1;
     return options;
+}
+
+std::string name_of(const char* what, const TestModel& model, bool is_smooth)
+{
+    return std::string(what) + (is_smooth ? ", smooth, " : ", ") + model.name;
 }
 
 } // namespace
@@ -119,8 +136,9 @@ PopThroughFigures run_pop_through_trial(const PopThroughTrial& trial)
     RandomMotion motion(trial.model, trial.tree,
                         trial.hardship.radius_diag * trial.model.diagonal_m, scale, random);
     motion.tap_up_to(kFastestTap_m_per_s);
-    FrameRig rig(trial.model, options_of(trial, diagonal_m));
-    PopThroughJudge judge("pop-through, " + trial.model.name + ", " + trial.hardship.name,
+    FrameRig rig(trial.model, options_of(trial, diagonal_m, random));
+    PopThroughJudge judge(name_of("pop-through", trial.model, trial.is_smooth) + ", " +
+                              trial.hardship.name,
                           trial.seed);
     judge.begin(1, trial.model, trial.tree);
     for (std::uint32_t frame = 0; frame < trial.frames; ++frame)
@@ -272,7 +290,7 @@ PopThroughFigures run_closing_trial(const ClosingTrial& trial)
     Random random = Random::seeded(trial.seed);
     RigOptions options = hardship_named(trial.model, "usual").rig;
     options.objects = {ObjectSpec{ModelId{0}}, ObjectSpec{ModelId{0}}};
-    PopThroughJudge judge("closing in, " + trial.model.name, trial.seed);
+    PopThroughJudge judge(name_of("closing in", trial.model, trial.is_smooth), trial.seed);
     for (std::uint32_t i = 0; i < trial.rounds; ++i)
     {
         const double diagonal_m = random.between(kSmallest_m, kLargest_m);
@@ -280,7 +298,9 @@ PopThroughFigures run_closing_trial(const ClosingTrial& trial)
         const double open_m = 0.5 * diagonal_m + 2.0 * radius_m;
         const std::optional<double> stays_m = i % 2 == 1 ? std::optional(open_m) : std::nullopt;
         Jaws jaws(trial.tree, diagonal_m / trial.model.diagonal_m, stays_m, random);
-        ClosingRound round(trial, with_tool(options, radius_m), jaws, judge);
+        RigOptions with_ball = with_tool(options, radius_m);
+        with_ball.tools[0].smooth_m = trial.is_smooth ? any_smooth_width_m(random) : 0.0;
+        ClosingRound round(trial, with_ball, jaws, judge);
         const double fastest_m_per_s = stays_m ? kFastestJaw_m_per_s : 1.0;
         close_and_open(round, open_m, random.between(0.05, fastest_m_per_s));
     }

@@ -20,6 +20,7 @@ struct PopThroughTrial
     Hardship hardship;
     std::uint64_t seed{0};
     std::uint32_t frames{0};
+    bool is_smooth{false}; ///< The tool has smooth normals, of any width that it may have.
 };
 
 inline constexpr double kFastestTap_m_per_s = 2.0;
@@ -35,7 +36,8 @@ struct PopThroughFigures
     std::uint64_t in_contact{0};
     std::uint64_t frozen{0};
     std::uint64_t squeezed{0};
-    std::uint64_t faded{0}; ///< Frames after kFadeTime_s of a squeeze.
+    std::uint64_t faded{0};       ///< Frames after kFadeTime_s of a squeeze.
+    std::uint64_t felt_smooth{0}; ///< Frames in which smooth normals made the wall stiffer.
 
     /// The same claims, tried elsewhere.
     void add(const PopThroughFigures& other)
@@ -46,6 +48,7 @@ struct PopThroughFigures
         frozen += other.frozen;
         squeezed += other.squeezed;
         faded += other.faded;
+        felt_smooth += other.felt_smooth;
     }
 };
 
@@ -59,6 +62,7 @@ struct ClosingTrial
     const FaceTree& tree; ///< Of the model.
     std::uint64_t seed{0};
     std::uint32_t rounds{0};
+    bool is_smooth{false}; ///< As above.
 };
 
 /// As above. Besides, no force is left after kFadeTime_s of a squeeze, and no squeeze when the

@@ -3,9 +3,11 @@
 #include "tests/stability/rigid_trial.hpp"
 
 #include "host_tools/shapes/shapes.hpp"
+#include "rt_core/limits.hpp"
 #include "tests/shared/frame_rig.hpp"
 #include "tests/shared/period.hpp"
 #include "tests/shared/random.hpp"
+#include "tests/stability/trial_terms.hpp"
 
 #include <Eigen/Geometry>
 
@@ -20,7 +22,8 @@ namespace tactus::test
 namespace
 {
 
-constexpr double kTrialStiffness = 500.0;
+constexpr double kTorqueMax_nm = 0.5;
+constexpr double kStepRounding = 1e-9;
 /// Of a frame's way, that are looked at.
 constexpr int kPlacesOnWay = 2;
 
@@ -155,9 +158,9 @@ RigOptions options_of(const RigidTrial& trial)
     ToolSpec spec;
     spec.radius_m = trial.tool.radius_m;
     spec.core = trial.tool.core;
-    spec.stiffness_n_per_m = kTrialStiffness;
-    spec.force_max_n = 1e6;
-    spec.torque_max_nm = 1e6;
+    spec.stiffness_n_per_m = kWall_n_per_m;
+    spec.force_max_n = kForceMax_n;
+    spec.torque_max_nm = kTorqueMax_nm;
     options.tools = {spec};
     options.faults.loss = 0.05;
     options.faults.delay_polls_max = 10;
@@ -174,6 +177,9 @@ public:
         , stage_(trial, Random::seeded(trial.seed + 1))
     {
         figures_.crossings = {"never through, " + name_of(trial), 0, 0.0, 0.0, "faces", 0, {}};
+        figures_.steps.name = "steps without room, " + name_of(trial);
+        figures_.steps.bound = 1.0 + kStepRounding;
+        figures_.steps.unit = "of what the hand's way makes";
     }
 
     RigidFigures run()
@@ -190,6 +196,7 @@ public:
         last_places_.resize(stage_.objects());
         FrameRig rig(models, options);
         center_ = rig.frame().tool(0).ball().center; // At its start the tool is in its own frame.
+        arm_m_ = rig.frame().tool(0).ball().radius + rig.frame().tool(0).radius_m();
         for (std::uint32_t i = 0; i < trial_.frames; ++i)
         {
             ToolState state = hand_.next();
@@ -201,6 +208,7 @@ public:
             }
             const FrameOutput output = rig.step(std::span(&state, 1), {});
             judge(i, output.tools[0], rig);
+            judge_step(i, state, output.tools[0]);
         }
         return figures_;
     }
@@ -254,6 +262,33 @@ private:
         }
     }
 
+    /// The springs are a stiffness, and it times the square of the arm.
+    void judge_step(std::uint32_t frame, const ToolState& hand, const ToolOutput& output)
+    {
+        const bool has_no_room = output.squeezed || last_output_.squeezed;
+        if (frame > 0 && has_no_room && output.in_contact && !output.frozen)
+        {
+            const Eigen::AngleAxisd turn(hand.rotation * last_hand_.rotation.transpose());
+            const double way_m =
+                (hand.position_m - last_hand_.position_m).norm() + arm_m_ * std::abs(turn.angle());
+            const double by_hand_n = kWall_n_per_m * way_m;
+            const double most_n = by_hand_n + kCatchUp_n_per_s * kPeriod_s;
+            const double most_nm =
+                arm_m_ * by_hand_n + kCatchUpShare_per_s * kTorqueMax_nm * kPeriod_s;
+            const double step =
+                std::max((output.force_n - last_output_.force_n).norm() / most_n,
+                         (output.torque_nm - last_output_.torque_nm).norm() / most_nm);
+            ++figures_.steps.trials;
+            figures_.steps.observe(step);
+            if (step > figures_.steps.bound)
+            {
+                figures_.steps.flag(where(frame) + std::to_string(step) + " x");
+            }
+        }
+        last_hand_ = hand;
+        last_output_ = output;
+    }
+
     [[nodiscard]] std::string where(std::uint32_t frame) const
     {
         return name_of(trial_) + ", TACTUS_SEED=" + std::to_string(trial_.seed) + ", frame " +
@@ -266,7 +301,10 @@ private:
     RigidFigures figures_;
     bool is_run_over_{false}; ///< And has not been clear since.
     Vec3 center_{0, 0, 0};
+    double arm_m_{0.0};
     std::vector<Similarity> last_places_; ///< Before each object.
+    ToolState last_hand_;
+    ToolOutput last_output_;
 };
 
 } // namespace
@@ -274,6 +312,7 @@ private:
 void RigidFigures::add(const RigidFigures& other)
 {
     crossings.add(other.crossings);
+    steps.add(other.steps);
     run_over += other.run_over;
     squeezed += other.squeezed;
     contacts += other.contacts;

@@ -37,6 +37,9 @@ struct RigidFigures
 {
     /// Faces of the core that met the object's on the way of a frame, by exact arithmetic.
     TrialFigures crossings;
+    /// Changes of force and torque in frames that say `squeezed`, and in the next ones, over what
+    /// springs make of the hand's way and a proxy that waited may add.
+    TrialFigures steps;
     /// Frames with such faces that are no violation: objects had left the tool no room and run over
     /// it, and the frame in which they did had said so (squeezed).
     std::uint64_t run_over{0};

@@ -2,8 +2,8 @@
 // Copyright the Tactus authors.
 
 /// The way of the proxy relative to an object crosses no face of the full mesh: fast taps, thin
-/// plates, sharp and concave edges, objects that move, data that is late or lost. Where objects
-/// leave no room the frame says so. And that what holds it can fail.
+/// plates, sharp and concave edges, objects that move, data that is late or lost; with smooth
+/// normals as well. Where objects leave no room the frame says so. And that what holds it can fail.
 
 #include "tests/shared/frame_rig.hpp"
 #include "tests/shared/random.hpp"
@@ -36,17 +36,23 @@ void expect_no_crossing(const TestModel& model, std::uint64_t own_seed)
 {
     const FaceTree tree(model.faces);
     std::uint64_t own = 20'261'700 + own_seed;
-    std::uint64_t in_contact = 0;
-    for (const Hardship& hardship : hardships(model))
+    for (const bool is_smooth : {false, true})
     {
-        own += 100;
-        const PopThroughFigures sut =
-            run_pop_through_trial({model, tree, hardship, seed_of(own), kPopFrames});
-        EXPECT_TRUE(sut.crossings.holds()) << sut.crossings.summary();
-        EXPECT_TRUE(sut.run_over.holds()) << sut.run_over.summary();
-        in_contact += sut.in_contact;
+        std::uint64_t in_contact = 0;
+        std::uint64_t felt_smooth = 0;
+        for (const Hardship& hardship : hardships(model))
+        {
+            own += 100;
+            const PopThroughFigures sut =
+                run_pop_through_trial({model, tree, hardship, seed_of(own), kPopFrames, is_smooth});
+            EXPECT_TRUE(sut.crossings.holds()) << sut.crossings.summary();
+            EXPECT_TRUE(sut.run_over.holds()) << sut.run_over.summary();
+            in_contact += sut.in_contact;
+            felt_smooth += sut.felt_smooth;
+        }
+        EXPECT_GT(in_contact, 20U);
+        EXPECT_EQ(felt_smooth > 0, is_smooth);
     }
-    EXPECT_GT(in_contact, 20U);
 }
 
 class PopThrough : public testing::TestWithParam<std::size_t>
@@ -73,12 +79,17 @@ TEST(PopThroughClosing, objects_that_leave_no_room_are_told_and_the_force_fades)
     const TestModel& model = notched_cube();
     const FaceTree tree(model.faces);
 
-    const PopThroughFigures sut = run_closing_trial({model, tree, seed_of(20'261'790), 40});
+    for (const bool is_smooth : {false, true})
+    {
+        const PopThroughFigures sut =
+            run_closing_trial({model, tree, seed_of(20'261'790), 40, is_smooth});
 
-    std::printf("%s\n", sut.crossings.summary().c_str());
-    EXPECT_TRUE(sut.crossings.holds()) << sut.crossings.summary();
-    EXPECT_GT(sut.squeezed, 200U);
-    EXPECT_GT(sut.faded, 100U);
+        std::printf("%s\n", sut.crossings.summary().c_str());
+        EXPECT_TRUE(sut.crossings.holds()) << sut.crossings.summary();
+        EXPECT_GT(sut.squeezed, 200U);
+        EXPECT_GT(sut.faded, 100U);
+        EXPECT_EQ(sut.felt_smooth > 0, is_smooth);
+    }
 }
 
 /// A controller that starts while a hand leans into a model, as deep as three radii, and moves on.
@@ -88,6 +99,7 @@ struct LeaningStart
     const TestModel& model;
     std::uint32_t planes; ///< Of a frame's budget.
     std::uint64_t seed;
+    bool is_smooth;
     std::uint32_t cut_short{0}; ///< Frames.
     std::uint32_t in_contact{0};
 
@@ -97,6 +109,7 @@ struct LeaningStart
         const double radius_m = random.between(0.005, 0.06) * model.diagonal_m;
         RigOptions options;
         options.tools = {{radius_m, 500.0, 8.0, 60.0 * model.diagonal_m}};
+        options.tools[0].smooth_m = is_smooth ? random.between(0.5, 5.0) * radius_m : 0.0;
         options.objects = {{ModelId{0}, {500.0, 0.4, 0.3}}};
         options.static_when_it_fits = random.one_in(2);
         FrameRig rig(model, options);
@@ -143,12 +156,13 @@ TEST(PopThroughLeaning, never_happens_at_a_start_within_a_surface_whatever_may_b
         const FaceTree tree(model->faces);
         for (const std::uint32_t planes : {2U, 40U, Budgets{}.planes})
         {
-            for (int start = 0; start < 3; ++start)
+            for (int start = 0; start < 6; ++start)
             {
-                LeaningStart sut{*model, planes, seed_of(++own)};
+                LeaningStart sut{*model, planes, seed_of(++own), start % 2 == 1};
                 sut.run(tree);
                 ASSERT_FALSE(testing::Test::HasFatalFailure())
-                    << model->name << ", TACTUS_SEED=" << sut.seed << ", planes " << planes;
+                    << model->name << ", TACTUS_SEED=" << sut.seed << ", planes " << planes
+                    << (sut.is_smooth ? ", smooth" : "");
                 cut_short += sut.cut_short;
                 in_contact += sut.in_contact;
             }

@@ -21,6 +21,7 @@ RigidFigures try_all(RigidStage stage, std::uint32_t frames, std::uint64_t first
         trial.frames = frames;
         const RigidFigures figures = run_rigid_trial(trial);
         EXPECT_TRUE(figures.crossings.holds()) << figures.crossings.summary();
+        EXPECT_TRUE(figures.steps.holds()) << figures.steps.summary();
         all.add(figures);
     }
     return all;
@@ -54,6 +55,7 @@ TEST(RigidTrial, between_objects_that_close_in_are_run_over_only_where_they_say_
     EXPECT_GT(all.contacts, 2'000U);
     EXPECT_GT(all.run_over, 100U); // Or nothing would be tried.
     EXPECT_GT(all.squeezed, 100U);
+    EXPECT_GT(all.steps.trials, 50U);
 }
 
 } // namespace

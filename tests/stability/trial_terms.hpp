@@ -13,7 +13,9 @@ namespace tactus::test
 {
 
 inline constexpr double kRadius_diag = 0.01; ///< Of a spherical tool.
-inline constexpr double kForceMax_n = 8.0;   ///< As with_tool() has it.
+/// As with_tool() has them.
+inline constexpr double kForceMax_n = 8.0;
+inline constexpr double kWall_n_per_m = 500.0;
 /// Diagonals of objects.
 inline constexpr double kSmallest_m = 0.1;
 inline constexpr double kLargest_m = 0.2;

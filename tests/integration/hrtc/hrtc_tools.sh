@@ -48,6 +48,14 @@ for tool in capsule:0.005,0.05 box:0.04,0.03,0.02,0.001 hull:wedge.off,0.001; do
     touch_file 1 "$tool"
 done
 
+# Smooth normals are a ball's; the report says whose.
+run_hrtc --virtual-time --model ball.spm --tool sphere:0.02 --tool box:0.04,0.03,0.02,0.001 \
+    --smooth 0.005 --duration 3
+check_clean report.json
+check report.json tools.0.smooth_m == 0.005 tools.0.force_max_n '>' 0 tools.1.smooth_m == 0
+touch_file 0 sphere:0.02
+check report.json tools.0.smooth_m == 0
+
 # A device without torque gets the force alone.
 touch_file 0 capsule:0.005,0.05 --device sim:omega
 
