@@ -72,10 +72,22 @@ void NearFaces::search(double bound_m, const PairWalk::Start& start,
         return;
     }
     PairWalk walk(own_, other_.tree(), views_, other_.budget(), start);
-    for (const PairWalk::Item* near = walk.next_blocks({bound_}); near != nullptr;
-         near = walk.next_blocks({bound_}))
+    PairWalk::Sought sought{bound_};
+    while (!is_full())
     {
-        if (!try_test(*near, loose != nullptr ? placed_.loose() : placed_.get(near->tool.index())))
+        const PairWalk::Item* near = walk.next_blocks(sought);
+        if (near == nullptr)
+        {
+            break;
+        }
+        const PlacedBlock& own =
+            loose != nullptr ? placed_.loose() : placed_.get(near->tool.index());
+        const std::uint32_t lanes = open_lanes(own);
+        if (lanes == 0)
+        {
+            sought.settled = near->tool;
+        }
+        else if (!try_test(*near, own, lanes))
         {
             leave(near->gap);
             break;
@@ -88,8 +100,9 @@ void NearFaces::search(double bound_m, const PairWalk::Start& start,
     }
 }
 
-/// False when the budget is spent before all was looked at.
-bool NearFaces::try_test(const PairWalk::Item& item, const PlacedBlock& own) noexcept
+/// False when the budget is spent before all of these lanes was looked at.
+bool NearFaces::try_test(const PairWalk::Item& item, const PlacedBlock& own,
+                         std::uint32_t lanes) noexcept
 {
     WalkBudget& budget = other_.budget();
     const Kernels& kernels = own_.kernels();
@@ -97,7 +110,6 @@ bool NearFaces::try_test(const PairWalk::Item& item, const PlacedBlock& own) noe
     const Aabb& box = item.object_box;
     const std::array<float, 6> ends{box.low[0],  box.low[1],  box.low[2],
                                     box.high[0], box.high[1], box.high[2]};
-    std::uint32_t lanes = open_lanes(own.index, own.coarse);
     if (!budget.take_triangles(static_cast<std::uint32_t>(std::popcount(lanes))))
     {
         return false;
@@ -133,22 +145,33 @@ bool NearFaces::try_test(const PairWalk::Item& item, const PlacedBlock& own) noe
             if (queue_.is_full())
             {
                 measure();
+                if (may_meet(own.index, pair.tool_lane))
+                {
+                    break;
+                }
             }
         }
     }
     return true;
 }
 
-/// Without those that may meet the other surface: no nearer face of it is looked for.
-std::uint32_t NearFaces::open_lanes(std::uint32_t block, std::uint32_t lanes) noexcept
+/// Coarse faces but for those that may meet the other surface: no nearer face of it is looked for.
+std::uint32_t NearFaces::open_lanes(const PlacedBlock& own) noexcept
 {
-    const Block* known = find_block(block);
+    std::uint32_t lanes = own.coarse;
+    const Block* known = find_block(own.index);
     for (std::uint32_t left = known != nullptr ? known->lanes : 0; left != 0; left &= left - 1)
     {
         const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
         lanes &= known->gaps[lane] <= 0.0F ? ~(1U << lane) : ~0U;
     }
     return lanes;
+}
+
+bool NearFaces::may_meet(std::uint32_t block, std::uint32_t lane) noexcept
+{
+    const Block* known = find_block(block);
+    return known != nullptr && (known->lanes >> lane & 1U) != 0 && known->gaps[lane] <= 0.0F;
 }
 
 void NearFaces::measure() noexcept
