@@ -58,7 +58,6 @@ void NearFaces::search(double bound_m, const PairWalk::Start& start,
                        const LooseFaces* loose) noexcept
 {
     TACTUS_ASSERT(bound_m >= 0.0);
-    loose_ = loose;
     const double bound = bound_m * quanta_per_m_ * kRoundedUp;
     bound_ = bound < kFarQuanta ? round_up_to_float(bound) : kNothingLeft;
     if (!other_.tree().is_complete())
@@ -107,6 +106,7 @@ bool NearFaces::try_test(const PairWalk::Item& item, const PlacedBlock& own,
     WalkBudget& budget = other_.budget();
     const Kernels& kernels = own_.kernels();
     const BlockGeometry& block = other_.tree().block(item.object.index());
+    const BlockSide& side = other_.tree().side(item.object.index());
     const Aabb& box = item.object_box;
     const std::array<float, 6> ends{box.low[0],  box.low[1],  box.low[2],
                                     box.high[0], box.high[1], box.high[2]};
@@ -120,8 +120,7 @@ bool NearFaces::try_test(const PairWalk::Item& item, const PlacedBlock& own,
         return true;
     }
     // Errors of the other's faces are in the box, and not in the block.
-    const float bound =
-        (bound_ + largest_error_quanta(other_.tree().side(item.object.index()))) * kSumRoundedUp;
+    const float bound = (bound_ + largest_error_quanta(side)) * kSumRoundedUp;
     VertexRows rows; // NOLINT(cppcoreguidelines-pro-type-member-init): the kernel fills it.
     const std::uint8_t* corners = block.corners.front().data();
     const std::uint32_t others =
@@ -141,6 +140,9 @@ bool NearFaces::try_test(const PairWalk::Item& item, const PlacedBlock& own,
                 return false;
             }
             pair.lane = static_cast<std::uint32_t>(std::countr_zero(left));
+            errors_[queue_.size()] =
+                (own.rows.error[pair.tool_lane] + error_in_quanta(side.errors[pair.lane])) *
+                kSumRoundedUp;
             queue_.add(pair, own, block, rows, views_.slack());
             if (queue_.is_full())
             {
@@ -179,30 +181,19 @@ void NearFaces::measure() noexcept
     own_.kernels().pair_distances(queue_.rows(), queue_.size(), distances_);
     for (std::uint32_t lane = 0; lane < queue_.size(); ++lane)
     {
-        take(queue_[lane], static_cast<double>(distances_.lower[lane]) - errors_of(queue_[lane]));
+        const double gap =
+            static_cast<double>(distances_.lower[lane]) - static_cast<double>(errors_[lane]);
+        if (gap <= static_cast<double>(bound_))
+        {
+            take(queue_[lane], round_down_to_float(gap));
+        }
     }
     queue_.clear();
 }
 
-/// In quanta of the other.
-double NearFaces::errors_of(const FacePair& pair) const noexcept
+/// Faces of a pair may be as near as `lower`.
+void NearFaces::take(const FacePair& pair, float lower) noexcept
 {
-    const double own_m = loose_ != nullptr
-                             ? loose_->errors_m[pair.tool_lane]
-                             : static_cast<double>(error_in_quanta(
-                                   own_.side(pair.tool_block).errors[pair.tool_lane])) *
-                                   static_cast<double>(own_.quantum_m());
-    return own_m * quanta_per_m_ * kRoundedUp +
-           static_cast<double>(error_in_quanta(other_.tree().side(pair.block).errors[pair.lane]));
-}
-
-void NearFaces::take(const FacePair& pair, double gap) noexcept
-{
-    const float lower = round_down_to_float(gap);
-    if (lower > bound_)
-    {
-        return;
-    }
     Block* block = find_block(pair.tool_block);
     if (block == nullptr && blocks_.full())
     {
