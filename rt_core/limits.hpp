@@ -141,10 +141,14 @@ inline constexpr std::uint32_t kTreeStack = kTreeLevels * 7 + 8;
 /// are cut short, with what is proven until there: FrameFault::node_budget_spent. Bounds the frame
 /// whatever the scene.
 inline constexpr std::uint32_t kFrameWalks = 8;
-/// A tool that is a mesh has thousands of faces near an object where another is one shape: it may
-/// look at this many times what Budgets says for a pair, in each of its walks. Then
-/// FrameFault::node_budget_spent.
+/// A tool that is a mesh has thousands of faces near an object where another is one shape: a query
+/// may look at this many times what Budgets says for a pair. Then FrameFault::node_budget_spent.
 inline constexpr std::uint32_t kMeshBudgetFactor = 16;
+/// To refine the two it may look at so many times that, for either model, now and a little ahead.
+/// What was not come to is looked at in the next frame, when what was is split; until then it is
+/// coarse for the query: FrameFault::node_budget_spent, too.
+inline constexpr std::uint32_t kMeshRefineFactor = 4;
+static_assert(kMeshRefineFactor < kMeshBudgetFactor, "what is coarse still can be asked about");
 /// Balls that the predictor ranks, 56 B each: five for each ball of the pairs that are near. Enough
 /// for a sphere in each pair, or four bodies of eight balls. Of later pairs those are left out that
 /// look ahead, which only makes their chunks late, and then those where the tool is:

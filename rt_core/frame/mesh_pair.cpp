@@ -26,9 +26,9 @@ constexpr std::uint32_t kCoverFrames = 8;
 /// How far ahead in time faces are asked for, in units of Outlook::approach_m().
 constexpr double kPrefetchAhead = 4.0;
 
-WalkBudget budget_of(const Budgets& budgets) noexcept
+WalkBudget budget_of(const Budgets& budgets, std::uint32_t factor) noexcept
 {
-    return {kMeshBudgetFactor * budgets.nodes, kMeshBudgetFactor * budgets.triangles};
+    return {factor * budgets.nodes, factor * budgets.triangles};
 }
 
 /// As many balls as a cover may have; when there are too many, one grows.
@@ -92,12 +92,11 @@ void MeshPair::place(const Outlook& outlook, const MeshCore& core, const Model& 
         Similarity placed = tool;
         placed.translation_m += static_cast<double>(i) * outlook.approach_m();
         placements_[i] = {placed, core.origin_m};
-        objects_[i] = OtherSurface(object_model_->tree, placements_[i], budget_of(budgets));
-        tools_[i] = OtherSurface(tool_model_->tree, placements_[i].inverse(), budget_of(budgets));
         const PlacedCore now(core, placed);
         moved_m_[i] = now.motion_since(cores_[i]);
         cores_[i] = now;
     }
+    see_surfaces(budgets);
 }
 
 /// The cores stay: what moved since the last frame is told from them. Only the first place is
@@ -106,11 +105,21 @@ void MeshPair::move(const Similarity& tool, const Budgets& budgets) noexcept
 {
     placements_[0].place = tool;
     has_moved_on_ = true;
+    see_surfaces(budgets);
+}
+
+/// Anew, each with its allowance.
+void MeshPair::see_surfaces(const Budgets& budgets) noexcept
+{
+    const WalkBudget to_refine = budget_of(budgets, kMeshRefineFactor);
     for (std::size_t i = 0; i < kPlaces; ++i)
     {
-        objects_[i] = OtherSurface(object_model_->tree, placements_[i], budget_of(budgets));
-        tools_[i] = OtherSurface(tool_model_->tree, placements_[i].inverse(), budget_of(budgets));
+        objects_[i] = OtherSurface(object_model_->tree, placements_[i], to_refine);
+        tools_[i] = OtherSurface(tool_model_->tree, placements_[i].inverse(), to_refine);
     }
+    covered_ = OtherSurface(object_model_->tree, placements_[0], budget_of(budgets, 1));
+    queried_ =
+        OtherSurface(object_model_->tree, placements_[0], budget_of(budgets, kMeshBudgetFactor));
 }
 
 void MeshPair::rank(const Outlook& outlook, ModelId tool_model, ModelId object_model,
@@ -122,7 +131,7 @@ void MeshPair::rank(const Outlook& outlook, ModelId tool_model, ModelId object_m
     const double near_m = reach_m + kPrefetchAhead * outlook.approach_m().norm();
     if (frames_until_cover_ == 0)
     {
-        cover_ = cover_near(tool_model_->tree, objects_[0], near_m / scale);
+        cover_ = cover_near(tool_model_->tree, covered_, near_m / scale);
         frames_until_cover_ = kCoverFrames;
     }
     --frames_until_cover_;
@@ -202,7 +211,7 @@ void MeshPair::query(const Outlook& outlook, double certified_m, double contact_
     const MeshQuestion question{tool_model_->tree, object_model_->tree, placements_[0],
                                 outlook.reach_m(), contact_m,           ends,
                                 certified_m,       wants_pairs};
-    query_meshes(question, objects_[0], memory_, answer, report_, contacts);
+    query_meshes(question, queried_, memory_, answer, report_, contacts);
     if (answer.nearest_face.is_none())
     {
         answer.tool_point_m = outlook.core().center();
@@ -218,17 +227,17 @@ void MeshPair::rest(ContactReport& contacts) noexcept
     contacts.is_complete = true;
 }
 
+/// A cover that is cut short is of larger balls.
 void MeshPair::add_work(WorkCounters& work, FrameFault& faults) noexcept
 {
-    for (std::size_t i = 0; i < kPlaces; ++i)
+    for (OtherSurface* surface :
+         {&queried_, &objects_[0], &objects_[1], &tools_[0], &tools_[1], &covered_})
     {
-        for (OtherSurface* surface : {&objects_[i], &tools_[i]})
-        {
-            const WalkBudget& budget = surface->budget();
-            work.nodes_visited += budget.nodes_visited;
-            work.triangles_tested += budget.triangles_tested;
-            faults |= budget.is_spent ? FrameFault::node_budget_spent : FrameFault::none;
-        }
+        const WalkBudget& budget = surface->budget();
+        work.nodes_visited += budget.nodes_visited;
+        work.triangles_tested += budget.triangles_tested;
+        const bool lacks_some = budget.is_spent && surface != &covered_;
+        faults |= lacks_some ? FrameFault::node_budget_spent : FrameFault::none;
     }
 }
 

@@ -70,6 +70,7 @@ public:
     [[nodiscard]] const MeshReport& report() const noexcept { return report_; }
 
 private:
+    void see_surfaces(const Budgets& budgets) noexcept;
     [[nodiscard]] static double refine_reach_m(const Outlook& outlook) noexcept;
     [[nodiscard]] double ahead_m(std::size_t place, const Outlook& outlook) const noexcept;
     [[nodiscard]] static RefineQuestion question(const Ball& ball, double reach_m, double moved_m,
@@ -82,8 +83,10 @@ private:
     std::array<MeshPlacement, kPlaces> placements_{}; ///< Of the tool's model in the object's.
     std::array<PlacedCore, kPlaces> cores_{};
     std::array<double, kPlaces> moved_m_{};       ///< Since the last frame, in the object's frame.
-    std::array<OtherSurface, kPlaces> objects_{}; ///< As the tool's model sees it.
-    std::array<OtherSurface, kPlaces> tools_{};   ///< As the object's model sees it.
+    std::array<OtherSurface, kPlaces> objects_{}; ///< As the tool's model sees it, to refine.
+    std::array<OtherSurface, kPlaces> tools_{};   ///< As the object's model sees it, to refine.
+    OtherSurface covered_;                        ///< The object for the cover,
+    OtherSurface queried_;                        ///< and for the query.
     std::array<RefineMemory, kPlaces> tool_memories_{};
     Ball own_ball_;   ///< Round the tool's model, in its frame.
     CoreCover cover_; ///< Of the tool's model near the object, as it was found last.

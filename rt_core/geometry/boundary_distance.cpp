@@ -69,22 +69,6 @@ public:
     }
 
 private:
-    static double local_length(std::span<const Vec3> corners, const Triangle& triangle) noexcept
-    {
-        double longest_sq = 0.0;
-        for (std::size_t j = 0; j < 3; ++j)
-        {
-            longest_sq = std::max(longest_sq, (triangle[(j + 1) % 3] - triangle[j]).squaredNorm());
-            for (std::size_t i = 0; i < corners.size(); ++i)
-            {
-                const Vec3& next = corners[(i + 1) % corners.size()];
-                longest_sq = std::max({longest_sq, (corners[i] - triangle[j]).squaredNorm(),
-                                       (next - corners[i]).squaredNorm()});
-            }
-        }
-        return std::sqrt(longest_sq);
-    }
-
     [[nodiscard]] Segment edge_of_first(std::size_t i) const noexcept
     {
         return {corners_[i], corners_[(i + 1) % corners_.size()]};
@@ -222,6 +206,25 @@ private:
 };
 
 } // namespace
+
+double local_length(std::span<const Vec3> corners, const Triangle& triangle) noexcept
+{
+    double longest_sq = 0.0;
+    for (std::size_t i = 0; i < corners.size(); ++i)
+    {
+        const Vec3& next = corners[(i + 1) % corners.size()];
+        longest_sq = std::max(longest_sq, (next - corners[i]).squaredNorm());
+        for (const Vec3& corner : triangle)
+        {
+            longest_sq = std::max(longest_sq, (corners[i] - corner).squaredNorm());
+        }
+    }
+    for (std::size_t j = 0; j < 3; ++j)
+    {
+        longest_sq = std::max(longest_sq, (triangle[(j + 1) % 3] - triangle[j]).squaredNorm());
+    }
+    return std::sqrt(longest_sq);
+}
 
 ClosestPoints nearest_boundary_points(std::span<const Vec3> corners,
                                       const Triangle& triangle) noexcept

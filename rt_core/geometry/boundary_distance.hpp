@@ -20,4 +20,8 @@ namespace tactus
 nearest_boundary_points(std::span<const Vec3> corners,
                         const Triangle& triangle) noexcept TACTUS_NONBLOCKING;
 
+/// The longest of the edges of both and the ways between their corners: the unit of the law above.
+[[nodiscard]] double local_length(std::span<const Vec3> corners,
+                                  const Triangle& triangle) noexcept TACTUS_NONBLOCKING;
+
 } // namespace tactus

@@ -73,39 +73,26 @@ namespace tactus
     return !is_full;
 }
 
-/// A direction of ContactEnds, not of unit length.
-struct EndDirection
-{
-    std::array<double, 3> along{};
-    double length{0.0};
+/// Of the first half of ContactEnds' directions, along which a coordinate is -1, 0 or 1, that of x
+/// changing first: all before (0, 0, 0), which is none.
+using EndHeights = std::array<double, kContactDirections / 2>;
+inline constexpr double kEdgeEnd = std::numbers::sqrt2;
+inline constexpr double kCornerEnd = std::numbers::sqrt3;
+inline constexpr EndHeights kEndLengths{kCornerEnd, kEdgeEnd,   kCornerEnd, kEdgeEnd,   1.0,
+                                        kEdgeEnd,   kCornerEnd, kEdgeEnd,   kCornerEnd, kEdgeEnd,
+                                        1.0,        kEdgeEnd,   1.0};
 
-    [[nodiscard]] double height_m(const Vec3& point_m) const noexcept
-    {
-        return along[0] * point_m[0] + (along[1] * point_m[1] + along[2] * point_m[2]);
-    }
-};
-
-/// The first half: (0, 0, 0), which is none, would be in the middle of all.
-inline constexpr auto kEndDirections = []
+/// How far a point is along each of them, times its length.
+[[nodiscard]] inline EndHeights end_heights(const Vec3& point_m) noexcept
 {
-    // Of so many coordinates that are not 0.
-    constexpr std::array kLengths{0.0, 1.0, std::numbers::sqrt2, std::numbers::sqrt3};
-    std::array<EndDirection, kContactDirections / 2> directions{};
-    int code = 0;
-    for (EndDirection& direction : directions)
-    {
-        std::size_t axes = 0;
-        int rest = code++;
-        for (double& coordinate : direction.along)
-        {
-            coordinate = rest % 3 - 1;
-            axes += rest % 3 != 1 ? 1U : 0U;
-            rest /= 3;
-        }
-        direction.length = kLengths[axes];
-    }
-    return directions;
-}();
+    const double x = point_m[0];
+    const double y = point_m[1];
+    const double z = point_m[2];
+    const double first = -y - z;
+    const double third = y - z;
+    return {first - x, first,     first + x, -z - x, -z,     -z + x, third - x,
+            third,     third + x, -y - x,    -y,     -y + x, -x};
+}
 [[nodiscard]] constexpr std::size_t opposite_end(std::size_t direction) noexcept
 {
     return kContactDirections - 1 - direction;
@@ -126,10 +113,10 @@ inline void keep_ends(const Contact& contact, ContactEnds& ends) noexcept
             kept = contact;
         }
     };
-    for (std::size_t i = 0; i < kEndDirections.size(); ++i)
+    const EndHeights heights_m = end_heights(contact.on_surface_m);
+    for (std::size_t i = 0; i < heights_m.size(); ++i)
     {
-        const EndDirection& direction = kEndDirections[i];
-        const double height_m = direction.height_m(contact.on_surface_m) / direction.length;
+        const double height_m = heights_m[i] / kEndLengths[i];
         keep(i, height_m - less_m);
         keep(opposite_end(i), -height_m - less_m);
     }
@@ -152,20 +139,18 @@ inline void keep_ends(const Contact& contact, ContactEnds& ends) noexcept
         size_m = std::max({size_m, std::abs(corner[0]), std::abs(corner[1]), std::abs(corner[2])});
     }
     const double less_m = kEndPerDistance * distance_m - kRounding * size_m;
-    for (std::size_t i = 0; i < kEndDirections.size(); ++i)
+    const EndHeights a = end_heights(triangle[0]);
+    const EndHeights b = end_heights(triangle[1]);
+    const EndHeights c = end_heights(triangle[2]);
+    bool may_be = false;
+    for (std::size_t i = 0; i < kEndLengths.size(); ++i) // All at once: without a way out.
     {
-        const EndDirection& direction = kEndDirections[i];
-        const double a = direction.height_m(triangle[0]);
-        const double b = direction.height_m(triangle[1]);
-        const double c = direction.height_m(triangle[2]);
-        const double least_m = direction.length * (ends.reaches_m[i] + less_m);
-        const double least_back_m = direction.length * (ends.reaches_m[opposite_end(i)] + less_m);
-        if (std::max({a, b, c}) >= least_m || -std::min({a, b, c}) >= least_back_m)
-        {
-            return true;
-        }
+        const double least_m = kEndLengths[i] * (ends.reaches_m[i] + less_m);
+        const double least_back_m = kEndLengths[i] * (ends.reaches_m[opposite_end(i)] + less_m);
+        may_be |= std::max(std::max(a[i], b[i]), c[i]) >= least_m;
+        may_be |= -std::min(std::min(a[i], b[i]), c[i]) >= least_back_m;
     }
-    return false;
+    return may_be;
 }
 
 /// Adds a face to the slab that it differs least from, or makes one. Without a normal nothing is

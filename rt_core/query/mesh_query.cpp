@@ -4,6 +4,7 @@
 
 #include "rt_core/base/assert.hpp"
 #include "rt_core/geometry/crossing.hpp"
+#include "rt_core/geometry/shared_features.hpp"
 #include "rt_core/geometry/triangle_triangle.hpp"
 #include "rt_core/math/infinity.hpp"
 #include "rt_core/math/rounding.hpp"
@@ -35,34 +36,8 @@ constexpr double kSpanError = 4e-15;
 struct MeshFace
 {
     Triangle triangle;
-    PrimId prim{};
-    FaceId id{};
     double error_m{0.0};
-    Vec3 low{0.0, 0.0, 0.0}; ///< Of its box.
-    Vec3 high{0.0, 0.0, 0.0};
-
-    MeshFace(const Triangle& corners, const AbTree& tree, PrimId face, double error) noexcept
-        : triangle(corners)
-        , prim(face)
-        , id(tree.face_of(face))
-        , error_m(error)
-        , low(least_of(least_of(corners[0], corners[1]), corners[2]))
-        , high(greatest_of(greatest_of(corners[0], corners[1]), corners[2]))
-    {
-    }
 };
-
-/// Between the boxes of two faces.
-double box_gap_m(const MeshFace& a, const MeshFace& b) noexcept
-{
-    double gap_sq = 0.0;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-        const double gap = std::max({b.low[axis] - a.high[axis], a.low[axis] - b.high[axis], 0.0});
-        gap_sq += gap * gap;
-    }
-    return std::sqrt(gap_sq) / kRoundedUp;
-}
 
 /// Exact faces that are to be measured, unless others turn out to be nearer.
 struct Candidate
@@ -279,6 +254,7 @@ public:
         }
         std::ranges::sort_heap(report_.meeting);
         const bool is_all_seen = is_all_there() && open_m_ > 0.0;
+        report_.is_truncated = report_.is_truncated || (is_enough() && enough_ > 1);
         report_.is_complete = is_all_seen && !report_.is_truncated && !is_enough();
         report_.intersection = !report_.meeting.empty() ? Intersection::proven
                                : is_all_seen            ? Intersection::none
@@ -356,7 +332,13 @@ private:
     [[nodiscard]] bool needs_coarse() const noexcept
     {
         const double matters_m = aim_ == Aim::meeting ? 0.0 : std::max(worth_m(), bound_m_);
-        return has_coarse_ && !(question_.certified_m > matters_m * kRoundedUp);
+        return has_coarse_ && !is_left_open() && !(question_.certified_m > matters_m * kRoundedUp);
+    }
+    /// A coarse face may meet the other surface, and the two are in reach: no other tells more.
+    [[nodiscard]] bool is_left_open() const noexcept
+    {
+        return open_m_ <= 0.0 &&
+               (aim_ == Aim::meeting || (aim_ == Aim::all && bound_m_ <= reach_m_));
     }
     /// What is farther apart in space needs no look, whether exact or not.
     [[nodiscard]] double walked_m() const noexcept
@@ -599,8 +581,8 @@ private:
             {
                 continue;
             }
-            const MeshFace tool = tool_face(pair);
-            const MeshFace face = object_face(pair);
+            const MeshFace tool{tool_triangle(pair), tool_error_m(pair)};
+            const MeshFace face{object_triangle(pair), object_error_m(pair)};
             if (lower_m < open_m_)
             {
                 leave_coarse(tool, face);
@@ -647,10 +629,7 @@ private:
 
     [[nodiscard]] bool do_meet(const FacePair& pair) const noexcept
     {
-        return meet(placed_triangle(to_triangle(block_triangle(
-                                        question_.tool.block(pair.tool_block), pair.tool_lane)),
-                                    question_.place),
-                    to_triangle(block_triangle(question_.object.block(pair.block), pair.lane)));
+        return meet(tool_triangle(pair), object_triangle(pair));
     }
 
     [[nodiscard]] Meeting meeting_of(const FacePair& pair) const noexcept
@@ -678,9 +657,30 @@ private:
             count_contact(distances_.upper[lane]);
             if (candidates_.full())
             {
-                measure_candidates();
+                make_room();
             }
             candidates_.push_back(candidate);
+        }
+    }
+
+    /// Candidates that others have turned out to be nearer than go; where too few do, all are
+    /// measured.
+    void make_room() noexcept
+    {
+        const double most_m = measured_m();
+        std::size_t left = 0;
+        for (std::size_t i = 0; i < candidates_.size(); ++i)
+        {
+            candidates_[left] = candidates_[i];
+            left += static_cast<double>(candidates_[i].gap) * quantum_m_ > most_m ? 0U : 1U;
+        }
+        while (candidates_.size() > left)
+        {
+            candidates_.pop_back();
+        }
+        if (4 * left > 3 * kMaxCandidates)
+        {
+            measure_candidates();
         }
     }
 
@@ -740,16 +740,11 @@ private:
             }
             std::ranges::pop_heap(candidates_, is_farther);
             const FacePair pair = candidates_.pop_back().pair;
-            const MeshFace face = object_face(pair);
-            if (changes_nothing(gap_m, face.triangle))
+            const Triangle triangle = object_triangle(pair);
+            if (!changes_nothing(gap_m, triangle))
             {
-                continue;
-            }
-            const MeshFace tool = tool_face(pair);
-            if (box_gap_m(tool, face) <= measured_m())
-            {
-                add_apart({tool.id, face.id}, face.triangle,
-                          closest_points(tool.triangle, face.triangle, false));
+                add_apart(meeting_of(pair).faces, triangle,
+                          shared_.closest_points(tool_triangle(pair), triangle));
             }
         }
         candidates_.clear();
@@ -773,15 +768,15 @@ private:
         const ErrorCode error = question_.object.side(pair.block).errors[pair.lane];
         return static_cast<double>(error_in_quanta(error)) * quantum_m_;
     }
-    [[nodiscard]] MeshFace tool_face(const FacePair& pair) const noexcept
+    [[nodiscard]] Triangle tool_triangle(const FacePair& pair) const noexcept
     {
-        const PrimId prim = question_.tool.side(pair.tool_block).prims[pair.tool_lane];
-        return {tool_triangle(prim), question_.tool, prim, tool_error_m(pair)};
+        return placed_triangle(
+            to_triangle(block_triangle(question_.tool.block(pair.tool_block), pair.tool_lane)),
+            question_.place);
     }
-    [[nodiscard]] MeshFace object_face(const FacePair& pair) const noexcept
+    [[nodiscard]] Triangle object_triangle(const FacePair& pair) const noexcept
     {
-        const PrimId prim = question_.object.side(pair.block).prims[pair.lane];
-        return {object_triangle(prim), question_.object, prim, object_error_m(pair)};
+        return to_triangle(block_triangle(question_.object.block(pair.block), pair.lane));
     }
 
     /// No contact that is farther apart is kept; negative when none is.
@@ -960,6 +955,7 @@ private:
     FacePairQueue coarse_queue_;
     PairDistances distances_; ///< Of the queue.
     StaticVector<Candidate, kMaxCandidates> candidates_;
+    SharedFeatures shared_;                                  ///< Of those that were measured.
     StaticVector<float, kMaxContacts + 1> nearest_contacts_; ///< A heap, the farthest on top.
     std::uint32_t way_number_{0};                            ///< 0: none was found.
     Vec3f way_{};                     ///< Between the nearest that were found.

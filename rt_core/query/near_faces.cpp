@@ -58,7 +58,6 @@ void NearFaces::search(double bound_m, const PairWalk::Start& start,
                        const LooseFaces* loose) noexcept
 {
     TACTUS_ASSERT(bound_m >= 0.0);
-    loose_ = loose;
     const double bound = bound_m * quanta_per_m_ * kRoundedUp;
     bound_ = bound < kFarQuanta ? round_up_to_float(bound) : kNothingLeft;
     if (!other_.tree().is_complete())
@@ -72,10 +71,22 @@ void NearFaces::search(double bound_m, const PairWalk::Start& start,
         return;
     }
     PairWalk walk(own_, other_.tree(), views_, other_.budget(), start);
-    for (const PairWalk::Item* near = walk.next_blocks({bound_}); near != nullptr;
-         near = walk.next_blocks({bound_}))
+    PairWalk::Sought sought{bound_};
+    while (!is_full())
     {
-        if (!try_test(*near, loose != nullptr ? placed_.loose() : placed_.get(near->tool.index())))
+        const PairWalk::Item* near = walk.next_blocks(sought);
+        if (near == nullptr)
+        {
+            break;
+        }
+        const PlacedBlock& own =
+            loose != nullptr ? placed_.loose() : placed_.get(near->tool.index());
+        const std::uint32_t lanes = open_lanes(own);
+        if (lanes == 0)
+        {
+            sought.settled = near->tool;
+        }
+        else if (!try_test(*near, own, lanes))
         {
             leave(near->gap);
             break;
@@ -88,16 +99,17 @@ void NearFaces::search(double bound_m, const PairWalk::Start& start,
     }
 }
 
-/// False when the budget is spent before all was looked at.
-bool NearFaces::try_test(const PairWalk::Item& item, const PlacedBlock& own) noexcept
+/// False when the budget is spent before all of these lanes was looked at.
+bool NearFaces::try_test(const PairWalk::Item& item, const PlacedBlock& own,
+                         std::uint32_t lanes) noexcept
 {
     WalkBudget& budget = other_.budget();
     const Kernels& kernels = own_.kernels();
     const BlockGeometry& block = other_.tree().block(item.object.index());
+    const BlockSide& side = other_.tree().side(item.object.index());
     const Aabb& box = item.object_box;
     const std::array<float, 6> ends{box.low[0],  box.low[1],  box.low[2],
                                     box.high[0], box.high[1], box.high[2]};
-    std::uint32_t lanes = open_lanes(own.index, own.coarse);
     if (!budget.take_triangles(static_cast<std::uint32_t>(std::popcount(lanes))))
     {
         return false;
@@ -108,8 +120,7 @@ bool NearFaces::try_test(const PairWalk::Item& item, const PlacedBlock& own) noe
         return true;
     }
     // Errors of the other's faces are in the box, and not in the block.
-    const float bound =
-        (bound_ + largest_error_quanta(other_.tree().side(item.object.index()))) * kSumRoundedUp;
+    const float bound = (bound_ + largest_error_quanta(side)) * kSumRoundedUp;
     VertexRows rows; // NOLINT(cppcoreguidelines-pro-type-member-init): the kernel fills it.
     const std::uint8_t* corners = block.corners.front().data();
     const std::uint32_t others =
@@ -129,20 +140,28 @@ bool NearFaces::try_test(const PairWalk::Item& item, const PlacedBlock& own) noe
                 return false;
             }
             pair.lane = static_cast<std::uint32_t>(std::countr_zero(left));
+            errors_[queue_.size()] =
+                (own.rows.error[pair.tool_lane] + error_in_quanta(side.errors[pair.lane])) *
+                kSumRoundedUp;
             queue_.add(pair, own, block, rows, views_.slack());
             if (queue_.is_full())
             {
                 measure();
+                if (may_meet(own.index, pair.tool_lane))
+                {
+                    break;
+                }
             }
         }
     }
     return true;
 }
 
-/// Without those that may meet the other surface: no nearer face of it is looked for.
-std::uint32_t NearFaces::open_lanes(std::uint32_t block, std::uint32_t lanes) noexcept
+/// Coarse faces but for those that may meet the other surface: no nearer face of it is looked for.
+std::uint32_t NearFaces::open_lanes(const PlacedBlock& own) noexcept
 {
-    const Block* known = find_block(block);
+    std::uint32_t lanes = own.coarse;
+    const Block* known = find_block(own.index);
     for (std::uint32_t left = known != nullptr ? known->lanes : 0; left != 0; left &= left - 1)
     {
         const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
@@ -151,35 +170,30 @@ std::uint32_t NearFaces::open_lanes(std::uint32_t block, std::uint32_t lanes) no
     return lanes;
 }
 
+bool NearFaces::may_meet(std::uint32_t block, std::uint32_t lane) noexcept
+{
+    const Block* known = find_block(block);
+    return known != nullptr && (known->lanes >> lane & 1U) != 0 && known->gaps[lane] <= 0.0F;
+}
+
 void NearFaces::measure() noexcept
 {
     own_.kernels().pair_distances(queue_.rows(), queue_.size(), distances_);
     for (std::uint32_t lane = 0; lane < queue_.size(); ++lane)
     {
-        take(queue_[lane], static_cast<double>(distances_.lower[lane]) - errors_of(queue_[lane]));
+        const double gap =
+            static_cast<double>(distances_.lower[lane]) - static_cast<double>(errors_[lane]);
+        if (gap <= static_cast<double>(bound_))
+        {
+            take(queue_[lane], round_down_to_float(gap));
+        }
     }
     queue_.clear();
 }
 
-/// In quanta of the other.
-double NearFaces::errors_of(const FacePair& pair) const noexcept
+/// Faces of a pair may be as near as `lower`.
+void NearFaces::take(const FacePair& pair, float lower) noexcept
 {
-    const double own_m = loose_ != nullptr
-                             ? loose_->errors_m[pair.tool_lane]
-                             : static_cast<double>(error_in_quanta(
-                                   own_.side(pair.tool_block).errors[pair.tool_lane])) *
-                                   static_cast<double>(own_.quantum_m());
-    return own_m * quanta_per_m_ * kRoundedUp +
-           static_cast<double>(error_in_quanta(other_.tree().side(pair.block).errors[pair.lane]));
-}
-
-void NearFaces::take(const FacePair& pair, double gap) noexcept
-{
-    const float lower = round_down_to_float(gap);
-    if (lower > bound_)
-    {
-        return;
-    }
     Block* block = find_block(pair.tool_block);
     if (block == nullptr && blocks_.full())
     {

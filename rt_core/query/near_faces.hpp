@@ -54,16 +54,19 @@ public:
         return to_m(block.gaps[lane]);
     }
     /// All that is coarse and in no block is beyond the bound, or no nearer than this: infinity
-    /// when everything was looked at.
+    /// when everything was looked at. The search ends where there is no room for a block more and
+    /// something that is left may meet the other surface: it would tell nothing.
     [[nodiscard]] double rest_m() const noexcept { return to_m(rest_); }
 
 private:
     void search(double bound_m, const PairWalk::Start& start, const LooseFaces* loose) noexcept;
-    [[nodiscard]] bool try_test(const PairWalk::Item& item, const PlacedBlock& own) noexcept;
-    [[nodiscard]] std::uint32_t open_lanes(std::uint32_t block, std::uint32_t lanes) noexcept;
+    [[nodiscard]] bool is_full() const noexcept { return blocks_.full() && !(rest_ > 0.0F); }
+    [[nodiscard]] bool try_test(const PairWalk::Item& item, const PlacedBlock& own,
+                                std::uint32_t lanes) noexcept;
+    [[nodiscard]] std::uint32_t open_lanes(const PlacedBlock& own) noexcept;
+    [[nodiscard]] bool may_meet(std::uint32_t block, std::uint32_t lane) noexcept;
     void measure() noexcept;
-    void take(const FacePair& pair, double gap) noexcept;
-    [[nodiscard]] double errors_of(const FacePair& pair) const noexcept;
+    void take(const FacePair& pair, float lower) noexcept;
     [[nodiscard]] Block* find_block(std::uint32_t index) noexcept;
     void leave(float gap) noexcept { rest_ = std::min(rest_, gap); }
     [[nodiscard]] double to_m(float quanta) const noexcept;
@@ -77,9 +80,9 @@ private:
     double quanta_per_m_; ///< Of the other, a length in the own frame.
     float bound_{0.0F};
     float rest_{kNothingLeft};
-    const LooseFaces* loose_{nullptr};
     FacePairQueue queue_;
-    PairDistances distances_; ///< Of the queue.
+    std::array<float, kPairLanes> errors_; ///< Of the queue, of both faces together.
+    PairDistances distances_;              ///< Of the queue.
     StaticVector<Block, kMaxNearBlocks> blocks_;
     std::uint32_t last_{0}; ///< The block that was looked up last.
 };

@@ -98,7 +98,8 @@ const PairWalk::Item* PairWalk::next_blocks(const Sought& sought) noexcept
 {
     while (!stack_.empty())
     {
-        if (stack_[stack_.size() - 1].gap > sought.bound)
+        const Item& next = stack_[stack_.size() - 1];
+        if (next.gap > sought.bound || next.tool == sought.settled)
         {
             stack_.pop_back();
             continue;

@@ -72,6 +72,7 @@ public:
         /// null when none is known.
         const Vec3f* way{nullptr};
         bool exact_only{false}; ///< Subtrees without an exact face are left out, of both trees.
+        TreeRef settled{};      ///< A block of the tool of which nothing more is looked for.
     };
 
     /// Both trees' boxes must be right (AbTree::refit). `views` must not be beyond the kernels.

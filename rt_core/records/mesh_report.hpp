@@ -37,8 +37,9 @@ struct MeshReport
     Intersection intersection{Intersection::open};
     /// Of exact faces, lowest ids first: by the tool's and then by the object's.
     StaticVector<MeetingFaces, kMaxMeetingFaces> meeting;
-    bool is_truncated{false}; ///< More met; those with the lowest ids are kept.
-    bool is_complete{false};  ///< None was left out, and none may exist unseen.
+    /// More met: those with the lowest ids are kept; of kEnoughMeetingFaces those found first.
+    bool is_truncated{false};
+    bool is_complete{false}; ///< None was left out, and none may exist unseen.
     /// The tool's face at the nearest point, where the object's is known.
     FaceId nearest_tool_face{};
 

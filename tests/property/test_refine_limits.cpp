@@ -329,7 +329,8 @@ TEST(RefineLimits, a_tool_that_is_a_mesh_looks_at_so_many_times_the_budget_in_ea
 {
     const TestModel& object = small_model(0);
     const TestModel& tool = small_model(1);
-    constexpr std::uint32_t kWalks = 4; // Either model's, now and a little ahead.
+    // Either model's, now and a little ahead; the cover's; and the query.
+    constexpr std::uint32_t kWalks = 4 * kMeshRefineFactor + 1 + kMeshBudgetFactor;
     for (const std::uint32_t nodes : {1U, 1'000'000U})
     {
         RigOptions options = with_room_for_all();
@@ -340,9 +341,56 @@ TEST(RefineLimits, a_tool_that_is_a_mesh_looks_at_so_many_times_the_budget_in_ea
         budgets.nodes = nodes;
         const FrameOutput output = rig.step(to_vec3(object.faces[0][0]), budgets);
         EXPECT_EQ(has_fault(output.faults, FrameFault::node_budget_spent), nodes == 1);
-        EXPECT_EQ(output.work.nodes_visited <= kWalks * kMeshBudgetFactor, nodes == 1)
-            << output.work.nodes_visited;
+        EXPECT_EQ(output.work.nodes_visited <= kWalks, nodes == 1) << output.work.nodes_visited;
         EXPECT_GE(output.work.nodes_visited, kMeshBudgetFactor);
+    }
+}
+
+/// Most of what frames did.
+struct MostWork
+{
+    std::uint32_t nodes{0};
+    std::uint32_t triangles{0};
+
+    void add(const WorkCounters& work)
+    {
+        nodes = std::max(nodes, work.nodes_visited);
+        triangles = std::max(triangles, work.triangles_tested);
+    }
+};
+
+TEST(RefineLimits, two_equal_meshes_in_one_place_are_refined_by_a_little_work_a_frame)
+{
+    // All of the one meets the other, so that any walk of the two could go through all of them.
+    const TestModel& model =
+        test_model("bumpy-20k", make_shape(Shape::bumpy_sphere, 20'000).value(), 500);
+    for (const bool fills : {false, true})
+    {
+        RigOptions options = with_room_for_all();
+        options.pool_bytes = std::size_t{64} << 20U;
+        options.static_when_it_fits = fills;
+        options.tools = {{1e-3 * model.diagonal_m, 500.0, 8.0, 1.0, MeshCore{ModelId{1}}}};
+        FrameRig rig({&model, &model}, options);
+        const Vec3 place_m(-model.origin_m[0], -model.origin_m[1], -model.origin_m[2]);
+        const Budgets budgets;
+        MostWork most;
+        std::uint32_t splits = 0;
+        for (int still = 0, frame = 0; still < 50; ++frame)
+        {
+            const FrameOutput output = rig.step(place_m, budgets);
+            most.add(output.work);
+            splits += output.work.splits;
+            still = output.work.splits == 0 ? still + 1 : 0;
+            ASSERT_LT(frame, 3'000);
+        }
+        std::printf("%u splits, most nodes %u, triangles %u\n", splits, most.nodes, most.triangles);
+        const PairOutput pair = rig.step(place_m, budgets).pairs[0];
+        EXPECT_EQ(pair.kind, AnswerKind::exact);
+        EXPECT_LT(pair.upper_m, 1e-12);
+        EXPECT_TRUE(pair.mesh->is_truncated);
+        EXPECT_GE(splits, 2 * rig.model().header.counts().records);
+        EXPECT_LE(most.nodes, 4 * budgets.nodes);
+        EXPECT_LE(most.triangles, 4 * budgets.triangles);
     }
 }
 

@@ -45,8 +45,8 @@ Verdict broken_budget(const FrameOutput& output, const Budgets& budgets)
         std::uint32_t most;
     };
     const WorkCounters& work = output.work;
-    const std::uint32_t walks =
-        2 * kFrameWalks + (output.pairs[0].mesh != nullptr ? 4 * kMeshBudgetFactor : 0);
+    constexpr std::uint32_t kOfMesh = 4 * kMeshRefineFactor + kMeshBudgetFactor + 1;
+    const std::uint32_t walks = 2 * kFrameWalks + (output.pairs[0].mesh != nullptr ? kOfMesh : 0);
     const std::array<Count, 9> counts{{
         {"splits", work.splits, budgets.splits},
         {"merges", work.merges, budgets.merges},

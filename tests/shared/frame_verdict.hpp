@@ -16,7 +16,8 @@ using Verdict = std::optional<std::string>;
 
 /// Every counter of a frame against its budget, every pool against its size. Refinement and answers
 /// have kFrameWalks budgets of nodes and triangles each. A tool that is a mesh may look at its
-/// object, and that at the tool, at two places, with kMeshBudgetFactor times the budget each.
+/// object, and that at the tool, at two places, with kMeshRefineFactor times the budget each, at
+/// the object for its cover once more, and for its query with kMeshBudgetFactor times the budget.
 [[nodiscard]] Verdict broken_budget(const FrameOutput& output, const Budgets& budgets);
 
 /// A question that is left open although nothing is said to have run out, or a model that

@@ -1042,6 +1042,7 @@ TEST(MeshQuery, ends_where_enough_meets_for_a_tool_that_is_felt)
         const Asked asked = ask_without_pairs(tool, object, MeshPlacement{}, 0.01, 0.01, memory);
 
         EXPECT_EQ(asked.report.meeting.size(), kEnoughMeetingFaces);
+        EXPECT_TRUE(asked.report.is_truncated);
         EXPECT_FALSE(asked.report.is_complete);
         EXPECT_EQ(asked.report.intersection, Intersection::proven);
         EXPECT_EQ(asked.answer.kind, AnswerKind::exact);
