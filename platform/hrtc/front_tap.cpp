@@ -7,9 +7,12 @@
 namespace tactus::hrtc
 {
 
-FrontTap::FrontTap(std::size_t page_slots)
+FrontTap::FrontTap(PagePool& pages, std::size_t most_slots) : pages_(pages)
 {
-    copy_.slots.resize(std::min(page_slots, kMaxFrontPages));
+    const std::span<const PageMeta> shown =
+        pages.metas.first(std::min(pages.metas.size(), most_slots));
+    copy_.slots.assign(shown.begin(), shown.end()); // What of them is shown.
+    copy_.slots_left_out = static_cast<std::uint32_t>(pages.metas.size() - shown.size());
 }
 
 void FrontTap::copy(const ShownFront& shown, const RunStatistics& statistics) noexcept
@@ -23,7 +26,7 @@ void FrontTap::copy(const ShownFront& shown, const RunStatistics& statistics) no
         copy_.tools.push_back({force.state, force.causes});
     }
     copy_times(statistics);
-    copy_pages(shown.made);
+    pages_.update_copy(copy_.slots);
     copy_objects(shown);
     copy_regions(shown.made.regions());
 }
@@ -36,14 +39,6 @@ void FrontTap::copy_times(const RunStatistics& statistics) noexcept
     std::ranges::transform(statistics.stages, copy_.times.begin(), copied);
     copy_.times[kStages] = copied(statistics.frame);
     copy_.times[kStages + 1] = copied(statistics.cpu);
-}
-
-void FrontTap::copy_pages(Frame& frame) noexcept
-{
-    const std::span<const PageMeta> metas = frame.pools().cache.pages.metas;
-    const std::size_t shown = std::min(metas.size(), copy_.slots.size());
-    std::copy_n(metas.begin(), shown, copy_.slots.begin()); // What of them is shown.
-    copy_.slots_left_out = static_cast<std::uint32_t>(metas.size() - shown);
 }
 
 /// Those of awake pairs, and in turn all others.

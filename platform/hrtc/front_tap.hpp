@@ -7,6 +7,7 @@
 #include "platform/time.hpp"
 #include "rt_core/base/static_vector.hpp"
 #include "rt_core/frame/frame.hpp"
+#include "rt_core/spm/page_pool.hpp"
 #include "transport/front.hpp"
 
 #include <array>
@@ -52,7 +53,7 @@ struct FrontCopy
     StaticVector<Object, kMaxFrontObjects> objects;
     StaticVector<FrontRegion, kMaxFrontRegions> regions; ///< The most urgent ones.
     std::uint32_t regions_left_out{0};                   ///< The others.
-    std::vector<ShownPage> slots;                        ///< Of all models; at most kMaxFrontPages.
+    std::vector<ShownPage> slots;                        ///< Of all models.
     std::uint32_t slots_left_out{0};                     ///< Those beyond.
 };
 
@@ -65,22 +66,24 @@ public:
     /// A copy is made at most every so many frames.
     static constexpr std::uint64_t kFrames = 100;
 
-    /// `page_slots`: of all models. Allocates 16 bytes each.
-    explicit FrontTap(std::size_t page_slots);
+    /// Of the pool's first slots, before the loop. The pool outlives it and has no other tap.
+    /// Allocates 16 bytes a slot.
+    explicit FrontTap(PagePool& pages, std::size_t most_slots = kMaxFrontPages);
 
     struct ShownFront
     {
         std::uint64_t frame; ///< Counted from 0.
         MonotonicTime start;
-        Frame& made; ///< Only read.
+        const Frame& made;
         const FrameOutput& output;
         std::span<const ToolForce> forces; ///< One a tool.
         const Budgets& budgets;
     };
 
     /// The haptic thread, after a frame. Nothing but a comparison in 99 frames of a hundred and
-    /// while the last copy is out; else it allocates nothing, copies 16 bytes of each page slot and
-    /// goes through awake pairs, kMaxFrontRegions regions and kFrontSweep objects once.
+    /// while the last copy is out; else it allocates nothing, copies 16 bytes of each page slot
+    /// that has changed since and goes through awake pairs, kMaxFrontRegions regions and
+    /// kFrontSweep objects once.
     void show(const ShownFront& shown, const RunStatistics& statistics) noexcept
     {
         // Pairs with the release in give_back().
@@ -104,11 +107,11 @@ public:
 private:
     void copy(const ShownFront& shown, const RunStatistics& statistics) noexcept;
     void copy_times(const RunStatistics& statistics) noexcept;
-    void copy_pages(Frame& frame) noexcept;
     void copy_objects(const ShownFront& shown) noexcept;
     void copy_regions(std::span<const RankedRegion> regions) noexcept;
     void copy_object(const ObjectTable& objects, std::uint32_t number) noexcept;
 
+    PagePool& pages_;
     std::atomic<bool> is_out_{false};
     FrontCopy copy_;
 };

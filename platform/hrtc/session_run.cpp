@@ -130,7 +130,7 @@ FrontTap* SessionRun::make_front()
 {
     if (parts_.topics->shows_front())
     {
-        front_.emplace(parts_.controller.frame().pools().cache.pages.metas.size());
+        front_.emplace(parts_.controller.frame().pools().cache.pages);
     }
     return front_ ? &*front_ : nullptr;
 }

@@ -40,6 +40,7 @@ public:
         TACTUS_ASSERT(slot < meta_.size());
         TACTUS_ASSERT(meta_[slot].chunk.is_none());
         meta_[slot] = Meta{{chunk, owner_, 0}, 0, linked, frame};
+        pool_->mark_changed(slot);
         const bool inserted = pool_->slot_of.try_insert(first_key_ + chunk.value, slot);
         TACTUS_ASSERT(inserted);
         ++used_;
@@ -67,6 +68,7 @@ public:
         pool_->slot_of.erase(first_key_ + meta_[slot].chunk.value);
         meta_[slot] = Meta{};
         meta_[slot].owner = owner_;
+        pool_->mark_changed(slot);
         --used_;
     }
 
@@ -76,6 +78,7 @@ public:
         TACTUS_ASSERT(is_own(slot));
         meta_[slot].refined = 0;
         meta_[slot].held = 0;
+        pool_->mark_changed(slot);
     }
 
     /// The chunk's slot, or IdTable::kAbsent.
@@ -116,11 +119,13 @@ public:
     }
     void set_refined(RecordId record, bool refined) noexcept
     {
-        Meta& meta = meta_[slot_of_resident(record)];
+        const std::uint32_t slot = slot_of_resident(record);
+        Meta& meta = meta_[slot];
         const std::uint64_t bit = bit_of(record);
         TACTUS_ASSERT(((meta.refined & bit) != 0) != refined);
         TACTUS_ASSERT((meta.held & bit) == 0);
         meta.refined ^= bit;
+        pool_->mark_changed(slot);
     }
     [[nodiscard]] bool is_held(RecordId record) const noexcept
     {

@@ -159,6 +159,30 @@ TEST_P(Fronts, agree_to_a_page_when_the_cache_is_off)
     expect_fronts_sound(sut.model());
 }
 
+TEST_P(Fronts, a_copy_that_is_brought_up_to_date_now_and_then_is_what_the_slots_are)
+{
+    SCOPED_TRACE(model_.name + " seed " + std::to_string(seed_));
+    RigOptions options;
+    options.cache_off = random_.one_in(2); // Then many pages go.
+    FrameRig sut(model_, options);
+    PagePool& pages = sut.frame().pools().cache.pages;
+    std::vector<ShownPage> copy(pages.metas.begin(), pages.metas.end());
+    int changed = 0;
+    for (int frame = 0; frame < 360; ++frame)
+    {
+        static_cast<void>(sut.step(next_goal(frame)));
+        if (random_.one_in(10))
+        {
+            const std::vector<ShownPage> before = copy;
+            pages.update_copy(copy);
+            ASSERT_TRUE(std::equal(copy.begin(), copy.end(), pages.metas.begin()))
+                << "frame " << frame;
+            changed += before == copy ? 0 : 1;
+        }
+    }
+    EXPECT_GT(changed, 10) << "of some 36 updates";
+}
+
 INSTANTIATE_TEST_SUITE_P(small_models, Fronts, testing::Range<std::size_t>(0, 6));
 
 TEST(FrontLists, are_cut_short_at_the_end_of_the_span_and_say_how_many_there_are)

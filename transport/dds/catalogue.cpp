@@ -67,8 +67,8 @@ void Catalogue::refresh()
         reader_.handle, kMaxOffers,
         [this](const tactus_v4_CatalogueEntry& entry, const dds_sample_info_t& info)
         {
-            const std::string name(entry.name, ::strnlen(entry.name, sizeof(entry.name)));
-            const std::string scene(entry.scene, ::strnlen(entry.scene, sizeof(entry.scene)));
+            const std::string name(text_of(entry.name));
+            const std::string scene(text_of(entry.scene));
             const auto refuse = [&](Refused reason)
             { participants_->refuse(info.publication_handle, reason, entry.model); };
             if (tells_end(info))

@@ -44,8 +44,7 @@ constexpr auto kMatchWait = std::chrono::milliseconds(2);
 /// What a controller calls itself, fit to be printed.
 std::string name_of(const tactus_v4_Wanted& wanted)
 {
-    const char* const text = static_cast<const char*>(wanted.controller_name);
-    return printable({text, ::strnlen(text, sizeof(wanted.controller_name))});
+    return printable(text_of(wanted.controller_name));
 }
 
 } // namespace

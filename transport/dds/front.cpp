@@ -5,6 +5,7 @@
 #include "platform/base/printable.hpp"
 #include "transport/dds/newest.hpp"
 #include "transport/dds/placement.hpp"
+#include "transport/dds/take.hpp"
 #include "transport/model_name.hpp"
 
 #include <algorithm>
@@ -33,12 +34,6 @@ static_assert(std::size(tactus_v4_Front{}.budgets) == kBudgetOrder.size());
 static_assert(sizeof(Budgets) == (kBudgetOrder.size() + 1) * sizeof(std::uint32_t));
 static_assert(std::size(tactus_v4_Front{}.times) == kFrontTimes);
 
-template <std::size_t Size>
-std::string_view characters_of(const char (&text)[Size]) // NOLINT: idlc's type.
-{
-    return {static_cast<const char*>(text), ::strnlen(static_cast<const char*>(text), Size)};
-}
-
 template <typename From, typename To>
 void copy_head(const From& from, To& to)
 {
@@ -61,7 +56,7 @@ bool is_amount(double x)
 
 std::optional<FrontTool> tool_from(const tactus_v4_FrontTool& wire)
 {
-    const std::string_view shape = characters_of(wire.shape);
+    const std::string_view shape = text_of(wire.shape);
     constexpr std::uint32_t known = (1U << kForceOffs) - 1;
     if (wire.state >= kSafetyStates || (wire.causes & ~known) != 0 || !is_amount(wire.radius_m) ||
         !std::ranges::all_of(shape, is_printable))
@@ -154,7 +149,7 @@ std::optional<Front> front_from(const tactus_v4_Front& sample)
         sample.refined._length == sample.chunks._length &&
         sample.wished._length <= kMaxFrontWishes && sample.regions._length <= kMaxFrontRegions &&
         sample.sweep_begin <= sample.sweep_end && sample.sweep_end <= kMaxObjects;
-    if (!is_in_bounds || !is_valid_name(std::string(characters_of(sample.controller_name))))
+    if (!is_in_bounds || !is_valid_name(std::string(text_of(sample.controller_name))))
     {
         return std::nullopt;
     }

@@ -153,12 +153,11 @@ void SceneReader::take_records(std::uint64_t epoch, Host& host, const Take& take
 std::optional<Refused> SceneReader::take_record(Host& host, const tactus_v4_ObjectRecord& record,
                                                 const Take& take)
 {
-    const char* const text = static_cast<const char*>(record.name);
     SeenObject news;
     news.host_epoch = record.host_epoch;
     news.number = record.object;
     news.generation = record.generation;
-    news.shown.name.assign(text, ::strnlen(text, sizeof(record.name)));
+    news.shown.name = text_of(record.name);
     std::memcpy(news.shown.model.data(), record.model_hash, news.shown.model.size());
     news.shown.material = material_of(record);
     if (!is_valid_name(news.shown.name))

@@ -7,9 +7,18 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
+#include <string_view>
 
 namespace tactus::dds
 {
+
+/// A bounded string of a sample, up to its end or as much as there is room for. Of the sample.
+template <std::size_t Size>
+[[nodiscard]] std::string_view text_of(const char (&text)[Size]) noexcept // NOLINT: idlc's type.
+{
+    return {static_cast<const char*>(text), ::strnlen(static_cast<const char*>(text), Size)};
+}
 
 /// Whether a sample tells that its instance ended, and who ended it: its own writer, if that was a
 /// true one. The last data of an instance that anybody ended before they were taken only show that

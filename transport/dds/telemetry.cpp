@@ -3,6 +3,7 @@
 #include "transport/dds/telemetry.hpp"
 
 #include "transport/dds/newest.hpp"
+#include "transport/dds/take.hpp"
 #include "transport/model_name.hpp"
 
 #include <algorithm>
@@ -51,12 +52,6 @@ static_assert(stage_of(0) == ModelStage::resident && stage_code(ModelStage::leav
 constexpr unsigned bit_when(bool is_so, unsigned bit)
 {
     return is_so ? bit : 0U;
-}
-
-template <std::size_t Size>
-std::string text_of(const char (&text)[Size]) // NOLINT: idlc's type.
-{
-    return {static_cast<const char*>(text), ::strnlen(static_cast<const char*>(text), Size)};
 }
 
 tactus_v4_ToolTelemetry to_wire(const ToolTelemetry& tool)
@@ -184,7 +179,7 @@ bool is_sound(const PairTelemetry& pair, std::uint32_t tools)
 
 ModelIdentity identity_of(const tactus_v4_ModelTelemetry& wire)
 {
-    ModelIdentity identity{text_of(wire.name), {}, wire.revision};
+    ModelIdentity identity{std::string(text_of(wire.name)), {}, wire.revision};
     std::memcpy(identity.hash.data(), wire.hash, identity.hash.size());
     return identity;
 }

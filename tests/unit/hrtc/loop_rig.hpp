@@ -125,8 +125,8 @@ struct LoopRigOptions
     double angular_stiffness_nm_per_rad{0.0}; ///< As ToolSpec has it.
     const Clock* clock{nullptr}; ///< Another one than the virtual, with a timer of its own.
     PeriodicTimer* timer{nullptr};
-    FrontTap* front{nullptr}; ///< Likewise lent.
-    bool is_coarse{false};    ///< Nothing comes but the base mesh.
+    std::optional<std::size_t> front_slots; ///< Shows so many at most.
+    bool is_coarse{false};                  ///< Nothing comes but the base mesh.
     /// An object of a second model, so far beyond the place where the hand starts.
     std::optional<double> neighbour_m;
 };
@@ -165,7 +165,11 @@ public:
         door_.emplace(std::vector{placed()}, 1, kPoseAge, options_.object_speed_m_per_s);
         parts.pose_door = options_.has_door ? &*door_ : nullptr;
         parts.telemetry = &telemetry;
-        parts.front = options_.front;
+        if (options_.front_slots)
+        {
+            front_.emplace(frame().pools().cache.pages, *options_.front_slots);
+            parts.front = &*front_;
+        }
         parts.budgets.splits = kMaxSplitsPerFrame;
         loop_.emplace(parts, statistics_);
         static_cast<void>(parts.timer->start(kPeriod, {}));
@@ -182,6 +186,7 @@ public:
     [[nodiscard]] const RunStatistics& statistics() const { return statistics_; }
     [[nodiscard]] HapticLoop& loop() { return *loop_; }
     [[nodiscard]] Frame& frame() { return frames_.frame(); }
+    [[nodiscard]] FrontTap& front() { return *front_; }
     [[nodiscard]] TamperedDevice& device() { return static_cast<TamperedDevice&>(*tool().device); }
     [[nodiscard]] std::span<const ToolSetup> tools() const { return tools_; }
     [[nodiscard]] SimulatedClock& virtual_clock() { return clock_; }
@@ -302,6 +307,7 @@ private:
     RunStatistics statistics_;
     std::array<ToolSetup, 1> tools_;
     std::optional<PoseDoor> door_;
+    std::optional<FrontTap> front_;
     std::optional<HapticLoop> loop_;
 };
 

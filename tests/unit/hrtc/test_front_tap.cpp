@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -33,34 +34,35 @@ std::vector<std::pair<std::uint32_t, std::uint64_t>> pages_of(Frame& frame)
     return pages;
 }
 
-LoopRigOptions options_of(FrontTap* front, std::uint64_t frames)
+LoopRigOptions options_of(std::optional<std::size_t> slots, std::uint64_t frames)
 {
     LoopRigOptions options;
-    options.front = front;
+    options.front_slots = slots;
     options.frames = frames;
     return options;
 }
 
-/// More than the model needs.
-constexpr std::size_t kSlots = 1'000;
+/// All that there are.
+constexpr std::size_t kSlots = kMaxFrontPages;
 /// The last one is the first of a hundred.
 constexpr std::uint64_t kFrames = 9 * FrontTap::kFrames + 1;
 
 TEST(FrontTap, copies_the_pages_of_one_frame_in_a_hundred_with_what_is_split)
 {
-    FrontTap sut(kSlots);
-    EXPECT_EQ(sut.take(), nullptr);
-    LoopRigOptions options = options_of(&sut, kFrames);
+    FrontTap* sut = nullptr;
+    LoopRigOptions options = options_of(kSlots, kFrames);
     options.tamper = [&sut](std::uint64_t frame, DeviceSample&)
     {
         if (frame == kFrames - 2)
         {
-            sut.give_back(); // What the first frame left; the last one makes the next.
+            sut->give_back(); // What the first frame left; the last one makes the next.
         }
     };
     LoopRig rig(options);
+    sut = &rig.front();
+    EXPECT_EQ(sut->take(), nullptr);
     rig.loop().run();
-    const FrontCopy* copy = sut.take();
+    const FrontCopy* copy = sut->take();
     ASSERT_NE(copy, nullptr);
     EXPECT_EQ(copy->frame, kFrames);
     std::vector<std::pair<std::uint32_t, std::uint64_t>> pages;
@@ -85,22 +87,44 @@ TEST(FrontTap, copies_the_pages_of_one_frame_in_a_hundred_with_what_is_split)
 
 TEST(FrontTap, leaves_a_copy_alone_until_it_is_given_back)
 {
-    FrontTap sut(kSlots);
-    LoopRig first(options_of(&sut, 250));
-    first.loop().run();
-    ASSERT_NE(sut.take(), nullptr);
-    EXPECT_EQ(sut.take()->frame, 1U);
-    sut.give_back();
-    EXPECT_EQ(sut.take(), nullptr);
-    LoopRig second(options_of(&sut, 101));
-    second.loop().run();
-    EXPECT_EQ(sut.take()->frame, 1U); // And not the 101st.
+    FrontTap* sut = nullptr;
+    std::vector<ShownPage> first;
+    LoopRigOptions options = options_of(kSlots, kFrames);
+    options.tamper = [&](std::uint64_t frame, DeviceSample&)
+    {
+        if (frame == 1)
+        {
+            first = sut->take()->slots;
+        }
+    };
+    LoopRig rig(options);
+    sut = &rig.front();
+    rig.loop().run();
+    ASSERT_NE(sut->take(), nullptr);
+    EXPECT_EQ(sut->take()->frame, 1U);
+    EXPECT_EQ(sut->take()->slots, first);
+    const std::span<const PageMeta> last = rig.frame().pools().cache.pages.metas;
+    EXPECT_FALSE(std::equal(first.begin(), first.end(), last.begin(), last.end()));
+    sut->give_back();
+    EXPECT_EQ(sut->take(), nullptr);
+}
+
+TEST(FrontTap, starts_from_what_is_there_when_it_is_made)
+{
+    LoopRig rig(options_of(std::nullopt, kFrames));
+    rig.loop().run();
+    PagePool& pages = rig.frame().pools().cache.pages;
+    std::vector<ShownPage> there(pages.metas.begin(), pages.metas.end());
+    pages.update_copy(there); // Of what has changed nothing is left.
+    FrontTap sut(pages);
+    sut.show({0, {}, rig.frame(), FrameOutput{}, {}, Budgets{}}, rig.statistics());
+    EXPECT_EQ(sut.take()->slots, there);
 }
 
 TEST(FrontTap, counts_slots_for_which_it_has_no_room)
 {
-    FrontTap sut(2);
-    LoopRig rig(options_of(&sut, 1));
+    LoopRig rig(options_of(2, 1));
+    const FrontTap& sut = rig.front();
     rig.loop().run();
     ASSERT_NE(sut.take(), nullptr);
     EXPECT_EQ(sut.take()->slots.size(), 2U);
@@ -109,10 +133,10 @@ TEST(FrontTap, counts_slots_for_which_it_has_no_room)
 
 TEST(FrontTap, copies_where_chunks_are_looked_for)
 {
-    FrontTap sut(kSlots);
-    LoopRigOptions options = options_of(&sut, 1);
+    LoopRigOptions options = options_of(kSlots, 1);
     options.is_coarse = true; // Of a model that is here as a whole nothing is looked for.
     LoopRig rig(options);
+    const FrontTap& sut = rig.front();
     rig.loop().run();
     ASSERT_NE(sut.take(), nullptr);
     const std::span<const RankedRegion> regions = rig.frame().regions();
@@ -134,9 +158,8 @@ TEST(FrontTap, copies_where_chunks_are_looked_for)
 
 TEST(FrontTap, changes_nothing_that_the_loop_does)
 {
-    FrontTap front(kSlots);
-    LoopRig with(options_of(&front, 500));
-    LoopRig without(options_of(nullptr, 500));
+    LoopRig with(options_of(kSlots, 500));
+    LoopRig without(options_of(std::nullopt, 500));
     const auto run = [](LoopRig& rig)
     {
         rig.loop().run();

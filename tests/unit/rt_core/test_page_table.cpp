@@ -5,6 +5,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
 namespace tactus::test
 {
 
@@ -119,6 +125,111 @@ TEST_F(PageTableTest, all_slots_can_be_used)
     {
         EXPECT_EQ(sut_.find({10 + slot}), slot);
     }
+}
+
+namespace
+{
+
+constexpr std::uint32_t kShownSlots = 130; // Two words of marks, and some.
+
+/// Pages of two models that come, are split and merged, and go, at random.
+class ChangingSlots
+{
+public:
+    explicit ChangingSlots(Random& random) : random_(random) {}
+
+    void change()
+    {
+        const std::uint32_t slot = random_.below(kShownSlots);
+        const PageMeta& meta = pool_.metas[slot];
+        if (meta.chunk.is_none())
+        {
+            const ChunkId chunk{chunks_++}; // Never one that is here.
+            tables_[random_.below(2U)].adopt(chunk, slot, 0, ~std::uint64_t{0});
+            return;
+        }
+        PageTable& table = tables_[meta.owner];
+        const RecordId record{meta.chunk.value * kRecordsPerChunk + random_.below(64U)};
+        if (meta.refined != 0 && random_.one_in(8))
+        {
+            table.forget_refined(slot);
+        }
+        else if (meta.refined == 0 && random_.one_in(4))
+        {
+            table.evict(slot);
+        }
+        else
+        {
+            table.set_refined(record, !table.is_refined(record));
+        }
+    }
+    /// Changes that nobody sees.
+    void use(std::uint32_t frame)
+    {
+        for (std::uint32_t slot = 0; slot < kShownSlots; ++slot)
+        {
+            if (!pool_.metas[slot].chunk.is_none())
+            {
+                tables_[pool_.metas[slot].owner].touch(slot, frame);
+            }
+        }
+    }
+    [[nodiscard]] PagePool& pool() { return pool_; }
+
+private:
+    Random& random_;
+    ArenaMemory memory_{(kShownSlots + 32) * sizeof(Page)};
+    Arena arena_{memory_.bytes()};
+    PageSlots slots_{PageSlots::take(arena_, {4, 4, 1'000}, kShownSlots, 1)};
+    PagePool pool_{arena_, kShownSlots};
+    std::array<PageTable, 2> tables_{PageTable(pool_, 0, slots_), PageTable(pool_, 1, slots_)};
+    std::uint32_t chunks_{0};
+};
+
+} // namespace
+
+TEST(PagePool, a_copy_that_is_brought_up_to_date_now_and_then_is_what_the_slots_are)
+{
+    Random random(25);
+    for (const std::size_t size : {std::size_t{0}, std::size_t{1}, std::size_t{64},
+                                   std::size_t{100}, std::size_t{128}, std::size_t{kShownSlots}})
+    {
+        ChangingSlots sut(random);
+        std::vector<ShownPage> copy(size);
+        for (std::uint32_t round = 0; round < 200; ++round)
+        {
+            const std::uint32_t changes = random.one_in(10) ? 0 : 1 + random.below(300U);
+            for (std::uint32_t i = 0; i < changes; ++i)
+            {
+                sut.change();
+            }
+            sut.use(round);
+            sut.pool().update_copy(copy);
+            const std::vector<ShownPage> whole(sut.pool().metas.begin(), sut.pool().metas.end());
+            ASSERT_TRUE(std::equal(copy.begin(), copy.end(), whole.begin()))
+                << size << " slots, round " << round;
+        }
+    }
+}
+
+TEST(PagePool, a_slot_that_has_not_changed_is_not_copied_again)
+{
+    Random random(26);
+    ChangingSlots sut(random);
+    for (int i = 0; i < 1'000; ++i)
+    {
+        sut.change();
+    }
+    std::vector<ShownPage> copy(kShownSlots);
+    sut.pool().update_copy(copy);
+    const ShownPage strange{ChunkId{77}, 5, 1};
+    std::ranges::fill(copy, strange);
+    sut.use(1);
+    sut.pool().update_copy(copy);
+    EXPECT_EQ(std::ranges::count(copy, strange), kShownSlots);
+    sut.change();
+    sut.pool().update_copy(copy);
+    EXPECT_EQ(std::ranges::count(copy, strange), kShownSlots - 1);
 }
 
 TEST_F(PageTableTest, misuse_is_a_bug)
