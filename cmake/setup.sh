@@ -284,7 +284,7 @@ run_bench() { # run_bench KEPT OPTION...: all suites, as tactus_bench takes opti
 
 # --- rt-machine ----------------------------------------------------------------------------------
 
-run_rt_machine() { # run_rt_machine KEPT ARCHITECTURE OPTION...: of this machine's where it is empty.
+run_rt_machine() { # run_rt_machine KEPT ARCHITECTURE OPTION...: empty: that of this machine.
     local code=0 kept=$1 architecture=$2 results=$root/build/rt_machine packages=$root/build/deb
     shift 2
     if command -v ccache >/dev/null; then
