@@ -44,7 +44,7 @@ std::string lower(std::string_view token)
 
 bool is_text(std::string_view bytes)
 {
-    const auto control = [](char c) { return c >= 0 && c < ' ' && (c < '\t' || c > '\r'); };
+    const auto control = [](unsigned char c) { return c < ' ' && (c < '\t' || c > '\r'); };
     const auto start = bytes.substr(0, 512);
     return lower(TextCursor(bytes).next_token()) == "solid" &&
            std::none_of(start.begin(), start.end(), control);
