@@ -123,34 +123,43 @@ inline void keep_ends(const Contact& contact, ContactEnds& ends) noexcept
     ends.is_empty = false;
 }
 
-/// Whether keep_ends() may keep a contact on this triangle that is at least so far from the core.
-[[nodiscard]] inline bool may_be_end(const Triangle& triangle, double distance_m,
-                                     const ContactEnds& ends) noexcept
+/// How far a contact counts in each direction.
+using EndReaches = std::array<double, kContactDirections>;
+
+/// No contact on this triangle that is at least so far from the core counts as farther.
+[[nodiscard]] inline EndReaches most_end_reaches(const Triangle& triangle,
+                                                 double distance_m) noexcept
 {
     /// Many times what a contact's place and distance, and all of this, are rounded by.
     constexpr double kRounding = 1e-12;
-    if (ends.is_empty)
-    {
-        return true;
-    }
     double size_m = distance_m;
     for (const Vec3& corner : triangle)
     {
         size_m = std::max({size_m, std::abs(corner[0]), std::abs(corner[1]), std::abs(corner[2])});
     }
-    const double less_m = kEndPerDistance * distance_m - kRounding * size_m;
+    const double more_m = kRounding * size_m - kEndPerDistance * distance_m;
     const EndHeights a = end_heights(triangle[0]);
     const EndHeights b = end_heights(triangle[1]);
     const EndHeights c = end_heights(triangle[2]);
-    bool may_be = false;
-    for (std::size_t i = 0; i < kEndLengths.size(); ++i) // All at once: without a way out.
+    EndReaches reaches_m; // NOLINT(cppcoreguidelines-pro-type-member-init): the loop fills it.
+    for (std::size_t i = 0; i < kEndLengths.size(); ++i)
     {
-        const double least_m = kEndLengths[i] * (ends.reaches_m[i] + less_m);
-        const double least_back_m = kEndLengths[i] * (ends.reaches_m[opposite_end(i)] + less_m);
-        may_be |= std::max(std::max(a[i], b[i]), c[i]) >= least_m;
-        may_be |= -std::min(std::min(a[i], b[i]), c[i]) >= least_back_m;
+        reaches_m[i] = std::max(std::max(a[i], b[i]), c[i]) / kEndLengths[i] + more_m;
+        reaches_m[opposite_end(i)] =
+            -std::min(std::min(a[i], b[i]), c[i]) / kEndLengths[i] + more_m;
     }
-    return may_be;
+    return reaches_m;
+}
+
+/// Whether in some direction the first is at least as far as the second.
+[[nodiscard]] inline bool is_farther_in_any(const EndReaches& a, const EndReaches& b) noexcept
+{
+    bool is_farther = false;
+    for (std::size_t i = 0; i < a.size(); ++i) // All at once: without a way out.
+    {
+        is_farther |= a[i] >= b[i];
+    }
+    return is_farther;
 }
 
 /// Adds a face to the slab that it differs least from, or makes one. Without a normal nothing is

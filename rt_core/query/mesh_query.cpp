@@ -663,16 +663,19 @@ private:
         }
     }
 
-    /// Candidates that others have turned out to be nearer than go; where too few do, all are
-    /// measured.
+    /// Candidates go that others have turned out to be nearer than, and those that could only be
+    /// ends but for one of each direction; where too few do, all are measured.
     void make_room() noexcept
     {
-        const double most_m = measured_m();
+        const double contact_m = contact_zone_m();
+        const FarthestEnds farthest = farthest_ends();
         std::size_t left = 0;
         for (std::size_t i = 0; i < candidates_.size(); ++i)
         {
+            const bool stays = gap_of(candidates_[i]) <= contact_m ||
+                               std::ranges::find(farthest, i) != farthest.end();
             candidates_[left] = candidates_[i];
-            left += static_cast<double>(candidates_[i].gap) * quantum_m_ > most_m ? 0U : 1U;
+            left += stays ? 1U : 0U;
         }
         while (candidates_.size() > left)
         {
@@ -733,29 +736,99 @@ private:
         std::ranges::make_heap(candidates_, is_farther);
         while (!candidates_.empty())
         {
-            const double gap_m = static_cast<double>(candidates_[0].gap) * quantum_m_;
+            const double gap_m = gap_of(candidates_[0]);
             if (gap_m > measured_m())
             {
                 break;
             }
-            std::ranges::pop_heap(candidates_, is_farther);
-            const FacePair pair = candidates_.pop_back().pair;
-            const Triangle triangle = object_triangle(pair);
-            if (!changes_nothing(gap_m, triangle))
+            if (gap_m > contact_zone_m())
             {
-                add_apart(meeting_of(pair).faces, triangle,
-                          shared_.closest_points(tool_triangle(pair), triangle));
+                measure_ends();
+                break;
             }
+            std::ranges::pop_heap(candidates_, is_farther);
+            measure(candidates_.pop_back().pair);
         }
         candidates_.clear();
     }
 
-    /// A pair so far apart is not the nearest, no contact that is kept and none of their ends.
-    [[nodiscard]] bool changes_nothing(double gap_m, const Triangle& triangle) const noexcept
+    /// Farther pairs are neither the nearest nor contacts that are kept, and could only be ends.
+    [[nodiscard]] double contact_zone_m() const noexcept
     {
-        return question_.ends != nullptr &&
-               gap_m > std::max(kept_contact_m(), bound_m_ + doubt_m_) &&
-               !may_be_end(triangle, gap_m, *question_.ends);
+        return question_.ends != nullptr
+                   ? std::min(measured_m(), std::max(kept_contact_m(), bound_m_ + doubt_m_))
+                   : measured_m();
+    }
+    [[nodiscard]] double gap_of(const Candidate& candidate) const noexcept
+    {
+        return static_cast<double>(candidate.gap) * quantum_m_;
+    }
+
+    void measure(const FacePair& pair) noexcept
+    {
+        const Triangle triangle = object_triangle(pair);
+        add_apart(meeting_of(pair).faces, triangle,
+                  shared_.closest_points(tool_triangle(pair), triangle));
+    }
+
+    /// Of each direction the candidate, by its place, that may be farthest of those that could
+    /// only be ends; kMaxCandidates where none may be farther than what is known.
+    using FarthestEnds = std::array<std::size_t, kContactDirections>;
+    [[nodiscard]] FarthestEnds farthest_ends() const noexcept
+    {
+        FarthestEnds farthest{};
+        farthest.fill(kMaxCandidates);
+        if (question_.ends == nullptr)
+        {
+            return farthest;
+        }
+        const double contact_m = contact_zone_m();
+        const double asked_m = measured_m();
+        EndReaches most_m = question_.ends->reaches_m;
+        if (question_.ends->is_empty)
+        {
+            most_m.fill(-kInfinity);
+        }
+        for (std::size_t i = 0; i < candidates_.size(); ++i)
+        {
+            const double gap_m = gap_of(candidates_[i]);
+            if (gap_m <= contact_m || gap_m > asked_m)
+            {
+                continue;
+            }
+            const FacePair& pair = candidates_[i].pair;
+            const EndReaches reaches_m = most_end_reaches(object_triangle(pair), gap_m);
+            const bool is_any = is_farther_in_any(reaches_m, most_m);
+            for (std::size_t end = 0; is_any && end < kContactDirections; ++end)
+            {
+                std::size_t& place = farthest[end];
+                if (reaches_m[end] > most_m[end] ||
+                    (reaches_m[end] == most_m[end] && place != kMaxCandidates &&
+                     comes_before(meeting_of(pair).faces,
+                                  meeting_of(candidates_[place].pair).faces)))
+                {
+                    place = i;
+                    most_m[end] = reaches_m[end];
+                }
+            }
+        }
+        return farthest;
+    }
+
+    /// One of each direction: what else lies near the end of what the tool lies on is as good.
+    void measure_ends() noexcept
+    {
+        FarthestEnds farthest = farthest_ends();
+        std::ranges::sort(farthest);
+        std::size_t last = kMaxCandidates;
+        for (const std::size_t i : farthest)
+        {
+            if (i != last && i != kMaxCandidates)
+            {
+                measure(candidates_[i].pair);
+            }
+            last = i;
+        }
     }
 
     [[nodiscard]] double tool_error_m(const FacePair& pair) const noexcept

@@ -50,7 +50,9 @@ inline constexpr std::size_t kContactDirections = 26;
 
 /// The farthest contact in each direction, so that a body that lies on hundreds of faces is held at
 /// the ends of what it lies on. Far is also what would touch after a turn of a tenth: a contact
-/// counts as nearer to the middle by ten times its distance from the core.
+/// counts as nearer to the middle by ten times its distance from the core. Beyond the
+/// contacts of a tool that is a mesh one pair of faces is measured in each direction: that which
+/// might count as the farthest.
 struct ContactEnds
 {
     std::array<Contact, kContactDirections> contacts{};
