@@ -235,12 +235,18 @@ def to_image(figure, dpi=100):
 def save(figure, path, dpi=110):
     """As few bytes as a picture of few colours needs. Those that mean something stay."""
     image = to_image(figure, dpi)
-    colours = [*RAMP, *map(matplotlib.colors.to_rgb, (
-        "white", "black", TOOL, FORCE, LOADED, FORETOLD, PRESENT, TREE))]
+    colours = [[round(255 * part) for part in colour] for colour in (
+        *RAMP, *map(matplotlib.colors.to_rgb, (
+            "white", "black", TOOL, FORCE, LOADED, FORETOLD, PRESENT, TREE)))]
     palette = Image.new("P", (1, 1))
-    palette.putpalette([round(255 * part) for colour in colours for part in colour] +
-                       image.quantize(160).getpalette()[:3 * 160])
-    image.quantize(palette=palette, dither=Image.Dither.NONE).save(path, optimize=True)
+    palette.putpalette(sum(colours, []) + image.quantize(160).getpalette()[:3 * 160])
+    # What is nearest in the palette is only about the nearest.
+    places = numpy.array(image.quantize(palette=palette, dither=Image.Dither.NONE))
+    for place, colour in enumerate(colours):
+        places[(numpy.asarray(image) == colour).all(axis=2)] = place
+    exact = Image.fromarray(places, "P")
+    exact.putpalette(palette.getpalette())
+    exact.save(path, optimize=True)
 
 
 class Take:
