@@ -30,6 +30,7 @@ struct Options
     std::string file;
     bool json{false};
     bool regions{false};
+    bool records{false};
     std::string points; ///< File of those whose distances are asked for; empty: none.
     Extractor extractor;
 };
@@ -41,10 +42,14 @@ void declare_options(CommandLine& line, Options& options)
     line.add_option("FILE", options.file, "Model to look at (.spm)").required();
     line.add_flag("--json", options.json, "Print as one JSON object");
     const auto regions = line.add_flag("--regions", options.regions, "List the occupied regions");
+    const auto records = line.add_flag(
+        "--records", options.records,
+        "List the records that split vertices: whose vertex from which, how deep, where");
     line.add_option("--distances", options.points,
                     "Print, instead, how far the points of this file are from the surface: lines "
                     "x y z in metres and the source's frame")
-        .excludes(regions);
+        .excludes(regions)
+        .excludes(records);
     options.extractor.declare_options(line);
     line.add_log_options();
 }
@@ -84,7 +89,28 @@ nlohmann::json regions_of(const ModelHeader& header)
     return occupied;
 }
 
-nlohmann::json describe(const ModelStore& store, const DecodedModel& model, bool with_regions)
+nlohmann::json records_of(const DecodedModel& model)
+{
+    const ModelCounts counts = model.header().counts();
+    const std::array<double, 3>& origin_m = model.header().fields().origin_m;
+    nlohmann::json records = nlohmann::json::array();
+    for (std::uint32_t i = 0; i < counts.records; ++i)
+    {
+        const VsplitRecord& record = model.record({i});
+        std::array<double, 3> position_m = origin_m;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+        {
+            position_m[axis] += static_cast<double>(record.position_m[axis]);
+        }
+        records.push_back({{"vertex", counts.vertex_of({i}).value},
+                           {"parent", record.parent.value},
+                           {"depth", record.depth},
+                           {"position_m", position_m}});
+    }
+    return records;
+}
+
+nlohmann::json describe(const ModelStore& store, const DecodedModel& model, const Options& options)
 {
     const ModelHeader& header = store.header();
     const HeaderFields& fields = header.fields();
@@ -124,9 +150,13 @@ nlohmann::json describe(const ModelStore& store, const DecodedModel& model, bool
         {"bytes_per_face", static_cast<double>(fields.file_bytes) / fields.source_faces},
         {"chunks", header.counts().chunks()},
     };
-    if (with_regions)
+    if (options.regions)
     {
         all["regions"]["list"] = regions_of(header);
+    }
+    if (options.records)
+    {
+        all["record_list"] = records_of(model);
     }
     return all;
 }
@@ -175,6 +205,13 @@ void print_text(const nlohmann::json& all)
                        region["cell"][1].get<std::uint32_t>(),
                        region["cell"][2].get<std::uint32_t>());
         }
+    }
+    for (const nlohmann::json& record : all.value("record_list", nlohmann::json::array()))
+    {
+        fmt::print("vertex {}: from {}, depth {}, at {:.9g} {:.9g} {:.9g}\n",
+                   record["vertex"].get<std::uint32_t>(), record["parent"].get<std::uint32_t>(),
+                   record["depth"].get<std::uint32_t>(), record["position_m"][0].get<double>(),
+                   record["position_m"][1].get<double>(), record["position_m"][2].get<double>());
     }
 }
 
@@ -262,7 +299,7 @@ int run(int argc, char** argv)
             return line.fail(*fault);
         }
     }
-    const nlohmann::json all = describe(store.value(), model, options.regions);
+    const nlohmann::json all = describe(store.value(), model, options);
     if (options.json)
     {
         fmt::print("{}\n", all.dump(2));

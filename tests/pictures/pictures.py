@@ -5,10 +5,10 @@
 
     pictures.py [--quick] [--scratch DIR] BIN_DIR FOLDER [NAME...]    FOLDER/NAME, by default all
 
-A run of hrtc in virtual time is recorded; spm_view replays it and tells each frame's faces, boxes
-and forces; spm_inspect tells the true distances and coarser meshes. --quick takes a small model and
-few frames, to see that all still works; models and recordings that are in DIR are taken as they
-are. Needs python3-matplotlib, which brings Pillow.
+Runs of hrtc in virtual time are recorded; spm_view replays them and tells each frame's faces, boxes
+and forces; spm_inspect tells the true distances, coarser meshes and records; a trace tells times.
+--quick takes small models and few frames, to see that all still works; models and recordings that
+are in DIR are taken as they are. Needs python3-matplotlib, which brings Pillow.
 Exit codes: 0 done, 2 failed, 3 usage, 77 matplotlib is not here.
 """
 
@@ -206,6 +206,13 @@ def window(middle, half, ratio=1.0):
             numpy.array([middle[0] + half * ratio, middle[1] + half]))
 
 
+def touch_spans(axes, seconds, touching):
+    """A pale ground where it is so."""
+    edges = numpy.flatnonzero(numpy.diff(numpy.concatenate([[0], touching.astype(int), [0]])))
+    for begin, end in edges.reshape(-1, 2):
+        axes.axvspan(seconds[begin], seconds[end - 1], color="#f6e9d8", linewidth=0, zorder=0)
+
+
 def tool_mark(axes, camera, tool, scale_m_per_n):
     """The proxy, and the force on the hand as an arrow."""
     place = camera.see(tool["proxy_m"])
@@ -228,12 +235,56 @@ def to_image(figure, dpi=100):
 def save(figure, path, dpi=110):
     """As few bytes as a picture of few colours needs. Those that mean something stay."""
     image = to_image(figure, dpi)
-    colours = [*RAMP, *map(matplotlib.colors.to_rgb, (
-        "white", "black", TOOL, FORCE, LOADED, FORETOLD, PRESENT, TREE))]
+    colours = [[round(255 * part) for part in colour] for colour in (
+        *RAMP, *map(matplotlib.colors.to_rgb, (
+            "white", "black", TOOL, FORCE, LOADED, FORETOLD, PRESENT, TREE)))]
     palette = Image.new("P", (1, 1))
-    palette.putpalette([round(255 * part) for colour in colours for part in colour] +
-                       image.quantize(160).getpalette()[:3 * 160])
-    image.quantize(palette=palette, dither=Image.Dither.NONE).save(path, optimize=True)
+    palette.putpalette(sum(colours, []) + image.quantize(160).getpalette()[:3 * 160])
+    # What is nearest in the palette is only about the nearest.
+    places = numpy.array(image.quantize(palette=palette, dither=Image.Dither.NONE))
+    for place, colour in enumerate(colours):
+        places[(numpy.asarray(image) == colour).all(axis=2)] = place
+    exact = Image.fromarray(places, "P")
+    exact.putpalette(palette.getpalette())
+    exact.save(path, optimize=True)
+
+
+class Take:
+    """A recorded run: what its frames show, and their figures."""
+
+    def __init__(self, studio, recording):
+        self.studio, self.recording = studio, recording
+
+    def film(self):
+        return self.studio.film_of(self.recording)
+
+    def rows(self):
+        """The run frame by frame."""
+        def make():
+            path = self.studio.file(f"{self.recording.stem}.csv", lambda to: run(
+                self.studio.programs / "hrtc", "--replay", self.recording, "--export", to))
+            with open(path, newline="") as file:
+                return list(csv.DictReader(file))
+        return self.studio.once(f"rows {self.recording}", make)
+
+    def column(self, name):
+        return numpy.array([float(row[name] or "nan") for row in self.rows()])
+
+    def points(self, name):
+        return numpy.stack([self.column(f"{name}.{axis}") for axis in "xyz"], axis=1)
+
+    def forces(self):
+        return numpy.linalg.norm(self.points("tool0.sent_force_world_n"), axis=1)
+
+    def pressing(self):
+        """A frame in the middle of the longest touch."""
+        touching = numpy.concatenate([[0], (self.forces() > 0.2).astype(int), [0]])
+        begins = numpy.flatnonzero(numpy.diff(touching) == 1)
+        ends = numpy.flatnonzero(numpy.diff(touching) == -1)
+        if len(begins) == 0:
+            sys.exit("pictures: the hand touched nothing")
+        longest = numpy.argmax(ends - begins)
+        return int((begins[longest] + ends[longest]) // 2)
 
 
 class Studio:
@@ -261,56 +312,32 @@ class Studio:
             self.programs / "spm_build", "--shape", "bumpy-sphere", "--faces",
             5_000 if self.quick else 40_000, "-o", path))
 
+    def figures(self, model, *words):
+        """What spm_inspect tells of a model."""
+        return self.once(f"figures {model} {words}", lambda: json.loads(run(
+            self.programs / "spm_inspect", model, "--json", *words)))
+
     def faces(self):
         """Of the model, as its source has them."""
-        def make():
-            told = run(self.programs / "spm_inspect", self.model())
-            return int(re.search(r"^mesh .*?(\d+) faces", told, re.MULTILINE).group(1))
-        return self.once("faces", make)
+        return self.figures(self.model())["faces"]
 
-    def recording(self):
+    def play(self, name, *words):
+        """A run of hrtc in virtual time, recorded."""
+        recording = self.file(f"{name}.rec", lambda path: run(
+            self.programs / "hrtc", *words, "--device", "sim", "--virtual-time", "--allow-no-rt",
+            "--record", path))
+        return self.once(f"take {name}", lambda: Take(self, recording))
+
+    def touch(self):
         """A hand flies, lands, slides and lifts off, as in the demo."""
-        return self.file("touch.rec", lambda path: run(
-            self.programs / "hrtc", self.model(), "--no-static", "--device", "sim", "--tool",
-            f"sphere:{RADIUS_M}", "--virtual-time", "--allow-no-rt", "--duration",
-            "1" if self.quick else "3", "--record", path))
+        return self.play("touch", self.model(), "--no-static", "--tool", f"sphere:{RADIUS_M}",
+                         "--duration", "1" if self.quick else "3")
 
     def film_of(self, recording):
         def make():
             self.films.append(Film(self.programs, recording))
             return self.films[-1]
         return self.once(f"film {recording}", make)
-
-    def film(self):
-        return self.film_of(self.recording())
-
-    def rows(self):
-        """The run frame by frame."""
-        def make():
-            path = self.file("touch.csv", lambda to: run(
-                self.programs / "hrtc", "--replay", self.recording(), "--export", to))
-            with open(path, newline="") as file:
-                return list(csv.DictReader(file))
-        return self.once("rows", make)
-
-    def column(self, name):
-        return numpy.array([float(row[name] or "nan") for row in self.rows()])
-
-    def points(self, name):
-        return numpy.stack([self.column(f"{name}.{axis}") for axis in "xyz"], axis=1)
-
-    def forces(self):
-        return numpy.linalg.norm(self.points("tool0.sent_force_world_n"), axis=1)
-
-    def pressing(self):
-        """A frame in the middle of the longest touch."""
-        touching = numpy.concatenate([[0], (self.forces() > 0.2).astype(int), [0]])
-        begins = numpy.flatnonzero(numpy.diff(touching) == 1)
-        ends = numpy.flatnonzero(numpy.diff(touching) == -1)
-        if len(begins) == 0:
-            sys.exit("pictures: the hand touched nothing")
-        longest = numpy.argmax(ends - begins)
-        return int((begins[longest] + ends[longest]) // 2)
 
     def end(self):
         for film in self.films:
@@ -337,8 +364,9 @@ def camera_on(tool):
 
 def touch(studio, path):
     """The moving picture: the cut follows the tool; below, force and faces over time."""
-    film, forces = studio.film(), studio.forces()
-    middle = studio.pressing()
+    take = studio.touch()
+    film, forces = take.film(), take.forces()
+    middle = take.pressing()
     count, step = (4, 40) if studio.quick else (50, 40)
     first = max(0, min(middle - count * step // 2, len(forces) - count * step - 1))
     frames = [first + i * step for i in range(count)]
@@ -375,8 +403,8 @@ def touch(studio, path):
 
 def cut(studio, path):
     """The whole cut, and a part of it at the tool."""
-    frame = studio.pressing()
-    state, _, triangles, colours = shown(studio.film(), frame)
+    take = studio.touch()
+    state, _, triangles, colours = shown(take.film(), take.pressing())
     tool = state["tools"][0]
     camera = camera_on(tool)
     radius_m = numpy.linalg.norm(triangles.reshape(-1, 3), axis=1).max()
@@ -421,8 +449,8 @@ def levels(studio, path):
 
 def tree(studio, path):
     """Boxes of the AB-Tree at some levels over the cut."""
-    film = studio.film()
-    state, object_, triangles, colours = shown(film, studio.pressing())
+    film = studio.touch().film()
+    state, object_, triangles, colours = shown(film, studio.touch().pressing())
     camera = camera_on(state["tools"][0])
     radius_m = numpy.linalg.norm(triangles.reshape(-1, 3), axis=1).max()
     figure, axes = pyplot.subplots(1, 4, figsize=(9.6, 2.85))
@@ -442,8 +470,8 @@ def tree(studio, path):
 
 def regions(studio, path):
     """Where chunks are looked for, and the boxes of those that are loaded."""
-    film = studio.film()
-    state, object_, triangles, colours = shown(film, studio.pressing())
+    film = studio.touch().film()
+    state, object_, triangles, colours = shown(film, studio.touch().pressing())
     camera = camera_on(state["tools"][0])
     place = camera.see(state["tools"][0]["proxy_m"])
     radius_m = numpy.linalg.norm(triangles.reshape(-1, 3), axis=1).max()
@@ -470,16 +498,17 @@ def regions(studio, path):
 
 def bracket(studio, path):
     """L and U against the true distance while the tool comes near."""
-    lower = studio.column("tool0.nearest.lower_m")
-    upper = studio.column("tool0.nearest.upper_m")
-    kinds = numpy.array([row["tool0.nearest.answer"] for row in studio.rows()])
-    landed = int(numpy.argmax(studio.forces() > 0.05))
+    take = studio.touch()
+    lower = take.column("tool0.nearest.lower_m")
+    upper = take.column("tool0.nearest.upper_m")
+    kinds = numpy.array([row["tool0.nearest.answer"] for row in take.rows()])
+    landed = int(numpy.argmax(take.forces() > 0.05))
     begin, end = max(0, landed - (300 if studio.quick else 700)), landed + 150
     frames = numpy.arange(begin, min(end, len(lower)))
     frames = frames[numpy.isfinite(lower[frames]) & numpy.isfinite(upper[frames])]
     places = studio.folder / "places.txt"
     places.write_text("".join(" ".join(repr(float(x)) for x in point) + "\n" for point in
-                              studio.points("tool0.nearest.point_world_m")[frames]))
+                              take.points("tool0.nearest.point_world_m")[frames]))
     told = run(studio.programs / "spm_inspect", studio.model(), "--distances", places)
     true = numpy.array([float(line.split()[0]) for line in told.splitlines()
                         if not line.startswith("#")])
@@ -509,15 +538,16 @@ def bracket(studio, path):
 
 def force(studio, path):
     """What the hand feels, and what the frame did for it."""
-    seconds = numpy.arange(len(studio.rows())) * 1e-3
+    take = studio.touch()
+    seconds = numpy.arange(len(take.rows())) * 1e-3
     figure, axes = pyplot.subplots(3, 1, figsize=(9.0, 4.6), sharex=True)
     figure.subplots_adjust(0.075, 0.1, 0.985, 0.97, hspace=0.14)
-    axes[0].plot(seconds, studio.forces(), color=FORCE, linewidth=1)
+    axes[0].plot(seconds, take.forces(), color=FORCE, linewidth=1)
     axes[0].set_ylabel("force, N")
-    axes[1].plot(seconds, studio.column("model0.faces_used"), color=TREE, linewidth=1)
+    axes[1].plot(seconds, take.column("model0.faces_used"), color=TREE, linewidth=1)
     axes[1].set_ylabel("active faces")
-    axes[2].plot(seconds, studio.column("splits"), color=LOADED, linewidth=0.8, label="splits")
-    axes[2].plot(seconds, studio.column("merges"), color=FORETOLD, linewidth=0.8, label="merges")
+    axes[2].plot(seconds, take.column("splits"), color=LOADED, linewidth=0.8, label="splits")
+    axes[2].plot(seconds, take.column("merges"), color=FORETOLD, linewidth=0.8, label="merges")
     axes[2].set(xlabel="s", ylabel="a frame")
     axes[2].legend(frameon=False, ncol=2)
     for one in axes:
@@ -532,11 +562,8 @@ def scene(studio, path):
     glb = studio.file("scene.glb", lambda to: run(sys.executable, root / "cmake/demo_scene.py", to,
                                                   *size))
     folder = studio.file("scene", lambda to: run(studio.programs / "spm_build", glb, "-o", to))
-    recording = studio.file("scene.rec", lambda to: run(
-        studio.programs / "hrtc", folder / "scene.gltf", "--tools", "2", "--pool-mib", "8",
-        "--device", "sim", "--virtual-time", "--allow-no-rt", "--duration",
-        "1" if studio.quick else "3", "--record", to))
-    film = studio.film_of(recording)
+    film = studio.play("scene", folder / "scene.gltf", "--tools", "2", "--pool-mib", "8",
+                       "--duration", "1" if studio.quick else "3").film()
     frame = json.loads(film.get("state"))["film"]["frames"] * 3 // 5
     state = film.state(frame)
     camera = Camera((0.15, -0.75, 0.8))
@@ -569,8 +596,204 @@ def scene(studio, path):
     save(figure, path)
 
 
+def forest(studio, path):
+    """Which vertex comes from which, and which of them one frame has."""
+    small = studio.file("small.spm", lambda to: run(
+        studio.programs / "spm_build", "--shape", "bumpy-sphere", "--faces", 1_000, "--base-faces",
+        60, "-o", to))
+    take = studio.play("small", small, "--no-static", "--tool", "sphere:0.001", "--motion",
+                       "approach", "--duration", "1" if studio.quick else "2")
+    state, object_, triangles, colours = shown(take.film(), take.pressing())
+    records = studio.figures(small, "--records")["record_list"]
+    there = {tuple(numpy.round(corner, 7)) for corner in triangles.reshape(-1, 3)}
+    split = {record["vertex"]: tuple(numpy.round(record["position_m"], 7)) in there
+             for record in records}
+    depth = {record["vertex"]: record["depth"] for record in records}
+    children = {}
+    for record in records:
+        children.setdefault(record["parent"], []).append(record["vertex"])
+    base = list(range(min(depth)))
+    # A vertex to the left of those that come from it, the latest next to it: no lines cross.
+    place, waiting = {}, base[::-1]
+    while waiting:
+        vertex = waiting.pop()
+        place[vertex] = len(place)
+        waiting.extend(sorted(children.get(vertex, []), key=lambda child: depth[child]))
+    lowest = max(depth.values()) + 1
+    figure, axes = pyplot.subplots(1, 2, figsize=(9.6, 3.6),
+                                   gridspec_kw={"width_ratios": [1, 2.1]})
+    figure.subplots_adjust(0.0, 0.02, 0.995, 0.92, wspace=0.12)
+    camera = camera_on(state["tools"][0])
+    radius_m = numpy.linalg.norm(triangles.reshape(-1, 3), axis=1).max()
+    faces(axes[0], camera, triangles, colours, edge=0.4)
+    tool_mark(axes[0], camera, state["tools"][0], 0)
+    frame_axes(axes[0], (0, 0), 1.05 * radius_m)
+    axes[0].set_title(f"{len(triangles):,} faces of a frame", fontsize=11)
+    for is_split, width in ((False, 0.5), (True, 1.1)):
+        some = [record for record in records if split[record["vertex"]] == is_split]
+        lines = []
+        for record in some:
+            at, top = place[record["vertex"]], record["depth"]
+            lines += [[(place[record["parent"]], top), (at, top)], [(at, top), (at, lowest)]]
+        shade = ramp(numpy.array([record["depth"] for record in some]) /
+                     max(depth[vertex] for vertex in depth if split[vertex]))
+        axes[1].add_collection(collections.LineCollection(
+            lines, linewidths=width, zorder=2 + is_split,
+            colors=numpy.repeat(shade, 2, axis=0) if is_split else "#d5d9df"))
+    axes[1].add_collection(collections.LineCollection(
+        [[(place[vertex], 0), (place[vertex], lowest)] for vertex in base], colors=RAMP[:1],
+        linewidths=0.9, zorder=1))
+    axes[1].set(xlim=(-3, len(place) + 2), ylim=(lowest, -0.4), xticks=[], ylabel="depth")
+    axes[1].spines[["top", "right", "bottom"]].set_visible(False)
+    axes[1].set_title(f"{sum(split.values())} of {len(records)} records are split", fontsize=11)
+    save(figure, path)
+
+
+def chunks(studio, path):
+    """Which vertices come together: those of a chunk are of one tier and near each other."""
+    records = studio.figures(studio.model(), "--records")["record_list"]
+    points = numpy.array([record["position_m"] for record in records])
+    out = studio.file("pale.obj", lambda to: run(
+        studio.programs / "spm_inspect", studio.model(), "--extract", "--faces",
+        1_000 if studio.quick else 4_000, "-o", to))
+    surface = Cut.of_obj(out).triangles
+    middle = surface.reshape(-1, 3).mean(axis=0)
+    surface, points = surface - middle, points - middle
+    camera = Camera((0.6, -0.7, 0.45))
+    radius_m = numpy.linalg.norm(surface.reshape(-1, 3), axis=1).max()
+    outward = points / numpy.linalg.norm(points, axis=1)[:, None]
+    seen = camera.see(outward)[:, 2] > 0.12
+    chunk = numpy.arange(len(points)) // 64
+    last = chunk.max()
+    figure, axes = pyplot.subplots(1, 4, figsize=(9.6, 2.75))
+    figure.subplots_adjust(0.0, 0.0, 1.0, 0.9, wspace=0.0)
+    inks = pyplot.get_cmap("tab20").colors
+    for one, (begin, end) in zip(axes, ((0, 1), (1, last // 16), (last // 16, last // 4),
+                                        (last // 4, last + 1))):
+        here = seen & (chunk >= begin) & (chunk < max(end, begin + 1))
+        faces(one, camera, surface, numpy.tile(RAMP[0], (len(surface), 1)) * 0.4 + 0.6, edge=0)
+        at = camera.see(points[here])
+        one.scatter(at[:, 0], at[:, 1], s=3.0 if here.sum() > 1_000 else 9.0, linewidths=0,
+                    c=[inks[(7 * number) % 20] for number in chunk[here]], zorder=3)
+        frame_axes(one, (0, 0), 1.02 * radius_m)
+        count = max(end, begin + 1) - begin
+        one.set_title(f"chunk {begin}" if count == 1 else
+                      f"chunks {begin:,} to {begin + count - 1:,}", fontsize=11)
+    save(figure, path)
+
+
+def stages(studio, path):
+    """What the stages of each frame take, on the machine that makes the picture."""
+    trace = studio.file("touch.trace.json", lambda to: run(
+        studio.programs / "hrtc", studio.model(), "--no-static", "--tool", f"sphere:{RADIUS_M}",
+        "--device", "sim", "--allow-no-rt", "--duration", "1" if studio.quick else "3", "--trace",
+        to))
+    names = ("load", "refine", "refit", "query", "force")
+    times, touching = {name: [] for name in names}, []
+    for event in json.loads(trace.read_text())["traceEvents"]:
+        if event["name"] == "frame":
+            touching.append(event["args"]["in_contact"])
+        elif event["name"] in times and event["ph"] == "X":
+            times[event["name"]].append(event["dur"])
+    touching = numpy.array(touching, bool)
+    seconds = numpy.arange(len(touching)) * 1e-3
+    window_frames = 21
+    def smooth(values):
+        padded = numpy.pad(values, window_frames // 2, mode="edge")
+        return numpy.median(numpy.lib.stride_tricks.sliding_window_view(padded, window_frames),
+                            axis=1)
+    figure, axes = pyplot.subplots(figsize=(9.0, 3.4))
+    figure.subplots_adjust(0.075, 0.14, 0.985, 0.97)
+    touch_spans(axes, seconds, touching)
+    smoothed = numpy.array([smooth(numpy.array(times[name])) for name in names])
+    axes.stackplot(seconds, smoothed, linewidth=0,
+                   labels=("T_L load", "T_R refine", "T_B refit", "T_Q query", "force"),
+                   colors=(LOADED, TREE, FORETOLD, TOOL, FORCE))
+    half = window_frames // 2  # At the ends there are fewer frames.
+    axes.set(xlabel="s", ylabel="us", xlim=(seconds[half], seconds[-1 - half]),
+             ylim=(0, 1.2 * smoothed.sum(axis=0)[half:-half].max()))
+    axes.legend(frameon=False, ncol=5, loc="upper right")
+    axes.grid(color="#dddddd", axis="y")
+    axes.set_axisbelow(True)
+    save(figure, path)
+
+
+def bursts(studio, path):
+    """Pages that come for a hand that is elsewhere twice a second, by how many have room."""
+    regimes = ((0.15, 1.5), (0.3, 1.5), (1.2, 3), (None, 16))
+    figure, axes = pyplot.subplots(len(regimes), 1, figsize=(9.0, 1.3 * len(regimes) + 0.4),
+                                   sharex=True)
+    figure.subplots_adjust(0.075, 0.09, 0.985, 0.95, hspace=0.55)
+    frames_a_bar = 50
+    for one, (cache_mib, pool_mib) in zip(axes, regimes):
+        words = [] if cache_mib is None else ["--no-static", "--cache-mib", cache_mib]
+        take = studio.play(f"cache-{cache_mib}", studio.model(), "--pool-mib", pool_mib, *words,
+                           "--tool", f"sphere:{RADIUS_M}", "--motion", "teleport", "--duration",
+                           "1" if studio.quick else "10")
+        came = take.column("pages_adopted")
+        came = came[:len(came) // frames_a_bar * frames_a_bar]
+        kinds = numpy.array([row["tool0.nearest.answer"] for row in take.rows()])
+        seconds = numpy.arange(len(came)) * 1e-3
+        touch_spans(one, seconds, take.column("tool0.in_contact")[:len(came)] > 0)
+        one.bar(seconds[::frames_a_bar], came.reshape(-1, frames_a_bar).sum(axis=1),
+                width=frames_a_bar * 1e-3, align="edge", color=LOADED, zorder=2)
+        most = int(take.column("model0.pages_used").max())
+        room = "all" if cache_mib is None else f"{most} pages"
+        is_open = numpy.isin(kinds, ("bracket", "stale")).mean()
+        one.set_title(f"room for {room}: {int(came.sum()):,} came, {100 * is_open:.1f} % of "
+                      "the frames open", fontsize=10, loc="left")
+        one.grid(color="#dddddd", axis="y")
+        one.set_ylabel("pages")
+    axes[-1].set(xlabel="s", xlim=(0, len(came) * 1e-3))
+    save(figure, path)
+
+
+def probe(studio, path):
+    """A tool that is a mesh: both surfaces are fine where they are near each other."""
+    tool_model = studio.file("probe.spm", lambda to: run(
+        studio.programs / "spm_build", "--shape", "bumpy-sphere", "--faces",
+        2_000 if studio.quick else 10_000, "--fit-diag", 0.03, "-o", to))
+    take = studio.play("probe", studio.model(), "--no-static", "--pool-mib", 8, "--tool",
+                       f"mesh:{tool_model},0.0002", "--motion", "approach", "--duration", "2")
+    film, frame = take.film(), take.pressing()
+    state, object_, triangles, colours = shown(film, frame)
+    tool = state["tools"][0]
+    hash_ = studio.figures(tool_model)["hash"]
+    other = film.cut(state, hash_)
+    x, y, z, w = tool["proxy_rotation"]
+    origin_m = numpy.array(studio.figures(tool_model)["bounds_m"]["low"])
+    own = turned(other.triangles + origin_m,
+                 {"rotation": (x, y, z, w), "scale": 1, "translation_m": tool["proxy_m"]})
+    own_colours = ramp(other.levels / max(other.levels.max(), 1))
+    centre = own.reshape(-1, 3).mean(axis=0)
+    outward = centre / numpy.linalg.norm(centre)
+    aside = numpy.cross(outward, (0.0, 0.0, 1.0))
+    aside /= numpy.linalg.norm(aside)
+    half = 0.62 * numpy.ptp(own.reshape(-1, 3), axis=0).max()
+    figure, axes = pyplot.subplots(1, 3, figsize=(9.6, 3.4))
+    figure.subplots_adjust(0.0, 0.0, 1.0, 0.91, wspace=0.01)
+    side = Camera(aside + 0.25 * outward, up=outward)
+    faces(axes[0], side, numpy.concatenate([triangles, own]),
+          numpy.concatenate([colours, own_colours]), edge=0.3)
+    radius_m = numpy.linalg.norm(triangles.reshape(-1, 3), axis=1).max()
+    top = side.see(own.reshape(-1, 3))[:, 1].max()
+    frame_axes(axes[0], (0, (top - radius_m) / 2), 1.04 * (top + radius_m) / 2)
+    axes[0].set_title("model and tool", fontsize=11)
+    for one, eye, some, shades, name in (
+            (axes[1], outward, triangles, colours, f"the model below: {len(triangles):,} faces"),
+            (axes[2], -outward, own, own_colours, f"the tool from below: {len(own):,} faces")):
+        camera = Camera(eye)
+        place = camera.see(centre)
+        faces(one, camera, some, shades, edge=0.35, within=window(place, half))
+        frame_axes(one, place, half)
+        one.set_title(name, fontsize=11)
+    save(figure, path)
+
+
 PICTURES = {"touch.gif": touch, "cut.png": cut, "levels.png": levels, "tree.png": tree,
-            "regions.png": regions, "bracket.png": bracket, "force.png": force, "scene.png": scene}
+            "regions.png": regions, "bracket.png": bracket, "force.png": force, "scene.png": scene,
+            "forest.png": forest, "chunks.png": chunks, "stages.png": stages, "bursts.png": bursts,
+            "probe.png": probe}
 
 
 def main():

@@ -2,8 +2,6 @@
 // Copyright the Tactus authors.
 /* global Dygraph */
 
-const COLOURS = ["#3b78d8", "#d8822b", "#2f9e6e", "#a855c7", "#c94c4c"];
-
 /// Between two points of a line.
 const STEP_S = 0.1;
 
@@ -58,15 +56,25 @@ const PLOTS = [
 // Its legend is HTML with styles in it, which the page's Content-Security-Policy refuses.
 Dygraph.PLUGINS = Dygraph.PLUGINS.filter((plugin) => plugin !== Dygraph.Plugins.Legend);
 
-const line_colour = () =>
-  getComputedStyle(document.documentElement).getPropertyValue("--line").trim();
+const LINES_MAX = 5;
+
+/// What charts are drawn in, as the theme has it.
+function colours() {
+  const style = getComputedStyle(document.documentElement);
+  const value = (name) => style.getPropertyValue(name).trim();
+  return {
+    colors: Array.from({ length: LINES_MAX }, (_, i) => value(`--plot-${i + 1}`)),
+    gridLineColor: value("--line"),
+    axisLineColor: value("--line"),
+  };
+}
 
 /// Each name in its colour, with the newest value.
 function show_names(parent, labels, row) {
   parent.replaceChildren(...labels.map((label, i) => {
     const name = document.createElement("span");
     const value = row[i + 1];
-    name.style.color = COLOURS[i];
+    name.style.color = `var(--plot-${i + 1})`;
     name.textContent = value === null ? label : `${label} ${Number(value.toPrecision(3))}`;
     return name;
   }));
@@ -90,13 +98,10 @@ export class Plots {
     area.className = "area";
     card.append(title, names, area);
     this.parent.append(card);
-    const line = line_colour();
     const graph = new Dygraph(area, [[0, ...plot.labels.map(() => null)]], {
       labels: ["s", ...plot.labels],
-      colors: COLOURS,
+      ...colours(),
       strokeWidth: 1.4,
-      gridLineColor: line,
-      axisLineColor: line,
       axisLabelFontSize: 11,
       includeZero: true,
       dateWindow: [-60, 0],
@@ -130,9 +135,8 @@ export class Plots {
 
   /// After the page's colours have changed.
   take_colours() {
-    const line = line_colour();
     for (const { graph } of this.graphs) {
-      graph.updateOptions({ gridLineColor: line, axisLineColor: line });
+      graph.updateOptions(colours());
     }
   }
 }

@@ -175,6 +175,7 @@ expect 2 'in/bent.spm: 1 piece is damaged' "$inspect" in/bent.spm --distances in
 expect 3 'one at a time' \
     "$inspect" out/sphere.spm --distances in/points.txt --extract --faces 100 -o out/a.ply
 expect 3 --regions "$inspect" out/sphere.spm --distances in/points.txt --regions
+expect 3 --records "$inspect" out/sphere.spm --distances in/points.txt --records
 # So far from the origin that floats can't tell the vertices apart.
 awk '/^v/ { printf "v %.3f %s %s\n", $2 + 5e7, $3, $4; next } 1' in/mesh.obj >in/far.obj
 "$build" in/far.obj --fit-diag 0.1 -o in/far.spm >/dev/null 2>&1

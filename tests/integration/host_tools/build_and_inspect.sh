@@ -53,6 +53,23 @@ grep -q '^diagonal 20 m, a unit of the mesh is 0.04 m' large.txt || fail "$(cat 
 "$inspect" torus.spm --regions >text.txt
 grep -q 'chunks sound' text.txt || fail 'the text says nothing of sound chunks'
 grep -q '^region [0-9]*: cell' text.txt || fail '--regions'
+# Each record's vertex is new, comes from one that is there before, and is one of the source's.
+"$inspect" torus.spm --records >records.txt
+"$inspect" torus.spm --extract --error 0 -o whole.obj >/dev/null 2>&1
+awk -v records="$(figure records <built.json)" -v vertices="$(figure vertices <built.json)" '
+    function place(x, y, z) { return sprintf("%.7f %.7f %.7f", x, y, z) }
+    FNR == NR { if ($1 == "v") at[place($2, $3, $4)] = 1; next }
+    !/^vertex / { next }
+    { vertex = $2 + 0; depth[vertex] = $6 + 0; from[vertex] = $4 + 0
+      if (!(place($8, $9, $10) in at)) exit bad = 1 }
+    END {
+        if (bad || length(depth) != records) exit 1
+        for (vertex in depth) {
+            if (vertex + 0 < vertices - records || vertex + 0 >= vertices) exit 1
+            if (from[vertex] >= vertices || depth[vertex] < 1) exit 1
+            if (from[vertex] in depth && depth[from[vertex]] >= depth[vertex]) exit 1
+        }
+    }' whole.obj records.txt || fail "--records: $(tail -n 3 records.txt)"
 
 # Outside of a ring: its middle, and a point far above.
 printf '# three\n0 0 0\n\n0 0 10\n' >points.txt
