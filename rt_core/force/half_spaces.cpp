@@ -203,10 +203,18 @@ private:
             {
                 continue; // As most planes are.
             }
-            lengths_[i] = planes_[i].normal.norm();
+            if ((measured_ >> i & 1U) == 0)
+            {
+                lengths_[i] = planes_[i].normal.norm();
+                measured_ |= std::uint64_t{1} << i;
+            }
+            if (!(violation > most * lengths_[i]))
+            {
+                continue;
+            }
             const double rounding =
                 tolerance(i) * (std::abs(planes_[i].offset) + lengths_[i] * size);
-            if (violation > rounding && violation > most * lengths_[i] && !holding_.has(i))
+            if (violation > rounding && !holding_.has(i))
             {
                 worst = i;
                 most = violation / lengths_[i];
@@ -319,7 +327,8 @@ private:
     // Of the normals of planes that were violated: zeros for all would cost more than a search.
     std::array<double, kMaxHalfSpaces> lengths_;
     static_assert(kMaxHalfSpaces <= 64);
-    std::uint64_t let_pass_{0}; ///< A bit for each plane.
+    std::uint64_t measured_{0}; ///< A bit for each plane, as in
+    std::uint64_t let_pass_{0}; ///< this.
     std::uint32_t rounds_{kConstraintRounds};
 };
 
