@@ -19,7 +19,7 @@ namespace tactus
 /// are behind the planes through these features across the way between them, nothing else of it is
 /// as near: the points are known. Only features are kept that have one such pair of points: a
 /// corner and anything, or two edges that are not parallel. Haptic thread; good for triangles of
-/// one frame. 9 KiB.
+/// one frame. 2 KiB.
 class SharedFeatures // NOLINT(cppcoreguidelines-pro-type-member-init): keys come with the known.
 {
 public:
@@ -37,7 +37,7 @@ private:
         Corners second;
         ClosestPoints closest;
     };
-    static constexpr std::uint32_t kKnown = 32;
+    static constexpr std::uint32_t kKnown = 6;
 
     [[nodiscard]] std::optional<ClosestPoints>
     find(const Triangle& first, const Triangle& second) const noexcept TACTUS_NONBLOCKING;

@@ -45,7 +45,7 @@ struct Candidate
     FacePair pair;
     float gap; ///< They are at least this far apart, in quanta.
 };
-constexpr std::size_t kMaxCandidates = 256;
+constexpr std::size_t kMaxCandidates = 192;
 
 /// Exact faces that share a point.
 struct Meeting
@@ -818,16 +818,14 @@ private:
     /// One of each direction: what else lies near the end of what the tool lies on is as good.
     void measure_ends() noexcept
     {
-        FarthestEnds farthest = farthest_ends();
-        std::ranges::sort(farthest);
-        std::size_t last = kMaxCandidates;
-        for (const std::size_t i : farthest)
+        const FarthestEnds farthest = farthest_ends();
+        for (const std::size_t& place : farthest)
         {
-            if (i != last && i != kMaxCandidates)
+            const bool is_first = std::find(farthest.begin(), &place, place) == &place;
+            if (is_first && place != kMaxCandidates)
             {
-                measure(candidates_[i].pair);
+                measure(candidates_[place].pair);
             }
-            last = i;
         }
     }
 
