@@ -110,7 +110,7 @@ private:
         Vec3 last_place{0.0, 0.0, 0.0}; ///< That was asked about.
         std::array<float, 3> stand{};
     };
-    struct Plane
+    struct Plane // NOLINT(cppcoreguidelines-pro-type-member-init): many, set where they are seen.
     {
         Vec3 normal;     ///< From the face to the ball; unit length.
         double offset_m; ///< Of the centre from the plane.

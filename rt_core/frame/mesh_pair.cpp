@@ -230,14 +230,19 @@ void MeshPair::rest(ContactReport& contacts) noexcept
 /// A cover that is cut short is of larger balls.
 void MeshPair::add_work(WorkCounters& work, FrameFault& faults) noexcept
 {
-    for (OtherSurface* surface :
-         {&queried_, &objects_[0], &objects_[1], &tools_[0], &tools_[1], &covered_})
+    const auto add = [&](const OtherSurface& surface, bool lacks_some)
     {
-        const WalkBudget& budget = surface->budget();
+        const WalkBudget& budget = surface.budget();
         work.nodes_visited += budget.nodes_visited;
         work.triangles_tested += budget.triangles_tested;
-        const bool lacks_some = budget.is_spent && surface != &covered_;
-        faults |= lacks_some ? FrameFault::node_budget_spent : FrameFault::none;
+        faults |= budget.is_spent && lacks_some ? FrameFault::node_budget_spent : FrameFault::none;
+    };
+    add(queried_, true);
+    add(covered_, false);
+    for (std::size_t i = 0; i < kPlaces; ++i)
+    {
+        add(objects_[i], true);
+        add(tools_[i], true);
     }
 }
 

@@ -144,9 +144,8 @@ using EndReaches = std::array<double, kContactDirections>;
     EndReaches reaches_m; // NOLINT(cppcoreguidelines-pro-type-member-init): the loop fills it.
     for (std::size_t i = 0; i < kEndLengths.size(); ++i)
     {
-        reaches_m[i] = std::max(std::max(a[i], b[i]), c[i]) / kEndLengths[i] + more_m;
-        reaches_m[opposite_end(i)] =
-            -std::min(std::min(a[i], b[i]), c[i]) / kEndLengths[i] + more_m;
+        reaches_m[i] = std::max({a[i], b[i], c[i]}) / kEndLengths[i] + more_m;
+        reaches_m[opposite_end(i)] = -std::min({a[i], b[i], c[i]}) / kEndLengths[i] + more_m;
     }
     return reaches_m;
 }

@@ -68,7 +68,7 @@ std::vector<Triangle> sheet(Random& random, const Sheets& sheets, const Vec3& at
     return faces;
 }
 
-void expect_same(const ClosestPoints& sut, const ClosestPoints& own)
+void expect_same_points(const ClosestPoints& sut, const ClosestPoints& own)
 {
     ASSERT_EQ(sut.distance, own.distance);
     ASSERT_EQ(sut.distance_error, own.distance_error);
@@ -116,7 +116,7 @@ TEST(SharedFeatures, of_any_pairs_in_any_order_are_those_that_measuring_finds)
             {
                 const ClosestPoints own = closest_points(*faces.first, *faces.second, false);
                 ASSERT_NO_FATAL_FAILURE(
-                    expect_same(sut.closest_points(*faces.first, *faces.second), own))
+                    expect_same_points(sut.closest_points(*faces.first, *faces.second), own))
                     << sheets.name;
                 shared += points.insert({own.on_shape.x(), own.on_triangle.x()}).second ? 0 : 1;
             }
