@@ -230,7 +230,7 @@ void MeshPair::rest(ContactReport& contacts) noexcept
 /// A cover that is cut short is of larger balls.
 void MeshPair::add_work(WorkCounters& work, FrameFault& faults) noexcept
 {
-    const auto add = [&](const OtherSurface& surface, bool lacks_some)
+    const auto add = [&](OtherSurface& surface, bool lacks_some)
     {
         const WalkBudget& budget = surface.budget();
         work.nodes_visited += budget.nodes_visited;
