@@ -31,16 +31,16 @@ readonly libraries=$folder/sysroot/usr/lib/$triplet
 
 mapfile -t sources < <(apt_sources)
 ((${#sources[@]} > 0)) || skip "this machine has no apt sources of Debian's"
-if [[ ! -e sysroot.whole ]]; then
+wanted=$(sed -e 's/#.*//' "$source/cmake/packages.txt" | grep -oE '^[^ ]+-dev' | paste -sd,)
+if [[ "$(cat made_of 2>/dev/null)" != "$wanted" ]]; then
+    rm -rf sysroot made_of
     printf '%s\n' "${sources[@]}" >sources
-    wanted=$(sed -e 's/#.*//' "$source/cmake/packages.txt" | grep -oE '^[^ ]+-dev' | paste -sd,)
-    rm -rf sysroot
-    mmdebstrap --variant=extract --architectures="$architecture" --include="$wanted" \
+    await mmdebstrap --variant=extract --architectures="$architecture" --include="$wanted" \
         bookworm sysroot sources >mmdebstrap.log 2>&1 || fail "mmdebstrap failed, see \
 $folder/mmdebstrap.log: $(grep -m 1 '^E: ' mmdebstrap.log || tail -n 1 mmdebstrap.log)"
     # The mathematics library, which libccd names by its place, is the compiler's.
     sed -i "s|/usr/lib/$triplet/libm.so|m|" "$libraries/ccd/ccd-targets-none.cmake"
-    touch sysroot.whole
+    echo "$wanted" >made_of
 fi
 cat >toolchain.cmake <<TOOLCHAIN
 set(CMAKE_SYSTEM_NAME Linux)
@@ -60,9 +60,9 @@ TOOLCHAIN
 export PKG_CONFIG_SYSROOT_DIR=$folder/sysroot
 export PKG_CONFIG_LIBDIR=$libraries/pkgconfig:$folder/sysroot/usr/share/pkgconfig
 build() {
-    (cd "$source" && cmake --preset deb -B "$folder/build" \
-        -DCMAKE_TOOLCHAIN_FILE="$folder/toolchain.cmake") \
-        && cmake --build build --target hrtc spm_build spm_inspect spm_publish spm_view
+    await cmake -S "$source" --preset deb -B build \
+        -DCMAKE_TOOLCHAIN_FILE="$folder/toolchain.cmake" \
+        && await ninja -C build hrtc spm_build spm_inspect spm_publish spm_view
 }
 build >build.log 2>&1 || fail "the build for $architecture failed, see $folder/build.log: $(grep \
     -m 1 -iE 'error' build.log || tail -n 1 build.log)"

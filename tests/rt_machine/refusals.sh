@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# refusals.sh: rt_machine.sh says in one line what is missing, leaves no image that is half made and
-# nothing running. Stand-ins say what the tools would. And the hand of its scenarios can be made.
+# refusals.sh: rt_machine.sh and cross_packages.sh say in one line what is missing, leave nothing
+# half made and nothing running. Stand-ins say what the tools would. And the hand of the scenarios
+# can be made.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 readonly here
@@ -36,17 +37,18 @@ for name in bash basename cat chmod cut dirname env grep id mkdir printf python3
     [[ -e "$scratch/tools/$name" ]] || ln -s "$(command -v "$name")" "$scratch/tools/$name"
 done
 
+script=rt_machine.sh
 run() { # run ARGUMENT...: with the stand-ins alone.
     code=0
-    said=$(PATH=$scratch/tools bash "$here/rt_machine.sh" "$@" 2>&1) || code=$?
+    said=$(PATH=$scratch/tools bash "$here/$script" "$@" 2>&1) || code=$?
 }
 expect() { # expect CODE TEXT ARGUMENT...
     local wanted=$1 text=$2
     shift 2
     run "$@"
     if [[ $code != "$wanted" || "$said" != *"$text"* || "$said" == *$'\n'* ]]; then
-        printf 'rt_machine.sh %s: expected exit %d and "%s"; exit %d and:\n%s\n' \
-            "$*" "$wanted" "$text" "$code" "$said"
+        printf '%s %s: expected exit %d and "%s"; exit %d and:\n%s\n' \
+            "$script" "$*" "$wanted" "$text" "$code" "$said"
         failures=$((failures + 1))
     fi
 }
@@ -80,6 +82,29 @@ fi
 tool mmdebstrap 'echo E: no such host; exit 1'
 expect 2 'E: no such host' "${both[@]}"
 nothing_made
+
+# Packages for another processor.
+script=cross_packages.sh
+for name in aarch64-linux-gnu-{g++,strip} dpkg-deb ninja; do
+    tool "$name" 'exit 0'
+done
+for name in grep paste touch; do
+    [[ -e "$scratch/tools/$name" ]] || ln -s "$(command -v "$name")" "$scratch/tools/$name"
+done
+readonly cross=(arm64 "$scratch/amd64" "$scratch/cross")
+expect 3 'Usage' arm64
+expect 2 "packages for riscv64 can't be made, only for arm64" riscv64 "${cross[@]:1}"
+expect 2 'no folder' arm64 "$scratch/nowhere" "$scratch/cross"
+expect 2 "can't be written" arm64 "$scratch/amd64" "$scratch/file/cross"
+mv "$scratch/tools/aarch64-linux-gnu-g++" "$scratch/kept"
+expect 77 'aarch64-linux-gnu-g++ is missing (cmake/packages-rt*.txt)' "${cross[@]}"
+mv "$scratch/kept" "$scratch/tools/aarch64-linux-gnu-g++"
+expect 2 'mmdebstrap failed' "${cross[@]}" # Its stand-in finds no host.
+if [[ -e "$scratch/cross/made_of" ]]; then
+    echo 'half a sysroot is taken for a whole one'
+    failures=$((failures + 1))
+fi
+script=rt_machine.sh
 
 # Ended while the image is made: nothing runs on, and the next run begins anew and says so.
 # shellcheck disable=SC2016 # It is the stand-in's shell that knows $$.

@@ -6,6 +6,7 @@
 #include "tests/shared/shape_scenes.hpp"
 #include "tests/unit/geometry/grid.hpp"
 #include "tests/unit/geometry/integer_oracle.hpp"
+#include "tests/unit/geometry/same_points.hpp"
 
 #include <gtest/gtest.h>
 
@@ -34,18 +35,6 @@ std::optional<EdgePiercing> first_piercing(const Triangle& first, const Triangle
         }
     }
     return std::nullopt;
-}
-
-void expect_same(const ClosestPoints& a, const ClosestPoints& b)
-{
-    ASSERT_EQ(a.on_shape, b.on_shape);
-    ASSERT_EQ(a.on_triangle, b.on_triangle);
-    ASSERT_EQ(a.gap, b.gap);
-    ASSERT_EQ(a.distance, b.distance);
-    ASSERT_EQ(a.distance_error, b.distance_error);
-    ASSERT_EQ(a.meet, b.meet);
-    ASSERT_EQ(a.feature, b.feature);
-    ASSERT_EQ(a.shape_feature, b.shape_feature);
 }
 
 } // namespace

@@ -4,6 +4,7 @@
 #include "rt_core/geometry/shared_features.hpp"
 #include "rt_core/geometry/triangle_triangle.hpp"
 #include "tests/shared/random.hpp"
+#include "tests/unit/geometry/same_points.hpp"
 
 #include <gtest/gtest.h>
 
@@ -68,18 +69,6 @@ std::vector<Triangle> sheet(Random& random, const Sheets& sheets, const Vec3& at
     return faces;
 }
 
-void expect_same_points(const ClosestPoints& sut, const ClosestPoints& own)
-{
-    ASSERT_EQ(sut.distance, own.distance);
-    ASSERT_EQ(sut.distance_error, own.distance_error);
-    ASSERT_EQ(sut.on_shape, own.on_shape);
-    ASSERT_EQ(sut.on_triangle, own.on_triangle);
-    ASSERT_EQ(sut.gap, own.gap);
-    ASSERT_EQ(sut.meet, own.meet);
-    ASSERT_EQ(sut.feature, own.feature);
-    ASSERT_EQ(sut.shape_feature, own.shape_feature);
-}
-
 } // namespace
 
 TEST(SharedFeatures, of_any_pairs_in_any_order_are_those_that_measuring_finds)
@@ -116,7 +105,7 @@ TEST(SharedFeatures, of_any_pairs_in_any_order_are_those_that_measuring_finds)
             {
                 const ClosestPoints own = closest_points(*faces.first, *faces.second, false);
                 ASSERT_NO_FATAL_FAILURE(
-                    expect_same_points(sut.closest_points(*faces.first, *faces.second), own))
+                    expect_same(sut.closest_points(*faces.first, *faces.second), own))
                     << sheets.name;
                 shared += points.insert({own.on_shape.x(), own.on_triangle.x()}).second ? 0 : 1;
             }
