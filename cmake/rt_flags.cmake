@@ -26,10 +26,11 @@ endif()
 # One target per room: explicit files, headers included from the repository root. A header is the
 # first include of its source, where it has one, and is compiled alone with it; the others are where
 # CMAKE_VERIFY_INTERFACE_HEADER_SETS is on. PRECOMPILED headers of its own take the
-# place of the common ones (precompiled.cmake).
+# place of the common ones (precompiled.cmake). The global property TACTUS_ROOMS lists all of them.
 function(tactus_library name)
     cmake_parse_arguments(ARG "" "" "SOURCES;HEADERS;LINK;LINK_PRIVATE;PRECOMPILED" ${ARGN})
     add_library(${name} STATIC ${ARG_SOURCES})
+    set_property(GLOBAL APPEND PROPERTY TACTUS_ROOMS ${name})
     target_sources(${name} PUBLIC
         FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${ARG_HEADERS})
     set(alone ${ARG_HEADERS})

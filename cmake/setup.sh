@@ -15,9 +15,9 @@ Usage: bash cmake/setup.sh COMMAND [OPTIONS] [-- CTEST-OPTIONS | -- BENCH-OPTION
 Commands:
   build     install the packages that are missing and build everything into build/release
   programs  the same for the programs alone, in a fraction of the time
-  test      build, then run the tests; CTEST-OPTIONS after -- go to ctest, e.g. -- -R Arena, or
-            -- -L extended for the long runs or -- -L other_builds for builds by other
-            compilers, which are both left out otherwise
+  test      build, then run the tests that show whether Tactus works on this machine; what they
+            leave out is named at the end. CTEST-OPTIONS after -- go to ctest in their place, e.g.
+            -- -R integration or -- -L bench
   demo      build the programs, make a model, publish it over DDS on this machine and touch it
             for 10 s at 1 kHz; the report is written to build/demo/report.json. With --scene
             a scene of 200 objects, which two hands touch; with --view a browser shows it
@@ -39,6 +39,7 @@ Options:
                 rt-machine: keep its results there
   --arm64       rt-machine: with programs and a kernel for that processor, built by Debian's cross
                 compiler; in build/rt_machine_arm64
+  --all         test: every test, long runs and builds by other compilers included (hours)
   --ci          packages: the packages of .ci/run (cmake/packages-ci.txt) as well
   --bench       packages: the peers of tactus_bench (cmake/packages-bench.txt) as well
   --scene       demo: a scene instead of one model
@@ -136,21 +137,44 @@ build_programs() { # build_programs PROGRAM...
 
 # --- test ----------------------------------------------------------------------------------------
 
-# Names of the tests that ctest did not run, one per line, from its JUnit file.
+# Labels of what tells nothing about this machine: checks of the sources, pages and packages, builds
+# by other compilers, benchmarks, and runs of many minutes. `.ci/run` has them.
+readonly left_out='^(bench|extended|other_builds|packages|pictures|source)$'
+
+# Names of the tests that were not run, one per line: from ctest's JUnit file, and from those that
+# the test programs wrote.
 skipped_tests() {
-    sed -n 's/^.*<testcase name="\([^"]*\)".* status="notrun".*$/\1/p' "$1" \
-        | sed -e 's/&lt;/</g' -e 's/&gt;/>/g' -e 's/&quot;/"/g' -e "s/&apos;/'/g" -e 's/&amp;/\&/g'
+    local results
+    sed -n 's/^.*<testcase name="\([^"]*\)".* status="notrun".*$/\1/p' "$1"
+    for results in "$build"/tests/results/*.xml; do
+        sed -n 's/^.*<testcase name="\([^"]*\)".* result="skipped".* classname="\([^"]*\)".*$/\2.\1/p' \
+            "$results" | sed "s|^|$(basename "${results%%.*}").|"
+    done
 }
 
-run_tests() { # run_tests CTEST-OPTION...: without options all but long runs and other builds.
-    local code=0 junit="$build/tests.xml"
-    (($# > 0)) || set -- --label-exclude '^(extended|other_builds)$'
-    rm -f "$junit"
+# The line about the tests of those labels.
+name_left_out() {
+    local count
+    count=$(ctest --test-dir "$build" -N --label-regex "$left_out" | sed -n 's/^Total Tests: //p')
+    echo "Left out: $count tests with the labels ${left_out//[^a-z_|]/}; 'bash cmake/setup.sh test --all'" \
+        "runs all, 'bash cmake/setup.sh test -- -L bench' those of one"
+}
+
+run_tests() { # run_tests [CTEST-OPTION...]: without options those that are not left out.
+    local code=0 junit="$build/tests.xml" note=:
+    if (($# == 0)); then
+        set -- --label-exclude "$left_out"
+        note=name_left_out
+    fi
+    rm -rf "$junit" "$build/tests/results"
+    mkdir -p "$build/tests/results"
+    # The limit is against what hangs.
     ctest --test-dir "$build" --output-on-failure --no-tests=error --parallel $((2 * $(nproc))) \
-        --output-junit "$junit" "$@" || code=1
+        --timeout 1200 --output-junit "$junit" "$@" || code=1
     if [[ -f "$junit" ]]; then
         skipped_tests "$junit" >"$build/skipped_tests.txt"
     fi
+    "$note"
     return "$code"
 }
 
@@ -316,7 +340,7 @@ number_in() { # number_in OPTION VALUE LOW HIGH
 main() {
     local command='' seconds=10 domain='' more_options=()
     local lists=("$root"/cmake/packages{,-test}.txt)
-    local bench_options=() peers='' kept='' scene='' view='' architecture=''
+    local bench_options=() peers='' targets=(all) kept='' scene='' view='' architecture=''
     while (($# > 0)); do
         case "$1" in
             build | programs | test | demo | bench | rt-machine | packages)
@@ -330,6 +354,10 @@ main() {
             --peers | --docs)
                 [[ "$1" == --peers ]] || kept=$root/docs/benchmarks
                 peers='bullet;cgal;embree;fcl;meshoptimizer;openmesh'
+                ;;
+            --all)
+                more_options+=(--tests-regex .)
+                targets+=(tests_left_out)
                 ;;
             --ci | --bench) lists+=("$root/cmake/packages-${1#--}.txt") ;;
             --seconds)
@@ -348,7 +376,7 @@ main() {
                 ;;
             --)
                 shift
-                more_options=("$@")
+                more_options+=("$@")
                 break
                 ;;
             *) fail 3 "unknown argument '$1'; --help lists what there is" ;;
@@ -362,6 +390,9 @@ main() {
         [[ -z "$peers" || -n "$kept" ]] || fail 3 "--peers is for 'bench' only"
     elif [[ "$command" != bench && (-n "$peers" || ${#bench_options[@]} -gt 0) ]]; then
         fail 3 "--quick, --peers and --docs are for 'bench' and 'rt-machine' only"
+    fi
+    if [[ "$command" != test && "${targets[*]}" != all ]]; then
+        fail 3 "--all is for 'test' only"
     fi
     if [[ "$command" != rt-machine && -n "$architecture" ]]; then
         fail 3 "--arm64 is for 'rt-machine' only"
@@ -383,7 +414,8 @@ main() {
         programs) build_programs spm_build spm_inspect spm_publish spm_view hrtc ;;
         test)
             install_packages "${lists[@]}"
-            build_targets all
+            [[ " ${more_options[*]} " != *' -L '* ]] || targets+=(tests_left_out)
+            build_targets "${targets[@]}"
             run_tests "${more_options[@]}"
             ;;
         rt-machine)
