@@ -1,23 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
-# The floors of the house as data: which room may include which. cmake/checks/check_floors.cmake
-# reads this file and fails on every #include that breaks it.
+# The floors of the house as data: which room may include which. cmake/checks/guards.py reads this
+# file and fails on every #include that breaks it. It knows the three commands below, ${lists} and
+# comments, nothing else of CMake.
 #
 # A room is a folder (or one file). A file belongs to the room with the longest matching path. A
 # room may always include itself; an allowed name also allows the rooms below it ("rt_core" means
 # every room of rt_core); "*" allows everything.
-
+#
 # tactus_room(<path> <allowed room>...)
-macro(tactus_room path)
-    list(APPEND TACTUS_ROOMS ${path})
-    set(TACTUS_MAY_INCLUDE_${path} ${ARGN})
-endmacro()
-
 # tactus_outside(<first part of the include's path> <room>...): a library's headers and the only
 # rooms (with the rooms below them) that may include them.
-macro(tactus_outside prefix)
-    list(APPEND TACTUS_OUTSIDE ${prefix})
-    set(TACTUS_USED_IN_${prefix} ${ARGN})
-endmacro()
+# set(<list> <word>...)
 
 # --- rt_core: stages are siblings and never include one another; they meet in query, refine, frame.
 # Except that the forest hands each change straight to the tree

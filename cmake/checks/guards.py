@@ -1,0 +1,380 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""guards.py ROOT [--only NAME ...]: the guards over the text of the checkout ROOT.
+
+Reads each file once and prints each fault as file:line: text. Exit codes: 0 no fault, 1 a fault,
+2 a file that cannot be read or understood, 3 wrong usage.
+"""
+import argparse
+import fnmatch
+import functools
+import os
+import re
+import subprocess
+import sys
+
+CPP = ('*.hpp', '*.cpp', '*.h', '*.c', '*.idl')
+SCRIPTS = ('*.cmake', '*CMakeLists.txt', '*.sh', '.ci/run')
+PRODUCT = ('rt_core', 'transport', 'platform', 'host_tools')
+FLOORS = 'cmake/floors.cmake'
+
+
+class Refusal(Exception):
+    """The reason why the guards cannot judge the tree."""
+
+
+class Tree:
+    """The project's files below a root, by their paths from it."""
+
+    def __init__(self, root):
+        self.root = root
+        self.paths = sorted(p for p in self.listed() or self.walked() if os.path.isfile(self.at(p)))
+
+    def at(self, path):
+        return os.path.join(self.root, path)
+
+    def exists(self, path):
+        return os.path.exists(self.at(path))
+
+    def listed(self):
+        """Tracked and new files that git does not ignore; none where git does not know the tree."""
+        if not self.exists('.git'):
+            return []
+        command = ('git', '-C', self.root, 'ls-files', '-z', '--cached', '--others',
+                   '--exclude-standard')
+        try:
+            names = subprocess.run(command, check=True, capture_output=True).stdout
+        except (OSError, subprocess.CalledProcessError):
+            return []
+        return {os.fsdecode(name) for name in names.split(b'\0') if name}
+
+    def walked(self):
+        """Every file outside of build folders."""
+        for folder, folders, names in os.walk(self.root):
+            if folder == self.root:
+                folders[:] = [f for f in folders if f != '.git' and not f.startswith('build')]
+            yield from (os.path.relpath(os.path.join(folder, name), self.root) for name in names)
+
+    def files(self, *globs):
+        """The paths that match one of the globs, whose * also matches a slash."""
+        pattern = re.compile('|'.join(map(fnmatch.translate, globs)))
+        return [path for path in self.paths if pattern.match(path)]
+
+    @functools.cache
+    def text(self, path):
+        """The text of a file; empty for a binary file."""
+        with open(self.at(path), 'rb') as file:
+            content = file.read()
+        return '' if b'\0' in content else content.decode('utf-8', 'replace')
+
+    def code(self, path):
+        """The text of a CMake file without its comments."""
+        return re.sub('#.*', '', self.text(path))
+
+    def matches(self, pattern, paths):
+        """(path, line, match) for each match of the pattern, line by line."""
+        pattern = re.compile(pattern, re.MULTILINE)
+        for path in paths:
+            text = self.text(path)
+            for match in pattern.finditer(text):
+                yield path, text.count('\n', 0, match.start()) + 1, match
+
+    def prose(self, page):
+        """(line, text) of a page, code blocks left out."""
+        is_code = False
+        for number, line in enumerate(self.text(page).split('\n'), 1):
+            if re.match(' *```', line):
+                is_code = not is_code
+            elif not is_code:
+                yield number, line
+
+
+def is_within(path, bases):
+    """Whether the path is one of the bases or is below one."""
+    return any(base in ('*', path) or path.startswith(base + '/') for base in bases)
+
+
+class Floors:
+    """The table of cmake/floors.cmake. Of CMake it may use the commands of the table below, with
+    words, lists and comments; anything else is refused."""
+
+    def __init__(self, tree):
+        self.rooms, self.outside, self.lists = {}, {}, {}
+        tables = {'tactus_room': self.rooms, 'tactus_outside': self.outside, 'set': self.lists}
+        if not tree.exists(FLOORS):
+            raise Refusal(f'{FLOORS}: is not there')
+        text = tree.code(FLOORS)
+        for command in re.finditer(r'([a-z_]+)\(([^()]*)\)|\S.*', text):
+            table = tables.get(command[1])
+            words = self.expanded(command[2] or '')
+            if table is None or not words or words[0] in table:
+                line = text.count('\n', 0, command.start()) + 1
+                fault = 'has a name again' if table and words else 'is not understood'
+                raise Refusal(f'{FLOORS}:{line}: {fault}: ' + command[0].split('\n')[0])
+            table[words[0]] = words[1:]
+        if 'TACTUS_RT_CORE_STANDARD_HEADERS' not in self.lists:
+            raise Refusal(f'{FLOORS}: does not set TACTUS_RT_CORE_STANDARD_HEADERS')
+
+    def expanded(self, text):
+        """The words of a command, lists replaced by their own; none when one is not understood."""
+        words = []
+        for word in text.split():
+            name = re.fullmatch(r'\$\{(\w+)\}', word)
+            if name and name[1] in self.lists:
+                words += self.lists[name[1]]
+            elif re.fullmatch(r'[\w./*+-]+', word):
+                words.append(word)
+            else:
+                return []
+        return words
+
+    @functools.cache
+    def room_of(self, path):
+        """The room with the longest path that holds the path; empty when there is none."""
+        return max((room for room in self.rooms if is_within(path, [room])), key=len, default='')
+
+    def objection_to(self, file, header, is_quoted):
+        """Why the file may not include the header; empty when it may."""
+        room = self.room_of(file)
+        first = header.split('/')[0]
+        if first in self.outside:
+            if not is_within(file, self.outside[first]):
+                return f'only these may include {first}: {" ".join(self.outside[first])}'
+        elif is_quoted:
+            target = self.room_of(header)
+            # Types generated from IDL have no folder; like DDS itself they stay in transport/dds.
+            is_generated = header == first and is_within(file, ('transport/dds', 'tests'))
+            if not target and not is_generated:
+                return 'not a path of a room from the repository root'
+            if target and target != room and not is_within(target, self.rooms[room]):
+                return f'{room} may include: {" ".join([room, *self.rooms[room]])}'
+        elif room.startswith('rt_core'):
+            standard = self.lists['TACTUS_RT_CORE_STANDARD_HEADERS']
+            if header not in standard:
+                return f'rt_core may include: {" ".join(standard)}'
+        return ''
+
+
+# Each guard yields its faults as (path, line, text).
+
+def floors(tree):
+    """Every #include follows cmake/floors.cmake."""
+    table = Floors(tree)
+    files = tree.files(*(f'{top}/*.{end}' for top in (*PRODUCT, 'tests')
+                         for end in ('hpp', 'cpp', 'h', 'c')))
+    for path in files:
+        if not table.room_of(path):
+            yield path, 1, f'in no room; give its folder a line in {FLOORS}'
+    count = 0
+    include = r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"\n]+)[>"]'
+    for path, line, match in tree.matches(include, filter(table.room_of, files)):
+        count += 1
+        if objection := table.objection_to(path, match[2], match[1] == '"'):
+            yield path, line, f"includes '{match[2]}'; {objection}"
+    if not count:
+        yield FLOORS, 1, 'no file of a room has an #include'
+
+
+def line_length(tree):
+    """A line has at most 100 columns. A column is a character, not a byte."""
+    for path, line, match in tree.matches('^.{101,}', tree.files(*CPP, *SCRIPTS)):
+        yield path, line, f'{len(match[0])} columns; at most 100'
+
+
+def no_leftovers(tree):
+    """No mark of unfinished work. They are spelt in two parts, so that this file has none."""
+    marks = r'\b(TO' r'DO|FIX' r'ME|X' r'XX|HA' r'CK)\b'
+    for path, line, match in tree.matches(marks, tree.files(*CPP, *SCRIPTS, '*.md', '*.py')):
+        yield path, line, f'{match[0]} marks unfinished work'
+
+
+def machine_paths(tree):
+    """No absolute path of one machine. The same words in a longer path or an address are none."""
+    pattern = r'/(?<![A-Za-z0-9_./]/)(?:home|root|work|Users)/'
+    for path, line, match in tree.matches(pattern, tree.paths):
+        yield path, line, f"a path of one machine: '{match[0]}...'"
+
+
+def licence(tree):
+    """Two lines of licence at the top of C++; one, after the interpreter, in scripts."""
+    spdx = 'SPDX-License-Identifier: Apache-2.0'
+    for path in tree.files(*CPP):
+        if not tree.text(path).startswith(f'// {spdx}\n// Copyright the Tactus authors.\n'):
+            yield path, 1, 'does not begin with the two lines of licence'
+    for path in tree.files(*SCRIPTS, '*.py'):
+        if f'# {spdx}' not in tree.text(path).split('\n', 2)[:2]:
+            yield path, 1, 'has no SPDX line at the top'
+
+
+def files_listed(tree):
+    """A source, header or test folder that no CMakeLists.txt above it names is never built or run.
+
+    A path may be listed behind a folder's variable: "${folder}/name".
+    """
+    lists = tree.files('*CMakeLists.txt')
+    listed = {}
+    for path in lists:
+        words = re.split(r'[\s()"]+', tree.code(path))
+        listed[os.path.dirname(path)] = {word[at:] for word in words
+                                         for at in (0, *(m.end() for m in re.finditer('/', word)))}
+    sources = tree.files(*(f'{top}/*.{end}' for top in PRODUCT for end in ('hpp', 'cpp', 'idl')),
+                         'tests/*.cpp')
+    for path in sources + [os.path.dirname(path) for path in lists if '/' in path]:
+        folder = path
+        while folder:
+            folder = os.path.dirname(folder)
+            if os.path.relpath(path, folder or '.') in listed.get(folder, ()):
+                break
+        else:
+            yield path, 1, 'no CMakeLists.txt above it lists it'
+
+
+def limits_tested(tree):
+    """A constant of rt_core/limits.hpp that no test names, comments aside, is a limit that no test
+    reaches. Programs that measure are no tests."""
+    limits = 'rt_core/limits.hpp'
+    tests = [p for p in tree.files('tests/*/test_*.cpp') if not p.startswith('tests/bench/')]
+    named = {name for path in tests
+             for name in re.findall(r'\bk[A-Z]\w*', re.sub('//.*', '', tree.text(path)))}
+    count = 0
+    constant = r'^(?:inline )?constexpr [^;={]*?\b(k[A-Z]\w*)\s*[={]'
+    for path, line, match in tree.matches(constant, tree.files(limits)):
+        count += 1
+        if match[1] not in named:
+            yield path, line, f'{match[1]} is named in no tests/*/test_*.cpp'
+    if not count:
+        yield limits, 1, 'has no constant'
+
+
+def own_header_first(tree):
+    """A header that its own source includes first is compiled by itself there; all others are
+    compiled by .ci/run (cmake/rt_flags.cmake)."""
+    for path in tree.files(*(f'{top}/*.cpp' for top in PRODUCT)):
+        header = path.removesuffix('.cpp') + '.hpp'
+        if tree.exists(header):
+            _, line, first = next(tree.matches('^#include.*', [path]), (path, 1, ['']))
+            if first[0] != f'#include "{header}"':
+                yield path, line, f'its own header, {header}, is not the first include'
+
+
+def threads_told(tree):
+    """A header that is installed names, in a comment, the thread that may use it."""
+    components = 'cmake/components.cmake'
+    pattern = rf'\b(?:{"|".join(PRODUCT)})/[a-z0-9_/]+\.(?:hpp|h)\b'
+    text = tree.code(components) if tree.exists(components) else ''
+    headers = sorted(set(re.findall(pattern, text)))
+    comment = r'(?i)(//|/\*|^ \*).*thread'
+    told = {path for path, _, _ in tree.matches(comment, filter(tree.exists, headers))}
+    for header in headers:
+        if header not in told:
+            yield header, 1, 'is installed, and no comment says which thread may use it'
+    if not headers:
+        yield components, 1, 'installs no header'
+
+
+def links(tree):
+    """A link of a page leads to a file that is there, and to a heading of it; a page of docs/ that
+    a source, a script or another page names is there."""
+    @functools.cache
+    def anchors(page):  # As GitHub makes them.
+        lines = tree.prose(page) if os.path.isfile(tree.at(page)) else ()
+        headings = (re.match('#+ (.*)', line) for _, line in lines)
+        return {re.sub('[^a-z0-9 _-]', '', heading[1].lower()).replace(' ', '-')
+                for heading in headings if heading}
+
+    for page in tree.files('*.md'):
+        for line, text in tree.prose(page):
+            for target in re.findall(r'\]\(([^() :]+)\)', text):
+                path, _, anchor = target.partition('#')
+                path = os.path.normpath(os.path.join(os.path.dirname(page), path)) if path else page
+                if not tree.exists(path) or (anchor and anchor not in anchors(path)):
+                    yield page, line, f"a link to '{target}', which is not there"
+    named = r'\bdocs/[a-z0-9_/-]+\.(?:md|py|cpp|xml)\b'
+    for path, line, match in tree.matches(named, tree.files(*CPP, *SCRIPTS, '*.md', '*.py',
+                                                            '*.txt')):
+        if not tree.exists(match[0]):
+            yield path, line, f"names '{match[0]}', which is not there"
+
+
+class TestNames:
+    """What the tests are called, as their sources and the lists of tests/ have it.
+
+    A test is KIND.NAME in add_test, in one word or as KIND.${...} with the NAME, or the rest of it
+    behind a part_${...}, among the words of the same list; or it is the program of a tactus_test or
+    a source test_*.cpp, with the suites behind it.
+    """
+
+    def __init__(self, tree):
+        sources = tree.files('tests/*.cpp', 'tests/*.hpp')
+        suite = r'^ *(?:TYPED_|RC_GTEST_)?(?:TEST|PROP|FIXTURE_PROP)[A-Z_]*\(([A-Za-z0-9]+)'
+        self.suites = {match[1] for _, _, match in tree.matches(suite, sources)}
+        self.programs = set(re.findall(r'/(test_[a-z0-9_]*)\.cpp$', '\n'.join(sources), re.M))
+        self.whole = set()
+        self.composed = []  # (kinds, beginnings, words) of each list
+        for path in tree.files('tests/*CMakeLists.txt'):
+            text = tree.code(path)
+            self.programs.update(re.findall(r'tactus_(?:test|program)\(([a-z0-9_]+)', text))
+            self.whole.update(re.findall(r'\bNAME\s+([a-z_]+\.[a-z0-9_]+)', text))
+            self.composed.append((set(re.findall(r'\bNAME\s+([a-z_]+)\.\$', text)),
+                                  {'', *re.findall(r'([a-z0-9_]+_)\$\{', text)},
+                                  set(re.findall('[a-z0-9_]+', text))))
+        self.kinds = {name.split('.')[0] for name in self.whole}.union(
+            *(kinds for kinds, _, _ in self.composed))
+
+    def has(self, name):
+        kind, _, rest = name.partition('.')
+        return name in self.whole or any(
+            rest.startswith(beginning) and rest[len(beginning):] in words
+            for kinds, beginnings, words in self.composed if kind in kinds
+            for beginning in beginnings)
+
+
+def named_tests(tree):
+    """A test that a page names is there."""
+    tests = TestNames(tree)
+    pattern = r'`(?:(test_[a-z0-9_]+)`((?: [A-Z][A-Za-z0-9]+,?)*)|([a-z_]+)\.[a-z0-9_]+`)'
+    for page, line, match in tree.matches(pattern, tree.files('*.md')):
+        name = match[0].split('`')[1]
+        # A word with a dot in it whose beginning is no kind of test is something else.
+        if (name not in tests.programs if match[1]
+                else match[3] in tests.kinds and not tests.has(name)):
+            yield page, line, f"no test is called '{name}'"
+        for suite in (match[2] or '').replace(',', '').split():
+            if suite not in tests.suites:
+                yield page, line, f"no suite of tests is called '{suite}'"
+
+
+GUARDS = {guard.__name__: guard for guard in (
+    floors, line_length, no_leftovers, machine_paths, licence, files_listed, limits_tested,
+    own_header_first, threads_told, links, named_tests)}
+
+
+class Parser(argparse.ArgumentParser):
+    def error(self, message):
+        print(f'guards.py: {message}; --help shows the usage', file=sys.stderr)
+        sys.exit(3)
+
+
+def main(arguments):
+    parser = Parser(prog='guards.py', description='the guards over the text of a checkout',
+                    epilog='guards: ' + ' '.join(GUARDS))
+    parser.add_argument('root', metavar='ROOT', help='the root of the checkout')
+    parser.add_argument('--only', metavar='NAME', nargs='+', choices=GUARDS, default=list(GUARDS),
+                        help='the guards to run [default: all]')
+    options = parser.parse_args(arguments)
+    try:
+        tree = Tree(options.root)
+        if 'CMakeLists.txt' not in tree.paths:
+            parser.error(f"no CMakeLists.txt in '{options.root}'; is this the checkout?")
+        faults = [fault for name in options.only for fault in GUARDS[name](tree)]
+    except (Refusal, OSError) as refusal:
+        print(f'guards.py: {refusal}', file=sys.stderr)
+        return 2
+    for path, line, text in faults:
+        print(f'{path}:{line}: {text}')
+    print(f'{len(tree.paths)} files, guards: {" ".join(options.only)}; faults: {len(faults)}')
+    return 1 if faults else 0
+
+
+if __name__ == '__main__':
+    sys.exit(main(sys.argv[1:]))
