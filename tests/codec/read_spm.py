@@ -554,7 +554,7 @@ def read_model(data, table):
     header, index = read_header(data)
     positions, faces = read_base(data, header)
     boxes, coded = [], []
-    for number, box, code in read_chunks(data, header, index):
+    for number, box, code in list(read_chunks(data, header, index)):  # All are sound, then decoded.
         coded.extend(ChunkReader(code, number, header, table).records())
         boxes.append(box)
     resolver = Resolver(header, positions, faces, coded)
