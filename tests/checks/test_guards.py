@@ -36,7 +36,7 @@ class House(unittest.TestCase):
         self.script('rt_core/CMakeLists.txt', 'add_library(core base/good.hpp limits.hpp)')
         self.script('tests/CMakeLists.txt', 'add_executable(t unit/test_good.cpp)')
         self.script('cmake/components.cmake', 'tactus_component(core PUBLIC rt_core/base/good.hpp)')
-        self.source('rt_core/base/good.hpp', '#include <array>', '// Any thread.')
+        self.source('rt_core/base/good.hpp', '#include <array>', '// Threads: any.')
         self.source('rt_core/limits.hpp', 'inline constexpr int kMaxGood = 1;')
         self.source('tests/unit/test_good.cpp', '#include "rt_core/base/good.hpp"',
                     'static_assert(kMaxGood == 1);')
@@ -150,14 +150,16 @@ class Floors(House):
     def test_what_a_room_may_include_passes(self):
         self.source('platform/hrtc/main.cpp', '#include "transport/link.hpp"')
         self.source('transport/dds/link.cpp', '#include "chunks.h"', '#include <dds/dds.h>')
-        self.source('transport/link.cpp', '#include <vector>')
+        self.source('transport/link.cpp', '#include <vector>', '#include "transport/link.hpp"')
         self.source('rt_core/frame/frame.hpp', '#include "rt_core/forest/forest.hpp"')
         self.source('tests/unit/rig.hpp', '#include "platform/hrtc/loop.hpp"')
         self.accept('floors')
 
     def test_a_file_in_no_room_is_refused(self):
         self.source('host_tools/attic/old.hpp', '')
-        self.refuse('floors', 'host_tools/attic/old.hpp:1: in no room')
+        self.source('rt_core/basement/old.hpp', '')
+        self.refuse('floors', 'host_tools/attic/old.hpp:1: in no room',
+                    'rt_core/basement/old.hpp:1: in no room')
 
     def test_a_house_without_includes_is_refused(self):
         for path in ('rt_core/base/good.hpp', 'tests/unit/test_good.cpp'):
@@ -294,17 +296,19 @@ class Pages(House):
                 'tests/CMakeLists.txt', 'add_executable(t unit/test_good.cpp)',
                 'foreach(name one two)', 'add_test(NAME good.${name} COMMAND t)',
                 'add_test(NAME good.part_${name} COMMAND t)', 'endforeach()',
-                'add_test(NAME good.whole COMMAND t) # NAME good.comment',
+                'add_test(NAME other.whole COMMAND t) # NAME other.comment',
                 'tactus_test(test_all SOURCES unit/test_good.cpp)')
             self.source('tests/unit/test_good.cpp', 'TEST_F(GoodSuite, says_so) {}',
-                        'TYPED_TEST(TypedSuite, says_so) {}', 'RC_GTEST_PROP(GivenSuite, p, ()) {}')
-        named = ('`good.one`, `good.part_two`, `good.whole`, `page.md`, `test_good`\n'
-                 '`test_all` GoodSuite, TypedSuite, GivenSuite and `test_all`\n')
+                        'TYPED_TEST(TypedSuite, says_so) {}', 'RC_GTEST_PROP(GivenSuite, a, ()) {}',
+                        'RC_GTEST_FIXTURE_PROP(DrawnSuite, a, ()) {}')
+        named = ('`good.one`, `good.part_two`, `other.whole`, `page.md`, `test_good`\n'
+                 '`test_all` GoodSuite, TypedSuite, GivenSuite, DrawnSuite and `test_all`\n')
         build()
         self.text('page.md', named)
         self.accept('named_tests')
         for words, fault in (('`good.three`', "test is called 'good.three'"),
-                             ('`good.comment`', "test is called 'good.comment'"),
+                             ('`other.one`', "test is called 'other.one'"),
+                             ('`other.comment`', "test is called 'other.comment'"),
                              ('`good.part_three`', "test is called 'good.part_three'"),
                              ('`test_none`', "test is called 'test_none'"),
                              ('`test_all` GoodSuite, Bad', "suite of tests is called 'Bad'")):
