@@ -12,7 +12,7 @@
 /// Elsewhere stand, named, with unit and reason: what changes only the speed or the quality of one
 /// algorithm, at the top of its source; the rounding errors of some arithmetic, beside it; sizes
 /// that follow from a layout in memory or in a file, beside that. A test names each constant below
-/// and stands on both sides of it (guard.limits_tested).
+/// and stands on both sides of it (guard.text).
 // Any thread: constants.
 namespace tactus
 {
