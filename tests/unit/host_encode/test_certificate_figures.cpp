@@ -22,7 +22,7 @@ namespace tactus::test
 namespace
 {
 
-/// On the worst mesh; docs/internals/testing.md has what is measured.
+/// On the worst mesh; docs/benchmarks/encoder.json has what is measured.
 constexpr double kSixthRatio = 1.5;
 constexpr double kTwoThirdsRatio = 3.5;
 constexpr std::size_t kPoints = 200'000;
