@@ -4,10 +4,10 @@
 #include "host_tools/cli/run_program.hpp"
 #include "host_tools/mesh/prepare.hpp"
 #include "host_tools/mesh/read_mesh.hpp"
-#include "host_tools/scene/scene.hpp"
 #include "host_tools/shapes/shapes.hpp"
 #include "host_tools/spm_build/build_model.hpp"
 #include "host_tools/spm_build/build_scene.hpp"
+#include "host_tools/spm_build/options.hpp"
 #include "platform/base/atomic_file.hpp"
 #include "platform/base/program_log.hpp"
 
@@ -17,7 +17,7 @@
 #include <chrono>
 #include <cstdint>
 #include <string>
-#include <string_view>
+#include <variant>
 #include <vector>
 
 namespace tactus::spm_build
@@ -25,67 +25,6 @@ namespace tactus::spm_build
 
 namespace
 {
-
-struct Options
-{
-    std::string input;
-    std::string output;
-    std::string shape;
-    std::uint32_t shape_faces{0};
-    std::string unit{"m"};
-    ModelOptions model;
-    bool json{false};
-
-    /// What the model is made of, as messages name it.
-    [[nodiscard]] std::string source() const { return shape.empty() ? input : "--shape " + shape; }
-};
-
-void declare_options(CommandLine& line, Options& options)
-{
-    line.add_version(std::string("spm_build ") + TACTUS_VERSION);
-    line.begin_task("From what to where", "spm_build part.stl --unit mm -o part.spm");
-    const auto input = line.add_option(
-        "IN", options.input, "Mesh to read: .ply, .obj, .stl or .off; or scene: .gltf or .glb");
-    line.add_option("-o,--output", options.output,
-                    "Model to write (.spm); of a scene the folder for its "
-                    "models and scene.gltf")
-        .required();
-    const std::vector<std::string_view> names = shape_names();
-    const auto shape =
-        line.add_option("--shape", options.shape, "Make a shape instead of reading a mesh")
-            .one_of({names.begin(), names.end()})
-            .excludes(input);
-    const auto faces = line.add_option("--faces", options.shape_faces, "Faces of the shape")
-                           .number_between(kMinShapeFaces, kMaxShapeFaces)
-                           .needs(shape);
-    shape.needs(faces);
-    line.begin_task("Size", "spm_build scan.ply --fit-diag 0.2 -o scan.spm");
-    const auto unit =
-        line.add_option("--unit", options.unit, "Unit of the mesh's coordinates")
-            .check([](const std::string& name)
-                   { return metres_per_unit(name) ? "" : "'" + name + "' is not mm, cm, m or in"; },
-                   "mm|cm|m|in")
-            .show_default();
-    line.add_option("--fit-diag", options.model.fit_diagonal_m,
-                    "Scale the model to this bounding-box diagonal, in metres, whatever its size")
-        .number_between(kMinDiagonal_m, kMaxDiagonal_m)
-        .excludes(unit);
-    line.begin_task("Encoding", "spm_build part.stl --unit mm --position-bits 20 -o part.spm");
-    line.add_option("--position-bits", options.model.position_bits, "Bits of a coordinate")
-        .number_between(kMinPositionBits, kMaxPositionBits)
-        .show_default();
-    line.add_option("--base-faces", options.model.base_faces, "Faces of the coarsest mesh, at most")
-        .number_between(1, kMaxBaseFaces)
-        .show_default();
-    line.add_option("--region-size", options.model.region_size_m,
-                    "Edge of a region in metres, rounded down to a power of two quanta")
-        .number_between(1e-12, 1e6);
-    line.add_option("--threads", options.model.threads, "Threads to work with")
-        .number_between(1, 1024)
-        .show_default();
-    line.add_flag("--json", options.json, "Print the figures as one JSON object");
-    line.add_log_options();
-}
 
 Result<TriangleMesh, Refusal> load_source(const Options& options, std::vector<std::string>& notes)
 {
@@ -219,18 +158,6 @@ void print_scene_summary(const Options& options, const SceneOutcome& outcome)
 
 int make_scene(const CommandLine& line, const Options& options)
 {
-    for (const char* name : {"--unit", "--fit-diag"})
-    {
-        if (line.is_given(name))
-        {
-            return line.fail(fmt::format("{}: a glTF scene is in metres", name), kExitUsage);
-        }
-    }
-    if (options.output.ends_with(".spm"))
-    {
-        return line.fail("--output: a glTF scene needs a folder, which gets its models",
-                         kExitUsage);
-    }
     const auto outcome = build_scene(options.input, options.output, options.model);
     if (!outcome)
     {
@@ -251,27 +178,16 @@ int run(int argc, char** argv)
 {
     CommandLine line("spm_build", "Turns a triangle mesh into an SPM model, or each mesh of a "
                                   "glTF scene.");
-    Options options;
-    declare_options(line, options);
-    if (const auto code = line.parse(argc, argv))
+    const auto parsed = parse_options(line, argc, argv);
+    if (const int* code = std::get_if<int>(&parsed))
     {
         return *code;
     }
-    if (options.input.empty() && options.shape.empty())
-    {
-        return line.fail("give a mesh to read, or --shape and --faces; see --help", kExitUsage);
-    }
-    options.model.metres_per_unit = *metres_per_unit(options.unit);
+    const auto& options = std::get<Options>(parsed);
     AtomicFile::remove_pending_on_signal();
-    if (has_scene_extension(options.input))
+    if (options.is_of_scene())
     {
         return make_scene(line, options);
-    }
-    if (!options.output.ends_with(".spm"))
-    {
-        return line.fail(
-            fmt::format("--output: '{}' is the name of no model; one ends in .spm", options.output),
-            kExitUsage);
     }
     std::vector<std::string> notes;
     const auto outcome = build(options, notes);

@@ -5,8 +5,7 @@
 #include "host_tools/cli/run_program.hpp"
 #include "host_tools/encode/decoded_model.hpp"
 #include "host_tools/encode/false_claims.hpp"
-#include "host_tools/mesh/read_mesh.hpp"
-#include "host_tools/spm_inspect/extraction.hpp"
+#include "host_tools/spm_inspect/options.hpp"
 #include "host_tools/spm_inspect/point_distances.hpp"
 #include "transport/content_hash.hpp"
 #include "transport/store/model_store.hpp"
@@ -15,44 +14,15 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
-namespace tactus
+namespace tactus::spm_inspect
 {
 
 namespace
 {
-
-struct Options
-{
-    std::string file;
-    bool json{false};
-    bool regions{false};
-    bool records{false};
-    std::string points; ///< File of those whose distances are asked for; empty: none.
-    Extractor extractor;
-};
-
-void declare_options(CommandLine& line, Options& options)
-{
-    line.add_version(std::string("spm_inspect ") + TACTUS_VERSION);
-    line.begin_task("What is printed", "spm_inspect ball.spm --distances points.txt");
-    line.add_option("FILE", options.file, "Model to look at (.spm)").required();
-    line.add_flag("--json", options.json, "Print as one JSON object");
-    const auto regions = line.add_flag("--regions", options.regions, "List the occupied regions");
-    const auto records = line.add_flag(
-        "--records", options.records,
-        "List the records that split vertices: whose vertex from which, how deep, where");
-    line.add_option("--distances", options.points,
-                    "Print, instead, how far the points of this file are from the surface: lines "
-                    "x y z in metres and the source's frame")
-        .excludes(regions)
-        .excludes(records);
-    options.extractor.declare_options(line);
-    line.add_log_options();
-}
 
 /// The least and largest corner of the model in the source's frame.
 struct Bounds
@@ -244,24 +214,12 @@ int report_damage(const CommandLine& line, const std::vector<std::string>& damag
 int run(int argc, char** argv)
 {
     CommandLine line("spm_inspect", "Shows and checks an SPM model.");
-    Options options;
-    declare_options(line, options);
-    if (const auto code = line.parse(argc, argv))
+    const auto parsed = parse_options(line, argc, argv);
+    if (const int* code = std::get_if<int>(&parsed))
     {
         return *code;
     }
-    if (is_mesh_file_name(options.file))
-    {
-        return line.fail(fmt::format("FILE: {}", mesh_is_no_model(options.file)), kExitUsage);
-    }
-    if (const auto reason = options.extractor.wrong_usage())
-    {
-        return line.fail(*reason, kExitUsage);
-    }
-    if (!options.points.empty() && options.extractor.is_wanted())
-    {
-        return line.fail("--distances and --extract: one at a time", kExitUsage);
-    }
+    const auto& options = std::get<Options>(parsed);
     if (!options.points.empty())
     {
         const auto fault = print_distances(options.file, options.points, options.json);
@@ -313,10 +271,10 @@ int run(int argc, char** argv)
 
 } // namespace
 
-} // namespace tactus
+} // namespace tactus::spm_inspect
 
 int main(int argc, char** argv)
 {
     return tactus::run_program("spm_inspect", "about 150 bytes a face are needed",
-                               [&] { return tactus::run(argc, argv); });
+                               [&] { return tactus::spm_inspect::run(argc, argv); });
 }

@@ -3,20 +3,16 @@
 #include "host_tools/cli/command_line.hpp"
 #include "host_tools/cli/run_program.hpp"
 #include "host_tools/cli/stop_signals.hpp"
-#include "host_tools/mesh/read_mesh.hpp"
-#include "host_tools/scene/material_text.hpp"
 #include "host_tools/scene/placed_models.hpp"
-#include "host_tools/scene/scene.hpp"
 #include "host_tools/spm_publish/host_metrics.hpp"
+#include "host_tools/spm_publish/options.hpp"
 #include "host_tools/spm_publish/pose_script.hpp"
 #include "host_tools/spm_publish/serving_report.hpp"
 #include "host_tools/spm_publish/watch.hpp"
-#include "platform/base/printable.hpp"
 #include "platform/base/refusal.hpp"
 #include "transport/content_hash.hpp"
 #include "transport/dds/dds_host.hpp"
 #include "transport/dds/telemetry.hpp"
-#include "transport/model_name.hpp"
 
 #include <fmt/format.h>
 
@@ -29,27 +25,14 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
-namespace tactus
+namespace tactus::spm_publish
 {
 
 namespace
 {
-
-struct Options
-{
-    std::vector<std::string> files;
-    std::vector<std::string> names;
-    std::string scene; ///< Empty: the scene file's stem, or no name.
-    std::uint32_t domain{0};
-    std::optional<double> seconds;
-    std::string poses_path; ///< Empty: no file moves anything.
-    bool poses_loop{false};
-    std::optional<double> poses_rate_hz;
-    bool watch{false};
-    std::optional<std::uint32_t> metrics_port;
-};
 
 /// An object that may be shown.
 struct Prop
@@ -70,71 +53,6 @@ struct Extras
     std::optional<HostMetrics> metrics;
 };
 
-void declare_options(CommandLine& line, Options& options)
-{
-    line.add_version(std::string("spm_publish ") + TACTUS_VERSION);
-    line.begin_task("What is served", "spm_publish ball.spm --name toy --domain 7");
-    line.add_option("FILE", options.files,
-                    "Models to serve (.spm), or one scene (.gltf, .glb) whose objects name theirs")
-        .required();
-    line.add_option("--name", options.names,
-                    "Name of the first model, of the second, ...; without it the file's stem")
-        .repeatable_with_more();
-    line.add_option("--scene", options.scene,
-                    "Name under which controllers find all objects together (hrtc --scene); "
-                    "without it the scene file's stem");
-    line.add_option("--domain", options.domain, "DDS domain")
-        .integer_between(std::uint32_t{0}, dds::kMaxDomain)
-        .show_default();
-    line.begin_task("The run", "spm_publish ball.spm --watch --seconds 60");
-    line.add_option("--seconds,--duration", options.seconds, "End by itself after this long")
-        .number_between(0.1, 1e9);
-    line.add_flag(
-        "--watch", options.watch,
-        "Print each second what each controller on the domain does, what this host sends to "
-        "each, and of whom something was refused");
-    line.add_option("--metrics", options.metrics_port,
-                    "Port of 127.0.0.1 for Prometheus, 0: any that is free: /metrics tells what is "
-                    "served and what each controller on the domain does")
-        .integer_between(std::uint32_t{0}, std::uint32_t{65'535});
-    line.begin_task("Objects that move", "spm_publish ball.spm --poses path.txt --poses-loop");
-    line.add_option("--poses", options.poses_path,
-                    fmt::format("Move objects as this text file says, in real time: lines {} in "
-                                "order of time, in s and m, with a scene's object or the name of a "
-                                "model and a unit quaternion; '{}' in place of the numbers removes "
-                                "one, '{}' and then {} gives it another material; # begins a "
-                                "comment",
-                                kPoseLineForm, kGoneWord, kMaterialWord, kMaterialKeysForm));
-    line.add_flag("--poses-loop", options.poses_loop,
-                  "Begin the file anew at the time of its last line, again and again");
-    line.add_option("--poses-rate", options.poses_rate_hz,
-                    "So many poses a second between the lines of an object, evenly [none: an "
-                    "object stands still between its lines]")
-        .number_between(kPosesRateMin_hz, kPosesRateMax_hz);
-    line.add_log_options();
-}
-
-/// Whether a scene is served. It has a refusal when something else is asked for besides, and for
-/// files that are no models.
-Result<bool, Refusal> check_files(const Options& options)
-{
-    for (const std::string& file : options.files)
-    {
-        if (is_mesh_file_name(file))
-        {
-            return Refusal{fmt::format("FILE: {}", mesh_is_no_model(file))};
-        }
-    }
-    const bool has_scene = std::ranges::any_of(options.files, has_scene_extension);
-    if (has_scene && (options.files.size() > 1 || !options.names.empty()))
-    {
-        return Refusal{fmt::format("{}: a scene is served alone, its models under the names of "
-                                   "their files",
-                                   options.names.empty() ? "FILE" : "--name")};
-    }
-    return has_scene;
-}
-
 /// Puts a scene's models in the place of its file, and tells of its objects.
 Result<std::vector<Prop>, Refusal> open_scene(Options& options)
 {
@@ -142,10 +60,6 @@ Result<std::vector<Prop>, Refusal> open_scene(Options& options)
     if (!scene)
     {
         return scene.error();
-    }
-    if (options.scene.empty())
-    {
-        options.scene = std::filesystem::path(options.files.front()).stem().string();
     }
     std::vector<Prop> props;
     for (const PlacedModel& object : scene.value().objects)
@@ -171,41 +85,6 @@ std::vector<Prop> props_of(const std::vector<std::string>& names)
     return props;
 }
 
-/// The models' names in the order of the files; a line when one is missing, wrong or there twice.
-Result<std::vector<std::string>, Refusal> choose_names(const Options& options)
-{
-    if (options.names.size() > options.files.size())
-    {
-        return Refusal{fmt::format("--name is given {} times for {} files", options.names.size(),
-                                   options.files.size())};
-    }
-    std::vector<std::string> names;
-    for (std::size_t i = 0; i < options.files.size(); ++i)
-    {
-        const std::string& file = options.files[i];
-        const bool is_given = i < options.names.size();
-        const std::string name =
-            is_given ? options.names[i] : std::filesystem::path(file).stem().string();
-        if (!is_valid_name(name))
-        {
-            return Refusal{fmt::format("{} '{}' is not 1 to 63 characters of A-Z a-z 0-9 . _ -{}",
-                                       is_given ? "--name" : "the stem of '" + file + "',",
-                                       printable(name), is_given ? "" : "; give one with --name")};
-        }
-        for (std::size_t other = 0; other < i; ++other)
-        {
-            if (names[other] == name)
-            {
-                return Refusal{fmt::format("'{}' and '{}' would both be published as '{}'; give "
-                                           "them different names with --name",
-                                           options.files[other], file, name)};
-            }
-        }
-        names.push_back(name);
-    }
-    return names;
-}
-
 /// Reads all chunks; the rest was looked at when the file was opened.
 std::optional<Refusal> find_damage(const ModelStore& store)
 {
@@ -220,11 +99,10 @@ std::optional<Refusal> find_damage(const ModelStore& store)
     return std::nullopt;
 }
 
-Result<std::vector<dds::PublishedModel>, Refusal> open_models(const Options& options,
-                                                              const std::vector<std::string>& names)
+Result<std::vector<dds::PublishedModel>, Refusal> open_models(const Options& options)
 {
     std::vector<dds::PublishedModel> models;
-    for (std::size_t i = 0; i < names.size(); ++i)
+    for (std::size_t i = 0; i < options.names.size(); ++i)
     {
         auto store = ModelStore::open(options.files[i]);
         if (!store)
@@ -235,7 +113,7 @@ Result<std::vector<dds::PublishedModel>, Refusal> open_models(const Options& opt
         {
             return *damage;
         }
-        models.push_back({names[i], std::move(store).value()});
+        models.push_back({options.names[i], std::move(store).value()});
     }
     return models;
 }
@@ -434,19 +312,14 @@ void serve(dds::DdsHost& host, ServingReport& report, Extras& extras,
 int run(int argc, char** argv)
 {
     CommandLine line("spm_publish", "Serves SPM models to controllers over DDS.");
-    Options options;
-    declare_options(line, options);
-    if (const auto code = line.parse(argc, argv))
+    auto parsed = parse_options(line, argc, argv);
+    if (const int* code = std::get_if<int>(&parsed))
     {
         return *code;
     }
-    const auto is_scene = check_files(options);
-    if (!is_scene)
-    {
-        return line.fail(is_scene.error().text, kExitUsage);
-    }
+    auto& options = std::get<Options>(parsed);
     std::vector<Prop> props;
-    if (is_scene.value())
+    if (options.has_scene)
     {
         auto placed = open_scene(options);
         if (!placed)
@@ -454,30 +327,22 @@ int run(int argc, char** argv)
             return line.fail(placed.error().text);
         }
         props = std::move(placed).value();
+        auto names = choose_names(options.files, {});
+        if (!names)
+        {
+            return line.fail(names.error().text, kExitUsage);
+        }
+        options.names = std::move(names).value();
     }
-    const auto names = choose_names(options);
-    if (!names)
+    else
     {
-        return line.fail(names.error().text, kExitUsage);
+        props = props_of(options.names);
     }
-    if (!options.scene.empty() && !is_valid_name(options.scene))
-    {
-        return line.fail(fmt::format("--scene: '{}' is not 1 to 63 characters of A-Z a-z 0-9 . _ -",
-                                     printable(options.scene)),
-                         kExitUsage);
-    }
-    if (options.poses_path.empty() && (options.poses_loop || options.poses_rate_hz))
-    {
-        return line.fail(
-            fmt::format("{}: needs --poses", options.poses_loop ? "--poses-loop" : "--poses-rate"),
-            kExitUsage);
-    }
-    auto models = open_models(options, names.value());
+    auto models = open_models(options);
     if (!models)
     {
         return line.fail(models.error().text);
     }
-    props = is_scene.value() ? std::move(props) : props_of(names.value());
     std::vector<std::string> objects;
     std::ranges::transform(props, std::back_inserter(objects),
                            [](const Prop& prop) { return prop.shown.name; });
@@ -515,9 +380,10 @@ int run(int argc, char** argv)
 
 } // namespace
 
-} // namespace tactus
+} // namespace tactus::spm_publish
 
 int main(int argc, char** argv)
 {
-    return tactus::run_program("spm_publish", "", [&] { return tactus::run(argc, argv); });
+    return tactus::run_program("spm_publish", "",
+                               [&] { return tactus::spm_publish::run(argc, argv); });
 }

@@ -7,6 +7,7 @@
 #include "host_tools/spm_view/live_state.hpp"
 #include "host_tools/spm_view/model_fetcher.hpp"
 #include "host_tools/spm_view/model_shelf.hpp"
+#include "host_tools/spm_view/options.hpp"
 #include "host_tools/spm_view/web_server.hpp"
 #include "platform/base/program_log.hpp"
 #include "transport/dds/front.hpp"
@@ -22,6 +23,7 @@
 #include <string>
 #include <thread>
 #include <utility>
+#include <variant>
 #include <vector>
 
 namespace tactus::view
@@ -33,41 +35,6 @@ namespace
 /// Between two looks at what has come over DDS, and while pieces of models are on their way.
 constexpr std::chrono::milliseconds kLook{25};
 constexpr std::chrono::milliseconds kBusyLook{1};
-
-struct Options
-{
-    std::vector<std::string> files;
-    std::vector<std::string> recordings;
-    std::uint32_t port{7'300};
-    std::uint32_t domain{0};
-    std::optional<double> seconds;
-};
-
-void declare_options(CommandLine& line, Options& options)
-{
-    line.add_version(std::string("spm_view ") + TACTUS_VERSION);
-    line.begin_task("Watch controllers", "spm_view bunny.spm --domain 3");
-    line.add_option("FILE", options.files,
-                    "Models that controllers touch (.spm), found by their hashes. Others are "
-                    "fetched from their hosts, as far as controllers refine them");
-    const auto domain = line.add_option("--domain", options.domain, "DDS domain")
-                            .integer_between(std::uint32_t{0}, dds::kMaxDomain)
-                            .show_default();
-    line.begin_task("Play a recording, or compare two",
-                    "spm_view --replay run.rec --replay again.rec");
-    line.add_option("--replay", options.recordings,
-                    "Recording of hrtc --record, in place of what is live; a second one is "
-                    "compared with it. Needs no model file")
-        .repeatable()
-        .excludes(domain);
-    line.begin_task("Serve the page", "spm_view --port 8080 --seconds 3600");
-    line.add_option("--port", options.port, "Port of 127.0.0.1; 0: any that is free")
-        .integer_between(std::uint32_t{0}, std::uint32_t{65'535})
-        .show_default();
-    line.add_option("--seconds", options.seconds, "End by itself after this long")
-        .number_between(0.1, 1e9);
-    line.add_log_options();
-}
 
 /// Since the program began to serve.
 class Stay
@@ -229,18 +196,12 @@ int run(int argc, char** argv)
 {
     CommandLine line("spm_view", "Shows in a browser of this machine what controllers touch, and "
                                  "why a force is withheld.");
-    Options options;
-    declare_options(line, options);
-    if (const auto code = line.parse(argc, argv))
+    const auto parsed = parse_options(line, argc, argv);
+    if (const int* code = std::get_if<int>(&parsed))
     {
         return *code;
     }
-    if (options.recordings.size() > 2)
-    {
-        return line.fail(fmt::format("--replay: {} recordings, two at most are compared",
-                                     options.recordings.size()),
-                         kExitUsage);
-    }
+    const auto& options = std::get<Options>(parsed);
     const auto shelf = ModelShelf::open(options.files);
     if (!shelf)
     {

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "host_tools/spm_build/build_model.hpp"
+
+#include <cstdint>
+#include <string>
+#include <variant>
+
+namespace tactus
+{
+class CommandLine;
+} // namespace tactus
+
+namespace tactus::spm_build
+{
+
+/// Everything that the command line says; checked, in SI.
+struct Options
+{
+    std::string input;
+    std::string output;
+    std::string shape;
+    std::uint32_t shape_faces{0};
+    std::string unit{"m"};
+    ModelOptions model;
+    bool json{false};
+
+    /// What the model is made of, as messages name it.
+    [[nodiscard]] std::string source() const { return shape.empty() ? input : "--shape " + shape; }
+    /// Whether `input` is a scene, and `output` the folder for its models.
+    [[nodiscard]] bool is_of_scene() const;
+};
+
+/// Reads the command line. Returns the exit code instead when the program should leave: after
+/// --help, --version, or wrong usage, which gets one line on stderr.
+[[nodiscard]] std::variant<Options, int> parse_options(CommandLine& line, int argc, char** argv);
+
+} // namespace tactus::spm_build

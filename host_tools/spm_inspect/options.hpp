@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "host_tools/spm_inspect/extraction.hpp"
+
+#include <string>
+#include <variant>
+
+namespace tactus
+{
+class CommandLine;
+} // namespace tactus
+
+namespace tactus::spm_inspect
+{
+
+/// Everything that the command line says; checked, in SI.
+struct Options
+{
+    std::string file;
+    bool json{false};
+    bool regions{false};
+    bool records{false};
+    std::string points; ///< File of those whose distances are asked for; empty: none.
+    Extractor extractor;
+};
+
+/// Reads the command line. Returns the exit code instead when the program should leave: after
+/// --help, --version, or wrong usage, which gets one line on stderr.
+[[nodiscard]] std::variant<Options, int> parse_options(CommandLine& line, int argc, char** argv);
+
+} // namespace tactus::spm_inspect

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "host_tools/spm_publish/options.hpp"
+
+#include "host_tools/cli/command_line.hpp"
+#include "host_tools/mesh/read_mesh.hpp"
+#include "host_tools/scene/material_text.hpp"
+#include "host_tools/scene/scene.hpp"
+#include "host_tools/spm_publish/pose_script.hpp"
+#include "platform/base/printable.hpp"
+#include "transport/dds/domain.hpp"
+#include "transport/model_name.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+namespace tactus::spm_publish
+{
+
+namespace
+{
+
+void declare_options(CommandLine& line, Options& options)
+{
+    line.add_version("spm_publish " TACTUS_VERSION);
+    line.begin_task("What is served", "spm_publish ball.spm --name toy --domain 7");
+    line.add_option("FILE", options.files,
+                    "Models to serve (.spm), or one scene (.gltf, .glb) whose objects name theirs")
+        .required();
+    line.add_option("--name", options.names,
+                    "Name of the first model, of the second, ...; without it the file's stem")
+        .repeatable_with_more();
+    line.add_option("--scene", options.scene,
+                    "Name under which controllers find all objects together (hrtc --scene); "
+                    "without it the scene file's stem");
+    line.add_option("--domain", options.domain, "DDS domain")
+        .integer_between(std::uint32_t{0}, dds::kMaxDomain)
+        .show_default();
+    line.begin_task("The run", "spm_publish ball.spm --watch --seconds 60");
+    line.add_option("--seconds,--duration", options.seconds, "End by itself after this long")
+        .number_between(0.1, 1e9);
+    line.add_flag(
+        "--watch", options.watch,
+        "Print each second what each controller on the domain does, what this host sends to "
+        "each, and of whom something was refused");
+    line.add_option("--metrics", options.metrics_port,
+                    "Port of 127.0.0.1 for Prometheus, 0: any that is free: /metrics tells what is "
+                    "served and what each controller on the domain does")
+        .integer_between(std::uint32_t{0}, std::uint32_t{65'535});
+    line.begin_task("Objects that move", "spm_publish ball.spm --poses path.txt --poses-loop");
+    line.add_option("--poses", options.poses_path,
+                    fmt::format("Move objects as this text file says, in real time: lines {} in "
+                                "order of time, in s and m, with a scene's object or the name of a "
+                                "model and a unit quaternion; '{}' in place of the numbers removes "
+                                "one, '{}' and then {} gives it another material; # begins a "
+                                "comment",
+                                kPoseLineForm, kGoneWord, kMaterialWord, kMaterialKeysForm));
+    line.add_flag("--poses-loop", options.poses_loop,
+                  "Begin the file anew at the time of its last line, again and again");
+    line.add_option("--poses-rate", options.poses_rate_hz,
+                    "So many poses a second between the lines of an object, evenly [none: an "
+                    "object stands still between its lines]")
+        .number_between(kPosesRateMin_hz, kPosesRateMax_hz);
+    line.add_log_options();
+}
+
+/// Files that are no models, and what is asked for besides a scene. Empty when all is well.
+std::string check_files(const Options& options)
+{
+    for (const std::string& file : options.files)
+    {
+        if (is_mesh_file_name(file))
+        {
+            return "FILE: " + mesh_is_no_model(file);
+        }
+    }
+    if (options.has_scene && (options.files.size() > 1 || !options.names.empty()))
+    {
+        return fmt::format("{}: a scene is served alone, its models under the names of their files",
+                           options.names.empty() ? "FILE" : "--name");
+    }
+    return "";
+}
+
+/// Empty when all is well.
+std::string take_names(Options& options)
+{
+    if (options.has_scene)
+    {
+        if (options.scene.empty())
+        {
+            options.scene = std::filesystem::path(options.files.front()).stem().string();
+        }
+        return ""; // Its models are known once it is read.
+    }
+    auto names = choose_names(options.files, options.names);
+    if (!names)
+    {
+        return names.error().text;
+    }
+    options.names = std::move(names).value();
+    return "";
+}
+
+/// What one option alone can't tell. Empty when all is well.
+std::string check_together(Options& options)
+{
+    options.has_scene = std::ranges::any_of(options.files, has_scene_extension);
+    if (const std::string fault = check_files(options); !fault.empty())
+    {
+        return fault;
+    }
+    if (const std::string fault = take_names(options); !fault.empty())
+    {
+        return fault;
+    }
+    if (!options.scene.empty() && !is_valid_name(options.scene))
+    {
+        return fmt::format("--scene: '{}' is not 1 to 63 characters of A-Z a-z 0-9 . _ -",
+                           printable(options.scene));
+    }
+    if (options.poses_path.empty() && (options.poses_loop || options.poses_rate_hz))
+    {
+        return fmt::format("{}: needs --poses",
+                           options.poses_loop ? "--poses-loop" : "--poses-rate");
+    }
+    return "";
+}
+
+} // namespace
+
+Result<std::vector<std::string>, Refusal> choose_names(std::span<const std::string> files,
+                                                       std::span<const std::string> given)
+{
+    if (given.size() > files.size())
+    {
+        return Refusal{
+            fmt::format("--name is given {} times for {} files", given.size(), files.size())};
+    }
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < files.size(); ++i)
+    {
+        const std::string& file = files[i];
+        const bool is_given = i < given.size();
+        const std::string name = is_given ? given[i] : std::filesystem::path(file).stem().string();
+        if (!is_valid_name(name))
+        {
+            return Refusal{fmt::format("{} '{}' is not 1 to 63 characters of A-Z a-z 0-9 . _ -{}",
+                                       is_given ? "--name" : "the stem of '" + file + "',",
+                                       printable(name), is_given ? "" : "; give one with --name")};
+        }
+        for (std::size_t other = 0; other < i; ++other)
+        {
+            if (names[other] == name)
+            {
+                return Refusal{fmt::format("'{}' and '{}' would both be published as '{}'; give "
+                                           "them different names with --name",
+                                           files[other], file, name)};
+            }
+        }
+        names.push_back(name);
+    }
+    return names;
+}
+
+std::variant<Options, int> parse_options(CommandLine& line, int argc, char** argv)
+{
+    Options options;
+    declare_options(line, options);
+    if (const auto code = line.parse(argc, argv))
+    {
+        return *code;
+    }
+    if (const std::string fault = check_together(options); !fault.empty())
+    {
+        return line.fail(fault, kExitUsage);
+    }
+    return options;
+}
+
+} // namespace tactus::spm_publish

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace tactus
+{
+class CommandLine;
+} // namespace tactus
+
+namespace tactus::view
+{
+
+/// Everything that the command line says; checked, in SI.
+struct Options
+{
+    std::vector<std::string> files;
+    std::vector<std::string> recordings; ///< At most two; none: what is live is shown.
+    std::uint32_t port{7'300};
+    std::uint32_t domain{0};
+    std::optional<double> seconds;
+};
+
+/// Reads the command line. Returns the exit code instead when the program should leave: after
+/// --help, --version, or wrong usage, which gets one line on stderr.
+[[nodiscard]] std::variant<Options, int> parse_options(CommandLine& line, int argc, char** argv);
+
+} // namespace tactus::view
