@@ -8,6 +8,7 @@ import subprocess
 import sys
 import tempfile
 import time
+import tracemalloc
 
 try:
     import numpy as np
@@ -18,9 +19,7 @@ except ImportError:
 folder, spm_build, spm_inspect, spm_publish, pose_loop, page = (
     os.path.abspath(path) for path in sys.argv[1:7])
 DOMAIN = int(os.environ.get("TACTUS_TEST_DOMAIN", os.getpid() % 231))
-# Against the loop in C++: the least of so many times each, of the processor and not of the clock.
-REPETITIONS = 5
-RATIO_MAX = 1.2
+PATIENCE_S = 150
 sys.path.insert(0, folder)
 import tactus  # noqa: E402
 
@@ -153,16 +152,12 @@ def check_loop(path, scratch, count):
                          memory_mib=32, loads_whole=True)
     load_whole(frame, poses[:1])
     out = os.path.join(scratch, "out")
-    loops_s, calls_s = [], []
-    for i in range(REPETITIONS):
-        loops_s.append(float(subprocess.run(
-            [pose_loop, path, os.path.join(scratch, "poses"), "0.002", out],
-            check=True, capture_output=True, text=True).stdout))
-        begin = time.thread_time()
-        answered = frame.run(poses)
-        calls_s.append(time.thread_time() - begin)
-        answers = answered if i == 0 else answers  # Later ones start where the hand ended.
-    loop_s, call_s = min(loops_s), min(calls_s)
+    loop_s = float(subprocess.run(
+        [pose_loop, path, os.path.join(scratch, "poses"), "0.002", out],
+        check=True, capture_output=True, text=True).stdout)
+    begin = time.thread_time()
+    answers = frame.run(poses)
+    call_s = time.thread_time() - begin
     loop = np.fromfile(out).reshape(count, 5)
     expect(np.array_equal(answers.force_n, loop[:, :3]), "forces differ from those of a C++ loop")
     expect(np.array_equal(answers.lower_m[:, 0], loop[:, 3]), "lower bounds differ")
@@ -172,7 +167,22 @@ def check_loop(path, scratch, count):
     expect(np.all(np.linalg.norm(answers.force_n[~touched], axis=1) == 0), "a force without touch")
     print(f"{count} poses: {call_s:.3f} s in one call, {loop_s:.3f} s in a loop of C++,"
           f" ratio {call_s / loop_s:.2f}")
-    expect(call_s <= RATIO_MAX * loop_s, f"a call takes more than {RATIO_MAX} of the loop")
+    few, many = python_work(frame, poses[:10]), python_work(frame, poses)
+    expect(few == many, f"Python's calls and bytes: {few} of 10 poses, {many} of {count}")
+
+
+def python_work(frame, poses):
+    """What a call costs Python: entries into its functions and C's, bytes but for the arrays."""
+    calls = []
+    sys.setprofile(lambda scope, event, function: calls.append(event))
+    frame.run(poses)
+    sys.setprofile(None)
+    tracemalloc.start()
+    answers = frame.run(poses)
+    most = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    arrays = [getattr(answers, name) for name in dir(answers) if not name.startswith("_")]
+    return len(calls), (most - sum(array.nbytes for array in arrays)) // 65_536
 
 
 def samples(shape, half):
@@ -264,7 +274,7 @@ def forces_when_shaken(path, speed_m_per_s):
     return np.linalg.norm(np.diff(forces, axis=0), axis=1).max(), np.array(flags)
 
 
-def check_carried(path):
+def check_carried(path, corners):
     """An object that is touched is carried no faster than is believed, and gets where it is put."""
     believed, flags = forces_when_shaken(path, 1e6)
     expect(believed > 1.5 and not np.any(flags & tactus.OUTRUN), f"a step of {believed} N")
@@ -276,11 +286,13 @@ def check_carried(path):
     frame = tactus.Frame([tactus.Model(path)], [tactus.Tool(0.002), probe], [tactus.Object()],
                          memory_mib=32, loads_whole=True)
 
+    stands_m = distance(np.array([0.05, 0, 0.2]), corners)
+
     def run(heights):
         places = [[[0.05, 0, height], [0.05, 0, 0.2]] for height in heights]
         answers = frame.run(places)
         expect(np.all(answers.kind[:, 1] == tactus.EXACT), "a height that isn't exact")
-        return 0.18 - answers.lower_m[:, 1, 0], answers.flags[:, 0]
+        return stands_m - answers.lower_m[:, 1, 0], answers.flags[:, 0]
 
     load_whole(frame, [[[0.05, 0, 0.03], [0.05, 0, 0.2]]])
     _, flags = run(np.linspace(0.03, 0.021, 200))
@@ -313,14 +325,14 @@ def check_host(path):
     host = subprocess.Popen([spm_publish, "--domain", str(DOMAIN), path],
                             stdout=subprocess.DEVNULL)
     try:
-        model = tactus.Model.find("torus", domain=DOMAIN, wait_s=20)
-        expect(model.hash == tactus.Model(path).hash and model.faces == 20000, "another model")
-        pinned = tactus.Model.find(f"torus@{model.hash}", DOMAIN, 20)
+        model = tactus.Model.find("torus", domain=DOMAIN, wait_s=PATIENCE_S)
+        expect(model.hash == tactus.Model(path).hash and model.faces == 5000, "another model")
+        pinned = tactus.Model.find(f"torus@{model.hash}", DOMAIN, PATIENCE_S)
         expect(pinned.hash == model.hash, "another model by its hash")
         frame = tactus.Frame([model], [tactus.Tool(0.02, passes_through=True)],
                              [tactus.Object()], memory_mib=8)
         places = np.array([[0.05, 0, 0.03], [0, 0.05, 0.025]])
-        end = time.monotonic() + 30
+        end = time.monotonic() + PATIENCE_S
         answers = frame.run(places)
         while np.any(answers.kind != tactus.EXACT) and time.monotonic() < end:
             frame.load()  # What was asked for is on its way.
@@ -419,8 +431,8 @@ def main():
     with tempfile.TemporaryDirectory() as scratch:
         path = os.path.join(scratch, "torus.spm")
         stl = os.path.join(scratch, "torus.stl")
-        for line in ([spm_build, "--shape", "torus", "--faces", "20000", "-o", path],
-                     [spm_inspect, path, "--extract", "--faces", "20000", "-o", stl]):
+        for line in ([spm_build, "--shape", "torus", "--faces", "5000", "-o", path],
+                     [spm_inspect, path, "--extract", "--faces", "5000", "-o", stl]):
             subprocess.run(line, check=True, capture_output=True)
         corners = read_stl(stl)
         model = tactus.Model(path)
@@ -434,7 +446,7 @@ def main():
         check_shapes(path, corners)
         check_torque(path)
         check_feel(path)
-        check_carried(path)
+        check_carried(path, corners)
         check_host(path)
         check_refusals(path)
         check_page(scratch)
