@@ -16,9 +16,7 @@ drive() { # drive: a driver of its own; its id is in $driving.
 }
 # What it names; no force from it above the device's, no own fault.
 end_well() { # end_well REFUSAL
-    stop TERM "$controller"
-    cat hrtc.log
-    ((stopped_with == 0)) || fail "hrtc ended with $stopped_with"
+    stop_hrtc
     check report.json frames '>' 300 force.max_n '<=' 8 "tools.0.traffic.refused.$1" '>=' 3
     check_clean report.json
     grep -q 'tool 0: [0-9]* datagrams .* refused, most of them: ' hrtc.log \
@@ -29,28 +27,30 @@ touch_by_udp() {
     model bumpy-sphere-20000 bumpy.spm
     drive
     start_hrtc --transport file --model bumpy.spm --device "udp:$port" \
-        --device-frame 0,0,0.06 --duration 60 --report report.json
-    wait_for_sleeps 300 "$controller"
+        --device-frame 0,0,0.06 --duration 600 --wait "$patience_s" --report report.json
+    wait_for_line hrtc.log 'touch: '
+    wait_for_more "$driving" 400
 }
 
 case $attack in
     udp_impostor)
-        # It describes itself ten times a second, and waits for the driver to stumble.
+        # It describes itself ten times a second, and waits for the driver to stumble: for longer
+        # than hrtc takes to miss it.
         touch_by_udp
         true_one=$driving
         drive
-        sleep 1.5
+        wait_for_more "$driving" 800
         kill -STOP "$true_one"
-        sleep 0.2
+        wait_for_more "$driving" 200
         kill -CONT "$true_one"
-        sleep 1
+        wait_for_more "$driving" 500
         end_well foreign
         # The true one's instance alone, however often it stumbled: no force for the other.
         check report.json tools.0.traffic.samples '>' 100
         ;;
     udp_flooded)
         touch_by_udp
-        python3 "$flood" "$port" 1.5 >flood.log || fault "the flood: $(cat flood.log)"
+        python3 "$flood" "$port" 0 >flood.log || fault "the flood: $(cat flood.log)"
         end_well size
         check report.json tools.0.traffic.samples '>' 100
         ;;
@@ -64,10 +64,10 @@ case $attack in
                 printf "f 1 2 %d\n", i + 3
             }
         }' >fan.obj
-        # What is left can't vanish in the rounds that are left; no more than a minute of processor
-        # time. It may tell how far it is before.
+        # What is left can't vanish in the rounds that are left, which it finds after seconds. It may
+        # tell how far it is before.
         code=0
-        (ulimit -t 60 && "$build" fan.obj --unit m -o fan.spm) >build.log 2>&1 || code=$?
+        (ulimit -t 600 && "$build" fan.obj --unit m -o fan.spm) >build.log 2>&1 || code=$?
         { ((code == 2)) && tail -n 1 build.log | grep -Eq \
             "not written: the mesh can't be simplified below 2[0-9]{3} faces"; } \
             || fault "spm_build ended with $code: $(cat build.log)"

@@ -3,9 +3,10 @@
 
 /// attacker DOMAIN SECONDS ATTACK[@MICROSECONDS] [PORT...]: a stranger on a domain where a host and
 /// a controller are. It needs no rights and nothing of ours but the topics' types, and those that
-/// begin with rtps_ nothing but the others' UDP ports. Waits until it has seen both, then does one
-/// thing again and again, with its own or the given pause (0: none), at least 20 times and for so
-/// long, and tells how often. Exits 2 when it saw nobody.
+/// begin with rtps_ nothing but the others' UDP ports. Waits until it has seen both, for
+/// ATTACKER_PATIENCE_S at most, then does one thing again and again, with its own or the given
+/// pause (0: none), as often as the attack takes and at least for so long, and tells how often.
+/// Exits 2 when it saw nobody.
 
 #include "tests/hostile/raw_rtps.hpp"
 #include "transport/content_hash.hpp"
@@ -35,7 +36,12 @@ namespace
 using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
 
-constexpr auto kPatience = 10s;
+/// Only what never comes is waited for so long.
+std::chrono::seconds patience()
+{
+    const char* text = std::getenv("ATTACKER_PATIENCE_S");
+    return std::chrono::seconds(text != nullptr ? std::atoi(text) : 150);
+}
 
 std::int32_t checked(std::int32_t handle)
 {
@@ -66,7 +72,7 @@ public:
     /// Whether a host and a controller that speaks to it were seen.
     bool sees_both()
     {
-        const auto end = Clock::now() + kPatience;
+        const auto end = Clock::now() + patience();
         while (Clock::now() < end && (host.host_epoch == 0 || victim.host_epoch == 0))
         {
             take(catalogue_, host);
@@ -76,7 +82,7 @@ public:
         return host.host_epoch != 0 && victim.host_epoch != 0;
     }
 
-    /// As the honest ones are, so that all readers match.
+    /// As the honest ones are, so that all readers match; one of the others' has.
     [[nodiscard]] std::int32_t writer(const char* topic, const dds_topic_descriptor_t& type,
                                       const std::string& partition, bool best_effort = false) const
     {
@@ -94,7 +100,16 @@ public:
         const auto of = checked(dds_create_topic(participant_, &type, topic, nullptr, nullptr));
         const auto made = checked(dds_create_writer(publisher, of, qos, nullptr));
         dds_delete_qos(qos);
-        std::this_thread::sleep_for(200ms); // Until it is known.
+        const auto end = Clock::now() + patience();
+        while (!is_heard(made))
+        {
+            if (Clock::now() > end)
+            {
+                std::fprintf(stderr, "attacker: nobody reads %s\n", topic);
+                std::exit(2);
+            }
+            std::this_thread::sleep_for(5ms);
+        }
         return made;
     }
     [[nodiscard]] std::string host_partition() const
@@ -153,6 +168,25 @@ private:
             dds_return_loan(reader, &sample, 1);
             sample = nullptr;
         }
+    }
+
+    /// By a reader that isn't our own.
+    [[nodiscard]] bool is_heard(std::int32_t writer) const
+    {
+        std::array<dds_instance_handle_t, 16> readers{};
+        const auto count = dds_get_matched_subscriptions(writer, readers.data(), readers.size());
+        const auto is_foreign = [&](dds_instance_handle_t reader)
+        {
+            auto* end = dds_get_matched_subscription_data(writer, reader);
+            if (end == nullptr)
+            {
+                return false;
+            }
+            const bool is_own = std::memcmp(end->participant_key.v, own_.data(), own_.size()) == 0;
+            dds_builtintopic_free_endpoint(end);
+            return !is_own;
+        };
+        return std::any_of(readers.begin(), readers.begin() + std::clamp(count, 0, 16), is_foreign);
     }
 
     std::int32_t participant_;
@@ -456,7 +490,7 @@ Attack send_raw(RawRtps::Datagram (*make)(RawRtps&))
     return [=](Attacker& self)
     {
         const auto raw = self.raw;
-        for (const auto end = Clock::now() + kPatience; !raw->has_heard() && Clock::now() < end;
+        for (const auto end = Clock::now() + patience(); !raw->has_heard() && Clock::now() < end;
              std::this_thread::sleep_for(5ms))
         {
             raw->listen();
@@ -482,29 +516,30 @@ struct Habit
 {
     Attack attack;
     std::chrono::microseconds every;
+    std::uint64_t least; ///< Times.
 };
 
 const std::map<std::string, Habit>& habits()
 {
     static const std::map<std::string, Habit> all{
-        {"pose_lock", {move_object(UINT64_MAX, 0.0), 50ms}},
-        {"pose_swing", {move_object(0, 0.005), 4ms}},
-        {"catalogue_disposed", {dispose_catalogue(), 50ms}},
-        {"catalogue_forged", {forge_catalogue(), 50ms}},
-        {"catalogue_flooded", {spam_catalogue(), 200us}},
-        {"wanted_flooded", {spam_wanted(true), 200us}},
-        {"wanted_flooded_epochs", {spam_wanted(false), 200us}},
-        {"wanted_forged", {forge_wanted(), 5ms}},
-        {"wanted_disposed", {dispose_wanted(), 50ms}},
-        {"object_disposed", {dispose_object(), 2ms}},
-        {"objects_flooded", {spam_objects(), 200us}},
-        {"pieces_forged", {forge_pieces(), 5ms}},
-        {"pieces_replayed", {replay_pieces(), 5ms}},
-        {"telemetry_forged", {forge_telemetry(), 5ms}},
-        {"log_flooded", {visit(), 1ms}},
-        {"rtps_garbled", {send_raw([](RawRtps& raw) { return raw.any_garbled(); }), 2ms}},
-        {"rtps_replayed", {send_raw([](RawRtps& raw) { return raw.any_heard(); }), 1ms}},
-        {"rtps_nonsense", {send_raw([](RawRtps& raw) { return raw.nonsense(); }), 100us}},
+        {"pose_lock", {move_object(UINT64_MAX, 0.0), 50ms, 20}},
+        {"pose_swing", {move_object(0, 0.005), 4ms, 200}},
+        {"catalogue_disposed", {dispose_catalogue(), 50ms, 20}},
+        {"catalogue_forged", {forge_catalogue(), 50ms, 20}},
+        {"catalogue_flooded", {spam_catalogue(), 200us, 3'000}},
+        {"wanted_flooded", {spam_wanted(true), 200us, 3'000}},
+        {"wanted_flooded_epochs", {spam_wanted(false), 200us, 3'000}},
+        {"wanted_forged", {forge_wanted(), 5ms, 150}},
+        {"wanted_disposed", {dispose_wanted(), 50ms, 20}},
+        {"object_disposed", {dispose_object(), 2ms, 300}},
+        {"objects_flooded", {spam_objects(), 200us, 3'000}},
+        {"pieces_forged", {forge_pieces(), 5ms, 150}},
+        {"pieces_replayed", {replay_pieces(), 5ms, 150}},
+        {"telemetry_forged", {forge_telemetry(), 5ms, 150}},
+        {"log_flooded", {visit(), 1ms, 500}},
+        {"rtps_garbled", {send_raw([](RawRtps& raw) { return raw.any_garbled(); }), 2ms, 400}},
+        {"rtps_replayed", {send_raw([](RawRtps& raw) { return raw.any_heard(); }), 1ms, 600}},
+        {"rtps_nonsense", {send_raw([](RawRtps& raw) { return raw.nonsense(); }), 100us, 5'000}},
     };
     return all;
 }
@@ -550,7 +585,7 @@ int main(int argc, char** argv)
     const auto start = Clock::now();
     const auto end = start + std::chrono::duration<double>(std::atof(argv[2]));
     std::uint64_t turn = 0;
-    for (; turn < 20 || Clock::now() < end; ++turn)
+    for (; turn < habit->second.least || Clock::now() < end; ++turn)
     {
         act(turn);
         if (pause.count() > 0)

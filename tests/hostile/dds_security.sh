@@ -23,12 +23,12 @@ bash "$keys" roles >keys.log || fail "the keys: $(cat keys.log)"
 model bumpy-sphere-20000 bumpy.spm
 CYCLONEDDS_URI=file://$PWD/roles/host.xml start_publisher bumpy.spm
 CYCLONEDDS_URI=file://$PWD/roles/controller.xml start_hrtc --model bumpy --name hand --no-static \
-    --device sim:touch --duration 12 --wait 30 --report report.json
-wait_for_line publish.log 'controller hand subscribed' 30
+    --device sim:touch --duration 600 --wait "$patience_s" --report report.json
+wait_for_line publish.log 'controller hand subscribed'
 
 expect 2 "is not published" "$hrtc" --domain "$domain" --model bumpy --allow-no-rt --wait 2
 code=0
-CYCLONEDDS_URI=$plain "$attacker" "$domain" 1 catalogue_forged >outsider.log 2>&1 || code=$?
+ATTACKER_PATIENCE_S=5 CYCLONEDDS_URI=$plain "$attacker" "$domain" 1 catalogue_forged >outsider.log 2>&1 || code=$?
 { [[ $code == 2 ]] && grep -q 'saw no host and controller' outsider.log; } \
     || fault "an outsider ended with $code: $(cat outsider.log)"
 
@@ -41,14 +41,11 @@ for attack in catalogue_forged pose_swing; do
         || fault "$attack with a controller's certificate ended with $code: $(cat insider.log)"
 done
 
-code=0
-wait "$controller" || code=$?
-cat hrtc.log publish.log
-((code == 0)) || fail "hrtc ended with $code"
-check report.json frames == 12000 wire.host_lost == 0 models.0.pieces_refused == 0 \
+stop_hrtc
+cat publish.log
+check report.json frames '>' 1000 wire.host_lost == 0 models.0.pieces_refused == 0 \
     models.0.bytes_received '>' 10000 refused == 0
 check_contact report.json force.contact_share 0.3
 check_clean report.json
-stop TERM "$publisher"
-((stopped_with == 0)) || fault "spm_publish ended with $stopped_with"
+stop_publisher
 finish

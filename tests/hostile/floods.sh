@@ -99,8 +99,7 @@ PYTHON
 }
 
 end_well() { # end_well KIND
-    stop TERM "$controller"
-    ((stopped_with == 0)) || fail "$1: hrtc ended with $stopped_with: $(tail -n 20 hrtc.log)"
+    stop_hrtc >/dev/null
     check report.json force.max_n '<=' 8
     check_clean report.json
     (($(wc -l <hrtc.log) < 200)) || fault "$1: the log is full"
@@ -109,10 +108,10 @@ end_well() { # end_well KIND
 
 by_dds() { # by_dds KIND: the attacker's, as often as it can; none for nobody.
     local ports=() attacking=''
-    start_publisher bumpy.spm
+    start_publisher bumpy.spm --watch
     start_hrtc --model bumpy --no-static --name victim --device sim:touch \
         --duration 600 --report report.json
-    wait_for_line publish.log 'controller victim subscribed' 20
+    wait_for_line publish.log 'controller victim subscribed'
     echo 'done 0 times in 1 s' >attacker.log
     if [[ "$1" != none ]]; then
         [[ "$1" != rtps_* ]] \
@@ -121,15 +120,14 @@ by_dds() { # by_dds KIND: the attacker's, as often as it can; none for nobody.
             >attacker.log 2>&1 &
         attacking=$!
         started+=("$attacking")
-        wait_for_line attacker.log begun 30
+        wait_for_line attacker.log begun
     fi
     python3 meter.py meter.json $((seconds - 1)) "$controller" "$publisher"
     [[ -z "$attacking" ]] || wait "$attacking" || fault "the attacker: $(cat attacker.log)"
     taken_kib=$(memory_kib "$publisher")
     [[ -n "$sanitizer" ]] || ((taken_kib < 60000)) || fault "$1: the host took $taken_kib KiB"
     end_well "$1"
-    stop TERM "$publisher"
-    ((stopped_with == 0)) || fault "$1: spm_publish ended with $stopped_with"
+    stop_publisher
 }
 
 by_udp() { # by_udp KIND SECONDS: of a udp device, whose port is flooded for so long.
@@ -139,13 +137,13 @@ by_udp() { # by_udp KIND SECONDS: of a udp device, whose port is flooded for so 
     started+=("$driving")
     start_hrtc --transport file --model bumpy.spm --device "udp:$port" --device-frame 0,0,0.06 \
         --duration 600 --report report.json
-    wait_for_sleeps 300 "$controller"
+    wait_for_sleeps 1000 "$controller"
     echo 'done 0 times in 1 s' >attacker.log
     if [[ "$2" != 0 ]]; then
         python3 "$flood" "$port" "$2" >attacker.log &
         attacking=$!
         started+=("$attacking")
-        sleep 0.5 # It has begun.
+        wait_for_line attacker.log begun
     fi
     python3 meter.py meter.json $((seconds - 1)) "$controller"
     [[ -z "$attacking" ]] || wait "$attacking" || fault "the flood: $(cat attacker.log)"

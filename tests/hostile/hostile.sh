@@ -5,8 +5,6 @@
 # for another controller, which comes meanwhile.
 source "$(dirname "$0")/../integration/hrtc/common.sh"
 readonly attacker=$4 attack=$5
-attacked_for=1.5
-[[ "$attack" != log_flooded ]] || attacked_for=2.5
 # It is found by everybody and finds hosts.
 readonly attacker_uri='<CycloneDDS><Domain id="any"><General><Interfaces><NetworkInterface name="lo"
 multicast="false"/></Interfaces><AllowMulticast>false</AllowMulticast></General><Discovery>
@@ -39,20 +37,20 @@ awk 'BEGIN {
         printf "%.3f bumpy %.6f 0 0 0 0 0 1\n", i / 100, 0.001 * sin(i * 3.14159265 / 100)
 }' >swing.txt
 start_publisher bumpy.spm --poses swing.txt --poses-loop --watch
-start_hrtc --model bumpy --no-static --name victim --device sim:touch --duration 4 \
+start_hrtc --model bumpy --no-static --name victim --device sim:touch --duration 600 \
     --report report.json
-wait_for_line publish.log 'controller victim subscribed' 10
-wait_for_frames 500 publish.log victim
+wait_for_line publish.log 'controller victim subscribed'
+wait_for_contact publish.log victim
 ports=()
 [[ "$attack" != rtps_* ]] || mapfile -t ports < <(udp_ports "$publisher" && udp_ports "$controller")
-CYCLONEDDS_URI=$attacker_uri "$attacker" "$domain" "$attacked_for" "$attack" "${ports[@]}" \
-    >attacker.log 2>&1 &
+CYCLONEDDS_URI=$attacker_uri "$attacker" "$domain" 0 "$attack" "${ports[@]}" >attacker.log 2>&1 &
 attacking=$!
 started+=("$attacking")
 if [[ "$attack" == *_flooded* ]]; then
     code=0
     "$hrtc" --allow-no-rt --domain "$domain" --model bumpy --no-static --name late \
-        --device sim:touch --duration 0.5 --report late.json >late.log 2>&1 || code=$?
+        --device sim:touch --duration 0.5 --wait "$patience_s" --report late.json >late.log 2>&1 \
+        || code=$?
     ((code == 0)) || fault "a controller that came meanwhile ended with $code: $(cat late.log)"
     check late.json frames == 500
 fi
@@ -60,37 +58,35 @@ code=0
 wait "$attacking" || code=$?
 ((code == 0)) || fail "the attacker ended badly: $(cat attacker.log)"
 grep -Eq '^done [1-9][0-9]+ times' attacker.log || fault "the attacker: $(cat attacker.log)"
-code=0
-wait "$controller" || code=$?
+[[ "$attack" == rtps_* ]] || wait_for_more_frames 0 publish.log victim
+stop_hrtc
 # A host takes its time while it is flooded. What comes and goes all the time uses up the lines of
 # that second, so that of the victim's end may be left out.
 goes=1
 [[ "$attack" != log_flooded ]] || goes=0
-((goes == 0)) || wait_for_line publish.log 'controller victim left' 10
-cat hrtc.log publish.log
-((code == 0)) || fail "hrtc ended with $code"
+((goes == 0)) || wait_for_line publish.log 'controller victim left'
+cat publish.log
 check_clean report.json
 only_printable hrtc.log
 only_printable publish.log
 taken_kib=$(memory_kib "$publisher")
 [[ -n "$sanitizer" ]] || ((taken_kib < 60000)) || fault "the host took $taken_kib KiB"
 # 40 lines a second at most, and what --watch says.
-(($(wc -l <hrtc.log) < 100 && $(wc -l <publish.log) < 400)) || fault 'the logs are full'
+(($(wc -l <hrtc.log) < 100 && $(wc -l <publish.log) < 60 * (SECONDS + 1))) \
+    || fault 'the logs are full'
 
 # The identity of somebody else can be forged on the wire: then what was said in it may end a
 # service, and the force fades.
 if [[ "$attack" == rtps_* ]]; then
-    check report.json frames == 4000 force.max_n '>' 0 force.max_n '<=' 3.3
+    check report.json frames '>' 500 force.max_n '>' 0 force.max_n '<=' 3.3
     was_held_up report.json || check report.json force.max_step_n '<' 0.45
-    stop TERM "$publisher"
-    ((stopped_with == 0)) || fault "spm_publish ended with $stopped_with"
+    stop_publisher
     finish
     exit 0
 fi
 
 # Nobody went, nothing was dropped, no pose but the host's was taken.
-check report.json frames == 4000 models.0.pose.followed == 1 \
-    models.0.pose.accepted '>' 50 models.0.pose.accepted '<' 1500 \
+check report.json frames '>' 500 models.0.pose.followed == 1 models.0.pose.accepted '>' 50 \
     models.0.pose.step_max_m '<' 0.002 models.0.pose.refused.not_newer '<=' 3 \
     models.0.pieces_refused == 0 safety.begun.jump == 0 \
     scene.objects == 1 force.max_n '>' 0 force.max_n '<=' 3.3
@@ -113,7 +109,7 @@ case $attack in
     log_flooded) # It may come and go; the log says so 40 times a second at most.
         grep -q 'controller stranger subscribed' publish.log || fault 'no stranger came'
         said=$(grep -c 'controller stranger' publish.log)
-        ((said <= 160)) || fault "$said lines of a stranger's visits"
+        ((said <= 40 * (SECONDS + 1))) || fault "$said lines of a stranger's visits"
         ;;
     wanted_* | telemetry_*)
         grep -q 'refused of attacker (process [0-9]* on ' publish.log \
@@ -136,6 +132,5 @@ case $attack in
         ;;
 esac
 
-stop TERM "$publisher"
-((stopped_with == 0)) || fault "spm_publish ended with $stopped_with"
+stop_publisher
 finish
