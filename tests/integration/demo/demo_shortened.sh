@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # demo_shortened.sh SETUP BUILD_DIR [--scene | --view]: the README's demo with the programs of this
-# build, for 3 s: it ends well, prints the summary, names the report, and leaves no process behind.
+# build, for a second: it ends well, prints the summary, names the report, and leaves no process behind.
 set -euo pipefail
 readonly setup=$1
 export TACTUS_BUILD_DIR=$2
@@ -19,13 +19,13 @@ trap 'rm -f "$output"' EXIT
 code=0
 # shellcheck disable=SC2016 # The inner shell expands them.
 setsid --wait bash -c 'echo $$ >"$1"; shift; exec bash "$@"' demo "$output.session" \
-    "$setup" demo ${more:+"$more"} --seconds 3 --domain "${TACTUS_TEST_DOMAIN:-$(($$ % 231))}" \
+    "$setup" demo ${more:+"$more"} --seconds 1 --domain "${TACTUS_TEST_DOMAIN:-$(($$ % 231))}" \
     >"$output" 2>&1 || code=$?
 session=$(cat "$output.session")
 rm -f "$output.session"
 cat "$output"
 ((code == 0)) || fail "the demo ended with $code"
-texts=('frames      3000 at 1000 Hz' 'answers     exact' 'times us' 'memory      ' 'deadlines   ')
+texts=('frames      1000 at 1000 Hz' 'answers     exact' 'times us' 'memory      ' 'deadlines   ')
 if [[ "$more" == --view ]]; then
     texts+=('View: http://127.0.0.1:')
 elif [[ "$more" == --scene ]]; then

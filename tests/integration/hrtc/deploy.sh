@@ -42,12 +42,12 @@ read -ra options <<<"${options/--domain 0/--domain $domain}"
     || fault 'the example of the service'
 grep -q "^serving 'ball'" publish.log || fault "the example serves: $(cat publish.log)"
 
-# Under a manager that listens. It waits for the words with patience: the machine may be slow.
+# Under a manager that listens.
 cat >manager.py <<'PYTHON'
 import os, signal, socket, subprocess, sys
 listener = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
 listener.bind("notify")
-listener.settimeout(60)
+listener.settimeout(150)
 environment = dict(os.environ, NOTIFY_SOCKET=os.path.abspath("notify"), WATCHDOG_USEC="400000")
 environment.pop("WATCHDOG_PID", None)
 run = subprocess.Popen(sys.argv[1:], env=environment)
@@ -56,7 +56,7 @@ try:
     run.send_signal(signal.SIGTERM)
     while words[-1] != "STOPPING=1":
         words.append(listener.recv(64).decode())
-    code = run.wait(60)
+    code = run.wait(150)
 finally:
     run.kill()
 sys.exit(code or words[:4] != ["READY=1"] + 3 * ["WATCHDOG=1"])

@@ -15,65 +15,61 @@ awk 'BEGIN {
 
 # The object moves, the force follows, and the host sees it.
 start_publisher bumpy.spm --poses swing.txt --poses-loop --watch
-run_hrtc --model bumpy --duration 4 --record swing.rec
+run_hrtc --model bumpy --duration 2.5 --record swing.rec
 "$hrtc" --replay swing.rec >replay.log 2>&1 || fault "another replay: $(cat replay.log)"
 check_clean report.json
 check_answers report.json
-check report.json models.0.pose.followed == 1 models.0.pose.accepted '>' 300 \
-    models.0.pose.moves '>' 200 models.0.pose.step_max_m '<' 0.005 \
+check report.json models.0.pose.followed == 1 models.0.pose.accepted '>' 50 \
+    models.0.pose.moves '>' 50 models.0.pose.step_max_m '<' 0.005 \
     models.0.pose.refused.rotation == 0 models.0.pose.refused.not_newer == 0 \
-    force.max_n '>' 0 safety.begun.jump == 0 telemetry.sent '>' 200
+    force.max_n '>' 0 safety.begun.jump == 0 telemetry.sent '>' 50
 grep -q '^poses  *bumpy: moved in [0-9]* frames' hrtc.log || fault 'the summary tells no poses'
-wait_for_line publish.log 'watch hrtc-' 5
-grep -q '^watch hrtc-[0-9]*: [0-9]* frames, .* N in contact.*; bumpy .* pages.* pose ' publish.log \
-    || fault 'the host never saw the tool in contact and the pose followed'
+wait_until 'word of the host on a tool in contact and a pose that is followed' \
+    grep -q '^watch hrtc-[0-9]*: [0-9]* frames, .* N in contact.*; bumpy .* pages.* pose ' publish.log
 
 # A controller that is told to leave its models alone: still seen, but nothing moves.
-run_hrtc --model bumpy --duration 1 --ignore-poses
+contact=0 run_hrtc --model bumpy --duration 1 --ignore-poses
 check report.json models.0.pose.followed == 0 models.0.pose.accepted == 0 \
-    telemetry.sent '>' 40 answers.stale == 0
+    telemetry.sent '>' 10 answers.stale == 0
 
 # Poses that stop: the touched object grows stale and the force fades; they come again, and so does
 # the force. A model that is here as a whole needs no host for anything else.
-start_hrtc --model bumpy --duration 6 --report report.json
-wait_for_frames 1000 publish.log "hrtc-$controller"
+start_hrtc --model bumpy --duration 600 --report report.json
+wait_for_contact publish.log "hrtc-$controller"
 kill -STOP "$publisher"
-sleep 1.5 # Without poses, which is what is tried.
+wait_for_more "$controller"
 kill -CONT "$publisher"
-code=0
-wait "$controller" || code=$?
-cat hrtc.log
-((code == 0)) || fail "hrtc ended with $code"
-check report.json frames == 6000 answers.stale '>' 800 models.0.pose.old_frames '>' 800 \
-    models.0.pose.age_max_s '>' 1 models.0.pose.age_max_s '<' 5 models.0.static == 1 \
-    safety.begun.stale '>=' 1 safety.begun.host == 0 answers.stale '<' 4000
+wait_for_more_frames 900 publish.log "hrtc-$controller"
+stop_hrtc
+check report.json frames '>' 1500 answers.stale '>' 300 models.0.pose.old_frames '>' 300 \
+    models.0.pose.age_max_s '>' 0.5 models.0.static == 1 \
+    safety.begun.stale '>=' 1 safety.begun.host == 0 answers.stale '<' '0.9*frames'
 check_clean report.json
-stop TERM "$publisher"
-((stopped_with == 0)) || fault "spm_publish ended with $stopped_with"
+stop_publisher
 
 # From files nothing of this exists.
-run_hrtc --transport file --model bumpy.spm --duration 1
+contact=0 run_hrtc --transport file --model bumpy.spm --duration 0.5
 check report.json models.0.pose.followed == 0 telemetry.sent == 0
 
 # An object that goes far at once while it is touched: the force fades and comes back by the ramp.
 printf '0 bumpy 0 0 0 0 0 0 1\n0.5 bumpy 0.04 0 0 0 0 0 1\n1 bumpy 0 0 0 0 0 0 1\n' >jump.txt
 start_publisher bumpy.spm --poses jump.txt --poses-loop
-run_hrtc --model bumpy --duration 4 --motion slide
-check report.json safety.begun.jump '>=' 1 models.0.pose.step_max_m '>' 0.039 frames == 4000
+contact=0 run_hrtc --model bumpy --duration 2 --motion slide
+check report.json safety.begun.jump '>=' 1 models.0.pose.step_max_m '>' 0.039 frames == 2000
 check_clean report.json
-stop TERM "$publisher"
+stop_publisher
 
 # Half a metre from where it was looked for at the start, told in lines a second apart: the hand
 # comes after, and the object glides.
 printf '%s\n' '0 bumpy 0.5 0 0 0 0 0 1' '1 bumpy 0.5 0.03 0 0 0 0.1 0.995' \
     '2 bumpy 0.5 0 0 0 0 0 1' >far.txt
 start_publisher bumpy.spm --poses far.txt --poses-loop --poses-rate 100
-run_hrtc --model bumpy --duration 5
-check report.json models.0.pose.accepted '>' 400 models.0.pose.moves '>' 400 \
+contact=0.4 run_hrtc --model bumpy --duration 3
+check report.json models.0.pose.accepted '>' 100 models.0.pose.moves '>' 100 \
     models.0.pose.step_max_m '>' 0.49 safety.begun.jump '<=' 1
 check_contact report.json force.contact_share 0.4
 check_clean report.json
-stop TERM "$publisher"
+stop_publisher
 
 refuse() { expect "$1" "$2" "$publish" --domain "$domain" --seconds 5 bumpy.spm "${@:3}"; }
 bad_line() {

@@ -16,7 +16,7 @@ if ((code == 2)) && [[ "$output" == *"--trap-system-calls: system calls can't be
 fi
 
 start_publisher large.spm
-run_hrtc --model large --pool-mib 1.5 --rate "$rate" --duration $((frames / rate)) \
+contact=0 run_hrtc --model large --pool-mib 1 --rate "$rate" --duration $((frames / rate)) \
     --trap-system-calls
 grep -q '^calls  *0 system calls in frames, [1-9]' hrtc.log || fault 'the summary has no calls'
 check report.json frames == "$frames" realtime.system_calls_trapped == 1 \

@@ -49,7 +49,7 @@ model bumpy-sphere-60000 bumpy.spm
 model torus-20000 torus.spm
 start_publisher bumpy.spm torus.spm
 mkdir times
-run_hrtc --model bumpy --model torus --place 0,0,0 --place 0.3,0,0,0,30,0,2 \
+contact=0 run_hrtc --model bumpy --model torus --place 0,0,0 --place 0.3,0,0,0,30,0,2 \
     --material 300,0.4,0.3,0.5 --tool sphere:0.002 --tool sphere:0.004 --duration 2 \
     --pool-mib 1.25 --frame-budget-us 300 --predict quadratic --record run.rec \
     --trace run.trace --histograms times
@@ -65,7 +65,7 @@ for time in load refine refit query force frame cpu wake response; do
 done
 grep -Eq '^#\[Max +=.*, Total count += +2000\]$' times/frame.hgrm || fault 'not each frame counts'
 [[ -z $(compgen -G '*.partial' times/*.partial) ]] || fault 'left behind: a partial file'
-stop TERM "$publisher"
+stop_publisher
 
 said=$("$hrtc" --replay run.rec) || fail "the replay ended with $?: $said"
 [[ "$said" == 'run.rec: 2000 frames agree bit for bit; recorded by '* ]] || fault "it says: $said"
@@ -145,8 +145,8 @@ grep -q "^hrtc: --record: folder/run.rec: can't be written: File too large" hrtc
 check full.json frames == 1000
 
 # An interrupted run has recorded its frames so far.
-start_hrtc --transport file --model bumpy.spm --duration 60 --record short.rec
-wait_for_line hrtc.log 'touch: ' 20
+start_hrtc --transport file --model bumpy.spm --duration 600 --record short.rec
+wait_for_line hrtc.log 'touch: '
 wait_for_sleeps 1000 "$controller"
 stop INT "$controller"
 ((stopped_with == 0)) || fault "the interrupted run ended with $stopped_with"

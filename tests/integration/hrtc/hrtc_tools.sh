@@ -28,7 +28,7 @@ END
 touch() {
     local torque=$1
     shift
-    run_hrtc "$@" --duration "${seconds:-3}"
+    contact=0 run_hrtc "$@" --duration "${seconds:-3}"
     check_clean report.json
     check report.json force.contact_share '>' 0 tools.0.force_max_n '>' 0 \
         answers.bracket+answers.stale '<' '0.05*frames'
@@ -86,15 +86,15 @@ grep -q 'force off for: .*clutch' hrtc.log || fault 'nobody tells of the clutch'
 # The probe streams from the same host.
 "$build" --shape torus --faces 3000 --fit-diag 0.1 -o probe.spm >build.log 2>&1
 start_publisher ball.spm probe.spm
-touch 1 --model ball --tool mesh:probe,0.001 --pool-mib 8 --record run.rec
+seconds=2.5 touch 1 --model ball --tool mesh:probe,0.001 --pool-mib 8 --record run.rec
 check report.json models == 2 models.1.bytes_received '>' 0 scene.objects == 1 pairs == 1
 "$hrtc" --replay run.rec >replay.log || fault "the recording of a mesh: $(tail -n 1 replay.log)"
 
 # What is touched is a tool as well when it has another name: it is streamed twice.
 hash=$(sed -n "s/^serving 'ball' hash \([0-9a-f]*\):.*/\1/p" publish.log)
-touch 1 --model ball --tool "mesh:ball@$hash,0.001" --pool-mib 8
+seconds=2.5 touch 1 --model ball --tool "mesh:ball@$hash,0.001" --pool-mib 8
 check report.json models == 2 models.1.bytes_received '>' 0
-stop TERM "$publisher"
+stop_publisher
 touch_file 1 mesh:./ball.spm,0.001 --pool-mib 8
 
 # A probe larger than the default pools is as coarse as they allow, and its answers are brackets.
@@ -114,8 +114,8 @@ check report.json tools.0.force_max_n '<=' 8 answers.exact+answers.decided '>' '
 readonly port=$((20000 + $$ % 20000))
 python3 "$docs/examples/udp_driver.py" "$port" >driver.log 2>&1 &
 started+=("$!")
-"$hrtc" --allow-no-rt --transport file --model ball.spm --tool mesh:./ball.spm,0.001 \
-    --pool-mib 16 --device "udp:$port" --duration 2 --report report.json >hrtc.log 2>&1 \
+"$hrtc" --allow-no-rt --wait "$patience_s" --transport file --model ball.spm --tool mesh:./ball.spm,0.001 \
+    --pool-mib 16 --device "udp:$port" --duration 1 --report report.json >hrtc.log 2>&1 \
     || fault 'two models in one place are more than it can stand'
 check report.json tools.0.force_max_n '<=' 8 realtime.allocations '>=' 0 answers.exact '>' 0
 

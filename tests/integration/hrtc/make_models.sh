@@ -5,6 +5,6 @@
 set -euo pipefail
 readonly build=$1 folder=$2
 mkdir -p "$folder"
-for model in bumpy-sphere-{5,20,40,60,90,100,190,200}000 torus-{10,20}000; do
+for model in bumpy-sphere-{5,20,60,100,200}000 torus-{10,20}000; do
     "$build" --shape "${model%-*}" --faces "${model##*-}" -o "$folder/$model.spm"
 done

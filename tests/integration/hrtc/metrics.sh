@@ -48,22 +48,22 @@ check_metrics "$served"
 
 "$view" --domain "$domain" --port 0 >/dev/null 2>view.log &
 started+=("$!")
-wait_for_line view.log 'shows DDS domain' 10
+wait_for_line view.log 'shows DDS domain'
 shown=$(sed -n 's|^\(http://[^ ]*/\) .*|\1metrics|p' view.log)
 readonly shown
 
-start_hrtc --model torus --duration 120 --name hand-1
+start_hrtc --model torus --duration 600 --name hand-1
 for url in "$served" "$shown"; do
-    wait_until 30 "controller at $url" tells "$url" tactus_frames_total '>' 100
+    wait_until "controller at $url" tells "$url" tactus_frames_total '>' 100
     grep -q '^tactus_frames_total{controller="hand-1",id="[0-9a-f]*"} ' metrics.txt \
         || fault "no name at $url: $(<metrics.txt)"
     check_metrics "$url"
 done
-wait_until 30 'piece' tells "$served" tactus_subscriber_pieces_sent_total '>' 0
-wait_until 30 'piece' tells "$served" tactus_bytes_sent_total '>' 0
+wait_until 'piece' tells "$served" tactus_subscriber_pieces_sent_total '>' 0
+wait_until 'piece' tells "$served" tactus_bytes_sent_total '>' 0
 stop INT "$controller"
 for url in "$served" "$shown"; do
-    wait_until 30 "end of the controller at $url" tells "$url" tactus_controllers == 0
+    wait_until "end of the controller at $url" tells "$url" tactus_controllers == 0
     check_metrics "$url"
 done
 

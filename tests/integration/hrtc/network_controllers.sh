@@ -4,14 +4,12 @@
 # each out and in and grows by none of them, another controller feels nothing of it, and the touch
 # of the one that is started last is as good as any.
 source "$(dirname "$0")/two_networks.sh"
-readonly kills=4
+readonly kills=3
 
 # start_controller NAME ARGUMENT...: its words in NAME.log, its id in $controller.
 start_controller() {
-    local name=$1
-    shift
     "${on_controller[@]}" "$hrtc" --allow-no-rt --domain "$domain" --model large \
-        --device sim:touch --pool-mib 2 "$@" >"$name.log" 2>&1 &
+        --device sim:touch --pool-mib 2 --duration 600 --name "$@" >"$1.log" 2>&1 &
     controller=$!
     started+=("$controller")
 }
@@ -19,43 +17,37 @@ start_controller() {
 start_relay --delay-ms 10
 model bumpy-sphere-100000 large.spm
 start_publisher large.spm --watch
-start_controller steady --duration 12 --record steady.rec --report steady.json
+start_controller steady --record run.rec --report steady.json
 steady=$controller
-wait_for_lines 1 ' subscribed' publish.log
+wait_for_line publish.log ' subscribed'
 
 for ((kill = 1; kill <= kills; ++kill)); do
-    start_controller killed --duration 60
-    wait_for_lines $((1 + kill)) ' subscribed' publish.log
-    wait_for_frames 300 publish.log "hrtc-$controller"
-    killed_ms=$(now_ms)
+    start_controller "killed-$kill"
+    wait_for_line publish.log ' subscribed' $((1 + kill))
+    wait_for_frames 300 publish.log "killed-$kill"
     stop KILL "$controller"
-    wait_for_lines "$kill" ' left (' publish.log
-    check_notice publish.log "$killed_ms"
+    wait_for_line publish.log ' left (' "$kill"
     ((kill > 1)) || first_kib=$(resident_kib "$publisher") # Its first two are served.
 done
 last_kib=$(resident_kib "$publisher")
 echo "the host has $first_kib, later $last_kib KiB"
 [[ -n "$sanitizer" ]] || ((last_kib - first_kib <= 1024)) || fault 'the host grows with each kill'
 
-code=0
-wait "$steady" || code=$?
-cat steady.log
-((code == 0)) || fail "the controller that went on ended with $code"
-[[ $(lines "model 'large'" steady.log) == 0 ]] || fault 'it was told of a host that went'
-check steady.json frames == 12000 wire.host_lost == 0 safety.begun.host == 0 \
+controller=$steady
+mv steady.log hrtc.log
+stop_hrtc
+[[ $(lines "model 'large'" hrtc.log) == 0 ]] || fault 'it was told of a host that went'
+check steady.json frames '>' 1000 wire.host_lost == 0 safety.begun.host == 0 \
     answers.exact+answers.decided '>' '0.9*frames'
 check_wire_run steady.json
 check_contact steady.json force.contact_share 0.3
-mv steady.rec run.rec
-mv steady.log hrtc.log
 judge_run large.spm
 
-run_hrtc --model large --device sim:touch --pool-mib 2 --duration 3 --record run.rec
-check report.json frames == 3000 wire.host_lost == 0 safety.begun.host == 0 \
+run_hrtc --model large --device sim:touch --pool-mib 2 --duration 2 --record run.rec
+check report.json frames == 2000 wire.host_lost == 0 safety.begun.host == 0 \
     answers.exact+answers.decided '>' '0.9*frames'
 check_wire_run report.json
 check_contact report.json force.contact_share 0.3
 judge_run large.spm
-stop TERM "$publisher"
-((stopped_with == 0)) || fault "spm_publish ended with $stopped_with"
+stop_publisher
 finish

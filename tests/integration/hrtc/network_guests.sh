@@ -3,33 +3,24 @@
 # network_guests.sh BIN CHECK_REPORT SANITIZER NETWORK_RELAY LIST_SAFETY JUDGE_RECORDING SCENE_RIDER
 # DEMO_SCENE: a hand flies over DDS, 10 ms each way, at 2 m/s through 200 objects and touches one
 # after the other. In pools of 8 MiB 20 models are all here, and of 200 some, whose base meshes come
-# and go with the hand. No frame is held up by a model that isn't here.
+# and go with the hand. No frame is held up by a model that isn't here, but for one of which the
+# machine kept the base mesh waiting (scene_rider.cpp).
 source "$(dirname "$0")/two_networks.sh"
 readonly scene_rider=$7 demo_scene=$8
 command -v python3 >/dev/null || { echo 'skipped: no python3'; exit 77; }
 
-# A base mesh that takes longer is the machine's doing, not the program's: the hand, which was told
-# 150 ms before, has another chance.
-readonly in_time_ms=70
-
 # ride MODELS VISITS FIGURE...: figures of the ride through a scene of so many models, as for check.
 ride() {
-    local try models=$1 visits=$2
+    local models=$1 visits=$2
     python3 "$demo_scene" demo.glb --faces 2000 --models "$models" || fail 'no scene'
     "$build" demo.glb -o "made-$models" >built.txt || fail "$(cat built.txt)"
     start_publisher "made-$models/scene.gltf" --scene demo
-    for try in 1 2 3 4 5; do
-        in_controller_network "$scene_rider" --domain "$domain" --scene demo --pool-mib 8 \
-            --speed 2 --visits "$visits" >ride.json 2>rider.log \
-            || fail "the rider ended badly: $(cat rider.log)"
-        cat ride.json
-        ! "$check_report" ride.json invisible_wall_frames == 0 || break
-        ! "$check_report" ride.json came_ms_max '<=' "$in_time_ms" || break
-        echo "try $try: a base mesh was late"
-    done
+    in_controller_network "$scene_rider" --domain "$domain" --scene demo --pool-mib 8 --speed 2 \
+        --visits "$visits" >ride.json 2>rider.log || fail "the rider ended badly: $(cat rider.log)"
+    cat ride.json
     check ride.json models == "$models" objects == 200 visits == "$visits" \
         touched == "$visits" invisible_wall_frames == 0 "${@:3}"
-    stop TERM "$publisher"
+    stop_publisher
 }
 
 start_relay --delay-ms 10

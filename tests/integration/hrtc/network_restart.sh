@@ -7,39 +7,32 @@ source "$(dirname "$0")/two_networks.sh"
 
 start_relay --delay-ms 10
 model bumpy-sphere-200000 large.spm
-model bumpy-sphere-190000 other.spm
+model bumpy-sphere-100000 other.spm
 
 start_publisher large.spm --watch
-start_hrtc --model large --device sim:touch --pool-mib 8 --no-static --duration 10 \
+start_hrtc --model large --device sim:touch --pool-mib 8 --no-static --duration 600 \
     --record run.rec --report report.json
-wait_for_frames 1500 publish.log
-killed_ms=$(now_ms)
+wait_for_contact publish.log
 stop KILL "$publisher"
-wait_for_line hrtc.log "host of model 'large' is gone; going on with what is resident" 5
-check_notice hrtc.log "$killed_ms"
+wait_for_line hrtc.log "host of model 'large' is gone; going on with what is resident"
 
 start_publisher large.spm --watch
-wait_for_line hrtc.log 'is served again, by another host or a restarted one with the same file' 5
-wait_for_line publish.log ' subscribed' 5
-wait_for_frames 5500 publish.log
+wait_for_line hrtc.log 'is served again, by another host or a restarted one with the same file'
+wait_for_line publish.log ' subscribed'
+wait_for_more_frames 900 publish.log
 stop KILL "$publisher"
-for ((i = 0; i < 100; ++i)); do
-    (($(lines 'is gone' hrtc.log) < 2)) || break
-    sleep 0.05
-done
+wait_for_line hrtc.log 'is gone' 2
 
 start_publisher other.spm --name large
-wait_for_line hrtc.log "model 'large' is now published with another hash" 5
-code=0
-wait "$controller" || code=$?
-cat hrtc.log publish.log
-((code == 0)) || fail "hrtc ended with $code"
+wait_for_line hrtc.log "model 'large' is now published with another hash"
+stop_hrtc
+cat publish.log
 [[ $(lines "model 'large'" hrtc.log) == 4 && $(lines 'is gone' hrtc.log) == 2 \
     && $(lines 'served again' hrtc.log) == 1 && $(lines 'another hash' hrtc.log) == 1 ]] \
     || fault 'not one line for each host that goes, for the one that is back, and for the other'
 [[ $(lines ' subscribed' publish.log) == 0 ]] || fault 'the other file was asked for'
 
-check report.json frames == 10000 wire.host_lost == 1 models.0.host_connected == 0 \
+check report.json frames '>' 1500 wire.host_lost == 1 models.0.host_connected == 0 \
     safety.begun.host == 2 models.0.static == 0 cache.evictions == 0 \
     pools.pages.used_max+pools.index_pages.used_max == '1*cache.loads'
 check_wire_run report.json
@@ -49,26 +42,23 @@ judge_run large.spm
 check judged.json violations '>' 0
 
 # A controller that starts now takes the file that is there now.
-run_hrtc --model large --device sim:touch --pool-mib 2 --duration 3 --record run.rec
+run_hrtc --model large --device sim:touch --pool-mib 2 --duration 2 --record run.rec
 check report.json wire.host_lost == 0 safety.begun.host == 0
 check_wire_run report.json
 check_contact report.json force.contact_share 0.3
 judge_run other.spm
-stop TERM "$publisher"
+stop_publisher
 
 model bumpy-sphere-5000 small.spm
 start_publisher small.spm --watch
-start_hrtc --model small --device sim:touch --duration 5 --record run.rec --report report.json
-wait_for_frames 1000 publish.log
+start_hrtc --model small --device sim:touch --duration 600 --record run.rec --report report.json
+wait_for_contact publish.log
 stop KILL "$publisher"
-wait_for_line hrtc.log "host of model 'small' is gone" 5
-readonly near_the_kill=2500 # Frames; the run's last half, at least, is without a host.
-code=0
-wait "$controller" || code=$?
-cat hrtc.log
-((code == 0)) || fail "hrtc ended with $code"
-check report.json frames == 5000 wire.host_lost == 1 safety.begun.host == 0 models.0.static == 1
+wait_for_line hrtc.log "host of model 'small' is gone"
+wait_for_more "$controller"
+stop_hrtc
+check report.json frames '>' 1000 wire.host_lost == 1 safety.begun.host == 0 models.0.static == 1
 check_wire_run report.json
-judge_run small.spm "$near_the_kill"
+judge_run small.spm $(($(recorded_frames) - 500)) # The rest is without a host.
 check_span_contact 1 0.3
 finish

@@ -11,7 +11,7 @@ run_page() {
     mkdir programs
     cat >programs/hrtc <<SCRIPT
 #!/bin/bash
-[[ "\$1" == --replay ]] || set -- --allow-no-rt --domain $domain "\$@"
+[[ "\$1" == --replay ]] || set -- --allow-no-rt --domain $domain --wait $patience_s "\$@"
 exec "$hrtc" "\$@"
 SCRIPT
     cat >programs/spm_publish <<SCRIPT

@@ -4,7 +4,7 @@
 /// scene_rider: a hand that flies through a host's scene at one speed and touches object after
 /// object. Its controller is hrtc's, with a loop of its own: the hand is exactly as fast as told or
 /// slower, however the machine is loaded. Tells as JSON how often it was held up by a model that
-/// wasn't here.
+/// wasn't here: because that was wanted too late, or because the machine was late to bring it.
 
 #include "host_tools/cli/command_line.hpp"
 #include "host_tools/cli/run_program.hpp"
@@ -37,8 +37,12 @@ constexpr double kPeriod_s = 1e-3;
 constexpr auto kPeriod = std::chrono::milliseconds(1);
 /// The hand rises so far above an object's ball before it goes to the next one.
 constexpr double kRise_m = 0.3;
-/// It stays on each: what is felt there comes in chunks, after the base mesh.
-constexpr int kRestFrames = 150;
+/// It stays on each until that is felt: chunks come after the base mesh. No longer than the second.
+constexpr int kRestFrames = 20;
+constexpr int kRestFramesMost = 60'000;
+/// A base mesh is wanted 150 ms before the hand is there. One that takes longer than this to come
+/// is late by the machine's doing.
+constexpr double kInTime_ms = 70.0;
 
 struct Arguments
 {
@@ -58,7 +62,8 @@ double ms_since(Clock::time_point begin)
 struct Figures
 {
     std::uint64_t frames{0};
-    std::uint64_t invisible_wall_frames{0};
+    std::uint64_t invisible_wall_frames{0}; ///< For no other reason than the program's.
+    std::uint64_t machine_late_frames{0};   ///< The hand was held up as well.
     std::uint32_t visits{0};
     std::uint32_t touched{0}; ///< Of those, with an exact answer in contact.
     std::uint32_t came{0};    ///< Models that became resident.
@@ -89,7 +94,7 @@ public:
         is_touched_ = false;
         go_to(above(object));
         go_to(inside(object));
-        for (int i = 0; i < kRestFrames; ++i)
+        for (int i = 0; i < kRestFrames || (!is_touched_ && i < kRestFramesMost); ++i)
         {
             frame();
         }
@@ -162,16 +167,18 @@ private:
     void judge(const FrameOutput& output, Clock::time_point now)
     {
         ++figures_.frames;
-        figures_.invisible_wall_frames += output.scene.walled_tools > 0 ? 1 : 0;
         is_touched_ =
             is_touched_ || (output.tools[0].in_contact &&
                             std::ranges::any_of(output.pairs, [](const PairOutput& pair)
                                                 { return pair.kind == AnswerKind::exact; }));
         std::uint32_t here = 0;
+        bool is_machine_late = false;
         for (std::size_t i = 0; i < stages_.size(); ++i)
         {
             const ModelStage stage = output.models[i].stage;
             here += stage != ModelStage::known ? 1 : 0;
+            is_machine_late = is_machine_late || (is_awaited(stages_[i]) && is_awaited(stage) &&
+                                                  ms_since(wanted_[i]) > kInTime_ms);
             if (stage == stages_[i])
             {
                 continue;
@@ -189,6 +196,14 @@ private:
             stages_[i] = stage;
         }
         figures_.here_max = std::max(figures_.here_max, here);
+        if (output.scene.walled_tools > 0)
+        {
+            ++(is_machine_late ? figures_.machine_late_frames : figures_.invisible_wall_frames);
+        }
+    }
+    static bool is_awaited(ModelStage stage)
+    {
+        return stage == ModelStage::wanted || stage == ModelStage::arriving;
     }
 
     Controller& controller_;
@@ -273,6 +288,7 @@ int run(int argc, char** argv)
                                       {"pool_bytes", controller.value()->pool_bytes()},
                                       {"frames", figures.frames},
                                       {"invisible_wall_frames", figures.invisible_wall_frames},
+                                      {"machine_late_frames", figures.machine_late_frames},
                                       {"visits", figures.visits},
                                       {"touched", figures.touched},
                                       {"came", figures.came},

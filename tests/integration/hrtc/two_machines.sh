@@ -37,11 +37,11 @@ heard=$(ports_of in_host_network)
 [[ "$heard" == '10 11 ' ]] || fault "the host hears on $first_port and: $heard"
 
 # The doctor hears the host, and what it publishes.
-for ((i = 0; i < 20; ++i)); do
+hears_host() {
     in_controller_network "$hrtc" doctor --json --domain "$domain" --wait 1 >doctor.json || true
-    ! grep -q 'spm_publish (process .*models published: large' doctor.json || break
-done
-((i < 20)) || fault "the doctor hears nobody: $(grep -A 2 dds-domain doctor.json)"
+    grep -q 'spm_publish (process .*models published: large' doctor.json
+}
+wait_until 'word of the doctor on the host' hears_host
 
 # Of another domain nothing comes through, and nothing is found.
 wrong=$(((domain + 7) % 200))
@@ -50,6 +50,5 @@ if in_controller_network "$hrtc" --allow-no-rt --domain "$wrong" --model large -
     fault 'another domain is the same'
 fi
 grep -q "model 'large' is not published on domain $wrong" wrong.log || fault "$(cat wrong.log)"
-stop TERM "$publisher"
-((stopped_with == 0)) || fault "spm_publish ended with $stopped_with"
+stop_publisher
 finish
