@@ -6,15 +6,17 @@
 
 #include "host_tools/shapes/shapes.hpp"
 #include "tests/shared/frame_rig.hpp"
+#include "tests/shared/solid_cores.hpp"
+#include "tests/stability/random_motion.hpp"
 
 #include <Eigen/Geometry>
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <deque>
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <numbers>
 
 namespace tactus::test
@@ -26,55 +28,35 @@ constexpr std::uint32_t kFrames = 500;
 /// Of a tool that is a mesh: one costs hundreds of others where it lies half within an object.
 constexpr std::uint32_t kMeshFrames = 20;
 
-/// The middle of the face that lies farthest in a direction.
-Vec3 place_on(const TestModel& model, const Vec3& direction)
+/// RandomMotion's hand over an object that stays where it is.
+class Hand
 {
-    Vec3 place(0.0, 0.0, 0.0);
-    double farthest = -1e300;
-    for (const Face& face : model.faces)
+public:
+    Hand(const TestModel& model, std::uint64_t seed)
+        : tree_(model.faces)
+        , random_(Random::seeded(seed))
+        , motion_(model, tree_, 0.01 * model.diagonal_m, 1.0, random_)
     {
-        const Vec3 middle = (to_vec3(face[0]) + to_vec3(face[1]) + to_vec3(face[2])) / 3.0;
-        if (middle.dot(direction) > farthest)
-        {
-            farthest = middle.dot(direction);
-            place = middle;
-        }
     }
-    return place;
-}
+    Vec3 next()
+    {
+        const Moment moment = motion_.next();
+        return to_model(moment.pose, moment.goal_m);
+    }
 
-Vec3 direction_at(double turns)
-{
-    const double angle = 2.0 * std::numbers::pi * turns;
-    return {std::cos(angle), std::sin(angle), 0.4 * std::sin(3.0 * angle)};
-}
+private:
+    FaceTree tree_;
+    Random random_;
+    RandomMotion motion_;
+};
 
-/// Down to the surface, then along it, pressed a little into it.
-Vec3 slide(const TestModel& model, std::uint32_t frame)
-{
-    const Vec3 direction = direction_at(frame / 800.0);
-    const double height = frame < 60 ? 0.05 * (1.0 - frame / 60.0) : 0.0;
-    return place_on(model, direction) + (height - 0.004) * model.diagonal_m * direction;
-}
-
-/// The end of the way down, and a little of what follows.
+/// Onto the model's highest corner, and a little into it.
 Vec3 land(const TestModel& model, std::uint32_t frame)
 {
-    return slide(model, frame + 52);
-}
-
-/// Up and down over five places.
-Vec3 tap(const TestModel& model, std::uint32_t frame)
-{
-    const Vec3 direction = direction_at((frame / 100) / 5.0);
-    const double height = 0.05 * std::cos(2.0 * std::numbers::pi * frame / 100.0) + 0.04;
-    return place_on(model, direction) + height * model.diagonal_m * direction;
-}
-
-/// From one side to another every 25 frames.
-Vec3 teleport(const TestModel& model, std::uint32_t frame)
-{
-    return place_on(model, direction_at(0.381966 * (frame / 25)));
+    const auto top =
+        std::ranges::max_element(model.faces, {}, [](const Face& face) { return face[0][2]; });
+    const double height = std::max(0.004 - 0.001 * frame, -0.004);
+    return to_vec3(top->at(0)) + Vec3(0.0, 0.0, height * model.diagonal_m);
 }
 
 /// What a tool that is not a point does at it.
@@ -110,13 +92,13 @@ struct Run
 {
     const char* name;
     std::vector<const TestModel*> models;
-    std::function<Vec3(const TestModel&, std::uint32_t)> motion;
+    Vec3 (*motion)(const TestModel&, std::uint32_t){nullptr}; ///< None: each tool has a Hand.
     RigOptions options;
     Budgets budgets;
     std::uint32_t frames{kFrames};
     void (*change_scene)(FrameRig& rig, std::uint32_t frame){nullptr}; ///< Before each frame.
     std::uint32_t refused{0};                                          ///< Changes, in all.
-    std::function<Mat3(std::uint32_t)> turning{turn};
+    Mat3 (*turning)(std::uint32_t){turn};
 };
 
 /// A tool of this core that wants all there is to know.
@@ -246,19 +228,21 @@ std::vector<Run> runs()
     few.triangles = 200;
     few.pages = 1;
     few.requests = 2;
-    return {{"slide", {models[0]}, slide, usual, {}},
-            {"tap", {models[3]}, tap, usual, {}},
-            {"teleport", {models[2]}, teleport, usual, {}},
-            {"starvation", {models[0]}, slide, starved, few},
-            {"needles", {models[5]}, slide, usual, {}},
-            {"static", {models[1]}, slide, fixed, {}},
-            {"box", {models[3]}, slide, with_core(usual, Box{Vec3(0.004, 0.002, 0.003)}), {}},
+    const RigOptions spike = with_core(usual, spike_core(0.0).core);
+    return {{"smooth", {models[0]}, nullptr, usual, {}},
+            {"sharp", {models[3]}, nullptr, usual, {}},
+            {"open", {models[2]}, nullptr, usual, {}},
+            {"starvation", {models[0]}, nullptr, starved, few},
+            {"needles", {models[5]}, nullptr, usual, {}},
+            {"static", {models[1]}, nullptr, fixed, {}},
+            {"box", {models[3]}, nullptr, with_core(usual, Box{Vec3(0.004, 0.002, 0.003)}), {}},
+            {"hull", {models[0]}, nullptr, spike, {}},
             {"mesh", {models[0], models[1]}, land, with_core(usual, mesh), {}, kMeshFrames},
             {"held_mesh", {models[0], models[1]}, land, held_mesh(usual, mesh), {}, kMeshFrames},
-            {"crowd", {models[0], models[1]}, slide, crowd(usual), {}, kFrames, move_objects},
+            {"crowd", {models[0], models[1]}, nullptr, crowd(usual), {}, kFrames, move_objects},
             {"comings",
              {models[0], models[1]},
-             slide,
+             nullptr,
              with_room(crowd(usual)),
              {},
              kFrames,
@@ -272,6 +256,11 @@ bool record(const Run& run, const std::filesystem::path& folder)
 {
     FrameRig rig(run.models, run.options);
     std::vector<ToolState> tools(std::max<std::size_t>(run.options.tools.size(), 1));
+    std::deque<Hand> hands; // Their motions keep addresses.
+    for (std::uint32_t i = 0; i < tools.size(); ++i)
+    {
+        hands.emplace_back(*run.models[0], 20'261'127 + i);
+    }
     std::uint64_t faces = 0;
     std::uint32_t contacts = 0;
     std::uint32_t static_frames = 0;
@@ -280,7 +269,8 @@ bool record(const Run& run, const std::filesystem::path& folder)
     {
         for (std::uint32_t i = 0; i < tools.size(); ++i)
         {
-            tools[i].position_m = run.motion(*run.models[0], frame + 100 * i);
+            tools[i].position_m =
+                run.motion != nullptr ? run.motion(*run.models[0], frame) : hands[i].next();
             tools[i].rotation = run.turning(frame);
         }
         if (run.change_scene != nullptr)

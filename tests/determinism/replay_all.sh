@@ -14,7 +14,7 @@ if [[ -z "$emulator" ]]; then # Emulated is another processor, whose best kernel
 fi
 wait "$best"
 
-"$alter" "$recordings/slide.rec" "$altered" 300
+"$alter" "$recordings/smooth.rec" "$altered" 300
 code=0
 said=$(replay best "$altered") || code=$?
 if ((code != 1)) || [[ "$said" != *"frame 300 differs: "* ]]; then

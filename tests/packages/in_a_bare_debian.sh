@@ -25,7 +25,7 @@ called() { # called CALL: systemctl was, since the log was emptied.
 }
 wait_for_line() { # wait_for_line FILE TEXT
     local i
-    for ((i = 0; i < 600; ++i)); do
+    for ((i = 0; i < 3000; ++i)); do
         grep -qsF -- "$2" "$1" && return
         sleep 0.05
     done
