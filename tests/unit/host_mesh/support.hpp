@@ -5,6 +5,7 @@
 #include "host_tools/mesh/prepare.hpp"
 #include "host_tools/mesh/read_mesh.hpp"
 #include "platform/base/refusal.hpp"
+#include "tests/shared/manifold.hpp"
 #include "tests/shared/temporary_folder.hpp"
 
 #include <gtest/gtest.h>
@@ -13,7 +14,6 @@
 #include <bit>
 #include <cstdint>
 #include <fstream>
-#include <map>
 #include <set>
 #include <string>
 #include <string_view>
@@ -50,62 +50,16 @@ inline TriangleMesh tetrahedron()
             {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}};
 }
 
-/// Independent of the library: counts faces per directed edge with a map and walks fans with sets.
-template <typename Faces>
-inline bool is_manifold_with_borders(const Faces& faces, std::size_t vertices)
+/// Independent of the library; each vertex has a face.
+inline bool is_manifold_with_borders(const std::vector<Face>& faces, std::size_t vertices)
 {
-    std::set<std::pair<std::uint32_t, std::uint32_t>> directed;
-    std::map<std::uint32_t, std::vector<std::pair<std::uint32_t, std::uint32_t>>> links;
-    for (const Face& f : faces)
+    std::set<std::uint32_t> used;
+    for (const Face& face : faces)
     {
-        for (std::size_t k = 0; k < 3; ++k)
-        {
-            const auto a = f[k];
-            const auto b = f[(k + 1) % 3];
-            if (a == b || a >= vertices || !directed.insert({a, b}).second)
-            {
-                return false;
-            }
-            links[a].push_back({b, f[(k + 2) % 3]});
-        }
+        used.insert(face.begin(), face.end());
     }
-    if (links.size() != vertices)
-    {
-        return false; // A vertex without a face.
-    }
-    for (const auto& [vertex, arcs] : links)
-    {
-        // The link of a vertex must be one path or one cycle: each arc leads on, all get visited.
-        std::map<std::uint32_t, std::uint32_t> next;
-        std::set<std::uint32_t> entered;
-        for (const auto& [from, to] : arcs)
-        {
-            next[from] = to;
-            entered.insert(to);
-        }
-        std::uint32_t at = arcs.front().first;
-        for (const auto& [from, to] : arcs)
-        {
-            at = entered.count(from) == 0 ? from : at;
-        }
-        const std::uint32_t start = at;
-        std::size_t steps = 0;
-        do
-        {
-            const auto arc = next.find(at);
-            if (arc == next.end())
-            {
-                break;
-            }
-            at = arc->second;
-            ++steps;
-        } while (at != start);
-        if (next.size() != arcs.size() || entered.size() != arcs.size() || steps != arcs.size())
-        {
-            return false;
-        }
-    }
-    return true;
+    return used.size() == vertices && (used.empty() || *used.rbegin() < vertices) &&
+           manifold_fault(faces).empty();
 }
 
 inline bool is_manifold_with_borders(const QuantisedMesh& mesh)
