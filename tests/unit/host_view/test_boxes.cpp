@@ -2,10 +2,8 @@
 // Copyright the Tactus authors.
 #include "host_tools/spm_view/boxes.hpp"
 #include "host_tools/spm_view/cut.hpp"
-#include "host_tools/spm_view/model_shelf.hpp"
 #include "rt_core/abtree/ab_tree.hpp"
-#include "tests/shared/frame_rig.hpp"
-#include "tests/shared/test_model.hpp"
+#include "tests/unit/host_view/settled_rig.hpp"
 
 #include <gtest/gtest.h>
 
@@ -56,37 +54,14 @@ void collect(const AbTree& tree, TreeRef ref, const Aabb& box, std::uint32_t lev
 class Boxes : public ::testing::Test
 {
 protected:
-    Boxes()
-    {
-        const test::TestModel& model = test::small_model(0);
-        test::RigOptions options = test::with_room_for_all();
-        options.static_when_it_fits = false;
-        options.tools = {{0.01 * model.diagonal_m, 500.0}};
-        rig_ = std::make_unique<test::FrameRig>(model, options);
-        rig_->settle(to_vec3(model.faces.front()[0]), {}, 2'000);
-        const PageTable& table = rig_->model().pages;
-        for (std::uint32_t slot = 0; slot < table.capacity(); ++slot)
-        {
-            if (table.is_own(slot))
-            {
-                pages_.push_back({table.meta(slot).chunk, table.meta(slot).refined});
-            }
-        }
-        std::ranges::sort(pages_, {}, &FrontPage::chunk);
-        const std::vector<std::string> files{model.path.string()};
-        shelf_ = std::move(ModelShelf::open(files)).value();
-        known_ = shelf_->find(shelf_->labels().front().hash);
-    }
-
-    std::unique_ptr<test::FrameRig> rig_;
-    std::vector<FrontPage> pages_;
-    std::unique_ptr<ModelShelf> shelf_;
-    std::shared_ptr<KnownModel> known_;
+    const std::unique_ptr<tactus::test::FrameRig> rig_ = test::settled_rig();
+    const std::vector<FrontPage> pages_ = test::pages_of(rig_->model());
+    const test::Shelved shelved_;
 };
 
 TEST_F(Boxes, of_the_tree_are_the_controllers_own_at_each_level)
 {
-    const auto decoded = decode_cut(*known_, pages_);
+    const auto decoded = decode_cut(*shelved_.known, pages_);
     ASSERT_TRUE(decoded.has_value()) << decoded.error().text;
     const AbTree& tree = rig_->model().tree;
     std::size_t last = 0;
@@ -108,11 +83,11 @@ TEST_F(Boxes, of_the_tree_are_the_controllers_own_at_each_level)
 
 TEST_F(Boxes, of_chunks_hold_the_vertices_that_these_bring)
 {
-    const auto bytes = chunk_box_bytes(*known_, chunks_of(pages_));
+    const auto bytes = chunk_box_bytes(*shelved_.known, chunks_of(pages_));
     ASSERT_TRUE(bytes.has_value()) << bytes.error().text;
     const std::vector<Box> boxes = read_boxes(bytes.value());
     ASSERT_EQ(boxes.size(), pages_.size());
-    const auto decoded = decode_cut(*known_, pages_);
+    const auto decoded = decode_cut(*shelved_.known, pages_);
     ASSERT_TRUE(decoded.has_value());
     std::size_t looked = 0;
     for (std::size_t i = 0; i < pages_.size(); ++i)
@@ -134,8 +109,8 @@ TEST_F(Boxes, of_chunks_hold_the_vertices_that_these_bring)
         }
     }
     EXPECT_GT(looked, 20U);
-    EXPECT_FALSE(chunk_box_bytes(*known_, std::vector<ChunkId>{{0xFFFFU}}).has_value());
-    EXPECT_TRUE(chunk_box_bytes(*known_, {}).has_value());
+    EXPECT_FALSE(chunk_box_bytes(*shelved_.known, std::vector<ChunkId>{{0xFFFFU}}).has_value());
+    EXPECT_TRUE(chunk_box_bytes(*shelved_.known, {}).has_value());
 }
 
 } // namespace

@@ -3,10 +3,8 @@
 #include "host_tools/encode/extract.hpp"
 #include "host_tools/encode/replay.hpp"
 #include "host_tools/spm_view/cut.hpp"
-#include "host_tools/spm_view/model_shelf.hpp"
 #include "rt_core/spm/error_code.hpp"
-#include "tests/shared/frame_rig.hpp"
-#include "tests/shared/test_model.hpp"
+#include "tests/unit/host_view/settled_rig.hpp"
 
 #include <gtest/gtest.h>
 
@@ -69,7 +67,7 @@ Triangle3 from_least_corner(Triangle3 face)
 
 struct Opened
 {
-    explicit Opened(const test::TestModel& model)
+    explicit Opened(const tactus::test::TestModel& model)
         : store(std::move(ModelStore::open(model.path)).value())
         , decoded(DecodedModel::decode(store, damage))
     {
@@ -154,7 +152,7 @@ std::set<std::uint32_t> records_for(const DecodedModel& model, double error_m)
 
 TEST(Cut, is_face_for_face_what_spm_inspect_extracts)
 {
-    for (const test::TestModel* model : test::small_models())
+    for (const tactus::test::TestModel* model : tactus::test::small_models())
     {
         const Opened opened(*model);
         for (const double share : {0.0, 1e-4, 1e-3, 1e-2, 1.0})
@@ -190,29 +188,18 @@ TEST(Cut, is_face_for_face_what_spm_inspect_extracts)
 /// From the page table of a frame at work to the faces of its forest.
 TEST(Cut, is_face_for_face_what_the_controller_has)
 {
-    const test::TestModel& model = test::small_model(0);
-    const Opened opened(model);
-    test::RigOptions options = test::with_room_for_all();
-    options.static_when_it_fits = false;
-    options.tools = {{0.01 * model.diagonal_m, 500.0}};
-    test::FrameRig rig(model, options);
-    const Vec3 goal_m = to_vec3(model.faces.front()[0]);
-    rig.settle(goal_m, {}, 2'000);
-    const Model& made = rig.frame().model({0});
-    std::set<std::uint32_t> records;
-    for (std::uint32_t slot = 0; slot < made.pages.capacity(); ++slot)
+    const Opened opened(tactus::test::small_model(0));
+    const auto rig = test::settled_rig();
+    const Model& made = rig->model();
+    const std::vector<FrontPage> pages = test::pages_of(made);
+    std::size_t records = 0;
+    for (const FrontPage& page : pages)
     {
-        for (std::uint32_t place = 0; made.pages.is_own(slot) && place < kRecordsPerChunk; ++place)
-        {
-            if ((made.pages.meta(slot).refined >> place & 1U) != 0)
-            {
-                records.insert(made.pages.meta(slot).chunk.value * kRecordsPerChunk + place);
-            }
-        }
+        records += static_cast<std::size_t>(std::popcount(page.refined));
     }
-    ASSERT_EQ(records.size(), made.forest.refined_records());
-    ASSERT_FALSE(records.empty());
-    const auto bytes = cut_bytes(opened.decoded, pages_of(records));
+    ASSERT_EQ(records, made.forest.refined_records());
+    ASSERT_GT(records, 0U);
+    const auto bytes = cut_bytes(opened.decoded, pages);
     ASSERT_TRUE(bytes.has_value()) << bytes.error().text;
     std::vector<Triangle3> shown;
     for (const Triangle3& face : read(bytes.value()).faces)
@@ -241,26 +228,24 @@ TEST(Cut, is_face_for_face_what_the_controller_has)
 
 TEST(Cut, refuses_records_that_the_model_does_not_have_or_that_lack_what_they_depend_on)
 {
-    const Opened opened(test::small_model(0));
+    const Opened opened(tactus::test::small_model(0));
     const std::uint32_t records = opened.decoded.header().counts().records;
     const auto last = in_dependency_order(opened.decoded).back().value;
     EXPECT_TRUE(cut_bytes(opened.decoded, {}).has_value());
     EXPECT_FALSE(cut_bytes(opened.decoded, pages_of({records})).has_value());
     EXPECT_FALSE(cut_bytes(opened.decoded, pages_of({0xFFFF'FF00U})).has_value());
     EXPECT_FALSE(cut_bytes(opened.decoded, pages_of({last})).has_value());
-    const std::vector<std::string> files{test::small_model(0).path.string()};
-    const auto shelf = std::move(ModelShelf::open(files)).value();
-    const auto known = shelf->find(shelf->labels().front().hash);
-    EXPECT_TRUE(decode_cut(*known, {}).has_value());
-    EXPECT_FALSE(decode_cut(*known, pages_of({records})).has_value());
-    EXPECT_FALSE(decode_cut(*known, pages_of({0xFFFF'FF00U})).has_value());
-    EXPECT_FALSE(decode_cut(*known, pages_of({last})).has_value());
+    const test::Shelved shelved;
+    EXPECT_TRUE(decode_cut(*shelved.known, {}).has_value());
+    EXPECT_FALSE(decode_cut(*shelved.known, pages_of({records})).has_value());
+    EXPECT_FALSE(decode_cut(*shelved.known, pages_of({0xFFFF'FF00U})).has_value());
+    EXPECT_FALSE(decode_cut(*shelved.known, pages_of({last})).has_value());
 }
 
 /// Every fourth page is missing: as much as can be split without it, and not one record less.
 TEST(Cut, of_a_part_of_the_pages_is_all_that_can_be_split_with_them)
 {
-    const test::TestModel& model = test::small_model(0);
+    const tactus::test::TestModel& model = tactus::test::small_model(0);
     const Opened opened(model);
     const std::vector<FrontPage> whole =
         pages_of(records_for(opened.decoded, 1e-3 * model.diagonal_m));
@@ -274,11 +259,10 @@ TEST(Cut, of_a_part_of_the_pages_is_all_that_can_be_split_with_them)
         }
     }
     EXPECT_FALSE(cut_bytes(opened.decoded, told).has_value());
-    const std::vector<std::string> files{model.path.string()};
-    const auto shelf = std::move(ModelShelf::open(files)).value();
-    const auto known = shelf->find(shelf->labels().front().hash);
-    EXPECT_FALSE(decode_cut(*known, told).has_value());
-    const auto decoded = decode_cut(*known, told, false); // Without the pages that are missing.
+    const test::Shelved shelved(model);
+    EXPECT_FALSE(decode_cut(*shelved.known, told).has_value());
+    const auto decoded =
+        decode_cut(*shelved.known, told, false); // Without the pages that are missing.
     ASSERT_TRUE(decoded.has_value()) << decoded.error().text;
     const std::vector<FrontPage> part = splittable_part(decoded.value(), told);
     const auto shown = cut_bytes(decoded.value(), part);

@@ -2,9 +2,8 @@
 // Copyright the Tactus authors.
 #include "host_tools/spm_view/cut.hpp"
 #include "host_tools/spm_view/film.hpp"
-#include "tests/shared/frame_rig.hpp"
 #include "tests/shared/temporary_folder.hpp"
-#include "tests/shared/test_model.hpp"
+#include "tests/unit/host_view/settled_rig.hpp"
 
 #include <gtest/gtest.h>
 
@@ -34,29 +33,15 @@ struct Had
     std::uint32_t active_faces{0};
 };
 
-std::vector<FrontPage> pages_of(const Model& model)
-{
-    std::vector<FrontPage> pages;
-    for (std::uint32_t slot = 0; slot < model.pages.capacity(); ++slot)
-    {
-        if (model.pages.is_own(slot))
-        {
-            pages.push_back({model.pages.meta(slot).chunk, model.pages.meta(slot).refined});
-        }
-    }
-    std::ranges::sort(pages, {}, &FrontPage::chunk);
-    return pages;
-}
-
 /// A hand goes to a corner of the model and away, from frame `aside_from` on a little beside it.
 std::vector<Had> record(const std::filesystem::path& path, std::uint32_t frames,
                         std::uint32_t aside_from = kFrames)
 {
-    const test::TestModel& model = test::small_model(0);
-    test::RigOptions options;
+    const tactus::test::TestModel& model = tactus::test::small_model(0);
+    tactus::test::RigOptions options;
     options.record = true;
     options.tools = {{0.01 * model.diagonal_m, 500.0}};
-    test::FrameRig rig(model, options);
+    tactus::test::FrameRig rig(model, options);
     std::vector<Had> had;
     for (std::uint32_t frame = 0; frame < frames; ++frame)
     {
@@ -71,7 +56,7 @@ std::vector<Had> record(const std::filesystem::path& path, std::uint32_t frames,
         {
             now.lower_m.push_back(pair.lower_m);
         }
-        now.pages = pages_of(rig.model());
+        now.pages = test::pages_of(rig.model());
         std::ranges::transform(rig.frame().regions(), std::back_inserter(now.regions),
                                front_region_of);
         now.active_faces = rig.model().forest.active_faces();
@@ -93,7 +78,7 @@ std::unique_ptr<Film> develop(const std::filesystem::path& path, ModelShelf& she
 
 TEST(Film, has_of_each_frame_what_the_frame_had_and_its_faces_without_a_model_file)
 {
-    const test::TemporaryFolder folder;
+    const tactus::test::TemporaryFolder folder;
     const auto had = record(folder.path() / "run.rec", kFrames);
     ModelShelf shelf;
     const auto sut = develop(folder.path() / "run.rec", shelf);
@@ -115,12 +100,7 @@ TEST(Film, has_of_each_frame_what_the_frame_had_and_its_faces_without_a_model_fi
         EXPECT_EQ(shown.front->front.regions, had[frame].regions);
         ASSERT_EQ(shown.front->front.models.size(), 1U);
         const FrontModel& model = shown.front->front.models[0];
-        ASSERT_EQ(model.pages.size(), had[frame].pages.size());
-        for (std::size_t i = 0; i < model.pages.size(); ++i)
-        {
-            EXPECT_EQ(model.pages[i].chunk, had[frame].pages[i].chunk);
-            EXPECT_EQ(model.pages[i].refined, had[frame].pages[i].refined);
-        }
+        EXPECT_TRUE(model.pages == had[frame].pages);
         const auto known = shelf.find(model.hash);
         ASSERT_NE(known, nullptr);
         const auto decoded = decode_cut(*known, model.pages);
@@ -141,7 +121,7 @@ TEST(Film, has_of_each_frame_what_the_frame_had_and_its_faces_without_a_model_fi
 
 TEST(Films, tell_where_two_recordings_first_differ_and_how)
 {
-    const test::TemporaryFolder folder;
+    const tactus::test::TemporaryFolder folder;
     record(folder.path() / "one.rec", kFrames);
     record(folder.path() / "same.rec", kFrames);
     record(folder.path() / "other.rec", 150, 90);
@@ -175,7 +155,7 @@ TEST(Films, tell_where_two_recordings_first_differ_and_how)
 
 TEST(Film, refuses_a_recording_that_is_cut_short_and_ends_when_it_is_told_to)
 {
-    const test::TemporaryFolder folder;
+    const tactus::test::TemporaryFolder folder;
     const auto path = folder.path() / "run.rec";
     record(path, 20);
     ModelShelf shelf;
