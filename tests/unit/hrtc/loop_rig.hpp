@@ -109,9 +109,13 @@ private:
     std::uint64_t reads_{0};
 };
 
+class LoopRig;
+
 struct LoopRigOptions
 {
     TamperedDevice::Tamper tamper = [](std::uint64_t, DeviceSample&) {};
+    /// What others do while a frame's device is read.
+    std::function<void(LoopRig& rig, std::uint64_t frame)> meanwhile;
     std::vector<DeviceFault> faults;
     std::vector<LateWake> late_wakes;
     std::optional<Duration> watchdog; ///< The device's own.
@@ -175,6 +179,8 @@ public:
         static_cast<void>(parts.timer->start(kPeriod, {}));
     }
 
+    void run() { loop_->run(); }
+
     [[nodiscard]] PoseDoor& door() { return *door_; }
     /// Where the object stands at first.
     [[nodiscard]] ObjectPose placed() const
@@ -205,6 +211,13 @@ public:
         return events;
     }
 
+    /// Whether a cause was noted.
+    [[nodiscard]] static bool has(const std::vector<SafetyEvent>& events, ForceOff cause)
+    {
+        return std::ranges::any_of(events, [cause](const SafetyEvent& event)
+                                   { return has_cause(event.causes, cause); });
+    }
+
     [[nodiscard]] std::uint64_t frames_with(ForceAction action) const
     {
         const auto bit = std::countr_zero(static_cast<std::uint8_t>(action));
@@ -221,11 +234,6 @@ public:
         return largest_step(device().written_nm, from, to);
     }
 
-    ModelMarks hosts_gone;
-    ModelMarks starved;
-    TelemetryTap telemetry{kPeriod};
-
-private:
     static double largest_step(const std::vector<Vec3>& written, std::uint64_t from,
                                std::uint64_t to)
     {
@@ -236,6 +244,12 @@ private:
         }
         return most;
     }
+
+    ModelMarks hosts_gone;
+    ModelMarks starved;
+    TelemetryTap telemetry{kPeriod};
+
+private:
     static std::size_t objects(const LoopRigOptions& options)
     {
         return options.neighbour_m ? 2 : 1;
@@ -295,7 +309,14 @@ private:
             std::make_unique<PressingHand>(place, Vec3::UnitX(), kStartHeight * model_.diagonal_m);
         tool().device = std::make_unique<TamperedDevice>(
             std::move(SimulatedDevice::create(device, std::move(hand))).value(), options_.faults,
-            options_.tamper);
+            [this](std::uint64_t frame, DeviceSample& sample)
+            {
+                if (options_.meanwhile)
+                {
+                    options_.meanwhile(*this, frame);
+                }
+                options_.tamper(frame, sample);
+            });
     }
     [[nodiscard]] ToolSetup& tool() { return tools_.front(); }
 

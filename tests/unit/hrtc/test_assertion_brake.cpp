@@ -42,7 +42,7 @@ constexpr std::uint64_t kFailAt = 200; ///< The reading in which the bug happens
 constexpr std::uint64_t kFadeWrites = 51;
 constexpr std::uint64_t kFadeFailsAt = 7;
 /// The test would wait for ever for a brake that never comes; this only ends it as a failure.
-constexpr std::chrono::milliseconds kHopeless{30'000};
+constexpr std::chrono::milliseconds kHopeless{120'000};
 constexpr bool kThereIsNoBug = false;
 constexpr bool kThereIsNoSecondBug = false;
 

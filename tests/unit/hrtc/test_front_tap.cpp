@@ -49,20 +49,18 @@ constexpr std::uint64_t kFrames = 9 * FrontTap::kFrames + 1;
 
 TEST(FrontTap, copies_the_pages_of_one_frame_in_a_hundred_with_what_is_split)
 {
-    FrontTap* sut = nullptr;
     LoopRigOptions options = options_of(kSlots, kFrames);
-    options.tamper = [&sut](std::uint64_t frame, DeviceSample&)
+    options.meanwhile = [](LoopRig& running, std::uint64_t frame)
     {
         if (frame == kFrames - 2)
         {
-            sut->give_back(); // What the first frame left; the last one makes the next.
+            running.front().give_back(); // What the first frame left; the last makes the next.
         }
     };
     LoopRig rig(options);
-    sut = &rig.front();
-    EXPECT_EQ(sut->take(), nullptr);
-    rig.loop().run();
-    const FrontCopy* copy = sut->take();
+    EXPECT_EQ(rig.front().take(), nullptr);
+    rig.run();
+    const FrontCopy* copy = rig.front().take();
     ASSERT_NE(copy, nullptr);
     EXPECT_EQ(copy->frame, kFrames);
     std::vector<std::pair<std::uint32_t, std::uint64_t>> pages;
@@ -87,26 +85,25 @@ TEST(FrontTap, copies_the_pages_of_one_frame_in_a_hundred_with_what_is_split)
 
 TEST(FrontTap, leaves_a_copy_alone_until_it_is_given_back)
 {
-    FrontTap* sut = nullptr;
     std::vector<ShownPage> first;
     LoopRigOptions options = options_of(kSlots, kFrames);
-    options.tamper = [&](std::uint64_t frame, DeviceSample&)
+    options.meanwhile = [&first](LoopRig& running, std::uint64_t frame)
     {
         if (frame == 1)
         {
-            first = sut->take()->slots;
+            first = running.front().take()->slots;
         }
     };
     LoopRig rig(options);
-    sut = &rig.front();
-    rig.loop().run();
-    ASSERT_NE(sut->take(), nullptr);
-    EXPECT_EQ(sut->take()->frame, 1U);
-    EXPECT_EQ(sut->take()->slots, first);
+    FrontTap& sut = rig.front();
+    rig.run();
+    ASSERT_NE(sut.take(), nullptr);
+    EXPECT_EQ(sut.take()->frame, 1U);
+    EXPECT_EQ(sut.take()->slots, first);
     const std::span<const PageMeta> last = rig.frame().pools().cache.pages.metas;
     EXPECT_FALSE(std::equal(first.begin(), first.end(), last.begin(), last.end()));
-    sut->give_back();
-    EXPECT_EQ(sut->take(), nullptr);
+    sut.give_back();
+    EXPECT_EQ(sut.take(), nullptr);
 }
 
 TEST(FrontTap, starts_from_what_is_there_when_it_is_made)

@@ -25,6 +25,20 @@ bool is_bad(std::uint64_t frame)
     return frame >= kSettled && frame < kSettled + kBadFrames;
 }
 
+/// Does this in the frame in which the force has settled.
+LoopRigOptions when_settled(void (*act)(LoopRig&))
+{
+    LoopRigOptions options;
+    options.meanwhile = [act](LoopRig& rig, std::uint64_t frame)
+    {
+        if (frame == kSettled)
+        {
+            act(rig);
+        }
+    };
+    return options;
+}
+
 /// What a test does to the device's readings, and how the loop has to call it.
 struct Trouble
 {
@@ -83,54 +97,6 @@ const Trouble kTroubles[] = {
      SafetyState::reset}, // Nothing is left to fade: what isn't there makes no force.
 };
 
-class HapticLoopTrouble : public testing::TestWithParam<Trouble>
-{
-};
-
-INSTANTIATE_TEST_SUITE_P(Each, HapticLoopTrouble, testing::ValuesIn(kTroubles),
-                         [](const auto& test) { return std::string(test.param.name); });
-
-TEST_P(HapticLoopTrouble, fades_the_force_within_two_periods_and_brings_it_back_by_the_ramp)
-{
-    LoopRigOptions options;
-    options.tamper = GetParam().tamper;
-    options.faults = GetParam().faults;
-    LoopRig rig(options);
-    rig.loop().run();
-    const std::uint64_t known = kSettled + GetParam().notice;
-    const double before_n = rig.written_n(kSettled - 1).norm();
-    ASSERT_GT(before_n, 1.0);
-
-    // The hand that sinks into the wall as the force goes makes no 0.3 m/s.
-    const double damping_n =
-        GetParam().cause == ForceOff::velocity ? 8.0 * kDampingForceShare : 0.5 * 0.3;
-    EXPECT_LT(rig.written_n(known + 1).norm(), 0.97 * before_n + 4.0 * 0.04 * 0.96 * damping_n);
-    for (std::uint64_t frame = known; frame < known + kFadeFrames; ++frame)
-    {
-        const double left = 1.0 - static_cast<double>(frame - known + 1) * kPeriod_s / kFadeTime_s;
-        EXPECT_LE(rig.written_n(frame).norm(),
-                  std::max(left, 0.0) * (before_n + kOwnStep_n) + damping_n + kRounding_n)
-            << frame;
-    }
-    for (std::uint64_t frame = known + kFadeFrames; frame < kSettled + kBadFrames; ++frame)
-    {
-        EXPECT_EQ(rig.written_n(frame).norm(), 0.0) << frame;
-    }
-    EXPECT_LE(rig.largest_step_n(kSettled + kBadFrames, 1'900), kBackStep_n);
-    EXPECT_NEAR(rig.written_n(1'900).norm(), before_n, 0.05 * before_n);
-
-    const std::vector<SafetyEvent> events = rig.events();
-    const auto noted = std::ranges::find_if(events, [](const SafetyEvent& event)
-                                            { return has_cause(event.causes, GetParam().cause); });
-    ASSERT_NE(noted, events.end());
-    EXPECT_LE(noted->frame, known + 1);
-    EXPECT_EQ(noted->state, GetParam().state);
-    const SafetyState left =
-        GetParam().cause == ForceOff::disconnect ? SafetyState::reset : SafetyState::idle;
-    EXPECT_TRUE(std::ranges::any_of(events, [&](const SafetyEvent& event)
-                                    { return event.state == left && event.frame > known; }));
-}
-
 /// Of a device that turns, with a tool that is turned by what it touches.
 const Trouble kTurningTroubles[] = {
     {"no_rotation", ForceOff::garbage, 0,
@@ -158,15 +124,6 @@ const Trouble kTurningTroubles[] = {
      { (*sample.angular_velocity_world_rad_per_s)[1] += is_bad(frame) ? 70.0 : 0.0; }},
 };
 
-class HapticLoopTorqueTrouble : public testing::TestWithParam<Trouble>
-{
-};
-
-INSTANTIATE_TEST_SUITE_P(Each, HapticLoopTorqueTrouble, testing::ValuesIn(kTroubles),
-                         [](const auto& test) { return std::string(test.param.name); });
-INSTANTIATE_TEST_SUITE_P(Turning, HapticLoopTorqueTrouble, testing::ValuesIn(kTurningTroubles),
-                         [](const auto& test) { return std::string(test.param.name); });
-
 /// Pressed on off its middle, so that the surface turns it.
 LoopRigOptions with_a_lever(const Trouble& trouble)
 {
@@ -178,30 +135,91 @@ LoopRigOptions with_a_lever(const Trouble& trouble)
     return options;
 }
 
+/// Forces or torques that went out, and what they may do by themselves.
+struct Course
+{
+    const std::vector<Vec3>& written;
+    double own_step;      ///< From frame to frame when nobody interferes.
+    double damping;       ///< Of the hand that sinks into the wall as the force goes.
+    double back_step_max; ///< On the way back.
+    double off;           ///< Of the value before, where it ends.
+};
+
+/// Faded along a line from the frame on in which the trouble can be known, and back by a ramp.
+void expect_to_fade_and_return(const Course& course, std::uint64_t known)
+{
+    const double before = course.written[kSettled - 1].norm();
+    for (std::uint64_t frame = known; frame < kSettled + kBadFrames; ++frame)
+    {
+        const double left = 1.0 - static_cast<double>(frame - known + 1) * kPeriod_s / kFadeTime_s;
+        const double most =
+            frame >= known + kFadeFrames
+                ? 0.0
+                : std::max(left, 0.0) * (before + course.own_step) + course.damping + kRounding_n;
+        EXPECT_LE(course.written[frame].norm(), most) << frame;
+    }
+    EXPECT_LE(LoopRig::largest_step(course.written, kSettled + kBadFrames, 1'900),
+              course.back_step_max);
+    EXPECT_NEAR(course.written[1'900].norm(), before, course.off * before);
+}
+
+class HapticLoopTrouble : public testing::TestWithParam<Trouble>
+{
+};
+class HapticLoopTorqueTrouble : public HapticLoopTrouble
+{
+};
+
+const auto kByName = [](const auto& test) { return std::string(test.param.name); };
+INSTANTIATE_TEST_SUITE_P(Each, HapticLoopTrouble, testing::ValuesIn(kTroubles), kByName);
+INSTANTIATE_TEST_SUITE_P(Each, HapticLoopTorqueTrouble, testing::ValuesIn(kTroubles), kByName);
+INSTANTIATE_TEST_SUITE_P(Turning, HapticLoopTorqueTrouble, testing::ValuesIn(kTurningTroubles),
+                         kByName);
+
+TEST_P(HapticLoopTrouble, fades_the_force_within_two_periods_and_brings_it_back_by_the_ramp)
+{
+    LoopRigOptions options;
+    options.tamper = GetParam().tamper;
+    options.faults = GetParam().faults;
+    LoopRig rig(options);
+    rig.run();
+    const std::uint64_t known = kSettled + GetParam().notice;
+    const double before_n = rig.written_n(kSettled - 1).norm();
+    ASSERT_GT(before_n, 1.0);
+    // The hand makes no 0.3 m/s.
+    const double damping_n =
+        GetParam().cause == ForceOff::velocity ? 8.0 * kDampingForceShare : 0.5 * 0.3;
+    EXPECT_LT(rig.written_n(known + 1).norm(), 0.97 * before_n + 4.0 * 0.04 * 0.96 * damping_n);
+    expect_to_fade_and_return({rig.device().written_n, kOwnStep_n, damping_n, kBackStep_n, 0.05},
+                              known);
+
+    const std::vector<SafetyEvent> events = rig.events();
+    const auto noted = std::ranges::find_if(events, [](const SafetyEvent& event)
+                                            { return has_cause(event.causes, GetParam().cause); });
+    ASSERT_NE(noted, events.end());
+    EXPECT_LE(noted->frame, known + 1);
+    EXPECT_EQ(noted->state, GetParam().state);
+    const SafetyState left =
+        GetParam().cause == ForceOff::disconnect ? SafetyState::reset : SafetyState::idle;
+    EXPECT_TRUE(std::ranges::any_of(events, [&](const SafetyEvent& event)
+                                    { return event.state == left && event.frame > known; }));
+}
+
 TEST_P(HapticLoopTorqueTrouble, fades_the_torque_as_the_force_and_brings_it_back)
 {
     LoopRig rig(with_a_lever(GetParam()));
-    rig.loop().run();
+    rig.run();
     const std::uint64_t known = kSettled + GetParam().notice;
-    const double before_nm = rig.written_nm(kSettled - 1).norm();
-    ASSERT_GT(before_nm, 1e-3);
+    ASSERT_GT(rig.written_nm(kSettled - 1).norm(), 1e-3);
     const double own_step_nm = rig.largest_step_nm(kSettled - 200, kSettled - 1);
-    for (std::uint64_t frame = known; frame < known + kFadeFrames; ++frame)
-    {
-        const double left = 1.0 - static_cast<double>(frame - known + 1) * kPeriod_s / kFadeTime_s;
-        EXPECT_LE(rig.written_nm(frame).norm(),
-                  std::max(left, 0.0) * (before_nm + own_step_nm) + kRounding_n)
-            << frame;
-    }
+    const double torque_max_nm = rig.device().info().limits.turn.torque_max_nm;
+    expect_to_fade_and_return({rig.device().written_nm, own_step_nm, 0.0,
+                               2.0 * torque_max_nm * kPeriod_s / kRiseTime_s + own_step_nm, 0.1},
+                              known);
     for (std::uint64_t frame = known + kFadeFrames; frame < kSettled + kBadFrames; ++frame)
     {
-        EXPECT_EQ(rig.written_nm(frame).norm(), 0.0) << frame;
         EXPECT_EQ(rig.written_n(frame).norm(), 0.0) << frame;
     }
-    const double torque_max_nm = rig.device().info().limits.turn.torque_max_nm;
-    EXPECT_LE(rig.largest_step_nm(kSettled + kBadFrames, 1'900),
-              2.0 * torque_max_nm * kPeriod_s / kRiseTime_s + own_step_nm);
-    EXPECT_NEAR(rig.written_nm(1'900).norm(), before_nm, 0.1 * before_nm);
     const std::vector<SafetyEvent> events = rig.events();
     EXPECT_TRUE(std::ranges::any_of(
         events, [&](const SafetyEvent& event)
@@ -214,7 +232,7 @@ TEST(HapticLoop, a_stall_takes_as_much_of_the_torque_as_of_the_force)
     options.tamper = leave;
     options.late_wakes = {{kSettled, milliseconds(10)}};
     LoopRig rig(options);
-    rig.loop().run();
+    rig.run();
     const std::vector<SafetyEvent> events = rig.events();
     const auto noted = std::ranges::find(events, ForceOff::stall, &SafetyEvent::causes);
     ASSERT_NE(noted, events.end());
@@ -245,7 +263,7 @@ TEST(HapticLoop, a_jittering_device_keeps_its_force_with_no_more_than_the_noise_
     LoopRigOptions options;
     options.faults = {{DeviceFaultKind::jitter, kSettled, 900}};
     LoopRig rig(options);
-    rig.loop().run();
+    rig.run();
     const double before_n = rig.written_n(kSettled - 1).norm();
     const double noise_n = std::sqrt(3.0) * FaultyDevice::kJitter_m * options.stiffness_n_per_m;
     EXPECT_GT(rig.largest_step_n(kSettled, 1'900), 0.1 * noise_n);
@@ -262,7 +280,7 @@ TEST(HapticLoop, time_that_falls_back_ends_the_force_until_the_clock_is_believed
     LoopRigOptions options;
     options.faults = {{DeviceFaultKind::time_jump, kSettled - 200, 200}};
     LoopRig rig(options);
-    rig.loop().run();
+    rig.run();
     // Ahead it may jump: what was lost then, nobody knows.
     const double before_n = rig.written_n(kSettled - 1).norm();
     EXPECT_GT(before_n, 1.0);
@@ -286,9 +304,9 @@ TEST(HapticLoop, encoders_that_were_stuck_come_back_as_a_hand_that_is_too_fast)
         options.faults = {{DeviceFaultKind::stuck, begin, kSettled - begin}};
         options.speed_max_m_per_s = 1.0;
         LoopRig rig(options);
-        rig.loop().run();
+        rig.run();
         LoopRig whole({});
-        whole.loop().run();
+        whole.run();
         EXPECT_LE(rig.largest_step_n(begin, kSettled - 1), kOwnStep_n) << begin;
         EXPECT_LT(rig.written_n(kSettled - 1).norm(), 0.8 * whole.written_n(1'900).norm()) << begin;
         EXPECT_LE(rig.largest_step_n(kSettled - 1, 1'900), kBackStep_n + damping_n) << begin;
@@ -302,7 +320,7 @@ TEST(HapticLoop, encoders_that_were_stuck_come_back_as_a_hand_that_is_too_fast)
 TEST(HapticLoop, begins_without_a_force_and_ends_without_one)
 {
     LoopRig rig({});
-    rig.loop().run();
+    rig.run();
     ASSERT_EQ(rig.device().written_n.size(), 2'001U);
     EXPECT_EQ(rig.written_n(0).norm(), 0.0);
     EXPECT_GT(rig.written_n(1'900).norm(), 1.0);
@@ -317,18 +335,8 @@ TEST(HapticLoop, begins_without_a_force_and_ends_without_one)
 
 TEST(HapticLoop, fades_the_force_before_it_stops)
 {
-    LoopRig* running = nullptr;
-    LoopRigOptions options;
-    options.tamper = [&](std::uint64_t frame, DeviceSample&)
-    {
-        if (frame == kSettled)
-        {
-            running->loop().stop();
-        }
-    };
-    LoopRig rig(options);
-    running = &rig;
-    rig.loop().run();
+    LoopRig rig(when_settled([](LoopRig& running) { running.loop().stop(); }));
+    rig.run();
     EXPECT_TRUE(rig.loop().is_done());
     const std::uint64_t frames = rig.loop().frames_done();
     EXPECT_GE(frames, kSettled + kFadeFrames - 1);
@@ -341,14 +349,12 @@ TEST(HapticLoop, a_lost_host_ends_the_force_unless_the_model_is_here_as_a_whole)
 {
     for (const bool is_static : {false, true})
     {
-        LoopRig* running = nullptr;
         LoopRigOptions options;
         options.static_model = is_static;
-        options.tamper = [&](std::uint64_t frame, DeviceSample&)
-        { running->hosts_gone.set(0, is_bad(frame)); };
+        options.meanwhile = [](LoopRig& rig, std::uint64_t frame)
+        { rig.hosts_gone.set(0, is_bad(frame)); };
         LoopRig rig(options);
-        running = &rig;
-        rig.loop().run();
+        rig.run();
         const double before_n = rig.written_n(kSettled - 1).norm();
         const double after_n = rig.written_n(kSettled + kFadeFrames).norm();
         EXPECT_GT(before_n, 1.0);
@@ -371,14 +377,11 @@ TEST(HapticLoop, a_piece_that_does_not_come_ends_the_force_where_the_tool_is_at_
         options.neighbour_m = 0.02;
         LoopRig rig(options);
         rig.starved.set(starved, true);
-        rig.loop().run();
+        rig.run();
         EXPECT_GT(rig.statistics().pairs[1].in_all(), 500U);
         EXPECT_GT(rig.statistics().held_back_frames, 100U);
         const std::vector<SafetyEvent> events = rig.events();
-        EXPECT_EQ(std::ranges::any_of(events, [](const SafetyEvent& event)
-                                      { return has_cause(event.causes, ForceOff::starved); }),
-                  starved == 0)
-            << starved;
+        EXPECT_EQ(LoopRig::has(events, ForceOff::starved), starved == 0) << starved;
     }
 }
 
@@ -389,7 +392,7 @@ TEST(HapticLoop, the_first_frame_after_a_stall_counts_its_true_time)
         LoopRigOptions options;
         options.late_wakes = {{kSettled, milliseconds(lost)}};
         LoopRig rig(options);
-        rig.loop().run();
+        rig.run();
         const std::vector<SafetyEvent> events = rig.events();
         const auto noted = std::ranges::find(events, ForceOff::stall, &SafetyEvent::causes);
         ASSERT_NE(noted, events.end()) << lost;
@@ -443,18 +446,9 @@ TEST(HapticLoopDeathTest, an_assertion_on_the_haptic_thread_fades_the_last_force
 
 TEST(HapticLoop, a_bug_of_another_thread_brakes_at_once_and_nobody_releases_it)
 {
-    LoopRig* running = nullptr;
-    LoopRigOptions options;
-    options.tamper = [&](std::uint64_t frame, DeviceSample&)
-    {
-        if (frame == kSettled)
-        {
-            std::thread([&] { running->loop().fail(); }).join();
-        }
-    };
-    LoopRig rig(options);
-    running = &rig;
-    rig.loop().run();
+    LoopRig rig(when_settled([](LoopRig& running)
+                             { std::thread([&running] { running.loop().fail(); }).join(); }));
+    rig.run();
     EXPECT_TRUE(rig.loop().has_failed());
     EXPECT_EQ(rig.loop().frames_done(), kSettled + 1);
     EXPECT_EQ(rig.device().status().state, DeviceState::brake);
@@ -463,19 +457,13 @@ TEST(HapticLoop, a_bug_of_another_thread_brakes_at_once_and_nobody_releases_it)
 
 TEST(HapticLoop, a_release_that_has_begun_does_not_undo_the_brake_of_a_bug)
 {
-    LoopRig* running = nullptr;
-    LoopRigOptions options;
-    options.tamper = [&](std::uint64_t frame, DeviceSample&)
-    {
-        if (frame == kSettled)
+    LoopRig rig(when_settled(
+        [](LoopRig& running)
         {
-            running->device().brake(); // As the supervisor does; the loop releases it.
-        }
-    };
-    LoopRig rig(options);
-    running = &rig;
+            running.device().brake(); // As the supervisor does; the loop releases it.
+        }));
     rig.device().before_release = [&] { std::thread([&] { rig.loop().fail(); }).join(); };
-    rig.loop().run();
+    rig.run();
     EXPECT_EQ(rig.loop().frames_done(), kSettled + 1);
     EXPECT_EQ(rig.device().status().state, DeviceState::brake);
     EXPECT_EQ(rig.device().felt_n().norm(), 0.0);
@@ -484,7 +472,7 @@ TEST(HapticLoop, a_release_that_has_begun_does_not_undo_the_brake_of_a_bug)
 TEST(HapticLoop, a_wall_that_the_device_may_have_goes_through_as_it_is)
 {
     LoopRig rig({});
-    rig.loop().run();
+    rig.run();
     EXPECT_GT(rig.written_n(kSettled).norm(), 1.0);
     for (const ForceAction action :
          {ForceAction::refused, ForceAction::stiffness_capped, ForceAction::clamped,
@@ -506,8 +494,8 @@ TEST(HapticLoop, a_stiffer_wall_than_the_device_may_have_is_as_stiff_as_it_may_b
     const double cap_n_per_m = 0.9 * 2.0 * 1.0 / kPeriod_s; // The device's damping is 1 N s/m.
     LoopRig stiff(pressed_with(3'000.0));
     LoopRig softer(pressed_with(cap_n_per_m * (1.0 - 1e-9)));
-    stiff.loop().run();
-    softer.loop().run();
+    stiff.run();
+    softer.run();
     for (const std::uint64_t frame : {kSettled, kSettled + 500})
     {
         EXPECT_NEAR((stiff.written_n(frame) - softer.written_n(frame)).norm(), 0.0, 1e-3);
@@ -518,19 +506,13 @@ TEST(HapticLoop, a_stiffer_wall_than_the_device_may_have_is_as_stiff_as_it_may_b
 
 TEST(HapticLoop, takes_back_a_device_that_somebody_has_braked)
 {
-    LoopRig* running = nullptr;
-    LoopRigOptions options;
-    options.tamper = [&](std::uint64_t frame, DeviceSample&)
-    {
-        if (frame == kSettled)
+    LoopRig rig(when_settled(
+        [](LoopRig& running)
         {
-            running->device().brake();
-            running->device().brake(); // The second changes nothing.
-        }
-    };
-    LoopRig rig(options);
-    running = &rig;
-    rig.loop().run();
+            running.device().brake();
+            running.device().brake(); // The second changes nothing.
+        }));
+    rig.run();
     const double before_n = rig.written_n(kSettled - 1).norm();
     EXPECT_EQ(rig.written_n(kSettled).norm(), 0.0);
     EXPECT_LE(rig.largest_step_n(kSettled, 1'900), kBackStep_n);

@@ -44,11 +44,6 @@ public:
         }
         return sum / 50.0;
     }
-    [[nodiscard]] static bool has(const std::vector<SafetyEvent>& events, ForceOff cause)
-    {
-        return std::ranges::any_of(events, [cause](const SafetyEvent& event)
-                                   { return has_cause(event.causes, cause); });
-    }
 
 private:
     LoopRigOptions options(double speed_m_per_s)
@@ -100,7 +95,7 @@ TEST(MovedObject, pushes_the_hand_that_touches_it_and_lets_go_again)
     EXPECT_NEAR(after_n, before_n, 0.05 * before_n);
     EXPECT_LE(sut.rig().largest_step_n(kSettled, 1'900), 500.0 * kMost_m / 10.0);
     EXPECT_EQ(sut.rig().statistics().answers.stale, 0U);
-    EXPECT_FALSE(MovedObject::has(sut.rig().events(), ForceOff::jump));
+    EXPECT_FALSE(LoopRig::has(sut.rig().events(), ForceOff::jump));
     EXPECT_NEAR(static_cast<double>(sut.rig().door().uses()[0].moves), 400.0, 1.0);
 }
 
@@ -123,7 +118,7 @@ TEST(MovedObject, whose_poses_stop_loses_the_force_and_gets_it_back_with_them)
     EXPECT_LE(sut.rig().largest_step_n(kSettled, 1'900), kBackStep_n);
     EXPECT_EQ(sut.rig().statistics().answers.stale, kSilence - 100U);
     EXPECT_EQ(sut.rig().door().uses()[0].old_frames, kSilence - 100U);
-    EXPECT_TRUE(MovedObject::has(sut.rig().events(), ForceOff::stale));
+    EXPECT_TRUE(LoopRig::has(sut.rig().events(), ForceOff::stale));
 }
 
 TEST(MovedObject, that_nobody_moves_never_grows_old)
@@ -143,7 +138,7 @@ TEST(MovedObject, that_jumps_under_the_tool_makes_no_step_of_the_force)
         MovedObject sut([jump_m](std::uint64_t frame)
                         { return std::optional(frame < kSettled ? 0.0 : jump_m); });
         sut.run();
-        EXPECT_TRUE(MovedObject::has(sut.rig().events(), ForceOff::jump)) << jump_m;
+        EXPECT_TRUE(LoopRig::has(sut.rig().events(), ForceOff::jump)) << jump_m;
         EXPECT_LE(sut.rig().largest_step_n(kSettled - 1, 1'900), kBackStep_n) << jump_m;
     }
 }
@@ -167,7 +162,7 @@ TEST(MovedObject, that_goes_15_mm_at_once_is_followed)
     MovedObject sut([](std::uint64_t frame)
                     { return std::optional(frame < kSettled ? 0.0 : -0.015); });
     sut.run();
-    EXPECT_FALSE(MovedObject::has(sut.rig().events(), ForceOff::jump));
+    EXPECT_FALSE(LoopRig::has(sut.rig().events(), ForceOff::jump));
     EXPECT_NEAR(sut.rig().written_n(1'800).norm(), 0.0, kRounding_n); // It has left the hand.
     EXPECT_GT(sut.rig().largest_step_n(kSettled - 1, 1'900), kFadeStep_n);
 }

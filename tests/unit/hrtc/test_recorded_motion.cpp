@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <fstream>
+#include <span>
 #include <string>
 
 namespace tactus::hrtc::test
@@ -40,23 +40,16 @@ std::vector<std::byte> recording_of(int frames)
     return rig.finish_recording();
 }
 
-/// A file that lasts as long as the test.
 class RecordedMotion : public testing::Test
 {
 protected:
-    [[nodiscard]] const std::string& write(const std::vector<std::byte>& bytes)
+    [[nodiscard]] std::string write(std::span<const std::byte> bytes) const
     {
-        std::ofstream file(path_, std::ios::binary);
-        for (const std::byte byte : bytes)
-        {
-            file.put(static_cast<char>(byte));
-        }
-        return path_;
+        return folder_.write("run.rec", bytes).string();
     }
 
 private:
     tactus::test::TemporaryFolder folder_{"recorded-motion"};
-    std::string path_ = (folder_.path() / "run.rec").string();
 };
 
 TEST_F(RecordedMotion, is_that_of_the_tool_of_the_same_number_or_of_the_first)

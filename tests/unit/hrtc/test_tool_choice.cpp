@@ -2,13 +2,13 @@
 // Copyright the Tactus authors.
 #include "platform/hrtc/options.hpp"
 #include "platform/hrtc/tool_choice.hpp"
+#include "tests/shared/temporary_folder.hpp"
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <fstream>
+#include <ranges>
 #include <string>
-#include <unistd.h>
+#include <string_view>
 
 namespace tactus::hrtc::test
 {
@@ -45,31 +45,15 @@ TEST(ToolChoice, takes_names_with_commas_and_a_radius_behind_the_last_one)
 
 TEST(ToolChoice, refuses_what_is_no_shape_and_measures_out_of_range)
 {
-    for (const char* text : {"",
-                             "ball",
-                             "point:1",
-                             "sphere",
-                             "sphere:",
-                             "sphere:0",
-                             "sphere:1.01",
-                             "sphere:9e-6",
-                             "sphere:nan",
-                             "sphere:0.1,0.1",
-                             "capsule:0.1",
-                             "capsule:0.1,0",
-                             "capsule:0,0.1",
-                             "capsule:0.1,2",
-                             "box:0.1,0.1",
-                             "box:0.1,0.1,0",
-                             "box:0.1,0.1,0.1,-0.1",
-                             "box:0.1,0.1,0.1,1e-6",
-                             "box:0.1,0.1,0.1,0.1,0.1",
-                             "hull:",
-                             "hull:,0.1",
-                             "hull:a.obj,2",
-                             "mesh:",
-                             "mesh:probe,-1"})
+    // Apart by bars.
+    constexpr std::string_view kWrong =
+        "|ball|point:1|sphere|sphere:|sphere:0|sphere:1.01|sphere:9e-6|sphere:nan|"
+        "sphere:0.1,0.1|capsule:0.1|capsule:0.1,0|capsule:0,0.1|capsule:0.1,2|box:0.1,0.1|"
+        "box:0.1,0.1,0|box:0.1,0.1,0.1,-0.1|box:0.1,0.1,0.1,1e-6|box:0.1,0.1,0.1,0.1,0.1|"
+        "hull:|hull:,0.1|hull:a.obj,2|mesh:|mesh:probe,-1";
+    for (const auto part : std::views::split(kWrong, '|'))
     {
+        const std::string text(part.begin(), part.end());
         EXPECT_FALSE(parse_tool(text)) << text;
     }
 }
@@ -102,24 +86,10 @@ TEST(ToolChoice, is_held_where_it_touches)
 class ToolFiles : public testing::Test
 {
 protected:
-    ToolFiles()
-        : folder_(std::filesystem::temp_directory_path() /
-                  ("tool_files_" + std::to_string(::getpid())))
-    {
-        std::filesystem::create_directories(folder_);
-    }
-    ~ToolFiles() override { std::filesystem::remove_all(folder_); }
-    ToolFiles(const ToolFiles&) = delete;
-    ToolFiles& operator=(const ToolFiles&) = delete;
-    ToolFiles(ToolFiles&&) = delete;
-    ToolFiles& operator=(ToolFiles&&) = delete;
-
     /// Options of one tool, a hull of the file that gets this text.
     Options of_hull(const std::string& text)
     {
-        const std::string path = (folder_ / "hull.off").string();
-        std::ofstream(path) << text;
-        return of("hull:" + path);
+        return of("hull:" + folder_.write("hull.off", text).string());
     }
     static Options of(const std::string& tool)
     {
@@ -135,7 +105,7 @@ protected:
         return error ? error->text : "";
     }
 
-    std::filesystem::path folder_;
+    tactus::test::TemporaryFolder folder_{"tool-files"};
 };
 
 TEST_F(ToolFiles, are_the_corners_of_a_hull_each_once)
@@ -166,7 +136,7 @@ TEST_F(ToolFiles, are_refused_by_name_when_they_hold_no_hull)
         std::string::npos);
     EXPECT_NE(refusal_of(of_hull("OFF\n3 1 0\n0 0 0\n2 0 0\n0 1 0\n3 0 1 2\n")).find("is 2 m from"),
               std::string::npos);
-    EXPECT_NE(refusal_of(of("hull:" + (folder_ / "none.obj").string())).find("none.obj"),
+    EXPECT_NE(refusal_of(of("hull:" + (folder_.path() / "none.obj").string())).find("none.obj"),
               std::string::npos);
 }
 

@@ -111,13 +111,19 @@ protected:
         sut_->write();
         return safe;
     }
+    void steps(const ToolOutput& output, int count)
+    {
+        for (int i = 0; i < count; ++i)
+        {
+            static_cast<void>(step(output));
+        }
+    }
+    /// A port of the set-up as it is now.
+    void restart() { sut_ = std::make_unique<ToolPort>(setup_); }
     /// Until the whole force goes out.
     void warm_up()
     {
-        for (int i = 0; i < 200; ++i)
-        {
-            static_cast<void>(step(pushed_));
-        }
+        steps(pushed_, 200);
         ASSERT_NEAR((device().written_n - pushed_.force_n).norm(), 0.0, 1e-9);
     }
     [[nodiscard]] StillDevice& device() const { return static_cast<StillDevice&>(*setup_.device); }
@@ -180,7 +186,7 @@ TEST_F(ToolPortTest, a_torque_goes_out_with_the_force_and_fades_with_it)
     setup_.spec.core = Box{Vec3(0.01, 0.01, 0.01)};
     setup_.conditioner.device = device().info().limits;
     setup_.limits.torque_max_nm = kDeskTurn.torque_max_nm;
-    sut_ = std::make_unique<ToolPort>(setup_);
+    restart();
     pushed_.torque_nm = Vec3(0.0, 0.1, 0.0);
     pushed_.proxy_rotation = to_rotation({0.0, 0.1, 0.0, 1.0});
     warm_up();
@@ -205,12 +211,9 @@ TEST_F(ToolPortTest, a_force_of_the_programs_own_goes_out_and_fades_as_that_of_s
     own.said.force_n = Vec3(1.0, 0.0, 0.0);
     own.said.gripper_n = 0.5;
     setup_.own_force = &own;
-    sut_ = std::make_unique<ToolPort>(setup_);
+    restart();
     device().hand.position_m = Vec3(0.0, 0.0, 0.001);
-    for (int i = 0; i < 200; ++i)
-    {
-        static_cast<void>(step(pushed_));
-    }
+    steps(pushed_, 200);
     const Vec3 both_n = pushed_.force_n + own.said.force_n;
     EXPECT_LT((device().written_n - both_n).norm(), 1e-9);
     EXPECT_EQ(device().written_gripper_n, 0.5);
@@ -225,10 +228,7 @@ TEST_F(ToolPortTest, a_force_of_the_programs_own_goes_out_and_fades_as_that_of_s
     const double gain = device().written_n.norm() / both_n.norm();
     EXPECT_NEAR(gain, 1.0 - kPeriod_s / kFadeTime_s, 1e-9);
     EXPECT_NEAR(device().written_gripper_n, gain * 0.5, 1e-9);
-    for (int i = 0; i < 60; ++i)
-    {
-        static_cast<void>(step(stuck));
-    }
+    steps(stuck, 60);
     EXPECT_EQ(device().written_n, Vec3(0.0, 0.0, 0.0));
     EXPECT_EQ(device().written_gripper_n, 0.0);
 }
@@ -238,11 +238,8 @@ TEST_F(ToolPortTest, a_force_of_the_programs_own_is_within_the_devices_limits)
     SaidForce own;
     own.said.force_n = Vec3(0.0, 50.0, 0.0);
     setup_.own_force = &own;
-    sut_ = std::make_unique<ToolPort>(setup_);
-    for (int i = 0; i < 200; ++i)
-    {
-        static_cast<void>(step(ToolOutput{}));
-    }
+    restart();
+    steps({}, 200);
     EXPECT_NEAR(device().written_n.norm(), 8.0, 1e-9);
     EXPECT_TRUE(has_action(sut_->force().conditioned.actions, ForceAction::clamped));
     own.said.stiffness_n_per_m = 4'000.0; // A spring twice as stiff as the device carries.
@@ -257,7 +254,7 @@ TEST_F(ToolPortTest, a_force_of_the_programs_own_that_is_no_number_is_garbage)
     {
         SaidForce own;
         setup_.own_force = &own;
-        sut_ = std::make_unique<ToolPort>(setup_);
+        restart();
         warm_up();
         own.said.force_n.x() = part == 0 ? nan : 0.0;
         own.said.stiffness_n_per_m = part == 1 ? nan : 0.0;
@@ -274,7 +271,7 @@ TEST_F(ToolPortTest, a_held_button_parts_hand_and_tool_without_a_force)
 {
     device().measure_rotation();
     setup_.clutch_button = 3;
-    sut_ = std::make_unique<ToolPort>(setup_);
+    restart();
     warm_up();
     device().buttons = 4; // Another one.
     EXPECT_EQ(step(pushed_).causes, ForceOff::none);
@@ -310,7 +307,7 @@ TEST_F(ToolPortTest, a_load_is_carried_beside_the_force_and_while_the_proxy_is_f
     bare.device = std::make_unique<StillDevice>();
     bare.limits = setup_.limits;
     bare.conditioner = setup_.conditioner;
-    sut_ = std::make_unique<ToolPort>(setup_);
+    restart();
     ToolPort without(bare);
     for (int i = 0; i < 400; ++i)
     {
@@ -335,7 +332,7 @@ TEST_F(ToolPortTest, a_load_is_carried_beside_the_force_and_while_the_proxy_is_f
 TEST_F(ToolPortTest, a_sample_that_is_not_to_be_trusted_doesnt_move_the_clutch)
 {
     setup_.clutch_button = 0;
-    sut_ = std::make_unique<ToolPort>(setup_);
+    restart();
     device().buttons = 1;
     static_cast<void>(sut_->read(1));
     device().buttons = 0;

@@ -7,13 +7,13 @@
 #include "platform/plot/markup.hpp"
 #include "platform/plot/page.hpp"
 #include "tests/shared/count_of.hpp"
+#include "tests/shared/temporary_folder.hpp"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 #include <string>
 #include <vector>
@@ -122,57 +122,45 @@ TEST(Page, needs_nothing_from_elsewhere)
     EXPECT_EQ(addresses, 0U); // What is left are names of languages.
 }
 
-class LibraryFolder
+struct LibraryFolder
 {
-public:
-    LibraryFolder()
-        : path_(std::filesystem::path(testing::TempDir()) /
-                testing::UnitTest::GetInstance()->current_test_info()->name())
+    LibraryFolder() { std::filesystem::create_directories(folder.path() / "dygraphs"); }
+    [[nodiscard]] ChartLibrary read(const std::string& script, const std::string& style) const
     {
-        std::filesystem::create_directories(path_ / "dygraphs");
+        folder.write("dygraphs/dygraph.min.js", script);
+        folder.write("dygraphs/dygraph.min.css", style);
+        return ChartLibrary::read(folder.path());
     }
-    ~LibraryFolder() { std::filesystem::remove_all(path_); }
-    LibraryFolder(const LibraryFolder&) = delete;
-    LibraryFolder& operator=(const LibraryFolder&) = delete;
 
-    ChartLibrary read(const std::string& script, const std::string& style) const
-    {
-        std::ofstream(path_ / "dygraphs/dygraph.min.js") << script;
-        std::ofstream(path_ / "dygraphs/dygraph.min.css") << style;
-        return ChartLibrary::read(path_);
-    }
-    const std::filesystem::path& path() const { return path_; }
-
-private:
-    std::filesystem::path path_;
+    tactus::test::TemporaryFolder folder{"library"};
 };
 
 TEST(ChartLibrary, is_refused_where_it_would_end_its_element)
 {
-    const LibraryFolder folder;
-    EXPECT_EQ(folder.read("a </div>", "b").missing, "");
-    EXPECT_EQ(folder.read("a </div>", "b").script, "a </div>");
-    EXPECT_EQ(folder.read("a </div>", "b").style, "b");
+    const LibraryFolder library;
+    EXPECT_EQ(library.read("a </div>", "b").missing, "");
+    EXPECT_EQ(library.read("a </div>", "b").script, "a </div>");
+    EXPECT_EQ(library.read("a </div>", "b").style, "b");
     for (const char* end : {"</script>", "</SCRIPT >", "</Style>", "<!--", "]]>"})
     {
         const std::string hostile = std::string("a ") + end + " b";
-        EXPECT_NE(folder.read(hostile, "b").missing, "") << end;
-        EXPECT_NE(folder.read("a", hostile).missing, "") << end;
+        EXPECT_NE(library.read(hostile, "b").missing, "") << end;
+        EXPECT_NE(library.read("a", hostile).missing, "") << end;
     }
 }
 
 TEST(ChartLibrary, that_is_not_there_is_told_by_its_file_and_package)
 {
-    const LibraryFolder folder;
+    const LibraryFolder library;
     for (const char* file : {"dygraph.min.js", "dygraph.min.css"})
     {
-        ASSERT_EQ(folder.read("a", "b").missing, "");
-        std::filesystem::remove(folder.path() / "dygraphs" / file);
-        const std::string missing = ChartLibrary::read(folder.path()).missing;
+        ASSERT_EQ(library.read("a", "b").missing, "");
+        std::filesystem::remove(library.folder.path() / "dygraphs" / file);
+        const std::string missing = ChartLibrary::read(library.folder.path()).missing;
         EXPECT_NE(missing.find(file), std::string::npos) << missing;
         EXPECT_NE(missing.find("libjs-dygraphs"), std::string::npos) << missing;
     }
-    EXPECT_NE(folder.read("", "b").missing, "");
+    EXPECT_NE(library.read("", "b").missing, "");
 }
 
 } // namespace
