@@ -1,97 +1,95 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# wrong_usages.sh: each line of wrong_usages.txt beside it ends with its code, and says in one line
-# what it has to; nothing is left behind but what the last ones are meant to write.
-here=$(cd "$(dirname "$0")" && pwd)
-readonly here
-source "$here/common.sh"
-model bumpy-sphere-5000 ball.spm
-mkdir folder models
-printf 'v 0 0 0\nv 200 0 0\nv 0 200 0\nf 1 2 3\n' >mesh.obj
-: >empty.obj
-printf 'no model at all\n' >prose.spm
-bytes=$(stat -c %s ball.spm)
-head -c $((bytes - 1)) ball.spm >cut.spm
-cp ball.spm flip.spm
-printf '\xff\xfe\xfd' | dd of=flip.spm bs=1 seek=$((bytes - 50)) conv=notrunc status=none
-printf 'model = "ball.spm"\nstifness = 300\n' >unknown.toml
-printf '[loop]\nrate = 1000\n' >section.toml
-printf 'model: ball.spm\n' >yaml.toml
-printf '# Mine.\nmodel = [\n' >list.toml
+# wrong_usages.sh: wrong usage of each kind, and of each program, ends it with its code and one line
+# on stderr; nothing is left behind. What else is wrong usage, HrtcOptions and HostOptions refuse.
+source "$(dirname "$0")/common.sh"
+readonly view=$1/spm_view
+: >mesh.obj
 printf 'model = "ball.spm"\n\nrate = "1k"\n' >number.toml
-printf 'model = "ball.spm"\ndevice = "udp:80"\n' >device.toml
-printf '0 ball 0 0 0 0 0 0 1\n1 horse 0 0 0 0 0 0 1\n' >other.txt
-printf '1 ball 0 0 0 0 0 0 1\n0 ball 0 0 0 0 0 0 1\n' >order.txt
-printf '0 ball 0 0 0 0 0 0 2\n' >turned.txt
-printf 'one two three\n' >words.txt
+: >output.txt
+: >said.txt
 before=$(ls -A)
 
-# judge CODE TEXT WORD...: the program that the first word names, with the others.
-judge() {
-    local wanted=$1 text=$2 name=$3 code=0 output=''
-    shift 3
-    local command=("$(dirname "$hrtc")/$name")
-    # As on any machine, on a domain of this test's.
-    if [[ $name == hrtc && " $* " != *' '@(doctor|--doctor|load|help|--replay)' '* ]]; then
-        [[ ${1:-} != deadline-test ]] || { command+=("$1"); shift; }
-        command+=(--allow-no-rt)
-        [[ "$*" == *--domain* ]] || command+=(--domain "$domain")
-    elif [[ $name == spm_publish ]]; then
-        [[ "$*" == *--domain* ]] || set -- "$@" --domain "$domain"
-        [[ "$*" == *@(--seconds|--duration)* ]] || set -- "$@" --seconds 5
-    fi
-    output=$("${command[@]}" "$@" 2>&1 </dev/null) || code=$?
-    if ((code != wanted)) || [[ "$output" != *"$text"* ]] \
-        || { ((wanted > 1)) && [[ "$output" != "$name"*": "* || "$output" == *$'\n'* ]]; }; then
-        printf '%s %s\n  expected exit %d and "%s"\n  got exit %d and:\n%s\n' \
-            "$name" "$*" "$wanted" "$text" "$code" "${output:0:1000}"
+# refuse CODE LINE PROGRAM ARGUMENT...: it ends with the code, and LINE is all that it says.
+refuse() {
+    local wanted=$1 line=$2 code=0
+    shift 2
+    "$@" >output.txt 2>said.txt </dev/null || code=$?
+    if ((code != wanted)) || [[ $(<said.txt) != "$line" || -s output.txt ]]; then
+        printf '%s\n  expected exit %d and: %s\n  got exit %d, on stdout and stderr:\n%s\n%s\n' \
+            "$*" "$wanted" "$line" "$code" "$(<output.txt)" "$(<said.txt)"
         failures=$((failures + 1))
     fi
 }
 
-lines=0
-while IFS= read -r line; do
-    [[ -n "$line" && "$line" != '#'* ]] || continue
-    code=${line%% | *}
-    line=${line#* | }
-    read -ra words <<<"${line%% | *}"
-    judge "$code" "${line#* | }" "${words[@]}"
-    lines=$((lines + 1))
-done <"$here/wrong_usages.txt"
-((lines >= 107)) || fault "only $lines wrong usages"
+readonly missing='a model is required: hrtc FILE.spm, or --model NAME of one that is published'
+refuse 3 "hrtc: $missing; see --help" "$hrtc"
+refuse 3 "hrtc deadline-test: $missing; see --help" "$hrtc" deadline-test
+refuse 3 'hrtc doctor: --wait requires --domain; see --help' "$hrtc" doctor --wait 1
+refuse 3 "hrtc load: KIND: 'gpu' is not cpu, memory or disk; see --help" "$hrtc" load gpu
+refuse 3 'hrtc: --stifness: no option is called so; --stiffness?' "$hrtc" ball.spm --stifness=300
+refuse 3 'hrtc: --report: a value is missing; see --help' "$hrtc" ball.spm --report --strict
+refuse 3 'hrtc: --cache-mib: must be less than --pool-mib' "$hrtc" ball.spm --cache-mib 3
+refuse 3 "hrtc: number.toml:3: --rate: '1k' is not a whole number in 100 .. 10000; see --help" \
+    "$hrtc" --config number.toml
+refuse 2 "hrtc: --config: missing.toml: can't be read, or is no file" "$hrtc" --config missing.toml
 
-# logged NAME LEVEL CODE TEXT WORD...: with --json-log its one line on stderr is such an object.
-logged() {
-    local name=$1 level=$2 wanted=$3 text=$4 code=0
-    shift 4
-    "$(dirname "$hrtc")/$name" "$@" --json-log 2>stderr.txt >/dev/null </dev/null || code=$?
-    ((code == wanted)) || fault "$name --json-log ended with $code"
-    python3 - "$name" "$level" "$text" <<'PYTHON' || fault "$name --json-log: $(<stderr.txt)"
+refuse 3 'spm_build: --output is required; see --help' "$build" mesh.obj
+refuse 3 'spm_build: --unit excludes --fit-diag; see --help' \
+    "$build" mesh.obj --unit mm --fit-diag 0.2 -o a.spm
+refuse 3 "spm_build: --output: 'a.stl' is the name of no model; one ends in .spm" \
+    "$build" mesh.obj -o a.stl
+refuse 3 'spm_build: --output: a glTF scene needs a folder, which gets its models' \
+    "$build" scene.gltf -o made.spm
+refuse 3 "spm_inspect: 'ball.spm': nothing takes this word; see --help" \
+    "$inspect" ball.spm ball.spm
+refuse 3 "spm_inspect: FILE: 'mesh.obj' is a mesh; spm_build mesh.obj -o MODEL.spm makes a model \
+of it" "$inspect" mesh.obj
+refuse 3 'spm_inspect: --extract needs --faces, --error or --region; see --help' \
+    "$inspect" ball.spm --extract -o a.ply
+refuse 3 "spm_publish: --domain: '233' is not a whole number in 0 .. 232; see --help" \
+    "$publish" ball.spm --domain 233
+refuse 3 'spm_publish: --domain: is given twice; see --help' \
+    "$publish" ball.spm --domain 1 --domain 2
+refuse 3 "spm_publish: --name 'a?b' is not 1 to 63 characters of A-Z a-z 0-9 . _ -" \
+    "$publish" ball.spm --name $'a\nb'
+refuse 3 'spm_view: --domain excludes --replay; see --help' "$view" --replay a.rec --domain 3
+refuse 3 'spm_view: --replay: 3 recordings, two at most are compared' \
+    "$view" --replay a --replay b --replay c
+
+# With --json-log what each says on stderr is one such object.
+logged() { # logged LEVEL CODE TEXT PROGRAM ARGUMENT...
+    local code=0
+    "${@:4}" --json-log 2>said.txt >output.txt </dev/null || code=$?
+    (($2 == code)) || fault "$4 --json-log ended with $code"
+    printf '%s\t%s\t%s\t%s\n' "$(basename "$4")" "$1" "$3" "$(<said.txt)" >>logged.txt
+}
+logged error 2 'missing.ply' "$build" missing.ply -o a.spm
+logged info 0 'note: ' "$build" --shape torus --faces 1001 -o big.spm
+logged error 2 $'caf\xC3\xA9 "?"' "$inspect" $'caf\xC3\xA9 "\n"'
+logged error 2 'missing.spm' "$publish" missing.spm --log-level error
+logged error 3 "--rate: '5'" "$hrtc" --model ball.spm --rate 5
+logged error 2 'missing.rec' "$hrtc" --replay missing.rec
+logged error 2 'missing.spm' "$view" missing.spm
+python3 - <<'PYTHON' || fault "--json-log: $(<logged.txt)"
 import datetime
 import json
-import sys
 
-(line,) = open("stderr.txt", encoding="utf-8").read().splitlines()
-told = json.loads(line)
-assert list(told) == ["time", "level", "program", "text"]
-assert (told["program"], told["level"]) == tuple(sys.argv[1:3]) and sys.argv[3] in told["text"]
-age = datetime.datetime.now(datetime.timezone.utc) - datetime.datetime.fromisoformat(
-    told["time"].replace("Z", "+00:00"))
-assert abs(age) < datetime.timedelta(hours=1)
+with open("logged.txt", encoding="utf-8") as file:
+    lines = file.read().splitlines()
+assert len(lines) == 7
+for line in lines:
+    program, level, text, said = line.split("\t")
+    told = json.loads(said)
+    assert list(told) == ["time", "level", "program", "text"], line
+    assert (told["program"], told["level"]) == (program, level) and text in told["text"], line
+    age = datetime.datetime.now(datetime.timezone.utc) - datetime.datetime.fromisoformat(
+        told["time"].replace("Z", "+00:00"))
+    assert abs(age) < datetime.timedelta(hours=1), line
 PYTHON
-}
-logged spm_build error 2 'missing.ply' $'missing.ply' -o a.spm
-logged spm_build info 0 'note: ' --shape torus --faces 1001 -o big.spm
-logged spm_inspect error 2 $'caf\xC3\xA9 "?"' $'caf\xC3\xA9 "\n"'
-logged spm_publish error 2 'missing.spm' missing.spm --log-level error
-logged hrtc error 3 "--rate: '5'" --model ball.spm --rate 5
-logged hrtc error 2 'missing.rec' --replay missing.rec
-logged spm_view error 2 'missing.spm' missing.spm
-judge 3 "--log-level: 'loud' is not error, warning or info" spm_inspect ball.spm --log-level loud
 [[ -z $("$build" --shape torus --faces 1001 -o big.spm --log-level warning 2>&1 >/dev/null) ]] \
     || fault 'a note is told that was not to be'
-rm -f stderr.txt
-rm -f big.spm
+[[ $("$hrtc" help) == *'Each has a --help of its own.' ]] || fault 'hrtc help'
+rm -f logged.txt big.spm
 [[ $(ls -A) == "$before" ]] || fault "left behind: $(ls -A)"
-echo "$lines wrong usages"
 finish
