@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #include "tests/relay/frame_fates.hpp"
 
-#include "tests/bench/random.hpp"
+#include "tests/shared/random.hpp"
 
 namespace tactus::relay
 {
@@ -19,7 +19,7 @@ constexpr std::uint64_t kNumbers = 4;
 /// Uniform in 0 .. 1, 1 not included: a share of 1 takes every frame and one of 0 none.
 double unit(std::uint64_t seed, std::uint64_t index)
 {
-    return static_cast<double>(bench::mixed(seed, index) >> 11U) * 0x1p-53;
+    return static_cast<double>(test::mixed(seed, index) >> 11U) * 0x1p-53;
 }
 
 } // namespace
