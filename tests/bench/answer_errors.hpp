@@ -9,7 +9,6 @@
 #include "tests/bench/scenes.hpp"
 
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 namespace tactus::bench

@@ -3,7 +3,8 @@
 #include "tests/bench/asking_client.hpp"
 
 #include "rt_core/spm/header.hpp"
-#include "tests/bench/random.hpp"
+#include "tests/bench/bench_row.hpp"
+#include "tests/shared/random.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -72,7 +73,7 @@ void AskingClient::ask(double elapsed_s)
     const auto now = Clock::now();
     while (open_.size() < kOpenMax && static_cast<double>(asked_) < due)
     {
-        const auto chunk = static_cast<std::uint32_t>(mixed(kSeed, asked_) % chunks_);
+        const auto chunk = static_cast<std::uint32_t>(test::mixed(kSeed, asked_) % chunks_);
         ++asked_;
         if (open_.emplace(chunk, Open{now, now}).second)
         {

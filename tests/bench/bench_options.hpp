@@ -16,22 +16,6 @@ namespace tactus::bench
 inline constexpr std::uint32_t kMinFrames = 100;
 inline constexpr std::uint32_t kMaxFrames = 1'000'000;
 inline constexpr std::uint32_t kMaxPasses = 100;
-inline constexpr double kMinProxyRadius_mm = 0.001;
-inline constexpr double kMaxProxyRadius_mm = 1'000.0;
-inline constexpr double kMinStiffness_n_per_m = 0.001;
-inline constexpr double kMaxStiffness_n_per_m = 1e6;
-
-/// A recorded trajectory instead of the suite's cases; see trajectory_file.hpp.
-struct TrajectoryOptions
-{
-    std::filesystem::path file; ///< Empty: none.
-    std::filesystem::path mesh;
-    std::string unit{"mm"};
-    std::string mesh_unit{"mm"};
-    std::string columns{"t,x,y,z,fx,fy,fz"};
-    double proxy_radius_mm{0.5};
-    double stiffness_n_per_m{500.0};
-};
 
 struct BenchOptions
 {
@@ -43,7 +27,6 @@ struct BenchOptions
     std::filesystem::path cache;         ///< Keeps encoded models; empty: none are kept.
     std::optional<std::uint32_t> frames; ///< Instead of the suite's own numbers.
     std::optional<std::uint32_t> passes;
-    TrajectoryOptions trajectory;
     int core{-1}; ///< To measure on; -1: the last one that the process may use.
 
     [[nodiscard]] std::uint32_t frames_or(std::uint32_t usual, std::uint32_t quick_ones) const

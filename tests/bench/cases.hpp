@@ -4,6 +4,7 @@
 
 #include "tests/bench/bench_options.hpp"
 #include "tests/bench/bench_row.hpp"
+#include "tests/bench/failure.hpp"
 #include "tests/bench/scenes.hpp"
 
 #include <cstdint>
@@ -12,7 +13,6 @@
 #include <optional>
 #include <string>
 #include <utility>
-#include <vector>
 
 namespace tactus::bench
 {
@@ -24,8 +24,8 @@ inline constexpr double kNoGoal = std::numeric_limits<double>::infinity();
     return goal < kNoGoal ? std::optional(goal) : std::nullopt;
 }
 
-/// What every case gets, and where its rows go. Each returns a line when it could not be run or
-/// gave wrong answers; goals that are not met are rows, not failures.
+/// What every case gets, and where its rows go. Each throws a Failure when it can't be run or gives
+/// wrong answers; goals that are not met are rows, not failures.
 struct CaseContext
 {
     const char* suite;
@@ -37,21 +37,20 @@ struct CaseContext
     /// What all rows of this case have in common; the part is the suite's, if it has any.
     [[nodiscard]] Row common_row(const std::string& scene, const char* part = "") const;
 };
-using CaseFailure = std::optional<std::string>;
 
 struct Case
 {
     std::string name;
     When when;
-    std::function<CaseFailure(const CaseContext&)> run;
+    std::function<void(const CaseContext&)> run;
 };
 template <typename Parameters>
 [[nodiscard]] Case make_case(std::string name, When when,
-                             CaseFailure (*run)(const CaseContext&, const Parameters&),
+                             void (*run)(const CaseContext&, const Parameters&),
                              const Parameters& parameters)
 {
     return {std::move(name), when,
-            [run, parameters](const CaseContext& context) { return run(context, parameters); }};
+            [run, parameters](const CaseContext& context) { run(context, parameters); }};
 }
 
 /// Goals in microseconds.
@@ -68,7 +67,7 @@ struct FrameCase
 };
 /// A tool slides over a model that streams; all of T_R + T_B + T_Q, warm, cold and rehearsed, and
 /// with --instructions those of T_R + T_B.
-[[nodiscard]] CaseFailure run_frame_case(const CaseContext& context, const FrameCase& test_case);
+void run_frame_case(const CaseContext& context, const FrameCase& test_case);
 
 /// Goal in MiB.
 struct MemoryCase
@@ -80,7 +79,7 @@ struct MemoryCase
 };
 /// The smallest pools, of some that are tried in turn, with which a slide has an exact answer in
 /// every frame in contact.
-[[nodiscard]] CaseFailure run_memory_case(const CaseContext& context, const MemoryCase& test_case);
+void run_memory_case(const CaseContext& context, const MemoryCase& test_case);
 
 /// Goals as shares of the peer's time.
 struct StaticCase
@@ -91,14 +90,14 @@ struct StaticCase
     double rehearsed_p99{kNoGoal}; ///< As a share of our own warm p99.
 };
 /// The touching motion's queries against a fully refined model, beside the peers.
-[[nodiscard]] CaseFailure run_static_case(const CaseContext& context, const StaticCase& test_case);
+void run_static_case(const CaseContext& context, const StaticCase& test_case);
 
 struct GrowthCase
 {
     double growth; ///< Goal: p50 with the most faces by that with the fewest.
 };
 /// The same near queries on four sizes of one surface, the bumpy sphere.
-[[nodiscard]] CaseFailure run_growth_case(const CaseContext& context, const GrowthCase& test_case);
+void run_growth_case(const CaseContext& context, const GrowthCase& test_case);
 
 /// Goals in microseconds.
 struct RefitCase
@@ -108,13 +107,13 @@ struct RefitCase
     double moved_median{kNoGoal}, moved_worst{kNoGoal};
 };
 /// Refit after a local change, at a hundred places of a fully refined model.
-[[nodiscard]] CaseFailure run_refit_case(const CaseContext& context, const RefitCase& test_case);
+void run_refit_case(const CaseContext& context, const RefitCase& test_case);
 
 struct VolumeCase
 {
     SceneSource scene;
 };
 /// Queries and refits of the static model over 18-DOPs, beside those over boxes.
-[[nodiscard]] CaseFailure run_volume_case(const CaseContext& context, const VolumeCase& test_case);
+void run_volume_case(const CaseContext& context, const VolumeCase& test_case);
 
 } // namespace tactus::bench

@@ -9,7 +9,6 @@
 #include "tests/bench/encoder_cases.hpp"
 #include "tests/bench/exact_splits.hpp"
 #include "tests/bench/first_contact.hpp"
-#include "tests/bench/random.hpp"
 #include "tests/shared/certificate_figures.hpp"
 #include "tests/shared/temporary_folder.hpp"
 #include "tests/shared/test_model.hpp"
@@ -68,55 +67,28 @@ void add_contact(CaseRows& rows, const ModelStore& store, const DecodedModel& mo
 
 } // namespace
 
-CaseFailure measure_bounds(const EncoderContext& context)
+void measure_bounds(const EncoderContext& context)
 {
     const auto named = context.mesh.make();
-    if (!named)
-    {
-        return named.error().text;
-    }
-    const auto prepared = prepare_mesh(named.value().mesh, {});
-    if (!prepared)
-    {
-        return named.value().name + ": " + prepared.error().text;
-    }
-    const auto simplification = simplify(prepared.value().mesh, {kCertifiedBaseFaces, 2, {}});
-    if (!simplification)
-    {
-        return named.value().name + ": " + simplification.error().text;
-    }
+    const auto prepared = needed(prepare_mesh(named.mesh, {}));
+    const auto simplification = needed(simplify(prepared.mesh, {kCertifiedBaseFaces, 2, {}}));
     const auto rows_of = [&](const char* part)
-    { return CaseRows(context.rows, context.common_row(named.value().name, part)); };
+    { return CaseRows(context.rows, context.common_row(named.name, part)); };
     CaseRows bounds = rows_of("Bounds");
-    add_tightness(bounds, prepared.value(), simplification.value(), context);
+    add_tightness(bounds, prepared, simplification, context);
 
     const test::TemporaryFolder folder("bench-bounds");
     EncodeOptions options;
     options.base_faces = kMaxBaseFaces;
     options.threads = 2;
-    const auto written =
-        write_spm(folder.path() / "model.spm", prepared.value(), simplification.value(), options);
-    if (!written)
-    {
-        return written.error().text;
-    }
-    const auto store = ModelStore::open(folder.path() / "model.spm");
-    if (!store)
-    {
-        return store.error().text;
-    }
-    std::vector<std::string> damage;
-    const DecodedModel model = DecodedModel::decode(store.value(), damage);
-    if (!damage.empty())
-    {
-        return damage.front();
-    }
-    const std::vector<test::Face> source = test::faces_on_grid(prepared.value());
-    const double radius_m = kRadius * prepared.value().diagonal_m;
+    needed(write_spm(folder.path() / "model.spm", prepared, simplification, options));
+    const auto store = needed(ModelStore::open(folder.path() / "model.spm"));
+    const DecodedModel model = decode_all(store);
+    const std::vector<test::Face> source = test::faces_on_grid(prepared);
+    const double radius_m = kRadius * prepared.diagonal_m;
     add_splits(bounds, model, source, radius_m, context);
     CaseRows contact = rows_of("First exact contact");
-    add_contact(contact, store.value(), model, source, radius_m, context);
-    return std::nullopt;
+    add_contact(contact, store, model, source, radius_m, context);
 }
 
 } // namespace tactus::bench

@@ -50,15 +50,14 @@ std::string read_all(int file)
 }
 
 /// The child's life. It leaves without the parent's destructors and buffers.
-[[noreturn]] void live(int answer, const std::function<Result<std::string, SceneError>()>& work)
+[[noreturn]] void live(int answer, const std::function<std::string()>& work)
 {
     int code = kWorkFailed;
     std::string text;
     try
     {
-        const auto result = work();
-        code = result ? kWorkDone : kWorkFailed;
-        text = result ? result.value() : result.error().text;
+        text = work();
+        code = kWorkDone;
     }
     catch (const std::exception& error)
     {
@@ -70,13 +69,12 @@ std::string read_all(int file)
 
 } // namespace
 
-Result<ChildOutcome, SceneError>
-run_in_child(const std::function<Result<std::string, SceneError>()>& work)
+ChildOutcome run_in_child(const std::function<std::string()>& work)
 {
     std::array<int, 2> ends{};
     if (::pipe(ends.data()) != 0)
     {
-        return SceneError{fmt::format("no pipe to a child process: {}", std::strerror(errno))};
+        throw Failure(fmt::format("no pipe to a child process: {}", std::strerror(errno)));
     }
     ::malloc_trim(0); // The child inherits what was freed and not given back.
     const pid_t child = ::fork();
@@ -91,7 +89,7 @@ run_in_child(const std::function<Result<std::string, SceneError>()>& work)
     ::close(ends[0]);
     if (child < 0)
     {
-        return SceneError{fmt::format("no child process: {}", std::strerror(fork_error))};
+        throw Failure(fmt::format("no child process: {}", std::strerror(fork_error)));
     }
     int status = 0;
     rusage usage{};
@@ -100,11 +98,11 @@ run_in_child(const std::function<Result<std::string, SceneError>()>& work)
     }
     if (WIFSIGNALED(status))
     {
-        return SceneError{fmt::format("a child process was ended by signal {}", WTERMSIG(status))};
+        throw Failure(fmt::format("a child process was ended by signal {}", WTERMSIG(status)));
     }
     if (WEXITSTATUS(status) != kWorkDone)
     {
-        return SceneError{text};
+        throw Failure(text);
     }
     return ChildOutcome{text, static_cast<std::uint64_t>(usage.ru_maxrss) * 1'024};
 }

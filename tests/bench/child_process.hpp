@@ -2,7 +2,6 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "rt_core/base/result.hpp"
 #include "tests/bench/scenes.hpp"
 
 #include <cstdint>
@@ -21,9 +20,8 @@ struct ChildOutcome
 };
 
 /// Runs `work` in a child process and waits for it, so that its peak of memory is its own. Nothing
-/// that it changes is seen here. The caller must have no other threads. An error when the work has
+/// that it changes is seen here. The caller must have no other threads. A failure when the work has
 /// one, throws or is ended by a signal, and when the system grants no process.
-[[nodiscard]] Result<ChildOutcome, SceneError>
-run_in_child(const std::function<Result<std::string, SceneError>()>& work);
+[[nodiscard]] ChildOutcome run_in_child(const std::function<std::string()>& work);
 
 } // namespace tactus::bench

@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
-#include <string>
 
 namespace tactus::bench
 {
@@ -45,7 +44,7 @@ struct EncoderMesh
 {
     const char* name;
     When when;
-    std::function<Result<NamedMesh, SceneError>()> make;
+    std::function<NamedMesh()> make;
     EncoderGoals goals{};
     Feature feature{Feature::none};
     bool is_compared{true}; ///< Simplified beside the peers.
@@ -57,19 +56,18 @@ struct EncoderContext : CaseContext
     const EncoderMesh& mesh;
 };
 
-/// The parts of the suite. Each returns a line when it could not be run or gave wrong results;
-/// goals that are not met are rows, not failures.
+/// The parts of the suite, which fail as cases do.
 
 /// Our simplifier and the peers' on one mesh: faces reached, error of the surface and of its
 /// features, time. On one thread; ours on two as well, with the same result.
-[[nodiscard]] CaseFailure compare_simplifiers(const EncoderContext& context);
+void compare_simplifiers(const EncoderContext& context);
 
 /// The whole encoder, from a mesh in memory to a file, each run in a process of its own: time,
 /// memory, and what the file holds and how fast it is read. The same bytes from one thread and two.
-[[nodiscard]] CaseFailure measure_files(const EncoderContext& context);
+void measure_files(const EncoderContext& context);
 
 /// How much larger bounds are than what they bound, how many splits a distance takes until it is
 /// exact, and how many bytes a first contact. With a tool's radius of 1 % of the diagonal.
-[[nodiscard]] CaseFailure measure_bounds(const EncoderContext& context);
+void measure_bounds(const EncoderContext& context);
 
 } // namespace tactus::bench

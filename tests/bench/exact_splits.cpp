@@ -2,8 +2,8 @@
 // Copyright the Tactus authors.
 #include "tests/bench/exact_splits.hpp"
 
-#include "tests/bench/random.hpp"
 #include "tests/shared/certificate_refinement.hpp"
+#include "tests/shared/random.hpp"
 #include "tests/shared/surface_points.hpp"
 
 #include <algorithm>
@@ -22,9 +22,9 @@ ExactSplits measure_exact_splits(const DecodedModel& model, const std::vector<te
     ExactSplits figures;
     for (std::uint32_t i = 0; i < probes; ++i)
     {
-        const Vec3 direction(signed_unit(seed, 4 * i), signed_unit(seed, 4 * i + 1),
-                             signed_unit(seed, 4 * i + 2));
-        const double way_m = 2.0 * radius_m * std::abs(signed_unit(seed, 4 * i + 3));
+        const Vec3 direction(test::signed_unit(seed, 4 * i), test::signed_unit(seed, 4 * i + 1),
+                             test::signed_unit(seed, 4 * i + 2));
+        const double way_m = 2.0 * radius_m * std::abs(test::signed_unit(seed, 4 * i + 3));
         const Vec3 place_m = surface.draw_by_area() + way_m * direction.normalized();
         const auto answer = refinement.find_distance(place_m);
         splits.push_back(static_cast<double>(answer.splits.size()));

@@ -35,19 +35,13 @@ std::uint64_t hash_of(const std::vector<ToolOutput>& outputs)
     return hash;
 }
 
-Result<std::unique_ptr<test::FrameRig>, SceneError> make_rig(const ForceRun& run)
+std::unique_ptr<test::FrameRig> make_rig(const ForceRun& run)
 {
-    test::RigOptions options = room_for_all(run.scene);
+    test::RigOptions options;
     options.tools = {run.tool};
     options.objects = {{ModelId{0}, run.material}};
-    options.period_ns = run.period_ns;
     options.static_when_it_fits = true;
-    auto rig = std::make_unique<test::FrameRig>(run.scene.model, options);
-    load_everything(*rig);
-    if (rig->model().residence != Residence::filling || !refine_fully(rig->model()))
-    {
-        return SceneError{run.scene.model.name + ": could not be refined to the source mesh"};
-    }
+    auto rig = refined_rig(run.scene, options);
     rig->model().residence = Residence::complete;
     return rig;
 }
@@ -63,7 +57,6 @@ std::vector<ToolOutput> replay(const ForceRun& run, test::FrameRig& rig, ForceTr
     for (std::size_t i = 0; i < run.goals_m.size(); ++i)
     {
         tools[0].position_m = run.goals_m[i];
-        tools[0].elapsed_periods = run.elapsed_periods.empty() ? 1 : run.elapsed_periods[i];
         FrameOutput output;
         allocations += allocations_of(
             [&]
@@ -88,7 +81,7 @@ std::vector<ToolOutput> replay(const ForceRun& run, test::FrameRig& rig, ForceTr
 
 } // namespace
 
-Result<ForceTrace, SceneError> replay_forces(const ForceRun& run, std::uint32_t passes)
+ForceTrace replay_forces(const ForceRun& run, std::uint32_t passes)
 {
     ForceTrace trace;
     trace.force_us = LeastTimes(run.goals_m.size() - run.lead_in);
@@ -96,16 +89,11 @@ Result<ForceTrace, SceneError> replay_forces(const ForceRun& run, std::uint32_t 
     for (std::uint32_t pass = 0; pass < passes; ++pass)
     {
         const auto rig = make_rig(run);
-        if (!rig)
-        {
-            return rig.error();
-        }
-        std::vector<ToolOutput> outputs = replay(run, *rig.value(), trace);
+        std::vector<ToolOutput> outputs = replay(run, *rig, trace);
         const std::uint64_t hash = hash_of(outputs);
         if (pass > 0 && hash != trace.hash)
         {
-            return SceneError{run.scene.model.name +
-                              ": a replay of the same goals gave other forces"};
+            throw Failure(run.scene.model.name + ": a replay of the same goals gave other forces");
         }
         trace.outputs = std::move(outputs);
         trace.hash = hash;

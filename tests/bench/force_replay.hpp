@@ -2,7 +2,6 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "rt_core/base/result.hpp"
 #include "rt_core/records/frame_input.hpp"
 #include "rt_core/records/frame_output.hpp"
 #include "tests/bench/least_times.hpp"
@@ -23,9 +22,7 @@ struct ForceRun
     ToolSpec tool;
     std::vector<Vec3> goals_m; ///< In the model's frame; one a frame.
     std::size_t lead_in{0};    ///< Frames at the start that are run and not counted.
-    std::int64_t period_ns{1'000'000};
-    std::vector<std::uint32_t> elapsed_periods{}; ///< Of each frame; empty: one.
-    Material material{};                          ///< The surface's.
+    Material material{};       ///< The surface's.
 };
 
 /// What came of the counted frames.
@@ -40,9 +37,8 @@ struct ForceTrace
     std::uint64_t hash{0}; ///< Over the bits of all forces and proxies.
 };
 
-/// Replays the way `passes` times, at least once, each time with a new controller. Refused when the
-/// model can't be refined fully and when two replays give forces of different bits.
-[[nodiscard]] Result<ForceTrace, SceneError> replay_forces(const ForceRun& run,
-                                                           std::uint32_t passes);
+/// Replays the way `passes` times, at least once, each time with a new controller. A failure when
+/// the model can't be refined fully and when two replays give forces of different bits.
+[[nodiscard]] ForceTrace replay_forces(const ForceRun& run, std::uint32_t passes);
 
 } // namespace tactus::bench

@@ -96,8 +96,7 @@ void add_felt_rows(CaseRows& rows, const ForceTrace& trace, const ForceFigures& 
              goals.has_laws ? std::optional(0.0) : std::nullopt);
 }
 
-void add_lag_rows(CaseRows& rows, const ForceTrace& trace, std::size_t slows_at,
-                  std::int64_t period_ns)
+void add_lag_rows(CaseRows& rows, const ForceTrace& trace, std::size_t slows_at)
 {
     double largest_m = 0.0;
     double cut_short = 0.0;
@@ -109,8 +108,7 @@ void add_lag_rows(CaseRows& rows, const ForceTrace& trace, std::size_t slows_at,
         cut_short += output.cut_short ? 1.0 : 0.0;
         if (i >= slows_at && output.in_contact && !output.frozen && !output.under_way)
         {
-            back_ms = std::min(back_ms, 1e-6 * static_cast<double>(period_ns) *
-                                            static_cast<double>(i - slows_at));
+            back_ms = std::min(back_ms, 1e3 * kPeriod_s * static_cast<double>(i - slows_at));
         }
     }
     const Spread planes = spread_of(trace.planes);

@@ -52,9 +52,8 @@ void add_felt_rows(CaseRows& rows, const ForceTrace& trace, const ForceFigures& 
                    const ForceGoals& goals);
 
 /// How far behind a fast hand the proxy is, and what that costs. From the counted frame `slows_at`
-/// on, one a period, the hand is slow: kReturn_ms later the proxy is to be on it again.
-void add_lag_rows(CaseRows& rows, const ForceTrace& trace, std::size_t slows_at,
-                  std::int64_t period_ns);
+/// on, each of 1 ms, the hand is slow: kReturn_ms later the proxy is to be on it again.
+void add_lag_rows(CaseRows& rows, const ForceTrace& trace, std::size_t slows_at);
 
 /// What was recorded of CHAI3D 3.3's finger proxy: elsewhere, on a surface of the same kind whose
 /// constants were not kept; for the order of magnitude.

@@ -7,7 +7,6 @@
 #include "tests/bench/frame_replay.hpp"
 #include "tests/bench/instruction_count.hpp"
 #include "tests/bench/measuring.hpp"
-#include "tests/bench/random.hpp"
 #include "tests/bench/timed_queries.hpp"
 
 #include <algorithm>
@@ -34,13 +33,12 @@ CaseRows rows_of(const CaseContext& context, const FrameRun& run, std::uint64_t 
 }
 
 /// What the first peer's query alone takes, with the whole mesh in memory, for the same goals.
-Result<std::optional<Spread>, SceneError> peer_spread(const FrameRun& run, std::uint32_t passes,
-                                                      std::string& name)
+std::optional<Spread> peer_spread(const FrameRun& run, std::uint32_t passes, std::string& name)
 {
     const auto peers = make_peers(run.scene.model.faces);
     if (peers.empty())
     {
-        return std::optional<Spread>();
+        return std::nullopt;
     }
     name = peers[0]->name();
     const auto first = run.goals_m.begin() + static_cast<std::ptrdiff_t>(run.lead_in);
@@ -48,11 +46,7 @@ Result<std::optional<Spread>, SceneError> peer_spread(const FrameRun& run, std::
     const double diagonal_m = run.scene.model.diagonal_m;
     const auto times = time_queries(*peers[0], questions, 2.0 * kRadius_diag * diagonal_m,
                                     kPeerTolerance_diag * diagonal_m, passes);
-    if (!times)
-    {
-        return times.error();
-    }
-    return std::optional(spread_of(times.value().us.least()));
+    return spread_of(times.us.least());
 }
 
 constexpr Spread kNoGoals{kNoGoal, kNoGoal, kNoGoal};
@@ -122,82 +116,55 @@ void add_work(CaseRows& rows, const FrameReplay& replay, std::size_t pool_bytes)
 
 } // namespace
 
-CaseFailure run_frame_case(const CaseContext& context, const FrameCase& test_case)
+void run_frame_case(const CaseContext& context, const FrameCase& test_case)
 {
-    const auto scene = context.scenes.get(test_case.scene);
-    if (!scene)
-    {
-        return scene.error().text;
-    }
+    const Scene& scene = context.scenes.get(test_case.scene);
     const PinnedCore pinned(context.options.core);
     const std::uint32_t frames = context.options.frames_or(6'000, 1'500);
     const std::uint32_t passes = context.options.passes_or(5, 3);
-    const FrameRun run = make_slide(*scene.value(), test_case.speed_diag_per_s, test_case.splits,
+    const FrameRun run = make_slide(scene, test_case.speed_diag_per_s, test_case.splits,
                                     test_case.pool_bytes, frames);
     FrameReplay replay(run);
-    if (const auto failure = replay.run(passes))
-    {
-        return failure;
-    }
+    replay.run(passes);
     CaseRows rows = rows_of(context, run, replay.hash());
     if (context.options.count)
     {
         add_warm(rows, replay, test_case, std::nullopt, "");
         add_work(rows, replay, test_case.pool_bytes);
-        return std::nullopt;
+        return;
     }
     std::string peer_name;
     const auto peer = peer_spread(run, passes, peer_name);
-    if (!peer)
-    {
-        return peer.error().text;
-    }
-    add_warm(rows, replay, test_case, peer.value(), peer_name);
+    add_warm(rows, replay, test_case, peer, peer_name);
     const std::size_t cold_frames = frames / kColdShare;
     for (const CacheState caches : {CacheState::cold, CacheState::rehearsed})
     {
-        if (const auto failure = replay.run(caches, std::min(passes, 2U), cold_frames))
-        {
-            return failure;
-        }
+        replay.run(caches, std::min(passes, 2U), cold_frames);
         add_cold(rows, replay, caches, caches == CacheState::cold ? test_case.cold_max : kNoGoal,
                  cold_frames);
     }
     add_work(rows, replay, test_case.pool_bytes);
     const auto counted = count_refinements(context);
-    if (!counted)
+    if (!counted.empty())
     {
-        return counted.error().text;
-    }
-    if (!counted.value().empty())
-    {
-        add_spread(rows, "T_R + T_B", spread_of(counted.value()),
+        add_spread(rows, "T_R + T_B", spread_of(counted),
                    {kNoGoal, test_case.counted_p99, test_case.counted_max}, "instructions");
     }
-    return std::nullopt;
 }
 
-CaseFailure run_memory_case(const CaseContext& context, const MemoryCase& test_case)
+void run_memory_case(const CaseContext& context, const MemoryCase& test_case)
 {
     static constexpr std::array<double, 7> kTried_mib{2.5, 3.0, 3.5, 4.0, 6.0, 8.0, 16.0};
-    const auto scene = context.scenes.get(test_case.scene);
-    if (!scene)
-    {
-        return scene.error().text;
-    }
+    const Scene& scene = context.scenes.get(test_case.scene);
     const PinnedCore pinned(context.options.core);
     const std::uint32_t frames = context.options.frames_or(3'000, 1'000);
     double enough_mib = std::numeric_limits<double>::quiet_NaN();
     for (const double mib : kTried_mib)
     {
-        const FrameRun run =
-            make_slide(*scene.value(), test_case.speed_diag_per_s, test_case.splits,
-                       static_cast<std::size_t>(mib * 0x1p20), frames);
+        const FrameRun run = make_slide(scene, test_case.speed_diag_per_s, test_case.splits,
+                                        static_cast<std::size_t>(mib * 0x1p20), frames);
         FrameReplay replay(run);
-        if (const auto failure = replay.run(1))
-        {
-            return failure;
-        }
+        replay.run(1);
         const FrameWork& work = replay.work();
         const bool is_enough = work.contacts > 0 && work.uncertified == 0;
         if (is_enough || mib == kTried_mib.back())
@@ -211,7 +178,6 @@ CaseFailure run_memory_case(const CaseContext& context, const MemoryCase& test_c
             break;
         }
     }
-    return std::nullopt;
 }
 
 } // namespace tactus::bench

@@ -57,20 +57,15 @@ void FrameReplay::prepare(test::FrameRig& rig, CacheState caches)
     }
 }
 
-std::optional<std::string> FrameReplay::run(CacheState caches, std::uint32_t passes,
-                                            std::size_t frames)
+void FrameReplay::run(CacheState caches, std::uint32_t passes, std::size_t frames)
 {
     for (std::uint32_t pass = 0; pass < passes; ++pass)
     {
-        if (auto failure = run_once(caches, frames))
-        {
-            return failure;
-        }
+        run_once(caches, frames);
     }
-    return std::nullopt;
 }
 
-std::optional<std::string> FrameReplay::run_once(CacheState caches, std::size_t frames)
+void FrameReplay::run_once(CacheState caches, std::size_t frames)
 {
     test::FrameRig rig(std::vector(run_.models, &run_.scene.model), run_.rig);
     StageTimer timer;
@@ -104,9 +99,9 @@ std::optional<std::string> FrameReplay::run_once(CacheState caches, std::size_t 
         }
         if (hashes_[i] != output.models[0].state_hash)
         {
-            return fmt::format("frame {}: a replay of the same goals gave state {:016x}, not "
-                               "{:016x}",
-                               i, output.models[0].state_hash, hashes_[i]);
+            throw Failure(fmt::format("frame {}: a replay of the same goals gave state {:016x}, "
+                                      "not {:016x}",
+                                      i, output.models[0].state_hash, hashes_[i]));
         }
         if (!is_counted)
         {
@@ -122,7 +117,6 @@ std::optional<std::string> FrameReplay::run_once(CacheState caches, std::size_t 
         }
     }
     allocations_ = counted_if_available(allocations);
-    return std::nullopt;
 }
 
 void FrameReplay::count(const FrameOutput& output)

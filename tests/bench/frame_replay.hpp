@@ -13,7 +13,6 @@
 #include <array>
 #include <cstdint>
 #include <optional>
-#include <string>
 #include <vector>
 
 namespace tactus::bench
@@ -73,15 +72,11 @@ class FrameReplay
 public:
     explicit FrameReplay(const FrameRun& run);
 
-    /// So many replays of the first counted frames. Returns a line when a frame's state differs
-    /// from that of an earlier replay.
-    [[nodiscard]] std::optional<std::string> run(CacheState caches, std::uint32_t passes,
-                                                 std::size_t frames);
+    /// So many replays of the first counted frames. A failure when a frame's state differs from
+    /// that of an earlier replay.
+    void run(CacheState caches, std::uint32_t passes, std::size_t frames);
     /// Of all counted frames, the caches warm.
-    [[nodiscard]] std::optional<std::string> run(std::uint32_t passes)
-    {
-        return run(CacheState::warm, passes, run_.counted());
-    }
+    void run(std::uint32_t passes) { run(CacheState::warm, passes, run_.counted()); }
 
     /// T_R + T_B + T_Q, in microseconds, of the counted frames.
     [[nodiscard]] const LeastTimes& sum_us(CacheState caches) const
@@ -109,7 +104,7 @@ private:
     {
         return static_cast<std::size_t>(caches);
     }
-    [[nodiscard]] std::optional<std::string> run_once(CacheState caches, std::size_t frames);
+    void run_once(CacheState caches, std::size_t frames);
     void prepare(test::FrameRig& rig, CacheState caches);
     void count(const FrameOutput& output);
 

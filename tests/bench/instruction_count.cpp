@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <fcntl.h>
 #include <filesystem>
 #include <fstream>
@@ -94,8 +93,8 @@ void end_stage(void* context, Stage stage) noexcept TACTUS_NONBLOCKING
 TACTUS_TRUSTED_END
 
 /// Runs the case under callgrind, with these options of its own. What it counted, part by part.
-Result<std::vector<std::uint64_t>, SceneError> run_counted(const CaseContext& context,
-                                                           const std::vector<std::string>& how)
+std::vector<std::uint64_t> run_counted(const CaseContext& context,
+                                       const std::vector<std::string>& how)
 {
     const BenchOptions& options = context.options;
     const test::TemporaryFolder folder;
@@ -124,8 +123,8 @@ Result<std::vector<std::uint64_t>, SceneError> run_counted(const CaseContext& co
     std::vector<std::uint64_t> totals = code == 0 ? totals_in(file) : std::vector<std::uint64_t>{};
     if (totals.empty())
     {
-        return SceneError{code ? fmt::format("--instructions: valgrind ended with {}", *code)
-                               : "--instructions: valgrind can't be run"};
+        throw Failure(code ? fmt::format("--instructions: valgrind ended with {}", *code)
+                           : "--instructions: valgrind can't be run");
     }
     return totals;
 }
@@ -138,21 +137,17 @@ Result<std::vector<std::uint64_t>, SceneError> run_counted(const CaseContext& co
     return rig.step_without_delivery(goals_m, budgets, {&end_stage, &mark});
 }
 
-Result<std::optional<std::uint64_t>, SceneError> count_instructions(const CaseContext& context)
+std::optional<std::uint64_t> count_instructions(const CaseContext& context)
 {
     if (!context.options.instructions || context.options.count)
     {
         return std::optional<std::uint64_t>{};
     }
     const auto counted = run_counted(context, {"--toggle-collect=tactus::bench::counted_step(*"});
-    if (!counted)
-    {
-        return counted.error();
-    }
-    return std::optional(counted.value().front());
+    return std::optional(counted.front());
 }
 
-Result<std::vector<double>, SceneError> count_refinements(const CaseContext& context)
+std::vector<double> count_refinements(const CaseContext& context)
 {
     if (!context.options.instructions || context.options.count)
     {
@@ -163,11 +158,7 @@ Result<std::vector<double>, SceneError> count_refinements(const CaseContext& con
         context, {"--zero-before=tactus::bench::(anonymous namespace)::refinement_begins(*",
                   "--dump-before=tactus::bench::(anonymous namespace)::refinement_ended(*",
                   "--combine-dumps=yes"});
-    if (!counted)
-    {
-        return counted.error();
-    }
-    return std::vector<double>(counted.value().begin(), counted.value().end() - 1);
+    return std::vector<double>(counted.begin(), counted.end() - 1);
 }
 
 } // namespace tactus::bench

@@ -19,12 +19,11 @@ namespace tactus::bench
 
 /// Instructions of all calls of counted_step() when the case runs once by itself with --count, in
 /// another process of this program under valgrind's callgrind; some 50 times as long as without.
-/// None unless --instructions asks for it, nor in that process itself. An error when there is no
+/// None unless --instructions asks for it, nor in that process itself. A failure when there is no
 /// valgrind, or it fails.
-[[nodiscard]] Result<std::optional<std::uint64_t>, SceneError>
-count_instructions(const CaseContext& context);
+[[nodiscard]] std::optional<std::uint64_t> count_instructions(const CaseContext& context);
 
 /// The same, of T_R + T_B alone and call by call.
-[[nodiscard]] Result<std::vector<double>, SceneError> count_refinements(const CaseContext& context);
+[[nodiscard]] std::vector<double> count_refinements(const CaseContext& context);
 
 } // namespace tactus::bench

@@ -8,7 +8,6 @@
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 
 namespace tactus::bench
 {
@@ -40,9 +39,8 @@ std::uint64_t hash_of(std::span<const double> values)
 
 } // namespace
 
-Result<PointAnswers, SceneError> replay_queries(TouchQuery& query, std::span<const Vec3> points_m,
-                                                std::span<const double> bands_m,
-                                                std::uint32_t passes)
+PointAnswers replay_queries(TouchQuery& query, std::span<const Vec3> points_m,
+                            std::span<const double> bands_m, std::uint32_t passes)
 {
     const std::size_t count = points_m.size();
     PointAnswers answers{LeastTimes(count), std::vector<double>(count), std::vector<Vec3>(count), 0,
@@ -59,7 +57,7 @@ Result<PointAnswers, SceneError> replay_queries(TouchQuery& query, std::span<con
         const std::uint64_t hash = hash_of(answers.distances_m);
         if (pass > 0 && hash != answers.hash)
         {
-            return SceneError{query.name() + ": passes over the same points gave other answers"};
+            throw Failure(query.name() + ": passes over the same points gave other answers");
         }
         answers.hash = hash;
     }
@@ -111,20 +109,12 @@ double largest_point_error_m(const PointAnswers& answers, const Questions& quest
     return largest_m;
 }
 
-Result<BuiltQuery, SceneError> build_peer(const PointPeer& peer,
-                                          const std::vector<test::Face>& faces, double radius_m)
+BuiltQuery build_peer(const PointPeer& peer, const std::vector<test::Face>& faces, double radius_m)
 {
     BuiltQuery built;
     const std::size_t bytes_before = heap_bytes();
     const BenchClock::time_point start = BenchClock::now();
-    try
-    {
-        built.query = peer.make(faces, radius_m);
-    }
-    catch (const std::runtime_error& error)
-    {
-        return SceneError{error.what()};
-    }
+    built.query = peer.make(faces, radius_m);
     built.build_ms = 1e-3 * microseconds(start, BenchClock::now());
     const std::size_t bytes = heap_bytes() - bytes_before;
     built.bytes = static_cast<double>(built.query->own_bytes().value_or(bytes));

@@ -2,7 +2,6 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "rt_core/base/result.hpp"
 #include "tests/bench/least_times.hpp"
 #include "tests/bench/peers/point_query.hpp"
 #include "tests/bench/scenes.hpp"
@@ -12,7 +11,6 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
 namespace tactus::bench
@@ -29,11 +27,9 @@ struct PointAnswers
 };
 
 /// Asks all questions in turn, each with a band of its own, `passes` times from the start: as in a
-/// loop that is on its way, the first one was asked once before. Refused only when passes differ.
-[[nodiscard]] Result<PointAnswers, SceneError> replay_queries(TouchQuery& query,
-                                                              std::span<const Vec3> points_m,
-                                                              std::span<const double> bands_m,
-                                                              std::uint32_t passes);
+/// loop that is on its way, the first one was asked once before. A failure only when passes differ.
+[[nodiscard]] PointAnswers replay_queries(TouchQuery& query, std::span<const Vec3> points_m,
+                                          std::span<const double> bands_m, std::uint32_t passes);
 
 /// How wrong answers are about touch: a probe of a radius touches where the distance of its centre
 /// is less.
@@ -73,8 +69,8 @@ struct BuiltQuery
     double build_ms{0.0};
     double bytes{0.0};
 };
-/// Refused when the peer refuses the mesh.
-[[nodiscard]] Result<BuiltQuery, SceneError>
-build_peer(const PointPeer& peer, const std::vector<test::Face>& faces, double radius_m);
+/// Throws what the peer throws that refuses the mesh.
+[[nodiscard]] BuiltQuery build_peer(const PointPeer& peer, const std::vector<test::Face>& faces,
+                                    double radius_m);
 
 } // namespace tactus::bench

@@ -3,10 +3,11 @@
 #pragma once
 
 #include "rt_core/records/changed_face.hpp"
+#include "tests/bench/bench_row.hpp"
 #include "tests/bench/least_times.hpp"
 #include "tests/bench/measuring.hpp"
-#include "tests/bench/random.hpp"
 #include "tests/bench/scenes.hpp"
+#include "tests/shared/random.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -75,7 +76,7 @@ void time_change(Tree& tree, std::size_t place, std::uint32_t passes, ChangeTime
     std::vector<Vec3> places;
     for (std::size_t i = 0; i < kPlaces; ++i)
     {
-        const std::size_t face = mixed(kSeed, i) % scene.model.faces.size();
+        const std::size_t face = test::mixed(kSeed, i) % scene.model.faces.size();
         places.push_back(to_vec3(scene.model.faces[face][0]));
     }
     return places;

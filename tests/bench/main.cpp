@@ -5,10 +5,8 @@
 
 #include "host_tools/cli/command_line.hpp"
 #include "host_tools/cli/run_program.hpp"
-#include "host_tools/mesh/prepare.hpp"
 #include "platform/base/atomic_file.hpp"
 #include "tests/bench/bench_report.hpp"
-#include "tests/bench/force_trajectory.hpp"
 #include "tests/bench/measuring.hpp"
 #include "tests/bench/suites.hpp"
 
@@ -55,39 +53,6 @@ std::vector<Suite> chosen_suites(const std::string& name)
     return suite ? std::vector{*suite} : std::vector<Suite>{};
 }
 
-/// What a user may call a unit of length.
-constexpr const char* kUnits = "mm, cm, m, in";
-
-std::string fault_in_unit(const std::string& text)
-{
-    return metres_per_unit(text) ? "" : "'" + text + "' is no unit; allowed are " + kUnits;
-}
-
-void declare_trajectory_options(CommandLine& line, TrajectoryOptions& options)
-{
-    const CommandOption file = line.add_option(
-        "--traj", options.file,
-        "Suite force: replay this recording of positions and forces instead of the cases, and "
-        "compare the forces; with --mesh");
-    const CommandOption mesh =
-        line.add_option("--mesh", options.mesh, "With --traj: the mesh that was touched");
-    file.needs(mesh);
-    const auto add = [&](const char* name, auto& value, const char* text)
-    { return line.add_option(name, value, text).needs(file); };
-    mesh.needs(file);
-    add("--traj-unit", options.unit, "Unit of the recorded positions (default: mm)")
-        .check(fault_in_unit, kUnits);
-    add("--mesh-unit", options.mesh_unit, "Unit of the mesh (default: mm)")
-        .check(fault_in_unit, kUnits);
-    add("--traj-columns", options.columns,
-        "What the columns are: t, x, y, z, fx, fy, fz or fn for the force's amount alone; _ for "
-        "one to pass over, - before one of the other sign (default: t,x,y,z,fx,fy,fz)");
-    add("--proxy-radius", options.proxy_radius_mm, "With --traj: in mm (default: 0.5)")
-        .number_between(kMinProxyRadius_mm, kMaxProxyRadius_mm);
-    add("--stiffness", options.stiffness_n_per_m, "With --traj: in N/m (default: 500)")
-        .number_between(kMinStiffness_n_per_m, kMaxStiffness_n_per_m);
-}
-
 void declare_options(CommandLine& line, Request& request)
 {
     BenchOptions& options = request.options;
@@ -119,30 +84,6 @@ void declare_options(CommandLine& line, Request& request)
                   "Print every row, not only those with a goal, of the suite frame");
     line.add_flag("--check", request.check, "Leave with code 1 when a goal is not met");
     line.add_option("--json", request.json, "Write the rows to this file as JSON");
-    declare_trajectory_options(line, options.trajectory);
-}
-
-/// The same for --traj and what belongs to it.
-std::optional<std::string> wrong_trajectory(const Request& request)
-{
-    const BenchOptions& options = request.options;
-    if (options.trajectory.file.empty())
-    {
-        return options.trajectory.mesh.empty()
-                   ? std::nullopt
-                   : std::optional<std::string>("--traj: the name of a file must not be empty");
-    }
-    if (request.suite != "force")
-    {
-        return "--traj: only the suite force has it";
-    }
-    if (!options.only.empty() || options.frames)
-    {
-        return fmt::format("{}: not with --traj, which replays its file and no case",
-                           options.frames ? "--frames" : "--only");
-    }
-    const auto columns = TrajectoryColumns::parse(options.trajectory.columns);
-    return columns ? std::nullopt : std::optional("--traj-columns: " + columns.error().text);
 }
 
 /// Why the command line makes no sense; nothing when it does.
@@ -174,7 +115,7 @@ std::optional<std::string> wrong_usage(const Request& request)
     {
         return fmt::format("--core {}: this process may not run there", request.options.core);
     }
-    return wrong_trajectory(request);
+    return std::nullopt;
 }
 
 /// What makes the run another than a full one, for those who keep its results.
@@ -225,17 +166,6 @@ Results run_suites(const Request& request, GoalCount& laws)
     return results;
 }
 
-Results run_trajectory(const Request& request)
-{
-    Results results;
-    if (const auto refused = compare_trajectory(request.options, results.rows))
-    {
-        results.failures.push_back(*refused);
-    }
-    fmt::print("{}", to_text(results.rows, Figures::all));
-    return results;
-}
-
 Result<Done, Refusal> write_json(AtomicFile& file, const std::string& text)
 {
     const auto written = file.write(std::as_bytes(std::span(text)));
@@ -270,17 +200,12 @@ int run(int argc, char** argv)
     }
     const RunFacts facts{PinnedCore(request.options.core).core(), request.options.quick,
                          lesser_options(request.options)};
-    const bool is_recorded = !request.options.trajectory.file.empty();
     GoalCount laws;
-    const Results results = is_recorded ? run_trajectory(request) : run_suites(request, laws);
+    const Results results = run_suites(request, laws);
     int code = kExitDone;
     for (const std::string& failure : results.failures)
     {
-        code = line.fail(failure, is_recorded ? kExitFailed : kExitCriterionNotMet);
-    }
-    if (is_recorded && code != kExitDone)
-    {
-        return code;
+        code = line.fail(failure, kExitCriterionNotMet);
     }
     fmt::print("{}\n", facts.core < 0 ? std::string("not held to one core: the system refuses")
                                       : fmt::format("measured on core {}", facts.core));

@@ -2,13 +2,12 @@
 // Copyright the Tactus authors.
 #include "tests/bench/mesh_refinement.hpp"
 
-#include "tests/bench/random.hpp"
+#include "tests/shared/random.hpp"
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <unordered_map>
-#include <utility>
 
 namespace tactus::bench
 {
@@ -91,7 +90,7 @@ TriangleMesh with_normal_noise(const TriangleMesh& mesh, double share, std::uint
             continue; // No face, or faces that cancel out: no direction to move in.
         }
         const double way =
-            share * signed_unit(seed, i) * all[i].edge_length_sum / all[i].edges / length;
+            share * test::signed_unit(seed, i) * all[i].edge_length_sum / all[i].edges / length;
         for (int axis = 0; axis < 3; ++axis)
         {
             noisy.positions[i][static_cast<std::size_t>(axis)] += way * all[i].normal[axis];

@@ -83,12 +83,8 @@ NamedMesh make_tool_mesh(const Scene& object, MeshProbe probe)
     }
     const bool is_small = probe == MeshProbe::small;
     const double own = is_small ? (high - low).norm() : (high - low).maxCoeff();
-    const double scale = kAcross_diag * object.model.diagonal_m / own;
-    for (auto& position : mesh.positions)
-    {
-        std::ranges::transform(position, position.begin(), [&](double x) { return scale * x; });
-    }
-    return {(is_small ? "small-tool-for-" : "tool-for-") + object.model.name, std::move(mesh)};
+    return {(is_small ? "small-tool-for-" : "tool-for-") + object.model.name,
+            scaled(std::move(mesh), kAcross_diag * object.model.diagonal_m / own)};
 }
 
 std::vector<Triangle> faces_in_source_frame(const Scene& scene)
@@ -127,34 +123,15 @@ std::vector<Similarity> mesh_touch_motion(const TouchScene& object,
     return places;
 }
 
-TactusPairQuery::TactusPairQuery(std::unique_ptr<StaticModel> tool,
-                                 std::unique_ptr<StaticModel> object, const Scene& tool_scene,
-                                 const Scene& object_scene)
-    : tool_(std::move(tool))
-    , object_(std::move(object))
-    , tool_names_(tool_scene.model.faces)
-    , object_names_(object_scene.model.faces)
-    , place_{{}, vec3_of(tool_scene.model.origin_m)}
-    , skin_m_(kMeshSkin_diag * object_scene.model.diagonal_m)
+TactusPairQuery::TactusPairQuery(const Scene& tool, const Scene& object)
+    : tool_(tool)
+    , object_(object)
+    , tool_names_(tool.model.faces)
+    , object_names_(object.model.faces)
+    , place_{{}, vec3_of(tool.model.origin_m)}
+    , skin_m_(kMeshSkin_diag * object.model.diagonal_m)
 {
     pairs_.reserve(kMaxMeetingFaces);
-}
-
-Result<std::unique_ptr<TactusPairQuery>, SceneError> TactusPairQuery::make(const Scene& tool,
-                                                                           const Scene& object)
-{
-    auto tool_model = StaticModel::make(tool);
-    if (!tool_model)
-    {
-        return tool_model.error();
-    }
-    auto object_model = StaticModel::make(object);
-    if (!object_model)
-    {
-        return object_model.error();
-    }
-    return std::unique_ptr<TactusPairQuery>(new TactusPairQuery(
-        std::move(tool_model).value(), std::move(object_model).value(), tool, object));
 }
 
 void TactusPairQuery::place(const Similarity& tool)
@@ -170,7 +147,7 @@ void TactusPairQuery::forget()
 void TactusPairQuery::find_meeting(std::uint32_t enough)
 {
     WalkBudget budget{kUnlimited, kUnlimited};
-    find_meeting_faces({tool_->tree(), object_->tree(), place_}, enough, budget, memory_, report_);
+    find_meeting_faces({tool_.tree(), object_.tree(), place_}, enough, budget, memory_, report_);
 }
 
 bool TactusPairQuery::do_meet()
@@ -187,10 +164,10 @@ const std::vector<test::FacePair>& TactusPairQuery::meeting()
 
 const std::vector<test::FacePair>& TactusPairQuery::contacts()
 {
-    OtherSurface surface(object_->tree(), place_, {kUnlimited, kUnlimited});
+    OtherSurface surface(object_.tree(), place_, {kUnlimited, kUnlimited});
     ends_.is_empty = true;
-    query_meshes({tool_->tree(), object_->tree(), place_, skin_m_, skin_m_, &ends_}, surface,
-                 memory_, answer_, report_, contacts_);
+    query_meshes({tool_.tree(), object_.tree(), place_, skin_m_, skin_m_, &ends_}, surface, memory_,
+                 answer_, report_, contacts_);
     return pairs_of_report();
 }
 
@@ -206,17 +183,16 @@ const std::vector<test::FacePair>& TactusPairQuery::pairs_of_report()
 
 double TactusPairQuery::distance_m()
 {
-    OtherSurface surface(object_->tree(), place_, {kUnlimited, kUnlimited});
-    find_nearest_faces({tool_->tree(), object_->tree(), place_}, surface, memory_, answer_,
-                       report_);
+    OtherSurface surface(object_.tree(), place_, {kUnlimited, kUnlimited});
+    find_nearest_faces({tool_.tree(), object_.tree(), place_}, surface, memory_, answer_, report_);
     return answer_.kind == AnswerKind::exact ? answer_.upper_m
                                              : std::numeric_limits<double>::quiet_NaN();
 }
 
 test::FacePair TactusPairQuery::in_source(const test::FacePair& own) const
 {
-    return {tool_names_.of(tool_->model(), FaceId{own.tool_face}).value(),
-            object_names_.of(object_->model(), FaceId{own.face}).value()};
+    return {tool_names_.of(tool_.model(), FaceId{own.tool_face}).value(),
+            object_names_.of(object_.model(), FaceId{own.face}).value()};
 }
 
 } // namespace tactus::bench

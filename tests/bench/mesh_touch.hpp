@@ -9,7 +9,6 @@
 #include "tests/shared/face_names.hpp"
 
 #include <cstdint>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -46,8 +45,7 @@ inline constexpr double kMeshSkin_diag = 0.001;
 class TactusPairQuery final : public PairQuery
 {
 public:
-    [[nodiscard]] static Result<std::unique_ptr<TactusPairQuery>, SceneError>
-    make(const Scene& tool, const Scene& object);
+    TactusPairQuery(const Scene& tool, const Scene& object);
 
     [[nodiscard]] std::string name() const override { return "Tactus"; }
     void place(const Similarity& tool) override;
@@ -65,10 +63,8 @@ public:
 private:
     void find_meeting(std::uint32_t enough);
     [[nodiscard]] const std::vector<test::FacePair>& pairs_of_report();
-    TactusPairQuery(std::unique_ptr<StaticModel> tool, std::unique_ptr<StaticModel> object,
-                    const Scene& tool_scene, const Scene& object_scene);
-    std::unique_ptr<StaticModel> tool_;
-    std::unique_ptr<StaticModel> object_;
+    StaticModel tool_;
+    StaticModel object_;
     test::FaceNames tool_names_;
     test::FaceNames object_names_;
     MeshPlacement place_;

@@ -17,14 +17,13 @@
 namespace tactus::bench
 {
 
-Result<Done, SceneError> enter_own_network()
+void enter_own_network()
 {
-    const auto refused = [](const char* what) {
-        return SceneError{fmt::format("no network of its own: {}: {}", what, std::strerror(errno))};
-    };
+    const auto refuse = [](const char* what)
+    { throw Failure(fmt::format("no network of its own: {}: {}", what, std::strerror(errno))); };
     if (::unshare(CLONE_NEWNET) != 0)
     {
-        return refused("unshare");
+        refuse("unshare");
     }
     const int any = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
     ifreq loopback{};
@@ -32,9 +31,11 @@ Result<Done, SceneError> enter_own_network()
     const bool is_read = any >= 0 && ::ioctl(any, SIOCGIFFLAGS, &loopback) == 0;
     loopback.ifr_flags = static_cast<short>(loopback.ifr_flags | IFF_UP);
     const bool is_up = is_read && ::ioctl(any, SIOCSIFFLAGS, &loopback) == 0;
-    const auto outcome = is_up ? Result<Done, SceneError>(Done{}) : refused("loopback");
     ::close(any);
-    return outcome;
+    if (!is_up)
+    {
+        refuse("loopback");
+    }
 }
 
 std::uint64_t loopback_bytes()

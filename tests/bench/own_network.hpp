@@ -2,7 +2,6 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "rt_core/base/result.hpp"
 #include "tests/bench/scenes.hpp"
 
 #include <cstdint>
@@ -11,9 +10,9 @@ namespace tactus::bench
 {
 
 /// From now on this process and those that it starts have a network of their own, of a loopback
-/// interface alone. The caller must have no other threads. An error when the system doesn't allow
+/// interface alone. The caller must have no other threads. A failure when the system doesn't allow
 /// it.
-[[nodiscard]] Result<Done, SceneError> enter_own_network();
+void enter_own_network();
 
 /// What has gone over it so far: each datagram once, with its headers.
 [[nodiscard]] std::uint64_t loopback_bytes();

@@ -3,8 +3,7 @@
 #include "tests/bench/pair_replay.hpp"
 
 #include "tests/bench/stage_timer.hpp"
-
-#include <fmt/format.h>
+#include "tests/stability/whole_model.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -18,8 +17,6 @@ namespace
 
 /// At the first place, before anything is measured: a local model comes and is refined there.
 constexpr std::uint32_t kLeadIn = 500;
-/// A whole model of a million faces is filled in some 10,000.
-constexpr std::uint32_t kMostFillFrames = 100'000;
 
 test::RigOptions options_of(const PairRun& run)
 {
@@ -34,24 +31,6 @@ test::RigOptions options_of(const PairRun& run)
     tool.wants_pairs = true;
     options.tools = {tool};
     return options;
-}
-
-bool try_fill(test::FrameRig& rig, const ToolState& place)
-{
-    Budgets ample;
-    ample.splits = kMaxSplitsPerFrame;
-    ample.pages = ample.requests = ample.regions = 64;
-    const auto is_complete = [&rig](std::uint32_t model)
-    { return rig.model(ModelId{model}).is_complete(); };
-    for (std::uint32_t i = 0; i < kMostFillFrames; ++i)
-    {
-        rig.step(std::span(&place, 1), ample);
-        if (is_complete(0) && is_complete(1))
-        {
-            return true;
-        }
-    }
-    return false;
 }
 
 std::uint64_t bits_of(const FrameOutput& output)
@@ -73,13 +52,14 @@ void keep(const StageTimer& timer, std::size_t frame, PairFrames& frames)
     frames.sum_us.keep(frame, sum_us);
 }
 
-/// None when a model did not get as far as it should.
-std::optional<std::uint64_t> replay_once(const PairRun& run, PairFrames& frames)
+/// Its hash.
+std::uint64_t replay_once(const PairRun& run, PairFrames& frames)
 {
     test::FrameRig rig({&run.object.model, &run.tool.model}, options_of(run));
-    if (run.is_static && !try_fill(rig, run.places.front()))
+    if (run.is_static)
     {
-        return std::nullopt;
+        test::refine_fully(run.object.model.name, [&](const Budgets& budgets)
+                           { return rig.step(std::span(run.places).first(1), budgets); });
     }
     for (std::uint32_t i = 0; i < kLeadIn; ++i)
     {
@@ -109,25 +89,19 @@ std::optional<std::uint64_t> replay_once(const PairRun& run, PairFrames& frames)
 
 } // namespace
 
-Result<PairFrames, SceneError> replay_pair(const PairRun& run, std::uint32_t passes)
+PairFrames replay_pair(const PairRun& run, std::uint32_t passes)
 {
     PairFrames frames;
     frames.stage_us.fill(LeastTimes(run.places.size()));
     frames.sum_us = LeastTimes(run.places.size());
     for (std::uint32_t pass = 0; pass < passes; ++pass)
     {
-        const auto hash = replay_once(run, frames);
-        if (!hash)
+        const std::uint64_t hash = replay_once(run, frames);
+        if (pass > 0 && hash != frames.hash)
         {
-            return SceneError{fmt::format("{} and {} are not whole after {} frames",
-                                          run.object.model.name, run.tool.model.name,
-                                          kMostFillFrames)};
+            throw Failure(run.object.model.name + ": replays gave other answers");
         }
-        if (pass > 0 && *hash != frames.hash)
-        {
-            return SceneError{run.object.model.name + ": replays gave other answers"};
-        }
-        frames.hash = *hash;
+        frames.hash = hash;
     }
     return frames;
 }

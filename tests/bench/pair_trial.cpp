@@ -133,8 +133,8 @@ PairTruth find_pair_truth(const Scene& tool, const Scene& object,
     return truth;
 }
 
-Result<PairAnswers, SceneError> replay_pairs(PairQuery& query, std::span<const Similarity> places,
-                                             PairQuestion question, std::uint32_t passes)
+PairAnswers replay_pairs(PairQuery& query, std::span<const Similarity> places,
+                         PairQuestion question, std::uint32_t passes)
 {
     PairAnswers answers = room_for(question, places.size());
     for (std::uint32_t pass = 0; pass < passes; ++pass)
@@ -154,7 +154,7 @@ Result<PairAnswers, SceneError> replay_pairs(PairQuery& query, std::span<const S
         }
         if (pass > 0 && hash != answers.hash)
         {
-            return SceneError{query.name() + ": passes over the same places gave other answers"};
+            throw Failure(query.name() + ": passes over the same places gave other answers");
         }
         answers.hash = hash;
     }

@@ -2,7 +2,6 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "rt_core/base/result.hpp"
 #include "tests/bench/least_times.hpp"
 #include "tests/bench/peers/pair_query.hpp"
 #include "tests/bench/scenes.hpp"
@@ -49,11 +48,9 @@ struct PairAnswers
     std::uint64_t hash{0}; ///< Over the answers: they were used.
 };
 /// Asks at all places in turn, `passes` times from the start, at the first one once before. Only
-/// the question is timed. Refused only when passes differ.
-[[nodiscard]] Result<PairAnswers, SceneError> replay_pairs(PairQuery& query,
-                                                           std::span<const Similarity> places,
-                                                           PairQuestion question,
-                                                           std::uint32_t passes);
+/// the question is timed. A failure only when passes differ.
+[[nodiscard]] PairAnswers replay_pairs(PairQuery& query, std::span<const Similarity> places,
+                                       PairQuestion question, std::uint32_t passes);
 
 /// Frames for `any`, pairs for `all_pairs` and `contacts`; the largest error of a distance,
 /// infinite for one that is not a number.

@@ -29,15 +29,13 @@ struct PeerTouchCase
 };
 /// The workloads W1 and W3: near frames with a band of two radii, flight without one, whether touch
 /// is told, what building costs and holds.
-[[nodiscard]] CaseFailure run_peer_touch_case(const CaseContext& context,
-                                              const PeerTouchCase& test_case);
+void run_peer_touch_case(const CaseContext& context, const PeerTouchCase& test_case);
 
 struct PeerMeshCase
 {
     SceneSource scene;
 };
 /// The workload W2: a tool that is a mesh turns and slides through the surface.
-[[nodiscard]] CaseFailure run_peer_mesh_case(const CaseContext& context,
-                                             const PeerMeshCase& test_case);
+void run_peer_mesh_case(const CaseContext& context, const PeerMeshCase& test_case);
 
 } // namespace tactus::bench

@@ -180,18 +180,14 @@ void add_times(const MeshTrial& trial, const std::string& name, CaseRows& rows,
 }
 
 /// The rows of one contestant.
-CaseFailure add_contestant(const MeshTrial& trial, PairQuery& query, PairSpreads& spreads)
+void add_contestant(const MeshTrial& trial, PairQuery& query, PairSpreads& spreads)
 {
     for (const PairQuestion question : kPairQuestions)
     {
         const auto answers = replay_pairs(query, trial.places, question, trial.passes);
-        if (!answers)
-        {
-            return answers.error().text;
-        }
-        CaseRows rows = rows_of(trial, query.name(), question_name(question), answers.value().hash);
-        add_times(trial, query.name(), rows, answers.value(), question, spreads);
-        const PairErrors errors = judge_pairs(answers.value(), trial.truth, question);
+        CaseRows rows = rows_of(trial, query.name(), question_name(question), answers.hash);
+        add_times(trial, query.name(), rows, answers, question, spreads);
+        const PairErrors errors = judge_pairs(answers, trial.truth, question);
         if (question == PairQuestion::distance)
         {
             rows.add("off", errors.largest_m / trial.object.model.diagonal_m, "diag",
@@ -201,7 +197,6 @@ CaseFailure add_contestant(const MeshTrial& trial, PairQuery& query, PairSpreads
         rows.add("missed", static_cast<double>(errors.missed), "", our_goal(query.name(), 0.0));
         rows.add("invented", static_cast<double>(errors.invented), "", our_goal(query.name(), 0.0));
     }
-    return std::nullopt;
 }
 
 /// How much there was to find.
@@ -246,61 +241,38 @@ void add_shares(const MeshTrial& trial, const std::string& own, const std::strin
     }
 }
 
-CaseFailure run_probe(const CaseContext& context, const Scene& object, MeshProbe probe)
+void run_probe(const CaseContext& context, const Scene& object, MeshProbe probe)
 {
-    const auto tool = context.scenes.get(make_tool_mesh(object, probe));
-    if (!tool)
-    {
-        return tool.error().text;
-    }
-    const PairMeshes meshes{faces_in_source_frame(*tool.value()), faces_in_model_frame(object)};
+    const Scene& tool = context.scenes.get(make_tool_mesh(object, probe));
+    const PairMeshes meshes{faces_in_source_frame(tool), faces_in_model_frame(object)};
     MeshTrial trial{context, object, probe, context.options.passes_or(5, 3), {}, {}};
     const std::uint32_t frames = probe == MeshProbe::small
                                      ? context.options.frames_or(kCycleFrames, kCycleFrames / 2)
                                      : context.options.frames_or(kTouchFrames, kTouchFrames / 3);
     trial.places = mesh_touch_motion(object.touch(), meshes.tool, probe, frames);
-    trial.truth = find_pair_truth(*tool.value(), object, trial.places);
+    trial.truth = find_pair_truth(tool, object, trial.places);
     add_truth(trial);
-    const auto ours = TactusPairQuery::make(*tool.value(), object);
-    if (!ours)
-    {
-        return ours.error().text;
-    }
+    TactusPairQuery ours(tool, object);
     PairSpreads ours_us;
-    if (auto failure = add_contestant(trial, *ours.value(), ours_us))
-    {
-        return failure;
-    }
+    add_contestant(trial, ours, ours_us);
     for (const PairPeer& peer : context.options.count ? std::vector<PairPeer>() : pair_peers())
     {
         PairSpreads others_us;
-        if (auto failure = add_contestant(trial, *peer.make(meshes), others_us))
-        {
-            return failure;
-        }
-        add_shares(trial, ours.value()->name(), peer.name, ours_us, others_us);
+        add_contestant(trial, *peer.make(meshes), others_us);
+        add_shares(trial, ours.name(), peer.name, ours_us, others_us);
     }
-    return std::nullopt;
 }
 
 } // namespace
 
-CaseFailure run_peer_mesh_case(const CaseContext& context, const PeerMeshCase& test_case)
+void run_peer_mesh_case(const CaseContext& context, const PeerMeshCase& test_case)
 {
-    const auto scene = context.scenes.get(test_case.scene);
-    if (!scene)
-    {
-        return scene.error().text;
-    }
+    const Scene& scene = context.scenes.get(test_case.scene);
     const PinnedCore pinned(context.options.core);
     for (const MeshProbe probe : {MeshProbe::large, MeshProbe::small})
     {
-        if (auto failure = run_probe(context, *scene.value(), probe))
-        {
-            return failure;
-        }
+        run_probe(context, scene, probe);
     }
-    return std::nullopt;
 }
 
 } // namespace tactus::bench

@@ -118,17 +118,13 @@ void add_cost(const TouchTrial& trial, CaseRows& rows, double build_ms, double b
 }
 
 /// All rows of one contestant whose structure is built.
-CaseFailure add_contestant(TouchTrial& trial, const std::string& by, const BuiltQuery& built)
+void add_contestant(TouchTrial& trial, const std::string& by, const BuiltQuery& built)
 {
     const bool is_banded = built.query->needs_band();
     const std::vector<double> bands_m = trial.bands_m(is_banded);
     const auto replayed =
         replay_queries(*built.query, trial.questions.points_m, bands_m, trial.passes);
-    if (!replayed)
-    {
-        return replayed.error().text;
-    }
-    const PointAnswers& told = replayed.value();
+    const PointAnswers& told = replayed;
     const std::vector<double>& times_us = told.us.least();
     if (trial.our_p99_us == 0.0)
     {
@@ -144,26 +140,21 @@ CaseFailure add_contestant(TouchTrial& trial, const std::string& by, const Built
     add_touch_errors(trial, rows, by, told.distances_m);
     add_allocations(rows, by, told.allocations, times_us.size());
     add_cost(trial, rows, built.build_ms, built.bytes);
-    return std::nullopt;
 }
 
 /// Its build is what a controller does with an encoded model: load, link, refine and refit. That
 /// of the model is the encoder's, once, beforehand.
-CaseFailure add_static_model(TouchTrial& trial)
+void add_static_model(TouchTrial& trial)
 {
     const BenchClock::time_point start = BenchClock::now();
-    auto model = StaticModel::make(trial.scene);
-    if (!model)
-    {
-        return model.error().text;
-    }
+    StaticModel model(trial.scene);
     const double build_ms = 1e3 * seconds(start, BenchClock::now());
-    const BuiltQuery built{std::make_unique<TactusQuery>(model.value()->tree()), build_ms,
-                           static_cast<double>(model.value()->bytes())};
+    const BuiltQuery built{std::make_unique<TactusQuery>(model.tree()), build_ms,
+                           static_cast<double>(model.bytes())};
     return add_contestant(trial, "Tactus static", built);
 }
 
-CaseFailure add_peers(TouchTrial& trial)
+void add_peers(TouchTrial& trial)
 {
     for (const PointPeer& peer : point_peers())
     {
@@ -174,16 +165,8 @@ CaseFailure add_peers(TouchTrial& trial)
             continue;
         }
         const auto built = build_peer(peer, trial.scene.model.faces, trial.radius_m());
-        if (!built)
-        {
-            return built.error().text;
-        }
-        if (auto failure = add_contestant(trial, peer.name, built.value()))
-        {
-            return failure;
-        }
+        add_contestant(trial, peer.name, built);
     }
-    return std::nullopt;
 }
 
 /// What a frame says of touch: the distance where it is exact, nothing in reach where that is
@@ -229,44 +212,30 @@ void add_frame_answers(const TouchTrial& trial, CaseRows& rows, const FrameRepla
 }
 
 /// T_R + T_B + T_Q of a frame that streams into small pools.
-CaseFailure add_streaming(const TouchTrial& trial, std::size_t pool_bytes)
+void add_streaming(const TouchTrial& trial, std::size_t pool_bytes)
 {
     const FrameRun run = make_streaming_run(trial, pool_bytes);
     FrameReplay replay(run);
-    if (auto failure = replay.run(trial.passes))
-    {
-        return failure;
-    }
+    replay.run(trial.passes);
     CaseRows rows = rows_of(trial, kStreaming, replay.hash());
     add_times(trial, rows, replay.sum_us(CacheState::warm).least(), false);
     add_frame_answers(trial, rows, replay);
     add_allocations(rows, kStreaming, replay.allocations(), run.counted());
     const double faces = static_cast<double>(trial.scene.model.faces.size());
     rows.add("memory", static_cast<double>(pool_bytes) / faces, "B a face");
-    return std::nullopt;
 }
 
 } // namespace
 
-CaseFailure run_peer_touch_case(const CaseContext& context, const PeerTouchCase& test_case)
+void run_peer_touch_case(const CaseContext& context, const PeerTouchCase& test_case)
 {
-    const auto scene = context.scenes.get(test_case.scene);
-    if (!scene)
-    {
-        return scene.error().text;
-    }
+    const Scene& scene = context.scenes.get(test_case.scene);
     const PinnedCore pinned(context.options.core);
-    TouchTrial trial = make_trial(context, test_case, *scene.value());
-    if (auto failure = add_static_model(trial))
-    {
-        return failure;
-    }
+    TouchTrial trial = make_trial(context, test_case, scene);
+    add_static_model(trial);
     if (test_case.pool_bytes)
     {
-        if (auto failure = add_streaming(trial, *test_case.pool_bytes))
-        {
-            return failure;
-        }
+        add_streaming(trial, *test_case.pool_bytes);
     }
     return add_peers(trial);
 }

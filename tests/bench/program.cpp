@@ -9,7 +9,6 @@
 #include <cstring>
 #include <fcntl.h>
 #include <fstream>
-#include <iterator>
 #include <sched.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
@@ -78,7 +77,17 @@ std::filesystem::path program_path(const std::string& name)
     return std::filesystem::exists(beside) ? beside : own.parent_path() / "tests" / name;
 }
 
-Result<Program, SceneError> Program::start(const ProgramSetup& setup)
+nlohmann::json report_in(const std::filesystem::path& output)
+{
+    std::ifstream file(output);
+    std::string line;
+    while (std::getline(file, line) && !line.starts_with('{'))
+    {
+    }
+    return nlohmann::json::parse(line);
+}
+
+Program Program::start(const ProgramSetup& setup)
 {
     Program program;
     program.name_ = std::filesystem::path(setup.words[0]).filename();
@@ -86,7 +95,7 @@ Result<Program, SceneError> Program::start(const ProgramSetup& setup)
     std::array<int, 2> ends{-1, -1};
     if (setup.is_asked && ::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0)
     {
-        return SceneError{fmt::format("{}: no socket: {}", program.name_, std::strerror(errno))};
+        throw Failure(fmt::format("{}: no socket: {}", program.name_, std::strerror(errno)));
     }
     const pid_t child = ::fork();
     if (child == 0)
@@ -102,8 +111,7 @@ Result<Program, SceneError> Program::start(const ProgramSetup& setup)
     program.talk_ = ends[0];
     if (child < 0)
     {
-        return SceneError{
-            fmt::format("{}: no process: {}", program.name_, std::strerror(fork_error))};
+        throw Failure(fmt::format("{}: no process: {}", program.name_, std::strerror(fork_error)));
     }
     program.id_ = child;
     return program;
@@ -122,44 +130,41 @@ Program::~Program()
     }
 }
 
-Result<Done, SceneError> Program::wait()
+void Program::wait()
 {
     int status = 0;
     while (::waitpid(id_, &status, 0) < 0 && errno == EINTR)
     {
     }
     id_ = 0;
-    if (WIFEXITED(status) && WEXITSTATUS(status) == 0)
+    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
     {
-        return Done{};
-    }
-    return SceneError{fmt::format("{} ended with {}: {}", name_,
+        throw Failure(fmt::format("{} ended with {}: {}", name_,
                                   WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status),
-                                  last_line(output_text()))};
+                                  last_line(output_text())));
+    }
 }
 
-Result<Done, SceneError> Program::wait_for(const std::string& text,
-                                           std::chrono::seconds timeout) const
+void Program::wait_for(const std::string& text, std::chrono::seconds timeout) const
 {
     const auto end = std::chrono::steady_clock::now() + timeout;
     while (output_text().find(text) == std::string::npos)
     {
         if (std::chrono::steady_clock::now() > end)
         {
-            return SceneError{
-                fmt::format("{}: no '{}', but: {}", name_, text, last_line(output_text()))};
+            throw Failure(
+                fmt::format("{}: no '{}', but: {}", name_, text, last_line(output_text())));
         }
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
-    return Done{};
 }
 
-Result<std::string, SceneError> Program::ask(const std::string& line)
+std::string Program::ask(const std::string& line)
 {
     const std::string sent = line + '\n';
     if (!line.empty() && ::send(talk_, sent.data(), sent.size(), MSG_NOSIGNAL) < 0)
     {
-        return SceneError{fmt::format("{}: {}", name_, last_line(output_text()))};
+        throw Failure(fmt::format("{}: {}", name_, last_line(output_text())));
     }
     std::string answer;
     char letter = 0;
@@ -171,7 +176,7 @@ Result<std::string, SceneError> Program::ask(const std::string& line)
         }
         answer += letter;
     }
-    return SceneError{fmt::format("{}: {}", name_, last_line(output_text()))};
+    throw Failure(fmt::format("{}: {}", name_, last_line(output_text())));
 }
 
 std::string Program::output_text() const

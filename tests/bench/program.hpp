@@ -4,6 +4,8 @@
 
 #include "tests/bench/scenes.hpp"
 
+#include <nlohmann/json.hpp>
+
 #include <chrono>
 #include <csignal>
 #include <filesystem>
@@ -29,12 +31,15 @@ struct ProgramSetup
     bool is_asked{false};
 };
 
+/// The line of JSON in a program's output.
+[[nodiscard]] nlohmann::json report_in(const std::filesystem::path& output);
+
 /// A running program; it is killed when this goes. It may use every processor, whatever the caller
 /// is held to.
 class Program
 {
 public:
-    [[nodiscard]] static Result<Program, SceneError> start(const ProgramSetup& setup);
+    [[nodiscard]] static Program start(const ProgramSetup& setup);
     Program(Program&& other) noexcept { swap(other); }
     Program& operator=(Program&& other) noexcept
     {
@@ -47,13 +52,12 @@ public:
 
     [[nodiscard]] pid_t id() const { return id_; }
     void send_signal(int signal) const { ::kill(id_, signal); }
-    /// Waits until it has ended; an error that quotes its last line when not with code 0.
-    [[nodiscard]] Result<Done, SceneError> wait();
+    /// Waits until it has ended; a failure that quotes its last line when not with code 0.
+    void wait();
     /// Waits until its output holds the text.
-    [[nodiscard]] Result<Done, SceneError> wait_for(const std::string& text,
-                                                    std::chrono::seconds timeout) const;
+    void wait_for(const std::string& text, std::chrono::seconds timeout) const;
     /// Reads one line, after sending another one unless that is empty.
-    [[nodiscard]] Result<std::string, SceneError> ask(const std::string& line);
+    [[nodiscard]] std::string ask(const std::string& line);
 
 private:
     Program() = default;

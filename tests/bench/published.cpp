@@ -15,9 +15,8 @@ std::uint32_t dds_domain()
     return static_cast<std::uint32_t>(::getpid()) % kDomains;
 }
 
-Result<Program, SceneError> start_at(const NetworkEnd& end, const std::string& name,
-                                     const std::filesystem::path& folder,
-                                     const std::vector<std::string>& arguments)
+Program start_at(const NetworkEnd& end, const std::string& name,
+                 const std::filesystem::path& folder, const std::vector<std::string>& arguments)
 {
     ProgramSetup setup;
     setup.words = {program_path(name), "--domain", fmt::format("{}", dds_domain())};
@@ -28,17 +27,10 @@ Result<Program, SceneError> start_at(const NetworkEnd& end, const std::string& n
     return Program::start(setup);
 }
 
-Result<Program, SceneError> publish(const Scene& scene, const NetworkEnd& end,
-                                    const std::filesystem::path& folder)
+Program publish(const Scene& scene, const NetworkEnd& end, const std::filesystem::path& folder)
 {
-    auto host = start_at(end, "spm_publish", folder, {scene.model.path, "--name", "model"});
-    if (host)
-    {
-        if (auto ready = host.value().wait_for("ready on DDS domain", kStartTimeout); !ready)
-        {
-            return ready.error();
-        }
-    }
+    Program host = start_at(end, "spm_publish", folder, {scene.model.path, "--name", "model"});
+    host.wait_for("ready on DDS domain", kStartTimeout);
     return host;
 }
 

@@ -22,12 +22,12 @@ inline constexpr std::chrono::seconds kStartTimeout{60};
 
 /// Starts a program of ours at an end, in our DDS domain. Its output goes to a file of its name in
 /// the folder.
-[[nodiscard]] Result<Program, SceneError> start_at(const NetworkEnd& end, const std::string& name,
-                                                   const std::filesystem::path& folder,
-                                                   const std::vector<std::string>& arguments);
+[[nodiscard]] Program start_at(const NetworkEnd& end, const std::string& name,
+                               const std::filesystem::path& folder,
+                               const std::vector<std::string>& arguments);
 
 /// spm_publish with this scene as "model"; it is ready.
-[[nodiscard]] Result<Program, SceneError> publish(const Scene& scene, const NetworkEnd& end,
-                                                  const std::filesystem::path& folder);
+[[nodiscard]] Program publish(const Scene& scene, const NetworkEnd& end,
+                              const std::filesystem::path& folder);
 
 } // namespace tactus::bench

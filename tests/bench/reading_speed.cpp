@@ -34,23 +34,18 @@ public:
         memory_.resize(measure.used() / sizeof(Line));
     }
 
-    [[nodiscard]] std::optional<SceneError> load(const ModelStore& store)
+    void load(const ModelStore& store)
     {
         std::vector<std::byte> base;
         for (std::uint32_t chunk = 0; chunk < coded_.size(); ++chunk)
         {
-            if (const auto read = store.read({ContentKind::chunk, chunk}, coded_[chunk]); !read)
-            {
-                return SceneError{read.error().text};
-            }
+            needed(store.read({ContentKind::chunk, chunk}, coded_[chunk]));
         }
-        if (const auto read = store.read({ContentKind::base, 0}, base); !read)
+        needed(store.read({ContentKind::base, 0}, base));
+        if (!parse_base_mesh(base, header_, slots().base))
         {
-            return SceneError{read.error().text};
+            throw Failure(store.path().string() + ": bad base mesh");
         }
-        const auto parsed = parse_base_mesh(base, header_, slots().base);
-        return parsed ? std::nullopt
-                      : std::optional(SceneError{store.path().string() + ": bad base mesh"});
     }
 
     /// Whether every chunk was taken.
@@ -102,19 +97,16 @@ private:
 
 } // namespace
 
-Result<ReadingSpeed, SceneError> measure_reading(const ModelStore& store, std::uint32_t passes)
+ReadingSpeed measure_reading(const ModelStore& store, std::uint32_t passes)
 {
     const std::string name = store.path().string();
     const std::uint32_t records = store.header().counts().records;
     if (records == 0)
     {
-        return SceneError{name + ": has no records to read"};
+        throw Failure(name + ": has no records to read");
     }
     WholeModel model(store);
-    if (const auto failure = model.load(store))
-    {
-        return *failure;
-    }
+    model.load(store);
     constexpr double kNever = std::numeric_limits<double>::infinity();
     ReadingSpeed least{kNever, kNever, kNever};
     for (std::uint32_t pass = 0; pass < passes; ++pass)
@@ -128,7 +120,7 @@ Result<ReadingSpeed, SceneError> measure_reading(const ModelStore& store, std::u
         const BenchClock::time_point linked = BenchClock::now();
         if (!is_parsed || !is_linked)
         {
-            return SceneError{name + ": not all of its records can be read"};
+            throw Failure(name + ": not all of its records can be read");
         }
         const double parse_ns = 1e9 * seconds(start, parsed) / records;
         const double link_ns = 1e9 * seconds(ready, linked) / records;

@@ -2,7 +2,6 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "rt_core/base/result.hpp"
 #include "tests/bench/scenes.hpp"
 #include "transport/store/model_store.hpp"
 
@@ -20,9 +19,8 @@ struct ReadingSpeed
 };
 
 /// Parses all chunks of a model, then links all pages, on the calling thread, `passes` times. The
-/// coded bytes lie in memory; hashes were checked before. Refused when a record doesn't link and
+/// coded bytes lie in memory; hashes were checked before. A failure when a record doesn't link and
 /// when the model has none. 150 B a face.
-[[nodiscard]] Result<ReadingSpeed, SceneError> measure_reading(const ModelStore& store,
-                                                               std::uint32_t passes);
+[[nodiscard]] ReadingSpeed measure_reading(const ModelStore& store, std::uint32_t passes);
 
 } // namespace tactus::bench

@@ -8,10 +8,7 @@
 #include "tests/bench/least_times.hpp"
 #include "tests/bench/local_changes.hpp"
 #include "tests/bench/measuring.hpp"
-#include "tests/bench/random.hpp"
 #include "tests/bench/static_model.hpp"
-
-#include <fmt/format.h>
 
 #include <map>
 
@@ -105,27 +102,19 @@ ChangeTimes time_vertices(AbTree& tree, const std::vector<Vec3>& places, float m
 
 } // namespace
 
-CaseFailure run_refit_case(const CaseContext& context, const RefitCase& test_case)
+void run_refit_case(const CaseContext& context, const RefitCase& test_case)
 {
-    const auto scene = context.scenes.get(test_case.scene);
-    if (!scene)
-    {
-        return scene.error().text;
-    }
+    const Scene& scene = context.scenes.get(test_case.scene);
     const PinnedCore pinned(context.options.core);
-    auto made = StaticModel::make(*scene.value());
-    if (!made)
-    {
-        return made.error().text;
-    }
-    Model& model = made.value()->model();
-    const std::vector<Vec3> places = places_on(*scene.value());
+    StaticModel made(scene);
+    Model& model = made.model();
+    const std::vector<Vec3> places = places_on(scene);
     const std::uint32_t passes = context.options.passes_or(6, 3);
     const ChangeTimes faces = time_faces(model, places, passes);
-    const auto move_m = static_cast<float>(kMove_diag * scene.value()->model.diagonal_m);
+    const auto move_m = static_cast<float>(kMove_diag * scene.model.diagonal_m);
     const ChangeTimes vertices = time_vertices(model.tree, places, move_m, passes);
 
-    Row common = context.common_row(scene.value()->model.name);
+    Row common = context.common_row(scene.model.name);
     common.frames = kPlaces;
     common.hash = model.forest.state_hash() + faces.nodes + 3 * vertices.nodes;
     CaseRows rows(context.rows, common);
@@ -139,7 +128,6 @@ CaseFailure run_refit_case(const CaseContext& context, const RefitCase& test_cas
     rows.add("180 vertices.p50", moved.p50, "us", goal_if(test_case.moved_median));
     rows.add("180 vertices.max", moved.max, "us", goal_if(test_case.moved_worst));
     rows.add("180 vertices, refit alone.p50", quantile(vertices.refit_us.least(), 0.5), "us");
-    return std::nullopt;
 }
 
 } // namespace tactus::bench

@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #include "tests/bench/relayed_networks.hpp"
 
-#include "tests/bench/random.hpp"
+#include "tests/bench/bench_row.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -23,8 +23,7 @@ NetworkEnd end_of(const Json& ready, const char* name)
 
 } // namespace
 
-Result<RelayedNetworks, SceneError> RelayedNetworks::make(const LinkManner& manner,
-                                                          const std::filesystem::path& folder)
+RelayedNetworks RelayedNetworks::make(const LinkManner& manner, const std::filesystem::path& folder)
 {
     ProgramSetup setup;
     setup.words = {program_path("network_relay"),
@@ -37,30 +36,18 @@ Result<RelayedNetworks, SceneError> RelayedNetworks::make(const LinkManner& mann
     setup.output = folder / "relay.log";
     setup.is_asked = true;
     auto relay = Program::start(setup);
-    if (!relay)
-    {
-        return relay.error();
-    }
-    RelayedNetworks networks(std::move(relay).value());
+    RelayedNetworks networks(std::move(relay));
     const auto ready = networks.relay_.ask("");
-    if (!ready)
-    {
-        return ready.error();
-    }
-    const Json facts = Json::parse(ready.value());
+    const Json facts = Json::parse(ready);
     networks.host_ = end_of(facts, "host");
     networks.controller_ = end_of(facts, "controller");
     return networks;
 }
 
-Result<LinkTraffic, SceneError> RelayedNetworks::traffic()
+LinkTraffic RelayedNetworks::traffic()
 {
     const auto answer = relay_.ask("count");
-    if (!answer)
-    {
-        return answer.error();
-    }
-    const Json counted = Json::parse(answer.value());
+    const Json counted = Json::parse(answer);
     LinkTraffic traffic;
     for (const char* direction : {"to_host", "to_controller"})
     {

@@ -36,12 +36,12 @@ struct LinkTraffic
 class RelayedNetworks
 {
 public:
-    [[nodiscard]] static Result<RelayedNetworks, SceneError>
-    make(const LinkManner& manner, const std::filesystem::path& folder);
+    [[nodiscard]] static RelayedNetworks make(const LinkManner& manner,
+                                              const std::filesystem::path& folder);
 
     [[nodiscard]] const NetworkEnd& host() const { return host_; }
     [[nodiscard]] const NetworkEnd& controller() const { return controller_; }
-    [[nodiscard]] Result<LinkTraffic, SceneError> traffic();
+    [[nodiscard]] LinkTraffic traffic();
 
 private:
     explicit RelayedNetworks(Program relay) : relay_(std::move(relay)) {}

@@ -23,7 +23,6 @@ namespace
 constexpr std::uint32_t kRigidFaces = 20'480;
 constexpr std::uint32_t kTurnedFaces = 2'000; ///< Of plate, socket and peg.
 constexpr double kRigidSpeed_m_per_s = 0.1;
-constexpr double kRigidPeriod_s = 1e-3;
 /// So much that nothing is clamped.
 constexpr double kRigidForceMax_n = 1'000.0;
 constexpr double kRigidTorqueMax_nm = 100.0;
@@ -94,7 +93,7 @@ ForceRun run_of(const Scene& scene, const RigidCase& rigid, double friction, std
     ForceRun run{scene, {}, {}, 2 * kComingFrames};
     const auto& origin = scene.model.origin_m;
     const Vec3 origin_m(origin[0], origin[1], origin[2]);
-    const double step_m = kRigidSpeed_m_per_s * kRigidPeriod_s;
+    const double step_m = kRigidSpeed_m_per_s * kPeriod_s;
     for (std::size_t i = 0; i < run.lead_in + frames; ++i)
     {
         const double left =
@@ -141,37 +140,29 @@ void add_rigid_rows(CaseRows& rows, const ForceTrace& trace)
 
 } // namespace
 
-CaseFailure run_rigid_sweeps(const CaseContext& context)
+void run_rigid_sweeps(const CaseContext& context)
 {
     const PinnedCore pinned(context.options.core);
     for (const RigidCase& rigid : rigid_cases())
     {
-        const auto scene = context.scenes.get(
+        const Scene& scene = context.scenes.get(
             NamedMesh{fmt::format("{}-{}", rigid.shape, rigid.faces),
                       make_shape(parse_shape(rigid.shape).value(), rigid.faces).value()},
             kMinPositionBits);
-        if (!scene)
-        {
-            return scene.error().text;
-        }
         Spread smooth_us;
         for (const double friction : {0.0, 0.3})
         {
             const auto trace = replay_forces(
-                run_of(*scene.value(), rigid, friction, context.options.frames_or(5'000, 1'000)),
+                run_of(scene, rigid, friction, context.options.frames_or(5'000, 1'000)),
                 context.options.passes_or(5, 3));
-            if (!trace)
-            {
-                return trace.error().text;
-            }
-            Row common = context.common_row(scene.value()->model.name, "Rigid");
+            Row common = context.common_row(scene.model.name, "Rigid");
             common.test_case = fmt::format("{}{}", rigid.name, friction > 0.0 ? ", friction" : "");
             common.by = "Tactus";
-            common.frames = trace.value().outputs.size();
-            common.hash = trace.value().hash;
+            common.frames = trace.outputs.size();
+            common.hash = trace.hash;
             CaseRows rows(context.rows, common);
-            add_rigid_rows(rows, trace.value());
-            const Spread force_us = spread_of(trace.value().force_us.least());
+            add_rigid_rows(rows, trace);
+            const Spread force_us = spread_of(trace.force_us.least());
             if (friction > 0.0)
             {
                 rows.add("friction costs, p50", force_us.p50 - smooth_us.p50, "us",
@@ -182,7 +173,6 @@ CaseFailure run_rigid_sweeps(const CaseContext& context)
             smooth_us = force_us;
         }
     }
-    return std::nullopt;
 }
 
 } // namespace tactus::bench

@@ -27,19 +27,11 @@ struct PoolCase
 };
 
 /// What `--pool-mib` counts, where each model is shown by one object; and that a frame runs in it.
-CaseFailure run_pool_case(const CaseContext& context, const PoolCase& test_case)
+void run_pool_case(const CaseContext& context, const PoolCase& test_case)
 {
-    const auto scene = context.scenes.get(kLarge);
-    if (!scene)
-    {
-        return scene.error().text;
-    }
-    const test::TestModel& model = scene.value()->model;
-    const auto served = serve_from_file(model.path, model.name, {});
-    if (!served)
-    {
-        return served.error().text;
-    }
+    const Scene& scene = context.scenes.get(kLarge);
+    const test::TestModel& model = scene.model;
+    const auto served = needed(serve_from_file(model.path, model.name, {}));
     test::RigOptions options;
     options.tools.assign(test_case.tools, ToolSpec{0.01 * model.diagonal_m});
     for (std::uint32_t i = 0; i < test_case.models; ++i)
@@ -52,15 +44,15 @@ CaseFailure run_pool_case(const CaseContext& context, const PoolCase& test_case)
     setup.objects = options.objects;
     setup.poses = options.poses;
     const std::vector<ModelHeader> headers(test_case.models,
-                                           ModelHeader::parse(served.value().header).value());
+                                           ModelHeader::parse(served.header).value());
     options.pool_bytes = least_pool_bytes(setup, headers, 0);
     test::FrameRig rig(std::vector(test_case.models, &model), options);
     const FrameOutput output =
         rig.step(std::vector<Vec3>(test_case.tools, to_vec3(model.faces[0][0])), {});
     if (output.pairs.size() != std::size_t{test_case.models} * test_case.tools)
     {
-        return fmt::format("{} pairs are answered of {} models and {} tools", output.pairs.size(),
-                           test_case.models, test_case.tools);
+        throw Failure(fmt::format("{} pairs are answered of {} models and {} tools",
+                                  output.pairs.size(), test_case.models, test_case.tools));
     }
     Row common = context.common_row(model.name);
     common.test_case = fmt::format("{} models of 200,000 faces", test_case.models);
@@ -68,7 +60,6 @@ CaseFailure run_pool_case(const CaseContext& context, const PoolCase& test_case)
     CaseRows rows(context.rows, common);
     rows.add("least pool", static_cast<double>(options.pool_bytes + sizeof(Frame)) / 0x1p20, "MiB",
              goal_if(test_case.goal_mib));
-    return std::nullopt;
 }
 
 } // namespace

@@ -7,16 +7,15 @@
 #include "platform/remote/pose_door.hpp"
 #include "tests/bench/least_times.hpp"
 #include "tests/bench/measuring.hpp"
-#include "tests/bench/random.hpp"
 #include "tests/bench/scene_cases.hpp"
 #include "tests/shared/frame_rig.hpp"
+#include "tests/shared/random.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <random>
 #include <vector>
 
 namespace tactus::bench
@@ -52,7 +51,6 @@ struct ForceSteps
 {
     double largest_n{0.0};
     std::uint64_t hash{0};
-    CaseFailure failure;
 };
 
 /// A tool that is held 6 mm below the top of a plate of 500 N/m, which goes up and down.
@@ -76,7 +74,7 @@ ForceSteps force_steps(const Scene& scene, const GlideCase& test_case, bool glid
     }
     const ObjectPose start = rig.pose();
     PoseDoor door({&start, 1}, kAgeLimit);
-    std::mt19937_64 random(kSeed);
+    test::Random random = test::Random::seeded(kSeed);
     ForceSteps steps;
     Vec3 before = Vec3::Zero();
     std::int64_t arrives = 0;
@@ -84,7 +82,7 @@ ForceSteps force_steps(const Scene& scene, const GlideCase& test_case, bool glid
     {
         if (frame % kFramesAPose == 0)
         {
-            arrives = frame + static_cast<std::int64_t>(random() % 4); // Up to 3 ms under way.
+            arrives = frame + static_cast<std::int64_t>(random.below(4)); // Up to 3 ms under way.
         }
         if (frame == arrives)
         {
@@ -103,8 +101,7 @@ ForceSteps force_steps(const Scene& scene, const GlideCase& test_case, bool glid
         const Vec3 force = output.tools[0].force_n;
         if (!output.tools[0].in_contact)
         {
-            steps.failure = fmt::format("no contact in frame {}", frame);
-            return steps;
+            throw Failure(fmt::format("no contact in frame {}", frame));
         }
         if (frame > 200) // The first pose is 3 mm away.
         {
@@ -116,32 +113,19 @@ ForceSteps force_steps(const Scene& scene, const GlideCase& test_case, bool glid
     return steps;
 }
 
-CaseFailure run_glide_case(const CaseContext& context, const GlideCase& test_case)
+void run_glide_case(const CaseContext& context, const GlideCase& test_case)
 {
-    const auto plate = make_thin_plate(20, 0.02);
-    if (!plate)
-    {
-        return plate.error().text;
-    }
-    const auto scene = context.scenes.get(NamedMesh{"plate", plate.value()});
-    if (!scene)
-    {
-        return scene.error().text;
-    }
+    const auto plate = needed(make_thin_plate(20, 0.02));
+    const Scene& scene = context.scenes.get(NamedMesh{"plate", plate});
     const std::uint32_t frames = context.options.frames_or(5'000, 2'000);
-    const ForceSteps gliding = force_steps(*scene.value(), test_case, true, frames);
-    const ForceSteps jumping = force_steps(*scene.value(), test_case, false, frames);
-    if (gliding.failure || jumping.failure)
-    {
-        return gliding.failure ? gliding.failure : jumping.failure;
-    }
-    Row common = context.common_row(scene.value()->model.name, "poses");
+    const ForceSteps gliding = force_steps(scene, test_case, true, frames);
+    const ForceSteps jumping = force_steps(scene, test_case, false, frames);
+    Row common = context.common_row(scene.model.name, "poses");
     common.frames = frames;
     common.hash = gliding.hash;
     CaseRows rows(context.rows, common);
     rows.add("largest step of the force", gliding.largest_n, "N", test_case.goal_n);
     rows.add("the same with poses as they come", jumping.largest_n, "N");
-    return std::nullopt;
 }
 
 struct DoorCase
@@ -150,7 +134,7 @@ struct DoorCase
     std::uint32_t moving; ///< 100 times a second.
 };
 
-CaseFailure run_door_case(const CaseContext& context, const DoorCase& test_case)
+void run_door_case(const CaseContext& context, const DoorCase& test_case)
 {
     const PinnedCore pinned(context.options.core);
     const std::uint32_t frames = context.options.frames_or(5'000, 1'000);
@@ -206,7 +190,6 @@ CaseFailure run_door_case(const CaseContext& context, const DoorCase& test_case)
     const bool rests = test_case.moving == 0;
     rows.add("poses of a frame, p50", spread.p50, "us", goal_if(rests ? 1.0 : kNoGoal));
     rows.add("poses of a frame, p99", spread.p99, "us");
-    return std::nullopt;
 }
 
 } // namespace

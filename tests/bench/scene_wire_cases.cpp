@@ -47,9 +47,8 @@ class Joiners
 {
 public:
     /// Returns when each has what it wants, which the arguments say.
-    static Result<Joiners, SceneError> join(const std::filesystem::path& folder,
-                                            const std::string& name, std::uint32_t count,
-                                            const std::vector<std::string>& arguments)
+    static Joiners join(const std::filesystem::path& folder, const std::string& name,
+                        std::uint32_t count, const std::vector<std::string>& arguments)
     {
         constexpr auto kStartOfOne = 25ms;
         Joiners joiners;
@@ -68,28 +67,15 @@ public:
                            fmt::format("{}", at.time_since_epoch().count())};
             setup.words.insert(setup.words.end(), arguments.begin(), arguments.end());
             setup.output = log(i);
-            auto started = Program::start(setup);
-            if (!started)
-            {
-                return started.error();
-            }
-            joiners.programs_.push_back(std::move(started).value());
+            joiners.programs_.push_back(Program::start(setup));
         }
         std::this_thread::sleep_until(at);
         const std::uint64_t bytes_before = loopback_bytes();
         for (std::uint32_t i = 0; i < count; ++i)
         {
-            if (auto done = joiners.programs_[i].wait_for("}", kJoinTimeout); !done)
-            {
-                return done.error();
-            }
-            std::ifstream file(log(i));
-            std::string line;
-            while (std::getline(file, line) && !line.starts_with('{'))
-            {
-            }
+            joiners.programs_[i].wait_for("}", kJoinTimeout);
             joiners.longest_ms_ =
-                std::max(joiners.longest_ms_, Json::parse(line)["ms"].get<double>());
+                std::max(joiners.longest_ms_, report_in(log(i))["ms"].get<double>());
         }
         joiners.bytes_ = static_cast<double>(loopback_bytes() - bytes_before);
         return joiners;
@@ -121,40 +107,23 @@ std::vector<std::string> all_objects()
 }
 
 /// What every case does, in a process of its own: returns its figures as JSON.
-using Measure = Result<Json, SceneError> (*)(ShowingHost& host,
-                                             const std::filesystem::path& folder);
+using Measure = Json (*)(ShowingHost& host, const std::filesystem::path& folder);
 
-Result<std::string, SceneError> measured(const Files& files, const std::filesystem::path& folder,
-                                         std::uint32_t objects, Measure measure)
+std::string measured(const Files& files, const std::filesystem::path& folder, std::uint32_t objects,
+                     Measure measure)
 {
-    if (auto entered = enter_own_network(); !entered)
-    {
-        return entered.error();
-    }
+    enter_own_network();
     ::unsetenv("CYCLONEDDS_URI"); // As for the programs.
     auto host = ShowingHost::start(kDomain, files, objects);
-    if (!host)
-    {
-        return host.error();
-    }
-    const auto figures = measure(*host.value(), folder);
-    return figures ? Result<std::string, SceneError>(figures.value().dump()) : figures.error();
+    return measure(*host, folder).dump();
 }
 
 /// Of some hundred faces or more, each a little larger than the one before.
-Result<const Scene*, SceneError> wire_scene(const CaseContext& context, std::uint32_t number,
-                                            std::uint32_t faces)
+const Scene& wire_scene(const CaseContext& context, std::uint32_t number, std::uint32_t faces)
 {
-    NamedMesh named{fmt::format("wire-{}-{}", faces, number),
-                    make_shape(Shape::bumpy_sphere, faces).value()};
-    for (auto& position : named.mesh.positions)
-    {
-        for (double& coordinate : position)
-        {
-            coordinate *= 1.0 + 1e-3 * number;
-        }
-    }
-    return context.scenes.get(named);
+    return context.scenes.get(
+        {fmt::format("wire-{}-{}", faces, number),
+         scaled(make_shape(Shape::bumpy_sphere, faces).value(), 1.0 + 1e-3 * number)});
 }
 
 struct WireCase
@@ -172,32 +141,23 @@ struct WireCase
     std::vector<Figure> figures;
 };
 
-CaseFailure run_wire_case(const CaseContext& context, const WireCase& test_case)
+void run_wire_case(const CaseContext& context, const WireCase& test_case)
 {
     Files files;
     for (std::uint32_t i = 0; i < test_case.models; ++i)
     {
-        const auto scene = wire_scene(context, i, 1'000);
-        if (!scene)
-        {
-            return scene.error().text;
-        }
-        files.push_back(scene.value()->model.path);
+        const Scene& scene = wire_scene(context, i, 1'000);
+        files.push_back(scene.model.path);
     }
     const test::TemporaryFolder folder("scene-wire");
     const auto outcome = run_in_child(
         [&] { return measured(files, folder.path(), test_case.objects, test_case.measure); });
-    if (!outcome)
-    {
-        return outcome.error().text;
-    }
-    const Json told = Json::parse(outcome.value().text);
+    const Json told = Json::parse(outcome.text);
     CaseRows rows(context.rows, context.common_row("bumpy-sphere-1000", "wire"));
     for (const WireCase::Figure& figure : test_case.figures)
     {
         rows.add(figure.key, told[figure.key].get<double>(), figure.unit, goal_if(figure.goal));
     }
-    return std::nullopt;
 }
 
 constexpr const char* kLateJoin = "late join";
@@ -206,17 +166,13 @@ constexpr const char* kAlone = "at rest, a host alone";
 constexpr const char* kAtRest = "at rest";
 constexpr const char* kInMotion = "100 moving at 100 Hz";
 
-Result<Json, SceneError> measure_flow(ShowingHost& host, const std::filesystem::path& folder)
+Json measure_flow(ShowingHost& host, const std::filesystem::path& folder)
 {
     Json told;
     told[kAlone] = kilobytes_per_s();
     const auto late = Joiners::join(folder, "late", 1, all_objects());
-    if (!late)
-    {
-        return late.error();
-    }
-    told[kLateJoin] = late.value().longest_ms();
-    told[kObjectAtStart] = late.value().bytes() / kObjects;
+    told[kLateJoin] = late.longest_ms();
+    told[kObjectAtStart] = late.bytes() / kObjects;
     std::this_thread::sleep_for(1s);
     told[kAtRest] = kilobytes_per_s();
     host.move(kMoving);
@@ -229,31 +185,19 @@ constexpr const char* kTogether = "64 join at once";
 constexpr const char* kBytes = "bytes by those of 64 single joins";
 constexpr const char* kLoaded = "64 join at once, 100 moving";
 
-Result<Json, SceneError> measure_joins(ShowingHost& host, const std::filesystem::path& folder)
+Json measure_joins(ShowingHost& host, const std::filesystem::path& folder)
 {
     Json told;
-    double single_bytes = 0.0;
-    {
-        const auto single = Joiners::join(folder, "single", 1, all_objects());
-        if (!single)
-        {
-            return single.error();
-        }
-        single_bytes = single.value().bytes();
-    }
+    const double single_bytes = Joiners::join(folder, "single", 1, all_objects()).bytes();
     for (const bool moves : {false, true})
     {
         std::this_thread::sleep_for(2s); // Those that were killed are gone.
         host.move(moves ? kMoving : 0);
         const auto all = Joiners::join(folder, moves ? "loaded" : "all", kJoiners, all_objects());
-        if (!all)
-        {
-            return all.error();
-        }
-        told[moves ? kLoaded : kTogether] = all.value().longest_ms() * 1e-3;
+        told[moves ? kLoaded : kTogether] = all.longest_ms() * 1e-3;
         if (!moves)
         {
-            told[kBytes] = all.value().bytes() / (kJoiners * single_bytes);
+            told[kBytes] = all.bytes() / (kJoiners * single_bytes);
         }
     }
     return told;
@@ -265,8 +209,7 @@ constexpr const char* kLoop = "hrtc with 256 guests, until its loop begins";
 constexpr const char* kWhole = "hrtc with 256 whole models, until its loop begins";
 
 /// From the start of the program to the line that tells what it touches, in ms.
-Result<double, SceneError> start_of_hrtc(const std::filesystem::path& folder,
-                                         const std::vector<std::string>& arguments)
+double start_of_hrtc(const std::filesystem::path& folder, const std::vector<std::string>& arguments)
 {
     ProgramSetup setup;
     setup.words = {program_path("hrtc"),       "--allow-no-rt", "--domain",
@@ -275,45 +218,26 @@ Result<double, SceneError> start_of_hrtc(const std::filesystem::path& folder,
     setup.output = folder / fmt::format("hrtc-{}.log", arguments.size()); // A fresh one.
     const auto begin = BenchClock::now();
     auto started = Program::start(setup);
-    if (!started)
-    {
-        return started.error();
-    }
-    if (auto told = started.value().wait_for("touches", kJoinTimeout); !told)
-    {
-        return told.error();
-    }
+    started.wait_for("touches", kJoinTimeout);
     const double ms = 1e3 * seconds(begin, BenchClock::now());
-    const auto ended = started.value().wait();
-    return ended ? Result<double, SceneError>(ms) : ended.error();
+    started.wait();
+    return ms;
 }
 
-Result<Json, SceneError> measure_start(ShowingHost& /*host*/, const std::filesystem::path& folder)
+Json measure_start(ShowingHost& /*host*/, const std::filesystem::path& folder)
 {
     const auto one = Joiners::join(folder, "start", 1, {"--models", fmt::format("{}", kModels)});
-    if (!one)
-    {
-        return one.error();
-    }
     const auto loop = start_of_hrtc(folder, {"--scene", "bench", "--pool-mib", "8"});
-    if (!loop)
-    {
-        return loop.error();
-    }
     std::vector<std::string> all{"--pool-mib", "64"};
     for (std::uint32_t i = 0; i < kModels; ++i)
     {
         all.insert(all.end(), {"--model", fmt::format("model-{}", i)});
     }
     const auto whole = start_of_hrtc(folder, all);
-    if (!whole)
-    {
-        return whole.error();
-    }
-    return Json{{kStart, one.value().longest_ms()},
-                {kFarModel, one.value().bytes() / kModels},
-                {kLoop, loop.value()},
-                {kWhole, whole.value()}};
+    return Json{{kStart, one.longest_ms()},
+                {kFarModel, one.bytes() / kModels},
+                {kLoop, loop},
+                {kWhole, whole}};
 }
 
 struct GuestCase
@@ -351,57 +275,30 @@ std::filesystem::path write_scene(const Files& files, double diagonal_m, std::ui
 }
 
 /// A hand at 2 m/s over 20 ms, in pools that don't hold all models.
-CaseFailure run_guest_case(const CaseContext& context, const GuestCase& test_case)
+void run_guest_case(const CaseContext& context, const GuestCase& test_case)
 {
     Files files;
     double diagonal_m = 0.0;
     for (std::uint32_t i = 0; i < test_case.models; ++i)
     {
-        const auto scene = wire_scene(context, i, 2'000);
-        if (!scene)
-        {
-            return scene.error().text;
-        }
-        files.push_back(scene.value()->model.path);
-        diagonal_m = scene.value()->model.diagonal_m;
+        const Scene& scene = wire_scene(context, i, 2'000);
+        files.push_back(scene.model.path);
+        diagonal_m = scene.model.diagonal_m;
     }
     const test::TemporaryFolder folder("scene-guests");
     const auto path = write_scene(files, diagonal_m, test_case.objects, folder.path());
     auto networks = RelayedNetworks::make({10.0}, folder.path());
-    if (!networks)
-    {
-        return networks.error().text;
-    }
-    auto host = start_at(networks.value().host(), "spm_publish", folder.path(),
+    auto host = start_at(networks.host(), "spm_publish", folder.path(),
                          {path.string(), "--scene", "bench"});
-    if (!host)
-    {
-        return host.error().text;
-    }
-    if (const auto ready = host.value().wait_for("ready on DDS domain", kStartTimeout); !ready)
-    {
-        return ready.error().text;
-    }
-    auto rider = start_at(networks.value().controller(), "scene_rider", folder.path(),
+    host.wait_for("ready on DDS domain", kStartTimeout);
+    auto rider = start_at(networks.controller(), "scene_rider", folder.path(),
                           {"--scene", "bench", "--pool-mib", test_case.pool_mib, "--visits",
                            fmt::format("{}", test_case.visits)});
-    if (!rider)
-    {
-        return rider.error().text;
-    }
-    if (const auto ended = rider.value().wait(); !ended)
-    {
-        return ended.error().text;
-    }
-    std::ifstream log(folder.path() / "scene_rider.log");
-    std::string line;
-    while (std::getline(log, line) && !line.starts_with('{'))
-    {
-    }
-    const Json told = Json::parse(line);
+    rider.wait();
+    const Json told = report_in(folder.path() / "scene_rider.log");
     if (told["touched"] != told["visits"] || told["are_guests"] == 0)
     {
-        return "not every object was touched, or all models are here: " + line;
+        throw Failure("not every object was touched, or all models are here: " + told.dump());
     }
     Row common = context.common_row("bumpy-sphere-2000", "guests");
     common.setting = fmt::format("{} MiB", test_case.pool_mib);
@@ -412,7 +309,6 @@ CaseFailure run_guest_case(const CaseContext& context, const GuestCase& test_cas
     rows.add("wanted to resident, max", told["came_ms_max"].get<double>(), "ms");
     rows.add("base meshes that came", told["came"].get<double>(), "");
     rows.add("models here at once", told["here_max"].get<double>(), "");
-    return std::nullopt;
 }
 
 } // namespace

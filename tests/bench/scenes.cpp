@@ -3,15 +3,14 @@
 #include "tests/bench/scenes.hpp"
 
 #include "host_tools/cli/progress.hpp"
-#include "host_tools/encode/decoded_model.hpp"
 #include "host_tools/encode/extract.hpp"
 #include "host_tools/encode/write_spm.hpp"
 #include "host_tools/mesh/prepare.hpp"
 #include "host_tools/mesh/read_mesh.hpp"
 #include "host_tools/shapes/shapes.hpp"
 #include "host_tools/simplify/simplify.hpp"
+#include "tests/bench/bench_row.hpp"
 #include "tests/bench/mesh_refinement.hpp"
-#include "tests/bench/random.hpp"
 #include "transport/content_hash.hpp"
 #include "transport/store/model_store.hpp"
 
@@ -51,8 +50,7 @@ std::string encoded_name(const std::string& name, const PreparedMesh& prepared)
     return name + '-' + hash_text(content_hash(std::as_bytes(std::span(all)))) + ".spm";
 }
 
-std::optional<SceneError> encode(const test::TestModel& model, const PreparedMesh& prepared,
-                                 std::uint32_t position_bits)
+void encode(const test::TestModel& model, const PreparedMesh& prepared, std::uint32_t position_bits)
 {
     Progress progress("tactus_bench", "encode " + model.name, "faces");
     SimplifyOptions options;
@@ -63,22 +61,43 @@ std::optional<SceneError> encode(const test::TestModel& model, const PreparedMes
         progress.update(total - left, total);
         return true;
     };
-    const auto simplified = simplify(prepared.mesh, options);
-    if (!simplified)
-    {
-        return SceneError{model.name + ": " + simplified.error().text};
-    }
+    const auto simplified = needed(simplify(prepared.mesh, options));
     EncodeOptions encode_options;
     encode_options.position_bits = position_bits;
     encode_options.base_faces = kBaseFaces;
     encode_options.threads = options.threads;
-    const auto written = write_spm(model.path, prepared, simplified.value(), encode_options);
-    return written ? std::nullopt : std::optional(SceneError{written.error().text});
+    needed(write_spm(model.path, prepared, simplified, encode_options));
 }
 
 } // namespace
 
-Result<NamedMesh, SceneError> source_mesh(const SceneSource& source)
+TriangleMesh scaled(TriangleMesh mesh, double scale)
+{
+    for (auto& position : mesh.positions)
+    {
+        std::ranges::transform(position, position.begin(), [scale](double x) { return scale * x; });
+    }
+    return mesh;
+}
+
+std::vector<test::Face> faces_of(const TriangleMesh& mesh, const std::array<double, 3>& origin)
+{
+    std::vector<test::Face> faces;
+    faces.reserve(mesh.faces.size());
+    for (const auto& corners : mesh.faces)
+    {
+        test::Face& face = faces.emplace_back();
+        for (std::size_t i = 0; i < 3; ++i)
+        {
+            std::ranges::transform(mesh.positions[corners[i]], origin, face[i].begin(),
+                                   [](double x, double from)
+                                   { return static_cast<float>(x - from); });
+        }
+    }
+    return faces;
+}
+
+NamedMesh source_mesh(const SceneSource& source)
 {
     const char* folder = std::getenv("TACTUS_MESHES");
     if (source.mesh_file == nullptr || folder == nullptr)
@@ -86,12 +105,7 @@ Result<NamedMesh, SceneError> source_mesh(const SceneSource& source)
         return NamedMesh{fmt::format("bumpy-sphere-{}", source.stand_in_faces),
                          make_shape(Shape::bumpy_sphere, source.stand_in_faces).value()};
     }
-    auto mesh = read_mesh(std::filesystem::path(folder) / source.mesh_file);
-    if (!mesh)
-    {
-        return SceneError{"TACTUS_MESHES: " + mesh.error().text};
-    }
-    TriangleMesh fine = std::move(mesh).value();
+    TriangleMesh fine = needed(read_mesh(std::filesystem::path(folder) / source.mesh_file));
     for (std::uint32_t i = 0; i < source.subdivisions; ++i)
     {
         fine = subdivided(fine);
@@ -103,21 +117,20 @@ Result<NamedMesh, SceneError> source_mesh(const SceneSource& source)
     return NamedMesh{source.name, std::move(fine)};
 }
 
-Result<NamedMesh, SceneError> coarser_mesh(const std::string& name, const test::TestModel& model,
-                                           std::uint32_t faces)
+DecodedModel decode_all(const ModelStore& store)
 {
-    const auto store = ModelStore::open(model.path);
-    if (!store)
-    {
-        return SceneError{store.error().text};
-    }
     std::vector<std::string> damage;
-    const DecodedModel decoded = DecodedModel::decode(store.value(), damage);
+    DecodedModel model = DecodedModel::decode(store, damage);
     if (!damage.empty())
     {
-        return SceneError{damage.front()};
+        throw Failure(damage.front());
     }
-    return NamedMesh{name, extract(decoded, {faces, {}, {}}).mesh};
+    return model;
+}
+
+NamedMesh coarser_mesh(const std::string& name, const test::TestModel& model, std::uint32_t faces)
+{
+    return {name, extract(decode_all(needed(ModelStore::open(model.path))), {faces, {}, {}}).mesh};
 }
 
 SceneStore::SceneStore(std::filesystem::path cache) : folder_(std::move(cache))
@@ -128,59 +141,37 @@ SceneStore::SceneStore(std::filesystem::path cache) : folder_(std::move(cache))
     }
 }
 
-Result<const Scene*, SceneError> SceneStore::get(const SceneSource& source)
+const Scene& SceneStore::get(const SceneSource& source)
 {
-    if (const auto found = scenes_.find(source.name); found != scenes_.end())
+    std::unique_ptr<Scene>& scene = scenes_[source.name];
+    if (scene == nullptr)
     {
-        return found->second.get();
+        scene = make(source_mesh(source), kMinPositionBits);
     }
-    const auto named = source_mesh(source);
-    if (!named)
-    {
-        return named.error();
-    }
-    auto made = make(named.value(), kMinPositionBits);
-    if (!made)
-    {
-        return made.error();
-    }
-    return (scenes_[source.name] = std::move(made).value()).get();
+    return *scene;
 }
 
-Result<const Scene*, SceneError> SceneStore::get(const NamedMesh& named,
-                                                 std::uint32_t position_bits)
+const Scene& SceneStore::get(const NamedMesh& named, std::uint32_t position_bits)
 {
-    if (const auto found = scenes_.find(named.name); found != scenes_.end())
+    std::unique_ptr<Scene>& scene = scenes_[named.name];
+    if (scene == nullptr)
     {
-        return found->second.get();
+        scene = make(named, position_bits);
     }
-    auto made = make(named, position_bits);
-    if (!made)
-    {
-        return made.error();
-    }
-    return (scenes_[named.name] = std::move(made).value()).get();
+    return *scene;
 }
 
-Result<std::unique_ptr<Scene>, SceneError> SceneStore::make(const NamedMesh& named,
-                                                            std::uint32_t position_bits) const
+std::unique_ptr<Scene> SceneStore::make(const NamedMesh& named, std::uint32_t position_bits) const
 {
     PrepareOptions options;
     options.position_bits = position_bits;
-    const auto prepared = prepare_mesh(named.mesh, options);
-    if (!prepared)
-    {
-        return SceneError{named.name + ": " + prepared.error().text};
-    }
+    const auto prepared = needed(prepare_mesh(named.mesh, options));
     auto made = std::make_unique<Scene>();
-    made->model = described(named.name, prepared.value());
-    made->model.path = folder_ / encoded_name(made->model.name, prepared.value());
+    made->model = described(named.name, prepared);
+    made->model.path = folder_ / encoded_name(made->model.name, prepared);
     if (!std::filesystem::exists(made->model.path))
     {
-        if (const auto failure = encode(made->model, prepared.value(), position_bits))
-        {
-            return *failure;
-        }
+        encode(made->model, prepared, position_bits);
     }
     made->tree = std::make_unique<test::FaceTree>(made->model.faces);
     return made;

@@ -2,23 +2,28 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "host_tools/encode/decoded_model.hpp"
 #include "host_tools/mesh/triangle_mesh.hpp"
-#include "rt_core/base/result.hpp"
 #include "tests/bench/bench_options.hpp"
+#include "tests/bench/failure.hpp"
 #include "tests/bench/touch_motion.hpp"
 #include "tests/shared/face_tree.hpp"
 #include "tests/shared/temporary_folder.hpp"
 #include "tests/shared/test_model.hpp"
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace tactus::bench
 {
+
+inline constexpr std::size_t kMiB = std::size_t{1} << 20U;
 
 /// Where a scene's mesh comes from.
 struct SceneSource
@@ -30,7 +35,9 @@ struct SceneSource
 };
 
 inline constexpr SceneSource kTiny{"tiny", nullptr, 0, 4'000};
+inline constexpr SceneSource kFandisk{"fandisk-13k", "fandisk.obj", 0, 12'946};
 inline constexpr SceneSource kBunny{"bunny-69k", "stanford-bunny.obj", 0, 69'000};
+inline constexpr SceneSource kIgea{"igea-269k", "igea.ply", 0, 268'686};
 inline constexpr SceneSource kFineBunny{"bunny-1.1M", "stanford-bunny.obj", 2, 1'100'000};
 inline constexpr SceneSource kFineIgea{"igea-4.3M", "igea.ply", 2, 4'300'000};
 
@@ -46,24 +53,26 @@ struct Scene
     [[nodiscard]] TouchScene touch() const { return {*tree, model.diagonal_m}; }
 };
 
-/// Why there is no scene: one line that names the file or the step.
-struct SceneError
-{
-    std::string text;
-};
-
 struct NamedMesh
 {
     std::string name;
     TriangleMesh mesh;
 };
 
+/// A mesh whose lengths are `scale` times as large.
+[[nodiscard]] TriangleMesh scaled(TriangleMesh mesh, double scale);
+/// A mesh's faces in single precision, in a frame whose origin lies there in the mesh's own.
+[[nodiscard]] std::vector<test::Face> faces_of(const TriangleMesh& mesh,
+                                               const std::array<double, 3>& origin = {});
+
 /// The well-known mesh where it is at hand, a generated stand-in of about its size elsewhere, which
 /// its name says.
-[[nodiscard]] Result<NamedMesh, SceneError> source_mesh(const SceneSource& source);
+[[nodiscard]] NamedMesh source_mesh(const SceneSource& source);
+/// A whole model; a failure when anything in it is damaged.
+[[nodiscard]] DecodedModel decode_all(const ModelStore& store);
 /// The finest mesh of at most so many faces that a model has, or its base mesh.
-[[nodiscard]] Result<NamedMesh, SceneError>
-coarser_mesh(const std::string& name, const test::TestModel& model, std::uint32_t faces);
+[[nodiscard]] NamedMesh coarser_mesh(const std::string& name, const test::TestModel& model,
+                                     std::uint32_t faces);
 
 /// Makes scenes when they are first asked for and keeps them. Encoded models go into the cache
 /// folder, under a name made of the mesh and of the encoder's sources, or into a folder that goes
@@ -73,14 +82,14 @@ class SceneStore
 public:
     explicit SceneStore(std::filesystem::path cache);
 
-    [[nodiscard]] Result<const Scene*, SceneError> get(const SceneSource& source);
+    [[nodiscard]] const Scene& get(const SceneSource& source);
     /// The scene of this mesh, in metres, on a grid of so many bits; its name stands for both.
-    [[nodiscard]] Result<const Scene*, SceneError>
-    get(const NamedMesh& named, std::uint32_t position_bits = kMinPositionBits);
+    [[nodiscard]] const Scene& get(const NamedMesh& named,
+                                   std::uint32_t position_bits = kMinPositionBits);
 
 private:
-    [[nodiscard]] Result<std::unique_ptr<Scene>, SceneError>
-    make(const NamedMesh& named, std::uint32_t position_bits) const;
+    [[nodiscard]] std::unique_ptr<Scene> make(const NamedMesh& named,
+                                              std::uint32_t position_bits) const;
 
     std::optional<test::TemporaryFolder> own_folder_; ///< Without a cache.
     std::filesystem::path folder_;

@@ -26,26 +26,18 @@ Pose place_of(std::uint32_t object)
 
 } // namespace
 
-Result<std::unique_ptr<ShowingHost>, SceneError>
-ShowingHost::start(std::uint32_t domain, const std::vector<std::filesystem::path>& files,
-                   std::uint32_t objects)
+std::unique_ptr<ShowingHost> ShowingHost::start(std::uint32_t domain,
+                                                const std::vector<std::filesystem::path>& files,
+                                                std::uint32_t objects)
 {
     std::vector<dds::PublishedModel> models;
     for (const std::filesystem::path& file : files)
     {
-        auto store = ModelStore::open(file);
-        if (!store)
-        {
-            return SceneError{store.error().text};
-        }
-        models.push_back({fmt::format("model-{}", models.size()), std::move(store).value()});
+        auto store = needed(ModelStore::open(file));
+        models.push_back({fmt::format("model-{}", models.size()), std::move(store)});
     }
-    auto made = dds::DdsHost::create(domain, std::move(models), {}, "bench");
-    if (!made)
-    {
-        return SceneError{made.error().text};
-    }
-    std::unique_ptr<ShowingHost> showing(new ShowingHost(std::move(made).value()));
+    auto made = needed(dds::DdsHost::create(domain, std::move(models), {}, "bench"));
+    std::unique_ptr<ShowingHost> showing(new ShowingHost(std::move(made)));
     dds::DdsHost& host = *showing->host_;
     for (std::uint32_t i = 0; i < objects; ++i)
     {
@@ -53,10 +45,7 @@ ShowingHost::start(std::uint32_t domain, const std::vector<std::filesystem::path
         object.name = fmt::format("object-{}", i);
         object.model = host.models()[i % host.models().size()].store().hash();
         object.pose = place_of(i);
-        if (const auto shown = host.objects().show(object); !shown)
-        {
-            return SceneError{shown.error().text};
-        }
+        needed(host.objects().show(object));
     }
     showing->thread_ = std::thread([&self = *showing] { self.run(); });
     return showing;

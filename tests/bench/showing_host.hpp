@@ -9,7 +9,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
-#include <string>
 #include <thread>
 #include <vector>
 
@@ -22,7 +21,7 @@ class ShowingHost
 public:
     /// Serves these files as "model-0" and so on; the objects, in the scene "bench", show them in
     /// turn.
-    [[nodiscard]] static Result<std::unique_ptr<ShowingHost>, SceneError>
+    [[nodiscard]] static std::unique_ptr<ShowingHost>
     start(std::uint32_t domain, const std::vector<std::filesystem::path>& files,
           std::uint32_t objects);
     ~ShowingHost();

@@ -12,7 +12,6 @@
 #include "tests/bench/surface_error.hpp"
 
 #include <optional>
-#include <stdexcept>
 
 namespace tactus::bench
 {
@@ -46,14 +45,10 @@ SimplifiedMesh simplify_by_us(const QuantisedMesh& mesh, std::uint32_t faces)
     options.base_faces = faces;
     options.threads = kThreads;
     const BenchClock::time_point start = BenchClock::now();
-    const auto simplified = simplify(mesh, options);
+    const Simplification simplified = needed(simplify(mesh, options));
     const BenchClock::time_point end = BenchClock::now();
-    if (!simplified)
-    {
-        throw std::runtime_error(simplified.error().text);
-    }
     SimplifiedMesh made{on_grid(mesh), seconds(start, end)};
-    made.mesh.faces = simplified.value().base_corners;
+    made.mesh.faces = simplified.base_corners;
     return made;
 }
 
@@ -97,7 +92,7 @@ public:
     {
     }
 
-    [[nodiscard]] CaseFailure run();
+    void run();
 
 private:
     [[nodiscard]] CaseRows line_of(const MeshSimplifier& simplifier,
@@ -118,14 +113,14 @@ private:
     SurfaceReference reference_;
 };
 
-CaseFailure Comparison::run()
+void Comparison::run()
 {
     const SimplifiedMesh on_two = fastest(kOursOnTwo);
     const PinnedCore pinned(context_.options.core);
     const SimplifiedMesh ours = fastest(kOurs);
     if (ours.mesh.faces != on_two.mesh.faces)
     {
-        return "one thread and two simplify it differently";
+        throw Failure("one thread and two simplify it differently");
     }
     CaseRows our_rows = line_of(kOurs, ours.mesh);
     const SurfaceError our_error = add_quality(our_rows, ours.mesh);
@@ -141,7 +136,6 @@ CaseFailure Comparison::run()
         add_time(rows, theirs.seconds);
         add_ratios(rows, peer, our_error, error);
     }
-    return std::nullopt;
 }
 
 CaseRows Comparison::line_of(const MeshSimplifier& simplifier, const TriangleMesh& mesh) const
@@ -210,31 +204,16 @@ void Comparison::add_ratios(CaseRows& rows, const MeshSimplifier& peer, const Su
 
 } // namespace
 
-CaseFailure compare_simplifiers(const EncoderContext& context)
+void compare_simplifiers(const EncoderContext& context)
 {
     if (!context.mesh.is_compared)
     {
-        return std::nullopt;
+        return;
     }
     auto named = context.mesh.make();
-    if (!named)
-    {
-        return named.error().text;
-    }
-    const auto prepared = prepare_mesh(named.value().mesh, {});
-    if (!prepared)
-    {
-        return named.value().name + ": " + prepared.error().text;
-    }
-    named.value().mesh = {};
-    try
-    {
-        return Comparison(context, named.value().name, prepared.value()).run();
-    }
-    catch (const std::runtime_error& error)
-    {
-        return named.value().name + ": " + error.what();
-    }
+    const auto prepared = needed(prepare_mesh(named.mesh, {}));
+    named.mesh = {};
+    Comparison(context, named.name, prepared).run();
 }
 
 } // namespace tactus::bench

@@ -6,11 +6,8 @@
 
 #include "tests/bench/cases.hpp"
 #include "tests/bench/measuring.hpp"
-#include "tests/bench/random.hpp"
 #include "tests/bench/static_model.hpp"
 #include "tests/bench/timed_queries.hpp"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
@@ -43,29 +40,20 @@ Questions touch_questions(const CaseContext& context, const Scene& scene)
 }
 
 /// Ours and the peers' times for the same questions; ours first.
-Result<std::vector<QueryTimes>, SceneError>
-time_all(const CaseContext& context, TactusQuery& ours,
-         const std::vector<std::unique_ptr<PointQuery>>& peers, const Scene& scene,
-         const Questions& questions, double band_m)
+std::vector<QueryTimes> time_all(const CaseContext& context, TactusQuery& ours,
+                                 const std::vector<std::unique_ptr<PointQuery>>& peers,
+                                 const Scene& scene, const Questions& questions, double band_m)
 {
     const std::uint32_t passes = context.options.passes_or(5, 3);
     std::vector<QueryTimes> all;
     auto mine =
         time_queries(ours, questions, band_m, kOurTolerance_diag * scene.model.diagonal_m, passes);
-    if (!mine)
-    {
-        return mine.error();
-    }
-    all.push_back(std::move(mine).value());
+    all.push_back(std::move(mine));
     for (const std::unique_ptr<PointQuery>& peer : peers)
     {
         auto theirs = time_queries(*peer, questions, band_m,
                                    kStaticTolerance_diag * scene.model.diagonal_m, passes);
-        if (!theirs)
-        {
-            return theirs.error();
-        }
-        all.push_back(std::move(theirs).value());
+        all.push_back(std::move(theirs));
     }
     return all;
 }
@@ -162,52 +150,38 @@ void add_spread(CaseRows& rows, const std::string& figure, const Spread& spread,
 
 } // namespace
 
-CaseFailure run_static_case(const CaseContext& context, const StaticCase& test_case)
+void run_static_case(const CaseContext& context, const StaticCase& test_case)
 {
-    const auto scene = context.scenes.get(test_case.scene);
-    if (!scene)
-    {
-        return scene.error().text;
-    }
+    const Scene& touched = context.scenes.get(test_case.scene);
     const PinnedCore pinned(context.options.core);
-    const Scene& touched = *scene.value();
-    auto model = StaticModel::make(touched);
-    if (!model)
-    {
-        return model.error().text;
-    }
+    StaticModel model(touched);
     const auto peers = context.options.count ? std::vector<std::unique_ptr<PointQuery>>{}
                                              : make_peers(touched.model.faces);
     const Questions questions = touch_questions(context, touched);
     const double band_m = kStaticNear_diag * touched.model.diagonal_m;
     const std::vector<bool> near = questions.nearer_than(band_m);
-    TactusQuery ours(model.value()->tree());
+    TactusQuery ours(model.tree());
     const auto banded = time_all(context, ours, peers, touched, questions, band_m);
     const auto unbounded =
         time_all(context, ours, peers, touched, questions, std::numeric_limits<double>::infinity());
-    if (!banded || !unbounded)
-    {
-        return banded ? unbounded.error().text : banded.error().text;
-    }
-    const std::uint64_t hash = banded.value()[0].hash + 3 * unbounded.value()[0].hash;
+    const std::uint64_t hash = banded[0].hash + 3 * unbounded[0].hash;
     CaseRows rows(context.rows, common_row(context, touched, questions.points_m.size(), hash));
-    add_against_peers(rows, "T_Q near", banded.value(), peers, near, test_case.near_p50,
+    add_against_peers(rows, "T_Q near", banded, peers, near, test_case.near_p50,
                       test_case.near_p99);
-    add_against_peers(rows, "T_Q exact flight", unbounded.value(), peers,
+    add_against_peers(rows, "T_Q exact flight", unbounded, peers,
                       std::vector<bool>(near.size(), true), kNoGoal, test_case.flight_p99);
     add_near_work(rows, ours, questions, near, band_m);
     if (!context.options.count)
     {
-        const double warm_p99 = quantile(chosen(banded.value()[0].us.least(), near), 0.99);
+        const double warm_p99 = quantile(chosen(banded[0].us.least(), near), 0.99);
         add_spread(rows, "T_Q near, rehearsed", cold_spread(ours, questions, near, band_m, true),
                    test_case.rehearsed_p99 * warm_p99);
         add_spread(rows, "T_Q near, cold", cold_spread(ours, questions, near, band_m, false),
                    kNoGoal);
     }
-    return std::nullopt;
 }
 
-CaseFailure run_growth_case(const CaseContext& context, const GrowthCase& test_case)
+void run_growth_case(const CaseContext& context, const GrowthCase& test_case)
 {
     static constexpr std::array<SceneSource, 4> kSizes{
         SceneSource{"growth-4k", nullptr, 0, 4'000}, SceneSource{"growth-40k", nullptr, 0, 40'000},
@@ -216,39 +190,24 @@ CaseFailure run_growth_case(const CaseContext& context, const GrowthCase& test_c
     std::vector<double> p50_us;
     for (const SceneSource& size : kSizes)
     {
-        const auto scene = context.scenes.get(size);
-        if (!scene)
-        {
-            return scene.error().text;
-        }
+        const Scene& touched = context.scenes.get(size);
         const PinnedCore pinned(context.options.core);
-        const Scene& touched = *scene.value();
-        auto model = StaticModel::make(touched);
-        if (!model)
-        {
-            return model.error().text;
-        }
+        StaticModel model(touched);
         const auto peers = make_peers(touched.model.faces);
         const Questions questions = touch_questions(context, touched);
         const double band_m = kStaticNear_diag * touched.model.diagonal_m;
-        TactusQuery ours(model.value()->tree());
+        TactusQuery ours(model.tree());
         const auto times = time_all(context, ours, peers, touched, questions, band_m);
-        if (!times)
-        {
-            return times.error().text;
-        }
         const std::vector<bool> near = questions.nearer_than(band_m);
-        CaseRows rows(context.rows,
-                      common_row(context, touched, near.size(), times.value()[0].hash));
-        add_against_peers(rows, "T_Q near", times.value(), peers, near, kNoGoal, kNoGoal);
+        CaseRows rows(context.rows, common_row(context, touched, near.size(), times[0].hash));
+        add_against_peers(rows, "T_Q near", times, peers, near, kNoGoal, kNoGoal);
         add_near_work(rows, ours, questions, near, band_m);
-        p50_us.push_back(quantile(chosen(times.value()[0].us.least(), near), 0.5));
+        p50_us.push_back(quantile(chosen(times[0].us.least(), near), 0.5));
         if (&size == &kSizes.back())
         {
             rows.add("growth 4 k to 4 M", p50_us.back() / p50_us.front(), "x", test_case.growth);
         }
     }
-    return std::nullopt;
 }
 
 } // namespace tactus::bench

@@ -22,12 +22,9 @@ constexpr std::size_t kBytesPerFace = 400;
 
 } // namespace
 
-test::RigOptions room_for_all(const Scene& scene)
+std::size_t ample_pool_bytes(const Scene& scene)
 {
-    test::RigOptions options;
-    options.pool_bytes = (std::size_t{16} << 20U) + kBytesPerFace * scene.model.faces.size();
-    options.courier_steps_per_frame = 32;
-    return options;
+    return 16 * kMiB + kBytesPerFace * scene.model.faces.size();
 }
 
 std::size_t static_pool_bytes(const Scene& scene)
@@ -50,27 +47,10 @@ std::size_t static_pool_bytes(const Scene& scene)
     }
 }
 
-StaticModel::StaticModel(const Scene& scene) : rig_(scene.model, room_for_all(scene)) {}
-
-Result<std::unique_ptr<StaticModel>, SceneError> StaticModel::make(const Scene& scene)
+namespace
 {
-    std::unique_ptr<StaticModel> made(new StaticModel(scene));
-    load_everything(made->rig_);
-    if (!refine_fully(made->model()) ||
-        made->model().forest.active_faces() != scene.model.faces.size() ||
-        !made->tree().is_complete())
-    {
-        return SceneError{scene.model.name + ": could not be refined to the source mesh"};
-    }
-    return made;
-}
 
-std::size_t StaticModel::bytes()
-{
-    return required_bytes({&model().header, 1}, {&model().capacities, 1});
-}
-
-// What a record depends on is split first.
+/// What a record depends on is split first. False when one can't be split or the tree has no room.
 bool refine_fully(Model& model)
 {
     std::vector<RecordId> open;
@@ -105,6 +85,23 @@ bool refine_fully(Model& model)
     WorkCounters work;
     model.refit(work, faults);
     return faults == FrameFault::none;
+}
+
+} // namespace
+
+std::unique_ptr<test::FrameRig> refined_rig(const Scene& scene, test::RigOptions options)
+{
+    options.pool_bytes = ample_pool_bytes(scene);
+    options.courier_steps_per_frame = 32;
+    auto rig = std::make_unique<test::FrameRig>(scene.model, options);
+    load_everything(*rig);
+    const Model& model = rig->model();
+    if (!refine_fully(rig->model()) || model.forest.active_faces() != scene.model.faces.size() ||
+        !model.tree.is_complete())
+    {
+        throw Failure(scene.model.name + ": could not be refined to the source mesh");
+    }
+    return rig;
 }
 
 double TactusQuery::distance_m(const Vec3& point_m, double band_m)

@@ -2,7 +2,6 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "rt_core/base/result.hpp"
 #include "rt_core/query/surface_query.hpp"
 #include "tests/bench/peers/point_query.hpp"
 #include "tests/bench/scenes.hpp"
@@ -15,32 +14,33 @@
 namespace tactus::bench
 {
 
-/// A rig with pools for all of a scene's model.
-[[nodiscard]] test::RigOptions room_for_all(const Scene& scene);
+/// Pools for all of a scene's model.
+[[nodiscard]] std::size_t ample_pool_bytes(const Scene& scene);
 
 /// The least pools in which all of a scene's model fits, within 2 %: what static mode takes.
 [[nodiscard]] std::size_t static_pool_bytes(const Scene& scene);
 
-/// Splits every record of a model whose chunks are all there. False when one can't be split or the
-/// tree has no room.
-[[nodiscard]] bool refine_fully(Model& model);
+/// A rig with pools for all of a scene's model, refined to the source mesh without a frame; a
+/// failure when it can't be. The pools of `options` don't count.
+[[nodiscard]] std::unique_ptr<test::FrameRig> refined_rig(const Scene& scene,
+                                                          test::RigOptions options = {});
 
-/// A model whose pools hold all of it, refined to the source mesh: the tree that every query of a
-/// static model sees.
+/// A model refined to the source mesh: the tree that every query of a static model sees.
 class StaticModel
 {
 public:
-    [[nodiscard]] static Result<std::unique_ptr<StaticModel>, SceneError> make(const Scene& scene);
+    explicit StaticModel(const Scene& scene) : rig_(refined_rig(scene)) {}
 
-    [[nodiscard]] AbTree& tree() { return rig_.model().tree; }
-    [[nodiscard]] Model& model() { return rig_.model(); }
+    [[nodiscard]] AbTree& tree() const { return model().tree; }
+    [[nodiscard]] Model& model() const { return rig_->model(); }
     /// Of its pools, tables and records included, without the room that nothing is in.
-    [[nodiscard]] std::size_t bytes();
+    [[nodiscard]] std::size_t bytes() const
+    {
+        return required_bytes({&model().header, 1}, {&model().capacities, 1});
+    }
 
 private:
-    explicit StaticModel(const Scene& scene);
-
-    test::FrameRig rig_;
+    std::unique_ptr<test::FrameRig> rig_;
 };
 
 /// The controller's distance query over a static model, as a contestant. One probe: it keeps where

@@ -5,7 +5,6 @@
 #include "tests/bench/cases.hpp"
 
 #include <cstdint>
-#include <string>
 
 namespace tactus::bench
 {
@@ -28,8 +27,7 @@ struct PredictionCase
     double tremor_diag{0.0};
 };
 /// A tour with each way to foretell, in virtual time.
-[[nodiscard]] CaseFailure run_prediction_case(const CaseContext& context,
-                                              const PredictionCase& test_case);
+void run_prediction_case(const CaseContext& context, const PredictionCase& test_case);
 
 struct CacheCase
 {
@@ -38,7 +36,7 @@ struct CacheCase
     double larger_mib;
 };
 /// The four regimes of the paper's figure 5: no cache, a small one, a larger one, all of the model.
-[[nodiscard]] CaseFailure run_cache_case(const CaseContext& context, const CacheCase& test_case);
+void run_cache_case(const CaseContext& context, const CacheCase& test_case);
 
 /// Goals in percent of the frames, counts and milliseconds.
 struct TourCase
@@ -53,7 +51,7 @@ struct TourCase
     double arrival_p99_ms{kNoGoal};
 };
 /// spm_publish and hrtc, whole programs, over DDS: a tour.
-[[nodiscard]] CaseFailure run_tour_case(const CaseContext& context, const TourCase& test_case);
+void run_tour_case(const CaseContext& context, const TourCase& test_case);
 
 struct FirstTouchCase
 {
@@ -63,8 +61,7 @@ struct FirstTouchCase
     double time_ms{kNoGoal};
 };
 /// Whole programs: hrtc starts in touch and knows nothing of the model but its header and base.
-[[nodiscard]] CaseFailure run_first_touch_case(const CaseContext& context,
-                                               const FirstTouchCase& test_case);
+void run_first_touch_case(const CaseContext& context, const FirstTouchCase& test_case);
 
 struct ThroughputCase
 {
@@ -72,8 +69,7 @@ struct ThroughputCase
     double mb_per_s;
 };
 /// spm_publish and one client on loopback, as fast as pieces come.
-[[nodiscard]] CaseFailure run_throughput_case(const CaseContext& context,
-                                              const ThroughputCase& test_case);
+void run_throughput_case(const CaseContext& context, const ThroughputCase& test_case);
 
 struct FanOutCase
 {
@@ -84,7 +80,7 @@ struct FanOutCase
     double p99_ms{kNoGoal};
 };
 /// spm_publish and many clients on loopback, each at a rate.
-[[nodiscard]] CaseFailure run_fan_out_case(const CaseContext& context, const FanOutCase& test_case);
+void run_fan_out_case(const CaseContext& context, const FanOutCase& test_case);
 
 struct BesideDdsCase
 {
@@ -93,7 +89,6 @@ struct BesideDdsCase
 };
 /// A slide's frames: the same states and counters whatever DDS does beside them. For counting
 /// instructions each takes one pass with --count.
-[[nodiscard]] CaseFailure run_beside_dds_case(const CaseContext& context,
-                                              const BesideDdsCase& test_case);
+void run_beside_dds_case(const CaseContext& context, const BesideDdsCase& test_case);
 
 } // namespace tactus::bench

@@ -33,8 +33,8 @@ std::string client_name(std::uint32_t number)
     return fmt::format("client-{}", number);
 }
 
-Result<Program, SceneError> start_client(const std::filesystem::path& folder, std::uint32_t number,
-                                         double rate_hz, double seconds)
+Program start_client(const std::filesystem::path& folder, std::uint32_t number, double rate_hz,
+                     double seconds)
 {
     std::filesystem::create_directory(folder / client_name(number));
     return start_at({}, "stream_client", folder / client_name(number),
@@ -42,22 +42,11 @@ Result<Program, SceneError> start_client(const std::filesystem::path& folder, st
                      fmt::format("{}", rate_hz), "--seconds", fmt::format("{}", seconds)});
 }
 
-/// The client's last line.
-Result<Json, SceneError> client_report(Program& client, const std::filesystem::path& folder,
-                                       std::uint32_t number)
+/// What it says at its end.
+Json client_report(Program& client, const std::filesystem::path& folder, std::uint32_t number)
 {
-    if (auto done = client.wait(); !done)
-    {
-        return done.error();
-    }
-    std::ifstream file(folder / client_name(number) / "stream_client.log");
-    std::string line;
-    std::string last;
-    while (std::getline(file, line))
-    {
-        last = line;
-    }
-    return Json::parse(last);
+    client.wait();
+    return report_in(folder / client_name(number) / "stream_client.log");
 }
 
 double resident_mib(pid_t id)
@@ -77,58 +66,33 @@ double resident_mib(pid_t id)
 
 } // namespace
 
-CaseFailure run_throughput_case(const CaseContext& context, const ThroughputCase& test_case)
+void run_throughput_case(const CaseContext& context, const ThroughputCase& test_case)
 {
     constexpr double kSeconds = 5.0;
-    const auto scene = context.scenes.get(test_case.scene);
-    if (!scene)
-    {
-        return scene.error().text;
-    }
+    const Scene& scene = context.scenes.get(test_case.scene);
     const test::TemporaryFolder folder("throughput");
-    const auto host = publish(*scene.value(), {}, folder.path());
-    if (!host)
-    {
-        return host.error().text;
-    }
-    const double before_mib = resident_mib(host.value().id());
+    const auto host = publish(scene, {}, folder.path());
+    const double before_mib = resident_mib(host.id());
     auto client = start_client(folder.path(), 0, 0.0, kSeconds);
-    if (!client)
-    {
-        return client.error().text;
-    }
-    const auto report = client_report(client.value(), folder.path(), 0);
-    if (!report)
-    {
-        return report.error().text;
-    }
-    CaseRows rows(context.rows, context.common_row(scene.value()->model.name, "throughput"));
-    const double seconds = report.value()["seconds"].get<double>();
-    rows.add("samples", report.value()["link_bytes"].get<double>() * 1e-6 / seconds, "MB/s",
+    const auto report = client_report(client, folder.path(), 0);
+    CaseRows rows(context.rows, context.common_row(scene.model.name, "throughput"));
+    const double seconds = report["seconds"].get<double>();
+    rows.add("samples", report["link_bytes"].get<double>() * 1e-6 / seconds, "MB/s",
              test_case.mb_per_s)
         .is_least = true;
-    rows.add("pieces", report.value()["pieces"].get<double>() / seconds, "/s");
+    rows.add("pieces", report["pieces"].get<double>() / seconds, "/s");
     rows.add("host before", before_mib, "MiB");
-    rows.add("host after", resident_mib(host.value().id()), "MiB");
-    return std::nullopt;
+    rows.add("host after", resident_mib(host.id()), "MiB");
 }
 
-CaseFailure run_fan_out_case(const CaseContext& context, const FanOutCase& test_case)
+void run_fan_out_case(const CaseContext& context, const FanOutCase& test_case)
 {
     constexpr double kSeconds = 10.0;
     constexpr double kServedGoal = 95.0; // The last ones are on their way at the end.
-    const auto scene = context.scenes.get(test_case.scene);
-    if (!scene)
-    {
-        return scene.error().text;
-    }
+    const Scene& scene = context.scenes.get(test_case.scene);
     const test::TemporaryFolder folder("fan-out");
-    const auto host = publish(*scene.value(), {}, folder.path());
-    if (!host)
-    {
-        return host.error().text;
-    }
-    CaseRows rows(context.rows, context.common_row(scene.value()->model.name, "many controllers"));
+    const auto host = publish(scene, {}, folder.path());
+    CaseRows rows(context.rows, context.common_row(scene.model.name, "many controllers"));
     rows.add("clients", test_case.clients, "");
     double before_ms = 0.0;
     for (const bool stops_one : {false, true})
@@ -140,19 +104,11 @@ CaseFailure run_fan_out_case(const CaseContext& context, const FanOutCase& test_
         std::vector<Program> clients;
         for (std::uint32_t i = 0; i < test_case.clients; ++i)
         {
-            auto client = start_client(folder.path(), i, test_case.rate_hz, kSeconds);
-            if (!client)
-            {
-                return client.error().text;
-            }
-            clients.push_back(std::move(client).value());
+            clients.push_back(start_client(folder.path(), i, test_case.rate_hz, kSeconds));
         }
         for (const Program& client : clients)
         {
-            if (auto ready = client.wait_for("connected", kStartTimeout); !ready)
-            {
-                return ready.error().text;
-            }
+            client.wait_for("connected", kStartTimeout);
         }
         if (stops_one)
         {
@@ -163,13 +119,9 @@ CaseFailure run_fan_out_case(const CaseContext& context, const FanOutCase& test_
         for (std::uint32_t i = stops_one ? 1 : 0; i < test_case.clients; ++i)
         {
             const auto report = client_report(clients[i], folder.path(), i);
-            if (!report)
-            {
-                return report.error().text;
-            }
-            p99_ms = std::max(p99_ms, report.value()["p99_ms"].get<double>());
-            least_share = std::min(least_share, report.value()["pieces"].get<double>() /
-                                                    (test_case.rate_hz * kSeconds));
+            p99_ms = std::max(p99_ms, report["p99_ms"].get<double>());
+            least_share = std::min(least_share,
+                                   report["pieces"].get<double>() / (test_case.rate_hz * kSeconds));
         }
         const char* when = stops_one ? "one stopped: " : "";
         rows.add(fmt::format("{}worst p99", when), p99_ms, "ms", goal_if(test_case.p99_ms));
@@ -181,8 +133,7 @@ CaseFailure run_fan_out_case(const CaseContext& context, const FanOutCase& test_
         }
         before_ms = p99_ms;
     }
-    rows.add("host", resident_mib(host.value().id()), "MiB");
-    return std::nullopt;
+    rows.add("host", resident_mib(host.id()), "MiB");
 }
 
 namespace
@@ -192,22 +143,12 @@ namespace
 class Flood
 {
 public:
-    static Result<std::unique_ptr<Flood>, SceneError> begin()
+    static std::unique_ptr<Flood> begin()
     {
         auto flood = std::make_unique<Flood>();
         ::unsetenv("CYCLONEDDS_URI"); // As for the programs on loopback.
-        auto client = dds::DdsClient::create(dds_domain(), "flood", {});
-        if (!client)
-        {
-            return SceneError{client.error().text};
-        }
-        flood->client_ = std::move(client).value();
-        auto model = flood->client_->find({"model", std::nullopt}, kStartTimeout);
-        if (!model)
-        {
-            return SceneError{model.error().text};
-        }
-        flood->model_ = std::move(model).value();
+        flood->client_ = needed(dds::DdsClient::create(dds_domain(), "flood", {}));
+        flood->model_ = needed(flood->client_->find({"model", std::nullopt}, kStartTimeout));
         flood->asking_.emplace(flood->model_, 0.0);
         flood->thread_ = std::thread([&self = *flood] { self.asking_->run(1e9, self.stop_); });
         return flood;
@@ -242,44 +183,27 @@ private:
 
 } // namespace
 
-CaseFailure run_beside_dds_case(const CaseContext& context, const BesideDdsCase& test_case)
+void run_beside_dds_case(const CaseContext& context, const BesideDdsCase& test_case)
 {
     constexpr double kSpeed_diag_per_s = 0.5;
     constexpr std::uint32_t kFrames = 5'000;
     constexpr std::uint32_t kQuickFrames = 500;
     constexpr std::uint32_t kPasses = 5;
-    const auto scene = context.scenes.get(test_case.scene);
-    if (!scene)
-    {
-        return scene.error().text;
-    }
+    const Scene& scene = context.scenes.get(test_case.scene);
     const std::uint32_t frames = context.options.frames_or(kFrames, kQuickFrames);
-    const FrameRun run = make_slide(*scene.value(), kSpeed_diag_per_s,
-                                    tour_splits(kSpeed_diag_per_s), std::size_t{4} << 20U, frames);
+    const FrameRun run = make_slide(scene, kSpeed_diag_per_s, tour_splits(kSpeed_diag_per_s),
+                                    std::size_t{4} << 20U, frames);
     const test::TemporaryFolder folder("beside-dds");
     std::optional<Program> host;
     std::unique_ptr<Flood> flood;
     if (test_case.is_beside)
     {
-        auto started = publish(*scene.value(), {}, folder.path());
-        if (!started)
-        {
-            return started.error().text;
-        }
-        host.emplace(std::move(started).value());
-        auto begun = Flood::begin();
-        if (!begun)
-        {
-            return begun.error().text;
-        }
-        flood = std::move(begun).value();
+        host.emplace(publish(scene, {}, folder.path()));
+        flood = Flood::begin();
     }
     FrameReplay replay(run);
-    if (auto failure = replay.run(context.options.passes_or(kPasses, 2)))
-    {
-        return failure;
-    }
-    Row common = context.common_row(scene.value()->model.name, "frames beside DDS");
+    replay.run(context.options.passes_or(kPasses, 2));
+    Row common = context.common_row(scene.model.name, "frames beside DDS");
     common.frames = run.counted();
     common.hash = replay.hash();
     CaseRows rows(context.rows, common);
@@ -290,7 +214,6 @@ CaseFailure run_beside_dds_case(const CaseContext& context, const BesideDdsCase&
     rows.add("p50", spread_of(replay.sum_us(CacheState::warm).least()).p50, "us");
     rows.add("p99", spread_of(replay.sum_us(CacheState::warm).least()).p99, "us");
     rows.add("DDS", flood == nullptr ? 0.0 : flood->end(), "MB/s");
-    return std::nullopt;
 }
 
 } // namespace tactus::bench

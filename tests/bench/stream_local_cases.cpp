@@ -6,8 +6,6 @@
 #include "tests/bench/stream_cases.hpp"
 #include "tests/bench/stream_run.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <limits>
 
@@ -51,23 +49,19 @@ TapTour make_tour(const CaseContext& context, const Scene& scene, double speed_d
 
 } // namespace
 
-CaseFailure run_prediction_case(const CaseContext& context, const PredictionCase& test_case)
+void run_prediction_case(const CaseContext& context, const PredictionCase& test_case)
 {
-    const auto scene = context.scenes.get(test_case.scene);
-    if (!scene)
-    {
-        return scene.error().text;
-    }
+    const Scene& scene = context.scenes.get(test_case.scene);
     const TapTour tour =
-        make_tour(context, *scene.value(), test_case.speed_diag_per_s, test_case.tremor_diag);
-    StreamRun run = make_run(*scene.value(), tour, test_case.speed_diag_per_s, test_case.latency_ms,
+        make_tour(context, scene, test_case.speed_diag_per_s, test_case.tremor_diag);
+    StreamRun run = make_run(scene, tour, test_case.speed_diag_per_s, test_case.latency_ms,
                              test_case.cache_mib);
     double best = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i <= kPredictions; ++i)
     {
         run.rig.prediction = static_cast<Prediction>(i);
         const StreamFigures figures = stream(run);
-        Row common = context.common_row(scene.value()->model.name, "prediction");
+        Row common = context.common_row(scene.model.name, "prediction");
         common.by = prediction_name(run.rig.prediction);
         common.frames = figures.frames;
         common.hash = figures.hash;
@@ -84,19 +78,14 @@ CaseFailure run_prediction_case(const CaseContext& context, const PredictionCase
         }
         best = std::min(best, open);
     }
-    return std::nullopt;
 }
 
-CaseFailure run_cache_case(const CaseContext& context, const CacheCase& test_case)
+void run_cache_case(const CaseContext& context, const CacheCase& test_case)
 {
     constexpr double kSpeed_diag_per_s = 0.5;
     constexpr std::uint32_t kLatency_ms = 20;
-    const auto scene = context.scenes.get(test_case.scene);
-    if (!scene)
-    {
-        return scene.error().text;
-    }
-    const TapTour tour = make_tour(context, *scene.value(), kSpeed_diag_per_s, 0.0);
+    const Scene& scene = context.scenes.get(test_case.scene);
+    const TapTour tour = make_tour(context, scene, kSpeed_diag_per_s, 0.0);
     struct Regime
     {
         const char* name;
@@ -104,20 +93,18 @@ CaseFailure run_cache_case(const CaseContext& context, const CacheCase& test_cas
         bool is_off;
         bool is_whole;
     };
-    const double whole_mib =
-        1.5 * static_cast<double>(scene.value()->model.faces.size()) * 64.0 * 0x1p-20;
+    const double whole_mib = 1.5 * static_cast<double>(scene.model.faces.size()) * 64.0 * 0x1p-20;
     for (const Regime& regime : {Regime{"none", test_case.larger_mib, true, false},
                                  Regime{"small", test_case.small_mib, false, false},
                                  Regime{"larger", test_case.larger_mib, false, false},
                                  Regime{"all of it", whole_mib, false, true}})
     {
-        StreamRun run =
-            make_run(*scene.value(), tour, kSpeed_diag_per_s, kLatency_ms, regime.cache_mib);
+        StreamRun run = make_run(scene, tour, kSpeed_diag_per_s, kLatency_ms, regime.cache_mib);
         run.rig.cache_off = regime.is_off;
         run.rig.static_when_it_fits = regime.is_whole;
         run.rig.pool_bytes *= regime.is_whole ? 3 : 1;
         const StreamFigures figures = stream(run);
-        Row common = context.common_row(scene.value()->model.name, "cache");
+        Row common = context.common_row(scene.model.name, "cache");
         common.by = regime.name;
         common.frames = figures.frames;
         common.hash = figures.hash;
@@ -133,7 +120,6 @@ CaseFailure run_cache_case(const CaseContext& context, const CacheCase& test_cas
         rows.add("open", figures.percent(figures.open), "%");
         rows.add("late taps", static_cast<double>(figures.late_taps), "");
     }
-    return std::nullopt;
 }
 
 } // namespace tactus::bench

@@ -32,20 +32,15 @@ constexpr double kFacePool_mib = 4.0;
 constexpr double kKilo = 1e3;
 
 /// A file that hrtc's replay device plays: the tool at these places of the model's frame.
-Result<Done, SceneError> write_motion(const CaseContext& context, const Scene& scene,
-                                      const std::vector<Vec3>& goals_m,
-                                      const std::filesystem::path& file)
+void write_motion(const CaseContext& context, const Scene& scene, const std::vector<Vec3>& goals_m,
+                  const std::filesystem::path& file)
 {
-    const auto any = context.scenes.get(kTiny);
-    if (!any)
-    {
-        return any.error();
-    }
+    const Scene& any = context.scenes.get(kTiny);
     const std::array<double, 3>& origin = scene.model.origin_m;
     const Vec3 origin_m(origin[0], origin[1], origin[2]);
     test::RigOptions options;
     options.record = true;
-    test::FrameRig rig(any.value()->model, options);
+    test::FrameRig rig(any.model, options);
     for (const Vec3& goal_m : goals_m)
     {
         rig.step(origin_m + goal_m);
@@ -54,8 +49,10 @@ Result<Done, SceneError> write_motion(const CaseContext& context, const Scene& s
     std::ofstream stream(file, std::ios::binary);
     stream.write(reinterpret_cast<const char*>(bytes.data()),
                  static_cast<std::streamsize>(bytes.size()));
-    return stream.good() ? Result<Done, SceneError>(Done{})
-                         : SceneError{file.string() + ": can't be written"};
+    if (!stream.good())
+    {
+        throw Failure(file.string() + ": can't be written");
+    }
 }
 
 /// Either both ends on loopback or each in a network of its own.
@@ -63,18 +60,12 @@ struct Place
 {
     std::optional<RelayedNetworks> networks;
 
-    static Result<Place, SceneError> make(double delay_ms, double loss,
-                                          const std::filesystem::path& folder)
+    static Place make(double delay_ms, double loss, const std::filesystem::path& folder)
     {
         Place place;
         if (delay_ms >= 0.0)
         {
-            auto made = RelayedNetworks::make({delay_ms, loss}, folder);
-            if (!made)
-            {
-                return made.error();
-            }
-            place.networks.emplace(std::move(made).value());
+            place.networks.emplace(RelayedNetworks::make({delay_ms, loss}, folder));
         }
         return place;
     }
@@ -93,8 +84,8 @@ struct HrtcRun
 };
 
 /// Plays motion.rec and leaves out.rec; returns the report.
-Result<Json, SceneError> run_hrtc(const Scene& scene, const NetworkEnd& end, const HrtcRun& run,
-                                  const std::filesystem::path& folder)
+Json run_hrtc(const Scene& scene, const NetworkEnd& end, const HrtcRun& run,
+              const std::filesystem::path& folder)
 {
     const double diagonal_m = scene.model.diagonal_m;
     auto hrtc = start_at(end, "hrtc", folder,
@@ -121,40 +112,24 @@ Result<Json, SceneError> run_hrtc(const Scene& scene, const NetworkEnd& end, con
                           folder / "out.rec",
                           "--report",
                           folder / "report.json"});
-    if (!hrtc)
-    {
-        return hrtc.error();
-    }
-    if (auto done = hrtc.value().wait(); !done)
-    {
-        return done.error();
-    }
+    hrtc.wait();
     std::ifstream report(folder / "report.json");
     return Json::parse(report);
 }
 
 /// Calls `look` with what each frame of out.rec returned.
-CaseFailure look_at_frames(const std::filesystem::path& folder,
-                           const std::function<void(const FrameOutput&)>& look)
+void look_at_frames(const std::filesystem::path& folder,
+                    const std::function<void(const FrameOutput&)>& look)
 {
-    const auto recording = Recording::read((folder / "out.rec").string());
-    if (!recording)
-    {
-        return recording.error().text;
-    }
+    const auto recording = needed(Recording::read((folder / "out.rec").string()));
     ReplayWatch watch;
     watch.ends = [&](std::uint64_t, const RecordedFrame&, const FrameOutput& output)
     { look(output); };
-    const auto report = replay(recording.value(), nullptr, watch);
-    if (!report)
+    const auto report = needed(replay(recording, nullptr, watch));
+    if (report.difference || recording.lost_from() != kNoFrame)
     {
-        return report.error().text;
+        throw Failure(replay_line(recording, report));
     }
-    if (report.value().difference || recording.value().lost_from() != kNoFrame)
-    {
-        return replay_line(recording.value(), report.value());
-    }
-    return std::nullopt;
 }
 
 double number_of(const Json& value)
@@ -164,49 +139,24 @@ double number_of(const Json& value)
 
 } // namespace
 
-CaseFailure run_tour_case(const CaseContext& context, const TourCase& test_case)
+void run_tour_case(const CaseContext& context, const TourCase& test_case)
 {
-    const auto scene = context.scenes.get(test_case.scene);
-    if (!scene)
-    {
-        return scene.error().text;
-    }
+    const Scene& scene = context.scenes.get(test_case.scene);
     const test::TemporaryFolder folder("tour");
     TourManner manner;
     manner.speed_diag_per_s = test_case.speed_diag_per_s;
     manner.taps = context.options.quick ? kQuickTourTaps : kTourTaps;
-    const TapTour tour = tap_tour(scene.value()->touch(), manner);
-    if (auto written =
-            write_motion(context, *scene.value(), tour.goals_m, folder.path() / "motion.rec");
-        !written)
-    {
-        return written.error().text;
-    }
+    const TapTour tour = tap_tour(scene.touch(), manner);
+    write_motion(context, scene, tour.goals_m, folder.path() / "motion.rec");
     auto place = Place::make(test_case.delay_ms, test_case.loss, folder.path());
-    if (!place)
-    {
-        return place.error().text;
-    }
-    const auto host = publish(*scene.value(), place.value().host(), folder.path());
-    if (!host)
-    {
-        return host.error().text;
-    }
+    const auto host = publish(scene, place.host(), folder.path());
     const auto report = run_hrtc(
-        *scene.value(), place.value().controller(),
+        scene, place.controller(),
         {test_case.speed_diag_per_s, test_case.cache_mib, tour.goals_m.size()}, folder.path());
-    if (!report)
-    {
-        return report.error().text;
-    }
     StreamCounter counter(tour);
-    if (const CaseFailure failure =
-            look_at_frames(folder.path(), [&](const FrameOutput& output) { counter.add(output); }))
-    {
-        return failure;
-    }
+    look_at_frames(folder.path(), [&](const FrameOutput& output) { counter.add(output); });
     const StreamFigures& figures = counter.figures();
-    Row common = context.common_row(scene.value()->model.name, "tours, whole programs");
+    Row common = context.common_row(scene.model.name, "tours, whole programs");
     common.frames = figures.frames;
     common.hash = figures.hash;
     CaseRows rows(context.rows, common);
@@ -215,35 +165,30 @@ CaseFailure run_tour_case(const CaseContext& context, const TourCase& test_case)
              goal_if(test_case.late_taps_max));
     rows.add("taps", static_cast<double>(figures.taps), "");
     rows.add("waiting", figures.percent(figures.waiting), "%");
-    const Json& arrival = report.value()["wire"]["arrival_ms"];
+    const Json& arrival = report["wire"]["arrival_ms"];
     rows.add("arrival p50", number_of(arrival["p50"]), "ms");
     rows.add("arrival p99", number_of(arrival["p99"]), "ms", goal_if(test_case.arrival_p99_ms));
     rows.add("arrival max", number_of(arrival["max"]), "ms");
     rows.add("wire",
-             report.value()["wire"]["bytes_received"].get<double>() / kKilo /
+             report["wire"]["bytes_received"].get<double>() / kKilo /
                  (static_cast<double>(figures.frames) * kPeriod_s),
              "kB/s");
     rows.add("reloads", figures.per_second(figures.reloads), "/s");
-    rows.add("own faults", number_of(report.value()["deadline"]["own_fault"]), "");
-    rows.add("late frames", number_of(report.value()["deadline"]["missed"]), "");
-    return std::nullopt;
+    rows.add("own faults", number_of(report["deadline"]["own_fault"]), "");
+    rows.add("late frames", number_of(report["deadline"]["missed"]), "");
 }
 
-CaseFailure run_first_touch_case(const CaseContext& context, const FirstTouchCase& test_case)
+void run_first_touch_case(const CaseContext& context, const FirstTouchCase& test_case)
 {
     constexpr std::size_t kFrames = 1'000;
     constexpr double kCache_mib = 4.5;
-    const auto scene = context.scenes.get(test_case.scene);
-    if (!scene)
-    {
-        return scene.error().text;
-    }
+    const Scene& scene = context.scenes.get(test_case.scene);
     const test::TemporaryFolder folder("first-touch");
     TourManner manner;
     manner.taps = 1;
-    const TapTour tour = tap_tour(scene.value()->touch(), manner);
+    const TapTour tour = tap_tour(scene.touch(), manner);
     const Vec3 touching_m = tour.goals_m[tour.touches.at(0)];
-    const Vec3 away_m = touching_m + Vec3(10.0, 0.0, 0.0) * scene.value()->model.diagonal_m;
+    const Vec3 away_m = touching_m + Vec3(10.0, 0.0, 0.0) * scene.model.diagonal_m;
     double payload_kb = 0.0;
     std::uint64_t first_wish = 0;
     std::uint64_t first_exact = 0;
@@ -253,54 +198,30 @@ CaseFailure run_first_touch_case(const CaseContext& context, const FirstTouchCas
     for (const bool touches : {false, true})
     {
         const std::vector<Vec3> goals_m(kFrames, touches ? touching_m : away_m);
-        if (auto written =
-                write_motion(context, *scene.value(), goals_m, folder.path() / "motion.rec");
-            !written)
-        {
-            return written.error().text;
-        }
+        write_motion(context, scene, goals_m, folder.path() / "motion.rec");
         auto place = Place::make(test_case.delay_ms, 0.0, folder.path());
-        if (!place)
-        {
-            return place.error().text;
-        }
-        const auto host = publish(*scene.value(), place.value().host(), folder.path());
-        if (!host)
-        {
-            return host.error().text;
-        }
-        const auto report = run_hrtc(*scene.value(), place.value().controller(),
-                                     {0.5, kCache_mib, kFrames}, folder.path());
-        if (!report)
-        {
-            return report.error().text;
-        }
-        const auto traffic = place.value().networks->traffic();
-        if (!traffic)
-        {
-            return traffic.error().text;
-        }
-        const double all_kb = static_cast<double>(traffic.value().payload_bytes) / kKilo;
+        const auto host = publish(scene, place.host(), folder.path());
+        const auto report =
+            run_hrtc(scene, place.controller(), {0.5, kCache_mib, kFrames}, folder.path());
+        const auto traffic = place.networks->traffic();
+        const double all_kb = static_cast<double>(traffic.payload_bytes) / kKilo;
         payload_kb = touches ? all_kb - payload_kb : all_kb;
         std::uint64_t frame = 0;
         first_wish = first_exact = loads = 0;
-        const CaseFailure failure = look_at_frames(
-            folder.path(),
-            [&](const FrameOutput& output)
-            {
-                ++frame;
-                hash += output.models[0].state_hash * (2 * frame + 1);
-                loads += output.work.pages_adopted;
-                first_wish = first_wish == 0 && output.work.requests > 0 ? frame : first_wish;
-                const bool is_exact = touches && output.pairs[0].kind == AnswerKind::exact;
-                first_exact = first_exact == 0 && is_exact ? frame : first_exact;
-            });
-        if (failure)
-        {
-            return failure;
-        }
+        look_at_frames(folder.path(),
+                       [&](const FrameOutput& output)
+                       {
+                           ++frame;
+                           hash += output.models[0].state_hash * (2 * frame + 1);
+                           loads += output.work.pages_adopted;
+                           first_wish =
+                               first_wish == 0 && output.work.requests > 0 ? frame : first_wish;
+                           const bool is_exact =
+                               touches && output.pairs[0].kind == AnswerKind::exact;
+                           first_exact = first_exact == 0 && is_exact ? frame : first_exact;
+                       });
     }
-    Row common = context.common_row(scene.value()->model.name, "first touch, cold");
+    Row common = context.common_row(scene.model.name, "first touch, cold");
     common.frames = kFrames;
     common.hash = hash;
     CaseRows rows(context.rows, common);
@@ -310,7 +231,6 @@ CaseFailure run_first_touch_case(const CaseContext& context, const FirstTouchCas
                               : static_cast<double>(first_exact - first_wish) * kPeriod_s * kKilo,
              "ms", goal_if(test_case.time_ms));
     rows.add("pieces", static_cast<double>(loads), "");
-    return std::nullopt;
 }
 
 } // namespace tactus::bench

@@ -28,7 +28,6 @@ namespace
 
 constexpr double kDepth_m = 1e-3;
 constexpr double kStiffness_n_per_m = 1'000.0;
-constexpr double kPeriod_s = 1e-3;
 /// The device's, for all sweeps alike; beyond the fastest, as the ways over bumps and edges are.
 constexpr double kSpeedMax_m_per_s = 1.5;
 /// So much that nothing is clamped: errors show in full.
@@ -91,15 +90,10 @@ struct SweepContext : CaseContext
 
 NamedMesh bumpy_mesh(std::uint32_t faces, std::uint32_t bits, double scale)
 {
-    NamedMesh named{fmt::format("bumpy-sphere-{}", faces),
-                    make_shape(Shape::bumpy_sphere, faces).value()};
-    named.name += bits == kMinPositionBits ? "" : fmt::format("-{}bit", bits);
-    named.name += scale == 1.0 ? "" : fmt::format("-x{:.0f}", scale);
-    for (auto& position : named.mesh.positions)
-    {
-        std::ranges::transform(position, position.begin(), [scale](double x) { return scale * x; });
-    }
-    return named;
+    return {fmt::format("bumpy-sphere-{}{}{}", faces,
+                        bits == kMinPositionBits ? "" : fmt::format("-{}bit", bits),
+                        scale == 1.0 ? "" : fmt::format("-x{:.0f}", scale)),
+            scaled(make_shape(Shape::bumpy_sphere, faces).value(), scale)};
 }
 
 /// The points of a sweep in the frame of a scene that is `scale` times as large.
@@ -153,7 +147,7 @@ ForceGoals goals_of(const SweepContext& context, const Touch& touch, const Speed
             has_times ? speed.force_us : kNoGoal};
 }
 
-CaseFailure run_sweep(const SweepContext& context, double radius_m, const SpeedCase& speed)
+void run_sweep(const SweepContext& context, double radius_m, const SpeedCase& speed)
 {
     const Touch touch{radius_m, kDepth_m, kStiffness_n_per_m};
     const double speed_m_per_s = speed.speed_m_per_s;
@@ -161,35 +155,30 @@ CaseFailure run_sweep(const SweepContext& context, double radius_m, const SpeedC
     const Sweep sweep = make_sweep(touch, step_m, context.options.frames_or(10'000, 2'000));
     const ForceRun run = make_run(context.scene, sweep, touch, 1.0);
     const auto trace = replay_forces(run, context.options.passes_or(5, 3));
-    if (!trace)
-    {
-        return trace.error().text;
-    }
     const ForceGoals goals = goals_of(context, touch, speed);
     // The ball may be one period behind the device, and off by what the mesh is.
     const double lag_m = step_m + context.faceting.force_error_n(touch) / touch.stiffness_n_per_m +
                          kTolerance * touch.depth_m;
     const ForceFigures figures = measure_forces(
-        trace.value(), counted(run.goals_m, run.lead_in),
+        trace, counted(run.goals_m, run.lead_in),
         counted(in_model(sweep.rests_m, context.scene, 1.0), run.lead_in), touch, lag_m);
     Row common = context.common_row(context.scene.model.name, "Sweeps");
     common.test_case += fmt::format(", {} m/s, {} mm", speed_m_per_s, 1e3 * radius_m);
     common.by = "Tactus";
-    common.frames = trace.value().outputs.size();
-    common.hash = trace.value().hash;
+    common.frames = trace.outputs.size();
+    common.hash = trace.hash;
     CaseRows rows(context.rows, common);
     const auto coarser = context.coarser.find({speed_m_per_s, radius_m});
     const bool is_finer = context.mesh.has_goals && coarser != context.coarser.end();
-    add_force_rows(rows, trace.value(), figures, goals,
+    add_force_rows(rows, trace, figures, goals,
                    is_finer ? std::optional(coarser->second) : std::nullopt);
     context.coarser[{speed_m_per_s, radius_m}] = figures.error_n.p99;
-    return std::nullopt;
 }
 
 /// A sweep whose true force is not known: under friction, or with a hand that leaves the proxy
 /// behind.
-CaseFailure run_felt_sweep(const SweepContext& context, const SpeedCase& speed, double friction,
-                           double speed_max_m_per_s)
+void run_felt_sweep(const SweepContext& context, const SpeedCase& speed, double friction,
+                    double speed_max_m_per_s)
 {
     const Touch touch{kRadii_m.back(), kDepth_m, kStiffness_n_per_m};
     const bool is_fast = speed.speed_m_per_s > kSpeedMax_m_per_s;
@@ -203,46 +192,34 @@ CaseFailure run_felt_sweep(const SweepContext& context, const SpeedCase& speed, 
     run.material.static_friction = friction;
     run.material.dynamic_friction = kDynamicShare * friction;
     const auto trace = replay_forces(run, context.options.passes_or(5, 3));
-    if (!trace)
-    {
-        return trace.error().text;
-    }
     const ForceFigures figures = measure_forces(
-        trace.value(), counted(run.goals_m, run.lead_in),
+        trace, counted(run.goals_m, run.lead_in),
         counted(in_model(sweep.rests_m, context.scene, 1.0), run.lead_in), touch, kNoGoal);
     Row common = context.common_row(context.scene.model.name, "Sweeps");
     common.test_case += fmt::format(", {} m/s, {} mm", speed.speed_m_per_s, 1e3 * touch.radius_m);
     common.test_case += friction > 0.0 ? fmt::format(", friction {}", friction) : "";
     common.by = "Tactus";
-    common.frames = trace.value().outputs.size();
-    common.hash = trace.value().hash;
+    common.frames = trace.outputs.size();
+    common.hash = trace.hash;
     CaseRows rows(context.rows, common);
-    add_felt_rows(rows, trace.value(), figures,
+    add_felt_rows(rows, trace, figures,
                   {speed.frame_us, kNoGoal, kNoGoal, kNoGoal, true, speed.force_us});
     if (is_fast)
     {
-        add_lag_rows(rows, trace.value(), slows_at, run.period_ns);
+        add_lag_rows(rows, trace, slows_at);
     }
-    return std::nullopt;
 }
 
-CaseFailure run_felt_sweeps(const SweepContext& context)
+void run_felt_sweeps(const SweepContext& context)
 {
     for (const SpeedCase& speed : kRoughSpeeds)
     {
-        if (auto failure = run_felt_sweep(context, speed, kFriction, kSpeedMax_m_per_s))
-        {
-            return failure;
-        }
+        run_felt_sweep(context, speed, kFriction, kSpeedMax_m_per_s);
     }
     for (const double friction : {0.0, kFriction})
     {
-        if (auto failure = run_felt_sweep(context, kFast, friction, kFastSpeedMax_m_per_s))
-        {
-            return failure;
-        }
+        run_felt_sweep(context, kFast, friction, kFastSpeedMax_m_per_s);
     }
-    return std::nullopt;
 }
 
 void add_mesh_rows(const SweepContext& context)
@@ -260,70 +237,53 @@ void add_mesh_rows(const SweepContext& context)
     }
 }
 
-CaseFailure run_mesh(const CaseContext& of_case, const MeshCase& mesh, CoarserErrors& coarser)
+void run_mesh(const CaseContext& of_case, const MeshCase& mesh, CoarserErrors& coarser)
 {
-    const auto scene =
+    const Scene& scene =
         of_case.scenes.get(bumpy_mesh(mesh.faces, mesh.position_bits, 1.0), mesh.position_bits);
-    if (!scene)
-    {
-        return scene.error().text;
-    }
-    const Faceting faceting =
-        measure_faceting(scene.value()->model.faces, scene.value()->model.origin_m);
-    const SweepContext context{of_case, mesh, *scene.value(), faceting, coarser};
+    const Faceting faceting = measure_faceting(scene.model.faces, scene.model.origin_m);
+    const SweepContext context{of_case, mesh, scene, faceting, coarser};
     add_mesh_rows(context);
     const PinnedCore pinned(context.options.core);
     for (const double radius_m : kRadii_m)
     {
         for (const SpeedCase& speed : kSpeeds)
         {
-            if (const auto failure = run_sweep(context, radius_m, speed))
-            {
-                return failure;
-            }
+            run_sweep(context, radius_m, speed);
         }
     }
-    return is_timed(context, kRadii_m.back()) ? run_felt_sweeps(context) : std::nullopt;
+    if (is_timed(context, kRadii_m.back()))
+    {
+        run_felt_sweeps(context);
+    }
 }
 
 /// The forces of one sweep on the coarsest mesh when all lengths are `scale` times as large and the
 /// stiffness as much smaller.
-Result<ForceTrace, SceneError> scaled_forces(SceneStore& scenes, std::uint32_t frames, double scale)
+ForceTrace scaled_forces(SceneStore& scenes, std::uint32_t frames, double scale)
 {
     const Touch touch{kRadii_m[0], kDepth_m, kStiffness_n_per_m};
-    const auto scene =
+    const Scene& scene =
         scenes.get(bumpy_mesh(kMeshes[0].faces, kMaxPositionBits, scale), kMaxPositionBits);
-    if (!scene)
-    {
-        return scene.error();
-    }
     const Sweep sweep = make_sweep(touch, kSpeeds[1].speed_m_per_s * kPeriod_s, frames);
-    return replay_forces(make_run(*scene.value(), sweep, touch, scale), 1);
+    return replay_forces(make_run(scene, sweep, touch, scale), 1);
 }
 
 /// A power of two changes no bit. Any other factor rounds differently: corners by a part in 2^24 of
 /// the box, which with what the proxy tolerates stays below a thousandth of the force.
-CaseFailure run_units(const CaseContext& context)
+void run_units(const CaseContext& context)
 {
     const std::uint32_t frames = context.options.frames_or(10'000, 2'000);
     const auto metres = scaled_forces(context.scenes, frames, 1.0);
-    if (!metres)
-    {
-        return metres.error().text;
-    }
     for (const double scale : {1'024.0, 1'000.0})
     {
         const auto scaled = scaled_forces(context.scenes, frames, scale);
-        if (!scaled)
-        {
-            return scaled.error().text;
-        }
         double largest_n = 0.0;
         std::uint64_t others = 0;
         for (std::size_t i = 0; i < frames; ++i)
         {
-            const Vec3& here = metres.value().outputs[i].force_n;
-            const Vec3& there = scaled.value().outputs[i].force_n;
+            const Vec3& here = metres.outputs[i].force_n;
+            const Vec3& there = scaled.outputs[i].force_n;
             largest_n = std::max(largest_n, (there - here).norm());
             others += there == here ? 0U : 1U;
         }
@@ -331,7 +291,7 @@ CaseFailure run_units(const CaseContext& context)
         Row common = context.common_row(lengths, "Units");
         common.test_case = lengths;
         common.frames = frames;
-        common.hash = scaled.value().hash;
+        common.hash = scaled.hash;
         CaseRows lines(context.rows, common);
         const bool is_exact = std::exp2(std::round(std::log2(scale))) == scale;
         const double tolerance_n = 1e-3 * kStiffness_n_per_m * kDepth_m;
@@ -339,7 +299,6 @@ CaseFailure run_units(const CaseContext& context)
                   is_exact ? std::optional(0.0) : std::nullopt);
         lines.add("largest difference", largest_n, "N", is_exact ? 0.0 : tolerance_n);
     }
-    return std::nullopt;
 }
 
 std::vector<Case> force_cases()
@@ -349,17 +308,13 @@ std::vector<Case> force_cases()
     for (const MeshCase& mesh : kMeshes)
     {
         cases.push_back({mesh.name, mesh.when, [&mesh, coarser](const CaseContext& context) {
-                             return run_mesh(context, mesh, *coarser);
+                             run_mesh(context, mesh, *coarser);
                          }});
     }
     cases.push_back({"rigid", When::always, run_rigid_sweeps});
     cases.push_back({"units", When::always, run_units});
     cases.push_back({"recorded", When::always,
-                     [](const CaseContext& context) -> CaseFailure
-                     {
-                         add_recorded_peer(context.rows);
-                         return std::nullopt;
-                     }});
+                     [](const CaseContext& context) { add_recorded_peer(context.rows); }});
     return cases;
 }
 

@@ -13,9 +13,6 @@ namespace tactus::bench
 namespace
 {
 
-constexpr std::size_t kPeersMiB = std::size_t{1} << 20U;
-constexpr SceneSource kPeersIgea{"igea-269k", "igea.ply", 0, 268'686};
-
 std::vector<Case> peers_cases()
 {
     const auto touch =
@@ -33,16 +30,16 @@ std::vector<Case> peers_cases()
                          PeerTouchCase{"W3, scale", sphere, setting, std::nullopt});
     };
     return {
-        touch("touch-bunny", When::always, kBunny, 2 * kPeersMiB),
-        touch("touch-igea", When::full_only, kPeersIgea, 4 * kPeersMiB),
+        touch("touch-bunny", When::always, kBunny, 2 * kMiB),
+        touch("touch-igea", When::full_only, kIgea, 4 * kMiB),
         mesh("mesh-bunny", When::always, kBunny),
-        mesh("mesh-igea", When::full_only, kPeersIgea),
+        mesh("mesh-igea", When::full_only, kIgea),
         mesh("mesh-1.1M", When::full_only, kFineBunny),
         scale("scale-4k", When::always, 4'000, "4 k faces"),
         scale("scale-40k", When::always, 40'000, "40 k faces"),
         scale("scale-400k", When::full_only, 400'000, "400 k faces"),
         scale("scale-4M", When::full_only, 4'000'000, "4 M faces"),
-        touch("touch-tiny", When::named_only, kTiny, kPeersMiB),
+        touch("touch-tiny", When::named_only, kTiny, kMiB),
         mesh("mesh-tiny", When::named_only, kTiny),
         scale("scale-tiny", When::named_only, 2'000, "2 k faces"),
     };

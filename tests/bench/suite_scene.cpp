@@ -8,11 +8,11 @@
 #include "tests/bench/instruction_count.hpp"
 #include "tests/bench/least_times.hpp"
 #include "tests/bench/measuring.hpp"
-#include "tests/bench/random.hpp"
 #include "tests/bench/scene_cases.hpp"
 #include "tests/bench/stage_timer.hpp"
 #include "tests/bench/suites.hpp"
 #include "tests/shared/frame_rig.hpp"
+#include "tests/stability/whole_model.hpp"
 
 #include <fmt/format.h>
 
@@ -89,7 +89,7 @@ public:
     /// Every frame once, timed, or with a look at the truth now and then, which leaves the caches
     /// cold: the first tool touches the first object, the others are still between
     /// four objects; or all are still.
-    CaseFailure run(bool touches, std::size_t frames, LeastTimes* us)
+    void run(bool touches, std::size_t frames, LeastTimes* us)
     {
         test::FrameRig rig(scene_.model, options_);
         std::vector<Vec3> goals(options_.tools.size());
@@ -98,14 +98,8 @@ public:
             goals[i] = kApart_diag * scene_.model.diagonal_m *
                        Vec3(static_cast<double>(i) + 0.5, 0.5, 0.0);
         }
-        for (int i = 0; i < 3'000 && !rig.model().is_complete(); ++i)
-        {
-            rig.step(goals, {});
-        }
-        if (!rig.model().is_complete())
-        {
-            return "the model is not here as a whole";
-        }
+        test::refine_fully(scene_.model.name,
+                           [&](const Budgets& budgets) { return rig.step(goals, budgets); });
         for (std::size_t i = 0; i < kApproachFrames && touches; ++i)
         {
             goals[0] = goals_m_[i];
@@ -129,13 +123,9 @@ public:
             }
             else if (i % kJudgedEvery == 0)
             {
-                if (auto failure = judge(rig, output))
-                {
-                    return failure;
-                }
+                judge(rig, output);
             }
         }
-        return std::nullopt;
     }
 
     [[nodiscard]] double error_m() const { return error_m_; }
@@ -143,15 +133,7 @@ public:
     /// Of the times, those of frames in which the last run's first tool was in contact.
     [[nodiscard]] std::vector<double> touching(const std::vector<double>& times_us) const
     {
-        std::vector<double> kept;
-        for (std::size_t i = 0; i < times_us.size(); ++i)
-        {
-            if (touching_[i])
-            {
-                kept.push_back(times_us[i]);
-            }
-        }
-        return kept;
+        return chosen(times_us, touching_);
     }
 
 private:
@@ -169,8 +151,8 @@ private:
         }
     }
 
-    /// A line when a bracket or a clearance doesn't hold.
-    CaseFailure judge(const test::FrameRig& rig, const FrameOutput& output)
+    /// A failure when a bracket or a clearance doesn't hold.
+    void judge(const test::FrameRig& rig, const FrameOutput& output)
     {
         for (std::uint32_t tool = 0; tool < output.tools.size(); ++tool)
         {
@@ -195,17 +177,17 @@ private:
                 }
                 if (beyond_m > 1e-12 * scene_.model.diagonal_m)
                 {
-                    return fmt::format("tool {} is {} m from object {}, not {} to {}", tool,
-                                       truth_m, object, pair->lower_m, pair->upper_m);
+                    throw Failure(fmt::format("tool {} is {} m from object {}, not {} to {}", tool,
+                                              truth_m, object, pair->lower_m, pair->upper_m));
                 }
             }
             if (output.tools[tool].clear_m > nearest_other_m * (1.0 + 1e-12))
             {
-                return fmt::format("tool {} is said to be clear by {} m and has something at {}",
-                                   tool, output.tools[tool].clear_m, nearest_other_m);
+                throw Failure(
+                    fmt::format("tool {} is said to be clear by {} m and has something at {}", tool,
+                                output.tools[tool].clear_m, nearest_other_m));
             }
         }
-        return std::nullopt;
     }
 
     const Scene& scene_;
@@ -231,61 +213,48 @@ double bytes_an_object(std::uint32_t tools)
     return (bytes(kMaxObjects) - bytes(64)) / (kMaxObjects - 64);
 }
 
-CaseFailure run_scene_case(const CaseContext& context, const SceneCase& test_case)
+void run_scene_case(const CaseContext& context, const SceneCase& test_case)
 {
-    const auto scene = context.scenes.get(kObject);
-    if (!scene)
-    {
-        return scene.error().text;
-    }
+    const Scene& scene = context.scenes.get(kObject);
     const PinnedCore pinned(context.options.core);
     const std::uint32_t frames = context.options.frames_or(2'000, 400);
-    Crowd crowd(test_case, *scene.value(), frames);
+    Crowd crowd(test_case, scene, frames);
     if (context.options.count)
     {
         LeastTimes nobody_reads(frames);
-        const auto failure = crowd.run(true, frames, &nobody_reads);
-        return failure || test_case.without == nullptr ? failure
-                                                       : crowd.run(false, frames, &nobody_reads);
+        crowd.run(true, frames, &nobody_reads);
+        if (test_case.without != nullptr)
+        {
+            crowd.run(false, frames, &nobody_reads);
+        }
+        return;
     }
-    Crowd alone({1, 1, 0}, *scene.value(), frames);
+    Crowd alone({1, 1, 0}, scene, frames);
     LeastTimes touch_us(frames);
     LeastTimes rest_us(frames);
     LeastTimes alone_us(frames);
     const std::uint32_t passes = context.options.passes_or(3, 2);
     for (const bool touches : {true, false})
     {
-        if (const auto failure = crowd.run(touches, frames, nullptr))
-        {
-            return failure;
-        }
+        crowd.run(touches, frames, nullptr);
     }
     for (std::uint32_t pass = 0; pass < passes; ++pass)
     {
-        if (const auto failure = crowd.run(true, frames, &touch_us))
-        {
-            return failure;
-        }
-        if (const auto failure = alone.run(true, frames, &alone_us))
-        {
-            return failure;
-        }
+        crowd.run(true, frames, &touch_us);
+        alone.run(true, frames, &alone_us);
     }
     const std::vector<double> crowd_us = crowd.touching(touch_us.least());
     const std::vector<double> single_us = alone.touching(alone_us.least());
     if (crowd_us.empty() || crowd_us.size() != single_us.size())
     {
-        return fmt::format("in contact in {} frames, alone in {}", crowd_us.size(),
-                           single_us.size());
+        throw Failure(
+            fmt::format("in contact in {} frames, alone in {}", crowd_us.size(), single_us.size()));
     }
     for (std::uint32_t pass = 0; pass < passes; ++pass)
     {
-        if (const auto failure = crowd.run(false, frames, &rest_us))
-        {
-            return failure;
-        }
+        crowd.run(false, frames, &rest_us);
     }
-    Row common = context.common_row(scene.value()->model.name);
+    Row common = context.common_row(scene.model.name);
     common.setting = fmt::format("{} tools, {} moving", test_case.tools, test_case.moving);
     common.test_case = fmt::format("{} objects", test_case.objects);
     if (test_case.without != nullptr)
@@ -312,20 +281,14 @@ CaseFailure run_scene_case(const CaseContext& context, const SceneCase& test_cas
                          : kNoGoal));
     rows.add("rest p99", rest.p99, "us");
     const auto counted = count_instructions(context);
-    if (!counted)
-    {
-        return counted.error().text;
-    }
-    if (counted.value())
+    if (counted)
     {
         const bool is_compared = test_case.without != nullptr;
         rows.add(is_compared ? "touch and rest instructions" : "touch instructions",
-                 static_cast<double>(*counted.value()) / (is_compared ? 2 * frames : frames),
-                 "/frame");
+                 static_cast<double>(*counted) / (is_compared ? 2 * frames : frames), "/frame");
     }
     rows.add("object", bytes_an_object(test_case.tools), "B", 256.0);
-    rows.add("error max", crowd.error_m() / scene.value()->model.diagonal_m, "diag", 1e-14);
-    return std::nullopt;
+    rows.add("error max", crowd.error_m() / scene.model.diagonal_m, "diag", 1e-14);
 }
 
 std::vector<Case> scene_cases()

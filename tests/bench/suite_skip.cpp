@@ -12,8 +12,6 @@
 
 #include <algorithm>
 #include <array>
-#include <functional>
-#include <iterator>
 
 namespace tactus::bench
 {
@@ -120,7 +118,7 @@ bool is_exact(const PairOutput& pair)
 }
 
 /// A line when an answer that is exact both times is not the same, or too few are.
-CaseFailure compare(const std::vector<PairOutput>& usual, const std::vector<PairOutput>& other)
+void compare(const std::vector<PairOutput>& usual, const std::vector<PairOutput>& other)
 {
     std::size_t exact = 0;
     std::size_t both_exact = 0;
@@ -133,34 +131,28 @@ CaseFailure compare(const std::vector<PairOutput>& usual, const std::vector<Pair
         if (is_exact(a) && is_exact(b) &&
             (a.lower_m != b.lower_m || a.upper_m != b.upper_m || a.nearest_face != b.nearest_face))
         {
-            return fmt::format("frame {}: exact distances of {} and {} m", i, a.upper_m, b.upper_m);
+            throw Failure(
+                fmt::format("frame {}: exact distances of {} and {} m", i, a.upper_m, b.upper_m));
         }
     }
     if (both_exact == 0 || 10 * both_exact < 9 * exact)
     {
-        return fmt::format("of {} exact answers only {} are exact without it", exact, both_exact);
+        throw Failure(
+            fmt::format("of {} exact answers only {} are exact without it", exact, both_exact));
     }
-    return std::nullopt;
 }
 
-CaseFailure run_skip_case(const CaseContext& context, const SkipCase& test_case)
+void run_skip_case(const CaseContext& context, const SkipCase& test_case)
 {
-    const auto scene = context.scenes.get(test_case.scene);
-    if (!scene)
-    {
-        return scene.error().text;
-    }
+    const Scene& scene = context.scenes.get(test_case.scene);
     const PinnedCore pinned(context.options.core);
-    const FrameRun usual = make_run(context, test_case, *scene.value());
+    const FrameRun usual = make_run(context, test_case, scene);
     FrameRun run = usual;
     test_case.without.leave_out(run);
     FrameReplay replay(run);
-    if (auto failure = replay.run(context.options.passes_or(3, 2)))
-    {
-        return failure;
-    }
-    Row common = context.common_row(scene.value()->model.name);
-    common.test_case = test_case.models == 1 ? scene.value()->model.name : name_of(test_case);
+    replay.run(context.options.passes_or(3, 2));
+    Row common = context.common_row(scene.model.name);
+    common.test_case = test_case.models == 1 ? scene.model.name : name_of(test_case);
     common.setting = test_case.without.name;
     common.frames = run.counted();
     common.hash = replay.hash();
@@ -179,25 +171,17 @@ CaseFailure run_skip_case(const CaseContext& context, const SkipCase& test_case)
              "");
     if (context.options.count)
     {
-        return std::nullopt; // The comparison's frames are not to be counted.
+        return; // The comparison's frames are not to be counted.
     }
     const auto counted = count_instructions(context);
-    if (!counted)
+    if (counted)
     {
-        return counted.error().text;
-    }
-    if (counted.value())
-    {
-        rows.add("instructions",
-                 static_cast<double>(*counted.value()) / static_cast<double>(run.counted()),
+        rows.add("instructions", static_cast<double>(*counted) / static_cast<double>(run.counted()),
                  "/frame");
     }
     FrameReplay with_all(usual);
-    if (auto failure = with_all.run(1))
-    {
-        return failure;
-    }
-    return compare(with_all.answers(), replay.answers());
+    with_all.run(1);
+    compare(with_all.answers(), replay.answers());
 }
 
 std::vector<Case> skip_cases()

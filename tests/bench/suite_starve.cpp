@@ -5,7 +5,6 @@
 
 #include "host_tools/shapes/shapes.hpp"
 #include "tests/bench/measuring.hpp"
-#include "tests/bench/random.hpp"
 #include "tests/bench/suites.hpp"
 #include "tests/shared/greedy_tools.hpp"
 
@@ -18,7 +17,7 @@ namespace
 constexpr std::uint32_t kFaces = 200'000;
 constexpr std::uint32_t kBaseFaces = 500;
 
-CaseFailure run_starve_case(const CaseContext& context, const test::GreedyCase& greedy)
+void run_starve_case(const CaseContext& context, const test::GreedyCase& greedy)
 {
     const PinnedCore pinned(context.options.core);
     const test::TestModel& model =
@@ -27,7 +26,7 @@ CaseFailure run_starve_case(const CaseContext& context, const test::GreedyCase& 
     const test::GreedyFigures figures = test::run_greedy(model, greedy, frames, kSeed);
     if (!figures.broken.empty())
     {
-        return figures.broken;
+        throw Failure(figures.broken);
     }
     const bool shares_contact = greedy.others == test::GreedyCase::Others::are_held;
     Row common = context.common_row(model.name);
@@ -40,7 +39,6 @@ CaseFailure run_starve_case(const CaseContext& context, const test::GreedyCase& 
     rows.add("splits, most of a frame", figures.splits_max, "", greedy.splits);
     rows.add("shed", 100.0 * figures.shed / frames, "%");
     rows.add("no room", 100.0 * figures.full / frames, "%");
-    return std::nullopt;
 }
 
 std::vector<Case> starve_cases()

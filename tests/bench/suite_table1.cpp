@@ -28,34 +28,30 @@ struct Table1Case
 {
     const char* name;
     std::uint32_t base_faces;
-    Result<NamedMesh, SceneError> (*mesh)();
+    NamedMesh (*mesh)();
 };
 
-Result<NamedMesh, SceneError> sphere()
+NamedMesh sphere()
 {
     return NamedMesh{"uv-sphere-4096", make_uv_sphere(33, 64).value()};
 }
 
-Result<NamedMesh, SceneError> cow()
+NamedMesh cow()
 {
     return source_mesh(kCow);
 }
 
-Result<NamedMesh, SceneError> bunny()
+NamedMesh bunny()
 {
     return source_mesh(kBunny);
 }
 
 /// The finest mesh of so many faces that our own encoder makes of the public scan.
-Result<NamedMesh, SceneError> small_bunny()
+NamedMesh small_bunny()
 {
     auto named = bunny();
-    if (!named)
-    {
-        return named.error();
-    }
-    const std::string name = fmt::format("{}-of-{}", kSmallBunnyFaces, named.value().name);
-    const test::TestModel& scan = test::test_model("for-" + name, named.value().mesh, 500);
+    const std::string name = fmt::format("{}-of-{}", kSmallBunnyFaces, named.name);
+    const test::TestModel& scan = test::test_model("for-" + name, named.mesh, 500);
     return coarser_mesh(name, scan, kSmallBunnyFaces);
 }
 
@@ -88,13 +84,12 @@ std::uint32_t height_below(const AbTree& tree, TreeRef ref)
 std::optional<std::uint32_t> binary_height(Model& model)
 {
     const std::vector<FaceId> order = test::faces_by_path(model);
-    test::BinaryAbTree tree(order, model.header.quantum_m());
+    test::BinaryAbTree tree(order);
     for (std::uint32_t i = 0; i < model.forest.capacity(); ++i)
     {
-        const PrimId prim{i};
-        if (const FaceId face = model.forest.face(prim).id; !face.is_none())
+        if (const FaceId face = model.forest.face(PrimId{i}).id; !face.is_none())
         {
-            tree.set({prim, face, 0, model.forest.error_of(prim), model.forest.corners_of(prim)});
+            tree.set(face);
         }
     }
     tree.refit();
@@ -116,25 +111,16 @@ std::optional<std::uint32_t> binary_height(Model& model)
     return highest;
 }
 
-CaseFailure run_case(const CaseContext& context, const Table1Case& test_case)
+void run_case(const CaseContext& context, const Table1Case& test_case)
 {
     const auto named = test_case.mesh();
-    if (!named)
-    {
-        return named.error().text;
-    }
-    const Scene scene{
-        test::test_model(named.value().name, named.value().mesh, test_case.base_faces), nullptr};
-    auto refined = StaticModel::make(scene);
-    if (!refined)
-    {
-        return refined.error().text;
-    }
-    Model& model = refined.value()->model();
+    const Scene scene{test::test_model(named.name, named.mesh, test_case.base_faces), nullptr};
+    StaticModel refined(scene);
+    Model& model = refined.model();
     const auto binary = binary_height(model);
     if (!binary)
     {
-        return scene.model.name + ": the binary tree has a face below an inactive node";
+        throw Failure(scene.model.name + ": the binary tree has a face below an inactive node");
     }
     CaseRows table(context.rows, context.common_row(scene.model.name));
     const HeaderFields& fields = model.header.fields();
@@ -143,10 +129,8 @@ CaseFailure run_case(const CaseContext& context, const Table1Case& test_case)
     table.add("records", fields.records, "");
     table.add("base faces", fields.base_faces, "", test_case.base_faces);
     table.add("base vertices", fields.base_vertices, "");
-    table.add("height, 8-wide",
-              height_below(refined.value()->tree(), refined.value()->tree().root()), "");
+    table.add("height, 8-wide", height_below(refined.tree(), refined.tree().root()), "");
     table.add("height, binary", *binary, "");
-    return std::nullopt;
 }
 
 std::vector<Case> table1_cases()

@@ -24,12 +24,10 @@ namespace tactus::bench
 namespace
 {
 
-constexpr std::size_t kTable2MiB = std::size_t{1} << 20U;
-constexpr SceneSource kTable2Igea{"igea-269k", "igea.ply", 0, 268'686};
 /// The motion's slide and turn together, and more.
 constexpr double kFastest_diag_per_s = 0.5;
 /// Room for what the tool needs beside the object, and for tables.
-constexpr std::size_t kToolBytes = 8 * kTable2MiB;
+constexpr std::size_t kToolBytes = 8 * kMiB;
 constexpr double kActiveGoal_percent = 5.0;
 
 struct Table2Case
@@ -84,42 +82,20 @@ public:
         }
     }
 
-    CaseFailure run()
+    void run()
     {
-        const auto base = base_scene();
-        if (!base)
-        {
-            return base.error().text;
-        }
-        CaseFailure failure = add("original static", object_, room_for_all(object_).pool_bytes,
-                                  true, {kNoGoal, kNoGoal, kOurError_diag});
-        if (!failure)
-        {
-            failure =
-                add("base static", *base.value(), room_for_all(*base.value()).pool_bytes, true, {});
-        }
-        if (!failure)
-        {
-            failure = add("local", object_, case_.local_bytes, false,
-                          {case_.refine_us, kActiveGoal_percent, kOurError_diag});
-        }
-        return failure;
+        const Scene& base =
+            context_.scenes.get(coarser_mesh("base-of-" + object_.model.name, object_.model, 1));
+        add("original static", object_, ample_pool_bytes(object_), true,
+            {kNoGoal, kNoGoal, kOurError_diag});
+        add("base static", base, ample_pool_bytes(base), true, {});
+        add("local", object_, case_.local_bytes, false,
+            {case_.refine_us, kActiveGoal_percent, kOurError_diag});
     }
 
 private:
-    /// The base mesh of the object as a model of its own.
-    Result<const Scene*, SceneError> base_scene() const
-    {
-        auto base = coarser_mesh("base-of-" + object_.model.name, object_.model, 1);
-        if (!base)
-        {
-            return base.error();
-        }
-        return context_.scenes.get(base.value());
-    }
-
-    CaseFailure add(const char* by, const Scene& object, std::size_t object_bytes, bool is_static,
-                    const Table2Goals& goals)
+    void add(const char* by, const Scene& object, std::size_t object_bytes, bool is_static,
+             const Table2Goals& goals)
     {
         const double diagonal_m = object_.model.diagonal_m;
         PairRun run{tool_,
@@ -138,15 +114,11 @@ private:
             }
         }
         const auto frames = replay_pair(run, context_.options.passes_or(5, 3));
-        if (!frames)
-        {
-            return frames.error().text;
-        }
-        return add_rows(by, run, frames.value(), goals);
+        add_rows(by, run, frames, goals);
     }
 
-    CaseFailure add_rows(const char* by, const PairRun& run, const PairFrames& frames,
-                         const Table2Goals& goals)
+    void add_rows(const char* by, const PairRun& run, const PairFrames& frames,
+                  const Table2Goals& goals)
     {
         Row common = context_.common_row(run.object.model.name);
         common.by = by;
@@ -157,20 +129,15 @@ private:
         const auto faces = static_cast<double>(object_.model.faces.size());
         rows.add("active faces", 100.0 * frames.active_faces / faces, "%",
                  goal_if(goals.active_percent));
-        const auto error_m = largest_error_m(run, frames, goals.error_diag < kNoGoal);
-        if (!error_m)
-        {
-            return fmt::format("{}: an answer does not hold the truth", by);
-        }
-        rows.add("error max", *error_m / object_.model.diagonal_m, "diag",
+        const double error_m = largest_error_m(run, frames, goals.error_diag < kNoGoal);
+        rows.add("error max", error_m / object_.model.diagonal_m, "diag",
                  goal_if(goals.error_diag));
         rows.add("open answers", percent_open(frames), "%");
         rows.add("meeting pairs",
                  static_cast<double>(frames.meeting_pairs) / static_cast<double>(run.places.size()),
                  "/frame");
         rows.add("splits", frames.work.splits / static_cast<double>(run.places.size()), "/frame");
-        rows.add("pools", static_cast<double>(run.pool_bytes) / kTable2MiB, "MiB");
-        return std::nullopt;
+        rows.add("pools", static_cast<double>(run.pool_bytes) / kMiB, "MiB");
     }
 
     void add_times(CaseRows& rows, const std::string& by, const PairFrames& frames,
@@ -219,9 +186,9 @@ private:
     }
 
     /// How far answers are off the object's own surface. One that is decided says that nothing is
-    /// within the skin. None when one that is to hold the truth doesn't.
-    [[nodiscard]] std::optional<double>
-    largest_error_m(const PairRun& run, const PairFrames& frames, bool holds_truth) const
+    /// within the skin. A failure when one that is to hold the truth doesn't.
+    [[nodiscard]] double largest_error_m(const PairRun& run, const PairFrames& frames,
+                                         bool holds_truth) const
     {
         double largest = 0.0;
         for (std::size_t i = 0; i < frames.answers.size(); ++i)
@@ -232,7 +199,7 @@ private:
             if (holds_truth &&
                 (answer.lower_m > truth + rounding || answer.upper_m < truth - rounding))
             {
-                return std::nullopt;
+                throw Failure(run.object.model.name + ": an answer does not hold the truth");
             }
             const double error = answer.kind == AnswerKind::decided
                                      ? run.radius_m - truth
@@ -251,20 +218,12 @@ private:
     double query_us_{0.0}; ///< T_Q against the whole object.
 };
 
-CaseFailure run_table2_case(const CaseContext& context, const Table2Case& test_case)
+void run_table2_case(const CaseContext& context, const Table2Case& test_case)
 {
-    const auto object = context.scenes.get(test_case.scene);
-    if (!object)
-    {
-        return object.error().text;
-    }
-    const auto tool = context.scenes.get(make_tool_mesh(*object.value(), MeshProbe::large));
-    if (!tool)
-    {
-        return tool.error().text;
-    }
+    const Scene& object = context.scenes.get(test_case.scene);
+    const Scene& tool = context.scenes.get(make_tool_mesh(object, MeshProbe::large));
     const PinnedCore pinned(context.options.core);
-    return Table2(context, test_case, *object.value(), *tool.value()).run();
+    Table2(context, test_case, object, tool).run();
 }
 
 std::vector<Case> table2_cases()
@@ -272,10 +231,10 @@ std::vector<Case> table2_cases()
     const auto one = [](const char* name, When when, const Table2Case& test_case)
     { return make_case(name, when, run_table2_case, test_case); };
     return {
-        one("bunny", When::always, {kBunny, 3 * kTable2MiB, 40.0, 1.35, 2.1, true}),
-        one("igea", When::full_only, {kTable2Igea, 16 * kTable2MiB}),
-        one("1.1M", When::full_only, {kFineBunny, 32 * kTable2MiB, kNoGoal, 1.3}),
-        one("tiny", When::named_only, {kTiny, kTable2MiB}),
+        one("bunny", When::always, {kBunny, 3 * kMiB, 40.0, 1.35, 2.1, true}),
+        one("igea", When::full_only, {kIgea, 16 * kMiB}),
+        one("1.1M", When::full_only, {kFineBunny, 32 * kMiB, kNoGoal, 1.3}),
+        one("tiny", When::named_only, {kTiny, kMiB}),
     };
 }
 

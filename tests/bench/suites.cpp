@@ -2,8 +2,6 @@
 // Copyright the Tactus authors.
 #include "tests/bench/suites.hpp"
 
-#include "tests/bench/random.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -46,26 +44,8 @@ std::vector<std::string> case_names(const Suite& suite)
     return names;
 }
 
-namespace
-{
-
-/// A library's or the system's exception is a failure like any other.
-CaseFailure run_case(const Case& one, const CaseContext& context)
-{
-    try
-    {
-        return one.run(context);
-    }
-    catch (const std::exception& error)
-    {
-        return error.what();
-    }
-}
-
-} // namespace
-
-CaseFailure run_suite(const Suite& suite, const BenchOptions& options, SceneStore& scenes,
-                      Rows& rows)
+std::optional<std::string> run_suite(const Suite& suite, const BenchOptions& options,
+                                     SceneStore& scenes, Rows& rows)
 {
     for (const Case& one : suite.cases())
     {
@@ -75,20 +55,20 @@ CaseFailure run_suite(const Suite& suite, const BenchOptions& options, SceneStor
         }
         fmt::print(stderr, "{}\n", one.name);
         const std::size_t rows_before = rows.size();
-        CaseFailure failure = run_case(one, {suite.name, one.name, options, scenes, rows});
-        if (!failure)
+        try
         {
-            failure = check_hashes(std::span(rows).subspan(rows_before));
+            one.run({suite.name, one.name, options, scenes, rows});
+            check_hashes(std::span(rows).subspan(rows_before));
         }
-        if (failure)
+        catch (const std::exception& error) // A library's or the system's, too.
         {
-            return fmt::format("{} {}: {}", suite.name, one.name, *failure);
+            return fmt::format("{} {}: {}", suite.name, one.name, error.what());
         }
     }
     return std::nullopt;
 }
 
-CaseFailure check_hashes(std::span<const Row> rows)
+void check_hashes(std::span<const Row> rows)
 {
     constexpr std::array kTimes{"s", "ms", "us", "ns"};
     for (const Row& row : rows)
@@ -96,11 +76,10 @@ CaseFailure check_hashes(std::span<const Row> rows)
         const bool is_time = std::ranges::find(kTimes, row.unit) != kTimes.end();
         if (is_time && row.frames > 0 && row.hash == 0)
         {
-            return fmt::format("{}: its result goes unused, no hash is over its {} frames",
-                               row.metric, row.frames);
+            throw Failure(fmt::format("{}: its result goes unused, no hash is over its {} frames",
+                                      row.metric, row.frames));
         }
     }
-    return std::nullopt;
 }
 
 } // namespace tactus::bench

@@ -46,12 +46,12 @@ struct Suite
 [[nodiscard]] std::vector<std::string> case_names(const Suite& suite);
 
 /// Runs the chosen cases, each on one core, and adds what they bring. Returns a line when a case
-/// could not be run or gave wrong answers, or measured a time whose result nothing looks at.
-[[nodiscard]] CaseFailure run_suite(const Suite& suite, const BenchOptions& options,
-                                    SceneStore& scenes, Rows& rows);
+/// failed, or measured a time whose result nothing looks at.
+[[nodiscard]] std::optional<std::string> run_suite(const Suite& suite, const BenchOptions& options,
+                                                   SceneStore& scenes, Rows& rows);
 
-/// A line when a row has the time of frames but no hash over them: what was timed may then be
+/// A failure when a row has the time of frames but no hash over them: what was timed may then be
 /// nothing at all.
-[[nodiscard]] CaseFailure check_hashes(std::span<const Row> rows);
+void check_hashes(std::span<const Row> rows);
 
 } // namespace tactus::bench

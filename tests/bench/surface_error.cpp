@@ -2,7 +2,9 @@
 // Copyright the Tactus authors.
 #include "tests/bench/surface_error.hpp"
 
-#include "tests/bench/random.hpp"
+#include "tests/bench/bench_row.hpp"
+#include "tests/bench/scenes.hpp"
+#include "tests/shared/random.hpp"
 
 #include <Eigen/Geometry>
 
@@ -36,7 +38,7 @@ double area_of(const Corners& corners)
 /// 0 .. 1, three independent values for each index.
 double unit(std::uint64_t seed, std::uint64_t index, std::uint64_t which)
 {
-    return 0.5 + 0.5 * signed_unit(seed, 3 * index + which);
+    return 0.5 + 0.5 * test::signed_unit(seed, 3 * index + which);
 }
 
 Vec3 point_on(const Corners& corners, double s, double t)
@@ -47,23 +49,6 @@ Vec3 point_on(const Corners& corners, double s, double t)
         t = 1.0 - t;
     }
     return corners[0] + s * (corners[1] - corners[0]) + t * (corners[2] - corners[0]);
-}
-
-std::vector<test::Face> faces_of(const TriangleMesh& mesh)
-{
-    std::vector<test::Face> faces;
-    faces.reserve(mesh.faces.size());
-    for (const auto& corners : mesh.faces)
-    {
-        test::Face& face = faces.emplace_back();
-        for (std::size_t i = 0; i < 3; ++i)
-        {
-            const std::array<double, 3>& at = mesh.positions[corners[i]];
-            std::transform(at.begin(), at.end(), face[i].begin(),
-                           [](double x) { return static_cast<float>(x); });
-        }
-    }
-    return faces;
 }
 
 /// Adds what the distances of points to a surface amount to.

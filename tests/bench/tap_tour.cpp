@@ -2,10 +2,10 @@
 // Copyright the Tactus authors.
 #include "tests/bench/tap_tour.hpp"
 
-#include "tests/bench/random.hpp"
+#include "tests/bench/bench_row.hpp"
+#include "tests/shared/random.hpp"
 #include "tests/shared/surface_slide.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 namespace tactus::bench
@@ -62,7 +62,7 @@ private:
         slide.turn_rad = kTapTurn_rad_per_s * kPeriod_s;
         slide.first_frame = first_frame;
         slide.turn_rate = [seed = kSeed + goals_m_.size()](std::uint64_t turn)
-        { return signed_unit(seed, turn); };
+        { return test::signed_unit(seed, turn); };
         test::SurfaceSlide along(scene_.tree, slide, goals_m_.back());
         for (std::uint32_t i = 0; i < steps; ++i)
         {
@@ -107,9 +107,9 @@ private:
     {
         for (std::size_t i = 0; manner_.tremor_m > 0.0 && i < goals_m.size(); ++i)
         {
-            goals_m[i] += manner_.tremor_m * Vec3(signed_unit(kSeed + 2, 3 * i),
-                                                  signed_unit(kSeed + 2, 3 * i + 1),
-                                                  signed_unit(kSeed + 2, 3 * i + 2));
+            goals_m[i] += manner_.tremor_m * Vec3(test::signed_unit(kSeed + 2, 3 * i),
+                                                  test::signed_unit(kSeed + 2, 3 * i + 1),
+                                                  test::signed_unit(kSeed + 2, 3 * i + 2));
         }
     }
 

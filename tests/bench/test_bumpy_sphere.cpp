@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "host_tools/shapes/shapes.hpp"
 #include "tests/bench/bumpy_sphere.hpp"
+#include "tests/bench/scenes.hpp"
 #include "tests/shared/face_tree.hpp"
 #include "tests/shared/random.hpp"
 
@@ -50,21 +51,6 @@ Vec3 random_direction(test::Random& random)
         direction = random.in_cube(1.0);
     }
     return direction.normalized();
-}
-
-std::vector<test::Face> faces_of(const TriangleMesh& mesh)
-{
-    std::vector<test::Face> faces;
-    for (const auto& corners : mesh.faces)
-    {
-        test::Face& face = faces.emplace_back();
-        for (std::size_t i = 0; i < 3; ++i)
-        {
-            std::ranges::transform(mesh.positions[corners[i]], face[i].begin(),
-                                   [](double x) { return static_cast<float>(x); });
-        }
-    }
-    return faces;
 }
 
 /// Where a ball rests whose device pulls it to a goal, by trying directions: on each the place

@@ -44,8 +44,8 @@ Questions ask(const Scene& scene, std::vector<Vec3> points_m)
     return questions;
 }
 
-Result<QueryTimes, SceneError> time_queries(PointQuery& query, const Questions& questions,
-                                            double band_m, double tolerance_m, std::uint32_t passes)
+QueryTimes time_queries(PointQuery& query, const Questions& questions, double band_m,
+                        double tolerance_m, std::uint32_t passes)
 {
     QueryTimes times{LeastTimes(questions.points_m.size()), 0};
     for (std::uint32_t pass = 0; pass < passes; ++pass)
@@ -58,14 +58,14 @@ Result<QueryTimes, SceneError> time_queries(PointQuery& query, const Questions& 
             times.us.keep(i, microseconds(start, BenchClock::now()));
             if (!is_right(answer_m, questions.truth_m[i], band_m, tolerance_m))
             {
-                return SceneError{fmt::format("{} answers {} m in frame {}; the truth is {} m",
-                                              query.name(), answer_m, i, questions.truth_m[i])};
+                throw Failure(fmt::format("{} answers {} m in frame {}; the truth is {} m",
+                                          query.name(), answer_m, i, questions.truth_m[i]));
             }
             hash += std::bit_cast<std::uint64_t>(answer_m) * (2 * i + 1);
         }
         if (pass > 0 && hash != times.hash)
         {
-            return SceneError{query.name() + ": passes over the same points gave other answers"};
+            throw Failure(query.name() + ": passes over the same points gave other answers");
         }
         times.hash = hash;
     }

@@ -2,7 +2,6 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "rt_core/base/result.hpp"
 #include "tests/bench/least_times.hpp"
 #include "tests/bench/measuring.hpp"
 #include "tests/bench/peers/point_query.hpp"
@@ -31,11 +30,10 @@ struct QueryTimes
     std::uint64_t hash{0}; ///< Over the answers' bits: they were used.
 };
 
-/// Asks one contestant all questions in turn, `passes` times. Refused when an answer is farther
+/// Asks one contestant all questions in turn, `passes` times. A failure when an answer is farther
 /// from the truth than `tolerance_m`, when one beyond the band is given or one within is not, and
 /// when passes differ.
-[[nodiscard]] Result<QueryTimes, SceneError> time_queries(PointQuery& query,
-                                                          const Questions& questions, double band_m,
-                                                          double tolerance_m, std::uint32_t passes);
+[[nodiscard]] QueryTimes time_queries(PointQuery& query, const Questions& questions, double band_m,
+                                      double tolerance_m, std::uint32_t passes);
 
 } // namespace tactus::bench

@@ -13,9 +13,6 @@
 #include "tests/shared/dop18_tree.hpp"
 #include "tests/shared/nearest_walk.hpp"
 
-#include <fmt/format.h>
-
-#include <array>
 #include <string>
 #include <utility>
 
@@ -125,14 +122,13 @@ struct VolumeFigures
 };
 
 template <typename Tree>
-Result<VolumeFigures, SceneError> measure(const CaseContext& context, const std::string& name,
-                                          const Scene& scene, const Model& model,
-                                          const std::vector<ChangedFace>& faces)
+VolumeFigures measure(const CaseContext& context, const std::string& name, const Scene& scene,
+                      const Model& model, const std::vector<ChangedFace>& faces)
 {
     WholeTree<Tree> whole(faces, model.tree);
     if (!whole.tree().is_complete())
     {
-        return SceneError{name + ": the tree has no room for all faces"};
+        throw Failure(name + ": the tree has no room for all faces");
     }
     const std::uint32_t frames = context.options.frames_or(4 * kCycleFrames, kCycleFrames);
     const Questions questions = ask(scene, touch_motion(scene.touch(), frames));
@@ -143,17 +139,13 @@ Result<VolumeFigures, SceneError> measure(const CaseContext& context, const std:
     const auto banded = time_queries(query, questions, band_m, tolerance_m, passes);
     const auto visits = static_cast<double>(query.visits());
     const auto unbounded = time_queries(query, questions, kInfinity, tolerance_m, passes);
-    if (!banded || !unbounded)
-    {
-        return banded ? unbounded.error() : banded.error();
-    }
     VolumeFigures figures;
-    figures.near_us = spread_of(chosen(banded.value().us.least(), questions.nearer_than(band_m)));
-    figures.flight_us = spread_of(unbounded.value().us.least());
+    figures.near_us = spread_of(chosen(banded.us.least(), questions.nearer_than(band_m)));
+    figures.flight_us = spread_of(unbounded.us.least());
     figures.visits = visits / static_cast<double>(passes * questions.points_m.size());
     figures.node_bytes = sizeof(typename Tree::Node);
     figures.used_mib = whole.used_mib();
-    figures.hash = banded.value().hash + 3 * unbounded.value().hash;
+    figures.hash = banded.hash + 3 * unbounded.hash;
     std::vector<PrimId> prims;
     for (const ChangedFace& face : faces)
     {
@@ -186,38 +178,24 @@ void add_rows(CaseRows& rows, const VolumeFigures& dop, const VolumeFigures& box
 
 } // namespace
 
-CaseFailure run_volume_case(const CaseContext& context, const VolumeCase& test_case)
+void run_volume_case(const CaseContext& context, const VolumeCase& test_case)
 {
-    const auto scene = context.scenes.get(test_case.scene);
-    if (!scene)
-    {
-        return scene.error().text;
-    }
+    const Scene& touched = context.scenes.get(test_case.scene);
     const PinnedCore pinned(context.options.core);
-    const Scene& touched = *scene.value();
-    const auto model = StaticModel::make(touched);
-    if (!model)
-    {
-        return model.error().text;
-    }
-    const Model& refined = model.value()->model();
+    StaticModel model(touched);
+    const Model& refined = model.model();
     const std::vector<ChangedFace> faces = faces_of(refined);
     const auto box = measure<AbTree>(context, "AABB", touched, refined, faces);
     const auto dop = measure<test::Dop18Tree>(context, "18-DOP", touched, refined, faces);
-    if (!box || !dop)
+    if (box.hash != dop.hash)
     {
-        return box ? dop.error().text : box.error().text;
-    }
-    if (box.value().hash != dop.value().hash)
-    {
-        return "the volumes give different answers";
+        throw Failure("the volumes give different answers");
     }
     Row common = context.common_row(touched.model.name);
     common.frames = context.options.frames_or(4 * kCycleFrames, kCycleFrames);
-    common.hash = dop.value().hash;
+    common.hash = dop.hash;
     CaseRows rows(context.rows, common);
-    add_rows(rows, dop.value(), box.value());
-    return std::nullopt;
+    add_rows(rows, dop, box);
 }
 
 } // namespace tactus::bench

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+
+/// That what judges can find something: one that sees nothing wrong would show rows without a
+/// fault.
+
+#include "rt_core/math/infinity.hpp"
+#include "tests/bench/judged_queries.hpp"
+#include "tests/bench/pair_trial.hpp"
+#include "tests/bench/suites.hpp"
+#include "tests/bench/trial_rows.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace tactus::bench
+{
+
+namespace
+{
+
+constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
+
+TEST(Judges, of_touch_count_what_is_missed_and_invented_but_for_what_is_near_the_radius)
+{
+    const std::vector<double> truth{0.5, 0.5, 0.5, 0.5, 0.995, 1.005, 1.5, 1.5, 1.5, 1.5};
+    const std::vector<double> told{0.9, 1.1, kInfinity, kNotANumber, 1.5,
+                                   0.5, 1.1, 0.9,       kNotANumber, 0.99};
+
+    const TouchErrors errors = judge_touch(told, truth, 1.0, 0.01);
+
+    EXPECT_EQ(errors.missed, 3U);
+    EXPECT_EQ(errors.invented, 2U);
+}
+
+TEST(Judges, of_distances_see_errors_within_the_band_and_what_is_no_number)
+{
+    const std::vector<double> truth{1.0, 1.9, 5.0, 5.0};
+    const std::vector<double> told{1.25, kInfinity, kInfinity, 3.0};
+
+    EXPECT_DOUBLE_EQ(largest_error_m(told, truth, std::vector(4, 2.0)), 0.25);
+    EXPECT_DOUBLE_EQ(largest_error_m(told, truth, std::vector{2.0, 2.0, 2.0, kInfinity}), 2.0);
+    EXPECT_EQ(largest_error_m(std::vector{kNotANumber}, std::vector{1.0}, std::vector{2.0}),
+              kInfinity);
+}
+
+TEST(Judges, of_nearest_points_see_those_beside_the_surface_and_those_too_far_away)
+{
+    const std::vector<test::Face> faces{
+        {Vec3f{-9.0F, -9.0F, 0.0F}, Vec3f{9.0F, -9.0F, 0.0F}, Vec3f{0.0F, 9.0F, 0.0F}}};
+    const test::FaceTree tree(faces);
+    const auto error_of = [&](const Vec3& told_m, double distance_m)
+    {
+        return largest_point_error_m({LeastTimes(1), {distance_m}, {told_m}, 0, std::nullopt},
+                                     {{Vec3(0, 0, 1)}, {1.0}}, tree);
+    };
+    EXPECT_EQ(error_of(Vec3(0, 0, 0), 1.0), 0.0);
+    EXPECT_DOUBLE_EQ(error_of(Vec3(0, 0, 2), 1.0), 2.0); // As near, but not on the surface.
+    EXPECT_DOUBLE_EQ(error_of(Vec3(0, 0.75, 0), 1.0), 0.25);
+    EXPECT_EQ(error_of(Vec3(5, 5, 5), kInfinity), 0.0); // Nothing was told.
+}
+
+/// Three faces a side, the last of each a twin of the first; at two places.
+TEST(Judges, of_pairs_count_what_is_planted)
+{
+    const PairTruth truth{{{{0, 0}, {1, 1}}, {}}, {0.0, 0.5}, {0, 1, 0}, {0, 1, 0}};
+    PairAnswers answers;
+    answers.do_meet = {false, true};
+    answers.meeting = {{{1, 1}, {1, 0}, {2, 2}, {0, 0}}, {{0, 1}}};
+    answers.distances_m = {0.125, 0.25};
+    const auto errors = [&](PairQuestion question)
+    { return judge_pairs(answers, truth, question); };
+
+    EXPECT_EQ(errors(PairQuestion::any).missed, 1U);
+    EXPECT_EQ(errors(PairQuestion::any).invented, 1U);
+    EXPECT_EQ(errors(PairQuestion::all_pairs).missed, 0U); // The twins stand for the first faces.
+    EXPECT_EQ(errors(PairQuestion::contacts).invented, 2U);
+    EXPECT_EQ(errors(PairQuestion::distance).largest_m, 0.25);
+    answers.meeting[0].clear();
+    EXPECT_EQ(errors(PairQuestion::all_pairs).missed, 2U);
+    answers.distances_m[0] = kNotANumber;
+    EXPECT_EQ(errors(PairQuestion::distance).largest_m, kInfinity);
+}
+
+TEST(Judges, of_a_trial_miss_a_goal_by_a_violation_and_by_an_error_above_its_bound_or_no_number)
+{
+    const auto missed = [](double worst, std::uint64_t violations)
+    {
+        Rows rows;
+        add_trial_rows({"bracket", 10, worst, 1.0, "of the law", violations, {}}, "brackets", rows);
+        const GoalCount count = count_goals(rows);
+        return count.goals - count.met;
+    };
+    EXPECT_EQ(missed(0.5, 0), 0U);
+    EXPECT_EQ(missed(0.5, 2), 1U);
+    EXPECT_EQ(missed(1.25, 0), 1U);
+    EXPECT_EQ(missed(kNotANumber, 0), 1U);
+}
+
+TEST(Judges, of_a_case_refuse_times_of_frames_that_nothing_looks_at)
+{
+    Row row;
+    row.unit = "us";
+    row.frames = 1'500;
+    EXPECT_THROW(check_hashes(std::vector{row}), Failure);
+    row.hash = 1;
+    EXPECT_NO_THROW(check_hashes(std::vector{row}));
+}
+
+} // namespace
+
+} // namespace tactus::bench
