@@ -39,6 +39,8 @@ struct FrontPage
 {
     ChunkId chunk{};
     std::uint64_t refined{0}; ///< Bit n: the chunk's record n.
+
+    bool operator==(const FrontPage&) const = default;
 };
 
 /// A model of which the controller has something.
@@ -47,6 +49,8 @@ struct FrontModel
     ContentHash hash{};
     std::vector<FrontPage> pages; ///< By their chunks.
     std::vector<ChunkId> wished;  ///< Asked for and not here yet; ascending.
+
+    bool operator==(const FrontModel&) const = default;
 };
 
 /// A ball that a tool may touch: where its chunks are looked for. Model frame, metres.
@@ -90,6 +94,8 @@ struct FrontTool
     ForceOff causes{ForceOff::none}; ///< Why less than the frame's force goes out.
     std::string shape;               ///< In the words of hrtc's --tool; printable ASCII.
     double radius_m{0.0};
+
+    bool operator==(const FrontTool&) const = default;
 };
 
 /// Times of frames, in nanoseconds.
@@ -97,6 +103,8 @@ struct FrontTimes
 {
     double mean_ns{0.0}; ///< Of the frames since the last front.
     double max_ns{0.0};  ///< Of all frames.
+
+    bool operator==(const FrontTimes&) const = default;
 };
 
 /// Stages in their order, then the frame, then its processor time.
@@ -119,6 +127,8 @@ struct Front
     std::vector<FrontModel> models; ///< Those with pages or wishes, of `objects` or `regions`.
     std::vector<FrontObject> objects;
     std::vector<FrontRegion> regions; ///< Most urgent first.
+
+    bool operator==(const Front&) const = default;
 };
 
 } // namespace tactus

@@ -17,6 +17,8 @@ struct ModelIdentity
     std::string name; ///< By which it is published; valid.
     ContentHash hash{};
     std::uint32_t revision{0};
+
+    bool operator==(const ModelIdentity&) const = default;
 };
 
 } // namespace tactus

@@ -19,6 +19,8 @@ struct ShownObject
     ContentHash model{}; ///< Of a model that the host serves.
     Material material;
     Pose pose;
+
+    bool operator==(const ShownObject&) const = default;
 };
 
 } // namespace tactus

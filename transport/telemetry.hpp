@@ -31,6 +31,8 @@ struct ToolTelemetry
     bool frozen{false};
     bool squeezed{false};
     bool held_back{false};
+
+    bool operator==(const ToolTelemetry&) const = default;
 };
 
 /// One tool and one object near it.
@@ -46,6 +48,8 @@ struct PairTelemetry
     std::array<double, 3> point_m{}; ///< Nearest on the object, in the world.
     std::array<double, 3> force_n{}; ///< By which the tool pushes the object; estimated where it
                                      ///< touches several.
+
+    bool operator==(const PairTelemetry&) const = default;
 };
 
 /// One pool's slots.
@@ -100,6 +104,8 @@ struct Telemetry
     std::array<ToolTelemetry, kMaxTools> tools{};
     std::array<PairTelemetry, kMaxPairs> pairs{}; ///< Those that are awake.
     std::array<ModelTelemetry, kMaxShownModels> models{};
+
+    bool operator==(const Telemetry&) const = default;
 };
 
 static_assert(std::is_trivially_copyable_v<Telemetry>);

@@ -85,6 +85,8 @@ struct Budgets
     /// was begun is ended, and what touches where it stops is looked at whatever is left. Tools of
     /// other shapes need none: kMaxHalfSpaces bounds each of their steps.
     std::uint32_t planes{1'024};
+
+    bool operator==(const Budgets&) const = default;
 };
 
 /// All that a frame gets, beside what its models' doors bring: the same inputs give the same bits.

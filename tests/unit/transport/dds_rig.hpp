@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <functional>
+#include <limits>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -15,6 +16,8 @@
 /// What tests over real DDS share.
 namespace tactus::test
 {
+
+inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// Far beyond what anything here takes; only a broken build waits this long.
 inline constexpr std::chrono::seconds kPatience{60};
@@ -67,7 +70,8 @@ inline void isolate_domains(int lease_s = 20)
     ::setenv("CYCLONEDDS_URI", uri.c_str(), 1);
 }
 
-/// Asks until it is so; false when it never is.
+/// Asks until it is so; false when it never is. Nothing else here waits for an event, and no test
+/// expects one within a time.
 inline bool eventually(const std::function<bool()>& is_so)
 {
     const auto start = std::chrono::steady_clock::now();

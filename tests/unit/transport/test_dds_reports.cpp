@@ -1,0 +1,488 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+
+/// The two reports of a controller, telemetry and front, keep the same laws on their way.
+
+#include "rt_core/math/infinity.hpp"
+#include "tests/unit/transport/dds_rig.hpp"
+#include "transport/dds/front.hpp"
+#include "transport/dds/telemetry.hpp"
+
+#include <dds/dds.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <concepts>
+#include <cstring>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tactus.h"
+
+namespace tactus::dds
+{
+namespace
+{
+
+using test::eventually;
+using test::kNan;
+
+/// How much a report holds.
+struct Size
+{
+    std::uint32_t tools, models, pairs, pages, objects;
+};
+
+constexpr Size kNothing{0, 0, 0, 0, 0};
+constexpr Size kSmall{1, 1, 1, 1, 1};
+
+/// Numbers of which no two are alike, and flags that differ from record to record.
+class Distinct
+{
+public:
+    template <typename... Fields>
+    void fill(Fields&... fields)
+    {
+        (set(fields), ...);
+    }
+    template <typename Number>
+    [[nodiscard]] Number next()
+    {
+        Number number{};
+        set(number);
+        return number;
+    }
+
+private:
+    void set(bool& flag) { flag = ((++count_ * 0x9E37'79B1U) >> 31U) != 0; }
+    void set(std::integral auto& number)
+    {
+        number = static_cast<std::remove_reference_t<decltype(number)>>(++count_);
+    }
+    void set(std::floating_point auto& number)
+    {
+        number = static_cast<std::remove_reference_t<decltype(number)>>(++count_) / 4;
+    }
+    template <typename Number, std::size_t kCount>
+    void set(std::array<Number, kCount>& numbers)
+    {
+        for (Number& number : numbers)
+        {
+            set(number);
+        }
+    }
+    void set(PoolTelemetry& pool)
+    {
+        auto& [used, capacity] = pool;
+        fill(used, capacity);
+    }
+    void set(FrontTimes& times)
+    {
+        auto& [mean_ns, max_ns] = times;
+        fill(mean_ns, max_ns);
+    }
+
+    std::uint32_t count_{0};
+};
+
+// A record with a field more has another number of names below, which doesn't compile.
+
+Telemetry telemetry_of(const Size& size)
+{
+    Telemetry telemetry;
+    Distinct distinct;
+    auto& [frame, period_ns, time_ns, exact, decided, bracket, stale, missed, own_faults,
+           machine_late, faults_now, faults_seen, tool_count, pair_count, model_count, tools, pairs,
+           models] = telemetry;
+    distinct.fill(frame, period_ns, time_ns, exact, decided, bracket, stale, missed, own_faults,
+                  machine_late, faults_now, faults_seen);
+    time_ns = -time_ns;
+    tool_count = size.tools;
+    pair_count = size.pairs;
+    model_count = size.models;
+    for (std::uint32_t i = 0; i < size.tools; ++i)
+    {
+        auto& [position_m, rotation, proxy_m, proxy_rotation, force_n, torque_nm, gripper_m,
+               buttons, has_gripper, in_contact, frozen, squeezed, held_back] = tools[i];
+        distinct.fill(position_m, rotation, proxy_m, proxy_rotation, force_n, torque_nm, gripper_m,
+                      buttons, has_gripper, in_contact, frozen, squeezed, held_back);
+    }
+    for (std::uint32_t i = 0; i < size.pairs; ++i)
+    {
+        auto& [host_epoch, object, tool, kind, lower_m, upper_m, point_m, force_n] = pairs[i];
+        distinct.fill(host_epoch, object, lower_m, upper_m, point_m, force_n);
+        host_epoch <<= 40U;
+        tool = static_cast<std::uint8_t>(i % size.tools);
+        kind = static_cast<AnswerKind>(i % 4);
+        lower_m = -lower_m;
+        upper_m = i % 7 == 0 ? kInfinity : upper_m;
+    }
+    for (std::uint32_t i = 0; i < size.models; ++i)
+    {
+        auto& [pages, faces, blocks, nodes, stage, host_gone, is_static, follows_poses, pose_age_ns,
+               poses_refused, pieces, piece_wait_ns] = models[i];
+        distinct.fill(pages, faces, blocks, nodes, host_gone, is_static, follows_poses, pose_age_ns,
+                      poses_refused, pieces, piece_wait_ns);
+        stage = static_cast<ModelStage>(i % kModelStages);
+    }
+    return telemetry;
+}
+
+std::vector<ModelIdentity> identities(std::uint32_t count)
+{
+    std::vector<ModelIdentity> models;
+    for (std::uint32_t i = 0; i < count; ++i)
+    {
+        models.push_back({"model-" + std::to_string(i), {}, i + 3});
+        models.back().hash.fill(static_cast<std::uint8_t>(i + 1));
+    }
+    return models;
+}
+
+Front front_of(const Size& size)
+{
+    Front front;
+    Distinct distinct;
+    distinct.fill(front.frame, front.time_ns, front.times, front.slots_left_out,
+                  front.regions_left_out);
+    front.time_ns = -front.time_ns;
+    auto& [splits, merges, scanned, nodes, triangles, looked_at, requests, regions, planes] =
+        front.budgets; // `planes` has no place on the wire.
+    distinct.fill(splits, merges, scanned, nodes, triangles, looked_at, requests, regions);
+    front.sweep_begin = 40;
+    front.sweep_end = 56;
+    for (std::uint32_t i = 0; i < size.tools; ++i)
+    {
+        front.tools.push_back({static_cast<SafetyState>(i % kSafetyStates),
+                               static_cast<ForceOff>(1U << (i % kForceOffs)),
+                               std::string(i % (kMaxShapeBytes + 1), 's'),
+                               distinct.next<double>()});
+    }
+    for (std::uint32_t i = 0; i < size.models; ++i)
+    {
+        FrontModel& model = front.models.emplace_back();
+        model.hash.fill(static_cast<std::uint8_t>(i + 1));
+        const std::uint32_t each = size.pages / size.models;
+        const std::uint32_t share = i + 1 < size.models ? each : size.pages - i * each;
+        for (std::uint32_t page = 0; page < share; ++page)
+        {
+            model.pages.push_back({{3 * page + 1}, distinct.next<std::uint64_t>() << 20U});
+        }
+        for (std::uint32_t wish = 0; wish < kMaxFrontWishes / size.models; ++wish)
+        {
+            model.wished.push_back({3 * wish + 2});
+        }
+    }
+    for (std::uint32_t i = 0; size.models > 0 && i < kMaxFrontRegions; ++i)
+    {
+        auto& [model, is_foretold, center_m, radius_m] = front.regions.emplace_back();
+        distinct.fill(is_foretold, center_m, radius_m);
+        model = i % size.models;
+        center_m[1] = -center_m[1];
+    }
+    for (std::uint32_t i = 0; i < size.objects; ++i)
+    {
+        auto& [host_epoch, object, number, model, pose] = front.objects.emplace_back();
+        distinct.fill(host_epoch, object, pose.translation_m);
+        host_epoch <<= 40U;
+        number = 4'095 - i;
+        model = i % size.models;
+        pose.rotation = {0.0, 0.6, 0.0, 0.8};
+        pose.scale = 1.0 + i;
+    }
+    return front;
+}
+
+/// A sample of the wire with one record of each kind, sound but for what a test changes.
+struct TelemetrySample
+{
+    tactus_v4_ToolTelemetry tool = {};
+    tactus_v4_PairTelemetry pair = {};
+    tactus_v4_ModelTelemetry model = {};
+    tactus_v4_Telemetry sample = {};
+
+    TelemetrySample()
+    {
+        std::strcpy(static_cast<char*>(model.name), "tiny");
+        sample.tools = {1, 1, &tool, false};
+        sample.pairs = {1, 1, &pair, false};
+        sample.models = {1, 1, &model, false};
+    }
+};
+
+struct FrontSample
+{
+    tactus_v4_FrontTool tool = {};
+    tactus_v4_FrontModel model = {};
+    tactus_v4_FrontObject object = {};
+    std::array<std::uint32_t, 2> chunks{3, 4};
+    std::array<std::uint64_t, 2> refined{};
+    std::array<std::uint32_t, 2> wished{5, 6};
+    tactus_v4_FrontRegion region = {};
+    tactus_v4_Front sample = {};
+
+    FrontSample()
+    {
+        model.pages = 2;
+        model.wished = 2;
+        object.pose.rotation[3] = 1.0;
+        object.pose.scale = 1.0;
+        sample.tools = {1, 1, &tool, false};
+        sample.models = {1, 1, &model, false};
+        sample.objects = {1, 1, &object, false};
+        sample.chunks = {2, 2, chunks.data(), false};
+        sample.refined = {2, 2, refined.data(), false};
+        sample.wished = {2, 2, wished.data(), false};
+        sample.regions = {1, 1, &region, false};
+    }
+};
+
+/// What is one report's own.
+struct TelemetryReport
+{
+    using Reader = TelemetryReader;
+    using Sample = TelemetrySample;
+    static constexpr Topic kTopic = Topic::telemetry;
+    static constexpr Size kLargest{kMaxTools, kMaxShownModels, kMaxPairs, 0, 0};
+
+    static auto writer(const Domain& domain, const std::string& name, const Size& size)
+    {
+        return std::move(TelemetryWriter::create(domain, name, identities(size.models))).value();
+    }
+    static Telemetry made(const Size& size) { return telemetry_of(size); }
+    static const auto& seen(const Reader& reader) { return reader.controllers(); }
+    static void expect_same(const WatchedController& got, const Size& size)
+    {
+        EXPECT_EQ(got.name, "one");
+        EXPECT_EQ(got.models, identities(size.models));
+        EXPECT_TRUE(got.telemetry == made(size));
+    }
+
+    using S = Sample;
+    static inline const std::vector<void (*)(Sample&)> kFaults{
+        [](S& s) { std::strcpy(static_cast<char*>(s.sample.controller_name), ""); },
+        [](S& s) { std::strcpy(static_cast<char*>(s.sample.controller_name), "\x1b[31mred"); },
+        [](S& s) { std::strcpy(static_cast<char*>(s.model.name), "a\nb"); },
+        [](S& s) { s.tool.force_n[1] = kNan; },
+        [](S& s) { s.tool.position_m[0] = kInfinity; },
+        [](S& s) { s.tool.gripper_m = kNan; },
+        [](S& s) { s.tool.rotation[3] = kInfinity; },
+        [](S& s) { s.pair.tool = 1; },
+        [](S& s) { s.pair.kind = 4; },
+        [](S& s) { s.pair.upper_m = kNan; },
+        [](S& s) { s.pair.upper_m = -1.0; },
+        [](S& s) { s.pair.force_n[2] = kInfinity; },
+    };
+};
+
+struct FrontReport
+{
+    using Reader = FrontReader;
+    using Sample = FrontSample;
+    static constexpr Topic kTopic = Topic::front;
+    static constexpr Size kLargest{kMaxTools, kMaxModels, 0, kMaxFrontPages, kMaxFrontObjects};
+
+    static auto writer(const Domain& domain, const std::string& name, const Size& /*size*/)
+    {
+        return std::move(FrontWriter::create(domain, name)).value();
+    }
+    static Front made(const Size& size) { return front_of(size); }
+    static const auto& seen(const Reader& reader) { return reader.fronts(); }
+    static void expect_same(const SeenFront& got, const Size& size)
+    {
+        EXPECT_TRUE(got.front == made(size));
+    }
+
+    using S = Sample;
+    static inline const std::vector<void (*)(Sample&)> kFaults{
+        [](S& s) { s.sample.times[6].max_ns = kNan; },
+        [](S& s) { s.sample.times[0].mean_ns = -1.0; },
+        [](S& s) { s.sample.sweep_begin = 5; },
+        [](S& s) { s.sample.sweep_end = kMaxObjects + 1; },
+        [](S& s) { s.tool.state = kSafetyStates; },
+        [](S& s) { s.tool.causes = 1U << kForceOffs; },
+        [](S& s) { s.tool.radius_m = kNan; },
+        [](S& s) { std::strcpy(static_cast<char*>(s.tool.shape), "\x1b[31m"); },
+        [](S& s) { s.object.model = 1; },
+        [](S& s) { s.object.number = kMaxObjects; },
+        [](S& s) { s.object.pose.rotation[0] = 1.0; },
+        [](S& s) { s.object.pose.translation_m[2] = kNan; },
+        [](S& s) { s.model.pages = 1; },
+        [](S& s) { s.model.pages = 0xFFFF'FFFFU; },
+        [](S& s) { s.sample.refined._length = 1; },
+        [](S& s) { s.chunks[1] = s.chunks[0]; },
+        [](S& s) { s.chunks[1] = 0xFFFF'FFFFU; },
+        [](S& s) { s.model.wished = 1; },
+        [](S& s) { s.model.wished = 0xFFFF'FFFFU; },
+        [](S& s) { s.wished[1] = s.wished[0]; },
+        [](S& s) { s.wished[1] = 0xFFFF'FFFFU; },
+        [](S& s) { s.region.model = 1; },
+        [](S& s) { s.region.center_m[1] = static_cast<float>(kNan); },
+        [](S& s) { s.region.radius_m = static_cast<float>(kNan); },
+        [](S& s) { s.region.radius_m = -1.0F; },
+    };
+};
+
+template <typename Report>
+class DdsReports : public ::testing::Test
+{
+protected:
+    void SetUp() override
+    {
+        test::isolate_domains();
+        viewer_.emplace(Domain::join(2).value());
+        sut_ = std::move(Report::Reader::create(*viewer_)).value();
+    }
+    /// A controller is a participant: each is one of its own.
+    struct Controller
+    {
+        Controller(const std::string& name, const Size& size)
+            : writer(Report::writer(domain, name, size)), report(Report::made(size))
+        {
+        }
+        void write() { writer->write(report); }
+
+        Domain domain{Domain::join(1).value()};
+        decltype(Report::writer(domain, {}, {})) writer;
+        decltype(Report::made({})) report;
+    };
+    [[nodiscard]] const auto& seen() const { return Report::seen(*sut_); }
+    /// Writes until `is_so` of what the reader has seen.
+    [[nodiscard]] bool polled_until(
+        const std::function<bool()>& is_so, const std::function<void()>& write = [] {})
+    {
+        return eventually(
+            [&]
+            {
+                write();
+                sut_->poll();
+                return is_so();
+            });
+    }
+
+    std::optional<Domain> viewer_;
+    std::unique_ptr<typename Report::Reader> sut_;
+};
+
+using Reports = ::testing::Types<TelemetryReport, FrontReport>;
+TYPED_TEST_SUITE(DdsReports, Reports);
+
+TYPED_TEST(DdsReports, come_as_they_were_sent_and_go_with_their_controller)
+{
+    for (const Size& size : {kNothing, kSmall, TypeParam::kLargest})
+    {
+        typename TestFixture::Controller controller("one", size);
+        ASSERT_TRUE(this->polled_until(
+            [&] { // The last one's end may still be on its way.
+                return this->seen().size() == 1 &&
+                       this->seen()[0].id == controller.domain.participants().own();
+            },
+            [&] { controller.write(); }));
+        EXPECT_GT(this->seen()[0].serial, 0U);
+        EXPECT_LE(this->seen()[0].serial, controller.writer->sent());
+        TypeParam::expect_same(this->seen()[0], size);
+    }
+    EXPECT_TRUE(this->polled_until([&] { return this->seen().empty(); }));
+    EXPECT_EQ(this->sut_->refused(), 0U);
+}
+
+/// One writer may say that it is another, or many: none of that gets into the reader.
+TYPED_TEST(DdsReports, of_a_controller_that_they_do_not_come_from_are_not_heard)
+{
+    typename TestFixture::Controller controller("good", kSmall);
+    const Domain stranger = Domain::join(1).value();
+    const auto writer = std::move(make_writer(stranger, TypeParam::kTopic, "good")).value();
+    ASSERT_TRUE(eventually([&] { return is_matched(writer); }));
+    ASSERT_TRUE(this->polled_until(
+        [&] { return !this->seen().empty(); },
+        [&]
+        {
+            for (std::uint32_t i = 0; i < 100; ++i)
+            {
+                typename TypeParam::Sample lie;
+                std::memcpy(lie.sample.controller, &i, sizeof(i));
+                std::strcpy(static_cast<char*>(lie.sample.controller_name), "many");
+                dds_write(writer.handle, &lie.sample);
+            }
+            controller.write();
+        }));
+    EXPECT_EQ(this->seen().size(), 1U);
+    EXPECT_EQ(this->seen()[0].id, controller.domain.participants().own());
+    EXPECT_EQ(this->sut_->refused(), 0U);
+}
+
+TYPED_TEST(DdsReports, with_a_fault_in_them_are_refused)
+{
+    using Sample = typename TypeParam::Sample;
+    std::vector<void (*)(Sample&)> faults = TypeParam::kFaults;
+    faults.push_back([](Sample& s)
+                     { std::strcpy(static_cast<char*>(s.sample.controller_name), "two words"); });
+    const Domain controller = Domain::join(1).value();
+    const ControllerId id = controller.participants().own();
+    const auto writer = std::move(make_writer(controller, TypeParam::kTopic, "good")).value();
+    ASSERT_TRUE(eventually([&] { return is_matched(writer); }));
+    for (std::size_t i = 0; i <= faults.size(); ++i)
+    {
+        Sample sample;
+        std::memcpy(sample.sample.controller, id.data(), id.size());
+        std::strcpy(static_cast<char*>(sample.sample.controller_name), "good");
+        const bool is_good = i == faults.size();
+        if (!is_good)
+        {
+            faults[i](sample);
+        }
+        const std::uint64_t before = this->sut_->refused();
+        EXPECT_TRUE(this->polled_until(
+            [&] { return is_good ? !this->seen().empty() : this->sut_->refused() > before; },
+            [&] { dds_write(writer.handle, &sample.sample); }))
+            << i;
+        EXPECT_EQ(this->seen().empty(), !is_good) << i;
+    }
+}
+
+class DdsTelemetry : public DdsReports<TelemetryReport>
+{
+};
+
+/// 70 at once, each of which goes on as if it were alone, and one that stays when the others leave.
+TEST_F(DdsTelemetry, of_more_than_64_controllers_is_watched_until_they_leave)
+{
+    std::vector<std::unique_ptr<Controller>> controllers;
+    for (int i = 0; i < 70; ++i)
+    {
+        controllers.push_back(std::make_unique<Controller>("hrtc-" + std::to_string(i), kSmall));
+    }
+    const auto are_seen = [&](std::size_t count)
+    {
+        return polled_until([&] { return seen().size() == count; },
+                            [&]
+                            {
+                                for (const auto& controller : controllers)
+                                {
+                                    controller->write();
+                                }
+                            });
+    };
+    ASSERT_TRUE(are_seen(controllers.size()));
+    controllers.resize(1);
+    ASSERT_TRUE(are_seen(1));
+    EXPECT_EQ(seen()[0].name, "hrtc-0");
+    EXPECT_EQ(sut_->refused(), 0U);
+}
+
+TEST_F(DdsTelemetry, that_holds_more_than_its_bounds_never_leaves)
+{
+    const Domain controller = Domain::join(1).value();
+    const auto writer = std::move(make_writer(controller, Topic::telemetry, "long")).value();
+    std::vector<tactus_v4_ToolTelemetry> tools(kMaxTools + 1);
+    TelemetrySample sample;
+    std::strcpy(static_cast<char*>(sample.sample.controller_name), "long");
+    sample.sample.tools = {kMaxTools + 1, kMaxTools + 1, tools.data(), false};
+    EXPECT_NE(dds_write(writer.handle, &sample.sample), DDS_RETCODE_OK);
+}
+
+} // namespace
+} // namespace tactus::dds
