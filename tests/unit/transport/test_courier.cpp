@@ -36,6 +36,7 @@ constexpr ContentKey index_key(std::uint32_t number)
     return {ContentKind::index_page, number};
 }
 
+constexpr ContentKey kBase{ContentKind::base, 0};
 constexpr std::int64_t kStepNs = 1'000'000;
 
 /// A file, a link that fails as told, a courier, and the haptic thread's side of the door.
@@ -68,6 +69,33 @@ struct Road
             side.adopt();
         }
         return side.owns(key);
+    }
+
+    void steps(int count)
+    {
+        for (int i = 0; i < count; ++i)
+        {
+            step();
+        }
+    }
+    /// The haptic thread knows since this generation that the base mesh isn't here, and wants it.
+    [[nodiscard]] bool wish_base(std::uint32_t gone, std::uint32_t wished)
+    {
+        return side.door.freed.try_push({ContentKind::base, 0, gone}) && side.wish(kBase, wished);
+    }
+    /// Whether nothing comes through the door in so many steps.
+    [[nodiscard]] bool is_silent(int count)
+    {
+        DoorEvent event;
+        for (int i = 0; i < count; ++i)
+        {
+            step();
+            if (side.door.arrived.try_pop(event))
+            {
+                return false;
+            }
+        }
+        return true;
     }
 
     /// The same with a wish that is made again and again, as a cache does that waits in vain.
@@ -118,30 +146,20 @@ TEST(Courier, brings_a_base_mesh_but_not_for_a_wish_older_than_its_going)
     Road road(model);
     const std::vector<Vec3f> positions_m(road.side.slots.base.positions_m.begin(),
                                          road.side.slots.base.positions_m.end());
-    const ContentKey base{ContentKind::base, 0};
-    ASSERT_TRUE(road.side.door.freed.try_push({ContentKind::base, 0, 7}));
-    ASSERT_TRUE(road.side.wish(base, 6));
-    DoorEvent event;
-    for (int i = 0; i < 10; ++i)
-    {
-        road.step();
-        ASSERT_FALSE(road.side.door.arrived.try_pop(event));
-    }
+    ASSERT_TRUE(road.wish_base(7, 6));
+    EXPECT_TRUE(road.is_silent(10));
     EXPECT_FALSE(road.side.linker.has_base());
 
     std::ranges::fill(road.side.slots.base.positions_m, Vec3f{});
-    ASSERT_TRUE(road.side.wish(base, 7));
-    for (int i = 0; i < 10; ++i)
-    {
-        road.step();
-    }
+    ASSERT_TRUE(road.side.wish(kBase, 7));
+    road.steps(10);
+    DoorEvent event;
     ASSERT_TRUE(road.side.door.arrived.try_pop(event));
-    EXPECT_EQ(event.key, base);
+    EXPECT_EQ(event.key, kBase);
     EXPECT_TRUE(road.side.linker.has_base());
     EXPECT_TRUE(std::ranges::equal(road.side.slots.base.positions_m, positions_m));
-    ASSERT_TRUE(road.side.wish(base, 8)); // It is here.
-    road.step();
-    EXPECT_FALSE(road.side.door.arrived.try_pop(event));
+    ASSERT_TRUE(road.side.wish(kBase, 8)); // It is here.
+    EXPECT_TRUE(road.is_silent(1));
 }
 
 /// Of a host that is gone, and of one that is there and silent.
@@ -152,10 +170,8 @@ TEST(Courier, gives_the_room_of_a_base_mesh_back_that_does_not_come_for_a_second
     {
         SCOPED_TRACE(is_gone);
         Road road(model, {.loss = is_gone ? 0.0 : 1.0});
-        const ContentKey base{ContentKind::base, 0};
         DoorEvent event;
-        ASSERT_TRUE(road.side.door.freed.try_push({ContentKind::base, 0, 1}));
-        ASSERT_TRUE(road.side.wish(base, 1));
+        ASSERT_TRUE(road.wish_base(1, 1));
         if (is_gone)
         {
             road.link.lose_host();
@@ -165,12 +181,12 @@ TEST(Courier, gives_the_room_of_a_base_mesh_back_that_does_not_come_for_a_second
         while (!road.side.door.arrived.try_pop(event))
         {
             ASSERT_LT(road.now_ns - wished_ns, 2'000'000'000);
-            ASSERT_TRUE(road.side.wish(base, 1)); // It is still wanted, which changes nothing.
+            ASSERT_TRUE(road.side.wish(kBase, 1)); // It is still wanted, which changes nothing.
             road.step();
         }
         EXPECT_GT(road.now_ns - wished_ns, 1'000'000'000);
         EXPECT_EQ(event.kind, DoorEventKind::base_back);
-        EXPECT_EQ(event.key, base);
+        EXPECT_EQ(event.key, kBase);
         EXPECT_EQ(event.slot, 0U);
         EXPECT_EQ(road.sut.counters().overdue, 1U);
         EXPECT_FALSE(road.side.linker.has_base());
@@ -179,19 +195,10 @@ TEST(Courier, gives_the_room_of_a_base_mesh_back_that_does_not_come_for_a_second
         // Until the haptic thread says that it knows, and of the time before that, a wish lends
         // nothing, whatever its generation.
         road.link.lose_host();
-        ASSERT_TRUE(road.side.wish(base, 900));
-        for (int i = 0; i < 3'000; ++i)
-        {
-            road.step();
-            ASSERT_FALSE(road.side.door.arrived.try_pop(event));
-        }
-        ASSERT_TRUE(road.side.door.freed.try_push({ContentKind::base, 0, 1'000}));
-        ASSERT_TRUE(road.side.wish(base, 999));
-        for (int i = 0; i < 3'000; ++i)
-        {
-            road.step();
-            ASSERT_FALSE(road.side.door.arrived.try_pop(event));
-        }
+        ASSERT_TRUE(road.side.wish(kBase, 900));
+        EXPECT_TRUE(road.is_silent(3'000));
+        ASSERT_TRUE(road.wish_base(1'000, 999));
+        EXPECT_TRUE(road.is_silent(3'000));
     }
 }
 
@@ -202,23 +209,18 @@ TEST(Courier, gives_the_room_of_a_base_mesh_back_that_it_refuses_and_asks_for_it
     const std::uint32_t parts = parts_of(model.base.size());
     ASSERT_GE(parts, 3U);
     Road road(model, {.damage = 1.0});
-    const ContentKey base{ContentKind::base, 0};
     ASSERT_TRUE(road.side.door.freed.try_push({ContentKind::base, 0, 1}));
     DoorEvent event;
     for (std::uint32_t time = 1; time <= 3; ++time)
     {
-        ASSERT_TRUE(road.side.wish(base, 1'000 * time));
-        for (int i = 0; i < 10; ++i)
-        {
-            road.step();
-        }
+        ASSERT_TRUE(road.side.wish(kBase, 1'000 * time));
+        road.steps(10);
         ASSERT_TRUE(road.side.door.arrived.try_pop(event)) << time;
         EXPECT_EQ(event.kind, DoorEventKind::base_back);
         EXPECT_EQ(road.sut.counters().refused_hash, time);
         EXPECT_EQ(road.sut.counters().pieces, std::uint64_t{time} * parts);
-        ASSERT_TRUE(road.side.wish(base, 1'000 * time + 1)); // Before it knows.
-        road.step();
-        ASSERT_FALSE(road.side.door.arrived.try_pop(event)) << time;
+        ASSERT_TRUE(road.side.wish(kBase, 1'000 * time + 1)); // Before it knows.
+        EXPECT_TRUE(road.is_silent(1)) << time;
         ASSERT_TRUE(road.side.door.freed.try_push({ContentKind::base, 0, 1'000 * time + 2}));
     }
     EXPECT_EQ(road.sut.counters().overdue, 0U);
@@ -232,13 +234,8 @@ TEST(Courier, keeps_what_came_of_a_base_mesh_whose_room_was_given_back)
     const std::uint32_t parts = parts_of(model.base.size());
     ASSERT_GE(parts, 3U);
     Road road(model, {.loss = 0.5});
-    const ContentKey base{ContentKind::base, 0};
-    ASSERT_TRUE(road.side.door.freed.try_push({ContentKind::base, 0, 1}));
-    ASSERT_TRUE(road.side.wish(base, 1));
-    for (int i = 0; i < 5; ++i)
-    {
-        road.step();
-    }
+    ASSERT_TRUE(road.wish_base(1, 1));
+    road.steps(5);
     const std::uint64_t before = road.sut.counters().pieces;
     ASSERT_GT(before, 0U);
     ASSERT_LT(before, parts);
@@ -254,7 +251,7 @@ TEST(Courier, keeps_what_came_of_a_base_mesh_whose_room_was_given_back)
     for (std::uint32_t generation = 1'000; !road.side.linker.has_base(); ++generation)
     {
         ASSERT_LT(generation, 1'200U);
-        ASSERT_TRUE(road.side.wish(base, generation));
+        ASSERT_TRUE(road.side.wish(kBase, generation));
         road.step();
     }
     EXPECT_EQ(road.sut.counters().pieces, parts);
@@ -544,15 +541,9 @@ TEST(Courier, is_not_starved_any_more_of_what_nobody_wishes_for)
     OverdueRoad road(model, 10'000);
     road.wish_for(1'300);
     ASSERT_TRUE(road.sut.is_starved());
-    for (int i = 0; i < 800; ++i)
-    {
-        road.step(); // The wish stays open.
-    }
+    road.steps(800); // The wish stays open.
     ASSERT_TRUE(road.sut.is_starved());
-    for (int i = 0; i < 250; ++i)
-    {
-        road.step();
-    }
+    road.steps(250);
     EXPECT_FALSE(road.sut.is_starved());
     EXPECT_EQ(road.sut.open_wishes(), 1U);
 }

@@ -72,14 +72,6 @@ protected:
     {
         return [&text](const std::string& line) { text += line + "\n"; };
     }
-    void start_host()
-    {
-        std::vector<PublishedModel> models;
-        models.push_back({"tiny", ModelStore::open(folder.write("tiny", model.file)).value()});
-        auto created = DdsHost::create(kHostDomain, std::move(models), log_into(host_lines));
-        ASSERT_TRUE(created) << created.error().text;
-        host = std::move(created).value();
-    }
     /// Both step until it is so or the time is over; whether it is so.
     [[nodiscard]] bool step_until(const std::function<bool()>& is_so,
                                   std::chrono::nanoseconds patience = kPatience)
@@ -108,9 +100,14 @@ protected:
             link->poll(got);
         }
     }
-    /// Our controller with the model of our host.
+    /// Our host, and our controller with its model.
     void connect()
     {
+        std::vector<PublishedModel> models;
+        models.push_back({"tiny", ModelStore::open(folder.write("tiny", model.file)).value()});
+        auto created = DdsHost::create(kHostDomain, std::move(models), log_into(host_lines));
+        ASSERT_TRUE(created) << created.error().text;
+        host = std::move(created).value();
         auto found = client->find({"tiny", std::nullopt}, kPatience,
                                   [&]
                                   {
@@ -122,6 +119,21 @@ protected:
         ASSERT_TRUE(step_until([&] { return host->subscribers().size() == 1; }));
     }
 
+    /// Whether our controller still gets what it asks for.
+    [[nodiscard]] bool is_served()
+    {
+        const ContentKey key{ContentKind::chunk, 0};
+        const std::size_t before = got.count;
+        link->request({&key, 1}, 1);
+        return step_until([&] { return got.count > before; }) && got.count == before + 1;
+    }
+    /// A writer of the stranger's that others listen to.
+    [[nodiscard]] Endpoint heard_writer(Topic topic, const std::string& partition)
+    {
+        Endpoint writer = make_writer(stranger, topic, partition).value();
+        EXPECT_TRUE(step_until([&] { return is_matched(writer); }));
+        return writer;
+    }
     /// A host's announcement; the writer is to be kept as long as it is to last.
     [[nodiscard]] Endpoint announce(std::uint64_t epoch) const
     {
@@ -165,7 +177,6 @@ protected:
 
 TEST_F(DdsVersions, who_speaks_another_version_is_named_once_by_both_sides_and_passed_over)
 {
-    ASSERT_NO_FATAL_FAILURE(start_host());
     ASSERT_NO_FATAL_FAILURE(connect());
     const Entity catalogue = topic_of_version("tactus/v1/catalogue");
     const Entity wanted = topic_of_version("tactus/v1/wanted");
@@ -189,9 +200,7 @@ TEST_F(DdsVersions, who_speaks_another_version_is_named_once_by_both_sides_and_p
     const std::string who = "(process " + std::to_string(::getpid());
     EXPECT_NE(lines.find(who), std::string::npos) << lines;
     EXPECT_EQ(client->catalogue().find({"old", std::nullopt}), nullptr);
-    const std::vector<ContentKey> keys{{ContentKind::chunk, 0}};
-    link->request(keys, 1);
-    EXPECT_TRUE(step_until([&] { return got.count == 1; }));
+    EXPECT_TRUE(is_served());
 }
 
 TEST_F(DdsVersions, who_says_to_be_another_host_is_not_heard)
@@ -212,10 +221,8 @@ TEST_F(DdsVersions, who_says_to_be_another_host_is_not_heard)
 /// Anybody may dispose of anything, and filters don't see it.
 TEST_F(DdsVersions, who_is_not_the_host_can_not_end_it_nor_hide_its_end)
 {
-    ASSERT_NO_FATAL_FAILURE(start_host());
     ASSERT_NO_FATAL_FAILURE(connect());
-    const Endpoint writer = make_writer(stranger, Topic::catalogue, "").value();
-    ASSERT_TRUE(step_until([&] { return is_matched(writer); }));
+    const Endpoint writer = heard_writer(Topic::catalogue, "");
     tactus_v4_CatalogueEntry entry = {};
     entry.host_epoch = host->epoch();
     const auto refused = [&]
@@ -243,18 +250,14 @@ TEST_F(DdsVersions, who_is_not_the_host_can_not_end_it_nor_hide_its_end)
 
 TEST_F(DdsVersions, who_is_not_the_controller_can_not_end_it_nor_hide_its_end)
 {
-    ASSERT_NO_FATAL_FAILURE(start_host());
     ASSERT_NO_FATAL_FAILURE(connect());
-    const Endpoint writer = make_writer(stranger, Topic::wanted, "ours").value();
-    ASSERT_TRUE(step_until([&] { return is_matched(writer); }));
+    const Endpoint writer = heard_writer(Topic::wanted, "ours");
     const tactus_v4_Wanted wanted = request(client->domain().participants().own(), "ours");
     ASSERT_EQ(dds_dispose(writer.handle, &wanted), DDS_RETCODE_OK);
     ASSERT_TRUE(
         step_until([&] { return !host->domain().participants().refusals().list().empty(); }));
     EXPECT_EQ(host->subscribers().size(), 1U);
-    const std::vector<ContentKey> keys{{ContentKind::chunk, 0}};
-    link->request(keys, 1);
-    EXPECT_TRUE(step_until([&] { return got.count == 1; }));
+    EXPECT_TRUE(is_served());
     EXPECT_EQ(host_lines.find("left ("), std::string::npos) << host_lines;
     link.reset();
     client.reset();
@@ -264,15 +267,13 @@ TEST_F(DdsVersions, who_is_not_the_controller_can_not_end_it_nor_hide_its_end)
 /// What a host or a controller said and nobody took yet then tells of an end, in its own name.
 TEST_F(DdsVersions, an_end_that_a_stranger_put_on_what_was_not_taken_yet_is_not_believed)
 {
-    ASSERT_NO_FATAL_FAILURE(start_host());
     ASSERT_NO_FATAL_FAILURE(connect());
-    const Endpoint wants = make_writer(stranger, Topic::wanted, "ours").value();
-    const Endpoint shows = make_writer(stranger, Topic::catalogue, "").value();
-    ASSERT_TRUE(step_until([&] { return is_matched(wants) && is_matched(shows); }));
+    const Endpoint wants = heard_writer(Topic::wanted, "ours");
+    const Endpoint shows = heard_writer(Topic::catalogue, "");
     const tactus_v4_Wanted wanted = request(client->domain().participants().own(), "ours");
     tactus_v4_CatalogueEntry entry = {};
     entry.host_epoch = host->epoch();
-    constexpr auto kOnItsWay = std::chrono::milliseconds(20);
+    constexpr auto kOnItsWay = 20ms;
     for (std::uint32_t i = 1; i <= 10; ++i)
     {
         const std::vector<ContentKey> keys{{ContentKind::chunk, 0}};
@@ -286,12 +287,9 @@ TEST_F(DdsVersions, an_end_that_a_stranger_put_on_what_was_not_taken_yet_is_not_
     }
     for (int i = 0; i < 2; ++i)
     {
-        const auto start = std::chrono::steady_clock::now();
-        while (std::chrono::steady_clock::now() - start < std::chrono::milliseconds(1'100))
-        {
-            host->step(); // It announces itself once a second.
-            std::this_thread::sleep_for(std::chrono::milliseconds(5));
-        }
+        std::unique_ptr<ChunkLink> untaken = std::move(link); // What it is told waits for it.
+        step_for_an_announcement();
+        link = std::move(untaken);
         ASSERT_EQ(dds_dispose(shows.handle, &entry), DDS_RETCODE_OK);
         std::this_thread::sleep_for(kOnItsWay);
         link->poll(got);
@@ -306,12 +304,9 @@ TEST_F(DdsVersions, an_end_that_a_stranger_put_on_what_was_not_taken_yet_is_not_
 
 TEST_F(DdsVersions, pieces_of_who_says_to_be_the_host_are_not_taken)
 {
-    ASSERT_NO_FATAL_FAILURE(start_host());
     ASSERT_NO_FATAL_FAILURE(connect());
     const ControllerId us = client->domain().participants().own();
-    const Endpoint writer =
-        make_writer(stranger, Topic::chunks, controller_partition("ours", us)).value();
-    ASSERT_TRUE(step_until([&] { return is_matched(writer); }));
+    const Endpoint writer = heard_writer(Topic::chunks, controller_partition("ours", us));
     std::vector<std::byte> payload;
     append_piece(payload, {model_hash(model.header), 0, 2, 0}, std::vector<std::byte>(10));
     tactus_v4_Pieces sample = {};
@@ -321,17 +316,13 @@ TEST_F(DdsVersions, pieces_of_who_says_to_be_the_host_are_not_taken)
     sample.payload = {length, length, reinterpret_cast<std::uint8_t*>(payload.data()), false};
     ASSERT_EQ(dds_write(writer.handle, &sample), DDS_RETCODE_OK);
     EXPECT_FALSE(step_until([&] { return got.count > 0; }, kMoment));
-    const std::vector<ContentKey> keys{{ContentKind::chunk, 0}};
-    link->request(keys, 1); // Our credit was not touched either.
-    EXPECT_TRUE(step_until([&] { return got.count == 1; }));
+    EXPECT_TRUE(is_served());
 }
 
 TEST_F(DdsVersions, a_controller_is_served_under_its_own_id_and_a_valid_name_only)
 {
-    ASSERT_NO_FATAL_FAILURE(start_host());
     ASSERT_NO_FATAL_FAILURE(connect());
-    const Endpoint writer = make_writer(stranger, Topic::wanted, "stranger").value();
-    ASSERT_TRUE(step_until([&] { return is_matched(writer); }));
+    const Endpoint writer = heard_writer(Topic::wanted, "stranger");
     const ControllerId own = stranger.participants().own();
     ControllerId other = own;
     other[3] ^= 1U;
