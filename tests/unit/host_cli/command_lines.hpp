@@ -7,47 +7,50 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstddef>
+#include <fstream>
 #include <functional>
-#include <span>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
-/// What programs say to command lines, without starting them; tables of what they refuse.
+/// What programs say to command lines, without starting them.
 namespace tactus::test
 {
 
 /// What reads a program's command line as its main() does, and returns the exit code.
 using Parse = std::function<int(int argc, char** argv)>;
 
-/// Words with blanks between, the program's name first, and the whole line on stderr.
-struct RefusedLine
+inline std::string replaced(std::string text, const std::string& part, const std::string& by)
 {
-    std::string words;
-    std::string said;
-};
+    for (std::size_t at = 0; (at = text.find(part, at)) != std::string::npos; at += by.size())
+    {
+        text.replace(at, part.size(), by);
+    }
+    return text;
+}
 
-/// Values that are refused behind these words, each in the same way: its text takes the place of {}
-/// in what is said.
-struct RefusedValues
-{
-    std::string words;
-    std::vector<std::string> values;
-    std::string said;
-};
-
+/// Words with blanks between: '' is an empty one, and \s, \n and \e are what one can't hold as it
+/// is.
 inline std::vector<std::string> words_of(const std::string& line)
 {
     std::istringstream stream(line);
     std::vector<std::string> words;
     for (std::string word; stream >> word;)
     {
+        for (const auto& [part, by] : {std::pair("''", ""), std::pair("\\s", " "),
+                                       std::pair("\\n", "\n"), std::pair("\\e", "\x1b")})
+        {
+            word = replaced(std::move(word), part, by);
+        }
         words.push_back(word);
     }
     return words;
 }
 
-/// Checks that the program leaves with this code.
+/// Checks that the program leaves with this code. The first word is its name.
 inline void expect_left(const Parse& parse, std::vector<std::string> words, int code)
 {
     std::vector<char*> arguments;
@@ -75,33 +78,41 @@ inline std::string shown_by(const Parse& parse, const std::string& line)
     return testing::internal::GetCapturedStdout();
 }
 
-inline void expect_refused(const Parse& parse, std::span<const RefusedLine> lines,
-                           int code = kExitUsage)
+/// Checks each line of a table: CODE | COMMAND | what is said on stderr | VALUES. Each of the
+/// values takes the place of {} in both. Returns how many commands those were.
+inline std::size_t expect_refusals(const Parse& parse, const std::string& table)
 {
-    for (const auto& [words, said] : lines)
+    std::size_t commands = 0;
+    std::ifstream file(table);
+    for (std::string line; std::getline(file, line);)
     {
-        SCOPED_TRACE(words);
-        EXPECT_EQ(refusal_of(parse, words_of(words), code), said + "\n");
-    }
-}
-
-inline void expect_refused(const Parse& parse, std::span<const RefusedValues> options)
-{
-    for (const auto& [line, values, said] : options)
-    {
-        for (const std::string& value : values)
+        if (line.empty() || line.front() == '#')
         {
-            SCOPED_TRACE(line + " '" + printable(value) + "'");
-            std::vector<std::string> words = words_of(line);
-            words.push_back(value);
-            std::string wanted = said;
-            if (const std::size_t hole = wanted.find("{}"); hole != std::string::npos)
+            continue;
+        }
+        SCOPED_TRACE(line);
+        std::vector<std::string> fields{line};
+        for (std::size_t bar = 0; (bar = fields.back().find(" | ")) != std::string::npos;)
+        {
+            std::string rest = fields.back().substr(bar + 3);
+            fields.back().resize(bar);
+            fields.push_back(std::move(rest));
+        }
+        fields.resize(std::max<std::size_t>(fields.size(), 4), "''");
+        for (const std::string& value : words_of(fields[3]))
+        {
+            std::vector<std::string> words = words_of(fields[1]);
+            for (std::string& word : words)
             {
-                wanted.replace(hole, 2, printable(value));
+                word = replaced(std::move(word), "{}", value);
             }
-            EXPECT_EQ(refusal_of(parse, words, kExitUsage), wanted + "\n");
+            EXPECT_EQ(refusal_of(parse, words, std::stoi(fields[0])),
+                      replaced(fields[2], "{}", printable(value)) + "\n")
+                << printable(value);
+            ++commands;
         }
     }
+    return commands;
 }
 
 } // namespace tactus::test
