@@ -64,10 +64,10 @@ stop_publisher
 printf '%s\n' '0 bumpy 0.5 0 0 0 0 0 1' '1 bumpy 0.5 0.03 0 0 0 0.1 0.995' \
     '2 bumpy 0.5 0 0 0 0 0 1' >far.txt
 start_publisher bumpy.spm --poses far.txt --poses-loop --poses-rate 100
-contact=0.4 run_hrtc --model bumpy --duration 3
+contact=0.3 run_hrtc --model bumpy --duration 4
 check report.json models.0.pose.accepted '>' 100 models.0.pose.moves '>' 100 \
     models.0.pose.step_max_m '>' 0.49 safety.begun.jump '<=' 1
-check_contact report.json force.contact_share 0.4
+check_contact report.json force.contact_share 0.3
 check_clean report.json
 stop_publisher
 

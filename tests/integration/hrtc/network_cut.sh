@@ -5,6 +5,11 @@
 # one that is here as a whole stays.
 source "$(dirname "$0")/two_networks.sh"
 
+# is_felt_after LINE: the host has printed a force since.
+is_felt_after() {
+    tail -n +$(($1 + 1)) publish.log | grep -Eq '^watch .*; (0\.0?[1-9]|[1-9])[0-9.]* N in contact'
+}
+
 # cut_in_mid_run MODEL ARGUMENT...: hrtc on that model, with a cut.
 cut_in_mid_run() {
     local model=$1
@@ -21,7 +26,8 @@ cut_in_mid_run() {
     relay_say mend
     wait_for_line hrtc.log "model '$model' is served again by the same host"
     wait_for_line publish.log ' subscribed' 2
-    wait_for_more_frames 900 publish.log
+    # A hand that has sunk in too deep comes out first.
+    wait_until 'force after the cut' is_felt_after "$(wc -l <publish.log)"
     stop_hrtc
     [[ $(lines "model '$model'" hrtc.log) == 2 ]] || fault 'not two lines about the host'
     pieces=$(sent_pieces) # Of the time after the cut.

@@ -21,7 +21,7 @@ touch_while() {
     "$@"
     wait_for_frames $(($(frames_in publish.log) + 1)) publish.log
     changed_at=$(frames_in publish.log)
-    wait_for_frames $((changed_at + 900)) publish.log
+    wait_for_frames $((changed_at + 500)) publish.log
 }
 # end_touch: all of it ends, with the host there the whole time.
 end_touch() {
@@ -29,7 +29,7 @@ end_touch() {
     cat publish.log
     [[ $(grep "model 'served'" hrtc.log | grep -cv "doesn't come; \|has come after all") == 0 ]] \
         || fault 'a line about the host, which was there'
-    check report.json frames '>' $((changed_at + 900)) wire.host_lost == 0 safety.begun.host == 0 \
+    check report.json frames '>' $((changed_at + 500)) wire.host_lost == 0 safety.begun.host == 0 \
         models.0.host_connected == 1
     check_wire_run report.json
     judge_run large.spm "$changed_at"

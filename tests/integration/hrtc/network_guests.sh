@@ -12,7 +12,7 @@ command -v python3 >/dev/null || { echo 'skipped: no python3'; exit 77; }
 # ride MODELS VISITS FIGURE...: figures of the ride through a scene of so many models, as for check.
 ride() {
     local models=$1 visits=$2
-    python3 "$demo_scene" demo.glb --faces 2000 --models "$models" || fail 'no scene'
+    python3 "$demo_scene" demo.glb --faces 1000 --models "$models" || fail 'no scene'
     "$build" demo.glb -o "made-$models" >built.txt || fail "$(cat built.txt)"
     start_publisher "made-$models/scene.gltf" --scene demo
     in_controller_network "$scene_rider" --domain "$domain" --scene demo --pool-mib 8 --speed 2 \
@@ -24,6 +24,6 @@ ride() {
 }
 
 start_relay --delay-ms 10
-ride 20 10 are_guests == 0 bases_at_start == 20
-ride 200 30 are_guests '>' 0 bases_at_start == 1 came '>' 60 went '>' 60 here_max '<' 40
+ride 20 6 are_guests == 0 bases_at_start == 20
+ride 200 15 are_guests '>' 0 bases_at_start == 1 came '>' 60 went '>' 60 here_max '<' 40
 finish

@@ -19,7 +19,7 @@ wait_for_line hrtc.log "host of model 'large' is gone; going on with what is res
 start_publisher large.spm --watch
 wait_for_line hrtc.log 'is served again, by another host or a restarted one with the same file'
 wait_for_line publish.log ' subscribed'
-wait_for_more_frames 900 publish.log
+wait_for_more_frames 500 publish.log
 stop KILL "$publisher"
 wait_for_line hrtc.log 'is gone' 2
 

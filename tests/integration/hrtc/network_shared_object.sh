@@ -30,7 +30,7 @@ touch_both() {
     local name
     for name in left right; do
         wait_for_contact "$1" "$name"
-        wait_for_more_frames 900 "$1" "$name"
+        wait_for_more_frames 500 "$1" "$name"
     done
 }
 
@@ -66,7 +66,7 @@ for name in left right; do
     stop_hrtc
     # What both hosts showed was followed, one object at a time; nothing was mixed up, and the model
     # was never without a host.
-    check "$name.json" frames '>' 2000 models == 1 scene.objects == 1 \
+    check "$name.json" frames '>' 1500 models == 1 scene.objects == 1 \
         scene.objects_max == 1 scene.came == 1 scene.went == 1 scene.passed_over == 0 \
         scene.changes_refused.not_here == 0 scene.changes_refused.already_here == 0 \
         scene.changes_refused.old_generation == 0 scene.changes_refused.bad_pose == 0 \

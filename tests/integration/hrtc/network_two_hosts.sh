@@ -28,7 +28,7 @@ mv publish.log first.log # The host goes on writing there.
 start_publisher second.spm --name ball
 mv publish.log second.log
 wait_for_line hrtc.log "warning: model 'ball' is published with two hashes"
-wait_for_more_frames 900 first.log
+wait_for_more_frames 500 first.log
 stop_hrtc
 [[ $(lines "model 'ball'" hrtc.log) == 1 ]] || fault 'not one line about the second host'
 [[ $(subscriptions second.log) == 0 ]] || fault 'the second host was asked'
