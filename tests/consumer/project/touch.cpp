@@ -1,78 +1,44 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 //
-// touch FILE, or touch NAME DOMAIN: a pen, held by a device of its own, between two objects that
-// move. The model comes from a file, or over DDS from whoever publishes it. Prints what was felt
-// and a digest over every bit of the answers: from a file it is the same whatever this program was
-// compiled with.
+// touch FILE RECORDING, or touch NAME RECORDING DOMAIN: a pen, a brick and a wedge go down among a
+// thousand objects that show one model, of a file or of a host. Objects move, come and go. Prints a
+// digest over every bit of the answers and forces: from a file it is the same whatever this program
+// was compiled with. All frames are recorded and replayed. docs/library.md and docs/how-to.md show
+// parts of it.
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <fstream>
 #include <memory>
 #include <optional>
-#include <span>
-#include <tactus/platform/haptic_device.hpp>
+#include <tactus/platform/recording/frame_tap.hpp>
+#include <tactus/platform/recording/recording.hpp>
+#include <tactus/platform/recording/recording_writer.hpp>
+#include <tactus/platform/recording/replay.hpp>
 #include <tactus/rt_core/force/force_conditioner.hpp>
 #include <tactus/rt_core/force/own_force.hpp>
 #include <tactus/rt_core/force/safe_state.hpp>
 #include <tactus/rt_core/frame/frame.hpp>
+#include <tactus/rt_core/geometry/convex.hpp>
 #include <tactus/transport/courier.hpp>
 #include <tactus/transport/dds/dds_client.hpp>
 #include <tactus/transport/store/store_link.hpp>
 #include <thread>
+#include <vector>
 
 using namespace tactus;
 
 namespace
 {
 
-constexpr std::int64_t kPeriod_ns = 1'000'000;
-constexpr std::uint64_t kFrames = 2'000;
-
-/// A device of one's own: here a hand that goes down 60 mm in two seconds, and gives way to the
-/// force by 0.2 mm a newton.
-class DescendingHand final : public HapticDevice
-{
-public:
-    explicit DescendingHand(const Vec3& start_m) : start_m_(start_m)
-    {
-        info_.name = "descending hand";
-        info_.workspace_radius_m = 0.2;
-        info_.speed_max_m_per_s = 1.0;
-        info_.rate_min_hz = 1'000;
-        info_.rate_max_hz = 1'000;
-    }
-
-    [[nodiscard]] const DeviceInfo& info() const noexcept override { return info_; }
-    [[nodiscard]] DeviceSample read() noexcept override
-    {
-        DeviceSample sample;
-        const double share = static_cast<double>(status_.frames) / static_cast<double>(kFrames);
-        const Vec3 place_m = start_m_ - Vec3(0.0, 0.0, 0.06 * share) + 2e-4 * force_n_;
-        sample.position_world_m = {place_m.x(), place_m.y(), place_m.z()};
-        sample.frame = status_.frames++;
-        sample.valid = true;
-        return sample;
-    }
-    void write(const Wrench& wrench) noexcept override
-    {
-        const std::array<double, 3>& n = wrench.force_world_n;
-        const bool is_free = status_.state != DeviceState::brake;
-        force_n_ = is_free ? Vec3(n[0], n[1], n[2]) : Vec3(0.0, 0.0, 0.0);
-        status_.state = is_free ? DeviceState::force : DeviceState::brake;
-    }
-    void brake() noexcept override { status_.state = DeviceState::brake; }
-    void release_brake() noexcept override { status_.state = DeviceState::idle; }
-    [[nodiscard]] DeviceStatus status() const noexcept override { return status_; }
-
-private:
-    DeviceInfo info_;
-    DeviceStatus status_;
-    Vec3 start_m_;
-    Vec3 force_n_{0.0, 0.0, 0.0};
-};
+constexpr std::uint32_t kSide = 10;
+constexpr std::uint32_t kObjects = kSide * kSide * kSide;
+constexpr std::uint32_t kFrames = 2'000;
 
 /// FNV-1a over the bits of doubles.
 class Digest
@@ -98,56 +64,83 @@ private:
     std::uint64_t hash_{0xCBF2'9CE4'8422'2325U};
 };
 
+/// Puts the pieces of the model into the recording; called before a frame can have them.
+class PieceCopies final : public PieceSink
+{
+public:
+    explicit PieceCopies(RecordingWriter& writer) : writer_(writer) {}
+    void receive(ContentKey key, std::span<const std::byte> bytes) override
+    {
+        writer_.add_piece(0, key, bytes);
+    }
+
+private:
+    RecordingWriter& writer_;
+};
+
 int fail(const char* text)
 {
     std::fprintf(stderr, "touch: %s\n", text);
     return 2;
 }
 
-/// Both objects are the same model, one above the other; the upper turns, the lower goes sideways.
-SceneChange move(std::uint32_t object, std::uint64_t frame)
+/// A grid of objects, `step_m` apart, the last layer at a height of 0.
+std::vector<ObjectPose> grid(double step_m)
 {
-    const double seconds = 1e-3 * static_cast<double>(frame);
-    SceneChange change;
-    change.kind = SceneChangeKind::object_moves;
-    change.number = object;
-    if (object == 0)
+    std::vector<ObjectPose> poses(kObjects);
+    for (std::uint32_t i = 0; i < kObjects; ++i)
     {
-        change.pose.rotation =
-            Eigen::AngleAxisd(0.3 * seconds, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+        const Vec3 place(i % kSide, i / kSide % kSide, 1.0 + i / (kSide * kSide) - kSide);
+        poses[i].translation_m = step_m * place;
     }
-    else
+    return poses;
+}
+
+/// Stores what was recorded and runs it again.
+int replay_file(const char* path, const std::vector<std::byte>& bytes)
+{
+    std::ofstream(path, std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes.data()),
+               static_cast<std::streamsize>(bytes.size()));
+    const auto recording = Recording::read(path);
+    if (!recording)
     {
-        change.pose.translation_m = {0.01 * seconds, 0.0, -0.03};
+        return fail(recording.error().text.c_str());
     }
-    return change;
+    const auto report = replay(recording.value());
+    if (!report)
+    {
+        return fail(report.error().text.c_str());
+    }
+    std::printf("%s\n", replay_line(recording.value(), report.value()).c_str());
+    return report.value().difference || report.value().frames != kFrames ? 1 : 0;
 }
 
 } // namespace
 
 int main(int argc, char** argv)
 {
-    if (argc < 2 || argc > 3)
+    if (argc < 3 || argc > 4)
     {
-        std::fprintf(stderr, "usage: touch FILE | touch NAME DOMAIN\n");
+        std::fprintf(stderr, "usage: touch FILE RECORDING | touch NAME RECORDING DOMAIN\n");
         return 3;
     }
     std::unique_ptr<dds::DdsClient> client; // Must outlive the model's link.
     Result<ServedModel, Refusal> served = Refusal{};
-    if (argc == 2)
+    if (argc == 3)
     {
         served = serve_from_file(argv[1], "ring", {});
     }
     else
     {
-        const auto domain = static_cast<std::uint32_t>(std::strtoul(argv[2], nullptr, 10));
+        const auto domain = static_cast<std::uint32_t>(std::strtoul(argv[3], nullptr, 10));
         auto joined = dds::DdsClient::create(domain, "touch", {});
         if (!joined)
         {
             return fail(joined.error().text.c_str());
         }
         client = std::move(joined).value();
-        served = client->find({argv[1], {}}, std::chrono::seconds(10));
+        served = client->find({argv[1], {}}, std::chrono::seconds(60));
     }
     if (!served)
     {
@@ -155,31 +148,59 @@ int main(int argc, char** argv)
     }
     const ServedModel& model = served.value();
     const ModelHeader header = ModelHeader::parse(model.header).value();
+    const double size_m = header.diagonal_m();
 
-    // A tool of one's own: a pen of 30 mm, 2 mm thick, that is held upright.
+    // A pen of 30 mm, 2 mm thick, that is held upright.
     ToolSpec pen;
     pen.core = Segment{{0.0, 0.0, 0.0}, {0.0, 0.0, 0.03}};
     pen.radius_m = 0.001;
     pen.wants_contacts = true;
-    const std::array<ToolSpec, 1> tools{pen};
-    const std::array<ObjectSpec, 2> objects{ObjectSpec{ModelId{0}}, ObjectSpec{ModelId{0}}};
-    const std::array<ObjectPose, 2> poses{move(0, 0).pose, move(1, 0).pose};
 
-    constexpr std::size_t kBytes = std::size_t{4} << 20U;
+    // A brick with rounded edges.
+    ToolSpec brick;
+    brick.core = Box{{0.1 * size_m, 0.05 * size_m, 0.02 * size_m}};
+    brick.radius_m = 0.01 * size_m;
+
+    // A wedge: the convex hull of its corners, which stay where they are while the frame lives.
+    const double wide_m = 0.04 * size_m;
+    const std::array<Vec3, 6> corners{Vec3(-wide_m, -wide_m, wide_m), Vec3(wide_m, -wide_m, wide_m),
+                                      Vec3(-wide_m, wide_m, wide_m),  Vec3(wide_m, wide_m, wide_m),
+                                      Vec3(0.0, -wide_m, -wide_m),    Vec3(0.0, wide_m, -wide_m)};
+    const auto hull = Hull::create(corners);
+    if (!hull)
+    {
+        return fail("a corner of the wedge is not finite");
+    }
+    ToolSpec wedge;
+    wedge.core = hull.value();
+    wedge.radius_m = 0.005 * size_m;
+
+    const std::array<ToolSpec, 3> tools{pen, brick, wedge};
+
+    // All objects show model 0; the material is each one's own.
+    std::vector<ObjectSpec> objects(kObjects);
+    for (ObjectSpec& object : objects)
+    {
+        object.model = ModelId{0};
+        object.material.stiffness_n_per_m = 800.0;
+    }
+    const std::vector<ObjectPose> poses = grid(1.5 * size_m);
+
+    FrameSetup setup;
+    setup.tools = tools;
+    setup.objects = objects;
+    setup.poses = poses;
+    setup.capacities.objects = kObjects + 1; // Room for one that comes later.
+
+    constexpr std::size_t kBytes = std::size_t{16} << 20U;
     const auto memory = std::make_unique<std::byte[]>(kBytes + Arena::kAlignment);
     void* first = memory.get();
     std::size_t room = kBytes + Arena::kAlignment;
     std::align(Arena::kAlignment, kBytes, first, room);
     Arena arena({static_cast<std::byte*>(first), kBytes});
-
     const std::array<ModelSource, 1> sources{
         ModelSource{model.header, model.base, plan_capacities(header, kBytes / 2, 0)}};
-    FrameSetup setup;
-    setup.tools = tools;
-    setup.objects = objects;
-    setup.poses = poses;
     setup.models = sources;
-    setup.period_ns = kPeriod_ns;
     std::optional<Frame> frame;
     if (const auto started = Frame::start(frame, arena, setup); !started)
     {
@@ -188,68 +209,165 @@ int main(int argc, char** argv)
     Model& parts = frame->model({0});
     Courier courier(arena, frame->pools().slots, frame->pools().cache.door, {});
     courier.add(parts.header, parts.linker, *model.link, model.name);
+    FrameTap tap;
+    RecordingWriter writer(to_recorded(setup));
+    PieceCopies copies(writer);
+    courier.copy_pieces_to(&copies);
+    std::vector<std::byte> coded;
 
-    DescendingHand device(Vec3(0.028, 0.0, 0.03));
-    ConditionerSetup limits;
-    limits.device = device.info().limits;
-    limits.period_s = 1e-9 * static_cast<double>(kPeriod_ns);
+    // The highest vertex of the base mesh lies on the surface.
+    const auto vertices = parts.slots.base.positions_m;
+    const Vec3 top =
+        header.origin_m() +
+        to_vec3(*std::max_element(vertices.begin(), vertices.end(),
+                                  [](const Vec3f& a, const Vec3f& b) { return a[2] < b[2]; }));
+    // Each tool goes down into an object of the upper layer, the pen into the last one.
+    const auto above = [&](std::size_t tool)
+    { return Vec3(poses[kObjects - 1 - 5 * tool].translation_m + top); };
+
+    const double period_s = 1e-9 * static_cast<double>(setup.period_ns);
+    ConditionerSetup limits; // Of a device that is no weaker than most.
+    limits.period_s = period_s;
     WrenchConditioner conditioner(limits);
-    const Vec3 middle_m(0.028, 0.0, 0.0);
-    SafeState safe({1.0, pen.force_max_n, pen.stiffness_n_per_m, 0.0, pen.torque_max_nm});
+    const Vec3 middle_m = above(0);
+    std::vector<SafeState> safe;
+    for (const ToolSpec& tool : tools)
+    {
+        safe.emplace_back(
+            SafetyLimits{1.0, tool.force_max_n, tool.stiffness_n_per_m, 0.0, tool.torque_max_nm});
+    }
+    Vec3 pushed_n(0.0, 0.0, 0.0);
     Digest digest;
+    std::array<std::uint32_t, 3> felt{};
     std::uint32_t touched = 0;
     std::uint32_t contacts = 0;
     std::uint32_t exact = 0;
     std::uint32_t wrong = 0;
-    for (std::uint64_t i = 0; i < kFrames; ++i)
+    std::uint32_t refused = 0;
+    std::uint32_t most_objects = 0;
+    for (std::uint32_t i = 0; i < kFrames; ++i)
     {
-        const DeviceSample sample = device.read();
-        ToolState state;
-        state.position_m = {sample.position_world_m[0], sample.position_world_m[1],
-                            sample.position_world_m[2]};
-        state.valid = sample.valid;
-        const std::array<SceneChange, 2> changes{move(0, i), move(1, i)};
-        courier.step(static_cast<std::int64_t>(i) * kPeriod_ns);
-        const FrameOutput output =
-            frame->run({.tools = {&state, 1}, .changes = changes, .budgets = {}, .now_ns = 0});
+        const double share = static_cast<double>(i) / kFrames;
+        std::array<ToolState, 3> states;
+        // The hand that holds the pen gives way to the force by 0.2 mm a newton.
+        states[0].position_m = above(0) + Vec3(0.0, 0.0, 0.017 - 0.06 * share) + 2e-4 * pushed_n;
+        for (std::size_t tool = 1; tool < states.size(); ++tool)
+        {
+            states[tool].position_m = above(tool) + size_m * Vec3(0.0, 0.0, 0.2 - 0.25 * share);
+        }
 
-        const ToolOutput& felt = output.tools[0];
+        std::vector<SceneChange> changes;
+        // Object 0 goes round in a circle.
+        SceneChange moves;
+        moves.kind = SceneChangeKind::object_moves;
+        moves.number = 0;
+        moves.pose.translation_m =
+            poses[0].translation_m +
+            0.1 * size_m * Vec3(std::cos(6.28 * share), std::sin(6.28 * share), 0.0);
+        changes.push_back(moves);
+
+        // The object under the pen turns.
+        moves.number = kObjects - 1;
+        moves.pose = poses.back();
+        moves.pose.rotation =
+            Eigen::AngleAxisd(0.6 * share, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+        changes.push_back(moves);
+
+        // Object 1,000 is there from frame 500 to frame 1,500, twice as large as the others.
+        // Another one of this number would be of generation 1.
+        SceneChange guest;
+        guest.number = kObjects;
+        guest.generation = 0;
+        if (i == 500)
+        {
+            guest.kind = SceneChangeKind::object_comes;
+            guest.object.model = ModelId{0};
+            guest.pose.translation_m = Vec3(0.0, 0.0, 10.0 * size_m);
+            guest.pose.scale = 2.0;
+            changes.push_back(guest);
+        }
+        else if (i == 1'500)
+        {
+            guest.kind = SceneChangeKind::object_goes;
+            changes.push_back(guest);
+        }
+
+        courier.step(std::int64_t{i} * setup.period_ns);
+        const FrameInput input{.tools = states, .changes = changes, .budgets = {}, .now_ns = 0};
+        const FrameOutput output = frame->run(input);
+        tap.record(input, output); // The haptic thread's part.
+        while (tap.try_take(coded))
+        {
+            writer.add_frame(coded); // Another thread's, or the same one's as here.
+        }
+
+        const ToolState& state = states[0];
+        const ToolOutput& of_pen = output.tools[0];
         WrenchWish wish;
-        wish.force = {felt.force_n, state.position_m, felt.stiffness_n_per_m,
-                      (felt.proxy_m - state.position_m).norm()};
+        wish.force = {of_pen.force_n, state.position_m, of_pen.stiffness_n_per_m,
+                      (of_pen.proxy_m - state.position_m).norm()};
         // A spring of 50 N/m guides the pen towards a point, with 1 N at most.
         const OwnForce guide = spring_to(middle_m, state.position_m, 50.0, 1.0);
         const ConditionedWrench wrench = conditioner.condition(with_own(wish, guide));
-
-        SafetyInput input;
-        input.position_m = state.position_m;
-        input.elapsed_s = 1e-9 * static_cast<double>(kPeriod_ns);
-        input.force_n = wrench.force.force_n;
-        input.proxy_m = felt.proxy_m;
-        input.faults = faults_of(felt);
-        const SafetyOutput out = safe.step(input);
-        conditioner.follow(out.force_n, out.torque_nm);
-        device.write({{out.force_n.x(), out.force_n.y(), out.force_n.z()}, {}, 0.0});
-
-        digest.add(out.force_n);
-        digest.add(out.torque_nm);
-        digest.add(felt.proxy_m);
+        for (std::size_t tool = 0; tool < states.size(); ++tool)
+        {
+            const ToolOutput& of_frame = output.tools[tool];
+            SafetyInput to_check;
+            to_check.position_m = states[tool].position_m;
+            to_check.elapsed_s = period_s;
+            to_check.force_n = of_frame.force_n;
+            to_check.torque_nm = of_frame.torque_nm;
+            to_check.proxy_m = of_frame.proxy_m;
+            to_check.faults = faults_of(of_frame);
+            if (tool == 0)
+            {
+                to_check.force_n = wrench.force.force_n;
+                to_check.torque_nm = Vec3(0.0, 0.0, 0.0); // Who holds the pen feels none.
+            }
+            const SafetyOutput out = safe[tool].step(to_check);
+            if (tool == 0)
+            {
+                conditioner.follow(out.force_n, out.torque_nm);
+                pushed_n = out.force_n;
+                touched += of_frame.in_contact ? 1 : 0;
+            }
+            digest.add(out.force_n);
+            digest.add(out.torque_nm);
+            digest.add(of_frame.proxy_m);
+            felt[tool] += out.force_n.norm() > 0.0 ? 1 : 0;
+        }
+        for (const PairOutput& pair : output.pairs)
+        {
+            // Only objects near a tool have a pair; to all others it is proven clear.
+            wrong += pair.lower_m > pair.upper_m ? 1 : 0;
+        }
         for (const PairOutput& pair : output.pairs)
         {
             digest.add(pair.lower_m);
             digest.add(pair.upper_m);
             digest.add(pair.nearest_point_m);
             exact += pair.kind == AnswerKind::exact ? 1 : 0;
-            wrong += pair.lower_m > pair.upper_m ? 1 : 0;
             contacts += pair.contacts != nullptr && pair.contacts->contacts.size() > 0 ? 1 : 0;
         }
-        touched += felt.in_contact ? 1 : 0;
+        for (const std::uint32_t count : output.scene.refused)
+        {
+            refused += count; // Why: ChangeRefusal, in this order.
+        }
+        most_objects = std::max(most_objects, output.scene.objects);
         if (client)
         {
-            std::this_thread::sleep_for(std::chrono::nanoseconds(kPeriod_ns));
+            std::this_thread::sleep_for(std::chrono::nanoseconds(setup.period_ns));
         }
     }
-    std::printf("touched in %u frames, %u exact answers, %u reports of contacts, digest %016llx\n",
-                touched, exact, contacts, static_cast<unsigned long long>(digest.value()));
-    return touched > 0 && exact > 0 && contacts > 0 && wrong == 0 ? 0 : 1;
+    std::printf("touched in %u frames, %u exact answers, %u reports of contacts, %u objects at "
+                "most, digest %016llx\n",
+                touched, exact, contacts, most_objects,
+                static_cast<unsigned long long>(digest.value()));
+    const bool is_felt = touched > 0 && felt[1] > 0 && felt[2] > 0 && exact > 0 && contacts > 0;
+    if (!is_felt || wrong > 0 || refused > 0 || most_objects != kObjects + 1)
+    {
+        return fail("that is not what it should be");
+    }
+    writer.finish(tap.lost_from());
+    return replay_file(argv[2], writer.take_bytes());
 }
